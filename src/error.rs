@@ -1,0 +1,102 @@
+//! The one error type: every variant names the place and says what the user can do.
+
+/// Why a mesh, a file or a backend was refused. Nothing has been changed when one is returned.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// A coordinate is NaN or infinite. Repair or remove the vertex.
+    #[error("vertex {vertex}: coordinate {axis} is {value}, not a finite number")]
+    NonFinite {
+        /// Index of the vertex.
+        vertex: usize,
+        /// `x`, `y` or `z`.
+        axis: char,
+        /// The value found.
+        value: f32,
+    },
+    /// A triangle names a vertex that does not exist. Check the file's indices (are they 0-based?).
+    #[error("triangle {triangle}: vertex index {index} is out of range, the mesh has {vertices} vertices")]
+    IndexOutOfRange {
+        /// Index of the triangle.
+        triangle: usize,
+        /// The vertex index found.
+        index: u32,
+        /// Number of vertices.
+        vertices: usize,
+    },
+    /// The array of positions or of triangles has a length that is no multiple of what one element takes.
+    #[error("{array} has {length} numbers, which is not a multiple of {stride}")]
+    RaggedArray {
+        /// `positions` or `triangles`.
+        array: &'static str,
+        /// Its length.
+        length: usize,
+        /// Numbers per element.
+        stride: usize,
+    },
+    /// More triangles or vertices than 32-bit indices can name. Split the mesh.
+    #[error("the mesh has {count} {what}; at most {limit} can be indexed")]
+    TooLarge {
+        /// `triangles` or `vertices`.
+        what: &'static str,
+        /// How many there are.
+        count: usize,
+        /// How many there may be.
+        limit: usize,
+    },
+    /// A file could not be understood. The message names the line (1-based) or the byte.
+    #[error("{place}: {message}")]
+    Parse {
+        /// Where, for example `line 17`.
+        place: String,
+        /// What was expected and what was found.
+        message: String,
+    },
+    /// The extension names no format that can be read or written.
+    #[error("{path}: unknown format; use one of: {known}")]
+    UnknownFormat {
+        /// The path given.
+        path: String,
+        /// The extensions that are known.
+        known: &'static str,
+    },
+    /// A file could not be opened, read or written.
+    #[error("{path}: {source}")]
+    Io {
+        /// The path given.
+        path: String,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// An option has a value that makes no sense.
+    #[error("option {option}: {message}")]
+    Option {
+        /// The option's name.
+        option: &'static str,
+        /// What is wrong with its value.
+        message: String,
+    },
+    /// The backend asked for is not there (`auto` would have taken another one).
+    #[error("backend {backend} is not available: {message}")]
+    BackendUnavailable {
+        /// `gpu` or `cpu`.
+        backend: &'static str,
+        /// Why.
+        message: String,
+    },
+    /// The backend cannot take this mesh: too large for the device, or coordinates outside the span it
+    /// decides exactly. Use `auto` or `cpu`.
+    #[error("backend {backend} cannot take this mesh: {message}")]
+    BackendLimit {
+        /// `gpu` or `cpu`.
+        backend: &'static str,
+        /// Which limit, and by how much.
+        message: String,
+    },
+    /// The device was lost or reported an error in the middle of a run.
+    #[error("the device failed: {message}")]
+    Device {
+        /// What the driver said.
+        message: String,
+    },
+}

@@ -1,0 +1,1 @@
+//! Generated meshes: the families that the tests, the benchmarks and the demo run on.

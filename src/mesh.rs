@@ -1,0 +1,130 @@
+//! `Mesh`: positions and triangles, checked once when it is made, so that nothing behind it can fail on them.
+
+use crate::Error;
+use glam::{DVec2, DVec3};
+
+/// "No half-edge": the twin of a half-edge on the boundary or on a frozen edge.
+pub const NONE: u32 = u32::MAX;
+
+/// Largest number of triangles: half-edge ids and two reserved words must fit 32 bits.
+pub const MAX_TRIANGLES: usize = (u32::MAX as usize - 2) / 3;
+
+/// Whether the mesh lies in the plane or is a surface in space.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Dimension {
+    /// Two numbers a vertex; the flips follow the signed in-circle test.
+    Two,
+    /// Three numbers a vertex; the flips follow the angle sum and the normal-angle threshold β.
+    Three,
+}
+
+impl Dimension {
+    /// Numbers per vertex: 2 or 3.
+    pub fn stride(self) -> usize {
+        match self {
+            Self::Two => 2,
+            Self::Three => 3,
+        }
+    }
+}
+
+/// A triangle mesh with finite coordinates and indices in range. Everything else may be dirty:
+/// boundary, several components, non-manifold edges, degenerate triangles.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mesh {
+    dimension: Dimension,
+    positions: Vec<f32>,
+    triangles: Vec<u32>,
+}
+
+impl Mesh {
+    /// Checks and takes `positions` (2 or 3 numbers a vertex) and `triangles` (3 vertex indices each).
+    ///
+    /// # Errors
+    /// [`Error::RaggedArray`], [`Error::TooLarge`], [`Error::NonFinite`] or [`Error::IndexOutOfRange`],
+    /// each naming the first place.
+    pub fn new(dimension: Dimension, positions: Vec<f32>, triangles: Vec<u32>) -> Result<Self, Error> {
+        let stride = dimension.stride();
+        for (array, length, stride) in
+            [("positions", positions.len(), stride), ("triangles", triangles.len(), 3)]
+        {
+            if length % stride != 0 {
+                return Err(Error::RaggedArray { array, length, stride });
+            }
+        }
+        let vertices = positions.len() / stride;
+        for (what, count, limit) in
+            [("vertices", vertices, NONE as usize), ("triangles", triangles.len() / 3, MAX_TRIANGLES)]
+        {
+            if count > limit {
+                return Err(Error::TooLarge { what, count, limit });
+            }
+        }
+        if let Some(i) = positions.iter().position(|x| !x.is_finite()) {
+            let axis = ['x', 'y', 'z'][i % stride];
+            return Err(Error::NonFinite { vertex: i / stride, axis, value: positions[i] });
+        }
+        if let Some(i) = triangles.iter().position(|&v| v as usize >= vertices) {
+            return Err(Error::IndexOutOfRange { triangle: i / 3, index: triangles[i], vertices });
+        }
+        Ok(Self { dimension, positions, triangles })
+    }
+
+    /// Plane or space.
+    pub fn dimension(&self) -> Dimension {
+        self.dimension
+    }
+
+    /// Coordinates, 2 or 3 a vertex.
+    pub fn positions(&self) -> &[f32] {
+        &self.positions
+    }
+
+    /// Vertex indices, 3 a triangle.
+    pub fn triangles(&self) -> &[u32] {
+        &self.triangles
+    }
+
+    /// Number of vertices, unreferenced ones included.
+    pub fn vertex_count(&self) -> usize {
+        self.positions.len() / self.dimension.stride()
+    }
+
+    /// Number of triangles.
+    pub fn triangle_count(&self) -> usize {
+        self.triangles.len() / 3
+    }
+
+    /// The same vertices with other triangles, such as [`crate::Outcome::triangles`].
+    ///
+    /// # Errors
+    /// As [`Mesh::new`].
+    pub fn with_triangles(&self, triangles: Vec<u32>) -> Result<Self, Error> {
+        Self::new(self.dimension, self.positions.clone(), triangles)
+    }
+
+    /// The vertex's coordinates, a 2D mesh only.
+    pub(crate) fn point2(&self, vertex: u32) -> DVec2 {
+        point2(&self.positions, vertex)
+    }
+
+    /// The vertex's coordinates; z is 0 in a 2D mesh.
+    pub(crate) fn point3(&self, vertex: u32) -> DVec3 {
+        match self.dimension {
+            Dimension::Two => self.point2(vertex).extend(0.0),
+            Dimension::Three => point3(&self.positions, vertex),
+        }
+    }
+}
+
+/// Vertex `v` of an array of 2D positions; f32 to f64 is exact.
+pub(crate) fn point2(positions: &[f32], v: u32) -> DVec2 {
+    let i = 2 * v as usize;
+    DVec2::new(f64::from(positions[i]), f64::from(positions[i + 1]))
+}
+
+/// Vertex `v` of an array of 3D positions; f32 to f64 is exact.
+pub(crate) fn point3(positions: &[f32], v: u32) -> DVec3 {
+    let i = 3 * v as usize;
+    DVec3::new(f64::from(positions[i]), f64::from(positions[i + 1]), f64::from(positions[i + 2]))
+}

@@ -1,0 +1,1 @@
+//! Angles, their histogram, and the audit: an independent check of a result.
