@@ -1,6 +1,8 @@
 //! The loop around an engine: options in, iterations and statistics out, and the honest result.
 
 use crate::engine::{Cpu, Engine, Lawson};
+#[cfg(feature = "gpu")]
+use crate::engine::{Device, WebGpu};
 use crate::predicates::cos_degrees;
 use crate::{Error, Mesh, frozen};
 use std::ops::ControlFlow;
@@ -347,14 +349,31 @@ impl Session {
 /// The engine for the options, and why `Auto` did not take the GPU.
 async fn engine_for(mesh: &Arc<Mesh>, options: &Options) -> Result<(Box<dyn Engine>, Option<String>), Error> {
     let cos = cos_degrees(options.max_normal_angle);
-    if options.order == Order::Any {
-        if options.backend == Backend::Gpu {
-            let message = "order `any` is sequential and runs on the cpu".to_owned();
-            return Err(Error::Option { option: "order", message });
+    let cpu = || Cpu::new(mesh.clone(), cos);
+    match (options.order, options.backend) {
+        (Order::Any, Backend::Gpu) => {
+            let message = "`any` is sequential and runs on the cpu only".to_owned();
+            Err(Error::Option { option: "order", message })
         }
-        return Ok((Box::new(Lawson::new(Cpu::new(mesh.clone(), cos))), None));
+        (Order::Any, _) => Ok((Box::new(Lawson::new(cpu())), None)),
+        (Order::Reproducible, Backend::Cpu) => Ok((Box::new(cpu()), None)),
+        (Order::Reproducible, Backend::Gpu) => Ok((gpu(mesh, cos).await?, None)),
+        (Order::Reproducible, Backend::Auto) => match gpu(mesh, cos).await {
+            Ok(engine) => Ok((engine, None)),
+            Err(error) => Ok((Box::new(cpu()), Some(error.to_string()))),
+        },
     }
-    Ok((Box::new(Cpu::new(mesh.clone(), cos)), None))
+}
+
+#[cfg(feature = "gpu")]
+async fn gpu(mesh: &Arc<Mesh>, cos: f64) -> Result<Box<dyn Engine>, Error> {
+    Ok(Box::new(WebGpu::new(Device::shared().await?, mesh, cos).await?))
+}
+
+#[cfg(not(feature = "gpu"))]
+async fn gpu(_mesh: &Arc<Mesh>, _cos: f64) -> Result<Box<dyn Engine>, Error> {
+    let message = "this build has no GPU engine (feature `gpu`)".to_owned();
+    Err(Error::BackendUnavailable { backend: "gpu", message })
 }
 
 fn ms_since(start: Instant) -> f64 {

@@ -2,9 +2,13 @@
 
 mod cpu;
 mod lawson;
+#[cfg(feature = "gpu")]
+mod webgpu;
 
 pub(crate) use cpu::Cpu;
 pub(crate) use lawson::Lawson;
+#[cfg(feature = "gpu")]
+pub(crate) use webgpu::{Device, WebGpu};
 
 use crate::{Error, Reasons};
 use std::pin::Pin;

@@ -31,5 +31,11 @@ pub fn cos_degrees(degrees: f64) -> f64 {
     }
 }
 
+/// |k| = mantissa / 2^shift, exactly, for a cosine k from [`cos_degrees`]; the shift is at most 106.
+pub(crate) fn cosine_fraction(k: f64) -> (u64, u32) {
+    let (mantissa, exponent) = exact::decode(k);
+    (mantissa.unsigned_abs(), if mantissa == 0 { 0 } else { -exponent as u32 })
+}
+
 #[cfg(test)]
 mod tests;

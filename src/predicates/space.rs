@@ -197,12 +197,9 @@ fn angle_sum<R: Ring>(v: &[R; 12]) -> Ordering {
 /// Whether n·m < k|n||m| for the normals before the flip or for those after it.
 fn angle_exceeded<const N: usize>(v: &[Int<N>; 12], k: f64) -> bool {
     let [p, q, r, s] = vectors(v);
-    let k_square = {
-        let (mantissa, exponent) = super::exact::decode(k.abs());
-        let mantissa = Int::<N>::new(mantissa, 0);
-        // Cosines have exponents of at least -106 (design of `cos_degrees`); zero has none.
-        (mantissa.mul(&mantissa), if k == 0.0 { 0 } else { (-2 * exponent) as u32 })
-    };
+    let (mantissa, shift) = super::cosine_fraction(k);
+    let mantissa = Int::<N>::new(mantissa as i64, 0);
+    let k_square = mantissa.mul(&mantissa);
     let exceeds = |n: Vector<Int<N>>, m: Vector<Int<N>>| {
         let left = dot(&n, &m);
         // k|n||m| has the sign of k, or is zero.
@@ -217,7 +214,7 @@ fn angle_exceeded<const N: usize>(v: &[Int<N>; 12], k: f64) -> bool {
         if left.sign() != right_sign {
             return left.sign() < right_sign;
         }
-        let difference = left.mul(&left).shifted(k_square.1).sub(&scale.mul(&k_square.0)).sign();
+        let difference = left.mul(&left).shifted(2 * shift).sub(&scale.mul(&k_square)).sign();
         match right_sign {
             Ordering::Greater => difference.is_lt(),
             Ordering::Less => difference.is_gt(),
