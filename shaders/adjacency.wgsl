@@ -51,8 +51,8 @@ fn ends(h: u32) -> vec2u {
 
 // By the smaller vertex, whose half-edges are spread over 256 buckets: a pole would else fill a single one.
 fn bucket_of(ends: vec2u) -> u32 {
-    let hash = ends.y * 0x9e3779b9u >> 24u;
-    return (ends.x & ~255u) | (ends.x + hash & 255u);
+    let hash = (ends.y * 0x9e3779b9u) >> 24u;
+    return (ends.x & ~255u) | ((ends.x + hash) & 255u);
 }
 
 @compute @workgroup_size(WORKGROUP_SIZE)

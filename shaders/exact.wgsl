@@ -1,5 +1,6 @@
 // Exact integers. Four points are integers times one power of two (the grid of the quad); a difference of
 // coordinates is a vec4u, 96 bits of magnitude and a sign; what is computed from differences is an Int.
+// Drivers inline every call, so the callers loop over tables rather than call `multiply` from many places.
 
 // Bits that a coordinate may take on the grid of its mesh: what the engine accepts at upload.
 const SPAN: u32 = 84u;
@@ -15,7 +16,7 @@ struct Int {
 
 // Exponent of the lowest set bit of an f32, 1000 for zero.
 fn unit_exponent(bits: u32) -> i32 {
-    let field = bits >> 23u & 0xffu;
+    let field = (bits >> 23u) & 0xffu;
     let fraction = bits & 0x7fffffu;
     let magnitude = select(fraction | 0x800000u, fraction, field == 0u);
     return select(i32(max(field, 1u)) - 150 + i32(countTrailingZeros(magnitude)), 1000, magnitude == 0u);
@@ -23,7 +24,7 @@ fn unit_exponent(bits: u32) -> i32 {
 
 // The f32 in units of 2^unit, as magnitude and sign.
 fn on_grid(bits: u32, unit: i32) -> vec4u {
-    let field = bits >> 23u & 0xffu;
+    let field = (bits >> 23u) & 0xffu;
     let fraction = bits & 0x7fffffu;
     let magnitude = select(fraction | 0x800000u, fraction, field == 0u);
     if magnitude == 0u {

@@ -1,16 +1,17 @@
 // Flip with Update: rotate the two triangles of each selected edge in place and repair the twins around, as
 // src/phases/flip.rs.
 
-// Where half-edge `x` will be after the iteration.
-fn slot(x: u32) -> u32 {
-    if x == NONE {
+// Where half-edge `x`, given with its flag, will be after the iteration.
+fn slot(entry: u32) -> u32 {
+    if entry == NONE {
         return NONE;
     }
+    let x = unflagged(entry);
     let g = selected(x / 3u);
     if g == NONE || x != next(selected(g / 3u)) {
-        return x;
+        return entry;
     }
-    return g;
+    return g | (entry & CREASE);
 }
 
 // Reads the twins of its own two triangles only; writes those, and the entries of the neighbours that are
@@ -38,8 +39,9 @@ fn flip_edge(h: u32, g: u32) {
 
 fn update(inner: u32, outer: u32) {
     twins[inner] = slot(outer);
-    if outer != NONE && selected(outer / 3u) == NONE {
-        twins[outer] = inner;
+    let x = unflagged(outer);
+    if x != NONE && selected(x / 3u) == NONE {
+        twins[x] = inner | (outer & CREASE);
     }
 }
 

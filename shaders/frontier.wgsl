@@ -33,7 +33,7 @@ fn builds_list(index: u32) -> bool {
 fn append(t: u32, index: u32, iteration: u32) {
     if atomicExchange(&frontier[2u * params.triangles + t], iteration + 1u) != iteration + 1u {
         let at = atomicAdd(&history[entry(index + 1u, LENGTH)], 1u);
-        atomicStore(&frontier[(iteration + 1u & 1u) * params.triangles + at], t);
+        atomicStore(&frontier[((iteration + 1u) & 1u) * params.triangles + at], t);
     }
 }
 
@@ -60,10 +60,10 @@ fn flip_triangle(t: u32, index: u32, iteration: u32, builds: bool) -> u32 {
     if builds {
         append(t, index, iteration);
         append(g / 3u, index, iteration);
-        append_neighbour(twins[next(h)], index, iteration);
-        append_neighbour(twins[prev(h)], index, iteration);
-        append_neighbour(twins[next(g)], index, iteration);
-        append_neighbour(twins[prev(g)], index, iteration);
+        append_neighbour(twin(next(h)), index, iteration);
+        append_neighbour(twin(prev(h)), index, iteration);
+        append_neighbour(twin(next(g)), index, iteration);
+        append_neighbour(twin(prev(g)), index, iteration);
     }
     flip_edge(h, g);
     return 1u;

@@ -1,5 +1,5 @@
 // The entry points: one dispatch a phase while there is much to do, one workgroup for a run of iterations
-// when there is little, and the census.
+// when there is little; the creases before the first one, and the census.
 
 var<workgroup> flips: atomic<u32>;
 var<workgroup> census_counts: array<atomic<u32>, 4>;
@@ -71,7 +71,7 @@ fn flip_all(
 fn tail(@builtin(local_invocation_index) local: u32) {
     for (var index = params.tail; index < params.tail + params.tail_iterations; index++) {
         if local == 0u {
-            let is_short = atomicLoad(&history[entry(index, BUILT)]) == 1u && active_count(index) <= TAIL_LENGTH;
+            let is_short = atomicLoad(&history[entry(index, BUILT)]) == 1u && active_count(index) <= params.tail_length;
             tail_count = select(0u, active_count(index), is_short && is_running(index));
         }
         let count = workgroupUniformLoad(&tail_count);
@@ -105,8 +105,16 @@ fn tail(@builtin(local_invocation_index) local: u32) {
     }
 }
 
-// The longest list that the tail takes.
-const TAIL_LENGTH: u32 = 2048u;
+// Flags the edges of the input over β, from each of their half-edges.
+@compute @workgroup_size(WORKGROUP_SIZE)
+fn flag_creases(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
+    for (var h = id.x; h < 3u * params.triangles; h += groups.x * WORKGROUP_SIZE) {
+        let g = twins[h];
+        if g != NONE && is_sharp(h, g & ~CREASE) {
+            twins[h] = g | CREASE;
+        }
+    }
+}
 
 // Counts the verdicts of all interior edges: labelled, then blocked by reason.
 @compute @workgroup_size(WORKGROUP_SIZE)
@@ -116,7 +124,7 @@ fn census(
     @builtin(num_workgroups) groups: vec3u,
 ) {
     for (var h = id.x; h < 3u * params.triangles; h += groups.x * WORKGROUP_SIZE) {
-        let g = twins[h];
+        let g = twin(h);
         if g != NONE && h < g {
             let verdict = verdict_of(h, g);
             if verdict != DELAUNAY {

@@ -27,16 +27,14 @@ fn yields(h: u32, g: u32, iteration: u32) -> bool {
     let mine = key(min(h, g), iteration);
     var first = star(prev(h));
     var second = star(prev(g));
-    loop {
+    while first.at != NONE && second.at != NONE {
         if wins(first.at, d, mine, iteration) || wins(second.at, c, mine, iteration) {
             return true;
         }
         advance(&first);
         advance(&second);
-        if first.at == NONE || second.at == NONE {
-            return false;
-        }
     }
+    return false;
 }
 
 // Whether the edge opposite to `corner` is selected, lies opposite to the vertex `far` too and is better.

@@ -33,7 +33,7 @@ fn begin_next_fan(walk: ptr<function, Star>) {
 // Moves to the next corner; `at` is NONE behind the last one.
 fn advance(walk: ptr<function, Star>) {
     if !(*walk).is_clockwise {
-        (*walk).at = twins[prev((*walk).at)];
+        (*walk).at = twin(prev((*walk).at));
         if (*walk).at == (*walk).start {
             begin_next_fan(walk);
             return;
@@ -44,10 +44,10 @@ fn advance(walk: ptr<function, Star>) {
         (*walk).is_clockwise = true;
         (*walk).at = (*walk).start;
     }
-    let twin = twins[(*walk).at];
-    if twin == NONE {
+    let other = twin((*walk).at);
+    if other == NONE {
         begin_next_fan(walk);
     } else {
-        (*walk).at = next(twin);
+        (*walk).at = next(other);
     }
 }

@@ -2,6 +2,8 @@
 
 const NONE: u32 = 0xffffffffu;
 const BLOCKED: u32 = 0xfffffffeu;
+// Set in both twin entries of an edge that was over β in the input: it stays, whatever its angle becomes.
+const CREASE: u32 = 0x80000000u;
 const WORKGROUP_SIZE: u32 = 256u;
 
 // The verdict on an interior edge; a blocked one is BLOCKED_BY plus the index of its reason.
@@ -30,6 +32,8 @@ struct Params {
     cos_sign: i32,
     cos_shift: u32,
     tail_iterations: u32,
+    // The longest list that the tail takes.
+    tail_length: u32,
     cos_square: vec4u,
 }
 
@@ -72,6 +76,19 @@ fn prev(h: u32) -> u32 {
     return select(h - 1u, h + 2u, h % 3u == 0u);
 }
 
+// The half-edge that an entry of `twins` names, without its flag.
+fn unflagged(entry: u32) -> u32 {
+    return select(entry & ~CREASE, NONE, entry == NONE);
+}
+
+fn twin(h: u32) -> u32 {
+    return unflagged(twins[h]);
+}
+
+fn is_crease(h: u32) -> bool {
+    return twins[h] >= CREASE && twins[h] != NONE;
+}
+
 fn best(t: u32) -> u32 {
     return choices[t];
 }
@@ -81,7 +98,7 @@ fn selected(t: u32) -> u32 {
 }
 
 fn is_clockwise(t: u32) -> bool {
-    return t / 32u < params.winding_length && (topology[t / 32u] >> (t % 32u) & 1u) == 1u;
+    return t / 32u < params.winding_length && ((topology[t / 32u] >> (t % 32u)) & 1u) == 1u;
 }
 
 // The priority of an edge in an iteration; the smallest wins.

@@ -14,6 +14,15 @@ pub fn prev(h: u32) -> u32 {
     if h % 3 == 0 { h + 2 } else { h - 1 }
 }
 
+/// Set in both entries of an engine's twins for an edge that was over β in the input: it stays, whatever its
+/// angle becomes. The flag moves with the half-edges.
+pub(crate) const CREASE: u32 = 1 << 31;
+
+/// The half-edge that an entry of an engine's twins names, without its flag.
+pub(crate) fn unflagged(entry: u32) -> u32 {
+    if entry == NONE { NONE } else { entry & !CREASE }
+}
+
 /// The half-edges of a mesh matched in pairs, and how many edges there are of each kind.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Adjacency {

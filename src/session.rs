@@ -358,7 +358,7 @@ async fn engine_for(mesh: &Arc<Mesh>, options: &Options) -> Result<(Box<dyn Engi
         (Order::Any, _) => Ok((Box::new(Lawson::new(cpu())), None)),
         (Order::Reproducible, Backend::Cpu) => Ok((Box::new(cpu()), None)),
         (Order::Reproducible, Backend::Gpu) => Ok((gpu(mesh, cos).await?, None)),
-        (Order::Reproducible, Backend::Auto) => match gpu(mesh, cos).await {
+        (Order::Reproducible, Backend::Auto) => match auto_gpu(mesh, cos).await {
             Ok(engine) => Ok((engine, None)),
             Err(error) => Ok((Box::new(cpu()), Some(error.to_string()))),
         },
@@ -369,6 +369,20 @@ async fn engine_for(mesh: &Arc<Mesh>, options: &Options) -> Result<(Box<dyn Engi
 async fn gpu(mesh: &Arc<Mesh>, cos: f64) -> Result<Box<dyn Engine>, Error> {
     Ok(Box::new(WebGpu::new(Device::shared().await?, mesh, cos).await?))
 }
+
+/// `Auto` leaves a GPU alone that the processor plays.
+#[cfg(feature = "gpu")]
+async fn auto_gpu(mesh: &Arc<Mesh>, cos: f64) -> Result<Box<dyn Engine>, Error> {
+    let device = Device::shared().await?;
+    if device.is_software {
+        let message = "the only adapter is software, slower than the cpu engine".to_owned();
+        return Err(Error::BackendUnavailable { backend: "gpu", message });
+    }
+    gpu(mesh, cos).await
+}
+
+#[cfg(not(feature = "gpu"))]
+use gpu as auto_gpu;
 
 #[cfg(not(feature = "gpu"))]
 async fn gpu(_mesh: &Arc<Mesh>, _cos: f64) -> Result<Box<dyn Engine>, Error> {

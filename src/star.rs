@@ -3,7 +3,7 @@
 //! from the start.
 
 use crate::NONE;
-use crate::adjacency::{next, prev};
+use crate::adjacency::{next, prev, unflagged};
 
 /// One anchor, a half-edge that starts at the vertex, for each fan of the vertices that have several fans.
 /// The table holds a word for each vertex, [`NONE`] or the place of its list of anchors in the table; a list
@@ -106,7 +106,7 @@ impl<'a> Star<'a> {
 
     fn advance(&mut self) {
         if !self.clockwise {
-            self.at = self.twins[prev(self.at) as usize];
+            self.at = unflagged(self.twins[prev(self.at) as usize]);
             if self.at == self.start {
                 return self.begin_next_fan();
             }
@@ -117,7 +117,7 @@ impl<'a> Star<'a> {
             self.clockwise = true;
             self.at = self.start;
         }
-        match self.twins[self.at as usize] {
+        match unflagged(self.twins[self.at as usize]) {
             NONE => self.begin_next_fan(),
             twin => self.at = next(twin),
         }

@@ -1,8 +1,9 @@
 //! The phases on the CPU, one thread, over the frontier.
 
 use super::{Answer, Census, EdgeCounts, Engine};
-use crate::mesh::Mesh;
-use crate::phases::{Frontier, Geometry, Topology, Verdict, flip, label, select, verdict};
+use crate::adjacency::unflagged;
+use crate::mesh::{Dimension, Mesh};
+use crate::phases::{Frontier, Geometry, Topology, Verdict, flag_creases, flip, label, select, verdict};
 use crate::star::Fans;
 use crate::winding::Winding;
 use crate::{Adjacency, NONE};
@@ -32,13 +33,17 @@ impl Cpu {
         let triangles = mesh.triangles().to_vec();
         let fans = Fans::new(mesh.vertex_count(), &triangles, &adjacency.twins);
         let count = mesh.triangle_count();
+        let mut twins = adjacency.twins;
+        if mesh.dimension() == Dimension::Three {
+            flag_creases(mesh.positions(), &triangles, &mut twins, cos);
+        }
         Self {
             mesh,
             cos,
             winding,
             counts,
             triangles,
-            twins: adjacency.twins,
+            twins,
             fans,
             frontier: Frontier::all(count as u32),
             best: vec![NONE; count],
@@ -91,7 +96,7 @@ impl Cpu {
     pub(crate) fn count(&self) -> Census {
         let mut census = Census::default();
         for h in 0..self.triangles.len() as u32 {
-            let g = self.twins[h as usize];
+            let g = unflagged(self.twins[h as usize]);
             if g != NONE && h < g {
                 match verdict(&self.geometry(), self.topology(), h) {
                     Verdict::Delaunay => {}

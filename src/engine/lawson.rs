@@ -2,7 +2,7 @@
 //! it; it is the fast path on one thread for those who do not need the order of the parallel phases.
 
 use super::{Answer, Census, Cpu, EdgeCounts, Engine};
-use crate::adjacency::{next, prev};
+use crate::adjacency::{next, prev, unflagged};
 use crate::phases::{Verdict, flip_edge, slot, verdict};
 use crate::{NONE, Reason};
 
@@ -21,11 +21,11 @@ impl Lawson {
         let mut flips = 0;
         loop {
             let mut stack: Vec<u32> = (0..self.cpu.triangles.len() as u32)
-                .filter(|&h| self.cpu.twins[h as usize] != NONE && h < self.cpu.twins[h as usize])
+                .filter(|&h| self.cpu.twins[h as usize] != NONE && h < unflagged(self.cpu.twins[h as usize]))
                 .collect();
             let (before, mut duplicates) = (flips, false);
             while let Some(h) = stack.pop() {
-                let g = self.cpu.twins[h as usize];
+                let g = unflagged(self.cpu.twins[h as usize]);
                 if g == NONE {
                     continue;
                 }

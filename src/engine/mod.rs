@@ -2,6 +2,8 @@
 
 mod cpu;
 mod lawson;
+#[cfg(all(test, feature = "gpu"))]
+mod tests;
 #[cfg(feature = "gpu")]
 mod webgpu;
 

@@ -1,7 +1,7 @@
 //! Flip with Update: rotate the two triangles of each selected edge in place and repair the twins around.
 
 use crate::NONE;
-use crate::adjacency::{next, prev};
+use crate::adjacency::{CREASE, next, prev, unflagged};
 use crate::star::Fans;
 
 /// Flips the selected edges of the active triangles, and moves the anchors of the fans.
@@ -26,14 +26,15 @@ pub(crate) fn flip(
     }
 }
 
-/// Where half-edge `x` will be after the iteration: the half-edge after a selected one moves into the place
+/// Where half-edge `x`, given with its flag, will be after the iteration: the half-edge after a selected one moves into the place
 /// of the selected one's twin. A function of the state before the phase alone.
-pub(crate) fn slot(selected: &[u32], x: u32) -> u32 {
+pub(crate) fn slot(selected: &[u32], entry: u32) -> u32 {
+    let x = unflagged(entry);
     if x == NONE {
         return NONE;
     }
     let g = selected[x as usize / 3];
-    if g != NONE && x == next(selected[g as usize / 3]) { g } else { x }
+    if g != NONE && x == next(selected[g as usize / 3]) { g | (entry & CREASE) } else { entry }
 }
 
 /// Flips one selected edge. Reads the twins of its own two triangles only; writes those, and the entries of
@@ -48,8 +49,9 @@ pub(crate) fn flip_edge(triangles: &mut [u32], twins: &mut [u32], selected: &[u3
     twins[gn as usize] = hn;
     for (inner, outer) in [(h, outer_gn), (hp, outer_hp), (g, outer_hn), (gp, outer_gp)] {
         twins[inner as usize] = slot(selected, outer);
-        if outer != NONE && selected[outer as usize / 3] == NONE {
-            twins[outer as usize] = inner;
+        let x = unflagged(outer);
+        if x != NONE && selected[x as usize / 3] == NONE {
+            twins[x as usize] = inner | (outer & CREASE);
         }
     }
 }

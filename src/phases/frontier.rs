@@ -2,6 +2,7 @@
 //! of its triangles has changed, or, for duplicates, anywhere.
 
 use crate::NONE;
+use crate::adjacency::unflagged;
 
 /// A list of triangles, each once.
 #[derive(Clone, Debug)]
@@ -35,7 +36,7 @@ impl Frontier {
                 append(t);
                 for &twin in &twins[3 * t as usize..3 * t as usize + 3] {
                     if twin != NONE {
-                        append(twin / 3);
+                        append(unflagged(twin) / 3);
                     }
                 }
             } else if best[t as usize] != NONE {

@@ -11,11 +11,13 @@
 //!         d                   d
 //! ```
 
+mod crease;
 mod flip;
 mod frontier;
 mod label;
 mod select;
 
+pub(crate) use crease::flag_creases;
 pub(crate) use flip::{flip, flip_edge, slot};
 pub(crate) use frontier::Frontier;
 pub(crate) use label::{Verdict, label, verdict};

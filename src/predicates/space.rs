@@ -69,26 +69,38 @@ impl Quad {
         if cos <= -1.0 {
             return false;
         }
-        let exceeds = |n: DVec3, m: DVec3| {
-            let value = n.dot(m) - cos * (n.length() * m.length());
-            let bound = BOUND * size(self.p) * size(self.q) * size(self.s) * size(self.r);
-            if value > bound {
-                Some(false)
-            } else if value < -bound {
-                Some(true)
-            } else {
-                None
-            }
-        };
-        let before = exceeds(self.p.cross(self.q), self.s.cross(self.r));
-        if before == Some(true) {
-            return true;
+        let before = self.compare_angle(self.p.cross(self.q), self.s.cross(self.r), cos);
+        let after = self.compare_angle(self.r.cross(self.p), self.q.cross(self.s), cos);
+        match before.min(after) {
+            Ordering::Less => true,
+            Ordering::Equal => exactly!(self, angle_exceeded, cos, true),
+            Ordering::Greater => false,
         }
-        let after = exceeds(self.r.cross(self.p), self.q.cross(self.s));
-        if after == Some(true) || (before, after) == (Some(false), Some(false)) {
-            return after == Some(true);
+    }
+
+    /// Whether the angle between the normals, before any flip, is larger than β = acos(`cos`).
+    pub(crate) fn is_over_angle(&self, cos: f64) -> bool {
+        if cos <= -1.0 {
+            return false;
         }
-        exactly!(self, angle_exceeded, cos)
+        let (n1, n2) = (self.p.cross(self.q), self.s.cross(self.r));
+        match self.compare_angle(n1, n2, cos) {
+            Ordering::Equal => exactly!(self, angle_exceeded, cos, false),
+            decided => decided.is_lt(),
+        }
+    }
+
+    /// n·m - k|n||m| against zero; `Equal` where the filter cannot decide.
+    fn compare_angle(&self, n: DVec3, m: DVec3, cos: f64) -> Ordering {
+        let value = n.dot(m) - cos * (n.length() * m.length());
+        let bound = BOUND * size(self.p) * size(self.q) * size(self.s) * size(self.r);
+        if value > bound {
+            Ordering::Greater
+        } else if value < -bound {
+            Ordering::Less
+        } else {
+            Ordering::Equal
+        }
     }
 
     /// Whether a new normal has a strictly negative dot product with an old one.
@@ -194,8 +206,8 @@ fn angle_sum<R: Ring>(v: &[R; 12]) -> Ordering {
     if first.is_gt() { larger } else { larger.reverse() }
 }
 
-/// Whether n·m < k|n||m| for the normals before the flip or for those after it.
-fn angle_exceeded<const N: usize>(v: &[Int<N>; 12], k: f64) -> bool {
+/// Whether n·m < k|n||m| for the normals before the flip or, with `after` too, for those after it.
+fn angle_exceeded<const N: usize>(v: &[Int<N>; 12], k: f64, after: bool) -> bool {
     let [p, q, r, s] = vectors(v);
     let (mantissa, shift) = super::cosine_fraction(k);
     let mantissa = Int::<N>::new(mantissa as i64, 0);
@@ -221,7 +233,7 @@ fn angle_exceeded<const N: usize>(v: &[Int<N>; 12], k: f64) -> bool {
             Ordering::Equal => false,
         }
     };
-    exceeds(cross(&p, &q), cross(&s, &r)) || exceeds(cross(&r, &p), cross(&q, &s))
+    exceeds(cross(&p, &q), cross(&s, &r)) || (after && exceeds(cross(&r, &p), cross(&q, &s)))
 }
 
 fn turned_over<R: Ring>(v: &[R; 12]) -> bool {

@@ -142,6 +142,7 @@ proptest! {
         prop_assert_eq!(quad.is_non_delaunay(), sum.is_lt());
         let k = cos_degrees(degrees);
         prop_assert_eq!(quad.exceeds_angle(k), exceeds(&n1, &n2, k) || exceeds(&m1, &m2, k));
+        prop_assert_eq!(quad.is_over_angle(k), exceeds(&n1, &n2, k));
         let turned = [&n1, &n2].iter().any(|n| [&m1, &m2].iter().any(|m| dot(n, m).sign() == Sign::Minus));
         prop_assert_eq!(quad.turns_over(), turned);
         let expected = (dot(&p, &q).sign() == Sign::Minus, dot(&n1, &n1).sign() == Sign::NoSign);

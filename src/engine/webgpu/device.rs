@@ -1,8 +1,6 @@
-//! The GPU: one device a thread, with the kernels compiled from `shaders/`.
+//! The GPU: one device for all sessions, with the kernels compiled from `shaders/`.
 
 use crate::Error;
-use std::cell::RefCell;
-use std::rc::Rc;
 use std::sync::{Arc, Mutex};
 
 /// Invocations of a workgroup of every kernel.
@@ -25,6 +23,12 @@ pub(super) const PHASES: &str = concat!(
 /// The shader that builds the adjacency.
 pub(super) const ADJACENCY: &str = include_str!("../../../shaders/adjacency.wgsl");
 
+/// The shader that finds drivers whose loops end too early.
+pub(super) const PROBE: &str = include_str!("../../../shaders/probe.wgsl");
+
+/// Workgroups that WebGPU allows in one dimension.
+const MOST_WORKGROUPS: u32 = 65_535;
+
 /// The pipelines of one shader, which share their bindings.
 pub(super) struct Kernels<const N: usize> {
     pub(super) layout: wgpu::BindGroupLayout,
@@ -38,29 +42,56 @@ pub(crate) struct Device {
     pub(super) adapter: String,
     /// As many workgroups as keep the device busy; every kernel strides over what is left.
     most_workgroups: u32,
+    /// See `shaders/probe.wgsl`.
+    pub(super) ends_loops_early: bool,
+    /// Whether the processor plays the GPU, which is slower than the CPU engine.
+    pub(crate) is_software: bool,
     failure: Arc<Mutex<Option<String>>>,
     /// count, allocate, scatter, match_twins, count_corners, count_fans.
     pub(super) adjacency: Kernels<6>,
-    /// label_all, select_all, flip_all, tail, census.
-    pub(super) phases: Kernels<5>,
+    /// label_all, select_all, flip_all, tail, census, flag_creases.
+    pub(super) phases: Kernels<6>,
 }
 
+#[cfg(not(target_arch = "wasm32"))]
+static SHARED: Mutex<Option<Handle>> = Mutex::new(None);
+
+/// Sessions share a device, and on a computer threads do.
+#[cfg(not(target_arch = "wasm32"))]
+pub(crate) type Handle = Arc<Device>;
+
+#[cfg(target_arch = "wasm32")]
 thread_local! {
-    static SHARED: RefCell<Option<Rc<Device>>> = const { RefCell::new(None) };
+    static SHARED: Mutex<Option<Handle>> = const { Mutex::new(None) };
+}
+
+/// In a browser a device belongs to its thread.
+#[cfg(target_arch = "wasm32")]
+pub(crate) type Handle = std::rc::Rc<Device>;
+
+/// Calls `f` with the place of the shared device.
+fn with_shared<T>(f: impl FnOnce(&mut Option<Handle>) -> T) -> T {
+    let locked = |shared: &Mutex<Option<Handle>>| {
+        f(&mut shared.lock().unwrap_or_else(|poisoned| poisoned.into_inner()))
+    };
+    #[cfg(not(target_arch = "wasm32"))]
+    return locked(&SHARED);
+    #[cfg(target_arch = "wasm32")]
+    return SHARED.with(locked);
 }
 
 impl Device {
-    /// The device of this thread; opened at the first call, and again after a failure.
+    /// The shared device; opened at the first call, and again after a failure.
     ///
     /// # Errors
     /// [`Error::BackendUnavailable`] where there is none or its compiler refuses the kernels.
-    pub(crate) async fn shared() -> Result<Rc<Self>, Error> {
-        let shared = SHARED.with_borrow(|shared| shared.clone());
+    pub(crate) async fn shared() -> Result<Handle, Error> {
+        let shared = with_shared(|shared| shared.clone());
         if let Some(device) = shared.filter(|device| device.check().is_ok()) {
             return Ok(device);
         }
-        let device = Rc::new(Self::open().await?);
-        SHARED.set(Some(device.clone()));
+        let device = Handle::new(Self::open().await?);
+        with_shared(|shared| *shared = Some(device.clone()));
         Ok(device)
     }
 
@@ -121,21 +152,52 @@ impl Device {
             &device,
             PHASES,
             &[uniform(false), uniform(true), read, write, write, write, write, write, write],
-            ["label_all", "select_all", "flip_all", "tail", "census"],
+            ["label_all", "select_all", "flip_all", "tail", "census", "flag_creases"],
         );
         let driver = [info.driver.as_str(), info.driver_info.as_str()].join(" ");
         let driver = driver.trim();
-        let result = Self {
+        let mut result = Self {
             device,
             queue,
             adapter: if driver.is_empty() { info.name.clone() } else { format!("{}, {driver}", info.name) },
             most_workgroups: if info.device_type == wgpu::DeviceType::Cpu { 64 } else { 4096 },
+            ends_loops_early: false,
+            is_software: info.device_type == wgpu::DeviceType::Cpu,
             failure,
             adjacency,
             phases,
         };
-        result.check().map_err(|error| unavailable(error.to_string()))?;
+        result.ends_loops_early =
+            result.probe_loops().await.map_err(|error| unavailable(error.to_string()))?;
+        if result.ends_loops_early {
+            result.most_workgroups = MOST_WORKGROUPS;
+        }
         Ok(result)
+    }
+
+    /// Runs `shaders/probe.wgsl` and compares.
+    async fn probe_loops(&self) -> Result<bool, Error> {
+        let write = wgpu::BindingType::Buffer {
+            ty: wgpu::BufferBindingType::Storage { read_only: false },
+            has_dynamic_offset: false,
+            min_binding_size: None,
+        };
+        let probe = kernels(&self.device, PROBE, &[write], ["probe"]);
+        let buffer = self.buffer("probe", 1, wgpu::BufferUsages::STORAGE);
+        let bindings = self.bind(&probe.layout, &[(&buffer, None)]);
+        let mut encoder = self.device.create_command_encoder(&Default::default());
+        let mut pass = encoder.begin_compute_pass(&Default::default());
+        pass.set_pipeline(&probe.pipelines[0]);
+        pass.set_bind_group(0, &bindings, &[]);
+        pass.dispatch_workgroups(1, 1, 1);
+        drop(pass);
+        let found = self.submit_and_read(encoder, &buffer, 1).await?;
+        buffer.destroy();
+        let expected = (0..100_000).fold(1u32, |x, _| {
+            let x = x.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            x ^ (x >> 13)
+        });
+        Ok(found[0] != expected)
     }
 
     /// Whether anything has failed since the device was opened.

@@ -7,22 +7,25 @@
 mod adjacency;
 mod device;
 
-pub(crate) use device::Device;
+pub(crate) use device::{Device, Handle};
 
 use super::{Answer, Census, EdgeCounts, Engine};
-use crate::mesh::Mesh;
+use crate::mesh::{Dimension, Mesh};
 use crate::predicates::cosine_fraction;
 use crate::star::Fans;
 use crate::winding::Winding;
 use crate::{Adjacency, Error, Reason};
-use std::rc::Rc;
 use std::sync::Arc;
 use wgpu::BufferUsages;
 
 /// Iterations with a dispatch for each phase in one submission.
 const BATCH: u32 = 16;
-/// Iterations that the tail may run after them.
+/// Iterations that the tail may run after them, on lists of up to so many triangles.
 const TAIL: u32 = 256;
+const TAIL_LENGTH: u32 = 2048;
+/// The same where loops end too early: a few thousand rounds for each of a few triangles are safe.
+const SHORT_TAIL: u32 = 4;
+const SHORT_TAIL_LENGTH: u32 = 256;
 /// The coordinates of a mesh must be integers of so many bits times a power of two; as in `exact.wgsl`.
 const SPAN: u32 = 84;
 /// Alignment of a dynamic offset that every device offers.
@@ -49,7 +52,20 @@ struct Params {
     cos_sign: i32,
     cos_shift: u32,
     tail_iterations: u32,
+    tail_length: u32,
+    padding: [u32; 3],
     cos_square: [u32; 4],
+}
+
+/// The kernels of `iteration.wgsl`, in the order of their pipelines.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Kernel {
+    Label,
+    Select,
+    Flip,
+    Tail,
+    Census,
+    FlagCreases,
 }
 
 /// The entry of the history that the next iteration starts from: FLIPS, LENGTH, BUILT, RAN.
@@ -57,7 +73,7 @@ type Entry = [u32; ENTRY_WORDS];
 
 /// A mesh on the device.
 pub(crate) struct WebGpu {
-    gpu: Rc<Device>,
+    gpu: Handle,
     params: Params,
     counts: EdgeCounts,
     bindings: wgpu::BindGroup,
@@ -80,7 +96,7 @@ impl WebGpu {
     /// # Errors
     /// [`Error::BackendLimit`] for a mesh that is too large for the device or has coordinates of too many
     /// magnitudes; [`Error::Device`].
-    pub(crate) async fn new(gpu: Rc<Device>, mesh: &Arc<Mesh>, cos: f64) -> Result<Self, Error> {
+    pub(crate) async fn new(gpu: Handle, mesh: &Arc<Mesh>, cos: f64) -> Result<Self, Error> {
         refuse_beyond_limits(&gpu, mesh)?;
         let count = mesh.triangle_count();
         let storage = |label, words| gpu.buffer(label, words, BufferUsages::STORAGE);
@@ -130,10 +146,11 @@ impl WebGpu {
             cos_sign: if cos == 0.0 { 0 } else { cos.signum() as i32 },
             cos_shift: 2 * shift,
             tail_iterations: 0,
+            tail_length: if gpu.ends_loops_early { SHORT_TAIL_LENGTH } else { TAIL_LENGTH },
+            padding: [0; 3],
             cos_square: [0, 32, 64, 96].map(|bits| (square >> bits) as u32),
         };
-        gpu.check()?;
-        Ok(Self {
+        let mut result = Self {
             params,
             counts: found.counts,
             bindings,
@@ -149,7 +166,16 @@ impl WebGpu {
             state: [count as u32, 0, 0, 1],
             dispatches: found.dispatches,
             gpu,
-        })
+        };
+        if mesh.dimension() == Dimension::Three && count > 0 {
+            let half_edges = 3 * result.params.triangles;
+            let groups = result.gpu.workgroups(half_edges);
+            let encoder = result.encode(|pass| result.dispatch(pass, Kernel::FlagCreases, groups));
+            result.gpu.queue.submit([encoder.finish()]);
+            result.dispatches += 1;
+        }
+        result.gpu.check()?;
+        Ok(result)
     }
 
     /// One submission of up to `count` iterations; returns the flips of those that ran, the last of which may
@@ -157,25 +183,34 @@ impl WebGpu {
     async fn submit(&mut self, count: u32) -> Result<Vec<u32>, Error> {
         let batch = count.min(BATCH);
         self.params.tail = batch;
-        self.params.tail_iterations = (count - batch).min(TAIL);
-        let mut history = [0u32; HISTORY_WORDS];
-        history[ENTRIES..ENTRIES + ENTRY_WORDS].copy_from_slice(&self.state);
-        self.gpu.queue.write_buffer(&self.history, 0, bytemuck::cast_slice(&history));
+        self.params.tail_iterations =
+            (count - batch).min(if self.gpu.ends_loops_early { SHORT_TAIL } else { TAIL });
+        self.begin_history();
         let encoder = self.encode(|pass| {
             let groups = self.gpu.workgroups(self.params.triangles);
             for step in 0..batch {
                 pass.set_bind_group(0, &self.bindings, &[step * STEP_BYTES]);
-                for kernel in 0..3 {
-                    pass.set_pipeline(&self.gpu.phases.pipelines[kernel]);
-                    pass.dispatch_workgroups(groups, 1, 1);
+                for kernel in [Kernel::Label, Kernel::Select, Kernel::Flip] {
+                    self.dispatch(pass, kernel, groups);
                 }
             }
             if self.params.tail_iterations > 0 {
-                pass.set_pipeline(&self.gpu.phases.pipelines[3]);
-                pass.dispatch_workgroups(1, 1, 1);
+                self.dispatch(pass, Kernel::Tail, 1);
             }
         });
         self.dispatches += u64::from(3 * batch + self.params.tail_iterations.min(1));
+        self.read_history(encoder).await
+    }
+
+    /// Writes the state as the first entry, and zeros behind it.
+    fn begin_history(&self) {
+        let mut history = [0u32; HISTORY_WORDS];
+        history[ENTRIES..ENTRIES + ENTRY_WORDS].copy_from_slice(&self.state);
+        self.gpu.queue.write_buffer(&self.history, 0, bytemuck::cast_slice(&history));
+    }
+
+    /// Submits the commands, takes over the last state and returns the flips of the iterations that ran.
+    async fn read_history(&mut self, encoder: wgpu::CommandEncoder) -> Result<Vec<u32>, Error> {
         let history = self.gpu.submit_and_read(encoder, &self.history, HISTORY_WORDS).await?;
         let entries = history[ENTRIES..].chunks_exact(ENTRY_WORDS).skip(1);
         let ran: Vec<&[u32]> = entries.take_while(|entry| entry[3] == 1).collect();
@@ -197,6 +232,11 @@ impl WebGpu {
         encoder
     }
 
+    fn dispatch(&self, pass: &mut wgpu::ComputePass, kernel: Kernel, workgroups: u32) {
+        pass.set_pipeline(&self.gpu.phases.pipelines[kernel as usize]);
+        pass.dispatch_workgroups(workgroups, 1, 1);
+    }
+
     async fn run(&mut self, count: u32) -> Result<Vec<u32>, Error> {
         let mut flips = Vec::new();
         while self.params.triangles > 0 && (flips.len() as u32) < count {
@@ -212,8 +252,7 @@ impl WebGpu {
     async fn count(&mut self) -> Result<Census, Error> {
         self.gpu.queue.write_buffer(&self.history, 0, bytemuck::cast_slice(&[0u32; ENTRIES]));
         let encoder = self.encode(|pass| {
-            pass.set_pipeline(&self.gpu.phases.pipelines[4]);
-            pass.dispatch_workgroups(self.gpu.workgroups(3 * self.params.triangles), 1, 1);
+            self.dispatch(pass, Kernel::Census, self.gpu.workgroups(3 * self.params.triangles));
         });
         self.dispatches += 1;
         let counts = self.gpu.submit_and_read(encoder, &self.history, ENTRIES).await?;
@@ -308,4 +347,34 @@ fn span_bits(positions: &[f32]) -> u32 {
         highest = highest.max(unit + magnitude.ilog2() as i32);
     }
     if lowest == i32::MAX { 0 } else { (highest - lowest + 1) as u32 }
+}
+
+/// One phase at a time, for the tests.
+#[cfg(test)]
+impl WebGpu {
+    /// Runs one phase of the next iteration; after the flips, which end it, returns their number.
+    pub(crate) async fn run_phase(&mut self, kernel: Kernel) -> Result<u32, Error> {
+        if kernel == Kernel::Label {
+            self.begin_history();
+        }
+        let groups = self.gpu.workgroups(self.params.triangles);
+        let encoder = self.encode(|pass| self.dispatch(pass, kernel, groups));
+        Ok(self.read_history(encoder).await?.last().copied().unwrap_or(0))
+    }
+
+    pub(crate) async fn twins(&self) -> Result<Vec<u32>, Error> {
+        self.read(&self.twins, 3 * self.params.triangles as usize).await
+    }
+
+    /// `best` and `selected`.
+    pub(crate) async fn choices(&self) -> Result<(Vec<u32>, Vec<u32>), Error> {
+        let mut best = self.read(&self.choices, 2 * self.params.triangles as usize).await?;
+        let selected = best.split_off(self.params.triangles as usize);
+        Ok((best, selected))
+    }
+
+    pub(crate) async fn fans(&self) -> Result<Vec<u32>, Error> {
+        let words = (self.params.fans + self.params.fans_length) as usize;
+        Ok(self.read(&self.topology, words).await?.split_off(self.params.fans as usize))
+    }
 }
