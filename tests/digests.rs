@@ -4,6 +4,7 @@
 mod meshes;
 mod simulation;
 
+use edgeflip::families::by_name;
 use edgeflip::quality::audit;
 use edgeflip::{Mesh, Reason};
 use simulation::{Expected, Simulation, digests_path, expected, simulate};
@@ -47,9 +48,14 @@ fn cases_have_unique_names() {
     assert!(names.iter().all(|(name, _)| !name.contains(char::is_whitespace)));
 }
 
+/// Random meshes to try; `EDGEFLIP_ROUNDS` asks for more.
+fn rounds() -> u64 {
+    std::env::var("EDGEFLIP_ROUNDS").ok().and_then(|n| n.parse().ok()).unwrap_or(300)
+}
+
 #[test]
 fn soups_end_and_pass_the_audit() {
-    for seed in 0..std::env::var("SOUPS").map_or(300, |n| n.parse().unwrap()) {
+    for seed in 0..rounds() {
         let (flat, bent) = meshes::soup(seed, 3 + seed as usize % 5, seed as usize / 5 % 23);
         audited_run(&format!("soup {seed}"), &flat, 10.0);
         for beta in [0.0, 40.0, 90.0, 180.0] {
@@ -58,9 +64,26 @@ fn soups_end_and_pass_the_audit() {
     }
 }
 
+/// Sound connectivity, but every vertex on one of 4 x 4 (x 4) places: collinear, coincident, folded.
+#[test]
+fn crushed_meshes_end_and_pass_the_audit() {
+    for seed in 0..rounds() {
+        let mut random = oorandom::Rand64::new(u128::from(seed));
+        let mut crush =
+            |mesh: Mesh| meshes::moved(&mesh, |_| [(); 3].map(|()| random.rand_range(0..4) as f32));
+        let n = 3 + seed as usize % 5;
+        let family = |name: &str| by_name(&format!("{name} {n} seed={seed}")).unwrap();
+        let (disc, sphere) = (crush(family("random")), crush(family("uvsphere")));
+        audited_run(&format!("crushed disc {seed}"), &disc, 10.0);
+        for beta in [0.0, 90.0, 135.0, 180.0] {
+            audited_run(&format!("crushed sphere {seed}"), &sphere, beta);
+        }
+    }
+}
+
 #[test]
 fn strips_flip_as_in_the_paper() {
-    let strips = edgeflip::families::by_name("strips 8").unwrap();
+    let strips = by_name("strips 8").unwrap();
     let run = simulate(&strips, 10.0, None);
     let flips: Vec<_> = run.iterations.iter().map(|record| record.flips).collect();
     assert_eq!(flips, [1, 2, 3, 2, 1]);
@@ -68,7 +91,7 @@ fn strips_flip_as_in_the_paper() {
 
 #[test]
 fn a_capped_run_counts_what_it_left() {
-    let mesh = edgeflip::families::by_name("random 12").unwrap();
+    let mesh = by_name("random 12").unwrap();
     let whole = simulate(&mesh, 10.0, None);
     let capped = simulate(&mesh, 10.0, Some(2));
     assert_eq!(capped.iterations.len(), 2);
@@ -80,7 +103,7 @@ fn a_capped_run_counts_what_it_left() {
 
 #[test]
 fn a_flat_surface_flips_like_the_plane() {
-    let mesh = edgeflip::families::by_name("random 20").unwrap();
+    let mesh = by_name("random 20").unwrap();
     let plane = simulate(&mesh, 10.0, None);
     for beta in [0.0, 180.0] {
         assert_eq!(simulate(&meshes::lifted(&mesh, |_, _| 3.0), beta, None).digest, plane.digest);
