@@ -217,8 +217,6 @@ fn areas(mesh: &Mesh, triangles: &[u32], component_of: &[u32], count: usize) -> 
 
 #[cfg(test)]
 mod tests {
-    use super::*;
-
     #[test]
     fn in_circle_is_the_angle_polynomial() {
         let s = |p: [i64; 8]| {

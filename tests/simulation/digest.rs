@@ -100,6 +100,7 @@ pub fn digests_path() -> PathBuf {
 }
 
 /// All lines of `digests.txt`, in the order of `meshes::all()`.
+#[allow(clippy::panic, reason = "a file that cannot be read must stop the test")]
 pub fn expected() -> Vec<Expected> {
     let lines = include_str!("../digests.txt").lines().filter(|line| !line.starts_with('#'));
     lines.map(|line| Expected::parse(line).unwrap_or_else(|| panic!("digests.txt: {line}"))).collect()

@@ -9,7 +9,7 @@ pub use digest::{Digest, Expected, digests_path, expected};
 
 use edgeflip::{Dimension, Mesh, Reason, Reasons};
 use num_bigint::{BigInt, Sign};
-use predicates::Predicates;
+use predicates::{Predicates, Verdict};
 use std::collections::{BTreeMap, HashMap, HashSet};
 
 /// No mesh of the tests needs as many.
@@ -119,9 +119,10 @@ fn clockwise(mesh: &Mesh, predicates: &Predicates) -> Vec<bool> {
             neighbours[g as usize / 3].push(h as usize / 3);
         }
     }
-    let mut clockwise = vec![None; mesh.triangle_count()];
+    let mut clockwise = vec![false; mesh.triangle_count()];
+    let mut seen = vec![false; mesh.triangle_count()];
     for start in 0..mesh.triangle_count() {
-        if clockwise[start].is_some() {
+        if seen[start] {
             continue;
         }
         let (mut component, mut stack) = (HashSet::from([start]), vec![start]);
@@ -131,10 +132,11 @@ fn clockwise(mesh: &Mesh, predicates: &Predicates) -> Vec<bool> {
         let area: BigInt =
             component.iter().map(|&t| predicates.area([0, 1, 2].map(|k| triangles[3 * t + k]))).sum();
         for t in component {
-            clockwise[t] = Some(area.sign() == Sign::Minus);
+            seen[t] = true;
+            clockwise[t] = area.sign() == Sign::Minus;
         }
     }
-    clockwise.into_iter().map(|found| found.unwrap()).collect()
+    clockwise
 }
 
 /// The edges of one state.
@@ -153,7 +155,7 @@ struct Rules {
     predicates: Predicates,
     clockwise: Vec<bool>,
     /// A verdict depends on the four vertices and the orientation alone, so it is found once.
-    verdicts: HashMap<([u32; 4], bool), Option<Result<(), Reason>>>,
+    verdicts: HashMap<([u32; 4], bool), Verdict>,
 }
 
 impl Rules {

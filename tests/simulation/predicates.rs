@@ -5,6 +5,9 @@ use num_bigint::{BigInt, Sign};
 
 type Vector = [BigInt; 3];
 
+/// `None` for a Delaunay edge, else whether it may flip.
+pub type Verdict = Option<Result<(), Reason>>;
+
 pub struct Predicates {
     dimension: Dimension,
     /// All coordinates times one power of two that makes them integers.
@@ -105,8 +108,8 @@ impl Predicates {
         negative_sum(&(dot(n1, n2) << *shift), &BigInt::from(1), &-mantissa, &lengths)
     }
 
-    /// `None` for a Delaunay edge, else whether it may flip as far as the four points tell.
-    pub fn verdict(&self, [a, b, c, d]: [u32; 4], clockwise: bool) -> Option<Result<(), Reason>> {
+    /// What the four points alone tell of an edge.
+    pub fn verdict(&self, [a, b, c, d]: [u32; 4], clockwise: bool) -> Verdict {
         let (old1, old2, new1, new2) = ([a, b, c], [b, a, d], [a, d, c], [b, c, d]);
         match self.dimension {
             Dimension::Two => {
