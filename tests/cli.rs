@@ -1,5 +1,7 @@
 //! The command-line program from outside: what it writes, says and returns.
 #![cfg(feature = "cli")]
+// Clippy's exemption for tests does not reach their shared functions.
+#![allow(clippy::unwrap_used)]
 
 use serde_json::Value;
 use std::fs;
@@ -279,6 +281,24 @@ fn wrong_usage_is_2() {
     }
     let bare = Command::new(env!("CARGO_BIN_EXE_edgeflip")).arg(&input).output().unwrap();
     assert_eq!(bare.status.code(), Some(2));
+    assert_eq!(folder.names(), ["in.off"]);
+}
+
+/// With no Vulkan driver to find there is no GPU, and the one that was asked for is not replaced.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_backend_that_is_not_there_is_3() {
+    let folder = Folder::new();
+    let (input, output) = (folder.file("in.off", SQUARE), folder.path("out.off"));
+    let ran = Command::new(env!("CARGO_BIN_EXE_edgeflip"))
+        .args([input.as_os_str(), "-o".as_ref(), output.as_os_str()])
+        .args(["--backend", "gpu"])
+        .envs([("VK_DRIVER_FILES", "/dev/null"), ("VK_ICD_FILENAMES", "/dev/null")])
+        .output()
+        .unwrap();
+    assert_eq!((ran.status.code(), text(&ran.stdout)), (Some(3), ""));
+    assert!(text(&ran.stderr).starts_with("edgeflip: backend gpu is not available: "));
+    assert_eq!(text(&ran.stderr).lines().count(), 1);
     assert_eq!(folder.names(), ["in.off"]);
 }
 

@@ -16,7 +16,7 @@ Exit status:
   1   a file could not be read or written, the mesh was refused, or --verify found a violation
   2   wrong usage
   3   the backend asked for is not there, cannot take this mesh, or failed
-Unless the status is 0, OUT is not written or changed, and one line on standard error says why.
+When a run fails, OUT is not written or changed, and one line on standard error says why.
 
 Examples:
   edgeflip terrain.off -o terrain-delaunay.off
