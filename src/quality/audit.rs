@@ -86,6 +86,14 @@ pub enum Violation {
         /// In the result.
         after: usize,
     },
+    /// An edge whose normals, in the input, differed by more than β is no longer there (3D).
+    #[error("crease {u}-{v} is lost")]
+    Crease {
+        /// Smaller end.
+        u: u32,
+        /// Larger end.
+        v: u32,
+    },
     /// The signed areas of the components, as a whole, are not exactly the same (2D).
     #[error("the signed area of a component changed")]
     Area,
@@ -109,9 +117,6 @@ pub struct Audit {
     /// Every edge of the result that is not Delaunay, by the reason for which it cannot flip; `stopped` is
     /// an edge that could. Empty when the indices are wrong.
     pub remaining: Reasons,
-    /// Edges of the input that the result lacks and whose normals, in the input, differed by more than β
-    /// (3D). No violation: flips around such an edge may lower its angle until it may flip itself.
-    pub sharp_edges_lost: u64,
 }
 
 impl Audit {
@@ -154,7 +159,7 @@ pub fn audit(input: &Mesh, triangles: &[u32], max_normal_angle: f64) -> Audit {
     let cosine = cosine(max_normal_angle);
     let before = Surface::new(input, input.triangles());
     let after = Surface::new(input, triangles);
-    compare_edges(&mut audit, &before, &after, cosine);
+    let creases = compare_edges(&mut audit, &before, &after, cosine);
     compare_vertices(&mut audit, &before, &after);
     audit.compare(before.euler(), after.euler(), |before, after| Violation::Euler { before, after });
     audit.compare(before.areas.len(), after.areas.len(), |before, after| Violation::Components {
@@ -168,7 +173,7 @@ pub fn audit(input: &Mesh, triangles: &[u32], max_normal_angle: f64) -> Audit {
             audit.report(Violation::Inverted { before, after });
         }
     }
-    audit.remaining = after.remaining(cosine);
+    audit.remaining = after.remaining(cosine, &creases);
     audit
 }
 
@@ -182,12 +187,14 @@ fn cosine(degrees: f64) -> f64 {
     libm::cos(degrees * (std::f64::consts::PI / 180.0))
 }
 
-/// Walks through both tables side by side; only edges between two consistent triangles may come and go.
-fn compare_edges(audit: &mut Audit, before: &Surface, after: &Surface, cosine: f64) {
+/// Walks through both tables side by side; only edges between two consistent triangles may come and go, and of
+/// those the ones over β may not go. Returns the latter, in the order of the tables.
+fn compare_edges(audit: &mut Audit, before: &Surface, after: &Surface, cosine: f64) -> Vec<(u32, u32)> {
+    let mut creases = Vec::new();
     let (mut old_edges, mut new_edges) = (before.table.edges().peekable(), after.table.edges().peekable());
     loop {
         let (old, new) = match (old_edges.peek(), new_edges.peek()) {
-            (None, None) => return,
+            (None, None) => return creases,
             (Some(_), None) => (old_edges.next(), None),
             (None, Some(_)) => (None, new_edges.next()),
             (Some(old), Some(new)) => match (old.u, old.v).cmp(&(new.u, new.v)) {
@@ -199,11 +206,16 @@ fn compare_edges(audit: &mut Audit, before: &Surface, after: &Surface, cosine: f
         if let Some(violation) = changed(old, new) {
             audit.report(violation);
         }
-        if let (Dimension::Three, Some(Edge { class: Class::Twins(h, g), .. }), None) =
-            (before.mesh.dimension(), old, new)
+        if let (Dimension::Three, Some(Edge { u, v, class: Class::Twins(h, g), .. })) =
+            (before.mesh.dimension(), old)
         {
             let [first, second] = [h, g].map(|x| before.triangle_of(x));
-            audit.sharp_edges_lost += u64::from(exact::normals_differ(first, second, cosine));
+            if exact::normals_differ(first, second, cosine) {
+                creases.push((u, v));
+                if new.is_none() {
+                    audit.report(Violation::Crease { u, v });
+                }
+            }
         }
     }
 }

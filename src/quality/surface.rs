@@ -79,14 +79,21 @@ impl<'a> Surface<'a> {
         self.points([h, next(h), prev(h)].map(|x| self.triangles[x as usize]))
     }
 
-    pub fn remaining(&self, cosine: f64) -> Reasons {
+    /// Counts the edges that are not Delaunay. `creases` are edges that may not flip, whatever their angle
+    /// is now, in the order of the table.
+    pub fn remaining(&self, cosine: f64, creases: &[(u32, u32)]) -> Reasons {
         let mut remaining = Reasons::default();
+        let mut creases = creases.iter().peekable();
         for edge in self.table.edges() {
+            while creases.next_if(|&&crease| crease < (edge.u, edge.v)).is_some() {}
+            let is_crease = creases.peek() == Some(&&(edge.u, edge.v));
             let reason = match edge.class {
                 Class::Boundary => None,
                 Class::Twins(h, g) => match self.mesh.dimension() {
                     Dimension::Two => self.judge_in_plane(h, g),
-                    Dimension::Three => self.judge_in_space(h, g, cosine),
+                    Dimension::Three => self
+                        .judge_in_space(h, g, cosine)
+                        .map(|reason| if is_crease { Reason::Angle } else { reason }),
                 },
                 Class::NonManifold => self.frozen_excess(&edge).then_some(Reason::NonManifold),
                 Class::Inconsistent => self.frozen_excess(&edge).then_some(Reason::Inconsistent),

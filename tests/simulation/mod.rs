@@ -154,6 +154,8 @@ struct Labels {
 struct Rules {
     predicates: Predicates,
     clockwise: Vec<bool>,
+    /// Edges of the input over β: they stay.
+    creases: HashSet<(u32, u32)>,
     /// A verdict depends on the four vertices and the orientation alone, so it is found once.
     verdicts: HashMap<([u32; 4], bool), Verdict>,
 }
@@ -181,10 +183,11 @@ impl Rules {
                         .verdicts
                         .entry((quad, clockwise))
                         .or_insert_with(|| predicates.verdict(quad, clockwise));
-                    let [_, _, c, d] = quad;
+                    let [a, b, c, d] = quad;
                     let duplicate = c == d || edges.contains_key(&pair(c, d));
                     match verdict {
                         None => {}
+                        Some(_) if self.creases.contains(&pair(a, b)) => labels.blocked[Reason::Angle] += 1,
                         Some(Err(reason)) => labels.blocked[reason] += 1,
                         Some(Ok(())) if duplicate => labels.blocked[Reason::Duplicate] += 1,
                         Some(Ok(())) => {
@@ -233,7 +236,15 @@ pub fn simulate(mesh: &Mesh, beta_deg: f64, max_iterations: Option<u32>) -> Simu
     let mut triangles = mesh.triangles().to_vec();
     let predicates = Predicates::new(mesh, beta_deg);
     let clockwise = clockwise(mesh, &predicates);
-    let mut rules = Rules { predicates, clockwise, verdicts: HashMap::new() };
+    let creases = edges(&triangles)
+        .into_iter()
+        .filter(|(_, half_edges)| match kind(&triangles, half_edges) {
+            Kind::Twins(h, g) => predicates.is_sharp(quad(&triangles, h, g)),
+            _ => false,
+        })
+        .map(|(ends, _)| ends)
+        .collect();
+    let mut rules = Rules { predicates, clockwise, creases, verdicts: HashMap::new() };
     let mut digest = Digest::default();
     digest.feed(&triangles);
     let mut iterations = Vec::new();

@@ -109,6 +109,11 @@ impl Predicates {
     }
 
     /// What the four points alone tell of an edge.
+    /// Whether the normals of two triangles differ by more than β (3D).
+    pub fn is_sharp(&self, [a, b, c, d]: [u32; 4]) -> bool {
+        self.dimension == Dimension::Three && self.differ(&self.normal([a, b, c]), &self.normal([b, a, d]))
+    }
+
     pub fn verdict(&self, [a, b, c, d]: [u32; 4], clockwise: bool) -> Verdict {
         let (old1, old2, new1, new2) = ([a, b, c], [b, a, d], [a, d, c], [b, c, d]);
         match self.dimension {
