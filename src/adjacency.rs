@@ -11,7 +11,7 @@ pub fn next(h: u32) -> u32 {
 
 /// The half-edge before `h` in its triangle.
 pub fn prev(h: u32) -> u32 {
-    if h % 3 == 0 { h + 2 } else { h - 1 }
+    if h.is_multiple_of(3) { h + 2 } else { h - 1 }
 }
 
 /// Set in both entries of an engine's twins for an edge that was over β in the input: it stays, whatever its

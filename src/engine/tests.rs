@@ -1,5 +1,7 @@
 //! The WebGPU engine against the CPU engine, array by array after every phase, on whatever adapter there is.
 
+#![allow(clippy::unwrap_used, clippy::panic, reason = "what fails here is a failed test")]
+
 use super::webgpu::{Device, Kernel, WebGpu};
 use super::{Cpu, Engine};
 use crate::mesh::Mesh;

@@ -33,6 +33,7 @@ pub(crate) struct Quad {
 }
 
 /// p, q, r, s as exact integers times a common unit: 12 components.
+#[expect(clippy::large_enum_variant, reason = "on the stack, for one evaluation")]
 enum Differences {
     Narrow([Int<12>; 12]),
     Wide([Int<40>; 12]),

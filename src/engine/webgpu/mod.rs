@@ -6,6 +6,8 @@
 
 mod adjacency;
 mod device;
+#[cfg(test)]
+mod tests;
 
 pub(crate) use device::{Device, Handle};
 

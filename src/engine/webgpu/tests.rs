@@ -1,0 +1,142 @@
+//! What the host and the shaders both say, read from the shaders by naga: constants, layouts, bindings.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "what fails here is a failed test")]
+
+use super::adjacency::BUCKETS_EACH;
+use super::device::{ADJACENCY, PHASES, PROBE, WORKGROUP_SIZE};
+use super::{ENTRIES, ENTRY_WORDS, Params, SPAN};
+use crate::adjacency::CREASE;
+use crate::phases::BLOCKED;
+use crate::{NONE, Reason};
+use std::collections::HashMap;
+use std::mem::offset_of;
+
+fn parse(source: &str) -> naga::Module {
+    naga::front::wgsl::parse_str(source).unwrap_or_else(|error| panic!("{}", error.emit_to_string(source)))
+}
+
+/// The global constants that are single numbers.
+fn constants(module: &naga::Module) -> HashMap<&str, u64> {
+    let value = |constant: &naga::Constant| match module.global_expressions[constant.init] {
+        naga::Expression::Literal(naga::Literal::U32(x)) => Some(u64::from(x)),
+        _ => None,
+    };
+    module
+        .constants
+        .iter()
+        .filter_map(|(_, constant)| Some((constant.name.as_deref()?, value(constant)?)))
+        .collect()
+}
+
+/// Offset and size in bytes of each member of a struct.
+fn members(module: &naga::Module, name: &str) -> Vec<(String, usize, usize)> {
+    let mut layouter = naga::proc::Layouter::default();
+    layouter.update(module.to_ctx()).unwrap();
+    let (_, structure) = module.types.iter().find(|(_, ty)| ty.name.as_deref() == Some(name)).unwrap();
+    let naga::TypeInner::Struct { members, .. } = &structure.inner else { panic!("{name} is no struct") };
+    members
+        .iter()
+        .map(|m| (m.name.clone().unwrap(), m.offset as usize, layouter[m.ty].size as usize))
+        .collect()
+}
+
+#[test]
+fn constants_of_the_phases_agree() {
+    let module = parse(PHASES);
+    let shader = constants(&module);
+    let host = [
+        ("NONE", u64::from(NONE)),
+        ("BLOCKED", u64::from(BLOCKED)),
+        ("CREASE", u64::from(CREASE)),
+        ("WORKGROUP_SIZE", u64::from(WORKGROUP_SIZE)),
+        ("SPAN", u64::from(SPAN)),
+        ("ENTRIES", ENTRIES as u64),
+        ("ENTRY_WORDS", ENTRY_WORDS as u64),
+        ("REASON_ANGLE", Reason::Angle as u64),
+        ("REASON_FOLD", Reason::Fold as u64),
+        ("REASON_DUPLICATE", Reason::Duplicate as u64),
+        // The host reads the census and an entry by place.
+        ("CENSUS", 0),
+        ("LABELLED", 1),
+        ("BLOCKED_BY", 2),
+        ("FLIPS", 0),
+        ("LENGTH", 1),
+        ("BUILT", 2),
+        ("RAN", 3),
+    ];
+    for (name, value) in host {
+        assert_eq!(shader.get(name), Some(&value), "{name}");
+    }
+    // The longest number of the β test, see `exact.wgsl`: (n·m)² or n²·m², and the cosine's square.
+    let normal_bits = 2 * (2 * (u64::from(SPAN) + 1) + 2) + 1;
+    assert!(2 * normal_bits + 212 < 32 * shader["LIMBS"]);
+}
+
+#[test]
+fn constants_of_the_adjacency_agree() {
+    let module = parse(ADJACENCY);
+    let shader = constants(&module);
+    assert_eq!(shader["NONE"], u64::from(NONE));
+    assert_eq!(shader["WORKGROUP_SIZE"], u64::from(WORKGROUP_SIZE));
+    assert_eq!(shader["BUCKETS_EACH"], u64::from(BUCKETS_EACH));
+    let counters = ["ALLOCATED", "EDGES", "BOUNDARY", "NON_MANIFOLD", "INCONSISTENT", "SEVERAL_FANS"];
+    for (name, place) in counters.into_iter().zip(0..) {
+        assert_eq!(shader[name], place, "{name}");
+    }
+    let sizes: Vec<_> = members(&module, "Params").into_iter().map(|(_, at, size)| (at, size)).collect();
+    assert_eq!(sizes, [(0, 4), (4, 4), (8, 4)]);
+}
+
+#[test]
+fn params_have_one_layout() {
+    macro_rules! host {
+        ($($field:ident),*) => {
+            [$((stringify!($field), offset_of!(Params, $field))),*]
+        };
+    }
+    let host = host!(
+        dimension,
+        vertices,
+        triangles,
+        first,
+        fans,
+        fans_length,
+        winding_length,
+        tail,
+        cos,
+        cos_sign,
+        cos_shift,
+        tail_iterations,
+        tail_length,
+        cos_square
+    );
+    let shader = members(&parse(PHASES), "Params");
+    let places: Vec<_> = shader.iter().map(|(name, offset, _)| (name.as_str(), *offset)).collect();
+    assert_eq!(places, host);
+    let (_, offset, size) = &shader[shader.len() - 1];
+    assert_eq!(offset + size, size_of::<Params>());
+}
+
+#[test]
+fn shaders_stay_within_the_limits_of_every_browser() {
+    for source in [PHASES, ADJACENCY, PROBE] {
+        let module = parse(source);
+        let capabilities = naga::valid::Capabilities::default();
+        let mut validator = naga::valid::Validator::new(naga::valid::ValidationFlags::all(), capabilities);
+        validator.validate(&module).unwrap();
+        let storage = |(_, variable): &(_, &naga::GlobalVariable)| {
+            matches!(variable.space, naga::AddressSpace::Storage { .. })
+        };
+        assert!(module.global_variables.iter().filter(storage).count() <= 8);
+        for entry in &module.entry_points {
+            assert!(entry.workgroup_size[0] <= 256);
+            // WGSL grants a function 8192 bytes of variables.
+            let mut layouter = naga::proc::Layouter::default();
+            layouter.update(module.to_ctx()).unwrap();
+            for function in module.functions.iter().map(|(_, f)| f).chain([&entry.function]) {
+                let bytes: u32 = function.local_variables.iter().map(|(_, v)| layouter[v.ty].size).sum();
+                assert!(bytes <= 8192, "{:?}: {bytes} bytes", function.name);
+            }
+        }
+    }
+}
