@@ -1,11 +1,38 @@
 //! Makes an existing triangle mesh Delaunay by flipping edges, without touching a vertex.
-pub mod error;
+//!
+//! ```
+//! use edgeflip::{Dimension, Mesh, Options, make_delaunay};
+//! use std::ops::ControlFlow;
+//!
+//! // A thin diamond, split along its long diagonal.
+//! let positions = vec![-3.0, 0.0, 0.0, -1.0, 3.0, 0.0, 0.0, 1.0];
+//! let mesh = Mesh::new(Dimension::Two, positions, vec![0, 1, 2, 0, 2, 3])?;
+//! let outcome = make_delaunay(&mesh, &Options::default(), |_, _| ControlFlow::Continue(()))?;
+//! assert_eq!((outcome.flips, outcome.remaining.total()), (1, 0));
+//! # Ok::<(), edgeflip::Error>(())
+//! ```
+//!
+//! The rooms: [`Mesh`] is checked input; `adjacency` finds twins, `star` walks around a vertex, `winding` and
+//! `frozen` know what a dirty mesh adds; `predicates` decide exactly; `phases` are the four phases of an
+//! iteration, `engine` runs them on the CPU or through the shaders of the same names; `session` is the loop.
+//! Beside them: [`quality`] measures and audits, [`io`] reads and writes, [`families`] generates.
+
+mod adjacency;
+mod engine;
+mod error;
 pub mod families;
+mod frozen;
 pub mod io;
-pub mod mesh;
+mod mesh;
+mod phases;
+mod predicates;
 pub mod quality;
 mod session;
+mod star;
+mod winding;
 
+pub use adjacency::Adjacency;
 pub use error::Error;
-pub use mesh::{Dimension, Mesh, NONE};
+pub use mesh::{Dimension, MAX_TRIANGLES, Mesh, NONE};
+pub use predicates::cos_degrees;
 pub use session::*;

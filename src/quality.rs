@@ -1,1 +1,103 @@
 //! Angles, their histogram, and the audit: an independent check of a result.
+
+mod audit;
+mod edges;
+mod exact;
+mod surface;
+
+pub use audit::{Audit, MAX_LISTED, Violation, audit};
+
+use crate::Mesh;
+use glam::DVec3;
+
+/// How many of a mesh's angles fall into each of equal bins over 0° to 180°.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct AngleHistogram {
+    /// Angles in each bin; a bin includes its lower end, the last one also 180°.
+    pub counts: Vec<u64>,
+}
+
+impl AngleHistogram {
+    /// Width of a bin in degrees.
+    pub fn bin_width(&self) -> f64 {
+        180.0 / self.counts.len().max(1) as f64
+    }
+}
+
+/// What the angles of a mesh say about its triangles. A degenerate triangle counts as one whose smallest
+/// angle is 0.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Angles {
+    /// Smallest angle of the mesh in degrees; 60 for a mesh without triangles.
+    pub min: f64,
+    /// Mean over the triangles of their smallest angle, in degrees; 60 for a mesh without triangles.
+    pub mean_min: f64,
+    /// All angles, three a triangle.
+    pub histogram: AngleHistogram,
+}
+
+/// The angles of `mesh`, with a histogram of `bins` bins (at least one). In f64, for statistics: no
+/// decision is taken on them.
+pub fn angles(mesh: &Mesh, bins: usize) -> Angles {
+    let mut counts = vec![0u64; bins.max(1)];
+    let (mut min, mut sum) = (60f64, 0f64);
+    for triangle in mesh.triangles().chunks_exact(3) {
+        let corners = [triangle[0], triangle[1], triangle[2]].map(|v| mesh.point3(v));
+        let angles = triangle_angles(corners);
+        for angle in angles {
+            let bin = (angle / 180.0 * counts.len() as f64) as usize;
+            counts[bin.min(bins.max(1) - 1)] += 1;
+        }
+        let smallest = angles[0].min(angles[1]).min(angles[2]);
+        min = min.min(smallest);
+        sum += smallest;
+    }
+    let mean_min = if mesh.triangle_count() == 0 { 60.0 } else { sum / mesh.triangle_count() as f64 };
+    Angles { min, mean_min, histogram: AngleHistogram { counts } }
+}
+
+/// Smallest angle of the mesh in degrees; see [`Angles::min`].
+pub fn min_angle(mesh: &Mesh) -> f64 {
+    angles(mesh, 1).min
+}
+
+/// The angles at the three corners, in degrees. Every f32 fits: the largest product is below 10^78.
+fn triangle_angles(corners: [DVec3; 3]) -> [f64; 3] {
+    [0, 1, 2].map(|k| {
+        let p = corners[(k + 1) % 3] - corners[k];
+        let q = corners[(k + 2) % 3] - corners[k];
+        libm::atan2(p.cross(q).length(), p.dot(q)).to_degrees()
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Dimension;
+
+    fn mesh(positions: &[f32], triangles: &[u32]) -> Mesh {
+        Mesh::new(Dimension::Two, positions.to_vec(), triangles.to_vec()).unwrap()
+    }
+
+    #[test]
+    fn angles_of_a_right_triangle() {
+        let angles = angles(&mesh(&[0., 0., 1., 0., 0., 1.], &[0, 1, 2]), 18);
+        assert!((angles.min - 45.0).abs() < 1e-12 && (angles.mean_min - 45.0).abs() < 1e-12);
+        let mut expected = vec![0; 18];
+        (expected[4], expected[9]) = (2, 1);
+        assert_eq!(angles.histogram.counts, expected);
+        assert_eq!(angles.histogram.bin_width(), 10.0);
+    }
+
+    #[test]
+    fn degenerate_triangles_count_as_zero() {
+        let positions = [0., 0., 1., 0., 2., 0., 0., 1e38, 1e38, 0.];
+        for triangle in [[0, 1, 2], [0, 0, 1], [1, 1, 1]] {
+            assert_eq!(min_angle(&mesh(&positions, &triangle)), 0.0);
+        }
+        assert!((min_angle(&mesh(&positions, &[0, 4, 3])) - 45.0).abs() < 1e-12);
+        assert_eq!(angles(&mesh(&positions, &[0, 1, 2]), 2).histogram.counts, [2, 1]);
+        assert_eq!(min_angle(&mesh(&positions, &[])), 60.0);
+        assert_eq!(angles(&mesh(&positions, &[0, 1, 2]), 0).histogram.counts, [3]);
+    }
+}

@@ -1,6 +1,13 @@
 //! The loop around an engine: options in, iterations and statistics out, and the honest result.
 
-use crate::{Error, Mesh};
+use crate::engine::{Cpu, Engine, Lawson};
+#[cfg(feature = "gpu")]
+use crate::engine::{Device, WebGpu};
+use crate::predicates::cos_degrees;
+use crate::{Error, Mesh, frozen};
+use std::ops::ControlFlow;
+use std::sync::Arc;
+use web_time::Instant;
 
 /// Which engine runs the phases.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -165,7 +172,7 @@ pub struct Outcome {
     pub iterations: u32,
     /// Flips in all.
     pub flips: u64,
-    /// Flips of each iteration; empty for [`Order::Any`].
+    /// Flips of each iteration; a whole pass of Lawson's algorithm is one.
     pub flips_per_iteration: Vec<u32>,
     /// Compute dispatches encoded on the GPU.
     pub dispatches: u64,
@@ -173,24 +180,233 @@ pub struct Outcome {
     pub edges: u64,
     /// Edges with one triangle.
     pub boundary_edges: u64,
+    /// Frozen edges: three or more triangles, or one triangle twice.
+    pub non_manifold_edges: u64,
+    /// Frozen edges: two triangles oriented against each other.
+    pub inconsistent_edges: u64,
     /// Non-Delaunay edges left, by reason.
     pub remaining: Reasons,
     /// Wall times.
     pub timings: Timings,
 }
 
-/// Makes `mesh` Delaunay by flipping edges.
-/// `watch` is called after every batch of iterations with the number of iterations and flips so far;
-/// [`std::ops::ControlFlow::Break`] stops the run after a complete iteration.
+/// A mesh on an engine, step by step.
+pub struct Session {
+    mesh: Arc<Mesh>,
+    options: Options,
+    engine: Box<dyn Engine>,
+    fallback: Option<String>,
+    flips_per_iteration: Vec<u32>,
+    has_ended: bool,
+    timings: Timings,
+}
+
+impl Session {
+    /// Checks the options and makes an engine ready for `mesh`.
+    ///
+    /// # Errors
+    /// [`Error::Option`]; [`Error::BackendUnavailable`], [`Error::BackendLimit`] or [`Error::Device`] where
+    /// the GPU was asked for (`Auto` takes the CPU instead).
+    pub async fn new(mesh: Mesh, options: Options) -> Result<Self, Error> {
+        if !(0.0..=180.0).contains(&options.max_normal_angle) {
+            let message = format!("{} is not an angle from 0 to 180 degrees", options.max_normal_angle);
+            return Err(Error::Option { option: "max_normal_angle", message });
+        }
+        let start = Instant::now();
+        let mesh = Arc::new(mesh);
+        let (engine, fallback) = engine_for(&mesh, &options).await?;
+        Ok(Self {
+            mesh,
+            options,
+            engine,
+            fallback,
+            flips_per_iteration: Vec::new(),
+            has_ended: false,
+            timings: Timings { adjacency: ms_since(start), ..Timings::default() },
+        })
+    }
+
+    /// One iteration, watched: counts the edges of the whole mesh before it. `None` when nothing is left to
+    /// flip, or the cap on iterations is reached.
+    ///
+    /// # Errors
+    /// [`Error::Device`].
+    pub async fn step(&mut self) -> Result<Option<Iteration>, Error> {
+        if self.has_ended || self.iterations_left() == 0 {
+            return Ok(None);
+        }
+        let start = Instant::now();
+        let census = self.engine.census().await?;
+        let index = self.flips_per_iteration.len() as u32;
+        self.iterate(1).await?;
+        let ms = ms_since(start);
+        Ok(self.flips_per_iteration.get(index as usize).map(|&flips| Iteration {
+            index,
+            labelled: census.labelled,
+            flips,
+            blocked: census.blocked,
+            ms,
+        }))
+    }
+
+    /// Runs to the end. `watch` is called after every batch of iterations with the numbers of iterations and
+    /// flips so far; [`ControlFlow::Break`] stops the run after a complete iteration.
+    ///
+    /// # Errors
+    /// [`Error::Device`], unless the backend is `Auto`: then the CPU begins again.
+    pub async fn run(&mut self, mut watch: impl FnMut(u32, u64) -> ControlFlow<()>) -> Result<(), Error> {
+        while !self.has_ended {
+            let count = self.engine.batch().min(self.iterations_left());
+            if count == 0 {
+                break;
+            }
+            self.iterate(count).await?;
+            if watch(self.flips_per_iteration.len() as u32, self.flips()).is_break() {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    /// The triangles as they are now: vertex indices, 3 a triangle.
+    ///
+    /// # Errors
+    /// [`Error::Device`].
+    pub async fn triangles(&mut self) -> Result<Vec<u32>, Error> {
+        self.engine.triangles().await
+    }
+
+    /// The result so far: reads the triangles back and counts what remains.
+    ///
+    /// # Errors
+    /// [`Error::Device`].
+    pub async fn outcome(&mut self) -> Result<Outcome, Error> {
+        let start = Instant::now();
+        let triangles = self.engine.triangles().await?;
+        let census = self.engine.census().await?;
+        let counts = self.engine.edge_counts();
+        let mut remaining = census.blocked;
+        remaining[Reason::Stopped] = u64::from(census.labelled);
+        if counts.non_manifold + counts.inconsistent > 0 {
+            let frozen = frozen::count_non_delaunay(&self.mesh, &triangles);
+            for reason in [Reason::NonManifold, Reason::Inconsistent] {
+                remaining[reason] = frozen[reason];
+            }
+        }
+        let Timings { adjacency, flip, .. } = self.timings;
+        Ok(Outcome {
+            triangles,
+            status: if census.labelled == 0 { Status::Done } else { Status::Stopped },
+            backend: self.engine.backend(),
+            adapter: self.engine.adapter(),
+            fallback: self.fallback.clone(),
+            iterations: self.flips_per_iteration.len() as u32,
+            flips: self.flips(),
+            flips_per_iteration: self.flips_per_iteration.clone(),
+            dispatches: self.engine.dispatches(),
+            edges: u64::from(counts.edges),
+            boundary_edges: u64::from(counts.boundary),
+            non_manifold_edges: u64::from(counts.non_manifold),
+            inconsistent_edges: u64::from(counts.inconsistent),
+            remaining,
+            timings: Timings { total: adjacency + flip + ms_since(start), adjacency, flip },
+        })
+    }
+
+    fn flips(&self) -> u64 {
+        self.flips_per_iteration.iter().map(|&n| u64::from(n)).sum::<u64>()
+    }
+
+    fn iterations_left(&self) -> u32 {
+        let done = self.flips_per_iteration.len() as u32;
+        self.options.max_iterations.map_or(u32::MAX, |cap| cap.saturating_sub(done))
+    }
+
+    async fn iterate(&mut self, count: u32) -> Result<(), Error> {
+        let start = Instant::now();
+        match self.engine.iterate(count).await {
+            Ok(flips) => {
+                self.has_ended = (flips.len() as u32) < count;
+                self.flips_per_iteration.extend(flips);
+            }
+            // Determinism makes up for what the device took with it: the CPU goes the same way again.
+            Err(Error::Device { message }) if self.options.backend == Backend::Auto => {
+                self.fallback = Some(format!("the device failed during the run: {message}"));
+                self.engine = Box::new(self.cpu());
+                self.flips_per_iteration.clear();
+            }
+            Err(error) => return Err(error),
+        }
+        self.timings.flip += ms_since(start);
+        Ok(())
+    }
+
+    fn cpu(&self) -> Cpu {
+        Cpu::new(self.mesh.clone(), cos_degrees(self.options.max_normal_angle))
+    }
+}
+
+/// The engine for the options, and why `Auto` did not take the GPU.
+async fn engine_for(mesh: &Arc<Mesh>, options: &Options) -> Result<(Box<dyn Engine>, Option<String>), Error> {
+    let cos = cos_degrees(options.max_normal_angle);
+    let cpu = || Cpu::new(mesh.clone(), cos);
+    match (options.order, options.backend) {
+        (Order::Any, Backend::Gpu) => {
+            let message = "`any` is sequential and runs on the cpu only".to_owned();
+            Err(Error::Option { option: "order", message })
+        }
+        (Order::Any, _) => Ok((Box::new(Lawson::new(cpu())), None)),
+        (Order::Reproducible, Backend::Cpu) => Ok((Box::new(cpu()), None)),
+        (Order::Reproducible, Backend::Gpu) => Ok((gpu(mesh, cos).await?, None)),
+        (Order::Reproducible, Backend::Auto) => match auto_gpu(mesh, cos).await {
+            Ok(engine) => Ok((engine, None)),
+            Err(error) => Ok((Box::new(cpu()), Some(error.to_string()))),
+        },
+    }
+}
+
+#[cfg(feature = "gpu")]
+async fn gpu(mesh: &Arc<Mesh>, cos: f64) -> Result<Box<dyn Engine>, Error> {
+    Ok(Box::new(WebGpu::new(Device::shared().await?, mesh, cos).await?))
+}
+
+/// `Auto` leaves a GPU alone that the processor plays.
+#[cfg(feature = "gpu")]
+async fn auto_gpu(mesh: &Arc<Mesh>, cos: f64) -> Result<Box<dyn Engine>, Error> {
+    let device = Device::shared().await?;
+    if device.is_software {
+        let message = "the only adapter is software, slower than the cpu engine".to_owned();
+        return Err(Error::BackendUnavailable { backend: "gpu", message });
+    }
+    gpu(mesh, cos).await
+}
+
+#[cfg(not(feature = "gpu"))]
+use gpu as auto_gpu;
+
+#[cfg(not(feature = "gpu"))]
+async fn gpu(_mesh: &Arc<Mesh>, _cos: f64) -> Result<Box<dyn Engine>, Error> {
+    let message = "this build has no GPU engine (feature `gpu`)".to_owned();
+    Err(Error::BackendUnavailable { backend: "gpu", message })
+}
+
+fn ms_since(start: Instant) -> f64 {
+    start.elapsed().as_secs_f64() * 1e3
+}
+
+/// Makes `mesh` Delaunay by flipping edges. `watch` is as in [`Session::run`].
 ///
 /// # Errors
-/// [`Error::Option`], [`Error::BackendUnavailable`], [`Error::BackendLimit`] or [`Error::Device`].
+/// Those of [`Session::new`] and [`Session::run`].
 #[cfg(not(target_arch = "wasm32"))]
 pub fn make_delaunay(
     mesh: &Mesh,
     options: &Options,
-    watch: impl FnMut(u32, u64) -> std::ops::ControlFlow<()>,
+    watch: impl FnMut(u32, u64) -> ControlFlow<()>,
 ) -> Result<Outcome, Error> {
-    let _ = (mesh, options, watch);
-    Err(Error::BackendUnavailable { backend: "cpu", message: "skeleton".into() })
+    pollster::block_on(async {
+        let mut session = Session::new(mesh.clone(), options.clone()).await?;
+        session.run(watch).await?;
+        session.outcome().await
+    })
 }

@@ -1,0 +1,52 @@
+// Flip with Update: rotate the two triangles of each selected edge in place and repair the twins around, as
+// src/phases/flip.rs.
+
+// Where half-edge `x`, given with its flag, will be after the iteration.
+fn slot(entry: u32) -> u32 {
+    if entry == NONE {
+        return NONE;
+    }
+    let x = unflagged(entry);
+    let g = selected(x / 3u);
+    if g == NONE || x != next(selected(g / 3u)) {
+        return entry;
+    }
+    return g | (entry & CREASE);
+}
+
+// Reads the twins of its own two triangles only; writes those, and the entries of the neighbours that are
+// not selected themselves.
+fn flip_edge(h: u32, g: u32) {
+    let hn = next(h);
+    let hp = prev(h);
+    let gn = next(g);
+    let gp = prev(g);
+    let outer_hn = twins[hn];
+    let outer_hp = twins[hp];
+    let outer_gn = twins[gn];
+    let outer_gp = twins[gp];
+    let c = triangles[hp];
+    let d = triangles[gp];
+    triangles[hn] = d;
+    triangles[gn] = c;
+    twins[hn] = gn;
+    twins[gn] = hn;
+    update(h, outer_gn);
+    update(hp, outer_hp);
+    update(g, outer_hn);
+    update(gp, outer_gp);
+}
+
+fn update(inner: u32, outer: u32) {
+    twins[inner] = slot(outer);
+    let x = unflagged(outer);
+    if x != NONE && selected(x / 3u) == NONE {
+        twins[x] = inner | (outer & CREASE);
+    }
+}
+
+// Moves the anchor at word `i` of the fans' table.
+fn move_anchor(i: u32) {
+    let at = params.fans + i;
+    topology[at] = slot(topology[at]);
+}

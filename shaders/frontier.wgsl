@@ -1,0 +1,70 @@
+// The frontier: which triangles an iteration looks at, as src/phases/frontier.rs. While many edges flip an
+// iteration sweeps over all triangles; once few do, it builds the list for the next one.
+
+fn entry(index: u32, word: u32) -> u32 {
+    return ENTRIES + ENTRY_WORDS * index + word;
+}
+
+fn active_count(index: u32) -> u32 {
+    if atomicLoad(&history[entry(index, BUILT)]) == 1u {
+        return atomicLoad(&history[entry(index, LENGTH)]);
+    }
+    return params.triangles;
+}
+
+fn active_triangle(index: u32, i: u32, iteration: u32) -> u32 {
+    if atomicLoad(&history[entry(index, BUILT)]) == 1u {
+        return atomicLoad(&frontier[(iteration & 1u) * params.triangles + i]);
+    }
+    return i;
+}
+
+// Whether the run has not ended: the iteration before flipped something.
+fn is_running(index: u32) -> bool {
+    return atomicLoad(&history[entry(index, FLIPS)]) > 0u;
+}
+
+// Whether this iteration builds the list: a flip appends six triangles at most.
+fn builds_list(index: u32) -> bool {
+    return atomicLoad(&history[entry(index, FLIPS)]) < params.triangles / 24u || params.triangles <= 4096u;
+}
+
+// Appends a triangle to the list of the next iteration, once.
+fn append(t: u32, index: u32, iteration: u32) {
+    if atomicExchange(&frontier[2u * params.triangles + t], iteration + 1u) != iteration + 1u {
+        let at = atomicAdd(&history[entry(index + 1u, LENGTH)], 1u);
+        atomicStore(&frontier[((iteration + 1u) & 1u) * params.triangles + at], t);
+    }
+}
+
+fn append_neighbour(outer: u32, index: u32, iteration: u32) {
+    if outer != NONE {
+        append(outer / 3u, index, iteration);
+    }
+}
+
+// Flips triangle `t`'s selected edge, from its lower half-edge, and appends what the flip touches. Returns
+// the number of flips.
+fn flip_triangle(t: u32, index: u32, iteration: u32, builds: bool) -> u32 {
+    let g = selected(t);
+    if g == NONE {
+        if builds && best(t) != NONE {
+            append(t, index, iteration);
+        }
+        return 0u;
+    }
+    let h = selected(g / 3u);
+    if h > g {
+        return 0u;
+    }
+    if builds {
+        append(t, index, iteration);
+        append(g / 3u, index, iteration);
+        append_neighbour(twin(next(h)), index, iteration);
+        append_neighbour(twin(prev(h)), index, iteration);
+        append_neighbour(twin(next(g)), index, iteration);
+        append_neighbour(twin(prev(g)), index, iteration);
+    }
+    flip_edge(h, g);
+    return 1u;
+}

@@ -1,0 +1,121 @@
+//! Twins from triangles: which half-edge lies on the other side of each half-edge.
+//!
+//! Half-edge h belongs to triangle h / 3 and goes from `triangles[h]` to `triangles[next(h)]`.
+
+use crate::NONE;
+
+/// The half-edge after `h` in its triangle.
+pub fn next(h: u32) -> u32 {
+    if h % 3 == 2 { h - 2 } else { h + 1 }
+}
+
+/// The half-edge before `h` in its triangle.
+pub fn prev(h: u32) -> u32 {
+    if h % 3 == 0 { h + 2 } else { h - 1 }
+}
+
+/// Set in both entries of an engine's twins for an edge that was over β in the input: it stays, whatever its
+/// angle becomes. The flag moves with the half-edges.
+pub(crate) const CREASE: u32 = 1 << 31;
+
+/// The half-edge that an entry of an engine's twins names, without its flag.
+pub(crate) fn unflagged(entry: u32) -> u32 {
+    if entry == NONE { NONE } else { entry & !CREASE }
+}
+
+/// The half-edges of a mesh matched in pairs, and how many edges there are of each kind.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Adjacency {
+    /// For each half-edge the one on the other side; [`NONE`] on the boundary and on frozen edges.
+    pub twins: Vec<u32>,
+    /// Edges in all: pairs of vertices joined by a half-edge.
+    pub edges: u32,
+    /// Edges with one half-edge.
+    pub boundary: u32,
+    /// Frozen edges with three or more half-edges, or two in one triangle.
+    pub non_manifold: u32,
+    /// Frozen edges with two half-edges in the same direction.
+    pub inconsistent: u32,
+}
+
+/// What an edge is, by its half-edges.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum EdgeKind {
+    Interior,
+    Boundary,
+    NonManifold,
+    Inconsistent,
+}
+
+/// The kind of the edge that these half-edges, all between the same two vertices, make up.
+pub(crate) fn edge_kind(half_edges: &[u32], triangles: &[u32]) -> EdgeKind {
+    match *half_edges {
+        [_] => EdgeKind::Boundary,
+        [h, g] if h / 3 != g / 3 => {
+            if triangles[h as usize] == triangles[g as usize] {
+                EdgeKind::Inconsistent
+            } else {
+                EdgeKind::Interior
+            }
+        }
+        _ => EdgeKind::NonManifold,
+    }
+}
+
+/// Calls `visit` once for each edge with its half-edges in ascending order, edges by their smaller vertex.
+/// A counting sort of the half-edges by that vertex; within one vertex they are sorted by the other one, so
+/// that a vertex of any valence costs n log n. O(triangles) memory.
+pub(crate) fn for_each_edge(vertices: usize, triangles: &[u32], mut visit: impl FnMut(&[u32])) {
+    let ends = |h: usize| {
+        let (u, v) = (triangles[h], triangles[next(h as u32) as usize]);
+        (u.min(v), u.max(v))
+    };
+    let mut offsets = vec![0u32; vertices + 1];
+    for h in 0..triangles.len() {
+        offsets[ends(h).0 as usize + 1] += 1;
+    }
+    for v in 0..vertices {
+        offsets[v + 1] += offsets[v];
+    }
+    let mut sorted = vec![0u64; triangles.len()];
+    for h in 0..triangles.len() {
+        let (low, high) = ends(h);
+        let at = &mut offsets[low as usize];
+        sorted[*at as usize] = u64::from(high) << 32 | h as u64;
+        *at += 1;
+    }
+    // Scattering has moved every offset to the end of its bucket, the start of the next.
+    let mut half_edges = Vec::new();
+    let mut start = 0;
+    for &end in &offsets[..vertices] {
+        let bucket = &mut sorted[start..end as usize];
+        start = end as usize;
+        bucket.sort_unstable();
+        for edge in bucket.chunk_by(|x, y| x >> 32 == y >> 32) {
+            half_edges.clear();
+            half_edges.extend(edge.iter().map(|&entry| entry as u32));
+            visit(&half_edges);
+        }
+    }
+}
+
+impl Adjacency {
+    /// Matches the half-edges of `triangles`, whose indices are below `vertices`.
+    pub fn new(vertices: usize, triangles: &[u32]) -> Self {
+        let mut result = Self { twins: vec![NONE; triangles.len()], ..Self::default() };
+        for_each_edge(vertices, triangles, |half_edges| {
+            result.edges += 1;
+            match edge_kind(half_edges, triangles) {
+                EdgeKind::Boundary => result.boundary += 1,
+                EdgeKind::NonManifold => result.non_manifold += 1,
+                EdgeKind::Inconsistent => result.inconsistent += 1,
+                EdgeKind::Interior => {
+                    let (h, g) = (half_edges[0], half_edges[1]);
+                    result.twins[h as usize] = g;
+                    result.twins[g as usize] = h;
+                }
+            }
+        });
+        result
+    }
+}

@@ -1,0 +1,69 @@
+//! Engines run the phases. All give the same triangles after every iteration.
+
+mod cpu;
+mod lawson;
+#[cfg(all(test, feature = "gpu"))]
+mod tests;
+#[cfg(feature = "gpu")]
+mod webgpu;
+
+pub(crate) use cpu::Cpu;
+pub(crate) use lawson::Lawson;
+#[cfg(feature = "gpu")]
+pub(crate) use webgpu::{Device, WebGpu};
+
+use crate::{Error, Reasons};
+use std::pin::Pin;
+
+/// What an engine answers, once its device has.
+pub(crate) type Answer<'a, T> = Pin<Box<dyn Future<Output = Result<T, Error>> + 'a>>;
+
+/// Every non-Delaunay interior edge of the mesh, counted.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Census {
+    /// Those that may flip.
+    pub(crate) labelled: u32,
+    /// Those that may not, by `Angle`, `Fold` or `Duplicate`.
+    pub(crate) blocked: Reasons,
+}
+
+/// Numbers of edges of the mesh as it was given; flips do not change them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct EdgeCounts {
+    pub(crate) edges: u32,
+    pub(crate) boundary: u32,
+    pub(crate) non_manifold: u32,
+    pub(crate) inconsistent: u32,
+}
+
+/// One mesh on one engine, between two iterations.
+pub(crate) trait Engine {
+    /// How many iterations to ask for at a time: as many as make it worth while to ask.
+    fn batch(&self) -> u32;
+
+    /// Runs up to `count` iterations and returns the flips of each; fewer than `count` when there is nothing
+    /// left to flip.
+    fn iterate(&mut self, count: u32) -> Answer<'_, Vec<u32>>;
+
+    /// Counts the non-Delaunay interior edges of the whole mesh.
+    fn census(&mut self) -> Answer<'_, Census>;
+
+    /// The triangles as they are now.
+    fn triangles(&mut self) -> Answer<'_, Vec<u32>>;
+
+    /// What the adjacency found.
+    fn edge_counts(&self) -> EdgeCounts;
+
+    /// `cpu` or `gpu`.
+    fn backend(&self) -> &'static str;
+
+    /// The device's name and driver, on a GPU.
+    fn adapter(&self) -> Option<String> {
+        None
+    }
+
+    /// Compute dispatches encoded so far.
+    fn dispatches(&self) -> u64 {
+        0
+    }
+}

@@ -1,0 +1,58 @@
+//! The four phases of an iteration, as pure functions over slices: Label, Select, Flip with Update. Every
+//! decision is a gather from the state before the phase, every word has one writer.
+//!
+//! ```text
+//!         c                   c
+//!       /   \               / | \        h: a → b, twin g: b → a
+//!  prev/     \next      prev  |  g       after the flip the triangles are
+//!    a ---h--- b          a   |   b      (a, d, c) in the place of (a, b, c) and
+//!      \     /              h | prev     (b, c, d) in the place of (b, a, d)
+//!       \   /               \ | /
+//!         d                   d
+//! ```
+
+mod crease;
+mod flip;
+mod frontier;
+mod label;
+mod select;
+
+pub(crate) use crease::flag_creases;
+pub(crate) use flip::{flip, flip_edge, slot};
+pub(crate) use frontier::Frontier;
+pub(crate) use label::{Verdict, label, verdict};
+pub(crate) use select::select;
+
+use crate::NONE;
+use crate::mesh::Dimension;
+use crate::star::Fans;
+use crate::winding::Winding;
+
+/// In `best`: no labelled edge, but one blocked as a duplicate, so that the triangle stays in the frontier.
+pub(crate) const BLOCKED: u32 = NONE - 1;
+
+/// What the phases read and never write.
+pub(crate) struct Geometry<'a> {
+    pub(crate) dimension: Dimension,
+    pub(crate) positions: &'a [f32],
+    /// cos β (3D).
+    pub(crate) cos: f64,
+    pub(crate) winding: &'a Winding,
+}
+
+/// The triangulation that an iteration starts from.
+#[derive(Clone, Copy)]
+pub(crate) struct Topology<'a> {
+    pub(crate) triangles: &'a [u32],
+    pub(crate) twins: &'a [u32],
+    pub(crate) fans: &'a Fans,
+}
+
+/// The priority of an edge in an iteration; the smallest wins. A bijection of the edge id for each iteration,
+/// so no two edges tie; it changes with the iteration, or chains of neighbours would flip one by one.
+pub(crate) fn key(edge: u32, iteration: u32) -> u32 {
+    let mut x = edge ^ iteration.wrapping_mul(0x9e37_79b9);
+    x = (x ^ (x >> 16)).wrapping_mul(0x7feb_352d);
+    x = (x ^ (x >> 15)).wrapping_mul(0x846c_a68b);
+    x ^ (x >> 16)
+}

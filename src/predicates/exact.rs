@@ -1,0 +1,204 @@
+//! Exact integers: four points with floating-point coordinates are integers times one power of two, and
+//! every predicate is the sign of a polynomial in their differences.
+
+use std::cmp::Ordering;
+
+/// What a polynomial needs of the numbers it is evaluated in.
+pub(super) trait Ring: Copy {
+    fn add(&self, other: &Self) -> Self;
+    fn sub(&self, other: &Self) -> Self;
+    fn mul(&self, other: &Self) -> Self;
+    fn sign(&self) -> Ordering;
+}
+
+impl Ring for i128 {
+    fn add(&self, other: &Self) -> Self {
+        self + other
+    }
+    fn sub(&self, other: &Self) -> Self {
+        self - other
+    }
+    fn mul(&self, other: &Self) -> Self {
+        self * other
+    }
+    fn sign(&self) -> Ordering {
+        self.cmp(&0)
+    }
+}
+
+/// A signed integer of up to `N` 64-bit limbs: sign and magnitude, `len` limbs in use, the least
+/// significant first. The callers choose `N` so that no result is larger.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Int<const N: usize> {
+    negative: bool,
+    len: usize,
+    limbs: [u64; N],
+}
+
+impl<const N: usize> Int<N> {
+    const ZERO: Self = Self { negative: false, len: 0, limbs: [0; N] };
+
+    /// `mantissa * 2^shift`.
+    pub(super) fn new(mantissa: i64, shift: u32) -> Self {
+        let mut result = Self { negative: mantissa < 0, ..Self::ZERO };
+        let wide = u128::from(mantissa.unsigned_abs()) << (shift % 64);
+        let at = (shift / 64) as usize;
+        result.limbs[at] = wide as u64;
+        result.limbs[at + 1] = (wide >> 64) as u64;
+        result.len = at + 2;
+        result.trimmed()
+    }
+
+    /// The same number with more limbs.
+    pub(super) fn widened<const M: usize>(&self) -> Int<M> {
+        let mut result = Int::<M> { negative: self.negative, len: self.len, limbs: [0; M] };
+        result.limbs[..self.len].copy_from_slice(&self.limbs[..self.len]);
+        result
+    }
+
+    /// `self * 2^shift`.
+    pub(super) fn shifted(&self, shift: u32) -> Self {
+        self.mul(&Self::new(1, shift))
+    }
+
+    fn trimmed(mut self) -> Self {
+        while self.len > 0 && self.limbs[self.len - 1] == 0 {
+            self.len -= 1;
+        }
+        self
+    }
+
+    fn negated(mut self) -> Self {
+        self.negative = !self.negative;
+        self
+    }
+
+    fn compare_magnitude(&self, other: &Self) -> Ordering {
+        self.len.cmp(&other.len).then_with(|| {
+            let differs = (0..self.len).rev().find(|&i| self.limbs[i] != other.limbs[i]);
+            differs.map_or(Ordering::Equal, |i| self.limbs[i].cmp(&other.limbs[i]))
+        })
+    }
+
+    /// |self| + |other| with the sign of `self`.
+    fn add_magnitude(&self, other: &Self) -> Self {
+        let mut result = Self { negative: self.negative, len: self.len.max(other.len), ..Self::ZERO };
+        let mut carry = false;
+        for i in 0..result.len {
+            let (sum, first) = self.limbs[i].overflowing_add(other.limbs[i]);
+            let (sum, second) = sum.overflowing_add(u64::from(carry));
+            result.limbs[i] = sum;
+            carry = first | second;
+        }
+        if carry {
+            result.limbs[result.len] = 1;
+            result.len += 1;
+        }
+        result
+    }
+
+    /// |self| - |other| with the sign of `self`, where |self| >= |other|.
+    fn sub_magnitude(&self, other: &Self) -> Self {
+        let mut result = Self { negative: self.negative, len: self.len, ..Self::ZERO };
+        let mut borrow = false;
+        for i in 0..result.len {
+            let (difference, first) = self.limbs[i].overflowing_sub(other.limbs[i]);
+            let (difference, second) = difference.overflowing_sub(u64::from(borrow));
+            result.limbs[i] = difference;
+            borrow = first | second;
+        }
+        result.trimmed()
+    }
+}
+
+impl<const N: usize> Ring for Int<N> {
+    fn add(&self, other: &Self) -> Self {
+        if self.negative == other.negative {
+            self.add_magnitude(other)
+        } else if self.compare_magnitude(other).is_ge() {
+            self.sub_magnitude(other)
+        } else {
+            other.sub_magnitude(self)
+        }
+    }
+
+    fn sub(&self, other: &Self) -> Self {
+        self.add(&other.negated())
+    }
+
+    fn mul(&self, other: &Self) -> Self {
+        let mut result = Self { negative: self.negative != other.negative, ..Self::ZERO };
+        for i in 0..self.len {
+            let mut carry = 0u128;
+            for j in 0..other.len {
+                carry +=
+                    u128::from(self.limbs[i]) * u128::from(other.limbs[j]) + u128::from(result.limbs[i + j]);
+                result.limbs[i + j] = carry as u64;
+                carry >>= 64;
+            }
+            if carry > 0 {
+                result.limbs[i + other.len] = carry as u64;
+            }
+        }
+        result.len = (self.len + other.len).min(N);
+        result.trimmed()
+    }
+
+    fn sign(&self) -> Ordering {
+        match (self.len, self.negative) {
+            (0, _) => Ordering::Equal,
+            (_, true) => Ordering::Less,
+            (_, false) => Ordering::Greater,
+        }
+    }
+}
+
+/// `x = mantissa * 2^exponent` with an odd mantissa; zero is `(0, i32::MAX)`, so that it never is the
+/// smallest exponent.
+pub(super) fn decode(x: f64) -> (i64, i32) {
+    let bits = x.to_bits();
+    let field = (bits >> 52 & 0x7ff) as i32;
+    let fraction = (bits & ((1 << 52) - 1)) as i64;
+    let magnitude = if field == 0 { fraction } else { fraction | 1 << 52 };
+    if magnitude == 0 {
+        return (0, i32::MAX);
+    }
+    let zeros = magnitude.trailing_zeros();
+    let mantissa = magnitude >> zeros;
+    (if x < 0.0 { -mantissa } else { mantissa }, field.max(1) - 1075 + zeros as i32)
+}
+
+/// Numbers as integers times one power of two: `values[i] = mantissa[i] << shift[i]`, times a unit that no
+/// sign depends on. `bits` is the width of the largest.
+pub(super) struct Grid<const K: usize> {
+    values: [(i64, u32); K],
+    pub(super) bits: u32,
+}
+
+impl<const K: usize> Grid<K> {
+    pub(super) fn new(numbers: &[f64; K]) -> Self {
+        let decoded = numbers.map(decode);
+        let unit = decoded.iter().map(|&(_, exponent)| exponent).min().unwrap_or(0);
+        let values = decoded.map(|(m, e)| (m, if m == 0 { 0 } else { (e - unit) as u32 }));
+        let width = |&(m, shift): &(i64, u32)| if m == 0 { 0 } else { m.unsigned_abs().ilog2() + 1 + shift };
+        Self { values, bits: values.iter().map(width).max().unwrap_or(0) }
+    }
+
+    /// The integers as i128; `bits` must be below 127.
+    pub(super) fn narrow(&self) -> [i128; K] {
+        self.values.map(|(m, shift)| i128::from(m) << shift)
+    }
+
+    /// The integers with `64 * N` bits; `bits` must leave room for what is computed from them.
+    pub(super) fn wide<const N: usize>(&self) -> [Int<N>; K] {
+        self.values.map(|(m, shift)| Int::new(m, shift))
+    }
+}
+
+/// True where `x - y`, computed in f64, is the exact difference (the roundoff of Knuth's TwoDiff is zero).
+pub(super) fn difference_is_exact(x: f64, y: f64) -> bool {
+    let difference = x - y;
+    let y_virtual = x - difference;
+    let x_virtual = difference + y_virtual;
+    x - x_virtual == 0.0 && y_virtual - y == 0.0
+}

@@ -1,0 +1,241 @@
+//! The audit: what a result must have kept of its input, and which edges it left, exactly.
+//! It shares no code with what made the result.
+
+use super::edges::{Class, Edge};
+use super::exact;
+use super::surface::Surface;
+use crate::{Dimension, Mesh, Reasons};
+use std::cmp::Ordering;
+
+/// Violations that an [`Audit`] lists; further ones are only counted.
+pub const MAX_LISTED: usize = 100;
+
+/// One thing that a result must not differ in from its input, but does.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Violation {
+    /// Another number of vertex indices.
+    #[error("{after} vertex indices instead of {before}")]
+    Length {
+        /// In the input.
+        before: usize,
+        /// In the result.
+        after: usize,
+    },
+    /// An index names no vertex.
+    #[error("triangle {triangle}: vertex index {index} is out of range")]
+    IndexOutOfRange {
+        /// Index of the triangle.
+        triangle: usize,
+        /// The index found.
+        index: u32,
+    },
+    /// A boundary edge appeared, disappeared or turned around.
+    #[error("boundary edge {u}-{v} is not as it was")]
+    Boundary {
+        /// Smaller end.
+        u: u32,
+        /// Larger end.
+        v: u32,
+    },
+    /// An edge that may not flip, for it is not manifold or not consistently oriented, changed.
+    #[error("frozen edge {u}-{v} is not as it was")]
+    Frozen {
+        /// Smaller end.
+        u: u32,
+        /// Larger end.
+        v: u32,
+    },
+    /// More half-edges at an edge than before, and more than two.
+    #[error("edge {u}-{v} is used by {half_edges} half-edges")]
+    NewNonManifold {
+        /// Smaller end.
+        u: u32,
+        /// Larger end.
+        v: u32,
+        /// How many there are now.
+        half_edges: usize,
+    },
+    /// Two half-edges in the same direction where there were none.
+    #[error("edge {u}-{v} is used twice in the same direction")]
+    NewInconsistent {
+        /// Smaller end.
+        u: u32,
+        /// Larger end.
+        v: u32,
+    },
+    /// A vertex is used by a triangle only before or only after.
+    #[error("vertex {vertex} is used only in the input or only in the result")]
+    Vertex {
+        /// Index of the vertex.
+        vertex: usize,
+    },
+    /// Another Euler characteristic.
+    #[error("Euler characteristic {after} instead of {before}")]
+    Euler {
+        /// In the input.
+        before: i64,
+        /// In the result.
+        after: i64,
+    },
+    /// Another number of edge-connected components.
+    #[error("{after} components instead of {before}")]
+    Components {
+        /// In the input.
+        before: usize,
+        /// In the result.
+        after: usize,
+    },
+    /// The signed areas of the components, as a whole, are not exactly the same (2D).
+    #[error("the signed area of a component changed")]
+    Area,
+    /// More triangles without area, or turned against their component, than before (2D).
+    #[error("{after} inverted or flat triangles instead of {before}")]
+    Inverted {
+        /// In the input.
+        before: usize,
+        /// In the result.
+        after: usize,
+    },
+}
+
+/// What [`audit`] found.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Audit {
+    /// The first [`MAX_LISTED`] violations.
+    pub violations: Vec<Violation>,
+    /// Violations beyond those.
+    pub unlisted: usize,
+    /// Every edge of the result that is not Delaunay, by the reason for which it cannot flip; `stopped` is
+    /// an edge that could. Empty when the indices are wrong.
+    pub remaining: Reasons,
+    /// Edges of the input that the result lacks and whose normals, in the input, differed by more than β
+    /// (3D). No violation: flips around such an edge may lower its angle until it may flip itself.
+    pub sharp_edges_lost: u64,
+}
+
+impl Audit {
+    /// Whether no violation was found. What remains is no violation.
+    pub fn is_clean(&self) -> bool {
+        self.violations.is_empty()
+    }
+
+    fn report(&mut self, violation: Violation) {
+        if self.violations.len() < MAX_LISTED {
+            self.violations.push(violation);
+        } else {
+            self.unlisted += 1;
+        }
+    }
+
+    fn compare<T: PartialEq>(&mut self, before: T, after: T, violation: impl FnOnce(T, T) -> Violation) {
+        if before != after {
+            self.report(violation(before, after));
+        }
+    }
+}
+
+/// Checks `triangles` as a result of flipping edges of `input` with the threshold `max_normal_angle` in
+/// degrees (β, 3D only): exactly, with edge table, components and arithmetic of its own.
+pub fn audit(input: &Mesh, triangles: &[u32], max_normal_angle: f64) -> Audit {
+    let mut audit = Audit::default();
+    audit.compare(input.triangles().len(), triangles.len(), |before, after| Violation::Length {
+        before,
+        after,
+    });
+    for (i, &index) in triangles.iter().enumerate() {
+        if index as usize >= input.vertex_count() {
+            audit.report(Violation::IndexOutOfRange { triangle: i / 3, index });
+        }
+    }
+    if !audit.is_clean() {
+        return audit;
+    }
+    let cosine = cosine(max_normal_angle);
+    let before = Surface::new(input, input.triangles());
+    let after = Surface::new(input, triangles);
+    compare_edges(&mut audit, &before, &after, cosine);
+    compare_vertices(&mut audit, &before, &after);
+    audit.compare(before.euler(), after.euler(), |before, after| Violation::Euler { before, after });
+    audit.compare(before.areas.len(), after.areas.len(), |before, after| Violation::Components {
+        before,
+        after,
+    });
+    if input.dimension() == Dimension::Two {
+        audit.compare(before.sorted_areas(), after.sorted_areas(), |_, _| Violation::Area);
+        let (before, after) = (before.inverted(), after.inverted());
+        if after > before {
+            audit.report(Violation::Inverted { before, after });
+        }
+    }
+    audit.remaining = after.remaining(cosine);
+    audit
+}
+
+/// cos β: exact where it is a multiple of 1/2, else the f64 cosine, which is then taken as exact.
+fn cosine(degrees: f64) -> f64 {
+    for (angle, cosine) in [(0.0, 1.0), (60.0, 0.5), (90.0, 0.0), (120.0, -0.5), (180.0, -1.0)] {
+        if degrees == angle {
+            return cosine;
+        }
+    }
+    libm::cos(degrees * (std::f64::consts::PI / 180.0))
+}
+
+/// Walks through both tables side by side; only edges between two consistent triangles may come and go.
+fn compare_edges(audit: &mut Audit, before: &Surface, after: &Surface, cosine: f64) {
+    let (mut old_edges, mut new_edges) = (before.table.edges().peekable(), after.table.edges().peekable());
+    loop {
+        let (old, new) = match (old_edges.peek(), new_edges.peek()) {
+            (None, None) => return,
+            (Some(_), None) => (old_edges.next(), None),
+            (None, Some(_)) => (None, new_edges.next()),
+            (Some(old), Some(new)) => match (old.u, old.v).cmp(&(new.u, new.v)) {
+                Ordering::Less => (old_edges.next(), None),
+                Ordering::Equal => (old_edges.next(), new_edges.next()),
+                Ordering::Greater => (None, new_edges.next()),
+            },
+        };
+        if let Some(violation) = changed(old, new) {
+            audit.report(violation);
+        }
+        if let (Dimension::Three, Some(Edge { class: Class::Twins(h, g), .. }), None) =
+            (before.mesh.dimension(), old, new)
+        {
+            let [first, second] = [h, g].map(|x| before.triangle_of(x));
+            audit.sharp_edges_lost += u64::from(exact::normals_differ(first, second, cosine));
+        }
+    }
+}
+
+/// The violation in what became of one edge.
+fn changed(old: Option<Edge>, new: Option<Edge>) -> Option<Violation> {
+    // An edge that may flip counts as absent: it may be so before and after.
+    let signature = |edge: Option<Edge>| match edge {
+        None | Some(Edge { class: Class::Twins(..), .. }) => None,
+        Some(edge) => Some((edge.class, edge.directed)),
+    };
+    if signature(old) == signature(new) {
+        return None;
+    }
+    let Edge { u, v, .. } = old.or(new)?;
+    let [was, is] = [old, new].map(|edge| edge.map_or([0, 0], |edge| edge.directed));
+    let half_edges = is[0] + is[1];
+    let boundary = |edge: Option<Edge>| edge.is_some_and(|edge| edge.class == Class::Boundary);
+    Some(if half_edges > 2.max(was[0] + was[1]) {
+        Violation::NewNonManifold { u, v, half_edges }
+    } else if (0..2).any(|k| is[k] >= 2 && was[k] < 2) {
+        Violation::NewInconsistent { u, v }
+    } else if boundary(old) || boundary(new) {
+        Violation::Boundary { u, v }
+    } else {
+        Violation::Frozen { u, v }
+    })
+}
+
+fn compare_vertices(audit: &mut Audit, before: &Surface, after: &Surface) {
+    let (before, after) = (before.used(), after.used());
+    for (vertex, (before, after)) in before.into_iter().zip(after).enumerate() {
+        audit.compare(before, after, |_, _| Violation::Vertex { vertex });
+    }
+}

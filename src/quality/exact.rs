@@ -1,0 +1,255 @@
+//! The audit's own exact decisions: an f64 evaluation where it is far enough from zero, else integers.
+
+use glam::DVec3;
+use num_bigint::{BigInt, Sign};
+use std::cmp::Ordering;
+
+/// Three points; the normal of (p, q, r) is (p - r) × (q - r), and its angle is the one at r.
+pub(super) type Triangle = [DVec3; 3];
+
+/// Relative bound of every f64 evaluation below. With u = 2^-53 and s = |p - r|·|q - r|: a component of
+/// the normal is off by at most 8us, the normal by 16us, its length by 24us, the dot product at r by
+/// 8us; a product of two such terms of triangles with s1 and s2 by 64u·s1·s2 and the sum of two products
+/// by 150u·s1·s2, which is below 1.7e-14·s1·s2. No product of f32 differences over- or underflows.
+const BOUND: f64 = 1e-13;
+
+struct Corner {
+    normal: DVec3,
+    dot: f64,
+    /// |p - r|·|q - r|: what the errors are relative to.
+    size: f64,
+}
+
+impl Corner {
+    fn new([p, q, r]: Triangle) -> Self {
+        let (x, y) = (p - r, q - r);
+        Self { normal: x.cross(y), dot: x.dot(y), size: x.length() * y.length() }
+    }
+}
+
+struct ExactCorner {
+    normal: [BigInt; 3],
+    dot: BigInt,
+}
+
+impl ExactCorner {
+    fn new([p, q, r]: &[[BigInt; 3]; 3]) -> Self {
+        let from_r = |s: &[BigInt; 3]| [&s[0] - &r[0], &s[1] - &r[1], &s[2] - &r[2]];
+        let (x, y) = (from_r(p), from_r(q));
+        let minor = |i: usize, j: usize| &x[i] * &y[j] - &x[j] * &y[i];
+        Self { normal: [minor(1, 2), minor(2, 0), minor(0, 1)], dot: dot(&x, &y) }
+    }
+
+    fn squared(&self) -> BigInt {
+        dot(&self.normal, &self.normal)
+    }
+}
+
+fn dot(x: &[BigInt; 3], y: &[BigInt; 3]) -> BigInt {
+    &x[0] * &y[0] + &x[1] * &y[1] + &x[2] * &y[2]
+}
+
+/// x = mantissa · 2^exponent with an odd mantissa, or zero.
+fn decode(x: f64) -> (i64, i32) {
+    if x == 0.0 {
+        return (0, 0);
+    }
+    let bits = x.to_bits();
+    let biased = (bits >> 52 & 0x7ff) as i32;
+    let fraction = (bits & ((1 << 52) - 1)) as i64;
+    let (mantissa, exponent) =
+        if biased == 0 { (fraction, -1074) } else { (fraction | 1 << 52, biased - 1075) };
+    let zeros = mantissa.trailing_zeros();
+    let odd = mantissa >> zeros;
+    (if x < 0.0 { -odd } else { odd }, exponent + zeros as i32)
+}
+
+/// The corners of both triangles as integers, all scaled by the same power of two.
+fn exact_corners(first: Triangle, second: Triangle) -> [ExactCorner; 2] {
+    let numbers = || first.iter().chain(&second).flat_map(|p| p.to_array());
+    let exponent = numbers().filter(|&x| x != 0.0).map(|x| decode(x).1).min().unwrap_or(0);
+    let integer = |x: f64| {
+        let (mantissa, e) = decode(x);
+        if mantissa == 0 { BigInt::ZERO } else { BigInt::from(mantissa) << (e - exponent) as u32 }
+    };
+    [first, second].map(|triangle| ExactCorner::new(&triangle.map(|p| p.to_array().map(integer))))
+}
+
+fn sign(x: &BigInt) -> Ordering {
+    match x.sign() {
+        Sign::Minus => Ordering::Less,
+        Sign::NoSign => Ordering::Equal,
+        Sign::Plus => Ordering::Greater,
+    }
+}
+
+/// Sign of x·√m + y·√n, m and n not negative.
+fn sign_of_sum(x: &BigInt, m: &BigInt, y: &BigInt, n: &BigInt) -> Ordering {
+    let (left, right) = (sign(&(x * m)), sign(&(y * n)));
+    if left == Ordering::Equal || left == right {
+        return right;
+    }
+    if right == Ordering::Equal {
+        return left;
+    }
+    match (x * x * m).cmp(&(y * y * n)) {
+        Ordering::Greater => left,
+        Ordering::Equal => Ordering::Equal,
+        Ordering::Less => right,
+    }
+}
+
+/// Sign of |n1|·dot2 + |n2|·dot1: `Less` when the angles at the third points sum to more than π.
+pub(super) fn sum_of_angles(first: Triangle, second: Triangle) -> Ordering {
+    let (one, two) = (Corner::new(first), Corner::new(second));
+    let value = one.normal.length() * two.dot + two.normal.length() * one.dot;
+    if value.abs() > BOUND * one.size * two.size {
+        return value.total_cmp(&0.0);
+    }
+    let [one, two] = exact_corners(first, second);
+    sign_of_sum(&two.dot, &one.squared(), &one.dot, &two.squared())
+}
+
+/// Compares the angles at the third points of two triangles that are not flat.
+pub(super) fn compare_angles(first: Triangle, second: Triangle) -> Ordering {
+    let (one, two) = (Corner::new(first), Corner::new(second));
+    let value = one.normal.length() * two.dot - two.normal.length() * one.dot;
+    if value.abs() > BOUND * one.size * two.size {
+        return value.total_cmp(&0.0);
+    }
+    let [one, two] = exact_corners(first, second);
+    sign_of_sum(&two.dot, &one.squared(), &-one.dot, &two.squared())
+}
+
+/// Whether the angle between the normals is larger than the one whose cosine is `cosine`:
+/// n1·n2 < cosine·|n1|·|n2|, never so for a zero normal.
+pub(super) fn normals_differ(first: Triangle, second: Triangle, cosine: f64) -> bool {
+    let (one, two) = (Corner::new(first), Corner::new(second));
+    let value = one.normal.dot(two.normal) - cosine * (one.normal.length() * two.normal.length());
+    if value.abs() > BOUND * one.size * two.size {
+        return value < 0.0;
+    }
+    let [one, two] = exact_corners(first, second);
+    let (mantissa, exponent) = decode(cosine);
+    let mut product = dot(&one.normal, &two.normal);
+    let mut cosine = BigInt::from(-mantissa);
+    if exponent < 0 {
+        product <<= exponent.unsigned_abs();
+    } else {
+        cosine <<= exponent as u32;
+    }
+    let lengths = one.squared() * two.squared();
+    sign_of_sum(&product, &BigInt::from(1), &cosine, &lengths) == Ordering::Less
+}
+
+/// Whether the normals have a strictly negative dot product.
+pub(super) fn normals_oppose(first: Triangle, second: Triangle) -> bool {
+    let (one, two) = (Corner::new(first), Corner::new(second));
+    let value = one.normal.dot(two.normal);
+    if value.abs() > BOUND * one.size * two.size {
+        return value < 0.0;
+    }
+    let [one, two] = exact_corners(first, second);
+    dot(&one.normal, &two.normal).sign() == Sign::Minus
+}
+
+/// Whether the triangle's points are collinear, and if so the sign of the dot product at the third point.
+pub(super) fn flat(triangle: Triangle) -> Option<Ordering> {
+    let corner = Corner::new(triangle);
+    if corner.normal.length() > BOUND * corner.size {
+        return None;
+    }
+    let [exact, _] = exact_corners(triangle, triangle);
+    (exact.squared() == BigInt::ZERO).then(|| sign(&exact.dot))
+}
+
+/// A sum of products of two f32 numbers, without any rounding: integers in bins of 32 binary orders.
+#[derive(Clone, Default)]
+pub(super) struct ExactSum([i128; 16]);
+
+/// Exponent of the smallest product of two f32 numbers, 2^-149 · 2^-149.
+const SMALLEST: i32 = -298;
+
+impl ExactSum {
+    /// Adds x·y. Fewer than 2^40 additions cannot overflow a bin: each is below 2^80.
+    pub fn add(&mut self, x: f32, y: f32) {
+        let (m, e) = decode_f32(x);
+        let (n, f) = decode_f32(y);
+        let place = (e + f - SMALLEST) as usize;
+        self.0[place / 32] += i128::from(m * n) << (place % 32);
+    }
+
+    /// The sum, in units of the square of the smallest f32.
+    pub fn total(&self) -> BigInt {
+        self.0.iter().rev().fold(BigInt::ZERO, |sum, &bin| (sum << 32u32) + BigInt::from(bin))
+    }
+}
+
+/// x = mantissa · 2^exponent, exponent from -149 to 104.
+fn decode_f32(x: f32) -> (i64, i32) {
+    let bits = x.to_bits();
+    let biased = (bits >> 23 & 0xff) as i32;
+    let fraction = i64::from(bits & 0x7f_ffff);
+    let (mantissa, exponent) =
+        if biased == 0 { (fraction, -149) } else { (fraction | 1 << 23, biased - 150) };
+    (if x.is_sign_negative() { -mantissa } else { mantissa }, exponent)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn p(x: f32, y: f32, z: f32) -> DVec3 {
+        DVec3::new(x.into(), y.into(), z.into())
+    }
+
+    #[test]
+    fn ties_and_their_neighbours() {
+        let (a, b, c) = (p(0., 0., 0.), p(1., 1., 0.), p(0., 1., 0.));
+        let up = 1.0 + f32::EPSILON;
+        for scale in [1.0, 1e30, 1e-38] {
+            let s = f64::from(scale as f32);
+            let test = |d: DVec3| sum_of_angles([a * s, b * s, c * s], [b * s, a * s, d * s]);
+            assert_eq!(test(p(1., 0., 0.)), Ordering::Equal);
+            if scale == 1.0 {
+                assert_eq!(test(p(up, 0., 0.)), Ordering::Greater);
+                assert_eq!(test(p(1. - f32::EPSILON, 0., 0.)), Ordering::Less);
+                assert_eq!(test(p(1., 0., 1e-30)), Ordering::Greater);
+            }
+        }
+    }
+
+    #[test]
+    fn angle_between_normals() {
+        let first = [p(0., 0., 0.), p(1., 0., 0.), p(0., 1., 0.)];
+        let second = |y: f32, z: f32| [p(1., 0., 0.), p(0., 0., 0.), p(0., y, z)];
+        assert!(!normals_differ(first, second(-1., 0.), 1.0));
+        assert!(normals_differ(first, second(-1., 1e-30), 1.0));
+        assert!(!normals_differ(first, second(0., 1.), 0.0));
+        assert!(normals_differ(first, second(1e-30, 1.), 0.0));
+        assert!(!normals_differ(first, second(1., 0.), -1.0));
+        assert!(!normals_differ(first, second(0., 0.), 1.0));
+        assert!(normals_oppose(first, second(1e-30, 1.)) && !normals_oppose(first, second(0., 1.)));
+    }
+
+    #[test]
+    fn flat_triangles() {
+        let (a, b) = (p(0.1, 0.1, 0.1), p(0.3, 0.3, 0.3));
+        assert_eq!(flat([a, b, p(0.2, 0.2, 0.2)]), Some(Ordering::Less));
+        assert_eq!(flat([a, b, b]), Some(Ordering::Equal));
+        assert_eq!(flat([a, b, p(0.4, 0.4, 0.4)]), Some(Ordering::Greater));
+        assert_eq!(flat([a, b, p(0.2, 0.2, 0.200_000_02)]), None);
+    }
+
+    #[test]
+    fn sums_keep_every_bit() {
+        let mut sum = ExactSum::default();
+        let tiny = f32::from_bits(1);
+        for (x, y) in
+            [(f32::MAX, f32::MAX), (tiny, tiny), (-f32::MAX, f32::MAX), (tiny, -3.0 * tiny), (0.0, 5.0)]
+        {
+            sum.add(x, y);
+        }
+        assert_eq!(sum.total(), BigInt::from(-2));
+    }
+}

@@ -1,0 +1,238 @@
+//! A surface as the audit sees it: edge table, components, areas, and the edges that are not Delaunay.
+
+use super::edges::{Class, Edge, EdgeTable, next, prev};
+use super::exact::{self, ExactSum, Triangle};
+use crate::{Dimension, Mesh, Reason, Reasons};
+use num_bigint::{BigInt, Sign};
+use std::cmp::Ordering;
+
+/// A mesh's vertices with one of its two lists of triangles, and what the audit knows of them.
+pub(super) struct Surface<'a> {
+    pub mesh: &'a Mesh,
+    triangles: &'a [u32],
+    pub table: EdgeTable<'a>,
+    /// The edge-connected component of each triangle.
+    component_of: Vec<u32>,
+    /// The doubled signed area of each component; 0 in 3D.
+    pub areas: Vec<BigInt>,
+}
+
+impl<'a> Surface<'a> {
+    pub fn new(mesh: &'a Mesh, triangles: &'a [u32]) -> Self {
+        let table = EdgeTable::new(triangles, mesh.vertex_count());
+        let (component_of, count) = components(&table, triangles.len() / 3);
+        let areas = match mesh.dimension() {
+            Dimension::Two => areas(mesh, triangles, &component_of, count),
+            Dimension::Three => vec![BigInt::ZERO; count],
+        };
+        Self { mesh, triangles, table, component_of, areas }
+    }
+
+    pub fn used(&self) -> Vec<bool> {
+        let mut used = vec![false; self.mesh.vertex_count()];
+        for &v in self.triangles {
+            used[v as usize] = true;
+        }
+        used
+    }
+
+    pub fn euler(&self) -> i64 {
+        let vertices = self.used().into_iter().filter(|&used| used).count() as i64;
+        vertices - self.table.edges().count() as i64 + (self.triangles.len() / 3) as i64
+    }
+
+    pub fn sorted_areas(&self) -> Vec<&BigInt> {
+        let mut areas: Vec<_> = self.areas.iter().collect();
+        areas.sort_unstable();
+        areas
+    }
+
+    /// +1, or -1 in a component whose area is negative.
+    fn orientation(&self, triangle: usize) -> f64 {
+        let negative = self.areas[self.component_of[triangle] as usize].sign() == Sign::Minus;
+        if negative { -1.0 } else { 1.0 }
+    }
+
+    /// Triangles that are flat or turned against their component (2D).
+    pub fn inverted(&self) -> usize {
+        let positive =
+            |t: usize| self.orientation(t) * self.turn([0, 1, 2].map(|k| self.triangles[3 * t + k])) > 0.0;
+        (0..self.triangles.len() / 3).filter(|&t| !positive(t)).count()
+    }
+
+    fn turn(&self, corners: [u32; 3]) -> f64 {
+        let [p, q, r] = corners.map(|v| self.coord(v));
+        robust::orient2d(p, q, r)
+    }
+
+    fn coord(&self, v: u32) -> robust::Coord<f64> {
+        let p = self.mesh.point2(v);
+        robust::Coord { x: p.x, y: p.y }
+    }
+
+    fn points(&self, corners: [u32; 3]) -> Triangle {
+        corners.map(|v| self.mesh.point3(v))
+    }
+
+    /// The triangle of half-edge `h` from its start on: the third point is the one opposite.
+    pub fn triangle_of(&self, h: u32) -> Triangle {
+        self.points([h, next(h), prev(h)].map(|x| self.triangles[x as usize]))
+    }
+
+    pub fn remaining(&self, cosine: f64) -> Reasons {
+        let mut remaining = Reasons::default();
+        for edge in self.table.edges() {
+            let reason = match edge.class {
+                Class::Boundary => None,
+                Class::Twins(h, g) => match self.mesh.dimension() {
+                    Dimension::Two => self.judge_in_plane(h, g),
+                    Dimension::Three => self.judge_in_space(h, g, cosine),
+                },
+                Class::NonManifold => self.frozen_excess(&edge).then_some(Reason::NonManifold),
+                Class::Inconsistent => self.frozen_excess(&edge).then_some(Reason::Inconsistent),
+            };
+            if let Some(reason) = reason {
+                remaining[reason] += 1;
+            }
+        }
+        remaining
+    }
+
+    /// Ends a, b of the edge and the far corners c, d: its triangles are (a, b, c) and (b, a, d).
+    fn quad(&self, h: u32, g: u32) -> [u32; 4] {
+        [h, next(h), prev(h), prev(g)].map(|x| self.triangles[x as usize])
+    }
+
+    /// Why the edge is still there, if it is not Delaunay (2D). The determinant of the in-circle test is
+    /// the polynomial -(cross1·dot2 + dot1·cross2), whatever the orientations.
+    fn judge_in_plane(&self, h: u32, g: u32) -> Option<Reason> {
+        let [a, b, c, d] = self.quad(h, g);
+        let orientation = self.orientation(h as usize / 3);
+        let [pa, pb, pc, pd] = [a, b, c, d].map(|v| self.coord(v));
+        if orientation * robust::incircle(pa, pb, pc, pd) <= 0.0 {
+            None
+        } else if orientation * self.turn([a, d, c]) <= 0.0 || orientation * self.turn([b, c, d]) <= 0.0 {
+            Some(Reason::Fold)
+        } else if self.table.contains(c, d) {
+            Some(Reason::Duplicate)
+        } else {
+            Some(Reason::Stopped)
+        }
+    }
+
+    /// Why the edge is still there, if it is not Delaunay (3D).
+    fn judge_in_space(&self, h: u32, g: u32, cosine: f64) -> Option<Reason> {
+        let [a, b, c, d] = self.quad(h, g);
+        let [old1, old2] = [[a, b, c], [b, a, d]].map(|corners| self.points(corners));
+        let [new1, new2] = [[a, d, c], [b, c, d]].map(|corners| self.points(corners));
+        if exact::sum_of_angles(old1, old2) != Ordering::Less {
+            return None;
+        }
+        let oppose = |old| exact::normals_oppose(old, new1) || exact::normals_oppose(old, new2);
+        Some(if exact::normals_differ(old1, old2, cosine) || exact::normals_differ(new1, new2, cosine) {
+            Reason::Angle
+        } else if oppose(old1) || oppose(old2) {
+            Reason::Fold
+        } else if c == d || self.table.contains(c, d) {
+            Reason::Duplicate
+        } else {
+            Reason::Stopped
+        })
+    }
+
+    /// Whether two of the triangles at a frozen edge have opposite angles that sum to more than π.
+    /// Comparing each with the widest so far finds such a pair in one pass, however many there are; flat
+    /// triangles have no place in that order: a cap (angle π) goes with any triangle that is not flat.
+    fn frozen_excess(&self, edge: &Edge) -> bool {
+        let mut widest: Option<Triangle> = None;
+        let mut cap = false;
+        for h in edge.half_edges() {
+            let triangle = self.triangle_of(h);
+            if let Some(dot) = exact::flat(triangle) {
+                cap |= dot == Ordering::Less;
+                continue;
+            }
+            let Some(other) = widest else {
+                widest = Some(triangle);
+                continue;
+            };
+            if exact::sum_of_angles(other, triangle) == Ordering::Less {
+                return true;
+            }
+            if exact::compare_angles(triangle, other) == Ordering::Greater {
+                widest = Some(triangle);
+            }
+        }
+        cap && widest.is_some()
+    }
+}
+
+/// The edge-connected component of each triangle, and the number of components.
+fn components(table: &EdgeTable, triangles: usize) -> (Vec<u32>, usize) {
+    fn root(parent: &mut [u32], mut t: u32) -> u32 {
+        while parent[t as usize] != t {
+            parent[t as usize] = parent[parent[t as usize] as usize];
+            t = parent[t as usize];
+        }
+        t
+    }
+    let mut parent: Vec<u32> = (0..triangles as u32).collect();
+    for edge in table.edges() {
+        if let Class::Twins(h, g) = edge.class {
+            let (s, t) = (root(&mut parent, h / 3), root(&mut parent, g / 3));
+            // The smaller root stays, so that a root comes before its triangles below.
+            parent[s.max(t) as usize] = s.min(t);
+        }
+    }
+    let mut count = 0;
+    let mut component_of = vec![0u32; triangles];
+    for t in 0..triangles as u32 {
+        let root = root(&mut parent, t);
+        component_of[t as usize] = if root == t { count } else { component_of[root as usize] };
+        count += u32::from(root == t);
+    }
+    (component_of, count as usize)
+}
+
+/// The doubled signed area of each component, without rounding.
+fn areas(mesh: &Mesh, triangles: &[u32], component_of: &[u32], count: usize) -> Vec<BigInt> {
+    let mut order: Vec<u32> = (0..component_of.len() as u32).collect();
+    order.sort_by_key(|&t| component_of[t as usize]);
+    let at = |h: u32| {
+        let i = 2 * triangles[h as usize] as usize;
+        (mesh.positions()[i], mesh.positions()[i + 1])
+    };
+    let mut areas = Vec::with_capacity(count);
+    for members in order.chunk_by(|&s, &t| component_of[s as usize] == component_of[t as usize]) {
+        let mut sum = ExactSum::default();
+        for h in members.iter().flat_map(|&t| 3 * t..3 * t + 3) {
+            let ((ux, uy), (vx, vy)) = (at(h), at(next(h)));
+            sum.add(ux, vy);
+            sum.add(-vx, uy);
+        }
+        areas.push(sum.total());
+    }
+    areas
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn in_circle_is_the_angle_polynomial() {
+        let s = |p: [i64; 8]| {
+            let [ax, ay, bx, by, cx, cy, dx, dy] = p;
+            let cross = |x: i64, y: i64, z: i64, w: i64| x * w - y * z;
+            let dot = |x: i64, y: i64, z: i64, w: i64| x * z + y * w;
+            let (p, q) = ((ax - cx, ay - cy), (bx - cx, by - cy));
+            let (r, t) = ((bx - dx, by - dy), (ax - dx, ay - dy));
+            cross(p.0, p.1, q.0, q.1) * dot(r.0, r.1, t.0, t.1)
+                + dot(p.0, p.1, q.0, q.1) * cross(r.0, r.1, t.0, t.1)
+        };
+        let mut random = oorandom::Rand64::new(7);
+        for _ in 0..10_000 {
+            let p = [0; 8].map(|_: i64| random.rand_range(0..9) as i64 - 4);
+            let at = |i: usize| robust::Coord { x: p[i] as f64, y: p[i + 1] as f64 };
+            assert_eq!(robust::incircle(at(0), at(2), at(4), at(6)), -s(p) as f64);
+        }
+    }
+}

@@ -1,0 +1,157 @@
+//! The triangles around a vertex. Their corners fall into fans: runs of triangles joined by twins, open at
+//! the boundary or closed. A flip neither joins nor splits fans, so which vertices have several is known
+//! from the start.
+
+use crate::NONE;
+use crate::adjacency::{next, prev, unflagged};
+
+/// One anchor, a half-edge that starts at the vertex, for each fan of the vertices that have several fans.
+/// The table holds a word for each vertex, [`NONE`] or the place of its list of anchors in the table; a list
+/// ends with [`NONE`]. It is empty where every vertex has one fan, which any half-edge leads around.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Fans {
+    pub(crate) table: Vec<u32>,
+    vertices: usize,
+}
+
+impl Fans {
+    /// Walks every fan of the mesh once.
+    pub(crate) fn new(vertices: usize, triangles: &[u32], twins: &[u32]) -> Self {
+        let mut first = vec![NONE; vertices];
+        let mut visited = vec![false; triangles.len()];
+        let mut further = Vec::new();
+        for h in 0..triangles.len() as u32 {
+            if visited[h as usize] {
+                continue;
+            }
+            for corner in Star::of_fan(twins, h) {
+                visited[corner as usize] = true;
+            }
+            let v = triangles[h as usize];
+            if first[v as usize] == NONE {
+                first[v as usize] = h;
+            } else {
+                further.push((v, h));
+            }
+        }
+        if further.is_empty() {
+            return Self::default();
+        }
+        further.sort_unstable();
+        let mut table = vec![NONE; vertices];
+        for fans in further.chunk_by(|x, y| x.0 == y.0) {
+            let v = fans[0].0 as usize;
+            table[v] = table.len() as u32;
+            table.push(first[v]);
+            table.extend(fans.iter().map(|&(_, h)| h));
+            table.push(NONE);
+        }
+        Self { table, vertices }
+    }
+
+    /// The anchors of a vertex with several fans, up to the end of the table; none for any other vertex.
+    fn of(&self, vertex: u32) -> Option<&[u32]> {
+        let list = self.table.get(vertex as usize).copied().unwrap_or(NONE);
+        (list != NONE).then(|| &self.table[list as usize..])
+    }
+
+    /// Moves one anchor of `vertex`, where `from` is one.
+    pub(crate) fn move_anchor(&mut self, vertex: u32, from: u32, to: u32) {
+        let list = self.table.get(vertex as usize).copied().unwrap_or(NONE);
+        if list != NONE {
+            let anchors = self.table[list as usize..].iter_mut().take_while(|anchor| **anchor != NONE);
+            for anchor in anchors.filter(|anchor| **anchor == from) {
+                *anchor = to;
+            }
+        }
+    }
+
+    /// The anchors, to be moved with their half-edges.
+    pub(crate) fn anchors_mut(&mut self) -> impl Iterator<Item = &mut u32> {
+        self.table[self.vertices..].iter_mut().filter(|anchor| **anchor != NONE)
+    }
+}
+
+/// Iterates over the corners at a vertex: the half-edges that start there.
+pub(crate) struct Star<'a> {
+    twins: &'a [u32],
+    start: u32,
+    at: u32,
+    clockwise: bool,
+    further: &'a [u32],
+}
+
+impl<'a> Star<'a> {
+    /// All corners at the vertex that `corner` starts at.
+    pub(crate) fn new(triangles: &[u32], twins: &'a [u32], fans: &'a Fans, corner: u32) -> Self {
+        match fans.of(triangles[corner as usize]) {
+            None => Self::of_fan(twins, corner),
+            Some(anchors) => Self { further: &anchors[1..], ..Self::of_fan(twins, anchors[0]) },
+        }
+    }
+
+    /// The corners of the fan that `corner` belongs to.
+    fn of_fan(twins: &'a [u32], corner: u32) -> Self {
+        Self { twins, start: corner, at: corner, clockwise: false, further: &[NONE] }
+    }
+
+    fn begin_next_fan(&mut self) {
+        self.start = self.further[0];
+        self.at = self.start;
+        self.clockwise = false;
+        if self.start != NONE {
+            self.further = &self.further[1..];
+        }
+    }
+
+    fn advance(&mut self) {
+        if !self.clockwise {
+            self.at = unflagged(self.twins[prev(self.at) as usize]);
+            if self.at == self.start {
+                return self.begin_next_fan();
+            }
+            if self.at != NONE {
+                return;
+            }
+            // The fan is open: go back to where it began and round the other way.
+            self.clockwise = true;
+            self.at = self.start;
+        }
+        match unflagged(self.twins[self.at as usize]) {
+            NONE => self.begin_next_fan(),
+            twin => self.at = next(twin),
+        }
+    }
+}
+
+impl Iterator for Star<'_> {
+    type Item = u32;
+
+    fn next(&mut self) -> Option<u32> {
+        (self.at != NONE).then(|| {
+            let corner = self.at;
+            self.advance();
+            corner
+        })
+    }
+}
+
+/// Whether a corner of two stars passes its test. The stars are walked in turns: each of them alone gives
+/// the answer, so the cost is that of the smaller one.
+pub(crate) fn any_in_either(
+    mut first: (Star, impl Fn(u32) -> bool),
+    mut second: (Star, impl Fn(u32) -> bool),
+) -> bool {
+    loop {
+        match first.0.next() {
+            None => return false,
+            Some(corner) if first.1(corner) => return true,
+            Some(_) => {}
+        }
+        match second.0.next() {
+            None => return false,
+            Some(corner) if second.1(corner) => return true,
+            Some(_) => {}
+        }
+    }
+}

@@ -1,0 +1,138 @@
+//! Faults planted in results: the audit must name each.
+#![allow(clippy::unwrap_used, reason = "a test that cannot make its mesh must stop")]
+
+mod meshes;
+mod simulation;
+
+use edgeflip::quality::{Audit, MAX_LISTED, Violation, audit};
+use edgeflip::{Mesh, Reason, families::by_name};
+use meshes::{joined, plane, reversed};
+
+/// The audit of `mesh`'s own triangles after `fault` was done to them.
+fn audit_of(mesh: &Mesh, fault: impl FnOnce(&mut Vec<u32>)) -> Audit {
+    let mut triangles = mesh.triangles().to_vec();
+    fault(&mut triangles);
+    audit(mesh, &triangles, 10.0)
+}
+
+/// Flips the edge between two vertices, whatever that does.
+fn flip(triangles: &mut [u32], u: u32, v: u32) {
+    let next = |h: usize| if h % 3 == 2 { h - 2 } else { h + 1 };
+    let find = |u, v| (0..triangles.len()).find(|&h| (triangles[h], triangles[next(h)]) == (u, v)).unwrap();
+    let (h, g) = (find(u, v), find(v, u));
+    let (c, d) = (triangles[next(next(h))], triangles[next(next(g))]);
+    triangles[next(h)] = d;
+    triangles[next(g)] = c;
+}
+
+/// ```text
+///        2
+///      / | \         0-1 is not Delaunay
+///     0 -+- 1        4 lies far to the right of 1
+///      \ | /
+///        3
+/// ```
+fn kite() -> Mesh {
+    plane(&[[-2., 0.], [2., 0.], [0., 1.], [0., -1.], [5., 0.]], &[[0, 1, 2], [1, 0, 3], [1, 4, 2]])
+}
+
+#[test]
+fn an_untouched_mesh_is_clean_but_not_delaunay() {
+    let audit = audit_of(&kite(), |_| {});
+    assert!(audit.is_clean());
+    assert_eq!(audit.remaining[Reason::Stopped], 1);
+    assert_eq!(audit.remaining.total(), 1);
+    let flipped = audit_of(&kite(), |t| flip(t, 0, 1));
+    assert!(flipped.is_clean());
+    assert_eq!(flipped.remaining.total(), 0);
+}
+
+#[test]
+fn a_turned_triangle() {
+    let violations = audit_of(&by_name("grid 5").unwrap(), |t| t.swap(30, 31)).violations;
+    assert!(violations.iter().any(|v| matches!(v, Violation::NewInconsistent { .. })), "{violations:?}");
+    assert!(violations.contains(&Violation::Area));
+    // Alone, a turned triangle is its own component: it is not inverted, but its boundary and area are.
+    let alone = plane(&[[0., 0.], [1., 0.], [0., 1.]], &[[0, 1, 2]]);
+    let violations = audit_of(&alone, |t| t.swap(0, 1)).violations;
+    assert!(violations.contains(&Violation::Boundary { u: 0, v: 1 }));
+    assert!(violations.contains(&Violation::Area));
+}
+
+#[test]
+fn a_flip_in_a_quad_that_is_not_convex() {
+    let mesh = plane(&[[0., 0.], [4., 0.], [0.5, 0.5], [-3., 2.]], &[[0, 1, 2], [2, 3, 0]]);
+    let audit = audit_of(&mesh, |t| flip(t, 2, 0));
+    assert_eq!(audit.violations, [Violation::Inverted { before: 0, after: 1 }]);
+}
+
+#[test]
+fn a_lost_boundary_edge() {
+    let violations = audit_of(&kite(), |t| t[7] = 3).violations;
+    assert!(violations.contains(&Violation::Boundary { u: 1, v: 4 }), "{violations:?}");
+    assert!(violations.contains(&Violation::Vertex { vertex: 4 }));
+}
+
+#[test]
+fn a_duplicate_edge() {
+    let all = meshes::all();
+    let kite_and_flap = &all.iter().find(|case| case.name == "kite-and-flap").unwrap().mesh;
+    let violations = audit_of(kite_and_flap, |t| flip(t, 0, 1)).violations;
+    assert!(violations.contains(&Violation::NewNonManifold { u: 2, v: 3, half_edges: 3 }), "{violations:?}");
+}
+
+#[test]
+fn a_changed_frozen_edge() {
+    let all = meshes::all();
+    let fan = &all.iter().find(|case| case.name == "fan-of-three").unwrap().mesh;
+    let violations = audit_of(fan, |t| flip(t, 0, 1)).violations;
+    assert!(
+        violations.contains(&Violation::Frozen { u: 0, v: 1 })
+            || violations.contains(&Violation::Boundary { u: 0, v: 1 })
+    );
+}
+
+#[test]
+fn a_merged_component() {
+    let mesh = joined(&kite(), &reversed(&kite()));
+    let violations = audit_of(&mesh, |t| t[9..].iter_mut().for_each(|v| *v -= 5)).violations;
+    assert!(violations.iter().any(|v| matches!(v, Violation::Components { .. })), "{violations:?}");
+    assert!(violations.iter().any(|v| matches!(v, Violation::Euler { .. })));
+}
+
+#[test]
+fn a_lost_ridge_is_counted() {
+    let roof = by_name("roof 4").unwrap();
+    let run = simulation::simulate(&roof, 10.0, None);
+    assert_eq!(audit(&roof, &run.triangles, 10.0).sharp_edges_lost, 0);
+    // Nine columns: vertices 4, 13, 22, … are the ridge.
+    let flipped = |t: &mut Vec<u32>| flip(t, 13, 22);
+    assert_eq!(audit_of(&roof, flipped).sharp_edges_lost, 1);
+}
+
+#[test]
+fn wrong_arrays() {
+    let audit_of = |fault: fn(&mut Vec<u32>)| audit_of(&kite(), fault);
+    assert_eq!(audit_of(|t| t.truncate(6)).violations, [Violation::Length { before: 9, after: 6 }]);
+    assert_eq!(audit_of(|t| t.truncate(7)).violations, [Violation::Length { before: 9, after: 7 }]);
+    let wrong = audit_of(|t| t[4] = 5);
+    assert_eq!(wrong.violations, [Violation::IndexOutOfRange { triangle: 1, index: 5 }]);
+    assert_eq!(wrong.violations[0].to_string(), "triangle 1: vertex index 5 is out of range");
+    let audit = audit(&by_name("grid 20").unwrap(), &[u32::MAX; 3 * 722], 10.0);
+    assert_eq!((audit.violations.len(), audit.unlisted), (MAX_LISTED, 3 * 722 - MAX_LISTED));
+}
+
+#[test]
+fn frozen_edges_of_many_triangles_take_no_quadratic_time() {
+    // A book of 100,000 pages that all end at a right angle or below, and one whose angle is wide.
+    let pages = 100_000u32;
+    let mut points = vec![[0., 0.], [1., 0.]];
+    points.extend((0..pages).map(|k| [0.5, 0.5 + k as f32]));
+    let mut triangles: Vec<_> = (0..pages).map(|k| [0, 1, 2 + k]).collect();
+    let book = plane(&points, &triangles);
+    assert_eq!(audit(&book, book.triangles(), 10.0).remaining.total(), 0);
+    points.push([0.5, 0.499]);
+    triangles.push([1, 0, 2 + pages]);
+    let book = plane(&points, &triangles);
+    assert_eq!(audit(&book, book.triangles(), 10.0).remaining[Reason::NonManifold], 1);
+}

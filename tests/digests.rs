@@ -1,0 +1,111 @@
+//! The simulation against `digests.txt` and against the audit: two readings of the same rules, with no
+//! line of code in common. `EDGEFLIP_BLESS=1 cargo test --test digests` writes the file anew.
+
+mod meshes;
+mod simulation;
+
+use edgeflip::families::by_name;
+use edgeflip::quality::audit;
+use edgeflip::{Mesh, Reason};
+use simulation::{Expected, Simulation, digests_path, expected, simulate};
+
+/// A finished run that the audit finds nothing wrong with.
+fn audited_run(name: &str, mesh: &Mesh, beta: f64) -> Simulation {
+    let run = simulate(mesh, beta, None);
+    let audit = audit(mesh, &run.triangles, beta);
+    assert!(audit.is_clean(), "{name} {beta}: {:?}", audit.violations);
+    assert_eq!(audit.remaining, run.remaining, "{name} {beta}");
+    assert_eq!(run.remaining[Reason::Stopped], 0, "{name} {beta}");
+    run
+}
+
+#[test]
+fn simulation_reproduces_the_file_and_passes_the_audit() {
+    let run = |case: meshes::Case| {
+        Expected::new(&case.name, case.beta, &audited_run(&case.name, &case.mesh, case.beta))
+    };
+    let lines: Vec<Expected> = meshes::all().into_iter().map(run).collect();
+    if std::env::var_os("EDGEFLIP_BLESS").is_some() {
+        let text: String = lines.iter().map(|line| format!("{line}\n")).collect();
+        std::fs::write(digests_path(), format!("{}\n{text}", Expected::HEADER)).unwrap();
+        return;
+    }
+    let expected = expected();
+    assert_eq!(lines.len(), expected.len(), "another number of meshes; bless digests.txt");
+    for (line, expected) in lines.iter().zip(&expected) {
+        assert_eq!(line, expected);
+    }
+}
+
+#[test]
+fn cases_have_unique_names() {
+    let mut names: Vec<_> =
+        meshes::all().iter().map(|case| (case.name.clone(), case.beta.to_bits())).collect();
+    let cases = names.len();
+    names.sort_unstable();
+    names.dedup();
+    assert_eq!(names.len(), cases);
+    assert!(names.iter().all(|(name, _)| !name.contains(char::is_whitespace)));
+}
+
+/// Random meshes to try; `EDGEFLIP_ROUNDS` asks for more.
+fn rounds() -> u64 {
+    std::env::var("EDGEFLIP_ROUNDS").ok().and_then(|n| n.parse().ok()).unwrap_or(300)
+}
+
+#[test]
+fn soups_end_and_pass_the_audit() {
+    for seed in 0..rounds() {
+        let (flat, bent) = meshes::soup(seed, 3 + seed as usize % 5, seed as usize / 5 % 23);
+        audited_run(&format!("soup {seed}"), &flat, 10.0);
+        for beta in [0.0, 40.0, 90.0, 180.0] {
+            audited_run(&format!("bent soup {seed}"), &bent, beta);
+        }
+    }
+}
+
+/// Sound connectivity, but every vertex on one of 4 x 4 (x 4) places: collinear, coincident, folded.
+#[test]
+fn crushed_meshes_end_and_pass_the_audit() {
+    for seed in 0..rounds() {
+        let mut random = oorandom::Rand64::new(u128::from(seed));
+        let mut crush =
+            |mesh: Mesh| meshes::moved(&mesh, |_| [(); 3].map(|()| random.rand_range(0..4) as f32));
+        let n = 3 + seed as usize % 5;
+        let family = |name: &str| by_name(&format!("{name} {n} seed={seed}")).unwrap();
+        let (disc, sphere) = (crush(family("random")), crush(family("uvsphere")));
+        audited_run(&format!("crushed disc {seed}"), &disc, 10.0);
+        for beta in [0.0, 90.0, 135.0, 180.0] {
+            audited_run(&format!("crushed sphere {seed}"), &sphere, beta);
+        }
+    }
+}
+
+#[test]
+fn strips_flip_as_in_the_paper() {
+    let strips = by_name("strips 8").unwrap();
+    let run = simulate(&strips, 10.0, None);
+    let flips: Vec<_> = run.iterations.iter().map(|record| record.flips).collect();
+    assert_eq!(flips, [1, 2, 3, 2, 1]);
+}
+
+#[test]
+fn a_capped_run_counts_what_it_left() {
+    let mesh = by_name("random 12").unwrap();
+    let whole = simulate(&mesh, 10.0, None);
+    let capped = simulate(&mesh, 10.0, Some(2));
+    assert_eq!(capped.iterations.len(), 2);
+    assert_eq!(capped.digest, whole.iterations[1].digest);
+    assert_eq!(capped.remaining[Reason::Stopped], u64::from(whole.iterations[2].labelled));
+    assert_eq!(audit(&mesh, &capped.triangles, 10.0).remaining, capped.remaining);
+    assert_eq!(simulate(&mesh, 10.0, Some(0)).triangles, mesh.triangles());
+}
+
+#[test]
+fn a_flat_surface_flips_like_the_plane() {
+    let mesh = by_name("random 20").unwrap();
+    let plane = simulate(&mesh, 10.0, None);
+    for beta in [0.0, 180.0] {
+        assert_eq!(simulate(&meshes::lifted(&mesh, |_, _| 3.0), beta, None).digest, plane.digest);
+    }
+}
