@@ -1,7 +1,6 @@
 //! Creases, before the first iteration: the edges of the input over β stay, even if flips around them lower
 //! their angle.
 
-use crate::NONE;
 use crate::adjacency::{CREASE, next, prev};
 use crate::mesh::point3;
 use crate::predicates::Quad;
@@ -11,7 +10,7 @@ use crate::predicates::Quad;
 pub(crate) fn flag_creases(positions: &[f32], triangles: &[u32], twins: &mut [u32], cos: f64) {
     for h in 0..triangles.len() as u32 {
         let g = twins[h as usize];
-        if g == NONE || g < h {
+        if g >= CREASE || g < h {
             continue;
         }
         let [a, b, c, d] = [h, next(h), prev(h), prev(g)].map(|x| point3(positions, triangles[x as usize]));

@@ -1,0 +1,161 @@
+//! The command line: its options, what they mean, and how they become the library's.
+
+use clap::{Parser, ValueEnum};
+use edgeflip::{Backend, Dimension, Options, Order};
+use std::path::PathBuf;
+
+const AFTER: &str = "\
+Formats, by extension:
+  .off   Geomview OFF, text (also COFF, NOFF, STOFF, and nOFF with 2 or 3 dimensions)
+  .obj   Wavefront OBJ; all groups and objects are read as one mesh
+Vertices keep their number and order. Polygons are cut into triangles. Normals, colours, texture
+coordinates, groups and materials are not written.
+
+Exit status:
+  0   done; also when stopped by --max-iterations
+  1   a file could not be read or written, the mesh was refused, or --verify found a violation
+  2   wrong usage
+  3   the backend asked for is not there, cannot take this mesh, or failed
+When a run fails, OUT is not written or changed, and one line on standard error says why.
+
+Examples:
+  edgeflip terrain.off -o terrain-delaunay.off
+  edgeflip scan.obj -o scan.obj --max-normal-angle 5 --verify
+  edgeflip part.off -o part.obj --backend cpu --json --quiet | jq .flips";
+
+/// Makes a triangle mesh Delaunay by flipping edges.
+///
+/// Reads a triangle mesh, in the plane or a surface in space, keeps its vertices, and flips edges until no
+/// edge is left that is not Delaunay and may flip. What is left, and why, is reported. Decisions are exact
+/// and the result is the same, bit for bit, on every backend.
+#[derive(Debug, Parser)]
+#[command(name = "edgeflip", version, after_long_help = AFTER)]
+#[command(after_help = "--help tells more: formats, exit status, examples.")]
+pub struct Args {
+    /// The mesh to read: .off or .obj
+    #[arg(value_name = "IN")]
+    pub input: PathBuf,
+
+    /// The file to write: .off or .obj; may be IN itself
+    ///
+    /// The file is replaced at once when everything is done, so that a failure leaves it as it was.
+    #[arg(short, long, value_name = "OUT")]
+    pub output: PathBuf,
+
+    /// What does the work
+    #[arg(long, value_enum, default_value_t, value_name = "BACKEND")]
+    pub backend: BackendArg,
+
+    /// Whether the mesh lies in the plane or in space
+    #[arg(long, value_enum, default_value_t, value_name = "DIM")]
+    pub dimension: DimensionArg,
+
+    /// β: largest angle between the normals of two triangles whose edge may flip, in degrees, 0 to 180
+    ///
+    /// Only for surfaces in space. An edge flips only if the normals of its two triangles differ by at most
+    /// β before the flip, and those of the new triangles after it: small values keep the shape, large ones
+    /// leave fewer edges that are not Delaunay. Edges left for this reason are counted as `angle`.
+    #[arg(long, value_name = "DEG", default_value_t = 10.0, value_parser = degrees, allow_negative_numbers = true)]
+    pub max_normal_angle: f64,
+
+    /// Stop after N iterations; without it the run goes to its end, which always comes
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    pub max_iterations: Option<u32>,
+
+    /// Which of the valid orders of flips to take
+    #[arg(long, value_enum, default_value_t, value_name = "ORDER")]
+    pub order: OrderArg,
+
+    /// Check the result independently; if the check fails, write nothing and end with status 1
+    ///
+    /// Checks that vertices, boundary, components and orientation are what they were, and that the edges
+    /// left are what the run says they are.
+    #[arg(long)]
+    pub verify: bool,
+
+    /// Print one JSON object on standard output instead of the summary
+    ///
+    /// Keys: input, vertices, triangles, edges, boundary_edges, dimension, backend, adapter, fallback,
+    /// status (done or stopped), iterations, flips, flips_per_iteration, dispatches, remaining (by reason),
+    /// min_angle_before_deg, min_angle_after_deg, ms (load, adjacency, flip, total, save; total is the run
+    /// without load and save), and with --verify audit (the violations).
+    #[arg(long)]
+    pub json: bool,
+
+    /// No progress, no summary, no notes: only errors
+    #[arg(short, long)]
+    pub quiet: bool,
+}
+
+impl Args {
+    /// The dimension asked for; `None`: what the file looks like.
+    pub fn dimension(&self) -> Option<Dimension> {
+        match self.dimension {
+            DimensionArg::Auto => None,
+            DimensionArg::Two => Some(Dimension::Two),
+            DimensionArg::Three => Some(Dimension::Three),
+        }
+    }
+
+    /// What the library is asked to do.
+    pub fn options(&self) -> Options {
+        Options {
+            backend: match self.backend {
+                BackendArg::Auto => Backend::Auto,
+                BackendArg::Cpu => Backend::Cpu,
+                BackendArg::Gpu => Backend::Gpu,
+            },
+            max_normal_angle: self.max_normal_angle,
+            max_iterations: self.max_iterations,
+            order: match self.order {
+                OrderArg::Reproducible => Order::Reproducible,
+                OrderArg::Any => Order::Any,
+            },
+        }
+    }
+}
+
+/// `--backend`.
+#[derive(Clone, Copy, Debug, Default, ValueEnum)]
+pub enum BackendArg {
+    /// The GPU where there is one that can take the mesh, else the CPU; the summary says which and why
+    #[default]
+    Auto,
+    /// The CPU; takes every mesh
+    Cpu,
+    /// The GPU; never falls back (status 3)
+    Gpu,
+}
+
+/// `--dimension`.
+#[derive(Clone, Copy, Debug, Default, ValueEnum)]
+pub enum DimensionArg {
+    /// In the plane if every z is 0, else in space
+    #[default]
+    Auto,
+    /// In the plane; a z other than 0 is refused
+    #[value(name = "2")]
+    Two,
+    /// A surface in space, even if every z is 0
+    #[value(name = "3")]
+    Three,
+}
+
+/// `--order`.
+#[derive(Clone, Copy, Debug, Default, ValueEnum)]
+pub enum OrderArg {
+    /// The parallel pipeline: the same bits on every backend after every iteration
+    #[default]
+    Reproducible,
+    /// Lawson's sequential algorithm on the CPU: often faster on one thread, no iterations to count
+    Any,
+}
+
+/// An angle from 0 to 180 degrees.
+fn degrees(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(angle) if (0.0..=180.0).contains(&angle) => Ok(angle),
+        Ok(_) => Err("must be from 0 to 180 degrees".into()),
+        Err(_) => Err("must be a number of degrees".into()),
+    }
+}

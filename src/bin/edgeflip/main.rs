@@ -1,0 +1,153 @@
+//! The command-line program: reads a mesh, makes it Delaunay, writes it, and says what happened.
+
+mod args;
+mod report;
+
+use args::Args;
+use clap::Parser;
+use edgeflip::{Error, Mesh, Outcome, io, make_delaunay, quality};
+use indicatif::{ProgressBar, ProgressStyle};
+use report::{Milliseconds, Report};
+use std::io::{IsTerminal, Write};
+use std::ops::ControlFlow;
+use std::process::ExitCode;
+use std::time::{Duration, Instant};
+
+/// Why the program ends without a result: the exit status and one line for standard error.
+struct Failure {
+    status: u8,
+    line: String,
+}
+
+impl Failure {
+    /// What went wrong with `path`; an error that names its path, or is about none, stays as it is.
+    fn of(path: &std::path::Path, error: &Error) -> Self {
+        let line = match error {
+            Error::Io { .. }
+            | Error::UnknownFormat { .. }
+            | Error::Option { .. }
+            | Error::BackendUnavailable { .. }
+            | Error::Device { .. } => error.to_string(),
+            _ => format!("{}: {error}", path.display()),
+        };
+        let status = match error {
+            Error::Option { .. } => 2,
+            Error::BackendUnavailable { .. } | Error::BackendLimit { .. } | Error::Device { .. } => 3,
+            _ => 1,
+        };
+        Self { status, line }
+    }
+}
+
+fn main() -> ExitCode {
+    let args = Args::parse();
+    let bar = progress(&args);
+    let result = run(&args, &bar);
+    bar.finish_and_clear();
+    match result {
+        Ok(report) => match show(&args, &report) {
+            Ok(()) => failure(report.violation()),
+            Err(e) => failure(Some(Failure { status: 1, line: format!("standard output: {e}") })),
+        },
+        Err(e) => failure(Some(e)),
+    }
+}
+
+/// Says why on standard error; if that is closed, only the exit status is left to say it.
+fn failure(failure: Option<Failure>) -> ExitCode {
+    let Some(Failure { status, line }) = failure else { return ExitCode::SUCCESS };
+    let line = line.replace(|c: char| c.is_control(), " ");
+    let _ = writeln!(std::io::stderr(), "edgeflip: {line}");
+    ExitCode::from(status)
+}
+
+/// A spinner where someone can see it and it does not stand between the lines of the result.
+fn progress(args: &Args) -> ProgressBar {
+    let disturbs = args.json && std::io::stdout().is_terminal();
+    if args.quiet || disturbs || !std::io::stderr().is_terminal() {
+        return ProgressBar::hidden();
+    }
+    let bar = ProgressBar::new_spinner();
+    if let Ok(style) = ProgressStyle::with_template("{spinner} {msg} ({elapsed})") {
+        bar.set_style(style);
+    }
+    bar.enable_steady_tick(Duration::from_millis(100));
+    bar
+}
+
+/// Everything but the printing. The target is written last, and only if nothing was wrong.
+fn run(args: &Args, bar: &ProgressBar) -> Result<Report, Failure> {
+    let refused = |error| Failure::of(&args.input, &error);
+    io::Format::of(&args.output).map_err(|e| Failure { status: 2, line: e.to_string() })?;
+    let folder = args.output.parent().filter(|folder| !folder.as_os_str().is_empty());
+    if folder.is_some_and(|folder| !folder.is_dir()) {
+        let line = format!("{}: the folder does not exist", args.output.display());
+        return Err(Failure { status: 1, line });
+    }
+    bar.set_message(format!("reading {}", args.input.display()));
+    let (loaded, load) = timed(|| io::load(&args.input, args.dimension()));
+    let io::Loaded { mesh, polygons, dropped } = loaded.map_err(refused)?;
+
+    bar.set_message("preparing");
+    let before = quality::min_angle(&mesh);
+    let outcome = make_delaunay(&mesh, &args.options(), |iterations, flips| {
+        bar.set_message(format!("iteration {iterations}, {flips} flips"));
+        ControlFlow::Continue(())
+    })
+    .map_err(refused)?;
+    let result = mesh.with_triangles(outcome.triangles.clone()).map_err(refused)?;
+    let after = quality::min_angle(&result);
+
+    let audit = args.verify.then(|| {
+        bar.set_message("verifying");
+        audit(args, &mesh, &outcome)
+    });
+    let mut save = None;
+    if audit.as_ref().is_none_or(Vec::is_empty) {
+        bar.set_message(format!("writing {}", args.output.display()));
+        let (written, ms) = timed(|| io::write(&args.output, &result));
+        written.map_err(|e| Failure::of(&args.output, &e))?;
+        save = Some(ms);
+    }
+    let ms = Milliseconds::new(load, &outcome.timings, save);
+    Ok(Report::new(args, &result, outcome, [before, after], audit, ms).with_notes(polygons, &dropped))
+}
+
+/// The violations that the independent check finds, its count of the edges left included.
+fn audit(args: &Args, mesh: &Mesh, outcome: &Outcome) -> Vec<String> {
+    let audit = quality::audit(mesh, &outcome.triangles, args.max_normal_angle);
+    let mut violations: Vec<String> = audit.violations.iter().map(ToString::to_string).collect();
+    if audit.remaining != outcome.remaining {
+        let [said, counted] = [&outcome.remaining, &audit.remaining].map(report::reasons);
+        violations.push(format!("edges left: the run says {said}, the audit counts {counted}"));
+    }
+    violations
+}
+
+fn timed<T>(work: impl FnOnce() -> T) -> (T, f64) {
+    let start = Instant::now();
+    let value = work();
+    (value, start.elapsed().as_secs_f64() * 1e3)
+}
+
+/// Prints the result: one object on standard output, or a summary on standard error. A reader that has
+/// gone away is no failure.
+fn show(args: &Args, report: &Report) -> std::io::Result<()> {
+    if !args.quiet {
+        let mut text = report.notes();
+        if !args.json {
+            text.push_str(&report.summary(args));
+        }
+        let _ = std::io::stderr().write_all(text.as_bytes());
+    }
+    if !args.json {
+        return Ok(());
+    }
+    let mut line = serde_json::to_string(report)?;
+    line.push('\n');
+    let mut out = std::io::stdout().lock();
+    match out.write_all(line.as_bytes()).and_then(|()| out.flush()) {
+        Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => Err(e),
+        _ => Ok(()),
+    }
+}

@@ -1,0 +1,187 @@
+//! What a run is reported as: one JSON object, or a few aligned lines.
+
+use crate::Failure;
+use crate::args::Args;
+use edgeflip::{Mesh, Outcome, Reasons, Status, Timings};
+use indicatif::HumanCount;
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::fmt::Write;
+
+/// The keys of `--json`, in their order; the rest is for the summary.
+#[derive(Serialize)]
+pub struct Report {
+    input: String,
+    vertices: usize,
+    triangles: usize,
+    edges: u64,
+    boundary_edges: u64,
+    dimension: usize,
+    backend: &'static str,
+    adapter: Option<String>,
+    fallback: Option<String>,
+    status: &'static str,
+    iterations: u32,
+    flips: u64,
+    flips_per_iteration: Vec<u32>,
+    dispatches: u64,
+    remaining: BTreeMap<&'static str, u64>,
+    /// `null` where there is no angle.
+    min_angle_before_deg: f64,
+    min_angle_after_deg: f64,
+    ms: Milliseconds,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    audit: Option<Vec<String>>,
+    #[serde(skip)]
+    left: Reasons,
+    #[serde(skip)]
+    notes: Vec<String>,
+}
+
+/// Wall times in milliseconds.
+#[derive(Serialize)]
+pub struct Milliseconds {
+    load: f64,
+    adjacency: f64,
+    flip: f64,
+    total: f64,
+    /// `null` if nothing was written.
+    save: Option<f64>,
+}
+
+impl Milliseconds {
+    /// The library's times between those of reading and writing, to the microsecond.
+    pub fn new(load: f64, run: &Timings, save: Option<f64>) -> Self {
+        let round = |ms: f64| (ms * 1e3).round() / 1e3;
+        Self {
+            load: round(load),
+            adjacency: round(run.adjacency),
+            flip: round(run.flip),
+            total: round(run.total),
+            save: save.map(round),
+        }
+    }
+}
+
+impl Report {
+    /// `angles`: the smallest one before and after, in degrees.
+    pub fn new(
+        args: &Args,
+        mesh: &Mesh,
+        outcome: Outcome,
+        angles: [f64; 2],
+        audit: Option<Vec<String>>,
+        ms: Milliseconds,
+    ) -> Self {
+        Self {
+            input: args.input.display().to_string(),
+            vertices: mesh.vertex_count(),
+            triangles: mesh.triangle_count(),
+            edges: outcome.edges,
+            boundary_edges: outcome.boundary_edges,
+            dimension: mesh.dimension().stride(),
+            backend: outcome.backend,
+            adapter: outcome.adapter,
+            fallback: outcome.fallback,
+            status: match outcome.status {
+                Status::Done => "done",
+                Status::Stopped => "stopped",
+            },
+            iterations: outcome.iterations,
+            flips: outcome.flips,
+            flips_per_iteration: outcome.flips_per_iteration,
+            dispatches: outcome.dispatches,
+            remaining: outcome.remaining.iter().map(|(reason, n)| (reason.name(), n)).collect(),
+            min_angle_before_deg: angles[0],
+            min_angle_after_deg: angles[1],
+            ms,
+            audit,
+            left: outcome.remaining,
+            notes: Vec::new(),
+        }
+    }
+
+    /// Adds what reading changed: polygons cut, and what was dropped.
+    pub fn with_notes(mut self, polygons: usize, dropped: &[&str]) -> Self {
+        if polygons > 0 {
+            let polygons = HumanCount(polygons as u64);
+            self.notes.push(format!("polygons cut into triangles: {polygons}"));
+        }
+        if !dropped.is_empty() {
+            self.notes.push(format!("not kept: {}", dropped.join("; ")));
+        }
+        self
+    }
+
+    /// What `--verify` makes of the run.
+    pub fn violation(&self) -> Option<Failure> {
+        let violations = self.audit.as_ref()?;
+        let (first, more) = (violations.first()?, violations.len() - 1);
+        let more = if more == 0 { String::new() } else { format!(" (and {more} more)") };
+        Some(Failure { status: 1, line: format!("{}: the audit found: {first}{more}", self.input) })
+    }
+
+    /// The notes, a line each.
+    pub fn notes(&self) -> String {
+        self.notes.iter().fold(String::new(), |text, note| text + "note       " + note + "\n")
+    }
+
+    /// The result for a reader, a few aligned lines.
+    pub fn summary(&self, args: &Args) -> String {
+        let mut text = String::new();
+        let mut line = |name: &str, value: String| {
+            // Writing to a String cannot fail.
+            let _ = writeln!(text, "{name:<10} {value}");
+        };
+        let [vertices, triangles] = [self.vertices, self.triangles].map(|n| HumanCount(n as u64));
+        line(
+            "read",
+            format!("{}: {vertices} vertices, {triangles} triangles, {}D", self.input, self.dimension),
+        );
+        let adapter = self.adapter.as_ref().map(|name| format!(" ({name})")).unwrap_or_default();
+        line("backend", format!("{}{adapter}", self.backend));
+        if let Some(why) = &self.fallback {
+            line("fallback", why.clone());
+        }
+        let iterations = match self.iterations {
+            0 => String::new(),
+            1 => " in 1 iteration".into(),
+            n => format!(" in {} iterations", HumanCount(n.into())),
+        };
+        line("flips", format!("{}{iterations}, {}", HumanCount(self.flips), self.status));
+        line("left", reasons(&self.left));
+        let [before, after] = [self.min_angle_before_deg, self.min_angle_after_deg];
+        if before.is_finite() && after.is_finite() {
+            line("min angle", format!("{before:.3}° → {after:.3}°"));
+        }
+        if let Some(violations) = &self.audit {
+            let found = match violations.len() {
+                0 => "clean".into(),
+                n => format!("violations: {}", HumanCount(n as u64)),
+            };
+            line("audit", found);
+        }
+        let Milliseconds { load, adjacency, flip, total, save } = &self.ms;
+        let save = save.map(|ms| format!(", save {ms:.1} ms")).unwrap_or_default();
+        line(
+            "time",
+            format!(
+                "load {load:.1} ms, run {total:.1} ms (adjacency {adjacency:.1} ms, flips {flip:.1} ms){save}"
+            ),
+        );
+        if self.ms.save.is_some() {
+            line("wrote", args.output.display().to_string());
+        }
+        text
+    }
+}
+
+/// Edges left, by reason, for a reader.
+pub fn reasons(left: &Reasons) -> String {
+    let parts: Vec<String> =
+        left.iter().map(|(reason, n)| format!("{} {}", reason.name(), HumanCount(n))).collect();
+    match parts.len() {
+        0 => "no edge that is not Delaunay".into(),
+        _ => format!("not Delaunay: {}", parts.join(", ")),
+    }
+}

@@ -1,0 +1,71 @@
+//! Mesh files on disk: a whole file is read at once, and a target is replaced at once or not at all.
+
+use super::{Format, Loaded, parse, write_to};
+use crate::{Dimension, Error, Mesh};
+use std::fs;
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+/// Reads the mesh of a file; the extension names its format. See [`parse`] for `dimension`.
+///
+/// # Errors
+/// [`Error::UnknownFormat`], [`Error::Io`], and those of [`parse`].
+pub fn read(path: impl AsRef<Path>, dimension: Option<Dimension>) -> Result<Mesh, Error> {
+    load(path, dimension).map(|loaded| loaded.mesh)
+}
+
+/// As [`read`], and says what was done to the file's content.
+///
+/// # Errors
+/// As [`read`].
+pub fn load(path: impl AsRef<Path>, dimension: Option<Dimension>) -> Result<Loaded, Error> {
+    let path = path.as_ref();
+    let format = Format::of(path)?;
+    let bytes = fs::read(path).map_err(|source| at(path, source))?;
+    parse(format, &bytes, dimension)
+}
+
+/// Writes `mesh` to a file; the extension names its format. The file appears, or changes, at once when all
+/// is written: a failure leaves what was there before. A link is followed and permissions are kept.
+///
+/// # Errors
+/// [`Error::UnknownFormat`] or [`Error::Io`].
+pub fn write(path: impl AsRef<Path>, mesh: &Mesh) -> Result<(), Error> {
+    let path = path.as_ref();
+    let format = Format::of(path)?;
+    replace(path, |out| write_to(format, mesh, out)).map_err(|source| at(path, source))
+}
+
+fn at(path: &Path, source: io::Error) -> Error {
+    Error::Io { path: path.display().to_string(), source }
+}
+
+/// Writes through a temporary file beside the target, which is renamed at the end and removed on failure.
+fn replace(path: &Path, write: impl FnOnce(&mut BufWriter<&fs::File>) -> io::Result<()>) -> io::Result<()> {
+    let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
+    let present = fs::metadata(&target).ok();
+    if present.as_ref().is_some_and(fs::Metadata::is_dir) {
+        return Err(io::ErrorKind::IsADirectory.into());
+    }
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".edgeflip-").suffix(".tmp");
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    let file = builder.tempfile_in(folder(&target))?;
+    let mut out = BufWriter::with_capacity(1 << 18, file.as_file());
+    write(&mut out)?;
+    out.flush()?;
+    drop(out);
+    if let Some(present) = present {
+        file.as_file().set_permissions(present.permissions())?;
+    }
+    file.persist(&target).map_err(|e| e.error)?;
+    Ok(())
+}
+
+fn folder(path: &Path) -> PathBuf {
+    match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder.to_path_buf(),
+        _ => PathBuf::from("."),
+    }
+}

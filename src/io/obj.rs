@@ -1,0 +1,193 @@
+//! OBJ, Wavefront's object format: every `v` and `f` of the file as one mesh, in the file's vertex order.
+//! Source: Wavefront's Advanced Visualizer manual, appendix B1. Groups, objects and materials divide nothing.
+
+use super::text::{
+    Digits, Dropped, Fans, Lines, Parsed, Tokens, coordinate, float, integer, quoted, without_comment,
+};
+use crate::{Error, Mesh};
+use std::borrow::Cow;
+use std::io::{self, Write};
+
+/// Reads a file's bytes.
+pub(super) fn parse(bytes: &[u8]) -> Result<Parsed, Error> {
+    let mut reader = Reader::default();
+    reader.read(Lines::new(bytes), None)?;
+    let vertices = reader.vertices();
+    // A face may name a vertex that follows it, so only the end of the file shows whether an index is out
+    // of range. The second reading, with the number known, finds its line.
+    if reader.largest >= vertices {
+        reader = Reader::default();
+        reader.read(Lines::new(bytes), Some(vertices))?;
+    }
+    let Reader { positions, faces, dropped, .. } = reader;
+    Ok(Parsed { stride: 3, positions, faces, dropped })
+}
+
+/// Writes `mesh`; z is 0 in a 2D mesh.
+pub(super) fn write(mesh: &Mesh, out: &mut impl Write) -> io::Result<()> {
+    let (mut digits, mut line) = (Digits::default(), Vec::new());
+    let stride = mesh.dimension().stride();
+    for position in mesh.positions().chunks_exact(stride) {
+        line.clear();
+        line.push(b'v');
+        for &x in position {
+            line.push(b' ');
+            digits.float(&mut line, x);
+        }
+        line.extend_from_slice(if stride == 2 { b" 0\n" } else { b"\n" });
+        out.write_all(&line)?;
+    }
+    for triangle in mesh.triangles().chunks_exact(3) {
+        line.clear();
+        line.push(b'f');
+        for &v in triangle {
+            line.push(b' ');
+            digits.integer(&mut line, u64::from(v) + 1);
+        }
+        line.push(b'\n');
+        out.write_all(&line)?;
+    }
+    Ok(())
+}
+
+/// The mesh read so far.
+struct Reader {
+    positions: Vec<f32>,
+    faces: Fans,
+    dropped: Dropped,
+    /// Largest vertex index named, from 0; -1 before the first.
+    largest: i64,
+    corners: Vec<u32>,
+}
+
+impl Default for Reader {
+    fn default() -> Self {
+        Self {
+            positions: Vec::new(),
+            faces: Fans::default(),
+            dropped: Dropped::default(),
+            largest: -1,
+            corners: Vec::new(),
+        }
+    }
+}
+
+impl Reader {
+    /// Number of vertices so far. A slice is never longer than `isize::MAX` bytes, so it fits.
+    fn vertices(&self) -> i64 {
+        (self.positions.len() / 3) as i64
+    }
+
+    /// Reads all lines; `known` is the number of vertices of the whole file where it is known.
+    fn read(&mut self, mut lines: Lines, known: Option<i64>) -> Result<(), Error> {
+        while let Some(line) = lines.next() {
+            let number = lines.number();
+            let line = continued(without_comment(line), &mut lines);
+            self.line(&line, known)
+                .map_err(|message| Error::Parse { place: format!("line {number}"), message })?;
+        }
+        if self.positions.is_empty() {
+            return Err(lines.refuse("the file ends without a vertex (v) line"));
+        }
+        Ok(())
+    }
+
+    fn line(&mut self, line: &[u8], known: Option<i64>) -> Result<(), String> {
+        let mut tokens = Tokens(line);
+        let Some(keyword) = tokens.next() else { return Ok(()) };
+        let dropped = match keyword {
+            b"v" => return self.vertex(tokens),
+            b"f" | b"fo" => return self.face(tokens, known),
+            b"vt" => "texture coordinates",
+            b"vn" => "normals",
+            b"g" | b"o" | b"s" | b"mg" | b"mtllib" | b"usemtl" | b"maplib" | b"usemap" => {
+                "groups, objects and materials"
+            }
+            b"p" | b"l" => "points and lines",
+            b"vp" | b"cstype" | b"deg" | b"bmat" | b"step" | b"curv" | b"curv2" | b"surf" | b"parm"
+            | b"trim" | b"hole" | b"scrv" | b"sp" | b"end" | b"con" | b"ctech" | b"stech" => {
+                "free-form curves and surfaces"
+            }
+            b"bevel" | b"c_interp" | b"d_interp" | b"lod" | b"shadow_obj" | b"trace_obj" => {
+                "display attributes"
+            }
+            _ => return Err(format!("expected a keyword of an OBJ file, found {}", quoted(keyword))),
+        };
+        self.dropped.note(dropped);
+        Ok(())
+    }
+
+    /// `x y z`, and a weight or a colour, which are dropped.
+    fn vertex(&mut self, mut tokens: Tokens) -> Result<(), String> {
+        for found in 0..3 {
+            let token = tokens.next().ok_or_else(|| format!("expected 3 coordinates, found {found}"))?;
+            self.positions.push(coordinate(token)?);
+        }
+        for token in tokens {
+            if float(token).is_none() {
+                return Err(format!("expected a number, found {}", quoted(token)));
+            }
+            self.dropped.note("vertex weights and colours");
+        }
+        Ok(())
+    }
+
+    /// `v`, `v/vt`, `v//vn` or `v/vt/vn` for each corner.
+    fn face(&mut self, tokens: Tokens, known: Option<i64>) -> Result<(), String> {
+        self.corners.clear();
+        for token in tokens {
+            let corner = self.corner(token, known)?;
+            self.largest = self.largest.max(corner);
+            // What does not fit 32 bits is beyond the last vertex: `parse` refuses it.
+            self.corners.push(u32::try_from(corner).unwrap_or(u32::MAX));
+        }
+        if self.corners.len() < 3 {
+            let found = self.corners.len();
+            return Err(format!("a face with {found} corners, but a face needs at least 3"));
+        }
+        self.faces.push(&self.corners);
+        Ok(())
+    }
+
+    /// The vertex index of a corner, from 0: positive ones count from 1, negative ones back from the last
+    /// vertex so far.
+    fn corner(&self, token: &[u8], known: Option<i64>) -> Result<i64, String> {
+        let mut parts = token.splitn(3, |&b| b == b'/');
+        let vertex = parts.next().and_then(integer);
+        let references = parts.all(|part| part.is_empty() || integer(part).is_some());
+        let (Some(i), true) = (vertex, references) else {
+            return Err(format!("expected a corner such as 1, 1/2, 1//3 or 1/2/3, found {}", quoted(token)));
+        };
+        let so_far = self.vertices();
+        match i {
+            0 => Err("vertex index 0 is out of range, OBJ counts from 1".into()),
+            i if i < -so_far => {
+                let token = quoted(token);
+                Err(format!("vertex index {token} is out of range, there are {so_far} vertices so far"))
+            }
+            i if i < 0 => Ok(so_far + i),
+            i => match known {
+                Some(n) if i > n => {
+                    Err(format!("vertex index {} is out of range, the mesh has {n} vertices", quoted(token)))
+                }
+                _ => Ok(i - 1),
+            },
+        }
+    }
+}
+
+/// The line with those that follow it after a backslash.
+fn continued<'a>(line: &'a [u8], lines: &mut Lines<'a>) -> Cow<'a, [u8]> {
+    let Some(start) = line.strip_suffix(b"\\") else { return Cow::Borrowed(line) };
+    let mut joined = start.to_vec();
+    for line in lines {
+        joined.push(b' ');
+        let line = without_comment(line);
+        let start = line.strip_suffix(b"\\");
+        joined.extend_from_slice(start.unwrap_or(line));
+        if start.is_none() {
+            break;
+        }
+    }
+    Cow::Owned(joined)
+}

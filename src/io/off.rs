@@ -1,0 +1,247 @@
+//! OFF, Geomview's object file format: `[ST][C][N][n]OFF`, counts, one line a vertex, one line a face.
+//! Source: the Geomview manual, "OFF Files". Text only, read line by line.
+
+use super::text::{Digits, Dropped, Fans, Lines, Parsed, Tokens, coordinate, float, integer, quoted};
+use crate::{Error, Mesh};
+use std::io::{self, Write};
+
+const ATTRIBUTES: &str = "numbers after a vertex's coordinates (normals, colours, texture coordinates)";
+const COLOURS: &str = "face colours";
+
+/// Reads a file's bytes.
+pub(super) fn parse(bytes: &[u8]) -> Result<Parsed, Error> {
+    let mut lines = Lines::new(bytes);
+    let header = Header::parse(&mut lines)?;
+    let mut dropped = Dropped::default();
+    let positions = vertices(&mut lines, &header, &mut dropped)?;
+    let faces = faces(&mut lines, &header, &mut dropped)?;
+    if let Some(line) = content(&mut lines) {
+        let found = quoted(line.0.trim_ascii());
+        let message = format!("expected the end of the file after {} faces, found {found}", header.faces);
+        return Err(lines.refuse(message));
+    }
+    Ok(Parsed { stride: header.stride, positions, faces, dropped })
+}
+
+/// Writes `mesh`; z is 0 in a 2D mesh.
+pub(super) fn write(mesh: &Mesh, out: &mut impl Write) -> io::Result<()> {
+    let (mut digits, mut line) = (Digits::default(), Vec::new());
+    writeln!(out, "OFF\n{} {} 0", mesh.vertex_count(), mesh.triangle_count())?;
+    let stride = mesh.dimension().stride();
+    for position in mesh.positions().chunks_exact(stride) {
+        line.clear();
+        for &x in position {
+            digits.float(&mut line, x);
+            line.push(b' ');
+        }
+        if stride == 2 {
+            line.extend_from_slice(b"0 ");
+        }
+        line.pop();
+        line.push(b'\n');
+        out.write_all(&line)?;
+    }
+    for triangle in mesh.triangles().chunks_exact(3) {
+        line.clear();
+        line.push(b'3');
+        for &v in triangle {
+            line.push(b' ');
+            digits.integer(&mut line, u64::from(v));
+        }
+        line.push(b'\n');
+        out.write_all(&line)?;
+    }
+    Ok(())
+}
+
+/// The next line that holds more than white space and a comment.
+fn content<'a>(lines: &mut Lines<'a>) -> Option<Tokens<'a>> {
+    lines
+        .map(super::text::without_comment)
+        .find(|line| line.iter().any(|b| !b.is_ascii_whitespace()))
+        .map(Tokens)
+}
+
+/// What the keyword and the counts announce.
+struct Header {
+    stride: usize,
+    vertices: u64,
+    faces: u64,
+}
+
+impl Header {
+    fn parse(lines: &mut Lines) -> Result<Self, Error> {
+        let mut tokens =
+            content(lines).ok_or_else(|| lines.refuse("the file ends before the keyword OFF"))?;
+        let word = tokens.next().unwrap_or_default();
+        let Some((keyword, glued)) = Keyword::split(word) else {
+            let message = format!("expected the keyword OFF of an OFF file, found {}", quoted(word));
+            return Err(lines.refuse(message));
+        };
+        if keyword.homogeneous {
+            return Err(lines.refuse("vertices with four coordinates (4OFF) are not supported"));
+        }
+        let mut numbers: Vec<&[u8]> = Vec::new();
+        numbers.extend((!glued.is_empty()).then_some(glued));
+        numbers.extend(tokens);
+        if numbers.first() == Some(&b"BINARY".as_slice()) {
+            return Err(lines.refuse("binary OFF is not supported, only text"));
+        }
+        let mut stride = keyword.stride;
+        if keyword.dimension_follows {
+            if numbers.is_empty() {
+                numbers = Self::next_numbers(lines, "the number of dimensions")?;
+            }
+            stride = match integer(numbers.remove(0)) {
+                Some(2) => 2,
+                Some(3) => 3,
+                _ => return Err(lines.refuse("an nOFF file must have 2 or 3 dimensions")),
+            };
+        }
+        if numbers.is_empty() {
+            numbers = Self::next_numbers(lines, "the numbers of vertices and faces")?;
+        }
+        if !(2..=3).contains(&numbers.len()) {
+            let message =
+                format!("expected the numbers of vertices, faces and edges, found {} words", numbers.len());
+            return Err(lines.refuse(message));
+        }
+        let mut counts = [0; 3];
+        for (count, token) in counts.iter_mut().zip(numbers) {
+            *count = integer(token).and_then(|n| u64::try_from(n).ok()).ok_or_else(|| {
+                lines
+                    .refuse(format!("expected a number of vertices, faces or edges, found {}", quoted(token)))
+            })?;
+        }
+        Ok(Self { stride, vertices: counts[0], faces: counts[1] })
+    }
+
+    fn next_numbers<'a>(lines: &mut Lines<'a>, what: &str) -> Result<Vec<&'a [u8]>, Error> {
+        match content(lines) {
+            Some(tokens) => Ok(tokens.collect()),
+            None => Err(lines.refuse(format!("the file ends before {what}"))),
+        }
+    }
+}
+
+/// The first word of the file.
+struct Keyword {
+    stride: usize,
+    homogeneous: bool,
+    dimension_follows: bool,
+}
+
+impl Keyword {
+    /// The keyword and what is glued to it: some well-known data sets write `OFF490 518 0`.
+    fn split(word: &[u8]) -> Option<(Self, &[u8])> {
+        let mut keyword = Self { stride: 3, homogeneous: false, dimension_follows: false };
+        let mut rest = word;
+        loop {
+            rest = match rest {
+                [b'O', b'F', b'F', glued @ ..] | [b'o', b'f', b'f', glued @ ..] => {
+                    return Some((keyword, glued));
+                }
+                [b'S', b'T', rest @ ..] | [b'C' | b'N' | b'3', rest @ ..] => rest,
+                [b'2', rest @ ..] => {
+                    keyword.stride = 2;
+                    rest
+                }
+                [b'4', rest @ ..] => {
+                    keyword.homogeneous = true;
+                    rest
+                }
+                [b'n', rest @ ..] => {
+                    keyword.dimension_follows = true;
+                    rest
+                }
+                _ => return None,
+            }
+        }
+    }
+}
+
+/// How many of the announced `count` elements, of `numbers` numbers each, the rest of the file can hold at
+/// most: a number takes a digit and a separator.
+fn capacity(lines: &Lines, count: u64, numbers: usize) -> usize {
+    let limit = (lines.bytes_left() + 1) / (2 * numbers);
+    usize::try_from(count).unwrap_or(usize::MAX).min(limit)
+}
+
+fn vertices(lines: &mut Lines, header: &Header, dropped: &mut Dropped) -> Result<Vec<f32>, Error> {
+    let stride = header.stride;
+    let mut positions = Vec::with_capacity(stride * capacity(lines, header.vertices, stride));
+    for vertex in 0..header.vertices {
+        let Some(mut tokens) = content(lines) else {
+            let announced = header.vertices;
+            return Err(lines.refuse(format!("the file ends after {vertex} of {announced} vertices")));
+        };
+        for found in 0..stride {
+            let Some(token) = tokens.next() else {
+                return Err(lines.refuse(format!("expected {stride} coordinates, found {found}")));
+            };
+            positions.push(coordinate(token).map_err(|message| lines.refuse(message))?);
+        }
+        drop_numbers(lines, tokens, ATTRIBUTES, dropped)?;
+    }
+    Ok(positions)
+}
+
+fn faces(lines: &mut Lines, header: &Header, dropped: &mut Dropped) -> Result<Fans, Error> {
+    let mut fans = Fans::default();
+    fans.triangles.reserve_exact(3 * capacity(lines, header.faces, 4));
+    let mut corners = Vec::new();
+    for face in 0..header.faces {
+        let Some(mut tokens) = content(lines) else {
+            let announced = header.faces;
+            return Err(lines.refuse(format!("the file ends after {face} of {announced} faces")));
+        };
+        let first = tokens.next().unwrap_or_default();
+        let Some(size) = integer(first) else {
+            let message = format!("expected a face's number of corners, found {}", quoted(first));
+            return Err(lines.refuse(message));
+        };
+        if size < 3 {
+            return Err(lines.refuse(format!("a face with {size} corners, but a face needs at least 3")));
+        }
+        corners.clear();
+        for found in 0..size {
+            let Some(token) = tokens.next() else {
+                return Err(lines.refuse(format!("expected {size} vertex indices, found {found}")));
+            };
+            corners.push(index(token, header.vertices).map_err(|message| lines.refuse(message))?);
+        }
+        fans.push(&corners);
+        drop_numbers(lines, tokens, COLOURS, dropped)?;
+    }
+    Ok(fans)
+}
+
+/// A vertex index below `vertices`, or what is wrong with it.
+fn index(token: &[u8], vertices: u64) -> Result<u32, String> {
+    let Some(i) = integer(token) else {
+        return Err(format!("expected a vertex index, found {}", quoted(token)));
+    };
+    match u32::try_from(i) {
+        Ok(v) if u64::from(v) < vertices => Ok(v),
+        _ => {
+            let token = quoted(token);
+            Err(format!("vertex index {token} is out of range, the mesh has {vertices} vertices"))
+        }
+    }
+}
+
+/// Checks that the rest of a line is numbers, and notes that they are dropped.
+fn drop_numbers(
+    lines: &Lines,
+    tokens: Tokens,
+    what: &'static str,
+    dropped: &mut Dropped,
+) -> Result<(), Error> {
+    for token in tokens {
+        if float(token).is_none() {
+            return Err(lines.refuse(format!("expected a number, found {}", quoted(token))));
+        }
+        dropped.note(what);
+    }
+    Ok(())
+}

@@ -1,0 +1,182 @@
+//! What the text formats share: lines with their numbers, tokens, exact numbers, and faces cut into triangles.
+
+use crate::Error;
+use memchr::{memchr, memchr2};
+
+/// Bytes of an offending token that a message repeats.
+const QUOTE: usize = 32;
+
+/// The lines of a file, ended by LF, CRLF or CR, with their 1-based numbers.
+pub(super) struct Lines<'a> {
+    rest: &'a [u8],
+    number: usize,
+}
+
+impl<'a> Lines<'a> {
+    /// All lines of `bytes`; a UTF-8 byte order mark is skipped.
+    pub(super) fn new(bytes: &'a [u8]) -> Self {
+        Self { rest: bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes), number: 0 }
+    }
+
+    /// Number of the line that `next` gave last.
+    pub(super) fn number(&self) -> usize {
+        self.number.max(1)
+    }
+
+    /// Bytes not yet read: the bound of everything that is allocated ahead.
+    pub(super) fn bytes_left(&self) -> usize {
+        self.rest.len()
+    }
+
+    /// An error at the current line.
+    pub(super) fn refuse(&self, message: impl Into<String>) -> Error {
+        Error::Parse { place: format!("line {}", self.number()), message: message.into() }
+    }
+}
+
+impl<'a> Iterator for Lines<'a> {
+    type Item = &'a [u8];
+
+    fn next(&mut self) -> Option<&'a [u8]> {
+        if self.rest.is_empty() {
+            return None;
+        }
+        self.number += 1;
+        let Some(end) = memchr2(b'\n', b'\r', self.rest) else {
+            return Some(std::mem::take(&mut self.rest));
+        };
+        let after = if self.rest[end..].starts_with(b"\r\n") { end + 2 } else { end + 1 };
+        let line = &self.rest[..end];
+        self.rest = &self.rest[after..];
+        Some(line)
+    }
+}
+
+/// The line up to its comment.
+pub(super) fn without_comment(line: &[u8]) -> &[u8] {
+    memchr(b'#', line).map_or(line, |i| &line[..i])
+}
+
+/// The words of a line, separated by white space.
+#[derive(Clone)]
+pub(super) struct Tokens<'a>(pub(super) &'a [u8]);
+
+impl<'a> Iterator for Tokens<'a> {
+    type Item = &'a [u8];
+
+    fn next(&mut self) -> Option<&'a [u8]> {
+        let start = self.0.iter().position(|b| !b.is_ascii_whitespace())?;
+        let rest = &self.0[start..];
+        let end = rest.iter().position(u8::is_ascii_whitespace).unwrap_or(rest.len());
+        self.0 = &rest[end..];
+        Some(&rest[..end])
+    }
+}
+
+/// A token as a message repeats it: one line, printable, short.
+pub(super) fn quoted(token: &[u8]) -> String {
+    match token.get(..QUOTE) {
+        Some(head) if token.len() > QUOTE => format!("`{}…`", head.escape_ascii()),
+        _ => format!("`{}`", token.escape_ascii()),
+    }
+}
+
+/// The f32 nearest to the decimal number written, rounded once; `None` if it is no number.
+/// NaN and infinities come back as such.
+pub(super) fn float(token: &[u8]) -> Option<f32> {
+    std::str::from_utf8(token).ok()?.parse().ok()
+}
+
+/// A finite coordinate, or what is wrong with it.
+pub(super) fn coordinate(token: &[u8]) -> Result<f32, String> {
+    match float(token) {
+        Some(x) if x.is_finite() => Ok(x),
+        Some(_) => Err(format!("{} is not a finite 32-bit number", quoted(token))),
+        None => Err(format!("expected a number, found {}", quoted(token))),
+    }
+}
+
+/// A decimal integer; beyond 64 bits the nearest one that fits, `None` if it is no integer.
+pub(super) fn integer(token: &[u8]) -> Option<i64> {
+    let (negative, digits) = match token {
+        [b'-', digits @ ..] => (true, digits),
+        [b'+', digits @ ..] => (false, digits),
+        digits => (false, digits),
+    };
+    if digits.is_empty() {
+        return None;
+    }
+    let mut value = 0_i64;
+    for &b in digits {
+        if !b.is_ascii_digit() {
+            return None;
+        }
+        value = value.saturating_mul(10).saturating_add(i64::from(b - b'0'));
+    }
+    Some(if negative { -value } else { value })
+}
+
+/// Faces as triangles: a polygon becomes the fan around its first corner.
+#[derive(Default)]
+pub(super) struct Fans {
+    /// Vertex indices, 3 a triangle.
+    pub(super) triangles: Vec<u32>,
+    /// Faces with more than 3 corners.
+    pub(super) polygons: usize,
+}
+
+impl Fans {
+    /// Adds a face of at least 3 corners, in their order.
+    pub(super) fn push(&mut self, corners: &[u32]) {
+        let Some((&first, rest)) = corners.split_first() else { return };
+        self.polygons += usize::from(rest.len() > 2);
+        for pair in rest.windows(2) {
+            self.triangles.extend_from_slice(&[first, pair[0], pair[1]]);
+        }
+    }
+}
+
+/// What a file held that a [`crate::Mesh`] has no place for, each named once.
+#[derive(Default)]
+pub(super) struct Dropped(pub(super) Vec<&'static str>);
+
+impl Dropped {
+    /// Names one more.
+    pub(super) fn note(&mut self, what: &'static str) {
+        if !self.0.contains(&what) {
+            self.0.push(what);
+        }
+    }
+}
+
+/// What a parser hands over: finite positions and indices in range.
+pub(super) struct Parsed {
+    /// Numbers per vertex: 2 or 3.
+    pub(super) stride: usize,
+    /// `stride` numbers a vertex.
+    pub(super) positions: Vec<f32>,
+    /// The faces.
+    pub(super) faces: Fans,
+    /// What was left out.
+    pub(super) dropped: Dropped,
+}
+
+/// Numbers appended to a line with the fewest digits that read back to the same bits.
+#[derive(Default)]
+pub(super) struct Digits {
+    float: zmij::Buffer,
+    integer: itoa::Buffer,
+}
+
+impl Digits {
+    /// Appends a finite number: `1`, `-0`, `0.1`, `1e-45`.
+    pub(super) fn float(&mut self, line: &mut Vec<u8>, x: f32) {
+        let text = self.float.format_finite(x);
+        line.extend_from_slice(text.strip_suffix(".0").unwrap_or(text).as_bytes());
+    }
+
+    /// Appends an integer.
+    pub(super) fn integer(&mut self, line: &mut Vec<u8>, i: u64) {
+        line.extend_from_slice(self.integer.format(i).as_bytes());
+    }
+}

@@ -1,0 +1,351 @@
+//! The command-line program from outside: what it writes, says and returns.
+#![cfg(feature = "cli")]
+// Clippy's exemption for tests does not reach their shared functions.
+#![allow(clippy::unwrap_used)]
+
+use serde_json::Value;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+
+/// Four corners, 1 drawn in, cut along 0-2; the angles at 1 and 3 are 106° and 90°, so that 1-3 is Delaunay.
+///
+/// ```text
+///   3-----2
+///   |   //
+///   | /  1
+///   0 -'
+/// ```
+const SQUARE: &str = "OFF\n4 2 0\n0 0 0\n0.9 0.2 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3\n";
+
+/// The keys of the object that `--json` prints, in their order.
+const KEYS: [&str; 18] = [
+    "input",
+    "vertices",
+    "triangles",
+    "edges",
+    "boundary_edges",
+    "dimension",
+    "backend",
+    "adapter",
+    "fallback",
+    "status",
+    "iterations",
+    "flips",
+    "flips_per_iteration",
+    "dispatches",
+    "remaining",
+    "min_angle_before_deg",
+    "min_angle_after_deg",
+    "ms",
+];
+
+struct Folder(tempfile::TempDir);
+
+impl Folder {
+    fn new() -> Self {
+        Self(tempfile::tempdir().unwrap())
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    fn file(&self, name: &str, bytes: impl AsRef<[u8]>) -> PathBuf {
+        let path = self.path(name);
+        fs::write(&path, bytes).unwrap();
+        path
+    }
+
+    fn names(&self) -> Vec<String> {
+        let entries = fs::read_dir(self.0.path()).unwrap();
+        let mut names: Vec<_> = entries.map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
+        names.sort();
+        names
+    }
+}
+
+/// Runs the program on the CPU unless `arguments` say otherwise.
+fn run(input: &Path, output: &Path, arguments: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_edgeflip"));
+    command.arg(input).arg("-o").arg(output);
+    if !arguments.contains(&"--backend") {
+        command.args(["--backend", "cpu"]);
+    }
+    command.args(arguments).stdin(Stdio::null()).output().unwrap()
+}
+
+fn text(bytes: &[u8]) -> &str {
+    std::str::from_utf8(bytes).unwrap()
+}
+
+/// The run ended with `status`, with one line on standard error, and nothing on standard output.
+#[track_caller]
+fn failed(output: &Output, status: i32, line: &str) {
+    assert_eq!(text(&output.stderr), format!("edgeflip: {line}\n"));
+    assert_eq!(output.status.code(), Some(status));
+    assert!(output.stdout.is_empty());
+}
+
+#[test]
+fn json_has_the_documented_keys() {
+    let folder = Folder::new();
+    let (input, output) = (folder.file("in.off", SQUARE), folder.path("out.obj"));
+    let ran = run(&input, &output, &["--json"]);
+    assert_eq!((ran.status.code(), text(&ran.stderr)), (Some(0), ""));
+    let line = text(&ran.stdout);
+    assert!(line.ends_with("}\n") && line.lines().count() == 1);
+    let found: Value = serde_json::from_str(line).unwrap();
+    assert_eq!(found.as_object().unwrap().len(), KEYS.len());
+    let places: Vec<_> = KEYS.iter().map(|key| line.find(&format!("\"{key}\":")).unwrap()).collect();
+    assert!(places.is_sorted());
+    assert_eq!(found["input"], input.display().to_string());
+    assert_eq!((&found["vertices"], &found["triangles"]), (&4.into(), &2.into()));
+    assert_eq!(found["dimension"], 2);
+    assert_eq!((&found["backend"], &found["status"]), (&"cpu".into(), &"done".into()));
+    assert!(found["flips_per_iteration"].is_array() && found["remaining"].is_object());
+    for key in ["load", "adjacency", "flip", "total", "save"] {
+        assert!(found["ms"][key].is_number(), "ms.{key}");
+    }
+    assert!(found["min_angle_before_deg"].is_number() && found["min_angle_after_deg"].is_number());
+    assert!(fs::read_to_string(&output).unwrap().starts_with("v 0 0 0\nv 0.9 0.2 0\nv 1 1 0\nv 0 1 0\nf "));
+}
+
+#[test]
+fn the_wrong_diagonal_is_flipped() {
+    let folder = Folder::new();
+    let (input, output) = (folder.file("in.off", SQUARE), folder.path("out.off"));
+    let ran = run(&input, &output, &["--json", "--verify"]);
+    let found: Value = serde_json::from_slice(&ran.stdout).unwrap();
+    assert_eq!((&found["flips"], &found["iterations"]), (&1.into(), &1.into()));
+    assert_eq!((&found["edges"], &found["boundary_edges"]), (&5.into(), &4.into()));
+    assert_eq!(found["flips_per_iteration"], Value::Array(vec![1.into()]));
+    assert!(found["min_angle_before_deg"].as_f64() < found["min_angle_after_deg"].as_f64());
+    let written = fs::read_to_string(&output).unwrap();
+    for face in written.lines().skip(6) {
+        assert!(face.contains('1') && face[1..].contains('3'), "{face}");
+    }
+}
+
+#[test]
+fn verify_adds_an_empty_audit() {
+    let folder = Folder::new();
+    let (input, output) = (folder.file("in.off", SQUARE), folder.path("out.off"));
+    let ran = run(&input, &output, &["--json", "--verify"]);
+    assert_eq!((ran.status.code(), text(&ran.stderr)), (Some(0), ""));
+    let found: Value = serde_json::from_slice(&ran.stdout).unwrap();
+    assert_eq!(found["audit"], Value::Array(vec![]));
+}
+
+#[test]
+fn the_summary_is_on_standard_error() {
+    let folder = Folder::new();
+    let quad = "v 0 0 0\nv 1 0 0\nv 1 1 1\nv 0 1 0\nvn 0 0 1\nf 1//1 2//1 3//1 4//1\n";
+    let (input, output) = (folder.file("in.obj", quad), folder.path("out.off"));
+    let ran = run(&input, &output, &["--verify"]);
+    let said = text(&ran.stderr);
+    assert_eq!((ran.status.code(), text(&ran.stdout)), (Some(0), ""), "{said}");
+    for line in [
+        "note       polygons cut into triangles: 1\n",
+        "note       not kept: normals\n",
+        "4 vertices, 2 triangles, 3D\n",
+        "\nbackend    cpu",
+        "\naudit      clean\n",
+        "\nwrote      ",
+    ] {
+        assert!(said.contains(line), "{line:?} is not in\n{said}");
+    }
+    let ran = run(&input, &output, &["--quiet"]);
+    assert_eq!((ran.status.code(), text(&ran.stdout), text(&ran.stderr)), (Some(0), "", ""));
+}
+
+#[test]
+fn the_input_can_be_the_output() {
+    let folder = Folder::new();
+    let input = folder.file("in.off", SQUARE);
+    assert_eq!(run(&input, &input, &["--quiet"]).status.code(), Some(0));
+    assert!(fs::read_to_string(&input).unwrap().starts_with("OFF\n4 2 0\n0 0 0\n0.9 0.2 0\n"));
+    assert_eq!(folder.names(), ["in.off"]);
+}
+
+#[test]
+fn a_bad_file_gives_one_line_and_no_output() {
+    let cases: [(&str, Vec<u8>, &str); 12] = [
+        ("a.off", SQUARE[..SQUARE.len() - 8].into(), "line 7: the file ends after 1 of 2 faces"),
+        ("b.off", SQUARE[..SQUARE.len() - 4].into(), "line 8: expected 3 vertex indices, found 1"),
+        (
+            "c.off",
+            SQUARE.replace("0 2 3", "0 2 4").into(),
+            "line 8: vertex index `4` is out of range, the mesh has 4 vertices",
+        ),
+        ("d.off", SQUARE.replace("0.9", "nan").into(), "line 4: `nan` is not a finite 32-bit number"),
+        ("e.off", SQUARE.replace("0.9", "1e999").into(), "line 4: `1e999` is not a finite 32-bit number"),
+        ("f.off", SQUARE.replace("0.9", "ninety").into(), "line 4: expected a number, found `ninety`"),
+        (
+            "g.off",
+            SQUARE.replace("4 2 0", "4000000000 2 0").into(),
+            "line 8: the file ends after 6 of 4000000000 vertices",
+        ),
+        ("h.off", vec![], "line 1: the file is empty"),
+        ("h.obj", vec![], "line 1: the file is empty"),
+        (
+            "i.off",
+            b"\0\x01\x02\xff\n\r\n".to_vec(),
+            r"line 1: expected the keyword OFF of an OFF file, found `\x00\x01\x02\xff`",
+        ),
+        (
+            "j.obj",
+            "v 0 0 0\nf 1 1 2\n".into(),
+            "line 2: vertex index `2` is out of range, the mesh has 1 vertices",
+        ),
+        ("k.obj", "v 0 0 0\nv inf 0 0\n".into(), "line 2: `inf` is not a finite 32-bit number"),
+    ];
+    for (name, bytes, line) in cases {
+        let folder = Folder::new();
+        let input = folder.file(name, bytes);
+        for json in [&["--json"][..], &[]] {
+            let ran = run(&input, &folder.path("out.off"), json);
+            failed(&ran, 1, &format!("{}: {line}", input.display()));
+        }
+        assert_eq!(folder.names(), [name]);
+    }
+}
+
+#[test]
+fn a_refused_file_leaves_an_old_output_as_it_was() {
+    let folder = Folder::new();
+    let (input, output) = (folder.file("in.off", "OFF 1 0\n"), folder.file("out.off", "old"));
+    assert_eq!(run(&input, &output, &[]).status.code(), Some(1));
+    assert_eq!(fs::read_to_string(output).unwrap(), "old");
+}
+
+#[test]
+fn a_file_that_cannot_be_read_or_written() {
+    let folder = Folder::new();
+    let (input, absent) = (folder.file("in.off", SQUARE), folder.path("absent.off"));
+    let ran = run(&absent, &folder.path("out.off"), &[]);
+    assert!(text(&ran.stderr).starts_with(&format!("edgeflip: {}: ", absent.display())));
+    assert_eq!((ran.status.code(), text(&ran.stderr).lines().count()), (Some(1), 1));
+
+    let unknown = folder.file("in.mesh", SQUARE);
+    let line = format!("{}: unknown format; use one of: .off, .obj", unknown.display());
+    failed(&run(&unknown, &folder.path("out.off"), &[]), 1, &line);
+    let output = folder.path("out.mesh");
+    let line = format!("{}: unknown format; use one of: .off, .obj", output.display());
+    failed(&run(&input, &output, &[]), 2, &line);
+    let output = folder.path("none/out.off");
+    let line = format!("{}: the folder does not exist", output.display());
+    failed(&run(&input, &output, &[]), 1, &line);
+    assert_eq!(folder.names(), ["in.mesh", "in.off"]);
+}
+
+#[test]
+fn the_dimension_can_be_forced() {
+    let folder = Folder::new();
+    let raised = folder.file("in.off", SQUARE.replace("1 1 0", "1 1 0.5"));
+    let output = folder.path("out.off");
+    let line = format!(
+        "{}: vertex 2: z is 0.5, but the mesh was asked for in 2D, where every z must be 0",
+        raised.display()
+    );
+    failed(&run(&raised, &output, &["--dimension", "2"]), 1, &line);
+    let flat = folder.file("flat.off", SQUARE);
+    for (asked, found) in [("auto", 2), ("2", 2), ("3", 3)] {
+        let ran = run(&flat, &output, &["--json", "--dimension", asked]);
+        let report: Value = serde_json::from_slice(&ran.stdout).unwrap();
+        assert_eq!(report["dimension"], found);
+    }
+}
+
+#[test]
+fn wrong_usage_is_2() {
+    let folder = Folder::new();
+    let (input, output) = (folder.file("in.off", SQUARE), folder.path("out.off"));
+    for arguments in [
+        &["--max-normal-angle", "nan"][..],
+        &["--max-normal-angle", "-1"],
+        &["--max-normal-angle", "180.5"],
+        &["--max-normal-angle", "inf"],
+        &["--max-normal-angle", "ten"],
+        &["--max-iterations", "-1"],
+        &["--max-iterations", "4294967296"],
+        &["--backend", "tpu"],
+        &["--dimension", "4"],
+        &["--order", "random"],
+        &["--frobnicate"],
+        &["second.off"],
+    ] {
+        let ran = run(&input, &output, arguments);
+        assert_eq!((ran.status.code(), text(&ran.stdout)), (Some(2), ""), "{arguments:?}");
+        assert!(!ran.stderr.is_empty());
+    }
+    let bare = Command::new(env!("CARGO_BIN_EXE_edgeflip")).arg(&input).output().unwrap();
+    assert_eq!(bare.status.code(), Some(2));
+    assert_eq!(folder.names(), ["in.off"]);
+}
+
+/// With no Vulkan driver to find there is no GPU, and the one that was asked for is not replaced.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_backend_that_is_not_there_is_3() {
+    let folder = Folder::new();
+    let (input, output) = (folder.file("in.off", SQUARE), folder.path("out.off"));
+    let ran = Command::new(env!("CARGO_BIN_EXE_edgeflip"))
+        .args([input.as_os_str(), "-o".as_ref(), output.as_os_str()])
+        .args(["--backend", "gpu"])
+        .envs([("VK_DRIVER_FILES", "/dev/null"), ("VK_ICD_FILENAMES", "/dev/null")])
+        .output()
+        .unwrap();
+    assert_eq!((ran.status.code(), text(&ran.stdout)), (Some(3), ""));
+    assert!(text(&ran.stderr).starts_with("edgeflip: backend gpu is not available: "));
+    assert_eq!(text(&ran.stderr).lines().count(), 1);
+    assert_eq!(folder.names(), ["in.off"]);
+}
+
+#[test]
+fn the_ends_of_the_options_ranges_are_taken() {
+    let folder = Folder::new();
+    let (input, output) = (folder.file("in.off", SQUARE), folder.path("out.off"));
+    for arguments in [
+        &["--max-normal-angle", "0"][..],
+        &["--max-normal-angle", "180"],
+        &["--max-iterations", "0"],
+        &["--max-iterations", "4294967295"],
+        &["--order", "any"],
+        &["--order", "reproducible"],
+        &["--backend", "auto"],
+    ] {
+        assert_eq!(run(&input, &output, arguments).status.code(), Some(0), "{arguments:?}");
+    }
+}
+
+#[test]
+fn help_explains() {
+    let ran = Command::new(env!("CARGO_BIN_EXE_edgeflip")).arg("--help").output().unwrap();
+    assert_eq!(ran.status.code(), Some(0));
+    for words in ["β", "Lawson", "never falls back", "Exit status", ".obj", "Examples"] {
+        assert!(text(&ran.stdout).contains(words), "{words}");
+    }
+}
+
+/// A reader of standard output or standard error that goes away is no reason to panic or to fail.
+#[cfg(unix)]
+#[test]
+fn a_closed_pipe_is_no_panic() {
+    let folder = Folder::new();
+    let (input, output) = (folder.file("in.off", SQUARE), folder.path("out.off"));
+    for arguments in ["--json", "--verify"] {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_edgeflip"))
+            .arg(&input)
+            .arg("-o")
+            .arg(&output)
+            .args(["--backend", "cpu", arguments])
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        drop((child.stdout.take(), child.stderr.take()));
+        assert_eq!(child.wait().unwrap().code(), Some(0));
+        assert!(fs::read(&output).unwrap().starts_with(b"OFF\n4 2 0\n"));
+    }
+}
