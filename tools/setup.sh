@@ -1,0 +1,143 @@
+#!/usr/bin/env bash
+# Makes sure that everything `npm test` needs is there, and installs what is missing where it can.
+#
+#   Rust >= 1.88 with rustfmt and clippy   from rustup; asked for, not installed
+#   a C linker                             apt on Debian and Ubuntu
+#   a Vulkan driver for the GPU tests      apt on Debian and Ubuntu (Mesa's software driver, lavapipe)
+#   the wasm32-unknown-unknown target      rustup; on Debian 12 without rustup's server, Debian's compiler
+#
+# It looks first and installs only what it does not find, so a second run changes nothing.
+# On macOS and Windows it installs only what rustup can; the GPU tests use Metal or Direct3D 12 there.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+say() { echo "setup: $*"; }
+stop() { # WHAT IS MISSING, WHAT TO DO…
+  echo "setup: stopped: $1" >&2
+  shift
+  printf '  %s\n' "$@" >&2
+  exit 1
+}
+has() { command -v "$1" >/dev/null 2>&1; }
+
+# Runs a command for at most so many seconds, so that a network that swallows packets cannot hold us up.
+within() { # SECONDS COMMAND…
+  if has timeout; then timeout "$@"; else perl -e 'alarm shift; exec @ARGV' "$@"; fi
+}
+
+# Sets `root` to the words that run a command as root; fails when there is no way.
+root=()
+find_root() {
+  if [ "$(id -u)" = 0 ]; then
+    root=()
+  elif has sudo && { sudo -n true 2>/dev/null || [ -t 0 ]; }; then
+    root=(sudo)
+  else
+    return 1
+  fi
+}
+
+# Installs Debian packages. The package lists are fetched only when the first try fails: they may be absent
+# or out of date. --no-remove: better to stop than to take something of the user's away.
+apt_install() { # WHY PACKAGE…
+  local why=$1
+  shift
+  has apt-get || stop "$why is missing, and this system has no apt-get to install it with." \
+    "Install what your system calls: $*"
+  find_root || stop "$why is missing, and installing it needs root." \
+    "Run: sudo apt-get update && sudo apt-get install --no-install-recommends $*"
+  say "installing $why: $*"
+  local apt=("${root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q -y -o DPkg::Lock::Timeout=300)
+  local install=("${apt[@]}" install --no-install-recommends --no-remove "$@")
+  mkdir -p target/setup
+  local log=target/setup/apt.log
+  "${install[@]}" >"$log" 2>&1 || { "${apt[@]}" update && "${install[@]}"; } >>"$log" 2>&1 || {
+    tail -n 15 "$log" >&2
+    stop "apt-get could not install $why." "Its messages are above and in $log. Install by hand: $*"
+  }
+}
+
+system=$(uname -s)
+
+# --- Rust -------------------------------------------------------------------------------------------------
+get_rust="Install Rust from https://rustup.rs and open a new shell. Debian 12 has it without rustup:"
+get_rust_debian="apt-get install rustc-web cargo-web rustfmt-web rust-web-clippy"
+has cargo && has rustc || stop "cargo and rustc are not on the PATH." "$get_rust" "$get_rust_debian"
+version=$(rustc --version | cut -d' ' -f2) || stop "rustc does not run (see above)." "Repair it: rustup update stable"
+IFS=. read -r major minor _ <<<"$version"
+[ "$major" -gt 1 ] || [ "$minor" -ge 88 ] ||
+  stop "rustc is $version; edgeflip needs 1.88 or newer." "Run: rustup update stable"
+for tool in fmt clippy; do
+  cargo "$tool" --version >/dev/null 2>&1 && continue
+  component=${tool/#fmt/rustfmt}
+  has rustup && within 180 rustup component add "$component" ||
+    stop "cargo $tool is missing." "Run: rustup component add $component"
+done
+
+# --- C linker ---------------------------------------------------------------------------------------------
+# rustc links through cc; on Windows the linker comes with the Visual Studio build tools that rustup asks for.
+case $system in
+  Linux) has cc || apt_install "a C linker" gcc libc6-dev ;;
+  Darwin) has cc || stop "cc, the C linker, is missing." "Run: xcode-select --install" ;;
+esac
+
+# --- Vulkan driver ----------------------------------------------------------------------------------------
+# The loader (libvulkan.so.1) finds drivers by their JSON files. Any will do; a software one is installed.
+has_vulkan() {
+  [ -z "${VK_DRIVER_FILES:-}${VK_ICD_FILENAMES:-}" ] || return 0 # the user has chosen a driver
+  local drivers=(/usr/share/vulkan/icd.d/*.json /usr/local/share/vulkan/icd.d/*.json /etc/vulkan/icd.d/*.json)
+  local libraries=({,/usr}/lib/*/libvulkan.so.1 /usr/{,local/}lib{,64}/libvulkan.so.1)
+  any_file "${drivers[@]}" && any_file "${libraries[@]}"
+}
+any_file() {
+  local file
+  for file; do [ -e "$file" ] && return; done
+  return 1
+}
+case $system in
+  Linux) has_vulkan || apt_install "a Vulkan driver" mesa-vulkan-drivers libvulkan1 ;;
+esac
+
+# --- wasm32 target ----------------------------------------------------------------------------------------
+# Debian's rustc-web (the compiler for its browsers) has the source of std but no wasm32 std: build it once
+# and put it where that compiler looks. embed-bitcode: for LTO; test: for cargo test.
+build_debian_std() {
+  apt_install "Debian's Rust compiler and the source of std" \
+    rustc-web cargo-web rust-web-src rust-web-llvm rust-web-clippy gcc libc6-dev
+  apt_install "the linker of that compiler's LLVM" \
+    "lld-$(/usr/bin/rustc -vV | sed -n 's/^LLVM version: \([0-9]*\).*/\1/p')"
+  say "building std for wasm32, once (about a minute)"
+  local scratch=target/setup/std out
+  out=$(/usr/bin/rustc --print sysroot)/lib/rustlib/wasm32-unknown-unknown/lib
+  rm -rf "$scratch"
+  mkdir -p "$scratch/src"
+  printf '[package]\nname = "std-for-wasm32"\nedition = "2024"\n[workspace]\n' >"$scratch/Cargo.toml"
+  : >"$scratch/src/lib.rs"
+  (
+    cd "$scratch"
+    RUSTC_BOOTSTRAP=1 RUSTFLAGS=-Cembed-bitcode=yes RUSTC=/usr/bin/rustc CARGO_TARGET_DIR=target /usr/bin/cargo \
+      build --release --target wasm32-unknown-unknown -Zbuild-std=std,panic_abort,test
+  ) >target/setup/std.log 2>&1 || {
+    tail -n 15 target/setup/std.log >&2
+    stop "std did not build for wasm32." "The messages are above and in target/setup/std.log."
+  }
+  "${root[@]}" rm -rf "$out"
+  "${root[@]}" mkdir -p "$out"
+  "${root[@]}" cp "$scratch"/target/wasm32-unknown-unknown/release/deps/lib*.rlib "$out/"
+  rm -rf "$scratch" target/wasm # what was built against another std does not fit this one
+}
+by_hand="Run: rustup target add wasm32-unknown-unknown"
+if ! tools/wasm-cargo.sh --which >/dev/null 2>&1; then
+  if has rustup && RUSTUP_MAX_RETRIES=0 within 180 rustup target add wasm32-unknown-unknown; then
+    say "added the wasm32 target to rustup's toolchain"
+  elif has apt-cache && apt-get --version >/dev/null; then
+    say "rustup did not bring the wasm32 target; trying Debian's compiler instead"
+    build_debian_std
+  else
+    stop "the wasm32-unknown-unknown target is missing and rustup could not add it." "$by_hand"
+  fi
+  tools/wasm-cargo.sh --which >/dev/null 2>&1 ||
+    stop "no compiler compiles for wasm32 even now." "$by_hand, and see what it says"
+fi
+
+say "ready: $(rustc --version); wasm32 with $(tools/wasm-cargo.sh --which)"

@@ -1,0 +1,170 @@
+// Runs every level of tests in order and ends with a table: `npm test`, or `npm test -- NAME…` for the levels
+// whose name contains one of the words. It fails when a level fails, when one ran no test, and when a test
+// was ignored: a test that does not run proves nothing.
+
+import { spawn, spawnSync } from 'node:child_process';
+import { readFileSync } from 'node:fs';
+import { fileURLToPath } from 'node:url';
+
+process.chdir(fileURLToPath(new URL('..', import.meta.url)));
+
+/**
+ * A level: `checks` are its command lines. Where `counts` is set, they run Rust's test harness and its tests are
+ * counted; otherwise each command is one check.
+ * @typedef {{ name: string, what: string, checks: string[][], counts?: boolean, env?: Record<string, string> }} Level
+ * @typedef {{ level: Level, passed: number, failed: number, why: string, seconds: number }} Result
+ */
+
+// The one build of the library that a browser gets.
+const wasm = ['--lib', '--target', 'wasm32-unknown-unknown', '--no-default-features', '--features', 'gpu'];
+const wasmCargo = ['bash', 'tools/wasm-cargo.sh'];
+
+/** @type {Level[]} */
+const levels = [
+  {
+    name: 'formatting',
+    what: 'rustfmt would change nothing',
+    checks: [['cargo', 'fmt', '--check']],
+  },
+  {
+    name: 'lints',
+    what: 'no warning from clippy in any target; Cargo.lock fits Cargo.toml',
+    checks: [['cargo', 'clippy', '--locked', '--all-targets', '--', '-D', 'warnings']],
+  },
+  {
+    name: 'rustdoc',
+    what: 'the documentation builds without a warning or a dead link',
+    checks: [['cargo', 'doc', '--no-deps']],
+    env: { RUSTDOCFLAGS: '-D warnings' },
+  },
+  {
+    name: 'unit',
+    what: 'the tests beside the code in src/',
+    checks: [['cargo', 'test', '--lib', '--bins']],
+    counts: true,
+  },
+  ...integrationTests(),
+  {
+    name: 'doc',
+    what: 'the examples in the documentation run',
+    checks: [['cargo', 'test', '--doc']],
+    counts: true,
+  },
+  {
+    name: 'wasm32',
+    what: 'the library for the browser has no warning from clippy and builds',
+    checks: [
+      [...wasmCargo, 'clippy', ...wasm, '--', '-D', 'warnings'],
+      [...wasmCargo, 'build', ...wasm],
+    ],
+  },
+];
+
+/** Each target in tests/ is a level, described by the first `//!` line of its file. */
+function integrationTests() {
+  const metadata = spawnSync('cargo', ['metadata', '--no-deps', '--format-version', '1'], {
+    encoding: 'utf8',
+    maxBuffer: 2 ** 28,
+    stdio: ['ignore', 'pipe', 'inherit'],
+  });
+  if (metadata.status !== 0) {
+    console.error('test: cargo metadata failed (see above), so the tests are not known');
+    process.exit(1);
+  }
+  return JSON.parse(metadata.stdout)
+    .packages.flatMap((crate) => crate.targets)
+    .filter((target) => target.kind.includes('test'))
+    .sort((a, b) => (a.name < b.name ? -1 : 1))
+    .map((target) => ({
+      name: target.name,
+      what: readFileSync(target.src_path, 'utf8').match(/^\/\/! *(.+)$/m)?.[1].trim() ?? '(its file has no //! line)',
+      checks: [['cargo', 'test', '--test', target.name]],
+      counts: true,
+    }));
+}
+
+/** Runs a command, passes its output on as it comes, and gives its exit status and output when it ends. */
+function run([program, ...args], env = {}) {
+  console.log(`$ ${[program, ...args].join(' ')}`);
+  return new Promise((resolve) => {
+    const child = spawn(program, args, { env: { ...process.env, ...env }, stdio: ['ignore', 'pipe', 'pipe'] });
+    let output = '';
+    for (const [from, to] of [[child.stdout, process.stdout], [child.stderr, process.stderr]]) {
+      from.setEncoding('utf8');
+      from.on('data', (text) => {
+        to.write(text);
+        output += text;
+      });
+    }
+    child.on('error', (error) => {
+      console.log(`${program}: ${error.message}`);
+      resolve({ ok: false, output });
+    });
+    child.on('close', (status) => resolve({ ok: status === 0, output }));
+  });
+}
+
+/** Sums what Rust's test harness says: `test result: ok. 5 passed; 0 failed; 0 ignored; …`. */
+function count(output) {
+  const sums = { passed: 0, failed: 0, ignored: 0 };
+  for (const [, passed, failed, ignored] of output.matchAll(
+    /test result: .*?(\d+) passed; (\d+) failed; (\d+) ignored/g,
+  )) {
+    sums.passed += Number(passed);
+    sums.failed += Number(failed);
+    sums.ignored += Number(ignored);
+  }
+  return sums;
+}
+
+/** @param {Level} level @returns {Promise<Result>} */
+async function runLevel(level) {
+  console.log(`\n=== ${level.name}: ${level.what}`);
+  const start = performance.now();
+  const sums = { passed: 0, failed: 0, ignored: 0 };
+  const reasons = [];
+  for (const check of level.checks) {
+    const { ok, output } = await run(check, level.env);
+    const counted = level.counts ? count(output) : { passed: Number(ok), failed: Number(!ok), ignored: 0 };
+    for (const key of Object.keys(sums)) sums[key] += counted[key];
+    if (!ok && counted.failed === 0) {
+      // A compile error or a crash: no test of it is counted.
+      sums.failed += 1;
+      reasons.push('did not build or run to its end');
+    } else if (counted.failed > 0) {
+      reasons.push(`${counted.failed} failed`);
+    }
+  }
+  if (sums.ignored > 0) {
+    reasons.push(`${sums.ignored} ignored`);
+    sums.failed += sums.ignored;
+  }
+  if (sums.passed + sums.failed === 0) {
+    reasons.push('no test ran');
+    sums.failed += 1;
+  }
+  const { passed, failed } = sums;
+  return { level, passed, failed, why: reasons.join(', '), seconds: (performance.now() - start) / 1000 };
+}
+
+const words = process.argv.slice(2);
+const chosen = levels.filter(({ name }) => words.length === 0 || words.some((word) => name.includes(word)));
+if (chosen.length === 0) {
+  console.error(`test: no level is named like ${words.join(' or ')}; there are ${levels.map(({ name }) => name).join(', ')}`);
+  process.exit(2);
+}
+
+/** @type {Result[]} */
+const results = [];
+// Everything is compiled first, in one go, so that the seconds of a test level are those of its tests.
+if (chosen.some((level) => level.counts)) await run(['cargo', 'test', '--no-run']);
+for (const level of chosen) results.push(await runLevel(level));
+
+console.log('\n| level | what it checks | tests | result | seconds |\n|---|---|---:|---|---:|');
+for (const { level, passed, failed, why, seconds } of results) {
+  const result = failed === 0 ? 'passed' : `FAILED: ${why}`;
+  console.log(`| ${level.name} | ${level.what} | ${passed + failed} | ${result} | ${seconds.toFixed(1)} |`);
+}
+const sum = (key) => results.reduce((total, result) => total + result[key], 0);
+console.log(`\n${sum('passed')} passed, ${sum('failed')} failed`);
+process.exitCode = sum('failed') === 0 ? 0 : 1;

@@ -1,0 +1,36 @@
+#!/usr/bin/env bash
+# Cargo for the wasm32 build: `tools/wasm-cargo.sh build --lib --target wasm32-unknown-unknown …`
+#
+# Two toolchains may be on a machine: the one on the PATH (rustup's), with or without the wasm32 target, and
+# Debian's in /usr/bin, for which tools/setup.sh builds the target where rustup's server is out of reach.
+# This takes the first whose compiler can compile a line of std for wasm32, which also catches a std that a
+# newer compiler has left behind. Its own target directory keeps the two from rebuilding each other's crates.
+# `tools/wasm-cargo.sh --which` names the compiler found, and fails when there is none.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+compiles_wasm() { # RUSTC
+  mkdir -p target/setup
+  echo 'pub fn probe() -> String { String::new() }' |
+    "$1" --target wasm32-unknown-unknown --crate-name probe --crate-type lib --emit metadata \
+      --out-dir target/setup - 2>/dev/null
+}
+
+if command -v rustc >/dev/null && compiles_wasm rustc; then
+  compiler=rustc
+elif [ -x /usr/bin/cargo ] && [ -x /usr/bin/rustc ] && compiles_wasm /usr/bin/rustc; then
+  compiler=/usr/bin/rustc
+  export RUSTC=/usr/bin/rustc RUSTDOC=/usr/bin/rustdoc
+  # Cargo looks for cargo-clippy along the PATH, but in its own home first unless the PATH names that too.
+  export PATH="/usr/bin:$PATH:${CARGO_HOME:-$HOME/.cargo}/bin"
+else
+  echo "wasm-cargo: no Rust compiler here has the wasm32-unknown-unknown target; run tools/setup.sh" >&2
+  exit 1
+fi
+
+if [ "${1:-}" = --which ]; then
+  echo "$(command -v "$compiler") ($("$compiler" --version))"
+  exit
+fi
+export CARGO_TARGET_DIR="$PWD/target/wasm"
+exec cargo "$@"
