@@ -5,7 +5,7 @@
 //! it to the machine with the GPU and run it there. `EDGEFLIP_COMMIT`, when it is built or when it is run, says
 //! of which commit it is; without it, git is asked where it runs.
 
-use edgeflip::{Backend, Mesh, Options, Outcome, families, make_delaunay, quality};
+use edgeflip::{Backend, Mesh, Options, Outcome, Reasons, families, make_delaunay, quality};
 use std::{error::Error, ops::ControlFlow, process::Command};
 
 #[path = "arguments/mod.rs"]
@@ -77,10 +77,8 @@ fn row(spec: &str, runs: usize) -> Result<(String, bool), edgeflip::Error> {
     let verdict = match audit.violations.first() {
         Some(violation) => violation.to_string(),
         None if is_honest => "clean".to_owned(),
-        None => format!("counts {} remaining", audit.remaining.total()),
+        None => format!("counts as remaining: {}", by_reason(audit.remaining)),
     };
-    let remaining: Vec<String> =
-        first.remaining.iter().map(|(reason, edges)| format!("{} {edges}", reason.name())).collect();
     let line = format!(
         "| {spec} | {} | {} | {} | {:.2} | {:.2} | {:.2} | {} | {} | {} | {verdict} |",
         first.edges,
@@ -90,10 +88,16 @@ fn row(spec: &str, runs: usize) -> Result<(String, bool), edgeflip::Error> {
         median(flip),
         median(total),
         first.dispatches,
-        if remaining.is_empty() { "0".to_owned() } else { remaining.join(", ") },
+        by_reason(first.remaining),
         if is_same { "yes" } else { "NO" },
     );
     Ok((line, is_same && is_honest && audit.is_clean()))
+}
+
+/// `angle 12, fold 3`, or 0.
+fn by_reason(remaining: Reasons) -> String {
+    let words: Vec<String> = remaining.iter().map(|(reason, n)| format!("{} {n}", reason.name())).collect();
+    if words.is_empty() { "0".to_owned() } else { words.join(", ") }
 }
 
 fn run(mesh: &Mesh, backend: Backend) -> Result<Outcome, edgeflip::Error> {
