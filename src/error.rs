@@ -100,3 +100,23 @@ pub enum Error {
         message: String,
     },
 }
+
+impl Error {
+    /// One word for the kind of error, the same in every release: what a program compares. Each variant has
+    /// its own.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::NonFinite { .. } => "non-finite",
+            Self::IndexOutOfRange { .. } => "index-out-of-range",
+            Self::RaggedArray { .. } => "ragged-array",
+            Self::TooLarge { .. } => "too-large",
+            Self::Parse { .. } => "parse",
+            Self::UnknownFormat { .. } => "unknown-format",
+            Self::Io { .. } => "io",
+            Self::Option { .. } => "invalid-option",
+            Self::BackendUnavailable { .. } => "backend-unavailable",
+            Self::BackendLimit { .. } => "backend-limit",
+            Self::Device { .. } => "device-failed",
+        }
+    }
+}

@@ -16,14 +16,18 @@
 //! `frozen` know what a dirty mesh adds; `predicates` decide exactly; `phases` are the four phases of an
 //! iteration, `engine` runs them on the CPU or through the shaders of the same names; `session` is the loop, `options`
 //! and `outcome` are what goes in and out.
-//! Beside them: [`quality`] measures and audits, [`io`] reads and writes, [`families`] generates.
+//! Beside them: [`quality`] measures and audits, [`io`] reads and writes, [`families`] generates; [`Edges`] lists
+//! the edges as the paper does, and `js` is what the npm package calls.
 
 mod adjacency;
+mod edges;
 mod engine;
 mod error;
 pub mod families;
 mod frozen;
 pub mod io;
+#[cfg(all(target_arch = "wasm32", feature = "js"))]
+pub mod js;
 mod mesh;
 mod options;
 mod outcome;
@@ -35,6 +39,7 @@ mod star;
 mod winding;
 
 pub use adjacency::Adjacency;
+pub use edges::Edges;
 pub use error::Error;
 pub use mesh::{Dimension, MAX_TRIANGLES, Mesh, NONE};
 pub use options::{Backend, Options, Order};

@@ -1,10 +1,15 @@
 //! The loop around an engine: options in, iterations and statistics out, and the honest result.
 
+#[cfg(all(target_arch = "wasm32", feature = "js"))]
+use crate::engine::SharedObjects;
 use crate::engine::{Cpu, Engine, Lawson};
 #[cfg(feature = "gpu")]
 use crate::engine::{Device, WebGpu};
 use crate::predicates::cos_degrees;
-use crate::{Backend, Error, Iteration, Mesh, Options, Order, Outcome, Reason, Status, Timings, frozen};
+use crate::quality::{Audit, audit};
+use crate::{
+    Backend, Edges, Error, Iteration, Mesh, Options, Order, Outcome, Reason, Status, Timings, frozen,
+};
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use web_time::Instant;
@@ -51,7 +56,7 @@ impl Session {
     /// # Errors
     /// [`Error::Device`].
     pub async fn step(&mut self) -> Result<Option<Iteration>, Error> {
-        if self.has_ended || self.iterations_left() == 0 {
+        if !self.may_continue() {
             return Ok(None);
         }
         let start = Instant::now();
@@ -74,17 +79,24 @@ impl Session {
     /// # Errors
     /// [`Error::Device`], unless the backend is `Auto`: then the CPU begins again.
     pub async fn run(&mut self, mut watch: impl FnMut(u32, u64) -> ControlFlow<()>) -> Result<(), Error> {
-        while !self.has_ended {
-            let count = self.engine.batch().min(self.iterations_left());
-            if count == 0 {
-                break;
-            }
-            self.iterate(count).await?;
-            if watch(self.flips_per_iteration.len() as u32, self.flips()).is_break() {
+        while self.may_continue() {
+            self.advance().await?;
+            if watch(self.iterations(), self.flips()).is_break() {
                 break;
             }
         }
         Ok(())
+    }
+
+    /// One batch of iterations, as many as the engine runs in one go. Returns whether there may be more.
+    ///
+    /// # Errors
+    /// As [`Session::run`].
+    pub async fn advance(&mut self) -> Result<bool, Error> {
+        if self.may_continue() {
+            self.iterate(self.engine.batch().min(self.iterations_left())).await?;
+        }
+        Ok(self.may_continue())
     }
 
     /// The triangles as they are now: vertex indices, 3 a triangle.
@@ -132,8 +144,48 @@ impl Session {
         })
     }
 
-    fn flips(&self) -> u64 {
+    /// Every edge as it is now.
+    ///
+    /// # Errors
+    /// [`Error::Device`].
+    pub async fn edges(&mut self) -> Result<Edges, Error> {
+        let triangles = self.engine.triangles().await?;
+        Ok(Edges::new(self.mesh.vertex_count(), &triangles))
+    }
+
+    /// The audit of the triangles as they are now.
+    ///
+    /// # Errors
+    /// [`Error::Device`].
+    pub async fn verify(&mut self) -> Result<Audit, Error> {
+        let triangles = self.engine.triangles().await?;
+        Ok(audit(&self.mesh, &triangles, self.options.max_normal_angle))
+    }
+
+    /// Iterations so far.
+    pub fn iterations(&self) -> u32 {
+        self.flips_per_iteration.len() as u32
+    }
+
+    /// Flips so far.
+    pub fn flips(&self) -> u64 {
         self.flips_per_iteration.iter().map(|&n| u64::from(n)).sum::<u64>()
+    }
+
+    /// The engine that runs now: `cpu` or `gpu`.
+    #[cfg(all(target_arch = "wasm32", feature = "js"))]
+    pub(crate) fn backend(&self) -> &'static str {
+        self.engine.backend()
+    }
+
+    /// What a page can draw from.
+    #[cfg(all(target_arch = "wasm32", feature = "js"))]
+    pub(crate) fn shared_objects(&self) -> Option<SharedObjects> {
+        self.engine.shared_objects()
+    }
+
+    fn may_continue(&self) -> bool {
+        !self.has_ended && self.iterations_left() > 0
     }
 
     fn iterations_left(&self) -> u32 {

@@ -66,4 +66,21 @@ pub(crate) trait Engine {
     fn dispatches(&self) -> u64 {
         0
     }
+
+    /// What a page can draw from, where the engine runs on the browser's GPU.
+    #[cfg(all(target_arch = "wasm32", feature = "js"))]
+    fn shared_objects(&self) -> Option<SharedObjects> {
+        None
+    }
+}
+
+/// The browser's objects of an engine.
+#[cfg(all(target_arch = "wasm32", feature = "js"))]
+pub(crate) struct SharedObjects {
+    /// GPUDevice.
+    pub(crate) device: wasm_bindgen::JsValue,
+    /// GPUBuffer: f32, 2 or 3 a vertex.
+    pub(crate) positions: wasm_bindgen::JsValue,
+    /// GPUBuffer: u32, 3 a triangle.
+    pub(crate) triangles: wasm_bindgen::JsValue,
 }

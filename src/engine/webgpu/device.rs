@@ -97,6 +97,10 @@ impl Device {
 
     async fn open() -> Result<Self, Error> {
         let unavailable = |message: String| Error::BackendUnavailable { backend: "gpu", message };
+        #[cfg(target_arch = "wasm32")]
+        if !has_navigator_gpu() {
+            return Err(unavailable("there is no WebGPU here (navigator.gpu)".to_owned()));
+        }
         let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
         let options = wgpu::RequestAdapterOptions {
             power_preference: wgpu::PowerPreference::HighPerformance,
@@ -289,6 +293,20 @@ impl Device {
         staging.destroy();
         Ok(result)
     }
+}
+
+/// Whether wgpu can look for an adapter. Its instance panics outside of a window or a worker, as in Node.
+#[cfg(target_arch = "wasm32")]
+fn has_navigator_gpu() -> bool {
+    let get = |object: &js_sys::Object, key: &str| {
+        js_sys::Reflect::get(object, &key.into())
+            .ok()
+            .filter(|value| !value.is_falsy())
+            .map(js_sys::Object::from)
+    };
+    let global = js_sys::global();
+    ["Window", "WorkerGlobalScope"].into_iter().any(|scope| get(&global, scope).is_some())
+        && get(&global, "navigator").and_then(|navigator| get(&navigator, "gpu")).is_some()
 }
 
 fn kernels<const N: usize>(

@@ -11,6 +11,8 @@ mod tests;
 
 pub(crate) use device::{Device, Handle};
 
+#[cfg(all(target_arch = "wasm32", feature = "js"))]
+use super::SharedObjects;
 use super::{Answer, Census, EdgeCounts, Engine};
 use crate::mesh::{Dimension, Mesh};
 use crate::predicates::cosine_fraction;
@@ -102,8 +104,10 @@ impl WebGpu {
         refuse_beyond_limits(&gpu, mesh)?;
         let count = mesh.triangle_count();
         let storage = |label, words| gpu.buffer(label, words, BufferUsages::STORAGE);
-        let positions = storage("positions", mesh.positions().len());
-        let triangles = storage("triangles", 3 * count);
+        // A page may draw from these two without a copy.
+        let positions =
+            gpu.buffer("positions", mesh.positions().len(), BufferUsages::STORAGE | BufferUsages::VERTEX);
+        let triangles = gpu.buffer("triangles", 3 * count, BufferUsages::STORAGE | BufferUsages::INDEX);
         let twins = storage("twins", 3 * count);
         let choices = storage("choices", 2 * count);
         let frontier = storage("frontier", 3 * count);
@@ -303,6 +307,15 @@ impl Engine for WebGpu {
 
     fn dispatches(&self) -> u64 {
         self.dispatches
+    }
+
+    #[cfg(all(target_arch = "wasm32", feature = "js"))]
+    fn shared_objects(&self) -> Option<SharedObjects> {
+        Some(SharedObjects {
+            device: self.gpu.device.as_webgpu()?.into(),
+            positions: self.positions.as_webgpu()?.into(),
+            triangles: self.triangles.as_webgpu()?.into(),
+        })
     }
 }
 

@@ -1,0 +1,219 @@
+//! What the npm package calls, and no one else: the hand-written TypeScript in `src/js/` is its public face.
+//! Arguments arrive checked in type, not in value. Everything that is thrown is an `Error` with a `code`.
+
+mod objects;
+
+use crate::{Backend, Dimension, Error, Mesh, Options, Order, Session};
+use js_sys::Uint32Array;
+use objects::{object, outcome_object, reasons_object, thrown};
+use wasm_bindgen::prelude::*;
+
+#[wasm_bindgen]
+extern "C" {
+    /// The options of a run, as JavaScript has them.
+    #[wasm_bindgen(typescript_type = "import('../types.js').Options")]
+    pub type JsOptions;
+
+    #[wasm_bindgen(method, getter)]
+    fn backend(this: &JsOptions) -> JsValue;
+    #[wasm_bindgen(method, getter, js_name = maxNormalAngle)]
+    fn max_normal_angle(this: &JsOptions) -> JsValue;
+    #[wasm_bindgen(method, getter, js_name = maxIterations)]
+    fn max_iterations(this: &JsOptions) -> JsValue;
+    #[wasm_bindgen(method, getter)]
+    fn order(this: &JsOptions) -> JsValue;
+}
+
+/// Runs once, when the module is loaded.
+#[wasm_bindgen(start)]
+pub fn start() {
+    #[cfg(debug_assertions)]
+    console_error_panic_hook::set_once();
+}
+
+/// A mesh on an engine. One call at a time: each must have answered before the next.
+#[wasm_bindgen(js_name = Session)]
+pub struct JsSession(Session);
+
+#[wasm_bindgen(js_class = Session)]
+impl JsSession {
+    /// As [`Session::new`].
+    ///
+    /// # Errors
+    /// Those of [`Mesh::new`] and [`Session::new`].
+    pub async fn create(
+        positions: Vec<f32>,
+        indices: Vec<u32>,
+        dimension: f64,
+        options: JsOptions,
+    ) -> Result<JsSession, JsValue> {
+        let create = async {
+            let mesh = Mesh::new(parse_dimension(dimension)?, positions, indices)?;
+            Session::new(mesh, parse_options(&options)?).await
+        };
+        create.await.map(Self).map_err(thrown)
+    }
+
+    /// As [`Session::step`].
+    ///
+    /// # Errors
+    /// As there.
+    #[wasm_bindgen(unchecked_return_type = "import('../types.js').Iteration | undefined")]
+    pub async fn step(&mut self) -> Result<JsValue, JsValue> {
+        let step = self.0.step().await.map_err(thrown)?;
+        Ok(step.map_or(JsValue::UNDEFINED, |iteration| {
+            object([
+                ("index", iteration.index.into()),
+                ("labelled", iteration.labelled.into()),
+                ("flips", iteration.flips.into()),
+                ("blocked", reasons_object(&iteration.blocked)),
+                ("ms", iteration.ms.into()),
+            ])
+        }))
+    }
+
+    /// As [`Session::advance`].
+    ///
+    /// # Errors
+    /// As there.
+    pub async fn advance(&mut self) -> Result<bool, JsValue> {
+        self.0.advance().await.map_err(thrown)
+    }
+
+    /// As [`Session::triangles`].
+    ///
+    /// # Errors
+    /// As there.
+    pub async fn triangles(&mut self) -> Result<Uint32Array, JsValue> {
+        let triangles = self.0.triangles().await.map_err(thrown)?;
+        Ok(Uint32Array::from(triangles.as_slice()))
+    }
+
+    /// As [`Session::outcome`].
+    ///
+    /// # Errors
+    /// As there.
+    #[wasm_bindgen(unchecked_return_type = "import('../types.js').Result")]
+    pub async fn outcome(&mut self) -> Result<JsValue, JsValue> {
+        Ok(outcome_object(&self.0.outcome().await.map_err(thrown)?))
+    }
+
+    /// As [`Session::edges`].
+    ///
+    /// # Errors
+    /// As there.
+    #[wasm_bindgen(unchecked_return_type = "import('../types.js').Edges")]
+    pub async fn edges(&mut self) -> Result<JsValue, JsValue> {
+        let edges = self.0.edges().await.map_err(thrown)?;
+        let array = |words: &[u32]| Uint32Array::from(words).into();
+        Ok(object([
+            ("v1", array(&edges.v1)),
+            ("v2", array(&edges.v2)),
+            ("ta", array(&edges.ta)),
+            ("tb", array(&edges.tb)),
+        ]))
+    }
+
+    /// As [`Session::verify`].
+    ///
+    /// # Errors
+    /// As there.
+    #[wasm_bindgen(unchecked_return_type = "import('../types.js').Audit")]
+    pub async fn verify(&mut self) -> Result<JsValue, JsValue> {
+        let audit = self.0.verify().await.map_err(thrown)?;
+        let violations: js_sys::Array =
+            audit.violations.iter().map(|violation| JsValue::from(violation.to_string())).collect();
+        Ok(object([
+            ("clean", audit.is_clean().into()),
+            ("violations", violations.into()),
+            ("unlisted", (audit.unlisted as f64).into()),
+            ("remaining", reasons_object(&audit.remaining)),
+        ]))
+    }
+
+    /// Iterations so far.
+    #[wasm_bindgen(getter)]
+    pub fn iterations(&self) -> u32 {
+        self.0.iterations()
+    }
+
+    /// Flips so far.
+    #[wasm_bindgen(getter)]
+    pub fn flips(&self) -> f64 {
+        self.0.flips() as f64
+    }
+
+    /// The engine that runs now.
+    #[wasm_bindgen(getter, unchecked_return_type = "import('../types.js').Engine")]
+    pub fn backend(&self) -> String {
+        objects::backend(self.0.backend()).to_owned()
+    }
+
+    /// The engine's GPUDevice, if it runs on one.
+    #[wasm_bindgen(getter, unchecked_return_type = "GPUDevice | undefined")]
+    pub fn device(&self) -> JsValue {
+        self.0.shared_objects().map_or(JsValue::UNDEFINED, |objects| objects.device)
+    }
+
+    /// The GPUBuffer with the positions.
+    #[wasm_bindgen(getter, js_name = positionBuffer, unchecked_return_type = "GPUBuffer | undefined")]
+    pub fn position_buffer(&self) -> JsValue {
+        self.0.shared_objects().map_or(JsValue::UNDEFINED, |objects| objects.positions)
+    }
+
+    /// The GPUBuffer with the triangles.
+    #[wasm_bindgen(getter, js_name = indexBuffer, unchecked_return_type = "GPUBuffer | undefined")]
+    pub fn index_buffer(&self) -> JsValue {
+        self.0.shared_objects().map_or(JsValue::UNDEFINED, |objects| objects.triangles)
+    }
+}
+
+fn parse_dimension(dimension: f64) -> Result<Dimension, Error> {
+    if dimension == 2.0 {
+        Ok(Dimension::Two)
+    } else if dimension == 3.0 {
+        Ok(Dimension::Three)
+    } else {
+        Err(Error::Option { option: "dimension", message: format!("{dimension} is neither 2 nor 3") })
+    }
+}
+
+/// What is `undefined` keeps its default.
+fn parse_options(given: &JsOptions) -> Result<Options, Error> {
+    let mut options = Options::default();
+    let wrong = |option, value: &JsValue, known: &str| {
+        Err(Error::Option { option, message: format!("{value:?} is not {known}") })
+    };
+    let backend = given.backend();
+    if !backend.is_undefined() {
+        options.backend = match backend.as_string().as_deref() {
+            Some("auto") => Backend::Auto,
+            Some("webgpu") => Backend::Gpu,
+            Some("cpu") => Backend::Cpu,
+            _ => return wrong("backend", &backend, "'auto', 'webgpu' or 'cpu'"),
+        };
+    }
+    let order = given.order();
+    if !order.is_undefined() {
+        options.order = match order.as_string().as_deref() {
+            Some("reproducible") => Order::Reproducible,
+            Some("any") => Order::Any,
+            _ => return wrong("order", &order, "'reproducible' or 'any'"),
+        };
+    }
+    let angle = given.max_normal_angle();
+    if !angle.is_undefined() {
+        let Some(degrees) = angle.as_f64() else { return wrong("maxNormalAngle", &angle, "a number") };
+        options.max_normal_angle = degrees;
+    }
+    let cap = given.max_iterations();
+    if !cap.is_undefined() {
+        let whole = |x: &f64| x.fract() == 0.0 && (0.0..=f64::from(u32::MAX)).contains(x);
+        match cap.as_f64() {
+            Some(f64::INFINITY) => {}
+            Some(number) if whole(&number) => options.max_iterations = Some(number as u32),
+            _ => return wrong("maxIterations", &cap, "a number of iterations"),
+        }
+    }
+    Ok(options)
+}
