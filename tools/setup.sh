@@ -5,6 +5,9 @@
 #   a C linker                             apt on Debian and Ubuntu
 #   a Vulkan driver for the GPU tests      apt on Debian and Ubuntu (Mesa's software driver, lavapipe)
 #   the wasm32-unknown-unknown target      rustup; on Debian 12 without rustup's server, Debian's compiler
+#   wasm-bindgen, of Cargo.lock's version  cargo install, into target/setup
+#   the packages of package-lock.json      npm ci
+#   Chromium and chromedriver              apt on Debian; asked for elsewhere, not installed
 #
 # It looks first and installs only what it does not find, so a second run changes nothing.
 # On macOS and Windows it installs only what rustup can; the GPU tests use Metal or Direct3D 12 there.
@@ -138,6 +141,37 @@ if ! tools/wasm-cargo.sh --which >/dev/null 2>&1; then
   fi
   tools/wasm-cargo.sh --which >/dev/null 2>&1 ||
     stop "no compiler compiles for wasm32 even now." "$by_hand, and see what it says"
+fi
+
+# --- wasm-bindgen -----------------------------------------------------------------------------------------
+# The program must be of the same version as the crate. It brings the runner of the browser tests too.
+wanted=$(sed -n '/^name = "wasm-bindgen"$/{n;s/^version = "\(.*\)"$/\1/p;}' Cargo.lock)
+if [ "$(target/setup/bin/wasm-bindgen --version 2>/dev/null)" != "wasm-bindgen $wanted" ]; then
+  say "building wasm-bindgen $wanted, once (a few minutes)"
+  mkdir -p target/setup
+  cargo install wasm-bindgen-cli --version "$wanted" --no-default-features --root target/setup \
+    --target-dir target/setup/build >target/setup/wasm-bindgen.log 2>&1 || {
+    tail -n 15 target/setup/wasm-bindgen.log >&2
+    stop "wasm-bindgen did not build." "The messages are above and in target/setup/wasm-bindgen.log."
+  }
+  rm -rf target/setup/build
+fi
+
+# --- npm packages -----------------------------------------------------------------------------------------
+# npm keeps a copy of the lock file in node_modules; where it is older, something has changed.
+if [ ! -e node_modules/.package-lock.json ] || [ package-lock.json -nt node_modules/.package-lock.json ]; then
+  say "npm ci"
+  npm ci --no-audit --no-fund --loglevel=error ||
+    stop "npm ci failed (see above)." "Run: npm ci"
+fi
+
+# --- Chromium ---------------------------------------------------------------------------------------------
+if [ -z "${CHROMEDRIVER:-}" ] && ! has chromedriver; then
+  if [ "$system" = Linux ] && [ -e /etc/debian_version ]; then
+    apt_install "Chromium and its driver" chromium chromium-driver
+  else
+    stop "chromedriver is not on the PATH." "Install Chrome or Chromium and the chromedriver of the same version."
+  fi
 fi
 
 say "ready: $(rustc --version); wasm32 with $(tools/wasm-cargo.sh --which)"

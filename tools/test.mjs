@@ -9,14 +9,14 @@ import { fileURLToPath } from 'node:url';
 process.chdir(fileURLToPath(new URL('..', import.meta.url)));
 
 /**
- * A level: `checks` are its command lines. Where `counts` is set, they run Rust's test harness and its tests are
- * counted; otherwise each command is one check.
+ * A level: `checks` are its command lines. Where `counts` is set, they run the test harness of Rust or Node and
+ * its tests are counted; otherwise each command is one check.
  * @typedef {{ name: string, what: string, checks: string[][], counts?: boolean, env?: Record<string, string> }} Level
  * @typedef {{ level: Level, passed: number, failed: number, why: string, seconds: number }} Result
  */
 
 // The one build of the library that a browser gets.
-const wasm = ['--lib', '--target', 'wasm32-unknown-unknown', '--no-default-features', '--features', 'gpu'];
+const wasm = ['--target', 'wasm32-unknown-unknown', '--no-default-features', '--features', 'gpu,js'];
 const wasmCargo = ['bash', 'tools/wasm-cargo.sh'];
 
 /** @type {Level[]} */
@@ -52,11 +52,32 @@ const levels = [
   },
   {
     name: 'wasm32',
-    what: 'the library for the browser has no warning from clippy and builds',
+    what: 'the library for the browser has no warning from clippy, with and without what JavaScript calls',
     checks: [
-      [...wasmCargo, 'clippy', ...wasm, '--', '-D', 'warnings'],
-      [...wasmCargo, 'build', ...wasm],
+      [...wasmCargo, 'clippy', '--lib', ...wasm.slice(0, -1), 'gpu', '--', '-D', 'warnings'],
+      [...wasmCargo, 'clippy', '--lib', '--test', 'wasm', ...wasm, '--', '-D', 'warnings'],
     ],
+  },
+  {
+    name: 'wasm in Chromium',
+    what: firstLine('tests/wasm.rs'),
+    checks: [[...wasmCargo, 'test', '--test', 'wasm', ...wasm]],
+    counts: true,
+    env: {
+      CHROMEDRIVER: process.env.CHROMEDRIVER ?? 'chromedriver',
+      CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUNNER: `${process.cwd()}/target/setup/bin/wasm-bindgen-test-runner`,
+      WASM_BINDGEN_TEST_TIMEOUT: '600',
+    },
+  },
+  {
+    name: 'npm package',
+    what: 'the package builds, TypeScript is strict about it, and its tests pass in Node on the CPU engine',
+    checks: [
+      ['node', 'tools/build.mjs'],
+      ['node', 'node_modules/typescript/bin/tsc', '-p', 'tests/package'],
+      ['node', '--test', '--test-reporter=tap', 'tests/package/node.test.mjs'],
+    ],
+    counts: true,
   },
 ];
 
@@ -73,14 +94,19 @@ function integrationTests() {
   }
   return JSON.parse(metadata.stdout)
     .packages.flatMap((crate) => crate.targets)
-    .filter((target) => target.kind.includes('test'))
+    .filter((target) => target.kind.includes('test') && target.name !== 'wasm')
     .sort((a, b) => (a.name < b.name ? -1 : 1))
     .map((target) => ({
       name: target.name,
-      what: readFileSync(target.src_path, 'utf8').match(/^\/\/! *(.+)$/m)?.[1].trim() ?? '(its file has no //! line)',
+      what: firstLine(target.src_path),
       checks: [['cargo', 'test', '--test', target.name]],
       counts: true,
     }));
+}
+
+/** What a test file says of itself. */
+function firstLine(path) {
+  return readFileSync(path, 'utf8').match(/^\/\/! *(.+)$/m)?.[1].trim() ?? '(its file has no //! line)';
 }
 
 /** Runs a command, passes its output on as it comes, and gives its exit status and output when it ends. */
@@ -104,7 +130,10 @@ function run([program, ...args], env = {}) {
   });
 }
 
-/** Sums what Rust's test harness says: `test result: ok. 5 passed; 0 failed; 0 ignored; …`. */
+/**
+ * Sums what Rust's test harness says: `test result: ok. 5 passed; 0 failed; 0 ignored; …`, and what Node's does:
+ * `# pass 5`, `# fail 0`, `# skipped 0`.
+ */
 function count(output) {
   const sums = { passed: 0, failed: 0, ignored: 0 };
   for (const [, passed, failed, ignored] of output.matchAll(
@@ -113,6 +142,10 @@ function count(output) {
     sums.passed += Number(passed);
     sums.failed += Number(failed);
     sums.ignored += Number(ignored);
+  }
+  for (const [, what, number] of output.matchAll(/^# (pass|fail|cancelled|skipped|todo) (\d+)$/gm)) {
+    const key = { pass: 'passed', fail: 'failed', cancelled: 'failed' }[what] ?? 'ignored';
+    sums[key] += Number(number);
   }
   return sums;
 }
@@ -157,7 +190,7 @@ if (chosen.length === 0) {
 /** @type {Result[]} */
 const results = [];
 // Everything is compiled first, in one go, so that the seconds of a test level are those of its tests.
-if (chosen.some((level) => level.counts)) await run(['cargo', 'test', '--no-run']);
+if (chosen.some(({ checks }) => checks.some(([program, verb]) => program === 'cargo' && verb === 'test'))) await run(['cargo', 'test', '--no-run']);
 for (const level of chosen) results.push(await runLevel(level));
 
 console.log('\n| level | what it checks | tests | result | seconds |\n|---|---|---:|---|---:|');

@@ -1,0 +1,59 @@
+/** The one class of errors. */
+
+/**
+ * What an error is about.
+ *
+ * | code | what to do |
+ * |---|---|
+ * | `invalid-input` | pass typed arrays, and 2 or 3 as the dimension |
+ * | `not-float32` | round the positions: `Float32Array.from(positions)` |
+ * | `non-finite` | repair or remove the vertex that the message names |
+ * | `index-out-of-range` | check the indices of the triangle that the message names |
+ * | `ragged-array` | check the array's length and the dimension |
+ * | `too-large` | split the mesh |
+ * | `invalid-option` | check the option that the message names |
+ * | `backend-unavailable` | take `'auto'` or `'cpu'`: there is no WebGPU here |
+ * | `backend-limit` | take `'auto'` or `'cpu'`: the GPU cannot take this mesh |
+ * | `device-failed` | begin again: the GPU was lost in the middle of a run |
+ * | `load-failed` | see that `wasm/edgeflip_bg.wasm` is served, or pass it to `init` |
+ * | `freed` | do not use a session after `free` |
+ * | `internal` | report it: the module has crashed, and must be loaded anew |
+ */
+export type ErrorCode = (typeof CODES)[number];
+
+const CODES = [
+  'invalid-input',
+  'not-float32',
+  'non-finite',
+  'index-out-of-range',
+  'ragged-array',
+  'too-large',
+  'invalid-option',
+  'backend-unavailable',
+  'backend-limit',
+  'device-failed',
+  'load-failed',
+  'freed',
+  'internal',
+] as const;
+
+/** Everything that this package throws by itself. What a callback throws goes through unchanged. */
+export class EdgeflipError extends Error {
+  override readonly name = 'EdgeflipError';
+  /** What the error is about; the same in every release. */
+  readonly code: ErrorCode;
+
+  /** Made by the package. */
+  constructor(code: ErrorCode, message: string, options?: ErrorOptions) {
+    super(message, options);
+    this.code = code;
+  }
+}
+
+/** What the module has thrown, as an `EdgeflipError`. A trap has no code. */
+export function fromModule(thrown: unknown): EdgeflipError {
+  const message = thrown instanceof Error ? thrown.message : String(thrown);
+  const given = thrown instanceof Error && 'code' in thrown ? thrown.code : undefined;
+  const code = CODES.find((code) => code === given) ?? 'internal';
+  return new EdgeflipError(code, message, { cause: thrown });
+}

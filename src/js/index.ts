@@ -1,0 +1,43 @@
+/**
+ * Makes a triangle mesh Delaunay by flipping edges: exactly, the same on every engine, without touching a vertex.
+ *
+ * ```ts
+ * import { makeDelaunay } from 'edgeflip';
+ * const { indices, remaining } = await makeDelaunay({ positions, indices: old, dimension: 3 });
+ * ```
+ *
+ * @packageDocumentation
+ */
+
+import { FlipSession } from './session.js';
+import type { MakeDelaunayOptions, Mesh, Result } from './types.js';
+
+export { EdgeflipError, type ErrorCode } from './error.js';
+export { init, type ModuleSource } from './load.js';
+export { FlipSession } from './session.js';
+export type * from './types.js';
+
+/**
+ * Flips edges until none is left that is not Delaunay and may flip. Nothing of the mesh is changed or kept.
+ *
+ * @throws {@link EdgeflipError} about the mesh, the options or the backend.
+ */
+export async function makeDelaunay(mesh: Mesh, options: MakeDelaunayOptions = {}): Promise<Result> {
+  const { signal, onProgress, onIteration } = options;
+  const session = await FlipSession.create(mesh, options);
+  try {
+    if (!onIteration) return await session.run({ signal, onProgress });
+    let flips = 0;
+    if (!signal?.aborted) {
+      for await (const iteration of session) {
+        flips += iteration.flips;
+        onIteration(iteration);
+        onProgress?.({ iterations: iteration.index + 1, flips });
+        if (signal?.aborted) break;
+      }
+    }
+    return await session.result();
+  } finally {
+    session.free();
+  }
+}

@@ -1,0 +1,141 @@
+/** A mesh on an engine: step by step, or in one run. */
+
+/// <reference lib="esnext.disposable" preserve="true" />
+
+import { Session } from './wasm/edgeflip.js';
+import { EdgeflipError, fromModule } from './error.js';
+import { init } from './load.js';
+import { moduleMesh } from './mesh.js';
+import { Turns } from './turn.js';
+import type { Audit, Edges, Engine, Iteration, Mesh, Options, Result, RunOptions } from './types.js';
+
+/** Not every browser has `Symbol.dispose` yet. */
+const dispose: typeof Symbol.dispose = Symbol.dispose ?? Symbol.for('Symbol.dispose');
+
+/**
+ * A mesh that is made Delaunay step by step.
+ *
+ * ```ts
+ * const session = await FlipSession.create(mesh);
+ * for await (const iteration of session) draw(await session.triangles(), iteration);
+ * session.free();
+ * ```
+ *
+ * Calls may overlap: each waits for those before it. A run lets others in between two batches.
+ */
+export class FlipSession implements AsyncIterable<Iteration>, Disposable {
+  readonly #session: Session;
+  #last: Promise<unknown> = Promise.resolve();
+  #isFreed = false;
+
+  private constructor(session: Session) {
+    this.#session = session;
+  }
+
+  /**
+   * Checks the mesh and makes an engine ready for it.
+   *
+   * @throws {@link EdgeflipError} about the mesh, the options or the backend.
+   */
+  static async create(mesh: Mesh, options: Options = {}): Promise<FlipSession> {
+    const { positions, indices, dimension } = moduleMesh(mesh);
+    await init();
+    try {
+      return new FlipSession(await Session.create(positions, indices, dimension, options));
+    } catch (thrown) {
+      throw fromModule(thrown);
+    }
+  }
+
+  /** One iteration. `undefined` when nothing is left to flip, or `maxIterations` is reached. */
+  step(): Promise<Iteration | undefined> {
+    return this.#call((session) => session.step());
+  }
+
+  /** The iterations that are left. Leaving the loop leaves the session as it is then. */
+  async *[Symbol.asyncIterator](): AsyncGenerator<Iteration, void, undefined> {
+    const turns = new Turns();
+    for (let iteration = await this.step(); iteration; iteration = await this.step()) {
+      yield iteration;
+      await turns.give();
+    }
+  }
+
+  /** Runs to the end, or until the signal stops it. A stopped session can go on. */
+  async run({ signal, onProgress }: RunOptions = {}): Promise<Result> {
+    const turns = new Turns();
+    for (let goesOn = true; goesOn && !signal?.aborted; await turns.give()) {
+      const [more, progress] = await this.#call(async (session) => {
+        const more = await session.advance();
+        return [more, { iterations: session.iterations, flips: session.flips }];
+      });
+      onProgress?.(progress);
+      goesOn = more;
+    }
+    return this.result();
+  }
+
+  /** The result so far. */
+  result(): Promise<Result> {
+    return this.#call((session) => session.outcome());
+  }
+
+  /** The triangles so far: vertex indices, 3 a triangle. */
+  triangles(): Promise<Uint32Array> {
+    return this.#call((session) => session.triangles());
+  }
+
+  /** Every edge, as it is now. */
+  edges(): Promise<Edges> {
+    return this.#call((session) => session.edges());
+  }
+
+  /** Checks the triangles against the input, exactly, with code that shares nothing with what made them. */
+  verify(): Promise<Audit> {
+    return this.#call((session) => session.verify());
+  }
+
+  /** The engine that runs now. */
+  backend(): Promise<Engine> {
+    return this.#call(async (session) => session.backend);
+  }
+
+  /**
+   * The GPU's objects, to draw from without a copy; `undefined` on the CPU. `positions` has 2 or 3 f32 a vertex,
+   * `indices` 3 u32 a triangle; their usage has STORAGE, VERTEX or INDEX, COPY_SRC and COPY_DST. Only read them, and
+   * only until `free`. The device belongs to all sessions.
+   */
+  gpu(): Promise<{ device: GPUDevice; positions: GPUBuffer; indices: GPUBuffer } | undefined> {
+    return this.#call(async ({ device, positionBuffer, indexBuffer }) =>
+      device && positionBuffer && indexBuffer
+        ? { device, positions: positionBuffer, indices: indexBuffer }
+        : undefined,
+    );
+  }
+
+  /** Gives memory and buffers back, once the call that is going on has ended. Calls that wait are refused. */
+  free(): void {
+    if (this.#isFreed) return;
+    this.#isFreed = true;
+    void this.#last.then(() => this.#session.free());
+  }
+
+  /** As {@link FlipSession.free}: `using session = await FlipSession.create(mesh)`. */
+  [dispose](): void {
+    this.free();
+  }
+
+  /** Calls the module when the calls before have answered. */
+  #call<T>(work: (session: Session) => Promise<T>): Promise<T> {
+    const call = this.#last.then(async () => {
+      if (this.#isFreed) throw new EdgeflipError('freed', 'the session has been freed');
+      try {
+        return await work(this.#session);
+      } catch (thrown) {
+        throw fromModule(thrown);
+      }
+    });
+    this.#last = call.catch(() => undefined);
+    return call;
+  }
+}

@@ -1,0 +1,149 @@
+/** What goes into the package and what comes out of it. */
+
+/// <reference types="@webgpu/types" preserve="true" />
+
+/** A triangle mesh. It is only read; nothing of it is kept. */
+export interface Mesh {
+  /**
+   * 2 or 3 numbers a vertex. Decisions are exact for 32-bit floats, so a `Float64Array` must hold numbers that are
+   * such floats; else it is refused with the code `not-float32` (round it with `Float32Array.from`).
+   */
+  positions: Float32Array | Float64Array;
+  /** Vertex indices, 3 a triangle. */
+  indices: Uint32Array | Uint16Array;
+  /** 2 for a mesh in the plane, 3 for a surface in space. */
+  dimension: 2 | 3;
+}
+
+/** An engine. All give the same result, bit for bit. */
+export type Engine = 'webgpu' | 'cpu';
+
+/** What can be chosen for a session. */
+export interface Options {
+  /**
+   * `'webgpu'` and `'cpu'` take that engine or fail; `'auto'` (default) takes WebGPU where there is a real GPU that
+   * can take the mesh, else the CPU.
+   */
+  backend?: 'auto' | Engine | undefined;
+  /**
+   * The largest angle in degrees between the normals of two triangles whose edge may flip, before and after; sharper
+   * edges stay. For surfaces only. Default 10.
+   */
+  maxNormalAngle?: number | undefined;
+  /** Stop after so many iterations. Default: run to the end, which is always reached. */
+  maxIterations?: number | undefined;
+  /**
+   * `'reproducible'` (default): the parallel iterations, the same on every engine. `'any'`: Lawson's sequential
+   * algorithm, on the CPU only.
+   */
+  order?: 'reproducible' | 'any' | undefined;
+}
+
+/** How far a run has come. */
+export interface Progress {
+  /** Iterations so far. */
+  iterations: number;
+  /** Flips so far. */
+  flips: number;
+}
+
+/** What can be chosen for a run. */
+export interface RunOptions {
+  /** Stops the run after a complete iteration. The result then has the status `'stopped'`; nothing is thrown. */
+  signal?: AbortSignal | undefined;
+  /** Called after every batch of iterations: on the CPU one, on the GPU many. */
+  onProgress?: ((progress: Progress) => void) | undefined;
+}
+
+/** What can be chosen for {@link makeDelaunay}. */
+export interface MakeDelaunayOptions extends Options, RunOptions {
+  /** Called after every iteration. Watching costs time: each iteration is then counted and waited for. */
+  onIteration?: ((iteration: Iteration) => void) | undefined;
+}
+
+/**
+ * Why an edge is still not Delaunay. `angle`: the normals differ by more than `maxNormalAngle`. `fold`: a new
+ * triangle would turn over. `duplicate`: the edge that the flip would make exists already. `non-manifold`: three or
+ * more triangles, or one twice, meet there. `inconsistent`: its two triangles are oriented against each other.
+ * `stopped`: the run was stopped before.
+ */
+export type Reason = 'angle' | 'fold' | 'duplicate' | 'non-manifold' | 'inconsistent' | 'stopped';
+
+/** Numbers of edges that are not Delaunay, by reason. A reason without an edge is absent. */
+export type Reasons = Partial<Record<Reason, number>>;
+
+/** What one watched iteration did. */
+export interface Iteration {
+  /** Its number, from 0. */
+  index: number;
+  /** Edges of the whole mesh that were not Delaunay and might flip, before it. */
+  labelled: number;
+  /** Edges flipped. */
+  flips: number;
+  /** Edges that were not Delaunay and might not flip, before it. Frozen edges are counted in the result only. */
+  blocked: Reasons;
+  /** Milliseconds. */
+  ms: number;
+}
+
+/** The result of a run. */
+export interface Result {
+  /** Vertex indices, 3 a triangle; the vertices are those of the input. */
+  indices: Uint32Array;
+  /** `'done'`: no edge is left that may flip. `'stopped'`: by the signal or by `maxIterations`. */
+  status: 'done' | 'stopped';
+  /** The engine that ran. */
+  backend: Engine;
+  /** The name of the GPU. */
+  adapter: string | undefined;
+  /** Why `'auto'` did not take, or did not stay with, WebGPU. */
+  fallback: string | undefined;
+  /** Iterations with at least one flip. */
+  iterations: number;
+  /** Flips in all. */
+  flips: number;
+  /** Flips of each iteration. */
+  flipsPerIteration: Uint32Array;
+  /** Compute dispatches on the GPU. */
+  dispatches: number;
+  /** Edges of the mesh. */
+  edges: number;
+  /** Edges with one triangle. */
+  boundaryEdges: number;
+  /** Edges with three or more triangles, or one twice. They stay. */
+  nonManifoldEdges: number;
+  /** Edges whose two triangles are oriented against each other. They stay. */
+  inconsistentEdges: number;
+  /** Edges that are still not Delaunay. */
+  remaining: Reasons;
+  /** Milliseconds: making the engine ready, the iterations, and all of it. */
+  timings: { adjacency: number; flip: number; total: number };
+}
+
+/**
+ * Every edge, one entry in each array: the Edges array of Navarro, Hitschfeld-Kahler and Scheihing (2011). `ta` and
+ * `tb` are positions in the triangle indices: `indices[ta]` is `v1`, and the edge is one of triangle `ta / 3`. Edges
+ * come in the order of `ta`, the smaller of the two.
+ */
+export interface Edges {
+  /** First vertex. */
+  v1: Uint32Array;
+  /** Second vertex. */
+  v2: Uint32Array;
+  /** Where the edge starts in its first triangle. */
+  ta: Uint32Array;
+  /** Where it starts, from `v2`, in its second one; 0xffffffff on the boundary and on edges that are frozen. */
+  tb: Uint32Array;
+}
+
+/** What an independent check of the triangles found, against the input. */
+export interface Audit {
+  /** Whether nothing is wrong. Edges that remain are not wrong. */
+  clean: boolean;
+  /** What is wrong: at most 100 sentences. */
+  violations: string[];
+  /** How many more there are. */
+  unlisted: number;
+  /** Every edge that is not Delaunay, by the reason for which it cannot flip; `stopped` if it could. */
+  remaining: Reasons;
+}

@@ -1,0 +1,155 @@
+// The npm package in Node, where there is no WebGPU: the CPU engine, errors, abort.
+
+import assert from 'node:assert/strict';
+import { test } from 'node:test';
+import { EdgeflipError, FlipSession, makeDelaunay } from 'edgeflip';
+
+/** A thin diamond, split along its long diagonal. */
+const diamond = () => ({
+  positions: new Float32Array([-3, 0, 0, -1, 3, 0, 0, 1]),
+  indices: new Uint32Array([0, 1, 2, 0, 2, 3]),
+  dimension: 2,
+});
+
+/**
+ * The paper's worst case (its figure 11) with n nodes: 1 2 3 2 1 flips for 8. Two strips between the points
+ * q_j = (j, 0) and p_i = (m + i, m), where m = n / 2.
+ */
+function strips(n) {
+  const m = n / 2;
+  const positions = [];
+  for (let j = 0; j < m; j++) positions.push(j, 0);
+  for (let i = 0; i < m; i++) positions.push(m + i, m);
+  const indices = [];
+  for (let i = 0; i + 1 < m; i++) indices.push(0, m + i + 1, m + i);
+  for (let j = 0; j + 1 < m; j++) indices.push(j, j + 1, 2 * m - 1);
+  return { positions: new Float32Array(positions), indices: new Uint32Array(indices), dimension: 2 };
+}
+
+const refused = (code, pattern) => (error) => {
+  assert.ok(error instanceof EdgeflipError && error instanceof Error, String(error));
+  assert.equal(error.code, code, error.message);
+  assert.match(error.message, pattern);
+  return true;
+};
+
+test('makeDelaunay flips the long diagonal', async () => {
+  const mesh = diamond();
+  const result = await makeDelaunay(mesh);
+  assert.deepEqual([...result.indices], [3, 1, 2, 0, 1, 3]);
+  assert.equal(result.status, 'done');
+  assert.equal(result.backend, 'cpu');
+  assert.match(result.fallback, /webgpu is not available: there is no WebGPU here/);
+  assert.equal(result.adapter, undefined);
+  assert.deepEqual([result.iterations, result.flips, result.edges, result.boundaryEdges], [1, 1, 5, 4]);
+  assert.deepEqual([...result.flipsPerIteration], [1]);
+  assert.deepEqual(result.remaining, {});
+  assert.ok(result.timings.total >= 0);
+  assert.deepEqual(mesh, diamond());
+});
+
+test('strips flip as in the paper, whole and step by step', async () => {
+  const mesh = strips(8);
+  const seen = [];
+  const whole = await makeDelaunay(mesh, { backend: 'cpu' });
+  const watched = await makeDelaunay(mesh, { onIteration: ({ index, flips }) => seen.push([index, flips]) });
+  assert.deepEqual([...whole.flipsPerIteration], [1, 2, 3, 2, 1]);
+  assert.deepEqual(seen, [[0, 1], [1, 2], [2, 3], [3, 2], [4, 1]]);
+  assert.deepEqual(watched.indices, whole.indices);
+});
+
+test('16-bit indices and doubles that are floats give the same', async () => {
+  const mesh = strips(12);
+  const narrow = { ...mesh, positions: Float64Array.from(mesh.positions), indices: Uint16Array.from(mesh.indices) };
+  assert.deepEqual((await makeDelaunay(narrow)).indices, (await makeDelaunay(mesh)).indices);
+});
+
+test('a surface keeps its sharp edges and says so', async () => {
+  // Two triangles at a right angle, each very flat at the edge that they share.
+  const mesh = {
+    positions: new Float32Array([0, 0, 0, 4, 0, 0, 2, 0.5, 0, 2, 0, 0.5]),
+    indices: new Uint32Array([0, 1, 2, 1, 0, 3]),
+    dimension: 3,
+  };
+  assert.deepEqual((await makeDelaunay(mesh)).remaining, { angle: 1 });
+});
+
+test('errors have codes', async () => {
+  const mesh = diamond();
+  const bad = (change) => makeDelaunay({ ...mesh, ...change });
+  const positions = Float32Array.from(mesh.positions);
+  positions[5] = NaN;
+  await assert.rejects(bad({ positions }), refused('non-finite', /vertex 2: coordinate y/));
+  await assert.rejects(bad({ positions: Float64Array.of(0, 0, 1, 0, 0.1, 1) }), refused('not-float32', /vertex 2: coordinate x is 0\.1/));
+  await assert.rejects(bad({ positions: [0, 0] }), refused('invalid-input', /positions/));
+  await assert.rejects(bad({ indices: [0, 1, 2] }), refused('invalid-input', /indices/));
+  await assert.rejects(bad({ dimension: 4 }), refused('invalid-input', /dimension is 4/));
+  await assert.rejects(bad({ indices: Uint32Array.of(0, 1, 7) }), refused('index-out-of-range', /triangle 0.* 7 /));
+  await assert.rejects(bad({ indices: Uint32Array.of(0, 1) }), refused('ragged-array', /indices has 2/));
+  await assert.rejects(makeDelaunay(mesh, { backend: 'webgpu' }), refused('backend-unavailable', /backend webgpu/));
+  await assert.rejects(makeDelaunay(mesh, { backend: 'gpu' }), refused('invalid-option', /backend/));
+  await assert.rejects(makeDelaunay(mesh, { order: 1 }), refused('invalid-option', /order/));
+  await assert.rejects(makeDelaunay(mesh, { maxNormalAngle: 200 }), refused('invalid-option', /maxNormalAngle: 200/));
+  await assert.rejects(makeDelaunay(mesh, { maxIterations: -1 }), refused('invalid-option', /maxIterations/));
+});
+
+test('a signal stops a run after a complete iteration', async () => {
+  const session = await FlipSession.create(strips(40));
+  const controller = new AbortController();
+  const stopped = await session.run({
+    signal: controller.signal,
+    onProgress: ({ iterations }) => iterations === 3 && controller.abort(),
+  });
+  assert.deepEqual([stopped.status, stopped.iterations, stopped.flips], ['stopped', 3, 6]);
+  assert.ok(stopped.remaining.stopped > 0);
+  assert.ok((await session.verify()).clean);
+  const done = await session.run();
+  assert.equal(done.status, 'done');
+  assert.deepEqual(done.indices, (await makeDelaunay(strips(40))).indices);
+  session.free();
+});
+
+test('a run lets timers fire, so a timeout can stop it', async () => {
+  const result = await makeDelaunay(strips(4000), { signal: AbortSignal.timeout(30) });
+  assert.equal(result.status, 'stopped');
+  const before = await makeDelaunay(strips(8), { signal: AbortSignal.abort() });
+  assert.deepEqual([before.status, before.iterations], ['stopped', 0]);
+});
+
+test('maxIterations and Lawson’s order', async () => {
+  const capped = await makeDelaunay(strips(8), { maxIterations: 2 });
+  assert.deepEqual([capped.status, capped.flips], ['stopped', 3]);
+  const any = await makeDelaunay(strips(8), { order: 'any' });
+  assert.deepEqual([any.status, any.remaining, any.flips], ['done', {}, 9]);
+});
+
+test('a session is iterated, asked for edges and audited', async () => {
+  const session = await FlipSession.create(strips(8));
+  const flips = [];
+  for await (const iteration of session) flips.push(iteration.flips);
+  assert.deepEqual(flips, [1, 2, 3, 2, 1]);
+  assert.equal(await session.step(), undefined);
+  const [triangles, edges, audit] = await Promise.all([session.triangles(), session.edges(), session.verify()]);
+  assert.deepEqual(audit, { clean: true, violations: [], unlisted: 0, remaining: {} });
+  assert.equal(edges.v1.length, (await session.result()).edges);
+  edges.ta.forEach((ta, edge) => {
+    assert.equal(triangles[ta], edges.v1[edge]);
+    if (edges.tb[edge] !== 0xffffffff) assert.equal(triangles[edges.tb[edge]], edges.v2[edge]);
+  });
+  assert.deepEqual([await session.backend(), await session.gpu()], ['cpu', undefined]);
+  session.free();
+});
+
+test('a freed session refuses calls, also those that were waiting', async () => {
+  const session = await FlipSession.create(strips(40));
+  const running = session.run();
+  session.free();
+  session.free();
+  await assert.rejects(running, refused('freed', /freed/));
+  await assert.rejects(session.triangles(), refused('freed', /freed/));
+});
+
+test('what a callback throws goes through unchanged', async () => {
+  const mine = new Error('mine');
+  await assert.rejects(makeDelaunay(strips(8), { onProgress: () => { throw mine; } }), (error) => error === mine);
+});
