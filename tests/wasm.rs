@@ -76,6 +76,8 @@ async fn a_whole_run_on_webgpu_is_that_of_the_cpu() {
             while session.advance().await.unwrap() {}
             let outcome = session.outcome().await.unwrap();
             assert!(session.verify().await.unwrap().is_clean(), "{spec}");
+            let adapter = outcome.adapter.as_ref().is_some_and(|name| !name.is_empty());
+            assert_eq!(adapter, backend == Backend::Gpu, "{spec}");
             let edges = session.edges().await.unwrap();
             assert_eq!(edges, Edges::new(mesh.vertex_count(), &outcome.triangles), "{spec}");
             indices.push((outcome.triangles, outcome.flips_per_iteration, outcome.remaining));

@@ -160,10 +160,14 @@ impl Device {
         );
         let driver = [info.driver.as_str(), info.driver_info.as_str()].join(" ");
         let driver = driver.trim();
+        #[cfg(not(target_arch = "wasm32"))]
+        let name = info.name.clone();
+        #[cfg(target_arch = "wasm32")]
+        let name = browser_name(&device).unwrap_or_default();
         let mut result = Self {
             device,
             queue,
-            adapter: if driver.is_empty() { info.name.clone() } else { format!("{}, {driver}", info.name) },
+            adapter: if driver.is_empty() { name } else { format!("{name}, {driver}") },
             most_workgroups: if info.device_type == wgpu::DeviceType::Cpu { 64 } else { 4096 },
             ends_loops_early: false,
             is_software: info.device_type == wgpu::DeviceType::Cpu,
@@ -307,6 +311,15 @@ fn has_navigator_gpu() -> bool {
     let global = js_sys::global();
     ["Window", "WorkerGlobalScope"].into_iter().any(|scope| get(&global, scope).is_some())
         && get(&global, "navigator").and_then(|navigator| get(&navigator, "gpu")).is_some()
+}
+
+/// Vendor and architecture, such as `nvidia ampere`: what a browser says of a GPU.
+#[cfg(target_arch = "wasm32")]
+fn browser_name(device: &wgpu::Device) -> Option<String> {
+    let info = js_sys::Reflect::get(device.as_webgpu()?.as_ref(), &"adapterInfo".into()).ok()?;
+    let word = |key: &str| js_sys::Reflect::get(&info, &key.into()).ok()?.as_string();
+    let words = [word("vendor")?, word("architecture")?, word("description")?];
+    Some(words.join(" ").trim().to_owned())
 }
 
 fn kernels<const N: usize>(
