@@ -4,8 +4,8 @@
 
 // Bits that a coordinate may take on the grid of its mesh: what the engine accepts at upload.
 const SPAN: u32 = 84u;
-// 896 bits: degree 8 of 85-bit differences is below 2^692 with its sums, the β test multiplies by at most
-// 2^106 on one side and 2^212 on the other, where the product is below 2^690.
+// 928 bits: degree 8 of 85-bit differences is below 2^690 with its sums, and the β test multiplies by at most
+// 2^212.
 const LIMBS: u32 = 29u;
 
 struct Int {
@@ -39,6 +39,7 @@ fn on_grid(bits: u32, unit: i32) -> vec4u {
     switch u32(exponent) / 32u {
         case 0u: { return vec4u(low, high, 0u, bits >> 31u); }
         case 1u: { return vec4u(0u, low, high, bits >> 31u); }
+        // Below 84 bits nothing is left for a fourth word.
         default: { return vec4u(0u, 0u, low, bits >> 31u); }
     }
 }

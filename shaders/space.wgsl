@@ -2,12 +2,12 @@
 // src/predicates/space.rs.
 
 // As in space.rs, with ε = 2^-23 and a sqrt that errs by 5ε: the angle sum errs by at most
-// (10.6 + 5.01 + 1)·2 + 2.1 = 35.4ε, a product of normals less k|n||m| by 11.1 + 23.2 + 2.1 = 36.4ε of the
+// (10.6 + 5.01 + 1)·2 + 2.1 = 35.4ε, a product of normals less k|n||m| by 11.1 + 23.2 + 0.5 + 2.1 = 36.9ε, cos β being rounded to f32 too, of the
 // product of the four sizes. 64 leaves room. What is flushed, see plane.wgsl, is below 2^-46 here.
 const SPACE_BOUND: f32 = 7.6293945e-6;
 const SPACE_FLUSHED: f32 = 5.684342e-14;
 
-// The vectors a - c, b - c, a - d, b - d, scaled; all zero where no filter can be trusted.
+// The vectors a - c, b - c, a - d, b - d, scaled; all zero where no filter can decide.
 struct Quad {
     p: vec3f,
     q: vec3f,
@@ -19,7 +19,6 @@ fn position3(v: u32) -> vec3u {
     return vec3u(positions[3u * v], positions[3u * v + 1u], positions[3u * v + 2u]);
 }
 
-// The vectors of a quad, and the power of two they were scaled with.
 fn quad_of(a: vec3u, b: vec3u, c: vec3u, d: vec3u) -> Quad {
     let p = bitcast<vec3f>(a) - bitcast<vec3f>(c);
     let q = bitcast<vec3f>(b) - bitcast<vec3f>(c);

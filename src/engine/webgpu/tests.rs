@@ -79,7 +79,8 @@ fn constants_of_the_adjacency_agree() {
     assert_eq!(shader["NONE"], u64::from(NONE));
     assert_eq!(shader["WORKGROUP_SIZE"], u64::from(WORKGROUP_SIZE));
     assert_eq!(shader["BUCKETS_EACH"], u64::from(BUCKETS_EACH));
-    let counters = ["ALLOCATED", "EDGES", "BOUNDARY", "NON_MANIFOLD", "INCONSISTENT", "SEVERAL_FANS"];
+    let counters =
+        ["ALLOCATED", "EDGES", "BOUNDARY", "NON_MANIFOLD", "INCONSISTENT", "SEVERAL_FANS", "MOST_CORNERS"];
     for (name, place) in counters.into_iter().zip(0..) {
         assert_eq!(shader[name], place, "{name}");
     }
@@ -108,6 +109,7 @@ fn params_have_one_layout() {
         cos_shift,
         tail_iterations,
         tail_length,
+        list_below,
         cos_square
     );
     let shader = members(&parse(PHASES), "Params");
