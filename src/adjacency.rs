@@ -119,3 +119,50 @@ impl Adjacency {
         result
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// ```text
+    ///  3-----2
+    ///  | \ 1 |     triangles 0: (0, 1, 3), 1: (1, 2, 3)
+    ///  | 0 \ |
+    ///  0-----1
+    /// ```
+    #[test]
+    fn two_triangles_share_one_edge() {
+        let adjacency = Adjacency::new(4, &[0, 1, 3, 1, 2, 3]);
+        assert_eq!(adjacency.twins, [NONE, 5, NONE, NONE, NONE, 1]);
+        assert_eq!((adjacency.edges, adjacency.boundary), (5, 4));
+    }
+
+    /// Three triangles at the edge 0-1, like the pages of a book.
+    #[test]
+    fn an_edge_of_three_triangles_is_frozen() {
+        let adjacency = Adjacency::new(5, &[0, 1, 2, 1, 0, 3, 0, 1, 4]);
+        assert_eq!(adjacency.twins, [NONE; 9]);
+        assert_eq!((adjacency.edges, adjacency.boundary, adjacency.non_manifold), (7, 6, 1));
+    }
+
+    #[test]
+    fn an_edge_between_triangles_turned_against_each_other_is_frozen() {
+        let adjacency = Adjacency::new(4, &[0, 1, 2, 0, 1, 3]);
+        assert_eq!(adjacency.twins, [NONE; 6]);
+        assert_eq!((adjacency.boundary, adjacency.inconsistent), (4, 1));
+    }
+
+    /// (0, 0, 1) has the edge 0-1 twice and the edge 0-0.
+    #[test]
+    fn a_triangle_is_not_its_own_neighbour() {
+        let adjacency = Adjacency::new(2, &[0, 0, 1]);
+        assert_eq!(adjacency.twins, [NONE; 3]);
+        assert_eq!((adjacency.boundary, adjacency.non_manifold), (1, 1));
+    }
+
+    #[test]
+    fn unreferenced_vertices_have_no_edges() {
+        assert_eq!(Adjacency::new(7, &[]), Adjacency::default());
+        assert_eq!(Adjacency::new(9, &[8, 4, 6]).boundary, 3);
+    }
+}

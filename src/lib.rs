@@ -14,7 +14,8 @@
 //!
 //! The rooms: [`Mesh`] is checked input; `adjacency` finds twins, `star` walks around a vertex, `winding` and
 //! `frozen` know what a dirty mesh adds; `predicates` decide exactly; `phases` are the four phases of an
-//! iteration, `engine` runs them on the CPU or through the shaders of the same names; `session` is the loop.
+//! iteration, `engine` runs them on the CPU or through the shaders of the same names; `session` is the loop, `options`
+//! and `outcome` are what goes in and out.
 //! Beside them: [`quality`] measures and audits, [`io`] reads and writes, [`families`] generates.
 
 mod adjacency;
@@ -24,6 +25,8 @@ pub mod families;
 mod frozen;
 pub mod io;
 mod mesh;
+mod options;
+mod outcome;
 mod phases;
 mod predicates;
 pub mod quality;
@@ -34,5 +37,9 @@ mod winding;
 pub use adjacency::Adjacency;
 pub use error::Error;
 pub use mesh::{Dimension, MAX_TRIANGLES, Mesh, NONE};
+pub use options::{Backend, Options, Order};
+pub use outcome::{Iteration, Outcome, Reason, Reasons, Status, Timings};
 pub use predicates::cos_degrees;
-pub use session::*;
+pub use session::Session;
+#[cfg(not(target_arch = "wasm32"))]
+pub use session::make_delaunay;

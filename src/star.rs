@@ -155,3 +155,72 @@ pub(crate) fn any_in_either(
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Adjacency;
+
+    /// The vertices opposite to vertex `v`'s corners, walked from its first one.
+    fn around(vertices: usize, triangles: &[u32], v: u32) -> Vec<[u32; 2]> {
+        let twins = Adjacency::new(vertices, triangles).twins;
+        let fans = Fans::new(vertices, triangles, &twins);
+        let corner = triangles.iter().position(|&u| u == v).map_or(NONE, |h| h as u32);
+        let ends = |x| [next(x), prev(x)].map(|h| triangles[h as usize]);
+        let mut ends: Vec<_> = Star::new(triangles, &twins, &fans, corner).map(ends).collect();
+        ends.sort_unstable();
+        ends
+    }
+
+    /// ```text
+    ///   3---2
+    ///   | \ | \      vertex 1 has an open fan of three triangles, whichever of them the walk begins in
+    ///   0---1--4
+    /// ```
+    #[test]
+    fn an_open_fan_is_walked_in_both_directions() {
+        for triangles in
+            [[0, 1, 3, 1, 2, 3, 4, 2, 1], [1, 2, 3, 4, 2, 1, 0, 1, 3], [4, 2, 1, 0, 1, 3, 1, 2, 3]]
+        {
+            assert_eq!(around(5, &triangles, 1), [[2, 3], [3, 0], [4, 2]]);
+        }
+    }
+
+    #[test]
+    fn a_closed_fan_is_walked_once() {
+        assert_eq!(around(4, &[0, 1, 2, 0, 2, 3, 0, 3, 1], 0), [[1, 2], [2, 3], [3, 1]]);
+    }
+
+    /// ```text
+    ///   1       3
+    ///   | \   / |
+    ///   |   0   |    a bow-tie: two fans at vertex 0
+    ///   | /   \ |
+    ///   2       4
+    /// ```
+    #[test]
+    fn all_fans_of_a_bow_tie_are_walked() {
+        let triangles = [0, 1, 2, 0, 4, 3];
+        assert_eq!(around(5, &triangles, 0), [[1, 2], [4, 3]]);
+        assert_eq!(around(5, &triangles, 1), [[2, 0]]);
+        let fans = Fans::new(5, &triangles, &[NONE; 6]);
+        assert_eq!(fans.table, [5, NONE, NONE, NONE, NONE, 0, 3, NONE]);
+    }
+
+    /// The corners (0, 1, 2), (0, 2, 3), … (0, n, 1) are one fan; a walk from either end of the spoke 1-0 ends
+    /// after at most the shorter star.
+    #[test]
+    fn the_shorter_star_decides() {
+        let triangles: Vec<u32> = (1..=100).flat_map(|i| [0, i, i % 100 + 1]).collect();
+        let twins = Adjacency::new(101, &triangles).twins;
+        let fans = Fans::default();
+        let star = |corner| Star::new(&triangles, &twins, &fans, corner);
+        let steps = std::cell::Cell::new(0);
+        let never = |_| {
+            steps.set(steps.get() + 1);
+            false
+        };
+        assert!(!any_in_either((star(0), never), (star(1), never)));
+        assert!(steps.get() <= 2 * 2 + 1, "{}", steps.get());
+    }
+}

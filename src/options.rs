@@ -1,0 +1,48 @@
+//! What the caller of a run can choose.
+
+/// Which engine runs the phases.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Backend {
+    /// The GPU where there is one that can take the mesh, else the CPU; the outcome says which and why.
+    #[default]
+    Auto,
+    /// The CPU. Takes every mesh.
+    Cpu,
+    /// The GPU (WebGPU compute), or an error.
+    Gpu,
+}
+
+/// Which of the many valid orders of flips is taken.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Order {
+    /// The parallel pipeline: the same bits on every engine after every iteration.
+    #[default]
+    Reproducible,
+    /// Lawson's sequential algorithm on the CPU: faster on one thread, no iterations to watch.
+    Any,
+}
+
+/// What the caller can choose.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Options {
+    /// Which engine.
+    pub backend: Backend,
+    /// β: the largest angle in degrees, 0 to 180, between the normals of two triangles whose edge may
+    /// flip, before and after (3D only).
+    pub max_normal_angle: f64,
+    /// Stop after so many iterations; `None`: run to the end, which is always reached.
+    pub max_iterations: Option<u32>,
+    /// Reproducible pipeline or Lawson's algorithm.
+    pub order: Order,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            backend: Backend::Auto,
+            max_normal_angle: 10.0,
+            max_iterations: None,
+            order: Order::Reproducible,
+        }
+    }
+}
