@@ -60,7 +60,7 @@ const levels = [
   },
 ];
 
-/** Each target in tests/ is a level, described by the first `//!` line of its file. */
+/** Each target in tests/ is a level, described by the first sentence of its file's `//!` lines. */
 function integrationTests() {
   const metadata = spawnSync('cargo', ['metadata', '--no-deps', '--format-version', '1'], {
     encoding: 'utf8',
@@ -77,10 +77,15 @@ function integrationTests() {
     .sort((a, b) => (a.name < b.name ? -1 : 1))
     .map((target) => ({
       name: target.name,
-      what: readFileSync(target.src_path, 'utf8').match(/^\/\/! *(.+)$/m)?.[1].trim() ?? '(its file has no //! line)',
+      what: firstSentence(readFileSync(target.src_path, 'utf8')) ?? '(its file has no //! line)',
       checks: [['cargo', 'test', '--test', target.name]],
       counts: true,
     }));
+}
+
+function firstSentence(source) {
+  const [block] = source.match(/^(\/\/!.*\n)+/m) ?? [];
+  return block?.replace(/^\/\/! ?/gm, '').replace(/\s+/g, ' ').trim().split(/(?<=\.) /)[0].replace(/\.$/, '');
 }
 
 /** Runs a command, passes its output on as it comes, and gives its exit status and output when it ends. */
