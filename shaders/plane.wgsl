@@ -116,7 +116,7 @@ fn verdict_in_plane_exact(a: vec2u, b: vec2u, c: vec2u, d: vec2u, winding: i32) 
     var factors = FACTORS;
     // Below 2^30 everything fits 128 bits, in registers; a lattice takes this path for every edge.
     if widest.x < 0x40000000u && widest.y == 0u && widest.z == 0u {
-        var sums: array<vec3u, 6>;
+        var sums = array<vec3u, 6>();
         for (var i = 0u; i < 6u; i++) {
             let f = factors[i];
             sums[i] = narrow_sum(v[f.x], v[f.y], v[f.z], v[f.w], i != DOT1 && i != DOT2);

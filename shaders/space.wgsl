@@ -185,7 +185,7 @@ fn verdict_in_space_exact(a: vec3u, b: vec3u, c: vec3u, d: vec3u, angle_only: bo
     var at = 0u;
     for (var i = 0u; i < 4u; i++) {
         for (var j = i; j < 4u; j++) {
-            var sum: Int;
+            var sum = Int();
             for (var axis = 0u; axis < 3u; axis++) {
                 var term = product(v[3u * i + axis], v[3u * j + axis]);
                 sum = add(&sum, &term, false);
@@ -199,7 +199,7 @@ fn verdict_in_space_exact(a: vec3u, b: vec3u, c: vec3u, d: vec3u, angle_only: bo
     for (var i = 0u; i < 10u; i++) {
         let f = normal_dots[i];
         // The first product, then the difference to the second.
-        var value: Int;
+        var value = Int();
         for (var k = 0u; k < 2u; k++) {
             var x = unpacked(dots[f[2u * k]]);
             var y = unpacked(dots[f[2u * k + 1u]]);
@@ -257,7 +257,7 @@ fn exceeds_angle(squares: ptr<function, array<Int, 3>>) -> bool {
     // (n·m)²·2^shift against n²·m²·mantissa².
     var sides: array<Int, 2>;
     for (var i = 0u; i < 2u; i++) {
-        var factor: Int;
+        var factor = Int();
         if i == 0u {
             factor.len = params.cos_shift / 32u + 1u;
             factor.limbs[factor.len - 1u] = 1u << (params.cos_shift % 32u);
