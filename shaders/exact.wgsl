@@ -86,7 +86,7 @@ fn multiply_words(x: u32, y: u32) -> vec2u {
 }
 
 fn widen(x: vec4u) -> Int {
-    var result: Int;
+    var result = Int();
     result.negative = x.w == 1u;
     result.len = select(select(select(0u, 1u, x.x != 0u), 2u, x.y != 0u), 3u, x.z != 0u);
     result.limbs[0] = x.x;
@@ -115,7 +115,7 @@ fn compare_magnitude(x: ptr<function, Int>, y: ptr<function, Int>) -> i32 {
 }
 
 fn multiply(x: ptr<function, Int>, y: ptr<function, Int>) -> Int {
-    var result: Int;
+    var result = Int();
     result.negative = (*x).negative != (*y).negative;
     if (*x).len == 0u || (*y).len == 0u {
         return result;
@@ -141,7 +141,7 @@ fn multiply(x: ptr<function, Int>, y: ptr<function, Int>) -> Int {
 
 // x + y, or x - y.
 fn add(x: ptr<function, Int>, y: ptr<function, Int>, subtract: bool) -> Int {
-    var result: Int;
+    var result = Int();
     let y_negative = (*y).negative != subtract;
     if (*x).negative == y_negative {
         result.negative = y_negative;
