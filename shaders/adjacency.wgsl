@@ -13,6 +13,7 @@ const BOUNDARY: u32 = 2u;
 const NON_MANIFOLD: u32 = 3u;
 const INCONSISTENT: u32 = 4u;
 const SEVERAL_FANS: u32 = 5u;
+const MOST_CORNERS: u32 = 6u;
 
 struct Params {
     half_edges: u32,
@@ -34,6 +35,7 @@ struct Params {
 var<workgroup> sums: array<u32, WORKGROUP_SIZE>;
 var<workgroup> base: u32;
 var<workgroup> kinds: array<atomic<u32>, 6>;
+var<workgroup> most_corners: atomic<u32>;
 
 fn next(h: u32) -> u32 {
     return select(h + 1u, h - 2u, h % 3u == 2u);
@@ -159,7 +161,7 @@ fn count_corners(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgrou
     }
 }
 
-// Counts the vertices whose first fan does not hold all their corners.
+// Counts the vertices whose first fan does not hold all their corners, and finds the most corners at one.
 @compute @workgroup_size(WORKGROUP_SIZE)
 fn count_fans(
     @builtin(global_invocation_id) id: vec3u,
@@ -168,11 +170,15 @@ fn count_fans(
 ) {
     for (var v = id.x; v < params.vertices; v += groups.x * WORKGROUP_SIZE) {
         let corners = atomicLoad(&buckets[v]);
+        atomicMax(&most_corners, corners);
         if corners > 1u && fan_length(NONE - atomicLoad(&buckets[params.buckets + v])) < corners {
             atomicAdd(&kinds[SEVERAL_FANS], 1u);
         }
     }
     add_kinds(local);
+    if local == 0u {
+        atomicMax(&counters[MOST_CORNERS], atomicLoad(&most_corners));
+    }
 }
 
 // Corners of the fan that `start` belongs to.

@@ -4,8 +4,8 @@
 
 // Bits that a coordinate may take on the grid of its mesh: what the engine accepts at upload.
 const SPAN: u32 = 84u;
-// 896 bits: degree 8 of 85-bit differences is below 2^692 with its sums, the β test multiplies by at most
-// 2^106 on one side and 2^212 on the other, where the product is below 2^690.
+// 928 bits: degree 8 of 85-bit differences is below 2^690 with its sums, and the β test multiplies by at most
+// 2^212.
 const LIMBS: u32 = 29u;
 
 struct Int {
@@ -39,6 +39,7 @@ fn on_grid(bits: u32, unit: i32) -> vec4u {
     switch u32(exponent) / 32u {
         case 0u: { return vec4u(low, high, 0u, bits >> 31u); }
         case 1u: { return vec4u(0u, low, high, bits >> 31u); }
+        // Below 84 bits nothing is left for a fourth word.
         default: { return vec4u(0u, 0u, low, bits >> 31u); }
     }
 }
@@ -85,7 +86,7 @@ fn multiply_words(x: u32, y: u32) -> vec2u {
 }
 
 fn widen(x: vec4u) -> Int {
-    var result: Int;
+    var result = Int();
     result.negative = x.w == 1u;
     result.len = select(select(select(0u, 1u, x.x != 0u), 2u, x.y != 0u), 3u, x.z != 0u);
     result.limbs[0] = x.x;
@@ -114,7 +115,7 @@ fn compare_magnitude(x: ptr<function, Int>, y: ptr<function, Int>) -> i32 {
 }
 
 fn multiply(x: ptr<function, Int>, y: ptr<function, Int>) -> Int {
-    var result: Int;
+    var result = Int();
     result.negative = (*x).negative != (*y).negative;
     if (*x).len == 0u || (*y).len == 0u {
         return result;
@@ -140,7 +141,7 @@ fn multiply(x: ptr<function, Int>, y: ptr<function, Int>) -> Int {
 
 // x + y, or x - y.
 fn add(x: ptr<function, Int>, y: ptr<function, Int>, subtract: bool) -> Int {
-    var result: Int;
+    var result = Int();
     let y_negative = (*y).negative != subtract;
     if (*x).negative == y_negative {
         result.negative = y_negative;

@@ -24,9 +24,9 @@ fn is_running(index: u32) -> bool {
     return atomicLoad(&history[entry(index, FLIPS)]) > 0u;
 }
 
-// Whether this iteration builds the list: a flip appends six triangles at most.
+// Whether this iteration builds the list for the next one.
 fn builds_list(index: u32) -> bool {
-    return atomicLoad(&history[entry(index, FLIPS)]) < params.triangles / 24u || params.triangles <= 4096u;
+    return atomicLoad(&history[entry(index, FLIPS)]) < params.list_below;
 }
 
 // Appends a triangle to the list of the next iteration, once.

@@ -38,7 +38,7 @@ fn verdict_of(h: u32, g: u32) -> u32 {
     let b = triangles[g];
     let c = triangles[prev(h)];
     let d = triangles[prev(g)];
-    var verdict: u32;
+    var verdict = DELAUNAY;
     if params.dimension == 2u {
         let winding = select(1, -1, is_clockwise(h / 3u));
         verdict = verdict_in_plane(position2(a), position2(b), position2(c), position2(d), winding);

@@ -104,7 +104,7 @@ const AREA2: u32 = 5u;
 fn verdict_in_plane_exact(a: vec2u, b: vec2u, c: vec2u, d: vec2u, winding: i32) -> u32 {
     let unit = min(min(unit2(a), unit2(b)), min(unit2(c), unit2(d)));
     var points = array<vec2u, 4>(a, b, c, d);
-    var v: array<vec4u, 8>;
+    var v = array<vec4u, 8>();
     var widest = vec4u();
     for (var i = 0u; i < 8u; i++) {
         // p = a - c, q = b - c, r = a - d, s = b - d.
@@ -129,7 +129,7 @@ fn verdict_in_plane_exact(a: vec2u, b: vec2u, c: vec2u, d: vec2u, winding: i32) 
         let fold = flat || sums[AREA1].z == turned || sums[AREA2].z == turned;
         return select(LABELLED, BLOCKED_BY + REASON_FOLD, fold);
     }
-    var wide: array<Int, 4>;
+    var wide = array<Int, 4>();
     var fold = false;
     for (var i = 0u; i < 6u; i++) {
         let f = factors[i];

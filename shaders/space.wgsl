@@ -2,12 +2,12 @@
 // src/predicates/space.rs.
 
 // As in space.rs, with ε = 2^-23 and a sqrt that errs by 5ε: the angle sum errs by at most
-// (10.6 + 5.01 + 1)·2 + 2.1 = 35.4ε, a product of normals less k|n||m| by 11.1 + 23.2 + 2.1 = 36.4ε of the
+// (10.6 + 5.01 + 1)·2 + 2.1 = 35.4ε, a product of normals less k|n||m| by 11.1 + 23.2 + 0.5 + 2.1 = 36.9ε, cos β being rounded to f32 too, of the
 // product of the four sizes. 64 leaves room. What is flushed, see plane.wgsl, is below 2^-46 here.
 const SPACE_BOUND: f32 = 7.6293945e-6;
 const SPACE_FLUSHED: f32 = 5.684342e-14;
 
-// The vectors a - c, b - c, a - d, b - d, scaled; all zero where no filter can be trusted.
+// The vectors a - c, b - c, a - d, b - d, scaled; all zero where no filter can decide.
 struct Quad {
     p: vec3f,
     q: vec3f,
@@ -19,7 +19,6 @@ fn position3(v: u32) -> vec3u {
     return vec3u(positions[3u * v], positions[3u * v + 1u], positions[3u * v + 2u]);
 }
 
-// The vectors of a quad, and the power of two they were scaled with.
 fn quad_of(a: vec3u, b: vec3u, c: vec3u, d: vec3u) -> Quad {
     let p = bitcast<vec3f>(a) - bitcast<vec3f>(c);
     let q = bitcast<vec3f>(b) - bitcast<vec3f>(c);
@@ -118,7 +117,7 @@ struct Dot {
 }
 
 fn packed(x: ptr<function, Int>) -> Dot {
-    var result: Dot;
+    var result = Dot();
     result.negative = (*x).negative;
     for (var i = 0u; i < 6u; i++) {
         result.limbs[i] = (*x).limbs[i];
@@ -127,7 +126,7 @@ fn packed(x: ptr<function, Int>) -> Dot {
 }
 
 fn unpacked(packed_dot: Dot) -> Int {
-    var result: Int;
+    var result = Int();
     result.negative = packed_dot.negative;
     for (var i = 0u; i < 6u; i++) {
         result.limbs[i] = packed_dot.limbs[i];
@@ -175,14 +174,14 @@ fn verdict_in_space_exact(a: vec3u, b: vec3u, c: vec3u, d: vec3u, angle_only: bo
     let unit = min(min(unit3(a), unit3(b)), min(unit3(c), unit3(d)));
     var points = array<vec3u, 4>(a, b, c, d);
     // p, q, r, s: three words each.
-    var v: array<vec4u, 12>;
+    var v = array<vec4u, 12>();
     for (var i = 0u; i < 12u; i++) {
         let axis = i % 3u;
         let from_point = points[(i / 3u) & 1u];
         let to_point = points[2u + i / 6u];
         v[i] = difference(on_grid(from_point[axis], unit), on_grid(to_point[axis], unit));
     }
-    var dots: array<Dot, 10>;
+    var dots = array<Dot, 10>();
     var at = 0u;
     for (var i = 0u; i < 4u; i++) {
         for (var j = i; j < 4u; j++) {
@@ -196,7 +195,7 @@ fn verdict_in_space_exact(a: vec3u, b: vec3u, c: vec3u, d: vec3u, angle_only: bo
         }
     }
     var normal_dots = NORMAL_DOTS;
-    var squares: array<Int, 3>;
+    var squares = array<Int, 3>();
     for (var i = 0u; i < 10u; i++) {
         let f = normal_dots[i];
         // The first product, then the difference to the second.
@@ -229,7 +228,7 @@ fn verdict_in_space_exact(a: vec3u, b: vec3u, c: vec3u, d: vec3u, angle_only: bo
 
 // Whether √(n1²)·dot2 + √(n2²)·dot1 < 0: by the squares, with the signs of what was squared.
 fn is_angle_sum_negative(squares: ptr<function, array<Int, 3>>, dots: ptr<function, array<Dot, 10>>) -> bool {
-    var terms: array<Int, 2>;
+    var terms = array<Int, 2>();
     for (var i = 0u; i < 2u; i++) {
         // n1² with dot2 = r·s, n2² with dot1 = p·q.
         var dot_product = unpacked((*dots)[select(PQ, RS, i == 0u)]);
@@ -256,7 +255,7 @@ fn exceeds_angle(squares: ptr<function, array<Int, 3>>) -> bool {
         return left_sign < right_sign;
     }
     // (n·m)²·2^shift against n²·m²·mantissa².
-    var sides: array<Int, 2>;
+    var sides = array<Int, 2>();
     for (var i = 0u; i < 2u; i++) {
         var factor = Int();
         if i == 0u {

@@ -34,6 +34,8 @@ struct Params {
     tail_iterations: u32,
     // The longest list that the tail takes.
     tail_length: u32,
+    // An iteration builds the list for the next one if the one before it made fewer flips than this.
+    list_below: u32,
     cos_square: vec4u,
 }
 

@@ -2,7 +2,7 @@
 //!
 //! Half-edge h belongs to triangle h / 3 and goes from `triangles[h]` to `triangles[next(h)]`.
 
-use crate::NONE;
+use crate::{Mesh, NONE};
 
 /// The half-edge after `h` in its triangle.
 pub fn next(h: u32) -> u32 {
@@ -100,8 +100,13 @@ pub(crate) fn for_each_edge(vertices: usize, triangles: &[u32], mut visit: impl 
 }
 
 impl Adjacency {
-    /// Matches the half-edges of `triangles`, whose indices are below `vertices`.
-    pub fn new(vertices: usize, triangles: &[u32]) -> Self {
+    /// Matches the half-edges of a mesh.
+    pub fn new(mesh: &Mesh) -> Self {
+        Self::of_triangles(mesh.vertex_count(), mesh.triangles())
+    }
+
+    /// Matches the half-edges of `triangles`, whose indices must be below `vertices`.
+    pub(crate) fn of_triangles(vertices: usize, triangles: &[u32]) -> Self {
         let mut result = Self { twins: vec![NONE; triangles.len()], ..Self::default() };
         for_each_edge(vertices, triangles, |half_edges| {
             result.edges += 1;
@@ -132,7 +137,7 @@ mod tests {
     /// ```
     #[test]
     fn two_triangles_share_one_edge() {
-        let adjacency = Adjacency::new(4, &[0, 1, 3, 1, 2, 3]);
+        let adjacency = Adjacency::of_triangles(4, &[0, 1, 3, 1, 2, 3]);
         assert_eq!(adjacency.twins, [NONE, 5, NONE, NONE, NONE, 1]);
         assert_eq!((adjacency.edges, adjacency.boundary), (5, 4));
     }
@@ -140,14 +145,14 @@ mod tests {
     /// Three triangles at the edge 0-1, like the pages of a book.
     #[test]
     fn an_edge_of_three_triangles_is_frozen() {
-        let adjacency = Adjacency::new(5, &[0, 1, 2, 1, 0, 3, 0, 1, 4]);
+        let adjacency = Adjacency::of_triangles(5, &[0, 1, 2, 1, 0, 3, 0, 1, 4]);
         assert_eq!(adjacency.twins, [NONE; 9]);
         assert_eq!((adjacency.edges, adjacency.boundary, adjacency.non_manifold), (7, 6, 1));
     }
 
     #[test]
     fn an_edge_between_triangles_turned_against_each_other_is_frozen() {
-        let adjacency = Adjacency::new(4, &[0, 1, 2, 0, 1, 3]);
+        let adjacency = Adjacency::of_triangles(4, &[0, 1, 2, 0, 1, 3]);
         assert_eq!(adjacency.twins, [NONE; 6]);
         assert_eq!((adjacency.boundary, adjacency.inconsistent), (4, 1));
     }
@@ -155,14 +160,14 @@ mod tests {
     /// (0, 0, 1) has the edge 0-1 twice and the edge 0-0.
     #[test]
     fn a_triangle_is_not_its_own_neighbour() {
-        let adjacency = Adjacency::new(2, &[0, 0, 1]);
+        let adjacency = Adjacency::of_triangles(2, &[0, 0, 1]);
         assert_eq!(adjacency.twins, [NONE; 3]);
         assert_eq!((adjacency.boundary, adjacency.non_manifold), (1, 1));
     }
 
     #[test]
     fn unreferenced_vertices_have_no_edges() {
-        assert_eq!(Adjacency::new(7, &[]), Adjacency::default());
-        assert_eq!(Adjacency::new(9, &[8, 4, 6]).boundary, 3);
+        assert_eq!(Adjacency::of_triangles(7, &[]), Adjacency::default());
+        assert_eq!(Adjacency::of_triangles(9, &[8, 4, 6]).boundary, 3);
     }
 }

@@ -20,7 +20,7 @@ pub struct Edges {
 impl Edges {
     /// The edges of `triangles`, whose indices are below `vertices`.
     pub fn new(vertices: usize, triangles: &[u32]) -> Self {
-        let twins = Adjacency::new(vertices, triangles).twins;
+        let twins = Adjacency::of_triangles(vertices, triangles).twins;
         let mut edges = Self::default();
         for (h, &twin) in (0u32..).zip(&twins) {
             // NONE is above every half-edge.

@@ -28,7 +28,8 @@ pub struct Options {
     /// Which engine.
     pub backend: Backend,
     /// β: the largest angle in degrees, 0 to 180, between the normals of two triangles whose edge may
-    /// flip, before and after (3D only).
+    /// flip, before and after (3D only). An edge of the input over β is a crease and stays, even if flips around
+    /// it lower its angle.
     pub max_normal_angle: f64,
     /// Stop after so many iterations; `None`: run to the end, which is always reached.
     pub max_iterations: Option<u32>,

@@ -3,7 +3,7 @@
 /// Why a non-Delaunay edge was left.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Reason {
-    /// The triangles' normals differ by more than β before or after the flip.
+    /// The triangles' normals differ by more than β before or after the flip, or did so in the input.
     Angle,
     /// A new triangle would turn over (3D) or not be strictly positive (2D).
     Fold,
@@ -76,7 +76,7 @@ pub struct Iteration {
     /// Non-Delaunay edges of two triangles that may not flip, in the whole mesh, before the iteration: by
     /// `Angle`, `Fold` or `Duplicate`. Frozen edges are counted at the end only.
     pub blocked: Reasons,
-    /// Wall time in milliseconds.
+    /// Wall time in milliseconds, the counts for the watcher included.
     pub ms: f64,
 }
 
@@ -92,7 +92,8 @@ pub enum Status {
 /// Wall times in milliseconds.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Timings {
-    /// Making the engine ready: upload, adjacency and the checks around it.
+    /// Making the engine ready: upload, adjacency and the checks around it; for the first session on a GPU
+    /// also the device and its shaders.
     pub adjacency: f64,
     /// The iterations.
     pub flip: f64,

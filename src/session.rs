@@ -2,7 +2,7 @@
 
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 use crate::engine::SharedObjects;
-use crate::engine::{Cpu, Engine, Lawson};
+use crate::engine::{Answer, Cpu, Engine, Lawson};
 #[cfg(feature = "gpu")]
 use crate::engine::{Device, WebGpu};
 use crate::predicates::cos_degrees;
@@ -60,7 +60,7 @@ impl Session {
             return Ok(None);
         }
         let start = Instant::now();
-        let census = self.engine.census().await?;
+        let census = self.ask(|engine| engine.census()).await?;
         let index = self.flips_per_iteration.len() as u32;
         self.iterate(1).await?;
         let ms = ms_since(start);
@@ -77,7 +77,7 @@ impl Session {
     /// flips so far; [`ControlFlow::Break`] stops the run after a complete iteration.
     ///
     /// # Errors
-    /// [`Error::Device`], unless the backend is `Auto`: then the CPU begins again.
+    /// [`Error::Device`], unless the backend is `Auto`: then the CPU takes over.
     pub async fn run(&mut self, mut watch: impl FnMut(u32, u64) -> ControlFlow<()>) -> Result<(), Error> {
         while self.may_continue() {
             self.advance().await?;
@@ -104,7 +104,7 @@ impl Session {
     /// # Errors
     /// [`Error::Device`].
     pub async fn triangles(&mut self) -> Result<Vec<u32>, Error> {
-        self.engine.triangles().await
+        self.ask(|engine| engine.triangles()).await
     }
 
     /// The result so far: reads the triangles back and counts what remains.
@@ -113,8 +113,8 @@ impl Session {
     /// [`Error::Device`].
     pub async fn outcome(&mut self) -> Result<Outcome, Error> {
         let start = Instant::now();
-        let triangles = self.engine.triangles().await?;
-        let census = self.engine.census().await?;
+        let triangles = self.triangles().await?;
+        let census = self.ask(|engine| engine.census()).await?;
         let counts = self.engine.edge_counts();
         let mut remaining = census.blocked;
         remaining[Reason::Stopped] = u64::from(census.labelled);
@@ -149,7 +149,7 @@ impl Session {
     /// # Errors
     /// [`Error::Device`].
     pub async fn edges(&mut self) -> Result<Edges, Error> {
-        let triangles = self.engine.triangles().await?;
+        let triangles = self.triangles().await?;
         Ok(Edges::new(self.mesh.vertex_count(), &triangles))
     }
 
@@ -158,7 +158,7 @@ impl Session {
     /// # Errors
     /// [`Error::Device`].
     pub async fn verify(&mut self) -> Result<Audit, Error> {
-        let triangles = self.engine.triangles().await?;
+        let triangles = self.triangles().await?;
         Ok(audit(&self.mesh, &triangles, self.options.max_normal_angle))
     }
 
@@ -195,25 +195,29 @@ impl Session {
 
     async fn iterate(&mut self, count: u32) -> Result<(), Error> {
         let start = Instant::now();
-        match self.engine.iterate(count).await {
-            Ok(flips) => {
-                self.has_ended = (flips.len() as u32) < count;
-                self.flips_per_iteration.extend(flips);
-            }
-            // Determinism makes up for what the device took with it: the CPU goes the same way again.
-            Err(Error::Device { message }) if self.options.backend == Backend::Auto => {
-                self.fallback = Some(format!("the device failed during the run: {message}"));
-                self.engine = Box::new(self.cpu());
-                self.flips_per_iteration.clear();
-            }
-            Err(error) => return Err(error),
-        }
+        let flips = self.ask(|engine| engine.iterate(count)).await?;
+        self.has_ended = (flips.len() as u32) < count;
+        self.flips_per_iteration.extend(flips);
         self.timings.flip += ms_since(start);
         Ok(())
     }
 
-    fn cpu(&self) -> Cpu {
-        Cpu::new(self.mesh.clone(), cos_degrees(self.options.max_normal_angle))
+    /// Asks the engine. Where the device fails and the backend is `Auto`, the CPU goes the same way again up to
+    /// the last complete iteration, which determinism allows, and is asked instead.
+    async fn ask<T>(
+        &mut self,
+        question: impl for<'a> Fn(&'a mut dyn Engine) -> Answer<'a, T>,
+    ) -> Result<T, Error> {
+        match question(self.engine.as_mut()).await {
+            Err(Error::Device { message }) if self.options.backend == Backend::Auto => {
+                self.fallback = Some(format!("the device failed during the run: {message}"));
+                let cos = cos_degrees(self.options.max_normal_angle);
+                self.engine = Box::new(Cpu::new(self.mesh.clone(), cos));
+                self.engine.iterate(self.flips_per_iteration.len() as u32).await?;
+                question(self.engine.as_mut()).await
+            }
+            answer => answer,
+        }
     }
 }
 
@@ -280,4 +284,101 @@ pub fn make_delaunay(
         session.run(watch).await?;
         session.outcome().await
     })
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "what fails here is a failed test")]
+
+    use super::*;
+    use crate::engine::{Census, EdgeCounts};
+    use pollster::block_on;
+
+    /// A device that is lost at a certain question.
+    struct Failing {
+        cpu: Cpu,
+        questions_left: u32,
+    }
+
+    impl Failing {
+        fn answer<'a, T: 'a>(&'a mut self, ask: impl FnOnce(&'a mut Cpu) -> Answer<'a, T>) -> Answer<'a, T> {
+            if self.questions_left == 0 {
+                let message = "lost on purpose".to_owned();
+                return Box::pin(std::future::ready(Err(Error::Device { message })));
+            }
+            self.questions_left -= 1;
+            ask(&mut self.cpu)
+        }
+    }
+
+    impl Engine for Failing {
+        fn batch(&self) -> u32 {
+            2
+        }
+        fn iterate(&mut self, count: u32) -> Answer<'_, Vec<u32>> {
+            self.answer(|cpu| cpu.iterate(count))
+        }
+        fn census(&mut self) -> Answer<'_, Census> {
+            self.answer(|cpu| cpu.census())
+        }
+        fn triangles(&mut self) -> Answer<'_, Vec<u32>> {
+            self.answer(|cpu| Engine::triangles(cpu))
+        }
+        fn edge_counts(&self) -> EdgeCounts {
+            self.cpu.edge_counts()
+        }
+        fn backend(&self) -> &'static str {
+            "gpu"
+        }
+    }
+
+    fn session(backend: Backend, questions_left: u32) -> Session {
+        let mesh = crate::families::by_name("random 20").unwrap();
+        let options = Options { backend: Backend::Cpu, ..Options::default() };
+        let mut session = block_on(Session::new(mesh, options)).unwrap();
+        let cpu = Cpu::new(session.mesh.clone(), cos_degrees(10.0));
+        session.engine = Box::new(Failing { cpu, questions_left });
+        session.options.backend = backend;
+        session
+    }
+
+    /// What a caller sees of a run: the triangles after every iteration, and the outcome.
+    fn watch(mut session: Session) -> Result<(Vec<Vec<u32>>, Outcome), Error> {
+        block_on(async {
+            let mut seen = Vec::new();
+            while session.step().await?.is_some() {
+                seen.push(session.triangles().await?);
+            }
+            Ok((seen, session.outcome().await?))
+        })
+    }
+
+    #[test]
+    fn a_lost_device_changes_no_result_at_any_moment() {
+        let (expected, outcome) = watch(session(Backend::Auto, u32::MAX)).unwrap();
+        let questions = 3 * expected.len() as u32 + 4;
+        for questions_left in 0..questions {
+            let (seen, other) = watch(session(Backend::Auto, questions_left)).unwrap();
+            assert_eq!(seen, expected, "lost after {questions_left} questions");
+            assert!(other.fallback.is_some_and(|why| why.contains("lost on purpose")));
+            assert_eq!((other.backend, other.status), ("cpu", Status::Done));
+            assert_eq!(other.flips_per_iteration, outcome.flips_per_iteration);
+            assert_eq!(other.remaining, outcome.remaining);
+
+            let mut session = session(Backend::Auto, questions_left);
+            let mut counts = Vec::new();
+            block_on(session.run(|iterations, _| {
+                counts.push(iterations);
+                ControlFlow::Continue(())
+            }))
+            .unwrap();
+            assert!(counts.is_sorted());
+            assert_eq!(block_on(session.outcome()).unwrap().triangles, outcome.triangles);
+        }
+    }
+
+    #[test]
+    fn an_explicit_backend_never_falls_back() {
+        assert!(matches!(watch(session(Backend::Gpu, 4)), Err(Error::Device { .. })));
+    }
 }

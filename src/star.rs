@@ -11,7 +11,6 @@ use crate::adjacency::{next, prev, unflagged};
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Fans {
     pub(crate) table: Vec<u32>,
-    vertices: usize,
 }
 
 impl Fans {
@@ -46,7 +45,7 @@ impl Fans {
             table.extend(fans.iter().map(|&(_, h)| h));
             table.push(NONE);
         }
-        Self { table, vertices }
+        Self { table }
     }
 
     /// The anchors of a vertex with several fans, up to the end of the table; none for any other vertex.
@@ -64,11 +63,6 @@ impl Fans {
                 *anchor = to;
             }
         }
-    }
-
-    /// The anchors, to be moved with their half-edges.
-    pub(crate) fn anchors_mut(&mut self) -> impl Iterator<Item = &mut u32> {
-        self.table[self.vertices..].iter_mut().filter(|anchor| **anchor != NONE)
     }
 }
 
@@ -163,7 +157,7 @@ mod tests {
 
     /// The vertices opposite to vertex `v`'s corners, walked from its first one.
     fn around(vertices: usize, triangles: &[u32], v: u32) -> Vec<[u32; 2]> {
-        let twins = Adjacency::new(vertices, triangles).twins;
+        let twins = Adjacency::of_triangles(vertices, triangles).twins;
         let fans = Fans::new(vertices, triangles, &twins);
         let corner = triangles.iter().position(|&u| u == v).map_or(NONE, |h| h as u32);
         let ends = |x| [next(x), prev(x)].map(|h| triangles[h as usize]);
@@ -212,7 +206,7 @@ mod tests {
     #[test]
     fn the_shorter_star_decides() {
         let triangles: Vec<u32> = (1..=100).flat_map(|i| [0, i, i % 100 + 1]).collect();
-        let twins = Adjacency::new(101, &triangles).twins;
+        let twins = Adjacency::of_triangles(101, &triangles).twins;
         let fans = Fans::default();
         let star = |corner| Star::new(&triangles, &twins, &fans, corner);
         let steps = std::cell::Cell::new(0);

@@ -1,27 +1,31 @@
 //! Which way round the components of a 2D mesh lie: the sign of their total areas.
 
+use crate::NONE;
 use crate::mesh::{Dimension, Mesh};
 use crate::predicates::{area_sign, total_area_sign};
-use crate::{Adjacency, NONE};
 
 /// One bit a triangle: 1 where its edge-connected component has a negative total area. Empty where no
-/// component has, which is known at once when no triangle is clockwise, and in 3D, where it has no meaning.
+/// component has, and in 3D, where it has no meaning.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Winding {
     pub(crate) clockwise: Vec<u32>,
 }
 
 impl Winding {
-    pub(crate) fn new(mesh: &Mesh, adjacency: impl FnOnce() -> Adjacency) -> Self {
-        let triangle = |t: usize| [0, 1, 2].map(|k| mesh.point2(mesh.triangles()[3 * t + k]));
-        let is_clockwise = |t: usize| {
-            let [a, b, c] = triangle(t);
-            area_sign(a, b, c).is_lt()
-        };
-        if mesh.dimension() == Dimension::Three || !(0..mesh.triangle_count()).any(is_clockwise) {
-            return Self::default();
+    /// What the triangles say one by one; `None` where they disagree, and components have to be found.
+    pub(crate) fn of_triangles(mesh: &Mesh) -> Option<Self> {
+        let areas =
+            || (0..mesh.triangle_count()).map(|t| corners(mesh, t)).map(|[a, b, c]| area_sign(a, b, c));
+        if mesh.dimension() == Dimension::Three || areas().all(|area| area.is_ge()) {
+            return Some(Self::default());
         }
-        let twins = adjacency().twins;
+        // Where all triangles are flat no edge flips, whatever the sign.
+        let all = vec![u32::MAX; mesh.triangle_count().div_ceil(32)];
+        areas().all(|area| area.is_le()).then_some(Self { clockwise: all })
+    }
+
+    /// What the components say, joined by `twins`.
+    pub(crate) fn of_components(mesh: &Mesh, twins: &[u32]) -> Self {
         let mut clockwise = vec![0u32; mesh.triangle_count().div_ceil(32)];
         let mut visited = vec![false; mesh.triangle_count()];
         for seed in 0..mesh.triangle_count() {
@@ -41,7 +45,7 @@ impl Winding {
                 }
                 at += 1;
             }
-            if total_area_sign(component.iter().map(|&t| triangle(t))).is_lt() {
+            if total_area_sign(component.iter().map(|&t| corners(mesh, t))).is_lt() {
                 for t in component {
                     clockwise[t / 32] |= 1 << (t % 32);
                 }
@@ -54,4 +58,8 @@ impl Winding {
     pub(crate) fn is_clockwise(&self, t: u32) -> bool {
         self.clockwise.get(t as usize / 32).is_some_and(|word| word >> (t % 32) & 1 == 1)
     }
+}
+
+fn corners(mesh: &Mesh, t: usize) -> [glam::DVec2; 3] {
+    [0, 1, 2].map(|k| mesh.point2(mesh.triangles()[3 * t + k]))
 }

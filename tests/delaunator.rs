@@ -31,7 +31,7 @@ fn edges(triangles: &[u32]) -> HashSet<(u32, u32)> {
 fn scrambled(mesh: &Mesh, random: &mut Rand64) -> Mesh {
     let mut triangles = mesh.triangles().to_vec();
     for _ in 0..triangles.len() {
-        let twins = Adjacency::new(mesh.vertex_count(), &triangles).twins;
+        let twins = Adjacency::new(&mesh.with_triangles(triangles.clone()).unwrap()).twins;
         let h = random.rand_range(0..triangles.len() as u64) as usize;
         let next = |h: usize| if h % 3 == 2 { h - 2 } else { h + 1 };
         let g = twins[h] as usize;
@@ -53,7 +53,7 @@ fn assert_equal_up_to_ties(mesh: &Mesh, options: &Options) {
     let result = make_delaunay(mesh, options, |_, _| ControlFlow::Continue(())).unwrap().triangles;
     let expected = edges(&delaunay(mesh.positions()));
     assert_eq!(edges(&result).len(), expected.len());
-    let twins = Adjacency::new(mesh.vertex_count(), &result).twins;
+    let twins = Adjacency::new(&mesh.with_triangles(result.clone()).unwrap()).twins;
     for (h, &g) in twins.iter().enumerate() {
         let corner = |h: usize, k: usize| result[h / 3 * 3 + (h + k) % 3];
         let (a, b) = (corner(h, 0), corner(h, 1));

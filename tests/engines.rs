@@ -86,8 +86,8 @@ fn gpu_gives_the_digests_of_the_simulation() {
         assert!(outcome.adapter.is_some() && outcome.dispatches > 0);
     }
     refused.dedup();
-    println!("outside the span that the GPU decides exactly: {refused:?}");
-    assert!(refused.len() <= 6, "{refused:?}");
+    // Coordinates outside the span that it decides exactly, or near the largest float.
+    assert_eq!(refused, ["scale-3e38", "scale-3e38-3d", "magnitudes", "magnitudes-3d"]);
 }
 
 #[test]

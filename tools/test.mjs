@@ -60,7 +60,7 @@ const levels = [
   },
   {
     name: 'wasm in Chromium',
-    what: firstLine('tests/wasm.rs'),
+    what: firstSentence(readFileSync('tests/wasm.rs', 'utf8')),
     checks: [[...wasmCargo, 'test', '--test', 'wasm', ...wasm]],
     counts: true,
     env: {
@@ -81,7 +81,7 @@ const levels = [
   },
 ];
 
-/** Each target in tests/ is a level, described by the first `//!` line of its file. */
+/** Each target in tests/ is a level, described by the first sentence of its file's `//!` lines. */
 function integrationTests() {
   const metadata = spawnSync('cargo', ['metadata', '--no-deps', '--format-version', '1'], {
     encoding: 'utf8',
@@ -98,15 +98,15 @@ function integrationTests() {
     .sort((a, b) => (a.name < b.name ? -1 : 1))
     .map((target) => ({
       name: target.name,
-      what: firstLine(target.src_path),
+      what: firstSentence(readFileSync(target.src_path, 'utf8')) ?? '(its file has no //! line)',
       checks: [['cargo', 'test', '--test', target.name]],
       counts: true,
     }));
 }
 
-/** What a test file says of itself. */
-function firstLine(path) {
-  return readFileSync(path, 'utf8').match(/^\/\/! *(.+)$/m)?.[1].trim() ?? '(its file has no //! line)';
+function firstSentence(source) {
+  const [block] = source.match(/^(\/\/!.*\n)+/m) ?? [];
+  return block?.replace(/^\/\/! ?/gm, '').replace(/\s+/g, ' ').trim().split(/(?<=\.) /)[0].replace(/\.$/, '');
 }
 
 /** Runs a command, passes its output on as it comes, and gives its exit status and output when it ends. */

@@ -27,8 +27,9 @@ pub(crate) struct Cpu {
 impl Cpu {
     /// Builds the adjacency; `cos` is the cosine of β.
     pub(crate) fn new(mesh: Arc<Mesh>, cos: f64) -> Self {
-        let adjacency = Adjacency::new(mesh.vertex_count(), mesh.triangles());
-        let winding = Winding::new(&mesh, || adjacency.clone());
+        let adjacency = Adjacency::new(&mesh);
+        let winding =
+            Winding::of_triangles(&mesh).unwrap_or_else(|| Winding::of_components(&mesh, &adjacency.twins));
         let counts = EdgeCounts::from(&adjacency);
         let triangles = mesh.triangles().to_vec();
         let fans = Fans::new(mesh.vertex_count(), &triangles, &adjacency.twins);

@@ -2,8 +2,8 @@
 //! it; it is the fast path on one thread for those who do not need the order of the parallel phases.
 
 use super::{Answer, Census, Cpu, EdgeCounts, Engine};
-use crate::adjacency::{next, prev, unflagged};
-use crate::phases::{Verdict, flip_edge, slot, verdict};
+use crate::adjacency::{prev, unflagged};
+use crate::phases::{Verdict, flip, verdict};
 use crate::{NONE, Reason};
 
 /// The state of the CPU engine, flipped in another order.
@@ -16,7 +16,7 @@ impl Lawson {
         Self { cpu }
     }
 
-    /// Flips until nothing is left to flip, and returns the number of flips.
+    /// Flips until nothing is left to flip, or the number of flips, which it returns, is at its limit.
     fn flip_all(&mut self) -> u32 {
         let mut flips = 0;
         loop {
@@ -33,6 +33,9 @@ impl Lawson {
                     Verdict::Labelled => {
                         self.flip_one(h, g);
                         flips += 1;
+                        if flips == u32::MAX {
+                            return flips;
+                        }
                         stack.extend([h, prev(h), g, prev(g)]);
                     }
                     Verdict::Blocked(Reason::Duplicate) => duplicates = true,
@@ -50,10 +53,7 @@ impl Lawson {
         let Cpu { triangles, twins, fans, selected, .. } = &mut self.cpu;
         let (t, u) = (h as usize / 3, g as usize / 3);
         (selected[t], selected[u]) = (g, h);
-        for moved in [next(h), next(g)] {
-            fans.move_anchor(triangles[moved as usize], moved, slot(selected, moved));
-        }
-        flip_edge(triangles, twins, selected, h, g);
+        flip(triangles, twins, fans, selected, [h.min(g) / 3].into_iter());
         (selected[t], selected[u]) = (NONE, NONE);
     }
 }

@@ -24,7 +24,11 @@ fn assert_same(what: &str, cpu: &[u32], gpu: &[u32]) {
 
 /// Runs both engines phase by phase to the end.
 fn compare(name: &str, degrees: f64) {
-    let mesh = Arc::new(families::by_name(name).unwrap());
+    compare_mesh(name, families::by_name(name).unwrap(), degrees);
+}
+
+fn compare_mesh(name: &str, mesh: Mesh, degrees: f64) {
+    let mesh = Arc::new(mesh);
     let (mut cpu, mut gpu) = engines(&mesh, degrees);
     assert_same("twins", &cpu.twins, &block_on(gpu.twins()).unwrap());
     assert_eq!(cpu.edge_counts(), gpu.edge_counts(), "{name}");
@@ -90,9 +94,45 @@ fn surfaces_agree_phase_by_phase() {
 #[test]
 fn long_runs_agree_in_batches() {
     compare_runs("strips 400", 10.0);
-    compare_runs("fan2 1000", 10.0);
+    compare_runs("fan2 400", 10.0);
     compare_runs("random 100", 10.0);
     compare_runs("uvsphere 60", 10.0);
+}
+
+/// Lists while few edges flip, sweeps while many do, and back: the flips of `strips` rise and fall.
+#[test]
+fn sweeps_and_lists_take_turns() {
+    for (name, list_below) in [("strips 100", 20), ("random 30", 64), ("uvsphere 30", 64), ("fan2 200", 8)] {
+        let mesh = Arc::new(families::by_name(name).unwrap());
+        let (mut cpu, mut gpu) = engines(&mesh, 10.0);
+        gpu.set_list_below(list_below);
+        for count in [1, 3, 20, u32::MAX, 5] {
+            let flips = block_on(cpu.iterate(count)).unwrap();
+            assert_same(name, &flips, &block_on(gpu.iterate(count)).unwrap());
+            assert_same(name, &cpu.triangles, &block_on(gpu.triangles()).unwrap());
+        }
+    }
+}
+
+/// Four sheets that meet in their corners only: vertices of several fans, whose anchors move.
+#[test]
+fn anchors_move_alike() {
+    let sheet = families::by_name("random 8").unwrap();
+    let count = sheet.vertex_count() as u32;
+    let (mut positions, mut triangles) = (Vec::new(), Vec::new());
+    for copy in 0..4 {
+        let turn = |p: &[f32]| match copy {
+            0 => [p[0], p[1]],
+            1 => [-p[1], p[0]],
+            2 => [-p[0], -p[1]],
+            _ => [p[1], -p[0]],
+        };
+        positions.extend(sheet.positions().chunks(2).flat_map(turn));
+        let shared = |v: u32| if v == 0 { 0 } else { v + copy * count };
+        triangles.extend(sheet.triangles().iter().map(|&v| shared(v)));
+    }
+    assert_eq!(sheet.positions()[..2], [0.0, 0.0]);
+    compare_mesh("four sheets", Mesh::new(crate::Dimension::Two, positions, triangles).unwrap(), 10.0);
 }
 
 #[test]

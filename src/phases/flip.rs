@@ -4,7 +4,7 @@ use crate::NONE;
 use crate::adjacency::{CREASE, next, prev, unflagged};
 use crate::star::Fans;
 
-/// Flips the selected edges of the active triangles, and moves the anchors of the fans.
+/// Flips the selected edges of the active triangles, and moves the anchors of the fans with them.
 pub(crate) fn flip(
     triangles: &mut [u32],
     twins: &mut [u32],
@@ -17,18 +17,18 @@ pub(crate) fn flip(
         if g != NONE {
             let h = selected[g as usize / 3];
             if h < g {
+                for moved in [next(h), next(g)] {
+                    fans.move_anchor(triangles[moved as usize], moved, slot(selected, moved));
+                }
                 flip_edge(triangles, twins, selected, h, g);
             }
         }
     }
-    for anchor in fans.anchors_mut() {
-        *anchor = slot(selected, *anchor);
-    }
 }
 
-/// Where half-edge `x`, given with its flag, will be after the iteration: the half-edge after a selected one moves into the place
-/// of the selected one's twin. A function of the state before the phase alone.
-pub(crate) fn slot(selected: &[u32], entry: u32) -> u32 {
+/// Where the half-edge that an entry of `twins` names will be after the iteration: the half-edge after a
+/// selected one moves into the place of the selected one's twin. A function of the state before the phase.
+fn slot(selected: &[u32], entry: u32) -> u32 {
     let x = unflagged(entry);
     if x == NONE {
         return NONE;
@@ -39,7 +39,7 @@ pub(crate) fn slot(selected: &[u32], entry: u32) -> u32 {
 
 /// Flips one selected edge. Reads the twins of its own two triangles only; writes those, and the entries of
 /// the neighbours that are not selected themselves.
-pub(crate) fn flip_edge(triangles: &mut [u32], twins: &mut [u32], selected: &[u32], h: u32, g: u32) {
+fn flip_edge(triangles: &mut [u32], twins: &mut [u32], selected: &[u32], h: u32, g: u32) {
     let [hn, hp, gn, gp] = [next(h), prev(h), next(g), prev(g)];
     let [outer_hn, outer_hp, outer_gn, outer_gp] = [hn, hp, gn, gp].map(|x| twins[x as usize]);
     let [c, d] = [hp, gp].map(|x| triangles[x as usize]);

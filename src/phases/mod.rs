@@ -18,7 +18,7 @@ mod label;
 mod select;
 
 pub(crate) use crease::flag_creases;
-pub(crate) use flip::{flip, flip_edge, slot};
+pub(crate) use flip::flip;
 pub(crate) use frontier::Frontier;
 pub(crate) use label::{Verdict, label, verdict};
 pub(crate) use select::select;

@@ -13,7 +13,7 @@ use std::cmp::Ordering;
 /// computed dot product of two differences by at most 5.01ε·L.
 /// - angle sum |n1|·dot2 + |n2|·dot1: (7 + 5.01 + 1)ε·L1·L2 for each term, 2.1ε for the sum: 28.2ε·L1·L2;
 /// - n·n': (4.01 + 4.01 + 3)ε·L·L' = 11.1ε·L·L', which also decides `turns_over`;
-/// - n·n' - k|n||n'|: 11.1ε + (7 + 7 + 2)ε + 1.1ε = 28.2ε·L·L'.
+/// - n·n' - k|n||n'|: 11.1ε + (7 + 7 + 2)ε + 2.1ε = 29.2ε·L·L'.
 ///
 /// The products L·L' are rounded eight times; 32 leaves room for that. f32 inputs can neither overflow nor
 /// underflow degree 4 in f64.
@@ -108,8 +108,7 @@ impl Quad {
     pub(crate) fn turns_over(&self) -> bool {
         let old = [self.p.cross(self.q), self.s.cross(self.r)];
         let new = [self.r.cross(self.p), self.q.cross(self.s)];
-        // Every factor of the four bounds is one of the eight sizes at most twice: the largest of each
-        // triangle's serves for all.
+        // Each bound is a product of four of the four sizes, one of them twice.
         let sizes = [self.p, self.q, self.r, self.s].map(size);
         let largest = sizes.iter().fold(0.0f64, |x, &y| x.max(y));
         let bound = BOUND * (largest * largest) * (largest * largest);

@@ -54,7 +54,8 @@ pub struct Args {
     ///
     /// Only for surfaces in space. An edge flips only if the normals of its two triangles differ by at most
     /// β before the flip, and those of the new triangles after it: small values keep the shape, large ones
-    /// leave fewer edges that are not Delaunay. Edges left for this reason are counted as `angle`.
+    /// leave fewer edges that are not Delaunay. An edge over β in the input is a crease and stays. Edges left
+    /// for this reason are counted as `angle`.
     #[arg(long, value_name = "DEG", default_value_t = 10.0, value_parser = degrees, allow_negative_numbers = true)]
     pub max_normal_angle: f64,
 

@@ -8,12 +8,14 @@ use wgpu::BufferUsages;
 
 /// As in `shaders/adjacency.wgsl`.
 pub(super) const BUCKETS_EACH: u32 = 8;
-const COUNTERS: usize = 6;
+const COUNTERS: usize = 7;
 
 /// What the host learns of the adjacency; the twins stay on the device.
 pub(super) struct Found {
     pub(super) counts: EdgeCounts,
     pub(super) has_several_fans: bool,
+    /// The most triangles at one vertex.
+    pub(super) most_corners: u32,
     pub(super) dispatches: u64,
 }
 
@@ -58,6 +60,7 @@ pub(super) async fn build(
     Ok(Found {
         counts: EdgeCounts { edges, boundary, non_manifold, inconsistent },
         has_several_fans: found[5] > 0,
+        most_corners: found[6],
         dispatches: 6,
     })
 }

@@ -1,5 +1,6 @@
 //! The GPU: one device for all sessions, with the kernels compiled from `shaders/`.
 
+use super::Kernel;
 use crate::Error;
 use std::sync::{Arc, Mutex};
 
@@ -49,7 +50,7 @@ pub(crate) struct Device {
     failure: Arc<Mutex<Option<String>>>,
     /// count, allocate, scatter, match_twins, count_corners, count_fans.
     pub(super) adjacency: Kernels<6>,
-    /// label_all, select_all, flip_all, tail, census, flag_creases.
+    /// In the order of [`Kernel::ALL`].
     pub(super) phases: Kernels<6>,
 }
 
@@ -135,16 +136,7 @@ impl Device {
             report(format!("device lost ({reason:?}): {message}"), &lost);
         });
 
-        let storage = |read_only| wgpu::BindingType::Buffer {
-            ty: wgpu::BufferBindingType::Storage { read_only },
-            has_dynamic_offset: false,
-            min_binding_size: None,
-        };
-        let uniform = |has_dynamic_offset| wgpu::BindingType::Buffer {
-            ty: wgpu::BufferBindingType::Uniform,
-            has_dynamic_offset,
-            min_binding_size: None,
-        };
+        let uniform = |has_dynamic_offset| binding(wgpu::BufferBindingType::Uniform, has_dynamic_offset);
         let (read, write) = (storage(true), storage(false));
         let adjacency = kernels(
             &device,
@@ -156,7 +148,7 @@ impl Device {
             &device,
             PHASES,
             &[uniform(false), uniform(true), read, write, write, write, write, write, write],
-            ["label_all", "select_all", "flip_all", "tail", "census", "flag_creases"],
+            Kernel::ALL.map(Kernel::name),
         );
         let driver = [info.driver.as_str(), info.driver_info.as_str()].join(" ");
         let driver = driver.trim();
@@ -185,12 +177,7 @@ impl Device {
 
     /// Runs `shaders/probe.wgsl` and compares.
     async fn probe_loops(&self) -> Result<bool, Error> {
-        let write = wgpu::BindingType::Buffer {
-            ty: wgpu::BufferBindingType::Storage { read_only: false },
-            has_dynamic_offset: false,
-            min_binding_size: None,
-        };
-        let probe = kernels(&self.device, PROBE, &[write], ["probe"]);
+        let probe = kernels(&self.device, PROBE, &[storage(false)], ["probe"]);
         let buffer = self.buffer("probe", 1, wgpu::BufferUsages::STORAGE);
         let bindings = self.bind(&probe.layout, &[(&buffer, None)]);
         let mut encoder = self.device.create_command_encoder(&Default::default());
@@ -292,7 +279,9 @@ impl Device {
         receiver.await.map_err(|error| failed(&error))?.map_err(|error| failed(&error))?;
         self.check()?;
         let view = staging.get_mapped_range(..).map_err(|error| failed(&error))?;
-        let result = bytemuck::cast_slice(&view)[..words].to_vec();
+        // The browser's view need not be aligned.
+        let mut result = bytemuck::pod_collect_to_vec(&view);
+        result.truncate(words);
         drop(view);
         staging.destroy();
         Ok(result)
@@ -320,6 +309,14 @@ fn browser_name(device: &wgpu::Device) -> Option<String> {
     let word = |key: &str| js_sys::Reflect::get(&info, &key.into()).ok()?.as_string();
     let words = [word("vendor")?, word("architecture")?, word("description")?];
     Some(words.join(" ").trim().to_owned())
+}
+
+fn storage(read_only: bool) -> wgpu::BindingType {
+    binding(wgpu::BufferBindingType::Storage { read_only }, false)
+}
+
+fn binding(ty: wgpu::BufferBindingType, has_dynamic_offset: bool) -> wgpu::BindingType {
+    wgpu::BindingType::Buffer { ty, has_dynamic_offset, min_binding_size: None }
 }
 
 fn kernels<const N: usize>(

@@ -18,7 +18,7 @@ use crate::mesh::{Dimension, Mesh};
 use crate::predicates::cosine_fraction;
 use crate::star::Fans;
 use crate::winding::Winding;
-use crate::{Adjacency, Error, Reason};
+use crate::{Error, Reason};
 use std::sync::Arc;
 use wgpu::BufferUsages;
 
@@ -30,10 +30,14 @@ const TAIL_LENGTH: u32 = 2048;
 /// The same where loops end too early: a few thousand rounds for each of a few triangles are safe.
 const SHORT_TAIL: u32 = 4;
 const SHORT_TAIL_LENGTH: u32 = 256;
+/// Meshes of up to so many triangles go by lists from the start.
+const SMALL_MESH: usize = 4096;
+/// The most triangles at one vertex where loops end too early.
+const SHORT_STAR: u32 = 20_000;
 /// The coordinates of a mesh must be integers of so many bits times a power of two; as in `exact.wgsl`.
 const SPAN: u32 = 84;
-/// Alignment of a dynamic offset that every device offers.
-const STEP_BYTES: u32 = 256;
+/// Words from one step to the next: the alignment of a dynamic offset that every device offers.
+const STEP_WORDS: u32 = 64;
 
 // Words of the history, as in `state.wgsl`.
 const ENTRIES: usize = 4;
@@ -57,11 +61,12 @@ struct Params {
     cos_shift: u32,
     tail_iterations: u32,
     tail_length: u32,
-    padding: [u32; 3],
+    list_below: u32,
+    padding: [u32; 2],
     cos_square: [u32; 4],
 }
 
-/// The kernels of `iteration.wgsl`, in the order of their pipelines.
+/// The kernels of `iteration.wgsl`.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Kernel {
     Label,
@@ -70,6 +75,23 @@ pub(crate) enum Kernel {
     Tail,
     Census,
     FlagCreases,
+}
+
+impl Kernel {
+    const ALL: [Self; 6] =
+        [Self::Label, Self::Select, Self::Flip, Self::Tail, Self::Census, Self::FlagCreases];
+
+    /// The entry point.
+    fn name(self) -> &'static str {
+        match self {
+            Self::Label => "label_all",
+            Self::Select => "select_all",
+            Self::Flip => "flip_all",
+            Self::Tail => "tail",
+            Self::Census => "census",
+            Self::FlagCreases => "flag_creases",
+        }
+    }
 }
 
 /// The entry of the history that the next iteration starts from: FLIPS, LENGTH, BUILT, RAN.
@@ -104,6 +126,7 @@ impl WebGpu {
         refuse_beyond_limits(&gpu, mesh)?;
         let count = mesh.triangle_count();
         let storage = |label, words| gpu.buffer(label, words, BufferUsages::STORAGE);
+        let scope = gpu.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
         // A page may draw from these two without a copy.
         let positions =
             gpu.buffer("positions", mesh.positions().len(), BufferUsages::STORAGE | BufferUsages::VERTEX);
@@ -113,23 +136,36 @@ impl WebGpu {
         let frontier = storage("frontier", 3 * count);
         let history = storage("history", HISTORY_WORDS);
         let uniform = gpu.buffer("params", size_of::<Params>() / 4, BufferUsages::UNIFORM);
-        let steps = gpu.buffer("steps", (BATCH * STEP_BYTES / 4) as usize, BufferUsages::UNIFORM);
+        let steps = gpu.buffer("steps", (BATCH * STEP_WORDS) as usize, BufferUsages::UNIFORM);
+        if scope.pop().await.is_some() {
+            return refuse(format!("{} has no memory left for it", gpu.adapter));
+        }
         gpu.queue.write_buffer(&positions, 0, bytemuck::cast_slice(mesh.positions()));
         gpu.queue.write_buffer(&triangles, 0, bytemuck::cast_slice(mesh.triangles()));
-        for step in 0..BATCH {
-            gpu.queue.write_buffer(&steps, u64::from(step * STEP_BYTES), bytemuck::bytes_of(&step));
-        }
+        let indices: Vec<u32> = (0..BATCH * STEP_WORDS).map(|word| word / STEP_WORDS).collect();
+        gpu.queue.write_buffer(&steps, 0, bytemuck::cast_slice(&indices));
         let found = adjacency::build(&gpu, mesh, &triangles, &twins, &frontier).await?;
+        if gpu.ends_loops_early && found.most_corners > SHORT_STAR {
+            let corners = found.most_corners;
+            return refuse(format!("a vertex has {corners} triangles, {} ends loops early", gpu.adapter));
+        }
 
-        // Meshes with clockwise components or vertices of several fans are rare: the host has time for them.
-        let on_host = || Adjacency::new(mesh.vertex_count(), mesh.triangles());
-        let winding = Winding::new(mesh, on_host);
+        // Meshes with components of both windings or vertices of several fans are rare: the host has time.
+        let winding = Winding::of_triangles(mesh);
+        let on_host = if winding.is_none() || found.has_several_fans {
+            let encoder = gpu.device.create_command_encoder(&Default::default());
+            gpu.submit_and_read(encoder, &twins, 3 * count).await?
+        } else {
+            Vec::new()
+        };
+        let winding = winding.unwrap_or_else(|| Winding::of_components(mesh, &on_host));
         let fans = if found.has_several_fans {
-            Fans::new(mesh.vertex_count(), mesh.triangles(), &on_host().twins)
+            Fans::new(mesh.vertex_count(), mesh.triangles(), &on_host)
         } else {
             Fans::default()
         };
         let words = [winding.clockwise.as_slice(), fans.table.as_slice()].concat();
+        refuse_large_buffer(&gpu, words.len())?;
         let topology = storage("topology", words.len());
         gpu.queue.write_buffer(&topology, 0, bytemuck::cast_slice(&words));
 
@@ -153,7 +189,9 @@ impl WebGpu {
             cos_shift: 2 * shift,
             tail_iterations: 0,
             tail_length: if gpu.ends_loops_early { SHORT_TAIL_LENGTH } else { TAIL_LENGTH },
-            padding: [0; 3],
+            // A flip appends six triangles at most; a small mesh is not worth a sweep.
+            list_below: if count <= SMALL_MESH { u32::MAX } else { count as u32 / 24 },
+            padding: [0; 2],
             cos_square: [0, 32, 64, 96].map(|bits| (square >> bits) as u32),
         };
         let mut result = Self {
@@ -195,7 +233,7 @@ impl WebGpu {
         let encoder = self.encode(|pass| {
             let groups = self.gpu.workgroups(self.params.triangles);
             for step in 0..batch {
-                pass.set_bind_group(0, &self.bindings, &[step * STEP_BYTES]);
+                pass.set_bind_group(0, &self.bindings, &[4 * step * STEP_WORDS]);
                 for kernel in [Kernel::Label, Kernel::Select, Kernel::Flip] {
                     self.dispatch(pass, kernel, groups);
                 }
@@ -245,8 +283,13 @@ impl WebGpu {
 
     async fn run(&mut self, count: u32) -> Result<Vec<u32>, Error> {
         let mut flips = Vec::new();
-        while self.params.triangles > 0 && (flips.len() as u32) < count {
-            flips.extend(self.submit(count - flips.len() as u32).await?);
+        // The first word of the state: the flips of the last iteration.
+        while self.state[0] > 0 && (flips.len() as u32) < count {
+            let ran = self.submit(count - flips.len() as u32).await?;
+            if ran.is_empty() {
+                return Err(Error::Device { message: "the device ran no iteration".to_owned() });
+            }
+            flips.extend(ran);
             if flips.last() == Some(&0) {
                 flips.pop();
                 break;
@@ -331,28 +374,36 @@ impl Drop for WebGpu {
     }
 }
 
-/// Refuses a mesh that the device cannot hold, or whose coordinates span more bits than it decides exactly.
+fn refuse<T>(message: String) -> Result<T, Error> {
+    Err(Error::BackendLimit { backend: "gpu", message })
+}
+
+/// Refuses a mesh that the device cannot hold, or whose coordinates it cannot decide exactly.
 fn refuse_beyond_limits(gpu: &Device, mesh: &Mesh) -> Result<(), Error> {
-    let refuse = |message| Err(Error::BackendLimit { backend: "gpu", message });
-    let largest = 4 * mesh.positions().len().max(mesh.triangles().len()).max(2 * mesh.vertex_count()) as u64;
-    let limit = gpu.largest_binding();
-    if largest > limit {
-        return refuse(format!(
-            "it needs a buffer of {largest} bytes for {} triangles and {} vertices, {} binds at most {limit}",
-            mesh.triangle_count(),
-            mesh.vertex_count(),
-            gpu.adapter
-        ));
-    }
-    let span = span_bits(mesh.positions());
+    let buckets = 2 * mesh.vertex_count().next_multiple_of(256);
+    refuse_large_buffer(gpu, mesh.positions().len().max(mesh.triangles().len()).max(buckets))?;
+    let (lowest, highest) = exponents(mesh.positions());
+    let span = (highest - lowest + 1) as u32;
     if span > SPAN {
         return refuse(format!("its coordinates span {span} bits, and it decides {SPAN} bits exactly"));
+    }
+    // A difference of larger ones may overflow, and WGSL promises nothing for infinities.
+    if highest >= 126 {
+        return refuse(format!("a coordinate is 2^{highest} or more, and it takes those below 2^126"));
     }
     Ok(())
 }
 
-/// From the lowest bit that is set in any coordinate to the highest.
-fn span_bits(positions: &[f32]) -> u32 {
+fn refuse_large_buffer(gpu: &Device, words: usize) -> Result<(), Error> {
+    let (bytes, limit) = (4 * words as u64, gpu.largest_binding());
+    if bytes > limit {
+        return refuse(format!("it needs a buffer of {bytes} bytes, {} binds at most {limit}", gpu.adapter));
+    }
+    Ok(())
+}
+
+/// Exponents of the lowest and of the highest bit that is set in any coordinate; 0 and 0 if none is.
+fn exponents(positions: &[f32]) -> (i32, i32) {
     let (mut lowest, mut highest) = (i32::MAX, i32::MIN);
     for bits in positions.iter().map(|x| x.to_bits() & 0x7fff_ffff).filter(|&bits| bits != 0) {
         let field = (bits >> 23) as i32;
@@ -361,7 +412,7 @@ fn span_bits(positions: &[f32]) -> u32 {
         lowest = lowest.min(unit + magnitude.trailing_zeros() as i32);
         highest = highest.max(unit + magnitude.ilog2() as i32);
     }
-    if lowest == i32::MAX { 0 } else { (highest - lowest + 1) as u32 }
+    if lowest == i32::MAX { (0, 0) } else { (lowest, highest) }
 }
 
 /// One phase at a time, for the tests.
@@ -375,6 +426,11 @@ impl WebGpu {
         let groups = self.gpu.workgroups(self.params.triangles);
         let encoder = self.encode(|pass| self.dispatch(pass, kernel, groups));
         Ok(self.read_history(encoder).await?.last().copied().unwrap_or(0))
+    }
+
+    /// Lists from the start and sweeps in between, whatever the size of the mesh.
+    pub(crate) fn set_list_below(&mut self, flips: u32) {
+        self.params.list_below = flips;
     }
 
     pub(crate) async fn twins(&self) -> Result<Vec<u32>, Error> {
