@@ -4,7 +4,8 @@
 
 use super::adjacency::BUCKETS_EACH;
 use super::device::{ADJACENCY, PHASES, PROBE, WORKGROUP_SIZE};
-use super::{ENTRIES, ENTRY_WORDS, Params, SPAN};
+use super::limits::SPAN;
+use super::{ENTRIES, ENTRY_WORDS, Params};
 use crate::adjacency::CREASE;
 use crate::phases::BLOCKED;
 use crate::{NONE, Reason};
