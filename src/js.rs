@@ -4,7 +4,7 @@
 mod objects;
 
 use crate::{Backend, Dimension, Error, Mesh, Options, Order, Session};
-use js_sys::Uint32Array;
+use js_sys::{Uint8Array, Uint32Array};
 use objects::{object, outcome_object, reasons_object, thrown};
 use wasm_bindgen::prelude::*;
 
@@ -112,6 +112,17 @@ impl JsSession {
             ("ta", array(&edges.ta)),
             ("tb", array(&edges.tb)),
         ]))
+    }
+
+    /// As [`Session::edge_states`]: the number of each state.
+    ///
+    /// # Errors
+    /// As there.
+    #[wasm_bindgen(js_name = edgeStates)]
+    pub async fn edge_states(&mut self) -> Result<Uint8Array, JsValue> {
+        let states = self.0.edge_states().await.map_err(thrown)?;
+        let numbers: Vec<u8> = states.into_iter().map(|state| state as u8).collect();
+        Ok(Uint8Array::from(numbers.as_slice()))
     }
 
     /// As [`Session::verify`].

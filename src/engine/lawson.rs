@@ -77,6 +77,10 @@ impl Engine for Lawson {
         Engine::triangles(&mut self.cpu)
     }
 
+    fn twins(&mut self) -> Answer<'_, Vec<u32>> {
+        Engine::twins(&mut self.cpu)
+    }
+
     fn edge_counts(&self) -> EdgeCounts {
         self.cpu.edge_counts()
     }

@@ -51,6 +51,9 @@ pub(crate) trait Engine {
     /// The triangles as they are now.
     fn triangles(&mut self) -> Answer<'_, Vec<u32>>;
 
+    /// The twins as they are now, those of creases with the flag [`CREASE`](crate::adjacency::CREASE).
+    fn twins(&mut self) -> Answer<'_, Vec<u32>>;
+
     /// What the adjacency found.
     fn edge_counts(&self) -> EdgeCounts;
 

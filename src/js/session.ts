@@ -3,6 +3,7 @@
 /// <reference lib="esnext.disposable" preserve="true" />
 
 import { Session } from './wasm/edgeflip.js';
+import type { EDGE_STATES } from './edge-states.js';
 import { EdgeflipError, fromModule } from './error.js';
 import { init } from './load.js';
 import { moduleMesh } from './mesh.js';
@@ -88,6 +89,14 @@ export class FlipSession implements AsyncIterable<Iteration>, Disposable {
   /** Every edge, as it is now. */
   edges(): Promise<Edges> {
     return this.#call((session) => session.edges());
+  }
+
+  /**
+   * The state of each half-edge's edge, as it is now: 3 a triangle, in the order of {@link FlipSession.triangles}; the
+   * two half-edges of an edge agree. The numbers are places in {@link EDGE_STATES}.
+   */
+  edgeStates(): Promise<Uint8Array> {
+    return this.#call((session) => session.edgeStates());
   }
 
   /** Checks the triangles against the input, exactly, with code that shares nothing with what made them. */

@@ -2,7 +2,7 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { EdgeflipError, FlipSession, makeDelaunay } from 'edgeflip';
+import { EDGE_STATES, EdgeflipError, FlipSession, makeDelaunay } from 'edgeflip';
 
 /** A thin diamond, split along its long diagonal. */
 const diamond = () => ({
@@ -137,6 +137,23 @@ test('a session is iterated, asked for edges and audited', async () => {
     if (edges.tb[edge] !== 0xffffffff) assert.equal(triangles[edges.tb[edge]], edges.v2[edge]);
   });
   assert.deepEqual([await session.backend(), await session.gpu()], ['cpu', undefined]);
+  session.free();
+});
+
+test('the states of the edges foretell every step', async () => {
+  const session = await FlipSession.create(strips(8));
+  const counts = [];
+  for (;;) {
+    const states = Array.from(await session.edgeStates(), (number) => EDGE_STATES[number]);
+    const count = (state) => states.filter((name) => name === state).length;
+    assert.deepEqual([states.length, count('boundary')], [18, 8]);
+    const iteration = await session.step();
+    assert.equal(count('flips') / 2, iteration?.flips ?? 0);
+    assert.equal((count('flips') + count('waits')) / 2, iteration?.labelled ?? 0);
+    if (!iteration) break;
+    counts.push(count('flips') / 2);
+  }
+  assert.deepEqual(counts, [1, 2, 3, 2, 1]);
   session.free();
 });
 

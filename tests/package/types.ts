@@ -1,6 +1,6 @@
 // Compiled, never run: what a strict TypeScript program sees of the package.
 
-import { EdgeflipError, type ErrorCode, FlipSession, type Iteration, init, makeDelaunay, type Mesh } from 'edgeflip';
+import { EDGE_STATES, EdgeflipError, type EdgeState, type ErrorCode, FlipSession, type Iteration, init, makeDelaunay, type Mesh } from 'edgeflip';
 
 export async function use(mesh: Mesh, signal: AbortSignal): Promise<Uint32Array> {
   await init(new URL('https://example.org/edgeflip.wasm'));
@@ -18,6 +18,8 @@ export async function use(mesh: Mesh, signal: AbortSignal): Promise<Uint32Array>
   const gpu = await session.gpu();
   const buffer: GPUBuffer | undefined = gpu?.indices;
   console.log(buffer?.size);
+  const states: EdgeState[] = Array.from(await session.edgeStates(), (number) => EDGE_STATES[number] ?? 'boundary');
+  console.log(states);
   session.free();
   return result.indices;
 }

@@ -336,6 +336,10 @@ impl Engine for WebGpu {
         Box::pin(self.read(&self.triangles, 3 * self.params.triangles as usize))
     }
 
+    fn twins(&mut self) -> Answer<'_, Vec<u32>> {
+        Box::pin(self.read(&self.twins, 3 * self.params.triangles as usize))
+    }
+
     fn edge_counts(&self) -> EdgeCounts {
         self.counts
     }
@@ -390,10 +394,6 @@ impl WebGpu {
     /// Lists from the start and sweeps in between, whatever the size of the mesh.
     pub(crate) fn set_list_below(&mut self, flips: u32) {
         self.params.list_below = flips;
-    }
-
-    pub(crate) async fn twins(&self) -> Result<Vec<u32>, Error> {
-        self.read(&self.twins, 3 * self.params.triangles as usize).await
     }
 
     /// `best` and `selected`.
