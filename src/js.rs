@@ -80,6 +80,15 @@ impl JsSession {
         self.0.advance().await.map_err(thrown)
     }
 
+    /// As [`Session::set_positions`].
+    ///
+    /// # Errors
+    /// As there.
+    #[wasm_bindgen(js_name = setPositions)]
+    pub async fn set_positions(&mut self, positions: Vec<f32>) -> Result<(), JsValue> {
+        self.0.set_positions(positions).await.map_err(thrown)
+    }
+
     /// As [`Session::triangles`].
     ///
     /// # Errors

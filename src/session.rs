@@ -8,6 +8,7 @@ use crate::edge_states::edge_states;
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 use crate::engine::SharedObjects;
 use crate::engine::{Answer, Cpu, Engine};
+use crate::mesh::refuse_non_finite;
 use crate::phases::{Geometry, Topology};
 use crate::predicates::cos_degrees;
 use crate::quality::{Audit, audit};
@@ -105,6 +106,40 @@ impl Session {
             self.iterate(self.engine.batch().min(self.iterations_left())).await?;
         }
         Ok(self.may_continue())
+    }
+
+    /// Moves the vertices, all of them: 2 or 3 numbers each, as many as before. From now on the session is as a new
+    /// one on these positions and the triangles as they are now: its iterations and flips, its creases and the base
+    /// of its audit begin here, and it gives the same bits. Adjacency, device and buffers stay; the triangles are
+    /// read back once.
+    ///
+    /// # Errors
+    /// [`Error::PositionCount`], [`Error::NonFinite`]; [`Error::BackendLimit`] where the GPU cannot decide the new
+    /// positions exactly; [`Error::Device`]. The session is then as it was before. With `Auto` the CPU takes over
+    /// from a GPU that refuses or fails.
+    pub async fn set_positions(&mut self, positions: Vec<f32>) -> Result<(), Error> {
+        let start = Instant::now();
+        let (length, expected) = (positions.len(), self.mesh.positions().len());
+        if length != expected {
+            return Err(Error::PositionCount { length, expected });
+        }
+        refuse_non_finite(self.mesh.dimension(), &positions)?;
+        let triangles = self.triangles().await?;
+        let mesh = Arc::new(Mesh::new(self.mesh.dimension(), positions, triangles)?);
+        match self.engine.set_positions(mesh.clone()).await {
+            Err(error @ (Error::BackendLimit { .. } | Error::Device { .. }))
+                if self.options.backend == Backend::Auto =>
+            {
+                self.fallback = Some(format!("after the vertices moved: {error}"));
+                self.engine = Box::new(Cpu::new(mesh.clone(), cos_degrees(self.options.max_normal_angle)));
+            }
+            answer => answer?,
+        }
+        self.mesh = mesh;
+        self.flips_per_iteration.clear();
+        self.has_ended = false;
+        self.timings = Timings { adjacency: ms_since(start), ..Timings::default() };
+        Ok(())
     }
 
     /// The triangles as they are now: vertex indices, 3 a triangle.

@@ -135,6 +135,19 @@ impl Engine for Cpu {
         Box::pin(std::future::ready(Ok(self.twins.clone())))
     }
 
+    fn set_positions(&mut self, mesh: Arc<Mesh>) -> Answer<'_, ()> {
+        self.winding = Winding::new(&mesh, &self.twins);
+        if mesh.dimension() == Dimension::Three {
+            flag_creases(mesh.positions(), &self.triangles, &mut self.twins, self.cos);
+        }
+        self.frontier = Frontier::all(mesh.triangle_count() as u32);
+        self.best.fill(NONE);
+        self.selected.fill(NONE);
+        self.iteration = 0;
+        self.mesh = mesh;
+        Box::pin(std::future::ready(Ok(())))
+    }
+
     fn batch(&self) -> u32 {
         1
     }

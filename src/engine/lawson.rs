@@ -4,7 +4,8 @@
 use super::{Answer, Census, Cpu, EdgeCounts, Engine};
 use crate::adjacency::{prev, unflagged};
 use crate::phases::{Verdict, flip, verdict};
-use crate::{NONE, Reason};
+use crate::{Mesh, NONE, Reason};
+use std::sync::Arc;
 
 /// The state of the CPU engine, flipped in another order.
 pub(crate) struct Lawson {
@@ -79,6 +80,10 @@ impl Engine for Lawson {
 
     fn twins(&mut self) -> Answer<'_, Vec<u32>> {
         Engine::twins(&mut self.cpu)
+    }
+
+    fn set_positions(&mut self, mesh: Arc<Mesh>) -> Answer<'_, ()> {
+        self.cpu.set_positions(mesh)
     }
 
     fn edge_counts(&self) -> EdgeCounts {

@@ -12,8 +12,9 @@ pub(crate) use lawson::Lawson;
 #[cfg(feature = "gpu")]
 pub(crate) use webgpu::{Device, WebGpu};
 
-use crate::{Error, Reasons};
+use crate::{Error, Mesh, Reasons};
 use std::pin::Pin;
+use std::sync::Arc;
 
 /// What an engine answers, once its device has.
 pub(crate) type Answer<'a, T> = Pin<Box<dyn Future<Output = Result<T, Error>> + 'a>>;
@@ -53,6 +54,10 @@ pub(crate) trait Engine {
 
     /// The twins as they are now, those of creases with the flag [`CREASE`](crate::adjacency::CREASE).
     fn twins(&mut self) -> Answer<'_, Vec<u32>>;
+
+    /// Moves the vertices: from now on as a new engine on `mesh`, whose triangles are those of the engine as they
+    /// are now. Where it fails with [`Error::BackendLimit`], the engine is as before.
+    fn set_positions(&mut self, mesh: Arc<Mesh>) -> Answer<'_, ()>;
 
     /// What the adjacency found.
     fn edge_counts(&self) -> EdgeCounts;

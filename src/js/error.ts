@@ -10,6 +10,7 @@
  * | `non-finite` | repair or remove the vertex that the message names |
  * | `index-out-of-range` | check the indices of the triangle that the message names |
  * | `ragged-array` | check the array's length and the dimension |
+ * | `position-count` | give `setPositions` 2 or 3 numbers for each vertex of the mesh |
  * | `too-large` | split the mesh |
  * | `invalid-option` | check the option that the message names |
  * | `backend-unavailable` | take `'auto'` or `'cpu'`: there is no WebGPU here |
@@ -27,6 +28,7 @@ const CODES = [
   'non-finite',
   'index-out-of-range',
   'ragged-array',
+  'position-count',
   'too-large',
   'invalid-option',
   'backend-unavailable',

@@ -6,7 +6,7 @@ import { Session } from './wasm/edgeflip.js';
 import type { EDGE_STATES } from './edge-states.js';
 import { EdgeflipError, fromModule } from './error.js';
 import { init } from './load.js';
-import { moduleMesh } from './mesh.js';
+import { float32, moduleMesh } from './mesh.js';
 import { Turns } from './turn.js';
 import type { Audit, Edges, Engine, Iteration, Mesh, Options, Result, RunOptions } from './types.js';
 
@@ -26,11 +26,13 @@ const dispose: typeof Symbol.dispose = Symbol.dispose ?? Symbol.for('Symbol.disp
  */
 export class FlipSession implements AsyncIterable<Iteration>, Disposable {
   readonly #session: Session;
+  readonly #dimension: 2 | 3;
   #last: Promise<unknown> = Promise.resolve();
   #isFreed = false;
 
-  private constructor(session: Session) {
+  private constructor(session: Session, dimension: 2 | 3) {
     this.#session = session;
+    this.#dimension = dimension;
   }
 
   /**
@@ -42,7 +44,7 @@ export class FlipSession implements AsyncIterable<Iteration>, Disposable {
     const { positions, indices, dimension } = moduleMesh(mesh);
     await init();
     try {
-      return new FlipSession(await Session.create(positions, indices, dimension, options));
+      return new FlipSession(await Session.create(positions, indices, dimension, options), dimension);
     } catch (thrown) {
       throw fromModule(thrown);
     }
@@ -74,6 +76,19 @@ export class FlipSession implements AsyncIterable<Iteration>, Disposable {
       goesOn = more;
     }
     return this.result();
+  }
+
+  /**
+   * Moves the vertices: all of them, as many as before, copied at once. Afterwards the session is as a new one on these
+   * positions and the triangles as they are then: iterations, flips, sharp edges and what `verify` compares with begin
+   * anew. Adjacency, device and buffers stay, and the triangles are read back once. After an error the session is as
+   * before; with `'auto'` the CPU takes over what the GPU cannot take.
+   *
+   * @throws {@link EdgeflipError} `invalid-input`, `not-float32`, `position-count`, `non-finite`, `backend-limit`.
+   */
+  async setPositions(positions: Float32Array | Float64Array): Promise<void> {
+    const moved = float32(positions, this.#dimension).slice();
+    return this.#call((session) => session.setPositions(moved));
   }
 
   /** The result so far. */

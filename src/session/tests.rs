@@ -39,6 +39,9 @@ impl Engine for Failing {
     fn twins(&mut self) -> Answer<'_, Vec<u32>> {
         self.answer(|cpu| Engine::twins(cpu))
     }
+    fn set_positions(&mut self, mesh: Arc<Mesh>) -> Answer<'_, ()> {
+        self.answer(|cpu| cpu.set_positions(mesh))
+    }
     fn edge_counts(&self) -> EdgeCounts {
         self.cpu.edge_counts()
     }
@@ -95,4 +98,51 @@ fn a_lost_device_changes_no_result_at_any_moment() {
 #[test]
 fn an_explicit_backend_never_falls_back() {
     assert!(matches!(watch(session(Backend::Gpu, 4)), Err(Error::Device { .. })));
+}
+
+/// The triangles at the end, after the vertices have moved in the middle of a run.
+fn watch_moved(mut session: Session) -> Result<(Vec<Vec<u32>>, Outcome), Error> {
+    let moved =
+        session.mesh.positions().iter().enumerate().map(|(i, x)| x * (1.0 + (i % 2) as f32)).collect();
+    block_on(async {
+        session.step().await?;
+        session.set_positions(moved).await
+    })?;
+    watch(session)
+}
+
+#[test]
+fn a_lost_device_changes_no_result_when_vertices_move() {
+    let (expected, outcome) = watch_moved(session(Backend::Auto, u32::MAX)).unwrap();
+    assert!(expected.len() > 2);
+    for questions_left in 0..3 * expected.len() as u32 + 8 {
+        let (seen, other) = watch_moved(session(Backend::Auto, questions_left)).unwrap();
+        assert_eq!(seen, expected, "lost after {questions_left} questions");
+        assert!(other.fallback.is_some_and(|why| why.contains("lost on purpose")));
+        assert_eq!(other.flips_per_iteration, outcome.flips_per_iteration);
+        assert_eq!(other.remaining, outcome.remaining);
+        if questions_left < 4 {
+            let error = watch_moved(session(Backend::Gpu, questions_left)).unwrap_err();
+            assert!(matches!(error, Error::Device { .. }));
+        }
+    }
+}
+
+/// Coordinates of magnitudes too far apart for the GPU.
+#[cfg(feature = "gpu")]
+#[test]
+fn the_cpu_takes_over_positions_that_the_gpu_refuses() {
+    let mesh = crate::families::by_name("random 8").unwrap();
+    let mut positions = mesh.positions().to_vec();
+    positions[0] = 1e-30;
+    let options = Options { backend: Backend::Gpu, ..Options::default() };
+    let mut session = block_on(Session::new(mesh, options)).unwrap();
+    let refused = block_on(session.set_positions(positions.clone()));
+    assert!(matches!(refused, Err(Error::BackendLimit { .. })));
+
+    session.options.backend = Backend::Auto;
+    block_on(session.set_positions(positions.clone())).unwrap();
+    let (_, outcome) = watch(session).unwrap();
+    assert_eq!((outcome.backend, outcome.status), ("cpu", Status::Done));
+    assert!(outcome.fallback.is_some_and(|why| why.contains("bits")));
 }

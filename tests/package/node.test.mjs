@@ -157,6 +157,33 @@ test('the states of the edges foretell every step', async () => {
   session.free();
 });
 
+test('vertices move, and the session goes on as a new one', async () => {
+  const mesh = strips(12);
+  const session = await FlipSession.create(mesh);
+  await session.step();
+  // Upright instead of lying: other edges are not Delaunay now.
+  const positions = mesh.positions.map((x, i) => (i % 2 ? 16 * x : x));
+  const indices = await session.triangles();
+  const moving = session.setPositions(positions);
+  positions.fill(0);
+  await moving;
+  const before = await session.result();
+  assert.deepEqual([before.iterations, before.flips, before.indices], [0, 0, indices]);
+  const result = await session.run();
+  const expected = await makeDelaunay({ ...mesh, indices, positions: mesh.positions.map((x, i) => (i % 2 ? 16 * x : x)) });
+  assert.ok(result.flips > 0);
+  assert.deepEqual([result.indices, result.flipsPerIteration], [expected.indices, expected.flipsPerIteration]);
+  await session.setPositions(Float64Array.from(mesh.positions));
+  assert.deepEqual((await session.run()).remaining, {});
+  assert.ok((await session.verify()).clean);
+  await assert.rejects(session.setPositions(new Float32Array(3)), refused('position-count', /has 3 numbers/));
+  await assert.rejects(session.setPositions(new Float32Array(24).fill(NaN)), refused('non-finite', /vertex 0/));
+  await assert.rejects(session.setPositions([0, 0]), refused('invalid-input', /positions/));
+  await assert.rejects(session.setPositions(new Float64Array(24).fill(0.1)), refused('not-float32', /vertex 0/));
+  session.free();
+  await assert.rejects(session.setPositions(mesh.positions), refused('freed', /freed/));
+});
+
 test('a freed session refuses calls, also those that were waiting', async () => {
   const session = await FlipSession.create(strips(40));
   const running = session.run();

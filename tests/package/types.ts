@@ -20,6 +20,7 @@ export async function use(mesh: Mesh, signal: AbortSignal): Promise<Uint32Array>
   console.log(buffer?.size);
   const states: EdgeState[] = Array.from(await session.edgeStates(), (number) => EDGE_STATES[number] ?? 'boundary');
   console.log(states);
+  await session.setPositions(new Float64Array(9));
   session.free();
   return result.indices;
 }

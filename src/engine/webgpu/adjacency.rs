@@ -1,6 +1,6 @@
 //! Twins from triangles, and whether any vertex has several fans, on the device.
 
-use super::device::Device;
+use super::device::{Buffer, Device};
 use crate::Error;
 use crate::engine::EdgeCounts;
 use crate::mesh::Mesh;
@@ -23,9 +23,9 @@ pub(super) struct Found {
 pub(super) async fn build(
     gpu: &Device,
     mesh: &Mesh,
-    triangles: &wgpu::Buffer,
-    twins: &wgpu::Buffer,
-    scratch: &wgpu::Buffer,
+    triangles: &Buffer,
+    twins: &Buffer,
+    scratch: &Buffer,
 ) -> Result<Found, Error> {
     let half_edges = mesh.triangles().len() as u32;
     let vertices = mesh.vertex_count() as u32;
@@ -51,11 +51,7 @@ pub(super) async fn build(
     encoder.clear_buffer(&buckets, 0, None);
     run(&mut encoder, &[(4, half_edges), (5, vertices)]);
     encoder.clear_buffer(scratch, 0, None);
-    let result = gpu.submit_and_read(encoder, &counters, COUNTERS).await;
-    for buffer in [params, buckets, counters] {
-        buffer.destroy();
-    }
-    let found = result?;
+    let found = gpu.submit_and_read(encoder, &counters, COUNTERS).await?;
     let [edges, boundary, non_manifold, inconsistent] = [found[1], found[2], found[3], found[4]];
     Ok(Found {
         counts: EdgeCounts { edges, boundary, non_manifold, inconsistent },

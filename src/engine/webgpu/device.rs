@@ -36,6 +36,22 @@ pub(super) struct Kernels<const N: usize> {
     pub(super) pipelines: [wgpu::ComputePipeline; N],
 }
 
+/// A buffer that is destroyed when it goes: in a browser the garbage collector would take its time.
+pub(super) struct Buffer(wgpu::Buffer);
+
+impl std::ops::Deref for Buffer {
+    type Target = wgpu::Buffer;
+    fn deref(&self) -> &wgpu::Buffer {
+        &self.0
+    }
+}
+
+impl Drop for Buffer {
+    fn drop(&mut self) {
+        self.0.destroy();
+    }
+}
+
 /// A device and what was compiled for it.
 pub(crate) struct Device {
     pub(super) device: wgpu::Device,
@@ -187,7 +203,6 @@ impl Device {
         pass.dispatch_workgroups(1, 1, 1);
         drop(pass);
         let found = self.submit_and_read(encoder, &buffer, 1).await?;
-        buffer.destroy();
         let expected = (0..100_000).fold(1u32, |x, _| {
             let x = x.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
             x ^ (x >> 13)
@@ -211,20 +226,20 @@ impl Device {
     }
 
     /// A buffer of `words` words of zeros, readable by copies. Never empty: a binding cannot be.
-    pub(super) fn buffer(&self, label: &str, words: usize, usage: wgpu::BufferUsages) -> wgpu::Buffer {
-        self.device.create_buffer(&wgpu::BufferDescriptor {
+    pub(super) fn buffer(&self, label: &str, words: usize, usage: wgpu::BufferUsages) -> Buffer {
+        Buffer(self.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some(label),
             size: 4 * words.max(4) as u64,
             usage: usage | wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC,
             mapped_at_creation: false,
-        })
+        }))
     }
 
     /// Binds whole buffers in the order of the layout, except those with a size given in bytes.
     pub(super) fn bind(
         &self,
         layout: &wgpu::BindGroupLayout,
-        buffers: &[(&wgpu::Buffer, Option<u64>)],
+        buffers: &[(&Buffer, Option<u64>)],
     ) -> wgpu::BindGroup {
         let entries: Vec<_> = buffers
             .iter()
@@ -254,16 +269,16 @@ impl Device {
     pub(super) async fn submit_and_read(
         &self,
         mut encoder: wgpu::CommandEncoder,
-        buffer: &wgpu::Buffer,
+        buffer: &Buffer,
         words: usize,
     ) -> Result<Vec<u32>, Error> {
         let size = 4 * words as u64;
-        let staging = self.device.create_buffer(&wgpu::BufferDescriptor {
+        let staging = Buffer(self.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("read-back"),
             size: size.max(4),
             usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
-        });
+        }));
         encoder.copy_buffer_to_buffer(buffer, 0, &staging, 0, size);
         self.queue.submit([encoder.finish()]);
         let (sender, receiver) = futures_channel::oneshot::channel();
@@ -282,8 +297,6 @@ impl Device {
         // The browser's view need not be aligned.
         let mut result = bytemuck::pod_collect_to_vec(&view);
         result.truncate(words);
-        drop(view);
-        staging.destroy();
         Ok(result)
     }
 }

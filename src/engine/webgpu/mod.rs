@@ -7,6 +7,7 @@
 mod adjacency;
 mod device;
 mod limits;
+mod params;
 #[cfg(test)]
 mod tests;
 
@@ -16,24 +17,21 @@ pub(crate) use device::{Device, Handle};
 use super::SharedObjects;
 use super::{Answer, Census, EdgeCounts, Engine};
 use crate::mesh::{Dimension, Mesh};
-use crate::predicates::cosine_fraction;
 use crate::star::Fans;
 use crate::winding::Winding;
 use crate::{Error, Reason};
+use device::Buffer;
 use limits::{refuse, refuse_beyond_limits, refuse_large_buffer};
+use params::Params;
 use std::sync::Arc;
 use wgpu::BufferUsages;
 
 /// Iterations with a dispatch for each phase in one submission.
 const BATCH: u32 = 16;
-/// Iterations that the tail may run after them, on lists of up to so many triangles.
+/// Iterations that the tail may run after them.
 const TAIL: u32 = 256;
-const TAIL_LENGTH: u32 = 2048;
-/// The same where loops end too early: a few thousand rounds for each of a few triangles are safe.
+/// The same where loops end too early.
 const SHORT_TAIL: u32 = 4;
-const SHORT_TAIL_LENGTH: u32 = 256;
-/// Meshes of up to so many triangles go by lists from the start.
-const SMALL_MESH: usize = 4096;
 /// The most triangles at one vertex where loops end too early.
 const SHORT_STAR: u32 = 20_000;
 /// Words from one step to the next: the alignment of a dynamic offset that every device offers.
@@ -43,28 +41,6 @@ const STEP_WORDS: u32 = 64;
 const ENTRIES: usize = 4;
 const ENTRY_WORDS: usize = 4;
 const HISTORY_WORDS: usize = ENTRIES + ENTRY_WORDS * (1 + BATCH as usize + TAIL as usize);
-
-/// As in `state.wgsl`.
-#[repr(C)]
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct Params {
-    dimension: u32,
-    vertices: u32,
-    triangles: u32,
-    first: u32,
-    fans: u32,
-    fans_length: u32,
-    winding_length: u32,
-    tail: u32,
-    cos: f32,
-    cos_sign: i32,
-    cos_shift: u32,
-    tail_iterations: u32,
-    tail_length: u32,
-    list_below: u32,
-    padding: [u32; 2],
-    cos_square: [u32; 4],
-}
 
 /// The kernels of `iteration.wgsl`.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -103,15 +79,17 @@ pub(crate) struct WebGpu {
     params: Params,
     counts: EdgeCounts,
     bindings: wgpu::BindGroup,
-    uniform: wgpu::Buffer,
-    steps: wgpu::Buffer,
-    positions: wgpu::Buffer,
-    triangles: wgpu::Buffer,
-    twins: wgpu::Buffer,
-    choices: wgpu::Buffer,
-    frontier: wgpu::Buffer,
-    history: wgpu::Buffer,
-    topology: wgpu::Buffer,
+    uniform: Buffer,
+    #[allow(dead_code, reason = "bound; destroyed with the others")]
+    steps: Buffer,
+    positions: Buffer,
+    triangles: Buffer,
+    twins: Buffer,
+    #[allow(dead_code, reason = "bound; destroyed with the others")]
+    choices: Buffer,
+    frontier: Buffer,
+    history: Buffer,
+    topology: Buffer,
     state: Entry,
     dispatches: u64,
 }
@@ -140,7 +118,6 @@ impl WebGpu {
         if scope.pop().await.is_some() {
             return refuse(format!("{} has no memory left for it", gpu.adapter));
         }
-        gpu.queue.write_buffer(&positions, 0, bytemuck::cast_slice(mesh.positions()));
         gpu.queue.write_buffer(&triangles, 0, bytemuck::cast_slice(mesh.triangles()));
         let indices: Vec<u32> = (0..BATCH * STEP_WORDS).map(|word| word / STEP_WORDS).collect();
         gpu.queue.write_buffer(&steps, 0, bytemuck::cast_slice(&indices));
@@ -150,52 +127,26 @@ impl WebGpu {
             return refuse(format!("a vertex has {corners} triangles, {} ends loops early", gpu.adapter));
         }
 
-        // Meshes with components of both windings or vertices of several fans are rare: the host has time.
-        let winding = Winding::of_triangles(mesh);
-        let on_host = if winding.is_none() || found.has_several_fans {
-            let encoder = gpu.device.create_command_encoder(&Default::default());
-            gpu.submit_and_read(encoder, &twins, 3 * count).await?
-        } else {
-            Vec::new()
-        };
-        let winding = winding.unwrap_or_else(|| Winding::of_components(mesh, &on_host));
+        // Vertices of several fans are rare: the host has time.
         let fans = if found.has_several_fans {
+            let encoder = gpu.device.create_command_encoder(&Default::default());
+            let on_host = gpu.submit_and_read(encoder, &twins, 3 * count).await?;
             Fans::new(mesh.vertex_count(), mesh.triangles(), &on_host)
         } else {
             Fans::default()
         };
-        let words = [winding.clockwise.as_slice(), fans.table.as_slice()].concat();
-        refuse_large_buffer(&gpu, words.len())?;
-        let topology = storage("topology", words.len());
-        gpu.queue.write_buffer(&topology, 0, bytemuck::cast_slice(&words));
+        let winding_words = if mesh.dimension() == Dimension::Two { count.div_ceil(32) } else { 0 };
+        refuse_large_buffer(&gpu, winding_words + fans.table.len())?;
+        let topology = storage("topology", winding_words + fans.table.len());
+        gpu.queue.write_buffer(&topology, 4 * winding_words as u64, bytemuck::cast_slice(&fans.table));
 
         let whole = [&positions, &triangles, &twins, &choices, &frontier, &history, &topology];
         let mut buffers = vec![(&uniform, None), (&steps, Some(4))];
         buffers.extend(whole.map(|buffer| (buffer, None)));
         let bindings = gpu.bind(&gpu.phases.layout, &buffers);
-        let (mantissa, shift) = cosine_fraction(cos);
-        let square = u128::from(mantissa) * u128::from(mantissa);
-        let params = Params {
-            dimension: mesh.dimension().stride() as u32,
-            vertices: mesh.vertex_count() as u32,
-            triangles: count as u32,
-            first: 0,
-            fans: winding.clockwise.len() as u32,
-            fans_length: fans.table.len() as u32,
-            winding_length: winding.clockwise.len() as u32,
-            tail: 0,
-            cos: cos as f32,
-            cos_sign: if cos == 0.0 { 0 } else { cos.signum() as i32 },
-            cos_shift: 2 * shift,
-            tail_iterations: 0,
-            tail_length: if gpu.ends_loops_early { SHORT_TAIL_LENGTH } else { TAIL_LENGTH },
-            // A flip appends six triangles at most; a small mesh is not worth a sweep.
-            list_below: if count <= SMALL_MESH { u32::MAX } else { count as u32 / 24 },
-            padding: [0; 2],
-            cos_square: [0, 32, 64, 96].map(|bits| (square >> bits) as u32),
-        };
+        let places = (winding_words, fans.table.len());
         let mut result = Self {
-            params,
+            params: Params::new(mesh, cos, places, gpu.ends_loops_early),
             counts: found.counts,
             bindings,
             uniform,
@@ -207,19 +158,46 @@ impl WebGpu {
             frontier,
             history,
             topology,
-            state: [count as u32, 0, 0, 1],
-            dispatches: found.dispatches,
+            state: Entry::default(),
+            dispatches: 0,
             gpu,
         };
-        if mesh.dimension() == Dimension::Three && count > 0 {
-            let half_edges = 3 * result.params.triangles;
-            let groups = result.gpu.workgroups(half_edges);
-            let encoder = result.encode(|pass| result.dispatch(pass, Kernel::FlagCreases, groups));
-            result.gpu.queue.submit([encoder.finish()]);
-            result.dispatches += 1;
-        }
-        result.gpu.check()?;
+        result.start(mesh).await?;
+        result.dispatches += found.dispatches;
         Ok(result)
+    }
+
+    /// Begins the iterations anew: `mesh` has the triangles that are on the device.
+    async fn start(&mut self, mesh: &Mesh) -> Result<(), Error> {
+        // Components of both windings are rare: the host has time.
+        let winding = match Winding::of_triangles(mesh) {
+            Some(winding) => winding,
+            None => {
+                let twins = self.read(&self.twins, mesh.triangles().len()).await?;
+                Winding::of_components(mesh, &twins)
+            }
+        };
+        self.gpu.queue.write_buffer(&self.positions, 0, bytemuck::cast_slice(mesh.positions()));
+        self.gpu.queue.write_buffer(&self.topology, 0, bytemuck::cast_slice(&winding.clockwise));
+        self.params.winding_length = winding.clockwise.len() as u32;
+        self.params.first = 0;
+        // As if an iteration before had flipped something and built no list.
+        self.state = [self.params.triangles, 0, 0, 1];
+        let is_surface = mesh.dimension() == Dimension::Three;
+        let mut encoder = self.encode(|pass| {
+            if is_surface {
+                self.dispatch(pass, Kernel::FlagCreases, self.gpu.workgroups(3 * self.params.triangles));
+            }
+        });
+        encoder.clear_buffer(&self.frontier, 0, None);
+        self.gpu.queue.submit([encoder.finish()]);
+        self.dispatches = u64::from(is_surface);
+        self.gpu.check()
+    }
+
+    async fn move_vertices(&mut self, mesh: Arc<Mesh>) -> Result<(), Error> {
+        refuse_beyond_limits(&self.gpu, &mesh)?;
+        self.start(&mesh).await
     }
 
     /// One submission of up to `count` iterations; returns the flips of those that ran, the last of which may
@@ -313,7 +291,7 @@ impl WebGpu {
         Ok(census)
     }
 
-    async fn read(&self, buffer: &wgpu::Buffer, words: usize) -> Result<Vec<u32>, Error> {
+    async fn read(&self, buffer: &Buffer, words: usize) -> Result<Vec<u32>, Error> {
         let encoder = self.gpu.device.create_command_encoder(&Default::default());
         self.gpu.submit_and_read(encoder, buffer, words).await
     }
@@ -340,6 +318,10 @@ impl Engine for WebGpu {
         Box::pin(self.read(&self.twins, 3 * self.params.triangles as usize))
     }
 
+    fn set_positions(&mut self, mesh: Arc<Mesh>) -> Answer<'_, ()> {
+        Box::pin(self.move_vertices(mesh))
+    }
+
     fn edge_counts(&self) -> EdgeCounts {
         self.counts
     }
@@ -363,18 +345,6 @@ impl Engine for WebGpu {
             positions: self.positions.as_webgpu()?.into(),
             triangles: self.triangles.as_webgpu()?.into(),
         })
-    }
-}
-
-impl Drop for WebGpu {
-    /// In a browser the garbage collector would take its time.
-    fn drop(&mut self) {
-        let Self {
-            uniform, steps, positions, triangles, twins, choices, frontier, history, topology, ..
-        } = self;
-        for buffer in [uniform, steps, positions, triangles, twins, choices, frontier, history, topology] {
-            buffer.destroy();
-        }
     }
 }
 

@@ -5,7 +5,8 @@
 use super::adjacency::BUCKETS_EACH;
 use super::device::{ADJACENCY, PHASES, PROBE, WORKGROUP_SIZE};
 use super::limits::SPAN;
-use super::{ENTRIES, ENTRY_WORDS, Params};
+use super::params::Params;
+use super::{ENTRIES, ENTRY_WORDS};
 use crate::adjacency::CREASE;
 use crate::phases::BLOCKED;
 use crate::{NONE, Reason};
