@@ -3,6 +3,7 @@
 
 mod objects;
 
+pub use crate::engine::GpuDevice;
 use crate::{Backend, Dimension, Error, Mesh, Options, Order, Session};
 use js_sys::{Uint8Array, Uint32Array};
 use objects::{object, outcome_object, reasons_object, thrown};
@@ -22,6 +23,8 @@ extern "C" {
     fn max_iterations(this: &JsOptions) -> JsValue;
     #[wasm_bindgen(method, getter)]
     fn order(this: &JsOptions) -> JsValue;
+    #[wasm_bindgen(method, getter)]
+    fn device(this: &JsOptions) -> JsValue;
 }
 
 /// Runs once, when the module is loaded.
@@ -220,6 +223,13 @@ fn parse_options(given: &JsOptions) -> Result<Options, Error> {
             Some("any") => Order::Any,
             _ => return wrong("order", &order, "'reproducible' or 'any'"),
         };
+    }
+    let device = given.device();
+    if !device.is_undefined() {
+        match device.dyn_into() {
+            Ok(device) => options.device = Some(device),
+            Err(other) => return wrong("device", &other, "a GPUDevice of this window or worker"),
+        }
     }
     let angle = given.max_normal_angle();
     if !angle.is_undefined() {

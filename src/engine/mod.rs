@@ -9,6 +9,8 @@ mod webgpu;
 
 pub(crate) use cpu::Cpu;
 pub(crate) use lawson::Lawson;
+#[cfg(all(target_arch = "wasm32", feature = "js"))]
+pub use webgpu::GpuDevice;
 #[cfg(feature = "gpu")]
 pub(crate) use webgpu::{Device, WebGpu};
 

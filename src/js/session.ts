@@ -127,7 +127,7 @@ export class FlipSession implements AsyncIterable<Iteration>, Disposable {
   /**
    * The GPU's objects, to draw from without a copy; `undefined` on the CPU. `positions` has 2 or 3 f32 a vertex,
    * `indices` 3 u32 a triangle; their usage has STORAGE, VERTEX or INDEX, COPY_SRC and COPY_DST. Only read them, and
-   * only until `free`. The device belongs to all sessions.
+   * only until `free`; `setPositions` keeps them. The device is the one of the options, else one for all sessions.
    */
   gpu(): Promise<{ device: GPUDevice; positions: GPUBuffer; indices: GPUBuffer } | undefined> {
     return this.#call(async ({ device, positionBuffer, indexBuffer }) =>

@@ -21,8 +21,8 @@ pub(super) async fn engine_for(
         }
         (Order::Any, _) => Ok((Box::new(Lawson::new(cpu())), None)),
         (Order::Reproducible, Backend::Cpu) => Ok((Box::new(cpu()), None)),
-        (Order::Reproducible, Backend::Gpu) => Ok((gpu(mesh, cos).await?, None)),
-        (Order::Reproducible, Backend::Auto) => match auto_gpu(mesh, cos).await {
+        (Order::Reproducible, Backend::Gpu) => Ok((gpu(mesh, options, cos).await?, None)),
+        (Order::Reproducible, Backend::Auto) => match gpu(mesh, options, cos).await {
             Ok(engine) => Ok((engine, None)),
             Err(error) => Ok((Box::new(cpu()), Some(error.to_string()))),
         },
@@ -30,26 +30,19 @@ pub(super) async fn engine_for(
 }
 
 #[cfg(feature = "gpu")]
-async fn gpu(mesh: &Arc<Mesh>, cos: f64) -> Result<Box<dyn Engine>, Error> {
-    Ok(Box::new(WebGpu::new(Device::shared().await?, mesh, cos).await?))
-}
-
-/// `Auto` leaves a GPU alone that the processor plays.
-#[cfg(feature = "gpu")]
-async fn auto_gpu(mesh: &Arc<Mesh>, cos: f64) -> Result<Box<dyn Engine>, Error> {
-    let device = Device::shared().await?;
-    if device.is_software {
-        let message = "the only adapter is software, slower than the cpu engine".to_owned();
-        return Err(Error::BackendUnavailable { backend: "gpu", message });
+async fn gpu(mesh: &Arc<Mesh>, options: &Options, cos: f64) -> Result<Box<dyn Engine>, Error> {
+    // `Auto` leaves a GPU alone that the processor plays.
+    let takes_software = options.backend == Backend::Gpu;
+    #[cfg(all(target_arch = "wasm32", feature = "js"))]
+    if let Some(given) = &options.device {
+        let device = Device::adopted(given, takes_software).await?;
+        return Ok(Box::new(WebGpu::new(device, mesh, cos).await?));
     }
-    gpu(mesh, cos).await
+    Ok(Box::new(WebGpu::new(Device::shared(takes_software).await?, mesh, cos).await?))
 }
 
 #[cfg(not(feature = "gpu"))]
-use gpu as auto_gpu;
-
-#[cfg(not(feature = "gpu"))]
-async fn gpu(_mesh: &Arc<Mesh>, _cos: f64) -> Result<Box<dyn Engine>, Error> {
+async fn gpu(_mesh: &Arc<Mesh>, _options: &Options, _cos: f64) -> Result<Box<dyn Engine>, Error> {
     let message = "this build has no GPU engine (feature `gpu`)".to_owned();
     Err(Error::BackendUnavailable { backend: "gpu", message })
 }

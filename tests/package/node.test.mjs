@@ -89,6 +89,7 @@ test('errors have codes', async () => {
   await assert.rejects(makeDelaunay(mesh, { backend: 'webgpu' }), refused('backend-unavailable', /backend webgpu/));
   await assert.rejects(makeDelaunay(mesh, { backend: 'gpu' }), refused('invalid-option', /backend/));
   await assert.rejects(makeDelaunay(mesh, { order: 1 }), refused('invalid-option', /order/));
+  await assert.rejects(makeDelaunay(mesh, { device: {} }), refused('invalid-option', /device: .* is not a GPUDevice/));
   await assert.rejects(makeDelaunay(mesh, { maxNormalAngle: 200 }), refused('invalid-option', /maxNormalAngle: 200/));
   await assert.rejects(makeDelaunay(mesh, { maxIterations: -1 }), refused('invalid-option', /maxIterations/));
 });

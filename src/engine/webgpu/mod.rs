@@ -5,13 +5,25 @@
 //! batch when it has ended.
 
 mod adjacency;
+#[cfg(target_arch = "wasm32")]
+mod browser;
+mod buffers;
 mod device;
+mod faults;
+#[cfg(all(target_arch = "wasm32", feature = "js"))]
+mod host;
+mod kernels;
 mod limits;
 mod params;
+mod shared;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use device::{Device, Handle};
+#[cfg(all(target_arch = "wasm32", feature = "js"))]
+pub use browser::GpuDevice;
+pub(crate) use device::Device;
+pub(crate) use kernels::Kernel;
+pub(crate) use shared::Handle;
 
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 use super::SharedObjects;
@@ -20,6 +32,7 @@ use crate::mesh::{Dimension, Mesh};
 use crate::star::Fans;
 use crate::winding::Winding;
 use crate::{Error, Reason};
+use buffers::Buffers;
 use device::Buffer;
 use limits::{refuse, refuse_beyond_limits, refuse_large_buffer};
 use params::Params;
@@ -42,34 +55,6 @@ const ENTRIES: usize = 4;
 const ENTRY_WORDS: usize = 4;
 const HISTORY_WORDS: usize = ENTRIES + ENTRY_WORDS * (1 + BATCH as usize + TAIL as usize);
 
-/// The kernels of `iteration.wgsl`.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Kernel {
-    Label,
-    Select,
-    Flip,
-    Tail,
-    Census,
-    FlagCreases,
-}
-
-impl Kernel {
-    const ALL: [Self; 6] =
-        [Self::Label, Self::Select, Self::Flip, Self::Tail, Self::Census, Self::FlagCreases];
-
-    /// The entry point.
-    fn name(self) -> &'static str {
-        match self {
-            Self::Label => "label_all",
-            Self::Select => "select_all",
-            Self::Flip => "flip_all",
-            Self::Tail => "tail",
-            Self::Census => "census",
-            Self::FlagCreases => "flag_creases",
-        }
-    }
-}
-
 /// The entry of the history that the next iteration starts from: FLIPS, LENGTH, BUILT, RAN.
 type Entry = [u32; ENTRY_WORDS];
 
@@ -79,16 +64,7 @@ pub(crate) struct WebGpu {
     params: Params,
     counts: EdgeCounts,
     bindings: wgpu::BindGroup,
-    uniform: Buffer,
-    #[allow(dead_code, reason = "bound; destroyed with the others")]
-    steps: Buffer,
-    positions: Buffer,
-    triangles: Buffer,
-    twins: Buffer,
-    #[allow(dead_code, reason = "bound; destroyed with the others")]
-    choices: Buffer,
-    frontier: Buffer,
-    history: Buffer,
+    buffers: Buffers,
     topology: Buffer,
     state: Entry,
     dispatches: u64,
@@ -103,25 +79,9 @@ impl WebGpu {
     pub(crate) async fn new(gpu: Handle, mesh: &Arc<Mesh>, cos: f64) -> Result<Self, Error> {
         refuse_beyond_limits(&gpu, mesh)?;
         let count = mesh.triangle_count();
-        let storage = |label, words| gpu.buffer(label, words, BufferUsages::STORAGE);
-        let scope = gpu.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
-        // A page may draw from these two without a copy.
-        let positions =
-            gpu.buffer("positions", mesh.positions().len(), BufferUsages::STORAGE | BufferUsages::VERTEX);
-        let triangles = gpu.buffer("triangles", 3 * count, BufferUsages::STORAGE | BufferUsages::INDEX);
-        let twins = storage("twins", 3 * count);
-        let choices = storage("choices", 2 * count);
-        let frontier = storage("frontier", 3 * count);
-        let history = storage("history", HISTORY_WORDS);
-        let uniform = gpu.buffer("params", size_of::<Params>() / 4, BufferUsages::UNIFORM);
-        let steps = gpu.buffer("steps", (BATCH * STEP_WORDS) as usize, BufferUsages::UNIFORM);
-        if scope.pop().await.is_some() {
-            return refuse(format!("{} has no memory left for it", gpu.adapter));
-        }
-        gpu.queue.write_buffer(&triangles, 0, bytemuck::cast_slice(mesh.triangles()));
-        let indices: Vec<u32> = (0..BATCH * STEP_WORDS).map(|word| word / STEP_WORDS).collect();
-        gpu.queue.write_buffer(&steps, 0, bytemuck::cast_slice(&indices));
-        let found = adjacency::build(&gpu, mesh, &triangles, &twins, &frontier).await?;
+        let allocate = || (Buffers::new(&gpu, mesh), adjacency::Scratch::new(&gpu, mesh));
+        let (buffers, scratch) = gpu.allocated(allocate).await?;
+        let found = adjacency::build(&gpu, mesh, &buffers, scratch).await?;
         if gpu.ends_loops_early && found.most_corners > SHORT_STAR {
             let corners = found.most_corners;
             return refuse(format!("a vertex has {corners} triangles, {} ends loops early", gpu.adapter));
@@ -129,34 +89,26 @@ impl WebGpu {
 
         // Vertices of several fans are rare: the host has time.
         let fans = if found.has_several_fans {
-            let encoder = gpu.device.create_command_encoder(&Default::default());
-            let on_host = gpu.submit_and_read(encoder, &twins, 3 * count).await?;
-            Fans::new(mesh.vertex_count(), mesh.triangles(), &on_host)
+            let twins = gpu.read(&buffers.twins, 3 * count).await?;
+            Fans::new(mesh.vertex_count(), mesh.triangles(), &twins)
         } else {
             Fans::default()
         };
         let winding_words = if mesh.dimension() == Dimension::Two { count.div_ceil(32) } else { 0 };
-        refuse_large_buffer(&gpu, winding_words + fans.table.len())?;
-        let topology = storage("topology", winding_words + fans.table.len());
-        gpu.queue.write_buffer(&topology, 4 * winding_words as u64, bytemuck::cast_slice(&fans.table));
-
-        let whole = [&positions, &triangles, &twins, &choices, &frontier, &history, &topology];
-        let mut buffers = vec![(&uniform, None), (&steps, Some(4))];
-        buffers.extend(whole.map(|buffer| (buffer, None)));
-        let bindings = gpu.bind(&gpu.phases.layout, &buffers);
+        let topology_words = winding_words + fans.table.len();
+        refuse_large_buffer(&gpu, topology_words)?;
+        let bind = || {
+            let topology = gpu.buffer("topology", topology_words, BufferUsages::STORAGE);
+            gpu.queue.write_buffer(&topology, 4 * winding_words as u64, bytemuck::cast_slice(&fans.table));
+            (buffers.bind(&gpu, &topology), topology)
+        };
+        let (bindings, topology) = gpu.allocated(bind).await?;
         let places = (winding_words, fans.table.len());
         let mut result = Self {
             params: Params::new(mesh, cos, places, gpu.ends_loops_early),
             counts: found.counts,
             bindings,
-            uniform,
-            steps,
-            positions,
-            triangles,
-            twins,
-            choices,
-            frontier,
-            history,
+            buffers,
             topology,
             state: Entry::default(),
             dispatches: 0,
@@ -173,26 +125,30 @@ impl WebGpu {
         let winding = match Winding::of_triangles(mesh) {
             Some(winding) => winding,
             None => {
-                let twins = self.read(&self.twins, mesh.triangles().len()).await?;
+                let twins = self.gpu.read(&self.buffers.twins, mesh.triangles().len()).await?;
                 Winding::of_components(mesh, &twins)
             }
         };
-        self.gpu.queue.write_buffer(&self.positions, 0, bytemuck::cast_slice(mesh.positions()));
-        self.gpu.queue.write_buffer(&self.topology, 0, bytemuck::cast_slice(&winding.clockwise));
         self.params.winding_length = winding.clockwise.len() as u32;
         self.params.first = 0;
         // As if an iteration before had flipped something and built no list.
         self.state = [self.params.triangles, 0, 0, 1];
         let is_surface = mesh.dimension() == Dimension::Three;
-        let mut encoder = self.encode(|pass| {
-            if is_surface {
-                self.dispatch(pass, Kernel::FlagCreases, self.gpu.workgroups(3 * self.params.triangles));
-            }
-        });
-        encoder.clear_buffer(&self.frontier, 0, None);
-        self.gpu.queue.submit([encoder.finish()]);
         self.dispatches = u64::from(is_surface);
-        self.gpu.check()
+        let submit = || {
+            let queue = &self.gpu.queue;
+            queue.write_buffer(&self.buffers.positions, 0, bytemuck::cast_slice(mesh.positions()));
+            queue.write_buffer(&self.topology, 0, bytemuck::cast_slice(&winding.clockwise));
+            let mut encoder = self.encode(|pass| {
+                if is_surface {
+                    self.dispatch(pass, Kernel::FlagCreases, self.gpu.workgroups(3 * self.params.triangles));
+                }
+            });
+            // The stamps of iterations before would be taken for those of the next.
+            encoder.clear_buffer(&self.buffers.frontier, 0, None);
+            queue.submit([encoder.finish()]);
+        };
+        self.gpu.checked(submit).await
     }
 
     async fn move_vertices(&mut self, mesh: Arc<Mesh>) -> Result<(), Error> {
@@ -207,8 +163,8 @@ impl WebGpu {
         self.params.tail = batch;
         self.params.tail_iterations =
             (count - batch).min(if self.gpu.ends_loops_early { SHORT_TAIL } else { TAIL });
-        self.begin_history();
-        let encoder = self.encode(|pass| {
+        self.dispatches += u64::from(3 * batch + self.params.tail_iterations.min(1));
+        let history = self.read_history(|pass| {
             let groups = self.gpu.workgroups(self.params.triangles);
             for step in 0..batch {
                 pass.set_bind_group(0, &self.bindings, &[4 * step * STEP_WORDS]);
@@ -220,32 +176,40 @@ impl WebGpu {
                 self.dispatch(pass, Kernel::Tail, 1);
             }
         });
-        self.dispatches += u64::from(3 * batch + self.params.tail_iterations.min(1));
-        self.read_history(encoder).await
+        let history = history.await?;
+        Ok(self.take_over(&history))
     }
 
     /// Writes the state as the first entry, and zeros behind it.
     fn begin_history(&self) {
         let mut history = [0u32; HISTORY_WORDS];
         history[ENTRIES..ENTRIES + ENTRY_WORDS].copy_from_slice(&self.state);
-        self.gpu.queue.write_buffer(&self.history, 0, bytemuck::cast_slice(&history));
+        self.gpu.queue.write_buffer(&self.buffers.history, 0, bytemuck::cast_slice(&history));
     }
 
-    /// Submits the commands, takes over the last state and returns the flips of the iterations that ran.
-    async fn read_history(&mut self, encoder: wgpu::CommandEncoder) -> Result<Vec<u32>, Error> {
-        let history = self.gpu.submit_and_read(encoder, &self.history, HISTORY_WORDS).await?;
+    /// Submits commands that continue the history, and reads it behind them.
+    async fn read_history(&self, record: impl FnOnce(&mut wgpu::ComputePass)) -> Result<Vec<u32>, Error> {
+        let commands = || {
+            self.begin_history();
+            self.encode(record)
+        };
+        self.gpu.submit_and_read(commands, &self.buffers.history, HISTORY_WORDS).await
+    }
+
+    /// Takes over the last state of a history, and returns the flips of the iterations that ran.
+    fn take_over(&mut self, history: &[u32]) -> Vec<u32> {
         let entries = history[ENTRIES..].chunks_exact(ENTRY_WORDS).skip(1);
         let ran: Vec<&[u32]> = entries.take_while(|entry| entry[3] == 1).collect();
         if let Some(last) = ran.last() {
             self.state.copy_from_slice(last);
         }
         self.params.first += ran.len() as u32;
-        Ok(ran.iter().map(|entry| entry[0]).collect())
+        ran.iter().map(|entry| entry[0]).collect()
     }
 
     /// Commands in one compute pass, with the parameters as they are now and the first step bound.
     fn encode(&self, record: impl FnOnce(&mut wgpu::ComputePass)) -> wgpu::CommandEncoder {
-        self.gpu.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&self.params));
+        self.gpu.queue.write_buffer(&self.buffers.uniform, 0, bytemuck::bytes_of(&self.params));
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
         let mut pass = encoder.begin_compute_pass(&Default::default());
         pass.set_bind_group(0, &self.bindings, &[0]);
@@ -277,23 +241,21 @@ impl WebGpu {
     }
 
     async fn count(&mut self) -> Result<Census, Error> {
-        self.gpu.queue.write_buffer(&self.history, 0, bytemuck::cast_slice(&[0u32; ENTRIES]));
-        let encoder = self.encode(|pass| {
-            self.dispatch(pass, Kernel::Census, self.gpu.workgroups(3 * self.params.triangles));
-        });
         self.dispatches += 1;
-        let counts = self.gpu.submit_and_read(encoder, &self.history, ENTRIES).await?;
+        let commands = || {
+            let history = &self.buffers.history;
+            self.gpu.queue.write_buffer(history, 0, bytemuck::cast_slice(&[0u32; ENTRIES]));
+            self.encode(|pass| {
+                self.dispatch(pass, Kernel::Census, self.gpu.workgroups(3 * self.params.triangles));
+            })
+        };
+        let counts = self.gpu.submit_and_read(commands, &self.buffers.history, ENTRIES).await?;
         let mut census = Census { labelled: counts[0], ..Census::default() };
         for (reason, count) in [Reason::Angle, Reason::Fold, Reason::Duplicate].into_iter().zip(&counts[1..])
         {
             census.blocked[reason] = u64::from(*count);
         }
         Ok(census)
-    }
-
-    async fn read(&self, buffer: &Buffer, words: usize) -> Result<Vec<u32>, Error> {
-        let encoder = self.gpu.device.create_command_encoder(&Default::default());
-        self.gpu.submit_and_read(encoder, buffer, words).await
     }
 }
 
@@ -311,11 +273,11 @@ impl Engine for WebGpu {
     }
 
     fn triangles(&mut self) -> Answer<'_, Vec<u32>> {
-        Box::pin(self.read(&self.triangles, 3 * self.params.triangles as usize))
+        Box::pin(self.gpu.read(&self.buffers.triangles, 3 * self.params.triangles as usize))
     }
 
     fn twins(&mut self) -> Answer<'_, Vec<u32>> {
-        Box::pin(self.read(&self.twins, 3 * self.params.triangles as usize))
+        Box::pin(self.gpu.read(&self.buffers.twins, 3 * self.params.triangles as usize))
     }
 
     fn set_positions(&mut self, mesh: Arc<Mesh>) -> Answer<'_, ()> {
@@ -342,8 +304,8 @@ impl Engine for WebGpu {
     fn shared_objects(&self) -> Option<SharedObjects> {
         Some(SharedObjects {
             device: self.gpu.device.as_webgpu()?.into(),
-            positions: self.positions.as_webgpu()?.into(),
-            triangles: self.triangles.as_webgpu()?.into(),
+            positions: self.buffers.positions.as_webgpu()?.into(),
+            triangles: self.buffers.triangles.as_webgpu()?.into(),
         })
     }
 }
@@ -353,12 +315,9 @@ impl Engine for WebGpu {
 impl WebGpu {
     /// Runs one phase of the next iteration; after the flips, which end it, returns their number.
     pub(crate) async fn run_phase(&mut self, kernel: Kernel) -> Result<u32, Error> {
-        if kernel == Kernel::Label {
-            self.begin_history();
-        }
         let groups = self.gpu.workgroups(self.params.triangles);
-        let encoder = self.encode(|pass| self.dispatch(pass, kernel, groups));
-        Ok(self.read_history(encoder).await?.last().copied().unwrap_or(0))
+        let history = self.read_history(|pass| self.dispatch(pass, kernel, groups)).await?;
+        Ok(self.take_over(&history).last().copied().unwrap_or(0))
     }
 
     /// Lists from the start and sweeps in between, whatever the size of the mesh.
@@ -368,13 +327,13 @@ impl WebGpu {
 
     /// `best` and `selected`.
     pub(crate) async fn choices(&self) -> Result<(Vec<u32>, Vec<u32>), Error> {
-        let mut best = self.read(&self.choices, 2 * self.params.triangles as usize).await?;
+        let mut best = self.gpu.read(&self.buffers.choices, 2 * self.params.triangles as usize).await?;
         let selected = best.split_off(self.params.triangles as usize);
         Ok((best, selected))
     }
 
     pub(crate) async fn fans(&self) -> Result<Vec<u32>, Error> {
         let words = (self.params.fans + self.params.fans_length) as usize;
-        Ok(self.read(&self.topology, words).await?.split_off(self.params.fans as usize))
+        Ok(self.gpu.read(&self.topology, words).await?.split_off(self.params.fans as usize))
     }
 }
