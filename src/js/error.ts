@@ -15,7 +15,7 @@
  * | `invalid-option` | check the option that the message names |
  * | `backend-unavailable` | take `'auto'` or `'cpu'`: there is no WebGPU here |
  * | `backend-limit` | take `'auto'` or `'cpu'`: the GPU cannot take this mesh |
- * | `device-failed` | begin again: the GPU was lost in the middle of a run |
+ * | `device-failed` | begin again: the GPU was lost, or the `device` given is |
  * | `load-failed` | see that `wasm/edgeflip_bg.wasm` is served, or pass it to `init` |
  * | `freed` | do not use a session after `free` |
  * | `internal` | report it: the module has crashed, and must be loaded anew |
