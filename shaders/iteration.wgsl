@@ -105,13 +105,13 @@ fn tail(@builtin(local_invocation_index) local: u32) {
     }
 }
 
-// Flags the edges of the input over β, from each of their half-edges.
+// Flags the edges of the input over β, and no others, from each of their half-edges.
 @compute @workgroup_size(WORKGROUP_SIZE)
 fn flag_creases(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
     for (var h = id.x; h < 3u * params.triangles; h += groups.x * WORKGROUP_SIZE) {
-        let g = twins[h];
-        if g != NONE && is_sharp(h, g & ~CREASE) {
-            twins[h] = g | CREASE;
+        let g = twin(h);
+        if g != NONE {
+            twins[h] = select(g, g | CREASE, is_sharp(h, g));
         }
     }
 }

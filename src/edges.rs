@@ -1,7 +1,7 @@
 //! The edges of a mesh as arrays: the Edges array of Navarro, Hitschfeld-Kahler and Scheihing (2011, §3).
 
 use crate::Adjacency;
-use crate::adjacency::next;
+use crate::adjacency::{next, unflagged};
 
 /// Every edge, one entry in each array. An edge is named by its lower half-edge, and edges come in the order
 /// of these names. Each half-edge of a frozen edge counts as an edge of its own, as it does for the flips.
@@ -20,9 +20,13 @@ pub struct Edges {
 impl Edges {
     /// The edges of `triangles`, whose indices are below `vertices`.
     pub fn new(vertices: usize, triangles: &[u32]) -> Self {
-        let twins = Adjacency::of_triangles(vertices, triangles).twins;
+        Self::from_twins(triangles, &Adjacency::of_triangles(vertices, triangles).twins)
+    }
+
+    /// The edges of `triangles`, given their twins, flagged or not.
+    pub(crate) fn from_twins(triangles: &[u32], twins: &[u32]) -> Self {
         let mut edges = Self::default();
-        for (h, &twin) in (0u32..).zip(&twins) {
+        for (h, twin) in (0u32..).zip(twins.iter().copied().map(unflagged)) {
             // NONE is above every half-edge.
             if h < twin {
                 edges.v1.push(triangles[h as usize]);

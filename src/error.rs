@@ -34,6 +34,14 @@ pub enum Error {
         /// Numbers per element.
         stride: usize,
     },
+    /// New positions are not those of as many vertices as the mesh has. Give 2 or 3 numbers for each of them.
+    #[error("positions has {length} numbers, and the vertices of the mesh have {expected}")]
+    PositionCount {
+        /// How many numbers were given.
+        length: usize,
+        /// How many there have to be.
+        expected: usize,
+    },
     /// More triangles or vertices than 32-bit indices can name. Split the mesh.
     #[error("the mesh has {count} {what}; at most {limit} can be indexed")]
     TooLarge {
@@ -109,6 +117,7 @@ impl Error {
             Self::NonFinite { .. } => "non-finite",
             Self::IndexOutOfRange { .. } => "index-out-of-range",
             Self::RaggedArray { .. } => "ragged-array",
+            Self::PositionCount { .. } => "position-count",
             Self::TooLarge { .. } => "too-large",
             Self::Parse { .. } => "parse",
             Self::UnknownFormat { .. } => "unknown-format",

@@ -3,8 +3,9 @@
 
 mod objects;
 
+pub use crate::engine::GpuDevice;
 use crate::{Backend, Dimension, Error, Mesh, Options, Order, Session};
-use js_sys::Uint32Array;
+use js_sys::{Uint8Array, Uint32Array};
 use objects::{object, outcome_object, reasons_object, thrown};
 use wasm_bindgen::prelude::*;
 
@@ -22,6 +23,8 @@ extern "C" {
     fn max_iterations(this: &JsOptions) -> JsValue;
     #[wasm_bindgen(method, getter)]
     fn order(this: &JsOptions) -> JsValue;
+    #[wasm_bindgen(method, getter)]
+    fn device(this: &JsOptions) -> JsValue;
 }
 
 /// Runs once, when the module is loaded.
@@ -80,6 +83,15 @@ impl JsSession {
         self.0.advance().await.map_err(thrown)
     }
 
+    /// As [`Session::set_positions`].
+    ///
+    /// # Errors
+    /// As there.
+    #[wasm_bindgen(js_name = setPositions)]
+    pub async fn set_positions(&mut self, positions: Vec<f32>) -> Result<(), JsValue> {
+        self.0.set_positions(positions).await.map_err(thrown)
+    }
+
     /// As [`Session::triangles`].
     ///
     /// # Errors
@@ -112,6 +124,17 @@ impl JsSession {
             ("ta", array(&edges.ta)),
             ("tb", array(&edges.tb)),
         ]))
+    }
+
+    /// As [`Session::edge_states`]: the number of each state.
+    ///
+    /// # Errors
+    /// As there.
+    #[wasm_bindgen(js_name = edgeStates)]
+    pub async fn edge_states(&mut self) -> Result<Uint8Array, JsValue> {
+        let states = self.0.edge_states().await.map_err(thrown)?;
+        let numbers: Vec<u8> = states.into_iter().map(|state| state as u8).collect();
+        Ok(Uint8Array::from(numbers.as_slice()))
     }
 
     /// As [`Session::verify`].
@@ -200,6 +223,13 @@ fn parse_options(given: &JsOptions) -> Result<Options, Error> {
             Some("any") => Order::Any,
             _ => return wrong("order", &order, "'reproducible' or 'any'"),
         };
+    }
+    let device = given.device();
+    if !device.is_undefined() {
+        match device.dyn_into() {
+            Ok(device) => options.device = Some(device),
+            Err(other) => return wrong("device", &other, "a GPUDevice of this window or worker"),
+        }
     }
     let angle = given.max_normal_angle();
     if !angle.is_undefined() {

@@ -17,9 +17,10 @@
 //! iteration, `engine` runs them on the CPU or through the shaders of the same names; `session` is the loop, `options`
 //! and `outcome` are what goes in and out.
 //! Beside them: [`quality`] measures and audits, [`io`] reads and writes, [`families`] generates; [`Edges`] lists
-//! the edges as the paper does, and `js` is what the npm package calls.
+//! the edges as the paper does, [`EdgeState`] is what each of them waits for, and `js` is what the npm package calls.
 
 mod adjacency;
+mod edge_states;
 mod edges;
 mod engine;
 mod error;
@@ -39,6 +40,7 @@ mod star;
 mod winding;
 
 pub use adjacency::Adjacency;
+pub use edge_states::EdgeState;
 pub use edges::Edges;
 pub use error::Error;
 pub use mesh::{Dimension, MAX_TRIANGLES, Mesh, NONE};

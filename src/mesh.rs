@@ -60,10 +60,7 @@ impl Mesh {
                 return Err(Error::TooLarge { what, count, limit });
             }
         }
-        if let Some(i) = positions.iter().position(|x| !x.is_finite()) {
-            let axis = ['x', 'y', 'z'][i % stride];
-            return Err(Error::NonFinite { vertex: i / stride, axis, value: positions[i] });
-        }
+        refuse_non_finite(dimension, &positions)?;
         if let Some(i) = triangles.iter().position(|&v| v as usize >= vertices) {
             return Err(Error::IndexOutOfRange { triangle: i / 3, index: triangles[i], vertices });
         }
@@ -115,6 +112,15 @@ impl Mesh {
             Dimension::Three => point3(&self.positions, vertex),
         }
     }
+}
+
+/// Refuses coordinates that are no numbers, with [`Error::NonFinite`] for the first.
+pub(crate) fn refuse_non_finite(dimension: Dimension, positions: &[f32]) -> Result<(), Error> {
+    let stride = dimension.stride();
+    positions.iter().position(|x| !x.is_finite()).map_or(Ok(()), |i| {
+        let axis = ['x', 'y', 'z'][i % stride];
+        Err(Error::NonFinite { vertex: i / stride, axis, value: positions[i] })
+    })
 }
 
 /// Vertex `v` of an array of 2D positions; f32 to f64 is exact.

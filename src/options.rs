@@ -35,6 +35,10 @@ pub struct Options {
     pub max_iterations: Option<u32>,
     /// Reproducible pipeline or Lawson's algorithm.
     pub order: Order,
+    /// The device that the GPU engine runs on, instead of one of its own. It is never destroyed here, nothing of it
+    /// is set, and its errors about other calls are left alone. Of a software one, `Auto` takes the CPU.
+    #[cfg(all(target_arch = "wasm32", feature = "js"))]
+    pub device: Option<crate::js::GpuDevice>,
 }
 
 impl Default for Options {
@@ -44,6 +48,8 @@ impl Default for Options {
             max_normal_angle: 10.0,
             max_iterations: None,
             order: Order::Reproducible,
+            #[cfg(all(target_arch = "wasm32", feature = "js"))]
+            device: None,
         }
     }
 }

@@ -93,7 +93,7 @@ pub enum Status {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Timings {
     /// Making the engine ready: upload, adjacency and the checks around it; for the first session on a GPU
-    /// also the device and its shaders.
+    /// also the device and its shaders. After the vertices have moved: that move.
     pub adjacency: f64,
     /// The iterations.
     pub flip: f64,

@@ -1,15 +1,24 @@
 //! The loop around an engine: options in, iterations and statistics out, and the honest result.
 
+mod choice;
+#[cfg(test)]
+mod tests;
+
+use crate::edge_states::edge_states;
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 use crate::engine::SharedObjects;
-use crate::engine::{Answer, Cpu, Engine, Lawson};
-#[cfg(feature = "gpu")]
-use crate::engine::{Device, WebGpu};
+use crate::engine::{Answer, Cpu, Engine};
+use crate::mesh::refuse_non_finite;
+use crate::phases::{Geometry, Topology};
 use crate::predicates::cos_degrees;
 use crate::quality::{Audit, audit};
+use crate::star::Fans;
+use crate::winding::Winding;
 use crate::{
-    Backend, Edges, Error, Iteration, Mesh, Options, Order, Outcome, Reason, Status, Timings, frozen,
+    Backend, EdgeState, Edges, Error, Iteration, Mesh, Options, Order, Outcome, Reason, Status, Timings,
+    frozen,
 };
+use choice::engine_for;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use web_time::Instant;
@@ -99,6 +108,40 @@ impl Session {
         Ok(self.may_continue())
     }
 
+    /// Moves the vertices, all of them: 2 or 3 numbers each, as many as before. From now on the session is as a new
+    /// one on these positions and the triangles as they are now: its iterations and flips, its creases and the base
+    /// of its audit begin here, and it gives the same bits. Adjacency, device and buffers stay; the triangles are
+    /// read back once.
+    ///
+    /// # Errors
+    /// [`Error::PositionCount`], [`Error::NonFinite`]; [`Error::BackendLimit`] where the GPU cannot decide the new
+    /// positions exactly; [`Error::Device`]. The session is then as it was before. With `Auto` the CPU takes over
+    /// from a GPU that refuses or fails.
+    pub async fn set_positions(&mut self, positions: Vec<f32>) -> Result<(), Error> {
+        let start = Instant::now();
+        let (length, expected) = (positions.len(), self.mesh.positions().len());
+        if length != expected {
+            return Err(Error::PositionCount { length, expected });
+        }
+        refuse_non_finite(self.mesh.dimension(), &positions)?;
+        let triangles = self.triangles().await?;
+        let mesh = Arc::new(Mesh::new(self.mesh.dimension(), positions, triangles)?);
+        match self.engine.set_positions(mesh.clone()).await {
+            Err(error @ (Error::BackendLimit { .. } | Error::Device { .. }))
+                if self.options.backend == Backend::Auto =>
+            {
+                self.fallback = Some(format!("after the vertices moved: {error}"));
+                self.engine = Box::new(Cpu::new(mesh.clone(), cos_degrees(self.options.max_normal_angle)));
+            }
+            answer => answer?,
+        }
+        self.mesh = mesh;
+        self.flips_per_iteration.clear();
+        self.has_ended = false;
+        self.timings = Timings { adjacency: ms_since(start), ..Timings::default() };
+        Ok(())
+    }
+
     /// The triangles as they are now: vertex indices, 3 a triangle.
     ///
     /// # Errors
@@ -150,7 +193,30 @@ impl Session {
     /// [`Error::Device`].
     pub async fn edges(&mut self) -> Result<Edges, Error> {
         let triangles = self.triangles().await?;
-        Ok(Edges::new(self.mesh.vertex_count(), &triangles))
+        let twins = self.ask(|engine| engine.twins()).await?;
+        Ok(Edges::from_twins(&triangles, &twins))
+    }
+
+    /// The state of the edge of every half-edge as it is now: 3 a triangle, in the order of
+    /// [`Session::triangles`]. The two half-edges of an edge agree.
+    ///
+    /// # Errors
+    /// [`Error::Device`].
+    pub async fn edge_states(&mut self) -> Result<Vec<EdgeState>, Error> {
+        let triangles = self.triangles().await?;
+        let twins = self.ask(|engine| engine.twins()).await?;
+        let geometry = Geometry {
+            dimension: self.mesh.dimension(),
+            positions: self.mesh.positions(),
+            cos: cos_degrees(self.options.max_normal_angle),
+            // As the engine found it: neither the components nor their areas change with flips.
+            winding: &Winding::new(&self.mesh, &twins),
+        };
+        let vertices = self.mesh.vertex_count();
+        let fans = &Fans::new(vertices, &triangles, &twins);
+        let topology = Topology { triangles: &triangles, twins: &twins, fans };
+        let iteration = (self.options.order == Order::Reproducible).then(|| self.iterations());
+        Ok(edge_states(&geometry, topology, vertices, iteration))
     }
 
     /// The audit of the triangles as they are now.
@@ -221,50 +287,6 @@ impl Session {
     }
 }
 
-/// The engine for the options, and why `Auto` did not take the GPU.
-async fn engine_for(mesh: &Arc<Mesh>, options: &Options) -> Result<(Box<dyn Engine>, Option<String>), Error> {
-    let cos = cos_degrees(options.max_normal_angle);
-    let cpu = || Cpu::new(mesh.clone(), cos);
-    match (options.order, options.backend) {
-        (Order::Any, Backend::Gpu) => {
-            let message = "`any` is sequential and runs on the cpu only".to_owned();
-            Err(Error::Option { option: "order", message })
-        }
-        (Order::Any, _) => Ok((Box::new(Lawson::new(cpu())), None)),
-        (Order::Reproducible, Backend::Cpu) => Ok((Box::new(cpu()), None)),
-        (Order::Reproducible, Backend::Gpu) => Ok((gpu(mesh, cos).await?, None)),
-        (Order::Reproducible, Backend::Auto) => match auto_gpu(mesh, cos).await {
-            Ok(engine) => Ok((engine, None)),
-            Err(error) => Ok((Box::new(cpu()), Some(error.to_string()))),
-        },
-    }
-}
-
-#[cfg(feature = "gpu")]
-async fn gpu(mesh: &Arc<Mesh>, cos: f64) -> Result<Box<dyn Engine>, Error> {
-    Ok(Box::new(WebGpu::new(Device::shared().await?, mesh, cos).await?))
-}
-
-/// `Auto` leaves a GPU alone that the processor plays.
-#[cfg(feature = "gpu")]
-async fn auto_gpu(mesh: &Arc<Mesh>, cos: f64) -> Result<Box<dyn Engine>, Error> {
-    let device = Device::shared().await?;
-    if device.is_software {
-        let message = "the only adapter is software, slower than the cpu engine".to_owned();
-        return Err(Error::BackendUnavailable { backend: "gpu", message });
-    }
-    gpu(mesh, cos).await
-}
-
-#[cfg(not(feature = "gpu"))]
-use gpu as auto_gpu;
-
-#[cfg(not(feature = "gpu"))]
-async fn gpu(_mesh: &Arc<Mesh>, _cos: f64) -> Result<Box<dyn Engine>, Error> {
-    let message = "this build has no GPU engine (feature `gpu`)".to_owned();
-    Err(Error::BackendUnavailable { backend: "gpu", message })
-}
-
 fn ms_since(start: Instant) -> f64 {
     start.elapsed().as_secs_f64() * 1e3
 }
@@ -284,101 +306,4 @@ pub fn make_delaunay(
         session.run(watch).await?;
         session.outcome().await
     })
-}
-
-#[cfg(test)]
-mod tests {
-    #![allow(clippy::unwrap_used, reason = "what fails here is a failed test")]
-
-    use super::*;
-    use crate::engine::{Census, EdgeCounts};
-    use pollster::block_on;
-
-    /// A device that is lost at a certain question.
-    struct Failing {
-        cpu: Cpu,
-        questions_left: u32,
-    }
-
-    impl Failing {
-        fn answer<'a, T: 'a>(&'a mut self, ask: impl FnOnce(&'a mut Cpu) -> Answer<'a, T>) -> Answer<'a, T> {
-            if self.questions_left == 0 {
-                let message = "lost on purpose".to_owned();
-                return Box::pin(std::future::ready(Err(Error::Device { message })));
-            }
-            self.questions_left -= 1;
-            ask(&mut self.cpu)
-        }
-    }
-
-    impl Engine for Failing {
-        fn batch(&self) -> u32 {
-            2
-        }
-        fn iterate(&mut self, count: u32) -> Answer<'_, Vec<u32>> {
-            self.answer(|cpu| cpu.iterate(count))
-        }
-        fn census(&mut self) -> Answer<'_, Census> {
-            self.answer(|cpu| cpu.census())
-        }
-        fn triangles(&mut self) -> Answer<'_, Vec<u32>> {
-            self.answer(|cpu| Engine::triangles(cpu))
-        }
-        fn edge_counts(&self) -> EdgeCounts {
-            self.cpu.edge_counts()
-        }
-        fn backend(&self) -> &'static str {
-            "gpu"
-        }
-    }
-
-    fn session(backend: Backend, questions_left: u32) -> Session {
-        let mesh = crate::families::by_name("random 20").unwrap();
-        let options = Options { backend: Backend::Cpu, ..Options::default() };
-        let mut session = block_on(Session::new(mesh, options)).unwrap();
-        let cpu = Cpu::new(session.mesh.clone(), cos_degrees(10.0));
-        session.engine = Box::new(Failing { cpu, questions_left });
-        session.options.backend = backend;
-        session
-    }
-
-    /// What a caller sees of a run: the triangles after every iteration, and the outcome.
-    fn watch(mut session: Session) -> Result<(Vec<Vec<u32>>, Outcome), Error> {
-        block_on(async {
-            let mut seen = Vec::new();
-            while session.step().await?.is_some() {
-                seen.push(session.triangles().await?);
-            }
-            Ok((seen, session.outcome().await?))
-        })
-    }
-
-    #[test]
-    fn a_lost_device_changes_no_result_at_any_moment() {
-        let (expected, outcome) = watch(session(Backend::Auto, u32::MAX)).unwrap();
-        let questions = 3 * expected.len() as u32 + 4;
-        for questions_left in 0..questions {
-            let (seen, other) = watch(session(Backend::Auto, questions_left)).unwrap();
-            assert_eq!(seen, expected, "lost after {questions_left} questions");
-            assert!(other.fallback.is_some_and(|why| why.contains("lost on purpose")));
-            assert_eq!((other.backend, other.status), ("cpu", Status::Done));
-            assert_eq!(other.flips_per_iteration, outcome.flips_per_iteration);
-            assert_eq!(other.remaining, outcome.remaining);
-
-            let mut session = session(Backend::Auto, questions_left);
-            let mut counts = Vec::new();
-            block_on(session.run(|iterations, _| {
-                counts.push(iterations);
-                ControlFlow::Continue(())
-            }))
-            .unwrap();
-            assert!(counts.is_sorted());
-            assert_eq!(block_on(session.outcome()).unwrap().triangles, outcome.triangles);
-        }
-    }
-
-    #[test]
-    fn an_explicit_backend_never_falls_back() {
-        assert!(matches!(watch(session(Backend::Gpu, 4)), Err(Error::Device { .. })));
-    }
 }

@@ -12,6 +12,11 @@ pub(crate) struct Winding {
 }
 
 impl Winding {
+    /// What the triangles say, and where they disagree what the components joined by `twins` say.
+    pub(crate) fn new(mesh: &Mesh, twins: &[u32]) -> Self {
+        Self::of_triangles(mesh).unwrap_or_else(|| Self::of_components(mesh, twins))
+    }
+
     /// What the triangles say one by one; `None` where they disagree, and components have to be found.
     pub(crate) fn of_triangles(mesh: &Mesh) -> Option<Self> {
         let areas =

@@ -3,14 +3,19 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "what fails here is a failed test")]
 #![cfg(target_arch = "wasm32")]
 
+#[path = "wasm/device.rs"]
+mod device;
 mod meshes;
 mod simulation;
 
-use edgeflip::js::{JsOptions, JsSession};
-use edgeflip::{Backend, Edges, Error, Mesh, Options, Outcome, Session, Status, families::by_name};
-use js_sys::{Object, Reflect};
+use device::{class_of, code_of, options_object};
+use edgeflip::js::JsSession;
+use edgeflip::{
+    Backend, EdgeState, Edges, Error, Mesh, Options, Outcome, Session, Status, families::by_name,
+};
+use js_sys::Reflect;
 use simulation::{Digest, Expected, expected};
-use wasm_bindgen::{JsCast, JsValue};
+use wasm_bindgen::JsValue;
 use wasm_bindgen_test::{wasm_bindgen_test, wasm_bindgen_test_configure};
 
 wasm_bindgen_test_configure!(run_in_browser);
@@ -28,7 +33,12 @@ async fn watched(mesh: &Mesh, options: Options) -> Result<(u64, Digest, Outcome)
     let mut digest = Digest::default();
     let mut labelled = 0;
     digest.feed(&session.triangles().await?);
-    while let Some(iteration) = session.step().await? {
+    loop {
+        // Both half-edges of an edge flip.
+        let states = session.edge_states().await?;
+        let foretold = states.iter().filter(|&&state| state == EdgeState::Flips).count() / 2;
+        let Some(iteration) = session.step().await? else { break };
+        assert_eq!(foretold, iteration.flips as usize);
         labelled += u64::from(iteration.labelled);
         digest.feed(&session.triangles().await?);
     }
@@ -86,22 +96,17 @@ async fn a_whole_run_on_webgpu_is_that_of_the_cpu() {
     }
 }
 
+/// It looks before it opens a device, which would compile the kernels.
 #[wasm_bindgen_test]
 async fn auto_finds_an_engine() {
     let mesh = by_name("random 10").unwrap();
+    let asked = device::devices_asked_for();
     let mut session = Session::new(mesh, Options::default()).await.unwrap();
     while session.advance().await.unwrap() {}
     let outcome = session.outcome().await.unwrap();
     assert_eq!(outcome.remaining.total(), 0);
     assert_eq!(outcome.backend == "cpu", outcome.fallback.is_some());
-}
-
-fn options_object(fields: &[(&str, JsValue)]) -> JsOptions {
-    let object = Object::new();
-    for (name, value) in fields {
-        Reflect::set(&object, &(*name).into(), value).unwrap();
-    }
-    object.unchecked_into()
+    assert!(outcome.backend != "cpu" || device::devices_asked_for() == asked);
 }
 
 /// What the npm package calls: the GPU's objects are those that the page can draw from.
@@ -117,6 +122,8 @@ async fn javascript_gets_the_buffers_of_webgpu() {
     assert_eq!(session.backend(), "webgpu");
     assert!(session.flips() > 0.0);
     assert_eq!(class_of(&session.device()), "GPUDevice");
+    // The page may set it, as three does.
+    assert!(Reflect::get(&session.device(), &"onuncapturederror".into()).unwrap().is_null());
     for (buffer, numbers) in [
         (session.position_buffer(), mesh.positions().len()),
         (session.index_buffer(), mesh.triangles().len()),
@@ -130,9 +137,5 @@ async fn javascript_gets_the_buffers_of_webgpu() {
     let session = create(&[("backend", "cpu".into())]).await.unwrap();
     assert!(session.device().is_undefined() && session.index_buffer().is_undefined());
     let error = create(&[("maxNormalAngle", 181.0.into())]).await.err().unwrap();
-    assert_eq!(Reflect::get(&error, &"code".into()).unwrap(), "invalid-option");
-}
-
-fn class_of(value: &JsValue) -> String {
-    Object::from(value.clone()).constructor().name().into()
+    assert_eq!(code_of(&error), "invalid-option");
 }

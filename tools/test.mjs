@@ -19,6 +19,8 @@ process.chdir(fileURLToPath(new URL('..', import.meta.url)));
 const wasm = ['--target', 'wasm32-unknown-unknown', '--no-default-features', '--features', 'gpu,js'];
 const wasmCargo = ['bash', 'tools/wasm-cargo.sh'];
 
+const inChromium = ['wasm', 'worker'];
+
 /** @type {Level[]} */
 const levels = [
   {
@@ -55,13 +57,13 @@ const levels = [
     what: 'the library for the browser has no warning from clippy, with and without what JavaScript calls',
     checks: [
       [...wasmCargo, 'clippy', '--lib', ...wasm.slice(0, -1), 'gpu', '--', '-D', 'warnings'],
-      [...wasmCargo, 'clippy', '--lib', '--test', 'wasm', ...wasm, '--', '-D', 'warnings'],
+      [...wasmCargo, 'clippy', '--lib', '--test', 'wasm', '--test', 'worker', ...wasm, '--', '-D', 'warnings'],
     ],
   },
   {
     name: 'wasm in Chromium',
     what: firstSentence(readFileSync('tests/wasm.rs', 'utf8')),
-    checks: [[...wasmCargo, 'test', '--test', 'wasm', ...wasm]],
+    checks: [[...wasmCargo, 'test', '--test', 'wasm', '--test', 'worker', ...wasm]],
     counts: true,
     env: {
       CHROMEDRIVER: process.env.CHROMEDRIVER ?? 'chromedriver',
@@ -94,7 +96,7 @@ function integrationTests() {
   }
   return JSON.parse(metadata.stdout)
     .packages.flatMap((crate) => crate.targets)
-    .filter((target) => target.kind.includes('test') && target.name !== 'wasm')
+    .filter((target) => target.kind.includes('test') && !inChromium.includes(target.name))
     .sort((a, b) => (a.name < b.name ? -1 : 1))
     .map((target) => ({
       name: target.name,

@@ -28,8 +28,7 @@ impl Cpu {
     /// Builds the adjacency; `cos` is the cosine of β.
     pub(crate) fn new(mesh: Arc<Mesh>, cos: f64) -> Self {
         let adjacency = Adjacency::new(&mesh);
-        let winding =
-            Winding::of_triangles(&mesh).unwrap_or_else(|| Winding::of_components(&mesh, &adjacency.twins));
+        let winding = Winding::new(&mesh, &adjacency.twins);
         let counts = EdgeCounts::from(&adjacency);
         let triangles = mesh.triangles().to_vec();
         let fans = Fans::new(mesh.vertex_count(), &triangles, &adjacency.twins);
@@ -130,6 +129,23 @@ impl Engine for Cpu {
 
     fn triangles(&mut self) -> Answer<'_, Vec<u32>> {
         Box::pin(std::future::ready(Ok(self.triangles.clone())))
+    }
+
+    fn twins(&mut self) -> Answer<'_, Vec<u32>> {
+        Box::pin(std::future::ready(Ok(self.twins.clone())))
+    }
+
+    fn set_positions(&mut self, mesh: Arc<Mesh>) -> Answer<'_, ()> {
+        self.winding = Winding::new(&mesh, &self.twins);
+        if mesh.dimension() == Dimension::Three {
+            flag_creases(mesh.positions(), &self.triangles, &mut self.twins, self.cos);
+        }
+        self.frontier = Frontier::all(mesh.triangle_count() as u32);
+        self.best.fill(NONE);
+        self.selected.fill(NONE);
+        self.iteration = 0;
+        self.mesh = mesh;
+        Box::pin(std::future::ready(Ok(())))
     }
 
     fn batch(&self) -> u32 {

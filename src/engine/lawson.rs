@@ -4,7 +4,8 @@
 use super::{Answer, Census, Cpu, EdgeCounts, Engine};
 use crate::adjacency::{prev, unflagged};
 use crate::phases::{Verdict, flip, verdict};
-use crate::{NONE, Reason};
+use crate::{Mesh, NONE, Reason};
+use std::sync::Arc;
 
 /// The state of the CPU engine, flipped in another order.
 pub(crate) struct Lawson {
@@ -75,6 +76,14 @@ impl Engine for Lawson {
 
     fn triangles(&mut self) -> Answer<'_, Vec<u32>> {
         Engine::triangles(&mut self.cpu)
+    }
+
+    fn twins(&mut self) -> Answer<'_, Vec<u32>> {
+        Engine::twins(&mut self.cpu)
+    }
+
+    fn set_positions(&mut self, mesh: Arc<Mesh>) -> Answer<'_, ()> {
+        self.cpu.set_positions(mesh)
     }
 
     fn edge_counts(&self) -> EdgeCounts {

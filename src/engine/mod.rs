@@ -9,11 +9,14 @@ mod webgpu;
 
 pub(crate) use cpu::Cpu;
 pub(crate) use lawson::Lawson;
+#[cfg(all(target_arch = "wasm32", feature = "js"))]
+pub use webgpu::GpuDevice;
 #[cfg(feature = "gpu")]
 pub(crate) use webgpu::{Device, WebGpu};
 
-use crate::{Error, Reasons};
+use crate::{Error, Mesh, Reasons};
 use std::pin::Pin;
+use std::sync::Arc;
 
 /// What an engine answers, once its device has.
 pub(crate) type Answer<'a, T> = Pin<Box<dyn Future<Output = Result<T, Error>> + 'a>>;
@@ -50,6 +53,13 @@ pub(crate) trait Engine {
 
     /// The triangles as they are now.
     fn triangles(&mut self) -> Answer<'_, Vec<u32>>;
+
+    /// The twins as they are now, those of creases with the flag [`CREASE`](crate::adjacency::CREASE).
+    fn twins(&mut self) -> Answer<'_, Vec<u32>>;
+
+    /// Moves the vertices: from now on as a new engine on `mesh`, whose triangles are those of the engine as they
+    /// are now. Where it fails with [`Error::BackendLimit`], the engine is as before.
+    fn set_positions(&mut self, mesh: Arc<Mesh>) -> Answer<'_, ()>;
 
     /// What the adjacency found.
     fn edge_counts(&self) -> EdgeCounts;

@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 fn engines(mesh: &Arc<Mesh>, degrees: f64) -> (Cpu, WebGpu) {
     let cos = cos_degrees(degrees);
-    let gpu = block_on(async { WebGpu::new(Device::shared().await?, mesh, cos).await }).unwrap();
+    let gpu = block_on(async { WebGpu::new(Device::shared(true).await?, mesh, cos).await }).unwrap();
     (Cpu::new(mesh.clone(), cos), gpu)
 }
 

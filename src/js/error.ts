@@ -10,11 +10,12 @@
  * | `non-finite` | repair or remove the vertex that the message names |
  * | `index-out-of-range` | check the indices of the triangle that the message names |
  * | `ragged-array` | check the array's length and the dimension |
+ * | `position-count` | give `setPositions` 2 or 3 numbers for each vertex of the mesh |
  * | `too-large` | split the mesh |
  * | `invalid-option` | check the option that the message names |
  * | `backend-unavailable` | take `'auto'` or `'cpu'`: there is no WebGPU here |
  * | `backend-limit` | take `'auto'` or `'cpu'`: the GPU cannot take this mesh |
- * | `device-failed` | begin again: the GPU was lost in the middle of a run |
+ * | `device-failed` | begin again: the GPU was lost, or the `device` given is |
  * | `load-failed` | see that `wasm/edgeflip_bg.wasm` is served, or pass it to `init` |
  * | `freed` | do not use a session after `free` |
  * | `internal` | report it: the module has crashed, and must be loaded anew |
@@ -27,6 +28,7 @@ const CODES = [
   'non-finite',
   'index-out-of-range',
   'ragged-array',
+  'position-count',
   'too-large',
   'invalid-option',
   'backend-unavailable',

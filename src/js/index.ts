@@ -12,6 +12,7 @@
 import { FlipSession } from './session.js';
 import type { MakeDelaunayOptions, Mesh, Result } from './types.js';
 
+export { EDGE_STATES, type EdgeState } from './edge-states.js';
 export { EdgeflipError, type ErrorCode } from './error.js';
 export { init, type ModuleSource } from './load.js';
 export { FlipSession } from './session.js';

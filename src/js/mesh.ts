@@ -22,7 +22,12 @@ export function moduleMesh({ positions, indices, dimension }: Mesh): ModuleMesh 
   return { positions: float32(positions, dimension), indices: uint32(indices), dimension };
 }
 
-function float32(positions: Float32Array | Float64Array, dimension: 2 | 3): Float32Array {
+/**
+ * Positions in 32 bits.
+ *
+ * @throws {@link EdgeflipError} `invalid-input` or `not-float32`.
+ */
+export function float32(positions: Float32Array | Float64Array, dimension: 2 | 3): Float32Array {
   if (positions instanceof Float32Array) return positions;
   if (!(positions instanceof Float64Array)) {
     throw new EdgeflipError('invalid-input', 'positions are neither a Float32Array nor a Float64Array');

@@ -3,9 +3,10 @@
 /// <reference lib="esnext.disposable" preserve="true" />
 
 import { Session } from './wasm/edgeflip.js';
+import type { EDGE_STATES } from './edge-states.js';
 import { EdgeflipError, fromModule } from './error.js';
 import { init } from './load.js';
-import { moduleMesh } from './mesh.js';
+import { float32, moduleMesh } from './mesh.js';
 import { Turns } from './turn.js';
 import type { Audit, Edges, Engine, Iteration, Mesh, Options, Result, RunOptions } from './types.js';
 
@@ -25,11 +26,13 @@ const dispose: typeof Symbol.dispose = Symbol.dispose ?? Symbol.for('Symbol.disp
  */
 export class FlipSession implements AsyncIterable<Iteration>, Disposable {
   readonly #session: Session;
+  readonly #dimension: 2 | 3;
   #last: Promise<unknown> = Promise.resolve();
   #isFreed = false;
 
-  private constructor(session: Session) {
+  private constructor(session: Session, dimension: 2 | 3) {
     this.#session = session;
+    this.#dimension = dimension;
   }
 
   /**
@@ -41,7 +44,7 @@ export class FlipSession implements AsyncIterable<Iteration>, Disposable {
     const { positions, indices, dimension } = moduleMesh(mesh);
     await init();
     try {
-      return new FlipSession(await Session.create(positions, indices, dimension, options));
+      return new FlipSession(await Session.create(positions, indices, dimension, options), dimension);
     } catch (thrown) {
       throw fromModule(thrown);
     }
@@ -75,6 +78,19 @@ export class FlipSession implements AsyncIterable<Iteration>, Disposable {
     return this.result();
   }
 
+  /**
+   * Moves the vertices: all of them, as many as before, copied at once. Afterwards the session is as a new one on these
+   * positions and the triangles as they are then: iterations, flips, sharp edges and what `verify` compares with begin
+   * anew. Adjacency, device and buffers stay, and the triangles are read back once. After an error the session is as
+   * before; with `'auto'` the CPU takes over what the GPU cannot take.
+   *
+   * @throws {@link EdgeflipError} `invalid-input`, `not-float32`, `position-count`, `non-finite`, `backend-limit`.
+   */
+  async setPositions(positions: Float32Array | Float64Array): Promise<void> {
+    const moved = float32(positions, this.#dimension).slice();
+    return this.#call((session) => session.setPositions(moved));
+  }
+
   /** The result so far. */
   result(): Promise<Result> {
     return this.#call((session) => session.outcome());
@@ -90,6 +106,14 @@ export class FlipSession implements AsyncIterable<Iteration>, Disposable {
     return this.#call((session) => session.edges());
   }
 
+  /**
+   * The state of each half-edge's edge, as it is now: 3 a triangle, in the order of {@link FlipSession.triangles}; the
+   * two half-edges of an edge agree. The numbers are places in {@link EDGE_STATES}.
+   */
+  edgeStates(): Promise<Uint8Array> {
+    return this.#call((session) => session.edgeStates());
+  }
+
   /** Checks the triangles against the input, exactly, with code that shares nothing with what made them. */
   verify(): Promise<Audit> {
     return this.#call((session) => session.verify());
@@ -103,7 +127,7 @@ export class FlipSession implements AsyncIterable<Iteration>, Disposable {
   /**
    * The GPU's objects, to draw from without a copy; `undefined` on the CPU. `positions` has 2 or 3 f32 a vertex,
    * `indices` 3 u32 a triangle; their usage has STORAGE, VERTEX or INDEX, COPY_SRC and COPY_DST. Only read them, and
-   * only until `free`. The device belongs to all sessions.
+   * only until `free`; `setPositions` keeps them. The device is the one of the options, else one for all sessions.
    */
   gpu(): Promise<{ device: GPUDevice; positions: GPUBuffer; indices: GPUBuffer } | undefined> {
     return this.#call(async ({ device, positionBuffer, indexBuffer }) =>

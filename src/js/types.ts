@@ -37,6 +37,12 @@ export interface Options {
    * algorithm, on the CPU only.
    */
   order?: 'reproducible' | 'any' | undefined;
+  /**
+   * The page's own GPUDevice, for `'webgpu'` and `'auto'` to run on: buffers of the session can then be used with it.
+   * Default limits are enough. The session neither destroys it nor sets anything of it, and leaves errors alone that it
+   * did not make. `'auto'` leaves a software device. Without effect on the CPU.
+   */
+  device?: GPUDevice | undefined;
 }
 
 /** How far a run has come. */

@@ -2,7 +2,7 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { EdgeflipError, FlipSession, makeDelaunay } from 'edgeflip';
+import { EDGE_STATES, EdgeflipError, FlipSession, makeDelaunay } from 'edgeflip';
 
 /** A thin diamond, split along its long diagonal. */
 const diamond = () => ({
@@ -89,6 +89,7 @@ test('errors have codes', async () => {
   await assert.rejects(makeDelaunay(mesh, { backend: 'webgpu' }), refused('backend-unavailable', /backend webgpu/));
   await assert.rejects(makeDelaunay(mesh, { backend: 'gpu' }), refused('invalid-option', /backend/));
   await assert.rejects(makeDelaunay(mesh, { order: 1 }), refused('invalid-option', /order/));
+  await assert.rejects(makeDelaunay(mesh, { device: {} }), refused('invalid-option', /device: .* is not a GPUDevice/));
   await assert.rejects(makeDelaunay(mesh, { maxNormalAngle: 200 }), refused('invalid-option', /maxNormalAngle: 200/));
   await assert.rejects(makeDelaunay(mesh, { maxIterations: -1 }), refused('invalid-option', /maxIterations/));
 });
@@ -138,6 +139,50 @@ test('a session is iterated, asked for edges and audited', async () => {
   });
   assert.deepEqual([await session.backend(), await session.gpu()], ['cpu', undefined]);
   session.free();
+});
+
+test('the states of the edges foretell every step', async () => {
+  const session = await FlipSession.create(strips(8));
+  const counts = [];
+  for (;;) {
+    const states = Array.from(await session.edgeStates(), (number) => EDGE_STATES[number]);
+    const count = (state) => states.filter((name) => name === state).length;
+    assert.deepEqual([states.length, count('boundary')], [18, 8]);
+    const iteration = await session.step();
+    assert.equal(count('flips') / 2, iteration?.flips ?? 0);
+    assert.equal((count('flips') + count('waits')) / 2, iteration?.labelled ?? 0);
+    if (!iteration) break;
+    counts.push(count('flips') / 2);
+  }
+  assert.deepEqual(counts, [1, 2, 3, 2, 1]);
+  session.free();
+});
+
+test('vertices move, and the session goes on as a new one', async () => {
+  const mesh = strips(12);
+  const session = await FlipSession.create(mesh);
+  await session.step();
+  // Upright instead of lying: other edges are not Delaunay now.
+  const positions = mesh.positions.map((x, i) => (i % 2 ? 16 * x : x));
+  const indices = await session.triangles();
+  const moving = session.setPositions(positions);
+  positions.fill(0);
+  await moving;
+  const before = await session.result();
+  assert.deepEqual([before.iterations, before.flips, before.indices], [0, 0, indices]);
+  const result = await session.run();
+  const expected = await makeDelaunay({ ...mesh, indices, positions: mesh.positions.map((x, i) => (i % 2 ? 16 * x : x)) });
+  assert.ok(result.flips > 0);
+  assert.deepEqual([result.indices, result.flipsPerIteration], [expected.indices, expected.flipsPerIteration]);
+  await session.setPositions(Float64Array.from(mesh.positions));
+  assert.deepEqual((await session.run()).remaining, {});
+  assert.ok((await session.verify()).clean);
+  await assert.rejects(session.setPositions(new Float32Array(3)), refused('position-count', /has 3 numbers/));
+  await assert.rejects(session.setPositions(new Float32Array(24).fill(NaN)), refused('non-finite', /vertex 0/));
+  await assert.rejects(session.setPositions([0, 0]), refused('invalid-input', /positions/));
+  await assert.rejects(session.setPositions(new Float64Array(24).fill(0.1)), refused('not-float32', /vertex 0/));
+  session.free();
+  await assert.rejects(session.setPositions(mesh.positions), refused('freed', /freed/));
 });
 
 test('a freed session refuses calls, also those that were waiting', async () => {

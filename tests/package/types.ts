@@ -1,8 +1,8 @@
 // Compiled, never run: what a strict TypeScript program sees of the package.
 
-import { EdgeflipError, type ErrorCode, FlipSession, type Iteration, init, makeDelaunay, type Mesh } from 'edgeflip';
+import { EDGE_STATES, EdgeflipError, type EdgeState, type ErrorCode, FlipSession, type Iteration, init, makeDelaunay, type Mesh } from 'edgeflip';
 
-export async function use(mesh: Mesh, signal: AbortSignal): Promise<Uint32Array> {
+export async function use(mesh: Mesh, signal: AbortSignal, device?: GPUDevice): Promise<Uint32Array> {
   await init(new URL('https://example.org/edgeflip.wasm'));
   const iterations: Iteration[] = [];
   const result = await makeDelaunay(mesh, {
@@ -13,11 +13,14 @@ export async function use(mesh: Mesh, signal: AbortSignal): Promise<Uint32Array>
   });
   const left: number = result.remaining.angle ?? 0;
   const status: 'done' | 'stopped' = result.status;
-  const session = await FlipSession.create({ ...mesh, positions: new Float64Array(9) }, { order: 'any' });
+  const session = await FlipSession.create({ ...mesh, positions: new Float64Array(9) }, { order: 'any', device });
   for await (const { flips, blocked } of session) console.log(flips, blocked.fold, left, status);
   const gpu = await session.gpu();
   const buffer: GPUBuffer | undefined = gpu?.indices;
   console.log(buffer?.size);
+  const states: EdgeState[] = Array.from(await session.edgeStates(), (number) => EDGE_STATES[number] ?? 'boundary');
+  console.log(states);
+  await session.setPositions(new Float64Array(9));
   session.free();
   return result.indices;
 }

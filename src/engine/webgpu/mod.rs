@@ -5,35 +5,46 @@
 //! batch when it has ended.
 
 mod adjacency;
+#[cfg(target_arch = "wasm32")]
+mod browser;
+mod buffers;
 mod device;
+mod faults;
+#[cfg(all(target_arch = "wasm32", feature = "js"))]
+mod host;
+mod kernels;
 mod limits;
+mod params;
+mod shared;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use device::{Device, Handle};
+#[cfg(all(target_arch = "wasm32", feature = "js"))]
+pub use browser::GpuDevice;
+pub(crate) use device::Device;
+pub(crate) use kernels::Kernel;
+pub(crate) use shared::Handle;
 
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 use super::SharedObjects;
 use super::{Answer, Census, EdgeCounts, Engine};
 use crate::mesh::{Dimension, Mesh};
-use crate::predicates::cosine_fraction;
 use crate::star::Fans;
 use crate::winding::Winding;
 use crate::{Error, Reason};
+use buffers::Buffers;
+use device::Buffer;
 use limits::{refuse, refuse_beyond_limits, refuse_large_buffer};
+use params::Params;
 use std::sync::Arc;
 use wgpu::BufferUsages;
 
 /// Iterations with a dispatch for each phase in one submission.
 const BATCH: u32 = 16;
-/// Iterations that the tail may run after them, on lists of up to so many triangles.
+/// Iterations that the tail may run after them.
 const TAIL: u32 = 256;
-const TAIL_LENGTH: u32 = 2048;
-/// The same where loops end too early: a few thousand rounds for each of a few triangles are safe.
+/// The same where loops end too early.
 const SHORT_TAIL: u32 = 4;
-const SHORT_TAIL_LENGTH: u32 = 256;
-/// Meshes of up to so many triangles go by lists from the start.
-const SMALL_MESH: usize = 4096;
 /// The most triangles at one vertex where loops end too early.
 const SHORT_STAR: u32 = 20_000;
 /// Words from one step to the next: the alignment of a dynamic offset that every device offers.
@@ -44,56 +55,6 @@ const ENTRIES: usize = 4;
 const ENTRY_WORDS: usize = 4;
 const HISTORY_WORDS: usize = ENTRIES + ENTRY_WORDS * (1 + BATCH as usize + TAIL as usize);
 
-/// As in `state.wgsl`.
-#[repr(C)]
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct Params {
-    dimension: u32,
-    vertices: u32,
-    triangles: u32,
-    first: u32,
-    fans: u32,
-    fans_length: u32,
-    winding_length: u32,
-    tail: u32,
-    cos: f32,
-    cos_sign: i32,
-    cos_shift: u32,
-    tail_iterations: u32,
-    tail_length: u32,
-    list_below: u32,
-    padding: [u32; 2],
-    cos_square: [u32; 4],
-}
-
-/// The kernels of `iteration.wgsl`.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Kernel {
-    Label,
-    Select,
-    Flip,
-    Tail,
-    Census,
-    FlagCreases,
-}
-
-impl Kernel {
-    const ALL: [Self; 6] =
-        [Self::Label, Self::Select, Self::Flip, Self::Tail, Self::Census, Self::FlagCreases];
-
-    /// The entry point.
-    fn name(self) -> &'static str {
-        match self {
-            Self::Label => "label_all",
-            Self::Select => "select_all",
-            Self::Flip => "flip_all",
-            Self::Tail => "tail",
-            Self::Census => "census",
-            Self::FlagCreases => "flag_creases",
-        }
-    }
-}
-
 /// The entry of the history that the next iteration starts from: FLIPS, LENGTH, BUILT, RAN.
 type Entry = [u32; ENTRY_WORDS];
 
@@ -103,15 +64,8 @@ pub(crate) struct WebGpu {
     params: Params,
     counts: EdgeCounts,
     bindings: wgpu::BindGroup,
-    uniform: wgpu::Buffer,
-    steps: wgpu::Buffer,
-    positions: wgpu::Buffer,
-    triangles: wgpu::Buffer,
-    twins: wgpu::Buffer,
-    choices: wgpu::Buffer,
-    frontier: wgpu::Buffer,
-    history: wgpu::Buffer,
-    topology: wgpu::Buffer,
+    buffers: Buffers,
+    topology: Buffer,
     state: Entry,
     dispatches: u64,
 }
@@ -125,101 +79,81 @@ impl WebGpu {
     pub(crate) async fn new(gpu: Handle, mesh: &Arc<Mesh>, cos: f64) -> Result<Self, Error> {
         refuse_beyond_limits(&gpu, mesh)?;
         let count = mesh.triangle_count();
-        let storage = |label, words| gpu.buffer(label, words, BufferUsages::STORAGE);
-        let scope = gpu.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
-        // A page may draw from these two without a copy.
-        let positions =
-            gpu.buffer("positions", mesh.positions().len(), BufferUsages::STORAGE | BufferUsages::VERTEX);
-        let triangles = gpu.buffer("triangles", 3 * count, BufferUsages::STORAGE | BufferUsages::INDEX);
-        let twins = storage("twins", 3 * count);
-        let choices = storage("choices", 2 * count);
-        let frontier = storage("frontier", 3 * count);
-        let history = storage("history", HISTORY_WORDS);
-        let uniform = gpu.buffer("params", size_of::<Params>() / 4, BufferUsages::UNIFORM);
-        let steps = gpu.buffer("steps", (BATCH * STEP_WORDS) as usize, BufferUsages::UNIFORM);
-        if scope.pop().await.is_some() {
-            return refuse(format!("{} has no memory left for it", gpu.adapter));
-        }
-        gpu.queue.write_buffer(&positions, 0, bytemuck::cast_slice(mesh.positions()));
-        gpu.queue.write_buffer(&triangles, 0, bytemuck::cast_slice(mesh.triangles()));
-        let indices: Vec<u32> = (0..BATCH * STEP_WORDS).map(|word| word / STEP_WORDS).collect();
-        gpu.queue.write_buffer(&steps, 0, bytemuck::cast_slice(&indices));
-        let found = adjacency::build(&gpu, mesh, &triangles, &twins, &frontier).await?;
+        let allocate = || (Buffers::new(&gpu, mesh), adjacency::Scratch::new(&gpu, mesh));
+        let (buffers, scratch) = gpu.allocated(allocate).await?;
+        let found = adjacency::build(&gpu, mesh, &buffers, scratch).await?;
         if gpu.ends_loops_early && found.most_corners > SHORT_STAR {
             let corners = found.most_corners;
             return refuse(format!("a vertex has {corners} triangles, {} ends loops early", gpu.adapter));
         }
 
-        // Meshes with components of both windings or vertices of several fans are rare: the host has time.
-        let winding = Winding::of_triangles(mesh);
-        let on_host = if winding.is_none() || found.has_several_fans {
-            let encoder = gpu.device.create_command_encoder(&Default::default());
-            gpu.submit_and_read(encoder, &twins, 3 * count).await?
-        } else {
-            Vec::new()
-        };
-        let winding = winding.unwrap_or_else(|| Winding::of_components(mesh, &on_host));
+        // Vertices of several fans are rare: the host has time.
         let fans = if found.has_several_fans {
-            Fans::new(mesh.vertex_count(), mesh.triangles(), &on_host)
+            let twins = gpu.read(&buffers.twins, 3 * count).await?;
+            Fans::new(mesh.vertex_count(), mesh.triangles(), &twins)
         } else {
             Fans::default()
         };
-        let words = [winding.clockwise.as_slice(), fans.table.as_slice()].concat();
-        refuse_large_buffer(&gpu, words.len())?;
-        let topology = storage("topology", words.len());
-        gpu.queue.write_buffer(&topology, 0, bytemuck::cast_slice(&words));
-
-        let whole = [&positions, &triangles, &twins, &choices, &frontier, &history, &topology];
-        let mut buffers = vec![(&uniform, None), (&steps, Some(4))];
-        buffers.extend(whole.map(|buffer| (buffer, None)));
-        let bindings = gpu.bind(&gpu.phases.layout, &buffers);
-        let (mantissa, shift) = cosine_fraction(cos);
-        let square = u128::from(mantissa) * u128::from(mantissa);
-        let params = Params {
-            dimension: mesh.dimension().stride() as u32,
-            vertices: mesh.vertex_count() as u32,
-            triangles: count as u32,
-            first: 0,
-            fans: winding.clockwise.len() as u32,
-            fans_length: fans.table.len() as u32,
-            winding_length: winding.clockwise.len() as u32,
-            tail: 0,
-            cos: cos as f32,
-            cos_sign: if cos == 0.0 { 0 } else { cos.signum() as i32 },
-            cos_shift: 2 * shift,
-            tail_iterations: 0,
-            tail_length: if gpu.ends_loops_early { SHORT_TAIL_LENGTH } else { TAIL_LENGTH },
-            // A flip appends six triangles at most; a small mesh is not worth a sweep.
-            list_below: if count <= SMALL_MESH { u32::MAX } else { count as u32 / 24 },
-            padding: [0; 2],
-            cos_square: [0, 32, 64, 96].map(|bits| (square >> bits) as u32),
+        let winding_words = if mesh.dimension() == Dimension::Two { count.div_ceil(32) } else { 0 };
+        let topology_words = winding_words + fans.table.len();
+        refuse_large_buffer(&gpu, topology_words)?;
+        let bind = || {
+            let topology = gpu.buffer("topology", topology_words, BufferUsages::STORAGE);
+            gpu.queue.write_buffer(&topology, 4 * winding_words as u64, bytemuck::cast_slice(&fans.table));
+            (buffers.bind(&gpu, &topology), topology)
         };
+        let (bindings, topology) = gpu.allocated(bind).await?;
+        let places = (winding_words, fans.table.len());
         let mut result = Self {
-            params,
+            params: Params::new(mesh, cos, places, gpu.ends_loops_early),
             counts: found.counts,
             bindings,
-            uniform,
-            steps,
-            positions,
-            triangles,
-            twins,
-            choices,
-            frontier,
-            history,
+            buffers,
             topology,
-            state: [count as u32, 0, 0, 1],
-            dispatches: found.dispatches,
+            state: Entry::default(),
+            dispatches: 0,
             gpu,
         };
-        if mesh.dimension() == Dimension::Three && count > 0 {
-            let half_edges = 3 * result.params.triangles;
-            let groups = result.gpu.workgroups(half_edges);
-            let encoder = result.encode(|pass| result.dispatch(pass, Kernel::FlagCreases, groups));
-            result.gpu.queue.submit([encoder.finish()]);
-            result.dispatches += 1;
-        }
-        result.gpu.check()?;
+        result.start(mesh).await?;
+        result.dispatches += found.dispatches;
         Ok(result)
+    }
+
+    /// Begins the iterations anew: `mesh` has the triangles that are on the device.
+    async fn start(&mut self, mesh: &Mesh) -> Result<(), Error> {
+        // Components of both windings are rare: the host has time.
+        let winding = match Winding::of_triangles(mesh) {
+            Some(winding) => winding,
+            None => {
+                let twins = self.gpu.read(&self.buffers.twins, mesh.triangles().len()).await?;
+                Winding::of_components(mesh, &twins)
+            }
+        };
+        self.params.winding_length = winding.clockwise.len() as u32;
+        self.params.first = 0;
+        // As if an iteration before had flipped something and built no list.
+        self.state = [self.params.triangles, 0, 0, 1];
+        let is_surface = mesh.dimension() == Dimension::Three;
+        self.dispatches = u64::from(is_surface);
+        let submit = || {
+            let queue = &self.gpu.queue;
+            queue.write_buffer(&self.buffers.positions, 0, bytemuck::cast_slice(mesh.positions()));
+            queue.write_buffer(&self.topology, 0, bytemuck::cast_slice(&winding.clockwise));
+            let mut encoder = self.encode(|pass| {
+                if is_surface {
+                    self.dispatch(pass, Kernel::FlagCreases, self.gpu.workgroups(3 * self.params.triangles));
+                }
+            });
+            // The stamps of iterations before would be taken for those of the next.
+            encoder.clear_buffer(&self.buffers.frontier, 0, None);
+            queue.submit([encoder.finish()]);
+        };
+        self.gpu.checked(submit).await
+    }
+
+    async fn move_vertices(&mut self, mesh: Arc<Mesh>) -> Result<(), Error> {
+        refuse_beyond_limits(&self.gpu, &mesh)?;
+        self.start(&mesh).await
     }
 
     /// One submission of up to `count` iterations; returns the flips of those that ran, the last of which may
@@ -229,8 +163,8 @@ impl WebGpu {
         self.params.tail = batch;
         self.params.tail_iterations =
             (count - batch).min(if self.gpu.ends_loops_early { SHORT_TAIL } else { TAIL });
-        self.begin_history();
-        let encoder = self.encode(|pass| {
+        self.dispatches += u64::from(3 * batch + self.params.tail_iterations.min(1));
+        let history = self.read_history(|pass| {
             let groups = self.gpu.workgroups(self.params.triangles);
             for step in 0..batch {
                 pass.set_bind_group(0, &self.bindings, &[4 * step * STEP_WORDS]);
@@ -242,32 +176,40 @@ impl WebGpu {
                 self.dispatch(pass, Kernel::Tail, 1);
             }
         });
-        self.dispatches += u64::from(3 * batch + self.params.tail_iterations.min(1));
-        self.read_history(encoder).await
+        let history = history.await?;
+        Ok(self.take_over(&history))
     }
 
     /// Writes the state as the first entry, and zeros behind it.
     fn begin_history(&self) {
         let mut history = [0u32; HISTORY_WORDS];
         history[ENTRIES..ENTRIES + ENTRY_WORDS].copy_from_slice(&self.state);
-        self.gpu.queue.write_buffer(&self.history, 0, bytemuck::cast_slice(&history));
+        self.gpu.queue.write_buffer(&self.buffers.history, 0, bytemuck::cast_slice(&history));
     }
 
-    /// Submits the commands, takes over the last state and returns the flips of the iterations that ran.
-    async fn read_history(&mut self, encoder: wgpu::CommandEncoder) -> Result<Vec<u32>, Error> {
-        let history = self.gpu.submit_and_read(encoder, &self.history, HISTORY_WORDS).await?;
+    /// Submits commands that continue the history, and reads it behind them.
+    async fn read_history(&self, record: impl FnOnce(&mut wgpu::ComputePass)) -> Result<Vec<u32>, Error> {
+        let commands = || {
+            self.begin_history();
+            self.encode(record)
+        };
+        self.gpu.submit_and_read(commands, &self.buffers.history, HISTORY_WORDS).await
+    }
+
+    /// Takes over the last state of a history, and returns the flips of the iterations that ran.
+    fn take_over(&mut self, history: &[u32]) -> Vec<u32> {
         let entries = history[ENTRIES..].chunks_exact(ENTRY_WORDS).skip(1);
         let ran: Vec<&[u32]> = entries.take_while(|entry| entry[3] == 1).collect();
         if let Some(last) = ran.last() {
             self.state.copy_from_slice(last);
         }
         self.params.first += ran.len() as u32;
-        Ok(ran.iter().map(|entry| entry[0]).collect())
+        ran.iter().map(|entry| entry[0]).collect()
     }
 
     /// Commands in one compute pass, with the parameters as they are now and the first step bound.
     fn encode(&self, record: impl FnOnce(&mut wgpu::ComputePass)) -> wgpu::CommandEncoder {
-        self.gpu.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&self.params));
+        self.gpu.queue.write_buffer(&self.buffers.uniform, 0, bytemuck::bytes_of(&self.params));
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
         let mut pass = encoder.begin_compute_pass(&Default::default());
         pass.set_bind_group(0, &self.bindings, &[0]);
@@ -299,23 +241,21 @@ impl WebGpu {
     }
 
     async fn count(&mut self) -> Result<Census, Error> {
-        self.gpu.queue.write_buffer(&self.history, 0, bytemuck::cast_slice(&[0u32; ENTRIES]));
-        let encoder = self.encode(|pass| {
-            self.dispatch(pass, Kernel::Census, self.gpu.workgroups(3 * self.params.triangles));
-        });
         self.dispatches += 1;
-        let counts = self.gpu.submit_and_read(encoder, &self.history, ENTRIES).await?;
+        let commands = || {
+            let history = &self.buffers.history;
+            self.gpu.queue.write_buffer(history, 0, bytemuck::cast_slice(&[0u32; ENTRIES]));
+            self.encode(|pass| {
+                self.dispatch(pass, Kernel::Census, self.gpu.workgroups(3 * self.params.triangles));
+            })
+        };
+        let counts = self.gpu.submit_and_read(commands, &self.buffers.history, ENTRIES).await?;
         let mut census = Census { labelled: counts[0], ..Census::default() };
         for (reason, count) in [Reason::Angle, Reason::Fold, Reason::Duplicate].into_iter().zip(&counts[1..])
         {
             census.blocked[reason] = u64::from(*count);
         }
         Ok(census)
-    }
-
-    async fn read(&self, buffer: &wgpu::Buffer, words: usize) -> Result<Vec<u32>, Error> {
-        let encoder = self.gpu.device.create_command_encoder(&Default::default());
-        self.gpu.submit_and_read(encoder, buffer, words).await
     }
 }
 
@@ -333,7 +273,15 @@ impl Engine for WebGpu {
     }
 
     fn triangles(&mut self) -> Answer<'_, Vec<u32>> {
-        Box::pin(self.read(&self.triangles, 3 * self.params.triangles as usize))
+        Box::pin(self.gpu.read(&self.buffers.triangles, 3 * self.params.triangles as usize))
+    }
+
+    fn twins(&mut self) -> Answer<'_, Vec<u32>> {
+        Box::pin(self.gpu.read(&self.buffers.twins, 3 * self.params.triangles as usize))
+    }
+
+    fn set_positions(&mut self, mesh: Arc<Mesh>) -> Answer<'_, ()> {
+        Box::pin(self.move_vertices(mesh))
     }
 
     fn edge_counts(&self) -> EdgeCounts {
@@ -356,21 +304,9 @@ impl Engine for WebGpu {
     fn shared_objects(&self) -> Option<SharedObjects> {
         Some(SharedObjects {
             device: self.gpu.device.as_webgpu()?.into(),
-            positions: self.positions.as_webgpu()?.into(),
-            triangles: self.triangles.as_webgpu()?.into(),
+            positions: self.buffers.positions.as_webgpu()?.into(),
+            triangles: self.buffers.triangles.as_webgpu()?.into(),
         })
-    }
-}
-
-impl Drop for WebGpu {
-    /// In a browser the garbage collector would take its time.
-    fn drop(&mut self) {
-        let Self {
-            uniform, steps, positions, triangles, twins, choices, frontier, history, topology, ..
-        } = self;
-        for buffer in [uniform, steps, positions, triangles, twins, choices, frontier, history, topology] {
-            buffer.destroy();
-        }
     }
 }
 
@@ -379,12 +315,9 @@ impl Drop for WebGpu {
 impl WebGpu {
     /// Runs one phase of the next iteration; after the flips, which end it, returns their number.
     pub(crate) async fn run_phase(&mut self, kernel: Kernel) -> Result<u32, Error> {
-        if kernel == Kernel::Label {
-            self.begin_history();
-        }
         let groups = self.gpu.workgroups(self.params.triangles);
-        let encoder = self.encode(|pass| self.dispatch(pass, kernel, groups));
-        Ok(self.read_history(encoder).await?.last().copied().unwrap_or(0))
+        let history = self.read_history(|pass| self.dispatch(pass, kernel, groups)).await?;
+        Ok(self.take_over(&history).last().copied().unwrap_or(0))
     }
 
     /// Lists from the start and sweeps in between, whatever the size of the mesh.
@@ -392,19 +325,15 @@ impl WebGpu {
         self.params.list_below = flips;
     }
 
-    pub(crate) async fn twins(&self) -> Result<Vec<u32>, Error> {
-        self.read(&self.twins, 3 * self.params.triangles as usize).await
-    }
-
     /// `best` and `selected`.
     pub(crate) async fn choices(&self) -> Result<(Vec<u32>, Vec<u32>), Error> {
-        let mut best = self.read(&self.choices, 2 * self.params.triangles as usize).await?;
+        let mut best = self.gpu.read(&self.buffers.choices, 2 * self.params.triangles as usize).await?;
         let selected = best.split_off(self.params.triangles as usize);
         Ok((best, selected))
     }
 
     pub(crate) async fn fans(&self) -> Result<Vec<u32>, Error> {
         let words = (self.params.fans + self.params.fans_length) as usize;
-        Ok(self.read(&self.topology, words).await?.split_off(self.params.fans as usize))
+        Ok(self.gpu.read(&self.topology, words).await?.split_off(self.params.fans as usize))
     }
 }

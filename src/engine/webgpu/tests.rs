@@ -3,12 +3,15 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "what fails here is a failed test")]
 
 use super::adjacency::BUCKETS_EACH;
-use super::device::{ADJACENCY, PHASES, PROBE, WORKGROUP_SIZE};
+use super::device::Device;
+use super::kernels::{ADJACENCY, PHASES, PROBE, WORKGROUP_SIZE};
 use super::limits::SPAN;
-use super::{ENTRIES, ENTRY_WORDS, Params};
+use super::params::Params;
+use super::{ENTRIES, ENTRY_WORDS};
 use crate::adjacency::CREASE;
 use crate::phases::BLOCKED;
-use crate::{NONE, Reason};
+use crate::{Error, NONE, Reason};
+use pollster::block_on;
 use std::collections::HashMap;
 use std::mem::offset_of;
 
@@ -152,4 +155,19 @@ fn variables_are_given_a_value() {
         let in_function = line.starts_with("    ") && line.trim_start().starts_with("var ");
         assert!(!in_function || line.contains(" = "), "{}", line.trim());
     }
+}
+
+/// On a device of its own, which does not serve any longer then.
+#[test]
+fn an_error_of_a_call_is_told() {
+    let gpu = block_on(async {
+        let (adapter, is_software) = Device::find_adapter().await?;
+        Device::open(adapter, is_software).await
+    })
+    .unwrap();
+    assert!(block_on(gpu.checked(|| gpu.buffer("small", 4, wgpu::BufferUsages::STORAGE))).is_ok());
+    let no_usage_fits = wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::MAP_WRITE;
+    let refused = block_on(gpu.checked(|| gpu.buffer("wrong", 4, no_usage_fits)));
+    assert!(matches!(refused, Err(Error::Device { .. })));
+    assert!(matches!(gpu.check(), Err(Error::Device { .. })));
 }

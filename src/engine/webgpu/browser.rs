@@ -1,0 +1,89 @@
+//! The browser's side of a device: where WebGPU is, and what there is no way to through wgpu.
+
+use super::faults::{Fault, Word};
+use js_sys::{Object, Promise, Reflect};
+use wasm_bindgen::prelude::*;
+use wasm_bindgen_futures::JsFuture;
+
+#[wasm_bindgen]
+extern "C" {
+    /// A GPUDevice of the page.
+    #[wasm_bindgen(js_name = GPUDevice)]
+    #[derive(Clone, Debug, PartialEq)]
+    pub type GpuDevice;
+    #[wasm_bindgen(method, getter, js_name = adapterInfo)]
+    pub(super) fn adapter_info(this: &GpuDevice) -> Option<GpuAdapterInfo>;
+    #[wasm_bindgen(method, getter)]
+    pub(super) fn lost(this: &GpuDevice) -> Promise;
+    #[wasm_bindgen(method, js_name = pushErrorScope)]
+    fn push_error_scope(this: &GpuDevice, filter: &str);
+    #[wasm_bindgen(method, js_name = popErrorScope)]
+    fn pop_error_scope(this: &GpuDevice) -> Promise;
+
+    #[wasm_bindgen(js_name = GPUAdapterInfo)]
+    pub(super) type GpuAdapterInfo;
+    #[wasm_bindgen(method, getter)]
+    fn vendor(this: &GpuAdapterInfo) -> String;
+    #[wasm_bindgen(method, getter)]
+    fn architecture(this: &GpuAdapterInfo) -> String;
+    #[wasm_bindgen(method, getter)]
+    fn description(this: &GpuAdapterInfo) -> String;
+    #[wasm_bindgen(method, getter, js_name = isFallbackAdapter)]
+    pub(super) fn is_fallback_adapter(this: &GpuAdapterInfo) -> Option<bool>;
+
+    /// GPUError and GPUDeviceLostInfo.
+    pub(super) type Told;
+    #[wasm_bindgen(method, getter)]
+    pub(super) fn message(this: &Told) -> String;
+}
+
+/// The navigator of a window or a worker. Elsewhere, as in Node, wgpu's instance panics.
+pub(super) fn navigator() -> Option<Object> {
+    match js_sys::global().dyn_into::<web_sys::Window>() {
+        Ok(window) => Some(window.navigator().into()),
+        Err(global) => {
+            let worker = global.dyn_into::<web_sys::WorkerGlobalScope>().ok()?;
+            Some(worker.navigator().into())
+        }
+    }
+}
+
+/// Whether wgpu can look for an adapter.
+pub(super) fn has_webgpu() -> bool {
+    let gpu = navigator().and_then(|navigator| Reflect::get(&navigator, &"gpu".into()).ok());
+    gpu.is_some_and(|gpu| gpu.is_object())
+}
+
+impl GpuDevice {
+    /// The device behind wgpu's.
+    pub(super) fn of(device: &wgpu::Device) -> Option<Self> {
+        Some(JsValue::from(device.as_webgpu()?.clone()).unchecked_into())
+    }
+
+    /// Vendor and architecture, such as `nvidia ampere`: what a browser says of a GPU. Empty where it says nothing.
+    pub(super) fn adapter_name(&self) -> String {
+        let info = self.adapter_info();
+        let words = info.map(|info| [info.vendor(), info.architecture(), info.description()]);
+        words.map_or_else(String::new, |words| words.join(" ").trim().to_owned())
+    }
+}
+
+/// As natively. Not through wgpu, which panics on an internal error.
+pub(super) fn watch<T>(device: &wgpu::Device, calls: impl FnOnce() -> T) -> (T, Word) {
+    let Some(device) = GpuDevice::of(device) else { return (calls(), Box::pin(std::future::ready(None))) };
+    for filter in ["validation", "internal", "out-of-memory"] {
+        device.push_error_scope(filter);
+    }
+    let result = calls();
+    let popped = [(); 3].map(|()| JsFuture::from(device.pop_error_scope()));
+    (result, Box::pin(word(popped)))
+}
+
+async fn word([memory, internal, validation]: [JsFuture; 3]) -> Option<Fault> {
+    // The promises of a lost device may be refused: its loss is told elsewhere.
+    let told = |error: Result<JsValue, JsValue>| error.ok().filter(JsValue::is_object);
+    match (told(memory.await), told(internal.await).or(told(validation.await))) {
+        (Some(_), _) => Some(Fault::OutOfMemory),
+        (None, other) => other.map(|error| Fault::Other(error.unchecked_into::<Told>().message())),
+    }
+}

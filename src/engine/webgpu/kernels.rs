@@ -1,0 +1,130 @@
+//! The kernels, compiled from `shaders/`, and their bindings.
+
+use wgpu::{BindingType, BufferBindingType};
+
+/// Invocations of a workgroup of every kernel.
+pub(super) const WORKGROUP_SIZE: u32 = 256;
+
+/// The shaders of the phases, in an order in which a reader can follow them.
+pub(super) const PHASES: &str = concat!(
+    include_str!("../../../shaders/state.wgsl"),
+    include_str!("../../../shaders/exact.wgsl"),
+    include_str!("../../../shaders/plane.wgsl"),
+    include_str!("../../../shaders/space.wgsl"),
+    include_str!("../../../shaders/star.wgsl"),
+    include_str!("../../../shaders/label.wgsl"),
+    include_str!("../../../shaders/select.wgsl"),
+    include_str!("../../../shaders/flip.wgsl"),
+    include_str!("../../../shaders/frontier.wgsl"),
+    include_str!("../../../shaders/iteration.wgsl"),
+);
+
+/// The shader that builds the adjacency.
+pub(super) const ADJACENCY: &str = include_str!("../../../shaders/adjacency.wgsl");
+
+/// The shader that finds drivers whose loops end too early.
+pub(super) const PROBE: &str = include_str!("../../../shaders/probe.wgsl");
+
+/// The kernels of `iteration.wgsl`.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Kernel {
+    Label,
+    Select,
+    Flip,
+    Tail,
+    Census,
+    FlagCreases,
+}
+
+impl Kernel {
+    const ALL: [Self; 6] =
+        [Self::Label, Self::Select, Self::Flip, Self::Tail, Self::Census, Self::FlagCreases];
+
+    /// The entry point.
+    fn name(self) -> &'static str {
+        match self {
+            Self::Label => "label_all",
+            Self::Select => "select_all",
+            Self::Flip => "flip_all",
+            Self::Tail => "tail",
+            Self::Census => "census",
+            Self::FlagCreases => "flag_creases",
+        }
+    }
+}
+
+/// The pipelines of one shader, which share their bindings.
+pub(super) struct Kernels<const N: usize> {
+    pub(super) layout: wgpu::BindGroupLayout,
+    pub(super) pipelines: [wgpu::ComputePipeline; N],
+}
+
+/// count, allocate, scatter, match_twins, count_corners, count_fans.
+pub(super) fn adjacency(device: &wgpu::Device) -> Kernels<6> {
+    let (read, write) = (storage(true), storage(false));
+    let names = ["count", "allocate", "scatter", "match_twins", "count_corners", "count_fans"];
+    kernels(device, ADJACENCY, &[uniform(false), read, write, write, write, write], names)
+}
+
+/// In the order of [`Kernel`].
+pub(super) fn phases(device: &wgpu::Device) -> Kernels<6> {
+    let (read, write) = (storage(true), storage(false));
+    let bindings = [uniform(false), uniform(true), read, write, write, write, write, write, write];
+    kernels(device, PHASES, &bindings, Kernel::ALL.map(Kernel::name))
+}
+
+pub(super) fn probe(device: &wgpu::Device) -> Kernels<1> {
+    kernels(device, PROBE, &[storage(false)], ["probe"])
+}
+
+fn uniform(has_dynamic_offset: bool) -> BindingType {
+    binding(BufferBindingType::Uniform, has_dynamic_offset)
+}
+
+fn storage(read_only: bool) -> BindingType {
+    binding(BufferBindingType::Storage { read_only }, false)
+}
+
+fn binding(ty: BufferBindingType, has_dynamic_offset: bool) -> BindingType {
+    BindingType::Buffer { ty, has_dynamic_offset, min_binding_size: None }
+}
+
+fn kernels<const N: usize>(
+    device: &wgpu::Device,
+    source: &str,
+    bindings: &[BindingType],
+    names: [&str; N],
+) -> Kernels<N> {
+    let entries: Vec<_> = bindings
+        .iter()
+        .zip(0u32..)
+        .map(|(&ty, binding)| wgpu::BindGroupLayoutEntry {
+            binding,
+            visibility: wgpu::ShaderStages::COMPUTE,
+            ty,
+            count: None,
+        })
+        .collect();
+    let layout =
+        device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: None, entries: &entries });
+    let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: None,
+        bind_group_layouts: &[Some(&layout)],
+        immediate_size: 0,
+    });
+    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: None,
+        source: wgpu::ShaderSource::Wgsl(source.into()),
+    });
+    let pipelines = names.map(|name| {
+        device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: Some(name),
+            layout: Some(&pipeline_layout),
+            module: &module,
+            entry_point: Some(name),
+            compilation_options: Default::default(),
+            cache: None,
+        })
+    });
+    Kernels { layout, pipelines }
+}

@@ -1,0 +1,67 @@
+//! The parameters that every kernel of the phases reads.
+
+use crate::mesh::Mesh;
+use crate::predicates::cosine_fraction;
+
+/// Iterations of the tail run on lists of up to so many triangles.
+const TAIL_LENGTH: u32 = 2048;
+/// The same where loops end too early: a few thousand rounds for each of a few triangles are safe.
+const SHORT_TAIL_LENGTH: u32 = 256;
+/// Meshes of up to so many triangles go by lists from the start.
+const SMALL_MESH: usize = 4096;
+
+/// As in `state.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+pub(super) struct Params {
+    pub(super) dimension: u32,
+    pub(super) vertices: u32,
+    pub(super) triangles: u32,
+    pub(super) first: u32,
+    pub(super) fans: u32,
+    pub(super) fans_length: u32,
+    pub(super) winding_length: u32,
+    pub(super) tail: u32,
+    pub(super) cos: f32,
+    pub(super) cos_sign: i32,
+    pub(super) cos_shift: u32,
+    pub(super) tail_iterations: u32,
+    pub(super) tail_length: u32,
+    pub(super) list_below: u32,
+    pub(super) padding: [u32; 2],
+    pub(super) cos_square: [u32; 4],
+}
+
+impl Params {
+    /// Before the first iteration, with no winding bits. `cos` is the cosine of β; the table of the fans has
+    /// `fans_length` words from `fans` on.
+    pub(super) fn new(
+        mesh: &Mesh,
+        cos: f64,
+        (fans, fans_length): (usize, usize),
+        ends_loops_early: bool,
+    ) -> Self {
+        let (mantissa, shift) = cosine_fraction(cos);
+        let square = u128::from(mantissa) * u128::from(mantissa);
+        let count = mesh.triangle_count();
+        Self {
+            dimension: mesh.dimension().stride() as u32,
+            vertices: mesh.vertex_count() as u32,
+            triangles: count as u32,
+            first: 0,
+            fans: fans as u32,
+            fans_length: fans_length as u32,
+            winding_length: 0,
+            tail: 0,
+            cos: cos as f32,
+            cos_sign: if cos == 0.0 { 0 } else { cos.signum() as i32 },
+            cos_shift: 2 * shift,
+            tail_iterations: 0,
+            tail_length: if ends_loops_early { SHORT_TAIL_LENGTH } else { TAIL_LENGTH },
+            // A flip appends six triangles at most; a small mesh is not worth a sweep.
+            list_below: if count <= SMALL_MESH { u32::MAX } else { count as u32 / 24 },
+            padding: [0; 2],
+            cos_square: [0, 32, 64, 96].map(|bits| (square >> bits) as u32),
+        }
+    }
+}

@@ -1,0 +1,148 @@
+//! What becomes of a session when its device is lost.
+
+#![allow(clippy::unwrap_used, reason = "what fails here is a failed test")]
+
+use super::*;
+use crate::engine::{Census, EdgeCounts};
+use pollster::block_on;
+
+/// A device that is lost at a certain question.
+struct Failing {
+    cpu: Cpu,
+    questions_left: u32,
+}
+
+impl Failing {
+    fn answer<'a, T: 'a>(&'a mut self, ask: impl FnOnce(&'a mut Cpu) -> Answer<'a, T>) -> Answer<'a, T> {
+        if self.questions_left == 0 {
+            let message = "lost on purpose".to_owned();
+            return Box::pin(std::future::ready(Err(Error::Device { message })));
+        }
+        self.questions_left -= 1;
+        ask(&mut self.cpu)
+    }
+}
+
+impl Engine for Failing {
+    fn batch(&self) -> u32 {
+        2
+    }
+    fn iterate(&mut self, count: u32) -> Answer<'_, Vec<u32>> {
+        self.answer(|cpu| cpu.iterate(count))
+    }
+    fn census(&mut self) -> Answer<'_, Census> {
+        self.answer(|cpu| cpu.census())
+    }
+    fn triangles(&mut self) -> Answer<'_, Vec<u32>> {
+        self.answer(|cpu| Engine::triangles(cpu))
+    }
+    fn twins(&mut self) -> Answer<'_, Vec<u32>> {
+        self.answer(|cpu| Engine::twins(cpu))
+    }
+    fn set_positions(&mut self, mesh: Arc<Mesh>) -> Answer<'_, ()> {
+        self.answer(|cpu| cpu.set_positions(mesh))
+    }
+    fn edge_counts(&self) -> EdgeCounts {
+        self.cpu.edge_counts()
+    }
+    fn backend(&self) -> &'static str {
+        "gpu"
+    }
+}
+
+fn session(backend: Backend, questions_left: u32) -> Session {
+    let mesh = crate::families::by_name("random 20").unwrap();
+    let options = Options { backend: Backend::Cpu, ..Options::default() };
+    let mut session = block_on(Session::new(mesh, options)).unwrap();
+    let cpu = Cpu::new(session.mesh.clone(), cos_degrees(10.0));
+    session.engine = Box::new(Failing { cpu, questions_left });
+    session.options.backend = backend;
+    session
+}
+
+/// What a caller sees of a run: the triangles after every iteration, and the outcome.
+fn watch(mut session: Session) -> Result<(Vec<Vec<u32>>, Outcome), Error> {
+    block_on(async {
+        let mut seen = Vec::new();
+        while session.step().await?.is_some() {
+            seen.push(session.triangles().await?);
+        }
+        Ok((seen, session.outcome().await?))
+    })
+}
+
+#[test]
+fn a_lost_device_changes_no_result_at_any_moment() {
+    let (expected, outcome) = watch(session(Backend::Auto, u32::MAX)).unwrap();
+    let questions = 3 * expected.len() as u32 + 4;
+    for questions_left in 0..questions {
+        let (seen, other) = watch(session(Backend::Auto, questions_left)).unwrap();
+        assert_eq!(seen, expected, "lost after {questions_left} questions");
+        assert!(other.fallback.is_some_and(|why| why.contains("lost on purpose")));
+        assert_eq!((other.backend, other.status), ("cpu", Status::Done));
+        assert_eq!(other.flips_per_iteration, outcome.flips_per_iteration);
+        assert_eq!(other.remaining, outcome.remaining);
+
+        let mut session = session(Backend::Auto, questions_left);
+        let mut counts = Vec::new();
+        block_on(session.run(|iterations, _| {
+            counts.push(iterations);
+            ControlFlow::Continue(())
+        }))
+        .unwrap();
+        assert!(counts.is_sorted());
+        assert_eq!(block_on(session.outcome()).unwrap().triangles, outcome.triangles);
+    }
+}
+
+#[test]
+fn an_explicit_backend_never_falls_back() {
+    assert!(matches!(watch(session(Backend::Gpu, 4)), Err(Error::Device { .. })));
+}
+
+/// The triangles at the end, after the vertices have moved in the middle of a run.
+fn watch_moved(mut session: Session) -> Result<(Vec<Vec<u32>>, Outcome), Error> {
+    let moved =
+        session.mesh.positions().iter().enumerate().map(|(i, x)| x * (1.0 + (i % 2) as f32)).collect();
+    block_on(async {
+        session.step().await?;
+        session.set_positions(moved).await
+    })?;
+    watch(session)
+}
+
+#[test]
+fn a_lost_device_changes_no_result_when_vertices_move() {
+    let (expected, outcome) = watch_moved(session(Backend::Auto, u32::MAX)).unwrap();
+    assert!(expected.len() > 2);
+    for questions_left in 0..3 * expected.len() as u32 + 8 {
+        let (seen, other) = watch_moved(session(Backend::Auto, questions_left)).unwrap();
+        assert_eq!(seen, expected, "lost after {questions_left} questions");
+        assert!(other.fallback.is_some_and(|why| why.contains("lost on purpose")));
+        assert_eq!(other.flips_per_iteration, outcome.flips_per_iteration);
+        assert_eq!(other.remaining, outcome.remaining);
+        if questions_left < 4 {
+            let error = watch_moved(session(Backend::Gpu, questions_left)).unwrap_err();
+            assert!(matches!(error, Error::Device { .. }));
+        }
+    }
+}
+
+/// Coordinates of magnitudes too far apart for the GPU.
+#[cfg(feature = "gpu")]
+#[test]
+fn the_cpu_takes_over_positions_that_the_gpu_refuses() {
+    let mesh = crate::families::by_name("random 8").unwrap();
+    let mut positions = mesh.positions().to_vec();
+    positions[0] = 1e-30;
+    let options = Options { backend: Backend::Gpu, ..Options::default() };
+    let mut session = block_on(Session::new(mesh, options)).unwrap();
+    let refused = block_on(session.set_positions(positions.clone()));
+    assert!(matches!(refused, Err(Error::BackendLimit { .. })));
+
+    session.options.backend = Backend::Auto;
+    block_on(session.set_positions(positions.clone())).unwrap();
+    let (_, outcome) = watch(session).unwrap();
+    assert_eq!((outcome.backend, outcome.status), ("cpu", Status::Done));
+    assert!(outcome.fallback.is_some_and(|why| why.contains("bits")));
+}

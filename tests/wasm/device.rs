@@ -1,0 +1,203 @@
+//! Sessions on a device that the page, or the worker, has made.
+
+use edgeflip::js::{GpuDevice, JsOptions, JsSession};
+use edgeflip::{Backend, Mesh, Options, Session, families::by_name};
+use js_sys::{Object, Reflect, Uint32Array};
+use wasm_bindgen::prelude::*;
+use wasm_bindgen_test::wasm_bindgen_test;
+
+#[wasm_bindgen(inline_js = r#"
+// A device with default limits whose page counts the shaders, and keeps the messages of its errors.
+export async function open() {
+  const device = await (await navigator.gpu.requestAdapter()).requestDevice();
+  Object.assign(device, { shaders: 0, seen: [], made: 0 });
+  device.handler = (event) => { event.preventDefault(); device.seen.push(event.error.message); };
+  device.onuncapturederror = device.handler;
+  device.createShaderModule = (descriptor) => {
+    device.shaders++;
+    return GPUDevice.prototype.createShaderModule.call(device, descriptor);
+  };
+  return device;
+}
+// Errors of the page's own: one now and one in every task to come, until `stop`.
+export function err(device) {
+  const make = () => { device.made++; device.createBuffer({ size: 4, usage: 0 }); };
+  make();
+  device.timer = setInterval(make, 0);
+}
+export async function stop(device) {
+  clearInterval(device.timer);
+  await device.queue.onSubmittedWorkDone();
+  return device.seen.length === device.made && device.onuncapturederror === device.handler;
+}
+export const shaders = (device) => device.shaders;
+export const seen = (device) => device.seen.length;
+// From now on buffers lack the usage that a binding needs, or are as they should be.
+export function spoilBuffers(device, spoiled) {
+  delete device.createBuffer;
+  if (spoiled) device.createBuffer = (descriptor) =>
+    GPUDevice.prototype.createBuffer.call(device, { ...descriptor, usage: descriptor.usage & ~GPUBufferUsage.STORAGE });
+}
+// What is in a buffer, copied by commands of the page's own.
+export async function words(device, buffer) {
+  const staging = device.createBuffer({ size: buffer.size, usage: GPUBufferUsage.COPY_DST | GPUBufferUsage.MAP_READ });
+  const encoder = device.createCommandEncoder();
+  encoder.copyBufferToBuffer(buffer, 0, staging, 0, buffer.size);
+  device.queue.submit([encoder.finish()]);
+  await staging.mapAsync(GPUMapMode.READ);
+  return new Uint32Array(staging.getMappedRange().slice());
+}
+export function destroy(device) { device.destroy(); }
+// So that `auto` takes it.
+export function passForHardware(device) {
+  const info = { vendor: 'none', architecture: '', description: '', isFallbackAdapter: false };
+  Object.defineProperty(device, 'adapterInfo', { value: info });
+}
+export const navigatorIsItself = () => !Object.hasOwn(navigator, 'gpu') && navigator.gpu instanceof GPU;
+// How often a device has been asked for since the first call.
+let asked;
+export function devicesAskedFor() {
+  if (asked === undefined) {
+    asked = 0;
+    const { requestDevice } = GPUAdapter.prototype;
+    GPUAdapter.prototype.requestDevice = function (...args) { asked++; return requestDevice.apply(this, args); };
+  }
+  return asked;
+}
+"#)]
+extern "C" {
+    async fn open() -> JsValue;
+    fn err(device: &JsValue);
+    async fn stop(device: &JsValue) -> JsValue;
+    fn shaders(device: &JsValue) -> u32;
+    fn seen(device: &JsValue) -> u32;
+    #[wasm_bindgen(js_name = spoilBuffers)]
+    fn spoil_buffers(device: &JsValue, spoiled: bool);
+    async fn words(device: &JsValue, buffer: &JsValue) -> JsValue;
+    fn destroy(device: &JsValue);
+    #[wasm_bindgen(js_name = passForHardware)]
+    fn pass_for_hardware(device: &JsValue);
+    #[wasm_bindgen(js_name = navigatorIsItself)]
+    fn navigator_is_itself() -> bool;
+    #[wasm_bindgen(js_name = devicesAskedFor)]
+    pub fn devices_asked_for() -> u32;
+}
+
+pub fn options_object(fields: &[(&str, JsValue)]) -> JsOptions {
+    let object = Object::new();
+    for (name, value) in fields {
+        Reflect::set(&object, &(*name).into(), value).unwrap();
+    }
+    object.unchecked_into()
+}
+
+pub fn code_of(error: &JsValue) -> String {
+    Reflect::get(error, &"code".into()).unwrap().as_string().unwrap()
+}
+
+pub fn class_of(value: &JsValue) -> String {
+    Object::from(value.clone()).constructor().name().into()
+}
+
+async fn create(mesh: &Mesh, backend: &str, device: &JsValue) -> Result<JsSession, JsValue> {
+    let (positions, indices) = (mesh.positions().to_vec(), mesh.triangles().to_vec());
+    let options = options_object(&[("backend", backend.into()), ("device", device.clone())]);
+    JsSession::create(positions, indices, mesh.dimension().stride() as f64, options).await
+}
+
+/// What the CPU makes of the mesh.
+async fn expected(mesh: &Mesh) -> Vec<u32> {
+    let options = Options { backend: Backend::Cpu, ..Options::default() };
+    let mut session = Session::new(mesh.clone(), options).await.unwrap();
+    while session.advance().await.unwrap() {}
+    session.triangles().await.unwrap()
+}
+
+#[wasm_bindgen_test]
+async fn a_session_runs_on_the_device_of_the_page() {
+    let mesh = by_name("random 10").unwrap();
+    let device = open().await;
+    err(&device);
+    let mut session = create(&mesh, "webgpu", &device).await.unwrap();
+    assert!(navigator_is_itself());
+    assert_eq!((session.backend().as_str(), session.device()), ("webgpu", device.clone()));
+    while session.step().await.unwrap().is_truthy() {}
+    let triangles = expected(&mesh).await;
+    assert_eq!(session.triangles().await.unwrap().to_vec(), triangles);
+    let buffer = session.index_buffer();
+    assert_eq!(Uint32Array::from(words(&device, &buffer).await).to_vec(), triangles);
+
+    // The vertices move, the buffers stay.
+    let positions: Vec<f32> =
+        mesh.positions().iter().zip(0..).map(|(x, i)| x * (1 + i % 2 * 7) as f32).collect();
+    session.set_positions(positions.clone()).await.unwrap();
+    let moved = Mesh::new(mesh.dimension(), positions, triangles).unwrap();
+    while session.advance().await.unwrap() {}
+    assert_eq!(session.triangles().await.unwrap().to_vec(), expected(&moved).await);
+    assert_eq!(session.index_buffer(), buffer);
+    let (in_order, alone) = (session.iterations() > 0, stop(&device).await);
+    assert!(in_order && alone.is_truthy(), "each error of the page has reached the page, and nothing else");
+
+    // Another session finds the kernels compiled, also when the first is gone.
+    let compiled = shaders(&device);
+    drop(session);
+    let mut session = create(&mesh, "webgpu", &device).await.unwrap();
+    assert_eq!((shaders(&device), seen(&device)), (compiled, seen(&device)));
+    let copy = words(&device, &session.index_buffer()).await;
+    assert_eq!(Uint32Array::from(copy).to_vec(), mesh.triangles());
+
+    // Our own errors are ours, and the page hears nothing of them.
+    let before = seen(&device);
+    spoil_buffers(&device, true);
+    let error = create(&mesh, "webgpu", &device).await.err().unwrap();
+    assert_eq!(code_of(&error), "device-failed");
+    spoil_buffers(&device, false);
+    assert_eq!(seen(&device), before);
+    assert_eq!(code_of(&session.step().await.unwrap_err()), "device-failed");
+    let mut session = create(&mesh, "webgpu", &device).await.unwrap();
+    assert!(session.step().await.unwrap().is_truthy());
+
+    // A lost device is told, in the middle of a run and before one.
+    destroy(&device);
+    for error in [session.step().await.err(), create(&mesh, "webgpu", &device).await.err()] {
+        assert_eq!(code_of(&error.unwrap()), "device-failed");
+    }
+}
+
+#[wasm_bindgen_test]
+async fn auto_leaves_a_device_that_is_software_or_lost() {
+    let mesh = by_name("random 10").unwrap();
+    let device = open().await;
+    let mut session = create(&mesh, "auto", &device).await.unwrap();
+    // `webdriver.json` has Chromium take SwiftShader.
+    assert_eq!((session.backend().as_str(), shaders(&device)), ("cpu", 0));
+    assert!(session.step().await.unwrap().is_truthy());
+
+    pass_for_hardware(&device);
+    let mut session = create(&mesh, "auto", &device).await.unwrap();
+    assert_eq!(session.backend(), "webgpu");
+    session.step().await.unwrap();
+    let triangles = session.triangles().await.unwrap().to_vec();
+    let positions: Vec<f32> =
+        mesh.positions().iter().zip(0..).map(|(x, i)| x * (1 + i % 2 * 7) as f32).collect();
+    session.set_positions(positions.clone()).await.unwrap();
+    session.step().await.unwrap();
+    destroy(&device);
+    while session.advance().await.unwrap() {}
+    let moved = Mesh::new(mesh.dimension(), positions, triangles).unwrap();
+    assert_eq!(session.backend(), "cpu");
+    assert_eq!(session.triangles().await.unwrap().to_vec(), expected(&moved).await);
+    assert_eq!(create(&mesh, "auto", &device).await.unwrap().backend(), "cpu");
+}
+
+#[wasm_bindgen_test]
+async fn what_is_no_device_is_refused() {
+    let mesh = by_name("random 10").unwrap();
+    for (wrong, backend) in [(JsValue::NULL, "webgpu"), (Object::new().into(), "auto"), (1.into(), "cpu")] {
+        let error = create(&mesh, backend, &wrong).await.err().unwrap();
+        assert_eq!(code_of(&error), "invalid-option", "{wrong:?}");
+        assert_eq!(class_of(&error), "Error");
+    }
+    let options = Options { device: None::<GpuDevice>, ..Options::default() };
+    assert!(Session::new(mesh, options).await.is_ok());
+}
