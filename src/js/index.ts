@@ -13,7 +13,8 @@ import { FlipSession } from './session.js';
 import type { MakeDelaunayOptions, Mesh, Result } from './types.js';
 
 export { EdgeflipError, type ErrorCode } from './error.js';
-export { init, type ModuleSource } from './load.js';
+export { init } from './load.js';
+export type { ModuleSource } from './module.js';
 export { FlipSession } from './session.js';
 export type * from './types.js';
 
