@@ -53,7 +53,7 @@ const levels = [
   },
   {
     name: 'wasm32',
-    what: 'the library for the browser has no warning from clippy, with and without what JavaScript calls',
+    what: 'the library for the browser has no warning from clippy: without what JavaScript calls, and as each module of the package',
     checks: [
       [...wasmCargo, 'clippy', '--lib', ...wasmWith('gpu'), '--', '-D', 'warnings'],
       [...wasmCargo, 'clippy', '--lib', ...wasmWith('js-files'), '--', '-D', 'warnings'],

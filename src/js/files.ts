@@ -7,7 +7,7 @@
  * const bytes = await writeMesh(mesh, 'copy.off');
  * ```
  *
- * All of it runs where it is called, so large meshes are for a worker: half a million triangles take a second.
+ * All of it runs on the thread that calls: a file of many million triangles is for a worker.
  *
  * @packageDocumentation
  */
