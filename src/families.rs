@@ -80,11 +80,14 @@ fn at_least(smallest: usize, n: usize, family: &str) -> Result<(), Error> {
     Err(Error::Option { option: "family", message: format!("{family} {n}: n must be at least {smallest}") })
 }
 
-/// Refuses what [`Mesh::new`] would refuse for its size, before any memory is taken for it.
+/// Refuses what [`Mesh::new`] would refuse for its size, before any memory is taken for it, and what no array can hold
+/// where addresses have 32 bits.
 fn fits(vertices: usize, triangles: usize) -> Result<(), Error> {
+    const LONGEST_ARRAY: usize = isize::MAX as usize / size_of::<[u32; 3]>();
     for (what, count, limit) in
         [("vertices", vertices, NONE as usize), ("triangles", triangles, MAX_TRIANGLES)]
     {
+        let limit = limit.min(LONGEST_ARRAY);
         if count > limit {
             return Err(Error::TooLarge { what, count, limit });
         }

@@ -4,9 +4,10 @@
 mod objects;
 
 pub use crate::engine::GpuDevice;
-use crate::{Backend, Dimension, Error, Mesh, Options, Order, Session};
+use crate::js_values::{backend_name, object, parse_dimension, thrown};
+use crate::{Backend, Error, Mesh, Options, Order, Session};
 use js_sys::{Uint8Array, Uint32Array};
-use objects::{object, outcome_object, reasons_object, thrown};
+use objects::{outcome_object, reasons_object};
 use wasm_bindgen::prelude::*;
 
 #[wasm_bindgen]
@@ -25,13 +26,6 @@ extern "C" {
     fn order(this: &JsOptions) -> JsValue;
     #[wasm_bindgen(method, getter)]
     fn device(this: &JsOptions) -> JsValue;
-}
-
-/// Runs once, when the module is loaded.
-#[wasm_bindgen(start)]
-pub fn start() {
-    #[cfg(debug_assertions)]
-    console_error_panic_hook::set_once();
 }
 
 /// A mesh on an engine. One call at a time: each must have answered before the next.
@@ -169,7 +163,7 @@ impl JsSession {
     /// The engine that runs now.
     #[wasm_bindgen(getter, unchecked_return_type = "import('../types.js').Engine")]
     pub fn backend(&self) -> String {
-        objects::backend(self.0.backend()).to_owned()
+        backend_name(self.0.backend()).to_owned()
     }
 
     /// The engine's GPUDevice, if it runs on one.
@@ -188,16 +182,6 @@ impl JsSession {
     #[wasm_bindgen(getter, js_name = indexBuffer, unchecked_return_type = "GPUBuffer | undefined")]
     pub fn index_buffer(&self) -> JsValue {
         self.0.shared_objects().map_or(JsValue::UNDEFINED, |objects| objects.triangles)
-    }
-}
-
-fn parse_dimension(dimension: f64) -> Result<Dimension, Error> {
-    if dimension == 2.0 {
-        Ok(Dimension::Two)
-    } else if dimension == 3.0 {
-        Ok(Dimension::Three)
-    } else {
-        Err(Error::Option { option: "dimension", message: format!("{dimension} is neither 2 nor 3") })
     }
 }
 

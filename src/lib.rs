@@ -17,7 +17,8 @@
 //! iteration, `engine` runs them on the CPU or through the shaders of the same names; `session` is the loop, `options`
 //! and `outcome` are what goes in and out.
 //! Beside them: [`quality`] measures and audits, [`io`] reads and writes, [`families`] generates; [`Edges`] lists
-//! the edges as the paper does, [`EdgeState`] is what each of them waits for, and `js` is what the npm package calls.
+//! the edges as the paper does, [`EdgeState`] is what each of them waits for; `js` and `js_files` are what the npm
+//! package calls, each in a WebAssembly module of its own, and `js_values` is what they share.
 
 mod adjacency;
 mod edge_states;
@@ -29,6 +30,10 @@ mod frozen;
 pub mod io;
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 pub mod js;
+#[cfg(all(target_arch = "wasm32", feature = "js-files"))]
+pub mod js_files;
+#[cfg(all(target_arch = "wasm32", any(feature = "js", feature = "js-files")))]
+mod js_values;
 mod mesh;
 mod options;
 mod outcome;

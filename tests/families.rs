@@ -2,8 +2,10 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot make its mesh must stop")]
 
 use edgeflip::families::{self, NAMES, by_name};
+use edgeflip::io::{Format, to_bytes};
 use edgeflip::{Dimension, Error, Mesh};
 use std::collections::HashMap;
+use std::fmt::Write;
 
 fn mesh(spec: &str) -> Mesh {
     by_name(spec).unwrap()
@@ -136,4 +138,44 @@ fn wrong_specifications_are_refused() {
     }
     assert!(by_name("sphere 5").unwrap_err().to_string().contains("uvsphere N"));
     assert!(matches!(by_name("grid 100000"), Err(Error::TooLarge { .. })));
+}
+
+/// The specifications whose files `tests/package/files.test.mjs` compares with the same digests.
+const WRITTEN: [&str; 13] = [
+    "grid 9",
+    "random 12",
+    "random 9 5 seed=7",
+    "shear 9 30",
+    "regular 8 100000",
+    "strips 12",
+    "fan2 40",
+    "sweep 50",
+    "uvsphere 12",
+    "uvsphere 9 0.9",
+    "roof 5",
+    "pillow 5 0.01",
+    "pole 30",
+];
+
+/// FNV-1a, 64 bits.
+fn digest(bytes: &[u8]) -> u64 {
+    bytes
+        .iter()
+        .fold(0xcbf2_9ce4_8422_2325, |hash, &byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
+}
+
+/// `EDGEFLIP_BLESS=1 cargo test --test families` writes the file anew.
+#[test]
+fn files_are_those_of_the_npm_package() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/package/generated.txt");
+    let mut text = String::from("# FNV-1a of the OFF file, of the OBJ file, specification\n");
+    for spec in WRITTEN {
+        let [off, obj] =
+            [Format::Off, Format::Obj].map(|format| digest(&to_bytes(format, &mesh(spec)).unwrap()));
+        writeln!(text, "{off:016x} {obj:016x} {spec}").unwrap();
+    }
+    if std::env::var_os("EDGEFLIP_BLESS").is_some() {
+        std::fs::write(path, &text).unwrap();
+    }
+    assert_eq!(std::fs::read_to_string(path).unwrap(), text);
 }

@@ -15,8 +15,9 @@ process.chdir(fileURLToPath(new URL('..', import.meta.url)));
  * @typedef {{ level: Level, passed: number, failed: number, why: string, seconds: number }} Result
  */
 
-// The one build of the library that a browser gets.
-const wasm = ['--target', 'wasm32-unknown-unknown', '--no-default-features', '--features', 'gpu,js'];
+// The builds of the library that a browser gets are of `gpu,js` and of `js-files`.
+const wasmWith = (features) => ['--target', 'wasm32-unknown-unknown', '--no-default-features', '--features', features];
+const wasm = wasmWith('gpu,js');
 const wasmCargo = ['bash', 'tools/wasm-cargo.sh'];
 
 const inChromium = ['wasm', 'worker'];
@@ -54,9 +55,10 @@ const levels = [
   },
   {
     name: 'wasm32',
-    what: 'the library for the browser has no warning from clippy, with and without what JavaScript calls',
+    what: 'the library for the browser has no warning from clippy: without what JavaScript calls, and as each module of the package',
     checks: [
-      [...wasmCargo, 'clippy', '--lib', ...wasm.slice(0, -1), 'gpu', '--', '-D', 'warnings'],
+      [...wasmCargo, 'clippy', '--lib', ...wasmWith('gpu'), '--', '-D', 'warnings'],
+      [...wasmCargo, 'clippy', '--lib', ...wasmWith('js-files'), '--', '-D', 'warnings'],
       [...wasmCargo, 'clippy', '--lib', '--test', 'wasm', '--test', 'worker', ...wasm, '--', '-D', 'warnings'],
     ],
   },
@@ -77,7 +79,7 @@ const levels = [
     checks: [
       ['node', 'tools/build.mjs'],
       ['node', 'node_modules/typescript/bin/tsc', '-p', 'tests/package'],
-      ['node', '--test', '--test-reporter=tap', 'tests/package/node.test.mjs'],
+      ['node', '--test', '--test-reporter=tap', 'tests/package/node.test.mjs', 'tests/package/files.test.mjs'],
     ],
     counts: true,
   },

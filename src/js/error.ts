@@ -5,18 +5,20 @@
  *
  * | code | what to do |
  * |---|---|
- * | `invalid-input` | pass typed arrays, and 2 or 3 as the dimension |
+ * | `invalid-input` | pass typed arrays, strings where text is asked for, and 2 or 3 as the dimension |
  * | `not-float32` | round the positions: `Float32Array.from(positions)` |
  * | `non-finite` | repair or remove the vertex that the message names |
  * | `index-out-of-range` | check the indices of the triangle that the message names |
  * | `ragged-array` | check the array's length and the dimension |
  * | `position-count` | give `setPositions` 2 or 3 numbers for each vertex of the mesh |
  * | `too-large` | split the mesh |
+ * | `parse` | repair the file at the line, or the vertex, that the message names |
+ * | `unknown-format` | take a file name with one of the extensions in `FORMATS` |
  * | `invalid-option` | check the option that the message names |
  * | `backend-unavailable` | take `'auto'` or `'cpu'`: there is no WebGPU here |
  * | `backend-limit` | take `'auto'` or `'cpu'`: the GPU cannot take this mesh |
  * | `device-failed` | begin again: the GPU was lost, or the `device` given is |
- * | `load-failed` | see that `wasm/edgeflip_bg.wasm` is served, or pass it to `init` |
+ * | `load-failed` | see that the package's `wasm/*.wasm` are served, or pass them to `init` and `initFiles` |
  * | `freed` | do not use a session after `free` |
  * | `internal` | report it: the module has crashed, and must be loaded anew |
  */
@@ -30,6 +32,8 @@ const CODES = [
   'ragged-array',
   'position-count',
   'too-large',
+  'parse',
+  'unknown-format',
   'invalid-option',
   'backend-unavailable',
   'backend-limit',

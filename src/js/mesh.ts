@@ -3,11 +3,12 @@
 import { EdgeflipError } from './error.js';
 import type { Mesh } from './types.js';
 
-/** A mesh in the arrays that the module takes. */
-export interface ModuleMesh {
+/** A mesh in the arrays that the modules take and give. */
+export interface Mesh32 extends Mesh {
+  /** 2 or 3 numbers a vertex. */
   positions: Float32Array;
+  /** Vertex indices, 3 a triangle. */
   indices: Uint32Array;
-  dimension: 2 | 3;
 }
 
 /**
@@ -15,7 +16,7 @@ export interface ModuleMesh {
  *
  * @throws {@link EdgeflipError} `invalid-input` or `not-float32`.
  */
-export function moduleMesh({ positions, indices, dimension }: Mesh): ModuleMesh {
+export function moduleMesh({ positions, indices, dimension }: Mesh): Mesh32 {
   if (dimension !== 2 && dimension !== 3) {
     throw new EdgeflipError('invalid-input', `dimension is ${String(dimension)}, not 2 or 3`);
   }

@@ -1,6 +1,7 @@
 // Compiled, never run: what a strict TypeScript program sees of the package.
 
 import { EDGE_STATES, EdgeflipError, type EdgeState, type ErrorCode, FlipSession, type Iteration, init, makeDelaunay, type Mesh } from 'edgeflip';
+import { type Angles, angles, type FileMesh, FORMATS, generate, initFiles, readMesh, writeMesh } from 'edgeflip/files';
 
 export async function use(mesh: Mesh, signal: AbortSignal, device?: GPUDevice): Promise<Uint32Array> {
   await init(new URL('https://example.org/edgeflip.wasm'));
@@ -25,11 +26,23 @@ export async function use(mesh: Mesh, signal: AbortSignal, device?: GPUDevice): 
   return result.indices;
 }
 
+export async function copy(file: File): Promise<Blob> {
+  await initFiles(new URL('https://example.org/edgeflip_files.wasm'));
+  const format: '.off' | '.obj' | undefined = FORMATS.find((format) => file.name.endsWith(format));
+  const mesh: FileMesh = await readMesh(new Uint8Array(await file.arrayBuffer()), file.name, { dimension: 3 });
+  const positions: Float32Array = (await generate('uvsphere 20')).positions;
+  const { min, counts }: Angles = await angles({ ...mesh, positions }, 18);
+  console.log(mesh.polygons, mesh.dropped.join(), min, counts.length, (await makeDelaunay(mesh)).status);
+  return new Blob([await writeMesh(mesh, `copy${format ?? '.off'}`)]);
+}
+
 export function codeOf(error: unknown): ErrorCode | undefined {
   return error instanceof EdgeflipError ? error.code : undefined;
 }
 
 // @ts-expect-error: there is no such backend
 void makeDelaunay({ positions: new Float32Array(), indices: new Uint16Array(), dimension: 2 }, { backend: 'gpu' });
+// @ts-expect-error: text is no bytes
+void readMesh('OFF', 'a.off');
 // @ts-expect-error: a plain array is no typed array
 void makeDelaunay({ positions: [0, 0], indices: new Uint16Array(), dimension: 2 });

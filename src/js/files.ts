@@ -1,0 +1,124 @@
+/**
+ * Mesh files, generated meshes and angles, in a WebAssembly module of their own that is loaded when one is used.
+ *
+ * ```ts
+ * import { readMesh, writeMesh } from 'edgeflip/files';
+ * const mesh = await readMesh(new Uint8Array(await file.arrayBuffer()), file.name);
+ * const bytes = await writeMesh(mesh, 'copy.off');
+ * ```
+ *
+ * All of it runs on the thread that calls: a file of many million triangles is for a worker.
+ *
+ * @packageDocumentation
+ */
+
+import initModule, * as wasm from './wasm/edgeflip_files.js';
+import { EdgeflipError, fromModule } from './error.js';
+import { type Mesh32, moduleMesh } from './mesh.js';
+import { loader } from './module.js';
+import type { Mesh } from './types.js';
+
+export { EdgeflipError, type ErrorCode } from './error.js';
+export type { Mesh32 } from './mesh.js';
+export type { ModuleSource } from './module.js';
+export type { Mesh } from './types.js';
+
+/** The extensions of the formats that are read and written, in either case. */
+export const FORMATS = ['.off', '.obj'] as const;
+
+/** A mesh as it was read: the file's vertices, all of them, in its order, and its faces as triangles. */
+export interface FileMesh extends Mesh32 {
+  /** Faces with more than three corners; each was cut into a fan of triangles around its first corner. */
+  polygons: number;
+  /** What the file holds that a mesh has no place for, such as `normals`. */
+  dropped: string[];
+}
+
+/** What can be chosen for {@link readMesh}. */
+export interface ReadOptions {
+  /** Default: 2 if the file has two coordinates a vertex or every z is 0, else 3. */
+  dimension?: 2 | 3 | undefined;
+}
+
+/** What the angles of a mesh say about its triangles. A degenerate triangle counts as one with an angle of 0°. */
+export interface Angles {
+  /** The smallest angle of the mesh in degrees; 60 without triangles. */
+  min: number;
+  /** The mean over the triangles of their smallest angle, in degrees; 60 without triangles. */
+  meanMin: number;
+  /** How many angles, three a triangle, fall into each of equal bins over 0° to 180°; a bin has its lower end. */
+  counts: Uint32Array;
+}
+
+/**
+ * Loads the WebAssembly module of this entry. Everything else calls it by itself: call it to load early, or with a
+ * source where the module does not lie beside this file. The first call counts; after a failure the next one tries
+ * again.
+ *
+ * @throws {@link EdgeflipError} `load-failed`.
+ */
+export const initFiles = loader(initModule, () => new URL('./wasm/edgeflip_files_bg.wasm', import.meta.url));
+
+/**
+ * Reads the bytes of a file.
+ *
+ * @param name - Its name, such as `bunny.obj`: the extension gives the format.
+ * @throws {@link EdgeflipError} `parse`, which names the line, or the vertex that has a height where 2 dimensions
+ * were asked for; `unknown-format`, `too-large`.
+ */
+export async function readMesh(bytes: Uint8Array, name: string, options: ReadOptions = {}): Promise<FileMesh> {
+  if (!(bytes instanceof Uint8Array)) throw new EdgeflipError('invalid-input', 'bytes are no Uint8Array');
+  const file = text(name, 'name');
+  return call(() => wasm.readMesh(bytes, file, options.dimension));
+}
+
+/**
+ * The bytes of a file that holds the mesh. Each number has the fewest digits that read back to the same 32 bits; an
+ * OBJ or OFF file of a mesh in the plane has 0 for every z.
+ *
+ * @param name - Its name, such as `bunny.obj`: the extension gives the format.
+ * @throws {@link EdgeflipError} about the mesh; `unknown-format`.
+ */
+export async function writeMesh(mesh: Mesh, name: string): Promise<Uint8Array<ArrayBuffer>> {
+  const { positions, indices, dimension } = moduleMesh(mesh);
+  const file = text(name, 'name');
+  return call(() => wasm.writeMesh(positions, indices, dimension, file));
+}
+
+/**
+ * A generated mesh, the same bits everywhere.
+ *
+ * @param spec - A family, its size, perhaps a parameter and a seed: `uvsphere 600`, `shear 300 30`,
+ * `random 100 seed=7`. The message about a wrong one lists them all.
+ * @throws {@link EdgeflipError} `invalid-option`, `too-large`.
+ */
+export async function generate(spec: string): Promise<Mesh32> {
+  const family = text(spec, 'spec');
+  return call(() => wasm.generate(family));
+}
+
+/**
+ * The angles of a mesh, for statistics: in 64-bit floats, not exact.
+ *
+ * @param bins - How many bins the histogram has: 1 to 65536.
+ * @throws {@link EdgeflipError} about the mesh; `invalid-option`.
+ */
+export async function angles(mesh: Mesh, bins = 180): Promise<Angles> {
+  const { positions, indices, dimension } = moduleMesh(mesh);
+  return call(() => wasm.angles(positions, indices, dimension, bins));
+}
+
+/** The argument, if a program without types has passed text. */
+function text(given: string, argument: string): string {
+  if (typeof given === 'string') return given;
+  throw new EdgeflipError('invalid-input', `${argument} is not a string`);
+}
+
+async function call<T>(work: () => T): Promise<T> {
+  await initFiles();
+  try {
+    return work();
+  } catch (thrown) {
+    throw fromModule(thrown);
+  }
+}

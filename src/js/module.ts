@@ -1,0 +1,38 @@
+/** Loads a WebAssembly module, once. */
+
+import { EdgeflipError } from './error.js';
+
+/** Where the module comes from: its bytes, the module itself, a response, or an address to fetch. */
+export type ModuleSource = BufferSource | WebAssembly.Module | Response | URL | string;
+
+/** What wasm-bindgen writes to start its module. */
+type Start = (options: { module_or_path: ModuleSource }) => Promise<unknown>;
+
+/**
+ * A function that loads one module. Its first call counts; after a failure the next one tries again.
+ *
+ * @param start - Starts the module.
+ * @param place - Where the module lies if the call does not say.
+ */
+export function loader(start: Start, place: () => URL): (source?: ModuleSource) => Promise<void> {
+  let loading: Promise<void> | undefined;
+  const load = async (source: ModuleSource = place()) => {
+    await start({ module_or_path: readFile(source) ?? source });
+  };
+  return (source) => {
+    loading ??= load(source).catch((cause: unknown) => {
+      loading = undefined;
+      const message = cause instanceof Error ? cause.message : String(cause);
+      throw new EdgeflipError('load-failed', `the WebAssembly module could not be loaded: ${message}`, { cause });
+    });
+    return loading;
+  };
+}
+
+/** The bytes of a file in Node, whose `fetch` knows no files. No import: a bundler would look for it. */
+function readFile(source: ModuleSource): BufferSource | undefined {
+  if (!(source instanceof URL) || source.protocol !== 'file:') return undefined;
+  if (typeof process === 'undefined') return undefined;
+  const bytes = process.getBuiltinModule?.('node:fs').readFileSync(source);
+  return bytes && new Uint8Array(bytes);
+}

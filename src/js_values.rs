@@ -1,0 +1,63 @@
+//! What the two modules of the npm package share: plain objects, errors and dimensions as JavaScript has them, in the
+//! words of the package: `webgpu` for the GPU engine, `indices` for the triangles.
+
+use crate::{Dimension, Error};
+use js_sys::{Array, Object};
+use wasm_bindgen::prelude::*;
+
+/// Runs once, when a module is loaded.
+#[wasm_bindgen(start)]
+pub fn start() {
+    #[cfg(debug_assertions)]
+    console_error_panic_hook::set_once();
+}
+
+/// A plain object.
+pub(crate) fn object<const N: usize>(fields: [(&str, JsValue); N]) -> JsValue {
+    let entries: Array = fields.into_iter().map(|(name, value)| Array::of2(&name.into(), &value)).collect();
+    // Fails only on what is no list of pairs.
+    Object::from_entries(&entries).map_or_else(|error| error, JsValue::from)
+}
+
+/// The engine's name in JavaScript.
+pub(crate) fn backend_name(name: &'static str) -> &'static str {
+    if name == "gpu" { "webgpu" } else { name }
+}
+
+/// 2 or 3.
+pub(crate) fn parse_dimension(dimension: f64) -> Result<Dimension, Error> {
+    if dimension == 2.0 {
+        Ok(Dimension::Two)
+    } else if dimension == 3.0 {
+        Ok(Dimension::Three)
+    } else {
+        Err(Error::Option { option: "dimension", message: format!("{dimension} is neither 2 nor 3") })
+    }
+}
+
+/// What a call throws: an `Error` with a `code`.
+pub(crate) fn thrown(error: Error) -> JsValue {
+    let code = error.code();
+    let thrown = js_sys::Error::new(&in_words_of_javascript(error).to_string());
+    // Setting a field of a new object does not fail.
+    let _ = js_sys::Reflect::set(thrown.unchecked_ref(), &"code".into(), &code.into());
+    thrown.into()
+}
+
+fn in_words_of_javascript(error: Error) -> Error {
+    match error {
+        Error::BackendUnavailable { backend: name, message } => {
+            Error::BackendUnavailable { backend: backend_name(name), message }
+        }
+        Error::BackendLimit { backend: name, message } => {
+            Error::BackendLimit { backend: backend_name(name), message }
+        }
+        Error::RaggedArray { array: "triangles", length, stride } => {
+            Error::RaggedArray { array: "indices", length, stride }
+        }
+        Error::Option { option: "max_normal_angle", message } => {
+            Error::Option { option: "maxNormalAngle", message }
+        }
+        error => error,
+    }
+}

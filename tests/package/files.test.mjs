@@ -1,0 +1,141 @@
+// The second entry of the npm package in Node: files, generated meshes, angles.
+
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { test } from 'node:test';
+import { makeDelaunay } from 'edgeflip';
+import { angles, EdgeflipError, FORMATS, generate, initFiles, readMesh, writeMesh } from 'edgeflip/files';
+
+const bytes = (text) => new TextEncoder().encode(text);
+const text = (bytes) => new TextDecoder().decode(bytes);
+/** The bits of the positions, so that -0 is not 0. */
+const bits = ({ positions }) => new Uint32Array(positions.buffer, positions.byteOffset, positions.length);
+
+const refused = (code, pattern) => (error) => {
+  assert.ok(error instanceof EdgeflipError && error instanceof Error, String(error));
+  assert.equal(error.code, code, error.message);
+  assert.match(error.message, pattern);
+  return true;
+};
+
+/** FNV-1a, 64 bits. */
+const digest = (bytes) =>
+  bytes
+    .reduce((hash, byte) => BigInt.asUintN(64, (hash ^ BigInt(byte)) * 0x100000001b3n), 0xcbf29ce484222325n)
+    .toString(16)
+    .padStart(16, '0');
+
+/** Five vertices in numbers that are hard to write. */
+const awkward = () => ({
+  positions: new Float32Array([1e-45, -0, 0.1, 3.4028235e38, -1.1754942e-38, 16777217, 1 / 3, -1e30, 0.3, 2 ** -126]),
+  indices: new Uint32Array([0, 1, 2, 0, 2, 3, 0, 3, 4, 0, 4, 1]),
+  dimension: 2,
+});
+
+test('a module that cannot be loaded is an error, and the next call tries again', async () => {
+  await assert.rejects(initFiles(bytes('no module')), refused('load-failed', /could not be loaded/));
+  await initFiles();
+  await initFiles('https://example.org/not-looked-at.wasm');
+});
+
+test('every bit comes back, in each format and in both dimensions', async () => {
+  const flat = awkward();
+  const raised = { positions: new Float32Array([...flat.positions, 7.5, -0]), indices: Uint32Array.of(0, 1, 2, 3, 2, 1), dimension: 3 };
+  for (const mesh of [flat, raised]) {
+    for (const format of FORMATS) {
+      const file = await writeMesh(mesh, `a${format.toUpperCase()}`);
+      const read = await readMesh(file, `a${format}`, { dimension: mesh.dimension });
+      assert.deepEqual(bits(read), bits(mesh));
+      assert.deepEqual(read, { ...mesh, polygons: 0, dropped: [] });
+      assert.deepEqual(await writeMesh(read, `b${format}`), file);
+    }
+  }
+});
+
+test('what is read can be flipped, and what was passed is unchanged', async () => {
+  const thin = 'OFF\n4 2 0\n-3 0 0\n0 -1 0\n3 0 0\n0 1 0\n3 0 1 2\n3 0 2 3\n';
+  const file = bytes(thin);
+  const mesh = await readMesh(file, 'thin.off');
+  assert.equal(mesh.dimension, 2);
+  const { indices } = await makeDelaunay(mesh);
+  assert.equal(text(await writeMesh({ ...mesh, indices }, 'out.obj')), 'v -3 0 0\nv 0 -1 0\nv 3 0 0\nv 0 1 0\nf 4 2 3\nf 1 2 4\n');
+  assert.equal(text(file), thin);
+  assert.equal(text(await writeMesh(mesh, 'same.off')), thin);
+});
+
+test('polygons of an OBJ file become fans, and what is dropped is named', async () => {
+  const file = bytes('o house\nv 0 0 0\nv 2 0 0\nv 2 2 0\nv 1 3 1\nv 0 2 0\nvn 0 0 1\nf 1//1 2//1 3//1 4//1 5//1\nf -1 -2 -3\n');
+  const mesh = await readMesh(file, 'house.obj');
+  assert.equal(mesh.dimension, 3);
+  assert.deepEqual([...mesh.indices], [0, 1, 2, 0, 2, 3, 0, 3, 4, 4, 3, 2]);
+  assert.equal(mesh.polygons, 1);
+  assert.deepEqual(mesh.dropped, ['groups, objects and materials', 'normals']);
+});
+
+test('the dimension is that of the file, or the one asked for', async () => {
+  const flat = bytes('OFF 1 0\n1 2 0\n');
+  const raised = bytes('OFF 2 0\n0 0 0\n1 2 0.5\n');
+  assert.deepEqual([...(await readMesh(flat, 'a.off')).positions], [1, 2]);
+  assert.deepEqual([...(await readMesh(flat, 'a.off', { dimension: 3 })).positions], [1, 2, 0]);
+  assert.deepEqual([...(await readMesh(bytes('2OFF 1 0\n1 2'), 'a.off')).positions], [1, 2]);
+  assert.deepEqual([...(await readMesh(raised, 'a.off')).positions], [0, 0, 0, 1, 2, 0.5]);
+  await assert.rejects(readMesh(raised, 'a.off', { dimension: 2 }), refused('parse', /^vertex 1: z is 0\.5/));
+  await assert.rejects(readMesh(raised, 'a.off', { dimension: 4 }), refused('invalid-option', /dimension: 4/));
+});
+
+test('errors have codes and places', async () => {
+  const mesh = awkward();
+  await assert.rejects(readMesh(bytes('OFF\n3 1 0\n0 0 0\n1 x 0\n'), 'a.off'), refused('parse', /^line 4: expected a number, found `x`$/));
+  await assert.rejects(readMesh(bytes('v 0 0 0\nf 1 1 2\n'), 'a.obj'), refused('parse', /^line 2: vertex index `2`/));
+  await assert.rejects(readMesh(new Uint8Array(), 'a.obj'), refused('parse', /^line 1: the file is empty$/));
+  await assert.rejects(readMesh(Uint8Array.of(0xff, 0, 0x0a), 'a.obj'), refused('parse', /^line 1: /));
+  await assert.rejects(readMesh(new Uint8Array(), 'a.stl'), refused('unknown-format', /^a\.stl: /));
+  await assert.rejects(writeMesh(mesh, 'mesh'), refused('unknown-format', /^mesh: /));
+  await assert.rejects(writeMesh({ ...mesh, indices: Uint32Array.of(0, 1, 9) }, 'a.off'), refused('index-out-of-range', /9/));
+  await assert.rejects(writeMesh({ ...mesh, positions: Float64Array.of(0.1, 0) }, 'a.off'), refused('not-float32', /vertex 0/));
+  await assert.rejects(readMesh('OFF', 'a.off'), refused('invalid-input', /bytes/));
+  await assert.rejects(readMesh(new Uint8Array(), undefined), refused('invalid-input', /name/));
+  await assert.rejects(writeMesh(mesh, 1), refused('invalid-input', /name/));
+  await assert.rejects(generate(['grid', 5]), refused('invalid-input', /spec/));
+  await assert.rejects(generate('sphere 5'), refused('invalid-option', /"sphere 5" is not one of: grid N, .*uvsphere N/));
+  await assert.rejects(generate('grid 12000'), refused('too-large', /triangles/));
+  for (const bins of [0, 1.5, NaN, 2 ** 20]) {
+    await assert.rejects(angles(mesh, bins), refused('invalid-option', /bins: .* 1 to 65536/));
+  }
+});
+
+test('the formats are those that the module knows', async () => {
+  await assert.rejects(readMesh(new Uint8Array(), 'a'), (error) => error.message.endsWith(`use one of: ${FORMATS.join(', ')}`));
+});
+
+test('generated meshes are those of the crate', async () => {
+  const lines = readFileSync(new URL('generated.txt', import.meta.url), 'utf8').trimEnd().split('\n').slice(1);
+  assert.ok(lines.length > 10);
+  for (const line of lines) {
+    const [, off, obj, spec] = line.match(/^(\w+) (\w+) (.+)$/);
+    const mesh = await generate(spec);
+    assert.equal(digest(await writeMesh(mesh, 'a.off')), off, spec);
+    assert.equal(digest(await writeMesh(mesh, 'a.obj')), obj, spec);
+  }
+});
+
+test('angles of a right triangle', async () => {
+  const mesh = { positions: new Float64Array([0, 0, 1, 0, 0, 1]), indices: new Uint16Array([0, 1, 2]), dimension: 2 };
+  const { min, meanMin, counts } = await angles(mesh, 4);
+  assert.ok(Math.abs(min - 45) < 1e-12 && Math.abs(meanMin - 45) < 1e-12);
+  assert.deepEqual(counts, Uint32Array.of(0, 2, 1, 0));
+  assert.equal((await angles(mesh)).counts.length, 180);
+  assert.deepEqual(await angles({ ...mesh, indices: new Uint32Array() }, 1), { min: 60, meanMin: 60, counts: Uint32Array.of(0) });
+});
+
+test('720,000 triangles are generated, written and read back', async () => {
+  const mesh = await generate('uvsphere 600');
+  assert.deepEqual([mesh.positions.length, mesh.indices.length], [3 * 360_002, 3 * 720_000]);
+  for (const format of FORMATS) {
+    const read = await readMesh(await writeMesh(mesh, `a${format}`), `a${format}`);
+    assert.deepEqual(read.indices, mesh.indices);
+    assert.deepEqual(bits(read), bits(mesh));
+  }
+  const { counts } = await angles(mesh, 18);
+  assert.equal(counts.reduce((sum, count) => sum + count), 3 * 720_000);
+});
