@@ -1,0 +1,65 @@
+/** The worker: reads, generates and measures meshes, or runs the CPU engine, so that the page never waits. */
+
+import { expose, transfer } from 'comlink';
+import { FlipSession } from 'edgeflip';
+import { angles, generate, readMesh, writeMesh, type Angles, type FileMesh, type Mesh32 } from 'edgeflip/files';
+import { changeOf, type Change } from './change.ts';
+import { statesOf, type Step, type Summary } from './run.ts';
+
+class Desk {
+  #session: FlipSession | undefined;
+  #before: Uint32Array = new Uint32Array();
+
+  async generate(spec: string): Promise<Mesh32> {
+    return send(await generate(spec));
+  }
+
+  async read(bytes: Uint8Array, name: string): Promise<FileMesh> {
+    return send(await readMesh(bytes, name));
+  }
+
+  async write(mesh: Mesh32, name: string): Promise<Uint8Array<ArrayBuffer>> {
+    const bytes = await writeMesh(mesh, name);
+    return transfer(bytes, [bytes.buffer]);
+  }
+
+  angles(mesh: Mesh32, bins: number): Promise<Angles> {
+    return angles(mesh, bins);
+  }
+
+  /** Begins a run on the CPU engine. Returns what its edges are, if they are to be drawn. */
+  async open(mesh: Mesh32, maxNormalAngle: number): Promise<Uint8Array | undefined> {
+    const session = await FlipSession.create(mesh, { backend: 'cpu', maxNormalAngle });
+    this.#session = session;
+    this.#before = mesh.indices;
+    return statesOf(session, mesh.indices.length);
+  }
+
+  async step(): Promise<(Step & { change: Change }) | undefined> {
+    const session = this.#running();
+    const iteration = await session.step();
+    if (!iteration) return undefined;
+    const now = await session.triangles();
+    const change = changeOf(this.#before, now);
+    this.#before = now;
+    const states = await statesOf(session, now.length);
+    return transfer({ iteration, change, states }, [change.at.buffer, change.xor.buffer]);
+  }
+
+  async result(): Promise<Summary> {
+    const { indices, ...summary } = await this.#running().result();
+    return summary;
+  }
+
+  #running(): FlipSession {
+    if (!this.#session) throw new Error('no run has begun');
+    return this.#session;
+  }
+}
+
+function send<T extends Mesh32>(mesh: T): T {
+  return transfer(mesh, [mesh.positions.buffer, mesh.indices.buffer]);
+}
+
+export type { Desk };
+expose(new Desk());

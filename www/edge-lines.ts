@@ -1,0 +1,58 @@
+/** The edges of a small mesh in the colours of their states: thick where something is about to happen. */
+
+import { EDGE_STATES } from 'edgeflip';
+import { LineSegmentsGeometry } from 'three/addons/lines/LineSegmentsGeometry.js';
+import { LineSegments2 } from 'three/addons/lines/webgpu/LineSegments2.js';
+import { Group, Line2NodeMaterial } from 'three/webgpu';
+import { isOfOneTriangle } from './run.ts';
+import type { Palette } from './palette.ts';
+
+/** Widths in pixels of edges about which nothing is to be said, of the boundary, and of all others. */
+function widthsFor(triangles: number): { plain: number; boundary: number; coloured: number } {
+  if (triangles <= 600) return { plain: 1.4, boundary: 2.4, coloured: 4 };
+  if (triangles <= 4000) return { plain: 1.1, boundary: 2, coloured: 2.6 };
+  return { plain: 0.8, boundary: 1.6, coloured: 1.6 };
+}
+
+export class EdgeLines {
+  readonly group = new Group();
+
+  /** `positions` has 3 a vertex, `states` one entry for each of the half-edges `indices`. */
+  show(positions: Float32Array, indices: Uint32Array, states: Uint8Array, palette: Palette): void {
+    const widths = widthsFor(indices.length / 3);
+    const byState = EDGE_STATES.map((): number[] => []);
+    const twins = new Set<string>();
+    states.forEach((state, h) => {
+      const a = indices[h]!;
+      const b = indices[h % 3 === 2 ? h - 2 : h + 1]!;
+      // An edge between two triangles is drawn once.
+      if (!isOfOneTriangle(state)) {
+        const key = a < b ? `${a} ${b}` : `${b} ${a}`;
+        if (twins.delete(key)) return;
+        twins.add(key);
+      }
+      byState[state]!.push(...positions.subarray(3 * a, 3 * a + 3), ...positions.subarray(3 * b, 3 * b + 3));
+    });
+    byState.forEach((ends, state) => {
+      if (ends.length === 0) return;
+      const name = EDGE_STATES[state]!;
+      const geometry = new LineSegmentsGeometry();
+      geometry.setPositions(new Float32Array(ends));
+      const material = new Line2NodeMaterial({ color: palette.states[name] });
+      material.linewidth = name === 'delaunay' ? widths.plain : name === 'boundary' ? widths.boundary : widths.coloured;
+      const lines = new LineSegments2(geometry, material);
+      lines.frustumCulled = false;
+      // Coloured ones over the others where they meet.
+      lines.renderOrder = name === 'delaunay' ? 1 : 2;
+      this.group.add(lines);
+    });
+  }
+
+  clear(): void {
+    for (const lines of [...this.group.children] as LineSegments2[]) {
+      lines.geometry.dispose();
+      lines.material.dispose();
+      this.group.remove(lines);
+    }
+  }
+}

@@ -1,0 +1,141 @@
+/** Where the flips happen: on the GPU of the page, or on the CPU in a worker. */
+
+import { wrap, type Remote } from 'comlink';
+import { EdgeflipError, FlipSession } from 'edgeflip';
+import type { Mesh32 } from 'edgeflip/files';
+import { ArrayTrack } from './array-track.ts';
+import type { Desk } from './desk.ts';
+import { GpuTrack } from './gpu-track.ts';
+import { Run, statesOf } from './run.ts';
+
+/** A GPU that both the flips and the drawing use. */
+export interface Gpu {
+  device: GPUDevice;
+  /** Whether the processor plays it: `auto` leaves it alone then. */
+  isSoftware: boolean;
+}
+
+/** The GPU of this browser, or why there is none. */
+export async function openGpu(): Promise<Gpu | string> {
+  if (!navigator.gpu) return 'this browser has no WebGPU';
+  try {
+    const adapter = await navigator.gpu.requestAdapter({ powerPreference: 'high-performance' });
+    if (!adapter) return 'WebGPU found no GPU';
+    const { maxBufferSize, maxStorageBufferBindingSize } = adapter.limits;
+    const device = await adapter.requestDevice({ requiredLimits: { maxBufferSize, maxStorageBufferBindingSize } });
+    return { device, isSoftware: adapter.info.isFallbackAdapter };
+  } catch (error) {
+    return `WebGPU could not be used (${error instanceof Error ? error.message : String(error)})`;
+  }
+}
+
+/** A worker with the desk that it answers at. */
+export class Office {
+  readonly #worker = new Worker(new URL('./desk.ts', import.meta.url), { type: 'module' });
+  readonly desk: Remote<Desk> = wrap<Desk>(this.#worker);
+  readonly #failed: Promise<never>;
+  #fail: (error: Error) => void = () => {};
+
+  constructor() {
+    this.#failed = new Promise((_, reject) => (this.#fail = reject));
+    this.#failed.catch(() => {});
+    this.#worker.onerror = (event) => this.#fail(new Error(`The worker has crashed: ${event.message}`));
+  }
+
+  /** Asks the desk. Closing the office ends the wait too. */
+  ask<T>(question: (desk: Remote<Desk>) => Promise<T>): Promise<T> {
+    return Promise.race([question(this.desk), this.#failed]);
+  }
+
+  /** Stops whatever goes on in it. */
+  close(): void {
+    this.#worker.terminate();
+    this.#fail(new Cancelled());
+  }
+}
+
+/** What a call ends with whose worker has been closed. */
+export class Cancelled extends Error {}
+
+export type Backend = 'auto' | 'webgpu' | 'cpu';
+
+/**
+ * Begins a run.
+ *
+ * @throws an error that can be shown, about the mesh, β or the backend that was asked for.
+ */
+export async function beginRun(
+  mesh: Mesh32,
+  maxNormalAngle: number,
+  backend: Backend,
+  gpu: Gpu | string,
+  signal: AbortSignal,
+): Promise<Run> {
+  if (backend === 'cpu') return onCpu(mesh, maxNormalAngle, signal, undefined);
+  if (typeof gpu === 'string') {
+    if (backend === 'webgpu') throw new Error(`The WebGPU engine is not available: ${gpu}.`);
+    return onCpu(mesh, maxNormalAngle, signal, gpu);
+  }
+  if (backend === 'auto' && gpu.isSoftware) {
+    return onCpu(mesh, maxNormalAngle, signal, 'the only GPU here is played by the processor, which is slower');
+  }
+  try {
+    return await onGpu(mesh, maxNormalAngle, gpu.device);
+  } catch (error) {
+    const isOfGpu = error instanceof EdgeflipError && /^(backend|device)-/.test(error.code);
+    if (backend === 'webgpu' || !isOfGpu) throw error;
+    return onCpu(mesh, maxNormalAngle, signal, error.message);
+  }
+}
+
+async function onGpu(mesh: Mesh32, maxNormalAngle: number, device: GPUDevice): Promise<Run> {
+  const session = await FlipSession.create(mesh, { backend: 'webgpu', device, maxNormalAngle });
+  try {
+    const shared = await session.gpu();
+    if (!shared) throw new Error('the session shows no buffers');
+    const { length } = mesh.indices;
+    const stepper = {
+      async step() {
+        const iteration = await session.step();
+        return iteration && { iteration, states: await statesOf(session, length) };
+      },
+      async result() {
+        const { indices, ...summary } = await session.result();
+        return summary;
+      },
+      free: () => session.free(),
+    };
+    const states = await statesOf(session, length);
+    return new Run('webgpu', undefined, stepper, new GpuTrack(device, shared.indices, length), states);
+  } catch (error) {
+    session.free();
+    throw error;
+  }
+}
+
+/** The run has a worker of its own, so that another one can go on beside it, and ends with it. */
+async function onCpu(
+  mesh: Mesh32,
+  maxNormalAngle: number,
+  signal: AbortSignal,
+  fallback: string | undefined,
+): Promise<Run> {
+  const office = new Office();
+  const close = () => office.close();
+  signal.addEventListener('abort', close);
+  try {
+    signal.throwIfAborted();
+    const states = await office.ask((desk) => desk.open(mesh, maxNormalAngle));
+    const stepper = {
+      step: () => office.ask((desk) => desk.step()),
+      result: () => office.ask((desk) => desk.result()),
+      free: close,
+    };
+    return new Run('cpu', fallback, stepper, new ArrayTrack(mesh.indices), states);
+  } catch (error) {
+    close();
+    throw error;
+  } finally {
+    signal.removeEventListener('abort', close);
+  }
+}

@@ -1,0 +1,109 @@
+/** The triangles of a run on the GPU: they never leave it, except to be downloaded or measured. */
+
+import source from './gpu-track.wgsl?raw';
+import type { Step, Track } from './run.ts';
+
+/** Workgroups of 256 that keep a GPU busy; the kernels stride over the rest. */
+const MOST_WORKGROUPS = 4096;
+
+type Kernel = 'record' | 'apply' | 'lines';
+
+export class GpuTrack implements Track {
+  readonly #device: GPUDevice;
+  /** The session's: the flips write it. */
+  readonly #newest: GPUBuffer;
+  readonly #length: number;
+  /** The state where the track stands. */
+  readonly #shown: GPUBuffer;
+  readonly #count: GPUBuffer;
+  readonly #changes: GPUBuffer[] = [];
+  #lines: GPUBuffer | undefined;
+  readonly #layout: GPUBindGroupLayout;
+  readonly #pipelines: Record<Kernel, GPUComputePipeline>;
+
+  /** `length` is the number of indices; the smallest buffers have room for more. */
+  constructor(device: GPUDevice, newest: GPUBuffer, length: number) {
+    this.#device = device;
+    this.#newest = newest;
+    this.#length = length;
+    this.#shown = device.createBuffer({
+      label: 'shown triangles',
+      size: newest.size,
+      usage: GPUBufferUsage.STORAGE | GPUBufferUsage.INDEX | GPUBufferUsage.COPY_SRC | GPUBufferUsage.COPY_DST,
+    });
+    this.#count = device.createBuffer({ size: 4, usage: GPUBufferUsage.STORAGE | GPUBufferUsage.COPY_DST });
+    const types: GPUBufferBindingType[] = ['read-only-storage', 'storage', 'storage', 'storage'];
+    this.#layout = device.createBindGroupLayout({
+      entries: types.map((type, binding) => ({ binding, visibility: GPUShaderStage.COMPUTE, buffer: { type } })),
+    });
+    const layout = device.createPipelineLayout({ bindGroupLayouts: [this.#layout] });
+    const module = device.createShaderModule({ code: source });
+    const pipeline = (entryPoint: Kernel) => device.createComputePipeline({ layout, compute: { module, entryPoint } });
+    this.#pipelines = { record: pipeline('record'), apply: pipeline('apply'), lines: pipeline('lines') };
+    const encoder = device.createCommandEncoder();
+    encoder.copyBufferToBuffer(newest, 0, this.#shown, 0, newest.size);
+    device.queue.submit([encoder.finish()]);
+  }
+
+  record({ iteration }: Step): void {
+    // A flip changes two of the six indices of its triangles.
+    const changes = this.#device.createBuffer({
+      label: `changes of iteration ${iteration.index}`,
+      size: 16 * iteration.flips,
+      usage: GPUBufferUsage.STORAGE,
+    });
+    this.#changes.push(changes);
+    this.#device.queue.writeBuffer(this.#count, 0, new Uint32Array(1));
+    this.#run('record', changes, this.#newest.size / 4);
+  }
+
+  apply(index: number): void {
+    const changes = this.#changes[index]!;
+    this.#run('apply', changes, changes.size / 8);
+  }
+
+  drawn(isNewest: boolean): GPUBuffer {
+    return isNewest ? this.#newest : this.#shown;
+  }
+
+  lines(): GPUBuffer {
+    this.#lines ??= this.#device.createBuffer({
+      label: 'lines',
+      size: 2 * this.#shown.size,
+      usage: GPUBufferUsage.STORAGE | GPUBufferUsage.INDEX,
+    });
+    this.#run('lines', this.#lines, this.#shown.size / 4);
+    return this.#lines;
+  }
+
+  async triangles(): Promise<Uint32Array> {
+    const { size } = this.#shown;
+    const copy = this.#device.createBuffer({ size, usage: GPUBufferUsage.MAP_READ | GPUBufferUsage.COPY_DST });
+    const encoder = this.#device.createCommandEncoder();
+    encoder.copyBufferToBuffer(this.#shown, 0, copy, 0, size);
+    this.#device.queue.submit([encoder.finish()]);
+    await copy.mapAsync(GPUMapMode.READ);
+    const triangles = new Uint32Array(copy.getMappedRange().slice(0, 4 * this.#length));
+    copy.destroy();
+    return triangles;
+  }
+
+  free(): void {
+    for (const buffer of [this.#shown, this.#count, this.#lines, ...this.#changes]) buffer?.destroy();
+  }
+
+  #run(kernel: Kernel, changes: GPUBuffer, items: number): void {
+    const buffers = [this.#newest, this.#shown, changes, this.#count];
+    const bindings = this.#device.createBindGroup({
+      layout: this.#layout,
+      entries: buffers.map((buffer, binding) => ({ binding, resource: { buffer } })),
+    });
+    const encoder = this.#device.createCommandEncoder();
+    const pass = encoder.beginComputePass();
+    pass.setPipeline(this.#pipelines[kernel]);
+    pass.setBindGroup(0, bindings);
+    pass.dispatchWorkgroups(Math.min(Math.ceil(items / 256), MOST_WORKGROUPS));
+    pass.end();
+    this.#device.queue.submit([encoder.finish()]);
+  }
+}

@@ -1,0 +1,42 @@
+/** The colours of the page, for what style sheets do not reach. */
+
+import type { EdgeState } from 'edgeflip';
+
+export interface Palette {
+  /** Behind the mesh. */
+  ground: string;
+  surface: string;
+  /** Plain edges. */
+  line: string;
+  text: string;
+  grid: string;
+  accent: string;
+  muted: string;
+  states: Record<EdgeState, string>;
+}
+
+/** What the custom properties in `style.css` say now. */
+export function palette(): Palette {
+  const style = getComputedStyle(document.documentElement);
+  const colour = (name: string) => style.getPropertyValue(`--${name}`).trim();
+  return {
+    ground: colour('ground'),
+    surface: colour('surface'),
+    line: colour('edge-delaunay'),
+    text: colour('text'),
+    grid: colour('grid'),
+    accent: colour('accent'),
+    muted: colour('muted'),
+    states: {
+      delaunay: colour('edge-delaunay'),
+      flips: colour('edge-flips'),
+      waits: colour('edge-waits'),
+      angle: colour('edge-angle'),
+      fold: colour('edge-fold'),
+      duplicate: colour('edge-duplicate'),
+      'non-manifold': colour('edge-non-manifold'),
+      inconsistent: colour('edge-inconsistent'),
+      boundary: colour('edge-boundary'),
+    },
+  };
+}

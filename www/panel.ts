@@ -1,0 +1,156 @@
+/** The numbers beside the mesh: facts, legend, charts and the table of iterations. */
+
+import { EDGE_STATES, type Iteration, type Reasons } from 'edgeflip';
+import type { Angles, Mesh32 } from 'edgeflip/files';
+import { AnglesChart, FlipsChart } from './charts.ts';
+import { element } from './element.ts';
+import type { Palette } from './palette.ts';
+import { countStates, type Run, type Summary } from './run.ts';
+
+/** Rows of the table at most; the chart shows all. */
+const MOST_ROWS = 2000;
+
+export const number = new Intl.NumberFormat('en');
+const ms = new Intl.NumberFormat('en', { maximumFractionDigits: 1, minimumFractionDigits: 1 });
+const degrees = new Intl.NumberFormat('en', { maximumFractionDigits: 2, minimumFractionDigits: 2 });
+
+/** What the legend says of each state. */
+const MEANINGS: Record<(typeof EDGE_STATES)[number], string> = {
+  delaunay: 'Delaunay',
+  flips: 'flips next',
+  waits: 'can flip, waits for a neighbour',
+  angle: 'blocked: sharper than β',
+  fold: 'blocked: would fold over',
+  duplicate: 'blocked: the new edge exists already',
+  'non-manifold': 'stays: three or more triangles',
+  inconsistent: 'stays: triangles face against each other',
+  boundary: 'boundary',
+};
+
+export class Panel {
+  readonly #flips = new FlipsChart(element('flips-chart'));
+  readonly #angles = new AnglesChart(element('angles-chart'));
+  readonly #rows = element('rows');
+  readonly #seek: (at: number) => void;
+
+  /** `seek` is called with the iteration whose row was chosen. */
+  constructor(seek: (at: number) => void) {
+    this.#seek = seek;
+  }
+
+  setPalette(palette: Palette): void {
+    this.#flips.setPalette(palette);
+    this.#angles.setPalette(palette);
+  }
+
+  /** Begins anew, for a run that has done nothing yet. */
+  clear(): void {
+    this.#rows.replaceChildren();
+    this.#flips.show([], 0);
+    this.showLegend(undefined);
+    this.showAngles(undefined, undefined);
+    element('facts').replaceChildren();
+  }
+
+  /** The iterations so far, and the one that is shown. */
+  showIterations(iterations: readonly Iteration[], at: number): void {
+    this.#flips.show(iterations.map(({ flips }) => flips), at);
+    for (const iteration of iterations.slice(this.#rows.childElementCount, MOST_ROWS)) this.#addRow(iteration);
+    this.#rows.querySelector('[aria-current]')?.removeAttribute('aria-current');
+    const row = this.#rows.children[at - 1];
+    row?.setAttribute('aria-current', 'true');
+    if (row instanceof HTMLElement) {
+      // Only the table scrolls, not the page.
+      const box = row.closest('.table');
+      if (box) box.scrollTop = row.offsetTop - box.clientHeight / 2;
+    }
+  }
+
+  /** The states of the edges that are drawn in colours. */
+  showLegend(states: Uint8Array | undefined): void {
+    element('legend-section').hidden = !states;
+    if (!states) return;
+    const items = countStates(states).flatMap((count, state) => {
+      if (count === 0) return [];
+      const name = EDGE_STATES[state]!;
+      const item = document.createElement('li');
+      item.dataset['state'] = name;
+      const value = document.createElement('b');
+      value.textContent = number.format(count);
+      item.append(document.createElement('i'), MEANINGS[name], value);
+      return [item];
+    });
+    element('legend').replaceChildren(...items);
+  }
+
+  showFacts(mesh: Mesh32, run: Run, summary: Summary, fingerprint: string): void {
+    const { timings } = summary;
+    const watched = run.iterations.reduce((sum, iteration) => sum + iteration.ms, 0);
+    facts('facts', {
+      Triangles: number.format(mesh.indices.length / 3),
+      Vertices: number.format(mesh.positions.length / mesh.dimension),
+      Edges: `${number.format(summary.edges)}, ${number.format(summary.boundaryEdges)} on the boundary`,
+      ...frozen('Non-manifold', summary.nonManifoldEdges),
+      ...frozen('Inconsistent', summary.inconsistentEdges),
+      Engine: run.backend === 'webgpu' ? 'WebGPU' : 'CPU, in a worker',
+      ...(summary.adapter ? { Adapter: summary.adapter, Dispatches: number.format(summary.dispatches) } : {}),
+      Iterations: number.format(summary.iterations),
+      Flips: number.format(summary.flips),
+      'Not Delaunay': reasons(summary.remaining),
+      'Set-up': `${ms.format(timings.adjacency)} ms`,
+      'Flips and counts': `${ms.format(watched)} ms`,
+      Fingerprint: fingerprint,
+    });
+  }
+
+  showAngles(before: Angles | undefined, now: Angles | undefined): void {
+    this.#angles.show(before, now);
+    if (!before) return element('angles-facts').replaceChildren();
+    const both = (key: 'min' | 'meanMin') =>
+      `${degrees.format(before[key])}° → ${now ? `${degrees.format(now[key])}°` : '…'}`;
+    facts('angles-facts', { Smallest: both('min'), 'Mean smallest': both('meanMin') });
+  }
+
+  #addRow({ index, labelled, flips, blocked, ms: time }: Iteration): void {
+    const row = document.createElement('tr');
+    const stopped = Object.values(blocked).reduce((sum, count) => sum + count, 0);
+    for (const text of [
+      number.format(index + 1),
+      number.format(labelled),
+      number.format(flips),
+      number.format(stopped),
+      ms.format(time),
+    ]) {
+      row.insertCell().textContent = text;
+    }
+    row.title = stopped > 0 ? `Blocked: ${reasons(blocked)}` : '';
+    row.addEventListener('click', () => this.#seek(index + 1));
+    this.#rows.append(row);
+  }
+}
+
+/** Edges by reason, in words. */
+export function reasons(by: Reasons): string {
+  const parts = Object.entries(by).filter(([, count]) => count > 0);
+  if (parts.length === 0) return 'none';
+  const sum = parts.reduce((total, [, count]) => total + count, 0);
+  return `${number.format(sum)} (${parts.map(([reason, count]) => `${reason === 'stopped' ? 'can flip' : reason} ${number.format(count)}`).join(', ')})`;
+}
+
+function frozen(name: string, count: number): Record<string, string> {
+  return count > 0 ? { [name]: `${number.format(count)} edges, left as they are` } : {};
+}
+
+/** Terms and values of a description list; each value has its term as `data-fact`. */
+function facts(id: string, entries: Record<string, string>): void {
+  const items = Object.entries(entries).map(([term, value]) => {
+    const item = document.createElement('div');
+    const [name, text] = [document.createElement('dt'), document.createElement('dd')];
+    name.textContent = term;
+    text.textContent = value;
+    text.dataset['fact'] = term;
+    item.append(name, text);
+    return item;
+  });
+  element(id).replaceChildren(...items);
+}

@@ -1,0 +1,154 @@
+/** A run that can be watched: every iteration is kept, so that the slider can go back to it. */
+
+import { EDGE_STATES, type Engine, type FlipSession, type Iteration, type Result } from 'edgeflip';
+import type { Change } from './change.ts';
+
+/** Meshes of up to so many triangles have their edges drawn in colours. */
+export const COLOURED = 20_000;
+
+/** A result; the triangles are on screen. */
+export type Summary = Omit<Result, 'indices'>;
+
+/** One iteration, and what the edges are after it (for small meshes). */
+export interface Step {
+  iteration: Iteration;
+  states: Uint8Array | undefined;
+  /** Where the triangles are in main memory. */
+  change?: Change;
+}
+
+/** Where the flips happen: the session of the page, or that of the worker. */
+export interface Stepper {
+  step(): Promise<Step | undefined>;
+  result(): Promise<Summary>;
+  free(): void;
+}
+
+/** Triangles as they are drawn: in main memory, or in a buffer of the GPU. */
+export type Drawn = Uint32Array | GPUBuffer;
+
+/** The triangles of one iteration, and the changes that lead to the others. */
+export interface Track {
+  /** Takes over what the newest iteration has changed; the track must stand at the one before. */
+  record(step: Step): void;
+  /** Does iteration `index`, or takes it back. */
+  apply(index: number): void;
+  /** What to draw, if this is the newest state or not. */
+  drawn(isNewest: boolean): Drawn;
+  /** The lines around its triangles, as indices. */
+  lines(): Drawn;
+  /** A copy of the triangles where the track stands. */
+  triangles(): Promise<Uint32Array>;
+  free(): void;
+}
+
+/** What the edges of a small mesh are, one entry a half-edge. */
+export async function statesOf(session: FlipSession, indices: number): Promise<Uint8Array | undefined> {
+  return indices <= 3 * COLOURED ? session.edgeStates() : undefined;
+}
+
+/** How many edges are in each state: both half-edges of an edge between two triangles say the same. */
+export function countStates(states: Uint8Array): number[] {
+  const halves = EDGE_STATES.map(() => 0);
+  for (const state of states) halves[state]!++;
+  return halves.map((count, state) => (isOfOneTriangle(state) ? count : count / 2));
+}
+
+/** Whether a half-edge in this state has no twin. */
+export function isOfOneTriangle(state: number): boolean {
+  const name = EDGE_STATES[state];
+  return name === 'boundary' || name === 'non-manifold' || name === 'inconsistent';
+}
+
+/** A mesh on an engine, with all that it went through. */
+export class Run {
+  readonly backend: Engine;
+  /** Why `auto` did not take WebGPU. */
+  readonly fallback: string | undefined;
+  readonly iterations: Iteration[] = [];
+  readonly #states: (Uint8Array | undefined)[];
+  readonly #stepper: Stepper;
+  readonly #track: Track;
+  #at = 0;
+  #hasEnded = false;
+
+  constructor(
+    backend: Engine,
+    fallback: string | undefined,
+    stepper: Stepper,
+    track: Track,
+    states: Uint8Array | undefined,
+  ) {
+    this.backend = backend;
+    this.fallback = fallback;
+    this.#stepper = stepper;
+    this.#track = track;
+    this.#states = [states];
+  }
+
+  /** The iteration that is shown: 0 is the input. */
+  get at(): number {
+    return this.#at;
+  }
+
+  get isNewest(): boolean {
+    return this.#at === this.iterations.length;
+  }
+
+  /** Whether the last iteration has been run and is shown. */
+  get isOver(): boolean {
+    return this.#hasEnded && this.isNewest;
+  }
+
+  /** One iteration on, recorded or new. Returns whether there was one. */
+  async forward(): Promise<boolean> {
+    if (!this.isNewest) {
+      this.seek(this.#at + 1);
+      return true;
+    }
+    if (this.#hasEnded) return false;
+    const step = await this.#stepper.step();
+    if (!step) {
+      this.#hasEnded = true;
+      return false;
+    }
+    this.seek(this.iterations.length);
+    this.#track.record(step);
+    this.iterations.push(step.iteration);
+    this.#states.push(step.states);
+    this.#at++;
+    return true;
+  }
+
+  /** Shows a recorded state. */
+  seek(at: number): void {
+    while (this.#at < at) this.#track.apply(this.#at++);
+    while (this.#at > at) this.#track.apply(--this.#at);
+  }
+
+  get drawn(): Drawn {
+    return this.#track.drawn(this.isNewest);
+  }
+
+  lines(): Drawn {
+    return this.#track.lines();
+  }
+
+  /** What the edges are in the state that is shown. */
+  get states(): Uint8Array | undefined {
+    return this.#states[this.#at];
+  }
+
+  triangles(): Promise<Uint32Array> {
+    return this.#track.triangles();
+  }
+
+  result(): Promise<Summary> {
+    return this.#stepper.result();
+  }
+
+  free(): void {
+    this.#stepper.free();
+    this.#track.free();
+  }
+}

@@ -1,0 +1,31 @@
+/** Vertices as they are drawn: f32 numbers near 0 whatever the mesh's own offset and size. */
+
+import type { Mesh32 } from 'edgeflip/files';
+
+/** The vertices, moved and scaled into the unit ball; 3 a vertex. */
+export function unitPositions({ positions, dimension }: Mesh32): Float32Array {
+  const low = [Infinity, Infinity, Infinity];
+  const high = [-Infinity, -Infinity, -Infinity];
+  for (let i = 0; i < positions.length; i++) {
+    const axis = i % dimension;
+    const x = positions[i]!;
+    if (x < low[axis]!) low[axis] = x;
+    if (x > high[axis]!) high[axis] = x;
+  }
+  const centre = low.map((x, axis) => (Number.isFinite(x) ? x / 2 + high[axis]! / 2 : 0));
+  const count = positions.length / dimension;
+  let radius = 0;
+  for (let v = 0; v < count; v++) {
+    let square = 0;
+    for (let axis = 0; axis < dimension; axis++) square += (positions[dimension * v + axis]! - centre[axis]!) ** 2;
+    if (square > radius) radius = square;
+  }
+  const scale = radius > 0 ? 1 / Math.sqrt(radius) : 1;
+  const unit = new Float32Array(3 * count);
+  for (let v = 0; v < count; v++) {
+    for (let axis = 0; axis < dimension; axis++) {
+      unit[3 * v + axis] = (positions[dimension * v + axis]! - centre[axis]!) * scale;
+    }
+  }
+  return unit;
+}
