@@ -49,6 +49,8 @@ class Page {
   /** What goes on and can be cancelled. */
   #job: AbortController | undefined;
   #isPlaying = false;
+  /** What remained when the run was last measured. */
+  #remaining = '';
   /** Counts the states that came to rest: only the newest is measured. */
   #rests = 0;
 
@@ -64,7 +66,6 @@ class Page {
   }
 
   openFile(file: File): Promise<void> {
-    controls.sample.value = '';
     return this.#open(file.name, async () => {
       const bytes = new Uint8Array(await file.arrayBuffer());
       return this.#files.ask((desk) => desk.read(bytes, file.name));
@@ -171,6 +172,7 @@ class Page {
     this.#run?.free();
     this.#run = run;
     this.#opened = opened;
+    this.#remaining = '';
     this.#scene?.setMesh(unitPositions(opened.mesh), opened.mesh.dimension);
     if (isNew) {
       this.#scene?.lookAtAll();
@@ -178,7 +180,6 @@ class Page {
     }
     element('no-mesh').hidden = true;
     element('beta-label').hidden = opened.mesh.dimension === 2;
-    element('caption').textContent = opened.name;
     this.#panel.clear();
     await this.#draw();
     this.pause();
@@ -246,11 +247,14 @@ class Page {
     controls.slider.max = `${newest}`;
     controls.slider.value = `${at}`;
     controls.download.disabled = !isIdle;
-    element('position').textContent = run ? `${number.format(at)} / ${number.format(newest)}${run.isOver ? '' : '…'}` : '';
+    element('position').textContent = run ? `${number.format(at)} / ${number.format(newest)}${run.hasEnded ? '' : '…'}` : '';
     element('status').textContent = run ? this.#statusOf(run) : '';
     const note = [run?.fallback && `On the CPU: ${run.fallback}.`, this.#opened?.remark].filter(Boolean).join(' ');
     element('note').hidden = note === '';
     element('note').textContent = note;
+    element('caption').textContent = this.#opened?.name ?? '';
+    // The empty value stands for a file.
+    if (!this.#job) controls.sample.value = this.#opened?.name ?? '';
     document.body.dataset['state'] = this.#job ? 'busy' : !run ? 'empty' : this.#isPlaying ? 'playing' : run.isOver ? 'done' : 'ready';
   }
 
@@ -259,7 +263,7 @@ class Page {
     if (at === 0) return run.isOver ? 'Nothing to flip: the mesh is as Delaunay as it can be.' : 'The input';
     const flips = iterations.slice(0, at).reduce((sum, iteration) => sum + iteration.flips, 0);
     const so = `${number.format(flips)} flips in ${number.format(at)} ${at === 1 ? 'iteration' : 'iterations'}`;
-    return run.isOver ? `Done: ${so}` : so;
+    return run.isOver ? `Done: ${so}. ${this.#remaining}` : so;
   }
 
   /** Measures the state that is shown, once it is not about to change. */
@@ -275,11 +279,12 @@ class Page {
       const indices = await run.triangles();
       const fingerprint = await fingerprintOf(indices);
       if (isOutdated()) return;
+      this.#remaining = left(reasons(summary.remaining));
       this.#panel.showFacts(opened.mesh, run, summary, fingerprint);
+      this.#showTransport();
       const angles = await this.#files.ask((desk) => desk.angles({ ...opened.mesh, indices }, BINS));
       if (isOutdated()) return;
       this.#panel.showAngles(opened.before, angles);
-      if (run.isOver && run.at > 0) element('status').textContent += `. ${left(reasons(summary.remaining))}`;
       document.body.dataset['measured'] = `${run.at}`;
     } catch (error) {
       if (!isOutdated() && !(error instanceof Cancelled)) this.showError(error);

@@ -95,6 +95,11 @@ export class Run {
     return this.#at === this.iterations.length;
   }
 
+  /** Whether the last iteration has been run. */
+  get hasEnded(): boolean {
+    return this.#hasEnded;
+  }
+
   /** Whether the last iteration has been run and is shown. */
   get isOver(): boolean {
     return this.#hasEnded && this.isNewest;
