@@ -253,8 +253,11 @@ class Page {
     element('note').hidden = note === '';
     element('note').textContent = note;
     element('caption').textContent = this.#opened?.name ?? '';
-    // The empty value stands for a file.
-    if (!this.#job) controls.sample.value = this.#opened?.name ?? '';
+    if (!this.#job) {
+      // The empty value stands for a file.
+      const names = Array.from(controls.sample.options, ({ value }) => value);
+      controls.sample.value = names.find((name) => name === this.#opened?.name) ?? '';
+    }
     document.body.dataset['state'] = this.#job ? 'busy' : !run ? 'empty' : this.#isPlaying ? 'playing' : run.isOver ? 'done' : 'ready';
   }
 
