@@ -6,7 +6,7 @@ import { element } from './element.ts';
 import { beginRun, Cancelled, Office, openGpu, type Backend, type Gpu } from './engines.ts';
 import { palette } from './palette.ts';
 import { number, Panel, reasons } from './panel.ts';
-import type { Run } from './run.ts';
+import type { Run, Summary } from './run.ts';
 import { FIRST, SAMPLES } from './samples.ts';
 import { Scene } from './scene.ts';
 import { unitPositions } from './unit.ts';
@@ -49,13 +49,15 @@ class Page {
   /** What goes on and can be cancelled. */
   #job: AbortController | undefined;
   #isPlaying = false;
-  /** What remained when the run was last measured. */
-  #remaining = '';
+  /** What the run said of itself when it last came to rest. */
+  #summary: Summary | undefined;
   /** Counts the states that came to rest: only the newest is measured. */
   #rests = 0;
 
   async start(): Promise<void> {
     this.#panel.setPalette(palette());
+    this.#panel.clear();
+    this.#showTransport();
     matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => this.#recolour());
     await this.#attempt('Looking for a GPU…', () => this.#openGpu());
     await this.openSample(FIRST);
@@ -172,7 +174,7 @@ class Page {
     this.#run?.free();
     this.#run = run;
     this.#opened = opened;
-    this.#remaining = '';
+    this.#summary = undefined;
     this.#scene?.setMesh(unitPositions(opened.mesh), opened.mesh.dimension);
     if (isNew) {
       this.#scene?.lookAtAll();
@@ -229,6 +231,7 @@ class Page {
     const states = withEdges ? run.states : undefined;
     scene.show(run.drawn, opened.mesh.indices.length, withEdges && !states ? run.lines() : undefined);
     this.#panel.showIterations(run.iterations, at);
+    this.#panel.showFacts(opened.mesh, run, this.#summary, undefined);
     this.#panel.showLegend(run.states);
     this.#showTransport();
     const indices = states && (await run.triangles());
@@ -249,11 +252,13 @@ class Page {
     controls.download.disabled = !isIdle;
     element('position').textContent = run ? `${number.format(at)} / ${number.format(newest)}${run.hasEnded ? '' : '…'}` : '';
     element('status').textContent = run ? this.#statusOf(run) : '';
-    const note = [run?.fallback && `On the CPU: ${run.fallback}.`, this.#opened?.remark].filter(Boolean).join(' ');
+    const remains = run?.isOver && this.#summary ? left(reasons(this.#summary.remaining)) : '';
+    const onCpu = run?.fallback ? `On the CPU: ${run.fallback}.` : '';
+    const note = [remains, onCpu, this.#opened?.remark].filter(Boolean).join(' ');
     element('note').hidden = note === '';
     element('note').textContent = note;
     element('caption').textContent = this.#opened?.name ?? '';
-    if (!this.#job) {
+    if (!this.#job && this.#opened) {
       // The empty value stands for a file.
       const names = Array.from(controls.sample.options, ({ value }) => value);
       controls.sample.value = names.find((name) => name === this.#opened?.name) ?? '';
@@ -266,7 +271,7 @@ class Page {
     if (at === 0) return run.isOver ? 'Nothing to flip: the mesh is as Delaunay as it can be.' : 'The input';
     const flips = iterations.slice(0, at).reduce((sum, iteration) => sum + iteration.flips, 0);
     const so = `${number.format(flips)} flips in ${number.format(at)} ${at === 1 ? 'iteration' : 'iterations'}`;
-    return run.isOver ? `Done: ${so}. ${this.#remaining}` : so;
+    return run.isOver ? `Done: ${so}` : so;
   }
 
   /** Measures the state that is shown, once it is not about to change. */
@@ -282,7 +287,7 @@ class Page {
       const indices = await run.triangles();
       const fingerprint = await fingerprintOf(indices);
       if (isOutdated()) return;
-      this.#remaining = left(reasons(summary.remaining));
+      this.#summary = summary;
       this.#panel.showFacts(opened.mesh, run, summary, fingerprint);
       this.#showTransport();
       const angles = await this.#files.ask((desk) => desk.angles({ ...opened.mesh, indices }, BINS));
