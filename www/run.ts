@@ -71,6 +71,7 @@ export class Run {
   readonly #track: Track;
   #at = 0;
   #hasEnded = false;
+  #last: Promise<unknown> = Promise.resolve();
 
   constructor(
     backend: Engine,
@@ -105,10 +106,20 @@ export class Run {
     return this.#hasEnded && this.isNewest;
   }
 
-  /** One iteration on, recorded or new. Returns whether there was one. */
-  async forward(): Promise<boolean> {
+  /**
+   * One iteration on, recorded or new. Returns whether there was one. Calls wait for those before them: the track must
+   * record an iteration before the next one changes the triangles.
+   */
+  forward(): Promise<boolean> {
+    const call = this.#last.then(() => this.#forward());
+    this.#last = call.catch(() => undefined);
+    return call;
+  }
+
+  async #forward(): Promise<boolean> {
+    const from = this.#at;
     if (!this.isNewest) {
-      this.seek(this.#at + 1);
+      this.seek(from + 1);
       return true;
     }
     if (this.#hasEnded) return false;
@@ -117,11 +128,14 @@ export class Run {
       this.#hasEnded = true;
       return false;
     }
-    this.seek(this.iterations.length);
+    // Someone may have sought another state meanwhile.
+    const sought = this.#at;
+    this.seek(from);
     this.#track.record(step);
     this.iterations.push(step.iteration);
     this.#states.push(step.states);
     this.#at++;
+    if (sought !== from) this.seek(sought);
     return true;
   }
 
