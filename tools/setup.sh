@@ -1,12 +1,13 @@
 #!/usr/bin/env bash
 # Makes sure that everything `npm test` needs is there, and installs what is missing where it can.
+# `setup.sh build` does so for what `npm start` and `npm run build` need: the lines with a star.
 #
-#   Rust >= 1.88 with rustfmt and clippy   from rustup; asked for, not installed
-#   a C linker                             apt on Debian and Ubuntu
+# * Rust >= 1.88; with rustfmt and clippy  from rustup; asked for, not installed
+# * a C linker                             apt on Debian and Ubuntu
 #   a Vulkan driver for the GPU tests      apt on Debian and Ubuntu (Mesa's software driver, lavapipe)
-#   the wasm32-unknown-unknown target      rustup; on Debian 12 without rustup's server, Debian's compiler
-#   wasm-bindgen, of Cargo.lock's version  cargo install, into target/setup
-#   the packages of package-lock.json      npm ci
+# * the wasm32-unknown-unknown target      rustup; on Debian 12 without rustup's server, Debian's compiler
+# * wasm-bindgen, of Cargo.lock's version  cargo install, into target/setup
+# * the packages of package-lock.json      npm ci
 #   Chromium and chromedriver              apt on Debian; asked for elsewhere, not installed
 #   Firefox                                apt on Debian; asked for elsewhere, not installed
 #   Xvfb, where there is no display        apt on Debian and Ubuntu
@@ -15,6 +16,9 @@
 # On macOS and Windows it installs only what rustup can; the GPU tests use Metal or Direct3D 12 there.
 set -euo pipefail
 cd "$(dirname "$0")/.."
+
+for_tests=true
+[ "${1:-}" != build ] || for_tests=false
 
 say() { echo "setup: $*"; }
 stop() { # WHAT IS MISSING, WHAT TO DO…
@@ -73,6 +77,7 @@ IFS=. read -r major minor _ <<<"$version"
 [ "$major" -gt 1 ] || [ "$minor" -ge 88 ] ||
   stop "rustc is $version; edgeflip needs 1.88 or newer." "Run: rustup update stable"
 for tool in fmt clippy; do
+  $for_tests || break
   cargo "$tool" --version >/dev/null 2>&1 && continue
   component=${tool/#fmt/rustfmt}
   has rustup && within 180 rustup component add "$component" ||
@@ -100,7 +105,7 @@ any_file() {
   return 1
 }
 case $system in
-  Linux) has_vulkan || apt_install "a Vulkan driver" mesa-vulkan-drivers libvulkan1 ;;
+  Linux) ! $for_tests || has_vulkan || apt_install "a Vulkan driver" mesa-vulkan-drivers libvulkan1 ;;
 esac
 
 # --- wasm32 target ----------------------------------------------------------------------------------------
@@ -167,6 +172,9 @@ if [ ! -e node_modules/.package-lock.json ] || [ package-lock.json -nt node_modu
     stop "npm ci failed (see above)." "Run: npm ci"
 fi
 
+ready() { say "ready: $(rustc --version); wasm32 with $(tools/wasm-cargo.sh --which)"; }
+$for_tests || { ready; exit; }
+
 # --- Chromium ---------------------------------------------------------------------------------------------
 if [ -z "${CHROMEDRIVER:-}" ] && ! has chromedriver; then
   if [ "$system" = Linux ] && [ -e /etc/debian_version ]; then
@@ -202,4 +210,4 @@ if [ "$system" = Linux ] && [ -z "${DISPLAY:-}${WAYLAND_DISPLAY:-}" ] && ! has X
   apt_install "a display for Firefox" xvfb
 fi
 
-say "ready: $(rustc --version); wasm32 with $(tools/wasm-cargo.sh --which)"
+ready
