@@ -71,6 +71,8 @@ export class Run {
   readonly #track: Track;
   #at = 0;
   #hasEnded = false;
+  /** The iteration that is being made. */
+  #making: Promise<boolean> | undefined;
 
   constructor(
     backend: Engine,
@@ -100,23 +102,31 @@ export class Run {
     return this.#hasEnded && this.isNewest;
   }
 
-  /** One iteration on, recorded or new. Returns whether there was one. */
+  /** One iteration on, recorded or new. Returns whether there was one. Who asks while one is made waits for the same. */
   async forward(): Promise<boolean> {
     if (!this.isNewest) {
       this.seek(this.#at + 1);
       return true;
     }
     if (this.#hasEnded) return false;
+    this.#making ??= this.#make().finally(() => (this.#making = undefined));
+    return this.#making;
+  }
+
+  async #make(): Promise<boolean> {
     const step = await this.#stepper.step();
     if (!step) {
       this.#hasEnded = true;
       return false;
     }
+    // Whoever has gone back meanwhile stays there.
+    const [isFollowed, here] = [this.isNewest, this.#at];
     this.seek(this.iterations.length);
     this.#track.record(step);
     this.iterations.push(step.iteration);
     this.#states.push(step.states);
     this.#at++;
+    if (!isFollowed) this.seek(here);
     return true;
   }
 
