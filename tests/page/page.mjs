@@ -42,9 +42,11 @@ export async function expected(path) {
   const mesh = await readMesh(readFileSync(path), path);
   const session = await FlipSession.create(mesh, { backend: 'cpu' });
   const rows = [];
+  const fingerprints = [fingerprintOf(mesh.indices)];
   for await (const { index, labelled, flips, blocked } of session) {
     const stopped = Object.values(blocked).reduce((sum, count) => sum + count, 0);
     rows.push([index + 1, labelled, flips, stopped].map((count) => number.format(count)));
+    fingerprints.push(fingerprintOf(await session.triangles()));
   }
   const result = await session.result();
   session.free();
@@ -55,6 +57,8 @@ export async function expected(path) {
     mesh,
     indices: result.indices,
     rows,
+    /** Of the input and after each iteration. */
+    fingerprints,
     facts: {
       Triangles: number.format(mesh.indices.length / 3),
       Vertices: number.format(mesh.positions.length / mesh.dimension),
