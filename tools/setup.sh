@@ -8,6 +8,8 @@
 #   wasm-bindgen, of Cargo.lock's version  cargo install, into target/setup
 #   the packages of package-lock.json      npm ci
 #   Chromium and chromedriver              apt on Debian; asked for elsewhere, not installed
+#   Firefox                                apt on Debian; asked for elsewhere, not installed
+#   Xvfb, where there is no display        apt on Debian and Ubuntu
 #
 # It looks first and installs only what it does not find, so a second run changes nothing.
 # On macOS and Windows it installs only what rustup can; the GPU tests use Metal or Direct3D 12 there.
@@ -172,6 +174,32 @@ if [ -z "${CHROMEDRIVER:-}" ] && ! has chromedriver; then
   else
     stop "chromedriver is not on the PATH." "Install Chrome or Chromium and the chromedriver of the same version."
   fi
+fi
+
+# tests/browsers.mjs looks for them in the same places.
+has_chromium() {
+  [ -n "${CHROMIUM:-}" ] || has chromium || has chromium-browser || has google-chrome ||
+    [ -e "/Applications/Google Chrome.app" ]
+}
+if ! has_chromium; then
+  if [ "$system" = Linux ] && [ -e /etc/debian_version ]; then
+    apt_install "Chromium" chromium
+  else
+    stop "Chromium is not on the PATH." "Install Chrome or Chromium, or set CHROMIUM to its program."
+  fi
+fi
+
+# --- Firefox ----------------------------------------------------------------------------------------------
+if [ -z "${FIREFOX:-}" ] && ! has firefox-esr && ! has firefox && [ ! -e /Applications/Firefox.app ]; then
+  if [ "$system" = Linux ] && [ -e /etc/debian_version ]; then
+    apt_install "Firefox" firefox-esr
+  else
+    stop "Firefox is not on the PATH." "Install Firefox, or set FIREFOX to its program."
+  fi
+fi
+# Its window needs a display: without one, one in memory.
+if [ "$system" = Linux ] && [ -z "${DISPLAY:-}${WAYLAND_DISPLAY:-}" ] && ! has Xvfb; then
+  apt_install "a display for Firefox" xvfb
 fi
 
 say "ready: $(rustc --version); wasm32 with $(tools/wasm-cargo.sh --which)"

@@ -83,6 +83,12 @@ const levels = [
     ],
     counts: true,
   },
+  {
+    name: 'npm package in browsers',
+    what: 'the packed package in fresh projects: plain pages in Chromium and Firefox, Vite, TypeScript, on the CPU and WebGPU',
+    checks: [['node', '--test', '--test-reporter=tap', 'tests/package/browser.test.mjs']],
+    counts: true,
+  },
 ];
 
 /** Each target in tests/ is a level, described by the first sentence of its file's `//!` lines. */

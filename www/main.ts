@@ -6,7 +6,7 @@ import { element } from './element.ts';
 import { beginRun, Cancelled, Office, openGpu, type Backend, type Gpu } from './engines.ts';
 import { palette } from './palette.ts';
 import { number, Panel, reasons } from './panel.ts';
-import type { Run } from './run.ts';
+import type { Run, Summary } from './run.ts';
 import { FIRST, SAMPLES } from './samples.ts';
 import { Scene } from './scene.ts';
 import { unitPositions } from './unit.ts';
@@ -49,11 +49,15 @@ class Page {
   /** What goes on and can be cancelled. */
   #job: AbortController | undefined;
   #isPlaying = false;
+  /** What the run said of itself when it last came to rest. */
+  #summary: Summary | undefined;
   /** Counts the states that came to rest: only the newest is measured. */
   #rests = 0;
 
   async start(): Promise<void> {
     this.#panel.setPalette(palette());
+    this.#panel.clear();
+    this.#showTransport();
     matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => this.#recolour());
     await this.#attempt('Looking for a GPU…', () => this.#openGpu());
     await this.openSample(FIRST);
@@ -64,7 +68,6 @@ class Page {
   }
 
   openFile(file: File): Promise<void> {
-    controls.sample.value = '';
     return this.#open(file.name, async () => {
       const bytes = new Uint8Array(await file.arrayBuffer());
       return this.#files.ask((desk) => desk.read(bytes, file.name));
@@ -173,6 +176,7 @@ class Page {
     this.#run?.free();
     this.#run = run;
     this.#opened = opened;
+    this.#summary = undefined;
     this.#scene?.setMesh(unitPositions(opened.mesh), opened.mesh.dimension);
     if (isNew) {
       this.#scene?.lookAtAll();
@@ -180,7 +184,6 @@ class Page {
     }
     element('no-mesh').hidden = true;
     element('beta-label').hidden = opened.mesh.dimension === 2;
-    element('caption').textContent = opened.name;
     this.#panel.clear();
     await this.#draw();
     this.pause();
@@ -232,6 +235,7 @@ class Page {
     const states = withEdges ? run.states : undefined;
     scene.show(run.drawn, opened.mesh.indices.length, withEdges && !states ? run.lines() : undefined);
     this.#panel.showIterations(run.iterations, at);
+    this.#panel.showFacts(opened.mesh, run, this.#summary, undefined);
     this.#panel.showLegend(run.states);
     this.#showTransport();
     const indices = states && (await run.triangles());
@@ -250,11 +254,19 @@ class Page {
     controls.slider.max = `${newest}`;
     controls.slider.value = `${at}`;
     controls.download.disabled = !isIdle;
-    element('position').textContent = run ? `${number.format(at)} / ${number.format(newest)}${run.isOver ? '' : '…'}` : '';
+    element('position').textContent = run ? `${number.format(at)} / ${number.format(newest)}${run.hasEnded ? '' : '…'}` : '';
     element('status').textContent = run ? this.#statusOf(run) : '';
-    const note = [run?.fallback && `On the CPU: ${run.fallback}.`, this.#opened?.remark].filter(Boolean).join(' ');
+    const remains = run?.isOver && this.#summary ? left(reasons(this.#summary.remaining)) : '';
+    const onCpu = run?.fallback ? `On the CPU: ${run.fallback}.` : '';
+    const note = [remains, onCpu, this.#opened?.remark].filter(Boolean).join(' ');
     element('note').hidden = note === '';
     element('note').textContent = note;
+    element('caption').textContent = this.#opened?.name ?? '';
+    if (!this.#job && this.#opened) {
+      // The empty value stands for a file.
+      const names = Array.from(controls.sample.options, ({ value }) => value);
+      controls.sample.value = names.find((name) => name === this.#opened?.name) ?? '';
+    }
     document.body.dataset['state'] = this.#job ? 'busy' : !run ? 'empty' : this.#isPlaying ? 'playing' : run.isOver ? 'done' : 'ready';
   }
 
@@ -279,11 +291,12 @@ class Page {
       const indices = await run.triangles();
       const fingerprint = await fingerprintOf(indices);
       if (isOutdated()) return;
+      this.#summary = summary;
       this.#panel.showFacts(opened.mesh, run, summary, fingerprint);
+      this.#showTransport();
       const angles = await this.#files.ask((desk) => desk.angles({ ...opened.mesh, indices }, BINS));
       if (isOutdated()) return;
       this.#panel.showAngles(opened.before, angles);
-      if (run.isOver && run.at > 0) element('status').textContent += `. ${left(reasons(summary.remaining))}`;
       document.body.dataset['measured'] = `${run.at}`;
     } catch (error) {
       if (!isOutdated() && !(error instanceof Cancelled)) this.showError(error);

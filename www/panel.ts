@@ -83,8 +83,12 @@ export class Panel {
     element('legend').replaceChildren(...items);
   }
 
-  showFacts(mesh: Mesh32, run: Run, summary: Summary, fingerprint: string): void {
+  /** `fingerprint` is that of the triangles shown; without it, what takes time to find out is left open. */
+  showFacts(mesh: Mesh32, run: Run, summary: Summary | undefined, fingerprint: string | undefined): void {
+    if (!summary) return element('facts').replaceChildren();
     const { timings } = summary;
+    const measured = (text: string) => (fingerprint === undefined ? '…' : text);
+    const flips = run.iterations.reduce((sum, iteration) => sum + iteration.flips, 0);
     const watched = run.iterations.reduce((sum, iteration) => sum + iteration.ms, 0);
     facts('facts', {
       Triangles: number.format(mesh.indices.length / 3),
@@ -93,13 +97,13 @@ export class Panel {
       ...frozen('Non-manifold', summary.nonManifoldEdges),
       ...frozen('Inconsistent', summary.inconsistentEdges),
       Engine: run.backend === 'webgpu' ? 'WebGPU' : 'CPU, in a worker',
-      ...(summary.adapter ? { Adapter: summary.adapter, Dispatches: number.format(summary.dispatches) } : {}),
-      Iterations: number.format(summary.iterations),
-      Flips: number.format(summary.flips),
-      'Not Delaunay': reasons(summary.remaining),
+      ...(summary.adapter ? { Adapter: summary.adapter, Dispatches: measured(number.format(summary.dispatches)) } : {}),
+      Iterations: number.format(run.iterations.length),
+      Flips: number.format(flips),
+      'Not Delaunay': measured(reasons(summary.remaining)),
       'Set-up': `${ms.format(timings.adjacency)} ms`,
       'Flips and counts': `${ms.format(watched)} ms`,
-      Fingerprint: fingerprint,
+      Fingerprint: fingerprint ?? '…',
     });
   }
 

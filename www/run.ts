@@ -71,8 +71,7 @@ export class Run {
   readonly #track: Track;
   #at = 0;
   #hasEnded = false;
-  /** The iteration that is being made. */
-  #making: Promise<boolean> | undefined;
+  #last: Promise<unknown> = Promise.resolve();
 
   constructor(
     backend: Engine,
@@ -97,36 +96,46 @@ export class Run {
     return this.#at === this.iterations.length;
   }
 
+  /** Whether the last iteration has been run. */
+  get hasEnded(): boolean {
+    return this.#hasEnded;
+  }
+
   /** Whether the last iteration has been run and is shown. */
   get isOver(): boolean {
     return this.#hasEnded && this.isNewest;
   }
 
-  /** One iteration on, recorded or new. Returns whether there was one. Who asks while one is made waits for the same. */
-  async forward(): Promise<boolean> {
+  /**
+   * One iteration on, recorded or new. Returns whether there was one. Calls wait for those before them: the track must
+   * record an iteration before the next one changes the triangles.
+   */
+  forward(): Promise<boolean> {
+    const call = this.#last.then(() => this.#forward());
+    this.#last = call.catch(() => undefined);
+    return call;
+  }
+
+  async #forward(): Promise<boolean> {
+    const from = this.#at;
     if (!this.isNewest) {
-      this.seek(this.#at + 1);
+      this.seek(from + 1);
       return true;
     }
     if (this.#hasEnded) return false;
-    this.#making ??= this.#make().finally(() => (this.#making = undefined));
-    return this.#making;
-  }
-
-  async #make(): Promise<boolean> {
     const step = await this.#stepper.step();
     if (!step) {
       this.#hasEnded = true;
       return false;
     }
-    // Whoever has gone back meanwhile stays there.
-    const [isFollowed, here] = [this.isNewest, this.#at];
-    this.seek(this.iterations.length);
+    // Someone may have sought another state meanwhile.
+    const sought = this.#at;
+    this.seek(from);
     this.#track.record(step);
     this.iterations.push(step.iteration);
     this.#states.push(step.states);
     this.#at++;
-    if (!isFollowed) this.seek(here);
+    if (sought !== from) this.seek(sought);
     return true;
   }
 

@@ -10,8 +10,8 @@ export const SAMPLES: readonly { group: string; samples: readonly Sample[] }[] =
     group: 'Surfaces',
     samples: [
       { spec: 'uvsphere 28 0.1', name: 'Sphere, 1,568 triangles' },
-      { spec: 'uvsphere 100', name: 'Sphere of the paper, mesh 3: 20,000 triangles' },
-      { spec: 'uvsphere 600', name: 'Sphere of the paper, mesh 5: 720,000 triangles' },
+      { spec: 'uvsphere 100', name: 'Paper’s mesh 3, 20,000 triangles' },
+      { spec: 'uvsphere 600', name: 'Paper’s mesh 5, 720,000 triangles' },
       { spec: 'roof 16', name: 'Roof with a sharp ridge' },
       { spec: 'pole 60', name: 'Two poles' },
     ],
@@ -19,14 +19,14 @@ export const SAMPLES: readonly { group: string; samples: readonly Sample[] }[] =
   {
     group: 'Plane',
     samples: [
-      { spec: 'strips 16', name: 'Worst case of the paper, 16 nodes' },
-      { spec: 'strips 200', name: 'Worst case, 200 nodes: 197 iterations' },
-      { spec: 'strips 1000', name: 'Worst case, 1,000 nodes: 997 iterations' },
+      { spec: 'strips 16', name: 'Paper’s worst case, 16 nodes' },
+      { spec: 'strips 200', name: 'Worst case, 200 nodes' },
+      { spec: 'strips 1000', name: 'Worst case, 1,000 nodes' },
       { spec: 'shear 16', name: 'Sheared lattice' },
       { spec: 'random 24', name: 'Random points' },
       { spec: 'sweep 300', name: 'Slivers of a sweep' },
       { spec: 'regular 16', name: 'Regular lattice: all ties, no flip' },
-      { spec: 'random 500', name: 'Random points, 500,000 triangles' },
+      { spec: 'random 500', name: 'Random points, 498,000 triangles' },
     ],
   },
 ];

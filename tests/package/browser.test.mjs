@@ -1,0 +1,193 @@
+// The packed npm package, installed into fresh projects, in real browsers: the five lines that README has for a page
+// run as they are, and with Vite by the package's name; so does edgeflip/files. Every page has to write what Node does.
+// Packs the dist/ that is there.
+
+import assert from 'node:assert/strict';
+import { spawnSync } from 'node:child_process';
+import { copyFileSync, existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, before, describe, test } from 'node:test';
+import { setTimeout as pause } from 'node:timers/promises';
+import { fileURLToPath, pathToFileURL } from 'node:url';
+import { build, createServer } from 'vite';
+import { closeAll, openPage, serve, startChromium, startFirefox } from '../browsers.mjs';
+
+const repository = fileURLToPath(new URL('../..', import.meta.url));
+const folder = mkdtempSync(join(tmpdir(), 'edgeflip-package-'));
+
+const [, fiveLines] = readFileSync(join(repository, 'README.md'), 'utf8').match(
+  /^```html\n<script type="module">\n([^]*?)<\/script>\n```$/m,
+) ?? assert.fail('README has no script for a page');
+const withFiles = `
+  import { makeDelaunay } from './node_modules/edgeflip/dist/index.js';
+  import { generate } from './node_modules/edgeflip/dist/files.js';
+  const mesh = await generate('random 8');
+  const result = await makeDelaunay(mesh, { backend: 'auto' });
+  document.body.append(\`\${result.flips} flips on \${result.backend}: \${result.indices}\`);
+`;
+
+/** The same lines on another engine. */
+function on(backend, lines) {
+  assert.match(lines, /'auto'/);
+  return lines.replace("'auto'", `'${backend}'`);
+}
+
+/** The same lines where a package is imported by its name. */
+function byName(lines) {
+  const named = lines.replace('./node_modules/edgeflip/dist/index.js', 'edgeflip');
+  assert.notEqual(named, lines);
+  return named.replace('./node_modules/edgeflip/dist/files.js', 'edgeflip/files');
+}
+
+// `writes`: what the same lines write in Node, on the CPU.
+const pages = [
+  { name: 'index', lines: fiveLines, writes: '' },
+  { name: 'cpu', lines: on('cpu', fiveLines), writes: '' },
+  { name: 'webgpu', lines: on('webgpu', fiveLines), writes: '' },
+  { name: 'files', lines: on('cpu', withFiles), writes: '' },
+];
+
+function run(program, args, cwd) {
+  const shell = process.platform === 'win32'; // npm is a script there
+  const { status, stdout, stderr, error } = spawnSync(program, args, { cwd, encoding: 'utf8', shell });
+  assert.equal(status, 0, `${program} ${args.join(' ')}: ${error ?? ''}\n${stdout}\n${stderr}`);
+  return stdout;
+}
+
+/** @type {{ filename: string, files: { path: string }[] }} */
+let packed;
+
+/** A new folder in which somebody has installed the package. */
+function project(name) {
+  const root = join(folder, name);
+  mkdirSync(root);
+  // What the package depends on is taken from here, so that no network is needed.
+  const types = join(repository, 'node_modules/@webgpu/types');
+  const dependencies = { edgeflip: `file:${join(folder, packed.filename)}`, '@webgpu/types': `file:${types}` };
+  writeFileSync(join(root, 'package.json'), JSON.stringify({ name, private: true, type: 'module', dependencies }));
+  run('npm', ['install', '--offline', '--install-links', '--ignore-scripts', '--no-audit', '--no-fund'], root);
+  return root;
+}
+
+const html = (script) => `<!doctype html>
+<html lang="en">
+<meta charset="utf-8">
+<title>edgeflip</title>
+<link rel="icon" href="data:,">
+${script}
+`;
+
+before(async () => {
+  assert.ok(existsSync(join(repository, 'dist/index.js')), 'dist/ is not built: npm run build');
+  [packed] = JSON.parse(run('npm', ['pack', '--json', '--ignore-scripts', '--pack-destination', folder], repository));
+  const root = project('node');
+  globalThis.document = { body: { append: (text) => (globalThis.written = text) } };
+  for (const page of pages) {
+    const file = join(root, `${page.name}.js`);
+    writeFileSync(file, byName(page.lines).replace("'webgpu'", "'cpu'"));
+    await import(pathToFileURL(file));
+    page.writes = globalThis.written;
+  }
+  delete globalThis.document;
+});
+after(async () => {
+  await closeAll();
+  rmSync(folder, { recursive: true, force: true });
+});
+
+/** Opens every page and compares what it writes. */
+async function check(browser, address) {
+  for (const { name, lines, writes } of pages) {
+    const { page, problems } = await openPage(browser, `${address}${name}.html`);
+    let text = '';
+    // Compiling shaders for a software GPU takes seconds.
+    for (const start = performance.now(); !text && problems.length === 0 && performance.now() - start < 60_000; ) {
+      await pause(50);
+      text = await page.evaluate(() => document.body?.textContent.trim() ?? '');
+    }
+    await page.close();
+    assert.deepEqual({ name, problems }, { name, problems: [] });
+    const [, backend] = lines.match(/backend: '(\w+)'/);
+    const [, engine] = text.match(/ on (\w+): /) ?? assert.fail(`${name} writes “${text}”`);
+    if (backend !== 'auto') assert.equal(engine, backend);
+    assert.equal(text.replace(` on ${engine}: `, ' on cpu: '), writes);
+  }
+}
+
+function plainPages(folder) {
+  const root = project(folder);
+  for (const { name, lines } of pages) {
+    writeFileSync(join(root, `${name}.html`), html(`<script type="module">\n${lines}</script>`));
+  }
+  return root;
+}
+
+function viteProject(folder) {
+  const root = project(folder);
+  for (const { name, lines } of pages) {
+    writeFileSync(join(root, `${name}.html`), html(`<script type="module" src="./${name}.js"></script>`));
+    writeFileSync(join(root, `${name}.js`), byName(lines));
+  }
+  return root;
+}
+
+test('README has five lines, and they flip the long diagonal', () => {
+  assert.equal(fiveLines.trim().split('\n').length, 5);
+  const [index, cpu, webgpu, files] = pages.map(({ writes }) => writes);
+  assert.deepEqual([index, cpu, webgpu], Array(3).fill('1 flip on cpu: 3,1,2,0,1,3'));
+  assert.match(files, /^47 flips on cpu: (\d+,){293}\d+$/);
+});
+
+test('the package holds what its entries need, and no source', () => {
+  const paths = packed.files.map(({ path }) => path);
+  const { exports } = JSON.parse(readFileSync(join(repository, 'package.json'), 'utf8'));
+  const entries = Object.values(exports).flatMap((entry) => (typeof entry === 'string' ? entry : Object.values(entry)));
+  for (const entry of entries) assert.ok(paths.includes(entry.replace('./', '')), entry);
+  const others = paths.filter((path) => !/^dist\/(wasm\/)?[\w-]+(\.d\.ts|\.js|\.wasm|\.wasm\.d\.ts)$/.test(path));
+  assert.deepEqual(others.sort(), ['LICENSE-APACHE', 'LICENSE-MIT', 'README.md', 'package.json']);
+});
+
+test('a strict TypeScript project with a bundler finds the types', () => {
+  const root = project('typescript');
+  const compilerOptions = {
+    target: 'ES2022',
+    module: 'ESNext',
+    moduleResolution: 'bundler',
+    lib: ['ES2022', 'DOM', 'DOM.Iterable'],
+    strict: true,
+    verbatimModuleSyntax: true,
+    noEmit: true,
+  };
+  writeFileSync(join(root, 'tsconfig.json'), JSON.stringify({ compilerOptions, include: ['*.ts'] }));
+  writeFileSync(join(root, 'lines.ts'), byName(fiveLines));
+  writeFileSync(join(root, 'files.ts'), byName(withFiles));
+  copyFileSync(join(repository, 'tests/package/types.ts'), join(root, 'types.ts'));
+  run(process.execPath, [join(repository, 'node_modules/typescript/bin/tsc'), '-p', root], root);
+});
+
+describe('in a browser', { concurrency: true }, () => {
+  let chromium;
+  before(async () => {
+    chromium = await startChromium();
+  });
+
+  test('plain pages in Chromium', async () => check(chromium, await serve(plainPages('plain'))));
+
+  test('plain pages in Firefox', async () => check(await startFirefox(), await serve(plainPages('plain-firefox'))));
+
+  test('a Vite project, built, in Chromium', async () => {
+    const root = viteProject('vite-build');
+    const input = pages.map(({ name }) => join(root, `${name}.html`));
+    await build({ root, configFile: false, logLevel: 'warn', build: { rolldownOptions: { input } } });
+    await check(chromium, await serve(join(root, 'dist')));
+  });
+
+  test('a Vite project on the development server, in Chromium', async (t) => {
+    const root = viteProject('vite-dev');
+    const server = await createServer({ root, configFile: false, logLevel: 'warn', server: { port: 0 } });
+    t.after(() => server.close());
+    await server.listen();
+    await check(chromium, server.resolvedUrls.local[0]);
+  });
+});
