@@ -90,6 +90,7 @@ class Page {
     if (!run) return;
     if (run.isOver) run.seek(0);
     this.#isPlaying = true;
+    await this.#draw();
     while (this.#isPlaying && run === this.#run) {
       const start = performance.now();
       if (!(await this.#forward(run))) break;
@@ -144,7 +145,8 @@ class Page {
 
   showError(error: unknown): void {
     const message = error instanceof Error ? error.message : String(error);
-    element('error-text').textContent = message.charAt(0).toUpperCase() + message.slice(1);
+    // Not β, whose capital looks like a B.
+    element('error-text').textContent = message.replace(/^[a-z]/, (letter) => letter.toUpperCase());
     element('error').hidden = false;
   }
 
@@ -156,7 +158,7 @@ class Page {
         this.#files = new Office();
       });
       const mesh = await read();
-      if (mesh.indices.length === 0) throw new Error(`${name} has no triangles.`);
+      if (mesh.indices.length === 0) throw new Error(`There are no triangles in ${name}.`);
       const before = await this.#files.ask((desk) => desk.angles(mesh, BINS));
       await this.#begin({ mesh, name, remark: remarkOn(mesh), before }, signal);
     });
@@ -200,6 +202,8 @@ class Page {
       await work(job.signal);
     } catch (error) {
       if (!job.signal.aborted && !(error instanceof Cancelled)) this.showError(error);
+      // What was being measured may have been cancelled with it.
+      if (this.#job === job && !this.#isPlaying) void this.#rest();
     } finally {
       if (this.#job === job) {
         this.#job = undefined;
@@ -319,6 +323,7 @@ class Page {
       const { at } = run;
       await this.#begin(opened, signal);
       while (this.#run && this.#run.at < at && !signal.aborted && (await this.#forward(this.#run)));
+      this.pause();
     });
     this.showError(new Error(`The GPU was lost (${message || 'no reason given'}). The run went on from the input.`));
   }

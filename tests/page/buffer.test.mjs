@@ -1,0 +1,127 @@
+// The demo page draws from the buffer that the flips write: seen at WebGPU's own calls, in Chromium.
+
+import assert from 'node:assert/strict';
+import { after, before, test } from 'node:test';
+import { startChromium } from '../browsers.mjs';
+import { expected, meshFile, openEdgeflip, tidyUp } from './page.mjs';
+
+let browser;
+before(async () => (browser = await startChromium()));
+after(tidyUp);
+
+/** In the page: writes down what happens to its buffers. Each object has a number of its own: same number, same object. */
+function watchBuffers() {
+  const numbers = new Map();
+  const idOf = (object) => {
+    if (!numbers.has(object)) numbers.set(object, numbers.size);
+    return numbers.get(object);
+  };
+  const seen = { events: [], buffers: {}, devices: new Set() };
+  window.seen = () => ({ ...seen, devices: seen.devices.size });
+  const note = (what, more) => seen.events.push({ what, state: document.body.dataset.state, ...more });
+  /** Calls `look` with what comes out of a method, its object and its arguments. */
+  const watch = ({ prototype }, method, look) => {
+    const original = prototype[method];
+    prototype[method] = function (...args) {
+      const result = original.apply(this, args);
+      look(result, this, args);
+      return result;
+    };
+  };
+  const ofEncoder = new Map(); // the device of each encoder and pass, by its number
+  const inherit = (object, from) => ofEncoder.set(idOf(object), ofEncoder.get(idOf(from)));
+
+  watch(GPUDevice, 'createBuffer', (buffer, device, [{ label = '', size, usage, mappedAtCreation = false }]) => {
+    seen.devices.add(device);
+    seen.buffers[idOf(buffer)] = { label, size, usage, mappedAtCreation, device: idOf(device) };
+    note('create', { buffer: idOf(buffer) });
+  });
+  const bound = new Map();
+  watch(GPUDevice, 'createBindGroup', (group, _, [{ entries }]) => {
+    const buffers = [...entries].map(({ resource }) => (resource instanceof GPUBuffer ? resource : resource.buffer));
+    bound.set(group, buffers.filter((buffer) => buffer).map(idOf));
+  });
+  watch(GPUComputePassEncoder, 'setBindGroup', (_, pass, [, group]) => {
+    if (group) note('compute', { buffers: bound.get(group), device: ofEncoder.get(idOf(pass)) });
+  });
+  watch(GPUDevice, 'createCommandEncoder', (encoder, device) => ofEncoder.set(idOf(encoder), idOf(device)));
+  watch(GPUDevice, 'createRenderBundleEncoder', (encoder, device) => ofEncoder.set(idOf(encoder), idOf(device)));
+  watch(GPUCommandEncoder, 'beginRenderPass', inherit);
+  watch(GPUCommandEncoder, 'beginComputePass', inherit);
+  const index = new Map();
+  for (const encoder of [GPURenderPassEncoder, GPURenderBundleEncoder]) {
+    watch(encoder, 'setIndexBuffer', (_, pass, [buffer]) => index.set(pass, buffer));
+    watch(encoder, 'drawIndexed', (_, pass, [count]) =>
+      note('draw', { buffer: idOf(index.get(pass)), count, device: ofEncoder.get(idOf(pass)) }),
+    );
+  }
+  watch(GPUCommandEncoder, 'copyBufferToBuffer', (_, __, args) => {
+    const target = args.find((arg, i) => i > 0 && arg instanceof GPUBuffer);
+    note('copy', { from: idOf(args[0]), to: idOf(target), size: args.at(-1) });
+  });
+  watch(GPUQueue, 'writeBuffer', (_, __, [buffer, , data]) => note('write', { buffer: idOf(buffer), size: data.byteLength }));
+  watch(GPUBuffer, 'mapAsync', (_, buffer) => note('map', { buffer: idOf(buffer) }));
+}
+
+/** Bytes of counters and the like. */
+const SMALL = 8192;
+
+test('while it plays on WebGPU, the page draws from the session’s own buffer, every iteration, and reads no triangle back', async (t) => {
+  const path = await meshFile('uvsphere 110', 'sphere.off');
+  const { mesh, rows, facts } = await expected(path);
+  const bytes = 4 * mesh.indices.length;
+  assert.ok(mesh.indices.length > 3 * 20_000, 'large enough that no edge is coloured');
+  const page = await openEdgeflip(browser, watchBuffers);
+  await page.open(path);
+  await page.chooseEngine('webgpu');
+  const end = await page.playToEnd(120);
+  assert.deepEqual(end.rows.map((row) => row.slice(0, 4)), rows);
+  assert.equal(end.facts.Fingerprint, facts.Fingerprint);
+
+  const { events, buffers, devices } = await page.page.evaluate(() => window.seen());
+  const { MAP_READ, COPY_DST, INDEX, STORAGE } = await page.page.evaluate(() => {
+    const { MAP_READ, COPY_DST, INDEX, STORAGE } = GPUBufferUsage;
+    return { MAP_READ, COPY_DST, INDEX, STORAGE };
+  });
+  assert.equal(devices, 1, 'devices with buffers');
+  const playing = events.filter(({ state }) => state === 'playing');
+
+  // The session's: made once, by the module, before the page's own.
+  const sessions = Object.entries(buffers).filter(([, { label, size }]) => label === 'triangles' && size === bytes);
+  assert.equal(sessions.length, 1, 'buffers of that size with the label triangles');
+  const [[key, triangles]] = sessions;
+  const id = Number(key);
+  assert.equal(triangles.usage & (INDEX | STORAGE), INDEX | STORAGE);
+  const passes = playing.filter(({ what, buffers: bound }) => what === 'compute' && bound.includes(id));
+  assert.ok(passes.length >= rows.length, `${passes.length} compute passes bind the triangles`);
+
+  const draws = playing.filter(({ what, count }) => what === 'draw' && count === mesh.indices.length);
+  assert.deepEqual([...new Set(draws.map(({ buffer }) => buffer))], [id], 'buffers that are drawn');
+  assert.deepEqual([...new Set([...draws, ...passes].map(({ device }) => device))], [triangles.device]);
+
+  // Each iteration ends where the page keeps what it has changed; a draw follows before the next one does.
+  const kept = playing.flatMap(({ what, buffer }, at) => (what === 'create' && /^changes of/.test(buffers[buffer].label) ? [at] : []));
+  assert.equal(kept.length, rows.length, 'iterations');
+  kept.forEach((from, i) => {
+    const until = kept[i + 1] ?? playing.length;
+    const drawn = playing.slice(from, until).filter((event) => draws.includes(event)).length;
+    assert.ok(drawn >= 1, `${drawn} draws after iteration ${i}`);
+  });
+
+  const maps = playing.filter(({ what }) => what === 'map');
+  assert.ok(maps.length > 0, 'the counters are read');
+  const largest = Math.max(...maps.map(({ buffer }) => buffers[buffer].size));
+  assert.ok(largest <= SMALL, `${largest} bytes are mapped`);
+  const read = playing.filter(({ what, from, to }) => what === 'copy' && (from === id || buffers[to].size >= bytes) && (buffers[to].usage & MAP_READ));
+  assert.deepEqual(read, [], 'copies to where the page can read');
+  const toIndex = ({ buffer }) => buffers[buffer].usage & INDEX;
+  const written = playing.filter((event) => event.what === 'write' && (toIndex(event) || event.size > SMALL));
+  assert.deepEqual(written, [], 'writes of an index buffer');
+  const prefilled = playing.filter((event) => event.what === 'create' && toIndex(event) && (buffers[event.buffer].mappedAtCreation || buffers[event.buffer].usage & COPY_DST));
+  assert.deepEqual(prefilled, [], 'new index buffers that could be filled');
+  t.diagnostic(`${draws.length} draws of ${rows.length} iterations, ${passes.length} compute passes, ${maps.length} reads of at most ${largest} bytes`);
+
+  // The same watch sees a read-back where there is one: at rest, for the fingerprint.
+  assert.ok(events.some(({ what, buffer, state }) => what === 'map' && state !== 'playing' && buffers[buffer].size >= bytes));
+  await page.close();
+});

@@ -1,0 +1,280 @@
+// The demo page in Chromium when things do not go straight: cancelling, broken input, no GPU, a lost GPU, keys.
+
+import assert from 'node:assert/strict';
+import { writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { startChromium } from '../browsers.mjs';
+import { expected, folder, meshFile, openEdgeflip, tidyUp } from './page.mjs';
+
+let browser;
+let small;
+before(async () => {
+  browser = await startChromium();
+  small = await meshFile('strips 16', 'small.off');
+});
+after(tidyUp);
+
+function file(name, text) {
+  const path = join(folder, name);
+  writeFileSync(path, text);
+  return path;
+}
+
+/** Opens a file that is refused, and gives what the page says then. */
+async function openRefused(page, path) {
+  await (await page.page.$('#file')).setInputFiles(path);
+  await page.until('a message', ({ error }) => error !== '');
+  return page.rest();
+}
+
+/** Plays to the end on the engine that is chosen, and compares each iteration with Node. */
+async function playAndCompare(page, path) {
+  const { rows, facts, fingerprints } = await expected(path);
+  const end = await page.playToEnd();
+  assert.deepEqual(end.rows.map((row) => row.slice(0, 4)), rows);
+  assert.equal(end.facts.Fingerprint, facts.Fingerprint);
+  let seen = await page.scrub('Home');
+  assert.equal(seen.facts.Fingerprint, fingerprints[0]);
+  for (const fingerprint of fingerprints.slice(1, 5)) {
+    seen = await page.scrub('ArrowRight');
+    assert.equal(seen.facts.Fingerprint, fingerprint, `after iteration ${seen.at}`);
+  }
+}
+
+test('opening can be cancelled: the mesh before it stays, and plays', async () => {
+  const page = await openEdgeflip(browser);
+  const opened = await page.open(small);
+  await page.chooseEngine('cpu');
+  await page.choose('sample', 'random 500');
+  await page.until('a mesh being opened', ({ state }) => state === 'busy');
+  await page.page.click('#cancel');
+  const after = await page.rest();
+  assert.deepEqual([after.caption, after.error], ['small.off', '']);
+  assert.equal(after.facts.Fingerprint, opened.facts.Fingerprint);
+  await playAndCompare(page, small);
+  await page.close();
+});
+
+test('a mesh chosen while another one is opened takes its place', async () => {
+  const page = await openEdgeflip(browser);
+  await page.choose('sample', 'random 500');
+  await page.until('a mesh being opened', ({ state }) => state === 'busy');
+  const seen = await page.open(small);
+  assert.deepEqual([seen.caption, seen.error], ['small.off', '']);
+  await playAndCompare(page, small);
+  await page.close();
+});
+
+test('a run on the CPU pauses where it is, and goes on', async () => {
+  const page = await openEdgeflip(browser);
+  const path = await meshFile('strips 80', 'long.off');
+  const { fingerprints, facts } = await expected(path);
+  await page.open(path);
+  await page.chooseEngine('cpu');
+  await page.choose('speed', '50');
+  await page.page.click('#play');
+  await page.until('a few iterations', ({ state, at }) => state === 'playing' && Number(at) > 3);
+  await page.page.click('#play');
+  const paused = await page.rest();
+  assert.ok(Number(paused.at) < 77 && paused.state === 'ready', `${paused.state} at ${paused.at}`);
+  assert.equal(paused.facts.Fingerprint, fingerprints[paused.at]);
+  assert.match(paused.facts['Not Delaunay'], /can flip/);
+  const end = await page.playToEnd();
+  assert.deepEqual([end.at, end.facts.Fingerprint], ['77', facts.Fingerprint]);
+  await page.close();
+});
+
+test('a broken file is answered with its line, and the mesh before it stays', async () => {
+  const page = await openEdgeflip(browser);
+  const opened = await page.open(small);
+  for (const [name, text, message] of [
+    ['broken.off', 'OFF\n3 1 0\n0 0 0\n1 0 0\n0 one 0\n3 0 1 2\n', /Line 5: /],
+    ['broken.obj', 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n', /Line 4: /],
+    ['mesh.ply', 'ply\n', /\.off|OFF/],
+    ['empty.off', 'OFF\n3 0 0\n0 0 0\n1 0 0\n0 1 0\n', /There are no triangles in empty\.off/],
+  ]) {
+    const seen = await openRefused(page, file(name, text));
+    assert.match(seen.error, message);
+    assert.deepEqual([seen.caption, seen.state, seen.facts], ['small.off', 'ready', opened.facts]);
+    await page.page.click('#dismiss');
+    assert.equal((await page.look()).error, '');
+  }
+  await playAndCompare(page, small);
+  await page.close();
+});
+
+test('β that is no angle is refused, and one that is taken changes the result', async () => {
+  const page = await openEdgeflip(browser);
+  await page.open(await meshFile('uvsphere 28 0.1', 'sphere.off'));
+  const setBeta = async (text) => {
+    await page.page.fill('#beta', text);
+    await page.page.press('#beta', 'Tab');
+  };
+  for (const wrong of ['181', '-1', '']) {
+    await setBeta(wrong);
+    const { error } = await page.until('a message', ({ error, state }) => error !== '' && state !== 'busy');
+    assert.match(error, /β is an angle from 0 to 180/);
+    await page.page.click('#dismiss');
+  }
+  await setBeta('10');
+  await page.rest();
+  const ten = await page.playToEnd();
+  await setBeta('180');
+  await page.until('a new run', ({ at }) => at === '0');
+  await page.rest();
+  const all = await page.playToEnd();
+  assert.notEqual(all.facts.Fingerprint, ten.facts.Fingerprint);
+  assert.doesNotMatch(all.facts['Not Delaunay'], /angle/);
+  await page.close();
+});
+
+test('without WebGPU the page says so, plays on the CPU and draws with WebGL2', async () => {
+  const page = await openEdgeflip(browser, () => {
+    delete Navigator.prototype.gpu;
+    // What kind of canvas there is.
+    const { getContext } = HTMLCanvasElement.prototype;
+    HTMLCanvasElement.prototype.getContext = function (kind, ...more) {
+      const context = getContext.call(this, kind, ...more);
+      if (context && kind !== '2d') this.dataset.kind = kind;
+      return context;
+    };
+  });
+  const opened = await page.open(small);
+  assert.equal(opened.facts.Engine, 'CPU, in a worker');
+  assert.match(opened.note, /On the CPU: this browser has no WebGPU/);
+  assert.equal(await page.page.evaluate(() => document.querySelector('#view canvas').dataset.kind), 'webgl2');
+  const input = await page.picture();
+  assert.ok(input.colours > 3, `${input.colours} colours of the input`);
+
+  await page.choose('backend', 'webgpu');
+  const refused = await page.until('a message', ({ error }) => error !== '');
+  assert.match(refused.error, /The WebGPU engine is not available: this browser has no WebGPU/);
+  await page.page.click('#dismiss');
+  await page.choose('backend', 'auto');
+  await page.rest();
+  await playAndCompare(page, small);
+  await page.scrub('End');
+  const end = await page.picture();
+  assert.ok(end.colours > 3, `${end.colours} colours of the result`);
+  assert.ok(end.differsFrom(input) > 0.01, 'the result looks like the input');
+  await page.close();
+});
+
+test('auto leaves a GPU alone that the processor plays, and says why', async () => {
+  const page = await openEdgeflip(browser);
+  const seen = await page.open(small);
+  assert.deepEqual([seen.backend, seen.facts.Engine], ['auto', 'CPU, in a worker']);
+  assert.match(seen.note, /On the CPU: the only GPU here is played by the processor/);
+  await page.close();
+});
+
+test('a GPU that is lost in the middle of a run is replaced, and the result is the same', async () => {
+  const page = await openEdgeflip(browser, () => {
+    const { requestDevice } = GPUAdapter.prototype;
+    window.devices = [];
+    GPUAdapter.prototype.requestDevice = async function (...args) {
+      const device = await requestDevice.apply(this, args);
+      window.devices.push(device);
+      return device;
+    };
+  });
+  const path = await meshFile('strips 40', 'strips.off');
+  const { facts, rows } = await expected(path);
+  await page.open(path);
+  await page.chooseEngine('webgpu');
+  await page.choose('speed', '50');
+  await page.page.click('#play');
+  await page.until('a few iterations', ({ state, at }) => state === 'playing' && Number(at) > 2);
+  await page.page.evaluate(() => window.devices.at(-1).destroy());
+  const { error } = await page.until('a message', ({ error, state }) => error !== '' && state !== 'busy');
+  assert.match(error, /The GPU was lost/);
+  const recovered = await page.rest();
+  assert.ok(Number(recovered.at) > 2, `at ${recovered.at}`);
+  assert.equal(await page.page.evaluate(() => window.devices.length), 2);
+  const end = await page.playToEnd();
+  assert.deepEqual(end.rows.map((row) => row.slice(0, 4)), rows);
+  assert.deepEqual([end.facts.Engine, end.facts.Fingerprint], ['WebGPU', facts.Fingerprint]);
+  assert.ok((await page.picture()).colours > 3);
+  assert.equal(await page.page.evaluate(() => document.querySelectorAll('#view canvas').length), 1);
+  await page.close();
+});
+
+for (const backend of ['webgpu', 'cpu']) {
+  test(`keys play, pause and step on ${backend}; keys that come fast lose nothing`, async () => {
+    const page = await openEdgeflip(browser);
+    const { fingerprints, rows } = await expected(small);
+    await page.open(small);
+    await page.chooseEngine(backend);
+    await page.page.evaluate(() => document.activeElement.blur());
+    await page.page.keyboard.press('ArrowRight');
+    const first = await page.until('one iteration', ({ at, measured }) => at === '1' && measured === '1');
+    assert.equal(first.facts.Fingerprint, fingerprints[1]);
+    await page.page.keyboard.press('ArrowLeft');
+    const back = await page.until('the input', ({ at, measured }) => at === '0' && measured === '0');
+    assert.equal(back.facts.Fingerprint, fingerprints[0]);
+
+    await page.page.evaluate(() => {
+      for (let i = 0; i < 4; i++) document.dispatchEvent(new KeyboardEvent('keydown', { key: 'ArrowRight', bubbles: true }));
+    });
+    const stepped = await page.until('an iteration', ({ at, measured, newest }) => Number(at) > 1 && measured === at && at === newest);
+    assert.equal(stepped.facts.Fingerprint, fingerprints[stepped.at]);
+
+    await page.choose('speed', '50');
+    await page.page.evaluate(() => document.activeElement.blur());
+    await page.page.keyboard.press(' ');
+    await page.until('it to play', ({ state }) => state === 'playing');
+    await page.page.keyboard.press(' ');
+    const paused = await page.rest();
+    assert.equal(paused.state, 'ready');
+    await page.page.keyboard.press(' ');
+    const end = await page.until('the end', ({ state, measured, at }) => state === 'done' && measured === at);
+    assert.deepEqual(end.rows.map((row) => row.slice(0, 4)), rows);
+    await page.scrub('Home');
+    for (const fingerprint of fingerprints.slice(1)) {
+      const seen = await page.scrub('ArrowRight');
+      assert.equal(seen.facts.Fingerprint, fingerprint, `after iteration ${seen.at}`);
+    }
+    await page.close();
+  });
+
+  test(`the slider that is moved while it plays on ${backend} stays where it was put`, async () => {
+    const page = await openEdgeflip(browser);
+    const path = await meshFile('strips 40', 'strips.off');
+    const { fingerprints, facts } = await expected(path);
+    await page.open(path);
+    await page.chooseEngine(backend);
+    await page.choose('speed', '0');
+    await page.page.click('#play');
+    await page.until('a few iterations', ({ state, at }) => state === 'playing' && Number(at) > 3);
+    await page.page.evaluate(() => {
+      const slider = document.getElementById('slider');
+      slider.value = '2';
+      slider.dispatchEvent(new Event('input', { bubbles: true }));
+    });
+    // An iteration was under way, and is kept: so it is waited for.
+    const [seen] = [await page.rest(), await new Promise((done) => setTimeout(done, 1500))];
+    const later = await page.rest();
+    for (const { at, state, facts } of [seen, later]) {
+      assert.deepEqual([at, state, facts.Fingerprint], ['2', 'ready', fingerprints[2]]);
+    }
+    const end = await page.playToEnd();
+    assert.equal(end.facts.Fingerprint, facts.Fingerprint);
+    await page.close();
+  });
+}
+
+test('the page asks for nothing from elsewhere, and may not', async () => {
+  const page = await openEdgeflip(browser);
+  const refused = await page.page.evaluate(() => {
+    const violation = new Promise((done) => document.addEventListener('securitypolicyviolation', (event) => done(event.effectiveDirective), { once: true }));
+    fetch('https://example.com/').catch(() => {});
+    return violation;
+  });
+  assert.equal(refused, 'connect-src');
+  // That try, and nothing else, is on the console.
+  const [tried, rest] = [page.problems.filter((problem) => /example\.com/.test(problem)), page.problems.filter((problem) => !/example\.com/.test(problem))];
+  assert.ok(tried.length > 0);
+  assert.deepEqual(rest, []);
+  await page.page.close();
+});

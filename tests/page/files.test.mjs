@@ -1,0 +1,66 @@
+// The demo page in Chromium: mesh files opened, played, scrubbed and downloaded on both engines, bit for bit as in Node.
+
+import assert from 'node:assert/strict';
+import { after, before, test } from 'node:test';
+import { startChromium } from '../browsers.mjs';
+import { assertSameMesh, expected, meshFile, openEdgeflip, tidyUp } from './page.mjs';
+
+let browser;
+before(async () => (browser = await startChromium()));
+after(tidyUp);
+
+const sources = [
+  { how: 'chosen', name: 'sphere.obj', spec: 'uvsphere 28 0.1', load: (page, path) => page.open(path) },
+  { how: 'dropped', name: 'plane.off', spec: 'random 24', load: (page, path, name) => page.drop(path, name) },
+];
+const engines = [
+  { backend: 'webgpu', engine: 'WebGPU' },
+  { backend: 'cpu', engine: 'CPU, in a worker' },
+];
+
+for (const { how, name, spec, load } of sources) {
+  for (const { backend, engine } of engines) {
+    test(`a file that is ${how} plays on ${backend}, goes back to its own triangles and forward again, bit for bit as in Node`, async () => {
+      const path = await meshFile(spec, name);
+      const { mesh, indices, rows, facts, fingerprints } = await expected(path);
+      assert.ok(rows.length >= 3, 'the mesh has something to show');
+      const page = await openEdgeflip(browser);
+      const opened = await load(page, path, name);
+      assert.equal(opened.caption, name);
+      await page.chooseEngine(backend);
+
+      const input = await page.look();
+      assert.equal(input.facts.Fingerprint, fingerprints[0]);
+      assert.equal(input.facts.Engine, engine);
+      const inputPicture = await page.picture();
+      assert.ok(inputPicture.colours > 3, `${inputPicture.colours} colours of the input`);
+
+      const end = await page.playToEnd();
+      assert.deepEqual(end.rows.map((row) => row.slice(0, 4)), rows);
+      assert.equal(end.at, `${rows.length}`);
+      for (const [fact, value] of Object.entries(facts)) assert.equal(end.facts[fact], value, fact);
+      assert.equal(end.facts.Engine, engine);
+      if (backend === 'webgpu') {
+        assert.match(end.facts.Adapter, /\S/);
+        assert.ok(Number(end.facts.Dispatches.replaceAll(',', '')) >= 3 * rows.length, `${end.facts.Dispatches} dispatches`);
+      } else {
+        assert.deepEqual([end.facts.Adapter, end.facts.Dispatches], [undefined, undefined]);
+      }
+      const endPicture = await page.picture();
+      assert.ok(endPicture.colours > 3, `${endPicture.colours} colours of the result`);
+      assert.ok(endPicture.differsFrom(inputPicture) > 0.01, 'the result looks like the input');
+      assertSameMesh(await page.download(), { ...mesh, indices }, 'of the downloaded result');
+
+      const back = await page.scrub('Home');
+      assert.deepEqual([back.at, back.facts.Fingerprint], ['0', fingerprints[0]]);
+      const downloaded = await page.download();
+      assert.match(downloaded.name, new RegExp(`-after-0\\${name.slice(-4)}$`));
+      assertSameMesh(downloaded, mesh, 'of the downloaded input');
+      assert.equal((await page.picture()).differsFrom(inputPicture), 0, 'the input looks as before');
+
+      const again = await page.scrub('End');
+      assert.deepEqual([again.at, again.facts.Fingerprint], [end.at, facts.Fingerprint]);
+      await page.close();
+    });
+  }
+}

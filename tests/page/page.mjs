@@ -1,0 +1,217 @@
+// The demo page in a real browser, as somebody uses it, and what the package says about the same mesh in Node.
+// Serves the target/www that is there.
+
+import assert from 'node:assert/strict';
+import { createHash } from 'node:crypto';
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { setTimeout as pause } from 'node:timers/promises';
+import { fileURLToPath } from 'node:url';
+import { FlipSession } from 'edgeflip';
+import { angles, generate, readMesh, writeMesh } from 'edgeflip/files';
+import { closeAll, openPage, serve } from '../browsers.mjs';
+import { Picture } from './picture.mjs';
+
+/** Where the meshes of a test file lie. */
+export const folder = mkdtempSync(join(tmpdir(), 'edgeflip-page-'));
+
+/** For `after`: ends the browsers and removes the meshes. */
+export async function tidyUp() {
+  await closeAll();
+  rmSync(folder, { recursive: true });
+}
+
+/** Writes a generated mesh to a file. */
+export async function meshFile(spec, name) {
+  const path = join(folder, name);
+  writeFileSync(path, await writeMesh(await generate(spec), name));
+  return path;
+}
+
+const number = new Intl.NumberFormat('en');
+const degrees = new Intl.NumberFormat('en', { maximumFractionDigits: 2, minimumFractionDigits: 2 });
+
+/** What the page calls a fingerprint. */
+export function fingerprintOf(indices) {
+  return createHash('sha256').update(indices).digest('hex').slice(0, 16);
+}
+
+/** What the page has to show of the mesh in this file, from the package on the CPU engine. */
+export async function expected(path) {
+  const mesh = await readMesh(readFileSync(path), path);
+  const session = await FlipSession.create(mesh, { backend: 'cpu' });
+  const rows = [];
+  const fingerprints = [fingerprintOf(mesh.indices)];
+  for await (const { index, labelled, flips, blocked } of session) {
+    const stopped = Object.values(blocked).reduce((sum, count) => sum + count, 0);
+    rows.push([index + 1, labelled, flips, stopped].map((count) => number.format(count)));
+    fingerprints.push(fingerprintOf(await session.triangles()));
+  }
+  const result = await session.result();
+  session.free();
+  const left = Object.entries(result.remaining).map(([reason, count]) => [reason, number.format(count)]);
+  const sum = Object.values(result.remaining).reduce((total, count) => total + count, 0);
+  const [before, after] = [await angles(mesh), await angles({ ...mesh, indices: result.indices })];
+  return {
+    mesh,
+    indices: result.indices,
+    rows,
+    /** Of the input and after each iteration. */
+    fingerprints,
+    facts: {
+      Triangles: number.format(mesh.indices.length / 3),
+      Vertices: number.format(mesh.positions.length / mesh.dimension),
+      Iterations: number.format(result.iterations),
+      Flips: number.format(result.flips),
+      'Not Delaunay': sum === 0 ? 'none' : `${number.format(sum)} (${left.map((each) => each.join(' ')).join(', ')})`,
+      Fingerprint: fingerprintOf(result.indices),
+      Smallest: `${degrees.format(before.min)}° → ${degrees.format(after.min)}°`,
+      'Mean smallest': `${degrees.format(before.meanMin)}° → ${degrees.format(after.meanMin)}°`,
+    },
+  };
+}
+
+let address;
+
+/**
+ * Opens the page and waits for its first mesh.
+ *
+ * @param browser - Chromium of playwright-core or Firefox of puppeteer-core.
+ * @param {(() => void)[]} scripts - Functions that run in the page before its own scripts (Chromium).
+ */
+export async function openEdgeflip(browser, ...scripts) {
+  address ??= await serve(fileURLToPath(new URL('../../target/www', import.meta.url)));
+  const { page, problems } = await openPage(browser, 'about:blank');
+  for (const script of scripts) await page.addInitScript(script);
+  // Every address that is asked for; `data:` and `blob:` are the page's own.
+  page.on('request', (request) => {
+    if (!/^(data|blob):/.test(request.url()) && !request.url().startsWith(address)) problems.push(`asked for ${request.url()}`);
+  });
+  await page.goto(address);
+  const edgeflip = new EdgeflipPage(page, problems);
+  await edgeflip.rest();
+  return edgeflip;
+}
+
+export class EdgeflipPage {
+  constructor(page, problems) {
+    this.page = page;
+    /** What went wrong: messages of the console, exceptions, failed requests. */
+    this.problems = problems;
+  }
+
+  /** Ends the page; everything that it was used for must have gone without a problem. */
+  async close() {
+    assert.deepEqual(this.problems, []);
+    await this.page.close();
+  }
+
+  /** What the page says. */
+  look() {
+    return this.page.evaluate(() => {
+      const text = (id) => {
+        const found = document.getElementById(id);
+        return found.hidden ? '' : found.textContent;
+      };
+      return {
+        state: document.body.dataset.state,
+        measured: document.body.dataset.measured,
+        at: document.getElementById('slider').value,
+        newest: document.getElementById('slider').max,
+        backend: document.getElementById('backend').value,
+        error: text('error'),
+        note: text('note'),
+        status: text('status'),
+        caption: text('caption'),
+        facts: Object.fromEntries([...document.querySelectorAll('dd[data-fact]')].map((dd) => [dd.dataset.fact, dd.textContent])),
+        rows: [...document.querySelectorAll('#rows tr')].map((row) => [...row.cells].map((cell) => cell.textContent)),
+      };
+    });
+  }
+
+  /** Waits until the page is so, and gives what it says then. */
+  async until(what, isSo, seconds = 60) {
+    const end = performance.now() + 1000 * seconds;
+    for (;;) {
+      const seen = await this.look();
+      if (isSo(seen)) return seen;
+      assert.ok(performance.now() < end, `not after ${seconds} s: ${what}; the page says ${JSON.stringify({ ...seen, rows: seen.rows.length })}`);
+      await pause(30);
+    }
+  }
+
+  /** Waits until nothing goes on and the numbers of what is shown are there. */
+  rest(seconds) {
+    return this.until('a page at rest', ({ state, measured, at }) => /^(ready|done)$/.test(state) && measured === at, seconds);
+  }
+
+  async open(path) {
+    const input = await this.page.$('#file');
+    await (input.setInputFiles ?? input.uploadFile).call(input, path);
+    return this.rest();
+  }
+
+  /** Drops a file onto the page. */
+  async drop(path, name) {
+    const bytes = readFileSync(path, 'base64');
+    await this.page.evaluate(
+      ([base64, file]) => {
+        const dataTransfer = new DataTransfer();
+        dataTransfer.items.add(new File([Uint8Array.from(atob(base64), (char) => char.charCodeAt(0))], file));
+        for (const type of ['dragover', 'drop']) {
+          document.getElementById('view').dispatchEvent(new DragEvent(type, { dataTransfer, bubbles: true, cancelable: true }));
+        }
+      },
+      [bytes, name],
+    );
+    return this.rest();
+  }
+
+  /** Chooses from a list: an engine, a speed, a sample. */
+  async choose(id, value) {
+    await (this.page.selectOption ?? this.page.select).call(this.page, `#${id}`, value);
+  }
+
+  async chooseEngine(backend) {
+    if ((await this.look()).backend === backend) return;
+    await this.choose('backend', backend);
+    await this.rest();
+  }
+
+  /** Plays to the end, as fast as it goes. */
+  async playToEnd(seconds) {
+    await this.choose('speed', '0');
+    await this.page.click('#play');
+    await this.until('the end of the run', ({ state }) => state === 'done', seconds);
+    return this.rest(seconds);
+  }
+
+  /** Moves the slider to one of its ends. */
+  async scrub(key) {
+    await this.page.focus('#slider');
+    await this.page.keyboard.press(key);
+    return this.rest();
+  }
+
+  /** What the canvas shows. */
+  async picture() {
+    await this.page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done()))));
+    const canvas = await this.page.$('#view canvas');
+    return new Picture(await canvas.screenshot());
+  }
+
+  /** The mesh in the file that the page writes. */
+  async download() {
+    const [download] = await Promise.all([this.page.waitForEvent('download'), this.page.click('#download')]);
+    const bytes = readFileSync(await download.path());
+    return { ...(await readMesh(bytes, download.suggestedFilename())), name: download.suggestedFilename() };
+  }
+}
+
+/** That two meshes are the same, bit for bit. */
+export function assertSameMesh(actual, { positions, indices }, what) {
+  const bits = (floats) => new Uint32Array(floats.buffer, floats.byteOffset, floats.length);
+  assert.deepEqual(actual.indices, indices, `indices ${what}`);
+  assert.deepEqual(bits(actual.positions), bits(positions), `positions ${what}`);
+}

@@ -1,0 +1,74 @@
+// A screenshot of the canvas: enough of PNG to read its pixels.
+
+import assert from 'node:assert/strict';
+import { inflateSync } from 'node:zlib';
+
+export class Picture {
+  /** @param {Uint8Array} png - 8 bits a channel, RGB or RGBA, not interlaced: what browsers write. */
+  constructor(png) {
+    const bytes = Buffer.from(png);
+    const parts = [];
+    for (let at = 8; at < bytes.length; at += bytes.readUInt32BE(at) + 12) {
+      const [type, data] = [bytes.toString('latin1', at + 4, at + 8), bytes.subarray(at + 8, at + 8 + bytes.readUInt32BE(at))];
+      if (type === 'IHDR') {
+        this.width = data.readUInt32BE(0);
+        this.height = data.readUInt32BE(4);
+        assert.equal(data[8], 8, 'bits a channel');
+        assert.ok(data[9] === 2 || data[9] === 6, 'RGB or RGBA');
+        this.channels = data[9] === 2 ? 3 : 4;
+        assert.equal(data[12], 0, 'not interlaced');
+      }
+      if (type === 'IDAT') parts.push(data);
+    }
+    this.pixels = this.#unfilter(inflateSync(Buffer.concat(parts)));
+  }
+
+  /** PNG specification, section 9: each byte was made smaller by what is left of it (a), above (b) and above left (c). */
+  #unfilter(rows) {
+    const { width, height, channels } = this;
+    const stride = width * channels;
+    const pixels = new Uint8Array(stride * height);
+    for (let y = 0; y < height; y++) {
+      const filter = rows[y * (stride + 1)];
+      for (let x = 0; x < stride; x++) {
+        const at = y * stride + x;
+        const a = x < channels ? 0 : pixels[at - channels];
+        const b = y === 0 ? 0 : pixels[at - stride];
+        const c = x < channels || y === 0 ? 0 : pixels[at - stride - channels];
+        pixels[at] = rows[y * (stride + 1) + 1 + x] + [0, a, b, (a + b) >> 1, paeth(a, b, c)][filter];
+      }
+    }
+    return pixels;
+  }
+
+  /** The middle of the picture, where no text lies over it, as one number a pixel. */
+  get middle() {
+    const { width, height, channels, pixels } = this;
+    const middle = [];
+    for (let y = height >> 2; y < (3 * height) >> 2; y++) {
+      for (let x = width >> 2; x < (3 * width) >> 2; x++) {
+        const at = (y * width + x) * channels;
+        middle.push((pixels[at] << 16) | (pixels[at + 1] << 8) | pixels[at + 2]);
+      }
+    }
+    return middle;
+  }
+
+  /** How many colours the middle has. */
+  get colours() {
+    return new Set(this.middle).size;
+  }
+
+  /** The share of the middle in which another picture is different. */
+  differsFrom(other) {
+    const [mine, others] = [this.middle, other.middle];
+    assert.equal(mine.length, others.length);
+    return mine.filter((colour, i) => colour !== others[i]).length / mine.length;
+  }
+}
+
+function paeth(a, b, c) {
+  const [toA, toB, toC] = [Math.abs(b - c), Math.abs(a - c), Math.abs(a + b - 2 * c)];
+  if (toA <= toB && toA <= toC) return a;
+  return toB <= toC ? b : c;
+}
