@@ -12,7 +12,7 @@ export class ArrayTrack implements Track {
     this.#indices = indices.slice();
   }
 
-  record({ change }: Step): void {
+  async record({ change }: Step): Promise<void> {
     if (!change) throw new Error('an iteration came without its change');
     this.#changes.push(change);
     applyChange(this.#indices, change);

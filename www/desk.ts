@@ -3,6 +3,7 @@
 import { expose, transfer } from 'comlink';
 import { FlipSession } from 'edgeflip';
 import { angles, generate, readMesh, writeMesh, type Angles, type FileMesh, type Mesh32 } from 'edgeflip/files';
+import { naming } from './crash.ts';
 import { changeOf, type Change } from './change.ts';
 import { statesOf, type Step, type Summary } from './run.ts';
 
@@ -11,20 +12,20 @@ class Desk {
   #before: Uint32Array = new Uint32Array();
 
   async generate(spec: string): Promise<Mesh32> {
-    return send(await generate(spec));
+    return send(await naming(generate(spec)));
   }
 
   async read(bytes: Uint8Array, name: string): Promise<FileMesh> {
-    return send(await readMesh(bytes, name));
+    return send(await naming(readMesh(bytes, name)));
   }
 
   async write(mesh: Mesh32, name: string): Promise<Uint8Array<ArrayBuffer>> {
-    const bytes = await writeMesh(mesh, name);
+    const bytes = await naming(writeMesh(mesh, name));
     return transfer(bytes, [bytes.buffer]);
   }
 
   angles(mesh: Mesh32, bins: number): Promise<Angles> {
-    return angles(mesh, bins);
+    return naming(angles(mesh, bins));
   }
 
   /** Begins a run on the CPU engine. Returns what its edges are, if they are to be drawn. */

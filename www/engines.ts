@@ -4,6 +4,7 @@ import { wrap, type Remote } from 'comlink';
 import { EdgeflipError, FlipSession } from 'edgeflip';
 import type { Mesh32 } from 'edgeflip/files';
 import { ArrayTrack } from './array-track.ts';
+import { CRASHED } from './crash.ts';
 import type { Desk } from './desk.ts';
 import { GpuTrack } from './gpu-track.ts';
 import { Run, statesOf } from './run.ts';
@@ -23,34 +24,57 @@ export async function openGpu(): Promise<Gpu | string> {
     if (!adapter) return 'WebGPU found no GPU';
     const { maxBufferSize, maxStorageBufferBindingSize } = adapter.limits;
     const device = await adapter.requestDevice({ requiredLimits: { maxBufferSize, maxStorageBufferBindingSize } });
-    return { device, isSoftware: adapter.info.isFallbackAdapter };
+    return { device, isSoftware: isSoftware(adapter) };
   } catch (error) {
     return `WebGPU could not be used (${error instanceof Error ? error.message : String(error)})`;
   }
 }
 
+/** Older browsers say it of the adapter, newer ones of its information. */
+function isSoftware(adapter: GPUAdapter & { isFallbackAdapter?: boolean }): boolean {
+  const { isFallbackAdapter }: { isFallbackAdapter?: boolean } = adapter.info;
+  return isFallbackAdapter ?? adapter.isFallbackAdapter ?? false;
+}
+
 /** A worker with the desk that it answers at. */
 export class Office {
   readonly #worker = new Worker(new URL('./desk.ts', import.meta.url), { type: 'module' });
-  readonly desk: Remote<Desk> = wrap<Desk>(this.#worker);
+  readonly #desk: Remote<Desk> = wrap<Desk>(this.#worker);
+  #isBroken = false;
   readonly #failed: Promise<never>;
   #fail: (error: Error) => void = () => {};
 
   constructor() {
     this.#failed = new Promise((_, reject) => (this.#fail = reject));
     this.#failed.catch(() => {});
-    this.#worker.onerror = (event) => this.#fail(new Error(`The worker has crashed: ${event.message}`));
+    this.#worker.onerror = ({ message }) => this.#break(new Error(`The page’s worker failed: ${message || 'it could not be loaded'}`));
+  }
+
+  /** Whether it can be asked no more. */
+  get isBroken(): boolean {
+    return this.#isBroken;
   }
 
   /** Asks the desk. Closing the office ends the wait too. */
-  ask<T>(question: (desk: Remote<Desk>) => Promise<T>): Promise<T> {
-    return Promise.race([question(this.desk), this.#failed]);
+  async ask<T>(question: (desk: Remote<Desk>) => Promise<T>): Promise<T> {
+    try {
+      return await Promise.race([question(this.#desk), this.#failed]);
+    } catch (error) {
+      // A WebAssembly module that has crashed stays so.
+      if (error instanceof Error && error.name === CRASHED) this.#break(error);
+      throw error;
+    }
+  }
+
+  #break(error: Error): void {
+    this.#isBroken = true;
+    this.#fail(error);
   }
 
   /** Stops whatever goes on in it. */
   close(): void {
     this.#worker.terminate();
-    this.#fail(new Cancelled());
+    this.#break(new Cancelled());
   }
 }
 
@@ -106,7 +130,8 @@ async function onGpu(mesh: Mesh32, maxNormalAngle: number, device: GPUDevice): P
       free: () => session.free(),
     };
     const states = await statesOf(session, length);
-    return new Run('webgpu', undefined, stepper, new GpuTrack(device, shared.indices, length), states);
+    const track = await GpuTrack.create(device, shared.indices, length);
+    return new Run('webgpu', undefined, stepper, track, states);
   } catch (error) {
     session.free();
     throw error;

@@ -1,5 +1,6 @@
 /** The triangles of a run on the GPU: they never leave it, except to be downloaded or measured. */
 
+import { EdgeflipError } from 'edgeflip';
 import source from './gpu-track.wgsl?raw';
 import type { Step, Track } from './run.ts';
 
@@ -18,11 +19,11 @@ export class GpuTrack implements Track {
   readonly #count: GPUBuffer;
   readonly #changes: GPUBuffer[] = [];
   #lines: GPUBuffer | undefined;
+  #isFreed = false;
   readonly #layout: GPUBindGroupLayout;
   readonly #pipelines: Record<Kernel, GPUComputePipeline>;
 
-  /** `length` is the number of indices; the smallest buffers have room for more. */
-  constructor(device: GPUDevice, newest: GPUBuffer, length: number) {
+  private constructor(device: GPUDevice, newest: GPUBuffer, length: number) {
     this.#device = device;
     this.#newest = newest;
     this.#length = length;
@@ -45,13 +46,22 @@ export class GpuTrack implements Track {
     device.queue.submit([encoder.finish()]);
   }
 
-  record({ iteration }: Step): void {
+  /**
+   * `length` is the number of indices; the smallest buffers have room for more.
+   *
+   * @throws {@link EdgeflipError} `backend-limit` where there is no memory for it.
+   */
+  static create(device: GPUDevice, newest: GPUBuffer, length: number): Promise<GpuTrack> {
+    return withMemory(device, () => new GpuTrack(device, newest, length));
+  }
+
+  async record({ iteration }: Step): Promise<void> {
     // A flip changes two of the six indices of its triangles.
-    const changes = this.#device.createBuffer({
-      label: `changes of iteration ${iteration.index}`,
-      size: 16 * iteration.flips,
-      usage: GPUBufferUsage.STORAGE,
-    });
+    const size = 16 * iteration.flips;
+    const changes = await withMemory(this.#device, () =>
+      this.#device.createBuffer({ label: `changes of iteration ${iteration.index}`, size, usage: GPUBufferUsage.STORAGE }),
+    );
+    if (this.#isFreed) return changes.destroy();
     this.#changes.push(changes);
     this.#device.queue.writeBuffer(this.#count, 0, new Uint32Array(1));
     this.#run('record', changes, this.#newest.size / 4);
@@ -66,7 +76,8 @@ export class GpuTrack implements Track {
     return isNewest ? this.#newest : this.#shown;
   }
 
-  lines(): GPUBuffer {
+  lines(): GPUBuffer | undefined {
+    if (2 * this.#shown.size > this.#device.limits.maxStorageBufferBindingSize) return undefined;
     this.#lines ??= this.#device.createBuffer({
       label: 'lines',
       size: 2 * this.#shown.size,
@@ -79,16 +90,19 @@ export class GpuTrack implements Track {
   async triangles(): Promise<Uint32Array> {
     const { size } = this.#shown;
     const copy = this.#device.createBuffer({ size, usage: GPUBufferUsage.MAP_READ | GPUBufferUsage.COPY_DST });
-    const encoder = this.#device.createCommandEncoder();
-    encoder.copyBufferToBuffer(this.#shown, 0, copy, 0, size);
-    this.#device.queue.submit([encoder.finish()]);
-    await copy.mapAsync(GPUMapMode.READ);
-    const triangles = new Uint32Array(copy.getMappedRange().slice(0, 4 * this.#length));
-    copy.destroy();
-    return triangles;
+    try {
+      const encoder = this.#device.createCommandEncoder();
+      encoder.copyBufferToBuffer(this.#shown, 0, copy, 0, size);
+      this.#device.queue.submit([encoder.finish()]);
+      await copy.mapAsync(GPUMapMode.READ);
+      return new Uint32Array(copy.getMappedRange().slice(0, 4 * this.#length));
+    } finally {
+      copy.destroy();
+    }
   }
 
   free(): void {
+    this.#isFreed = true;
     for (const buffer of [this.#shown, this.#count, this.#lines, ...this.#changes]) buffer?.destroy();
   }
 
@@ -106,4 +120,13 @@ export class GpuTrack implements Track {
     pass.end();
     this.#device.queue.submit([encoder.finish()]);
   }
+}
+
+/** Makes what needs memory of the device, and waits for its word that there was some. */
+async function withMemory<T>(device: GPUDevice, make: () => T): Promise<T> {
+  device.pushErrorScope('out-of-memory');
+  const made = make();
+  const error = await device.popErrorScope();
+  if (error) throw new EdgeflipError('backend-limit', 'the GPU has no memory left to keep every iteration');
+  return made;
 }

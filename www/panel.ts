@@ -3,7 +3,7 @@
 import { EDGE_STATES, type Iteration, type Reasons } from 'edgeflip';
 import type { Angles, Mesh32 } from 'edgeflip/files';
 import { AnglesChart, FlipsChart } from './charts.ts';
-import { element } from './element.ts';
+import { element } from './controls.ts';
 import type { Palette } from './palette.ts';
 import { countStates, type Run, type Summary } from './run.ts';
 
@@ -67,10 +67,11 @@ export class Panel {
   }
 
   /** The states of the edges that are drawn in colours. */
-  showLegend(states: Uint8Array | undefined): void {
+  showLegend(states: Uint8Array | undefined, summary?: Summary): void {
     element('legend-section').hidden = !states;
     if (!states) return;
-    const items = countStates(states).flatMap((count, state) => {
+    const counts = countStates(states, summary?.nonManifoldEdges);
+    const items = counts.flatMap((count, state) => {
       if (count === 0) return [];
       const name = EDGE_STATES[state]!;
       const item = document.createElement('li');
@@ -84,7 +85,13 @@ export class Panel {
   }
 
   /** `fingerprint` is that of the triangles shown; without it, what takes time to find out is left open. */
-  showFacts(mesh: Mesh32, run: Run, summary: Summary | undefined, fingerprint: string | undefined): void {
+  showFacts(
+    mesh: Mesh32,
+    run: Run,
+    summary: Summary | undefined,
+    beta: number | undefined,
+    fingerprint: string | undefined,
+  ): void {
     if (!summary) return element('facts').replaceChildren();
     const { timings } = summary;
     const measured = (text: string) => (fingerprint === undefined ? '…' : text);
@@ -96,11 +103,12 @@ export class Panel {
       Edges: `${number.format(summary.edges)}, ${number.format(summary.boundaryEdges)} on the boundary`,
       ...frozen('Non-manifold', summary.nonManifoldEdges),
       ...frozen('Inconsistent', summary.inconsistentEdges),
+      ...(mesh.dimension === 3 ? { β: `${beta}°` } : {}),
       Engine: run.backend === 'webgpu' ? 'WebGPU' : 'CPU, in a worker',
       ...(summary.adapter ? { Adapter: summary.adapter, Dispatches: measured(number.format(summary.dispatches)) } : {}),
       Iterations: number.format(run.iterations.length),
       Flips: number.format(flips),
-      'Not Delaunay': measured(reasons(summary.remaining)),
+      'Not Delaunay': run.isNewest ? measured(reasons(summary.remaining)) : reasons(notDelaunayAt(run)),
       'Set-up': `${ms.format(timings.adjacency)} ms`,
       'Flips and counts': `${ms.format(watched)} ms`,
       Fingerprint: fingerprint ?? '…',
@@ -127,8 +135,12 @@ export class Panel {
     ]) {
       row.insertCell().textContent = text;
     }
+    const button = document.createElement('button');
+    button.textContent = number.format(index + 1);
+    button.ariaLabel = `Show iteration ${button.textContent}`;
+    button.addEventListener('click', () => this.#seek(index + 1));
+    row.cells[0]?.replaceChildren(button);
     row.title = stopped > 0 ? `Blocked: ${reasons(blocked)}` : '';
-    row.addEventListener('click', () => this.#seek(index + 1));
     this.#rows.append(row);
   }
 }
@@ -139,6 +151,12 @@ export function reasons(by: Reasons): string {
   if (parts.length === 0) return 'none';
   const sum = parts.reduce((total, [, count]) => total + count, 0);
   return `${number.format(sum)} (${parts.map(([reason, count]) => `${reason === 'stopped' ? 'can flip' : reason} ${number.format(count)}`).join(', ')})`;
+}
+
+/** The edges of the state that is shown, as the iteration after it found them. */
+function notDelaunayAt({ at, iterations }: Run): Reasons {
+  const after = iterations[at];
+  return after ? { ...after.blocked, stopped: after.labelled } : {};
 }
 
 function frozen(name: string, count: number): Record<string, string> {

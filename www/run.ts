@@ -29,14 +29,18 @@ export type Drawn = Uint32Array | GPUBuffer;
 
 /** The triangles of one iteration, and the changes that lead to the others. */
 export interface Track {
-  /** Takes over what the newest iteration has changed; the track must stand at the one before. */
-  record(step: Step): void;
+  /**
+   * Takes over what the newest iteration has changed; the track must stand at the one before.
+   *
+   * @throws where there is no memory left for it.
+   */
+  record(step: Step): Promise<void>;
   /** Does iteration `index`, or takes it back. */
   apply(index: number): void;
   /** What to draw, if this is the newest state or not. */
   drawn(isNewest: boolean): Drawn;
-  /** The lines around its triangles, as indices. */
-  lines(): Drawn;
+  /** The lines around its triangles, as indices; `undefined` where they do not fit. */
+  lines(): Drawn | undefined;
   /** A copy of the triangles where the track stands. */
   triangles(): Promise<Uint32Array>;
   free(): void;
@@ -47,11 +51,18 @@ export async function statesOf(session: FlipSession, indices: number): Promise<U
   return indices <= 3 * COLOURED ? session.edgeStates() : undefined;
 }
 
-/** How many edges are in each state: both half-edges of an edge between two triangles say the same. */
-export function countStates(states: Uint8Array): number[] {
+/**
+ * How many edges are in each state. An edge has two half-edges but on the boundary, where it has one; how many have
+ * three or more is known from elsewhere.
+ */
+export function countStates(states: Uint8Array, nonManifold: number | undefined): number[] {
   const halves = EDGE_STATES.map(() => 0);
   for (const state of states) halves[state]!++;
-  return halves.map((count, state) => (isOfOneTriangle(state) ? count : count / 2));
+  return EDGE_STATES.map((name, state) => {
+    const count = halves[state]!;
+    if (name === 'non-manifold') return count > 0 ? (nonManifold ?? 0) : 0;
+    return name === 'boundary' ? count : count / 2;
+  });
 }
 
 /** Whether a half-edge in this state has no twin. */
@@ -71,6 +82,11 @@ export class Run {
   readonly #track: Track;
   #at = 0;
   #hasEnded = false;
+  #isFreed = false;
+  /** Whether the triangles of the engine are one iteration on from the newest that is recorded. */
+  #isAhead = false;
+  /** Where to go when an iteration that is being recorded has been. */
+  #sought: number | undefined;
   #last: Promise<unknown> = Promise.resolve();
 
   constructor(
@@ -117,39 +133,55 @@ export class Run {
   }
 
   async #forward(): Promise<boolean> {
+    if (this.#isFreed) return false;
     const from = this.#at;
     if (!this.isNewest) {
       this.seek(from + 1);
       return true;
     }
     if (this.#hasEnded) return false;
+    if (this.#isAhead) throw new Error('The last iteration could not be kept; begin again.');
     const step = await this.#stepper.step();
+    if (this.#isFreed) return false;
     if (!step) {
       this.#hasEnded = true;
       return false;
     }
-    // Someone may have sought another state meanwhile.
-    const sought = this.#at;
-    this.seek(from);
-    this.#track.record(step);
-    this.iterations.push(step.iteration);
-    this.#states.push(step.states);
-    this.#at++;
-    if (sought !== from) this.seek(sought);
+    // Someone may have sought another state meanwhile, and may do so while this is recorded.
+    this.#sought = this.#at;
+    this.#move(from);
+    this.#isAhead = true;
+    try {
+      await this.#track.record(step);
+      if (this.#isFreed) return false;
+      this.#isAhead = false;
+      this.iterations.push(step.iteration);
+      this.#states.push(step.states);
+      this.#at++;
+      if (this.#sought !== from) this.#move(this.#sought);
+    } finally {
+      this.#sought = undefined;
+    }
     return true;
   }
 
   /** Shows a recorded state. */
   seek(at: number): void {
+    if (this.#isFreed) return;
+    if (this.#sought === undefined) this.#move(at);
+    else this.#sought = at;
+  }
+
+  #move(at: number): void {
     while (this.#at < at) this.#track.apply(this.#at++);
     while (this.#at > at) this.#track.apply(--this.#at);
   }
 
   get drawn(): Drawn {
-    return this.#track.drawn(this.isNewest);
+    return this.#track.drawn(this.isNewest && !this.#isAhead);
   }
 
-  lines(): Drawn {
+  lines(): Drawn | undefined {
     return this.#track.lines();
   }
 
@@ -167,6 +199,7 @@ export class Run {
   }
 
   free(): void {
+    this.#isFreed = true;
     this.#stepper.free();
     this.#track.free();
   }

@@ -69,10 +69,21 @@ export class Scene {
     await renderer.init();
     const scene = new Scene(renderer, palette);
     view.append(renderer.domElement);
+    renderer.domElement.role = 'img';
     renderer.domElement.setAttribute('aria-label', 'The mesh; drag to turn or move it, scroll to zoom');
     scene.setPalette(palette);
     scene.#observer.observe(view);
     return scene;
+  }
+
+  /** Whether it draws with WebGPU, on the device given. */
+  get isOnWebGpu(): boolean {
+    return this.#backend.isWebGPUBackend === true;
+  }
+
+  /** Whether it has looked at a mesh yet. */
+  get isLooking(): boolean {
+    return this.#controls !== undefined;
   }
 
   /** Takes the vertices of a mesh, 3 a vertex within the unit ball. */

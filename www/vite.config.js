@@ -1,9 +1,13 @@
 // Builds the page into target/www: static files that any server can serve.
 
+import { readFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
 import { defineConfig } from 'vite';
 
 const at = (path) => fileURLToPath(new URL(path, import.meta.url));
+
+// The policy of the page is that of its workers too, which only a header tells them.
+const [, policy] = readFileSync(at('index.html'), 'utf8').match(/content="(default-src [^"]*)"/);
 
 export default defineConfig({
   root: at('.'),
@@ -15,6 +19,7 @@ export default defineConfig({
     ],
   },
   worker: { format: 'es' },
+  preview: { headers: { 'Content-Security-Policy': policy } },
   build: {
     outDir: at('../target/www'),
     emptyOutDir: true,

@@ -1,0 +1,388 @@
+/** The page between its controls and its engines: opens meshes, begins runs, draws and measures what they do. */
+
+import { EdgeflipError } from 'edgeflip';
+import { FORMATS, type Angles, type FileMesh, type Mesh32 } from 'edgeflip/files';
+import { controls, element } from './controls.ts';
+import { beginRun, Cancelled, Office, openGpu, type Backend, type Gpu } from './engines.ts';
+import { palette } from './palette.ts';
+import { number, Panel, reasons } from './panel.ts';
+import { Player } from './player.ts';
+import type { Run, Summary } from './run.ts';
+import { Scene } from './scene.ts';
+import { unitPositions } from './unit.ts';
+
+/** Meshes of up to so many triangles are shown with their edges from the start. */
+const EDGES_SEEN = 50_000;
+/** Bins of the histogram of angles: 5° each. */
+const BINS = 36;
+/** Milliseconds without a change after which a state is measured. */
+const QUIET = 150;
+
+interface Opened {
+  mesh: Mesh32;
+  name: string;
+  /** What reading the file did to it. */
+  remark: string;
+  before: Angles;
+}
+
+/** What a run was begun with. */
+interface Settings {
+  backend: Backend;
+  beta: number;
+}
+
+export class Page {
+  readonly #panel = new Panel((at) => this.seek(at));
+  readonly #player = new Player(
+    (run) => this.#forward(run),
+    () => {
+      this.#showTransport();
+      void this.#rest();
+    },
+  );
+  #gpu: Gpu | string = 'it has not been looked for';
+  #scene: Scene | undefined;
+  #office = new Office();
+  #opened: Opened | undefined;
+  #run: Run | undefined;
+  #settings: Settings | undefined;
+  /** What opens the mesh that was asked for last. */
+  #reopen: (() => Promise<void>) | undefined;
+  /** What goes on and can be cancelled. */
+  #job: AbortController | undefined;
+  /** What the run said of itself when it last came to rest. */
+  #summary: Summary | undefined;
+  /** Count the states that are drawn and that come to rest: what has been overtaken gives way. */
+  #draws = 0;
+  #rests = 0;
+  /** Whose run has lost a GPU before. */
+  #lost: Opened | undefined;
+
+  async start(spec: string): Promise<void> {
+    this.#panel.setPalette(palette());
+    this.#panel.clear();
+    matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => this.#recolour());
+    await this.#attempt('Looking for a GPU…', () => this.#openGpu());
+    await this.openSample(spec);
+  }
+
+  openSample(spec: string): Promise<void> {
+    return this.#open(spec, (office) => office.ask((desk) => desk.generate(spec)));
+  }
+
+  openFile(file: File): Promise<void> {
+    return this.#open(file.name, async (office) => {
+      const bytes = new Uint8Array(await file.arrayBuffer());
+      return office.ask((desk) => desk.read(bytes, file.name));
+    });
+  }
+
+  /** Begins again with the same mesh, for another engine or β. */
+  async begin(): Promise<void> {
+    const opened = this.#opened;
+    if (opened) await this.#attempt('Preparing the mesh…', (signal) => this.#begin(opened, signal));
+  }
+
+  cancel(): void {
+    this.#job?.abort(new Cancelled());
+  }
+
+  async play(): Promise<void> {
+    if (this.#player.isPlaying) this.#player.pause();
+    else if (this.#run) await this.#player.play(this.#run, () => Number(controls.speed.value));
+  }
+
+  async step(): Promise<void> {
+    if (this.#run) await this.#player.step(this.#run);
+  }
+
+  seek(at: number): void {
+    if (this.#job || !this.#run) return;
+    this.#run.seek(Math.max(0, Math.min(at, this.#run.iterations.length)));
+    this.#player.pause();
+    void this.redraw();
+  }
+
+  seekBy(iterations: number): void {
+    if (this.#run) this.seek(this.#run.at + iterations);
+  }
+
+  async download(): Promise<void> {
+    const [run, opened] = [this.#run, this.#opened];
+    if (!run || !opened) return;
+    const extension = FORMATS.find((known) => opened.name.toLowerCase().endsWith(known)) ?? '.off';
+    const stem = opened.name.replace(/\.(off|obj)$/i, '').replaceAll(' ', '-');
+    const name = `${stem}-after-${run.at}${extension}`;
+    await this.#attempt('Writing the file…', async (signal) => {
+      const mesh = { ...opened.mesh, indices: await run.triangles() };
+      const bytes = await this.#office.ask((desk) => desk.write(mesh, name));
+      signal.throwIfAborted();
+      const link = document.createElement('a');
+      link.href = URL.createObjectURL(new Blob([bytes]));
+      link.download = name;
+      link.click();
+      setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
+    });
+  }
+
+  /** Draws the state that the run is in. */
+  async redraw(): Promise<void> {
+    const [run, opened, scene] = [this.#run, this.#opened, this.#scene];
+    if (!run || !opened) return;
+    const draw = ++this.#draws;
+    this.#panel.showIterations(run.iterations, run.at);
+    this.#panel.showFacts(opened.mesh, run, this.#summary, this.#settings?.beta, undefined);
+    this.#panel.showLegend(run.states, this.#summary);
+    this.#showTransport();
+    if (!this.#player.isPlaying) void this.#rest();
+    if (!scene) return;
+    const states = controls.wireframe.checked ? run.states : undefined;
+    const lines = controls.wireframe.checked && !states ? run.lines() : undefined;
+    scene.show(run.drawn, opened.mesh.indices.length, lines);
+    try {
+      const indices = states && (await run.triangles());
+      if (draw === this.#draws) scene.showEdges(indices, states);
+    } catch (error) {
+      if (draw === this.#draws) this.#showFailure(error);
+    }
+  }
+
+  showError(error: unknown): void {
+    const message = error instanceof Error ? error.message : String(error);
+    // Not β, whose capital looks like a B.
+    element('error-text').textContent = message.replace(/^[a-z]/, (letter) => letter.toUpperCase());
+    element('error').hidden = false;
+  }
+
+  #open(name: string, read: (office: Office) => Promise<Mesh32 | FileMesh>): Promise<void> {
+    this.#reopen = () => this.#open(name, read);
+    return this.#attempt(`Opening ${name}…`, async (signal) => {
+      if (this.#office.isBroken) this.#office = new Office();
+      const office = this.#office;
+      // Reading stops where its worker does; a new one is there for what comes next.
+      signal.addEventListener('abort', () => {
+        office.close();
+        if (this.#office === office) this.#office = new Office();
+      });
+      const mesh = await read(office);
+      if (mesh.indices.length === 0) throw new Error(`There are no triangles in ${name}.`);
+      const before = await office.ask((desk) => desk.angles(mesh, BINS));
+      await this.#begin({ mesh, name, remark: remarkOn(mesh), before }, signal);
+    });
+  }
+
+  /** Begins a run; the one before it stays if this fails. */
+  async #begin(opened: Opened, signal: AbortSignal): Promise<void> {
+    const settings = { backend: controls.backend.value as Backend, beta: controls.beta.valueAsNumber };
+    if (!(settings.beta >= 0 && settings.beta <= 180)) throw new Error('β is an angle from 0 to 180 degrees.');
+    const run = await beginRun(opened.mesh, settings.beta, settings.backend, this.#gpu, signal);
+    if (signal.aborted) {
+      run.free();
+      throw signal.reason;
+    }
+    const isNew = this.#opened !== opened;
+    this.#scene?.clear();
+    this.#run?.free();
+    this.#run = run;
+    this.#opened = opened;
+    this.#settings = settings;
+    this.#summary = undefined;
+    this.#scene?.setMesh(unitPositions(opened.mesh), opened.mesh.dimension);
+    if (isNew || !this.#scene?.isLooking) this.#scene?.lookAtAll();
+    if (isNew) controls.wireframe.checked = opened.mesh.indices.length <= 3 * EDGES_SEEN;
+    element('no-mesh').hidden = this.#scene !== undefined;
+    element('beta-label').hidden = opened.mesh.dimension === 2;
+    this.#panel.clear();
+    await this.redraw();
+    this.#player.pause();
+  }
+
+  /** Shows what goes on, with a way to cancel it; what was begun before is cancelled. */
+  async #attempt(text: string, work: (signal: AbortSignal) => Promise<void>): Promise<void> {
+    this.cancel();
+    const job = new AbortController();
+    this.#job = job;
+    job.signal.addEventListener('abort', () => this.#end(job));
+    element('error').hidden = true;
+    element('busy-text').textContent = text;
+    element('busy').hidden = false;
+    this.#showTransport();
+    try {
+      await work(job.signal);
+    } catch (error) {
+      if (!job.signal.aborted) this.showError(error);
+    } finally {
+      this.#end(job);
+    }
+  }
+
+  #end(job: AbortController): void {
+    if (this.#job !== job) return;
+    this.#job = undefined;
+    element('busy').hidden = true;
+    this.#showTransport();
+    // What was being measured may have been cancelled with it.
+    if (!this.#player.isPlaying) void this.#rest();
+  }
+
+  /** One iteration on, drawn. Returns whether there was one. */
+  async #forward(run: Run): Promise<boolean> {
+    try {
+      const went = await run.forward();
+      if (run === this.#run) await this.redraw();
+      return went && run === this.#run;
+    } catch (error) {
+      if (run === this.#run) this.#showFailure(error);
+      return false;
+    }
+  }
+
+  /** A lost device is told by the device itself, which also sees to what follows. */
+  #showFailure(error: unknown): void {
+    const isLost = error instanceof EdgeflipError && error.code === 'device-failed';
+    if (!isLost && !(error instanceof Cancelled) && !(error instanceof DOMException)) this.showError(error);
+  }
+
+  #showTransport(): void {
+    const run = this.#run;
+    const [at, newest] = [run?.at ?? 0, run?.iterations.length ?? 0];
+    const isIdle = run !== undefined && this.#job === undefined;
+    controls.play.textContent = this.#player.isPlaying ? 'Pause' : 'Play';
+    controls.play.disabled = !isIdle;
+    controls.step.disabled = !isIdle || run.isOver;
+    controls.reset.disabled = !isIdle || at === 0;
+    controls.slider.disabled = !isIdle || newest === 0;
+    controls.slider.max = `${newest}`;
+    controls.slider.value = `${at}`;
+    controls.download.disabled = !isIdle;
+    const position = run ? `${number.format(at)} / ${number.format(newest)}${run.hasEnded ? '' : '…'}` : '';
+    element('position').textContent = position;
+    element('status').textContent = run ? statusOf(run) : '';
+    const isFinal = run?.isOver && this.#summary?.iterations === newest;
+    const remains = isFinal && this.#summary ? left(reasons(this.#summary.remaining)) : '';
+    const onCpu = run?.fallback ? `On the CPU: ${run.fallback}.` : '';
+    const note = [remains, onCpu, this.#opened?.remark].filter(Boolean).join(' ');
+    element('note').hidden = note === '';
+    element('note').textContent = note;
+    element('caption').textContent = this.#opened?.name ?? '';
+    if (!this.#job) this.#showChoices();
+    const state = this.#job ? 'busy' : !run ? 'empty' : this.#player.isPlaying ? 'playing' : run.isOver ? 'done' : 'ready';
+    document.body.dataset['state'] = state;
+  }
+
+  /** What was chosen in vain gives way to what the run was begun with. */
+  #showChoices(): void {
+    const [opened, settings] = [this.#opened, this.#settings];
+    if (!opened || !settings) return;
+    // The empty value stands for a file.
+    const names = Array.from(controls.sample.options, ({ value }) => value);
+    controls.sample.value = names.find((name) => name === opened.name) ?? '';
+    controls.backend.value = settings.backend;
+    controls.beta.value = `${settings.beta}`;
+  }
+
+  /** Measures the run and the state that is shown, once nothing has changed for a while. */
+  async #rest(): Promise<void> {
+    const [run, opened] = [this.#run, this.#opened];
+    if (!run || !opened) return;
+    const rest = ++this.#rests;
+    const isOutdated = () => rest !== this.#rests || this.#player.isPlaying || run !== this.#run;
+    delete document.body.dataset['measured'];
+    await new Promise((resolve) => setTimeout(resolve, QUIET));
+    if (isOutdated()) return;
+    try {
+      if (this.#summary?.iterations !== run.iterations.length) {
+        const summary = await run.result();
+        if (run === this.#run) this.#summary = summary;
+      }
+      if (isOutdated()) return;
+      const indices = await run.triangles();
+      const fingerprint = await fingerprintOf(indices);
+      if (isOutdated()) return;
+      this.#panel.showFacts(opened.mesh, run, this.#summary, this.#settings?.beta, fingerprint);
+      this.#panel.showLegend(run.states, this.#summary);
+      this.#showTransport();
+      const angles = await this.#office.ask((desk) => desk.angles({ ...opened.mesh, indices }, BINS));
+      if (isOutdated()) return;
+      this.#panel.showAngles(opened.before, angles);
+      element('announcement').textContent = `${statusOf(run)}. ${element('note').textContent}`;
+      document.body.dataset['measured'] = `${run.at}`;
+    } catch (error) {
+      if (!isOutdated()) this.#showFailure(error);
+    }
+  }
+
+  async #openGpu(): Promise<void> {
+    this.#gpu = await openGpu();
+    const device = typeof this.#gpu === 'string' ? undefined : this.#gpu.device;
+    try {
+      this.#scene = await Scene.create(element('view'), device, palette());
+    } catch {
+      element('no-mesh').textContent = 'This browser can draw neither with WebGPU nor with WebGL2. The numbers are right all the same.';
+      element('no-mesh').hidden = false;
+    }
+    if (device && !this.#scene?.isOnWebGpu) this.#gpu = 'the page could not draw with WebGPU';
+    void device?.lost.then(({ message }) => this.#recover(message || 'no reason given'));
+  }
+
+  /** The device is gone, and with it what was drawn. The run goes the same way again, to the same bits. */
+  async #recover(reason: string): Promise<void> {
+    const [run, opened] = [this.#run, this.#opened];
+    const at = run?.at ?? 0;
+    let hasRecovered = false;
+    await this.#attempt('The GPU was lost; going on from the input…', async (signal) => {
+      this.#scene?.dispose();
+      this.#scene = undefined;
+      await this.#openGpu();
+      if (!run || !opened) return;
+      const isAgain = this.#lost === opened;
+      this.#lost = opened;
+      // What has lost the GPU twice would go on losing it.
+      if (run.backend === 'webgpu' && (isAgain || controls.backend.value === 'auto')) controls.backend.value = 'cpu';
+      await this.#begin(opened, signal);
+      while (this.#run && this.#run.at < at && !signal.aborted && (await this.#forward(this.#run)));
+      hasRecovered = true;
+    });
+    const lost = `The GPU was lost (${reason}).`;
+    if (hasRecovered) {
+      this.#player.pause();
+      this.showError(new Error(`${lost} The run went the same way again, to the same triangles.`));
+    } else if (!opened) {
+      await this.#reopen?.();
+    } else if (element('error').hidden) {
+      this.showError(new Error(`${lost} Choose an engine to go on.`));
+    }
+  }
+
+  #recolour(): void {
+    const colours = palette();
+    this.#scene?.setPalette(colours);
+    this.#panel.setPalette(colours);
+    void this.redraw();
+  }
+}
+
+function statusOf({ at, isOver, iterations }: Run): string {
+  if (at === 0) return isOver ? 'No edge of the input may flip' : 'The input';
+  const flips = iterations.slice(0, at).reduce((sum, iteration) => sum + iteration.flips, 0);
+  const so = `${number.format(flips)} flips in ${number.format(at)} ${at === 1 ? 'iteration' : 'iterations'}`;
+  return isOver ? `Done: ${so}` : so;
+}
+
+function remarkOn(mesh: Mesh32 | FileMesh): string {
+  if (!('polygons' in mesh)) return '';
+  const cut = mesh.polygons > 0 ? `${number.format(mesh.polygons)} faces were cut into triangles.` : '';
+  const dropped = mesh.dropped.length > 0 ? `Not kept: ${mesh.dropped.join(', ')}.` : '';
+  return `${cut} ${dropped}`.trim();
+}
+
+function left(what: string): string {
+  return what === 'none' ? 'Every edge is Delaunay.' : `Not Delaunay, and may not flip: ${what}.`;
+}
+
+/** The first 64 bits of the SHA-256 of the triangles, as 32-bit little-endian words. */
+async function fingerprintOf(indices: Uint32Array): Promise<string> {
+  const digest = await crypto.subtle.digest('SHA-256', indices as Uint32Array<ArrayBuffer>);
+  return Array.from(new Uint8Array(digest, 0, 8), (byte) => byte.toString(16).padStart(2, '0')).join('');
+}

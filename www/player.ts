@@ -1,0 +1,57 @@
+/** Plays a run: one loop at a time, which a pause, a step or the slider ends. */
+
+import type { Run } from './run.ts';
+
+export class Player {
+  /** Begins one iteration, draws what it did, and says whether there was one. */
+  readonly #forward: (run: Run) => Promise<boolean>;
+  /** Called when the run comes to rest. */
+  readonly #rest: () => void;
+  /** The loop that plays; another one has taken over where it is not the same. */
+  #loop: object | undefined;
+  #isStepping = false;
+
+  constructor(forward: (run: Run) => Promise<boolean>, rest: () => void) {
+    this.#forward = forward;
+    this.#rest = rest;
+  }
+
+  get isPlaying(): boolean {
+    return this.#loop !== undefined;
+  }
+
+  /** Plays to the end. `interval` gives the milliseconds from one iteration to the next. */
+  async play(run: Run, interval: () => number): Promise<void> {
+    const loop = {};
+    this.#loop = loop;
+    if (run.isOver) run.seek(0);
+    while (this.#loop === loop) {
+      const start = performance.now();
+      if (!(await this.#forward(run))) break;
+      await nextFrame();
+      await pause(interval() - (performance.now() - start));
+    }
+    if (this.#loop === loop) this.pause();
+  }
+
+  /** One iteration; while one is under way, nothing. */
+  async step(run: Run): Promise<void> {
+    this.#loop = undefined;
+    if (this.#isStepping) return;
+    this.#isStepping = true;
+    try {
+      await this.#forward(run);
+    } finally {
+      this.#isStepping = false;
+    }
+    if (!this.isPlaying) this.#rest();
+  }
+
+  pause(): void {
+    this.#loop = undefined;
+    this.#rest();
+  }
+}
+
+const pause = (ms: number) => new Promise((resolve) => setTimeout(resolve, Math.max(0, ms)));
+const nextFrame = () => new Promise(requestAnimationFrame);
