@@ -3,6 +3,7 @@
 import type { Angles } from 'edgeflip/files';
 import uPlot from 'uplot';
 import 'uplot/dist/uPlot.min.css';
+import { inMainMemory } from './main-memory.ts';
 import type { Palette } from './palette.ts';
 
 const HEIGHT = 170;
@@ -25,7 +26,7 @@ class Chart {
   setPalette(palette: Palette): void {
     this.#plot?.destroy();
     const size = { width: Math.max(this.#box.clientWidth, 100), height: HEIGHT };
-    this.#plot = new uPlot({ ...size, ...this.#make(palette) }, this.#data, this.#box);
+    this.#plot = inMainMemory(() => new uPlot({ ...size, ...this.#make(palette) }, this.#data, this.#box));
   }
 
   show(data: uPlot.AlignedData): void {
