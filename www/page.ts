@@ -89,8 +89,11 @@ export class Page {
   }
 
   async play(): Promise<void> {
-    if (this.#player.isPlaying) this.#player.pause();
-    else if (this.#run) await this.#player.play(this.#run, () => Number(controls.speed.value));
+    if (this.#player.isPlaying) return this.#player.pause();
+    if (!this.#run) return;
+    const playing = this.#player.play(this.#run, () => Number(controls.speed.value));
+    this.#showTransport();
+    await playing;
   }
 
   async step(): Promise<void> {
