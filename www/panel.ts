@@ -97,7 +97,9 @@ export class Panel {
       ...frozen('Non-manifold', summary.nonManifoldEdges),
       ...frozen('Inconsistent', summary.inconsistentEdges),
       Engine: run.backend === 'webgpu' ? 'WebGPU' : 'CPU, in a worker',
-      ...(summary.adapter ? { Adapter: summary.adapter, Dispatches: measured(number.format(summary.dispatches)) } : {}),
+      ...(run.backend === 'webgpu'
+        ? { Adapter: summary.adapter || 'the browser gives no name', Dispatches: measured(number.format(summary.dispatches)) }
+        : {}),
       Iterations: number.format(run.iterations.length),
       Flips: number.format(flips),
       'Not Delaunay': measured(reasons(summary.remaining)),
