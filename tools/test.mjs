@@ -22,6 +22,16 @@ const wasmCargo = ['bash', 'tools/wasm-cargo.sh'];
 
 const inChromium = ['wasm', 'worker'];
 
+// The page needs the package in dist/.
+const builtPage = [
+  ['node', 'node_modules/typescript/bin/tsc', '-p', 'www'],
+  ['node', 'node_modules/vite/bin/vite.js', 'build', '-c', 'www/vite.config.js'],
+];
+const pageTests = (...files) => [
+  ...['node', '--test', '--test-concurrency=1', '--test-reporter=tap'],
+  ...files.map((file) => `tests/page/${file}.test.mjs`),
+];
+
 /** @type {Level[]} */
 const levels = [
   {
@@ -87,6 +97,24 @@ const levels = [
     name: 'npm package in browsers',
     what: 'the packed package in fresh projects: plain pages in Chromium and Firefox, Vite, TypeScript, on the CPU and WebGPU',
     checks: [['node', '--test', '--test-reporter=tap', 'tests/package/browser.test.mjs']],
+    counts: true,
+  },
+  {
+    name: 'page in Chromium',
+    what: 'the demo page opens files, plays, scrubs and downloads on both engines, draws from the buffer that the flips write, and recovers',
+    checks: [...builtPage, pageTests('files', 'buffer', 'controls')],
+    counts: true,
+  },
+  {
+    name: 'page with a large mesh',
+    what: 'the demo page plays 720,000 triangles in Chromium as the native program does, without a long task',
+    checks: [...builtPage, pageTests('large')],
+    counts: true,
+  },
+  {
+    name: 'page in Firefox',
+    what: 'the demo page opens a file, plays and scrubs on both engines',
+    checks: [...builtPage, pageTests('firefox')],
     counts: true,
   },
 ];

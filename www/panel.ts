@@ -105,7 +105,9 @@ export class Panel {
       ...frozen('Inconsistent', summary.inconsistentEdges),
       ...(mesh.dimension === 3 ? { β: `${beta}°` } : {}),
       Engine: run.backend === 'webgpu' ? 'WebGPU' : 'CPU, in a worker',
-      ...(summary.adapter ? { Adapter: summary.adapter, Dispatches: measured(number.format(summary.dispatches)) } : {}),
+      ...(run.backend === 'webgpu'
+        ? { Adapter: summary.adapter || 'the browser gives no name', Dispatches: measured(number.format(summary.dispatches)) }
+        : {}),
       Iterations: number.format(run.iterations.length),
       Flips: number.format(flips),
       'Not Delaunay': run.isNewest ? measured(reasons(summary.remaining)) : reasons(notDelaunayAt(run)),

@@ -131,7 +131,7 @@ export class EdgeflipPage {
   }
 
   /** Waits until the page is so, and gives what it says then. */
-  async until(what, isSo, seconds = 60) {
+  async until(what, isSo, seconds = 120) {
     const end = performance.now() + 1000 * seconds;
     for (;;) {
       const seen = await this.look();
