@@ -20,7 +20,7 @@
  * | `device-failed` | begin again: the GPU was lost, or the `device` given is |
  * | `load-failed` | see that the package's `wasm/*.wasm` are served, or pass them to `init` and `initFiles` |
  * | `freed` | do not use a session after `free` |
- * | `internal` | report it: the module has crashed, and must be loaded anew |
+ * | `internal` | report it: the module has crashed, and is of no use until the page or the worker is loaded anew |
  */
 export type ErrorCode = (typeof CODES)[number];
 

@@ -14,7 +14,7 @@
 
 import initModule, * as wasm from './wasm/edgeflip_files.js';
 import { EdgeflipError, fromModule } from './error.js';
-import { type Mesh32, moduleMesh } from './mesh.js';
+import { checkDimension, type Mesh32, moduleMesh } from './mesh.js';
 import { loader } from './module.js';
 import type { Mesh } from './types.js';
 
@@ -64,10 +64,11 @@ export const initFiles = loader(initModule, () => new URL('./wasm/edgeflip_files
  *
  * @param name - Its name, such as `bunny.obj`: the extension gives the format.
  * @throws {@link EdgeflipError} `parse`, which names the line, or the vertex that has a height where 2 dimensions
- * were asked for; `unknown-format`, `too-large`.
+ * were asked for; `unknown-format`, `too-large`, `invalid-input`.
  */
 export async function readMesh(bytes: Uint8Array, name: string, options: ReadOptions = {}): Promise<FileMesh> {
   if (!(bytes instanceof Uint8Array)) throw new EdgeflipError('invalid-input', 'bytes are no Uint8Array');
+  if (options.dimension !== undefined) checkDimension(options.dimension);
   const file = text(name, 'name');
   return call(() => wasm.readMesh(bytes, file, options.dimension));
 }

@@ -17,10 +17,14 @@ export interface Mesh32 extends Mesh {
  * @throws {@link EdgeflipError} `invalid-input` or `not-float32`.
  */
 export function moduleMesh({ positions, indices, dimension }: Mesh): Mesh32 {
-  if (dimension !== 2 && dimension !== 3) {
-    throw new EdgeflipError('invalid-input', `dimension is ${String(dimension)}, not 2 or 3`);
-  }
+  checkDimension(dimension);
   return { positions: float32(positions, dimension), indices: uint32(indices), dimension };
+}
+
+/** @throws {@link EdgeflipError} `invalid-input`, for a program without types. */
+export function checkDimension(dimension: number): void {
+  if (dimension === 2 || dimension === 3) return;
+  throw new EdgeflipError('invalid-input', `dimension is ${String(dimension)}, not 2 or 3`);
 }
 
 /**

@@ -127,7 +127,8 @@ export class FlipSession implements AsyncIterable<Iteration>, Disposable {
   /**
    * The GPU's objects, to draw from without a copy; `undefined` on the CPU. `positions` has 2 or 3 f32 a vertex,
    * `indices` 3 u32 a triangle; their usage has STORAGE, VERTEX or INDEX, COPY_SRC and COPY_DST. Only read them, and
-   * only until `free`; `setPositions` keeps them. The device is the one of the options, else one for all sessions.
+   * only until `free`; `setPositions` keeps them. With `'auto'`, ask again after each call of the session: where the GPU
+   * fails or cannot take new positions, the CPU goes on and these are gone. The device is the one of the options, else one for all sessions.
    */
   gpu(): Promise<{ device: GPUDevice; positions: GPUBuffer; indices: GPUBuffer } | undefined> {
     return this.#call(async ({ device, positionBuffer, indexBuffer }) =>

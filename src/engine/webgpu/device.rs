@@ -2,9 +2,8 @@
 
 #[cfg(target_arch = "wasm32")]
 use super::browser;
-use super::faults::{Fault, Word, watch};
+use super::faults::{Fault, Word, refuse, unavailable, watch};
 use super::kernels::{self, Kernels, WORKGROUP_SIZE};
-use super::limits::refuse;
 use crate::Error;
 use futures_channel::oneshot;
 use std::sync::{Arc, Mutex};
@@ -48,10 +47,6 @@ type Failure = Arc<Mutex<Option<String>>>;
 
 fn report(failure: &Failure, message: String) {
     failure.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).get_or_insert(message);
-}
-
-pub(super) fn unavailable(message: String) -> Error {
-    Error::BackendUnavailable { backend: "gpu", message }
 }
 
 impl Device {

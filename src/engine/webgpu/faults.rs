@@ -1,6 +1,7 @@
 //! What a device has to say of our own calls, by error scopes. A page may share the device and its handler of
 //! uncaptured errors, so an error outside of our scopes is none of ours.
 
+use crate::Error;
 use std::fmt;
 use std::pin::Pin;
 
@@ -19,6 +20,16 @@ impl fmt::Display for Fault {
             Self::Other(message) => f.write_str(message),
         }
     }
+}
+
+/// There is no device, or none that is taken.
+pub(super) fn unavailable(message: String) -> Error {
+    Error::BackendUnavailable { backend: "gpu", message }
+}
+
+/// The device cannot take the mesh.
+pub(super) fn refuse<T>(message: String) -> Result<T, Error> {
+    Err(Error::BackendLimit { backend: "gpu", message })
 }
 
 /// The word of the device on calls, once it has given it: the fault that says most.

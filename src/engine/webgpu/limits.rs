@@ -1,15 +1,12 @@
 //! What the device cannot take: a mesh too large for its buffers, or coordinates that it cannot decide exactly.
 
 use super::device::Device;
+use super::faults::refuse;
 use crate::Error;
 use crate::mesh::Mesh;
 
 /// The coordinates of a mesh must be integers of so many bits times a power of two; as in `exact.wgsl`.
 pub(super) const SPAN: u32 = 84;
-
-pub(super) fn refuse<T>(message: String) -> Result<T, Error> {
-    Err(Error::BackendLimit { backend: "gpu", message })
-}
 
 /// Refuses a mesh that the device cannot hold, or whose coordinates it cannot decide exactly.
 pub(super) fn refuse_beyond_limits(gpu: &Device, mesh: &Mesh) -> Result<(), Error> {

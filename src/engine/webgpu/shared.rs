@@ -2,7 +2,8 @@
 
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 use super::browser::GpuDevice;
-use super::device::{Device, unavailable};
+use super::device::Device;
+use super::faults::unavailable;
 use crate::Error;
 use std::sync::Mutex;
 
