@@ -48,10 +48,12 @@ const states = {
     await page.waitForSelector('dd[data-fact=Adapter]');
     await page.click('#step');
     await page.waitForFunction(() => document.body.dataset.measured === '1');
+  },
+  loading: async (page) => {
     await page.selectOption('#backend', 'auto');
     await measured(page);
+    await page.selectOption('#sample', 'uvsphere 600');
   },
-  loading: (page) => page.selectOption('#sample', 'uvsphere 600'),
   large: async (page) => {
     await page.waitForFunction(() => document.querySelector('#caption').textContent === 'uvsphere 600');
     await measured(page);

@@ -12,7 +12,7 @@ import { fingerprintOf, folder, openEdgeflip, tidyUp } from './page.mjs';
 import { tasksOf } from './tasks.mjs';
 
 const SPEC = 'uvsphere 600';
-/** Milliseconds that a task of the page's thread may take, besides drawing. */
+/** Milliseconds that the page's thread may be busy with a task, besides drawing. */
 const LONGEST = 200;
 
 let browser;
@@ -35,9 +35,16 @@ function cargo(...args) {
   assert.equal(status, 0, `cargo ${args.join(' ')}: ${error ?? ''}${stderr}`);
 }
 
-/** In the page: keeps what the browser calls a long task, of 50 ms at least. */
+/** In the page: keeps what the browser calls a long task, of 50 ms at least, and how late a timer of 5 ms ever was. */
 function watchLongTasks() {
   window.longTasks = [];
+  window.stillFor = 0;
+  let last = performance.now();
+  setInterval(() => {
+    const now = performance.now();
+    window.stillFor = Math.max(window.stillFor, now - last);
+    last = now;
+  }, 5);
   new PerformanceObserver((list) => {
     for (const { duration } of list.getEntries()) window.longTasks.push(duration);
   }).observe({ type: 'longtask', buffered: true });
@@ -51,6 +58,7 @@ for (const backend of ['cpu', 'webgpu']) {
     await page.chooseEngine(backend);
     await page.choose('sample', SPEC);
     const opened = await page.rest(120);
+    await page.page.evaluate(() => (window.stillFor = 0));
     assert.deepEqual([opened.facts.Vertices, opened.facts.Triangles], ['360,002', '720,000']);
     assert.equal(opened.facts.Fingerprint, native.input);
     const start = performance.now();
@@ -60,24 +68,28 @@ for (const backend of ['cpu', 'webgpu']) {
     assert.equal(end.facts.Fingerprint, native.result);
     assert.equal((await page.scrub('Home')).facts.Fingerprint, native.input);
     assert.equal((await page.scrub('End')).facts.Fingerprint, native.result);
-    const seen = await page.page.evaluate(() => window.longTasks);
+    const { seen, stillFor } = await page.page.evaluate(() => ({ seen: window.longTasks, stillFor: window.stillFor }));
 
     const tasks = await trace.end();
     assert.ok(tasks.length > 100, `${tasks.length} tasks`);
     const longest = (list) => list.reduce((most, task) => (task.ms > most.ms ? task : most), { ms: 0, busy: 0, within: [] });
+    const besidesDrawing = tasks.filter(({ draws, isOfPage }) => isOfPage && !draws);
     const [drawing, other, foreign] = [
       longest(tasks.filter(({ draws }) => draws)),
-      longest(tasks.filter(({ draws, isOfPage }) => isOfPage && !draws)),
+      longest(besidesDrawing),
       longest(tasks.filter(({ isOfPage }) => !isOfPage)),
     ];
     const say = ({ ms, busy, within }) => `${ms.toFixed(0)} ms, busy for ${busy.toFixed(0)} (${within.join('; ')})`;
     t.diagnostic(`${end.at} iterations in ${seconds.toFixed(1)} s`);
+    t.diagnostic(`no timer for at most ${stillFor.toFixed(0)} ms while it played and was scrubbed, drawing included`);
     t.diagnostic(`longest task besides drawing: ${say(other)}`);
     t.diagnostic(`longest task with drawing: ${say(drawing)}`);
     t.diagnostic(`longest task of the browser's own: ${say(foreign)}`);
     t.diagnostic(`long tasks of the browser's own count: ${seen.length}, at most ${Math.max(0, ...seen).toFixed(0)} ms`);
     t.diagnostic(`long tasks while the page opened: ${whileOpening.length}, at most ${Math.max(0, ...whileOpening).toFixed(0)} ms`);
-    assert.ok(other.ms <= LONGEST, `a task takes ${say(other)}`);
+    // Not how long it took: that is a matter of what else this machine has to do.
+    const busiest = besidesDrawing.reduce((most, task) => (task.busy > most.busy ? task : most));
+    assert.ok(busiest.busy <= LONGEST, `a task takes ${say(busiest)}`);
     // The trace has seen what the page itself has.
     assert.ok(Math.max(0, ...seen) <= longest(tasks).ms + 5, 'a long task is not in the trace');
     await page.close();
