@@ -5,7 +5,7 @@ import { FlipSession } from 'edgeflip';
 import { angles, generate, readMesh, writeMesh, type Angles, type FileMesh, type Mesh32 } from 'edgeflip/files';
 import { naming } from './crash.ts';
 import { changeOf, type Change } from './change.ts';
-import { statesOf, type Step, type Summary } from './run.ts';
+import { statesOf, summaryOf, type Step, type Summary } from './run.ts';
 
 class Desk {
   #session: FlipSession | undefined;
@@ -47,9 +47,8 @@ class Desk {
     return transfer({ iteration, change, states }, [change.at.buffer, change.xor.buffer]);
   }
 
-  async result(): Promise<Summary> {
-    const { indices, ...summary } = await this.#running().result();
-    return summary;
+  result(): Promise<Summary> {
+    return summaryOf(this.#running());
   }
 
   #running(): FlipSession {

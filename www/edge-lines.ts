@@ -4,7 +4,6 @@ import { EDGE_STATES } from 'edgeflip';
 import { LineSegmentsGeometry } from 'three/addons/lines/LineSegmentsGeometry.js';
 import { LineSegments2 } from 'three/addons/lines/webgpu/LineSegments2.js';
 import { Group, Line2NodeMaterial } from 'three/webgpu';
-import { isOfOneTriangle } from './run.ts';
 import type { Palette } from './palette.ts';
 
 /** Widths in pixels of edges about which nothing is to be said, of the boundary, and of all others. */
@@ -55,4 +54,10 @@ export class EdgeLines {
       this.group.remove(lines);
     }
   }
+}
+
+/** Whether a half-edge in this state has no twin. */
+function isOfOneTriangle(state: number): boolean {
+  const name = EDGE_STATES[state];
+  return name === 'boundary' || name === 'non-manifold' || name === 'inconsistent';
 }

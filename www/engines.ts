@@ -7,7 +7,7 @@ import { ArrayTrack } from './array-track.ts';
 import { CRASHED } from './crash.ts';
 import type { Desk } from './desk.ts';
 import { GpuTrack } from './gpu-track.ts';
-import { Run, statesOf } from './run.ts';
+import { Run, statesOf, summaryOf } from './run.ts';
 
 /** A GPU that both the flips and the drawing use. */
 export interface Gpu {
@@ -123,10 +123,7 @@ async function onGpu(mesh: Mesh32, maxNormalAngle: number, device: GPUDevice): P
         const iteration = await session.step();
         return iteration && { iteration, states: await statesOf(session, length) };
       },
-      async result() {
-        const { indices, ...summary } = await session.result();
-        return summary;
-      },
+      result: () => summaryOf(session),
       free: () => session.free(),
     };
     const states = await statesOf(session, length);

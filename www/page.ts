@@ -151,7 +151,7 @@ export class Page {
     }
   }
 
-  showError(error: unknown): void {
+  #showError(error: unknown): void {
     const message = error instanceof Error ? error.message : String(error);
     // Not β, whose capital looks like a B.
     element('error-text').textContent = message.replace(/^[a-z]/, (letter) => letter.toUpperCase());
@@ -214,7 +214,7 @@ export class Page {
     try {
       await work(job.signal);
     } catch (error) {
-      if (!job.signal.aborted) this.showError(error);
+      if (!job.signal.aborted) this.#showError(error);
     } finally {
       this.#end(job);
     }
@@ -244,7 +244,7 @@ export class Page {
   /** A lost device is told by the device itself, which also sees to what follows. */
   #showFailure(error: unknown): void {
     const isLost = error instanceof EdgeflipError && error.code === 'device-failed';
-    if (!isLost && !(error instanceof Cancelled) && !(error instanceof DOMException)) this.showError(error);
+    if (!isLost && !(error instanceof Cancelled) && !(error instanceof DOMException)) this.#showError(error);
   }
 
   #showTransport(): void {
@@ -350,11 +350,11 @@ export class Page {
     const lost = `The GPU was lost (${reason}).`;
     if (hasRecovered) {
       this.#player.pause();
-      this.showError(new Error(`${lost} The run went the same way again, to the same triangles.`));
+      this.#showError(new Error(`${lost} The run went the same way again, to the same triangles.`));
     } else if (!opened) {
       await this.#reopen?.();
     } else if (element('error').hidden) {
-      this.showError(new Error(`${lost} Choose an engine to go on.`));
+      this.#showError(new Error(`${lost} Choose an engine to go on.`));
     }
   }
 

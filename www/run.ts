@@ -51,6 +51,12 @@ export async function statesOf(session: FlipSession, indices: number): Promise<U
   return indices <= 3 * COLOURED ? session.edgeStates() : undefined;
 }
 
+/** The result so far, without its triangles. */
+export async function summaryOf(session: FlipSession): Promise<Summary> {
+  const { indices, ...summary } = await session.result();
+  return summary;
+}
+
 /**
  * How many edges are in each state. An edge has two half-edges but on the boundary, where it has one; how many have
  * three or more is known from elsewhere.
@@ -63,12 +69,6 @@ export function countStates(states: Uint8Array, nonManifold: number | undefined)
     if (name === 'non-manifold') return count > 0 ? (nonManifold ?? 0) : 0;
     return name === 'boundary' ? count : count / 2;
   });
-}
-
-/** Whether a half-edge in this state has no twin. */
-export function isOfOneTriangle(state: number): boolean {
-  const name = EDGE_STATES[state];
-  return name === 'boundary' || name === 'non-manifold' || name === 'inconsistent';
 }
 
 /** A mesh on an engine, with all that it went through. */

@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { startChromium } from '../browsers.mjs';
-import { assertSameMesh, expected, meshFile, openEdgeflip, tidyUp } from './page.mjs';
+import { assertPlays, assertSameMesh, expected, meshFile, openEdgeflip, tidyUp } from './page.mjs';
 
 let browser;
 before(async () => (browser = await startChromium()));
@@ -22,7 +22,8 @@ for (const { how, name, spec, load } of sources) {
   for (const { backend, engine } of engines) {
     test(`a file that is ${how} plays on ${backend}, goes back to its own triangles and forward again, bit for bit as in Node`, async () => {
       const path = await meshFile(spec, name);
-      const { mesh, indices, rows, facts, fingerprints } = await expected(path);
+      const want = await expected(path);
+      const { mesh, indices, rows, facts, fingerprints } = want;
       assert.ok(rows.length >= 3, 'the mesh has something to show');
       const page = await openEdgeflip(browser);
       const opened = await load(page, path, name);
@@ -32,23 +33,7 @@ for (const { how, name, spec, load } of sources) {
       const input = await page.look();
       assert.equal(input.facts.Fingerprint, fingerprints[0]);
       assert.equal(input.facts.Engine, engine);
-      const inputPicture = await page.picture();
-      assert.ok(inputPicture.colours > 3, `${inputPicture.colours} colours of the input`);
-
-      const end = await page.playToEnd();
-      assert.deepEqual(end.rows.map((row) => row.slice(0, 4)), rows);
-      assert.equal(end.at, `${rows.length}`);
-      for (const [fact, value] of Object.entries(facts)) assert.equal(end.facts[fact], value, fact);
-      assert.equal(end.facts.Engine, engine);
-      if (backend === 'webgpu') {
-        assert.match(end.facts.Adapter, /\S/);
-        assert.ok(Number(end.facts.Dispatches.replaceAll(',', '')) >= 3 * rows.length, `${end.facts.Dispatches} dispatches`);
-      } else {
-        assert.deepEqual([end.facts.Adapter, end.facts.Dispatches], [undefined, undefined]);
-      }
-      const endPicture = await page.picture();
-      assert.ok(endPicture.colours > 3, `${endPicture.colours} colours of the result`);
-      assert.ok(endPicture.differsFrom(inputPicture) > 0.01, 'the result looks like the input');
+      const inputPicture = await assertPlays(page, want, engine);
       assertSameMesh(await page.download(), { ...mesh, indices }, 'of the downloaded result');
 
       const back = await page.scrub('Home');
@@ -59,7 +44,7 @@ for (const { how, name, spec, load } of sources) {
       assert.equal((await page.picture()).differsFrom(inputPicture), 0, 'the input looks as before');
 
       const again = await page.scrub('End');
-      assert.deepEqual([again.at, again.facts.Fingerprint], [end.at, facts.Fingerprint]);
+      assert.deepEqual([again.at, again.facts.Fingerprint], [`${rows.length}`, facts.Fingerprint]);
       await page.close();
     });
   }

@@ -209,6 +209,35 @@ export class EdgeflipPage {
   }
 }
 
+/**
+ * Plays to the end and asserts that the page shows what the package finds in Node, names a GPU where there is one,
+ * and draws something else than before.
+ *
+ * @param {EdgeflipPage} page - At the input.
+ * @param want - What `expected` gives for its mesh.
+ * @param {string} engine - As the page calls it.
+ * @returns The picture of the input.
+ */
+export async function assertPlays(page, { rows, facts }, engine) {
+  const inputPicture = await page.picture();
+  assert.ok(inputPicture.colours > 3, `${inputPicture.colours} colours of the input`);
+  const end = await page.playToEnd();
+  assert.deepEqual(end.rows.map((row) => row.slice(0, 4)), rows);
+  assert.equal(end.at, `${rows.length}`);
+  for (const [fact, value] of Object.entries(facts)) assert.equal(end.facts[fact], value, fact);
+  assert.equal(end.facts.Engine, engine);
+  if (engine === 'WebGPU') {
+    assert.match(end.facts.Adapter, /\S/);
+    assert.ok(Number(end.facts.Dispatches.replaceAll(',', '')) >= 3 * rows.length, `${end.facts.Dispatches} dispatches`);
+  } else {
+    assert.deepEqual([end.facts.Adapter, end.facts.Dispatches], [undefined, undefined]);
+  }
+  const endPicture = await page.picture();
+  assert.ok(endPicture.colours > 3, `${endPicture.colours} colours of the result`);
+  assert.ok(endPicture.differsFrom(inputPicture) > 0.01, 'the result looks like the input');
+  return inputPicture;
+}
+
 /** That two meshes are the same, bit for bit. */
 export function assertSameMesh(actual, { positions, indices }, what) {
   const bits = (floats) => new Uint32Array(floats.buffer, floats.byteOffset, floats.length);
