@@ -1,198 +1,215 @@
-// Exact integers. Four points are integers times one power of two (the grid of the quad); a difference of
-// coordinates is a vec4u, 96 bits of magnitude and a sign; what is computed from differences is an Int.
-// Drivers inline every call, so the callers loop over tables rather than call `multiply` from many places.
+// Exact integers as digits: the sum of digit i times 2^(13·i), the lowest first. Products of such numbers are summed
+// column by column from the lowest digit on, which needs neither an array with a computed index, which old drivers
+// get wrong, nor a carry inside of a column.
+//
+// Digits that are computed here are balanced, from -4096 to 4095: a number is zero where all of them are, its sign
+// is that of its highest one that is not zero, and n digits hold every number up to 4095/8192·2^(13·n). With c digits
+// in use in each coordinate's difference, 2c + 1 hold a product of three pairs of differences (below 3·2^(26·c)),
+// 4c + 1 a sum of two products of such (below 18·2^(52·c)).
 
-// Bits that a coordinate may take on the grid of its mesh: what the engine accepts at upload.
-const SPAN: u32 = 84u;
-// 928 bits: degree 8 of 85-bit differences is below 2^690 with its sums, and the β test multiplies by at most
-// 2^212.
-const LIMBS: u32 = 29u;
+const DIGIT_BITS: u32 = 13u;
+const HALF_DIGIT: i32 = 4096;
+const DIGIT_MASK: i32 = 8191;
 
-struct Int {
-    negative: bool,
-    len: u32,
-    limbs: array<u32, LIMBS>,
+// 8 digits: a difference of coordinates (7 digits, from -8191 to 8191), and the factors of cos β.
+alias Small = array<vec4i, 2>;
+// 16 digits: what is of degree 2.
+alias Medium = array<vec4i, 4>;
+// 36 digits: of degree 4, below 2^346, and times a factor of cos β, up to 2^106.
+alias Large = array<vec4i, 9>;
+
+fn digits_of(x: vec4u) -> Small {
+    let low = vec4u(x.x, x.x >> 13u, (x.x >> 26u) | (x.y << 6u), x.y >> 7u) & vec4u(8191u);
+    let high = vec4u((x.y >> 20u) | (x.z << 12u), x.z >> 1u, x.z >> 14u, x.z >> 27u) & vec4u(8191u);
+    let sign = 1 - 2 * i32(x.w);
+    return Small(sign * vec4i(low), sign * vec4i(high));
 }
 
-// Exponent of the lowest set bit of an f32, 1000 for zero.
-fn unit_exponent(bits: u32) -> i32 {
-    let field = (bits >> 23u) & 0xffu;
-    let fraction = bits & 0x7fffffu;
-    let magnitude = select(fraction | 0x800000u, fraction, field == 0u);
-    return select(i32(max(field, 1u)) - 150 + i32(countTrailingZeros(magnitude)), 1000, magnitude == 0u);
+// Digits in use of the widest of numbers that were joined by a bitwise or.
+fn digits_in_use(x: vec4u) -> u32 {
+    let bits = select(select(32u - countLeadingZeros(x.x), 64u - countLeadingZeros(x.y), x.y != 0u), 96u - countLeadingZeros(x.z), x.z != 0u);
+    return (bits + DIGIT_BITS - 1u) / DIGIT_BITS;
 }
 
-// The f32 in units of 2^unit, as magnitude and sign.
-fn on_grid(bits: u32, unit: i32) -> vec4u {
-    let field = (bits >> 23u) & 0xffu;
-    let fraction = bits & 0x7fffffu;
-    let magnitude = select(fraction | 0x800000u, fraction, field == 0u);
-    if magnitude == 0u {
-        return vec4u();
-    }
-    let exponent = i32(max(field, 1u)) - 150 - unit;
-    if exponent < 0 {
-        return vec4u(magnitude >> u32(-exponent), 0u, 0u, bits >> 31u);
-    }
-    let low = magnitude << (u32(exponent) % 32u);
-    let high = (magnitude >> 1u) >> (31u - u32(exponent) % 32u);
-    switch u32(exponent) / 32u {
-        case 0u: { return vec4u(low, high, 0u, bits >> 31u); }
-        case 1u: { return vec4u(0u, low, high, bits >> 31u); }
-        // Below 84 bits nothing is left for a fourth word.
-        default: { return vec4u(0u, 0u, low, bits >> 31u); }
-    }
+// The balanced digit of a column; what is left of the column goes to the next one.
+fn digit_of(column: i32) -> i32 {
+    return ((column + HALF_DIGIT) & DIGIT_MASK) - HALF_DIGIT;
 }
 
-fn magnitude_is_less(x: vec4u, y: vec4u) -> bool {
-    if x.z != y.z {
-        return x.z < y.z;
-    }
-    if x.y != y.y {
-        return x.y < y.y;
-    }
-    return x.x < y.x;
+// The sign of the highest digit that is not zero, or `below` if all are.
+fn highest_sign(digits: vec4i, below: i32) -> i32 {
+    let signs = sign(digits);
+    return select(select(select(select(below, signs.x, signs.x != 0), signs.y, signs.y != 0), signs.z, signs.z != 0), signs.w, signs.w != 0);
 }
 
-// x - y of numbers on one grid.
-fn difference(x: vec4u, y: vec4u) -> vec4u {
-    if x.w != y.w {
-        let low = x.x + y.x;
-        let carry_low = select(0u, 1u, low < x.x);
-        let sum = x.y + y.y;
-        let middle = sum + carry_low;
-        let carry = select(0u, 1u, sum < x.y) + select(0u, 1u, middle < sum);
-        return vec4u(low, middle, x.z + y.z + carry, x.w);
-    }
-    let is_less = magnitude_is_less(x, y);
-    let larger = select(x, y, is_less);
-    let smaller = select(y, x, is_less);
-    let borrow_low = select(0u, 1u, larger.x < smaller.x);
-    let rest = larger.y - smaller.y;
-    let borrow = select(0u, 1u, larger.y < smaller.y) + select(0u, 1u, rest < borrow_low);
-    return vec4u(larger.x - smaller.x, rest - borrow_low, larger.z - smaller.z - borrow, select(x.w, 1u - x.w, is_less));
+fn medium_sign(x: Medium) -> i32 {
+    return highest_sign(x[3], highest_sign(x[2], highest_sign(x[1], highest_sign(x[0], 0))));
 }
 
-// The 64-bit product of two words: low, high.
-fn multiply_words(x: u32, y: u32) -> vec2u {
-    let x_low = x & 0xffffu;
-    let x_high = x >> 16u;
-    let y_low = y & 0xffffu;
-    let y_high = y >> 16u;
-    let low = x_low * y_low;
-    let first = x_high * y_low + (low >> 16u);
-    let second = x_low * y_high + (first & 0xffffu);
-    return vec2u((second << 16u) | (low & 0xffffu), x_high * y_high + (first >> 16u) + (second >> 16u));
+fn large_sign(x: Large) -> i32 {
+    let low = highest_sign(x[3], highest_sign(x[2], highest_sign(x[1], highest_sign(x[0], 0))));
+    return highest_sign(x[8], highest_sign(x[7], highest_sign(x[6], highest_sign(x[5], highest_sign(x[4], low)))));
 }
 
-fn widen(x: vec4u) -> Int {
-    var result = Int();
-    result.negative = x.w == 1u;
-    result.len = select(select(select(0u, 1u, x.x != 0u), 2u, x.y != 0u), 3u, x.z != 0u);
-    result.limbs[0] = x.x;
-    result.limbs[1] = x.y;
-    result.limbs[2] = x.z;
-    return result;
+fn negated_small(x: Small) -> Small {
+    return Small(-x[0], -x[1]);
 }
 
-fn int_sign(x: ptr<function, Int>) -> i32 {
-    return select(select(1, -1, (*x).negative), 0, (*x).len == 0u);
+fn negated_medium(x: Medium) -> Medium {
+    return Medium(-x[0], -x[1], -x[2], -x[3]);
 }
 
-// -1, 0 or 1 as |x| is below, equal to or above |y|.
-fn compare_magnitude(x: ptr<function, Int>, y: ptr<function, Int>) -> i32 {
-    if (*x).len != (*y).len {
-        return select(1, -1, (*x).len < (*y).len);
-    }
-    for (var i = (*x).len; i > 0u; i--) {
-        let u = (*x).limbs[i - 1u];
-        let v = (*y).limbs[i - 1u];
-        if u != v {
-            return select(1, -1, u < v);
+fn negated_large(x: Large) -> Large {
+    return Large(-x[0], -x[1], -x[2], -x[3], -x[4], -x[5], -x[6], -x[7], -x[8]);
+}
+
+// The digits moved down by one, with a new highest one.
+fn moved_down_small(x: Small, digit: i32) -> Small {
+    return Small(vec4i(x[0].yzw, x[1].x), vec4i(x[1].yzw, digit));
+}
+
+fn moved_down_medium(x: Medium, digit: i32) -> Medium {
+    return Medium(vec4i(x[0].yzw, x[1].x), vec4i(x[1].yzw, x[2].x), vec4i(x[2].yzw, x[3].x), vec4i(x[3].yzw, digit));
+}
+
+fn moved_down_large(x: Large, digit: i32) -> Large {
+    return Large(
+        vec4i(x[0].yzw, x[1].x),
+        vec4i(x[1].yzw, x[2].x),
+        vec4i(x[2].yzw, x[3].x),
+        vec4i(x[3].yzw, x[4].x),
+        vec4i(x[4].yzw, x[5].x),
+        vec4i(x[5].yzw, x[6].x),
+        vec4i(x[6].yzw, x[7].x),
+        vec4i(x[7].yzw, x[8].x),
+        vec4i(x[8].yzw, digit),
+    );
+}
+
+// The digits moved up by one, with a new lowest one.
+fn moved_up_small(x: Small, digit: i32) -> Small {
+    return Small(vec4i(digit, x[0].xyz), vec4i(x[0].w, x[1].xyz));
+}
+
+fn moved_up_medium(x: Medium, digit: i32) -> Medium {
+    return Medium(vec4i(digit, x[0].xyz), vec4i(x[0].w, x[1].xyz), vec4i(x[1].w, x[2].xyz), vec4i(x[2].w, x[3].xyz));
+}
+
+fn moved_up_large(x: Large, digit: i32) -> Large {
+    return Large(
+        vec4i(digit, x[0].xyz),
+        vec4i(x[0].w, x[1].xyz),
+        vec4i(x[1].w, x[2].xyz),
+        vec4i(x[2].w, x[3].xyz),
+        vec4i(x[3].w, x[4].xyz),
+        vec4i(x[4].w, x[5].xyz),
+        vec4i(x[5].w, x[6].xyz),
+        vec4i(x[6].w, x[7].xyz),
+        vec4i(x[7].w, x[8].xyz),
+    );
+}
+
+// x·u, digit by digit with equal indices.
+fn column_small(x: Small, u: Small) -> i32 {
+    return dot(x[0], u[0]) + dot(x[1], u[1]);
+}
+
+fn column_medium(x: Medium, u: Medium) -> i32 {
+    return dot(x[0], u[0]) + dot(x[1], u[1]) + dot(x[2], u[2]) + dot(x[3], u[3]);
+}
+
+fn column_large(x: Large, u: Large) -> i32 {
+    return dot(x[0], u[0]) + dot(x[1], u[1]) + dot(x[2], u[2]) + dot(x[3], u[3]) + dot(x[4], u[4])
+        + dot(x[5], u[5]) + dot(x[6], u[6]) + dot(x[7], u[7]) + dot(x[8], u[8]);
+}
+
+// x·u + y·v + z·w of differences with `count` digits in use. A column is below 21·2^26.
+fn sum_of_products(x: Small, u: Small, y: Small, v: Small, z: Small, w: Small, count: u32) -> Medium {
+    var result = Medium();
+    var left_u = u;
+    var left_v = v;
+    var left_w = w;
+    // Each the digits so far, the last one first: digit i of x meets digit k - i of u in column k.
+    var turned_u = Small();
+    var turned_v = Small();
+    var turned_w = Small();
+    var carry = 0;
+    for (var column = 0u; column < 16u; column++) {
+        var digit = 0;
+        if column <= 2u * count {
+            turned_u = moved_up_small(turned_u, left_u[0].x);
+            turned_v = moved_up_small(turned_v, left_v[0].x);
+            turned_w = moved_up_small(turned_w, left_w[0].x);
+            left_u = moved_down_small(left_u, 0);
+            left_v = moved_down_small(left_v, 0);
+            left_w = moved_down_small(left_w, 0);
+            carry += column_small(x, turned_u) + column_small(y, turned_v) + column_small(z, turned_w);
+            digit = digit_of(carry);
+            carry = (carry - digit) >> DIGIT_BITS;
         }
-    }
-    return 0;
-}
-
-fn multiply(x: ptr<function, Int>, y: ptr<function, Int>) -> Int {
-    var result = Int();
-    result.negative = (*x).negative != (*y).negative;
-    if (*x).len == 0u || (*y).len == 0u {
-        return result;
-    }
-    for (var i = 0u; i < (*x).len; i++) {
-        var carry = 0u;
-        for (var j = 0u; j < (*y).len; j++) {
-            // Below 2^64: (2^32 - 1)^2 + 2(2^32 - 1).
-            let product = multiply_words((*x).limbs[i], (*y).limbs[j]);
-            let first = product.x + result.limbs[i + j];
-            let second = first + carry;
-            carry = product.y + select(0u, 1u, first < product.x) + select(0u, 1u, second < first);
-            result.limbs[i + j] = second;
-        }
-        result.limbs[i + (*y).len] = carry;
-    }
-    result.len = (*x).len + (*y).len;
-    if result.limbs[result.len - 1u] == 0u {
-        result.len--;
-    }
-    return result;
-}
-
-// x + y, or x - y.
-fn add(x: ptr<function, Int>, y: ptr<function, Int>, subtract: bool) -> Int {
-    var result = Int();
-    let y_negative = (*y).negative != subtract;
-    if (*x).negative == y_negative {
-        result.negative = y_negative;
-        result.len = max((*x).len, (*y).len);
-        var carry = 0u;
-        for (var i = 0u; i < result.len; i++) {
-            let first = (*x).limbs[i] + (*y).limbs[i];
-            let second = first + carry;
-            carry = select(0u, 1u, first < (*x).limbs[i]) + select(0u, 1u, second < first);
-            result.limbs[i] = second;
-        }
-        if carry == 1u {
-            result.limbs[result.len] = 1u;
-            result.len++;
-        }
-        return result;
-    }
-    let is_less = compare_magnitude(x, y) < 0;
-    result.negative = select((*x).negative, y_negative, is_less);
-    result.len = max((*x).len, (*y).len);
-    var borrow = 0u;
-    for (var i = 0u; i < result.len; i++) {
-        let larger = select((*x).limbs[i], (*y).limbs[i], is_less);
-        let smaller = select((*y).limbs[i], (*x).limbs[i], is_less);
-        let first = larger - smaller;
-        result.limbs[i] = first - borrow;
-        borrow = select(0u, 1u, larger < smaller) + select(0u, 1u, first < borrow);
-    }
-    while result.len > 0u && result.limbs[result.len - 1u] == 0u {
-        result.len--;
+        result = moved_down_medium(result, digit);
     }
     return result;
 }
 
-fn product(x: vec4u, y: vec4u) -> Int {
-    var u = widen(x);
-    var v = widen(y);
-    return multiply(&u, &v);
+// x·u + y·v of what differences with `count` digits give. A column is below 32·2^24.
+fn sum_of_medium_products(x: Medium, u: Medium, y: Medium, v: Medium, count: u32) -> Large {
+    var result = Large();
+    var left_u = u;
+    var left_v = v;
+    var turned_u = Medium();
+    var turned_v = Medium();
+    var carry = 0;
+    for (var column = 0u; column < 36u; column++) {
+        var digit = 0;
+        if column <= 4u * count {
+            turned_u = moved_up_medium(turned_u, left_u[0].x);
+            turned_v = moved_up_medium(turned_v, left_v[0].x);
+            left_u = moved_down_medium(left_u, 0);
+            left_v = moved_down_medium(left_v, 0);
+            carry += column_medium(x, turned_u) + column_medium(y, turned_v);
+            digit = digit_of(carry);
+            carry = (carry - digit) >> DIGIT_BITS;
+        }
+        result = moved_down_large(result, digit);
+    }
+    return result;
 }
 
-// The sign of x·u + y·v, without the sum.
-fn sum_of_products_sign(x: ptr<function, Int>, u: ptr<function, Int>, y: ptr<function, Int>, v: ptr<function, Int>) -> i32 {
-    let first = int_sign(x) * int_sign(u);
-    let second = int_sign(y) * int_sign(v);
-    if first == second || second == 0 {
-        return first;
+// x·factor, below 2^467. A column is below 5·2^25, or 2^27 where the factor is a power of two.
+fn scaled(x: Large, factor: Small) -> Large {
+    var result = Large();
+    var left = x;
+    var turned = Small();
+    var carry = 0;
+    for (var column = 0u; column < 36u; column++) {
+        turned = moved_up_small(turned, left[0].x);
+        left = moved_down_large(left, 0);
+        carry += column_small(factor, turned);
+        let digit = digit_of(carry);
+        carry = (carry - digit) >> DIGIT_BITS;
+        result = moved_down_large(result, digit);
     }
-    if first == 0 {
-        return second;
+    return result;
+}
+
+// The sign of x·u + y·v, which `columns` digits hold. A column is below 72·2^24.
+fn sum_of_large_products_sign(x: Large, u: Large, y: Large, v: Large, columns: u32) -> i32 {
+    var result = 0;
+    var left_u = u;
+    var left_v = v;
+    var turned_u = Large();
+    var turned_v = Large();
+    var carry = 0;
+    for (var column = 0u; column < columns; column++) {
+        turned_u = moved_up_large(turned_u, left_u[0].x);
+        turned_v = moved_up_large(turned_v, left_v[0].x);
+        left_u = moved_down_large(left_u, 0);
+        left_v = moved_down_large(left_v, 0);
+        carry += column_large(x, turned_u) + column_large(y, turned_v);
+        let digit = digit_of(carry);
+        carry = (carry - digit) >> DIGIT_BITS;
+        result = select(result, sign(digit), digit != 0);
     }
-    var left = multiply(x, u);
-    var right = multiply(y, v);
-    return first * compare_magnitude(&left, &right);
+    return result;
 }

@@ -1,18 +1,5 @@
-// Flip with Update: rotate the two triangles of each selected edge in place and repair the twins around, as
+// Flip with Update in place: rotate the two triangles of each selected edge and repair the twins around, as
 // src/phases/flip.rs.
-
-// Where half-edge `x`, given with its flag, will be after the iteration.
-fn slot(entry: u32) -> u32 {
-    if entry == NONE {
-        return NONE;
-    }
-    let x = unflagged(entry);
-    let g = selected(x / 3u);
-    if g == NONE || x != next(selected(g / 3u)) {
-        return entry;
-    }
-    return g | (entry & CREASE);
-}
 
 // Reads the twins of its own two triangles only; writes those, and the entries of the neighbours that are
 // not selected themselves.

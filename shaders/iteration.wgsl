@@ -14,7 +14,8 @@ fn label_all(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) 
     let iteration = params.first + index;
     let count = active_count(index);
     for (var i = id.x; i < count; i += groups.x * WORKGROUP_SIZE) {
-        label(active_triangle(index, i, iteration), iteration);
+        let t = active_triangle(index, i, iteration);
+        choices[t] = label(t, iteration);
     }
 }
 
@@ -27,7 +28,8 @@ fn select_all(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups)
     let iteration = params.first + index;
     let count = active_count(index);
     for (var i = id.x; i < count; i += groups.x * WORKGROUP_SIZE) {
-        select_edge(active_triangle(index, i, iteration), iteration);
+        let t = active_triangle(index, i, iteration);
+        choices[params.triangles + t] = selection(t, iteration);
     }
 }
 
@@ -80,11 +82,13 @@ fn tail(@builtin(local_invocation_index) local: u32) {
         }
         let iteration = params.first + index;
         for (var i = local; i < count; i += WORKGROUP_SIZE) {
-            label(active_triangle(index, i, iteration), iteration);
+            let t = active_triangle(index, i, iteration);
+        choices[t] = label(t, iteration);
         }
         storageBarrier();
         for (var i = local; i < count; i += WORKGROUP_SIZE) {
-            select_edge(active_triangle(index, i, iteration), iteration);
+            let t = active_triangle(index, i, iteration);
+            choices[params.triangles + t] = selection(t, iteration);
         }
         storageBarrier();
         var flipped = 0u;

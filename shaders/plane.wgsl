@@ -1,32 +1,18 @@
 // The plane: orientation and the in-circle test, as src/predicates/plane.rs.
 
-// A filter of degree 4 in f32. WGSL leaves the direction of rounding open: each operation errs by at most
+// A filter of degree 4 in f32. WGSL and GLSL ES leave the direction of rounding open: each operation errs by at most
 // ε = 2^-23, fused or not. As in plane.rs the value errs by at most 10.1ε of `magnitude`; 16 leaves room.
 const PLANE_BOUND: f32 = 1.9073486e-6;
-// Subnormals may be flushed. The differences are scaled so that the largest lies in [1, 2) and none was
-// computed from a quad smaller than 2^-67; what is flushed then changes the value by less than 2^-48.
-const FLUSHED: f32 = 1.4210855e-14;
-const SMALLEST_FIELD: u32 = 60u;
-const LARGEST_FIELD: u32 = 250u;
-
-
-fn position2(v: u32) -> vec2u {
-    return vec2u(positions[2u * v], positions[2u * v + 1u]);
-}
-
-// The power of two that scales `largest` into [1, 2); 0 where a filter cannot be trusted.
-fn scale_for(largest: f32) -> f32 {
-    let field = (bitcast<u32>(largest) >> 23u) & 0xffu;
-    return select(0.0, bitcast<f32>((254u - field) << 23u), field >= SMALLEST_FIELD && field <= LARGEST_FIELD);
-}
+// What is flushed, see points.wgsl, is below 2^-48.
+const PLANE_FLUSHED: f32 = 1.4210855e-14;
 
 // Whether an edge may flip by its geometry: DELAUNAY, BLOCKED_BY + REASON_FOLD or LABELLED. `winding` is -1 in
 // a clockwise component, else 1.
-fn verdict_in_plane(a: vec2u, b: vec2u, c: vec2u, d: vec2u, winding: i32) -> u32 {
-    var p = bitcast<vec2f>(a) - bitcast<vec2f>(c);
-    var q = bitcast<vec2f>(b) - bitcast<vec2f>(c);
-    var r = bitcast<vec2f>(a) - bitcast<vec2f>(d);
-    var s = bitcast<vec2f>(b) - bitcast<vec2f>(d);
+fn verdict_in_plane(a: Point, b: Point, c: Point, d: Point, winding: i32) -> u32 {
+    var p = rounded_difference(a, c).xy;
+    var q = rounded_difference(b, c).xy;
+    var r = rounded_difference(a, d).xy;
+    var s = rounded_difference(b, d).xy;
     let largest = max(max(abs(p), abs(q)), max(abs(r), abs(s)));
     let scale = scale_for(max(largest.x, largest.y));
     p *= scale;
@@ -58,98 +44,81 @@ fn in_circle_sign(p: vec2f, q: vec2f, r: vec2f, s: vec2f) -> i32 {
     let value = (cross1.x - cross1.y) * (dot2.x + dot2.y) + (dot1.x + dot1.y) * (cross2.x - cross2.y);
     let magnitude = (abs(cross1.x) + abs(cross1.y)) * (abs(dot2.x) + abs(dot2.y))
         + (abs(dot1.x) + abs(dot1.y)) * (abs(cross2.x) + abs(cross2.y));
-    return filtered_sign(value, PLANE_BOUND * magnitude + FLUSHED);
+    return filtered_sign(value, PLANE_BOUND * magnitude + PLANE_FLUSHED);
 }
 
 // The sign of u × v, twice the area of a triangle; 0 where the filter cannot decide.
 fn area_sign(u: vec2f, v: vec2f) -> i32 {
-    return filtered_sign(u.x * v.y - u.y * v.x, PLANE_BOUND * (abs(u.x * v.y) + abs(u.y * v.x)) + FLUSHED);
+    return filtered_sign(u.x * v.y - u.y * v.x, PLANE_BOUND * (abs(u.x * v.y) + abs(u.y * v.x)) + PLANE_FLUSHED);
 }
 
 fn filtered_sign(value: f32, bound: f32) -> i32 {
     return select(0, select(1, -1, value < 0.0), abs(value) > bound);
 }
 
-fn unit2(v: vec2u) -> i32 {
-    return min(unit_exponent(v.x), unit_exponent(v.y));
+fn verdict_in_plane_exact(a: Point, b: Point, c: Point, d: Point, winding: i32) -> u32 {
+    let grid = grid_of(a, b, c, d);
+    let p = exact_differences(a, c, grid);
+    let q = exact_differences(b, c, grid);
+    let r = exact_differences(a, d, grid);
+    let s = exact_differences(b, d, grid);
+    let widest = p[0] | p[1] | q[0] | q[1] | r[0] | r[1] | s[0] | s[1];
+    // Below 2^30 everything fits 128 bits; a lattice takes this path for every edge.
+    if widest.x < 0x40000000u && widest.y == 0u && widest.z == 0u {
+        return verdict_in_narrow_plane(p, q, r, s, winding);
+    }
+    return verdict_in_wide_plane(p, q, r, s, digits_in_use(widest), winding);
 }
 
-// Differences p, q, r, s: x and y of each.
-const PX: u32 = 0u;
-const PY: u32 = 1u;
-const QX: u32 = 2u;
-const QY: u32 = 3u;
-const RX: u32 = 4u;
-const RY: u32 = 5u;
-const SX: u32 = 6u;
-const SY: u32 = 7u;
-
-// What is computed from them, each as a product of two less (or plus) a product of two: cross1, dot1, cross2,
-// dot2, and the new areas r × p and q × s.
-const FACTORS = array<vec4u, 6>(
-    vec4u(PX, QY, PY, QX),
-    vec4u(PX, QX, PY, QY),
-    vec4u(SX, RY, SY, RX),
-    vec4u(SX, RX, SY, RY),
-    vec4u(RX, PY, RY, PX),
-    vec4u(QX, SY, QY, SX),
-);
-const CROSS1: u32 = 0u;
-const DOT1: u32 = 1u;
-const CROSS2: u32 = 2u;
-const DOT2: u32 = 3u;
-const AREA1: u32 = 4u;
-const AREA2: u32 = 5u;
-
-fn verdict_in_plane_exact(a: vec2u, b: vec2u, c: vec2u, d: vec2u, winding: i32) -> u32 {
-    let unit = min(min(unit2(a), unit2(b)), min(unit2(c), unit2(d)));
-    var points = array<vec2u, 4>(a, b, c, d);
-    var v = array<vec4u, 8>();
-    var widest = vec4u();
-    for (var i = 0u; i < 8u; i++) {
-        // p = a - c, q = b - c, r = a - d, s = b - d.
-        let from_point = points[(i / 2u) & 1u];
-        let to_point = points[2u + i / 4u];
-        v[i] = difference(on_grid(from_point[i & 1u], unit), on_grid(to_point[i & 1u], unit));
-        widest |= v[i];
-    }
-    var factors = FACTORS;
-    // Below 2^30 everything fits 128 bits, in registers; a lattice takes this path for every edge.
-    if widest.x < 0x40000000u && widest.y == 0u && widest.z == 0u {
-        var sums = array<vec3u, 6>();
-        for (var i = 0u; i < 6u; i++) {
-            let f = factors[i];
-            sums[i] = narrow_sum(v[f.x], v[f.y], v[f.z], v[f.w], i != DOT1 && i != DOT2);
-        }
-        if winding * narrow_sign(sums[CROSS1], sums[DOT2], sums[DOT1], sums[CROSS2]) >= 0 {
-            return DELAUNAY;
-        }
-        let flat = all(sums[AREA1].xy == vec2u()) || all(sums[AREA2].xy == vec2u());
-        let turned = select(0u, 1u, winding > 0);
-        let fold = flat || sums[AREA1].z == turned || sums[AREA2].z == turned;
-        return select(LABELLED, BLOCKED_BY + REASON_FOLD, fold);
-    }
-    var wide = array<Int, 4>();
-    var fold = false;
-    for (var i = 0u; i < 6u; i++) {
-        let f = factors[i];
-        var left = product(v[f.x], v[f.y]);
-        var right = product(v[f.z], v[f.w]);
-        var sum = add(&left, &right, i != DOT1 && i != DOT2);
-        if i < AREA1 {
-            wide[i] = sum;
-        } else {
-            fold = fold || winding * int_sign(&sum) <= 0;
-        }
-    }
-    var cross1 = wide[CROSS1];
-    var dot1 = wide[DOT1];
-    var cross2 = wide[CROSS2];
-    var dot2 = wide[DOT2];
-    if winding * sum_of_products_sign(&cross1, &dot2, &dot1, &cross2) >= 0 {
+fn verdict_in_wide_plane(p: Differences, q: Differences, r: Differences, s: Differences, count: u32, winding: i32) -> u32 {
+    let px = digits_of(p[0]);
+    let py = digits_of(p[1]);
+    let qx = digits_of(q[0]);
+    let qy = digits_of(q[1]);
+    let rx = digits_of(r[0]);
+    let ry = digits_of(r[1]);
+    let sx = digits_of(s[0]);
+    let sy = digits_of(s[1]);
+    let zero = Small();
+    let cross1 = sum_of_products(px, qy, py, negated_small(qx), zero, zero, count);
+    let dot1 = sum_of_products(px, qx, py, qy, zero, zero, count);
+    let cross2 = sum_of_products(sx, ry, sy, negated_small(rx), zero, zero, count);
+    let dot2 = sum_of_products(sx, rx, sy, ry, zero, zero, count);
+    if winding * large_sign(sum_of_medium_products(cross1, dot2, dot1, cross2, count)) >= 0 {
         return DELAUNAY;
     }
-    return select(LABELLED, BLOCKED_BY + REASON_FOLD, fold);
+    let area1 = sum_of_products(rx, py, ry, negated_small(px), zero, zero, count);
+    let area2 = sum_of_products(qx, sy, qy, negated_small(sx), zero, zero, count);
+    let is_fold = winding * medium_sign(area1) <= 0 || winding * medium_sign(area2) <= 0;
+    return select(LABELLED, BLOCKED_BY + REASON_FOLD, is_fold);
+}
+
+fn verdict_in_narrow_plane(p: Differences, q: Differences, r: Differences, s: Differences, winding: i32) -> u32 {
+    let cross1 = narrow_sum(p[0], q[1], p[1], q[0], true);
+    let dot1 = narrow_sum(p[0], q[0], p[1], q[1], false);
+    let cross2 = narrow_sum(s[0], r[1], s[1], r[0], true);
+    let dot2 = narrow_sum(s[0], r[0], s[1], r[1], false);
+    if winding * narrow_sign(cross1, dot2, dot1, cross2) >= 0 {
+        return DELAUNAY;
+    }
+    let area1 = narrow_sum(r[0], p[1], r[1], p[0], true);
+    let area2 = narrow_sum(q[0], s[1], q[1], s[0], true);
+    let is_flat = all(area1.xy == vec2u()) || all(area2.xy == vec2u());
+    let turned = select(0u, 1u, winding > 0);
+    let is_fold = is_flat || area1.z == turned || area2.z == turned;
+    return select(LABELLED, BLOCKED_BY + REASON_FOLD, is_fold);
+}
+
+// The 64-bit product of two words: low, high.
+fn multiply_words(x: u32, y: u32) -> vec2u {
+    let x_low = x & 0xffffu;
+    let x_high = x >> 16u;
+    let y_low = y & 0xffffu;
+    let y_high = y >> 16u;
+    let low = x_low * y_low;
+    let first = x_high * y_low + (low >> 16u);
+    let second = x_low * y_high + (first & 0xffffu);
+    return vec2u((second << 16u) | (low & 0xffffu), x_high * y_high + (first >> 16u) + (second >> 16u));
 }
 
 // x·u + y·v or x·u - y·v of differences below 2^30: magnitude below 2^61 in xy, sign in z.
@@ -176,12 +145,8 @@ fn narrow_sign(x: vec3u, u: vec3u, y: vec3u, v: vec3u) -> i32 {
     if left_sign == 0 {
         return right_sign;
     }
-    for (var i = 3; i >= 0; i--) {
-        if left[i] != right[i] {
-            return select(right_sign, left_sign, left[i] > right[i]);
-        }
-    }
-    return 0;
+    let larger = vec4i(left > right) - vec4i(left < right);
+    return left_sign * highest_sign(larger, 0);
 }
 
 // 64 by 64 bits.

@@ -1,13 +1,13 @@
 // Select: an edge flips if it is the best of both its triangles and no better one makes the same new edge,
 // as src/phases/select.rs.
 
-fn select_edge(t: u32, iteration: u32) {
+// The half-edge on the other side of triangle `t`'s selected edge, or NONE.
+fn selection(t: u32, iteration: u32) -> u32 {
     let h = mutual(t);
-    var choice = NONE;
     if h != NONE && !yields(h, best(t), iteration) {
-        choice = best(t);
+        return best(t);
     }
-    choices[params.triangles + t] = choice;
+    return NONE;
 }
 
 // The half-edge of triangle `t` that is the best of both its triangles, or NONE.
@@ -22,17 +22,17 @@ fn mutual(t: u32) -> u32 {
 
 // Whether another selected edge with a smaller key would join the same two vertices.
 fn yields(h: u32, g: u32, iteration: u32) -> bool {
-    let c = triangles[prev(h)];
-    let d = triangles[prev(g)];
+    let c = vertex(prev(h));
+    let d = vertex(prev(g));
     let mine = key(min(h, g), iteration);
     var first = star(prev(h));
     var second = star(prev(g));
-    while first.at != NONE && second.at != NONE {
-        if wins(first.at, d, mine, iteration) || wins(second.at, c, mine, iteration) {
+    while first.y != NONE && second.y != NONE {
+        if wins(first.y, d, mine, iteration) || wins(second.y, c, mine, iteration) {
             return true;
         }
-        advance(&first);
-        advance(&second);
+        first = advanced(first);
+        second = advanced(second);
     }
     return false;
 }
@@ -44,5 +44,5 @@ fn wins(corner: u32, far: u32, mine: u32, iteration: u32) -> bool {
         return false;
     }
     let g = best(corner / 3u);
-    return triangles[prev(g)] == far && key(min(h, g), iteration) < mine;
+    return vertex(prev(g)) == far && key(min(h, g), iteration) < mine;
 }

@@ -1,53 +1,46 @@
 // Walking around a vertex, as src/star.rs.
 
-struct Star {
-    start: u32,
-    at: u32,
-    is_clockwise: bool,
-    // Where the next anchor stands in `topology`, if the vertex has several fans.
-    further: u32,
-}
+// Where the walk of a fan began, where it is, whether it goes clockwise (0 or 1), and where the next anchor stands in
+// the table of the fans, if the vertex has several fans.
+alias Star = vec4u;
 
 // All corners at the vertex that `corner` starts at.
 fn star(corner: u32) -> Star {
-    if params.fans_length > 0u {
-        let list = topology[params.fans + triangles[corner]];
+    if has_fans() {
+        let list = fan_entry(vertex(corner));
         if list != NONE {
-            let anchor = topology[params.fans + list];
-            return Star(anchor, anchor, false, params.fans + list + 1u);
+            let anchor = fan_entry(list);
+            return Star(anchor, anchor, 0u, list + 1u);
         }
     }
-    return Star(corner, corner, false, NONE);
+    return Star(corner, corner, 0u, NONE);
 }
 
-fn begin_next_fan(walk: ptr<function, Star>) {
-    (*walk).start = NONE;
-    if (*walk).further != NONE {
-        (*walk).start = topology[(*walk).further];
-        (*walk).further++;
+fn at_next_fan(walk: Star) -> Star {
+    if walk.w == NONE {
+        return Star(NONE, NONE, 0u, NONE);
     }
-    (*walk).at = (*walk).start;
-    (*walk).is_clockwise = false;
+    let start = fan_entry(walk.w);
+    return Star(start, start, 0u, walk.w + 1u);
 }
 
-// Moves to the next corner; `at` is NONE behind the last one.
-fn advance(walk: ptr<function, Star>) {
-    if !(*walk).is_clockwise {
-        (*walk).at = twin(prev((*walk).at));
-        if (*walk).at == (*walk).start {
-            begin_next_fan(walk);
-            return;
+// At the next corner; at NONE (in y) behind the last one.
+fn advanced(walk: Star) -> Star {
+    var from_corner = walk.y;
+    if walk.z == 0u {
+        let at = twin(prev(walk.y));
+        if at == walk.x {
+            return at_next_fan(walk);
         }
-        if (*walk).at != NONE {
-            return;
+        if at != NONE {
+            return Star(walk.x, at, 0u, walk.w);
         }
-        (*walk).is_clockwise = true;
-        (*walk).at = (*walk).start;
+        // The fan is open: back to where it began and round the other way.
+        from_corner = walk.x;
     }
-    let other = twin((*walk).at);
+    let other = twin(from_corner);
     if other == NONE {
-        begin_next_fan(walk);
-    } else {
-        (*walk).at = next(other);
+        return at_next_fan(walk);
     }
+    return Star(walk.x, next(other), 1u, walk.w);
 }

@@ -1,21 +1,8 @@
 // The state of a mesh on the device, as src/engine/webgpu binds it for the phases.
 
-const NONE: u32 = 0xffffffffu;
-const BLOCKED: u32 = 0xfffffffeu;
-// Set in both twin entries of an edge that was over β in the input: it stays, whatever its angle becomes.
-const CREASE: u32 = 0x80000000u;
 const WORKGROUP_SIZE: u32 = 256u;
 
-// The verdict on an interior edge; a blocked one is BLOCKED_BY plus the index of its reason.
-const DELAUNAY: u32 = 0u;
-const LABELLED: u32 = 1u;
-const BLOCKED_BY: u32 = 2u;
-const REASON_ANGLE: u32 = 0u;
-const REASON_FOLD: u32 = 1u;
-const REASON_DUPLICATE: u32 = 2u;
-
 struct Params {
-    dimension: u32,
     vertices: u32,
     triangles: u32,
     // The number of the batch's first iteration.
@@ -27,16 +14,19 @@ struct Params {
     winding_length: u32,
     // The first entry of the tail.
     tail: u32,
-    // cos β: rounded to f32 for the filter; exactly, its sign, and the square mantissa^2 / 2^shift.
+    // cos β, rounded to f32 for the filter, and its sign.
     cos: f32,
     cos_sign: i32,
-    cos_shift: u32,
+    // 1 where β is 180°.
+    any_angle: u32,
     tail_iterations: u32,
     // The longest list that the tail takes.
     tail_length: u32,
     // An iteration builds the list for the next one if the one before it made fewer flips than this.
     list_below: u32,
-    cos_square: vec4u,
+    // |cos β| is exactly mantissa / power: digits as in exact.wgsl.
+    cos_mantissa: array<vec4i, 2>,
+    cos_power: array<vec4i, 2>,
 }
 
 struct Step {
@@ -70,25 +60,17 @@ const BUILT: u32 = 2u;
 // Whether the iteration ran at all.
 const RAN: u32 = 3u;
 
-fn next(h: u32) -> u32 {
-    return select(h + 1u, h - 2u, h % 3u == 2u);
+fn vertex(h: u32) -> u32 {
+    return triangles[h];
 }
 
-fn prev(h: u32) -> u32 {
-    return select(h - 1u, h + 2u, h % 3u == 0u);
-}
-
-// The half-edge that an entry of `twins` names, without its flag.
-fn unflagged(entry: u32) -> u32 {
-    return select(entry & ~CREASE, NONE, entry == NONE);
+// The half-edge on the other side, with its flag, or NONE.
+fn twin_entry(h: u32) -> u32 {
+    return twins[h];
 }
 
 fn twin(h: u32) -> u32 {
     return unflagged(twins[h]);
-}
-
-fn is_crease(h: u32) -> bool {
-    return twins[h] >= CREASE && twins[h] != NONE;
 }
 
 fn best(t: u32) -> u32 {
@@ -99,14 +81,40 @@ fn selected(t: u32) -> u32 {
     return choices[params.triangles + t];
 }
 
+fn position(v: u32) -> vec3u {
+    let at = DIMENSION * v;
+    return vec3u(positions[at], positions[at + 1u], select(0u, positions[at + DIMENSION - 1u], DIMENSION == 3u));
+}
+
 fn is_clockwise(t: u32) -> bool {
     return t / 32u < params.winding_length && ((topology[t / 32u] >> (t % 32u)) & 1u) == 1u;
 }
 
-// The priority of an edge in an iteration; the smallest wins.
-fn key(edge: u32, iteration: u32) -> u32 {
-    var x = edge ^ (iteration * 0x9e3779b9u);
-    x = (x ^ (x >> 16u)) * 0x7feb352du;
-    x = (x ^ (x >> 15u)) * 0x846ca68bu;
-    return x ^ (x >> 16u);
+fn has_fans() -> bool {
+    return params.fans_length > 0u;
+}
+
+// A word of the table of the fans, see src/star.rs.
+fn fan_entry(i: u32) -> u32 {
+    return topology[params.fans + i];
+}
+
+fn has_any_angle() -> bool {
+    return params.any_angle == 1u;
+}
+
+fn cos_rounded() -> f32 {
+    return params.cos;
+}
+
+fn cos_sign() -> i32 {
+    return params.cos_sign;
+}
+
+fn cos_mantissa() -> Small {
+    return params.cos_mantissa;
+}
+
+fn cos_power() -> Small {
+    return params.cos_power;
 }

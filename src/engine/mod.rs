@@ -1,5 +1,7 @@
 //! Engines run the phases. All give the same triangles after every iteration.
 
+#[cfg(feature = "gpu")]
+mod cosine;
 mod cpu;
 mod lawson;
 #[cfg(all(test, feature = "gpu"))]

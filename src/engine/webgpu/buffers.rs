@@ -41,11 +41,16 @@ impl Buffers {
     }
 
     /// Bound for the phases, with the topology behind them.
-    pub(super) fn bind(&self, gpu: &Device, topology: &Buffer) -> wgpu::BindGroup {
+    pub(super) fn bind(
+        &self,
+        gpu: &Device,
+        layout: &wgpu::BindGroupLayout,
+        topology: &Buffer,
+    ) -> wgpu::BindGroup {
         let Self { uniform, steps, positions, triangles, twins, choices, frontier, history } = self;
         let whole = [positions, triangles, twins, choices, frontier, history, topology];
         let mut buffers = vec![(uniform, None), (steps, Some(4))];
         buffers.extend(whole.map(|buffer| (buffer, None)));
-        gpu.bind(&gpu.phases.layout, &buffers)
+        gpu.bind(layout, &buffers)
     }
 }

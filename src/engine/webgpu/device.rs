@@ -5,6 +5,7 @@ use super::browser;
 use super::faults::{Fault, Word, refuse, unavailable, watch};
 use super::kernels::{self, Kernels, WORKGROUP_SIZE};
 use crate::Error;
+use crate::mesh::Dimension;
 use futures_channel::oneshot;
 use std::sync::{Arc, Mutex};
 use wgpu::BufferUsages;
@@ -39,7 +40,8 @@ pub(crate) struct Device {
     pub(super) ends_loops_early: bool,
     failure: Failure,
     pub(super) adjacency: Kernels<6>,
-    pub(super) phases: Kernels<6>,
+    /// By dimension, once a mesh has needed them.
+    phases: Mutex<[Option<Arc<Kernels<6>>>; 2]>,
 }
 
 /// What has failed first since the device was opened, in the words of the device.
@@ -47,6 +49,15 @@ type Failure = Arc<Mutex<Option<String>>>;
 
 fn report(failure: &Failure, message: String) {
     failure.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).get_or_insert(message);
+}
+
+/// Compiles kernels and waits for the device's word on them.
+async fn accepted<T>(device: &wgpu::Device, compile: impl FnOnce() -> T) -> Result<T, Error> {
+    let (kernels, word) = watch(device, compile);
+    match word.await {
+        None => Ok(kernels),
+        Some(fault) => Err(unavailable(format!("it refuses the kernels: {fault}"))),
+    }
 }
 
 impl Device {
@@ -91,7 +102,7 @@ impl Device {
         Self::compile(device, queue, name, is_software).await
     }
 
-    /// Compiles the kernels.
+    /// Compiles the kernels that every mesh needs.
     ///
     /// # Errors
     /// As [`Device::shared`].
@@ -116,11 +127,8 @@ impl Device {
             #[cfg(all(target_arch = "wasm32", feature = "js"))]
             super::shared::let_idle_go();
         });
-        let compile = || (kernels::adjacency(&device), kernels::phases(&device), kernels::probe(&device));
-        let ((adjacency, phases, probe), word) = watch(&device, compile);
-        if let Some(fault) = word.await {
-            return Err(unavailable(format!("it refuses the kernels: {fault}")));
-        }
+        let compile = || (kernels::adjacency(&device), kernels::probe(&device));
+        let (adjacency, probe) = accepted(&device, compile).await?;
         let most_workgroups = if is_software { 64 } else { 4096 };
         let mut result = Self {
             device,
@@ -130,13 +138,27 @@ impl Device {
             ends_loops_early: false,
             failure,
             adjacency,
-            phases,
+            phases: Mutex::default(),
         };
         result.ends_loops_early = result.probe_loops(&probe).await?;
         if result.ends_loops_early {
             result.most_workgroups = MOST_WORKGROUPS;
         }
         Ok(result)
+    }
+
+    /// The kernels of the phases; compiled at the first call.
+    ///
+    /// # Errors
+    /// [`Error::BackendUnavailable`] if the device's compiler refuses them.
+    pub(super) async fn phases(&self, dimension: Dimension) -> Result<Arc<Kernels<6>>, Error> {
+        let place = dimension.stride() - 2;
+        let known = || self.phases.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+        if let Some(kernels) = &known()[place] {
+            return Ok(kernels.clone());
+        }
+        let kernels = accepted(&self.device, || kernels::phases(&self.device, dimension)).await?;
+        Ok(known()[place].insert(Arc::new(kernels)).clone())
     }
 
     /// Runs `shaders/probe.wgsl` and compares.

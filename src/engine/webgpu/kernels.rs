@@ -1,23 +1,30 @@
 //! The kernels, compiled from `shaders/`, and their bindings.
 
+use crate::mesh::Dimension;
 use wgpu::{BindingType, BufferBindingType};
 
 /// Invocations of a workgroup of every kernel.
 pub(super) const WORKGROUP_SIZE: u32 = 256;
 
-/// The shaders of the phases, in an order in which a reader can follow them.
-pub(super) const PHASES: &str = concat!(
-    include_str!("../../../shaders/state.wgsl"),
-    include_str!("../../../shaders/exact.wgsl"),
-    include_str!("../../../shaders/plane.wgsl"),
-    include_str!("../../../shaders/space.wgsl"),
-    include_str!("../../../shaders/star.wgsl"),
-    include_str!("../../../shaders/label.wgsl"),
-    include_str!("../../../shaders/select.wgsl"),
-    include_str!("../../../shaders/flip.wgsl"),
-    include_str!("../../../shaders/frontier.wgsl"),
-    include_str!("../../../shaders/iteration.wgsl"),
-);
+/// The shaders of the phases, for meshes of one dimension, in an order in which a reader can follow them.
+pub(super) fn phases_source(dimension: Dimension) -> String {
+    const FILES: &str = concat!(
+        include_str!("../../../shaders/mesh.wgsl"),
+        include_str!("../../../shaders/points.wgsl"),
+        include_str!("../../../shaders/exact.wgsl"),
+        include_str!("../../../shaders/state.wgsl"),
+        include_str!("../../../shaders/plane.wgsl"),
+        include_str!("../../../shaders/space.wgsl"),
+        include_str!("../../../shaders/star.wgsl"),
+        include_str!("../../../shaders/label.wgsl"),
+        include_str!("../../../shaders/select.wgsl"),
+        include_str!("../../../shaders/slot.wgsl"),
+        include_str!("../../../shaders/flip.wgsl"),
+        include_str!("../../../shaders/frontier.wgsl"),
+        include_str!("../../../shaders/iteration.wgsl"),
+    );
+    format!("const DIMENSION = {}u;\n{FILES}", dimension.stride())
+}
 
 /// The shader that builds the adjacency.
 pub(super) const ADJACENCY: &str = include_str!("../../../shaders/adjacency.wgsl");
@@ -67,10 +74,10 @@ pub(super) fn adjacency(device: &wgpu::Device) -> Kernels<6> {
 }
 
 /// In the order of [`Kernel`].
-pub(super) fn phases(device: &wgpu::Device) -> Kernels<6> {
+pub(super) fn phases(device: &wgpu::Device, dimension: Dimension) -> Kernels<6> {
     let (read, write) = (storage(true), storage(false));
     let bindings = [uniform(false), uniform(true), read, write, write, write, write, write, write];
-    kernels(device, PHASES, &bindings, Kernel::ALL.map(Kernel::name))
+    kernels(device, &phases_source(dimension), &bindings, Kernel::ALL.map(Kernel::name))
 }
 
 pub(super) fn probe(device: &wgpu::Device) -> Kernels<1> {

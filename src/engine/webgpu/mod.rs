@@ -35,6 +35,7 @@ use crate::{Error, Reason};
 use buffers::Buffers;
 use device::Buffer;
 use faults::refuse;
+use kernels::Kernels;
 use limits::{refuse_beyond_limits, refuse_large_buffer};
 use params::Params;
 use std::sync::Arc;
@@ -62,6 +63,7 @@ type Entry = [u32; ENTRY_WORDS];
 /// A mesh on the device.
 pub(crate) struct WebGpu {
     gpu: Handle,
+    kernels: Arc<Kernels<6>>,
     params: Params,
     counts: EdgeCounts,
     bindings: wgpu::BindGroup,
@@ -79,6 +81,7 @@ impl WebGpu {
     /// magnitudes; [`Error::Device`].
     pub(crate) async fn new(gpu: Handle, mesh: &Arc<Mesh>, cos: f64) -> Result<Self, Error> {
         refuse_beyond_limits(&gpu, mesh)?;
+        let kernels = gpu.phases(mesh.dimension()).await?;
         let count = mesh.triangle_count();
         let allocate = || (Buffers::new(&gpu, mesh), adjacency::Scratch::new(&gpu, mesh));
         let (buffers, scratch) = gpu.allocated(allocate).await?;
@@ -101,11 +104,12 @@ impl WebGpu {
         let bind = || {
             let topology = gpu.buffer("topology", topology_words, BufferUsages::STORAGE);
             gpu.queue.write_buffer(&topology, 4 * winding_words as u64, bytemuck::cast_slice(&fans.table));
-            (buffers.bind(&gpu, &topology), topology)
+            (buffers.bind(&gpu, &kernels.layout, &topology), topology)
         };
         let (bindings, topology) = gpu.allocated(bind).await?;
         let places = (winding_words, fans.table.len());
         let mut result = Self {
+            kernels,
             params: Params::new(mesh, cos, places, gpu.ends_loops_early),
             counts: found.counts,
             bindings,
@@ -220,7 +224,7 @@ impl WebGpu {
     }
 
     fn dispatch(&self, pass: &mut wgpu::ComputePass, kernel: Kernel, workgroups: u32) {
-        pass.set_pipeline(&self.gpu.phases.pipelines[kernel as usize]);
+        pass.set_pipeline(&self.kernels.pipelines[kernel as usize]);
         pass.dispatch_workgroups(workgroups, 1, 1);
     }
 

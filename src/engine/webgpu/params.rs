@@ -1,7 +1,7 @@
 //! The parameters that every kernel of the phases reads.
 
+use crate::engine::cosine::Cosine;
 use crate::mesh::Mesh;
-use crate::predicates::cosine_fraction;
 
 /// Iterations of the tail run on lists of up to so many triangles.
 const TAIL_LENGTH: u32 = 2048;
@@ -14,7 +14,6 @@ const SMALL_MESH: usize = 4096;
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 pub(super) struct Params {
-    pub(super) dimension: u32,
     pub(super) vertices: u32,
     pub(super) triangles: u32,
     pub(super) first: u32,
@@ -24,12 +23,13 @@ pub(super) struct Params {
     pub(super) tail: u32,
     pub(super) cos: f32,
     pub(super) cos_sign: i32,
-    pub(super) cos_shift: u32,
+    pub(super) any_angle: u32,
     pub(super) tail_iterations: u32,
     pub(super) tail_length: u32,
     pub(super) list_below: u32,
-    pub(super) padding: [u32; 2],
-    pub(super) cos_square: [u32; 4],
+    pub(super) padding: [u32; 3],
+    pub(super) cos_mantissa: [i32; 8],
+    pub(super) cos_power: [i32; 8],
 }
 
 impl Params {
@@ -41,11 +41,9 @@ impl Params {
         (fans, fans_length): (usize, usize),
         ends_loops_early: bool,
     ) -> Self {
-        let (mantissa, shift) = cosine_fraction(cos);
-        let square = u128::from(mantissa) * u128::from(mantissa);
+        let cosine = Cosine::new(cos);
         let count = mesh.triangle_count();
         Self {
-            dimension: mesh.dimension().stride() as u32,
             vertices: mesh.vertex_count() as u32,
             triangles: count as u32,
             first: 0,
@@ -53,15 +51,16 @@ impl Params {
             fans_length: fans_length as u32,
             winding_length: 0,
             tail: 0,
-            cos: cos as f32,
-            cos_sign: if cos == 0.0 { 0 } else { cos.signum() as i32 },
-            cos_shift: 2 * shift,
+            cos: cosine.rounded,
+            cos_sign: cosine.sign,
+            any_angle: u32::from(cosine.is_of_any_angle),
             tail_iterations: 0,
             tail_length: if ends_loops_early { SHORT_TAIL_LENGTH } else { TAIL_LENGTH },
             // A flip appends six triangles at most; a small mesh is not worth a sweep.
             list_below: if count <= SMALL_MESH { u32::MAX } else { count as u32 / 24 },
-            padding: [0; 2],
-            cos_square: [0, 32, 64, 96].map(|bits| (square >> bits) as u32),
+            padding: [0; 3],
+            cos_mantissa: cosine.mantissa,
+            cos_power: cosine.power,
         }
     }
 }

@@ -4,16 +4,22 @@
 
 use super::adjacency::BUCKETS_EACH;
 use super::device::Device;
-use super::kernels::{ADJACENCY, PHASES, PROBE, WORKGROUP_SIZE};
+use super::kernels::{ADJACENCY, PROBE, WORKGROUP_SIZE, phases_source};
 use super::limits::SPAN;
 use super::params::Params;
 use super::{ENTRIES, ENTRY_WORDS};
 use crate::adjacency::CREASE;
+use crate::engine::cosine::DIGIT_BITS;
 use crate::phases::BLOCKED;
-use crate::{Error, NONE, Reason};
+use crate::{Dimension, Error, NONE, Reason};
 use pollster::block_on;
 use std::collections::HashMap;
 use std::mem::offset_of;
+
+/// Every shader.
+fn sources() -> [String; 4] {
+    [phases_source(Dimension::Two), phases_source(Dimension::Three), ADJACENCY.to_owned(), PROBE.to_owned()]
+}
 
 fn parse(source: &str) -> naga::Module {
     naga::front::wgsl::parse_str(source).unwrap_or_else(|error| panic!("{}", error.emit_to_string(source)))
@@ -46,7 +52,7 @@ fn members(module: &naga::Module, name: &str) -> Vec<(String, usize, usize)> {
 
 #[test]
 fn constants_of_the_phases_agree() {
-    let module = parse(PHASES);
+    let module = parse(&phases_source(Dimension::Three));
     let shader = constants(&module);
     let host = [
         ("NONE", u64::from(NONE)),
@@ -54,6 +60,7 @@ fn constants_of_the_phases_agree() {
         ("CREASE", u64::from(CREASE)),
         ("WORKGROUP_SIZE", u64::from(WORKGROUP_SIZE)),
         ("SPAN", u64::from(SPAN)),
+        ("DIGIT_BITS", u64::from(DIGIT_BITS)),
         ("ENTRIES", ENTRIES as u64),
         ("ENTRY_WORDS", ENTRY_WORDS as u64),
         ("REASON_ANGLE", Reason::Angle as u64),
@@ -71,9 +78,9 @@ fn constants_of_the_phases_agree() {
     for (name, value) in host {
         assert_eq!(shader.get(name), Some(&value), "{name}");
     }
-    // The longest number of the β test, see `exact.wgsl`: (n·m)² or n²·m², and the cosine's square.
-    let normal_bits = 2 * (2 * (u64::from(SPAN) + 1) + 2) + 1;
-    assert!(2 * normal_bits + 212 < 32 * shader["LIMBS"]);
+    // The longest numbers, see `exact.wgsl`: a difference, and n·m times the power of cos β.
+    let digits = |bits: u32| (bits + 1).div_ceil(DIGIT_BITS);
+    assert!(digits(SPAN + 1) <= 7 && digits(4 * (SPAN + 1) + 6 + 106) <= 36);
 }
 
 #[test]
@@ -100,7 +107,6 @@ fn params_have_one_layout() {
         };
     }
     let host = host!(
-        dimension,
         vertices,
         triangles,
         first,
@@ -110,13 +116,14 @@ fn params_have_one_layout() {
         tail,
         cos,
         cos_sign,
-        cos_shift,
+        any_angle,
         tail_iterations,
         tail_length,
         list_below,
-        cos_square
+        cos_mantissa,
+        cos_power
     );
-    let shader = members(&parse(PHASES), "Params");
+    let shader = members(&parse(&phases_source(Dimension::Three)), "Params");
     let places: Vec<_> = shader.iter().map(|(name, offset, _)| (name.as_str(), *offset)).collect();
     assert_eq!(places, host);
     let (_, offset, size) = &shader[shader.len() - 1];
@@ -125,8 +132,8 @@ fn params_have_one_layout() {
 
 #[test]
 fn shaders_stay_within_the_limits_of_every_browser() {
-    for source in [PHASES, ADJACENCY, PROBE] {
-        let module = parse(source);
+    for source in sources() {
+        let module = parse(&source);
         let capabilities = naga::valid::Capabilities::default();
         let mut validator = naga::valid::Validator::new(naga::valid::ValidationFlags::all(), capabilities);
         validator.validate(&module).unwrap();
@@ -151,7 +158,7 @@ fn shaders_stay_within_the_limits_of_every_browser() {
 /// a value: it keeps that of the round before. Functions are inlined into loops, so no variable goes without.
 #[test]
 fn variables_are_given_a_value() {
-    for line in [PHASES, ADJACENCY, PROBE].into_iter().flat_map(str::lines) {
+    for line in sources().iter().flat_map(|source| source.lines()) {
         let in_function = line.starts_with("    ") && line.trim_start().starts_with("var ");
         assert!(!in_function || line.contains(" = "), "{}", line.trim());
     }
