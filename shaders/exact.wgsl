@@ -25,10 +25,16 @@ fn digits_of(x: vec4u) -> Small {
     return Small(sign * vec4i(low), sign * vec4i(high));
 }
 
-// Digits in use of the widest of numbers that were joined by a bitwise or.
+// Digits in use of the widest of magnitudes that were joined by a bitwise or.
 fn digits_in_use(x: vec4u) -> u32 {
-    let bits = select(select(32u - countLeadingZeros(x.x), 64u - countLeadingZeros(x.y), x.y != 0u), 96u - countLeadingZeros(x.z), x.z != 0u);
-    return (bits + DIGIT_BITS - 1u) / DIGIT_BITS;
+    let digits = digits_of(vec4u(x.xyz, 0u));
+    let low = last_in_use(digits[0]);
+    let high = last_in_use(digits[1]);
+    return select(low, 4u + high, high > 0u);
+}
+
+fn last_in_use(x: vec4i) -> u32 {
+    return select(select(select(select(0u, 1u, x.x != 0), 2u, x.y != 0), 3u, x.z != 0), 4u, x.w != 0);
 }
 
 // The balanced digit of a column; what is left of the column goes to the next one.

@@ -1,5 +1,5 @@
 // The entry points: one dispatch a phase while there is much to do, one workgroup for a run of iterations
-// when there is little; the creases before the first one, and the census.
+// when there is little; and the census.
 
 var<workgroup> flips: atomic<u32>;
 var<workgroup> census_counts: array<atomic<u32>, 4>;
@@ -106,17 +106,6 @@ fn tail(@builtin(local_invocation_index) local: u32) {
             atomicStore(&history[entry(index + 1u, RAN)], 1u);
         }
         storageBarrier();
-    }
-}
-
-// Flags the edges of the input over β, and no others, from each of their half-edges.
-@compute @workgroup_size(WORKGROUP_SIZE)
-fn flag_creases(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
-    for (var h = id.x; h < 3u * params.triangles; h += groups.x * WORKGROUP_SIZE) {
-        let g = twin(h);
-        if g != NONE {
-            twins[h] = select(g, g | CREASE, is_sharp(h, g));
-        }
     }
 }
 

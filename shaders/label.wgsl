@@ -24,27 +24,13 @@ fn label(t: u32, iteration: u32) -> u32 {
     return choice;
 }
 
-// Whether the angle between the normals at an interior edge is larger than β.
-fn is_sharp(h: u32, g: u32) -> bool {
-    let a = position(vertex(h));
-    let b = position(vertex(g));
-    let c = position(vertex(prev(h)));
-    let d = position(vertex(prev(g)));
-    return is_over_angle(a, b, c, d);
-}
-
 // Tests the interior edge of the half-edges `h` and `g`.
 fn verdict_of(h: u32, g: u32) -> u32 {
     let a = position(vertex(h));
     let b = position(vertex(g));
     let c = position(vertex(prev(h)));
     let d = position(vertex(prev(g)));
-    var verdict = DELAUNAY;
-    if DIMENSION == 2u {
-        verdict = verdict_in_plane(a, b, c, d, select(1, -1, is_clockwise(h / 3u)));
-    } else {
-        verdict = verdict_in_space(a, b, c, d);
-    }
+    var verdict = verdict_on(a, b, c, d, select(1, -1, is_clockwise(h / 3u)));
     if verdict != DELAUNAY && (twin_entry(h) & CREASE) != 0u {
         verdict = BLOCKED_BY + REASON_ANGLE;
     }

@@ -1,5 +1,7 @@
 // The plane: orientation and the in-circle test, as src/predicates/plane.rs.
 
+const DIMENSION: u32 = 2u;
+
 // A filter of degree 4 in f32. WGSL and GLSL ES leave the direction of rounding open: each operation errs by at most
 // ε = 2^-23, fused or not. As in plane.rs the value errs by at most 10.1ε of `magnitude`; 16 leaves room.
 const PLANE_BOUND: f32 = 1.9073486e-6;
@@ -8,7 +10,7 @@ const PLANE_FLUSHED: f32 = 1.4210855e-14;
 
 // Whether an edge may flip by its geometry: DELAUNAY, BLOCKED_BY + REASON_FOLD or LABELLED. `winding` is -1 in
 // a clockwise component, else 1.
-fn verdict_in_plane(a: Point, b: Point, c: Point, d: Point, winding: i32) -> u32 {
+fn verdict_on(a: Point, b: Point, c: Point, d: Point, winding: i32) -> u32 {
     var p = rounded_difference(a, c).xy;
     var q = rounded_difference(b, c).xy;
     var r = rounded_difference(a, d).xy;
@@ -31,7 +33,7 @@ fn verdict_in_plane(a: Point, b: Point, c: Point, d: Point, winding: i32) -> u32
     if in_circle < 0 && area1 > 0 && area2 > 0 {
         return LABELLED;
     }
-    return verdict_in_plane_exact(a, b, c, d, winding);
+    return exact_verdict_on(a, b, c, d, winding);
 }
 
 // The sign of cross(λ)·dot(γ) + dot(λ)·cross(γ): -1 when λ + γ > π, for counter-clockwise triangles; 0 where
@@ -52,11 +54,7 @@ fn area_sign(u: vec2f, v: vec2f) -> i32 {
     return filtered_sign(u.x * v.y - u.y * v.x, PLANE_BOUND * (abs(u.x * v.y) + abs(u.y * v.x)) + PLANE_FLUSHED);
 }
 
-fn filtered_sign(value: f32, bound: f32) -> i32 {
-    return select(0, select(1, -1, value < 0.0), abs(value) > bound);
-}
-
-fn verdict_in_plane_exact(a: Point, b: Point, c: Point, d: Point, winding: i32) -> u32 {
+fn exact_verdict_on(a: Point, b: Point, c: Point, d: Point, winding: i32) -> u32 {
     let grid = grid_of(a, b, c, d);
     let p = exact_differences(a, c, grid);
     let q = exact_differences(b, c, grid);

@@ -25,19 +25,33 @@ fn rounded_difference(u: Point, v: Point) -> vec3f {
     return bitcast<vec3f>(u) - bitcast<vec3f>(v);
 }
 
+// 0 where the filter cannot decide.
+fn filtered_sign(value: f32, bound: f32) -> i32 {
+    return select(0, select(1, -1, value < 0.0), abs(value) > bound);
+}
+
 // The exponent of the grid of four points.
 fn grid_of(a: Point, b: Point, c: Point, d: Point) -> i32 {
     return min(min(unit_exponent(a), unit_exponent(b)), min(unit_exponent(c), unit_exponent(d)));
 }
 
-// The least exponent of the lowest set bit of a coordinate; 1000 if all are zero.
 fn unit_exponent(v: Point) -> i32 {
-    let field = (v >> vec3u(23u)) & vec3u(0xffu);
-    let fraction = v & vec3u(0x7fffffu);
-    let magnitude = select(fraction | vec3u(0x800000u), fraction, field == vec3u());
-    let lowest = vec3i(max(field, vec3u(1u))) - vec3i(150) + vec3i(countTrailingZeros(magnitude));
-    let exponents = select(lowest, vec3i(1000), magnitude == vec3u());
-    return min(min(exponents.x, exponents.y), exponents.z);
+    return min(min(lowest_exponent(v.x), lowest_exponent(v.y)), lowest_exponent(v.z));
+}
+
+// Exponent of the lowest set bit of an f32, 1000 for zero.
+fn lowest_exponent(bits: u32) -> i32 {
+    let field = (bits >> 23u) & 0xffu;
+    let magnitude = magnitude_of(bits);
+    // A power of two, whose f32 is exact: GLSL ES 3.00 cannot count zeros.
+    let lowest = f32(magnitude & (~magnitude + 1u));
+    return select(i32(max(field, 1u)) - 277 + i32(bitcast<u32>(lowest) >> 23u), 1000, magnitude == 0u);
+}
+
+// The 24 bits of an f32 before its exponent.
+fn magnitude_of(bits: u32) -> u32 {
+    let fraction = bits & 0x7fffffu;
+    return select(fraction | 0x800000u, fraction, ((bits >> 23u) & 0xffu) == 0u);
 }
 
 // u - v on a grid that both are on.
@@ -51,13 +65,11 @@ fn exact_differences(u: Point, v: Point, grid: i32) -> Differences {
 
 // The f32 in units of 2^grid, as magnitude and sign.
 fn on_grid(bits: u32, grid: i32) -> vec4u {
-    let field = (bits >> 23u) & 0xffu;
-    let fraction = bits & 0x7fffffu;
-    let magnitude = select(fraction | 0x800000u, fraction, field == 0u);
+    let magnitude = magnitude_of(bits);
     if magnitude == 0u {
         return vec4u();
     }
-    let exponent = i32(max(field, 1u)) - 150 - grid;
+    let exponent = i32(max((bits >> 23u) & 0xffu, 1u)) - 150 - grid;
     if exponent < 0 {
         return vec4u(magnitude >> u32(-exponent), 0u, 0u, bits >> 31u);
     }

@@ -1,6 +1,8 @@
 // Surfaces in space: the angle sum, the angle between normals against β, and normals that turn over, as
 // src/predicates/space.rs.
 
+const DIMENSION: u32 = 3u;
+
 // As in space.rs, with ε = 2^-23 and a sqrt that errs by 5ε: the angle sum errs by at most
 // (10.6 + 5.01 + 1)·2 + 2.1 = 35.4ε, a product of normals less k|n||m| by 11.1 + 23.2 + 0.5 + 2.1 = 36.9ε, cos β
 // being rounded to f32 too, of the product of the four sizes. 64 leaves room.
@@ -29,8 +31,9 @@ fn bound_of(quad: Quad) -> f32 {
     return SPACE_BOUND * (size(quad[0]) * size(quad[1])) * (size(quad[3]) * size(quad[2])) + SPACE_FLUSHED;
 }
 
-// Whether an edge may flip by its geometry: DELAUNAY, BLOCKED_BY + REASON_ANGLE or REASON_FOLD, or LABELLED.
-fn verdict_in_space(a: Point, b: Point, c: Point, d: Point) -> u32 {
+// Whether an edge may flip by its geometry: DELAUNAY, BLOCKED_BY + REASON_ANGLE or REASON_FOLD, or LABELLED. The
+// winding has no meaning in space.
+fn verdict_on(a: Point, b: Point, c: Point, d: Point, winding: i32) -> u32 {
     let quad = quad_of(a, b, c, d);
     let bound = bound_of(quad);
     let sum = angle_sum_sign(quad, bound);
@@ -45,7 +48,7 @@ fn verdict_in_space(a: Point, b: Point, c: Point, d: Point) -> u32 {
     if sum < 0 && angle > 0 && turned != 0 {
         return select(LABELLED, BLOCKED_BY + REASON_FOLD, turned < 0);
     }
-    return verdict_in_space_exact(a, b, c, d, false);
+    return exact_verdict_on(a, b, c, d, false);
 }
 
 // Whether the angle between the normals, before any flip, is larger than β.
@@ -58,7 +61,7 @@ fn is_over_angle(a: Point, b: Point, c: Point, d: Point) -> bool {
     if before != 0 {
         return before < 0;
     }
-    return verdict_in_space_exact(a, b, c, d, true) != DELAUNAY;
+    return exact_verdict_on(a, b, c, d, true) != DELAUNAY;
 }
 
 // -1 when the opposite angles sum to more than π; 0 where the filter cannot decide.
@@ -97,15 +100,26 @@ fn compare_turns(quad: Quad) -> i32 {
     return select(select(0, 1, all(dots > bound)), -1, any(dots < -bound));
 }
 
-// x, y and z.
-alias Vector = array<Small, 3>;
+// x, y and z, of the digits of a Small each.
+alias Vector = array<vec4i, 6>;
 
 fn vector_of(differences: Differences) -> Vector {
-    return Vector(digits_of(differences[0]), digits_of(differences[1]), digits_of(differences[2]));
+    let x = digits_of(differences[0]);
+    let y = digits_of(differences[1]);
+    let z = digits_of(differences[2]);
+    return Vector(x[0], x[1], y[0], y[1], z[0], z[1]);
 }
 
 fn dot_of(u: Vector, v: Vector, count: u32) -> Medium {
-    return sum_of_products(u[0], v[0], u[1], v[1], u[2], v[2], count);
+    return sum_of_products(
+        Small(u[0], u[1]),
+        Small(v[0], v[1]),
+        Small(u[2], u[3]),
+        Small(v[2], v[3]),
+        Small(u[4], u[5]),
+        Small(v[4], v[5]),
+        count,
+    );
 }
 
 // u·v - x·y: dot products of normals by the identity of Binet and Cauchy,
@@ -115,7 +129,7 @@ fn determinant(u: Medium, v: Medium, x: Medium, y: Medium, count: u32) -> Large 
 }
 
 // With `angle_only`, only the angle before the flip is looked at: DELAUNAY or BLOCKED_BY + REASON_ANGLE.
-fn verdict_in_space_exact(a: Point, b: Point, c: Point, d: Point, angle_only: bool) -> u32 {
+fn exact_verdict_on(a: Point, b: Point, c: Point, d: Point, angle_only: bool) -> u32 {
     let grid = grid_of(a, b, c, d);
     let from_ac = exact_differences(a, c, grid);
     let from_bc = exact_differences(b, c, grid);

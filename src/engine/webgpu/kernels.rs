@@ -6,31 +6,28 @@ use wgpu::{BindingType, BufferBindingType};
 /// Invocations of a workgroup of every kernel.
 pub(super) const WORKGROUP_SIZE: u32 = 256;
 
+macro_rules! shaders {
+    ($($name:literal)*) => {
+        concat!($(include_str!(concat!("../../../shaders/", $name, ".wgsl"))),*)
+    };
+}
+
 /// The shaders of the phases, for meshes of one dimension, in an order in which a reader can follow them.
 pub(super) fn phases_source(dimension: Dimension) -> String {
-    const FILES: &str = concat!(
-        include_str!("../../../shaders/mesh.wgsl"),
-        include_str!("../../../shaders/points.wgsl"),
-        include_str!("../../../shaders/exact.wgsl"),
-        include_str!("../../../shaders/state.wgsl"),
-        include_str!("../../../shaders/plane.wgsl"),
-        include_str!("../../../shaders/space.wgsl"),
-        include_str!("../../../shaders/star.wgsl"),
-        include_str!("../../../shaders/label.wgsl"),
-        include_str!("../../../shaders/select.wgsl"),
-        include_str!("../../../shaders/slot.wgsl"),
-        include_str!("../../../shaders/flip.wgsl"),
-        include_str!("../../../shaders/frontier.wgsl"),
-        include_str!("../../../shaders/iteration.wgsl"),
-    );
-    format!("const DIMENSION = {}u;\n{FILES}", dimension.stride())
+    let numbers = shaders!("mesh" "points" "exact" "state");
+    let geometry = match dimension {
+        Dimension::Two => shaders!("plane"),
+        Dimension::Three => shaders!("space" "creases" "flag_creases"),
+    };
+    let phases = shaders!("star" "label" "select" "slot" "flip" "frontier" "iteration");
+    [numbers, geometry, phases].concat()
 }
 
 /// The shader that builds the adjacency.
-pub(super) const ADJACENCY: &str = include_str!("../../../shaders/adjacency.wgsl");
+pub(super) const ADJACENCY: &str = shaders!("adjacency");
 
 /// The shader that finds drivers whose loops end too early.
-pub(super) const PROBE: &str = include_str!("../../../shaders/probe.wgsl");
+pub(super) const PROBE: &str = shaders!("probe");
 
 /// The kernels of `iteration.wgsl`.
 #[derive(Clone, Copy, PartialEq, Eq)]

@@ -1,0 +1,137 @@
+// The entry points over textures: every phase is a pass over all triangles, in which those that nothing has changed
+// around keep what they had.
+
+// Side of the square of texels that one fragment sums.
+const BLOCK: u32 = 8u;
+
+// A triangle that covers the whole target.
+@vertex
+fn cover(@builtin(vertex_index) corner: u32) -> @builtin(position) vec4f {
+    return vec4f(f32(corner & 1u) * 4.0 - 1.0, f32(corner >> 1u) * 4.0 - 1.0, 0.0, 1.0);
+}
+
+// The frontier, as src/phases/frontier.rs: a triangle without a candidate keeps having none unless it or a neighbour
+// flipped. `bests` and `selections` are those of the iteration before.
+@fragment
+fn label_pass(@builtin(position) fragment: vec4f) -> @location(0) u32 {
+    let t = index_at(fragment);
+    if t >= params[0].x {
+        return NONE;
+    }
+    let around = textureLoad(twins, place(t), 0);
+    if best(t) == NONE && selected(t) == NONE && !has_flipped(around.x) && !has_flipped(around.y) && !has_flipped(around.z) {
+        return NONE;
+    }
+    return label(t, params[0].z);
+}
+
+fn has_flipped(entry: u32) -> bool {
+    return entry != NONE && selected(unflagged(entry) / 3u) != NONE;
+}
+
+@fragment
+fn select_pass(@builtin(position) fragment: vec4f) -> @location(0) u32 {
+    let t = index_at(fragment);
+    if t >= params[0].x {
+        return NONE;
+    }
+    return selection(t, params[0].z);
+}
+
+// Flip, into another texture: the vertices of a triangle.
+@fragment
+fn flip_pass(@builtin(position) fragment: vec4f) -> @location(0) vec4u {
+    let t = index_at(fragment);
+    let old = textureLoad(triangles, place(t), 0);
+    let g = selected(t);
+    if g == NONE {
+        return old;
+    }
+    let h = selected(g / 3u);
+    return with_component(old, next(h) % 3u, vertex(prev(g)));
+}
+
+// Update, into another texture: the twins of a triangle. The vertices are not looked at.
+@fragment
+fn update_pass(@builtin(position) fragment: vec4f) -> @location(0) vec4u {
+    let t = index_at(fragment);
+    let old = textureLoad(twins, place(t), 0);
+    var entries = vec4u(slot(old.x), slot(old.y), slot(old.z), 0u);
+    let g = selected(t);
+    if g != NONE {
+        let h = selected(g / 3u);
+        entries = with_component(entries, next(h) % 3u, next(g));
+        entries = with_component(entries, h % 3u, slot(twin_entry(next(g))));
+    }
+    return entries;
+}
+
+// The anchors of the fans, which stand behind a word for each vertex.
+@fragment
+fn anchor_pass(@builtin(position) fragment: vec4f) -> @location(0) u32 {
+    let i = index_at(fragment);
+    let entry = fan_entry(i);
+    if i < params[0].y {
+        return entry;
+    }
+    return slot(entry);
+}
+
+// The verdicts on the interior edges of a triangle, each from its lower half-edge: labelled, then blocked by reason.
+@fragment
+fn census_pass(@builtin(position) fragment: vec4f) -> @location(0) vec4u {
+    let t = index_at(fragment);
+    var result = vec4u();
+    if t >= params[0].x {
+        return result;
+    }
+    for (var h = 3u * t; h < 3u * t + 3u; h++) {
+        let g = twin(h);
+        if g != NONE && h < g {
+            let verdict = vec4u(verdict_of(h, g));
+            result += vec4u(verdict == vec4u(LABELLED, LABELLED + 1u, LABELLED + 2u, LABELLED + 3u));
+        }
+    }
+    return result;
+}
+
+// How many triangles of a block are selected.
+@fragment
+fn flips_pass(@builtin(position) fragment: vec4f) -> @location(0) vec4u {
+    let first = vec2u(fragment.xy) * BLOCK;
+    let end = min(first + vec2u(BLOCK), textureDimensions(selections));
+    var result = vec4u();
+    for (var y = first.y; y < end.y; y++) {
+        for (var x = first.x; x < end.x; x++) {
+            result.x += u32(textureLoad(selections, vec2u(x, y), 0).x != NONE);
+        }
+    }
+    return result;
+}
+
+// The sum of a block of counts, or of all where one block holds them.
+@fragment
+fn sum_pass(@builtin(position) fragment: vec4f) -> @location(0) vec4u {
+    let size = textureDimensions(counts);
+    let is_last = size.x <= BLOCK && size.y <= BLOCK;
+    let first = select(vec2u(fragment.xy) * BLOCK, vec2u(), is_last);
+    let end = min(first + vec2u(BLOCK), size);
+    var result = vec4u();
+    for (var y = first.y; y < end.y; y++) {
+        for (var x = first.x; x < end.x; x++) {
+            result += textureLoad(counts, vec2u(x, y), 0);
+        }
+    }
+    return result;
+}
+
+// As probe.wgsl.
+@fragment
+fn probe_pass() -> @location(0) u32 {
+    var x = 1u;
+    for (var i = 0u; i < 100000u; i++) {
+        x = x * 1664525u + 1013904223u;
+        x ^= x >> 13u;
+    }
+    return x;
+}

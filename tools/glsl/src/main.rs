@@ -1,0 +1,82 @@
+//! Writes the programs of the WebGL2 engine as a JavaScript module: `cargo run -p glsl -- FILE`. GLSL ES 3.00 from the
+//! WGSL in `shaders/`, by naga, a program for each entry point of `passes.wgsl` and, where it decides anything, for
+//! each dimension. Refuses what old drivers get wrong.
+
+mod lint;
+
+use naga::back::glsl::{Options, PipelineOptions, Version, Writer, WriterFlags};
+use naga::compact::{KeepUnused, compact};
+use naga::valid::{Capabilities, ValidationFlags, Validator};
+use naga::{Module, ShaderStage};
+use std::collections::BTreeMap;
+use std::error::Error;
+
+macro_rules! shaders {
+    ($($name:literal)*) => {
+        concat!($(include_str!(concat!("../../../shaders/", $name, ".wgsl"))),*)
+    };
+}
+
+/// The name of a program, and its entry point.
+type Program = (&'static str, &'static str);
+
+/// For meshes in the plane; all but `label2` and `census2` are for surfaces too.
+const PLANE: [Program; 10] = [
+    ("cover", "cover"),
+    ("label2", "label_pass"),
+    ("select", "select_pass"),
+    ("flip", "flip_pass"),
+    ("update", "update_pass"),
+    ("anchor", "anchor_pass"),
+    ("census2", "census_pass"),
+    ("flips", "flips_pass"),
+    ("sum", "sum_pass"),
+    ("probe", "probe_pass"),
+];
+
+/// For surfaces.
+const SPACE: [Program; 3] =
+    [("label3", "label_pass"), ("crease3", "crease_pass"), ("census3", "census_pass")];
+
+/// The program of an entry point, with the files that say what the dimension is.
+fn glsl(entry_point: &str, geometry: &str) -> Result<String, Box<dyn Error>> {
+    let source = [
+        shaders!("mesh" "points" "exact" "textures"),
+        geometry,
+        shaders!("star" "label" "select" "slot" "passes"),
+    ]
+    .concat();
+    let mut module = naga::front::wgsl::parse_str(&source).map_err(|error| error.emit_to_string(&source))?;
+    module.entry_points.retain(|entry| entry.name == entry_point);
+    compact(&mut module, KeepUnused::No);
+    lint::check(&module).map_err(|fault| format!("{entry_point}: {fault}"))?;
+    let info = Validator::new(ValidationFlags::all(), Capabilities::empty()).validate(&module)?;
+    let options =
+        Options { version: Version::new_gles(300), writer_flags: WriterFlags::empty(), ..Options::default() };
+    let pipeline = PipelineOptions {
+        shader_stage: stage(&module)?,
+        entry_point: entry_point.to_owned(),
+        multiview: None,
+    };
+    let mut text = String::new();
+    Writer::new(&mut text, &module, &info, &options, &pipeline, Default::default())?.write()?;
+    Ok(text)
+}
+
+fn stage(module: &Module) -> Result<ShaderStage, String> {
+    module.entry_points.first().map(|entry| entry.stage).ok_or_else(|| "no such entry point".to_owned())
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let path = std::env::args().nth(1).ok_or("usage: glsl FILE")?;
+    let mut programs = BTreeMap::new();
+    let (plane, space) = (shaders!("plane"), shaders!("space" "creases" "crease_pass"));
+    for (geometry, list) in [(plane, &PLANE[..]), (space, &SPACE[..])] {
+        for &(name, entry_point) in list {
+            programs.insert(name, glsl(entry_point, geometry)?);
+        }
+    }
+    let text = serde_json::to_string_pretty(&programs)?;
+    std::fs::write(path, format!("// Made from shaders/ by tools/glsl.\nexport default {text};\n"))?;
+    Ok(())
+}
