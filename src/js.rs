@@ -5,7 +5,7 @@ mod objects;
 
 pub use crate::engine::GpuDevice;
 use crate::js_values::{backend_name, object, parse_dimension, thrown};
-use crate::{Backend, Error, Mesh, Options, Order, Session};
+use crate::{Backend, Error, Mesh, Options, Order, Session, engine};
 use js_sys::{Uint8Array, Uint32Array};
 use objects::{outcome_object, reasons_object};
 use wasm_bindgen::prelude::*;
@@ -26,6 +26,14 @@ extern "C" {
     fn order(this: &JsOptions) -> JsValue;
     #[wasm_bindgen(method, getter)]
     fn device(this: &JsOptions) -> JsValue;
+}
+
+/// Says where the programs of the WebGL2 engine come from: a function that returns a promise of their module.
+#[wasm_bindgen(js_name = setShaderLoader)]
+pub fn set_shader_loader(
+    #[wasm_bindgen(unchecked_param_type = "() => Promise<unknown>")] loader: js_sys::Function,
+) {
+    engine::set_shader_loader(loader);
 }
 
 /// A mesh on an engine. One call at a time: each must have answered before the next.
@@ -196,8 +204,9 @@ fn parse_options(given: &JsOptions) -> Result<Options, Error> {
         options.backend = match backend.as_string().as_deref() {
             Some("auto") => Backend::Auto,
             Some("webgpu") => Backend::Gpu,
+            Some("webgl2") => Backend::WebGl,
             Some("cpu") => Backend::Cpu,
-            _ => return wrong("backend", &backend, "'auto', 'webgpu' or 'cpu'"),
+            _ => return wrong("backend", &backend, "'auto', 'webgpu', 'webgl2' or 'cpu'"),
         };
     }
     let order = given.order();

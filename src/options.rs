@@ -10,6 +10,8 @@ pub enum Backend {
     Cpu,
     /// The GPU (WebGPU compute), or an error.
     Gpu,
+    /// The GPU through WebGL2, in a browser, or an error.
+    WebGl,
 }
 
 /// Which of the many valid orders of flips is taken.

@@ -7,7 +7,7 @@ mod tests;
 use crate::edge_states::edge_states;
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 use crate::engine::SharedObjects;
-use crate::engine::{Answer, Cpu, Engine};
+use crate::engine::{Answer, Engine};
 use crate::mesh::refuse_non_finite;
 use crate::phases::{Geometry, Topology};
 use crate::predicates::cos_degrees;
@@ -18,7 +18,7 @@ use crate::{
     Backend, EdgeState, Edges, Error, Iteration, Mesh, Options, Order, Outcome, Reason, Status, Timings,
     frozen,
 };
-use choice::engine_for;
+use choice::{engine_after, engine_for};
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use web_time::Instant;
@@ -130,8 +130,9 @@ impl Session {
             Err(error @ (Error::BackendLimit { .. } | Error::Device { .. }))
                 if self.options.backend == Backend::Auto =>
             {
-                self.fallback = Some(format!("after the vertices moved: {error}"));
-                self.engine = Box::new(Cpu::new(mesh.clone(), cos_degrees(self.options.max_normal_angle)));
+                let why = format!("after the vertices moved: {error}");
+                (self.engine, self.fallback) =
+                    engine_after(self.engine.backend(), why, &mesh, &self.options).await?;
             }
             answer => answer?,
         }
@@ -268,22 +269,23 @@ impl Session {
         Ok(())
     }
 
-    /// Asks the engine. Where the device fails and the backend is `Auto`, the CPU goes the same way again up to
-    /// the last complete iteration, which determinism allows, and is asked instead.
+    /// Asks the engine. Where the device fails and the backend is `Auto`, the next engine goes the same way again up
+    /// to the last complete iteration, which determinism allows, and is asked instead.
     async fn ask<T>(
         &mut self,
         question: impl for<'a> Fn(&'a mut dyn Engine) -> Answer<'a, T>,
     ) -> Result<T, Error> {
-        match question(self.engine.as_mut()).await {
-            Err(Error::Device { message }) if self.options.backend == Backend::Auto => {
-                self.fallback = Some(format!("the device failed during the run: {message}"));
-                let cos = cos_degrees(self.options.max_normal_angle);
-                self.engine = Box::new(Cpu::new(self.mesh.clone(), cos));
-                self.engine.iterate(self.flips_per_iteration.len() as u32).await?;
-                question(self.engine.as_mut()).await
-            }
-            answer => answer,
+        let mut answer = question(self.engine.as_mut()).await;
+        while let (Err(Error::Device { message }), Backend::Auto) = (&answer, self.options.backend) {
+            let why = format!("the device failed during the run: {message}");
+            (self.engine, self.fallback) =
+                engine_after(self.engine.backend(), why, &self.mesh, &self.options).await?;
+            answer = match self.engine.iterate(self.flips_per_iteration.len() as u32).await {
+                Ok(_) => question(self.engine.as_mut()).await,
+                Err(error) => Err(error),
+            };
         }
+        answer
     }
 }
 

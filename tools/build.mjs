@@ -1,6 +1,6 @@
 // Builds the npm package into dist/: `npm run build`. For each of its modules, cargo compiles the library for wasm32,
-// wasm-bindgen writes the glue and wasm-opt makes it smaller; then tsc checks the TypeScript and compiles it. Ends
-// with a table of sizes.
+// wasm-bindgen writes the glue and wasm-opt makes it smaller; tools/glsl writes the programs of the WebGL2 engine; then
+// tsc checks the TypeScript and compiles it. Ends with a table of sizes.
 
 import { spawnSync } from 'node:child_process';
 import { cpSync, mkdirSync, readFileSync, rmSync } from 'node:fs';
@@ -44,11 +44,12 @@ for (const { name } of modules) {
   run(process.execPath, 'node_modules/binaryen/bin/wasm-opt', '-Oz', '--strip-debug',
     ...wasmFeatures.map((feature) => `--enable-${feature}`), wasm, '-o', wasm);
 }
+run('cargo', 'run', '--package', 'glsl', '--', 'dist/glsl.js');
 run(process.execPath, 'node_modules/typescript/bin/tsc', '-p', 'src/js');
 
 console.log('\n| file | bytes | gzip | brotli |\n|---|---:|---:|---:|');
 const glueFiles = modules.flatMap(({ name }) => [`wasm/${name}_bg.wasm`, `wasm/${name}.js`]);
-for (const file of [...glueFiles, 'session.js', 'index.js', 'files.js'].map((file) => `dist/${file}`)) {
+for (const file of [...glueFiles, 'glsl.js', 'session.js', 'index.js', 'files.js'].map((file) => `dist/${file}`)) {
   const bytes = readFileSync(file);
   console.log(`| ${file} | ${bytes.length} | ${gzipSync(bytes).length} | ${brotliCompressSync(bytes).length} |`);
 }

@@ -4,13 +4,23 @@
 mod cosine;
 mod cpu;
 mod lawson;
+#[cfg(feature = "gpu")]
+mod self_test;
+#[cfg(feature = "gpu")]
+mod span;
 #[cfg(all(test, feature = "gpu"))]
 mod tests;
+#[cfg(all(target_arch = "wasm32", feature = "js"))]
+mod webgl;
 #[cfg(feature = "gpu")]
 mod webgpu;
 
 pub(crate) use cpu::Cpu;
 pub(crate) use lawson::Lawson;
+#[cfg(feature = "gpu")]
+pub(crate) use self_test::self_test;
+#[cfg(all(target_arch = "wasm32", feature = "js"))]
+pub(crate) use webgl::{Context, WebGl, set_shader_loader};
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 pub use webgpu::GpuDevice;
 #[cfg(feature = "gpu")]
@@ -66,7 +76,7 @@ pub(crate) trait Engine {
     /// What the adjacency found.
     fn edge_counts(&self) -> EdgeCounts;
 
-    /// `cpu` or `gpu`.
+    /// `cpu`, `gpu` or `webgl2`.
     fn backend(&self) -> &'static str;
 
     /// The device's name and driver, on a GPU.

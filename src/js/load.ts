@@ -1,7 +1,13 @@
 /** Loads the module of the engines. */
 
-import initModule from './wasm/edgeflip.js';
+import initModule, { setShaderLoader } from './wasm/edgeflip.js';
 import { loader } from './module.js';
+
+const start: typeof initModule = async (source) => {
+  const module = await initModule(source);
+  setShaderLoader(() => import('./glsl.js'));
+  return module;
+};
 
 /**
  * Loads the WebAssembly module. Everything else calls it by itself: call it to load early, or with a source where the
@@ -9,4 +15,4 @@ import { loader } from './module.js';
  *
  * @throws {@link EdgeflipError} `load-failed`.
  */
-export const init = loader(initModule, () => new URL('./wasm/edgeflip_bg.wasm', import.meta.url));
+export const init = loader(start, () => new URL('./wasm/edgeflip_bg.wasm', import.meta.url));

@@ -17,8 +17,8 @@ pub(super) fn reasons_object(reasons: &Reasons) -> JsValue {
 pub(super) fn outcome_object(outcome: &Outcome) -> JsValue {
     let count = |n: u64| JsValue::from(n as f64);
     let text = |text: &Option<String>| text.as_deref().map_or(JsValue::UNDEFINED, JsValue::from);
-    // It quotes an error, in the words of Rust.
-    let fallback = outcome.fallback.as_ref().map(|why| why.replacen("backend gpu ", "backend webgpu ", 1));
+    // It quotes errors, in the words of Rust.
+    let fallback = outcome.fallback.as_ref().map(|why| why.replace("backend gpu ", "backend webgpu "));
     let status = match outcome.status {
         Status::Done => "done",
         Status::Stopped => "stopped",

@@ -16,13 +16,14 @@ export interface Mesh {
 }
 
 /** An engine. All give the same result, bit for bit. */
-export type Engine = 'webgpu' | 'cpu';
+export type Engine = 'webgpu' | 'webgl2' | 'cpu';
 
 /** What can be chosen for a session. */
 export interface Options {
   /**
-   * `'webgpu'` and `'cpu'` take that engine or fail; `'auto'` (default) takes WebGPU where there is a real GPU that
-   * can take the mesh, else the CPU.
+   * `'webgpu'`, `'webgl2'` and `'cpu'` take that engine or fail. `'auto'` (default) takes the CPU for a small mesh, and
+   * else the first of WebGPU, WebGL2 and the CPU that is on a real GPU, gets a test mesh right and can take the mesh;
+   * where a device is lost it goes on with the next. {@link Result.fallback} says why.
    */
   backend?: 'auto' | Engine | undefined;
   /**

@@ -1,31 +1,90 @@
 //! Which engine a session runs on.
 
+#[cfg(all(target_arch = "wasm32", feature = "js"))]
+use crate::engine::{Context, WebGl};
 use crate::engine::{Cpu, Engine, Lawson};
 #[cfg(feature = "gpu")]
-use crate::engine::{Device, WebGpu};
+use crate::engine::{Device, WebGpu, self_test};
 use crate::predicates::cos_degrees;
 use crate::{Backend, Error, Mesh, Options, Order};
 use std::sync::Arc;
 
-/// The engine for the options, and why `Auto` did not take the GPU.
-pub(super) async fn engine_for(
-    mesh: &Arc<Mesh>,
-    options: &Options,
-) -> Result<(Box<dyn Engine>, Option<String>), Error> {
-    let cos = cos_degrees(options.max_normal_angle);
-    let cpu = || Cpu::new(mesh.clone(), cos);
+/// What `Auto` tries, in this order. The last takes every mesh.
+#[cfg(target_arch = "wasm32")]
+const ORDER: [Backend; 3] = [Backend::Gpu, Backend::WebGl, Backend::Cpu];
+#[cfg(not(target_arch = "wasm32"))]
+const ORDER: [Backend; 2] = [Backend::Gpu, Backend::Cpu];
+
+/// A mesh of fewer triangles is done on the CPU before a GPU has answered once: see the crossover in README.
+const FEWEST_FOR_GPU: usize = 20_000;
+
+/// An engine, and why `Auto` did not take those before it.
+type Choice = (Box<dyn Engine>, Option<String>);
+
+/// The engine for the options.
+///
+/// # Errors
+/// Those of the engine asked for; none for `Auto`.
+pub(super) async fn engine_for(mesh: &Arc<Mesh>, options: &Options) -> Result<Choice, Error> {
     match (options.order, options.backend) {
-        (Order::Any, Backend::Gpu) => {
+        (Order::Any, Backend::Gpu | Backend::WebGl) => {
             let message = "`any` is sequential and runs on the cpu only".to_owned();
             Err(Error::Option { option: "order", message })
         }
-        (Order::Any, _) => Ok((Box::new(Lawson::new(cpu())), None)),
-        (Order::Reproducible, Backend::Cpu) => Ok((Box::new(cpu()), None)),
-        (Order::Reproducible, Backend::Gpu) => Ok((gpu(mesh, options, cos).await?, None)),
-        (Order::Reproducible, Backend::Auto) => match gpu(mesh, options, cos).await {
-            Ok(engine) => Ok((engine, None)),
-            Err(error) => Ok((Box::new(cpu()), Some(error.to_string()))),
-        },
+        (Order::Any, _) => {
+            let cpu = Cpu::new(mesh.clone(), cos_degrees(options.max_normal_angle));
+            Ok((Box::new(Lawson::new(cpu)), None))
+        }
+        (Order::Reproducible, Backend::Auto) if mesh.triangle_count() < FEWEST_FOR_GPU => {
+            let why = format!("a mesh of fewer than {FEWEST_FOR_GPU} triangles is done sooner on the cpu");
+            Ok((open(Backend::Cpu, mesh, options).await?, Some(why)))
+        }
+        (Order::Reproducible, Backend::Auto) => first_of(&ORDER, Vec::new(), mesh, options).await,
+        (Order::Reproducible, backend) => Ok((open(backend, mesh, options).await?, None)),
+    }
+}
+
+/// The engine that `Auto` takes where the one named `failed` has failed with `why`.
+///
+/// # Errors
+/// As [`engine_for`].
+pub(super) async fn engine_after(
+    failed: &str,
+    why: String,
+    mesh: &Arc<Mesh>,
+    options: &Options,
+) -> Result<Choice, Error> {
+    let names = |backend: &Backend| match backend {
+        Backend::Gpu => "gpu",
+        Backend::WebGl => "webgl2",
+        Backend::Auto | Backend::Cpu => "cpu",
+    };
+    let place = ORDER.iter().position(|backend| names(backend) == failed).unwrap_or(0);
+    first_of(&ORDER[place + 1..], vec![why], mesh, options).await
+}
+
+/// The first engine that takes the mesh.
+async fn first_of(
+    backends: &[Backend],
+    mut reasons: Vec<String>,
+    mesh: &Arc<Mesh>,
+    options: &Options,
+) -> Result<Choice, Error> {
+    for &backend in backends {
+        match open(backend, mesh, options).await {
+            Ok(engine) => return Ok((engine, (!reasons.is_empty()).then(|| reasons.join("; ")))),
+            Err(error) => reasons.push(error.to_string()),
+        }
+    }
+    Err(Error::Device { message: reasons.join("; ") })
+}
+
+async fn open(backend: Backend, mesh: &Arc<Mesh>, options: &Options) -> Result<Box<dyn Engine>, Error> {
+    let cos = cos_degrees(options.max_normal_angle);
+    match backend {
+        Backend::Gpu => gpu(mesh, options, cos).await,
+        Backend::WebGl => webgl(mesh, options, cos).await,
+        Backend::Auto | Backend::Cpu => Ok(Box::new(Cpu::new(mesh.clone(), cos))),
     }
 }
 
@@ -34,15 +93,33 @@ async fn gpu(mesh: &Arc<Mesh>, options: &Options, cos: f64) -> Result<Box<dyn En
     // `Auto` leaves a GPU alone that the processor plays.
     let takes_software = options.backend == Backend::Gpu;
     #[cfg(all(target_arch = "wasm32", feature = "js"))]
-    if let Some(given) = &options.device {
-        let device = Device::adopted(given, takes_software).await?;
-        return Ok(Box::new(WebGpu::new(device, mesh, cos).await?));
-    }
-    Ok(Box::new(WebGpu::new(Device::shared(takes_software).await?, mesh, cos).await?))
+    let device = match &options.device {
+        Some(given) => Device::adopted(given, takes_software).await?,
+        None => Device::shared(takes_software).await?,
+    };
+    #[cfg(not(all(target_arch = "wasm32", feature = "js")))]
+    let device = Device::shared(takes_software).await?;
+    let make = async |mesh: &Arc<Mesh>, cos| WebGpu::new(device.clone(), mesh, cos).await;
+    self_test(&device.tested, "gpu", mesh.dimension(), make).await?;
+    Ok(Box::new(make(mesh, cos).await?))
 }
 
 #[cfg(not(feature = "gpu"))]
 async fn gpu(_mesh: &Arc<Mesh>, _options: &Options, _cos: f64) -> Result<Box<dyn Engine>, Error> {
     let message = "this build has no GPU engine (feature `gpu`)".to_owned();
     Err(Error::BackendUnavailable { backend: "gpu", message })
+}
+
+#[cfg(all(target_arch = "wasm32", feature = "js"))]
+async fn webgl(mesh: &Arc<Mesh>, options: &Options, cos: f64) -> Result<Box<dyn Engine>, Error> {
+    let context = Context::shared(options.backend == Backend::WebGl).await?;
+    let make = async |mesh: &Arc<Mesh>, cos| WebGl::new(context.clone(), mesh, cos).await;
+    self_test(&context.tested, "webgl2", mesh.dimension(), make).await?;
+    Ok(Box::new(make(mesh, cos).await?))
+}
+
+#[cfg(not(all(target_arch = "wasm32", feature = "js")))]
+async fn webgl(_mesh: &Arc<Mesh>, _options: &Options, _cos: f64) -> Result<Box<dyn Engine>, Error> {
+    let message = "WebGL2 is there in browsers only, through the npm package".to_owned();
+    Err(Error::BackendUnavailable { backend: "webgl2", message })
 }

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "what fails here is a failed test")]
 
 use super::*;
-use crate::engine::{Census, EdgeCounts};
+use crate::engine::{Census, Cpu, EdgeCounts};
 use pollster::block_on;
 
 /// A device that is lost at a certain question.

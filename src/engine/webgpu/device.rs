@@ -5,6 +5,7 @@ use super::browser;
 use super::faults::{Fault, Word, refuse, unavailable, watch};
 use super::kernels::{self, Kernels, WORKGROUP_SIZE};
 use crate::Error;
+use crate::engine::self_test::Tested;
 use crate::mesh::Dimension;
 use futures_channel::oneshot;
 use std::sync::{Arc, Mutex};
@@ -38,6 +39,7 @@ pub(crate) struct Device {
     most_workgroups: u32,
     /// See `shaders/probe.wgsl`.
     pub(super) ends_loops_early: bool,
+    pub(crate) tested: Tested,
     failure: Failure,
     pub(super) adjacency: Kernels<6>,
     /// By dimension, once a mesh has needed them.
@@ -136,6 +138,7 @@ impl Device {
             adapter,
             most_workgroups,
             ends_loops_early: false,
+            tested: Tested::default(),
             failure,
             adjacency,
             phases: Mutex::default(),

@@ -5,11 +5,11 @@
 use super::adjacency::BUCKETS_EACH;
 use super::device::Device;
 use super::kernels::{ADJACENCY, PROBE, WORKGROUP_SIZE, phases_source};
-use super::limits::SPAN;
 use super::params::Params;
 use super::{ENTRIES, ENTRY_WORDS};
 use crate::adjacency::CREASE;
 use crate::engine::cosine::DIGIT_BITS;
+use crate::engine::span::SPAN;
 use crate::phases::BLOCKED;
 use crate::{Dimension, Error, NONE, Reason};
 use pollster::block_on;

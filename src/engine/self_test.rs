@@ -1,0 +1,104 @@
+//! A known small mesh that an engine has to get right before it is trusted with another.
+
+use super::{Cpu, Engine};
+use crate::mesh::{Dimension, Mesh};
+use crate::{Error, cos_degrees};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Vertices along a side of the test mesh.
+const SIDE: u16 = 9;
+
+/// For which dimensions a device has passed.
+#[derive(Default)]
+pub(crate) struct Tested([AtomicBool; 2]);
+
+/// Has an engine that `make` makes flip the test mesh, and compares it with the CPU after every iteration; once for
+/// each dimension.
+///
+/// # Errors
+/// [`Error::BackendUnavailable`] if they differ; those of `make` and of the engine.
+pub(crate) async fn self_test<E: Engine>(
+    tested: &Tested,
+    backend: &'static str,
+    dimension: Dimension,
+    make: impl AsyncFn(&Arc<Mesh>, f64) -> Result<E, Error>,
+) -> Result<(), Error> {
+    let has_passed = &tested.0[dimension.stride() - 2];
+    if has_passed.load(Ordering::Relaxed) {
+        return Ok(());
+    }
+    let mesh = Arc::new(test_mesh(dimension)?);
+    let cos = cos_degrees(20.0);
+    let mut engine = make(&mesh, cos).await?;
+    let mut cpu = Cpu::new(mesh, cos);
+    loop {
+        let flips = cpu.iterate(1).await?;
+        let is_same = engine.census().await? == cpu.count()
+            && engine.iterate(1).await? == flips
+            && engine.triangles().await? == cpu.triangles;
+        if !is_same {
+            let message = "it failed its self-test: it flips other edges than the cpu".to_owned();
+            return Err(Error::BackendUnavailable { backend, message });
+        }
+        if flips.is_empty() {
+            has_passed.store(true, Ordering::Relaxed);
+            return Ok(());
+        }
+    }
+}
+
+/// A lattice of spacing 0.1, whose squares only exact arithmetic knows to be cocircular or not, under one that is
+/// sheared, which has to flip; as a surface, with a step.
+fn test_mesh(dimension: Dimension) -> Result<Mesh, Error> {
+    let place = |i: u16, j: u16| {
+        let (i, j) = (f32::from(i), f32::from(j));
+        let shear = (j - f32::from(SIDE / 2)).max(0.0);
+        let point = [0.1 * i + 0.17 * shear, 0.1 * j, if i > 5.0 { 0.02 * i * j } else { 0.0 }];
+        point[..dimension.stride()].to_vec()
+    };
+    let positions = (0..SIDE).flat_map(|j| (0..SIDE).flat_map(move |i| place(i, j))).collect::<Vec<f32>>();
+    let square = |i: u16, j: u16| {
+        let at = |i, j| u32::from(j * SIDE + i);
+        let [p, q, r, s] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
+        [p, q, r, p, r, s]
+    };
+    let triangles = (0..SIDE - 1).flat_map(|j| (0..SIDE - 1).flat_map(move |i| square(i, j))).collect();
+    Mesh::new(dimension, positions, triangles)
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "what fails here is a failed test")]
+
+    use super::*;
+    use pollster::block_on;
+
+    #[test]
+    fn the_mesh_flips_in_several_iterations_and_has_ties_and_blocked_edges() {
+        for dimension in [Dimension::Two, Dimension::Three] {
+            let mut cpu = Cpu::new(Arc::new(test_mesh(dimension).unwrap()), cos_degrees(20.0));
+            assert!(block_on(cpu.iterate(u32::MAX)).unwrap().len() > 2);
+            assert_eq!(cpu.count().blocked.total() > 0, dimension == Dimension::Three);
+        }
+    }
+
+    #[test]
+    fn an_engine_passes_once_or_is_refused() {
+        for dimension in [Dimension::Two, Dimension::Three] {
+            let tested = Tested::default();
+            let moved = |mesh: &Mesh| {
+                let mut positions = mesh.positions().to_vec();
+                positions[0] += 1.0;
+                Arc::new(Mesh::new(dimension, positions, mesh.triangles().to_vec()).unwrap())
+            };
+            let wrong = async |mesh: &Arc<Mesh>, cos| Ok(Cpu::new(moved(mesh), cos));
+            let refused = block_on(self_test(&tested, "gpu", dimension, wrong));
+            assert!(matches!(refused, Err(Error::BackendUnavailable { backend: "gpu", .. })));
+            let right = async |mesh: &Arc<Mesh>, cos| Ok(Cpu::new(mesh.clone(), cos));
+            block_on(self_test(&tested, "gpu", dimension, right)).unwrap();
+            // From now on it is not asked again.
+            block_on(self_test(&tested, "gpu", dimension, wrong)).unwrap();
+        }
+    }
+}

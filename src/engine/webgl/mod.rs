@@ -1,0 +1,338 @@
+//! The phases as fragment programs over integer textures, for browsers without WebGPU.
+//!
+//! Every phase is a pass over all triangles that writes another texture than it reads. The host builds the adjacency,
+//! and reads the flips of a batch of iterations when it has ended.
+
+mod context;
+mod texture;
+
+pub(crate) use context::{Context, set_shader_loader};
+
+use super::cosine::Cosine;
+use super::span::refuse_wide_span;
+use super::{Answer, Census, EdgeCounts, Engine};
+use crate::mesh::{Dimension, Mesh};
+use crate::phases::BLOCKED;
+use crate::star::Fans;
+use crate::winding::Winding;
+use crate::{Adjacency, Error, NONE, Reason};
+use context::refuse;
+use std::rc::Rc;
+use std::sync::Arc;
+use texture::{Pair, Texture};
+use web_sys::WebGl2RenderingContext as Gl;
+
+/// Iterations of one batch. Behind the end they only cost time: they flip nothing.
+const BATCH: u32 = 16;
+/// The most triangles at one vertex where loops end too early.
+const SHORT_STAR: u32 = 20_000;
+/// Side of the square of texels that one fragment sums, as in `passes.wgsl`.
+const BLOCK: u32 = 8;
+/// Words of the parameters.
+const PARAMS: usize = 24;
+
+// Places of the textures, as in `textures.wgsl`.
+const POSITIONS: u32 = 0;
+const TRIANGLES: u32 = 1;
+const TWINS: u32 = 2;
+const BESTS: u32 = 3;
+const SELECTIONS: u32 = 4;
+const FANS: u32 = 5;
+const COUNTS: u32 = 6;
+
+/// A mesh in textures.
+pub(crate) struct WebGl {
+    context: Rc<Context>,
+    cos: f64,
+    dimension: Dimension,
+    count: usize,
+    counts: EdgeCounts,
+    params: [u32; PARAMS],
+    positions: Texture,
+    triangles: Pair,
+    twins: Pair,
+    bests: Pair,
+    selections: Texture,
+    fans: Pair,
+    /// Each an eighth as wide and as high as the one before; the last is one block.
+    sums: Vec<Texture>,
+    /// The flips of a batch's iterations, twice; or a census.
+    history: Texture,
+    passes: u64,
+}
+
+impl WebGl {
+    /// Builds the adjacency and uploads the mesh; `cos` is the cosine of β.
+    ///
+    /// # Errors
+    /// [`Error::BackendLimit`] for a mesh that is too large for the context or has coordinates of too many magnitudes;
+    /// [`Error::BackendUnavailable`] if its compiler refuses the programs; [`Error::Device`].
+    pub(crate) async fn new(context: Rc<Context>, mesh: &Mesh, cos: f64) -> Result<Self, Error> {
+        refuse_wide_span("webgl2", mesh)?;
+        let dimension = mesh.dimension();
+        let decide: &[_] = match dimension {
+            Dimension::Two => &["label2", "census2"],
+            Dimension::Three => &["label3", "census3", "crease3"],
+        };
+        context.compile(decide).await?;
+        context.compile(&["select", "flip", "update", "anchor", "flips", "sum"]).await?;
+
+        let adjacency = Adjacency::new(mesh);
+        let winding = Winding::new(mesh, &adjacency.twins);
+        let fans = Fans::new(mesh.vertex_count(), mesh.triangles(), &adjacency.twins);
+        if context.ends_loops_early {
+            refuse_large_star(&context, mesh)?;
+        }
+        let count = mesh.triangle_count();
+        let bits = context.width_bits(count);
+        let size = |texels: usize| size_of(&context, texels, bits);
+        let whole = size(count)?;
+        let pair = |size, words| Pair::new(&context, size, words);
+        let mut sums = Vec::new();
+        let mut side = whole;
+        while sums.is_empty() || side.0 > BLOCK || side.1 > BLOCK {
+            side = (side.0.div_ceil(BLOCK), side.1.div_ceil(BLOCK));
+            sums.push(Texture::new(&context, side, 4)?);
+        }
+        let mut result = Self {
+            cos,
+            dimension,
+            count,
+            counts: EdgeCounts::from(&adjacency),
+            params: params(mesh, bits, fans.table.len(), &Cosine::new(cos)),
+            positions: Texture::new(&context, size(mesh.vertex_count())?, 4)?,
+            triangles: pair(whole, 4)?,
+            twins: pair(whole, 4)?,
+            bests: pair(whole, 1)?,
+            selections: Texture::new(&context, whole, 1)?,
+            fans: pair(size(fans.table.len())?, 1)?,
+            sums,
+            history: Texture::new(&context, (BATCH, 1), 4)?,
+            passes: 0,
+            context,
+        };
+        result.upload(mesh, &adjacency.twins, &winding, fans)?;
+        result.flag_creases()?;
+        Ok(result)
+    }
+
+    fn upload(&mut self, mesh: &Mesh, twins: &[u32], winding: &Winding, fans: Fans) -> Result<(), Error> {
+        let in_fours = |words: &[u32], fourth: &dyn Fn(usize) -> u32| -> Vec<u32> {
+            words.chunks_exact(3).enumerate().flat_map(|(i, w)| [w[0], w[1], w[2], fourth(i)]).collect()
+        };
+        let stride = self.dimension.stride();
+        let point = |p: &[f32]| [p[0], p[1], if stride == 3 { p[2] } else { 0.0 }, 0.0].map(f32::to_bits);
+        self.positions.write(mesh.positions().chunks_exact(stride).flat_map(point).collect())?;
+        let is_clockwise = |t: usize| u32::from(winding.is_clockwise(t as u32));
+        self.triangles.front.write(in_fours(mesh.triangles(), &is_clockwise))?;
+        self.twins.front.write(in_fours(twins, &|_| NONE))?;
+        self.fans.front.write(fans.table)?;
+        // Every triangle is looked at in the first iteration: as if each had been blocked before, and none selected.
+        self.bests.front.write(vec![BLOCKED; self.count])?;
+        self.selections.write(vec![NONE; self.count])
+    }
+
+    fn flag_creases(&mut self) -> Result<(), Error> {
+        if self.dimension == Dimension::Three {
+            self.write_params();
+            let inputs = [
+                (POSITIONS, &self.positions),
+                (TRIANGLES, &self.triangles.front),
+                (TWINS, &self.twins.front),
+            ];
+            self.context.pass("crease3", &inputs, &self.twins.back, None)?;
+            self.passes += 1;
+            self.twins.swap();
+        }
+        Ok(())
+    }
+
+    fn write_params(&self) {
+        let gl = &self.context.gl;
+        gl.bind_buffer(Gl::UNIFORM_BUFFER, Some(&self.context.params));
+        let words = js_sys::Uint32Array::from(self.params.as_slice());
+        gl.buffer_data_with_array_buffer_view(Gl::UNIFORM_BUFFER, &words, Gl::DYNAMIC_DRAW);
+    }
+
+    /// The passes of one iteration; its flips, twice, go to a column of the history.
+    fn encode_iteration(&mut self, column: u32) -> Result<(), Error> {
+        let context = self.context.clone();
+        self.write_params();
+        let mesh =
+            [(POSITIONS, &self.positions), (TRIANGLES, &self.triangles.front), (TWINS, &self.twins.front)];
+        let with = |more: &[(u32, &Texture)], program, target: &Texture| {
+            context.pass(program, &[&mesh, more].concat(), target, None)
+        };
+        let fans = (FANS, &self.fans.front);
+        let label = if self.dimension == Dimension::Two { "label2" } else { "label3" };
+        with(&[fans, (BESTS, &self.bests.front), (SELECTIONS, &self.selections)], label, &self.bests.back)?;
+        with(&[fans, (BESTS, &self.bests.back)], "select", &self.selections)?;
+        let selections = (SELECTIONS, &self.selections);
+        with(&[selections], "flip", &self.triangles.back)?;
+        with(&[selections], "update", &self.twins.back)?;
+        let has_fans = self.params[4] > 0;
+        if has_fans {
+            with(&[selections, fans], "anchor", &self.fans.back)?;
+            self.fans.swap();
+        }
+        self.bests.swap();
+        self.triangles.swap();
+        self.twins.swap();
+        self.context.pass("flips", &[(SELECTIONS, &self.selections)], &self.sums[0], None)?;
+        self.passes += 5 + u64::from(has_fans);
+        self.sum_up(column)
+    }
+
+    /// Sums the counts in the first of the sums into a column of the history.
+    fn sum_up(&mut self, column: u32) -> Result<(), Error> {
+        for pair in self.sums.windows(2) {
+            self.context.pass("sum", &[(COUNTS, &pair[0])], &pair[1], None)?;
+        }
+        self.passes += self.sums.len() as u64;
+        let last = &self.sums[self.sums.len() - 1];
+        self.context.pass("sum", &[(COUNTS, last)], &self.history, Some(column))
+    }
+
+    async fn run(&mut self, count: u32) -> Result<Vec<u32>, Error> {
+        let mut flips = Vec::new();
+        while (flips.len() as u32) < count {
+            let batch = (count - flips.len() as u32).min(BATCH);
+            let first = self.params[2];
+            for column in 0..batch {
+                self.params[2] = first + column;
+                self.encode_iteration(column)?;
+            }
+            let history = self.context.read(&self.history, batch as usize).await?;
+            let ran = history.chunks_exact(4).map(|texel| texel[0] / 2).take_while(|&n| n > 0);
+            let before = flips.len();
+            flips.extend(ran);
+            let ran = (flips.len() - before) as u32;
+            self.params[2] = first + ran;
+            if ran < batch {
+                break;
+            }
+        }
+        Ok(flips)
+    }
+
+    async fn count(&mut self) -> Result<Census, Error> {
+        self.write_params();
+        let census = if self.dimension == Dimension::Two { "census2" } else { "census3" };
+        let inputs = [
+            (POSITIONS, &self.positions),
+            (TRIANGLES, &self.triangles.front),
+            (TWINS, &self.twins.front),
+            (FANS, &self.fans.front),
+        ];
+        // Nothing is there between two iterations.
+        self.context.pass(census, &inputs, &self.triangles.back, None)?;
+        self.context.pass("sum", &[(COUNTS, &self.triangles.back)], &self.sums[0], None)?;
+        self.passes += 2;
+        self.sum_up(0)?;
+        let counts = self.context.read(&self.history, 1).await?;
+        let mut census = Census { labelled: counts[0], ..Census::default() };
+        for (reason, count) in [Reason::Angle, Reason::Fold, Reason::Duplicate].into_iter().zip(&counts[1..])
+        {
+            census.blocked[reason] = u64::from(*count);
+        }
+        Ok(census)
+    }
+
+    /// The first three words of each triangle's texel.
+    async fn read_threes(&self, texture: &Texture) -> Result<Vec<u32>, Error> {
+        let words = self.context.read(texture, self.count).await?;
+        Ok(words.chunks_exact(4).take(self.count).flat_map(|texel| [texel[0], texel[1], texel[2]]).collect())
+    }
+
+    async fn move_vertices(&mut self, mesh: Arc<Mesh>) -> Result<(), Error> {
+        let passes = self.passes;
+        *self = Self::new(self.context.clone(), &mesh, self.cos).await?;
+        self.passes += passes;
+        Ok(())
+    }
+}
+
+/// Width and height of a texture for so many texels; never empty.
+fn size_of(context: &Context, texels: usize, bits: u32) -> Result<(u32, u32), Error> {
+    let rows = texels.div_ceil(1 << bits).max(1);
+    if rows > context.largest_side as usize {
+        let side = context.largest_side;
+        return refuse(format!(
+            "it needs a texture of {} by {rows}, {} has sides of at most {side}",
+            1u32 << bits,
+            context.adapter
+        ));
+    }
+    Ok((1 << bits, rows as u32))
+}
+
+fn refuse_large_star(context: &Context, mesh: &Mesh) -> Result<(), Error> {
+    let mut corners = vec![0u32; mesh.vertex_count()];
+    for &v in mesh.triangles() {
+        corners[v as usize] += 1;
+    }
+    match corners.into_iter().max() {
+        Some(most) if most > SHORT_STAR => {
+            refuse(format!("a vertex has {most} triangles, {} ends loops early", context.adapter))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// As in `textures.wgsl`.
+fn params(mesh: &Mesh, bits: u32, fans: usize, cosine: &Cosine) -> [u32; PARAMS] {
+    let mut params = [0; PARAMS];
+    params[0] = mesh.triangle_count() as u32;
+    params[1] = mesh.vertex_count() as u32;
+    params[3] = bits;
+    params[4] = fans as u32;
+    params[5] = u32::from(cosine.is_of_any_angle);
+    params[6] = cosine.sign as u32;
+    params[7] = cosine.rounded.to_bits();
+    for (word, digit) in params[8..].iter_mut().zip(cosine.mantissa.into_iter().chain(cosine.power)) {
+        *word = digit as u32;
+    }
+    params
+}
+
+impl Engine for WebGl {
+    fn batch(&self) -> u32 {
+        BATCH
+    }
+
+    fn iterate(&mut self, count: u32) -> Answer<'_, Vec<u32>> {
+        Box::pin(self.run(count))
+    }
+
+    fn census(&mut self) -> Answer<'_, Census> {
+        Box::pin(self.count())
+    }
+
+    fn triangles(&mut self) -> Answer<'_, Vec<u32>> {
+        Box::pin(self.read_threes(&self.triangles.front))
+    }
+
+    fn twins(&mut self) -> Answer<'_, Vec<u32>> {
+        Box::pin(self.read_threes(&self.twins.front))
+    }
+
+    fn set_positions(&mut self, mesh: Arc<Mesh>) -> Answer<'_, ()> {
+        Box::pin(self.move_vertices(mesh))
+    }
+
+    fn edge_counts(&self) -> EdgeCounts {
+        self.counts
+    }
+
+    fn backend(&self) -> &'static str {
+        "webgl2"
+    }
+
+    fn adapter(&self) -> Option<String> {
+        Some(self.context.adapter.clone())
+    }
+
+    fn dispatches(&self) -> u64 {
+        self.passes
+    }
+}
