@@ -1,6 +1,6 @@
 //! A known small mesh that an engine has to get right before it is trusted with another.
 
-use super::{Cpu, Engine};
+use super::{Answer, Cpu, Engine};
 use crate::mesh::{Dimension, Mesh};
 use crate::{Error, cos_degrees};
 use std::sync::Arc;
@@ -13,16 +13,19 @@ const SIDE: u16 = 9;
 #[derive(Default)]
 pub(crate) struct Tested([AtomicBool; 2]);
 
+/// Makes an engine for a mesh and the cosine of β.
+pub(crate) type Make<'a> = dyn Fn(Arc<Mesh>, f64) -> Answer<'static, Box<dyn Engine>> + 'a;
+
 /// Has an engine that `make` makes flip the test mesh, and compares it with the CPU after every iteration; once for
 /// each dimension.
 ///
 /// # Errors
 /// [`Error::BackendUnavailable`] if they differ; those of `make` and of the engine.
-pub(crate) async fn self_test<E: Engine>(
+pub(crate) async fn self_test(
     tested: &Tested,
     backend: &'static str,
     dimension: Dimension,
-    make: impl AsyncFn(&Arc<Mesh>, f64) -> Result<E, Error>,
+    make: &Make<'_>,
 ) -> Result<(), Error> {
     let has_passed = &tested.0[dimension.stride() - 2];
     if has_passed.load(Ordering::Relaxed) {
@@ -30,7 +33,7 @@ pub(crate) async fn self_test<E: Engine>(
     }
     let mesh = Arc::new(test_mesh(dimension)?);
     let cos = cos_degrees(20.0);
-    let mut engine = make(&mesh, cos).await?;
+    let mut engine = make(mesh.clone(), cos).await?;
     let mut cpu = Cpu::new(mesh, cos);
     loop {
         let flips = cpu.iterate(1).await?;
@@ -74,6 +77,10 @@ mod tests {
     use super::*;
     use pollster::block_on;
 
+    fn made(cpu: Cpu) -> Answer<'static, Box<dyn Engine>> {
+        Box::pin(std::future::ready(Ok(Box::new(cpu) as Box<dyn Engine>)))
+    }
+
     #[test]
     fn the_mesh_flips_in_several_iterations_and_has_ties_and_blocked_edges() {
         for dimension in [Dimension::Two, Dimension::Three] {
@@ -87,18 +94,18 @@ mod tests {
     fn an_engine_passes_once_or_is_refused() {
         for dimension in [Dimension::Two, Dimension::Three] {
             let tested = Tested::default();
-            let moved = |mesh: &Mesh| {
+            let right = |mesh: Arc<Mesh>, cos| made(Cpu::new(mesh, cos));
+            let wrong = |mesh: Arc<Mesh>, cos| {
                 let mut positions = mesh.positions().to_vec();
                 positions[0] += 1.0;
-                Arc::new(Mesh::new(dimension, positions, mesh.triangles().to_vec()).unwrap())
+                let moved = Mesh::new(dimension, positions, mesh.triangles().to_vec()).unwrap();
+                made(Cpu::new(Arc::new(moved), cos))
             };
-            let wrong = async |mesh: &Arc<Mesh>, cos| Ok(Cpu::new(moved(mesh), cos));
-            let refused = block_on(self_test(&tested, "gpu", dimension, wrong));
+            let refused = block_on(self_test(&tested, "gpu", dimension, &wrong));
             assert!(matches!(refused, Err(Error::BackendUnavailable { backend: "gpu", .. })));
-            let right = async |mesh: &Arc<Mesh>, cos| Ok(Cpu::new(mesh.clone(), cos));
-            block_on(self_test(&tested, "gpu", dimension, right)).unwrap();
+            block_on(self_test(&tested, "gpu", dimension, &right)).unwrap();
             // From now on it is not asked again.
-            block_on(self_test(&tested, "gpu", dimension, wrong)).unwrap();
+            block_on(self_test(&tested, "gpu", dimension, &wrong)).unwrap();
         }
     }
 }

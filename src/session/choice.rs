@@ -1,8 +1,8 @@
 //! Which engine a session runs on.
 
+use crate::engine::{Answer, Cpu, Engine, Lawson};
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 use crate::engine::{Context, WebGl};
-use crate::engine::{Cpu, Engine, Lawson};
 #[cfg(feature = "gpu")]
 use crate::engine::{Device, WebGpu, self_test};
 use crate::predicates::cos_degrees;
@@ -79,12 +79,16 @@ async fn first_of(
     Err(Error::Device { message: reasons.join("; ") })
 }
 
-async fn open(backend: Backend, mesh: &Arc<Mesh>, options: &Options) -> Result<Box<dyn Engine>, Error> {
+/// Boxed, so that what an engine does to begin is compiled into one place only.
+fn open<'a>(backend: Backend, mesh: &'a Arc<Mesh>, options: &'a Options) -> Answer<'a, Box<dyn Engine>> {
     let cos = cos_degrees(options.max_normal_angle);
     match backend {
-        Backend::Gpu => gpu(mesh, options, cos).await,
-        Backend::WebGl => webgl(mesh, options, cos).await,
-        Backend::Auto | Backend::Cpu => Ok(Box::new(Cpu::new(mesh.clone(), cos))),
+        Backend::Gpu => Box::pin(gpu(mesh, options, cos)),
+        Backend::WebGl => Box::pin(webgl(mesh, options, cos)),
+        Backend::Auto | Backend::Cpu => {
+            let cpu: Box<dyn Engine> = Box::new(Cpu::new(mesh.clone(), cos));
+            Box::pin(std::future::ready(Ok(cpu)))
+        }
     }
 }
 
@@ -99,9 +103,12 @@ async fn gpu(mesh: &Arc<Mesh>, options: &Options, cos: f64) -> Result<Box<dyn En
     };
     #[cfg(not(all(target_arch = "wasm32", feature = "js")))]
     let device = Device::shared(takes_software).await?;
-    let make = async |mesh: &Arc<Mesh>, cos| WebGpu::new(device.clone(), mesh, cos).await;
-    self_test(&device.tested, "gpu", mesh.dimension(), make).await?;
-    Ok(Box::new(make(mesh, cos).await?))
+    let make = |mesh: Arc<Mesh>, cos| -> Answer<'static, Box<dyn Engine>> {
+        let device = device.clone();
+        Box::pin(async move { Ok(Box::new(WebGpu::new(device, &mesh, cos).await?) as Box<dyn Engine>) })
+    };
+    self_test(&device.tested, "gpu", mesh.dimension(), &make).await?;
+    make(mesh.clone(), cos).await
 }
 
 #[cfg(not(feature = "gpu"))]
@@ -113,9 +120,12 @@ async fn gpu(_mesh: &Arc<Mesh>, _options: &Options, _cos: f64) -> Result<Box<dyn
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 async fn webgl(mesh: &Arc<Mesh>, options: &Options, cos: f64) -> Result<Box<dyn Engine>, Error> {
     let context = Context::shared(options.backend == Backend::WebGl).await?;
-    let make = async |mesh: &Arc<Mesh>, cos| WebGl::new(context.clone(), mesh, cos).await;
-    self_test(&context.tested, "webgl2", mesh.dimension(), make).await?;
-    Ok(Box::new(make(mesh, cos).await?))
+    let make = |mesh: Arc<Mesh>, cos| -> Answer<'static, Box<dyn Engine>> {
+        let context = context.clone();
+        Box::pin(async move { Ok(Box::new(WebGl::new(context, &mesh, cos).await?) as Box<dyn Engine>) })
+    };
+    self_test(&context.tested, "webgl2", mesh.dimension(), &make).await?;
+    make(mesh.clone(), cos).await
 }
 
 #[cfg(not(all(target_arch = "wasm32", feature = "js")))]

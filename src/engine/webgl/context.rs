@@ -265,7 +265,7 @@ pub(super) fn lost(gl: &Gl) -> Error {
 }
 
 fn refuse_software(renderer: &str, takes_software: bool) -> Result<(), Error> {
-    let name = renderer.to_lowercase();
+    let name = renderer.to_ascii_lowercase();
     if !takes_software && SOFTWARE.iter().any(|software| name.contains(software)) {
         return Err(unavailable("the renderer is software, slower than the cpu engine"));
     }
