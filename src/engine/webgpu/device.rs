@@ -41,9 +41,9 @@ pub(crate) struct Device {
     pub(super) ends_loops_early: bool,
     pub(crate) tested: Tested,
     failure: Failure,
-    pub(super) adjacency: Kernels<6>,
+    pub(super) adjacency: Kernels,
     /// By dimension, once a mesh has needed them.
-    phases: Mutex<[Option<Arc<Kernels<6>>>; 2]>,
+    phases: Mutex<[Option<Arc<Kernels>>; 2]>,
 }
 
 /// What has failed first since the device was opened, in the words of the device.
@@ -154,7 +154,7 @@ impl Device {
     ///
     /// # Errors
     /// [`Error::BackendUnavailable`] if the device's compiler refuses them.
-    pub(super) async fn phases(&self, dimension: Dimension) -> Result<Arc<Kernels<6>>, Error> {
+    pub(super) async fn phases(&self, dimension: Dimension) -> Result<Arc<Kernels>, Error> {
         let place = dimension.stride() - 2;
         let known = || self.phases.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
         if let Some(kernels) = &known()[place] {
@@ -165,7 +165,7 @@ impl Device {
     }
 
     /// Runs `shaders/probe.wgsl` and compares.
-    async fn probe_loops(&self, probe: &Kernels<1>) -> Result<bool, Error> {
+    async fn probe_loops(&self, probe: &Kernels) -> Result<bool, Error> {
         let buffer = self.checked(|| self.buffer("probe", 1, BufferUsages::STORAGE)).await?;
         let record = || {
             let bindings = self.bind(&probe.layout, &[(&buffer, None)]);

@@ -58,27 +58,29 @@ impl Kernel {
 }
 
 /// The pipelines of one shader, which share their bindings.
-pub(super) struct Kernels<const N: usize> {
+pub(super) struct Kernels {
     pub(super) layout: wgpu::BindGroupLayout,
-    pub(super) pipelines: [wgpu::ComputePipeline; N],
+    pub(super) pipelines: Vec<wgpu::ComputePipeline>,
 }
 
 /// count, allocate, scatter, match_twins, count_corners, count_fans.
-pub(super) fn adjacency(device: &wgpu::Device) -> Kernels<6> {
+pub(super) fn adjacency(device: &wgpu::Device) -> Kernels {
     let (read, write) = (storage(true), storage(false));
     let names = ["count", "allocate", "scatter", "match_twins", "count_corners", "count_fans"];
-    kernels(device, ADJACENCY, &[uniform(false), read, write, write, write, write], names)
+    kernels(device, ADJACENCY, &[uniform(false), read, write, write, write, write], &names)
 }
 
-/// In the order of [`Kernel`].
-pub(super) fn phases(device: &wgpu::Device, dimension: Dimension) -> Kernels<6> {
+/// In the order of [`Kernel`]; the last is there for surfaces only.
+pub(super) fn phases(device: &wgpu::Device, dimension: Dimension) -> Kernels {
     let (read, write) = (storage(true), storage(false));
     let bindings = [uniform(false), uniform(true), read, write, write, write, write, write, write];
-    kernels(device, &phases_source(dimension), &bindings, Kernel::ALL.map(Kernel::name))
+    let names = Kernel::ALL.map(Kernel::name);
+    let names = if dimension == Dimension::Two { &names[..5] } else { &names[..] };
+    kernels(device, &phases_source(dimension), &bindings, names)
 }
 
-pub(super) fn probe(device: &wgpu::Device) -> Kernels<1> {
-    kernels(device, PROBE, &[storage(false)], ["probe"])
+pub(super) fn probe(device: &wgpu::Device) -> Kernels {
+    kernels(device, PROBE, &[storage(false)], &["probe"])
 }
 
 fn uniform(has_dynamic_offset: bool) -> BindingType {
@@ -93,12 +95,7 @@ fn binding(ty: BufferBindingType, has_dynamic_offset: bool) -> BindingType {
     BindingType::Buffer { ty, has_dynamic_offset, min_binding_size: None }
 }
 
-fn kernels<const N: usize>(
-    device: &wgpu::Device,
-    source: &str,
-    bindings: &[BindingType],
-    names: [&str; N],
-) -> Kernels<N> {
+fn kernels(device: &wgpu::Device, source: &str, bindings: &[BindingType], names: &[&str]) -> Kernels {
     let entries: Vec<_> = bindings
         .iter()
         .zip(0u32..)
@@ -120,7 +117,7 @@ fn kernels<const N: usize>(
         label: None,
         source: wgpu::ShaderSource::Wgsl(source.into()),
     });
-    let pipelines = names.map(|name| {
+    let pipeline = |&name: &&str| {
         device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
             label: Some(name),
             layout: Some(&pipeline_layout),
@@ -129,6 +126,6 @@ fn kernels<const N: usize>(
             compilation_options: Default::default(),
             cache: None,
         })
-    });
-    Kernels { layout, pipelines }
+    };
+    Kernels { pipelines: names.iter().map(pipeline).collect(), layout }
 }

@@ -63,7 +63,7 @@ type Entry = [u32; ENTRY_WORDS];
 /// A mesh on the device.
 pub(crate) struct WebGpu {
     gpu: Handle,
-    kernels: Arc<Kernels<6>>,
+    kernels: Arc<Kernels>,
     params: Params,
     counts: EdgeCounts,
     bindings: wgpu::BindGroup,
