@@ -2,8 +2,8 @@
 
 use super::device::Device;
 use super::faults::refuse;
-use crate::Error;
 use crate::mesh::Mesh;
+use crate::{Error, Positions};
 
 /// The coordinates of a mesh must be integers of so many bits times a power of two; as in `exact.wgsl`.
 pub(super) const SPAN: u32 = 84;
@@ -12,7 +12,10 @@ pub(super) const SPAN: u32 = 84;
 pub(super) fn refuse_beyond_limits(gpu: &Device, mesh: &Mesh) -> Result<(), Error> {
     let buckets = 2 * mesh.vertex_count().next_multiple_of(256);
     refuse_large_buffer(gpu, mesh.positions().len().max(mesh.triangles().len()).max(buckets))?;
-    let (lowest, highest) = exponents(mesh.positions());
+    let Positions::F32(positions) = mesh.positions() else {
+        return refuse("its coordinates are 64-bit floats, and it takes 32-bit ones".to_owned());
+    };
+    let (lowest, highest) = exponents(positions);
     let span = (highest - lowest + 1) as u32;
     if span > SPAN {
         return refuse(format!("its coordinates span {span} bits, and it decides {SPAN} bits exactly"));
