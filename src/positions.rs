@@ -85,14 +85,8 @@ impl Positions {
     /// The `K` coordinates of each vertex.
     fn tuples<const K: usize, const N: usize>(&self, vertices: [u32; N]) -> [[f64; K]; N] {
         match self {
-            Self::F32(numbers) => vertices.map(|v| {
-                let first = K * v as usize;
-                std::array::from_fn(|i| f64::from(numbers[first + i]))
-            }),
-            Self::F64(numbers) => vertices.map(|v| {
-                let first = K * v as usize;
-                std::array::from_fn(|i| numbers[first + i])
-            }),
+            Self::F32(numbers) => gathered(numbers, vertices),
+            Self::F64(numbers) => gathered(numbers, vertices),
         }
     }
 
@@ -102,6 +96,14 @@ impl Positions {
             Self::F64(numbers) => numbers[i],
         }
     }
+}
+
+fn gathered<T: Copy + Into<f64>, const K: usize, const N: usize>(
+    numbers: &[T],
+    vertices: [u32; N],
+) -> [[f64; K]; N] {
+    let (tuples, _) = numbers.as_chunks::<K>();
+    vertices.map(|v| tuples[v as usize].map(Into::into))
 }
 
 #[cfg(test)]

@@ -186,8 +186,12 @@ pub(super) fn decode(x: f64) -> (i64, i32) {
 
 /// Differences of numbers as integers times one power of two, a unit that no sign depends on.
 pub(super) struct Differences<const K: usize> {
-    /// Minuend and subtrahend, each `mantissa << shift`; where f64 holds a difference, it and zero.
-    terms: [[(i64, u32); 2]; K],
+    /// Mantissas and exponents.
+    minuends: [(i64, i32); K],
+    /// None where f64 holds all differences: those are the minuends then.
+    subtrahends: Option<[(i64, i32); K]>,
+    /// The smallest exponent.
+    unit: i32,
     /// Each difference is below `2^bits` in size.
     pub(super) bits: u32,
 }
@@ -195,22 +199,26 @@ pub(super) struct Differences<const K: usize> {
 impl<const K: usize> Differences<K> {
     /// Of x - y for each (x, y), any finite numbers. `bits` is at most 2099.
     pub(super) fn new(pairs: [(f64, f64); K]) -> Self {
-        let decoded = pairs
-            .map(|(x, y)| if difference_is_exact(x, y) { [x - y, 0.0] } else { [x, y] })
-            .map(|pair| pair.map(decode));
-        let unit = decoded.as_flattened().iter().map(|&(_, exponent)| exponent).min().unwrap_or(0);
-        let terms = decoded.map(|pair| pair.map(|(m, e)| (m, if m == 0 { 0 } else { (e - unit) as u32 })));
-        let width = |(m, shift): (i64, u32)| if m == 0 { 0 } else { m.unsigned_abs().ilog2() + 1 + shift };
-        let bits = terms.iter().map(|&[x, y]| width(x).max(width(y)) + u32::from(y.0 != 0)).max();
-        Self { terms, bits: bits.unwrap_or(0) }
+        let exact = pairs.iter().all(|&(x, y)| difference_is_exact(x, y));
+        let minuends = pairs.map(|(x, y)| decode(if exact { x - y } else { x }));
+        let subtrahends = (!exact).then(|| pairs.map(|(_, y)| decode(y)));
+        let numbers = || minuends.iter().chain(subtrahends.as_slice().as_flattened());
+        let unit = numbers().map(|&(_, exponent)| exponent).min().unwrap_or(0);
+        let width =
+            |&(m, e): &(i64, i32)| if m == 0 { 0 } else { m.unsigned_abs().ilog2() + 1 + (e - unit) as u32 };
+        let bits = numbers().map(width).max().unwrap_or(0) + u32::from(!exact);
+        Self { minuends, subtrahends, unit, bits }
     }
 
     /// The integers; `R` must have room for `bits`, and for what is computed from them.
     pub(super) fn integers<R: Ring>(&self) -> [R; K] {
-        self.terms.each_ref().map(|&[(x, e), (y, f)]| {
-            let minuend = R::new(x, e);
-            if y == 0 { minuend } else { minuend.sub(&R::new(y, f)) }
-        })
+        let integer = |(m, e): (i64, i32)| R::new(m, if m == 0 { 0 } else { (e - self.unit) as u32 });
+        match self.subtrahends {
+            None => self.minuends.map(integer),
+            Some(subtrahends) => {
+                std::array::from_fn(|i| integer(self.minuends[i]).sub(&integer(subtrahends[i])))
+            }
+        }
     }
 }
 

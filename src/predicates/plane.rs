@@ -41,15 +41,7 @@ pub(crate) fn in_circle_sign(a: DVec2, b: DVec2, c: DVec2, d: DVec2) -> Ordering
     if value.abs() > 16.0 * EPSILON * magnitude + underflow {
         return sign(value);
     }
-    let [p, q, r, s] = [(a, c), (b, c), (a, d), (b, d)].map(|(u, v)| [(u.x, v.x), (u.y, v.y)]);
-    let differences = Differences::new([p[0], p[1], q[0], q[1], r[0], r[1], s[0], s[1]]);
-    if differences.bits <= NARROW_BITS {
-        in_circle::<i128>(&differences.integers())
-    } else if differences.bits <= WIDE_BITS {
-        in_circle::<Int<20>>(&differences.integers())
-    } else {
-        in_circle::<BigInt>(&differences.integers())
-    }
+    in_circle_exact(a, b, c, d)
 }
 
 /// The sign of the area of (a, b, c): positive when counter-clockwise.
@@ -61,12 +53,7 @@ pub(crate) fn area_sign(a: DVec2, b: DVec2, c: DVec2) -> Ordering {
     if value.abs() > 8.0 * EPSILON * (left.abs() + right.abs()) + UNDERFLOW {
         return sign(value);
     }
-    let differences = Differences::new([(a.x, c.x), (a.y, c.y), (b.x, c.x), (b.y, c.y)]);
-    if differences.bits <= WIDE_BITS {
-        area::<Int<20>>(&differences.integers())
-    } else {
-        area::<BigInt>(&differences.integers())
-    }
+    area_exact(a, b, c)
 }
 
 /// The sign of the sum of the areas of triangles.
@@ -98,6 +85,29 @@ pub(crate) fn total_area_sign(triangles: impl Iterator<Item = [DVec2; 3]> + Clon
         sum += (&a[0] - &c[0]) * (&b[1] - &c[1]) - (&a[1] - &c[1]) * (&b[0] - &c[0]);
     }
     Ring::sign(&sum)
+}
+
+#[cold]
+fn in_circle_exact(a: DVec2, b: DVec2, c: DVec2, d: DVec2) -> Ordering {
+    let [p, q, r, s] = [(a, c), (b, c), (a, d), (b, d)].map(|(u, v)| [(u.x, v.x), (u.y, v.y)]);
+    let differences = Differences::new([p[0], p[1], q[0], q[1], r[0], r[1], s[0], s[1]]);
+    if differences.bits <= NARROW_BITS {
+        in_circle::<i128>(&differences.integers())
+    } else if differences.bits <= WIDE_BITS {
+        in_circle::<Int<20>>(&differences.integers())
+    } else {
+        in_circle::<BigInt>(&differences.integers())
+    }
+}
+
+#[cold]
+fn area_exact(a: DVec2, b: DVec2, c: DVec2) -> Ordering {
+    let differences = Differences::new([(a.x, c.x), (a.y, c.y), (b.x, c.x), (b.y, c.y)]);
+    if differences.bits <= WIDE_BITS {
+        area::<Int<20>>(&differences.integers())
+    } else {
+        area::<BigInt>(&differences.integers())
+    }
 }
 
 /// The polynomial of [`area_sign`] over exact differences p, q (x and y of each).

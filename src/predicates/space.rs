@@ -46,18 +46,27 @@ pub(crate) struct Quad {
     bound: f64,
 }
 
-/// Evaluates a function that is generic over the integers, on p, q, r, s: 12 components.
+/// Evaluates a function that is generic over the integers, on p, q, r, s: 12 components. Apart from the filters, which
+/// are called for every edge and should be small.
 macro_rules! exactly {
-    ($quad:expr, $function:ident $(, $argument:expr)*) => {{
-        let differences = $quad.differences();
-        if differences.bits <= NARROW_BITS {
-            $function::<Int<12>>(&differences.integers() $(, $argument)*)
-        } else if differences.bits <= WIDE_BITS {
-            $function::<Int<40>>(&differences.integers() $(, $argument)*)
-        } else {
-            $function::<BigInt>(&differences.integers() $(, $argument)*)
-        }
-    }};
+    ($quad:expr, $function:ident $(, $argument:expr)*) => {
+        apart(|| {
+            let differences = $quad.differences();
+            if differences.bits <= NARROW_BITS {
+                $function::<Int<12>>(&differences.integers() $(, $argument)*)
+            } else if differences.bits <= WIDE_BITS {
+                $function::<Int<40>>(&differences.integers() $(, $argument)*)
+            } else {
+                $function::<BigInt>(&differences.integers() $(, $argument)*)
+            }
+        })
+    };
+}
+
+#[cold]
+#[inline(never)]
+fn apart<T>(decide: impl FnOnce() -> T) -> T {
+    decide()
 }
 
 impl Quad {
