@@ -37,8 +37,8 @@ fn row(spec: &str, runs: usize) -> Result<String, Box<dyn Error>> {
     if mesh.dimension() != Dimension::Two {
         return Err(format!("{spec} is no mesh in the plane, which is all that delaunator takes").into());
     }
-    let points: Vec<Point> =
-        mesh.positions().chunks_exact(2).map(|p| Point { x: f64::from(p[0]), y: f64::from(p[1]) }).collect();
+    let positions: Vec<f64> = mesh.positions().iter().collect();
+    let points: Vec<Point> = positions.chunks_exact(2).map(|p| Point { x: p[0], y: p[1] }).collect();
     let (mut phases, mut lawson, mut scratch) = (Vec::new(), Vec::new(), Vec::new());
     for _ in 0..runs {
         phases.push(flip(&mesh, Order::Reproducible)?);

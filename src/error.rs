@@ -12,7 +12,7 @@ pub enum Error {
         /// `x`, `y` or `z`.
         axis: char,
         /// The value found.
-        value: f32,
+        value: f64,
     },
     /// A triangle names a vertex that does not exist. Check the file's indices (are they 0-based?).
     #[error("triangle {triangle}: vertex index {index} is out of range, the mesh has {vertices} vertices")]

@@ -4,6 +4,7 @@
 mod objects;
 
 pub use crate::engine::GpuDevice;
+pub use crate::js_values::JsPositions;
 use crate::js_values::{backend_name, object, parse_dimension, thrown};
 use crate::{Backend, Error, Mesh, Options, Order, Session, engine};
 use js_sys::{Uint8Array, Uint32Array};
@@ -47,7 +48,7 @@ impl JsSession {
     /// # Errors
     /// Those of [`Mesh::new`] and [`Session::new`].
     pub async fn create(
-        positions: Vec<f32>,
+        positions: JsPositions,
         indices: Vec<u32>,
         dimension: f64,
         options: JsOptions,
@@ -90,7 +91,7 @@ impl JsSession {
     /// # Errors
     /// As there.
     #[wasm_bindgen(js_name = setPositions)]
-    pub async fn set_positions(&mut self, positions: Vec<f32>) -> Result<(), JsValue> {
+    pub async fn set_positions(&mut self, positions: JsPositions) -> Result<(), JsValue> {
         self.0.set_positions(positions).await.map_err(thrown)
     }
 

@@ -3,7 +3,7 @@
 //! checked in type, not in value. Everything that is thrown is an `Error` with a `code`.
 
 use crate::io::{self, Format, Loaded};
-use crate::js_values::{object, parse_dimension, thrown};
+use crate::js_values::{JsPositions, object, parse_dimension, thrown};
 use crate::{Error, Mesh, families, quality};
 use js_sys::{Array, Float32Array, Uint8Array, Uint32Array};
 use std::path::Path;
@@ -37,7 +37,7 @@ pub fn read_mesh(bytes: &[u8], name: &str, dimension: Option<f64>) -> Result<JsV
 /// Those of [`Format::of`], [`Mesh::new`] and [`io::to_bytes`]; [`Error::Option`] for the dimension.
 #[wasm_bindgen(js_name = writeMesh, unchecked_return_type = "Uint8Array<ArrayBuffer>")]
 pub fn write_mesh(
-    positions: Vec<f32>,
+    positions: JsPositions,
     indices: Vec<u32>,
     dimension: f64,
     name: &str,
@@ -65,7 +65,12 @@ pub fn generate(spec: &str) -> Result<JsValue, JsValue> {
 /// # Errors
 /// Those of [`Mesh::new`]; [`Error::Option`] for the dimension and the bins.
 #[wasm_bindgen(unchecked_return_type = "import('../files.js').Angles")]
-pub fn angles(positions: Vec<f32>, indices: Vec<u32>, dimension: f64, bins: f64) -> Result<JsValue, JsValue> {
+pub fn angles(
+    positions: JsPositions,
+    indices: Vec<u32>,
+    dimension: f64,
+    bins: f64,
+) -> Result<JsValue, JsValue> {
     let measure = || {
         let bins = parse_bins(bins)?;
         let mesh = Mesh::new(parse_dimension(dimension)?, positions, indices)?;
@@ -81,10 +86,10 @@ pub fn angles(positions: Vec<f32>, indices: Vec<u32>, dimension: f64, bins: f64)
     ]))
 }
 
-/// The fields of a mesh, in arrays that JavaScript owns.
+/// The fields of a mesh of 32-bit floats, in arrays that JavaScript owns.
 fn fields(mesh: &Mesh) -> [(&'static str, JsValue); 3] {
     [
-        ("positions", Float32Array::from(mesh.positions()).into()),
+        ("positions", Float32Array::from(mesh.positions().to_f32().as_slice()).into()),
         ("indices", Uint32Array::from(mesh.triangles()).into()),
         ("dimension", (mesh.dimension().stride() as u32).into()),
     ]

@@ -1,9 +1,25 @@
 //! What the two modules of the npm package share: plain objects, errors and dimensions as JavaScript has them, in the
 //! words of the package: `webgpu` for the GPU engine, `indices` for the triangles.
 
-use crate::{Dimension, Error};
-use js_sys::{Array, Object};
+use crate::{Dimension, Error, Positions};
+use js_sys::{Array, Float32Array, Float64Array, Object};
 use wasm_bindgen::prelude::*;
+
+#[wasm_bindgen]
+extern "C" {
+    /// Positions, as JavaScript has them.
+    #[wasm_bindgen(typescript_type = "Float32Array | Float64Array")]
+    pub type JsPositions;
+}
+
+impl From<JsPositions> for Positions {
+    fn from(array: JsPositions) -> Self {
+        match array.dyn_into::<Float32Array>() {
+            Ok(array) => array.to_vec().into(),
+            Err(array) => Float64Array::new(&array).to_vec().into(),
+        }
+    }
+}
 
 /// Runs once, when a module is loaded.
 #[wasm_bindgen(start)]

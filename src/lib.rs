@@ -12,7 +12,7 @@
 //! # Ok::<(), edgeflip::Error>(())
 //! ```
 //!
-//! The rooms: [`Mesh`] is checked input; `adjacency` finds twins, `star` walks around a vertex, `winding` and
+//! The rooms: [`Mesh`] is checked input, in [`Positions`] of 32 or 64 bits; `adjacency` finds twins, `star` walks around a vertex, `winding` and
 //! `frozen` know what a dirty mesh adds; `predicates` decide exactly; `phases` are the four phases of an
 //! iteration, `engine` runs them on the CPU or through the shaders of the same names; `session` is the loop, `options`
 //! and `outcome` are what goes in and out.
@@ -38,6 +38,7 @@ mod mesh;
 mod options;
 mod outcome;
 mod phases;
+mod positions;
 mod predicates;
 pub mod quality;
 mod session;
@@ -51,6 +52,7 @@ pub use error::Error;
 pub use mesh::{Dimension, MAX_TRIANGLES, Mesh, NONE};
 pub use options::{Backend, Options, Order};
 pub use outcome::{Iteration, Outcome, Reason, Reasons, Status, Timings};
+pub use positions::Positions;
 pub use predicates::cos_degrees;
 pub use session::Session;
 #[cfg(not(target_arch = "wasm32"))]

@@ -1,6 +1,6 @@
 //! `Mesh`: positions and triangles, checked once when it is made, so that nothing behind it can fail on them.
 
-use crate::Error;
+use crate::{Error, Positions};
 use glam::{DVec2, DVec3};
 
 /// "No half-edge": the twin of a half-edge on the boundary or on a frozen edge.
@@ -33,17 +33,23 @@ impl Dimension {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mesh {
     dimension: Dimension,
-    positions: Vec<f32>,
+    positions: Positions,
     triangles: Vec<u32>,
 }
 
 impl Mesh {
-    /// Checks and takes `positions` (2 or 3 numbers a vertex) and `triangles` (3 vertex indices each).
+    /// Checks and takes `positions` (2 or 3 numbers a vertex, `Vec<f32>` or `Vec<f64>`) and `triangles` (3 vertex
+    /// indices each). Doubles that are all 32-bit floats become such, without a change of any bit.
     ///
     /// # Errors
     /// [`Error::RaggedArray`], [`Error::TooLarge`], [`Error::NonFinite`] or [`Error::IndexOutOfRange`],
     /// each naming the first place.
-    pub fn new(dimension: Dimension, positions: Vec<f32>, triangles: Vec<u32>) -> Result<Self, Error> {
+    pub fn new(
+        dimension: Dimension,
+        positions: impl Into<Positions>,
+        triangles: Vec<u32>,
+    ) -> Result<Self, Error> {
+        let positions = positions.into().narrowed();
         let stride = dimension.stride();
         for (array, length, stride) in
             [("positions", positions.len(), stride), ("triangles", triangles.len(), 3)]
@@ -60,7 +66,7 @@ impl Mesh {
                 return Err(Error::TooLarge { what, count, limit });
             }
         }
-        refuse_non_finite(dimension, &positions)?;
+        positions.refuse_non_finite(dimension)?;
         if let Some(i) = triangles.iter().position(|&v| v as usize >= vertices) {
             return Err(Error::IndexOutOfRange { triangle: i / 3, index: triangles[i], vertices });
         }
@@ -73,7 +79,7 @@ impl Mesh {
     }
 
     /// Coordinates, 2 or 3 a vertex.
-    pub fn positions(&self) -> &[f32] {
+    pub fn positions(&self) -> &Positions {
         &self.positions
     }
 
@@ -102,35 +108,18 @@ impl Mesh {
 
     /// The vertex's coordinates, a 2D mesh only.
     pub(crate) fn point2(&self, vertex: u32) -> DVec2 {
-        point2(&self.positions, vertex)
+        let [point] = self.positions.points2([vertex]);
+        point
     }
 
     /// The vertex's coordinates; z is 0 in a 2D mesh.
     pub(crate) fn point3(&self, vertex: u32) -> DVec3 {
         match self.dimension {
             Dimension::Two => self.point2(vertex).extend(0.0),
-            Dimension::Three => point3(&self.positions, vertex),
+            Dimension::Three => {
+                let [point] = self.positions.points3([vertex]);
+                point
+            }
         }
     }
-}
-
-/// Refuses coordinates that are no numbers, with [`Error::NonFinite`] for the first.
-pub(crate) fn refuse_non_finite(dimension: Dimension, positions: &[f32]) -> Result<(), Error> {
-    let stride = dimension.stride();
-    positions.iter().position(|x| !x.is_finite()).map_or(Ok(()), |i| {
-        let axis = ['x', 'y', 'z'][i % stride];
-        Err(Error::NonFinite { vertex: i / stride, axis, value: positions[i] })
-    })
-}
-
-/// Vertex `v` of an array of 2D positions; f32 to f64 is exact.
-pub(crate) fn point2(positions: &[f32], v: u32) -> DVec2 {
-    let i = 2 * v as usize;
-    DVec2::new(f64::from(positions[i]), f64::from(positions[i + 1]))
-}
-
-/// Vertex `v` of an array of 3D positions; f32 to f64 is exact.
-pub(crate) fn point3(positions: &[f32], v: u32) -> DVec3 {
-    let i = 3 * v as usize;
-    DVec3::new(f64::from(positions[i]), f64::from(positions[i + 1]), f64::from(positions[i + 2]))
 }

@@ -61,13 +61,22 @@ pub fn min_angle(mesh: &Mesh) -> f64 {
     angles(mesh, 1).min
 }
 
-/// The angles at the three corners, in degrees. Every f32 fits: the largest product is below 10^78.
+/// The angles at the three corners, in degrees.
 fn triangle_angles(corners: [DVec3; 3]) -> [f64; 3] {
     [0, 1, 2].map(|k| {
-        let p = corners[(k + 1) % 3] - corners[k];
-        let q = corners[(k + 2) % 3] - corners[k];
+        let p = direction(corners[k], corners[(k + 1) % 3]);
+        let q = direction(corners[k], corners[(k + 2) % 3]);
         libm::atan2(p.cross(q).length(), p.dot(q)).to_degrees()
     })
+}
+
+/// A vector from one point towards the other: their difference, or where products of such over- or underflow, that
+/// times some number. No f32 needs it.
+fn direction(from: DVec3, to: DVec3) -> DVec3 {
+    let difference = to - from;
+    let difference = if difference.is_finite() { difference } else { to / 2.0 - from / 2.0 };
+    let size = difference.abs().max_element();
+    if size == 0.0 || (1e-70..1e70).contains(&size) { difference } else { difference / size }
 }
 
 #[cfg(test)]
@@ -96,6 +105,10 @@ mod tests {
             assert_eq!(min_angle(&mesh(&positions, &triangle)), 0.0);
         }
         assert!((min_angle(&mesh(&positions, &[0, 4, 3])) - 45.0).abs() < 1e-12);
+        for [x, y] in [[1e-300, 1e300], [f64::MAX, -f64::MAX], [0.0, f64::from_bits(1)]] {
+            let right = Mesh::new(Dimension::Two, vec![x, x, y, x, x, y], vec![0, 1, 2]).unwrap();
+            assert!((min_angle(&right) - 45.0).abs() < 1e-12);
+        }
         assert_eq!(angles(&mesh(&positions, &[0, 1, 2]), 2).histogram.counts, [2, 1]);
         assert_eq!(min_angle(&mesh(&positions, &[])), 60.0);
         assert_eq!(angles(&mesh(&positions, &[0, 1, 2]), 0).histogram.counts, [3]);

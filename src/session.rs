@@ -8,15 +8,14 @@ use crate::edge_states::edge_states;
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 use crate::engine::SharedObjects;
 use crate::engine::{Answer, Engine};
-use crate::mesh::refuse_non_finite;
 use crate::phases::{Geometry, Topology};
 use crate::predicates::cos_degrees;
 use crate::quality::{Audit, audit};
 use crate::star::Fans;
 use crate::winding::Winding;
 use crate::{
-    Backend, EdgeState, Edges, Error, Iteration, Mesh, Options, Order, Outcome, Reason, Status, Timings,
-    frozen,
+    Backend, EdgeState, Edges, Error, Iteration, Mesh, Options, Order, Outcome, Positions, Reason, Status,
+    Timings, frozen,
 };
 use choice::{engine_after, engine_for};
 use std::ops::ControlFlow;
@@ -108,7 +107,7 @@ impl Session {
         Ok(self.may_continue())
     }
 
-    /// Moves the vertices, all of them: 2 or 3 numbers each, as many as before. From now on the session is as a new
+    /// Moves the vertices, all of them: 2 or 3 numbers each, `Vec<f32>` or `Vec<f64>`, as many as before. From now on the session is as a new
     /// one on these positions and the triangles as they are now: its iterations and flips, its creases and the base
     /// of its audit begin here, and it gives the same bits. Adjacency, device and buffers stay; the triangles are
     /// read back once.
@@ -117,13 +116,14 @@ impl Session {
     /// [`Error::PositionCount`], [`Error::NonFinite`]; [`Error::BackendLimit`] where the GPU cannot decide the new
     /// positions exactly; [`Error::Device`]. The session is then as it was before. With `Auto` the CPU takes over
     /// from a GPU that refuses or fails.
-    pub async fn set_positions(&mut self, positions: Vec<f32>) -> Result<(), Error> {
+    pub async fn set_positions(&mut self, positions: impl Into<Positions>) -> Result<(), Error> {
         let start = Instant::now();
+        let positions = positions.into();
         let (length, expected) = (positions.len(), self.mesh.positions().len());
         if length != expected {
             return Err(Error::PositionCount { length, expected });
         }
-        refuse_non_finite(self.mesh.dimension(), &positions)?;
+        positions.refuse_non_finite(self.mesh.dimension())?;
         let triangles = self.triangles().await?;
         let mesh = Arc::new(Mesh::new(self.mesh.dimension(), positions, triangles)?);
         match self.engine.set_positions(mesh.clone()).await {

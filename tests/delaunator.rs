@@ -9,8 +9,8 @@ use std::collections::HashSet;
 use std::ops::ControlFlow;
 
 fn coord(mesh: &Mesh, v: u32) -> robust::Coord<f64> {
-    let p = &mesh.positions()[2 * v as usize..];
-    robust::Coord { x: f64::from(p[0]), y: f64::from(p[1]) }
+    let mut numbers = mesh.positions().iter().skip(2 * v as usize);
+    robust::Coord { x: numbers.next().unwrap(), y: numbers.next().unwrap() }
 }
 
 /// Counter-clockwise Delaunay triangles of the mesh's points.
@@ -51,7 +51,7 @@ fn scrambled(mesh: &Mesh, random: &mut Rand64) -> Mesh {
 /// Every edge that only one of the two has is a diagonal of four cocircular points.
 fn assert_equal_up_to_ties(mesh: &Mesh, options: &Options) {
     let result = make_delaunay(mesh, options, |_, _| ControlFlow::Continue(())).unwrap().triangles;
-    let expected = edges(&delaunay(mesh.positions()));
+    let expected = edges(&delaunay(&mesh.positions().to_f32()));
     assert_eq!(edges(&result).len(), expected.len());
     let twins = Adjacency::new(&mesh.with_triangles(result.clone()).unwrap()).twins;
     for (h, &g) in twins.iter().enumerate() {

@@ -6,7 +6,7 @@ mod meshes;
 mod simulation;
 
 use edgeflip::quality::audit;
-use edgeflip::{Backend, Error, Mesh, Options, Order, Outcome, Reason, Session, Status};
+use edgeflip::{Backend, Error, Mesh, Options, Order, Outcome, Positions, Reason, Session, Status};
 use pollster::block_on;
 use simulation::{Digest, Expected, expected, simulate};
 use std::ops::ControlFlow;
@@ -86,8 +86,13 @@ fn gpu_gives_the_digests_of_the_simulation() {
         assert!(outcome.adapter.is_some() && outcome.dispatches > 0);
     }
     refused.dedup();
-    // Coordinates outside the span that it decides exactly, or near the largest float.
-    assert_eq!(refused, ["scale-3e38", "scale-3e38-3d", "magnitudes", "magnitudes-3d"]);
+    // Coordinates outside the span that it decides exactly, or near the largest float; and all doubles.
+    let mut expected: Vec<String> =
+        ["scale-3e38", "scale-3e38-3d", "magnitudes", "magnitudes-3d"].map(String::from).to_vec();
+    let all = meshes::all().into_iter();
+    expected
+        .extend(all.filter(|case| matches!(case.mesh.positions(), Positions::F64(_))).map(|case| case.name));
+    assert_eq!(refused, expected);
 }
 
 #[test]

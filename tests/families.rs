@@ -15,8 +15,8 @@ fn mesh(spec: &str) -> Mesh {
 fn turn(mesh: &Mesh, triangle: &[u32]) -> f64 {
     let stride = mesh.dimension().stride();
     let at = |v: u32| {
-        let p = &mesh.positions()[stride * v as usize..];
-        robust::Coord { x: p[0], y: p[1] }
+        let mut numbers = mesh.positions().iter().skip(stride * v as usize);
+        robust::Coord { x: numbers.next().unwrap(), y: numbers.next().unwrap() }
     };
     robust::orient2d(at(triangle[0]), at(triangle[1]), at(triangle[2]))
 }
@@ -77,7 +77,8 @@ fn closed_surfaces_are_spheres_seen_from_outside() {
         let mesh = mesh(spec);
         assert_eq!(boundary_edges(&mesh), 0, "{spec}");
         assert_eq!(2 * mesh.vertex_count(), mesh.triangle_count() + 4, "{spec}");
-        let at = |v: u32| &mesh.positions()[3 * v as usize..3 * v as usize + 3];
+        let positions = mesh.positions().to_f32();
+        let at = |v: u32| &positions[3 * v as usize..3 * v as usize + 3];
         let volume: f32 = mesh
             .triangles()
             .chunks(3)

@@ -4,7 +4,7 @@
 
 mod meshes;
 
-use edgeflip::{Backend, Error, Mesh, Options, Order, Outcome, Session, Timings};
+use edgeflip::{Backend, Error, Mesh, Options, Order, Outcome, Positions, Session, Timings};
 use oorandom::Rand64;
 use pollster::block_on;
 
@@ -21,17 +21,17 @@ fn said(mut session: Session) -> (Outcome, String, Session) {
 fn compare(
     name: &str,
     mut session: Session,
-    positions: &[f32],
+    positions: &Positions,
     mesh: &Mesh,
     options: &Options,
 ) -> (Session, bool) {
     let before = block_on(session.triangles()).unwrap();
-    let moved = Mesh::new(mesh.dimension(), positions.to_vec(), before.clone()).unwrap();
+    let moved = Mesh::new(mesh.dimension(), positions.clone(), before.clone()).unwrap();
     let mut fresh = match block_on(Session::new(moved, options.clone())) {
         Ok(fresh) => fresh,
         Err(Error::BackendLimit { .. }) => {
             let (outcome, audit, mut session) = said(session);
-            let refused = block_on(session.set_positions(positions.to_vec()));
+            let refused = block_on(session.set_positions(positions.clone()));
             assert!(matches!(refused, Err(Error::BackendLimit { .. })), "{name}");
             let (after, audit_after, session) = said(session);
             assert_eq!((outcome, audit), (after, audit_after), "{name}: refused positions change nothing");
@@ -39,7 +39,7 @@ fn compare(
         }
         Err(error) => panic!("{name}: {error}"),
     };
-    block_on(session.set_positions(positions.to_vec())).unwrap();
+    block_on(session.set_positions(positions.clone())).unwrap();
     assert_eq!((session.iterations(), session.flips()), (0, 0), "{name}");
     loop {
         let name = format!("{name}, iteration {}", fresh.iterations());
@@ -66,19 +66,20 @@ fn compare(
     (session, true)
 }
 
-/// Ways to move the vertices of a mesh: shaken, stretched and mirrored, folded over, and all in one place.
-fn moves(mesh: &Mesh) -> Vec<Vec<f32>> {
+/// Ways to move the vertices of a mesh, to 32-bit floats: shaken, stretched and mirrored, folded over, and all in one
+/// place.
+fn moves(mesh: &Mesh) -> Vec<Positions> {
     let mut random = Rand64::new(7);
     let place = |place: &mut dyn FnMut([f32; 3]) -> [f32; 3]| {
-        let finite = |p| place(p).map(|x| x.clamp(f32::MIN, f32::MAX));
-        meshes::moved(mesh, finite).positions().to_vec()
+        let finite = |p: [f32; 3]| p.map(|x| x.clamp(f32::MIN, f32::MAX));
+        meshes::moved(mesh, |p| finite(place(finite(p)))).positions().clone()
     };
     // Halves and quarters keep the bits few, so that the GPU takes them.
     let shaken =
         &mut |p: [f32; 3]| p.map(|x| x + x.abs().max(0.0625) * (random.rand_range(0..8) as f32 / 16.0));
     let mirrored = &mut |[x, y, z]: [f32; 3]| [-x, 4.0 * y, 0.5 * z];
     let folded = &mut |[x, y, z]: [f32; 3]| [(x - 0.5).abs(), y, z + 0.5 * y];
-    vec![place(shaken), place(mirrored), place(folded), vec![0.0; mesh.positions().len()]]
+    vec![place(shaken), place(mirrored), place(folded), vec![0f32; mesh.positions().len()].into()]
 }
 
 fn deform(name: &str, mesh: &Mesh, options: &Options) -> u32 {
@@ -86,7 +87,7 @@ fn deform(name: &str, mesh: &Mesh, options: &Options) -> u32 {
     let Ok(mut session) = block_on(Session::new(mesh.clone(), options.clone())) else { return 0 };
     // In the middle of a run at first, at its end afterwards.
     block_on(session.step()).unwrap();
-    for (positions, number) in moves(mesh).iter().chain([&mesh.positions().to_vec()]).zip(0..) {
+    for (positions, number) in moves(mesh).iter().chain([mesh.positions()]).zip(0..) {
         let name = format!("{name}, {:?}, move {number}", options.backend);
         let fits;
         (session, fits) = compare(&name, session, positions, mesh, options);
@@ -123,7 +124,7 @@ fn batches_after_a_move_are_those_of_a_new_session() {
     let mesh = edgeflip::families::by_name("strips 200").unwrap();
     let options = |backend| Options { backend, ..Options::default() };
     let mut session = block_on(Session::new(mesh.clone(), options(Backend::Gpu))).unwrap();
-    for positions in moves(&mesh).iter().take(2).chain([&mesh.positions().to_vec()]) {
+    for positions in moves(&mesh).iter().take(2).chain([mesh.positions()]) {
         block_on(session.run(|_, _| std::ops::ControlFlow::Continue(()))).unwrap();
         let triangles = block_on(session.triangles()).unwrap();
         let moved = Mesh::new(mesh.dimension(), positions.clone(), triangles).unwrap();
@@ -146,9 +147,9 @@ fn bad_positions_change_nothing() {
         let mut session = block_on(Session::new(mesh.clone(), options)).unwrap();
         block_on(session.step()).unwrap();
         let (outcome, audit, mut session) = said(session);
-        let error = block_on(session.set_positions(vec![0.0; 3])).unwrap_err();
+        let error = block_on(session.set_positions(vec![0f32; 3])).unwrap_err();
         assert_eq!(error.to_string(), "positions has 3 numbers, and the vertices of the mesh have 128");
-        let mut positions = mesh.positions().to_vec();
+        let mut positions = mesh.positions().to_f32();
         positions[5] = f32::NAN;
         let error = block_on(session.set_positions(positions)).unwrap_err();
         assert!(matches!(error, Error::NonFinite { vertex: 2, axis: 'y', .. }), "{error}");

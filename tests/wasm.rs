@@ -114,7 +114,7 @@ async fn auto_finds_an_engine() {
 async fn javascript_gets_the_buffers_of_webgpu() {
     let mesh = by_name("random 10").unwrap();
     let create = |fields: &[(&str, JsValue)]| {
-        let (positions, indices) = (mesh.positions().to_vec(), mesh.triangles().to_vec());
+        let (positions, indices) = (device::positions_array(&mesh), mesh.triangles().to_vec());
         JsSession::create(positions, indices, 2.0, options_object(fields))
     };
     let mut session = create(&[("backend", "webgpu".into())]).await.unwrap();

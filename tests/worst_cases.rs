@@ -43,12 +43,12 @@ fn lattices_have_only_ties() {
 fn a_lattice_off_by_one_ulp_ends() {
     for spec in ["regular 200", "regular 200 100000"] {
         let lattice = families::by_name(spec).unwrap();
-        let noisy = |(x, i): (&f32, u32)| match i.wrapping_mul(0x9e37_79b9) >> 30 {
+        let noisy = |(x, i): (f32, u32)| match i.wrapping_mul(0x9e37_79b9) >> 30 {
             0 => x.next_up(),
             1 => x.next_down(),
-            _ => *x,
+            _ => x,
         };
-        let positions = lattice.positions().iter().zip(0..).map(noisy).collect();
+        let positions: Vec<f32> = lattice.positions().to_f32().into_iter().zip(0..).map(noisy).collect();
         let mesh = Mesh::new(Dimension::Two, positions, lattice.triangles().to_vec()).unwrap();
         assert!(run(spec, &mesh, 10.0).flips > 1000);
     }
@@ -101,7 +101,7 @@ fn a_roof_keeps_its_ridge() {
 #[test]
 fn a_clockwise_mesh_flips_like_its_mirror_image() {
     let mesh = families::by_name("random 100").unwrap();
-    let mirrored = mesh.positions().chunks(2).flat_map(|p| [-p[0], p[1]]).collect();
+    let mirrored: Vec<f32> = mesh.positions().to_f32().chunks(2).flat_map(|p| [-p[0], p[1]]).collect();
     let clockwise = Mesh::new(Dimension::Two, mirrored, mesh.triangles().to_vec()).unwrap();
     assert_eq!(run("clockwise", &clockwise, 10.0).triangles, run("mirrored", &mesh, 10.0).triangles);
 }
@@ -112,11 +112,10 @@ fn a_bow_tie_is_two_meshes() {
     let mesh = families::by_name("random 30").unwrap();
     let count = mesh.vertex_count() as u32;
     // The second is the first, turned by 180° about its vertex 0 at the corner.
-    let corner = [mesh.positions()[0], mesh.positions()[1]];
-    let mut positions = mesh.positions().to_vec();
-    positions.extend(
-        mesh.positions()[2..].chunks(2).flat_map(|p| [2.0 * corner[0] - p[0], 2.0 * corner[1] - p[1]]),
-    );
+    let mut positions = mesh.positions().to_f32();
+    let (x, y) = (positions[0], positions[1]);
+    let turned: Vec<_> = positions[2..].chunks(2).flat_map(|p| [2.0 * x - p[0], 2.0 * y - p[1]]).collect();
+    positions.extend(turned);
     let mut triangles = mesh.triangles().to_vec();
     triangles.extend(mesh.triangles().iter().map(|&v| if v == 0 { 0 } else { v + count - 1 }));
     let bow_tie = Mesh::new(Dimension::Two, positions, triangles).unwrap();

@@ -96,12 +96,16 @@ mod tests {
             let tested = Tested::default();
             let right = |mesh: Arc<Mesh>, cos| made(Cpu::new(mesh, cos));
             let wrong = |mesh: Arc<Mesh>, cos| {
-                let wide = mesh.positions().chunks(dimension.stride());
-                let narrow = wide.flat_map(|p| [&[0.3 * p[0]], &p[1..]].concat()).collect::<Vec<f32>>();
-                let squeezed = Mesh::new(dimension, narrow, mesh.triangles().to_vec()).unwrap();
-                made(Cpu::new(Arc::new(squeezed), cos))
+                let upright = mesh.positions().to_f32();
+                let leaning = upright
+                    .chunks(dimension.stride())
+                    .flat_map(|p| [&[p[0] + p[1]], &p[1..]].concat())
+                    .collect::<Vec<f32>>();
+                let sheared = Mesh::new(dimension, leaning, mesh.triangles().to_vec()).unwrap();
+                made(Cpu::new(Arc::new(sheared), cos))
             };
             let refused = block_on(self_test(&tested, "gpu", dimension, &wrong));
+
             assert!(matches!(refused, Err(Error::BackendUnavailable { backend: "gpu", .. })));
             block_on(self_test(&tested, "gpu", dimension, &right)).unwrap();
             // From now on it is not asked again.

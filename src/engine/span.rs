@@ -1,7 +1,7 @@
 //! Which coordinates the engines on a GPU decide exactly.
 
-use crate::Error;
 use crate::mesh::Mesh;
+use crate::{Error, Positions};
 
 /// The coordinates of a mesh must be integers of so many bits times a power of two; as in `points.wgsl`.
 pub(super) const SPAN: u32 = 84;
@@ -9,7 +9,10 @@ pub(super) const SPAN: u32 = 84;
 /// Refuses a mesh whose coordinates the shaders cannot decide exactly.
 pub(super) fn refuse_wide_span(backend: &'static str, mesh: &Mesh) -> Result<(), Error> {
     let refuse = |message| Err(Error::BackendLimit { backend, message });
-    let (lowest, highest) = exponents(mesh.positions());
+    let Positions::F32(positions) = mesh.positions() else {
+        return refuse("its coordinates are 64-bit floats, and it takes 32-bit ones".to_owned());
+    };
+    let (lowest, highest) = exponents(positions);
     let span = (highest - lowest + 1) as u32;
     if span > SPAN {
         return refuse(format!("its coordinates span {span} bits, and it decides {SPAN} bits exactly"));

@@ -127,17 +127,17 @@ fn anchors_move_alike() {
             2 => [-p[0], -p[1]],
             _ => [p[1], -p[0]],
         };
-        positions.extend(sheet.positions().chunks(2).flat_map(turn));
+        positions.extend(sheet.positions().to_f32().chunks(2).flat_map(turn));
         let shared = |v: u32| if v == 0 { 0 } else { v + copy * count };
         triangles.extend(sheet.triangles().iter().map(|&v| shared(v)));
     }
-    assert_eq!(sheet.positions()[..2], [0.0, 0.0]);
+    assert_eq!(sheet.positions().to_f32()[..2], [0.0, 0.0]);
     compare_mesh("four sheets", Mesh::new(crate::Dimension::Two, positions, triangles).unwrap(), 10.0);
 }
 
 #[test]
 fn an_empty_mesh_is_done() {
-    let mesh = Arc::new(Mesh::new(crate::Dimension::Two, Vec::new(), Vec::new()).unwrap());
+    let mesh = Arc::new(Mesh::new(crate::Dimension::Two, Vec::<f32>::new(), Vec::new()).unwrap());
     let (_, mut gpu) = engines(&mesh, 10.0);
     assert_eq!(block_on(gpu.iterate(10)).unwrap(), Vec::<u32>::new());
     assert_eq!(block_on(gpu.triangles()).unwrap(), Vec::<u32>::new());

@@ -20,12 +20,12 @@ pub fn grid(n: usize, seed: u64) -> Result<Mesh, Error> {
 pub fn random(n: usize, k: f64, seed: u64) -> Result<Mesh, Error> {
     let mut random = generator(seed);
     let mesh = sheared(n, 0.0, &mut random, "random")?;
-    let mut triangles = mesh.triangles().to_vec();
+    let (positions, mut triangles) = (mesh.positions().to_f32(), mesh.triangles().to_vec());
     let mut twins = twins(&triangles, mesh.vertex_count());
     let tries = (k * triangles.len() as f64 / 2.0) as u64;
     for _ in 0..tries {
         let h = random.rand_range(0..triangles.len() as u64) as usize;
-        flip_if_convex(mesh.positions(), &mut triangles, &mut twins, h);
+        flip_if_convex(&positions, &mut triangles, &mut twins, h);
     }
     mesh.with_triangles(triangles)
 }
@@ -65,7 +65,7 @@ pub fn regular(n: usize, offset: f64, seed: u64) -> Result<Mesh, Error> {
     at_least(2, n, "regular")?;
     fits(n.saturating_mul(n), (n - 1).saturating_mul(n - 1).saturating_mul(2))?;
     let at = |line: usize| (0.1 * line as f64 + offset) as f32;
-    let positions = (0..n).flat_map(|j| (0..n).flat_map(move |i| [at(i), at(j)])).collect();
+    let positions: Vec<f32> = (0..n).flat_map(|j| (0..n).flat_map(move |i| [at(i), at(j)])).collect();
     let mut random = generator(seed);
     let mut triangles = Vec::with_capacity(6 * (n - 1) * (n - 1));
     for j in 0..n - 1 {
@@ -118,7 +118,7 @@ pub fn fan2(n: usize) -> Result<Mesh, Error> {
         [x as f32, (x * x) as f32]
     });
     let triangles = (0..n as u32 - 2).flat_map(|i| [i, i + 1, n as u32 - 1]);
-    Mesh::new(Dimension::Two, positions.collect(), triangles.collect())
+    Mesh::new(Dimension::Two, positions.collect::<Vec<f32>>(), triangles.collect())
 }
 
 /// `n` distinct random points in the unit square, triangulated from left to right: each point is joined

@@ -75,7 +75,8 @@ pub fn parse(format: Format, bytes: &[u8], dimension: Option<Dimension>) -> Resu
     finish(parsed, dimension)
 }
 
-/// Writes `mesh` as text; each number has the fewest digits that read back to the same 32 bits.
+/// Writes `mesh` as text; each number has the fewest digits that read back to the same bits, 32 or 64 of them.
+/// [`parse`] reads 32.
 /// Give it something buffered.
 ///
 /// # Errors

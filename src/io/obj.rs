@@ -27,12 +27,12 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Parsed, Error> {
 pub(super) fn write(mesh: &Mesh, out: &mut impl Write) -> io::Result<()> {
     let (mut digits, mut line) = (Digits::default(), Vec::new());
     let stride = mesh.dimension().stride();
-    for position in mesh.positions().chunks_exact(stride) {
+    for vertex in 0..mesh.vertex_count() {
         line.clear();
         line.push(b'v');
-        for &x in position {
+        for i in stride * vertex..stride * (vertex + 1) {
             line.push(b' ');
-            digits.float(&mut line, x);
+            digits.coordinate(&mut line, mesh.positions(), i);
         }
         line.extend_from_slice(if stride == 2 { b" 0\n" } else { b"\n" });
         out.write_all(&line)?;

@@ -28,10 +28,10 @@ pub(super) fn write(mesh: &Mesh, out: &mut impl Write) -> io::Result<()> {
     let (mut digits, mut line) = (Digits::default(), Vec::new());
     writeln!(out, "OFF\n{} {} 0", mesh.vertex_count(), mesh.triangle_count())?;
     let stride = mesh.dimension().stride();
-    for position in mesh.positions().chunks_exact(stride) {
+    for vertex in 0..mesh.vertex_count() {
         line.clear();
-        for &x in position {
-            digits.float(&mut line, x);
+        for i in stride * vertex..stride * (vertex + 1) {
+            digits.coordinate(&mut line, mesh.positions(), i);
             line.push(b' ');
         }
         if stride == 2 {

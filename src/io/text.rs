@@ -1,6 +1,6 @@
 //! What the text formats share: lines with their numbers, tokens, exact numbers, and faces cut into triangles.
 
-use crate::Error;
+use crate::{Error, Positions};
 use memchr::{memchr, memchr2};
 
 /// Bytes of an offending token that a message repeats.
@@ -169,9 +169,12 @@ pub(super) struct Digits {
 }
 
 impl Digits {
-    /// Appends a finite number: `1`, `-0`, `0.1`, `1e-45`.
-    pub(super) fn float(&mut self, line: &mut Vec<u8>, x: f32) {
-        let text = self.float.format_finite(x);
+    /// Appends the finite number at `i`: `1`, `-0`, `0.1`, `1e-45`.
+    pub(super) fn coordinate(&mut self, line: &mut Vec<u8>, positions: &Positions, i: usize) {
+        let text = match positions {
+            Positions::F32(numbers) => self.float.format_finite(numbers[i]),
+            Positions::F64(numbers) => self.float.format_finite(numbers[i]),
+        };
         line.extend_from_slice(text.strip_suffix(".0").unwrap_or(text).as_bytes());
     }
 

@@ -6,7 +6,6 @@
  * | code | what to do |
  * |---|---|
  * | `invalid-input` | pass typed arrays, strings where text is asked for, and 2 or 3 as the dimension |
- * | `not-float32` | round the positions: `Float32Array.from(positions)` |
  * | `non-finite` | repair or remove the vertex that the message names |
  * | `index-out-of-range` | check the indices of the triangle that the message names |
  * | `ragged-array` | check the array's length and the dimension |
@@ -26,7 +25,6 @@ export type ErrorCode = (typeof CODES)[number];
 
 const CODES = [
   'invalid-input',
-  'not-float32',
   'non-finite',
   'index-out-of-range',
   'ragged-array',

@@ -74,8 +74,8 @@ export async function readMesh(bytes: Uint8Array, name: string, options: ReadOpt
 }
 
 /**
- * The bytes of a file that holds the mesh. Each number has the fewest digits that read back to the same 32 bits; an
- * OBJ or OFF file of a mesh in the plane has 0 for every z.
+ * The bytes of a file that holds the mesh. Each number has the fewest digits that read back to the same 32 or 64 bits;
+ * {@link readMesh} reads 32. An OBJ or OFF file of a mesh in the plane has 0 for every z.
  *
  * @param name - Its name, such as `bunny.obj`: the extension gives the format.
  * @throws {@link EdgeflipError} about the mesh; `unknown-format`.

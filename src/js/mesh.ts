@@ -3,7 +3,7 @@
 import { EdgeflipError } from './error.js';
 import type { Mesh } from './types.js';
 
-/** A mesh in the arrays that the modules take and give. */
+/** A mesh in the arrays that the modules give. */
 export interface Mesh32 extends Mesh {
   /** 2 or 3 numbers a vertex. */
   positions: Float32Array;
@@ -12,13 +12,14 @@ export interface Mesh32 extends Mesh {
 }
 
 /**
- * The mesh in 32 bits.
+ * The mesh in the arrays that the modules take.
  *
- * @throws {@link EdgeflipError} `invalid-input` or `not-float32`.
+ * @throws {@link EdgeflipError} `invalid-input`.
  */
-export function moduleMesh({ positions, indices, dimension }: Mesh): Mesh32 {
+export function moduleMesh({ positions, indices, dimension }: Mesh): Mesh & { indices: Uint32Array } {
   checkDimension(dimension);
-  return { positions: float32(positions, dimension), indices: uint32(indices), dimension };
+  checkPositions(positions);
+  return { positions, indices: uint32(indices), dimension };
 }
 
 /** @throws {@link EdgeflipError} `invalid-input`, for a program without types. */
@@ -27,25 +28,10 @@ export function checkDimension(dimension: number): void {
   throw new EdgeflipError('invalid-input', `dimension is ${String(dimension)}, not 2 or 3`);
 }
 
-/**
- * Positions in 32 bits.
- *
- * @throws {@link EdgeflipError} `invalid-input` or `not-float32`.
- */
-export function float32(positions: Float32Array | Float64Array, dimension: 2 | 3): Float32Array {
-  if (positions instanceof Float32Array) return positions;
-  if (!(positions instanceof Float64Array)) {
-    throw new EdgeflipError('invalid-input', 'positions are neither a Float32Array nor a Float64Array');
-  }
-  const rounded = Float32Array.from(positions);
-  const place = positions.findIndex((x, i) => !Object.is(x, rounded[i]));
-  if (place < 0) return rounded;
-  const vertex = Math.floor(place / dimension);
-  const axis = 'xyz'.charAt(place % dimension);
-  throw new EdgeflipError(
-    'not-float32',
-    `vertex ${vertex}: coordinate ${axis} is ${positions[place]}, not a 32-bit float; round it first`,
-  );
+/** @throws {@link EdgeflipError} `invalid-input`, for a program without types. */
+export function checkPositions(positions: Float32Array | Float64Array): void {
+  if (positions instanceof Float32Array || positions instanceof Float64Array) return;
+  throw new EdgeflipError('invalid-input', 'positions are neither a Float32Array nor a Float64Array');
 }
 
 function uint32(indices: Uint32Array | Uint16Array): Uint32Array {

@@ -6,7 +6,7 @@ import { Session } from './wasm/edgeflip.js';
 import type { EDGE_STATES } from './edge-states.js';
 import { EdgeflipError, fromModule } from './error.js';
 import { init } from './load.js';
-import { float32, moduleMesh } from './mesh.js';
+import { checkPositions, moduleMesh } from './mesh.js';
 import { Turns } from './turn.js';
 import type { Audit, Edges, Engine, Iteration, Mesh, Options, Result, RunOptions } from './types.js';
 
@@ -26,13 +26,11 @@ const dispose: typeof Symbol.dispose = Symbol.dispose ?? Symbol.for('Symbol.disp
  */
 export class FlipSession implements AsyncIterable<Iteration>, Disposable {
   readonly #session: Session;
-  readonly #dimension: 2 | 3;
   #last: Promise<unknown> = Promise.resolve();
   #isFreed = false;
 
-  private constructor(session: Session, dimension: 2 | 3) {
+  private constructor(session: Session) {
     this.#session = session;
-    this.#dimension = dimension;
   }
 
   /**
@@ -44,7 +42,7 @@ export class FlipSession implements AsyncIterable<Iteration>, Disposable {
     const { positions, indices, dimension } = moduleMesh(mesh);
     await init();
     try {
-      return new FlipSession(await Session.create(positions, indices, dimension, options), dimension);
+      return new FlipSession(await Session.create(positions, indices, dimension, options));
     } catch (thrown) {
       throw fromModule(thrown);
     }
@@ -84,10 +82,11 @@ export class FlipSession implements AsyncIterable<Iteration>, Disposable {
    * anew. Adjacency, device and buffers stay, and the triangles are read back once. After an error the session is as
    * before; with `'auto'` the CPU takes over what the GPU cannot take.
    *
-   * @throws {@link EdgeflipError} `invalid-input`, `not-float32`, `position-count`, `non-finite`, `backend-limit`.
+   * @throws {@link EdgeflipError} `invalid-input`, `position-count`, `non-finite`, `backend-limit`.
    */
   async setPositions(positions: Float32Array | Float64Array): Promise<void> {
-    const moved = float32(positions, this.#dimension).slice();
+    checkPositions(positions);
+    const moved = positions.slice();
     return this.#call((session) => session.setPositions(moved));
   }
 

@@ -5,8 +5,8 @@
 /** A triangle mesh. It is only read; nothing of it is kept. */
 export interface Mesh {
   /**
-   * 2 or 3 numbers a vertex. Decisions are exact for 32-bit floats, so a `Float64Array` must hold numbers that are
-   * such floats; else it is refused with the code `not-float32` (round it with `Float32Array.from`).
+   * 2 or 3 numbers a vertex. Decisions are exact for the numbers given. WebGPU takes doubles only where each is a
+   * 32-bit float too; the CPU takes all.
    */
   positions: Float32Array | Float64Array;
   /** Vertex indices, 3 a triangle. */

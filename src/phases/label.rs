@@ -2,7 +2,7 @@
 
 use super::{BLOCKED, Geometry, Topology, key};
 use crate::adjacency::{CREASE, next, prev, unflagged};
-use crate::mesh::{Dimension, point2, point3};
+use crate::mesh::Dimension;
 use crate::predicates::{Quad, area_sign, in_circle_sign};
 use crate::star::{Star, any_in_either};
 use crate::{NONE, Reason};
@@ -60,7 +60,7 @@ pub(crate) fn verdict(geometry: &Geometry, mesh: Topology, h: u32) -> Verdict {
         Dimension::Two => {
             let clockwise = geometry.winding.is_clockwise(h / 3);
             let signed = |sign: Ordering| if clockwise { sign.reverse() } else { sign };
-            let [a, b, c, d] = [a, b, c, d].map(|v| point2(geometry.positions, v));
+            let [a, b, c, d] = geometry.positions.points2([a, b, c, d]);
             if signed(in_circle_sign(a, b, c, d)).is_ge() {
                 return Verdict::Delaunay;
             }
@@ -68,7 +68,7 @@ pub(crate) fn verdict(geometry: &Geometry, mesh: Topology, h: u32) -> Verdict {
             (!(positive(a, d, c) && positive(b, c, d))).then_some(Reason::Fold)
         }
         Dimension::Three => {
-            let [a, b, c, d] = [a, b, c, d].map(|v| point3(geometry.positions, v));
+            let [a, b, c, d] = geometry.positions.points3([a, b, c, d]);
             let quad = Quad::new(a, b, c, d);
             if !quad.is_non_delaunay() {
                 return Verdict::Delaunay;

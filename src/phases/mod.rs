@@ -23,10 +23,10 @@ pub(crate) use frontier::Frontier;
 pub(crate) use label::{Verdict, label, verdict};
 pub(crate) use select::select;
 
-use crate::NONE;
 use crate::mesh::Dimension;
 use crate::star::Fans;
 use crate::winding::Winding;
+use crate::{NONE, Positions};
 
 /// In `best`: no labelled edge, but one blocked as a duplicate, so that the triangle stays in the frontier.
 pub(crate) const BLOCKED: u32 = NONE - 1;
@@ -34,7 +34,7 @@ pub(crate) const BLOCKED: u32 = NONE - 1;
 /// What the phases read and never write.
 pub(crate) struct Geometry<'a> {
     pub(crate) dimension: Dimension,
-    pub(crate) positions: &'a [f32],
+    pub(crate) positions: &'a Positions,
     /// cos β (3D).
     pub(crate) cos: f64,
     pub(crate) winding: &'a Winding,

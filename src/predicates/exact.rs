@@ -1,10 +1,13 @@
-//! Exact integers: four points with floating-point coordinates are integers times one power of two, and
-//! every predicate is the sign of a polynomial in their differences.
+//! Exact integers: points with floating-point coordinates are integers times one power of two, and every predicate is
+//! the sign of a polynomial in their differences.
 
+use num_bigint::{BigInt, Sign};
 use std::cmp::Ordering;
 
 /// What a polynomial needs of the numbers it is evaluated in.
-pub(super) trait Ring: Copy {
+pub(super) trait Ring {
+    /// `mantissa * 2^shift`.
+    fn new(mantissa: i64, shift: u32) -> Self;
     fn add(&self, other: &Self) -> Self;
     fn sub(&self, other: &Self) -> Self;
     fn mul(&self, other: &Self) -> Self;
@@ -12,6 +15,9 @@ pub(super) trait Ring: Copy {
 }
 
 impl Ring for i128 {
+    fn new(mantissa: i64, shift: u32) -> Self {
+        Self::from(mantissa) << shift
+    }
     fn add(&self, other: &Self) -> Self {
         self + other
     }
@@ -26,6 +32,29 @@ impl Ring for i128 {
     }
 }
 
+/// Of any size: where the exponents are far apart.
+impl Ring for BigInt {
+    fn new(mantissa: i64, shift: u32) -> Self {
+        Self::from(mantissa) << shift
+    }
+    fn add(&self, other: &Self) -> Self {
+        self + other
+    }
+    fn sub(&self, other: &Self) -> Self {
+        self - other
+    }
+    fn mul(&self, other: &Self) -> Self {
+        self * other
+    }
+    fn sign(&self) -> Ordering {
+        match Self::sign(self) {
+            Sign::Minus => Ordering::Less,
+            Sign::NoSign => Ordering::Equal,
+            Sign::Plus => Ordering::Greater,
+        }
+    }
+}
+
 /// A signed integer of up to `N` 64-bit limbs: sign and magnitude, `len` limbs in use, the least
 /// significant first. The callers choose `N` so that no result is larger.
 #[derive(Clone, Copy, Debug)]
@@ -37,29 +66,6 @@ pub(super) struct Int<const N: usize> {
 
 impl<const N: usize> Int<N> {
     const ZERO: Self = Self { negative: false, len: 0, limbs: [0; N] };
-
-    /// `mantissa * 2^shift`.
-    pub(super) fn new(mantissa: i64, shift: u32) -> Self {
-        let mut result = Self { negative: mantissa < 0, ..Self::ZERO };
-        let wide = u128::from(mantissa.unsigned_abs()) << (shift % 64);
-        let at = (shift / 64) as usize;
-        result.limbs[at] = wide as u64;
-        result.limbs[at + 1] = (wide >> 64) as u64;
-        result.len = at + 2;
-        result.trimmed()
-    }
-
-    /// The same number with more limbs.
-    pub(super) fn widened<const M: usize>(&self) -> Int<M> {
-        let mut result = Int::<M> { negative: self.negative, len: self.len, limbs: [0; M] };
-        result.limbs[..self.len].copy_from_slice(&self.limbs[..self.len]);
-        result
-    }
-
-    /// `self * 2^shift`.
-    pub(super) fn shifted(&self, shift: u32) -> Self {
-        self.mul(&Self::new(1, shift))
-    }
 
     fn trimmed(mut self) -> Self {
         while self.len > 0 && self.limbs[self.len - 1] == 0 {
@@ -112,6 +118,16 @@ impl<const N: usize> Int<N> {
 }
 
 impl<const N: usize> Ring for Int<N> {
+    fn new(mantissa: i64, shift: u32) -> Self {
+        let mut result = Self { negative: mantissa < 0, ..Self::ZERO };
+        let wide = u128::from(mantissa.unsigned_abs()) << (shift % 64);
+        let at = (shift / 64) as usize;
+        result.limbs[at] = wide as u64;
+        result.limbs[at + 1] = (wide >> 64) as u64;
+        result.len = at + 2;
+        result.trimmed()
+    }
+
     fn add(&self, other: &Self) -> Self {
         if self.negative == other.negative {
             self.add_magnitude(other)
@@ -168,35 +184,47 @@ pub(super) fn decode(x: f64) -> (i64, i32) {
     (if x < 0.0 { -mantissa } else { mantissa }, field.max(1) - 1075 + zeros as i32)
 }
 
-/// Numbers as integers times one power of two: `values[i] = mantissa[i] << shift[i]`, times a unit that no
-/// sign depends on. `bits` is the width of the largest.
-pub(super) struct Grid<const K: usize> {
-    values: [(i64, u32); K],
+/// Differences of numbers as integers times one power of two, a unit that no sign depends on.
+pub(super) struct Differences<const K: usize> {
+    /// Mantissas and exponents.
+    minuends: [(i64, i32); K],
+    /// None where f64 holds all differences: those are the minuends then.
+    subtrahends: Option<[(i64, i32); K]>,
+    /// The smallest exponent.
+    unit: i32,
+    /// Each difference is below `2^bits` in size.
     pub(super) bits: u32,
 }
 
-impl<const K: usize> Grid<K> {
-    pub(super) fn new(numbers: &[f64; K]) -> Self {
-        let decoded = numbers.map(decode);
-        let unit = decoded.iter().map(|&(_, exponent)| exponent).min().unwrap_or(0);
-        let values = decoded.map(|(m, e)| (m, if m == 0 { 0 } else { (e - unit) as u32 }));
-        let width = |&(m, shift): &(i64, u32)| if m == 0 { 0 } else { m.unsigned_abs().ilog2() + 1 + shift };
-        Self { values, bits: values.iter().map(width).max().unwrap_or(0) }
+impl<const K: usize> Differences<K> {
+    /// Of x - y for each (x, y), any finite numbers. `bits` is at most 2099.
+    pub(super) fn new(pairs: [(f64, f64); K]) -> Self {
+        let exact = pairs.iter().all(|&(x, y)| difference_is_exact(x, y));
+        let minuends = pairs.map(|(x, y)| decode(if exact { x - y } else { x }));
+        let subtrahends = (!exact).then(|| pairs.map(|(_, y)| decode(y)));
+        let numbers = || minuends.iter().chain(subtrahends.as_slice().as_flattened());
+        let unit = numbers().map(|&(_, exponent)| exponent).min().unwrap_or(0);
+        let width =
+            |&(m, e): &(i64, i32)| if m == 0 { 0 } else { m.unsigned_abs().ilog2() + 1 + (e - unit) as u32 };
+        let bits = numbers().map(width).max().unwrap_or(0) + u32::from(!exact);
+        Self { minuends, subtrahends, unit, bits }
     }
 
-    /// The integers as i128; `bits` must be below 127.
-    pub(super) fn narrow(&self) -> [i128; K] {
-        self.values.map(|(m, shift)| i128::from(m) << shift)
-    }
-
-    /// The integers with `64 * N` bits; `bits` must leave room for what is computed from them.
-    pub(super) fn wide<const N: usize>(&self) -> [Int<N>; K] {
-        self.values.map(|(m, shift)| Int::new(m, shift))
+    /// The integers; `R` must have room for `bits`, and for what is computed from them.
+    pub(super) fn integers<R: Ring>(&self) -> [R; K] {
+        let integer = |(m, e): (i64, i32)| R::new(m, if m == 0 { 0 } else { (e - self.unit) as u32 });
+        match self.subtrahends {
+            None => self.minuends.map(integer),
+            Some(subtrahends) => {
+                std::array::from_fn(|i| integer(self.minuends[i]).sub(&integer(subtrahends[i])))
+            }
+        }
     }
 }
 
-/// True where `x - y`, computed in f64, is the exact difference (the roundoff of Knuth's TwoDiff is zero).
-pub(super) fn difference_is_exact(x: f64, y: f64) -> bool {
+/// True where `x - y`, computed in f64, is the exact difference: the roundoff of Knuth's TwoDiff is zero. Sums of f64
+/// do not underflow, and of a difference that overflows no part of the roundoff is a number.
+fn difference_is_exact(x: f64, y: f64) -> bool {
     let difference = x - y;
     let y_virtual = x - difference;
     let x_virtual = difference + y_virtual;

@@ -1,15 +1,24 @@
 //! The plane: orientation and the in-circle test, as the sine of the sum of the opposite angles.
 
-use super::exact::{Grid, Int, Ring, difference_is_exact};
+use super::exact::{Differences, Int, Ring, decode};
 use glam::DVec2;
+use num_bigint::BigInt;
 use std::cmp::Ordering;
 
 /// Unit roundoff of f64.
 const EPSILON: f64 = f64::EPSILON / 2.0;
 
-/// Integers up to this width keep degree 4 within i128: a cross or dot product of two such vectors is below
+/// What underflow may add to the error of a filter, with room: a product that underflows is off by at most
+/// η = 2^-1075, and sums and differences do not underflow. Where anything overflows, the filter's bound is infinite
+/// or no number, and decides nothing.
+const UNDERFLOW: f64 = f64::MIN_POSITIVE;
+
+/// Differences up to this width keep degree 4 within i128: a cross or dot product of two such vectors is below
 /// 2^61, the product of two of those below 2^122, the sum of two below 2^123.
 const NARROW_BITS: u32 = 30;
+
+/// The same within 20 limbs, 1280 bits: 4·319 + 3 = 1279. Differences of f32 have at most 278 bits.
+const WIDE_BITS: u32 = 319;
 
 /// The sign of cross(λ)·dot(γ) + dot(λ)·cross(γ), where λ = angle at `c` and γ = angle at `d`, opposite to
 /// the edge (`a`, `b`) of the triangles (a, b, c) and (b, a, d): negative when λ + γ > π, for
@@ -18,13 +27,18 @@ pub(crate) fn in_circle_sign(a: DVec2, b: DVec2, c: DVec2, d: DVec2) -> Ordering
     let (p, q, r, s) = (a - c, b - c, a - d, b - d);
     let (cross1, dot1, cross2, dot2) = (p.perp_dot(q), p.dot(q), s.perp_dot(r), s.dot(r));
     let value = cross1 * dot2 + dot1 * cross2;
-    // Each difference, product and sum has a relative error of at most ε. A cross or dot product so differs
-    // from the true one by at most ((1+ε)^4 - 1) of the sum of the magnitudes of its two products, the value
-    // by at most ((1+ε)^10 - 1) < 10.1ε of `magnitude` taken with the true differences, which is at most
-    // (1+ε)^10 times the computed one. No f32 input can overflow or underflow f64 here.
+    // Without underflow each difference, product and sum has a relative error of at most ε. A cross or dot product
+    // so differs from the true one by at most ((1+ε)^4 - 1) of the sum of the magnitudes of its two products, the
+    // value by at most ((1+ε)^10 - 1) < 10.1ε of `magnitude` taken with the true differences, which is at most
+    // (1+ε)^10 times the computed one. Underflow puts each of the four sums of products, and of magnitudes, off by
+    // at most 2.1η, and so the value and `magnitude` by at most 2.2η(cross1 + dot1 + cross2 + dot2) + 3η each, with
+    // the magnitudes of the four.
     let (pa, qa, ra, sa) = (p.abs(), q.abs(), r.abs(), s.abs());
-    let magnitude = (pa.x * qa.y + pa.y * qa.x) * sa.dot(ra) + pa.dot(qa) * (sa.x * ra.y + sa.y * ra.x);
-    if value.abs() > 16.0 * EPSILON * magnitude {
+    let (cross1, dot1) = (pa.x * qa.y + pa.y * qa.x, pa.dot(qa));
+    let (cross2, dot2) = (sa.x * ra.y + sa.y * ra.x, sa.dot(ra));
+    let magnitude = cross1 * dot2 + dot1 * cross2;
+    let underflow = UNDERFLOW * ((cross1 + dot1) + (cross2 + dot2) + 1.0);
+    if value.abs() > 16.0 * EPSILON * magnitude + underflow {
         return sign(value);
     }
     in_circle_exact(a, b, c, d)
@@ -35,14 +49,11 @@ pub(crate) fn area_sign(a: DVec2, b: DVec2, c: DVec2) -> Ordering {
     let (p, q) = (a - c, b - c);
     let (left, right) = (p.x * q.y, p.y * q.x);
     let value = left - right;
-    // As above: ((1+ε)^4 - 1) of the sum of the magnitudes.
-    if value.abs() > 8.0 * EPSILON * (left.abs() + right.abs()) {
+    // As above: ((1+ε)^4 - 1) of the sum of the magnitudes, and 2.1η.
+    if value.abs() > 8.0 * EPSILON * (left.abs() + right.abs()) + UNDERFLOW {
         return sign(value);
     }
-    let points = [a.x, a.y, b.x, b.y, c.x, c.y];
-    let [ax, ay, bx, by, cx, cy] = Grid::new(&points).wide::<12>();
-    let cross = ax.sub(&cx).mul(&by.sub(&cy)).sub(&ay.sub(&cy).mul(&bx.sub(&cx)));
-    cross.sign()
+    area_exact(a, b, c)
 }
 
 /// The sign of the sum of the areas of triangles.
@@ -57,46 +68,51 @@ pub(crate) fn total_area_sign(triangles: impl Iterator<Item = [DVec2; 3]> + Clon
         magnitude += left.abs() + right.abs();
         count += 1.0;
     }
-    // Each term errs by at most 5ε of its magnitude; summing n terms one after the other by (n - 1)ε of the
+    // Each term errs by at most 5ε of its magnitude and 2.1η; summing n terms one after the other by (n - 1)ε of the
     // sum of the magnitudes.
-    if sum.abs() > (count + 8.0) * 2.0 * EPSILON * magnitude {
+    if sum.abs() > (count + 8.0) * 2.0 * EPSILON * magnitude + count * UNDERFLOW {
         return sign(sum);
     }
-    // Every f32 is an integer times 2^-149; a term is below 2^(2·278 + 1), and there are fewer than 2^32.
-    let unit = |x: f64| {
-        let (mantissa, exponent) = super::exact::decode(x);
-        Int::<12>::new(mantissa, if mantissa == 0 { 0 } else { (exponent + 149) as u32 })
+    let coordinates = triangles.clone().flatten().flat_map(|p| p.to_array());
+    let unit = coordinates.map(|x| decode(x).1).min().unwrap_or(0);
+    let integer = |x: f64| {
+        let (mantissa, exponent) = decode(x);
+        <BigInt as Ring>::new(mantissa, if mantissa == 0 { 0 } else { (exponent - unit) as u32 })
     };
-    let mut sum = Int::<12>::new(0, 0);
+    let mut sum = BigInt::ZERO;
     for [a, b, c] in triangles {
-        let [ax, ay, bx, by, cx, cy] = [a.x, a.y, b.x, b.y, c.x, c.y].map(unit);
-        sum = sum.add(&ax.sub(&cx).mul(&by.sub(&cy)).sub(&ay.sub(&cy).mul(&bx.sub(&cx))));
+        let [a, b, c] = [a, b, c].map(|p| p.to_array().map(integer));
+        sum += (&a[0] - &c[0]) * (&b[1] - &c[1]) - (&a[1] - &c[1]) * (&b[0] - &c[0]);
     }
-    sum.sign()
+    Ring::sign(&sum)
 }
 
+#[cold]
 fn in_circle_exact(a: DVec2, b: DVec2, c: DVec2, d: DVec2) -> Ordering {
-    let pairs = [(a, c), (b, c), (a, d), (b, d)];
-    if pairs.iter().all(|(u, v)| difference_is_exact(u.x, v.x) && difference_is_exact(u.y, v.y)) {
-        let [p, q, r, s] = pairs.map(|(u, v)| u - v);
-        let grid = Grid::new(&[p.x, p.y, q.x, q.y, r.x, r.y, s.x, s.y]);
-        return if grid.bits <= NARROW_BITS {
-            in_circle(&grid.narrow())
-        } else {
-            in_circle(&grid.wide::<20>())
-        };
+    let [p, q, r, s] = [(a, c), (b, c), (a, d), (b, d)].map(|(u, v)| [(u.x, v.x), (u.y, v.y)]);
+    let differences = Differences::new([p[0], p[1], q[0], q[1], r[0], r[1], s[0], s[1]]);
+    if differences.bits <= NARROW_BITS {
+        in_circle::<i128>(&differences.integers())
+    } else if differences.bits <= WIDE_BITS {
+        in_circle::<Int<20>>(&differences.integers())
+    } else {
+        in_circle::<BigInt>(&differences.integers())
     }
-    let [ax, ay, bx, by, cx, cy, dx, dy] = Grid::new(&[a.x, a.y, b.x, b.y, c.x, c.y, d.x, d.y]).wide::<20>();
-    in_circle(&[
-        ax.sub(&cx),
-        ay.sub(&cy),
-        bx.sub(&cx),
-        by.sub(&cy),
-        ax.sub(&dx),
-        ay.sub(&dy),
-        bx.sub(&dx),
-        by.sub(&dy),
-    ])
+}
+
+#[cold]
+fn area_exact(a: DVec2, b: DVec2, c: DVec2) -> Ordering {
+    let differences = Differences::new([(a.x, c.x), (a.y, c.y), (b.x, c.x), (b.y, c.y)]);
+    if differences.bits <= WIDE_BITS {
+        area::<Int<20>>(&differences.integers())
+    } else {
+        area::<BigInt>(&differences.integers())
+    }
+}
+
+/// The polynomial of [`area_sign`] over exact differences p, q (x and y of each).
+fn area<R: Ring>([px, py, qx, qy]: &[R; 4]) -> Ordering {
+    px.mul(qy).sub(&py.mul(qx)).sign()
 }
 
 /// The polynomial of [`in_circle_sign`] over exact differences p, q, r, s (x and y of each).

@@ -1,7 +1,8 @@
 //! Surfaces in space: the angle sum, the angle between normals against β, and normals that turn over.
 
-use super::exact::{Grid, Int, Ring, difference_is_exact};
+use super::exact::{Differences, Int, Ring};
 use glam::DVec3;
+use num_bigint::BigInt;
 use std::cmp::Ordering;
 
 /// Bound of every filter here, relative to the product of the sizes of its vectors: 32 unit roundoffs.
@@ -15,13 +16,24 @@ use std::cmp::Ordering;
 /// - n·n': (4.01 + 4.01 + 3)ε·L·L' = 11.1ε·L·L', which also decides `turns_over`;
 /// - n·n' - k|n||n'|: 11.1ε + (7 + 7 + 2)ε + 2.1ε = 29.2ε·L·L'.
 ///
-/// The products L·L' are rounded eight times; 32 leaves room for that. f32 inputs can neither overflow nor
-/// underflow degree 4 in f64.
+/// The products L·L' are rounded eight times; 32 leaves room for that.
 const BOUND: f64 = 32.0 * (f64::EPSILON / 2.0);
 
-/// Grids up to this width are evaluated in 12 limbs: degree 8 of 61-bit differences with sums is below
-/// 2^494, and the β test multiplies by at most 2^212 (the square of an f64 cosine in units of 2^-106).
+/// What underflow adds to the errors, relative to the square of the sum of all sizes: 2^-530.
+///
+/// A product that underflows is off by at most η = 2^-1075; sums and differences do not underflow. A component of a
+/// normal or a dot product is so off by at most 3.1η, a normal by 5.4η. The square of a length is off by 3.1η beyond
+/// that, and the length by at most the root of it, 2^-536.6 in all. Each value, a sum of products of two lengths,
+/// normals or dot products of sizes L and L', is so off by at most 2^-534·(L + L') + 12η, for |k| is at most 1; the
+/// product of the sizes by less. Both L and L' are at most a quarter of the square of the sum of all sizes.
+const UNDERFLOW: f64 = f64::from_bits((1023 - 530) << 52);
+
+/// Differences up to this width are evaluated in 12 limbs, 768 bits: of `b` bits, degree 8 with sums is below
+/// 2^(8b + 9), and the β test multiplies by at most 2^212 (the square of an f64 cosine in units of 2^-106).
 const NARROW_BITS: u32 = 60;
+
+/// The same within 40 limbs, 2560 bits. Differences of f32 have at most 278 bits.
+const WIDE_BITS: u32 = 290;
 
 /// The two triangles (a, b, c) and (b, a, d) at an edge (a, b).
 pub(crate) struct Quad {
@@ -30,28 +42,38 @@ pub(crate) struct Quad {
     q: DVec3,
     r: DVec3,
     s: DVec3,
+    /// What the value of a filter must exceed, if the sizes of its four vectors are those of p, q, r and s.
+    bound: f64,
 }
 
-/// p, q, r, s as exact integers times a common unit: 12 components.
-#[expect(clippy::large_enum_variant, reason = "on the stack, for one evaluation")]
-enum Differences {
-    Narrow([Int<12>; 12]),
-    Wide([Int<40>; 12]),
-}
-
-/// Evaluates a function that is generic over the number of limbs.
+/// Evaluates a function that is generic over the integers, on p, q, r, s: 12 components. Apart from the filters, which
+/// are called for every edge and should be small.
 macro_rules! exactly {
     ($quad:expr, $function:ident $(, $argument:expr)*) => {
-        match $quad.differences() {
-            Differences::Narrow(v) => $function(&v $(, $argument)*),
-            Differences::Wide(v) => $function(&v $(, $argument)*),
-        }
+        apart(|| {
+            let differences = $quad.differences();
+            if differences.bits <= NARROW_BITS {
+                $function::<Int<12>>(&differences.integers() $(, $argument)*)
+            } else if differences.bits <= WIDE_BITS {
+                $function::<Int<40>>(&differences.integers() $(, $argument)*)
+            } else {
+                $function::<BigInt>(&differences.integers() $(, $argument)*)
+            }
+        })
     };
+}
+
+#[cold]
+#[inline(never)]
+fn apart<T>(decide: impl FnOnce() -> T) -> T {
+    decide()
 }
 
 impl Quad {
     pub(crate) fn new(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> Self {
-        Self { points: [a, b, c, d], p: a - c, q: b - c, r: a - d, s: b - d }
+        let (p, q, r, s) = (a - c, b - c, a - d, b - d);
+        let [u, v, w, x] = [p, q, r, s].map(size);
+        Self { points: [a, b, c, d], p, q, r, s, bound: bound((u * v) * (w * x), u + v + w + x) }
     }
 
     /// Whether the opposite angles sum to more than π: |n1|·dot2 + |n2|·dot1 < 0.
@@ -59,8 +81,7 @@ impl Quad {
         let (dot1, dot2) = (self.p.dot(self.q), self.s.dot(self.r));
         let (n1, n2) = (self.p.cross(self.q), self.s.cross(self.r));
         let value = n1.length() * dot2 + n2.length() * dot1;
-        let bound = BOUND * size(self.p) * size(self.q) * size(self.s) * size(self.r);
-        if value.abs() > bound { value < 0.0 } else { exactly!(self, angle_sum).is_lt() }
+        if value.abs() > self.bound { value < 0.0 } else { exactly!(self, angle_sum).is_lt() }
     }
 
     /// Whether the angle between the normals is larger than β = acos(`cos`), before the flip or after it.
@@ -94,10 +115,9 @@ impl Quad {
     /// n·m - k|n||m| against zero; `Equal` where the filter cannot decide.
     fn compare_angle(&self, n: DVec3, m: DVec3, cos: f64) -> Ordering {
         let value = n.dot(m) - cos * (n.length() * m.length());
-        let bound = BOUND * size(self.p) * size(self.q) * size(self.s) * size(self.r);
-        if value > bound {
+        if value > self.bound {
             Ordering::Greater
-        } else if value < -bound {
+        } else if value < -self.bound {
             Ordering::Less
         } else {
             Ordering::Equal
@@ -111,7 +131,7 @@ impl Quad {
         // Each bound is a product of four of the four sizes, one of them twice.
         let sizes = [self.p, self.q, self.r, self.s].map(size);
         let largest = sizes.iter().fold(0.0f64, |x, &y| x.max(y));
-        let bound = BOUND * (largest * largest) * (largest * largest);
+        let bound = bound((largest * largest) * (largest * largest), 4.0 * largest);
         let dots = old.map(|n| new.map(|m| n.dot(m)));
         if dots.as_flattened().iter().any(|&dot| dot < -bound) {
             true
@@ -122,50 +142,26 @@ impl Quad {
         }
     }
 
-    fn differences(&self) -> Differences {
-        let [a, b, c, d] = self.points;
+    fn differences(&self) -> Differences<12> {
+        let [a, b, c, d] = self.points.map(|point| point.to_array());
         let pairs = [(a, c), (b, c), (a, d), (b, d)];
-        let exact =
-            |(u, v): &(DVec3, DVec3)| (0..3).all(|i| difference_is_exact(u.to_array()[i], v.to_array()[i]));
-        if pairs.iter().all(exact) {
-            let mut numbers = [0.0; 12];
-            for (i, (u, v)) in pairs.into_iter().enumerate() {
-                numbers[3 * i..3 * i + 3].copy_from_slice(&(u - v).to_array());
-            }
-            let grid = Grid::new(&numbers);
-            return if grid.bits <= NARROW_BITS {
-                Differences::Narrow(grid.wide())
-            } else {
-                Differences::Wide(grid.wide())
-            };
-        }
-        let mut numbers = [0.0; 12];
-        for (i, point) in self.points.into_iter().enumerate() {
-            numbers[3 * i..3 * i + 3].copy_from_slice(&point.to_array());
-        }
-        // 278 bits a difference: degree 8 with sums and the factor of β stays below 2^2443.
-        let grid = Grid::new(&numbers).wide::<40>();
-        let vertex = |i: usize| [grid[3 * i], grid[3 * i + 1], grid[3 * i + 2]];
-        let minus = |u: usize, v: usize| {
-            let (u, v) = (vertex(u), vertex(v));
-            [u[0].sub(&v[0]), u[1].sub(&v[1]), u[2].sub(&v[2])]
-        };
-        let [p, q, r, s] = [minus(0, 2), minus(1, 2), minus(0, 3), minus(1, 3)];
-        Differences::Wide([p[0], p[1], p[2], q[0], q[1], q[2], r[0], r[1], r[2], s[0], s[1], s[2]])
+        Differences::new(std::array::from_fn(|i| {
+            let (u, v) = pairs[i / 3];
+            (u[i % 3], v[i % 3])
+        }))
     }
 }
 
 /// Whether the triangle (a, b, c) has an angle of more than 90° at c, and whether its area is zero.
 pub(crate) fn corner(a: DVec3, b: DVec3, c: DVec3) -> (bool, bool) {
-    let exact = |v: &[Int<40>; 12]| {
-        let [p, q, _, _] = vectors(v);
-        let normal = cross(&p, &q);
-        (dot(&p, &q).sign().is_lt(), dot(&normal, &normal).sign().is_eq())
-    };
-    match Quad::new(a, b, c, c).differences() {
-        Differences::Narrow(v) => exact(&v.map(|x| x.widened())),
-        Differences::Wide(v) => exact(&v),
-    }
+    exactly!(Quad::new(a, b, c, c), obtuse_and_flat)
+}
+
+/// Of the product of the sizes of a filter's four vectors, and the sum of all sizes. The fourth power of the sum is
+/// larger than anything that a filter computes: where that overflows the bound is infinite, and decides nothing.
+fn bound(product: f64, sum: f64) -> f64 {
+    let square = sum * sum;
+    BOUND * product + (UNDERFLOW * square + f64::MIN_POSITIVE * (square * square + 1.0))
 }
 
 /// The 1-norm.
@@ -173,10 +169,13 @@ fn size(v: DVec3) -> f64 {
     v.abs().element_sum()
 }
 
+/// One of p, q, r and s.
 type Vector<R> = [R; 3];
 
-fn vectors<R: Ring>(v: &[R; 12]) -> [Vector<R>; 4] {
-    [[v[0], v[1], v[2]], [v[3], v[4], v[5]], [v[6], v[7], v[8]], [v[9], v[10], v[11]]]
+/// p, q, r and s.
+fn vectors<R>(v: &[R; 12]) -> [&Vector<R>; 4] {
+    let (vectors, _) = v.as_chunks();
+    [&vectors[0], &vectors[1], &vectors[2], &vectors[3]]
 }
 
 fn dot<R: Ring>(u: &Vector<R>, v: &Vector<R>) -> R {
@@ -191,9 +190,9 @@ fn cross<R: Ring>(u: &Vector<R>, v: &Vector<R>) -> Vector<R> {
 /// The sign of √(n1²)·dot2 + √(n2²)·dot1: of equal signs of the two terms that sign, else by their squares.
 fn angle_sum<R: Ring>(v: &[R; 12]) -> Ordering {
     let [p, q, r, s] = vectors(v);
-    let (n1, n2) = (cross(&p, &q), cross(&s, &r));
+    let (n1, n2) = (cross(p, q), cross(s, r));
     let (n1, n2) = (dot(&n1, &n1), dot(&n2, &n2));
-    let (dot1, dot2) = (dot(&p, &q), dot(&s, &r));
+    let (dot1, dot2) = (dot(p, q), dot(s, r));
     let term = |square: &R, dot: &R| if square.sign().is_eq() { Ordering::Equal } else { dot.sign() };
     let (first, second) = (term(&n1, &dot2), term(&n2, &dot1));
     if first == second || second.is_eq() {
@@ -207,12 +206,12 @@ fn angle_sum<R: Ring>(v: &[R; 12]) -> Ordering {
 }
 
 /// Whether n·m < k|n||m| for the normals before the flip or, with `after` too, for those after it.
-fn angle_exceeded<const N: usize>(v: &[Int<N>; 12], k: f64, after: bool) -> bool {
+fn angle_exceeded<R: Ring>(v: &[R; 12], k: f64, after: bool) -> bool {
     let [p, q, r, s] = vectors(v);
     let (mantissa, shift) = super::cosine_fraction(k);
-    let mantissa = Int::<N>::new(mantissa as i64, 0);
-    let k_square = mantissa.mul(&mantissa);
-    let exceeds = |n: Vector<Int<N>>, m: Vector<Int<N>>| {
+    let mantissa = R::new(mantissa as i64, 0);
+    let (k_square, unit_square) = (mantissa.mul(&mantissa), R::new(1, 2 * shift));
+    let exceeds = |n: Vector<R>, m: Vector<R>| {
         let left = dot(&n, &m);
         // k|n||m| has the sign of k, or is zero.
         let scale = dot(&n, &n).mul(&dot(&m, &m));
@@ -226,19 +225,25 @@ fn angle_exceeded<const N: usize>(v: &[Int<N>; 12], k: f64, after: bool) -> bool
         if left.sign() != right_sign {
             return left.sign() < right_sign;
         }
-        let difference = left.mul(&left).shifted(2 * shift).sub(&scale.mul(&k_square)).sign();
+        let difference = left.mul(&left).mul(&unit_square).sub(&scale.mul(&k_square)).sign();
         match right_sign {
             Ordering::Greater => difference.is_lt(),
             Ordering::Less => difference.is_gt(),
             Ordering::Equal => false,
         }
     };
-    exceeds(cross(&p, &q), cross(&s, &r)) || (after && exceeds(cross(&r, &p), cross(&q, &s)))
+    exceeds(cross(p, q), cross(s, r)) || (after && exceeds(cross(r, p), cross(q, s)))
 }
 
 fn turned_over<R: Ring>(v: &[R; 12]) -> bool {
     let [p, q, r, s] = vectors(v);
-    let old = [cross(&p, &q), cross(&s, &r)];
-    let new = [cross(&r, &p), cross(&q, &s)];
+    let old = [cross(p, q), cross(s, r)];
+    let new = [cross(r, p), cross(q, s)];
     old.iter().any(|n| new.iter().any(|m| dot(n, m).sign().is_lt()))
+}
+
+fn obtuse_and_flat<R: Ring>(v: &[R; 12]) -> (bool, bool) {
+    let [p, q, _, _] = vectors(v);
+    let normal = cross(p, q);
+    (dot(p, q).sign().is_lt(), dot(&normal, &normal).sign().is_eq())
 }

@@ -7,7 +7,7 @@ use proptest::prelude::*;
 use std::cmp::Ordering;
 
 /// Any finite f32: of the usual sizes, of any exponent, small integers, or subnormal.
-fn coordinate() -> impl Strategy<Value = f32> {
+fn coordinate() -> BoxedStrategy<f32> {
     prop_oneof![
         4 => -1.0f32..1.0,
         4 => (-8i32..8).prop_map(|i| i as f32),
@@ -19,14 +19,33 @@ fn coordinate() -> impl Strategy<Value = f32> {
         1 => (0u32..1000).prop_map(f32::from_bits),
         1 => Just(6.1e-17f32),
     ]
+    .boxed()
 }
 
-fn point2() -> impl Strategy<Value = DVec2> {
-    [coordinate(), coordinate()].prop_map(|[x, y]| DVec2::new(x.into(), y.into()))
+/// Any finite f64, of the same kinds.
+fn double() -> BoxedStrategy<f64> {
+    prop_oneof![
+        4 => coordinate().prop_map(f64::from),
+        4 => -1.0f64..1.0,
+        2 => (-300i32..300).prop_map(|i| f64::from(i) * 0.1),
+        2 => any::<u64>().prop_map(f64::from_bits).prop_filter("finite", |x| x.is_finite()),
+        1 => (0u64..1000).prop_map(f64::from_bits),
+        1 => prop_oneof![Just(f64::MAX), Just(-f64::MAX), Just(f64::MIN_POSITIVE)],
+    ]
+    .boxed()
 }
 
-fn point3() -> impl Strategy<Value = DVec3> {
-    [coordinate(), coordinate(), coordinate()].prop_map(|[x, y, z]| DVec3::new(x.into(), y.into(), z.into()))
+fn nudged(x: f64, ulps: i64) -> f64 {
+    f64::from_bits(x.to_bits().wrapping_add_signed(ulps))
+}
+
+/// Four points of f32, of f64, and of f64 that all are multiplied by the same power of two.
+fn quad<const K: usize>() -> impl Strategy<Value = [[f64; K]; 4]> {
+    let narrow = [(); 4].map(|()| [(); K].map(|()| coordinate().prop_map(f64::from)));
+    let wide = [(); 4].map(|()| [(); K].map(|()| double()));
+    let unit = [(); 4].map(|()| [(); K].map(|()| -1.0f64..1.0));
+    let scaled = (unit, -1074i32..1024).prop_map(|(points, e)| points.map(|p| p.map(|x| libm::scalbn(x, e))));
+    prop_oneof![narrow, wide, scaled]
 }
 
 /// Points that are often cocircular, collinear or equal, or are so up to one unit in the last place.
@@ -35,18 +54,38 @@ fn quad2() -> impl Strategy<Value = [DVec2; 4]> {
         let nudged = f32::from_bits((x as f32 * 0.1 + 100.0).to_bits().wrapping_add_signed(ulps / 2));
         DVec2::new(nudged.into(), (y as f32 * 0.1 + 7.0).into())
     });
+    let wide = (0i32..4, 0i32..4, -2i64..=2)
+        .prop_map(|(x, y, ulps)| [nudged(f64::from(x + 1), ulps / 2), f64::from(y)]);
+    // The spacing is a power of two, or a tenth, with an offset of which no f32 has the bits.
+    let wide = ([wide.clone(), wide.clone(), wide.clone(), wide], -1074i32..1021, any::<bool>());
+    let wide = wide.prop_map(|(points, e, tenths)| {
+        points.map(|p| DVec2::from(p.map(|x| if tenths { 0.1 * x + 1e6 } else { libm::scalbn(x, e) })))
+    });
     prop_oneof![
-        [point2(), point2(), point2(), point2()],
-        [lattice.clone(), lattice.clone(), lattice.clone(), lattice]
+        quad::<2>().prop_map(|points| points.map(DVec2::from)),
+        [lattice.clone(), lattice.clone(), lattice.clone(), lattice],
+        wide
     ]
+}
+
+/// Opposite angles whose sum is π, or so up to one unit in the last place: the heights over the common edge,
+/// 5 and 4·5, have the square of its half as their product.
+fn angles_of_pi() -> impl Strategy<Value = [DVec3; 4]> {
+    (-1070i32..1018, 0usize..12, -1i64..=1).prop_map(|(e, place, ulps)| {
+        let mut points = [[-10., 0., 0.], [10., 0., 0.], [0., 5., 0.], [0., -12., -16.]];
+        let number = &mut points.as_flattened_mut()[place];
+        *number = nudged(*number, ulps);
+        points.map(|p| DVec3::from(p.map(|x| libm::scalbn(x, e))))
+    })
 }
 
 /// As `quad2`, and often coplanar.
 fn quad3() -> impl Strategy<Value = [DVec3; 4]> {
     prop_oneof![
-        [point3(), point3(), point3(), point3()],
-        (quad2(), 0usize..3, coordinate()).prop_map(|(points, axis, w)| points.map(|p| {
-            let mut v = p.extend(w.into()).to_array();
+        quad::<3>().prop_map(|points| points.map(DVec3::from)),
+        angles_of_pi(),
+        (quad2(), 0usize..3, double()).prop_map(|(points, axis, w)| points.map(|p| {
+            let mut v = p.extend(w).to_array();
             v.rotate_right(axis);
             DVec3::from_array(v)
         })),
@@ -99,21 +138,41 @@ fn exceeds(n: &Vector, m: &Vector, cos: f64) -> bool {
     root_sum_sign(&(dot(n, m) * unit), &BigInt::from(1), &-big(cos), &scale).is_lt()
 }
 
+fn compare_in_plane([a, b, c, d]: [DVec2; 4]) {
+    let [a3, b3, c3, d3] = [a, b, c, d].map(|p| p.extend(0.0));
+    let area = |p, q, r| normal([p, q, r])[2].clone();
+    assert_eq!(area_sign(a, b, c), order(&area(a3, b3, c3)));
+    let (p, q, r, s) = (minus(a3, c3), minus(b3, c3), minus(a3, d3), minus(b3, d3));
+    let expected = &cross(&p, &q)[2] * dot(&s, &r) + dot(&p, &q) * &cross(&s, &r)[2];
+    assert_eq!(in_circle_sign(a, b, c, d), order(&expected));
+    // The other half-edge of the same edge gives the same answer.
+    assert_eq!(in_circle_sign(b, a, d, c), order(&expected));
+    let total = total_area_sign([[a, b, c], [b, a, d]].into_iter());
+    assert_eq!(total, order(&(area(a3, b3, c3) + area(b3, a3, d3))));
+}
+
+fn compare_in_space([a, b, c, d]: [DVec3; 4], degrees: f64) {
+    let quad = Quad::new(a, b, c, d);
+    let (p, q, r, s) = (minus(a, c), minus(b, c), minus(a, d), minus(b, d));
+    let (n1, n2) = (normal([a, b, c]), normal([b, a, d]));
+    let (m1, m2) = (normal([a, d, c]), normal([b, c, d]));
+    let sum = root_sum_sign(&dot(&s, &r), &dot(&n1, &n1), &dot(&p, &q), &dot(&n2, &n2));
+    assert_eq!(quad.is_non_delaunay(), sum.is_lt());
+    let k = cos_degrees(degrees);
+    assert_eq!(quad.exceeds_angle(k), exceeds(&n1, &n2, k) || exceeds(&m1, &m2, k));
+    assert_eq!(quad.is_over_angle(k), exceeds(&n1, &n2, k));
+    let turned = [&n1, &n2].iter().any(|n| [&m1, &m2].iter().any(|m| dot(n, m).sign() == Sign::Minus));
+    assert_eq!(quad.turns_over(), turned);
+    let expected = (dot(&p, &q).sign() == Sign::Minus, dot(&n1, &n1).sign() == Sign::NoSign);
+    assert_eq!(corner(a, b, c), expected);
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(20_000))]
 
     #[test]
-    fn area_and_in_circle_agree_with_big_integers([a, b, c, d] in quad2()) {
-        let [a3, b3, c3, d3] = [a, b, c, d].map(|p| p.extend(0.0));
-        let area = |p, q, r| normal([p, q, r])[2].clone();
-        prop_assert_eq!(area_sign(a, b, c), order(&area(a3, b3, c3)));
-        let (p, q, r, s) = (minus(a3, c3), minus(b3, c3), minus(a3, d3), minus(b3, d3));
-        let expected = &cross(&p, &q)[2] * dot(&s, &r) + dot(&p, &q) * &cross(&s, &r)[2];
-        prop_assert_eq!(in_circle_sign(a, b, c, d), order(&expected));
-        // The other half-edge of the same edge gives the same answer.
-        prop_assert_eq!(in_circle_sign(b, a, d, c), order(&expected));
-        let total = total_area_sign([[a, b, c], [b, a, d]].into_iter());
-        prop_assert_eq!(total, order(&(area(a3, b3, c3) + area(b3, a3, d3))));
+    fn area_and_in_circle_agree_with_big_integers(quad in quad2()) {
+        compare_in_plane(quad);
     }
 
     #[test]
@@ -130,23 +189,11 @@ proptest! {
     }
 
     #[test]
-    fn surface_tests_agree_with_big_integers([a, b, c, d] in quad3(), degrees in prop_oneof![
+    fn surface_tests_agree_with_big_integers(quad in quad3(), degrees in prop_oneof![
         Just(0.0), Just(60.0), Just(90.0), Just(120.0), Just(180.0), 0.0..180.0f64,
         Just(90.0f64.next_up()), Just(90.0f64.next_down())
     ]) {
-        let quad = Quad::new(a, b, c, d);
-        let (p, q, r, s) = (minus(a, c), minus(b, c), minus(a, d), minus(b, d));
-        let (n1, n2) = (normal([a, b, c]), normal([b, a, d]));
-        let (m1, m2) = (normal([a, d, c]), normal([b, c, d]));
-        let sum = root_sum_sign(&dot(&s, &r), &dot(&n1, &n1), &dot(&p, &q), &dot(&n2, &n2));
-        prop_assert_eq!(quad.is_non_delaunay(), sum.is_lt());
-        let k = cos_degrees(degrees);
-        prop_assert_eq!(quad.exceeds_angle(k), exceeds(&n1, &n2, k) || exceeds(&m1, &m2, k));
-        prop_assert_eq!(quad.is_over_angle(k), exceeds(&n1, &n2, k));
-        let turned = [&n1, &n2].iter().any(|n| [&m1, &m2].iter().any(|m| dot(n, m).sign() == Sign::Minus));
-        prop_assert_eq!(quad.turns_over(), turned);
-        let expected = (dot(&p, &q).sign() == Sign::Minus, dot(&n1, &n1).sign() == Sign::NoSign);
-        prop_assert_eq!(corner(a, b, c), expected);
+        compare_in_space(quad, degrees);
     }
 }
 
@@ -162,4 +209,37 @@ fn the_largest_and_smallest_floats_are_decided() {
     let [a, b, c] = [DVec2::new(0.0, -1.0), DVec2::new(0.0, 1.0), DVec2::new(2.0, 0.0)];
     assert_eq!(area_sign(a, b, inside), Ordering::Less);
     assert_eq!(area_sign(a, b, c), Ordering::Less);
+}
+
+/// Where filters that leave out overflow and underflow decide wrongly.
+#[test]
+fn filters_leave_what_overflows_or_underflows() {
+    // The differences from c are rounded, and then their products to 5 and 4 times the smallest number.
+    let place = |x: i64, y: i64| DVec2::new(x as f64, y as f64) * 2f64.powi(-592);
+    let a = place(54_043_195_528_445_928, 54_043_195_528_445_952);
+    let b = place(108_086_391_056_891_904, 108_086_391_056_891_952);
+    compare_in_plane([a, b, place(-4, -4), DVec2::new(1.0, 0.0)]);
+
+    // The angle at c is 2^-40 below π, the one at d 2^-41: the square of the first normal is rounded to 0.
+    let half = 2f64.powi(-252);
+    let on_axis = |y: f64| DVec3::new(0.0, y, 0.0);
+    let [a, b] = [-half, half].map(|x| DVec3::new(x, 0.0, 0.0));
+    compare_in_space([a, b, on_axis(2f64.powi(-293)), on_axis(-2f64.powi(-210))], 10.0);
+
+    // The edge is short, c far off and d near: by rounding the square of the first normal is infinite.
+    let [a, b] = [DVec3::new(1e90, 1e90, 0.0), DVec3::new(1e90, 1e90, 1e-20)];
+    compare_in_space([a, b, DVec3::new(-1e90, 1e90, 1e-20), DVec3::new(1e90, 1e90 + 1e80, 0.0)], 10.0);
+}
+
+/// Also the widest that each kind of integer takes, and the ones next to it.
+#[test]
+fn differences_of_every_width_are_decided() {
+    let tiny = f64::from_bits(1);
+    for bits in 1..2098 {
+        let most = libm::scalbn(1.0, bits - 1074).next_down();
+        let [a, b, c, d] =
+            [[-most, -most], [most, most], [-most, most], [most, tiny - most]].map(DVec2::from_array);
+        compare_in_plane([a, b, c, d]);
+        compare_in_space([a.extend(most), b.extend(-most), c.extend(-most), d.extend(tiny)], 10.0);
+    }
 }

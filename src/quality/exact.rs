@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 use num_bigint::{BigInt, Sign};
+use robust::Coord;
 use std::cmp::Ordering;
 
 /// Three points; the normal of (p, q, r) is (p - r) × (q - r), and its angle is the one at r.
@@ -10,20 +11,32 @@ pub(super) type Triangle = [DVec3; 3];
 /// Relative bound of every f64 evaluation below. With u = 2^-53 and s = |p - r|·|q - r|: a component of
 /// the normal is off by at most 8us, the normal by 16us, its length by 24us, the dot product at r by
 /// 8us; a product of two such terms of triangles with s1 and s2 by 64u·s1·s2 and the sum of two products
-/// by 150u·s1·s2, which is below 1.7e-14·s1·s2. No product of f32 differences over- or underflows.
+/// by 150u·s1·s2, which is below 1.7e-14·s1·s2. For coordinates that are not [`ordinary`] nothing is decided by it.
 const BOUND: f64 = 1e-13;
+
+/// Whether each number is 0 or from 2^-160 to 2^160 in size. They are multiples of 2^-212, and so are their
+/// differences: a polynomial of degree 4 in those, and each term of it, is 0 or from 2^-848 to 2^660 in size, so that
+/// nothing over- or underflows, in `robust` neither.
+fn ordinary(numbers: &[f64]) -> bool {
+    numbers.iter().all(|&x| x == 0.0 || (LEAST..=1.0 / LEAST).contains(&x.abs()))
+}
+
+/// 2^-160.
+const LEAST: f64 = f64::from_bits((1023 - 160) << 52);
 
 struct Corner {
     normal: DVec3,
     dot: f64,
-    /// |p - r|·|q - r|: what the errors are relative to.
+    /// |p - r|·|q - r|: what the errors are relative to; infinite where they are not known.
     size: f64,
 }
 
 impl Corner {
     fn new([p, q, r]: Triangle) -> Self {
         let (x, y) = (p - r, q - r);
-        Self { normal: x.cross(y), dot: x.dot(y), size: x.length() * y.length() }
+        let is_ordinary = [p, q, r].iter().all(|p| ordinary(&p.to_array()));
+        let size = if is_ordinary { x.length() * y.length() } else { f64::INFINITY };
+        Self { normal: x.cross(y), dot: x.dot(y), size }
     }
 }
 
@@ -163,36 +176,74 @@ pub(super) fn flat(triangle: Triangle) -> Option<Ordering> {
     (exact.squared() == BigInt::ZERO).then(|| sign(&exact.dot))
 }
 
-/// A sum of products of two f32 numbers, without any rounding: integers in bins of 32 binary orders.
-#[derive(Clone, Default)]
-pub(super) struct ExactSum([i128; 16]);
-
-/// Exponent of the smallest product of two f32 numbers, 2^-149 · 2^-149.
-const SMALLEST: i32 = -298;
-
-impl ExactSum {
-    /// Adds x·y. Fewer than 2^40 additions cannot overflow a bin: each is below 2^80.
-    pub fn add(&mut self, x: f32, y: f32) {
-        let (m, e) = decode_f32(x);
-        let (n, f) = decode_f32(y);
-        let place = (e + f - SMALLEST) as usize;
-        self.0[place / 32] += i128::from(m * n) << (place % 32);
+/// The sign of the area of a triangle in the plane: `Greater` when counter-clockwise.
+pub(super) fn turn(triangle: [Coord<f64>; 3]) -> Ordering {
+    let [p, q, r] = triangle;
+    if ordinary(&[p.x, p.y, q.x, q.y, r.x, r.y]) {
+        return sign_of(robust::orient2d(p, q, r));
     }
-
-    /// The sum, in units of the square of the smallest f32.
-    pub fn total(&self) -> BigInt {
-        self.0.iter().rev().fold(BigInt::ZERO, |sum, &bin| (sum << 32u32) + BigInt::from(bin))
-    }
+    let triangle = triangle.map(in_space);
+    let [corner, _] = exact_corners(triangle, triangle);
+    sign(&corner.normal[2])
 }
 
-/// x = mantissa · 2^exponent, exponent from -149 to 104.
-fn decode_f32(x: f32) -> (i64, i32) {
-    let bits = x.to_bits();
-    let biased = (bits >> 23 & 0xff) as i32;
-    let fraction = i64::from(bits & 0x7f_ffff);
-    let (mantissa, exponent) =
-        if biased == 0 { (fraction, -149) } else { (fraction | 1 << 23, biased - 150) };
-    (if x.is_sign_negative() { -mantissa } else { mantissa }, exponent)
+/// The sign of the in-circle determinant: `Greater` when d lies inside the circle of a, b, c, counter-clockwise.
+/// It is the polynomial -(cross1·dot2 + dot1·cross2) of the angles at c and d, whatever the orientations.
+pub(super) fn in_circle([a, b, c, d]: [Coord<f64>; 4]) -> Ordering {
+    if ordinary(&[a.x, a.y, b.x, b.y, c.x, c.y, d.x, d.y]) {
+        return sign_of(robust::incircle(a, b, c, d));
+    }
+    let [one, two] = exact_corners([a, b, c].map(in_space), [b, a, d].map(in_space));
+    sign(&(&one.normal[2] * &two.dot + &one.dot * &two.normal[2])).reverse()
+}
+
+/// Of a number, which may be -0.
+fn sign_of(x: f64) -> Ordering {
+    (x + 0.0).total_cmp(&0.0)
+}
+
+fn in_space(p: Coord<f64>) -> DVec3 {
+    DVec3::new(p.x, p.y, 0.0)
+}
+
+/// A sum of products of two numbers, without any rounding: integers in bins of 32 binary orders.
+pub(super) struct ExactSum {
+    /// Each number is a multiple of 2^unit.
+    unit: i32,
+    bins: Vec<i128>,
+}
+
+impl ExactSum {
+    pub fn new(unit: i32) -> Self {
+        Self { unit, bins: Vec::new() }
+    }
+
+    /// The largest unit of all numbers.
+    pub fn unit(numbers: impl Iterator<Item = f64>) -> i32 {
+        numbers.filter(|&x| x != 0.0).map(|x| decode(x).1).min().unwrap_or(0)
+    }
+
+    /// Adds x·y. Fewer than 2^40 additions cannot overflow a bin: each half of a product is below 2^54, and is
+    /// moved by less than 32.
+    pub fn add(&mut self, x: f64, y: f64) {
+        let ((m, e), (n, f)) = (decode(x), decode(y));
+        let product = i128::from(m) * i128::from(n);
+        if product == 0 {
+            return;
+        }
+        let low = (e + f - 2 * self.unit) as usize;
+        let high = low + 53;
+        if self.bins.len() <= high / 32 {
+            self.bins.resize(high / 32 + 1, 0);
+        }
+        self.bins[low / 32] += (product & ((1 << 53) - 1)) << (low % 32);
+        self.bins[high / 32] += (product >> 53) << (high % 32);
+    }
+
+    /// The sum, in units of 2^(2·unit).
+    pub fn total(&self) -> BigInt {
+        self.bins.iter().rev().fold(BigInt::ZERO, |sum, &bin| (sum << 32u32) + BigInt::from(bin))
+    }
 }
 
 #[cfg(test)]
@@ -243,11 +294,11 @@ mod tests {
 
     #[test]
     fn sums_keep_every_bit() {
-        let mut sum = ExactSum::default();
-        let tiny = f32::from_bits(1);
-        for (x, y) in
-            [(f32::MAX, f32::MAX), (tiny, tiny), (-f32::MAX, f32::MAX), (tiny, -3.0 * tiny), (0.0, 5.0)]
-        {
+        let tiny = f64::from_bits(1);
+        let terms =
+            [(f64::MAX, f64::MAX), (tiny, tiny), (-f64::MAX, f64::MAX), (tiny, -3.0 * tiny), (0.0, 5.0)];
+        let mut sum = ExactSum::new(ExactSum::unit(terms.iter().flat_map(|&(x, y)| [x, y])));
+        for (x, y) in terms {
             sum.add(x, y);
         }
         assert_eq!(sum.total(), BigInt::from(-2));

@@ -47,22 +47,17 @@ impl<'a> Surface<'a> {
         areas
     }
 
-    /// +1, or -1 in a component whose area is negative.
-    fn orientation(&self, triangle: usize) -> f64 {
+    /// The sign as it is, or reversed in a component whose area is negative.
+    fn oriented(&self, triangle: usize, sign: Ordering) -> Ordering {
         let negative = self.areas[self.component_of[triangle] as usize].sign() == Sign::Minus;
-        if negative { -1.0 } else { 1.0 }
+        if negative { sign.reverse() } else { sign }
     }
 
     /// Triangles that are flat or turned against their component (2D).
     pub fn inverted(&self) -> usize {
-        let positive =
-            |t: usize| self.orientation(t) * self.turn([0, 1, 2].map(|k| self.triangles[3 * t + k])) > 0.0;
+        let turn = |t: usize| exact::turn([0, 1, 2].map(|k| self.coord(self.triangles[3 * t + k])));
+        let positive = |t: usize| self.oriented(t, turn(t)).is_gt();
         (0..self.triangles.len() / 3).filter(|&t| !positive(t)).count()
-    }
-
-    fn turn(&self, corners: [u32; 3]) -> f64 {
-        let [p, q, r] = corners.map(|v| self.coord(v));
-        robust::orient2d(p, q, r)
     }
 
     fn coord(&self, v: u32) -> robust::Coord<f64> {
@@ -110,15 +105,15 @@ impl<'a> Surface<'a> {
         [h, next(h), prev(h), prev(g)].map(|x| self.triangles[x as usize])
     }
 
-    /// Why the edge is still there, if it is not Delaunay (2D). The determinant of the in-circle test is
-    /// the polynomial -(cross1·dot2 + dot1·cross2), whatever the orientations.
+    /// Why the edge is still there, if it is not Delaunay (2D).
     fn judge_in_plane(&self, h: u32, g: u32) -> Option<Reason> {
         let [a, b, c, d] = self.quad(h, g);
-        let orientation = self.orientation(h as usize / 3);
+        let oriented = |sign| self.oriented(h as usize / 3, sign);
         let [pa, pb, pc, pd] = [a, b, c, d].map(|v| self.coord(v));
-        if orientation * robust::incircle(pa, pb, pc, pd) <= 0.0 {
+        let positive = |triangle| oriented(exact::turn(triangle)).is_gt();
+        if oriented(exact::in_circle([pa, pb, pc, pd])).is_le() {
             None
-        } else if orientation * self.turn([a, d, c]) <= 0.0 || orientation * self.turn([b, c, d]) <= 0.0 {
+        } else if !positive([pa, pd, pc]) || !positive([pb, pc, pd]) {
             Some(Reason::Fold)
         } else if self.table.contains(c, d) {
             Some(Reason::Duplicate)
@@ -205,17 +200,15 @@ fn components(table: &EdgeTable, triangles: usize) -> (Vec<u32>, usize) {
 fn areas(mesh: &Mesh, triangles: &[u32], component_of: &[u32], count: usize) -> Vec<BigInt> {
     let mut order: Vec<u32> = (0..component_of.len() as u32).collect();
     order.sort_by_key(|&t| component_of[t as usize]);
-    let at = |h: u32| {
-        let i = 2 * triangles[h as usize] as usize;
-        (mesh.positions()[i], mesh.positions()[i + 1])
-    };
+    let at = |h: u32| mesh.point2(triangles[h as usize]);
+    let unit = ExactSum::unit(mesh.positions().iter());
     let mut areas = Vec::with_capacity(count);
     for members in order.chunk_by(|&s, &t| component_of[s as usize] == component_of[t as usize]) {
-        let mut sum = ExactSum::default();
+        let mut sum = ExactSum::new(unit);
         for h in members.iter().flat_map(|&t| 3 * t..3 * t + 3) {
-            let ((ux, uy), (vx, vy)) = (at(h), at(next(h)));
-            sum.add(ux, vy);
-            sum.add(-vx, uy);
+            let (u, v) = (at(h), at(next(h)));
+            sum.add(u.x, v.y);
+            sum.add(-v.x, u.y);
         }
         areas.push(sum.total());
     }
@@ -224,6 +217,8 @@ fn areas(mesh: &Mesh, triangles: &[u32], component_of: &[u32], count: usize) -> 
 
 #[cfg(test)]
 mod tests {
+    use super::exact;
+
     #[test]
     fn in_circle_is_the_angle_polynomial() {
         let s = |p: [i64; 8]| {
@@ -238,8 +233,11 @@ mod tests {
         let mut random = oorandom::Rand64::new(7);
         for _ in 0..10_000 {
             let p = [0; 8].map(|_: i64| random.rand_range(0..9) as i64 - 4);
-            let at = |i: usize| robust::Coord { x: p[i] as f64, y: p[i + 1] as f64 };
-            assert_eq!(robust::incircle(at(0), at(2), at(4), at(6)), -s(p) as f64);
+            // The last two are beyond what is ordinary.
+            for scale in [1.0, 2f64.powi(-1000), 2f64.powi(1000)] {
+                let at = |i: usize| robust::Coord { x: p[i] as f64 * scale, y: p[i + 1] as f64 * scale };
+                assert_eq!(exact::in_circle([at(0), at(2), at(4), at(6)]), 0.cmp(&s(p)));
+            }
         }
     }
 }

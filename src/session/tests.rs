@@ -102,8 +102,8 @@ fn an_explicit_backend_never_falls_back() {
 
 /// The triangles at the end, after the vertices have moved in the middle of a run.
 fn watch_moved(mut session: Session) -> Result<(Vec<Vec<u32>>, Outcome), Error> {
-    let moved =
-        session.mesh.positions().iter().enumerate().map(|(i, x)| x * (1.0 + (i % 2) as f32)).collect();
+    let moved: Vec<f64> =
+        session.mesh.positions().iter().enumerate().map(|(i, x)| x * (1.0 + (i % 2) as f64)).collect();
     block_on(async {
         session.step().await?;
         session.set_positions(moved).await
@@ -128,21 +128,23 @@ fn a_lost_device_changes_no_result_when_vertices_move() {
     }
 }
 
-/// Coordinates of magnitudes too far apart for the GPU.
+/// Coordinates of magnitudes too far apart for the GPU, and doubles.
 #[cfg(feature = "gpu")]
 #[test]
 fn the_cpu_takes_over_positions_that_the_gpu_refuses() {
     let mesh = crate::families::by_name("random 8").unwrap();
-    let mut positions = mesh.positions().to_vec();
-    positions[0] = 1e-30;
-    let options = Options { backend: Backend::Gpu, ..Options::default() };
-    let mut session = block_on(Session::new(mesh, options)).unwrap();
-    let refused = block_on(session.set_positions(positions.clone()));
-    assert!(matches!(refused, Err(Error::BackendLimit { .. })));
+    for (x, why) in [(f64::from(1e-30f32), "span"), (0.1, "64-bit")] {
+        let mut positions: Vec<f64> = mesh.positions().iter().collect();
+        positions[0] = x;
+        let options = Options { backend: Backend::Gpu, ..Options::default() };
+        let mut session = block_on(Session::new(mesh.clone(), options)).unwrap();
+        let refused = block_on(session.set_positions(positions.clone()));
+        assert!(matches!(refused, Err(Error::BackendLimit { .. })));
 
-    session.options.backend = Backend::Auto;
-    block_on(session.set_positions(positions.clone())).unwrap();
-    let (_, outcome) = watch(session).unwrap();
-    assert_eq!((outcome.backend, outcome.status), ("cpu", Status::Done));
-    assert!(outcome.fallback.is_some_and(|why| why.contains("bits")));
+        session.options.backend = Backend::Auto;
+        block_on(session.set_positions(positions)).unwrap();
+        let (_, outcome) = watch(session).unwrap();
+        assert_eq!((outcome.backend, outcome.status), ("cpu", Status::Done));
+        assert!(outcome.fallback.is_some_and(|said| said.contains(why)));
+    }
 }

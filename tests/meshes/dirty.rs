@@ -219,8 +219,9 @@ fn inconsistent_pair() -> Mesh {
 /// A lattice without its middle cells.
 fn hole() -> Mesh {
     let mesh = by_name("random 12").unwrap();
+    let positions = mesh.positions().to_f32();
     let inside = |&v: &u32| {
-        let [x, y] = [0, 1].map(|k| mesh.positions()[2 * v as usize + k]);
+        let [x, y] = [0, 1].map(|k| positions[2 * v as usize + k]);
         (0.3..0.65).contains(&x) && (0.3..0.65).contains(&y)
     };
     let kept = mesh.triangles().chunks(3).filter(|t| !t.iter().any(inside)).flatten().copied().collect();

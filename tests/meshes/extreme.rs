@@ -1,6 +1,6 @@
-//! Coordinates at the ends of what f32 holds, and ties that are missed by a hair.
+//! Coordinates at the ends of what f32 and f64 hold, and ties that are missed by a hair.
 
-use super::{Case, case, lifted, moved, plane, signed};
+use super::{Case, case, lifted, moved, moved_wide, plane, signed};
 use edgeflip::families::by_name;
 use oorandom::Rand64;
 
@@ -36,6 +36,46 @@ pub fn all() -> Vec<Case> {
         [x * 2f32.powi(generator.rand_range(0..40) as i32 - 20), y + 1e-6 * signed(&mut generator), 0.0]
     });
     both("mixed-exponents", &mantissas);
+    cases.extend(doubles());
+    cases
+}
+
+/// Numbers that no f32 holds.
+fn doubles() -> Vec<Case> {
+    let mut cases = Vec::new();
+    let mut both = |name: &str, mesh: &edgeflip::Mesh, place: &mut dyn FnMut(f64) -> f64| {
+        let mesh = moved_wide(mesh, |p| p.map(&mut *place).to_vec());
+        let surface = moved_wide(&mesh, |[x, y]| vec![x, y, x * 0.25 + y * 0.125]);
+        cases.push(case(&format!("f64-{name}"), mesh, 10.0));
+        cases.push(case(&format!("f64-{name}-3d"), surface, 60.0));
+    };
+    let (random, lattice) = (by_name("random 12").unwrap(), by_name("regular 12").unwrap());
+    // The lattice's spacing is 0.1.
+    let line = |x: f64| (10.0 * x).round();
+    both("lattice-offset", &lattice, &mut |x| 0.1 * line(x) + 1e6);
+    let mut generator = Rand64::new(23);
+    both("lattice-one-ulp", &lattice, &mut |x| {
+        let x = 0.1 * line(x) + 1e6;
+        [x, x.next_up(), x.next_down()][generator.rand_range(0..3) as usize]
+    });
+    // Metres of Web Mercator, a micrometre apart.
+    both("mercator", &random, &mut |x| 1.2e7 + 12e-6 * x);
+    both("scale-max", &random, &mut |x| (2.0 * x - 1.0) * f64::MAX);
+    // Products of two over- or underflow, those of four do, and only the smallest numbers are lost.
+    for (name, scale) in
+        [("1e160", 1e160), ("1e80", 1e80), ("1e-80", 1e-80), ("1e-160", 1e-160), ("1e-300", 1e-300)]
+    {
+        both(&format!("scale-{name}"), &random, &mut |x| (x - 0.5) * scale);
+    }
+    both("subnormal", &random, &mut |x| x * 1e-320);
+    // From 1e-300 to 1e300, in the order of the lattice.
+    both("magnitudes", &by_name("random 8").unwrap(), &mut |x| {
+        (1.0 + x) * 2f64.powi((2000.0 * x) as i32 - 1000)
+    });
+    let mut generator = Rand64::new(29);
+    both("magnitudes-mixed", &by_name("random 8").unwrap(), &mut |_| {
+        f64::from(signed(&mut generator)) * 2f64.powi(generator.rand_range(0..2000) as i32 - 1000)
+    });
     cases
 }
 

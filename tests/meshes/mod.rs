@@ -70,13 +70,22 @@ pub fn space(points: &[[f32; 3]], triangles: &[[u32; 3]]) -> Mesh {
 pub fn moved(mesh: &Mesh, mut place: impl FnMut([f32; 3]) -> [f32; 3]) -> Mesh {
     let stride = mesh.dimension().stride();
     let move_one = |p: &[f32]| place([p[0], p[1], p.get(2).copied().unwrap_or(0.0)])[..stride].to_vec();
-    let positions = mesh.positions().chunks(stride).flat_map(move_one).collect();
+    let positions: Vec<_> = mesh.positions().to_f32().chunks(stride).flat_map(move_one).collect();
     Mesh::new(mesh.dimension(), positions, mesh.triangles().to_vec()).unwrap()
+}
+
+/// The mesh with every vertex moved, in doubles.
+pub fn moved_wide(mesh: &Mesh, mut place: impl FnMut([f64; 2]) -> Vec<f64>) -> Mesh {
+    let numbers: Vec<_> = mesh.positions().iter().collect();
+    let positions: Vec<_> = numbers.chunks(2).flat_map(|p| place([p[0], p[1]])).collect();
+    let dimension = if positions.len() == numbers.len() { Dimension::Two } else { Dimension::Three };
+    Mesh::new(dimension, positions, mesh.triangles().to_vec()).unwrap()
 }
 
 /// A 2D mesh as a surface over the plane.
 pub fn lifted(mesh: &Mesh, mut height: impl FnMut(f32, f32) -> f32) -> Mesh {
-    let positions = mesh.positions().chunks(2).flat_map(|p| [p[0], p[1], height(p[0], p[1])]).collect();
+    let lift = |p: &[f32]| [p[0], p[1], height(p[0], p[1])];
+    let positions: Vec<_> = mesh.positions().to_f32().chunks(2).flat_map(lift).collect();
     Mesh::new(Dimension::Three, positions, mesh.triangles().to_vec()).unwrap()
 }
 
@@ -88,7 +97,7 @@ pub fn reversed(mesh: &Mesh) -> Mesh {
 /// Both meshes, without a common vertex.
 pub fn joined(first: &Mesh, second: &Mesh) -> Mesh {
     let offset = first.vertex_count() as u32;
-    let positions = [first.positions(), second.positions()].concat();
+    let positions = [first, second].map(|mesh| mesh.positions().to_f32()).concat();
     let triangles = first.triangles().iter().copied().chain(second.triangles().iter().map(|v| v + offset));
     Mesh::new(first.dimension(), positions, triangles.collect()).unwrap()
 }

@@ -16,10 +16,10 @@ pub struct Predicates {
     cosine: (BigInt, u32),
 }
 
-/// |x| = mantissa · 2^exponent.
-fn decode(x: f32) -> (u32, u32) {
-    let (biased, fraction) = (x.to_bits() >> 23 & 0xff, x.to_bits() & 0x7f_ffff);
-    if biased == 0 { (fraction, 0) } else { (fraction | 0x80_0000, biased - 1) }
+/// |x| = mantissa · 2^(exponent - 1074).
+fn decode(x: f64) -> (u64, u64) {
+    let (biased, fraction) = (x.to_bits() >> 52 & 0x7ff, x.to_bits() & ((1 << 52) - 1));
+    if biased == 0 { (fraction, 0) } else { (fraction | 1 << 52, biased - 1) }
 }
 
 fn minus(x: &Vector, y: &Vector) -> Vector {
@@ -47,16 +47,18 @@ fn negative_sum(x: &BigInt, m: &BigInt, y: &BigInt, n: &BigInt) -> bool {
 
 impl Predicates {
     pub fn new(mesh: &Mesh, beta_deg: f64) -> Self {
-        let nonzero = || mesh.positions().iter().filter(|&&x| x != 0.0);
-        let least = nonzero().map(|&x| decode(x).1 + decode(x).0.trailing_zeros()).min().unwrap_or(0);
-        let integer = |x: f32| {
+        let positions: Vec<f64> = mesh.positions().iter().collect();
+        let nonzero = positions.iter().filter(|&&x| x != 0.0);
+        let least =
+            nonzero.map(|&x| decode(x).1 + u64::from(decode(x).0.trailing_zeros())).min().unwrap_or(0);
+        let integer = |x: f64| {
             let (mantissa, exponent) = decode(x);
             let scaled = (BigInt::from(mantissa) << exponent) >> least;
             if x < 0.0 { -scaled } else { scaled }
         };
         let stride = mesh.dimension().stride();
-        let point = |p: &[f32]| [0, 1, 2].map(|i| p.get(i).map_or(BigInt::ZERO, |&x| integer(x)));
-        let points = mesh.positions().chunks(stride).map(point).collect();
+        let point = |p: &[f64]| [0, 1, 2].map(|i| p.get(i).map_or(BigInt::ZERO, |&x| integer(x)));
+        let points = positions.chunks(stride).map(point).collect();
 
         let cosine = match beta_deg {
             0.0 => 1.0,

@@ -1,8 +1,8 @@
 //! Sessions on a device that the page, or the worker, has made.
 
-use edgeflip::js::{GpuDevice, JsOptions, JsSession};
+use edgeflip::js::{GpuDevice, JsOptions, JsPositions, JsSession};
 use edgeflip::{Backend, Mesh, Options, Session, families::by_name};
-use js_sys::{Object, Reflect, Uint32Array};
+use js_sys::{Float32Array, Object, Reflect, Uint32Array};
 use wasm_bindgen::prelude::*;
 use wasm_bindgen_test::wasm_bindgen_test;
 
@@ -91,6 +91,10 @@ pub fn options_object(fields: &[(&str, JsValue)]) -> JsOptions {
     object.unchecked_into()
 }
 
+pub fn positions_array(mesh: &Mesh) -> JsPositions {
+    Float32Array::from(mesh.positions().to_f32().as_slice()).unchecked_into()
+}
+
 pub fn code_of(error: &JsValue) -> String {
     Reflect::get(error, &"code".into()).unwrap().as_string().unwrap()
 }
@@ -100,7 +104,7 @@ pub fn class_of(value: &JsValue) -> String {
 }
 
 async fn create(mesh: &Mesh, backend: &str, device: &JsValue) -> Result<JsSession, JsValue> {
-    let (positions, indices) = (mesh.positions().to_vec(), mesh.triangles().to_vec());
+    let (positions, indices) = (positions_array(mesh), mesh.triangles().to_vec());
     let options = options_object(&[("backend", backend.into()), ("device", device.clone())]);
     JsSession::create(positions, indices, mesh.dimension().stride() as f64, options).await
 }
@@ -129,9 +133,9 @@ async fn a_session_runs_on_the_device_of_the_page() {
 
     // The vertices move, the buffers stay.
     let positions: Vec<f32> =
-        mesh.positions().iter().zip(0..).map(|(x, i)| x * (1 + i % 2 * 7) as f32).collect();
-    session.set_positions(positions.clone()).await.unwrap();
+        mesh.positions().to_f32().iter().zip(0..).map(|(x, i)| x * (1 + i % 2 * 7) as f32).collect();
     let moved = Mesh::new(mesh.dimension(), positions, triangles).unwrap();
+    session.set_positions(positions_array(&moved)).await.unwrap();
     while session.advance().await.unwrap() {}
     assert_eq!(session.triangles().await.unwrap().to_vec(), expected(&moved).await);
     assert_eq!(session.index_buffer(), buffer);
@@ -179,12 +183,12 @@ async fn auto_leaves_a_device_that_is_software_or_lost() {
     session.step().await.unwrap();
     let triangles = session.triangles().await.unwrap().to_vec();
     let positions: Vec<f32> =
-        mesh.positions().iter().zip(0..).map(|(x, i)| x * (1 + i % 2 * 7) as f32).collect();
-    session.set_positions(positions.clone()).await.unwrap();
+        mesh.positions().to_f32().iter().zip(0..).map(|(x, i)| x * (1 + i % 2 * 7) as f32).collect();
+    let moved = Mesh::new(mesh.dimension(), positions, triangles).unwrap();
+    session.set_positions(positions_array(&moved)).await.unwrap();
     session.step().await.unwrap();
     destroy(&device);
     while session.advance().await.unwrap() {}
-    let moved = Mesh::new(mesh.dimension(), positions, triangles).unwrap();
     assert_eq!(session.backend(), "cpu");
     assert_eq!(session.triangles().await.unwrap().to_vec(), expected(&moved).await);
     assert_eq!(create(&mesh, "auto", &device).await.unwrap().backend(), "cpu");

@@ -122,7 +122,8 @@ impl WebGl {
         };
         let stride = self.dimension.stride();
         let point = |p: &[f32]| [p[0], p[1], if stride == 3 { p[2] } else { 0.0 }, 0.0].map(f32::to_bits);
-        self.positions.write(mesh.positions().chunks_exact(stride).flat_map(point).collect())?;
+        let positions = mesh.positions().to_f32();
+        self.positions.write(positions.chunks_exact(stride).flat_map(point).collect())?;
         let is_clockwise = |t: usize| u32::from(winding.is_clockwise(t as u32));
         self.triangles.front.write(in_fours(mesh.triangles(), &is_clockwise))?;
         self.twins.front.write(in_fours(twins, &|_| NONE))?;

@@ -31,7 +31,7 @@ use super::{Answer, Census, EdgeCounts, Engine};
 use crate::mesh::{Dimension, Mesh};
 use crate::star::Fans;
 use crate::winding::Winding;
-use crate::{Error, Reason};
+use crate::{Error, Positions, Reason};
 use buffers::Buffers;
 use device::Buffer;
 use faults::refuse;
@@ -142,7 +142,10 @@ impl WebGpu {
         self.dispatches = u64::from(is_surface);
         let submit = || {
             let queue = &self.gpu.queue;
-            queue.write_buffer(&self.buffers.positions, 0, bytemuck::cast_slice(mesh.positions()));
+            // The limits let no others through.
+            if let Positions::F32(positions) = mesh.positions() {
+                queue.write_buffer(&self.buffers.positions, 0, bytemuck::cast_slice(positions));
+            }
             queue.write_buffer(&self.topology, 0, bytemuck::cast_slice(&winding.clockwise));
             let mut encoder = self.encode(|pass| {
                 if is_surface {
