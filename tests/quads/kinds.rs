@@ -16,11 +16,12 @@ pub struct Kind {
     make: fn(&mut Source) -> Quad,
 }
 
-const KINDS: [Kind; 16] = [
+const KINDS: [Kind; 17] = [
     Kind::in_span("uniform", |s| s.scattered(Numbers::Uniform)),
     Kind::in_span("lattice", Source::lattice),
     Kind::in_span("lattice of 0.1", Source::tenths),
     Kind::in_span("cocircular", Source::cocircular),
+    Kind::in_span("cocircular but for a bit", Source::cocircular_but_for_a_bit),
     Kind::in_span("62 bits", |s| {
         let bits = s.pick([28, 29, 30, 31, 32, 48, 60, 61, 62]);
         s.scattered(Numbers::Bits(bits))
@@ -135,8 +136,12 @@ impl Source {
         self.random.rand_range(0..one_in) == 0
     }
 
+    /// Among them as many bits as are the most, or just too many, for the narrower arithmetic of an engine.
     fn numbers_in_span(&mut self) -> Numbers {
-        self.pick([Numbers::Uniform, Numbers::Bits(30), Numbers::Bits(48), Numbers::Bits(83)])
+        match self.pick([0, 24, 28, 29, 30, 31, 32, 48, 59, 60, 61, 83]) {
+            0 => Numbers::Uniform,
+            bits => Numbers::Bits(bits),
+        }
     }
 
     fn number(&mut self, numbers: Numbers) -> f32 {
@@ -145,7 +150,8 @@ impl Source {
             Numbers::Bits(bits) => {
                 let length = self.integer(1, 24.min(bits));
                 let mantissa = self.integer(1 - (1 << length), (1 << length) - 1);
-                mantissa as f32 * LOWEST * 2f32.powi(self.integer(0, bits - length))
+                let shift = if self.chance(2) { bits - length } else { self.integer(0, bits - length) };
+                mantissa as f32 * LOWEST * 2f32.powi(shift)
             }
             Numbers::All => match self.integer(0, 15) {
                 0 => self.pick([f32::MAX, f32::MIN, f32::MIN_POSITIVE, f32::from_bits(1)]),
@@ -195,6 +201,10 @@ impl Source {
     /// Four points of a circle, in the plane or on a tilted plane, moved and scaled without rounding.
     fn cocircular(&mut self) -> Quad {
         let mut places = [(); 4].map(|()| self.integer(0, 4 * self.arc.len() as i32 - 1));
+        if self.chance(2) {
+            // On an axis.
+            places[0] = 0;
+        }
         if !self.chance(8) {
             places.sort_unstable();
         }
@@ -216,6 +226,21 @@ impl Source {
             let point = if is_tilted { [x + 2 * y, 2 * x + y, 2 * x - 2 * y] } else { [x, y, 0] };
             [0, 1, 2].map(|i| (point[i] + moved[i]) as f32 * unit)
         })
+    }
+
+    /// One bit, which may be far below the others, decides.
+    fn cocircular_but_for_a_bit(&mut self) -> Quad {
+        let mut quad = self.cocircular();
+        let largest = quad.as_flattened().iter().fold(0f32, |largest, x| largest.max(x.abs()));
+        let bit = largest * 2f32.powi(-self.integer(10, 45));
+        // The one bit of a power of two.
+        let bit = f32::from_bits(bit.to_bits() & 0x7f80_0000);
+        let point = &mut quad[self.integer(0, 3) as usize][..self.dimension.stride()];
+        // The coordinate nearest to zero has room for it.
+        if let Some(x) = point.iter_mut().min_by(|x, y| x.abs().total_cmp(&y.abs())) {
+            *x += self.pick([bit, -bit]);
+        }
+        quad
     }
 
     /// Rectangles and symmetric trapezoids are cocircular, whatever their numbers are.
