@@ -61,7 +61,8 @@ async function check({ name, start, backend }) {
     for (const { kind, ...tally } of batch.tallies) {
       const wrong = found.wrong.filter((quad) => quad >= first && quad < first + tally.quads);
       first += tally.quads;
-      mismatches.push(...wrong.map((quad) => `quad ${quad} of batch ${batch.index}, ${kind}, β = ${batch.beta}: ${bits(batch, quad)}`));
+      const of = `of batch ${batch.index}, ${kind}, β = ${batch.beta}`;
+      mismatches.push(...wrong.map((quad) => `quad ${quad} ${of}: ${bits(batch, quad)}`));
       const row = `${batch.dimension} | ${kind}`;
       rows.set(row, rows.get(row) ?? {});
       for (const sums of [rows.get(row), all]) add(sums, { ...tally, mismatches: wrong.length });
