@@ -21,6 +21,8 @@ const wasm = wasmWith('gpu,js');
 const wasmCargo = ['bash', 'tools/wasm-cargo.sh'];
 
 const inChromium = ['wasm', 'worker'];
+/** Cargo's arguments for the tests of quads. */
+const quads = ['cargo', 'test', '--test', 'quads', '--'];
 
 // The page needs the package in dist/.
 const builtPage = [
@@ -57,6 +59,12 @@ const levels = [
     counts: true,
   },
   ...integrationTests(),
+  {
+    name: 'quads',
+    what: firstSentence(readFileSync('tests/quads.rs', 'utf8')),
+    checks: [[...quads, '--skip', 'batches_for_browsers', '--nocapture', '--test-threads=1']],
+    counts: true,
+  },
   {
     name: 'doc',
     what: 'the examples in the documentation run',
@@ -100,6 +108,15 @@ const levels = [
     counts: true,
   },
   {
+    name: 'quads in browsers',
+    what: 'the GPU engines of the package in Chromium and Firefox decide quads as integers of any size do',
+    checks: [
+      [...quads, 'batches_for_browsers'],
+      ['node', '--test-reporter=tap', 'tests/quads/browsers.test.mjs'],
+    ],
+    counts: true,
+  },
+  {
     name: 'page in Chromium',
     what: 'the demo page opens files, plays, scrubs and downloads on both engines, draws from the buffer that the flips write, and recovers',
     checks: [...builtPage, pageTests('files', 'buffer', 'controls')],
@@ -119,7 +136,7 @@ const levels = [
   },
 ];
 
-/** Each target in tests/ is a level, described by the first sentence of its file's `//!` lines. */
+/** Each other target in tests/ is a level, described by the first sentence of its file's `//!` lines. */
 function integrationTests() {
   const metadata = spawnSync('cargo', ['metadata', '--no-deps', '--format-version', '1'], {
     encoding: 'utf8',
@@ -132,7 +149,7 @@ function integrationTests() {
   }
   return JSON.parse(metadata.stdout)
     .packages.flatMap((crate) => crate.targets)
-    .filter((target) => target.kind.includes('test') && !inChromium.includes(target.name))
+    .filter((target) => target.kind.includes('test') && ![...inChromium, 'quads'].includes(target.name))
     .sort((a, b) => (a.name < b.name ? -1 : 1))
     .map((target) => ({
       name: target.name,

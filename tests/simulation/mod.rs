@@ -6,10 +6,10 @@ mod digest;
 mod predicates;
 
 pub use digest::{Digest, Expected, digests_path, expected};
+pub use predicates::{Predicates, Verdict};
 
 use edgeflip::{Dimension, Mesh, Reason, Reasons};
 use num_bigint::{BigInt, Sign};
-use predicates::{Predicates, Verdict};
 use std::collections::{BTreeMap, HashMap, HashSet};
 
 /// No mesh of the tests needs as many.

@@ -1,7 +1,8 @@
 //! The exact tests of the simulation: integers of any size, no filter, no bound to prove.
 
 use edgeflip::{Dimension, Mesh, Reason};
-use num_bigint::{BigInt, Sign};
+use num_bigint::BigInt;
+use std::cmp::Ordering;
 
 type Vector = [BigInt; 3];
 
@@ -34,15 +35,15 @@ fn cross(x: &Vector, y: &Vector) -> Vector {
     [(1, 2), (2, 0), (0, 1)].map(|(i, j)| &x[i] * &y[j] - &x[j] * &y[i])
 }
 
-fn is_negative(x: &BigInt) -> bool {
-    x.sign() == Sign::Minus
+fn sign(x: &BigInt) -> Ordering {
+    x.cmp(&BigInt::ZERO)
 }
 
-/// x·√m + y·√n < 0.
-fn negative_sum(x: &BigInt, m: &BigInt, y: &BigInt, n: &BigInt) -> bool {
+/// The sign of x·√m + y·√n.
+fn root_sum_sign(x: &BigInt, m: &BigInt, y: &BigInt, n: &BigInt) -> Ordering {
     // x·√m as its sign times its square.
-    let signed_square = |x: &BigInt, m: &BigInt| if is_negative(x) { -(x * x * m) } else { x * x * m };
-    signed_square(x, m) < -signed_square(y, n)
+    let signed_square = |x: &BigInt, m: &BigInt| if sign(x).is_lt() { -(x * x * m) } else { x * x * m };
+    signed_square(x, m).cmp(&-signed_square(y, n))
 }
 
 impl Predicates {
@@ -94,50 +95,70 @@ impl Predicates {
         z
     }
 
-    /// Whether the angles at the third corners sum to more than π: |n1|·dot2 + |n2|·dot1 < 0.
-    pub fn exceeds_pi(&self, first: [u32; 3], second: [u32; 3]) -> bool {
+    /// Minus where the angles at the third corners sum to more than π: the sign of |n1|·dot2 + |n2|·dot1.
+    fn angle_sum_sign(&self, first: [u32; 3], second: [u32; 3]) -> Ordering {
         let square = |corners| {
             let normal = self.normal(corners);
             dot(&normal, &normal)
         };
-        negative_sum(&self.dot(second), &square(first), &self.dot(first), &square(second))
+        root_sum_sign(&self.dot(second), &square(first), &self.dot(first), &square(second))
     }
 
-    /// n1·n2 < cos β · |n1|·|n2|.
-    fn differ(&self, n1: &Vector, n2: &Vector) -> bool {
+    /// Whether the angles at the third corners sum to more than π.
+    pub fn exceeds_pi(&self, first: [u32; 3], second: [u32; 3]) -> bool {
+        self.angle_sum_sign(first, second).is_lt()
+    }
+
+    /// The sign of n1·n2 - cos β · |n1|·|n2|.
+    fn angle_sign(&self, n1: &Vector, n2: &Vector) -> Ordering {
         let (mantissa, shift) = &self.cosine;
         let lengths = dot(n1, n1) * dot(n2, n2);
-        negative_sum(&(dot(n1, n2) << *shift), &BigInt::from(1), &-mantissa, &lengths)
+        root_sum_sign(&(dot(n1, n2) << *shift), &BigInt::from(1), &-mantissa, &lengths)
+    }
+
+    /// Whether the normals of two triangles differ by more than β (3D).
+    pub fn is_sharp(&self, [a, b, c, d]: [u32; 4]) -> bool {
+        self.dimension == Dimension::Three
+            && self.angle_sign(&self.normal([a, b, c]), &self.normal([b, a, d])).is_lt()
     }
 
     /// What the four points alone tell of an edge.
-    /// Whether the normals of two triangles differ by more than β (3D).
-    pub fn is_sharp(&self, [a, b, c, d]: [u32; 4]) -> bool {
-        self.dimension == Dimension::Three && self.differ(&self.normal([a, b, c]), &self.normal([b, a, d]))
+    pub fn verdict(&self, quad: [u32; 4], clockwise: bool) -> Verdict {
+        self.decide(quad, clockwise).0
     }
 
-    pub fn verdict(&self, [a, b, c, d]: [u32; 4], clockwise: bool) -> Verdict {
+    /// The verdict, and whether it rests on a sign that is zero.
+    pub fn decide(&self, [a, b, c, d]: [u32; 4], clockwise: bool) -> (Verdict, bool) {
         let (old1, old2, new1, new2) = ([a, b, c], [b, a, d], [a, d, c], [b, c, d]);
         match self.dimension {
             Dimension::Two => {
-                let orient = |x: BigInt| if clockwise { -x } else { x };
+                let orient = |x: Ordering| if clockwise { x.reverse() } else { x };
                 let s = self.area(old1) * self.dot(old2) + self.dot(old1) * self.area(old2);
-                let positive = |corners| orient(self.area(corners)).sign() == Sign::Plus;
-                is_negative(&orient(s))
-                    .then(|| if positive(new1) && positive(new2) { Ok(()) } else { Err(Reason::Fold) })
+                let s = orient(sign(&s));
+                if s.is_ge() {
+                    return (None, s.is_eq());
+                }
+                let areas = [new1, new2].map(|corners| orient(sign(&self.area(corners))));
+                match areas.into_iter().min() {
+                    Some(Ordering::Greater) => (Some(Ok(())), false),
+                    least => (Some(Err(Reason::Fold)), least == Some(Ordering::Equal)),
+                }
             }
             Dimension::Three => {
+                let sum = self.angle_sum_sign(old1, old2);
+                if sum.is_ge() {
+                    return (None, sum.is_eq());
+                }
                 let [n1, n2, m1, m2] = [old1, old2, new1, new2].map(|corners| self.normal(corners));
-                let turned = [(&n1, &m1), (&n1, &m2), (&n2, &m1), (&n2, &m2)];
-                self.exceeds_pi(old1, old2).then(|| {
-                    if self.differ(&n1, &n2) || self.differ(&m1, &m2) {
-                        Err(Reason::Angle)
-                    } else if turned.into_iter().any(|(n, m)| is_negative(&dot(n, m))) {
-                        Err(Reason::Fold)
-                    } else {
-                        Ok(())
-                    }
-                })
+                let angles = [(&n1, &n2), (&m1, &m2)].map(|(n, m)| self.angle_sign(n, m));
+                if angles.iter().any(|angle| angle.is_lt()) {
+                    return (Some(Err(Reason::Angle)), false);
+                }
+                let turns = [(&n1, &m1), (&n1, &m2), (&n2, &m1), (&n2, &m2)].map(|(n, m)| sign(&dot(n, m)));
+                if turns.iter().any(|turn| turn.is_lt()) {
+                    return (Some(Err(Reason::Fold)), angles.contains(&Ordering::Equal));
+                }
+                (Some(Ok(())), angles.iter().chain(&turns).any(|sign| sign.is_eq()))
             }
         }
     }

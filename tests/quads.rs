@@ -1,0 +1,148 @@
+//! Millions of quads, everyday and adversarial ones, decided by every engine as by integers of any size.
+//!
+//! `EDGEFLIP_QUADS` says how many for each GPU engine; the CPU takes ten times as many. The tests need no file but
+//! those that they write.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "what fails here is a failed test")]
+
+#[path = "quads/batch.rs"]
+mod batch;
+#[path = "quads/kinds.rs"]
+mod kinds;
+#[path = "quads/report.rs"]
+mod report;
+mod simulation;
+
+use batch::{Batch, Tally, batch, batch_count};
+use edgeflip::{Backend, Error, Options, Reason, Reasons, Session};
+use pollster::block_on;
+use report::Report;
+use serde_json::json;
+use std::collections::BTreeMap;
+use std::fs;
+use std::num::NonZero;
+use std::path::Path;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::Instant;
+
+/// For each GPU engine.
+fn quads() -> usize {
+    std::env::var("EDGEFLIP_QUADS").map_or(100_000, |quads| quads.parse().unwrap())
+}
+
+/// One iteration: the edges that could flip before it, those that could not, and the triangles after it.
+async fn iterate(batch: &Batch, backend: Backend) -> Result<(u64, Reasons, Vec<u32>), Error> {
+    let options =
+        Options { backend, max_normal_angle: batch.beta, max_iterations: Some(1), ..Options::default() };
+    let mut session = Session::new(batch.mesh.clone(), options).await?;
+    let (labelled, blocked) = match session.step().await? {
+        Some(iteration) => (u64::from(iteration.labelled), iteration.blocked),
+        None => (0, session.outcome().await?.remaining),
+    };
+    Ok((labelled, blocked, session.triangles().await?))
+}
+
+/// The quads that the engine flips and should not, or the other way; and the first that it counts wrongly.
+fn mismatches(batch: &Batch, backend: Backend) -> Vec<(usize, String)> {
+    let (triangles, is_miscounted) = run(batch, backend);
+    let expected = batch.triangles_after();
+    let pairs = triangles.chunks(6).zip(expected.chunks(6)).enumerate();
+    let mut wrong: Vec<_> = pairs
+        .filter(|(_, (found, expected))| found != expected)
+        .map(|(quad, (found, _))| (quad, format!("{}, but becomes {found:?}", batch.describe(quad))))
+        .collect();
+    if is_miscounted && wrong.is_empty() {
+        let mut suspects = 0..batch.verdicts.len();
+        while suspects.len() > 1 {
+            let middle = suspects.start + suspects.len() / 2;
+            let (first, second) = (suspects.start..middle, middle..suspects.end);
+            suspects = if run(&batch.part(first.clone()), backend).1 { first } else { second };
+        }
+        let quad = suspects.start;
+        wrong.push((quad, format!("{}, but is counted otherwise", batch.describe(quad))));
+    }
+    wrong
+}
+
+/// The triangles after an iteration, and whether the edges are counted wrongly.
+fn run(batch: &Batch, backend: Backend) -> (Vec<u32>, bool) {
+    let (labelled, blocked, triangles) = block_on(iterate(batch, backend)).unwrap();
+    let tally = batch.tally(0..batch.verdicts.len());
+    let mut reasons = Reasons::default();
+    (reasons[Reason::Angle], reasons[Reason::Fold]) = (tally.angle as u64, tally.fold as u64);
+    (triangles, (labelled, blocked) != (tally.labelled as u64, reasons))
+}
+
+/// Makes all batches, on all cores.
+fn for_each_batch(quads: usize, beyond: bool, work: impl Fn(Batch) + Sync) {
+    let (batches, next) = (batch_count(quads), AtomicUsize::new(0));
+    let work_through = || {
+        loop {
+            let index = next.fetch_add(1, Ordering::Relaxed);
+            if index >= batches {
+                break;
+            }
+            work(batch(index, quads.div_ceil(batches), beyond));
+        }
+    };
+    std::thread::scope(|scope| {
+        let cores = std::thread::available_parallelism().map_or(1, NonZero::get);
+        (0..cores).for_each(|_| drop(scope.spawn(work_through)));
+    });
+}
+
+/// Runs all batches on an engine.
+fn check(engine: &str, backend: Backend, quads: usize, beyond: bool) {
+    let start = Instant::now();
+    let report = Mutex::new(Report::default());
+    for_each_batch(quads, beyond, |batch| {
+        let mismatches = mismatches(&batch, backend);
+        report.lock().unwrap().add(&batch, mismatches);
+    });
+    let report = report.into_inner().unwrap();
+    println!("{}", report.table(engine, start.elapsed().as_secs_f64()));
+    assert!(report.mismatches.is_empty(), "{}", report.mismatches.join("\n"));
+    assert!(report.quads() >= quads);
+}
+
+#[test]
+fn cpu_decides_as_big_integers_do() {
+    check("CPU", Backend::Cpu, 10 * quads(), true);
+}
+
+#[test]
+fn gpu_decides_as_big_integers_do_within_its_span_and_refuses_the_rest() {
+    for index in 0..2 {
+        let beyond = batch(index, 1000, true);
+        let refused = block_on(iterate(&beyond, Backend::Gpu));
+        assert!(matches!(refused, Err(Error::BackendLimit { .. })), "{refused:?}");
+    }
+    check("GPU", Backend::Gpu, quads(), false);
+}
+
+/// `quads/browsers.test.mjs` reads them: of each batch `positions` (f32) and `verdicts` (a byte a quad), and
+/// `batches.json` with all the rest.
+#[test]
+fn batches_for_browsers() {
+    let folder = Path::new("target/quads");
+    fs::create_dir_all(folder).unwrap();
+    let index = Mutex::new(BTreeMap::new());
+    for_each_batch(quads(), false, |batch| {
+        let positions: Vec<_> = batch.mesh.positions().iter().flat_map(|x| x.to_le_bytes()).collect();
+        let verdicts: Vec<_> = batch.verdicts.iter().map(|&(verdict, _)| verdict as u8).collect();
+        fs::write(folder.join(format!("{}.positions", batch.index)), positions).unwrap();
+        fs::write(folder.join(format!("{}.verdicts", batch.index)), verdicts).unwrap();
+        let tallies = batch.kinds.iter().map(|(kind, quads)| {
+            let Tally { quads, ties, labelled, angle, fold } = batch.tally(quads.clone());
+            json!({ "kind": kind, "quads": quads, "ties": ties, "labelled": labelled, "angle": angle, "fold": fold })
+        });
+        let tallies: Vec<_> = tallies.collect();
+        let dimension = batch.mesh.dimension().stride();
+        let entry =
+            json!({ "index": batch.index, "dimension": dimension, "beta": batch.beta, "tallies": tallies });
+        index.lock().unwrap().insert(batch.index, entry);
+    });
+    let entries: Vec<_> = index.into_inner().unwrap().into_values().collect();
+    fs::write(folder.join("batches.json"), json!(entries).to_string()).unwrap();
+}

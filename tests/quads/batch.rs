@@ -1,0 +1,137 @@
+//! A mesh of many quads that share no vertex, and what exact arithmetic says of each of them.
+
+use super::kinds::{Kind, Quad, Source};
+use crate::simulation::Predicates;
+use edgeflip::{Dimension, Mesh, Reason};
+use std::ops::Range;
+
+/// Thresholds in degrees: the exact cosines, and one that is not.
+const BETAS: [f64; 6] = [10.0, 0.0, 60.0, 90.0, 120.0, 180.0];
+
+/// Powers of two that the coordinates are multiplied by: up to 2^125, down to where most of them are subnormal.
+const SCALES: [i32; 5] = [0, 101, -64, -89, -126];
+
+/// How many batches `quads` quads are cut into. 12 have all thresholds in both dimensions and all scales, 60 have them
+/// together. Every batch costs browsers about a second, however small it is.
+pub fn batch_count(quads: usize) -> usize {
+    (quads / 8000).clamp(12, BETAS.len() * SCALES.len() * 2)
+}
+
+/// What is to be done with the edge of a quad.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    Delaunay,
+    Labelled,
+    Angle,
+    Fold,
+}
+
+/// Numbers of quads.
+#[derive(Clone, Debug, Default)]
+pub struct Tally {
+    pub quads: usize,
+    /// Those whose verdict rests on a sign that is zero.
+    pub ties: usize,
+    pub labelled: usize,
+    pub angle: usize,
+    pub fold: usize,
+}
+
+/// Quad i has the vertices a = 4i, b = 4i + 1, c = 4i + 2, d = 4i + 3 and the triangles (a, b, c), (b, a, d).
+pub struct Batch {
+    pub index: usize,
+    /// In degrees.
+    pub beta: f64,
+    pub mesh: Mesh,
+    /// Of each quad, and whether it rests on a sign that is zero.
+    pub verdicts: Vec<(Verdict, bool)>,
+    /// The quads of each kind, one kind after the other.
+    pub kinds: Vec<(&'static str, Range<usize>)>,
+}
+
+/// Makes batch `index` with `quads` quads, or a few more, of all kinds alike; `beyond`: also of those beyond the span
+/// of the GPU engines.
+pub fn batch(index: usize, quads: usize, beyond: bool) -> Batch {
+    let dimension = [Dimension::Two, Dimension::Three][index % 2];
+    let beta = BETAS[index / 2 % BETAS.len()];
+    let scale = SCALES[index % SCALES.len()];
+    let each = quads.div_ceil(Kind::all(dimension, beyond).count());
+    let mut source = Source::new((index as u128) << 1 | u128::from(beyond), dimension, beta, scale);
+    let (mut positions, mut verdicts, mut kinds) = (Vec::new(), Vec::new(), Vec::new());
+    for kind in Kind::all(dimension, beyond) {
+        let made: Vec<Quad> = (0..each).map(|_| kind.quad(&mut source)).collect();
+        let points = made.as_flattened().iter();
+        let chunk = mesh(dimension, points.flat_map(|point| &point[..dimension.stride()]).copied().collect());
+        kinds.push((kind.name, verdicts.len()..verdicts.len() + each));
+        verdicts.extend(judge(&chunk, beta));
+        positions.extend_from_slice(chunk.positions());
+    }
+    Batch { index, beta, mesh: mesh(dimension, positions), verdicts, kinds }
+}
+
+fn mesh(dimension: Dimension, positions: Vec<f32>) -> Mesh {
+    let vertices = (positions.len() / dimension.stride()) as u32;
+    let triangles = (0..vertices).step_by(4).flat_map(|a| [a, a + 1, a + 2, a + 1, a, a + 3]).collect();
+    Mesh::new(dimension, positions, triangles).unwrap()
+}
+
+/// Exact arithmetic on each quad by itself.
+fn judge(mesh: &Mesh, beta: f64) -> impl Iterator<Item = (Verdict, bool)> {
+    let predicates = Predicates::new(mesh, beta);
+    let is_plane = mesh.dimension() == Dimension::Two;
+    (0..mesh.vertex_count() as u32).step_by(4).map(move |a| {
+        let [b, c, d] = [a + 1, a + 2, a + 3];
+        let clockwise = is_plane && predicates.area([a, b, c]) + predicates.area([b, a, d]) < 0.into();
+        let (verdict, is_tie) = predicates.decide([a, b, c, d], clockwise);
+        let verdict = match verdict {
+            None => Verdict::Delaunay,
+            Some(Ok(())) => Verdict::Labelled,
+            Some(Err(Reason::Angle)) => Verdict::Angle,
+            Some(Err(_)) => Verdict::Fold,
+        };
+        (verdict, is_tie)
+    })
+}
+
+impl Batch {
+    /// What an iteration does to the triangles.
+    pub fn triangles_after(&self) -> Vec<u32> {
+        let quads = (0u32..).step_by(4).zip(&self.verdicts);
+        quads
+            .flat_map(|(a, (verdict, _))| match verdict {
+                Verdict::Labelled => [a, a + 3, a + 2, a + 1, a + 2, a + 3],
+                _ => [a, a + 1, a + 2, a + 1, a, a + 3],
+            })
+            .collect()
+    }
+
+    /// Of some quads.
+    pub fn tally(&self, quads: Range<usize>) -> Tally {
+        let verdicts = &self.verdicts[quads];
+        let count = |wanted| verdicts.iter().filter(|(verdict, _)| *verdict == wanted).count();
+        Tally {
+            quads: verdicts.len(),
+            ties: verdicts.iter().filter(|(_, is_tie)| *is_tie).count(),
+            labelled: count(Verdict::Labelled),
+            angle: count(Verdict::Angle),
+            fold: count(Verdict::Fold),
+        }
+    }
+
+    /// Some quads by themselves.
+    pub fn part(&self, quads: Range<usize>) -> Self {
+        let stride = 4 * self.mesh.dimension().stride();
+        let positions = self.mesh.positions()[stride * quads.start..stride * quads.end].to_vec();
+        let mesh = mesh(self.mesh.dimension(), positions);
+        Self { mesh, verdicts: self.verdicts[quads].to_vec(), kinds: Vec::new(), ..*self }
+    }
+
+    /// A quad as it can be written into a test: by the bits of its coordinates.
+    pub fn describe(&self, quad: usize) -> String {
+        let part = self.part(quad..quad + 1);
+        let bits: Vec<_> = part.mesh.positions().iter().map(|x| format!("{:#010x}", x.to_bits())).collect();
+        let kind = self.kinds.iter().find(|(_, quads)| quads.contains(&quad)).map_or("", |(name, _)| name);
+        let (index, beta, (verdict, _)) = (self.index, self.beta, self.verdicts[quad]);
+        format!("quad {quad} of batch {index}, {kind}, β = {beta}: [{}] is {verdict:?}", bits.join(", "))
+    }
+}

@@ -1,0 +1,91 @@
+// Quads in real browsers: the GPU engines of the package in dist/ against what the test `batches_for_browsers` in
+// ../quads.rs has written to target/quads. Ends with a table for each engine.
+
+import assert from 'node:assert/strict';
+import { copyFileSync, cpSync, readFileSync, rmSync } from 'node:fs';
+import { join } from 'node:path';
+import { after, before, describe, test } from 'node:test';
+import { fileURLToPath } from 'node:url';
+import { isDeepStrictEqual } from 'node:util';
+import { closeAll, openPage, serve, startChromium, startFirefox } from '../browsers.mjs';
+
+const repository = fileURLToPath(new URL('../..', import.meta.url));
+const folder = join(repository, 'target/quads');
+
+const engines = [
+  { name: 'WebGPU in Chromium', start: startChromium, backend: 'webgpu' },
+  { name: 'WebGPU in Firefox', start: startFirefox, backend: 'webgpu' },
+];
+
+/**
+ * @typedef {{ kind: string, quads: number, ties: number, labelled: number, angle: number, fold: number }} Tally
+ * @type {{ index: number, dimension: 2 | 3, beta: number, tallies: Tally[] }[]}
+ */
+const batches = JSON.parse(readFileSync(join(folder, 'batches.json'), 'utf8'));
+
+let address;
+before(async () => {
+  rmSync(join(folder, 'dist'), { recursive: true, force: true });
+  cpSync(join(repository, 'dist'), join(folder, 'dist'), { recursive: true });
+  copyFileSync(join(repository, 'tests/quads/page.html'), join(folder, 'index.html'));
+  address = await serve(folder);
+});
+after(closeAll);
+
+/** The bits of a quad's coordinates, as they can be written into a test. */
+function bits({ index, dimension }, quad) {
+  const { buffer } = new Uint8Array(readFileSync(join(folder, `${index}.positions`)));
+  const words = [...new Uint32Array(buffer, 16 * dimension * quad, 4 * dimension)];
+  return `[${words.map((word) => `0x${word.toString(16).padStart(8, '0')}`).join(', ')}]`;
+}
+
+const columns = ['quads', 'ties', 'labelled', 'angle', 'fold', 'mismatches'];
+
+/** Adds numbers of the same names. */
+function add(sums, numbers) {
+  for (const column of columns) sums[column] = (sums[column] ?? 0) + numbers[column];
+}
+
+/** Runs all batches on an engine, and prints its table. */
+async function check({ name, start, backend }) {
+  const { page, problems } = await openPage(await start(), address);
+  const began = performance.now();
+  /** @type {Map<string, Record<string, number>>} */
+  const rows = new Map();
+  const all = {};
+  const mismatches = [];
+  for (const batch of batches) {
+    const found = await page.evaluate(([batch, backend]) => globalThis.iterate(batch, backend), [batch, backend]);
+    const expected = { labelled: 0, angle: 0, fold: 0 };
+    let first = 0;
+    for (const { kind, ...tally } of batch.tallies) {
+      const wrong = found.wrong.filter((quad) => quad >= first && quad < first + tally.quads);
+      first += tally.quads;
+      const of = `of batch ${batch.index}, ${kind}, β = ${batch.beta}`;
+      mismatches.push(...wrong.map((quad) => `quad ${quad} ${of}: ${bits(batch, quad)}`));
+      const row = `${batch.dimension} | ${kind}`;
+      rows.set(row, rows.get(row) ?? {});
+      for (const sums of [rows.get(row), all]) add(sums, { ...tally, mismatches: wrong.length });
+      for (const verdict of Object.keys(expected)) expected[verdict] += tally[verdict];
+    }
+    const counted = { labelled: found.labelled, angle: 0, fold: 0, ...found.blocked };
+    if (!isDeepStrictEqual(counted, expected)) {
+      mismatches.push(`batch ${batch.index}: ${JSON.stringify(counted)}, not ${JSON.stringify(expected)}`);
+    }
+  }
+  const seconds = ((performance.now() - began) / 1000).toFixed(1);
+  const line = (row, sums, last) => `| ${[name, row, ...columns.map((column) => sums[column]), last].join(' | ')} |`;
+  console.log([
+    '',
+    '| engine | dimension | kind | quads | exact ties | labelled | angle | fold | mismatches | seconds |',
+    '|---|---:|---|---:|---:|---:|---:|---:|---:|---:|',
+    ...[...rows].map(([row, sums]) => line(row, sums, '')).sort(),
+    line('2, 3 | all', all, seconds),
+  ].join('\n'));
+  assert.deepEqual(problems, []);
+  assert.deepEqual(mismatches, []);
+}
+
+describe('quads', { concurrency: true }, () => {
+  for (const engine of engines) test(`${engine.name} decides as big integers do`, () => check(engine));
+});

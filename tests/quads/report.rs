@@ -1,0 +1,59 @@
+//! What an engine has decided, and what of it was wrong.
+
+use crate::batch::{Batch, Tally};
+use std::collections::BTreeMap;
+
+#[derive(Default)]
+pub struct Report {
+    /// By dimension, and the place and name of the kind; with the number of mismatches.
+    rows: BTreeMap<(usize, usize, &'static str), (Tally, usize)>,
+    /// What is wrong, in words.
+    pub mismatches: Vec<String>,
+}
+
+impl Report {
+    /// `mismatches`: the quads that are decided otherwise, and how.
+    pub fn add(&mut self, batch: &Batch, mismatches: Vec<(usize, String)>) {
+        for (place, (kind, quads)) in batch.kinds.iter().enumerate() {
+            let wrong = mismatches.iter().filter(|(quad, _)| quads.contains(quad)).count();
+            let row = self.rows.entry((batch.mesh.dimension().stride(), place, kind)).or_default();
+            *row = sum([&*row, &(batch.tally(quads.clone()), wrong)].into_iter());
+        }
+        self.mismatches.extend(mismatches.into_iter().map(|(_, how)| how));
+    }
+
+    /// Of all kinds.
+    pub fn quads(&self) -> usize {
+        sum(self.rows.values()).0.quads
+    }
+
+    /// A row for each dimension and kind, and their sum.
+    pub fn table(&self, engine: &str, seconds: f64) -> String {
+        let row = |dimension: &str, kind: &str, (tally, mismatches): &(Tally, usize), seconds: &str| {
+            let Tally { quads, ties, labelled, angle, fold } = tally;
+            let of = format!("| {engine} | {dimension} | {kind} | {quads} | {ties} |");
+            format!("{of} {labelled} | {angle} | {fold} | {mismatches} | {seconds} |\n")
+        };
+        let head = "| engine | dimension | kind | quads | exact ties | labelled | angle | fold | mismatches | seconds |";
+        let rows: String = self
+            .rows
+            .iter()
+            .map(|((dimension, _, kind), sums)| row(&dimension.to_string(), kind, sums, ""))
+            .collect();
+        let all = row("2, 3", "all", &sum(self.rows.values()), &format!("{seconds:.1}"));
+        format!("\n{head}\n|---|---:|---|---:|---:|---:|---:|---:|---:|---:|\n{rows}{all}")
+    }
+}
+
+fn sum<'a>(rows: impl Iterator<Item = &'a (Tally, usize)>) -> (Tally, usize) {
+    rows.fold(Default::default(), |(sum, wrong), (tally, more)| {
+        let tally = Tally {
+            quads: sum.quads + tally.quads,
+            ties: sum.ties + tally.ties,
+            labelled: sum.labelled + tally.labelled,
+            angle: sum.angle + tally.angle,
+            fold: sum.fold + tally.fold,
+        };
+        (tally, wrong + more)
+    })
+}
