@@ -20,7 +20,8 @@ const wasmWith = (features) => ['--target', 'wasm32-unknown-unknown', '--no-defa
 const wasm = wasmWith('gpu,js');
 const wasmCargo = ['bash', 'tools/wasm-cargo.sh'];
 
-const inChromium = ['wasm', 'worker'];
+// Targets of cargo in levels below.
+const inBrowsers = ['wasm', 'worker', 'parity'];
 
 // The page needs the package in dist/.
 const builtPage = [
@@ -94,6 +95,16 @@ const levels = [
     counts: true,
   },
   {
+    name: 'parity',
+    what: firstSentence(readFileSync('tests/parity.rs', 'utf8')),
+    checks: [
+      ['cargo', 'test', '--test', 'parity'],
+      ['node', '--test-reporter=tap', 'tests/parity/matrix.test.mjs'],
+    ],
+    counts: true,
+    env: { EDGEFLIP_PARITY: 'target/parity.json' },
+  },
+  {
     name: 'npm package in browsers',
     what: 'the packed package in fresh projects: plain pages in Chromium and Firefox, Vite, TypeScript, on the CPU and WebGPU',
     checks: [['node', '--test', '--test-reporter=tap', 'tests/package/browser.test.mjs']],
@@ -132,7 +143,7 @@ function integrationTests() {
   }
   return JSON.parse(metadata.stdout)
     .packages.flatMap((crate) => crate.targets)
-    .filter((target) => target.kind.includes('test') && !inChromium.includes(target.name))
+    .filter((target) => target.kind.includes('test') && !inBrowsers.includes(target.name))
     .sort((a, b) => (a.name < b.name ? -1 : 1))
     .map((target) => ({
       name: target.name,
