@@ -1,18 +1,32 @@
-// The entry point of the creases over textures, before the first iteration on a surface.
+// The entry points of the creases over textures, before the first iteration on a surface.
 
+// Whether the edge of a half-edge, the lower one, is over β: 1 or 0.
 @fragment
-fn crease_pass(@builtin(position) fragment: vec4f) -> @location(0) vec4u {
-    let t = index_at(fragment);
-    if t >= params[0].x {
-        return vec4u(NONE);
+fn crease_pass(@builtin(position) fragment: vec4f) -> @location(0) u32 {
+    let h = index_at(fragment);
+    var is_over = 0u;
+    if h < 3u * params[0].x {
+        let g = twin(h);
+        if g != NONE && h < g {
+            is_over = creased(h, g) >> 31u;
+        }
     }
-    return vec4u(crease_entry(3u * t), crease_entry(3u * t + 1u), crease_entry(3u * t + 2u), 0u);
+    return is_over;
 }
 
-fn crease_entry(h: u32) -> u32 {
-    let g = twin(h);
-    if g == NONE {
-        return NONE;
+// Flags the twins of those edges, and no others.
+@fragment
+fn flag_pass(@builtin(position) fragment: vec4f) -> @location(0) vec4u {
+    let t = index_at(fragment);
+    var entries = vec4u(NONE);
+    if t < params[0].x {
+        entries = vec4u(flagged(3u * t), flagged(3u * t + 1u), flagged(3u * t + 2u), NONE);
     }
-    return creased(h, g);
+    return entries;
+}
+
+fn flagged(h: u32) -> u32 {
+    let g = twin(h);
+    let is_over = textureLoad(verdicts, place(min(h, g)), 0).x == 1u;
+    return select(g, g | CREASE, is_over && g != NONE);
 }

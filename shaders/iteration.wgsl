@@ -1,6 +1,10 @@
 // The entry points: one dispatch a phase while there is much to do, one workgroup for a run of iterations
 // when there is little; and the census.
 
+fn verdict_of(h: u32, g: u32) -> u32 {
+    return guarded(geometric_verdict(h, g), h, g);
+}
+
 var<workgroup> flips: atomic<u32>;
 var<workgroup> census_counts: array<atomic<u32>, 4>;
 var<workgroup> tail_count: u32;

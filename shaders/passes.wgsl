@@ -1,5 +1,6 @@
 // The entry points over textures: every phase is a pass over all triangles, in which those that nothing has changed
-// around keep what they had.
+// around keep what they had. What has loops of its own is in a pass over the half-edges, without a loop around it:
+// compilers that inline everything take very long over loops in loops.
 
 // Side of the square of texels that one fragment sums.
 const BLOCK: u32 = 8u;
@@ -10,19 +11,39 @@ fn cover(@builtin(vertex_index) corner: u32) -> @builtin(position) vec4f {
     return vec4f(f32(corner & 1u) * 4.0 - 1.0, f32(corner >> 1u) * 4.0 - 1.0, 0.0, 1.0);
 }
 
+// The verdict on the geometry of the edge of half-edge `h`, kept where neither of its triangles has flipped.
+// `selections` are those of the iteration before.
+@fragment
+fn verdict_pass(@builtin(position) fragment: vec4f) -> @location(0) u32 {
+    let h = index_at(fragment);
+    var verdict = DELAUNAY;
+    if h < 3u * params[0].x {
+        let g = twin(h);
+        verdict = textureLoad(verdicts, place(h), 0).x;
+        if g != NONE && h < g && (params[0].z == 0u || selected(h / 3u) != NONE || selected(g / 3u) != NONE) {
+            verdict = geometric_verdict(h, g);
+        }
+    }
+    return verdict;
+}
+
+fn verdict_of(h: u32, g: u32) -> u32 {
+    return guarded(textureLoad(verdicts, place(min(h, g)), 0).x, h, g);
+}
+
 // The frontier, as src/phases/frontier.rs: a triangle without a candidate keeps having none unless it or a neighbour
 // flipped. `bests` and `selections` are those of the iteration before.
 @fragment
 fn label_pass(@builtin(position) fragment: vec4f) -> @location(0) u32 {
     let t = index_at(fragment);
-    if t >= params[0].x {
-        return NONE;
-    }
     let around = textureLoad(twins, place(t), 0);
-    if best(t) == NONE && selected(t) == NONE && !has_flipped(around.x) && !has_flipped(around.y) && !has_flipped(around.z) {
-        return NONE;
+    let is_active = best(t) != NONE || selected(t) != NONE
+        || has_flipped(around.x) || has_flipped(around.y) || has_flipped(around.z);
+    var choice = NONE;
+    if t < params[0].x && is_active {
+        choice = label(t, params[0].z);
     }
-    return label(t, params[0].z);
+    return choice;
 }
 
 fn has_flipped(entry: u32) -> bool {
@@ -32,23 +53,24 @@ fn has_flipped(entry: u32) -> bool {
 @fragment
 fn select_pass(@builtin(position) fragment: vec4f) -> @location(0) u32 {
     let t = index_at(fragment);
-    if t >= params[0].x {
-        return NONE;
+    var choice = NONE;
+    if t < params[0].x {
+        choice = selection(t, params[0].z);
     }
-    return selection(t, params[0].z);
+    return choice;
 }
 
 // Flip, into another texture: the vertices of a triangle.
 @fragment
 fn flip_pass(@builtin(position) fragment: vec4f) -> @location(0) vec4u {
     let t = index_at(fragment);
-    let old = textureLoad(triangles, place(t), 0);
+    var result = textureLoad(triangles, place(t), 0);
     let g = selected(t);
-    if g == NONE {
-        return old;
+    if g != NONE {
+        let h = selected(g / 3u);
+        result = with_component(result, next(h) % 3u, vertex(prev(g)));
     }
-    let h = selected(g / 3u);
-    return with_component(old, next(h) % 3u, vertex(prev(g)));
+    return result;
 }
 
 // Update, into another texture: the twins of a triangle. The vertices are not looked at.
@@ -70,11 +92,11 @@ fn update_pass(@builtin(position) fragment: vec4f) -> @location(0) vec4u {
 @fragment
 fn anchor_pass(@builtin(position) fragment: vec4f) -> @location(0) u32 {
     let i = index_at(fragment);
-    let entry = fan_entry(i);
-    if i < params[0].y {
-        return entry;
+    var entry = fan_entry(i);
+    if i >= params[0].y {
+        entry = slot(entry);
     }
-    return slot(entry);
+    return entry;
 }
 
 // The verdicts on the interior edges of a triangle, each from its lower half-edge: labelled, then blocked by reason.
@@ -82,10 +104,8 @@ fn anchor_pass(@builtin(position) fragment: vec4f) -> @location(0) u32 {
 fn census_pass(@builtin(position) fragment: vec4f) -> @location(0) vec4u {
     let t = index_at(fragment);
     var result = vec4u();
-    if t >= params[0].x {
-        return result;
-    }
-    for (var h = 3u * t; h < 3u * t + 3u; h++) {
+    let end = select(3u * t, 3u * t + 3u, t < params[0].x);
+    for (var h = 3u * t; h < end; h++) {
         let g = twin(h);
         if g != NONE && h < g {
             let verdict = vec4u(verdict_of(h, g));
@@ -127,11 +147,11 @@ fn sum_pass(@builtin(position) fragment: vec4f) -> @location(0) vec4u {
 
 // As probe.wgsl.
 @fragment
-fn probe_pass() -> @location(0) u32 {
+fn probe_pass() -> @location(0) vec4u {
     var x = 1u;
     for (var i = 0u; i < 100000u; i++) {
         x = x * 1664525u + 1013904223u;
         x ^= x >> 13u;
     }
-    return x;
+    return vec4u(x);
 }

@@ -22,18 +22,15 @@ fn verdict_on(a: Point, b: Point, c: Point, d: Point, winding: i32) -> u32 {
     r *= scale;
     s *= scale;
     let in_circle = winding * in_circle_sign(p, q, r, s);
-    if in_circle > 0 {
-        return DELAUNAY;
+    let area = min(winding * area_sign(r, p), winding * area_sign(q, s));
+    var verdict = DELAUNAY;
+    if in_circle <= 0 {
+        verdict = select(LABELLED, BLOCKED_BY + REASON_FOLD, area < 0);
+        if in_circle == 0 || area == 0 {
+            verdict = exact_verdict_on(a, b, c, d, winding);
+        }
     }
-    let area1 = winding * area_sign(r, p);
-    let area2 = winding * area_sign(q, s);
-    if in_circle < 0 && (area1 < 0 || area2 < 0) {
-        return BLOCKED_BY + REASON_FOLD;
-    }
-    if in_circle < 0 && area1 > 0 && area2 > 0 {
-        return LABELLED;
-    }
-    return exact_verdict_on(a, b, c, d, winding);
+    return verdict;
 }
 
 // The sign of cross(λ)·dot(γ) + dot(λ)·cross(γ): -1 when λ + γ > π, for counter-clockwise triangles; 0 where
@@ -62,10 +59,13 @@ fn exact_verdict_on(a: Point, b: Point, c: Point, d: Point, winding: i32) -> u32
     let s = exact_differences(b, d, grid);
     let widest = p[0] | p[1] | q[0] | q[1] | r[0] | r[1] | s[0] | s[1];
     // Below 2^30 everything fits 128 bits; a lattice takes this path for every edge.
-    if widest.x < 0x40000000u && widest.y == 0u && widest.z == 0u {
-        return verdict_in_narrow_plane(p, q, r, s, winding);
+    var verdict = DELAUNAY;
+    if widest.x < 0x40000000u && (widest.y | widest.z) == 0u {
+        verdict = verdict_in_narrow_plane(p, q, r, s, winding);
+    } else {
+        verdict = verdict_in_wide_plane(p, q, r, s, digits_in_use(widest), winding);
     }
-    return verdict_in_wide_plane(p, q, r, s, digits_in_use(widest), winding);
+    return verdict;
 }
 
 fn verdict_in_wide_plane(p: Differences, q: Differences, r: Differences, s: Differences, count: u32, winding: i32) -> u32 {
@@ -82,13 +82,13 @@ fn verdict_in_wide_plane(p: Differences, q: Differences, r: Differences, s: Diff
     let dot1 = sum_of_products(px, qx, py, qy, zero, zero, count);
     let cross2 = sum_of_products(sx, ry, sy, negated_small(rx), zero, zero, count);
     let dot2 = sum_of_products(sx, rx, sy, ry, zero, zero, count);
-    if winding * large_sign(sum_of_medium_products(cross1, dot2, dot1, cross2, count)) >= 0 {
-        return DELAUNAY;
+    var verdict = DELAUNAY;
+    if winding * large_sign(sum_of_medium_products(cross1, dot2, dot1, cross2, count)) < 0 {
+        let area1 = medium_sign(sum_of_products(rx, py, ry, negated_small(px), zero, zero, count));
+        let area2 = medium_sign(sum_of_products(qx, sy, qy, negated_small(sx), zero, zero, count));
+        verdict = select(LABELLED, BLOCKED_BY + REASON_FOLD, min(winding * area1, winding * area2) <= 0);
     }
-    let area1 = sum_of_products(rx, py, ry, negated_small(px), zero, zero, count);
-    let area2 = sum_of_products(qx, sy, qy, negated_small(sx), zero, zero, count);
-    let is_fold = winding * medium_sign(area1) <= 0 || winding * medium_sign(area2) <= 0;
-    return select(LABELLED, BLOCKED_BY + REASON_FOLD, is_fold);
+    return verdict;
 }
 
 fn verdict_in_narrow_plane(p: Differences, q: Differences, r: Differences, s: Differences, winding: i32) -> u32 {
@@ -96,15 +96,13 @@ fn verdict_in_narrow_plane(p: Differences, q: Differences, r: Differences, s: Di
     let dot1 = narrow_sum(p[0], q[0], p[1], q[1], false);
     let cross2 = narrow_sum(s[0], r[1], s[1], r[0], true);
     let dot2 = narrow_sum(s[0], r[0], s[1], r[1], false);
-    if winding * narrow_sign(cross1, dot2, dot1, cross2) >= 0 {
-        return DELAUNAY;
-    }
+    let in_circle = winding * narrow_sign(cross1, dot2, dot1, cross2);
     let area1 = narrow_sum(r[0], p[1], r[1], p[0], true);
     let area2 = narrow_sum(q[0], s[1], q[1], s[0], true);
     let is_flat = all(area1.xy == vec2u()) || all(area2.xy == vec2u());
     let turned = select(0u, 1u, winding > 0);
     let is_fold = is_flat || area1.z == turned || area2.z == turned;
-    return select(LABELLED, BLOCKED_BY + REASON_FOLD, is_fold);
+    return select(select(LABELLED, BLOCKED_BY + REASON_FOLD, is_fold), DELAUNAY, in_circle >= 0);
 }
 
 // The 64-bit product of two words: low, high.
@@ -137,14 +135,9 @@ fn narrow_sign(x: vec3u, u: vec3u, y: vec3u, v: vec3u) -> i32 {
     let right = narrow_product(y.xy, v.xy);
     let left_sign = select(select(1, -1, x.z != u.z), 0, all(left == vec4u()));
     let right_sign = select(select(1, -1, y.z != v.z), 0, all(right == vec4u()));
-    if left_sign == right_sign || right_sign == 0 {
-        return left_sign;
-    }
-    if left_sign == 0 {
-        return right_sign;
-    }
-    let larger = vec4i(left > right) - vec4i(left < right);
-    return left_sign * highest_sign(larger, 0);
+    let larger = highest_sign(vec4i(left > right) - vec4i(left < right), 0);
+    // Of two different signs, that of the larger magnitude.
+    return select(sign(left_sign + right_sign), left_sign * larger, left_sign * right_sign < 0);
 }
 
 // 64 by 64 bits.

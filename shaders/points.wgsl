@@ -66,48 +66,41 @@ fn exact_differences(u: Point, v: Point, grid: i32) -> Differences {
 // The f32 in units of 2^grid, as magnitude and sign.
 fn on_grid(bits: u32, grid: i32) -> vec4u {
     let magnitude = magnitude_of(bits);
-    if magnitude == 0u {
-        return vec4u();
-    }
     let exponent = i32(max((bits >> 23u) & 0xffu, 1u)) - 150 - grid;
-    if exponent < 0 {
-        return vec4u(magnitude >> u32(-exponent), 0u, 0u, bits >> 31u);
-    }
-    let low = magnitude << (u32(exponent) % 32u);
-    let high = (magnitude >> 1u) >> (31u - u32(exponent) % 32u);
-    switch u32(exponent) / 32u {
-        case 0u: { return vec4u(low, high, 0u, bits >> 31u); }
-        case 1u: { return vec4u(0u, low, high, bits >> 31u); }
-        // Below 84 bits nothing is left for a fourth word.
-        default: { return vec4u(0u, 0u, low, bits >> 31u); }
-    }
+    // Bits below the grid are zeros. Of zero the exponent says nothing.
+    let whole = magnitude >> u32(clamp(-exponent, 0, 24));
+    let shift = u32(clamp(exponent, 0, 95));
+    let low = whole << (shift % 32u);
+    let high = (whole >> 1u) >> (31u - shift % 32u);
+    let word = shift / 32u;
+    // Below 84 bits nothing is left for a fourth word.
+    return vec4u(
+        select(0u, low, word == 0u),
+        select(select(0u, low, word == 1u), high, word == 0u),
+        select(select(0u, low, word == 2u), high, word == 1u),
+        bits >> 31u,
+    );
 }
 
+// Shaders have one way out of a function: where there are several, compilers that inline everything take very long.
 fn magnitude_is_less(x: vec4u, y: vec4u) -> bool {
-    if x.z != y.z {
-        return x.z < y.z;
-    }
-    if x.y != y.y {
-        return x.y < y.y;
-    }
-    return x.x < y.x;
+    return select(select(x.x < y.x, x.y < y.y, x.y != y.y), x.z < y.z, x.z != y.z);
 }
 
 // x - y of magnitudes with signs.
 fn difference(x: vec4u, y: vec4u) -> vec4u {
-    if x.w != y.w {
-        let low = x.x + y.x;
-        let carry_low = select(0u, 1u, low < x.x);
-        let sum = x.y + y.y;
-        let middle = sum + carry_low;
-        let carry = select(0u, 1u, sum < x.y) + select(0u, 1u, middle < sum);
-        return vec4u(low, middle, x.z + y.z + carry, x.w);
-    }
+    let low = x.x + y.x;
+    let carry_low = select(0u, 1u, low < x.x);
+    let middle = x.y + y.y;
+    let carry = select(0u, 1u, middle < x.y) + select(0u, 1u, middle + carry_low < middle);
+    let sum = vec4u(low, middle + carry_low, x.z + y.z + carry, x.w);
     let is_less = magnitude_is_less(x, y);
     let larger = select(x, y, is_less);
     let smaller = select(y, x, is_less);
     let borrow_low = select(0u, 1u, larger.x < smaller.x);
     let rest = larger.y - smaller.y;
     let borrow = select(0u, 1u, larger.y < smaller.y) + select(0u, 1u, rest < borrow_low);
-    return vec4u(larger.x - smaller.x, rest - borrow_low, larger.z - smaller.z - borrow, select(x.w, 1u - x.w, is_less));
+    let sign = select(x.w, 1u - x.w, is_less);
+    let rest_of_all = vec4u(larger.x - smaller.x, rest - borrow_low, larger.z - smaller.z - borrow, sign);
+    return select(rest_of_all, sum, x.w != y.w);
 }

@@ -4,19 +4,20 @@
 // The half-edge on the other side of triangle `t`'s selected edge, or NONE.
 fn selection(t: u32, iteration: u32) -> u32 {
     let h = mutual(t);
-    if h != NONE && !yields(h, best(t), iteration) {
-        return best(t);
+    var choice = NONE;
+    if h != NONE {
+        choice = select(best(t), NONE, yields(h, best(t), iteration));
     }
-    return NONE;
+    return choice;
 }
 
 // The half-edge of triangle `t` that is the best of both its triangles, or NONE.
 fn mutual(t: u32) -> u32 {
     let g = best(t);
-    if g >= BLOCKED {
-        return NONE;
+    var h = NONE;
+    if g < BLOCKED {
+        h = best(g / 3u);
     }
-    let h = best(g / 3u);
     return select(NONE, h, h < BLOCKED && h / 3u == t);
 }
 
@@ -27,22 +28,22 @@ fn yields(h: u32, g: u32, iteration: u32) -> bool {
     let mine = key(min(h, g), iteration);
     var first = star(prev(h));
     var second = star(prev(g));
-    while first.y != NONE && second.y != NONE {
-        if wins(first.y, d, mine, iteration) || wins(second.y, c, mine, iteration) {
-            return true;
-        }
+    var is_beaten = false;
+    while !is_beaten && first.y != NONE && second.y != NONE {
+        is_beaten = wins(first.y, d, mine, iteration) || wins(second.y, c, mine, iteration);
         first = advanced(first);
         second = advanced(second);
     }
-    return false;
+    return is_beaten;
 }
 
 // Whether the edge opposite to `corner` is selected, lies opposite to the vertex `far` too and is better.
 fn wins(corner: u32, far: u32, mine: u32, iteration: u32) -> bool {
     let h = mutual(corner / 3u);
-    if h == NONE || h != next(corner) {
-        return false;
+    var is_better = false;
+    if h == next(corner) {
+        let g = best(corner / 3u);
+        is_better = vertex(prev(g)) == far && key(min(h, g), iteration) < mine;
     }
-    let g = best(corner / 3u);
-    return vertex(prev(g)) == far && key(min(h, g), iteration) < mine;
+    return is_better;
 }

@@ -2,13 +2,14 @@
 
 // Where half-edge `x`, given with its flag, will be after the iteration.
 fn slot(entry: u32) -> u32 {
-    if entry == NONE {
-        return NONE;
-    }
     let x = unflagged(entry);
-    let g = selected(x / 3u);
-    if g == NONE || x != next(selected(g / 3u)) {
-        return entry;
+    var g = NONE;
+    if x != NONE {
+        g = selected(x / 3u);
     }
-    return g | (entry & CREASE);
+    var place = entry;
+    if g != NONE {
+        place = select(entry, g | (entry & CREASE), x == next(selected(g / 3u)));
+    }
+    return place;
 }

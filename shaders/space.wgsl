@@ -37,31 +37,27 @@ fn verdict_on(a: Point, b: Point, c: Point, d: Point, winding: i32) -> u32 {
     let quad = quad_of(a, b, c, d);
     let bound = bound_of(quad);
     let sum = angle_sum_sign(quad, bound);
-    if sum > 0 {
-        return DELAUNAY;
+    var verdict = DELAUNAY;
+    if sum <= 0 {
+        let angle = compare_angles(quad, bound);
+        let turned = compare_turns(quad);
+        verdict = select(select(LABELLED, BLOCKED_BY + REASON_FOLD, turned < 0), BLOCKED_BY + REASON_ANGLE, angle < 0);
+        if sum == 0 || angle == 0 || (angle > 0 && turned == 0) {
+            verdict = exact_verdict_on(a, b, c, d, false);
+        }
     }
-    let angle = compare_angles(quad, bound);
-    if sum < 0 && angle < 0 {
-        return BLOCKED_BY + REASON_ANGLE;
-    }
-    let turned = compare_turns(quad);
-    if sum < 0 && angle > 0 && turned != 0 {
-        return select(LABELLED, BLOCKED_BY + REASON_FOLD, turned < 0);
-    }
-    return exact_verdict_on(a, b, c, d, false);
+    return verdict;
 }
 
 // Whether the angle between the normals, before any flip, is larger than β.
 fn is_over_angle(a: Point, b: Point, c: Point, d: Point) -> bool {
-    if has_any_angle() {
-        return false;
-    }
     let quad = quad_of(a, b, c, d);
     let before = compare_angle(cross(quad[0], quad[1]), cross(quad[3], quad[2]), bound_of(quad));
-    if before != 0 {
-        return before < 0;
+    var is_over = before < 0;
+    if before == 0 {
+        is_over = exact_verdict_on(a, b, c, d, true) != DELAUNAY;
     }
-    return exact_verdict_on(a, b, c, d, true) != DELAUNAY;
+    return is_over && !has_any_angle();
 }
 
 // -1 when the opposite angles sum to more than π; 0 where the filter cannot decide.
@@ -75,12 +71,10 @@ fn angle_sum_sign(quad: Quad, bound: f32) -> i32 {
 // -1 when the angle between the normals is larger than β before the flip or after it, 1 when it is not, 0
 // where the filter cannot decide.
 fn compare_angles(quad: Quad, bound: f32) -> i32 {
-    if has_any_angle() {
-        return 1;
-    }
     let before = compare_angle(cross(quad[0], quad[1]), cross(quad[3], quad[2]), bound);
     let after = compare_angle(cross(quad[2], quad[0]), cross(quad[1], quad[3]), bound);
-    return min(min(before, after), select(0, 1, before != 0 && after != 0));
+    // Not decided where one is 0 and none is -1.
+    return select(min(before, after), 1, has_any_angle());
 }
 
 fn compare_angle(n: vec3f, m: vec3f, bound: f32) -> i32 {
@@ -151,57 +145,62 @@ fn exact_verdict_on(a: Point, b: Point, c: Point, d: Point, angle_only: bool) ->
     // Of the old normals n1 = p × q and n2 = s × r.
     let n1_square = determinant(pp, qq, pq, pq, count);
     let n2_square = determinant(ss, rr, rs, rs, count);
-    if !angle_only && !is_angle_sum_negative(n1_square, rs, n2_square, pq, count) {
-        return DELAUNAY;
+    var verdict = DELAUNAY;
+    if angle_only || is_angle_sum_negative(n1_square, rs, n2_square, pq, count) {
+        let pr = dot_of(p, r, count);
+        let ps = dot_of(p, s, count);
+        let qr = dot_of(q, r, count);
+        let qs = dot_of(q, s, count);
+        var is_over = false;
+        if !has_any_angle() {
+            // The old normals, then the new ones, m1 = r × p and m2 = q × s.
+            var n_square = n1_square;
+            var m_square = n2_square;
+            var cosine = determinant(ps, qr, pr, qs, count);
+            let rounds = select(2u, 1u, angle_only);
+            for (var round = 0u; round < rounds; round++) {
+                is_over = is_over || exceeds_angle(n_square, m_square, cosine);
+                n_square = determinant(rr, pp, pr, pr, count);
+                m_square = determinant(qq, ss, qs, qs, count);
+                cosine = determinant(qr, ps, rs, pq, count);
+            }
+        }
+        let turned = min(
+            min(large_sign(determinant(pr, pq, pp, qr, count)), large_sign(determinant(pq, qs, ps, qq, count))),
+            min(large_sign(determinant(rs, pr, ps, rr, count)), large_sign(determinant(qs, rs, ss, qr, count))),
+        );
+        verdict = select(LABELLED, BLOCKED_BY + REASON_FOLD, turned < 0);
+        verdict = select(verdict, DELAUNAY, angle_only);
+        verdict = select(verdict, BLOCKED_BY + REASON_ANGLE, is_over);
     }
-    let pr = dot_of(p, r, count);
-    let ps = dot_of(p, s, count);
-    let qr = dot_of(q, r, count);
-    let qs = dot_of(q, s, count);
-    if !has_any_angle() {
-        if exceeds_angle(n1_square, n2_square, determinant(ps, qr, pr, qs, count)) {
-            return BLOCKED_BY + REASON_ANGLE;
-        }
-        if angle_only {
-            return DELAUNAY;
-        }
-        // Of the new normals m1 = r × p and m2 = q × s.
-        let m1_square = determinant(rr, pp, pr, pr, count);
-        let m2_square = determinant(qq, ss, qs, qs, count);
-        if exceeds_angle(m1_square, m2_square, determinant(qr, ps, rs, pq, count)) {
-            return BLOCKED_BY + REASON_ANGLE;
-        }
-    }
-    let is_fold = large_sign(determinant(pr, pq, pp, qr, count)) < 0
-        || large_sign(determinant(pq, qs, ps, qq, count)) < 0
-        || large_sign(determinant(rs, pr, ps, rr, count)) < 0
-        || large_sign(determinant(qs, rs, ss, qr, count)) < 0;
-    return select(LABELLED, BLOCKED_BY + REASON_FOLD, is_fold);
+    return verdict;
 }
 
 // Whether √(n1²)·dot2 + √(n2²)·dot1 < 0: by the squares, with the signs of what was squared.
 fn is_angle_sum_negative(n1_square: Large, dot2: Medium, n2_square: Large, dot1: Medium, count: u32) -> bool {
     let first = large_sign(n1_square) * medium_sign(dot2);
     let second = large_sign(n2_square) * medium_sign(dot1);
-    if first * second >= 0 {
-        return first + second < 0;
+    var sum = first + second;
+    if first * second < 0 {
+        let zero = Medium();
+        let square2 = sum_of_medium_products(dot2, dot2, zero, zero, count);
+        let square1 = negated_large(sum_of_medium_products(dot1, dot1, zero, zero, count));
+        sum = first * sum_of_large_products_sign(n1_square, square2, n2_square, square1, 8u * count + 3u);
     }
-    let zero = Medium();
-    let square2 = sum_of_medium_products(dot2, dot2, zero, zero, count);
-    let square1 = negated_large(sum_of_medium_products(dot1, dot1, zero, zero, count));
-    return first * sum_of_large_products_sign(n1_square, square2, n2_square, square1, 8u * count + 3u) < 0;
+    return sum < 0;
 }
 
 // Whether n·m < k|n||m|, given n², m² and n·m.
 fn exceeds_angle(n_square: Large, m_square: Large, cosine: Large) -> bool {
     let left_sign = large_sign(cosine);
     let right_sign = cos_sign() * large_sign(n_square) * large_sign(m_square);
-    if left_sign != right_sign || left_sign == 0 {
-        return left_sign < right_sign;
+    var difference_sign = left_sign - right_sign;
+    if left_sign * right_sign > 0 {
+        // With |k| = mantissa / 2^shift: (n·m·2^shift)² against (n²·mantissa)·(m²·mantissa).
+        let left = scaled(cosine, cos_power());
+        let right_n = scaled(n_square, cos_mantissa());
+        let right_m = negated_large(scaled(m_square, cos_mantissa()));
+        difference_sign = left_sign * sum_of_large_products_sign(left, left, right_n, right_m, 73u);
     }
-    // With |k| = mantissa / 2^shift: (n·m·2^shift)² against (n²·mantissa)·(m²·mantissa).
-    let left = scaled(cosine, cos_power());
-    let right_n = scaled(n_square, cos_mantissa());
-    let right_m = negated_large(scaled(m_square, cos_mantissa()));
-    return left_sign * sum_of_large_products_sign(left, left, right_n, right_m, 73u) < 0;
+    return difference_sign < 0;
 }

@@ -6,41 +6,44 @@ alias Star = vec4u;
 
 // All corners at the vertex that `corner` starts at.
 fn star(corner: u32) -> Star {
+    var list = NONE;
     if has_fans() {
-        let list = fan_entry(vertex(corner));
-        if list != NONE {
-            let anchor = fan_entry(list);
-            return Star(anchor, anchor, 0u, list + 1u);
-        }
+        list = fan_entry(vertex(corner));
     }
-    return Star(corner, corner, 0u, NONE);
+    var walk = Star(corner, corner, 0u, NONE);
+    if list != NONE {
+        walk = fan_at(list);
+    }
+    return walk;
 }
 
-fn at_next_fan(walk: Star) -> Star {
-    if walk.w == NONE {
-        return Star(NONE, NONE, 0u, NONE);
+// The fan whose anchor is a word of the table; behind the last one, or without a table, none.
+fn fan_at(word: u32) -> Star {
+    var anchor = NONE;
+    if word != NONE {
+        anchor = fan_entry(word);
     }
-    let start = fan_entry(walk.w);
-    return Star(start, start, 0u, walk.w + 1u);
+    return Star(anchor, anchor, 0u, select(word + 1u, NONE, word == NONE));
 }
 
 // At the next corner; at NONE (in y) behind the last one.
 fn advanced(walk: Star) -> Star {
-    var from_corner = walk.y;
-    if walk.z == 0u {
-        let at = twin(prev(walk.y));
-        if at == walk.x {
-            return at_next_fan(walk);
-        }
-        if at != NONE {
-            return Star(walk.x, at, 0u, walk.w);
-        }
+    var corner = NONE;
+    var is_clockwise = walk.z;
+    if is_clockwise == 0u {
+        corner = twin(prev(walk.y));
+    }
+    if corner == NONE {
         // The fan is open: back to where it began and round the other way.
-        from_corner = walk.x;
+        let other = twin(select(walk.x, walk.y, is_clockwise == 1u));
+        corner = select(next(other), NONE, other == NONE);
+        is_clockwise = 1u;
+    } else if corner == walk.x {
+        corner = NONE;
     }
-    let other = twin(from_corner);
-    if other == NONE {
-        return at_next_fan(walk);
+    var result = Star(walk.x, corner, is_clockwise, walk.w);
+    if corner == NONE {
+        result = fan_at(walk.w);
     }
-    return Star(walk.x, next(other), 1u, walk.w);
+    return result;
 }

@@ -11,12 +11,14 @@
 @group(0) @binding(4) var selections: texture_2d<u32>;
 // The table of the fans.
 @group(0) @binding(5) var fans: texture_2d<u32>;
+// A half-edge a texel: the verdict on the geometry of its edge, where it is the lower one.
+@group(0) @binding(6) var verdicts: texture_2d<u32>;
 // Four counts a texel.
-@group(0) @binding(6) var counts: texture_2d<u32>;
+@group(0) @binding(7) var counts: texture_2d<u32>;
 
 // (triangles, vertices, the iteration, bits of the column in an index), (words in the table of the fans, whether β is
 // 180°, the sign of cos β, cos β rounded to f32), then the digits of its mantissa and power, as in exact.wgsl.
-@group(0) @binding(7) var<uniform> params: array<vec4u, 6>;
+@group(0) @binding(8) var<uniform> params: array<vec4u, 6>;
 
 fn place(i: u32) -> vec2u {
     let bits = params[0].w;

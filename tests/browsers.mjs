@@ -86,6 +86,7 @@ export async function startFirefox() {
       '/Applications/Firefox.app/Contents/MacOS/firefox',
     ]),
     headless: false,
+    protocolTimeout: 0, // a test knows how long it waits
     env: needsDisplay ? { ...process.env, DISPLAY: await display() } : process.env,
     extraPrefsFirefox: { 'dom.webgpu.enabled': true, 'gfx.webgpu.ignore-blocklist': true },
   });

@@ -129,7 +129,8 @@ fn batches_for_browsers() {
     fs::create_dir_all(folder).unwrap();
     let index = Mutex::new(BTreeMap::new());
     for_each_batch(quads(), false, |batch| {
-        let positions: Vec<_> = batch.mesh.positions().iter().flat_map(|x| x.to_le_bytes()).collect();
+        let positions: Vec<_> =
+            batch.mesh.positions().to_f32().into_iter().flat_map(f32::to_le_bytes).collect();
         let verdicts: Vec<_> = batch.verdicts.iter().map(|&(verdict, _)| verdict as u8).collect();
         fs::write(folder.join(format!("{}.positions", batch.index)), positions).unwrap();
         fs::write(folder.join(format!("{}.verdicts", batch.index)), verdicts).unwrap();

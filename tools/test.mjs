@@ -20,7 +20,8 @@ const wasmWith = (features) => ['--target', 'wasm32-unknown-unknown', '--no-defa
 const wasm = wasmWith('gpu,js');
 const wasmCargo = ['bash', 'tools/wasm-cargo.sh'];
 
-const inChromium = ['wasm', 'worker'];
+// Targets of cargo in levels below.
+const inLevelsBelow = ['wasm', 'worker', 'parity', 'quads'];
 /** Cargo's arguments for the tests of quads. */
 const quads = ['cargo', 'test', '--test', 'quads', '--'];
 
@@ -102,6 +103,16 @@ const levels = [
     counts: true,
   },
   {
+    name: 'parity',
+    what: firstSentence(readFileSync('tests/parity.rs', 'utf8')),
+    checks: [
+      ['cargo', 'test', '--test', 'parity'],
+      ['node', '--test-reporter=tap', 'tests/parity/matrix.test.mjs'],
+    ],
+    counts: true,
+    env: { EDGEFLIP_PARITY: 'target/parity.json' },
+  },
+  {
     name: 'npm package in browsers',
     what: 'the packed package in fresh projects: plain pages in Chromium and Firefox, Vite, TypeScript, on the CPU and WebGPU',
     checks: [['node', '--test', '--test-reporter=tap', 'tests/package/browser.test.mjs']],
@@ -149,7 +160,7 @@ function integrationTests() {
   }
   return JSON.parse(metadata.stdout)
     .packages.flatMap((crate) => crate.targets)
-    .filter((target) => target.kind.includes('test') && ![...inChromium, 'quads'].includes(target.name))
+    .filter((target) => target.kind.includes('test') && !inLevelsBelow.includes(target.name))
     .sort((a, b) => (a.name < b.name ? -1 : 1))
     .map((target) => ({
       name: target.name,

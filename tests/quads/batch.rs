@@ -64,7 +64,7 @@ pub fn batch(index: usize, quads: usize, beyond: bool) -> Batch {
         let chunk = mesh(dimension, points.flat_map(|point| &point[..dimension.stride()]).copied().collect());
         kinds.push((kind.name, verdicts.len()..verdicts.len() + each));
         verdicts.extend(judge(&chunk, beta));
-        positions.extend_from_slice(chunk.positions());
+        positions.extend(chunk.positions().to_f32());
     }
     Batch { index, beta, mesh: mesh(dimension, positions), verdicts, kinds }
 }
@@ -121,7 +121,7 @@ impl Batch {
     /// Some quads by themselves.
     pub fn part(&self, quads: Range<usize>) -> Self {
         let stride = 4 * self.mesh.dimension().stride();
-        let positions = self.mesh.positions()[stride * quads.start..stride * quads.end].to_vec();
+        let positions = self.mesh.positions().to_f32()[stride * quads.start..stride * quads.end].to_vec();
         let mesh = mesh(self.mesh.dimension(), positions);
         Self { mesh, verdicts: self.verdicts[quads].to_vec(), kinds: Vec::new(), ..*self }
     }
@@ -129,7 +129,8 @@ impl Batch {
     /// A quad as it can be written into a test: by the bits of its coordinates.
     pub fn describe(&self, quad: usize) -> String {
         let part = self.part(quad..quad + 1);
-        let bits: Vec<_> = part.mesh.positions().iter().map(|x| format!("{:#010x}", x.to_bits())).collect();
+        let bits: Vec<_> =
+            part.mesh.positions().to_f32().iter().map(|x| format!("{:#010x}", x.to_bits())).collect();
         let kind = self.kinds.iter().find(|(_, quads)| quads.contains(&quad)).map_or("", |(name, _)| name);
         let (index, beta, (verdict, _)) = (self.index, self.beta, self.verdicts[quad]);
         format!("quad {quad} of batch {index}, {kind}, β = {beta}: [{}] is {verdict:?}", bits.join(", "))

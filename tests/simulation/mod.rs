@@ -16,7 +16,7 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 const ENDLESS: u32 = 100_000;
 
 /// One iteration that flipped something.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct IterationRecord {
     /// Non-Delaunay edges that may flip, before it.
     pub labelled: u32,
@@ -30,7 +30,7 @@ pub struct IterationRecord {
 }
 
 /// A whole run.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Simulation {
     pub iterations: Vec<IterationRecord>,
     /// After the last iteration.

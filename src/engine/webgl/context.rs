@@ -101,7 +101,7 @@ impl Context {
             gl,
         };
         context.compile(&["probe"]).await?;
-        let target = Texture::new(&context, (1, 1), 1)?;
+        let target = Texture::new(&context, (1, 1), 4)?;
         context.pass("probe", &[], &target, None)?;
         let found = context.read(&target, 1).await?;
         let expected = (0..100_000).fold(1u32, |x, _| {
@@ -142,7 +142,7 @@ impl Context {
                 return Err(unavailable(format!("it refuses the program {name}: {log}")));
             }
             self.gl.use_program(Some(&program));
-            for unit in 0..7 {
+            for unit in 0..8 {
                 let sampler = self.gl.get_uniform_location(&program, &format!("_group_0_binding_{unit}_fs"));
                 self.gl.uniform1i(sampler.as_ref(), unit);
             }

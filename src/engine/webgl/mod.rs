@@ -28,6 +28,9 @@ const BATCH: u32 = 16;
 const SHORT_STAR: u32 = 20_000;
 /// Side of the square of texels that one fragment sums, as in `passes.wgsl`.
 const BLOCK: u32 = 8;
+/// Textures of up to so many rows are as high as a power of two: Mesa compiles a program anew for textures whose sides
+/// are none.
+const SMALL_HEIGHT: usize = 256;
 /// Words of the parameters.
 const PARAMS: usize = 24;
 
@@ -38,7 +41,8 @@ const TWINS: u32 = 2;
 const BESTS: u32 = 3;
 const SELECTIONS: u32 = 4;
 const FANS: u32 = 5;
-const COUNTS: u32 = 6;
+const VERDICTS: u32 = 6;
+const COUNTS: u32 = 7;
 
 /// A mesh in textures.
 pub(crate) struct WebGl {
@@ -51,6 +55,7 @@ pub(crate) struct WebGl {
     positions: Texture,
     triangles: Pair,
     twins: Pair,
+    verdicts: Pair,
     bests: Pair,
     selections: Texture,
     fans: Pair,
@@ -71,11 +76,11 @@ impl WebGl {
         refuse_wide_span("webgl2", mesh)?;
         let dimension = mesh.dimension();
         let decide: &[_] = match dimension {
-            Dimension::Two => &["label2", "census2"],
-            Dimension::Three => &["label3", "census3", "crease3"],
+            Dimension::Two => &["verdict2"],
+            Dimension::Three => &["verdict3", "crease", "flag"],
         };
-        context.compile(decide).await?;
-        context.compile(&["select", "flip", "update", "anchor", "flips", "sum"]).await?;
+        let common = &["label", "select", "flip", "update", "anchor", "census", "flips", "sum"];
+        context.compile(&[decide, common].concat()).await?;
 
         let adjacency = Adjacency::new(mesh);
         let winding = Winding::new(mesh, &adjacency.twins);
@@ -103,6 +108,7 @@ impl WebGl {
             positions: Texture::new(&context, size(mesh.vertex_count())?, 4)?,
             triangles: pair(whole, 4)?,
             twins: pair(whole, 4)?,
+            verdicts: pair(size(3 * count)?, 1)?,
             bests: pair(whole, 1)?,
             selections: Texture::new(&context, whole, 1)?,
             fans: pair(size(fans.table.len())?, 1)?,
@@ -136,15 +142,28 @@ impl WebGl {
     fn flag_creases(&mut self) -> Result<(), Error> {
         if self.dimension == Dimension::Three {
             self.write_params();
-            let inputs = [
-                (POSITIONS, &self.positions),
-                (TRIANGLES, &self.triangles.front),
-                (TWINS, &self.twins.front),
-            ];
-            self.context.pass("crease3", &inputs, &self.twins.back, None)?;
-            self.passes += 1;
+            self.context.pass("crease", &self.mesh(), &self.verdicts.back, None)?;
+            let over = (VERDICTS, &self.verdicts.back);
+            self.context.pass("flag", &[(TWINS, &self.twins.front), over], &self.twins.back, None)?;
+            self.passes += 2;
             self.twins.swap();
         }
+        Ok(())
+    }
+
+    /// What every pass that looks at the mesh reads.
+    fn mesh(&self) -> [(u32, &Texture); 3] {
+        [(POSITIONS, &self.positions), (TRIANGLES, &self.triangles.front), (TWINS, &self.twins.front)]
+    }
+
+    /// The verdicts on all edges as they are now, without the guard.
+    fn judge(&mut self) -> Result<(), Error> {
+        self.write_params();
+        let verdict = if self.dimension == Dimension::Two { "verdict2" } else { "verdict3" };
+        let before = [(SELECTIONS, &self.selections), (VERDICTS, &self.verdicts.front)];
+        self.context.pass(verdict, &[&self.mesh()[..], &before].concat(), &self.verdicts.back, None)?;
+        self.verdicts.swap();
+        self.passes += 1;
         Ok(())
     }
 
@@ -157,16 +176,14 @@ impl WebGl {
 
     /// The passes of one iteration; its flips, twice, go to a column of the history.
     fn encode_iteration(&mut self, column: u32) -> Result<(), Error> {
-        let context = self.context.clone();
-        self.write_params();
-        let mesh =
-            [(POSITIONS, &self.positions), (TRIANGLES, &self.triangles.front), (TWINS, &self.twins.front)];
+        self.judge()?;
+        let (context, mesh) = (&self.context, self.mesh());
         let with = |more: &[(u32, &Texture)], program, target: &Texture| {
             context.pass(program, &[&mesh, more].concat(), target, None)
         };
         let fans = (FANS, &self.fans.front);
-        let label = if self.dimension == Dimension::Two { "label2" } else { "label3" };
-        with(&[fans, (BESTS, &self.bests.front), (SELECTIONS, &self.selections)], label, &self.bests.back)?;
+        let before = [(BESTS, &self.bests.front), (SELECTIONS, &self.selections)];
+        with(&[&before[..], &[(VERDICTS, &self.verdicts.front), fans]].concat(), "label", &self.bests.back)?;
         with(&[fans, (BESTS, &self.bests.back)], "select", &self.selections)?;
         let selections = (SELECTIONS, &self.selections);
         with(&[selections], "flip", &self.triangles.back)?;
@@ -217,16 +234,10 @@ impl WebGl {
     }
 
     async fn count(&mut self) -> Result<Census, Error> {
-        self.write_params();
-        let census = if self.dimension == Dimension::Two { "census2" } else { "census3" };
-        let inputs = [
-            (POSITIONS, &self.positions),
-            (TRIANGLES, &self.triangles.front),
-            (TWINS, &self.twins.front),
-            (FANS, &self.fans.front),
-        ];
+        self.judge()?;
+        let more = [(VERDICTS, &self.verdicts.front), (FANS, &self.fans.front)];
         // Nothing is there between two iterations.
-        self.context.pass(census, &inputs, &self.triangles.back, None)?;
+        self.context.pass("census", &[&self.mesh()[..], &more].concat(), &self.triangles.back, None)?;
         self.context.pass("sum", &[(COUNTS, &self.triangles.back)], &self.sums[0], None)?;
         self.passes += 2;
         self.sum_up(0)?;
@@ -256,6 +267,7 @@ impl WebGl {
 /// Width and height of a texture for so many texels; never empty.
 fn size_of(context: &Context, texels: usize, bits: u32) -> Result<(u32, u32), Error> {
     let rows = texels.div_ceil(1 << bits).max(1);
+    let rows = if rows <= SMALL_HEIGHT { rows.next_power_of_two() } else { rows };
     if rows > context.largest_side as usize {
         let side = context.largest_side;
         return refuse(format!(

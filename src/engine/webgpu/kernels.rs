@@ -19,7 +19,7 @@ pub(super) fn phases_source(dimension: Dimension) -> String {
         Dimension::Two => shaders!("plane"),
         Dimension::Three => shaders!("space" "creases" "flag_creases"),
     };
-    let phases = shaders!("star" "label" "select" "slot" "flip" "frontier" "iteration");
+    let phases = shaders!("verdict" "star" "guard" "label" "select" "slot" "flip" "frontier" "iteration");
     [numbers, geometry, phases].concat()
 }
 

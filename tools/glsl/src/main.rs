@@ -20,30 +20,30 @@ macro_rules! shaders {
 /// The name of a program, and its entry point.
 type Program = (&'static str, &'static str);
 
-/// For meshes in the plane; all but `label2` and `census2` are for surfaces too.
-const PLANE: [Program; 10] = [
+/// For meshes in the plane; all but `verdict2` are for surfaces too.
+const PLANE: [Program; 11] = [
     ("cover", "cover"),
-    ("label2", "label_pass"),
+    ("verdict2", "verdict_pass"),
+    ("label", "label_pass"),
     ("select", "select_pass"),
     ("flip", "flip_pass"),
     ("update", "update_pass"),
     ("anchor", "anchor_pass"),
-    ("census2", "census_pass"),
+    ("census", "census_pass"),
     ("flips", "flips_pass"),
     ("sum", "sum_pass"),
     ("probe", "probe_pass"),
 ];
 
 /// For surfaces.
-const SPACE: [Program; 3] =
-    [("label3", "label_pass"), ("crease3", "crease_pass"), ("census3", "census_pass")];
+const SPACE: [Program; 3] = [("verdict3", "verdict_pass"), ("crease", "crease_pass"), ("flag", "flag_pass")];
 
 /// The program of an entry point, with the files that say what the dimension is.
 fn glsl(entry_point: &str, geometry: &str) -> Result<String, Box<dyn Error>> {
     let source = [
         shaders!("mesh" "points" "exact" "textures"),
         geometry,
-        shaders!("star" "label" "select" "slot" "passes"),
+        shaders!("verdict" "star" "guard" "label" "select" "slot" "passes"),
     ]
     .concat();
     let mut module = naga::front::wgsl::parse_str(&source).map_err(|error| error.emit_to_string(&source))?;

@@ -1,0 +1,27 @@
+// The guard: no flip makes an edge that is there, as `edge_exists` in src/phases/label.rs.
+
+// The verdict on the edge of `h` and `g`, given that on its geometry.
+fn guarded(verdict: u32, h: u32, g: u32) -> u32 {
+    var result = verdict;
+    if verdict == LABELLED {
+        result = select(verdict, BLOCKED_BY + REASON_DUPLICATE, edge_exists(prev(h), prev(g)));
+    }
+    return result;
+}
+
+// Whether an edge joins the vertices that two half-edges start at, or they are the same one. Both stars are
+// walked in turns: each of them alone gives the answer, so the cost is that of the smaller one.
+fn edge_exists(at_c: u32, at_d: u32) -> bool {
+    let c = vertex(at_c);
+    let d = vertex(at_d);
+    var exists = c == d;
+    var first = star(at_c);
+    var second = star(at_d);
+    while !exists && first.y != NONE && second.y != NONE {
+        exists = vertex(next(first.y)) == d || vertex(prev(first.y)) == d
+            || vertex(next(second.y)) == c || vertex(prev(second.y)) == c;
+        first = advanced(first);
+        second = advanced(second);
+    }
+    return exists;
+}

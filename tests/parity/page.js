@@ -1,0 +1,57 @@
+// Runs the meshes of the parity matrix on an engine of this browser, for matrix.test.mjs.
+
+import { FlipSession } from '../../dist/index.js';
+import { Digest } from './digest.js';
+
+/** So many sessions share the wait for a GPU: in Firefox it is 100 ms for each answer, however short the work. */
+const SESSIONS = 32;
+
+const response = await fetch('../../target/parity.json');
+const { cases } = await response.json();
+
+/** What a run of the mesh gives; watched after every iteration or from end to end. */
+async function run({ positions, isWide, indices, dimension, beta }, backend, isWatched) {
+  const mesh = {
+    positions: new (isWide ? Float64Array : Float32Array)(Uint32Array.from(positions).buffer),
+    indices: Uint32Array.from(indices),
+    dimension,
+  };
+  const session = await FlipSession.create(mesh, { backend, maxNormalAngle: beta });
+  try {
+    const iterations = [];
+    if (isWatched) {
+      const digest = new Digest(await session.triangles());
+      for await (const { labelled, flips, blocked } of session) {
+        digest.feed(await session.triangles());
+        iterations.push({ labelled, flips, blocked, digest: `${digest}` });
+      }
+    }
+    const { indices, flipsPerIteration, status, remaining, backend } = await session.run();
+    const end = { digest: `${new Digest(indices)}`, flips: [...flipsPerIteration], status, remaining, backend };
+    return { iterations, end };
+  } finally {
+    session.free();
+  }
+}
+
+/**
+ * What runs of all meshes give, in their order; where one was refused or failed, its error. Meshes that need at most
+ * `watched` iterations are watched.
+ */
+window.runAll = async ({ backend, watched }) => {
+  const start = performance.now();
+  const runs = [];
+  const take = async (index) => {
+    const mesh = cases[index];
+    runs[index] = await run(mesh, backend, mesh.iterations.length <= watched).catch(({ code, message }) => ({ code, message }));
+  };
+  // The first one opens the device for all; then the longest begin first.
+  await take(0);
+  const length = (index) => cases[index].iterations.length;
+  const queue = cases.map((_, index) => index).slice(1).sort((a, b) => length(b) - length(a));
+  const next = async () => {
+    for (let index = queue.shift(); index !== undefined; index = queue.shift()) await take(index);
+  };
+  await Promise.all(Array.from({ length: SESSIONS }, next));
+  return { runs, seconds: (performance.now() - start) / 1000 };
+};

@@ -1,0 +1,32 @@
+//! Runs of the engines: watched after every iteration, or from end to end.
+
+use super::simulation::{Digest, IterationRecord, Simulation};
+use edgeflip::{Backend, Error, Mesh, Options, Outcome, Session};
+use pollster::block_on;
+use std::ops::ControlFlow;
+
+pub fn options(backend: Backend, beta: f64) -> Options {
+    Options { backend, max_normal_angle: beta, ..Options::default() }
+}
+
+/// Steps through a run; says of it what the simulation does.
+pub fn watched(mesh: &Mesh, options: &Options) -> Result<Simulation, Error> {
+    block_on(async {
+        let mut session = Session::new(mesh.clone(), options.clone()).await?;
+        let mut digest = Digest::default();
+        let mut iterations = Vec::new();
+        digest.feed(&session.triangles().await?);
+        while let Some(step) = session.step().await? {
+            digest.feed(&session.triangles().await?);
+            let (labelled, flips, blocked) = (step.labelled, step.flips, step.blocked);
+            iterations.push(IterationRecord { labelled, flips, blocked, digest });
+        }
+        let Outcome { triangles, remaining, .. } = session.outcome().await?;
+        Ok(Simulation { iterations, triangles, remaining, digest })
+    })
+}
+
+/// A run from end to end, as most callers want it.
+pub fn unwatched(mesh: &Mesh, options: &Options) -> Result<Outcome, Error> {
+    edgeflip::make_delaunay(mesh, options, |_, _| ControlFlow::Continue(()))
+}
