@@ -46,6 +46,11 @@ pub fn all() -> Vec<Case> {
         }
     }
     cases.push(case("uvsphere-45", by_name("uvsphere 45").unwrap(), 10.0));
+    for spec in ["regular 200", "regular 200 100000"] {
+        let (name, lattice) = (spec.replace(' ', "-"), by_name(spec).unwrap());
+        cases.push(case(&format!("{name}-one-ulp"), off_by_one_ulp(&lattice), 10.0));
+        cases.push(case(&name, lattice, 10.0));
+    }
     cases.extend(surfaces());
     cases.extend(dirty::all());
     cases.extend(extreme::all());
@@ -80,6 +85,19 @@ pub fn moved_wide(mesh: &Mesh, mut place: impl FnMut([f64; 2]) -> Vec<f64>) -> M
     let positions: Vec<_> = numbers.chunks(2).flat_map(|p| place([p[0], p[1]])).collect();
     let dimension = if positions.len() == numbers.len() { Dimension::Two } else { Dimension::Three };
     Mesh::new(dimension, positions, mesh.triangles().to_vec()).unwrap()
+}
+
+/// Half of the coordinates moved to the next float, up or down. Zeros stay: next to them is the smallest float, outside
+/// the span that the engines on a GPU decide.
+pub fn off_by_one_ulp(mesh: &Mesh) -> Mesh {
+    let noisy = |(x, i): (f32, u32)| match i.wrapping_mul(0x9e37_79b9) >> 30 {
+        _ if x == 0.0 => x,
+        0 => x.next_up(),
+        1 => x.next_down(),
+        _ => x,
+    };
+    let positions: Vec<f32> = mesh.positions().to_f32().into_iter().zip(0..).map(noisy).collect();
+    Mesh::new(mesh.dimension(), positions, mesh.triangles().to_vec()).unwrap()
 }
 
 /// A 2D mesh as a surface over the plane.
