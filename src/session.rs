@@ -277,7 +277,8 @@ impl Session {
     ) -> Result<T, Error> {
         let mut answer = question(self.engine.as_mut()).await;
         while let (Err(Error::Device { message }), Backend::Auto) = (&answer, self.options.backend) {
-            let why = format!("the device failed during the run: {message}");
+            let before = self.fallback.as_deref().map_or(String::new(), |before| format!("{before}; "));
+            let why = format!("{before}the device failed during the run: {message}");
             (self.engine, self.fallback) =
                 engine_after(self.engine.backend(), why, &self.mesh, &self.options).await?;
             answer = match self.engine.iterate(self.flips_per_iteration.len() as u32).await {

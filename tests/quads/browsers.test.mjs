@@ -15,6 +15,8 @@ const folder = join(repository, 'target/quads');
 const engines = [
   { name: 'WebGPU in Chromium', start: startChromium, backend: 'webgpu' },
   { name: 'WebGPU in Firefox', start: startFirefox, backend: 'webgpu' },
+  { name: 'WebGL2 in Chromium', start: startChromium, backend: 'webgl2' },
+  { name: 'WebGL2 in Firefox', start: startFirefox, backend: 'webgl2' },
 ];
 
 /**
