@@ -129,7 +129,7 @@ const levels = [
   },
   {
     name: 'page in Chromium',
-    what: 'the demo page opens files, plays, scrubs and downloads on both engines, draws from the buffer that the flips write, and recovers',
+    what: 'the demo page opens files, plays, scrubs and downloads on every engine, draws from the buffer that the flips write, and recovers',
     checks: [...builtPage, pageTests('files', 'buffer', 'controls')],
     counts: true,
   },
@@ -141,7 +141,7 @@ const levels = [
   },
   {
     name: 'page in Firefox',
-    what: 'the demo page opens a file, plays and scrubs on both engines',
+    what: 'the demo page opens a file, plays and scrubs on every engine',
     checks: [...builtPage, pageTests('firefox')],
     counts: true,
   },

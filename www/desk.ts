@@ -1,10 +1,11 @@
-/** The worker: reads, generates and measures meshes, or runs the CPU engine, so that the page never waits. */
+/** The worker: reads, generates and measures meshes, or runs an engine, so that the page never waits. */
 
 import { expose, transfer } from 'comlink';
 import { FlipSession } from 'edgeflip';
 import { angles, generate, readMesh, writeMesh, type Angles, type FileMesh, type Mesh32 } from 'edgeflip/files';
 import { naming } from './crash.ts';
 import { changeOf, type Change } from './change.ts';
+import type { Backend } from './engines.ts';
 import { statesOf, summaryOf, type Step, type Summary } from './run.ts';
 
 class Desk {
@@ -28,15 +29,23 @@ class Desk {
     return naming(angles(mesh, bins));
   }
 
-  /** Begins a run on the CPU engine. Returns what its edges are, if they are to be drawn. */
-  async open(mesh: Mesh32, maxNormalAngle: number): Promise<Uint8Array | undefined> {
-    const session = await FlipSession.create(mesh, { backend: 'cpu', maxNormalAngle });
+  /** Begins a run. Returns what its edges are, if they are to be drawn. */
+  async open(mesh: Mesh32, maxNormalAngle: number, backend: Backend): Promise<Uint8Array | undefined> {
+    const session = await FlipSession.create(mesh, { backend, maxNormalAngle });
     this.#session = session;
     this.#before = mesh.indices;
     return statesOf(session, mesh.indices.length);
   }
 
-  async step(): Promise<(Step & { change: Change }) | undefined> {
+  step(): Promise<(Step & { change: Change }) | undefined> {
+    return naming(this.#step());
+  }
+
+  result(): Promise<Summary> {
+    return naming(summaryOf(this.#running()));
+  }
+
+  async #step(): Promise<(Step & { change: Change }) | undefined> {
     const session = this.#running();
     const iteration = await session.step();
     if (!iteration) return undefined;
@@ -45,10 +54,6 @@ class Desk {
     this.#before = now;
     const states = await statesOf(session, now.length);
     return transfer({ iteration, change, states }, [change.at.buffer, change.xor.buffer]);
-  }
-
-  result(): Promise<Summary> {
-    return summaryOf(this.#running());
   }
 
   #running(): FlipSession {

@@ -1,7 +1,7 @@
-/** Where the flips happen: on the GPU of the page, or on the CPU in a worker. */
+/** Where the flips happen: on the GPU that the page draws with, or in a worker, on WebGL2 or the CPU. */
 
 import { wrap, type Remote } from 'comlink';
-import { EdgeflipError, FlipSession } from 'edgeflip';
+import { EdgeflipError, FlipSession, type Engine } from 'edgeflip';
 import type { Mesh32 } from 'edgeflip/files';
 import { ArrayTrack } from './array-track.ts';
 import { CRASHED } from './crash.ts';
@@ -81,7 +81,7 @@ export class Office {
 /** What a call ends with whose worker has been closed. */
 export class Cancelled extends Error {}
 
-export type Backend = 'auto' | 'webgpu' | 'cpu';
+export type Backend = 'auto' | Engine;
 
 /**
  * Begins a run.
@@ -95,20 +95,21 @@ export async function beginRun(
   gpu: Gpu | string,
   signal: AbortSignal,
 ): Promise<Run> {
-  if (backend === 'cpu') return onCpu(mesh, maxNormalAngle, signal, undefined);
+  if (backend === 'webgl2' || backend === 'cpu') return inWorker(mesh, maxNormalAngle, backend, signal, undefined);
   if (typeof gpu === 'string') {
     if (backend === 'webgpu') throw new Error(`The WebGPU engine is not available: ${gpu}.`);
-    return onCpu(mesh, maxNormalAngle, signal, gpu);
+    return inWorker(mesh, maxNormalAngle, 'auto', signal, gpu);
   }
   if (backend === 'auto' && gpu.isSoftware) {
-    return onCpu(mesh, maxNormalAngle, signal, 'the only GPU here is played by the processor, which is slower');
+    const why = 'the only GPU here is played by the processor, which is slower';
+    return inWorker(mesh, maxNormalAngle, 'auto', signal, why);
   }
   try {
     return await onGpu(mesh, maxNormalAngle, gpu.device);
   } catch (error) {
     const isOfGpu = error instanceof EdgeflipError && /^(backend|device)-/.test(error.code);
     if (backend === 'webgpu' || !isOfGpu) throw error;
-    return onCpu(mesh, maxNormalAngle, signal, error.message);
+    return inWorker(mesh, maxNormalAngle, 'auto', signal, error.message);
   }
 }
 
@@ -128,7 +129,7 @@ async function onGpu(mesh: Mesh32, maxNormalAngle: number, device: GPUDevice): P
     };
     const states = await statesOf(session, length);
     const track = await GpuTrack.create(device, shared.indices, length);
-    return new Run('webgpu', undefined, stepper, track, states);
+    return new Run(false, undefined, stepper, track, states);
   } catch (error) {
     session.free();
     throw error;
@@ -136,9 +137,10 @@ async function onGpu(mesh: Mesh32, maxNormalAngle: number, device: GPUDevice): P
 }
 
 /** The run has a worker of its own, so that another one can go on beside it, and ends with it. */
-async function onCpu(
+async function inWorker(
   mesh: Mesh32,
   maxNormalAngle: number,
+  backend: Backend,
   signal: AbortSignal,
   fallback: string | undefined,
 ): Promise<Run> {
@@ -147,13 +149,13 @@ async function onCpu(
   signal.addEventListener('abort', close);
   try {
     signal.throwIfAborted();
-    const states = await office.ask((desk) => desk.open(mesh, maxNormalAngle));
+    const states = await office.ask((desk) => desk.open(mesh, maxNormalAngle, backend));
     const stepper = {
       step: () => office.ask((desk) => desk.step()),
       result: () => office.ask((desk) => desk.result()),
       free: close,
     };
-    return new Run('cpu', fallback, stepper, new ArrayTrack(mesh.indices), states);
+    return new Run(true, fallback, stepper, new ArrayTrack(mesh.indices), states);
   } catch (error) {
     close();
     throw error;

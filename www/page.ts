@@ -3,9 +3,10 @@
 import { EdgeflipError } from 'edgeflip';
 import { FORMATS, type Angles, type FileMesh, type Mesh32 } from 'edgeflip/files';
 import { controls, element } from './controls.ts';
+import { LOST } from './crash.ts';
 import { beginRun, Cancelled, Office, openGpu, type Backend, type Gpu } from './engines.ts';
 import { palette } from './palette.ts';
-import { number, Panel, reasons } from './panel.ts';
+import { ENGINES, number, Panel, reasons } from './panel.ts';
 import { Player } from './player.ts';
 import type { Run, Summary } from './run.ts';
 import { Scene } from './scene.ts';
@@ -241,8 +242,13 @@ export class Page {
     }
   }
 
-  /** A lost device is told by the device itself, which also sees to what follows. */
+  /** A lost device of the page is told by the device itself, which also sees to what follows. */
   #showFailure(error: unknown): void {
+    if (error instanceof Error && error.name === LOST) {
+      // What goes on may be the recovery; else the measurement after it asks the worker again.
+      if (!this.#job) void this.#recover(error.message, false);
+      return;
+    }
     const isLost = error instanceof EdgeflipError && error.code === 'device-failed';
     if (!isLost && !(error instanceof Cancelled) && !(error instanceof DOMException)) this.#showError(error);
   }
@@ -264,8 +270,7 @@ export class Page {
     element('status').textContent = run ? statusOf(run) : '';
     const isFinal = run?.isOver && this.#summary?.iterations === newest;
     const remains = isFinal && this.#summary ? left(reasons(this.#summary.remaining)) : '';
-    const onCpu = run?.fallback ? `On the CPU: ${run.fallback}.` : '';
-    const note = [remains, onCpu, this.#opened?.remark].filter(Boolean).join(' ');
+    const note = [remains, run ? whyThere(run, this.#summary) : '', this.#opened?.remark].filter(Boolean).join(' ');
     element('note').hidden = note === '';
     element('note').textContent = note;
     element('caption').textContent = this.#opened?.name ?? '';
@@ -326,23 +331,29 @@ export class Page {
       element('no-mesh').hidden = false;
     }
     if (device && !this.#scene?.isOnWebGpu) this.#gpu = 'the page could not draw with WebGPU';
-    void device?.lost.then(({ message }) => this.#recover(message || 'no reason given'));
+    void device?.lost.then(({ message }) => this.#recover(message || 'no reason given', true));
   }
 
-  /** The device is gone, and with it what was drawn. The run goes the same way again, to the same bits. */
-  async #recover(reason: string): Promise<void> {
+  /**
+   * The device is gone, and with it what was drawn; or the context of the worker is. The run goes the same way again,
+   * to the same bits.
+   */
+  async #recover(reason: string, isOfPage: boolean): Promise<void> {
     const [run, opened] = [this.#run, this.#opened];
     const at = run?.at ?? 0;
     let hasRecovered = false;
     await this.#attempt('The GPU was lost; going on from the input…', async (signal) => {
-      this.#scene?.dispose();
-      this.#scene = undefined;
-      await this.#openGpu();
+      if (isOfPage) {
+        this.#scene?.dispose();
+        this.#scene = undefined;
+        await this.#openGpu();
+      }
       if (!run || !opened) return;
       const isAgain = this.#lost === opened;
       this.#lost = opened;
       // What has lost the GPU twice would go on losing it.
-      if (run.backend === 'webgpu' && (isAgain || controls.backend.value === 'auto')) controls.backend.value = 'cpu';
+      const isHopeless = !run.isInWorker && (isAgain || controls.backend.value === 'auto');
+      if (!isOfPage || isHopeless) controls.backend.value = 'cpu';
       await this.#begin(opened, signal);
       while (this.#run && this.#run.at < at && !signal.aborted && (await this.#forward(this.#run)));
       hasRecovered = true;
@@ -371,6 +382,13 @@ function statusOf({ at, isOver, iterations }: Run): string {
   const flips = iterations.slice(0, at).reduce((sum, iteration) => sum + iteration.flips, 0);
   const so = `${number.format(flips)} flips in ${number.format(at)} ${at === 1 ? 'iteration' : 'iterations'}`;
   return isOver ? `Done: ${so}` : so;
+}
+
+/** Why `auto` has come to the engine that it is on. */
+function whyThere({ fallback }: Run, summary: Summary | undefined): string {
+  if (!fallback || !summary) return '';
+  const engine = `${summary.backend === 'cpu' ? 'the ' : ''}${ENGINES[summary.backend]}`;
+  return `On ${engine}: ${[fallback, summary.fallback].filter(Boolean).join('; ')}.`;
 }
 
 function remarkOn(mesh: Mesh32 | FileMesh): string {

@@ -1,6 +1,6 @@
 /** The numbers beside the mesh: facts, legend, charts and the table of iterations. */
 
-import { EDGE_STATES, type Iteration, type Reasons } from 'edgeflip';
+import { EDGE_STATES, type Engine, type Iteration, type Reasons } from 'edgeflip';
 import type { Angles, Mesh32 } from 'edgeflip/files';
 import { AnglesChart, FlipsChart } from './charts.ts';
 import { element } from './controls.ts';
@@ -13,6 +13,8 @@ const MOST_ROWS = 2000;
 export const number = new Intl.NumberFormat('en');
 const ms = new Intl.NumberFormat('en', { maximumFractionDigits: 1, minimumFractionDigits: 1 });
 const degrees = new Intl.NumberFormat('en', { maximumFractionDigits: 2, minimumFractionDigits: 2 });
+
+export const ENGINES: Record<Engine, string> = { webgpu: 'WebGPU', webgl2: 'WebGL2', cpu: 'CPU' };
 
 /** What the legend says of each state. */
 const MEANINGS: Record<(typeof EDGE_STATES)[number], string> = {
@@ -104,8 +106,8 @@ export class Panel {
       ...frozen('Non-manifold', summary.nonManifoldEdges),
       ...frozen('Inconsistent', summary.inconsistentEdges),
       ...(mesh.dimension === 3 ? { β: `${beta}°` } : {}),
-      Engine: run.backend === 'webgpu' ? 'WebGPU' : 'CPU, in a worker',
-      ...(run.backend === 'webgpu'
+      Engine: `${ENGINES[summary.backend]}${run.isInWorker ? ', in a worker' : ''}`,
+      ...(summary.backend !== 'cpu'
         ? { Adapter: summary.adapter || 'the browser gives no name', Dispatches: measured(number.format(summary.dispatches)) }
         : {}),
       Iterations: number.format(run.iterations.length),

@@ -1,6 +1,6 @@
 /** A run that can be watched: every iteration is kept, so that the slider can go back to it. */
 
-import { EDGE_STATES, type Engine, type FlipSession, type Iteration, type Result } from 'edgeflip';
+import { EDGE_STATES, type FlipSession, type Iteration, type Result } from 'edgeflip';
 import type { Change } from './change.ts';
 
 /** Meshes of up to so many triangles have their edges drawn in colours. */
@@ -73,8 +73,9 @@ export function countStates(states: Uint8Array, nonManifold: number | undefined)
 
 /** A mesh on an engine, with all that it went through. */
 export class Run {
-  readonly backend: Engine;
-  /** Why `auto` did not take WebGPU. */
+  /** Whether the engine is in a worker, and not on the GPU that draws. */
+  readonly isInWorker: boolean;
+  /** Why `auto` did not take the GPU that draws; the summary tells what else it did not take. */
   readonly fallback: string | undefined;
   readonly iterations: Iteration[] = [];
   readonly #states: (Uint8Array | undefined)[];
@@ -90,13 +91,13 @@ export class Run {
   #last: Promise<unknown> = Promise.resolve();
 
   constructor(
-    backend: Engine,
+    isInWorker: boolean,
     fallback: string | undefined,
     stepper: Stepper,
     track: Track,
     states: Uint8Array | undefined,
   ) {
-    this.backend = backend;
+    this.isInWorker = isInWorker;
     this.fallback = fallback;
     this.#stepper = stepper;
     this.#track = track;

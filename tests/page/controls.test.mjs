@@ -200,6 +200,80 @@ test('a GPU that is lost in the middle of a run is replaced, and the result is t
   await page.close();
 });
 
+/** In a worker, before its own code: keeps its WebGL2 contexts, and lets them pass for those of a real GPU. */
+function watchContexts() {
+  self.contexts = [];
+  const { getContext } = OffscreenCanvas.prototype;
+  OffscreenCanvas.prototype.getContext = function (kind, options) {
+    const context = getContext.call(this, kind, { ...options, failIfMajorPerformanceCaveat: false });
+    self.contexts.push(context);
+    return context;
+  };
+  const { getParameter } = WebGL2RenderingContext.prototype;
+  const UNMASKED_RENDERER = 0x9246;
+  WebGL2RenderingContext.prototype.getParameter = function (name) {
+    return name === UNMASKED_RENDERER ? 'a real GPU' : getParameter.call(this, name);
+  };
+}
+
+/** Workers that start from now on are watched. */
+function watchWorkers({ page }) {
+  return page.route('**/desk-*.js', async (route) => {
+    const response = await route.fetch();
+    await route.fulfill({ response, body: `(${watchContexts})();${await response.text()}` });
+  });
+}
+
+/** Plays until a few iterations have been on WebGL2; then the context is lost. */
+async function loseContext(page) {
+  await page.choose('speed', '50');
+  await page.page.click('#play');
+  await page.until('a few iterations', ({ state, at }) => state === 'playing' && Number(at) > 2);
+  const lost = await Promise.all(page.page.workers().map((worker) => worker.evaluate(() => {
+    const context = self.contexts?.at(-1);
+    context?.getExtension('WEBGL_lose_context').loseContext();
+    return context?.isContextLost() ?? false;
+  })));
+  assert.equal(lost.filter(Boolean).length, 1, 'contexts that are lost');
+}
+
+test('a WebGL2 context that is lost in the middle of a run gives way to the CPU, and the result is the same', async () => {
+  const page = await openEdgeflip(browser);
+  await watchWorkers(page);
+  const path = await meshFile('strips 40', 'strips.off');
+  const { facts, rows } = await expected(path);
+  await page.open(path);
+  await page.chooseEngine('webgl2');
+  await loseContext(page);
+  const { error } = await page.until('a message', ({ error, state }) => error !== '' && state !== 'busy');
+  assert.match(error, /The GPU was lost \(.*the WebGL2 context was lost\)\. The run went the same way again/);
+  const recovered = await page.rest();
+  assert.ok(Number(recovered.at) > 2 && Number(recovered.at) < rows.length, `at ${recovered.at}`);
+  assert.deepEqual([recovered.backend, recovered.facts.Engine], ['cpu', 'CPU, in a worker']);
+  const end = await page.playToEnd();
+  assert.deepEqual(end.rows.map((row) => row.slice(0, 4)), rows);
+  assert.equal(end.facts.Fingerprint, facts.Fingerprint);
+  await page.close();
+});
+
+test('without WebGPU, auto takes WebGL2 on a real GPU, and goes on with the CPU when that is lost', async () => {
+  const page = await openEdgeflip(browser, () => delete Navigator.prototype.gpu);
+  await watchWorkers(page);
+  const path = await meshFile('random 110', 'random.off');
+  const { facts, fingerprints, rows } = await expected(path);
+  const opened = await page.open(path);
+  assert.deepEqual([opened.backend, opened.facts.Engine, opened.facts.Adapter], ['auto', 'WebGL2, in a worker', 'a real GPU']);
+  assert.match(opened.note, /On WebGL2: this browser has no WebGPU/);
+  await loseContext(page);
+  const end = await page.until('the end of the run', ({ state, measured, at }) => state === 'done' && measured === at);
+  assert.deepEqual([end.error, end.backend, end.facts.Engine], ['', 'auto', 'CPU, in a worker']);
+  assert.match(end.note, /On the CPU: this browser has no WebGPU; .*the WebGL2 context was lost/);
+  assert.deepEqual(end.rows.map((row) => row.slice(0, 4)), rows);
+  assert.equal(end.facts.Fingerprint, facts.Fingerprint);
+  assert.equal((await page.scrub('Home')).facts.Fingerprint, fingerprints[0]);
+  await page.close();
+});
+
 for (const backend of ['webgpu', 'cpu']) {
   test(`keys play, pause and step on ${backend}; keys that come fast break nothing`, async () => {
     const page = await openEdgeflip(browser);

@@ -1,4 +1,4 @@
-// The demo page in Chromium: mesh files opened, played, scrubbed and downloaded on both engines, bit for bit as in Node.
+// The demo page in Chromium: mesh files opened, played, scrubbed and downloaded on every engine, bit for bit as in Node.
 
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
@@ -15,6 +15,7 @@ const sources = [
 ];
 const engines = [
   { backend: 'webgpu', engine: 'WebGPU' },
+  { backend: 'webgl2', engine: 'WebGL2, in a worker' },
   { backend: 'cpu', engine: 'CPU, in a worker' },
 ];
 
