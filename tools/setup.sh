@@ -198,11 +198,26 @@ if ! has_chromium; then
 fi
 
 # --- Firefox ----------------------------------------------------------------------------------------------
-if [ -z "${FIREFOX:-}" ] && ! has firefox-esr && ! has firefox && [ ! -e /Applications/Firefox.app ]; then
+# Debian's has WebGPU since 153; older package lists know an older one.
+has_firefox() {
+  local program
+  for program in firefox-esr firefox /Applications/Firefox.app/Contents/MacOS/firefox; do
+    has "$program" || continue
+    [ "$("$program" --version 2>/dev/null | grep -oE '[0-9]+' | head -n 1)" -ge 153 ]
+    return
+  done
+  return 1
+}
+if [ -z "${FIREFOX:-}" ] && ! has_firefox; then
   if [ "$system" = Linux ] && [ -e /etc/debian_version ]; then
-    apt_install "Firefox" firefox-esr
+    apt_install "Firefox 153 or newer" firefox-esr
+    if ! has_firefox; then
+      find_root && "${root[@]}" apt-get -q update >>target/setup/apt.log 2>&1
+      apt_install "a newer Firefox" firefox-esr
+    fi
+    has_firefox || stop "This system's Firefox is older than 153." "Install a newer one, or set FIREFOX to its program."
   else
-    stop "Firefox is not on the PATH." "Install Firefox, or set FIREFOX to its program."
+    stop "There is no Firefox 153 or newer." "Install Firefox, or set FIREFOX to its program."
   fi
 fi
 # Its window needs a display: without one, one in memory.

@@ -40,12 +40,12 @@ const levels = [
   {
     name: 'formatting',
     what: 'rustfmt would change nothing',
-    checks: [['cargo', 'fmt', '--check']],
+    checks: [['cargo', 'fmt', '--all', '--check']],
   },
   {
     name: 'lints',
     what: 'no warning from clippy in any target; Cargo.lock fits Cargo.toml',
-    checks: [['cargo', 'clippy', '--locked', '--all-targets', '--', '-D', 'warnings']],
+    checks: [['cargo', 'clippy', '--locked', '--workspace', '--all-targets', '--', '-D', 'warnings']],
   },
   {
     name: 'rustdoc',
@@ -55,8 +55,8 @@ const levels = [
   },
   {
     name: 'unit',
-    what: 'the tests beside the code in src/',
-    checks: [['cargo', 'test', '--lib', '--bins']],
+    what: 'the tests beside the code in src/ and in tools/glsl',
+    checks: [['cargo', 'test', '--workspace', '--lib', '--bins']],
     counts: true,
   },
   ...integrationTests(),
@@ -256,7 +256,7 @@ if (chosen.length === 0) {
 /** @type {Result[]} */
 const results = [];
 // Everything is compiled first, in one go, so that the seconds of a test level are those of its tests.
-if (chosen.some(({ checks }) => checks.some(([program, verb]) => program === 'cargo' && verb === 'test'))) await run(['cargo', 'test', '--no-run']);
+if (chosen.some(({ checks }) => checks.some(([program, verb]) => program === 'cargo' && verb === 'test'))) await run(['cargo', 'test', '--workspace', '--no-run']);
 for (const level of chosen) results.push(await runLevel(level));
 
 console.log('\n| level | what it checks | tests | result | seconds |\n|---|---|---:|---|---:|');

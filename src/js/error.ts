@@ -14,7 +14,7 @@
  * | `parse` | repair the file at the line, or the vertex, that the message names |
  * | `unknown-format` | take a file name with one of the extensions in `FORMATS` |
  * | `invalid-option` | check the option that the message names |
- * | `backend-unavailable` | take `'auto'` or `'cpu'`: there is no WebGPU here |
+ * | `backend-unavailable` | take `'auto'` or `'cpu'`: there is no such GPU here, or it fails its self-test |
  * | `backend-limit` | take `'auto'` or `'cpu'`: the GPU cannot take this mesh |
  * | `device-failed` | begin again: the GPU was lost, or the `device` given is |
  * | `load-failed` | see that the package's `wasm/*.wasm` are served, or pass them to `init` and `initFiles` |

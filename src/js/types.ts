@@ -103,7 +103,7 @@ export interface Result {
   backend: Engine;
   /** The name of the GPU. */
   adapter: string | undefined;
-  /** Why `'auto'` did not take, or did not stay with, WebGPU. */
+  /** Why `'auto'` did not take, or did not stay with, the engines before this one. */
   fallback: string | undefined;
   /** Iterations with at least one flip. */
   iterations: number;
@@ -111,7 +111,7 @@ export interface Result {
   flips: number;
   /** Flips of each iteration. */
   flipsPerIteration: Uint32Array;
-  /** Compute dispatches on the GPU. */
+  /** Compute dispatches on WebGPU, passes on WebGL2. */
   dispatches: number;
   /** Edges of the mesh. */
   edges: number;

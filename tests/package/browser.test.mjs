@@ -45,6 +45,7 @@ const pages = [
   { name: 'index', lines: fiveLines, writes: '' },
   { name: 'cpu', lines: on('cpu', fiveLines), writes: '' },
   { name: 'webgpu', lines: on('webgpu', fiveLines), writes: '' },
+  { name: 'webgl2', lines: on('webgl2', fiveLines), writes: '' },
   { name: 'files', lines: on('cpu', withFiles), writes: '' },
 ];
 
@@ -85,7 +86,7 @@ before(async () => {
   globalThis.document = { body: { append: (text) => (globalThis.written = text) } };
   for (const page of pages) {
     const file = join(root, `${page.name}.js`);
-    writeFileSync(file, byName(page.lines).replace("'webgpu'", "'cpu'"));
+    writeFileSync(file, byName(page.lines).replace(/'webgpu'|'webgl2'/, "'cpu'"));
     await import(pathToFileURL(file));
     page.writes = globalThis.written;
   }
