@@ -131,7 +131,7 @@ impl Device {
         });
         let compile = || (kernels::adjacency(&device), kernels::probe(&device));
         let (adjacency, probe) = accepted(&device, compile).await?;
-        let most_workgroups = if is_software { 64 } else { 1024 };
+        let most_workgroups = if is_software { 64 } else { 4096 };
         let mut result = Self {
             device,
             queue,
