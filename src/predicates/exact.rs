@@ -184,6 +184,12 @@ pub(super) fn decode(x: f64) -> (i64, i32) {
     (if x < 0.0 { -mantissa } else { mantissa }, field.max(1) - 1075 + zeros as i32)
 }
 
+#[cfg(test)]
+thread_local! {
+    /// The largest `bits` of [`Differences`] since the test set it to 0.
+    pub(super) static WIDEST: std::cell::Cell<u32> = const { std::cell::Cell::new(0) };
+}
+
 /// Differences of numbers as integers times one power of two, a unit that no sign depends on.
 pub(super) struct Differences<const K: usize> {
     /// Mantissas and exponents.
@@ -207,6 +213,8 @@ impl<const K: usize> Differences<K> {
         let width =
             |&(m, e): &(i64, i32)| if m == 0 { 0 } else { m.unsigned_abs().ilog2() + 1 + (e - unit) as u32 };
         let bits = numbers().map(width).max().unwrap_or(0) + u32::from(!exact);
+        #[cfg(test)]
+        WIDEST.set(WIDEST.get().max(bits));
         Self { minuends, subtrahends, unit, bits }
     }
 

@@ -39,3 +39,5 @@ pub(crate) fn cosine_fraction(k: f64) -> (u64, u32) {
 
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod tiers;

@@ -15,10 +15,10 @@ const UNDERFLOW: f64 = f64::MIN_POSITIVE;
 
 /// Differences up to this width keep degree 4 within i128: a cross or dot product of two such vectors is below
 /// 2^61, the product of two of those below 2^122, the sum of two below 2^123.
-const NARROW_BITS: u32 = 30;
+pub(super) const NARROW_BITS: u32 = 30;
 
 /// The same within 20 limbs, 1280 bits: 4·319 + 3 = 1279. Differences of f32 have at most 278 bits.
-const WIDE_BITS: u32 = 319;
+pub(super) const WIDE_BITS: u32 = 319;
 
 /// The sign of cross(λ)·dot(γ) + dot(λ)·cross(γ), where λ = angle at `c` and γ = angle at `d`, opposite to
 /// the edge (`a`, `b`) of the triangles (a, b, c) and (b, a, d): negative when λ + γ > π, for

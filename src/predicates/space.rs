@@ -30,10 +30,10 @@ const UNDERFLOW: f64 = f64::from_bits((1023 - 530) << 52);
 
 /// Differences up to this width are evaluated in 12 limbs, 768 bits: of `b` bits, degree 8 with sums is below
 /// 2^(8b + 9), and the β test multiplies by at most 2^212 (the square of an f64 cosine in units of 2^-106).
-const NARROW_BITS: u32 = 60;
+pub(super) const NARROW_BITS: u32 = 60;
 
 /// The same within 40 limbs, 2560 bits. Differences of f32 have at most 278 bits.
-const WIDE_BITS: u32 = 290;
+pub(super) const WIDE_BITS: u32 = 290;
 
 /// The two triangles (a, b, c) and (b, a, d) at an edge (a, b).
 pub(crate) struct Quad {

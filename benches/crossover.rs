@@ -1,0 +1,123 @@
+//! From which size on the GPU is faster than the CPU: `cargo bench --bench crossover -- [--runs N] [FAMILY…]`, the
+//! meshes of a family from small to large. `benches/crossover.html` is the same for a browser.
+//!
+//! The program needs nothing beside it but a GPU driver: build it with `cargo bench --bench crossover --no-run`, copy it
+//! to the machine with the GPU and run it there.
+
+use edgeflip::{Backend, Mesh, Options, Outcome, families, make_delaunay};
+use std::{
+    error::Error,
+    ops::ControlFlow,
+    time::{Duration, Instant},
+};
+
+#[path = "arguments/mod.rs"]
+mod arguments;
+use arguments::{Arguments, median};
+
+/// About 200 to 2,000,000 triangles, the same numbers in the plane and in space.
+const MESHES: [&str; 16] = [
+    "random 11",
+    "random 20",
+    "random 38",
+    "random 73",
+    "random 140",
+    "random 269",
+    "random 519",
+    "random 1001",
+    "uvsphere 10",
+    "uvsphere 19",
+    "uvsphere 37",
+    "uvsphere 72",
+    "uvsphere 139",
+    "uvsphere 268",
+    "uvsphere 518",
+    "uvsphere 1000",
+];
+
+const ENGINES: [Backend; 2] = [Backend::Cpu, Backend::Gpu];
+
+/// An engine that took longer for a mesh is spared the larger ones of its family.
+const SLOW: Duration = Duration::from_secs(5);
+/// No further run of a mesh begins after so long.
+const ENOUGH: Duration = Duration::from_secs(5);
+
+/// Times of one mesh.
+struct Row {
+    family: String,
+    triangles: usize,
+    /// Medians in milliseconds, in the order of [`ENGINES`]; none where it was spared.
+    ms: [Option<f64>; 2],
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let Arguments { runs, specs } = Arguments::read(5, &MESHES)?;
+    // Opens the device and compiles the kernels of both dimensions.
+    run(families::by_name("random 10")?, Backend::Gpu)?;
+    let opened = run(families::by_name("uvsphere 10")?, Backend::Gpu)?;
+    println!("adapter and driver: {}", opened.adapter.as_deref().unwrap_or("unknown"));
+    println!(
+        "Milliseconds from host arrays to host arrays, medians of up to {runs} interleaved runs; the device was open"
+    );
+    println!("and its kernels compiled. – where a smaller mesh took more than {} s.", SLOW.as_secs());
+    println!();
+    println!("| mesh | triangles | runs | GPU : CPU | CPU ms | GPU ms |");
+    println!("|---|---:|---:|---:|---:|---:|");
+    let mut rows: Vec<Row> = Vec::new();
+    for spec in specs {
+        let family = spec.split_whitespace().next().unwrap_or_default().to_owned();
+        let smaller = rows.iter().rfind(|row| row.family == family);
+        let is_spared = |ms: Option<f64>| ms.is_none_or(|ms| ms > SLOW.as_secs_f64() * 1e3);
+        let spared = smaller.map_or([false; 2], |row| row.ms.map(is_spared));
+        rows.push(measure(&spec, family, runs, spared)?);
+    }
+    println!();
+    let mut families: Vec<&str> = rows.iter().map(|row| row.family.as_str()).collect();
+    families.sort_unstable();
+    families.dedup();
+    for family in families {
+        match crossover(rows.iter().filter(|row| row.family == family)) {
+            Some(triangles) => println!("{family}: the GPU is faster from {triangles} triangles on."),
+            None => println!("{family}: the GPU is faster at no size."),
+        }
+    }
+    Ok(())
+}
+
+/// Measures a mesh and prints its line.
+fn measure(spec: &str, family: String, runs: usize, spared: [bool; 2]) -> Result<Row, Box<dyn Error>> {
+    let mesh = families::by_name(spec)?;
+    let mut times = [const { Vec::new() }; 2];
+    let begun = Instant::now();
+    let mut rounds = 0;
+    while rounds < runs && (rounds == 0 || begun.elapsed() < ENOUGH) {
+        for (engine, times) in times.iter_mut().enumerate().filter(|&(engine, _)| !spared[engine]) {
+            let (positions, triangles) = (mesh.positions().clone(), mesh.triangles().to_vec());
+            let start = Instant::now();
+            run(Mesh::new(mesh.dimension(), positions, triangles)?, ENGINES[engine])?;
+            times.push(start.elapsed().as_secs_f64() * 1e3);
+        }
+        rounds += 1;
+    }
+    let ms = times.map(|times| (!times.is_empty()).then(|| median(times)));
+    let cell = |number: Option<f64>| number.map_or("–".to_owned(), |number| format!("{number:.2}"));
+    let [cpu, gpu] = ms;
+    let ratio = cell(cpu.zip(gpu).map(|(cpu, gpu)| gpu / cpu));
+    let triangles = mesh.triangle_count();
+    println!("| {spec} | {triangles} | {rounds} | {ratio} | {} | {} |", cell(cpu), cell(gpu));
+    Ok(Row { family, triangles, ms })
+}
+
+/// The triangles of the first mesh from which on the GPU is faster, if it is for the last one that both did.
+fn crossover<'a>(rows: impl DoubleEndedIterator<Item = &'a Row>) -> Option<usize> {
+    let compared = rows.rev().filter_map(|row| match row.ms {
+        [Some(cpu), Some(gpu)] => Some((row.triangles, gpu < cpu)),
+        _ => None,
+    });
+    compared.take_while(|&(_, is_faster)| is_faster).last().map(|(triangles, _)| triangles)
+}
+
+fn run(mesh: Mesh, backend: Backend) -> Result<Outcome, edgeflip::Error> {
+    let options = Options { backend, ..Options::default() };
+    make_delaunay(&mesh, &options, |_, _| ControlFlow::Continue(()))
+}
