@@ -58,7 +58,7 @@ fn exact_verdict_on(a: Point, b: Point, c: Point, d: Point, winding: i32) -> u32
     let r = exact_differences(a, d, grid);
     let s = exact_differences(b, d, grid);
     let widest = p[0] | p[1] | q[0] | q[1] | r[0] | r[1] | s[0] | s[1];
-    // Below 2^30 everything fits 128 bits; a lattice takes this path for every edge.
+    // Below 2^30 everything fits 128 bits; the ties of most lattices take this path.
     var verdict = DELAUNAY;
     if widest.x < 0x40000000u && (widest.y | widest.z) == 0u {
         verdict = verdict_in_narrow_plane(p, q, r, s, winding);

@@ -70,7 +70,7 @@ async fn a_whole_run_on_webgpu_is_that_of_the_cpu() {
 /// It looks before it opens a device, which would compile the kernels.
 #[wasm_bindgen_test]
 async fn auto_finds_an_engine() {
-    let mesh = by_name("random 10").unwrap();
+    let mesh = by_name("random 80").unwrap();
     let asked = device::devices_asked_for();
     let mut session = Session::new(mesh, Options::default()).await.unwrap();
     while session.advance().await.unwrap() {}

@@ -16,7 +16,7 @@ const ORDER: [Backend; 3] = [Backend::Gpu, Backend::WebGl, Backend::Cpu];
 const ORDER: [Backend; 2] = [Backend::Gpu, Backend::Cpu];
 
 /// A mesh of fewer triangles is done on the CPU before a GPU has answered once: see the crossover in README.
-const FEWEST_FOR_GPU: usize = 20_000;
+const FEWEST_FOR_GPU: usize = 10_000;
 
 /// An engine, and why `Auto` did not take those before it.
 type Choice = (Box<dyn Engine>, Option<String>);

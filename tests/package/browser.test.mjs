@@ -135,9 +135,9 @@ function viteProject(folder) {
 
 test('README has five lines, and they flip the long diagonal', () => {
   assert.equal(fiveLines.trim().split('\n').length, 5);
-  const [index, cpu, webgpu, files] = pages.map(({ writes }) => writes);
-  assert.deepEqual([index, cpu, webgpu], Array(3).fill('1 flip on cpu: 3,1,2,0,1,3'));
-  assert.match(files, /^47 flips on cpu: (\d+,){293}\d+$/);
+  const written = pages.map(({ writes }) => writes);
+  assert.deepEqual(written.slice(0, 4), Array(4).fill('1 flip on cpu: 3,1,2,0,1,3'));
+  assert.match(written[4], /^47 flips on cpu: (\d+,){293}\d+$/);
 });
 
 test('the package holds what its entries need, and no source', () => {

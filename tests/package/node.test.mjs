@@ -3,6 +3,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { EDGE_STATES, EdgeflipError, FlipSession, makeDelaunay } from 'edgeflip';
+import { generate } from 'edgeflip/files';
 
 /** A thin diamond, split along its long diagonal. */
 const diamond = () => ({
@@ -33,13 +34,19 @@ const refused = (code, pattern) => (error) => {
   return true;
 };
 
+test('auto says of each engine why it is not there', async () => {
+  const { backend, fallback } = await makeDelaunay(await generate('random 80'));
+  assert.equal(backend, 'cpu');
+  assert.match(fallback, /backend webgpu is not available: there is no WebGPU here.*; backend webgl2 is not available: /);
+});
+
 test('makeDelaunay flips the long diagonal', async () => {
   const mesh = diamond();
   const result = await makeDelaunay(mesh);
   assert.deepEqual([...result.indices], [3, 1, 2, 0, 1, 3]);
   assert.equal(result.status, 'done');
   assert.equal(result.backend, 'cpu');
-  assert.match(result.fallback, /webgpu is not available: there is no WebGPU here/);
+  assert.equal(result.fallback, 'a mesh of fewer than 10000 triangles is done sooner on the cpu');
   assert.equal(result.adapter, undefined);
   assert.deepEqual([result.iterations, result.flips, result.edges, result.boundaryEdges], [1, 1, 5, 4]);
   assert.deepEqual([...result.flipsPerIteration], [1]);

@@ -170,7 +170,7 @@ async fn a_session_runs_on_the_device_of_the_page() {
 
 #[wasm_bindgen_test]
 async fn auto_leaves_a_device_that_is_software_or_lost() {
-    let mesh = by_name("random 10").unwrap();
+    let mesh = by_name("random 80").unwrap();
     let device = open().await;
     let mut session = create(&mesh, "auto", &device).await.unwrap();
     // `webdriver.json` has Chromium take SwiftShader.
