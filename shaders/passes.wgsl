@@ -145,13 +145,8 @@ fn sum_pass(@builtin(position) fragment: vec4f) -> @location(0) vec4u {
     return result;
 }
 
-// As probe.wgsl.
+// The entry point of rounds.wgsl.
 @fragment
 fn probe_pass() -> @location(0) vec4u {
-    var x = 1u;
-    for (var i = 0u; i < 100000u; i++) {
-        x = x * 1664525u + 1013904223u;
-        x ^= x >> 13u;
-    }
-    return vec4u(x);
+    return vec4u(rounds());
 }

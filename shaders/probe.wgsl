@@ -1,17 +1,8 @@
-// Whether loops run as often as they say. llvmpipe ends every loop of an invocation once 65,535 rounds have
-// been made in all of its loops, silently; the work must then be cut into smaller pieces.
-
-const ROUNDS: u32 = 100000u;
+// The entry point of rounds.wgsl.
 
 @group(0) @binding(0) var<storage, read_write> result: array<u32>;
 
 @compute @workgroup_size(1)
 fn probe() {
-    // The sum of no closed form that a compiler knows.
-    var x = 1u;
-    for (var i = 0u; i < ROUNDS; i++) {
-        x = x * 1664525u + 1013904223u;
-        x ^= x >> 13u;
-    }
-    result[0] = x;
+    result[0] = rounds();
 }

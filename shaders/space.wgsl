@@ -157,12 +157,14 @@ fn exact_verdict_on(a: Point, b: Point, c: Point, d: Point, angle_only: bool) ->
             var n_square = n1_square;
             var m_square = n2_square;
             var cosine = determinant(ps, qr, pr, qs, count);
-            let rounds = select(2u, 1u, angle_only);
-            for (var round = 0u; round < rounds; round++) {
+            let most = select(2u, 1u, angle_only);
+            for (var round = 0u; round < most; round++) {
+                if round == 1u {
+                    n_square = determinant(rr, pp, pr, pr, count);
+                    m_square = determinant(qq, ss, qs, qs, count);
+                    cosine = determinant(qr, ps, rs, pq, count);
+                }
                 is_over = is_over || exceeds_angle(n_square, m_square, cosine);
-                n_square = determinant(rr, pp, pr, pr, count);
-                m_square = determinant(qq, ss, qs, qs, count);
-                cosine = determinant(qr, ps, rs, pq, count);
             }
         }
         let turned = min(

@@ -5,6 +5,8 @@ mod cosine;
 mod cpu;
 mod lawson;
 #[cfg(feature = "gpu")]
+mod probe;
+#[cfg(feature = "gpu")]
 mod self_test;
 #[cfg(feature = "gpu")]
 mod span;
@@ -26,6 +28,8 @@ pub use webgpu::GpuDevice;
 #[cfg(feature = "gpu")]
 pub(crate) use webgpu::{Device, WebGpu};
 
+#[cfg(feature = "gpu")]
+use crate::Reason;
 use crate::{Error, Mesh, Reasons};
 use std::pin::Pin;
 use std::sync::Arc;
@@ -40,6 +44,19 @@ pub(crate) struct Census {
     pub(crate) labelled: u32,
     /// Those that may not, by `Angle`, `Fold` or `Duplicate`.
     pub(crate) blocked: Reasons,
+}
+
+#[cfg(feature = "gpu")]
+impl Census {
+    /// As the shaders count: the labelled ones, then those blocked by each reason.
+    fn of_counts(counts: &[u32]) -> Self {
+        let mut census = Self { labelled: counts[0], ..Self::default() };
+        for (reason, count) in [Reason::Angle, Reason::Fold, Reason::Duplicate].into_iter().zip(&counts[1..])
+        {
+            census.blocked[reason] = u64::from(*count);
+        }
+        census
+    }
 }
 
 /// Numbers of edges of the mesh as it was given; flips do not change them.

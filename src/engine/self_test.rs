@@ -105,7 +105,6 @@ mod tests {
                 made(Cpu::new(Arc::new(sheared), cos))
             };
             let refused = block_on(self_test(&tested, "gpu", dimension, &wrong));
-
             assert!(matches!(refused, Err(Error::BackendUnavailable { backend: "gpu", .. })));
             block_on(self_test(&tested, "gpu", dimension, &right)).unwrap();
             // From now on it is not asked again.

@@ -2,6 +2,7 @@
 
 use super::texture::Texture;
 use crate::Error;
+use crate::engine::probe::ends_loops_early;
 use crate::engine::self_test::Tested;
 use js_sys::{Function, Object, Promise, Reflect, Uint32Array};
 use std::cell::RefCell;
@@ -55,7 +56,7 @@ pub(crate) struct Context {
     pub(super) adapter: String,
     /// The largest side of a texture.
     pub(super) largest_side: u32,
-    /// See `shaders/probe.wgsl`.
+    /// See `shaders/rounds.wgsl`.
     pub(super) ends_loops_early: bool,
     pub(crate) tested: Tested,
     pub(super) params: WebGlBuffer,
@@ -104,11 +105,7 @@ impl Context {
         let target = Texture::new(&context, (1, 1), 4)?;
         context.pass("probe", &[], &target, None)?;
         let found = context.read(&target, 1).await?;
-        let expected = (0..100_000).fold(1u32, |x, _| {
-            let x = x.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            x ^ (x >> 13)
-        });
-        context.ends_loops_early = found[0] != expected;
+        context.ends_loops_early = ends_loops_early(found[0]);
         drop(target);
         Ok(context)
     }

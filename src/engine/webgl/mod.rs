@@ -9,13 +9,14 @@ mod texture;
 pub(crate) use context::{Context, set_shader_loader};
 
 use super::cosine::Cosine;
+use super::probe::SHORT_STAR;
 use super::span::refuse_wide_span;
 use super::{Answer, Census, EdgeCounts, Engine};
 use crate::mesh::{Dimension, Mesh};
 use crate::phases::BLOCKED;
 use crate::star::Fans;
 use crate::winding::Winding;
-use crate::{Adjacency, Error, NONE, Reason};
+use crate::{Adjacency, Error, NONE};
 use context::refuse;
 use std::rc::Rc;
 use std::sync::Arc;
@@ -24,8 +25,6 @@ use web_sys::WebGl2RenderingContext as Gl;
 
 /// Iterations of one batch. Behind the end they only cost time: they flip nothing.
 const BATCH: u32 = 16;
-/// The most triangles at one vertex where loops end too early.
-const SHORT_STAR: u32 = 20_000;
 /// Side of the square of texels that one fragment sums, as in `passes.wgsl`.
 const BLOCK: u32 = 8;
 /// Textures of up to so many rows are as high as a power of two: Mesa compiles a program anew for textures whose sides
@@ -242,12 +241,7 @@ impl WebGl {
         self.passes += 2;
         self.sum_up(0)?;
         let counts = self.context.read(&self.history, 1).await?;
-        let mut census = Census { labelled: counts[0], ..Census::default() };
-        for (reason, count) in [Reason::Angle, Reason::Fold, Reason::Duplicate].into_iter().zip(&counts[1..])
-        {
-            census.blocked[reason] = u64::from(*count);
-        }
-        Ok(census)
+        Ok(Census::of_counts(&counts))
     }
 
     /// The first three words of each triangle's texel.

@@ -5,6 +5,7 @@ use super::browser;
 use super::faults::{Fault, Word, refuse, unavailable, watch};
 use super::kernels::{self, Kernels, WORKGROUP_SIZE};
 use crate::Error;
+use crate::engine::probe::ends_loops_early;
 use crate::engine::self_test::Tested;
 use crate::mesh::Dimension;
 use futures_channel::oneshot;
@@ -37,7 +38,7 @@ pub(crate) struct Device {
     pub(super) adapter: String,
     /// As many workgroups as keep the device busy; every kernel strides over what is left.
     most_workgroups: u32,
-    /// See `shaders/probe.wgsl`.
+    /// See `shaders/rounds.wgsl`.
     pub(super) ends_loops_early: bool,
     pub(crate) tested: Tested,
     failure: Failure,
@@ -178,11 +179,7 @@ impl Device {
             encoder
         };
         let found = self.submit_and_read(record, &buffer, 1).await?;
-        let expected = (0..100_000).fold(1u32, |x, _| {
-            let x = x.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            x ^ (x >> 13)
-        });
-        Ok(found[0] != expected)
+        Ok(ends_loops_early(found[0]))
     }
 
     /// Whether any call of ours has failed since the device was opened, or it was lost.

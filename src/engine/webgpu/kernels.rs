@@ -27,7 +27,7 @@ pub(super) fn phases_source(dimension: Dimension) -> String {
 pub(super) const ADJACENCY: &str = shaders!("adjacency");
 
 /// The shader that finds drivers whose loops end too early.
-pub(super) const PROBE: &str = shaders!("probe");
+pub(super) const PROBE: &str = shaders!("rounds" "probe");
 
 /// The kernels of `iteration.wgsl`.
 #[derive(Clone, Copy, PartialEq, Eq)]

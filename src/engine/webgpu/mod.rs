@@ -27,11 +27,12 @@ pub(crate) use shared::Handle;
 
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 use super::SharedObjects;
+use super::probe::SHORT_STAR;
 use super::{Answer, Census, EdgeCounts, Engine};
 use crate::mesh::{Dimension, Mesh};
 use crate::star::Fans;
 use crate::winding::Winding;
-use crate::{Error, Positions, Reason};
+use crate::{Error, Positions};
 use buffers::Buffers;
 use device::Buffer;
 use faults::refuse;
@@ -47,8 +48,6 @@ const BATCH: u32 = 16;
 const TAIL: u32 = 256;
 /// The same where loops end too early.
 const SHORT_TAIL: u32 = 4;
-/// The most triangles at one vertex where loops end too early.
-const SHORT_STAR: u32 = 20_000;
 /// Words from one step to the next: the alignment of a dynamic offset that every device offers.
 const STEP_WORDS: u32 = 64;
 
@@ -258,12 +257,7 @@ impl WebGpu {
             })
         };
         let counts = self.gpu.submit_and_read(commands, &self.buffers.history, ENTRIES).await?;
-        let mut census = Census { labelled: counts[0], ..Census::default() };
-        for (reason, count) in [Reason::Angle, Reason::Fold, Reason::Duplicate].into_iter().zip(&counts[1..])
-        {
-            census.blocked[reason] = u64::from(*count);
-        }
-        Ok(census)
+        Ok(Census::of_counts(&counts))
     }
 }
 

@@ -43,7 +43,7 @@ fn glsl(entry_point: &str, geometry: &str) -> Result<String, Box<dyn Error>> {
     let source = [
         shaders!("mesh" "points" "exact" "textures"),
         geometry,
-        shaders!("verdict" "star" "guard" "label" "select" "slot" "passes"),
+        shaders!("verdict" "star" "guard" "label" "select" "slot" "rounds" "passes"),
     ]
     .concat();
     let mut module = naga::front::wgsl::parse_str(&source).map_err(|error| error.emit_to_string(&source))?;
