@@ -3,8 +3,8 @@
 
 const DIMENSION: u32 = 3u;
 
-// As in space.rs, with ε = 2^-23 and a sqrt that errs by 5ε: the angle sum errs by at most
-// (10.6 + 5.01 + 1)·2 + 2.1 = 35.4ε, a product of normals less k|n||m| by 11.1 + 23.2 + 0.5 + 2.1 = 36.9ε, cos β
+// As in space.rs, with ε = 2^-23, differences that err by up to 3ε and a sqrt that errs by 5ε: the angle sum errs by at
+// most (14.7 + 9.1 + 1)·2 + 2.1 = 51.7ε, a product of normals less k|n||m| by 19.1 + 31.4 + 0.5 + 2.1 = 53.1ε, cos β
 // being rounded to f32 too, of the product of the four sizes. 64 leaves room.
 const SPACE_BOUND: f32 = 7.6293945e-6;
 // What is flushed, see points.wgsl, is below 2^-46.

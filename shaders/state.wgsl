@@ -36,7 +36,7 @@ struct Step {
 
 @group(0) @binding(0) var<uniform> params: Params;
 @group(0) @binding(1) var<uniform> step_: Step;
-// f32 coordinates as bits: the exact tests read integers.
+// What they hold, floats.wgsl and fixed.wgsl say: the exact tests read integers.
 @group(0) @binding(2) var<storage, read> positions: array<u32>;
 @group(0) @binding(3) var<storage, read_write> triangles: array<u32>;
 @group(0) @binding(4) var<storage, read_write> twins: array<u32>;
@@ -81,8 +81,9 @@ fn selected(t: u32) -> u32 {
     return choices[params.triangles + t];
 }
 
-fn position(v: u32) -> vec3u {
-    let at = DIMENSION * v;
+// Words of the positions, one for each axis.
+fn coordinates(i: u32) -> vec3u {
+    let at = DIMENSION * i;
     return vec3u(positions[at], positions[at + 1u], select(0u, positions[at + DIMENSION - 1u], DIMENSION == 3u));
 }
 

@@ -1,8 +1,8 @@
 // The state of a mesh in textures, as src/engine/webgl binds it: a texel an element, row after row. A fragment reads
 // what it likes of the state before its pass, and writes the texel of its own triangle in another texture.
 
-// A texel each of three words: f32 coordinates as bits; vertices; twins. The fourth word of a triangle is 1 where its
-// component is clockwise.
+// A texel each of three words: what floats.wgsl and fixed.wgsl say of positions; vertices; twins. The fourth word of a
+// triangle is 1 where its component is clockwise.
 @group(0) @binding(0) var positions: texture_2d<u32>;
 @group(0) @binding(1) var triangles: texture_2d<u32>;
 @group(0) @binding(2) var twins: texture_2d<u32>;
@@ -60,8 +60,9 @@ fn selected(t: u32) -> u32 {
     return textureLoad(selections, place(t), 0).x;
 }
 
-fn position(v: u32) -> vec3u {
-    return textureLoad(positions, place(v), 0).xyz;
+// Words of the positions, one for each axis.
+fn coordinates(i: u32) -> vec3u {
+    return textureLoad(positions, place(i), 0).xyz;
 }
 
 fn is_clockwise(t: u32) -> bool {

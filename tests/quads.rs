@@ -13,7 +13,7 @@ mod kinds;
 mod report;
 mod simulation;
 
-use batch::{Batch, Tally, batch, batch_count};
+use batch::{Batch, Tally, batch, batch_count, is_wide};
 use edgeflip::{Backend, Error, Options, Reason, Reasons, Session};
 use pollster::block_on;
 use report::Report;
@@ -121,7 +121,7 @@ fn gpu_decides_as_big_integers_do_within_its_span_and_refuses_the_rest() {
     check("GPU", Backend::Gpu, quads(), false);
 }
 
-/// `quads/browsers.test.mjs` reads them: of each batch `positions` (f32) and `verdicts` (a byte a quad), and
+/// `quads/browsers.test.mjs` reads them: of each batch `positions` (f64) and `verdicts` (a byte a quad), and
 /// `batches.json` with all the rest.
 #[test]
 fn batches_for_browsers() {
@@ -129,8 +129,7 @@ fn batches_for_browsers() {
     fs::create_dir_all(folder).unwrap();
     let index = Mutex::new(BTreeMap::new());
     for_each_batch(quads(), false, |batch| {
-        let positions: Vec<_> =
-            batch.mesh.positions().to_f32().into_iter().flat_map(f32::to_le_bytes).collect();
+        let positions: Vec<_> = batch.mesh.positions().iter().flat_map(f64::to_le_bytes).collect();
         let verdicts: Vec<_> = batch.verdicts.iter().map(|&(verdict, _)| verdict as u8).collect();
         fs::write(folder.join(format!("{}.positions", batch.index)), positions).unwrap();
         fs::write(folder.join(format!("{}.verdicts", batch.index)), verdicts).unwrap();
@@ -140,8 +139,7 @@ fn batches_for_browsers() {
         });
         let tallies: Vec<_> = tallies.collect();
         let dimension = batch.mesh.dimension().stride();
-        let entry =
-            json!({ "index": batch.index, "dimension": dimension, "beta": batch.beta, "tallies": tallies });
+        let entry = json!({ "index": batch.index, "dimension": dimension, "isWide": is_wide(batch.index), "beta": batch.beta, "tallies": tallies });
         index.lock().unwrap().insert(batch.index, entry);
     });
     let entries: Vec<_> = index.into_inner().unwrap().into_values().collect();

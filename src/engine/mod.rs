@@ -8,10 +8,10 @@ mod lawson;
 mod probe;
 #[cfg(feature = "gpu")]
 mod self_test;
-#[cfg(feature = "gpu")]
-mod span;
 #[cfg(all(test, feature = "gpu"))]
 mod tests;
+#[cfg(feature = "gpu")]
+mod upload;
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 mod webgl;
 #[cfg(feature = "gpu")]
@@ -21,6 +21,8 @@ pub(crate) use cpu::Cpu;
 pub(crate) use lawson::Lawson;
 #[cfg(feature = "gpu")]
 pub(crate) use self_test::self_test;
+#[cfg(feature = "gpu")]
+pub(crate) use upload::Upload;
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 pub(crate) use webgl::{Context, WebGl, set_shader_loader};
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
@@ -118,7 +120,7 @@ pub(crate) trait Engine {
 pub(crate) struct SharedObjects {
     /// GPUDevice.
     pub(crate) device: wasm_bindgen::JsValue,
-    /// GPUBuffer: f32, 2 or 3 a vertex.
+    /// GPUBuffer: f32, 2 or 3 a vertex; of doubles the nearest ones.
     pub(crate) positions: wasm_bindgen::JsValue,
     /// GPUBuffer: u32, 3 a triangle.
     pub(crate) triangles: wasm_bindgen::JsValue,

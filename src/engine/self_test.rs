@@ -1,39 +1,40 @@
 //! A known small mesh that an engine has to get right before it is trusted with another.
 
+use super::upload::{Form, Upload};
 use super::{Answer, Cpu, Engine};
-use crate::mesh::{Dimension, Mesh};
-use crate::{Error, cos_degrees};
+use crate::mesh::Mesh;
+use crate::{Error, Positions, cos_degrees};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Vertices along a side of the test mesh.
 const SIDE: u16 = 9;
 
-/// For which dimensions a device has passed.
+/// For which forms of meshes a device has passed.
 #[derive(Default)]
-pub(crate) struct Tested([AtomicBool; 2]);
+pub(crate) struct Tested([AtomicBool; Form::COUNT]);
 
 /// Makes an engine for a mesh and the cosine of β.
-pub(crate) type Make<'a> = dyn Fn(Arc<Mesh>, f64) -> Answer<'static, Box<dyn Engine>> + 'a;
+pub(crate) type Make<'a> = dyn Fn(Upload, f64) -> Answer<'static, Box<dyn Engine>> + 'a;
 
 /// Has an engine that `make` makes flip the test mesh, and compares it with the CPU after every iteration; once for
-/// each dimension.
+/// each form.
 ///
 /// # Errors
 /// [`Error::BackendUnavailable`] if they differ; those of `make` and of the engine.
 pub(crate) async fn self_test(
     tested: &Tested,
     backend: &'static str,
-    dimension: Dimension,
+    form: Form,
     make: &Make<'_>,
 ) -> Result<(), Error> {
-    let has_passed = &tested.0[dimension.stride() - 2];
+    let has_passed = &tested.0[form.index()];
     if has_passed.load(Ordering::Relaxed) {
         return Ok(());
     }
-    let mesh = Arc::new(test_mesh(dimension)?);
+    let mesh = Arc::new(test_mesh(form)?);
     let cos = cos_degrees(20.0);
-    let mut engine = make(mesh.clone(), cos).await?;
+    let mut engine = make(Upload::new(backend, mesh.clone())?, cos).await?;
     let mut cpu = Cpu::new(mesh, cos);
     loop {
         let is_counted = engine.census().await? == cpu.count();
@@ -53,21 +54,23 @@ pub(crate) async fn self_test(
 
 /// A lattice of spacing 0.1, whose squares only exact arithmetic knows to be cocircular or not, under one that is
 /// sheared, which has to flip; as a surface, with a step.
-fn test_mesh(dimension: Dimension) -> Result<Mesh, Error> {
+fn test_mesh(form: Form) -> Result<Mesh, Error> {
     let place = |i: u16, j: u16| {
-        let (i, j) = (f32::from(i), f32::from(j));
-        let shear = (j - f32::from(SIDE / 2)).max(0.0);
+        let (i, j) = (f64::from(i), f64::from(j));
+        let shear = (j - f64::from(SIDE / 2)).max(0.0);
         let point = [0.1 * i + 0.37 * shear, 0.1 * j, if i > 5.0 { 0.02 * i * j } else { 0.0 }];
-        point[..dimension.stride()].to_vec()
+        point[..form.dimension.stride()].to_vec()
     };
-    let positions = (0..SIDE).flat_map(|j| (0..SIDE).flat_map(move |i| place(i, j))).collect::<Vec<f32>>();
+    let doubles = (0..SIDE).flat_map(|j| (0..SIDE).flat_map(move |i| place(i, j))).collect::<Vec<f64>>();
+    let positions = Positions::F64(doubles);
+    let positions = if form.is_fixed { positions } else { positions.to_f32().into() };
     let square = |i: u16, j: u16| {
         let at = |i, j| u32::from(j * SIDE + i);
         let [p, q, r, s] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
         [p, q, r, p, r, s]
     };
     let triangles = (0..SIDE - 1).flat_map(|j| (0..SIDE - 1).flat_map(move |i| square(i, j))).collect();
-    Mesh::new(dimension, positions, triangles)
+    Mesh::new(form.dimension, positions, triangles)
 }
 
 #[cfg(test)]
@@ -75,40 +78,51 @@ mod tests {
     #![allow(clippy::unwrap_used, reason = "what fails here is a failed test")]
 
     use super::*;
+    use crate::Dimension;
     use pollster::block_on;
 
     fn made(cpu: Cpu) -> Answer<'static, Box<dyn Engine>> {
         Box::pin(std::future::ready(Ok(Box::new(cpu) as Box<dyn Engine>)))
     }
 
+    fn forms() -> impl Iterator<Item = Form> {
+        let dimensions = [Dimension::Two, Dimension::Three];
+        dimensions
+            .into_iter()
+            .flat_map(|dimension| [false, true].map(|is_fixed| Form { dimension, is_fixed }))
+    }
+
     #[test]
     fn the_mesh_flips_in_several_iterations_and_has_ties_and_blocked_edges() {
-        for dimension in [Dimension::Two, Dimension::Three] {
-            let mut cpu = Cpu::new(Arc::new(test_mesh(dimension).unwrap()), cos_degrees(20.0));
+        for form in forms() {
+            let upload = Upload::new("gpu", Arc::new(test_mesh(form).unwrap())).unwrap();
+            assert!(upload.form() == form);
+            let mut cpu = Cpu::new(upload.mesh, cos_degrees(20.0));
             assert!(block_on(cpu.iterate(u32::MAX)).unwrap().len() > 2);
-            assert_eq!(cpu.count().blocked.total() > 0, dimension == Dimension::Three);
+            assert_eq!(cpu.count().blocked.total() > 0, form.dimension == Dimension::Three);
         }
     }
 
     #[test]
     fn an_engine_passes_once_or_is_refused() {
-        for dimension in [Dimension::Two, Dimension::Three] {
-            let tested = Tested::default();
-            let right = |mesh: Arc<Mesh>, cos| made(Cpu::new(mesh, cos));
-            let wrong = |mesh: Arc<Mesh>, cos| {
+        let tested = Tested::default();
+        for form in forms() {
+            let right = |upload: Upload, cos| made(Cpu::new(upload.mesh, cos));
+            let wrong = |upload: Upload, cos| {
+                let mesh = upload.mesh;
                 let upright = mesh.positions().to_f32();
                 let leaning = upright
-                    .chunks(dimension.stride())
+                    .chunks(form.dimension.stride())
                     .flat_map(|p| [&[p[0] + p[1]], &p[1..]].concat())
                     .collect::<Vec<f32>>();
-                let sheared = Mesh::new(dimension, leaning, mesh.triangles().to_vec()).unwrap();
+                let sheared = Mesh::new(form.dimension, leaning, mesh.triangles().to_vec()).unwrap();
                 made(Cpu::new(Arc::new(sheared), cos))
             };
-            let refused = block_on(self_test(&tested, "gpu", dimension, &wrong));
+            let refused = block_on(self_test(&tested, "gpu", form, &wrong));
             assert!(matches!(refused, Err(Error::BackendUnavailable { backend: "gpu", .. })));
-            block_on(self_test(&tested, "gpu", dimension, &right)).unwrap();
+            block_on(self_test(&tested, "gpu", form, &right)).unwrap();
             // From now on it is not asked again.
-            block_on(self_test(&tested, "gpu", dimension, &wrong)).unwrap();
+            block_on(self_test(&tested, "gpu", form, &wrong)).unwrap();
         }
     }
 }

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "what fails here is a failed test")]
 
 use super::webgpu::{Device, Kernel, WebGpu};
-use super::{Cpu, Engine};
+use super::{Cpu, Engine, Upload};
 use crate::mesh::Mesh;
 use crate::{cos_degrees, families};
 use pollster::block_on;
@@ -11,7 +11,8 @@ use std::sync::Arc;
 
 fn engines(mesh: &Arc<Mesh>, degrees: f64) -> (Cpu, WebGpu) {
     let cos = cos_degrees(degrees);
-    let gpu = block_on(async { WebGpu::new(Device::shared(true).await?, mesh, cos).await }).unwrap();
+    let upload = Upload::new("gpu", mesh.clone()).unwrap();
+    let gpu = block_on(async { WebGpu::new(Device::shared(true).await?, upload, cos).await }).unwrap();
     (Cpu::new(mesh.clone(), cos), gpu)
 }
 

@@ -79,8 +79,9 @@ export class FlipSession implements AsyncIterable<Iteration>, Disposable {
   /**
    * Moves the vertices: all of them, as many as before, copied at once. Afterwards the session is as a new one on these
    * positions and the triangles as they are then: iterations, flips, sharp edges and what `verify` compares with begin
-   * anew. Adjacency, device and buffers stay, and the triangles are read back once. After an error the session is as
-   * before; with `'auto'` the CPU takes over what the GPU cannot take.
+   * anew. Adjacency, device and buffers stay, unless doubles follow 32-bit floats or these follow doubles, and the
+   * triangles are read back once. After an error the session is as before; with `'auto'` the CPU takes over what the GPU
+   * cannot take.
    *
    * @throws {@link EdgeflipError} `invalid-input`, `position-count`, `non-finite`, `backend-limit`.
    */
@@ -124,10 +125,11 @@ export class FlipSession implements AsyncIterable<Iteration>, Disposable {
   }
 
   /**
-   * The GPU's objects, to draw from without a copy; `undefined` on the CPU. `positions` has 2 or 3 f32 a vertex,
-   * `indices` 3 u32 a triangle; their usage has STORAGE, VERTEX or INDEX, COPY_SRC and COPY_DST. Only read them, and
-   * only until `free`; `setPositions` keeps them. With `'auto'`, ask again after each call of the session: where the GPU
-   * fails or cannot take new positions, the CPU goes on and these are gone. The device is the one of the options, else one for all sessions.
+   * The GPU's objects, to draw from without a copy; `undefined` on the CPU. `positions` has 2 or 3 f32 a vertex, of
+   * doubles the nearest ones, `indices` 3 u32 a triangle; their usage has STORAGE, VERTEX or INDEX, COPY_SRC and
+   * COPY_DST. Only read them, and only until `free`; {@link setPositions} says when it keeps them. With `'auto'`, ask
+   * again after each call of the session: where the GPU fails or cannot take new positions, the CPU goes on and these are
+   * gone. The device is the one of the options, else one for all sessions.
    */
   gpu(): Promise<{ device: GPUDevice; positions: GPUBuffer; indices: GPUBuffer } | undefined> {
     return this.#call(async ({ device, positionBuffer, indexBuffer }) =>

@@ -5,8 +5,8 @@
 /** A triangle mesh. It is only read; nothing of it is kept. */
 export interface Mesh {
   /**
-   * 2 or 3 numbers a vertex. Decisions are exact for the numbers given. WebGPU takes doubles only where each is a
-   * 32-bit float too; the CPU takes all.
+   * 2 or 3 numbers a vertex. Decisions are exact for the numbers given. WebGPU and WebGL2 take those that span at most
+   * 84 bits and a sign as seen from the middle of the bounding box, the CPU takes all.
    */
   positions: Float32Array | Float64Array;
   /** Vertex indices, 3 a triangle. */

@@ -4,7 +4,7 @@ use crate::engine::{Answer, Cpu, Engine, Lawson};
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 use crate::engine::{Context, WebGl};
 #[cfg(feature = "gpu")]
-use crate::engine::{Device, WebGpu, self_test};
+use crate::engine::{Device, Upload, WebGpu, self_test};
 use crate::predicates::cos_degrees;
 use crate::{Backend, Error, Mesh, Options, Order};
 use std::sync::Arc;
@@ -103,12 +103,13 @@ async fn gpu(mesh: &Arc<Mesh>, options: &Options, cos: f64) -> Result<Box<dyn En
     };
     #[cfg(not(all(target_arch = "wasm32", feature = "js")))]
     let device = Device::shared(takes_software).await?;
-    let make = |mesh: Arc<Mesh>, cos| -> Answer<'static, Box<dyn Engine>> {
+    let upload = Upload::new("gpu", mesh.clone())?;
+    let make = |upload: Upload, cos| -> Answer<'static, Box<dyn Engine>> {
         let device = device.clone();
-        Box::pin(async move { Ok(Box::new(WebGpu::new(device, &mesh, cos).await?) as Box<dyn Engine>) })
+        Box::pin(async move { Ok(Box::new(WebGpu::new(device, upload, cos).await?) as Box<dyn Engine>) })
     };
-    self_test(&device.tested, "gpu", mesh.dimension(), &make).await?;
-    make(mesh.clone(), cos).await
+    self_test(&device.tested, "gpu", upload.form(), &make).await?;
+    make(upload, cos).await
 }
 
 #[cfg(not(feature = "gpu"))]
@@ -120,12 +121,13 @@ async fn gpu(_mesh: &Arc<Mesh>, _options: &Options, _cos: f64) -> Result<Box<dyn
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 async fn webgl(mesh: &Arc<Mesh>, options: &Options, cos: f64) -> Result<Box<dyn Engine>, Error> {
     let context = Context::shared(options.backend == Backend::WebGl).await?;
-    let make = |mesh: Arc<Mesh>, cos| -> Answer<'static, Box<dyn Engine>> {
+    let upload = Upload::new("webgl2", mesh.clone())?;
+    let make = |upload: Upload, cos| -> Answer<'static, Box<dyn Engine>> {
         let context = context.clone();
-        Box::pin(async move { Ok(Box::new(WebGl::new(context, &mesh, cos).await?) as Box<dyn Engine>) })
+        Box::pin(async move { Ok(Box::new(WebGl::new(context, upload, cos).await?) as Box<dyn Engine>) })
     };
-    self_test(&context.tested, "webgl2", mesh.dimension(), &make).await?;
-    make(mesh.clone(), cos).await
+    self_test(&context.tested, "webgl2", upload.form(), &make).await?;
+    make(upload, cos).await
 }
 
 #[cfg(not(all(target_arch = "wasm32", feature = "js")))]

@@ -8,7 +8,7 @@ use std::ops::Range;
 /// Thresholds in degrees: the exact cosines, and one that is not.
 const BETAS: [f64; 6] = [10.0, 0.0, 60.0, 90.0, 120.0, 180.0];
 
-/// Powers of two that the coordinates are multiplied by: up to 2^125, down to where most of them are subnormal.
+/// Powers of two that floats are multiplied by: up to 2^125, down to where most of them are subnormal.
 const SCALES: [i32; 5] = [0, 101, -64, -89, -126];
 
 /// How many batches `quads` quads are cut into. 12 have all thresholds in both dimensions and all scales, 60 have them
@@ -55,8 +55,9 @@ pub fn batch(index: usize, quads: usize, beyond: bool) -> Batch {
     let dimension = [Dimension::Two, Dimension::Three][index % 2];
     let beta = BETAS[index / 2 % BETAS.len()];
     let scale = SCALES[index % SCALES.len()];
+    let is_wide = is_wide(index);
     let each = quads.div_ceil(Kind::all(dimension, beyond).count());
-    let mut source = Source::new((index as u128) << 1 | u128::from(beyond), dimension, beta, scale);
+    let mut source = Source::new((index as u128) << 1 | u128::from(beyond), dimension, beta, scale, is_wide);
     let (mut positions, mut verdicts, mut kinds) = (Vec::new(), Vec::new(), Vec::new());
     for kind in Kind::all(dimension, beyond) {
         let made: Vec<Quad> = (0..each).map(|_| kind.quad(&mut source)).collect();
@@ -64,12 +65,17 @@ pub fn batch(index: usize, quads: usize, beyond: bool) -> Batch {
         let chunk = mesh(dimension, points.flat_map(|point| &point[..dimension.stride()]).copied().collect());
         kinds.push((kind.name, verdicts.len()..verdicts.len() + each));
         verdicts.extend(judge(&chunk, beta));
-        positions.extend(chunk.positions().to_f32());
+        positions.extend(chunk.positions().iter());
     }
     Batch { index, beta, mesh: mesh(dimension, positions), verdicts, kinds }
 }
 
-fn mesh(dimension: Dimension, positions: Vec<f32>) -> Mesh {
+/// Whether the batch is one of doubles: half of those of each dimension are, with every β in turn.
+pub fn is_wide(index: usize) -> bool {
+    (index / 2 + index / 12) % 2 == 1
+}
+
+fn mesh(dimension: Dimension, positions: Vec<f64>) -> Mesh {
     let vertices = (positions.len() / dimension.stride()) as u32;
     let triangles = (0..vertices).step_by(4).flat_map(|a| [a, a + 1, a + 2, a + 1, a, a + 3]).collect();
     Mesh::new(dimension, positions, triangles).unwrap()
@@ -94,6 +100,12 @@ fn judge(mesh: &Mesh, beta: f64) -> impl Iterator<Item = (Verdict, bool)> {
 }
 
 impl Batch {
+    /// The dimension and the width of the coordinates.
+    pub fn form(&self) -> String {
+        let width = if is_wide(self.index) { "f64" } else { "f32" };
+        format!("{}D {width}", self.mesh.dimension().stride())
+    }
+
     /// What an iteration does to the triangles.
     pub fn triangles_after(&self) -> Vec<u32> {
         let quads = (0u32..).step_by(4).zip(&self.verdicts);
@@ -121,18 +133,17 @@ impl Batch {
     /// Some quads by themselves.
     pub fn part(&self, quads: Range<usize>) -> Self {
         let stride = 4 * self.mesh.dimension().stride();
-        let positions = self.mesh.positions().to_f32()[stride * quads.start..stride * quads.end].to_vec();
-        let mesh = mesh(self.mesh.dimension(), positions);
+        let positions = self.mesh.positions().iter().take(stride * quads.end).skip(stride * quads.start);
+        let mesh = mesh(self.mesh.dimension(), positions.collect());
         Self { mesh, verdicts: self.verdicts[quads].to_vec(), kinds: Vec::new(), ..*self }
     }
 
-    /// A quad as it can be written into a test: by the bits of its coordinates.
+    /// A quad as it can be written into a test.
     pub fn describe(&self, quad: usize) -> String {
         let part = self.part(quad..quad + 1);
-        let bits: Vec<_> =
-            part.mesh.positions().to_f32().iter().map(|x| format!("{:#010x}", x.to_bits())).collect();
+        let numbers: Vec<_> = part.mesh.positions().iter().map(|x| format!("{x:?}")).collect();
         let kind = self.kinds.iter().find(|(_, quads)| quads.contains(&quad)).map_or("", |(name, _)| name);
         let (index, beta, (verdict, _)) = (self.index, self.beta, self.verdicts[quad]);
-        format!("quad {quad} of batch {index}, {kind}, β = {beta}: [{}] is {verdict:?}", bits.join(", "))
+        format!("quad {quad} of batch {index}, {kind}, β = {beta}: [{}] is {verdict:?}", numbers.join(", "))
     }
 }

@@ -4,7 +4,10 @@ use edgeflip::Dimension;
 use oorandom::Rand64;
 
 /// The points a, b, c, d: the triangles are (a, b, c) and (b, a, d). In the plane the third coordinate is unused.
-pub type Quad = [[f32; 3]; 4];
+pub type Quad = [[f64; 3]; 4];
+
+/// The same in floats, as the kinds make them.
+type Floats = [[f32; 3]; 4];
 
 /// A way to make quads.
 pub struct Kind {
@@ -13,7 +16,7 @@ pub struct Kind {
     pub in_span: bool,
     /// Whether it is of use in space only.
     only_space: bool,
-    make: fn(&mut Source) -> Quad,
+    make: fn(&mut Source) -> Floats,
 }
 
 const KINDS: [Kind; 17] = [
@@ -49,11 +52,11 @@ const KINDS: [Kind; 17] = [
 ];
 
 impl Kind {
-    const fn in_span(name: &'static str, make: fn(&mut Source) -> Quad) -> Self {
+    const fn in_span(name: &'static str, make: fn(&mut Source) -> Floats) -> Self {
         Self { name, in_span: true, only_space: false, make }
     }
 
-    const fn beyond(name: &'static str, make: fn(&mut Source) -> Quad) -> Self {
+    const fn beyond(name: &'static str, make: fn(&mut Source) -> Floats) -> Self {
         Self { in_span: false, ..Self::in_span(name, make) }
     }
 
@@ -66,10 +69,14 @@ impl Kind {
     /// Makes one quad.
     pub fn quad(&self, source: &mut Source) -> Quad {
         let quad = (self.make)(source);
-        let quad = source.turned(quad);
-        // Exact, where the result is not subnormal.
-        let factor = if self.in_span { 2f64.powi(source.scale) } else { 1.0 };
-        quad.map(|point| point.map(|x| (f64::from(x) * factor) as f32))
+        let quad = source.turned(quad).map(|point| point.map(f64::from));
+        // Scaling is exact, where the result is not subnormal.
+        let scaled = |quad: Quad, scale| quad.map(|point| point.map(|x| x * 2f64.powi(scale)));
+        match (self.in_span, source.is_wide) {
+            (false, _) => quad,
+            (true, false) => scaled(quad, source.scale).map(|point| point.map(|x| f64::from(x as f32))),
+            (true, true) => scaled(source.widened(quad), 8 * source.scale),
+        }
     }
 }
 
@@ -106,6 +113,7 @@ pub struct Source {
     dimension: Dimension,
     beta: f64,
     scale: i32,
+    is_wide: bool,
     /// Integer points with x > 0, y ≥ 0 on a circle around the origin, counter-clockwise.
     arc: Vec<[i32; 2]>,
 }
@@ -114,13 +122,14 @@ pub struct Source {
 const RADIUS: i32 = 1105;
 
 impl Source {
-    /// For a mesh with the threshold β in degrees, whose coordinates are to be multiplied by 2^`scale`.
-    pub fn new(seed: u128, dimension: Dimension, beta: f64, scale: i32) -> Self {
+    /// For a mesh with the threshold β in degrees, whose coordinates are to be multiplied by 2^`scale`, or if it is to
+    /// hold doubles, by the eighth power of that.
+    pub fn new(seed: u128, dimension: Dimension, beta: f64, scale: i32, is_wide: bool) -> Self {
         let arc = (0..RADIUS)
             .map(|y| [(RADIUS * RADIUS - y * y).isqrt(), y])
             .filter(|[x, y]| x * x + y * y == RADIUS * RADIUS)
             .collect();
-        Self { random: Rand64::new(seed), dimension, beta, scale, arc }
+        Self { random: Rand64::new(seed), dimension, beta, scale, is_wide, arc }
     }
 
     /// From `low` to `high`, both included.
@@ -183,23 +192,23 @@ impl Source {
         }
     }
 
-    fn scattered(&mut self, numbers: Numbers) -> Quad {
+    fn scattered(&mut self, numbers: Numbers) -> Floats {
         [(); 4].map(|()| [self.number(numbers), self.number(numbers), self.height(numbers)])
     }
 
-    fn lattice(&mut self) -> Quad {
+    fn lattice(&mut self) -> Floats {
         let (width, height) = (self.pick([1, 2, 3, 7]), self.pick([0, 0, 1, 2]));
         [(); 4].map(|()| [width, width, height].map(|end| self.integer(0, end) as f32))
     }
 
-    fn tenths(&mut self) -> Quad {
+    fn tenths(&mut self) -> Floats {
         let (width, offset) = (self.pick([1, 2, 3, 7]), self.pick([0.0, 1e5, 1e6]));
         let height = self.pick([0, 0, 1]);
         [(); 4].map(|()| [width, width, height].map(|end| self.integer(0, end) as f32 * 0.1 + offset))
     }
 
     /// Four points of a circle, in the plane or on a tilted plane, moved and scaled without rounding.
-    fn cocircular(&mut self) -> Quad {
+    fn cocircular(&mut self) -> Floats {
         let mut places = [(); 4].map(|()| self.integer(0, 4 * self.arc.len() as i32 - 1));
         if self.chance(2) {
             // On an axis.
@@ -229,7 +238,7 @@ impl Source {
     }
 
     /// One bit, which may be far below the others, decides.
-    fn cocircular_but_for_a_bit(&mut self) -> Quad {
+    fn cocircular_but_for_a_bit(&mut self) -> Floats {
         let mut quad = self.cocircular();
         let largest = quad.as_flattened().iter().fold(0f32, |largest, x| largest.max(x.abs()));
         let bit = largest * 2f32.powi(-self.integer(10, 45));
@@ -244,7 +253,7 @@ impl Source {
     }
 
     /// Rectangles and symmetric trapezoids are cocircular, whatever their numbers are.
-    fn trapezoid(&mut self, numbers: Numbers) -> Quad {
+    fn trapezoid(&mut self, numbers: Numbers) -> Floats {
         let [x1, x2, y1, y2] = [(); 4].map(|()| self.number(numbers));
         let z = self.height(numbers);
         let corners = match self.integer(0, 3) {
@@ -261,7 +270,7 @@ impl Source {
     }
 
     /// A kite with its corners on the axes, or off by something tiny that has to decide.
-    fn near_axes(&mut self) -> Quad {
+    fn near_axes(&mut self) -> Floats {
         let size = 2f32.powi(self.integer(-10, 10));
         let sizes = [(); 4].map(|()| if self.chance(4) { 2.0 * size } else { size });
         let [mut a, mut b, mut c, mut d] = [[0.0; 3]; 4];
@@ -277,7 +286,7 @@ impl Source {
     }
 
     /// Equal points, points on a line, triangles without an area.
-    fn degenerate(&mut self, numbers: Numbers) -> Quad {
+    fn degenerate(&mut self, numbers: Numbers) -> Floats {
         let [mut a, mut b, mut c, mut d] =
             if self.chance(2) { self.lattice() } else { self.scattered(numbers) };
         let line = self.integer(0, 1) as usize;
@@ -306,7 +315,7 @@ impl Source {
     }
 
     /// Normals at β exactly, before the flip or after it, or as near as rounding leaves them.
-    fn near_beta(&mut self) -> Quad {
+    fn near_beta(&mut self) -> Floats {
         match self.integer(0, 3) {
             0 => self.rounded_hinge(),
             1 => {
@@ -318,12 +327,12 @@ impl Source {
     }
 
     /// The triangles (x, y, p) and (y, x, q) lie at the hinge: before the flip, or after it.
-    fn at_hinge(&mut self, [x, y, p, q]: Quad) -> Quad {
+    fn at_hinge(&mut self, [x, y, p, q]: Floats) -> Floats {
         if self.chance(2) { [x, y, p, q] } else { [p, q, y, x] }
     }
 
     /// Normals at 90° exactly, some at 0° or 180°, whatever the numbers are.
-    fn right_angle(&mut self, numbers: Numbers) -> Quad {
+    fn right_angle(&mut self, numbers: Numbers) -> Floats {
         let [x, y] = [(); 2].map(|()| if self.chance(2) { 0.0 } else { self.number(numbers) });
         let [u, v] = [(); 2].map(|()| self.number(numbers));
         let last = if self.chance(4) { [v, y] } else { [x, v] };
@@ -331,7 +340,7 @@ impl Source {
         self.at_hinge(hinge)
     }
 
-    fn exact_hinge(&mut self) -> Quad {
+    fn exact_hinge(&mut self) -> Floats {
         let [n1, n2, h] = loop {
             let (beta, hinge) = self.pick(HINGES);
             // For a β without a hinge of its own, and sometimes else, any.
@@ -350,7 +359,7 @@ impl Source {
         self.at_hinge([at(0, 0, e1), at(length, 0, e1), at(along1, away1, e1), at(along2, -away2, e2)])
     }
 
-    fn rounded_hinge(&mut self) -> Quad {
+    fn rounded_hinge(&mut self) -> Floats {
         let length = self.integer(1, 1 << 12) as f32;
         let [along1, along2] = [(); 2].map(|()| self.integer(0, length as i32) as f32);
         let [away1, away2] = [(); 2].map(|()| self.integer(1, 1 << 11) as f32);
@@ -363,7 +372,7 @@ impl Source {
         self.at_hinge([[0.0; 3], [length, 0.0, 0.0], [along1, away1, 0.0], q])
     }
 
-    fn one_ulp_off(&mut self) -> Quad {
+    fn one_ulp_off(&mut self) -> Floats {
         let mut quad = match self.integer(0, 3) {
             0 => self.lattice(),
             1 => self.tenths(),
@@ -375,7 +384,7 @@ impl Source {
     }
 
     /// Moves one coordinate to the next number, and at least by `least`.
-    fn nudge(&mut self, quad: &mut Quad, least: f32) {
+    fn nudge(&mut self, quad: &mut Floats, least: f32) {
         let axis = self.integer(0, self.dimension.stride() as i32 - 1) as usize;
         let x = &mut quad[self.integer(0, 3) as usize][axis];
         let moved = if self.chance(2) { x.next_up() } else { x.next_down() };
@@ -386,11 +395,33 @@ impl Source {
     }
 
     /// The axes in another order, some of them mirrored: in the plane this gives both windings.
-    fn turned(&mut self, quad: Quad) -> Quad {
+    fn turned(&mut self, quad: Floats) -> Floats {
         let dimensions = self.dimension.stride();
         let mut axes = [0, 1, 2];
         axes[..dimensions].rotate_left(self.random.rand_range(0..dimensions as u64) as usize);
         let signs = [(); 3].map(|()| self.pick([1.0, -1.0]));
         quad.map(|point| [0, 1, 2].map(|i| point[axes[i]] * signs[i]))
+    }
+
+    /// The quad as it is, or in doubles that no float holds: off by the last bit, moved, or divided by three.
+    fn widened(&mut self, mut quad: Quad) -> Quad {
+        let least = f64::from(LOWEST);
+        let rounded = |x: f64| (x / least).round() * least;
+        match self.integer(0, 3) {
+            0 => {}
+            1 => {
+                let axis = self.integer(0, self.dimension.stride() as i32 - 1) as usize;
+                let x = &mut quad[self.integer(0, 3) as usize][axis];
+                let step = (x.next_up() - *x).max(least);
+                *x += self.pick([step, -step]);
+            }
+            2 => {
+                let reach = 1 << self.integer(0, 22);
+                let offset = [(); 3].map(|()| f64::from(self.integer(-reach, reach)) + 1.0 / 3.0);
+                quad = quad.map(|point| [0, 1, 2].map(|i| rounded(point[i] / 2.0 + offset[i])));
+            }
+            _ => quad = quad.map(|point| point.map(|x| rounded(x / 3.0))),
+        }
+        quad
     }
 }

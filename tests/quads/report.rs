@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 
 #[derive(Default)]
 pub struct Report {
-    /// By dimension, and the place and name of the kind; with the number of mismatches.
-    rows: BTreeMap<(usize, usize, &'static str), (Tally, usize)>,
+    /// By what meshes they are in, and the place and name of the kind; with the number of mismatches.
+    rows: BTreeMap<(String, usize, &'static str), (Tally, usize)>,
     /// What is wrong, in words.
     pub mismatches: Vec<String>,
 }
@@ -16,7 +16,7 @@ impl Report {
     pub fn add(&mut self, batch: &Batch, mismatches: Vec<(usize, String)>) {
         for (place, (kind, quads)) in batch.kinds.iter().enumerate() {
             let wrong = mismatches.iter().filter(|(quad, _)| quads.contains(quad)).count();
-            let row = self.rows.entry((batch.mesh.dimension().stride(), place, kind)).or_default();
+            let row = self.rows.entry((batch.form(), place, kind)).or_default();
             *row = sum([&*row, &(batch.tally(quads.clone()), wrong)].into_iter());
         }
         self.mismatches.extend(mismatches.into_iter().map(|(_, how)| how));
@@ -27,21 +27,19 @@ impl Report {
         sum(self.rows.values()).0.quads
     }
 
-    /// A row for each dimension and kind, and their sum.
+    /// A row for each form of meshes and kind, and their sum.
     pub fn table(&self, engine: &str, seconds: f64) -> String {
-        let row = |dimension: &str, kind: &str, (tally, mismatches): &(Tally, usize), seconds: &str| {
+        let row = |form: &str, kind: &str, (tally, mismatches): &(Tally, usize), seconds: &str| {
             let Tally { quads, ties, labelled, angle, fold } = tally;
-            let of = format!("| {engine} | {dimension} | {kind} | {quads} | {ties} |");
+            let of = format!("| {engine} | {form} | {kind} | {quads} | {ties} |");
             format!("{of} {labelled} | {angle} | {fold} | {mismatches} | {seconds} |\n")
         };
-        let head = "| engine | dimension | kind | quads | exact ties | labelled | angle | fold | mismatches | seconds |";
-        let rows: String = self
-            .rows
-            .iter()
-            .map(|((dimension, _, kind), sums)| row(&dimension.to_string(), kind, sums, ""))
-            .collect();
-        let all = row("2, 3", "all", &sum(self.rows.values()), &format!("{seconds:.1}"));
-        format!("\n{head}\n|---|---:|---|---:|---:|---:|---:|---:|---:|---:|\n{rows}{all}")
+        let head =
+            "| engine | mesh | kind | quads | exact ties | labelled | angle | fold | mismatches | seconds |";
+        let rows: String =
+            self.rows.iter().map(|((form, _, kind), sums)| row(form, kind, sums, "")).collect();
+        let all = row("all", "all", &sum(self.rows.values()), &format!("{seconds:.1}"));
+        format!("\n{head}\n|---|---|---|---:|---:|---:|---:|---:|---:|---:|\n{rows}{all}")
     }
 }
 

@@ -10,7 +10,7 @@ pub(crate) use context::{Context, set_shader_loader};
 
 use super::cosine::Cosine;
 use super::probe::SHORT_STAR;
-use super::span::refuse_wide_span;
+use super::upload::{Form, Upload};
 use super::{Answer, Census, EdgeCounts, Engine};
 use crate::mesh::{Dimension, Mesh};
 use crate::phases::BLOCKED;
@@ -47,7 +47,7 @@ const COUNTS: u32 = 7;
 pub(crate) struct WebGl {
     context: Rc<Context>,
     cos: f64,
-    dimension: Dimension,
+    form: Form,
     count: usize,
     counts: EdgeCounts,
     params: [u32; PARAMS],
@@ -69,17 +69,13 @@ impl WebGl {
     /// Builds the adjacency and uploads the mesh; `cos` is the cosine of β.
     ///
     /// # Errors
-    /// [`Error::BackendLimit`] for a mesh that is too large for the context or has coordinates of too many magnitudes;
-    /// [`Error::BackendUnavailable`] if its compiler refuses the programs; [`Error::Device`].
-    pub(crate) async fn new(context: Rc<Context>, mesh: &Mesh, cos: f64) -> Result<Self, Error> {
-        refuse_wide_span("webgl2", mesh)?;
-        let dimension = mesh.dimension();
-        let decide: &[_] = match dimension {
-            Dimension::Two => &["verdict2"],
-            Dimension::Three => &["verdict3", "crease", "flag"],
-        };
+    /// [`Error::BackendLimit`] for a mesh that is too large for the context; [`Error::BackendUnavailable`] if its
+    /// compiler refuses the programs; [`Error::Device`].
+    pub(crate) async fn new(context: Rc<Context>, upload: Upload, cos: f64) -> Result<Self, Error> {
+        let mesh = &upload.mesh;
+        let form = upload.form();
         let common = &["label", "select", "flip", "update", "anchor", "census", "flips", "sum"];
-        context.compile(&[decide, common].concat()).await?;
+        context.compile(&[deciders(form), common].concat()).await?;
 
         let adjacency = Adjacency::new(mesh);
         let winding = Winding::new(mesh, &adjacency.twins);
@@ -100,11 +96,11 @@ impl WebGl {
         }
         let mut result = Self {
             cos,
-            dimension,
+            form,
             count,
             counts: EdgeCounts::from(&adjacency),
             params: params(mesh, bits, fans.table.len(), &Cosine::new(cos)),
-            positions: Texture::new(&context, size(mesh.vertex_count())?, 4)?,
+            positions: Texture::new(&context, size(upload.words().len() / form.dimension.stride())?, 4)?,
             triangles: pair(whole, 4)?,
             twins: pair(whole, 4)?,
             verdicts: pair(size(3 * count)?, 1)?,
@@ -116,21 +112,20 @@ impl WebGl {
             passes: 0,
             context,
         };
-        result.upload(mesh, &adjacency.twins, &winding, fans)?;
+        result.write(&upload, &adjacency.twins, &winding, fans)?;
         result.flag_creases()?;
         Ok(result)
     }
 
-    fn upload(&mut self, mesh: &Mesh, twins: &[u32], winding: &Winding, fans: Fans) -> Result<(), Error> {
+    fn write(&mut self, upload: &Upload, twins: &[u32], winding: &Winding, fans: Fans) -> Result<(), Error> {
         let in_fours = |words: &[u32], fourth: &dyn Fn(usize) -> u32| -> Vec<u32> {
             words.chunks_exact(3).enumerate().flat_map(|(i, w)| [w[0], w[1], w[2], fourth(i)]).collect()
         };
-        let stride = self.dimension.stride();
-        let point = |p: &[f32]| [p[0], p[1], if stride == 3 { p[2] } else { 0.0 }, 0.0].map(f32::to_bits);
-        let positions = mesh.positions().to_f32();
-        self.positions.write(positions.chunks_exact(stride).flat_map(point).collect())?;
+        let stride = self.form.dimension.stride();
+        let point = |p: &[u32]| [p[0], p[1], if stride == 3 { p[2] } else { 0 }, 0];
+        self.positions.write(upload.words().chunks_exact(stride).flat_map(point).collect())?;
         let is_clockwise = |t: usize| u32::from(winding.is_clockwise(t as u32));
-        self.triangles.front.write(in_fours(mesh.triangles(), &is_clockwise))?;
+        self.triangles.front.write(in_fours(upload.mesh.triangles(), &is_clockwise))?;
         self.twins.front.write(in_fours(twins, &|_| NONE))?;
         self.fans.front.write(fans.table)?;
         // Every triangle is looked at in the first iteration: as if each had been blocked before, and none selected.
@@ -139,11 +134,11 @@ impl WebGl {
     }
 
     fn flag_creases(&mut self) -> Result<(), Error> {
-        if self.dimension == Dimension::Three {
+        if let [_, crease, flag] = deciders(self.form) {
             self.write_params();
-            self.context.pass("crease", &self.mesh(), &self.verdicts.back, None)?;
+            self.context.pass(crease, &self.mesh(), &self.verdicts.back, None)?;
             let over = (VERDICTS, &self.verdicts.back);
-            self.context.pass("flag", &[(TWINS, &self.twins.front), over], &self.twins.back, None)?;
+            self.context.pass(flag, &[(TWINS, &self.twins.front), over], &self.twins.back, None)?;
             self.passes += 2;
             self.twins.swap();
         }
@@ -158,9 +153,13 @@ impl WebGl {
     /// The verdicts on all edges as they are now, without the guard.
     fn judge(&mut self) -> Result<(), Error> {
         self.write_params();
-        let verdict = if self.dimension == Dimension::Two { "verdict2" } else { "verdict3" };
         let before = [(SELECTIONS, &self.selections), (VERDICTS, &self.verdicts.front)];
-        self.context.pass(verdict, &[&self.mesh()[..], &before].concat(), &self.verdicts.back, None)?;
+        self.context.pass(
+            deciders(self.form)[0],
+            &[&self.mesh()[..], &before].concat(),
+            &self.verdicts.back,
+            None,
+        )?;
         self.verdicts.swap();
         self.passes += 1;
         Ok(())
@@ -252,9 +251,19 @@ impl WebGl {
 
     async fn move_vertices(&mut self, mesh: Arc<Mesh>) -> Result<(), Error> {
         let passes = self.passes;
-        *self = Self::new(self.context.clone(), &mesh, self.cos).await?;
+        *self = Self::new(self.context.clone(), Upload::new(self.backend(), mesh)?, self.cos).await?;
         self.passes += passes;
         Ok(())
+    }
+}
+
+/// The programs that decide meshes of a form: the verdict on an edge; of surfaces also the creases.
+fn deciders(form: Form) -> &'static [&'static str] {
+    match (form.dimension, form.is_fixed) {
+        (Dimension::Two, false) => &["verdict2"],
+        (Dimension::Two, true) => &["verdict2_fixed"],
+        (Dimension::Three, false) => &["verdict3", "crease", "flag"],
+        (Dimension::Three, true) => &["verdict3_fixed", "crease_fixed", "flag"],
     }
 }
 

@@ -7,7 +7,7 @@ use super::kernels::{self, Kernels, WORKGROUP_SIZE};
 use crate::Error;
 use crate::engine::probe::ends_loops_early;
 use crate::engine::self_test::Tested;
-use crate::mesh::Dimension;
+use crate::engine::upload::Form;
 use futures_channel::oneshot;
 use std::sync::{Arc, Mutex};
 use wgpu::BufferUsages;
@@ -43,8 +43,8 @@ pub(crate) struct Device {
     pub(crate) tested: Tested,
     failure: Failure,
     pub(super) adjacency: Kernels,
-    /// By dimension, once a mesh has needed them.
-    phases: Mutex<[Option<Arc<Kernels>>; 2]>,
+    /// By the form of meshes, once one has needed them.
+    phases: Mutex<[Option<Arc<Kernels>>; Form::COUNT]>,
 }
 
 /// What has failed first since the device was opened, in the words of the device.
@@ -155,14 +155,13 @@ impl Device {
     ///
     /// # Errors
     /// [`Error::BackendUnavailable`] if the device's compiler refuses them.
-    pub(super) async fn phases(&self, dimension: Dimension) -> Result<Arc<Kernels>, Error> {
-        let place = dimension.stride() - 2;
+    pub(super) async fn phases(&self, form: Form) -> Result<Arc<Kernels>, Error> {
         let known = || self.phases.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
-        if let Some(kernels) = &known()[place] {
+        if let Some(kernels) = &known()[form.index()] {
             return Ok(kernels.clone());
         }
-        let kernels = accepted(&self.device, || kernels::phases(&self.device, dimension)).await?;
-        Ok(known()[place].insert(Arc::new(kernels)).clone())
+        let kernels = accepted(&self.device, || kernels::phases(&self.device, form)).await?;
+        Ok(known()[form.index()].insert(Arc::new(kernels)).clone())
     }
 
     /// Runs `shaders/probe.wgsl` and compares.

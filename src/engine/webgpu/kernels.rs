@@ -1,5 +1,6 @@
 //! The kernels, compiled from `shaders/`, and their bindings.
 
+use crate::engine::upload::Form;
 use crate::mesh::Dimension;
 use wgpu::{BindingType, BufferBindingType};
 
@@ -12,15 +13,16 @@ macro_rules! shaders {
     };
 }
 
-/// The shaders of the phases, for meshes of one dimension, in an order in which a reader can follow them.
-pub(super) fn phases_source(dimension: Dimension) -> String {
-    let numbers = shaders!("mesh" "points" "exact" "state");
-    let geometry = match dimension {
+/// The shaders of the phases, for meshes of one form, in an order in which a reader can follow them.
+pub(super) fn phases_source(form: Form) -> String {
+    let numbers = shaders!("mesh" "exact" "state" "points");
+    let points = if form.is_fixed { shaders!("fixed") } else { shaders!("floats") };
+    let geometry = match form.dimension {
         Dimension::Two => shaders!("plane"),
         Dimension::Three => shaders!("space" "creases" "flag_creases"),
     };
     let phases = shaders!("verdict" "star" "guard" "label" "select" "slot" "flip" "frontier" "iteration");
-    [numbers, geometry, phases].concat()
+    [numbers, points, geometry, phases].concat()
 }
 
 /// The shader that builds the adjacency.
@@ -71,12 +73,12 @@ pub(super) fn adjacency(device: &wgpu::Device) -> Kernels {
 }
 
 /// In the order of [`Kernel`]; the last is there for surfaces only.
-pub(super) fn phases(device: &wgpu::Device, dimension: Dimension) -> Kernels {
+pub(super) fn phases(device: &wgpu::Device, form: Form) -> Kernels {
     let (read, write) = (storage(true), storage(false));
     let bindings = [uniform(false), uniform(true), read, write, write, write, write, write, write];
     let names = Kernel::ALL.map(Kernel::name);
-    let names = if dimension == Dimension::Two { &names[..5] } else { &names[..] };
-    kernels(device, &phases_source(dimension), &bindings, names)
+    let names = if form.dimension == Dimension::Two { &names[..5] } else { &names[..] };
+    kernels(device, &phases_source(form), &bindings, names)
 }
 
 pub(super) fn probe(device: &wgpu::Device) -> Kernels {

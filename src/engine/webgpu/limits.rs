@@ -1,16 +1,14 @@
-//! What the device cannot take: a mesh too large for its buffers, or coordinates that it cannot decide exactly.
+//! What the device cannot take: a mesh too large for its buffers.
 
 use super::device::Device;
 use super::faults::refuse;
 use crate::Error;
-use crate::engine::span::refuse_wide_span;
-use crate::mesh::Mesh;
+use crate::engine::upload::Upload;
 
-/// Refuses a mesh that the device cannot hold, or whose coordinates it cannot decide exactly.
-pub(super) fn refuse_beyond_limits(gpu: &Device, mesh: &Mesh) -> Result<(), Error> {
-    let buckets = 2 * mesh.vertex_count().next_multiple_of(256);
-    refuse_large_buffer(gpu, mesh.positions().len().max(mesh.triangles().len()).max(buckets))?;
-    refuse_wide_span("gpu", mesh)
+/// Refuses a mesh that the device cannot hold.
+pub(super) fn refuse_large_mesh(gpu: &Device, upload: &Upload) -> Result<(), Error> {
+    let buckets = 2 * upload.mesh.vertex_count().next_multiple_of(256);
+    refuse_large_buffer(gpu, upload.words().len().max(upload.mesh.triangles().len()).max(buckets))
 }
 
 pub(super) fn refuse_large_buffer(gpu: &Device, words: usize) -> Result<(), Error> {

@@ -28,16 +28,17 @@ pub(crate) use shared::Handle;
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 use super::SharedObjects;
 use super::probe::SHORT_STAR;
+use super::upload::{Form, Upload};
 use super::{Answer, Census, EdgeCounts, Engine};
+use crate::Error;
 use crate::mesh::{Dimension, Mesh};
 use crate::star::Fans;
 use crate::winding::Winding;
-use crate::{Error, Positions};
 use buffers::Buffers;
 use device::Buffer;
 use faults::refuse;
 use kernels::Kernels;
-use limits::{refuse_beyond_limits, refuse_large_buffer};
+use limits::{refuse_large_buffer, refuse_large_mesh};
 use params::Params;
 use std::sync::Arc;
 use wgpu::BufferUsages;
@@ -63,6 +64,8 @@ type Entry = [u32; ENTRY_WORDS];
 pub(crate) struct WebGpu {
     gpu: Handle,
     kernels: Arc<Kernels>,
+    cos: f64,
+    form: Form,
     params: Params,
     counts: EdgeCounts,
     bindings: wgpu::BindGroup,
@@ -76,13 +79,13 @@ impl WebGpu {
     /// Uploads the mesh and builds its adjacency; `cos` is the cosine of β.
     ///
     /// # Errors
-    /// [`Error::BackendLimit`] for a mesh that is too large for the device or has coordinates of too many
-    /// magnitudes; [`Error::Device`].
-    pub(crate) async fn new(gpu: Handle, mesh: &Arc<Mesh>, cos: f64) -> Result<Self, Error> {
-        refuse_beyond_limits(&gpu, mesh)?;
-        let kernels = gpu.phases(mesh.dimension()).await?;
+    /// [`Error::BackendLimit`] for a mesh that is too large for the device; [`Error::Device`].
+    pub(crate) async fn new(gpu: Handle, upload: Upload, cos: f64) -> Result<Self, Error> {
+        refuse_large_mesh(&gpu, &upload)?;
+        let mesh = &upload.mesh;
+        let kernels = gpu.phases(upload.form()).await?;
         let count = mesh.triangle_count();
-        let allocate = || (Buffers::new(&gpu, mesh), adjacency::Scratch::new(&gpu, mesh));
+        let allocate = || (Buffers::new(&gpu, &upload), adjacency::Scratch::new(&gpu, mesh));
         let (buffers, scratch) = gpu.allocated(allocate).await?;
         let found = adjacency::build(&gpu, mesh, &buffers, scratch).await?;
         if gpu.ends_loops_early && found.most_corners > SHORT_STAR {
@@ -109,6 +112,8 @@ impl WebGpu {
         let places = (winding_words, fans.table.len());
         let mut result = Self {
             kernels,
+            cos,
+            form: upload.form(),
             params: Params::new(mesh, cos, places, gpu.ends_loops_early),
             counts: found.counts,
             bindings,
@@ -118,13 +123,14 @@ impl WebGpu {
             dispatches: 0,
             gpu,
         };
-        result.start(mesh).await?;
+        result.start(&upload).await?;
         result.dispatches += found.dispatches;
         Ok(result)
     }
 
-    /// Begins the iterations anew: `mesh` has the triangles that are on the device.
-    async fn start(&mut self, mesh: &Mesh) -> Result<(), Error> {
+    /// Begins the iterations anew: the mesh has the triangles that are on the device.
+    async fn start(&mut self, upload: &Upload) -> Result<(), Error> {
+        let mesh = &upload.mesh;
         // Components of both windings are rare: the host has time.
         let winding = match Winding::of_triangles(mesh) {
             Some(winding) => winding,
@@ -141,9 +147,9 @@ impl WebGpu {
         self.dispatches = u64::from(is_surface);
         let submit = || {
             let queue = &self.gpu.queue;
-            // The limits let no others through.
-            if let Positions::F32(positions) = mesh.positions() {
-                queue.write_buffer(&self.buffers.positions, 0, bytemuck::cast_slice(positions));
+            queue.write_buffer(&self.buffers.positions, 0, bytemuck::cast_slice(upload.words()));
+            if let Some(floats) = &self.buffers.floats {
+                queue.write_buffer(floats, 0, bytemuck::cast_slice(&mesh.positions().to_f32()));
             }
             queue.write_buffer(&self.topology, 0, bytemuck::cast_slice(&winding.clockwise));
             let mut encoder = self.encode(|pass| {
@@ -159,8 +165,12 @@ impl WebGpu {
     }
 
     async fn move_vertices(&mut self, mesh: Arc<Mesh>) -> Result<(), Error> {
-        refuse_beyond_limits(&self.gpu, &mesh)?;
-        self.start(&mesh).await
+        let upload = Upload::new(self.backend(), mesh)?;
+        if upload.form() == self.form {
+            return self.start(&upload).await;
+        }
+        *self = Self::new(self.gpu.clone(), upload, self.cos).await?;
+        Ok(())
     }
 
     /// One submission of up to `count` iterations; returns the flips of those that ran, the last of which may
@@ -306,7 +316,7 @@ impl Engine for WebGpu {
     fn shared_objects(&self) -> Option<SharedObjects> {
         Some(SharedObjects {
             device: self.gpu.device.as_webgpu()?.into(),
-            positions: self.buffers.positions.as_webgpu()?.into(),
+            positions: self.buffers.floats.as_ref().unwrap_or(&self.buffers.positions).as_webgpu()?.into(),
             triangles: self.buffers.triangles.as_webgpu()?.into(),
         })
     }

@@ -9,7 +9,7 @@ use super::params::Params;
 use super::{ENTRIES, ENTRY_WORDS};
 use crate::adjacency::CREASE;
 use crate::engine::cosine::DIGIT_BITS;
-use crate::engine::span::SPAN;
+use crate::engine::upload::{Form, SPAN};
 use crate::phases::BLOCKED;
 use crate::{Dimension, Error, NONE, Reason};
 use pollster::block_on;
@@ -17,8 +17,16 @@ use std::collections::HashMap;
 use std::mem::offset_of;
 
 /// Every shader.
-fn sources() -> [String; 4] {
-    [phases_source(Dimension::Two), phases_source(Dimension::Three), ADJACENCY.to_owned(), PROBE.to_owned()]
+fn sources() -> [String; 6] {
+    let [plane, space] = [Dimension::Two, Dimension::Three]
+        .map(|dimension| [false, true].map(|is_fixed| phases_source(Form { dimension, is_fixed })));
+    let ([plane, fixed_plane], [space, fixed_space]) = (plane, space);
+    [plane, fixed_plane, space, fixed_space, ADJACENCY.to_owned(), PROBE.to_owned()]
+}
+
+/// The phases on surfaces.
+fn space() -> naga::Module {
+    parse(&phases_source(Form { dimension: Dimension::Three, is_fixed: false }))
 }
 
 fn parse(source: &str) -> naga::Module {
@@ -52,7 +60,7 @@ fn members(module: &naga::Module, name: &str) -> Vec<(String, usize, usize)> {
 
 #[test]
 fn constants_of_the_phases_agree() {
-    let module = parse(&phases_source(Dimension::Three));
+    let module = space();
     let shader = constants(&module);
     let host = [
         ("NONE", u64::from(NONE)),
@@ -123,7 +131,7 @@ fn params_have_one_layout() {
         cos_mantissa,
         cos_power
     );
-    let shader = members(&parse(&phases_source(Dimension::Three)), "Params");
+    let shader = members(&space(), "Params");
     let places: Vec<_> = shader.iter().map(|(name, offset, _)| (name.as_str(), *offset)).collect();
     assert_eq!(places, host);
     let (_, offset, size) = &shader[shader.len() - 1];

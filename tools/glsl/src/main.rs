@@ -1,6 +1,6 @@
 //! Writes the programs of the WebGL2 engine as a JavaScript module: `cargo run -p glsl -- FILE`. GLSL ES 3.00 from the
 //! WGSL in `shaders/`, by naga, a program for each entry point of `passes.wgsl` and, where it decides anything, for
-//! each dimension. Refuses what old drivers get wrong.
+//! each form of meshes. Refuses what old drivers get wrong.
 
 mod lint;
 
@@ -20,7 +20,7 @@ macro_rules! shaders {
 /// The name of a program, and its entry point.
 type Program = (&'static str, &'static str);
 
-/// For meshes in the plane; all but `verdict2` are for surfaces too.
+/// For meshes in the plane, with coordinates as floats; all but `verdict2` are for every mesh.
 const PLANE: [Program; 11] = [
     ("cover", "cover"),
     ("verdict2", "verdict_pass"),
@@ -35,13 +35,18 @@ const PLANE: [Program; 11] = [
     ("probe", "probe_pass"),
 ];
 
-/// For surfaces.
+/// For surfaces; `flag` is for all of them.
 const SPACE: [Program; 3] = [("verdict3", "verdict_pass"), ("crease", "crease_pass"), ("flag", "flag_pass")];
 
-/// The program of an entry point, with the files that say what the dimension is.
-fn glsl(entry_point: &str, geometry: &str) -> Result<String, Box<dyn Error>> {
+/// For coordinates as fixed-point numbers.
+const FIXED_PLANE: [Program; 1] = [("verdict2_fixed", "verdict_pass")];
+const FIXED_SPACE: [Program; 2] = [("verdict3_fixed", "verdict_pass"), ("crease_fixed", "crease_pass")];
+
+/// The program of an entry point, with the files that say what a point is and what the dimension is.
+fn glsl(entry_point: &str, points: &str, geometry: &str) -> Result<String, Box<dyn Error>> {
     let source = [
-        shaders!("mesh" "points" "exact" "textures"),
+        shaders!("mesh" "exact" "textures" "points"),
+        points,
         geometry,
         shaders!("verdict" "star" "guard" "label" "select" "slot" "rounds" "passes"),
     ]
@@ -70,10 +75,16 @@ fn stage(module: &Module) -> Result<ShaderStage, String> {
 fn main() -> Result<(), Box<dyn Error>> {
     let path = std::env::args().nth(1).ok_or("usage: glsl FILE")?;
     let mut programs = BTreeMap::new();
+    let (floats, fixed) = (shaders!("floats"), shaders!("fixed"));
     let (plane, space) = (shaders!("plane"), shaders!("space" "creases" "crease_pass"));
-    for (geometry, list) in [(plane, &PLANE[..]), (space, &SPACE[..])] {
+    for (points, geometry, list) in [
+        (floats, plane, &PLANE[..]),
+        (floats, space, &SPACE[..]),
+        (fixed, plane, &FIXED_PLANE[..]),
+        (fixed, space, &FIXED_SPACE[..]),
+    ] {
         for &(name, entry_point) in list {
-            programs.insert(name, glsl(entry_point, geometry)?);
+            programs.insert(name, glsl(entry_point, points, geometry)?);
         }
     }
     let text = serde_json::to_string_pretty(&programs)?;

@@ -1,0 +1,33 @@
+// Points of fixed-point coordinates: how far the vertex is from the corner of the bounding box, in units of the mesh's
+// grid. No predicate depends on where the mesh is or how large that unit is.
+
+// The low words of the coordinates, the middle ones, the high ones.
+alias Point = array<vec3u, 3>;
+
+fn position(v: u32) -> Point {
+    return Point(coordinates(3u * v), coordinates(3u * v + 1u), coordinates(3u * v + 2u));
+}
+
+// All are on the grid of the mesh.
+fn grid_of(a: Point, b: Point, c: Point, d: Point) -> i32 {
+    return 0;
+}
+
+fn exact_differences(u: Point, v: Point, grid: i32) -> Differences {
+    return Differences(
+        difference(vec4u(u[0].x, u[1].x, u[2].x, 0u), vec4u(v[0].x, v[1].x, v[2].x, 0u)),
+        difference(vec4u(u[0].y, u[1].y, u[2].y, 0u), vec4u(v[0].y, v[1].y, v[2].y, 0u)),
+        difference(vec4u(u[0].z, u[1].z, u[2].z, 0u), vec4u(v[0].z, v[1].z, v[2].z, 0u)),
+    );
+}
+
+// u - v. A word that becomes an f32 errs by ε, and so does each of two sums of numbers of one sign: 3ε.
+fn rounded_difference(u: Point, v: Point) -> vec3f {
+    let exact = exact_differences(u, v, 0);
+    return vec3f(rounded(exact[0]), rounded(exact[1]), rounded(exact[2]));
+}
+
+fn rounded(x: vec4u) -> f32 {
+    let magnitude = f32(x.z) * 1.8446744e19 + (f32(x.y) * 4294967296.0 + f32(x.x));
+    return select(magnitude, -magnitude, x.w == 1u);
+}
