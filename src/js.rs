@@ -8,7 +8,7 @@ pub use crate::js_values::JsPositions;
 use crate::js_values::{backend_name, object, parse_dimension, thrown};
 use crate::{Backend, Error, Mesh, Options, Order, Session, engine};
 use js_sys::{Uint8Array, Uint32Array};
-use objects::{outcome_object, reasons_object};
+use objects::{audit_object, outcome_object, reasons_object};
 use wasm_bindgen::prelude::*;
 
 #[wasm_bindgen]
@@ -146,15 +146,7 @@ impl JsSession {
     /// As there.
     #[wasm_bindgen(unchecked_return_type = "import('../types.js').Audit")]
     pub async fn verify(&mut self) -> Result<JsValue, JsValue> {
-        let audit = self.0.verify().await.map_err(thrown)?;
-        let violations: js_sys::Array =
-            audit.violations.iter().map(|violation| JsValue::from(violation.to_string())).collect();
-        Ok(object([
-            ("clean", audit.is_clean().into()),
-            ("violations", violations.into()),
-            ("unlisted", (audit.unlisted as f64).into()),
-            ("remaining", reasons_object(&audit.remaining)),
-        ]))
+        Ok(audit_object(&self.0.verify().await.map_err(thrown)?))
     }
 
     /// Iterations so far.

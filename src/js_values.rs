@@ -29,7 +29,7 @@ pub fn start() {
 }
 
 /// A plain object.
-pub(crate) fn object<const N: usize>(fields: [(&str, JsValue); N]) -> JsValue {
+pub(crate) fn object<'a>(fields: impl IntoIterator<Item = (&'a str, JsValue)>) -> JsValue {
     let entries: Array = fields.into_iter().map(|(name, value)| Array::of2(&name.into(), &value)).collect();
     // Fails only on what is no list of pairs.
     Object::from_entries(&entries).map_or_else(|error| error, JsValue::from)

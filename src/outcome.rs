@@ -51,6 +51,16 @@ impl Reasons {
     }
 }
 
+impl FromIterator<Reason> for Reasons {
+    fn from_iter<I: IntoIterator<Item = Reason>>(edges: I) -> Self {
+        let mut reasons = Self::default();
+        for reason in edges {
+            reasons[reason] += 1;
+        }
+        reasons
+    }
+}
+
 impl std::ops::Index<Reason> for Reasons {
     type Output = u64;
     fn index(&self, reason: Reason) -> &u64 {

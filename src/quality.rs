@@ -5,7 +5,7 @@ mod edges;
 mod exact;
 mod surface;
 
-pub use audit::{Audit, MAX_LISTED, Violation, audit};
+pub use audit::{Audit, MAX_LISTED, RemainingEdge, Violation, audit};
 
 use crate::Mesh;
 use glam::DVec3;

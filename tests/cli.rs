@@ -3,7 +3,7 @@
 // Clippy's exemption for tests does not reach their shared functions.
 #![allow(clippy::unwrap_used)]
 
-use serde_json::Value;
+use serde_json::{Value, json};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
@@ -134,7 +134,32 @@ fn verify_adds_an_empty_audit() {
     let ran = run(&input, &output, &["--json", "--verify"]);
     assert_eq!((ran.status.code(), text(&ran.stderr)), (Some(0), ""));
     let found: Value = serde_json::from_slice(&ran.stdout).unwrap();
-    assert_eq!(found["audit"], Value::Array(vec![]));
+    assert_eq!((&found["audit"], &found["remaining_edges"]), (&json!([]), &json!({})));
+}
+
+#[test]
+fn verify_names_the_edges_left() {
+    // Seven roofs, each cut along its ridge, which is too sharp to flip, and a thin diamond, cut along 28-30.
+    let mut mesh = "OFF\n32 16 0\n".to_owned();
+    for x in (0..7).map(|roof| 10 * roof) {
+        mesh += &format!("{x} 0 0\n{} 0 0\n{} 0.5 0\n{} 0 0.5\n", x + 4, x + 2, x + 2);
+    }
+    mesh += "70 0 0\n73 -1 0\n76 0 0\n73 1 0\n3 28 29 30\n3 28 30 31\n";
+    for v in (0..7).map(|roof| 4 * roof) {
+        mesh += &format!("3 {v} {} {}\n3 {} {v} {}\n", v + 1, v + 2, v + 1, v + 3);
+    }
+    let folder = Folder::new();
+    let (input, output) = (folder.file("in.off", mesh), folder.path("out.off"));
+    let ran = run(&input, &output, &["--verify", "--max-iterations", "0", "--json"]);
+    assert_eq!((ran.status.code(), text(&ran.stderr)), (Some(0), ""));
+    let found: Value = serde_json::from_slice(&ran.stdout).unwrap();
+    let ridges = [[0, 1], [4, 5], [8, 9], [12, 13], [16, 17], [20, 21], [24, 25]];
+    assert_eq!(found["remaining_edges"], json!({ "angle": ridges, "stopped": [[28, 30]] }));
+    let ran = run(&input, &output, &["--verify", "--max-iterations", "0"]);
+    let line = "\nedges left angle 0-1, 4-5, 8-9, 12-13, 16-17 and 2 more; stopped 28-30\n";
+    assert!(text(&ran.stderr).contains(line), "{}", text(&ran.stderr));
+    let ran = run(&input, &output, &["--verify"]);
+    assert!(text(&ran.stderr).contains(" and 2 more\n"), "{}", text(&ran.stderr));
 }
 
 #[test]

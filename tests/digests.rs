@@ -7,7 +7,7 @@ mod simulation;
 use edgeflip::families::by_name;
 use edgeflip::quality::audit;
 use edgeflip::{Mesh, Reason};
-use simulation::{Expected, Simulation, digests_path, expected, simulate};
+use simulation::{Expected, Simulation, digests_path, expected, remaining_edges, simulate};
 
 /// A finished run that the audit finds nothing wrong with.
 fn audited_run(name: &str, mesh: &Mesh, beta: f64) -> Simulation {
@@ -15,6 +15,7 @@ fn audited_run(name: &str, mesh: &Mesh, beta: f64) -> Simulation {
     let audit = audit(mesh, &run.triangles, beta);
     assert!(audit.is_clean(), "{name} {beta}: {:?}", audit.violations);
     assert_eq!(audit.remaining, run.remaining, "{name} {beta}");
+    assert_eq!(audit.remaining_edges, remaining_edges(mesh, &run.triangles, beta), "{name} {beta}");
     assert_eq!(run.remaining[Reason::Stopped], 0, "{name} {beta}");
     run
 }
@@ -90,14 +91,17 @@ fn strips_flip_as_in_the_paper() {
 }
 
 #[test]
-fn a_capped_run_counts_what_it_left() {
+fn a_capped_run_says_what_it_left() {
     let mesh = by_name("random 12").unwrap();
     let whole = simulate(&mesh, 10.0, None);
     let capped = simulate(&mesh, 10.0, Some(2));
     assert_eq!(capped.iterations.len(), 2);
     assert_eq!(capped.digest, whole.iterations[1].digest);
     assert_eq!(capped.remaining[Reason::Stopped], u64::from(whole.iterations[2].labelled));
-    assert_eq!(audit(&mesh, &capped.triangles, 10.0).remaining, capped.remaining);
+    let audit = audit(&mesh, &capped.triangles, 10.0);
+    assert_eq!(audit.remaining, capped.remaining);
+    assert_eq!(audit.remaining_edges, remaining_edges(&mesh, &capped.triangles, 10.0));
+    assert_eq!(audit.remaining_for(Reason::Stopped).count() as u64, capped.remaining.total());
     assert_eq!(simulate(&mesh, 10.0, Some(0)).triangles, mesh.triangles());
 }
 

@@ -1,17 +1,30 @@
 //! Results as JavaScript objects, in the words of the npm package: the field names of `src/js/types.ts`.
 
 use crate::js_values::{backend_name, object};
+use crate::quality::Audit;
 use crate::{Outcome, Reasons, Status};
-use js_sys::{Array, Object, Uint32Array};
+use js_sys::{Array, Uint32Array};
 use wasm_bindgen::JsValue;
 
 /// The reasons with at least one edge.
 pub(super) fn reasons_object(reasons: &Reasons) -> JsValue {
-    let entries: Array = reasons
-        .iter()
-        .map(|(reason, edges)| Array::of2(&reason.name().into(), &(edges as f64).into()))
-        .collect();
-    Object::from_entries(&entries).map_or_else(|error| error, JsValue::from)
+    object(reasons.iter().map(|(reason, edges)| (reason.name(), (edges as f64).into())))
+}
+
+pub(super) fn audit_object(audit: &Audit) -> JsValue {
+    let violations: Array =
+        audit.violations.iter().map(|violation| JsValue::from(violation.to_string())).collect();
+    let ends = audit.remaining.iter().map(|(reason, _)| {
+        let ends: Vec<u32> = audit.remaining_for(reason).flatten().collect();
+        (reason.name(), Uint32Array::from(ends.as_slice()).into())
+    });
+    object([
+        ("clean", audit.is_clean().into()),
+        ("violations", violations.into()),
+        ("unlisted", (audit.unlisted as f64).into()),
+        ("remaining", reasons_object(&audit.remaining)),
+        ("remainingEdges", object(ends)),
+    ])
 }
 
 pub(super) fn outcome_object(outcome: &Outcome) -> JsValue {

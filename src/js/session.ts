@@ -114,7 +114,10 @@ export class FlipSession implements AsyncIterable<Iteration>, Disposable {
     return this.#call((session) => session.edgeStates());
   }
 
-  /** Checks the triangles against the input, exactly, with code that shares nothing with what made them. */
+  /**
+   * Checks the triangles against the input, exactly, with code that shares nothing with what made them, and lists the
+   * edges that are not Delaunay.
+   */
   verify(): Promise<Audit> {
     return this.#call((session) => session.verify());
   }

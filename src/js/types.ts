@@ -151,6 +151,12 @@ export interface Audit {
   violations: string[];
   /** How many more there are. */
   unlisted: number;
-  /** Every edge that is not Delaunay, by the reason for which it cannot flip; `stopped` if it could. */
+  /** Numbers of edges that are not Delaunay, by the reason for which they cannot flip; `stopped` if they could. */
   remaining: Reasons;
+  /**
+   * Which edges these are: the two vertices of each, one edge after the other, by reason. So an array has two numbers
+   * an edge, as an index buffer of line segments does. The smaller vertex comes first, and the edges are in ascending
+   * order. A reason without an edge is absent.
+   */
+  remainingEdges: Partial<Record<Reason, Uint32Array>>;
 }

@@ -4,7 +4,7 @@
 use super::edges::{Class, Edge};
 use super::exact;
 use super::surface::Surface;
-use crate::{Dimension, Mesh, Reasons};
+use crate::{Dimension, Mesh, Reason, Reasons};
 use std::cmp::Ordering;
 
 /// Violations that an [`Audit`] lists; further ones are only counted.
@@ -107,6 +107,17 @@ pub enum Violation {
     },
 }
 
+/// An edge of a result that is not Delaunay.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RemainingEdge {
+    /// Smaller end.
+    pub u: u32,
+    /// Larger end.
+    pub v: u32,
+    /// Why it cannot flip; `Stopped` if it could.
+    pub reason: Reason,
+}
+
 /// What [`audit`] found.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Audit {
@@ -114,8 +125,10 @@ pub struct Audit {
     pub violations: Vec<Violation>,
     /// Violations beyond those.
     pub unlisted: usize,
-    /// Every edge of the result that is not Delaunay, by the reason for which it cannot flip; `stopped` is
-    /// an edge that could. Empty when the indices are wrong.
+    /// Every edge of the result that is not Delaunay, in ascending order of its ends. An edge is a pair of
+    /// vertices, however many triangles share it. Empty when the indices are wrong.
+    pub remaining_edges: Vec<RemainingEdge>,
+    /// How many of them there are, by reason.
     pub remaining: Reasons,
 }
 
@@ -123,6 +136,11 @@ impl Audit {
     /// Whether no violation was found. What remains is no violation.
     pub fn is_clean(&self) -> bool {
         self.violations.is_empty()
+    }
+
+    /// The ends of the edges that remain for `reason`, in ascending order.
+    pub fn remaining_for(&self, reason: Reason) -> impl Iterator<Item = [u32; 2]> + '_ {
+        self.remaining_edges.iter().filter(move |edge| edge.reason == reason).map(|edge| [edge.u, edge.v])
     }
 
     fn report(&mut self, violation: Violation) {
@@ -173,7 +191,8 @@ pub fn audit(input: &Mesh, triangles: &[u32], max_normal_angle: f64) -> Audit {
             audit.report(Violation::Inverted { before, after });
         }
     }
-    audit.remaining = after.remaining(cosine, &creases);
+    audit.remaining_edges = after.remaining(cosine, &creases);
+    audit.remaining = audit.remaining_edges.iter().map(|edge| edge.reason).collect();
     audit
 }
 

@@ -1,8 +1,9 @@
 //! A surface as the audit sees it: edge table, components, areas, and the edges that are not Delaunay.
 
+use super::audit::RemainingEdge;
 use super::edges::{Class, Edge, EdgeTable, next, prev};
 use super::exact::{self, ExactSum, Triangle};
-use crate::{Dimension, Mesh, Reason, Reasons};
+use crate::{Dimension, Mesh, Reason};
 use num_bigint::{BigInt, Sign};
 use std::cmp::Ordering;
 
@@ -74,10 +75,10 @@ impl<'a> Surface<'a> {
         self.points([h, next(h), prev(h)].map(|x| self.triangles[x as usize]))
     }
 
-    /// Counts the edges that are not Delaunay. `creases` are edges that may not flip, whatever their angle
-    /// is now, in the order of the table.
-    pub fn remaining(&self, cosine: f64, creases: &[(u32, u32)]) -> Reasons {
-        let mut remaining = Reasons::default();
+    /// The edges that are not Delaunay, in the order of the table. `creases` are edges that may not flip,
+    /// whatever their angle is now, in the same order.
+    pub fn remaining(&self, cosine: f64, creases: &[(u32, u32)]) -> Vec<RemainingEdge> {
+        let mut remaining = Vec::new();
         let mut creases = creases.iter().peekable();
         for edge in self.table.edges() {
             while creases.next_if(|&&crease| crease < (edge.u, edge.v)).is_some() {}
@@ -93,9 +94,7 @@ impl<'a> Surface<'a> {
                 Class::NonManifold => self.frozen_excess(&edge).then_some(Reason::NonManifold),
                 Class::Inconsistent => self.frozen_excess(&edge).then_some(Reason::Inconsistent),
             };
-            if let Some(reason) = reason {
-                remaining[reason] += 1;
-            }
+            remaining.extend(reason.map(|reason| RemainingEdge { u: edge.u, v: edge.v, reason }));
         }
         remaining
     }

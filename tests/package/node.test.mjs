@@ -158,7 +158,7 @@ test('a session is iterated, asked for edges and audited', async () => {
   assert.deepEqual(flips, [1, 2, 3, 2, 1]);
   assert.equal(await session.step(), undefined);
   const [triangles, edges, audit] = await Promise.all([session.triangles(), session.edges(), session.verify()]);
-  assert.deepEqual(audit, { clean: true, violations: [], unlisted: 0, remaining: {} });
+  assert.deepEqual(audit, { clean: true, violations: [], unlisted: 0, remaining: {}, remainingEdges: {} });
   assert.equal(edges.v1.length, (await session.result()).edges);
   edges.ta.forEach((ta, edge) => {
     assert.equal(triangles[ta], edges.v1[edge]);
@@ -166,6 +166,32 @@ test('a session is iterated, asked for edges and audited', async () => {
   });
   assert.deepEqual([await session.backend(), await session.gpu()], ['cpu', undefined]);
   session.free();
+});
+
+test('an audit names the edges that remain', async () => {
+  // A roof, cut along its ridge 0-1: each side is very flat at it. Beside it a thin diamond, cut along 4-6.
+  const mesh = {
+    positions: Float32Array.of(0, 0, 0, 4, 0, 0, 2, 0.5, 0, 2, 0, 0.5, 7, 0, 0, 10, -1, 0, 13, 0, 0, 10, 1, 0),
+    indices: Uint32Array.of(0, 1, 2, 1, 0, 3, 4, 5, 6, 4, 6, 7),
+    dimension: 3,
+  };
+  const session = await FlipSession.create(mesh);
+  const before = await session.verify();
+  assert.deepEqual(before.remaining, { angle: 1, stopped: 1 });
+  assert.deepEqual(before.remainingEdges, { angle: Uint32Array.of(0, 1), stopped: Uint32Array.of(4, 6) });
+  await session.run();
+  assert.deepEqual((await session.verify()).remainingEdges, { angle: Uint32Array.of(0, 1) });
+  session.free();
+
+  const capped = await FlipSession.create(strips(40), { maxIterations: 1 });
+  const { remaining } = await capped.run();
+  const { stopped } = (await capped.verify()).remainingEdges;
+  assert.equal(stopped.length, 2 * remaining.stopped);
+  const [triangles, states] = [await capped.triangles(), await capped.edgeStates()];
+  const waits = Array.from(triangles, (v, h) => [v, triangles[h % 3 === 2 ? h - 2 : h + 1]])
+    .filter(([u, v], h) => u < v && ['flips', 'waits'].includes(EDGE_STATES[states[h]]));
+  assert.deepEqual([...stopped], waits.sort(([a, b], [c, d]) => a - c || b - d).flat());
+  capped.free();
 });
 
 test('the states of the edges foretell every step', async () => {

@@ -21,6 +21,9 @@ export async function use(mesh: Mesh, signal: AbortSignal, device?: GPUDevice): 
   console.log(buffer?.size);
   const states: EdgeState[] = Array.from(await session.edgeStates(), (number) => EDGE_STATES[number] ?? 'boundary');
   console.log(states);
+  const { remainingEdges } = await session.verify();
+  const lines: Uint32Array = remainingEdges.angle ?? new Uint32Array();
+  console.log(lines);
   await session.setPositions(new Float64Array(9));
   session.free();
   return result.indices;

@@ -8,6 +8,7 @@ mod predicates;
 pub use digest::{Digest, Expected, digests_path, expected};
 pub use predicates::{Predicates, Verdict};
 
+use edgeflip::quality::RemainingEdge;
 use edgeflip::{Dimension, Mesh, Reason, Reasons};
 use num_bigint::{BigInt, Sign};
 use std::collections::{BTreeMap, HashMap, HashSet};
@@ -145,10 +146,20 @@ struct Labels {
     labelled: BTreeMap<u32, (u32, u32)>,
     /// Its half-edges.
     twins: BTreeMap<u32, u32>,
-    /// Non-Delaunay edges with twins that may not flip.
-    blocked: Reasons,
+    /// Non-Delaunay edges with twins that may not flip, by their ends.
+    blocked: BTreeMap<(u32, u32), Reason>,
     /// Non-Delaunay edges that are frozen.
-    frozen: Reasons,
+    frozen: BTreeMap<(u32, u32), Reason>,
+}
+
+impl Labels {
+    /// All non-Delaunay edges, in ascending order of their ends.
+    fn remaining(&self, triangles: &[u32]) -> Vec<RemainingEdge> {
+        let ends = |(&h, &g): (&u32, &u32)| pair(triangles[h as usize], triangles[g as usize]);
+        let stopped = self.twins.iter().map(|twins| (ends(twins), Reason::Stopped)).collect();
+        let all: BTreeMap<_, _> = [&self.blocked, &self.frozen, &stopped].into_iter().flatten().collect();
+        all.into_iter().map(|(&(u, v), &reason)| RemainingEdge { u, v, reason }).collect()
+    }
 }
 
 struct Rules {
@@ -161,19 +172,36 @@ struct Rules {
 }
 
 impl Rules {
+    fn new(mesh: &Mesh, beta_deg: f64) -> Self {
+        let triangles = mesh.triangles();
+        let predicates = Predicates::new(mesh, beta_deg);
+        let clockwise = clockwise(mesh, &predicates);
+        let creases = edges(triangles)
+            .into_iter()
+            .filter(|(_, half_edges)| match kind(triangles, half_edges) {
+                Kind::Twins(h, g) => predicates.is_sharp(quad(triangles, h, g)),
+                _ => false,
+            })
+            .map(|(ends, _)| ends)
+            .collect();
+        Self { predicates, clockwise, creases, verdicts: HashMap::new() }
+    }
+
     fn label(&mut self, triangles: &[u32]) -> Labels {
         let edges = edges(triangles);
         let mut labels = Labels {
             labelled: BTreeMap::new(),
             twins: BTreeMap::new(),
-            blocked: Reasons::default(),
-            frozen: Reasons::default(),
+            blocked: BTreeMap::new(),
+            frozen: BTreeMap::new(),
         };
-        for half_edges in edges.values() {
+        for (&ends, half_edges) in &edges {
             match kind(triangles, half_edges) {
                 Kind::Boundary => {}
                 Kind::Frozen(reason) => {
-                    labels.frozen[reason] += u64::from(self.frozen_excess(triangles, half_edges));
+                    if self.frozen_excess(triangles, half_edges) {
+                        labels.frozen.insert(ends, reason);
+                    }
                 }
                 Kind::Twins(h, g) => {
                     let quad = quad(triangles, h, g);
@@ -183,13 +211,14 @@ impl Rules {
                         .verdicts
                         .entry((quad, clockwise))
                         .or_insert_with(|| predicates.verdict(quad, clockwise));
-                    let [a, b, c, d] = quad;
+                    let [_, _, c, d] = quad;
+                    let mut block = |reason| _ = labels.blocked.insert(ends, reason);
                     let duplicate = c == d || edges.contains_key(&pair(c, d));
                     match verdict {
                         None => {}
-                        Some(_) if self.creases.contains(&pair(a, b)) => labels.blocked[Reason::Angle] += 1,
-                        Some(Err(reason)) => labels.blocked[reason] += 1,
-                        Some(Ok(())) if duplicate => labels.blocked[Reason::Duplicate] += 1,
+                        Some(_) if self.creases.contains(&ends) => block(Reason::Angle),
+                        Some(Err(reason)) => block(reason),
+                        Some(Ok(())) if duplicate => block(Reason::Duplicate),
                         Some(Ok(())) => {
                             labels.labelled.insert(h, pair(c, d));
                             labels.twins.insert(h, g);
@@ -234,17 +263,7 @@ fn select(labels: &Labels, iteration: u32) -> Vec<(u32, u32)> {
 /// Runs the rules on `mesh` with the threshold β to their end, or for `max_iterations`.
 pub fn simulate(mesh: &Mesh, beta_deg: f64, max_iterations: Option<u32>) -> Simulation {
     let mut triangles = mesh.triangles().to_vec();
-    let predicates = Predicates::new(mesh, beta_deg);
-    let clockwise = clockwise(mesh, &predicates);
-    let creases = edges(&triangles)
-        .into_iter()
-        .filter(|(_, half_edges)| match kind(&triangles, half_edges) {
-            Kind::Twins(h, g) => predicates.is_sharp(quad(&triangles, h, g)),
-            _ => false,
-        })
-        .map(|(ends, _)| ends)
-        .collect();
-    let mut rules = Rules { predicates, clockwise, creases, verdicts: HashMap::new() };
+    let mut rules = Rules::new(mesh, beta_deg);
     let mut digest = Digest::default();
     digest.feed(&triangles);
     let mut iterations = Vec::new();
@@ -253,11 +272,7 @@ pub fn simulate(mesh: &Mesh, beta_deg: f64, max_iterations: Option<u32>) -> Simu
         let labels = rules.label(&triangles);
         let flips = if max_iterations == Some(iteration) { Vec::new() } else { select(&labels, iteration) };
         if flips.is_empty() {
-            let mut remaining = labels.blocked;
-            for (reason, edges) in labels.frozen.iter() {
-                remaining[reason] += edges;
-            }
-            remaining[Reason::Stopped] = labels.labelled.len() as u64;
+            let remaining = labels.remaining(&triangles).iter().map(|edge| edge.reason).collect();
             return Simulation { iterations, triangles, remaining, digest };
         }
         for &(h, g) in &flips {
@@ -269,9 +284,14 @@ pub fn simulate(mesh: &Mesh, beta_deg: f64, max_iterations: Option<u32>) -> Simu
         iterations.push(IterationRecord {
             labelled: labels.labelled.len() as u32,
             flips: flips.len() as u32,
-            blocked: labels.blocked,
+            blocked: labels.blocked.into_values().collect(),
             digest,
         });
     }
     unreachable!("the iterations have no upper end")
+}
+
+/// The non-Delaunay edges of `triangles`, a state that flips of `mesh` led to, in ascending order of their ends.
+pub fn remaining_edges(mesh: &Mesh, triangles: &[u32], beta_deg: f64) -> Vec<RemainingEdge> {
+    Rules::new(mesh, beta_deg).label(triangles).remaining(triangles)
 }

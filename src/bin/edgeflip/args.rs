@@ -70,7 +70,8 @@ pub struct Args {
     /// Check the result independently; if the check fails, write nothing and end with status 1
     ///
     /// Checks that vertices, boundary, components and orientation are what they were, and that the edges
-    /// left are what the run says they are.
+    /// left are what the run says they are. The summary names the first edges left for each reason by their
+    /// two vertices, counted from 0; --json has all of them.
     #[arg(long)]
     pub verify: bool,
 
@@ -79,7 +80,8 @@ pub struct Args {
     /// Keys: input, vertices, triangles, edges, boundary_edges, dimension, backend, adapter, fallback,
     /// status (done or stopped), iterations, flips, flips_per_iteration, dispatches, remaining (by reason),
     /// min_angle_before_deg, min_angle_after_deg, ms (load, adjacency, flip, total, save; total is the run
-    /// without load and save), and with --verify audit (the violations).
+    /// without load and save), and with --verify audit (the violations) and remaining_edges (by reason, the
+    /// two vertices of each edge left, counted from 0).
     #[arg(long)]
     pub json: bool,
 

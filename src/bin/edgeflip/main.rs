@@ -7,7 +7,7 @@ use args::Args;
 use clap::Parser;
 use edgeflip::{Error, Mesh, Outcome, io, make_delaunay, quality};
 use indicatif::{ProgressBar, ProgressStyle};
-use report::{Milliseconds, Report};
+use report::{Check, Milliseconds, Report};
 use std::io::{IsTerminal, Write};
 use std::ops::ControlFlow;
 use std::process::ExitCode;
@@ -98,30 +98,32 @@ fn run(args: &Args, bar: &ProgressBar) -> Result<Report, Failure> {
     let result = mesh.with_triangles(outcome.triangles.clone()).map_err(refused)?;
     let after = quality::min_angle(&result);
 
-    let audit = args.verify.then(|| {
+    let check = args.verify.then(|| {
         bar.set_message("verifying");
-        audit(args, &mesh, &outcome)
+        check(args, &mesh, &outcome)
     });
     let mut save = None;
-    if audit.as_ref().is_none_or(Vec::is_empty) {
+    if check.as_ref().is_none_or(|check| check.violations.is_empty()) {
         bar.set_message(format!("writing {}", args.output.display()));
         let (written, ms) = timed(|| io::write(&args.output, &result));
         written.map_err(|e| Failure::of(&args.output, &e))?;
         save = Some(ms);
     }
     let ms = Milliseconds::new(load, &outcome.timings, save);
-    Ok(Report::new(args, &result, outcome, [before, after], audit, ms).with_notes(polygons, &dropped))
+    Ok(Report::new(args, &result, outcome, [before, after], check, ms).with_notes(polygons, &dropped))
 }
 
-/// The violations that the independent check finds, its count of the edges left included.
-fn audit(args: &Args, mesh: &Mesh, outcome: &Outcome) -> Vec<String> {
+/// What the independent check finds: another count of the edges left is a violation too.
+fn check(args: &Args, mesh: &Mesh, outcome: &Outcome) -> Check {
     let audit = quality::audit(mesh, &outcome.triangles, args.max_normal_angle);
     let mut violations: Vec<String> = audit.violations.iter().map(ToString::to_string).collect();
     if audit.remaining != outcome.remaining {
         let [said, counted] = [&outcome.remaining, &audit.remaining].map(report::reasons);
         violations.push(format!("edges left: the run says {said}, the audit counts {counted}"));
     }
-    violations
+    let ends = |reason| audit.remaining_for(reason).collect();
+    let remaining_edges = audit.remaining.iter().map(|(reason, _)| (reason.name(), ends(reason))).collect();
+    Check { violations, remaining_edges }
 }
 
 fn timed<T>(work: impl FnOnce() -> T) -> (T, f64) {

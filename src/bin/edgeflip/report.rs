@@ -30,12 +30,21 @@ pub struct Report {
     min_angle_before_deg: f64,
     min_angle_after_deg: f64,
     ms: Milliseconds,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    audit: Option<Vec<String>>,
+    #[serde(flatten)]
+    check: Option<Check>,
     #[serde(skip)]
     left: Reasons,
     #[serde(skip)]
     notes: Vec<String>,
+}
+
+/// What `--verify` adds.
+#[derive(Serialize)]
+pub struct Check {
+    #[serde(rename = "audit")]
+    pub violations: Vec<String>,
+    /// The ends of the edges that are not Delaunay, by reason.
+    pub remaining_edges: BTreeMap<&'static str, Vec<[u32; 2]>>,
 }
 
 /// Wall times in milliseconds.
@@ -70,7 +79,7 @@ impl Report {
         mesh: &Mesh,
         outcome: Outcome,
         angles: [f64; 2],
-        audit: Option<Vec<String>>,
+        check: Option<Check>,
         ms: Milliseconds,
     ) -> Self {
         Self {
@@ -95,7 +104,7 @@ impl Report {
             min_angle_before_deg: angles[0],
             min_angle_after_deg: angles[1],
             ms,
-            audit,
+            check,
             left: outcome.remaining,
             notes: Vec::new(),
         }
@@ -115,7 +124,7 @@ impl Report {
 
     /// What `--verify` makes of the run.
     pub fn violation(&self) -> Option<Failure> {
-        let violations = self.audit.as_ref()?;
+        let violations = &self.check.as_ref()?.violations;
         let (first, more) = (violations.first()?, violations.len() - 1);
         let more = if more == 0 { String::new() } else { format!(" (and {more} more)") };
         Some(Failure { status: 1, line: format!("{}: the audit found: {first}{more}", self.input) })
@@ -150,11 +159,16 @@ impl Report {
         };
         line("flips", format!("{}{iterations}, {}", HumanCount(self.flips), self.status));
         line("left", reasons(&self.left));
+        if let Some(Check { remaining_edges, .. }) = &self.check
+            && !remaining_edges.is_empty()
+        {
+            line("edges left", first_edges(remaining_edges));
+        }
         let [before, after] = [self.min_angle_before_deg, self.min_angle_after_deg];
         if before.is_finite() && after.is_finite() {
             line("min angle", format!("{before:.3}° → {after:.3}°"));
         }
-        if let Some(violations) = &self.audit {
+        if let Some(Check { violations, .. }) = &self.check {
             let found = match violations.len() {
                 0 => "clean".into(),
                 n => format!("violations: {}", HumanCount(n as u64)),
@@ -174,6 +188,23 @@ impl Report {
         }
         text
     }
+}
+
+/// The first edges left for each reason, by their vertices.
+fn first_edges(remaining: &BTreeMap<&str, Vec<[u32; 2]>>) -> String {
+    const LISTED: usize = 5;
+    let parts: Vec<String> = remaining
+        .iter()
+        .map(|(reason, edges)| {
+            let first: Vec<String> = edges.iter().take(LISTED).map(|[u, v]| format!("{u}-{v}")).collect();
+            let more = match edges.len().saturating_sub(LISTED) {
+                0 => String::new(),
+                n => format!(" and {} more", HumanCount(n as u64)),
+            };
+            format!("{reason} {}{more}", first.join(", "))
+        })
+        .collect();
+    parts.join("; ")
 }
 
 /// Edges left, by reason, for a reader.
