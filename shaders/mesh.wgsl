@@ -9,6 +9,8 @@ const CREASE: u32 = 0x80000000u;
 const DELAUNAY: u32 = 0u;
 const LABELLED: u32 = 1u;
 const BLOCKED_BY: u32 = 2u;
+// A filter's: exact arithmetic has to decide.
+const UNDECIDED: u32 = 0xffffffffu;
 const REASON_ANGLE: u32 = 0u;
 const REASON_FOLD: u32 = 1u;
 const REASON_DUPLICATE: u32 = 2u;

@@ -12,6 +12,14 @@ const PLANE_FLUSHED: f32 = 1.4210855e-14;
 // Whether an edge may flip by its geometry: DELAUNAY, BLOCKED_BY + REASON_FOLD or LABELLED. `winding` is -1 in
 // a clockwise component, else 1.
 fn verdict_on(a: Point, b: Point, c: Point, d: Point, winding: i32) -> u32 {
+    var verdict = filtered_verdict_on(a, b, c, d, winding);
+    if verdict == UNDECIDED {
+        verdict = exact_verdict_on(a, b, c, d, winding);
+    }
+    return verdict;
+}
+
+fn filtered_verdict_on(a: Point, b: Point, c: Point, d: Point, winding: i32) -> u32 {
     var p = rounded_difference(a, c).xy;
     var q = rounded_difference(b, c).xy;
     var r = rounded_difference(a, d).xy;
@@ -27,9 +35,7 @@ fn verdict_on(a: Point, b: Point, c: Point, d: Point, winding: i32) -> u32 {
     var verdict = DELAUNAY;
     if in_circle <= 0 {
         verdict = select(LABELLED, BLOCKED_BY + REASON_FOLD, area < 0);
-        if in_circle == 0 || area == 0 {
-            verdict = exact_verdict_on(a, b, c, d, winding);
-        }
+        verdict = select(verdict, UNDECIDED, in_circle == 0 || area == 0);
     }
     return verdict;
 }

@@ -34,6 +34,14 @@ fn bound_of(quad: Quad) -> f32 {
 // Whether an edge may flip by its geometry: DELAUNAY, BLOCKED_BY + REASON_ANGLE or REASON_FOLD, or LABELLED. The
 // winding has no meaning in space.
 fn verdict_on(a: Point, b: Point, c: Point, d: Point, winding: i32) -> u32 {
+    var verdict = filtered_verdict_on(a, b, c, d, winding);
+    if verdict == UNDECIDED {
+        verdict = exact_verdict_on(a, b, c, d, false);
+    }
+    return verdict;
+}
+
+fn filtered_verdict_on(a: Point, b: Point, c: Point, d: Point, winding: i32) -> u32 {
     let quad = quad_of(a, b, c, d);
     let bound = bound_of(quad);
     let sum = angle_sum_sign(quad, bound);
@@ -42,9 +50,7 @@ fn verdict_on(a: Point, b: Point, c: Point, d: Point, winding: i32) -> u32 {
         let angle = compare_angles(quad, bound);
         let turned = compare_turns(quad);
         verdict = select(select(LABELLED, BLOCKED_BY + REASON_FOLD, turned < 0), BLOCKED_BY + REASON_ANGLE, angle < 0);
-        if sum == 0 || angle == 0 || (angle > 0 && turned == 0) {
-            verdict = exact_verdict_on(a, b, c, d, false);
-        }
+        verdict = select(verdict, UNDECIDED, sum == 0 || angle == 0 || (angle > 0 && turned == 0));
     }
     return verdict;
 }

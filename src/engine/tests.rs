@@ -3,8 +3,9 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "what fails here is a failed test")]
 
 use super::webgpu::{Device, Kernel, WebGpu};
-use super::{Cpu, Engine, Upload};
+use super::{Cpu, EdgeCounts, Engine, Upload};
 use crate::mesh::Mesh;
+use crate::predicates::tiers::kinds::kinds;
 use crate::{cos_degrees, families};
 use pollster::block_on;
 use std::sync::Arc;
@@ -142,4 +143,25 @@ fn an_empty_mesh_is_done() {
     let (_, mut gpu) = engines(&mesh, 10.0);
     assert_eq!(block_on(gpu.iterate(10)).unwrap(), Vec::<u32>::new());
     assert_eq!(block_on(gpu.triangles()).unwrap(), Vec::<u32>::new());
+}
+
+/// `cargo test --lib tiers -- --nocapture` prints the table beside that of the CPU.
+#[test]
+fn tiers_of_the_gpu() {
+    const N: u32 = 100;
+    println!("| mesh | interior edges | f32 filter | exact |\n|---|---:|---:|---:|");
+    for (name, mesh) in kinds(N as usize).unwrap() {
+        let Ok(upload) = Upload::new("gpu", Arc::new(mesh)) else { continue };
+        let gpu = block_on(async { WebGpu::new(Device::shared(true).await?, upload, 1.0).await }).unwrap();
+        let [filter, exact] = block_on(gpu.tiers()).unwrap();
+        println!("| {name} | {} | {filter} | {exact} |", filter + exact);
+        let EdgeCounts { edges, boundary, .. } = gpu.edge_counts();
+        assert_eq!(filter + exact, edges - boundary, "{name}");
+        if name.starts_with("lattice") && !name.contains("noise") {
+            assert!(exact >= (N - 1) * (N - 1), "{name}: its diagonals are ties");
+        }
+        if ["random", "uvsphere"].contains(&name) {
+            assert!(100 * exact < edges, "{name}");
+        }
+    }
 }

@@ -40,4 +40,4 @@ pub(crate) fn cosine_fraction(k: f64) -> (u64, u32) {
 #[cfg(test)]
 mod tests;
 #[cfg(test)]
-mod tiers;
+pub(crate) mod tiers;

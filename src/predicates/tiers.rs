@@ -1,4 +1,5 @@
-//! Counts the edges that each tier decides: `cargo test --lib tiers -- --nocapture`. `cargo bench --bench tiers` says what
+//! Counts the edges that each tier decides, as src/engine/tests.rs does on a GPU: `cargo test --lib tiers -- --nocapture`.
+//! `cargo bench --bench tiers` says what
 //! they cost.
 
 use super::exact::WIDEST;
@@ -7,7 +8,7 @@ use crate::adjacency::prev;
 use crate::{Adjacency, Backend, Dimension, Error, Mesh, NONE, Options, families, make_delaunay};
 
 #[path = "../../benches/kinds/mod.rs"]
-mod kinds;
+pub(crate) mod kinds;
 
 /// Interior edges of a mesh that is Delaunay, by what decides that they are: the filter, or narrow, wide or any integers.
 fn tiers(mesh: &Mesh) -> [usize; 4] {

@@ -74,11 +74,21 @@ pub(super) fn adjacency(device: &wgpu::Device) -> Kernels {
 
 /// In the order of [`Kernel`]; the last is there for surfaces only.
 pub(super) fn phases(device: &wgpu::Device, form: Form) -> Kernels {
-    let (read, write) = (storage(true), storage(false));
-    let bindings = [uniform(false), uniform(true), read, write, write, write, write, write, write];
     let names = Kernel::ALL.map(Kernel::name);
     let names = if form.dimension == Dimension::Two { &names[..5] } else { &names[..] };
-    kernels(device, &phases_source(form), &bindings, names)
+    kernels(device, &phases_source(form), &phases_bindings(), names)
+}
+
+fn phases_bindings() -> [BindingType; 9] {
+    let (read, write) = (storage(true), storage(false));
+    [uniform(false), uniform(true), read, write, write, write, write, write, write]
+}
+
+/// Says how often the filter decides.
+#[cfg(test)]
+pub(super) fn tiers(device: &wgpu::Device, form: Form) -> Kernels {
+    let source = [&phases_source(form), include_str!("tiers.wgsl")].concat();
+    kernels(device, &source, &phases_bindings(), &["tiers"])
 }
 
 pub(super) fn probe(device: &wgpu::Device) -> Kernels {

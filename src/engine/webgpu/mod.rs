@@ -259,15 +259,21 @@ impl WebGpu {
 
     async fn count(&mut self) -> Result<Census, Error> {
         self.dispatches += 1;
+        let counts = self.count_by(&self.kernels.pipelines[Kernel::Census as usize]).await?;
+        Ok(Census::of_counts(&counts))
+    }
+
+    /// What a kernel counts of all half-edges.
+    async fn count_by(&self, kernel: &wgpu::ComputePipeline) -> Result<Vec<u32>, Error> {
         let commands = || {
             let history = &self.buffers.history;
             self.gpu.queue.write_buffer(history, 0, bytemuck::cast_slice(&[0u32; ENTRIES]));
             self.encode(|pass| {
-                self.dispatch(pass, Kernel::Census, self.gpu.workgroups(3 * self.params.triangles));
+                pass.set_pipeline(kernel);
+                pass.dispatch_workgroups(self.gpu.workgroups(3 * self.params.triangles), 1, 1);
             })
         };
-        let counts = self.gpu.submit_and_read(commands, &self.buffers.history, ENTRIES).await?;
-        Ok(Census::of_counts(&counts))
+        self.gpu.submit_and_read(commands, &self.buffers.history, ENTRIES).await
     }
 }
 
@@ -330,6 +336,13 @@ impl WebGpu {
         let groups = self.gpu.workgroups(self.params.triangles);
         let history = self.read_history(|pass| self.dispatch(pass, kernel, groups)).await?;
         Ok(self.take_over(&history).last().copied().unwrap_or(0))
+    }
+
+    /// Interior edges that the filter decides, and those that it does not.
+    pub(crate) async fn tiers(&self) -> Result<[u32; 2], Error> {
+        let kernels = kernels::tiers(&self.gpu.device, self.form);
+        let counts = self.count_by(&kernels.pipelines[0]).await?;
+        Ok([counts[0], counts[1]])
     }
 
     /// Lists from the start and sweeps in between, whatever the size of the mesh.
