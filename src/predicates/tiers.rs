@@ -1,6 +1,5 @@
 //! Counts the edges that each tier decides, as src/engine/tests.rs does on a GPU: `cargo test --lib tiers -- --nocapture`.
-//! `cargo bench --bench tiers` says what
-//! they cost.
+//! `cargo bench --bench tiers` says what they cost.
 
 use super::exact::WIDEST;
 use super::{Quad, in_circle_sign, plane, space};
