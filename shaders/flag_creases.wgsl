@@ -4,9 +4,9 @@
 @compute @workgroup_size(WORKGROUP_SIZE)
 fn flag_creases(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
     for (var h = id.x; h < 3u * params.triangles; h += groups.x * WORKGROUP_SIZE) {
-        let g = twin(h);
-        if g != NONE {
-            twins[h] = creased(h, g);
+        let entry = twin_entry(h);
+        if entry != NONE {
+            twins[h] = creased(h, entry);
         }
     }
 }

@@ -28,7 +28,7 @@ fn update(inner: u32, outer: u32) {
     twins[inner] = slot(outer);
     let x = unflagged(outer);
     if x != NONE && selected(x / 3u) == NONE {
-        twins[x] = inner | (outer & CREASE);
+        twins[x] = inner | (outer & FLAGS);
     }
 }
 

@@ -6,7 +6,7 @@ fn verdict_of(h: u32, g: u32) -> u32 {
 }
 
 var<workgroup> flips: atomic<u32>;
-var<workgroup> census_counts: array<atomic<u32>, 4>;
+var<workgroup> census_counts: array<atomic<u32>, ENTRIES>;
 var<workgroup> tail_count: u32;
 
 @compute @workgroup_size(WORKGROUP_SIZE)
@@ -130,7 +130,7 @@ fn census(
         }
     }
     workgroupBarrier();
-    if local < 4u {
+    if local < ENTRIES {
         let count = atomicLoad(&census_counts[local]);
         if count > 0u {
             atomicAdd(&history[CENSUS + local], count);

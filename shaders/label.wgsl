@@ -8,7 +8,7 @@ fn label(t: u32, iteration: u32) -> u32 {
         let g = twin_entry(h);
         var verdict = DELAUNAY;
         // Else there is no twin, or the edge stays.
-        if g < CREASE {
+        if g < LOCKED {
             verdict = verdict_of(h, g);
         }
         if verdict == LABELLED {

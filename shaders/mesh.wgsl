@@ -4,6 +4,10 @@ const NONE: u32 = 0xffffffffu;
 const BLOCKED: u32 = 0xfffffffeu;
 // Set in both twin entries of an edge that was over β in the input: it stays, whatever its angle becomes.
 const CREASE: u32 = 0x80000000u;
+// The same for an edge that the user has locked.
+const LOCKED: u32 = 0x40000000u;
+// All flags. Half-edges are below the lowest.
+const FLAGS: u32 = 0xc0000000u;
 
 // The verdict on an interior edge; a blocked one is BLOCKED_BY plus the index of its reason.
 const DELAUNAY: u32 = 0u;
@@ -14,6 +18,7 @@ const UNDECIDED: u32 = 0xffffffffu;
 const REASON_ANGLE: u32 = 0u;
 const REASON_FOLD: u32 = 1u;
 const REASON_DUPLICATE: u32 = 2u;
+const REASON_LOCKED: u32 = 3u;
 
 fn next(h: u32) -> u32 {
     return select(h + 1u, h - 2u, h % 3u == 2u);
@@ -23,9 +28,9 @@ fn prev(h: u32) -> u32 {
     return select(h - 1u, h + 2u, h % 3u == 0u);
 }
 
-// The half-edge that an entry of the twins names, without its flag.
+// The half-edge that an entry of the twins names, without its flags.
 fn unflagged(entry: u32) -> u32 {
-    return select(entry & ~CREASE, NONE, entry == NONE);
+    return select(entry & ~FLAGS, NONE, entry == NONE);
 }
 
 // The priority of an edge in an iteration; the smallest wins.

@@ -99,7 +99,8 @@ fn anchor_pass(@builtin(position) fragment: vec4f) -> @location(0) u32 {
     return entry;
 }
 
-// The verdicts on the interior edges of a triangle, each from its lower half-edge: labelled, then blocked by reason.
+// The verdicts on the interior edges of a triangle, each from its lower half-edge: labelled, then blocked by each reason
+// but the locks.
 @fragment
 fn census_pass(@builtin(position) fragment: vec4f) -> @location(0) vec4u {
     let t = index_at(fragment);
@@ -111,6 +112,20 @@ fn census_pass(@builtin(position) fragment: vec4f) -> @location(0) vec4u {
             let verdict = vec4u(verdict_of(h, g));
             result += vec4u(verdict == vec4u(LABELLED, LABELLED + 1u, LABELLED + 2u, LABELLED + 3u));
         }
+    }
+    return result;
+}
+
+// The rest of the census: how many of those edges are not Delaunay and locked.
+@fragment
+fn locked_pass(@builtin(position) fragment: vec4f) -> @location(0) vec4u {
+    let t = index_at(fragment);
+    var result = vec4u();
+    let end = select(3u * t, 3u * t + 3u, t < params[0].x);
+    for (var h = 3u * t; h < end; h++) {
+        let g = twin(h);
+        let is_locked = textureLoad(verdicts, place(h), 0).x == BLOCKED_BY + REASON_LOCKED;
+        result.x += u32(is_locked && g != NONE && h < g);
     }
     return result;
 }

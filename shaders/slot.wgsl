@@ -1,6 +1,6 @@
 // Where half-edges go in an iteration, as src/phases/flip.rs.
 
-// Where half-edge `x`, given with its flag, will be after the iteration.
+// Where half-edge `x`, given with its flags, will be after the iteration.
 fn slot(entry: u32) -> u32 {
     let x = unflagged(entry);
     var g = NONE;
@@ -9,7 +9,7 @@ fn slot(entry: u32) -> u32 {
     }
     var place = entry;
     if g != NONE {
-        place = select(entry, g | (entry & CREASE), x == next(selected(g / 3u)));
+        place = select(entry, g | (entry & FLAGS), x == next(selected(g / 3u)));
     }
     return place;
 }

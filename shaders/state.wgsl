@@ -51,7 +51,7 @@ struct Step {
 
 // Words of the history. An entry tells of the iteration before it.
 const CENSUS: u32 = 0u;
-const ENTRIES: u32 = 4u;
+const ENTRIES: u32 = 5u;
 const ENTRY_WORDS: u32 = 4u;
 const FLIPS: u32 = 0u;
 // Length of the list of the triangles to look at; meaningful where it was built.
@@ -64,7 +64,7 @@ fn vertex(h: u32) -> u32 {
     return triangles[h];
 }
 
-// The half-edge on the other side, with its flag, or NONE.
+// The half-edge on the other side, with its flags, or NONE.
 fn twin_entry(h: u32) -> u32 {
     return twins[h];
 }

@@ -43,7 +43,7 @@ fn vertex(h: u32) -> u32 {
     return component(textureLoad(triangles, place(h / 3u), 0), h % 3u);
 }
 
-// The half-edge on the other side, with its flag, or NONE.
+// The half-edge on the other side, with its flags, or NONE.
 fn twin_entry(h: u32) -> u32 {
     return component(textureLoad(twins, place(h / 3u), 0), h % 3u);
 }

@@ -1,11 +1,15 @@
 // The test of an interior edge, as `verdict` in src/phases/label.rs: its geometry, then the guard.
 
-// Whether the interior edge of the half-edges `h` and `g` may flip by its geometry, and is no crease.
+// Whether the interior edge of the half-edges `h` and `g` may flip by its geometry, and is neither locked nor a crease.
 fn geometric_verdict(h: u32, g: u32) -> u32 {
     let a = position(vertex(h));
     let b = position(vertex(g));
     let c = position(vertex(prev(h)));
     let d = position(vertex(prev(g)));
-    let verdict = verdict_on(a, b, c, d, select(1, -1, is_clockwise(h / 3u)));
-    return select(verdict, BLOCKED_BY + REASON_ANGLE, verdict != DELAUNAY && (twin_entry(h) & CREASE) != 0u);
+    let entry = twin_entry(h);
+    var verdict = verdict_on(a, b, c, d, select(1, -1, is_clockwise(h / 3u)));
+    if verdict != DELAUNAY && (entry & FLAGS) != 0u {
+        verdict = BLOCKED_BY + select(REASON_ANGLE, REASON_LOCKED, (entry & LOCKED) != 0u);
+    }
+    return verdict;
 }

@@ -18,9 +18,15 @@ pub fn prev(h: u32) -> u32 {
 /// angle becomes. The flag moves with the half-edges.
 pub(crate) const CREASE: u32 = 1 << 31;
 
-/// The half-edge that an entry of an engine's twins names, without its flag.
+/// The same for an edge that the user has locked.
+pub(crate) const LOCKED: u32 = 1 << 30;
+
+/// All flags. Half-edges are below the lowest.
+pub(crate) const FLAGS: u32 = CREASE | LOCKED;
+
+/// The half-edge that an entry of an engine's twins names, without its flags.
 pub(crate) fn unflagged(entry: u32) -> u32 {
-    if entry == NONE { NONE } else { entry & !CREASE }
+    if entry == NONE { NONE } else { entry & !FLAGS }
 }
 
 /// The half-edges of a mesh matched in pairs, and how many edges there are of each kind.
@@ -128,6 +134,13 @@ impl Adjacency {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn half_edges_leave_room_for_flags() {
+        let last = 3 * crate::MAX_TRIANGLES as u32 - 1;
+        assert!(last < FLAGS & FLAGS.wrapping_neg() && last | FLAGS < crate::phases::BLOCKED);
+        assert_eq!([unflagged(last | FLAGS), unflagged(NONE)], [last, NONE]);
+    }
 
     /// ```text
     ///  3-----2

@@ -20,6 +20,8 @@ pub enum EdgeState {
     Fold,
     /// Not Delaunay, and blocked by [`Reason::Duplicate`].
     Duplicate,
+    /// Not Delaunay, and blocked by [`Reason::Locked`].
+    Locked,
     /// Frozen, whatever its angles: three or more triangles, or one triangle twice.
     NonManifold,
     /// Frozen, whatever its angles: two triangles oriented against each other.
@@ -30,20 +32,21 @@ pub enum EdgeState {
 
 impl EdgeState {
     /// All states, each at the place of its number.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Delaunay,
         Self::Flips,
         Self::Waits,
         Self::Angle,
         Self::Fold,
         Self::Duplicate,
+        Self::Locked,
         Self::NonManifold,
         Self::Inconsistent,
         Self::Boundary,
     ];
 
-    /// The word for it: `delaunay`, `flips`, `waits`, `angle`, `fold`, `duplicate`, `non-manifold`,
-    /// `inconsistent`, `boundary`.
+    /// The word for it: `delaunay`, `flips`, `waits`, `angle`, `fold`, `duplicate`, `locked`,
+    /// `non-manifold`, `inconsistent`, `boundary`.
     pub fn name(self) -> &'static str {
         match self {
             Self::Delaunay => "delaunay",
@@ -52,6 +55,7 @@ impl EdgeState {
             Self::Angle => Reason::Angle.name(),
             Self::Fold => Reason::Fold.name(),
             Self::Duplicate => Reason::Duplicate.name(),
+            Self::Locked => Reason::Locked.name(),
             Self::NonManifold => Reason::NonManifold.name(),
             Self::Inconsistent => Reason::Inconsistent.name(),
             Self::Boundary => "boundary",
@@ -67,6 +71,7 @@ impl From<Verdict> for EdgeState {
             Verdict::Blocked(Reason::Angle) => Self::Angle,
             Verdict::Blocked(Reason::Fold) => Self::Fold,
             Verdict::Blocked(Reason::Duplicate) => Self::Duplicate,
+            Verdict::Blocked(Reason::Locked) => Self::Locked,
             Verdict::Blocked(Reason::NonManifold) => Self::NonManifold,
             Verdict::Blocked(Reason::Inconsistent) => Self::Inconsistent,
         }

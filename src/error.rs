@@ -24,10 +24,10 @@ pub enum Error {
         /// Number of vertices.
         vertices: usize,
     },
-    /// The array of positions or of triangles has a length that is no multiple of what one element takes.
+    /// The array of positions, of triangles or of locked edges has a length that is no multiple of what one element takes.
     #[error("{array} has {length} numbers, which is not a multiple of {stride}")]
     RaggedArray {
-        /// `positions` or `triangles`.
+        /// `positions`, `triangles` or `lockedEdges`.
         array: &'static str,
         /// Its length.
         length: usize,

@@ -7,7 +7,7 @@ pub use crate::engine::GpuDevice;
 pub use crate::js_values::JsPositions;
 use crate::js_values::{backend_name, object, parse_dimension, thrown};
 use crate::{Backend, Error, Mesh, Options, Order, Session, engine};
-use js_sys::{Uint8Array, Uint32Array};
+use js_sys::{Array, Uint8Array, Uint32Array};
 use objects::{audit_object, outcome_object, reasons_object};
 use wasm_bindgen::prelude::*;
 
@@ -23,6 +23,8 @@ extern "C" {
     fn max_normal_angle(this: &JsOptions) -> JsValue;
     #[wasm_bindgen(method, getter, js_name = maxIterations)]
     fn max_iterations(this: &JsOptions) -> JsValue;
+    #[wasm_bindgen(method, getter, js_name = lockedEdges)]
+    fn locked_edges(this: &JsOptions) -> JsValue;
     #[wasm_bindgen(method, getter)]
     fn order(this: &JsOptions) -> JsValue;
     #[wasm_bindgen(method, getter)]
@@ -222,14 +224,41 @@ fn parse_options(given: &JsOptions) -> Result<Options, Error> {
         let Some(degrees) = angle.as_f64() else { return wrong("maxNormalAngle", &angle, "a number") };
         options.max_normal_angle = degrees;
     }
+    let locked = given.locked_edges();
+    if !locked.is_undefined() {
+        options.locked_edges = parse_pairs(&locked)?;
+    }
     let cap = given.max_iterations();
     if !cap.is_undefined() {
-        let whole = |x: &f64| x.fract() == 0.0 && (0.0..=f64::from(u32::MAX)).contains(x);
-        match cap.as_f64() {
-            Some(f64::INFINITY) => {}
-            Some(number) if whole(&number) => options.max_iterations = Some(number as u32),
-            _ => return wrong("maxIterations", &cap, "a number of iterations"),
+        match (cap.as_f64(), whole(&cap)) {
+            (Some(f64::INFINITY), _) => {}
+            (_, None) => return wrong("maxIterations", &cap, "a number of iterations"),
+            (_, number) => options.max_iterations = number,
         }
     }
     Ok(options)
+}
+
+/// The pairs of vertices in `lockedEdges`.
+fn parse_pairs(given: &JsValue) -> Result<Vec<[u32; 2]>, Error> {
+    let numbers = match given.dyn_ref::<Uint32Array>() {
+        Some(array) => Some(array.to_vec()),
+        None => {
+            given.dyn_ref::<Array>().and_then(|array| array.iter().map(|number| whole(&number)).collect())
+        }
+    };
+    let Some(numbers) = numbers else {
+        let message = "it is neither a Uint32Array nor an array of vertex indices".to_owned();
+        return Err(Error::Option { option: "lockedEdges", message });
+    };
+    match numbers.as_chunks() {
+        (pairs, []) => Ok(pairs.to_vec()),
+        _ => Err(Error::RaggedArray { array: "lockedEdges", length: numbers.len(), stride: 2 }),
+    }
+}
+
+/// A whole number of 32 bits.
+fn whole(value: &JsValue) -> Option<u32> {
+    let number = value.as_f64()?;
+    (number.fract() == 0.0 && (0.0..=f64::from(u32::MAX)).contains(&number)).then_some(number as u32)
 }

@@ -74,6 +74,7 @@ fn in_words_of_javascript(error: Error) -> Error {
         Error::Option { option: "max_normal_angle", message } => {
             Error::Option { option: "maxNormalAngle", message }
         }
+        Error::Option { option: "locked_edges", message } => Error::Option { option: "lockedEdges", message },
         error => error,
     }
 }

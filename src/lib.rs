@@ -13,7 +13,7 @@
 //! ```
 //!
 //! The rooms: [`Mesh`] is checked input, in [`Positions`] of 32 or 64 bits; `adjacency` finds twins, `star` walks around a vertex, `winding` and
-//! `frozen` know what a dirty mesh adds; `predicates` decide exactly; `phases` are the four phases of an
+//! `frozen` know what a dirty mesh adds, `locks` what the user does; `predicates` decide exactly; `phases` are the four phases of an
 //! iteration, `engine` runs them on the CPU or through the shaders of the same names; `session` is the loop, `options`
 //! and `outcome` are what goes in and out.
 //! Beside them: [`quality`] measures and audits, [`io`] reads and writes, [`families`] generates; [`Edges`] lists
@@ -34,6 +34,7 @@ pub mod js;
 pub mod js_files;
 #[cfg(all(target_arch = "wasm32", any(feature = "js", feature = "js-files")))]
 mod js_values;
+mod locks;
 mod mesh;
 mod options;
 mod outcome;

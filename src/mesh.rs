@@ -6,8 +6,9 @@ use glam::{DVec2, DVec3};
 /// "No half-edge": the twin of a half-edge on the boundary or on a frozen edge.
 pub const NONE: u32 = u32::MAX;
 
-/// Largest number of triangles: the engines name half-edges with 31 bits, and keep one word for [`NONE`].
-pub const MAX_TRIANGLES: usize = ((1 << 31) - 1) / 3;
+/// Largest number of triangles: the engines name half-edges with 30 bits, beside two flags, and keep the two highest
+/// words for themselves.
+pub const MAX_TRIANGLES: usize = ((1 << 30) - 2) / 3;
 
 /// Whether the mesh lies in the plane or is a surface in space.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

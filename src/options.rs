@@ -35,6 +35,10 @@ pub struct Options {
     pub max_normal_angle: f64,
     /// Stop after so many iterations; `None`: run to the end, which is always reached.
     pub max_iterations: Option<u32>,
+    /// Edges that never flip, by the two vertices of each, in any order; repeated pairs are one. Those that are still
+    /// not Delaunay at the end are counted by [`Reason::Locked`](crate::Reason::Locked). Every pair has to be an edge
+    /// of the mesh; to lock one that cannot flip, on the boundary or frozen, changes nothing.
+    pub locked_edges: Vec<[u32; 2]>,
     /// Reproducible pipeline or Lawson's algorithm.
     pub order: Order,
     /// The device that the GPU engine runs on, instead of one of its own. It is never destroyed here, nothing of it
@@ -49,6 +53,7 @@ impl Default for Options {
             backend: Backend::Auto,
             max_normal_angle: 10.0,
             max_iterations: None,
+            locked_edges: Vec::new(),
             order: Order::Reproducible,
             #[cfg(all(target_arch = "wasm32", feature = "js"))]
             device: None,

@@ -9,6 +9,8 @@ pub enum Reason {
     Fold,
     /// The edge that the flip would make exists already.
     Duplicate,
+    /// The user has locked it: [`Options::locked_edges`](crate::Options::locked_edges). Goes before all other reasons.
+    Locked,
     /// Three or more triangles, or one triangle twice, meet at the edge.
     NonManifold,
     /// Its two triangles are oriented against each other.
@@ -19,15 +21,23 @@ pub enum Reason {
 
 impl Reason {
     /// All reasons, in the order in which they are reported.
-    pub const ALL: [Self; 6] =
-        [Self::Angle, Self::Fold, Self::Duplicate, Self::NonManifold, Self::Inconsistent, Self::Stopped];
+    pub const ALL: [Self; 7] = [
+        Self::Angle,
+        Self::Fold,
+        Self::Duplicate,
+        Self::Locked,
+        Self::NonManifold,
+        Self::Inconsistent,
+        Self::Stopped,
+    ];
 
-    /// The word used in results: `angle`, `fold`, `duplicate`, `non-manifold`, `inconsistent`, `stopped`.
+    /// The word used in results: `angle`, `fold`, `duplicate`, `locked`, `non-manifold`, `inconsistent`, `stopped`.
     pub fn name(self) -> &'static str {
         match self {
             Self::Angle => "angle",
             Self::Fold => "fold",
             Self::Duplicate => "duplicate",
+            Self::Locked => "locked",
             Self::NonManifold => "non-manifold",
             Self::Inconsistent => "inconsistent",
             Self::Stopped => "stopped",
@@ -37,7 +47,7 @@ impl Reason {
 
 /// Numbers of edges by [`Reason`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Reasons([u64; 6]);
+pub struct Reasons([u64; Reason::ALL.len()]);
 
 impl Reasons {
     /// Edges in all.
@@ -84,7 +94,7 @@ pub struct Iteration {
     /// Edges flipped.
     pub flips: u32,
     /// Non-Delaunay edges of two triangles that may not flip, in the whole mesh, before the iteration: by
-    /// `Angle`, `Fold` or `Duplicate`. Frozen edges are counted at the end only.
+    /// `Angle`, `Fold`, `Duplicate` or `Locked`. Frozen edges are counted at the end only.
     pub blocked: Reasons,
     /// Wall time in milliseconds, the counts for the watcher included.
     pub ms: f64,

@@ -15,7 +15,7 @@ use crate::star::Fans;
 use crate::winding::Winding;
 use crate::{
     Backend, EdgeState, Edges, Error, Iteration, Mesh, Options, Order, Outcome, Positions, Reason, Status,
-    Timings, frozen,
+    Timings, frozen, locks,
 };
 use choice::{engine_after, engine_for};
 use std::ops::ControlFlow;
@@ -45,6 +45,8 @@ impl Session {
             return Err(Error::Option { option: "max_normal_angle", message });
         }
         let start = Instant::now();
+        // `auto` would take a refusal by an engine for a reason to go on.
+        locks::half_edges(&mesh, &options.locked_edges)?;
         let mesh = Arc::new(mesh);
         let (engine, fallback) = engine_for(&mesh, &options).await?;
         Ok(Self {
@@ -226,7 +228,7 @@ impl Session {
     /// [`Error::Device`].
     pub async fn verify(&mut self) -> Result<Audit, Error> {
         let triangles = self.triangles().await?;
-        Ok(audit(&self.mesh, &triangles, self.options.max_normal_angle))
+        Ok(audit(&self.mesh, &triangles, self.options.max_normal_angle, &self.options.locked_edges))
     }
 
     /// Iterations so far.

@@ -1,6 +1,7 @@
 //! Which way round the components of a 2D mesh lie: the sign of their total areas.
 
 use crate::NONE;
+use crate::adjacency::unflagged;
 use crate::mesh::{Dimension, Mesh};
 use crate::predicates::{area_sign, total_area_sign};
 
@@ -42,7 +43,7 @@ impl Winding {
             let mut at = 0;
             while at < component.len() {
                 for twin in &twins[3 * component[at]..3 * component[at] + 3] {
-                    let neighbour = *twin as usize / 3;
+                    let neighbour = unflagged(*twin) as usize / 3;
                     if *twin != NONE && !visited[neighbour] {
                         visited[neighbour] = true;
                         component.push(neighbour);

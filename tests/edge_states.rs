@@ -56,6 +56,7 @@ fn foretell(name: &str, mesh: &Mesh, options: Options) -> Option<u32> {
             (Reason::Angle, EdgeState::Angle),
             (Reason::Fold, EdgeState::Fold),
             (Reason::Duplicate, EdgeState::Duplicate),
+            (Reason::Locked, EdgeState::Locked),
         ] {
             assert_eq!(blocked[reason], count(state), "{name}: {state:?}");
         }
@@ -69,7 +70,7 @@ fn foretell(name: &str, mesh: &Mesh, options: Options) -> Option<u32> {
 fn states_foretell_every_step() {
     let (mut on_cpu, mut on_gpu) = (0, 0);
     for case in meshes::all().into_iter().filter(|case| case.mesh.triangle_count() <= 2000) {
-        let options = Options { backend: Backend::Cpu, max_normal_angle: case.beta, ..Options::default() };
+        let options = case.options(Backend::Cpu);
         let iterations = foretell(&case.name, &case.mesh, options.clone()).unwrap();
         on_cpu += 1;
         if iterations <= 12 && case.mesh.triangle_count() <= 800 {

@@ -14,7 +14,7 @@ use edgeflip::{Backend, Error, Outcome, Positions, Reasons, Status};
 use meshes::Case;
 use runs::{options, unwatched, watched};
 use serde_json::{Value, json};
-use simulation::{Digest, Expected, Simulation, expected, simulate};
+use simulation::{Digest, Expected, Simulation, expected, simulate_locked};
 use std::time::Instant;
 
 /// Meshes with coordinates outside the span that the engines on a GPU decide exactly.
@@ -61,7 +61,7 @@ fn title(outcome: &Outcome) -> String {
 
 /// Runs the mesh one iteration at a time, and again from end to end, in batches.
 fn cell(backend: Backend, case: &Case, want: &Simulation) -> Result<&'static str, String> {
-    let options = options(backend, case.beta);
+    let options = case.options(backend);
     let is_refused = backend == Backend::Gpu && REFUSED_BY_GPUS.contains(&case.name.as_str());
     let run = match watched(&case.mesh, &options) {
         Err(Error::BackendLimit { .. }) if is_refused => return Ok("refused"),
@@ -103,7 +103,7 @@ fn table(cases: &[(Case, Simulation)], columns: &[Column]) -> Vec<String> {
         format!("| mesh | β | triangles | iterations |{titles}"),
         format!("|---|---:|---:|---:|{}", "---|".repeat(columns.len())),
     ];
-    for (row, (Case { name, beta, mesh }, want)) in cases.iter().enumerate() {
+    for (row, (Case { name, beta, mesh, .. }, want)) in cases.iter().enumerate() {
         let cells: String = columns.iter().map(|column| format!(" {} |", column.cells[row])).collect();
         let (triangles, iterations) = (mesh.triangle_count(), want.iterations.len());
         lines.push(format!("| {name} | {beta} | {triangles} | {iterations} |{cells}"));
@@ -132,6 +132,7 @@ fn exported((case, want): &(Case, Simulation)) -> Value {
     json!({
         "name": case.name,
         "beta": case.beta,
+        "locked": case.locked.concat(),
         "dimension": case.mesh.dimension().stride(),
         "isRefusedByGpus": REFUSED_BY_GPUS.contains(&case.name.as_str()),
         "isWide": is_wide,
@@ -146,7 +147,7 @@ fn exported((case, want): &(Case, Simulation)) -> Value {
 #[test]
 fn engines_give_what_the_simulation_does() {
     let simulated = |(case, line): (Case, Expected)| {
-        let run = simulate(&case.mesh, case.beta, None);
+        let run = simulate_locked(&case.mesh, case.beta, &case.locked, None);
         assert_eq!(Expected::new(&case.name, case.beta, &run), line, "digests.txt has something else");
         (case, run)
     };

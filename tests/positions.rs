@@ -100,7 +100,7 @@ fn deform(name: &str, mesh: &Mesh, options: &Options) -> u32 {
 fn moved_vertices_are_as_a_new_session() {
     let (mut on_cpu, mut on_gpu) = (0, 0);
     for case in meshes::all().into_iter().filter(|case| case.mesh.triangle_count() <= 500) {
-        let options = Options { backend: Backend::Cpu, max_normal_angle: case.beta, ..Options::default() };
+        let options = case.options(Backend::Cpu);
         on_cpu += deform(&case.name, &case.mesh, &options);
         if case.mesh.triangle_count() <= 130 {
             on_gpu += deform(&case.name, &case.mesh, &Options { backend: Backend::Gpu, ..options });

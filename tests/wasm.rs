@@ -24,7 +24,7 @@ async fn states_foretell_the_flips() {
         let mut taken = 0;
         for case in meshes::all().into_iter().filter(|case| case.mesh.triangle_count() <= triangles) {
             let name = format!("{} at β = {}, {backend:?}", case.name, case.beta);
-            let options = Options { backend, max_normal_angle: case.beta, ..Options::default() };
+            let options = case.options(backend);
             let mut session = match Session::new(case.mesh, options).await {
                 Err(Error::BackendLimit { .. }) if backend == Backend::Gpu => continue,
                 session => session.unwrap_or_else(|error| panic!("{name}: {error}")),

@@ -34,6 +34,7 @@ export function palette(): Palette {
       angle: colour('edge-angle'),
       fold: colour('edge-fold'),
       duplicate: colour('edge-duplicate'),
+      locked: colour('edge-locked'),
       'non-manifold': colour('edge-non-manifold'),
       inconsistent: colour('edge-inconsistent'),
       boundary: colour('edge-boundary'),

@@ -24,6 +24,7 @@ const MEANINGS: Record<(typeof EDGE_STATES)[number], string> = {
   angle: 'blocked: sharper than β',
   fold: 'blocked: would fold over',
   duplicate: 'blocked: the new edge exists already',
+  locked: 'blocked: locked',
   'non-manifold': 'stays: three or more triangles',
   inconsistent: 'stays: triangles face against each other',
   boundary: 'boundary',

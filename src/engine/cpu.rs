@@ -2,6 +2,7 @@
 
 use super::{Answer, Census, EdgeCounts, Engine};
 use crate::adjacency::unflagged;
+use crate::locks;
 use crate::mesh::{Dimension, Mesh};
 use crate::phases::{Frontier, Geometry, Topology, Verdict, flag_creases, flip, label, select, verdict};
 use crate::star::Fans;
@@ -110,6 +111,11 @@ impl Cpu {
 }
 
 impl Engine for Cpu {
+    fn lock(&mut self, half_edges: Vec<u32>) -> Answer<'_, ()> {
+        locks::flag(&mut self.twins, &half_edges);
+        Box::pin(std::future::ready(Ok(())))
+    }
+
     fn iterate(&mut self, count: u32) -> Answer<'_, Vec<u32>> {
         let mut flips = Vec::new();
         while (flips.len() as u32) < count {

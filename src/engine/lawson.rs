@@ -64,6 +64,10 @@ impl Engine for Lawson {
         1
     }
 
+    fn lock(&mut self, half_edges: Vec<u32>) -> Answer<'_, ()> {
+        self.cpu.lock(half_edges)
+    }
+
     /// A whole pass counts as one iteration.
     fn iterate(&mut self, _count: u32) -> Answer<'_, Vec<u32>> {
         let flips = self.flip_all();

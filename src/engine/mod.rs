@@ -44,7 +44,7 @@ pub(crate) type Answer<'a, T> = Pin<Box<dyn Future<Output = Result<T, Error>> + 
 pub(crate) struct Census {
     /// Those that may flip.
     pub(crate) labelled: u32,
-    /// Those that may not, by `Angle`, `Fold` or `Duplicate`.
+    /// Those that may not, by `Angle`, `Fold`, `Duplicate` or `Locked`.
     pub(crate) blocked: Reasons,
 }
 
@@ -53,8 +53,8 @@ impl Census {
     /// As the shaders count: the labelled ones, then those blocked by each reason.
     fn of_counts(counts: &[u32]) -> Self {
         let mut census = Self { labelled: counts[0], ..Self::default() };
-        for (reason, count) in [Reason::Angle, Reason::Fold, Reason::Duplicate].into_iter().zip(&counts[1..])
-        {
+        let reasons = [Reason::Angle, Reason::Fold, Reason::Duplicate, Reason::Locked];
+        for (reason, count) in reasons.into_iter().zip(&counts[1..]) {
             census.blocked[reason] = u64::from(*count);
         }
         census
@@ -75,6 +75,10 @@ pub(crate) trait Engine {
     /// How many iterations to ask for at a time: as many as make it worth while to ask.
     fn batch(&self) -> u32;
 
+    /// Locks the edges of these half-edges, which are those of both sides: they never flip. Those without a twin are
+    /// passed over. Before the first iteration.
+    fn lock(&mut self, half_edges: Vec<u32>) -> Answer<'_, ()>;
+
     /// Runs up to `count` iterations and returns the flips of each; fewer than `count` when there is nothing
     /// left to flip.
     fn iterate(&mut self, count: u32) -> Answer<'_, Vec<u32>>;
@@ -85,11 +89,12 @@ pub(crate) trait Engine {
     /// The triangles as they are now.
     fn triangles(&mut self) -> Answer<'_, Vec<u32>>;
 
-    /// The twins as they are now, those of creases with the flag [`CREASE`](crate::adjacency::CREASE).
+    /// The twins as they are now, with the flags [`CREASE`](crate::adjacency::CREASE) and
+    /// [`LOCKED`](crate::adjacency::LOCKED).
     fn twins(&mut self) -> Answer<'_, Vec<u32>>;
 
     /// Moves the vertices: from now on as a new engine on `mesh`, whose triangles are those of the engine as they
-    /// are now. Where it fails with [`Error::BackendLimit`], the engine is as before.
+    /// are now, with the same locks. Where it fails with [`Error::BackendLimit`], the engine is as before.
     fn set_positions(&mut self, mesh: Arc<Mesh>) -> Answer<'_, ()>;
 
     /// What the adjacency found.

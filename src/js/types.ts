@@ -34,6 +34,11 @@ export interface Options {
   /** Stop after so many iterations. Default: run to the end, which is always reached. */
   maxIterations?: number | undefined;
   /**
+   * Edges that never flip: two vertices each, one pair after the other, in any order; repeated pairs are one. Each has
+   * to be an edge of the mesh. Those that are not Delaunay in the end are counted as `locked`.
+   */
+  lockedEdges?: Uint32Array | readonly number[] | undefined;
+  /**
    * `'reproducible'` (default): the parallel iterations, the same on every engine. `'any'`: Lawson's sequential
    * algorithm, on the CPU only.
    */
@@ -70,11 +75,11 @@ export interface MakeDelaunayOptions extends Options, RunOptions {
 
 /**
  * Why an edge is still not Delaunay. `angle`: the normals differ by more than `maxNormalAngle`. `fold`: a new
- * triangle would turn over. `duplicate`: the edge that the flip would make exists already. `non-manifold`: three or
- * more triangles, or one twice, meet there. `inconsistent`: its two triangles are oriented against each other.
+ * triangle would turn over. `duplicate`: the edge that the flip would make exists already. `locked`: it is one of
+ * `lockedEdges`, whatever else it is. `non-manifold`: three or more triangles, or one twice, meet there. `inconsistent`: its two triangles are oriented against each other.
  * `stopped`: the run was stopped before.
  */
-export type Reason = 'angle' | 'fold' | 'duplicate' | 'non-manifold' | 'inconsistent' | 'stopped';
+export type Reason = 'angle' | 'fold' | 'duplicate' | 'locked' | 'non-manifold' | 'inconsistent' | 'stopped';
 
 /** Numbers of edges that are not Delaunay, by reason. A reason without an edge is absent. */
 export type Reasons = Partial<Record<Reason, number>>;

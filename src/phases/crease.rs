@@ -1,21 +1,23 @@
 //! Creases, before the first iteration: the edges of the input over β stay, even if flips around them lower
 //! their angle.
 
-use crate::adjacency::{CREASE, next, prev, unflagged};
+use crate::adjacency::{CREASE, LOCKED, next, prev, unflagged};
 use crate::predicates::Quad;
 use crate::{NONE, Positions};
 
 /// Flags both entries of `twins` for each interior edge whose triangles' normals differ by more than β, and no
-/// others; `cos` is its cosine, `positions` are 3D.
+/// others; locks stay. `cos` is its cosine, `positions` are 3D.
 pub(crate) fn flag_creases(positions: &Positions, triangles: &[u32], twins: &mut [u32], cos: f64) {
     for h in 0..triangles.len() as u32 {
-        let g = unflagged(twins[h as usize]);
+        let entry = twins[h as usize];
+        let g = unflagged(entry);
         if g == NONE || g < h {
             continue;
         }
         let [a, b, c, d] = positions.points3([h, next(h), prev(h), prev(g)].map(|x| triangles[x as usize]));
-        let flag = if Quad::new(a, b, c, d).is_over_angle(cos) { CREASE } else { 0 };
-        twins[h as usize] = g | flag;
-        twins[g as usize] = h | flag;
+        let crease = if Quad::new(a, b, c, d).is_over_angle(cos) { CREASE } else { 0 };
+        let flags = entry & LOCKED | crease;
+        twins[h as usize] = g | flags;
+        twins[g as usize] = h | flags;
     }
 }

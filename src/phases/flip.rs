@@ -1,7 +1,7 @@
 //! Flip with Update: rotate the two triangles of each selected edge in place and repair the twins around.
 
 use crate::NONE;
-use crate::adjacency::{CREASE, next, prev, unflagged};
+use crate::adjacency::{FLAGS, next, prev, unflagged};
 use crate::star::Fans;
 
 /// Flips the selected edges of the active triangles, and moves the anchors of the fans with them.
@@ -34,7 +34,7 @@ fn slot(selected: &[u32], entry: u32) -> u32 {
         return NONE;
     }
     let g = selected[x as usize / 3];
-    if g != NONE && x == next(selected[g as usize / 3]) { g | (entry & CREASE) } else { entry }
+    if g != NONE && x == next(selected[g as usize / 3]) { g | (entry & FLAGS) } else { entry }
 }
 
 /// Flips one selected edge. Reads the twins of its own two triangles only; writes those, and the entries of
@@ -51,7 +51,7 @@ fn flip_edge(triangles: &mut [u32], twins: &mut [u32], selected: &[u32], h: u32,
         twins[inner as usize] = slot(selected, outer);
         let x = unflagged(outer);
         if x != NONE && selected[x as usize / 3] == NONE {
-            twins[x as usize] = inner | (outer & CREASE);
+            twins[x as usize] = inner | (outer & FLAGS);
         }
     }
 }

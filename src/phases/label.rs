@@ -1,7 +1,7 @@
 //! Label: each triangle tests its three edges and keeps the best one that may flip.
 
 use super::{BLOCKED, Geometry, Topology, key};
-use crate::adjacency::{CREASE, next, prev, unflagged};
+use crate::adjacency::{CREASE, LOCKED, next, prev, unflagged};
 use crate::mesh::Dimension;
 use crate::predicates::{Quad, area_sign, in_circle_sign};
 use crate::star::{Star, any_in_either};
@@ -32,7 +32,7 @@ pub(crate) fn label(
         let mut smallest = u32::MAX;
         for h in 3 * t..3 * t + 3 {
             let g = mesh.twins[h as usize];
-            if g >= CREASE {
+            if g >= LOCKED {
                 // No twin, or an edge that stays.
                 continue;
             }
@@ -53,8 +53,8 @@ pub(crate) fn label(
 
 /// Tests the interior edge of half-edge `h`. Both half-edges give the same answer, since it is exact.
 pub(crate) fn verdict(geometry: &Geometry, mesh: Topology, h: u32) -> Verdict {
-    let twin = mesh.twins[h as usize];
-    let g = unflagged(twin);
+    let entry = mesh.twins[h as usize];
+    let g = unflagged(entry);
     let [a, b, c, d] = [h, next(h), prev(h), prev(g)].map(|x| mesh.triangles[x as usize]);
     let blocked = match geometry.dimension {
         Dimension::Two => {
@@ -73,7 +73,7 @@ pub(crate) fn verdict(geometry: &Geometry, mesh: Topology, h: u32) -> Verdict {
             if !quad.is_non_delaunay() {
                 return Verdict::Delaunay;
             }
-            if twin != g || quad.exceeds_angle(geometry.cos) {
+            if entry & CREASE != 0 || quad.exceeds_angle(geometry.cos) {
                 Some(Reason::Angle)
             } else {
                 quad.turns_over().then_some(Reason::Fold)
@@ -81,6 +81,7 @@ pub(crate) fn verdict(geometry: &Geometry, mesh: Topology, h: u32) -> Verdict {
         }
     };
     match blocked {
+        _ if entry & LOCKED != 0 => Verdict::Blocked(Reason::Locked),
         Some(reason) => Verdict::Blocked(reason),
         None if edge_exists(mesh, prev(h), prev(g)) => Verdict::Blocked(Reason::Duplicate),
         None => Verdict::Labelled,

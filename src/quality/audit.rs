@@ -94,6 +94,14 @@ pub enum Violation {
         /// Larger end.
         v: u32,
     },
+    /// An edge that was locked is no longer there.
+    #[error("locked edge {u}-{v} is lost")]
+    Locked {
+        /// Smaller end.
+        u: u32,
+        /// Larger end.
+        v: u32,
+    },
     /// The signed areas of the components, as a whole, are not exactly the same (2D).
     #[error("the signed area of a component changed")]
     Area,
@@ -159,8 +167,9 @@ impl Audit {
 }
 
 /// Checks `triangles` as a result of flipping edges of `input` with the threshold `max_normal_angle` in
-/// degrees (β, 3D only): exactly, with edge table, components and arithmetic of its own.
-pub fn audit(input: &Mesh, triangles: &[u32], max_normal_angle: f64) -> Audit {
+/// degrees (β, 3D only) and locked edges, given by their vertices (those that are none of the input are passed
+/// over): exactly, with edge table, components and arithmetic of its own.
+pub fn audit(input: &Mesh, triangles: &[u32], max_normal_angle: f64, locked_edges: &[[u32; 2]]) -> Audit {
     let mut audit = Audit::default();
     audit.compare(input.triangles().len(), triangles.len(), |before, after| Violation::Length {
         before,
@@ -191,7 +200,14 @@ pub fn audit(input: &Mesh, triangles: &[u32], max_normal_angle: f64) -> Audit {
             audit.report(Violation::Inverted { before, after });
         }
     }
-    audit.remaining_edges = after.remaining(cosine, &creases);
+    let mut locked: Vec<_> = locked_edges.iter().map(|&[u, v]| (u.min(v), u.max(v))).collect();
+    locked.sort_unstable();
+    locked.dedup();
+    locked.retain(|&(u, v)| (v as usize) < input.vertex_count() && before.table.contains(u, v));
+    for &(u, v) in locked.iter().filter(|&&(u, v)| !after.table.contains(u, v)) {
+        audit.report(Violation::Locked { u, v });
+    }
+    audit.remaining_edges = after.remaining(cosine, &creases, &locked);
     audit.remaining = audit.remaining_edges.iter().map(|edge| edge.reason).collect();
     audit
 }

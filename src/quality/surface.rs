@@ -76,21 +76,29 @@ impl<'a> Surface<'a> {
     }
 
     /// The edges that are not Delaunay, in the order of the table. `creases` are edges that may not flip,
-    /// whatever their angle is now, in the same order.
-    pub fn remaining(&self, cosine: f64, creases: &[(u32, u32)]) -> Vec<RemainingEdge> {
+    /// whatever their angle is now, and `locked` those that may not at all, both in the same order.
+    pub fn remaining(
+        &self,
+        cosine: f64,
+        creases: &[(u32, u32)],
+        locked: &[(u32, u32)],
+    ) -> Vec<RemainingEdge> {
         let mut remaining = Vec::new();
-        let mut creases = creases.iter().peekable();
         for edge in self.table.edges() {
-            while creases.next_if(|&&crease| crease < (edge.u, edge.v)).is_some() {}
-            let is_crease = creases.peek() == Some(&&(edge.u, edge.v));
+            let is_among = |list: &[(u32, u32)]| list.binary_search(&(edge.u, edge.v)).is_ok();
             let reason = match edge.class {
                 Class::Boundary => None,
-                Class::Twins(h, g) => match self.mesh.dimension() {
-                    Dimension::Two => self.judge_in_plane(h, g),
-                    Dimension::Three => self
-                        .judge_in_space(h, g, cosine)
-                        .map(|reason| if is_crease { Reason::Angle } else { reason }),
-                },
+                Class::Twins(h, g) => {
+                    let judged = match self.mesh.dimension() {
+                        Dimension::Two => self.judge_in_plane(h, g),
+                        Dimension::Three => self.judge_in_space(h, g, cosine),
+                    };
+                    judged.map(|reason| match () {
+                        () if is_among(locked) => Reason::Locked,
+                        () if is_among(creases) => Reason::Angle,
+                        () => reason,
+                    })
+                }
                 Class::NonManifold => self.frozen_excess(&edge).then_some(Reason::NonManifold),
                 Class::Inconsistent => self.frozen_excess(&edge).then_some(Reason::Inconsistent),
             };

@@ -6,7 +6,7 @@ use crate::engine::{Context, WebGl};
 #[cfg(feature = "gpu")]
 use crate::engine::{Device, Upload, WebGpu, self_test};
 use crate::predicates::cos_degrees;
-use crate::{Backend, Error, Mesh, Options, Order};
+use crate::{Backend, Error, Mesh, Options, Order, locks};
 use std::sync::Arc;
 
 /// What `Auto` tries, in this order. The last takes every mesh.
@@ -31,10 +31,7 @@ pub(super) async fn engine_for(mesh: &Arc<Mesh>, options: &Options) -> Result<Ch
             let message = "`any` is sequential and runs on the cpu only".to_owned();
             Err(Error::Option { option: "order", message })
         }
-        (Order::Any, _) => {
-            let cpu = Cpu::new(mesh.clone(), cos_degrees(options.max_normal_angle));
-            Ok((Box::new(Lawson::new(cpu)), None))
-        }
+        (Order::Any, _) => Ok((open(Backend::Cpu, mesh, options).await?, None)),
         (Order::Reproducible, Backend::Auto) if mesh.triangle_count() < FEWEST_FOR_GPU => {
             let why = format!("a mesh of fewer than {FEWEST_FOR_GPU} triangles is done sooner on the cpu");
             Ok((open(Backend::Cpu, mesh, options).await?, Some(why)))
@@ -81,15 +78,19 @@ async fn first_of(
 
 /// Boxed, so that what an engine does to begin is compiled into one place only.
 fn open<'a>(backend: Backend, mesh: &'a Arc<Mesh>, options: &'a Options) -> Answer<'a, Box<dyn Engine>> {
-    let cos = cos_degrees(options.max_normal_angle);
-    match backend {
-        Backend::Gpu => Box::pin(gpu(mesh, options, cos)),
-        Backend::WebGl => Box::pin(webgl(mesh, options, cos)),
-        Backend::Auto | Backend::Cpu => {
-            let cpu: Box<dyn Engine> = Box::new(Cpu::new(mesh.clone(), cos));
-            Box::pin(std::future::ready(Ok(cpu)))
+    Box::pin(async move {
+        let cos = cos_degrees(options.max_normal_angle);
+        let mut engine = match (backend, options.order) {
+            (Backend::Gpu, _) => gpu(mesh, options, cos).await?,
+            (Backend::WebGl, _) => webgl(mesh, options, cos).await?,
+            (_, Order::Reproducible) => Box::new(Cpu::new(mesh.clone(), cos)),
+            (_, Order::Any) => Box::new(Lawson::new(Cpu::new(mesh.clone(), cos))),
+        };
+        if !options.locked_edges.is_empty() {
+            engine.lock(locks::half_edges(mesh, &options.locked_edges)?).await?;
         }
-    }
+        Ok(engine)
+    })
 }
 
 #[cfg(feature = "gpu")]

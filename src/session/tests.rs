@@ -27,6 +27,9 @@ impl Engine for Failing {
     fn batch(&self) -> u32 {
         2
     }
+    fn lock(&mut self, half_edges: Vec<u32>) -> Answer<'_, ()> {
+        self.cpu.lock(half_edges)
+    }
     fn iterate(&mut self, count: u32) -> Answer<'_, Vec<u32>> {
         self.answer(|cpu| cpu.iterate(count))
     }
@@ -50,11 +53,14 @@ impl Engine for Failing {
     }
 }
 
+/// An edge of every fifth triangle is locked.
 fn session(backend: Backend, questions_left: u32) -> Session {
     let mesh = crate::families::by_name("random 20").unwrap();
-    let options = Options { backend: Backend::Cpu, ..Options::default() };
+    let locked_edges = mesh.triangles().chunks(15).map(|t| [t[0], t[1]]).collect();
+    let options = Options { backend: Backend::Cpu, locked_edges, ..Options::default() };
     let mut session = block_on(Session::new(mesh, options)).unwrap();
-    let cpu = Cpu::new(session.mesh.clone(), cos_degrees(10.0));
+    let mut cpu = Cpu::new(session.mesh.clone(), cos_degrees(10.0));
+    block_on(cpu.lock(locks::half_edges(&session.mesh, &session.options.locked_edges).unwrap())).unwrap();
     session.engine = Box::new(Failing { cpu, questions_left });
     session.options.backend = backend;
     session
@@ -74,6 +80,7 @@ fn watch(mut session: Session) -> Result<(Vec<Vec<u32>>, Outcome), Error> {
 #[test]
 fn a_lost_device_changes_no_result_at_any_moment() {
     let (expected, outcome) = watch(session(Backend::Auto, u32::MAX)).unwrap();
+    assert!(outcome.remaining[Reason::Locked] > 0);
     let questions = 3 * expected.len() as u32 + 4;
     for questions_left in 0..questions {
         let (seen, other) = watch(session(Backend::Auto, questions_left)).unwrap();

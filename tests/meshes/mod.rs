@@ -4,17 +4,28 @@
 
 mod dirty;
 mod extreme;
+mod locked;
 
 pub use dirty::soup;
+pub use locked::edges;
 
-use edgeflip::{Dimension, Mesh, families::by_name};
+use edgeflip::{Backend, Dimension, Mesh, Options, families::by_name};
 use oorandom::Rand64;
 
-/// A mesh, its name and the threshold β in degrees that it is run with (without effect in 2D).
+/// A mesh, its name and the threshold β in degrees that it is run with (without effect in 2D), and the edges that
+/// are locked.
 pub struct Case {
     pub name: String,
     pub mesh: Mesh,
     pub beta: f64,
+    pub locked: Vec<[u32; 2]>,
+}
+
+impl Case {
+    pub fn options(&self, backend: Backend) -> Options {
+        let locked_edges = self.locked.clone();
+        Options { backend, max_normal_angle: self.beta, locked_edges, ..Options::default() }
+    }
 }
 
 /// All cases. `(name, beta)` is unique, names have no spaces.
@@ -54,11 +65,12 @@ pub fn all() -> Vec<Case> {
     cases.extend(surfaces());
     cases.extend(dirty::all());
     cases.extend(extreme::all());
+    cases.extend(locked::all());
     cases
 }
 
 pub fn case(name: &str, mesh: Mesh, beta: f64) -> Case {
-    Case { name: name.into(), mesh, beta }
+    Case { name: name.into(), mesh, beta, locked: Vec::new() }
 }
 
 /// A small mesh written down.

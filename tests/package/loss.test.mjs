@@ -1,4 +1,4 @@
-// A run under 'auto' whose device is destroyed, and whose context is lost after that, ends with the right bits from
+// A run with locked edges under 'auto' whose device is destroyed, and whose context is lost after that, ends with the right bits from
 // another engine each time. The software GPUs of the browsers pass for real ones here. Takes the dist/ that is there.
 
 import assert from 'node:assert/strict';
@@ -32,8 +32,10 @@ async function runAndLose() {
   const { FlipSession, makeDelaunay } = await import('/dist/index.js');
   const { generate } = await import('/dist/files.js');
   const mesh = await generate('random 120');
-  const cpu = await FlipSession.create(mesh, { backend: 'cpu' });
-  const session = await FlipSession.create(mesh, { backend: 'auto' });
+  // An edge of every seventh triangle.
+  const lockedEdges = mesh.indices.filter((_, i) => i % 21 < 2);
+  const cpu = await FlipSession.create(mesh, { backend: 'cpu', lockedEdges });
+  const session = await FlipSession.create(mesh, { backend: 'auto', lockedEdges });
   const engines = [];
   for (;;) {
     const iteration = await session.step();
@@ -46,11 +48,12 @@ async function runAndLose() {
     if (engines.length === 4) window.contexts.at(-1).getExtension('WEBGL_lose_context').loseContext();
   }
   const { fallback, status, remaining } = await session.result();
+  const counted = (await cpu.result()).remaining;
   // The context is gone, so a new session gets a new one; the device likewise.
-  const again = await makeDelaunay(mesh, { backend: 'webgl2' });
+  const again = await makeDelaunay(mesh, { backend: 'webgl2', lockedEdges });
   const wanted = await cpu.triangles();
   const isSame = again.indices.every((vertex, i) => vertex === wanted[i]);
-  return { engines, fallback, status, remaining, again: [again.backend, isSame] };
+  return { engines, fallback, status, remaining, counted, again: [again.backend, isSame] };
 }
 
 test('a lost device and a lost context change no result', async () => {
@@ -58,9 +61,11 @@ test('a lost device and a lost context change no result', async () => {
   const page = await browser.newPage();
   await page.addInitScript(passForReal);
   await page.goto(`${await serve(repository)}tests/parity/page.html`);
-  const { engines, fallback, ...result } = await page.evaluate(runAndLose);
+  const { engines, fallback, remaining, counted, ...result } = await page.evaluate(runAndLose);
   assert.deepEqual(engines.slice(0, 6), ['webgpu', 'webgpu', 'webgl2', 'webgl2', 'cpu', 'cpu']);
   assert.ok(engines.slice(6).every((engine) => engine === 'cpu'));
   assert.match(fallback, /the device failed during the run: .*; the device failed during the run: .*context was lost/);
-  assert.deepEqual(result, { status: 'done', remaining: {}, again: ['webgl2', true] });
+  assert.deepEqual(result, { status: 'done', again: ['webgl2', true] });
+  assert.deepEqual(remaining, counted);
+  assert.ok(remaining.locked > 0);
 });

@@ -101,6 +101,19 @@ test('a surface keeps its sharp edges and says so', async () => {
   assert.deepEqual((await makeDelaunay(mesh)).remaining, { angle: 1 });
 });
 
+test('locked edges never flip and are counted', async () => {
+  const mesh = strips(8);
+  const session = await FlipSession.create(mesh);
+  const { v1, v2 } = await session.edges();
+  session.free();
+  const all = [...v1.keys()].flatMap((edge) => [v2[edge], v1[edge]]);
+  for (const lockedEdges of [all, Uint32Array.from(all)]) {
+    const { flips, status, remaining } = await makeDelaunay(mesh, { lockedEdges });
+    assert.deepEqual([flips, status, remaining], [0, 'done', { locked: 1 }]);
+  }
+  assert.equal((await makeDelaunay(mesh, { lockedEdges: [] })).flips, 9);
+});
+
 test('errors have codes', async () => {
   const mesh = diamond();
   const bad = (change) => makeDelaunay({ ...mesh, ...change });
@@ -119,6 +132,12 @@ test('errors have codes', async () => {
   await assert.rejects(makeDelaunay(mesh, { device: {} }), refused('invalid-option', /device: .* is not a GPUDevice/));
   await assert.rejects(makeDelaunay(mesh, { maxNormalAngle: 200 }), refused('invalid-option', /maxNormalAngle: 200/));
   await assert.rejects(makeDelaunay(mesh, { maxIterations: -1 }), refused('invalid-option', /maxIterations/));
+  const locking = (lockedEdges) => makeDelaunay(mesh, { lockedEdges });
+  await assert.rejects(locking([0, 1, 1, 3]), refused('invalid-option', /lockedEdges: .*no edge between vertices 1 and 3/));
+  await assert.rejects(locking([0, 1, 2]), refused('ragged-array', /lockedEdges has 3 numbers.*multiple of 2/));
+  for (const wrong of [null, 'edges', [0, -1], [0, 0.5], ['0', '1'], new Float32Array(2)]) {
+    await assert.rejects(locking(wrong), refused('invalid-option', /lockedEdges: it is neither/));
+  }
 });
 
 test('a signal stops a run after a complete iteration', async () => {

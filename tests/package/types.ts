@@ -16,6 +16,8 @@ export async function use(mesh: Mesh, signal: AbortSignal, device?: GPUDevice): 
   const status: 'done' | 'stopped' = result.status;
   const session = await FlipSession.create({ ...mesh, positions: new Float64Array(9) }, { order: 'any', device });
   for await (const { flips, blocked } of session) console.log(flips, blocked.fold, left, status);
+  const lockedEdges: readonly number[] = [0, 1];
+  console.log((await makeDelaunay(mesh, { lockedEdges })).remaining.locked);
   const gpu = await session.gpu();
   const buffer: GPUBuffer | undefined = gpu?.indices;
   console.log(buffer?.size);

@@ -23,8 +23,8 @@ pub struct IterationRecord {
     pub labelled: u32,
     /// Edges flipped.
     pub flips: u32,
-    /// Non-Delaunay edges between two consistent triangles that may not flip, before it: `angle`, `fold`
-    /// and `duplicate` only.
+    /// Non-Delaunay edges between two consistent triangles that may not flip, before it: `angle`, `fold`,
+    /// `duplicate` and `locked` only.
     pub blocked: Reasons,
     /// Of the input's triangles and those after every iteration up to this one.
     pub digest: Digest,
@@ -167,12 +167,14 @@ struct Rules {
     clockwise: Vec<bool>,
     /// Edges of the input over β: they stay.
     creases: HashSet<(u32, u32)>,
+    /// Edges that the user has named: they stay.
+    locked: HashSet<(u32, u32)>,
     /// A verdict depends on the four vertices and the orientation alone, so it is found once.
     verdicts: HashMap<([u32; 4], bool), Verdict>,
 }
 
 impl Rules {
-    fn new(mesh: &Mesh, beta_deg: f64) -> Self {
+    fn new(mesh: &Mesh, beta_deg: f64, locked: &[[u32; 2]]) -> Self {
         let triangles = mesh.triangles();
         let predicates = Predicates::new(mesh, beta_deg);
         let clockwise = clockwise(mesh, &predicates);
@@ -184,7 +186,8 @@ impl Rules {
             })
             .map(|(ends, _)| ends)
             .collect();
-        Self { predicates, clockwise, creases, verdicts: HashMap::new() }
+        let locked = locked.iter().map(|&[u, v]| pair(u, v)).collect();
+        Self { predicates, clockwise, creases, locked, verdicts: HashMap::new() }
     }
 
     fn label(&mut self, triangles: &[u32]) -> Labels {
@@ -216,6 +219,7 @@ impl Rules {
                     let duplicate = c == d || edges.contains_key(&pair(c, d));
                     match verdict {
                         None => {}
+                        Some(_) if self.locked.contains(&ends) => block(Reason::Locked),
                         Some(_) if self.creases.contains(&ends) => block(Reason::Angle),
                         Some(Err(reason)) => block(reason),
                         Some(Ok(())) if duplicate => block(Reason::Duplicate),
@@ -262,8 +266,18 @@ fn select(labels: &Labels, iteration: u32) -> Vec<(u32, u32)> {
 
 /// Runs the rules on `mesh` with the threshold β to their end, or for `max_iterations`.
 pub fn simulate(mesh: &Mesh, beta_deg: f64, max_iterations: Option<u32>) -> Simulation {
+    simulate_locked(mesh, beta_deg, &[], max_iterations)
+}
+
+/// The same with locked edges.
+pub fn simulate_locked(
+    mesh: &Mesh,
+    beta_deg: f64,
+    locked: &[[u32; 2]],
+    max_iterations: Option<u32>,
+) -> Simulation {
     let mut triangles = mesh.triangles().to_vec();
-    let mut rules = Rules::new(mesh, beta_deg);
+    let mut rules = Rules::new(mesh, beta_deg, locked);
     let mut digest = Digest::default();
     digest.feed(&triangles);
     let mut iterations = Vec::new();
@@ -292,6 +306,11 @@ pub fn simulate(mesh: &Mesh, beta_deg: f64, max_iterations: Option<u32>) -> Simu
 }
 
 /// The non-Delaunay edges of `triangles`, a state that flips of `mesh` led to, in ascending order of their ends.
-pub fn remaining_edges(mesh: &Mesh, triangles: &[u32], beta_deg: f64) -> Vec<RemainingEdge> {
-    Rules::new(mesh, beta_deg).label(triangles).remaining(triangles)
+pub fn remaining_edges(
+    mesh: &Mesh,
+    triangles: &[u32],
+    beta_deg: f64,
+    locked: &[[u32; 2]],
+) -> Vec<RemainingEdge> {
+    Rules::new(mesh, beta_deg, locked).label(triangles).remaining(triangles)
 }

@@ -114,6 +114,7 @@ impl Args {
                 OrderArg::Reproducible => Order::Reproducible,
                 OrderArg::Any => Order::Any,
             },
+            locked_edges: Vec::new(),
         }
     }
 }

@@ -115,7 +115,7 @@ fn run(args: &Args, bar: &ProgressBar) -> Result<Report, Failure> {
 
 /// What the independent check finds: another count of the edges left is a violation too.
 fn check(args: &Args, mesh: &Mesh, outcome: &Outcome) -> Check {
-    let audit = quality::audit(mesh, &outcome.triangles, args.max_normal_angle);
+    let audit = quality::audit(mesh, &outcome.triangles, args.max_normal_angle, &[]);
     let mut violations: Vec<String> = audit.violations.iter().map(ToString::to_string).collect();
     if audit.remaining != outcome.remaining {
         let [said, counted] = [&outcome.remaining, &audit.remaining].map(report::reasons);

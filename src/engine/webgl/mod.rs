@@ -12,6 +12,7 @@ use super::cosine::Cosine;
 use super::probe::SHORT_STAR;
 use super::upload::{Form, Upload};
 use super::{Answer, Census, EdgeCounts, Engine};
+use crate::locks;
 use crate::mesh::{Dimension, Mesh};
 use crate::phases::BLOCKED;
 use crate::star::Fans;
@@ -62,6 +63,7 @@ pub(crate) struct WebGl {
     sums: Vec<Texture>,
     /// The flips of a batch's iterations, twice; or a census.
     history: Texture,
+    has_locks: bool,
     passes: u64,
 }
 
@@ -109,6 +111,7 @@ impl WebGl {
             fans: pair(size(fans.table.len())?, 1)?,
             sums,
             history: Texture::new(&context, (BATCH, 1), 4)?,
+            has_locks: false,
             passes: 0,
             context,
         };
@@ -118,15 +121,12 @@ impl WebGl {
     }
 
     fn write(&mut self, upload: &Upload, twins: &[u32], winding: &Winding, fans: Fans) -> Result<(), Error> {
-        let in_fours = |words: &[u32], fourth: &dyn Fn(usize) -> u32| -> Vec<u32> {
-            words.chunks_exact(3).enumerate().flat_map(|(i, w)| [w[0], w[1], w[2], fourth(i)]).collect()
-        };
         let stride = self.form.dimension.stride();
         let point = |p: &[u32]| [p[0], p[1], if stride == 3 { p[2] } else { 0 }, 0];
         self.positions.write(upload.words().chunks_exact(stride).flat_map(point).collect())?;
         let is_clockwise = |t: usize| u32::from(winding.is_clockwise(t as u32));
-        self.triangles.front.write(in_fours(upload.mesh.triangles(), &is_clockwise))?;
-        self.twins.front.write(in_fours(twins, &|_| NONE))?;
+        self.triangles.front.write(in_fours(upload.mesh.triangles(), is_clockwise))?;
+        self.twins.front.write(in_fours(twins, |_| NONE))?;
         self.fans.front.write(fans.table)?;
         // Every triangle is looked at in the first iteration: as if each had been blocked before, and none selected.
         self.bests.front.write(vec![BLOCKED; self.count])?;
@@ -233,14 +233,26 @@ impl WebGl {
 
     async fn count(&mut self) -> Result<Census, Error> {
         self.judge()?;
-        let more = [(VERDICTS, &self.verdicts.front), (FANS, &self.fans.front)];
-        // Nothing is there between two iterations.
-        self.context.pass("census", &[&self.mesh()[..], &more].concat(), &self.triangles.back, None)?;
-        self.context.pass("sum", &[(COUNTS, &self.triangles.back)], &self.sums[0], None)?;
-        self.passes += 2;
-        self.sum_up(0)?;
-        let counts = self.context.read(&self.history, 1).await?;
+        // A texel has four counts, and the locks are the fifth.
+        let programs = &["census", "locked"][..1 + usize::from(self.has_locks)];
+        for (column, program) in (0..).zip(programs) {
+            let more = [(VERDICTS, &self.verdicts.front), (FANS, &self.fans.front)];
+            // Nothing is there between two iterations.
+            self.context.pass(program, &[&self.mesh()[..], &more].concat(), &self.triangles.back, None)?;
+            self.context.pass("sum", &[(COUNTS, &self.triangles.back)], &self.sums[0], None)?;
+            self.passes += 2;
+            self.sum_up(column)?;
+        }
+        let counts = self.context.read(&self.history, programs.len()).await?;
         Ok(Census::of_counts(&counts))
+    }
+
+    async fn flag_locked(&mut self, half_edges: Vec<u32>) -> Result<(), Error> {
+        self.context.compile(&["locked"]).await?;
+        let mut twins = self.read_threes(&self.twins.front).await?;
+        locks::flag(&mut twins, &half_edges);
+        self.has_locks = true;
+        self.twins.front.write(in_fours(&twins, |_| NONE))
     }
 
     /// The first three words of each triangle's texel.
@@ -250,9 +262,14 @@ impl WebGl {
     }
 
     async fn move_vertices(&mut self, mesh: Arc<Mesh>) -> Result<(), Error> {
-        let passes = self.passes;
-        *self = Self::new(self.context.clone(), Upload::new(self.backend(), mesh)?, self.cos).await?;
-        self.passes += passes;
+        let upload = Upload::new(self.backend(), mesh)?;
+        let mut moved = Self::new(self.context.clone(), upload, self.cos).await?;
+        if self.has_locks {
+            let twins = self.read_threes(&self.twins.front).await?;
+            moved.flag_locked(locks::flagged(&twins)).await?;
+        }
+        moved.passes += self.passes;
+        *self = moved;
         Ok(())
     }
 }
@@ -265,6 +282,11 @@ fn deciders(form: Form) -> &'static [&'static str] {
         (Dimension::Three, false) => &["verdict3", "crease", "flag"],
         (Dimension::Three, true) => &["verdict3_fixed", "crease_fixed", "flag"],
     }
+}
+
+/// A texel for every three words, with a fourth.
+fn in_fours(words: &[u32], fourth: impl Fn(usize) -> u32) -> Vec<u32> {
+    words.chunks_exact(3).enumerate().flat_map(|(i, w)| [w[0], w[1], w[2], fourth(i)]).collect()
 }
 
 /// Width and height of a texture for so many texels; never empty.
@@ -314,6 +336,10 @@ fn params(mesh: &Mesh, bits: u32, fans: usize, cosine: &Cosine) -> [u32; PARAMS]
 impl Engine for WebGl {
     fn batch(&self) -> u32 {
         BATCH
+    }
+
+    fn lock(&mut self, half_edges: Vec<u32>) -> Answer<'_, ()> {
+        Box::pin(self.flag_locked(half_edges))
     }
 
     fn iterate(&mut self, count: u32) -> Answer<'_, Vec<u32>> {

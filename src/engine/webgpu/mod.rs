@@ -30,10 +30,10 @@ use super::SharedObjects;
 use super::probe::SHORT_STAR;
 use super::upload::{Form, Upload};
 use super::{Answer, Census, EdgeCounts, Engine};
-use crate::Error;
 use crate::mesh::{Dimension, Mesh};
 use crate::star::Fans;
 use crate::winding::Winding;
+use crate::{Error, locks};
 use buffers::Buffers;
 use device::Buffer;
 use faults::refuse;
@@ -53,7 +53,7 @@ const SHORT_TAIL: u32 = 4;
 const STEP_WORDS: u32 = 64;
 
 // Words of the history, as in `state.wgsl`.
-const ENTRIES: usize = 4;
+const ENTRIES: usize = 5;
 const ENTRY_WORDS: usize = 4;
 const HISTORY_WORDS: usize = ENTRIES + ENTRY_WORDS * (1 + BATCH as usize + TAIL as usize);
 
@@ -164,12 +164,25 @@ impl WebGpu {
         self.gpu.checked(submit).await
     }
 
+    /// Whoever locks edges has named them on the host, which has time for the twins too.
+    async fn flag_locked(&mut self, half_edges: Vec<u32>) -> Result<(), Error> {
+        let mut twins = self.gpu.read(&self.buffers.twins, 3 * self.params.triangles as usize).await?;
+        locks::flag(&mut twins, &half_edges);
+        let write = || self.gpu.queue.write_buffer(&self.buffers.twins, 0, bytemuck::cast_slice(&twins));
+        self.gpu.checked(write).await
+    }
+
     async fn move_vertices(&mut self, mesh: Arc<Mesh>) -> Result<(), Error> {
         let upload = Upload::new(self.backend(), mesh)?;
         if upload.form() == self.form {
             return self.start(&upload).await;
         }
-        *self = Self::new(self.gpu.clone(), upload, self.cos).await?;
+        let mut moved = Self::new(self.gpu.clone(), upload, self.cos).await?;
+        let locked = locks::flagged(&self.twins().await?);
+        if !locked.is_empty() {
+            moved.flag_locked(locked).await?;
+        }
+        *self = moved;
         Ok(())
     }
 
@@ -280,6 +293,10 @@ impl WebGpu {
 impl Engine for WebGpu {
     fn batch(&self) -> u32 {
         BATCH + TAIL
+    }
+
+    fn lock(&mut self, half_edges: Vec<u32>) -> Answer<'_, ()> {
+        Box::pin(self.flag_locked(half_edges))
     }
 
     fn iterate(&mut self, count: u32) -> Answer<'_, Vec<u32>> {

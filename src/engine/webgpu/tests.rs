@@ -7,7 +7,7 @@ use super::device::Device;
 use super::kernels::{ADJACENCY, PROBE, WORKGROUP_SIZE, phases_source};
 use super::params::Params;
 use super::{ENTRIES, ENTRY_WORDS};
-use crate::adjacency::CREASE;
+use crate::adjacency::{CREASE, FLAGS, LOCKED};
 use crate::engine::cosine::DIGIT_BITS;
 use crate::engine::upload::{Form, SPAN};
 use crate::phases::BLOCKED;
@@ -66,6 +66,8 @@ fn constants_of_the_phases_agree() {
         ("NONE", u64::from(NONE)),
         ("BLOCKED", u64::from(BLOCKED)),
         ("CREASE", u64::from(CREASE)),
+        ("LOCKED", u64::from(LOCKED)),
+        ("FLAGS", u64::from(FLAGS)),
         ("WORKGROUP_SIZE", u64::from(WORKGROUP_SIZE)),
         ("SPAN", u64::from(SPAN)),
         ("DIGIT_BITS", u64::from(DIGIT_BITS)),
@@ -74,6 +76,7 @@ fn constants_of_the_phases_agree() {
         ("REASON_ANGLE", Reason::Angle as u64),
         ("REASON_FOLD", Reason::Fold as u64),
         ("REASON_DUPLICATE", Reason::Duplicate as u64),
+        ("REASON_LOCKED", Reason::Locked as u64),
         // The host reads the census and an entry by place.
         ("CENSUS", 0),
         ("LABELLED", 1),

@@ -21,7 +21,7 @@ macro_rules! shaders {
 type Program = (&'static str, &'static str);
 
 /// For meshes in the plane, with coordinates as floats; all but `verdict2` are for every mesh.
-const PLANE: [Program; 11] = [
+const PLANE: [Program; 12] = [
     ("cover", "cover"),
     ("verdict2", "verdict_pass"),
     ("label", "label_pass"),
@@ -30,6 +30,7 @@ const PLANE: [Program; 11] = [
     ("update", "update_pass"),
     ("anchor", "anchor_pass"),
     ("census", "census_pass"),
+    ("locked", "locked_pass"),
     ("flips", "flips_pass"),
     ("sum", "sum_pass"),
     ("probe", "probe_pass"),

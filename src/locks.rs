@@ -1,0 +1,59 @@
+//! Locked edges: those that the user has named, which never flip.
+
+use crate::adjacency::{LOCKED, next};
+use crate::mesh::Mesh;
+use crate::{Error, NONE};
+use std::collections::HashMap;
+
+/// The half-edges of the edges that `pairs` name by their vertices, in ascending order.
+///
+/// # Errors
+/// [`Error::Option`] with the first pair that is no edge of the mesh.
+pub(crate) fn half_edges(mesh: &Mesh, pairs: &[[u32; 2]]) -> Result<Vec<u32>, Error> {
+    let mut half_edges = Vec::new();
+    if pairs.is_empty() {
+        return Ok(half_edges);
+    }
+    let ordered = |[u, v]: [u32; 2]| [u.min(v), u.max(v)];
+    let mut is_found: HashMap<[u32; 2], bool> = pairs.iter().map(|&pair| (ordered(pair), false)).collect();
+    // Most half-edges are ruled out by one look.
+    let mut is_end = vec![false; mesh.vertex_count()];
+    for &[u, _] in is_found.keys() {
+        if let Some(is_end) = is_end.get_mut(u as usize) {
+            *is_end = true;
+        }
+    }
+    for h in 0..mesh.triangles().len() as u32 {
+        let ends = ordered([h, next(h)].map(|x| mesh.triangles()[x as usize]));
+        if is_end[ends[0] as usize]
+            && let Some(is_found) = is_found.get_mut(&ends)
+        {
+            *is_found = true;
+            half_edges.push(h);
+        }
+    }
+    match pairs.iter().find(|&&pair| !is_found[&ordered(pair)]) {
+        None => Ok(half_edges),
+        Some([u, v]) => {
+            let message = format!("the mesh has no edge between vertices {u} and {v}");
+            Err(Error::Option { option: "locked_edges", message })
+        }
+    }
+}
+
+/// Flags the entries of these half-edges, as far as they have a twin.
+pub(crate) fn flag(twins: &mut [u32], half_edges: &[u32]) {
+    for &h in half_edges {
+        let entry = &mut twins[h as usize];
+        if *entry != NONE {
+            *entry |= LOCKED;
+        }
+    }
+}
+
+/// The half-edges whose entries are flagged so.
+#[cfg(feature = "gpu")]
+pub(crate) fn flagged(twins: &[u32]) -> Vec<u32> {
+    let is_locked = |entry: u32| entry != NONE && entry & LOCKED != 0;
+    (0..).zip(twins).filter(|&(_, &entry)| is_locked(entry)).map(|(h, _)| h).collect()
+}

@@ -1,0 +1,108 @@
+//! Locked edges: random ones on random meshes flip as simulated on every engine and are there at the end; pairs that
+//! are no edges are refused.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "what fails here is a failed test")]
+
+mod meshes;
+mod runs;
+mod simulation;
+
+use edgeflip::quality::audit;
+use edgeflip::{Backend, Error, Mesh, Options, Order, Outcome, Reason, Session, families::by_name};
+use oorandom::Rand64;
+use pollster::block_on;
+use runs::{options, unwatched, watched};
+use simulation::{simulate, simulate_locked};
+use std::ops::ControlFlow;
+
+/// Random meshes to try; `EDGEFLIP_ROUNDS` asks for more.
+fn rounds() -> u64 {
+    std::env::var("EDGEFLIP_ROUNDS").ok().and_then(|n| n.parse().ok()).unwrap_or(200)
+}
+
+/// A random share of the edges, either way round.
+fn some_edges(mesh: &Mesh, random: &mut Rand64) -> Vec<[u32; 2]> {
+    let share = random.rand_float();
+    let mut locked = meshes::edges(mesh);
+    locked.retain(|_| random.rand_float() < share);
+    locked.iter_mut().filter(|_| random.rand_float() < 0.5).for_each(|pair| pair.reverse());
+    locked
+}
+
+/// Compares each engine with the simulation, and Lawson's algorithm with the audit. Returns the flips.
+fn assert_locked(name: &str, mesh: &Mesh, beta: f64, locked: &[[u32; 2]], on_gpu: bool) -> u64 {
+    let want = simulate_locked(mesh, beta, locked, None);
+    for backend in [Backend::Cpu, Backend::Gpu].into_iter().take(1 + usize::from(on_gpu)) {
+        let options = Options { locked_edges: locked.to_vec(), ..options(backend, beta) };
+        assert_eq!(watched(mesh, &options).unwrap(), want, "{name} at β = {beta}, {backend:?}");
+    }
+    let any = Options { locked_edges: locked.to_vec(), order: Order::Any, ..options(Backend::Cpu, beta) };
+    let any = unwatched(mesh, &any).unwrap();
+    for (triangles, remaining) in [(&want.triangles, want.remaining), (&any.triangles, any.remaining)] {
+        let audit = audit(mesh, triangles, beta, locked);
+        assert!(audit.is_clean(), "{name} at β = {beta}: {:?}", audit.violations);
+        assert_eq!(audit.remaining, remaining, "{name} at β = {beta}");
+        assert_eq!(remaining[Reason::Stopped], 0, "{name} at β = {beta}");
+    }
+    want.flips()
+}
+
+#[test]
+fn random_locks_hold_on_random_meshes() {
+    let mut flips = 0;
+    for seed in 0..rounds() {
+        let random = &mut Rand64::new(u128::from(seed));
+        let n = 3 + seed as usize % 6;
+        let (flat, bent) = meshes::soup(seed, n, seed as usize / 5 % 23);
+        let family = |name: &str| by_name(&format!("{name} {n} seed={seed}")).unwrap();
+        for mesh in [flat, bent, family("random"), family("uvsphere")] {
+            let locked = some_edges(&mesh, random);
+            // The software GPU takes a tenth of them.
+            flips += assert_locked(&format!("seed {seed}"), &mesh, 40.0, &locked, seed % 10 == 0);
+        }
+    }
+    assert!(flips > 20 * rounds(), "{flips}");
+}
+
+#[test]
+fn locks_on_the_boundary_change_nothing() {
+    let case = meshes::all().into_iter().find(|case| case.name == "locked-boundary").unwrap();
+    let with = watched(&case.mesh, &case.options(Backend::Cpu)).unwrap();
+    assert_eq!(with, simulate(&case.mesh, case.beta, None));
+}
+
+/// Also by `auto`, which would take another engine's refusal for a reason to go on.
+#[test]
+fn pairs_that_are_no_edges_are_refused() {
+    let mesh = by_name("random 8").unwrap();
+    let edge = [mesh.triangles()[0], mesh.triangles()[1]];
+    for backend in [Backend::Auto, Backend::Cpu, Backend::Gpu] {
+        for [u, v] in [[0, 63], [63, 0], [5, 5], [3, 64], [u32::MAX, u32::MAX]] {
+            let options = Options { backend, locked_edges: vec![edge, [u, v]], ..Options::default() };
+            let error = block_on(Session::new(mesh.clone(), options)).err().unwrap();
+            assert!(matches!(error, Error::Option { option: "locked_edges", .. }));
+            let expected = format!("option locked_edges: the mesh has no edge between vertices {u} and {v}");
+            assert_eq!(error.to_string(), expected);
+        }
+    }
+}
+
+/// For a GPU doubles are another form of mesh, on a new engine.
+#[test]
+fn locks_stay_when_vertices_move_to_doubles() {
+    let mesh = by_name("uvsphere 9").unwrap();
+    let locked: Vec<_> = meshes::edges(&mesh).into_iter().step_by(3).collect();
+    let moved: Vec<f64> = mesh.positions().iter().zip(0..).map(|(x, i)| x * [0.1, 0.7, 0.9][i % 3]).collect();
+    let run = |backend| {
+        let options = Options { locked_edges: locked.clone(), ..options(backend, 60.0) };
+        let mut session = block_on(Session::new(mesh.clone(), options)).unwrap();
+        block_on(session.step()).unwrap();
+        block_on(session.set_positions(moved.clone())).unwrap();
+        block_on(session.run(|_, _| ControlFlow::Continue(()))).unwrap();
+        assert!(block_on(session.verify()).unwrap().is_clean());
+        let Outcome { triangles, flips, remaining, .. } = block_on(session.outcome()).unwrap();
+        (triangles, flips, remaining)
+    };
+    let (triangles, flips, remaining) = run(Backend::Cpu);
+    assert!(flips > 0 && remaining[Reason::Locked] > 0, "{flips} flips, {remaining:?}");
+    assert_eq!(run(Backend::Gpu), (triangles, flips, remaining));
+}

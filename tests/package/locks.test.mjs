@@ -1,0 +1,44 @@
+// Locked edges stay locked on every engine of a browser when the vertices move. Takes the dist/ that is there.
+
+import assert from 'node:assert/strict';
+import { after, test } from 'node:test';
+import { fileURLToPath } from 'node:url';
+import { closeAll, serve, startChromium } from '../browsers.mjs';
+
+const repository = fileURLToPath(new URL('../..', import.meta.url));
+
+after(closeAll);
+
+/** Runs in the page: what a session on the engine says after each step, the vertices moving in between. */
+async function runAndMove({ backend, name }) {
+  const { FlipSession } = await import('/dist/index.js');
+  const { generate } = await import('/dist/files.js');
+  const mesh = await generate(name);
+  const lockedEdges = mesh.indices.filter((_, i) => i % 21 < 2);
+  const session = await FlipSession.create(mesh, { backend, lockedEdges });
+  const said = [];
+  for (const stretch of [1, 4, 0.5]) {
+    await session.setPositions(mesh.positions.map((x, i) => (i % mesh.dimension ? x : x * stretch)));
+    for await (const { labelled, flips, blocked } of session) said.push({ labelled, flips, blocked });
+    const { indices, remaining } = await session.result();
+    said.push({ indices: [...indices], remaining, audit: await session.verify() });
+  }
+  session.free();
+  return said;
+}
+
+test('locked edges stay locked when the vertices move', async () => {
+  const page = await (await startChromium()).newPage();
+  await page.goto(`${await serve(repository)}tests/parity/page.html`);
+  for (const name of ['random 12', 'roof 6']) {
+    const expected = await page.evaluate(runAndMove, { backend: 'cpu', name });
+    for (const { audit, remaining } of expected.filter((said) => said.audit)) {
+      assert.ok(audit.clean, audit.violations.join());
+      assert.deepEqual(audit.remaining, remaining);
+      assert.ok(remaining.locked > 0, name);
+    }
+    for (const backend of ['webgpu', 'webgl2']) {
+      assert.deepEqual(await page.evaluate(runAndMove, { backend, name }), expected, `${name} on ${backend}`);
+    }
+  }
+});
