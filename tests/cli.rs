@@ -163,6 +163,36 @@ fn verify_names_the_edges_left() {
 }
 
 #[test]
+fn locked_edges_stay() {
+    let folder = Folder::new();
+    let (input, output) = (folder.file("in.off", SQUARE), folder.path("out.off"));
+    let list = folder.file("list.txt", "# the diagonal\n2 0 # twice\n\n0 2\n");
+    let locking =
+        |more: &[&str]| run(&input, &output, &[&["--lock-edges", list.to_str().unwrap()], more].concat());
+    let ran = locking(&["--json", "--verify"]);
+    assert_eq!((ran.status.code(), text(&ran.stderr)), (Some(0), ""));
+    let found: Value = serde_json::from_slice(&ran.stdout).unwrap();
+    assert_eq!((&found["flips"], &found["status"]), (&0.into(), &"done".into()));
+    assert_eq!(found["remaining"], json!({ "locked": 1 }));
+    assert_eq!(found["remaining_edges"], json!({ "locked": [[0, 2]] }));
+    assert_eq!(found["audit"], json!([]));
+    fs::remove_file(&output).unwrap();
+    for (text, status, line) in [
+        ("0 2\n1 3\n", 2, "option locked_edges: the mesh has no edge between vertices 1 and 3"),
+        ("0 9\n", 2, "option locked_edges: the mesh has no edge between vertices 0 and 9"),
+        ("0 1\n2\n", 1, "LIST: line 2: expected 2 vertex indices, found 1"),
+        ("0 1 2\n", 1, "LIST: line 1: expected 2 vertex indices, found 3"),
+        ("0 -1\n", 1, "LIST: line 1: expected a vertex index, found `-1`"),
+        ("0 4294967296\n", 1, "LIST: line 1: expected a vertex index, found `4294967296`"),
+        ("zero one\n", 1, "LIST: line 1: expected a vertex index, found `zero`"),
+    ] {
+        fs::write(&list, text).unwrap();
+        failed(&locking(&[]), status, &line.replace("LIST", list.to_str().unwrap()));
+    }
+    assert_eq!(folder.names(), ["in.off", "list.txt"]);
+}
+
+#[test]
 fn the_summary_is_on_standard_error() {
     let folder = Folder::new();
     let quad = "v 0 0 0\nv 1 0 0\nv 1 1 1\nv 0 1 0\nvn 0 0 1\nf 1//1 2//1 3//1 4//1\n";

@@ -1,5 +1,5 @@
-//! Locked edges: random ones on random meshes flip as simulated on every engine and are there at the end; pairs that
-//! are no edges are refused.
+//! Random locks on random meshes: the engines do what the simulation does, and each locked edge is there at the end;
+//! pairs that are no edges are refused.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "what fails here is a failed test")]
 
 mod meshes;

@@ -1,6 +1,6 @@
 //! Mesh files on disk: a whole file is read at once, and a target is replaced at once or not at all.
 
-use super::{Format, Loaded, parse, write_to};
+use super::{Format, Loaded, parse, parse_edges, write_to};
 use crate::{Dimension, Error, Mesh};
 use std::fs;
 use std::io::{self, BufWriter, Write};
@@ -23,6 +23,16 @@ pub fn load(path: impl AsRef<Path>, dimension: Option<Dimension>) -> Result<Load
     let format = Format::of(path)?;
     let bytes = fs::read(path).map_err(|source| at(path, source))?;
     parse(format, &bytes, dimension)
+}
+
+/// Reads a list of edges, whatever the extension of its file. See [`parse_edges`].
+///
+/// # Errors
+/// [`Error::Io`], and those of [`parse_edges`].
+pub fn read_edges(path: impl AsRef<Path>) -> Result<Vec<[u32; 2]>, Error> {
+    let path = path.as_ref();
+    let bytes = fs::read(path).map_err(|source| at(path, source))?;
+    parse_edges(&bytes)
 }
 
 /// Writes `mesh` to a file; the extension names its format. The file appears, or changes, at once when all

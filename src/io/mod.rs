@@ -1,10 +1,12 @@
-//! Mesh files: reading and writing by extension, and the same on bytes where there is no file system.
+//! Mesh files: reading and writing by extension, and the same on bytes where there is no file system. And lists of
+//! edges.
 //!
 //! The parsers are our own. What was looked at (2026-11): `tobj` splits a file into models with vertices
 //! of their own, `obj-rs` gives no line numbers, `obj` checks no index and wants UTF-8 everywhere, `off-rs`
 //! knows no header but a bare `OFF`. None keeps the contract: the same vertices in the same order, and an
 //! error that names the line.
 
+mod edges;
 #[cfg(not(target_arch = "wasm32"))]
 mod file;
 mod obj;
@@ -13,8 +15,9 @@ mod off;
 mod tests;
 mod text;
 
+pub use edges::parse_edges;
 #[cfg(not(target_arch = "wasm32"))]
-pub use file::{load, read, write};
+pub use file::{load, read, read_edges, write};
 
 use crate::{Dimension, Error, Mesh};
 use std::io::Write;

@@ -21,6 +21,7 @@ When a run fails, OUT is not written or changed, and one line on standard error 
 Examples:
   edgeflip terrain.off -o terrain-delaunay.off
   edgeflip scan.obj -o scan.obj --max-normal-angle 5 --verify
+  edgeflip map.off -o map.off --lock-edges rivers.txt
   edgeflip part.off -o part.obj --backend cpu --json --quiet | jq .flips";
 
 /// Makes a triangle mesh Delaunay by flipping edges.
@@ -58,6 +59,13 @@ pub struct Args {
     /// for this reason are counted as `angle`.
     #[arg(long, value_name = "DEG", default_value_t = 10.0, value_parser = degrees, allow_negative_numbers = true)]
     pub max_normal_angle: f64,
+
+    /// Edges that never flip: a text file with the two vertices of an edge in each line
+    ///
+    /// Vertices are counted from 0, in the order of IN, also where IN is an OBJ file; # begins a comment. Each
+    /// pair has to be an edge of the mesh. Locked edges that are not Delaunay in the end are counted as `locked`.
+    #[arg(long, value_name = "FILE")]
+    pub lock_edges: Option<PathBuf>,
 
     /// Stop after N iterations; without it the run goes to its end, which always comes
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
@@ -100,7 +108,7 @@ impl Args {
         }
     }
 
-    /// What the library is asked to do.
+    /// What the library is asked to do, without the edges to lock.
     pub fn options(&self) -> Options {
         Options {
             backend: match self.backend {
@@ -114,7 +122,7 @@ impl Args {
                 OrderArg::Reproducible => Order::Reproducible,
                 OrderArg::Any => Order::Any,
             },
-            locked_edges: Vec::new(),
+            ..Options::default()
         }
     }
 }

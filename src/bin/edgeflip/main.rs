@@ -5,7 +5,7 @@ mod report;
 
 use args::Args;
 use clap::Parser;
-use edgeflip::{Error, Mesh, Outcome, io, make_delaunay, quality};
+use edgeflip::{Error, Mesh, Options, Outcome, io, make_delaunay, quality};
 use indicatif::{ProgressBar, ProgressStyle};
 use report::{Check, Milliseconds, Report};
 use std::io::{IsTerminal, Write};
@@ -88,9 +88,15 @@ fn run(args: &Args, bar: &ProgressBar) -> Result<Report, Failure> {
     let (loaded, load) = timed(|| io::load(&args.input, args.dimension()));
     let io::Loaded { mesh, polygons, dropped } = loaded.map_err(refused)?;
 
+    let locked_edges = match &args.lock_edges {
+        Some(path) => io::read_edges(path).map_err(|error| Failure::of(path, &error))?,
+        None => Vec::new(),
+    };
+    let options = Options { locked_edges, ..args.options() };
+
     bar.set_message("preparing");
     let before = quality::min_angle(&mesh);
-    let outcome = make_delaunay(&mesh, &args.options(), |iterations, flips| {
+    let outcome = make_delaunay(&mesh, &options, |iterations, flips| {
         bar.set_message(format!("iteration {iterations}, {flips} flips"));
         ControlFlow::Continue(())
     })
@@ -100,7 +106,7 @@ fn run(args: &Args, bar: &ProgressBar) -> Result<Report, Failure> {
 
     let check = args.verify.then(|| {
         bar.set_message("verifying");
-        check(args, &mesh, &outcome)
+        check(&options, &mesh, &outcome)
     });
     let mut save = None;
     if check.as_ref().is_none_or(|check| check.violations.is_empty()) {
@@ -114,8 +120,9 @@ fn run(args: &Args, bar: &ProgressBar) -> Result<Report, Failure> {
 }
 
 /// What the independent check finds: another count of the edges left is a violation too.
-fn check(args: &Args, mesh: &Mesh, outcome: &Outcome) -> Check {
-    let audit = quality::audit(mesh, &outcome.triangles, args.max_normal_angle, &[]);
+fn check(options: &Options, mesh: &Mesh, outcome: &Outcome) -> Check {
+    let Options { max_normal_angle, locked_edges, .. } = options;
+    let audit = quality::audit(mesh, &outcome.triangles, *max_normal_angle, locked_edges);
     let mut violations: Vec<String> = audit.violations.iter().map(ToString::to_string).collect();
     if audit.remaining != outcome.remaining {
         let [said, counted] = [&outcome.remaining, &audit.remaining].map(report::reasons);
