@@ -85,16 +85,9 @@ mod tests {
         Box::pin(std::future::ready(Ok(Box::new(cpu) as Box<dyn Engine>)))
     }
 
-    fn forms() -> impl Iterator<Item = Form> {
-        let dimensions = [Dimension::Two, Dimension::Three];
-        dimensions
-            .into_iter()
-            .flat_map(|dimension| [false, true].map(|is_fixed| Form { dimension, is_fixed }))
-    }
-
     #[test]
     fn the_mesh_flips_in_several_iterations_and_has_ties_and_blocked_edges() {
-        for form in forms() {
+        for form in Form::ALL {
             let upload = Upload::new("gpu", Arc::new(test_mesh(form).unwrap())).unwrap();
             assert!(upload.form() == form);
             let mut cpu = Cpu::new(upload.mesh, cos_degrees(20.0));
@@ -106,7 +99,7 @@ mod tests {
     #[test]
     fn an_engine_passes_once_or_is_refused() {
         let tested = Tested::default();
-        for form in forms() {
+        for form in Form::ALL {
             let right = |upload: Upload, cos| made(Cpu::new(upload.mesh, cos));
             let wrong = |upload: Upload, cos| {
                 let mesh = upload.mesh;

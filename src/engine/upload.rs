@@ -21,10 +21,17 @@ pub(crate) struct Form {
 }
 
 impl Form {
+    /// All of them, each at its index.
+    pub(crate) const ALL: [Self; 4] = [
+        Self { dimension: Dimension::Two, is_fixed: false },
+        Self { dimension: Dimension::Three, is_fixed: false },
+        Self { dimension: Dimension::Two, is_fixed: true },
+        Self { dimension: Dimension::Three, is_fixed: true },
+    ];
     /// How many there are.
-    pub(crate) const COUNT: usize = 4;
+    pub(crate) const COUNT: usize = Self::ALL.len();
 
-    /// From 0 to [`Form::COUNT`] - 1.
+    /// Its place in [`Form::ALL`].
     pub(crate) fn index(self) -> usize {
         self.dimension.stride() - 2 + 2 * usize::from(self.is_fixed)
     }
@@ -154,6 +161,11 @@ mod tests {
             [0, 1].map(|axis| (0..3).map(|word| u128::from(words[2 * word + axis]) << (32 * word)).sum())
         };
         upload.words().chunks_exact(6).flat_map(point).collect()
+    }
+
+    #[test]
+    fn forms_are_at_their_indices() {
+        assert!((0..).zip(Form::ALL).all(|(index, form)| form.index() == index));
     }
 
     #[test]

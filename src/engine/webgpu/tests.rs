@@ -17,11 +17,8 @@ use std::collections::HashMap;
 use std::mem::offset_of;
 
 /// Every shader.
-fn sources() -> [String; 6] {
-    let [plane, space] = [Dimension::Two, Dimension::Three]
-        .map(|dimension| [false, true].map(|is_fixed| phases_source(Form { dimension, is_fixed })));
-    let ([plane, fixed_plane], [space, fixed_space]) = (plane, space);
-    [plane, fixed_plane, space, fixed_space, ADJACENCY.to_owned(), PROBE.to_owned()]
+fn sources() -> Vec<String> {
+    Form::ALL.map(phases_source).into_iter().chain([ADJACENCY, PROBE].map(str::to_owned)).collect()
 }
 
 /// The phases on surfaces.
