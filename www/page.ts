@@ -52,6 +52,8 @@ export class Page {
   #reopen: (() => Promise<void>) | undefined;
   /** What goes on and can be cancelled. */
   #job: AbortController | undefined;
+  /** β as it was entered when that began: one that is being typed since then is left alone. */
+  #entered = '';
   /** What the run said of itself when it last came to rest. */
   #summary: Summary | undefined;
   /** Count the states that are drawn and that come to rest: what has been overtaken gives way. */
@@ -204,9 +206,11 @@ export class Page {
 
   /** Shows what goes on, with a way to cancel it; what was begun before is cancelled. */
   async #attempt(text: string, work: (signal: AbortSignal) => Promise<void>): Promise<void> {
-    this.cancel();
+    const overtaken = this.#job;
     const job = new AbortController();
     this.#job = job;
+    this.#entered = controls.beta.value;
+    overtaken?.abort(new Cancelled());
     job.signal.addEventListener('abort', () => this.#end(job));
     element('error').hidden = true;
     element('busy-text').textContent = text;
@@ -225,6 +229,7 @@ export class Page {
     if (this.#job !== job) return;
     this.#job = undefined;
     element('busy').hidden = true;
+    this.#showChoices();
     this.#showTransport();
     // What was being measured may have been cancelled with it.
     if (!this.#player.isPlaying) void this.#rest();
@@ -274,7 +279,6 @@ export class Page {
     element('note').hidden = note === '';
     element('note').textContent = note;
     element('caption').textContent = this.#opened?.name ?? '';
-    if (!this.#job) this.#showChoices();
     const state = this.#job ? 'busy' : !run ? 'empty' : this.#player.isPlaying ? 'playing' : run.isOver ? 'done' : 'ready';
     document.body.dataset['state'] = state;
   }
@@ -287,7 +291,7 @@ export class Page {
     const names = Array.from(controls.sample.options, ({ value }) => value);
     controls.sample.value = names.find((name) => name === opened.name) ?? '';
     controls.backend.value = settings.backend;
-    controls.beta.value = `${settings.beta}`;
+    if (controls.beta.value === this.#entered) controls.beta.value = `${settings.beta}`;
   }
 
   /** Measures the run and the state that is shown, once nothing has changed for a while. */

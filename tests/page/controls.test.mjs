@@ -129,6 +129,38 @@ test('β that is no angle is refused, and one that is taken changes the result',
   await page.close();
 });
 
+test('what is being typed as β stays while the page goes on, and is taken when it is entered', async () => {
+  const page = await openEdgeflip(browser);
+  await page.open(await meshFile('uvsphere 28 0.1', 'sphere.off'));
+  await page.choose('speed', '1000');
+  await page.page.click('#play');
+  await page.page.focus('#beta');
+  await page.page.keyboard.press('ControlOrMeta+A');
+  await page.page.keyboard.type('4');
+  const { newest } = await page.look();
+  await page.until('another iteration', (seen) => Number(seen.newest) > Number(newest));
+  await page.page.keyboard.type('5');
+  await page.page.keyboard.press('Tab');
+  await page.until('a new run', ({ at, state }) => at === '0' && state === 'ready');
+  const { facts } = await page.rest();
+  assert.equal(facts['β'], '45°');
+  await page.close();
+});
+
+test('an engine that is chosen while a run is prepared is the one that it is prepared for', async () => {
+  const page = await openEdgeflip(browser);
+  await page.page.evaluate(() => {
+    for (const backend of ['webgpu', 'cpu']) {
+      const choice = document.getElementById('backend');
+      choice.value = backend;
+      choice.dispatchEvent(new Event('change'));
+    }
+  });
+  const { backend, facts } = await page.rest();
+  assert.deepEqual([backend, facts.Engine], ['cpu', 'CPU, in a worker']);
+  await page.close();
+});
+
 test('without WebGPU the page says so, plays on the CPU and draws with WebGL2', async () => {
   const page = await openEdgeflip(browser, () => {
     delete Navigator.prototype.gpu;
