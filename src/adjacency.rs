@@ -5,11 +5,13 @@
 use crate::{Mesh, NONE};
 
 /// The half-edge after `h` in its triangle.
+#[inline]
 pub fn next(h: u32) -> u32 {
     if h % 3 == 2 { h - 2 } else { h + 1 }
 }
 
 /// The half-edge before `h` in its triangle.
+#[inline]
 pub fn prev(h: u32) -> u32 {
     if h.is_multiple_of(3) { h + 2 } else { h - 1 }
 }
@@ -25,6 +27,7 @@ pub(crate) const LOCKED: u32 = 1 << 30;
 pub(crate) const FLAGS: u32 = CREASE | LOCKED;
 
 /// The half-edge that an entry of an engine's twins names, without its flags.
+#[inline]
 pub(crate) fn unflagged(entry: u32) -> u32 {
     if entry == NONE { NONE } else { entry & !FLAGS }
 }
@@ -68,41 +71,125 @@ pub(crate) fn edge_kind(half_edges: &[u32], triangles: &[u32]) -> EdgeKind {
     }
 }
 
-/// Calls `visit` once for each edge with its half-edges in ascending order, edges by their smaller vertex.
-/// A counting sort of the half-edges by that vertex; within one vertex they are sorted by the other one, so
-/// that a vertex of any valence costs n log n. O(triangles) memory.
-pub(crate) fn for_each_edge(vertices: usize, triangles: &[u32], mut visit: impl FnMut(&[u32])) {
-    let ends = |h: usize| {
-        let (u, v) = (triangles[h], triangles[next(h as u32) as usize]);
-        (u.min(v), u.max(v))
-    };
-    let mut offsets = vec![0u32; vertices + 1];
-    for h in 0..triangles.len() {
-        offsets[ends(h).0 as usize + 1] += 1;
-    }
-    for v in 0..vertices {
-        offsets[v + 1] += offsets[v];
-    }
-    let mut sorted = vec![0u64; triangles.len()];
-    for h in 0..triangles.len() {
-        let (low, high) = ends(h);
-        let at = &mut offsets[low as usize];
-        sorted[*at as usize] = u64::from(high) << 32 | h as u64;
-        *at += 1;
-    }
-    // Scattering has moved every offset to the end of its bucket, the start of the next.
-    let mut half_edges = Vec::new();
-    let mut start = 0;
-    for &end in &offsets[..vertices] {
-        let bucket = &mut sorted[start..end as usize];
-        start = end as usize;
-        bucket.sort_unstable();
-        for edge in bucket.chunk_by(|x, y| x >> 32 == y >> 32) {
-            half_edges.clear();
-            half_edges.extend(edge.iter().map(|&entry| entry as u32));
-            visit(&half_edges);
+/// The half-edges in buckets by the smaller vertex of their edges, by a counting sort: in each bucket they ascend.
+struct Buckets {
+    /// Where the bucket of each vertex ends in `half_edges`, and the next one starts.
+    ends: Vec<u32>,
+    half_edges: Vec<u32>,
+}
+
+impl Buckets {
+    fn new(vertices: usize, triangles: &[u32]) -> Self {
+        let (corners, _) = triangles.as_chunks::<3>();
+        let mut starts = vec![0u32; vertices + 1];
+        for &[a, b, c] in corners {
+            for low in [a.min(b), b.min(c), c.min(a)] {
+                starts[low as usize + 1] += 1;
+            }
         }
+        let mut sum = 0;
+        for start in &mut starts {
+            sum += *start;
+            *start = sum;
+        }
+        let mut half_edges = vec![0u32; triangles.len()];
+        for (t, &[a, b, c]) in (0..).zip(corners) {
+            for (low, h) in [(a.min(b), 3 * t), (b.min(c), 3 * t + 1), (c.min(a), 3 * t + 2)] {
+                let at = &mut starts[low as usize];
+                half_edges[*at as usize] = h;
+                *at += 1;
+            }
+        }
+        // Each start has moved to the end of its bucket.
+        starts.pop();
+        Self { ends: starts, half_edges }
     }
+
+    /// Each bucket with its vertex.
+    fn iter(&self) -> impl Iterator<Item = (u32, &[u32])> {
+        let mut start = 0;
+        (0..).zip(&self.ends).map(move |(vertex, &end)| {
+            let bucket = &self.half_edges[start..end as usize];
+            start = end as usize;
+            (vertex, bucket)
+        })
+    }
+}
+
+/// The vertex of half-edge `h`'s edge that is not `low`.
+fn other_end(triangles: &[u32], low: u32, h: u32) -> u32 {
+    let start = triangles[h as usize];
+    if start == low { triangles[next(h) as usize] } else { start }
+}
+
+/// Calls `visit` once for each edge with its half-edges in ascending order, edges by their smaller vertex. A vertex of n
+/// edges costs n log n.
+pub(crate) fn for_each_edge(vertices: usize, triangles: &[u32], mut visit: impl FnMut(&[u32])) {
+    let mut sorted = Vec::new();
+    for (low, bucket) in Buckets::new(vertices, triangles).iter() {
+        visit_edges(triangles, low, bucket, &mut sorted, &mut visit);
+    }
+}
+
+/// The same for the edges of one bucket. `sorted` is scratch.
+fn visit_edges(
+    triangles: &[u32],
+    low: u32,
+    bucket: &[u32],
+    sorted: &mut Vec<(u32, u32)>,
+    visit: &mut impl FnMut(&[u32]),
+) {
+    sorted.clear();
+    sorted.extend(bucket.iter().map(|&h| (other_end(triangles, low, h), h)));
+    sorted.sort_unstable();
+    let mut half_edges = Vec::new();
+    for edge in sorted.chunk_by(|x, y| x.0 == y.0) {
+        half_edges.clear();
+        half_edges.extend(edge.iter().map(|&(_, h)| h));
+        visit(&half_edges);
+    }
+}
+
+/// Writes the twins of a bucket of at most `N` half-edges, compared each with each, and returns the number of its
+/// edges with one half-edge and with two; `None`, and nothing written, where one of them would be frozen.
+fn match_few<const N: usize>(
+    triangles: &[u32],
+    low: u32,
+    bucket: &[u32],
+    twins: &mut [u32],
+) -> Option<[u32; 2]> {
+    // What is no half-edge is equal to none: no other end is `low`, but in a triangle that has a corner twice.
+    let mut ends = [low; N];
+    let mut outwards = 0u32;
+    for (i, &h) in bucket.iter().enumerate() {
+        let start = triangles[h as usize];
+        let end = triangles[next(h) as usize];
+        ends[i] = start ^ end ^ low;
+        outwards |= u32::from(start == low) << i;
+    }
+    let mut partners = [NONE; N];
+    let mut is_odd = false;
+    let mut alone = 0;
+    for (i, &h) in bucket.iter().enumerate() {
+        let equal = (0..N).fold(0u32, |bits, j| bits | u32::from(ends[j] == ends[i]) << j);
+        let others = equal & !(1 << i);
+        alone += u32::from(others == 0);
+        let j = others.trailing_zeros();
+        let g = bucket.get(j as usize).copied().unwrap_or(NONE);
+        // More than two, two in one direction, in one triangle, or from a corner to itself.
+        is_odd |= others & others.wrapping_sub(1) != 0
+            || (others != 0 && (outwards >> i ^ outwards >> (j & 31)) & 1 == 0)
+            || h / 3 == g / 3
+            || ends[i] == low;
+        partners[i] = g;
+    }
+    if is_odd {
+        return None;
+    }
+    for (&h, partner) in bucket.iter().zip(partners) {
+        twins[h as usize] = partner;
+    }
+    Some([alone, (bucket.len() as u32 - alone) / 2])
 }
 
 impl Adjacency {
@@ -114,19 +201,32 @@ impl Adjacency {
     /// Matches the half-edges of `triangles`, whose indices must be below `vertices`.
     pub(crate) fn of_triangles(vertices: usize, triangles: &[u32]) -> Self {
         let mut result = Self { twins: vec![NONE; triangles.len()], ..Self::default() };
-        for_each_edge(vertices, triangles, |half_edges| {
-            result.edges += 1;
-            match edge_kind(half_edges, triangles) {
-                EdgeKind::Boundary => result.boundary += 1,
-                EdgeKind::NonManifold => result.non_manifold += 1,
-                EdgeKind::Inconsistent => result.inconsistent += 1,
-                EdgeKind::Interior => {
-                    let (h, g) = (half_edges[0], half_edges[1]);
-                    result.twins[h as usize] = g;
-                    result.twins[g as usize] = h;
-                }
+        let mut sorted = Vec::new();
+        for (low, bucket) in Buckets::new(vertices, triangles).iter() {
+            let matched = match bucket.len() {
+                0..=8 => match_few::<8>(triangles, low, bucket, &mut result.twins),
+                9..=16 => match_few::<16>(triangles, low, bucket, &mut result.twins),
+                _ => None,
+            };
+            if let Some([boundary, interior]) = matched {
+                result.edges += boundary + interior;
+                result.boundary += boundary;
+                continue;
             }
-        });
+            visit_edges(triangles, low, bucket, &mut sorted, &mut |half_edges| {
+                result.edges += 1;
+                match edge_kind(half_edges, triangles) {
+                    EdgeKind::Boundary => result.boundary += 1,
+                    EdgeKind::NonManifold => result.non_manifold += 1,
+                    EdgeKind::Inconsistent => result.inconsistent += 1,
+                    EdgeKind::Interior => {
+                        let (h, g) = (half_edges[0], half_edges[1]);
+                        result.twins[h as usize] = g;
+                        result.twins[g as usize] = h;
+                    }
+                }
+            });
+        }
         result
     }
 }

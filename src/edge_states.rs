@@ -78,8 +78,7 @@ impl From<Verdict> for EdgeState {
     }
 }
 
-/// The state of each half-edge's edge before `iteration`; `None` where nothing selects. The frontier of an
-/// engine leaves out only triangles without a candidate, so all triangles give the same choice.
+/// The state of each half-edge's edge before `iteration`; `None` where nothing selects.
 pub(crate) fn edge_states(
     geometry: &Geometry,
     mesh: Topology,
@@ -95,12 +94,9 @@ pub(crate) fn edge_states(
         }
     }
     if let Some(iteration) = iteration {
-        let count = triangles.len() / 3;
-        let (mut best, mut selected) = (vec![NONE; count], vec![NONE; count]);
-        label(geometry, mesh, iteration, 0..count as u32, &mut best);
-        select(mesh, iteration, 0..count as u32, &best, &mut selected);
+        let best = label(geometry, mesh, iteration);
         // Each of the two triangles names the other one's half-edge.
-        for g in selected.into_iter().filter(|&g| g != NONE) {
+        for g in select(mesh, iteration, &best).into_iter().filter(|&g| g != NONE) {
             states[g as usize] = EdgeState::Flips;
         }
     }

@@ -12,10 +12,10 @@
 //! # Ok::<(), edgeflip::Error>(())
 //! ```
 //!
-//! The rooms: [`Mesh`] is checked input, in [`Positions`] of 32 or 64 bits; `adjacency` finds twins, `star` walks around a vertex, `winding` and
-//! `frozen` know what a dirty mesh adds, `locks` what the user does; `predicates` decide exactly; `phases` are the four phases of an
-//! iteration, `engine` runs them on the CPU or through the shaders of the same names; `session` is the loop, `options`
-//! and `outcome` are what goes in and out.
+//! The rooms: [`Mesh`] is checked input, in [`Positions`] of 32 or 64 bits; `adjacency` finds twins, `star` walks around
+//! a vertex, `winding` and `frozen` know what a dirty mesh adds, `embedded` what a clean one spares, `locks` what the
+//! user wants; `predicates` decide exactly; `phases` are the four phases of an iteration, `engine` runs them on the CPU
+//! or through the shaders of the same names; `session` is the loop, `options` and `outcome` are what goes in and out.
 //! Beside them: [`quality`] measures and audits, [`io`] reads and writes, [`families`] generates; [`Edges`] lists
 //! the edges as the paper does, [`EdgeState`] is what each of them waits for; `js` and `js_files` are what the npm
 //! package calls, each in a WebAssembly module of its own, and `js_values` is what they share.
@@ -23,6 +23,7 @@
 mod adjacency;
 mod edge_states;
 mod edges;
+mod embedded;
 mod engine;
 mod error;
 pub mod families;

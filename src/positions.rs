@@ -73,16 +73,19 @@ impl Positions {
     }
 
     /// Vertices of a 2D mesh.
+    #[inline]
     pub(crate) fn points2<const N: usize>(&self, vertices: [u32; N]) -> [DVec2; N] {
         self.tuples(vertices).map(DVec2::from_array)
     }
 
     /// Vertices of a 3D mesh.
+    #[inline]
     pub(crate) fn points3<const N: usize>(&self, vertices: [u32; N]) -> [DVec3; N] {
         self.tuples(vertices).map(DVec3::from_array)
     }
 
     /// The `K` coordinates of each vertex.
+    #[inline]
     fn tuples<const K: usize, const N: usize>(&self, vertices: [u32; N]) -> [[f64; K]; N] {
         match self {
             Self::F32(numbers) => gathered(numbers, vertices),
@@ -98,12 +101,16 @@ impl Positions {
     }
 }
 
+#[inline]
 fn gathered<T: Copy + Into<f64>, const K: usize, const N: usize>(
     numbers: &[T],
     vertices: [u32; N],
 ) -> [[f64; K]; N] {
     let (tuples, _) = numbers.as_chunks::<K>();
-    vertices.map(|v| tuples[v as usize].map(Into::into))
+    std::array::from_fn(|i| {
+        let tuple = tuples[vertices[i] as usize];
+        std::array::from_fn(|k| tuple[k].into())
+    })
 }
 
 #[cfg(test)]

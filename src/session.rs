@@ -5,6 +5,7 @@ mod choice;
 mod tests;
 
 use crate::edge_states::edge_states;
+use crate::embedded::Embedded;
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 use crate::engine::SharedObjects;
 use crate::engine::{Answer, Engine};
@@ -214,9 +215,10 @@ impl Session {
             cos: cos_degrees(self.options.max_normal_angle),
             // As the engine found it: neither the components nor their areas change with flips.
             winding: &Winding::new(&self.mesh, &twins),
+            embedded: &Embedded::default(),
         };
         let vertices = self.mesh.vertex_count();
-        let fans = &Fans::new(vertices, &triangles, &twins);
+        let fans = &Fans::new(vertices, &triangles, &twins, |_| false);
         let topology = Topology { triangles: &triangles, twins: &twins, fans };
         let iteration = (self.options.order == Order::Reproducible).then(|| self.iterations());
         Ok(edge_states(&geometry, topology, vertices, iteration))

@@ -14,19 +14,24 @@ pub(crate) struct Fans {
 }
 
 impl Fans {
-    /// Walks every fan of the mesh once.
-    pub(crate) fn new(vertices: usize, triangles: &[u32], twins: &[u32]) -> Self {
+    /// Walks every fan of the mesh once, but for those of vertices with one fan, as far as they are known to `is_whole`.
+    pub(crate) fn new(
+        vertices: usize,
+        triangles: &[u32],
+        twins: &[u32],
+        is_whole: impl Fn(u32) -> bool,
+    ) -> Self {
         let mut first = vec![NONE; vertices];
         let mut visited = vec![false; triangles.len()];
         let mut further = Vec::new();
         for h in 0..triangles.len() as u32 {
-            if visited[h as usize] {
+            let v = triangles[h as usize];
+            if visited[h as usize] || is_whole(v) {
                 continue;
             }
             for corner in Star::of_fan(twins, h) {
                 visited[corner as usize] = true;
             }
-            let v = triangles[h as usize];
             if first[v as usize] == NONE {
                 first[v as usize] = h;
             } else {
@@ -158,7 +163,7 @@ mod tests {
     /// The vertices opposite to vertex `v`'s corners, walked from its first one.
     fn around(vertices: usize, triangles: &[u32], v: u32) -> Vec<[u32; 2]> {
         let twins = Adjacency::of_triangles(vertices, triangles).twins;
-        let fans = Fans::new(vertices, triangles, &twins);
+        let fans = Fans::new(vertices, triangles, &twins, |_| false);
         let corner = triangles.iter().position(|&u| u == v).map_or(NONE, |h| h as u32);
         let ends = |x| [next(x), prev(x)].map(|h| triangles[h as usize]);
         let mut ends: Vec<_> = Star::new(triangles, &twins, &fans, corner).map(ends).collect();
@@ -197,7 +202,7 @@ mod tests {
         let triangles = [0, 1, 2, 0, 4, 3];
         assert_eq!(around(5, &triangles, 0), [[1, 2], [4, 3]]);
         assert_eq!(around(5, &triangles, 1), [[2, 0]]);
-        let fans = Fans::new(5, &triangles, &[NONE; 6]);
+        let fans = Fans::new(5, &triangles, &[NONE; 6], |_| false);
         assert_eq!(fans.table, [5, NONE, NONE, NONE, NONE, 0, 3, NONE]);
     }
 

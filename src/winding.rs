@@ -10,6 +10,8 @@ use crate::predicates::{area_sign, total_area_sign};
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Winding {
     pub(crate) clockwise: Vec<u32>,
+    /// Whether all triangles are known to be positive, those of the components with a bit negative.
+    pub(crate) is_strict: bool,
 }
 
 impl Winding {
@@ -20,14 +22,20 @@ impl Winding {
 
     /// What the triangles say one by one; `None` where they disagree, and components have to be found.
     pub(crate) fn of_triangles(mesh: &Mesh) -> Option<Self> {
-        let areas =
-            || (0..mesh.triangle_count()).map(|t| corners(mesh, t)).map(|[a, b, c]| area_sign(a, b, c));
-        if mesh.dimension() == Dimension::Three || areas().all(|area| area.is_ge()) {
+        if mesh.dimension() == Dimension::Three {
             return Some(Self::default());
         }
+        let mut seen = [false; 3];
+        for t in 0..mesh.triangle_count() {
+            let [a, b, c] = corners(mesh, t);
+            seen[(area_sign(a, b, c) as i8 + 1) as usize] = true;
+            if seen[0] && seen[2] {
+                return None;
+            }
+        }
         // Where all triangles are flat no edge flips, whatever the sign.
-        let all = vec![u32::MAX; mesh.triangle_count().div_ceil(32)];
-        areas().all(|area| area.is_le()).then_some(Self { clockwise: all })
+        let words = if seen[0] { mesh.triangle_count().div_ceil(32) } else { 0 };
+        Some(Self { clockwise: vec![u32::MAX; words], is_strict: !seen[1] })
     }
 
     /// What the components say, joined by `twins`.
@@ -57,7 +65,7 @@ impl Winding {
                 }
             }
         }
-        Self { clockwise }
+        Self { clockwise, is_strict: false }
     }
 
     /// Whether triangle `t` belongs to a component of negative area.

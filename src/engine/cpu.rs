@@ -1,27 +1,47 @@
-//! The phases on the CPU, one thread, over the frontier.
+//! The phases on the CPU, an edge at a time: what the last test of each edge said is kept, and an edge is tested again
+//! only where one of its triangles has flipped.
 
 use super::{Answer, Census, EdgeCounts, Engine};
-use crate::adjacency::unflagged;
+use crate::adjacency::{next, prev, unflagged};
+use crate::embedded::Embedded;
 use crate::locks;
 use crate::mesh::{Dimension, Mesh};
-use crate::phases::{Frontier, Geometry, Topology, Verdict, flag_creases, flip, label, select, verdict};
+use crate::phases::{
+    Geometry, Selected, Topology, Verdict, flag_creases, flip, keep_non_delaunay, key, verdict,
+    verdict_of_non_delaunay, yields,
+};
 use crate::star::Fans;
 use crate::winding::Winding;
-use crate::{Adjacency, NONE};
+use crate::{Adjacency, NONE, Reason};
 use std::sync::Arc;
 
-/// The state of a mesh between two iterations, and the scratch arrays of the phases.
+/// Edges that are tested in one go.
+const EDGES: usize = 1024;
+
+/// A triangle without an edge that flips.
+const FREE: Selected = [NONE; 2];
+
+/// The state of a mesh between two iterations.
 pub(crate) struct Cpu {
     mesh: Arc<Mesh>,
     cos: f64,
     winding: Winding,
+    embedded: Embedded,
     counts: EdgeCounts,
     pub(crate) triangles: Vec<u32>,
     pub(crate) twins: Vec<u32>,
     pub(crate) fans: Fans,
-    pub(crate) frontier: Frontier,
-    pub(crate) best: Vec<u32>,
-    pub(crate) selected: Vec<u32>,
+    /// Of each half-edge what the last test of its edge said.
+    verdicts: Vec<Verdict>,
+    /// The lower half-edges of the edges that may flip, or could but for a duplicate.
+    candidates: Vec<u32>,
+    /// A half-edge of each edge that the last iteration has flipped; `None` before the first.
+    flipped: Option<Vec<u32>>,
+    /// Those edges by triangle.
+    selected: Vec<Selected>,
+    /// For each vertex whose star is not known to be embedded the last iteration, plus one, in which an edge there came
+    /// or went.
+    changed: Vec<u32>,
     iteration: u32,
 }
 
@@ -30,26 +50,29 @@ impl Cpu {
     pub(crate) fn new(mesh: Arc<Mesh>, cos: f64) -> Self {
         let adjacency = Adjacency::new(&mesh);
         let winding = Winding::new(&mesh, &adjacency.twins);
+        let embedded = Embedded::new(&mesh, &adjacency.twins, &winding);
         let counts = EdgeCounts::from(&adjacency);
         let triangles = mesh.triangles().to_vec();
-        let fans = Fans::new(mesh.vertex_count(), &triangles, &adjacency.twins);
-        let count = mesh.triangle_count();
+        let fans = Fans::new(mesh.vertex_count(), &triangles, &adjacency.twins, |v| embedded.at(v));
         let mut twins = adjacency.twins;
         if mesh.dimension() == Dimension::Three {
             flag_creases(mesh.positions(), &triangles, &mut twins, cos);
         }
         Self {
-            mesh,
             cos,
             winding,
+            embedded,
             counts,
+            fans,
+            verdicts: vec![Verdict::Delaunay; triangles.len()],
+            candidates: Vec::new(),
+            flipped: None,
+            selected: vec![FREE; triangles.len() / 3],
+            changed: vec![0; mesh.vertex_count()],
+            iteration: 0,
             triangles,
             twins,
-            fans,
-            frontier: Frontier::all(count as u32),
-            best: vec![NONE; count],
-            selected: vec![NONE; count],
-            iteration: 0,
+            mesh,
         }
     }
 
@@ -59,6 +82,7 @@ impl Cpu {
             positions: self.mesh.positions(),
             cos: self.cos,
             winding: &self.winding,
+            embedded: &self.embedded,
         }
     }
 
@@ -66,47 +90,200 @@ impl Cpu {
         Topology { triangles: &self.triangles, twins: &self.twins, fans: &self.fans }
     }
 
-    /// Label for the triangles of the frontier.
-    pub(crate) fn label(&mut self) {
-        let mut best = std::mem::take(&mut self.best);
-        let active = self.frontier.active.iter().copied();
-        label(&self.geometry(), self.topology(), self.iteration, active, &mut best);
-        self.best = best;
+    /// Label: tests the edges around those that have flipped, which are Delaunay now, and all edges before the first
+    /// iteration; looks for duplicates again where one may have come or gone.
+    pub(super) fn label(&mut self) {
+        let mut edges = [0; EDGES];
+        let Some(flipped) = self.flipped.take() else {
+            for first in (0..self.twins.len() as u32).step_by(EDGES) {
+                let mut count = 0;
+                for h in first..self.twins.len().min(first as usize + EDGES) as u32 {
+                    let g = unflagged(self.twins[h as usize]);
+                    edges[count] = h;
+                    count += usize::from(h < g && g != NONE);
+                }
+                self.test(&mut edges[..count]);
+            }
+            self.flipped = Some(Vec::new());
+            return;
+        };
+        let mut candidates = std::mem::take(&mut self.candidates);
+        candidates.retain(|&h| {
+            let g = self.twins[h as usize];
+            let stays = self.selected[h as usize / 3] == FREE && self.selected[g as usize / 3] == FREE;
+            if stays && [h, g].iter().all(|&x| self.has_changed(self.triangles[prev(x) as usize])) {
+                self.judge_non_delaunay(h);
+            }
+            stays
+        });
+        self.candidates = candidates;
+        for flipped in flipped.chunks(EDGES / 4) {
+            let mut count = 0;
+            for &h in flipped {
+                let [_, g] = self.selected[h as usize / 3];
+                for x in [h, prev(h), g, prev(g)] {
+                    let y = unflagged(self.twins[x as usize]);
+                    if y != NONE {
+                        let is_outside = self.selected[y as usize / 3] == FREE;
+                        // The new edge is Delaunay anyway; nothing could predict a branch.
+                        self.verdicts[if is_outside { y } else { next(h) } as usize] = Verdict::Delaunay;
+                        // Between two that have flipped, one of them tests.
+                        edges[count] = x.min(y);
+                        count += usize::from(is_outside | (x < y));
+                    }
+                }
+            }
+            self.test(&mut edges[..count]);
+        }
+        for &h in &flipped {
+            let [_, g] = self.selected[h as usize / 3];
+            (self.selected[h as usize / 3], self.selected[g as usize / 3]) = (FREE, FREE);
+        }
+        self.flipped = Some(flipped);
+        self.flipped.iter_mut().for_each(Vec::clear);
     }
 
-    /// Select for the triangles of the frontier.
-    pub(crate) fn select(&mut self) {
-        let mut selected = std::mem::take(&mut self.selected);
-        let active = self.frontier.active.iter().copied();
-        select(self.topology(), self.iteration, active, &self.best, &mut selected);
-        self.selected = selected;
+    /// Tests edges, of which nothing is known yet; those that could flip, but for a duplicate, become candidates.
+    fn test(&mut self, edges: &mut [u32]) {
+        let count = keep_non_delaunay(&self.geometry(), self.topology(), edges);
+        for &h in &edges[..count] {
+            let verdict = self.judge_non_delaunay(h);
+            if matches!(verdict, Verdict::Labelled | Verdict::Blocked(Reason::Duplicate)) {
+                self.candidates.push(h);
+            }
+        }
     }
 
-    /// Flip with Update, then the next frontier. Returns the number of flips.
-    pub(crate) fn flip(&mut self) -> u32 {
-        let Self { triangles, twins, fans, frontier, best, selected, .. } = self;
-        let active = || frontier.active.iter().copied();
-        let flipped = active().filter(|&t| selected[t as usize] != NONE).count() as u32 / 2;
-        flip(triangles, twins, fans, selected, active());
-        frontier.advance(self.iteration, twins, best, selected);
-        self.iteration += 1;
-        flipped
+    fn judge_non_delaunay(&mut self, h: u32) -> Verdict {
+        let verdict = verdict_of_non_delaunay(&self.geometry(), self.topology(), h);
+        self.set_verdict(h, verdict);
+        verdict
+    }
+
+    fn set_verdict(&mut self, h: u32, verdict: Verdict) {
+        let g = unflagged(self.twins[h as usize]);
+        (self.verdicts[h as usize], self.verdicts[g as usize]) = (verdict, verdict);
+    }
+
+    /// Whether an edge at `v` has come or gone in the last iteration, as far as that is of interest.
+    fn has_changed(&self, v: u32) -> bool {
+        self.iteration > 0 && self.changed[v as usize] == self.iteration
+    }
+
+    /// Select: the edges that flip are those with the smallest key in both their triangles, but for those that yield.
+    fn select(&mut self) {
+        let mut flips = self.flipped.take().unwrap_or_default();
+        flips.resize(self.candidates.len(), 0);
+        let mut count = 0;
+        for &h in &self.candidates {
+            flips[count] = h;
+            count += usize::from(self.is_best(h));
+        }
+        flips.truncate(count);
+        for &h in &flips {
+            let g = self.twins[h as usize];
+            (self.selected[h as usize / 3], self.selected[g as usize / 3]) = ([h, g], [g, h]);
+        }
+        let yielding: Vec<u32> = flips.iter().copied().filter(|&h| self.yields(h)).collect();
+        for &h in &yielding {
+            let [_, g] = self.selected[h as usize / 3];
+            (self.selected[h as usize / 3], self.selected[g as usize / 3]) = (FREE, FREE);
+        }
+        if !yielding.is_empty() {
+            flips.retain(|&h| self.selected[h as usize / 3] != FREE);
+        }
+        self.flipped = Some(flips);
+    }
+
+    /// Whether the edge of `h` may flip and has the smallest key of all that may in its two triangles. Without a
+    /// branch, which nothing could predict.
+    #[inline(always)]
+    fn is_best(&self, h: u32) -> bool {
+        let g = self.twins[h as usize];
+        let mine = key(h, self.iteration);
+        let is_labelled = |x: u32| self.verdicts[x as usize] == Verdict::Labelled;
+        let loses = |x: u32| is_labelled(x) & (key(x.min(self.twins[x as usize]), self.iteration) < mine);
+        is_labelled(h) & !(loses(next(h)) | loses(prev(h)) | loses(next(g)) | loses(prev(g)))
+    }
+
+    fn yields(&self, h: u32) -> bool {
+        let [_, g] = self.selected[h as usize / 3];
+        if [h, g].iter().any(|&x| self.embedded.at(self.triangles[prev(x) as usize])) {
+            return false;
+        }
+        let mutual = |t: u32| {
+            let [x, y] = self.selected[t as usize];
+            (x != NONE).then_some((x, y))
+        };
+        yields(self.topology(), self.iteration, h, g, mutual)
+    }
+
+    /// Flip with Update. Returns the number of flips.
+    fn flip(&mut self) -> u32 {
+        let Self { triangles, twins, fans, verdicts, selected, changed, embedded, iteration, .. } = self;
+        let flips = self.flipped.as_deref().unwrap_or_default();
+        *iteration += 1;
+        for &h in flips {
+            let [_, g] = selected[h as usize / 3];
+            for x in [h, prev(h), g, prev(g)] {
+                let v = triangles[x as usize];
+                if !embedded.at(v) {
+                    changed[v as usize] = *iteration;
+                }
+            }
+            for t in [h / 3, g / 3] {
+                verdicts[3 * t as usize..3 * t as usize + 3].fill(Verdict::Delaunay);
+            }
+        }
+        flip(triangles, twins, fans, selected, flips);
+        flips.len() as u32
     }
 
     /// The verdict of every interior edge, counted.
-    pub(crate) fn count(&self) -> Census {
-        let mut census = Census::default();
-        for h in 0..self.triangles.len() as u32 {
-            let g = unflagged(self.twins[h as usize]);
-            if g != NONE && h < g {
-                match verdict(&self.geometry(), self.topology(), h) {
-                    Verdict::Delaunay => {}
-                    Verdict::Labelled => census.labelled += 1,
-                    Verdict::Blocked(reason) => census.blocked[reason] += 1,
-                }
+    pub(crate) fn count(&mut self) -> Census {
+        self.label();
+        let mut halves = Census::default();
+        for &verdict in &self.verdicts {
+            match verdict {
+                Verdict::Delaunay => {}
+                Verdict::Labelled => halves.labelled += 1,
+                Verdict::Blocked(reason) => halves.blocked[reason] += 1,
             }
         }
-        census
+        halves.labelled /= 2;
+        for reason in Reason::ALL {
+            halves.blocked[reason] /= 2;
+        }
+        halves
+    }
+}
+
+/// What Lawson's algorithm needs of it.
+impl Cpu {
+    /// Tests the edge of half-edge `h`.
+    pub(super) fn judge(&mut self, h: u32) -> Verdict {
+        let verdict = verdict(&self.geometry(), self.topology(), h);
+        self.set_verdict(h, verdict);
+        verdict
+    }
+
+    /// Flips one edge that may flip, by one of its half-edges.
+    pub(super) fn flip_one(&mut self, h: u32) {
+        let Self { triangles, twins, fans, verdicts, selected, .. } = self;
+        let g = twins[h as usize];
+        let (t, u) = (h as usize / 3, g as usize / 3);
+        (selected[t], selected[u]) = ([h, g], [g, h]);
+        flip(triangles, twins, fans, selected, &[h]);
+        for t in [t, u] {
+            selected[t] = FREE;
+            verdicts[3 * t..3 * t + 3].fill(Verdict::Delaunay);
+        }
+    }
+
+    /// Says whether the last test of every edge still holds; else the next iteration tests all of them.
+    pub(super) fn set_tested(&mut self, is_tested: bool) {
+        self.candidates.clear();
+        self.flipped = is_tested.then(Vec::new);
     }
 }
 
@@ -143,12 +320,15 @@ impl Engine for Cpu {
 
     fn set_positions(&mut self, mesh: Arc<Mesh>) -> Answer<'_, ()> {
         self.winding = Winding::new(&mesh, &self.twins);
+        self.embedded = Embedded::new(&mesh, &self.twins, &self.winding);
         if mesh.dimension() == Dimension::Three {
             flag_creases(mesh.positions(), &self.triangles, &mut self.twins, self.cos);
         }
-        self.frontier = Frontier::all(mesh.triangle_count() as u32);
-        self.best.fill(NONE);
-        self.selected.fill(NONE);
+        self.verdicts.fill(Verdict::Delaunay);
+        self.candidates.clear();
+        self.flipped = None;
+        self.selected.fill(FREE);
+        self.changed.fill(0);
         self.iteration = 0;
         self.mesh = mesh;
         Box::pin(std::future::ready(Ok(())))

@@ -5,6 +5,7 @@
 use super::webgpu::{Device, Kernel, WebGpu};
 use super::{Cpu, EdgeCounts, Engine, Upload};
 use crate::mesh::Mesh;
+use crate::phases::{label, select};
 use crate::predicates::tiers::kinds::kinds;
 use crate::{cos_degrees, families};
 use pollster::block_on;
@@ -38,15 +39,13 @@ fn compare_mesh(name: &str, mesh: Mesh, degrees: f64) {
         let what = |array: &str| format!("{name}, β = {degrees}, iteration {iteration}: {array}");
         let census = cpu.count();
         assert_eq!(census, block_on(gpu.census()).unwrap(), "{}", what("census"));
-        cpu.label();
+        let best = label(&cpu.geometry(), cpu.topology(), iteration);
         block_on(gpu.run_phase(Kernel::Label)).unwrap();
-        let (best, _) = block_on(gpu.choices()).unwrap();
-        assert_same(&what("best"), &cpu.best, &best);
-        cpu.select();
+        assert_same(&what("best"), &best, &block_on(gpu.choices()).unwrap().0);
+        let selected = select(cpu.topology(), iteration, &best);
         block_on(gpu.run_phase(Kernel::Select)).unwrap();
-        let (_, selected) = block_on(gpu.choices()).unwrap();
-        assert_same(&what("selected"), &cpu.selected, &selected);
-        let flips = cpu.flip();
+        assert_same(&what("selected"), &selected, &block_on(gpu.choices()).unwrap().1);
+        let flips = block_on(cpu.iterate(1)).unwrap().first().copied().unwrap_or(0);
         assert_eq!(flips, block_on(gpu.run_phase(Kernel::Flip)).unwrap(), "{}", what("flips"));
         assert_same(&what("triangles"), &cpu.triangles, &block_on(gpu.triangles()).unwrap());
         assert_same(&what("twins"), &cpu.twins, &block_on(gpu.twins()).unwrap());

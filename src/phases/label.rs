@@ -5,7 +5,9 @@ use crate::adjacency::{CREASE, LOCKED, next, prev, unflagged};
 use crate::mesh::Dimension;
 use crate::predicates::{Quad, area_sign, in_circle_sign};
 use crate::star::{Star, any_in_either};
-use crate::{NONE, Reason};
+use crate::winding::Winding;
+use crate::{NONE, Positions, Reason};
+use glam::DVec2;
 use std::cmp::Ordering;
 
 /// What the test of an interior edge says.
@@ -18,16 +20,9 @@ pub(crate) enum Verdict {
     Labelled,
 }
 
-/// Writes `best[t]` for each active triangle t: the twin of its labelled edge with the smallest key, or
-/// [`BLOCKED`], or [`NONE`].
-pub(crate) fn label(
-    geometry: &Geometry,
-    mesh: Topology,
-    iteration: u32,
-    active: impl Iterator<Item = u32>,
-    best: &mut [u32],
-) {
-    for t in active {
+/// For each triangle the twin of its labelled edge with the smallest key, or [`BLOCKED`], or [`NONE`].
+pub(crate) fn label(geometry: &Geometry, mesh: Topology, iteration: u32) -> Vec<u32> {
+    let best = |t: u32| {
         let mut choice = NONE;
         let mut smallest = u32::MAX;
         for h in 3 * t..3 * t + 3 {
@@ -47,50 +42,115 @@ pub(crate) fn label(
                 _ => {}
             }
         }
-        best[t as usize] = choice;
-    }
+        choice
+    };
+    (0..mesh.triangles.len() as u32 / 3).map(best).collect()
 }
 
 /// Tests the interior edge of half-edge `h`. Both half-edges give the same answer, since it is exact.
 pub(crate) fn verdict(geometry: &Geometry, mesh: Topology, h: u32) -> Verdict {
-    let entry = mesh.twins[h as usize];
-    let g = unflagged(entry);
-    let [a, b, c, d] = [h, next(h), prev(h), prev(g)].map(|x| mesh.triangles[x as usize]);
-    let blocked = match geometry.dimension {
-        Dimension::Two => {
-            let clockwise = geometry.winding.is_clockwise(h / 3);
-            let signed = |sign: Ordering| if clockwise { sign.reverse() } else { sign };
-            let [a, b, c, d] = geometry.positions.points2([a, b, c, d]);
-            if signed(in_circle_sign(a, b, c, d)).is_ge() {
-                return Verdict::Delaunay;
-            }
-            let positive = |a, b, c| signed(area_sign(a, b, c)).is_gt();
-            (!(positive(a, d, c) && positive(b, c, d))).then_some(Reason::Fold)
-        }
-        Dimension::Three => {
-            let [a, b, c, d] = geometry.positions.points3([a, b, c, d]);
-            let quad = Quad::new(a, b, c, d);
-            if !quad.is_non_delaunay() {
-                return Verdict::Delaunay;
-            }
-            if entry & CREASE != 0 || quad.exceeds_angle(geometry.cos) {
-                Some(Reason::Angle)
-            } else {
-                quad.turns_over().then_some(Reason::Fold)
-            }
-        }
-    };
-    match blocked {
-        _ if entry & LOCKED != 0 => Verdict::Blocked(Reason::Locked),
-        Some(reason) => Verdict::Blocked(reason),
-        None if edge_exists(mesh, prev(h), prev(g)) => Verdict::Blocked(Reason::Duplicate),
-        None => Verdict::Labelled,
+    if is_non_delaunay(geometry, mesh, h) {
+        verdict_of_non_delaunay(geometry, mesh, h)
+    } else {
+        Verdict::Delaunay
     }
 }
 
-/// Whether an edge joins the vertices c and d that the half-edges `at_c` and `at_d` start at, or c is d.
-fn edge_exists(mesh: Topology, at_c: u32, at_d: u32) -> bool {
-    let [c, d] = [at_c, at_d].map(|x| mesh.triangles[x as usize]);
+/// Moves the interior edges that are not Delaunay, each given by one of its half-edges, to the front, and returns how
+/// many they are.
+pub(crate) fn keep_non_delaunay(geometry: &Geometry, mesh: Topology, edges: &mut [u32]) -> usize {
+    let winding = geometry.winding;
+    match (geometry.dimension, geometry.positions) {
+        (Dimension::Two, Positions::F32(numbers)) => {
+            keep(edges, |h| is_non_delaunay_in_plane(numbers, winding, mesh, h))
+        }
+        (Dimension::Two, Positions::F64(numbers)) => {
+            keep(edges, |h| is_non_delaunay_in_plane(numbers, winding, mesh, h))
+        }
+        (Dimension::Three, positions) => keep(edges, |h| quad(positions, mesh, h).is_non_delaunay()),
+    }
+}
+
+/// Without a branch on the answers, which nothing could predict.
+#[inline(always)]
+fn keep(edges: &mut [u32], is_kept: impl Fn(u32) -> bool) -> usize {
+    let mut kept = 0;
+    for i in 0..edges.len() {
+        let h = edges[i];
+        edges[kept] = h;
+        kept += usize::from(is_kept(h));
+    }
+    kept
+}
+
+fn is_non_delaunay(geometry: &Geometry, mesh: Topology, h: u32) -> bool {
+    keep_non_delaunay(geometry, mesh, &mut [h]) == 1
+}
+
+#[inline(always)]
+fn is_non_delaunay_in_plane<T: Copy + Into<f64>>(
+    numbers: &[T],
+    winding: &Winding,
+    mesh: Topology,
+    h: u32,
+) -> bool {
+    let (points, _) = numbers.as_chunks::<2>();
+    let point = |v: u32| DVec2::new(points[v as usize][0].into(), points[v as usize][1].into());
+    let [a, b, c, d] = vertices(mesh, h);
+    let sign = in_circle_sign(point(a), point(b), point(c), point(d));
+    sign == if winding.is_clockwise(h / 3) { Ordering::Greater } else { Ordering::Less }
+}
+
+/// The ends of the edge and the far corners of its triangles.
+#[inline(always)]
+fn vertices(mesh: Topology, h: u32) -> [u32; 4] {
+    let g = unflagged(mesh.twins[h as usize]);
+    let corner = |x: u32| mesh.triangles[x as usize];
+    [corner(h), corner(next(h)), corner(prev(h)), corner(prev(g))]
+}
+
+fn quad(positions: &Positions, mesh: Topology, h: u32) -> Quad {
+    let [a, b, c, d] = positions.points3(vertices(mesh, h));
+    Quad::new(a, b, c, d)
+}
+
+/// Whether a non-Delaunay edge may flip, or why it may not.
+pub(crate) fn verdict_of_non_delaunay(geometry: &Geometry, mesh: Topology, h: u32) -> Verdict {
+    let entry = mesh.twins[h as usize];
+    if entry & LOCKED != 0 {
+        return Verdict::Blocked(Reason::Locked);
+    }
+    match geometry.dimension {
+        // The angles at a and b are together smaller than π, if both triangles are positive.
+        Dimension::Two if geometry.winding.is_strict => {}
+        Dimension::Two => {
+            let [a, b, c, d] = geometry.positions.points2(vertices(mesh, h));
+            let positive =
+                if geometry.winding.is_clockwise(h / 3) { Ordering::Less } else { Ordering::Greater };
+            if area_sign(a, d, c) != positive || area_sign(b, c, d) != positive {
+                return Verdict::Blocked(Reason::Fold);
+            }
+        }
+        Dimension::Three => {
+            let quad = quad(geometry.positions, mesh, h);
+            if entry & CREASE != 0 || quad.exceeds_angle(geometry.cos) {
+                return Verdict::Blocked(Reason::Angle);
+            }
+            if quad.turns_over() {
+                return Verdict::Blocked(Reason::Fold);
+            }
+        }
+    }
+    if makes_duplicate(geometry, mesh, h) { Verdict::Blocked(Reason::Duplicate) } else { Verdict::Labelled }
+}
+
+/// Whether an edge joins the far corners c and d of an edge already, or c is d.
+fn makes_duplicate(geometry: &Geometry, mesh: Topology, h: u32) -> bool {
+    let [at_c, at_d] = [prev(h), prev(unflagged(mesh.twins[h as usize]))];
+    let [_, _, c, d] = vertices(mesh, h);
+    if geometry.embedded.at(c) || geometry.embedded.at(d) {
+        return false;
+    }
     let star = |corner| Star::new(mesh.triangles, mesh.twins, mesh.fans, corner);
     let joins = |corner: u32, to: u32| {
         mesh.triangles[next(corner) as usize] == to || mesh.triangles[prev(corner) as usize] == to

@@ -13,16 +13,15 @@
 
 mod crease;
 mod flip;
-mod frontier;
 mod label;
 mod select;
 
 pub(crate) use crease::flag_creases;
-pub(crate) use flip::flip;
-pub(crate) use frontier::Frontier;
-pub(crate) use label::{Verdict, label, verdict};
-pub(crate) use select::select;
+pub(crate) use flip::{Selected, flip};
+pub(crate) use label::{Verdict, keep_non_delaunay, label, verdict, verdict_of_non_delaunay};
+pub(crate) use select::{select, yields};
 
+use crate::embedded::Embedded;
 use crate::mesh::Dimension;
 use crate::star::Fans;
 use crate::winding::Winding;
@@ -38,6 +37,7 @@ pub(crate) struct Geometry<'a> {
     /// cos β (3D).
     pub(crate) cos: f64,
     pub(crate) winding: &'a Winding,
+    pub(crate) embedded: &'a Embedded,
 }
 
 /// The triangulation that an iteration starts from.
@@ -50,6 +50,7 @@ pub(crate) struct Topology<'a> {
 
 /// The priority of an edge in an iteration; the smallest wins. A bijection of the edge id for each iteration,
 /// so no two edges tie; it changes with the iteration, or chains of neighbours would flip one by one.
+#[inline]
 pub(crate) fn key(edge: u32, iteration: u32) -> u32 {
     let mut x = edge ^ iteration.wrapping_mul(0x9e37_79b9);
     x = (x ^ (x >> 16)).wrapping_mul(0x7feb_352d);

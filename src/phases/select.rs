@@ -5,22 +5,13 @@ use crate::NONE;
 use crate::adjacency::{next, prev};
 use crate::star::{Star, any_in_either};
 
-/// Writes `selected[t]` for each active triangle t: the twin of its edge that flips, or [`NONE`].
-///
-/// `best` of an inactive triangle must be [`NONE`].
-pub(crate) fn select(
-    mesh: Topology,
-    iteration: u32,
-    active: impl Iterator<Item = u32>,
-    best: &[u32],
-    selected: &mut [u32],
-) {
-    for t in active {
-        selected[t as usize] = match mutual(best, t) {
-            Some((h, g)) if !yields(mesh, iteration, best, h, g) => g,
-            _ => NONE,
-        };
-    }
+/// For each triangle the twin of its edge that flips, or [`NONE`]. `best` is what [`label`](super::label) gives.
+pub(crate) fn select(mesh: Topology, iteration: u32, best: &[u32]) -> Vec<u32> {
+    let selected = |t: u32| match mutual(best, t) {
+        Some((h, g)) if !yields(mesh, iteration, h, g, |t| mutual(best, t)) => g,
+        _ => NONE,
+    };
+    (0..best.len() as u32).map(selected).collect()
 }
 
 /// The half-edge of triangle `t`, and its twin, that is the best of both its triangles. Where two triangles
@@ -34,14 +25,21 @@ fn mutual(best: &[u32], t: u32) -> Option<(u32, u32)> {
     (h < BLOCKED && h / 3 == t).then_some((h, g))
 }
 
-/// Whether another selected edge with a smaller key would join the same two vertices c and d. One of its
-/// triangles has a corner at c, the other one at d, and it lies opposite to both.
-fn yields(mesh: Topology, iteration: u32, best: &[u32], h: u32, g: u32) -> bool {
+/// Whether another edge with a smaller key that is the best of both its triangles would join the same two vertices c
+/// and d. One of its triangles has a corner at c, the other one at d, and it lies opposite to both. `mutual` gives the
+/// half-edge of a triangle, and its twin, that is such an edge.
+pub(crate) fn yields(
+    mesh: Topology,
+    iteration: u32,
+    h: u32,
+    g: u32,
+    mutual: impl Fn(u32) -> Option<(u32, u32)>,
+) -> bool {
     let [c, d] = [h, g].map(|x| mesh.triangles[prev(x) as usize]);
     let mine = key(h.min(g), iteration);
     let star = |corner| Star::new(mesh.triangles, mesh.twins, mesh.fans, corner);
     let wins = |corner: u32, far: u32| {
-        mutual(best, corner / 3).is_some_and(|(x, y)| {
+        mutual(corner / 3).is_some_and(|(x, y)| {
             x == next(corner) && mesh.triangles[prev(y) as usize] == far && key(x.min(y), iteration) < mine
         })
     };

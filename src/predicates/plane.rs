@@ -23,28 +23,27 @@ pub(super) const WIDE_BITS: u32 = 319;
 /// The sign of cross(λ)·dot(γ) + dot(λ)·cross(γ), where λ = angle at `c` and γ = angle at `d`, opposite to
 /// the edge (`a`, `b`) of the triangles (a, b, c) and (b, a, d): negative when λ + γ > π, for
 /// counter-clockwise triangles. It is minus the in-circle determinant.
+#[inline(always)]
 pub(crate) fn in_circle_sign(a: DVec2, b: DVec2, c: DVec2, d: DVec2) -> Ordering {
     let (p, q, r, s) = (a - c, b - c, a - d, b - d);
     let (cross1, dot1, cross2, dot2) = (p.perp_dot(q), p.dot(q), s.perp_dot(r), s.dot(r));
     let value = cross1 * dot2 + dot1 * cross2;
     // Without underflow each difference, product and sum has a relative error of at most ε. A cross or dot product
     // so differs from the true one by at most ((1+ε)^4 - 1) of the sum of the magnitudes of its two products, the
-    // value by at most ((1+ε)^10 - 1) < 10.1ε of `magnitude` taken with the true differences, which is at most
-    // (1+ε)^10 times the computed one. Underflow puts each of the four sums of products, and of magnitudes, off by
-    // at most 2.1η, and so the value and `magnitude` by at most 2.2η(cross1 + dot1 + cross2 + dot2) + 3η each, with
-    // the magnitudes of the four.
-    let (pa, qa, ra, sa) = (p.abs(), q.abs(), r.abs(), s.abs());
-    let (cross1, dot1) = (pa.x * qa.y + pa.y * qa.x, pa.dot(qa));
-    let (cross2, dot2) = (sa.x * ra.y + sa.y * ra.x, sa.dot(ra));
-    let magnitude = cross1 * dot2 + dot1 * cross2;
-    let underflow = UNDERFLOW * ((cross1 + dot1) + (cross2 + dot2) + 1.0);
-    if value.abs() > 16.0 * EPSILON * magnitude + underflow {
+    // value by at most ((1+ε)^10 - 1) < 10.1ε of the sum of the magnitudes of its products. The magnitudes of cross and
+    // dot product of two vectors have the product of the 1-norms as their sum, so that sum is at most `size1 * size2`
+    // of the true differences, which is at most (1+ε)^9 times the computed one. Underflow puts each of the four sums of
+    // products off by at most 2.1η, and so the value by at most 2.2η(size1 + size2) + 3η; of the sizes it takes less.
+    let size = |v: DVec2| v.x.abs() + v.y.abs();
+    let (size1, size2) = (size(p) * size(q), size(s) * size(r));
+    if value.abs() > 16.0 * EPSILON * (size1 * size2) + UNDERFLOW * (size1 + size2 + 1.0) {
         return sign(value);
     }
     in_circle_exact(a, b, c, d)
 }
 
 /// The sign of the area of (a, b, c): positive when counter-clockwise.
+#[inline]
 pub(crate) fn area_sign(a: DVec2, b: DVec2, c: DVec2) -> Ordering {
     let (p, q) = (a - c, b - c);
     let (left, right) = (p.x * q.y, p.y * q.x);

@@ -81,7 +81,7 @@ impl WebGl {
 
         let adjacency = Adjacency::new(mesh);
         let winding = Winding::new(mesh, &adjacency.twins);
-        let fans = Fans::new(mesh.vertex_count(), mesh.triangles(), &adjacency.twins);
+        let fans = Fans::new(mesh.vertex_count(), mesh.triangles(), &adjacency.twins, |_| false);
         if context.ends_loops_early {
             refuse_large_star(&context, mesh)?;
         }

@@ -96,7 +96,7 @@ impl WebGpu {
         // Vertices of several fans are rare: the host has time.
         let fans = if found.has_several_fans {
             let twins = gpu.read(&buffers.twins, 3 * count).await?;
-            Fans::new(mesh.vertex_count(), mesh.triangles(), &twins)
+            Fans::new(mesh.vertex_count(), mesh.triangles(), &twins, |_| false)
         } else {
             Fans::default()
         };
