@@ -1,72 +1,151 @@
-//! One thread of the CPU: the phases and Lawson's algorithm beside the crate `delaunator`, which triangulates
-//! the same points from scratch. `cargo bench --bench native -- [--runs N] [FAMILY…]`, a family being what
-//! `edgeflip::families::by_name` takes, in the plane: `cargo bench --bench native -- "random 300"`.
+//! The CPU engine, one thread: the phases and Lawson's algorithm, beside crates that triangulate the same points from
+//! scratch. `cargo bench --bench native -- [--runs N] [FAMILY…]`, a family being what `edgeflip::families::by_name`
+//! takes, with its points in a grid: `cargo bench --bench native -- "random 300" "shear 1000"`.
 //!
 //! The runs are interleaved, so that a busy machine disturbs all of them alike; the figures are medians.
 
 use delaunator::Point;
-use edgeflip::{Backend, Dimension, Mesh, Options, Order, Outcome, families, make_delaunay};
-use std::{error::Error, hint::black_box, ops::ControlFlow, time::Instant};
+use edgeflip::{Backend, Dimension, Mesh, Options, Order, Timings, families, make_delaunay};
+use i_triangle::float::triangulatable::Triangulatable;
+use spade::{DelaunayTriangulation, Point2, Triangulation};
+use std::{error::Error, fs, hint::black_box, ops::ControlFlow, time::Instant};
 
 #[path = "arguments/mod.rs"]
 mod arguments;
 use arguments::{Arguments, median};
 
+/// From 2,000 to 2,000,000 triangles, and twice as many flips.
+const MESHES: [&str; 6] = ["random 33", "random 76", "random 179", "random 423", "random 1001", "shear 1000"];
+
+/// A whole job, with what it says itself of where the time went.
+type Job<'a> = dyn Fn() -> Result<Timings, Box<dyn Error>> + 'a;
+
+type Part = fn(&Timings) -> f64;
+
+/// What is measured, each with its own idea of the input.
+struct Contender<'a> {
+    name: &'static str,
+    job: Box<Job<'a>>,
+    timings: Vec<Timings>,
+    ms: Vec<f64>,
+    bytes: Vec<f64>,
+}
+
 fn main() -> Result<(), Box<dyn Error>> {
-    let Arguments { runs, specs } = Arguments::read(5, &["random 1000", "shear 1000"])?;
+    let Arguments { runs, specs } = Arguments::read(5, &MESHES)?;
     println!(
-        "Medians of {runs} interleaved runs on one thread, ns an edge of the mesh; ratios are adjacency and"
+        "One thread, from arrays to arrays, medians of {runs} interleaved runs. The others triangulate the points"
     );
     println!(
-        "flips together by `delaunator` (below 1: faster). The final count of what remains is not included."
+        "from scratch; i_triangle gets those inside and the four corners. Ratios are the other's time by ours:"
     );
+    println!("above 1, ours is faster. Memory is the most that is held beside the input.");
     println!();
-    println!(
-        "| mesh | phases : delaunator | Lawson : delaunator | phases: adjacency | flips | Lawson: adjacency | \
-         flips | delaunator | edges | phases: flips | Lawson: flips |"
-    );
-    println!("|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|");
-    for spec in specs {
-        println!("{}", row(&spec, runs)?);
+    for (i, spec) in specs.iter().enumerate() {
+        let table = table(spec, runs)?;
+        for line in &table[if i == 0 { 0 } else { 2 }..] {
+            println!("{line}");
+        }
     }
     Ok(())
 }
 
-fn row(spec: &str, runs: usize) -> Result<String, Box<dyn Error>> {
+/// Two lines of head, and that of the mesh.
+fn table(spec: &str, runs: usize) -> Result<[String; 3], Box<dyn Error>> {
     let mesh = families::by_name(spec)?;
-    if mesh.dimension() != Dimension::Two {
-        return Err(format!("{spec} is no mesh in the plane, which is all that delaunator takes").into());
+    let n = mesh.vertex_count().isqrt();
+    if mesh.dimension() != Dimension::Two || n * n != mesh.vertex_count() {
+        return Err(format!("{spec} is no mesh in the plane with its points in a grid").into());
     }
     let positions: Vec<f64> = mesh.positions().iter().collect();
-    let points: Vec<Point> = positions.chunks_exact(2).map(|p| Point { x: p[0], y: p[1] }).collect();
-    let (mut phases, mut lawson, mut scratch) = (Vec::new(), Vec::new(), Vec::new());
+    let pairs: Vec<[f64; 2]> = positions.chunks_exact(2).map(|p| [p[0], p[1]]).collect();
+    let points: Vec<Point> = pairs.iter().map(|&[x, y]| Point { x, y }).collect();
+    let vertices: Vec<Point2<f64>> = pairs.iter().map(|&[x, y]| Point2::new(x, y)).collect();
+    let corners = [0, n - 1, n * n - 1, n * n - n].map(|i| pairs[i]);
+    let is_inside = |i: usize| [i % n, i / n].iter().all(|k| (1..n - 1).contains(k));
+    let inside: Vec<[f64; 2]> = (0..n * n).filter(|&i| is_inside(i)).map(|i| pairs[i]).collect();
+    let edges = flip(&mesh, Order::Reproducible)?.0;
+    let mut contenders = [
+        contender("phases", || Ok(flip(&mesh, Order::Reproducible)?.1)),
+        contender("Lawson", || Ok(flip(&mesh, Order::Any)?.1)),
+        contender("delaunator", || {
+            black_box(delaunator::triangulate(black_box(&points)));
+            Ok(Timings::default())
+        }),
+        contender("spade", || {
+            black_box(DelaunayTriangulation::<_>::bulk_load(vertices.clone())?.num_vertices());
+            Ok(Timings::default())
+        }),
+        contender("i_triangle", || {
+            let delaunay = corners.triangulate_with_steiner_points(&inside).into_delaunay();
+            black_box(delaunay.to_triangulation::<u32>());
+            Ok(Timings::default())
+        }),
+    ];
     for _ in 0..runs {
-        phases.push(flip(&mesh, Order::Reproducible)?);
-        lawson.push(flip(&mesh, Order::Any)?);
-        let start = Instant::now();
-        black_box(delaunator::triangulate(black_box(&points)));
-        scratch.push(start.elapsed().as_secs_f64() * 1e3);
+        for contender in &mut contenders {
+            measure(contender)?;
+        }
     }
-    let edges = phases[0].edges;
-    let ns_an_edge = |ms: f64| ms * 1e6 / edges as f64;
-    let times = |outcomes: &[Outcome]| {
-        let part = |of: fn(&Outcome) -> f64| ns_an_edge(median(outcomes.iter().map(of).collect()));
-        (part(|o| o.timings.adjacency), part(|o| o.timings.flip))
-    };
-    let (phases_adjacency, phases_flips) = times(&phases);
-    let (lawson_adjacency, lawson_flips) = times(&lawson);
-    let peer = ns_an_edge(median(scratch));
-    Ok(format!(
-        "| {spec} | {:.2} | {:.2} | {phases_adjacency:.1} | {phases_flips:.1} | {lawson_adjacency:.1} | \
-         {lawson_flips:.1} | {peer:.1} | {edges} | {} | {} |",
-        (phases_adjacency + phases_flips) / peer,
-        (lawson_adjacency + lawson_flips) / peer,
-        phases[0].flips,
-        lawson[0].flips,
-    ))
+    let per_edge = |x: f64| x / f64::from(edges);
+    let ns: Vec<f64> =
+        contenders.iter().map(|contender| per_edge(median(contender.ms.clone()) * 1e6)).collect();
+    let mut head = vec!["mesh".to_owned(), "edges".to_owned()];
+    let mut row = vec![spec.to_owned(), edges.to_string()];
+    for our in 0..2 {
+        for other in 2..contenders.len() {
+            head.push(format!("{} : {}", contenders[other].name, contenders[our].name));
+            row.push(format!("{:.2}", ns[other] / ns[our]));
+        }
+    }
+    for (i, contender) in contenders.iter().enumerate() {
+        head.push(format!("{}, ns an edge", contender.name));
+        row.push(format!("{:.1}", ns[i]));
+    }
+    for Contender { name, timings, .. } in &contenders[..2] {
+        let parts: [(&str, Part); 2] = [("adjacency", |t| t.adjacency), ("flips", |t| t.flip)];
+        for (part, of) in parts {
+            head.push(format!("{name}: {part}"));
+            row.push(format!("{:.1}", per_edge(median(timings.iter().map(of).collect()) * 1e6)));
+        }
+    }
+    for contender in &contenders {
+        head.push(format!("{}, bytes an edge", contender.name));
+        row.push(format!("{:.0}", per_edge(median(contender.bytes.clone()))));
+    }
+    let ruler = format!("|---|{}", "---:|".repeat(head.len() - 1));
+    Ok([format!("| {} |", head.join(" | ")), ruler, format!("| {} |", row.join(" | "))])
 }
 
-fn flip(mesh: &Mesh, order: Order) -> Result<Outcome, edgeflip::Error> {
+fn contender<'a>(
+    name: &'static str,
+    job: impl Fn() -> Result<Timings, Box<dyn Error>> + 'a,
+) -> Contender<'a> {
+    Contender { name, job: Box::new(job), timings: Vec::new(), ms: Vec::new(), bytes: Vec::new() }
+}
+
+fn measure(contender: &mut Contender) -> Result<(), Box<dyn Error>> {
+    // Linux takes this for: the peak is what there is now.
+    let is_reset = fs::write("/proc/self/clear_refs", "5").is_ok();
+    let before = memory("VmRSS:");
+    let start = Instant::now();
+    let timings = (contender.job)()?;
+    contender.ms.push(start.elapsed().as_secs_f64() * 1e3);
+    contender.timings.push(timings);
+    contender.bytes.push(if is_reset { memory("VmHWM:") - before } else { f64::NAN });
+    Ok(())
+}
+
+/// Bytes, as the system counts them under this name; NaN where it does not.
+fn memory(name: &str) -> f64 {
+    let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let line = status.lines().find_map(|line| line.strip_prefix(name)).unwrap_or_default();
+    line.trim().trim_end_matches(" kB").parse().map_or(f64::NAN, |kilobytes: f64| 1024.0 * kilobytes)
+}
+
+/// The number of edges, and where the time went.
+fn flip(mesh: &Mesh, order: Order) -> Result<(u32, Timings), edgeflip::Error> {
     let options = Options { backend: Backend::Cpu, order, ..Options::default() };
-    make_delaunay(mesh, &options, |_, _| ControlFlow::Continue(()))
+    let outcome = make_delaunay(mesh, &options, |_, _| ControlFlow::Continue(()))?;
+    Ok((outcome.edges as u32, black_box(outcome).timings))
 }

@@ -1,12 +1,13 @@
-// From which size on a GPU is faster than the CPU, in Chromium on a software GPU: runs crossover.html on the dist/ that
-// is there and prints what it prints. `node benches/crossover.mjs serve` prints the page's address instead, for a browser
-// with a GPU.
+// Runs a benchmark that is a page, crossover.html or peers.html, in Chromium on a software GPU, on the dist/ that is
+// there, and prints what it prints: `node benches/page.mjs peers`. `node benches/page.mjs peers serve` prints the page's
+// address instead, for a browser with a GPU.
 
 import { fileURLToPath } from 'node:url';
 import { closeAll, openPage, serve, startChromium } from '../tests/browsers.mjs';
 
-const address = `${await serve(fileURLToPath(new URL('..', import.meta.url)))}benches/crossover.html`;
-if (process.argv[2] === 'serve') {
+const [name, verb] = process.argv.slice(2);
+const address = `${await serve(fileURLToPath(new URL('..', import.meta.url)))}benches/${name}.html`;
+if (verb === 'serve') {
   console.log(address);
 } else {
   try {
