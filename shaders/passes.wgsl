@@ -27,6 +27,10 @@ fn verdict_pass(@builtin(position) fragment: vec4f) -> @location(0) u32 {
     return verdict;
 }
 
+fn decides_exactly() -> bool {
+    return true;
+}
+
 fn verdict_of(h: u32, g: u32) -> u32 {
     return guarded(textureLoad(verdicts, place(min(h, g)), 0).x, h, g);
 }
@@ -41,9 +45,19 @@ fn label_pass(@builtin(position) fragment: vec4f) -> @location(0) u32 {
         || has_flipped(around.x) || has_flipped(around.y) || has_flipped(around.z);
     var choice = NONE;
     if t < params[0].x && is_active {
-        choice = label(t, params[0].z);
+        choice = label(t, params[0].z, vec3u(known_verdict(3u * t), known_verdict(3u * t + 1u), known_verdict(3u * t + 2u)));
     }
     return choice;
+}
+
+// What the pass before has found; of no twin, and of an edge that stays, nothing.
+fn known_verdict(h: u32) -> u32 {
+    let g = twin_entry(h);
+    var verdict = DELAUNAY;
+    if g < LOCKED {
+        verdict = textureLoad(verdicts, place(min(h, g)), 0).x;
+    }
+    return verdict;
 }
 
 fn has_flipped(entry: u32) -> bool {

@@ -40,6 +40,7 @@ fn compare_mesh(name: &str, mesh: Mesh, degrees: f64) {
         assert_eq!(census, block_on(gpu.census()).unwrap(), "{}", what("census"));
         cpu.label();
         block_on(gpu.run_phase(Kernel::Label)).unwrap();
+        block_on(gpu.run_phase(Kernel::Decide)).unwrap();
         let (best, _) = block_on(gpu.choices()).unwrap();
         assert_same(&what("best"), &cpu.best, &best);
         cpu.select();
