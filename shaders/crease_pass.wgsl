@@ -8,7 +8,7 @@ fn crease_pass(@builtin(position) fragment: vec4f) -> @location(0) u32 {
     if h < 3u * params[0].x {
         let g = twin(h);
         if g != NONE && h < g {
-            is_over = creased(h, g) >> 31u;
+            is_over = select(0u, 1u, crease_verdict(h, g) != DELAUNAY);
         }
     }
     return is_over;

@@ -1,11 +1,10 @@
 // Creases: the edges of the input over β, as src/phases/crease.rs.
 
-// The entry of half-edge `h`, flagged if the angle between the normals is larger than β, and only then.
-fn creased(h: u32, entry: u32) -> u32 {
-    let g = unflagged(entry);
+// Whether the edge of the half-edges `h` and `g` is one, as `angle_verdict_on` says it.
+fn crease_verdict(h: u32, g: u32) -> u32 {
     let a = position(vertex(h));
     let b = position(vertex(g));
     let c = position(vertex(prev(h)));
     let d = position(vertex(prev(g)));
-    return select(entry & ~CREASE, entry | CREASE, is_over_angle(a, b, c, d));
+    return angle_verdict_on(a, b, c, d);
 }

@@ -8,6 +8,14 @@ fn position(v: u32) -> Point {
     return Point(coordinates(3u * v), coordinates(3u * v + 1u), coordinates(3u * v + 2u));
 }
 
+// Of each axis, which of u and v is greater: 1 if u is, -1 if v is.
+fn order(u: Point, v: Point) -> vec3i {
+    let high = vec3i(u[2] > v[2]) - vec3i(u[2] < v[2]);
+    let middle = vec3i(u[1] > v[1]) - vec3i(u[1] < v[1]);
+    let low = vec3i(u[0] > v[0]) - vec3i(u[0] < v[0]);
+    return select(high, select(middle, low, middle == vec3i()), high == vec3i());
+}
+
 // All are on the grid of the mesh.
 fn grid_of(a: Point, b: Point, c: Point, d: Point) -> i32 {
     return 0;

@@ -7,6 +7,19 @@ fn position(v: u32) -> Point {
     return coordinates(v);
 }
 
+// Of each axis, which of u and v is greater: 1 if u is, -1 if v is.
+fn order(u: Point, v: Point) -> vec3i {
+    let x = ordered(u);
+    let y = ordered(v);
+    return vec3i(x > y) - vec3i(x < y);
+}
+
+// Integers that are in the order of the floats.
+fn ordered(bits: Point) -> vec3i {
+    let magnitude = vec3i(bits & vec3u(0x7fffffffu));
+    return select(magnitude, -magnitude, bits > vec3u(0x7fffffffu));
+}
+
 // u - v, with an error of one rounding: ε.
 fn rounded_difference(u: Point, v: Point) -> vec3f {
     return bitcast<vec3f>(u) - bitcast<vec3f>(v);

@@ -1,32 +1,10 @@
-// The frontier: which triangles an iteration looks at, as src/phases/frontier.rs. While many edges flip an
-// iteration sweeps over all triangles; once few do, it builds the list for the next one.
+// The frontier, the list of the triangles that the next iteration looks at: those that have flipped and their neighbours,
+// and those with an edge that was labelled and has not flipped, or was blocked as a duplicate. An edge's verdict can change
+// only where one of its triangles has changed, or, for duplicates, anywhere.
 
-fn entry(index: u32, word: u32) -> u32 {
-    return ENTRIES + ENTRY_WORDS * index + word;
-}
-
-fn active_count(index: u32) -> u32 {
-    if atomicLoad(&history[entry(index, BUILT)]) == 1u {
-        return atomicLoad(&history[entry(index, LENGTH)]);
-    }
-    return params.triangles;
-}
-
-fn active_triangle(index: u32, i: u32, iteration: u32) -> u32 {
-    if atomicLoad(&history[entry(index, BUILT)]) == 1u {
-        return atomicLoad(&frontier[(iteration & 1u) * params.triangles + i]);
-    }
-    return i;
-}
-
-// Whether the run has not ended: the iteration before flipped something.
-fn is_running(index: u32) -> bool {
-    return atomicLoad(&history[entry(index, FLIPS)]) > 0u;
-}
-
-// Whether this iteration builds the list for the next one.
+// Whether an iteration builds the list for the next one.
 fn builds_list(index: u32) -> bool {
-    return atomicLoad(&history[entry(index, FLIPS)]) < params.list_below;
+    return history_word(entry(index, FLIPS)) < params.list_below;
 }
 
 // Appends a triangle to the list of the next iteration, once.

@@ -14,10 +14,11 @@ fn guarded(verdict: u32, h: u32, g: u32) -> u32 {
 fn edge_exists(at_c: u32, at_d: u32) -> bool {
     let c = vertex(at_c);
     let d = vertex(at_d);
+    let is_alone = is_embedded(c) || is_embedded(d);
     var exists = c == d;
     var first = star(at_c);
     var second = star(at_d);
-    while !exists && first.y != NONE && second.y != NONE {
+    while !is_alone && !exists && first.y != NONE && second.y != NONE {
         exists = vertex(next(first.y)) == d || vertex(prev(first.y)) == d
             || vertex(next(second.y)) == c || vertex(prev(second.y)) == c;
         first = advanced(first);

@@ -1,41 +1,8 @@
-// The entry points: one dispatch a phase while there is much to do, one workgroup for a run of iterations
-// when there is little; and the census.
-
-fn verdict_of(h: u32, g: u32) -> u32 {
-    return guarded(geometric_verdict(h, g), h, g);
-}
+// The entry points of Flip, of a run of iterations in one workgroup, when there is little to do, and of the census.
 
 var<workgroup> flips: atomic<u32>;
 var<workgroup> census_counts: array<atomic<u32>, ENTRIES>;
 var<workgroup> tail_count: u32;
-
-@compute @workgroup_size(WORKGROUP_SIZE)
-fn label_all(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
-    let index = step_.index;
-    if !is_running(index) {
-        return;
-    }
-    let iteration = params.first + index;
-    let count = active_count(index);
-    for (var i = id.x; i < count; i += groups.x * WORKGROUP_SIZE) {
-        let t = active_triangle(index, i, iteration);
-        choices[t] = label(t, iteration);
-    }
-}
-
-@compute @workgroup_size(WORKGROUP_SIZE)
-fn select_all(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
-    let index = step_.index;
-    if !is_running(index) {
-        return;
-    }
-    let iteration = params.first + index;
-    let count = active_count(index);
-    for (var i = id.x; i < count; i += groups.x * WORKGROUP_SIZE) {
-        let t = active_triangle(index, i, iteration);
-        choices[params.triangles + t] = selection(t, iteration);
-    }
-}
 
 @compute @workgroup_size(WORKGROUP_SIZE)
 fn flip_all(
@@ -44,13 +11,12 @@ fn flip_all(
     @builtin(num_workgroups) groups: vec3u,
 ) {
     let index = step_.index;
-    if is_running(index) {
-        let iteration = params.first + index;
-        let count = active_count(index);
+    let work = active_at(index);
+    if work.count > 0u {
         let builds = builds_list(index);
         var flipped = 0u;
-        for (var i = id.x; i < count; i += groups.x * WORKGROUP_SIZE) {
-            flipped += flip_triangle(active_triangle(index, i, iteration), index, iteration, builds);
+        for (var i = id.x; i < work.count; i += groups.x * WORKGROUP_SIZE) {
+            flipped += flip_triangle(active_triangle(work, i), index, params.first + index, builds);
         }
         for (var i = params.vertices + id.x; i < params.fans_length; i += groups.x * WORKGROUP_SIZE) {
             move_anchor(i);
@@ -77,27 +43,28 @@ fn flip_all(
 fn tail(@builtin(local_invocation_index) local: u32) {
     for (var index = params.tail; index < params.tail + params.tail_iterations; index++) {
         if local == 0u {
-            let is_short = atomicLoad(&history[entry(index, BUILT)]) == 1u && active_count(index) <= params.tail_length;
-            tail_count = select(0u, active_count(index), is_short && is_running(index));
+            let work = active_at(index);
+            tail_count = select(0u, work.count, work.is_listed && work.count <= params.tail_length);
         }
         let count = workgroupUniformLoad(&tail_count);
         if count == 0u {
             break;
         }
         let iteration = params.first + index;
+        let work = Work(count, true, (iteration & 1u) * params.triangles);
         for (var i = local; i < count; i += WORKGROUP_SIZE) {
-            let t = active_triangle(index, i, iteration);
-        choices[t] = label(t, iteration);
+            let t = active_triangle(work, i);
+            choices[t] = label(t, iteration, verdicts_on(t));
         }
         storageBarrier();
         for (var i = local; i < count; i += WORKGROUP_SIZE) {
-            let t = active_triangle(index, i, iteration);
+            let t = active_triangle(work, i);
             choices[params.triangles + t] = selection(t, iteration);
         }
         storageBarrier();
         var flipped = 0u;
         for (var i = local; i < count; i += WORKGROUP_SIZE) {
-            flipped += flip_triangle(active_triangle(index, i, iteration), index, iteration, true);
+            flipped += flip_triangle(active_triangle(work, i), index, iteration, true);
         }
         for (var i = params.vertices + local; i < params.fans_length; i += WORKGROUP_SIZE) {
             move_anchor(i);
@@ -123,7 +90,7 @@ fn census(
     for (var h = id.x; h < 3u * params.triangles; h += groups.x * WORKGROUP_SIZE) {
         let g = twin(h);
         if g != NONE && h < g {
-            let verdict = verdict_of(h, g);
+            let verdict = guarded(geometric_verdict(h, g), h, g);
             if verdict != DELAUNAY {
                 atomicAdd(&census_counts[verdict - LABELLED], 1u);
             }

@@ -2,6 +2,8 @@
 
 const NONE: u32 = 0xffffffffu;
 const BLOCKED: u32 = 0xfffffffeu;
+// A choice that waits for exact arithmetic.
+const DOUBTFUL: u32 = 0xfffffffdu;
 // Set in both twin entries of an edge that was over β in the input: it stays, whatever its angle becomes.
 const CREASE: u32 = 0x80000000u;
 // The same for an edge that the user has locked.

@@ -27,11 +27,11 @@ fn verdict_pass(@builtin(position) fragment: vec4f) -> @location(0) u32 {
     return verdict;
 }
 
-fn verdict_of(h: u32, g: u32) -> u32 {
-    return guarded(textureLoad(verdicts, place(min(h, g)), 0).x, h, g);
+fn decides_exactly() -> bool {
+    return true;
 }
 
-// The frontier, as src/phases/frontier.rs: a triangle without a candidate keeps having none unless it or a neighbour
+// The frontier: a triangle without a candidate keeps having none unless it or a neighbour
 // flipped. `bests` and `selections` are those of the iteration before.
 @fragment
 fn label_pass(@builtin(position) fragment: vec4f) -> @location(0) u32 {
@@ -41,9 +41,19 @@ fn label_pass(@builtin(position) fragment: vec4f) -> @location(0) u32 {
         || has_flipped(around.x) || has_flipped(around.y) || has_flipped(around.z);
     var choice = NONE;
     if t < params[0].x && is_active {
-        choice = label(t, params[0].z);
+        choice = label(t, params[0].z, vec3u(known_verdict(3u * t), known_verdict(3u * t + 1u), known_verdict(3u * t + 2u)));
     }
     return choice;
+}
+
+// What the pass before has found; of no twin, and of an edge that stays, nothing.
+fn known_verdict(h: u32) -> u32 {
+    let g = twin_entry(h);
+    var verdict = DELAUNAY;
+    if g < LOCKED {
+        verdict = textureLoad(verdicts, place(min(h, g)), 0).x;
+    }
+    return verdict;
 }
 
 fn has_flipped(entry: u32) -> bool {
@@ -109,7 +119,7 @@ fn census_pass(@builtin(position) fragment: vec4f) -> @location(0) vec4u {
     for (var h = 3u * t; h < end; h++) {
         let g = twin(h);
         if g != NONE && h < g {
-            let verdict = vec4u(verdict_of(h, g));
+            let verdict = vec4u(guarded(textureLoad(verdicts, place(h), 0).x, h, g));
             result += vec4u(verdict == vec4u(LABELLED, LABELLED + 1u, LABELLED + 2u, LABELLED + 3u));
         }
     }

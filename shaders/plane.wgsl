@@ -9,11 +9,11 @@ const PLANE_BOUND: f32 = 2.861023e-6;
 // What is flushed, see points.wgsl, is below 2^-48.
 const PLANE_FLUSHED: f32 = 1.4210855e-14;
 
-// Whether an edge may flip by its geometry: DELAUNAY, BLOCKED_BY + REASON_FOLD or LABELLED. `winding` is -1 in
-// a clockwise component, else 1.
+// Whether an edge may flip by its geometry: DELAUNAY, BLOCKED_BY + REASON_FOLD or LABELLED; UNDECIDED where exact
+// arithmetic would have to decide and is left out. `winding` is -1 in a clockwise component, else 1.
 fn verdict_on(a: Point, b: Point, c: Point, d: Point, winding: i32) -> u32 {
     var verdict = filtered_verdict_on(a, b, c, d, winding);
-    if verdict == UNDECIDED {
+    if verdict == UNDECIDED && decides_exactly() {
         verdict = exact_verdict_on(a, b, c, d, winding);
     }
     return verdict;
@@ -56,6 +56,15 @@ fn in_circle_sign(p: vec2f, q: vec2f, r: vec2f, s: vec2f) -> i32 {
 // The sign of u × v, twice the area of a triangle; 0 where the filter cannot decide.
 fn area_sign(u: vec2f, v: vec2f) -> i32 {
     return filtered_sign(u.x * v.y - u.y * v.x, PLANE_BOUND * (abs(u.x * v.y) + abs(u.y * v.x)) + PLANE_FLUSHED);
+}
+
+// Whether a triangle is positive for sure: what the filter cannot decide is not.
+fn is_surely_positive(a: Point, b: Point, c: Point, winding: i32) -> bool {
+    let u = rounded_difference(b, a).xy;
+    let v = rounded_difference(c, a).xy;
+    let largest = max(abs(u), abs(v));
+    let scale = scale_for(max(largest.x, largest.y));
+    return winding * area_sign(u * scale, v * scale) > 0;
 }
 
 fn exact_verdict_on(a: Point, b: Point, c: Point, d: Point, winding: i32) -> u32 {

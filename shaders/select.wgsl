@@ -26,10 +26,11 @@ fn yields(h: u32, g: u32, iteration: u32) -> bool {
     let c = vertex(prev(h));
     let d = vertex(prev(g));
     let mine = key(min(h, g), iteration);
+    let is_alone = is_embedded(c) || is_embedded(d);
     var first = star(prev(h));
     var second = star(prev(g));
     var is_beaten = false;
-    while !is_beaten && first.y != NONE && second.y != NONE {
+    while !is_alone && !is_beaten && first.y != NONE && second.y != NONE {
         is_beaten = wins(first.y, d, mine, iteration) || wins(second.y, c, mine, iteration);
         first = advanced(first);
         second = advanced(second);

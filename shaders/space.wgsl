@@ -31,11 +31,11 @@ fn bound_of(quad: Quad) -> f32 {
     return SPACE_BOUND * (size(quad[0]) * size(quad[1])) * (size(quad[3]) * size(quad[2])) + SPACE_FLUSHED;
 }
 
-// Whether an edge may flip by its geometry: DELAUNAY, BLOCKED_BY + REASON_ANGLE or REASON_FOLD, or LABELLED. The
-// winding has no meaning in space.
+// Whether an edge may flip by its geometry: DELAUNAY, BLOCKED_BY + REASON_ANGLE or REASON_FOLD, or LABELLED; UNDECIDED
+// where exact arithmetic would have to decide and is left out. The winding has no meaning in space.
 fn verdict_on(a: Point, b: Point, c: Point, d: Point, winding: i32) -> u32 {
     var verdict = filtered_verdict_on(a, b, c, d, winding);
-    if verdict == UNDECIDED {
+    if verdict == UNDECIDED && decides_exactly() {
         verdict = exact_verdict_on(a, b, c, d, false);
     }
     return verdict;
@@ -55,15 +55,17 @@ fn filtered_verdict_on(a: Point, b: Point, c: Point, d: Point, winding: i32) -> 
     return verdict;
 }
 
-// Whether the angle between the normals, before any flip, is larger than β.
-fn is_over_angle(a: Point, b: Point, c: Point, d: Point) -> bool {
+// Whether the angle between the normals, before any flip, is larger than β: DELAUNAY or BLOCKED_BY + REASON_ANGLE;
+// UNDECIDED as above.
+fn angle_verdict_on(a: Point, b: Point, c: Point, d: Point) -> u32 {
     let quad = quad_of(a, b, c, d);
     let before = compare_angle(cross(quad[0], quad[1]), cross(quad[3], quad[2]), bound_of(quad));
-    var is_over = before < 0;
-    if before == 0 {
-        is_over = exact_verdict_on(a, b, c, d, true) != DELAUNAY;
+    var verdict = select(select(DELAUNAY, BLOCKED_BY + REASON_ANGLE, before < 0), UNDECIDED, before == 0);
+    verdict = select(verdict, DELAUNAY, has_any_angle());
+    if verdict == UNDECIDED && decides_exactly() {
+        verdict = exact_verdict_on(a, b, c, d, true);
     }
-    return is_over && !has_any_angle();
+    return verdict;
 }
 
 // -1 when the opposite angles sum to more than π; 0 where the filter cannot decide.
@@ -94,8 +96,12 @@ fn compare_turns(quad: Quad) -> i32 {
     let n2 = cross(quad[3], quad[2]);
     let m1 = cross(quad[2], quad[0]);
     let m2 = cross(quad[1], quad[3]);
-    let largest = max(max(size(quad[0]), size(quad[1])), max(size(quad[2]), size(quad[3])));
-    let bound = vec4f(SPACE_BOUND * (largest * largest) * (largest * largest) + SPACE_FLUSHED);
+    // Of n1, n2, m1 and m2.
+    let p = size(quad[0]);
+    let q = size(quad[1]);
+    let r = size(quad[2]);
+    let s = size(quad[3]);
+    let bound = SPACE_BOUND * vec4f((p * q) * (r * p), (p * q) * (q * s), (s * r) * (r * p), (s * r) * (q * s)) + SPACE_FLUSHED;
     let dots = vec4f(dot(n1, m1), dot(n1, m2), dot(n2, m1), dot(n2, m2));
     return select(select(0, 1, all(dots > bound)), -1, any(dots < -bound));
 }
@@ -142,6 +148,14 @@ fn exact_verdict_on(a: Point, b: Point, c: Point, d: Point, angle_only: bool) ->
     let q = vector_of(from_bc);
     let r = vector_of(from_ad);
     let s = vector_of(from_bd);
+    var verdict = DELAUNAY;
+    if angle_only || !is_known_delaunay(p, q, r, s, count) {
+        verdict = wide_verdict_on(p, q, r, s, count, angle_only);
+    }
+    return verdict;
+}
+
+fn wide_verdict_on(p: Vector, q: Vector, r: Vector, s: Vector, count: u32, angle_only: bool) -> u32 {
     let pp = dot_of(p, p, count);
     let pq = dot_of(p, q, count);
     let qq = dot_of(q, q, count);

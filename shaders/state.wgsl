@@ -24,6 +24,8 @@ struct Params {
     tail_length: u32,
     // An iteration builds the list for the next one if the one before it made fewer flips than this.
     list_below: u32,
+    // Where a bit for each vertex begins in `topology`, in 2D.
+    embedded: u32,
     // |cos β| is exactly mantissa / power: digits as in exact.wgsl.
     cos_mantissa: array<vec4i, 2>,
     cos_power: array<vec4i, 2>,
@@ -42,11 +44,8 @@ struct Step {
 @group(0) @binding(4) var<storage, read_write> twins: array<u32>;
 // best[t] at t, selected[t] at triangles + t.
 @group(0) @binding(5) var<storage, read_write> choices: array<u32>;
-// Two lists of triangles that change places with every iteration, then a stamp for each triangle.
-@group(0) @binding(6) var<storage, read_write> frontier: array<atomic<u32>>;
-// The census, then an entry for the state before each iteration of a batch.
-@group(0) @binding(7) var<storage, read_write> history: array<atomic<u32>>;
-// Winding bits, then the table of the fans.
+// 6 and 7: reads.wgsl, atomics.wgsl.
+// Winding bits, then the table of the fans, then the bits of the embedded stars.
 @group(0) @binding(8) var<storage, read_write> topology: array<u32>;
 
 // Words of the history. An entry tells of the iteration before it.
@@ -89,6 +88,11 @@ fn coordinates(i: u32) -> vec3u {
 
 fn is_clockwise(t: u32) -> bool {
     return t / 32u < params.winding_length && ((topology[t / 32u] >> (t % 32u)) & 1u) == 1u;
+}
+
+// Whether the star of a vertex is known to be embedded, see embedded.wgsl.
+fn is_embedded(v: u32) -> bool {
+    return DIMENSION == 2u && ((topology[params.embedded + v / 32u] >> (v % 32u)) & 1u) == 1u;
 }
 
 fn has_fans() -> bool {

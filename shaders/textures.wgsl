@@ -69,6 +69,11 @@ fn is_clockwise(t: u32) -> bool {
     return textureLoad(triangles, place(t), 0).w == 1u;
 }
 
+// Nothing is known of the stars here.
+fn is_embedded(v: u32) -> bool {
+    return false;
+}
+
 fn has_fans() -> bool {
     return params[1].x > 0u;
 }

@@ -41,6 +41,7 @@ fn compare_mesh(name: &str, mesh: Mesh, degrees: f64) {
         assert_eq!(census, block_on(gpu.census()).unwrap(), "{}", what("census"));
         let best = label(&cpu.geometry(), cpu.topology(), iteration);
         block_on(gpu.run_phase(Kernel::Label)).unwrap();
+        block_on(gpu.run_phase(Kernel::Decide)).unwrap();
         assert_same(&what("best"), &best, &block_on(gpu.choices()).unwrap().0);
         let selected = select(cpu.topology(), iteration, &best);
         block_on(gpu.run_phase(Kernel::Select)).unwrap();

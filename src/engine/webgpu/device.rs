@@ -54,13 +54,9 @@ fn report(failure: &Failure, message: String) {
     failure.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).get_or_insert(message);
 }
 
-/// Compiles kernels and waits for the device's word on them.
-async fn accepted<T>(device: &wgpu::Device, compile: impl FnOnce() -> T) -> Result<T, Error> {
-    let (kernels, word) = watch(device, compile);
-    match word.await {
-        None => Ok(kernels),
-        Some(fault) => Err(unavailable(format!("it refuses the kernels: {fault}"))),
-    }
+/// Waits for the device's word on kernels.
+async fn accepted(word: Word) -> Result<(), Error> {
+    word.await.map_or(Ok(()), |fault| Err(unavailable(format!("it refuses the kernels: {fault}"))))
 }
 
 impl Device {
@@ -131,7 +127,8 @@ impl Device {
             super::shared::let_idle_go();
         });
         let compile = || (kernels::adjacency(&device), kernels::probe(&device));
-        let (adjacency, probe) = accepted(&device, compile).await?;
+        let ((adjacency, probe), word) = watch(&device, compile);
+        accepted(word).await?;
         let most_workgroups = if is_software { 64 } else { 4096 };
         let mut result = Self {
             device,
@@ -151,17 +148,25 @@ impl Device {
         Ok(result)
     }
 
-    /// The kernels of the phases; compiled at the first call.
+    /// The kernels of the phases; compiled at the first call, once for all that begin at the same time.
     ///
     /// # Errors
     /// [`Error::BackendUnavailable`] if the device's compiler refuses them.
     pub(super) async fn phases(&self, form: Form) -> Result<Arc<Kernels>, Error> {
         let known = || self.phases.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
-        if let Some(kernels) = &known()[form.index()] {
-            return Ok(kernels.clone());
+        let (kernels, word) = {
+            let place = &mut known()[form.index()];
+            if let Some(kernels) = place {
+                return Ok(kernels.clone());
+            }
+            let (kernels, word) = watch(&self.device, || Arc::new(kernels::phases(&self.device, form)));
+            (place.insert(kernels).clone(), word)
+        };
+        let result = accepted(word).await;
+        if result.is_err() {
+            known()[form.index()] = None;
         }
-        let kernels = accepted(&self.device, || kernels::phases(&self.device, form)).await?;
-        Ok(known()[form.index()].insert(Arc::new(kernels)).clone())
+        result.map(|()| kernels)
     }
 
     /// Runs `shaders/probe.wgsl` and compares.

@@ -13,16 +13,21 @@ macro_rules! shaders {
     };
 }
 
-/// The shaders of the phases, for meshes of one form, in an order in which a reader can follow them.
-pub(super) fn phases_source(form: Form) -> String {
-    let numbers = shaders!("mesh" "exact" "state" "points");
+/// The shaders of the phases, for meshes of one form, in an order in which a reader can follow them: of those kernels
+/// that only read lists and history, and of the others.
+pub(super) fn phases_sources(form: Form) -> [String; 2] {
     let points = if form.is_fixed { shaders!("fixed") } else { shaders!("floats") };
-    let geometry = match form.dimension {
-        Dimension::Two => shaders!("plane"),
-        Dimension::Three => shaders!("space" "creases" "flag_creases"),
+    let (geometry, creases, embedded) = match form.dimension {
+        Dimension::Two => (shaders!("plane"), "", shaders!("embedded")),
+        Dimension::Three => (shaders!("space" "narrow"), shaders!("creases" "flag_creases"), ""),
     };
-    let phases = shaders!("verdict" "star" "guard" "label" "select" "slot" "flip" "frontier" "iteration");
-    [numbers, points, geometry, phases].concat()
+    let numbers = [shaders!("mesh" "exact" "state" "points"), points, geometry].concat();
+    let phases = shaders!("verdict" "star" "guard" "verdicts" "label" "select" "active");
+    [
+        [&numbers, shaders!("reads"), phases, creases, shaders!("sweeps")].concat(),
+        [&numbers, shaders!("atomics"), phases, embedded, shaders!("slot" "flip" "frontier" "iteration")]
+            .concat(),
+    ]
 }
 
 /// The shader that builds the adjacency.
@@ -31,33 +36,59 @@ pub(super) const ADJACENCY: &str = shaders!("adjacency");
 /// The shader that finds drivers whose loops end too early.
 pub(super) const PROBE: &str = shaders!("rounds" "probe");
 
-/// The kernels of `iteration.wgsl`.
+/// What is done in an iteration and around it.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Kernel {
     Label,
+    Decide,
     Select,
     Flip,
     Tail,
     Census,
-    FlagCreases,
+    /// Before the first iteration: the turns of the stars in 2D, the creases in 3D.
+    Prepare,
+    /// The rest of that.
+    Complete,
 }
 
 impl Kernel {
-    const ALL: [Self; 6] =
-        [Self::Label, Self::Select, Self::Flip, Self::Tail, Self::Census, Self::FlagCreases];
+    const ALL: [Self; 8] = [
+        Self::Label,
+        Self::Decide,
+        Self::Select,
+        Self::Flip,
+        Self::Tail,
+        Self::Census,
+        Self::Prepare,
+        Self::Complete,
+    ];
 
-    /// The entry point.
-    fn name(self) -> &'static str {
-        match self {
-            Self::Label => "label_all",
-            Self::Select => "select_all",
-            Self::Flip => "flip_all",
-            Self::Tail => "tail",
-            Self::Census => "census",
-            Self::FlagCreases => "flag_creases",
+    /// The kernels of one iteration.
+    pub(crate) const ITERATION: [Self; 4] = [Self::Label, Self::Decide, Self::Select, Self::Flip];
+
+    /// In the sources of [`phases_sources`].
+    fn entry(self, dimension: Dimension) -> Entry {
+        match (self, dimension) {
+            (Self::Label, _) => (READS, "label_all", &[("EXACT", 0.0)]),
+            (Self::Decide, _) => (READS, "label_all", &[]),
+            (Self::Select, _) => (READS, "select_all", &[]),
+            (Self::Flip, _) => (WRITES, "flip_all", &[]),
+            (Self::Tail, _) => (WRITES, "tail", &[]),
+            (Self::Census, _) => (WRITES, "census", &[]),
+            (Self::Prepare, Dimension::Two) => (WRITES, "count_turns", &[]),
+            (Self::Complete, Dimension::Two) => (WRITES, "mark_embedded", &[]),
+            (Self::Prepare, Dimension::Three) => (READS, "flag_creases", &[("EXACT", 0.0)]),
+            (Self::Complete, Dimension::Three) => (READS, "flag_creases", &[]),
         }
     }
 }
+
+/// Places of the sources that only read lists and history, and that write them.
+const READS: usize = 0;
+const WRITES: usize = 1;
+
+/// The place of a source, an entry point in it, and those of its constants that are not as the source says.
+type Entry = (usize, &'static str, &'static [(&'static str, f64)]);
 
 /// The pipelines of one shader, which share their bindings.
 pub(super) struct Kernels {
@@ -69,14 +100,15 @@ pub(super) struct Kernels {
 pub(super) fn adjacency(device: &wgpu::Device) -> Kernels {
     let (read, write) = (storage(true), storage(false));
     let names = ["count", "allocate", "scatter", "match_twins", "count_corners", "count_fans"];
-    kernels(device, ADJACENCY, &[uniform(false), read, write, write, write, write], &names)
+    let entries = names.map(|name| -> Entry { (0, name, &[]) });
+    kernels(device, &[uniform(false), read, write, write, write, write], &[ADJACENCY], &entries)
 }
 
-/// In the order of [`Kernel`]; the last is there for surfaces only.
+/// In the order of [`Kernel`].
 pub(super) fn phases(device: &wgpu::Device, form: Form) -> Kernels {
-    let names = Kernel::ALL.map(Kernel::name);
-    let names = if form.dimension == Dimension::Two { &names[..5] } else { &names[..] };
-    kernels(device, &phases_source(form), &phases_bindings(), names)
+    let sources = phases_sources(form);
+    let entries = Kernel::ALL.map(|kernel| kernel.entry(form.dimension));
+    kernels(device, &phases_bindings(), &sources.each_ref().map(String::as_str), &entries)
 }
 
 fn phases_bindings() -> [BindingType; 9] {
@@ -87,12 +119,13 @@ fn phases_bindings() -> [BindingType; 9] {
 /// Says how often the filter decides.
 #[cfg(test)]
 pub(super) fn tiers(device: &wgpu::Device, form: Form) -> Kernels {
-    let source = [&phases_source(form), include_str!("tiers.wgsl")].concat();
-    kernels(device, &source, &phases_bindings(), &["tiers"])
+    let [_, writes] = phases_sources(form);
+    let source = [&writes, include_str!("tiers.wgsl")].concat();
+    kernels(device, &phases_bindings(), &[&source], &[(0, "tiers", &[])])
 }
 
 pub(super) fn probe(device: &wgpu::Device) -> Kernels {
-    kernels(device, PROBE, &[storage(false)], &["probe"])
+    kernels(device, &[storage(false)], &[PROBE], &[(0, "probe", &[])])
 }
 
 fn uniform(has_dynamic_offset: bool) -> BindingType {
@@ -107,8 +140,9 @@ fn binding(ty: BufferBindingType, has_dynamic_offset: bool) -> BindingType {
     BindingType::Buffer { ty, has_dynamic_offset, min_binding_size: None }
 }
 
-fn kernels(device: &wgpu::Device, source: &str, bindings: &[BindingType], names: &[&str]) -> Kernels {
-    let entries: Vec<_> = bindings
+/// Entry points of shaders that have the same bindings.
+fn kernels(device: &wgpu::Device, bindings: &[BindingType], sources: &[&str], entries: &[Entry]) -> Kernels {
+    let places: Vec<_> = bindings
         .iter()
         .zip(0u32..)
         .map(|(&ty, binding)| wgpu::BindGroupLayoutEntry {
@@ -119,25 +153,28 @@ fn kernels(device: &wgpu::Device, source: &str, bindings: &[BindingType], names:
         })
         .collect();
     let layout =
-        device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: None, entries: &entries });
+        device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: None, entries: &places });
     let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
         label: None,
         bind_group_layouts: &[Some(&layout)],
         immediate_size: 0,
     });
-    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-        label: None,
-        source: wgpu::ShaderSource::Wgsl(source.into()),
-    });
-    let pipeline = |&name: &&str| {
+    let module = |source: &&str| {
+        device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: None,
+            source: wgpu::ShaderSource::Wgsl((*source).into()),
+        })
+    };
+    let modules: Vec<_> = sources.iter().map(module).collect();
+    let pipeline = |&(place, name, constants): &Entry| {
         device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
             label: Some(name),
             layout: Some(&pipeline_layout),
-            module: &module,
+            module: &modules[place],
             entry_point: Some(name),
-            compilation_options: Default::default(),
+            compilation_options: wgpu::PipelineCompilationOptions { constants, ..Default::default() },
             cache: None,
         })
     };
-    Kernels { pipelines: names.iter().map(pipeline).collect(), layout }
+    Kernels { pipelines: entries.iter().map(pipeline).collect(), layout }
 }

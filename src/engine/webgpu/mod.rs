@@ -1,6 +1,6 @@
 //! The phases as compute shaders, through wgpu: natively and in the browser.
 //!
-//! An iteration is three dispatches, and a batch of them with a tail of short ones is one submission: a later
+//! An iteration is four dispatches, and a batch of them with a tail of short ones is one submission: a later
 //! iteration sees on the device that an earlier one has flipped nothing. The host reads the history of a
 //! batch when it has ended.
 
@@ -100,8 +100,9 @@ impl WebGpu {
         } else {
             Fans::default()
         };
-        let winding_words = if mesh.dimension() == Dimension::Two { count.div_ceil(32) } else { 0 };
-        let topology_words = winding_words + fans.table.len();
+        let bits = if mesh.dimension() == Dimension::Two { [count, mesh.vertex_count()] } else { [0, 0] };
+        let [winding_words, embedded_words] = bits.map(|bits| bits.div_ceil(32));
+        let topology_words = winding_words + fans.table.len() + embedded_words;
         refuse_large_buffer(&gpu, topology_words)?;
         let bind = || {
             let topology = gpu.buffer("topology", topology_words, BufferUsages::STORAGE);
@@ -143,8 +144,7 @@ impl WebGpu {
         self.params.first = 0;
         // As if an iteration before had flipped something and built no list.
         self.state = [self.params.triangles, 0, 0, 1];
-        let is_surface = mesh.dimension() == Dimension::Three;
-        self.dispatches = u64::from(is_surface);
+        self.dispatches = 2;
         let submit = || {
             let queue = &self.gpu.queue;
             queue.write_buffer(&self.buffers.positions, 0, bytemuck::cast_slice(upload.words()));
@@ -152,14 +152,18 @@ impl WebGpu {
                 queue.write_buffer(floats, 0, bytemuck::cast_slice(&mesh.positions().to_f32()));
             }
             queue.write_buffer(&self.topology, 0, bytemuck::cast_slice(&winding.clockwise));
-            let mut encoder = self.encode(|pass| {
-                if is_surface {
-                    self.dispatch(pass, Kernel::FlagCreases, self.gpu.workgroups(3 * self.params.triangles));
+            // The stamps of iterations before would be taken for those of the next, and the turns of stars for others.
+            let cleared = |mut encoder: wgpu::CommandEncoder| {
+                encoder.clear_buffer(&self.buffers.frontier, 0, None);
+                encoder.finish()
+            };
+            let before = cleared(self.gpu.device.create_command_encoder(&Default::default()));
+            let prepare = self.encode(|pass| {
+                for kernel in [Kernel::Prepare, Kernel::Complete] {
+                    self.dispatch(pass, kernel, self.gpu.workgroups(self.params.triangles));
                 }
             });
-            // The stamps of iterations before would be taken for those of the next.
-            encoder.clear_buffer(&self.buffers.frontier, 0, None);
-            queue.submit([encoder.finish()]);
+            queue.submit([before, cleared(prepare)]);
         };
         self.gpu.checked(submit).await
     }
@@ -193,12 +197,12 @@ impl WebGpu {
         self.params.tail = batch;
         self.params.tail_iterations =
             (count - batch).min(if self.gpu.ends_loops_early { SHORT_TAIL } else { TAIL });
-        self.dispatches += u64::from(3 * batch + self.params.tail_iterations.min(1));
+        self.dispatches += u64::from(4 * batch + self.params.tail_iterations.min(1));
         let history = self.read_history(|pass| {
             let groups = self.gpu.workgroups(self.params.triangles);
             for step in 0..batch {
                 pass.set_bind_group(0, &self.bindings, &[4 * step * STEP_WORDS]);
-                for kernel in [Kernel::Label, Kernel::Select, Kernel::Flip] {
+                for kernel in Kernel::ITERATION {
                     self.dispatch(pass, kernel, groups);
                 }
             }

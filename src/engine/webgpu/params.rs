@@ -27,7 +27,8 @@ pub(super) struct Params {
     pub(super) tail_iterations: u32,
     pub(super) tail_length: u32,
     pub(super) list_below: u32,
-    pub(super) padding: [u32; 3],
+    pub(super) embedded: u32,
+    pub(super) padding: [u32; 2],
     pub(super) cos_mantissa: [i32; 8],
     pub(super) cos_power: [i32; 8],
 }
@@ -58,7 +59,8 @@ impl Params {
             tail_length: if ends_loops_early { SHORT_TAIL_LENGTH } else { TAIL_LENGTH },
             // A flip appends six triangles at most; a small mesh is not worth a sweep.
             list_below: if count <= SMALL_MESH { u32::MAX } else { count as u32 / 24 },
-            padding: [0; 3],
+            embedded: (fans + fans_length) as u32,
+            padding: [0; 2],
             cos_mantissa: cosine.mantissa,
             cos_power: cosine.power,
         }

@@ -4,7 +4,7 @@
 
 use super::adjacency::BUCKETS_EACH;
 use super::device::Device;
-use super::kernels::{ADJACENCY, PROBE, WORKGROUP_SIZE, phases_source};
+use super::kernels::{ADJACENCY, PROBE, WORKGROUP_SIZE, phases_sources};
 use super::params::Params;
 use super::{ENTRIES, ENTRY_WORDS};
 use crate::adjacency::{CREASE, FLAGS, LOCKED};
@@ -18,12 +18,13 @@ use std::mem::offset_of;
 
 /// Every shader.
 fn sources() -> Vec<String> {
-    Form::ALL.map(phases_source).into_iter().chain([ADJACENCY, PROBE].map(str::to_owned)).collect()
+    Form::ALL.into_iter().flat_map(phases_sources).chain([ADJACENCY, PROBE].map(str::to_owned)).collect()
 }
 
 /// The phases on surfaces.
 fn space() -> naga::Module {
-    parse(&phases_source(Form { dimension: Dimension::Three, is_fixed: false }))
+    let [_, writes] = phases_sources(Form { dimension: Dimension::Three, is_fixed: false });
+    parse(&writes)
 }
 
 fn parse(source: &str) -> naga::Module {
@@ -128,6 +129,7 @@ fn params_have_one_layout() {
         tail_iterations,
         tail_length,
         list_below,
+        embedded,
         cos_mantissa,
         cos_power
     );

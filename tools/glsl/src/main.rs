@@ -77,7 +77,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let path = std::env::args().nth(1).ok_or("usage: glsl FILE")?;
     let mut programs = BTreeMap::new();
     let (floats, fixed) = (shaders!("floats"), shaders!("fixed"));
-    let (plane, space) = (shaders!("plane"), shaders!("space" "creases" "crease_pass"));
+    let (plane, space) = (shaders!("plane"), shaders!("space" "wide" "creases" "crease_pass"));
     for (points, geometry, list) in [
         (floats, plane, &PLANE[..]),
         (floats, space, &SPACE[..]),

@@ -1,0 +1,50 @@
+// Stars in the plane that are embedded: the triangles at a vertex are positive and go round it once. An edge that is to
+// flip crosses its new edge c-d between them, so at such a vertex c, or d, no other edge c-d can be, and no other flip can
+// make one: its star has one triangle in each direction. Flips of strictly convex quads leave it so.
+
+// What makes a star other than embedded.
+const NOT_EMBEDDED: u32 = 0x10000u;
+
+// Counts, in the lists, how often the triangles at each vertex go across the direction of the x axis.
+@compute @workgroup_size(WORKGROUP_SIZE)
+fn count_turns(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
+    for (var t = id.x; t < params.triangles; t += groups.x * WORKGROUP_SIZE) {
+        let winding = select(1, -1, is_clockwise(t));
+        var a = position(vertex(3u * t));
+        var b = position(vertex(3u * t + 1u));
+        var c = position(vertex(3u * t + 2u));
+        let is_positive = is_surely_positive(a, b, c, winding);
+        for (var h = 3u * t; h < 3u * t + 3u; h++) {
+            let is_inner = twin_entry(h) != NONE && twin_entry(prev(h)) != NONE;
+            let first = order(b, a);
+            let last = order(c, a);
+            // From below the axis, or on it, to above it; in a clockwise mesh the other way round.
+            let from_below = select(last, first, winding > 0);
+            let to_above = select(first, last, winding > 0);
+            let is_below = from_below.y < 0 || (from_below.y == 0 && from_below.x > 0);
+            let is_above = to_above.y > 0 || (to_above.y == 0 && to_above.x < 0);
+            let turns = select(NOT_EMBEDDED, select(0u, 1u, is_below && is_above), is_positive && is_inner);
+            // Vertices of no triangle may be more than there are words.
+            if turns > 0u && vertex(h) < arrayLength(&frontier) {
+                atomicAdd(&frontier[vertex(h)], turns);
+            }
+            let corner = a;
+            a = b;
+            b = c;
+            c = corner;
+        }
+    }
+}
+
+// A bit for each vertex, behind the table of the fans.
+@compute @workgroup_size(WORKGROUP_SIZE)
+fn mark_embedded(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
+    for (var word = id.x; word < (params.vertices + 31u) / 32u; word += groups.x * WORKGROUP_SIZE) {
+        var bits = 0u;
+        let end = min(min(32u * word + 32u, params.vertices), arrayLength(&frontier));
+        for (var v = 32u * word; v < end; v++) {
+            bits |= select(0u, 1u, atomicLoad(&frontier[v]) == 1u) << (v % 32u);
+        }
+        topology[params.embedded + word] = bits;
+    }
+}
