@@ -3,6 +3,7 @@
 use crate::Error;
 use crate::mesh::Dimension;
 use glam::{DVec2, DVec3};
+use std::array;
 
 /// Coordinates, 2 or 3 a vertex. A [`Mesh`](crate::Mesh) holds 64-bit floats only where at least one of them is no
 /// 32-bit float.
@@ -73,19 +74,22 @@ impl Positions {
     }
 
     /// Vertices of a 2D mesh.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn points2<const N: usize>(&self, vertices: [u32; N]) -> [DVec2; N] {
-        self.tuples(vertices).map(DVec2::from_array)
+        let tuples = self.tuples(vertices);
+        // `map` is not always inlined, here and below.
+        array::from_fn(|i| DVec2::from_array(tuples[i]))
     }
 
     /// Vertices of a 3D mesh.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn points3<const N: usize>(&self, vertices: [u32; N]) -> [DVec3; N] {
-        self.tuples(vertices).map(DVec3::from_array)
+        let tuples = self.tuples(vertices);
+        array::from_fn(|i| DVec3::from_array(tuples[i]))
     }
 
     /// The `K` coordinates of each vertex.
-    #[inline]
+    #[inline(always)]
     fn tuples<const K: usize, const N: usize>(&self, vertices: [u32; N]) -> [[f64; K]; N] {
         match self {
             Self::F32(numbers) => gathered(numbers, vertices),
@@ -101,15 +105,15 @@ impl Positions {
     }
 }
 
-#[inline]
+#[inline(always)]
 fn gathered<T: Copy + Into<f64>, const K: usize, const N: usize>(
     numbers: &[T],
     vertices: [u32; N],
 ) -> [[f64; K]; N] {
     let (tuples, _) = numbers.as_chunks::<K>();
-    std::array::from_fn(|i| {
+    array::from_fn(|i| {
         let tuple = tuples[vertices[i] as usize];
-        std::array::from_fn(|k| tuple[k].into())
+        array::from_fn(|k| tuple[k].into())
     })
 }
 

@@ -74,6 +74,8 @@ impl Winding {
     }
 }
 
+#[inline]
 fn corners(mesh: &Mesh, t: usize) -> [glam::DVec2; 3] {
-    [0, 1, 2].map(|k| mesh.point2(mesh.triangles()[3 * t + k]))
+    let (triangles, _) = mesh.triangles().as_chunks();
+    mesh.positions().points2(triangles[t])
 }

@@ -14,7 +14,9 @@ pub(crate) fn flag_creases(positions: &Positions, triangles: &[u32], twins: &mut
         if g == NONE || g < h {
             continue;
         }
-        let [a, b, c, d] = positions.points3([h, next(h), prev(h), prev(g)].map(|x| triangles[x as usize]));
+        let corner = |x: u32| triangles[x as usize];
+        let corners = [corner(h), corner(next(h)), corner(prev(h)), corner(prev(g))];
+        let [a, b, c, d] = positions.points3(corners);
         let crease = if Quad::new(a, b, c, d).is_over_angle(cos) { CREASE } else { 0 };
         let flags = entry & LOCKED | crease;
         twins[h as usize] = g | flags;
