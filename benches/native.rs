@@ -7,12 +7,16 @@
 use delaunator::Point;
 use edgeflip::{Backend, Dimension, Mesh, Options, Order, Timings, families, make_delaunay};
 use i_triangle::float::triangulatable::Triangulatable;
+use peak_alloc::PeakAlloc;
 use spade::{DelaunayTriangulation, Point2, Triangulation};
-use std::{error::Error, fs, hint::black_box, ops::ControlFlow, time::Instant};
+use std::{error::Error, hint::black_box, ops::ControlFlow, time::Instant};
 
 #[path = "arguments/mod.rs"]
 mod arguments;
 use arguments::{Arguments, median};
+
+#[global_allocator]
+static ALLOCATOR: PeakAlloc = PeakAlloc;
 
 /// From 2,000 to 2,000,000 triangles, and twice as many flips.
 const MESHES: [&str; 6] = ["random 33", "random 76", "random 179", "random 423", "random 1001", "shear 1000"];
@@ -125,22 +129,14 @@ fn contender<'a>(
 }
 
 fn measure(contender: &mut Contender) -> Result<(), Box<dyn Error>> {
-    // Linux takes this for: the peak is what there is now.
-    let is_reset = fs::write("/proc/self/clear_refs", "5").is_ok();
-    let before = memory("VmRSS:");
+    ALLOCATOR.reset_peak_usage();
+    let before = ALLOCATOR.current_usage();
     let start = Instant::now();
     let timings = (contender.job)()?;
     contender.ms.push(start.elapsed().as_secs_f64() * 1e3);
     contender.timings.push(timings);
-    contender.bytes.push(if is_reset { memory("VmHWM:") - before } else { f64::NAN });
+    contender.bytes.push((ALLOCATOR.peak_usage() - before) as f64);
     Ok(())
-}
-
-/// Bytes, as the system counts them under this name; NaN where it does not.
-fn memory(name: &str) -> f64 {
-    let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
-    let line = status.lines().find_map(|line| line.strip_prefix(name)).unwrap_or_default();
-    line.trim().trim_end_matches(" kB").parse().map_or(f64::NAN, |kilobytes: f64| 1024.0 * kilobytes)
 }
 
 /// The number of edges, and where the time went.
