@@ -118,8 +118,7 @@ impl Buckets {
 
 /// The vertex of half-edge `h`'s edge that is not `low`.
 fn other_end(triangles: &[u32], low: u32, h: u32) -> u32 {
-    let start = triangles[h as usize];
-    if start == low { triangles[next(h) as usize] } else { start }
+    triangles[h as usize] ^ triangles[next(h) as usize] ^ low
 }
 
 /// Calls `visit` once for each edge with its half-edges in ascending order, edges by their smaller vertex. A vertex of n
@@ -136,17 +135,15 @@ fn visit_edges(
     triangles: &[u32],
     low: u32,
     bucket: &[u32],
-    sorted: &mut Vec<(u32, u32)>,
+    sorted: &mut Vec<u32>,
     visit: &mut impl FnMut(&[u32]),
 ) {
+    let end = |h: u32| other_end(triangles, low, h);
     sorted.clear();
-    sorted.extend(bucket.iter().map(|&h| (other_end(triangles, low, h), h)));
-    sorted.sort_unstable();
-    let mut half_edges = Vec::new();
-    for edge in sorted.chunk_by(|x, y| x.0 == y.0) {
-        half_edges.clear();
-        half_edges.extend(edge.iter().map(|&(_, h)| h));
-        visit(&half_edges);
+    sorted.extend(bucket);
+    sorted.sort_unstable_by_key(|&h| (end(h), h));
+    for edge in sorted.chunk_by(|&x, &y| end(x) == end(y)) {
+        visit(edge);
     }
 }
 
@@ -162,10 +159,8 @@ fn match_few<const N: usize>(
     let mut ends = [low; N];
     let mut outwards = 0u32;
     for (i, &h) in bucket.iter().enumerate() {
-        let start = triangles[h as usize];
-        let end = triangles[next(h) as usize];
-        ends[i] = start ^ end ^ low;
-        outwards |= u32::from(start == low) << i;
+        ends[i] = other_end(triangles, low, h);
+        outwards |= u32::from(triangles[h as usize] == low) << i;
     }
     let mut partners = [NONE; N];
     let mut is_odd = false;

@@ -10,7 +10,6 @@ use crate::mesh::{Dimension, Mesh};
 use crate::predicates::area_sign;
 use crate::winding::Winding;
 use glam::DVec2;
-use std::cmp::Ordering;
 
 /// How often the triangles at each vertex go across the direction of the x axis, twice standing for more, for an open
 /// star and for one with a triangle that is not positive. Empty in 3D.
@@ -33,8 +32,7 @@ impl Embedded {
         for (t, &[a, b, c]) in (0..).zip(triangles) {
             let [p, q, r] = mesh.positions().points2([a, b, c]);
             let is_clockwise = winding.is_clockwise(t);
-            let positive = if is_clockwise { Ordering::Less } else { Ordering::Greater };
-            if !winding.is_strict && area_sign(p, q, r) != positive {
+            if !winding.is_strict && area_sign(p, q, r) != winding.positive(t) {
                 for v in [a, b, c] {
                     turn(v, 2);
                 }

@@ -4,6 +4,7 @@ use crate::NONE;
 use crate::adjacency::unflagged;
 use crate::mesh::{Dimension, Mesh};
 use crate::predicates::{area_sign, total_area_sign};
+use std::cmp::Ordering;
 
 /// One bit a triangle: 1 where its edge-connected component has a negative total area. Empty where no
 /// component has, and in 3D, where it has no meaning.
@@ -66,6 +67,12 @@ impl Winding {
             }
         }
         Self { clockwise, is_strict: false }
+    }
+
+    /// The sign of the area of triangle `t` where it lies as its component does.
+    #[inline]
+    pub(crate) fn positive(&self, t: u32) -> Ordering {
+        if self.is_clockwise(t) { Ordering::Less } else { Ordering::Greater }
     }
 
     /// Whether triangle `t` belongs to a component of negative area.

@@ -136,8 +136,7 @@ impl Cpu {
             self.test(&mut edges[..count]);
         }
         for &h in &flipped {
-            let [_, g] = self.selected[h as usize / 3];
-            (self.selected[h as usize / 3], self.selected[g as usize / 3]) = (FREE, FREE);
+            release(&mut self.selected, h);
         }
         self.flipped = Some(flipped);
         self.flipped.iter_mut().for_each(Vec::clear);
@@ -181,13 +180,11 @@ impl Cpu {
         }
         flips.truncate(count);
         for &h in &flips {
-            let g = self.twins[h as usize];
-            (self.selected[h as usize / 3], self.selected[g as usize / 3]) = ([h, g], [g, h]);
+            choose(&mut self.selected, h, self.twins[h as usize]);
         }
         let yielding: Vec<u32> = flips.iter().copied().filter(|&h| self.yields(h)).collect();
         for &h in &yielding {
-            let [_, g] = self.selected[h as usize / 3];
-            (self.selected[h as usize / 3], self.selected[g as usize / 3]) = (FREE, FREE);
+            release(&mut self.selected, h);
         }
         if !yielding.is_empty() {
             flips.retain(|&h| self.selected[h as usize / 3] != FREE);
@@ -231,9 +228,7 @@ impl Cpu {
                     changed[v as usize] = *iteration;
                 }
             }
-            for t in [h / 3, g / 3] {
-                verdicts[3 * t as usize..3 * t as usize + 3].fill(Verdict::Delaunay);
-            }
+            forget(verdicts, h, g);
         }
         flip(triangles, twins, fans, selected, flips);
         flips.len() as u32
@@ -271,19 +266,34 @@ impl Cpu {
     pub(super) fn flip_one(&mut self, h: u32) {
         let Self { triangles, twins, fans, verdicts, selected, .. } = self;
         let g = twins[h as usize];
-        let (t, u) = (h as usize / 3, g as usize / 3);
-        (selected[t], selected[u]) = ([h, g], [g, h]);
+        choose(selected, h, g);
         flip(triangles, twins, fans, selected, &[h]);
-        for t in [t, u] {
-            selected[t] = FREE;
-            verdicts[3 * t..3 * t + 3].fill(Verdict::Delaunay);
-        }
+        release(selected, h);
+        forget(verdicts, h, g);
     }
 
     /// Says whether the last test of every edge still holds; else the next iteration tests all of them.
     pub(super) fn set_tested(&mut self, is_tested: bool) {
         self.candidates.clear();
         self.flipped = is_tested.then(Vec::new);
+    }
+}
+
+/// Selects the edge of two half-edges.
+fn choose(selected: &mut [Selected], h: u32, g: u32) {
+    (selected[h as usize / 3], selected[g as usize / 3]) = ([h, g], [g, h]);
+}
+
+/// Takes back that the edge of `h` is selected.
+fn release(selected: &mut [Selected], h: u32) {
+    let [_, g] = selected[h as usize / 3];
+    (selected[h as usize / 3], selected[g as usize / 3]) = (FREE, FREE);
+}
+
+/// Takes all edges of the triangles of two half-edges for Delaunay.
+fn forget(verdicts: &mut [Verdict], h: u32, g: u32) {
+    for t in [h as usize / 3, g as usize / 3] {
+        verdicts[3 * t..3 * t + 3].fill(Verdict::Delaunay);
     }
 }
 

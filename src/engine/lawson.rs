@@ -1,5 +1,6 @@
-//! Lawson's sequential algorithm: one non-Delaunay edge after the other, from a stack, so that the next one is near. The paper compares with
-//! it; it is the fast path on one thread for those who do not need the order of the parallel phases.
+//! Lawson's sequential algorithm: one non-Delaunay edge after the other, from a stack, so that the next one is near.
+//! The paper compares with it; it is the fast path on one thread for those who do not need the order of the parallel
+//! phases.
 
 use super::{Answer, Census, Cpu, EdgeCounts, Engine};
 use crate::adjacency::{prev, unflagged};

@@ -8,7 +8,6 @@ use crate::star::{Star, any_in_either};
 use crate::winding::Winding;
 use crate::{NONE, Positions, Reason};
 use glam::DVec2;
-use std::cmp::Ordering;
 
 /// What the test of an interior edge says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -98,7 +97,7 @@ fn is_non_delaunay_in_plane<T: Copy + Into<f64>>(
     let point = |v: u32| DVec2::new(points[v as usize][0].into(), points[v as usize][1].into());
     let [a, b, c, d] = vertices(mesh, h);
     let sign = in_circle_sign(point(a), point(b), point(c), point(d));
-    sign == if winding.is_clockwise(h / 3) { Ordering::Greater } else { Ordering::Less }
+    sign == winding.positive(h / 3).reverse()
 }
 
 /// The ends of the edge and the far corners of its triangles.
@@ -125,8 +124,7 @@ pub(crate) fn verdict_of_non_delaunay(geometry: &Geometry, mesh: Topology, h: u3
         Dimension::Two if geometry.winding.is_strict => {}
         Dimension::Two => {
             let [a, b, c, d] = geometry.positions.points2(vertices(mesh, h));
-            let positive =
-                if geometry.winding.is_clockwise(h / 3) { Ordering::Less } else { Ordering::Greater };
+            let positive = geometry.winding.positive(h / 3);
             if area_sign(a, d, c) != positive || area_sign(b, c, d) != positive {
                 return Verdict::Blocked(Reason::Fold);
             }

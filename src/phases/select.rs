@@ -5,7 +5,7 @@ use crate::NONE;
 use crate::adjacency::{next, prev};
 use crate::star::{Star, any_in_either};
 
-/// For each triangle the twin of its edge that flips, or [`NONE`]. `best` is what [`label`](super::label) gives.
+/// For each triangle the twin of its edge that flips, or [`NONE`]. `best` is what [`label`](super::label()) gives.
 pub(crate) fn select(mesh: Topology, iteration: u32, best: &[u32]) -> Vec<u32> {
     let selected = |t: u32| match mutual(best, t) {
         Some((h, g)) if !yields(mesh, iteration, h, g, |t| mutual(best, t)) => g,

@@ -1,0 +1,19 @@
+// What the pages share: their output, the line of a table, the median, and a whole job of ours.
+
+import { FlipSession } from '../dist/index.js';
+
+export const print = (line) => document.querySelector('pre').append(`${line}\n`);
+export const row = (cells) => print(`| ${cells.join(' | ')} |`);
+/** A number, or a dash for none. */
+export const cell = (number, digits = 2) => number?.toFixed(digits) ?? '–';
+export const median = (times) => times.sort((a, b) => a - b)[times.length >> 1];
+
+/** The result of a whole job, and its milliseconds. */
+export async function run(mesh, options) {
+  const start = performance.now();
+  const session = await FlipSession.create(mesh, options);
+  const result = await session.run();
+  const ms = performance.now() - start;
+  session.free();
+  return { result, ms };
+}
