@@ -1,10 +1,12 @@
-// Which triangles an iteration looks at: all of them while many edges flip; once few do, those of the list that the
-// iteration before has built.
+// Which triangles an iteration looks at: while many edges flip all of them, to see which are due; once few do, those of
+// the list that the iteration before has built.
 
 struct Work {
     // 0 where the run has ended: the iteration before flipped nothing.
     count: u32,
     is_listed: bool,
+    // Whether nearly all of them are due: then none is asked.
+    is_full: bool,
     // Where the list begins.
     first: u32,
 }
@@ -19,14 +21,21 @@ fn active_at(index: u32) -> Work {
     if is_listed {
         count = history_word(entry(index, LENGTH));
     }
-    count = select(count, 0u, history_word(entry(index, FLIPS)) == 0u);
-    return Work(count, is_listed, ((params.first + index) & 1u) * params.triangles);
+    let flips = history_word(entry(index, FLIPS));
+    count = select(count, 0u, flips == 0u);
+    return Work(count, is_listed, is_listed || flips > params.triangles / 8u, ((params.first + index) & 1u) * params.triangles);
 }
 
 fn active_triangle(work: Work, i: u32) -> u32 {
     var t = i;
     if work.is_listed {
-        t = frontier_word(work.first + i);
+        t = atomicLoad(&frontier[work.first + i]);
     }
     return t;
+}
+
+// A triangle is due where its choice can be another one than in the iteration before: where it or a neighbour has flipped,
+// and where it had one, since keys change and, for duplicates, anything may have.
+fn is_due(work: Work, t: u32, iteration: u32) -> bool {
+    return work.is_full || best(t) != NONE || atomicLoad(&frontier[stamp_place(t)]) == iteration;
 }

@@ -1,5 +1,9 @@
 // The entry points of the creases over textures, before the first iteration on a surface.
 
+fn decides_exactly() -> bool {
+    return true;
+}
+
 // Whether the edge of a half-edge, the lower one, is over β: 1 or 0.
 @fragment
 fn crease_pass(@builtin(position) fragment: vec4f) -> @location(0) u32 {

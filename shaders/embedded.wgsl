@@ -5,15 +5,40 @@
 // What makes a star other than embedded.
 const NOT_EMBEDDED: u32 = 0x10000u;
 
-// Counts, in the lists, how often the triangles at each vertex go across the direction of the x axis.
+var<workgroup> signs: atomic<u32>;
+
+// Whether exact arithmetic decides what the filter leaves, or a later dispatch does.
+override EXACT: bool = true;
+
+// Counts, in the lists, how often the triangles at each vertex go across the direction of the x axis, and finds out which
+// signs triangles have: bits 0 to 2 for negative, flat, positive. Unless the winding is known, that of each triangle is
+// taken for its sign: the count holds if there is one only. With EXACT, only the triangles that wait for it.
 @compute @workgroup_size(WORKGROUP_SIZE)
-fn count_turns(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
+fn count_turns(
+    @builtin(global_invocation_id) id: vec3u,
+    @builtin(local_invocation_index) local: u32,
+    @builtin(num_workgroups) groups: vec3u,
+) {
+    var seen = 0u;
     for (var t = id.x; t < params.triangles; t += groups.x * WORKGROUP_SIZE) {
-        let winding = select(1, -1, is_clockwise(t));
+        if EXACT && best(t) != DOUBTFUL {
+            continue;
+        }
         var a = position(vertex(3u * t));
         var b = position(vertex(3u * t + 1u));
         var c = position(vertex(3u * t + 2u));
-        let is_positive = is_surely_positive(a, b, c, winding);
+        var sign = filtered_sign_of(a, b, c);
+        if EXACT {
+            sign = exact_sign_of(a, b, c);
+        }
+        let is_left = !EXACT && sign == 0;
+        choices[t] = select(NONE, DOUBTFUL, is_left);
+        if is_left {
+            continue;
+        }
+        let winding = select(sign, select(1, -1, is_clockwise(t)), params.knows_winding == 1u);
+        let is_positive = sign * winding > 0;
+        seen |= 1u << u32(sign + 1);
         for (var h = 3u * t; h < 3u * t + 3u; h++) {
             let is_inner = twin_entry(h) != NONE && twin_entry(prev(h)) != NONE;
             let first = order(b, a);
@@ -34,9 +59,14 @@ fn count_turns(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups
             c = corner;
         }
     }
+    atomicOr(&signs, seen);
+    workgroupBarrier();
+    if local == 0u {
+        atomicOr(&history[CENSUS], atomicLoad(&signs));
+    }
 }
 
-// A bit for each vertex, behind the table of the fans.
+// A bit for each vertex.
 @compute @workgroup_size(WORKGROUP_SIZE)
 fn mark_embedded(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
     for (var word = id.x; word < (params.vertices + 31u) / 32u; word += groups.x * WORKGROUP_SIZE) {

@@ -16,7 +16,13 @@ fn flip_all(
         let builds = builds_list(index);
         var flipped = 0u;
         for (var i = id.x; i < work.count; i += groups.x * WORKGROUP_SIZE) {
-            flipped += flip_triangle(active_triangle(work, i), index, params.first + index, builds);
+            let t = active_triangle(work, i);
+            if best(t) != NONE {
+                flipped += flip_triangle(t, index, params.first + index, builds);
+            }
+        }
+        for (var i = doubts() + id.x; i < arrayLength(&frontier); i += groups.x * WORKGROUP_SIZE) {
+            atomicStore(&frontier[i], 0u);
         }
         for (var i = params.vertices + id.x; i < params.fans_length; i += groups.x * WORKGROUP_SIZE) {
             move_anchor(i);
@@ -38,8 +44,11 @@ fn flip_all(
     }
 }
 
+// Invocations of the tail, as many as the device allows.
+override TAIL_SIZE: u32 = WORKGROUP_SIZE;
+
 // Iterations in one workgroup, as long as their lists are short.
-@compute @workgroup_size(WORKGROUP_SIZE)
+@compute @workgroup_size(TAIL_SIZE)
 fn tail(@builtin(local_invocation_index) local: u32) {
     for (var index = params.tail; index < params.tail + params.tail_iterations; index++) {
         if local == 0u {
@@ -51,22 +60,25 @@ fn tail(@builtin(local_invocation_index) local: u32) {
             break;
         }
         let iteration = params.first + index;
-        let work = Work(count, true, (iteration & 1u) * params.triangles);
-        for (var i = local; i < count; i += WORKGROUP_SIZE) {
+        let work = Work(count, true, true, (iteration & 1u) * params.triangles);
+        for (var i = local; i < count; i += TAIL_SIZE) {
             let t = active_triangle(work, i);
-            choices[t] = label(t, iteration, verdicts_on(t));
+            choices[t] = label(t, iteration, exact_verdicts(t, filtered_verdicts(t)));
+            clear_flip(t);
         }
         storageBarrier();
-        for (var i = local; i < count; i += WORKGROUP_SIZE) {
-            let t = active_triangle(work, i);
-            choices[params.triangles + t] = selection(t, iteration);
+        for (var i = local; i < count; i += TAIL_SIZE) {
+            let g = selection(active_triangle(work, i), iteration);
+            if g != NONE {
+                set_flip(best(g / 3u), g);
+            }
         }
         storageBarrier();
         var flipped = 0u;
-        for (var i = local; i < count; i += WORKGROUP_SIZE) {
+        for (var i = local; i < count; i += TAIL_SIZE) {
             flipped += flip_triangle(active_triangle(work, i), index, iteration, true);
         }
-        for (var i = params.vertices + local; i < params.fans_length; i += WORKGROUP_SIZE) {
+        for (var i = params.vertices + local; i < params.fans_length; i += TAIL_SIZE) {
             move_anchor(i);
         }
         if flipped > 0u {

@@ -27,10 +27,6 @@ fn verdict_pass(@builtin(position) fragment: vec4f) -> @location(0) u32 {
     return verdict;
 }
 
-fn decides_exactly() -> bool {
-    return true;
-}
-
 // The frontier: a triangle without a candidate keeps having none unless it or a neighbour
 // flipped. `bests` and `selections` are those of the iteration before.
 @fragment
@@ -75,10 +71,9 @@ fn select_pass(@builtin(position) fragment: vec4f) -> @location(0) u32 {
 fn flip_pass(@builtin(position) fragment: vec4f) -> @location(0) vec4u {
     let t = index_at(fragment);
     var result = textureLoad(triangles, place(t), 0);
-    let g = selected(t);
-    if g != NONE {
-        let h = selected(g / 3u);
-        result = with_component(result, next(h) % 3u, vertex(prev(g)));
+    let flip = flip_of(t);
+    if flip.x != NONE {
+        result = with_component(result, next(flip.x) % 3u, vertex(prev(flip.y)));
     }
     return result;
 }
@@ -89,11 +84,10 @@ fn update_pass(@builtin(position) fragment: vec4f) -> @location(0) vec4u {
     let t = index_at(fragment);
     let old = textureLoad(twins, place(t), 0);
     var entries = vec4u(slot(old.x), slot(old.y), slot(old.z), 0u);
-    let g = selected(t);
-    if g != NONE {
-        let h = selected(g / 3u);
-        entries = with_component(entries, next(h) % 3u, next(g));
-        entries = with_component(entries, h % 3u, slot(twin_entry(next(g))));
+    let flip = flip_of(t);
+    if flip.x != NONE {
+        entries = with_component(entries, next(flip.x) % 3u, next(flip.y));
+        entries = with_component(entries, flip.x % 3u, slot(twin_entry(next(flip.y))));
     }
     return entries;
 }

@@ -9,16 +9,16 @@ const PLANE_BOUND: f32 = 2.861023e-6;
 // What is flushed, see points.wgsl, is below 2^-48.
 const PLANE_FLUSHED: f32 = 1.4210855e-14;
 
-// Whether an edge may flip by its geometry: DELAUNAY, BLOCKED_BY + REASON_FOLD or LABELLED; UNDECIDED where exact
-// arithmetic would have to decide and is left out. `winding` is -1 in a clockwise component, else 1.
+// Whether an edge may flip by its geometry: DELAUNAY, BLOCKED_BY + REASON_FOLD or LABELLED. `winding` is -1 in a clockwise component, else 1.
 fn verdict_on(a: Point, b: Point, c: Point, d: Point, winding: i32) -> u32 {
     var verdict = filtered_verdict_on(a, b, c, d, winding);
-    if verdict == UNDECIDED && decides_exactly() {
+    if verdict == UNDECIDED {
         verdict = exact_verdict_on(a, b, c, d, winding);
     }
     return verdict;
 }
 
+// UNDECIDED where exact arithmetic has to decide.
 fn filtered_verdict_on(a: Point, b: Point, c: Point, d: Point, winding: i32) -> u32 {
     var p = rounded_difference(a, c).xy;
     var q = rounded_difference(b, c).xy;
@@ -31,11 +31,10 @@ fn filtered_verdict_on(a: Point, b: Point, c: Point, d: Point, winding: i32) -> 
     r *= scale;
     s *= scale;
     let in_circle = winding * in_circle_sign(p, q, r, s);
-    let area = min(winding * area_sign(r, p), winding * area_sign(q, s));
-    var verdict = DELAUNAY;
-    if in_circle <= 0 {
-        verdict = select(LABELLED, BLOCKED_BY + REASON_FOLD, area < 0);
-        verdict = select(verdict, UNDECIDED, in_circle == 0 || area == 0);
+    var verdict = select(select(DELAUNAY, LABELLED, in_circle < 0), UNDECIDED, in_circle == 0);
+    if verdict == LABELLED && !is_strict() {
+        let area = min(winding * area_sign(r, p), winding * area_sign(q, s));
+        verdict = select(select(LABELLED, BLOCKED_BY + REASON_FOLD, area < 0), UNDECIDED, area == 0);
     }
     return verdict;
 }
@@ -58,13 +57,25 @@ fn area_sign(u: vec2f, v: vec2f) -> i32 {
     return filtered_sign(u.x * v.y - u.y * v.x, PLANE_BOUND * (abs(u.x * v.y) + abs(u.y * v.x)) + PLANE_FLUSHED);
 }
 
-// Whether a triangle is positive for sure: what the filter cannot decide is not.
-fn is_surely_positive(a: Point, b: Point, c: Point, winding: i32) -> bool {
+// The sign of a triangle, by exact arithmetic.
+fn exact_sign_of(a: Point, b: Point, c: Point) -> i32 {
+    let grid = grid_of(a, b, c, c);
+    let u = exact_differences(b, a, grid);
+    let v = exact_differences(c, a, grid);
+    let count = digits_in_use(u[0] | u[1] | v[0] | v[1]);
+    let zero = Small();
+    let ux = digits_of(u[0]);
+    let uy = digits_of(u[1]);
+    return medium_sign(sum_of_products(ux, digits_of(v[1]), uy, negated_small(digits_of(v[0])), zero, zero, count));
+}
+
+// The sign of a triangle; 0 where the filter cannot decide.
+fn filtered_sign_of(a: Point, b: Point, c: Point) -> i32 {
     let u = rounded_difference(b, a).xy;
     let v = rounded_difference(c, a).xy;
     let largest = max(abs(u), abs(v));
     let scale = scale_for(max(largest.x, largest.y));
-    return winding * area_sign(u * scale, v * scale) > 0;
+    return area_sign(u * scale, v * scale);
 }
 
 fn exact_verdict_on(a: Point, b: Point, c: Point, d: Point, winding: i32) -> u32 {
@@ -112,13 +123,16 @@ fn verdict_in_narrow_plane(p: Differences, q: Differences, r: Differences, s: Di
     let dot1 = narrow_sum(p[0], q[0], p[1], q[1], false);
     let cross2 = narrow_sum(s[0], r[1], s[1], r[0], true);
     let dot2 = narrow_sum(s[0], r[0], s[1], r[1], false);
-    let in_circle = winding * narrow_sign(cross1, dot2, dot1, cross2);
-    let area1 = narrow_sum(r[0], p[1], r[1], p[0], true);
-    let area2 = narrow_sum(q[0], s[1], q[1], s[0], true);
-    let is_flat = all(area1.xy == vec2u()) || all(area2.xy == vec2u());
-    let turned = select(0u, 1u, winding > 0);
-    let is_fold = is_flat || area1.z == turned || area2.z == turned;
-    return select(select(LABELLED, BLOCKED_BY + REASON_FOLD, is_fold), DELAUNAY, in_circle >= 0);
+    var verdict = select(DELAUNAY, LABELLED, winding * narrow_sign(cross1, dot2, dot1, cross2) < 0);
+    if verdict == LABELLED && !is_strict() {
+        let area1 = narrow_sum(r[0], p[1], r[1], p[0], true);
+        let area2 = narrow_sum(q[0], s[1], q[1], s[0], true);
+        let is_flat = all(area1.xy == vec2u()) || all(area2.xy == vec2u());
+        let turned = select(0u, 1u, winding > 0);
+        let is_fold = is_flat || area1.z == turned || area2.z == turned;
+        verdict = select(LABELLED, BLOCKED_BY + REASON_FOLD, is_fold);
+    }
+    return verdict;
 }
 
 // The 64-bit product of two words: low, high.

@@ -3,13 +3,12 @@
 // Where half-edge `x`, given with its flags, will be after the iteration.
 fn slot(entry: u32) -> u32 {
     let x = unflagged(entry);
-    var g = NONE;
-    if x != NONE {
-        g = selected(x / 3u);
-    }
     var place = entry;
-    if g != NONE {
-        place = select(entry, g | (entry & FLAGS), x == next(selected(g / 3u)));
+    if x != NONE {
+        let flip = flip_of(x / 3u);
+        if flip.x != NONE && x == next(flip.x) {
+            place = flip.y | (entry & FLAGS);
+        }
     }
     return place;
 }

@@ -31,16 +31,17 @@ fn bound_of(quad: Quad) -> f32 {
     return SPACE_BOUND * (size(quad[0]) * size(quad[1])) * (size(quad[3]) * size(quad[2])) + SPACE_FLUSHED;
 }
 
-// Whether an edge may flip by its geometry: DELAUNAY, BLOCKED_BY + REASON_ANGLE or REASON_FOLD, or LABELLED; UNDECIDED
-// where exact arithmetic would have to decide and is left out. The winding has no meaning in space.
+// Whether an edge may flip by its geometry: DELAUNAY, BLOCKED_BY + REASON_ANGLE or REASON_FOLD, or LABELLED. The winding
+// has no meaning in space.
 fn verdict_on(a: Point, b: Point, c: Point, d: Point, winding: i32) -> u32 {
     var verdict = filtered_verdict_on(a, b, c, d, winding);
-    if verdict == UNDECIDED && decides_exactly() {
-        verdict = exact_verdict_on(a, b, c, d, false);
+    if verdict == UNDECIDED {
+        verdict = exact_verdict_on(a, b, c, d, winding);
     }
     return verdict;
 }
 
+// UNDECIDED where exact arithmetic has to decide.
 fn filtered_verdict_on(a: Point, b: Point, c: Point, d: Point, winding: i32) -> u32 {
     let quad = quad_of(a, b, c, d);
     let bound = bound_of(quad);
@@ -51,19 +52,6 @@ fn filtered_verdict_on(a: Point, b: Point, c: Point, d: Point, winding: i32) -> 
         let turned = compare_turns(quad);
         verdict = select(select(LABELLED, BLOCKED_BY + REASON_FOLD, turned < 0), BLOCKED_BY + REASON_ANGLE, angle < 0);
         verdict = select(verdict, UNDECIDED, sum == 0 || angle == 0 || (angle > 0 && turned == 0));
-    }
-    return verdict;
-}
-
-// Whether the angle between the normals, before any flip, is larger than β: DELAUNAY or BLOCKED_BY + REASON_ANGLE;
-// UNDECIDED as above.
-fn angle_verdict_on(a: Point, b: Point, c: Point, d: Point) -> u32 {
-    let quad = quad_of(a, b, c, d);
-    let before = compare_angle(cross(quad[0], quad[1]), cross(quad[3], quad[2]), bound_of(quad));
-    var verdict = select(select(DELAUNAY, BLOCKED_BY + REASON_ANGLE, before < 0), UNDECIDED, before == 0);
-    verdict = select(verdict, DELAUNAY, has_any_angle());
-    if verdict == UNDECIDED && decides_exactly() {
-        verdict = exact_verdict_on(a, b, c, d, true);
     }
     return verdict;
 }
@@ -134,8 +122,12 @@ fn determinant(u: Medium, v: Medium, x: Medium, y: Medium, count: u32) -> Large 
     return sum_of_medium_products(u, v, x, negated_medium(y), count);
 }
 
+fn exact_verdict_on(a: Point, b: Point, c: Point, d: Point, winding: i32) -> u32 {
+    return exactly_on(a, b, c, d, false);
+}
+
 // With `angle_only`, only the angle before the flip is looked at: DELAUNAY or BLOCKED_BY + REASON_ANGLE.
-fn exact_verdict_on(a: Point, b: Point, c: Point, d: Point, angle_only: bool) -> u32 {
+fn exactly_on(a: Point, b: Point, c: Point, d: Point, angle_only: bool) -> u32 {
     let grid = grid_of(a, b, c, d);
     let from_ac = exact_differences(a, c, grid);
     let from_bc = exact_differences(b, c, grid);

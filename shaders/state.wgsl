@@ -26,6 +26,10 @@ struct Params {
     list_below: u32,
     // Where a bit for each vertex begins in `topology`, in 2D.
     embedded: u32,
+    // 1 where the winding bits are there before the stars are looked at.
+    knows_winding: u32,
+    // 1 where all triangles are positive, or all negative: no edge that is not Delaunay can fold then.
+    is_strict: u32,
     // |cos β| is exactly mantissa / power: digits as in exact.wgsl.
     cos_mantissa: array<vec4i, 2>,
     cos_power: array<vec4i, 2>,
@@ -42,10 +46,13 @@ struct Step {
 @group(0) @binding(2) var<storage, read> positions: array<u32>;
 @group(0) @binding(3) var<storage, read_write> triangles: array<u32>;
 @group(0) @binding(4) var<storage, read_write> twins: array<u32>;
-// best[t] at t, selected[t] at triangles + t.
+// The choice of Label for each triangle, then that of Select, see `flip_of`.
 @group(0) @binding(5) var<storage, read_write> choices: array<u32>;
-// 6 and 7: reads.wgsl, atomics.wgsl.
-// Winding bits, then the table of the fans, then the bits of the embedded stars.
+// Two lists of triangles that change places with every iteration; for each triangle a stamp, the iteration in which it
+// is due, and one more for none; a bit for each chunk of triangles, see `doubt`.
+@group(0) @binding(6) var<storage, read_write> frontier: array<atomic<u32>>;
+// 7: reads.wgsl, atomics.wgsl.
+// Winding bits, then the bits of the embedded stars, then the table of the fans.
 @group(0) @binding(8) var<storage, read_write> topology: array<u32>;
 
 // Words of the history. An entry tells of the iteration before it.
@@ -68,16 +75,35 @@ fn twin_entry(h: u32) -> u32 {
     return twins[h];
 }
 
+fn set_twin_entry(h: u32, entry: u32) {
+    twins[h] = entry;
+}
+
 fn twin(h: u32) -> u32 {
-    return unflagged(twins[h]);
+    return unflagged(twin_entry(h));
 }
 
 fn best(t: u32) -> u32 {
     return choices[t];
 }
 
-fn selected(t: u32) -> u32 {
-    return choices[params.triangles + t];
+// The two half-edges of the selected edge of triangle `t`, its own one first; NONE where no edge is. The choice names the
+// other one, and in the place of flags which side of the triangle the edge is.
+fn flip_of(t: u32) -> vec2u {
+    let entry = choices[params.triangles + t];
+    return select(vec2u(3u * t + (entry >> 30u), entry & ~FLAGS), vec2u(NONE), entry == NONE);
+}
+
+fn set_flip(h: u32, g: u32) {
+    choices[params.triangles + h / 3u] = g | ((h % 3u) << 30u);
+}
+
+fn clear_flip(t: u32) {
+    choices[params.triangles + t] = NONE;
+}
+
+fn stamp_place(t: u32) -> u32 {
+    return 2u * params.triangles + min(t, params.triangles);
 }
 
 // Words of the positions, one for each axis.
@@ -93,6 +119,10 @@ fn is_clockwise(t: u32) -> bool {
 // Whether the star of a vertex is known to be embedded, see embedded.wgsl.
 fn is_embedded(v: u32) -> bool {
     return DIMENSION == 2u && ((topology[params.embedded + v / 32u] >> (v % 32u)) & 1u) == 1u;
+}
+
+fn is_strict() -> bool {
+    return params.is_strict == 1u;
 }
 
 fn has_fans() -> bool {

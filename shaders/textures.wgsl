@@ -60,6 +60,16 @@ fn selected(t: u32) -> u32 {
     return textureLoad(selections, place(t), 0).x;
 }
 
+// The two half-edges of the selected edge of triangle `t`, its own one first; NONE where no edge is.
+fn flip_of(t: u32) -> vec2u {
+    let g = selected(t);
+    var h = NONE;
+    if g != NONE {
+        h = selected(g / 3u);
+    }
+    return vec2u(h, g);
+}
+
 // Words of the positions, one for each axis.
 fn coordinates(i: u32) -> vec3u {
     return textureLoad(positions, place(i), 0).xyz;
@@ -71,6 +81,10 @@ fn is_clockwise(t: u32) -> bool {
 
 // Nothing is known of the stars here.
 fn is_embedded(v: u32) -> bool {
+    return false;
+}
+
+fn is_strict() -> bool {
     return false;
 }
 

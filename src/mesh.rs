@@ -2,6 +2,7 @@
 
 use crate::{Error, Positions};
 use glam::{DVec2, DVec3};
+use std::sync::Arc;
 
 /// "No half-edge": the twin of a half-edge on the boundary or on a frozen edge.
 pub const NONE: u32 = u32::MAX;
@@ -38,6 +39,12 @@ pub struct Mesh {
     triangles: Vec<u32>,
 }
 
+impl From<&Mesh> for Arc<Mesh> {
+    fn from(mesh: &Mesh) -> Self {
+        Self::new(mesh.clone())
+    }
+}
+
 impl Mesh {
     /// Checks and takes `positions` (2 or 3 numbers a vertex, `Vec<f32>` or `Vec<f64>`) and `triangles` (3 vertex
     /// indices each). Doubles that are all 32-bit floats become such, without a change of any bit.
@@ -68,7 +75,10 @@ impl Mesh {
             }
         }
         positions.refuse_non_finite(dimension)?;
-        if let Some(i) = triangles.iter().position(|&v| v as usize >= vertices) {
+        // The largest one is found faster than the first that is too large.
+        if triangles.iter().fold(0, |largest, &v| v.max(largest)) as usize >= vertices.max(1)
+            && let Some(i) = triangles.iter().position(|&v| v as usize >= vertices)
+        {
             return Err(Error::IndexOutOfRange { triangle: i / 3, index: triangles[i], vertices });
         }
         Ok(Self { dimension, positions, triangles })

@@ -112,8 +112,10 @@ pub enum Status {
 /// Wall times in milliseconds.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Timings {
-    /// Making the engine ready: upload, adjacency and the checks around it; for the first session on a GPU
-    /// also the device and its shaders. After the vertices have moved: that move.
+    /// On a GPU what comes before the adjacency: checks, memory and the copies to the device; for the first session
+    /// also the device and its shaders. Else 0.
+    pub upload: f64,
+    /// The adjacency and what else is found out of the input. After the vertices have moved: that move.
     pub adjacency: f64,
     /// The iterations.
     pub flip: f64,
@@ -142,6 +144,8 @@ pub struct Outcome {
     pub flips_per_iteration: Vec<u32>,
     /// Compute dispatches encoded on the GPU.
     pub dispatches: u64,
+    /// The most bytes that the buffers of WebGPU took at a time; 0 on other engines.
+    pub device_bytes: u64,
     /// Edges of the mesh.
     pub edges: u64,
     /// Edges with one triangle.

@@ -66,8 +66,14 @@ impl Positions {
 
     /// Refuses coordinates that are no numbers, with [`Error::NonFinite`] for the first.
     pub(crate) fn refuse_non_finite(&self, dimension: Dimension) -> Result<(), Error> {
+        // To look at all of them is faster than to look for the first.
+        let are_finite = match self {
+            Self::F32(numbers) => numbers.iter().fold(true, |all, x| all & x.is_finite()),
+            Self::F64(numbers) => numbers.iter().fold(true, |all, x| all & x.is_finite()),
+        };
+        let found = if are_finite { None } else { self.iter().position(|x| !x.is_finite()) };
         let stride = dimension.stride();
-        self.iter().position(|x| !x.is_finite()).map_or(Ok(()), |i| {
+        found.map_or(Ok(()), |i| {
             let axis = ['x', 'y', 'z'][i % stride];
             Err(Error::NonFinite { vertex: i / stride, axis, value: self.at(i) })
         })

@@ -35,21 +35,22 @@ pub struct Session {
 }
 
 impl Session {
-    /// Checks the options and makes an engine ready for `mesh`.
+    /// Checks the options and makes an engine ready for `mesh`: a mesh, one in an `Arc`, or a reference, which is copied.
     ///
     /// # Errors
     /// [`Error::Option`]; [`Error::BackendUnavailable`], [`Error::BackendLimit`] or [`Error::Device`] where
     /// the GPU was asked for (`Auto` takes the CPU instead).
-    pub async fn new(mesh: Mesh, options: Options) -> Result<Self, Error> {
+    pub async fn new(mesh: impl Into<Arc<Mesh>>, options: Options) -> Result<Self, Error> {
         if !(0.0..=180.0).contains(&options.max_normal_angle) {
             let message = format!("{} is not an angle from 0 to 180 degrees", options.max_normal_angle);
             return Err(Error::Option { option: "max_normal_angle", message });
         }
-        let start = Instant::now();
+        let (start, mesh) = (Instant::now(), mesh.into());
         // `auto` would take a refusal by an engine for a reason to go on.
         locks::half_edges(&mesh, &options.locked_edges)?;
-        let mesh = Arc::new(mesh);
         let (engine, fallback) = engine_for(&mesh, &options).await?;
+        let set_up = ms_since(start);
+        let adjacency = engine.adjacency_ms().unwrap_or(set_up);
         Ok(Self {
             mesh,
             options,
@@ -57,7 +58,7 @@ impl Session {
             fallback,
             flips_per_iteration: Vec::new(),
             has_ended: false,
-            timings: Timings { adjacency: ms_since(start), ..Timings::default() },
+            timings: Timings { upload: set_up - adjacency, adjacency, ..Timings::default() },
         })
     }
 
@@ -171,7 +172,7 @@ impl Session {
                 remaining[reason] = frozen[reason];
             }
         }
-        let Timings { adjacency, flip, .. } = self.timings;
+        let Timings { upload, adjacency, flip, .. } = self.timings;
         Ok(Outcome {
             triangles,
             status: if census.labelled == 0 { Status::Done } else { Status::Stopped },
@@ -182,12 +183,13 @@ impl Session {
             flips: self.flips(),
             flips_per_iteration: self.flips_per_iteration.clone(),
             dispatches: self.engine.dispatches(),
+            device_bytes: self.engine.device_bytes(),
             edges: u64::from(counts.edges),
             boundary_edges: u64::from(counts.boundary),
             non_manifold_edges: u64::from(counts.non_manifold),
             inconsistent_edges: u64::from(counts.inconsistent),
             remaining,
-            timings: Timings { total: adjacency + flip + ms_since(start), adjacency, flip },
+            timings: Timings { total: upload + adjacency + flip + ms_since(start), ..self.timings },
         })
     }
 
@@ -298,18 +300,18 @@ fn ms_since(start: Instant) -> f64 {
     start.elapsed().as_secs_f64() * 1e3
 }
 
-/// Makes `mesh` Delaunay by flipping edges. `watch` is as in [`Session::run`].
+/// Makes `mesh` Delaunay by flipping edges; the mesh is given as to [`Session::new`]. `watch` is as in [`Session::run`].
 ///
 /// # Errors
 /// Those of [`Session::new`] and [`Session::run`].
 #[cfg(not(target_arch = "wasm32"))]
 pub fn make_delaunay(
-    mesh: &Mesh,
+    mesh: impl Into<Arc<Mesh>>,
     options: &Options,
     watch: impl FnMut(u32, u64) -> ControlFlow<()>,
 ) -> Result<Outcome, Error> {
     pollster::block_on(async {
-        let mut session = Session::new(mesh.clone(), options.clone()).await?;
+        let mut session = Session::new(mesh, options.clone()).await?;
         session.run(watch).await?;
         session.outcome().await
     })

@@ -19,7 +19,7 @@ use std::process::{Command, Output, Stdio};
 const SQUARE: &str = "OFF\n4 2 0\n0 0 0\n0.9 0.2 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3\n";
 
 /// The keys of the object that `--json` prints, in their order.
-const KEYS: [&str; 18] = [
+const KEYS: [&str; 19] = [
     "input",
     "vertices",
     "triangles",
@@ -34,6 +34,7 @@ const KEYS: [&str; 18] = [
     "flips",
     "flips_per_iteration",
     "dispatches",
+    "device_bytes",
     "remaining",
     "min_angle_before_deg",
     "min_angle_after_deg",
@@ -104,7 +105,7 @@ fn json_has_the_documented_keys() {
     assert_eq!(found["dimension"], 2);
     assert_eq!((&found["backend"], &found["status"]), (&"cpu".into(), &"done".into()));
     assert!(found["flips_per_iteration"].is_array() && found["remaining"].is_object());
-    for key in ["load", "adjacency", "flip", "total", "save"] {
+    for key in ["load", "upload", "adjacency", "flip", "total", "save"] {
         assert!(found["ms"][key].is_number(), "ms.{key}");
     }
     assert!(found["min_angle_before_deg"].is_number() && found["min_angle_after_deg"].is_number());

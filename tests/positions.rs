@@ -11,7 +11,8 @@ use pollster::block_on;
 /// What an outcome says, without the time and the work that it took.
 fn said(mut session: Session) -> (Outcome, String, Session) {
     let mut outcome = block_on(session.outcome()).unwrap();
-    (outcome.timings, outcome.dispatches, outcome.fallback) = (Timings::default(), 0, None);
+    (outcome.timings, outcome.dispatches, outcome.device_bytes, outcome.fallback) =
+        (Timings::default(), 0, 0, None);
     let audit = block_on(session.verify()).unwrap();
     (outcome, format!("{audit:?}"), session)
 }

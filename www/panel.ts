@@ -114,7 +114,7 @@ export class Panel {
       Iterations: number.format(run.iterations.length),
       Flips: number.format(flips),
       'Not Delaunay': run.isNewest ? measured(reasons(summary.remaining)) : reasons(notDelaunayAt(run)),
-      'Set-up': `${ms.format(timings.adjacency)} ms`,
+      'Set-up': `${ms.format(timings.upload + timings.adjacency)} ms`,
       'Flips and counts': `${ms.format(watched)} ms`,
       Fingerprint: fingerprint ?? '…',
     });

@@ -113,6 +113,16 @@ pub(crate) trait Engine {
         0
     }
 
+    /// The most bytes that its buffers took on a GPU at a time.
+    fn device_bytes(&self) -> u64 {
+        0
+    }
+
+    /// Milliseconds that the adjacency took, where more than that is done to begin.
+    fn adjacency_ms(&self) -> Option<f64> {
+        None
+    }
+
     /// What a page can draw from, where the engine runs on the browser's GPU.
     #[cfg(all(target_arch = "wasm32", feature = "js"))]
     fn shared_objects(&self) -> Option<SharedObjects> {

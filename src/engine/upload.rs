@@ -51,9 +51,13 @@ impl Upload {
         let stride = mesh.dimension().stride();
         let fixed = match mesh.positions() {
             Positions::F32(floats) => {
-                let (lowest, highest) = exponents(floats.iter().map(|&x| x.into()));
-                let fits = highest - lowest < SPAN as i32 && highest < LARGEST_EXPONENT;
-                if fits { Ok(None) } else { fixed_point(mesh.positions(), stride).map(Some) }
+                let fit = |(lowest, highest)| highest - lowest < SPAN as i32 && highest < LARGEST_EXPONENT;
+                let fits = fit(most_exponents(floats));
+                if fits || fit(exponents(floats.iter().map(|&x| x.into()))) {
+                    Ok(None)
+                } else {
+                    fixed_point(mesh.positions(), stride).map(Some)
+                }
             }
             positions @ Positions::F64(_) => fixed_point(positions, stride).map(Some),
         };
@@ -131,6 +135,17 @@ fn parts(x: f64) -> (u64, i32) {
     (magnitude, field.max(1) - 1075)
 }
 
+/// Exponents that are quickly found, and between which those of [`exponents`] lie.
+fn most_exponents(floats: &[f32]) -> (i32, i32) {
+    let magnitude = |x: &f32| x.to_bits() & !(1 << 31);
+    let largest = floats.iter().map(magnitude).fold(0, u32::max);
+    // Of zeros the one below is the largest of all.
+    let smallest =
+        floats.iter().map(|x| magnitude(x).wrapping_sub(1)).fold(u32::MAX, u32::min).wrapping_add(1);
+    let exponent = |bits: u32| (bits >> 23).max(1) as i32 - 127;
+    if largest == 0 { (0, 0) } else { (exponent(smallest) - 23, exponent(largest)) }
+}
+
 /// Exponents of the lowest and of the highest bit that is set in any number; 0 and 0 if none is.
 fn exponents(numbers: impl Iterator<Item = f64>) -> (i32, i32) {
     let (mut lowest, mut highest) = (i32::MAX, i32::MIN);
@@ -185,6 +200,24 @@ mod tests {
         assert_eq!(fixed(&[f64::MAX, 1e300, f64::MAX, 1e300]), [0; 4]);
         let wide = fixed(&[0.0, 2f64.powi(30), 2f64.powi(-50) + 1.0, 0.0]);
         assert_eq!(wide, [0, 1 << 80, (1 << 50) + 1, 0]);
+    }
+
+    #[test]
+    fn exponents_lie_between_those_that_are_quickly_found() {
+        let tiny = f32::from_bits(1);
+        for numbers in [
+            vec![],
+            vec![0.0, -0.0],
+            vec![3.0, -0.0],
+            vec![tiny, -7.5, 0.0],
+            vec![f32::MAX, 1.5e-40],
+            vec![-2.0],
+        ] {
+            let (lowest, highest) = exponents(numbers.iter().map(|&x| x.into()));
+            let (least, most) = most_exponents(&numbers);
+            assert!(least <= lowest && highest <= most, "{numbers:?}: {least} {lowest} {highest} {most}");
+            assert!(lowest - least <= 23 && most - highest <= 23, "{numbers:?}");
+        }
     }
 
     #[test]

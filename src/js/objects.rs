@@ -37,6 +37,7 @@ pub(super) fn outcome_object(outcome: &Outcome) -> JsValue {
         Status::Stopped => "stopped",
     };
     let timings = object([
+        ("upload", outcome.timings.upload.into()),
         ("adjacency", outcome.timings.adjacency.into()),
         ("flip", outcome.timings.flip.into()),
         ("total", outcome.timings.total.into()),
@@ -51,6 +52,7 @@ pub(super) fn outcome_object(outcome: &Outcome) -> JsValue {
         ("flips", count(outcome.flips)),
         ("flipsPerIteration", Uint32Array::from(outcome.flips_per_iteration.as_slice()).into()),
         ("dispatches", count(outcome.dispatches)),
+        ("deviceBytes", count(outcome.device_bytes)),
         ("edges", count(outcome.edges)),
         ("boundaryEdges", count(outcome.boundary_edges)),
         ("nonManifoldEdges", count(outcome.non_manifold_edges)),

@@ -118,6 +118,8 @@ export interface Result {
   flipsPerIteration: Uint32Array;
   /** Compute dispatches on WebGPU, passes on WebGL2. */
   dispatches: number;
+  /** The most bytes that the buffers of WebGPU took at a time; 0 on other engines. */
+  deviceBytes: number;
   /** Edges of the mesh. */
   edges: number;
   /** Edges with one triangle. */
@@ -128,8 +130,8 @@ export interface Result {
   inconsistentEdges: number;
   /** Edges that are still not Delaunay. */
   remaining: Reasons;
-  /** Milliseconds: making the engine ready, the iterations, and all of it. */
-  timings: { adjacency: number; flip: number; total: number };
+  /** Milliseconds: on a GPU making the engine ready and the copies to it, the adjacency, the iterations, and all of it. */
+  timings: { upload: number; adjacency: number; flip: number; total: number };
 }
 
 /**

@@ -86,8 +86,8 @@ pub struct Args {
     /// Print one JSON object on standard output instead of the summary
     ///
     /// Keys: input, vertices, triangles, edges, boundary_edges, dimension, backend, adapter, fallback,
-    /// status (done or stopped), iterations, flips, flips_per_iteration, dispatches, remaining (by reason),
-    /// min_angle_before_deg, min_angle_after_deg, ms (load, adjacency, flip, total, save; total is the run
+    /// status (done or stopped), iterations, flips, flips_per_iteration, dispatches, device_bytes, remaining (by reason),
+    /// min_angle_before_deg, min_angle_after_deg, ms (load, upload, adjacency, flip, total, save; total is the run
     /// without load and save), and with --verify audit (the violations) and remaining_edges (by reason, the
     /// two vertices of each edge left, counted from 0).
     #[arg(long)]

@@ -3,7 +3,7 @@
 use crate::Failure;
 use crate::args::Args;
 use edgeflip::{Mesh, Outcome, Reasons, Status, Timings};
-use indicatif::HumanCount;
+use indicatif::{HumanBytes, HumanCount};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -25,6 +25,7 @@ pub struct Report {
     flips: u64,
     flips_per_iteration: Vec<u32>,
     dispatches: u64,
+    device_bytes: u64,
     remaining: BTreeMap<&'static str, u64>,
     /// `null` where there is no angle.
     min_angle_before_deg: f64,
@@ -51,6 +52,7 @@ pub struct Check {
 #[derive(Serialize)]
 pub struct Milliseconds {
     load: f64,
+    upload: f64,
     adjacency: f64,
     flip: f64,
     total: f64,
@@ -64,6 +66,7 @@ impl Milliseconds {
         let round = |ms: f64| (ms * 1e3).round() / 1e3;
         Self {
             load: round(load),
+            upload: round(run.upload),
             adjacency: round(run.adjacency),
             flip: round(run.flip),
             total: round(run.total),
@@ -100,6 +103,7 @@ impl Report {
             flips: outcome.flips,
             flips_per_iteration: outcome.flips_per_iteration,
             dispatches: outcome.dispatches,
+            device_bytes: outcome.device_bytes,
             remaining: outcome.remaining.iter().map(|(reason, n)| (reason.name(), n)).collect(),
             min_angle_before_deg: angles[0],
             min_angle_after_deg: angles[1],
@@ -152,6 +156,13 @@ impl Report {
         if let Some(why) = &self.fallback {
             line("fallback", why.clone());
         }
+        if self.device_bytes > 0 {
+            let each = self.device_bytes as f64 / self.triangles as f64;
+            line(
+                "memory",
+                format!("{} on the device, {each:.1} bytes a triangle", HumanBytes(self.device_bytes)),
+            );
+        }
         let iterations = match self.iterations {
             0 => String::new(),
             1 => " in 1 iteration".into(),
@@ -175,12 +186,12 @@ impl Report {
             };
             line("audit", found);
         }
-        let Milliseconds { load, adjacency, flip, total, save } = &self.ms;
+        let Milliseconds { load, upload, adjacency, flip, total, save } = &self.ms;
         let save = save.map(|ms| format!(", save {ms:.1} ms")).unwrap_or_default();
         line(
             "time",
             format!(
-                "load {load:.1} ms, run {total:.1} ms (adjacency {adjacency:.1} ms, flips {flip:.1} ms){save}"
+                "load {load:.1} ms, run {total:.1} ms (upload {upload:.1} ms, adjacency {adjacency:.1} ms, flips {flip:.1} ms){save}"
             ),
         );
         if self.ms.save.is_some() {

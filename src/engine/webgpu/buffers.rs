@@ -1,10 +1,16 @@
 //! The buffers of a mesh whose sizes are known from the start.
 
 use super::device::{Buffer, Device};
-use super::params::Params;
+use super::kernels::WORKGROUP_SIZE;
+use super::params::{Params, Places};
 use super::{BATCH, HISTORY_WORDS, STEP_WORDS};
 use crate::engine::upload::Upload;
 use wgpu::BufferUsages;
+
+/// Words of the frontier of so many triangles, the longest buffer: see `state.wgsl`.
+pub(super) fn frontier_words(triangles: usize) -> usize {
+    3 * triangles + 1 + triangles.div_ceil(WORKGROUP_SIZE as usize).div_ceil(32)
+}
 
 pub(super) struct Buffers {
     pub(super) uniform: Buffer,
@@ -15,12 +21,13 @@ pub(super) struct Buffers {
     pub(super) choices: Buffer,
     pub(super) frontier: Buffer,
     pub(super) history: Buffer,
+    pub(super) topology: Buffer,
     /// The positions as floats, where those that the shaders read are none.
     pub(super) floats: Option<Buffer>,
 }
 
 impl Buffers {
-    /// With the triangles and the steps in them.
+    /// With the mesh and the steps in them.
     pub(super) fn new(gpu: &Device, upload: &Upload) -> Self {
         let mesh = &upload.mesh;
         let count = mesh.triangle_count();
@@ -34,27 +41,52 @@ impl Buffers {
             triangles: drawn("triangles", 3 * count, BufferUsages::INDEX),
             twins: storage("twins", 3 * count),
             choices: storage("choices", 2 * count),
-            frontier: storage("frontier", 3 * count),
+            frontier: storage("frontier", frontier_words(count)),
             history: storage("history", HISTORY_WORDS),
+            topology: storage("topology", Places::new(mesh).fans as usize),
             floats: upload
                 .form()
                 .is_fixed
                 .then(|| drawn("floats", mesh.positions().len(), BufferUsages::VERTEX)),
         };
-        gpu.queue.write_buffer(&buffers.triangles, 0, bytemuck::cast_slice(mesh.triangles()));
+        gpu.write(&buffers.triangles, mesh.triangles());
         let indices: Vec<u32> = (0..BATCH * STEP_WORDS).map(|word| word / STEP_WORDS).collect();
-        gpu.queue.write_buffer(&buffers.steps, 0, bytemuck::cast_slice(&indices));
+        gpu.write(&buffers.steps, &indices);
+        buffers.write_positions(gpu, upload);
         buffers
     }
 
-    /// Bound for the phases, with the topology behind them.
-    pub(super) fn bind(
-        &self,
-        gpu: &Device,
-        layout: &wgpu::BindGroupLayout,
-        topology: &Buffer,
-    ) -> wgpu::BindGroup {
-        let Self { uniform, steps, positions, triangles, twins, choices, frontier, history, .. } = self;
+    /// What they take on the device.
+    pub(super) fn bytes(&self) -> u64 {
+        let Self {
+            uniform,
+            steps,
+            positions,
+            triangles,
+            twins,
+            choices,
+            frontier,
+            history,
+            topology,
+            floats,
+        } = self;
+        let all = [uniform, steps, positions, triangles, twins, choices, frontier, history, topology];
+        all.into_iter().chain(floats).map(|buffer| buffer.size()).sum()
+    }
+
+    pub(super) fn write_positions(&self, gpu: &Device, upload: &Upload) {
+        gpu.write(&self.positions, upload.words());
+        if let Some(floats) = &self.floats {
+            let numbers = upload.mesh.positions().to_f32();
+            gpu.write(floats, bytemuck::cast_slice(&numbers));
+        }
+    }
+
+    /// Bound for the phases.
+    pub(super) fn bind(&self, gpu: &Device, layout: &wgpu::BindGroupLayout) -> wgpu::BindGroup {
+        let Self {
+            uniform, steps, positions, triangles, twins, choices, frontier, history, topology, ..
+        } = self;
         let whole = [positions, triangles, twins, choices, frontier, history, topology];
         let mut buffers = vec![(uniform, None), (steps, Some(4))];
         buffers.extend(whole.map(|buffer| (buffer, None)));

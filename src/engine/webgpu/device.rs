@@ -15,6 +15,13 @@ use wgpu::BufferUsages;
 /// Workgroups that WebGPU allows in one dimension.
 const MOST_WORKGROUPS: u32 = 65_535;
 
+/// Words that are copied to the device, or from it, at a time: the memory between them is used again, which is far
+/// faster than more of it would be.
+const CHUNK: usize = 1 << 22;
+
+/// Invocations of one workgroup beyond which a list is seldom as long.
+const LARGEST_TAIL: u32 = 1024;
+
 /// A buffer that is destroyed when it goes: in a browser the garbage collector would take its time.
 pub(super) struct Buffer(wgpu::Buffer);
 
@@ -38,6 +45,8 @@ pub(crate) struct Device {
     pub(super) adapter: String,
     /// As many workgroups as keep the device busy; every kernel strides over what is left.
     most_workgroups: u32,
+    /// Invocations of the tail.
+    tail_size: u32,
     /// See `shaders/rounds.wgsl`.
     pub(super) ends_loops_early: bool,
     pub(crate) tested: Tested,
@@ -84,6 +93,8 @@ impl Device {
         let limits = wgpu::Limits {
             max_buffer_size: offered.max_buffer_size,
             max_storage_buffer_binding_size: offered.max_storage_buffer_binding_size,
+            max_compute_invocations_per_workgroup: offered.max_compute_invocations_per_workgroup,
+            max_compute_workgroup_size_x: offered.max_compute_workgroup_size_x,
             ..wgpu::Limits::default()
         };
         let descriptor = wgpu::DeviceDescriptor { required_limits: limits, ..Default::default() };
@@ -129,12 +140,16 @@ impl Device {
         let compile = || (kernels::adjacency(&device), kernels::probe(&device));
         let ((adjacency, probe), word) = watch(&device, compile);
         accepted(word).await?;
-        let most_workgroups = if is_software { 64 } else { 4096 };
+        let limits = device.limits();
+        let largest = limits.max_compute_invocations_per_workgroup.min(limits.max_compute_workgroup_size_x);
+        let (most_workgroups, tail_size) =
+            if is_software { (64, WORKGROUP_SIZE) } else { (2048, largest.min(LARGEST_TAIL)) };
         let mut result = Self {
             device,
             queue,
             adapter,
             most_workgroups,
+            tail_size,
             ends_loops_early: false,
             tested: Tested::default(),
             failure,
@@ -159,7 +174,8 @@ impl Device {
             if let Some(kernels) = place {
                 return Ok(kernels.clone());
             }
-            let (kernels, word) = watch(&self.device, || Arc::new(kernels::phases(&self.device, form)));
+            let (kernels, word) =
+                watch(&self.device, || Arc::new(kernels::phases(&self.device, form, self.tail_size)));
             (place.insert(kernels).clone(), word)
         };
         let result = accepted(word).await;
@@ -286,47 +302,80 @@ impl Device {
         buffer: &Buffer,
         words: usize,
     ) -> Result<Vec<u32>, Error> {
-        let size = 4 * words as u64;
-        let (sender, receiver) = oneshot::channel();
-        let submit = || {
-            let staging = Buffer(self.device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some("read-back"),
-                size: size.max(4),
-                usage: BufferUsages::MAP_READ | BufferUsages::COPY_DST,
-                mapped_at_creation: false,
-            }));
-            let mut encoder = record();
-            encoder.copy_buffer_to_buffer(buffer, 0, &staging, 0, size);
-            self.queue.submit([encoder.finish()]);
-            staging.map_async(wgpu::MapMode::Read, .., move |result| {
-                // The receiver is gone only if the caller has given up waiting.
-                let _ = sender.send(result);
-            });
-            staging
-        };
-        let (staging, word) = watch(&self.device, submit);
-        self.read_back(staging, word, receiver, words).await
+        let mut result = Vec::with_capacity(words);
+        let mut record = Some(record);
+        // A first chunk there is always, for the sake of the commands.
+        while record.is_some() || result.len() < words {
+            let first = result.len();
+            let chunk = (words - first).min(CHUNK);
+            let (sender, receiver) = oneshot::channel();
+            let submit = || {
+                let staging = Buffer(self.device.create_buffer(&wgpu::BufferDescriptor {
+                    label: Some("read-back"),
+                    size: 4 * chunk.max(1) as u64,
+                    usage: BufferUsages::MAP_READ | BufferUsages::COPY_DST,
+                    mapped_at_creation: false,
+                }));
+                let mut encoder = match record.take() {
+                    Some(record) => record(),
+                    None => self.device.create_command_encoder(&Default::default()),
+                };
+                encoder.copy_buffer_to_buffer(buffer, 4 * first as u64, &staging, 0, 4 * chunk as u64);
+                self.queue.submit([encoder.finish()]);
+                staging.map_async(wgpu::MapMode::Read, .., move |result| {
+                    // The receiver is gone only if the caller has given up waiting.
+                    let _ = sender.send(result);
+                });
+                staging
+            };
+            let (staging, word) = watch(&self.device, submit);
+            self.read_back(staging, word, receiver, &mut result).await?;
+            result.truncate(first + chunk);
+        }
+        Ok(result)
     }
 
+    /// Appends the words of a buffer to `result`.
     async fn read_back(
         &self,
         staging: Buffer,
         word: Word,
         receiver: oneshot::Receiver<Result<(), wgpu::BufferAsyncError>>,
-        words: usize,
-    ) -> Result<Vec<u32>, Error> {
+        result: &mut Vec<u32>,
+    ) -> Result<(), Error> {
         self.judge(word.await)?;
         let failed = |error: &dyn std::fmt::Display| {
             self.check().err().unwrap_or_else(|| Error::Device { message: error.to_string() })
         };
         #[cfg(not(target_arch = "wasm32"))]
-        self.device.poll(wgpu::PollType::wait_indefinitely()).map_err(|error| failed(&error))?;
+        self.wait().map_err(|error| failed(&error))?;
         receiver.await.map_err(|error| failed(&error))?.map_err(|error| failed(&error))?;
         self.check()?;
         let view = staging.get_mapped_range(..).map_err(|error| failed(&error))?;
-        // The browser's view need not be aligned.
-        let mut result = bytemuck::pod_collect_to_vec(&view);
-        result.truncate(words);
-        Ok(result)
+        match bytemuck::try_cast_slice(&view) {
+            Ok(words) => result.extend_from_slice(words),
+            // The browser's view need not be aligned.
+            Err(_) => result.extend(bytemuck::pod_collect_to_vec::<u8, u32>(&view)),
+        }
+        Ok(())
+    }
+
+    #[cfg(not(target_arch = "wasm32"))]
+    fn wait(&self) -> Result<wgpu::PollStatus, wgpu::PollError> {
+        self.device.poll(wgpu::PollType::wait_indefinitely())
+    }
+
+    /// Writes words to the start of `buffer`, before the next submission.
+    pub(super) fn write(&self, buffer: &Buffer, words: &[u32]) {
+        for (i, chunk) in words.chunks(CHUNK).enumerate() {
+            let place = 4 * (i * CHUNK) as u64;
+            self.queue.write_buffer(buffer, place, bytemuck::cast_slice(chunk));
+            #[cfg(not(target_arch = "wasm32"))]
+            if chunk.len() == CHUNK {
+                self.queue.submit([]);
+                // A failure is told by the next call that can fail.
+                let _ = self.wait();
+            }
+        }
     }
 }

@@ -22,7 +22,7 @@ pub(super) fn phases_sources(form: Form) -> [String; 2] {
         Dimension::Three => (shaders!("space" "narrow"), shaders!("creases" "flag_creases"), ""),
     };
     let numbers = [shaders!("mesh" "exact" "state" "points"), points, geometry].concat();
-    let phases = shaders!("verdict" "star" "guard" "verdicts" "label" "select" "active");
+    let phases = shaders!("verdict" "star" "guard" "verdicts" "label" "select" "active" "doubts");
     [
         [&numbers, shaders!("reads"), phases, creases, shaders!("sweeps")].concat(),
         [&numbers, shaders!("atomics"), phases, embedded, shaders!("slot" "flip" "frontier" "iteration")]
@@ -49,10 +49,12 @@ pub(crate) enum Kernel {
     Prepare,
     /// The rest of that.
     Complete,
+    /// Which stars are embedded, in 2D.
+    Mark,
 }
 
 impl Kernel {
-    const ALL: [Self; 8] = [
+    const ALL: [Self; 9] = [
         Self::Label,
         Self::Decide,
         Self::Select,
@@ -61,24 +63,39 @@ impl Kernel {
         Self::Census,
         Self::Prepare,
         Self::Complete,
+        Self::Mark,
     ];
+
+    /// Those that there are, each at its index.
+    fn all(dimension: Dimension) -> &'static [Self] {
+        match dimension {
+            Dimension::Two => &Self::ALL,
+            Dimension::Three => &Self::ALL[..Self::Mark as usize],
+        }
+    }
+
+    /// The kernels before the first iteration.
+    pub(super) fn preparation(dimension: Dimension) -> &'static [Self] {
+        &Self::all(dimension)[Self::Prepare as usize..]
+    }
 
     /// The kernels of one iteration.
     pub(crate) const ITERATION: [Self; 4] = [Self::Label, Self::Decide, Self::Select, Self::Flip];
 
     /// In the sources of [`phases_sources`].
-    fn entry(self, dimension: Dimension) -> Entry {
+    fn entry(self, dimension: Dimension, tail_size: u32) -> Entry {
         match (self, dimension) {
-            (Self::Label, _) => (READS, "label_all", &[("EXACT", 0.0)]),
-            (Self::Decide, _) => (READS, "label_all", &[]),
-            (Self::Select, _) => (READS, "select_all", &[]),
-            (Self::Flip, _) => (WRITES, "flip_all", &[]),
-            (Self::Tail, _) => (WRITES, "tail", &[]),
-            (Self::Census, _) => (WRITES, "census", &[]),
-            (Self::Prepare, Dimension::Two) => (WRITES, "count_turns", &[]),
-            (Self::Complete, Dimension::Two) => (WRITES, "mark_embedded", &[]),
-            (Self::Prepare, Dimension::Three) => (READS, "flag_creases", &[("EXACT", 0.0)]),
-            (Self::Complete, Dimension::Three) => (READS, "flag_creases", &[]),
+            (Self::Label, _) => (READS, "label_all", None),
+            (Self::Decide, _) => (READS, "decide_all", None),
+            (Self::Select, _) => (READS, "select_all", None),
+            (Self::Flip, _) => (WRITES, "flip_all", None),
+            (Self::Tail, _) => (WRITES, "tail", Some(("TAIL_SIZE", f64::from(tail_size)))),
+            (Self::Census, _) => (WRITES, "census", None),
+            (Self::Prepare, Dimension::Two) => (WRITES, "count_turns", Some(("EXACT", 0.0))),
+            (Self::Complete, Dimension::Two) => (WRITES, "count_turns", None),
+            (Self::Mark, _) => (WRITES, "mark_embedded", None),
+            (Self::Prepare, Dimension::Three) => (READS, "flag_creases", Some(("EXACT", 0.0))),
+            (Self::Complete, Dimension::Three) => (READS, "flag_creases", None),
         }
     }
 }
@@ -87,8 +104,8 @@ impl Kernel {
 const READS: usize = 0;
 const WRITES: usize = 1;
 
-/// The place of a source, an entry point in it, and those of its constants that are not as the source says.
-type Entry = (usize, &'static str, &'static [(&'static str, f64)]);
+/// The place of a source, an entry point in it, and one of its constants that is not as the source says.
+type Entry = (usize, &'static str, Option<(&'static str, f64)>);
 
 /// The pipelines of one shader, which share their bindings.
 pub(super) struct Kernels {
@@ -100,14 +117,15 @@ pub(super) struct Kernels {
 pub(super) fn adjacency(device: &wgpu::Device) -> Kernels {
     let (read, write) = (storage(true), storage(false));
     let names = ["count", "allocate", "scatter", "match_twins", "count_corners", "count_fans"];
-    let entries = names.map(|name| -> Entry { (0, name, &[]) });
+    let entries = names.map(|name| -> Entry { (0, name, None) });
     kernels(device, &[uniform(false), read, write, write, write, write], &[ADJACENCY], &entries)
 }
 
-/// In the order of [`Kernel`].
-pub(super) fn phases(device: &wgpu::Device, form: Form) -> Kernels {
+/// In the order of [`Kernel`]; the tail has so many invocations.
+pub(super) fn phases(device: &wgpu::Device, form: Form, tail_size: u32) -> Kernels {
     let sources = phases_sources(form);
-    let entries = Kernel::ALL.map(|kernel| kernel.entry(form.dimension));
+    let entries: Vec<_> =
+        Kernel::all(form.dimension).iter().map(|kernel| kernel.entry(form.dimension, tail_size)).collect();
     kernels(device, &phases_bindings(), &sources.each_ref().map(String::as_str), &entries)
 }
 
@@ -121,11 +139,11 @@ fn phases_bindings() -> [BindingType; 9] {
 pub(super) fn tiers(device: &wgpu::Device, form: Form) -> Kernels {
     let [_, writes] = phases_sources(form);
     let source = [&writes, include_str!("tiers.wgsl")].concat();
-    kernels(device, &phases_bindings(), &[&source], &[(0, "tiers", &[])])
+    kernels(device, &phases_bindings(), &[&source], &[(0, "tiers", None)])
 }
 
 pub(super) fn probe(device: &wgpu::Device) -> Kernels {
-    kernels(device, &[storage(false)], &[PROBE], &[(0, "probe", &[])])
+    kernels(device, &[storage(false)], &[PROBE], &[(0, "probe", None)])
 }
 
 fn uniform(has_dynamic_offset: bool) -> BindingType {
@@ -166,13 +184,16 @@ fn kernels(device: &wgpu::Device, bindings: &[BindingType], sources: &[&str], en
         })
     };
     let modules: Vec<_> = sources.iter().map(module).collect();
-    let pipeline = |&(place, name, constants): &Entry| {
+    let pipeline = |(place, name, constant): &Entry| {
         device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-            label: Some(name),
+            label: Some(*name),
             layout: Some(&pipeline_layout),
-            module: &modules[place],
-            entry_point: Some(name),
-            compilation_options: wgpu::PipelineCompilationOptions { constants, ..Default::default() },
+            module: &modules[*place],
+            entry_point: Some(*name),
+            compilation_options: wgpu::PipelineCompilationOptions {
+                constants: constant.as_slice(),
+                ..Default::default()
+            },
             cache: None,
         })
     };

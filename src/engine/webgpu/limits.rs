@@ -1,5 +1,6 @@
 //! What the device cannot take: a mesh too large for its buffers.
 
+use super::buffers::frontier_words;
 use super::device::Device;
 use super::faults::refuse;
 use crate::Error;
@@ -7,8 +8,9 @@ use crate::engine::upload::Upload;
 
 /// Refuses a mesh that the device cannot hold.
 pub(super) fn refuse_large_mesh(gpu: &Device, upload: &Upload) -> Result<(), Error> {
-    let buckets = 2 * upload.mesh.vertex_count().next_multiple_of(256);
-    refuse_large_buffer(gpu, upload.words().len().max(upload.mesh.triangles().len()).max(buckets))
+    let mesh = &upload.mesh;
+    let buckets = 2 * mesh.vertex_count().next_multiple_of(256);
+    refuse_large_buffer(gpu, upload.words().len().max(frontier_words(mesh.triangle_count())).max(buckets))
 }
 
 pub(super) fn refuse_large_buffer(gpu: &Device, words: usize) -> Result<(), Error> {

@@ -16,6 +16,7 @@ mod kernels;
 mod limits;
 mod params;
 mod shared;
+mod start;
 #[cfg(test)]
 mod tests;
 
@@ -27,24 +28,19 @@ pub(crate) use shared::Handle;
 
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 use super::SharedObjects;
-use super::probe::SHORT_STAR;
-use super::upload::{Form, Upload};
+use super::upload::Form;
 use super::{Answer, Census, EdgeCounts, Engine};
-use crate::mesh::{Dimension, Mesh};
-use crate::star::Fans;
-use crate::winding::Winding;
-use crate::{Error, locks};
+use crate::Error;
+#[cfg(test)]
+use crate::adjacency::unflagged;
+use crate::mesh::Mesh;
 use buffers::Buffers;
-use device::Buffer;
-use faults::refuse;
 use kernels::Kernels;
-use limits::{refuse_large_buffer, refuse_large_mesh};
 use params::Params;
 use std::sync::Arc;
-use wgpu::BufferUsages;
 
 /// Iterations with a dispatch for each phase in one submission.
-const BATCH: u32 = 16;
+const BATCH: u32 = 12;
 /// Iterations that the tail may run after them.
 const TAIL: u32 = 256;
 /// The same where loops end too early.
@@ -70,126 +66,14 @@ pub(crate) struct WebGpu {
     counts: EdgeCounts,
     bindings: wgpu::BindGroup,
     buffers: Buffers,
-    topology: Buffer,
     state: Entry,
     dispatches: u64,
+    adjacency_ms: f64,
+    /// The most that its buffers took at a time.
+    bytes: u64,
 }
 
 impl WebGpu {
-    /// Uploads the mesh and builds its adjacency; `cos` is the cosine of β.
-    ///
-    /// # Errors
-    /// [`Error::BackendLimit`] for a mesh that is too large for the device; [`Error::Device`].
-    pub(crate) async fn new(gpu: Handle, upload: Upload, cos: f64) -> Result<Self, Error> {
-        refuse_large_mesh(&gpu, &upload)?;
-        let mesh = &upload.mesh;
-        let kernels = gpu.phases(upload.form()).await?;
-        let count = mesh.triangle_count();
-        let allocate = || (Buffers::new(&gpu, &upload), adjacency::Scratch::new(&gpu, mesh));
-        let (buffers, scratch) = gpu.allocated(allocate).await?;
-        let found = adjacency::build(&gpu, mesh, &buffers, scratch).await?;
-        if gpu.ends_loops_early && found.most_corners > SHORT_STAR {
-            let corners = found.most_corners;
-            return refuse(format!("a vertex has {corners} triangles, {} ends loops early", gpu.adapter));
-        }
-
-        // Vertices of several fans are rare: the host has time.
-        let fans = if found.has_several_fans {
-            let twins = gpu.read(&buffers.twins, 3 * count).await?;
-            Fans::new(mesh.vertex_count(), mesh.triangles(), &twins, |_| false)
-        } else {
-            Fans::default()
-        };
-        let bits = if mesh.dimension() == Dimension::Two { [count, mesh.vertex_count()] } else { [0, 0] };
-        let [winding_words, embedded_words] = bits.map(|bits| bits.div_ceil(32));
-        let topology_words = winding_words + fans.table.len() + embedded_words;
-        refuse_large_buffer(&gpu, topology_words)?;
-        let bind = || {
-            let topology = gpu.buffer("topology", topology_words, BufferUsages::STORAGE);
-            gpu.queue.write_buffer(&topology, 4 * winding_words as u64, bytemuck::cast_slice(&fans.table));
-            (buffers.bind(&gpu, &kernels.layout, &topology), topology)
-        };
-        let (bindings, topology) = gpu.allocated(bind).await?;
-        let places = (winding_words, fans.table.len());
-        let mut result = Self {
-            kernels,
-            cos,
-            form: upload.form(),
-            params: Params::new(mesh, cos, places, gpu.ends_loops_early),
-            counts: found.counts,
-            bindings,
-            buffers,
-            topology,
-            state: Entry::default(),
-            dispatches: 0,
-            gpu,
-        };
-        result.start(&upload).await?;
-        result.dispatches += found.dispatches;
-        Ok(result)
-    }
-
-    /// Begins the iterations anew: the mesh has the triangles that are on the device.
-    async fn start(&mut self, upload: &Upload) -> Result<(), Error> {
-        let mesh = &upload.mesh;
-        // Components of both windings are rare: the host has time.
-        let winding = match Winding::of_triangles(mesh) {
-            Some(winding) => winding,
-            None => {
-                let twins = self.gpu.read(&self.buffers.twins, mesh.triangles().len()).await?;
-                Winding::of_components(mesh, &twins)
-            }
-        };
-        self.params.winding_length = winding.clockwise.len() as u32;
-        self.params.first = 0;
-        // As if an iteration before had flipped something and built no list.
-        self.state = [self.params.triangles, 0, 0, 1];
-        self.dispatches = 2;
-        let submit = || {
-            let queue = &self.gpu.queue;
-            queue.write_buffer(&self.buffers.positions, 0, bytemuck::cast_slice(upload.words()));
-            if let Some(floats) = &self.buffers.floats {
-                queue.write_buffer(floats, 0, bytemuck::cast_slice(&mesh.positions().to_f32()));
-            }
-            queue.write_buffer(&self.topology, 0, bytemuck::cast_slice(&winding.clockwise));
-            // The stamps of iterations before would be taken for those of the next, and the turns of stars for others.
-            let cleared = |mut encoder: wgpu::CommandEncoder| {
-                encoder.clear_buffer(&self.buffers.frontier, 0, None);
-                encoder.finish()
-            };
-            let before = cleared(self.gpu.device.create_command_encoder(&Default::default()));
-            let prepare = self.encode(|pass| {
-                for kernel in [Kernel::Prepare, Kernel::Complete] {
-                    self.dispatch(pass, kernel, self.gpu.workgroups(self.params.triangles));
-                }
-            });
-            queue.submit([before, cleared(prepare)]);
-        };
-        self.gpu.checked(submit).await
-    }
-
-    /// Whoever locks edges has named them on the host, which has time for the twins too.
-    async fn flag_locked(&mut self, half_edges: Vec<u32>) -> Result<(), Error> {
-        let mut twins = self.gpu.read(&self.buffers.twins, 3 * self.params.triangles as usize).await?;
-        locks::flag(&mut twins, &half_edges);
-        let write = || self.gpu.queue.write_buffer(&self.buffers.twins, 0, bytemuck::cast_slice(&twins));
-        self.gpu.checked(write).await
-    }
-
-    async fn move_vertices(&mut self, mesh: Arc<Mesh>) -> Result<(), Error> {
-        let upload = Upload::new(self.backend(), mesh)?;
-        if upload.form() == self.form {
-            return self.start(&upload).await;
-        }
-        let mut moved = Self::new(self.gpu.clone(), upload, self.cos).await?;
-        let locked = locks::flagged(&self.twins().await?);
-        if !locked.is_empty() {
-            moved.flag_locked(locked).await?;
-        }
-        *self = moved;
-        Ok(())
-    }
-
     /// One submission of up to `count` iterations; returns the flips of those that ran, the last of which may
     /// be zero.
     async fn submit(&mut self, count: u32) -> Result<Vec<u32>, Error> {
@@ -339,6 +223,14 @@ impl Engine for WebGpu {
         self.dispatches
     }
 
+    fn device_bytes(&self) -> u64 {
+        self.bytes
+    }
+
+    fn adjacency_ms(&self) -> Option<f64> {
+        Some(self.adjacency_ms)
+    }
+
     #[cfg(all(target_arch = "wasm32", feature = "js"))]
     fn shared_objects(&self) -> Option<SharedObjects> {
         Some(SharedObjects {
@@ -373,13 +265,14 @@ impl WebGpu {
 
     /// `best` and `selected`.
     pub(crate) async fn choices(&self) -> Result<(Vec<u32>, Vec<u32>), Error> {
-        let mut best = self.gpu.read(&self.buffers.choices, 2 * self.params.triangles as usize).await?;
-        let selected = best.split_off(self.params.triangles as usize);
+        let count = self.params.triangles as usize;
+        let mut best = self.gpu.read(&self.buffers.choices, 2 * count).await?;
+        let selected = best.split_off(count).into_iter().map(unflagged).collect();
         Ok((best, selected))
     }
 
     pub(crate) async fn fans(&self) -> Result<Vec<u32>, Error> {
         let words = (self.params.fans + self.params.fans_length) as usize;
-        Ok(self.gpu.read(&self.topology, words).await?.split_off(self.params.fans as usize))
+        Ok(self.gpu.read(&self.buffers.topology, words).await?.split_off(self.params.fans as usize))
     }
 }

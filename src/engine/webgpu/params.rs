@@ -1,7 +1,7 @@
 //! The parameters that every kernel of the phases reads.
 
 use crate::engine::cosine::Cosine;
-use crate::mesh::Mesh;
+use crate::mesh::{Dimension, Mesh};
 
 /// Iterations of the tail run on lists of up to so many triangles.
 const TAIL_LENGTH: u32 = 2048;
@@ -9,6 +9,23 @@ const TAIL_LENGTH: u32 = 2048;
 const SHORT_TAIL_LENGTH: u32 = 256;
 /// Meshes of up to so many triangles go by lists from the start.
 const SMALL_MESH: usize = 4096;
+
+/// Where the parts of the topology begin, in words: the winding bits at 0.
+pub(super) struct Places {
+    pub(super) embedded: u32,
+    pub(super) fans: u32,
+}
+
+impl Places {
+    pub(super) fn new(mesh: &Mesh) -> Self {
+        let bits = |count: usize| match mesh.dimension() {
+            Dimension::Two => count.div_ceil(32) as u32,
+            Dimension::Three => 0,
+        };
+        let embedded = bits(mesh.triangle_count());
+        Self { embedded, fans: embedded + bits(mesh.vertex_count()) }
+    }
+}
 
 /// As in `state.wgsl`.
 #[repr(C)]
@@ -28,28 +45,23 @@ pub(super) struct Params {
     pub(super) tail_length: u32,
     pub(super) list_below: u32,
     pub(super) embedded: u32,
-    pub(super) padding: [u32; 2],
+    pub(super) knows_winding: u32,
+    pub(super) is_strict: u32,
     pub(super) cos_mantissa: [i32; 8],
     pub(super) cos_power: [i32; 8],
 }
 
 impl Params {
-    /// Before the first iteration, with no winding bits. `cos` is the cosine of β; the table of the fans has
-    /// `fans_length` words from `fans` on.
-    pub(super) fn new(
-        mesh: &Mesh,
-        cos: f64,
-        (fans, fans_length): (usize, usize),
-        ends_loops_early: bool,
-    ) -> Self {
+    /// Before the first iteration, with no winding bits and no vertex of several fans. `cos` is the cosine of β.
+    pub(super) fn new(mesh: &Mesh, cos: f64, topology: &Places, ends_loops_early: bool) -> Self {
         let cosine = Cosine::new(cos);
         let count = mesh.triangle_count();
         Self {
             vertices: mesh.vertex_count() as u32,
             triangles: count as u32,
             first: 0,
-            fans: fans as u32,
-            fans_length: fans_length as u32,
+            fans: topology.fans,
+            fans_length: 0,
             winding_length: 0,
             tail: 0,
             cos: cosine.rounded,
@@ -58,9 +70,10 @@ impl Params {
             tail_iterations: 0,
             tail_length: if ends_loops_early { SHORT_TAIL_LENGTH } else { TAIL_LENGTH },
             // A flip appends six triangles at most; a small mesh is not worth a sweep.
-            list_below: if count <= SMALL_MESH { u32::MAX } else { count as u32 / 24 },
-            embedded: (fans + fans_length) as u32,
-            padding: [0; 2],
+            list_below: if count <= SMALL_MESH { u32::MAX } else { count as u32 / 256 },
+            embedded: topology.embedded,
+            knows_winding: 0,
+            is_strict: 0,
             cos_mantissa: cosine.mantissa,
             cos_power: cosine.power,
         }

@@ -130,6 +130,8 @@ fn params_have_one_layout() {
         tail_length,
         list_below,
         embedded,
+        knows_winding,
+        is_strict,
         cos_mantissa,
         cos_power
     );
