@@ -105,18 +105,18 @@ impl Buckets {
         Self { ends: starts, half_edges }
     }
 
-    /// Each bucket with its vertex.
-    fn iter(&self) -> impl Iterator<Item = (u32, &[u32])> {
+    /// Calls `visit` with each vertex and its bucket, which it may put in another order.
+    fn visit(mut self, mut visit: impl FnMut(u32, &mut [u32])) {
         let mut start = 0;
-        (0..).zip(&self.ends).map(move |(vertex, &end)| {
-            let bucket = &self.half_edges[start..end as usize];
+        for (vertex, &end) in (0..).zip(&self.ends) {
+            visit(vertex, &mut self.half_edges[start..end as usize]);
             start = end as usize;
-            (vertex, bucket)
-        })
+        }
     }
 }
 
 /// The vertex of half-edge `h`'s edge that is not `low`.
+#[inline]
 fn other_end(triangles: &[u32], low: u32, h: u32) -> u32 {
     triangles[h as usize] ^ triangles[next(h) as usize] ^ low
 }
@@ -124,25 +124,29 @@ fn other_end(triangles: &[u32], low: u32, h: u32) -> u32 {
 /// Calls `visit` once for each edge with its half-edges in ascending order, edges by their smaller vertex. A vertex of n
 /// edges costs n log n.
 pub(crate) fn for_each_edge(vertices: usize, triangles: &[u32], mut visit: impl FnMut(&[u32])) {
-    let mut sorted = Vec::new();
-    for (low, bucket) in Buckets::new(vertices, triangles).iter() {
-        visit_edges(triangles, low, bucket, &mut sorted, &mut visit);
-    }
+    let mut scratch = Vec::new();
+    let each_bucket = |low, bucket: &mut [u32]| {
+        visit_edges(triangles, low, bucket, &mut scratch, &mut visit);
+    };
+    Buckets::new(vertices, triangles).visit(each_bucket);
 }
 
-/// The same for the edges of one bucket. `sorted` is scratch.
+/// The same for the edges of one bucket, by whose other ends it is sorted.
 fn visit_edges(
     triangles: &[u32],
     low: u32,
-    bucket: &[u32],
-    sorted: &mut Vec<u32>,
+    bucket: &mut [u32],
+    scratch: &mut Vec<(u32, u32)>,
     visit: &mut impl FnMut(&[u32]),
 ) {
     let end = |h: u32| other_end(triangles, low, h);
-    sorted.clear();
-    sorted.extend(bucket);
-    sorted.sort_unstable_by_key(|&h| (end(h), h));
-    for edge in sorted.chunk_by(|&x, &y| end(x) == end(y)) {
+    scratch.clear();
+    scratch.extend(bucket.iter().map(|&h| (end(h), h)));
+    scratch.sort_unstable();
+    for (place, &(_, h)) in bucket.iter_mut().zip(scratch.iter()) {
+        *place = h;
+    }
+    for edge in bucket.chunk_by(|&x, &y| end(x) == end(y)) {
         visit(edge);
     }
 }
@@ -196,8 +200,8 @@ impl Adjacency {
     /// Matches the half-edges of `triangles`, whose indices must be below `vertices`.
     pub(crate) fn of_triangles(vertices: usize, triangles: &[u32]) -> Self {
         let mut result = Self { twins: vec![NONE; triangles.len()], ..Self::default() };
-        let mut sorted = Vec::new();
-        for (low, bucket) in Buckets::new(vertices, triangles).iter() {
+        let mut scratch = Vec::new();
+        Buckets::new(vertices, triangles).visit(|low, bucket| {
             let matched = match bucket.len() {
                 0..=8 => match_few::<8>(triangles, low, bucket, &mut result.twins),
                 9..=16 => match_few::<16>(triangles, low, bucket, &mut result.twins),
@@ -206,9 +210,9 @@ impl Adjacency {
             if let Some([boundary, interior]) = matched {
                 result.edges += boundary + interior;
                 result.boundary += boundary;
-                continue;
+                return;
             }
-            visit_edges(triangles, low, bucket, &mut sorted, &mut |half_edges| {
+            visit_edges(triangles, low, bucket, &mut scratch, &mut |half_edges| {
                 result.edges += 1;
                 match edge_kind(half_edges, triangles) {
                     EdgeKind::Boundary => result.boundary += 1,
@@ -221,7 +225,7 @@ impl Adjacency {
                     }
                 }
             });
-        }
+        });
         result
     }
 }

@@ -58,6 +58,7 @@ impl Embedded {
     }
 
     /// Whether the star of vertex `v` is known to be embedded.
+    #[inline]
     pub(crate) fn at(&self, v: u32) -> bool {
         self.turns.get(v as usize) == Some(&1)
     }

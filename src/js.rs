@@ -5,10 +5,10 @@ mod objects;
 
 pub use crate::engine::GpuDevice;
 pub use crate::js_values::JsPositions;
-use crate::js_values::{backend_name, object, parse_dimension, thrown};
-use crate::{Backend, Error, Mesh, Options, Order, Session, engine};
-use js_sys::{Array, Uint8Array, Uint32Array};
-use objects::{audit_object, outcome_object, reasons_object};
+use crate::js_values::{backend_name, object, parse_dimension, reasons_object, thrown};
+use crate::{Backend, Error, Mesh, Options, Order, Positions, Session, engine};
+use js_sys::{Array, Float32Array, Float64Array, Uint8Array, Uint32Array};
+use objects::outcome_object;
 use wasm_bindgen::prelude::*;
 
 #[wasm_bindgen]
@@ -142,13 +142,28 @@ impl JsSession {
         Ok(Uint8Array::from(numbers.as_slice()))
     }
 
-    /// As [`Session::verify`].
+    /// What [`Session::verify`] checks, as the arguments of `js_audit::audit` in its module.
     ///
     /// # Errors
     /// As there.
-    #[wasm_bindgen(unchecked_return_type = "import('../types.js').Audit")]
-    pub async fn verify(&mut self) -> Result<JsValue, JsValue> {
-        Ok(audit_object(&self.0.verify().await.map_err(thrown)?))
+    #[wasm_bindgen(js_name = auditInput, unchecked_return_type = "Parameters<typeof import('./edgeflip_audit.js').audit>")]
+    pub async fn audit_input(&mut self) -> Result<JsValue, JsValue> {
+        let triangles = self.0.triangles().await.map_err(thrown)?;
+        let (mesh, options) = self.0.input();
+        let positions = match mesh.positions() {
+            Positions::F32(numbers) => Float32Array::from(numbers.as_slice()).into(),
+            Positions::F64(numbers) => Float64Array::from(numbers.as_slice()).into(),
+        };
+        let array = |words: &[u32]| JsValue::from(Uint32Array::from(words));
+        let arguments = [
+            positions,
+            array(mesh.triangles()),
+            (mesh.dimension().stride() as u32).into(),
+            array(&triangles),
+            options.max_normal_angle.into(),
+            array(options.locked_edges.as_flattened()),
+        ];
+        Ok(arguments.iter().collect::<Array>().into())
     }
 
     /// Iterations so far.

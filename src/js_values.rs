@@ -1,6 +1,9 @@
-//! What the two modules of the npm package share: plain objects, errors and dimensions as JavaScript has them, in the
+//! What the modules of the npm package share: plain objects, errors and dimensions as JavaScript has them, in the
 //! words of the package: `webgpu` for the GPU engine, `indices` for the triangles.
 
+#[cfg(any(feature = "js", feature = "js-audit"))]
+use crate::Reasons;
+use crate::error::number;
 use crate::{Dimension, Error, Positions};
 use js_sys::{Array, Float32Array, Float64Array, Object};
 use wasm_bindgen::prelude::*;
@@ -35,6 +38,12 @@ pub(crate) fn object<'a>(fields: impl IntoIterator<Item = (&'a str, JsValue)>) -
     Object::from_entries(&entries).map_or_else(|error| error, JsValue::from)
 }
 
+/// The reasons with at least one edge.
+#[cfg(any(feature = "js", feature = "js-audit"))]
+pub(crate) fn reasons_object(reasons: &Reasons) -> JsValue {
+    object(reasons.iter().map(|(reason, edges)| (reason.name(), (edges as f64).into())))
+}
+
 /// The engine's name in JavaScript.
 pub(crate) fn backend_name(name: &'static str) -> &'static str {
     if name == "gpu" { "webgpu" } else { name }
@@ -47,7 +56,10 @@ pub(crate) fn parse_dimension(dimension: f64) -> Result<Dimension, Error> {
     } else if dimension == 3.0 {
         Ok(Dimension::Three)
     } else {
-        Err(Error::Option { option: "dimension", message: format!("{dimension} is neither 2 nor 3") })
+        Err(Error::Option {
+            option: "dimension",
+            message: format!("{} is neither 2 nor 3", number(dimension)),
+        })
     }
 }
 

@@ -3,7 +3,6 @@
 use crate::adjacency::{LOCKED, next};
 use crate::mesh::Mesh;
 use crate::{Error, NONE};
-use std::collections::HashMap;
 
 /// The half-edges of the edges that `pairs` name by their vertices, in ascending order.
 ///
@@ -14,25 +13,29 @@ pub(crate) fn half_edges(mesh: &Mesh, pairs: &[[u32; 2]]) -> Result<Vec<u32>, Er
     if pairs.is_empty() {
         return Ok(half_edges);
     }
-    let ordered = |[u, v]: [u32; 2]| [u.min(v), u.max(v)];
-    let mut is_found: HashMap<[u32; 2], bool> = pairs.iter().map(|&pair| (ordered(pair), false)).collect();
+    let ordered = |[u, v]: [u32; 2]| (u.min(v), u.max(v));
+    let mut edges: Vec<(u32, u32)> = pairs.iter().map(|&pair| ordered(pair)).collect();
+    edges.sort_unstable();
+    edges.dedup();
+    let mut is_found = vec![false; edges.len()];
     // Most half-edges are ruled out by one look.
     let mut is_end = vec![false; mesh.vertex_count()];
-    for &[u, _] in is_found.keys() {
+    for &(u, _) in &edges {
         if let Some(is_end) = is_end.get_mut(u as usize) {
             *is_end = true;
         }
     }
     for h in 0..mesh.triangles().len() as u32 {
         let ends = ordered([h, next(h)].map(|x| mesh.triangles()[x as usize]));
-        if is_end[ends[0] as usize]
-            && let Some(is_found) = is_found.get_mut(&ends)
+        if is_end[ends.0 as usize]
+            && let Ok(place) = edges.binary_search(&ends)
         {
-            *is_found = true;
+            is_found[place] = true;
             half_edges.push(h);
         }
     }
-    match pairs.iter().find(|&&pair| !is_found[&ordered(pair)]) {
+    match pairs.iter().find(|&&pair| edges.binary_search(&ordered(pair)).is_ok_and(|place| !is_found[place]))
+    {
         None => Ok(half_edges),
         Some([u, v]) => {
             let message = format!("the mesh has no edge between vertices {u} and {v}");

@@ -103,6 +103,7 @@ impl Positions {
         }
     }
 
+    #[inline]
     fn at(&self, i: usize) -> f64 {
         match self {
             Self::F32(numbers) => f64::from(numbers[i]),

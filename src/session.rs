@@ -9,6 +9,7 @@ use crate::embedded::Embedded;
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 use crate::engine::SharedObjects;
 use crate::engine::{Answer, Engine};
+use crate::error::number;
 use crate::phases::{Geometry, Topology};
 use crate::predicates::cos_degrees;
 use crate::quality::{Audit, audit};
@@ -42,7 +43,8 @@ impl Session {
     /// the GPU was asked for (`Auto` takes the CPU instead).
     pub async fn new(mesh: impl Into<Arc<Mesh>>, options: Options) -> Result<Self, Error> {
         if !(0.0..=180.0).contains(&options.max_normal_angle) {
-            let message = format!("{} is not an angle from 0 to 180 degrees", options.max_normal_angle);
+            let message =
+                format!("{} is not an angle from 0 to 180 degrees", number(options.max_normal_angle));
             return Err(Error::Option { option: "max_normal_angle", message });
         }
         let (start, mesh) = (Instant::now(), mesh.into());
@@ -249,6 +251,12 @@ impl Session {
     #[cfg(all(target_arch = "wasm32", feature = "js"))]
     pub(crate) fn backend(&self) -> &'static str {
         self.engine.backend()
+    }
+
+    /// What the audit compares with: the mesh as it was given, or as its vertices moved last, and the options.
+    #[cfg(all(target_arch = "wasm32", feature = "js"))]
+    pub(crate) fn input(&self) -> (&Mesh, &Options) {
+        (&self.mesh, &self.options)
     }
 
     /// What a page can draw from.

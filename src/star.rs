@@ -54,6 +54,7 @@ impl Fans {
     }
 
     /// The anchors of a vertex with several fans, up to the end of the table; none for any other vertex.
+    #[inline]
     fn of(&self, vertex: u32) -> Option<&[u32]> {
         let list = self.table.get(vertex as usize).copied().unwrap_or(NONE);
         (list != NONE).then(|| &self.table[list as usize..])
@@ -103,6 +104,7 @@ impl<'a> Star<'a> {
         }
     }
 
+    #[inline(always)]
     fn advance(&mut self) {
         if !self.clockwise {
             self.at = unflagged(self.twins[prev(self.at) as usize]);
@@ -126,6 +128,7 @@ impl<'a> Star<'a> {
 impl Iterator for Star<'_> {
     type Item = u32;
 
+    #[inline(always)]
     fn next(&mut self) -> Option<u32> {
         (self.at != NONE).then(|| {
             let corner = self.at;

@@ -76,12 +76,13 @@ impl Winding {
     }
 
     /// Whether triangle `t` belongs to a component of negative area.
+    #[inline]
     pub(crate) fn is_clockwise(&self, t: u32) -> bool {
         self.clockwise.get(t as usize / 32).is_some_and(|word| word >> (t % 32) & 1 == 1)
     }
 }
 
-#[inline]
+#[inline(always)]
 fn corners(mesh: &Mesh, t: usize) -> [glam::DVec2; 3] {
     let (triangles, _) = mesh.triangles().as_chunks();
     mesh.positions().points2(triangles[t])

@@ -1,37 +1,45 @@
 // Builds the npm package into dist/: `npm run build`. For each of its modules, cargo compiles the library for wasm32,
-// wasm-bindgen writes the glue and wasm-opt makes it smaller; tools/glsl writes the programs of the WebGL2 engine; then
+// wasm-bindgen writes the glue and wasm-opt makes both smaller; tools/glsl writes the programs of the WebGL2 engine; then
 // tsc checks the TypeScript and compiles it. Ends with a table of sizes.
 
 import { spawnSync } from 'node:child_process';
-import { cpSync, mkdirSync, readFileSync, rmSync } from 'node:fs';
+import { cpSync, mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
 import { brotliCompressSync, gzipSync } from 'node:zlib';
 
 process.chdir(fileURLToPath(new URL('..', import.meta.url)));
 
 function run(program, ...args) {
+  return output('inherit', program, ...args);
+}
+
+/** Runs a program, and returns what it prints where `stdout` is a pipe. */
+function output(stdout, program, ...args) {
   console.log(`$ ${[program, ...args].join(' ')}`);
-  const { status, error } = spawnSync(program, args, { stdio: 'inherit' });
-  if (status === 0) return;
+  const stdio = ['inherit', stdout, 'inherit'];
+  const { status, error, stdout: printed } = spawnSync(program, args, { stdio, encoding: 'utf8' });
+  if (status === 0) return printed;
   console.error(`build: stopped: ${program} failed${error ? `: ${error.message}` : ' (see above)'}`);
   console.error('  If a tool is missing: bash tools/setup.sh');
   process.exit(1);
 }
 
 const glue = 'target/js/wasm'; // also where src/js/tsconfig.json finds the types of the modules
-// One module for each entry of the package.
+// One module for each entry of the package, and one for the audit. In that of the engines a function is inlined where
+// it is marked so or nearly free: what is hot is marked, and the rest is a quarter smaller.
 const modules = [
-  { name: 'edgeflip', features: 'gpu,js' },
-  { name: 'edgeflip_files', features: 'js-files' },
+  { name: 'edgeflip', features: 'gpu,js', flags: ['-C', 'llvm-args=-inline-threshold=10'] },
+  { name: 'edgeflip_audit', features: 'js-audit', flags: [] },
+  { name: 'edgeflip_files', features: 'js-files', flags: [] },
 ];
 for (const folder of ['dist', glue]) {
   rmSync(folder, { recursive: true, force: true });
   mkdirSync(folder, { recursive: true });
 }
 
-for (const { name, features } of modules) {
-  run('bash', 'tools/wasm-cargo.sh', 'build', '--lib', '--profile', 'web', '--target', 'wasm32-unknown-unknown',
-    '--no-default-features', '--features', features);
+for (const { name, features, flags } of modules) {
+  run('bash', 'tools/wasm-cargo.sh', 'rustc', '--lib', '--crate-type', 'cdylib', '--profile', 'web',
+    '--target', 'wasm32-unknown-unknown', '--no-default-features', '--features', features, '--', ...flags);
   run('target/setup/bin/wasm-bindgen', '--target', 'web', '--out-dir', glue, '--out-name', name,
     '--remove-producers-section', 'target/wasm/wasm32-unknown-unknown/web/edgeflip.wasm');
 }
@@ -41,8 +49,22 @@ const wasmFeatures = ['bulk-memory', 'bulk-memory-opt', 'call-indirect-overlong'
   'nontrapping-float-to-int', 'reference-types', 'sign-ext'];
 for (const { name } of modules) {
   const wasm = `dist/wasm/${name}_bg.wasm`;
-  run(process.execPath, 'node_modules/binaryen/bin/wasm-opt', '-Oz', '--strip-debug',
+  // No pointer of Rust is below 1024: the stack, which comes first, grows down from 1 MiB.
+  const names = output('pipe', process.execPath, 'node_modules/binaryen/bin/wasm-opt', '-Oz',
+    '--low-memory-unused', '--minify-imports-and-exports-and-modules', '--strip-debug',
     ...wasmFeatures.map((feature) => `--enable-${feature}`), wasm, '-o', wasm);
+  shorten(`dist/wasm/${name}.js`, `./${name}_bg.js`, JSON.parse(names));
+}
+
+/** Gives the imports and exports of a module the names in its glue that wasm-opt has given them. */
+function shorten(file, module, names) {
+  const imports = new Map(names.imports.map(([, long, short]) => [long, short]));
+  const exports = new Map(names.exports);
+  const text = readFileSync(file, 'utf8')
+    .replace(`"${module}": `, '"a": ')
+    .replace(/\b\w+(?=: function\()/g, (name) => imports.get(name) ?? name)
+    .replace(/(?<=\bwasm\.)\w+/g, (name) => exports.get(name) ?? name);
+  writeFileSync(file, text);
 }
 run('cargo', 'run', '--package', 'glsl', '--', 'dist/glsl.js');
 run(process.execPath, 'node_modules/typescript/bin/tsc', '-p', 'src/js');

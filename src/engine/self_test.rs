@@ -55,21 +55,20 @@ pub(crate) async fn self_test(
 /// A lattice of spacing 0.1, whose squares only exact arithmetic knows to be cocircular or not, under one that is
 /// sheared, which has to flip; as a surface, with a step.
 fn test_mesh(form: Form) -> Result<Mesh, Error> {
-    let place = |i: u16, j: u16| {
-        let (i, j) = (f64::from(i), f64::from(j));
-        let shear = (j - f64::from(SIDE / 2)).max(0.0);
-        let point = [0.1 * i + 0.37 * shear, 0.1 * j, if i > 5.0 { 0.02 * i * j } else { 0.0 }];
-        point[..form.dimension.stride()].to_vec()
-    };
-    let doubles = (0..SIDE).flat_map(|j| (0..SIDE).flat_map(move |i| place(i, j))).collect::<Vec<f64>>();
+    let (mut doubles, mut triangles) = (Vec::new(), Vec::new());
+    for vertex in 0..SIDE * SIDE {
+        let (i, j) = (vertex % SIDE, vertex / SIDE);
+        let (x, y) = (f64::from(i), f64::from(j));
+        let shear = (y - f64::from(SIDE / 2)).max(0.0);
+        let point = [0.1 * x + 0.37 * shear, 0.1 * y, if i > 5 { 0.02 * x * y } else { 0.0 }];
+        doubles.extend_from_slice(&point[..form.dimension.stride()]);
+        if i + 1 < SIDE && j + 1 < SIDE {
+            let [p, q, r, s] = [0, 1, SIDE + 1, SIDE].map(|step| u32::from(vertex + step));
+            triangles.extend_from_slice(&[p, q, r, p, r, s]);
+        }
+    }
     let positions = Positions::F64(doubles);
     let positions = if form.is_fixed { positions } else { positions.to_f32().into() };
-    let square = |i: u16, j: u16| {
-        let at = |i, j| u32::from(j * SIDE + i);
-        let [p, q, r, s] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
-        [p, q, r, p, r, s]
-    };
-    let triangles = (0..SIDE - 1).flat_map(|j| (0..SIDE - 1).flat_map(move |i| square(i, j))).collect();
     Mesh::new(form.dimension, positions, triangles)
 }
 

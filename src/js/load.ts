@@ -1,4 +1,4 @@
-/** Loads the module of the engines. */
+/** Loads the module of the engines, and that of the audit. */
 
 import initModule, { setShaderLoader } from './wasm/edgeflip.js';
 import { loader } from './module.js';
@@ -16,3 +16,15 @@ const start: typeof initModule = async (source) => {
  * @throws {@link EdgeflipError} `load-failed`.
  */
 export const init = loader(start, () => new URL('./wasm/edgeflip_bg.wasm', import.meta.url));
+
+/**
+ * Loads the module that `FlipSession.verify` calls; `verify` does so by itself. Call it to load early, or with a source
+ * where `edgeflip_audit_bg.wasm` does not lie beside this file. The first call counts; after a failure the next one tries
+ * again.
+ *
+ * @throws {@link EdgeflipError} `load-failed`.
+ */
+export const initAudit = loader(
+  async (source) => (await import('./wasm/edgeflip_audit.js')).default(source),
+  () => new URL('./wasm/edgeflip_audit_bg.wasm', import.meta.url),
+);

@@ -1,37 +1,17 @@
-//! Results as JavaScript objects, in the words of the npm package: the field names of `src/js/types.ts`.
+//! The result as a JavaScript object, in the words of the npm package: the field names of `src/js/types.ts`.
 
-use crate::js_values::{backend_name, object};
-use crate::quality::Audit;
-use crate::{Outcome, Reasons, Status};
-use js_sys::{Array, Uint32Array};
+use crate::js_values::{backend_name, object, reasons_object};
+use crate::{Outcome, Status};
+use js_sys::{JsString, Uint32Array};
 use wasm_bindgen::JsValue;
-
-/// The reasons with at least one edge.
-pub(super) fn reasons_object(reasons: &Reasons) -> JsValue {
-    object(reasons.iter().map(|(reason, edges)| (reason.name(), (edges as f64).into())))
-}
-
-pub(super) fn audit_object(audit: &Audit) -> JsValue {
-    let violations: Array =
-        audit.violations.iter().map(|violation| JsValue::from(violation.to_string())).collect();
-    let ends = audit.remaining.iter().map(|(reason, _)| {
-        let ends: Vec<u32> = audit.remaining_for(reason).flatten().collect();
-        (reason.name(), Uint32Array::from(ends.as_slice()).into())
-    });
-    object([
-        ("clean", audit.is_clean().into()),
-        ("violations", violations.into()),
-        ("unlisted", (audit.unlisted as f64).into()),
-        ("remaining", reasons_object(&audit.remaining)),
-        ("remainingEdges", object(ends)),
-    ])
-}
 
 pub(super) fn outcome_object(outcome: &Outcome) -> JsValue {
     let count = |n: u64| JsValue::from(n as f64);
     let text = |text: &Option<String>| text.as_deref().map_or(JsValue::UNDEFINED, JsValue::from);
     // It quotes errors, in the words of Rust.
-    let fallback = outcome.fallback.as_ref().map(|why| why.replace("backend gpu ", "backend webgpu "));
+    let fallback = outcome.fallback.as_deref().map_or(JsValue::UNDEFINED, |why| {
+        JsString::from(why).replace("backend gpu ", "backend webgpu ").into()
+    });
     let status = match outcome.status {
         Status::Done => "done",
         Status::Stopped => "stopped",
@@ -47,7 +27,7 @@ pub(super) fn outcome_object(outcome: &Outcome) -> JsValue {
         ("status", status.into()),
         ("backend", backend_name(outcome.backend).into()),
         ("adapter", text(&outcome.adapter)),
-        ("fallback", text(&fallback)),
+        ("fallback", fallback),
         ("iterations", outcome.iterations.into()),
         ("flips", count(outcome.flips)),
         ("flipsPerIteration", Uint32Array::from(outcome.flips_per_iteration.as_slice()).into()),

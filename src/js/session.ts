@@ -5,7 +5,7 @@
 import { Session } from './wasm/edgeflip.js';
 import type { EDGE_STATES } from './edge-states.js';
 import { EdgeflipError, fromModule } from './error.js';
-import { init } from './load.js';
+import { init, initAudit } from './load.js';
 import { checkPositions, moduleMesh } from './mesh.js';
 import { Turns } from './turn.js';
 import type { Audit, Edges, Engine, Iteration, Mesh, Options, Result, RunOptions } from './types.js';
@@ -116,10 +116,17 @@ export class FlipSession implements AsyncIterable<Iteration>, Disposable {
 
   /**
    * Checks the triangles against the input, exactly, with code that shares nothing with what made them, and lists the
-   * edges that are not Delaunay.
+   * edges that are not Delaunay. That code is in a WebAssembly module of its own, which the first call loads.
+   *
+   * @throws {@link EdgeflipError} `load-failed`; see {@link initAudit}.
    */
   verify(): Promise<Audit> {
-    return this.#call((session) => session.verify());
+    return this.#call(async (session) => {
+      const input = await session.auditInput();
+      await initAudit();
+      const { audit } = await import('./wasm/edgeflip_audit.js');
+      return audit(...input);
+    });
   }
 
   /** The engine that runs now. */

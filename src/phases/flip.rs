@@ -28,6 +28,7 @@ pub(crate) fn flip(
 
 /// Where the half-edge that an entry of `twins` names will be after the iteration: the half-edge after a
 /// selected one moves into the place of the selected one's twin. A function of the state before the phase.
+#[inline]
 fn slot(selected: &[Selected], entry: u32) -> u32 {
     let x = unflagged(entry);
     if x == NONE {

@@ -108,6 +108,7 @@ fn vertices(mesh: Topology, h: u32) -> [u32; 4] {
     [corner(h), corner(next(h)), corner(prev(h)), corner(prev(g))]
 }
 
+#[inline(always)]
 fn quad(positions: &Positions, mesh: Topology, h: u32) -> Quad {
     let [a, b, c, d] = positions.points3(vertices(mesh, h));
     Quad::new(a, b, c, d)

@@ -1,7 +1,6 @@
 //! Exact integers: points with floating-point coordinates are integers times one power of two, and every predicate is
 //! the sign of a polynomial in their differences.
 
-use num_bigint::{BigInt, Sign};
 use std::cmp::Ordering;
 
 /// What a polynomial needs of the numbers it is evaluated in.
@@ -14,9 +13,9 @@ pub(super) trait Ring {
     fn sign(&self) -> Ordering;
 }
 
-impl Ring for i128 {
+impl Ring for i64 {
     fn new(mantissa: i64, shift: u32) -> Self {
-        Self::from(mantissa) << shift
+        mantissa << shift
     }
     fn add(&self, other: &Self) -> Self {
         self + other
@@ -32,132 +31,120 @@ impl Ring for i128 {
     }
 }
 
-/// Of any size: where the exponents are far apart.
-impl Ring for BigInt {
-    fn new(mantissa: i64, shift: u32) -> Self {
-        Self::from(mantissa) << shift
-    }
-    fn add(&self, other: &Self) -> Self {
-        self + other
-    }
-    fn sub(&self, other: &Self) -> Self {
-        self - other
-    }
-    fn mul(&self, other: &Self) -> Self {
-        self * other
-    }
-    fn sign(&self) -> Ordering {
-        match Self::sign(self) {
-            Sign::Minus => Ordering::Less,
-            Sign::NoSign => Ordering::Equal,
-            Sign::Plus => Ordering::Greater,
-        }
+/// Room for limbs of 64 bits, the least significant first.
+pub(super) trait Limbs: AsRef<[u64]> + AsMut<[u64]> {
+    /// At least `len` of them, if there is room for so many.
+    fn zeros(len: usize) -> Self;
+}
+
+impl<const N: usize> Limbs for [u64; N] {
+    fn zeros(_len: usize) -> Self {
+        [0; N]
     }
 }
 
-/// A signed integer of up to `N` 64-bit limbs: sign and magnitude, `len` limbs in use, the least
-/// significant first. The callers choose `N` so that no result is larger.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Int<const N: usize> {
+impl Limbs for Vec<u64> {
+    fn zeros(len: usize) -> Self {
+        vec![0; len]
+    }
+}
+
+/// A signed integer: sign and magnitude, `len` limbs in use.
+#[derive(Debug)]
+pub(super) struct Int<L> {
     negative: bool,
     len: usize,
-    limbs: [u64; N],
+    limbs: L,
 }
 
-impl<const N: usize> Int<N> {
-    const ZERO: Self = Self { negative: false, len: 0, limbs: [0; N] };
+/// Of up to `N` limbs. The callers choose `N` so that no result is larger.
+pub(super) type Bounded<const N: usize> = Int<[u64; N]>;
 
-    fn trimmed(mut self) -> Self {
-        while self.len > 0 && self.limbs[self.len - 1] == 0 {
-            self.len -= 1;
-        }
-        self
+/// Of any size: where the exponents are far apart.
+pub(super) type Unbounded = Int<Vec<u64>>;
+
+impl<L: Limbs> Int<L> {
+    fn used(&self) -> &[u64] {
+        &self.limbs.as_ref()[..self.len]
     }
 
-    fn negated(mut self) -> Self {
-        self.negative = !self.negative;
-        self
-    }
-
-    fn compare_magnitude(&self, other: &Self) -> Ordering {
-        self.len.cmp(&other.len).then_with(|| {
-            let differs = (0..self.len).rev().find(|&i| self.limbs[i] != other.limbs[i]);
-            differs.map_or(Ordering::Equal, |i| self.limbs[i].cmp(&other.limbs[i]))
-        })
-    }
-
-    /// |self| + |other| with the sign of `self`.
-    fn add_magnitude(&self, other: &Self) -> Self {
-        let mut result = Self { negative: self.negative, len: self.len.max(other.len), ..Self::ZERO };
-        let mut carry = false;
-        for i in 0..result.len {
-            let (sum, first) = self.limbs[i].overflowing_add(other.limbs[i]);
-            let (sum, second) = sum.overflowing_add(u64::from(carry));
-            result.limbs[i] = sum;
-            carry = first | second;
-        }
-        if carry {
-            result.limbs[result.len] = 1;
-            result.len += 1;
-        }
-        result
-    }
-
-    /// |self| - |other| with the sign of `self`, where |self| >= |other|.
-    fn sub_magnitude(&self, other: &Self) -> Self {
-        let mut result = Self { negative: self.negative, len: self.len, ..Self::ZERO };
-        let mut borrow = false;
-        for i in 0..result.len {
-            let (difference, first) = self.limbs[i].overflowing_sub(other.limbs[i]);
-            let (difference, second) = difference.overflowing_sub(u64::from(borrow));
-            result.limbs[i] = difference;
-            borrow = first | second;
-        }
-        result.trimmed()
+    /// The sum with a number that has the magnitude of `other`, and the sign given.
+    #[inline(never)]
+    fn add_signed(&self, other: &Self, negative: bool) -> Self {
+        let mut limbs = L::zeros(self.len.max(other.len) + 1);
+        let is_less = compare(self.used(), other.used()).is_lt();
+        let (large, small) = if is_less { (other, self) } else { (self, other) };
+        let is_sum = self.negative == negative;
+        let len = add_or_subtract(large.used(), small.used(), is_sum, limbs.as_mut());
+        Self { negative: if is_less { negative } else { self.negative }, len, limbs }
     }
 }
 
-impl<const N: usize> Ring for Int<N> {
+/// How many limbs there are up to the last that is not zero.
+fn significant(limbs: &[u64]) -> usize {
+    limbs.iter().rposition(|&limb| limb != 0).map_or(0, |last| last + 1)
+}
+
+fn compare(x: &[u64], y: &[u64]) -> Ordering {
+    x.len().cmp(&y.len()).then_with(|| x.iter().rev().cmp(y.iter().rev()))
+}
+
+/// Writes `large` + `small`, or else their difference, over zeros and returns the number of its limbs. `large` >= `small`.
+fn add_or_subtract(large: &[u64], small: &[u64], is_sum: bool, result: &mut [u64]) -> usize {
+    let step = |x: u64, y| if is_sum { x.overflowing_add(y) } else { x.overflowing_sub(y) };
+    let mut carry = false;
+    for (i, &x) in large.iter().enumerate() {
+        let y = small.get(i).copied().unwrap_or(0);
+        let (limb, first) = step(x, y);
+        let (limb, second) = step(limb, u64::from(carry));
+        result[i] = limb;
+        carry = first | second;
+    }
+    if carry {
+        result[large.len()] = 1;
+    }
+    significant(&result[..large.len() + usize::from(carry)])
+}
+
+/// Writes the product over zeros and returns the number of its limbs.
+fn multiply(x: &[u64], y: &[u64], products: &mut [u64]) -> usize {
+    for (i, &x) in x.iter().enumerate() {
+        let mut carry = 0u128;
+        for (j, &z) in y.iter().enumerate() {
+            carry += u128::from(x) * u128::from(z) + u128::from(products[i + j]);
+            products[i + j] = carry as u64;
+            carry >>= 64;
+        }
+        if carry > 0 {
+            products[i + y.len()] = carry as u64;
+        }
+    }
+    significant(&products[..products.len().min(x.len() + y.len())])
+}
+
+impl<L: Limbs> Ring for Int<L> {
     fn new(mantissa: i64, shift: u32) -> Self {
-        let mut result = Self { negative: mantissa < 0, ..Self::ZERO };
         let wide = u128::from(mantissa.unsigned_abs()) << (shift % 64);
         let at = (shift / 64) as usize;
-        result.limbs[at] = wide as u64;
-        result.limbs[at + 1] = (wide >> 64) as u64;
-        result.len = at + 2;
-        result.trimmed()
+        let mut limbs = L::zeros(at + 2);
+        limbs.as_mut()[at] = wide as u64;
+        limbs.as_mut()[at + 1] = (wide >> 64) as u64;
+        Self { negative: mantissa < 0, len: significant(&limbs.as_ref()[..at + 2]), limbs }
     }
 
     fn add(&self, other: &Self) -> Self {
-        if self.negative == other.negative {
-            self.add_magnitude(other)
-        } else if self.compare_magnitude(other).is_ge() {
-            self.sub_magnitude(other)
-        } else {
-            other.sub_magnitude(self)
-        }
+        self.add_signed(other, other.negative)
     }
 
     fn sub(&self, other: &Self) -> Self {
-        self.add(&other.negated())
+        self.add_signed(other, !other.negative)
     }
 
+    #[inline(never)]
     fn mul(&self, other: &Self) -> Self {
-        let mut result = Self { negative: self.negative != other.negative, ..Self::ZERO };
-        for i in 0..self.len {
-            let mut carry = 0u128;
-            for j in 0..other.len {
-                carry +=
-                    u128::from(self.limbs[i]) * u128::from(other.limbs[j]) + u128::from(result.limbs[i + j]);
-                result.limbs[i + j] = carry as u64;
-                carry >>= 64;
-            }
-            if carry > 0 {
-                result.limbs[i + other.len] = carry as u64;
-            }
-        }
-        result.len = (self.len + other.len).min(N);
-        result.trimmed()
+        let mut limbs = L::zeros(self.len + other.len);
+        let len = multiply(self.used(), other.used(), limbs.as_mut());
+        Self { negative: self.negative != other.negative, len, limbs }
     }
 
     fn sign(&self) -> Ordering {

@@ -1,8 +1,7 @@
 //! The plane: orientation and the in-circle test, as the sine of the sum of the opposite angles.
 
-use super::exact::{Differences, Int, Ring, decode};
+use super::exact::{Bounded, Differences, Ring, Unbounded, decode};
 use glam::DVec2;
-use num_bigint::BigInt;
 use std::cmp::Ordering;
 
 /// Unit roundoff of f64.
@@ -13,8 +12,8 @@ const EPSILON: f64 = f64::EPSILON / 2.0;
 /// or no number, and decides nothing.
 const UNDERFLOW: f64 = f64::MIN_POSITIVE;
 
-/// Differences up to this width keep degree 4 within i128: a cross or dot product of two such vectors is below
-/// 2^61, the product of two of those below 2^122, the sum of two below 2^123.
+/// Differences up to this width keep degree 2 within i64, and degree 4 within i128: a cross or dot product of two such
+/// vectors is below 2^61, the product of two of those below 2^122, the sum of two below 2^123.
 pub(super) const NARROW_BITS: u32 = 30;
 
 /// The same within 20 limbs, 1280 bits: 4·319 + 3 = 1279. Differences of f32 have at most 278 bits.
@@ -76,14 +75,15 @@ pub(crate) fn total_area_sign(triangles: impl Iterator<Item = [DVec2; 3]> + Clon
     let unit = coordinates.map(|x| decode(x).1).min().unwrap_or(0);
     let integer = |x: f64| {
         let (mantissa, exponent) = decode(x);
-        <BigInt as Ring>::new(mantissa, if mantissa == 0 { 0 } else { (exponent - unit) as u32 })
+        Unbounded::new(mantissa, if mantissa == 0 { 0 } else { (exponent - unit) as u32 })
     };
-    let mut sum = BigInt::ZERO;
+    let mut sum = Unbounded::new(0, 0);
     for [a, b, c] in triangles {
         let [a, b, c] = [a, b, c].map(|p| p.to_array().map(integer));
-        sum += (&a[0] - &c[0]) * (&b[1] - &c[1]) - (&a[1] - &c[1]) * (&b[0] - &c[0]);
+        let differences = [(&a, 0), (&a, 1), (&b, 0), (&b, 1)].map(|(point, i)| point[i].sub(&c[i]));
+        sum = sum.add(&doubled_area(&differences));
     }
-    Ring::sign(&sum)
+    sum.sign()
 }
 
 #[cold]
@@ -91,11 +91,12 @@ fn in_circle_exact(a: DVec2, b: DVec2, c: DVec2, d: DVec2) -> Ordering {
     let [p, q, r, s] = [(a, c), (b, c), (a, d), (b, d)].map(|(u, v)| [(u.x, v.x), (u.y, v.y)]);
     let differences = Differences::new([p[0], p[1], q[0], q[1], r[0], r[1], s[0], s[1]]);
     if differences.bits <= NARROW_BITS {
-        in_circle::<i128>(&differences.integers())
+        let [cross1, dot1, cross2, dot2] = crosses_and_dots::<i64>(&differences.integers()).map(i128::from);
+        (cross1 * dot2 + dot1 * cross2).cmp(&0)
     } else if differences.bits <= WIDE_BITS {
-        in_circle::<Int<20>>(&differences.integers())
+        in_circle::<Bounded<20>>(&differences.integers())
     } else {
-        in_circle::<BigInt>(&differences.integers())
+        in_circle::<Unbounded>(&differences.integers())
     }
 }
 
@@ -103,26 +104,32 @@ fn in_circle_exact(a: DVec2, b: DVec2, c: DVec2, d: DVec2) -> Ordering {
 fn area_exact(a: DVec2, b: DVec2, c: DVec2) -> Ordering {
     let differences = Differences::new([(a.x, c.x), (a.y, c.y), (b.x, c.x), (b.y, c.y)]);
     if differences.bits <= WIDE_BITS {
-        area::<Int<20>>(&differences.integers())
+        doubled_area::<Bounded<20>>(&differences.integers()).sign()
     } else {
-        area::<BigInt>(&differences.integers())
+        doubled_area::<Unbounded>(&differences.integers()).sign()
     }
 }
 
 /// The polynomial of [`area_sign`] over exact differences p, q (x and y of each).
-fn area<R: Ring>([px, py, qx, qy]: &[R; 4]) -> Ordering {
-    px.mul(qy).sub(&py.mul(qx)).sign()
+fn doubled_area<R: Ring>([px, py, qx, qy]: &[R; 4]) -> R {
+    px.mul(qy).sub(&py.mul(qx))
+}
+
+/// Of the vectors p and q, and s and r, by x and y of p, q, r, s.
+fn crosses_and_dots<R: Ring>([px, py, qx, qy, rx, ry, sx, sy]: &[R; 8]) -> [R; 4] {
+    let dot = |[ax, ay]: [&R; 2], [bx, by]: [&R; 2]| ax.mul(bx).add(&ay.mul(by));
+    let cross = |[ax, ay]: [&R; 2], [bx, by]: [&R; 2]| ax.mul(by).sub(&ay.mul(bx));
+    let [p, q, r, s] = [[px, py], [qx, qy], [rx, ry], [sx, sy]];
+    [cross(p, q), dot(p, q), cross(s, r), dot(s, r)]
 }
 
 /// The polynomial of [`in_circle_sign`] over exact differences p, q, r, s (x and y of each).
-fn in_circle<R: Ring>([px, py, qx, qy, rx, ry, sx, sy]: &[R; 8]) -> Ordering {
-    let cross1 = px.mul(qy).sub(&py.mul(qx));
-    let dot1 = px.mul(qx).add(&py.mul(qy));
-    let cross2 = sx.mul(ry).sub(&sy.mul(rx));
-    let dot2 = sx.mul(rx).add(&sy.mul(ry));
+fn in_circle<R: Ring>(differences: &[R; 8]) -> Ordering {
+    let [cross1, dot1, cross2, dot2] = crosses_and_dots(differences);
     cross1.mul(&dot2).add(&dot1.mul(&cross2)).sign()
 }
 
+#[inline]
 fn sign(x: f64) -> Ordering {
     x.partial_cmp(&0.0).unwrap_or(Ordering::Equal)
 }

@@ -1,8 +1,7 @@
 //! Surfaces in space: the angle sum, the angle between normals against β, and normals that turn over.
 
-use super::exact::{Differences, Int, Ring};
+use super::exact::{Bounded, Differences, Ring, Unbounded};
 use glam::DVec3;
-use num_bigint::BigInt;
 use std::cmp::Ordering;
 
 /// Bound of every filter here, relative to the product of the sizes of its vectors: 32 unit roundoffs.
@@ -53,11 +52,11 @@ macro_rules! exactly {
         apart(|| {
             let differences = $quad.differences();
             if differences.bits <= NARROW_BITS {
-                $function::<Int<12>>(&differences.integers() $(, $argument)*)
+                $function::<Bounded<12>>(&differences.integers() $(, $argument)*)
             } else if differences.bits <= WIDE_BITS {
-                $function::<Int<40>>(&differences.integers() $(, $argument)*)
+                $function::<Bounded<40>>(&differences.integers() $(, $argument)*)
             } else {
-                $function::<BigInt>(&differences.integers() $(, $argument)*)
+                $function::<Unbounded>(&differences.integers() $(, $argument)*)
             }
         })
     };
@@ -70,13 +69,15 @@ fn apart<T>(decide: impl FnOnce() -> T) -> T {
 }
 
 impl Quad {
+    #[inline(always)]
     pub(crate) fn new(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> Self {
         let (p, q, r, s) = (a - c, b - c, a - d, b - d);
-        let [u, v, w, x] = [p, q, r, s].map(size);
+        let (u, v, w, x) = (size(p), size(q), size(r), size(s));
         Self { points: [a, b, c, d], p, q, r, s, bound: bound((u * v) * (w * x), u + v + w + x) }
     }
 
     /// Whether the opposite angles sum to more than π: |n1|·dot2 + |n2|·dot1 < 0.
+    #[inline(always)]
     pub(crate) fn is_non_delaunay(&self) -> bool {
         let (dot1, dot2) = (self.p.dot(self.q), self.s.dot(self.r));
         let (n1, n2) = (self.p.cross(self.q), self.s.cross(self.r));
@@ -101,6 +102,7 @@ impl Quad {
     }
 
     /// Whether the angle between the normals, before any flip, is larger than β = acos(`cos`).
+    #[inline(always)]
     pub(crate) fn is_over_angle(&self, cos: f64) -> bool {
         if cos <= -1.0 {
             return false;
@@ -113,6 +115,7 @@ impl Quad {
     }
 
     /// n·m - k|n||m| against zero; `Equal` where the filter cannot decide.
+    #[inline]
     fn compare_angle(&self, n: DVec3, m: DVec3, cos: f64) -> Ordering {
         let value = n.dot(m) - cos * (n.length() * m.length());
         if value > self.bound {
@@ -126,16 +129,15 @@ impl Quad {
 
     /// Whether a new normal has a strictly negative dot product with an old one.
     pub(crate) fn turns_over(&self) -> bool {
-        let old = [self.p.cross(self.q), self.s.cross(self.r)];
-        let new = [self.r.cross(self.p), self.q.cross(self.s)];
+        let (old1, old2) = (self.p.cross(self.q), self.s.cross(self.r));
+        let (new1, new2) = (self.r.cross(self.p), self.q.cross(self.s));
         // Each bound is a product of four of the four sizes, one of them twice.
-        let sizes = [self.p, self.q, self.r, self.s].map(size);
-        let largest = sizes.iter().fold(0.0f64, |x, &y| x.max(y));
+        let largest = size(self.p).max(size(self.q)).max(size(self.r)).max(size(self.s));
         let bound = bound((largest * largest) * (largest * largest), 4.0 * largest);
-        let dots = old.map(|n| new.map(|m| n.dot(m)));
-        if dots.as_flattened().iter().any(|&dot| dot < -bound) {
+        let dots = [old1.dot(new1), old1.dot(new2), old2.dot(new1), old2.dot(new2)];
+        if dots.iter().any(|&dot| dot < -bound) {
             true
-        } else if dots.as_flattened().iter().all(|&dot| dot > bound) {
+        } else if dots.iter().all(|&dot| dot > bound) {
             false
         } else {
             exactly!(self, turned_over)
@@ -159,12 +161,14 @@ pub(crate) fn corner(a: DVec3, b: DVec3, c: DVec3) -> (bool, bool) {
 
 /// Of the product of the sizes of a filter's four vectors, and the sum of all sizes. The fourth power of the sum is
 /// larger than anything that a filter computes: where that overflows the bound is infinite, and decides nothing.
+#[inline]
 fn bound(product: f64, sum: f64) -> f64 {
     let square = sum * sum;
     BOUND * product + (UNDERFLOW * square + f64::MIN_POSITIVE * (square * square + 1.0))
 }
 
 /// The 1-norm.
+#[inline]
 fn size(v: DVec3) -> f64 {
     v.abs().element_sum()
 }

@@ -21,59 +21,64 @@ const FEWEST_FOR_GPU: usize = 10_000;
 /// An engine, and why `Auto` did not take those before it.
 type Choice = (Box<dyn Engine>, Option<String>);
 
-/// The engine for the options.
+/// The engine for the options. Boxed, as below.
 ///
 /// # Errors
 /// Those of the engine asked for; none for `Auto`.
-pub(super) async fn engine_for(mesh: &Arc<Mesh>, options: &Options) -> Result<Choice, Error> {
-    match (options.order, options.backend) {
-        (Order::Any, Backend::Gpu | Backend::WebGl) => {
-            let message = "`any` is sequential and runs on the cpu only".to_owned();
-            Err(Error::Option { option: "order", message })
+pub(super) fn engine_for<'a>(mesh: &'a Arc<Mesh>, options: &'a Options) -> Answer<'a, Choice> {
+    Box::pin(async move {
+        match (options.order, options.backend) {
+            (Order::Any, Backend::Gpu | Backend::WebGl) => {
+                let message = "`any` is sequential and runs on the cpu only".to_owned();
+                Err(Error::Option { option: "order", message })
+            }
+            (Order::Any, _) => Ok((open(Backend::Cpu, mesh, options).await?, None)),
+            (Order::Reproducible, Backend::Auto) if mesh.triangle_count() < FEWEST_FOR_GPU => {
+                let why =
+                    format!("a mesh of fewer than {FEWEST_FOR_GPU} triangles is done sooner on the cpu");
+                Ok((open(Backend::Cpu, mesh, options).await?, Some(why)))
+            }
+            (Order::Reproducible, Backend::Auto) => first_of(&ORDER, Vec::new(), mesh, options).await,
+            (Order::Reproducible, backend) => Ok((open(backend, mesh, options).await?, None)),
         }
-        (Order::Any, _) => Ok((open(Backend::Cpu, mesh, options).await?, None)),
-        (Order::Reproducible, Backend::Auto) if mesh.triangle_count() < FEWEST_FOR_GPU => {
-            let why = format!("a mesh of fewer than {FEWEST_FOR_GPU} triangles is done sooner on the cpu");
-            Ok((open(Backend::Cpu, mesh, options).await?, Some(why)))
-        }
-        (Order::Reproducible, Backend::Auto) => first_of(&ORDER, Vec::new(), mesh, options).await,
-        (Order::Reproducible, backend) => Ok((open(backend, mesh, options).await?, None)),
-    }
+    })
 }
 
 /// The engine that `Auto` takes where the one named `failed` has failed with `why`.
 ///
 /// # Errors
 /// As [`engine_for`].
-pub(super) async fn engine_after(
+pub(super) fn engine_after<'a>(
     failed: &str,
     why: String,
-    mesh: &Arc<Mesh>,
-    options: &Options,
-) -> Result<Choice, Error> {
+    mesh: &'a Arc<Mesh>,
+    options: &'a Options,
+) -> Answer<'a, Choice> {
     let names = |backend: &Backend| match backend {
         Backend::Gpu => "gpu",
         Backend::WebGl => "webgl2",
         Backend::Auto | Backend::Cpu => "cpu",
     };
     let place = ORDER.iter().position(|backend| names(backend) == failed).unwrap_or(0);
-    first_of(&ORDER[place + 1..], vec![why], mesh, options).await
+    first_of(&ORDER[place + 1..], vec![why], mesh, options)
 }
 
-/// The first engine that takes the mesh.
-async fn first_of(
-    backends: &[Backend],
+/// The first engine that takes the mesh. Boxed, as below.
+fn first_of<'a>(
+    backends: &'a [Backend],
     mut reasons: Vec<String>,
-    mesh: &Arc<Mesh>,
-    options: &Options,
-) -> Result<Choice, Error> {
-    for &backend in backends {
-        match open(backend, mesh, options).await {
-            Ok(engine) => return Ok((engine, (!reasons.is_empty()).then(|| reasons.join("; ")))),
-            Err(error) => reasons.push(error.to_string()),
+    mesh: &'a Arc<Mesh>,
+    options: &'a Options,
+) -> Answer<'a, Choice> {
+    Box::pin(async move {
+        for &backend in backends {
+            match open(backend, mesh, options).await {
+                Ok(engine) => return Ok((engine, (!reasons.is_empty()).then(|| reasons.join("; ")))),
+                Err(error) => reasons.push(error.to_string()),
+            }
         }
-    }
-    Err(Error::Device { message: reasons.join("; ") })
+        Err(Error::Device { message: reasons.join("; ") })
+    })
 }
 
 /// Boxed, so that what an engine does to begin is compiled into one place only.

@@ -1,6 +1,6 @@
 // The packed npm package, installed into fresh projects, in real browsers: the five lines that README has for a page
-// run as they are, and with Vite by the package's name; so does edgeflip/files. Every page has to write what Node does.
-// Packs the dist/ that is there.
+// run as they are, and with Vite by the package's name; so do edgeflip/files and the audit. Every page has to write what
+// Node does. Packs the dist/ that is there.
 
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
@@ -26,6 +26,14 @@ const withFiles = `
   const result = await makeDelaunay(mesh, { backend: 'auto' });
   document.body.append(\`\${result.flips} flips on \${result.backend}: \${result.indices}\`);
 `;
+const withAudit = `
+  import { FlipSession } from './node_modules/edgeflip/dist/index.js';
+  const positions = new Float32Array([-3, 0, 0, -1, 3, 0, 0, 1]);
+  const indices = new Uint32Array([0, 1, 2, 0, 2, 3]);
+  const session = await FlipSession.create({ positions, indices, dimension: 2 }, { backend: 'auto' });
+  const audit = await session.verify();
+  document.body.append(\`\${JSON.stringify(audit.remaining)} on \${await session.backend()}: \${audit.clean}\`);
+`;
 
 /** The same lines on another engine. */
 function on(backend, lines) {
@@ -47,6 +55,7 @@ const pages = [
   { name: 'webgpu', lines: on('webgpu', fiveLines), writes: '' },
   { name: 'webgl2', lines: on('webgl2', fiveLines), writes: '' },
   { name: 'files', lines: on('cpu', withFiles), writes: '' },
+  { name: 'audit', lines: on('cpu', withAudit), writes: '' },
 ];
 
 function run(program, args, cwd) {
@@ -137,6 +146,7 @@ test('README has five lines, and they flip the long diagonal', () => {
   assert.equal(fiveLines.trim().split('\n').length, 5);
   const written = pages.map(({ writes }) => writes);
   assert.deepEqual(written.slice(0, 4), Array(4).fill('1 flip on cpu: 3,1,2,0,1,3'));
+  assert.equal(written[5], '{"stopped":1} on cpu: true');
   assert.match(written[4], /^47 flips on cpu: (\d+,){293}\d+$/);
 });
 

@@ -4,7 +4,7 @@ use super::texture::Texture;
 use crate::Error;
 use crate::engine::probe::ends_loops_early;
 use crate::engine::self_test::Tested;
-use js_sys::{Function, Object, Promise, Reflect, Uint32Array};
+use js_sys::{Function, JsString, Object, Promise, Reflect, Uint32Array};
 use std::cell::RefCell;
 use std::rc::Rc;
 use wasm_bindgen::prelude::*;
@@ -262,8 +262,8 @@ pub(super) fn lost(gl: &Gl) -> Error {
 }
 
 fn refuse_software(renderer: &str, takes_software: bool) -> Result<(), Error> {
-    let name = renderer.to_ascii_lowercase();
-    if !takes_software && SOFTWARE.iter().any(|software| name.contains(software)) {
+    let name = JsString::from(renderer).to_lower_case();
+    if !takes_software && SOFTWARE.iter().any(|software| name.includes(software, 0)) {
         return Err(unavailable("the renderer is software, slower than the cpu engine"));
     }
     Ok(())

@@ -1,4 +1,4 @@
-//! The kernels, compiled from `shaders/`, and their bindings.
+//! The kernels, compiled from `shaders/` as `build.rs` leaves them, and their bindings.
 
 use crate::engine::upload::Form;
 use crate::mesh::Dimension;
@@ -9,7 +9,7 @@ pub(super) const WORKGROUP_SIZE: u32 = 256;
 
 macro_rules! shaders {
     ($($name:literal)*) => {
-        concat!($(include_str!(concat!("../../../shaders/", $name, ".wgsl"))),*)
+        concat!($(include_str!(concat!(env!("OUT_DIR"), "/", $name, ".wgsl"))),*)
     };
 }
 
