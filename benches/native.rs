@@ -1,5 +1,5 @@
-//! The CPU engine, one thread: the phases and Lawson's algorithm, beside crates that triangulate the same points from
-//! scratch. `cargo bench --bench native -- [--runs N] [FAMILY…]`, a family being what `edgeflip::families::by_name`
+//! The CPU engine: the phases on one thread and on one for each core, Lawson's algorithm on one, beside crates that
+//! triangulate the same points from scratch on one. `cargo bench --bench native -- [--runs N] [FAMILY…]`, a family being what `edgeflip::families::by_name`
 //! takes, with its points in a grid: `cargo bench --bench native -- "random 300" "shear 1000"`.
 //!
 //! The runs are interleaved, so that a busy machine disturbs all of them alike; the figures are medians.
@@ -9,7 +9,7 @@ use edgeflip::{Backend, Dimension, Mesh, Options, Order, Timings, families, make
 use i_triangle::float::triangulatable::Triangulatable;
 use peak_alloc::PeakAlloc;
 use spade::{DelaunayTriangulation, Point2, Triangulation};
-use std::{error::Error, hint::black_box, ops::ControlFlow, time::Instant};
+use std::{error::Error, hint::black_box, num::NonZeroUsize, ops::ControlFlow, thread, time::Instant};
 
 #[path = "arguments/mod.rs"]
 mod arguments;
@@ -28,7 +28,7 @@ type Part = fn(&Timings) -> f64;
 
 /// What is measured, each with its own idea of the input.
 struct Contender<'a> {
-    name: &'static str,
+    name: String,
     job: Box<Job<'a>>,
     timings: Vec<Timings>,
     ms: Vec<f64>,
@@ -38,12 +38,14 @@ struct Contender<'a> {
 fn main() -> Result<(), Box<dyn Error>> {
     let Arguments { runs, specs } = Arguments::read(5, &MESHES)?;
     println!(
-        "One thread, from arrays to arrays, medians of {runs} interleaved runs. The others triangulate the points"
+        "One thread where nothing else is said, from arrays to arrays, medians of {runs} interleaved runs. The others"
     );
     println!(
-        "from scratch; i_triangle gets those inside and the four corners. Ratios are the other's time by ours:"
+        "triangulate the points from scratch; i_triangle gets those inside and the four corners. Ratios are the"
     );
-    println!("above 1, ours is faster. Memory is the most that is held beside the input.");
+    println!(
+        "first one's time by the second one's: above 1, the second is faster. Memory is the most that is held beside the input."
+    );
     println!();
     for (i, spec) in specs.iter().enumerate() {
         let table = table(spec, runs)?;
@@ -68,10 +70,13 @@ fn table(spec: &str, runs: usize) -> Result<[String; 3], Box<dyn Error>> {
     let corners = [0, n - 1, n * n - 1, n * n - n].map(|i| pairs[i]);
     let is_inside = |i: usize| [i % n, i / n].iter().all(|k| (1..n - 1).contains(k));
     let inside: Vec<[f64; 2]> = (0..n * n).filter(|&i| is_inside(i)).map(|i| pairs[i]).collect();
-    let edges = flip(&mesh, Order::Reproducible)?.0;
+    let one = NonZeroUsize::new(1);
+    let edges = flip(&mesh, Order::Reproducible, one)?.0;
+    let cores = if cfg!(feature = "threads") { thread::available_parallelism()?.get() } else { 1 };
     let mut contenders = [
-        contender("phases", || Ok(flip(&mesh, Order::Reproducible)?.1)),
-        contender("Lawson", || Ok(flip(&mesh, Order::Any)?.1)),
+        contender("phases", || Ok(flip(&mesh, Order::Reproducible, one)?.1)),
+        contender("Lawson", || Ok(flip(&mesh, Order::Any, one)?.1)),
+        contender(&format!("phases on {cores} threads"), || Ok(flip(&mesh, Order::Reproducible, None)?.1)),
         contender("delaunator", || {
             black_box(delaunator::triangulate(black_box(&points)));
             Ok(Timings::default())
@@ -96,8 +101,8 @@ fn table(spec: &str, runs: usize) -> Result<[String; 3], Box<dyn Error>> {
         contenders.iter().map(|contender| per_edge(median(contender.ms.clone()) * 1e6)).collect();
     let mut head = vec!["mesh".to_owned(), "edges".to_owned()];
     let mut row = vec![spec.to_owned(), edges.to_string()];
-    for our in 0..2 {
-        for other in 2..contenders.len() {
+    for (our, others) in [(0, 3..6), (1, 3..6), (2, 0..1)] {
+        for other in others {
             head.push(format!("{} : {}", contenders[other].name, contenders[our].name));
             row.push(format!("{:.2}", ns[other] / ns[our]));
         }
@@ -106,7 +111,7 @@ fn table(spec: &str, runs: usize) -> Result<[String; 3], Box<dyn Error>> {
         head.push(format!("{}, ns an edge", contender.name));
         row.push(format!("{:.1}", ns[i]));
     }
-    for Contender { name, timings, .. } in &contenders[..2] {
+    for Contender { name, timings, .. } in &contenders[..3] {
         let parts: [(&str, Part); 2] = [("adjacency", |t| t.adjacency), ("flips", |t| t.flip)];
         for (part, of) in parts {
             head.push(format!("{name}: {part}"));
@@ -121,11 +126,14 @@ fn table(spec: &str, runs: usize) -> Result<[String; 3], Box<dyn Error>> {
     Ok([format!("| {} |", head.join(" | ")), ruler, format!("| {} |", row.join(" | "))])
 }
 
-fn contender<'a>(
-    name: &'static str,
-    job: impl Fn() -> Result<Timings, Box<dyn Error>> + 'a,
-) -> Contender<'a> {
-    Contender { name, job: Box::new(job), timings: Vec::new(), ms: Vec::new(), bytes: Vec::new() }
+fn contender<'a>(name: &str, job: impl Fn() -> Result<Timings, Box<dyn Error>> + 'a) -> Contender<'a> {
+    Contender {
+        name: name.to_owned(),
+        job: Box::new(job),
+        timings: Vec::new(),
+        ms: Vec::new(),
+        bytes: Vec::new(),
+    }
 }
 
 fn measure(contender: &mut Contender) -> Result<(), Box<dyn Error>> {
@@ -140,8 +148,8 @@ fn measure(contender: &mut Contender) -> Result<(), Box<dyn Error>> {
 }
 
 /// The number of edges, and where the time went.
-fn flip(mesh: &Mesh, order: Order) -> Result<(u32, Timings), edgeflip::Error> {
-    let options = Options { backend: Backend::Cpu, order, ..Options::default() };
+fn flip(mesh: &Mesh, order: Order, threads: Option<NonZeroUsize>) -> Result<(u32, Timings), edgeflip::Error> {
+    let options = Options { backend: Backend::Cpu, order, threads, ..Options::default() };
     let outcome = make_delaunay(mesh, &options, |_, _| ControlFlow::Continue(()))?;
     Ok((outcome.edges as u32, black_box(outcome).timings))
 }

@@ -2,7 +2,11 @@
 //!
 //! Half-edge h belongs to triangle h / 3 and goes from `triangles[h]` to `triangles[next(h)]`.
 
+use crate::threads::{Threads, shared};
 use crate::{Mesh, NONE};
+use std::array;
+use std::ops::Range;
+use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
 /// The half-edge after `h` in its triangle.
 #[inline]
@@ -79,44 +83,52 @@ struct Buckets {
 }
 
 impl Buckets {
-    fn new(vertices: usize, triangles: &[u32]) -> Self {
+    fn new(vertices: usize, triangles: &[u32], threads: &Threads) -> Self {
         let (corners, _) = triangles.as_chunks::<3>();
-        let mut starts = vec![0u32; vertices + 1];
-        for &[a, b, c] in corners {
-            for low in [a.min(b), b.min(c), c.min(a)] {
-                starts[low as usize + 1] += 1;
+        let mut pieces = threads.map_each(threads.pieces_with_arrays(corners.len()), |piece| {
+            let mut counts = vec![0u32; vertices];
+            for &[a, b, c] in &corners[piece.clone()] {
+                for low in [a.min(b), b.min(c), c.min(a)] {
+                    counts[low as usize] += 1;
+                }
             }
-        }
+            (piece, counts)
+        });
+        // Each count becomes a start: of the part of the bucket that is of the piece.
         let mut sum = 0;
-        for start in &mut starts {
-            sum += *start;
-            *start = sum;
+        for low in 0..vertices {
+            for (_, starts) in &mut pieces {
+                sum += std::mem::replace(&mut starts[low], sum);
+            }
         }
         let mut half_edges = vec![0u32; triangles.len()];
-        for (t, &[a, b, c]) in (0..).zip(corners) {
-            for (low, h) in [(a.min(b), 3 * t), (b.min(c), 3 * t + 1), (c.min(a), 3 * t + 2)] {
-                let at = &mut starts[low as usize];
-                half_edges[*at as usize] = h;
-                *at += 1;
+        let words = shared(&mut half_edges);
+        let ends = threads.map_each(pieces, |(piece, mut starts)| {
+            for (t, &[a, b, c]) in (piece.start as u32..).zip(&corners[piece]) {
+                for (low, h) in [(a.min(b), 3 * t), (b.min(c), 3 * t + 1), (c.min(a), 3 * t + 2)] {
+                    let at = &mut starts[low as usize];
+                    words[*at as usize].store(h, Relaxed);
+                    *at += 1;
+                }
             }
-        }
-        // Each start has moved to the end of its bucket.
-        starts.pop();
-        Self { ends: starts, half_edges }
+            starts
+        });
+        // Each start has moved to the end of its part.
+        Self { ends: ends.into_iter().next_back().unwrap_or_else(|| vec![0; vertices]), half_edges }
     }
 
-    /// Calls `visit` with each vertex and its bucket, which it may put in another order.
-    fn visit(mut self, mut visit: impl FnMut(u32, &mut [u32])) {
-        let mut start = 0;
-        for (vertex, &end) in (0..).zip(&self.ends) {
-            visit(vertex, &mut self.half_edges[start..end as usize]);
+    /// The buckets of some vertices, each with its vertex.
+    fn of(&self, vertices: Range<usize>) -> impl Iterator<Item = (u32, &[u32])> {
+        let mut start = if vertices.start == 0 { 0 } else { self.ends[vertices.start - 1] as usize };
+        (vertices.start as u32..).zip(&self.ends[vertices]).map(move |(vertex, &end)| {
+            let bucket = &self.half_edges[start..end as usize];
             start = end as usize;
-        }
+            (vertex, bucket)
+        })
     }
 }
 
 /// The vertex of half-edge `h`'s edge that is not `low`.
-#[inline]
 fn other_end(triangles: &[u32], low: u32, h: u32) -> u32 {
     triangles[h as usize] ^ triangles[next(h) as usize] ^ low
 }
@@ -124,29 +136,25 @@ fn other_end(triangles: &[u32], low: u32, h: u32) -> u32 {
 /// Calls `visit` once for each edge with its half-edges in ascending order, edges by their smaller vertex. A vertex of n
 /// edges costs n log n.
 pub(crate) fn for_each_edge(vertices: usize, triangles: &[u32], mut visit: impl FnMut(&[u32])) {
-    let mut scratch = Vec::new();
-    let each_bucket = |low, bucket: &mut [u32]| {
-        visit_edges(triangles, low, bucket, &mut scratch, &mut visit);
-    };
-    Buckets::new(vertices, triangles).visit(each_bucket);
+    let mut sorted = Vec::new();
+    for (low, bucket) in Buckets::new(vertices, triangles, &Threads::default()).of(0..vertices) {
+        visit_edges(triangles, low, bucket, &mut sorted, &mut visit);
+    }
 }
 
-/// The same for the edges of one bucket, by whose other ends it is sorted.
+/// The same for the edges of one bucket. `sorted` is scratch.
 fn visit_edges(
     triangles: &[u32],
     low: u32,
-    bucket: &mut [u32],
-    scratch: &mut Vec<(u32, u32)>,
+    bucket: &[u32],
+    sorted: &mut Vec<u32>,
     visit: &mut impl FnMut(&[u32]),
 ) {
     let end = |h: u32| other_end(triangles, low, h);
-    scratch.clear();
-    scratch.extend(bucket.iter().map(|&h| (end(h), h)));
-    scratch.sort_unstable();
-    for (place, &(_, h)) in bucket.iter_mut().zip(scratch.iter()) {
-        *place = h;
-    }
-    for edge in bucket.chunk_by(|&x, &y| end(x) == end(y)) {
+    sorted.clear();
+    sorted.extend(bucket);
+    sorted.sort_unstable_by_key(|&h| (end(h), h));
+    for edge in sorted.chunk_by(|&x, &y| end(x) == end(y)) {
         visit(edge);
     }
 }
@@ -157,7 +165,7 @@ fn match_few<const N: usize>(
     triangles: &[u32],
     low: u32,
     bucket: &[u32],
-    twins: &mut [u32],
+    twins: &[AtomicU32],
 ) -> Option<[u32; 2]> {
     // What is no half-edge is equal to none: no other end is `low`, but in a triangle that has a corner twice.
     let mut ends = [low; N];
@@ -186,7 +194,7 @@ fn match_few<const N: usize>(
         return None;
     }
     for (&h, partner) in bucket.iter().zip(partners) {
-        twins[h as usize] = partner;
+        twins[h as usize].store(partner, Relaxed);
     }
     Some([alone, (bucket.len() as u32 - alone) / 2])
 }
@@ -194,45 +202,65 @@ fn match_few<const N: usize>(
 impl Adjacency {
     /// Matches the half-edges of a mesh.
     pub fn new(mesh: &Mesh) -> Self {
-        Self::of_triangles(mesh.vertex_count(), mesh.triangles())
+        Self::of_triangles(mesh.vertex_count(), mesh.triangles(), &Threads::default())
     }
 
     /// Matches the half-edges of `triangles`, whose indices must be below `vertices`.
-    pub(crate) fn of_triangles(vertices: usize, triangles: &[u32]) -> Self {
-        let mut result = Self { twins: vec![NONE; triangles.len()], ..Self::default() };
-        let mut scratch = Vec::new();
-        Buckets::new(vertices, triangles).visit(|low, bucket| {
-            let matched = match bucket.len() {
-                0..=8 => match_few::<8>(triangles, low, bucket, &mut result.twins),
-                9..=16 => match_few::<16>(triangles, low, bucket, &mut result.twins),
-                _ => None,
-            };
-            if let Some([boundary, interior]) = matched {
-                result.edges += boundary + interior;
-                result.boundary += boundary;
-                return;
-            }
-            visit_edges(triangles, low, bucket, &mut scratch, &mut |half_edges| {
-                result.edges += 1;
-                match edge_kind(half_edges, triangles) {
-                    EdgeKind::Boundary => result.boundary += 1,
-                    EdgeKind::NonManifold => result.non_manifold += 1,
-                    EdgeKind::Inconsistent => result.inconsistent += 1,
-                    EdgeKind::Interior => {
-                        let (h, g) = (half_edges[0], half_edges[1]);
-                        result.twins[h as usize] = g;
-                        result.twins[g as usize] = h;
-                    }
-                }
-            });
-        });
-        result
+    pub(crate) fn of_triangles(vertices: usize, triangles: &[u32], threads: &Threads) -> Self {
+        let buckets = Buckets::new(vertices, triangles, threads);
+        let mut twins = vec![NONE; triangles.len()];
+        let words = shared(&mut twins);
+        let counts = threads.map(vertices, |piece| match_buckets(triangles, buckets.of(piece), words));
+        let [edges, boundary, non_manifold, inconsistent] =
+            counts.into_iter().fold([0; 4], |sums, counts| array::from_fn(|kind| sums[kind] + counts[kind]));
+        Self { twins, edges, boundary, non_manifold, inconsistent }
     }
+}
+
+/// Writes the twins of some buckets, where there are any, and returns the number of their edges: all, those on the
+/// boundary, the non-manifold and the inconsistent ones.
+fn match_buckets<'a>(
+    triangles: &[u32],
+    buckets: impl Iterator<Item = (u32, &'a [u32])>,
+    twins: &[AtomicU32],
+) -> [u32; 4] {
+    let mut counts = [0; 4];
+    let mut sorted = Vec::new();
+    for (low, bucket) in buckets {
+        let matched = match bucket.len() {
+            0..=8 => match_few::<8>(triangles, low, bucket, twins),
+            9..=16 => match_few::<16>(triangles, low, bucket, twins),
+            _ => None,
+        };
+        if let Some([boundary, interior]) = matched {
+            counts[0] += boundary + interior;
+            counts[1] += boundary;
+            continue;
+        }
+        visit_edges(triangles, low, bucket, &mut sorted, &mut |half_edges| {
+            counts[0] += 1;
+            match edge_kind(half_edges, triangles) {
+                EdgeKind::Boundary => counts[1] += 1,
+                EdgeKind::NonManifold => counts[2] += 1,
+                EdgeKind::Inconsistent => counts[3] += 1,
+                EdgeKind::Interior => {
+                    let (h, g) = (half_edges[0], half_edges[1]);
+                    twins[h as usize].store(g, Relaxed);
+                    twins[g as usize].store(h, Relaxed);
+                }
+            }
+        });
+    }
+    counts
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn matched(vertices: usize, triangles: &[u32]) -> Adjacency {
+        Adjacency::of_triangles(vertices, triangles, &Threads::default())
+    }
 
     #[test]
     fn half_edges_leave_room_for_flags() {
@@ -249,7 +277,7 @@ mod tests {
     /// ```
     #[test]
     fn two_triangles_share_one_edge() {
-        let adjacency = Adjacency::of_triangles(4, &[0, 1, 3, 1, 2, 3]);
+        let adjacency = matched(4, &[0, 1, 3, 1, 2, 3]);
         assert_eq!(adjacency.twins, [NONE, 5, NONE, NONE, NONE, 1]);
         assert_eq!((adjacency.edges, adjacency.boundary), (5, 4));
     }
@@ -257,14 +285,14 @@ mod tests {
     /// Three triangles at the edge 0-1, like the pages of a book.
     #[test]
     fn an_edge_of_three_triangles_is_frozen() {
-        let adjacency = Adjacency::of_triangles(5, &[0, 1, 2, 1, 0, 3, 0, 1, 4]);
+        let adjacency = matched(5, &[0, 1, 2, 1, 0, 3, 0, 1, 4]);
         assert_eq!(adjacency.twins, [NONE; 9]);
         assert_eq!((adjacency.edges, adjacency.boundary, adjacency.non_manifold), (7, 6, 1));
     }
 
     #[test]
     fn an_edge_between_triangles_turned_against_each_other_is_frozen() {
-        let adjacency = Adjacency::of_triangles(4, &[0, 1, 2, 0, 1, 3]);
+        let adjacency = matched(4, &[0, 1, 2, 0, 1, 3]);
         assert_eq!(adjacency.twins, [NONE; 6]);
         assert_eq!((adjacency.boundary, adjacency.inconsistent), (4, 1));
     }
@@ -272,14 +300,14 @@ mod tests {
     /// (0, 0, 1) has the edge 0-1 twice and the edge 0-0.
     #[test]
     fn a_triangle_is_not_its_own_neighbour() {
-        let adjacency = Adjacency::of_triangles(2, &[0, 0, 1]);
+        let adjacency = matched(2, &[0, 0, 1]);
         assert_eq!(adjacency.twins, [NONE; 3]);
         assert_eq!((adjacency.boundary, adjacency.non_manifold), (1, 1));
     }
 
     #[test]
     fn unreferenced_vertices_have_no_edges() {
-        assert_eq!(Adjacency::of_triangles(7, &[]), Adjacency::default());
-        assert_eq!(Adjacency::of_triangles(9, &[8, 4, 6]).boundary, 3);
+        assert_eq!(matched(7, &[]), Adjacency::default());
+        assert_eq!(matched(9, &[8, 4, 6]).boundary, 3);
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::Adjacency;
 use crate::adjacency::{next, unflagged};
+use crate::threads::Threads;
 
 /// Every edge, one entry in each array. An edge is named by its lower half-edge, and edges come in the order
 /// of these names. Each half-edge of a frozen edge counts as an edge of its own, as it does for the flips.
@@ -20,7 +21,7 @@ pub struct Edges {
 impl Edges {
     /// The edges of `triangles`, whose indices are below `vertices`.
     pub fn new(vertices: usize, triangles: &[u32]) -> Self {
-        Self::from_twins(triangles, &Adjacency::of_triangles(vertices, triangles).twins)
+        Self::from_twins(triangles, &Adjacency::of_triangles(vertices, triangles, &Threads::default()).twins)
     }
 
     /// The edges of `triangles`, given their twins, flagged or not.

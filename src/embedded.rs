@@ -5,11 +5,12 @@
 //! it so.
 
 use crate::NONE;
-use crate::adjacency::next;
 use crate::mesh::{Dimension, Mesh};
 use crate::predicates::area_sign;
+use crate::threads::Threads;
 use crate::winding::Winding;
 use glam::DVec2;
+use std::ops::Range;
 
 /// How often the triangles at each vertex go across the direction of the x axis, twice standing for more, for an open
 /// star and for one with a triangle that is not positive. Empty in 3D.
@@ -20,39 +21,16 @@ pub(crate) struct Embedded {
 
 impl Embedded {
     /// Of the vertices of a mesh with these twins.
-    pub(crate) fn new(mesh: &Mesh, twins: &[u32], winding: &Winding) -> Self {
+    pub(crate) fn new(mesh: &Mesh, twins: &[u32], winding: &Winding, threads: &Threads) -> Self {
         if mesh.dimension() == Dimension::Three {
             return Self::default();
         }
-        let mut turns = vec![0u8; mesh.vertex_count()];
-        let mut turn = |v: u32, by: u8| turns[v as usize] = (turns[v as usize] + by).min(2);
-        // Whether the edge from u to v goes to below the axis through u, or along it. Else the edge from v to u does.
-        let goes_down = |u: DVec2, v: DVec2| (v.y < u.y) | ((v.y == u.y) & (v.x > u.x));
-        let (triangles, _) = mesh.triangles().as_chunks();
-        for (t, &[a, b, c]) in (0..).zip(triangles) {
-            let [p, q, r] = mesh.positions().points2([a, b, c]);
-            let is_clockwise = winding.is_clockwise(t);
-            if !winding.is_strict && area_sign(p, q, r) != winding.positive(t) {
-                for v in [a, b, c] {
-                    turn(v, 2);
-                }
-                continue;
-            }
-            // At the corner between two edges that go down, a counter-clockwise triangle goes across; not all three do.
-            let [first, second, third] =
-                [(p, q), (q, r), (r, p)].map(|(u, v)| goes_down(u, v) != is_clockwise);
-            let corner = if first & second {
-                b
-            } else if second & third {
-                c
-            } else {
-                a
-            };
-            turn(corner, u8::from(first & second | second & third | third & first));
-        }
-        for h in (0..).zip(twins).filter(|&(_, &twin)| twin == NONE).map(|(h, _)| h) {
-            turn(mesh.triangles()[h as usize], 2);
-            turn(mesh.triangles()[next(h) as usize], 2);
+        let pieces = threads.pieces_with_arrays(mesh.triangle_count());
+        let pieces = threads.map_each(pieces, |piece| turns(mesh, twins, winding, piece));
+        let mut pieces = pieces.into_iter();
+        let mut turns = pieces.next().unwrap_or_else(|| vec![0; mesh.vertex_count()]);
+        for piece in pieces {
+            turns.iter_mut().zip(piece).for_each(|(sum, turns)| *sum = (*sum + turns).min(2));
         }
         Self { turns }
     }
@@ -61,5 +39,68 @@ impl Embedded {
     #[inline]
     pub(crate) fn at(&self, v: u32) -> bool {
         self.turns.get(v as usize) == Some(&1)
+    }
+}
+
+/// What some of the triangles add.
+fn turns(mesh: &Mesh, twins: &[u32], winding: &Winding, piece: Range<usize>) -> Vec<u8> {
+    let mut turns = vec![0u8; mesh.vertex_count()];
+    let mut turn = |v: u32, by: u8| turns[v as usize] = (turns[v as usize] + by).min(2);
+    // Whether the edge from u to v goes to below the axis through u, or along it. Else the edge from v to u does.
+    let goes_down = |u: DVec2, v: DVec2| (v.y < u.y) | ((v.y == u.y) & (v.x > u.x));
+    let (triangles, _) = mesh.triangles().as_chunks();
+    let (sides, _) = twins.as_chunks::<3>();
+    for t in piece {
+        let [a, b, c] = triangles[t];
+        for (twin, ends) in sides[t].iter().zip([[a, b], [b, c], [c, a]]) {
+            if *twin == NONE {
+                ends.into_iter().for_each(|v| turn(v, 2));
+            }
+        }
+        let [p, q, r] = mesh.positions().points2([a, b, c]);
+        let is_clockwise = winding.is_clockwise(t as u32);
+        if !winding.is_strict && area_sign(p, q, r) != winding.positive(t as u32) {
+            for v in [a, b, c] {
+                turn(v, 2);
+            }
+            continue;
+        }
+        // At the corner between two edges that go down, a counter-clockwise triangle goes across; not all three do.
+        let [first, second, third] = [(p, q), (q, r), (r, p)].map(|(u, v)| goes_down(u, v) != is_clockwise);
+        let corner = if first & second {
+            b
+        } else if second & third {
+            c
+        } else {
+            a
+        };
+        turn(corner, u8::from(first & second | second & third | third & first));
+    }
+    turns
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::num::NonZeroUsize;
+
+    /// Sixteen triangles around the first vertex. The others are on the boundary.
+    #[test]
+    fn a_star_that_goes_round_twice_is_not_embedded() {
+        for (rounds, is_embedded) in [(1, true), (2, false), (4, false)] {
+            let at = |i: u32| f64::from(i * rounds) * std::f64::consts::TAU / 16.0;
+            let positions: Vec<f64> =
+                [0.0; 2].into_iter().chain((0..16).flat_map(|i| [at(i).cos(), at(i).sin()])).collect();
+            let triangles: Vec<u32> = (0..16).flat_map(|i| [0, i + 1, (i + 1) % 16 + 1]).collect();
+            let mesh = Mesh::new(Dimension::Two, positions, triangles).unwrap();
+            for threads in 1..=4 {
+                let threads = Threads::new(NonZeroUsize::new(threads)).unwrap();
+                let twins = crate::Adjacency::new(&mesh).twins;
+                let winding = Winding::new(&mesh, &twins, &threads);
+                let embedded = Embedded::new(&mesh, &twins, &winding, &threads);
+                assert_eq!(embedded.at(0), is_embedded);
+                assert!((1..17).all(|v| !embedded.at(v)));
+            }
+        }
     }
 }

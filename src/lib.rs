@@ -47,6 +47,7 @@ mod predicates;
 pub mod quality;
 mod session;
 mod star;
+mod threads;
 mod winding;
 
 pub use adjacency::Adjacency;

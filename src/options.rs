@@ -1,5 +1,7 @@
 //! What the caller of a run can choose.
 
+use std::num::NonZeroUsize;
+
 /// Which engine runs the phases.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Backend {
@@ -41,6 +43,9 @@ pub struct Options {
     pub locked_edges: Vec<[u32; 2]>,
     /// Reproducible pipeline or Lawson's algorithm.
     pub order: Order,
+    /// How many threads the CPU engine runs on; `None`: one for each core. The result is the same for any
+    /// number. Lawson's algorithm flips on one. In WebAssembly, and without the feature `threads`, it is always one.
+    pub threads: Option<NonZeroUsize>,
     /// The device that the GPU engine runs on, instead of one of its own. It is never destroyed here, nothing of it
     /// is set, and its errors about other calls are left alone. Of a software one, `Auto` takes the CPU.
     #[cfg(all(target_arch = "wasm32", feature = "js"))]
@@ -55,6 +60,7 @@ impl Default for Options {
             max_iterations: None,
             locked_edges: Vec::new(),
             order: Order::Reproducible,
+            threads: None,
             #[cfg(all(target_arch = "wasm32", feature = "js"))]
             device: None,
         }

@@ -14,6 +14,7 @@ use crate::phases::{Geometry, Topology};
 use crate::predicates::cos_degrees;
 use crate::quality::{Audit, audit};
 use crate::star::Fans;
+use crate::threads::Threads;
 use crate::winding::Winding;
 use crate::{
     Backend, EdgeState, Edges, Error, Iteration, Mesh, Options, Order, Outcome, Positions, Reason, Status,
@@ -218,7 +219,7 @@ impl Session {
             positions: self.mesh.positions(),
             cos: cos_degrees(self.options.max_normal_angle),
             // As the engine found it: neither the components nor their areas change with flips.
-            winding: &Winding::new(&self.mesh, &twins),
+            winding: &Winding::new(&self.mesh, &twins, &Threads::default()),
             embedded: &Embedded::default(),
         };
         let vertices = self.mesh.vertex_count();

@@ -162,10 +162,11 @@ pub(crate) fn any_in_either(
 mod tests {
     use super::*;
     use crate::Adjacency;
+    use crate::threads::Threads;
 
     /// The vertices opposite to vertex `v`'s corners, walked from its first one.
     fn around(vertices: usize, triangles: &[u32], v: u32) -> Vec<[u32; 2]> {
-        let twins = Adjacency::of_triangles(vertices, triangles).twins;
+        let twins = Adjacency::of_triangles(vertices, triangles, &Threads::default()).twins;
         let fans = Fans::new(vertices, triangles, &twins, |_| false);
         let corner = triangles.iter().position(|&u| u == v).map_or(NONE, |h| h as u32);
         let ends = |x| [next(x), prev(x)].map(|h| triangles[h as usize]);
@@ -214,7 +215,7 @@ mod tests {
     #[test]
     fn the_shorter_star_decides() {
         let triangles: Vec<u32> = (1..=100).flat_map(|i| [0, i, i % 100 + 1]).collect();
-        let twins = Adjacency::of_triangles(101, &triangles).twins;
+        let twins = Adjacency::of_triangles(101, &triangles, &Threads::default()).twins;
         let fans = Fans::default();
         let star = |corner| Star::new(&triangles, &twins, &fans, corner);
         let steps = std::cell::Cell::new(0);

@@ -4,6 +4,8 @@ use crate::NONE;
 use crate::adjacency::unflagged;
 use crate::mesh::{Dimension, Mesh};
 use crate::predicates::{area_sign, total_area_sign};
+use crate::threads::Threads;
+use std::array;
 use std::cmp::Ordering;
 
 /// One bit a triangle: 1 where its edge-connected component has a negative total area. Empty where no
@@ -17,22 +19,29 @@ pub(crate) struct Winding {
 
 impl Winding {
     /// What the triangles say, and where they disagree what the components joined by `twins` say.
-    pub(crate) fn new(mesh: &Mesh, twins: &[u32]) -> Self {
-        Self::of_triangles(mesh).unwrap_or_else(|| Self::of_components(mesh, twins))
+    pub(crate) fn new(mesh: &Mesh, twins: &[u32], threads: &Threads) -> Self {
+        Self::of_triangles(mesh, threads).unwrap_or_else(|| Self::of_components(mesh, twins))
     }
 
     /// What the triangles say one by one; `None` where they disagree, and components have to be found.
-    pub(crate) fn of_triangles(mesh: &Mesh) -> Option<Self> {
+    pub(crate) fn of_triangles(mesh: &Mesh, threads: &Threads) -> Option<Self> {
         if mesh.dimension() == Dimension::Three {
             return Some(Self::default());
         }
-        let mut seen = [false; 3];
-        for t in 0..mesh.triangle_count() {
-            let [a, b, c] = corners(mesh, t);
-            seen[(area_sign(a, b, c) as i8 + 1) as usize] = true;
-            if seen[0] && seen[2] {
-                return None;
+        let signs = threads.map(mesh.triangle_count(), |piece| {
+            let mut seen = [false; 3];
+            for t in piece {
+                let [a, b, c] = corners(mesh, t);
+                seen[(area_sign(a, b, c) as i8 + 1) as usize] = true;
+                if seen[0] && seen[2] {
+                    break;
+                }
             }
+            seen
+        });
+        let seen: [bool; 3] = array::from_fn(|sign| signs.iter().any(|seen| seen[sign]));
+        if seen[0] && seen[2] {
+            return None;
         }
         // Where all triangles are flat no edge flips, whatever the sign.
         let words = if seen[0] { mesh.triangle_count().div_ceil(32) } else { 0 };

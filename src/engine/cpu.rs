@@ -7,22 +7,23 @@ use crate::embedded::Embedded;
 use crate::locks;
 use crate::mesh::{Dimension, Mesh};
 use crate::phases::{
-    Geometry, Selected, Topology, Verdict, flag_creases, flip, keep_non_delaunay, key, verdict,
+    Geometry, Selected, Topology, Verdict, flag_creases, flip, keep_non_delaunay, key, move_anchors, verdict,
     verdict_of_non_delaunay, yields,
 };
 use crate::star::Fans;
+use crate::threads::{Threads, shared};
 use crate::winding::Winding;
 use crate::{Adjacency, NONE, Reason};
+use std::ops::Range;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU8, AtomicU32, Ordering::Relaxed};
 
 /// Edges that are tested in one go.
 const EDGES: usize = 1024;
 
-/// A triangle without an edge that flips.
-const FREE: Selected = [NONE; 2];
-
 /// The state of a mesh between two iterations.
 pub(crate) struct Cpu {
+    threads: Threads,
     mesh: Arc<Mesh>,
     cos: f64,
     winding: Winding,
@@ -31,44 +32,45 @@ pub(crate) struct Cpu {
     pub(crate) triangles: Vec<u32>,
     pub(crate) twins: Vec<u32>,
     pub(crate) fans: Fans,
-    /// Of each half-edge what the last test of its edge said.
-    verdicts: Vec<Verdict>,
+    /// Of each half-edge what the last test of its edge said, by its [`code`].
+    verdicts: Vec<AtomicU8>,
     /// The lower half-edges of the edges that may flip, or could but for a duplicate.
     candidates: Vec<u32>,
     /// A half-edge of each edge that the last iteration has flipped; `None` before the first.
     flipped: Option<Vec<u32>>,
     /// Those edges by triangle.
-    selected: Vec<Selected>,
+    selected: Selected,
     /// For each vertex whose star is not known to be embedded the last iteration, plus one, in which an edge there came
     /// or went.
-    changed: Vec<u32>,
+    changed: Vec<AtomicU32>,
     iteration: u32,
 }
 
 impl Cpu {
     /// Builds the adjacency; `cos` is the cosine of β.
-    pub(crate) fn new(mesh: Arc<Mesh>, cos: f64) -> Self {
-        let adjacency = Adjacency::new(&mesh);
-        let winding = Winding::new(&mesh, &adjacency.twins);
-        let embedded = Embedded::new(&mesh, &adjacency.twins, &winding);
+    pub(crate) fn new(mesh: Arc<Mesh>, cos: f64, threads: Threads) -> Self {
+        let adjacency = Adjacency::of_triangles(mesh.vertex_count(), mesh.triangles(), &threads);
+        let winding = Winding::new(&mesh, &adjacency.twins, &threads);
+        let embedded = Embedded::new(&mesh, &adjacency.twins, &winding, &threads);
         let counts = EdgeCounts::from(&adjacency);
         let triangles = mesh.triangles().to_vec();
         let fans = Fans::new(mesh.vertex_count(), &triangles, &adjacency.twins, |v| embedded.at(v));
         let mut twins = adjacency.twins;
         if mesh.dimension() == Dimension::Three {
-            flag_creases(mesh.positions(), &triangles, &mut twins, cos);
+            flag_creases(mesh.positions(), &triangles, &mut twins, cos, &threads);
         }
         Self {
+            threads,
             cos,
             winding,
             embedded,
             counts,
             fans,
-            verdicts: vec![Verdict::Delaunay; triangles.len()],
+            verdicts: std::iter::repeat_with(AtomicU8::default).take(triangles.len()).collect(),
             candidates: Vec::new(),
             flipped: None,
-            selected: vec![FREE; triangles.len() / 3],
-            changed: vec![0; mesh.vertex_count()],
+            selected: Selected::new(triangles.len() / 3),
+            changed: std::iter::repeat_with(AtomicU32::default).take(mesh.vertex_count()).collect(),
             iteration: 0,
             triangles,
             twins,
@@ -93,101 +95,130 @@ impl Cpu {
     /// Label: tests the edges around those that have flipped, which are Delaunay now, and all edges before the first
     /// iteration; looks for duplicates again where one may have come or gone.
     pub(super) fn label(&mut self) {
-        let mut edges = [0; EDGES];
-        let Some(flipped) = self.flipped.take() else {
-            for first in (0..self.twins.len() as u32).step_by(EDGES) {
-                let mut count = 0;
-                for h in first..self.twins.len().min(first as usize + EDGES) as u32 {
-                    let g = unflagged(self.twins[h as usize]);
-                    edges[count] = h;
-                    count += usize::from(h < g && g != NONE);
-                }
-                self.test(&mut edges[..count]);
-            }
-            self.flipped = Some(Vec::new());
-            return;
-        };
-        let mut candidates = std::mem::take(&mut self.candidates);
-        candidates.retain(|&h| {
-            let g = self.twins[h as usize];
-            let stays = self.selected[h as usize / 3] == FREE && self.selected[g as usize / 3] == FREE;
-            if stays && [h, g].iter().all(|&x| self.has_changed(self.triangles[prev(x) as usize])) {
-                self.judge_non_delaunay(h);
-            }
-            stays
-        });
+        let mut candidates = Vec::new();
+        if let Some(flipped) = &self.flipped {
+            let before = &self.candidates;
+            self.threads.extend(&mut candidates, before.len(), |piece, found| {
+                self.keep_candidates(&before[piece], found);
+            });
+            self.threads.extend(&mut candidates, flipped.len(), |piece, found| {
+                self.test_around(&flipped[piece], found);
+            });
+            self.threads
+                .map(flipped.len(), |piece| flipped[piece].iter().for_each(|&h| self.selected.release(h)));
+        } else {
+            self.threads.extend(&mut candidates, self.twins.len(), |piece, found| {
+                self.test_all(piece.start as u32..piece.end as u32, found);
+            });
+        }
         self.candidates = candidates;
+        self.flipped.get_or_insert_default().clear();
+    }
+
+    /// Tests the edges whose lower half-edges are in `range`.
+    fn test_all(&self, range: Range<u32>, found: &mut Vec<u32>) {
+        let mut edges = [0; EDGES];
+        for first in range.clone().step_by(EDGES) {
+            let mut count = 0;
+            for h in first..range.end.min(first + EDGES as u32) {
+                let g = unflagged(self.twins[h as usize]);
+                edges[count] = h;
+                count += usize::from(h < g && g != NONE);
+            }
+            self.test(&mut edges[..count], found);
+        }
+    }
+
+    /// Finds the candidates of which no triangle has flipped.
+    fn keep_candidates(&self, candidates: &[u32], found: &mut Vec<u32>) {
+        for &h in candidates {
+            let g = self.twins[h as usize];
+            if self.selected.is_free(h) && self.selected.is_free(g) {
+                if [h, g].iter().all(|&x| self.has_changed(self.triangles[prev(x) as usize])) {
+                    self.judge_non_delaunay(h);
+                }
+                found.push(h);
+            }
+        }
+    }
+
+    /// Tests the edges around those that have flipped.
+    fn test_around(&self, flipped: &[u32], found: &mut Vec<u32>) {
+        let mut edges = [0; EDGES];
         for flipped in flipped.chunks(EDGES / 4) {
             let mut count = 0;
             for &h in flipped {
-                let [_, g] = self.selected[h as usize / 3];
+                let g = self.selected.twin(h);
                 for x in [h, prev(h), g, prev(g)] {
                     let y = unflagged(self.twins[x as usize]);
                     if y != NONE {
-                        let is_outside = self.selected[y as usize / 3] == FREE;
+                        let is_outside = self.selected.is_free(y);
                         // The new edge is Delaunay anyway; nothing could predict a branch.
-                        self.verdicts[if is_outside { y } else { next(h) } as usize] = Verdict::Delaunay;
+                        let known = if is_outside { y } else { next(h) };
+                        self.verdicts[known as usize].store(DELAUNAY, Relaxed);
                         // Between two that have flipped, one of them tests.
                         edges[count] = x.min(y);
                         count += usize::from(is_outside | (x < y));
                     }
                 }
             }
-            self.test(&mut edges[..count]);
+            self.test(&mut edges[..count], found);
         }
-        for &h in &flipped {
-            release(&mut self.selected, h);
-        }
-        self.flipped = Some(flipped);
-        self.flipped.iter_mut().for_each(Vec::clear);
     }
 
-    /// Tests edges, of which nothing is known yet; those that could flip, but for a duplicate, become candidates.
-    fn test(&mut self, edges: &mut [u32]) {
+    /// Tests edges, of which nothing is known yet, and finds those that could flip, but for a duplicate.
+    fn test(&self, edges: &mut [u32], found: &mut Vec<u32>) {
         let count = keep_non_delaunay(&self.geometry(), self.topology(), edges);
         for &h in &edges[..count] {
             let verdict = self.judge_non_delaunay(h);
             if matches!(verdict, Verdict::Labelled | Verdict::Blocked(Reason::Duplicate)) {
-                self.candidates.push(h);
+                found.push(h);
             }
         }
     }
 
-    fn judge_non_delaunay(&mut self, h: u32) -> Verdict {
+    fn judge_non_delaunay(&self, h: u32) -> Verdict {
         let verdict = verdict_of_non_delaunay(&self.geometry(), self.topology(), h);
         self.set_verdict(h, verdict);
         verdict
     }
 
-    fn set_verdict(&mut self, h: u32, verdict: Verdict) {
-        let g = unflagged(self.twins[h as usize]);
-        (self.verdicts[h as usize], self.verdicts[g as usize]) = (verdict, verdict);
+    fn set_verdict(&self, h: u32, verdict: Verdict) {
+        for x in [h, unflagged(self.twins[h as usize])] {
+            self.verdicts[x as usize].store(code(verdict), Relaxed);
+        }
     }
 
     /// Whether an edge at `v` has come or gone in the last iteration, as far as that is of interest.
     fn has_changed(&self, v: u32) -> bool {
-        self.iteration > 0 && self.changed[v as usize] == self.iteration
+        self.iteration > 0 && self.changed[v as usize].load(Relaxed) == self.iteration
     }
 
     /// Select: the edges that flip are those with the smallest key in both their triangles, but for those that yield.
     fn select(&mut self) {
         let mut flips = self.flipped.take().unwrap_or_default();
-        flips.resize(self.candidates.len(), 0);
-        let mut count = 0;
-        for &h in &self.candidates {
-            flips[count] = h;
-            count += usize::from(self.is_best(h));
-        }
-        flips.truncate(count);
-        for &h in &flips {
-            choose(&mut self.selected, h, self.twins[h as usize]);
-        }
-        let yielding: Vec<u32> = flips.iter().copied().filter(|&h| self.yields(h)).collect();
+        self.threads.extend(&mut flips, self.candidates.len(), |piece, flips| {
+            let before = flips.len();
+            let mut count = before;
+            flips.resize(before + piece.len(), 0);
+            for &h in &self.candidates[piece] {
+                flips[count] = h;
+                count += usize::from(self.is_best(h));
+            }
+            flips.truncate(count);
+            for &h in &flips[before..] {
+                self.selected.choose(h, self.twins[h as usize]);
+            }
+        });
+        let mut yielding = Vec::new();
+        self.threads.extend(&mut yielding, flips.len(), |piece, yielding| {
+            yielding.extend(flips[piece].iter().filter(|&&h| self.yields(h)));
+        });
         for &h in &yielding {
-            release(&mut self.selected, h);
+            self.selected.release(h);
         }
         if !yielding.is_empty() {
-            flips.retain(|&h| self.selected[h as usize / 3] != FREE);
+            flips.retain(|&h| !self.selected.is_free(h));
         }
         self.flipped = Some(flips);
     }
@@ -198,58 +229,63 @@ impl Cpu {
     fn is_best(&self, h: u32) -> bool {
         let g = self.twins[h as usize];
         let mine = key(h, self.iteration);
-        let is_labelled = |x: u32| self.verdicts[x as usize] == Verdict::Labelled;
+        let is_labelled = |x: u32| self.verdicts[x as usize].load(Relaxed) == LABELLED;
         let loses = |x: u32| is_labelled(x) & (key(x.min(self.twins[x as usize]), self.iteration) < mine);
         is_labelled(h) & !(loses(next(h)) | loses(prev(h)) | loses(next(g)) | loses(prev(g)))
     }
 
     fn yields(&self, h: u32) -> bool {
-        let [_, g] = self.selected[h as usize / 3];
+        let g = self.selected.twin(h);
         if [h, g].iter().any(|&x| self.embedded.at(self.triangles[prev(x) as usize])) {
             return false;
         }
-        let mutual = |t: u32| {
-            let [x, y] = self.selected[t as usize];
-            (x != NONE).then_some((x, y))
-        };
-        yields(self.topology(), self.iteration, h, g, mutual)
+        yields(self.topology(), self.iteration, h, g, |t| self.selected.pair(t))
     }
 
     /// Flip with Update. Returns the number of flips.
     fn flip(&mut self) -> u32 {
-        let Self { triangles, twins, fans, verdicts, selected, changed, embedded, iteration, .. } = self;
+        let Self {
+            threads, triangles, twins, fans, verdicts, selected, changed, embedded, iteration, ..
+        } = self;
         let flips = self.flipped.as_deref().unwrap_or_default();
         *iteration += 1;
-        for &h in flips {
-            let [_, g] = selected[h as usize / 3];
-            for x in [h, prev(h), g, prev(g)] {
-                let v = triangles[x as usize];
-                if !embedded.at(v) {
-                    changed[v as usize] = *iteration;
+        move_anchors(fans, triangles, selected, flips);
+        let (triangles, twins) = (shared(triangles), shared(twins));
+        threads.map(flips.len(), |piece| {
+            for &h in &flips[piece] {
+                let g = selected.twin(h);
+                for x in [h, prev(h), g, prev(g)] {
+                    let v = triangles[x as usize].load(Relaxed);
+                    if !embedded.at(v) {
+                        changed[v as usize].store(*iteration, Relaxed);
+                    }
                 }
+                forget(verdicts, h, g);
+                flip(triangles, twins, selected, h);
             }
-            forget(verdicts, h, g);
-        }
-        flip(triangles, twins, fans, selected, flips);
+        });
         flips.len() as u32
     }
 
     /// The verdict of every interior edge, counted.
     pub(crate) fn count(&mut self) -> Census {
         self.label();
-        let mut halves = Census::default();
-        for &verdict in &self.verdicts {
-            match verdict {
-                Verdict::Delaunay => {}
-                Verdict::Labelled => halves.labelled += 1,
-                Verdict::Blocked(reason) => halves.blocked[reason] += 1,
+        let counted = self.threads.map(self.verdicts.len(), |piece| {
+            let mut halves = [0; CODES];
+            for verdict in &self.verdicts[piece] {
+                let code = verdict.load(Relaxed);
+                if code != DELAUNAY {
+                    halves[code as usize] += 1;
+                }
             }
-        }
-        halves.labelled /= 2;
+            halves
+        });
+        let edges = |code: u8| counted.iter().map(|halves| halves[code as usize]).sum::<u32>() / 2;
+        let mut census = Census { labelled: edges(LABELLED), ..Census::default() };
         for reason in Reason::ALL {
-            halves.blocked[reason] /= 2;
+            census.blocked[reason] = u64::from(edges(code(Verdict::Blocked(reason))));
         }
-        halves
+        census
     }
 }
 
@@ -266,9 +302,10 @@ impl Cpu {
     pub(super) fn flip_one(&mut self, h: u32) {
         let Self { triangles, twins, fans, verdicts, selected, .. } = self;
         let g = twins[h as usize];
-        choose(selected, h, g);
-        flip(triangles, twins, fans, selected, &[h]);
-        release(selected, h);
+        selected.choose(h, g);
+        move_anchors(fans, triangles, selected, &[h]);
+        flip(shared(triangles), shared(twins), selected, h);
+        selected.release(h);
         forget(verdicts, h, g);
     }
 
@@ -279,21 +316,25 @@ impl Cpu {
     }
 }
 
-/// Selects the edge of two half-edges.
-fn choose(selected: &mut [Selected], h: u32, g: u32) {
-    (selected[h as usize / 3], selected[g as usize / 3]) = ([h, g], [g, h]);
-}
+const DELAUNAY: u8 = 0;
+const LABELLED: u8 = 1;
+const CODES: usize = 2 + Reason::ALL.len();
 
-/// Takes back that the edge of `h` is selected.
-fn release(selected: &mut [Selected], h: u32) {
-    let [_, g] = selected[h as usize / 3];
-    (selected[h as usize / 3], selected[g as usize / 3]) = (FREE, FREE);
+/// A verdict as a byte.
+fn code(verdict: Verdict) -> u8 {
+    match verdict {
+        Verdict::Delaunay => DELAUNAY,
+        Verdict::Labelled => LABELLED,
+        Verdict::Blocked(reason) => 2 + reason as u8,
+    }
 }
 
 /// Takes all edges of the triangles of two half-edges for Delaunay.
-fn forget(verdicts: &mut [Verdict], h: u32, g: u32) {
+fn forget(verdicts: &[AtomicU8], h: u32, g: u32) {
     for t in [h as usize / 3, g as usize / 3] {
-        verdicts[3 * t..3 * t + 3].fill(Verdict::Delaunay);
+        for verdict in &verdicts[3 * t..3 * t + 3] {
+            verdict.store(DELAUNAY, Relaxed);
+        }
     }
 }
 
@@ -329,16 +370,16 @@ impl Engine for Cpu {
     }
 
     fn set_positions(&mut self, mesh: Arc<Mesh>) -> Answer<'_, ()> {
-        self.winding = Winding::new(&mesh, &self.twins);
-        self.embedded = Embedded::new(&mesh, &self.twins, &self.winding);
+        self.winding = Winding::new(&mesh, &self.twins, &self.threads);
+        self.embedded = Embedded::new(&mesh, &self.twins, &self.winding, &self.threads);
         if mesh.dimension() == Dimension::Three {
-            flag_creases(mesh.positions(), &self.triangles, &mut self.twins, self.cos);
+            flag_creases(mesh.positions(), &self.triangles, &mut self.twins, self.cos, &self.threads);
         }
-        self.verdicts.fill(Verdict::Delaunay);
+        self.verdicts.fill_with(AtomicU8::default);
         self.candidates.clear();
         self.flipped = None;
-        self.selected.fill(FREE);
-        self.changed.fill(0);
+        self.selected = Selected::new(self.triangles.len() / 3);
+        self.changed.fill_with(AtomicU32::default);
         self.iteration = 0;
         self.mesh = mesh;
         Box::pin(std::future::ready(Ok(())))

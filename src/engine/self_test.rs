@@ -3,6 +3,7 @@
 use super::upload::{Form, Upload};
 use super::{Answer, Cpu, Engine};
 use crate::mesh::Mesh;
+use crate::threads::Threads;
 use crate::{Error, Positions, cos_degrees};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -35,7 +36,7 @@ pub(crate) async fn self_test(
     let mesh = Arc::new(test_mesh(form)?);
     let cos = cos_degrees(20.0);
     let mut engine = make(Upload::new(backend, mesh.clone())?, cos).await?;
-    let mut cpu = Cpu::new(mesh, cos);
+    let mut cpu = Cpu::new(mesh, cos, Threads::default());
     loop {
         let is_counted = engine.census().await? == cpu.count();
         let flips = cpu.iterate(1).await?;
@@ -89,7 +90,7 @@ mod tests {
         for form in Form::ALL {
             let upload = Upload::new("gpu", Arc::new(test_mesh(form).unwrap())).unwrap();
             assert!(upload.form() == form);
-            let mut cpu = Cpu::new(upload.mesh, cos_degrees(20.0));
+            let mut cpu = Cpu::new(upload.mesh, cos_degrees(20.0), Threads::default());
             assert!(block_on(cpu.iterate(u32::MAX)).unwrap().len() > 2);
             assert_eq!(cpu.count().blocked.total() > 0, form.dimension == Dimension::Three);
         }
@@ -99,7 +100,7 @@ mod tests {
     fn an_engine_passes_once_or_is_refused() {
         let tested = Tested::default();
         for form in Form::ALL {
-            let right = |upload: Upload, cos| made(Cpu::new(upload.mesh, cos));
+            let right = |upload: Upload, cos| made(Cpu::new(upload.mesh, cos, Threads::default()));
             let wrong = |upload: Upload, cos| {
                 let mesh = upload.mesh;
                 let upright = mesh.positions().to_f32();
@@ -108,7 +109,7 @@ mod tests {
                     .flat_map(|p| [&[p[0] + p[1]], &p[1..]].concat())
                     .collect::<Vec<f32>>();
                 let sheared = Mesh::new(form.dimension, leaning, mesh.triangles().to_vec()).unwrap();
-                made(Cpu::new(Arc::new(sheared), cos))
+                made(Cpu::new(Arc::new(sheared), cos, Threads::default()))
             };
             let refused = block_on(self_test(&tested, "gpu", form, &wrong));
             assert!(matches!(refused, Err(Error::BackendUnavailable { backend: "gpu", .. })));

@@ -7,6 +7,7 @@ use super::{Cpu, EdgeCounts, Engine, Upload};
 use crate::mesh::Mesh;
 use crate::phases::{label, select};
 use crate::predicates::tiers::kinds::kinds;
+use crate::threads::Threads;
 use crate::{cos_degrees, families};
 use pollster::block_on;
 use std::sync::Arc;
@@ -15,7 +16,7 @@ fn engines(mesh: &Arc<Mesh>, degrees: f64) -> (Cpu, WebGpu) {
     let cos = cos_degrees(degrees);
     let upload = Upload::new("gpu", mesh.clone()).unwrap();
     let gpu = block_on(async { WebGpu::new(Device::shared(true).await?, upload, cos).await }).unwrap();
-    (Cpu::new(mesh.clone(), cos), gpu)
+    (Cpu::new(mesh.clone(), cos, Threads::default()), gpu)
 }
 
 #[track_caller]

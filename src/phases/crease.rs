@@ -3,23 +3,34 @@
 
 use crate::adjacency::{CREASE, LOCKED, next, prev, unflagged};
 use crate::predicates::Quad;
+use crate::threads::{Threads, shared};
 use crate::{NONE, Positions};
+use std::sync::atomic::Ordering::Relaxed;
 
 /// Flags both entries of `twins` for each interior edge whose triangles' normals differ by more than β, and no
 /// others; locks stay. `cos` is its cosine, `positions` are 3D.
-pub(crate) fn flag_creases(positions: &Positions, triangles: &[u32], twins: &mut [u32], cos: f64) {
-    for h in 0..triangles.len() as u32 {
-        let entry = twins[h as usize];
-        let g = unflagged(entry);
-        if g == NONE || g < h {
-            continue;
+pub(crate) fn flag_creases(
+    positions: &Positions,
+    triangles: &[u32],
+    twins: &mut [u32],
+    cos: f64,
+    threads: &Threads,
+) {
+    let twins = shared(twins);
+    threads.map(twins.len(), |piece| {
+        for h in piece.start as u32..piece.end as u32 {
+            let entry = twins[h as usize].load(Relaxed);
+            let g = unflagged(entry);
+            if g == NONE || g < h {
+                continue;
+            }
+            let corner = |x: u32| triangles[x as usize];
+            let corners = [corner(h), corner(next(h)), corner(prev(h)), corner(prev(g))];
+            let [a, b, c, d] = positions.points3(corners);
+            let crease = if Quad::new(a, b, c, d).is_over_angle(cos) { CREASE } else { 0 };
+            let flags = entry & LOCKED | crease;
+            twins[h as usize].store(g | flags, Relaxed);
+            twins[g as usize].store(h | flags, Relaxed);
         }
-        let corner = |x: u32| triangles[x as usize];
-        let corners = [corner(h), corner(next(h)), corner(prev(h)), corner(prev(g))];
-        let [a, b, c, d] = positions.points3(corners);
-        let crease = if Quad::new(a, b, c, d).is_over_angle(cos) { CREASE } else { 0 };
-        let flags = entry & LOCKED | crease;
-        twins[h as usize] = g | flags;
-        twins[g as usize] = h | flags;
-    }
+    });
 }

@@ -3,63 +3,96 @@
 use crate::NONE;
 use crate::adjacency::{FLAGS, next, prev, unflagged};
 use crate::star::Fans;
+use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
-/// For each triangle its half-edge that flips, and the twin of that, or [`NONE`] twice.
-pub(crate) type Selected = [u32; 2];
+/// For each triangle the twin of its half-edge that flips, with the place of that in the triangle in the bits of
+/// [`FLAGS`]; or [`NONE`], whose place is none.
+pub(crate) struct Selected(Vec<AtomicU32>);
 
-/// Flips the edges of these half-edges, those of `selected` once each, and moves the anchors of the fans with them.
-pub(crate) fn flip(
-    triangles: &mut [u32],
-    twins: &mut [u32],
-    fans: &mut Fans,
-    selected: &[Selected],
-    half_edges: &[u32],
-) {
-    for &h in half_edges {
-        let [_, g] = selected[h as usize / 3];
-        if !fans.table.is_empty() {
-            for moved in [next(h), next(g)] {
-                fans.move_anchor(triangles[moved as usize], moved, slot(selected, moved));
-            }
+impl Selected {
+    /// No edge of so many triangles.
+    pub(crate) fn new(triangles: usize) -> Self {
+        Self(std::iter::repeat_with(|| AtomicU32::new(NONE)).take(triangles).collect())
+    }
+
+    /// Selects the edge of two half-edges.
+    pub(crate) fn choose(&self, h: u32, g: u32) {
+        for (x, twin) in [(h, g), (g, h)] {
+            self.0[x as usize / 3].store(twin | (x % 3) << FLAGS.trailing_zeros(), Relaxed);
         }
-        flip_edge(triangles, twins, selected, h, g);
+    }
+
+    /// Takes back that the edge of `h` is selected.
+    pub(crate) fn release(&self, h: u32) {
+        for x in [self.twin(h), h] {
+            self.0[x as usize / 3].store(NONE, Relaxed);
+        }
+    }
+
+    /// Whether no edge of the triangle of `h` is selected.
+    #[inline(always)]
+    pub(crate) fn is_free(&self, h: u32) -> bool {
+        self.0[h as usize / 3].load(Relaxed) == NONE
+    }
+
+    /// The twin of half-edge `h`, whose edge is selected.
+    #[inline(always)]
+    pub(crate) fn twin(&self, h: u32) -> u32 {
+        self.0[h as usize / 3].load(Relaxed) & !FLAGS
+    }
+
+    /// The selected half-edge of triangle `t`, and its twin.
+    pub(crate) fn pair(&self, t: u32) -> Option<(u32, u32)> {
+        let word = self.0[t as usize].load(Relaxed);
+        (word != NONE).then_some((3 * t + (word >> FLAGS.trailing_zeros()), word & !FLAGS))
+    }
+
+    /// Where the half-edge that an entry of `twins` names will be after the iteration: the half-edge after a
+    /// selected one moves into the place of the selected one's twin. A function of the state before the phase.
+    #[inline(always)]
+    fn slot(&self, entry: u32) -> u32 {
+        let x = unflagged(entry);
+        if x == NONE {
+            return NONE;
+        }
+        let word = self.0[x as usize / 3].load(Relaxed);
+        if prev(x) % 3 == word >> FLAGS.trailing_zeros() { word & !FLAGS | entry & FLAGS } else { entry }
     }
 }
 
-/// Where the half-edge that an entry of `twins` names will be after the iteration: the half-edge after a
-/// selected one moves into the place of the selected one's twin. A function of the state before the phase.
-#[inline]
-fn slot(selected: &[Selected], entry: u32) -> u32 {
-    let x = unflagged(entry);
-    if x == NONE {
-        return NONE;
+/// Moves the anchors of the fans with their half-edges; before the flips of the edges of these half-edges.
+pub(crate) fn move_anchors(fans: &mut Fans, triangles: &[u32], selected: &Selected, half_edges: &[u32]) {
+    if fans.table.is_empty() {
+        return;
     }
-    let [own, twin] = selected[x as usize / 3];
-    if prev(x) == own { twin | (entry & FLAGS) } else { entry }
+    for &h in half_edges {
+        for moved in [next(h), next(selected.twin(h))] {
+            fans.move_anchor(triangles[moved as usize], moved, selected.slot(moved));
+        }
+    }
 }
 
-/// Flips one selected edge. Reads the twins of its own two triangles only; writes those, and the entries of
-/// the neighbours that are not selected themselves.
-fn flip_edge(triangles: &mut [u32], twins: &mut [u32], selected: &[Selected], h: u32, g: u32) {
+/// Flips the selected edge of half-edge `h`. Reads the twins of its own two triangles only; writes those, and the
+/// entries of the neighbours that are not selected themselves.
+#[inline(always)]
+pub(crate) fn flip(triangles: &[AtomicU32], twins: &[AtomicU32], selected: &Selected, h: u32) {
+    let read = |words: &[AtomicU32], i: u32| words[i as usize].load(Relaxed);
+    let write = |words: &[AtomicU32], i: u32, word: u32| words[i as usize].store(word, Relaxed);
+    let g = selected.twin(h);
     let [hn, hp, gn, gp] = [next(h), prev(h), next(g), prev(g)];
-    let [c, d] = [triangles[hp as usize], triangles[gp as usize]];
-    let outer = [
-        (h, twins[gn as usize]),
-        (hp, twins[hp as usize]),
-        (g, twins[hn as usize]),
-        (gp, twins[gp as usize]),
-    ];
+    let [c, d] = [read(triangles, hp), read(triangles, gp)];
+    let outer = [(h, read(twins, gn)), (hp, read(twins, hp)), (g, read(twins, hn)), (gp, read(twins, gp))];
     for (inner, outer) in outer {
-        twins[inner as usize] = slot(selected, outer);
+        write(twins, inner, selected.slot(outer));
         let x = unflagged(outer);
         if x != NONE {
             // Where there is nothing to write, a word that is written below; nothing could predict a branch.
-            let place = if selected[x as usize / 3][0] == NONE { x } else { hn };
-            twins[place as usize] = inner | (outer & FLAGS);
+            let place = if selected.is_free(x) { x } else { hn };
+            write(twins, place, inner | (outer & FLAGS));
         }
     }
-    triangles[hn as usize] = d;
-    triangles[gn as usize] = c;
-    twins[hn as usize] = gn;
-    twins[gn as usize] = hn;
+    write(triangles, hn, d);
+    write(triangles, gn, c);
+    write(twins, hn, gn);
+    write(twins, gn, hn);
 }

@@ -17,7 +17,7 @@ mod label;
 mod select;
 
 pub(crate) use crease::flag_creases;
-pub(crate) use flip::{Selected, flip};
+pub(crate) use flip::{Selected, flip, move_anchors};
 pub(crate) use label::{Verdict, keep_non_delaunay, label, verdict, verdict_of_non_delaunay};
 pub(crate) use select::{select, yields};
 

@@ -6,6 +6,7 @@ use crate::engine::{Context, WebGl};
 #[cfg(feature = "gpu")]
 use crate::engine::{Device, Upload, WebGpu, self_test};
 use crate::predicates::cos_degrees;
+use crate::threads::Threads;
 use crate::{Backend, Error, Mesh, Options, Order, locks};
 use std::sync::Arc;
 
@@ -85,11 +86,12 @@ fn first_of<'a>(
 fn open<'a>(backend: Backend, mesh: &'a Arc<Mesh>, options: &'a Options) -> Answer<'a, Box<dyn Engine>> {
     Box::pin(async move {
         let cos = cos_degrees(options.max_normal_angle);
+        let cpu = || Ok::<_, Error>(Cpu::new(mesh.clone(), cos, Threads::new(options.threads)?));
         let mut engine = match (backend, options.order) {
             (Backend::Gpu, _) => gpu(mesh, options, cos).await?,
             (Backend::WebGl, _) => webgl(mesh, options, cos).await?,
-            (_, Order::Reproducible) => Box::new(Cpu::new(mesh.clone(), cos)),
-            (_, Order::Any) => Box::new(Lawson::new(Cpu::new(mesh.clone(), cos))),
+            (_, Order::Reproducible) => Box::new(cpu()?),
+            (_, Order::Any) => Box::new(Lawson::new(cpu()?)),
         };
         if !options.locked_edges.is_empty() {
             engine.lock(locks::half_edges(mesh, &options.locked_edges)?).await?;

@@ -2,6 +2,7 @@
 
 use clap::{Parser, ValueEnum};
 use edgeflip::{Backend, Dimension, Options, Order};
+use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
 const AFTER: &str = "\
@@ -75,6 +76,10 @@ pub struct Args {
     #[arg(long, value_enum, default_value_t, value_name = "ORDER")]
     pub order: OrderArg,
 
+    /// How many threads --backend cpu runs on; without it one for each core. The result is the same for any number
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    pub threads: Option<NonZeroUsize>,
+
     /// Check the result independently; if the check fails, write nothing and end with status 1
     ///
     /// Checks that vertices, boundary, components and orientation are what they were, and that the edges
@@ -118,6 +123,7 @@ impl Args {
             },
             max_normal_angle: self.max_normal_angle,
             max_iterations: self.max_iterations,
+            threads: self.threads,
             order: match self.order {
                 OrderArg::Reproducible => Order::Reproducible,
                 OrderArg::Any => Order::Any,

@@ -16,6 +16,7 @@ use crate::locks;
 use crate::mesh::{Dimension, Mesh};
 use crate::phases::BLOCKED;
 use crate::star::Fans;
+use crate::threads::Threads;
 use crate::winding::Winding;
 use crate::{Adjacency, Error, NONE};
 use context::refuse;
@@ -80,7 +81,7 @@ impl WebGl {
         context.compile(&[deciders(form), common].concat()).await?;
 
         let adjacency = Adjacency::new(mesh);
-        let winding = Winding::new(mesh, &adjacency.twins);
+        let winding = Winding::new(mesh, &adjacency.twins, &Threads::default());
         let fans = Fans::new(mesh.vertex_count(), mesh.triangles(), &adjacency.twins, |_| false);
         if context.ends_loops_early {
             refuse_large_star(&context, mesh)?;

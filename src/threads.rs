@@ -1,0 +1,134 @@
+//! Loops on several threads. What they give does not depend on how many there are: each word is written by one piece of
+//! a loop, and the lists of the pieces are joined in order.
+
+use crate::Error;
+#[cfg(feature = "threads")]
+use rayon::prelude::*;
+use std::num::NonZeroUsize;
+use std::ops::Range;
+use std::sync::atomic::AtomicU32;
+
+/// A piece has so many items at least: fewer are done before another thread has woken up. Without optimisation it has
+/// few, so that small meshes test the threads.
+const FEWEST: usize = if cfg!(debug_assertions) { 4 } else { 1024 };
+
+/// Pieces for each thread, so that none waits long for another.
+const PIECES: usize = 4;
+
+/// Threads that hold an array each are so many at most.
+const ARRAYS: usize = 8;
+
+/// How many threads there are; by default one for each core. Without the feature `threads` it is one.
+pub(crate) struct Threads {
+    count: usize,
+    /// Those of the process, where there is none.
+    #[cfg(feature = "threads")]
+    pool: Option<rayon::ThreadPool>,
+}
+
+impl Default for Threads {
+    fn default() -> Self {
+        #[cfg(feature = "threads")]
+        return Self { count: rayon::current_num_threads(), pool: None };
+        #[cfg(not(feature = "threads"))]
+        Self { count: 1 }
+    }
+}
+
+impl Threads {
+    /// As many as an option says.
+    ///
+    /// # Errors
+    /// [`Error::Option`] where the system has not so many.
+    #[cfg_attr(not(feature = "threads"), expect(unused_variables, reason = "it is one, whatever it says"))]
+    pub(crate) fn new(option: Option<NonZeroUsize>) -> Result<Self, Error> {
+        #[cfg(feature = "threads")]
+        if let Some(count) = option {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(count.get()).build().map_err(|error| {
+                Error::Option { option: "threads", message: format!("{count} could not be started: {error}") }
+            })?;
+            return Ok(Self { count: pool.current_num_threads(), pool: Some(pool) });
+        }
+        Ok(Self::default())
+    }
+
+    /// What `work` gives for each piece of a loop over `0..len`, in order.
+    pub(crate) fn map<T: Send>(&self, len: usize, work: impl Fn(Range<usize>) -> T + Sync) -> Vec<T> {
+        let pieces = if self.count == 1 { 1 } else { PIECES * self.count };
+        self.map_each(cut(len, pieces), work)
+    }
+
+    /// The pieces of a loop over `0..len`, each of which holds an array.
+    pub(crate) fn pieces_with_arrays(&self, len: usize) -> Vec<Range<usize>> {
+        cut(len, self.count.min(ARRAYS))
+    }
+
+    /// What `work` gives for each item, in order.
+    pub(crate) fn map_each<I: Send, T: Send>(&self, items: Vec<I>, work: impl Fn(I) -> T + Sync) -> Vec<T> {
+        #[cfg(feature = "threads")]
+        if items.len() > 1 {
+            let run = || items.into_par_iter().with_max_len(1).map(&work).collect();
+            return match &self.pool {
+                Some(pool) => pool.install(run),
+                None => run(),
+            };
+        }
+        items.into_iter().map(work).collect()
+    }
+
+    /// Adds to `list` what `work` adds to one for each piece of a loop over `0..len`.
+    pub(crate) fn extend(
+        &self,
+        list: &mut Vec<u32>,
+        len: usize,
+        work: impl Fn(Range<usize>, &mut Vec<u32>) + Sync,
+    ) {
+        if self.count == 1 || len < 2 * FEWEST {
+            return work(0..len, list);
+        }
+        let lists = self.map(len, |piece| {
+            let mut list = Vec::new();
+            work(piece, &mut list);
+            list
+        });
+        list.reserve(lists.iter().map(Vec::len).sum());
+        lists.iter().for_each(|piece| list.extend(piece));
+    }
+}
+
+/// `0..len` in up to `most` pieces.
+fn cut(len: usize, most: usize) -> Vec<Range<usize>> {
+    let size = len.div_ceil(most.min(len / FEWEST).max(1)).max(1);
+    (0..len).step_by(size).map(|start| start..len.min(start + size)).collect()
+}
+
+/// Words that several threads may write.
+pub(crate) fn shared(words: &mut [u32]) -> &[AtomicU32] {
+    zerocopy::transmute_mut!(words)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pieces_are_the_whole_in_order() {
+        for len in [0, 1, 7, 8, 1000] {
+            for most in [1, 2, 3, 64] {
+                let pieces = cut(len, most);
+                assert!(pieces.len() <= most && pieces.iter().all(|piece| !piece.is_empty()));
+                assert!(pieces.into_iter().flatten().eq(0..len));
+            }
+        }
+    }
+
+    #[test]
+    fn lists_are_joined_in_order() {
+        for count in [1, 2, 3, 8] {
+            let mut list = vec![7];
+            let threads = Threads::new(NonZeroUsize::new(count)).unwrap();
+            threads.extend(&mut list, 1000, |piece, list| list.extend(piece.map(|i| i as u32)));
+            assert!(list.into_iter().eq(std::iter::once(7).chain(0..1000)));
+        }
+    }
+}
