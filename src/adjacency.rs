@@ -103,7 +103,7 @@ impl Buckets {
         }
         let mut half_edges = vec![0u32; triangles.len()];
         let words = shared(&mut half_edges);
-        let ends = threads.map_each(pieces, |(piece, mut starts)| {
+        let mut ends = threads.map_each(pieces, |(piece, mut starts)| {
             for (t, &[a, b, c]) in (piece.start as u32..).zip(&corners[piece]) {
                 for (low, h) in [(a.min(b), 3 * t), (b.min(c), 3 * t + 1), (c.min(a), 3 * t + 2)] {
                     let at = &mut starts[low as usize];
@@ -114,7 +114,7 @@ impl Buckets {
             starts
         });
         // Each start has moved to the end of its part.
-        Self { ends: ends.into_iter().next_back().unwrap_or_else(|| vec![0; vertices]), half_edges }
+        Self { ends: ends.pop().unwrap_or_default(), half_edges }
     }
 
     /// The buckets of some vertices, each with its vertex.

@@ -28,7 +28,7 @@ impl Embedded {
         let pieces = threads.pieces_with_arrays(mesh.triangle_count());
         let pieces = threads.map_each(pieces, |piece| turns(mesh, twins, winding, piece));
         let mut pieces = pieces.into_iter();
-        let mut turns = pieces.next().unwrap_or_else(|| vec![0; mesh.vertex_count()]);
+        let mut turns = pieces.next().unwrap_or_default();
         for piece in pieces {
             turns.iter_mut().zip(piece).for_each(|(sum, turns)| *sum = (*sum + turns).min(2));
         }

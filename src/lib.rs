@@ -14,8 +14,8 @@
 //!
 //! The rooms: [`Mesh`] is checked input, in [`Positions`] of 32 or 64 bits; `adjacency` finds twins, `star` walks around
 //! a vertex, `winding` and `frozen` know what a dirty mesh adds, `embedded` what a clean one spares, `locks` what the
-//! user wants; `predicates` decide exactly; `phases` are the four phases of an iteration, `engine` runs them on the CPU
-//! or through the shaders of the same names; `session` is the loop, `options` and `outcome` are what goes in and out.
+//! user wants; `predicates` decide exactly; `phases` are the four phases of an iteration, `engine` runs them on the CPU,
+//! on several `threads`, or through the shaders of the same names; `session` is the loop, `options` and `outcome` are what goes in and out.
 //! Beside them: [`quality`] measures and audits, [`io`] reads and writes, [`families`] generates; [`Edges`] lists
 //! the edges as the paper does, [`EdgeState`] is what each of them waits for; `js`, `js_audit` and `js_files` are what the npm
 //! package calls, each in a WebAssembly module of its own, and `js_values` is what they share.

@@ -18,21 +18,13 @@ const PIECES: usize = 4;
 /// Threads that hold an array each are so many at most.
 const ARRAYS: usize = 8;
 
-/// How many threads there are; by default one for each core. Without the feature `threads` it is one.
+/// How many threads there are; by default one for each core. Without the feature `threads` it is one, and the compiler
+/// knows.
+#[derive(Default)]
 pub(crate) struct Threads {
-    count: usize,
     /// Those of the process, where there is none.
     #[cfg(feature = "threads")]
     pool: Option<rayon::ThreadPool>,
-}
-
-impl Default for Threads {
-    fn default() -> Self {
-        #[cfg(feature = "threads")]
-        return Self { count: rayon::current_num_threads(), pool: None };
-        #[cfg(not(feature = "threads"))]
-        Self { count: 1 }
-    }
 }
 
 impl Threads {
@@ -47,20 +39,32 @@ impl Threads {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(count.get()).build().map_err(|error| {
                 Error::Option { option: "threads", message: format!("{count} could not be started: {error}") }
             })?;
-            return Ok(Self { count: pool.current_num_threads(), pool: Some(pool) });
+            return Ok(Self { pool: Some(pool) });
         }
         Ok(Self::default())
     }
 
-    /// What `work` gives for each piece of a loop over `0..len`, in order.
-    pub(crate) fn map<T: Send>(&self, len: usize, work: impl Fn(Range<usize>) -> T + Sync) -> Vec<T> {
-        let pieces = if self.count == 1 { 1 } else { PIECES * self.count };
-        self.map_each(cut(len, pieces), work)
+    fn count(&self) -> usize {
+        #[cfg(feature = "threads")]
+        return self
+            .pool
+            .as_ref()
+            .map_or_else(rayon::current_num_threads, rayon::ThreadPool::current_num_threads);
+        #[cfg(not(feature = "threads"))]
+        1
     }
 
-    /// The pieces of a loop over `0..len`, each of which holds an array.
+    /// What `work` gives for each piece of a loop over `0..len`, in order.
+    pub(crate) fn map<T: Send>(&self, len: usize, work: impl Fn(Range<usize>) -> T + Sync) -> Vec<T> {
+        if self.count() == 1 {
+            return vec![work(0..len)];
+        }
+        self.map_each(cut(len, PIECES * self.count()), work)
+    }
+
+    /// The pieces of a loop over `0..len`, at least one, each of which holds an array.
     pub(crate) fn pieces_with_arrays(&self, len: usize) -> Vec<Range<usize>> {
-        cut(len, self.count.min(ARRAYS))
+        cut(len, self.count().min(ARRAYS))
     }
 
     /// What `work` gives for each item, in order.
@@ -83,7 +87,7 @@ impl Threads {
         len: usize,
         work: impl Fn(Range<usize>, &mut Vec<u32>) + Sync,
     ) {
-        if self.count == 1 || len < 2 * FEWEST {
+        if self.count() == 1 || len < 2 * FEWEST {
             return work(0..len, list);
         }
         let lists = self.map(len, |piece| {
@@ -96,10 +100,11 @@ impl Threads {
     }
 }
 
-/// `0..len` in up to `most` pieces.
+/// `0..len` in up to `most` pieces, but at least one.
 fn cut(len: usize, most: usize) -> Vec<Range<usize>> {
-    let size = len.div_ceil(most.min(len / FEWEST).max(1)).max(1);
-    (0..len).step_by(size).map(|start| start..len.min(start + size)).collect()
+    let pieces = most.min(len / FEWEST).max(1);
+    let size = len.div_ceil(pieces);
+    (0..pieces).map(|i| len.min(i * size)..len.min((i + 1) * size)).collect()
 }
 
 /// Words that several threads may write.
@@ -116,7 +121,7 @@ mod tests {
         for len in [0, 1, 7, 8, 1000] {
             for most in [1, 2, 3, 64] {
                 let pieces = cut(len, most);
-                assert!(pieces.len() <= most && pieces.iter().all(|piece| !piece.is_empty()));
+                assert!((1..=most).contains(&pieces.len()));
                 assert!(pieces.into_iter().flatten().eq(0..len));
             }
         }
