@@ -103,7 +103,6 @@ impl Positions {
         }
     }
 
-    #[inline]
     fn at(&self, i: usize) -> f64 {
         match self {
             Self::F32(numbers) => f64::from(numbers[i]),
