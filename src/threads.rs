@@ -80,23 +80,23 @@ impl Threads {
         items.into_iter().map(work).collect()
     }
 
-    /// Adds to `list` what `work` adds to one for each piece of a loop over `0..len`.
-    pub(crate) fn extend(
+    /// Adds to `all` what `work` adds to an empty one for each piece of a loop over `0..len`, in order.
+    pub(crate) fn extend<L: Default + Send>(
         &self,
-        list: &mut Vec<u32>,
+        all: &mut L,
         len: usize,
-        work: impl Fn(Range<usize>, &mut Vec<u32>) + Sync,
+        work: impl Fn(Range<usize>, &mut L) + Sync,
+        append: impl Fn(&mut L, L),
     ) {
         if self.count() == 1 || len < 2 * FEWEST {
-            return work(0..len, list);
+            return work(0..len, all);
         }
-        let lists = self.map(len, |piece| {
-            let mut list = Vec::new();
-            work(piece, &mut list);
-            list
+        let pieces = self.map(len, |piece| {
+            let mut part = L::default();
+            work(piece, &mut part);
+            part
         });
-        list.reserve(lists.iter().map(Vec::len).sum());
-        lists.iter().for_each(|piece| list.extend(piece));
+        pieces.into_iter().for_each(|part| append(all, part));
     }
 }
 
@@ -132,8 +132,13 @@ mod tests {
         for count in [1, 2, 3, 8] {
             let mut list = vec![7];
             let threads = Threads::new(NonZeroUsize::new(count)).unwrap();
-            threads.extend(&mut list, 1000, |piece, list| list.extend(piece.map(|i| i as u32)));
-            assert!(list.into_iter().eq(std::iter::once(7).chain(0..1000)));
+            threads.extend(
+                &mut list,
+                1000,
+                |piece, list: &mut Vec<_>| list.extend(piece),
+                |all, mut part| all.append(&mut part),
+            );
+            assert!(list.into_iter().eq([7].into_iter().chain(0..1000)));
         }
     }
 }

@@ -2,7 +2,7 @@
 //! only where one of its triangles has flipped.
 
 use super::{Answer, Census, EdgeCounts, Engine};
-use crate::adjacency::{next, prev, unflagged};
+use crate::adjacency::{LOCKED, prev, unflagged};
 use crate::embedded::Embedded;
 use crate::locks;
 use crate::mesh::{Dimension, Mesh};
@@ -16,10 +16,32 @@ use crate::winding::Winding;
 use crate::{Adjacency, NONE, Reason};
 use std::ops::Range;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU8, AtomicU32, Ordering::Relaxed};
+use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
 /// Edges that are tested in one go.
 const EDGES: usize = 1024;
+
+/// An edge by its half-edges, the lower one first.
+type Edge = [u32; 2];
+
+/// In the second half-edge of a candidate: it makes an edge that exists.
+const DUPLICATE: u32 = LOCKED;
+
+/// The edges that are not Delaunay.
+#[derive(Default)]
+struct Found {
+    /// Those that may flip, or could but for a duplicate.
+    candidates: Vec<Edge>,
+    /// A half-edge of each of the others, beside some of edges that have gone since.
+    blocked: Vec<u32>,
+}
+
+impl Found {
+    fn append(&mut self, mut other: Self) {
+        self.candidates.append(&mut other.candidates);
+        self.blocked.append(&mut other.blocked);
+    }
+}
 
 /// The state of a mesh between two iterations.
 pub(crate) struct Cpu {
@@ -32,12 +54,9 @@ pub(crate) struct Cpu {
     pub(crate) triangles: Vec<u32>,
     pub(crate) twins: Vec<u32>,
     pub(crate) fans: Fans,
-    /// Of each half-edge what the last test of its edge said, by its [`code`].
-    verdicts: Vec<AtomicU8>,
-    /// The lower half-edges of the edges that may flip, or could but for a duplicate.
-    candidates: Vec<u32>,
-    /// A half-edge of each edge that the last iteration has flipped; `None` before the first.
-    flipped: Option<Vec<u32>>,
+    found: Found,
+    /// The edges that the last iteration has flipped; `None` before the first.
+    flipped: Option<Vec<Edge>>,
     /// Those edges by triangle.
     selected: Selected,
     /// For each vertex whose star is not known to be embedded the last iteration, plus one, in which an edge there came
@@ -66,8 +85,7 @@ impl Cpu {
             embedded,
             counts,
             fans,
-            verdicts: std::iter::repeat_with(AtomicU8::default).take(triangles.len()).collect(),
-            candidates: Vec::new(),
+            found: Found::default(),
             flipped: None,
             selected: Selected::new(triangles.len() / 3),
             changed: std::iter::repeat_with(AtomicU32::default).take(mesh.vertex_count()).collect(),
@@ -95,32 +113,36 @@ impl Cpu {
     /// Label: tests the edges around those that have flipped, which are Delaunay now, and all edges before the first
     /// iteration; looks for duplicates again where one may have come or gone.
     pub(super) fn label(&mut self) {
-        let mut candidates = Vec::new();
+        let Found { candidates, blocked } = std::mem::take(&mut self.found);
+        let mut found = Found { blocked, ..Found::default() };
         if let Some(flipped) = &self.flipped {
-            let before = &self.candidates;
-            self.threads.extend(&mut candidates, before.len(), |piece, found| {
-                self.keep_candidates(&before[piece], found);
+            let keep =
+                |piece: Range<usize>, found: &mut Found| self.keep_candidates(&candidates[piece], found);
+            self.threads.extend(&mut found, candidates.len(), keep, Found::append);
+            let test = |piece: Range<usize>, found: &mut Found| self.test_around(&flipped[piece], found);
+            self.threads.extend(&mut found, flipped.len(), test, Found::append);
+            self.threads.map(flipped.len(), |piece| {
+                flipped[piece].iter().for_each(|&edge| self.selected.release(edge));
             });
-            self.threads.extend(&mut candidates, flipped.len(), |piece, found| {
-                self.test_around(&flipped[piece], found);
-            });
-            self.threads
-                .map(flipped.len(), |piece| flipped[piece].iter().for_each(|&h| self.selected.release(h)));
         } else {
-            self.threads.extend(&mut candidates, self.twins.len(), |piece, found| {
-                self.test_all(piece.start as u32..piece.end as u32, found);
-            });
+            found.blocked.clear();
+            self.threads.extend(
+                &mut found,
+                self.twins.len(),
+                |piece, found| self.test_all(piece, found),
+                Found::append,
+            );
         }
-        self.candidates = candidates;
+        self.found = found;
         self.flipped.get_or_insert_default().clear();
     }
 
     /// Tests the edges whose lower half-edges are in `range`.
-    fn test_all(&self, range: Range<u32>, found: &mut Vec<u32>) {
+    fn test_all(&self, range: Range<usize>, found: &mut Found) {
         let mut edges = [0; EDGES];
         for first in range.clone().step_by(EDGES) {
             let mut count = 0;
-            for h in first..range.end.min(first + EDGES as u32) {
+            for h in first as u32..range.end.min(first + EDGES) as u32 {
                 let g = unflagged(self.twins[h as usize]);
                 edges[count] = h;
                 count += usize::from(h < g && g != NONE);
@@ -130,35 +152,31 @@ impl Cpu {
     }
 
     /// Finds the candidates of which no triangle has flipped.
-    fn keep_candidates(&self, candidates: &[u32], found: &mut Vec<u32>) {
-        for &h in candidates {
-            let g = self.twins[h as usize];
+    fn keep_candidates(&self, candidates: &[Edge], found: &mut Found) {
+        for &[h, twin] in candidates {
+            let g = twin & !DUPLICATE;
             if self.selected.is_free(h) && self.selected.is_free(g) {
                 if [h, g].iter().all(|&x| self.has_changed(self.triangles[prev(x) as usize])) {
-                    self.judge_non_delaunay(h);
+                    self.judge_non_delaunay(h, found);
+                } else {
+                    found.candidates.push([h, twin]);
                 }
-                found.push(h);
             }
         }
     }
 
     /// Tests the edges around those that have flipped.
-    fn test_around(&self, flipped: &[u32], found: &mut Vec<u32>) {
+    fn test_around(&self, flipped: &[Edge], found: &mut Found) {
         let mut edges = [0; EDGES];
         for flipped in flipped.chunks(EDGES / 4) {
             let mut count = 0;
-            for &h in flipped {
-                let g = self.selected.twin(h);
+            for &[h, g] in flipped {
                 for x in [h, prev(h), g, prev(g)] {
                     let y = unflagged(self.twins[x as usize]);
                     if y != NONE {
-                        let is_outside = self.selected.is_free(y);
-                        // The new edge is Delaunay anyway; nothing could predict a branch.
-                        let known = if is_outside { y } else { next(h) };
-                        self.verdicts[known as usize].store(DELAUNAY, Relaxed);
-                        // Between two that have flipped, one of them tests.
+                        // Between two that have flipped, one of them tests; nothing could predict a branch.
                         edges[count] = x.min(y);
-                        count += usize::from(is_outside | (x < y));
+                        count += usize::from(self.selected.is_free(y) | (x < y));
                     }
                 }
             }
@@ -166,26 +184,21 @@ impl Cpu {
         }
     }
 
-    /// Tests edges, of which nothing is known yet, and finds those that could flip, but for a duplicate.
-    fn test(&self, edges: &mut [u32], found: &mut Vec<u32>) {
+    /// Tests edges by their lower half-edges.
+    fn test(&self, edges: &mut [u32], found: &mut Found) {
         let count = keep_non_delaunay(&self.geometry(), self.topology(), edges);
         for &h in &edges[..count] {
-            let verdict = self.judge_non_delaunay(h);
-            if matches!(verdict, Verdict::Labelled | Verdict::Blocked(Reason::Duplicate)) {
-                found.push(h);
-            }
+            self.judge_non_delaunay(h, found);
         }
     }
 
-    fn judge_non_delaunay(&self, h: u32) -> Verdict {
-        let verdict = verdict_of_non_delaunay(&self.geometry(), self.topology(), h);
-        self.set_verdict(h, verdict);
-        verdict
-    }
-
-    fn set_verdict(&self, h: u32, verdict: Verdict) {
-        for x in [h, unflagged(self.twins[h as usize])] {
-            self.verdicts[x as usize].store(code(verdict), Relaxed);
+    fn judge_non_delaunay(&self, h: u32, found: &mut Found) {
+        let twin = self.twins[h as usize];
+        match verdict_of_non_delaunay(&self.geometry(), self.topology(), h) {
+            Verdict::Delaunay => {}
+            Verdict::Labelled => found.candidates.push([h, twin]),
+            Verdict::Blocked(Reason::Duplicate) => found.candidates.push([h, twin | DUPLICATE]),
+            Verdict::Blocked(_) => found.blocked.push(h),
         }
     }
 
@@ -196,46 +209,57 @@ impl Cpu {
 
     /// Select: the edges that flip are those with the smallest key in both their triangles, but for those that yield.
     fn select(&mut self) {
-        let mut flips = self.flipped.take().unwrap_or_default();
-        self.threads.extend(&mut flips, self.candidates.len(), |piece, flips| {
-            let before = flips.len();
-            let mut count = before;
-            flips.resize(before + piece.len(), 0);
-            for &h in &self.candidates[piece] {
-                flips[count] = h;
-                count += usize::from(self.is_best(h));
+        let Self { threads, selected, iteration, found: Found { candidates, .. }, .. } = &*self;
+        threads.map(candidates.len(), |piece| {
+            for &[h, g] in &candidates[piece] {
+                if g & DUPLICATE == 0 {
+                    selected.bid([h, g], key(h, *iteration));
+                }
             }
-            flips.truncate(count);
-            for &h in &flips[before..] {
-                self.selected.choose(h, self.twins[h as usize]);
-            }
+        });
+        let mut flips = Vec::new();
+        threads.extend(
+            &mut flips,
+            candidates.len(),
+            |piece, flips: &mut Vec<Edge>| {
+                let before = flips.len();
+                let mut count = before;
+                flips.resize(before + piece.len(), [0; 2]);
+                for &[h, g] in &candidates[piece] {
+                    flips[count] = [h, g];
+                    count += usize::from(
+                        (g & DUPLICATE == 0) & selected.has_won([h, g & !DUPLICATE], key(h, *iteration)),
+                    );
+                }
+                flips.truncate(count);
+            },
+            |all, mut part| all.append(&mut part),
+        );
+        threads.map(candidates.len(), |piece| {
+            candidates[piece].iter().for_each(|&[h, g]| selected.release([h, g & !DUPLICATE]));
+        });
+        threads.map(flips.len(), |piece| {
+            flips[piece].iter().for_each(|&edge| selected.choose(edge));
         });
         let mut yielding = Vec::new();
-        self.threads.extend(&mut yielding, flips.len(), |piece, yielding| {
-            yielding.extend(flips[piece].iter().filter(|&&h| self.yields(h)));
-        });
-        for &h in &yielding {
-            self.selected.release(h);
+        threads.extend(
+            &mut yielding,
+            flips.len(),
+            |piece, yielding: &mut Vec<Edge>| {
+                yielding.extend(flips[piece].iter().filter(|&&edge| self.yields(edge)));
+            },
+            |all, mut part| all.append(&mut part),
+        );
+        for &edge in &yielding {
+            self.selected.release(edge);
         }
         if !yielding.is_empty() {
-            flips.retain(|&h| !self.selected.is_free(h));
+            flips.retain(|&[h, _]| !self.selected.is_free(h));
         }
         self.flipped = Some(flips);
     }
 
-    /// Whether the edge of `h` may flip and has the smallest key of all that may in its two triangles. Without a
-    /// branch, which nothing could predict.
-    #[inline(always)]
-    fn is_best(&self, h: u32) -> bool {
-        let g = self.twins[h as usize];
-        let mine = key(h, self.iteration);
-        let is_labelled = |x: u32| self.verdicts[x as usize].load(Relaxed) == LABELLED;
-        let loses = |x: u32| is_labelled(x) & (key(x.min(self.twins[x as usize]), self.iteration) < mine);
-        is_labelled(h) & !(loses(next(h)) | loses(prev(h)) | loses(next(g)) | loses(prev(g)))
-    }
-
-    fn yields(&self, h: u32) -> bool {
-        let g = self.selected.twin(h);
+    fn yields(&self, [h, g]: Edge) -> bool {
         if [h, g].iter().any(|&x| self.embedded.at(self.triangles[prev(x) as usize])) {
             return false;
         }
@@ -244,46 +268,41 @@ impl Cpu {
 
     /// Flip with Update. Returns the number of flips.
     fn flip(&mut self) -> u32 {
-        let Self {
-            threads, triangles, twins, fans, verdicts, selected, changed, embedded, iteration, ..
-        } = self;
+        let Self { threads, triangles, twins, fans, selected, changed, embedded, iteration, .. } = self;
         let flips = self.flipped.as_deref().unwrap_or_default();
         *iteration += 1;
         move_anchors(fans, triangles, selected, flips);
         let (triangles, twins) = (shared(triangles), shared(twins));
         threads.map(flips.len(), |piece| {
-            for &h in &flips[piece] {
-                let g = selected.twin(h);
+            for &[h, g] in &flips[piece] {
                 for x in [h, prev(h), g, prev(g)] {
                     let v = triangles[x as usize].load(Relaxed);
                     if !embedded.at(v) {
                         changed[v as usize].store(*iteration, Relaxed);
                     }
                 }
-                forget(verdicts, h, g);
-                flip(triangles, twins, selected, h);
+                flip(triangles, twins, selected, [h, g]);
             }
         });
         flips.len() as u32
     }
 
-    /// The verdict of every interior edge, counted.
+    /// Counts the edges that are not Delaunay: tests those again that have been found so.
     pub(crate) fn count(&mut self) -> Census {
         self.label();
-        let counted = self.threads.map(self.verdicts.len(), |piece| {
-            let mut halves = [0; CODES];
-            for verdict in &self.verdicts[piece] {
-                let code = verdict.load(Relaxed);
-                if code != DELAUNAY {
-                    halves[code as usize] += 1;
-                }
+        let Found { candidates, blocked } = &self.found;
+        let mut census = Census::default();
+        let mut is_counted = vec![false; self.twins.len()];
+        for &h in candidates.iter().map(|[h, _]| h).chain(blocked) {
+            let g = unflagged(self.twins[h as usize]);
+            if g == NONE || std::mem::replace(&mut is_counted[h.min(g) as usize], true) {
+                continue;
             }
-            halves
-        });
-        let edges = |code: u8| counted.iter().map(|halves| halves[code as usize]).sum::<u32>() / 2;
-        let mut census = Census { labelled: edges(LABELLED), ..Census::default() };
-        for reason in Reason::ALL {
-            census.blocked[reason] = u64::from(edges(code(Verdict::Blocked(reason))));
+            match verdict(&self.geometry(), self.topology(), h) {
+                Verdict::Delaunay => {}
+                Verdict::Labelled => census.labelled += 1,
+                Verdict::Blocked(reason) => census.blocked[reason] += 1,
+            }
         }
         census
     }
@@ -294,47 +313,26 @@ impl Cpu {
     /// Tests the edge of half-edge `h`.
     pub(super) fn judge(&mut self, h: u32) -> Verdict {
         let verdict = verdict(&self.geometry(), self.topology(), h);
-        self.set_verdict(h, verdict);
+        if let Verdict::Blocked(_) = verdict {
+            self.found.blocked.push(h);
+        }
         verdict
     }
 
     /// Flips one edge that may flip, by one of its half-edges.
     pub(super) fn flip_one(&mut self, h: u32) {
-        let Self { triangles, twins, fans, verdicts, selected, .. } = self;
-        let g = twins[h as usize];
-        selected.choose(h, g);
-        move_anchors(fans, triangles, selected, &[h]);
-        flip(shared(triangles), shared(twins), selected, h);
-        selected.release(h);
-        forget(verdicts, h, g);
+        let Self { triangles, twins, fans, selected, .. } = self;
+        let edge = [h, twins[h as usize]];
+        selected.choose(edge);
+        move_anchors(fans, triangles, selected, &[edge]);
+        flip(shared(triangles), shared(twins), selected, edge);
+        selected.release(edge);
     }
 
     /// Says whether the last test of every edge still holds; else the next iteration tests all of them.
     pub(super) fn set_tested(&mut self, is_tested: bool) {
-        self.candidates.clear();
+        self.found.candidates.clear();
         self.flipped = is_tested.then(Vec::new);
-    }
-}
-
-const DELAUNAY: u8 = 0;
-const LABELLED: u8 = 1;
-const CODES: usize = 2 + Reason::ALL.len();
-
-/// A verdict as a byte.
-fn code(verdict: Verdict) -> u8 {
-    match verdict {
-        Verdict::Delaunay => DELAUNAY,
-        Verdict::Labelled => LABELLED,
-        Verdict::Blocked(reason) => 2 + reason as u8,
-    }
-}
-
-/// Takes all edges of the triangles of two half-edges for Delaunay.
-fn forget(verdicts: &[AtomicU8], h: u32, g: u32) {
-    for t in [h as usize / 3, g as usize / 3] {
-        for verdict in &verdicts[3 * t..3 * t + 3] {
-            verdict.store(DELAUNAY, Relaxed);
-        }
     }
 }
 
@@ -375,8 +373,7 @@ impl Engine for Cpu {
         if mesh.dimension() == Dimension::Three {
             flag_creases(mesh.positions(), &self.triangles, &mut self.twins, self.cos, &self.threads);
         }
-        self.verdicts.fill_with(AtomicU8::default);
-        self.candidates.clear();
+        self.found = Found::default();
         self.flipped = None;
         self.selected = Selected::new(self.triangles.len() / 3);
         self.changed.fill_with(AtomicU32::default);

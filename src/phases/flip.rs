@@ -15,16 +15,35 @@ impl Selected {
         Self(std::iter::repeat_with(|| AtomicU32::new(NONE)).take(triangles).collect())
     }
 
+    /// Lets the edge of two half-edges bid for its triangles: the smallest key wins each.
+    #[inline(always)]
+    pub(crate) fn bid(&self, edge: [u32; 2], key: u32) {
+        for x in edge {
+            let word = &self.0[x as usize / 3];
+            // Rarely another thread has been there in between.
+            if key < word.load(Relaxed) {
+                word.fetch_min(key, Relaxed);
+            }
+        }
+    }
+
+    /// Whether the edge has won both its triangles.
+    #[inline(always)]
+    pub(crate) fn has_won(&self, edge: [u32; 2], key: u32) -> bool {
+        edge.iter().fold(true, |all, &x| all & (self.0[x as usize / 3].load(Relaxed) == key))
+    }
+
     /// Selects the edge of two half-edges.
-    pub(crate) fn choose(&self, h: u32, g: u32) {
+    pub(crate) fn choose(&self, [h, g]: [u32; 2]) {
         for (x, twin) in [(h, g), (g, h)] {
             self.0[x as usize / 3].store(twin | (x % 3) << FLAGS.trailing_zeros(), Relaxed);
         }
     }
 
-    /// Takes back that the edge of `h` is selected.
-    pub(crate) fn release(&self, h: u32) {
-        for x in [self.twin(h), h] {
+    /// No edge of the triangles of two half-edges is selected.
+    #[inline(always)]
+    pub(crate) fn release(&self, edge: [u32; 2]) {
+        for x in edge {
             self.0[x as usize / 3].store(NONE, Relaxed);
         }
     }
@@ -33,12 +52,6 @@ impl Selected {
     #[inline(always)]
     pub(crate) fn is_free(&self, h: u32) -> bool {
         self.0[h as usize / 3].load(Relaxed) == NONE
-    }
-
-    /// The twin of half-edge `h`, whose edge is selected.
-    #[inline(always)]
-    pub(crate) fn twin(&self, h: u32) -> u32 {
-        self.0[h as usize / 3].load(Relaxed) & !FLAGS
     }
 
     /// The selected half-edge of triangle `t`, and its twin.
@@ -60,25 +73,24 @@ impl Selected {
     }
 }
 
-/// Moves the anchors of the fans with their half-edges; before the flips of the edges of these half-edges.
-pub(crate) fn move_anchors(fans: &mut Fans, triangles: &[u32], selected: &Selected, half_edges: &[u32]) {
+/// Moves the anchors of the fans with their half-edges; before the flips of these edges.
+pub(crate) fn move_anchors(fans: &mut Fans, triangles: &[u32], selected: &Selected, edges: &[[u32; 2]]) {
     if fans.table.is_empty() {
         return;
     }
-    for &h in half_edges {
-        for moved in [next(h), next(selected.twin(h))] {
+    for edge in edges {
+        for moved in edge.map(next) {
             fans.move_anchor(triangles[moved as usize], moved, selected.slot(moved));
         }
     }
 }
 
-/// Flips the selected edge of half-edge `h`. Reads the twins of its own two triangles only; writes those, and the
+/// Flips the selected edge of two half-edges. Reads the twins of its own two triangles only; writes those, and the
 /// entries of the neighbours that are not selected themselves.
 #[inline(always)]
-pub(crate) fn flip(triangles: &[AtomicU32], twins: &[AtomicU32], selected: &Selected, h: u32) {
+pub(crate) fn flip(triangles: &[AtomicU32], twins: &[AtomicU32], selected: &Selected, [h, g]: [u32; 2]) {
     let read = |words: &[AtomicU32], i: u32| words[i as usize].load(Relaxed);
     let write = |words: &[AtomicU32], i: u32, word: u32| words[i as usize].store(word, Relaxed);
-    let g = selected.twin(h);
     let [hn, hp, gn, gp] = [next(h), prev(h), next(g), prev(g)];
     let [c, d] = [read(triangles, hp), read(triangles, gp)];
     let outer = [(h, read(twins, gn)), (hp, read(twins, hp)), (g, read(twins, hn)), (gp, read(twins, gp))];
