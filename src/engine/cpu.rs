@@ -7,19 +7,19 @@ use crate::embedded::Embedded;
 use crate::locks;
 use crate::mesh::{Dimension, Mesh};
 use crate::phases::{
-    Geometry, Selected, Topology, Verdict, flag_creases, flip, keep_non_delaunay, key, move_anchors, verdict,
-    verdict_of_non_delaunay, yields,
+    Diamond, Geometry, Selected, Topology, Verdict, flag_creases, flip, keep_non_delaunay, key,
+    makes_duplicate, move_anchors, verdict, verdict_of_shape, yields,
 };
 use crate::star::Fans;
 use crate::threads::{Threads, shared};
 use crate::winding::Winding;
-use crate::{Adjacency, NONE, Reason};
+use crate::{Adjacency, NONE};
 use std::ops::Range;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
 /// Edges that are tested in one go.
-const EDGES: usize = 1024;
+const EDGES: usize = 256;
 
 /// An edge by its half-edges, the lower one first.
 type Edge = [u32; 2];
@@ -139,7 +139,7 @@ impl Cpu {
 
     /// Tests the edges whose lower half-edges are in `range`.
     fn test_all(&self, range: Range<usize>, found: &mut Found) {
-        let mut edges = [0; EDGES];
+        let (mut edges, mut diamonds) = ([0; EDGES], [Diamond::default(); EDGES]);
         for first in range.clone().step_by(EDGES) {
             let mut count = 0;
             for h in first as u32..range.end.min(first + EDGES) as u32 {
@@ -147,59 +147,67 @@ impl Cpu {
                 edges[count] = h;
                 count += usize::from(h < g && g != NONE);
             }
-            self.test(&mut edges[..count], found);
+            for (diamond, &h) in diamonds.iter_mut().zip(&edges[..count]) {
+                *diamond = Diamond::new(self.topology(), h);
+            }
+            self.test(&diamonds[..count], found);
         }
     }
 
     /// Finds the candidates of which no triangle has flipped.
     fn keep_candidates(&self, candidates: &[Edge], found: &mut Found) {
         for &[h, twin] in candidates {
-            let g = twin & !DUPLICATE;
+            let g = unflagged(twin);
             if self.selected.is_free(h) && self.selected.is_free(g) {
-                if [h, g].iter().all(|&x| self.has_changed(self.triangles[prev(x) as usize])) {
-                    self.judge_non_delaunay(h, found);
-                } else {
-                    found.candidates.push([h, twin]);
-                }
+                let has_changed = [h, g].iter().all(|&x| self.has_changed(self.triangles[prev(x) as usize]));
+                found.candidates.push(if has_changed { self.guarded([h, g]) } else { [h, twin] });
             }
         }
     }
 
     /// Tests the edges around those that have flipped.
     fn test_around(&self, flipped: &[Edge], found: &mut Found) {
-        let mut edges = [0; EDGES];
+        let mut diamonds = [Diamond::default(); EDGES];
         for flipped in flipped.chunks(EDGES / 4) {
             let mut count = 0;
             for &[h, g] in flipped {
-                for x in [h, prev(h), g, prev(g)] {
-                    let y = unflagged(self.twins[x as usize]);
+                let corner = |x: u32| self.triangles[x as usize];
+                // The triangles are (a, d, c) and (b, c, d) now.
+                let [a, c, b, d] = [h, prev(h), g, prev(g)].map(corner);
+                for (x, [from, to, apex]) in
+                    [(h, [a, d, c]), (prev(h), [c, a, d]), (g, [b, c, d]), (prev(g), [d, b, c])]
+                {
+                    let twin = self.twins[x as usize];
+                    let y = unflagged(twin);
                     if y != NONE {
+                        diamonds[count] = Diamond { h: x, twin, corners: [from, to, apex, corner(prev(y))] };
                         // Between two that have flipped, one of them tests; nothing could predict a branch.
-                        edges[count] = x.min(y);
                         count += usize::from(self.selected.is_free(y) | (x < y));
                     }
                 }
             }
-            self.test(&mut edges[..count], found);
+            self.test(&diamonds[..count], found);
         }
     }
 
-    /// Tests edges by their lower half-edges.
-    fn test(&self, edges: &mut [u32], found: &mut Found) {
-        let count = keep_non_delaunay(&self.geometry(), self.topology(), edges);
-        for &h in &edges[..count] {
-            self.judge_non_delaunay(h, found);
+    fn test(&self, diamonds: &[Diamond], found: &mut Found) {
+        let geometry = self.geometry();
+        let mut kept = [0; EDGES];
+        let count = keep_non_delaunay(&geometry, diamonds, &mut kept);
+        for &i in &kept[..count] {
+            let diamond = &diamonds[i as usize];
+            let (h, g) = (diamond.h, unflagged(diamond.twin));
+            match verdict_of_shape(&geometry, diamond) {
+                Verdict::Labelled => found.candidates.push(self.guarded([h.min(g), h.max(g)])),
+                _ => found.blocked.push(h),
+            }
         }
     }
 
-    fn judge_non_delaunay(&self, h: u32, found: &mut Found) {
-        let twin = self.twins[h as usize];
-        match verdict_of_non_delaunay(&self.geometry(), self.topology(), h) {
-            Verdict::Delaunay => {}
-            Verdict::Labelled => found.candidates.push([h, twin]),
-            Verdict::Blocked(Reason::Duplicate) => found.candidates.push([h, twin | DUPLICATE]),
-            Verdict::Blocked(_) => found.blocked.push(h),
-        }
+    /// A candidate, once it is known whether it makes a duplicate.
+    fn guarded(&self, [h, g]: Edge) -> Edge {
+        let is_duplicate = makes_duplicate(&self.geometry(), self.topology(), h);
+        [h, if is_duplicate { g | DUPLICATE } else { g }]
     }
 
     /// Whether an edge at `v` has come or gone in the last iteration, as far as that is of interest.

@@ -46,93 +46,104 @@ pub(crate) fn label(geometry: &Geometry, mesh: Topology, iteration: u32) -> Vec<
     (0..mesh.triangles.len() as u32 / 3).map(best).collect()
 }
 
-/// Tests the interior edge of half-edge `h`. Both half-edges give the same answer, since it is exact.
-pub(crate) fn verdict(geometry: &Geometry, mesh: Topology, h: u32) -> Verdict {
-    if is_non_delaunay(geometry, mesh, h) {
-        verdict_of_non_delaunay(geometry, mesh, h)
-    } else {
-        Verdict::Delaunay
+/// An interior edge with its two triangles (a, b, c) and (b, a, d).
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Diamond {
+    /// The half-edge from a to b.
+    pub(crate) h: u32,
+    /// Its entry in the twins.
+    pub(crate) twin: u32,
+    /// a, b, c, d.
+    pub(crate) corners: [u32; 4],
+}
+
+impl Diamond {
+    /// That of half-edge `h`.
+    #[inline(always)]
+    pub(crate) fn new(mesh: Topology, h: u32) -> Self {
+        let twin = mesh.twins[h as usize];
+        let corner = |x: u32| mesh.triangles[x as usize];
+        let corners = [corner(h), corner(next(h)), corner(prev(h)), corner(prev(unflagged(twin)))];
+        Self { h, twin, corners }
     }
 }
 
-/// Moves the interior edges that are not Delaunay, each given by one of its half-edges, to the front, and returns how
-/// many they are.
-pub(crate) fn keep_non_delaunay(geometry: &Geometry, mesh: Topology, edges: &mut [u32]) -> usize {
+/// Tests the interior edge of half-edge `h`. Both half-edges give the same answer, since it is exact.
+pub(crate) fn verdict(geometry: &Geometry, mesh: Topology, h: u32) -> Verdict {
+    let diamond = Diamond::new(mesh, h);
+    if keep_non_delaunay(geometry, &[diamond], &mut [0]) == 0 {
+        return Verdict::Delaunay;
+    }
+    match verdict_of_shape(geometry, &diamond) {
+        Verdict::Labelled if makes_duplicate(geometry, mesh, h) => Verdict::Blocked(Reason::Duplicate),
+        verdict => verdict,
+    }
+}
+
+/// Writes which of the edges are not Delaunay, as places in `diamonds`, and returns how many they are.
+pub(crate) fn keep_non_delaunay(geometry: &Geometry, diamonds: &[Diamond], kept: &mut [u32]) -> usize {
     let winding = geometry.winding;
     match (geometry.dimension, geometry.positions) {
         (Dimension::Two, Positions::F32(numbers)) => {
-            keep(edges, |h| is_non_delaunay_in_plane(numbers, winding, mesh, h))
+            keep(diamonds, kept, |diamond| is_non_delaunay_in_plane(numbers, winding, diamond))
         }
         (Dimension::Two, Positions::F64(numbers)) => {
-            keep(edges, |h| is_non_delaunay_in_plane(numbers, winding, mesh, h))
+            keep(diamonds, kept, |diamond| is_non_delaunay_in_plane(numbers, winding, diamond))
         }
-        (Dimension::Three, positions) => keep(edges, |h| quad(positions, mesh, h).is_non_delaunay()),
+        (Dimension::Three, positions) => {
+            keep(diamonds, kept, |diamond| quad(positions, diamond).is_non_delaunay())
+        }
     }
 }
 
 /// Without a branch on the answers, which nothing could predict.
 #[inline(always)]
-fn keep(edges: &mut [u32], is_kept: impl Fn(u32) -> bool) -> usize {
-    let mut kept = 0;
-    for i in 0..edges.len() {
-        let h = edges[i];
-        edges[kept] = h;
-        kept += usize::from(is_kept(h));
+fn keep(diamonds: &[Diamond], kept: &mut [u32], is_kept: impl Fn(&Diamond) -> bool) -> usize {
+    let mut count = 0;
+    for (i, diamond) in (0..).zip(diamonds) {
+        kept[count] = i;
+        count += usize::from(is_kept(diamond));
     }
-    kept
-}
-
-fn is_non_delaunay(geometry: &Geometry, mesh: Topology, h: u32) -> bool {
-    keep_non_delaunay(geometry, mesh, &mut [h]) == 1
+    count
 }
 
 #[inline(always)]
 fn is_non_delaunay_in_plane<T: Copy + Into<f64>>(
     numbers: &[T],
     winding: &Winding,
-    mesh: Topology,
-    h: u32,
+    diamond: &Diamond,
 ) -> bool {
     let (points, _) = numbers.as_chunks::<2>();
     let point = |v: u32| DVec2::new(points[v as usize][0].into(), points[v as usize][1].into());
-    let [a, b, c, d] = vertices(mesh, h);
+    let [a, b, c, d] = diamond.corners;
     let sign = in_circle_sign(point(a), point(b), point(c), point(d));
-    sign == winding.positive(h / 3).reverse()
-}
-
-/// The ends of the edge and the far corners of its triangles.
-#[inline(always)]
-fn vertices(mesh: Topology, h: u32) -> [u32; 4] {
-    let g = unflagged(mesh.twins[h as usize]);
-    let corner = |x: u32| mesh.triangles[x as usize];
-    [corner(h), corner(next(h)), corner(prev(h)), corner(prev(g))]
+    sign == winding.positive(diamond.h / 3).reverse()
 }
 
 #[inline(always)]
-fn quad(positions: &Positions, mesh: Topology, h: u32) -> Quad {
-    let [a, b, c, d] = positions.points3(vertices(mesh, h));
+fn quad(positions: &Positions, diamond: &Diamond) -> Quad {
+    let [a, b, c, d] = positions.points3(diamond.corners);
     Quad::new(a, b, c, d)
 }
 
-/// Whether a non-Delaunay edge may flip, or why it may not.
-pub(crate) fn verdict_of_non_delaunay(geometry: &Geometry, mesh: Topology, h: u32) -> Verdict {
-    let entry = mesh.twins[h as usize];
-    if entry & LOCKED != 0 {
+/// Whether a non-Delaunay edge may flip as far as its two triangles say, or why it may not.
+pub(crate) fn verdict_of_shape(geometry: &Geometry, diamond: &Diamond) -> Verdict {
+    if diamond.twin & LOCKED != 0 {
         return Verdict::Blocked(Reason::Locked);
     }
     match geometry.dimension {
         // The angles at a and b are together smaller than π, if both triangles are positive.
         Dimension::Two if geometry.winding.is_strict => {}
         Dimension::Two => {
-            let [a, b, c, d] = geometry.positions.points2(vertices(mesh, h));
-            let positive = geometry.winding.positive(h / 3);
+            let [a, b, c, d] = geometry.positions.points2(diamond.corners);
+            let positive = geometry.winding.positive(diamond.h / 3);
             if area_sign(a, d, c) != positive || area_sign(b, c, d) != positive {
                 return Verdict::Blocked(Reason::Fold);
             }
         }
         Dimension::Three => {
-            let quad = quad(geometry.positions, mesh, h);
-            if entry & CREASE != 0 || quad.exceeds_angle(geometry.cos) {
+            let quad = quad(geometry.positions, diamond);
+            if diamond.twin & CREASE != 0 || quad.exceeds_angle(geometry.cos) {
                 return Verdict::Blocked(Reason::Angle);
             }
             if quad.turns_over() {
@@ -140,13 +151,13 @@ pub(crate) fn verdict_of_non_delaunay(geometry: &Geometry, mesh: Topology, h: u3
             }
         }
     }
-    if makes_duplicate(geometry, mesh, h) { Verdict::Blocked(Reason::Duplicate) } else { Verdict::Labelled }
+    Verdict::Labelled
 }
 
 /// Whether an edge joins the far corners c and d of an edge already, or c is d.
-fn makes_duplicate(geometry: &Geometry, mesh: Topology, h: u32) -> bool {
+pub(crate) fn makes_duplicate(geometry: &Geometry, mesh: Topology, h: u32) -> bool {
     let [at_c, at_d] = [prev(h), prev(unflagged(mesh.twins[h as usize]))];
-    let [_, _, c, d] = vertices(mesh, h);
+    let [c, d] = [at_c, at_d].map(|corner| mesh.triangles[corner as usize]);
     if geometry.embedded.at(c) || geometry.embedded.at(d) {
         return false;
     }
