@@ -2,7 +2,7 @@
 //! only where one of its triangles has flipped.
 
 use super::{Answer, Census, EdgeCounts, Engine};
-use crate::adjacency::{LOCKED, prev, unflagged};
+use crate::adjacency::{CREASE, LOCKED, prev, unflagged};
 use crate::embedded::Embedded;
 use crate::locks;
 use crate::mesh::{Dimension, Mesh};
@@ -26,6 +26,9 @@ type Edge = [u32; 2];
 
 /// In the second half-edge of a candidate: it makes an edge that exists.
 const DUPLICATE: u32 = LOCKED;
+
+/// In the second half-edge of a candidate: it may make such an edge after other flips.
+const GUARDED: u32 = CREASE;
 
 /// The edges that are not Delaunay.
 #[derive(Default)]
@@ -159,8 +162,9 @@ impl Cpu {
         for &[h, twin] in candidates {
             let g = unflagged(twin);
             if self.selected.is_free(h) && self.selected.is_free(g) {
-                let has_changed = [h, g].iter().all(|&x| self.has_changed(self.triangles[prev(x) as usize]));
-                found.candidates.push(if has_changed { self.guarded([h, g]) } else { [h, twin] });
+                let is_open = twin & GUARDED != 0
+                    && [h, g].iter().all(|&x| self.has_changed(self.triangles[prev(x) as usize]));
+                found.candidates.push(if is_open { self.guarded([h, g]) } else { [h, twin] });
             }
         }
     }
@@ -196,9 +200,11 @@ impl Cpu {
         let count = keep_non_delaunay(&geometry, diamonds, &mut kept);
         for &i in &kept[..count] {
             let diamond = &diamonds[i as usize];
-            let (h, g) = (diamond.h, unflagged(diamond.twin));
+            let (h, g, [_, _, c, d]) = (diamond.h, unflagged(diamond.twin), diamond.corners);
+            let edge = [h.min(g), h.max(g)];
             match verdict_of_shape(&geometry, diamond) {
-                Verdict::Labelled => found.candidates.push(self.guarded([h.min(g), h.max(g)])),
+                Verdict::Labelled if self.embedded.at(c) | self.embedded.at(d) => found.candidates.push(edge),
+                Verdict::Labelled => found.candidates.push(self.guarded(edge)),
                 _ => found.blocked.push(h),
             }
         }
@@ -207,7 +213,7 @@ impl Cpu {
     /// A candidate, once it is known whether it makes a duplicate.
     fn guarded(&self, [h, g]: Edge) -> Edge {
         let is_duplicate = makes_duplicate(&self.geometry(), self.topology(), h);
-        [h, if is_duplicate { g | DUPLICATE } else { g }]
+        [h, g | GUARDED | if is_duplicate { DUPLICATE } else { 0 }]
     }
 
     /// Whether an edge at `v` has come or gone in the last iteration, as far as that is of interest.
@@ -219,59 +225,46 @@ impl Cpu {
     fn select(&mut self) {
         let Self { threads, selected, iteration, found: Found { candidates, .. }, .. } = &*self;
         threads.map(candidates.len(), |piece| {
-            for &[h, g] in &candidates[piece] {
-                if g & DUPLICATE == 0 {
-                    selected.bid([h, g], key(h, *iteration));
+            for &[h, twin] in &candidates[piece] {
+                if twin & DUPLICATE == 0 {
+                    selected.bid([h, unflagged(twin)], key(h, *iteration));
                 }
             }
         });
+        let append = |all: &mut Vec<Edge>, mut part| all.append(&mut part);
         let mut flips = Vec::new();
-        threads.extend(
-            &mut flips,
-            candidates.len(),
-            |piece, flips: &mut Vec<Edge>| {
-                let before = flips.len();
-                let mut count = before;
-                flips.resize(before + piece.len(), [0; 2]);
-                for &[h, g] in &candidates[piece] {
-                    flips[count] = [h, g];
-                    count += usize::from(
-                        (g & DUPLICATE == 0) & selected.has_won([h, g & !DUPLICATE], key(h, *iteration)),
-                    );
-                }
-                flips.truncate(count);
-            },
-            |all, mut part| all.append(&mut part),
-        );
+        let win = |piece: Range<usize>, flips: &mut Vec<Edge>| {
+            let mut count = flips.len();
+            flips.resize(count + piece.len(), [0; 2]);
+            for &[h, twin] in &candidates[piece] {
+                flips[count] = [h, twin];
+                let has_won = selected.has_won([h, unflagged(twin)], key(h, *iteration));
+                count += usize::from(has_won & (twin & DUPLICATE == 0));
+            }
+            flips.truncate(count);
+        };
+        threads.extend(&mut flips, candidates.len(), win, append);
         threads.map(candidates.len(), |piece| {
-            candidates[piece].iter().for_each(|&[h, g]| selected.release([h, g & !DUPLICATE]));
+            candidates[piece].iter().for_each(|&[h, twin]| selected.release([h, unflagged(twin)]));
         });
         threads.map(flips.len(), |piece| {
-            flips[piece].iter().for_each(|&edge| selected.choose(edge));
+            flips[piece].iter().for_each(|&[h, twin]| selected.choose([h, unflagged(twin)]));
         });
         let mut yielding = Vec::new();
-        threads.extend(
-            &mut yielding,
-            flips.len(),
-            |piece, yielding: &mut Vec<Edge>| {
-                yielding.extend(flips[piece].iter().filter(|&&edge| self.yields(edge)));
-            },
-            |all, mut part| all.append(&mut part),
-        );
-        for &edge in &yielding {
-            self.selected.release(edge);
-        }
+        let yields = |piece: Range<usize>, yielding: &mut Vec<Edge>| {
+            let guarded = flips[piece].iter().filter(|[_, twin]| twin & GUARDED != 0);
+            let guarded = guarded.map(|&[h, twin]| [h, unflagged(twin)]);
+            yielding.extend(
+                guarded.filter(|&[h, g]| yields(self.topology(), *iteration, h, g, |t| selected.pair(t))),
+            );
+        };
+        threads.extend(&mut yielding, flips.len(), yields, append);
         if !yielding.is_empty() {
-            flips.retain(|&[h, _]| !self.selected.is_free(h));
+            yielding.iter().for_each(|&edge| selected.release(edge));
+            flips.retain(|&[h, _]| !selected.is_free(h));
         }
+        flips.iter_mut().for_each(|[_, twin]| *twin = unflagged(*twin));
         self.flipped = Some(flips);
-    }
-
-    fn yields(&self, [h, g]: Edge) -> bool {
-        if [h, g].iter().any(|&x| self.embedded.at(self.triangles[prev(x) as usize])) {
-            return false;
-        }
-        yields(self.topology(), self.iteration, h, g, |t| self.selected.pair(t))
     }
 
     /// Flip with Update. Returns the number of flips.
