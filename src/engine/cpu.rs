@@ -1,5 +1,5 @@
-//! The phases on the CPU, an edge at a time: what the last test of each edge said is kept, and an edge is tested again
-//! only where one of its triangles has flipped.
+//! The phases on the CPU, an edge at a time and on several threads: the edges that are not Delaunay are kept in lists,
+//! and an edge is tested again only where one of its triangles has flipped.
 
 use super::{Answer, Census, EdgeCounts, Engine};
 use crate::adjacency::{CREASE, LOCKED, prev, unflagged};

@@ -15,19 +15,20 @@ impl Selected {
         Self(std::iter::repeat_with(|| AtomicU32::new(NONE)).take(triangles).collect())
     }
 
-    /// Lets the edge of two half-edges bid for its triangles: the smallest key wins each.
+    /// Lets the edge of two half-edges bid for its triangles, of which no edge is selected: the smallest key stays,
+    /// whichever comes first. No two edges have the same.
     #[inline(always)]
     pub(crate) fn bid(&self, edge: [u32; 2], key: u32) {
         for x in edge {
             let word = &self.0[x as usize / 3];
-            // Rarely another thread has been there in between.
+            // Those that lose need no more than a load.
             if key < word.load(Relaxed) {
                 word.fetch_min(key, Relaxed);
             }
         }
     }
 
-    /// Whether the edge has won both its triangles.
+    /// Whether the edge has won both its triangles, once all have bidden.
     #[inline(always)]
     pub(crate) fn has_won(&self, edge: [u32; 2], key: u32) -> bool {
         edge.iter().fold(true, |all, &x| all & (self.0[x as usize / 3].load(Relaxed) == key))
