@@ -311,29 +311,10 @@ impl Cpu {
 
 /// What Lawson's algorithm needs of it.
 impl Cpu {
-    /// Tests the edge of half-edge `h`.
-    pub(super) fn judge(&mut self, h: u32) -> Verdict {
-        let verdict = verdict(&self.geometry(), self.topology(), h);
-        if let Verdict::Blocked(_) = verdict {
-            self.found.blocked.push(h);
-        }
-        verdict
-    }
-
-    /// Flips one edge that may flip, by one of its half-edges.
-    pub(super) fn flip_one(&mut self, h: u32) {
-        let Self { triangles, twins, fans, selected, .. } = self;
-        let edge = [h, twins[h as usize]];
-        selected.choose(edge);
-        move_anchors(fans, triangles, selected, &[edge]);
-        flip(shared(triangles), shared(twins), selected, edge);
-        selected.release(edge);
-    }
-
-    /// Says whether the last test of every edge still holds; else the next iteration tests all of them.
-    pub(super) fn set_tested(&mut self, is_tested: bool) {
-        self.found.candidates.clear();
-        self.flipped = is_tested.then(Vec::new);
+    /// After flips of others: all edges are Delaunay but some of these, or else, as at first, none is known.
+    pub(super) fn settle(&mut self, others: Vec<u32>, is_known: bool) {
+        self.found = Found { blocked: others, ..Found::default() };
+        self.flipped = is_known.then(Vec::new);
     }
 }
 

@@ -3,59 +3,120 @@
 //! phases.
 
 use super::{Answer, Census, Cpu, EdgeCounts, Engine};
-use crate::adjacency::{prev, unflagged};
-use crate::phases::Verdict;
+use crate::adjacency::{FLAGS, next, prev, unflagged};
+use crate::phases::{Diamond, Verdict, keep_non_delaunay, verdict};
 use crate::{Mesh, NONE, Reason};
 use std::sync::Arc;
+
+/// Edges that are tested in one go, before those of them that are not Delaunay flip.
+const EDGES: usize = 64;
 
 /// The state of the CPU engine, flipped in another order.
 pub(crate) struct Lawson {
     cpu: Cpu,
+    /// Whether nothing is left to flip.
+    has_ended: bool,
+    /// Half-edges of edges that were not Delaunay when they were tested last; others may have flipped since.
+    pending: Vec<u32>,
+    /// Those of them that may not flip.
+    blocked: Vec<u32>,
 }
 
 impl Lawson {
     pub(crate) fn new(cpu: Cpu) -> Self {
-        Self { cpu }
+        Self { cpu, has_ended: false, pending: Vec::new(), blocked: Vec::new() }
     }
 
     /// Flips until nothing is left to flip, or the number of flips, which it returns, is at its limit.
     fn flip_all(&mut self) -> u32 {
         let mut flips = 0;
-        let mut stack = Vec::new();
-        loop {
-            let (before, mut duplicates) = (flips, false);
-            for first in 0..self.cpu.twins.len() as u32 {
-                let g = unflagged(self.cpu.twins[first as usize]);
-                if g != NONE && first < g {
-                    stack.push(first);
-                }
-                while let Some(h) = stack.pop() {
-                    let g = unflagged(self.cpu.twins[h as usize]);
-                    if g == NONE {
-                        continue;
-                    }
-                    match self.cpu.judge(h) {
-                        Verdict::Labelled if flips == u32::MAX => {
-                            self.cpu.set_tested(false);
-                            return flips;
-                        }
-                        Verdict::Labelled => {
-                            self.cpu.flip_one(h);
-                            flips += 1;
-                            stack.extend([h, prev(h), g, prev(g)]);
-                        }
-                        Verdict::Blocked(Reason::Duplicate) => duplicates = true,
-                        _ => {}
-                    }
-                }
+        let mut has_duplicate = false;
+        let end = self.cpu.twins.len() as u32;
+        for first in (0..end).step_by(EDGES) {
+            self.test::<EDGES>(first..end.min(first + EDGES as u32), |h, g| h < g);
+            has_duplicate |= self.flip_pending(&mut flips);
+        }
+        let mut before = 0;
+        // A flip elsewhere may have removed the edge that stood in the way.
+        while has_duplicate && flips > before {
+            before = flips;
+            self.pending = std::mem::take(&mut self.blocked);
+            has_duplicate = self.flip_pending(&mut flips);
+        }
+        self.has_ended = flips < u32::MAX;
+        self.pending.clear();
+        self.cpu.settle(std::mem::take(&mut self.blocked), self.has_ended);
+        flips
+    }
+
+    /// Tests the edges of at most `N` half-edges, as far as they have twins and are asked for.
+    fn test<const N: usize>(
+        &mut self,
+        half_edges: impl IntoIterator<Item = u32>,
+        is_asked_for: impl Fn(u32, u32) -> bool,
+    ) {
+        let mut edges = [0; N];
+        let mut count = 0;
+        for h in half_edges {
+            let g = unflagged(self.cpu.twins[h as usize]);
+            edges[count] = h;
+            count += usize::from((g != NONE) & is_asked_for(h, g));
+        }
+        let mut diamonds = [Diamond::default(); N];
+        for (diamond, &h) in diamonds.iter_mut().zip(&edges[..count]) {
+            *diamond = Diamond::new(self.cpu.topology(), h);
+        }
+        let mut kept = [0; N];
+        let count = keep_non_delaunay(&self.cpu.geometry(), &diamonds[..count], &mut kept);
+        self.pending.extend(kept[..count].iter().map(|&i| edges[i as usize]));
+    }
+
+    /// Flips what is pending, and then around that. Returns whether a duplicate has blocked an edge.
+    fn flip_pending(&mut self, flips: &mut u32) -> bool {
+        let mut has_duplicate = false;
+        while *flips < u32::MAX
+            && let Some(h) = self.pending.pop()
+        {
+            let g = unflagged(self.cpu.twins[h as usize]);
+            if g == NONE {
+                continue;
             }
-            // A flip elsewhere may have removed the edge that stood in the way.
-            if !duplicates || flips == before {
-                self.cpu.set_tested(true);
-                return flips;
+            match verdict(&self.cpu.geometry(), self.cpu.topology(), h) {
+                Verdict::Delaunay => {}
+                Verdict::Blocked(reason) => {
+                    has_duplicate |= reason == Reason::Duplicate;
+                    self.blocked.push(h);
+                }
+                Verdict::Labelled => {
+                    flip(&mut self.cpu, h, g);
+                    *flips += 1;
+                    self.test::<4>([h, prev(h), g, prev(g)], |_, _| true);
+                }
             }
         }
+        has_duplicate
     }
+}
+
+/// Flips the edge of two half-edges, alone. The triangles around it are others: if it may flip, c is not d.
+fn flip(cpu: &mut Cpu, h: u32, g: u32) {
+    let Cpu { triangles, twins, fans, .. } = cpu;
+    let [hn, hp, gn, gp] = [next(h), prev(h), next(g), prev(g)];
+    let [c, d] = [triangles[hp as usize], triangles[gp as usize]];
+    if !fans.table.is_empty() {
+        fans.move_anchor(triangles[hn as usize], hn, g);
+        fans.move_anchor(triangles[gn as usize], gn, h);
+    }
+    for (inner, outer) in [(h, twins[gn as usize]), (g, twins[hn as usize])] {
+        twins[inner as usize] = outer;
+        if outer != NONE {
+            twins[unflagged(outer) as usize] = inner | (outer & FLAGS);
+        }
+    }
+    triangles[hn as usize] = d;
+    triangles[gn as usize] = c;
+    twins[hn as usize] = gn;
+    twins[gn as usize] = hn;
 }
 
 impl Engine for Lawson {
@@ -69,7 +130,7 @@ impl Engine for Lawson {
 
     /// A whole pass counts as one iteration.
     fn iterate(&mut self, _count: u32) -> Answer<'_, Vec<u32>> {
-        let flips = self.flip_all();
+        let flips = if self.has_ended { 0 } else { self.flip_all() };
         Box::pin(std::future::ready(Ok(if flips == 0 { Vec::new() } else { vec![flips] })))
     }
 
@@ -86,6 +147,7 @@ impl Engine for Lawson {
     }
 
     fn set_positions(&mut self, mesh: Arc<Mesh>) -> Answer<'_, ()> {
+        self.has_ended = false;
         self.cpu.set_positions(mesh)
     }
 
