@@ -1,6 +1,6 @@
 //! The CPU engine: the phases on one thread and on one for each core, Lawson's algorithm on one, beside crates that
-//! triangulate the same points from scratch on one. `cargo bench --bench native -- [--runs N] [FAMILY…]`, a family being what `edgeflip::families::by_name`
-//! takes, with its points in a grid: `cargo bench --bench native -- "random 300" "shear 1000"`.
+//! triangulate the same points from scratch on one. `cargo bench --bench native -- [--runs N] [FAMILY…]`, a family being
+//! what `edgeflip::families::by_name` takes, with its points in a grid: `cargo bench --bench native -- "random 300" "shear 1000"`.
 //!
 //! The runs are interleaved, so that a busy machine disturbs all of them alike; the figures are medians.
 
@@ -9,7 +9,9 @@ use edgeflip::{Backend, Dimension, Mesh, Options, Order, Timings, families, make
 use i_triangle::float::triangulatable::Triangulatable;
 use peak_alloc::PeakAlloc;
 use spade::{DelaunayTriangulation, Point2, Triangulation};
-use std::{error::Error, hint::black_box, num::NonZeroUsize, ops::ControlFlow, thread, time::Instant};
+use std::{
+    error::Error, hint::black_box, num::NonZeroUsize, ops::ControlFlow, sync::Arc, thread, time::Instant,
+};
 
 #[path = "arguments/mod.rs"]
 mod arguments;
@@ -58,7 +60,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 /// Two lines of head, and that of the mesh.
 fn table(spec: &str, runs: usize) -> Result<[String; 3], Box<dyn Error>> {
-    let mesh = families::by_name(spec)?;
+    let mesh = Arc::new(families::by_name(spec)?);
     let n = mesh.vertex_count().isqrt();
     if mesh.dimension() != Dimension::Two || n * n != mesh.vertex_count() {
         return Err(format!("{spec} is no mesh in the plane with its points in a grid").into());
@@ -148,8 +150,12 @@ fn measure(contender: &mut Contender) -> Result<(), Box<dyn Error>> {
 }
 
 /// The number of edges, and where the time went.
-fn flip(mesh: &Mesh, order: Order, threads: Option<NonZeroUsize>) -> Result<(u32, Timings), edgeflip::Error> {
+fn flip(
+    mesh: &Arc<Mesh>,
+    order: Order,
+    threads: Option<NonZeroUsize>,
+) -> Result<(u32, Timings), edgeflip::Error> {
     let options = Options { backend: Backend::Cpu, order, threads, ..Options::default() };
-    let outcome = make_delaunay(mesh, &options, |_, _| ControlFlow::Continue(()))?;
+    let outcome = make_delaunay(mesh.clone(), &options, |_, _| ControlFlow::Continue(()))?;
     Ok((outcome.edges as u32, black_box(outcome).timings))
 }

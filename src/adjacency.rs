@@ -208,8 +208,10 @@ impl Adjacency {
     /// Matches the half-edges of `triangles`, whose indices must be below `vertices`.
     pub(crate) fn of_triangles(vertices: usize, triangles: &[u32], threads: &Threads) -> Self {
         let buckets = Buckets::new(vertices, triangles, threads);
-        let mut twins = vec![NONE; triangles.len()];
+        // Memory is taken when it is first written, which is work for all threads.
+        let mut twins = vec![0; triangles.len()];
         let words = shared(&mut twins);
+        threads.map(words.len(), |piece| words[piece].iter().for_each(|twin| twin.store(NONE, Relaxed)));
         let counts = threads.map(vertices, |piece| match_buckets(triangles, buckets.of(piece), words));
         let [edges, boundary, non_manifold, inconsistent] =
             counts.into_iter().fold([0; 4], |sums, counts| array::from_fn(|kind| sums[kind] + counts[kind]));
