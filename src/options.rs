@@ -43,7 +43,8 @@ pub struct Options {
     pub locked_edges: Vec<[u32; 2]>,
     /// Reproducible pipeline or Lawson's algorithm.
     pub order: Order,
-    /// How many threads the CPU engine runs on; `None`: one for each core. The result is the same for any
+    /// How many threads the CPU engine runs on; `None`: one for each core. A mesh of fewer than
+    /// 65,536 triangles is done on one, before others have woken up. The result is the same for any
     /// number. Lawson's algorithm flips on one. In WebAssembly, and without the feature `threads`, it is always one.
     pub threads: Option<NonZeroUsize>,
     /// The device that the GPU engine runs on, instead of one of its own. It is never destroyed here, nothing of it

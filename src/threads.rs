@@ -6,11 +6,17 @@ use crate::Error;
 use rayon::prelude::*;
 use std::num::NonZeroUsize;
 use std::ops::Range;
+#[cfg(feature = "threads")]
+use std::sync::Arc;
 use std::sync::atomic::AtomicU32;
 
 /// A piece has so many items at least: fewer are done before another thread has woken up. Without optimisation it has
 /// few, so that small meshes test the threads.
-const FEWEST: usize = if cfg!(debug_assertions) { 4 } else { 1024 };
+const FEWEST: usize = if cfg!(debug_assertions) { 4 } else { 4096 };
+
+/// A mesh on several threads has so many triangles at least, for the same reason.
+#[cfg(feature = "threads")]
+const FEWEST_TRIANGLES: usize = 16 * FEWEST;
 
 /// Pieces for each thread, so that none waits long for another.
 const PIECES: usize = 4;
@@ -20,11 +26,13 @@ const ARRAYS: usize = 8;
 
 /// How many threads there are; by default one for each core. Without the feature `threads` it is one, and the compiler
 /// knows.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub(crate) struct Threads {
     /// Those of the process, where there is none.
     #[cfg(feature = "threads")]
-    pool: Option<rayon::ThreadPool>,
+    pool: Option<Arc<rayon::ThreadPool>>,
+    #[cfg(feature = "threads")]
+    is_one: bool,
 }
 
 impl Threads {
@@ -39,19 +47,41 @@ impl Threads {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(count.get()).build().map_err(|error| {
                 Error::Option { option: "threads", message: format!("{count} could not be started: {error}") }
             })?;
-            return Ok(Self { pool: Some(pool) });
+            return Ok(Self { pool: Some(Arc::new(pool)), is_one: false });
         }
         Ok(Self::default())
     }
 
+    /// Those that are worth while for so many triangles: one of them, where it has done before others have woken up.
+    #[cfg_attr(not(feature = "threads"), expect(unused_variables, reason = "it is one, for any"))]
+    pub(crate) fn for_triangles(self, count: usize) -> Self {
+        #[cfg(feature = "threads")]
+        return Self { is_one: count < FEWEST_TRIANGLES, ..self };
+        #[cfg(not(feature = "threads"))]
+        self
+    }
+
     fn count(&self) -> usize {
         #[cfg(feature = "threads")]
-        return self
-            .pool
-            .as_ref()
-            .map_or_else(rayon::current_num_threads, rayon::ThreadPool::current_num_threads);
+        if self.is_one {
+            return 1;
+        }
+        #[cfg(feature = "threads")]
+        return self.pool.as_ref().map_or_else(rayon::current_num_threads, |pool| pool.current_num_threads());
         #[cfg(not(feature = "threads"))]
         1
+    }
+
+    /// Does `work`, which has loops, on one of the threads: they find the others awake.
+    pub(crate) fn enter<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
+        #[cfg(feature = "threads")]
+        if self.count() > 1 {
+            return match &self.pool {
+                Some(pool) => pool.install(work),
+                None => rayon::scope(|_| work()),
+            };
+        }
+        work()
     }
 
     /// What `work` gives for each piece of a loop over `0..len`, in order.

@@ -71,6 +71,11 @@ pub(crate) struct Cpu {
 impl Cpu {
     /// Builds the adjacency; `cos` is the cosine of β.
     pub(crate) fn new(mesh: Arc<Mesh>, cos: f64, threads: Threads) -> Self {
+        let threads = threads.for_triangles(mesh.triangle_count());
+        threads.clone().enter(|| Self::prepared(mesh, cos, threads))
+    }
+
+    fn prepared(mesh: Arc<Mesh>, cos: f64, threads: Threads) -> Self {
         let adjacency = Adjacency::of_triangles(mesh.vertex_count(), mesh.triangles(), &threads);
         let winding = Winding::new(&mesh, &adjacency.twins, &threads);
         let embedded = Embedded::new(&mesh, &adjacency.twins, &winding, &threads);
@@ -325,15 +330,18 @@ impl Engine for Cpu {
     }
 
     fn iterate(&mut self, count: u32) -> Answer<'_, Vec<u32>> {
+        let threads = self.threads.clone();
         let mut flips = Vec::new();
-        while (flips.len() as u32) < count {
-            self.label();
-            self.select();
-            match self.flip() {
-                0 => break,
-                flipped => flips.push(flipped),
+        threads.enter(|| {
+            while (flips.len() as u32) < count {
+                self.label();
+                self.select();
+                match self.flip() {
+                    0 => break,
+                    flipped => flips.push(flipped),
+                }
             }
-        }
+        });
         Box::pin(std::future::ready(Ok(flips)))
     }
 
