@@ -25,6 +25,10 @@ extern "C" {
     fn max_iterations(this: &JsOptions) -> JsValue;
     #[wasm_bindgen(method, getter, js_name = lockedEdges)]
     fn locked_edges(this: &JsOptions) -> JsValue;
+    #[wasm_bindgen(method, getter, js_name = lockedTriangles)]
+    fn locked_triangles(this: &JsOptions) -> JsValue;
+    #[wasm_bindgen(method, getter)]
+    fn groups(this: &JsOptions) -> JsValue;
     #[wasm_bindgen(method, getter)]
     fn order(this: &JsOptions) -> JsValue;
     #[wasm_bindgen(method, getter)]
@@ -239,10 +243,14 @@ fn parse_options(given: &JsOptions) -> Result<Options, Error> {
         let Some(degrees) = angle.as_f64() else { return wrong("maxNormalAngle", &angle, "a number") };
         options.max_normal_angle = degrees;
     }
-    let locked = given.locked_edges();
-    if !locked.is_undefined() {
-        options.locked_edges = parse_pairs(&locked)?;
-    }
+    let numbers = parse_numbers("lockedEdges", &given.locked_edges(), "vertex indices")?;
+    options.locked_edges = match numbers.as_chunks() {
+        (pairs, []) => pairs.to_vec(),
+        _ => return Err(Error::RaggedArray { array: "lockedEdges", length: numbers.len(), stride: 2 }),
+    };
+    options.locked_triangles =
+        parse_numbers("lockedTriangles", &given.locked_triangles(), "numbers of triangles")?;
+    options.groups = parse_numbers("groups", &given.groups(), "whole numbers")?;
     let cap = given.max_iterations();
     if !cap.is_undefined() {
         match (cap.as_f64(), whole(&cap)) {
@@ -254,22 +262,19 @@ fn parse_options(given: &JsOptions) -> Result<Options, Error> {
     Ok(options)
 }
 
-/// The pairs of vertices in `lockedEdges`.
-fn parse_pairs(given: &JsValue) -> Result<Vec<[u32; 2]>, Error> {
+/// The numbers of an option; none where it is `undefined`.
+fn parse_numbers(option: &'static str, given: &JsValue, what: &str) -> Result<Vec<u32>, Error> {
+    if given.is_undefined() {
+        return Ok(Vec::new());
+    }
     let numbers = match given.dyn_ref::<Uint32Array>() {
         Some(array) => Some(array.to_vec()),
         None => {
             given.dyn_ref::<Array>().and_then(|array| array.iter().map(|number| whole(&number)).collect())
         }
     };
-    let Some(numbers) = numbers else {
-        let message = "it is neither a Uint32Array nor an array of vertex indices".to_owned();
-        return Err(Error::Option { option: "lockedEdges", message });
-    };
-    match numbers.as_chunks() {
-        (pairs, []) => Ok(pairs.to_vec()),
-        _ => Err(Error::RaggedArray { array: "lockedEdges", length: numbers.len(), stride: 2 }),
-    }
+    let message = || format!("it is neither a Uint32Array nor an array of {what}");
+    numbers.ok_or_else(|| Error::Option { option, message: message() })
 }
 
 /// A whole number of 32 bits.

@@ -1,8 +1,40 @@
-//! Locked edges: those that the user has named, which never flip.
+//! Locked edges: those that the user has named, by themselves, by their triangles or by groups of triangles, which never
+//! flip.
 
-use crate::adjacency::{LOCKED, next};
+use crate::adjacency::{LOCKED, for_each_edge, next};
 use crate::mesh::Mesh;
-use crate::{Error, NONE};
+use crate::{Error, NONE, Options};
+
+/// The edges that `options` lock, each by its two vertices: those named first, then those of triangles and between
+/// groups. What is named has yet to be found in the mesh.
+///
+/// # Errors
+/// [`Error::Option`] for a triangle that the mesh has not, and for groups of another number of triangles.
+pub(crate) fn edges(mesh: &Mesh, options: &Options) -> Result<Vec<[u32; 2]>, Error> {
+    let Options { locked_edges, locked_triangles, groups, .. } = options;
+    let (triangles, _) = mesh.triangles().as_chunks::<3>();
+    let mut edges = locked_edges.clone();
+    for &triangle in locked_triangles {
+        let Some(&[a, b, c]) = triangles.get(triangle as usize) else {
+            let message = format!("there is no triangle {triangle}; the mesh has {}", triangles.len());
+            return Err(Error::Option { option: "locked_triangles", message });
+        };
+        edges.extend([[a, b], [b, c], [c, a]]);
+    }
+    if !groups.is_empty() && groups.len() != triangles.len() {
+        let message = format!("it has {} numbers, the mesh has {} triangles", groups.len(), triangles.len());
+        return Err(Error::Option { option: "groups", message });
+    }
+    if groups.iter().any(|group| *group != groups[0]) {
+        for_each_edge(mesh.vertex_count(), mesh.triangles(), |half_edges| {
+            let group = |h: u32| groups[h as usize / 3];
+            if half_edges.iter().any(|&h| group(h) != group(half_edges[0])) {
+                edges.push([half_edges[0], next(half_edges[0])].map(|h| mesh.triangles()[h as usize]));
+            }
+        });
+    }
+    Ok(edges)
+}
 
 /// The half-edges of the edges that `pairs` name by their vertices, in ascending order.
 ///

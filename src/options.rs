@@ -41,6 +41,11 @@ pub struct Options {
     /// not Delaunay at the end are counted by [`Reason::Locked`](crate::Reason::Locked). Every pair has to be an edge
     /// of the mesh; to lock one that cannot flip, on the boundary or frozen, changes nothing.
     pub locked_edges: Vec<[u32; 2]>,
+    /// Triangles that stay as they are, by their numbers: their edges are locked.
+    pub locked_triangles: Vec<u32>,
+    /// A number for each triangle, or nothing: edges between triangles of different numbers are locked, so that every
+    /// group keeps its border. Flips leave each triangle in its group.
+    pub groups: Vec<u32>,
     /// Reproducible pipeline or Lawson's algorithm.
     pub order: Order,
     /// How many threads the CPU engine runs on; `None`: one for each core. A mesh of fewer than
@@ -60,6 +65,8 @@ impl Default for Options {
             max_normal_angle: 10.0,
             max_iterations: None,
             locked_edges: Vec::new(),
+            locked_triangles: Vec::new(),
+            groups: Vec::new(),
             order: Order::Reproducible,
             threads: None,
             #[cfg(all(target_arch = "wasm32", feature = "js"))]

@@ -9,7 +9,8 @@ pub enum Reason {
     Fold,
     /// The edge that the flip would make exists already.
     Duplicate,
-    /// The user has locked it: [`Options::locked_edges`](crate::Options::locked_edges). Goes before all other reasons.
+    /// The user has locked it: [`Options::locked_edges`](crate::Options::locked_edges), its triangles or the border of its
+    /// group. Goes before all other reasons.
     Locked,
     /// Three or more triangles, or one triangle twice, meet at the edge.
     NonManifold,

@@ -42,13 +42,14 @@ impl Session {
     /// # Errors
     /// [`Error::Option`]; [`Error::BackendUnavailable`], [`Error::BackendLimit`] or [`Error::Device`] where
     /// the GPU was asked for (`Auto` takes the CPU instead).
-    pub async fn new(mesh: impl Into<Arc<Mesh>>, options: Options) -> Result<Self, Error> {
+    pub async fn new(mesh: impl Into<Arc<Mesh>>, mut options: Options) -> Result<Self, Error> {
         if !(0.0..=180.0).contains(&options.max_normal_angle) {
             let message =
                 format!("{} is not an angle from 0 to 180 degrees", number(options.max_normal_angle));
             return Err(Error::Option { option: "max_normal_angle", message });
         }
         let (start, mesh) = (Instant::now(), mesh.into());
+        options.locked_edges = locks::edges(&mesh, &options)?;
         // `auto` would take a refusal by an engine for a reason to go on.
         locks::half_edges(&mesh, &options.locked_edges)?;
         let (engine, fallback) = engine_for(&mesh, &options).await?;

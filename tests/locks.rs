@@ -12,6 +12,7 @@ use oorandom::Rand64;
 use pollster::block_on;
 use runs::{options, unwatched, watched};
 use simulation::{simulate, simulate_locked};
+use std::collections::HashSet;
 use std::ops::ControlFlow;
 
 /// Random meshes to try; `EDGEFLIP_ROUNDS` asks for more.
@@ -84,6 +85,78 @@ fn pairs_that_are_no_edges_are_refused() {
             assert_eq!(error.to_string(), expected);
         }
     }
+}
+
+/// The corners of a triangle, from the smallest on.
+fn turned(triangle: &[u32]) -> [u32; 3] {
+    let first = (0..3).min_by_key(|&i| triangle[i]).unwrap();
+    [0, 1, 2].map(|i| triangle[(first + i) % 3])
+}
+
+#[test]
+fn locked_triangles_stay_as_they_are() {
+    for (seed, name) in [(1, "random 9"), (2, "uvsphere 7"), (3, "roof 6")] {
+        let mesh = by_name(name).unwrap();
+        let random = &mut Rand64::new(seed);
+        let mut locked: Vec<u32> = (0..mesh.triangle_count() as u32).collect();
+        locked.retain(|_| random.rand_float() < 0.2);
+        let free = unwatched(&mesh, &options(Backend::Cpu, 60.0)).unwrap();
+        let lost = |outcome: &Outcome| {
+            let at = |triangles: &[u32], t: u32| turned(&triangles[3 * t as usize..3 * t as usize + 3]);
+            let is_lost = |&&t: &&u32| at(mesh.triangles(), t) != at(&outcome.triangles, t);
+            locked.iter().filter(is_lost).count()
+        };
+        assert!(lost(&free) > 0, "{name}");
+        for backend in [Backend::Cpu, Backend::Gpu] {
+            let options = Options { locked_triangles: locked.clone(), ..options(backend, 60.0) };
+            let outcome = unwatched(&mesh, &options).unwrap();
+            assert_eq!(lost(&outcome), 0, "{name} on {backend:?}");
+            assert!(outcome.flips > 0 && outcome.remaining[Reason::Locked] > 0, "{name}: {outcome:?}");
+        }
+    }
+}
+
+#[test]
+fn groups_keep_their_borders() {
+    for name in ["random 12", "uvsphere 9"] {
+        let mesh = by_name(name).unwrap();
+        let groups: Vec<u32> = (0..mesh.triangle_count() as u32).map(|t| t / 31 % 5).collect();
+        // The border of a group: its directed edges without those that it has both ways.
+        let border = |triangles: &[u32], group: u32| {
+            let mine = triangles.chunks(3).zip(&groups).filter(|&(_, &of)| of == group);
+            let edges: HashSet<_> =
+                mine.flat_map(|(t, _)| [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])]).collect();
+            let is_outer = |&&(u, v): &&(u32, u32)| !edges.contains(&(v, u));
+            let mut outer: Vec<_> = edges.iter().filter(is_outer).copied().collect();
+            outer.sort_unstable();
+            outer
+        };
+        let borders = |triangles: &[u32]| (0..5).map(|group| border(triangles, group)).collect::<Vec<_>>();
+        let free = unwatched(&mesh, &options(Backend::Cpu, 60.0)).unwrap();
+        assert_ne!(borders(&free.triangles), borders(mesh.triangles()), "{name}");
+        for backend in [Backend::Cpu, Backend::Gpu] {
+            let options = Options { groups: groups.clone(), ..options(backend, 60.0) };
+            let outcome = unwatched(&mesh, &options).unwrap();
+            assert_eq!(borders(&outcome.triangles), borders(mesh.triangles()), "{name} on {backend:?}");
+            assert!(outcome.flips > 0 && outcome.remaining[Reason::Locked] > 0, "{name}: {outcome:?}");
+            let one = Options { groups: vec![7; groups.len()], ..options };
+            assert_eq!(unwatched(&mesh, &one).unwrap().triangles, free.triangles);
+        }
+    }
+}
+
+#[test]
+fn triangles_and_groups_that_are_not_of_the_mesh_are_refused() {
+    let mesh = by_name("random 8").unwrap();
+    let refused = |options: Options| block_on(Session::new(&mesh, options)).err().unwrap().to_string();
+    assert_eq!(
+        refused(Options { locked_triangles: vec![97, 98], ..Options::default() }),
+        "option locked_triangles: there is no triangle 98; the mesh has 98"
+    );
+    assert_eq!(
+        refused(Options { groups: vec![0; 97], ..Options::default() }),
+        "option groups: it has 97 numbers, the mesh has 98 triangles"
+    );
 }
 
 /// For a GPU doubles are another form of mesh, on a new engine.

@@ -38,6 +38,13 @@ export interface Options {
    * to be an edge of the mesh. Those that are not Delaunay in the end are counted as `locked`.
    */
   lockedEdges?: Uint32Array | readonly number[] | undefined;
+  /** Triangles that stay as they are, by their numbers: their edges are locked. */
+  lockedTriangles?: Uint32Array | readonly number[] | undefined;
+  /**
+   * A number for each triangle: edges between triangles of different numbers are locked, so that every group keeps its
+   * border. Flips leave each triangle in its group.
+   */
+  groups?: Uint32Array | readonly number[] | undefined;
   /**
    * `'reproducible'` (default): the parallel iterations, the same on every engine. `'any'`: Lawson's sequential
    * algorithm, on the CPU only.
@@ -75,9 +82,9 @@ export interface MakeDelaunayOptions extends Options, RunOptions {
 
 /**
  * Why an edge is still not Delaunay. `angle`: the normals differ by more than `maxNormalAngle`. `fold`: a new
- * triangle would turn over. `duplicate`: the edge that the flip would make exists already. `locked`: it is one of
- * `lockedEdges`, whatever else it is. `non-manifold`: three or more triangles, or one twice, meet there. `inconsistent`: its two triangles are oriented against each other.
- * `stopped`: the run was stopped before.
+ * triangle would turn over. `duplicate`: the edge that the flip would make exists already. `locked`: the
+ * options lock it, whatever else it is. `non-manifold`: three or more triangles, or one twice, meet there.
+ * `inconsistent`: its two triangles are oriented against each other. `stopped`: the run was stopped before.
  */
 export type Reason = 'angle' | 'fold' | 'duplicate' | 'locked' | 'non-manifold' | 'inconsistent' | 'stopped';
 

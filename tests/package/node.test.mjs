@@ -114,6 +114,19 @@ test('locked edges never flip and are counted', async () => {
   assert.equal((await makeDelaunay(mesh, { lockedEdges: [] })).flips, 9);
 });
 
+test('locked triangles and the borders of groups stay', async () => {
+  const mesh = strips(8);
+  const numbers = Array.from({ length: mesh.indices.length / 3 }, (_, triangle) => triangle);
+  for (const options of [{ lockedTriangles: numbers }, { groups: Uint32Array.from(numbers) }]) {
+    const session = await FlipSession.create(mesh, options);
+    const { flips, remaining } = await session.run();
+    assert.deepEqual([flips, remaining], [0, { locked: 1 }]);
+    assert.deepEqual((await session.verify()).remaining, { locked: 1 });
+    session.free();
+  }
+  assert.equal((await makeDelaunay(mesh, { lockedTriangles: [], groups: numbers.map(() => 3) })).flips, 9);
+});
+
 test('errors have codes', async () => {
   const mesh = diamond();
   const bad = (change) => makeDelaunay({ ...mesh, ...change });
@@ -135,6 +148,9 @@ test('errors have codes', async () => {
   const locking = (lockedEdges) => makeDelaunay(mesh, { lockedEdges });
   await assert.rejects(locking([0, 1, 1, 3]), refused('invalid-option', /lockedEdges: .*no edge between vertices 1 and 3/));
   await assert.rejects(locking([0, 1, 2]), refused('ragged-array', /lockedEdges has 3 numbers.*multiple of 2/));
+  await assert.rejects(makeDelaunay(mesh, { lockedTriangles: [2] }), refused('invalid-option', /lockedTriangles: there is no triangle 2; the mesh has 2/));
+  await assert.rejects(makeDelaunay(mesh, { groups: [2] }), refused('invalid-option', /groups: it has 1 numbers/));
+  await assert.rejects(makeDelaunay(mesh, { groups: 'all' }), refused('invalid-option', /groups: it is neither/));
   for (const wrong of [null, 'edges', [0, -1], [0, 0.5], ['0', '1'], new Float32Array(2)]) {
     await assert.rejects(locking(wrong), refused('invalid-option', /lockedEdges: it is neither/));
   }
