@@ -1,11 +1,13 @@
-//! Angles, their histogram, and the audit: an independent check of a result.
+//! Angles, their histogram and other measures, and the audit: an independent check of a result.
 
 mod audit;
 mod edges;
 mod exact;
+mod measures;
 mod surface;
 
 pub use audit::{Audit, MAX_LISTED, RemainingEdge, Violation, audit};
+pub use measures::{Measures, distance, measures, moved};
 
 use crate::Mesh;
 use glam::DVec3;
@@ -56,11 +58,6 @@ pub fn angles(mesh: &Mesh, bins: usize) -> Angles {
     Angles { min, mean_min, histogram: AngleHistogram { counts } }
 }
 
-/// Smallest angle of the mesh in degrees; see [`Angles::min`].
-pub fn min_angle(mesh: &Mesh) -> f64 {
-    angles(mesh, 1).min
-}
-
 /// The angles at the three corners, in degrees.
 fn triangle_angles(corners: [DVec3; 3]) -> [f64; 3] {
     [0, 1, 2].map(|k| {
@@ -102,15 +99,15 @@ mod tests {
     fn degenerate_triangles_count_as_zero() {
         let positions = [0., 0., 1., 0., 2., 0., 0., 1e38, 1e38, 0.];
         for triangle in [[0, 1, 2], [0, 0, 1], [1, 1, 1]] {
-            assert_eq!(min_angle(&mesh(&positions, &triangle)), 0.0);
+            assert_eq!(angles(&mesh(&positions, &triangle), 1).min, 0.0);
         }
-        assert!((min_angle(&mesh(&positions, &[0, 4, 3])) - 45.0).abs() < 1e-12);
+        assert!((angles(&mesh(&positions, &[0, 4, 3]), 1).min - 45.0).abs() < 1e-12);
         for [x, y] in [[1e-300, 1e300], [f64::MAX, -f64::MAX], [0.0, f64::from_bits(1)]] {
             let right = Mesh::new(Dimension::Two, vec![x, x, y, x, x, y], vec![0, 1, 2]).unwrap();
-            assert!((min_angle(&right) - 45.0).abs() < 1e-12);
+            assert!((angles(&right, 1).min - 45.0).abs() < 1e-12);
         }
         assert_eq!(angles(&mesh(&positions, &[0, 1, 2]), 2).histogram.counts, [2, 1]);
-        assert_eq!(min_angle(&mesh(&positions, &[])), 60.0);
+        assert_eq!(angles(&mesh(&positions, &[]), 1).min, 60.0);
         assert_eq!(angles(&mesh(&positions, &[0, 1, 2]), 0).histogram.counts, [3]);
     }
 }

@@ -19,7 +19,7 @@ use std::process::{Command, Output, Stdio};
 const SQUARE: &str = "OFF\n4 2 0\n0 0 0\n0.9 0.2 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3\n";
 
 /// The keys of the object that `--json` prints, in their order.
-const KEYS: [&str; 19] = [
+const KEYS: [&str; 22] = [
     "input",
     "vertices",
     "triangles",
@@ -38,6 +38,9 @@ const KEYS: [&str; 19] = [
     "remaining",
     "min_angle_before_deg",
     "min_angle_after_deg",
+    "before",
+    "after",
+    "moved_triangles",
     "ms",
 ];
 
@@ -109,6 +112,10 @@ fn json_has_the_documented_keys() {
         assert!(found["ms"][key].is_number(), "ms.{key}");
     }
     assert!(found["min_angle_before_deg"].is_number() && found["min_angle_after_deg"].is_number());
+    // The smallest angles of the two triangles: 32.5° and 45° before, 45° and 45° after.
+    let [before, after] = ["before", "after"].map(|when| found[when]["mean_min_angle_deg"].as_f64().unwrap());
+    assert!((before - 38.7).abs() < 0.1 && (after - 45.0).abs() < 1e-5, "{before}° → {after}°");
+    assert_eq!(found["moved_triangles"], 2);
     assert!(fs::read_to_string(&output).unwrap().starts_with("v 0 0 0\nv 0.9 0.2 0\nv 1 1 0\nv 0 1 0\nf "));
 }
 
@@ -136,6 +143,7 @@ fn verify_adds_an_empty_audit() {
     assert_eq!((ran.status.code(), text(&ran.stderr)), (Some(0), ""));
     let found: Value = serde_json::from_slice(&ran.stdout).unwrap();
     assert_eq!((&found["audit"], &found["remaining_edges"]), (&json!([]), &json!({})));
+    assert_eq!(found["distance"], 0.0);
 }
 
 #[test]
@@ -207,6 +215,8 @@ fn the_summary_is_on_standard_error() {
         "4 vertices, 2 triangles, 3D\n",
         "\nbackend    cpu",
         "\naudit      clean\n",
+        "\nmoved      0 triangles, the surface by at most 0.0000\n",
+        "\nvolume     ",
         "\nwrote      ",
     ] {
         assert!(said.contains(line), "{line:?} is not in\n{said}");

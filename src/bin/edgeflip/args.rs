@@ -85,7 +85,8 @@ pub struct Args {
     ///
     /// Checks that vertices, boundary, components and orientation are what they were, and that the edges
     /// left are what the run says they are. The summary names the first edges left for each reason by their
-    /// two vertices, counted from 0; --json has all of them.
+    /// two vertices, counted from 0; --json has all of them. Measures, too, how far the surface has moved: the
+    /// largest distance between the old and the new one at points of the edges that they do not share.
     #[arg(long)]
     pub verify: bool,
 
@@ -93,9 +94,10 @@ pub struct Args {
     ///
     /// Keys: input, vertices, triangles, edges, boundary_edges, dimension, backend, adapter, fallback,
     /// status (done or stopped), iterations, flips, flips_per_iteration, dispatches, device_bytes, remaining (by reason),
-    /// min_angle_before_deg, min_angle_after_deg, ms (load, upload, adjacency, flip, total, save; total is the run
-    /// without load and save), and with --verify audit (the violations) and remaining_edges (by reason, the
-    /// two vertices of each edge left, counted from 0).
+    /// min_angle_before_deg, min_angle_after_deg, before and after (min_angle_deg, mean_min_angle_deg, mean_aspect,
+    /// flat_triangles, area, volume), moved_triangles, ms (load, upload, adjacency, flip, total, save; total is the
+    /// run without load and save), and with --verify audit (the violations), remaining_edges (by reason, the two
+    /// vertices of each edge left, counted from 0) and distance (between the surfaces before and after).
     #[arg(long)]
     pub json: bool,
 

@@ -95,14 +95,15 @@ fn run(args: &Args, bar: &ProgressBar) -> Result<Report, Failure> {
     let options = Options { locked_edges, ..args.options() };
 
     bar.set_message("preparing");
-    let before = quality::min_angle(&mesh);
+    let before = quality::measures(&mesh);
     let outcome = make_delaunay(&mesh, &options, |iterations, flips| {
         bar.set_message(format!("iteration {iterations}, {flips} flips"));
         ControlFlow::Continue(())
     })
     .map_err(refused)?;
     let result = mesh.with_triangles(outcome.triangles.clone()).map_err(refused)?;
-    let after = quality::min_angle(&result);
+    let after = quality::measures(&result);
+    let moved = quality::moved(mesh.triangles(), result.triangles()).len();
 
     let check = args.verify.then(|| {
         bar.set_message("verifying");
@@ -116,7 +117,7 @@ fn run(args: &Args, bar: &ProgressBar) -> Result<Report, Failure> {
         save = Some(ms);
     }
     let ms = Milliseconds::new(load, &outcome.timings, save);
-    Ok(Report::new(args, &result, outcome, [before, after], check, ms).with_notes(polygons, &dropped))
+    Ok(Report::new(args, &result, outcome, [before, after], moved, check, ms).with_notes(polygons, &dropped))
 }
 
 /// What the independent check finds: another count of the edges left is a violation too.
@@ -130,7 +131,7 @@ fn check(options: &Options, mesh: &Mesh, outcome: &Outcome) -> Check {
     }
     let ends = |reason| audit.remaining_for(reason).collect();
     let remaining_edges = audit.remaining.iter().map(|(reason, _)| (reason.name(), ends(reason))).collect();
-    Check { violations, remaining_edges }
+    Check { violations, remaining_edges, distance: quality::distance(mesh, &outcome.triangles) }
 }
 
 fn timed<T>(work: impl FnOnce() -> T) -> (T, f64) {

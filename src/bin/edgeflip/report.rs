@@ -2,7 +2,8 @@
 
 use crate::Failure;
 use crate::args::Args;
-use edgeflip::{Mesh, Outcome, Reasons, Status, Timings};
+use edgeflip::quality::Measures;
+use edgeflip::{Dimension, Mesh, Outcome, Reasons, Status, Timings};
 use indicatif::{HumanBytes, HumanCount};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -30,6 +31,9 @@ pub struct Report {
     /// `null` where there is no angle.
     min_angle_before_deg: f64,
     min_angle_after_deg: f64,
+    before: Shape,
+    after: Shape,
+    moved_triangles: usize,
     ms: Milliseconds,
     #[serde(flatten)]
     check: Option<Check>,
@@ -39,6 +43,31 @@ pub struct Report {
     notes: Vec<String>,
 }
 
+/// The shape of the mesh; `null` where a number is none.
+#[derive(Serialize)]
+struct Shape {
+    min_angle_deg: f64,
+    mean_min_angle_deg: f64,
+    mean_aspect: f64,
+    flat_triangles: usize,
+    area: f64,
+    volume: f64,
+}
+
+impl From<Measures> for Shape {
+    fn from(measures: Measures) -> Self {
+        let Measures { min_angle, mean_min_angle, mean_aspect, flat, area, volume } = measures;
+        Self {
+            min_angle_deg: min_angle,
+            mean_min_angle_deg: mean_min_angle,
+            mean_aspect,
+            flat_triangles: flat,
+            area,
+            volume,
+        }
+    }
+}
+
 /// What `--verify` adds.
 #[derive(Serialize)]
 pub struct Check {
@@ -46,6 +75,8 @@ pub struct Check {
     pub violations: Vec<String>,
     /// The ends of the edges that are not Delaunay, by reason.
     pub remaining_edges: BTreeMap<&'static str, Vec<[u32; 2]>>,
+    /// How far the surface has moved.
+    pub distance: f64,
 }
 
 /// Wall times in milliseconds.
@@ -76,12 +107,13 @@ impl Milliseconds {
 }
 
 impl Report {
-    /// `angles`: the smallest one before and after, in degrees.
+    /// `measures`: before and after. `moved`: triangles that are others now.
     pub fn new(
         args: &Args,
         mesh: &Mesh,
         outcome: Outcome,
-        angles: [f64; 2],
+        measures: [Measures; 2],
+        moved: usize,
         check: Option<Check>,
         ms: Milliseconds,
     ) -> Self {
@@ -105,8 +137,11 @@ impl Report {
             dispatches: outcome.dispatches,
             device_bytes: outcome.device_bytes,
             remaining: outcome.remaining.iter().map(|(reason, n)| (reason.name(), n)).collect(),
-            min_angle_before_deg: angles[0],
-            min_angle_after_deg: angles[1],
+            min_angle_before_deg: measures[0].min_angle,
+            min_angle_after_deg: measures[1].min_angle,
+            before: measures[0].into(),
+            after: measures[1].into(),
+            moved_triangles: moved,
             ms,
             check,
             left: outcome.remaining,
@@ -175,9 +210,18 @@ impl Report {
         {
             line("edges left", first_edges(remaining_edges));
         }
-        let [before, after] = [self.min_angle_before_deg, self.min_angle_after_deg];
-        if before.is_finite() && after.is_finite() {
-            line("min angle", format!("{before:.3}° → {after:.3}°"));
+        let Self { before, after, .. } = self;
+        line("min angle", format!("{:.3}° → {:.3}°", before.min_angle_deg, after.min_angle_deg));
+        line("mean min", format!("{:.3}° → {:.3}°", before.mean_min_angle_deg, after.mean_min_angle_deg));
+        line("aspect", format!("{:.3} → {:.3}, the mean", before.mean_aspect, after.mean_aspect));
+        let distance =
+            self.check.as_ref().map(|check| format!(", the surface by at most {}", short(check.distance)));
+        let is_surface = self.dimension == Dimension::Three.stride();
+        let distance = distance.filter(|_| is_surface).unwrap_or_default();
+        line("moved", format!("{} triangles{distance}", HumanCount(self.moved_triangles as u64)));
+        if is_surface {
+            line("area", change(before.area, after.area));
+            line("volume", change(before.volume, after.volume));
         }
         if let Some(Check { violations, .. }) = &self.check {
             let found = match violations.len() {
@@ -199,6 +243,21 @@ impl Report {
         }
         text
     }
+}
+
+/// A number of no known size.
+fn short(number: f64) -> String {
+    if number == 0.0 || (1e-3..1e7).contains(&number.abs()) {
+        format!("{number:.4}")
+    } else {
+        format!("{number:.3e}")
+    }
+}
+
+/// A number before and after, and by how much of itself it has changed.
+fn change(before: f64, after: f64) -> String {
+    let part = if before == after { 0.0 } else { (after - before) / before.abs() };
+    format!("{} → {} ({:+.4} %)", short(before), short(after), 100.0 * part)
 }
 
 /// The first edges left for each reason, by their vertices.

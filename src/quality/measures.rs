@@ -1,0 +1,227 @@
+//! Numbers about the shape of a mesh, before and after. In f64, for reports: no decision is taken on them.
+
+use super::triangle_angles;
+use crate::{Dimension, Mesh};
+use glam::DVec3;
+use rstar::{AABB, PointDistance, RTree, RTreeObject};
+
+/// What can be measured on a mesh.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Measures {
+    /// Smallest angle in degrees; 60 for a mesh without triangles.
+    pub min_angle: f64,
+    /// Mean over the triangles of their smallest angle, in degrees; 60 for a mesh without triangles.
+    pub mean_min_angle: f64,
+    /// Mean aspect ratio of the triangles that are not flat: longest edge by the diameter of the incircle, 1 for an
+    /// equilateral triangle; 1 for a mesh without such triangles.
+    pub mean_aspect: f64,
+    /// Flat triangles: those without area, as far as f64 can tell.
+    pub flat: usize,
+    /// Area, all triangles counted positive.
+    pub area: f64,
+    /// The volume that a closed surface encloses, negative where triangles are clockwise from outside. The volumes of
+    /// two open surfaces with the same boundary differ by what lies between them. 0 in the plane.
+    pub volume: f64,
+}
+
+/// Measures a mesh.
+pub fn measures(mesh: &Mesh) -> Measures {
+    let mut measures =
+        Measures { min_angle: 60.0, mean_min_angle: 0.0, mean_aspect: 0.0, flat: 0, area: 0.0, volume: 0.0 };
+    // From a point nearby, so that a large offset costs no digits.
+    let origin = mesh.triangles().first().map_or(DVec3::ZERO, |&v| mesh.point3(v));
+    for corners in triangles(mesh, mesh.triangles()) {
+        let [a, b, c] = corners.map(|corner| corner - origin);
+        let smallest = triangle_angles(corners).into_iter().fold(180.0, f64::min);
+        measures.min_angle = measures.min_angle.min(smallest);
+        measures.mean_min_angle += smallest;
+        let doubled = (b - a).cross(c - a).length();
+        measures.area += doubled / 2.0;
+        measures.volume += a.dot(b.cross(c)) / 6.0;
+        let edges = [a - b, b - c, c - a].map(DVec3::length);
+        if doubled > 0.0 {
+            let [longest, around] = [edges.into_iter().fold(0.0, f64::max), edges.iter().sum::<f64>()];
+            // The radius of the incircle is twice the area by the perimeter.
+            measures.mean_aspect += longest * around / (2.0 * 3f64.sqrt() * doubled);
+        } else {
+            measures.flat += 1;
+        }
+    }
+    let count = mesh.triangle_count();
+    let mean = |sum: f64, count: usize, none: f64| if count == 0 { none } else { sum / count as f64 };
+    measures.mean_min_angle = mean(measures.mean_min_angle, count, 60.0);
+    measures.mean_aspect = mean(measures.mean_aspect, count - measures.flat, 1.0);
+    if mesh.dimension() == Dimension::Two {
+        measures.volume = 0.0;
+    }
+    measures
+}
+
+fn triangles(mesh: &Mesh, triangles: &[u32]) -> impl Iterator<Item = [DVec3; 3]> {
+    triangles.as_chunks::<3>().0.iter().map(|triangle| triangle.map(|v| mesh.point3(v)))
+}
+
+/// Which triangles of `after` are others than those of `before` in the same places: their numbers, in ascending order. A
+/// triangle that begins at another corner is the same.
+pub fn moved(before: &[u32], after: &[u32]) -> Vec<u32> {
+    let is_same = |[a, b, c]: [u32; 3], other| [[a, b, c], [b, c, a], [c, a, b]].contains(other);
+    let both = before.as_chunks().0.iter().zip(after.as_chunks().0);
+    (0..).zip(both).filter(|(_, (before, after))| !is_same(**before, after)).map(|(t, _)| t).collect()
+}
+
+/// The largest distance between the surfaces of `triangles` and of the mesh, either way, in the unit of its
+/// coordinates: measured at three points of each edge that is only in one of the two, where flips move a surface most.
+pub fn distance(mesh: &Mesh, triangles: &[u32]) -> f64 {
+    let moved = moved(mesh.triangles(), triangles);
+    if moved.is_empty() || mesh.dimension() == Dimension::Two {
+        return 0.0;
+    }
+    let [before, after] = [mesh.triangles(), triangles].map(|triangles| edges(triangles, &moved));
+    one_way(mesh, &without(&after, &before), mesh.triangles()).max(one_way(
+        mesh,
+        &without(&before, &after),
+        triangles,
+    ))
+}
+
+/// The edges of these triangles, in ascending order.
+fn edges(triangles: &[u32], these: &[u32]) -> Vec<[u32; 2]> {
+    let all = triangles.as_chunks::<3>().0;
+    let edges = these.iter().flat_map(|&t| {
+        let [a, b, c] = all[t as usize];
+        [[a, b], [b, c], [c, a]].map(|[u, v]| [u.min(v), u.max(v)])
+    });
+    let mut edges: Vec<_> = edges.collect();
+    edges.sort_unstable();
+    edges.dedup();
+    edges
+}
+
+fn without(edges: &[[u32; 2]], others: &[[u32; 2]]) -> Vec<[u32; 2]> {
+    edges.iter().filter(|edge| others.binary_search(edge).is_err()).copied().collect()
+}
+
+/// The largest distance from points of the edges to a surface.
+fn one_way(mesh: &Mesh, edges: &[[u32; 2]], surface: &[u32]) -> f64 {
+    // No square of a coordinate overflows then.
+    let scale = mesh.positions().iter().fold(f64::MIN_POSITIVE, |scale, x| scale.max(x.abs()));
+    let scaled = |triangle: [DVec3; 3]| Patch(triangle.map(|corner| corner / scale));
+    let tree = RTree::bulk_load(triangles(mesh, surface).map(scaled).collect());
+    let points = edges.iter().flat_map(|edge| {
+        let [u, v] = edge.map(|vertex| mesh.point3(vertex) / scale);
+        [0.25, 0.5, 0.75].map(|part| u.lerp(v, part))
+    });
+    let squares = points.filter_map(|point| Some(tree.nearest_neighbor_with_distance_2(point.into())?.1));
+    scale * squares.fold(0.0, f64::max).sqrt()
+}
+
+/// A triangle in space, to be found by its place.
+struct Patch([DVec3; 3]);
+
+impl RTreeObject for Patch {
+    type Envelope = AABB<[f64; 3]>;
+
+    fn envelope(&self) -> Self::Envelope {
+        let [a, b, c] = self.0;
+        AABB::from_corners(a.min(b).min(c).into(), a.max(b).max(c).into())
+    }
+}
+
+impl PointDistance for Patch {
+    fn distance_2(&self, point: &[f64; 3]) -> f64 {
+        let point = DVec3::from_array(*point);
+        let [a, b, c] = self.0;
+        let normal = (b - a).cross(c - a);
+        let is_inside = |from: DVec3, to: DVec3| normal.dot((to - from).cross(point - from)) >= 0.0;
+        if normal.length_squared() > 0.0 && is_inside(a, b) && is_inside(b, c) && is_inside(c, a) {
+            let height = normal.dot(point - a);
+            return height * height / normal.length_squared();
+        }
+        [(a, b), (b, c), (c, a)]
+            .map(|(from, to)| to_segment(point, from, to))
+            .into_iter()
+            .fold(f64::MAX, f64::min)
+    }
+}
+
+/// The square of the distance from a point to a segment.
+fn to_segment(point: DVec3, from: DVec3, to: DVec3) -> f64 {
+    let along = to - from;
+    let square = along.length_squared();
+    let part = if square > 0.0 { ((point - from).dot(along) / square).clamp(0.0, 1.0) } else { 0.0 };
+    point.distance_squared(from + part * along)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::families::by_name;
+
+    fn mesh(positions: &[f64], triangles: &[u32]) -> Mesh {
+        Mesh::new(Dimension::Three, positions.to_vec(), triangles.to_vec()).unwrap()
+    }
+
+    /// The corner of a cube of side 2, far from the origin, its outside counter-clockwise.
+    const CORNER: [f64; 12] = [1e6, 0., 0., 1e6 + 2., 0., 0., 1e6, 2., 0., 1e6, 0., 2.];
+    const TETRAHEDRON: [u32; 12] = [0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3];
+
+    #[test]
+    fn a_tetrahedron_is_measured() {
+        let found = measures(&mesh(&CORNER, &TETRAHEDRON));
+        assert!((found.area - (6.0 + 2.0 * 3f64.sqrt())).abs() < 1e-9, "{found:?}");
+        assert!((found.volume - 8.0 / 6.0).abs() < 1e-9, "{found:?}");
+        assert!((found.min_angle - 45.0).abs() < 1e-9, "{found:?}");
+        assert!((found.mean_min_angle - 48.75).abs() < 1e-9, "{found:?}");
+        // Of a right triangle with legs 1: (1 + √2)·√2 / √3, and of the equilateral one: 1.
+        let right = (2f64.sqrt() + 2.0) * 2f64.sqrt() / (2.0 * 3f64.sqrt());
+        assert!((found.mean_aspect - (3.0 * right + 1.0) / 4.0).abs() < 1e-9, "{found:?}");
+    }
+
+    #[test]
+    fn flat_triangles_are_counted() {
+        let found = measures(&mesh(&CORNER, &[0, 0, 1, 1, 2, 3]));
+        assert_eq!((found.flat, found.min_angle), (1, 0.0));
+        assert!((found.mean_aspect - 1.0).abs() < 1e-9);
+        let none = measures(&mesh(&[], &[]));
+        assert_eq!(
+            (none.min_angle, none.mean_min_angle, none.mean_aspect, none.area),
+            (60.0, 60.0, 1.0, 0.0)
+        );
+    }
+
+    #[test]
+    fn a_turned_triangle_has_not_moved() {
+        assert_eq!(moved(&[0, 1, 2, 3, 4, 5, 6, 7, 8], &[1, 2, 0, 3, 5, 4, 6, 7, 9]), [1, 2]);
+    }
+
+    /// A flat square with one corner lifted by h: its diagonals are h / 2 apart in their middles.
+    #[test]
+    fn a_flip_moves_the_surface_by_the_distance_of_the_diagonals() {
+        let [before, after] = [[0, 1, 2, 0, 2, 3], [0, 1, 3, 1, 2, 3]];
+        for h in [0.0, 1e-3] {
+            let square = mesh(&[0., 0., 0., 1., 0., 0., 1., 1., h, 0., 1., 0.], &before);
+            let found = distance(&square, &after);
+            // The middle of one diagonal is as far from the nearest point of the other surface.
+            assert!(found <= h / 2.0 && found >= 0.99 * h / 2.0, "{found}");
+            assert_eq!(distance(&square, &before), 0.0);
+            for scale in [1e300, 1e-300] {
+                let scaled: Vec<f64> = square.positions().iter().map(|x| x * scale).collect();
+                let found = distance(&mesh(&scaled, &before), &after) / scale;
+                assert!(found <= h / 1.999 && found >= 0.99 * h / 2.0, "{found}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_distance_is_that_to_the_nearest_of_all_triangles() {
+        let sphere = by_name("uvsphere 8").unwrap();
+        let turned: Vec<u32> = sphere.triangles().iter().rev().copied().collect();
+        assert!(distance(&sphere, &turned) < 1e-12);
+        for (point, expected) in [([0.25, 0.25, 3.0], 9.0), ([2.0, 0.0, 0.0], 1.0), ([-1.0, -1.0, 1.0], 3.0)]
+        {
+            let patch = Patch([DVec3::ZERO, DVec3::X, DVec3::Y]);
+            assert_eq!(patch.distance_2(&point), expected);
+            assert_eq!(Patch([DVec3::ZERO; 3]).distance_2(&[3.0, 4.0, 0.0]), 25.0);
+        }
+    }
+}
