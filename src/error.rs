@@ -60,6 +60,14 @@ pub enum Error {
         /// What was expected and what was found.
         message: String,
     },
+    /// A file has more bytes than an option allows, gzip'd or not. Raise `max_bytes` if it is to be trusted.
+    #[error("the file has more than {limit} bytes once it is unpacked; {option} sets the limit")]
+    FileTooLarge {
+        /// Bytes that it may have.
+        limit: u64,
+        /// The option that says so.
+        option: &'static str,
+    },
     /// The extension names no format that can be read or written.
     #[error("{path}: unknown format; use one of: {known}")]
     UnknownFormat {
@@ -132,6 +140,7 @@ impl Error {
             Self::PositionCount { .. } => "position-count",
             Self::TooLarge { .. } => "too-large",
             Self::Parse { .. } => "parse",
+            Self::FileTooLarge { .. } => "file-too-large",
             Self::UnknownFormat { .. } => "unknown-format",
             Self::Io { .. } => "io",
             Self::Option { .. } => "invalid-option",

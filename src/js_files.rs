@@ -2,23 +2,36 @@
 //! angles, in a module without an engine. The hand-written `src/js/files.ts` is its public face. Arguments arrive
 //! checked in type, not in value. Everything that is thrown is an `Error` with a `code`.
 
-use crate::io::{self, Format, Loaded};
+use crate::error::number;
+use crate::io::{self, Format, Loaded, ReadOptions};
 use crate::js_values::{JsPositions, object, parse_dimension, thrown};
-use crate::{Error, Mesh, families, quality};
-use js_sys::{Array, Float32Array, Uint8Array, Uint32Array};
+use crate::{Error, Mesh, Positions, families, quality};
+use js_sys::{Array, Float32Array, Float64Array, Uint8Array, Uint32Array};
 use std::path::Path;
 use wasm_bindgen::prelude::*;
 
 /// Most bins of a histogram: more would only cost memory.
 const MAX_BINS: u32 = 1 << 16;
 
-/// The mesh in the bytes of a file; see [`io::parse`] for the dimension.
+/// The mesh in the bytes of a file; see [`ReadOptions`] for the dimension and the bytes.
 ///
 /// # Errors
-/// Those of [`Format::of`] and [`io::parse`]; [`Error::Option`] for the dimension.
+/// Those of [`Format::of`] and [`io::parse`]; [`Error::Option`] for the dimension and the bytes.
 #[wasm_bindgen(js_name = readMesh, unchecked_return_type = "import('../files.js').FileMesh")]
-pub fn read_mesh(bytes: &[u8], name: &str, dimension: Option<f64>) -> Result<JsValue, JsValue> {
-    let read = || io::parse(Format::of(Path::new(name))?, bytes, dimension.map(parse_dimension).transpose()?);
+pub fn read_mesh(
+    bytes: &Uint8Array,
+    name: &str,
+    dimension: Option<f64>,
+    max_bytes: Option<f64>,
+) -> Result<JsValue, JsValue> {
+    let read = || {
+        let format = Format::of(Path::new(name))?;
+        let mut options = ReadOptions::default();
+        options.dimension = dimension.map(parse_dimension).transpose()?;
+        options.max_bytes = max_bytes.map_or(Ok(options.max_bytes), parse_max_bytes)?;
+        options.check(bytes.length().into())?;
+        io::parse(format, &bytes.to_vec(), &options)
+    };
     let Loaded { mesh, polygons, dropped } = read().map_err(thrown)?;
     let dropped: Array = dropped.into_iter().map(JsValue::from).collect();
     let [positions, indices, dimension] = fields(&mesh);
@@ -34,7 +47,7 @@ pub fn read_mesh(bytes: &[u8], name: &str, dimension: Option<f64>) -> Result<JsV
 /// The bytes of a file that holds the mesh.
 ///
 /// # Errors
-/// Those of [`Format::of`], [`Mesh::new`] and [`io::to_bytes`]; [`Error::Option`] for the dimension.
+/// Those of [`Mesh::new`] and [`io::to_file_bytes`]; [`Error::Option`] for the dimension.
 #[wasm_bindgen(js_name = writeMesh, unchecked_return_type = "Uint8Array<ArrayBuffer>")]
 pub fn write_mesh(
     positions: JsPositions,
@@ -43,9 +56,8 @@ pub fn write_mesh(
     name: &str,
 ) -> Result<Uint8Array, JsValue> {
     let write = || {
-        let format = Format::of(Path::new(name))?;
         let mesh = Mesh::new(parse_dimension(dimension)?, positions, indices)?;
-        io::to_bytes(format, &mesh).map_err(|source| Error::Io { path: name.to_owned(), source })
+        io::to_file_bytes(name, &mesh)
     };
     write().map(|bytes| Uint8Array::from(bytes.as_slice())).map_err(thrown)
 }
@@ -86,13 +98,25 @@ pub fn angles(
     ]))
 }
 
-/// The fields of a mesh of 32-bit floats, in arrays that JavaScript owns.
+/// The fields of a mesh, in arrays that JavaScript owns.
 fn fields(mesh: &Mesh) -> [(&'static str, JsValue); 3] {
+    let positions = match mesh.positions() {
+        Positions::F32(numbers) => Float32Array::from(numbers.as_slice()).into(),
+        Positions::F64(numbers) => Float64Array::from(numbers.as_slice()).into(),
+    };
     [
-        ("positions", Float32Array::from(mesh.positions().to_f32().as_slice()).into()),
+        ("positions", positions),
         ("indices", Uint32Array::from(mesh.triangles()).into()),
         ("dimension", (mesh.dimension().stride() as u32).into()),
     ]
+}
+
+/// Infinity is no limit.
+fn parse_max_bytes(bytes: f64) -> Result<u64, Error> {
+    if bytes >= 0.0 {
+        return Ok(bytes as u64);
+    }
+    Err(Error::Option { option: "maxBytes", message: format!("{} is no number of bytes", number(bytes)) })
 }
 
 fn parse_bins(bins: f64) -> Result<usize, Error> {

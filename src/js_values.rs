@@ -83,6 +83,7 @@ fn in_words_of_javascript(error: Error) -> Error {
         Error::RaggedArray { array: "triangles", length, stride } => {
             Error::RaggedArray { array: "indices", length, stride }
         }
+        Error::FileTooLarge { limit, .. } => Error::FileTooLarge { limit, option: "maxBytes" },
         Error::Option { option: "max_normal_angle", message } => {
             Error::Option { option: "maxNormalAngle", message }
         }

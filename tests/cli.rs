@@ -236,7 +236,7 @@ fn the_input_can_be_the_output() {
 
 #[test]
 fn a_bad_file_gives_one_line_and_no_output() {
-    let cases: [(&str, Vec<u8>, &str); 12] = [
+    let cases: [(&str, Vec<u8>, &str); 15] = [
         ("a.off", SQUARE[..SQUARE.len() - 8].into(), "line 7: the file ends after 1 of 2 faces"),
         ("b.off", SQUARE[..SQUARE.len() - 4].into(), "line 8: expected 3 vertex indices, found 1"),
         (
@@ -265,6 +265,13 @@ fn a_bad_file_gives_one_line_and_no_output() {
             "line 2: vertex index `2` is out of range, the mesh has 1 vertices",
         ),
         ("k.obj", "v 0 0 0\nv inf 0 0\n".into(), "line 2: `inf` is not a finite 32-bit number"),
+        ("l.ply", SQUARE.into(), "line 1: expected the keyword ply of a PLY file, found `OFF`"),
+        (
+            "m.stl",
+            vec![0; 84 + 49],
+            "byte 84: expected the end of the file after 0 facets, found 49 more bytes",
+        ),
+        ("n.off.gz", b"\x1f\x8b\x08".into(), "byte 3: the gzip'd file is cut off (unexpected end of file)"),
     ];
     for (name, bytes, line) in cases {
         let folder = Folder::new();
@@ -275,6 +282,56 @@ fn a_bad_file_gives_one_line_and_no_output() {
         }
         assert_eq!(folder.names(), [name]);
     }
+}
+
+/// From format to format: the triangles are those of the OFF file, or have their corners, in the same order.
+#[test]
+fn every_format_is_read_and_written() {
+    use edgeflip::io::{ReadOptions, read};
+    let folder = Folder::new();
+    let (off, flipped) = (folder.file("in.off", SQUARE), folder.path("out.off"));
+    assert_eq!(run(&off, &flipped, &["--quiet"]).status.code(), Some(0));
+    let expected = read(&flipped, &ReadOptions::default()).unwrap();
+    let corners = |mesh: &edgeflip::Mesh| -> Vec<f64> {
+        let numbers: Vec<f64> = mesh.positions().iter().collect();
+        mesh.triangles().iter().flat_map(|&v| numbers[2 * v as usize..][..2].to_vec()).collect()
+    };
+    let names = ["a.obj", "a.ply", "a.PLY.gz", "a.off.gz", "a.obj.gz", "a.stl", "a.stl.gz"];
+    for name in names {
+        let (input, output) = (folder.path(name), folder.path(&format!("out-{name}")));
+        let converted = run(&off, &input, &["--max-iterations", "0", "--quiet"]);
+        assert_eq!((converted.status.code(), text(&converted.stderr)), (Some(0), ""));
+        let ran = run(&input, &output, &["--verify", "--json"]);
+        assert_eq!((ran.status.code(), text(&ran.stderr)), (Some(0), ""));
+        let found = read(&output, &ReadOptions::default()).unwrap();
+        assert_eq!(corners(&found), corners(&expected), "{name}");
+        if !name.starts_with("a.stl") {
+            assert_eq!(found, expected, "{name}");
+        }
+        let is_packed = fs::read(&output).unwrap().starts_with(&[0x1f, 0x8b]);
+        assert_eq!(is_packed, name.ends_with(".gz"), "{name}");
+    }
+    let wide = "ply\nformat ascii 1.0\nelement vertex 3\nproperty double x\nproperty double y\nproperty uchar red\n\
+        element face 1\nproperty list uchar int vertex_index\nend_header\n0.1 0 1\n1 0 1\n0 1 1\n3 0 1 2\n";
+    let (wide, output) = (folder.file("wide.ply", wide), folder.path("wide-out.ply"));
+    let ran = run(&wide, &output, &[]);
+    assert!(text(&ran.stderr).contains("note       not kept: vertex properties `red`\n"));
+    let positions = read(&output, &ReadOptions::default()).unwrap().positions().clone();
+    assert_eq!(positions, edgeflip::Positions::F64(vec![0.1, 0., 1., 0., 0., 1.]));
+}
+
+#[test]
+fn a_file_is_as_large_as_it_may_be() {
+    let folder = Folder::new();
+    let (input, output) = (folder.file("in.off", SQUARE), folder.path("out.off.gz"));
+    let length = SQUARE.len().to_string();
+    assert_eq!(run(&input, &output, &["--max-bytes", &length]).status.code(), Some(0));
+    for input in [input, output] {
+        let line = "the file has more than 20 bytes once it is unpacked; --max-bytes sets the limit";
+        let ran = run(&input, &folder.path("out.off"), &["--max-bytes", "20"]);
+        failed(&ran, 1, &format!("{}: {line}", input.display()));
+    }
+    assert_eq!(folder.names(), ["in.off", "out.off.gz"]);
 }
 
 #[test]
@@ -294,10 +351,16 @@ fn a_file_that_cannot_be_read_or_written() {
     assert_eq!((ran.status.code(), text(&ran.stderr).lines().count()), (Some(1), 1));
 
     let unknown = folder.file("in.mesh", SQUARE);
-    let line = format!("{}: unknown format; use one of: .off, .obj", unknown.display());
+    let line = format!(
+        "{}: unknown format; use one of: .off, .obj, .ply, .stl, also gzip'd (.gz)",
+        unknown.display()
+    );
     failed(&run(&unknown, &folder.path("out.off"), &[]), 1, &line);
     let output = folder.path("out.mesh");
-    let line = format!("{}: unknown format; use one of: .off, .obj", output.display());
+    let line = format!(
+        "{}: unknown format; use one of: .off, .obj, .ply, .stl, also gzip'd (.gz)",
+        output.display()
+    );
     failed(&run(&input, &output, &[]), 2, &line);
     let output = folder.path("none/out.off");
     let line = format!("{}: the folder does not exist", output.display());
@@ -393,7 +456,18 @@ fn the_ends_of_the_options_ranges_are_taken() {
 fn help_explains() {
     let ran = Command::new(env!("CARGO_BIN_EXE_edgeflip")).arg("--help").output().unwrap();
     assert_eq!(ran.status.code(), Some(0));
-    for words in ["β", "Lawson", "never falls back", "Exit status", ".obj", "Examples"] {
+    for words in [
+        "β",
+        "Lawson",
+        "never falls back",
+        "Exit status",
+        ".obj",
+        ".ply",
+        ".stl",
+        ".gz",
+        "--max-bytes",
+        "Examples",
+    ] {
         assert!(text(&ran.stdout).contains(words), "{words}");
     }
 }

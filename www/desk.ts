@@ -2,7 +2,7 @@
 
 import { expose, transfer } from 'comlink';
 import { FlipSession } from 'edgeflip';
-import { angles, generate, readMesh, writeMesh, type Angles, type FileMesh, type Mesh32 } from 'edgeflip/files';
+import { angles, generate, readMesh, writeMesh, type Angles, type FileMesh, type IndexedMesh } from 'edgeflip/files';
 import { naming } from './crash.ts';
 import { changeOf, type Change } from './change.ts';
 import type { Backend } from './engines.ts';
@@ -12,7 +12,7 @@ class Desk {
   #session: FlipSession | undefined;
   #before: Uint32Array = new Uint32Array();
 
-  async generate(spec: string): Promise<Mesh32> {
+  async generate(spec: string): Promise<IndexedMesh> {
     return send(await naming(generate(spec)));
   }
 
@@ -20,17 +20,17 @@ class Desk {
     return send(await naming(readMesh(bytes, name)));
   }
 
-  async write(mesh: Mesh32, name: string): Promise<Uint8Array<ArrayBuffer>> {
+  async write(mesh: IndexedMesh, name: string): Promise<Uint8Array<ArrayBuffer>> {
     const bytes = await naming(writeMesh(mesh, name));
     return transfer(bytes, [bytes.buffer]);
   }
 
-  angles(mesh: Mesh32, bins: number): Promise<Angles> {
+  angles(mesh: IndexedMesh, bins: number): Promise<Angles> {
     return naming(angles(mesh, bins));
   }
 
   /** Begins a run. Returns what its edges are, if they are to be drawn. */
-  async open(mesh: Mesh32, maxNormalAngle: number, backend: Backend): Promise<Uint8Array | undefined> {
+  async open(mesh: IndexedMesh, maxNormalAngle: number, backend: Backend): Promise<Uint8Array | undefined> {
     const session = await FlipSession.create(mesh, { backend, maxNormalAngle });
     this.#session = session;
     this.#before = mesh.indices;
@@ -62,7 +62,7 @@ class Desk {
   }
 }
 
-function send<T extends Mesh32>(mesh: T): T {
+function send<T extends IndexedMesh>(mesh: T): T {
   return transfer(mesh, [mesh.positions.buffer, mesh.indices.buffer]);
 }
 

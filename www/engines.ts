@@ -2,7 +2,7 @@
 
 import { wrap, type Remote } from 'comlink';
 import { EdgeflipError, FlipSession, type Engine } from 'edgeflip';
-import type { Mesh32 } from 'edgeflip/files';
+import type { IndexedMesh } from 'edgeflip/files';
 import { ArrayTrack } from './array-track.ts';
 import { CRASHED } from './crash.ts';
 import type { Desk } from './desk.ts';
@@ -89,7 +89,7 @@ export type Backend = 'auto' | Engine;
  * @throws an error that can be shown, about the mesh, β or the backend that was asked for.
  */
 export async function beginRun(
-  mesh: Mesh32,
+  mesh: IndexedMesh,
   maxNormalAngle: number,
   backend: Backend,
   gpu: Gpu | string,
@@ -113,7 +113,7 @@ export async function beginRun(
   }
 }
 
-async function onGpu(mesh: Mesh32, maxNormalAngle: number, device: GPUDevice): Promise<Run> {
+async function onGpu(mesh: IndexedMesh, maxNormalAngle: number, device: GPUDevice): Promise<Run> {
   const session = await FlipSession.create(mesh, { backend: 'webgpu', device, maxNormalAngle });
   try {
     const shared = await session.gpu();
@@ -138,7 +138,7 @@ async function onGpu(mesh: Mesh32, maxNormalAngle: number, device: GPUDevice): P
 
 /** The run has a worker of its own, so that another one can go on beside it, and ends with it. */
 async function inWorker(
-  mesh: Mesh32,
+  mesh: IndexedMesh,
   maxNormalAngle: number,
   backend: Backend,
   signal: AbortSignal,

@@ -1,7 +1,7 @@
 /** The page between its controls and its engines: opens meshes, begins runs, draws and measures what they do. */
 
 import { EdgeflipError } from 'edgeflip';
-import { FORMATS, type Angles, type FileMesh, type Mesh32 } from 'edgeflip/files';
+import { FORMATS, type Angles, type FileMesh, type IndexedMesh } from 'edgeflip/files';
 import { controls, element } from './controls.ts';
 import { LOST } from './crash.ts';
 import { beginRun, Cancelled, Office, openGpu, type Backend, type Gpu } from './engines.ts';
@@ -19,8 +19,11 @@ const BINS = 36;
 /** Milliseconds without a change after which a state is measured. */
 const QUIET = 150;
 
+/** The stem of a file's name, and what its format is known by. */
+const EXTENSION = new RegExp(`^(.*)((?:${FORMATS.map((known) => `\\${known}`).join('|')})(?:\\.gz)?)$`, 'i');
+
 interface Opened {
-  mesh: Mesh32;
+  mesh: IndexedMesh;
   name: string;
   /** What reading the file did to it. */
   remark: string;
@@ -117,9 +120,8 @@ export class Page {
   async download(): Promise<void> {
     const [run, opened] = [this.#run, this.#opened];
     if (!run || !opened) return;
-    const extension = FORMATS.find((known) => opened.name.toLowerCase().endsWith(known)) ?? '.off';
-    const stem = opened.name.replace(/\.(off|obj)$/i, '').replaceAll(' ', '-');
-    const name = `${stem}-after-${run.at}${extension}`;
+    const [, stem = opened.name, extension = '.off'] = EXTENSION.exec(opened.name) ?? [];
+    const name = `${stem.replaceAll(' ', '-')}-after-${run.at}${extension}`;
     await this.#attempt('Writing the file…', async (signal) => {
       const mesh = { ...opened.mesh, indices: await run.triangles() };
       const bytes = await this.#office.ask((desk) => desk.write(mesh, name));
@@ -161,7 +163,7 @@ export class Page {
     element('error').hidden = false;
   }
 
-  #open(name: string, read: (office: Office) => Promise<Mesh32 | FileMesh>): Promise<void> {
+  #open(name: string, read: (office: Office) => Promise<IndexedMesh | FileMesh>): Promise<void> {
     this.#reopen = () => this.#open(name, read);
     return this.#attempt(`Opening ${name}…`, async (signal) => {
       if (this.#office.isBroken) this.#office = new Office();
@@ -395,7 +397,7 @@ function whyThere({ fallback }: Run, summary: Summary | undefined): string {
   return `On ${engine}: ${[fallback, summary.fallback].filter(Boolean).join('; ')}.`;
 }
 
-function remarkOn(mesh: Mesh32 | FileMesh): string {
+function remarkOn(mesh: IndexedMesh | FileMesh): string {
   if (!('polygons' in mesh)) return '';
   const cut = mesh.polygons > 0 ? `${number.format(mesh.polygons)} faces were cut into triangles.` : '';
   const dropped = mesh.dropped.length > 0 ? `Not kept: ${mesh.dropped.join(', ')}.` : '';

@@ -1,7 +1,7 @@
 /** The numbers beside the mesh: facts, legend, charts and the table of iterations. */
 
 import { EDGE_STATES, type Engine, type Iteration, type Reasons } from 'edgeflip';
-import type { Angles, Mesh32 } from 'edgeflip/files';
+import type { Angles, IndexedMesh } from 'edgeflip/files';
 import { AnglesChart, FlipsChart } from './charts.ts';
 import { element } from './controls.ts';
 import type { Palette } from './palette.ts';
@@ -89,7 +89,7 @@ export class Panel {
 
   /** `fingerprint` is that of the triangles shown; without it, what takes time to find out is left open. */
   showFacts(
-    mesh: Mesh32,
+    mesh: IndexedMesh,
     run: Run,
     summary: Summary | undefined,
     beta: number | undefined,

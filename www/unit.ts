@@ -1,9 +1,9 @@
 /** Vertices as they are drawn: f32 numbers near 0 whatever the mesh's own offset and size. */
 
-import type { Mesh32 } from 'edgeflip/files';
+import type { IndexedMesh } from 'edgeflip/files';
 
 /** The vertices, moved and scaled into the unit ball; 3 a vertex. */
-export function unitPositions({ positions, dimension }: Mesh32): Float32Array {
+export function unitPositions({ positions, dimension }: IndexedMesh): Float32Array {
   const low = [Infinity, Infinity, Infinity];
   const high = [-Infinity, -Infinity, -Infinity];
   for (let i = 0; i < positions.length; i++) {

@@ -1,28 +1,35 @@
 //! Mesh files on disk: a whole file is read at once, and a target is replaced at once or not at all.
 
-use super::{Format, Loaded, parse, parse_edges, write_to};
-use crate::{Dimension, Error, Mesh};
+use super::{Format, Loaded, ReadOptions, gzip, parse, parse_edges};
+use crate::{Error, Mesh};
 use std::fs;
-use std::io::{self, BufWriter, Write};
+use std::io::{self, BufWriter, Read, Write};
 use std::path::{Path, PathBuf};
 
-/// Reads the mesh of a file; the extension names its format. See [`parse`] for `dimension`.
+/// Reads the mesh of a file; the extension names its format. See [`parse`].
 ///
 /// # Errors
 /// [`Error::UnknownFormat`], [`Error::Io`], and those of [`parse`].
-pub fn read(path: impl AsRef<Path>, dimension: Option<Dimension>) -> Result<Mesh, Error> {
-    load(path, dimension).map(|loaded| loaded.mesh)
+pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Mesh, Error> {
+    load(path, options).map(|loaded| loaded.mesh)
 }
 
 /// As [`read`], and says what was done to the file's content.
 ///
 /// # Errors
 /// As [`read`].
-pub fn load(path: impl AsRef<Path>, dimension: Option<Dimension>) -> Result<Loaded, Error> {
+pub fn load(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Loaded, Error> {
     let path = path.as_ref();
     let format = Format::of(path)?;
-    let bytes = fs::read(path).map_err(|source| at(path, source))?;
-    parse(format, &bytes, dimension)
+    let file = fs::File::open(path).map_err(|source| at(path, source))?;
+    let length = file.metadata().map_err(|source| at(path, source))?.len();
+    options.check(length)?;
+    let mut bytes = Vec::new();
+    bytes.try_reserve_exact(length as usize).map_err(|error| at(path, error.into()))?;
+    // A pipe has the length 0, and a file may grow.
+    let mut limited = file.take(options.max_bytes.saturating_add(1));
+    limited.read_to_end(&mut bytes).map_err(|source| at(path, source))?;
+    parse(format, &bytes, options)
 }
 
 /// Reads a list of edges, whatever the extension of its file. See [`parse_edges`].
@@ -35,7 +42,7 @@ pub fn read_edges(path: impl AsRef<Path>) -> Result<Vec<[u32; 2]>, Error> {
     parse_edges(&bytes)
 }
 
-/// Writes `mesh` to a file; the extension names its format. The file appears, or changes, at once when all
+/// Writes `mesh` to a file; the extension names its format, and if `.gz` follows it is gzip'd. The file appears, or changes, at once when all
 /// is written: a failure leaves what was there before. A link is followed and permissions are kept.
 ///
 /// # Errors
@@ -43,7 +50,7 @@ pub fn read_edges(path: impl AsRef<Path>) -> Result<Vec<[u32; 2]>, Error> {
 pub fn write(path: impl AsRef<Path>, mesh: &Mesh) -> Result<(), Error> {
     let path = path.as_ref();
     let format = Format::of(path)?;
-    replace(path, |out| write_to(format, mesh, out)).map_err(|source| at(path, source))
+    replace(path, |out| gzip::write_to(path, format, mesh, out)).map_err(|source| at(path, source))
 }
 
 fn at(path: &Path, source: io::Error) -> Error {

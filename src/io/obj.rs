@@ -20,7 +20,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Parsed, Error> {
         reader.read(Lines::new(bytes), Some(vertices))?;
     }
     let Reader { positions, faces, dropped, .. } = reader;
-    Ok(Parsed { stride: 3, positions, faces, dropped })
+    Ok(Parsed { stride: 3, positions: positions.into(), faces, dropped })
 }
 
 /// Writes `mesh`; z is 0 in a 2D mesh.

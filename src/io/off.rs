@@ -20,7 +20,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Parsed, Error> {
         let message = format!("expected the end of the file after {} faces, found {found}", header.faces);
         return Err(lines.refuse(message));
     }
-    Ok(Parsed { stride: header.stride, positions, faces, dropped })
+    Ok(Parsed { stride: header.stride, positions: positions.into(), faces, dropped })
 }
 
 /// Writes `mesh`; z is 0 in a 2D mesh.

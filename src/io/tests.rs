@@ -1,16 +1,30 @@
 //! Tests of the parsers and writers: what is read, what is refused and how, and that nothing is lost.
 
+mod gzip;
+mod ply;
+mod stl;
+
 use super::*;
 use proptest::prelude::*;
 
-const BOTH: [Format; 2] = [Format::Off, Format::Obj];
+/// Those that have vertices which triangles share.
+const INDEXED: [Format; 3] = [Format::Off, Format::Obj, Format::Ply];
+const ALL: [Format; 4] = [Format::Off, Format::Obj, Format::Ply, Format::Stl];
+
+fn parsed(format: Format, bytes: impl AsRef<[u8]>) -> Result<Loaded, Error> {
+    parse(format, bytes.as_ref(), &ReadOptions::default())
+}
 
 fn off(text: impl AsRef<[u8]>) -> Result<Loaded, Error> {
-    parse(Format::Off, text.as_ref(), None)
+    parsed(Format::Off, text)
 }
 
 fn obj(text: impl AsRef<[u8]>) -> Result<Loaded, Error> {
-    parse(Format::Obj, text.as_ref(), None)
+    parsed(Format::Obj, text)
+}
+
+fn in_dimension(format: Format, bytes: impl AsRef<[u8]>, dimension: Dimension) -> Result<Loaded, Error> {
+    parse(format, bytes.as_ref(), &ReadOptions { dimension: Some(dimension), ..ReadOptions::default() })
 }
 
 #[track_caller]
@@ -209,7 +223,7 @@ fn dimension_asked_for() {
     let raised = "OFF 2 0\n0 0 0\n1 2 0.25\n";
     mesh(off(flat), Two, &[0., 0., 1., 2.], &[]);
     mesh(off(raised), Three, &[0., 0., 0., 1., 2., 0.25], &[]);
-    let forced = |text: &str, dimension| parse(Format::Off, text.as_bytes(), Some(dimension));
+    let forced = |text, dimension| in_dimension(Format::Off, text, dimension);
     mesh(forced(flat, Three), Three, &[0., 0., 0., 1., 2., -0.], &[]);
     mesh(forced("2OFF 1 0\n1 2", Three), Three, &[1., 2., 0.], &[]);
     refused(
@@ -237,8 +251,14 @@ fn written_with_the_fewest_digits() {
 fn formats_by_extension() {
     assert_eq!(Format::of(Path::new("a/b.OFF")).unwrap(), Format::Off);
     assert_eq!(Format::of(Path::new("b.x.obj")).unwrap(), Format::Obj);
-    let error = Format::of(Path::new("off")).unwrap_err().to_string();
-    assert_eq!(error, "off: unknown format; use one of: .off, .obj");
+    assert_eq!(Format::of(Path::new("b.Ply.GZ")).unwrap(), Format::Ply);
+    assert_eq!(Format::of(Path::new(".stl.stl")).unwrap(), Format::Stl);
+    for name in ["off", "a.gz", ".gz", "a.off.gz.gz", ""] {
+        let found = Format::of(Path::new(name));
+        let message =
+            format!("{name}: unknown format; use one of: .off, .obj, .ply, .stl, also gzip'd (.gz)");
+        assert_eq!(found.unwrap_err().to_string(), message);
+    }
 }
 
 #[cfg(not(target_arch = "wasm32"))]
@@ -248,7 +268,7 @@ fn a_target_is_replaced_at_once() {
     let path = folder.path().join("a.off");
     let mesh = Mesh::new(Three, vec![0.0, 0.5, 1.0], vec![]).unwrap();
     write(&path, &mesh).unwrap();
-    assert_eq!(read(&path, None).unwrap(), mesh);
+    assert_eq!(read(&path, &ReadOptions::default()).unwrap(), mesh);
     #[cfg(unix)]
     {
         use std::os::unix::fs::{PermissionsExt, symlink};
@@ -263,7 +283,7 @@ fn a_target_is_replaced_at_once() {
     std::fs::create_dir(folder.path().join("folder.off")).unwrap();
     assert!(matches!(write(folder.path().join("folder.off"), &mesh), Err(Error::Io { .. })));
     assert!(matches!(write(folder.path().join("none/a.off"), &mesh), Err(Error::Io { .. })));
-    assert!(matches!(read(folder.path().join("none.off"), None), Err(Error::Io { .. })));
+    assert!(matches!(read(folder.path().join("none.off"), &ReadOptions::default()), Err(Error::Io { .. })));
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 2);
 }
 
@@ -298,6 +318,17 @@ fn words() -> impl Strategy<Value = String> {
         "nan",
         "4294967295",
         "9223372036854775808",
+        "format ascii 1.0",
+        "element vertex 3",
+        "element face",
+        "property list int int vertex_index",
+        "property float x",
+        "property double y",
+        "end_header",
+        "facet normal 0 0 1 outer loop",
+        "vertex",
+        "endloop endfacet",
+        "endsolid",
         "\u{feff}",
         "é",
     ]);
@@ -317,10 +348,10 @@ proptest! {
         let dimension = if flat { Two } else { Three };
         let positions: Vec<f32> =
             positions.iter().flat_map(|p| &p[..dimension.stride()]).copied().collect();
-        for format in BOTH {
-            let mesh = Mesh::new(dimension, positions.clone(), triangles.clone()).unwrap();
+        let mesh = Mesh::new(dimension, positions, triangles).unwrap();
+        for format in INDEXED {
             let bytes = to_bytes(format, &mesh).unwrap();
-            let loaded = parse(format, &bytes, Some(dimension)).unwrap();
+            let loaded = in_dimension(format, &bytes, dimension).unwrap();
             prop_assert_eq!(loaded.mesh.triangles(), mesh.triangles());
             let bits = |mesh: &Mesh| mesh.positions().iter().map(f64::to_bits).collect::<Vec<_>>();
             prop_assert_eq!(bits(&loaded.mesh), bits(&mesh));
@@ -329,23 +360,35 @@ proptest! {
     }
 
     #[test]
-    fn no_bytes_panic(bytes in prop::collection::vec(any::<u8>(), 0..300), format in prop::sample::select(BOTH.to_vec())) {
-        let _ = parse(format, &bytes, None);
-        let _ = parse(format, &[b"OFF 2 2 0\n".as_slice(), &bytes].concat(), None);
-        let _ = parse(format, &[b"v 0 0 0\nf ".as_slice(), &bytes].concat(), None);
-    }
-
-    #[test]
-    fn no_words_panic(text in words(), format in prop::sample::select(BOTH.to_vec())) {
-        if let Err(e) = parse(format, text.as_bytes(), None) {
-            prop_assert!(!e.to_string().chars().any(char::is_control));
+    fn no_bytes_panic(bytes in prop::collection::vec(any::<u8>(), 0..300), format in prop::sample::select(ALL.to_vec())) {
+        for head in [
+            b"".as_slice(),
+            b"OFF 2 2 0\n",
+            b"v 0 0 0\nf ",
+            b"ply\nformat ",
+            b"solid\nfacet ",
+            &[0; 80],
+            b"\x1f\x8b\x08\x00\x00\x00\x00\x00\x00\xff",
+            ply::HEAD.replace("ascii", "binary_little_endian").as_bytes(),
+            ply::HEAD.replace("ascii", "binary_big_endian").as_bytes(),
+        ] {
+            let _ = parsed(format, [head, &bytes].concat());
         }
     }
 
     #[test]
-    fn no_cut_or_changed_byte_panics(at in 0_usize..70, byte in any::<u8>(), cut in any::<bool>()) {
+    fn no_words_panic(text in words(), format in prop::sample::select(ALL.to_vec())) {
+        for head in ["", "ply\n", ply::HEAD, "solid"] {
+            if let Err(e) = parsed(format, [head, &text].concat()) {
+                prop_assert!(!e.to_string().chars().any(char::is_control));
+            }
+        }
+    }
+
+    #[test]
+    fn no_cut_or_changed_byte_panics(at in 0_usize..300, byte in any::<u8>(), cut in any::<bool>()) {
         let mesh = Mesh::new(Three, vec![0.5; 12], vec![0, 1, 2, 1, 2, 3]).unwrap();
-        for format in BOTH {
+        for format in ALL {
             let mut bytes = to_bytes(format, &mesh).unwrap();
             if let Some(b) = bytes.get_mut(at) {
                 *b = byte;
@@ -353,7 +396,7 @@ proptest! {
             if cut {
                 bytes.truncate(at);
             }
-            let _ = parse(format, &bytes, None);
+            let _ = parsed(format, bytes);
         }
     }
 }

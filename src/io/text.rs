@@ -138,13 +138,13 @@ impl Fans {
 
 /// What a file held that a [`crate::Mesh`] has no place for, each named once.
 #[derive(Default)]
-pub(super) struct Dropped(pub(super) Vec<&'static str>);
+pub(super) struct Dropped(pub(super) Vec<String>);
 
 impl Dropped {
     /// Names one more.
-    pub(super) fn note(&mut self, what: &'static str) {
-        if !self.0.contains(&what) {
-            self.0.push(what);
+    pub(super) fn note(&mut self, what: &str) {
+        if !self.0.iter().any(|known| known == what) {
+            self.0.push(what.to_owned());
         }
     }
 }
@@ -154,7 +154,7 @@ pub(super) struct Parsed {
     /// Numbers per vertex: 2 or 3.
     pub(super) stride: usize,
     /// `stride` numbers a vertex.
-    pub(super) positions: Vec<f32>,
+    pub(super) positions: Positions,
     /// The faces.
     pub(super) faces: Fans,
     /// What was left out.

@@ -12,7 +12,9 @@
  * | `position-count` | give `setPositions` 2 or 3 numbers for each vertex of the mesh |
  * | `too-large` | split the mesh |
  * | `parse` | repair the file at the line, or the vertex, that the message names |
+ * | `file-too-large` | pass a larger `maxBytes`, if the file is to be trusted |
  * | `unknown-format` | take a file name with one of the extensions in `FORMATS` |
+ * | `io` | write another format: an STL file cannot hold coordinates as large as the message says |
  * | `invalid-option` | check the option that the message names |
  * | `backend-unavailable` | take `'auto'` or `'cpu'`: there is no such GPU here, or it fails its self-test |
  * | `backend-limit` | take `'auto'` or `'cpu'`: the GPU cannot take this mesh |
@@ -31,7 +33,9 @@ const CODES = [
   'position-count',
   'too-large',
   'parse',
+  'file-too-large',
   'unknown-format',
+  'io',
   'invalid-option',
   'backend-unavailable',
   'backend-limit',

@@ -14,23 +14,30 @@
 
 import initModule, * as wasm from './wasm/edgeflip_files.js';
 import { EdgeflipError, fromModule } from './error.js';
-import { checkDimension, type Mesh32, moduleMesh } from './mesh.js';
+import { checkDimension, type IndexedMesh, type Mesh32, moduleMesh } from './mesh.js';
 import { loader } from './module.js';
 import type { Mesh } from './types.js';
 
 export { EdgeflipError, type ErrorCode } from './error.js';
-export type { Mesh32 } from './mesh.js';
+export type { IndexedMesh, Mesh32 } from './mesh.js';
 export type { ModuleSource } from './module.js';
 export type { Mesh } from './types.js';
 
-/** The extensions of the formats that are read and written, in either case. */
-export const FORMATS = ['.off', '.obj'] as const;
+/**
+ * The extensions of the formats that are read and written, in either case. With `.gz` after it, as in `bunny.ply.gz`,
+ * the file is gzip'd.
+ */
+export const FORMATS = ['.off', '.obj', '.ply', '.stl'] as const;
 
-/** A mesh as it was read: the file's vertices, all of them, in its order, and its faces as triangles. */
-export interface FileMesh extends Mesh32 {
+/**
+ * A mesh as it was read: the file's vertices, all of them, in its order, and its faces as triangles. Its positions are a
+ * Float64Array where a PLY file has doubles that are no 32-bit floats. An STL file has no vertices, only corners of
+ * triangles: those at the same position become one, in the order in which they appear.
+ */
+export interface FileMesh extends IndexedMesh {
   /** Faces with more than three corners; each was cut into a fan of triangles around its first corner. */
   polygons: number;
-  /** What the file holds that a mesh has no place for, such as `normals`. */
+  /** What the file holds that a mesh has no place for, such as `normals`. Normals of an STL file are its triangles'. */
   dropped: string[];
 }
 
@@ -38,6 +45,8 @@ export interface FileMesh extends Mesh32 {
 export interface ReadOptions {
   /** Default: 2 if the file has two coordinates a vertex or every z is 0, else 3. */
   dimension?: 2 | 3 | undefined;
+  /** How many bytes the file may have, and a gzip'd one once it is unpacked. Default: 2^30. */
+  maxBytes?: number | undefined;
 }
 
 /** What the angles of a mesh say about its triangles. A degenerate triangle counts as one with an angle of 0°. */
@@ -60,25 +69,30 @@ export interface Angles {
 export const initFiles = loader(initModule, () => new URL('./wasm/edgeflip_files_bg.wasm', import.meta.url));
 
 /**
- * Reads the bytes of a file.
+ * Reads the bytes of a file, gzip'd or not.
  *
  * @param name - Its name, such as `bunny.obj`: the extension gives the format.
- * @throws {@link EdgeflipError} `parse`, which names the line, or the vertex that has a height where 2 dimensions
- * were asked for; `unknown-format`, `too-large`, `invalid-input`.
+ * @throws {@link EdgeflipError} `parse`, which names the line or the byte, or the vertex that has a height where 2
+ * dimensions were asked for; `unknown-format`, `file-too-large`, `too-large`, `invalid-input`, `invalid-option`.
  */
 export async function readMesh(bytes: Uint8Array, name: string, options: ReadOptions = {}): Promise<FileMesh> {
   if (!(bytes instanceof Uint8Array)) throw new EdgeflipError('invalid-input', 'bytes are no Uint8Array');
   if (options.dimension !== undefined) checkDimension(options.dimension);
+  const { dimension, maxBytes } = options;
+  if (maxBytes !== undefined && typeof maxBytes !== 'number') {
+    throw new EdgeflipError('invalid-input', 'maxBytes is not a number');
+  }
   const file = text(name, 'name');
-  return call(() => wasm.readMesh(bytes, file, options.dimension));
+  return call(() => wasm.readMesh(bytes, file, dimension, maxBytes));
 }
 
 /**
- * The bytes of a file that holds the mesh. Each number has the fewest digits that read back to the same 32 or 64 bits;
- * {@link readMesh} reads 32. An OBJ or OFF file of a mesh in the plane has 0 for every z.
+ * The bytes of a file that holds the mesh; of one in the plane every z is 0. In OFF and OBJ each number has the fewest
+ * digits that read back to the same 32 or 64 bits, of which {@link readMesh} reads 32. PLY is written in binary and
+ * keeps all bits; STL in binary, with positions rounded to 32-bit floats.
  *
- * @param name - Its name, such as `bunny.obj`: the extension gives the format.
- * @throws {@link EdgeflipError} about the mesh; `unknown-format`.
+ * @param name - Its name, such as `bunny.obj` or `bunny.ply.gz`: the extension gives the format.
+ * @throws {@link EdgeflipError} about the mesh; `unknown-format`; `io` for coordinates that STL cannot hold.
  */
 export async function writeMesh(mesh: Mesh, name: string): Promise<Uint8Array<ArrayBuffer>> {
   const { positions, indices, dimension } = moduleMesh(mesh);

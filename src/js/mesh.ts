@@ -4,11 +4,15 @@ import { EdgeflipError } from './error.js';
 import type { Mesh } from './types.js';
 
 /** A mesh in the arrays that the modules give. */
-export interface Mesh32 extends Mesh {
-  /** 2 or 3 numbers a vertex. */
-  positions: Float32Array;
+export interface IndexedMesh extends Mesh {
   /** Vertex indices, 3 a triangle. */
   indices: Uint32Array;
+}
+
+/** One in 32-bit floats. */
+export interface Mesh32 extends IndexedMesh {
+  /** 2 or 3 numbers a vertex. */
+  positions: Float32Array;
 }
 
 /**
@@ -16,7 +20,7 @@ export interface Mesh32 extends Mesh {
  *
  * @throws {@link EdgeflipError} `invalid-input`.
  */
-export function moduleMesh({ positions, indices, dimension }: Mesh): Mesh & { indices: Uint32Array } {
+export function moduleMesh({ positions, indices, dimension }: Mesh): IndexedMesh {
   checkDimension(dimension);
   checkPositions(positions);
   return { positions, indices: uint32(indices), dimension };

@@ -3,6 +3,7 @@
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { test } from 'node:test';
+import { gunzipSync, gzipSync } from 'node:zlib';
 import { makeDelaunay } from 'edgeflip';
 import { angles, EdgeflipError, FORMATS, generate, initFiles, readMesh, writeMesh } from 'edgeflip/files';
 
@@ -42,7 +43,7 @@ test('every bit comes back, in each format and in both dimensions', async () => 
   const flat = awkward();
   const raised = { positions: new Float32Array([...flat.positions, 7.5, -0]), indices: Uint32Array.of(0, 1, 2, 3, 2, 1), dimension: 3 };
   for (const mesh of [flat, raised]) {
-    for (const format of FORMATS) {
+    for (const format of [...FORMATS, '.ply.gz'].filter((format) => format !== '.stl')) {
       const file = await writeMesh(mesh, `a${format.toUpperCase()}`);
       const read = await readMesh(file, `a${format}`, { dimension: mesh.dimension });
       assert.deepEqual(bits(read), bits(mesh));
@@ -60,6 +61,40 @@ test('doubles are written in full', async () => {
   assert.equal(text(await writeMesh(mesh, 'a.obj')), `${lines.map((line) => `v ${line}\n`).join('')}f 1 2 3\n`);
   const { min } = await angles({ ...mesh, positions: Float64Array.of(0, 0, 1e-300, 0, 0, 1e-300) });
   assert.ok(Math.abs(min - 45) < 1e-12);
+});
+
+test('a PLY file keeps doubles, and an STL file what its corners say', async () => {
+  const positions = Float64Array.of(0.1, 1e300, 12_000_000.000_001, -0, 5e-324, 1 / 3);
+  const mesh = { positions, indices: Uint32Array.of(0, 1, 2), dimension: 2 };
+  for (const name of ['a.ply', 'a.ply.gz']) {
+    assert.deepEqual(await readMesh(await writeMesh(mesh, name), name), { ...mesh, polygons: 0, dropped: [] });
+  }
+  await assert.rejects(writeMesh(mesh, 'a.stl'), refused('io', /^a\.stl: vertex 0 is too far away/));
+  const near = { ...mesh, positions: Float64Array.of(5, 6, 0.1, 0, 1, 0, 0, 1), indices: Uint32Array.of(1, 2, 3, 3, 2, 1) };
+  for (const name of ['a.stl', 'a.stl.gz']) {
+    const read = await readMesh(await writeMesh(near, name), name);
+    const corners = { positions: Float32Array.of(0.1, 0, 1, 0, 0, 1), indices: Uint32Array.of(0, 1, 2, 2, 1, 0) };
+    assert.deepEqual(read, { ...corners, dimension: 2, polygons: 0, dropped: [] });
+  }
+});
+
+test('gzip is known by its bytes, and a file has a limit, unpacked', async () => {
+  const thin = bytes('OFF 3 1\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n');
+  const packed = new Uint8Array(gzipSync(thin));
+  const mesh = await readMesh(thin, 'a.off');
+  for (const name of ['a.off', 'a.off.gz']) {
+    assert.deepEqual(await readMesh(packed, name), mesh);
+    assert.deepEqual(await readMesh(packed, name, { maxBytes: thin.length }), mesh);
+    assert.deepEqual(await readMesh(packed, name, { maxBytes: Infinity }), mesh);
+  }
+  assert.deepEqual(new Uint8Array(gunzipSync(await writeMesh(mesh, 'a.stl.gz'))), await writeMesh(mesh, 'a.stl'));
+  const limit = { maxBytes: thin.length - 1 };
+  for (const file of [thin, packed, new Uint8Array(gzipSync(new Uint8Array(1 << 26)))]) {
+    await assert.rejects(readMesh(file, 'a.off', limit), refused('file-too-large', /more than 33 bytes once it is unpacked; maxBytes sets/));
+  }
+  await assert.rejects(readMesh(packed.subarray(0, -1), 'a.off'), refused('parse', /^byte \d+: the gzip'd file is cut off/));
+  await assert.rejects(readMesh(thin, 'a.off', { maxBytes: -1 }), refused('invalid-option', /maxBytes: -1 is no number of bytes/));
+  await assert.rejects(readMesh(thin, 'a.off', { maxBytes: '9' }), refused('invalid-input', /maxBytes/));
 });
 
 test('what is read can be flipped, and what was passed is unchanged', async () => {
@@ -99,7 +134,9 @@ test('errors have codes and places', async () => {
   await assert.rejects(readMesh(bytes('v 0 0 0\nf 1 1 2\n'), 'a.obj'), refused('parse', /^line 2: vertex index `2`/));
   await assert.rejects(readMesh(new Uint8Array(), 'a.obj'), refused('parse', /^line 1: the file is empty$/));
   await assert.rejects(readMesh(Uint8Array.of(0xff, 0, 0x0a), 'a.obj'), refused('parse', /^line 1: /));
-  await assert.rejects(readMesh(new Uint8Array(), 'a.stl'), refused('unknown-format', /^a\.stl: /));
+  await assert.rejects(readMesh(new Uint8Array(), 'a.mesh'), refused('unknown-format', /^a\.mesh: /));
+  await assert.rejects(readMesh(bytes('ply\nformat ascii 1.0\nend\n'), 'a.ply'), refused('parse', /^line 3: .* found `end`$/));
+  await assert.rejects(readMesh(new Uint8Array(90), 'a.stl'), refused('parse', /^byte 84: .* found 6 more bytes$/));
   await assert.rejects(writeMesh(mesh, 'mesh'), refused('unknown-format', /^mesh: /));
   await assert.rejects(writeMesh({ ...mesh, indices: Uint32Array.of(0, 1, 9) }, 'a.off'), refused('index-out-of-range', /9/));
   await assert.rejects(readMesh('OFF', 'a.off'), refused('invalid-input', /bytes/));
@@ -114,7 +151,7 @@ test('errors have codes and places', async () => {
 });
 
 test('the formats are those that the module knows', async () => {
-  await assert.rejects(readMesh(new Uint8Array(), 'a'), (error) => error.message.endsWith(`use one of: ${FORMATS.join(', ')}`));
+  await assert.rejects(readMesh(new Uint8Array(), 'a'), (error) => error.message.endsWith(`use one of: ${FORMATS.join(', ')}, also gzip'd (.gz)`));
 });
 
 test('generated meshes are those of the crate', async () => {
@@ -142,6 +179,8 @@ test('720,000 triangles are generated, written and read back', async () => {
   assert.deepEqual([mesh.positions.length, mesh.indices.length], [3 * 360_002, 3 * 720_000]);
   for (const format of FORMATS) {
     const read = await readMesh(await writeMesh(mesh, `a${format}`), `a${format}`);
+    assert.equal(read.indices.length, mesh.indices.length);
+    if (format === '.stl') continue;
     assert.deepEqual(read.indices, mesh.indices);
     assert.deepEqual(bits(read), bits(mesh));
   }

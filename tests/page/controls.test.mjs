@@ -91,7 +91,8 @@ test('a broken file is answered with its line, and the mesh before it stays', as
   for (const [name, text, message] of [
     ['broken.off', 'OFF\n3 1 0\n0 0 0\n1 0 0\n0 one 0\n3 0 1 2\n', /Line 5: /],
     ['broken.obj', 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n', /Line 4: /],
-    ['mesh.ply', 'ply\n', /\.off|OFF/],
+    ['mesh.ply', 'ply\n', /Line 1: .* end_header/],
+    ['mesh.txt', 'OFF\n', /use one of: \.off/],
     ['empty.off', 'OFF\n3 0 0\n0 0 0\n1 0 0\n0 1 0\n', /There are no triangles in empty\.off/],
   ]) {
     const seen = await openRefused(page, file(name, text));

@@ -10,7 +10,7 @@ before(async () => (browser = await startChromium()));
 after(tidyUp);
 
 const sources = [
-  { how: 'chosen', name: 'sphere.obj', spec: 'uvsphere 28 0.1', load: (page, path) => page.open(path) },
+  { how: 'chosen', name: 'sphere.ply.gz', spec: 'uvsphere 28 0.1', load: (page, path) => page.open(path) },
   { how: 'dropped', name: 'plane.off', spec: 'random 24', load: (page, path, name) => page.drop(path, name) },
 ];
 const engines = [
@@ -40,7 +40,7 @@ for (const { how, name, spec, load } of sources) {
       const back = await page.scrub('Home');
       assert.deepEqual([back.at, back.facts.Fingerprint], ['0', fingerprints[0]]);
       const downloaded = await page.download();
-      assert.match(downloaded.name, new RegExp(`-after-0\\${name.slice(-4)}$`));
+      assert.match(downloaded.name, new RegExp(`-after-0\\${name.slice(name.indexOf('.'))}$`));
       assertSameMesh(downloaded, mesh, 'of the downloaded input');
       assert.equal((await page.picture()).differsFrom(inputPicture), 0, 'the input looks as before');
 

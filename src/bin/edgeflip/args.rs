@@ -1,6 +1,7 @@
 //! The command line: its options, what they mean, and how they become the library's.
 
 use clap::{Parser, ValueEnum};
+use edgeflip::io::ReadOptions;
 use edgeflip::{Backend, Dimension, Options, Order};
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
@@ -9,6 +10,10 @@ const AFTER: &str = "\
 Formats, by extension:
   .off   Geomview OFF, text (also COFF, NOFF, STOFF, and nOFF with 2 or 3 dimensions)
   .obj   Wavefront OBJ; all groups and objects are read as one mesh
+  .ply   PLY, text or binary, written in binary; the only one whose doubles are read as such
+  .stl   STL, text or binary, written in binary with 32-bit floats; corners at the same position are
+         read as one vertex
+Any of them may be gzip'd: IN whatever its name, OUT where .gz follows, as in bunny.ply.gz.
 Vertices keep their number and order. Polygons are cut into triangles. Normals, colours, texture
 coordinates, groups and materials are not written.
 
@@ -34,11 +39,11 @@ Examples:
 #[command(name = "edgeflip", version, after_long_help = AFTER)]
 #[command(after_help = "--help tells more: formats, exit status, examples.")]
 pub struct Args {
-    /// The mesh to read: .off or .obj
+    /// The mesh to read: .off, .obj, .ply or .stl, also gzip'd
     #[arg(value_name = "IN")]
     pub input: PathBuf,
 
-    /// The file to write: .off or .obj; may be IN itself
+    /// The file to write: .off, .obj, .ply or .stl, and .gz after it to gzip it; may be IN itself
     ///
     /// The file is replaced at once when everything is done, so that a failure leaves it as it was.
     #[arg(short, long, value_name = "OUT")]
@@ -51,6 +56,10 @@ pub struct Args {
     /// Whether the mesh lies in the plane or in space
     #[arg(long, value_enum, default_value_t, value_name = "DIM")]
     pub dimension: DimensionArg,
+
+    /// How many bytes IN may have, once it is unpacked if it is gzip'd
+    #[arg(long, value_name = "N", default_value_t = ReadOptions::default().max_bytes, allow_negative_numbers = true)]
+    pub max_bytes: u64,
 
     /// β: largest angle between the normals of two triangles whose edge may flip, in degrees, 0 to 180
     ///
@@ -107,13 +116,14 @@ pub struct Args {
 }
 
 impl Args {
-    /// The dimension asked for; `None`: what the file looks like.
-    pub fn dimension(&self) -> Option<Dimension> {
-        match self.dimension {
+    /// How IN is read.
+    pub fn read_options(&self) -> ReadOptions {
+        let dimension = match self.dimension {
             DimensionArg::Auto => None,
             DimensionArg::Two => Some(Dimension::Two),
             DimensionArg::Three => Some(Dimension::Three),
-        }
+        };
+        ReadOptions { dimension, max_bytes: self.max_bytes }
     }
 
     /// What the library is asked to do, without the edges to lock.

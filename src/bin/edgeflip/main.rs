@@ -23,6 +23,10 @@ impl Failure {
     /// What went wrong with `path`; an error that names its path, or is about none, stays as it is.
     fn of(path: &std::path::Path, error: &Error) -> Self {
         let line = match error {
+            &Error::FileTooLarge { limit, .. } => {
+                let error = Error::FileTooLarge { limit, option: "--max-bytes" };
+                format!("{}: {error}", path.display())
+            }
             Error::Io { .. }
             | Error::UnknownFormat { .. }
             | Error::Option { .. }
@@ -85,7 +89,7 @@ fn run(args: &Args, bar: &ProgressBar) -> Result<Report, Failure> {
         return Err(Failure { status: 1, line });
     }
     bar.set_message(format!("reading {}", args.input.display()));
-    let (loaded, load) = timed(|| io::load(&args.input, args.dimension()));
+    let (loaded, load) = timed(|| io::load(&args.input, &args.read_options()));
     let io::Loaded { mesh, polygons, dropped } = loaded.map_err(refused)?;
 
     let locked_edges = match &args.lock_edges {

@@ -150,7 +150,7 @@ impl Report {
     }
 
     /// Adds what reading changed: polygons cut, and what was dropped.
-    pub fn with_notes(mut self, polygons: usize, dropped: &[&str]) -> Self {
+    pub fn with_notes(mut self, polygons: usize, dropped: &[String]) -> Self {
         if polygons > 0 {
             let polygons = HumanCount(polygons as u64);
             self.notes.push(format!("polygons cut into triangles: {polygons}"));

@@ -1,0 +1,65 @@
+//! Gzip'd files: known by their first bytes when they are read, by their name when they are written.
+
+use super::{Format, ReadOptions};
+use crate::{Error, Mesh};
+use flate2::Compression;
+use flate2::bufread::MultiGzDecoder;
+use flate2::write::GzEncoder;
+use std::io::{self, Read, Write};
+use std::path::Path;
+
+/// Bytes that are made room for at first.
+const FIRST: u64 = 1 << 16;
+
+/// Whether these are the bytes of a gzip'd file.
+pub(super) fn is_magic(bytes: &[u8]) -> bool {
+    bytes.starts_with(&[0x1f, 0x8b])
+}
+
+/// Whether the name is that of one.
+pub(super) fn is_named(path: &Path) -> bool {
+    super::extension(path).as_deref() == Some("gz")
+}
+
+/// The content of all members. What it takes grows with the content, never beyond the limit.
+///
+/// # Errors
+/// [`Error::FileTooLarge`]; [`Error::Parse`] where the file is cut off or not what was packed.
+pub(super) fn unpack(packed: &[u8], options: &ReadOptions) -> Result<Vec<u8>, Error> {
+    let mut decoder = MultiGzDecoder::new(packed);
+    let mut bytes = Vec::new();
+    loop {
+        let length = bytes.len() as u64;
+        options.check(length)?;
+        // The last byte that is asked for may be the first one too many.
+        let more = length.max(FIRST).min(options.max_bytes - length) + 1;
+        let read = match bytes.try_reserve_exact(more as usize) {
+            Ok(()) => decoder.by_ref().take(more).read_to_end(&mut bytes),
+            Err(error) => Err(error.into()),
+        };
+        match read {
+            Ok(read) if (read as u64) < more => return Ok(bytes),
+            Ok(_) => {}
+            Err(error) => {
+                let what = match error.kind() {
+                    io::ErrorKind::UnexpectedEof => "is cut off",
+                    io::ErrorKind::OutOfMemory => "does not fit the memory",
+                    _ => "is damaged",
+                };
+                let message = format!("the gzip'd file {what} ({error})");
+                let place = format!("byte {}", packed.len() - decoder.get_ref().len());
+                return Err(Error::Parse { place, message });
+            }
+        }
+    }
+}
+
+/// As [`super::write_to`], gzip'd if the name is that of such a file.
+pub(super) fn write_to(name: &Path, format: Format, mesh: &Mesh, out: &mut impl Write) -> io::Result<()> {
+    if !is_named(name) {
+        return super::write_to(format, mesh, out);
+    }
+    let mut packed = GzEncoder::new(out, Compression::default());
+    super::write_to(format, mesh, &mut packed)?;
+    packed.finish().map(drop)
+}

@@ -1,0 +1,152 @@
+//! The header of a PLY file: how its numbers are written, and which elements with which properties follow.
+
+use crate::Error;
+use crate::io::text::{Lines, Tokens, integer, quoted};
+
+/// What the header announces.
+pub(super) struct Header<'a> {
+    pub(super) encoding: Encoding,
+    pub(super) elements: Vec<Element<'a>>,
+}
+
+/// How the numbers after the header are written.
+#[derive(Clone, Copy)]
+pub(super) enum Encoding {
+    /// As text, an element a line.
+    Ascii,
+    /// Without a gap, least significant byte first.
+    LittleEndian,
+    /// Without a gap, most significant byte first.
+    BigEndian,
+}
+
+/// So many records of the same properties.
+pub(super) struct Element<'a> {
+    pub(super) name: &'a [u8],
+    pub(super) count: u64,
+    pub(super) properties: Vec<Property<'a>>,
+}
+
+/// A number of each record, or a list of numbers.
+#[derive(Clone, Copy)]
+pub(super) struct Property<'a> {
+    pub(super) name: &'a [u8],
+    /// The type of a list's length, which comes before it.
+    pub(super) length: Option<Scalar>,
+    pub(super) scalar: Scalar,
+}
+
+/// The type of a number.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Scalar {
+    I8,
+    U8,
+    I16,
+    U16,
+    I32,
+    U32,
+    F32,
+    F64,
+}
+
+impl Scalar {
+    fn named(name: &[u8]) -> Option<Self> {
+        Some(match name {
+            b"char" | b"int8" => Self::I8,
+            b"uchar" | b"uint8" => Self::U8,
+            b"short" | b"int16" => Self::I16,
+            b"ushort" | b"uint16" => Self::U16,
+            b"int" | b"int32" => Self::I32,
+            b"uint" | b"uint32" => Self::U32,
+            b"float" | b"float32" => Self::F32,
+            b"double" | b"float64" => Self::F64,
+            _ => return None,
+        })
+    }
+
+    /// Bytes that a number takes where it is not text.
+    pub(super) fn size(self) -> usize {
+        match self {
+            Self::I8 | Self::U8 => 1,
+            Self::I16 | Self::U16 => 2,
+            Self::I32 | Self::U32 | Self::F32 => 4,
+            Self::F64 => 8,
+        }
+    }
+
+    /// Whether 32-bit floats hold each of its numbers.
+    pub(super) fn fits_f32(self) -> bool {
+        !matches!(self, Self::I32 | Self::U32 | Self::F64)
+    }
+
+    pub(super) fn is_integer(self) -> bool {
+        !matches!(self, Self::F32 | Self::F64)
+    }
+}
+
+impl<'a> Header<'a> {
+    /// Reads the lines up to `end_header`.
+    pub(super) fn parse(lines: &mut Lines<'a>) -> Result<Self, Error> {
+        let first = lines.next().unwrap_or_default().trim_ascii();
+        if first != b"ply" {
+            let message = format!("expected the keyword ply of a PLY file, found {}", quoted(first));
+            return Err(lines.refuse(message));
+        }
+        let mut encoding = None;
+        let mut elements: Vec<Element> = Vec::new();
+        while let Some(line) = lines.next() {
+            // No line that means something has more words than 5.
+            let words: Vec<&[u8]> = Tokens(line).take(6).collect();
+            match words[..] {
+                [] | [b"comment" | b"obj_info", ..] => {}
+                [b"format", b"ascii", b"1.0"] => encoding = Some(Encoding::Ascii),
+                [b"format", b"binary_little_endian", b"1.0"] => encoding = Some(Encoding::LittleEndian),
+                [b"format", b"binary_big_endian", b"1.0"] => encoding = Some(Encoding::BigEndian),
+                [b"element", name, count] => {
+                    let count =
+                        integer(count).and_then(|count| u64::try_from(count).ok()).ok_or_else(|| {
+                            lines.refuse(format!("expected a number of elements, found {}", quoted(count)))
+                        })?;
+                    elements.push(Element { name, count, properties: Vec::new() });
+                }
+                [b"property", b"list", length, scalar, name] => {
+                    let length = scalar_type(length, lines)?;
+                    if !length.is_integer() {
+                        return Err(lines.refuse("the length of a list has to be of an integer type"));
+                    }
+                    let scalar = scalar_type(scalar, lines)?;
+                    property(&mut elements, lines)?.push(Property { name, length: Some(length), scalar });
+                }
+                [b"property", scalar, name] => {
+                    let scalar = scalar_type(scalar, lines)?;
+                    property(&mut elements, lines)?.push(Property { name, length: None, scalar });
+                }
+                [b"end_header"] => {
+                    let encoding = encoding.ok_or_else(|| lines.refuse("the header has no line format"))?;
+                    return Ok(Self { encoding, elements });
+                }
+                _ => {
+                    let found = quoted(line.trim_ascii());
+                    return Err(lines.refuse(format!("expected a line of a PLY header, found {found}")));
+                }
+            }
+        }
+        Err(lines.refuse("the file ends before the line end_header"))
+    }
+}
+
+fn scalar_type(name: &[u8], lines: &Lines) -> Result<Scalar, Error> {
+    Scalar::named(name)
+        .ok_or_else(|| lines.refuse(format!("expected a type such as float or int, found {}", quoted(name))))
+}
+
+/// The properties of the last element.
+fn property<'e, 'a>(
+    elements: &'e mut [Element<'a>],
+    lines: &Lines,
+) -> Result<&'e mut Vec<Property<'a>>, Error> {
+    match elements.last_mut() {
+        Some(element) => Ok(&mut element.properties),
+        None => Err(lines.refuse("a property before the first element")),
+    }
+}

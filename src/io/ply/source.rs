@@ -1,0 +1,183 @@
+//! The numbers after the header of a PLY file, as text or not.
+
+use super::header::Scalar;
+use crate::Error;
+use crate::io::text::{Lines, Tokens, float, integer, quoted};
+
+/// Where records of numbers come from.
+pub(super) trait Source {
+    /// Goes to the next record; false where the file ends.
+    fn begin(&mut self) -> bool;
+    /// The next number of the record: every one that a PLY file can hold is an f64.
+    fn number(&mut self, scalar: Scalar) -> Result<f64, Error>;
+    /// Passes over the next `count` numbers.
+    fn skip(&mut self, scalar: Scalar, count: u64) -> Result<(), Error>;
+    /// Refuses what the record has more.
+    fn end(&mut self) -> Result<(), Error>;
+    /// Refuses what follows the last record.
+    fn finish(&mut self) -> Result<(), Error>;
+    /// An error about what was read last.
+    fn refuse(&self, message: impl Into<String>) -> Error;
+    /// Bytes not yet read.
+    fn bytes_left(&self) -> usize;
+    /// Bytes that a number takes at least.
+    fn least(&self, scalar: Scalar) -> usize;
+}
+
+/// Text, a record a line.
+pub(super) struct Ascii<'a> {
+    pub(super) lines: Lines<'a>,
+    pub(super) words: Tokens<'a>,
+}
+
+impl Source for Ascii<'_> {
+    fn begin(&mut self) -> bool {
+        let line = self.lines.find(|line| !line.trim_ascii().is_empty());
+        self.words = Tokens(line.unwrap_or_default());
+        line.is_some()
+    }
+
+    fn number(&mut self, scalar: Scalar) -> Result<f64, Error> {
+        let word = self
+            .words
+            .next()
+            .ok_or_else(|| self.refuse("expected another number, found the end of the line"))?;
+        let number = match scalar {
+            Scalar::F32 => float(word).map(f64::from),
+            Scalar::F64 => std::str::from_utf8(word).ok().and_then(|word| word.parse().ok()),
+            _ => integer(word)
+                .filter(|i| (i64::from(i32::MIN)..=i64::from(u32::MAX)).contains(i))
+                .map(|i| i as f64),
+        };
+        let expected = if scalar.is_integer() { "an integer of at most 32 bits" } else { "a number" };
+        number.ok_or_else(|| self.refuse(format!("expected {expected}, found {}", quoted(word))))
+    }
+
+    fn skip(&mut self, _: Scalar, count: u64) -> Result<(), Error> {
+        // What is not kept may be any number, whatever type the header says.
+        (0..count).try_for_each(|_| self.number(Scalar::F64).map(drop))
+    }
+
+    fn end(&mut self) -> Result<(), Error> {
+        match self.words.next() {
+            Some(word) => Err(self.refuse(format!("expected the end of the line, found {}", quoted(word)))),
+            None => Ok(()),
+        }
+    }
+
+    fn finish(&mut self) -> Result<(), Error> {
+        if self.begin() {
+            let found = quoted(self.words.0.trim_ascii());
+            return Err(
+                self.refuse(format!("expected the end of the file after the last element, found {found}"))
+            );
+        }
+        Ok(())
+    }
+
+    fn refuse(&self, message: impl Into<String>) -> Error {
+        self.lines.refuse(message)
+    }
+
+    fn bytes_left(&self) -> usize {
+        self.lines.bytes_left()
+    }
+
+    fn least(&self, _: Scalar) -> usize {
+        2 // a digit and a separator
+    }
+}
+
+/// Numbers as they are in memory, without a gap.
+pub(super) struct Binary<'a> {
+    rest: &'a [u8],
+    /// Bytes of the file.
+    length: usize,
+    /// Where the number that was read last begins.
+    at: usize,
+    big_endian: bool,
+}
+
+impl<'a> Binary<'a> {
+    /// The numbers of `file` from the byte `start` on.
+    pub(super) fn new(file: &'a [u8], start: usize, big_endian: bool) -> Self {
+        Self { rest: &file[start..], length: file.len(), at: start, big_endian }
+    }
+
+    #[inline]
+    fn bytes(&mut self, count: u64) -> Result<&'a [u8], Error> {
+        self.at = self.length - self.rest.len();
+        match usize::try_from(count).ok().and_then(|count| self.rest.split_at_checked(count)) {
+            Some((bytes, rest)) => {
+                self.rest = rest;
+                Ok(bytes)
+            }
+            None => {
+                let left = self.rest.len();
+                Err(self.refuse(format!("expected {count} more bytes, but the file ends after {left}")))
+            }
+        }
+    }
+
+    #[inline]
+    fn array<const N: usize>(&mut self) -> Result<[u8; N], Error> {
+        let mut array = [0; N];
+        array.copy_from_slice(self.bytes(N as u64)?);
+        if self.big_endian {
+            array.reverse();
+        }
+        Ok(array)
+    }
+}
+
+impl Source for Binary<'_> {
+    fn begin(&mut self) -> bool {
+        self.at = self.length - self.rest.len();
+        !self.rest.is_empty()
+    }
+
+    #[inline]
+    fn number(&mut self, scalar: Scalar) -> Result<f64, Error> {
+        Ok(match scalar {
+            Scalar::I8 => i8::from_le_bytes(self.array()?).into(),
+            Scalar::U8 => u8::from_le_bytes(self.array()?).into(),
+            Scalar::I16 => i16::from_le_bytes(self.array()?).into(),
+            Scalar::U16 => u16::from_le_bytes(self.array()?).into(),
+            Scalar::I32 => i32::from_le_bytes(self.array()?).into(),
+            Scalar::U32 => u32::from_le_bytes(self.array()?).into(),
+            Scalar::F32 => f32::from_le_bytes(self.array()?).into(),
+            Scalar::F64 => f64::from_le_bytes(self.array()?),
+        })
+    }
+
+    fn skip(&mut self, scalar: Scalar, count: u64) -> Result<(), Error> {
+        self.bytes(count.saturating_mul(scalar.size() as u64)).map(drop)
+    }
+
+    fn end(&mut self) -> Result<(), Error> {
+        Ok(())
+    }
+
+    fn finish(&mut self) -> Result<(), Error> {
+        if !self.rest.trim_ascii().is_empty() {
+            self.begin();
+            let left = self.rest.len();
+            return Err(self.refuse(format!(
+                "expected the end of the file after the last element, found {left} more bytes"
+            )));
+        }
+        Ok(())
+    }
+
+    fn refuse(&self, message: impl Into<String>) -> Error {
+        Error::Parse { place: format!("byte {}", self.at), message: message.into() }
+    }
+
+    fn bytes_left(&self) -> usize {
+        self.rest.len()
+    }
+
+    fn least(&self, scalar: Scalar) -> usize {
+        scalar.size()
+    }
+}

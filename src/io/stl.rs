@@ -1,0 +1,233 @@
+//! STL, the format of stereolithography: triangles, each with its own three positions, as text or not. Corners at the
+//! same position become one vertex, numbered in the order in which they appear.
+//! Source: 3D Systems, "StereoLithography Interface Specification", 1988.
+
+use super::text::{Dropped, Fans, Lines, Parsed, Tokens, coordinate, float, quoted};
+use crate::{Dimension, Error, MAX_TRIANGLES, Mesh};
+use glam::{DVec3, Vec3};
+use std::io::{self, Write};
+
+/// Bytes before the first facet of a binary file: a comment, and the number of facets.
+const HEADER: usize = 84;
+/// Bytes of a facet: its normal and its corners, 3 numbers each, and an attribute.
+const FACET: usize = 50;
+
+/// Reads a file's bytes.
+pub(super) fn parse(bytes: &[u8]) -> Result<Parsed, Error> {
+    if is_text(bytes) { text(bytes) } else { binary(bytes) }
+}
+
+/// Writes `mesh` in the binary form: 32-bit floats, the nearest ones; z is 0 in a 2D mesh. The normal of a triangle
+/// without an area is 0.
+pub(super) fn write(mesh: &Mesh, out: &mut impl Write) -> io::Result<()> {
+    let numbers = mesh.positions().to_f32();
+    let stride = mesh.dimension().stride();
+    if let Some(i) = numbers.iter().position(|x| !x.is_finite()) {
+        let vertex = i / stride;
+        let message =
+            format!("vertex {vertex} is too far away for the 32-bit numbers of STL; write PLY, OBJ or OFF");
+        return Err(io::Error::new(io::ErrorKind::InvalidInput, message));
+    }
+    let mut header = [0; HEADER];
+    header[..8].copy_from_slice(b"edgeflip");
+    header[80..].copy_from_slice(&(mesh.triangle_count() as u32).to_le_bytes());
+    out.write_all(&header)?;
+    for triangle in mesh.triangles().chunks_exact(3) {
+        let corners = [triangle[0], triangle[1], triangle[2]].map(|v| {
+            let point = &numbers[stride * v as usize..];
+            Vec3::new(point[0], point[1], if stride == 3 { point[2] } else { 0.0 })
+        });
+        let [a, b, c] = corners.map(DVec3::from);
+        // Of 32-bit coordinates it neither overflows nor vanishes in 64 bits.
+        let normal = (b - a).cross(c - a).normalize_or_zero().as_vec3();
+        let mut facet = [0; FACET];
+        for (bytes, point) in facet.chunks_exact_mut(12).zip([normal, corners[0], corners[1], corners[2]]) {
+            for (bytes, x) in bytes.chunks_exact_mut(4).zip(point.to_array()) {
+                bytes.copy_from_slice(&x.to_le_bytes());
+            }
+        }
+        out.write_all(&facet)?;
+    }
+    Ok(())
+}
+
+/// How many facets the header of a binary file announces.
+fn announced(bytes: &[u8]) -> Option<usize> {
+    let count = bytes.get(80..HEADER)?.first_chunk()?;
+    Some(u32::from_le_bytes(*count) as usize)
+}
+
+/// Binary files may begin with `solid` too. The length gives them away, or a byte that no text has: the number of
+/// facets has one below 2^24.
+fn is_text(bytes: &[u8]) -> bool {
+    let body = bytes.len().checked_sub(HEADER);
+    let has_length_of_binary = announced(bytes).is_some_and(|count| body == count.checked_mul(FACET));
+    let head = &bytes[..bytes.len().min(HEADER)];
+    let word = Lines::new(bytes).find_map(|line| Tokens(line).next()).unwrap_or_default();
+    !has_length_of_binary && !head.contains(&0) && word.eq_ignore_ascii_case(b"solid")
+}
+
+fn binary(bytes: &[u8]) -> Result<Parsed, Error> {
+    let at = |byte: usize, message: String| Error::Parse { place: format!("byte {byte}"), message };
+    let Some(count) = announced(bytes) else {
+        let message = format!("expected solid, or the {HEADER} bytes before the facets of a binary STL file");
+        return Err(at(0, message));
+    };
+    let (facets, rest) = bytes[HEADER..].as_chunks::<FACET>();
+    if facets.len() < count {
+        let message = format!("the file ends after {} of {count} facets", facets.len());
+        return Err(at(bytes.len(), message));
+    }
+    if facets.len() > count || !rest.trim_ascii().is_empty() {
+        let end = HEADER + FACET * count;
+        let message = format!(
+            "expected the end of the file after {count} facets, found {} more bytes",
+            bytes.len() - end
+        );
+        return Err(at(end, message));
+    }
+    refuse_too_many(count)?;
+    let mut dropped = Dropped::default();
+    let mut corners = Vec::with_capacity(3 * count);
+    for (f, facet) in facets.iter().enumerate() {
+        let (numbers, _) = facet[12..].as_chunks::<4>();
+        for (n, axis) in (0..9).zip(['x', 'y', 'z'].into_iter().cycle()) {
+            let x = f32::from_le_bytes(numbers[n]);
+            if !x.is_finite() {
+                let value = crate::error::number(x.into());
+                let message = format!("coordinate {axis} is {value}, not a finite number");
+                return Err(at(HEADER + FACET * f + 12 + 4 * n, message));
+            }
+        }
+        corners
+            .extend([0, 3, 6].map(|n| [numbers[n], numbers[n + 1], numbers[n + 2]].map(f32::from_le_bytes)));
+        if facet[48..] != [0, 0] {
+            dropped.note("attributes of facets");
+        }
+    }
+    Ok(merged(corners, Fans { triangles: (0..3 * count as u32).collect(), polygons: 0 }, dropped))
+}
+
+/// `solid … endsolid`, again and again; between them facets.
+fn text(bytes: &[u8]) -> Result<Parsed, Error> {
+    let mut words = Words { lines: Lines::new(bytes), line: Tokens(b"") };
+    let (mut corners, mut faces) = (Vec::new(), Fans::default());
+    while let Some(word) = words.next() {
+        words.is(word, "solid")?;
+        words.line = Tokens(b""); // a name, of any words
+        loop {
+            let word = words.after("facet or endsolid")?;
+            if word.eq_ignore_ascii_case(b"endsolid") {
+                words.line = Tokens(b"");
+                break;
+            }
+            if !word.eq_ignore_ascii_case(b"facet") {
+                return Err(words.expected("facet or endsolid", word));
+            }
+            facet(&mut words, &mut corners, &mut faces)?;
+        }
+    }
+    Ok(merged(corners, faces, Dropped::default()))
+}
+
+/// Reads a facet after its first word. Some have more than three corners.
+fn facet(words: &mut Words, corners: &mut Vec<[f32; 3]>, faces: &mut Fans) -> Result<(), Error> {
+    words.keyword("normal")?;
+    for _ in 0..3 {
+        let word = words.after("a number")?;
+        float(word).ok_or_else(|| words.expected("a number", word))?;
+    }
+    words.keyword("outer")?;
+    words.keyword("loop")?;
+    let first = corners.len();
+    loop {
+        let is_face = corners.len() > first + 2;
+        let word = words.after("vertex")?;
+        if is_face && word.eq_ignore_ascii_case(b"endloop") {
+            break;
+        }
+        words.is(word, "vertex")?;
+        let mut point = [0.0; 3];
+        for x in &mut point {
+            *x = coordinate(words.after("a number")?).map_err(|message| words.lines.refuse(message))?;
+        }
+        corners.push(point);
+        refuse_too_many(corners.len() / 3)?;
+    }
+    faces.push(&(first as u32..corners.len() as u32).collect::<Vec<_>>());
+    words.keyword("endfacet")
+}
+
+/// The words of a text, whatever the lines.
+struct Words<'a> {
+    lines: Lines<'a>,
+    line: Tokens<'a>,
+}
+
+impl<'a> Words<'a> {
+    fn next(&mut self) -> Option<&'a [u8]> {
+        loop {
+            if let Some(word) = self.line.next() {
+                return Some(word);
+            }
+            self.line = Tokens(self.lines.next()?);
+        }
+    }
+
+    fn after(&mut self, expected: &str) -> Result<&'a [u8], Error> {
+        self.next()
+            .ok_or_else(|| self.lines.refuse(format!("expected {expected}, found the end of the file")))
+    }
+
+    fn keyword(&mut self, keyword: &str) -> Result<(), Error> {
+        let word = self.after(keyword)?;
+        self.is(word, keyword)
+    }
+
+    fn is(&self, word: &[u8], keyword: &str) -> Result<(), Error> {
+        if word.eq_ignore_ascii_case(keyword.as_bytes()) { Ok(()) } else { Err(self.expected(keyword, word)) }
+    }
+
+    fn expected(&self, expected: &str, found: &[u8]) -> Error {
+        self.lines.refuse(format!("expected {expected}, found {}", quoted(found)))
+    }
+}
+
+/// Corners are counted with 32 bits.
+fn refuse_too_many(count: usize) -> Result<(), Error> {
+    if count > MAX_TRIANGLES {
+        return Err(Error::TooLarge { what: "triangles", count, limit: MAX_TRIANGLES });
+    }
+    Ok(())
+}
+
+/// The mesh of `faces` over `corners`, of which those at the same position become one vertex, the first. They are
+/// sorted: no file can make that slow, as it can with hashes.
+fn merged(corners: Vec<[f32; 3]>, mut faces: Fans, dropped: Dropped) -> Parsed {
+    let key = |(i, corner): (usize, &[f32; 3])| {
+        // -0 + 0 is 0.
+        let [x, y, z] = corner.map(|x| u128::from((x + 0.0).to_bits()));
+        x << 96 | y << 64 | z << 32 | i as u128
+    };
+    let mut sorted: Vec<u128> = corners.iter().enumerate().map(key).collect();
+    sorted.sort_unstable();
+    // The first corner at each one's position, then its vertex.
+    let mut vertices = vec![0; corners.len()];
+    for group in sorted.chunk_by(|a, b| a >> 32 == b >> 32) {
+        for corner in group {
+            vertices[*corner as u32 as usize] = group[0] as u32;
+        }
+    }
+    let mut positions = Vec::new();
+    for i in 0..corners.len() {
+        let first = vertices[i] as usize;
+        vertices[i] = if first == i { (positions.len() / 3) as u32 } else { vertices[first] };
+        if first == i {
+            positions.extend(corners[i]);
+        }
+    }
+    for v in &mut faces.triangles {
+        *v = vertices[*v as usize];
+    }
+    Parsed { stride: Dimension::Three.stride(), positions: positions.into(), faces, dropped }
+}
