@@ -42,6 +42,14 @@ pub enum Error {
         /// How many there have to be.
         expected: usize,
     },
+    /// Other triangles for a file are not as many as it has. Give 3 vertices for each of them.
+    #[error("triangles has {length} numbers, and those of the file have {expected}")]
+    TriangleCount {
+        /// How many numbers were given.
+        length: usize,
+        /// How many there have to be.
+        expected: usize,
+    },
     /// More triangles or vertices than 32-bit indices can name. Split the mesh.
     #[error("the mesh has {count} {what}; at most {limit} can be indexed")]
     TooLarge {
@@ -60,8 +68,8 @@ pub enum Error {
         /// What was expected and what was found.
         message: String,
     },
-    /// A file has more bytes than an option allows, gzip'd or not. Raise `max_bytes` if it is to be trusted.
-    #[error("the file has more than {limit} bytes once it is unpacked; {option} sets the limit")]
+    /// A file has more bytes than an option allows, or would have once it is unpacked. Raise `max_bytes` if you trust it.
+    #[error("the file has more than {limit} bytes, packed or unpacked; {option} sets the limit")]
     FileTooLarge {
         /// Bytes that it may have.
         limit: u64,
@@ -138,6 +146,7 @@ impl Error {
             Self::IndexOutOfRange { .. } => "index-out-of-range",
             Self::RaggedArray { .. } => "ragged-array",
             Self::PositionCount { .. } => "position-count",
+            Self::TriangleCount { .. } => "triangle-count",
             Self::TooLarge { .. } => "too-large",
             Self::Parse { .. } => "parse",
             Self::FileTooLarge { .. } => "file-too-large",

@@ -6,42 +6,77 @@ use crate::error::number;
 use crate::io::{self, Format, Loaded, ReadOptions};
 use crate::js_values::{JsPositions, object, parse_dimension, thrown};
 use crate::{Error, Mesh, Positions, families, quality};
-use js_sys::{Array, Float32Array, Float64Array, Uint8Array, Uint32Array};
+use js_sys::{Array, Float32Array, Float64Array, Reflect, Uint8Array, Uint32Array};
 use std::path::Path;
 use wasm_bindgen::prelude::*;
 
 /// Most bins of a histogram: more would only cost memory.
 const MAX_BINS: u32 = 1 << 16;
 
-/// The mesh in the bytes of a file; see [`ReadOptions`] for the dimension and the bytes.
+/// The mesh in the bytes of a file; see [`ReadOptions`] for the dimension and the bytes. `files` is an object with the
+/// bytes of files beside it, by their names.
 ///
 /// # Errors
-/// Those of [`Format::of`] and [`io::parse`]; [`Error::Option`] for the dimension and the bytes.
+/// Those of [`Format::of`] and [`io::parse_with`]; [`Error::Option`] for the dimension and the bytes.
 #[wasm_bindgen(js_name = readMesh, unchecked_return_type = "import('../files.js').FileMesh")]
 pub fn read_mesh(
     bytes: &Uint8Array,
     name: &str,
     dimension: Option<f64>,
     max_bytes: Option<f64>,
+    files: &JsValue,
 ) -> Result<JsValue, JsValue> {
-    let read = || {
-        let format = Format::of(Path::new(name))?;
-        let mut options = ReadOptions::default();
-        options.dimension = dimension.map(parse_dimension).transpose()?;
-        options.max_bytes = max_bytes.map_or(Ok(options.max_bytes), parse_max_bytes)?;
-        options.check(bytes.length().into())?;
-        io::parse(format, &bytes.to_vec(), &options)
-    };
-    let Loaded { mesh, polygons, dropped } = read().map_err(thrown)?;
-    let dropped: Array = dropped.into_iter().map(JsValue::from).collect();
-    let [positions, indices, dimension] = fields(&mesh);
+    let loaded = load(bytes, name, dimension, max_bytes, files).map_err(thrown)?;
+    let texts = |texts: &[String]| texts.iter().map(JsValue::from).collect::<Array>().into();
+    let placed =
+        loaded.placed().map_or(JsValue::UNDEFINED, |placed| Float32Array::from(placed.as_slice()).into());
+    let [positions, indices, dimension] = fields(&loaded.mesh);
     Ok(object([
         positions,
         indices,
         dimension,
-        ("polygons", (polygons as f64).into()),
-        ("dropped", dropped.into()),
+        ("polygons", (loaded.polygons as f64).into()),
+        ("dropped", texts(&loaded.dropped)),
+        ("notes", texts(&loaded.notes)),
+        ("placed", placed),
     ]))
+}
+
+/// The bytes of a file that holds what [`read_mesh`] reads, with other triangles.
+///
+/// # Errors
+/// Those of [`read_mesh`] and [`Loaded::file_bytes`].
+#[wasm_bindgen(js_name = rewriteMesh, unchecked_return_type = "Uint8Array<ArrayBuffer>")]
+pub fn rewrite_mesh(
+    bytes: &Uint8Array,
+    name: &str,
+    dimension: f64,
+    files: &JsValue,
+    indices: Vec<u32>,
+    target: &str,
+) -> Result<Uint8Array, JsValue> {
+    let rewrite =
+        || load(bytes, name, Some(dimension), Some(f64::INFINITY), files)?.file_bytes(target, indices);
+    rewrite().map(|bytes| Uint8Array::from(bytes.as_slice())).map_err(thrown)
+}
+
+fn load(
+    bytes: &Uint8Array,
+    name: &str,
+    dimension: Option<f64>,
+    max_bytes: Option<f64>,
+    files: &JsValue,
+) -> Result<Loaded, Error> {
+    let format = Format::of(Path::new(name))?;
+    let mut options = ReadOptions::default();
+    options.dimension = dimension.map(parse_dimension).transpose()?;
+    options.max_bytes = max_bytes.map_or(Ok(options.max_bytes), parse_max_bytes)?;
+    options.check(bytes.length().into())?;
+    io::parse_with(format, &bytes.to_vec(), &options, &|name| {
+        let given =
+            Reflect::get(files, &name.into()).ok().and_then(|file| file.dyn_into::<Uint8Array>().ok());
+        given.map(|file| file.to_vec()).ok_or_else(|| "it is not among the `files` given".into())
+    })
 }
 
 /// The bytes of a file that holds the mesh.
@@ -123,6 +158,6 @@ fn parse_bins(bins: f64) -> Result<usize, Error> {
     if bins.fract() == 0.0 && (1.0..=f64::from(MAX_BINS)).contains(&bins) {
         return Ok(bins as usize);
     }
-    let message = format!("{bins} is not a whole number from 1 to {MAX_BINS}");
+    let message = format!("{} is not a whole number from 1 to {MAX_BINS}", number(bins));
     Err(Error::Option { option: "bins", message })
 }

@@ -171,6 +171,54 @@ fn verify_names_the_edges_left() {
     assert!(text(&ran.stderr).contains(" and 2 more\n"), "{}", text(&ran.stderr));
 }
 
+/// The square as glTF whose buffer is in a file beside it, and stretched and moved by its node.
+#[test]
+fn gltf_comes_out_with_other_indices() {
+    let folder = Folder::new();
+    let positions = [[0.0f32, 0.0], [0.9, 0.2], [1.0, 1.0], [0.0, 1.0]].map(|[x, y]| [x, y, 0.0]);
+    let indices = [0u32, 1, 2, 0, 2, 3];
+    let buffer: Vec<u8> = positions
+        .as_flattened()
+        .iter()
+        .flat_map(|x| x.to_le_bytes())
+        .chain(indices.iter().flat_map(|i| i.to_le_bytes()))
+        .collect();
+    fs::create_dir(folder.path("data")).unwrap();
+    fs::write(folder.path("data/a b.bin"), &buffer).unwrap();
+    let json = json!({
+        "asset": { "version": "2.0" },
+        "scenes": [{ "nodes": [0] }],
+        "nodes": [{ "mesh": 0, "translation": [0, 0, 5], "scale": [2, 2, 2] }],
+        "meshes": [{ "primitives": [{ "attributes": { "POSITION": 0, "NORMAL": 0 }, "indices": 1 }] }],
+        "accessors": [
+            { "bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3" },
+            { "bufferView": 1, "componentType": 5125, "count": 6, "type": "SCALAR" },
+        ],
+        "bufferViews": [{ "buffer": 0, "byteLength": 48 }, { "buffer": 0, "byteOffset": 48, "byteLength": 24 }],
+        "buffers": [{ "uri": "data/a%20b.bin", "byteLength": 72 }],
+    });
+    let input = folder.file("in.gltf", json.to_string());
+    let line = format!(
+        "{}: buffer 0: it is in the file `data/a b.bin`: other files are read only if that is allowed (--external-files)",
+        input.display()
+    );
+    failed(&run(&input, &folder.path("out.glb"), &[]), 1, &line);
+    let glb = folder.path("out.glb");
+    let ran = run(&input, &glb, &["--external-files", "--verify"]);
+    let said = text(&ran.stderr);
+    assert_eq!(ran.status.code(), Some(0), "{said}");
+    assert!(said.contains("flips      1 in 1 iteration, done\n") && !said.contains("not kept"), "{said}");
+    let written = fs::read(&glb).unwrap();
+    let binary = &written[written.len() - 72..];
+    assert_eq!(&binary[..48], &buffer[..48]);
+    let words: Vec<u32> = binary[48..].as_chunks().0.iter().map(|&word| u32::from_le_bytes(word)).collect();
+    assert!(words != indices && words.iter().all(|&i| i < 4), "{words:?}");
+    let obj = folder.path("out.obj");
+    let ran = run(&glb, &obj, &[]);
+    assert!(text(&ran.stderr).contains("note       not kept: attributes of vertices besides positions\n"));
+    assert!(fs::read_to_string(obj).unwrap().starts_with("v 0 0 5\nv 1.8 0.4 5\nv 2 2 5\nv 0 2 5\nf "));
+}
+
 #[test]
 fn locked_edges_stay() {
     let folder = Folder::new();
@@ -327,7 +375,7 @@ fn a_file_is_as_large_as_it_may_be() {
     let length = SQUARE.len().to_string();
     assert_eq!(run(&input, &output, &["--max-bytes", &length]).status.code(), Some(0));
     for input in [input, output] {
-        let line = "the file has more than 20 bytes once it is unpacked; --max-bytes sets the limit";
+        let line = "the file has more than 20 bytes, packed or unpacked; --max-bytes sets the limit";
         let ran = run(&input, &folder.path("out.off"), &["--max-bytes", "20"]);
         failed(&ran, 1, &format!("{}: {line}", input.display()));
     }
@@ -352,13 +400,13 @@ fn a_file_that_cannot_be_read_or_written() {
 
     let unknown = folder.file("in.mesh", SQUARE);
     let line = format!(
-        "{}: unknown format; use one of: .off, .obj, .ply, .stl, also gzip'd (.gz)",
+        "{}: unknown format; use one of: .off, .obj, .ply, .stl, .gltf, .glb, also gzip'd (.gz)",
         unknown.display()
     );
     failed(&run(&unknown, &folder.path("out.off"), &[]), 1, &line);
     let output = folder.path("out.mesh");
     let line = format!(
-        "{}: unknown format; use one of: .off, .obj, .ply, .stl, also gzip'd (.gz)",
+        "{}: unknown format; use one of: .off, .obj, .ply, .stl, .gltf, .glb, also gzip'd (.gz)",
         output.display()
     );
     failed(&run(&input, &output, &[]), 2, &line);

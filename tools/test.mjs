@@ -99,7 +99,7 @@ const levels = [
     checks: [
       ['node', 'tools/build.mjs'],
       ['node', 'node_modules/typescript/bin/tsc', '-p', 'tests/package'],
-      ['node', '--test', '--test-reporter=tap', 'tests/package/node.test.mjs', 'tests/package/files.test.mjs'],
+      ['node', '--test', '--test-reporter=tap', 'tests/package/node.test.mjs', 'tests/package/files.test.mjs', 'tests/package/gltf.test.mjs'],
     ],
     counts: true,
   },

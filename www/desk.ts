@@ -2,7 +2,7 @@
 
 import { expose, transfer } from 'comlink';
 import { FlipSession } from 'edgeflip';
-import { angles, generate, readMesh, writeMesh, type Angles, type FileMesh, type IndexedMesh } from 'edgeflip/files';
+import { angles, generate, readMesh, writeMesh, type Angles, type FileMesh, type Files, type IndexedMesh } from 'edgeflip/files';
 import { naming } from './crash.ts';
 import { changeOf, type Change } from './change.ts';
 import type { Backend } from './engines.ts';
@@ -16,12 +16,14 @@ class Desk {
     return send(await naming(generate(spec)));
   }
 
-  async read(bytes: Uint8Array, name: string): Promise<FileMesh> {
-    return send(await naming(readMesh(bytes, name)));
+  async read(file: File, others: File[]): Promise<FileMesh> {
+    return send(await naming(readMesh(await bytesOf(file), file.name, { files: await named(others) })));
   }
 
-  async write(mesh: IndexedMesh, name: string): Promise<Uint8Array<ArrayBuffer>> {
-    const bytes = await naming(writeMesh(mesh, name));
+  /** `files` are those that the mesh was read from. */
+  async write(mesh: IndexedMesh, name: string, [file, ...others]: File[]): Promise<Uint8Array<ArrayBuffer>> {
+    const original = file && { bytes: await bytesOf(file), name: file.name, files: await named(others) };
+    const bytes = await naming(writeMesh(mesh, name, { original }));
     return transfer(bytes, [bytes.buffer]);
   }
 
@@ -62,8 +64,16 @@ class Desk {
   }
 }
 
-function send<T extends IndexedMesh>(mesh: T): T {
-  return transfer(mesh, [mesh.positions.buffer, mesh.indices.buffer]);
+function send<T extends IndexedMesh & { placed?: Float32Array | undefined }>(mesh: T): T {
+  return transfer(mesh, [mesh.positions.buffer, mesh.indices.buffer, ...(mesh.placed ? [mesh.placed.buffer] : [])]);
+}
+
+async function bytesOf(file: File): Promise<Uint8Array> {
+  return new Uint8Array(await file.arrayBuffer());
+}
+
+async function named(files: File[]): Promise<Files> {
+  return Object.fromEntries(await Promise.all(files.map(async (file) => [file.name, await bytesOf(file)] as const)));
 }
 
 export type { Desk };

@@ -14,12 +14,12 @@ for (const { group, samples } of SAMPLES) {
   controls.sample.append(options);
 }
 controls.sample.append(Object.assign(new Option('(a file)', ''), { hidden: true }));
-controls.file.accept = FORMATS.join(',');
+// A glTF file may have its buffers in others.
+controls.file.accept = [...FORMATS, '.gz', '.bin'].join(',');
 
 controls.sample.addEventListener('change', () => void page.openSample(controls.sample.value));
 controls.file.addEventListener('change', () => {
-  const [file] = controls.file.files ?? [];
-  if (file) void page.openFile(file);
+  void page.openFiles([...(controls.file.files ?? [])]);
   controls.file.value = '';
 });
 for (const control of [controls.backend, controls.beta]) control.addEventListener('change', () => void page.begin());
@@ -57,8 +57,7 @@ document.addEventListener('dragleave', (event) => {
 document.addEventListener('drop', (event) => {
   event.preventDefault();
   dropHere.hidden = true;
-  const file = event.dataTransfer?.files[0];
-  if (file) void page.openFile(file);
+  void page.openFiles([...(event.dataTransfer?.files ?? [])]);
 });
 
 void page.start(FIRST);

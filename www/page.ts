@@ -25,6 +25,8 @@ const EXTENSION = new RegExp(`^(.*)((?:${FORMATS.map((known) => `\\${known}`).jo
 interface Opened {
   mesh: IndexedMesh;
   name: string;
+  /** The file that it was read from, and those beside it. */
+  files: File[];
   /** What reading the file did to it. */
   remark: string;
   before: Angles;
@@ -77,11 +79,12 @@ export class Page {
     return this.#open(spec, (office) => office.ask((desk) => desk.generate(spec)));
   }
 
-  openFile(file: File): Promise<void> {
-    return this.#open(file.name, async (office) => {
-      const bytes = new Uint8Array(await file.arrayBuffer());
-      return office.ask((desk) => desk.read(bytes, file.name));
-    });
+  /** Opens the first of them that is a mesh; a glTF file may have its buffers in the others. */
+  async openFiles(files: File[]): Promise<void> {
+    const file = files.find(({ name }) => EXTENSION.test(name)) ?? files[0];
+    if (!file) return;
+    const others = files.filter((other) => other !== file);
+    await this.#open(file.name, (office) => office.ask((desk) => desk.read(file, others)), [file, ...others]);
   }
 
   /** Begins again with the same mesh, for another engine or β. */
@@ -124,7 +127,7 @@ export class Page {
     const name = `${stem.replaceAll(' ', '-')}-after-${run.at}${extension}`;
     await this.#attempt('Writing the file…', async (signal) => {
       const mesh = { ...opened.mesh, indices: await run.triangles() };
-      const bytes = await this.#office.ask((desk) => desk.write(mesh, name));
+      const bytes = await this.#office.ask((desk) => desk.write(mesh, name, opened.files));
       signal.throwIfAborted();
       const link = document.createElement('a');
       link.href = URL.createObjectURL(new Blob([bytes]));
@@ -163,8 +166,12 @@ export class Page {
     element('error').hidden = false;
   }
 
-  #open(name: string, read: (office: Office) => Promise<IndexedMesh | FileMesh>): Promise<void> {
-    this.#reopen = () => this.#open(name, read);
+  #open(
+    name: string,
+    read: (office: Office) => Promise<IndexedMesh | FileMesh>,
+    files: File[] = [],
+  ): Promise<void> {
+    this.#reopen = () => this.#open(name, read, files);
     return this.#attempt(`Opening ${name}…`, async (signal) => {
       if (this.#office.isBroken) this.#office = new Office();
       const office = this.#office;
@@ -176,7 +183,7 @@ export class Page {
       const mesh = await read(office);
       if (mesh.indices.length === 0) throw new Error(`There are no triangles in ${name}.`);
       const before = await office.ask((desk) => desk.angles(mesh, BINS));
-      await this.#begin({ mesh, name, remark: remarkOn(mesh), before }, signal);
+      await this.#begin({ mesh, name, files, remark: remarkOn(mesh), before }, signal);
     });
   }
 
@@ -400,8 +407,9 @@ function whyThere({ fallback }: Run, summary: Summary | undefined): string {
 function remarkOn(mesh: IndexedMesh | FileMesh): string {
   if (!('polygons' in mesh)) return '';
   const cut = mesh.polygons > 0 ? `${number.format(mesh.polygons)} faces were cut into triangles.` : '';
-  const dropped = mesh.dropped.length > 0 ? `Not kept: ${mesh.dropped.join(', ')}.` : '';
-  return `${cut} ${dropped}`.trim();
+  // A download of what is placed in a scene keeps it.
+  const dropped = mesh.dropped.length > 0 && !mesh.placed ? `Not kept: ${mesh.dropped.join(', ')}.` : '';
+  return [cut, dropped, ...mesh.notes.map((note) => `${note}.`)].filter(Boolean).join(' ');
 }
 
 function left(what: string): string {

@@ -1,9 +1,11 @@
 /** Vertices as they are drawn: f32 numbers near 0 whatever the mesh's own offset and size. */
 
-import type { IndexedMesh } from 'edgeflip/files';
+import type { FileMesh, IndexedMesh } from 'edgeflip/files';
 
-/** The vertices, moved and scaled into the unit ball; 3 a vertex. */
-export function unitPositions({ positions, dimension }: IndexedMesh): Float32Array {
+/** The vertices, where a scene places them, moved and scaled into the unit ball; 3 a vertex. */
+export function unitPositions(mesh: IndexedMesh | FileMesh): Float32Array {
+  const placed = 'placed' in mesh ? mesh.placed : undefined;
+  const [positions, dimension] = placed ? [placed, 3] : [mesh.positions, mesh.dimension];
   const low = [Infinity, Infinity, Infinity];
   const high = [-Infinity, -Infinity, -Infinity];
   for (let i = 0; i < positions.length; i++) {

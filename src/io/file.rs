@@ -1,15 +1,15 @@
 //! Mesh files on disk: a whole file is read at once, and a target is replaced at once or not at all.
 
-use super::{Format, Loaded, ReadOptions, gzip, parse, parse_edges};
+use super::{Format, Loaded, ReadOptions, gzip, parse_edges, parse_with, write_to};
 use crate::{Error, Mesh};
 use std::fs;
 use std::io::{self, BufWriter, Read, Write};
 use std::path::{Path, PathBuf};
 
-/// Reads the mesh of a file; the extension names its format. See [`parse`].
+/// Reads the mesh of a file; the extension names its format. See [`parse`](super::parse).
 ///
 /// # Errors
-/// [`Error::UnknownFormat`], [`Error::Io`], and those of [`parse`].
+/// [`Error::UnknownFormat`], [`Error::Io`], and those of [`parse`](super::parse).
 pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Mesh, Error> {
     load(path, options).map(|loaded| loaded.mesh)
 }
@@ -29,7 +29,15 @@ pub fn load(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Loaded, Err
     // A pipe has the length 0, and a file may grow.
     let mut limited = file.take(options.max_bytes.saturating_add(1));
     limited.read_to_end(&mut bytes).map_err(|source| at(path, source))?;
-    parse(format, &bytes, options)
+    parse_with(format, &bytes, options, &|name| {
+        if !options.external_files {
+            return Err("other files are read only if that is allowed (--external-files)".into());
+        }
+        let limited = fs::File::open(folder(path).join(name)).map(|file| file.take(options.max_bytes));
+        let mut bytes = Vec::new();
+        let read = limited.and_then(|mut file| file.read_to_end(&mut bytes));
+        read.map(|_| bytes).map_err(|error| error.to_string())
+    })
 }
 
 /// Reads a list of edges, whatever the extension of its file. See [`parse_edges`].
@@ -42,15 +50,28 @@ pub fn read_edges(path: impl AsRef<Path>) -> Result<Vec<[u32; 2]>, Error> {
     parse_edges(&bytes)
 }
 
-/// Writes `mesh` to a file; the extension names its format, and if `.gz` follows it is gzip'd. The file appears, or changes, at once when all
-/// is written: a failure leaves what was there before. A link is followed and permissions are kept.
+/// Writes `mesh` to a file; the extension names its format, and if `.gz` follows it is gzip'd. The file appears, or
+/// changes, at once when all is written: a failure leaves what was there before. A link is followed and permissions are
+/// kept.
 ///
 /// # Errors
 /// [`Error::UnknownFormat`] or [`Error::Io`].
 pub fn write(path: impl AsRef<Path>, mesh: &Mesh) -> Result<(), Error> {
     let path = path.as_ref();
     let format = Format::of(path)?;
-    replace(path, |out| gzip::write_to(path, format, mesh, out)).map_err(|source| at(path, source))
+    let write = |out: &mut dyn Write| {
+        gzip::write(gzip::is_named(path), out, |mut out| write_to(format, mesh, &mut out))
+    };
+    replace(path, write).map_err(|source| at(path, source))
+}
+
+/// As [`write()`], what was read with other triangles; see [`Loaded::file_bytes`].
+///
+/// # Errors
+/// As there.
+pub fn rewrite(path: impl AsRef<Path>, loaded: &Loaded, triangles: Vec<u32>) -> Result<(), Error> {
+    let path = path.as_ref();
+    replace(path, loaded.write_to(path, triangles)?).map_err(|source| at(path, source))
 }
 
 fn at(path: &Path, source: io::Error) -> Error {
@@ -58,7 +79,7 @@ fn at(path: &Path, source: io::Error) -> Error {
 }
 
 /// Writes through a temporary file beside the target, which is renamed at the end and removed on failure.
-fn replace(path: &Path, write: impl FnOnce(&mut BufWriter<&fs::File>) -> io::Result<()>) -> io::Result<()> {
+fn replace(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
     let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
     let present = fs::metadata(&target).ok();
     if present.as_ref().is_some_and(fs::Metadata::is_dir) {

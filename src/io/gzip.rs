@@ -1,7 +1,7 @@
 //! Gzip'd files: known by their first bytes when they are read, by their name when they are written.
 
-use super::{Format, ReadOptions};
-use crate::{Error, Mesh};
+use super::ReadOptions;
+use crate::Error;
 use flate2::Compression;
 use flate2::bufread::MultiGzDecoder;
 use flate2::write::GzEncoder;
@@ -54,12 +54,16 @@ pub(super) fn unpack(packed: &[u8], options: &ReadOptions) -> Result<Vec<u8>, Er
     }
 }
 
-/// As [`super::write_to`], gzip'd if the name is that of such a file.
-pub(super) fn write_to(name: &Path, format: Format, mesh: &Mesh, out: &mut impl Write) -> io::Result<()> {
-    if !is_named(name) {
-        return super::write_to(format, mesh, out);
+/// Hands `write` what it is to write to: `out`, or what packs it first.
+pub(super) fn write(
+    is_packed: bool,
+    out: &mut dyn Write,
+    write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> io::Result<()> {
+    if !is_packed {
+        return write(out);
     }
     let mut packed = GzEncoder::new(out, Compression::default());
-    super::write_to(format, mesh, &mut packed)?;
+    write(&mut packed)?;
     packed.finish().map(drop)
 }

@@ -4,14 +4,16 @@
 //! The parsers are our own. What was looked at (2026-11): `tobj` splits a file into models with vertices
 //! of their own, `obj-rs` gives no line numbers, `obj` checks no index and wants UTF-8 everywhere, `off-rs`
 //! knows no header but a bare `OFF`; `ply-rs-bw` compares
-//! the name of a property for each of its numbers, allocates for each face, knows no byte, and does not end on 2^64
-//! elements without properties; `serde-ply` knows neither line nor byte; `stl_io` takes every file that begins with
-//! `solid` for text, -0 and 0 for two places, and NaN for a number. None keeps the contract: the same vertices in the
-//! same order, and an error that names the line or the byte. Two of them are what the tests compare with.
+//! the name of a property for each of its numbers, allocates for each face, names no byte, and fills the memory with
+//! 2^64 elements without properties; `serde-ply` names neither line nor byte; `stl_io` takes every file that begins
+//! with `solid` for text, -0 and 0 for two places, and NaN for a number. None keeps the contract: the same vertices in
+//! the same order, and an error that names the line or the byte. `ply-rs-bw` and `stl_io` are what the tests compare
+//! with. What is packed is left to `flate2`, and the JSON of glTF to `gltf`.
 
 mod edges;
 #[cfg(not(target_arch = "wasm32"))]
 mod file;
+mod gltf;
 mod gzip;
 mod obj;
 mod off;
@@ -23,11 +25,12 @@ mod text;
 
 pub use edges::parse_edges;
 #[cfg(not(target_arch = "wasm32"))]
-pub use file::{load, read, read_edges, write};
+pub use file::{load, read, read_edges, rewrite, write};
+pub use gltf::ReadFile;
 
 use crate::{Dimension, Error, Mesh, Positions};
 use std::borrow::Cow;
-use std::io::Write;
+use std::io::{self, Write};
 use std::path::Path;
 use text::{Digits, Parsed};
 
@@ -44,11 +47,15 @@ pub enum Format {
     /// Stereolithography, text or binary: `.stl`. It has no vertices that triangles share: corners at the same position
     /// are read as one. It is written in binary and has 32-bit floats, to which 64-bit floats are rounded.
     Stl,
+    /// glTF 2.0 as JSON: `.gltf`. It has 32-bit floats, to which 64-bit floats are rounded.
+    Gltf,
+    /// glTF 2.0 in one binary file: `.glb`.
+    Glb,
 }
 
 impl Format {
     /// The extensions that are known, as [`Error::UnknownFormat`] lists them.
-    pub const KNOWN: &'static str = ".off, .obj, .ply, .stl, also gzip'd (.gz)";
+    pub const KNOWN: &'static str = ".off, .obj, .ply, .stl, .gltf, .glb, also gzip'd (.gz)";
 
     /// The format that the extension of `path` names, in either case; `.gz` after it does not count.
     ///
@@ -61,8 +68,14 @@ impl Format {
             Some("obj") => Ok(Self::Obj),
             Some("ply") => Ok(Self::Ply),
             Some("stl") => Ok(Self::Stl),
+            Some("gltf") => Ok(Self::Gltf),
+            Some("glb") => Ok(Self::Glb),
             _ => Err(Error::UnknownFormat { path: path.display().to_string(), known: Self::KNOWN }),
         }
+    }
+
+    fn is_gltf(self) -> bool {
+        matches!(self, Self::Gltf | Self::Glb)
     }
 }
 
@@ -74,26 +87,32 @@ fn extension(path: &Path) -> Option<String> {
 /// What can be chosen for reading a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ReadOptions {
-    /// Whether the mesh lies in the plane; `None`: if the file has two coordinates a vertex or every z is 0.
+    /// Whether the mesh lies in the plane; `None`: if the file has two coordinates a vertex or every z is 0, and is no
+    /// glTF.
     pub dimension: Option<Dimension>,
-    /// How many bytes a file may have, and a gzip'd one once it is unpacked. By default 4 GiB, in WebAssembly 1 GiB.
+    /// How many bytes a file may have, and a gzip'd one also once it is unpacked. By default 4 GiB, in WebAssembly 1 GiB.
     pub max_bytes: u64,
+    /// Whether [`load`] may read the files beside a glTF file, in its folder and those below, that its buffers are in.
+    pub external_files: bool,
 }
 
 impl Default for ReadOptions {
     fn default() -> Self {
-        Self { dimension: None, max_bytes: if cfg!(target_arch = "wasm32") { 1 << 30 } else { 1 << 32 } }
+        Self {
+            dimension: None,
+            external_files: false,
+            max_bytes: if cfg!(target_arch = "wasm32") { 1 << 30 } else { 1 << 32 },
+        }
     }
 }
 
 impl ReadOptions {
     /// Refuses a file of more bytes than it may have.
     pub(crate) fn check(&self, bytes: u64) -> Result<(), Error> {
-        if bytes > self.max_bytes { Err(self.too_large()) } else { Ok(()) }
-    }
-
-    fn too_large(&self) -> Error {
-        Error::FileTooLarge { limit: self.max_bytes, option: "max_bytes" }
+        if bytes > self.max_bytes {
+            return Err(Error::FileTooLarge { limit: self.max_bytes, option: "max_bytes" });
+        }
+        Ok(())
     }
 }
 
@@ -104,8 +123,78 @@ pub struct Loaded {
     pub mesh: Mesh,
     /// Faces with more than three corners; each was cut into a fan of triangles around its first corner.
     pub polygons: usize,
-    /// What the file holds that a [`Mesh`] has no place for, such as `normals`.
+    /// What the file holds that a [`Mesh`] has no place for, such as `normals`. [`rewrite`] keeps it where a glTF file
+    /// stays one.
     pub dropped: Vec<String>,
+    /// What else there is to say about the file, a sentence each.
+    pub notes: Vec<String>,
+    /// The file itself, if it is glTF.
+    document: Option<gltf::Document>,
+}
+
+impl Loaded {
+    /// Positions to draw the mesh at, 3 numbers a vertex, where its parts are placed in a scene: a glTF file has each
+    /// with coordinates of its own, by which it is also decided what is Delaunay.
+    pub fn placed(&self) -> Option<Vec<f32>> {
+        self.document.as_ref().map(|document| document.placed(&self.mesh))
+    }
+
+    /// What is lost in a file of that format; see [`Loaded::dropped`].
+    pub fn dropped_in(&self, format: Format) -> &[String] {
+        if format.is_gltf() && self.document.is_some() { &[] } else { &self.dropped }
+    }
+
+    /// The bytes of a file of this name that holds the mesh with other triangles, gzip'd if it ends in `.gz`. A glTF file
+    /// becomes itself again with other indices, in either form; in other formats its parts are where its scene places
+    /// them.
+    ///
+    /// # Errors
+    /// [`Error::UnknownFormat`]; those of [`Mesh::new`] for the triangles, of which there must be as many as before; [`Error::Io`] as
+    /// [`write_to`]; [`Error::TooLarge`] for 4 GiB and more of `.glb`.
+    pub fn file_bytes(&self, name: impl AsRef<Path>, triangles: Vec<u32>) -> Result<Vec<u8>, Error> {
+        let (name, mut bytes) = (name.as_ref(), Vec::new());
+        match self.write_to(name, triangles)?(&mut bytes) {
+            Ok(()) => Ok(bytes),
+            Err(source) => Err(Error::Io { path: name.display().to_string(), source }),
+        }
+    }
+
+    /// What writes such a file.
+    fn write_to(
+        &self,
+        name: &Path,
+        triangles: Vec<u32>,
+    ) -> Result<impl FnOnce(&mut dyn Write) -> io::Result<()>, Error> {
+        let format = Format::of(name)?;
+        let before = self.mesh.triangles();
+        if triangles.len() != before.len() {
+            return Err(Error::TriangleCount { length: triangles.len(), expected: before.len() });
+        }
+        let mesh = self.mesh.with_triangles(triangles)?;
+        let content = match &self.document {
+            Some(document) if format.is_gltf() => {
+                Content::Bytes(document.with_triangles(before, mesh.triangles(), format == Format::Glb)?)
+            }
+            Some(document) => {
+                let placed = document.placed(&mesh);
+                Content::Mesh(Mesh::new(Dimension::Three, placed, mesh.triangles().to_vec())?)
+            }
+            None => Content::Mesh(mesh),
+        };
+        let is_packed = gzip::is_named(name);
+        Ok(move |out: &mut dyn Write| {
+            gzip::write(is_packed, out, |mut out| match &content {
+                Content::Bytes(bytes) => out.write_all(bytes),
+                Content::Mesh(mesh) => write_to(format, mesh, &mut out),
+            })
+        })
+    }
+}
+
+/// What a file is written of.
+enum Content {
+    Bytes(Vec<u8>),
+    Mesh(Mesh),
 }
 
 /// Reads the bytes of a file, which may be gzip'd.
@@ -114,17 +203,31 @@ pub struct Loaded {
 /// [`Error::Parse`], which names the line or the byte, or the vertex that has a height where 2D was asked for;
 /// [`Error::TooLarge`]; [`Error::FileTooLarge`].
 pub fn parse(format: Format, bytes: &[u8], options: &ReadOptions) -> Result<Loaded, Error> {
+    parse_with(format, bytes, options, &|_| Err("other files are read only if that is allowed".into()))
+}
+
+/// As [`parse`]; `read` gives the content of a file beside this one, or says why it does not.
+///
+/// # Errors
+/// As there.
+pub fn parse_with(
+    format: Format,
+    bytes: &[u8],
+    options: &ReadOptions,
+    read: ReadFile<'_>,
+) -> Result<Loaded, Error> {
+    options.check(bytes.len() as u64)?;
     let bytes =
         if gzip::is_magic(bytes) { gzip::unpack(bytes, options)?.into() } else { Cow::Borrowed(bytes) };
-    options.check(bytes.len() as u64)?;
     if bytes.trim_ascii().is_empty() {
         return Err(Error::Parse { place: "line 1".into(), message: "the file is empty".into() });
     }
     let parsed = match format {
-        Format::Off => off::parse(&bytes),
-        Format::Obj => obj::parse(&bytes),
+        Format::Off => off::parse(&utf8(&bytes)),
+        Format::Obj => obj::parse(&utf8(&bytes)),
         Format::Ply => ply::parse(&bytes),
         Format::Stl => stl::parse(&bytes),
+        Format::Gltf | Format::Glb => return gltf::load(bytes.into_owned(), options, read),
     }?;
     finish(parsed, options.dimension)
 }
@@ -133,13 +236,14 @@ pub fn parse(format: Format, bytes: &[u8], options: &ReadOptions) -> Result<Load
 /// [`parse`] reads 32 of text that is no PLY. Give it something buffered.
 ///
 /// # Errors
-/// Those of `out`; [`std::io::ErrorKind::InvalidInput`] for coordinates that STL cannot hold.
-pub fn write_to(format: Format, mesh: &Mesh, out: &mut impl Write) -> std::io::Result<()> {
+/// Those of `out`; [`io::ErrorKind::InvalidInput`] for coordinates that STL and glTF cannot hold.
+pub fn write_to(format: Format, mesh: &Mesh, out: &mut impl Write) -> io::Result<()> {
     match format {
         Format::Off => off::write(mesh, out),
         Format::Obj => obj::write(mesh, out),
         Format::Ply => ply::write(mesh, out),
         Format::Stl => stl::write(mesh, out),
+        Format::Gltf | Format::Glb => out.write_all(&gltf::new_file(mesh, format == Format::Glb)?),
     }
 }
 
@@ -147,7 +251,7 @@ pub fn write_to(format: Format, mesh: &Mesh, out: &mut impl Write) -> std::io::R
 ///
 /// # Errors
 /// As there.
-pub fn to_bytes(format: Format, mesh: &Mesh) -> std::io::Result<Vec<u8>> {
+pub fn to_bytes(format: Format, mesh: &Mesh) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     write_to(format, mesh, &mut bytes)?;
     Ok(bytes)
@@ -161,9 +265,22 @@ pub fn to_file_bytes(name: impl AsRef<Path>, mesh: &Mesh) -> Result<Vec<u8>, Err
     let name = name.as_ref();
     let format = Format::of(name)?;
     let mut bytes = Vec::new();
-    match gzip::write_to(name, format, mesh, &mut bytes) {
+    match gzip::write(gzip::is_named(name), &mut bytes, |mut out| write_to(format, mesh, &mut out)) {
         Ok(()) => Ok(bytes),
         Err(source) => Err(Error::Io { path: name.display().to_string(), source }),
+    }
+}
+
+/// Text that begins with the byte order mark of UTF-16, in UTF-8.
+fn utf8(bytes: &[u8]) -> Cow<'_, [u8]> {
+    let decoded = |word: fn([u8; 2]) -> u16| {
+        let words = bytes[2..].as_chunks().0.iter().map(|&pair| word(pair));
+        char::decode_utf16(words).map(|c| c.unwrap_or(char::REPLACEMENT_CHARACTER)).collect::<String>()
+    };
+    match bytes {
+        [0xfe, 0xff, ..] => decoded(u16::from_be_bytes).into_bytes().into(),
+        [0xff, 0xfe, ..] => decoded(u16::from_le_bytes).into_bytes().into(),
+        _ => bytes.into(),
     }
 }
 
@@ -196,7 +313,7 @@ fn finish(parsed: Parsed, dimension: Option<Dimension>) -> Result<Loaded, Error>
         Positions::F64(numbers) => with_stride(numbers, stride, dimension.stride()).into(),
     };
     let mesh = Mesh::new(dimension, positions, faces.triangles)?;
-    Ok(Loaded { mesh, polygons: faces.polygons, dropped: dropped.0 })
+    Ok(Loaded { mesh, polygons: faces.polygons, dropped: dropped.0, notes: Vec::new(), document: None })
 }
 
 /// The first vertex with a height.

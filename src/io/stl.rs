@@ -14,7 +14,8 @@ const FACET: usize = 50;
 
 /// Reads a file's bytes.
 pub(super) fn parse(bytes: &[u8]) -> Result<Parsed, Error> {
-    if is_text(bytes) { text(bytes) } else { binary(bytes) }
+    let header = &bytes[..bytes.len().min(HEADER)];
+    if is_text(header, bytes.len()) { text(bytes) } else { binary(bytes) }
 }
 
 /// Writes `mesh` in the binary form: 32-bit floats, the nearest ones; z is 0 in a 2D mesh. The normal of a triangle
@@ -52,19 +53,17 @@ pub(super) fn write(mesh: &Mesh, out: &mut impl Write) -> io::Result<()> {
 }
 
 /// How many facets the header of a binary file announces.
-fn announced(bytes: &[u8]) -> Option<usize> {
-    let count = bytes.get(80..HEADER)?.first_chunk()?;
+fn announced(header: &[u8]) -> Option<usize> {
+    let count = header.get(80..HEADER)?.first_chunk()?;
     Some(u32::from_le_bytes(*count) as usize)
 }
 
-/// Binary files may begin with `solid` too. The length gives them away, or a byte that no text has: the number of
-/// facets has one below 2^24.
-fn is_text(bytes: &[u8]) -> bool {
-    let body = bytes.len().checked_sub(HEADER);
-    let has_length_of_binary = announced(bytes).is_some_and(|count| body == count.checked_mul(FACET));
-    let head = &bytes[..bytes.len().min(HEADER)];
-    let word = Lines::new(bytes).find_map(|line| Tokens(line).next()).unwrap_or_default();
-    !has_length_of_binary && !head.contains(&0) && word.eq_ignore_ascii_case(b"solid")
+/// Whether a file of so many bytes that begins with `header` is text. Binary files may begin with `solid` too: what
+/// gives them away is their length, or a byte that no text has. The number of facets has one below 2^24.
+pub(super) fn is_text(header: &[u8], length: usize) -> bool {
+    let binary = announced(header).and_then(|count| count.checked_mul(FACET)?.checked_add(HEADER));
+    let word = Lines::new(header).find_map(|line| Tokens(line).next()).unwrap_or_default();
+    binary != Some(length) && !header.contains(&0) && word.eq_ignore_ascii_case(b"solid")
 }
 
 fn binary(bytes: &[u8]) -> Result<Parsed, Error> {

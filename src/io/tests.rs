@@ -255,8 +255,9 @@ fn formats_by_extension() {
     assert_eq!(Format::of(Path::new(".stl.stl")).unwrap(), Format::Stl);
     for name in ["off", "a.gz", ".gz", "a.off.gz.gz", ""] {
         let found = Format::of(Path::new(name));
-        let message =
-            format!("{name}: unknown format; use one of: .off, .obj, .ply, .stl, also gzip'd (.gz)");
+        let message = format!(
+            "{name}: unknown format; use one of: .off, .obj, .ply, .stl, .gltf, .glb, also gzip'd (.gz)"
+        );
         assert_eq!(found.unwrap_err().to_string(), message);
     }
 }
@@ -398,5 +399,14 @@ proptest! {
             }
             let _ = parsed(format, bytes);
         }
+    }
+}
+
+#[test]
+fn text_may_be_utf_16() {
+    let text = "OFF # Kürzel 𝄞\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+    for bytes in [u16::to_be_bytes, u16::to_le_bytes] {
+        let file: Vec<u8> = std::iter::once(0xfeff).chain(text.encode_utf16()).flat_map(bytes).collect();
+        assert_eq!(off(file).unwrap().mesh.triangles(), [0, 1, 2]);
     }
 }

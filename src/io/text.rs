@@ -1,4 +1,5 @@
-//! What the text formats share: lines with their numbers, tokens, exact numbers, and faces cut into triangles.
+//! What the formats share: lines with their numbers, tokens, exact numbers, faces cut into triangles, and what a parser
+//! hands over.
 
 use crate::{Error, Positions};
 use memchr::{memchr, memchr2};
@@ -29,6 +30,7 @@ impl<'a> Lines<'a> {
     }
 
     /// An error at the current line.
+    #[cold]
     pub(super) fn refuse(&self, message: impl Into<String>) -> Error {
         Error::Parse { place: format!("line {}", self.number()), message: message.into() }
     }

@@ -10,11 +10,12 @@
  * | `index-out-of-range` | check the indices of the triangle that the message names |
  * | `ragged-array` | check the array's length and the dimension |
  * | `position-count` | give `setPositions` 2 or 3 numbers for each vertex of the mesh |
+ * | `triangle-count` | give `writeMesh` as many triangles as its `original` has |
  * | `too-large` | split the mesh |
  * | `parse` | repair the file at the line, or the vertex, that the message names |
  * | `file-too-large` | pass a larger `maxBytes`, if the file is to be trusted |
  * | `unknown-format` | take a file name with one of the extensions in `FORMATS` |
- * | `io` | write another format: an STL file cannot hold coordinates as large as the message says |
+ * | `io` | write another format: STL and glTF cannot hold coordinates as large as the message says |
  * | `invalid-option` | check the option that the message names |
  * | `backend-unavailable` | take `'auto'` or `'cpu'`: there is no such GPU here, or it fails its self-test |
  * | `backend-limit` | take `'auto'` or `'cpu'`: the GPU cannot take this mesh |
@@ -31,6 +32,7 @@ const CODES = [
   'index-out-of-range',
   'ragged-array',
   'position-count',
+  'triangle-count',
   'too-large',
   'parse',
   'file-too-large',

@@ -27,26 +27,48 @@ export type { Mesh } from './types.js';
  * The extensions of the formats that are read and written, in either case. With `.gz` after it, as in `bunny.ply.gz`,
  * the file is gzip'd.
  */
-export const FORMATS = ['.off', '.obj', '.ply', '.stl'] as const;
+export const FORMATS = ['.off', '.obj', '.ply', '.stl', '.gltf', '.glb'] as const;
 
 /**
  * A mesh as it was read: the file's vertices, all of them, in its order, and its faces as triangles. Its positions are a
  * Float64Array where a PLY file has doubles that are no 32-bit floats. An STL file has no vertices, only corners of
- * triangles: those at the same position become one, in the order in which they appear.
+ * triangles: those at the same position become one, in the order in which they appear. In a glTF file every primitive
+ * has vertices of its own.
  */
 export interface FileMesh extends IndexedMesh {
   /** Faces with more than three corners; each was cut into a fan of triangles around its first corner. */
   polygons: number;
   /** What the file holds that a mesh has no place for, such as `normals`. Normals of an STL file are its triangles'. */
   dropped: string[];
+  /** What else there is to say about the file, a sentence each. */
+  notes: string[];
+  /**
+   * Positions to draw the mesh at, 3 numbers a vertex: a glTF file has each part with coordinates of its own, by which
+   * it is decided what is Delaunay, and places it in a scene.
+   */
+  placed: Float32Array | undefined;
 }
+
+/** Bytes of files by their names, such as `{ 'scene.bin': bytes }`. */
+export type Files = Readonly<Record<string, Uint8Array>>;
 
 /** What can be chosen for {@link readMesh}. */
 export interface ReadOptions {
   /** Default: 2 if the file has two coordinates a vertex or every z is 0, else 3. */
   dimension?: 2 | 3 | undefined;
-  /** How many bytes the file may have, and a gzip'd one once it is unpacked. Default: 2^30. */
+  /** How many bytes the file may have, and a gzip'd one also once it is unpacked. Default: 2^30. */
   maxBytes?: number | undefined;
+  /** The files that a `.gltf` file has its buffers in. Nothing is fetched. */
+  files?: Files | undefined;
+}
+
+/** What can be chosen for {@link writeMesh}. */
+export interface WriteOptions {
+  /**
+   * The file that the mesh was read from, and whose triangles have become others: glTF is written again with other
+   * indices, in either form, and all else as it was.
+   */
+  original?: { bytes: Uint8Array; name: string; files?: Files | undefined } | undefined;
 }
 
 /** What the angles of a mesh say about its triangles. A degenerate triangle counts as one with an angle of 0°. */
@@ -76,27 +98,36 @@ export const initFiles = loader(initModule, () => new URL('./wasm/edgeflip_files
  * dimensions were asked for; `unknown-format`, `file-too-large`, `too-large`, `invalid-input`, `invalid-option`.
  */
 export async function readMesh(bytes: Uint8Array, name: string, options: ReadOptions = {}): Promise<FileMesh> {
-  if (!(bytes instanceof Uint8Array)) throw new EdgeflipError('invalid-input', 'bytes are no Uint8Array');
+  checkBytes(bytes);
   if (options.dimension !== undefined) checkDimension(options.dimension);
-  const { dimension, maxBytes } = options;
+  const { dimension, maxBytes, files = {} } = options;
   if (maxBytes !== undefined && typeof maxBytes !== 'number') {
     throw new EdgeflipError('invalid-input', 'maxBytes is not a number');
   }
+  // The module counts bytes with 32 bits.
+  if (bytes.length >= 2 ** 32) throw new EdgeflipError('file-too-large', 'the file has more than 4294967295 bytes');
   const file = text(name, 'name');
-  return call(() => wasm.readMesh(bytes, file, dimension, maxBytes));
+  return call(() => wasm.readMesh(bytes, file, dimension, maxBytes, files));
 }
 
 /**
  * The bytes of a file that holds the mesh; of one in the plane every z is 0. In OFF and OBJ each number has the fewest
  * digits that read back to the same 32 or 64 bits, of which {@link readMesh} reads 32. PLY is written in binary and
- * keeps all bits; STL in binary, with positions rounded to 32-bit floats.
+ * keeps all bits; STL in binary and glTF have positions rounded to 32-bit floats.
  *
  * @param name - Its name, such as `bunny.obj` or `bunny.ply.gz`: the extension gives the format.
- * @throws {@link EdgeflipError} about the mesh; `unknown-format`; `io` for coordinates that STL cannot hold.
+ * @throws {@link EdgeflipError} about the mesh; `unknown-format`; `io` for coordinates that STL and glTF cannot hold; those of
+ * {@link readMesh} about the original, and `triangle-count` if it has another number of triangles.
  */
-export async function writeMesh(mesh: Mesh, name: string): Promise<Uint8Array<ArrayBuffer>> {
+export async function writeMesh(mesh: Mesh, name: string, options: WriteOptions = {}): Promise<Uint8Array<ArrayBuffer>> {
   const { positions, indices, dimension } = moduleMesh(mesh);
   const file = text(name, 'name');
+  const { original } = options;
+  if (original) {
+    checkBytes(original.bytes);
+    const from = text(original.name, 'original.name');
+    return call(() => wasm.rewriteMesh(original.bytes, from, dimension, original.files ?? {}, indices, file));
+  }
   return call(() => wasm.writeMesh(positions, indices, dimension, file));
 }
 
@@ -121,6 +152,10 @@ export async function generate(spec: string): Promise<Mesh32> {
 export async function angles(mesh: Mesh, bins = 180): Promise<Angles> {
   const { positions, indices, dimension } = moduleMesh(mesh);
   return call(() => wasm.angles(positions, indices, dimension, bins));
+}
+
+function checkBytes(bytes: Uint8Array): void {
+  if (!(bytes instanceof Uint8Array)) throw new EdgeflipError('invalid-input', 'bytes are no Uint8Array');
 }
 
 /** The argument, if a program without types has passed text. */

@@ -39,6 +39,9 @@ test('a module that cannot be loaded is an error, and the next call tries again'
   await initFiles('https://example.org/not-looked-at.wasm');
 });
 
+/** What is said of a file of which there is nothing to say. */
+const PLAIN = { polygons: 0, dropped: [], notes: [], placed: undefined };
+
 test('every bit comes back, in each format and in both dimensions', async () => {
   const flat = awkward();
   const raised = { positions: new Float32Array([...flat.positions, 7.5, -0]), indices: Uint32Array.of(0, 1, 2, 3, 2, 1), dimension: 3 };
@@ -47,7 +50,9 @@ test('every bit comes back, in each format and in both dimensions', async () => 
       const file = await writeMesh(mesh, `a${format.toUpperCase()}`);
       const read = await readMesh(file, `a${format}`, { dimension: mesh.dimension });
       assert.deepEqual(bits(read), bits(mesh));
-      assert.deepEqual(read, { ...mesh, polygons: 0, dropped: [] });
+      const { placed } = read;
+      assert.deepEqual(read, { ...mesh, ...PLAIN, placed });
+      assert.equal(placed?.length, format.startsWith('.gl') ? (3 * mesh.positions.length) / mesh.dimension : undefined);
       assert.deepEqual(await writeMesh(read, `b${format}`), file);
     }
   }
@@ -67,19 +72,19 @@ test('a PLY file keeps doubles, and an STL file what its corners say', async () 
   const positions = Float64Array.of(0.1, 1e300, 12_000_000.000_001, -0, 5e-324, 1 / 3);
   const mesh = { positions, indices: Uint32Array.of(0, 1, 2), dimension: 2 };
   for (const name of ['a.ply', 'a.ply.gz']) {
-    assert.deepEqual(await readMesh(await writeMesh(mesh, name), name), { ...mesh, polygons: 0, dropped: [] });
+    assert.deepEqual(await readMesh(await writeMesh(mesh, name), name), { ...mesh, ...PLAIN });
   }
   await assert.rejects(writeMesh(mesh, 'a.stl'), refused('io', /^a\.stl: vertex 0 is too far away/));
   const near = { ...mesh, positions: Float64Array.of(5, 6, 0.1, 0, 1, 0, 0, 1), indices: Uint32Array.of(1, 2, 3, 3, 2, 1) };
   for (const name of ['a.stl', 'a.stl.gz']) {
     const read = await readMesh(await writeMesh(near, name), name);
     const corners = { positions: Float32Array.of(0.1, 0, 1, 0, 0, 1), indices: Uint32Array.of(0, 1, 2, 2, 1, 0) };
-    assert.deepEqual(read, { ...corners, dimension: 2, polygons: 0, dropped: [] });
+    assert.deepEqual(read, { ...corners, dimension: 2, ...PLAIN });
   }
 });
 
 test('gzip is known by its bytes, and a file has a limit, unpacked', async () => {
-  const thin = bytes('OFF 3 1\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n');
+  const thin = bytes(`OFF 3 1\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n${' '.repeat(100)}`);
   const packed = new Uint8Array(gzipSync(thin));
   const mesh = await readMesh(thin, 'a.off');
   for (const name of ['a.off', 'a.off.gz']) {
@@ -90,7 +95,7 @@ test('gzip is known by its bytes, and a file has a limit, unpacked', async () =>
   assert.deepEqual(new Uint8Array(gunzipSync(await writeMesh(mesh, 'a.stl.gz'))), await writeMesh(mesh, 'a.stl'));
   const limit = { maxBytes: thin.length - 1 };
   for (const file of [thin, packed, new Uint8Array(gzipSync(new Uint8Array(1 << 26)))]) {
-    await assert.rejects(readMesh(file, 'a.off', limit), refused('file-too-large', /more than 33 bytes once it is unpacked; maxBytes sets/));
+    await assert.rejects(readMesh(file, 'a.off', limit), refused('file-too-large', /more than 133 bytes, packed or unpacked; maxBytes sets/));
   }
   await assert.rejects(readMesh(packed.subarray(0, -1), 'a.off'), refused('parse', /^byte \d+: the gzip'd file is cut off/));
   await assert.rejects(readMesh(thin, 'a.off', { maxBytes: -1 }), refused('invalid-option', /maxBytes: -1 is no number of bytes/));

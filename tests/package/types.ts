@@ -34,7 +34,7 @@ export async function use(mesh: Mesh, signal: AbortSignal, device?: GPUDevice): 
 
 export async function copy(file: File): Promise<Blob> {
   await initFiles(new URL('https://example.org/edgeflip_files.wasm'));
-  const format: '.off' | '.obj' | '.ply' | '.stl' | undefined = FORMATS.find((format) => file.name.endsWith(format));
+  const format: '.off' | '.obj' | '.ply' | '.stl' | '.gltf' | '.glb' | undefined = FORMATS.find((format) => file.name.endsWith(format));
   const mesh: FileMesh = await readMesh(new Uint8Array(await file.arrayBuffer()), file.name, { dimension: 3 });
   const positions: Float32Array = (await generate('uvsphere 20')).positions;
   const { min, counts }: Angles = await angles({ ...mesh, positions }, 18);

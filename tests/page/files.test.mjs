@@ -1,9 +1,14 @@
 // The demo page in Chromium: mesh files opened, played, scrubbed and downloaded on every engine, bit for bit as in Node.
 
 import assert from 'node:assert/strict';
+import { writeFileSync } from 'node:fs';
+import { join } from 'node:path';
 import { after, before, test } from 'node:test';
+import { makeDelaunay } from '../../dist/index.js';
+import { readMesh, writeMesh } from '../../dist/files.js';
+import { riggedGlb } from '../package/gltf.mjs';
 import { startChromium } from '../browsers.mjs';
-import { assertPlays, assertSameMesh, expected, meshFile, openEdgeflip, tidyUp } from './page.mjs';
+import { assertPlays, assertSameMesh, expected, folder, meshFile, openEdgeflip, tidyUp } from './page.mjs';
 
 let browser;
 before(async () => (browser = await startChromium()));
@@ -50,3 +55,30 @@ for (const { how, name, spec, load } of sources) {
     });
   }
 }
+
+test('a glTF file with its buffer in another plays, and is downloaded with other indices and all else as it was', async () => {
+  const original = { bytes: riggedGlb().bytes, name: 'rigged.glb' };
+  const mesh = await readMesh(original.bytes, original.name);
+  const json = JSON.parse(Buffer.from(await writeMesh(mesh, 'rigged.gltf', { original })).toString());
+  const [, base64] = json.buffers[0].uri.split(',');
+  json.buffers[0].uri = 'a%20b.bin';
+  writeFileSync(join(folder, 'rigged.gltf'), JSON.stringify(json));
+  writeFileSync(join(folder, 'a b.bin'), Buffer.from(base64, 'base64'));
+  const page = await openEdgeflip(browser);
+  const alone = page.page.locator('#error-text');
+  await (await page.page.$('#file')).setInputFiles(join(folder, 'rigged.gltf'));
+  await alone.getByText('it is in the file `a b.bin`').waitFor();
+  const opened = await page.open([join(folder, 'a b.bin'), join(folder, 'rigged.gltf')]);
+  assert.equal(opened.caption, 'rigged.gltf');
+  await page.chooseEngine('cpu');
+  const end = await page.playToEnd();
+  assert.equal(end.facts['Not Delaunay'], 'none');
+  const { indices } = await makeDelaunay(mesh, { backend: 'cpu' });
+  const downloaded = await page.download();
+  assert.match(downloaded.name, /^rigged-after-\d+\.gltf$/);
+  assertSameMesh(downloaded, { ...mesh, indices }, 'of the downloaded result');
+  const written = JSON.parse(downloaded.bytes.toString());
+  assert.match(written.buffers[0].uri, /^data:/);
+  assert.deepEqual({ ...written, buffers: json.buffers }, json);
+  await page.close();
+});

@@ -205,7 +205,7 @@ export class EdgeflipPage {
   async download() {
     const [download] = await Promise.all([this.page.waitForEvent('download'), this.page.click('#download')]);
     const bytes = readFileSync(await download.path());
-    return { ...(await readMesh(bytes, download.suggestedFilename())), name: download.suggestedFilename() };
+    return { ...(await readMesh(bytes, download.suggestedFilename())), name: download.suggestedFilename(), bytes };
   }
 }
 

@@ -13,9 +13,11 @@ Formats, by extension:
   .ply   PLY, text or binary, written in binary; the only one whose doubles are read as such
   .stl   STL, text or binary, written in binary with 32-bit floats; corners at the same position are
          read as one vertex
+  .gltf  glTF 2.0, .glb in one binary file; written again with other indices, and all else as it was.
+         Each primitive is a part of the mesh; what two of them share stays
 Any of them may be gzip'd: IN whatever its name, OUT where .gz follows, as in bunny.ply.gz.
 Vertices keep their number and order. Polygons are cut into triangles. Normals, colours, texture
-coordinates, groups and materials are not written.
+coordinates, groups and materials are written only where glTF stays glTF.
 
 Exit status:
   0   done; also when stopped by --max-iterations
@@ -39,11 +41,11 @@ Examples:
 #[command(name = "edgeflip", version, after_long_help = AFTER)]
 #[command(after_help = "--help tells more: formats, exit status, examples.")]
 pub struct Args {
-    /// The mesh to read: .off, .obj, .ply or .stl, also gzip'd
+    /// The mesh to read: .off, .obj, .ply, .stl, .gltf or .glb, also gzip'd
     #[arg(value_name = "IN")]
     pub input: PathBuf,
 
-    /// The file to write: .off, .obj, .ply or .stl, and .gz after it to gzip it; may be IN itself
+    /// The file to write: .off, .obj, .ply, .stl, .gltf or .glb, and .gz after it to gzip it; may be IN itself
     ///
     /// The file is replaced at once when everything is done, so that a failure leaves it as it was.
     #[arg(short, long, value_name = "OUT")]
@@ -57,9 +59,13 @@ pub struct Args {
     #[arg(long, value_enum, default_value_t, value_name = "DIM")]
     pub dimension: DimensionArg,
 
-    /// How many bytes IN may have, once it is unpacked if it is gzip'd
+    /// How many bytes IN may have, and if it is gzip'd also once it is unpacked
     #[arg(long, value_name = "N", default_value_t = ReadOptions::default().max_bytes, allow_negative_numbers = true)]
     pub max_bytes: u64,
+
+    /// Let a glTF file have its buffers in other files of its folder and of those below
+    #[arg(long)]
+    pub external_files: bool,
 
     /// β: largest angle between the normals of two triangles whose edge may flip, in degrees, 0 to 180
     ///
@@ -123,7 +129,7 @@ impl Args {
             DimensionArg::Two => Some(Dimension::Two),
             DimensionArg::Three => Some(Dimension::Three),
         };
-        ReadOptions { dimension, max_bytes: self.max_bytes }
+        ReadOptions { dimension, max_bytes: self.max_bytes, external_files: self.external_files }
     }
 
     /// What the library is asked to do, without the edges to lock.
@@ -161,7 +167,7 @@ pub enum BackendArg {
 /// `--dimension`.
 #[derive(Clone, Copy, Debug, Default, ValueEnum)]
 pub enum DimensionArg {
-    /// In the plane if every z is 0, else in space
+    /// In the plane if every z is 0, else in space; glTF always in space
     #[default]
     Auto,
     /// In the plane; a z other than 0 is refused

@@ -82,7 +82,7 @@ fn progress(args: &Args) -> ProgressBar {
 /// Everything but the printing. The target is written last, and only if nothing was wrong.
 fn run(args: &Args, bar: &ProgressBar) -> Result<Report, Failure> {
     let refused = |error| Failure::of(&args.input, &error);
-    io::Format::of(&args.output).map_err(|e| Failure { status: 2, line: e.to_string() })?;
+    let format = io::Format::of(&args.output).map_err(|e| Failure { status: 2, line: e.to_string() })?;
     let folder = args.output.parent().filter(|folder| !folder.as_os_str().is_empty());
     if folder.is_some_and(|folder| !folder.is_dir()) {
         let line = format!("{}: the folder does not exist", args.output.display());
@@ -90,7 +90,8 @@ fn run(args: &Args, bar: &ProgressBar) -> Result<Report, Failure> {
     }
     bar.set_message(format!("reading {}", args.input.display()));
     let (loaded, load) = timed(|| io::load(&args.input, &args.read_options()));
-    let io::Loaded { mesh, polygons, dropped } = loaded.map_err(refused)?;
+    let loaded = loaded.map_err(refused)?;
+    let mesh = &loaded.mesh;
 
     let locked_edges = match &args.lock_edges {
         Some(path) => io::read_edges(path).map_err(|error| Failure::of(path, &error))?,
@@ -99,8 +100,8 @@ fn run(args: &Args, bar: &ProgressBar) -> Result<Report, Failure> {
     let options = Options { locked_edges, ..args.options() };
 
     bar.set_message("preparing");
-    let before = quality::measures(&mesh);
-    let outcome = make_delaunay(&mesh, &options, |iterations, flips| {
+    let before = quality::measures(mesh);
+    let outcome = make_delaunay(mesh, &options, |iterations, flips| {
         bar.set_message(format!("iteration {iterations}, {flips} flips"));
         ControlFlow::Continue(())
     })
@@ -111,17 +112,17 @@ fn run(args: &Args, bar: &ProgressBar) -> Result<Report, Failure> {
 
     let check = args.verify.then(|| {
         bar.set_message("verifying");
-        check(&options, &mesh, &outcome)
+        check(&options, mesh, &outcome)
     });
     let mut save = None;
     if check.as_ref().is_none_or(|check| check.violations.is_empty()) {
         bar.set_message(format!("writing {}", args.output.display()));
-        let (written, ms) = timed(|| io::write(&args.output, &result));
+        let (written, ms) = timed(|| io::rewrite(&args.output, &loaded, outcome.triangles.clone()));
         written.map_err(|e| Failure::of(&args.output, &e))?;
         save = Some(ms);
     }
     let ms = Milliseconds::new(load, &outcome.timings, save);
-    Ok(Report::new(args, &result, outcome, [before, after], moved, check, ms).with_notes(polygons, &dropped))
+    Ok(Report::new(args, &result, outcome, [before, after], moved, check, ms).with_notes(&loaded, format))
 }
 
 /// What the independent check finds: another count of the edges left is a violation too.

@@ -2,6 +2,7 @@
 
 use crate::Failure;
 use crate::args::Args;
+use edgeflip::io::{Format, Loaded};
 use edgeflip::quality::Measures;
 use edgeflip::{Dimension, Mesh, Outcome, Reasons, Status, Timings};
 use indicatif::{HumanBytes, HumanCount};
@@ -149,12 +150,14 @@ impl Report {
         }
     }
 
-    /// Adds what reading changed: polygons cut, and what was dropped.
-    pub fn with_notes(mut self, polygons: usize, dropped: &[String]) -> Self {
-        if polygons > 0 {
-            let polygons = HumanCount(polygons as u64);
+    /// Adds what reading changed, and what a file of that format does not keep.
+    pub fn with_notes(mut self, loaded: &Loaded, format: Format) -> Self {
+        self.notes.clone_from(&loaded.notes);
+        if loaded.polygons > 0 {
+            let polygons = HumanCount(loaded.polygons as u64);
             self.notes.push(format!("polygons cut into triangles: {polygons}"));
         }
+        let dropped = loaded.dropped_in(format);
         if !dropped.is_empty() {
             self.notes.push(format!("not kept: {}", dropped.join("; ")));
         }

@@ -169,6 +169,7 @@ impl Source for Binary<'_> {
         Ok(())
     }
 
+    #[cold]
     fn refuse(&self, message: impl Into<String>) -> Error {
         Error::Parse { place: format!("byte {}", self.at), message: message.into() }
     }

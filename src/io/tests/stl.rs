@@ -1,5 +1,6 @@
 //! STL as text and not, and how its corners become vertices.
 
+use super::super::stl as io_stl;
 use super::*;
 use glam::Vec3;
 
@@ -60,6 +61,10 @@ fn binary_whatever_it_begins_with() {
         assert_eq!(stl(coloured).unwrap().dropped, ["attributes of facets"]);
     }
     mesh(stl(binary(b"", &[])), Two, &[], &[]);
+    // So many facets that their number has no byte 0.
+    let header = [b"solid".as_slice(), &[b' '; 75], &[1; 4]].concat();
+    let length = 84 + 50 * 0x0101_0101;
+    assert!(!io_stl::is_text(&header, length) && io_stl::is_text(&header, length + 1));
 }
 
 #[test]

@@ -1,0 +1,224 @@
+//! Numbers out of buffers, by accessors and buffer views, with every bound checked.
+
+use super::buffers::Buffers;
+use super::{Root, refuse};
+use crate::Error;
+use gltf::json::accessor::{Accessor, ComponentType, Type};
+use gltf::json::buffer::View;
+use gltf::json::validation::Checked;
+use std::ops::Range;
+
+/// Extensions that pack the bytes of a buffer view.
+const PACKED: [&str; 2] = ["EXT_meshopt_compression", "KHR_meshopt_compression"];
+
+/// Elements of one size in a buffer.
+pub(super) struct Elements {
+    pub(super) buffer: usize,
+    /// From the first byte of the first to the last byte of the last.
+    pub(super) bytes: Range<usize>,
+    size: usize,
+    /// Bytes from one to the next.
+    pub(super) stride: usize,
+    count: usize,
+}
+
+impl Elements {
+    fn iter<'a>(&self, buffers: &'a Buffers) -> impl Iterator<Item = &'a [u8]> + use<'a> {
+        self.these(buffers, 0..self.count)
+    }
+
+    /// Some of them.
+    fn these<'a, I: Iterator<Item = usize>>(
+        &self,
+        buffers: &'a Buffers<'a>,
+        elements: I,
+    ) -> impl Iterator<Item = &'a [u8]> + use<'a, I> {
+        let (bytes, size, stride) = (&buffers[self.buffer][self.bytes.clone()], self.size, self.stride);
+        elements.map(move |i| &bytes[i * stride..i * stride + size])
+    }
+}
+
+/// The accessors of a file.
+pub(super) struct Accessors<'a> {
+    pub(super) root: &'a Root,
+    pub(super) buffers: &'a Buffers<'a>,
+}
+
+impl<'a> Accessors<'a> {
+    pub(super) fn get(&self, index: usize) -> Result<&'a Accessor, Error> {
+        let accessors = &self.root.accessors;
+        let missing = || refuse(format!("accessor {index}"), format!("there are only {}", accessors.len()));
+        accessors.get(index).ok_or_else(missing)
+    }
+
+    /// Whether the accessor's bytes are packed in a way that is not read here.
+    pub(super) fn is_packed(&self, index: usize) -> bool {
+        let view = self.root.accessors.get(index).and_then(|accessor| accessor.buffer_view);
+        let view = view.and_then(|view| self.root.buffer_views.get(view.value()));
+        let extensions = view.and_then(|view| view.extensions.as_ref());
+        extensions.is_some_and(|extensions| PACKED.iter().any(|name| extensions.others.contains_key(*name)))
+    }
+
+    /// The elements of an accessor, unless it begins with zeros that are nowhere.
+    pub(super) fn elements(&self, index: usize) -> Result<Option<Elements>, Error> {
+        let accessor = self.get(index)?;
+        let place = || format!("accessor {index}");
+        let size = component(accessor, place)?.size() * components(accessor, place)?;
+        let Some(view) = accessor.buffer_view else { return Ok(None) };
+        let offset = accessor.byte_offset.unwrap_or_default().0;
+        self.in_view(view.value(), offset, accessor.count.0, size, place).map(Some)
+    }
+
+    fn view(&self, index: usize, place: impl Fn() -> String) -> Result<&'a View, Error> {
+        let views = &self.root.buffer_views;
+        views.get(index).ok_or_else(|| refuse(place(), format!("there is no buffer view {index}")))
+    }
+
+    fn in_view(
+        &self,
+        index: usize,
+        offset: u64,
+        count: u64,
+        size: usize,
+        place: impl Fn() -> String,
+    ) -> Result<Elements, Error> {
+        let view = self.view(index, &place)?;
+        let buffer = view.buffer.value();
+        let length = self.buffers.length(buffer, &place)? as u64;
+        let stride = view.byte_stride.map_or(0, |stride| stride.0);
+        let stride = if stride == 0 { size } else { stride };
+        if stride < size {
+            return Err(refuse(
+                place(),
+                format!("elements of {size} bytes lie {stride} bytes apart in buffer view {index}"),
+            ));
+        }
+        // The last element is followed by no gap.
+        let taken = count.saturating_sub(1).saturating_mul(stride as u64).saturating_add(size as u64);
+        let taken = if count == 0 { 0 } else { taken };
+        let start = view.byte_offset.unwrap_or_default().0;
+        let [in_view, in_buffer] = [offset, start.saturating_add(offset)].map(|at| at.saturating_add(taken));
+        for (what, needed, present) in
+            [("buffer view", in_view, view.byte_length.0), ("buffer", in_buffer, length)]
+        {
+            if needed > present {
+                let number = if what == "buffer" { buffer } else { index };
+                return Err(refuse(
+                    place(),
+                    format!("it needs {needed} bytes of {what} {number}, which has {present}"),
+                ));
+            }
+        }
+        let bytes = (in_buffer - taken) as usize..in_buffer as usize;
+        Ok(Elements { buffer, bytes, size, stride, count: count as usize })
+    }
+
+    /// The three coordinates of each element, or of those that are asked for, which must be there, in an accessor that
+    /// is not sparse. Integers come as such, normalized ones too: that is the same mesh, larger.
+    pub(super) fn positions(&self, index: usize, elements: Option<&Vec<u32>>) -> Result<Vec<f32>, Error> {
+        let accessor = self.get(index)?;
+        let place = || format!("accessor {index}");
+        if accessor.type_ != Checked::Valid(Type::Vec3) {
+            return Err(refuse(place(), "positions are not of type VEC3"));
+        }
+        let component = component(accessor, place)?;
+        let read = move |element: &[u8]| -> [f32; 3] {
+            std::array::from_fn(|axis| number(&element[axis * component.size()..], component))
+        };
+        let mut positions: Vec<f32> = match (self.elements(index)?, elements) {
+            (Some(all), None) => all.iter(self.buffers).flat_map(read).collect(),
+            (Some(all), Some(these)) => {
+                all.these(self.buffers, these.iter().map(|&i| i as usize)).flat_map(read).collect()
+            }
+            (None, _) => vec![0.0; 3 * self.count_of_zeros(accessor, place)?],
+        };
+        if let Some(sparse) = &accessor.sparse {
+            let (at, values) = (&sparse.indices, &sparse.values);
+            let kind = match at.component_type {
+                Checked::Valid(kind) => kind.0,
+                Checked::Invalid => return Err(refuse(place(), "its sparse indices are of no known type")),
+            };
+            let count = sparse.count.0;
+            let indices =
+                self.in_view(at.buffer_view.value(), at.byte_offset.0, count, kind.size(), place)?;
+            let size = 3 * component.size();
+            let values =
+                self.in_view(values.buffer_view.value(), values.byte_offset.0, count, size, place)?;
+            for (at, value) in indices.iter(self.buffers).zip(values.iter(self.buffers)) {
+                let vertex = integer(at, kind) as usize;
+                let Some(position) = positions.get_mut(3 * vertex..3 * vertex + 3) else {
+                    return Err(refuse(
+                        place(),
+                        format!("it has no element {vertex}, which its sparse part changes"),
+                    ));
+                };
+                position.copy_from_slice(&read(value));
+            }
+        }
+        Ok(positions)
+    }
+
+    /// How many elements an accessor without a buffer view has: no more than the file has bytes.
+    fn count_of_zeros(&self, accessor: &Accessor, place: impl Fn() -> String) -> Result<usize, Error> {
+        let count = accessor.count.0;
+        if accessor.sparse.is_some() && count <= self.buffers.total() {
+            return Ok(count as usize);
+        }
+        Err(refuse(place(), format!("it announces {count} elements and has no data for them")))
+    }
+
+    /// The vertices that an accessor of indices names.
+    pub(super) fn indices(&self, index: usize) -> Result<Vec<u32>, Error> {
+        let accessor = self.get(index)?;
+        let place = || format!("accessor {index}");
+        let component = component(accessor, place)?;
+        if accessor.type_ != Checked::Valid(Type::Scalar) || !is_unsigned(component) {
+            return Err(refuse(place(), "indices are not unsigned integers of type SCALAR"));
+        }
+        match self.elements(index)? {
+            Some(elements) if accessor.sparse.is_none() => {
+                Ok(elements.iter(self.buffers).map(|element| integer(element, component)).collect())
+            }
+            _ => Err(refuse(place(), "sparse indices are not supported")),
+        }
+    }
+}
+
+pub(super) fn component(accessor: &Accessor, place: impl Fn() -> String) -> Result<ComponentType, Error> {
+    match accessor.component_type {
+        Checked::Valid(component) => Ok(component.0),
+        Checked::Invalid => Err(refuse(place(), "its component type is not known")),
+    }
+}
+
+fn components(accessor: &Accessor, place: impl Fn() -> String) -> Result<usize, Error> {
+    match accessor.type_ {
+        Checked::Valid(kind) => Ok(kind.multiplicity()),
+        Checked::Invalid => Err(refuse(place(), "its type is not known")),
+    }
+}
+
+fn is_unsigned(component: ComponentType) -> bool {
+    matches!(component, ComponentType::U8 | ComponentType::U16 | ComponentType::U32)
+}
+
+/// The component at the start of the bytes, of which there are enough.
+fn number(bytes: &[u8], component: ComponentType) -> f32 {
+    let word = || bytes.first_chunk().copied().unwrap_or_default();
+    match component {
+        ComponentType::I8 => f32::from(bytes[0] as i8),
+        ComponentType::I16 => f32::from(i16::from_le_bytes([bytes[0], bytes[1]])),
+        ComponentType::U8 | ComponentType::U16 => integer(bytes, component) as f32,
+        ComponentType::U32 => u32::from_le_bytes(word()) as f32,
+        ComponentType::F32 => f32::from_le_bytes(word()),
+    }
+}
+
+/// The unsigned integer at the start of the bytes, of which there are enough.
+fn integer(bytes: &[u8], component: ComponentType) -> u32 {
+    match component {
+        ComponentType::U8 => u32::from(bytes[0]),
+        ComponentType::U16 => u32::from(u16::from_le_bytes([bytes[0], bytes[1]])),
+        _ => u32::from_le_bytes(bytes.first_chunk().copied().unwrap_or_default()),
+    }
+}

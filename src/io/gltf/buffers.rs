@@ -1,0 +1,121 @@
+//! The bytes that a glTF file has in its binary chunk, in its JSON, or in files beside it.
+
+use super::{ReadFile, Root, quoted, refuse};
+use crate::Error;
+use base64::Engine;
+use base64::alphabet::STANDARD;
+use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
+use percent_encoding::percent_decode_str;
+use std::borrow::Cow;
+use std::ops::Index;
+
+/// Base64 with or without its padding.
+const BASE64: GeneralPurpose = GeneralPurpose::new(
+    &STANDARD,
+    GeneralPurposeConfig::new().with_decode_padding_mode(DecodePaddingMode::Indifferent),
+);
+
+/// The buffers of a file.
+pub(super) struct Buffers<'a>(Vec<Buffer<'a>>);
+
+enum Buffer<'a> {
+    Present(Cow<'a, [u8]>),
+    /// Why it is not there.
+    Absent(String),
+}
+
+impl<'a> Buffers<'a> {
+    /// Takes the binary chunk as the first buffer where that names no other place, and asks `read` for what lies in
+    /// other files.
+    ///
+    /// # Errors
+    /// [`Error::Parse`] for a data URI that is none, and for a file that `read` does not give.
+    pub(super) fn of(root: &Root, binary: Option<&'a [u8]>, read: ReadFile<'_>) -> Result<Self, Error> {
+        let mut buffers = Vec::with_capacity(root.buffers.len());
+        for (index, buffer) in root.buffers.iter().enumerate() {
+            buffers.push(match (&buffer.uri, binary) {
+                (None, Some(binary)) if index == 0 => Buffer::Present(binary.into()),
+                (None, _) => Buffer::Absent("it has no URI".into()),
+                (Some(uri), _) => match uri.split_once(',') {
+                    Some((head, data)) if head.starts_with("data:") => {
+                        Buffer::Present(decode(head, data).map_err(|message| at(index, message))?.into())
+                    }
+                    _ => Self::from_file(index, uri, read)?,
+                },
+            });
+        }
+        // What lies beyond the length that is announced is padding.
+        for (buffer, announced) in buffers.iter_mut().zip(&root.buffers) {
+            let announced = usize::try_from(announced.byte_length.0).unwrap_or(usize::MAX);
+            match buffer {
+                Buffer::Present(Cow::Owned(bytes)) => bytes.truncate(announced),
+                Buffer::Present(Cow::Borrowed(bytes)) => *bytes = &bytes[..announced.min(bytes.len())],
+                Buffer::Absent(_) => {}
+            }
+        }
+        Ok(Self(buffers))
+    }
+
+    fn from_file(index: usize, uri: &str, read: ReadFile<'_>) -> Result<Buffer<'a>, Error> {
+        let name = percent_decode_str(uri).decode_utf8_lossy();
+        // A path to somewhere else, or to another machine, is never followed.
+        let is_beside = !name.starts_with('/')
+            && !name.contains(['\\', ':', '\0'])
+            && name.split('/').all(|part| part != "..");
+        if !is_beside {
+            return Err(at(index, format!("{} is not a file beside this one", quoted(uri))));
+        }
+        let bytes =
+            read(&name).map_err(|why| at(index, format!("it is in the file {}: {why}", quoted(&name))))?;
+        Ok(Buffer::Present(bytes.into()))
+    }
+
+    /// The length of a buffer that is there.
+    pub(super) fn length(&self, index: usize, place: impl Fn() -> String) -> Result<usize, Error> {
+        match self.0.get(index) {
+            Some(Buffer::Present(bytes)) => Ok(bytes.len()),
+            Some(Buffer::Absent(why)) => Err(refuse(place(), format!("buffer {index} is missing: {why}"))),
+            None => Err(refuse(place(), format!("there is no buffer {index}"))),
+        }
+    }
+
+    /// Bytes of all.
+    pub(super) fn total(&self) -> u64 {
+        (0..self.0.len()).map(|index| self[index].len() as u64).sum()
+    }
+
+    /// Whether there is a buffer of this number, and its bytes are known.
+    pub(super) fn has(&self, index: usize) -> bool {
+        matches!(self.0.get(index), Some(Buffer::Present(_)))
+    }
+}
+
+/// The bytes of a buffer; none where they are not there.
+impl Index<usize> for Buffers<'_> {
+    type Output = [u8];
+    fn index(&self, index: usize) -> &[u8] {
+        match &self.0[index] {
+            Buffer::Present(bytes) => bytes,
+            Buffer::Absent(_) => &[],
+        }
+    }
+}
+
+fn at(buffer: usize, message: impl Into<String>) -> Error {
+    refuse(format!("buffer {buffer}"), message)
+}
+
+/// The bytes of a data URI, of what is before its comma and behind.
+fn decode(head: &str, data: &str) -> Result<Vec<u8>, String> {
+    if head.ends_with(";base64") {
+        return BASE64.decode(data).map_err(|error| format!("its data URI is no base64: {error}"));
+    }
+    Ok(percent_decode_str(data).collect())
+}
+
+/// Bytes as a data URI.
+pub(super) fn data_uri(bytes: &[u8]) -> String {
+    let mut uri = String::from("data:application/octet-stream;base64,");
+    BASE64.encode_string(bytes, &mut uri);
+    uri
+}

@@ -1,0 +1,385 @@
+//! glTF 2.0, JSON (`.gltf`) and binary (`.glb`), by the crate `gltf`. Source: the specification of the Khronos Group,
+//! glTF 2.0.1.
+//!
+//! Each primitive of triangles is a part of the mesh, with vertices of its own: what two primitives share stays as it
+//! is. Positions are those of the file, so that what is Delaunay is decided on the file's own numbers; only where nodes
+//! stretch a mesh unevenly are they stretched too. What is written is the file again, with other indices.
+
+mod accessors;
+mod buffers;
+mod container;
+mod placement;
+mod write;
+
+use super::text::{Dropped, Fans, Parsed, quoted as quoted_bytes};
+use super::{Loaded, ReadOptions};
+use crate::{Dimension, Error, Mesh};
+use accessors::Accessors;
+use buffers::Buffers;
+use container::Container;
+use glam::{DMat4, DVec3};
+use gltf::json::mesh::Mesh as JsonMesh;
+use gltf::json::mesh::{Mode, Primitive, Semantic};
+use gltf::json::scene::Node;
+use gltf::json::validation::Checked;
+use gltf::json::{Accessor, Buffer, Index, buffer::View};
+use placement::{Placement, placements};
+use serde::Deserialize;
+use serde_json::Value;
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+pub(super) use write::new_file;
+
+/// The extension that packs positions and indices of a primitive.
+const DRACO: &str = "KHR_draco_mesh_compression";
+
+/// Bytes that a vertex and a triangle take in memory while they are read.
+const VERTEX_BYTES: usize = 12;
+const TRIANGLE_BYTES: usize = 12;
+
+/// Reads a file that lies beside the one that is read, by its name there.
+/// Else it says why not.
+pub type ReadFile<'a> = &'a dyn Fn(&str) -> Result<Vec<u8>, String>;
+
+/// Reads a file's bytes; a mesh in space, if nothing else is asked for.
+pub(super) fn load(bytes: Vec<u8>, options: &ReadOptions, read: ReadFile<'_>) -> Result<Loaded, Error> {
+    let Content { positions, triangles, document, dropped, notes } = parse(bytes, read, options.max_bytes)?;
+    let dropped = Dropped(dropped.into_iter().map(String::from).collect());
+    let parsed =
+        Parsed { stride: 3, positions: positions.into(), faces: Fans { triangles, polygons: 0 }, dropped };
+    let loaded = super::finish(parsed, Some(options.dimension.unwrap_or(Dimension::Three)))?;
+    Ok(Loaded { notes, document: Some(document), ..loaded })
+}
+
+/// What a file holds of triangles.
+struct Content {
+    positions: Vec<f32>,
+    triangles: Vec<u32>,
+    document: Document,
+    dropped: Vec<&'static str>,
+    notes: Vec<String>,
+}
+
+/// A glTF file, and which of its primitives the triangles of a mesh are.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Document {
+    bytes: Vec<u8>,
+    /// The files beside it that it refers to.
+    files: BTreeMap<String, Vec<u8>>,
+    parts: Vec<Part>,
+}
+
+/// Triangles that are one primitive of the file, or several with the same positions and indices.
+#[derive(Clone, Debug, Default, PartialEq)]
+struct Part {
+    /// Each as a mesh of the file and one of its primitives.
+    users: Vec<[usize; 2]>,
+    vertices: Range<usize>,
+    /// The elements of the accessor that these vertices are, where they are not all of them.
+    elements: Option<Vec<u32>>,
+    triangles: Range<usize>,
+    /// The accessor of the indices of a list of triangles.
+    indices: Option<usize>,
+    /// From the mesh's coordinates to those of the scene.
+    world: DMat4,
+}
+
+impl Document {
+    /// Positions in the scene, to draw it: each part where the first node that has it places it, 3 numbers a vertex.
+    /// `mesh` has the positions that were read.
+    pub(super) fn placed(&self, mesh: &Mesh) -> Vec<f32> {
+        let place = |part: &Part| {
+            let world = part.world;
+            part.vertices
+                .clone()
+                .map(move |v| world.transform_point3(mesh.point3(v as u32)).as_vec3().to_array())
+        };
+        self.parts.iter().flat_map(place).flatten().collect()
+    }
+}
+
+fn refuse(place: impl Into<String>, message: impl Into<String>) -> Error {
+    Error::Parse { place: place.into(), message: message.into() }
+}
+
+fn quoted(text: &str) -> String {
+    quoted_bytes(text.as_bytes())
+}
+
+/// What of a file's JSON says where triangles are. The rest may be wrong, and stays as it is.
+#[derive(Default, Deserialize)]
+#[serde(default, rename_all = "camelCase")]
+struct Root {
+    scene: Value,
+    scenes: Vec<Scene>,
+    nodes: Vec<Node>,
+    meshes: Vec<JsonMesh>,
+    accessors: Vec<Accessor>,
+    buffer_views: Vec<View>,
+    buffers: Vec<Buffer>,
+    images: Vec<Image>,
+    materials: Value,
+    skins: Value,
+    animations: Value,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(default)]
+struct Scene {
+    nodes: Vec<Index<Node>>,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(default, rename_all = "camelCase")]
+struct Image {
+    buffer_view: Option<Index<View>>,
+}
+
+/// What is read first: in another version all else is something else.
+#[derive(Deserialize)]
+struct Head {
+    asset: Asset,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+struct Asset {
+    version: String,
+    min_version: Option<String>,
+}
+
+/// The JSON of a file.
+fn json(bytes: &[u8]) -> Result<Root, Error> {
+    let Asset { version, min_version } = deserialized::<Head>(bytes)?.asset;
+    let version = min_version.unwrap_or(version);
+    if !version.starts_with("2.") {
+        let message = format!("the file is of version {} of glTF; version 2 is read", quoted(&version));
+        return Err(refuse("asset", message));
+    }
+    deserialized(bytes)
+}
+
+fn deserialized<'a, T: Deserialize<'a>>(bytes: &'a [u8]) -> Result<T, Error> {
+    let mut json = serde_json::Deserializer::from_slice(bytes);
+    let value = serde_path_to_error::deserialize(&mut json)
+        .map_err(|error| refuse(format!("JSON, {}", error.path()), error.inner().to_string()))?;
+    json.end().map_err(|error| refuse("JSON", error.to_string()))?;
+    Ok(value)
+}
+
+/// `max_bytes` limits what the mesh may take.
+fn parse(bytes: Vec<u8>, read: ReadFile<'_>, max_bytes: u64) -> Result<Content, Error> {
+    let container = Container::of(&bytes)?;
+    let root = json(&bytes[container.json.clone()])?;
+    let files = std::cell::RefCell::new(BTreeMap::new());
+    let kept = |name: &str| {
+        let content = read(name)?;
+        files.borrow_mut().insert(name.to_owned(), content.clone());
+        Ok(content)
+    };
+    let buffers = Buffers::of(&root, container.binary.map(|range| &bytes[range]), &kept)?;
+    let mut reader = Reader {
+        accessors: Accessors { root: &root, buffers: &buffers },
+        uses: uses_of_positions(&root),
+        max_bytes,
+        found: BTreeMap::new(),
+        parts: Vec::new(),
+        positions: Vec::new(),
+        triangles: Vec::new(),
+        packed: 0,
+        others: 0,
+    };
+    let mut ambiguous = 0;
+    let (placements, loops) = placements(&root)?;
+    for (index, (mesh, placement)) in root.meshes.iter().zip(placements).enumerate() {
+        ambiguous += usize::from(placement.is_ambiguous());
+        for (number, primitive) in mesh.primitives.iter().enumerate() {
+            reader.add([index, number], primitive, &placement)?;
+        }
+    }
+    let Reader { parts, positions, triangles, packed, others, .. } = reader;
+    if parts.is_empty() && packed > 0 {
+        let message = "its meshes are compressed (KHR_draco_mesh_compression or EXT_meshopt_compression); \
+                       uncompress the file first, for example with glTF-Transform";
+        return Err(refuse("meshes", message));
+    }
+    let mut notes = Vec::new();
+    for (count, what) in [
+        (packed, "compressed primitives, left as they are"),
+        (others, "primitives of points or lines, left as they are"),
+        (loops, "nodes with two parents or below themselves, taken once"),
+        (ambiguous, "meshes that nodes stretch in several ways, taken as the first node shows them"),
+    ] {
+        if count > 0 {
+            notes.push(format!("{what}: {count}"));
+        }
+    }
+    let dropped = dropped(&root);
+    let document = Document { bytes, files: files.into_inner(), parts };
+    Ok(Content { positions, triangles, document, dropped, notes })
+}
+
+/// What a mesh has no place for.
+fn dropped(root: &Root) -> Vec<&'static str> {
+    let primitives = || root.meshes.iter().flat_map(|mesh: &JsonMesh| &mesh.primitives);
+    let has_more = |primitive: &Primitive| {
+        primitive.attributes.keys().any(|semantic| *semantic != Checked::Valid(Semantic::Positions))
+    };
+    [
+        (primitives().any(has_more), "attributes of vertices besides positions"),
+        (primitives().any(|primitive| primitive.targets.is_some()), "morph targets"),
+        (!root.materials.is_null(), "materials"),
+        (!root.skins.is_null(), "skins"),
+        (!root.animations.is_null(), "animations"),
+    ]
+    .into_iter()
+    .filter_map(|(is_there, what)| is_there.then_some(what))
+    .collect()
+}
+
+fn positions_of(primitive: &Primitive) -> Option<usize> {
+    primitive.attributes.get(&Checked::Valid(Semantic::Positions)).map(|accessor| accessor.value())
+}
+
+/// How many primitives use each accessor for their positions.
+fn uses_of_positions(root: &Root) -> Vec<usize> {
+    let mut uses = vec![0; root.accessors.len()];
+    for accessor in root.meshes.iter().flat_map(|mesh| &mesh.primitives).filter_map(positions_of) {
+        if let Some(uses) = uses.get_mut(accessor) {
+            *uses += 1;
+        }
+    }
+    uses
+}
+
+/// What makes two primitives the same triangles: positions, indices, mode, and the mesh where it is stretched.
+type Key = (usize, Option<usize>, u32, Option<usize>);
+
+/// The parts so far.
+struct Reader<'a> {
+    accessors: Accessors<'a>,
+    uses: Vec<usize>,
+    max_bytes: u64,
+    /// The part of each key.
+    found: BTreeMap<Key, usize>,
+    parts: Vec<Part>,
+    positions: Vec<f32>,
+    triangles: Vec<u32>,
+    /// Primitives that are compressed.
+    packed: usize,
+    /// Primitives without triangles.
+    others: usize,
+}
+
+impl Reader<'_> {
+    fn add(&mut self, user: [usize; 2], primitive: &Primitive, placement: &Placement) -> Result<(), Error> {
+        let place = || format!("mesh {}, primitive {}", user[0], user[1]);
+        let Checked::Valid(mode) = primitive.mode else {
+            return Err(refuse(place(), "its mode is not known"));
+        };
+        let Some(position) = positions_of(primitive) else {
+            self.others += 1;
+            return Ok(());
+        };
+        if !matches!(mode, Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan) {
+            self.others += 1;
+            return Ok(());
+        }
+        let index = primitive.indices.map(|accessor| accessor.value());
+        let is_draco = primitive.extensions.as_ref().is_some_and(|others| others.others.contains_key(DRACO));
+        if is_draco || [Some(position), index].into_iter().flatten().any(|i| self.accessors.is_packed(i)) {
+            self.packed += 1;
+            return Ok(());
+        }
+        let key = (position, index, mode.as_gl_enum(), placement.stretch.map(|_| user[0]));
+        if let Some(&part) = self.found.get(&key) {
+            self.parts[part].users.push(user);
+            return Ok(());
+        }
+        let count = self.accessors.get(position)?.count.0;
+        // Others have their positions there too, perhaps all of them in one accessor.
+        let is_shared = self.uses[position] > 1 && self.accessors.get(position)?.sparse.is_none();
+        self.limit(if is_shared { 0 } else { count }, 0, place)?;
+        let mut corners = match index {
+            Some(index) => self.accessors.indices(index)?,
+            // What has no indices has an element for each corner.
+            None if self.accessors.elements(position)?.is_some() => (0..count as u32).collect(),
+            None => Vec::new(),
+        };
+        if let Some(corner) = corners.iter().find(|&&corner| u64::from(corner) >= count) {
+            let message = format!("it names element {corner} of accessor {position}, which has {count}");
+            return Err(refuse(place(), message));
+        }
+        let mut triangles = triangles(mode, &corners);
+        let mut elements = Vec::new();
+        if is_shared {
+            corners.sort_unstable();
+            corners.dedup();
+            elements = corners;
+        }
+        let vertices = if is_shared { elements.len() } else { count as usize };
+        self.limit(vertices as u64, triangles.len() as u64 / 3, place)?;
+        let first = self.positions.len() / 3;
+        for vertex in &mut triangles {
+            let rank =
+                if is_shared { elements.binary_search(vertex).unwrap_or_default() } else { *vertex as usize };
+            *vertex = (first + rank) as u32;
+        }
+        self.positions.extend(self.accessors.positions(position, is_shared.then_some(&elements))?);
+        if let Some(stretch) = placement.stretch {
+            for position in self.positions[3 * first..].as_chunks_mut().0 {
+                *position = (stretch * DVec3::from_array(position.map(f64::from))).as_vec3().to_array();
+            }
+        }
+        let start = self.triangles.len() / 3;
+        self.triangles.append(&mut triangles);
+        self.found.insert(key, self.parts.len());
+        self.parts.push(Part {
+            users: vec![user],
+            vertices: first..first + vertices,
+            elements: is_shared.then_some(elements),
+            triangles: start..self.triangles.len() / 3,
+            indices: index.filter(|_| mode == Mode::Triangles),
+            world: placement
+                .stretch
+                .map_or(placement.world, |_| DMat4::from_translation(placement.world.w_axis.truncate())),
+        });
+        Ok(())
+    }
+
+    /// Refuses more vertices and triangles than memory is allowed for.
+    fn limit(&self, vertices: u64, triangles: u64, place: impl Fn() -> String) -> Result<(), Error> {
+        let vertices = (self.positions.len() / 3) as u64 + vertices;
+        let triangles = (self.triangles.len() / 3) as u64 + triangles;
+        let bytes = vertices * VERTEX_BYTES as u64 + triangles * TRIANGLE_BYTES as u64;
+        if bytes <= self.max_bytes {
+            return Ok(());
+        }
+        let message = format!(
+            "with it the meshes of the file take {bytes} bytes, more than the {} allowed",
+            self.max_bytes
+        );
+        Err(refuse(place(), message))
+    }
+}
+
+/// The triangles that the corners make up, in that mode.
+fn triangles(mode: Mode, corners: &[u32]) -> Vec<u32> {
+    let (whole, _) = corners.as_chunks::<3>();
+    match mode {
+        Mode::TriangleStrip => corners
+            .windows(3)
+            .enumerate()
+            .flat_map(|(i, w)| if i % 2 == 0 { [w[0], w[1], w[2]] } else { [w[0], w[2], w[1]] })
+            .collect(),
+        Mode::TriangleFan => match corners {
+            [hub, rim @ ..] => rim.windows(2).flat_map(|pair| [pair[0], pair[1], *hub]).collect(),
+            [] => Vec::new(),
+        },
+        _ => whole.as_flattened().to_vec(),
+    }
+}
+
+#[cfg(test)]
+mod tests;

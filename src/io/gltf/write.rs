@@ -1,0 +1,301 @@
+//! A glTF file again with other indices, and a new one.
+//!
+//! Indices are written over the old ones wherever nothing else lies there, so that no other byte changes. Where that
+//! cannot be, a primitive gets an accessor of its own.
+
+use super::accessors::{Accessors, component};
+use super::buffers::{Buffers, data_uri};
+use super::container::{Container, glb};
+use super::{Document, Part, json, refuse};
+use crate::{Error, Mesh};
+use gltf::json::accessor::ComponentType;
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
+use std::io;
+use std::ops::Range;
+
+const ELEMENT_ARRAY_BUFFER: u32 = 34963;
+const ARRAY_BUFFER: u32 = 34962;
+const TRIANGLES: u32 = 4;
+
+impl Document {
+    /// The bytes of the file with the triangles `after` in place of `before`, in the binary form or in the other.
+    /// Vertices, materials and all else are as they were; a form that the file did not have changes where buffers are.
+    ///
+    /// # Errors
+    /// [`Error::TooLarge`] for 4 GiB and more in the binary form. Those of reading, if the file's bytes have changed.
+    pub(in crate::io) fn with_triangles(
+        &self,
+        before: &[u32],
+        after: &[u32],
+        is_binary: bool,
+    ) -> Result<Vec<u8>, Error> {
+        let container = Container::of(&self.bytes)?;
+        let text = &self.bytes[container.json.clone()];
+        let root = json(text)?;
+        let read = |name: &str| Ok(self.files.get(name).cloned().unwrap_or_default());
+        let buffers = Buffers::of(&root, container.binary.clone().map(|range| &self.bytes[range]), &read)?;
+        let accessors = Accessors { root: &root, buffers: &buffers };
+        let mut file = File { buffers: &buffers, changed: BTreeMap::new(), appended: Vec::new() };
+        let is_alone = alone(&accessors, &self.parts);
+        for part in &self.parts {
+            let range = 3 * part.triangles.start..3 * part.triangles.end;
+            if before[range.clone()] != after[range.clone()] {
+                let indices: Vec<u32> = after[range].iter().map(|&vertex| part.element(vertex)).collect();
+                match part.indices.filter(|&accessor| is_alone[accessor]) {
+                    Some(accessor) => file.overwrite(&accessors, accessor, &indices)?,
+                    None => file.appended.push((part, indices)),
+                }
+            }
+        }
+        let is_in_chunk = |buffer: usize| buffer == 0 && root.buffers[0].uri.is_none();
+        let is_same_form = is_binary == container.is_binary;
+        if is_same_form && file.appended.is_empty() && file.changed.keys().all(|&buffer| is_in_chunk(buffer))
+        {
+            let mut bytes = self.bytes.clone();
+            if let (Some(changed), Some(chunk)) = (file.changed.get(&0), container.binary) {
+                bytes[chunk][..changed.len()].copy_from_slice(changed);
+            }
+            return Ok(bytes);
+        }
+        let mut root: Value =
+            serde_json::from_slice(text).map_err(|error| refuse("JSON", error.to_string()))?;
+        let others: Vec<&[u8]> = container.others.iter().map(|range| &self.bytes[range.clone()]).collect();
+        file.finish(&mut root, is_binary, &others)
+    }
+}
+
+impl Part {
+    /// The element of the accessor of positions that a vertex is.
+    fn element(&self, vertex: u32) -> u32 {
+        let rank = vertex - self.vertices.start as u32;
+        self.elements.as_ref().map_or(rank, |elements| elements[rank as usize])
+    }
+}
+
+/// For each accessor whether it is the indices of one part alone, and its bytes are nothing else's.
+fn alone(accessors: &Accessors, parts: &[Part]) -> Vec<bool> {
+    let root = accessors.root;
+    let mut uses = vec![0; root.accessors.len()];
+    let primitives = root.meshes.iter().flat_map(|mesh| &mesh.primitives);
+    for index in primitives.filter_map(|primitive| primitive.indices) {
+        if let Some(uses) = uses.get_mut(index.value()) {
+            *uses += 1;
+        }
+    }
+    let mut is_alone = vec![false; root.accessors.len()];
+    for part in parts {
+        if let Some(accessor) = part.indices {
+            is_alone[accessor] = uses[accessor] == part.users.len();
+        }
+    }
+    // What overlaps lies in one run.
+    let mut claims = claims(accessors);
+    claims.sort_unstable_by_key(|claim| (claim.buffer, claim.bytes.start));
+    let mut start = 0;
+    let mut end = 0;
+    for i in 0..claims.len() {
+        let claim = &claims[i];
+        if i == 0 || claim.buffer != claims[i - 1].buffer || claim.bytes.start >= end {
+            (start, end) = (i, claim.bytes.end);
+            continue;
+        }
+        end = end.max(claim.bytes.end);
+        for claim in [&claims[start], &claims[i - 1], claim] {
+            claim.accessor.inspect(|&accessor| is_alone[accessor] = false);
+        }
+    }
+    is_alone
+}
+
+/// Bytes that something of the file reads.
+struct Claim {
+    buffer: usize,
+    bytes: Range<usize>,
+    accessor: Option<usize>,
+}
+
+fn claims(accessors: &Accessors) -> Vec<Claim> {
+    let Accessors { root, .. } = accessors;
+    let mut claims = Vec::new();
+    let mut views: Vec<usize> =
+        root.images.iter().filter_map(|image| Some(image.buffer_view?.value())).collect();
+    for (index, accessor) in root.accessors.iter().enumerate() {
+        if let Ok(Some(elements)) = accessors.elements(index) {
+            claims.push(Claim { buffer: elements.buffer, bytes: elements.bytes, accessor: Some(index) });
+        }
+        if let Some(sparse) = &accessor.sparse {
+            views.extend([sparse.indices.buffer_view.value(), sparse.values.buffer_view.value()]);
+        }
+    }
+    for view in views.into_iter().filter_map(|view| root.buffer_views.get(view)) {
+        let start = view.byte_offset.unwrap_or_default().0 as usize;
+        let bytes = start..start.saturating_add(view.byte_length.0 as usize);
+        claims.push(Claim { buffer: view.buffer.value(), bytes, accessor: None });
+    }
+    claims.retain(|claim| !claim.bytes.is_empty());
+    claims
+}
+
+/// What becomes of a file.
+struct File<'a> {
+    buffers: &'a Buffers<'a>,
+    /// Buffers with other bytes.
+    changed: BTreeMap<usize, Vec<u8>>,
+    /// Parts that get an accessor of their own, with its indices.
+    appended: Vec<(&'a Part, Vec<u32>)>,
+}
+
+impl File<'_> {
+    fn overwrite(&mut self, accessors: &Accessors, accessor: usize, indices: &[u32]) -> Result<(), Error> {
+        let Some(elements) = accessors.elements(accessor)? else { return Ok(()) };
+        let component = component(accessors.get(accessor)?, || format!("accessor {accessor}"))?;
+        let stride = elements.stride;
+        let buffer =
+            self.changed.entry(elements.buffer).or_insert_with(|| self.buffers[elements.buffer].to_vec());
+        for (slot, &index) in buffer[elements.bytes].chunks_mut(stride).zip(indices) {
+            slot[..component.size()].copy_from_slice(&index.to_le_bytes()[..component.size()]);
+        }
+        Ok(())
+    }
+
+    /// Writes what has changed into the JSON, and gives the bytes of the whole.
+    fn finish(mut self, root: &mut Value, is_binary: bool, others: &[&[u8]]) -> Result<Vec<u8>, Error> {
+        let mut buffers = take(root, "buffers");
+        // The first buffer is the binary chunk, if its bytes are known.
+        let mut chunk = (is_binary && self.buffers.has(0))
+            .then(|| self.changed.remove(&0).unwrap_or_else(|| self.buffers[0].to_vec()));
+        if !self.appended.is_empty() {
+            let home = if chunk.is_some() { 0 } else { buffers.len() };
+            let mut bytes = chunk.take().unwrap_or_default();
+            for (part, indices) in &self.appended {
+                append(root, home, &mut bytes, part, indices);
+            }
+            if is_binary && home == 0 {
+                chunk = Some(bytes);
+            } else {
+                self.changed.insert(home, bytes);
+            }
+            buffers.resize(buffers.len().max(home + 1), json!({}));
+        }
+        if !is_binary && self.buffers.has(0) && buffers[0].get("uri").is_none() {
+            self.changed.entry(0).or_insert_with(|| self.buffers[0].to_vec());
+        }
+        for (index, bytes) in &self.changed {
+            buffers[*index]["byteLength"] = bytes.len().into();
+            buffers[*index]["uri"] = data_uri(bytes).into();
+        }
+        if let (Some(bytes), Some(Value::Object(buffer))) = (&chunk, buffers.first_mut()) {
+            buffer.insert("byteLength".into(), bytes.len().into());
+            buffer.shift_remove("uri");
+        }
+        put(root, "buffers", buffers);
+        let text = root.to_string();
+        if is_binary { glb(text.as_bytes(), chunk.as_deref(), others) } else { Ok(text.into_bytes()) }
+    }
+}
+
+/// Adds the indices to the bytes of a buffer, and an accessor for them that the part's primitives take.
+fn append(root: &mut Value, buffer: usize, bytes: &mut Vec<u8>, part: &Part, indices: &[u32]) {
+    // The largest number of a type restarts a strip.
+    let is_short = indices.iter().all(|&index| index < u32::from(u16::MAX));
+    let component = if is_short { ComponentType::U16 } else { ComponentType::U32 };
+    bytes.resize(bytes.len().next_multiple_of(4), 0);
+    let start = bytes.len();
+    bytes.extend(indices.iter().flat_map(|index| index.to_le_bytes().into_iter().take(component.size())));
+    let mut views = take(root, "bufferViews");
+    let view = views.len();
+    views.push(json!({
+        "buffer": buffer, "byteOffset": start, "byteLength": bytes.len() - start, "target": ELEMENT_ARRAY_BUFFER,
+    }));
+    put(root, "bufferViews", views);
+    let mut accessors = take(root, "accessors");
+    let accessor = accessors.len();
+    accessors.push(json!({
+        "bufferView": view, "componentType": component.as_gl_enum(), "count": indices.len(), "type": "SCALAR",
+    }));
+    put(root, "accessors", accessors);
+    for [mesh, primitive] in &part.users {
+        if let Some(primitive) = root.pointer_mut(&format!("/meshes/{mesh}/primitives/{primitive}")) {
+            primitive["indices"] = accessor.into();
+            if primitive.get("mode").is_some() {
+                primitive["mode"] = TRIANGLES.into();
+            }
+        }
+    }
+}
+
+/// Takes the array of that name out; its place stays.
+fn take(root: &mut Value, name: &str) -> Vec<Value> {
+    match root.get_mut(name).map(Value::take) {
+        Some(Value::Array(array)) => array,
+        _ => Vec::new(),
+    }
+}
+
+/// Puts an array in its place. Empty ones are not allowed.
+fn put(root: &mut Value, name: &str, array: Vec<Value>) {
+    if !array.is_empty() {
+        root[name] = array.into();
+    }
+}
+
+/// The bytes of a new file with one mesh; without triangles its vertices are points.
+///
+/// # Errors
+/// [`io::ErrorKind::InvalidInput`] for 4 GiB and more in the binary form, and for coordinates beyond 32 bits, to which
+/// 64-bit ones are rounded.
+pub(in crate::io) fn new_file(mesh: &Mesh, is_binary: bool) -> io::Result<Vec<u8>> {
+    let mut root = json!({ "asset": { "version": "2.0", "generator": "edgeflip" } });
+    let mut bytes = Vec::new();
+    if mesh.vertex_count() > 0 {
+        let positions = rounded(mesh)?;
+        bytes.extend(positions.as_flattened().iter().flat_map(|x| x.to_le_bytes()));
+        let bound = |pick: fn(f32, f32) -> f32| -> [f32; 3] {
+            std::array::from_fn(|axis| positions.iter().map(|p| p[axis]).reduce(pick).unwrap_or_default())
+        };
+        root["scene"] = 0.into();
+        root["scenes"] = json!([{ "nodes": [0] }]);
+        root["nodes"] = json!([{ "mesh": 0 }]);
+        root["meshes"] = json!([{ "primitives": [{ "attributes": { "POSITION": 0 }, "mode": 0 }] }]);
+        root["accessors"] = json!([{
+            "bufferView": 0, "componentType": ComponentType::F32.as_gl_enum(), "count": positions.len(), "type": "VEC3",
+            "min": bound(f32::min), "max": bound(f32::max),
+        }]);
+        root["bufferViews"] = json!([{ "buffer": 0, "byteLength": bytes.len(), "target": ARRAY_BUFFER }]);
+        root["buffers"] = json!([{}]);
+        if mesh.triangle_count() > 0 {
+            let part = Part { users: vec![[0, 0]], ..Part::default() };
+            append(&mut root, 0, &mut bytes, &part, mesh.triangles());
+        }
+        root["buffers"][0]["byteLength"] = bytes.len().into();
+        if !is_binary {
+            root["buffers"][0]["uri"] = data_uri(&bytes).into();
+        }
+    }
+    let text = root.to_string();
+    if is_binary {
+        glb(text.as_bytes(), (!bytes.is_empty()).then_some(&bytes), &[]).map_err(impossible)
+    } else {
+        Ok(text.into_bytes())
+    }
+}
+
+/// The positions of a mesh in 32 bits, 3 numbers a vertex.
+fn rounded(mesh: &Mesh) -> io::Result<Vec<[f32; 3]>> {
+    (0..mesh.vertex_count() as u32)
+        .map(|vertex| {
+            let point = mesh.point3(vertex).as_vec3();
+            if point.is_finite() {
+                return Ok(point.to_array());
+            }
+            Err(impossible(format!(
+                "vertex {vertex} is too far away for the 32-bit numbers of glTF; write PLY, OBJ or OFF"
+            )))
+        })
+        .collect()
+}
+
+fn impossible(error: impl ToString) -> io::Error {
+    io::Error::new(io::ErrorKind::InvalidInput, error.to_string())
+}

@@ -1,0 +1,78 @@
+// A GLB file with skin, morph targets and textures comes out with other indices and nothing else changed, and the
+// validator of the Khronos Group finds no fault in what is written. Takes the dist/ that is there.
+
+import assert from 'node:assert/strict';
+import { test } from 'node:test';
+import { makeDelaunay } from '../../dist/index.js';
+import { generate, readMesh, writeMesh } from '../../dist/files.js';
+import { riggedGlb } from './gltf.mjs';
+import validator from 'gltf-validator';
+
+/** What the validator finds. */
+async function faults(bytes, files = {}) {
+  const externalResourceFunction = async (uri) => files[decodeURIComponent(uri)];
+  const { issues } = await validator.validateBytes(bytes, { maxIssues: 20, externalResourceFunction });
+  return issues.messages;
+}
+
+async function flipped(bytes, name, files) {
+  const mesh = await readMesh(bytes, name, { files });
+  const { indices, flips, remaining } = await makeDelaunay(mesh);
+  return { mesh, after: { ...mesh, indices }, flips, remaining };
+}
+
+test('only the indices of a rigged GLB change', async () => {
+  const { bytes, ranges } = riggedGlb();
+  assert.deepEqual(await faults(bytes), []);
+  const { mesh, after, flips, remaining } = await flipped(bytes, 'rigged.glb');
+  assert.equal(mesh.dimension, 3);
+  assert.ok(flips > 20 && Object.keys(remaining).length === 0, `${flips} flips, ${JSON.stringify(remaining)}`);
+  const out = await writeMesh(after, 'out.glb', { original: { bytes, name: 'rigged.glb' } });
+  assert.deepEqual(await faults(out), []);
+  assert.equal(out.length, bytes.length);
+  const differ = [...out.keys()].filter((i) => out[i] !== bytes[i]);
+  assert.ok(differ.every((i) => ranges.some(([from, to]) => from <= i && i < to)));
+  for (const [from, to] of ranges) assert.ok(differ.some((i) => from <= i && i < to));
+  assert.deepEqual((await readMesh(out, 'out.glb')).indices, after.indices);
+});
+
+test('a rigged GLB becomes a glTF, and a strip a list, without a fault', async () => {
+  const { bytes } = riggedGlb();
+  const { after } = await flipped(bytes, 'rigged.glb');
+  const text = await writeMesh(after, 'out.gltf', { original: { bytes, name: 'rigged.glb' } });
+  assert.deepEqual(await faults(text), []);
+  const json = JSON.parse(Buffer.from(text).toString());
+  assert.deepEqual(json.asset.extras, { 'made by': 'a test', numbers: [1, 2.5, -1e-7] });
+  // The buffer in a file of its own, and the first primitive as a strip over its first vertices.
+  const buffer = Buffer.from(json.buffers[0].uri.split(',')[1], 'base64');
+  json.buffers[0].uri = 'a%20b.bin';
+  const primitive = json.meshes[0].primitives[0];
+  primitive.mode = 5;
+  const strip = Buffer.from(JSON.stringify(json));
+  const files = { 'a b.bin': new Uint8Array(buffer) };
+  await assert.rejects(readMesh(strip, 'strip.gltf'), { code: 'parse', message: /buffer 0: .*`a b.bin`: it is not among the `files` given/ });
+  const { mesh, after: again } = await flipped(strip, 'strip.gltf', files);
+  // A triangle that begins at another corner.
+  const indices = mesh.indices.slice();
+  [indices[0], indices[1], indices[2]] = [indices[1], indices[2], indices[0]];
+  const original = { bytes: new Uint8Array(strip), name: 'strip.gltf', files };
+  for (const [name, changed] of [['out.glb', again], ['out.gltf', { ...mesh, indices }]]) {
+    const out = await writeMesh(changed, name, { original });
+    assert.deepEqual((await faults(out, files)).filter(({ severity }) => severity === 0), []);
+    assert.deepEqual((await readMesh(out, name, { files })).indices, changed.indices);
+  }
+  await assert.rejects(writeMesh({ ...mesh, indices: indices.slice(3) }, 'out.glb', { original }), { code: 'triangle-count' });
+});
+
+test('a generated mesh becomes a file without a fault', async () => {
+  for (const spec of ['uvsphere 8', 'random 9']) {
+    for (const name of ['mesh.glb', 'mesh.gltf']) {
+      const mesh = await generate(spec);
+      const out = await writeMesh(mesh, name);
+      assert.deepEqual(await faults(out), [], `${spec} as ${name}`);
+      const again = await readMesh(out, name);
+      assert.deepEqual(again.indices, mesh.indices);
+      assert.equal(again.positions.length, (mesh.positions.length / mesh.dimension) * 3);
+    }
+  }
+});
