@@ -126,13 +126,13 @@ pub enum Error {
 }
 
 /// A number in a message.
-#[cfg(not(all(target_arch = "wasm32", any(feature = "js", feature = "js-audit", feature = "js-files"))))]
+#[cfg(not(all(target_arch = "wasm32", feature = "js-values")))]
 pub(crate) fn number(value: f64) -> String {
     value.to_string()
 }
 
 /// As JavaScript writes it: Rust's way would take 15 KB of a module.
-#[cfg(all(target_arch = "wasm32", any(feature = "js", feature = "js-audit", feature = "js-files")))]
+#[cfg(all(target_arch = "wasm32", feature = "js-values"))]
 pub(crate) fn number(value: f64) -> String {
     js_sys::Number::from(value).to_string_with_radix(10).map_or_else(|_| String::new(), String::from)
 }

@@ -3,11 +3,11 @@
 
 mod objects;
 
-pub use crate::engine::GpuDevice;
+pub use crate::engine::{GpuDevice, WebGl2Module};
 pub use crate::js_values::JsPositions;
-use crate::js_values::{backend_name, object, parse_dimension, reasons_object, thrown};
-use crate::{Backend, Error, Mesh, Options, Order, Positions, Session, engine};
-use js_sys::{Array, Float32Array, Float64Array, Uint8Array, Uint32Array};
+use crate::js_values::{backend_name, object, parse_dimension, positions_array, reasons_object, thrown};
+use crate::{Backend, Error, Mesh, Options, Order, Session, engine};
+use js_sys::{Array, Uint8Array, Uint32Array};
 use objects::outcome_object;
 use wasm_bindgen::prelude::*;
 
@@ -35,12 +35,10 @@ extern "C" {
     fn device(this: &JsOptions) -> JsValue;
 }
 
-/// Says where the programs of the WebGL2 engine come from: a function that returns a promise of their module.
-#[wasm_bindgen(js_name = setShaderLoader)]
-pub fn set_shader_loader(
-    #[wasm_bindgen(unchecked_param_type = "() => Promise<unknown>")] loader: js_sys::Function,
-) {
-    engine::set_shader_loader(loader);
+/// Says where the WebGL2 engine comes from.
+#[wasm_bindgen(js_name = setWebGl2)]
+pub fn set_webgl2(module: WebGl2Module) {
+    engine::set_webgl2(module);
 }
 
 /// A mesh on an engine. One call at a time: each must have answered before the next.
@@ -154,13 +152,9 @@ impl JsSession {
     pub async fn audit_input(&mut self) -> Result<JsValue, JsValue> {
         let triangles = self.0.triangles().await.map_err(thrown)?;
         let (mesh, options) = self.0.input();
-        let positions = match mesh.positions() {
-            Positions::F32(numbers) => Float32Array::from(numbers.as_slice()).into(),
-            Positions::F64(numbers) => Float64Array::from(numbers.as_slice()).into(),
-        };
         let array = |words: &[u32]| JsValue::from(Uint32Array::from(words));
         let arguments = [
-            positions,
+            positions_array(mesh.positions()),
             array(mesh.triangles()),
             (mesh.dimension().stride() as u32).into(),
             array(&triangles),

@@ -5,7 +5,9 @@
 use crate::Reasons;
 use crate::error::number;
 use crate::{Dimension, Error, Positions};
-use js_sys::{Array, Float32Array, Float64Array, Object};
+#[cfg(any(feature = "js", feature = "js-audit", feature = "js-files"))]
+use js_sys::{Array, Object};
+use js_sys::{Float32Array, Float64Array};
 use wasm_bindgen::prelude::*;
 
 #[wasm_bindgen]
@@ -24,6 +26,15 @@ impl From<JsPositions> for Positions {
     }
 }
 
+/// A copy of them.
+#[cfg(feature = "js")]
+pub(crate) fn positions_array(positions: &Positions) -> JsValue {
+    match positions {
+        Positions::F32(numbers) => Float32Array::from(numbers.as_slice()).into(),
+        Positions::F64(numbers) => Float64Array::from(numbers.as_slice()).into(),
+    }
+}
+
 /// Runs once, when a module is loaded.
 #[wasm_bindgen(start)]
 pub fn start() {
@@ -32,6 +43,7 @@ pub fn start() {
 }
 
 /// A plain object.
+#[cfg(any(feature = "js", feature = "js-audit", feature = "js-files"))]
 pub(crate) fn object<'a>(fields: impl IntoIterator<Item = (&'a str, JsValue)>) -> JsValue {
     let entries: Array = fields.into_iter().map(|(name, value)| Array::of2(&name.into(), &value)).collect();
     // Fails only on what is no list of pairs.
@@ -66,7 +78,12 @@ pub(crate) fn parse_dimension(dimension: f64) -> Result<Dimension, Error> {
 /// What a call throws: an `Error` with a `code`.
 pub(crate) fn thrown(error: Error) -> JsValue {
     let code = error.code();
-    let thrown = js_sys::Error::new(&in_words_of_javascript(error).to_string());
+    coded(code, &in_words_of_javascript(error).to_string())
+}
+
+/// An `Error` with a `code`.
+pub(crate) fn coded(code: &str, message: &str) -> JsValue {
+    let thrown = js_sys::Error::new(message);
     // Setting a field of a new object does not fail.
     let _ = js_sys::Reflect::set(thrown.unchecked_ref(), &"code".into(), &code.into());
     thrown.into()

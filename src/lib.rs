@@ -17,7 +17,7 @@
 //! user wants; `predicates` decide exactly; `phases` are the four phases of an iteration, `engine` runs them on the CPU,
 //! on several `threads`, or through the shaders of the same names; `session` is the loop, `options` and `outcome` are what goes in and out.
 //! Beside them: [`quality`] measures and audits, [`io`] reads and writes, [`families`] generates; [`Edges`] lists
-//! the edges as the paper does, [`EdgeState`] is what each of them waits for; `js`, `js_audit` and `js_files` are what the npm
+//! the edges as the paper does, [`EdgeState`] is what each of them waits for; `js`, `js_webgl2`, `js_audit` and `js_files` are what the npm
 //! package calls, each in a WebAssembly module of its own, and `js_values` is what they share.
 
 mod adjacency;
@@ -35,8 +35,10 @@ pub mod js;
 pub mod js_audit;
 #[cfg(all(target_arch = "wasm32", feature = "js-files"))]
 pub mod js_files;
-#[cfg(all(target_arch = "wasm32", any(feature = "js", feature = "js-audit", feature = "js-files")))]
+#[cfg(all(target_arch = "wasm32", feature = "js-values"))]
 mod js_values;
+#[cfg(all(target_arch = "wasm32", feature = "js-webgl2"))]
+pub mod js_webgl2;
 mod locks;
 mod mesh;
 mod options;

@@ -25,10 +25,11 @@ function output(stdout, program, ...args) {
 }
 
 const glue = 'target/js/wasm'; // also where src/js/tsconfig.json finds the types of the modules
-// One module for each entry of the package, and one for the audit. In that of the engines a function is inlined where
+// One module for each entry of the package, one for the WebGL2 engine, and one for the audit. In that of the engines a function is inlined where
 // it is marked so or nearly free: what is hot is marked, and the rest is a quarter smaller.
 const modules = [
   { name: 'edgeflip', features: 'gpu,js', flags: ['-C', 'llvm-args=-inline-threshold=10'] },
+  { name: 'edgeflip_webgl2', features: 'js-webgl2', flags: ['-C', 'llvm-args=-inline-threshold=10'] },
   { name: 'edgeflip_audit', features: 'js-audit', flags: [] },
   { name: 'edgeflip_files', features: 'js-files', flags: [] },
 ];

@@ -15,7 +15,7 @@ process.chdir(fileURLToPath(new URL('..', import.meta.url)));
  * @typedef {{ level: Level, passed: number, failed: number, why: string, seconds: number }} Result
  */
 
-// The builds of the library that a browser gets are of `gpu,js`, of `js-audit` and of `js-files`.
+// The builds of the library that a browser gets are of `gpu,js`, of `js-webgl2`, of `js-audit` and of `js-files`.
 const wasmWith = (features) => ['--target', 'wasm32-unknown-unknown', '--no-default-features', '--features', features];
 const wasm = wasmWith('gpu,js');
 const wasmCargo = ['bash', 'tools/wasm-cargo.sh'];
@@ -77,6 +77,7 @@ const levels = [
     what: 'the library for the browser has no warning from clippy: without what JavaScript calls, and as each module of the package',
     checks: [
       [...wasmCargo, 'clippy', '--lib', ...wasmWith('gpu'), '--', '-D', 'warnings'],
+      [...wasmCargo, 'clippy', '--lib', ...wasmWith('js-webgl2'), '--', '-D', 'warnings'],
       [...wasmCargo, 'clippy', '--lib', ...wasmWith('js-audit'), '--', '-D', 'warnings'],
       [...wasmCargo, 'clippy', '--lib', ...wasmWith('js-files'), '--', '-D', 'warnings'],
       [...wasmCargo, 'clippy', '--lib', '--test', 'wasm', '--test', 'worker', ...wasm, '--', '-D', 'warnings'],

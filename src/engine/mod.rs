@@ -6,25 +6,31 @@ mod cpu;
 mod lawson;
 #[cfg(feature = "gpu")]
 mod probe;
+#[cfg(all(target_arch = "wasm32", feature = "js"))]
+mod proxy;
 #[cfg(feature = "gpu")]
 mod self_test;
 #[cfg(all(test, feature = "gpu"))]
 mod tests;
 #[cfg(feature = "gpu")]
 mod upload;
-#[cfg(all(target_arch = "wasm32", feature = "js"))]
+#[cfg(all(target_arch = "wasm32", feature = "js-webgl2"))]
 mod webgl;
 #[cfg(feature = "gpu")]
 mod webgpu;
 
 pub(crate) use cpu::Cpu;
 pub(crate) use lawson::Lawson;
+#[cfg(all(target_arch = "wasm32", feature = "js"))]
+pub use proxy::WebGl2Module;
+#[cfg(all(target_arch = "wasm32", feature = "js"))]
+pub(crate) use proxy::{Proxy, set_webgl2};
 #[cfg(feature = "gpu")]
 pub(crate) use self_test::self_test;
 #[cfg(feature = "gpu")]
 pub(crate) use upload::Upload;
-#[cfg(all(target_arch = "wasm32", feature = "js"))]
-pub(crate) use webgl::{Context, WebGl, set_shader_loader};
+#[cfg(all(target_arch = "wasm32", feature = "js-webgl2"))]
+pub(crate) use webgl::{WebGl, set_shader_loader};
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 pub use webgpu::GpuDevice;
 #[cfg(feature = "gpu")]

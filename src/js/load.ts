@@ -1,11 +1,17 @@
-/** Loads the module of the engines, and that of the audit. */
+/** Loads the module of the engines, that of the WebGL2 engine, and that of the audit. */
 
-import initModule, { setShaderLoader } from './wasm/edgeflip.js';
+import initModule, { setWebGl2 } from './wasm/edgeflip.js';
 import { loader } from './module.js';
 
 const start: typeof initModule = async (source) => {
   const module = await initModule(source);
-  setShaderLoader(() => import('./glsl.js'));
+  setWebGl2({
+    async create(...mesh) {
+      await initWebGl2();
+      const { WebGl2 } = await import('./wasm/edgeflip_webgl2.js');
+      return WebGl2.create(...mesh);
+    },
+  });
   return module;
 };
 
@@ -16,6 +22,22 @@ const start: typeof initModule = async (source) => {
  * @throws {@link EdgeflipError} `load-failed`.
  */
 export const init = loader(start, () => new URL('./wasm/edgeflip_bg.wasm', import.meta.url));
+
+/**
+ * Loads the module of the WebGL2 engine; a session does so by itself where it takes that engine. Call it to load early,
+ * or with a source where `edgeflip_webgl2_bg.wasm` does not lie beside this file. The first call counts; after a failure
+ * the next one tries again.
+ *
+ * @throws {@link EdgeflipError} `load-failed`.
+ */
+export const initWebGl2 = loader(
+  async (source) => {
+    const { default: initModule, setShaderLoader } = await import('./wasm/edgeflip_webgl2.js');
+    await initModule(source);
+    setShaderLoader(() => import('./glsl.js'));
+  },
+  () => new URL('./wasm/edgeflip_webgl2_bg.wasm', import.meta.url),
+);
 
 /**
  * Loads the module that `FlipSession.verify` calls; `verify` does so by itself. Call it to load early, or with a source

@@ -1,8 +1,8 @@
 //! Which engine a session runs on.
 
-use crate::engine::{Answer, Cpu, Engine, Lawson};
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
-use crate::engine::{Context, WebGl};
+use crate::engine::Proxy;
+use crate::engine::{Answer, Cpu, Engine, Lawson};
 #[cfg(feature = "gpu")]
 use crate::engine::{Device, Upload, WebGpu, self_test};
 use crate::predicates::cos_degrees;
@@ -128,14 +128,7 @@ async fn gpu(_mesh: &Arc<Mesh>, _options: &Options, _cos: f64) -> Result<Box<dyn
 
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 async fn webgl(mesh: &Arc<Mesh>, options: &Options, cos: f64) -> Result<Box<dyn Engine>, Error> {
-    let context = Context::shared(options.backend == Backend::WebGl).await?;
-    let upload = Upload::new("webgl2", mesh.clone())?;
-    let make = |upload: Upload, cos| -> Answer<'static, Box<dyn Engine>> {
-        let context = context.clone();
-        Box::pin(async move { Ok(Box::new(WebGl::new(context, upload, cos).await?) as Box<dyn Engine>) })
-    };
-    self_test(&context.tested, "webgl2", upload.form(), &make).await?;
-    make(upload, cos).await
+    Ok(Box::new(Proxy::new(mesh, cos, options.backend == Backend::WebGl).await?))
 }
 
 #[cfg(not(all(target_arch = "wasm32", feature = "js")))]

@@ -1,10 +1,11 @@
 // Compiled, never run: what a strict TypeScript program sees of the package.
 
-import { EDGE_STATES, EdgeflipError, type EdgeState, type ErrorCode, FlipSession, type Iteration, init, initAudit, makeDelaunay, type Mesh } from 'edgeflip';
+import { EDGE_STATES, EdgeflipError, type EdgeState, type ErrorCode, FlipSession, type Iteration, init, initAudit, initWebGl2, makeDelaunay, type Mesh } from 'edgeflip';
 import { type Angles, angles, type FileMesh, FORMATS, generate, initFiles, readMesh, writeMesh } from 'edgeflip/files';
 
 export async function use(mesh: Mesh, signal: AbortSignal, device?: GPUDevice): Promise<Uint32Array> {
   await init(new URL('https://example.org/edgeflip.wasm'));
+  await initWebGl2(new URL('https://example.org/edgeflip_webgl2.wasm'));
   await initAudit(new URL('https://example.org/edgeflip_audit.wasm'));
   const iterations: Iteration[] = [];
   const result = await makeDelaunay(mesh, {

@@ -50,7 +50,7 @@ pub(super) fn refuse<T>(message: String) -> Result<T, Error> {
 }
 
 /// A context and its programs.
-pub(crate) struct Context {
+pub(super) struct Context {
     pub(super) gl: Gl,
     /// The renderer's name.
     pub(super) adapter: String,
@@ -58,7 +58,7 @@ pub(crate) struct Context {
     pub(super) largest_side: u32,
     /// See `shaders/rounds.wgsl`.
     pub(super) ends_loops_early: bool,
-    pub(crate) tested: Tested,
+    pub(super) tested: Tested,
     pub(super) params: WebGlBuffer,
     sources: JsValue,
     programs: RefCell<Vec<(&'static str, WebGlProgram)>>,
@@ -71,7 +71,7 @@ impl Context {
     /// # Errors
     /// [`Error::BackendUnavailable`] where there is none, or a software one that is not taken; [`Error::Device`] where
     /// it fails at once.
-    pub(crate) async fn shared(takes_software: bool) -> Result<Rc<Self>, Error> {
+    pub(super) async fn shared(takes_software: bool) -> Result<Rc<Self>, Error> {
         let known = SHARED.with_borrow(Clone::clone).filter(|context| !context.gl.is_context_lost());
         let context = match known {
             Some(context) => context,

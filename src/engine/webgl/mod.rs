@@ -6,12 +6,12 @@
 mod context;
 mod texture;
 
-pub(crate) use context::{Context, set_shader_loader};
+pub(crate) use context::set_shader_loader;
 
 use super::cosine::Cosine;
 use super::probe::SHORT_STAR;
 use super::upload::{Form, Upload};
-use super::{Answer, Census, EdgeCounts, Engine};
+use super::{Answer, Census, EdgeCounts, Engine, self_test};
 use crate::locks;
 use crate::mesh::{Dimension, Mesh};
 use crate::phases::BLOCKED;
@@ -19,7 +19,7 @@ use crate::star::Fans;
 use crate::threads::Threads;
 use crate::winding::Winding;
 use crate::{Adjacency, Error, NONE};
-use context::refuse;
+use context::{Context, refuse};
 use std::rc::Rc;
 use std::sync::Arc;
 use texture::{Pair, Texture};
@@ -69,12 +69,28 @@ pub(crate) struct WebGl {
 }
 
 impl WebGl {
+    /// On the shared context, once it has passed the self-test.
+    ///
+    /// # Errors
+    /// [`Error::BackendUnavailable`] without a context, with a software one that is not taken, and with one that gets the
+    /// test wrong; those of [`WebGl::new`].
+    pub(crate) async fn open(mesh: Arc<Mesh>, cos: f64, takes_software: bool) -> Result<Self, Error> {
+        let context = Context::shared(takes_software).await?;
+        let upload = Upload::new("webgl2", mesh)?;
+        let make = |upload: Upload, cos| -> Answer<'static, Box<dyn Engine>> {
+            let context = context.clone();
+            Box::pin(async move { Ok(Box::new(Self::new(context, upload, cos).await?) as Box<dyn Engine>) })
+        };
+        self_test(&context.tested, "webgl2", upload.form(), &make).await?;
+        Self::new(context, upload, cos).await
+    }
+
     /// Builds the adjacency and uploads the mesh; `cos` is the cosine of β.
     ///
     /// # Errors
     /// [`Error::BackendLimit`] for a mesh that is too large for the context; [`Error::BackendUnavailable`] if its
     /// compiler refuses the programs; [`Error::Device`].
-    pub(crate) async fn new(context: Rc<Context>, upload: Upload, cos: f64) -> Result<Self, Error> {
+    async fn new(context: Rc<Context>, upload: Upload, cos: f64) -> Result<Self, Error> {
         let mesh = &upload.mesh;
         let form = upload.form();
         let common = &["label", "select", "flip", "update", "anchor", "census", "flips", "sum"];
@@ -232,7 +248,8 @@ impl WebGl {
         Ok(flips)
     }
 
-    async fn count(&mut self) -> Result<Census, Error> {
+    /// What [`Census::of_counts`] takes.
+    pub(crate) async fn census_counts(&mut self) -> Result<Vec<u32>, Error> {
         self.judge()?;
         // A texel has four counts, and the locks are the fifth.
         let programs = &["census", "locked"][..1 + usize::from(self.has_locks)];
@@ -244,8 +261,7 @@ impl WebGl {
             self.passes += 2;
             self.sum_up(column)?;
         }
-        let counts = self.context.read(&self.history, programs.len()).await?;
-        Ok(Census::of_counts(&counts))
+        self.context.read(&self.history, programs.len()).await
     }
 
     async fn flag_locked(&mut self, half_edges: Vec<u32>) -> Result<(), Error> {
@@ -348,7 +364,7 @@ impl Engine for WebGl {
     }
 
     fn census(&mut self) -> Answer<'_, Census> {
-        Box::pin(self.count())
+        Box::pin(async { Ok(Census::of_counts(&self.census_counts().await?)) })
     }
 
     fn triangles(&mut self) -> Answer<'_, Vec<u32>> {
