@@ -285,24 +285,36 @@ impl Session {
         Ok(())
     }
 
-    /// Asks the engine. Where the device fails and the backend is `Auto`, the next engine goes the same way again up
-    /// to the last complete iteration, which determinism allows, and is asked instead.
+    /// Asks the engine, and where the device fails and the backend is `Auto` the next one.
     async fn ask<T>(
         &mut self,
         question: impl for<'a> Fn(&'a mut dyn Engine) -> Answer<'a, T>,
     ) -> Result<T, Error> {
-        let mut answer = question(self.engine.as_mut()).await;
-        while let (Err(Error::Device { message }), Backend::Auto) = (&answer, self.options.backend) {
-            let before = self.fallback.as_deref().map_or(String::new(), |before| format!("{before}; "));
-            let why = format!("{before}the device failed during the run: {message}");
-            (self.engine, self.fallback) =
-                engine_after(self.engine.backend(), why, &self.mesh, &self.options).await?;
-            answer = match self.engine.iterate(self.flips_per_iteration.len() as u32).await {
-                Ok(_) => question(self.engine.as_mut()).await,
-                Err(error) => Err(error),
-            };
+        loop {
+            match question(self.engine.as_mut()).await {
+                Err(Error::Device { message }) if self.options.backend == Backend::Auto => {
+                    self.recover(message).await?;
+                }
+                answer => return answer,
+            }
         }
-        answer
+    }
+
+    /// The next engine goes the same way again up to the last complete iteration, which determinism allows. Boxed, so
+    /// that it is compiled into one place only.
+    fn recover(&mut self, mut message: String) -> Answer<'_, ()> {
+        Box::pin(async move {
+            loop {
+                let before = self.fallback.as_deref().map_or(String::new(), |before| format!("{before}; "));
+                let why = format!("{before}the device failed during the run: {message}");
+                (self.engine, self.fallback) =
+                    engine_after(self.engine.backend(), why, &self.mesh, &self.options).await?;
+                match self.engine.iterate(self.flips_per_iteration.len() as u32).await {
+                    Err(Error::Device { message: again }) => message = again,
+                    answer => return answer.map(drop),
+                }
+            }
+        })
     }
 }
 

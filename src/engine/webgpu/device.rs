@@ -198,7 +198,7 @@ impl Device {
             drop(pass);
             encoder
         };
-        let found = self.submit_and_read(record, &buffer, 1).await?;
+        let found = self.submit_and_read(&record, &buffer, 1).await?;
         Ok(ends_loops_early(found[0]))
     }
 
@@ -289,7 +289,7 @@ impl Device {
     /// [`Error::Device`].
     pub(super) async fn read(&self, buffer: &Buffer, words: usize) -> Result<Vec<u32>, Error> {
         let nothing = || self.device.create_command_encoder(&Default::default());
-        self.submit_and_read(nothing, buffer, words).await
+        self.submit_and_read(&nothing, buffer, words).await
     }
 
     /// Submits the commands that `record` makes, and reads `words` words from the start of `buffer` behind them.
@@ -298,7 +298,7 @@ impl Device {
     /// [`Error::Device`].
     pub(super) async fn submit_and_read(
         &self,
-        record: impl FnOnce() -> wgpu::CommandEncoder,
+        record: &dyn Fn() -> wgpu::CommandEncoder,
         buffer: &Buffer,
         words: usize,
     ) -> Result<Vec<u32>, Error> {

@@ -82,7 +82,7 @@ impl WebGpu {
         self.params.tail_iterations =
             (count - batch).min(if self.gpu.ends_loops_early { SHORT_TAIL } else { TAIL });
         self.dispatches += u64::from(4 * batch + self.params.tail_iterations.min(1));
-        let history = self.read_history(|pass| {
+        let record = |pass: &mut wgpu::ComputePass| {
             let groups = self.gpu.workgroups(self.params.triangles);
             for step in 0..batch {
                 pass.set_bind_group(0, &self.bindings, &[4 * step * STEP_WORDS]);
@@ -93,8 +93,8 @@ impl WebGpu {
             if self.params.tail_iterations > 0 {
                 self.dispatch(pass, Kernel::Tail, 1);
             }
-        });
-        let history = history.await?;
+        };
+        let history = self.read_history(&record).await?;
         Ok(self.take_over(&history))
     }
 
@@ -106,12 +106,12 @@ impl WebGpu {
     }
 
     /// Submits commands that continue the history, and reads it behind them.
-    async fn read_history(&self, record: impl FnOnce(&mut wgpu::ComputePass)) -> Result<Vec<u32>, Error> {
+    async fn read_history(&self, record: &dyn Fn(&mut wgpu::ComputePass)) -> Result<Vec<u32>, Error> {
         let commands = || {
             self.begin_history();
             self.encode(record)
         };
-        self.gpu.submit_and_read(commands, &self.buffers.history, HISTORY_WORDS).await
+        self.gpu.submit_and_read(&commands, &self.buffers.history, HISTORY_WORDS).await
     }
 
     /// Takes over the last state of a history, and returns the flips of the iterations that ran.
@@ -126,7 +126,7 @@ impl WebGpu {
     }
 
     /// Commands in one compute pass, with the parameters as they are now and the first step bound.
-    fn encode(&self, record: impl FnOnce(&mut wgpu::ComputePass)) -> wgpu::CommandEncoder {
+    fn encode(&self, record: &dyn Fn(&mut wgpu::ComputePass)) -> wgpu::CommandEncoder {
         self.gpu.queue.write_buffer(&self.buffers.uniform, 0, bytemuck::bytes_of(&self.params));
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
         let mut pass = encoder.begin_compute_pass(&Default::default());
@@ -169,12 +169,12 @@ impl WebGpu {
         let commands = || {
             let history = &self.buffers.history;
             self.gpu.queue.write_buffer(history, 0, bytemuck::cast_slice(&[0u32; ENTRIES]));
-            self.encode(|pass| {
+            self.encode(&|pass| {
                 pass.set_pipeline(kernel);
                 pass.dispatch_workgroups(self.gpu.workgroups(3 * self.params.triangles), 1, 1);
             })
         };
-        self.gpu.submit_and_read(commands, &self.buffers.history, ENTRIES).await
+        self.gpu.submit_and_read(&commands, &self.buffers.history, ENTRIES).await
     }
 }
 
@@ -247,7 +247,7 @@ impl WebGpu {
     /// Runs one phase of the next iteration; after the flips, which end it, returns their number.
     pub(crate) async fn run_phase(&mut self, kernel: Kernel) -> Result<u32, Error> {
         let groups = self.gpu.workgroups(self.params.triangles);
-        let history = self.read_history(|pass| self.dispatch(pass, kernel, groups)).await?;
+        let history = self.read_history(&|pass| self.dispatch(pass, kernel, groups)).await?;
         Ok(self.take_over(&history).last().copied().unwrap_or(0))
     }
 

@@ -59,7 +59,7 @@ impl WebGpu {
             encoder.copy_buffer_to_buffer(&result.buffers.history, 0, &scratch.counters, signs, 4);
             encoder
         };
-        let counters = result.gpu.submit_and_read(record, &scratch.counters, COUNTERS + 1).await?;
+        let counters = result.gpu.submit_and_read(&record, &scratch.counters, COUNTERS + 1).await?;
         let found = Found::of(&counters);
         if result.gpu.ends_loops_early && found.most_corners > SHORT_STAR {
             let (corners, adapter) = (found.most_corners, &result.gpu.adapter);
@@ -99,7 +99,7 @@ impl WebGpu {
             self.record_preparation(&mut encoder);
             encoder
         };
-        Ok(self.gpu.submit_and_read(record, &self.buffers.history, 1).await?[0])
+        Ok(self.gpu.submit_and_read(&record, &self.buffers.history, 1).await?[0])
     }
 
     /// Begins the iterations: the mesh has the triangles that are on the device, which have these signs.
