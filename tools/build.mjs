@@ -1,11 +1,12 @@
 // Builds the npm package into dist/: `npm run build`. For each of its modules, cargo compiles the library for wasm32,
-// wasm-bindgen writes the glue and wasm-opt makes both smaller; tools/glsl writes the programs of the WebGL2 engine; then
+// wasm-bindgen writes the glue, panics are cut off and wasm-opt makes both smaller; tools/glsl writes the programs of the WebGL2 engine; then
 // tsc checks the TypeScript and compiles it. Ends with a table of sizes.
 
 import { spawnSync } from 'node:child_process';
 import { cpSync, mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
 import { brotliCompressSync, gzipSync } from 'node:zlib';
+import binaryen from 'binaryen';
 
 process.chdir(fileURLToPath(new URL('..', import.meta.url)));
 
@@ -25,11 +26,13 @@ function output(stdout, program, ...args) {
 }
 
 const glue = 'target/js/wasm'; // also where src/js/tsconfig.json finds the types of the modules
-// One module for each entry of the package, one for the WebGL2 engine, and one for the audit. In that of the engines a function is inlined where
-// it is marked so or nearly free: what is hot is marked, and the rest is a quarter smaller.
+// A function of the engines is inlined where it is marked so or nearly free: what is hot is marked, and the rest is a
+// quarter smaller. Loops are unrolled only where their length is known: it is no slower, and 2 % smaller.
+const engine = ['-C', 'llvm-args=-inline-threshold=10 -unroll-runtime=0'];
+// One module for each entry of the package, one for the WebGL2 engine, and one for the audit.
 const modules = [
-  { name: 'edgeflip', features: 'gpu,js', flags: ['-C', 'llvm-args=-inline-threshold=10'] },
-  { name: 'edgeflip_webgl2', features: 'js-webgl2', flags: ['-C', 'llvm-args=-inline-threshold=10'] },
+  { name: 'edgeflip', features: 'gpu,js', flags: engine },
+  { name: 'edgeflip_webgl2', features: 'js-webgl2', flags: engine },
   { name: 'edgeflip_audit', features: 'js-audit', flags: [] },
   { name: 'edgeflip_files', features: 'js-files', flags: [] },
 ];
@@ -50,11 +53,25 @@ const wasmFeatures = ['bulk-memory', 'bulk-memory-opt', 'call-indirect-overlong'
   'nontrapping-float-to-int', 'reference-types', 'sign-ext'];
 for (const { name } of modules) {
   const wasm = `dist/wasm/${name}_bg.wasm`;
-  // No pointer of Rust is below 1024: the stack, which comes first, grows down from 1 MiB.
-  const names = output('pipe', process.execPath, 'node_modules/binaryen/bin/wasm-opt', '-Oz',
+  cutPanics(wasm);
+  // No pointer of Rust is below 1024: the stack, which comes first, grows down from 1 MiB. Done twice, since the first
+  // time uncovers more.
+  const names = output('pipe', process.execPath, 'node_modules/binaryen/bin/wasm-opt', '-Oz', '-Oz',
     '--low-memory-unused', '--minify-imports-and-exports-and-modules', '--strip-debug',
     ...wasmFeatures.map((feature) => `--enable-${feature}`), wasm, '-o', wasm);
   shorten(`dist/wasm/${name}.js`, `./${name}_bg.js`, JSON.parse(names));
+}
+
+/** Where a panic begins, a trap is left, with which it would end: nobody hears what it says before. */
+function cutPanics(file) {
+  const begins = /^(core|alloc)\b.*::(panicking::.*|panic_\w+|\w+_fail(ed)?|capacity_overflow|handle_error)$/;
+  const module = binaryen.readBinary(readFileSync(file));
+  for (let i = 0; i < module.getNumFunctions(); i++) {
+    const place = module.getFunctionByIndex(i);
+    if (begins.test(binaryen.getFunctionInfo(place).name)) binaryen.Function.setBody(place, module.unreachable());
+  }
+  writeFileSync(file, module.emitBinary());
+  module.dispose();
 }
 
 /** Gives the imports and exports of a module the names in its glue that wasm-opt has given them. */
