@@ -60,6 +60,16 @@ impl GpuDevice {
         Some(JsValue::from(device.as_webgpu()?.clone()).unchecked_into())
     }
 
+    fn push_error_scopes(&self) {
+        for filter in ["validation", "internal", "out-of-memory"] {
+            self.push_error_scope(filter);
+        }
+    }
+
+    fn pop_error_scopes(&self) -> Word {
+        Box::pin(word([(); 3].map(|()| JsFuture::from(self.pop_error_scope()))))
+    }
+
     /// Vendor and architecture, such as `nvidia ampere`: what a browser says of a GPU. Empty where it says nothing.
     pub(super) fn adapter_name(&self) -> String {
         let info = self.adapter_info();
@@ -71,12 +81,9 @@ impl GpuDevice {
 /// As natively. Not through wgpu, which panics on an internal error.
 pub(super) fn watch<T>(device: &wgpu::Device, calls: impl FnOnce() -> T) -> (T, Word) {
     let Some(device) = GpuDevice::of(device) else { return (calls(), Box::pin(std::future::ready(None))) };
-    for filter in ["validation", "internal", "out-of-memory"] {
-        device.push_error_scope(filter);
-    }
+    device.push_error_scopes();
     let result = calls();
-    let popped = [(); 3].map(|()| JsFuture::from(device.pop_error_scope()));
-    (result, Box::pin(word(popped)))
+    (result, device.pop_error_scopes())
 }
 
 async fn word([memory, internal, validation]: [JsFuture; 3]) -> Option<Fault> {
