@@ -112,7 +112,7 @@ impl JsSession {
     ///
     /// # Errors
     /// As there.
-    #[wasm_bindgen(unchecked_return_type = "import('../types.js').Result")]
+    #[wasm_bindgen(unchecked_return_type = "Omit<import('../types.js').Result, 'turnedTriangles'>")]
     pub async fn outcome(&mut self) -> Result<JsValue, JsValue> {
         Ok(outcome_object(&self.0.outcome().await.map_err(thrown)?))
     }

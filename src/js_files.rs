@@ -5,7 +5,7 @@
 use crate::error::number;
 use crate::io::{self, Format, Loaded, ReadOptions};
 use crate::js_values::{JsPositions, object, parse_dimension, thrown};
-use crate::{Error, Mesh, Positions, families, quality};
+use crate::{Error, Mesh, Positions, families, quality, reoriented};
 use js_sys::{Array, Float32Array, Float64Array, Reflect, Uint8Array, Uint32Array};
 use std::path::Path;
 use wasm_bindgen::prelude::*;
@@ -105,6 +105,60 @@ pub fn write_mesh(
 pub fn generate(spec: &str) -> Result<JsValue, JsValue> {
     let mesh = families::by_name(spec).map_err(thrown)?;
     Ok(object(fields(&mesh)))
+}
+
+/// As [`reoriented`].
+///
+/// # Errors
+/// Those of [`Mesh::new`]; [`Error::Option`] for the dimension.
+#[wasm_bindgen(unchecked_return_type = "import('../files.js').Reoriented")]
+pub fn reorient(positions: JsPositions, indices: Vec<u32>, dimension: f64) -> Result<JsValue, JsValue> {
+    let turn = || reoriented(&Mesh::new(parse_dimension(dimension)?, positions, indices)?);
+    let (mesh, turned) = turn().map_err(thrown)?;
+    Ok(object([("indices", Uint32Array::from(mesh.triangles()).into()), ("turned", turned.into())]))
+}
+
+/// As [`quality::measures`].
+///
+/// # Errors
+/// Those of [`Mesh::new`]; [`Error::Option`] for the dimension.
+#[wasm_bindgen(unchecked_return_type = "import('../files.js').Measures")]
+pub fn measures(positions: JsPositions, indices: Vec<u32>, dimension: f64) -> Result<JsValue, JsValue> {
+    let measure = || Ok(quality::measures(&Mesh::new(parse_dimension(dimension)?, positions, indices)?));
+    let measures = measure().map_err(thrown)?;
+    Ok(object([
+        ("minAngle", measures.min_angle.into()),
+        ("meanMinAngle", measures.mean_min_angle.into()),
+        ("meanAspect", measures.mean_aspect.into()),
+        ("flat", (measures.flat as f64).into()),
+        ("area", measures.area.into()),
+        ("volume", measures.volume.into()),
+    ]))
+}
+
+/// As [`quality::moved`] and [`quality::distance`].
+///
+/// # Errors
+/// Those of [`Mesh::new`]; [`Error::TriangleCount`]; [`Error::Option`] for the dimension.
+#[wasm_bindgen(unchecked_return_type = "import('../files.js').Change")]
+pub fn change(
+    positions: JsPositions,
+    indices: Vec<u32>,
+    dimension: f64,
+    after: Vec<u32>,
+) -> Result<JsValue, JsValue> {
+    let measure = || {
+        let mesh = Mesh::new(parse_dimension(dimension)?, positions, indices)?;
+        let (length, expected) = (after.len(), mesh.triangles().len());
+        if length != expected {
+            return Err(Error::TriangleCount { length, expected });
+        }
+        let after = mesh.with_triangles(after)?;
+        let moved = quality::moved(mesh.triangles(), after.triangles());
+        Ok((moved, quality::distance(&mesh, after.triangles())))
+    };
+    let (moved, distance) = measure().map_err(thrown)?;
+    Ok(object([("moved", Uint32Array::from(moved.as_slice()).into()), ("distance", distance.into())]))
 }
 
 /// As [`quality::angles`], with 1 to [`MAX_BINS`] bins.

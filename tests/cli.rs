@@ -19,7 +19,7 @@ use std::process::{Command, Output, Stdio};
 const SQUARE: &str = "OFF\n4 2 0\n0 0 0\n0.9 0.2 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3\n";
 
 /// The keys of the object that `--json` prints, in their order.
-const KEYS: [&str; 22] = [
+const KEYS: [&str; 23] = [
     "input",
     "vertices",
     "triangles",
@@ -40,6 +40,7 @@ const KEYS: [&str; 22] = [
     "min_angle_after_deg",
     "before",
     "after",
+    "turned_triangles",
     "moved_triangles",
     "ms",
 ];
@@ -169,6 +170,25 @@ fn verify_names_the_edges_left() {
     assert!(text(&ran.stderr).contains(line), "{}", text(&ran.stderr));
     let ran = run(&input, &output, &["--verify"]);
     assert!(text(&ran.stderr).contains(" and 2 more\n"), "{}", text(&ran.stderr));
+}
+
+#[test]
+fn triangles_can_be_turned_first() {
+    let folder = Folder::new();
+    let turned = SQUARE.replace("3 0 2 3", "3 0 3 2").replace("0 1 0\n3", "0 1 0.1\n3");
+    let (input, output) = (folder.file("in.off", turned), folder.path("out.off"));
+    let found = |more: &[&str]| -> Value {
+        let ran = run(&input, &output, &[&["--json", "--verify", "--max-normal-angle", "90"], more].concat());
+        assert_eq!((ran.status.code(), text(&ran.stderr)), (Some(0), ""));
+        serde_json::from_slice(&ran.stdout).unwrap()
+    };
+    let left = found(&[]);
+    assert_eq!((&left["flips"], &left["remaining"]), (&0.into(), &json!({ "inconsistent": 1 })));
+    let done = found(&["--reorient"]);
+    assert_eq!(
+        (&done["turned_triangles"], &done["flips"], &done["remaining"]),
+        (&1.into(), &1.into(), &json!({}))
+    );
 }
 
 /// The square as glTF whose buffer is in a file beside it, and stretched and moved by its node.

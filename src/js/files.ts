@@ -81,6 +81,38 @@ export interface Angles {
   counts: Uint32Array;
 }
 
+/** What {@link reorient} gives. */
+export interface Reoriented {
+  /** Vertex indices, 3 a triangle. */
+  indices: Uint32Array;
+  /** How many triangles were turned. */
+  turned: number;
+}
+
+/** What can be measured on a mesh. */
+export interface Measures {
+  /** Smallest angle in degrees; 60 without triangles. */
+  minAngle: number;
+  /** Mean over the triangles of their smallest angle, in degrees; 60 without triangles. */
+  meanMinAngle: number;
+  /** Mean aspect ratio of the triangles that are not flat: longest edge by the diameter of the incircle, 1 for an equilateral triangle. */
+  meanAspect: number;
+  /** Triangles without area. */
+  flat: number;
+  /** Area, all triangles counted positive. */
+  area: number;
+  /** What a closed surface encloses, negative where triangles are clockwise from outside; 0 in the plane. */
+  volume: number;
+}
+
+/** What a run has changed. */
+export interface Change {
+  /** The numbers of the triangles that are others now, in ascending order. */
+  moved: Uint32Array;
+  /** The largest distance between the surfaces before and after, at points of the edges that they do not share. */
+  distance: number;
+}
+
 /**
  * Loads the WebAssembly module of this entry. Everything else calls it by itself: call it to load early, or with a
  * source where the module does not lie beside this file. The first call counts; after a failure the next one tries
@@ -156,6 +188,39 @@ export async function angles(mesh: Mesh, bins = 180): Promise<Angles> {
 
 function checkBytes(bytes: Uint8Array): void {
   if (!(bytes instanceof Uint8Array)) throw new EdgeflipError('invalid-input', 'bytes are no Uint8Array');
+}
+
+/**
+ * The mesh with triangles turned so that neighbours agree about the side that is outside, in each component where that
+ * is possible: the fewer are turned. The option `reorient` does it for a run.
+ *
+ * @throws {@link EdgeflipError} about the mesh.
+ */
+export async function reorient(mesh: Mesh): Promise<Reoriented> {
+  const { positions, indices, dimension } = moduleMesh(mesh);
+  return call(() => wasm.reorient(positions, indices, dimension));
+}
+
+/**
+ * Measures a mesh, for reports: in 64-bit floats, not exact.
+ *
+ * @throws {@link EdgeflipError} about the mesh.
+ */
+export async function measures(mesh: Mesh): Promise<Measures> {
+  const { positions, indices, dimension } = moduleMesh(mesh);
+  return call(() => wasm.measures(positions, indices, dimension));
+}
+
+/**
+ * What a run has changed of a mesh.
+ *
+ * @param after - The indices of the result.
+ * @throws {@link EdgeflipError} about the mesh; `triangle-count`.
+ */
+export async function change(mesh: Mesh, after: Uint32Array | Uint16Array): Promise<Change> {
+  const { positions, indices, dimension } = moduleMesh(mesh);
+  const { indices: changed } = moduleMesh({ ...mesh, indices: after });
+  return call(() => wasm.change(positions, indices, dimension, changed));
 }
 
 /** The argument, if a program without types has passed text. */

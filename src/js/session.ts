@@ -29,8 +29,11 @@ export class FlipSession implements AsyncIterable<Iteration>, Disposable {
   #last: Promise<unknown> = Promise.resolve();
   #isFreed = false;
 
-  private constructor(session: Session) {
+  readonly #turned: number;
+
+  private constructor(session: Session, turned: number) {
     this.#session = session;
+    this.#turned = turned;
   }
 
   /**
@@ -39,10 +42,12 @@ export class FlipSession implements AsyncIterable<Iteration>, Disposable {
    * @throws {@link EdgeflipError} about the mesh, the options or the backend.
    */
   static async create(mesh: Mesh, options: Options = {}): Promise<FlipSession> {
-    const { positions, indices, dimension } = moduleMesh(mesh);
+    const { positions, indices: given, dimension } = moduleMesh(mesh);
+    const turning = options.reorient ? (await import('./files.js')).reorient(mesh) : { indices: given, turned: 0 };
+    const { indices, turned } = await turning;
     await init();
     try {
-      return new FlipSession(await Session.create(positions, indices, dimension, options));
+      return new FlipSession(await Session.create(positions, indices, dimension, options), turned);
     } catch (thrown) {
       throw fromModule(thrown);
     }
@@ -93,7 +98,7 @@ export class FlipSession implements AsyncIterable<Iteration>, Disposable {
 
   /** The result so far. */
   result(): Promise<Result> {
-    return this.#call((session) => session.outcome());
+    return this.#call(async (session) => ({ ...(await session.outcome()), turnedTriangles: this.#turned }));
   }
 
   /** The triangles so far: vertex indices, 3 a triangle. */

@@ -46,6 +46,12 @@ export interface Options {
    */
   groups?: Uint32Array | readonly number[] | undefined;
   /**
+   * Turns triangles first, so that neighbours agree about the side that is outside: in each component where that is
+   * possible, the fewer. Else edges between triangles turned against each other stay. Loads the module of
+   * `edgeflip/files`.
+   */
+  reorient?: boolean | undefined;
+  /**
    * `'reproducible'` (default): the parallel iterations, the same on every engine. `'any'`: Lawson's sequential
    * algorithm, on the CPU only.
    */
@@ -135,6 +141,8 @@ export interface Result {
   nonManifoldEdges: number;
   /** Edges whose two triangles are oriented against each other. They stay. */
   inconsistentEdges: number;
+  /** Triangles that `reorient` has turned. */
+  turnedTriangles: number;
   /** Edges that are still not Delaunay. */
   remaining: Reasons;
   /** Milliseconds: on a GPU making the engine ready and the copies to it, the adjacency, the iterations, and all of it. */

@@ -5,7 +5,7 @@ import { readFileSync } from 'node:fs';
 import { test } from 'node:test';
 import { gunzipSync, gzipSync } from 'node:zlib';
 import { makeDelaunay } from 'edgeflip';
-import { angles, EdgeflipError, FORMATS, generate, initFiles, readMesh, writeMesh } from 'edgeflip/files';
+import { angles, change, measures, reorient, EdgeflipError, FORMATS, generate, initFiles, readMesh, writeMesh } from 'edgeflip/files';
 
 const bytes = (text) => new TextEncoder().encode(text);
 const text = (bytes) => new TextDecoder().decode(bytes);
@@ -140,7 +140,7 @@ test('errors have codes and places', async () => {
   await assert.rejects(readMesh(new Uint8Array(), 'a.obj'), refused('parse', /^line 1: the file is empty$/));
   await assert.rejects(readMesh(Uint8Array.of(0xff, 0, 0x0a), 'a.obj'), refused('parse', /^line 1: /));
   await assert.rejects(readMesh(new Uint8Array(), 'a.mesh'), refused('unknown-format', /^a\.mesh: /));
-  await assert.rejects(readMesh(bytes('ply\nformat ascii 1.0\nend\n'), 'a.ply'), refused('parse', /^line 3: .* found `end`$/));
+  await assert.rejects(readMesh(bytes('ply\nformat ascii 1.0\nelement\n'), 'a.ply'), refused('parse', /^line 3: .* found `element`$/));
   await assert.rejects(readMesh(new Uint8Array(90), 'a.stl'), refused('parse', /^byte 84: .* found 6 more bytes$/));
   await assert.rejects(writeMesh(mesh, 'mesh'), refused('unknown-format', /^mesh: /));
   await assert.rejects(writeMesh({ ...mesh, indices: Uint32Array.of(0, 1, 9) }, 'a.off'), refused('index-out-of-range', /9/));
@@ -191,4 +191,18 @@ test('720,000 triangles are generated, written and read back', async () => {
   }
   const { counts } = await angles(mesh, 18);
   assert.equal(counts.reduce((sum, count) => sum + count), 3 * 720_000);
+});
+
+test('a mesh is measured, and what a run has changed', async () => {
+  const mesh = await generate('uvsphere 12');
+  const { indices } = await makeDelaunay(mesh, { maxNormalAngle: 60 });
+  const [before, after] = [await measures(mesh), await measures({ ...mesh, indices })];
+  assert.ok(after.meanMinAngle > before.meanMinAngle && after.meanAspect < before.meanAspect && after.area < before.area);
+  assert.ok(before.volume > 3 && before.volume < 4.2 && Math.abs(after.volume - before.volume) < 0.2);
+  assert.equal(before.flat, 0);
+  const { moved, distance } = await change(mesh, indices);
+  assert.ok(moved.length > 10 && distance > 0 && distance < 0.2, `${moved.length} ${distance}`);
+  assert.deepEqual(await change(mesh, mesh.indices), { moved: new Uint32Array(), distance: 0 });
+  await assert.rejects(change(mesh, indices.slice(3)), refused('triangle-count', /triangles has/));
+  assert.deepEqual(await reorient(mesh), { indices: mesh.indices, turned: 0 });
 });

@@ -127,6 +127,20 @@ test('locked triangles and the borders of groups stay', async () => {
   assert.equal((await makeDelaunay(mesh, { lockedTriangles: [], groups: numbers.map(() => 3) })).flips, 9);
 });
 
+test('triangles are turned first, if that is asked for', async () => {
+  const mesh = strips(8);
+  const indices = mesh.indices.map((_, i, all) => all[i % 6 < 3 ? i : i - (i % 3) + ((3 - (i % 3)) % 3)]);
+  const turned = { ...mesh, positions: Float32Array.from(mesh.positions), indices };
+  const plain = await makeDelaunay(turned);
+  assert.ok(plain.inconsistentEdges > 0 && plain.turnedTriangles === 0);
+  const session = await FlipSession.create(turned, { reorient: true });
+  const { flips, inconsistentEdges, turnedTriangles, remaining } = await session.run();
+  assert.deepEqual([flips, inconsistentEdges, remaining], [9, 0, {}]);
+  assert.ok(turnedTriangles === 2 || turnedTriangles === 3, `${turnedTriangles}`);
+  assert.ok((await session.verify()).clean);
+  session.free();
+});
+
 test('errors have codes', async () => {
   const mesh = diamond();
   const bad = (change) => makeDelaunay({ ...mesh, ...change });

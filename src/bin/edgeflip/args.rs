@@ -83,6 +83,13 @@ pub struct Args {
     #[arg(long, value_name = "FILE")]
     pub lock_edges: Option<PathBuf>,
 
+    /// Turn triangles first, so that neighbours agree about the side that is outside
+    ///
+    /// In each component of triangles that two share an edge, where that is possible, the fewer are turned. Without it
+    /// edges between triangles turned against each other stay, and are counted as `inconsistent`.
+    #[arg(long)]
+    pub reorient: bool,
+
     /// Stop after N iterations; without it the run goes to its end, which always comes
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub max_iterations: Option<u32>,
@@ -110,7 +117,7 @@ pub struct Args {
     /// Keys: input, vertices, triangles, edges, boundary_edges, dimension, backend, adapter, fallback,
     /// status (done or stopped), iterations, flips, flips_per_iteration, dispatches, device_bytes, remaining (by reason),
     /// min_angle_before_deg, min_angle_after_deg, before and after (min_angle_deg, mean_min_angle_deg, mean_aspect,
-    /// flat_triangles, area, volume), moved_triangles, ms (load, upload, adjacency, flip, total, save; total is the
+    /// flat_triangles, area, volume), turned_triangles, moved_triangles, ms (load, upload, adjacency, flip, total, save; total is the
     /// run without load and save), and with --verify audit (the violations), remaining_edges (by reason, the two
     /// vertices of each edge left, counted from 0) and distance (between the surfaces before and after).
     #[arg(long)]

@@ -5,7 +5,7 @@ mod report;
 
 use args::Args;
 use clap::Parser;
-use edgeflip::{Error, Mesh, Options, Outcome, io, make_delaunay, quality};
+use edgeflip::{Error, Mesh, Options, Outcome, io, make_delaunay, quality, reoriented};
 use indicatif::{ProgressBar, ProgressStyle};
 use report::{Check, Milliseconds, Report};
 use std::io::{IsTerminal, Write};
@@ -91,7 +91,8 @@ fn run(args: &Args, bar: &ProgressBar) -> Result<Report, Failure> {
     bar.set_message(format!("reading {}", args.input.display()));
     let (loaded, load) = timed(|| io::load(&args.input, &args.read_options()));
     let loaded = loaded.map_err(refused)?;
-    let mesh = &loaded.mesh;
+    let turned = args.reorient.then(|| reoriented(&loaded.mesh)).transpose().map_err(refused)?;
+    let (mesh, turned) = turned.as_ref().map_or((&loaded.mesh, 0), |(mesh, turned)| (mesh, *turned));
 
     let locked_edges = match &args.lock_edges {
         Some(path) => io::read_edges(path).map_err(|error| Failure::of(path, &error))?,
@@ -108,7 +109,7 @@ fn run(args: &Args, bar: &ProgressBar) -> Result<Report, Failure> {
     .map_err(refused)?;
     let result = mesh.with_triangles(outcome.triangles.clone()).map_err(refused)?;
     let after = quality::measures(&result);
-    let moved = quality::moved(mesh.triangles(), result.triangles()).len();
+    let moved = quality::moved(mesh.triangles(), result.triangles()).len() as u32;
 
     let check = args.verify.then(|| {
         bar.set_message("verifying");
@@ -122,7 +123,8 @@ fn run(args: &Args, bar: &ProgressBar) -> Result<Report, Failure> {
         save = Some(ms);
     }
     let ms = Milliseconds::new(load, &outcome.timings, save);
-    Ok(Report::new(args, &result, outcome, [before, after], moved, check, ms).with_notes(&loaded, format))
+    Ok(Report::new(args, &result, outcome, [before, after], [turned, moved], check, ms)
+        .with_notes(&loaded, format))
 }
 
 /// What the independent check finds: another count of the edges left is a violation too.

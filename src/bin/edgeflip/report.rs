@@ -34,7 +34,8 @@ pub struct Report {
     min_angle_after_deg: f64,
     before: Shape,
     after: Shape,
-    moved_triangles: usize,
+    turned_triangles: u32,
+    moved_triangles: u32,
     ms: Milliseconds,
     #[serde(flatten)]
     check: Option<Check>,
@@ -108,13 +109,13 @@ impl Milliseconds {
 }
 
 impl Report {
-    /// `measures`: before and after. `moved`: triangles that are others now.
+    /// `measures`: before and after. `turned`: triangles that were turned first; `moved`: that are others after it.
     pub fn new(
         args: &Args,
         mesh: &Mesh,
         outcome: Outcome,
         measures: [Measures; 2],
-        moved: usize,
+        [turned, moved]: [u32; 2],
         check: Option<Check>,
         ms: Milliseconds,
     ) -> Self {
@@ -142,6 +143,7 @@ impl Report {
             min_angle_after_deg: measures[1].min_angle,
             before: measures[0].into(),
             after: measures[1].into(),
+            turned_triangles: turned,
             moved_triangles: moved,
             ms,
             check,
@@ -221,7 +223,10 @@ impl Report {
             self.check.as_ref().map(|check| format!(", the surface by at most {}", short(check.distance)));
         let is_surface = self.dimension == Dimension::Three.stride();
         let distance = distance.filter(|_| is_surface).unwrap_or_default();
-        line("moved", format!("{} triangles{distance}", HumanCount(self.moved_triangles as u64)));
+        if self.turned_triangles > 0 {
+            line("turned", format!("{} triangles", HumanCount(self.turned_triangles.into())));
+        }
+        line("moved", format!("{} triangles{distance}", HumanCount(self.moved_triangles.into())));
         if is_surface {
             line("area", change(before.area, after.area));
             line("volume", change(before.volume, after.volume));

@@ -3,6 +3,9 @@
 use crate::Error;
 use crate::io::text::{Lines, Tokens, integer, quoted};
 
+/// What lines that mean something begin with.
+const KEYWORDS: [&[u8]; 4] = [b"format", b"element", b"property", b"end_header"];
+
 /// What the header announces.
 pub(super) struct Header<'a> {
     pub(super) encoding: Encoding,
@@ -98,7 +101,6 @@ impl<'a> Header<'a> {
             // No line that means something has more words than 5.
             let words: Vec<&[u8]> = Tokens(line).take(6).collect();
             match words[..] {
-                [] | [b"comment" | b"obj_info", ..] => {}
                 [b"format", b"ascii", b"1.0"] => encoding = Some(Encoding::Ascii),
                 [b"format", b"binary_little_endian", b"1.0"] => encoding = Some(Encoding::LittleEndian),
                 [b"format", b"binary_big_endian", b"1.0"] => encoding = Some(Encoding::BigEndian),
@@ -125,6 +127,9 @@ impl<'a> Header<'a> {
                     let encoding = encoding.ok_or_else(|| lines.refuse("the header has no line format"))?;
                     return Ok(Self { encoding, elements });
                 }
+                // Comments, some of which are written without their keyword.
+                [] => {}
+                [word, ..] if !KEYWORDS.contains(&word) => {}
                 _ => {
                     let found = quoted(line.trim_ascii());
                     return Err(lines.refuse(format!("expected a line of a PLY header, found {found}")));

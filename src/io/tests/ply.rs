@@ -189,6 +189,12 @@ fn a_line_feed_after_a_header_of_carriage_returns_is_a_number() {
 }
 
 #[test]
+fn a_comment_needs_no_keyword() {
+    let text = "ply\nformat ascii 1.0\nCreated by a program\nelement vertex 1\nproperty float x\nproperty float y\nend_header\n5 6\n";
+    mesh(ply(text), Two, &[5., 6.], &[]);
+}
+
+#[test]
 fn text_refused_with_its_line() {
     for (from, to, message) in [
         ("ply\n", "plyx\n", "line 1: expected the keyword ply of a PLY file, found `plyx`"),
