@@ -68,7 +68,7 @@ fn main() -> ExitCode {
     let counted = files.len() - malformed.len() - version_1.len();
     let percent = 100.0 * others.len() as f64 / counted.max(1) as f64;
     println!(
-        "\n{} files; of {counted} {} refused ({percent:.1} %), {wrong} wrong",
+        "\n{} files; of {counted} {} refused ({percent:.1} %), {on_cpu} on the CPU alone, {wrong} wrong",
         files.len(),
         others.len()
     );

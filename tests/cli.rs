@@ -283,7 +283,7 @@ fn the_summary_is_on_standard_error() {
         "4 vertices, 2 triangles, 3D\n",
         "\nbackend    cpu",
         "\naudit      clean\n",
-        "\nmoved      0 triangles, the surface by at most 0.0000\n",
+        "\nmoved      0 triangles, the surface by up to 0.0000\n",
         "\nvolume     ",
         "\nwrote      ",
     ] {

@@ -220,7 +220,7 @@ impl Report {
         line("mean min", format!("{:.3}° → {:.3}°", before.mean_min_angle_deg, after.mean_min_angle_deg));
         line("aspect", format!("{:.3} → {:.3}, the mean", before.mean_aspect, after.mean_aspect));
         let distance =
-            self.check.as_ref().map(|check| format!(", the surface by at most {}", short(check.distance)));
+            self.check.as_ref().map(|check| format!(", the surface by up to {}", short(check.distance)));
         let is_surface = self.dimension == Dimension::Three.stride();
         let distance = distance.filter(|_| is_surface).unwrap_or_default();
         if self.turned_triangles > 0 {
