@@ -68,7 +68,7 @@ export interface WriteOptions {
    * The file that the mesh was read from, and whose triangles have become others: glTF is written again with other
    * indices, in either form, and all else as it was.
    */
-  original?: { bytes: Uint8Array; name: string; files?: Files | undefined } | undefined;
+  original?: { bytes: Uint8Array; name: string; files?: Files | undefined; maxBytes?: number | undefined } | undefined;
 }
 
 /** What the angles of a mesh say about its triangles. A degenerate triangle counts as one with an angle of 0°. */
@@ -133,9 +133,7 @@ export async function readMesh(bytes: Uint8Array, name: string, options: ReadOpt
   checkBytes(bytes);
   if (options.dimension !== undefined) checkDimension(options.dimension);
   const { dimension, maxBytes, files = {} } = options;
-  if (maxBytes !== undefined && typeof maxBytes !== 'number') {
-    throw new EdgeflipError('invalid-input', 'maxBytes is not a number');
-  }
+  checkMaxBytes(maxBytes);
   // The module counts bytes with 32 bits.
   if (bytes.length >= 2 ** 32) throw new EdgeflipError('file-too-large', 'the file has more than 4294967295 bytes');
   const file = text(name, 'name');
@@ -156,9 +154,11 @@ export async function writeMesh(mesh: Mesh, name: string, options: WriteOptions 
   const file = text(name, 'name');
   const { original } = options;
   if (original) {
-    checkBytes(original.bytes);
+    const { bytes, files = {}, maxBytes } = original;
+    checkBytes(bytes);
+    checkMaxBytes(maxBytes);
     const from = text(original.name, 'original.name');
-    return call(() => wasm.rewriteMesh(original.bytes, from, dimension, original.files ?? {}, indices, file));
+    return call(() => wasm.rewriteMesh(bytes, from, dimension, maxBytes, files, indices, file));
   }
   return call(() => wasm.writeMesh(positions, indices, dimension, file));
 }
@@ -221,6 +221,11 @@ export async function change(mesh: Mesh, after: Uint32Array | Uint16Array): Prom
   const { positions, indices, dimension } = moduleMesh(mesh);
   const { indices: changed } = moduleMesh({ ...mesh, indices: after });
   return call(() => wasm.change(positions, indices, dimension, changed));
+}
+
+function checkMaxBytes(maxBytes: number | undefined): void {
+  if (maxBytes === undefined || typeof maxBytes === 'number') return;
+  throw new EdgeflipError('invalid-input', 'maxBytes is not a number');
 }
 
 /** The argument, if a program without types has passed text. */

@@ -167,6 +167,16 @@ impl<'a> Accessors<'a> {
         Err(refuse(place(), format!("it announces {count} elements and has no data for them")))
     }
 
+    /// Whether the numbers fit an accessor of indices. The largest one of its type restarts a strip.
+    pub(super) fn can_hold(&self, index: usize, numbers: &[u32]) -> Result<bool, Error> {
+        let largest = match component(self.get(index)?, || format!("accessor {index}"))? {
+            ComponentType::U8 => u32::from(u8::MAX),
+            ComponentType::U16 => u32::from(u16::MAX),
+            _ => u32::MAX,
+        };
+        Ok(numbers.iter().all(|&number| number < largest))
+    }
+
     /// The vertices that an accessor of indices names.
     pub(super) fn indices(&self, index: usize) -> Result<Vec<u32>, Error> {
         let accessor = self.get(index)?;

@@ -35,8 +35,8 @@ pub(super) use write::new_file;
 const DRACO: &str = "KHR_draco_mesh_compression";
 
 /// Bytes that a vertex and a triangle take in memory while they are read.
-const VERTEX_BYTES: usize = 12;
-const TRIANGLE_BYTES: usize = 12;
+const VERTEX_BYTES: u64 = 12;
+const TRIANGLE_BYTES: u64 = 12;
 
 /// Reads a file that lies beside the one that is read, by its name there.
 /// Else it says why not.
@@ -350,9 +350,14 @@ impl Reader<'_> {
 
     /// Refuses more vertices and triangles than memory is allowed for.
     fn limit(&self, vertices: u64, triangles: u64, place: impl Fn() -> String) -> Result<(), Error> {
-        let vertices = (self.positions.len() / 3) as u64 + vertices;
-        let triangles = (self.triangles.len() / 3) as u64 + triangles;
-        let bytes = vertices * VERTEX_BYTES as u64 + triangles * TRIANGLE_BYTES as u64;
+        let bytes = |present: usize, more: u64, each: u64| {
+            (present as u64 / 3).saturating_add(more).saturating_mul(each)
+        };
+        let bytes = bytes(self.positions.len(), vertices, VERTEX_BYTES).saturating_add(bytes(
+            self.triangles.len(),
+            triangles,
+            TRIANGLE_BYTES,
+        ));
         if bytes <= self.max_bytes {
             return Ok(());
         }

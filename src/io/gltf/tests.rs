@@ -245,6 +245,35 @@ fn indices_where_something_else_lies_are_not_overwritten() {
 }
 
 #[test]
+fn triangles_that_are_none_of_the_file_are_refused() {
+    let scene = read(&changed(&[])).unwrap();
+    let found = scene.document.with_triangles(&INDICES, &[0, 1, 3, 1, 2, 4], true).unwrap_err();
+    assert_eq!(found.to_string(), "triangle 1: vertex 4 is of another primitive");
+    // An array can stand for an object: a buffer of so many bytes, no URI, and no extensions.
+    let scene = read(&changed(&[("/buffers/0", json!([60, null, null, {}]))])).unwrap();
+    let found = scene.document.with_triangles(&INDICES, &FLIPPED, false).unwrap_err();
+    assert_eq!(found.to_string(), "JSON: an array stands for an object");
+}
+
+#[test]
+fn indices_that_their_type_does_not_hold_get_another() {
+    let mut positions = SQUARE.to_vec();
+    positions.extend([[5.0, 5.0, 0.0]; 300]);
+    let (mut json, _) = square();
+    json["accessors"][0]["count"] = positions.len().into();
+    json["accessors"][1]["componentType"] = 5121.into();
+    json["bufferViews"][0]["byteLength"] = (12 * positions.len()).into();
+    json["bufferViews"][1] = json!({ "buffer": 0, "byteOffset": 12 * positions.len(), "byteLength": 6 });
+    json["buffers"][0]["byteLength"] = (12 * positions.len() + 6).into();
+    let scene = read(&glb(&json, &[floats(&positions), INDICES.map(|i| i as u8).to_vec()].concat())).unwrap();
+    for last in [2, 254, 255, 303] {
+        let after = [0, 1, 3, 1, last, 3];
+        let written = scene.document.with_triangles(&scene.triangles, &after, true).unwrap();
+        assert_eq!(read(&written).unwrap().triangles, after);
+    }
+}
+
+#[test]
 fn a_new_file_is_read_as_it_was_written() {
     let positions = SQUARE.concat();
     let mesh = Mesh::new(Dimension::Three, positions.clone(), INDICES.to_vec()).unwrap();

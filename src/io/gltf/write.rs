@@ -41,10 +41,12 @@ impl Document {
         for part in &self.parts {
             let range = 3 * part.triangles.start..3 * part.triangles.end;
             if before[range.clone()] != after[range.clone()] {
-                let indices: Vec<u32> = after[range].iter().map(|&vertex| part.element(vertex)).collect();
+                let indices = part.elements_of(&after[range])?;
                 match part.indices.filter(|&accessor| is_alone[accessor]) {
-                    Some(accessor) => file.overwrite(&accessors, accessor, &indices)?,
-                    None => file.appended.push((part, indices)),
+                    Some(accessor) if accessors.can_hold(accessor, &indices)? => {
+                        file.overwrite(&accessors, accessor, &indices)?;
+                    }
+                    _ => file.appended.push((part, indices)),
                 }
             }
         }
@@ -61,15 +63,32 @@ impl Document {
         let mut root: Value =
             serde_json::from_slice(text).map_err(|error| refuse("JSON", error.to_string()))?;
         let others: Vec<&[u8]> = container.others.iter().map(|range| &self.bytes[range.clone()]).collect();
+        // In what is read an array can stand for an object.
+        let meshes = root["meshes"].as_array().into_iter().flatten();
+        let primitives = meshes.flat_map(|mesh| mesh["primitives"].as_array().into_iter().flatten());
+        let buffers = root["buffers"].as_array().into_iter().flatten();
+        if !root.is_object() || !primitives.chain(buffers).all(Value::is_object) {
+            return Err(refuse("JSON", "an array stands for an object"));
+        }
         file.finish(&mut root, is_binary, &others)
     }
 }
 
 impl Part {
-    /// The element of the accessor of positions that a vertex is.
-    fn element(&self, vertex: u32) -> u32 {
-        let rank = vertex - self.vertices.start as u32;
-        self.elements.as_ref().map_or(rank, |elements| elements[rank as usize])
+    /// The elements of the accessor of positions that the corners of its triangles are.
+    ///
+    /// # Errors
+    /// [`Error::Parse`] for a vertex of another part.
+    fn elements_of(&self, corners: &[u32]) -> Result<Vec<u32>, Error> {
+        let element = |(i, &vertex): (usize, &u32)| {
+            if !self.vertices.contains(&(vertex as usize)) {
+                let place = format!("triangle {}", self.triangles.start + i / 3);
+                return Err(refuse(place, format!("vertex {vertex} is of another primitive")));
+            }
+            let rank = vertex as usize - self.vertices.start;
+            Ok(self.elements.as_ref().map_or(rank as u32, |elements| elements[rank]))
+        };
+        corners.iter().enumerate().map(element).collect()
     }
 }
 
