@@ -2,7 +2,7 @@
 #![allow(dead_code, unused_imports, reason = "each test crate takes what it needs of this module")]
 #![allow(clippy::unwrap_used, reason = "a test that cannot make its mesh must stop")]
 
-mod dirty;
+pub mod dirty;
 mod extreme;
 mod locked;
 
