@@ -352,6 +352,51 @@ fn a_bad_file_gives_one_line_and_no_output() {
     }
 }
 
+/// A kite of vertices 0 to 3 with what scans and exports add to it, in three formats.
+///
+/// ```text
+///        2
+///      / | \
+///     0 -+- 1      0-1 is not Delaunay
+///      \ | /
+///        3
+/// ```
+#[test]
+fn dirty_files_say_what_was_left() {
+    // The triangle above twice: 0-1 has three triangles.
+    let ply = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nelement face 3\n\
+        property list uchar int vertex_indices\nend_header\n-2 0\n2 0\n0 1\n0 -1\n3 0 1 2\n3 1 0 3\n3 0 1 2\n";
+    // The triangle below turned over, a vertex that none has, and a triangle that has one vertex three times.
+    let off = "OFF\n5 3 0\n-2 0 0\n2 0 0\n0 1 0\n0 -1 0\n9 9 9\n3 0 1 2\n3 0 1 3\n3 2 2 2\n";
+    // Nothing but a facet without area at the upper left edge.
+    let facet = |corners: [&str; 3]| {
+        format!("facet normal 0 0 0\nouter loop\nvertex {}\nendloop\nendfacet\n", corners.join("\nvertex "))
+    };
+    let facets = [["-2 0 0", "2 0 0", "0 1 0"], ["2 0 0", "-2 0 0", "0 -1 0"], ["-2 0 0", "0 1 0", "0 1 0"]]
+        .map(facet);
+    let stl = format!("solid\n{}endsolid\n", facets.concat());
+    let folder = Folder::new();
+    let outcomes = [
+        ("0, done", "not Delaunay: non-manifold 1\nedges left non-manifold 0-1"),
+        ("0, done", "not Delaunay: inconsistent 1\nedges left inconsistent 0-1"),
+        ("1 in 1 iteration, done", "no edge that is not Delaunay"),
+    ];
+    let files = [
+        ("in.ply", ply, "4 vertices, 3 triangles, 2D"),
+        ("in.off", off, "5 vertices, 3 triangles, 3D"),
+        ("in.stl", &stl, "4 vertices, 3 triangles, 2D"),
+    ];
+    for ((name, bytes, size), (flips, left)) in files.into_iter().zip(outcomes) {
+        let ran = run(&folder.file(name, bytes), &folder.path("out.off"), &["--verify"]);
+        let said = text(&ran.stderr);
+        assert_eq!(ran.status.code(), Some(0), "{said}");
+        let outcome = format!("flips      {flips}\nleft       {left}");
+        for lines in [size, &outcome, "audit      clean"] {
+            assert!(said.contains(&format!("{lines}\n")), "{lines:?} is not in\n{said}");
+        }
+    }
+}
+
 /// From format to format: the triangles are those of the OFF file, or have their corners, in the same order.
 #[test]
 fn every_format_is_read_and_written() {

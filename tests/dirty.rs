@@ -168,15 +168,16 @@ fn duplicate_triangles() {
 
 #[test]
 fn caps() {
-    // A triangle without area, and one that has next to none.
-    for (name, edge) in [("flat-cap", [2, 3]), ("needle", [2, 3])] {
-        for mesh in [dirty(name), flat(&dirty(name))] {
-            let outcome = run(&mesh, 10.0);
-            assert!(!edges(&outcome.triangles).contains(&[0, 1]), "{name}");
-            assert!(edges(&outcome.triangles).contains(&edge), "{name}");
-            assert_eq!(outcome.remaining.total(), 0, "{name}");
-        }
+    // One without area, and one with next to none, both with the long edge 0-1.
+    for name in ["flat-cap", "flat-cap-3d", "needle", "needle-3d"] {
+        let outcome = run(&dirty(name), 10.0);
+        let edges = edges(&outcome.triangles);
+        assert!(edges.contains(&[2, 3]) && !edges.contains(&[0, 1]), "{name}");
+        assert_eq!(outcome.remaining.total(), 0, "{name}");
     }
+    // Two whose four corners are on one line stay: no flip would give them area.
+    let line = run(&dirty("flat-caps-back-to-back"), 10.0);
+    assert_eq!((line.flips, line.remaining.total()), (0, 0));
     // A cap that stands upright has a normal of its own.
     let upright =
         space(&[[0., 0., 0.], [4., 0., 0.], [2., 0., 0.001], [2., -3., 0.]], &[[0, 1, 2], [1, 0, 3]]);
@@ -270,8 +271,21 @@ fn folded_quads_2d() {
     assert_eq!((inside.flips, inside.remaining.total()), (1, 0));
     let cocircular = run(&dirty("bow-tie-quad"), 10.0);
     assert_eq!((cocircular.flips, cocircular.remaining.total()), (0, 0));
-    let beside = run(&plane(&[[0., 0.], [4., 0.], [1., 2.], [3., 1.]], &[[0, 1, 2], [1, 0, 3]]), 10.0);
-    assert_eq!((beside.flips, beside.remaining[Reason::Fold]), (0, 1));
+    // The third one, and one with 3 on the edge 1-2, where a new triangle would be flat.
+    for third in [[3., 1.], [2.5, 1.]] {
+        let beside = run(&plane(&[[0., 0.], [4., 0.], [1., 2.], third], &[[0, 1, 2], [1, 0, 3]]), 10.0);
+        assert_eq!((beside.flips, beside.remaining[Reason::Fold]), (0, 1));
+    }
+}
+
+/// The third of these quads as a surface, whose two triangles lie back to back: no flip turns neither over.
+#[test]
+fn folded_3d() {
+    let quad = space(&[[0., 0., 0.], [4., 0., 0.], [1., 2., 0.], [3., 1., 0.]], &[[0, 1, 2], [1, 0, 3]]);
+    for (beta, reason) in [(10.0, Reason::Angle), (180.0, Reason::Fold)] {
+        let outcome = run(&quad, beta);
+        assert_eq!((outcome.flips, outcome.remaining[reason], outcome.remaining.total()), (0, 1, 1));
+    }
 }
 
 /// The edges 0-2, 1-2, 1-3, 2-2 and 3-3 have three or four half-edges, 0-1 is a proper one and flips.
