@@ -271,10 +271,13 @@ fn folded_quads_2d() {
     assert_eq!((inside.flips, inside.remaining.total()), (1, 0));
     let cocircular = run(&dirty("bow-tie-quad"), 10.0);
     assert_eq!((cocircular.flips, cocircular.remaining.total()), (0, 0));
-    // The third one, and one with 3 on the edge 1-2, where a new triangle would be flat.
-    for third in [[3., 1.], [2.5, 1.]] {
-        let beside = run(&plane(&[[0., 0.], [4., 0.], [1., 2.], third], &[[0, 1, 2], [1, 0, 3]]), 10.0);
-        assert_eq!((beside.flips, beside.remaining[Reason::Fold]), (0, 1));
+    // The third one, and one with 3 on the edge 1-2, where a new triangle would be flat: with integers of two sizes.
+    for (third, x) in [([3., 1.], 0.), ([2.5, 1.], 0.), ([2.5, 1.], 2f32.powi(-40))] {
+        let quad = plane(&[[x, 0.], [4., 0.], [1., 2.], third], &[[0, 1, 2], [1, 0, 3]]);
+        for quad in [reversed(&quad), quad] {
+            let outcome = run(&quad, 10.0);
+            assert_eq!((outcome.flips, outcome.remaining[Reason::Fold]), (0, 1));
+        }
     }
 }
 
