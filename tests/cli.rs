@@ -19,12 +19,14 @@ use std::process::{Command, Output, Stdio};
 const SQUARE: &str = "OFF\n4 2 0\n0 0 0\n0.9 0.2 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3\n";
 
 /// The keys of the object that `--json` prints, in their order.
-const KEYS: [&str; 23] = [
+const KEYS: [&str; 25] = [
     "input",
     "vertices",
     "triangles",
     "edges",
     "boundary_edges",
+    "non_manifold_edges",
+    "inconsistent_edges",
     "dimension",
     "backend",
     "adapter",
@@ -382,8 +384,16 @@ fn dirty_files_say_what_was_left() {
         ("1 in 1 iteration, done", "no edge that is not Delaunay"),
     ];
     let files = [
-        ("in.ply", ply, "4 vertices, 3 triangles, 2D"),
-        ("in.off", off, "5 vertices, 3 triangles, 3D"),
+        (
+            "in.ply",
+            ply,
+            "4 vertices, 3 triangles, 2D\nfrozen     1 non-manifold edges, 2 inconsistent edges, left as they are",
+        ),
+        (
+            "in.off",
+            off,
+            "5 vertices, 3 triangles, 3D\nfrozen     1 non-manifold edges, 1 inconsistent edges, left as they are",
+        ),
         ("in.stl", &stl, "4 vertices, 3 triangles, 2D"),
     ];
     for ((name, bytes, size), (flips, left)) in files.into_iter().zip(outcomes) {

@@ -114,7 +114,8 @@ pub struct Args {
 
     /// Print one JSON object on standard output instead of the summary
     ///
-    /// Keys: input, vertices, triangles, edges, boundary_edges, dimension, backend, adapter, fallback,
+    /// Keys: input, vertices, triangles, edges, boundary_edges, non_manifold_edges, inconsistent_edges, dimension,
+    /// backend, adapter, fallback,
     /// status (done or stopped), iterations, flips, flips_per_iteration, dispatches, device_bytes, remaining (by reason),
     /// min_angle_before_deg, min_angle_after_deg, before and after (min_angle_deg, mean_min_angle_deg, mean_aspect,
     /// flat_triangles, area, volume), turned_triangles, moved_triangles, ms (load, upload, adjacency, flip, total, save; total is the

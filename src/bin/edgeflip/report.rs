@@ -18,6 +18,8 @@ pub struct Report {
     triangles: usize,
     edges: u64,
     boundary_edges: u64,
+    non_manifold_edges: u64,
+    inconsistent_edges: u64,
     dimension: usize,
     backend: &'static str,
     adapter: Option<String>,
@@ -125,6 +127,8 @@ impl Report {
             triangles: mesh.triangle_count(),
             edges: outcome.edges,
             boundary_edges: outcome.boundary_edges,
+            non_manifold_edges: outcome.non_manifold_edges,
+            inconsistent_edges: outcome.inconsistent_edges,
             dimension: mesh.dimension().stride(),
             backend: outcome.backend,
             adapter: outcome.adapter,
@@ -191,6 +195,15 @@ impl Report {
             "read",
             format!("{}: {vertices} vertices, {triangles} triangles, {}D", self.input, self.dimension),
         );
+        let frozen: Vec<String> =
+            [(self.non_manifold_edges, "non-manifold"), (self.inconsistent_edges, "inconsistent")]
+                .into_iter()
+                .filter(|&(count, _)| count > 0)
+                .map(|(count, what)| format!("{} {what} edges", HumanCount(count)))
+                .collect();
+        if !frozen.is_empty() {
+            line("frozen", format!("{}, left as they are", frozen.join(", ")));
+        }
         let adapter = self.adapter.as_ref().map(|name| format!(" ({name})")).unwrap_or_default();
         line("backend", format!("{}{adapter}", self.backend));
         if let Some(why) = &self.fallback {
