@@ -146,13 +146,13 @@ impl<'a> Accessors<'a> {
                 self.in_view(values.buffer_view.value(), values.byte_offset.0, count, size, place)?;
             for (at, value) in indices.iter(self.buffers).zip(values.iter(self.buffers)) {
                 let vertex = integer(at, kind) as usize;
-                let Some(position) = positions.get_mut(3 * vertex..3 * vertex + 3) else {
+                let Some(position) = positions.as_chunks_mut().0.get_mut(vertex) else {
                     return Err(refuse(
                         place(),
                         format!("it has no element {vertex}, which its sparse part changes"),
                     ));
                 };
-                position.copy_from_slice(&read(value));
+                *position = read(value);
             }
         }
         Ok(positions)

@@ -168,13 +168,20 @@ fn deserialized<'a, T: Deserialize<'a>>(bytes: &'a [u8]) -> Result<T, Error> {
     Ok(value)
 }
 
-/// `max_bytes` limits what the mesh may take.
+/// `max_bytes` limits what the mesh may take, and what files beside this one may have together.
 fn parse(bytes: Vec<u8>, read: ReadFile<'_>, max_bytes: u64) -> Result<Content, Error> {
     let container = Container::of(&bytes)?;
     let root = json(&bytes[container.json.clone()])?;
     let files = std::cell::RefCell::new(BTreeMap::new());
+    let taken = std::cell::Cell::new(0);
     let kept = |name: &str| {
         let content = read(name)?;
+        // A small file may name a large one many times.
+        taken.set(taken.get() + content.len() as u64);
+        if taken.get() > max_bytes {
+            let taken = taken.get();
+            return Err(format!("with it the buffers take {taken} bytes, more than the {max_bytes} allowed"));
+        }
         files.borrow_mut().insert(name.to_owned(), content.clone());
         Ok(content)
     };

@@ -500,3 +500,13 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn a_file_named_many_times_counts_as_often() {
+    let (mut json, _) = square();
+    json["buffers"] = json!(vec![json!({ "byteLength": 60, "uri": "a" }); 9]);
+    let read = |_: &str| Ok(vec![0; 1 << 17]);
+    let error = parse(json.to_string().into_bytes(), &read, 1 << 20).err().unwrap();
+    let message = "buffer 8: it is in the file `a`: with it the buffers take 1179648 bytes, more than the 1048576 allowed";
+    assert_eq!(error.to_string(), message);
+}

@@ -1,0 +1,110 @@
+//! What has to hold for the bytes of any file: it is read or refused in one line; what was read is made Delaunay, and
+//! the audit is clean; and it is written again in every format, from which the same mesh is read. The fuzz targets call
+//! this, and so does `tests/fuzz_seeds.rs`.
+
+use edgeflip::io::{Format, Loaded, ReadOptions, parse_edges, parse_with};
+use edgeflip::{Dimension, Error, Mesh, Options, make_delaunay, quality};
+use std::ops::ControlFlow;
+
+/// Bytes that a file may have, and its mesh may take.
+const MAX_BYTES: u64 = 1 << 22;
+
+/// Meshes of so many triangles are left as they were read.
+const MANY: usize = 200;
+
+/// Checks the bytes of a file as the target of that name does.
+///
+/// # Panics
+/// If something does not hold.
+pub fn check(target: &str, bytes: &[u8]) {
+    let format = match target {
+        "off" | "gzip" => Format::Off,
+        "obj" => Format::Obj,
+        "ply" => Format::Ply,
+        "stl" => Format::Stl,
+        "gltf" => Format::Gltf,
+        "edges" => return drop(parse_edges(bytes).map_err(one_line)),
+        _ => panic!("there is no target {target}"),
+    };
+    for dimension in [None, Some(Dimension::Two), Some(Dimension::Three)] {
+        match read(format, bytes, dimension) {
+            Ok(loaded) => whole_way(&loaded, bytes),
+            Err(error) => one_line(error),
+        }
+    }
+}
+
+/// Reads a file. Those beside it are itself, but for one that is not there.
+fn read(format: Format, bytes: &[u8], dimension: Option<Dimension>) -> Result<Loaded, Error> {
+    let beside = |name: &str| if name == "none" { Err("not there".into()) } else { Ok(bytes.to_vec()) };
+    let options = ReadOptions { dimension, max_bytes: MAX_BYTES, ..ReadOptions::default() };
+    parse_with(format, bytes, &options, &beside)
+}
+
+fn one_line(error: Error) {
+    let message = error.to_string();
+    assert!(!message.is_empty() && !message.contains(char::is_control), "{message:?}");
+}
+
+/// Flips, audits, and writes in every format.
+fn whole_way(loaded: &Loaded, bytes: &[u8]) {
+    let mesh = &loaded.mesh;
+    let mut triangles = mesh.triangles().to_vec();
+    if mesh.triangle_count() < MANY {
+        let options = Options::default();
+        let outcome = make_delaunay(mesh, &options, |_, _| ControlFlow::Continue(())).unwrap();
+        let audit = quality::audit(mesh, &outcome.triangles, options.max_normal_angle, &[]);
+        assert!(audit.is_clean(), "{:?}", audit.violations);
+        assert_eq!(audit.remaining, outcome.remaining);
+        triangles = outcome.triangles;
+    }
+    let mut reversed = triangles.clone();
+    reversed.reverse();
+    for (name, format) in [
+        ("a.off.gz", Format::Off),
+        ("a.obj", Format::Obj),
+        ("a.ply", Format::Ply),
+        ("a.stl", Format::Stl),
+        ("a.gltf", Format::Gltf),
+        ("a.glb", Format::Glb),
+    ] {
+        // Triangles that no flips make are written or refused.
+        drop(loaded.file_bytes(name, reversed.clone()).map_err(one_line));
+        match loaded.file_bytes(name, triangles.clone()) {
+            Ok(written) => same(loaded, &triangles, format, &written, bytes),
+            Err(error) => one_line(error),
+        }
+    }
+}
+
+/// Reads what was written, and compares it with the mesh.
+fn same(loaded: &Loaded, triangles: &[u32], format: Format, written: &[u8], beside: &[u8]) {
+    let is_gltf = matches!(format, Format::Gltf | Format::Glb);
+    let as_read = loaded.mesh.with_triangles(triangles.to_vec()).unwrap();
+    let mesh = match loaded.placed() {
+        Some(placed) if !is_gltf => Mesh::new(Dimension::Three, placed, triangles.to_vec()).unwrap(),
+        _ => as_read,
+    };
+    // An OBJ file without a vertex is none, and glTF without triangles has points.
+    if mesh.vertex_count() == 0 && format == Format::Obj || triangles.is_empty() && is_gltf {
+        return;
+    }
+    let options = ReadOptions { dimension: Some(mesh.dimension()), ..ReadOptions::default() };
+    let back = parse_with(format, written, &options, &|_| Ok(beside.to_vec())).unwrap().mesh;
+    if format == Format::Stl {
+        assert_eq!(corners(&back), corners(&mesh));
+        return;
+    }
+    assert_eq!(back.triangles(), mesh.triangles());
+    if format == Format::Ply {
+        assert_eq!(back.positions(), mesh.positions());
+    } else {
+        assert_eq!(back.positions().to_f32(), mesh.positions().to_f32());
+    }
+}
+
+/// Where the corners of each triangle are, in 32 bits.
+fn corners(mesh: &Mesh) -> Vec<Vec<f32>> {
+    let (numbers, stride) = (mesh.positions().to_f32(), mesh.dimension().stride());
+    mesh.triangles().iter().map(|&v| numbers[stride * v as usize..][..stride].to_vec()).collect()
+}
