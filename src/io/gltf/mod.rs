@@ -160,10 +160,16 @@ fn json(bytes: &[u8]) -> Result<Root, Error> {
     deserialized(bytes)
 }
 
+/// Names of the file, which a message repeats, may have line breaks.
+fn one_line(message: String) -> String {
+    message.replace(char::is_control, "\u{fffd}")
+}
+
 fn deserialized<'a, T: Deserialize<'a>>(bytes: &'a [u8]) -> Result<T, Error> {
     let mut json = serde_json::Deserializer::from_slice(bytes);
-    let value = serde_path_to_error::deserialize(&mut json)
-        .map_err(|error| refuse(format!("JSON, {}", error.path()), error.inner().to_string()))?;
+    let value = serde_path_to_error::deserialize(&mut json).map_err(|error| {
+        refuse(one_line(format!("JSON, {}", error.path())), one_line(error.inner().to_string()))
+    })?;
     json.end().map_err(|error| refuse("JSON", error.to_string()))?;
     Ok(value)
 }

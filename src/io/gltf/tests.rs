@@ -510,3 +510,11 @@ fn a_file_named_many_times_counts_as_often() {
     let message = "buffer 8: it is in the file `a`: with it the buffers take 1179648 bytes, more than the 1048576 allowed";
     assert_eq!(error.to_string(), message);
 }
+
+#[test]
+fn a_message_has_one_line_whatever_the_names() {
+    let found =
+        read(br#"{"asset":{"version":"2.0"},"nodes":[{"extensions":{"a\nb":1e999}}]}"#).err().unwrap();
+    let message = "JSON, nodes[0].extensions.a\u{fffd}b: number out of range at line 1 column 63";
+    assert_eq!(found.to_string(), message);
+}
