@@ -33,7 +33,8 @@ pub fn load(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Loaded, Err
         if !options.external_files {
             return Err("other files are read only if that is allowed (--external-files)".into());
         }
-        let limited = fs::File::open(folder(path).join(name)).map(|file| file.take(options.max_bytes));
+        let limited = fs::File::open(folder(path).join(name))
+            .map(|file| file.take(options.max_bytes.saturating_add(1)));
         let mut bytes = Vec::new();
         let read = limited.and_then(|mut file| file.read_to_end(&mut bytes));
         read.map(|_| bytes).map_err(|error| error.to_string())
