@@ -51,12 +51,12 @@ pub fn rewrite_mesh(
     bytes: &Uint8Array,
     name: &str,
     dimension: f64,
+    max_bytes: Option<f64>,
     files: &JsValue,
     indices: Vec<u32>,
     target: &str,
 ) -> Result<Uint8Array, JsValue> {
-    let rewrite =
-        || load(bytes, name, Some(dimension), Some(f64::INFINITY), files)?.file_bytes(target, indices);
+    let rewrite = || load(bytes, name, Some(dimension), max_bytes, files)?.file_bytes(target, indices);
     rewrite().map(|bytes| Uint8Array::from(bytes.as_slice())).map_err(thrown)
 }
 

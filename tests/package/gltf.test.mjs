@@ -61,6 +61,7 @@ test('a rigged GLB becomes a glTF, and a strip a list, without a fault', async (
     assert.deepEqual((await faults(out, files)).filter(({ severity }) => severity === 0), []);
     assert.deepEqual((await readMesh(out, name, { files })).indices, changed.indices);
   }
+  await assert.rejects(writeMesh(mesh, 'out.glb', { original: { ...original, maxBytes: 100 } }), { code: 'file-too-large' });
   await assert.rejects(writeMesh({ ...mesh, indices: indices.slice(3) }, 'out.glb', { original }), { code: 'triangle-count' });
 });
 
