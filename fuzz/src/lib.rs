@@ -85,8 +85,9 @@ fn same(loaded: &Loaded, triangles: &[u32], format: Format, written: &[u8], besi
         Some(placed) if !is_gltf => Mesh::new(Dimension::Three, placed, triangles.to_vec()).unwrap(),
         _ => as_read,
     };
-    // An OBJ file without a vertex is none, and glTF without triangles has points.
-    if mesh.vertex_count() == 0 && format == Format::Obj || triangles.is_empty() && is_gltf {
+    // An OBJ file without a vertex is none, glTF without triangles has points, and text is read in 32 bits.
+    let is_beyond = format != Format::Ply && mesh.positions().to_f32().iter().any(|x| !x.is_finite());
+    if mesh.vertex_count() == 0 && format == Format::Obj || triangles.is_empty() && is_gltf || is_beyond {
         return;
     }
     let options = ReadOptions { dimension: Some(mesh.dimension()), ..ReadOptions::default() };
