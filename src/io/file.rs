@@ -1,6 +1,6 @@
 //! Mesh files on disk: a whole file is read at once, and a target is replaced at once or not at all.
 
-use super::{Format, Loaded, ReadOptions, gzip, parse_edges, parse_with, write_to};
+use super::{Format, Loaded, ReadOptions, mesh_writer, parse_edges, parse_with};
 use crate::{Error, Mesh};
 use std::fs;
 use std::io::{self, BufWriter, Read, Write};
@@ -59,11 +59,7 @@ pub fn read_edges(path: impl AsRef<Path>) -> Result<Vec<[u32; 2]>, Error> {
 /// [`Error::UnknownFormat`] or [`Error::Io`].
 pub fn write(path: impl AsRef<Path>, mesh: &Mesh) -> Result<(), Error> {
     let path = path.as_ref();
-    let format = Format::of(path)?;
-    let write = |out: &mut dyn Write| {
-        gzip::write(gzip::is_named(path), out, |mut out| write_to(format, mesh, &mut out))
-    };
-    replace(path, write).map_err(|source| at(path, source))
+    replace(path, mesh_writer(path, mesh)?).map_err(|source| at(path, source))
 }
 
 /// As [`write()`], what was read with other triangles; see [`Loaded::file_bytes`].

@@ -152,11 +152,8 @@ impl Loaded {
     /// [`Error::UnknownFormat`]; those of [`Mesh::new`] for the triangles, of which there must be as many as before; [`Error::Io`] as
     /// [`write_to`]; [`Error::TooLarge`] for 4 GiB and more of `.glb`.
     pub fn file_bytes(&self, name: impl AsRef<Path>, triangles: Vec<u32>) -> Result<Vec<u8>, Error> {
-        let (name, mut bytes) = (name.as_ref(), Vec::new());
-        match self.write_to(name, triangles)?(&mut bytes) {
-            Ok(()) => Ok(bytes),
-            Err(source) => Err(Error::Io { path: name.display().to_string(), source }),
-        }
+        let name = name.as_ref();
+        collected(name, self.write_to(name, triangles)?)
     }
 
     /// What writes such a file.
@@ -263,12 +260,37 @@ pub fn to_bytes(format: Format, mesh: &Mesh) -> io::Result<Vec<u8>> {
 /// [`Error::UnknownFormat`], and [`Error::Io`] as [`write_to`].
 pub fn to_file_bytes(name: impl AsRef<Path>, mesh: &Mesh) -> Result<Vec<u8>, Error> {
     let name = name.as_ref();
-    let format = Format::of(name)?;
+    collected(name, mesh_writer(name, mesh)?)
+}
+
+/// What writes a file of that name.
+fn mesh_writer(name: &Path, mesh: &Mesh) -> Result<impl FnOnce(&mut dyn Write) -> io::Result<()>, Error> {
+    let (format, is_packed) = (Format::of(name)?, gzip::is_named(name));
+    Ok(move |out: &mut dyn Write| gzip::write(is_packed, out, |mut out| write_to(format, mesh, &mut out)))
+}
+
+/// The bytes that `write` writes of a file of that name.
+fn collected(name: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<Vec<u8>, Error> {
     let mut bytes = Vec::new();
-    match gzip::write(gzip::is_named(name), &mut bytes, |mut out| write_to(format, mesh, &mut out)) {
+    match write(&mut bytes) {
         Ok(()) => Ok(bytes),
         Err(source) => Err(Error::Io { path: name.display().to_string(), source }),
     }
+}
+
+/// The positions of a mesh in the 32 bits of a format, 3 numbers a vertex.
+fn rounded(mesh: &Mesh, format: &str) -> io::Result<Vec<[f32; 3]>> {
+    let round = |vertex| {
+        let point = mesh.point3(vertex).as_vec3();
+        let message = || {
+            format!(
+                "vertex {vertex} is too far away for the 32-bit numbers of {format}; write PLY, OBJ or OFF"
+            )
+        };
+        let error = || io::Error::new(io::ErrorKind::InvalidInput, message());
+        point.is_finite().then(|| point.to_array()).ok_or_else(error)
+    };
+    (0..mesh.vertex_count() as u32).map(round).collect()
 }
 
 /// Text that begins with the byte order mark of UTF-16, in UTF-8.

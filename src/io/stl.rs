@@ -21,23 +21,13 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Parsed, Error> {
 /// Writes `mesh` in the binary form: 32-bit floats, the nearest ones; z is 0 in a 2D mesh. The normal of a triangle
 /// without an area is 0.
 pub(super) fn write(mesh: &Mesh, out: &mut impl Write) -> io::Result<()> {
-    let numbers = mesh.positions().to_f32();
-    let stride = mesh.dimension().stride();
-    if let Some(i) = numbers.iter().position(|x| !x.is_finite()) {
-        let vertex = i / stride;
-        let message =
-            format!("vertex {vertex} is too far away for the 32-bit numbers of STL; write PLY, OBJ or OFF");
-        return Err(io::Error::new(io::ErrorKind::InvalidInput, message));
-    }
+    let points = super::rounded(mesh, "STL")?;
     let mut header = [0; HEADER];
     header[..8].copy_from_slice(b"edgeflip");
     header[80..].copy_from_slice(&(mesh.triangle_count() as u32).to_le_bytes());
     out.write_all(&header)?;
     for triangle in mesh.triangles().chunks_exact(3) {
-        let corners = [triangle[0], triangle[1], triangle[2]].map(|v| {
-            let point = &numbers[stride * v as usize..];
-            Vec3::new(point[0], point[1], if stride == 3 { point[2] } else { 0.0 })
-        });
+        let corners = [triangle[0], triangle[1], triangle[2]].map(|v| Vec3::from(points[v as usize]));
         let [a, b, c] = corners.map(DVec3::from);
         // Of 32-bit coordinates it neither overflows nor vanishes in 64 bits.
         let normal = (b - a).cross(c - a).normalize_or_zero().as_vec3();

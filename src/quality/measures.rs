@@ -1,6 +1,6 @@
 //! Numbers about the shape of a mesh, before and after. In f64, for reports: no decision is taken on them.
 
-use super::triangle_angles;
+use super::{Angles, angles};
 use crate::{Dimension, Mesh};
 use glam::DVec3;
 use rstar::{AABB, PointDistance, RTree, RTreeObject};
@@ -26,15 +26,13 @@ pub struct Measures {
 
 /// Measures a mesh.
 pub fn measures(mesh: &Mesh) -> Measures {
+    let Angles { min: min_angle, mean_min: mean_min_angle, .. } = angles(mesh, 1);
     let mut measures =
-        Measures { min_angle: 60.0, mean_min_angle: 0.0, mean_aspect: 0.0, flat: 0, area: 0.0, volume: 0.0 };
+        Measures { min_angle, mean_min_angle, mean_aspect: 0.0, flat: 0, area: 0.0, volume: 0.0 };
     // From a point nearby, so that a large offset costs no digits.
     let origin = mesh.triangles().first().map_or(DVec3::ZERO, |&v| mesh.point3(v));
     for corners in triangles(mesh, mesh.triangles()) {
         let [a, b, c] = corners.map(|corner| corner - origin);
-        let smallest = triangle_angles(corners).into_iter().fold(180.0, f64::min);
-        measures.min_angle = measures.min_angle.min(smallest);
-        measures.mean_min_angle += smallest;
         let doubled = (b - a).cross(c - a).length();
         measures.area += doubled / 2.0;
         measures.volume += a.dot(b.cross(c)) / 6.0;
@@ -47,10 +45,8 @@ pub fn measures(mesh: &Mesh) -> Measures {
             measures.flat += 1;
         }
     }
-    let count = mesh.triangle_count();
-    let mean = |sum: f64, count: usize, none: f64| if count == 0 { none } else { sum / count as f64 };
-    measures.mean_min_angle = mean(measures.mean_min_angle, count, 60.0);
-    measures.mean_aspect = mean(measures.mean_aspect, count - measures.flat, 1.0);
+    let proper = mesh.triangle_count() - measures.flat;
+    measures.mean_aspect = if proper == 0 { 1.0 } else { measures.mean_aspect / proper as f64 };
     if mesh.dimension() == Dimension::Two {
         measures.volume = 0.0;
     }

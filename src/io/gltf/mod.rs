@@ -194,7 +194,7 @@ fn parse(bytes: Vec<u8>, read: ReadFile<'_>, max_bytes: u64) -> Result<Content, 
     let buffers = Buffers::of(&root, container.binary.map(|range| &bytes[range]), &kept)?;
     let mut reader = Reader {
         accessors: Accessors { root: &root, buffers: &buffers },
-        uses: uses_of_positions(&root),
+        uses: uses(&root, positions_of),
         max_bytes,
         found: BTreeMap::new(),
         parts: Vec::new(),
@@ -255,10 +255,10 @@ fn positions_of(primitive: &Primitive) -> Option<usize> {
     primitive.attributes.get(&Checked::Valid(Semantic::Positions)).map(|accessor| accessor.value())
 }
 
-/// How many primitives use each accessor for their positions.
-fn uses_of_positions(root: &Root) -> Vec<usize> {
+/// How many primitives use each accessor; `accessor_of` says for what.
+fn uses(root: &Root, accessor_of: impl Fn(&Primitive) -> Option<usize>) -> Vec<usize> {
     let mut uses = vec![0; root.accessors.len()];
-    for accessor in root.meshes.iter().flat_map(|mesh| &mesh.primitives).filter_map(positions_of) {
+    for accessor in root.meshes.iter().flat_map(|mesh| &mesh.primitives).filter_map(accessor_of) {
         if let Some(uses) = uses.get_mut(accessor) {
             *uses += 1;
         }

@@ -6,7 +6,8 @@
 use super::accessors::{Accessors, component};
 use super::buffers::{Buffers, data_uri};
 use super::container::{Container, glb};
-use super::{Document, Part, json, refuse};
+use super::{Document, Part, json, refuse, uses};
+use crate::io::rounded;
 use crate::{Error, Mesh};
 use gltf::json::accessor::ComponentType;
 use serde_json::{Value, json};
@@ -95,13 +96,7 @@ impl Part {
 /// For each accessor whether it is the indices of one part alone, and its bytes are nothing else's.
 fn alone(accessors: &Accessors, parts: &[Part]) -> Vec<bool> {
     let root = accessors.root;
-    let mut uses = vec![0; root.accessors.len()];
-    let primitives = root.meshes.iter().flat_map(|mesh| &mesh.primitives);
-    for index in primitives.filter_map(|primitive| primitive.indices) {
-        if let Some(uses) = uses.get_mut(index.value()) {
-            *uses += 1;
-        }
-    }
+    let uses = uses(root, |primitive| Some(primitive.indices?.value()));
     let mut is_alone = vec![false; root.accessors.len()];
     for part in parts {
         if let Some(accessor) = part.indices {
@@ -268,7 +263,7 @@ pub(in crate::io) fn new_file(mesh: &Mesh, is_binary: bool) -> io::Result<Vec<u8
     let mut root = json!({ "asset": { "version": "2.0", "generator": "edgeflip" } });
     let mut bytes = Vec::new();
     if mesh.vertex_count() > 0 {
-        let positions = rounded(mesh)?;
+        let positions = rounded(mesh, "glTF")?;
         bytes.extend(positions.as_flattened().iter().flat_map(|x| x.to_le_bytes()));
         let bound = |pick: fn(f32, f32) -> f32| -> [f32; 3] {
             std::array::from_fn(|axis| positions.iter().map(|p| p[axis]).reduce(pick).unwrap_or_default())
@@ -294,27 +289,9 @@ pub(in crate::io) fn new_file(mesh: &Mesh, is_binary: bool) -> io::Result<Vec<u8
     }
     let text = root.to_string();
     if is_binary {
-        glb(text.as_bytes(), (!bytes.is_empty()).then_some(&bytes), &[]).map_err(impossible)
+        glb(text.as_bytes(), (!bytes.is_empty()).then_some(&bytes), &[])
+            .map_err(|error| io::Error::new(io::ErrorKind::InvalidInput, error.to_string()))
     } else {
         Ok(text.into_bytes())
     }
-}
-
-/// The positions of a mesh in 32 bits, 3 numbers a vertex.
-fn rounded(mesh: &Mesh) -> io::Result<Vec<[f32; 3]>> {
-    (0..mesh.vertex_count() as u32)
-        .map(|vertex| {
-            let point = mesh.point3(vertex).as_vec3();
-            if point.is_finite() {
-                return Ok(point.to_array());
-            }
-            Err(impossible(format!(
-                "vertex {vertex} is too far away for the 32-bit numbers of glTF; write PLY, OBJ or OFF"
-            )))
-        })
-        .collect()
-}
-
-fn impossible(error: impl ToString) -> io::Error {
-    io::Error::new(io::ErrorKind::InvalidInput, error.to_string())
 }
