@@ -95,7 +95,7 @@ fn row(spec: &str, runs: usize) -> Result<(String, String, bool), edgeflip::Erro
         && first.triangles == cpu.triangles
         && first.flips_per_iteration == cpu.flips_per_iteration
         && first.remaining == cpu.remaining;
-    let audit = quality::audit(&mesh, &first.triangles, Options::default().max_normal_angle, &[]);
+    let audit = quality::audit(&mesh, &first.triangles, &Options::default());
     // The audit counts what remains by itself.
     let is_honest = audit.remaining == first.remaining;
     let verdict = match audit.violations.first() {

@@ -107,7 +107,7 @@ fn row(file: &Path) -> Row {
         Err(Error::BackendLimit { message, .. }) => only_cpu = Some(message),
         Err(error) => faults.push(error.to_string()),
     }
-    let audit = audit(&mesh, &outcome.triangles, Options::default().max_normal_angle, &[]);
+    let audit = audit(&mesh, &outcome.triangles, &Options::default());
     faults.extend(audit.violations.iter().map(ToString::to_string));
     if audit.remaining != outcome.remaining {
         faults.push(format!("the audit counts {:?}", audit.remaining));

@@ -29,6 +29,14 @@ fn exact_differences(u: Point, v: Point, grid: i32) -> Differences {
     );
 }
 
+fn deviation_grid() -> i32 {
+    return 0;
+}
+
+fn deviation_on(grid: i32) -> vec4u {
+    return vec4u(deviation().xyz, 0u);
+}
+
 // u - v. A word that becomes an f32 errs by ε, and so does each of two sums of numbers of one sign: 3ε.
 fn rounded_difference(u: Point, v: Point) -> vec3f {
     let exact = exact_differences(u, v, 0);

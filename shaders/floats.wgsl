@@ -58,6 +58,14 @@ fn exact_differences(u: Point, v: Point, grid: i32) -> Differences {
     );
 }
 
+fn deviation_grid() -> i32 {
+    return lowest_exponent(deviation().x);
+}
+
+fn deviation_on(grid: i32) -> vec4u {
+    return on_grid(deviation().x, grid);
+}
+
 // The f32 in units of 2^grid, as magnitude and sign.
 fn on_grid(bits: u32, grid: i32) -> vec4u {
     let magnitude = magnitude_of(bits);

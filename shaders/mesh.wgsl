@@ -21,6 +21,7 @@ const REASON_ANGLE: u32 = 0u;
 const REASON_FOLD: u32 = 1u;
 const REASON_DUPLICATE: u32 = 2u;
 const REASON_LOCKED: u32 = 3u;
+const REASON_DEVIATION: u32 = 4u;
 
 fn next(h: u32) -> u32 {
     return select(h + 1u, h - 2u, h % 3u == 2u);

@@ -120,16 +120,18 @@ fn census_pass(@builtin(position) fragment: vec4f) -> @location(0) vec4u {
     return result;
 }
 
-// The rest of the census: how many of those edges are not Delaunay and locked.
+// The rest of the census: how many of those edges are locked, and how many would deviate.
 @fragment
-fn locked_pass(@builtin(position) fragment: vec4f) -> @location(0) vec4u {
+fn more_pass(@builtin(position) fragment: vec4f) -> @location(0) vec4u {
     let t = index_at(fragment);
     var result = vec4u();
     let end = select(3u * t, 3u * t + 3u, t < params[0].x);
     for (var h = 3u * t; h < end; h++) {
         let g = twin(h);
-        let is_locked = textureLoad(verdicts, place(h), 0).x == BLOCKED_BY + REASON_LOCKED;
-        result.x += u32(is_locked && g != NONE && h < g);
+        if g != NONE && h < g {
+            let verdict = vec4u(textureLoad(verdicts, place(h), 0).x);
+            result += vec4u(verdict == BLOCKED_BY + vec4u(REASON_LOCKED, REASON_DEVIATION, NONE, NONE));
+        }
     }
     return result;
 }

@@ -14,13 +14,17 @@ const SPACE_FLUSHED: f32 = 5.684342e-14;
 alias Quad = mat4x3f;
 
 fn quad_of(a: Point, b: Point, c: Point, d: Point) -> Quad {
-    let p = rounded_difference(a, c);
-    let q = rounded_difference(b, c);
-    let r = rounded_difference(a, d);
-    let s = rounded_difference(b, d);
-    let largest = max(max(abs(p), abs(q)), max(abs(r), abs(s)));
-    let scale = scale_for(max(max(largest.x, largest.y), largest.z));
-    return Quad(p * scale, q * scale, r * scale, s * scale);
+    let quad = unscaled(a, b, c, d);
+    return scale_for(largest_of(quad)) * quad;
+}
+
+fn unscaled(a: Point, b: Point, c: Point, d: Point) -> Quad {
+    return Quad(rounded_difference(a, c), rounded_difference(b, c), rounded_difference(a, d), rounded_difference(b, d));
+}
+
+fn largest_of(quad: Quad) -> f32 {
+    let largest = max(max(abs(quad[0]), abs(quad[1])), max(abs(quad[2]), abs(quad[3])));
+    return max(max(largest.x, largest.y), largest.z);
 }
 
 fn size(v: vec3f) -> f32 {
@@ -31,8 +35,8 @@ fn bound_of(quad: Quad) -> f32 {
     return SPACE_BOUND * (size(quad[0]) * size(quad[1])) * (size(quad[3]) * size(quad[2])) + SPACE_FLUSHED;
 }
 
-// Whether an edge may flip by its geometry: DELAUNAY, BLOCKED_BY + REASON_ANGLE or REASON_FOLD, or LABELLED. The winding
-// has no meaning in space.
+// Whether an edge may flip by its geometry: DELAUNAY, BLOCKED_BY + REASON_ANGLE, REASON_FOLD or REASON_DEVIATION, or
+// LABELLED. The winding has no meaning in space.
 fn verdict_on(a: Point, b: Point, c: Point, d: Point, winding: i32) -> u32 {
     var verdict = filtered_verdict_on(a, b, c, d, winding);
     if verdict == UNDECIDED {
@@ -52,6 +56,9 @@ fn filtered_verdict_on(a: Point, b: Point, c: Point, d: Point, winding: i32) -> 
         let turned = compare_turns(quad);
         verdict = select(select(LABELLED, BLOCKED_BY + REASON_FOLD, turned < 0), BLOCKED_BY + REASON_ANGLE, angle < 0);
         verdict = select(verdict, UNDECIDED, sum == 0 || angle == 0 || (angle > 0 && turned == 0));
+    }
+    if verdict == LABELLED {
+        verdict = filtered_deviation(a, b, c, d);
     }
     return verdict;
 }
@@ -123,7 +130,11 @@ fn determinant(u: Medium, v: Medium, x: Medium, y: Medium, count: u32) -> Large 
 }
 
 fn exact_verdict_on(a: Point, b: Point, c: Point, d: Point, winding: i32) -> u32 {
-    return exactly_on(a, b, c, d, false);
+    var verdict = exactly_on(a, b, c, d, false);
+    if verdict == LABELLED {
+        verdict = exact_deviation(a, b, c, d);
+    }
+    return verdict;
 }
 
 // With `angle_only`, only the angle before the flip is looked at: DELAUNAY or BLOCKED_BY + REASON_ANGLE.

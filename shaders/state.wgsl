@@ -33,6 +33,8 @@ struct Params {
     // |cos β| is exactly mantissa / power: digits as in exact.wgsl.
     cos_mantissa: array<vec4i, 2>,
     cos_power: array<vec4i, 2>,
+    // What the diagonals of a quad may be apart: words as those of a coordinate, and rounded to f32 for the filter.
+    deviation: vec4u,
 }
 
 struct Step {
@@ -57,7 +59,7 @@ struct Step {
 
 // Words of the history. An entry tells of the iteration before it.
 const CENSUS: u32 = 0u;
-const ENTRIES: u32 = 5u;
+const ENTRIES: u32 = 6u;
 const ENTRY_WORDS: u32 = 4u;
 const FLIPS: u32 = 0u;
 // Length of the list of the triangles to look at; meaningful where it was built.
@@ -152,4 +154,8 @@ fn cos_mantissa() -> Small {
 
 fn cos_power() -> Small {
     return params.cos_power;
+}
+
+fn deviation() -> vec4u {
+    return params.deviation;
 }

@@ -22,6 +22,8 @@ pub enum EdgeState {
     Duplicate,
     /// Not Delaunay, and blocked by [`Reason::Locked`].
     Locked,
+    /// Not Delaunay, and blocked by [`Reason::Deviation`].
+    Deviation,
     /// Frozen, whatever its angles: three or more triangles, or one triangle twice.
     NonManifold,
     /// Frozen, whatever its angles: two triangles oriented against each other.
@@ -32,7 +34,7 @@ pub enum EdgeState {
 
 impl EdgeState {
     /// All states, each at the place of its number.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::Delaunay,
         Self::Flips,
         Self::Waits,
@@ -40,13 +42,14 @@ impl EdgeState {
         Self::Fold,
         Self::Duplicate,
         Self::Locked,
+        Self::Deviation,
         Self::NonManifold,
         Self::Inconsistent,
         Self::Boundary,
     ];
 
     /// The word for it: `delaunay`, `flips`, `waits`, `angle`, `fold`, `duplicate`, `locked`,
-    /// `non-manifold`, `inconsistent`, `boundary`.
+    /// `deviation`, `non-manifold`, `inconsistent`, `boundary`.
     pub fn name(self) -> &'static str {
         match self {
             Self::Delaunay => "delaunay",
@@ -56,6 +59,7 @@ impl EdgeState {
             Self::Fold => Reason::Fold.name(),
             Self::Duplicate => Reason::Duplicate.name(),
             Self::Locked => Reason::Locked.name(),
+            Self::Deviation => Reason::Deviation.name(),
             Self::NonManifold => Reason::NonManifold.name(),
             Self::Inconsistent => Reason::Inconsistent.name(),
             Self::Boundary => "boundary",
@@ -72,6 +76,7 @@ impl From<Verdict> for EdgeState {
             Verdict::Blocked(Reason::Fold) => Self::Fold,
             Verdict::Blocked(Reason::Duplicate) => Self::Duplicate,
             Verdict::Blocked(Reason::Locked) => Self::Locked,
+            Verdict::Blocked(Reason::Deviation) => Self::Deviation,
             Verdict::Blocked(Reason::NonManifold) => Self::NonManifold,
             Verdict::Blocked(Reason::Inconsistent) => Self::Inconsistent,
         }

@@ -21,6 +21,8 @@ extern "C" {
     fn backend(this: &JsOptions) -> JsValue;
     #[wasm_bindgen(method, getter, js_name = maxNormalAngle)]
     fn max_normal_angle(this: &JsOptions) -> JsValue;
+    #[wasm_bindgen(method, getter, js_name = maxDeviation)]
+    fn max_deviation(this: &JsOptions) -> JsValue;
     #[wasm_bindgen(method, getter, js_name = maxIterations)]
     fn max_iterations(this: &JsOptions) -> JsValue;
     #[wasm_bindgen(method, getter, js_name = lockedEdges)]
@@ -159,6 +161,7 @@ impl JsSession {
             (mesh.dimension().stride() as u32).into(),
             array(&triangles),
             options.max_normal_angle.into(),
+            options.max_deviation.into(),
             array(options.locked_edges.as_flattened()),
         ];
         Ok(arguments.iter().collect::<Array>().into())
@@ -236,6 +239,11 @@ fn parse_options(given: &JsOptions) -> Result<Options, Error> {
     if !angle.is_undefined() {
         let Some(degrees) = angle.as_f64() else { return wrong("maxNormalAngle", &angle, "a number") };
         options.max_normal_angle = degrees;
+    }
+    let deviation = given.max_deviation();
+    if !deviation.is_undefined() {
+        let Some(most) = deviation.as_f64() else { return wrong("maxDeviation", &deviation, "a number") };
+        options.max_deviation = most;
     }
     let numbers = parse_numbers("lockedEdges", &given.locked_edges(), "vertex indices")?;
     options.locked_edges = match numbers.as_chunks() {

@@ -2,11 +2,11 @@
 //! caller is `FlipSession.verify` in `src/js/session.ts`.
 
 use crate::js_values::{JsPositions, object, parse_dimension, reasons_object, thrown};
-use crate::{Mesh, quality};
+use crate::{Mesh, Options, quality};
 use js_sys::{Array, Uint32Array};
 use wasm_bindgen::prelude::*;
 
-/// As [`quality::audit`].
+/// As [`quality::audit`]; `locked_edges` are all that the options lock.
 ///
 /// # Errors
 /// Those of [`Mesh::new`]; [`Error::Option`] for the dimension.
@@ -17,11 +17,14 @@ pub fn audit(
     dimension: f64,
     triangles: &[u32],
     max_normal_angle: f64,
+    max_deviation: f64,
     locked_edges: &[u32],
 ) -> Result<JsValue, JsValue> {
     let check = || {
         let input = Mesh::new(parse_dimension(dimension)?, positions, indices)?;
-        Ok(quality::audit(&input, triangles, max_normal_angle, locked_edges.as_chunks().0))
+        let locked_edges = locked_edges.as_chunks().0.to_vec();
+        let options = Options { max_normal_angle, max_deviation, locked_edges, ..Options::default() };
+        Ok(quality::audit(&input, triangles, &options))
     };
     let audit = check().map_err(thrown)?;
     let violations: Array =

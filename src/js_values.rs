@@ -104,6 +104,9 @@ fn in_words_of_javascript(error: Error) -> Error {
         Error::Option { option: "max_normal_angle", message } => {
             Error::Option { option: "maxNormalAngle", message }
         }
+        Error::Option { option: "max_deviation", message } => {
+            Error::Option { option: "maxDeviation", message }
+        }
         Error::Option { option: "locked_edges", message } => Error::Option { option: "lockedEdges", message },
         Error::Option { option: "locked_triangles", message } => {
             Error::Option { option: "lockedTriangles", message }

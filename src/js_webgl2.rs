@@ -3,6 +3,7 @@
 
 use crate::engine::{self, Engine, WebGl};
 use crate::js_values::{JsPositions, coded, parse_dimension, thrown};
+use crate::phases::Thresholds;
 use crate::{Dimension, Error, Mesh};
 use js_sys::Uint32Array;
 use std::sync::Arc;
@@ -25,7 +26,7 @@ pub struct JsWebGl2 {
 
 #[wasm_bindgen(js_class = WebGl2)]
 impl JsWebGl2 {
-    /// On the context that all share; `cos` is the cosine of β.
+    /// On the context that all share; `cos` is the cosine of β, `deviation` what diagonals may be apart.
     ///
     /// # Errors
     /// Where there is no context, it is a software one that is not taken, it fails its self-test, or it cannot take the
@@ -35,12 +36,16 @@ impl JsWebGl2 {
         indices: Vec<u32>,
         dimension: f64,
         cos: f64,
+        deviation: f32,
         takes_software: bool,
     ) -> Result<JsWebGl2, JsValue> {
         let create = async {
             let dimension = parse_dimension(dimension)?;
             let mesh = Arc::new(Mesh::new(dimension, positions, indices)?);
-            Ok(Self { engine: WebGl::open(mesh, cos, takes_software).await?, dimension })
+            Ok(Self {
+                engine: WebGl::open(mesh, Thresholds { cos, deviation }, takes_software).await?,
+                dimension,
+            })
         };
         create.await.map_err(bare)
     }

@@ -35,6 +35,10 @@ pub struct Options {
     /// flip, before and after (3D only). An edge of the input over β is a crease and stays, even if flips around
     /// it lower its angle.
     pub max_normal_angle: f64,
+    /// The largest distance between the old and the new diagonal of a flip, in the units of the positions, rounded down to
+    /// a 32-bit float (3D only): what one flip may move the surface by. Infinite: any. Of the lines that they lie on, where
+    /// the diagonals themselves do not pass each other.
+    pub max_deviation: f64,
     /// Stop after so many iterations; `None`: run to the end, which is always reached.
     pub max_iterations: Option<u32>,
     /// Edges that never flip, by the two vertices of each, in any order; repeated pairs are one. Those that are still
@@ -63,6 +67,7 @@ impl Default for Options {
         Self {
             backend: Backend::Auto,
             max_normal_angle: 10.0,
+            max_deviation: f64::INFINITY,
             max_iterations: None,
             locked_edges: Vec::new(),
             locked_triangles: Vec::new(),

@@ -12,6 +12,9 @@ pub enum Reason {
     /// The user has locked it: [`Options::locked_edges`](crate::Options::locked_edges), its triangles or the border of its
     /// group. Goes before all other reasons.
     Locked,
+    /// The old and the new diagonal are further apart than
+    /// [`Options::max_deviation`](crate::Options::max_deviation).
+    Deviation,
     /// Three or more triangles, or one triangle twice, meet at the edge.
     NonManifold,
     /// Its two triangles are oriented against each other.
@@ -22,23 +25,26 @@ pub enum Reason {
 
 impl Reason {
     /// All reasons, in the order in which they are reported.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::Angle,
         Self::Fold,
         Self::Duplicate,
         Self::Locked,
+        Self::Deviation,
         Self::NonManifold,
         Self::Inconsistent,
         Self::Stopped,
     ];
 
-    /// The word used in results: `angle`, `fold`, `duplicate`, `locked`, `non-manifold`, `inconsistent`, `stopped`.
+    /// The word used in results: `angle`, `fold`, `duplicate`, `locked`, `deviation`, `non-manifold`, `inconsistent`,
+    /// `stopped`.
     pub fn name(self) -> &'static str {
         match self {
             Self::Angle => "angle",
             Self::Fold => "fold",
             Self::Duplicate => "duplicate",
             Self::Locked => "locked",
+            Self::Deviation => "deviation",
             Self::NonManifold => "non-manifold",
             Self::Inconsistent => "inconsistent",
             Self::Stopped => "stopped",
@@ -95,7 +101,7 @@ pub struct Iteration {
     /// Edges flipped.
     pub flips: u32,
     /// Non-Delaunay edges of two triangles that may not flip, in the whole mesh, before the iteration: by
-    /// `Angle`, `Fold`, `Duplicate` or `Locked`. Frozen edges are counted at the end only.
+    /// `Angle`, `Fold`, `Duplicate`, `Locked` or `Deviation`. Frozen edges are counted at the end only.
     pub blocked: Reasons,
     /// Wall time in milliseconds, the counts for the watcher included.
     pub ms: f64,

@@ -10,8 +10,7 @@ use crate::embedded::Embedded;
 use crate::engine::SharedObjects;
 use crate::engine::{Answer, Engine};
 use crate::error::number;
-use crate::phases::{Geometry, Topology};
-use crate::predicates::cos_degrees;
+use crate::phases::{Geometry, Thresholds, Topology};
 use crate::quality::{Audit, audit};
 use crate::star::Fans;
 use crate::threads::Threads;
@@ -47,6 +46,10 @@ impl Session {
             let message =
                 format!("{} is not an angle from 0 to 180 degrees", number(options.max_normal_angle));
             return Err(Error::Option { option: "max_normal_angle", message });
+        }
+        if options.max_deviation.is_nan() || options.max_deviation < 0.0 {
+            let message = format!("{} is not a distance from 0 on", number(options.max_deviation));
+            return Err(Error::Option { option: "max_deviation", message });
         }
         let (start, mesh) = (Instant::now(), mesh.into());
         options.locked_edges = locks::edges(&mesh, &options)?;
@@ -218,7 +221,7 @@ impl Session {
         let geometry = Geometry {
             dimension: self.mesh.dimension(),
             positions: self.mesh.positions(),
-            cos: cos_degrees(self.options.max_normal_angle),
+            thresholds: Thresholds::from(&self.options),
             // As the engine found it: neither the components nor their areas change with flips.
             winding: &Winding::new(&self.mesh, &twins, &Threads::default()),
             embedded: &Embedded::default(),
@@ -236,7 +239,7 @@ impl Session {
     /// [`Error::Device`].
     pub async fn verify(&mut self) -> Result<Audit, Error> {
         let triangles = self.triangles().await?;
-        Ok(audit(&self.mesh, &triangles, self.options.max_normal_angle, &self.options.locked_edges))
+        Ok(audit(&self.mesh, &triangles, &self.options))
     }
 
     /// Iterations so far.

@@ -69,7 +69,7 @@ impl Winding {
                 }
                 at += 1;
             }
-            if total_area_sign(component.iter().map(|&t| corners(mesh, t))).is_lt() {
+            if total_area_sign(component.len(), &|i| corners(mesh, component[i])).is_lt() {
                 for t in component {
                     clockwise[t / 32] |= 1 << (t % 32);
                 }

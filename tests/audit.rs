@@ -5,14 +5,14 @@ mod meshes;
 mod simulation;
 
 use edgeflip::quality::{Audit, MAX_LISTED, RemainingEdge, Violation, audit};
-use edgeflip::{Mesh, Reason, families::by_name};
+use edgeflip::{Mesh, Options, Reason, families::by_name};
 use meshes::{joined, plane, reversed};
 
 /// The audit of `mesh`'s own triangles after `fault` was done to them.
 fn audit_of(mesh: &Mesh, fault: impl FnOnce(&mut Vec<u32>)) -> Audit {
     let mut triangles = mesh.triangles().to_vec();
     fault(&mut triangles);
-    audit(mesh, &triangles, 10.0, &[])
+    audit(mesh, &triangles, &Options::default())
 }
 
 /// Flips the edge between two vertices, whatever that does.
@@ -104,7 +104,7 @@ fn a_merged_component() {
 fn a_lost_ridge() {
     let roof = by_name("roof 4").unwrap();
     let run = simulation::simulate(&roof, 10.0, None);
-    assert!(audit(&roof, &run.triangles, 10.0, &[]).is_clean());
+    assert!(audit(&roof, &run.triangles, &Options::default()).is_clean());
     // Nine columns: vertices 4, 13, 22, … are the ridge.
     let flipped = |t: &mut Vec<u32>| flip(t, 13, 22);
     assert!(audit_of(&roof, flipped).violations.contains(&Violation::Crease { u: 13, v: 22 }));
@@ -113,13 +113,14 @@ fn a_lost_ridge() {
 #[test]
 fn a_lost_lock() {
     let locked = [[1, 0], [0, 1], [3, 0], [3, 4], [0, 5], [u32::MAX, u32::MAX]];
-    let kept = audit(&kite(), kite().triangles(), 10.0, &locked);
+    let options = Options { locked_edges: locked.to_vec(), ..Options::default() };
+    let kept = audit(&kite(), kite().triangles(), &options);
     assert!(kept.is_clean());
     assert_eq!((kept.remaining[Reason::Locked], kept.remaining.total()), (1, 1));
     let mut triangles = kite().triangles().to_vec();
     flip(&mut triangles, 0, 1);
     // Pairs that were no edge are not lost.
-    assert_eq!(audit(&kite(), &triangles, 10.0, &locked).violations, [Violation::Locked { u: 0, v: 1 }]);
+    assert_eq!(audit(&kite(), &triangles, &options).violations, [Violation::Locked { u: 0, v: 1 }]);
 }
 
 #[test]
@@ -130,7 +131,7 @@ fn wrong_arrays() {
     let wrong = audit_of(|t| t[4] = 5);
     assert_eq!(wrong.violations, [Violation::IndexOutOfRange { triangle: 1, index: 5 }]);
     assert_eq!(wrong.violations[0].to_string(), "triangle 1: vertex index 5 is out of range");
-    let audit = audit(&by_name("grid 20").unwrap(), &[u32::MAX; 3 * 722], 10.0, &[]);
+    let audit = audit(&by_name("grid 20").unwrap(), &[u32::MAX; 3 * 722], &Options::default());
     assert_eq!((audit.violations.len(), audit.unlisted), (MAX_LISTED, 3 * 722 - MAX_LISTED));
 }
 
@@ -142,10 +143,10 @@ fn frozen_edges_of_many_triangles_take_no_quadratic_time() {
     points.extend((0..pages).map(|k| [0.5, 0.5 + k as f32]));
     let mut triangles: Vec<_> = (0..pages).map(|k| [0, 1, 2 + k]).collect();
     let book = plane(&points, &triangles);
-    assert_eq!(audit(&book, book.triangles(), 10.0, &[]).remaining.total(), 0);
+    assert_eq!(audit(&book, book.triangles(), &Options::default()).remaining.total(), 0);
     points.push([0.5, 0.499]);
     triangles.push([1, 0, 2 + pages]);
     let book = plane(&points, &triangles);
-    let audit = audit(&book, book.triangles(), 10.0, &[]);
+    let audit = audit(&book, book.triangles(), &Options::default());
     assert_eq!(audit.remaining_for(Reason::NonManifold).collect::<Vec<_>>(), [[0, 1]]);
 }

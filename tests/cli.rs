@@ -271,6 +271,20 @@ fn locked_edges_stay() {
     assert_eq!(folder.names(), ["in.off", "list.txt"]);
 }
 
+/// The square with its corner 3 raised: its diagonals are 0.0410 apart.
+#[test]
+fn a_flip_moves_no_more_than_it_may() {
+    let folder = Folder::new();
+    let input = folder.file("in.off", &SQUARE.replace("0 1 0", "0 1 0.1"));
+    for (most, remaining) in [("0.041", json!({ "deviation": 1 })), ("0.0411", json!({}))] {
+        let arguments = ["--max-deviation", most, "--max-normal-angle", "90", "--verify", "--json"];
+        let ran = run(&input, &folder.path("out.off"), &arguments);
+        assert_eq!(ran.status.code(), Some(0), "{}", text(&ran.stderr));
+        let said: Value = serde_json::from_str(text(&ran.stdout)).unwrap();
+        assert_eq!(said["remaining"], remaining, "{most}");
+    }
+}
+
 #[test]
 fn the_summary_is_on_standard_error() {
     let folder = Folder::new();
@@ -519,6 +533,8 @@ fn wrong_usage_is_2() {
         &["--max-normal-angle", "180.5"],
         &["--max-normal-angle", "inf"],
         &["--max-normal-angle", "ten"],
+        &["--max-deviation", "-1e-9"],
+        &["--max-deviation", "nan"],
         &["--max-iterations", "-1"],
         &["--threads", "0"],
         &["--threads", "-1"],
@@ -563,6 +579,8 @@ fn the_ends_of_the_options_ranges_are_taken() {
     for arguments in [
         &["--max-normal-angle", "0"][..],
         &["--max-normal-angle", "180"],
+        &["--max-deviation", "0"],
+        &["--max-deviation", "inf"],
         &["--max-iterations", "0"],
         &["--max-iterations", "4294967295"],
         &["--threads", "1"],

@@ -6,16 +6,21 @@ mod simulation;
 
 use edgeflip::families::by_name;
 use edgeflip::quality::audit;
-use edgeflip::{Mesh, Reason};
-use simulation::{Expected, Simulation, digests_path, expected, remaining_edges, simulate, simulate_locked};
+use edgeflip::{Backend, Mesh, Options, Reason};
+use simulation::{Expected, Simulation, digests_path, expected, remaining_edges, simulate, simulate_with};
+
+fn at(max_normal_angle: f64) -> Options {
+    Options { max_normal_angle, ..Options::default() }
+}
 
 /// A finished run that the audit finds nothing wrong with.
-fn audited_run(name: &str, mesh: &Mesh, beta: f64, locked: &[[u32; 2]]) -> Simulation {
-    let run = simulate_locked(mesh, beta, locked, None);
-    let audit = audit(mesh, &run.triangles, beta, locked);
+fn audited_run(name: &str, mesh: &Mesh, options: &Options) -> Simulation {
+    let beta = options.max_normal_angle;
+    let run = simulate_with(mesh, options);
+    let audit = audit(mesh, &run.triangles, options);
     assert!(audit.is_clean(), "{name} {beta}: {:?}", audit.violations);
     assert_eq!(audit.remaining, run.remaining, "{name} {beta}");
-    assert_eq!(audit.remaining_edges, remaining_edges(mesh, &run.triangles, beta, locked), "{name} {beta}");
+    assert_eq!(audit.remaining_edges, remaining_edges(mesh, &run.triangles, options), "{name} {beta}");
     assert_eq!(run.remaining[Reason::Stopped], 0, "{name} {beta}");
     run
 }
@@ -23,7 +28,7 @@ fn audited_run(name: &str, mesh: &Mesh, beta: f64, locked: &[[u32; 2]]) -> Simul
 #[test]
 fn simulation_reproduces_the_file_and_passes_the_audit() {
     let run = |case: meshes::Case| {
-        let run = audited_run(&case.name, &case.mesh, case.beta, &case.locked);
+        let run = audited_run(&case.name, &case.mesh, &case.options(Backend::Cpu));
         Expected::new(&case.name, case.beta, &run)
     };
     let lines: Vec<Expected> = meshes::all().into_iter().map(run).collect();
@@ -59,9 +64,9 @@ fn rounds() -> u64 {
 fn soups_end_and_pass_the_audit() {
     for seed in 0..rounds() {
         let (flat, bent) = meshes::soup(seed, 3 + seed as usize % 5, seed as usize / 5 % 23);
-        audited_run(&format!("soup {seed}"), &flat, 10.0, &[]);
+        audited_run(&format!("soup {seed}"), &flat, &at(10.0));
         for beta in [0.0, 40.0, 90.0, 180.0] {
-            audited_run(&format!("bent soup {seed}"), &bent, beta, &[]);
+            audited_run(&format!("bent soup {seed}"), &bent, &at(beta));
         }
     }
 }
@@ -76,9 +81,9 @@ fn crushed_meshes_end_and_pass_the_audit() {
         let n = 3 + seed as usize % 5;
         let family = |name: &str| by_name(&format!("{name} {n} seed={seed}")).unwrap();
         let (disc, sphere) = (crush(family("random")), crush(family("uvsphere")));
-        audited_run(&format!("crushed disc {seed}"), &disc, 10.0, &[]);
+        audited_run(&format!("crushed disc {seed}"), &disc, &at(10.0));
         for beta in [0.0, 90.0, 135.0, 180.0] {
-            audited_run(&format!("crushed sphere {seed}"), &sphere, beta, &[]);
+            audited_run(&format!("crushed sphere {seed}"), &sphere, &at(beta));
         }
     }
 }
@@ -99,9 +104,9 @@ fn a_capped_run_says_what_it_left() {
     assert_eq!(capped.iterations.len(), 2);
     assert_eq!(capped.digest, whole.iterations[1].digest);
     assert_eq!(capped.remaining[Reason::Stopped], u64::from(whole.iterations[2].labelled));
-    let audit = audit(&mesh, &capped.triangles, 10.0, &[]);
+    let audit = audit(&mesh, &capped.triangles, &Options::default());
     assert_eq!(audit.remaining, capped.remaining);
-    assert_eq!(audit.remaining_edges, remaining_edges(&mesh, &capped.triangles, 10.0, &[]));
+    assert_eq!(audit.remaining_edges, remaining_edges(&mesh, &capped.triangles, &Options::default()));
     assert_eq!(audit.remaining_for(Reason::Stopped).count() as u64, capped.remaining.total());
     assert_eq!(simulate(&mesh, 10.0, Some(0)).triangles, mesh.triangles());
 }

@@ -16,16 +16,15 @@ use std::ops::ControlFlow;
 /// The end of a run, which both engines agree on and the audit finds nothing in.
 #[track_caller]
 fn run(mesh: &Mesh, beta: f64) -> Outcome {
-    let [cpu, gpu] = [Backend::Cpu, Backend::Gpu].map(|backend| {
-        let options = Options { backend, max_normal_angle: beta, ..Options::default() };
-        make_delaunay(mesh, &options, |_, _| ControlFlow::Continue(())).unwrap()
-    });
+    let options = |backend| Options { backend, max_normal_angle: beta, ..Options::default() };
+    let [cpu, gpu] = [Backend::Cpu, Backend::Gpu]
+        .map(|backend| make_delaunay(mesh, &options(backend), |_, _| ControlFlow::Continue(())).unwrap());
     assert_eq!((cpu.backend, gpu.backend), ("cpu", "gpu"));
     assert_eq!(cpu.triangles, gpu.triangles);
     assert_eq!(cpu.flips_per_iteration, gpu.flips_per_iteration);
     assert_eq!((kinds(&cpu), cpu.remaining), (kinds(&gpu), gpu.remaining));
     assert_eq!((cpu.status, gpu.status), (Status::Done, Status::Done));
-    let audit = audit(mesh, &cpu.triangles, beta, &[]);
+    let audit = audit(mesh, &cpu.triangles, &options(Backend::Cpu));
     assert!(audit.is_clean(), "{:?}", audit.violations);
     assert_eq!(audit.remaining, cpu.remaining);
     assert_eq!(cpu.remaining[Reason::Stopped], 0);

@@ -17,7 +17,7 @@ fn any_order_ends_where_nothing_is_left_to_flip() {
     for (case, want) in meshes::all().into_iter().zip(expected()) {
         let options = Options { order: Order::Any, ..case.options(Backend::Cpu) };
         let outcome = unwatched(&case.mesh, &options).unwrap();
-        let audit = audit(&case.mesh, &outcome.triangles, case.beta, &case.locked);
+        let audit = audit(&case.mesh, &outcome.triangles, &options);
         assert!(audit.is_clean(), "{}: {:?}", case.name, audit.violations);
         assert_eq!(audit.remaining, outcome.remaining, "{}", case.name);
         assert_eq!(outcome.remaining[Reason::Stopped], 0, "{}", case.name);

@@ -61,7 +61,7 @@ fn noise_of_one_ulp_ends_with_no_edge_left() {
         let mesh = meshes::off_by_one_ulp(&lattice);
         for outcome in run(&format!("{name}, off by one ulp"), &mesh) {
             assert!(outcome.flips > 1000, "{name}");
-            let audit = audit(&mesh, &outcome.triangles, 10.0, &[]);
+            let audit = audit(&mesh, &outcome.triangles, &Options::default());
             assert!(audit.is_clean(), "{name}: {:?}", audit.violations);
             assert_eq!(audit.remaining.total(), 0, "{name}");
         }

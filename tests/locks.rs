@@ -11,7 +11,7 @@ use edgeflip::{Backend, Error, Mesh, Options, Order, Outcome, Reason, Session, f
 use oorandom::Rand64;
 use pollster::block_on;
 use runs::{options, unwatched, watched};
-use simulation::{simulate, simulate_locked};
+use simulation::{simulate, simulate_with};
 use std::collections::HashSet;
 use std::ops::ControlFlow;
 
@@ -31,15 +31,15 @@ fn some_edges(mesh: &Mesh, random: &mut Rand64) -> Vec<[u32; 2]> {
 
 /// Compares each engine with the simulation, and Lawson's algorithm with the audit. Returns the flips.
 fn assert_locked(name: &str, mesh: &Mesh, beta: f64, locked: &[[u32; 2]], on_gpu: bool) -> u64 {
-    let want = simulate_locked(mesh, beta, locked, None);
+    let locks = |backend| Options { locked_edges: locked.to_vec(), ..options(backend, beta) };
+    let want = simulate_with(mesh, &locks(Backend::Cpu));
     for backend in [Backend::Cpu, Backend::Gpu].into_iter().take(1 + usize::from(on_gpu)) {
-        let options = Options { locked_edges: locked.to_vec(), ..options(backend, beta) };
-        assert_eq!(watched(mesh, &options).unwrap(), want, "{name} at β = {beta}, {backend:?}");
+        assert_eq!(watched(mesh, &locks(backend)).unwrap(), want, "{name} at β = {beta}, {backend:?}");
     }
-    let any = Options { locked_edges: locked.to_vec(), order: Order::Any, ..options(Backend::Cpu, beta) };
+    let any = Options { order: Order::Any, ..locks(Backend::Cpu) };
     let any = unwatched(mesh, &any).unwrap();
     for (triangles, remaining) in [(&want.triangles, want.remaining), (&any.triangles, any.remaining)] {
-        let audit = audit(mesh, triangles, beta, locked);
+        let audit = audit(mesh, triangles, &locks(Backend::Cpu));
         assert!(audit.is_clean(), "{name} at β = {beta}: {:?}", audit.violations);
         assert_eq!(audit.remaining, remaining, "{name} at β = {beta}");
         assert_eq!(remaining[Reason::Stopped], 0, "{name} at β = {beta}");

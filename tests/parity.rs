@@ -14,7 +14,7 @@ use edgeflip::{Backend, Error, Outcome, Positions, Reasons, Status};
 use meshes::Case;
 use runs::{options, unwatched, watched};
 use serde_json::{Value, json};
-use simulation::{Digest, Expected, Simulation, expected, simulate_locked};
+use simulation::{Digest, Expected, Simulation, expected, simulate_with};
 use std::time::Instant;
 
 /// Meshes with coordinates outside the span that the engines on a GPU decide exactly.
@@ -132,6 +132,7 @@ fn exported((case, want): &(Case, Simulation)) -> Value {
     json!({
         "name": case.name,
         "beta": case.beta,
+        "deviation": case.deviation.is_finite().then_some(case.deviation),
         "locked": case.locked.concat(),
         "dimension": case.mesh.dimension().stride(),
         "isRefusedByGpus": REFUSED_BY_GPUS.contains(&case.name.as_str()),
@@ -147,7 +148,7 @@ fn exported((case, want): &(Case, Simulation)) -> Value {
 #[test]
 fn engines_give_what_the_simulation_does() {
     let simulated = |(case, line): (Case, Expected)| {
-        let run = simulate_locked(&case.mesh, case.beta, &case.locked, None);
+        let run = simulate_with(&case.mesh, &case.options(Backend::Cpu));
         assert_eq!(Expected::new(&case.name, case.beta, &run), line, "digests.txt has something else");
         (case, run)
     };

@@ -33,8 +33,13 @@ fn quads() -> usize {
 
 /// One iteration: the edges that could flip before it, those that could not, and the triangles after it.
 async fn iterate(batch: &Batch, backend: Backend) -> Result<(u64, Reasons, Vec<u32>), Error> {
-    let options =
-        Options { backend, max_normal_angle: batch.beta, max_iterations: Some(1), ..Options::default() };
+    let options = Options {
+        backend,
+        max_normal_angle: batch.beta,
+        max_deviation: batch.deviation,
+        max_iterations: Some(1),
+        ..Options::default()
+    };
     let mut session = Session::new(batch.mesh.clone(), options).await?;
     let (labelled, blocked) = match session.step().await? {
         Some(iteration) => (u64::from(iteration.labelled), iteration.blocked),
@@ -70,7 +75,11 @@ fn run(batch: &Batch, backend: Backend) -> (Vec<u32>, bool) {
     let (labelled, blocked, triangles) = block_on(iterate(batch, backend)).unwrap();
     let tally = batch.tally(0..batch.verdicts.len());
     let mut reasons = Reasons::default();
-    (reasons[Reason::Angle], reasons[Reason::Fold]) = (tally.angle as u64, tally.fold as u64);
+    for (reason, count) in
+        [(Reason::Angle, tally.angle), (Reason::Fold, tally.fold), (Reason::Deviation, tally.deviation)]
+    {
+        reasons[reason] = count as u64;
+    }
     (triangles, (labelled, blocked) != (tally.labelled as u64, reasons))
 }
 
@@ -134,12 +143,13 @@ fn batches_for_browsers() {
         fs::write(folder.join(format!("{}.positions", batch.index)), positions).unwrap();
         fs::write(folder.join(format!("{}.verdicts", batch.index)), verdicts).unwrap();
         let tallies = batch.kinds.iter().map(|(kind, quads)| {
-            let Tally { quads, ties, labelled, angle, fold } = batch.tally(quads.clone());
-            json!({ "kind": kind, "quads": quads, "ties": ties, "labelled": labelled, "angle": angle, "fold": fold })
+            let Tally { quads, ties, labelled, angle, fold, deviation } = batch.tally(quads.clone());
+            json!({ "kind": kind, "quads": quads, "ties": ties, "labelled": labelled, "angle": angle, "fold": fold, "deviation": deviation })
         });
         let tallies: Vec<_> = tallies.collect();
         let dimension = batch.mesh.dimension().stride();
-        let entry = json!({ "index": batch.index, "dimension": dimension, "isWide": is_wide(batch.index), "beta": batch.beta, "tallies": tallies });
+        let deviation = batch.deviation.is_finite().then_some(batch.deviation);
+        let entry = json!({ "index": batch.index, "dimension": dimension, "isWide": is_wide(batch.index), "beta": batch.beta, "deviation": deviation, "tallies": tallies });
         index.lock().unwrap().insert(batch.index, entry);
     });
     let entries: Vec<_> = index.into_inner().unwrap().into_values().collect();

@@ -17,7 +17,7 @@ fn run(name: &str, mesh: &Mesh, beta: f64) -> Outcome {
     let outcome = flipped(mesh, &options);
     for outcome in [&any, &outcome] {
         assert_eq!(outcome.status, Status::Done, "{name}");
-        let audit = audit(mesh, &outcome.triangles, beta, &[]);
+        let audit = audit(mesh, &outcome.triangles, &options);
         assert!(audit.is_clean(), "{name}: {:?}", audit.violations);
         assert_eq!(audit.remaining, outcome.remaining, "{name}");
         assert_eq!(outcome.remaining[Reason::Stopped], 0, "{name}");

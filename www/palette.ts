@@ -35,6 +35,7 @@ export function palette(): Palette {
       fold: colour('edge-fold'),
       duplicate: colour('edge-duplicate'),
       locked: colour('edge-locked'),
+      deviation: colour('edge-deviation'),
       'non-manifold': colour('edge-non-manifold'),
       inconsistent: colour('edge-inconsistent'),
       boundary: colour('edge-boundary'),

@@ -25,6 +25,7 @@ const MEANINGS: Record<(typeof EDGE_STATES)[number], string> = {
   fold: 'blocked: would fold over',
   duplicate: 'blocked: the new edge exists already',
   locked: 'blocked: locked',
+  deviation: 'blocked: would move the surface too far',
   'non-manifold': 'stays: three or more triangles',
   inconsistent: 'stays: triangles face against each other',
   boundary: 'boundary',

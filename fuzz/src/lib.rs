@@ -53,7 +53,7 @@ fn whole_way(loaded: &Loaded, bytes: &[u8]) {
     if mesh.triangle_count() < MANY {
         let options = Options::default();
         let outcome = make_delaunay(mesh, &options, |_, _| ControlFlow::Continue(())).unwrap();
-        let audit = quality::audit(mesh, &outcome.triangles, options.max_normal_angle, &[]);
+        let audit = quality::audit(mesh, &outcome.triangles, &options);
         assert!(audit.is_clean(), "{:?}", audit.violations);
         assert_eq!(audit.remaining, outcome.remaining);
         triangles = outcome.triangles;

@@ -7,7 +7,7 @@ use crate::embedded::Embedded;
 use crate::locks;
 use crate::mesh::{Dimension, Mesh};
 use crate::phases::{
-    Diamond, Geometry, Selected, Topology, Verdict, flag_creases, flip, keep_non_delaunay, key,
+    Diamond, Geometry, Selected, Thresholds, Topology, Verdict, flag_creases, flip, keep_non_delaunay, key,
     makes_duplicate, move_anchors, verdict, verdict_of_shape, yields,
 };
 use crate::star::Fans;
@@ -50,7 +50,7 @@ impl Found {
 pub(crate) struct Cpu {
     threads: Threads,
     mesh: Arc<Mesh>,
-    cos: f64,
+    thresholds: Thresholds,
     winding: Winding,
     embedded: Embedded,
     counts: EdgeCounts,
@@ -69,13 +69,13 @@ pub(crate) struct Cpu {
 }
 
 impl Cpu {
-    /// Builds the adjacency; `cos` is the cosine of β.
-    pub(crate) fn new(mesh: Arc<Mesh>, cos: f64, threads: Threads) -> Self {
+    /// Builds the adjacency.
+    pub(crate) fn new(mesh: Arc<Mesh>, thresholds: Thresholds, threads: Threads) -> Self {
         let threads = threads.for_triangles(mesh.triangle_count());
-        threads.clone().enter(|| Self::prepared(mesh, cos, threads))
+        threads.clone().enter(|| Self::prepared(mesh, thresholds, threads))
     }
 
-    fn prepared(mesh: Arc<Mesh>, cos: f64, threads: Threads) -> Self {
+    fn prepared(mesh: Arc<Mesh>, thresholds: Thresholds, threads: Threads) -> Self {
         let adjacency = Adjacency::of_triangles(mesh.vertex_count(), mesh.triangles(), &threads);
         let winding = Winding::new(&mesh, &adjacency.twins, &threads);
         let embedded = Embedded::new(&mesh, &adjacency.twins, &winding, &threads);
@@ -84,11 +84,11 @@ impl Cpu {
         let fans = Fans::new(mesh.vertex_count(), &triangles, &adjacency.twins, |v| embedded.at(v));
         let mut twins = adjacency.twins;
         if mesh.dimension() == Dimension::Three {
-            flag_creases(mesh.positions(), &triangles, &mut twins, cos, &threads);
+            flag_creases(mesh.positions(), &triangles, &mut twins, thresholds.cos, &threads);
         }
         Self {
             threads,
-            cos,
+            thresholds,
             winding,
             embedded,
             counts,
@@ -108,7 +108,7 @@ impl Cpu {
         Geometry {
             dimension: self.mesh.dimension(),
             positions: self.mesh.positions(),
-            cos: self.cos,
+            thresholds: self.thresholds,
             winding: &self.winding,
             embedded: &self.embedded,
         }
@@ -361,7 +361,13 @@ impl Engine for Cpu {
         self.winding = Winding::new(&mesh, &self.twins, &self.threads);
         self.embedded = Embedded::new(&mesh, &self.twins, &self.winding, &self.threads);
         if mesh.dimension() == Dimension::Three {
-            flag_creases(mesh.positions(), &self.triangles, &mut self.twins, self.cos, &self.threads);
+            flag_creases(
+                mesh.positions(),
+                &self.triangles,
+                &mut self.twins,
+                self.thresholds.cos,
+                &self.threads,
+            );
         }
         self.found = Found::default();
         self.flipped = None;

@@ -50,7 +50,7 @@ pub(crate) type Answer<'a, T> = Pin<Box<dyn Future<Output = Result<T, Error>> + 
 pub(crate) struct Census {
     /// Those that may flip.
     pub(crate) labelled: u32,
-    /// Those that may not, by `Angle`, `Fold`, `Duplicate` or `Locked`.
+    /// Those that may not, by `Angle`, `Fold`, `Duplicate`, `Locked` or `Deviation`.
     pub(crate) blocked: Reasons,
 }
 
@@ -59,8 +59,7 @@ impl Census {
     /// As the shaders count: the labelled ones, then those blocked by each reason.
     fn of_counts(counts: &[u32]) -> Self {
         let mut census = Self { labelled: counts[0], ..Self::default() };
-        let reasons = [Reason::Angle, Reason::Fold, Reason::Duplicate, Reason::Locked];
-        for (reason, count) in reasons.into_iter().zip(&counts[1..]) {
+        for (reason, count) in Reason::ALL.into_iter().zip(&counts[1..]) {
             census.blocked[reason] = u64::from(*count);
         }
         census

@@ -2,6 +2,7 @@
 
 use super::{Answer, Census, EdgeCounts, Engine};
 use crate::js_values::positions_array;
+use crate::phases::Thresholds;
 use crate::{Error, Mesh};
 use js_sys::{Promise, Reflect, Uint32Array};
 use std::cell::RefCell;
@@ -22,6 +23,7 @@ extern "C" {
         indices: Uint32Array,
         dimension: u32,
         cos: f64,
+        deviation: f32,
         takes_software: bool,
     ) -> Result<Promise, JsValue>;
 
@@ -71,14 +73,19 @@ impl Proxy {
     ///
     /// # Errors
     /// [`Error::BackendUnavailable`] too where the module cannot be loaded.
-    pub(crate) async fn new(mesh: &Mesh, cos: f64, takes_software: bool) -> Result<Self, Error> {
+    pub(crate) async fn new(
+        mesh: &Mesh,
+        thresholds: Thresholds,
+        takes_software: bool,
+    ) -> Result<Self, Error> {
+        let Thresholds { cos, deviation } = thresholds;
         let module = MODULE.with_borrow(Clone::clone);
         let module = module.ok_or_else(|| unavailable("it was not said where its module is".to_owned()))?;
         let positions = positions_array(mesh.positions());
         // A copy, since it waits for the module.
         let indices = Uint32Array::from(mesh.triangles());
         let dimension = mesh.dimension().stride() as u32;
-        let created = module.create(positions, indices, dimension, cos, takes_software);
+        let created = module.create(positions, indices, dimension, cos, deviation, takes_software);
         let remote: Remote = answer(created).await?.unchecked_into();
         let counts = remote.edge_counts();
         let counts = EdgeCounts {

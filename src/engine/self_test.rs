@@ -3,6 +3,7 @@
 use super::upload::{Form, Upload};
 use super::{Answer, Cpu, Engine};
 use crate::mesh::Mesh;
+use crate::phases::Thresholds;
 use crate::threads::Threads;
 use crate::{Error, Positions, cos_degrees};
 use std::sync::Arc;
@@ -11,12 +12,15 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// Vertices along a side of the test mesh.
 const SIDE: u16 = 9;
 
+/// What diagonals of the test mesh may be apart, where that has a limit.
+const DEVIATION: f32 = 0.005;
+
 /// For which forms of meshes a device has passed.
 #[derive(Default)]
 pub(crate) struct Tested([AtomicBool; Form::COUNT]);
 
-/// Makes an engine for a mesh and the cosine of β.
-pub(crate) type Make<'a> = dyn Fn(Upload, f64) -> Answer<'static, Box<dyn Engine>> + 'a;
+/// Makes an engine for a mesh.
+pub(crate) type Make<'a> = dyn Fn(Upload) -> Answer<'static, Box<dyn Engine>> + 'a;
 
 /// Has an engine that `make` makes flip the test mesh, and compares it with the CPU after every iteration; once for
 /// each form.
@@ -34,9 +38,9 @@ pub(crate) async fn self_test(
         return Ok(());
     }
     let mesh = Arc::new(test_mesh(form)?);
-    let cos = cos_degrees(20.0);
-    let mut engine = make(Upload::new(backend, mesh.clone())?, cos).await?;
-    let mut cpu = Cpu::new(mesh, cos, Threads::default());
+    let thresholds = thresholds(form);
+    let mut engine = make(Upload::new(backend, mesh.clone(), thresholds)?).await?;
+    let mut cpu = Cpu::new(mesh, thresholds, Threads::default());
     loop {
         let is_counted = engine.census().await? == cpu.count();
         let flips = cpu.iterate(1).await?;
@@ -50,6 +54,14 @@ pub(crate) async fn self_test(
             has_passed.store(true, Ordering::Relaxed);
             return Ok(());
         }
+    }
+}
+
+/// Under which the test mesh has edges that may flip and others that may not.
+fn thresholds(form: Form) -> Thresholds {
+    Thresholds {
+        cos: cos_degrees(20.0),
+        deviation: if form.has_deviation { DEVIATION } else { f32::INFINITY },
     }
 }
 
@@ -78,7 +90,7 @@ mod tests {
     #![allow(clippy::unwrap_used, reason = "what fails here is a failed test")]
 
     use super::*;
-    use crate::Dimension;
+    use crate::{Dimension, Reason};
     use pollster::block_on;
 
     fn made(cpu: Cpu) -> Answer<'static, Box<dyn Engine>> {
@@ -88,11 +100,13 @@ mod tests {
     #[test]
     fn the_mesh_flips_in_several_iterations_and_has_ties_and_blocked_edges() {
         for form in Form::ALL {
-            let upload = Upload::new("gpu", Arc::new(test_mesh(form).unwrap())).unwrap();
+            let upload = Upload::new("gpu", Arc::new(test_mesh(form).unwrap()), thresholds(form)).unwrap();
             assert!(upload.form() == form);
-            let mut cpu = Cpu::new(upload.mesh, cos_degrees(20.0), Threads::default());
+            let mut cpu = Cpu::new(upload.mesh, upload.thresholds, Threads::default());
             assert!(block_on(cpu.iterate(u32::MAX)).unwrap().len() > 2);
-            assert_eq!(cpu.count().blocked.total() > 0, form.dimension == Dimension::Three);
+            let blocked = cpu.count().blocked;
+            assert_eq!(blocked[Reason::Angle] > 0, form.dimension == Dimension::Three);
+            assert_eq!(blocked[Reason::Deviation] > 0, form.has_deviation);
         }
     }
 
@@ -100,8 +114,8 @@ mod tests {
     fn an_engine_passes_once_or_is_refused() {
         let tested = Tested::default();
         for form in Form::ALL {
-            let right = |upload: Upload, cos| made(Cpu::new(upload.mesh, cos, Threads::default()));
-            let wrong = |upload: Upload, cos| {
+            let right = |upload: Upload| made(Cpu::new(upload.mesh, upload.thresholds, Threads::default()));
+            let wrong = |upload: Upload| {
                 let mesh = upload.mesh;
                 let upright = mesh.positions().to_f32();
                 let leaning = upright
@@ -109,7 +123,7 @@ mod tests {
                     .flat_map(|p| [&[p[0] + p[1]], &p[1..]].concat())
                     .collect::<Vec<f32>>();
                 let sheared = Mesh::new(form.dimension, leaning, mesh.triangles().to_vec()).unwrap();
-                made(Cpu::new(Arc::new(sheared), cos, Threads::default()))
+                made(Cpu::new(Arc::new(sheared), upload.thresholds, Threads::default()))
             };
             let refused = block_on(self_test(&tested, "gpu", form, &wrong));
             assert!(matches!(refused, Err(Error::BackendUnavailable { backend: "gpu", .. })));

@@ -3,20 +3,23 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "what fails here is a failed test")]
 
 use super::webgpu::{Device, Kernel, WebGpu};
-use super::{Cpu, EdgeCounts, Engine, Upload};
+use super::{Census, Cpu, EdgeCounts, Engine, Upload};
 use crate::mesh::Mesh;
-use crate::phases::{label, select};
+use crate::phases::{Thresholds, label, select};
 use crate::predicates::tiers::kinds::kinds;
 use crate::threads::Threads;
-use crate::{cos_degrees, families};
+use crate::{Reason, cos_degrees, families};
 use pollster::block_on;
 use std::sync::Arc;
 
-fn engines(mesh: &Arc<Mesh>, degrees: f64) -> (Cpu, WebGpu) {
-    let cos = cos_degrees(degrees);
-    let upload = Upload::new("gpu", mesh.clone()).unwrap();
-    let gpu = block_on(async { WebGpu::new(Device::shared(true).await?, upload, cos).await }).unwrap();
-    (Cpu::new(mesh.clone(), cos, Threads::default()), gpu)
+fn engines(mesh: &Arc<Mesh>, thresholds: Thresholds) -> (Cpu, WebGpu) {
+    let upload = Upload::new("gpu", mesh.clone(), thresholds).unwrap();
+    let gpu = block_on(async { WebGpu::new(Device::shared(true).await?, upload).await }).unwrap();
+    (Cpu::new(mesh.clone(), thresholds, Threads::default()), gpu)
+}
+
+fn any_deviation(degrees: f64) -> Thresholds {
+    Thresholds { cos: cos_degrees(degrees), deviation: f32::INFINITY }
 }
 
 #[track_caller]
@@ -28,16 +31,16 @@ fn assert_same(what: &str, cpu: &[u32], gpu: &[u32]) {
 
 /// Runs both engines phase by phase to the end.
 fn compare(name: &str, degrees: f64) {
-    compare_mesh(name, families::by_name(name).unwrap(), degrees);
+    compare_mesh(name, families::by_name(name).unwrap(), any_deviation(degrees));
 }
 
-fn compare_mesh(name: &str, mesh: Mesh, degrees: f64) {
+fn compare_mesh(name: &str, mesh: Mesh, thresholds: Thresholds) -> Census {
     let mesh = Arc::new(mesh);
-    let (mut cpu, mut gpu) = engines(&mesh, degrees);
+    let (mut cpu, mut gpu) = engines(&mesh, thresholds);
     assert_same("twins", &cpu.twins, &block_on(gpu.twins()).unwrap());
     assert_eq!(cpu.edge_counts(), gpu.edge_counts(), "{name}");
     for iteration in 0.. {
-        let what = |array: &str| format!("{name}, β = {degrees}, iteration {iteration}: {array}");
+        let what = |array: &str| format!("{name}, {thresholds:?}, iteration {iteration}: {array}");
         let census = cpu.count();
         assert_eq!(census, block_on(gpu.census()).unwrap(), "{}", what("census"));
         let best = label(&cpu.geometry(), cpu.topology(), iteration);
@@ -54,15 +57,16 @@ fn compare_mesh(name: &str, mesh: Mesh, degrees: f64) {
         assert_same(&what("anchors"), &cpu.fans.table, &block_on(gpu.fans()).unwrap());
         if flips == 0 {
             assert_eq!(census.labelled, 0, "{name}: labelled edges and no flip");
-            break;
+            return census;
         }
     }
+    unreachable!()
 }
 
 /// Runs both engines in batches.
 fn compare_runs(name: &str, degrees: f64) {
     let mesh = Arc::new(families::by_name(name).unwrap());
-    let (mut cpu, mut gpu) = engines(&mesh, degrees);
+    let (mut cpu, mut gpu) = engines(&mesh, any_deviation(degrees));
     let flips = block_on(cpu.iterate(u32::MAX)).unwrap();
     assert_same(name, &flips, &block_on(gpu.iterate(u32::MAX)).unwrap());
     assert_same(name, &cpu.triangles, &block_on(gpu.triangles()).unwrap());
@@ -94,6 +98,23 @@ fn surfaces_agree_phase_by_phase() {
     }
 }
 
+/// As floats and as fixed-point numbers, under limits from none at all to one that stops nothing.
+#[test]
+fn surfaces_agree_on_how_far_diagonals_are_apart() {
+    for name in ["uvsphere 8", "uvsphere 8 0.5", "roof 8"] {
+        let mesh = families::by_name(name).unwrap();
+        let doubles: Vec<f64> = mesh.positions().iter().map(|x| x * (1.0 + f64::EPSILON)).collect();
+        let doubled = Mesh::new(mesh.dimension(), doubles, mesh.triangles().to_vec()).unwrap();
+        for mesh in [mesh, doubled] {
+            let blocked = [0.0, 0.01, 0.1, 1e30].map(|deviation| {
+                let thresholds = Thresholds { cos: cos_degrees(180.0), deviation };
+                compare_mesh(name, mesh.clone(), thresholds).blocked[Reason::Deviation]
+            });
+            assert!(blocked[0] > 0 && blocked[3] == 0, "{name}: {blocked:?}");
+        }
+    }
+}
+
 #[test]
 fn long_runs_agree_in_batches() {
     compare_runs("strips 400", 10.0);
@@ -107,7 +128,7 @@ fn long_runs_agree_in_batches() {
 fn sweeps_and_lists_take_turns() {
     for (name, list_below) in [("strips 100", 20), ("random 30", 64), ("uvsphere 30", 64), ("fan2 200", 8)] {
         let mesh = Arc::new(families::by_name(name).unwrap());
-        let (mut cpu, mut gpu) = engines(&mesh, 10.0);
+        let (mut cpu, mut gpu) = engines(&mesh, any_deviation(10.0));
         gpu.set_list_below(list_below);
         for count in [1, 3, 20, u32::MAX, 5] {
             let flips = block_on(cpu.iterate(count)).unwrap();
@@ -135,13 +156,17 @@ fn anchors_move_alike() {
         triangles.extend(sheet.triangles().iter().map(|&v| shared(v)));
     }
     assert_eq!(sheet.positions().to_f32()[..2], [0.0, 0.0]);
-    compare_mesh("four sheets", Mesh::new(crate::Dimension::Two, positions, triangles).unwrap(), 10.0);
+    compare_mesh(
+        "four sheets",
+        Mesh::new(crate::Dimension::Two, positions, triangles).unwrap(),
+        any_deviation(10.0),
+    );
 }
 
 #[test]
 fn an_empty_mesh_is_done() {
     let mesh = Arc::new(Mesh::new(crate::Dimension::Two, Vec::<f32>::new(), Vec::new()).unwrap());
-    let (_, mut gpu) = engines(&mesh, 10.0);
+    let (_, mut gpu) = engines(&mesh, any_deviation(10.0));
     assert_eq!(block_on(gpu.iterate(10)).unwrap(), Vec::<u32>::new());
     assert_eq!(block_on(gpu.triangles()).unwrap(), Vec::<u32>::new());
 }
@@ -152,8 +177,8 @@ fn tiers_of_the_gpu() {
     const N: u32 = 100;
     println!("| mesh | interior edges | f32 filter | exact |\n|---|---:|---:|---:|");
     for (name, mesh) in kinds(N as usize).unwrap() {
-        let Ok(upload) = Upload::new("gpu", Arc::new(mesh)) else { continue };
-        let gpu = block_on(async { WebGpu::new(Device::shared(true).await?, upload, 1.0).await }).unwrap();
+        let Ok(upload) = Upload::new("gpu", Arc::new(mesh), any_deviation(0.0)) else { continue };
+        let gpu = block_on(async { WebGpu::new(Device::shared(true).await?, upload).await }).unwrap();
         let [filter, exact] = block_on(gpu.tiers()).unwrap();
         println!("| {name} | {} | {filter} | {exact} |", filter + exact);
         let EdgeCounts { edges, boundary, .. } = gpu.edge_counts();

@@ -1,6 +1,7 @@
 //! What an engine on a GPU takes: a mesh with coordinates that its shaders decide exactly.
 
 use crate::mesh::{Dimension, Mesh};
+use crate::phases::Thresholds;
 use crate::{Error, Positions};
 use std::sync::Arc;
 
@@ -18,58 +19,76 @@ pub(crate) struct Form {
     pub(crate) dimension: Dimension,
     /// Whether the coordinates are fixed-point numbers (`fixed.wgsl`), not floats (`floats.wgsl`).
     pub(crate) is_fixed: bool,
+    /// Whether the deviation has a limit (`deviation.wgsl`).
+    pub(crate) has_deviation: bool,
 }
 
 impl Form {
     /// All of them, each at its index.
-    pub(crate) const ALL: [Self; 4] = [
-        Self { dimension: Dimension::Two, is_fixed: false },
-        Self { dimension: Dimension::Three, is_fixed: false },
-        Self { dimension: Dimension::Two, is_fixed: true },
-        Self { dimension: Dimension::Three, is_fixed: true },
+    pub(crate) const ALL: [Self; 6] = [
+        Self { dimension: Dimension::Two, is_fixed: false, has_deviation: false },
+        Self { dimension: Dimension::Three, is_fixed: false, has_deviation: false },
+        Self { dimension: Dimension::Three, is_fixed: false, has_deviation: true },
+        Self { dimension: Dimension::Two, is_fixed: true, has_deviation: false },
+        Self { dimension: Dimension::Three, is_fixed: true, has_deviation: false },
+        Self { dimension: Dimension::Three, is_fixed: true, has_deviation: true },
     ];
     /// How many there are.
     pub(crate) const COUNT: usize = Self::ALL.len();
 
     /// Its place in [`Form::ALL`].
     pub(crate) fn index(self) -> usize {
-        self.dimension.stride() - 2 + 2 * usize::from(self.is_fixed)
+        self.dimension.stride() - 2 + usize::from(self.has_deviation) + 3 * usize::from(self.is_fixed)
     }
 }
 
 /// A mesh that a GPU takes.
 pub(crate) struct Upload {
     pub(crate) mesh: Arc<Mesh>,
+    pub(crate) thresholds: Thresholds,
     /// In the order of `fixed.wgsl`; none where the floats go as they are.
     fixed: Option<Vec<u32>>,
+    /// What the diagonals of a quad may be apart, as `state.wgsl` has it.
+    pub(crate) deviation: [u32; 4],
 }
 
 impl Upload {
     /// # Errors
     /// [`Error::BackendLimit`] for a mesh whose coordinates the shaders cannot decide exactly.
-    pub(crate) fn new(backend: &'static str, mesh: Arc<Mesh>) -> Result<Self, Error> {
-        let stride = mesh.dimension().stride();
-        let fixed = match mesh.positions() {
-            Positions::F32(floats) => {
-                let fit = |(lowest, highest)| highest - lowest < SPAN as i32 && highest < LARGEST_EXPONENT;
-                let fits = fit(most_exponents(floats));
-                if fits || fit(exponents(floats.iter().map(|&x| x.into()))) {
-                    Ok(None)
-                } else {
-                    fixed_point(mesh.positions(), stride).map(Some)
-                }
-            }
-            positions @ Positions::F64(_) => fixed_point(positions, stride).map(Some),
+    pub(crate) fn new(backend: &'static str, mesh: Arc<Mesh>, thresholds: Thresholds) -> Result<Self, Error> {
+        // Counts as a coordinate, but for what is beyond them.
+        let deviation = |highest| match mesh.dimension() {
+            Dimension::Two => 0.0,
+            Dimension::Three => f64::from(thresholds.deviation).min(libm::scalbn(1.0, highest + 3)),
         };
-        let refuse = |span| {
+        let with = |(lowest, highest): (i32, i32)| {
+            let (magnitude, unit) = parts(deviation(highest));
+            (
+                if magnitude == 0 { lowest } else { lowest.min(unit + magnitude.trailing_zeros() as i32) },
+                highest,
+            )
+        };
+        if let Positions::F32(floats) = mesh.positions() {
+            let fit = |(lowest, highest)| highest - lowest < SPAN as i32 && highest < LARGEST_EXPONENT;
+            let quick = with(most_exponents(floats));
+            let ends = if fit(quick) { quick } else { with(exponents(floats.iter().map(|&x| x.into()))) };
+            if fit(ends) {
+                let most = (deviation(ends.1) as f32).min(f32::MAX).to_bits();
+                return Ok(Self { mesh, thresholds, fixed: None, deviation: [most, 0, 0, most] });
+            }
+        }
+        let ends = with(exponents(mesh.positions().iter()));
+        let (fixed, most) = fixed_point(&mesh, ends, deviation(ends.1)).map_err(|span| {
             let message = format!("its coordinates span {span} bits, and it decides {SPAN} bits exactly");
             Error::BackendLimit { backend, message }
-        };
-        fixed.map(|fixed| Self { mesh, fixed }).map_err(refuse)
+        })?;
+        Ok(Self { mesh, thresholds, fixed: Some(fixed), deviation: most })
     }
 
     pub(crate) fn form(&self) -> Form {
-        Form { dimension: self.mesh.dimension(), is_fixed: self.fixed.is_some() }
+        let dimension = self.mesh.dimension();
+        let has_deviation = dimension == Dimension::Three && self.thresholds.deviation.is_finite();
+        Form { dimension, is_fixed: self.fixed.is_some(), has_deviation }
     }
 
     /// The coordinates as the shaders of its form read them, one word for each axis after the other.
@@ -83,10 +102,14 @@ impl Upload {
     }
 }
 
-/// The coordinates as integers that count from the corner of the bounding box, in units of the grid of the mesh; or how
-/// many bits they would take, if those are too many.
-fn fixed_point(positions: &Positions, stride: usize) -> Result<Vec<u32>, u32> {
-    let (lowest, highest) = exponents(positions.iter());
+/// The coordinates as integers that count from the corner of the bounding box, in units of the grid of the mesh, and the
+/// deviation in those units; or how many bits they would take, if those are too many. `ends` are their exponents.
+fn fixed_point(
+    mesh: &Mesh,
+    (lowest, highest): (i32, i32),
+    deviation: f64,
+) -> Result<(Vec<u32>, [u32; 4]), u32> {
+    let (positions, stride) = (mesh.positions(), mesh.dimension().stride());
     let span = (highest - lowest + 1) as u32;
     // The difference of two such integers is an i128.
     if span > i128::BITS - 2 {
@@ -112,7 +135,10 @@ fn fixed_point(positions: &Positions, stride: usize) -> Result<Vec<u32>, u32> {
             words.extend(point.iter().zip(&corner).map(word_of));
         }
     }
-    Ok(words)
+    // No two points of such a box are as far apart.
+    let most = on_grid(deviation, lowest).min(1 << (SPAN + 2));
+    let rounded = (most as f32).to_bits();
+    Ok((words, [most as u32, (most >> 32) as u32, (most >> 64) as u32, rounded]))
 }
 
 /// `x` in units of 2^`grid`, of which it is a multiple.
@@ -162,10 +188,12 @@ mod tests {
     #![allow(clippy::unwrap_used, reason = "what fails here is a failed test")]
 
     use super::*;
+    use crate::Options;
 
     fn upload(positions: impl Into<Positions>) -> Result<Upload, String> {
         let mesh = Mesh::new(Dimension::Two, positions, Vec::new()).unwrap();
-        Upload::new("gpu", Arc::new(mesh)).map_err(|error| error.to_string())
+        let thresholds = Thresholds::from(&Options::default());
+        Upload::new("gpu", Arc::new(mesh), thresholds).map_err(|error| error.to_string())
     }
 
     /// From the corner of the box, in units of the grid.

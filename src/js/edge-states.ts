@@ -8,7 +8,7 @@
  * | `delaunay` | between two triangles, and Delaunay |
  * | `flips` | not Delaunay, and selected: the next iteration, if there is one, flips it |
  * | `waits` | not Delaunay, and may flip, but not in the next iteration (in the order `'any'`: at some time) |
- * | `angle`, `fold`, `duplicate`, `locked` | not Delaunay, and may not flip, for this reason |
+ * | `angle`, `fold`, `duplicate`, `locked`, `deviation` | not Delaunay, and may not flip, for this reason |
  * | `non-manifold`, `inconsistent` | frozen for this reason, Delaunay or not |
  * | `boundary` | of one triangle only |
  */
@@ -20,6 +20,7 @@ export const EDGE_STATES = [
   'fold',
   'duplicate',
   'locked',
+  'deviation',
   'non-manifold',
   'inconsistent',
   'boundary',

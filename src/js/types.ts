@@ -31,6 +31,12 @@ export interface Options {
    * edges stay. For surfaces only. Default 10.
    */
   maxNormalAngle?: number | undefined;
+  /**
+   * The largest distance between the old and the new diagonal of a flip, in the units of the positions, rounded down to
+   * a 32-bit float: what one flip may move the surface by. Of the lines that they lie on, where the diagonals themselves
+   * do not pass each other. For surfaces only. Default: `Infinity`.
+   */
+  maxDeviation?: number | undefined;
   /** Stop after so many iterations. Default: run to the end, which is always reached. */
   maxIterations?: number | undefined;
   /**
@@ -89,10 +95,10 @@ export interface MakeDelaunayOptions extends Options, RunOptions {
 /**
  * Why an edge is still not Delaunay. `angle`: the normals differ by more than `maxNormalAngle`. `fold`: a new
  * triangle would turn over. `duplicate`: the edge that the flip would make exists already. `locked`: the
- * options lock it, whatever else it is. `non-manifold`: three or more triangles, or one twice, meet there.
+ * options lock it, whatever else it is. `deviation`: the diagonals are further apart than `maxDeviation`. `non-manifold`: three or more triangles, or one twice, meet there.
  * `inconsistent`: its two triangles are oriented against each other. `stopped`: the run was stopped before.
  */
-export type Reason = 'angle' | 'fold' | 'duplicate' | 'locked' | 'non-manifold' | 'inconsistent' | 'stopped';
+export type Reason = 'angle' | 'fold' | 'duplicate' | 'locked' | 'deviation' | 'non-manifold' | 'inconsistent' | 'stopped';
 
 /** Numbers of edges that are not Delaunay, by reason. A reason without an edge is absent. */
 export type Reasons = Partial<Record<Reason, number>>;

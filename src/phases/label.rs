@@ -1,6 +1,6 @@
 //! Label: each triangle tests its three edges and keeps the best one that may flip.
 
-use super::{BLOCKED, Geometry, Topology, key};
+use super::{BLOCKED, Geometry, Thresholds, Topology, key};
 use crate::adjacency::{CREASE, LOCKED, next, prev, unflagged};
 use crate::mesh::Dimension;
 use crate::predicates::{Quad, area_sign, in_circle_sign};
@@ -143,11 +143,15 @@ pub(crate) fn verdict_of_shape(geometry: &Geometry, diamond: &Diamond) -> Verdic
         }
         Dimension::Three => {
             let quad = quad(geometry.positions, diamond);
-            if diamond.twin & CREASE != 0 || quad.exceeds_angle(geometry.cos) {
+            let Thresholds { cos, deviation } = geometry.thresholds;
+            if diamond.twin & CREASE != 0 || quad.exceeds_angle(cos) {
                 return Verdict::Blocked(Reason::Angle);
             }
             if quad.turns_over() {
                 return Verdict::Blocked(Reason::Fold);
+            }
+            if deviation.is_finite() && quad.deviates(deviation.into()) {
+                return Verdict::Blocked(Reason::Deviation);
             }
         }
     }

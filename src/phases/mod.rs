@@ -27,17 +27,36 @@ use crate::embedded::Embedded;
 use crate::mesh::Dimension;
 use crate::star::Fans;
 use crate::winding::Winding;
-use crate::{NONE, Positions};
+use crate::{NONE, Options, Positions, cos_degrees};
 
 /// In `best`: no labelled edge, but one blocked as a duplicate, so that the triangle stays in the frontier.
 pub(crate) const BLOCKED: u32 = NONE - 1;
+
+/// What a flip may do to a surface (3D).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Thresholds {
+    /// cos β.
+    pub(crate) cos: f64,
+    /// How far apart the lines of the old and the new diagonal may be; infinite: any distance.
+    pub(crate) deviation: f32,
+}
+
+impl From<&Options> for Thresholds {
+    fn from(options: &Options) -> Self {
+        let most = options.max_deviation;
+        let nearest = most as f32;
+        Self {
+            cos: cos_degrees(options.max_normal_angle),
+            deviation: if f64::from(nearest) > most { nearest.next_down() } else { nearest },
+        }
+    }
+}
 
 /// What the phases read and never write.
 pub(crate) struct Geometry<'a> {
     pub(crate) dimension: Dimension,
     pub(crate) positions: &'a Positions,
-    /// cos β (3D).
-    pub(crate) cos: f64,
+    pub(crate) thresholds: Thresholds,
     pub(crate) winding: &'a Winding,
     pub(crate) embedded: &'a Embedded,
 }

@@ -54,32 +54,31 @@ pub(crate) fn area_sign(a: DVec2, b: DVec2, c: DVec2) -> Ordering {
     area_exact(a, b, c)
 }
 
-/// The sign of the sum of the areas of triangles.
-pub(crate) fn total_area_sign(triangles: impl Iterator<Item = [DVec2; 3]> + Clone) -> Ordering {
+/// The sign of the sum of the areas of `count` triangles.
+pub(crate) fn total_area_sign(count: usize, triangle: &dyn Fn(usize) -> [DVec2; 3]) -> Ordering {
     let mut sum = 0.0;
     let mut magnitude = 0.0;
-    let mut count = 0.0;
-    for [a, b, c] in triangles.clone() {
+    for [a, b, c] in (0..count).map(triangle) {
         let (p, q) = (a - c, b - c);
         let (left, right) = (p.x * q.y, p.y * q.x);
         sum += left - right;
         magnitude += left.abs() + right.abs();
-        count += 1.0;
     }
+    let terms = count as f64;
     // Each term errs by at most 5ε of its magnitude and 2.1η; summing n terms one after the other by (n - 1)ε of the
     // sum of the magnitudes.
-    if sum.abs() > (count + 8.0) * 2.0 * EPSILON * magnitude + count * UNDERFLOW {
+    if sum.abs() > (terms + 8.0) * 2.0 * EPSILON * magnitude + terms * UNDERFLOW {
         return sign(sum);
     }
-    let coordinates = triangles.clone().flatten().flat_map(|p| p.to_array());
+    let coordinates = (0..count).flat_map(|i| triangle(i).map(|p| p.to_array()).concat());
     let unit = coordinates.map(|x| decode(x).1).min().unwrap_or(0);
     let integer = |x: f64| {
         let (mantissa, exponent) = decode(x);
         Unbounded::new(mantissa, if mantissa == 0 { 0 } else { (exponent - unit) as u32 })
     };
     let mut sum = Unbounded::new(0, 0);
-    for [a, b, c] in triangles {
-        let [a, b, c] = [a, b, c].map(|p| p.to_array().map(integer));
+    for corners in (0..count).map(triangle) {
+        let [a, b, c] = corners.map(|p| p.to_array().map(integer));
         let differences = [(&a, 0), (&a, 1), (&b, 0), (&b, 1)].map(|(point, i)| point[i].sub(&c[i]));
         sum = sum.add(&doubled_area(&differences));
     }

@@ -13,7 +13,8 @@ use std::cmp::Ordering;
 /// computed dot product of two differences by at most 5.01ε·L.
 /// - angle sum |n1|·dot2 + |n2|·dot1: (7 + 5.01 + 1)ε·L1·L2 for each term, 2.1ε for the sum: 28.2ε·L1·L2;
 /// - n·n': (4.01 + 4.01 + 3)ε·L·L' = 11.1ε·L·L', which also decides `turns_over`;
-/// - n·n' - k|n||n'|: 11.1ε + (7 + 7 + 2)ε + 2.1ε = 29.2ε·L·L'.
+/// - n·n' - k|n||n'|: 11.1ε + (7 + 7 + 2)ε + 2.1ε = 29.2ε·L·L';
+/// - |n1·r| - δ|n1 + n2|: 7.1ε·L1·|r| and 9.1ε·δ·(L1 + L2), and 1.1ε of both for the difference.
 ///
 /// The products L·L' are rounded eight times; 32 leaves room for that.
 const BOUND: f64 = 32.0 * (f64::EPSILON / 2.0);
@@ -27,12 +28,9 @@ const BOUND: f64 = 32.0 * (f64::EPSILON / 2.0);
 /// product of the sizes by less. Both L and L' are at most a quarter of the square of the sum of all sizes.
 const UNDERFLOW: f64 = f64::from_bits((1023 - 530) << 52);
 
-/// Differences up to this width are evaluated in 12 limbs, 768 bits: of `b` bits, degree 8 with sums is below
+/// Differences up to this width are evaluated in 20 limbs, 1280 bits: of `b` bits, degree 8 with sums is below
 /// 2^(8b + 9), and the β test multiplies by at most 2^212 (the square of an f64 cosine in units of 2^-106).
-pub(super) const NARROW_BITS: u32 = 60;
-
-/// The same within 40 limbs, 2560 bits. Differences of f32 have at most 278 bits.
-pub(super) const WIDE_BITS: u32 = 290;
+pub(super) const BITS: u32 = 132;
 
 /// The two triangles (a, b, c) and (b, a, d) at an edge (a, b).
 pub(crate) struct Quad {
@@ -45,16 +43,17 @@ pub(crate) struct Quad {
     bound: f64,
 }
 
-/// Evaluates a function that is generic over the integers, on p, q, r, s: 12 components. Apart from the filters, which
-/// are called for every edge and should be small.
+/// Evaluates a function that is generic over the integers, on p, q, r, s: 12 components, and on one more number, 0 if
+/// none is given. Apart from the filters, which are called for every edge and should be small.
 macro_rules! exactly {
     ($quad:expr, $function:ident $(, $argument:expr)*) => {
+        exactly!($quad, with 0.0, $function $(, $argument)*)
+    };
+    ($quad:expr, with $number:expr, $function:ident $(, $argument:expr)*) => {
         apart(|| {
-            let differences = $quad.differences();
-            if differences.bits <= NARROW_BITS {
-                $function::<Bounded<12>>(&differences.integers() $(, $argument)*)
-            } else if differences.bits <= WIDE_BITS {
-                $function::<Bounded<40>>(&differences.integers() $(, $argument)*)
+            let differences = $quad.differences($number);
+            if differences.bits <= BITS {
+                $function::<Bounded<20>>(&differences.integers() $(, $argument)*)
             } else {
                 $function::<Unbounded>(&differences.integers() $(, $argument)*)
             }
@@ -127,6 +126,17 @@ impl Quad {
         }
     }
 
+    /// Whether the lines that the old and the new diagonal lie on are further apart than `most`, which is finite and
+    /// not negative: |n1·r| > δ|n1 + n2|. Parallel ones are at no distance.
+    pub(crate) fn deviates(&self, most: f64) -> bool {
+        let (n1, n2) = (self.p.cross(self.q), self.s.cross(self.r));
+        let (u, v, w, x) = (size(self.p), size(self.q), size(self.r), size(self.s));
+        let value = n1.dot(self.r).abs() - most * (n1 + n2).length();
+        let bound = bound(0.0, u + v + w + x)
+            + (BOUND * (u * v * w + most * (u * v + w * x)) + UNDERFLOW * (most + w));
+        if value.abs() > bound { value > 0.0 } else { exactly!(self, with most, deviating) }
+    }
+
     /// Whether a new normal has a strictly negative dot product with an old one.
     pub(crate) fn turns_over(&self) -> bool {
         let (old1, old2) = (self.p.cross(self.q), self.s.cross(self.r));
@@ -144,9 +154,9 @@ impl Quad {
         }
     }
 
-    fn differences(&self) -> Differences<12> {
+    fn differences(&self, number: f64) -> Differences<COUNT> {
         let [a, b, c, d] = self.points.map(|point| point.to_array());
-        let pairs = [(a, c), (b, c), (a, d), (b, d)];
+        let pairs = [(a, c), (b, c), (a, d), (b, d), ([number; 3], [0.0; 3])];
         Differences::new(std::array::from_fn(|i| {
             let (u, v) = pairs[i / 3];
             (u[i % 3], v[i % 3])
@@ -173,11 +183,14 @@ fn size(v: DVec3) -> f64 {
     v.abs().element_sum()
 }
 
+/// Numbers that are evaluated exactly.
+const COUNT: usize = 13;
+
 /// One of p, q, r and s.
 type Vector<R> = [R; 3];
 
 /// p, q, r and s.
-fn vectors<R>(v: &[R; 12]) -> [&Vector<R>; 4] {
+fn vectors<R>(v: &[R; COUNT]) -> [&Vector<R>; 4] {
     let (vectors, _) = v.as_chunks();
     [&vectors[0], &vectors[1], &vectors[2], &vectors[3]]
 }
@@ -192,7 +205,7 @@ fn cross<R: Ring>(u: &Vector<R>, v: &Vector<R>) -> Vector<R> {
 }
 
 /// The sign of √(n1²)·dot2 + √(n2²)·dot1: of equal signs of the two terms that sign, else by their squares.
-fn angle_sum<R: Ring>(v: &[R; 12]) -> Ordering {
+fn angle_sum<R: Ring>(v: &[R; COUNT]) -> Ordering {
     let [p, q, r, s] = vectors(v);
     let (n1, n2) = (cross(p, q), cross(s, r));
     let (n1, n2) = (dot(&n1, &n1), dot(&n2, &n2));
@@ -210,7 +223,7 @@ fn angle_sum<R: Ring>(v: &[R; 12]) -> Ordering {
 }
 
 /// Whether n·m < k|n||m| for the normals before the flip or, with `after` too, for those after it.
-fn angle_exceeded<R: Ring>(v: &[R; 12], k: f64, after: bool) -> bool {
+fn angle_exceeded<R: Ring>(v: &[R; COUNT], k: f64, after: bool) -> bool {
     let [p, q, r, s] = vectors(v);
     let (mantissa, shift) = super::cosine_fraction(k);
     let mantissa = R::new(mantissa as i64, 0);
@@ -239,14 +252,23 @@ fn angle_exceeded<R: Ring>(v: &[R; 12], k: f64, after: bool) -> bool {
     exceeds(cross(p, q), cross(s, r)) || (after && exceeds(cross(r, p), cross(q, s)))
 }
 
-fn turned_over<R: Ring>(v: &[R; 12]) -> bool {
+/// Whether (n1·r)² > δ²(n1 + n2)².
+fn deviating<R: Ring>(v: &[R; COUNT]) -> bool {
+    let [p, q, r, s] = vectors(v);
+    let (n1, n2) = (cross(p, q), cross(s, r));
+    let both = [0, 1, 2].map(|i| n1[i].add(&n2[i]));
+    let (volume, most) = (dot(&n1, r), &v[COUNT - 1]);
+    volume.mul(&volume).sub(&most.mul(most).mul(&dot(&both, &both))).sign().is_gt()
+}
+
+fn turned_over<R: Ring>(v: &[R; COUNT]) -> bool {
     let [p, q, r, s] = vectors(v);
     let old = [cross(p, q), cross(s, r)];
     let new = [cross(r, p), cross(q, s)];
     old.iter().any(|n| new.iter().any(|m| dot(n, m).sign().is_lt()))
 }
 
-fn obtuse_and_flat<R: Ring>(v: &[R; 12]) -> (bool, bool) {
+fn obtuse_and_flat<R: Ring>(v: &[R; COUNT]) -> (bool, bool) {
     let [p, q, _, _] = vectors(v);
     let normal = cross(p, q);
     (dot(p, q).sign().is_lt(), dot(&normal, &normal).sign().is_eq())

@@ -147,11 +147,11 @@ fn compare_in_plane([a, b, c, d]: [DVec2; 4]) {
     assert_eq!(in_circle_sign(a, b, c, d), order(&expected));
     // The other half-edge of the same edge gives the same answer.
     assert_eq!(in_circle_sign(b, a, d, c), order(&expected));
-    let total = total_area_sign([[a, b, c], [b, a, d]].into_iter());
+    let total = total_area_sign(2, &|i| [[a, b, c], [b, a, d]][i]);
     assert_eq!(total, order(&(area(a3, b3, c3) + area(b3, a3, d3))));
 }
 
-fn compare_in_space([a, b, c, d]: [DVec3; 4], degrees: f64) {
+fn compare_in_space([a, b, c, d]: [DVec3; 4], degrees: f64, most: f32) {
     let quad = Quad::new(a, b, c, d);
     let (p, q, r, s) = (minus(a, c), minus(b, c), minus(a, d), minus(b, d));
     let (n1, n2) = (normal([a, b, c]), normal([b, a, d]));
@@ -163,6 +163,11 @@ fn compare_in_space([a, b, c, d]: [DVec3; 4], degrees: f64) {
     assert_eq!(quad.is_over_angle(k), exceeds(&n1, &n2, k));
     let turned = [&n1, &n2].iter().any(|n| [&m1, &m2].iter().any(|m| dot(n, m).sign() == Sign::Minus));
     assert_eq!(quad.turns_over(), turned);
+    // By another formula than that of the filter: the determinant of the edge, the diagonal and what joins them.
+    let across = cross(&minus(a, b), &minus(c, d));
+    let (volume, most_big) = (dot(&across, &minus(a, c)), big(most.into()));
+    let deviates = &volume * &volume > &most_big * &most_big * dot(&across, &across);
+    assert_eq!(quad.deviates(most.into()), deviates);
     let expected = (dot(&p, &q).sign() == Sign::Minus, dot(&n1, &n1).sign() == Sign::NoSign);
     assert_eq!(corner(a, b, c), expected);
 }
@@ -192,8 +197,25 @@ proptest! {
     fn surface_tests_agree_with_big_integers(quad in quad3(), degrees in prop_oneof![
         Just(0.0), Just(60.0), Just(90.0), Just(120.0), Just(180.0), 0.0..180.0f64,
         Just(90.0f64.next_up()), Just(90.0f64.next_down())
-    ]) {
-        compare_in_space(quad, degrees);
+    ], most in coordinate()) {
+        compare_in_space(quad, degrees, most.abs());
+    }
+
+    /// The diagonals of a box are as far apart as it is high.
+    #[test]
+    fn distances_of_whole_numbers_are_decided(
+        [w, d, h] in [1u16..100, 1u16..100, 0u16..100], e in -120i32..100, turn in 0usize..3, ulps in -1i32..=1
+    ) {
+        let points = [[0, 0, 0], [w, d, 0], [w, 0, h], [0, d, h]].map(|p| {
+            let mut p = p.map(|x| libm::scalbn(f64::from(x), e));
+            p.rotate_right(turn);
+            DVec3::from(p)
+        });
+        let height = libm::scalbnf(f32::from(h), e);
+        let most = f32::from_bits(height.to_bits().saturating_add_signed(ulps));
+        let [p, q, r, s] = points;
+        prop_assert_eq!(Quad::new(p, q, r, s).deviates(most.into()), height > most);
+        compare_in_space(points, 10.0, most);
     }
 }
 
@@ -224,11 +246,15 @@ fn filters_leave_what_overflows_or_underflows() {
     let half = 2f64.powi(-252);
     let on_axis = |y: f64| DVec3::new(0.0, y, 0.0);
     let [a, b] = [-half, half].map(|x| DVec3::new(x, 0.0, 0.0));
-    compare_in_space([a, b, on_axis(2f64.powi(-293)), on_axis(-2f64.powi(-210))], 10.0);
+    compare_in_space([a, b, on_axis(2f64.powi(-293)), on_axis(-2f64.powi(-210))], 10.0, 1e-30);
 
     // The edge is short, c far off and d near: by rounding the square of the first normal is infinite.
     let [a, b] = [DVec3::new(1e90, 1e90, 0.0), DVec3::new(1e90, 1e90, 1e-20)];
-    compare_in_space([a, b, DVec3::new(-1e90, 1e90, 1e-20), DVec3::new(1e90, 1e90 + 1e80, 0.0)], 10.0);
+    compare_in_space(
+        [a, b, DVec3::new(-1e90, 1e90, 1e-20), DVec3::new(1e90, 1e90 + 1e80, 0.0)],
+        10.0,
+        f32::MAX,
+    );
 }
 
 /// Also the widest that each kind of integer takes, and the ones next to it.
@@ -240,6 +266,27 @@ fn differences_of_every_width_are_decided() {
         let [a, b, c, d] =
             [[-most, -most], [most, most], [-most, most], [most, tiny - most]].map(DVec2::from_array);
         compare_in_plane([a, b, c, d]);
-        compare_in_space([a.extend(most), b.extend(-most), c.extend(-most), d.extend(tiny)], 10.0);
+        compare_in_space([a.extend(most), b.extend(-most), c.extend(-most), d.extend(tiny)], 10.0, 1.0);
+    }
+}
+
+#[test]
+fn cosines_are_right_to_the_last_places() {
+    for (degrees, cosine) in [(0.0, 1.0), (60.0, 0.5), (90.0, 0.0), (120.0, -0.5), (180.0, -1.0)] {
+        assert_eq!(cos_degrees(degrees), cosine);
+    }
+    let mut before = 1.0;
+    for step in 1..=18_000 {
+        let degrees = f64::from(step) / 100.0;
+        let cosine = cos_degrees(degrees);
+        // Off by as much as the radians are.
+        let radians = degrees.to_radians();
+        let exact = libm::cos(radians);
+        assert!(
+            (cosine - exact).abs() <= (2.0 * exact.abs() + radians) * f64::EPSILON,
+            "{degrees}: {cosine} {exact}"
+        );
+        assert!(cosine < before, "{degrees}");
+        before = cosine;
     }
 }

@@ -10,6 +10,7 @@ use crate::{Adjacency, Backend, Dimension, Error, Mesh, NONE, Options, families,
 pub(crate) mod kinds;
 
 /// Interior edges of a mesh that is Delaunay, by what decides that they are: the filter, or narrow, wide or any integers.
+/// Surfaces have no wide ones.
 fn tiers(mesh: &Mesh) -> [usize; 4] {
     let mut counts = [0; 4];
     for (h, &g) in Adjacency::new(mesh).twins.iter().enumerate() {
@@ -28,7 +29,7 @@ fn tiers(mesh: &Mesh) -> [usize; 4] {
             Dimension::Three => {
                 let [a, b, c, d] = mesh.positions().points3([a, b, c, d]);
                 Quad::new(a, b, c, d).is_non_delaunay();
-                [space::NARROW_BITS, space::WIDE_BITS]
+                [space::BITS, space::BITS]
             }
         };
         counts[[0, narrow, wide].iter().filter(|&&bits| WIDEST.get() > bits).count()] += 1;

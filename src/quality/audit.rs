@@ -3,8 +3,8 @@
 
 use super::edges::{Class, Edge};
 use super::exact;
-use super::surface::Surface;
-use crate::{Dimension, Mesh, Reason, Reasons};
+use super::surface::{Limits, Surface};
+use crate::{Dimension, Mesh, Options, Reason, Reasons, cos_degrees};
 use std::cmp::Ordering;
 
 /// Violations that an [`Audit`] lists; further ones are only counted.
@@ -166,10 +166,9 @@ impl Audit {
     }
 }
 
-/// Checks `triangles` as a result of flipping edges of `input` with the threshold `max_normal_angle` in
-/// degrees (β, 3D only) and locked edges, given by their vertices (those that are none of the input are passed
-/// over): exactly, with edge table, components and arithmetic of its own.
-pub fn audit(input: &Mesh, triangles: &[u32], max_normal_angle: f64, locked_edges: &[[u32; 2]]) -> Audit {
+/// Checks `triangles` as a result of flipping edges of `input` with these options: exactly, with edge table,
+/// components and arithmetic of its own. What they lock and `input` has not is passed over.
+pub fn audit(input: &Mesh, triangles: &[u32], options: &Options) -> Audit {
     let mut audit = Audit::default();
     audit.compare(input.triangles().len(), triangles.len(), |before, after| Violation::Length {
         before,
@@ -183,10 +182,13 @@ pub fn audit(input: &Mesh, triangles: &[u32], max_normal_angle: f64, locked_edge
     if !audit.is_clean() {
         return audit;
     }
-    let cosine = cosine(max_normal_angle);
+    let limits = Limits {
+        cosine: cos_degrees(options.max_normal_angle),
+        deviation: rounded_down(options.max_deviation),
+    };
     let before = Surface::new(input, input.triangles());
     let after = Surface::new(input, triangles);
-    let creases = compare_edges(&mut audit, &before, &after, cosine);
+    let creases = compare_edges(&mut audit, &before, &after, limits.cosine);
     compare_vertices(&mut audit, &before, &after);
     audit.compare(before.euler(), after.euler(), |before, after| Violation::Euler { before, after });
     audit.compare(before.areas.len(), after.areas.len(), |before, after| Violation::Components {
@@ -200,26 +202,40 @@ pub fn audit(input: &Mesh, triangles: &[u32], max_normal_angle: f64, locked_edge
             audit.report(Violation::Inverted { before, after });
         }
     }
-    let mut locked: Vec<_> = locked_edges.iter().map(|&[u, v]| (u.min(v), u.max(v))).collect();
-    locked.sort_unstable();
-    locked.dedup();
-    locked.retain(|&(u, v)| (v as usize) < input.vertex_count() && before.table.contains(u, v));
+    let locked = locked(&before, options);
     for &(u, v) in locked.iter().filter(|&&(u, v)| !after.table.contains(u, v)) {
         audit.report(Violation::Locked { u, v });
     }
-    audit.remaining_edges = after.remaining(cosine, &creases, &locked);
+    audit.remaining_edges = after.remaining(limits, &creases, &locked);
     audit.remaining = audit.remaining_edges.iter().map(|edge| edge.reason).collect();
     audit
 }
 
-/// cos β: exact where it is a multiple of 1/2, else the f64 cosine, which is then taken as exact.
-fn cosine(degrees: f64) -> f64 {
-    for (angle, cosine) in [(0.0, 1.0), (60.0, 0.5), (90.0, 0.0), (120.0, -0.5), (180.0, -1.0)] {
-        if degrees == angle {
-            return cosine;
+/// The largest 32-bit float that is no larger.
+fn rounded_down(x: f64) -> f64 {
+    let nearest = x as f32;
+    f64::from(if f64::from(nearest) > x { nearest.next_down() } else { nearest })
+}
+
+/// The edges that `options` lock, in the order of the table.
+fn locked(before: &Surface, options: &Options) -> Vec<(u32, u32)> {
+    let Options { locked_edges, locked_triangles, groups, .. } = options;
+    let mut named: Vec<_> = locked_edges.iter().map(|&[u, v]| (u.min(v), u.max(v))).collect();
+    named.sort_unstable();
+    let mut is_locked = vec![false; before.triangle_count()];
+    for &t in locked_triangles {
+        if let Some(is_locked) = is_locked.get_mut(t as usize) {
+            *is_locked = true;
         }
     }
-    libm::cos(degrees * (std::f64::consts::PI / 180.0))
+    let group = |h: u32| groups.get(h as usize / 3);
+    let is_locked = |edge: &Edge| {
+        let mut half_edges = edge.half_edges();
+        let first = half_edges.clone().next().and_then(group);
+        named.binary_search(&(edge.u, edge.v)).is_ok()
+            || half_edges.any(|h| is_locked[h as usize / 3] || group(h) != first)
+    };
+    before.table.edges().filter(is_locked).map(|edge| (edge.u, edge.v)).collect()
 }
 
 /// Walks through both tables side by side; only edges between two consistent triangles may come and go, and of

@@ -26,7 +26,7 @@ pub(super) struct Edge<'a> {
 
 impl Edge<'_> {
     /// Half-edges in ascending order.
-    pub fn half_edges(&self) -> impl Iterator<Item = u32> + '_ {
+    pub fn half_edges(&self) -> impl Iterator<Item = u32> + Clone + '_ {
         self.entries.iter().map(|&entry| entry as u32)
     }
 }

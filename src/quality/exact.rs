@@ -79,13 +79,15 @@ fn decode(x: f64) -> (i64, i32) {
 
 /// The corners of both triangles as integers, all scaled by the same power of two.
 fn exact_corners(first: Triangle, second: Triangle) -> [ExactCorner; 2] {
-    let numbers = || first.iter().chain(&second).flat_map(|p| p.to_array());
-    let exponent = numbers().filter(|&x| x != 0.0).map(|x| decode(x).1).min().unwrap_or(0);
-    let integer = |x: f64| {
-        let (mantissa, e) = decode(x);
-        if mantissa == 0 { BigInt::ZERO } else { BigInt::from(mantissa) << (e - exponent) as u32 }
-    };
-    [first, second].map(|triangle| ExactCorner::new(&triangle.map(|p| p.to_array().map(integer))))
+    let unit = ExactSum::unit(first.iter().chain(&second).flat_map(|p| p.to_array()));
+    [first, second]
+        .map(|triangle| ExactCorner::new(&triangle.map(|p| p.to_array().map(|x| integer(x, unit)))))
+}
+
+/// `x` in units of 2^`unit`, of which it is a multiple.
+fn integer(x: f64, unit: i32) -> BigInt {
+    let (mantissa, exponent) = decode(x);
+    if mantissa == 0 { BigInt::ZERO } else { BigInt::from(mantissa) << (exponent - unit) as u32 }
 }
 
 fn sign(x: &BigInt) -> Ordering {
@@ -164,6 +166,25 @@ pub(super) fn normals_oppose(first: Triangle, second: Triangle) -> bool {
     }
     let [one, two] = exact_corners(first, second);
     dot(&one.normal, &two.normal).sign() == Sign::Minus
+}
+
+/// Whether the lines through a, b and through c, d are further apart than `most`; parallel ones are not.
+pub(super) fn lines_apart([a, b, c, d]: [DVec3; 4], most: f64) -> bool {
+    let (x, y, z) = (b - a, d - c, c - a);
+    let across = x.cross(y);
+    let value = across.dot(z).abs() - most * across.length();
+    let size = x.length() * y.length() * (z.length() + most);
+    if [a, b, c, d].iter().all(|p| ordinary(&p.to_array())) && ordinary(&[most]) && value.abs() > BOUND * size
+    {
+        return value > 0.0;
+    }
+    let numbers = [a, b, c, d, DVec3::new(most, 0.0, 0.0)].map(|p| p.to_array());
+    let unit = ExactSum::unit(numbers.iter().flatten().copied());
+    let [a, b, c, d, most] = numbers.map(|p| p.map(|x| integer(x, unit)));
+    let minus = |u: &[BigInt; 3], v: &[BigInt; 3]| [&u[0] - &v[0], &u[1] - &v[1], &u[2] - &v[2]];
+    let corner = ExactCorner::new(&[minus(&b, &a), minus(&d, &c), [(); 3].map(|()| BigInt::ZERO)]);
+    let (volume, [most, ..]) = (dot(&corner.normal, &minus(&c, &a)), most);
+    &volume * &volume > &most * &most * corner.squared()
 }
 
 /// Whether the triangle's points are collinear, and if so the sign of the dot product at the third point.

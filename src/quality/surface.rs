@@ -7,6 +7,15 @@ use crate::{Dimension, Mesh, Reason};
 use num_bigint::{BigInt, Sign};
 use std::cmp::Ordering;
 
+/// What a flip may do to a surface.
+#[derive(Clone, Copy)]
+pub(super) struct Limits {
+    /// cos β.
+    pub cosine: f64,
+    /// How far apart the lines of the two diagonals may be.
+    pub deviation: f64,
+}
+
 /// A mesh's vertices with one of its two lists of triangles, and what the audit knows of them.
 pub(super) struct Surface<'a> {
     pub mesh: &'a Mesh,
@@ -27,6 +36,10 @@ impl<'a> Surface<'a> {
             Dimension::Three => vec![BigInt::ZERO; count],
         };
         Self { mesh, triangles, table, component_of, areas }
+    }
+
+    pub fn triangle_count(&self) -> usize {
+        self.triangles.len() / 3
     }
 
     pub fn used(&self) -> Vec<bool> {
@@ -79,7 +92,7 @@ impl<'a> Surface<'a> {
     /// whatever their angle is now, and `locked` those that may not at all, both in the same order.
     pub fn remaining(
         &self,
-        cosine: f64,
+        limits: Limits,
         creases: &[(u32, u32)],
         locked: &[(u32, u32)],
     ) -> Vec<RemainingEdge> {
@@ -91,7 +104,7 @@ impl<'a> Surface<'a> {
                 Class::Twins(h, g) => {
                     let judged = match self.mesh.dimension() {
                         Dimension::Two => self.judge_in_plane(h, g),
-                        Dimension::Three => self.judge_in_space(h, g, cosine),
+                        Dimension::Three => self.judge_in_space(h, g, limits),
                     };
                     judged.map(|reason| match () {
                         () if is_among(locked) => Reason::Locked,
@@ -130,7 +143,7 @@ impl<'a> Surface<'a> {
     }
 
     /// Why the edge is still there, if it is not Delaunay (3D).
-    fn judge_in_space(&self, h: u32, g: u32, cosine: f64) -> Option<Reason> {
+    fn judge_in_space(&self, h: u32, g: u32, Limits { cosine, deviation }: Limits) -> Option<Reason> {
         let [a, b, c, d] = self.quad(h, g);
         let [old1, old2] = [[a, b, c], [b, a, d]].map(|corners| self.points(corners));
         let [new1, new2] = [[a, d, c], [b, c, d]].map(|corners| self.points(corners));
@@ -142,6 +155,8 @@ impl<'a> Surface<'a> {
             Reason::Angle
         } else if oppose(old1) || oppose(old2) {
             Reason::Fold
+        } else if exact::lines_apart([a, b, c, d].map(|v| self.mesh.point3(v)), deviation) {
+            Reason::Deviation
         } else if c == d || self.table.contains(c, d) {
             Reason::Duplicate
         } else {

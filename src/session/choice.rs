@@ -5,7 +5,7 @@ use crate::engine::Proxy;
 use crate::engine::{Answer, Cpu, Engine, Lawson};
 #[cfg(feature = "gpu")]
 use crate::engine::{Device, Upload, WebGpu, self_test};
-use crate::predicates::cos_degrees;
+use crate::phases::Thresholds;
 use crate::threads::Threads;
 use crate::{Backend, Error, Mesh, Options, Order, locks};
 use std::sync::Arc;
@@ -85,11 +85,11 @@ fn first_of<'a>(
 /// Boxed, so that what an engine does to begin is compiled into one place only.
 fn open<'a>(backend: Backend, mesh: &'a Arc<Mesh>, options: &'a Options) -> Answer<'a, Box<dyn Engine>> {
     Box::pin(async move {
-        let cos = cos_degrees(options.max_normal_angle);
-        let cpu = || Ok::<_, Error>(Cpu::new(mesh.clone(), cos, Threads::new(options.threads)?));
+        let thresholds = Thresholds::from(options);
+        let cpu = || Ok::<_, Error>(Cpu::new(mesh.clone(), thresholds, Threads::new(options.threads)?));
         let mut engine = match (backend, options.order) {
-            (Backend::Gpu, _) => gpu(mesh, options, cos).await?,
-            (Backend::WebGl, _) => webgl(mesh, options, cos).await?,
+            (Backend::Gpu, _) => gpu(mesh, options, thresholds).await?,
+            (Backend::WebGl, _) => webgl(mesh, options, thresholds).await?,
             (_, Order::Reproducible) => Box::new(cpu()?),
             (_, Order::Any) => Box::new(Lawson::new(cpu()?)),
         };
@@ -101,7 +101,7 @@ fn open<'a>(backend: Backend, mesh: &'a Arc<Mesh>, options: &'a Options) -> Answ
 }
 
 #[cfg(feature = "gpu")]
-async fn gpu(mesh: &Arc<Mesh>, options: &Options, cos: f64) -> Result<Box<dyn Engine>, Error> {
+async fn gpu(mesh: &Arc<Mesh>, options: &Options, thresholds: Thresholds) -> Result<Box<dyn Engine>, Error> {
     // `Auto` leaves a GPU alone that the processor plays.
     let takes_software = options.backend == Backend::Gpu;
     #[cfg(all(target_arch = "wasm32", feature = "js"))]
@@ -111,28 +111,40 @@ async fn gpu(mesh: &Arc<Mesh>, options: &Options, cos: f64) -> Result<Box<dyn En
     };
     #[cfg(not(all(target_arch = "wasm32", feature = "js")))]
     let device = Device::shared(takes_software).await?;
-    let upload = Upload::new("gpu", mesh.clone())?;
-    let make = |upload: Upload, cos| -> Answer<'static, Box<dyn Engine>> {
+    let upload = Upload::new("gpu", mesh.clone(), thresholds)?;
+    let make = |upload: Upload| -> Answer<'static, Box<dyn Engine>> {
         let device = device.clone();
-        Box::pin(async move { Ok(Box::new(WebGpu::new(device, upload, cos).await?) as Box<dyn Engine>) })
+        Box::pin(async move { Ok(Box::new(WebGpu::new(device, upload).await?) as Box<dyn Engine>) })
     };
     self_test(&device.tested, "gpu", upload.form(), &make).await?;
-    make(upload, cos).await
+    make(upload).await
 }
 
 #[cfg(not(feature = "gpu"))]
-async fn gpu(_mesh: &Arc<Mesh>, _options: &Options, _cos: f64) -> Result<Box<dyn Engine>, Error> {
+async fn gpu(
+    _mesh: &Arc<Mesh>,
+    _options: &Options,
+    _thresholds: Thresholds,
+) -> Result<Box<dyn Engine>, Error> {
     let message = "this build has no GPU engine (feature `gpu`)".to_owned();
     Err(Error::BackendUnavailable { backend: "gpu", message })
 }
 
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
-async fn webgl(mesh: &Arc<Mesh>, options: &Options, cos: f64) -> Result<Box<dyn Engine>, Error> {
-    Ok(Box::new(Proxy::new(mesh, cos, options.backend == Backend::WebGl).await?))
+async fn webgl(
+    mesh: &Arc<Mesh>,
+    options: &Options,
+    thresholds: Thresholds,
+) -> Result<Box<dyn Engine>, Error> {
+    Ok(Box::new(Proxy::new(mesh, thresholds, options.backend == Backend::WebGl).await?))
 }
 
 #[cfg(not(all(target_arch = "wasm32", feature = "js")))]
-async fn webgl(_mesh: &Arc<Mesh>, _options: &Options, _cos: f64) -> Result<Box<dyn Engine>, Error> {
+async fn webgl(
+    _mesh: &Arc<Mesh>,
+    _options: &Options,
+    _thresholds: Thresholds,
+) -> Result<Box<dyn Engine>, Error> {
     let message = "WebGL2 is there in browsers only, through the npm package".to_owned();
     Err(Error::BackendUnavailable { backend: "webgl2", message })
 }

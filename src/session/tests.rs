@@ -59,7 +59,7 @@ fn session(backend: Backend, questions_left: u32) -> Session {
     let locked_edges = mesh.triangles().chunks(15).map(|t| [t[0], t[1]]).collect();
     let options = Options { backend: Backend::Cpu, locked_edges, ..Options::default() };
     let mut session = block_on(Session::new(mesh, options)).unwrap();
-    let mut cpu = Cpu::new(session.mesh.clone(), cos_degrees(10.0), Threads::default());
+    let mut cpu = Cpu::new(session.mesh.clone(), Thresholds::from(&session.options), Threads::default());
     block_on(cpu.lock(locks::half_edges(&session.mesh, &session.options.locked_edges).unwrap())).unwrap();
     session.engine = Box::new(Failing { cpu, questions_left });
     session.options.backend = backend;

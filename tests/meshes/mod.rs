@@ -2,6 +2,7 @@
 #![allow(dead_code, unused_imports, reason = "each test crate takes what it needs of this module")]
 #![allow(clippy::unwrap_used, reason = "a test that cannot make its mesh must stop")]
 
+mod deviation;
 pub mod dirty;
 mod extreme;
 mod locked;
@@ -19,12 +20,15 @@ pub struct Case {
     pub mesh: Mesh,
     pub beta: f64,
     pub locked: Vec<[u32; 2]>,
+    /// The limit of the deviation (without effect in 2D).
+    pub deviation: f64,
 }
 
 impl Case {
     pub fn options(&self, backend: Backend) -> Options {
         let locked_edges = self.locked.clone();
-        Options { backend, max_normal_angle: self.beta, locked_edges, ..Options::default() }
+        let (max_normal_angle, max_deviation) = (self.beta, self.deviation);
+        Options { backend, max_normal_angle, max_deviation, locked_edges, ..Options::default() }
     }
 }
 
@@ -66,11 +70,12 @@ pub fn all() -> Vec<Case> {
     cases.extend(dirty::all());
     cases.extend(extreme::all());
     cases.extend(locked::all());
+    cases.extend(deviation::all());
     cases
 }
 
 pub fn case(name: &str, mesh: Mesh, beta: f64) -> Case {
-    Case { name: name.into(), mesh, beta, locked: Vec::new() }
+    Case { name: name.into(), mesh, beta, locked: Vec::new(), deviation: f64::INFINITY }
 }
 
 /// A small mesh written down.

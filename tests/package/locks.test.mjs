@@ -1,4 +1,4 @@
-// Locked edges stay locked on every engine of a browser when the vertices move. Takes the dist/ that is there.
+// Locks and limits hold on every engine of a browser when the vertices move. Takes the dist/ that is there.
 
 import assert from 'node:assert/strict';
 import { after, test } from 'node:test';
@@ -10,12 +10,14 @@ const repository = fileURLToPath(new URL('../..', import.meta.url));
 after(closeAll);
 
 /** Runs in the page: what a session on the engine says after each step, the vertices moving in between. */
-async function runAndMove({ backend, name }) {
+async function runAndMove({ backend, name, isWide }) {
   const { FlipSession } = await import('/dist/index.js');
   const { generate } = await import('/dist/files.js');
   const mesh = await generate(name);
   const lockedEdges = mesh.indices.filter((_, i) => i % 21 < 2);
-  const session = await FlipSession.create(mesh, { backend, lockedEdges });
+  if (isWide) mesh.positions = Float64Array.from(mesh.positions, (x) => x * (1 + 2 ** -40));
+  const limits = { maxNormalAngle: 60, maxDeviation: 0.05 };
+  const session = await FlipSession.create(mesh, { backend, lockedEdges, ...limits });
   const said = [];
   for (const stretch of [1, 4, 0.5]) {
     await session.setPositions(mesh.positions.map((x, i) => (i % mesh.dimension ? x : x * stretch)));
@@ -27,18 +29,19 @@ async function runAndMove({ backend, name }) {
   return said;
 }
 
-test('locked edges stay locked when the vertices move', async () => {
+test('locks and limits hold when the vertices move', async () => {
   const page = await (await startChromium()).newPage();
   await page.goto(`${await serve(repository)}tests/parity/page.html`);
-  for (const name of ['random 12', 'roof 6']) {
-    const expected = await page.evaluate(runAndMove, { backend: 'cpu', name });
+  for (const mesh of [{ name: 'random 12' }, { name: 'uvsphere 10' }, { name: 'uvsphere 10', isWide: true }]) {
+    const expected = await page.evaluate(runAndMove, { backend: 'cpu', ...mesh });
     for (const { audit, remaining } of expected.filter((said) => said.audit)) {
       assert.ok(audit.clean, audit.violations.join());
       assert.deepEqual(audit.remaining, remaining);
-      assert.ok(remaining.locked > 0, name);
+      assert.ok(remaining.locked > 0, mesh.name);
+      assert.equal(remaining.deviation > 0, mesh.name !== 'random 12');
     }
     for (const backend of ['webgpu', 'webgl2']) {
-      assert.deepEqual(await page.evaluate(runAndMove, { backend, name }), expected, `${name} on ${backend}`);
+      assert.deepEqual(await page.evaluate(runAndMove, { backend, ...mesh }), expected, `${mesh.name} on ${backend}`);
     }
   }
 });

@@ -158,6 +158,8 @@ test('errors have codes', async () => {
   await assert.rejects(makeDelaunay(mesh, { order: 1 }), refused('invalid-option', /order/));
   await assert.rejects(makeDelaunay(mesh, { device: {} }), refused('invalid-option', /device: .* is not a GPUDevice/));
   await assert.rejects(makeDelaunay(mesh, { maxNormalAngle: 200 }), refused('invalid-option', /maxNormalAngle: 200/));
+  await assert.rejects(makeDelaunay(mesh, { maxDeviation: -1 }), refused('invalid-option', /maxDeviation: -1 is not a distance/));
+  await assert.rejects(makeDelaunay(mesh, { maxDeviation: '1' }), refused('invalid-option', /maxDeviation: .* is not a number/));
   await assert.rejects(makeDelaunay(mesh, { maxIterations: -1 }), refused('invalid-option', /maxIterations/));
   const locking = (lockedEdges) => makeDelaunay(mesh, { lockedEdges });
   await assert.rejects(locking([0, 1, 1, 3]), refused('invalid-option', /lockedEdges: .*no edge between vertices 1 and 3/));

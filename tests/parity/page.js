@@ -10,13 +10,13 @@ const response = await fetch('../../target/parity.json');
 const { cases } = await response.json();
 
 /** What a run of the mesh gives; watched after every iteration or from end to end. */
-async function run({ positions, isWide, indices, dimension, beta, locked }, backend, isWatched) {
+async function run({ positions, isWide, indices, dimension, beta, deviation, locked }, backend, isWatched) {
   const mesh = {
     positions: new (isWide ? Float64Array : Float32Array)(Uint32Array.from(positions).buffer),
     indices: Uint32Array.from(indices),
     dimension,
   };
-  const session = await FlipSession.create(mesh, { backend, maxNormalAngle: beta, lockedEdges: locked });
+  const session = await FlipSession.create(mesh, { backend, maxNormalAngle: beta, maxDeviation: deviation ?? Infinity, lockedEdges: locked });
   try {
     const iterations = [];
     if (isWatched) {

@@ -20,8 +20,8 @@ const engines = [
 ];
 
 /**
- * @typedef {{ kind: string, quads: number, ties: number, labelled: number, angle: number, fold: number }} Tally
- * @type {{ index: number, dimension: 2 | 3, isWide: boolean, beta: number, tallies: Tally[] }[]}
+ * @typedef {{ kind: string, quads: number, ties: number, labelled: number, angle: number, fold: number, deviation: number }} Tally
+ * @type {{ index: number, dimension: 2 | 3, isWide: boolean, beta: number, deviation: number | null, tallies: Tally[] }[]}
  */
 const batches = JSON.parse(readFileSync(join(folder, 'batches.json'), 'utf8'));
 
@@ -40,7 +40,7 @@ function numbers({ index, dimension }, quad) {
   return `[${new Float64Array(buffer, 32 * dimension * quad, 4 * dimension).join(', ')}]`;
 }
 
-const columns = ['quads', 'ties', 'labelled', 'angle', 'fold', 'mismatches'];
+const columns = ['quads', 'ties', 'labelled', 'angle', 'fold', 'deviation', 'mismatches'];
 
 /** Adds numbers of the same names. */
 function add(sums, numbers) {
@@ -57,7 +57,7 @@ async function check({ name, start, backend }) {
   const mismatches = [];
   for (const batch of batches) {
     const found = await page.evaluate(([batch, backend]) => globalThis.iterate(batch, backend), [batch, backend]);
-    const expected = { labelled: 0, angle: 0, fold: 0 };
+    const expected = { labelled: 0, angle: 0, fold: 0, deviation: 0 };
     let first = 0;
     for (const { kind, ...tally } of batch.tallies) {
       const wrong = found.wrong.filter((quad) => quad >= first && quad < first + tally.quads);
@@ -69,7 +69,7 @@ async function check({ name, start, backend }) {
       for (const sums of [rows.get(row), all]) add(sums, { ...tally, mismatches: wrong.length });
       for (const verdict of Object.keys(expected)) expected[verdict] += tally[verdict];
     }
-    const counted = { labelled: found.labelled, angle: 0, fold: 0, ...found.blocked };
+    const counted = { labelled: found.labelled, angle: 0, fold: 0, deviation: 0, ...found.blocked };
     if (!isDeepStrictEqual(counted, expected)) {
       mismatches.push(`batch ${batch.index}: ${JSON.stringify(counted)}, not ${JSON.stringify(expected)}`);
     }
@@ -78,8 +78,8 @@ async function check({ name, start, backend }) {
   const line = (row, sums, last) => `| ${[name, row, ...columns.map((column) => sums[column]), last].join(' | ')} |`;
   console.log([
     '',
-    '| engine | mesh | kind | quads | exact ties | labelled | angle | fold | mismatches | seconds |',
-    '|---|---|---|---:|---:|---:|---:|---:|---:|---:|',
+    '| engine | mesh | kind | quads | exact ties | labelled | angle | fold | deviation | mismatches | seconds |',
+    '|---|---|---|---:|---:|---:|---:|---:|---:|---:|---:|',
     ...[...rows].map(([row, sums]) => line(row, sums, '')).sort(),
     line('all | all', all, seconds),
   ].join('\n'));

@@ -1,5 +1,6 @@
 //! Kinds of quads: four points each, from everyday ones to those that only exact arithmetic can decide.
 
+use crate::batch::DEVIATION;
 use edgeflip::Dimension;
 use oorandom::Rand64;
 
@@ -19,7 +20,7 @@ pub struct Kind {
     make: fn(&mut Source) -> Floats,
 }
 
-const KINDS: [Kind; 17] = [
+const KINDS: [Kind; 18] = [
     Kind::in_span("uniform", |s| s.scattered(Numbers::Uniform)),
     Kind::in_span("lattice", Source::lattice),
     Kind::in_span("lattice of 0.1", Source::tenths),
@@ -41,6 +42,7 @@ const KINDS: [Kind; 17] = [
     }),
     Kind::in_span("one ulp off", Source::one_ulp_off),
     Kind { only_space: true, ..Kind::in_span("near β", Source::near_beta) },
+    Kind { only_space: true, ..Kind::in_span("steps", Source::steps) },
     Kind::beyond("all exponents", |s| s.scattered(Numbers::All)),
     Kind::beyond("trapezoids of all exponents", |s| s.trapezoid(Numbers::All)),
     Kind::beyond("degenerate of all exponents", |s| s.degenerate(Numbers::All)),
@@ -372,11 +374,23 @@ impl Source {
         self.at_hinge([[0.0; 3], [length, 0.0, 0.0], [along1, away1, 0.0], q])
     }
 
+    /// Diagonals in parallel planes that are as far apart as they may be, or nearly.
+    fn steps(&mut self) -> Floats {
+        let height = self.pick([DEVIATION, DEVIATION, DEVIATION.next_up(), DEVIATION.next_down(), 0.0]);
+        let bits = self.integer(2, 16);
+        let length = self.integer(2, 1 << bits);
+        let [along1, along2] = [(); 2].map(|()| self.integer(-length / 2, length / 2) as f32);
+        let [away1, away2] = [(); 2].map(|()| self.integer(0, length) as f32);
+        let end = length as f32;
+        [[-end, 0.0, 0.0], [end, 0.0, 0.0], [along1, away1, height], [along2, -away2, height]]
+    }
+
     fn one_ulp_off(&mut self) -> Floats {
         let mut quad = match self.integer(0, 3) {
             0 => self.lattice(),
             1 => self.tenths(),
-            2 if self.dimension == Dimension::Three => self.near_beta(),
+            2 if self.dimension == Dimension::Three && self.chance(2) => self.near_beta(),
+            2 if self.dimension == Dimension::Three => self.steps(),
             _ => self.cocircular(),
         };
         self.nudge(&mut quad, LOWEST);

@@ -30,16 +30,15 @@ impl Report {
     /// A row for each form of meshes and kind, and their sum.
     pub fn table(&self, engine: &str, seconds: f64) -> String {
         let row = |form: &str, kind: &str, (tally, mismatches): &(Tally, usize), seconds: &str| {
-            let Tally { quads, ties, labelled, angle, fold } = tally;
+            let Tally { quads, ties, labelled, angle, fold, deviation } = tally;
             let of = format!("| {engine} | {form} | {kind} | {quads} | {ties} |");
-            format!("{of} {labelled} | {angle} | {fold} | {mismatches} | {seconds} |\n")
+            format!("{of} {labelled} | {angle} | {fold} | {deviation} | {mismatches} | {seconds} |\n")
         };
-        let head =
-            "| engine | mesh | kind | quads | exact ties | labelled | angle | fold | mismatches | seconds |";
+        let head = "| engine | mesh | kind | quads | exact ties | labelled | angle | fold | deviation | mismatches | seconds |";
         let rows: String =
             self.rows.iter().map(|((form, _, kind), sums)| row(form, kind, sums, "")).collect();
         let all = row("all", "all", &sum(self.rows.values()), &format!("{seconds:.1}"));
-        format!("\n{head}\n|---|---|---|---:|---:|---:|---:|---:|---:|---:|\n{rows}{all}")
+        format!("\n{head}\n|---|---|---|---:|---:|---:|---:|---:|---:|---:|---:|\n{rows}{all}")
     }
 }
 
@@ -51,6 +50,7 @@ fn sum<'a>(rows: impl Iterator<Item = &'a (Tally, usize)>) -> (Tally, usize) {
             labelled: sum.labelled + tally.labelled,
             angle: sum.angle + tally.angle,
             fold: sum.fold + tally.fold,
+            deviation: sum.deviation + tally.deviation,
         };
         (tally, wrong + more)
     })

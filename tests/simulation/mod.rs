@@ -9,7 +9,7 @@ pub use digest::{Digest, Expected, digests_path, expected};
 pub use predicates::{Predicates, Verdict};
 
 use edgeflip::quality::RemainingEdge;
-use edgeflip::{Dimension, Mesh, Reason, Reasons};
+use edgeflip::{Dimension, Mesh, Options, Reason, Reasons};
 use num_bigint::{BigInt, Sign};
 use std::collections::{BTreeMap, HashMap, HashSet};
 
@@ -24,7 +24,7 @@ pub struct IterationRecord {
     /// Edges flipped.
     pub flips: u32,
     /// Non-Delaunay edges between two consistent triangles that may not flip, before it: `angle`, `fold`,
-    /// `duplicate` and `locked` only.
+    /// `duplicate`, `locked` and `deviation` only.
     pub blocked: Reasons,
     /// Of the input's triangles and those after every iteration up to this one.
     pub digest: Digest,
@@ -174,9 +174,9 @@ struct Rules {
 }
 
 impl Rules {
-    fn new(mesh: &Mesh, beta_deg: f64, locked: &[[u32; 2]]) -> Self {
+    fn new(mesh: &Mesh, options: &Options) -> Self {
         let triangles = mesh.triangles();
-        let predicates = Predicates::new(mesh, beta_deg);
+        let predicates = Predicates::new(mesh, options.max_normal_angle, options.max_deviation);
         let clockwise = clockwise(mesh, &predicates);
         let creases = edges(triangles)
             .into_iter()
@@ -186,7 +186,7 @@ impl Rules {
             })
             .map(|(ends, _)| ends)
             .collect();
-        let locked = locked.iter().map(|&[u, v]| pair(u, v)).collect();
+        let locked = options.locked_edges.iter().map(|&[u, v]| pair(u, v)).collect();
         Self { predicates, clockwise, creases, locked, verdicts: HashMap::new() }
     }
 
@@ -266,25 +266,22 @@ fn select(labels: &Labels, iteration: u32) -> Vec<(u32, u32)> {
 
 /// Runs the rules on `mesh` with the threshold β to their end, or for `max_iterations`.
 pub fn simulate(mesh: &Mesh, beta_deg: f64, max_iterations: Option<u32>) -> Simulation {
-    simulate_locked(mesh, beta_deg, &[], max_iterations)
+    let options = Options { max_normal_angle: beta_deg, max_iterations, ..Options::default() };
+    simulate_with(mesh, &options)
 }
 
-/// The same with locked edges.
-pub fn simulate_locked(
-    mesh: &Mesh,
-    beta_deg: f64,
-    locked: &[[u32; 2]],
-    max_iterations: Option<u32>,
-) -> Simulation {
+/// The same with all that matters to the flips of what can be chosen, but for triangles and groups.
+pub fn simulate_with(mesh: &Mesh, options: &Options) -> Simulation {
     let mut triangles = mesh.triangles().to_vec();
-    let mut rules = Rules::new(mesh, beta_deg, locked);
+    let mut rules = Rules::new(mesh, options);
     let mut digest = Digest::default();
     digest.feed(&triangles);
     let mut iterations = Vec::new();
     for iteration in 0.. {
         assert!(iteration < ENDLESS, "the simulation does not end");
         let labels = rules.label(&triangles);
-        let flips = if max_iterations == Some(iteration) { Vec::new() } else { select(&labels, iteration) };
+        let flips =
+            if options.max_iterations == Some(iteration) { Vec::new() } else { select(&labels, iteration) };
         if flips.is_empty() {
             let remaining = labels.remaining(&triangles).iter().map(|edge| edge.reason).collect();
             return Simulation { iterations, triangles, remaining, digest };
@@ -306,11 +303,6 @@ pub fn simulate_locked(
 }
 
 /// The non-Delaunay edges of `triangles`, a state that flips of `mesh` led to, in ascending order of their ends.
-pub fn remaining_edges(
-    mesh: &Mesh,
-    triangles: &[u32],
-    beta_deg: f64,
-    locked: &[[u32; 2]],
-) -> Vec<RemainingEdge> {
-    Rules::new(mesh, beta_deg, locked).label(triangles).remaining(triangles)
+pub fn remaining_edges(mesh: &Mesh, triangles: &[u32], options: &Options) -> Vec<RemainingEdge> {
+    Rules::new(mesh, options).label(triangles).remaining(triangles)
 }

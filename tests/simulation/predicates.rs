@@ -1,6 +1,6 @@
 //! The exact tests of the simulation: integers of any size, no filter, no bound to prove.
 
-use edgeflip::{Dimension, Mesh, Reason};
+use edgeflip::{Dimension, Mesh, Reason, cos_degrees};
 use num_bigint::BigInt;
 use std::cmp::Ordering;
 
@@ -15,6 +15,8 @@ pub struct Predicates {
     points: Vec<Vector>,
     /// cos β = mantissa / 2^shift.
     cosine: (BigInt, u32),
+    /// How far apart the lines of two diagonals may be, in the units of the points.
+    deviation: Option<BigInt>,
 }
 
 /// |x| = mantissa · 2^(exponent - 1074).
@@ -47,9 +49,15 @@ fn root_sum_sign(x: &BigInt, m: &BigInt, y: &BigInt, n: &BigInt) -> Ordering {
 }
 
 impl Predicates {
-    pub fn new(mesh: &Mesh, beta_deg: f64) -> Self {
+    pub fn new(mesh: &Mesh, beta_deg: f64, deviation: f64) -> Self {
         let positions: Vec<f64> = mesh.positions().iter().collect();
-        let nonzero = positions.iter().filter(|&&x| x != 0.0);
+        // The largest 32-bit float that is no larger.
+        let mut most = deviation as f32;
+        while f64::from(most) > deviation {
+            most = most.next_down();
+        }
+        let most = most.is_finite().then_some(f64::from(most));
+        let nonzero = positions.iter().chain(&most).filter(|&&x| x != 0.0);
         let least =
             nonzero.map(|&x| decode(x).1 + u64::from(decode(x).0.trailing_zeros())).min().unwrap_or(0);
         let integer = |x: f64| {
@@ -61,21 +69,14 @@ impl Predicates {
         let point = |p: &[f64]| [0, 1, 2].map(|i| p.get(i).map_or(BigInt::ZERO, |&x| integer(x)));
         let points = positions.chunks(stride).map(point).collect();
 
-        let cosine = match beta_deg {
-            0.0 => 1.0,
-            60.0 => 0.5,
-            90.0 => 0.0,
-            120.0 => -0.5,
-            180.0 => -1.0,
-            _ => libm::cos(beta_deg * (std::f64::consts::PI / 180.0)),
-        };
+        let cosine = cos_degrees(beta_deg);
         // Times 2^200 the cosine is an integer: it is 0 or at least 2^-60 in size, of 53 bits.
         let bits = cosine.to_bits();
         let exponent = (bits >> 52 & 0x7ff) as u32;
         let mantissa = BigInt::from(bits & ((1 << 52) - 1) | 1 << 52);
         let mantissa = if cosine == 0.0 { BigInt::ZERO } else { mantissa << (exponent + 200 - 1075) };
         let cosine = (if cosine < 0.0 { -mantissa } else { mantissa }, 200);
-        Self { dimension: mesh.dimension(), points, cosine }
+        Self { dimension: mesh.dimension(), points, cosine, deviation: most.map(integer) }
     }
 
     fn normal(&self, corners: [u32; 3]) -> Vector {
@@ -122,6 +123,15 @@ impl Predicates {
             && self.angle_sign(&self.normal([a, b, c]), &self.normal([b, a, d])).is_lt()
     }
 
+    /// How far the lines a b and c d are apart, against what they may be.
+    fn compare_distance(&self, quad: [u32; 4]) -> Ordering {
+        let Some(most) = &self.deviation else { return Ordering::Less };
+        let [a, b, c, d] = quad.map(|v| &self.points[v as usize]);
+        let across = cross(&minus(a, b), &minus(c, d));
+        let volume = dot(&across, &minus(a, c));
+        (&volume * &volume).cmp(&(most * most * dot(&across, &across)))
+    }
+
     /// What the four points alone tell of an edge.
     pub fn verdict(&self, quad: [u32; 4], clockwise: bool) -> Verdict {
         self.decide(quad, clockwise).0
@@ -158,7 +168,9 @@ impl Predicates {
                 if turns.iter().any(|turn| turn.is_lt()) {
                     return (Some(Err(Reason::Fold)), angles.contains(&Ordering::Equal));
                 }
-                (Some(Ok(())), angles.iter().chain(&turns).any(|sign| sign.is_eq()))
+                let apart = self.compare_distance([a, b, c, d]);
+                let is_tie = angles.iter().chain(&turns).any(|sign| sign.is_eq());
+                (Some(if apart.is_gt() { Err(Reason::Deviation) } else { Ok(()) }), is_tie || apart.is_eq())
             }
         }
     }

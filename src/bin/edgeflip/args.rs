@@ -76,6 +76,13 @@ pub struct Args {
     #[arg(long, value_name = "DEG", default_value_t = 10.0, value_parser = degrees, allow_negative_numbers = true)]
     pub max_normal_angle: f64,
 
+    /// Largest distance between the old and the new diagonal of a flip, in the units of IN
+    ///
+    /// Only for surfaces in space: what one flip may move the surface by. It is rounded down to a 32-bit float. Edges
+    /// left for this reason are counted as `deviation`.
+    #[arg(long, value_name = "D", default_value_t = f64::INFINITY, value_parser = distance, allow_negative_numbers = true)]
+    pub max_deviation: f64,
+
     /// Edges that never flip: a text file with the two vertices of an edge in each line
     ///
     /// Vertices are counted from 0, in the order of IN, also where IN is an OBJ file; # begins a comment. Each
@@ -149,6 +156,7 @@ impl Args {
                 BackendArg::Gpu => Backend::Gpu,
             },
             max_normal_angle: self.max_normal_angle,
+            max_deviation: self.max_deviation,
             max_iterations: self.max_iterations,
             threads: self.threads,
             order: match self.order {
@@ -194,6 +202,15 @@ pub enum OrderArg {
     Reproducible,
     /// Lawson's sequential algorithm on the CPU: often faster on one thread, no iterations to count
     Any,
+}
+
+/// A distance from 0 on.
+fn distance(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(distance) if distance >= 0.0 => Ok(distance),
+        Ok(_) => Err("must be 0 or more".into()),
+        Err(_) => Err("must be a number".into()),
+    }
 }
 
 /// An angle from 0 to 180 degrees.

@@ -129,8 +129,7 @@ fn run(args: &Args, bar: &ProgressBar) -> Result<Report, Failure> {
 
 /// What the independent check finds: another count of the edges left is a violation too.
 fn check(options: &Options, mesh: &Mesh, outcome: &Outcome) -> Check {
-    let Options { max_normal_angle, locked_edges, .. } = options;
-    let audit = quality::audit(mesh, &outcome.triangles, *max_normal_angle, locked_edges);
+    let audit = quality::audit(mesh, &outcome.triangles, options);
     let mut violations: Vec<String> = audit.violations.iter().map(ToString::to_string).collect();
     if audit.remaining != outcome.remaining {
         let [said, counted] = [&outcome.remaining, &audit.remaining].map(report::reasons);

@@ -14,7 +14,7 @@ use super::upload::{Form, Upload};
 use super::{Answer, Census, EdgeCounts, Engine, self_test};
 use crate::locks;
 use crate::mesh::{Dimension, Mesh};
-use crate::phases::BLOCKED;
+use crate::phases::{BLOCKED, Thresholds};
 use crate::star::Fans;
 use crate::threads::Threads;
 use crate::winding::Winding;
@@ -33,7 +33,7 @@ const BLOCK: u32 = 8;
 /// are none.
 const SMALL_HEIGHT: usize = 256;
 /// Words of the parameters.
-const PARAMS: usize = 24;
+const PARAMS: usize = 28;
 
 // Places of the textures, as in `textures.wgsl`.
 const POSITIONS: u32 = 0;
@@ -48,7 +48,7 @@ const COUNTS: u32 = 7;
 /// A mesh in textures.
 pub(crate) struct WebGl {
     context: Rc<Context>,
-    cos: f64,
+    thresholds: Thresholds,
     form: Form,
     count: usize,
     counts: EdgeCounts,
@@ -74,27 +74,32 @@ impl WebGl {
     /// # Errors
     /// [`Error::BackendUnavailable`] without a context, with a software one that is not taken, and with one that gets the
     /// test wrong; those of [`WebGl::new`].
-    pub(crate) async fn open(mesh: Arc<Mesh>, cos: f64, takes_software: bool) -> Result<Self, Error> {
+    pub(crate) async fn open(
+        mesh: Arc<Mesh>,
+        thresholds: Thresholds,
+        takes_software: bool,
+    ) -> Result<Self, Error> {
         let context = Context::shared(takes_software).await?;
-        let upload = Upload::new("webgl2", mesh)?;
-        let make = |upload: Upload, cos| -> Answer<'static, Box<dyn Engine>> {
+        let upload = Upload::new("webgl2", mesh, thresholds)?;
+        let make = |upload: Upload| -> Answer<'static, Box<dyn Engine>> {
             let context = context.clone();
-            Box::pin(async move { Ok(Box::new(Self::new(context, upload, cos).await?) as Box<dyn Engine>) })
+            Box::pin(async move { Ok(Box::new(Self::new(context, upload).await?) as Box<dyn Engine>) })
         };
         self_test(&context.tested, "webgl2", upload.form(), &make).await?;
-        Self::new(context, upload, cos).await
+        Self::new(context, upload).await
     }
 
-    /// Builds the adjacency and uploads the mesh; `cos` is the cosine of β.
+    /// Builds the adjacency and uploads the mesh.
     ///
     /// # Errors
     /// [`Error::BackendLimit`] for a mesh that is too large for the context; [`Error::BackendUnavailable`] if its
     /// compiler refuses the programs; [`Error::Device`].
-    async fn new(context: Rc<Context>, upload: Upload, cos: f64) -> Result<Self, Error> {
+    async fn new(context: Rc<Context>, upload: Upload) -> Result<Self, Error> {
         let mesh = &upload.mesh;
         let form = upload.form();
         let common = &["label", "select", "flip", "update", "anchor", "census", "flips", "sum"];
-        context.compile(&[deciders(form), common].concat()).await?;
+        let more: &[_] = if form.has_deviation { &["more"] } else { &[] };
+        context.compile(&[deciders(form), common, more].concat()).await?;
 
         let adjacency = Adjacency::new(mesh);
         let winding = Winding::new(mesh, &adjacency.twins, &Threads::default());
@@ -114,11 +119,11 @@ impl WebGl {
             sums.push(Texture::new(&context, side, 4)?);
         }
         let mut result = Self {
-            cos,
+            thresholds: upload.thresholds,
             form,
             count,
             counts: EdgeCounts::from(&adjacency),
-            params: params(mesh, bits, fans.table.len(), &Cosine::new(cos)),
+            params: params(&upload, bits, fans.table.len()),
             positions: Texture::new(&context, size(upload.words().len() / form.dimension.stride())?, 4)?,
             triangles: pair(whole, 4)?,
             twins: pair(whole, 4)?,
@@ -251,8 +256,9 @@ impl WebGl {
     /// What [`Census::of_counts`] takes.
     pub(crate) async fn census_counts(&mut self) -> Result<Vec<u32>, Error> {
         self.judge()?;
-        // A texel has four counts, and the locks are the fifth.
-        let programs = &["census", "locked"][..1 + usize::from(self.has_locks)];
+        // A texel has four counts.
+        let has_more = self.has_locks || self.form.has_deviation;
+        let programs = &["census", "more"][..1 + usize::from(has_more)];
         for (column, program) in (0..).zip(programs) {
             let more = [(VERDICTS, &self.verdicts.front), (FANS, &self.fans.front)];
             // Nothing is there between two iterations.
@@ -265,7 +271,7 @@ impl WebGl {
     }
 
     async fn flag_locked(&mut self, half_edges: Vec<u32>) -> Result<(), Error> {
-        self.context.compile(&["locked"]).await?;
+        self.context.compile(&["more"]).await?;
         let mut twins = self.read_threes(&self.twins.front).await?;
         locks::flag(&mut twins, &half_edges);
         self.has_locks = true;
@@ -279,8 +285,8 @@ impl WebGl {
     }
 
     async fn move_vertices(&mut self, mesh: Arc<Mesh>) -> Result<(), Error> {
-        let upload = Upload::new(self.backend(), mesh)?;
-        let mut moved = Self::new(self.context.clone(), upload, self.cos).await?;
+        let upload = Upload::new(self.backend(), mesh, self.thresholds)?;
+        let mut moved = Self::new(self.context.clone(), upload).await?;
         if self.has_locks {
             let twins = self.read_threes(&self.twins.front).await?;
             moved.flag_locked(locks::flagged(&twins)).await?;
@@ -296,7 +302,11 @@ fn deciders(form: Form) -> &'static [&'static str] {
     match (form.dimension, form.is_fixed) {
         (Dimension::Two, false) => &["verdict2"],
         (Dimension::Two, true) => &["verdict2_fixed"],
+        (Dimension::Three, false) if form.has_deviation => &["verdict3_deviation", "crease", "flag"],
         (Dimension::Three, false) => &["verdict3", "crease", "flag"],
+        (Dimension::Three, true) if form.has_deviation => {
+            &["verdict3_fixed_deviation", "crease_fixed", "flag"]
+        }
         (Dimension::Three, true) => &["verdict3_fixed", "crease_fixed", "flag"],
     }
 }
@@ -335,7 +345,8 @@ fn refuse_large_star(context: &Context, mesh: &Mesh) -> Result<(), Error> {
 }
 
 /// As in `textures.wgsl`.
-fn params(mesh: &Mesh, bits: u32, fans: usize, cosine: &Cosine) -> [u32; PARAMS] {
+fn params(upload: &Upload, bits: u32, fans: usize) -> [u32; PARAMS] {
+    let (mesh, cosine) = (&upload.mesh, Cosine::new(upload.thresholds.cos));
     let mut params = [0; PARAMS];
     params[0] = mesh.triangle_count() as u32;
     params[1] = mesh.vertex_count() as u32;
@@ -347,6 +358,7 @@ fn params(mesh: &Mesh, bits: u32, fans: usize, cosine: &Cosine) -> [u32; PARAMS]
     for (word, digit) in params[8..].iter_mut().zip(cosine.mantissa.into_iter().chain(cosine.power)) {
         *word = digit as u32;
     }
+    params[24..].copy_from_slice(&upload.deviation);
     params
 }
 

@@ -21,7 +21,12 @@ pub(super) fn phases_sources(form: Form) -> [String; 2] {
         Dimension::Two => (shaders!("plane"), "", shaders!("embedded")),
         Dimension::Three => (shaders!("space" "narrow"), shaders!("creases" "flag_creases"), ""),
     };
-    let numbers = [shaders!("mesh" "exact" "state" "points"), points, geometry].concat();
+    let deviation = match (form.dimension, form.has_deviation) {
+        (Dimension::Two, _) => "",
+        (_, false) => shaders!("any_deviation"),
+        (_, true) => shaders!("deviation"),
+    };
+    let numbers = [shaders!("mesh" "exact" "state" "points"), points, geometry, deviation].concat();
     let phases = shaders!("verdict" "star" "guard" "verdicts" "label" "select" "active" "doubts");
     [
         [&numbers, shaders!("reads"), phases, creases, shaders!("sweeps")].concat(),

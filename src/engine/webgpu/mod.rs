@@ -34,6 +34,7 @@ use crate::Error;
 #[cfg(test)]
 use crate::adjacency::unflagged;
 use crate::mesh::Mesh;
+use crate::phases::Thresholds;
 use buffers::Buffers;
 use kernels::Kernels;
 use params::Params;
@@ -49,7 +50,7 @@ const SHORT_TAIL: u32 = 4;
 const STEP_WORDS: u32 = 64;
 
 // Words of the history, as in `state.wgsl`.
-const ENTRIES: usize = 5;
+const ENTRIES: usize = 6;
 const ENTRY_WORDS: usize = 4;
 const HISTORY_WORDS: usize = ENTRIES + ENTRY_WORDS * (1 + BATCH as usize + TAIL as usize);
 
@@ -60,7 +61,7 @@ type Entry = [u32; ENTRY_WORDS];
 pub(crate) struct WebGpu {
     gpu: Handle,
     kernels: Arc<Kernels>,
-    cos: f64,
+    thresholds: Thresholds,
     form: Form,
     params: Params,
     counts: EdgeCounts,

@@ -1,6 +1,7 @@
 //! The parameters that every kernel of the phases reads.
 
 use crate::engine::cosine::Cosine;
+use crate::engine::upload::Upload;
 use crate::mesh::{Dimension, Mesh};
 
 /// Iterations of the tail run on lists of up to so many triangles.
@@ -49,12 +50,13 @@ pub(super) struct Params {
     pub(super) is_strict: u32,
     pub(super) cos_mantissa: [i32; 8],
     pub(super) cos_power: [i32; 8],
+    pub(super) deviation: [u32; 4],
 }
 
 impl Params {
-    /// Before the first iteration, with no winding bits and no vertex of several fans. `cos` is the cosine of β.
-    pub(super) fn new(mesh: &Mesh, cos: f64, topology: &Places, ends_loops_early: bool) -> Self {
-        let cosine = Cosine::new(cos);
+    /// Before the first iteration, with no winding bits and no vertex of several fans.
+    pub(super) fn new(upload: &Upload, topology: &Places, ends_loops_early: bool) -> Self {
+        let (mesh, cosine) = (&upload.mesh, Cosine::new(upload.thresholds.cos));
         let count = mesh.triangle_count();
         Self {
             vertices: mesh.vertex_count() as u32,
@@ -76,6 +78,7 @@ impl Params {
             is_strict: 0,
             cos_mantissa: cosine.mantissa,
             cos_power: cosine.power,
+            deviation: upload.deviation,
         }
     }
 }

@@ -23,11 +23,11 @@ const NEGATIVE: u32 = 1;
 const POSITIVE: u32 = 4;
 
 impl WebGpu {
-    /// Uploads the mesh and builds its adjacency; `cos` is the cosine of β.
+    /// Uploads the mesh and builds its adjacency.
     ///
     /// # Errors
     /// [`Error::BackendLimit`] for a mesh that is too large for the device; [`Error::Device`].
-    pub(crate) async fn new(gpu: Handle, upload: Upload, cos: f64) -> Result<Self, Error> {
+    pub(crate) async fn new(gpu: Handle, upload: Upload) -> Result<Self, Error> {
         refuse_large_mesh(&gpu, &upload)?;
         let mesh = &upload.mesh;
         let kernels = gpu.phases(upload.form()).await?;
@@ -39,9 +39,9 @@ impl WebGpu {
         let start = Instant::now();
         let mut result = Self {
             kernels,
-            cos,
+            thresholds: upload.thresholds,
             form: upload.form(),
-            params: Params::new(mesh, cos, &Places::new(mesh), gpu.ends_loops_early),
+            params: Params::new(&upload, &Places::new(mesh), gpu.ends_loops_early),
             counts: EdgeCounts::default(),
             bindings,
             bytes: buffers.bytes() + scratch.bytes(),
@@ -157,14 +157,15 @@ impl WebGpu {
     }
 
     pub(super) async fn move_vertices(&mut self, mesh: Arc<Mesh>) -> Result<(), Error> {
-        let upload = Upload::new(self.backend(), mesh)?;
+        let upload = Upload::new(self.backend(), mesh, self.thresholds)?;
         if upload.form() == self.form {
             self.gpu.checked(|| self.buffers.write_positions(&self.gpu, &upload)).await?;
+            self.params.deviation = upload.deviation;
             self.dispatches = 0;
             let signs = self.prepare().await?;
             return self.begin(&upload.mesh, signs).await;
         }
-        let mut moved = Self::new(self.gpu.clone(), upload, self.cos).await?;
+        let mut moved = Self::new(self.gpu.clone(), upload).await?;
         let locked = locks::flagged(&self.twins().await?);
         if !locked.is_empty() {
             moved.flag_locked(locked).await?;

@@ -23,7 +23,8 @@ fn sources() -> Vec<String> {
 
 /// The phases on surfaces.
 fn space() -> naga::Module {
-    let [_, writes] = phases_sources(Form { dimension: Dimension::Three, is_fixed: false });
+    let [_, writes] =
+        phases_sources(Form { dimension: Dimension::Three, is_fixed: false, has_deviation: true });
     parse(&writes)
 }
 
@@ -75,6 +76,7 @@ fn constants_of_the_phases_agree() {
         ("REASON_FOLD", Reason::Fold as u64),
         ("REASON_DUPLICATE", Reason::Duplicate as u64),
         ("REASON_LOCKED", Reason::Locked as u64),
+        ("REASON_DEVIATION", Reason::Deviation as u64),
         // The host reads the census and an entry by place.
         ("CENSUS", 0),
         ("LABELLED", 1),
@@ -133,7 +135,8 @@ fn params_have_one_layout() {
         knows_winding,
         is_strict,
         cos_mantissa,
-        cos_power
+        cos_power,
+        deviation
     );
     let shader = members(&space(), "Params");
     let places: Vec<_> = shader.iter().map(|(name, offset, _)| (name.as_str(), *offset)).collect();

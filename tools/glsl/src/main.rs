@@ -30,7 +30,7 @@ const PLANE: [Program; 12] = [
     ("update", "update_pass"),
     ("anchor", "anchor_pass"),
     ("census", "census_pass"),
-    ("locked", "locked_pass"),
+    ("more", "more_pass"),
     ("flips", "flips_pass"),
     ("sum", "sum_pass"),
     ("probe", "probe_pass"),
@@ -42,6 +42,10 @@ const SPACE: [Program; 3] = [("verdict3", "verdict_pass"), ("crease", "crease_pa
 /// For coordinates as fixed-point numbers.
 const FIXED_PLANE: [Program; 1] = [("verdict2_fixed", "verdict_pass")];
 const FIXED_SPACE: [Program; 2] = [("verdict3_fixed", "verdict_pass"), ("crease_fixed", "crease_pass")];
+
+/// For surfaces where what a flip moves has a limit.
+const DEVIATION: [Program; 1] = [("verdict3_deviation", "verdict_pass")];
+const FIXED_DEVIATION: [Program; 1] = [("verdict3_fixed_deviation", "verdict_pass")];
 
 /// The program of an entry point, with the files that say what a point is and what the dimension is.
 fn glsl(entry_point: &str, points: &str, geometry: &str) -> Result<String, Box<dyn Error>> {
@@ -77,12 +81,16 @@ fn main() -> Result<(), Box<dyn Error>> {
     let path = std::env::args().nth(1).ok_or("usage: glsl FILE")?;
     let mut programs = BTreeMap::new();
     let (floats, fixed) = (shaders!("floats"), shaders!("fixed"));
-    let (plane, space) = (shaders!("plane"), shaders!("space" "wide" "creases" "crease_pass"));
+    let plane = shaders!("plane");
+    let space = shaders!("space" "wide" "any_deviation" "creases" "crease_pass");
+    let deviation = shaders!("space" "wide" "deviation" "creases" "crease_pass");
     for (points, geometry, list) in [
         (floats, plane, &PLANE[..]),
         (floats, space, &SPACE[..]),
         (fixed, plane, &FIXED_PLANE[..]),
         (fixed, space, &FIXED_SPACE[..]),
+        (floats, deviation, &DEVIATION[..]),
+        (fixed, deviation, &FIXED_DEVIATION[..]),
     ] {
         for &(name, entry_point) in list {
             programs.insert(name, glsl(entry_point, points, geometry)?);

@@ -1,0 +1,59 @@
+//! Surfaces on which flips may move little, also by exactly so much, or by as much as they like.
+
+use super::{Case, case, lifted, moved, signed, soup};
+use edgeflip::{Mesh, families::by_name};
+use oorandom::Rand64;
+
+pub fn all() -> Vec<Case> {
+    let mut cases = Vec::new();
+    let mut add = |name: &str, mesh: &Mesh, beta: f64, limits: &[f64]| {
+        for (place, &deviation) in limits.iter().enumerate() {
+            let name = format!("deviation-{name}-{place}");
+            cases.push(Case { deviation, ..case(&name, mesh.clone(), beta) });
+        }
+    };
+    let ends = [0.0, 1e-12, 1e30];
+    let sphere = by_name("uvsphere 14").unwrap();
+    add("sphere", &sphere, 180.0, &[&ends[..], &[0.003, 0.01, 0.03]].concat());
+    add("sphere-beta", &sphere, 20.0, &[0.003, 0.01]);
+    add("sphere-f64", &wide(&sphere, f64::EPSILON), 180.0, &[&ends[..], &[0.003, 0.01, 0.03]].concat());
+    add("pole", &by_name("pole 40").unwrap(), 180.0, &[0.0, 0.003, 0.01]);
+
+    // Diagonals at the heights 0 and 0.01, in parallel planes.
+    let height = 0.01f32;
+    let limits = [height.next_down(), height, height.next_up()].map(f64::from);
+    let steps = lattice(height);
+    add("steps", &steps, 180.0, &limits);
+    // In doubles, where no limit is as high as the steps.
+    add("steps-f64", &wide(&steps, 1e-9), 180.0, &limits);
+    for (name, scale) in [("large", 2f32.powi(100)), ("small", 2f32.powi(-100))] {
+        let steps = moved(&steps, |p| p.map(|x| x * scale));
+        add(&format!("steps-{name}"), &steps, 180.0, &limits.map(|limit| limit * f64::from(scale)));
+    }
+    // Every difference is rounded.
+    add("steps-far", &moved(&steps, |[x, y, z]| [x + 3000.0, y - 7000.0, z]), 180.0, &limits);
+
+    let mut random = Rand64::new(29);
+    let noisy = lifted(&by_name("random 16").unwrap(), |_, _| 0.02 * signed(&mut random));
+    add("noise", &noisy, 120.0, &[0.0, 0.005, 0.02]);
+    for seed in 0..4 {
+        let (_, bent) = soup(seed, 7, 8);
+        add(&format!("soup-{seed}"), &bent, 180.0, &[0.0, 1.0, 2.0]);
+    }
+    cases
+}
+
+/// A sheared lattice, every other vertex of which is raised.
+fn lattice(height: f32) -> Mesh {
+    let lattice = by_name("regular 12").unwrap();
+    // The lattice's spacing is 0.1.
+    let is_raised = |x: f32, y: f32| ((10.0 * x).round() + (10.0 * y).round()) % 2.0 != 0.0;
+    let steps = lifted(&lattice, |x, y| if is_raised(x, y) { height } else { 0.0 });
+    moved(&steps, |[x, y, z]| [x - 0.7 * y, y, z])
+}
+
+/// Scaled up by so little that no f32 shows it.
+fn wide(mesh: &Mesh, more: f64) -> Mesh {
+    let positions: Vec<f64> = mesh.positions().iter().map(|x| x * (1.0 + more)).collect();
+    Mesh::new(mesh.dimension(), positions, mesh.triangles().to_vec()).unwrap()
+}
