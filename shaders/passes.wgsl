@@ -129,8 +129,9 @@ fn more_pass(@builtin(position) fragment: vec4f) -> @location(0) vec4u {
     for (var h = 3u * t; h < end; h++) {
         let g = twin(h);
         if g != NONE && h < g {
-            let verdict = vec4u(textureLoad(verdicts, place(h), 0).x);
-            result += vec4u(verdict == BLOCKED_BY + vec4u(REASON_LOCKED, REASON_DEVIATION, NONE, NONE));
+            let verdict = textureLoad(verdicts, place(h), 0).x;
+            result.x += u32(verdict == BLOCKED_BY + REASON_LOCKED);
+            result.y += u32(verdict == BLOCKED_BY + REASON_DEVIATION);
         }
     }
     return result;

@@ -275,7 +275,7 @@ fn locked_edges_stay() {
 #[test]
 fn a_flip_moves_no_more_than_it_may() {
     let folder = Folder::new();
-    let input = folder.file("in.off", &SQUARE.replace("0 1 0", "0 1 0.1"));
+    let input = folder.file("in.off", SQUARE.replace("0 1 0", "0 1 0.1"));
     for (most, remaining) in [("0.041", json!({ "deviation": 1 })), ("0.0411", json!({}))] {
         let arguments = ["--max-deviation", most, "--max-normal-angle", "90", "--verify", "--json"];
         let ran = run(&input, &folder.path("out.off"), &arguments);

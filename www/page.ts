@@ -1,9 +1,11 @@
 /** The page between its controls and its engines: opens meshes, begins runs, draws and measures what they do. */
 
 import { EdgeflipError } from 'edgeflip';
-import { FORMATS, type Angles, type FileMesh, type IndexedMesh } from 'edgeflip/files';
+import { proxy } from 'comlink';
+import { FORMATS, type FileMesh, type IndexedMesh } from 'edgeflip/files';
 import { controls, element } from './controls.ts';
 import { LOST } from './crash.ts';
+import type { Quality, Report } from './desk.ts';
 import { beginRun, Cancelled, Office, openGpu, type Backend, type Gpu } from './engines.ts';
 import { palette } from './palette.ts';
 import { ENGINES, number, Panel, reasons } from './panel.ts';
@@ -29,7 +31,7 @@ interface Opened {
   files: File[];
   /** What reading the file did to it. */
   remark: string;
-  before: Angles;
+  before: Quality;
 }
 
 /** What a run was begun with. */
@@ -84,7 +86,8 @@ export class Page {
     const file = files.find(({ name }) => EXTENSION.test(name)) ?? files[0];
     if (!file) return;
     const others = files.filter((other) => other !== file);
-    await this.#open(file.name, (office) => office.ask((desk) => desk.read(file, others)), [file, ...others]);
+    const read = (office: Office, report: Report) => office.ask((desk) => desk.read(file, others, proxy(report)));
+    await this.#open(file.name, read, [file, ...others]);
   }
 
   /** Begins again with the same mesh, for another engine or β. */
@@ -168,7 +171,7 @@ export class Page {
 
   #open(
     name: string,
-    read: (office: Office) => Promise<IndexedMesh | FileMesh>,
+    read: (office: Office, report: Report) => Promise<IndexedMesh | FileMesh>,
     files: File[] = [],
   ): Promise<void> {
     this.#reopen = () => this.#open(name, read, files);
@@ -180,9 +183,12 @@ export class Page {
         office.close();
         if (this.#office === office) this.#office = new Office();
       });
-      const mesh = await read(office);
+      const mesh = await read(office, (share) => {
+        if (!signal.aborted) showProgress(share < 1 ? `Reading ${name}…` : `Parsing ${name}…`, share);
+      });
       if (mesh.indices.length === 0) throw new Error(`There are no triangles in ${name}.`);
-      const before = await office.ask((desk) => desk.angles(mesh, BINS));
+      const before = await office.ask((desk) => desk.measure(mesh, BINS));
+      if (!signal.aborted) showProgress('Preparing the mesh…');
       await this.#begin({ mesh, name, files, remark: remarkOn(mesh), before }, signal);
     });
   }
@@ -222,7 +228,7 @@ export class Page {
     overtaken?.abort(new Cancelled());
     job.signal.addEventListener('abort', () => this.#end(job));
     element('error').hidden = true;
-    element('busy-text').textContent = text;
+    showProgress(text);
     element('busy').hidden = false;
     this.#showTransport();
     try {
@@ -324,9 +330,14 @@ export class Page {
       this.#panel.showFacts(opened.mesh, run, this.#summary, this.#settings?.beta, fingerprint);
       this.#panel.showLegend(run.states, this.#summary);
       this.#showTransport();
-      const angles = await this.#office.ask((desk) => desk.angles({ ...opened.mesh, indices }, BINS));
+      const now = await this.#office.ask((desk) => desk.measure({ ...opened.mesh, indices }, BINS));
       if (isOutdated()) return;
-      this.#panel.showAngles(opened.before, angles);
+      this.#panel.showQuality(opened.before, now);
+      if (run.isOver) {
+        const change = await this.#office.ask((desk) => desk.compare(opened.mesh, indices));
+        if (isOutdated()) return;
+        this.#panel.showQuality(opened.before, now, change);
+      }
       element('announcement').textContent = `${statusOf(run)}. ${element('note').textContent}`;
       document.body.dataset['measured'] = `${run.at}`;
     } catch (error) {
@@ -388,6 +399,14 @@ export class Page {
     this.#panel.setPalette(colours);
     void this.redraw();
   }
+}
+
+/** What goes on, and how much of it is done, from 0 to 1, where that is known. */
+function showProgress(text: string, share = 1): void {
+  element('busy-text').textContent = text;
+  const bar = element<HTMLProgressElement>('progress');
+  if (share < 1) bar.value = share;
+  else bar.removeAttribute('value');
 }
 
 function statusOf({ at, isOver, iterations }: Run): string {

@@ -1,9 +1,10 @@
 /** The numbers beside the mesh: facts, legend, charts and the table of iterations. */
 
 import { EDGE_STATES, type Engine, type Iteration, type Reasons } from 'edgeflip';
-import type { Angles, IndexedMesh } from 'edgeflip/files';
+import type { IndexedMesh, Measures } from 'edgeflip/files';
 import { AnglesChart, FlipsChart } from './charts.ts';
 import { element } from './controls.ts';
+import type { Quality } from './desk.ts';
 import type { Palette } from './palette.ts';
 import { countStates, type Run, type Summary } from './run.ts';
 
@@ -12,6 +13,7 @@ const MOST_ROWS = 2000;
 
 export const number = new Intl.NumberFormat('en');
 const ms = new Intl.NumberFormat('en', { maximumFractionDigits: 1, minimumFractionDigits: 1 });
+const digits = new Intl.NumberFormat('en', { maximumSignificantDigits: 6 });
 const degrees = new Intl.NumberFormat('en', { maximumFractionDigits: 2, minimumFractionDigits: 2 });
 
 export const ENGINES: Record<Engine, string> = { webgpu: 'WebGPU', webgl2: 'WebGL2', cpu: 'CPU' };
@@ -52,7 +54,7 @@ export class Panel {
     this.#rows.replaceChildren();
     this.#flips.show([], 0);
     this.showLegend(undefined);
-    this.showAngles(undefined, undefined);
+    this.showQuality(undefined);
     element('facts').replaceChildren();
   }
 
@@ -121,12 +123,24 @@ export class Panel {
     });
   }
 
-  showAngles(before: Angles | undefined, now: Angles | undefined): void {
-    this.#angles.show(before, now);
+  /** Of the input and of the state shown; `change` is what lies between them, once it is known. */
+  showQuality(before: Quality | undefined, now?: Quality, change?: { moved: number; distance: number }): void {
+    this.#angles.show(before?.angles, now?.angles);
+    element('surface-section').hidden = !before;
     if (!before) return element('angles-facts').replaceChildren();
     const both = (key: 'min' | 'meanMin') =>
-      `${degrees.format(before[key])}° → ${now ? `${degrees.format(now[key])}°` : '…'}`;
+      `${degrees.format(before.angles[key])}° → ${now ? `${degrees.format(now.angles[key])}°` : '…'}`;
     facts('angles-facts', { Smallest: both('min'), 'Mean smallest': both('meanMin') });
+    const measured = (key: keyof Measures) =>
+      `${digits.format(before.measures[key])} → ${now ? digits.format(now.measures[key]) : '…'}`;
+    facts('surface-facts', {
+      'Mean aspect ratio': measured('meanAspect'),
+      Area: measured('area'),
+      ...(before.measures.volume === 0 ? {} : { Volume: measured('volume') }),
+      ...(before.measures.flat + (now?.measures.flat ?? 0) > 0 ? { 'Flat triangles': measured('flat') } : {}),
+      ...(change ? { 'Changed triangles': number.format(change.moved) } : {}),
+      ...(change && change.distance > 0 ? { 'Moved by up to': digits.format(change.distance) } : {}),
+    });
   }
 
   #addRow({ index, labelled, flips, blocked, ms: time }: Iteration): void {

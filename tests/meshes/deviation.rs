@@ -12,12 +12,11 @@ pub fn all() -> Vec<Case> {
             cases.push(Case { deviation, ..case(&name, mesh.clone(), beta) });
         }
     };
-    let ends = [0.0, 1e-12, 1e30];
     let sphere = by_name("uvsphere 14").unwrap();
-    add("sphere", &sphere, 180.0, &[&ends[..], &[0.003, 0.01, 0.03]].concat());
-    add("sphere-beta", &sphere, 20.0, &[0.003, 0.01]);
-    add("sphere-f64", &wide(&sphere, f64::EPSILON), 180.0, &[&ends[..], &[0.003, 0.01, 0.03]].concat());
-    add("pole", &by_name("pole 40").unwrap(), 180.0, &[0.0, 0.003, 0.01]);
+    add("sphere", &sphere, 180.0, &[0.0, 0.003, 0.03, 1e30]);
+    add("sphere-beta", &sphere, 20.0, &[0.01]);
+    add("sphere-f64", &wide(&sphere, f64::EPSILON), 180.0, &[1e-12, 0.003, 1e30]);
+    add("pole", &by_name("pole 40").unwrap(), 180.0, &[0.003]);
 
     // Diagonals at the heights 0 and 0.01, in parallel planes.
     let height = 0.01f32;
@@ -25,20 +24,25 @@ pub fn all() -> Vec<Case> {
     let steps = lattice(height);
     add("steps", &steps, 180.0, &limits);
     // In doubles, where no limit is as high as the steps.
-    add("steps-f64", &wide(&steps, 1e-9), 180.0, &limits);
+    add("steps-f64", &wide(&steps, 1e-9), 180.0, &limits[1..]);
     for (name, scale) in [("large", 2f32.powi(100)), ("small", 2f32.powi(-100))] {
         let steps = moved(&steps, |p| p.map(|x| x * scale));
-        add(&format!("steps-{name}"), &steps, 180.0, &limits.map(|limit| limit * f64::from(scale)));
+        add(
+            &format!("steps-{name}"),
+            &steps,
+            180.0,
+            &limits[..2].iter().map(|limit| limit * f64::from(scale)).collect::<Vec<_>>(),
+        );
     }
     // Every difference is rounded.
-    add("steps-far", &moved(&steps, |[x, y, z]| [x + 3000.0, y - 7000.0, z]), 180.0, &limits);
+    add("steps-far", &moved(&steps, |[x, y, z]| [x + 3000.0, y - 7000.0, z]), 180.0, &limits[..2]);
 
     let mut random = Rand64::new(29);
     let noisy = lifted(&by_name("random 16").unwrap(), |_, _| 0.02 * signed(&mut random));
-    add("noise", &noisy, 120.0, &[0.0, 0.005, 0.02]);
-    for seed in 0..4 {
+    add("noise", &noisy, 120.0, &[0.005, 0.02]);
+    for seed in 1..3 {
         let (_, bent) = soup(seed, 7, 8);
-        add(&format!("soup-{seed}"), &bent, 180.0, &[0.0, 1.0, 2.0]);
+        add(&format!("soup-{seed}"), &bent, 180.0, &[0.0, 1.0]);
     }
     cases
 }

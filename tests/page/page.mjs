@@ -9,7 +9,7 @@ import { join } from 'node:path';
 import { setTimeout as pause } from 'node:timers/promises';
 import { fileURLToPath } from 'node:url';
 import { FlipSession } from 'edgeflip';
-import { angles, generate, readMesh, writeMesh } from 'edgeflip/files';
+import { angles, change, generate, measures, readMesh, writeMesh } from 'edgeflip/files';
 import { closeAll, openPage, serve } from '../browsers.mjs';
 import { Picture } from './picture.mjs';
 
@@ -32,6 +32,8 @@ export async function meshFile(spec, name) {
 const number = new Intl.NumberFormat('en');
 const degrees = new Intl.NumberFormat('en', { maximumFractionDigits: 2, minimumFractionDigits: 2 });
 
+const digits = new Intl.NumberFormat('en', { maximumSignificantDigits: 6 });
+
 /** What the page calls a fingerprint. */
 export function fingerprintOf(indices) {
   return createHash('sha256').update(indices).digest('hex').slice(0, 16);
@@ -52,7 +54,10 @@ export async function expected(path) {
   session.free();
   const left = Object.entries(result.remaining).map(([reason, count]) => [reason, number.format(count)]);
   const sum = Object.values(result.remaining).reduce((total, count) => total + count, 0);
-  const [before, after] = [await angles(mesh), await angles({ ...mesh, indices: result.indices })];
+  const end = { ...mesh, indices: result.indices };
+  const [before, after] = [await angles(mesh), await angles(end)];
+  const [input, output] = [await measures(mesh), await measures(end)];
+  const { moved } = await change(mesh, result.indices);
   return {
     mesh,
     indices: result.indices,
@@ -68,6 +73,9 @@ export async function expected(path) {
       Fingerprint: fingerprintOf(result.indices),
       Smallest: `${degrees.format(before.min)}° → ${degrees.format(after.min)}°`,
       'Mean smallest': `${degrees.format(before.meanMin)}° → ${degrees.format(after.meanMin)}°`,
+      'Mean aspect ratio': `${digits.format(input.meanAspect)} → ${digits.format(output.meanAspect)}`,
+      Area: `${digits.format(input.area)} → ${digits.format(output.area)}`,
+      'Changed triangles': number.format(moved.length),
     },
   };
 }

@@ -63,7 +63,7 @@ pub fn batch(index: usize, quads: usize, beyond: bool) -> Batch {
     let beta = BETAS[index / 2 % BETAS.len()];
     let is_wide = is_wide(index);
     // Half of those in which a large angle is no obstacle. No limit is as large or small as scaled doubles.
-    let is_limited = dimension == Dimension::Three && beta >= 120.0 && index / 12 % 2 == 0;
+    let is_limited = dimension == Dimension::Three && beta >= 120.0 && (index / 12).is_multiple_of(2);
     let scale = if is_limited && is_wide { 0 } else { SCALES[index % SCALES.len()] };
     let deviation = if is_limited { f64::from(DEVIATION) * 2f64.powi(scale) } else { f64::INFINITY };
     let each = quads.div_ceil(Kind::all(dimension, beyond).count());
