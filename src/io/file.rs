@@ -1,6 +1,6 @@
 //! Mesh files on disk: a whole file is read at once, and a target is replaced at once or not at all.
 
-use super::{Format, Loaded, ReadOptions, mesh_writer, parse_edges, parse_with};
+use super::{Format, Loaded, ReadOptions, mesh_writer, parse_edges, parse_numbers, parse_with};
 use crate::{Error, Mesh};
 use std::fs;
 use std::io::{self, BufWriter, Read, Write};
@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 /// # Errors
 /// [`Error::UnknownFormat`], [`Error::Io`], and those of [`parse`](super::parse).
 pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Mesh, Error> {
-    load(path, options).map(|loaded| loaded.mesh)
+    load(path, &ReadOptions { keep: false, ..*options }).map(|loaded| loaded.mesh)
 }
 
 /// As [`read`], and says what was done to the file's content.
@@ -29,7 +29,7 @@ pub fn load(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Loaded, Err
     // A pipe has the length 0, and a file may grow.
     let mut limited = file.take(options.max_bytes.saturating_add(1));
     limited.read_to_end(&mut bytes).map_err(|source| at(path, source))?;
-    parse_with(format, &bytes, options, &|name| {
+    parse_with(format, bytes, options, &|name| {
         if !options.external_files {
             return Err("other files are read only if that is allowed (--external-files)".into());
         }
@@ -49,6 +49,16 @@ pub fn read_edges(path: impl AsRef<Path>) -> Result<Vec<[u32; 2]>, Error> {
     let path = path.as_ref();
     let bytes = fs::read(path).map_err(|source| at(path, source))?;
     parse_edges(&bytes)
+}
+
+/// The same for a list of numbers. See [`parse_numbers`].
+///
+/// # Errors
+/// [`Error::Io`], and those of [`parse_numbers`].
+pub fn read_numbers(path: impl AsRef<Path>) -> Result<Vec<u32>, Error> {
+    let path = path.as_ref();
+    let bytes = fs::read(path).map_err(|source| at(path, source))?;
+    parse_numbers(&bytes)
 }
 
 /// Writes `mesh` to a file; the extension names its format, and if `.gz` follows it is gzip'd. The file appears, or

@@ -10,25 +10,27 @@
 //! the same order, and an error that names the line or the byte. `ply-rs-bw` and `stl_io` are what the tests compare
 //! with. What is packed is left to `flate2`, and the JSON of glTF to `gltf`.
 
-mod edges;
 #[cfg(not(target_arch = "wasm32"))]
 mod file;
 mod gltf;
 mod gzip;
+mod lists;
 mod obj;
 mod off;
+mod original;
 mod ply;
 mod stl;
 #[cfg(test)]
 mod tests;
 mod text;
 
-pub use edges::parse_edges;
 #[cfg(not(target_arch = "wasm32"))]
-pub use file::{load, read, read_edges, rewrite, write};
+pub use file::{load, read, read_edges, read_numbers, rewrite, write};
 pub use gltf::ReadFile;
+pub use lists::{parse_edges, parse_numbers};
 
-use crate::{Dimension, Error, Mesh, Positions};
+use crate::{Dimension, Error, Mesh, Options, Positions};
+use original::Original;
 use std::borrow::Cow;
 use std::io::{self, Write};
 use std::path::Path;
@@ -94,6 +96,9 @@ pub struct ReadOptions {
     pub max_bytes: u64,
     /// Whether [`load`] may read the files beside a glTF file, in its folder and those below, that its buffers are in.
     pub external_files: bool,
+    /// Whether an OFF, OBJ, PLY or binary STL file is held in memory, beside the mesh, so that it can be written again
+    /// with all that a mesh has no place for. By default it is. A glTF file always is.
+    pub keep: bool,
 }
 
 impl Default for ReadOptions {
@@ -101,6 +106,7 @@ impl Default for ReadOptions {
         Self {
             dimension: None,
             external_files: false,
+            keep: true,
             max_bytes: if cfg!(target_arch = "wasm32") { 1 << 30 } else { 1 << 32 },
         }
     }
@@ -123,13 +129,15 @@ pub struct Loaded {
     pub mesh: Mesh,
     /// Faces with more than three corners; each was cut into a fan of triangles around its first corner.
     pub polygons: usize,
-    /// What the file holds that a [`Mesh`] has no place for, such as `normals`. [`rewrite`] keeps it where a glTF file
-    /// stays one.
+    /// What the file holds that a [`Mesh`] has no place for, such as `normals`. [`Loaded::dropped_in`] says what a file of
+    /// some format does not keep of it.
     pub dropped: Vec<String>,
     /// What else there is to say about the file, a sentence each.
     pub notes: Vec<String>,
     /// The file itself, if it is glTF.
     document: Option<gltf::Document>,
+    /// The file itself, if it is held and of another format.
+    original: Option<Original>,
 }
 
 impl Loaded {
@@ -141,16 +149,36 @@ impl Loaded {
 
     /// What is lost in a file of that format; see [`Loaded::dropped`].
     pub fn dropped_in(&self, format: Format) -> &[String] {
-        if format.is_gltf() && self.document.is_some() { &[] } else { &self.dropped }
+        if self.keeps(format) { &[] } else { &self.dropped }
     }
 
-    /// The bytes of a file of this name that holds the mesh with other triangles, gzip'd if it ends in `.gz`. A glTF file
-    /// becomes itself again with other indices, in either form; in other formats its parts are where its scene places
-    /// them.
+    /// Whether a file of that format is this one again, but for its triangles.
+    pub fn keeps(&self, format: Format) -> bool {
+        let is_same = self.original.as_ref().is_some_and(|original| original.format == format);
+        is_same || format.is_gltf() && self.document.is_some()
+    }
+
+    /// Adds to the options of a run what keeps attributes of faces and corners in their places, for a file of the same
+    /// format, and returns how many edges that locks: groups of triangles that differ in their material or colour, and
+    /// seams, where corners of a vertex differ in their texture coordinates or normals. What glTF has is at vertices, and
+    /// needs nothing.
     ///
     /// # Errors
-    /// [`Error::UnknownFormat`]; those of [`Mesh::new`] for the triangles, of which there must be as many as before; [`Error::Io`] as
-    /// [`write_to`]; [`Error::TooLarge`] for 4 GiB and more of `.glb`.
+    /// [`Error::TriangleCount`] if [`Loaded::mesh`] is another than that of the file.
+    pub fn constrain(&self, options: &mut Options) -> Result<usize, Error> {
+        self.original.as_ref().map_or(Ok(0), |original| original.constrain(&self.mesh, options))
+    }
+
+    /// The bytes of a file of this name that holds the mesh with other triangles, gzip'd if it ends in `.gz`. In the same
+    /// format it is the file again, and only triangles change: each keeps the attributes of its face, faces of which no
+    /// triangle is another stay as they are, and new corners have the attributes that their vertex had there before, if
+    /// the run was [constrained](Loaded::constrain). A glTF file has other indices, in either form; in other formats its
+    /// parts are where its scene places them.
+    ///
+    /// # Errors
+    /// [`Error::UnknownFormat`]; those of [`Mesh::new`] for the triangles, of which there must be as many as before;
+    /// [`Error::Option`] for triangles that flips across seams have made; [`Error::FileTooLarge`] where polygons are cut
+    /// that have much; [`Error::Io`] as [`write_to`]; [`Error::TooLarge`] for 4 GiB and more of `.glb`.
     pub fn file_bytes(&self, name: impl AsRef<Path>, triangles: Vec<u32>) -> Result<Vec<u8>, Error> {
         let name = name.as_ref();
         collected(name, self.write_to(name, triangles)?)
@@ -176,7 +204,12 @@ impl Loaded {
                 let placed = document.placed(&mesh);
                 Content::Mesh(Mesh::new(Dimension::Three, placed, mesh.triangles().to_vec())?)
             }
-            None => Content::Mesh(mesh),
+            None => match &self.original {
+                Some(original) if original.format == format => {
+                    Content::Bytes(original.with_triangles(&self.mesh, &mesh)?)
+                }
+                _ => Content::Mesh(mesh),
+            },
         };
         let is_packed = gzip::is_named(name);
         Ok(move |out: &mut dyn Write| {
@@ -199,7 +232,11 @@ enum Content {
 /// # Errors
 /// [`Error::Parse`], which names the line or the byte, or the vertex that has a height where 2D was asked for;
 /// [`Error::TooLarge`]; [`Error::FileTooLarge`].
-pub fn parse(format: Format, bytes: &[u8], options: &ReadOptions) -> Result<Loaded, Error> {
+pub fn parse<'a>(
+    format: Format,
+    bytes: impl Into<Cow<'a, [u8]>>,
+    options: &ReadOptions,
+) -> Result<Loaded, Error> {
     parse_with(format, bytes, options, &|_| Err("other files are read only if that is allowed".into()))
 }
 
@@ -207,26 +244,37 @@ pub fn parse(format: Format, bytes: &[u8], options: &ReadOptions) -> Result<Load
 ///
 /// # Errors
 /// As there.
-pub fn parse_with(
+pub fn parse_with<'a>(
     format: Format,
-    bytes: &[u8],
+    bytes: impl Into<Cow<'a, [u8]>>,
     options: &ReadOptions,
     read: ReadFile<'_>,
 ) -> Result<Loaded, Error> {
+    let mut bytes = bytes.into();
     options.check(bytes.len() as u64)?;
-    let bytes =
-        if gzip::is_magic(bytes) { gzip::unpack(bytes, options)?.into() } else { Cow::Borrowed(bytes) };
+    if gzip::is_magic(&bytes) {
+        bytes = gzip::unpack(&bytes, options)?.into();
+    }
     if bytes.trim_ascii().is_empty() {
         return Err(Error::Parse { place: "line 1".into(), message: "the file is empty".into() });
     }
-    let parsed = match format {
-        Format::Off => off::parse(&utf8(&bytes)),
-        Format::Obj => obj::parse(&utf8(&bytes)),
-        Format::Ply => ply::parse(&bytes),
-        Format::Stl => stl::parse(&bytes),
+    if let Format::Off | Format::Obj = format
+        && let Some(text) = utf8(&bytes)
+    {
+        bytes = text.into();
+    }
+    let (parsed, can_be_held) = match format {
+        Format::Off => (off::parse(&bytes)?, true),
+        Format::Obj => (obj::parse(&bytes)?, true),
+        Format::Ply => (ply::parse(&bytes)?, ply::is_held(&bytes)),
+        Format::Stl => (stl::parse(&bytes)?, stl::is_held(&bytes)),
         Format::Gltf | Format::Glb => return gltf::load(bytes.into_owned(), options, read),
-    }?;
-    finish(parsed, options.dimension)
+    };
+    let loaded = finish(parsed, options.dimension)?;
+    let max_bytes = options.max_bytes;
+    let original =
+        (options.keep && can_be_held).then(|| Original { format, bytes: bytes.into_owned(), max_bytes });
+    Ok(Loaded { original, ..loaded })
 }
 
 /// Writes `mesh`. As text, each number has the fewest digits that read back to the same bits, 32 or 64 of them;
@@ -293,16 +341,16 @@ fn rounded(mesh: &Mesh, format: &str) -> io::Result<Vec<[f32; 3]>> {
     (0..mesh.vertex_count() as u32).map(round).collect()
 }
 
-/// Text that begins with the byte order mark of UTF-16, in UTF-8.
-fn utf8(bytes: &[u8]) -> Cow<'_, [u8]> {
+/// Text that begins with the byte order mark of UTF-16, in UTF-8; other text is as it is.
+fn utf8(bytes: &[u8]) -> Option<Vec<u8>> {
     let decoded = |word: fn([u8; 2]) -> u16| {
         let words = bytes[2..].as_chunks().0.iter().map(|&pair| word(pair));
         char::decode_utf16(words).map(|c| c.unwrap_or(char::REPLACEMENT_CHARACTER)).collect::<String>()
     };
     match bytes {
-        [0xfe, 0xff, ..] => decoded(u16::from_be_bytes).into_bytes().into(),
-        [0xff, 0xfe, ..] => decoded(u16::from_le_bytes).into_bytes().into(),
-        _ => bytes.into(),
+        [0xfe, 0xff, ..] => Some(decoded(u16::from_be_bytes).into_bytes()),
+        [0xff, 0xfe, ..] => Some(decoded(u16::from_le_bytes).into_bytes()),
+        _ => None,
     }
 }
 
@@ -335,7 +383,14 @@ fn finish(parsed: Parsed, dimension: Option<Dimension>) -> Result<Loaded, Error>
         Positions::F64(numbers) => with_stride(numbers, stride, dimension.stride()).into(),
     };
     let mesh = Mesh::new(dimension, positions, faces.triangles)?;
-    Ok(Loaded { mesh, polygons: faces.polygons, dropped: dropped.0, notes: Vec::new(), document: None })
+    Ok(Loaded {
+        mesh,
+        polygons: faces.polygons,
+        dropped: dropped.0,
+        notes: Vec::new(),
+        document: None,
+        original: None,
+    })
 }
 
 /// The first vertex with a height.

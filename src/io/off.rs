@@ -1,6 +1,7 @@
 //! OFF, Geomview's object file format: `[ST][C][N][n]OFF`, counts, one line a vertex, one line a face.
 //! Source: the Geomview manual, "OFF Files". Text only, read line by line.
 
+use super::original::{Face, Faces, Numbers, line_end, place};
 use super::text::{Digits, Dropped, Fans, Lines, Parsed, Tokens, coordinate, float, integer, quoted};
 use crate::{Error, Mesh};
 use std::io::{self, Write};
@@ -21,6 +22,42 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Parsed, Error> {
         return Err(lines.refuse(message));
     }
     Ok(Parsed { stride: header.stride, positions: positions.into(), faces, dropped })
+}
+
+/// The faces of a file that has been read; what follows the vertices of one is its colour.
+pub(super) fn held_faces(bytes: &[u8]) -> Result<Faces<'_>, Error> {
+    let mut lines = Lines::new(bytes);
+    let header = Header::parse(&mut lines)?;
+    let counts = header.growing.iter().map(|count| place(bytes, count)).collect();
+    let vertices = usize::try_from(header.vertices).unwrap_or(usize::MAX);
+    let (mut list, mut groups, mut colours) = (Vec::new(), Numbers::default(), Vec::new());
+    for line in std::iter::from_fn(|| content(&mut lines)).skip(vertices) {
+        let line = line.0.trim_ascii();
+        let mut rest = Tokens(line);
+        let corners = rest.next().and_then(integer).and_then(|corners| usize::try_from(corners).ok());
+        let corners = rest.by_ref().take(corners.unwrap_or_default()).count();
+        let colour = rest.0.trim_ascii_start();
+        let group = groups.of(&colour);
+        if group as usize == colours.len() {
+            colours.push(colour);
+        }
+        list.push(Face { bytes: place(bytes, line), triangles: corners.saturating_sub(2), group });
+    }
+    let write = move |out: &mut Vec<u8>, group: u32, triangle: [u32; 3], _: [u32; 3]| {
+        let mut digits = Digits::default();
+        out.push(b'3');
+        for vertex in triangle {
+            out.push(b' ');
+            digits.integer(out, vertex.into());
+        }
+        let colour = colours[group as usize];
+        if !colour.is_empty() {
+            out.push(b' ');
+            out.extend_from_slice(colour);
+        }
+        Ok(())
+    };
+    Ok(Faces { list, corners: Vec::new(), counts, separator: line_end(bytes), write: Box::new(write) })
 }
 
 /// Writes `mesh`; z is 0 in a 2D mesh.
@@ -63,14 +100,16 @@ fn content<'a>(lines: &mut Lines<'a>) -> Option<Tokens<'a>> {
 }
 
 /// What the keyword and the counts announce.
-struct Header {
+struct Header<'a> {
     stride: usize,
     vertices: u64,
     faces: u64,
+    /// The counts, as they are written, that grow where faces are cut: of faces, and of edges where they were counted.
+    growing: Vec<&'a [u8]>,
 }
 
-impl Header {
-    fn parse(lines: &mut Lines) -> Result<Self, Error> {
+impl<'a> Header<'a> {
+    fn parse(lines: &mut Lines<'a>) -> Result<Self, Error> {
         let mut tokens =
             content(lines).ok_or_else(|| lines.refuse("the file ends before the keyword OFF"))?;
         let word = tokens.next().unwrap_or_default();
@@ -107,16 +146,17 @@ impl Header {
             return Err(lines.refuse(message));
         }
         let mut counts = [0; 3];
-        for (count, token) in counts.iter_mut().zip(numbers) {
+        for (count, token) in counts.iter_mut().zip(&numbers) {
             *count = integer(token).and_then(|n| u64::try_from(n).ok()).ok_or_else(|| {
                 lines
                     .refuse(format!("expected a number of vertices, faces or edges, found {}", quoted(token)))
             })?;
         }
-        Ok(Self { stride, vertices: counts[0], faces: counts[1] })
+        numbers.truncate(if counts[2] == 0 { 2 } else { 3 });
+        Ok(Self { stride, vertices: counts[0], faces: counts[1], growing: numbers.split_off(1) })
     }
 
-    fn next_numbers<'a>(lines: &mut Lines<'a>, what: &str) -> Result<Vec<&'a [u8]>, Error> {
+    fn next_numbers(lines: &mut Lines<'a>, what: &str) -> Result<Vec<&'a [u8]>, Error> {
         match content(lines) {
             Some(tokens) => Ok(tokens.collect()),
             None => Err(lines.refuse(format!("the file ends before {what}"))),

@@ -2,6 +2,7 @@
 //! same position become one vertex, numbered in the order in which they appear.
 //! Source: 3D Systems, "StereoLithography Interface Specification", 1988.
 
+use super::original::{Face, Faces};
 use super::text::{Dropped, Fans, Lines, Parsed, Tokens, coordinate, float, quoted};
 use crate::{Dimension, Error, MAX_TRIANGLES, Mesh};
 use glam::{DVec3, Vec3};
@@ -11,11 +12,17 @@ use std::io::{self, Write};
 const HEADER: usize = 84;
 /// Bytes of a facet: its normal and its corners, 3 numbers each, and an attribute.
 const FACET: usize = 50;
+/// Where in a facet its attribute begins.
+const ATTRIBUTE: usize = 48;
 
 /// Reads a file's bytes.
 pub(super) fn parse(bytes: &[u8]) -> Result<Parsed, Error> {
-    let header = &bytes[..bytes.len().min(HEADER)];
-    if is_text(header, bytes.len()) { text(bytes) } else { binary(bytes) }
+    if is_held(bytes) { binary(bytes) } else { text(bytes) }
+}
+
+/// Whether the file can be written again with other triangles: it is binary.
+pub(super) fn is_held(bytes: &[u8]) -> bool {
+    !is_text(&bytes[..bytes.len().min(HEADER)], bytes.len())
 }
 
 /// Writes `mesh` in the binary form: 32-bit floats, the nearest ones; z is 0 in a 2D mesh. The normal of a triangle
@@ -26,20 +33,43 @@ pub(super) fn write(mesh: &Mesh, out: &mut impl Write) -> io::Result<()> {
     header[..8].copy_from_slice(b"edgeflip");
     header[80..].copy_from_slice(&(mesh.triangle_count() as u32).to_le_bytes());
     out.write_all(&header)?;
-    for triangle in mesh.triangles().chunks_exact(3) {
-        let corners = [triangle[0], triangle[1], triangle[2]].map(|v| Vec3::from(points[v as usize]));
-        let [a, b, c] = corners.map(DVec3::from);
-        // Of 32-bit coordinates it neither overflows nor vanishes in 64 bits.
-        let normal = (b - a).cross(c - a).normalize_or_zero().as_vec3();
-        let mut facet = [0; FACET];
-        for (bytes, point) in facet.chunks_exact_mut(12).zip([normal, corners[0], corners[1], corners[2]]) {
-            for (bytes, x) in bytes.chunks_exact_mut(4).zip(point.to_array()) {
-                bytes.copy_from_slice(&x.to_le_bytes());
-            }
-        }
-        out.write_all(&facet)?;
+    for triangle in mesh.triangles().as_chunks::<3>().0 {
+        out.write_all(&bytes_of(triangle.map(|v| Vec3::from(points[v as usize])), [0, 0]))?;
     }
     Ok(())
+}
+
+/// A facet of a binary file with its attribute.
+fn bytes_of(corners: [Vec3; 3], attribute: [u8; 2]) -> [u8; FACET] {
+    let [a, b, c] = corners.map(DVec3::from);
+    // Of 32-bit coordinates it neither overflows nor vanishes in 64 bits.
+    let normal = (b - a).cross(c - a).normalize_or_zero().as_vec3();
+    let mut facet = [0; FACET];
+    for (bytes, point) in facet.chunks_exact_mut(12).zip([normal, corners[0], corners[1], corners[2]]) {
+        for (bytes, x) in bytes.chunks_exact_mut(4).zip(point.to_array()) {
+            bytes.copy_from_slice(&x.to_le_bytes());
+        }
+    }
+    facet[ATTRIBUTE..].copy_from_slice(&attribute);
+    facet
+}
+
+/// The facets of a binary file that has been read; what is in the attribute of one, a colour in some dialects, its
+/// triangle keeps.
+pub(super) fn held_faces<'a>(bytes: &'a [u8], mesh: &'a Mesh) -> Faces<'a> {
+    let (facets, _) = bytes.get(HEADER..).unwrap_or_default().as_chunks::<FACET>();
+    let face = |(f, facet): (usize, &[u8; FACET])| {
+        let start = HEADER + FACET * f;
+        let group = u16::from_le_bytes([facet[ATTRIBUTE], facet[ATTRIBUTE + 1]]);
+        Face { bytes: start..start + FACET, triangles: 1, group: group.into() }
+    };
+    let list = facets.iter().enumerate().map(face).collect();
+    let write = move |out: &mut Vec<u8>, group: u32, triangle: [u32; 3], _: [u32; 3]| {
+        let corners = triangle.map(|v| mesh.point3(v).as_vec3());
+        out.extend_from_slice(&bytes_of(corners, (group as u16).to_le_bytes()));
+        Ok(())
+    };
+    Faces { list, corners: Vec::new(), counts: Vec::new(), separator: b"", write: Box::new(write) }
 }
 
 /// How many facets the header of a binary file announces.
@@ -90,7 +120,7 @@ fn binary(bytes: &[u8]) -> Result<Parsed, Error> {
         }
         corners
             .extend([0, 3, 6].map(|n| [numbers[n], numbers[n + 1], numbers[n + 2]].map(f32::from_le_bytes)));
-        if facet[48..] != [0, 0] {
+        if facet[ATTRIBUTE..] != [0, 0] {
             dropped.note("attributes of facets");
         }
     }

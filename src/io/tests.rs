@@ -1,6 +1,7 @@
 //! Tests of the parsers and writers: what is read, what is refused and how, and that nothing is lost.
 
 mod gzip;
+mod original;
 mod ply;
 mod stl;
 

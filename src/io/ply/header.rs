@@ -13,7 +13,7 @@ pub(super) struct Header<'a> {
 }
 
 /// How the numbers after the header are written.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, PartialEq)]
 pub(super) enum Encoding {
     /// As text, an element a line.
     Ascii,
@@ -27,6 +27,8 @@ pub(super) enum Encoding {
 pub(super) struct Element<'a> {
     pub(super) name: &'a [u8],
     pub(super) count: u64,
+    /// The count as it is written.
+    pub(super) digits: &'a [u8],
     pub(super) properties: Vec<Property<'a>>,
 }
 
@@ -82,6 +84,18 @@ impl Scalar {
         !matches!(self, Self::I32 | Self::U32 | Self::F64)
     }
 
+    /// The largest number that it holds.
+    pub(super) fn most(self) -> u32 {
+        match self {
+            Self::I8 => 0x7f,
+            Self::U8 => 0xff,
+            Self::I16 => 0x7fff,
+            Self::U16 => 0xffff,
+            Self::I32 => 0x7fff_ffff,
+            _ => u32::MAX,
+        }
+    }
+
     pub(super) fn is_integer(self) -> bool {
         !matches!(self, Self::F32 | Self::F64)
     }
@@ -104,12 +118,12 @@ impl<'a> Header<'a> {
                 [b"format", b"ascii", b"1.0"] => encoding = Some(Encoding::Ascii),
                 [b"format", b"binary_little_endian", b"1.0"] => encoding = Some(Encoding::LittleEndian),
                 [b"format", b"binary_big_endian", b"1.0"] => encoding = Some(Encoding::BigEndian),
-                [b"element", name, count] => {
+                [b"element", name, digits] => {
                     let count =
-                        integer(count).and_then(|count| u64::try_from(count).ok()).ok_or_else(|| {
-                            lines.refuse(format!("expected a number of elements, found {}", quoted(count)))
+                        integer(digits).and_then(|count| u64::try_from(count).ok()).ok_or_else(|| {
+                            lines.refuse(format!("expected a number of elements, found {}", quoted(digits)))
                         })?;
-                    elements.push(Element { name, count, properties: Vec::new() });
+                    elements.push(Element { name, count, digits, properties: Vec::new() });
                 }
                 [b"property", b"list", length, scalar, name] => {
                     let length = scalar_type(length, lines)?;

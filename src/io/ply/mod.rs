@@ -2,8 +2,11 @@
 //! or not. Of the elements, `vertex`, `face` and `tristrips` make the mesh.
 //! Source: G. Turk, "The PLY Polygon File Format", 1994.
 
+mod faces;
 mod header;
 mod source;
+
+pub(super) use faces::{held_faces, is_held};
 
 use super::text::{Dropped, Fans, Lines, Parsed, Tokens, quoted};
 use crate::error::number;
@@ -19,15 +22,19 @@ const LISTED: usize = 12;
 pub(super) fn parse(bytes: &[u8]) -> Result<Parsed, Error> {
     let mut lines = Lines::new(bytes);
     let Header { encoding, elements } = Header::parse(&mut lines)?;
+    match encoding {
+        Encoding::Ascii => Body::read(Ascii { lines, words: Tokens(b"") }, &elements),
+        _ => Body::read(binary(bytes, &lines, encoding), &elements),
+    }
+}
+
+/// What follows the header, whose lines have been read, in a file that is no text.
+fn binary<'a>(bytes: &'a [u8], lines: &Lines, encoding: Encoding) -> Binary<'a> {
     let mut start = bytes.len() - lines.bytes_left();
     // Where the lines of the header end with CR alone, a LF after it is the first byte of a number.
     let ends_with_cr = bytes.starts_with(b"ply\r") && !bytes.starts_with(b"ply\r\n");
     start -= usize::from(ends_with_cr && bytes[..start].ends_with(b"\r\n"));
-    match encoding {
-        Encoding::Ascii => Body::read(Ascii { lines, words: Tokens(b"") }, &elements),
-        Encoding::LittleEndian => Body::read(Binary::new(bytes, start, false), &elements),
-        Encoding::BigEndian => Body::read(Binary::new(bytes, start, true), &elements),
-    }
+    Binary::new(bytes, start, encoding == Encoding::BigEndian)
 }
 
 /// Writes `mesh` with the least significant byte first and coordinates as wide as the mesh's; z is 0 in a 2D mesh.
@@ -108,7 +115,7 @@ struct Body<S> {
     corners: Vec<u32>,
 }
 
-impl<S: Source> Body<S> {
+impl<'a, S: Source<'a>> Body<S> {
     fn read(source: S, elements: &[Element]) -> Result<Parsed, Error> {
         let (vertices, stride, positions) = announced(elements)?;
         let mut body =

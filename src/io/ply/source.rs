@@ -1,17 +1,21 @@
 //! The numbers after the header of a PLY file, as text or not.
 
-use super::header::Scalar;
+use super::header::{Property, Scalar};
 use crate::Error;
 use crate::io::text::{Lines, Tokens, float, integer, quoted};
 
 /// Where records of numbers come from.
-pub(super) trait Source {
+pub(super) trait Source<'a> {
     /// Goes to the next record; false where the file ends.
     fn begin(&mut self) -> bool;
     /// The next number of the record: every one that a PLY file can hold is an f64.
     fn number(&mut self, scalar: Scalar) -> Result<f64, Error>;
     /// Passes over the next `count` numbers.
     fn skip(&mut self, scalar: Scalar, count: u64) -> Result<(), Error>;
+    /// Passes over a whole record of these properties.
+    fn pass(&mut self, properties: &[Property]) -> Result<(), Error>;
+    /// What is left of the record, or of the file.
+    fn rest(&self) -> &'a [u8];
     /// Refuses what the record has more.
     fn end(&mut self) -> Result<(), Error>;
     /// Refuses what follows the last record.
@@ -30,7 +34,7 @@ pub(super) struct Ascii<'a> {
     pub(super) words: Tokens<'a>,
 }
 
-impl Source for Ascii<'_> {
+impl<'a> Source<'a> for Ascii<'a> {
     fn begin(&mut self) -> bool {
         let line = self.lines.find(|line| !line.trim_ascii().is_empty());
         self.words = Tokens(line.unwrap_or_default());
@@ -56,6 +60,15 @@ impl Source for Ascii<'_> {
     fn skip(&mut self, _: Scalar, count: u64) -> Result<(), Error> {
         // What is not kept may be any number, whatever type the header says.
         (0..count).try_for_each(|_| self.number(Scalar::F64).map(drop))
+    }
+
+    fn pass(&mut self, _: &[Property]) -> Result<(), Error> {
+        self.begin();
+        Ok(())
+    }
+
+    fn rest(&self) -> &'a [u8] {
+        self.words.0
     }
 
     fn end(&mut self) -> Result<(), Error> {
@@ -130,7 +143,7 @@ impl<'a> Binary<'a> {
     }
 }
 
-impl Source for Binary<'_> {
+impl<'a> Source<'a> for Binary<'a> {
     fn begin(&mut self) -> bool {
         self.at = self.length - self.rest.len();
         !self.rest.is_empty()
@@ -152,6 +165,17 @@ impl Source for Binary<'_> {
 
     fn skip(&mut self, scalar: Scalar, count: u64) -> Result<(), Error> {
         self.bytes(count.saturating_mul(scalar.size() as u64)).map(drop)
+    }
+
+    fn pass(&mut self, properties: &[Property]) -> Result<(), Error> {
+        properties.iter().try_for_each(|&Property { length, scalar, .. }| {
+            let count = length.map_or(Ok(1.0), |length| self.number(length))?;
+            self.skip(scalar, count as u64)
+        })
+    }
+
+    fn rest(&self) -> &'a [u8] {
+        self.rest
     }
 
     fn end(&mut self) -> Result<(), Error> {

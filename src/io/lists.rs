@@ -1,4 +1,4 @@
-//! Lists of edges as text: a line has the two vertices of an edge, counted from 0, and `#` begins a comment.
+//! Lists as text: of edges, a line with the two vertices of each, counted from 0, or of any numbers; `#` begins a comment.
 
 use super::text::{Lines, Tokens, integer, quoted, without_comment};
 use crate::Error;
@@ -23,4 +23,21 @@ pub fn parse_edges(bytes: &[u8]) -> Result<Vec<[u32; 2]>, Error> {
         }
     }
     Ok(edges)
+}
+
+/// Parses the bytes of a list of numbers from 0, such as those of triangles: any of them in a line.
+///
+/// # Errors
+/// [`Error::Parse`], which names the line.
+pub fn parse_numbers(bytes: &[u8]) -> Result<Vec<u32>, Error> {
+    let mut numbers = Vec::new();
+    let mut lines = Lines::new(bytes);
+    while let Some(line) = lines.next() {
+        for word in Tokens(without_comment(line)) {
+            let number = integer(word).and_then(|number| u32::try_from(number).ok());
+            let error = || lines.refuse(format!("expected a number from 0, found {}", quoted(word)));
+            numbers.push(number.ok_or_else(error)?);
+        }
+    }
+    Ok(numbers)
 }

@@ -1,6 +1,10 @@
 //! OBJ, Wavefront's object format: every `v` and `f` of the file as one mesh, in the file's vertex order.
 //! Source: Wavefront's Advanced Visualizer manual, appendix B1. Groups, objects and materials divide nothing.
 
+mod faces;
+
+pub(super) use faces::held_faces;
+
 use super::text::{
     Digits, Dropped, Fans, Lines, Parsed, Tokens, coordinate, float, integer, quoted, without_comment,
 };
@@ -82,7 +86,7 @@ impl Reader {
     fn read(&mut self, mut lines: Lines, known: Option<i64>) -> Result<(), Error> {
         while let Some(line) = lines.next() {
             let number = lines.number();
-            let line = continued(without_comment(line), &mut lines);
+            let (line, _) = continued(without_comment(line), &mut lines);
             self.line(&line, known)
                 .map_err(|message| Error::Parse { place: format!("line {number}"), message })?;
         }
@@ -176,18 +180,19 @@ impl Reader {
     }
 }
 
-/// The line with those that follow it after a backslash.
-fn continued<'a>(line: &'a [u8], lines: &mut Lines<'a>) -> Cow<'a, [u8]> {
-    let Some(start) = line.strip_suffix(b"\\") else { return Cow::Borrowed(line) };
+/// The line with those that follow it after a backslash, and the last of them.
+fn continued<'a>(line: &'a [u8], lines: &mut Lines<'a>) -> (Cow<'a, [u8]>, &'a [u8]) {
+    let Some(start) = line.strip_suffix(b"\\") else { return (Cow::Borrowed(line), line) };
     let mut joined = start.to_vec();
+    let mut last = line;
     for line in lines {
         joined.push(b' ');
-        let line = without_comment(line);
-        let start = line.strip_suffix(b"\\");
-        joined.extend_from_slice(start.unwrap_or(line));
+        last = without_comment(line);
+        let start = last.strip_suffix(b"\\");
+        joined.extend_from_slice(start.unwrap_or(last));
         if start.is_none() {
             break;
         }
     }
-    Cow::Owned(joined)
+    (Cow::Owned(joined), last)
 }

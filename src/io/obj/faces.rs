@@ -1,0 +1,103 @@
+//! Where the faces of an OBJ file are, the texture vertices and normals of their corners, and the groups that they are in.
+
+use super::continued;
+use crate::io::original::{Face, Faces, Numbers, line_end, place};
+use crate::io::text::{Digits, Lines, Tokens, integer, without_comment};
+
+/// What a line of these says is so for the faces after it.
+const STATES: [&[u8]; 6] = [b"usemtl", b"g", b"o", b"s", b"mg", b"usemap"];
+
+/// The texture vertex and the normal of a corner, counted from 1; 0 for none.
+type References = [u32; 2];
+
+/// The faces of a file that has been read.
+pub(in crate::io) fn held_faces(bytes: &[u8]) -> Faces<'_> {
+    let mut list = Vec::new();
+    // What texture vertices and normals are, as numbers that are equal where their texts are.
+    let (mut texts, mut attributes) = (Numbers::default(), [Vec::new(), Vec::new()]);
+    let mut references: Vec<References> = Vec::new();
+    let mut states = [b"".as_slice(); STATES.len()];
+    let (mut groups, mut group) = (Numbers::default(), None);
+    let mut corners: Vec<References> = Vec::new();
+    let mut lines = Lines::new(bytes);
+    while let Some(line) = lines.next() {
+        let (joined, last) = continued(without_comment(line), &mut lines);
+        let start = place(bytes, line.trim_ascii_start()).start;
+        let end = place(bytes, last.trim_ascii_end()).end;
+        let mut rest = Tokens(&bytes[start..end.max(start)]);
+        rest.next();
+        let text = rest.0.trim_ascii_start();
+        let mut tokens = Tokens(&joined);
+        match tokens.next() {
+            Some(b"v") | None => {}
+            Some(b"f" | b"fo") => {
+                corners.clear();
+                corners.extend(tokens.map(|corner| resolved(corner, &attributes)));
+                let Some((&first, rest)) = corners.split_first() else { continue };
+                let pairs = rest.windows(2);
+                let group = *group.get_or_insert_with(|| groups.of(&states));
+                list.push(Face { bytes: start..end, triangles: pairs.len(), group });
+                references.extend(pairs.flat_map(|pair| [first, pair[0], pair[1]]));
+            }
+            Some(b"vt") => attributes[0].push(texts.of(&text)),
+            Some(b"vn") => attributes[1].push(texts.of(&text)),
+            Some(keyword) => {
+                if let Some(state) = STATES.iter().position(|&state| state == keyword) {
+                    states[state] = text;
+                    group = None;
+                }
+            }
+        }
+    }
+    let (corners, known) = numbered(&references, &attributes);
+    let write = move |out: &mut Vec<u8>, _: u32, triangle: [u32; 3], corners: [u32; 3]| {
+        let mut digits = Digits::default();
+        out.push(b'f');
+        for (vertex, corner) in triangle.into_iter().zip(corners) {
+            out.push(b' ');
+            digits.integer(out, u64::from(vertex) + 1);
+            let references = known.get(corner as usize).copied().unwrap_or_default();
+            let parts = references.iter().rposition(|&reference| reference > 0).map_or(0, |last| last + 1);
+            for &reference in &references[..parts] {
+                out.push(b'/');
+                if reference > 0 {
+                    digits.integer(out, reference.into());
+                }
+            }
+        }
+        Ok(())
+    };
+    Faces { list, corners, counts: Vec::new(), separator: line_end(bytes), write: Box::new(write) }
+}
+
+/// What a corner such as `1/2/3` refers to; what is not there is none.
+fn resolved(corner: &[u8], attributes: &[Vec<u32>; 2]) -> References {
+    let mut parts = corner.split(|&b| b == b'/').skip(1);
+    attributes.each_ref().map(|attributes| {
+        let number = parts.next().and_then(integer).unwrap_or_default();
+        let so_far = attributes.len() as i64;
+        u32::try_from(if number < 0 { so_far + 1 + number } else { number }).unwrap_or_default()
+    })
+}
+
+/// A number for each of these, equal where what they refer to is, and the first that has each number; nothing where all
+/// refer to nothing.
+fn numbered(references: &[References], attributes: &[Vec<u32>; 2]) -> (Vec<u32>, Vec<References>) {
+    if references.iter().all(|corner| *corner == [0, 0]) {
+        return (Vec::new(), Vec::new());
+    }
+    let (mut numbers, mut known) = (Numbers::default(), Vec::new());
+    let corners = references.iter().map(|corner| {
+        let equal = |kind: usize| {
+            let Some(place) = corner[kind].checked_sub(1) else { return (0, 0) };
+            // One that the file does not have is equal to itself.
+            attributes[kind].get(place as usize).map_or((1, place), |&text| (2, text))
+        };
+        let number = numbers.of(&(equal(0), equal(1)));
+        if number as usize == known.len() {
+            known.push(*corner);
+        }
+        number
+    });
+    (corners.collect(), known)
+}

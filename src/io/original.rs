@@ -1,0 +1,214 @@
+//! A file that is held to be written again with other triangles, and all else as it was: what OFF, OBJ, PLY and STL
+//! share of that. A format says where its faces are, what they and their corners have, and how it writes a triangle.
+
+use super::{Format, obj, off, ply, stl};
+use crate::{Adjacency, Error, Mesh, Options, Wedges, locked_edges, reoriented};
+use memchr::memchr2;
+use std::borrow::Borrow;
+use std::collections::HashMap;
+use std::hash::Hash;
+use std::ops::Range;
+
+/// A file as it was read, unpacked and without UTF-16.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Original {
+    pub(super) format: Format,
+    pub(super) bytes: Vec<u8>,
+    /// Bytes that it may have, also when it is written again.
+    pub(super) max_bytes: u64,
+}
+
+/// The faces of a file, in its order.
+pub(super) struct Faces<'a> {
+    pub(super) list: Vec<Face>,
+    /// A number for each corner of their triangles, equal where what the file says of the corner is; empty where it says
+    /// nothing.
+    pub(super) corners: Vec<u32>,
+    /// Numbers of the header that grow with the number of faces.
+    pub(super) counts: Vec<Range<usize>>,
+    /// What stands between two faces.
+    pub(super) separator: &'a [u8],
+    /// Writes a triangle of that group: its vertices, and the numbers of its corners, 0 where they have none.
+    pub(super) write: Write<'a>,
+}
+
+type Write<'a> = Box<dyn Fn(&mut Vec<u8>, u32, [u32; 3], [u32; 3]) -> Result<(), Error> + 'a>;
+
+/// A face that makes triangles.
+pub(super) struct Face {
+    /// Where it is, without what ends it.
+    pub(super) bytes: Range<usize>,
+    /// How many triangles it is cut into.
+    pub(super) triangles: usize,
+    /// Equal where what the file says of the faces is.
+    pub(super) group: u32,
+}
+
+impl Original {
+    /// Adds to `options` what keeps the attributes where they are, and returns how many edges that locks.
+    pub(super) fn constrain(&self, mesh: &Mesh, options: &mut Options) -> Result<usize, Error> {
+        let faces = self.faces(mesh)?;
+        let mut own = Options { groups: faces.groups(), ..Options::default() };
+        for wedges in faces.wedges(mesh)? {
+            own.locked_edges.extend_from_slice(wedges.locked_edges());
+            own.locked_triangles.extend_from_slice(wedges.locked_triangles());
+        }
+        let mut locked = locked_edges(mesh, &own)?;
+        locked.iter_mut().for_each(|ends| ends.sort_unstable());
+        locked.sort_unstable();
+        locked.dedup();
+        options.locked_edges.append(&mut own.locked_edges);
+        options.locked_triangles.append(&mut own.locked_triangles);
+        if options.groups.is_empty() {
+            options.groups = own.groups;
+        } else {
+            // What divides the triangles in one way or in the other.
+            let mut numbers = Numbers::default();
+            for (group, own) in options.groups.iter_mut().zip(own.groups) {
+                *group = numbers.of(&(*group, own));
+            }
+        }
+        Ok(locked.len())
+    }
+
+    /// The bytes of the file of `mesh` with the triangles of `after`, as many. Faces of which no triangle is another stay
+    /// as they are; the others give way to their triangles.
+    pub(super) fn with_triangles(&self, mesh: &Mesh, after: &Mesh) -> Result<Vec<u8>, Error> {
+        let faces = self.faces(mesh)?;
+        let corners = faces.carried(mesh, after)?;
+        let [before, after, corners] =
+            [mesh.triangles(), after.triangles(), &corners].map(|numbers| numbers.as_chunks::<3>().0);
+        let mut first = 0;
+        let changed = faces.list.iter().filter_map(|face| {
+            let triangles = first..first + face.triangles;
+            first = triangles.end;
+            (before[triangles.clone()] != after[triangles.clone()]).then_some((face, triangles))
+        });
+        let changed: Vec<_> = changed.collect();
+        let more: u64 = changed.iter().map(|(face, _)| face.triangles as u64 - 1).sum();
+        let mut out = Vec::with_capacity(self.bytes.len());
+        let mut copied = 0;
+        for count in &faces.counts {
+            out.extend_from_slice(&self.bytes[copied..count.start]);
+            let number = super::text::integer(&self.bytes[count.clone()]).unwrap_or_default() as u64;
+            out.extend_from_slice((number + more).to_string().as_bytes());
+            copied = count.end;
+        }
+        for (face, triangles) in changed {
+            out.extend_from_slice(&self.bytes[copied..face.bytes.start]);
+            copied = face.bytes.end;
+            let start = triangles.start;
+            for triangle in triangles {
+                if triangle > start {
+                    out.extend_from_slice(faces.separator);
+                }
+                let corners = corners.get(triangle).copied().unwrap_or_default();
+                (faces.write)(&mut out, face.group, after[triangle], corners)?;
+                // What a polygon has, each of its triangles has.
+                if out.len() as u64 > self.max_bytes {
+                    return Err(Error::FileTooLarge { limit: self.max_bytes, option: "max_bytes" });
+                }
+            }
+        }
+        out.extend_from_slice(&self.bytes[copied..]);
+        Ok(out)
+    }
+
+    fn faces<'a>(&'a self, mesh: &'a Mesh) -> Result<Faces<'a>, Error> {
+        let bytes = &self.bytes;
+        let faces = match self.format {
+            Format::Off => off::held_faces(bytes),
+            Format::Obj => Ok(obj::held_faces(bytes)),
+            Format::Ply => ply::held_faces(bytes),
+            _ => Ok(stl::held_faces(bytes, mesh)),
+        }?;
+        let expected = 3 * faces.list.iter().map(|face| face.triangles).sum::<usize>();
+        let length = mesh.triangles().len();
+        if length == expected { Ok(faces) } else { Err(Error::TriangleCount { length, expected }) }
+    }
+}
+
+impl Faces<'_> {
+    /// The group of each triangle; nothing if there is only one.
+    fn groups(&self) -> Vec<u32> {
+        if self.list.iter().all(|face| face.group == self.list[0].group) {
+            return Vec::new();
+        }
+        self.list.iter().flat_map(|face| std::iter::repeat_n(face.group, face.triangles)).collect()
+    }
+
+    /// The wedges of the mesh as it is and, where triangles are turned against each other, as [`reoriented`] turns them.
+    fn wedges(&self, mesh: &Mesh) -> Result<Vec<Wedges>, Error> {
+        if self.corners.is_empty() {
+            return Ok(Vec::new());
+        }
+        let mut all = vec![Wedges::new(mesh, self.corners.clone())?];
+        if Adjacency::new(mesh).inconsistent > 0 {
+            let (turned, count) = reoriented(mesh)?;
+            if count > 0 {
+                let mut corners = self.corners.clone();
+                let triangles = [mesh, &turned].map(|mesh| mesh.triangles().as_chunks::<3>().0);
+                for (t, corners) in corners.as_chunks_mut::<3>().0.iter_mut().enumerate() {
+                    if triangles[0][t] != triangles[1][t] {
+                        corners.swap(1, 2);
+                    }
+                }
+                all.push(Wedges::new(&turned, corners)?);
+            }
+        }
+        Ok(all)
+    }
+
+    /// The number of each corner of the triangles `after`.
+    fn carried(&self, mesh: &Mesh, after: &Mesh) -> Result<Vec<u32>, Error> {
+        let mut wedges = self.wedges(mesh)?;
+        let Some(mut last) = wedges.pop() else { return Ok(Vec::new()) };
+        // No flip makes triangles agree that did not: they were turned before, or not.
+        if let Some(first) = wedges.pop() {
+            let inconsistent = |mesh: &Mesh| Adjacency::new(mesh).inconsistent;
+            if inconsistent(mesh) == inconsistent(after) {
+                last = first;
+            }
+        }
+        last.carried(after.triangles())
+    }
+}
+
+/// Numbers from 0, equal for equal keys.
+pub(super) struct Numbers<K>(HashMap<K, u32>);
+
+impl<K> Default for Numbers<K> {
+    fn default() -> Self {
+        Self(HashMap::new())
+    }
+}
+
+impl<K: Eq + Hash> Numbers<K> {
+    pub(super) fn of<Q>(&mut self, key: &Q) -> u32
+    where
+        K: Borrow<Q>,
+        Q: ToOwned<Owned = K> + Eq + Hash + ?Sized,
+    {
+        if let Some(&number) = self.0.get(key) {
+            return number;
+        }
+        let number = self.0.len() as u32;
+        self.0.insert(key.to_owned(), number);
+        number
+    }
+}
+
+/// Where `part` is in `file`, a part of which it has to be.
+pub(super) fn place(file: &[u8], part: &[u8]) -> Range<usize> {
+    let start = part.as_ptr() as usize - file.as_ptr() as usize;
+    start..start + part.len()
+}
+
+/// How the first line of a text ends.
+pub(super) fn line_end(text: &[u8]) -> &[u8] {
+    match memchr2(b'\n', b'\r', text).map(|end| &text[end..]) {
+        Some(end) if end.starts_with(b"\r\n") => &end[..2],
+        Some(end) => &end[..1],
+        None => b"\n",
+    }
+}

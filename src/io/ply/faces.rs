@@ -1,0 +1,200 @@
+//! Where the faces of a PLY file are, and what they and their corners have beside their vertices.
+
+use super::header::{Element, Encoding, Header, Property, Scalar};
+use super::source::{Ascii, Source};
+use super::{Role, binary, role};
+use crate::Error;
+use crate::io::original::{Face, Faces, Numbers, line_end, place};
+use crate::io::text::{Digits, Lines, Tokens, quoted};
+
+/// The list of two numbers for each corner of a face.
+const TEXTURE: &[u8] = b"texcoord";
+
+/// Whether the file, which has been read, can be written again with other triangles: a strip has no place for them.
+pub(in crate::io) fn is_held(bytes: &[u8]) -> bool {
+    let has_strips = |element: &Element| element.name == b"tristrips" && element.count > 0;
+    Header::parse(&mut Lines::new(bytes)).is_ok_and(|header| !header.elements.iter().any(has_strips))
+}
+
+/// The faces of a file that has been read.
+pub(in crate::io) fn held_faces(bytes: &[u8]) -> Result<Faces<'_>, Error> {
+    let mut lines = Lines::new(bytes);
+    let Header { encoding, elements } = Header::parse(&mut lines)?;
+    match encoding {
+        Encoding::Ascii => of(bytes, Ascii { lines, words: Tokens(b"") }, &elements, encoding),
+        _ => of(bytes, binary(bytes, &lines, encoding), &elements, encoding),
+    }
+}
+
+/// How a face is written.
+struct Form<'a> {
+    encoding: Encoding,
+    properties: Vec<Property<'a>>,
+    /// Which of them is the list of vertices.
+    vertices: usize,
+    /// Which of them is [`TEXTURE`].
+    texture: Option<usize>,
+}
+
+fn of<'a>(
+    bytes: &'a [u8],
+    mut source: impl Source<'a>,
+    elements: &[Element<'a>],
+    encoding: Encoding,
+) -> Result<Faces<'a>, Error> {
+    let (mut list, mut corners, mut counts) = (Vec::new(), Vec::new(), Vec::new());
+    let mut form = Form { encoding, properties: Vec::new(), vertices: 0, texture: None };
+    let (mut groups, mut known) = (Numbers::default(), Vec::new());
+    let (mut textures, mut coordinates) = (Numbers::default(), Vec::new());
+    for element in elements.iter().filter(|element| !element.properties.is_empty()) {
+        if element.name != b"face" {
+            (0..element.count).try_for_each(|_| source.pass(&element.properties))?;
+            continue;
+        }
+        counts.push(place(bytes, element.digits));
+        let at = |test: &dyn Fn(&Property) -> bool| element.properties.iter().position(test);
+        form.properties.clone_from(&element.properties);
+        form.vertices = at(&|property| role(b"face", property) == Role::Polygon).unwrap_or_default();
+        form.texture = at(&|property| property.name == TEXTURE && property.length.is_some());
+        let (mut values, mut pieces) = (Vec::new(), Vec::new());
+        for _ in 0..element.count {
+            source.begin();
+            let start = source.rest();
+            let triangles = form.read(&mut source, &mut values, &mut pieces)?;
+            let record = form.trimmed(&start[..start.len() - source.rest().len()]);
+            let group = groups.of(values.as_slice());
+            if group as usize == known.len() {
+                known.push(values.clone());
+            }
+            list.push(Face { bytes: place(bytes, record), triangles, group });
+            if form.texture.is_none() {
+                continue;
+            }
+            for i in 1..=triangles {
+                for corner in [0, i, i + 1] {
+                    let piece = pieces.get(corner).copied().unwrap_or_default();
+                    let number = textures.of(&piece);
+                    if number as usize == coordinates.len() {
+                        coordinates.push(piece);
+                    }
+                    corners.push(number);
+                }
+            }
+        }
+    }
+    let separator = if encoding == Encoding::Ascii { line_end(bytes) } else { b"" };
+    let write = move |out: &mut Vec<u8>, group: u32, triangle: [u32; 3], corners: [u32; 3]| {
+        let corners = corners.map(|corner| coordinates.get(corner as usize).copied().unwrap_or_default());
+        form.write(out, &known[group as usize], triangle, corners)
+    };
+    Ok(Faces { list, corners, counts, separator, write: Box::new(write) })
+}
+
+impl<'a> Form<'a> {
+    /// Reads a face, and returns how many triangles it is. `values` become what its properties are, but for the vertices
+    /// and what each corner has in `pieces`: those are empty.
+    fn read(
+        &self,
+        source: &mut impl Source<'a>,
+        values: &mut Vec<&'a [u8]>,
+        pieces: &mut Vec<&'a [u8]>,
+    ) -> Result<usize, Error> {
+        values.clear();
+        pieces.clear();
+        let (mut corners, mut coordinates) = (0, 0);
+        for (i, &Property { length, scalar, .. }) in self.properties.iter().enumerate() {
+            let start = source.rest();
+            let count = length.map_or(Ok(1.0), |length| source.number(length))? as u64;
+            source.skip(scalar, count)?;
+            values.push(self.trimmed(&start[..start.len() - source.rest().len()]));
+            if i == self.vertices {
+                corners = count;
+            } else if Some(i) == self.texture {
+                coordinates = count;
+            }
+        }
+        values[self.vertices] = b"";
+        if let Some(texture) = self.texture
+            && coordinates == 2 * corners
+        {
+            let value = std::mem::take(&mut values[texture]);
+            self.divide(value, &self.properties[texture], pieces);
+        }
+        Ok((corners as usize).saturating_sub(2))
+    }
+
+    /// The coordinates of each corner, in a list of two numbers for each.
+    fn divide(&self, list: &'a [u8], property: &Property, pieces: &mut Vec<&'a [u8]>) {
+        if self.encoding == Encoding::Ascii {
+            let mut words = Tokens(list).skip(1);
+            while let (Some(u), Some(v)) = (words.next(), words.next()) {
+                pieces.push(&list[place(list, u).start..place(list, v).end]);
+            }
+        } else {
+            let length = property.length.map_or(0, Scalar::size);
+            pieces.extend(list[length..].chunks_exact(2 * property.scalar.size()));
+        }
+    }
+
+    /// Text without white space around it; else all bytes.
+    fn trimmed(&self, bytes: &'a [u8]) -> &'a [u8] {
+        if self.encoding == Encoding::Ascii { bytes.trim_ascii() } else { bytes }
+    }
+
+    /// Writes a triangle with these values, and what its corners have.
+    fn write(
+        &self,
+        out: &mut Vec<u8>,
+        values: &[&[u8]],
+        triangle: [u32; 3],
+        corners: [&[u8]; 3],
+    ) -> Result<(), Error> {
+        let start = out.len();
+        for (i, (value, property)) in values.iter().zip(&self.properties).enumerate() {
+            let length = property.length.unwrap_or(property.scalar);
+            if i == self.vertices {
+                if let Some(vertex) = triangle.iter().find(|&&vertex| vertex > property.scalar.most()) {
+                    let message = format!("vertex {vertex} is more than {} holds", quoted(property.name));
+                    return Err(Error::Parse { place: "element `face`".into(), message });
+                }
+                self.put(out, start, length, 3);
+                triangle.iter().for_each(|&vertex| self.put(out, start, property.scalar, vertex));
+            } else if value.is_empty() {
+                if let Some(i) = corners.iter().position(|corner| corner.is_empty()) {
+                    let (vertex, name) = (triangle[i], quoted(property.name));
+                    let message =
+                        format!("vertex {vertex} has no {name} in triangles with the attributes of this one");
+                    return Err(Error::Option { option: "triangles", message });
+                }
+                self.put(out, start, length, 6);
+                corners.iter().for_each(|corner| self.put_bytes(out, start, corner));
+            } else {
+                self.put_bytes(out, start, value);
+            }
+        }
+        Ok(())
+    }
+
+    /// Writes a number of the record that begins at `start`.
+    fn put(&self, out: &mut Vec<u8>, start: usize, scalar: Scalar, number: u32) {
+        let mut bytes = number.to_le_bytes();
+        let size = scalar.size().min(bytes.len());
+        match self.encoding {
+            Encoding::Ascii => {
+                self.put_bytes(out, start, b"");
+                Digits::default().integer(out, number.into());
+                return;
+            }
+            Encoding::LittleEndian => {}
+            Encoding::BigEndian => bytes[..size].reverse(),
+        }
+        out.extend_from_slice(&bytes[..size]);
+    }
+
+    fn put_bytes(&self, out: &mut Vec<u8>, start: usize, bytes: &[u8]) {
+        if self.encoding == Encoding::Ascii && out.len() > start {
+            out.push(b' ');
+        }
+        out.extend_from_slice(bytes);
+    }
+}
