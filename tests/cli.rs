@@ -19,7 +19,7 @@ use std::process::{Command, Output, Stdio};
 const SQUARE: &str = "OFF\n4 2 0\n0 0 0\n0.9 0.2 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3\n";
 
 /// The keys of the object that `--json` prints, in their order.
-const KEYS: [&str; 25] = [
+const KEYS: [&str; 26] = [
     "input",
     "vertices",
     "triangles",
@@ -44,6 +44,7 @@ const KEYS: [&str; 25] = [
     "after",
     "turned_triangles",
     "moved_triangles",
+    "attribute_edges",
     "ms",
 ];
 
@@ -285,6 +286,80 @@ fn a_flip_moves_no_more_than_it_may() {
     }
 }
 
+/// The square as two faces of different materials, and with texture coordinates.
+#[test]
+fn attributes_stay_unless_they_are_dropped() {
+    let folder = Folder::new();
+    let points = "# by hand\nv 0 0 0\nv 0.9 0.2 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n";
+    let faces = ["usemtl a\nf 1/1 2/2 3/3\n", "f 1/1 3/3 4/4\n"];
+    let whole = folder.file("whole.obj", points.to_owned() + &faces.concat());
+    let parted = format!("{points}{}usemtl b\n{}", faces[0], faces[1]);
+    let [parted_path, output] = [folder.file("parted.obj", &parted), folder.path("out.obj")];
+    let said = |input: &Path, more: &[&str]| {
+        let ran = run(input, &output, &[&["--verify"], more].concat());
+        assert_eq!(ran.status.code(), Some(0), "{}", text(&ran.stderr));
+        (text(&ran.stderr).to_owned(), fs::read_to_string(&output).unwrap())
+    };
+    let locked =
+        "\nlocked     1 edges between groups or along seams stay; --drop-attributes lets them flip\n";
+
+    let (summary, written) = said(&whole, &[]);
+    assert!(!summary.contains("locked") && !summary.contains("not kept"), "{summary}");
+    assert_eq!(written, format!("{points}usemtl a\nf 4/4 2/2 3/3\nf 1/1 2/2 4/4\n"));
+    let (summary, written) = said(&parted_path, &[]);
+    assert!(summary.contains(locked) && summary.contains("not Delaunay: locked 1\n"), "{summary}");
+    assert_eq!(written, parted);
+    let ran = run(&parted_path, &output, &["--json"]);
+    let report: Value = serde_json::from_slice(&ran.stdout).unwrap();
+    assert_eq!((&report["attribute_edges"], &report["flips"]), (&1.into(), &0.into()));
+    // Nothing hinders what is dropped anyway.
+    let (summary, written) = said(&parted_path, &["--drop-attributes"]);
+    assert!(!summary.contains("locked") && summary.contains("\nflips      1 in 1"), "{summary}");
+    assert!(summary.contains("note       not kept: texture coordinates; groups, objects and materials\n"));
+    assert!(written.starts_with("v 0 0 0\nv 0.9 0.2 0\n"));
+    let ran = run(&parted_path, &folder.path("out.ply"), &[]);
+    assert!(text(&ran.stderr).contains("\nflips      1 in 1"), "{}", text(&ran.stderr));
+    // A polygon stays one where its edges do; a packed file is one of its format.
+    let quad = folder.file("quad.obj", "v 0 0 0\nv 1 0 0\nv 1 1 1\nv 0 1 0\nf 1 2 3 4\n");
+    let packed = folder.path("quad.obj.gz");
+    let ran = run(&quad, &packed, &[]);
+    let note = "note       polygons cut into triangles, where an edge of theirs flips: 1\n";
+    assert!(text(&ran.stderr).contains(note), "{}", text(&ran.stderr));
+    assert_eq!(run(&packed, &output, &[]).status.code(), Some(0));
+    assert_eq!(fs::read(&output).unwrap(), fs::read(&quad).unwrap());
+}
+
+#[test]
+fn triangles_and_the_borders_of_groups_stay() {
+    let folder = Folder::new();
+    let (input, output) = (folder.file("in.off", SQUARE), folder.path("out.off"));
+    let list = folder.path("list.txt");
+    let ran = |option: &str, numbers: &str| {
+        fs::write(&list, numbers).unwrap();
+        run(&input, &output, &[option, list.to_str().unwrap(), "--json", "--verify"])
+    };
+    for (option, numbers, flips) in [
+        ("--lock-triangles", "# the second\n1\n", 0),
+        ("--lock-triangles", "", 1),
+        ("--groups", "7 # and\n4294967295", 0),
+        ("--groups", "7 7\n", 1),
+    ] {
+        let ran = ran(option, numbers);
+        let found: Value = serde_json::from_slice(&ran.stdout).unwrap();
+        assert_eq!((&found["flips"], &found["audit"]), (&flips.into(), &json!([])), "{option} {numbers}");
+        let remaining = if flips == 0 { json!({ "locked": 1 }) } else { json!({}) };
+        assert_eq!((&found["remaining"], &found["attribute_edges"]), (&remaining, &0.into()));
+    }
+    for (option, numbers, status, line) in [
+        ("--lock-triangles", "2", 2, "option locked_triangles: there is no triangle 2; the mesh has 2"),
+        ("--groups", "1 2 3", 2, "option groups: it has 3 numbers, the mesh has 2 triangles"),
+        ("--groups", "1\n-2", 1, "LIST: line 2: expected a number from 0, found `-2`"),
+        ("--lock-triangles", "4294967296", 1, "LIST: line 1: expected a number from 0, found `4294967296`"),
+    ] {
+        failed(&ran(option, numbers), status, &line.replace("LIST", list.to_str().unwrap()));
+    }
+}
+
 #[test]
 fn the_summary_is_on_standard_error() {
     let folder = Folder::new();
@@ -451,7 +526,7 @@ fn every_format_is_read_and_written() {
     let wide = "ply\nformat ascii 1.0\nelement vertex 3\nproperty double x\nproperty double y\nproperty uchar red\n\
         element face 1\nproperty list uchar int vertex_index\nend_header\n0.1 0 1\n1 0 1\n0 1 1\n3 0 1 2\n";
     let (wide, output) = (folder.file("wide.ply", wide), folder.path("wide-out.ply"));
-    let ran = run(&wide, &output, &[]);
+    let ran = run(&wide, &output, &["--drop-attributes"]);
     assert!(text(&ran.stderr).contains("note       not kept: vertex properties `red`\n"));
     let positions = read(&output, &ReadOptions::default()).unwrap().positions().clone();
     assert_eq!(positions, edgeflip::Positions::F64(vec![0.1, 0., 1., 0., 0., 1.]));

@@ -1,7 +1,7 @@
 //! The command line: its options, what they mean, and how they become the library's.
 
 use clap::{Parser, ValueEnum};
-use edgeflip::io::ReadOptions;
+use edgeflip::io::{Format, ReadOptions};
 use edgeflip::{Backend, Dimension, Options, Order};
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
@@ -10,14 +10,20 @@ const AFTER: &str = "\
 Formats, by extension:
   .off   Geomview OFF, text (also COFF, NOFF, STOFF, and nOFF with 2 or 3 dimensions)
   .obj   Wavefront OBJ; all groups and objects are read as one mesh
-  .ply   PLY, text or binary, written in binary; the only one whose doubles are read as such
+  .ply   PLY, text or binary; new files are in binary; the only one whose doubles are read as such
   .stl   STL, text or binary, written in binary with 32-bit floats; corners at the same position are
          read as one vertex
-  .gltf  glTF 2.0, .glb in one binary file; written again with other indices, and all else as it was.
-         Each primitive is a part of the mesh; what two of them share stays
+  .gltf  glTF 2.0, .glb in one binary file. Each primitive is a part of the mesh; what two of them
+         share stays
 Any of them may be gzip'd: IN whatever its name, OUT where .gz follows, as in bunny.ply.gz.
-Vertices keep their number and order. Polygons are cut into triangles. Normals, colours, texture
-coordinates, groups and materials are written only where glTF stays glTF.
+Vertices keep their number and order. Polygons are cut into triangles.
+
+Where OUT has the format of IN, it is IN with other triangles: normals, colours, texture coordinates,
+groups, materials and comments stay, as does a polygon whose edges stay. So that attributes of faces
+and corners stay with them, edges between groups of faces that differ (OBJ: usemtl, g, o, s; OFF, PLY,
+STL: what a face has beside its vertices) and along seams never flip, unless --drop-attributes is
+given. Otherwise only positions and triangles are written. Text STL, and PLY with strips of triangles,
+are written anew.
 
 Exit status:
   0   done; also when stopped by --max-iterations
@@ -63,6 +69,13 @@ pub struct Args {
     #[arg(long, value_name = "N", default_value_t = ReadOptions::default().max_bytes, allow_negative_numbers = true)]
     pub max_bytes: u64,
 
+    /// Write positions and triangles only, and let edges flip that keep attributes in their places
+    ///
+    /// Without it, edges between groups of faces and along seams stay where OUT has the format of IN. It has no effect
+    /// on glTF, whose parts share no vertices.
+    #[arg(long)]
+    pub drop_attributes: bool,
+
     /// Let a glTF file have its buffers in other files of its folder and of those below
     #[arg(long)]
     pub external_files: bool,
@@ -89,6 +102,19 @@ pub struct Args {
     /// pair has to be an edge of the mesh. Locked edges that are not Delaunay in the end are counted as `locked`.
     #[arg(long, value_name = "FILE")]
     pub lock_edges: Option<PathBuf>,
+
+    /// Triangles that stay as they are: a text file with their numbers
+    ///
+    /// They are counted from 0, in the order of IN, where a polygon of n corners is n - 2 triangles; # begins a comment.
+    /// All edges of these triangles are locked.
+    #[arg(long, value_name = "FILE")]
+    pub lock_triangles: Option<PathBuf>,
+
+    /// Groups of triangles whose borders stay: a text file with a number for each triangle
+    ///
+    /// Edges between triangles of different numbers are locked. # begins a comment.
+    #[arg(long, value_name = "FILE")]
+    pub groups: Option<PathBuf>,
 
     /// Turn triangles first, so that neighbours agree about the side that is outside
     ///
@@ -125,7 +151,8 @@ pub struct Args {
     /// backend, adapter, fallback,
     /// status (done or stopped), iterations, flips, flips_per_iteration, dispatches, device_bytes, remaining (by reason),
     /// min_angle_before_deg, min_angle_after_deg, before and after (min_angle_deg, mean_min_angle_deg, mean_aspect,
-    /// flat_triangles, area, volume), turned_triangles, moved_triangles, ms (load, upload, adjacency, flip, total, save; total is the
+    /// flat_triangles, area, volume), turned_triangles, moved_triangles, attribute_edges (locked for attributes'
+    /// sake), ms (load, upload, adjacency, flip, total, save; total is the
     /// run without load and save), and with --verify audit (the violations), remaining_edges (by reason, the two
     /// vertices of each edge left, counted from 0) and distance (between the surfaces before and after).
     #[arg(long)]
@@ -144,10 +171,19 @@ impl Args {
             DimensionArg::Two => Some(Dimension::Two),
             DimensionArg::Three => Some(Dimension::Three),
         };
-        ReadOptions { dimension, max_bytes: self.max_bytes, external_files: self.external_files }
+        let is_same = match (Format::of(&self.input), Format::of(&self.output)) {
+            (Ok(input), Ok(output)) => input == output,
+            _ => false,
+        };
+        ReadOptions {
+            dimension,
+            max_bytes: self.max_bytes,
+            external_files: self.external_files,
+            keep: is_same && !self.drop_attributes,
+        }
     }
 
-    /// What the library is asked to do, without the edges to lock.
+    /// What the library is asked to do, without what is locked.
     pub fn options(&self) -> Options {
         Options {
             backend: match self.backend {

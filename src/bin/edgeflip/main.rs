@@ -10,6 +10,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use report::{Check, Milliseconds, Report};
 use std::io::{IsTerminal, Write};
 use std::ops::ControlFlow;
+use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
@@ -94,11 +95,13 @@ fn run(args: &Args, bar: &ProgressBar) -> Result<Report, Failure> {
     let turned = args.reorient.then(|| reoriented(&loaded.mesh)).transpose().map_err(refused)?;
     let (mesh, turned) = turned.as_ref().map_or((&loaded.mesh, 0), |(mesh, turned)| (mesh, *turned));
 
-    let locked_edges = match &args.lock_edges {
-        Some(path) => io::read_edges(path).map_err(|error| Failure::of(path, &error))?,
-        None => Vec::new(),
+    let mut options = Options {
+        locked_edges: list(&args.lock_edges, io::read_edges)?,
+        locked_triangles: list(&args.lock_triangles, io::read_numbers)?,
+        groups: list(&args.groups, io::read_numbers)?,
+        ..args.options()
     };
-    let options = Options { locked_edges, ..args.options() };
+    let attribute_edges = loaded.constrain(&mut options).map_err(refused)?;
 
     bar.set_message("preparing");
     let before = quality::measures(mesh);
@@ -123,8 +126,20 @@ fn run(args: &Args, bar: &ProgressBar) -> Result<Report, Failure> {
         save = Some(ms);
     }
     let ms = Milliseconds::new(load, &outcome.timings, save);
-    Ok(Report::new(args, &result, outcome, [before, after], [turned, moved], check, ms)
-        .with_notes(&loaded, format))
+    Ok(Report::new(args, &result, outcome, [before, after], [turned, moved], check, ms).with_attributes(
+        &loaded,
+        format,
+        attribute_edges,
+    ))
+}
+
+/// The list in a file, if there is one.
+fn list<'a, T>(
+    path: &'a Option<PathBuf>,
+    read: impl FnOnce(&'a PathBuf) -> Result<Vec<T>, Error>,
+) -> Result<Vec<T>, Failure> {
+    let read = |path: &'a PathBuf| read(path).map_err(|error| Failure::of(path, &error));
+    path.as_ref().map_or(Ok(Vec::new()), read)
 }
 
 /// What the independent check finds: another count of the edges left is a violation too.

@@ -38,6 +38,7 @@ pub struct Report {
     after: Shape,
     turned_triangles: u32,
     moved_triangles: u32,
+    attribute_edges: usize,
     ms: Milliseconds,
     #[serde(flatten)]
     check: Option<Check>,
@@ -149,6 +150,7 @@ impl Report {
             after: measures[1].into(),
             turned_triangles: turned,
             moved_triangles: moved,
+            attribute_edges: 0,
             ms,
             check,
             left: outcome.remaining,
@@ -156,12 +158,15 @@ impl Report {
         }
     }
 
-    /// Adds what reading changed, and what a file of that format does not keep.
-    pub fn with_notes(mut self, loaded: &Loaded, format: Format) -> Self {
+    /// Adds what reading changed, what a file of that format does not keep, and how many edges are locked for what it
+    /// keeps.
+    pub fn with_attributes(mut self, loaded: &Loaded, format: Format, locked: usize) -> Self {
+        self.attribute_edges = locked;
         self.notes.clone_from(&loaded.notes);
         if loaded.polygons > 0 {
             let polygons = HumanCount(loaded.polygons as u64);
-            self.notes.push(format!("polygons cut into triangles: {polygons}"));
+            let changed = if loaded.keeps(format) { ", where an edge of theirs flips" } else { "" };
+            self.notes.push(format!("polygons cut into triangles{changed}: {polygons}"));
         }
         let dropped = loaded.dropped_in(format);
         if !dropped.is_empty() {
@@ -203,6 +208,11 @@ impl Report {
                 .collect();
         if !frozen.is_empty() {
             line("frozen", format!("{}, left as they are", frozen.join(", ")));
+        }
+        if self.attribute_edges > 0 {
+            let edges = HumanCount(self.attribute_edges as u64);
+            let what = "edges between groups or along seams stay; --drop-attributes lets them flip";
+            line("locked", format!("{edges} {what}"));
         }
         let adapter = self.adapter.as_ref().map(|name| format!(" ({name})")).unwrap_or_default();
         line("backend", format!("{}{adapter}", self.backend));
