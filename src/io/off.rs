@@ -30,19 +30,17 @@ pub(super) fn held_faces(bytes: &[u8]) -> Result<Faces<'_>, Error> {
     let header = Header::parse(&mut lines)?;
     let counts = header.growing.iter().map(|count| place(bytes, count)).collect();
     let vertices = usize::try_from(header.vertices).unwrap_or(usize::MAX);
-    let (mut list, mut groups, mut colours) = (Vec::new(), Numbers::default(), Vec::new());
+    let (mut list, mut colours) = (Vec::new(), Numbers::default());
     for line in std::iter::from_fn(|| content(&mut lines)).skip(vertices) {
         let line = line.0.trim_ascii();
         let mut rest = Tokens(line);
         let corners = rest.next().and_then(integer).and_then(|corners| usize::try_from(corners).ok());
         let corners = rest.by_ref().take(corners.unwrap_or_default()).count();
         let colour = rest.0.trim_ascii_start();
-        let group = groups.of(&colour);
-        if group as usize == colours.len() {
-            colours.push(colour);
-        }
+        let group = colours.of(&colour);
         list.push(Face { bytes: place(bytes, line), triangles: corners.saturating_sub(2), group });
     }
+    let colours = colours.into_known();
     let write = move |out: &mut Vec<u8>, group: u32, triangle: [u32; 3], _: [u32; 3]| {
         let mut digits = Digits::default();
         out.push(b'3');

@@ -2,7 +2,7 @@
 //! share of that. A format says where its faces are, what they and their corners have, and how it writes a triangle.
 
 use super::{Format, obj, off, ply, stl};
-use crate::{Adjacency, Error, Mesh, Options, Wedges, locked_edges, reoriented};
+use crate::{Adjacency, Error, Mesh, NONE, Options, Wedges, locked_edges, reoriented};
 use memchr::memchr2;
 use std::borrow::Borrow;
 use std::collections::HashMap;
@@ -21,8 +21,8 @@ pub(super) struct Original {
 /// The faces of a file, in its order.
 pub(super) struct Faces<'a> {
     pub(super) list: Vec<Face>,
-    /// A number for each corner of their triangles, equal where what the file says of the corner is; empty where it says
-    /// nothing.
+    /// A number for each corner of their triangles, equal at corners of a vertex of which the file says the same; empty
+    /// where it says nothing of any.
     pub(super) corners: Vec<u32>,
     /// Numbers of the header that grow with the number of faces.
     pub(super) counts: Vec<Range<usize>>,
@@ -118,8 +118,8 @@ impl Original {
         let bytes = &self.bytes;
         let faces = match self.format {
             Format::Off => off::held_faces(bytes),
-            Format::Obj => Ok(obj::held_faces(bytes)),
-            Format::Ply => ply::held_faces(bytes),
+            Format::Obj => Ok(obj::held_faces(bytes, mesh)),
+            Format::Ply => ply::held_faces(bytes, mesh),
             _ => Ok(stl::held_faces(bytes, mesh)),
         }?;
         let expected = 3 * faces.list.iter().map(|face| face.triangles).sum::<usize>();
@@ -175,27 +175,73 @@ impl Faces<'_> {
 }
 
 /// Numbers from 0, equal for equal keys.
-pub(super) struct Numbers<K>(HashMap<K, u32>);
+pub(super) struct Numbers<K> {
+    numbers: HashMap<K, u32>,
+    /// The keys by their numbers.
+    known: Vec<K>,
+    /// The number given last: often the next one is the same.
+    last: u32,
+}
 
 impl<K> Default for Numbers<K> {
     fn default() -> Self {
-        Self(HashMap::new())
+        Self { numbers: HashMap::new(), known: Vec::new(), last: 0 }
     }
 }
 
-impl<K: Eq + Hash> Numbers<K> {
+impl<K: Clone + Eq + Hash> Numbers<K> {
     pub(super) fn of<Q>(&mut self, key: &Q) -> u32
     where
         K: Borrow<Q>,
         Q: ToOwned<Owned = K> + Eq + Hash + ?Sized,
     {
-        if let Some(&number) = self.0.get(key) {
-            return number;
+        if self.known.get(self.last as usize).is_none_or(|last| last.borrow() != key) {
+            self.last = self.numbers.get(key).copied().unwrap_or_else(|| {
+                let number = self.known.len() as u32;
+                self.known.push(key.to_owned());
+                self.numbers.insert(key.to_owned(), number);
+                number
+            });
         }
-        let number = self.0.len() as u32;
-        self.0.insert(key.to_owned(), number);
-        number
+        self.last
     }
+
+    /// The keys by their numbers.
+    pub(super) fn into_known(self) -> Vec<K> {
+        self.known
+    }
+}
+
+/// Numbers for what the corners of a mesh have, from 0, and what each number stands for: equal at corners of a vertex
+/// whose keys are.
+pub(super) fn numbered<T: Copy + PartialEq, K: Eq + Hash>(
+    mesh: &Mesh,
+    corners: &[T],
+    key: impl Fn(T) -> K,
+) -> (Vec<u32>, Vec<T>) {
+    let mut known: Vec<T> = Vec::new();
+    // Most vertices have one for all their corners.
+    let mut first = vec![NONE; mesh.vertex_count()];
+    let mut others = HashMap::new();
+    let numbers = mesh.triangles().iter().zip(corners).map(|(&vertex, &corner)| {
+        let first = &mut first[vertex as usize];
+        let is_as_first = |&first: &T| first == corner || key(first) == key(corner);
+        if known.get(*first as usize).is_some_and(is_as_first) {
+            return *first;
+        }
+        let next = known.len() as u32;
+        let number = if *first == NONE {
+            *first = next;
+            next
+        } else {
+            *others.entry((vertex, key(corner))).or_insert(next)
+        };
+        if number == next {
+            known.push(corner);
+        }
+        number
+    });
+    (numbers.collect(), known)
 }
 
 /// Where `part` is in `file`, a part of which it has to be.

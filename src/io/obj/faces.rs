@@ -1,7 +1,8 @@
 //! Where the faces of an OBJ file are, the texture vertices and normals of their corners, and the groups that they are in.
 
 use super::continued;
-use crate::io::original::{Face, Faces, Numbers, line_end, place};
+use crate::Mesh;
+use crate::io::original::{Face, Faces, Numbers, line_end, numbered, place};
 use crate::io::text::{Digits, Lines, Tokens, integer, without_comment};
 
 /// What a line of these says is so for the faces after it.
@@ -11,10 +12,10 @@ const STATES: [&[u8]; 6] = [b"usemtl", b"g", b"o", b"s", b"mg", b"usemap"];
 type References = [u32; 2];
 
 /// The faces of a file that has been read.
-pub(in crate::io) fn held_faces(bytes: &[u8]) -> Faces<'_> {
+pub(in crate::io) fn held_faces<'a>(bytes: &'a [u8], mesh: &Mesh) -> Faces<'a> {
     let mut list = Vec::new();
-    // What texture vertices and normals are, as numbers that are equal where their texts are.
-    let (mut texts, mut attributes) = (Numbers::default(), [Vec::new(), Vec::new()]);
+    // What follows the keywords vt and vn.
+    let mut texts: [Vec<&[u8]>; 2] = Default::default();
     let mut references: Vec<References> = Vec::new();
     let mut states = [b"".as_slice(); STATES.len()];
     let (mut groups, mut group) = (Numbers::default(), None);
@@ -32,15 +33,15 @@ pub(in crate::io) fn held_faces(bytes: &[u8]) -> Faces<'_> {
             Some(b"v") | None => {}
             Some(b"f" | b"fo") => {
                 corners.clear();
-                corners.extend(tokens.map(|corner| resolved(corner, &attributes)));
+                corners.extend(tokens.map(|corner| resolved(corner, &texts)));
                 let Some((&first, rest)) = corners.split_first() else { continue };
                 let pairs = rest.windows(2);
                 let group = *group.get_or_insert_with(|| groups.of(&states));
                 list.push(Face { bytes: start..end, triangles: pairs.len(), group });
                 references.extend(pairs.flat_map(|pair| [first, pair[0], pair[1]]));
             }
-            Some(b"vt") => attributes[0].push(texts.of(&text)),
-            Some(b"vn") => attributes[1].push(texts.of(&text)),
+            Some(b"vt") => texts[0].push(text),
+            Some(b"vn") => texts[1].push(text),
             Some(keyword) => {
                 if let Some(state) = STATES.iter().position(|&state| state == keyword) {
                     states[state] = text;
@@ -49,7 +50,18 @@ pub(in crate::io) fn held_faces(bytes: &[u8]) -> Faces<'_> {
             }
         }
     }
-    let (corners, known) = numbered(&references, &attributes);
+    let value = |references: References| {
+        // Of one that the file does not have, the number is all that is known.
+        let text = |kind: usize| {
+            let place = (references[kind] as usize).wrapping_sub(1);
+            texts[kind].get(place).copied().ok_or(references[kind])
+        };
+        [text(0), text(1)]
+    };
+    if references.iter().all(|corner| *corner == [0, 0]) {
+        references.clear();
+    }
+    let (corners, known) = numbered(mesh, &references, value);
     let write = move |out: &mut Vec<u8>, _: u32, triangle: [u32; 3], corners: [u32; 3]| {
         let mut digits = Digits::default();
         out.push(b'f');
@@ -71,33 +83,11 @@ pub(in crate::io) fn held_faces(bytes: &[u8]) -> Faces<'_> {
 }
 
 /// What a corner such as `1/2/3` refers to; what is not there is none.
-fn resolved(corner: &[u8], attributes: &[Vec<u32>; 2]) -> References {
+fn resolved(corner: &[u8], texts: &[Vec<&[u8]>; 2]) -> References {
     let mut parts = corner.split(|&b| b == b'/').skip(1);
-    attributes.each_ref().map(|attributes| {
+    texts.each_ref().map(|texts| {
         let number = parts.next().and_then(integer).unwrap_or_default();
-        let so_far = attributes.len() as i64;
+        let so_far = texts.len() as i64;
         u32::try_from(if number < 0 { so_far + 1 + number } else { number }).unwrap_or_default()
     })
-}
-
-/// A number for each of these, equal where what they refer to is, and the first that has each number; nothing where all
-/// refer to nothing.
-fn numbered(references: &[References], attributes: &[Vec<u32>; 2]) -> (Vec<u32>, Vec<References>) {
-    if references.iter().all(|corner| *corner == [0, 0]) {
-        return (Vec::new(), Vec::new());
-    }
-    let (mut numbers, mut known) = (Numbers::default(), Vec::new());
-    let corners = references.iter().map(|corner| {
-        let equal = |kind: usize| {
-            let Some(place) = corner[kind].checked_sub(1) else { return (0, 0) };
-            // One that the file does not have is equal to itself.
-            attributes[kind].get(place as usize).map_or((1, place), |&text| (2, text))
-        };
-        let number = numbers.of(&(equal(0), equal(1)));
-        if number as usize == known.len() {
-            known.push(*corner);
-        }
-        number
-    });
-    (corners.collect(), known)
 }

@@ -3,9 +3,9 @@
 use super::header::{Element, Encoding, Header, Property, Scalar};
 use super::source::{Ascii, Source};
 use super::{Role, binary, role};
-use crate::Error;
-use crate::io::original::{Face, Faces, Numbers, line_end, place};
+use crate::io::original::{Face, Faces, Numbers, line_end, numbered, place};
 use crate::io::text::{Digits, Lines, Tokens, quoted};
+use crate::{Error, Mesh};
 
 /// The list of two numbers for each corner of a face.
 const TEXTURE: &[u8] = b"texcoord";
@@ -17,12 +17,12 @@ pub(in crate::io) fn is_held(bytes: &[u8]) -> bool {
 }
 
 /// The faces of a file that has been read.
-pub(in crate::io) fn held_faces(bytes: &[u8]) -> Result<Faces<'_>, Error> {
+pub(in crate::io) fn held_faces<'a>(bytes: &'a [u8], mesh: &Mesh) -> Result<Faces<'a>, Error> {
     let mut lines = Lines::new(bytes);
     let Header { encoding, elements } = Header::parse(&mut lines)?;
     match encoding {
-        Encoding::Ascii => of(bytes, Ascii { lines, words: Tokens(b"") }, &elements, encoding),
-        _ => of(bytes, binary(bytes, &lines, encoding), &elements, encoding),
+        Encoding::Ascii => of(bytes, Ascii { lines, words: Tokens(b"") }, &elements, encoding, mesh),
+        _ => of(bytes, binary(bytes, &lines, encoding), &elements, encoding, mesh),
     }
 }
 
@@ -41,11 +41,11 @@ fn of<'a>(
     mut source: impl Source<'a>,
     elements: &[Element<'a>],
     encoding: Encoding,
+    mesh: &Mesh,
 ) -> Result<Faces<'a>, Error> {
     let (mut list, mut corners, mut counts) = (Vec::new(), Vec::new(), Vec::new());
     let mut form = Form { encoding, properties: Vec::new(), vertices: 0, texture: None };
-    let (mut groups, mut known) = (Numbers::default(), Vec::new());
-    let (mut textures, mut coordinates) = (Numbers::default(), Vec::new());
+    let mut groups: Numbers<Vec<&[u8]>> = Numbers::default();
     for element in elements.iter().filter(|element| !element.properties.is_empty()) {
         if element.name != b"face" {
             (0..element.count).try_for_each(|_| source.pass(&element.properties))?;
@@ -63,36 +63,27 @@ fn of<'a>(
             let triangles = form.read(&mut source, &mut values, &mut pieces)?;
             let record = form.trimmed(&start[..start.len() - source.rest().len()]);
             let group = groups.of(values.as_slice());
-            if group as usize == known.len() {
-                known.push(values.clone());
-            }
             list.push(Face { bytes: place(bytes, record), triangles, group });
             if form.texture.is_none() {
                 continue;
             }
-            for i in 1..=triangles {
-                for corner in [0, i, i + 1] {
-                    let piece = pieces.get(corner).copied().unwrap_or_default();
-                    let number = textures.of(&piece);
-                    if number as usize == coordinates.len() {
-                        coordinates.push(piece);
-                    }
-                    corners.push(number);
-                }
-            }
+            let piece = |corner: usize| pieces.get(corner).copied().unwrap_or_default();
+            corners.extend((1..=triangles).flat_map(|i| [0, i, i + 1]).map(piece));
         }
     }
+    let groups = groups.into_known();
+    let (corners, coordinates) = numbered(mesh, &corners, |piece: &[u8]| piece);
     let separator = if encoding == Encoding::Ascii { line_end(bytes) } else { b"" };
     let write = move |out: &mut Vec<u8>, group: u32, triangle: [u32; 3], corners: [u32; 3]| {
         let corners = corners.map(|corner| coordinates.get(corner as usize).copied().unwrap_or_default());
-        form.write(out, &known[group as usize], triangle, corners)
+        form.write(out, &groups[group as usize], triangle, corners)
     };
     Ok(Faces { list, corners, counts, separator, write: Box::new(write) })
 }
 
 impl<'a> Form<'a> {
-    /// Reads a face, and returns how many triangles it is. `values` become what its properties are, but for the vertices
-    /// and what each corner has in `pieces`: those are empty.
+    /// Reads a face, and returns how many triangles it is. `pieces` become what each corner has, and `values` what the
+    /// other properties are, but for the vertices.
     fn read(
         &self,
         source: &mut impl Source<'a>,
@@ -101,24 +92,24 @@ impl<'a> Form<'a> {
     ) -> Result<usize, Error> {
         values.clear();
         pieces.clear();
-        let (mut corners, mut coordinates) = (0, 0);
+        let (mut corners, mut texture) = (0, None);
         for (i, &Property { length, scalar, .. }) in self.properties.iter().enumerate() {
             let start = source.rest();
             let count = length.map_or(Ok(1.0), |length| source.number(length))? as u64;
             source.skip(scalar, count)?;
-            values.push(self.trimmed(&start[..start.len() - source.rest().len()]));
             if i == self.vertices {
                 corners = count;
-            } else if Some(i) == self.texture {
-                coordinates = count;
+                continue;
             }
+            if Some(i) == self.texture {
+                texture = Some((values.len(), count));
+            }
+            values.push(self.trimmed(&start[..start.len() - source.rest().len()]));
         }
-        values[self.vertices] = b"";
-        if let Some(texture) = self.texture
-            && coordinates == 2 * corners
+        if let (Some((place, count)), Some(texture)) = (texture, self.texture)
+            && count == 2 * corners
         {
-            let value = std::mem::take(&mut values[texture]);
-            self.divide(value, &self.properties[texture], pieces);
+            self.divide(values.remove(place), &self.properties[texture], pieces);
         }
         Ok((corners as usize).saturating_sub(2))
     }
@@ -150,7 +141,9 @@ impl<'a> Form<'a> {
         corners: [&[u8]; 3],
     ) -> Result<(), Error> {
         let start = out.len();
-        for (i, (value, property)) in values.iter().zip(&self.properties).enumerate() {
+        let mut values = values.iter();
+        let has_pieces = values.len() + 2 == self.properties.len();
+        for (i, property) in self.properties.iter().enumerate() {
             let length = property.length.unwrap_or(property.scalar);
             if i == self.vertices {
                 if let Some(vertex) = triangle.iter().find(|&&vertex| vertex > property.scalar.most()) {
@@ -159,7 +152,7 @@ impl<'a> Form<'a> {
                 }
                 self.put(out, start, length, 3);
                 triangle.iter().for_each(|&vertex| self.put(out, start, property.scalar, vertex));
-            } else if value.is_empty() {
+            } else if has_pieces && Some(i) == self.texture {
                 if let Some(i) = corners.iter().position(|corner| corner.is_empty()) {
                     let (vertex, name) = (triangle[i], quoted(property.name));
                     let message =
@@ -168,7 +161,7 @@ impl<'a> Form<'a> {
                 }
                 self.put(out, start, length, 6);
                 corners.iter().for_each(|corner| self.put_bytes(out, start, corner));
-            } else {
+            } else if let Some(value) = values.next() {
                 self.put_bytes(out, start, value);
             }
         }
