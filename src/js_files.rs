@@ -5,7 +5,7 @@
 use crate::error::number;
 use crate::io::{self, Format, Loaded, ReadOptions};
 use crate::js_values::{JsPositions, object, parse_dimension, thrown};
-use crate::{Error, Mesh, Positions, families, quality, reoriented};
+use crate::{Error, Mesh, Options, Positions, families, quality, reoriented};
 use js_sys::{Array, Float32Array, Float64Array, Reflect, Uint8Array, Uint32Array};
 use std::path::Path;
 use wasm_bindgen::prelude::*;
@@ -27,6 +27,11 @@ pub fn read_mesh(
     files: &JsValue,
 ) -> Result<JsValue, JsValue> {
     let loaded = load(bytes, name, dimension, max_bytes, files).map_err(thrown)?;
+    let mut constraints = Options::default();
+    loaded.constrain(&mut constraints).map_err(thrown)?;
+    let numbers = |numbers: &[u32]| {
+        if numbers.is_empty() { JsValue::UNDEFINED } else { Uint32Array::from(numbers).into() }
+    };
     let texts = |texts: &[String]| texts.iter().map(JsValue::from).collect::<Array>().into();
     let placed =
         loaded.placed().map_or(JsValue::UNDEFINED, |placed| Float32Array::from(placed.as_slice()).into());
@@ -37,8 +42,12 @@ pub fn read_mesh(
         dimension,
         ("polygons", (loaded.polygons as f64).into()),
         ("dropped", texts(&loaded.dropped)),
+        ("keeps", Format::of(Path::new(name)).is_ok_and(|format| loaded.keeps(format)).into()),
         ("notes", texts(&loaded.notes)),
         ("placed", placed),
+        ("groups", numbers(&constraints.groups)),
+        ("lockedEdges", numbers(constraints.locked_edges.as_flattened())),
+        ("lockedTriangles", numbers(&constraints.locked_triangles)),
     ]))
 }
 
@@ -72,7 +81,7 @@ fn load(
     options.dimension = dimension.map(parse_dimension).transpose()?;
     options.max_bytes = max_bytes.map_or(Ok(options.max_bytes), parse_max_bytes)?;
     options.check(bytes.length().into())?;
-    io::parse_with(format, &bytes.to_vec(), &options, &|name| {
+    io::parse_with(format, bytes.to_vec(), &options, &|name| {
         let given =
             Reflect::get(files, &name.into()).ok().and_then(|file| file.dyn_into::<Uint8Array>().ok());
         given.map(|file| file.to_vec()).ok_or_else(|| "it is not among the `files` given".into())

@@ -1,7 +1,7 @@
 /** The worker: reads, generates and measures meshes, or runs an engine, so that the page never waits. */
 
 import { expose, transfer } from 'comlink';
-import { FlipSession } from 'edgeflip';
+import type { FlipSession } from 'edgeflip';
 import {
   angles,
   change,
@@ -18,7 +18,7 @@ import {
 import { naming } from './crash.ts';
 import { changeOf, type Change } from './change.ts';
 import type { Backend } from './engines.ts';
-import { statesOf, summaryOf, type Step, type Summary } from './run.ts';
+import { sessionOf, statesOf, summaryOf, type OpenMesh, type Step, type Summary } from './run.ts';
 
 /** What `readMesh` takes; what is larger is not read at all. */
 const MOST_BYTES = 2 ** 30;
@@ -67,8 +67,8 @@ class Desk {
   }
 
   /** Begins a run. Returns what its edges are, if they are to be drawn. */
-  async open(mesh: IndexedMesh, maxNormalAngle: number, backend: Backend): Promise<Uint8Array | undefined> {
-    const session = await FlipSession.create(mesh, { backend, maxNormalAngle });
+  async open(mesh: OpenMesh, maxNormalAngle: number, backend: Backend): Promise<Uint8Array | undefined> {
+    const session = await sessionOf(mesh, { backend, maxNormalAngle });
     this.#session = session;
     this.#before = mesh.indices;
     return statesOf(session, mesh.indices.length);

@@ -1,13 +1,12 @@
 /** Where the flips happen: on the GPU that the page draws with, or in a worker, on WebGL2 or the CPU. */
 
 import { wrap, type Remote } from 'comlink';
-import { EdgeflipError, FlipSession, type Engine } from 'edgeflip';
-import type { IndexedMesh } from 'edgeflip/files';
+import { EdgeflipError, type Engine } from 'edgeflip';
 import { ArrayTrack } from './array-track.ts';
 import { CRASHED } from './crash.ts';
 import type { Desk } from './desk.ts';
 import { GpuTrack } from './gpu-track.ts';
-import { Run, statesOf, summaryOf } from './run.ts';
+import { Run, sessionOf, statesOf, summaryOf, type OpenMesh } from './run.ts';
 
 /** A GPU that both the flips and the drawing use. */
 export interface Gpu {
@@ -89,7 +88,7 @@ export type Backend = 'auto' | Engine;
  * @throws an error that can be shown, about the mesh, β or the backend that was asked for.
  */
 export async function beginRun(
-  mesh: IndexedMesh,
+  mesh: OpenMesh,
   maxNormalAngle: number,
   backend: Backend,
   gpu: Gpu | string,
@@ -113,8 +112,8 @@ export async function beginRun(
   }
 }
 
-async function onGpu(mesh: IndexedMesh, maxNormalAngle: number, device: GPUDevice): Promise<Run> {
-  const session = await FlipSession.create(mesh, { backend: 'webgpu', device, maxNormalAngle });
+async function onGpu(mesh: OpenMesh, maxNormalAngle: number, device: GPUDevice): Promise<Run> {
+  const session = await sessionOf(mesh, { backend: 'webgpu', device, maxNormalAngle });
   try {
     const shared = await session.gpu();
     if (!shared) throw new Error('the session shows no buffers');
@@ -138,7 +137,7 @@ async function onGpu(mesh: IndexedMesh, maxNormalAngle: number, device: GPUDevic
 
 /** The run has a worker of its own, so that another one can go on beside it, and ends with it. */
 async function inWorker(
-  mesh: IndexedMesh,
+  mesh: OpenMesh,
   maxNormalAngle: number,
   backend: Backend,
   signal: AbortSignal,

@@ -426,9 +426,10 @@ function whyThere({ fallback }: Run, summary: Summary | undefined): string {
 function remarkOn(mesh: IndexedMesh | FileMesh): string {
   if (!('polygons' in mesh)) return '';
   const cut = mesh.polygons > 0 ? `${number.format(mesh.polygons)} faces were cut into triangles.` : '';
-  // A download of what is placed in a scene keeps it.
-  const dropped = mesh.dropped.length > 0 && !mesh.placed ? `Not kept: ${mesh.dropped.join(', ')}.` : '';
-  return [cut, dropped, ...mesh.notes.map((note) => `${note}.`)].filter(Boolean).join(' ');
+  const dropped = mesh.dropped.length > 0 && !mesh.keeps ? `Not kept: ${mesh.dropped.join(', ')}.` : '';
+  const isDivided = mesh.groups ?? mesh.lockedEdges ?? mesh.lockedTriangles;
+  const locked = isDivided ? 'Edges between groups of faces or along seams stay.' : '';
+  return [cut, dropped, locked, ...mesh.notes.map((note) => `${note}.`)].filter(Boolean).join(' ');
 }
 
 function left(what: string): string {

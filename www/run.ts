@@ -1,6 +1,7 @@
 /** A run that can be watched: every iteration is kept, so that the slider can go back to it. */
 
-import { EDGE_STATES, type FlipSession, type Iteration, type Result } from 'edgeflip';
+import { EDGE_STATES, FlipSession, type Iteration, type Options, type Result } from 'edgeflip';
+import type { FileMesh, IndexedMesh } from 'edgeflip/files';
 import type { Change } from './change.ts';
 
 /** Meshes of up to so many triangles have their edges drawn in colours. */
@@ -44,6 +45,15 @@ export interface Track {
   /** A copy of the triangles where the track stands. */
   triangles(): Promise<Uint32Array>;
   free(): void;
+}
+
+/** A mesh, and where it is from a file what keeps its attributes in their places. */
+export type OpenMesh = IndexedMesh & Partial<Pick<FileMesh, 'groups' | 'lockedEdges' | 'lockedTriangles'>>;
+
+/** A session of the mesh, with what keeps its attributes. */
+export function sessionOf(mesh: OpenMesh, options: Options): Promise<FlipSession> {
+  const { groups, lockedEdges, lockedTriangles } = mesh;
+  return FlipSession.create(mesh, { groups, lockedEdges, lockedTriangles, ...options });
 }
 
 /** What the edges of a small mesh are, one entry a half-edge. */

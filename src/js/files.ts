@@ -40,6 +40,8 @@ export interface FileMesh extends IndexedMesh {
   polygons: number;
   /** What the file holds that a mesh has no place for, such as `normals`. Normals of an STL file are its triangles'. */
   dropped: string[];
+  /** Whether {@link writeMesh} keeps it, given the original, in a file of the same format: not of PLY with strips. */
+  keeps: boolean;
   /** What else there is to say about the file, a sentence each. */
   notes: string[];
   /**
@@ -47,6 +49,15 @@ export interface FileMesh extends IndexedMesh {
    * it is decided what is Delaunay, and places it in a scene.
    */
   placed: Float32Array | undefined;
+  /**
+   * What a run has to be told, as its options of the same names, so that {@link writeMesh} can keep attributes of faces and
+   * corners: a number for each triangle, such as that of its material or colour; the seams, where corners of a vertex
+   * differ in their texture coordinates or normals; and triangles that nothing else would tell. `undefined` where there
+   * are none. What glTF has is at vertices.
+   */
+  groups: Uint32Array | undefined;
+  lockedEdges: Uint32Array | undefined;
+  lockedTriangles: Uint32Array | undefined;
 }
 
 /** Bytes of files by their names, such as `{ 'scene.bin': bytes }`. */
@@ -65,8 +76,10 @@ export interface ReadOptions {
 /** What can be chosen for {@link writeMesh}. */
 export interface WriteOptions {
   /**
-   * The file that the mesh was read from, and whose triangles have become others: glTF is written again with other
-   * indices, in either form, and all else as it was.
+   * The file that the mesh was read from, and whose triangles have become others. In the same format it is written again,
+   * with all else as it was: glTF, in either form, with other indices; OFF, OBJ, PLY and binary STL with other faces. Those of
+   * which no triangle is another stay, polygons too; the others give way to triangles with their attributes. It takes the
+   * triangles of a run with {@link FileMesh.groups}, {@link FileMesh.lockedEdges} and {@link FileMesh.lockedTriangles}.
    */
   original?: { bytes: Uint8Array; name: string; files?: Files | undefined; maxBytes?: number | undefined } | undefined;
 }
@@ -147,7 +160,8 @@ export async function readMesh(bytes: Uint8Array, name: string, options: ReadOpt
  *
  * @param name - Its name, such as `bunny.obj` or `bunny.ply.gz`: the extension gives the format.
  * @throws {@link EdgeflipError} about the mesh; `unknown-format`; `io` for coordinates that STL and glTF cannot hold; those of
- * {@link readMesh} about the original, and `triangle-count` if it has another number of triangles.
+ * {@link readMesh} about the original, `triangle-count` if it has another number of triangles, and `invalid-option` for
+ * triangles that flips across its seams have made.
  */
 export async function writeMesh(mesh: Mesh, name: string, options: WriteOptions = {}): Promise<Uint8Array<ArrayBuffer>> {
   const { positions, indices, dimension } = moduleMesh(mesh);

@@ -40,7 +40,8 @@ test('a module that cannot be loaded is an error, and the next call tries again'
 });
 
 /** What is said of a file of which there is nothing to say. */
-const PLAIN = { polygons: 0, dropped: [], notes: [], placed: undefined };
+const FREE = { groups: undefined, lockedEdges: undefined, lockedTriangles: undefined };
+const PLAIN = { polygons: 0, dropped: [], keeps: true, notes: [], placed: undefined, ...FREE };
 
 test('every bit comes back, in each format and in both dimensions', async () => {
   const flat = awkward();
@@ -120,6 +121,26 @@ test('polygons of an OBJ file become fans, and what is dropped is named', async 
   assert.deepEqual([...mesh.indices], [0, 1, 2, 0, 2, 3, 0, 3, 4, 4, 3, 2]);
   assert.equal(mesh.polygons, 1);
   assert.deepEqual(mesh.dropped, ['groups, objects and materials', 'normals']);
+});
+
+test('a file comes out with other triangles and all else as it was', async () => {
+  const points = '# by hand\r\nv 0 0 0\r\nv 0.90000000001 0.2 0\r\nv 1 1 0\r\nv 0 1 0\r\nv 0.5 -9 0\r\nvt 0 0\r\nvt 1 1\r\n';
+  const original = { bytes: bytes(`${points}usemtl a\r\nf 1/1 2/1 3/1 4/1\r\nusemtl b\r\nf 2/2 1/2 5/2\r\n`), name: 'a.obj' };
+  const mesh = await readMesh(original.bytes, original.name);
+  const { groups, lockedEdges, lockedTriangles, keeps } = mesh;
+  assert.deepEqual([groups, lockedEdges, lockedTriangles, keeps], [Uint32Array.of(0, 0, 1), Uint32Array.of(0, 1), undefined, true]);
+  const { indices, flips } = await makeDelaunay(mesh, { groups, lockedEdges, lockedTriangles });
+  assert.equal(flips, 1);
+  const written = text(await writeMesh({ ...mesh, indices }, 'b.obj', { original }));
+  assert.equal(written, `${points}usemtl a\r\nf 4/1 2/1 3/1\r\nf 1/1 2/1 4/1\r\nusemtl b\r\nf 2/2 1/2 5/2\r\n`);
+  assert.deepEqual(new Uint8Array(gunzipSync(await writeMesh(mesh, 'b.obj.gz', { original }))), original.bytes);
+  // Another format has positions and triangles; so does the same without the original.
+  assert.match(text(await writeMesh({ ...mesh, indices }, 'b.off', { original })), /^OFF\n5 3 0\n0 0\b/);
+  assert.match(text(await writeMesh({ ...mesh, indices }, 'b.obj')), /^v 0 0 0\nv 0.9 0.2 0\n/);
+  const turned = { ...mesh, indices: Uint32Array.of(0, 2, 1, 0, 3, 2, 1, 0, 4) };
+  await assert.rejects(writeMesh(turned, 'b.obj', { original }), refused('invalid-option', /none that flips make while seams are locked/));
+  const strips = 'ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nelement tristrips 1\nproperty list int int vertex_index\nend_header\n0 0\n1 0\n0 1\n3 0 1 2\n';
+  assert.equal((await readMesh(bytes(strips), 'a.ply')).keeps, false);
 });
 
 test('the dimension is that of the file, or the one asked for', async () => {

@@ -40,6 +40,10 @@ export async function copy(file: File): Promise<Blob> {
   const positions: Float32Array = (await generate('uvsphere 20')).positions;
   const { min, counts }: Angles = await angles({ ...mesh, positions }, 18);
   console.log(mesh.polygons, mesh.dropped.join(), min, counts.length, (await makeDelaunay(mesh)).status);
+  const { groups, lockedEdges, lockedTriangles } = mesh;
+  const { indices } = await makeDelaunay(mesh, { groups, lockedEdges, lockedTriangles });
+  const original = { bytes: new Uint8Array(await file.arrayBuffer()), name: file.name };
+  if (mesh.keeps) return new Blob([await writeMesh({ ...mesh, indices }, file.name, { original })]);
   return new Blob([await writeMesh(mesh, `copy${format ?? '.off'}`)]);
 }
 
