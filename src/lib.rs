@@ -58,7 +58,6 @@ pub use adjacency::Adjacency;
 pub use edge_states::EdgeState;
 pub use edges::Edges;
 pub use error::Error;
-pub use locks::edges as locked_edges;
 pub use mesh::{Dimension, MAX_TRIANGLES, Mesh, NONE};
 pub use options::{Backend, Options, Order};
 pub use outcome::{Iteration, Outcome, Reason, Reasons, Status, Timings};

@@ -10,7 +10,7 @@ use crate::{Error, NONE, Options};
 ///
 /// # Errors
 /// [`Error::Option`] for a triangle that the mesh has not, and for groups of another number of triangles.
-pub fn edges(mesh: &Mesh, options: &Options) -> Result<Vec<[u32; 2]>, Error> {
+pub(crate) fn edges(mesh: &Mesh, options: &Options) -> Result<Vec<[u32; 2]>, Error> {
     let Options { locked_edges, locked_triangles, groups, .. } = options;
     let (triangles, _) = mesh.triangles().as_chunks::<3>();
     let mut edges = locked_edges.clone();

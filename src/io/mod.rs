@@ -1,5 +1,5 @@
 //! Mesh files: reading and writing by extension, and the same on bytes where there is no file system. And lists of
-//! edges.
+//! edges and of numbers.
 //!
 //! The parsers are our own. What was looked at (2026-11): `tobj` splits a file into models with vertices
 //! of their own, `obj-rs` gives no line numbers, `obj` checks no index and wants UTF-8 everywhere, `off-rs`
@@ -43,7 +43,7 @@ pub enum Format {
     Off,
     /// Wavefront's object format: `.obj`.
     Obj,
-    /// The Stanford triangle format, text or binary: `.ply`. It is written in binary, and is the one that keeps the
+    /// The Stanford triangle format, text or binary: `.ply`. New files are binary. It is the one that keeps the
     /// bits of 64-bit floats.
     Ply,
     /// Stereolithography, text or binary: `.stl`. It has no vertices that triangles share: corners at the same position
@@ -227,7 +227,7 @@ enum Content {
     Mesh(Mesh),
 }
 
-/// Reads the bytes of a file, which may be gzip'd.
+/// Reads the bytes of a file, which may be gzip'd. Borrowed ones are copied where the file is held ([`ReadOptions::keep`]).
 ///
 /// # Errors
 /// [`Error::Parse`], which names the line or the byte, or the vertex that has a height where 2D was asked for;

@@ -2,7 +2,7 @@
 //! share of that. A format says where its faces are, what they and their corners have, and how it writes a triangle.
 
 use super::{Format, obj, off, ply, stl};
-use crate::{Adjacency, Error, Mesh, NONE, Options, Wedges, locked_edges, reoriented};
+use crate::{Adjacency, Error, Mesh, NONE, Options, Wedges, locks, reoriented};
 use memchr::memchr2;
 use std::borrow::Borrow;
 use std::collections::HashMap;
@@ -53,7 +53,7 @@ impl Original {
             own.locked_edges.extend_from_slice(wedges.locked_edges());
             own.locked_triangles.extend_from_slice(wedges.locked_triangles());
         }
-        let mut locked = locked_edges(mesh, &own)?;
+        let mut locked = locks::edges(mesh, &own)?;
         locked.iter_mut().for_each(|ends| ends.sort_unstable());
         locked.sort_unstable();
         locked.dedup();
