@@ -217,7 +217,7 @@ impl<K: Clone + Eq + Hash> Numbers<K> {
 pub(super) fn numbered<T: Copy + PartialEq, K: Eq + Hash>(
     mesh: &Mesh,
     corners: &[T],
-    key: impl Fn(T) -> K,
+    mut key: impl FnMut(T) -> K,
 ) -> (Vec<u32>, Vec<T>) {
     let mut known: Vec<T> = Vec::new();
     // Most vertices have one for all their corners.
@@ -225,8 +225,7 @@ pub(super) fn numbered<T: Copy + PartialEq, K: Eq + Hash>(
     let mut others = HashMap::new();
     let numbers = mesh.triangles().iter().zip(corners).map(|(&vertex, &corner)| {
         let first = &mut first[vertex as usize];
-        let is_as_first = |&first: &T| first == corner || key(first) == key(corner);
-        if known.get(*first as usize).is_some_and(is_as_first) {
+        if known.get(*first as usize).is_some_and(|&first| first == corner || key(first) == key(corner)) {
             return *first;
         }
         let next = known.len() as u32;

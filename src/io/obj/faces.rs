@@ -11,13 +11,15 @@ const STATES: [&[u8]; 6] = [b"usemtl", b"g", b"o", b"s", b"mg", b"usemap"];
 /// The texture vertex and the normal of a corner, counted from 1; 0 for none.
 type References = [u32; 2];
 
+/// What follows the keyword in lines vt or vn, and a number for it, equal where the texts are, once it was asked for.
+type Texts<'a> = Vec<(&'a [u8], Option<u32>)>;
+
 /// The faces of a file that has been read.
 pub(in crate::io) fn held_faces<'a>(bytes: &'a [u8], mesh: &Mesh) -> Faces<'a> {
     let mut list = Vec::new();
-    // What follows the keywords vt and vn.
-    let mut texts: [Vec<&[u8]>; 2] = Default::default();
+    let mut texts: [Texts; 2] = Default::default();
     let mut references: Vec<References> = Vec::new();
-    let mut states = [b"".as_slice(); STATES.len()];
+    let (mut states, mut names) = ([None; STATES.len()], Numbers::default());
     let (mut groups, mut group) = (Numbers::default(), None);
     let mut corners: Vec<References> = Vec::new();
     let mut lines = Lines::new(bytes);
@@ -25,9 +27,7 @@ pub(in crate::io) fn held_faces<'a>(bytes: &'a [u8], mesh: &Mesh) -> Faces<'a> {
         let (joined, last) = continued(without_comment(line), &mut lines);
         let start = place(bytes, line.trim_ascii_start()).start;
         let end = place(bytes, last.trim_ascii_end()).end;
-        let mut rest = Tokens(&bytes[start..end.max(start)]);
-        rest.next();
-        let text = rest.0.trim_ascii_start();
+        let text = after_keyword(&bytes[start..end.max(start)]);
         let mut tokens = Tokens(&joined);
         match tokens.next() {
             Some(b"v") | None => {}
@@ -40,23 +40,26 @@ pub(in crate::io) fn held_faces<'a>(bytes: &'a [u8], mesh: &Mesh) -> Faces<'a> {
                 list.push(Face { bytes: start..end, triangles: pairs.len(), group });
                 references.extend(pairs.flat_map(|pair| [first, pair[0], pair[1]]));
             }
-            Some(b"vt") => texts[0].push(text),
-            Some(b"vn") => texts[1].push(text),
+            Some(b"vt") => texts[0].push((text, None)),
+            Some(b"vn") => texts[1].push((text, None)),
             Some(keyword) => {
                 if let Some(state) = STATES.iter().position(|&state| state == keyword) {
-                    states[state] = text;
+                    // Some names have a # in them.
+                    let end = bytes.len() - lines.bytes_left();
+                    states[state] = Some(names.of(&after_keyword(&bytes[start..end])));
                     group = None;
                 }
             }
         }
     }
+    let mut numbers = Numbers::default();
     let value = |references: References| {
-        // Of one that the file does not have, the number is all that is known.
-        let text = |kind: usize| {
+        [0, 1].map(|kind| {
             let place = (references[kind] as usize).wrapping_sub(1);
-            texts[kind].get(place).copied().ok_or(references[kind])
-        };
-        [text(0), text(1)]
+            // Of one that the file does not have, its place is all that is known.
+            let found = texts[kind].get_mut(place).ok_or(references[kind]);
+            found.map(|(text, number)| *number.get_or_insert_with(|| numbers.of(text)))
+        })
     };
     if references.iter().all(|corner| *corner == [0, 0]) {
         references.clear();
@@ -82,8 +85,14 @@ pub(in crate::io) fn held_faces<'a>(bytes: &'a [u8], mesh: &Mesh) -> Faces<'a> {
     Faces { list, corners, counts: Vec::new(), separator: line_end(bytes), write: Box::new(write) }
 }
 
+fn after_keyword(line: &[u8]) -> &[u8] {
+    let mut words = Tokens(line);
+    words.next();
+    words.0.trim_ascii()
+}
+
 /// What a corner such as `1/2/3` refers to; what is not there is none.
-fn resolved(corner: &[u8], texts: &[Vec<&[u8]>; 2]) -> References {
+fn resolved(corner: &[u8], texts: &[Texts; 2]) -> References {
     let mut parts = corner.split(|&b| b == b'/').skip(1);
     texts.each_ref().map(|texts| {
         let number = parts.next().and_then(integer).unwrap_or_default();

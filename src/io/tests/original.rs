@@ -132,7 +132,8 @@ fn groups_of_obj_faces_keep_their_border() {
         ("usemtl n\n", "o b\n", true),
         ("usemtl n\n", "s 1\n", true),
         ("usemtl n\n", "g b\ng a\n", false),
-        ("usemtl n\n", "usemtl m # again\n", false),
+        ("usemtl n\n", "usemtl m#2\n", true),
+        ("usemtl n\n", " usemtl  m\n", false),
         ("usemtl n\n", "mtllib n\n", false),
     ] {
         let file = border.replace(from, to);
