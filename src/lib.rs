@@ -16,7 +16,7 @@
 //! a vertex, `winding` and `frozen` know what a dirty mesh adds, `embedded` what a clean one spares, `locks` what the
 //! user wants; `predicates` decide exactly; `phases` are the four phases of an iteration, `engine` runs them on the CPU,
 //! on several `threads`, or through the shaders of the same names; `session` is the loop, `options` and `outcome` are what goes in and out.
-//! Beside them: [`reoriented`] turns triangles towards one side, [`Wedges`] keeps attributes of corners through flips, [`quality`] measures and audits, [`io`] reads and writes, [`families`] generates; [`Edges`] lists
+//! Beside them: [`reoriented`] turns triangles towards one side, [`welded`] joins vertices at one place, [`Wedges`] keeps attributes of corners through flips, [`quality`] measures and audits, [`io`] reads and writes, [`families`] generates; [`Edges`] lists
 //! the edges as the paper does, [`EdgeState`] is what each of them waits for; `js`, `js_webgl2`, `js_audit` and `js_files` are what the npm
 //! package calls, each in a WebAssembly module of its own, and `js_values` is what they share.
 
@@ -52,6 +52,7 @@ mod session;
 mod star;
 mod threads;
 mod wedges;
+mod weld;
 mod winding;
 
 pub use adjacency::Adjacency;
@@ -68,3 +69,4 @@ pub use session::Session;
 #[cfg(not(target_arch = "wasm32"))]
 pub use session::make_delaunay;
 pub use wedges::Wedges;
+pub use weld::{Welded, welded};

@@ -21,6 +21,8 @@ pub struct Wedges {
     barriers: Vec<([u32; 2], u32)>,
     locked_edges: Vec<[u32; 2]>,
     locked_triangles: Vec<u32>,
+    /// The vertices of these.
+    locked_vertices: Vec<u32>,
 }
 
 impl Wedges {
@@ -80,7 +82,8 @@ impl Wedges {
             locked_triangles.sort_unstable();
             locked_triangles.dedup();
         }
-        Ok(Self { classes, first, barriers, locked_edges, locked_triangles })
+        let locked_vertices = corners(&locked_triangles).map(|corner| triangles[corner as usize]).collect();
+        Ok(Self { classes, first, barriers, locked_edges, locked_triangles, locked_vertices })
     }
 
     /// Seams: the edges of two triangles whose attributes differ at one of its ends, in ascending order. They are for
@@ -106,6 +109,16 @@ impl Wedges {
         let mut sources = self.sources(triangles)?;
         sources.iter_mut().for_each(|corner| *corner = self.classes[*corner as usize]);
         Ok(sources)
+    }
+
+    /// The number of a corner of the mesh.
+    pub(crate) fn class(&self, corner: u32) -> u32 {
+        self.classes[corner as usize]
+    }
+
+    /// The numbers that it was made of.
+    pub(crate) fn into_classes(self) -> Vec<u32> {
+        self.classes
     }
 
     /// For each corner of a result one of the mesh that has its vertex and its number.
@@ -140,8 +153,10 @@ impl Wedges {
             }
             starts.extend(half_edges.iter().filter(|&&h| is_mixed(h)));
         });
-        for corner in self.locked_triangles.iter().flat_map(|&t| 3 * t..3 * t + 3) {
-            spread(&mut sources, &twins, corner, corner);
+        for (corner, vertex) in corners(&self.locked_triangles).zip(&self.locked_vertices) {
+            if triangles[corner as usize] == *vertex {
+                spread(&mut sources, &twins, corner, corner);
+            }
         }
         for h in starts {
             if let Ok(place) =
@@ -174,6 +189,11 @@ fn first_corners(mesh: &Mesh, classes: &[u32]) -> Vec<u32> {
         }
     }
     first
+}
+
+/// The corners of some triangles.
+fn corners(triangles: &[u32]) -> impl Iterator<Item = u32> {
+    triangles.iter().flat_map(|&t| 3 * t..3 * t + 3)
 }
 
 /// The two vertices of a half-edge, from the first to the second.

@@ -1,10 +1,13 @@
-//! Attributes of corners, on dirty meshes: each corner of a result has those that it has when the flips are followed one
-//! by one.
+//! Attributes of corners through flips on dirty meshes, beside flips that are followed one by one; vertices joined and
+//! split again.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "what fails here is a failed test")]
 
 mod meshes;
 
-use edgeflip::{Adjacency, Backend, Error, Mesh, NONE, Options, Order, Session, Wedges, families::by_name};
+use edgeflip::families::by_name;
+use edgeflip::{
+    Adjacency, Backend, Dimension, Error, Mesh, NONE, Options, Order, Reason, Session, Wedges, welded,
+};
 use meshes::{joined, moved, plane, signed};
 use oorandom::Rand64;
 use pollster::block_on;
@@ -66,32 +69,51 @@ fn classes(mesh: &Mesh, random: &mut Rand64) -> Vec<u32> {
             (0..corners as u32 / 3).flat_map(|t| [u32::from(t < border); 3]).collect()
         }
         _ => {
-            let share = random.rand_float() * 0.3;
-            let mut sectors: Vec<usize> = (0..corners).collect();
-            for (h, &g) in Adjacency::new(mesh).twins.iter().enumerate() {
-                if g != NONE && h < g as usize && random.rand_float() >= share {
-                    let g = g as usize;
-                    for (x, y) in [(h, next(g)), (next(h), g)] {
-                        let (from, to) = (sectors[x], sectors[y]);
-                        sectors.iter_mut().filter(|sector| **sector == from).for_each(|sector| *sector = to);
-                    }
-                }
-            }
-            sectors.into_iter().map(|sector| (sector % (1 + few)) as u32).collect()
+            let sectors = sectors(mesh, 0.3 * random.rand_float(), random);
+            sectors.into_iter().map(|sector| sector % (1 + few as u32)).collect()
         }
     }
 }
 
-/// The triangles before a run and after each of its iterations.
-fn states(mesh: &Mesh, options: &Options) -> Vec<Vec<u32>> {
+/// The mesh cut along a random share of its edges: for each corner one that stands for those that are still together.
+fn sectors(mesh: &Mesh, share: f64, random: &mut Rand64) -> Vec<u32> {
+    let mut sectors: Vec<u32> = (0..mesh.triangles().len() as u32).collect();
+    for (h, &g) in Adjacency::new(mesh).twins.iter().enumerate() {
+        if g != NONE && h < g as usize && random.rand_float() >= share {
+            let g = g as usize;
+            for (x, y) in [(h, next(g)), (next(h), g)] {
+                let [from, to] = [sectors[x], sectors[y]];
+                sectors.iter_mut().filter(|sector| **sector == from).for_each(|sector| *sector = to);
+            }
+        }
+    }
+    sectors
+}
+
+/// The triangles before a run and after each of its iterations, and whether an edge was blocked as a duplicate.
+fn run(mesh: &Mesh, options: &Options) -> (Vec<Vec<u32>>, bool) {
     block_on(async {
         let mut session = Session::new(mesh, options.clone()).await.unwrap();
         let mut states = vec![session.triangles().await.unwrap()];
-        while session.step().await.unwrap().is_some() {
+        let mut is_blocked = false;
+        while let Some(step) = session.step().await.unwrap() {
             states.push(session.triangles().await.unwrap());
+            is_blocked |= step.blocked[Reason::Duplicate] > 0;
         }
-        states
+        is_blocked |= session.outcome().await.unwrap().remaining[Reason::Duplicate] > 0;
+        (states, is_blocked)
     })
+}
+
+/// What the wedges lock; on surfaces with β = 180.
+fn options(wedges: &Wedges) -> Options {
+    Options {
+        backend: Backend::Cpu,
+        max_normal_angle: 180.0,
+        locked_edges: wedges.locked_edges().to_vec(),
+        locked_triangles: wedges.locked_triangles().to_vec(),
+        ..Options::default()
+    }
 }
 
 /// Follows the flips of an iteration: a corner that has moved to another vertex gets the number that the vertex has in
@@ -169,14 +191,8 @@ fn attributes_survive_flips_on_dirty_meshes() {
         for mesh in [flat, bent, glued(random, n), by_name(&format!("random {n} seed={seed}")).unwrap()] {
             let classes = classes(&mesh, random);
             let wedges = Wedges::new(&mesh, classes.clone()).unwrap();
-            let options = Options {
-                backend: Backend::Cpu,
-                max_normal_angle: 180.0,
-                locked_edges: wedges.locked_edges().to_vec(),
-                locked_triangles: wedges.locked_triangles().to_vec(),
-                ..Options::default()
-            };
-            let states = states(&mesh, &options);
+            let options = options(&wedges);
+            let (states, _) = run(&mesh, &options);
             let mut followed = classes.clone();
             for pair in states.windows(2) {
                 flips += follow(&pair[0], &pair[1], &mut followed);
@@ -216,7 +232,7 @@ fn an_edge_is_a_seam_if_attributes_differ_at_one_end() {
 fn triangles_stay_where_only_their_numbers_tell_attributes() {
     let tetrahedron = |[a, b, c]: [u32; 3]| [[0, a, b], [0, b, c], [0, c, a], [a, c, b]].concat();
     let points: Vec<f32> = (0..21).map(|i| (i * i) as f32).collect();
-    let mesh = |triangles| Mesh::new(edgeflip::Dimension::Three, points.clone(), triangles).unwrap();
+    let mesh = |triangles| Mesh::new(Dimension::Three, points.clone(), triangles).unwrap();
     let touching = mesh([tetrahedron([1, 2, 3]), tetrahedron([4, 5, 6])].concat());
     let locked = |mesh: &Mesh, classes: &[u32]| {
         Wedges::new(mesh, classes.to_vec()).unwrap().locked_triangles().to_vec()
@@ -244,4 +260,110 @@ fn what_is_no_result_is_refused() {
         refused(&[0, 3, 1, 1, 3, 2]),
         "option triangles: triangle 0 is none that flips make while seams are locked"
     );
+}
+
+/// The mesh with a vertex of its own for each of these sectors, and nothing for another one.
+fn cut(mesh: &Mesh, sectors: &[u32]) -> Mesh {
+    let mut vertices: Vec<u32> = sectors.to_vec();
+    vertices.sort_unstable();
+    vertices.dedup();
+    let numbers: Vec<f64> = mesh.positions().iter().collect();
+    let stride = mesh.dimension().stride();
+    let position =
+        |&corner: &u32| numbers[stride * mesh.triangles()[corner as usize] as usize..][..stride].to_vec();
+    let positions: Vec<f64> = vertices.iter().flat_map(position).collect();
+    let vertex = |sector| vertices.binary_search(sector).unwrap() as u32;
+    Mesh::new(mesh.dimension(), positions, sectors.iter().map(vertex).collect()).unwrap()
+}
+
+/// In the plane always, since no edge there is in the way of another one; on a surface where none is.
+#[test]
+fn a_mesh_with_seams_goes_the_way_of_one_that_is_cut() {
+    let mut iterations = [0; 2];
+    for seed in 0..rounds() {
+        let random = &mut Rand64::new(seed as u128);
+        let size = 4 + seed % 9;
+        for (kind, name) in ["random", "uvsphere"].into_iter().enumerate() {
+            let mesh = by_name(&format!("{name} {size} seed={seed}")).unwrap();
+            let sectors = sectors(&mesh, 0.5 * random.rand_float(), random);
+            let cut = cut(&mesh, &sectors);
+            let every: Vec<u32> = (0..cut.vertex_count() as u32).collect();
+            let welded = welded(&cut, Some(&every)).unwrap();
+            assert!(welded.wedges.locked_triangles().is_empty());
+            let (with, is_blocked) = run(&welded.mesh, &options(&welded.wedges));
+            let (without, _) =
+                run(&cut, &Options { max_normal_angle: 180.0, backend: Backend::Cpu, ..Options::default() });
+            if kind == 1 && is_blocked {
+                continue;
+            }
+            assert_eq!(with.len(), without.len());
+            for (with, without) in with.iter().zip(&without) {
+                assert_eq!(&welded.split(with).unwrap(), without, "{name} {size} seed={seed}");
+            }
+            iterations[kind] += with.len() - 1;
+        }
+    }
+    assert!(iterations.iter().all(|&count| count > rounds()), "{iterations:?}");
+}
+
+/// What has no common vertices at all flips as what has; a corner that stays keeps its vertex.
+#[test]
+fn a_soup_is_joined_and_split_again() {
+    for name in ["random 12", "uvsphere 9", "uvsphere 6 0.5"] {
+        let mesh = by_name(name).unwrap();
+        let soup = cut(&mesh, &(0..mesh.triangles().len() as u32).collect::<Vec<_>>());
+        let welded = welded(&soup, None).unwrap();
+        assert_eq!(welded.joined(), soup.vertex_count() - mesh.vertex_count());
+        assert!(welded.wedges.locked_edges().is_empty());
+        assert_eq!(welded.split(welded.mesh.triangles()).unwrap(), soup.triangles());
+        let (found, wanted) =
+            (run(&welded.mesh, &options(&welded.wedges)).0, run(&mesh, &options(&welded.wedges)).0);
+        assert!(wanted.len() > 2 && found.len() == wanted.len());
+        for (found, wanted) in found.iter().zip(wanted) {
+            let split = welded.split(found).unwrap();
+            for (corner, v) in split.iter().enumerate() {
+                assert_eq!(mesh.triangles()[*v as usize], wanted[corner]);
+                assert!(wanted[corner] != mesh.triangles()[corner] || *v == corner as u32);
+            }
+        }
+    }
+}
+
+/// 0 and -0 are one place; the next number is another one. Vertices that no triangle has are joined too.
+#[test]
+fn places_are_exact() {
+    let tiny = f64::from_bits(1);
+    let points: [[f64; 3]; 6] = [
+        [0.0, 1.0, -0.0],
+        [-0.0, 1.0, 0.0],
+        [tiny, 1.0, 0.0],
+        [5.0, 0.0, 0.0],
+        [0.0, 1.0, 0.0],
+        [5.0, -0.0, 0.1],
+    ];
+    let mesh = Mesh::new(Dimension::Three, points.concat(), vec![1, 3, 5, 2, 5, 4]).unwrap();
+    let welded = welded(&mesh, None).unwrap();
+    assert_eq!((&welded.places[..], welded.joined()), (&[0, 0, 2, 3, 0, 5][..], 2));
+    assert_eq!(welded.mesh.triangles(), [0, 3, 5, 2, 5, 0]);
+    assert_eq!(welded.mesh.positions(), mesh.positions());
+    assert_eq!(welded.split(welded.mesh.triangles()).unwrap(), mesh.triangles());
+    let refused = edgeflip::welded(&mesh, Some(&[1; 5])).unwrap_err();
+    assert_eq!(refused.to_string(), "option attributes: it has 5 numbers, the mesh has 6 vertices");
+}
+
+/// Triangles turned at random in a soup: joined, they are turned back, and each keeps its vertices.
+#[test]
+fn what_is_joined_can_be_turned() {
+    let mesh = by_name("uvsphere 9").unwrap();
+    let soup = cut(&mesh, &(0..mesh.triangles().len() as u32).collect::<Vec<_>>());
+    let random = &mut Rand64::new(3);
+    let mut triangles = soup.triangles().to_vec();
+    let turns = triangles.chunks_mut(3).filter(|_| random.rand_float() < 0.3).map(|t| t.swap(1, 2)).count();
+    let dirty = soup.with_triangles(triangles).unwrap();
+    for attributes in [None, Some((0..soup.vertex_count() as u32).map(|v| v % 2).collect::<Vec<_>>())] {
+        let (welded, turned) = welded(&dirty, attributes.as_deref()).unwrap().reoriented().unwrap();
+        assert_eq!(turned as usize, turns);
+        assert_eq!(welded.split(welded.mesh.triangles()).unwrap(), soup.triangles());
+        assert_eq!(welded.wedges.locked_edges().is_empty(), attributes.is_none());
+    }
 }
