@@ -351,6 +351,18 @@ fn places_are_exact() {
     assert_eq!(refused.to_string(), "option attributes: it has 5 numbers, the mesh has 6 vertices");
 }
 
+/// The triangles of a square, changed one for the other: their first corners are at one place still, on other sides of
+/// the seam.
+#[test]
+fn a_corner_keeps_its_vertex_only_with_its_attributes() {
+    let square = plane(&[[0., 0.], [1., 0.], [1., 1.], [0., 1.], [0., 0.]], &[[0, 1, 2], [4, 2, 3]]);
+    let split = |attributes: [u32; 5]| {
+        welded(&square, Some(&attributes)).unwrap().split(&[0, 2, 3, 0, 1, 2]).unwrap()
+    };
+    assert_eq!(split([7, 7, 7, 7, 8]), [4, 2, 3, 0, 1, 2]);
+    assert_eq!(split([7; 5]), [0, 2, 3, 4, 1, 2]);
+}
+
 /// Triangles turned at random in a soup: joined, they are turned back, and each keeps its vertices.
 #[test]
 fn what_is_joined_can_be_turned() {
@@ -364,6 +376,10 @@ fn what_is_joined_can_be_turned() {
         let (welded, turned) = welded(&dirty, attributes.as_deref()).unwrap().reoriented().unwrap();
         assert_eq!(turned as usize, turns);
         assert_eq!(welded.split(welded.mesh.triangles()).unwrap(), soup.triangles());
+        if let Some(attributes) = &attributes {
+            let carried = welded.wedges.carried(welded.mesh.triangles()).unwrap();
+            assert!(carried.iter().zip(soup.triangles()).all(|(class, v)| *class == attributes[*v as usize]));
+        }
         assert_eq!(welded.wedges.locked_edges().is_empty(), attributes.is_none());
     }
 }
