@@ -29,15 +29,19 @@ pub fn welded(mesh: &Mesh, attributes: Option<&[u32]>) -> Result<Welded, Error> 
         let message = format!("it has {} numbers, the mesh has {count} vertices", attributes.len());
         return Err(Error::Option { option: "attributes", message });
     }
-    let places = places(mesh);
-    let corners = mesh.triangles().to_vec();
-    let classes = corners.iter().map(|&v| attributes.map_or(0, |attributes| attributes[v as usize]));
-    let joined = mesh.with_triangles(corners.iter().map(|&v| places[v as usize]).collect())?;
-    let wedges = Wedges::new(&joined, classes.collect())?;
-    Ok(Welded { mesh: joined, wedges, places, corners })
+    let places = first_alike((0..count as u32).map(|vertex| place(mesh, vertex)));
+    Welded::new(mesh, places, attributes.unwrap_or(&vec![0; count]))
 }
 
 impl Welded {
+    /// `places` and `attributes` have a number for each vertex: the first one at its place, and that of [`welded`].
+    pub(crate) fn new(mesh: &Mesh, places: Vec<u32>, attributes: &[u32]) -> Result<Self, Error> {
+        let corners = mesh.triangles().to_vec();
+        let joined = mesh.with_triangles(corners.iter().map(|&v| places[v as usize]).collect())?;
+        let wedges = Wedges::new(&joined, corners.iter().map(|&v| attributes[v as usize]).collect())?;
+        Ok(Self { mesh: joined, wedges, places, corners })
+    }
+
     /// How many vertices are joined to another one.
     pub fn joined(&self) -> usize {
         (0..).zip(&self.places).filter(|&(vertex, first)| *first != vertex).count()
@@ -78,11 +82,10 @@ impl Welded {
     }
 }
 
-/// For each vertex the first one at its place.
-fn places(mesh: &Mesh) -> Vec<u32> {
+/// The bits of a position, of which equal ones have the same.
+pub(crate) fn place(mesh: &Mesh, vertex: u32) -> [u64; 3] {
     // -0 + 0 is 0.
-    let place = |vertex| mesh.point3(vertex).to_array().map(|x| (x + 0.0).to_bits());
-    first_alike((0..mesh.vertex_count() as u32).map(place))
+    mesh.point3(vertex).to_array().map(|x| (x + 0.0).to_bits())
 }
 
 /// For each of these the place of the first one that is equal. They are sorted: nothing can make that slow, as it can

@@ -29,7 +29,7 @@ pub use file::{load, read, read_edges, read_numbers, rewrite, write};
 pub use gltf::ReadFile;
 pub use lists::{parse_edges, parse_numbers};
 
-use crate::{Dimension, Error, Mesh, Options, Positions};
+use crate::{Dimension, Error, Mesh, Options, Positions, Welded, welded};
 use original::Original;
 use std::borrow::Cow;
 use std::io::{self, Write};
@@ -145,6 +145,18 @@ impl Loaded {
     /// with coordinates of its own, by which it is also decided what is Delaunay.
     pub fn placed(&self) -> Option<Vec<f32>> {
         self.document.as_ref().map(|document| document.placed(&self.mesh))
+    }
+
+    /// The mesh with the vertices at one place joined. Of a glTF file these are the vertices of one primitive, and those
+    /// with the same bytes in all accessors are the same in all else; of other files all of one place are.
+    ///
+    /// # Errors
+    /// None for what was read.
+    pub fn welded(&self) -> Result<Welded, Error> {
+        match &self.document {
+            Some(document) => document.welded(&self.mesh),
+            None => welded(&self.mesh, None),
+        }
     }
 
     /// What is lost in a file of that format; see [`Loaded::dropped`].

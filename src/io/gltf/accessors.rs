@@ -132,30 +132,64 @@ impl<'a> Accessors<'a> {
             }
             (None, _) => vec![0.0; 3 * self.count_of_zeros(accessor, place)?],
         };
-        if let Some(sparse) = &accessor.sparse {
-            let (at, values) = (&sparse.indices, &sparse.values);
-            let kind = match at.component_type {
-                Checked::Valid(kind) => kind.0,
-                Checked::Invalid => return Err(refuse(place(), "its sparse indices are of no known type")),
+        for (vertex, value) in self.sparse(accessor, 3 * component.size(), place)? {
+            let Some(position) = positions.as_chunks_mut().0.get_mut(vertex) else {
+                return Err(refuse(
+                    place(),
+                    format!("it has no element {vertex}, which its sparse part changes"),
+                ));
             };
-            let count = sparse.count.0;
-            let indices =
-                self.in_view(at.buffer_view.value(), at.byte_offset.0, count, kind.size(), place)?;
-            let size = 3 * component.size();
-            let values =
-                self.in_view(values.buffer_view.value(), values.byte_offset.0, count, size, place)?;
-            for (at, value) in indices.iter(self.buffers).zip(values.iter(self.buffers)) {
-                let vertex = integer(at, kind) as usize;
-                let Some(position) = positions.as_chunks_mut().0.get_mut(vertex) else {
-                    return Err(refuse(
-                        place(),
-                        format!("it has no element {vertex}, which its sparse part changes"),
-                    ));
-                };
-                *position = read(value);
-            }
+            *position = read(value);
         }
         Ok(positions)
+    }
+
+    /// What the sparse part of an accessor changes: elements of `size` bytes, with their numbers.
+    fn sparse(
+        &self,
+        accessor: &Accessor,
+        size: usize,
+        place: impl Fn() -> String + Copy,
+    ) -> Result<impl Iterator<Item = (usize, &'a [u8])>, Error> {
+        let parts = accessor.sparse.as_ref().map(|sparse| {
+            let (at, values) = (&sparse.indices, &sparse.values);
+            let Checked::Valid(kind) = at.component_type else {
+                return Err(refuse(place(), "its sparse indices are of no known type"));
+            };
+            let (kind, count) = (kind.0, sparse.count.0);
+            let indices =
+                self.in_view(at.buffer_view.value(), at.byte_offset.0, count, kind.size(), place)?;
+            let values =
+                self.in_view(values.buffer_view.value(), values.byte_offset.0, count, size, place)?;
+            let indices = indices.iter(self.buffers).map(move |at| integer(at, kind) as usize);
+            Ok(indices.zip(values.iter(self.buffers)))
+        });
+        Ok(parts.transpose()?.into_iter().flatten())
+    }
+
+    /// The bytes of some elements, in ascending order.
+    ///
+    /// # Errors
+    /// [`Error::Parse`] where one is not there, or all are packed.
+    pub(super) fn bytes(&self, index: usize, elements: &[u32]) -> Result<Vec<&'a [u8]>, Error> {
+        let accessor = self.get(index)?;
+        let place = || format!("accessor {index}");
+        let is_there = elements.last().is_none_or(|&last| u64::from(last) < accessor.count.0);
+        if !is_there || self.is_packed(index) {
+            return Err(refuse(place(), "it does not have all vertices, or is compressed"));
+        }
+        let size = component(accessor, place)?.size() * components(accessor, place)?;
+        let numbers = elements.iter().map(|&element| element as usize);
+        let mut bytes: Vec<&[u8]> = match self.elements(index)? {
+            Some(all) => all.these(self.buffers, numbers).collect(),
+            None => vec![&[]; elements.len()],
+        };
+        for (element, value) in self.sparse(accessor, size, place)? {
+            if let Ok(rank) = elements.binary_search(&(element as u32)) {
+                bytes[rank] = value;
+            }
+        }
+        Ok(bytes)
     }
 
     /// How many elements an accessor without a buffer view has: no more than the file has bytes.

@@ -9,6 +9,7 @@ mod accessors;
 mod buffers;
 mod container;
 mod placement;
+mod weld;
 mod write;
 
 use super::text::{Dropped, Fans, Parsed, quoted as quoted_bytes};
