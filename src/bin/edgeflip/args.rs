@@ -14,7 +14,7 @@ Formats, by extension:
   .stl   STL, text or binary, written in binary with 32-bit floats; corners at the same position are
          read as one vertex
   .gltf  glTF 2.0, .glb in one binary file. Each primitive is a part of the mesh; what two of them
-         share stays
+         share stays. --weld joins the vertices of a primitive that are at the same position
 Any of them may be gzip'd: IN whatever its name, OUT where .gz follows, as in bunny.ply.gz.
 Vertices keep their number and order. Polygons are cut into triangles.
 
@@ -123,6 +123,17 @@ pub struct Args {
     #[arg(long)]
     pub reorient: bool,
 
+    /// Join vertices at exactly the same position for the run, and split them again for OUT
+    ///
+    /// So edges flip where triangles have no vertices in common, as in files that repeat the vertices of each triangle,
+    /// and where only the number of a vertex changes. In glTF the vertices of each primitive are joined for
+    /// themselves; those that differ in an attribute or a morph target stay two on the two sides of a seam, whose edges
+    /// are locked. A primitive without indices gets some where an edge of it flips. Edges of --lock-edges are those
+    /// between the positions of two vertices; what is reported of edges is of the joined mesh, which has the first
+    /// vertex of each position. Files of other formats than glTF are written as with --drop-attributes.
+    #[arg(long)]
+    pub weld: bool,
+
     /// Stop after N iterations; without it the run goes to its end, which always comes
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub max_iterations: Option<u32>,
@@ -151,8 +162,8 @@ pub struct Args {
     /// backend, adapter, fallback,
     /// status (done or stopped), iterations, flips, flips_per_iteration, dispatches, device_bytes, remaining (by reason),
     /// min_angle_before_deg, min_angle_after_deg, before and after (min_angle_deg, mean_min_angle_deg, mean_aspect,
-    /// flat_triangles, area, volume), turned_triangles, moved_triangles, attribute_edges (locked for attributes'
-    /// sake), ms (load, upload, adjacency, flip, total, save; total is the
+    /// flat_triangles, area, volume), turned_triangles, joined_vertices, seam_edges, moved_triangles, attribute_edges
+    /// (locked for attributes' sake), ms (load, upload, adjacency, flip, total, save; total is the
     /// run without load and save), and with --verify audit (the violations), remaining_edges (by reason, the two
     /// vertices of each edge left, counted from 0) and distance (between the surfaces before and after).
     #[arg(long)]
@@ -179,7 +190,7 @@ impl Args {
             dimension,
             max_bytes: self.max_bytes,
             external_files: self.external_files,
-            keep: is_same && !self.drop_attributes,
+            keep: is_same && !self.drop_attributes && !self.weld,
         }
     }
 

@@ -5,7 +5,7 @@ mod report;
 
 use args::Args;
 use clap::Parser;
-use edgeflip::{Error, Mesh, Options, Outcome, io, make_delaunay, quality, reoriented};
+use edgeflip::{Error, Mesh, Options, Outcome, Welded, io, make_delaunay, quality, reoriented};
 use indicatif::{ProgressBar, ProgressStyle};
 use report::{Check, Milliseconds, Report};
 use std::io::{IsTerminal, Write};
@@ -92,8 +92,10 @@ fn run(args: &Args, bar: &ProgressBar) -> Result<Report, Failure> {
     bar.set_message(format!("reading {}", args.input.display()));
     let (loaded, load) = timed(|| io::load(&args.input, &args.read_options()));
     let loaded = loaded.map_err(refused)?;
-    let turned = args.reorient.then(|| reoriented(&loaded.mesh)).transpose().map_err(refused)?;
-    let (mesh, turned) = turned.as_ref().map_or((&loaded.mesh, 0), |(mesh, turned)| (mesh, *turned));
+    let welded = args.weld.then(|| loaded.welded()).transpose().map_err(refused)?;
+    let (alone, welded, turned) = turn(args, &loaded.mesh, welded).map_err(refused)?;
+    let joined = welded.as_ref().map(|welded| &welded.mesh);
+    let mesh = alone.as_ref().or(joined).unwrap_or(&loaded.mesh);
 
     let mut options = Options {
         locked_edges: list(&args.lock_edges, io::read_edges)?,
@@ -101,6 +103,9 @@ fn run(args: &Args, bar: &ProgressBar) -> Result<Report, Failure> {
         groups: list(&args.groups, io::read_numbers)?,
         ..args.options()
     };
+    if let Some(welded) = &welded {
+        welded.constrain(&mut options);
+    }
     let attribute_edges = loaded.constrain(&mut options).map_err(refused)?;
 
     bar.set_message("preparing");
@@ -121,16 +126,20 @@ fn run(args: &Args, bar: &ProgressBar) -> Result<Report, Failure> {
     let mut save = None;
     if check.as_ref().is_none_or(|check| check.violations.is_empty()) {
         bar.set_message(format!("writing {}", args.output.display()));
-        let (written, ms) = timed(|| io::rewrite(&args.output, &loaded, outcome.triangles.clone()));
+        let (written, ms) = timed(|| {
+            let triangles = match &welded {
+                Some(welded) => welded.split(&outcome.triangles)?,
+                None => outcome.triangles.clone(),
+            };
+            io::rewrite(&args.output, &loaded, triangles)
+        });
         written.map_err(|e| Failure::of(&args.output, &e))?;
         save = Some(ms);
     }
     let ms = Milliseconds::new(load, &outcome.timings, save);
-    Ok(Report::new(args, &result, outcome, [before, after], [turned, moved], check, ms).with_attributes(
-        &loaded,
-        format,
-        attribute_edges,
-    ))
+    Ok(Report::new(args, &result, outcome, [before, after], [turned, moved], check, ms)
+        .with_joined(welded.as_ref())
+        .with_attributes(&loaded, format, attribute_edges))
 }
 
 /// The list in a file, if there is one.
@@ -140,6 +149,25 @@ fn list<'a, T>(
 ) -> Result<Vec<T>, Failure> {
     let read = |path: &'a PathBuf| read(path).map_err(|error| Failure::of(path, &error));
     path.as_ref().map_or(Ok(Vec::new()), read)
+}
+
+/// Turns triangles, if that is asked for, of a mesh that is joined or of one that is not; and how many.
+fn turn(
+    args: &Args,
+    mesh: &Mesh,
+    welded: Option<Welded>,
+) -> Result<(Option<Mesh>, Option<Welded>, u32), Error> {
+    Ok(match welded {
+        _ if !args.reorient => (None, welded, 0),
+        Some(welded) => {
+            let (welded, turned) = welded.reoriented()?;
+            (None, Some(welded), turned)
+        }
+        None => {
+            let (mesh, turned) = reoriented(mesh)?;
+            (Some(mesh), None, turned)
+        }
+    })
 }
 
 /// What the independent check finds: another count of the edges left is a violation too.

@@ -4,7 +4,7 @@ use crate::Failure;
 use crate::args::Args;
 use edgeflip::io::{Format, Loaded};
 use edgeflip::quality::Measures;
-use edgeflip::{Dimension, Mesh, Outcome, Reasons, Status, Timings};
+use edgeflip::{Dimension, Mesh, Outcome, Reasons, Status, Timings, Welded};
 use indicatif::{HumanBytes, HumanCount};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -37,6 +37,8 @@ pub struct Report {
     before: Shape,
     after: Shape,
     turned_triangles: u32,
+    joined_vertices: usize,
+    seam_edges: usize,
     moved_triangles: u32,
     attribute_edges: usize,
     ms: Milliseconds,
@@ -149,6 +151,8 @@ impl Report {
             before: measures[0].into(),
             after: measures[1].into(),
             turned_triangles: turned,
+            joined_vertices: 0,
+            seam_edges: 0,
             moved_triangles: moved,
             attribute_edges: 0,
             ms,
@@ -156,6 +160,15 @@ impl Report {
             left: outcome.remaining,
             notes: Vec::new(),
         }
+    }
+
+    /// Adds what was joined for the run.
+    pub fn with_joined(mut self, welded: Option<&Welded>) -> Self {
+        if let Some(welded) = welded {
+            self.joined_vertices = welded.joined();
+            self.seam_edges = welded.wedges.locked_edges().len();
+        }
+        self
     }
 
     /// Adds what reading changed, what a file of that format does not keep, and how many edges are locked for what it
@@ -248,6 +261,13 @@ impl Report {
         let distance = distance.filter(|_| is_surface).unwrap_or_default();
         if self.turned_triangles > 0 {
             line("turned", format!("{} triangles", HumanCount(self.turned_triangles.into())));
+        }
+        if self.joined_vertices > 0 {
+            let seams = match self.seam_edges {
+                0 => String::new(),
+                n => format!("; edges along seams, locked: {}", HumanCount(n as u64)),
+            };
+            line("joined", format!("{} vertices{seams}", HumanCount(self.joined_vertices as u64)));
         }
         line("moved", format!("{} triangles{distance}", HumanCount(self.moved_triangles.into())));
         if is_surface {
