@@ -2,6 +2,8 @@
 //! angles, in a module without an engine. The hand-written `src/js/files.ts` is its public face. Arguments arrive
 //! checked in type, not in value. Everything that is thrown is an `Error` with a `code`.
 
+mod weld;
+
 use crate::error::number;
 use crate::io::{self, Format, Loaded, ReadOptions};
 use crate::js_values::{JsPositions, object, parse_dimension, thrown};

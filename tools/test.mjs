@@ -100,7 +100,8 @@ const levels = [
     checks: [
       ['node', 'tools/build.mjs'],
       ['node', 'node_modules/typescript/bin/tsc', '-p', 'tests/package'],
-      ['node', '--test', '--test-reporter=tap', 'tests/package/node.test.mjs', 'tests/package/files.test.mjs', 'tests/package/gltf.test.mjs'],
+      ['node', '--test', '--test-reporter=tap', 'tests/package/node.test.mjs', 'tests/package/files.test.mjs', 'tests/package/gltf.test.mjs',
+        'tests/package/weld.test.mjs'],
     ],
     counts: true,
   },

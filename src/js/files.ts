@@ -16,12 +16,12 @@ import initModule, * as wasm from './wasm/edgeflip_files.js';
 import { EdgeflipError, fromModule } from './error.js';
 import { checkDimension, type IndexedMesh, type Mesh32, moduleMesh } from './mesh.js';
 import { loader } from './module.js';
-import type { Mesh } from './types.js';
+import type { Attributes, Files, Mesh, Original, VertexArray } from './types.js';
 
 export { EdgeflipError, type ErrorCode } from './error.js';
 export type { IndexedMesh, Mesh32 } from './mesh.js';
 export type { ModuleSource } from './module.js';
-export type { Mesh } from './types.js';
+export type { Attributes, Files, Mesh, Original, VertexArray } from './types.js';
 
 /**
  * The extensions of the formats that are read and written, in either case. With `.gz` after it, as in `bunny.ply.gz`,
@@ -60,9 +60,6 @@ export interface FileMesh extends IndexedMesh {
   lockedTriangles: Uint32Array | undefined;
 }
 
-/** Bytes of files by their names, such as `{ 'scene.bin': bytes }`. */
-export type Files = Readonly<Record<string, Uint8Array>>;
-
 /** What can be chosen for {@link readMesh}. */
 export interface ReadOptions {
   /** Default: 2 if the file has two coordinates a vertex or every z is 0, else 3. */
@@ -81,7 +78,7 @@ export interface WriteOptions {
    * which no triangle is another stay, polygons too; the others give way to triangles with their attributes. It takes the
    * triangles of a run with {@link FileMesh.groups}, {@link FileMesh.lockedEdges} and {@link FileMesh.lockedTriangles}.
    */
-  original?: { bytes: Uint8Array; name: string; files?: Files | undefined; maxBytes?: number | undefined } | undefined;
+  original?: Original | undefined;
 }
 
 /** What the angles of a mesh say about its triangles. A degenerate triangle counts as one with an angle of 0°. */
@@ -100,6 +97,32 @@ export interface Reoriented {
   indices: Uint32Array;
   /** How many triangles were turned. */
   turned: number;
+}
+
+/** What {@link weld} gives: a mesh whose vertices at one place are one. */
+export interface Welded {
+  /** Vertex indices, 3 a triangle: the first vertex of each place. */
+  indices: Uint32Array;
+  /** Two vertices an edge: seams, for the option `lockedEdges`. */
+  lockedEdges: Uint32Array;
+  /** Triangles that have to stay too, for the option `lockedTriangles`. */
+  lockedTriangles: Uint32Array;
+  /** For each vertex the first one at its place. */
+  places: Uint32Array;
+  /** How many vertices are joined to another one. */
+  joined: number;
+  /** How many triangles were turned. */
+  turned: number;
+  /**
+   * The indices of a result, which a run makes of `indices` while those edges and triangles are locked: each corner with
+   * a vertex of its place that has its attributes, the one that it had if its triangle has that still.
+   *
+   * @throws {@link EdgeflipError} `triangle-count`, `index-out-of-range`; `invalid-option` for what is no such result, as
+   * far as that is noticed; `freed`.
+   */
+  split(indices: Uint32Array): Uint32Array;
+  /** Gives memory back; the collection of garbage does so too, but later. */
+  free(): void;
 }
 
 /** What can be measured on a mesh. */
@@ -168,10 +191,7 @@ export async function writeMesh(mesh: Mesh, name: string, options: WriteOptions 
   const file = text(name, 'name');
   const { original } = options;
   if (original) {
-    const { bytes, files = {}, maxBytes } = original;
-    checkBytes(bytes);
-    checkMaxBytes(maxBytes);
-    const from = text(original.name, 'original.name');
+    const { bytes, name: from, files, maxBytes } = checked(original);
     return call(() => wasm.rewriteMesh(bytes, from, dimension, maxBytes, files, indices, file));
   }
   return call(() => wasm.writeMesh(positions, indices, dimension, file));
@@ -216,6 +236,29 @@ export async function reorient(mesh: Mesh): Promise<Reoriented> {
 }
 
 /**
+ * Joins the vertices at exactly the same position; -0 is 0. The option `weld` does it for a run.
+ *
+ * @param attributes - What vertices of one place have to have in common to be the same; nothing, if it is not given.
+ * @param turns - Whether triangles are turned then, as by {@link reorient}.
+ * @throws {@link EdgeflipError} about the mesh; `invalid-input`; those of {@link readMesh} about the original.
+ */
+export async function weld(mesh: Mesh, attributes: Attributes = [], turns = false): Promise<Welded> {
+  const { positions, indices, dimension } = moduleMesh(mesh);
+  if (!isList(attributes)) {
+    const { bytes, name, files, maxBytes } = checked(attributes);
+    return call(() => welded(wasm.Weld.ofFile(bytes, name, dimension, maxBytes, files, indices, turns)));
+  }
+  const vertices = positions.length / dimension;
+  const arrays = attributes.map((array) => {
+    if (ArrayBuffer.isView(array) && array.length % vertices === 0) {
+      return new Uint8Array(array.buffer, array.byteOffset, array.byteLength);
+    }
+    throw new EdgeflipError('invalid-input', `an attribute is no typed array with a multiple of ${vertices} numbers`);
+  });
+  return call(() => welded(wasm.Weld.of(positions, indices, dimension, arrays, turns)));
+}
+
+/**
  * Measures a mesh, for reports: in 64-bit floats, not exact.
  *
  * @throws {@link EdgeflipError} about the mesh.
@@ -235,6 +278,36 @@ export async function change(mesh: Mesh, after: Uint32Array | Uint16Array): Prom
   const { positions, indices, dimension } = moduleMesh(mesh);
   const { indices: changed } = moduleMesh({ ...mesh, indices: after });
   return call(() => wasm.change(positions, indices, dimension, changed));
+}
+
+/** The compiler does not see it where a list is only read. */
+function isList(attributes: Attributes): attributes is readonly VertexArray[] {
+  return Array.isArray(attributes);
+}
+
+function welded(made: wasm.Weld): Welded {
+  const { indices, lockedEdges, lockedTriangles, places, joined, turned } = made;
+  let isFreed = false;
+  const split = (indices: Uint32Array) => {
+    if (isFreed) throw new EdgeflipError('freed', 'what was joined has been freed');
+    try {
+      return made.split(indices);
+    } catch (thrown) {
+      throw fromModule(thrown);
+    }
+  };
+  const free = () => {
+    if (!isFreed) made.free();
+    isFreed = true;
+  };
+  return { indices, lockedEdges, lockedTriangles, places, joined, turned, split, free };
+}
+
+/** The file, if a program without types has passed something else. */
+function checked({ bytes, name, files = {}, maxBytes }: Original) {
+  checkBytes(bytes);
+  checkMaxBytes(maxBytes);
+  return { bytes, name: text(name, 'original.name'), files, maxBytes };
 }
 
 function checkMaxBytes(maxBytes: number | undefined): void {

@@ -7,6 +7,7 @@ import type { EDGE_STATES } from './edge-states.js';
 import { EdgeflipError, fromModule } from './error.js';
 import { init, initAudit } from './load.js';
 import { checkPositions, moduleMesh } from './mesh.js';
+import type { Prepared } from './prepare.js';
 import { Turns } from './turn.js';
 import type { Audit, Edges, Engine, Iteration, Mesh, Options, Result, RunOptions } from './types.js';
 
@@ -29,11 +30,11 @@ export class FlipSession implements AsyncIterable<Iteration>, Disposable {
   #last: Promise<unknown> = Promise.resolve();
   #isFreed = false;
 
-  readonly #turned: number;
+  readonly #prepared: Prepared;
 
-  private constructor(session: Session, turned: number) {
+  private constructor(session: Session, prepared: Prepared) {
     this.#session = session;
-    this.#turned = turned;
+    this.#prepared = prepared;
   }
 
   /**
@@ -42,12 +43,12 @@ export class FlipSession implements AsyncIterable<Iteration>, Disposable {
    * @throws {@link EdgeflipError} about the mesh, the options or the backend.
    */
   static async create(mesh: Mesh, options: Options = {}): Promise<FlipSession> {
-    const { positions, indices: given, dimension } = moduleMesh(mesh);
-    const turning = options.reorient ? (await import('./files.js')).reorient(mesh) : { indices: given, turned: 0 };
-    const { indices, turned } = await turning;
+    const { positions, indices, dimension } = moduleMesh(mesh);
+    const isAsked = options.reorient || options.weld;
+    const prepared = isAsked ? await (await import('./prepare.js')).prepare(mesh, options) : { indices, turned: 0, options };
     await init();
     try {
-      return new FlipSession(await Session.create(positions, indices, dimension, options), turned);
+      return new FlipSession(await Session.create(positions, prepared.indices, dimension, prepared.options), prepared);
     } catch (thrown) {
       throw fromModule(thrown);
     }
@@ -98,12 +99,25 @@ export class FlipSession implements AsyncIterable<Iteration>, Disposable {
 
   /** The result so far. */
   result(): Promise<Result> {
-    return this.#call(async (session) => ({ ...(await session.outcome()), turnedTriangles: this.#turned }));
+    const { turned, welded } = this.#prepared;
+    return this.#call(async (session) => {
+      const outcome = await session.outcome();
+      return {
+        ...outcome,
+        indices: welded?.split(outcome.indices) ?? outcome.indices,
+        turnedTriangles: turned,
+        joinedVertices: welded?.joined ?? 0,
+        seamEdges: (welded?.lockedEdges.length ?? 0) / 2,
+      };
+    });
   }
 
   /** The triangles so far: vertex indices, 3 a triangle. */
   triangles(): Promise<Uint32Array> {
-    return this.#call((session) => session.triangles());
+    return this.#call(async (session) => {
+      const indices = await session.triangles();
+      return this.#prepared.welded?.split(indices) ?? indices;
+    });
   }
 
   /** Every edge, as it is now. */
@@ -158,7 +172,10 @@ export class FlipSession implements AsyncIterable<Iteration>, Disposable {
   free(): void {
     if (this.#isFreed) return;
     this.#isFreed = true;
-    void this.#last.then(() => this.#session.free());
+    void this.#last.then(() => {
+      this.#session.free();
+      this.#prepared.welded?.free();
+    });
   }
 
   /** As {@link FlipSession.free}: `using session = await FlipSession.create(mesh)`. */

@@ -15,6 +15,36 @@ export interface Mesh {
   dimension: 2 | 3;
 }
 
+/** Bytes of files by their names, such as `{ 'scene.bin': bytes }`. */
+export type Files = Readonly<Record<string, Uint8Array>>;
+
+/** A file that a mesh was read from, with what it was read with. */
+export interface Original {
+  bytes: Uint8Array;
+  name: string;
+  files?: Files | undefined;
+  maxBytes?: number | undefined;
+}
+
+/** Numbers for the vertices of a mesh, the same count for each, such as 2 texture coordinates. */
+export type VertexArray =
+  | Int8Array
+  | Uint8Array
+  | Uint8ClampedArray
+  | Int16Array
+  | Uint16Array
+  | Int32Array
+  | Uint32Array
+  | Float32Array
+  | Float64Array;
+
+/**
+ * What vertices at one place have: those with the same bits in all arrays are the same. Or the file that the mesh was
+ * read from: of glTF the vertices of each primitive are joined for themselves, and those are the same that have the
+ * same bytes in all accessors.
+ */
+export type Attributes = readonly VertexArray[] | Original;
+
 /** An engine. All give the same result, bit for bit. */
 export type Engine = 'webgpu' | 'webgl2' | 'cpu';
 
@@ -57,6 +87,15 @@ export interface Options {
    * `edgeflip/files`.
    */
   reorient?: boolean | undefined;
+  /**
+   * Joins vertices at exactly the same position for the run, so that edges flip where triangles have no vertices in
+   * common; the indices of the result are split again. Where vertices of one place differ in these attributes, the edges
+   * of the seam are locked, and every corner of the result has a vertex with its attributes; with `true` all of one place
+   * are the same. The vertices of a place have to stay at one place when the positions of a session change. What
+   * `edges`, `verify` and `gpu` give is of the joined mesh, which has the first vertex of each place. Loads the module of
+   * `edgeflip/files`.
+   */
+  weld?: boolean | Attributes | undefined;
   /**
    * `'reproducible'` (default): the parallel iterations, the same on every engine. `'any'`: Lawson's sequential
    * algorithm, on the CPU only.
@@ -149,6 +188,10 @@ export interface Result {
   inconsistentEdges: number;
   /** Triangles that `reorient` has turned. */
   turnedTriangles: number;
+  /** Vertices that `weld` has joined to another one. */
+  joinedVertices: number;
+  /** Edges that `weld` has locked, since attributes differ on their two sides. */
+  seamEdges: number;
   /** Edges that are still not Delaunay. */
   remaining: Reasons;
   /** Milliseconds: on a GPU making the engine ready and the copies to it, the adjacency, the iterations, and all of it. */

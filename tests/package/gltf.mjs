@@ -1,5 +1,14 @@
 // A GLB file with all that a triangle mesh may carry, made by hand: two primitives with a skin, morph targets and a
-// texture.
+// texture. And what the validator of the Khronos Group says of a file.
+
+import validator from 'gltf-validator';
+
+/** What the validator finds. */
+export async function faults(bytes, files = {}) {
+  const externalResourceFunction = async (uri) => files[decodeURIComponent(uri)];
+  const { issues } = await validator.validateBytes(bytes, { maxIssues: 20, externalResourceFunction });
+  return issues.messages;
+}
 
 const FLOAT = 5126;
 const VERTEX = 34962;
@@ -55,23 +64,29 @@ function ribbon(cells, z) {
   return { positions, indices };
 }
 
-/** The file, and where in it the indices are: pairs of the first byte and the one after the last. */
-export function riggedGlb() {
+/**
+ * The file, and where in it the indices are: pairs of the first byte and the one after the last. Without indices every
+ * triangle has vertices of its own, and texture coordinates change in the middle of the second primitive.
+ */
+export function riggedGlb({ isIndexed = true } = {}) {
   const content = new Content();
   const primitives = [Uint16Array, Uint32Array].map((Indices, number) => {
-    const { positions, indices } = ribbon(24, number);
+    const { positions: shared, indices } = ribbon(24, number);
+    const positions = isIndexed ? shared : Float32Array.from(indices.flatMap((i) => [...shared.slice(3 * i, 3 * i + 3)]));
     const count = positions.length / 3;
     const perVertex = (values) => Array.from({ length: count }, () => values).flat();
+    const texture = perVertex([0.5, 0.25]);
+    if (!isIndexed && number === 1) texture.fill(0.75, count);
     return {
       attributes: {
         POSITION: content.accessor(positions, 3, VERTEX, true),
         NORMAL: content.accessor(Float32Array.from(perVertex([0, 0, 1])), 3, VERTEX),
-        TEXCOORD_0: content.accessor(Float32Array.from(perVertex([0.5, 0.25])), 2, VERTEX),
+        TEXCOORD_0: content.accessor(Float32Array.from(texture), 2, VERTEX),
         JOINTS_0: content.accessor(Uint8Array.from(perVertex([0, 1, 0, 0])), 4, VERTEX),
         WEIGHTS_0: content.accessor(Float32Array.from(perVertex([0.5, 0.5, 0, 0])), 4, VERTEX),
       },
       targets: [{ POSITION: content.accessor(Float32Array.from(perVertex([0, 0.5, 0])), 3, VERTEX, true) }],
-      indices: content.accessor(Indices.from(indices), 1, INDEX),
+      ...(isIndexed ? { indices: content.accessor(Indices.from(indices), 1, INDEX) } : {}),
       material: 0,
       extras: { part: number },
     };
@@ -109,7 +124,7 @@ export function riggedGlb() {
     word(padded.length), Buffer.from('JSON'), padded,
     word(content.bytes.length), Buffer.from('BIN\0'), content.bytes,
   ]);
-  const ranges = primitives.map(({ indices }) => {
+  const ranges = primitives.filter(() => isIndexed).map(({ indices }) => {
     const { byteOffset, byteLength } = content.bufferViews[content.accessors[indices].bufferView];
     return [start + byteOffset, start + byteOffset + byteLength];
   });

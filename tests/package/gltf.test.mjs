@@ -5,15 +5,7 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { makeDelaunay } from '../../dist/index.js';
 import { generate, readMesh, writeMesh } from '../../dist/files.js';
-import { riggedGlb } from './gltf.mjs';
-import validator from 'gltf-validator';
-
-/** What the validator finds. */
-async function faults(bytes, files = {}) {
-  const externalResourceFunction = async (uri) => files[decodeURIComponent(uri)];
-  const { issues } = await validator.validateBytes(bytes, { maxIssues: 20, externalResourceFunction });
-  return issues.messages;
-}
+import { faults, riggedGlb } from './gltf.mjs';
 
 async function flipped(bytes, name, files) {
   const mesh = await readMesh(bytes, name, { files });

@@ -1,7 +1,7 @@
 // Compiled, never run: what a strict TypeScript program sees of the package.
 
 import { EDGE_STATES, EdgeflipError, type EdgeState, type ErrorCode, FlipSession, type Iteration, init, initAudit, initWebGl2, makeDelaunay, type Mesh } from 'edgeflip';
-import { type Angles, angles, type FileMesh, FORMATS, generate, initFiles, readMesh, writeMesh } from 'edgeflip/files';
+import { type Angles, angles, type FileMesh, FORMATS, generate, initFiles, type Original, readMesh, type Welded, weld, writeMesh } from 'edgeflip/files';
 
 export async function use(mesh: Mesh, signal: AbortSignal, device?: GPUDevice): Promise<Uint32Array> {
   await init(new URL('https://example.org/edgeflip.wasm'));
@@ -47,6 +47,14 @@ export async function copy(file: File): Promise<Blob> {
   return new Blob([await writeMesh(mesh, `copy${format ?? '.off'}`)]);
 }
 
+export async function joined(mesh: Mesh, original: Original): Promise<Uint32Array> {
+  const { seamEdges } = await makeDelaunay(mesh, { weld: [new Float32Array(8), new Uint8Array(4)] });
+  const { joinedVertices } = await makeDelaunay(mesh, { weld: original, reorient: true });
+  const welded: Welded = await weld(mesh);
+  console.log(seamEdges + joinedVertices, (await makeDelaunay(mesh, { weld: true })).flips);
+  return welded.split(welded.indices);
+}
+
 export function codeOf(error: unknown): ErrorCode | undefined {
   return error instanceof EdgeflipError ? error.code : undefined;
 }
@@ -57,3 +65,5 @@ void makeDelaunay({ positions: new Float32Array(), indices: new Uint16Array(), d
 void readMesh('OFF', 'a.off');
 // @ts-expect-error: a plain array is no typed array
 void makeDelaunay({ positions: [0, 0], indices: new Uint16Array(), dimension: 2 });
+// @ts-expect-error: plain numbers have no bits to compare
+void makeDelaunay({ positions: new Float32Array(), indices: new Uint16Array(), dimension: 2 }, { weld: [[0.5, 1]] });
