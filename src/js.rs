@@ -114,7 +114,9 @@ impl JsSession {
     ///
     /// # Errors
     /// As there.
-    #[wasm_bindgen(unchecked_return_type = "Omit<import('../types.js').Result, 'turnedTriangles' | 'joinedVertices' | 'seamEdges'>")]
+    #[wasm_bindgen(
+        unchecked_return_type = "Omit<import('../types.js').Result, 'turnedTriangles' | 'joinedVertices' | 'seamEdges'>"
+    )]
     pub async fn outcome(&mut self) -> Result<JsValue, JsValue> {
         Ok(outcome_object(&self.0.outcome().await.map_err(thrown)?))
     }

@@ -1,7 +1,6 @@
 //! What has to hold for the bytes of any file: it is read or refused in one line; what was read is made Delaunay, and
-//! the audit is clean; and it is written again in every format, from which the same mesh is read: in its own with all
-//! else as it was. The fuzz targets call
-//! this, and so does `tests/fuzz_seeds.rs`.
+//! the audit is clean, also with its vertices joined; and it is written again in every format, from which the same mesh
+//! is read: in its own with all else as it was. The fuzz targets call this, and so does `tests/fuzz_seeds.rs`.
 
 use edgeflip::io::{Format, Loaded, ReadOptions, parse_edges, parse_numbers, parse_with};
 use edgeflip::{Dimension, Error, Mesh, Options, make_delaunay, quality};
@@ -53,16 +52,10 @@ fn one_line(error: Error) {
 /// Flips, audits, and writes in every format.
 fn whole_way(loaded: &Loaded, bytes: &[u8]) {
     let mesh = &loaded.mesh;
-    let mut triangles = mesh.triangles().to_vec();
     let mut options = Options::default();
     loaded.constrain(&mut options).unwrap();
-    if mesh.triangle_count() < MANY {
-        let outcome = make_delaunay(mesh, &options, |_, _| ControlFlow::Continue(())).unwrap();
-        let audit = quality::audit(mesh, &outcome.triangles, &options);
-        assert!(audit.is_clean(), "{:?}", audit.violations);
-        assert_eq!(audit.remaining, outcome.remaining);
-        triangles = outcome.triangles;
-    }
+    let triangles = flipped(mesh, &options);
+    joined(loaded);
     let mut reversed = triangles.clone();
     reversed.reverse();
     // A glTF primitive with other indices may share its vertices with another in another way.
@@ -89,6 +82,35 @@ fn whole_way(loaded: &Loaded, bytes: &[u8]) {
                 }
             }
         }
+    }
+}
+
+/// The triangles of a run, which the audit finds nothing in.
+fn flipped(mesh: &Mesh, options: &Options) -> Vec<u32> {
+    if mesh.triangle_count() >= MANY {
+        return mesh.triangles().to_vec();
+    }
+    let outcome = make_delaunay(mesh, options, |_, _| ControlFlow::Continue(())).unwrap();
+    let audit = quality::audit(mesh, &outcome.triangles, options);
+    assert!(audit.is_clean(), "{:?}", audit.violations);
+    assert_eq!(audit.remaining, outcome.remaining);
+    outcome.triangles
+}
+
+/// Joins the vertices at one place, flips, and splits: each corner has a vertex of its place, and glTF takes it.
+fn joined(loaded: &Loaded) {
+    let welded = match loaded.welded() {
+        Ok(welded) => welded,
+        Err(error) => return one_line(error),
+    };
+    assert_eq!(welded.split(welded.mesh.triangles()).unwrap(), loaded.mesh.triangles());
+    let mut options = Options::default();
+    welded.constrain(&mut options);
+    let triangles = flipped(&welded.mesh, &options);
+    let split = welded.split(&triangles).unwrap();
+    assert!(split.iter().zip(&triangles).all(|(&v, &place)| welded.places[v as usize] == place));
+    if let Err(error) = loaded.file_bytes("a.glb", split) {
+        assert!(!error.to_string().contains("of another primitive"), "{error}");
     }
 }
 

@@ -41,7 +41,7 @@ export type VertexArray =
 /**
  * What vertices at one place have: those with the same bits in all arrays are the same. Or the file that the mesh was
  * read from: of glTF the vertices of each primitive are joined for themselves, and those are the same that have the
- * same bytes in all accessors.
+ * same bytes in all accessors. Files of other formats say nothing here: write what comes of them without `original`.
  */
 export type Attributes = readonly VertexArray[] | Original;
 
