@@ -151,7 +151,7 @@ impl Loaded {
     /// with the same bytes in all accessors are the same in all else; of other files all of one place are.
     ///
     /// # Errors
-    /// None for what was read.
+    /// [`Error::Parse`] for a glTF file in whose JSON an array stands for an object.
     pub fn welded(&self) -> Result<Welded, Error> {
         match &self.document {
             Some(document) => document.welded(&self.mesh),

@@ -87,6 +87,12 @@ struct Part {
 }
 
 impl Document {
+    /// Its buffers, those in other files too.
+    fn buffers(&self, root: &Root, container: &Container) -> Result<Buffers<'_>, Error> {
+        let read = |name: &str| Ok(self.files.get(name).cloned().unwrap_or_default());
+        Buffers::of(root, container.binary.clone().map(|range| &self.bytes[range]), &read)
+    }
+
     /// Positions in the scene, to draw it: each part where the first node that has it places it, 3 numbers a vertex.
     /// `mesh` has the positions that were read.
     pub(super) fn placed(&self, mesh: &Mesh) -> Vec<f32> {

@@ -1,7 +1,6 @@
 //! Which vertices of a file are one place, and which of these are the same in all else.
 
 use super::accessors::Accessors;
-use super::buffers::Buffers;
 use super::container::Container;
 use super::{Document, Part, deserialized, json};
 use crate::weld::{first_alike, place};
@@ -35,14 +34,13 @@ impl Document {
     /// The mesh, which has the vertices that were read, with those of each part joined that are at one place.
     ///
     /// # Errors
-    /// Those of reading, if the file's bytes have changed.
+    /// [`Error::Parse`] where an array stands for an object in the JSON, of which reading knows some.
     pub(in crate::io) fn welded(&self, mesh: &Mesh) -> Result<Welded, Error> {
         let container = Container::of(&self.bytes)?;
         let text = &self.bytes[container.json.clone()];
         let root = json(text)?;
         let Meshes { meshes } = deserialized(text)?;
-        let read = |name: &str| Ok(self.files.get(name).cloned().unwrap_or_default());
-        let buffers = Buffers::of(&root, container.binary.map(|range| &self.bytes[range]), &read)?;
+        let buffers = self.buffers(&root, &container)?;
         let accessors = Accessors { root: &root, buffers: &buffers };
         let (mut places, mut attributes) = (Vec::new(), Vec::new());
         for part in &self.parts {

@@ -34,8 +34,7 @@ impl Document {
         let container = Container::of(&self.bytes)?;
         let text = &self.bytes[container.json.clone()];
         let root = json(text)?;
-        let read = |name: &str| Ok(self.files.get(name).cloned().unwrap_or_default());
-        let buffers = Buffers::of(&root, container.binary.clone().map(|range| &self.bytes[range]), &read)?;
+        let buffers = self.buffers(&root, &container)?;
         let accessors = Accessors { root: &root, buffers: &buffers };
         let mut file = File { buffers: &buffers, changed: BTreeMap::new(), appended: Vec::new() };
         let is_alone = alone(&accessors, &self.parts);
