@@ -61,7 +61,7 @@ impl Wedges {
                 barriers.extend(starts.map(|&h| (ends(triangles, h), h)));
             });
             barriers.sort_unstable();
-            // In a result nothing else tells half-edges between the same vertices from each other.
+            // Half-edges between the same two vertices: in a result only their triangles tell which is which.
             for alike in barriers.chunk_by(|x, y| x.0 == y.0) {
                 if alike.iter().any(|&(_, h)| class(h) != class(alike[0].1)) {
                     locked_triangles.extend(alike.iter().map(|&(_, h)| h / 3));

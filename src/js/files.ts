@@ -250,7 +250,7 @@ export async function weld(mesh: Mesh, attributes: Attributes = [], turns = fals
   }
   const vertices = positions.length / dimension;
   const arrays = attributes.map((array) => {
-    if (ArrayBuffer.isView(array) && array.length % vertices === 0) {
+    if (ArrayBuffer.isView(array) && (array.length % vertices === 0 || array.length === vertices)) {
       return new Uint8Array(array.buffer, array.byteOffset, array.byteLength);
     }
     throw new EdgeflipError('invalid-input', `an attribute is no typed array with a multiple of ${vertices} numbers`);
