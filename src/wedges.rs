@@ -153,9 +153,11 @@ impl Wedges {
             }
             starts.extend(half_edges.iter().filter(|&&h| is_mixed(h)));
         });
-        for (corner, vertex) in corners(&self.locked_triangles).zip(&self.locked_vertices) {
-            if triangles[corner as usize] == *vertex {
-                spread(&mut sources, &twins, corner, corner);
+        for (&t, locked) in self.locked_triangles.iter().zip(self.locked_vertices.as_chunks().0) {
+            let corner = |k: u32| 3 * t + k % 3;
+            let is_turned = |turn: &u32| [0, 1, 2].map(|k| triangles[corner(k + turn) as usize]) == *locked;
+            if let Some(turn) = (0..3).find(is_turned) {
+                (0..3).for_each(|k| spread(&mut sources, &twins, corner(k + turn), corner(k)));
             }
         }
         for h in starts {

@@ -88,10 +88,11 @@ impl Original {
         let more: u64 = changed.iter().map(|(face, _)| face.triangles as u64 - 1).sum();
         let mut out = Vec::with_capacity(self.bytes.len());
         let mut copied = 0;
-        for count in &faces.counts {
+        for count in faces.counts.iter().filter(|_| more > 0) {
             out.extend_from_slice(&self.bytes[copied..count.start]);
-            let number = super::text::integer(&self.bytes[count.clone()]).unwrap_or_default() as u64;
-            out.extend_from_slice((number + more).to_string().as_bytes());
+            let number = super::text::integer(&self.bytes[count.clone()]).unwrap_or_default();
+            // That of edges can be any.
+            out.extend_from_slice(number.saturating_add_unsigned(more).to_string().as_bytes());
             copied = count.end;
         }
         for (face, triangles) in changed {
