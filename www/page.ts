@@ -412,7 +412,7 @@ function showProgress(text: string, share = 1): void {
 function statusOf({ at, isOver, iterations }: Run): string {
   if (at === 0) return isOver ? 'No edge of the input may flip' : 'The input';
   const flips = iterations.slice(0, at).reduce((sum, iteration) => sum + iteration.flips, 0);
-  const so = `${number.format(flips)} flips in ${number.format(at)} ${at === 1 ? 'iteration' : 'iterations'}`;
+  const so = `${number.format(flips)} ${flips === 1 ? 'flip' : 'flips'} in ${number.format(at)} ${at === 1 ? 'iteration' : 'iterations'}`;
   return isOver ? `Done: ${so}` : so;
 }
 
