@@ -4,7 +4,6 @@
 
 use crate::threads::{Threads, shared};
 use crate::{Mesh, NONE};
-use std::array;
 use std::ops::Range;
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
@@ -75,21 +74,36 @@ pub(crate) fn edge_kind(half_edges: &[u32], triangles: &[u32]) -> EdgeKind {
     }
 }
 
-/// The half-edges in buckets by the smaller vertex of their edges, by a counting sort: in each bucket they ascend.
+/// The vertices of an edge, the smaller one first.
+fn ends(triangles: &[u32], h: u32) -> [u32; 2] {
+    let [from, to] = [h, next(h)].map(|x| triangles[x as usize]);
+    [from.min(to), from.max(to)]
+}
+
+/// Half-edges in buckets by the smaller vertices of their edges. In each bucket they ascend.
 struct Buckets {
-    /// Where the bucket of each vertex ends in `half_edges`, and the next one starts.
+    /// Where the bucket of each vertex ends, and the next one starts.
     ends: Vec<u32>,
+    /// The larger vertices, those of all buckets and [`LANES`] more.
+    highs: Vec<u32>,
     half_edges: Vec<u32>,
 }
 
+/// Vertices that are compared at once.
+const LANES: usize = 8;
+
+/// A larger bucket is sorted before it is searched, lest a pole cost the square of its edges.
+const FEW: usize = 64;
+
 impl Buckets {
-    fn new(vertices: usize, triangles: &[u32], threads: &Threads) -> Self {
+    /// Of all half-edges, or of those that rise: that go from the smaller vertex to the larger one. A counting sort.
+    fn new(vertices: usize, triangles: &[u32], threads: &Threads, all: bool) -> Self {
         let (corners, _) = triangles.as_chunks::<3>();
         let mut pieces = threads.map_each(threads.pieces_with_arrays(corners.len()), |piece| {
             let mut counts = vec![0u32; vertices];
             for &[a, b, c] in &corners[piece.clone()] {
-                for low in [a.min(b), b.min(c), c.min(a)] {
-                    counts[low as usize] += 1;
+                for (from, to) in [(a, b), (b, c), (c, a)] {
+                    counts[if all { from.min(to) } else { from } as usize] += u32::from(all | (from < to));
                 }
             }
             (piece, counts)
@@ -101,102 +115,147 @@ impl Buckets {
                 sum += std::mem::replace(&mut starts[low], sum);
             }
         }
-        let mut half_edges = vec![0u32; triangles.len()];
-        let words = shared(&mut half_edges);
+        let [mut highs, mut half_edges] = [(); 2].map(|()| vec![0; sum as usize + LANES]);
+        let (high, half_edge) = (shared(&mut highs), shared(&mut half_edges));
         let mut ends = threads.map_each(pieces, |(piece, mut starts)| {
             for (t, &[a, b, c]) in (piece.start as u32..).zip(&corners[piece]) {
-                for (low, h) in [(a.min(b), 3 * t), (b.min(c), 3 * t + 1), (c.min(a), 3 * t + 2)] {
-                    let at = &mut starts[low as usize];
-                    words[*at as usize].store(h, Relaxed);
-                    *at += 1;
+                for (from, to, h) in [(a, b, 3 * t), (b, c, 3 * t + 1), (c, a, 3 * t + 2)] {
+                    let start = &mut starts[if all { from.min(to) } else { from } as usize];
+                    let is_wanted = all | (from < to);
+                    // What is not wanted goes to a place behind all; nothing could predict a branch.
+                    let at = if is_wanted { *start } else { sum } as usize;
+                    *start += u32::from(is_wanted);
+                    high[at].store(from.max(to), Relaxed);
+                    half_edge[at].store(h, Relaxed);
                 }
             }
             starts
         });
         // Each start has moved to the end of its part.
-        Self { ends: ends.pop().unwrap_or_default(), half_edges }
+        Self { ends: ends.pop().unwrap_or_default(), highs, half_edges }
     }
 
-    /// The buckets of some vertices, each with its vertex.
-    fn of(&self, vertices: Range<usize>) -> impl Iterator<Item = (u32, &[u32])> {
-        let mut start = if vertices.start == 0 { 0 } else { self.ends[vertices.start - 1] as usize };
-        (vertices.start as u32..).zip(&self.ends[vertices]).map(move |(vertex, &end)| {
-            let bucket = &self.half_edges[start..end as usize];
-            start = end as usize;
-            (vertex, bucket)
-        })
+    /// The half-edges of a bucket, each after the larger vertex.
+    fn of(&self, vertex: usize) -> impl Iterator<Item = (u32, u32)> {
+        let bucket = range(&self.ends, vertex);
+        self.highs[bucket.clone()].iter().copied().zip(self.half_edges[bucket].iter().copied())
+    }
+
+    /// Sorts the buckets that a search would take long for.
+    fn sort_large(&mut self) {
+        for vertex in 0..self.ends.len() {
+            let bucket = range(&self.ends, vertex);
+            if bucket.len() > FEW {
+                let mut sorted: Vec<_> = self.of(vertex).collect();
+                sorted.sort_unstable();
+                for (i, entry) in bucket.zip(sorted) {
+                    (self.highs[i], self.half_edges[i]) = entry;
+                }
+            }
+        }
     }
 }
 
-/// The vertex of half-edge `h`'s edge that is not `low`.
-fn other_end(triangles: &[u32], low: u32, h: u32) -> u32 {
-    triangles[h as usize] ^ triangles[next(h) as usize] ^ low
+/// The bucket of a vertex, as the ends of all say.
+#[inline(always)]
+fn range(ends: &[u32], vertex: usize) -> Range<usize> {
+    let start = if vertex == 0 { 0 } else { ends[vertex - 1] };
+    start as usize..ends[vertex] as usize
 }
 
 /// Calls `visit` once for each edge with its half-edges in ascending order, edges by their smaller vertex. A vertex of n
 /// edges costs n log n.
 pub(crate) fn for_each_edge(vertices: usize, triangles: &[u32], mut visit: impl FnMut(&[u32])) {
-    let mut sorted = Vec::new();
-    for (low, bucket) in Buckets::new(vertices, triangles, &Threads::default()).of(0..vertices) {
-        visit_edges(triangles, low, bucket, &mut sorted, &mut visit);
+    let buckets = Buckets::new(vertices, triangles, &Threads::default(), true);
+    let (mut bucket, mut edge) = (Vec::new(), Vec::new());
+    for vertex in 0..vertices {
+        bucket.clear();
+        bucket.extend(buckets.of(vertex));
+        visit_edges(&mut bucket, &mut edge, &mut visit);
     }
 }
 
-/// The same for the edges of one bucket. `sorted` is scratch.
-fn visit_edges(
-    triangles: &[u32],
-    low: u32,
-    bucket: &[u32],
-    sorted: &mut Vec<u32>,
-    visit: &mut impl FnMut(&[u32]),
-) {
-    let end = |h: u32| other_end(triangles, low, h);
-    sorted.clear();
-    sorted.extend(bucket);
-    sorted.sort_unstable_by_key(|&h| (end(h), h));
-    for edge in sorted.chunk_by(|&x, &y| end(x) == end(y)) {
+/// Calls `visit` for each edge of a bucket: half-edges, each after the larger vertex, which are sorted. `edge` is scratch.
+fn visit_edges(bucket: &mut [(u32, u32)], edge: &mut Vec<u32>, mut visit: impl FnMut(&[u32])) {
+    bucket.sort_unstable();
+    for entries in bucket.chunk_by(|x, y| x.0 == y.0) {
+        edge.clear();
+        edge.extend(entries.iter().map(|&(_, h)| h));
         visit(edge);
     }
 }
 
-/// Writes the twins of a bucket of at most `N` half-edges, compared each with each, and returns the number of its
-/// edges with one half-edge and with two; `None`, and nothing written, where one of them would be frozen.
-fn match_few<const N: usize>(
-    triangles: &[u32],
-    low: u32,
-    bucket: &[u32],
-    twins: &[AtomicU32],
-) -> Option<[u32; 2]> {
-    // What is no half-edge is equal to none: no other end is `low`, but in a triangle that has a corner twice.
-    let mut ends = [low; N];
-    let mut outwards = 0u32;
-    for (i, &h) in bucket.iter().enumerate() {
-        ends[i] = other_end(triangles, low, h);
-        outwards |= u32::from(triangles[h as usize] == low) << i;
+/// The rising half-edges, while the falling ones take theirs.
+struct Rising<'a> {
+    ends: &'a [u32],
+    highs: &'a [u32],
+    /// [`NONE`] for one that is taken.
+    half_edges: &'a [AtomicU32],
+}
+
+/// Triangles of which the falling half-edges are listed first, so that the processor is ahead of the memory.
+const TRIANGLES: usize = 128;
+
+impl Rising<'_> {
+    /// Matches the falling half-edges of some triangles. Returns how many, and the smaller vertices of the edges of those
+    /// that cannot be.
+    fn take(&self, triangles: &[u32], piece: Range<usize>, twins: &[AtomicU32]) -> (usize, Vec<u32>) {
+        let (corners, _) = triangles.as_chunks::<3>();
+        let (mut matched, mut odd) = (0, Vec::new());
+        let mut falling = [[0; 3]; 3 * TRIANGLES];
+        for first in piece.clone().step_by(TRIANGLES) {
+            let mut count = 0;
+            for (t, &[a, b, c]) in (first as u32..).zip(&corners[first..piece.end.min(first + TRIANGLES)]) {
+                for (from, to, h) in [(a, b, 3 * t), (b, c, 3 * t + 1), (c, a, 3 * t + 2)] {
+                    falling[count] = [from, to, h];
+                    count += usize::from(from >= to);
+                }
+            }
+            for &[high, low, h] in &falling[..count] {
+                let entry = self.find(low, high);
+                let g = entry.map_or(NONE, |entry| entry.load(Relaxed));
+                match entry {
+                    Some(entry) if g != NONE && g / 3 != h / 3 => {
+                        entry.store(NONE, Relaxed);
+                        twins[h as usize].store(g, Relaxed);
+                        twins[g as usize].store(h, Relaxed);
+                        matched += 1;
+                    }
+                    _ => odd.push(low),
+                }
+            }
+        }
+        (matched, odd)
     }
-    let mut partners = [NONE; N];
-    let mut is_odd = false;
-    let mut alone = 0;
-    for (i, &h) in bucket.iter().enumerate() {
-        let equal = (0..N).fold(0u32, |bits, j| bits | u32::from(ends[j] == ends[i]) << j);
-        let others = equal & !(1 << i);
-        alone += u32::from(others == 0);
-        let j = others.trailing_zeros();
-        let g = bucket.get(j as usize).copied().unwrap_or(NONE);
-        // More than two, two in one direction, in one triangle, or from a corner to itself.
-        is_odd |= others & others.wrapping_sub(1) != 0
-            || (others != 0 && (outwards >> i ^ outwards >> (j & 31)) & 1 == 0)
-            || h / 3 == g / 3
-            || ends[i] == low;
-        partners[i] = g;
+
+    /// The first half-edge of the edge of two vertices, if there is one.
+    #[inline(always)]
+    fn find(&self, low: u32, high: u32) -> Option<&AtomicU32> {
+        let Range { start, end } = range(self.ends, low as usize);
+        let found = if end - start > FEW {
+            start + self.highs[start..end].partition_point(|&v| v < high)
+        } else {
+            let mut at = start;
+            loop {
+                let (lanes, _) = self.highs[at..].split_first_chunk::<LANES>()?;
+                let bits = (0..).zip(lanes).fold(0u32, |bits, (i, &v)| bits | u32::from(v == high) << i);
+                if bits != 0 {
+                    break at + bits.trailing_zeros() as usize;
+                }
+                at += LANES;
+                if at >= end {
+                    return None;
+                }
+            }
+        };
+        (found < end && self.highs[found] == high).then(|| &self.half_edges[found])
     }
-    if is_odd {
-        return None;
+
+    /// The smaller vertices of the edges of those that have not been taken.
+    fn rest(&self, triangles: &[u32], piece: Range<usize>) -> Vec<u32> {
+        let half_edges = self.half_edges[piece].iter().map(|h| h.load(Relaxed));
+        half_edges.filter(|&h| h != NONE).map(|h| triangles[h as usize]).collect()
     }
-    for (&h, partner) in bucket.iter().zip(partners) {
-        twins[h as usize].store(partner, Relaxed);
-    }
-    Some([alone, (bucket.len() as u32 - alone) / 2])
 }
 
 impl Adjacency {
@@ -207,58 +266,138 @@ impl Adjacency {
 
     /// Matches the half-edges of `triangles`, whose indices must be below `vertices`.
     pub(crate) fn of_triangles(vertices: usize, triangles: &[u32], threads: &Threads) -> Self {
-        let buckets = Buckets::new(vertices, triangles, threads);
+        let mut buckets = Buckets::new(vertices, triangles, threads, false);
+        buckets.sort_large();
+        let Buckets { ends, highs, mut half_edges } = buckets;
+        let count = half_edges.len() - LANES;
+        let rising = Rising { ends: &ends, highs: &highs, half_edges: shared(&mut half_edges) };
         // Memory is taken when it is first written, which is work for all threads.
         let mut twins = vec![0; triangles.len()];
         let words = shared(&mut twins);
         threads.map(words.len(), |piece| words[piece].iter().for_each(|twin| twin.store(NONE, Relaxed)));
-        let counts = threads.map(vertices, |piece| match_buckets(triangles, buckets.of(piece), words));
-        let [edges, boundary, non_manifold, inconsistent] =
-            counts.into_iter().fold([0; 4], |sums, counts| array::from_fn(|kind| sums[kind] + counts[kind]));
-        Self { twins, edges, boundary, non_manifold, inconsistent }
-    }
-}
-
-/// Writes the twins of some buckets, where there are any, and returns the number of their edges: all, those on the
-/// boundary, the non-manifold and the inconsistent ones.
-fn match_buckets<'a>(
-    triangles: &[u32],
-    buckets: impl Iterator<Item = (u32, &'a [u32])>,
-    twins: &[AtomicU32],
-) -> [u32; 4] {
-    let mut counts = [0; 4];
-    let mut sorted = Vec::new();
-    for (low, bucket) in buckets {
-        let matched = match bucket.len() {
-            0..=8 => match_few::<8>(triangles, low, bucket, twins),
-            9..=16 => match_few::<16>(triangles, low, bucket, twins),
-            _ => None,
-        };
-        if let Some([boundary, interior]) = matched {
-            counts[0] += boundary + interior;
-            counts[1] += boundary;
-            continue;
+        let taken = threads.map(triangles.len() / 3, |piece| rising.take(triangles, piece, words));
+        let rest = threads.map(count, |piece| rising.rest(triangles, piece)).concat();
+        // Two threads may have taken the same one.
+        let is_taken_twice = taken.iter().map(|(matched, _)| matched).sum::<usize>() + rest.len() != count;
+        let mut is_odd = vec![is_taken_twice; vertices];
+        for v in taken.into_iter().flat_map(|(_, odd)| odd).chain(rest) {
+            is_odd[v as usize] = true;
         }
-        visit_edges(triangles, low, bucket, &mut sorted, &mut |half_edges| {
-            counts[0] += 1;
-            match edge_kind(half_edges, triangles) {
-                EdgeKind::Boundary => counts[1] += 1,
-                EdgeKind::NonManifold => counts[2] += 1,
-                EdgeKind::Inconsistent => counts[3] += 1,
-                EdgeKind::Interior => {
-                    let (h, g) = (half_edges[0], half_edges[1]);
-                    twins[h as usize].store(g, Relaxed);
-                    twins[g as usize].store(h, Relaxed);
-                }
-            }
-        });
+        let plain: usize = (0..vertices).filter(|&v| !is_odd[v]).map(|v| range(&ends, v).len()).sum();
+        let mut adjacency = Self { edges: plain as u32, ..Self::default() };
+        if is_odd.contains(&true) {
+            adjacency.match_with_care(triangles, words, |v| is_odd[v as usize]);
+        }
+        Self { twins, ..adjacency }
     }
-    counts
+
+    /// Counts the edges of odd vertices, and writes their twins.
+    fn match_with_care(&mut self, triangles: &[u32], twins: &[AtomicU32], is_odd: impl Fn(u32) -> bool) {
+        let mut odd = Vec::new();
+        for (t, &[a, b, c]) in (0..).zip(triangles.as_chunks::<3>().0) {
+            if is_odd(a) | is_odd(b) | is_odd(c) {
+                let lows = (3 * t..3 * t + 3).map(|h| (ends(triangles, h)[0], h));
+                odd.extend(lows.filter(|&(low, _)| is_odd(low)));
+            }
+        }
+        odd.sort_unstable();
+        let mut scratch = Vec::new();
+        for bucket in odd.chunk_by_mut(|x, y| x.0 == y.0) {
+            bucket.iter_mut().for_each(|(low, h)| *low = ends(triangles, *h)[1]);
+            visit_edges(bucket, &mut scratch, |edge| {
+                self.edges += 1;
+                let kind = edge_kind(edge, triangles);
+                match kind {
+                    EdgeKind::Interior => {}
+                    EdgeKind::Boundary => self.boundary += 1,
+                    EdgeKind::NonManifold => self.non_manifold += 1,
+                    EdgeKind::Inconsistent => self.inconsistent += 1,
+                }
+                for &h in edge {
+                    let other = edge[0] ^ edge[edge.len() - 1] ^ h;
+                    let twin = if kind == EdgeKind::Interior { other } else { NONE };
+                    twins[h as usize].store(twin, Relaxed);
+                }
+            });
+        }
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::collection::vec;
+    use proptest::prelude::*;
+    use std::collections::BTreeMap;
+    use std::num::NonZeroUsize;
+
+    /// From the half-edges of each edge.
+    fn expected(triangles: &[u32]) -> Adjacency {
+        let mut edges = BTreeMap::<_, Vec<u32>>::new();
+        for h in 0..triangles.len() as u32 {
+            edges.entry(ends(triangles, h)).or_default().push(h);
+        }
+        let mut expected = Adjacency { twins: vec![NONE; triangles.len()], ..Adjacency::default() };
+        for edge in edges.values() {
+            expected.edges += 1;
+            match edge_kind(edge, triangles) {
+                EdgeKind::Interior => {
+                    expected.twins[edge[0] as usize] = edge[1];
+                    expected.twins[edge[1] as usize] = edge[0];
+                }
+                EdgeKind::Boundary => expected.boundary += 1,
+                EdgeKind::NonManifold => expected.non_manifold += 1,
+                EdgeKind::Inconsistent => expected.inconsistent += 1,
+            }
+        }
+        expected
+    }
+
+    fn compare(vertices: usize, triangles: &[u32]) {
+        let expected = expected(triangles);
+        for threads in 1..=3 {
+            let threads = Threads::new(NonZeroUsize::new(threads)).unwrap();
+            assert_eq!(Adjacency::of_triangles(vertices, triangles, &threads), expected);
+        }
+        let mut number = 0;
+        for_each_edge(vertices, triangles, |edge| {
+            number += 1;
+            assert!(edge.is_sorted() && edge.iter().all(|&h| ends(triangles, h) == ends(triangles, edge[0])));
+        });
+        assert_eq!(number, expected.edges);
+    }
+
+    proptest! {
+        /// From nearly all edges non-manifold to nearly all on the boundary; triangles that have a corner twice.
+        #[test]
+        fn the_half_edges_of_any_triangles_are_matched(
+            triangles in (2u32..40).prop_flat_map(|vertices| vec(0..vertices, 0..40).prop_map(|mut corners| {
+                corners.truncate(corners.len() / 3 * 3);
+                corners
+            }))
+        ) {
+            compare(40, &triangles);
+        }
+
+        /// Cones of many triangles, the apex being the first vertex or the last, with some of them again or turned.
+        #[test]
+        fn the_half_edges_of_poles_are_matched(
+            [is_first, is_last] in any::<[bool; 2]>(), size in 3u32..300, dirt in vec((0usize..300, any::<bool>()), 0..4)
+        ) {
+            let mut triangles = Vec::new();
+            for (apex, is_apex) in [(0, is_first), (size + 1, is_last)] {
+                let cone = |i: u32| if apex == 0 { [i + 1, (i + 1) % size + 1, 0] } else { [(i + 1) % size + 1, i + 1, apex] };
+                triangles.extend((0..if is_apex { size } else { 0 }).flat_map(cone));
+            }
+            for (t, is_turned) in dirt {
+                if let Some(corners) = triangles.as_chunks::<3>().0.get(t) {
+                    let [a, b, c] = *corners;
+                    triangles.extend(if is_turned { [b, a, c] } else { [b, c, a] });
+                }
+            }
+            compare(size as usize + 2, &triangles);
+        }
+    }
 
     fn matched(vertices: usize, triangles: &[u32]) -> Adjacency {
         Adjacency::of_triangles(vertices, triangles, &Threads::default())

@@ -1,5 +1,6 @@
 //! `Mesh`: positions and triangles, checked once when it is made, so that nothing behind it can fail on them.
 
+use crate::positions::all;
 use crate::{Error, Positions};
 use glam::{DVec2, DVec3};
 use std::sync::Arc;
@@ -75,9 +76,9 @@ impl Mesh {
             }
         }
         positions.refuse_non_finite(dimension)?;
-        // The largest one is found faster than the first that is too large.
-        if triangles.iter().fold(0, |largest, &v| v.max(largest)) as usize >= vertices.max(1)
-            && let Some(i) = triangles.iter().position(|&v| v as usize >= vertices)
+        let is_in_range = |&v: &u32| (v as usize) < vertices;
+        if !all(&triangles, is_in_range)
+            && let Some(i) = triangles.iter().position(|v| !is_in_range(v))
         {
             return Err(Error::IndexOutOfRange { triangle: i / 3, index: triangles[i], vertices });
         }

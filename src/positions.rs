@@ -66,10 +66,9 @@ impl Positions {
 
     /// Refuses coordinates that are no numbers, with [`Error::NonFinite`] for the first.
     pub(crate) fn refuse_non_finite(&self, dimension: Dimension) -> Result<(), Error> {
-        // To look at all of them is faster than to look for the first.
         let are_finite = match self {
-            Self::F32(numbers) => numbers.iter().fold(true, |all, x| all & x.is_finite()),
-            Self::F64(numbers) => numbers.iter().fold(true, |all, x| all & x.is_finite()),
+            Self::F32(numbers) => all(numbers, |x| x.is_finite()),
+            Self::F64(numbers) => all(numbers, |x| x.is_finite()),
         };
         let found = if are_finite { None } else { self.iter().position(|x| !x.is_finite()) };
         let stride = dimension.stride();
@@ -109,6 +108,14 @@ impl Positions {
             Self::F64(numbers) => numbers[i],
         }
     }
+}
+
+/// Whether all items are so. To look at each is faster than to stop at the first that is not, eight at a time above all.
+#[inline(always)]
+pub(crate) fn all<T>(items: &[T], is_so: impl Fn(&T) -> bool) -> bool {
+    let (eights, rest) = items.as_chunks::<8>();
+    let are_so = eights.iter().fold(true, |all, eight| eight.iter().fold(all, |all, item| all & is_so(item)));
+    rest.iter().fold(are_so, |all, item| all & is_so(item))
 }
 
 #[inline(always)]

@@ -84,6 +84,15 @@ impl Winding {
         if self.is_clockwise(t) { Ordering::Less } else { Ordering::Greater }
     }
 
+    /// The bits of four triangles.
+    #[inline]
+    pub(crate) fn bits(&self, triangles: [u32; 4]) -> u32 {
+        if self.clockwise.is_empty() {
+            return 0;
+        }
+        (0..).zip(triangles).fold(0, |bits, (lane, t)| bits | u32::from(self.is_clockwise(t)) << lane)
+    }
+
     /// Whether triangle `t` belongs to a component of negative area.
     #[inline]
     pub(crate) fn is_clockwise(&self, t: u32) -> bool {

@@ -33,4 +33,6 @@ if [ "${1:-}" = --which ]; then
   exit
 fi
 export CARGO_TARGET_DIR="$PWD/target/wasm"
+# Vectors; tools/build.mjs says who has them.
+export RUSTFLAGS="-C target-feature=+simd128 ${RUSTFLAGS:-}"
 exec cargo "$@"

@@ -179,20 +179,12 @@ impl Cpu {
         let mut diamonds = [Diamond::default(); EDGES];
         for flipped in flipped.chunks(EDGES / 4) {
             let mut count = 0;
-            for &[h, g] in flipped {
-                let corner = |x: u32| self.triangles[x as usize];
-                // The triangles are (a, d, c) and (b, c, d) now.
-                let [a, c, b, d] = [h, prev(h), g, prev(g)].map(corner);
-                for (x, [from, to, apex]) in
-                    [(h, [a, d, c]), (prev(h), [c, a, d]), (g, [b, c, d]), (prev(g), [d, b, c])]
-                {
-                    let twin = self.twins[x as usize];
-                    let y = unflagged(twin);
-                    if y != NONE {
-                        diamonds[count] = Diamond { h: x, twin, corners: [from, to, apex, corner(prev(y))] };
-                        // Between two that have flipped, one of them tests; nothing could predict a branch.
-                        count += usize::from(self.selected.is_free(y) | (x < y));
-                    }
+            for &edge in flipped {
+                for diamond in Diamond::around(self.topology(), edge) {
+                    let (h, g) = (diamond.h, unflagged(diamond.twin));
+                    diamonds[count] = diamond;
+                    // Between two that have flipped, one of them tests; nothing could predict a branch.
+                    count += usize::from(self.selected.is_free(g) | (h < g));
                 }
             }
             self.test(&diamonds[..count], found);

@@ -4,7 +4,7 @@
 
 use super::{Answer, Census, Cpu, EdgeCounts, Engine};
 use crate::adjacency::{FLAGS, next, prev, unflagged};
-use crate::phases::{Diamond, Verdict, keep_non_delaunay, verdict};
+use crate::phases::{Diamond, Verdict, keep_non_delaunay, verdict, verdict_of_non_delaunay};
 use crate::{Mesh, NONE, Reason};
 use std::sync::Arc;
 
@@ -32,16 +32,26 @@ impl Lawson {
         let mut flips = 0;
         let mut has_duplicate = false;
         let end = self.cpu.twins.len() as u32;
+        let (mut edges, mut diamonds) = ([0; EDGES], [Diamond::default(); EDGES]);
         for first in (0..end).step_by(EDGES) {
-            self.test::<EDGES>(first..end.min(first + EDGES as u32), |h, g| h < g);
-            has_duplicate |= self.flip_pending(&mut flips);
+            let mut count = 0;
+            for h in first..end.min(first + EDGES as u32) {
+                let g = unflagged(self.cpu.twins[h as usize]);
+                edges[count] = h;
+                count += usize::from((h < g) & (g != NONE));
+            }
+            for (diamond, &h) in diamonds.iter_mut().zip(&edges[..count]) {
+                *diamond = Diamond::new(self.cpu.topology(), h);
+            }
+            let is_known = self.test(&diamonds, count);
+            has_duplicate |= self.flip_pending(is_known, &mut flips);
         }
         let mut before = 0;
         // A flip elsewhere may have removed the edge that stood in the way.
         while has_duplicate && flips > before {
             before = flips;
             self.pending = std::mem::take(&mut self.blocked);
-            has_duplicate = self.flip_pending(&mut flips);
+            has_duplicate = self.flip_pending(false, &mut flips);
         }
         self.has_ended = flips < u32::MAX;
         self.pending.clear();
@@ -49,30 +59,17 @@ impl Lawson {
         flips
     }
 
-    /// Tests the edges of at most `N` half-edges, as far as they have twins and are asked for.
-    fn test<const N: usize>(
-        &mut self,
-        half_edges: impl IntoIterator<Item = u32>,
-        is_asked_for: impl Fn(u32, u32) -> bool,
-    ) {
-        let mut edges = [0; N];
-        let mut count = 0;
-        for h in half_edges {
-            let g = unflagged(self.cpu.twins[h as usize]);
-            edges[count] = h;
-            count += usize::from((g != NONE) & is_asked_for(h, g));
-        }
-        let mut diamonds = [Diamond::default(); N];
-        for (diamond, &h) in diamonds.iter_mut().zip(&edges[..count]) {
-            *diamond = Diamond::new(self.cpu.topology(), h);
-        }
+    /// Tests the first `count` edges. Returns whether some are pending now, of which the last is known not to be Delaunay.
+    fn test<const N: usize>(&mut self, diamonds: &[Diamond; N], count: usize) -> bool {
         let mut kept = [0; N];
         let count = keep_non_delaunay(&self.cpu.geometry(), &diamonds[..count], &mut kept);
-        self.pending.extend(kept[..count].iter().map(|&i| edges[i as usize]));
+        self.pending.extend(kept[..count].iter().map(|&i| diamonds[i as usize].h));
+        count > 0
     }
 
-    /// Flips what is pending, and then around that. Returns whether a duplicate has blocked an edge.
-    fn flip_pending(&mut self, flips: &mut u32) -> bool {
+    /// Flips what is pending, the last of it without a test if it `is_known` not to be Delaunay, and then around that.
+    /// Returns whether a duplicate has blocked an edge.
+    fn flip_pending(&mut self, mut is_known: bool, flips: &mut u32) -> bool {
         let mut has_duplicate = false;
         while *flips < u32::MAX
             && let Some(h) = self.pending.pop()
@@ -81,7 +78,13 @@ impl Lawson {
             if g == NONE {
                 continue;
             }
-            match verdict(&self.cpu.geometry(), self.cpu.topology(), h) {
+            let (geometry, topology) = (self.cpu.geometry(), self.cpu.topology());
+            let verdict = if std::mem::take(&mut is_known) {
+                verdict_of_non_delaunay(&geometry, topology, &Diamond::new(topology, h))
+            } else {
+                verdict(&geometry, topology, h)
+            };
+            match verdict {
                 Verdict::Delaunay => {}
                 Verdict::Blocked(reason) => {
                     has_duplicate |= reason == Reason::Duplicate;
@@ -90,7 +93,12 @@ impl Lawson {
                 Verdict::Labelled => {
                     flip(&mut self.cpu, h, g);
                     *flips += 1;
-                    self.test::<4>([h, prev(h), g, prev(g)], |_, _| true);
+                    let (mut diamonds, mut count) = ([Diamond::default(); 4], 0);
+                    for diamond in Diamond::around(self.cpu.topology(), [h, g]) {
+                        diamonds[count] = diamond;
+                        count += 1;
+                    }
+                    is_known = self.test(&diamonds, count);
                 }
             }
         }

@@ -3,11 +3,10 @@
 use super::{BLOCKED, Geometry, Thresholds, Topology, key};
 use crate::adjacency::{CREASE, LOCKED, next, prev, unflagged};
 use crate::mesh::Dimension;
-use crate::predicates::{Quad, area_sign, in_circle_sign};
+use crate::predicates::{Quad, area_sign, in_circle_filter, in_circle_sign};
 use crate::star::{Star, any_in_either};
-use crate::winding::Winding;
 use crate::{NONE, Positions, Reason};
-use glam::DVec2;
+use std::array;
 
 /// What the test of an interior edge says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -66,6 +65,20 @@ impl Diamond {
         let corners = [corner(h), corner(next(h)), corner(prev(h)), corner(prev(unflagged(twin)))];
         Self { h, twin, corners }
     }
+
+    /// The four around an edge that has flipped, by its half-edges then: those that have a twin, that is.
+    #[inline(always)]
+    pub(crate) fn around(mesh: Topology, [h, g]: [u32; 2]) -> impl Iterator<Item = Self> {
+        let corner = move |x: u32| mesh.triangles[x as usize];
+        // The triangles are (a, d, c) and (b, c, d) now.
+        let [a, c, b, d] = [h, prev(h), g, prev(g)].map(corner);
+        let sides = [(h, [a, d, c]), (prev(h), [c, a, d]), (g, [b, c, d]), (prev(g), [d, b, c])];
+        sides.into_iter().filter_map(move |(h, [from, to, apex])| {
+            let twin = mesh.twins[h as usize];
+            let g = unflagged(twin);
+            (g != NONE).then(|| Self { h, twin, corners: [from, to, apex, corner(prev(g))] })
+        })
+    }
 }
 
 /// Tests the interior edge of half-edge `h`. Both half-edges give the same answer, since it is exact.
@@ -74,50 +87,81 @@ pub(crate) fn verdict(geometry: &Geometry, mesh: Topology, h: u32) -> Verdict {
     if keep_non_delaunay(geometry, &[diamond], &mut [0]) == 0 {
         return Verdict::Delaunay;
     }
-    match verdict_of_shape(geometry, &diamond) {
-        Verdict::Labelled if makes_duplicate(geometry, mesh, h) => Verdict::Blocked(Reason::Duplicate),
+    verdict_of_non_delaunay(geometry, mesh, &diamond)
+}
+
+/// The same for an edge that is known not to be Delaunay.
+pub(crate) fn verdict_of_non_delaunay(geometry: &Geometry, mesh: Topology, diamond: &Diamond) -> Verdict {
+    match verdict_of_shape(geometry, diamond) {
+        Verdict::Labelled if makes_duplicate(geometry, mesh, diamond.h) => {
+            Verdict::Blocked(Reason::Duplicate)
+        }
         verdict => verdict,
     }
 }
 
 /// Writes which of the edges are not Delaunay, as places in `diamonds`, and returns how many they are.
 pub(crate) fn keep_non_delaunay(geometry: &Geometry, diamonds: &[Diamond], kept: &mut [u32]) -> usize {
-    let winding = geometry.winding;
     match (geometry.dimension, geometry.positions) {
         (Dimension::Two, Positions::F32(numbers)) => {
-            keep(diamonds, kept, |diamond| is_non_delaunay_in_plane(numbers, winding, diamond))
+            let (fours, rest) = diamonds.as_chunks();
+            let count = keep_in_fours(geometry, numbers, fours, kept);
+            keep(4 * fours.len(), rest, kept, count, |diamond| is_non_delaunay_in_plane(geometry, diamond))
         }
-        (Dimension::Two, Positions::F64(numbers)) => {
-            keep(diamonds, kept, |diamond| is_non_delaunay_in_plane(numbers, winding, diamond))
+        (Dimension::Two, Positions::F64(_)) => {
+            keep(0, diamonds, kept, 0, |diamond| is_non_delaunay_in_plane(geometry, diamond))
         }
         (Dimension::Three, positions) => {
-            keep(diamonds, kept, |diamond| quad(positions, diamond).is_non_delaunay())
+            keep(0, diamonds, kept, 0, |diamond| quad(positions, diamond).is_non_delaunay())
         }
     }
 }
 
-/// Without a branch on the answers, which nothing could predict.
+/// Appends to the first `count` of `kept`, without a branch on the answers, which nothing could predict. `first` is the
+/// place of the first edge.
 #[inline(always)]
-fn keep(diamonds: &[Diamond], kept: &mut [u32], is_kept: impl Fn(&Diamond) -> bool) -> usize {
-    let mut count = 0;
-    for (i, diamond) in (0..).zip(diamonds) {
+fn keep(
+    first: usize,
+    diamonds: &[Diamond],
+    kept: &mut [u32],
+    mut count: usize,
+    is_kept: impl Fn(&Diamond) -> bool,
+) -> usize {
+    for (i, diamond) in (first as u32..).zip(diamonds) {
         kept[count] = i;
         count += usize::from(is_kept(diamond));
     }
     count
 }
 
+/// The same in the plane, for floats, four at a time.
 #[inline(always)]
-fn is_non_delaunay_in_plane<T: Copy + Into<f64>>(
-    numbers: &[T],
-    winding: &Winding,
-    diamond: &Diamond,
-) -> bool {
-    let (points, _) = numbers.as_chunks::<2>();
-    let point = |v: u32| DVec2::new(points[v as usize][0].into(), points[v as usize][1].into());
-    let [a, b, c, d] = diamond.corners;
-    let sign = in_circle_sign(point(a), point(b), point(c), point(d));
-    sign == winding.positive(diamond.h / 3).reverse()
+fn keep_in_fours(geometry: &Geometry, numbers: &[f32], diamonds: &[[Diamond; 4]], kept: &mut [u32]) -> usize {
+    let (points, _) = numbers.as_chunks();
+    let mut count = 0;
+    for (first, four) in (0..).step_by(4).zip(diamonds) {
+        let quads = array::from_fn(|lane| four[lane].corners.map(|v| points[v as usize]));
+        let [negative, positive] = in_circle_filter(&quads);
+        let clockwise = geometry.winding.bits(array::from_fn(|lane| four[lane].h / 3));
+        let mut bits = negative & !clockwise | positive & clockwise;
+        let mut undecided = !(negative | positive) & 0xf;
+        while undecided != 0 {
+            let lane = undecided.trailing_zeros();
+            undecided &= undecided - 1;
+            bits |= u32::from(is_non_delaunay_in_plane(geometry, &four[lane as usize])) << lane;
+        }
+        for lane in 0..4 {
+            kept[count] = first + lane;
+            count += (bits >> lane & 1) as usize;
+        }
+    }
+    count
+}
+
+#[inline(never)]
+fn is_non_delaunay_in_plane(geometry: &Geometry, diamond: &Diamond) -> bool {
+    let [a, b, c, d] = geometry.positions.points2(diamond.corners);
+    in_circle_sign(a, b, c, d) == geometry.winding.positive(diamond.h / 3).reverse()
 }
 
 #[inline(always)]

@@ -19,7 +19,8 @@ mod select;
 pub(crate) use crease::flag_creases;
 pub(crate) use flip::{Selected, flip, move_anchors};
 pub(crate) use label::{
-    Diamond, Verdict, keep_non_delaunay, label, makes_duplicate, verdict, verdict_of_shape,
+    Diamond, Verdict, keep_non_delaunay, label, makes_duplicate, verdict, verdict_of_non_delaunay,
+    verdict_of_shape,
 };
 pub(crate) use select::{select, yields};
 

@@ -9,7 +9,7 @@ mod exact;
 mod plane;
 mod space;
 
-pub(crate) use plane::{area_sign, in_circle_sign, total_area_sign};
+pub(crate) use plane::{area_sign, in_circle_filter, in_circle_sign, total_area_sign};
 pub(crate) use space::{Quad, corner};
 
 /// The cosine that the β test uses: an f64, so a rational number, and the same one on every platform. It is the cosine

@@ -1,7 +1,7 @@
 //! The predicates against independent arithmetic: `robust` in 2D, big integers everywhere.
 
-use super::{Quad, area_sign, corner, cos_degrees, in_circle_sign, total_area_sign};
-use glam::{DVec2, DVec3};
+use super::{Quad, area_sign, corner, cos_degrees, in_circle_filter, in_circle_sign, total_area_sign};
+use glam::{DVec2, DVec3, Vec2};
 use num_bigint::{BigInt, Sign};
 use proptest::prelude::*;
 use std::cmp::Ordering;
@@ -151,6 +151,33 @@ fn compare_in_plane([a, b, c, d]: [DVec2; 4]) {
     assert_eq!(total, order(&(area(a3, b3, c3) + area(b3, a3, d3))));
 }
 
+/// Four quads of the points, as f32.
+fn compare_filter(points: [DVec2; 4]) {
+    let points = points.map(DVec2::as_vec2);
+    if points.iter().all(|p| p.is_finite()) {
+        let quads =
+            [[0, 1, 2, 3], [1, 0, 3, 2], [0, 2, 1, 3], [3, 1, 2, 0]].map(|quad| quad.map(|k| points[k]));
+        let [negative, positive] = in_circle_filter(&quads.map(|quad| quad.map(<[f32; 2]>::from)));
+        for (lane, quad) in quads.into_iter().enumerate() {
+            let [a, b, c, d] = quad.map(Vec2::as_dvec2);
+            let sign = in_circle_sign(a, b, c, d);
+            assert!(negative >> lane & 1 == 0 || sign.is_lt(), "{quad:?}");
+            assert!(positive >> lane & 1 == 0 || sign.is_gt(), "{quad:?}");
+        }
+    }
+}
+
+#[test]
+fn the_filter_decides_what_it_can() {
+    let quad = |height: f32, size: f32| {
+        [[0., 0.], [2., 0.], [1., height], [1., -height]].map(|p| p.map(|x| size * x))
+    };
+    let filter = |size: f32| in_circle_filter(&[0.5, 1.0, 1.0 + 1e-5, 2.0].map(|height| quad(height, size)));
+    assert_eq!([1.0, 1e-8, 1e8].map(filter), [[0b0001, 0b1100]; 3]);
+    // The products underflow or overflow.
+    assert_eq!([1e-12, 1e12].map(filter), [[0, 0]; 2]);
+}
+
 fn compare_in_space([a, b, c, d]: [DVec3; 4], degrees: f64, most: f32) {
     let quad = Quad::new(a, b, c, d);
     let (p, q, r, s) = (minus(a, c), minus(b, c), minus(a, d), minus(b, d));
@@ -178,6 +205,7 @@ proptest! {
     #[test]
     fn area_and_in_circle_agree_with_big_integers(quad in quad2()) {
         compare_in_plane(quad);
+        compare_filter(quad);
     }
 
     #[test]
