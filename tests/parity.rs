@@ -1,7 +1,7 @@
 //! The parity matrix: meshes by engines, every cell equal to the simulation after every iteration.
 //!
 //! Here are the columns of the engines that run natively. `EDGEFLIP_PARITY=FILE` writes them, the meshes and what
-//! every engine must give for `tests/parity/matrix.test.mjs`, which adds those in browsers and prints the table.
+//! every engine must give for `tests/parity/matrix.mjs`, which adds those in browsers and prints the table.
 //! The compiled test reads no file: with `--nocapture` it prints its columns on any machine that has a GPU.
 #![cfg(feature = "cli")]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "what fails here is a failed test")]

@@ -130,7 +130,7 @@ fn gpu_decides_as_big_integers_do_within_its_span_and_refuses_the_rest() {
     check("GPU", Backend::Gpu, quads(), false);
 }
 
-/// `quads/browsers.test.mjs` reads them: of each batch `positions` (f64) and `verdicts` (a byte a quad), and
+/// `quads/browsers.mjs` reads them: of each batch `positions` (f64) and `verdicts` (a byte a quad), and
 /// `batches.json` with all the rest.
 #[test]
 fn batches_for_browsers() {

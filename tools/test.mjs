@@ -22,8 +22,10 @@ const wasmCargo = ['bash', 'tools/wasm-cargo.sh'];
 
 // Targets of cargo in levels below.
 const inLevelsBelow = ['wasm', 'worker', 'parity', 'quads'];
-/** Cargo's arguments for the tests of quads. */
-const quads = ['cargo', 'test', '--test', 'quads', '--'];
+/** Always of the whole workspace: else the dependencies, with fewer features, would be compiled again. */
+const cargoTest = ['cargo', 'test', '--workspace'];
+/** The tests of quads. */
+const quads = [...cargoTest, '--test', 'quads', '--'];
 
 // The page needs the package in dist/.
 const builtPage = [
@@ -56,7 +58,7 @@ const levels = [
   {
     name: 'unit',
     what: 'the tests beside the code in src/ and in tools/glsl',
-    checks: [['cargo', 'test', '--workspace', '--lib', '--bins']],
+    checks: [[...cargoTest, '--lib', '--bins']],
     counts: true,
   },
   ...integrationTests(),
@@ -69,7 +71,7 @@ const levels = [
   {
     name: 'doc',
     what: 'the examples in the documentation run',
-    checks: [['cargo', 'test', '--doc']],
+    checks: [[...cargoTest, '--doc']],
     counts: true,
   },
   {
@@ -107,10 +109,11 @@ const levels = [
   },
   {
     name: 'parity',
-    what: firstSentence(readFileSync('tests/parity.rs', 'utf8')),
+    what: `${firstSentence(readFileSync('tests/parity.rs', 'utf8'))}; in browsers also quads and locks`,
     checks: [
-      ['cargo', 'test', '--test', 'parity'],
-      ['node', '--test-reporter=tap', 'tests/parity/matrix.test.mjs'],
+      [...cargoTest, '--test', 'parity'],
+      [...quads, 'batches_for_browsers'],
+      ['node', '--test-reporter=tap', 'tests/engines.test.mjs'],
     ],
     counts: true,
     env: { EDGEFLIP_PARITY: 'target/parity.json' },
@@ -118,16 +121,7 @@ const levels = [
   {
     name: 'npm package in browsers',
     what: 'the packed package in fresh projects: plain pages in Chromium and Firefox, Vite, TypeScript, on the CPU and WebGPU',
-    checks: [['node', '--test', '--test-reporter=tap', 'tests/package/browser.test.mjs', 'tests/package/loss.test.mjs', 'tests/package/locks.test.mjs']],
-    counts: true,
-  },
-  {
-    name: 'quads in browsers',
-    what: 'the GPU engines of the package in Chromium and Firefox decide quads as integers of any size do',
-    checks: [
-      [...quads, 'batches_for_browsers'],
-      ['node', '--test-reporter=tap', 'tests/quads/browsers.test.mjs'],
-    ],
+    checks: [['node', '--test', '--test-reporter=tap', 'tests/package/browser.test.mjs', 'tests/package/loss.test.mjs']],
     counts: true,
   },
   {
@@ -139,7 +133,7 @@ const levels = [
   {
     name: 'page with a large mesh',
     what: 'the demo page plays 720,000 triangles in Chromium as the native program does, without a long task',
-    checks: [...builtPage, pageTests('large')],
+    checks: [[...cargoTest, '--no-run'], ...builtPage, pageTests('large')],
     counts: true,
   },
   {
@@ -168,7 +162,7 @@ function integrationTests() {
     .map((target) => ({
       name: target.name,
       what: firstSentence(readFileSync(target.src_path, 'utf8')) ?? '(its file has no //! line)',
-      checks: [['cargo', 'test', '--test', target.name]],
+      checks: [[...cargoTest, '--test', target.name]],
       counts: true,
     }));
 }
@@ -259,7 +253,7 @@ if (chosen.length === 0) {
 /** @type {Result[]} */
 const results = [];
 // Everything is compiled first, in one go, so that the seconds of a test level are those of its tests.
-if (chosen.some(({ checks }) => checks.some(([program, verb]) => program === 'cargo' && verb === 'test'))) await run(['cargo', 'test', '--workspace', '--no-run']);
+if (chosen.some(({ checks }) => checks.some(([program, verb]) => program === 'cargo' && verb === 'test'))) await run([...cargoTest, '--no-run']);
 for (const level of chosen) results.push(await runLevel(level));
 
 console.log('\n| level | what it checks | tests | result | seconds |\n|---|---|---:|---|---:|');

@@ -60,7 +60,7 @@ test('a lost device and a lost context change no result', async () => {
   const browser = await startChromium();
   const page = await browser.newPage();
   await page.addInitScript(passForReal);
-  await page.goto(`${await serve(repository)}tests/parity/page.html`);
+  await page.goto(`${await serve(repository)}tests/engines.html`);
   const { engines, fallback, remaining, counted, ...result } = await page.evaluate(runAndLose);
   assert.deepEqual(engines.slice(0, 6), ['webgpu', 'webgpu', 'webgl2', 'webgl2', 'cpu', 'cpu']);
   assert.ok(engines.slice(6).every((engine) => engine === 'cpu'));

@@ -8,12 +8,15 @@ import { after, before, test } from 'node:test';
 import { fileURLToPath } from 'node:url';
 import { readMesh } from 'edgeflip/files';
 import { startChromium } from '../browsers.mjs';
-import { fingerprintOf, folder, openEdgeflip, tidyUp } from './page.mjs';
+import { fingerprintOf, folder, meshFile, openEdgeflip, tidyUp } from './page.mjs';
 import { tasksOf } from './tasks.mjs';
 
 const SPEC = 'uvsphere 600';
 /** Milliseconds that the page's thread may be busy with a task, besides drawing. */
 const LONGEST = 200;
+
+/** It comes with Cargo's tests. */
+const program = fileURLToPath(new URL('../../target/debug/edgeflip', import.meta.url));
 
 let browser;
 /** What the native program makes of it on its CPU engine. */
@@ -21,19 +24,13 @@ let native;
 
 before(async () => {
   browser = await startChromium();
-  const [input, output] = [join(folder, 'input.off'), join(folder, 'output.off')];
-  cargo('run', '-q', '--example', 'generate', '--', SPEC, input);
-  cargo('run', '-q', '--', input, '-o', output, '--backend', 'cpu');
+  const [input, output] = [await meshFile(SPEC, 'input.off'), join(folder, 'output.off')];
+  const { status, stderr, error } = spawnSync(program, [input, '-o', output, '--backend', 'cpu'], { encoding: 'utf8' });
+  assert.equal(status, 0, `${program}: ${error ?? ''}${stderr}`);
   const fingerprint = async (path) => fingerprintOf((await readMesh(readFileSync(path), path)).indices);
   native = { input: await fingerprint(input), result: await fingerprint(output) };
 });
 after(tidyUp);
-
-function cargo(...args) {
-  const cwd = fileURLToPath(new URL('../..', import.meta.url));
-  const { status, stderr, error } = spawnSync('cargo', args, { cwd, encoding: 'utf8' });
-  assert.equal(status, 0, `cargo ${args.join(' ')}: ${error ?? ''}${stderr}`);
-}
 
 /** In the page: keeps what the browser calls a long task, of 50 ms at least, and how late a timer of 5 ms ever was. */
 function watchLongTasks() {

@@ -1,4 +1,4 @@
-// Runs the meshes of the parity matrix on an engine of this browser, for matrix.test.mjs.
+// Runs the meshes of the parity matrix on an engine of this browser, for matrix.mjs.
 
 import { FlipSession } from '../../dist/index.js';
 import { Digest } from './digest.js';
@@ -6,7 +6,7 @@ import { Digest } from './digest.js';
 /** So many sessions share the wait for a GPU: in Firefox it is 100 ms for each answer, however short the work. */
 const SESSIONS = 32;
 
-const response = await fetch('../../target/parity.json');
+const response = await fetch('../target/parity.json');
 const { cases } = await response.json();
 
 /** What a run of the mesh gives; watched after every iteration or from end to end. */

@@ -1,0 +1,53 @@
+// The engines of the package in dist/, in real browsers: the parity matrix, quads, locks. All on one page of each browser,
+// which compiles the kernels once: on a software GPU that takes longer than to run them. Prints the matrix last.
+
+import assert from 'node:assert/strict';
+import { existsSync } from 'node:fs';
+import { after, describe, test } from 'node:test';
+import { fileURLToPath } from 'node:url';
+import { closeAll, openPage, serve, startChromium, startFirefox } from './browsers.mjs';
+
+const repository = fileURLToPath(new URL('..', import.meta.url));
+for (const [file, command] of [
+  ['dist/index.js', 'npm run build'],
+  ['target/parity.json', 'npm test -- parity'],
+  ['target/quads/batches.json', 'npm test -- parity'],
+]) {
+  assert.ok(existsSync(repository + file), `${file} is not there: ${command}`);
+}
+const { fill, matrix } = await import('./parity/matrix.mjs');
+const { check } = await import('./quads/browsers.mjs');
+const { holdLocks } = await import('./package/locks.mjs');
+
+/** @type {{ name: string, start: () => unknown, engines: { backend: string, watched: number }[] }[]} */
+const browsers = [
+  {
+    name: 'Chromium',
+    start: startChromium,
+    engines: [{ backend: 'cpu', watched: 1000 }, { backend: 'webgpu', watched: 200 }, { backend: 'webgl2', watched: 200 }],
+  },
+  { name: 'Firefox', start: startFirefox, engines: [{ backend: 'webgpu', watched: 150 }, { backend: 'webgl2', watched: 150 }] },
+];
+const titles = { cpu: 'CPU wasm', webgpu: 'WebGPU', webgl2: 'WebGL2' };
+
+after(closeAll);
+process.on('exit', () => console.log(`\n${matrix()}`));
+
+// Firefox mostly waits, so they share the processor well.
+describe('engines', { concurrency: true }, () => {
+  for (const { name, start, engines } of browsers) {
+    test(`in ${name}`, { timeout: 900_000 }, async (t) => {
+      const { page, problems } = await openPage(await start(), `${await serve(repository)}tests/engines.html`);
+      await page.waitForFunction(() => 'runAll' in window && 'iterate' in window);
+      for (const engine of engines.map((engine) => ({ ...engine, title: `${titles[engine.backend]} ${name}` }))) {
+        await t.test(`${engine.title} gives what the simulation does`, () => fill(page, engine));
+        if (engine.backend === 'cpu') continue;
+        await t.test(`${engine.title} decides quads as big integers do`, () => check(page, engine));
+        // Each answer takes Firefox 100 ms.
+        if (name === 'Firefox') continue;
+        await t.test(`${engine.title} holds locks and limits when the vertices move`, () => holdLocks(page, engine));
+      }
+      assert.deepEqual(problems, []);
+    });
+  }
+});

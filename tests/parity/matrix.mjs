@@ -1,0 +1,57 @@
+// The parity matrix, continued: the engines in browsers give what the simulation does. Reads what tests/parity.rs has
+// written to target/parity.json, and adds a column for each engine.
+
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { isDeepStrictEqual } from 'node:util';
+
+const { cases, table, seconds } = JSON.parse(readFileSync(new URL('../../target/parity.json', import.meta.url), 'utf8'));
+
+/**
+ * Throws where the run is not what the simulation of the mesh gives; else the word for its cell. Runs of more iterations
+ * than `watched` are compared at their end only; of a GPU's, some meshes have to be refused.
+ */
+function compare(run, mesh, { backend, watched }) {
+  if (backend !== 'cpu' && mesh.isRefusedByGpus) {
+    assert.equal(run.code, 'backend-limit', 'was not refused');
+    return 'refused';
+  }
+  assert.equal(run.message, undefined, run.message);
+  const isWatched = mesh.iterations.length <= watched;
+  if (isWatched) {
+    const first = mesh.iterations.findIndex((wanted, index) => !isDeepStrictEqual(run.iterations[index], wanted));
+    assert.deepEqual(run.iterations[first], mesh.iterations[first], `iteration ${first}`);
+    assert.equal(run.iterations.length, mesh.iterations.length, 'iterations');
+  }
+  const flips = mesh.iterations.map((iteration) => iteration.flips);
+  assert.deepEqual(run.end, { digest: mesh.end, flips, status: 'done', remaining: mesh.remaining, backend }, 'the end');
+  return isWatched ? '=' : 'end';
+}
+
+/** The cells of a column, and a sentence for each that is `WRONG`. */
+function judge(runs, column) {
+  const wrong = [];
+  const cells = cases.map((mesh, index) => {
+    try {
+      return compare(runs[index], mesh, column);
+    } catch (error) {
+      wrong.push(`${mesh.name} at β = ${mesh.beta}: ${error.message}`);
+      return 'WRONG';
+    }
+  });
+  return { cells, wrong };
+}
+
+/** Adds the column of an engine, and fails where a cell is wrong. */
+export async function fill(page, column) {
+  const { runs, seconds: took } = await page.evaluate((column) => window.runAll(column), column);
+  const { cells, wrong } = judge(runs, column);
+  [column.title, '---', ...cells].forEach((cell, line) => (table[line] += ` ${cell} |`));
+  seconds.push(`${column.title}: ${took.toFixed(1)} s`);
+  assert.deepEqual(wrong, []);
+  const equal = cells.filter((cell) => cell === '=').length;
+  assert.ok(equal >= 40, `only ${equal} after every iteration`);
+}
+
+/** The whole table. */
+export const matrix = () => `${table.join('\n')}\n\n${seconds.join(', ')}`;
