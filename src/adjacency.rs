@@ -84,13 +84,16 @@ fn ends(triangles: &[u32], h: u32) -> [u32; 2] {
 struct Buckets {
     /// Where the bucket of each vertex ends, and the next one starts.
     ends: Vec<u32>,
-    /// The larger vertices, those of all buckets and [`LANES`] more.
+    /// The larger vertices, those of all buckets and some more, at least [`LANES`].
     highs: Vec<u32>,
     half_edges: Vec<u32>,
 }
 
 /// Vertices that are compared at once.
 const LANES: usize = 8;
+
+/// Words between places that two threads write to, lest they share a line of a cache.
+const LINE: usize = 16;
 
 /// A larger bucket is sorted before it is searched, lest a pole cost the square of its edges.
 const FEW: usize = 64;
@@ -115,15 +118,17 @@ impl Buckets {
                 sum += std::mem::replace(&mut starts[low], sum);
             }
         }
-        let [mut highs, mut half_edges] = [(); 2].map(|()| vec![0; sum as usize + LANES]);
+        let sinks = pieces.len() * LINE;
+        let [mut highs, mut half_edges] = [(); 2].map(|()| vec![0; sum as usize + LANES + sinks]);
         let (high, half_edge) = (shared(&mut highs), shared(&mut half_edges));
-        let mut ends = threads.map_each(pieces, |(piece, mut starts)| {
+        let pieces = (sum + LANES as u32..).step_by(LINE).zip(pieces).collect();
+        let mut ends = threads.map_each(pieces, |(sink, (piece, mut starts))| {
             for (t, &[a, b, c]) in (piece.start as u32..).zip(&corners[piece]) {
                 for (from, to, h) in [(a, b, 3 * t), (b, c, 3 * t + 1), (c, a, 3 * t + 2)] {
                     let start = &mut starts[if all { from.min(to) } else { from } as usize];
                     let is_wanted = all | (from < to);
-                    // What is not wanted goes to a place behind all; nothing could predict a branch.
-                    let at = if is_wanted { *start } else { sum } as usize;
+                    // What is not wanted goes to a place of the piece's own; nothing could predict a branch.
+                    let at = if is_wanted { *start } else { sink } as usize;
                     *start += u32::from(is_wanted);
                     high[at].store(from.max(to), Relaxed);
                     half_edge[at].store(h, Relaxed);
@@ -269,7 +274,7 @@ impl Adjacency {
         let mut buckets = Buckets::new(vertices, triangles, threads, false);
         buckets.sort_large();
         let Buckets { ends, highs, mut half_edges } = buckets;
-        let count = half_edges.len() - LANES;
+        let count = ends.last().map_or(0, |&end| end as usize);
         let rising = Rising { ends: &ends, highs: &highs, half_edges: shared(&mut half_edges) };
         // Memory is taken when it is first written, which is work for all threads.
         let mut twins = vec![0; triangles.len()];
@@ -286,20 +291,30 @@ impl Adjacency {
         let plain: usize = (0..vertices).filter(|&v| !is_odd[v]).map(|v| range(&ends, v).len()).sum();
         let mut adjacency = Self { edges: plain as u32, ..Self::default() };
         if is_odd.contains(&true) {
-            adjacency.match_with_care(triangles, words, |v| is_odd[v as usize]);
+            adjacency.match_with_care(triangles, words, threads, |v| is_odd[v as usize]);
         }
         Self { twins, ..adjacency }
     }
 
     /// Counts the edges of odd vertices, and writes their twins.
-    fn match_with_care(&mut self, triangles: &[u32], twins: &[AtomicU32], is_odd: impl Fn(u32) -> bool) {
+    fn match_with_care(
+        &mut self,
+        triangles: &[u32],
+        twins: &[AtomicU32],
+        threads: &Threads,
+        is_odd: impl Fn(u32) -> bool + Sync,
+    ) {
+        let (corners, _) = triangles.as_chunks::<3>();
         let mut odd = Vec::new();
-        for (t, &[a, b, c]) in (0..).zip(triangles.as_chunks::<3>().0) {
-            if is_odd(a) | is_odd(b) | is_odd(c) {
-                let lows = (3 * t..3 * t + 3).map(|h| (ends(triangles, h)[0], h));
-                odd.extend(lows.filter(|&(low, _)| is_odd(low)));
+        let find = |piece: Range<usize>, odd: &mut Vec<_>| {
+            for (t, &[a, b, c]) in (piece.start as u32..).zip(&corners[piece]) {
+                if is_odd(a) | is_odd(b) | is_odd(c) {
+                    let lows = (3 * t..3 * t + 3).map(|h| (ends(triangles, h)[0], h));
+                    odd.extend(lows.filter(|&(low, _)| is_odd(low)));
+                }
             }
-        }
+        };
+        threads.extend(&mut odd, corners.len(), find, |all, mut part| all.append(&mut part));
         odd.sort_unstable();
         let mut scratch = Vec::new();
         for bucket in odd.chunk_by_mut(|x, y| x.0 == y.0) {
