@@ -147,17 +147,10 @@ impl Cpu {
 
     /// Tests the edges whose lower half-edges are in `range`.
     fn test_all(&self, range: Range<usize>, found: &mut Found) {
-        let (mut edges, mut diamonds) = ([0; EDGES], [Diamond::default(); EDGES]);
+        let mut diamonds = [Diamond::default(); EDGES];
         for first in range.clone().step_by(EDGES) {
-            let mut count = 0;
-            for h in first as u32..range.end.min(first + EDGES) as u32 {
-                let g = unflagged(self.twins[h as usize]);
-                edges[count] = h;
-                count += usize::from(h < g && g != NONE);
-            }
-            for (diamond, &h) in diamonds.iter_mut().zip(&edges[..count]) {
-                *diamond = Diamond::new(self.topology(), h);
-            }
+            let half_edges = first as u32..range.end.min(first + EDGES) as u32;
+            let count = Diamond::write(self.topology(), half_edges, &mut diamonds);
             self.test(&diamonds[..count], found);
         }
     }

@@ -32,17 +32,10 @@ impl Lawson {
         let mut flips = 0;
         let mut has_duplicate = false;
         let end = self.cpu.twins.len() as u32;
-        let (mut edges, mut diamonds) = ([0; EDGES], [Diamond::default(); EDGES]);
+        let mut diamonds = [Diamond::default(); EDGES];
         for first in (0..end).step_by(EDGES) {
-            let mut count = 0;
-            for h in first..end.min(first + EDGES as u32) {
-                let g = unflagged(self.cpu.twins[h as usize]);
-                edges[count] = h;
-                count += usize::from((h < g) & (g != NONE));
-            }
-            for (diamond, &h) in diamonds.iter_mut().zip(&edges[..count]) {
-                *diamond = Diamond::new(self.cpu.topology(), h);
-            }
+            let half_edges = first..end.min(first + EDGES as u32);
+            let count = Diamond::write(self.cpu.topology(), half_edges, &mut diamonds);
             let is_known = self.test(&diamonds, count);
             has_duplicate |= self.flip_pending(is_known, &mut flips);
         }

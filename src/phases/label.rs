@@ -7,6 +7,7 @@ use crate::predicates::{Quad, area_sign, in_circle_filter, in_circle_sign};
 use crate::star::{Star, any_in_either};
 use crate::{NONE, Positions, Reason};
 use std::array;
+use std::ops::Range;
 
 /// What the test of an interior edge says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -64,6 +65,26 @@ impl Diamond {
         let corner = |x: u32| mesh.triangles[x as usize];
         let corners = [corner(h), corner(next(h)), corner(prev(h)), corner(prev(unflagged(twin)))];
         Self { h, twin, corners }
+    }
+
+    /// Writes the interior edges whose lower half-edges are among these, and returns how many they are.
+    #[inline(always)]
+    pub(crate) fn write<const N: usize>(
+        mesh: Topology,
+        half_edges: Range<u32>,
+        diamonds: &mut [Self; N],
+    ) -> usize {
+        let mut edges = [0; N];
+        let mut count = 0;
+        for h in half_edges {
+            let g = unflagged(mesh.twins[h as usize]);
+            edges[count] = h;
+            count += usize::from((h < g) & (g != NONE));
+        }
+        for (diamond, &h) in diamonds.iter_mut().zip(&edges[..count]) {
+            *diamond = Self::new(mesh, h);
+        }
+        count
     }
 
     /// The four around an edge that has flipped, by its half-edges then: those that have a twin, that is.

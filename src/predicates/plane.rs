@@ -43,7 +43,7 @@ pub(crate) fn in_circle_sign(a: DVec2, b: DVec2, c: DVec2, d: DVec2) -> Ordering
 }
 
 /// What f32 knows of [`in_circle_sign`] of four quads (a, b, c, d): the bits of those where it is negative and of those
-/// where it is positive. Fewer than one edge in 100,000 of a mesh with nothing special to it is left to f64.
+/// where it is positive. The others are left to it.
 #[inline(always)]
 pub(crate) fn in_circle_filter(quads: &[[[f32; 2]; 4]; 4]) -> [u32; 2] {
     let coordinate = |k: usize, i: usize| Vec4::from_array(array::from_fn(|lane| quads[lane][k][i]));
