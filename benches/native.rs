@@ -1,4 +1,4 @@
-//! The CPU engine: the phases on one thread and on one for each core, Lawson's algorithm on one, beside crates that
+//! The CPU engine, the phases and Lawson's algorithm, on one thread and on one for each core, beside crates that
 //! triangulate the same points from scratch on one. `cargo bench --bench native -- [--runs N] [FAMILY…]`, a family being
 //! what `edgeflip::families::by_name` takes, with its points in a grid: `cargo bench --bench native -- "random 300" "shear 1000"`.
 //!
@@ -79,6 +79,7 @@ fn table(spec: &str, runs: usize) -> Result<[String; 3], Box<dyn Error>> {
         contender("phases", || Ok(flip(&mesh, Order::Reproducible, one)?.1)),
         contender("Lawson", || Ok(flip(&mesh, Order::Any, one)?.1)),
         contender(&format!("phases on {cores} threads"), || Ok(flip(&mesh, Order::Reproducible, None)?.1)),
+        contender(&format!("Lawson on {cores} threads"), || Ok(flip(&mesh, Order::Any, None)?.1)),
         contender("delaunator", || {
             black_box(delaunator::triangulate(black_box(&points)));
             Ok(Timings::default())

@@ -3,10 +3,10 @@
 // address instead, for a browser with a GPU.
 
 import { fileURLToPath } from 'node:url';
-import { closeAll, openPage, serve, startChromium } from '../tests/browsers.mjs';
+import { closeAll, ISOLATED, openPage, serve, startChromium } from '../tests/browsers.mjs';
 
 const [name, verb] = process.argv.slice(2);
-const address = `${await serve(fileURLToPath(new URL('..', import.meta.url)))}benches/${name}.html`;
+const address = `${await serve(fileURLToPath(new URL('..', import.meta.url)), ISOLATED)}benches/${name}.html`;
 if (verb === 'serve') {
   console.log(address);
 } else {

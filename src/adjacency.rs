@@ -4,12 +4,12 @@
 
 mod buckets;
 
-use crate::threads::{Threads, shared};
+use crate::threads::{Threads, Word, shared};
 use crate::{Mesh, NONE};
 pub(crate) use buckets::for_each_edge;
 use buckets::{Buckets, Rising, range, visit_edges};
 use std::ops::Range;
-use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
+use std::sync::atomic::AtomicU32;
 
 /// The half-edge after `h` in its triangle.
 #[inline]
@@ -100,7 +100,7 @@ impl Adjacency {
         // Memory is taken when it is first written, which is work for all threads.
         let mut twins = vec![0; triangles.len()];
         let words = shared(&mut twins);
-        threads.map(words.len(), |piece| words[piece].iter().for_each(|twin| twin.store(NONE, Relaxed)));
+        threads.map(words.len(), |piece| words[piece].iter().for_each(|twin| twin.set(NONE)));
         let taken = threads.map(triangles.len() / 3, |piece| rising.take(triangles, piece, words));
         let rest = threads.map(count, |piece| rising.rest(triangles, piece)).concat();
         // Two threads may have taken the same one.
@@ -109,8 +109,10 @@ impl Adjacency {
         for v in taken.into_iter().flat_map(|(_, odd)| odd).chain(rest) {
             is_odd[v as usize] = true;
         }
-        let plain: usize = (0..vertices).filter(|&v| !is_odd[v]).map(|v| range(&ends, v).len()).sum();
-        let mut adjacency = Self { edges: plain as u32, ..Self::default() };
+        let plain = threads.map(vertices, |piece| {
+            piece.filter(|&v| !is_odd[v]).map(|v| range(&ends, v).len()).sum::<usize>()
+        });
+        let mut adjacency = Self { edges: plain.into_iter().sum::<usize>() as u32, ..Self::default() };
         if is_odd.contains(&true) {
             adjacency.match_with_care(triangles, words, threads, |v| is_odd[v as usize]);
         }
@@ -152,7 +154,7 @@ impl Adjacency {
                 for &h in edge {
                     let other = edge[0] ^ edge[edge.len() - 1] ^ h;
                     let twin = if kind == EdgeKind::Interior { other } else { NONE };
-                    twins[h as usize].store(twin, Relaxed);
+                    twins[h as usize].set(twin);
                 }
             });
         }

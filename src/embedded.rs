@@ -7,6 +7,7 @@
 use crate::NONE;
 use crate::mesh::{Dimension, Mesh};
 use crate::predicates::area_sign;
+use crate::star::Fans;
 use crate::threads::Threads;
 use crate::winding::Winding;
 use glam::DVec2;
@@ -33,6 +34,24 @@ impl Embedded {
             turns.iter_mut().zip(piece).for_each(|(sum, turns)| *sum = (*sum + turns).min(2));
         }
         Self { turns }
+    }
+
+    /// The fans of the mesh that it is of, whose twins these are.
+    pub(crate) fn fans(&self, mesh: &Mesh, twins: &[u32], threads: &Threads) -> Fans {
+        let (vertices, triangles) = (mesh.vertex_count(), mesh.triangles());
+        if self.turns.is_empty() {
+            return Fans::new(vertices, triangles, twins);
+        }
+        let others = threads.map(triangles.len(), |piece| {
+            let corners = (piece.start as u32..).zip(&triangles[piece]);
+            corners.filter(|&(_, &v)| !self.at(v)).map(|(h, _)| h).collect()
+        });
+        Fans::of_corners(
+            &mut others.iter().flat_map(|part: &Vec<u32>| part).copied(),
+            vertices,
+            triangles,
+            twins,
+        )
     }
 
     /// Whether the star of vertex `v` is known to be embedded.

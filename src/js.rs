@@ -3,12 +3,18 @@
 
 mod objects;
 
+#[cfg(feature = "js")]
+use crate::engine;
+#[cfg(feature = "js")]
 pub use crate::engine::{GpuDevice, WebGl2Module};
 pub use crate::js_values::JsPositions;
+#[cfg(feature = "js")]
+use crate::js_values::coded;
 use crate::js_values::{backend_name, object, parse_dimension, positions_array, reasons_object, thrown};
-use crate::{Backend, Error, Mesh, Options, Order, Session, engine};
+use crate::{Backend, Error, Mesh, Options, Order, Positions, Session};
 use js_sys::{Array, Uint8Array, Uint32Array};
 use objects::outcome_object;
+use std::num::NonZeroUsize;
 use wasm_bindgen::prelude::*;
 
 #[wasm_bindgen]
@@ -34,10 +40,18 @@ extern "C" {
     #[wasm_bindgen(method, getter)]
     fn order(this: &JsOptions) -> JsValue;
     #[wasm_bindgen(method, getter)]
+    fn threads(this: &JsOptions) -> JsValue;
+    #[cfg(feature = "js")]
+    #[wasm_bindgen(method, getter)]
     fn device(this: &JsOptions) -> JsValue;
+    /// Not for users: to have no session at all where `'auto'` would take the CPU.
+    #[cfg(feature = "js")]
+    #[wasm_bindgen(method, getter, js_name = leavesCpu)]
+    fn leaves_cpu(this: &JsOptions) -> Option<bool>;
 }
 
 /// Says where the WebGL2 engine comes from.
+#[cfg(feature = "js")]
 #[wasm_bindgen(js_name = setWebGl2)]
 pub fn set_webgl2(module: WebGl2Module) {
     engine::set_webgl2(module);
@@ -47,25 +61,21 @@ pub fn set_webgl2(module: WebGl2Module) {
 #[wasm_bindgen(js_name = Session)]
 pub struct JsSession(Session);
 
-#[wasm_bindgen(js_class = Session)]
 impl JsSession {
     /// As [`Session::new`].
-    ///
-    /// # Errors
-    /// Those of [`Mesh::new`] and [`Session::new`].
-    pub async fn create(
-        positions: JsPositions,
+    pub(crate) async fn open(
+        positions: impl Into<Positions>,
         indices: Vec<u32>,
         dimension: f64,
-        options: JsOptions,
-    ) -> Result<JsSession, JsValue> {
-        let create = async {
-            let mesh = Mesh::new(parse_dimension(dimension)?, positions, indices)?;
-            Session::new(mesh, parse_options(&options)?).await
-        };
-        create.await.map(Self).map_err(thrown)
+        options: &JsOptions,
+    ) -> Result<JsSession, Error> {
+        let mesh = Mesh::new(parse_dimension(dimension)?, positions, indices)?;
+        Session::new(mesh, parse_options(options)?).await.map(Self)
     }
+}
 
+#[wasm_bindgen(js_class = Session)]
+impl JsSession {
     /// As [`Session::step`].
     ///
     /// # Errors
@@ -186,6 +196,29 @@ impl JsSession {
     pub fn backend(&self) -> String {
         backend_name(self.0.backend()).to_owned()
     }
+}
+
+/// What a session on a GPU has beside.
+#[cfg(feature = "js")]
+#[wasm_bindgen(js_class = Session)]
+impl JsSession {
+    /// As [`Session::new`].
+    ///
+    /// # Errors
+    /// Those of [`Mesh::new`] and [`Session::new`]; `backend-unavailable`, with the reasons alone, where the CPU is left.
+    pub async fn create(
+        positions: JsPositions,
+        indices: Vec<u32>,
+        dimension: f64,
+        options: JsOptions,
+    ) -> Result<JsSession, JsValue> {
+        Self::open(positions, indices, dimension, &options).await.map_err(|error| match error {
+            Error::Device { message } if options.leaves_cpu() == Some(true) => {
+                coded("backend-unavailable", &message)
+            }
+            error => thrown(error),
+        })
+    }
 
     /// The engine's GPUDevice, if it runs on one.
     #[wasm_bindgen(getter, unchecked_return_type = "GPUDevice | undefined")]
@@ -205,6 +238,9 @@ impl JsSession {
         self.0.shared_objects().map_or(JsValue::UNDEFINED, |objects| objects.triangles)
     }
 }
+
+/// Each is a worker.
+const MOST_THREADS: u32 = 256;
 
 /// What is `undefined` keeps its default.
 fn parse_options(given: &JsOptions) -> Result<Options, Error> {
@@ -230,11 +266,23 @@ fn parse_options(given: &JsOptions) -> Result<Options, Error> {
             _ => return wrong("order", &order, "'reproducible' or 'any'"),
         };
     }
-    let device = given.device();
-    if !device.is_undefined() {
-        match device.dyn_into() {
-            Ok(device) => options.device = Some(device),
-            Err(other) => return wrong("device", &other, "a GPUDevice of this window or worker"),
+    let threads = given.threads();
+    if !threads.is_undefined() {
+        let count = whole(&threads).filter(|&count| count <= MOST_THREADS);
+        options.threads = count.and_then(|count| NonZeroUsize::new(count as usize));
+        if options.threads.is_none() {
+            return wrong("threads", &threads, "a number of threads, 1 to 256");
+        }
+    }
+    #[cfg(feature = "js")]
+    {
+        options.leaves_cpu = given.leaves_cpu().unwrap_or(false);
+        let device = given.device();
+        if !device.is_undefined() {
+            match device.dyn_into() {
+                Ok(device) => options.device = Some(device),
+                Err(other) => return wrong("device", &other, "a GPUDevice of this window or worker"),
+            }
         }
     }
     let angle = given.max_normal_angle();

@@ -1,11 +1,11 @@
 //! What the modules of the npm package share: plain objects, errors and dimensions as JavaScript has them, in the
 //! words of the package: `webgpu` for the GPU engine, `indices` for the triangles.
 
-#[cfg(any(feature = "js", feature = "js-audit"))]
+#[cfg(any(feature = "js-session", feature = "js-audit"))]
 use crate::Reasons;
 use crate::error::number;
 use crate::{Dimension, Error, Positions};
-#[cfg(any(feature = "js", feature = "js-audit", feature = "js-files"))]
+#[cfg(any(feature = "js-session", feature = "js-audit", feature = "js-files"))]
 use js_sys::{Array, Object};
 use js_sys::{Float32Array, Float64Array};
 use wasm_bindgen::prelude::*;
@@ -27,7 +27,7 @@ impl From<JsPositions> for Positions {
 }
 
 /// A copy of them.
-#[cfg(feature = "js")]
+#[cfg(feature = "js-session")]
 pub(crate) fn positions_array(positions: &Positions) -> JsValue {
     match positions {
         Positions::F32(numbers) => Float32Array::from(numbers.as_slice()).into(),
@@ -43,7 +43,7 @@ pub fn start() {
 }
 
 /// A plain object.
-#[cfg(any(feature = "js", feature = "js-audit", feature = "js-files"))]
+#[cfg(any(feature = "js-session", feature = "js-audit", feature = "js-files"))]
 pub(crate) fn object<'a>(fields: impl IntoIterator<Item = (&'a str, JsValue)>) -> JsValue {
     let entries: Array = fields.into_iter().map(|(name, value)| Array::of2(&name.into(), &value)).collect();
     // Fails only on what is no list of pairs.
@@ -51,7 +51,7 @@ pub(crate) fn object<'a>(fields: impl IntoIterator<Item = (&'a str, JsValue)>) -
 }
 
 /// The reasons with at least one edge.
-#[cfg(any(feature = "js", feature = "js-audit"))]
+#[cfg(any(feature = "js-session", feature = "js-audit"))]
 pub(crate) fn reasons_object(reasons: &Reasons) -> JsValue {
     object(reasons.iter().map(|(reason, edges)| (reason.name(), (edges as f64).into())))
 }

@@ -29,12 +29,14 @@ mod error;
 pub mod families;
 mod frozen;
 pub mod io;
-#[cfg(all(target_arch = "wasm32", feature = "js"))]
+#[cfg(all(target_arch = "wasm32", feature = "js-session"))]
 pub mod js;
 #[cfg(all(target_arch = "wasm32", feature = "js-audit"))]
 pub mod js_audit;
 #[cfg(all(target_arch = "wasm32", feature = "js-files"))]
 pub mod js_files;
+#[cfg(all(target_arch = "wasm32", feature = "js-threads"))]
+pub mod js_threads;
 #[cfg(all(target_arch = "wasm32", feature = "js-values"))]
 mod js_values;
 #[cfg(all(target_arch = "wasm32", feature = "js-webgl2"))]

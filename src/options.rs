@@ -22,7 +22,7 @@ pub enum Order {
     /// The parallel pipeline: the same bits on every engine after every iteration.
     #[default]
     Reproducible,
-    /// Lawson's sequential algorithm on the CPU: faster on one thread, no iterations to watch.
+    /// Lawson's sequential algorithm on the CPU: faster, no iterations to watch.
     Any,
 }
 
@@ -54,12 +54,16 @@ pub struct Options {
     pub order: Order,
     /// How many threads the CPU engine runs on; `None`: one for each core. A mesh of fewer than
     /// 65,536 triangles is done on one, before others have woken up. The result is the same for any
-    /// number. Lawson's algorithm flips on one. In WebAssembly, and without the feature `threads`, it is always one.
+    /// number. Lawson's algorithm flips surfaces in space on one. Without the feature `threads` it is always one; in
+    /// WebAssembly those are taken that there are.
     pub threads: Option<NonZeroUsize>,
     /// The device that the GPU engine runs on, instead of one of its own. It is never destroyed here, nothing of it
     /// is set, and its errors about other calls are left alone. Of a software one, `Auto` takes the CPU.
     #[cfg(all(target_arch = "wasm32", feature = "js"))]
     pub device: Option<crate::js::GpuDevice>,
+    /// Whether `Auto` begins with no engine where it would with the CPU.
+    #[cfg(all(target_arch = "wasm32", feature = "js"))]
+    pub(crate) leaves_cpu: bool,
 }
 
 impl Default for Options {
@@ -76,6 +80,8 @@ impl Default for Options {
             threads: None,
             #[cfg(all(target_arch = "wasm32", feature = "js"))]
             device: None,
+            #[cfg(all(target_arch = "wasm32", feature = "js"))]
+            leaves_cpu: false,
         }
     }
 }

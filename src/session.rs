@@ -227,8 +227,8 @@ impl Session {
             embedded: &Embedded::default(),
         };
         let vertices = self.mesh.vertex_count();
-        let fans = &Fans::new(vertices, &triangles, &twins, |_| false);
-        let topology = Topology { triangles: &triangles, twins: &twins, fans };
+        let fans = &Fans::new(vertices, &triangles, &twins);
+        let topology = Topology { first: 0, triangles: &triangles, twins: &twins, fans };
         let iteration = (self.options.order == Order::Reproducible).then(|| self.iterations());
         Ok(edge_states(&geometry, topology, vertices, iteration))
     }
@@ -253,13 +253,13 @@ impl Session {
     }
 
     /// The engine that runs now: `cpu` or `gpu`.
-    #[cfg(all(target_arch = "wasm32", feature = "js"))]
+    #[cfg(all(target_arch = "wasm32", feature = "js-session"))]
     pub(crate) fn backend(&self) -> &'static str {
         self.engine.backend()
     }
 
     /// What the audit compares with: the mesh as it was given, or as its vertices moved last, and the options.
-    #[cfg(all(target_arch = "wasm32", feature = "js"))]
+    #[cfg(all(target_arch = "wasm32", feature = "js-session"))]
     pub(crate) fn input(&self) -> (&Mesh, &Options) {
         (&self.mesh, &self.options)
     }

@@ -14,19 +14,25 @@ pub(crate) struct Fans {
 }
 
 impl Fans {
-    /// Walks every fan of the mesh once, but for those of vertices with one fan, as far as they are known to `is_whole`.
-    pub(crate) fn new(
+    /// Walks every fan of the mesh once.
+    pub(crate) fn new(vertices: usize, triangles: &[u32], twins: &[u32]) -> Self {
+        Self::of_corners(&mut (0..triangles.len() as u32), vertices, triangles, twins)
+    }
+
+    /// Walks the fans of the vertices that these ascending half-edges start at, which are all that do; the others are known
+    /// to have one fan.
+    pub(crate) fn of_corners(
+        corners: &mut dyn Iterator<Item = u32>,
         vertices: usize,
         triangles: &[u32],
         twins: &[u32],
-        is_whole: impl Fn(u32) -> bool,
     ) -> Self {
         let mut first = vec![NONE; vertices];
         let mut visited = vec![false; triangles.len()];
         let mut further = Vec::new();
-        for h in 0..triangles.len() as u32 {
+        for h in corners {
             let v = triangles[h as usize];
-            if visited[h as usize] || is_whole(v) {
+            if visited[h as usize] {
                 continue;
             }
             for corner in Star::of_fan(twins, h) {
@@ -167,7 +173,7 @@ mod tests {
     /// The vertices opposite to vertex `v`'s corners, walked from its first one.
     fn around(vertices: usize, triangles: &[u32], v: u32) -> Vec<[u32; 2]> {
         let twins = Adjacency::of_triangles(vertices, triangles, &Threads::default()).twins;
-        let fans = Fans::new(vertices, triangles, &twins, |_| false);
+        let fans = Fans::new(vertices, triangles, &twins);
         let corner = triangles.iter().position(|&u| u == v).map_or(NONE, |h| h as u32);
         let ends = |x| [next(x), prev(x)].map(|h| triangles[h as usize]);
         let mut ends: Vec<_> = Star::new(triangles, &twins, &fans, corner).map(ends).collect();
@@ -206,7 +212,7 @@ mod tests {
         let triangles = [0, 1, 2, 0, 4, 3];
         assert_eq!(around(5, &triangles, 0), [[1, 2], [4, 3]]);
         assert_eq!(around(5, &triangles, 1), [[2, 0]]);
-        let fans = Fans::new(5, &triangles, &[NONE; 6], |_| false);
+        let fans = Fans::new(5, &triangles, &[NONE; 6]);
         assert_eq!(fans.table, [5, NONE, NONE, NONE, NONE, 0, 3, NONE]);
     }
 

@@ -9,6 +9,8 @@ use std::ops::Range;
 #[cfg(feature = "threads")]
 use std::sync::Arc;
 use std::sync::atomic::AtomicU32;
+#[cfg(not(all(target_arch = "wasm32", target_feature = "atomics")))]
+use std::sync::atomic::Ordering::Relaxed;
 
 /// A piece has so many items at least: fewer are done before another thread has woken up. Without optimisation it has
 /// few, so that small meshes test the threads.
@@ -100,7 +102,7 @@ impl Threads {
     /// What `work` gives for each item, in order.
     pub(crate) fn map_each<I: Send, T: Send>(&self, items: Vec<I>, work: impl Fn(I) -> T + Sync) -> Vec<T> {
         #[cfg(feature = "threads")]
-        if items.len() > 1 {
+        if items.len() > 1 && self.count() > 1 {
             let run = || items.into_par_iter().with_max_len(1).map(&work).collect();
             return match &self.pool {
                 Some(pool) => pool.install(run),
@@ -135,6 +137,44 @@ fn cut(len: usize, most: usize) -> Vec<Range<usize>> {
     let pieces = most.min(len / FEWEST).max(1);
     let size = len.div_ceil(pieces);
     (0..pieces).map(|i| len.min(i * size)..len.min((i + 1) * size)).collect()
+}
+
+/// A word that several threads may read and write. What one has written the others see after the loop at the latest.
+pub(crate) trait Word {
+    fn get(&self) -> u32;
+    fn set(&self, word: u32);
+}
+
+#[cfg(not(all(target_arch = "wasm32", target_feature = "atomics")))]
+impl Word for AtomicU32 {
+    #[inline(always)]
+    fn get(&self) -> u32 {
+        self.load(Relaxed)
+    }
+
+    #[inline(always)]
+    fn set(&self, word: u32) {
+        self.store(word, Relaxed);
+    }
+}
+
+/// WebAssembly has no relaxed accesses but its plain ones: the others are sequentially consistent, and take several times
+/// as long.
+#[cfg(all(target_arch = "wasm32", target_feature = "atomics"))]
+#[expect(unsafe_code, reason = "Rust has no other way to a plain access")]
+impl Word for AtomicU32 {
+    #[inline(always)]
+    fn get(&self) -> u32 {
+        // SAFETY: the place is valid and aligned. WebAssembly defines plain accesses that race, and those of aligned words
+        // do not tear; volatile ones are those that are written here.
+        unsafe { self.as_ptr().read_volatile() }
+    }
+
+    #[inline(always)]
+    fn set(&self, word: u32) {
+        // SAFETY: as above.
+        unsafe { self.as_ptr().write_volatile(word) }
+    }
 }
 
 /// Words that several threads may write.

@@ -117,6 +117,9 @@ async function display() {
   return `:${number.trim()}`;
 }
 
+/** What a page is cross-origin isolated with, so that its workers may share memory. */
+export const ISOLATED = { 'Cross-Origin-Opener-Policy': 'same-origin', 'Cross-Origin-Embedder-Policy': 'require-corp' };
+
 /**
  * Serves the files of a folder on localhost, which browsers take for a secure context: without one there is no WebGPU.
  *

@@ -7,7 +7,7 @@ mod meshes;
 mod runs;
 mod simulation;
 
-use edgeflip::{Adjacency, Backend, Options, families};
+use edgeflip::{Adjacency, Backend, Options, Order, families};
 use runs::{unwatched, watched};
 use simulation::{expected, simulate};
 use std::num::NonZeroUsize;
@@ -22,6 +22,26 @@ fn every_mesh_of_the_matrix_flips_as_on_one() {
             let run = watched(&case.mesh, &options).unwrap();
             let found = simulation::Expected::new(&case.name, case.beta, &run);
             assert_eq!(found, want, "{threads} threads");
+        }
+    }
+}
+
+/// Lawson's algorithm, whose threads have regions.
+#[test]
+fn every_mesh_of_the_matrix_flips_in_any_order_as_on_one() {
+    for case in meshes::all() {
+        let run = |threads| {
+            let options = Options {
+                threads: NonZeroUsize::new(threads),
+                order: Order::Any,
+                ..case.options(Backend::Cpu)
+            };
+            let outcome = unwatched(&case.mesh, &options).unwrap();
+            (outcome.triangles, outcome.flips, outcome.remaining)
+        };
+        let want = run(1);
+        for threads in &COUNTS[1..] {
+            assert!(run(*threads) == want, "{}, {threads} threads", case.name);
         }
     }
 }

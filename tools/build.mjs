@@ -31,10 +31,12 @@ const glue = 'target/js/wasm'; // also where src/js/tsconfig.json finds the type
 const engine = ['-C', 'llvm-args=-inline-threshold=10 -unroll-runtime=0'];
 // Vectors where they are written, and nowhere else: it is no slower, and 2 % smaller.
 const all = ['-C', 'no-vectorize-loops', '-C', 'no-vectorize-slp'];
-// One module for each entry of the package, one for the WebGL2 engine, and one for the audit.
+// One module for each entry of the package, one for the WebGL2 engine, one for the CPU engine's threads, and one for the
+// audit.
 const modules = [
   { name: 'edgeflip', features: 'gpu,js', flags: engine },
   { name: 'edgeflip_webgl2', features: 'js-webgl2', flags: engine },
+  { name: 'edgeflip_threads', features: 'js-threads', flags: engine, options: ['--threads'] },
   { name: 'edgeflip_audit', features: 'js-audit', flags: [] },
   { name: 'edgeflip_files', features: 'js-files', flags: [] },
 ];
@@ -43,24 +45,25 @@ for (const folder of ['dist', glue]) {
   mkdirSync(folder, { recursive: true });
 }
 
-for (const { name, features, flags } of modules) {
-  run('bash', 'tools/wasm-cargo.sh', 'rustc', '--lib', '--crate-type', 'cdylib', '--profile', 'web',
+for (const { name, features, flags, options = [] } of modules) {
+  run('bash', 'tools/wasm-cargo.sh', ...options, 'rustc', '--lib', '--crate-type', 'cdylib', '--profile', 'web',
     '--target', 'wasm32-unknown-unknown', '--no-default-features', '--features', features, '--', ...all, ...flags);
   run('target/setup/bin/wasm-bindgen', '--target', 'web', '--out-dir', glue, '--out-name', name,
-    '--remove-producers-section', 'target/wasm/wasm32-unknown-unknown/web/edgeflip.wasm');
+    '--remove-producers-section', `${options.length > 0 ? 'target/wasm-threads' : 'target/wasm'}/wasm32-unknown-unknown/web/edgeflip.wasm`);
 }
 cpSync(glue, 'dist/wasm', { recursive: true });
 // The features that rustc turns on for wasm32, and vectors: every browser with WebGPU has them, and all since 2023.
 const wasmFeatures = ['bulk-memory', 'bulk-memory-opt', 'call-indirect-overlong', 'multivalue', 'mutable-globals',
   'nontrapping-float-to-int', 'reference-types', 'sign-ext', 'simd'];
-for (const { name } of modules) {
+for (const { name, options } of modules) {
   const wasm = `dist/wasm/${name}_bg.wasm`;
   cutPanics(wasm);
   // No pointer of Rust is below 1024: the stack, which comes first, grows down from 1 MiB. Done twice, since the first
   // time uncovers more.
+  const features = options ? [...wasmFeatures, 'threads'] : wasmFeatures;
   const names = output('pipe', process.execPath, 'node_modules/binaryen/bin/wasm-opt', '-Oz', '-Oz',
     '--low-memory-unused', '--minify-imports-and-exports-and-modules', '--strip-debug',
-    ...wasmFeatures.map((feature) => `--enable-${feature}`), wasm, '-o', wasm);
+    ...features.map((feature) => `--enable-${feature}`), wasm, '-o', wasm);
   shorten(`dist/wasm/${name}.js`, `./${name}_bg.js`, JSON.parse(names));
 }
 
@@ -82,7 +85,7 @@ function shorten(file, module, names) {
   const exports = new Map(names.exports);
   const text = readFileSync(file, 'utf8')
     .replace(`"${module}": `, '"a": ')
-    .replace(/\b\w+(?=: function\()/g, (name) => imports.get(name) ?? name)
+    .replace(/\b\w+(?=: (function\(|memory \|\|))/g, (name) => imports.get(name) ?? name)
     .replace(/(?<=\bwasm\.)\w+/g, (name) => exports.get(name) ?? name);
   writeFileSync(file, text);
 }

@@ -6,6 +6,7 @@
 # * a C linker                             apt on Debian and Ubuntu
 #   a Vulkan driver for the GPU tests      apt on Debian and Ubuntu (Mesa's software driver, lavapipe)
 # * the wasm32-unknown-unknown target      rustup; on Debian 12 without rustup's server, Debian's compiler
+#   and the source of std
 # * wasm-bindgen, of Cargo.lock's version  cargo install, into target/setup
 # * the packages of package-lock.json      npm ci
 #   Chromium and chromedriver              apt on Debian; asked for elsewhere, not installed
@@ -136,15 +137,16 @@ build_debian_std() {
   "${root[@]}" cp "$scratch"/target/wasm32-unknown-unknown/release/deps/lib*.rlib "$out/"
   rm -rf "$scratch" target/wasm # what was built against another std does not fit this one
 }
-by_hand="Run: rustup target add wasm32-unknown-unknown"
+by_hand="Run: rustup target add wasm32-unknown-unknown && rustup component add rust-src"
 if ! tools/wasm-cargo.sh --which >/dev/null 2>&1; then
-  if has rustup && RUSTUP_MAX_RETRIES=0 within 180 rustup target add wasm32-unknown-unknown; then
-    say "added the wasm32 target to rustup's toolchain"
+  if has rustup && RUSTUP_MAX_RETRIES=0 within 180 rustup target add wasm32-unknown-unknown &&
+    RUSTUP_MAX_RETRIES=0 within 180 rustup component add rust-src; then
+    say "added the wasm32 target and the source of std to rustup's toolchain"
   elif has apt-cache && apt-get --version >/dev/null; then
     say "rustup did not bring the wasm32 target; trying Debian's compiler instead"
     build_debian_std
   else
-    stop "the wasm32-unknown-unknown target is missing and rustup could not add it." "$by_hand"
+    stop "the wasm32-unknown-unknown target, or the source of std, is missing and rustup could not add it." "$by_hand"
   fi
   tools/wasm-cargo.sh --which >/dev/null 2>&1 ||
     stop "no compiler compiles for wasm32 even now." "$by_hand, and see what it says"

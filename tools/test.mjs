@@ -15,7 +15,8 @@ process.chdir(fileURLToPath(new URL('..', import.meta.url)));
  * @typedef {{ level: Level, passed: number, failed: number, why: string, seconds: number }} Result
  */
 
-// The builds of the library that a browser gets are of `gpu,js`, of `js-webgl2`, of `js-audit` and of `js-files`.
+// The builds of the library that a browser gets are of `gpu,js`, of `js-webgl2`, of `js-threads`, of `js-audit` and of
+// `js-files`.
 const wasmWith = (features) => ['--target', 'wasm32-unknown-unknown', '--no-default-features', '--features', features];
 const wasm = wasmWith('gpu,js');
 const wasmCargo = ['bash', 'tools/wasm-cargo.sh'];
@@ -80,6 +81,7 @@ const levels = [
     checks: [
       [...wasmCargo, 'clippy', '--lib', ...wasmWith('gpu'), '--', '-D', 'warnings'],
       [...wasmCargo, 'clippy', '--lib', ...wasmWith('js-webgl2'), '--', '-D', 'warnings'],
+      [...wasmCargo, '--threads', 'clippy', '--lib', ...wasmWith('js-threads'), '--', '-D', 'warnings'],
       [...wasmCargo, 'clippy', '--lib', ...wasmWith('js-audit'), '--', '-D', 'warnings'],
       [...wasmCargo, 'clippy', '--lib', ...wasmWith('js-files'), '--', '-D', 'warnings'],
       [...wasmCargo, 'clippy', '--lib', '--test', 'wasm', '--test', 'worker', ...wasm, '--', '-D', 'warnings'],

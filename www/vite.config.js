@@ -19,7 +19,14 @@ export default defineConfig({
     ],
   },
   worker: { format: 'es' },
-  preview: { headers: { 'Content-Security-Policy': policy } },
+  // Isolated, so that the threads of the CPU engine may share memory.
+  preview: {
+    headers: {
+      'Content-Security-Policy': policy,
+      'Cross-Origin-Opener-Policy': 'same-origin',
+      'Cross-Origin-Embedder-Policy': 'require-corp',
+    },
+  },
   build: {
     outDir: at('../target/www'),
     emptyOutDir: true,

@@ -1,9 +1,9 @@
 //! Half-edges sorted by the smaller vertices of their edges: what finds twins, and the edges of meshes that are not manifold.
 
 use crate::NONE;
-use crate::threads::{Threads, shared};
+use crate::threads::{Threads, Word, shared};
 use std::ops::Range;
-use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
+use std::sync::atomic::AtomicU32;
 
 /// Half-edges in buckets by the smaller vertices of their edges. In each bucket they ascend.
 pub(super) struct Buckets {
@@ -55,8 +55,8 @@ impl Buckets {
                     // What is not wanted goes to a place of the piece's own; nothing could predict a branch.
                     let at = if is_wanted { *start } else { sink } as usize;
                     *start += u32::from(is_wanted);
-                    high[at].store(from.max(to), Relaxed);
-                    half_edge[at].store(h, Relaxed);
+                    high[at].set(from.max(to));
+                    half_edge[at].set(h);
                 }
             }
             starts
@@ -148,12 +148,12 @@ impl Rising<'_> {
             }
             for &[high, low, h] in &falling[..count] {
                 let entry = self.find(low, high);
-                let g = entry.map_or(NONE, |entry| entry.load(Relaxed));
+                let g = entry.map_or(NONE, |entry| entry.get());
                 match entry {
                     Some(entry) if g != NONE && g / 3 != h / 3 => {
-                        entry.store(NONE, Relaxed);
-                        twins[h as usize].store(g, Relaxed);
-                        twins[g as usize].store(h, Relaxed);
+                        entry.set(NONE);
+                        twins[h as usize].set(g);
+                        twins[g as usize].set(h);
                         matched += 1;
                     }
                     _ => odd.push(low),
@@ -188,7 +188,7 @@ impl Rising<'_> {
 
     /// The smaller vertices of the edges of those that have not been taken.
     pub(super) fn rest(&self, triangles: &[u32], piece: Range<usize>) -> Vec<u32> {
-        let half_edges = self.half_edges[piece].iter().map(|h| h.load(Relaxed));
+        let half_edges = self.half_edges[piece].iter().map(|h| h.get());
         half_edges.filter(|&h| h != NONE).map(|h| triangles[h as usize]).collect()
     }
 }

@@ -1,6 +1,7 @@
 //! The phases on the CPU, an edge at a time and on several threads: the edges that are not Delaunay are kept in lists,
 //! and an edge is tested again only where one of its triangles has flipped.
 
+use super::region::TopologyMut;
 use super::{Answer, Census, EdgeCounts, Engine};
 use crate::adjacency::{CREASE, LOCKED, prev, unflagged};
 use crate::embedded::Embedded;
@@ -11,12 +12,12 @@ use crate::phases::{
     makes_duplicate, move_anchors, verdict, verdict_of_shape, yields,
 };
 use crate::star::Fans;
-use crate::threads::{Threads, shared};
+use crate::threads::{Threads, Word, shared};
 use crate::winding::Winding;
 use crate::{Adjacency, NONE};
 use std::ops::Range;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
+use std::sync::atomic::AtomicU32;
 
 /// Edges that are tested in one go.
 const EDGES: usize = 256;
@@ -48,7 +49,7 @@ impl Found {
 
 /// The state of a mesh between two iterations.
 pub(crate) struct Cpu {
-    threads: Threads,
+    pub(super) threads: Threads,
     mesh: Arc<Mesh>,
     thresholds: Thresholds,
     winding: Winding,
@@ -81,7 +82,7 @@ impl Cpu {
         let embedded = Embedded::new(&mesh, &adjacency.twins, &winding, &threads);
         let counts = EdgeCounts::from(&adjacency);
         let triangles = mesh.triangles().to_vec();
-        let fans = Fans::new(mesh.vertex_count(), &triangles, &adjacency.twins, |v| embedded.at(v));
+        let fans = embedded.fans(&mesh, &adjacency.twins, &threads);
         let mut twins = adjacency.twins;
         if mesh.dimension() == Dimension::Three {
             flag_creases(mesh.positions(), &triangles, &mut twins, thresholds.cos, &threads);
@@ -105,17 +106,18 @@ impl Cpu {
     }
 
     pub(super) fn geometry(&self) -> Geometry<'_> {
+        let Self { mesh, winding, embedded, thresholds, .. } = self;
         Geometry {
-            dimension: self.mesh.dimension(),
-            positions: self.mesh.positions(),
-            thresholds: self.thresholds,
-            winding: &self.winding,
-            embedded: &self.embedded,
+            dimension: mesh.dimension(),
+            positions: mesh.positions(),
+            thresholds: *thresholds,
+            winding,
+            embedded,
         }
     }
 
     pub(super) fn topology(&self) -> Topology<'_> {
-        Topology { triangles: &self.triangles, twins: &self.twins, fans: &self.fans }
+        Topology { first: 0, triangles: &self.triangles, twins: &self.twins, fans: &self.fans }
     }
 
     /// Label: tests the edges around those that have flipped, which are Delaunay now, and all edges before the first
@@ -208,7 +210,7 @@ impl Cpu {
 
     /// Whether an edge at `v` has come or gone in the last iteration, as far as that is of interest.
     fn has_changed(&self, v: u32) -> bool {
-        self.iteration > 0 && self.changed[v as usize].load(Relaxed) == self.iteration
+        self.iteration > 0 && self.changed[v as usize].get() == self.iteration
     }
 
     /// Select: the edges that flip are those with the smallest key in both their triangles, but for those that yield.
@@ -267,9 +269,9 @@ impl Cpu {
         threads.map(flips.len(), |piece| {
             for &[h, g] in &flips[piece] {
                 for x in [h, prev(h), g, prev(g)] {
-                    let v = triangles[x as usize].load(Relaxed);
+                    let v = triangles[x as usize].get();
                     if !embedded.at(v) {
-                        changed[v as usize].store(*iteration, Relaxed);
+                        changed[v as usize].set(*iteration);
                     }
                 }
                 flip(triangles, twins, selected, [h, g]);
@@ -301,6 +303,18 @@ impl Cpu {
 
 /// What Lawson's algorithm needs of it.
 impl Cpu {
+    pub(super) fn parts(&mut self) -> (Geometry<'_>, TopologyMut<'_>) {
+        let Self { mesh, winding, embedded, thresholds, triangles, twins, fans, .. } = self;
+        let geometry = Geometry {
+            dimension: mesh.dimension(),
+            positions: mesh.positions(),
+            thresholds: *thresholds,
+            winding,
+            embedded,
+        };
+        (geometry, TopologyMut { first: 0, triangles, twins, fans: Some(fans) })
+    }
+
     /// After flips of others: all edges are Delaunay but some of these, or else, as at first, none is known.
     pub(super) fn settle(&mut self, others: Vec<u32>, is_known: bool) {
         self.found = Found { blocked: others, ..Found::default() };

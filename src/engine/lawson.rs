@@ -1,123 +1,81 @@
 //! Lawson's sequential algorithm: one non-Delaunay edge after the other, from a stack, so that the next one is near.
-//! The paper compares with it; it is the fast path on one thread for those who do not need the order of the parallel
-//! phases.
+//! The paper compares with it; it is the fast path for those who do not need the order of the parallel phases.
+//!
+//! In the plane each thread has a region of the mesh, and edges that touch two are left to the end. The regions, and so
+//! the flips, are the same for any number of threads.
 
+use super::region::{Region, TopologyMut, Work};
 use super::{Answer, Census, Cpu, EdgeCounts, Engine};
-use crate::adjacency::{FLAGS, next, prev, unflagged};
-use crate::phases::{Diamond, Verdict, keep_non_delaunay, verdict, verdict_of_non_delaunay};
-use crate::{Mesh, NONE, Reason};
+use crate::Mesh;
+use crate::mesh::Dimension;
+use crate::phases::Geometry;
+use crate::threads::Threads;
 use std::sync::Arc;
 
-/// Edges that are tested in one go, before those of them that are not Delaunay flip.
-const EDGES: usize = 64;
+/// Regions at most: the flips of one have to take a fraction of a thread's time.
+const REGIONS: usize = 16;
+
+/// Triangles of a region at least: few of them are near others. Without optimisation it has few, so that small meshes test
+/// regions.
+const FEWEST: usize = if cfg!(debug_assertions) { 16 } else { 1 << 16 };
 
 /// The state of the CPU engine, flipped in another order.
 pub(crate) struct Lawson {
     cpu: Cpu,
     /// Whether nothing is left to flip.
     has_ended: bool,
-    /// Half-edges of edges that were not Delaunay when they were tested last; others may have flipped since.
-    pending: Vec<u32>,
-    /// Those of them that may not flip.
-    blocked: Vec<u32>,
 }
 
 impl Lawson {
     pub(crate) fn new(cpu: Cpu) -> Self {
-        Self { cpu, has_ended: false, pending: Vec::new(), blocked: Vec::new() }
+        Self { cpu, has_ended: false }
     }
 
     /// Flips until nothing is left to flip, or the number of flips, which it returns, is at its limit.
     fn flip_all(&mut self) -> u32 {
-        let mut flips = 0;
-        let mut has_duplicate = false;
-        let end = self.cpu.twins.len() as u32;
-        let mut diamonds = [Diamond::default(); EDGES];
-        for first in (0..end).step_by(EDGES) {
-            let half_edges = first..end.min(first + EDGES as u32);
-            let count = Diamond::write(self.cpu.topology(), half_edges, &mut diamonds);
-            let is_known = self.test(&diamonds, count);
-            has_duplicate |= self.flip_pending(is_known, &mut flips);
+        let threads = self.cpu.threads.clone();
+        let (geometry, mesh) = self.cpu.parts();
+        let mut whole = Region { geometry: &geometry, mesh, work: Work::default(), limit: u32::MAX };
+        // Elsewhere it takes walks around vertices to know whether a flip makes a duplicate.
+        let is_plain = geometry.dimension == Dimension::Two && whole.mesh.has_no_fans();
+        let triangles = whole.mesh.triangles.len() / 3;
+        let size = triangles.div_ceil(REGIONS).max(FEWEST);
+        if is_plain && size < triangles {
+            whole.work = flip_parts(&geometry, &mut whole.mesh, size, &threads);
+            whole.flip_pending(false);
+        } else {
+            whole.flip_each();
         }
         let mut before = 0;
         // A flip elsewhere may have removed the edge that stood in the way.
-        while has_duplicate && flips > before {
-            before = flips;
-            self.pending = std::mem::take(&mut self.blocked);
-            has_duplicate = self.flip_pending(false, &mut flips);
+        while std::mem::take(&mut whole.work.has_duplicate) && whole.work.flips > before {
+            before = whole.work.flips;
+            whole.work.pending = std::mem::take(&mut whole.work.blocked);
+            whole.flip_pending(false);
         }
+        let Work { flips, blocked, .. } = whole.work;
         self.has_ended = flips < u32::MAX;
-        self.pending.clear();
-        self.cpu.settle(std::mem::take(&mut self.blocked), self.has_ended);
+        self.cpu.settle(blocked, self.has_ended);
         flips
-    }
-
-    /// Tests the first `count` edges. Returns whether some are pending now, of which the last is known not to be Delaunay.
-    fn test<const N: usize>(&mut self, diamonds: &[Diamond; N], count: usize) -> bool {
-        let mut kept = [0; N];
-        let count = keep_non_delaunay(&self.cpu.geometry(), &diamonds[..count], &mut kept);
-        self.pending.extend(kept[..count].iter().map(|&i| diamonds[i as usize].h));
-        count > 0
-    }
-
-    /// Flips what is pending, the last of it without a test if it `is_known` not to be Delaunay, and then around that.
-    /// Returns whether a duplicate has blocked an edge.
-    fn flip_pending(&mut self, mut is_known: bool, flips: &mut u32) -> bool {
-        let mut has_duplicate = false;
-        while *flips < u32::MAX
-            && let Some(h) = self.pending.pop()
-        {
-            let g = unflagged(self.cpu.twins[h as usize]);
-            if g == NONE {
-                continue;
-            }
-            let (geometry, topology) = (self.cpu.geometry(), self.cpu.topology());
-            let verdict = if std::mem::take(&mut is_known) {
-                verdict_of_non_delaunay(&geometry, topology, &Diamond::new(topology, h))
-            } else {
-                verdict(&geometry, topology, h)
-            };
-            match verdict {
-                Verdict::Delaunay => {}
-                Verdict::Blocked(reason) => {
-                    has_duplicate |= reason == Reason::Duplicate;
-                    self.blocked.push(h);
-                }
-                Verdict::Labelled => {
-                    flip(&mut self.cpu, h, g);
-                    *flips += 1;
-                    let (mut diamonds, mut count) = ([Diamond::default(); 4], 0);
-                    for diamond in Diamond::around(self.cpu.topology(), [h, g]) {
-                        diamonds[count] = diamond;
-                        count += 1;
-                    }
-                    is_known = self.test(&diamonds, count);
-                }
-            }
-        }
-        has_duplicate
     }
 }
 
-/// Flips the edge of two half-edges, alone. The triangles around it are others: if it may flip, c is not d.
-fn flip(cpu: &mut Cpu, h: u32, g: u32) {
-    let Cpu { triangles, twins, fans, .. } = cpu;
-    let [hn, hp, gn, gp] = [next(h), prev(h), next(g), prev(g)];
-    let [c, d] = [triangles[hp as usize], triangles[gp as usize]];
-    if !fans.table.is_empty() {
-        fans.move_anchor(triangles[hn as usize], hn, g);
-        fans.move_anchor(triangles[gn as usize], gn, h);
+/// Flips in regions of so many triangles. What they leave is pending.
+fn flip_parts(geometry: &Geometry, mesh: &mut TopologyMut, size: usize, threads: &Threads) -> Work {
+    let parts = mesh.triangles.chunks_mut(3 * size).zip(mesh.twins.chunks_mut(3 * size));
+    let parts = (0..).step_by(3 * size).zip(parts).map(|(first, (triangles, twins))| Region {
+        geometry,
+        mesh: TopologyMut { first, triangles, twins, fans: None },
+        work: Work::default(),
+        limit: u32::MAX / (2 * REGIONS as u32),
+    });
+    let mut work = Work::default();
+    for mut part in threads.map_each(parts.collect(), Region::flip_all) {
+        work.pending.append(&mut part.left);
+        work.blocked.append(&mut part.blocked);
+        work.flips += part.flips;
     }
-    for (inner, outer) in [(h, twins[gn as usize]), (g, twins[hn as usize])] {
-        twins[inner as usize] = outer;
-        if outer != NONE {
-            twins[unflagged(outer) as usize] = inner | (outer & FLAGS);
-        }
-    }
-    triangles[hn as usize] = d;
-    triangles[gn as usize] = c;
-    twins[hn as usize] = gn;
-    twins[gn as usize] = hn;
+    work
 }
 
 impl Engine for Lawson {
@@ -131,7 +89,8 @@ impl Engine for Lawson {
 
     /// A whole pass counts as one iteration.
     fn iterate(&mut self, _count: u32) -> Answer<'_, Vec<u32>> {
-        let flips = if self.has_ended { 0 } else { self.flip_all() };
+        let threads = self.cpu.threads.clone();
+        let flips = if self.has_ended { 0 } else { threads.enter(|| self.flip_all()) };
         Box::pin(std::future::ready(Ok(if flips == 0 { Vec::new() } else { vec![flips] })))
     }
 

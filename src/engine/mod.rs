@@ -8,6 +8,7 @@ mod lawson;
 mod probe;
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 mod proxy;
+mod region;
 #[cfg(feature = "gpu")]
 mod self_test;
 #[cfg(all(test, feature = "gpu"))]

@@ -1,7 +1,7 @@
-/** Loads the module of the engines, that of the WebGL2 engine, and that of the audit. */
+/** Loads the module of the engines, those of the WebGL2 engine and of the CPU engine's threads, and that of the audit. */
 
 import initModule, { setWebGl2 } from './wasm/edgeflip.js';
-import { loader } from './module.js';
+import { compile, loader } from './module.js';
 
 const start: typeof initModule = async (source) => {
   const module = await initModule(source);
@@ -37,6 +37,28 @@ export const initWebGl2 = loader(
     setShaderLoader(() => import('./glsl.js'));
   },
   () => new URL('./wasm/edgeflip_webgl2_bg.wasm', import.meta.url),
+);
+
+let threadsModule: WebAssembly.Module;
+
+/** The module of the threads. */
+export async function loadThreads(): Promise<WebAssembly.Module> {
+  await initThreads();
+  return threadsModule;
+}
+
+/**
+ * Loads the module of the CPU engine's threads; a session does so by itself where it takes that engine for a large mesh,
+ * and the page is cross-origin isolated. Call it to load early, or with a source where `edgeflip_threads_bg.wasm` does not
+ * lie beside this file. The first call counts; after a failure the next one tries again.
+ *
+ * @throws {@link EdgeflipError} `load-failed`.
+ */
+export const initThreads = loader(
+  async ({ module_or_path }) => {
+    threadsModule = await compile(module_or_path);
+  },
+  () => new URL('./wasm/edgeflip_threads_bg.wasm', import.meta.url),
 );
 
 /**

@@ -29,6 +29,15 @@ export function loader(start: Start, place: () => URL): (source?: ModuleSource) 
   };
 }
 
+/** The module of a source, without an instance. */
+export async function compile(source: ModuleSource): Promise<WebAssembly.Module> {
+  if (source instanceof WebAssembly.Module) return source;
+  if (source instanceof ArrayBuffer || ArrayBuffer.isView(source)) return WebAssembly.compile(source);
+  const response = source instanceof Response ? source : await fetch(source as URL | string);
+  if (!response.ok) throw new Error(`HTTP status ${response.status}`);
+  return WebAssembly.compile(await response.arrayBuffer());
+}
+
 /** The bytes of a file in Node, whose `fetch` knows no files. No import: a bundler would look for it. */
 function readFile(source: ModuleSource): BufferSource | undefined {
   if (!(source instanceof URL) || source.protocol !== 'file:') return undefined;

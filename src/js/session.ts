@@ -2,12 +2,13 @@
 
 /// <reference lib="esnext.disposable" preserve="true" />
 
-import { Session } from './wasm/edgeflip.js';
 import type { EDGE_STATES } from './edge-states.js';
 import { EdgeflipError, fromModule } from './error.js';
-import { init, initAudit } from './load.js';
+import { initAudit } from './load.js';
 import { checkPositions, moduleMesh } from './mesh.js';
+import { open } from './open.js';
 import type { Prepared } from './prepare.js';
+import type { ModuleSession } from './threads.js';
 import { Turns } from './turn.js';
 import type { Audit, Edges, Engine, Iteration, Mesh, Options, Result, RunOptions } from './types.js';
 
@@ -26,13 +27,13 @@ const dispose: typeof Symbol.dispose = Symbol.dispose ?? Symbol.for('Symbol.disp
  * Calls may overlap: each waits for those before it. A run lets others in between two batches.
  */
 export class FlipSession implements AsyncIterable<Iteration>, Disposable {
-  readonly #session: Session;
+  readonly #session: ModuleSession;
   #last: Promise<unknown> = Promise.resolve();
   #isFreed = false;
 
   readonly #prepared: Prepared;
 
-  private constructor(session: Session, prepared: Prepared) {
+  private constructor(session: ModuleSession, prepared: Prepared) {
     this.#session = session;
     this.#prepared = prepared;
   }
@@ -46,9 +47,8 @@ export class FlipSession implements AsyncIterable<Iteration>, Disposable {
     const { positions, indices, dimension } = moduleMesh(mesh);
     const isAsked = options.reorient || options.weld;
     const prepared = isAsked ? await (await import('./prepare.js')).prepare(mesh, options) : { indices, turned: 0, options };
-    await init();
     try {
-      return new FlipSession(await Session.create(positions, prepared.indices, dimension, prepared.options), prepared);
+      return new FlipSession(await open({ positions, indices: prepared.indices, dimension }, prepared.options), prepared);
     } catch (thrown) {
       throw fromModule(thrown);
     }
@@ -184,7 +184,7 @@ export class FlipSession implements AsyncIterable<Iteration>, Disposable {
   }
 
   /** Calls the module when the calls before have answered. */
-  #call<T>(work: (session: Session) => Promise<T>): Promise<T> {
+  #call<T>(work: (session: ModuleSession) => Promise<T>): Promise<T> {
     const call = this.#last.then(async () => {
       if (this.#isFreed) throw new EdgeflipError('freed', 'the session has been freed');
       try {

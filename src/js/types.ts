@@ -98,9 +98,15 @@ export interface Options {
   weld?: boolean | Attributes | undefined;
   /**
    * `'reproducible'` (default): the parallel iterations, the same on every engine. `'any'`: Lawson's sequential
-   * algorithm, on the CPU only.
+   * algorithm, on the CPU only: faster, and a run is one iteration.
    */
   order?: 'reproducible' | 'any' | undefined;
+  /**
+   * How many threads the CPU engine runs on, 1 to 256. Default: one for each core. More than one needs a mesh of 65,536 triangles,
+   * fewer are done before others have woken up, and shared memory: Node has it, a page where it is cross-origin isolated.
+   * Else it is one. The result is the same for any number.
+   */
+  threads?: number | undefined;
   /**
    * The page's own GPUDevice, for `'webgpu'` and `'auto'` to run on: buffers of the session can then be used with it.
    * Default limits are enough. The session neither destroys it nor sets anything of it, and leaves errors alone that it

@@ -3,9 +3,8 @@
 
 use crate::adjacency::{CREASE, LOCKED, next, prev, unflagged};
 use crate::predicates::Quad;
-use crate::threads::{Threads, shared};
+use crate::threads::{Threads, Word, shared};
 use crate::{NONE, Positions};
-use std::sync::atomic::Ordering::Relaxed;
 
 /// Flags both entries of `twins` for each interior edge whose triangles' normals differ by more than β, and no
 /// others; locks stay. `cos` is its cosine, `positions` are 3D.
@@ -19,7 +18,7 @@ pub(crate) fn flag_creases(
     let twins = shared(twins);
     threads.map(twins.len(), |piece| {
         for h in piece.start as u32..piece.end as u32 {
-            let entry = twins[h as usize].load(Relaxed);
+            let entry = twins[h as usize].get();
             let g = unflagged(entry);
             if g == NONE || g < h {
                 continue;
@@ -29,8 +28,8 @@ pub(crate) fn flag_creases(
             let [a, b, c, d] = positions.points3(corners);
             let crease = if Quad::new(a, b, c, d).is_over_angle(cos) { CREASE } else { 0 };
             let flags = entry & LOCKED | crease;
-            twins[h as usize].store(g | flags, Relaxed);
-            twins[g as usize].store(h | flags, Relaxed);
+            twins[h as usize].set(g | flags);
+            twins[g as usize].set(h | flags);
         }
     });
 }

@@ -3,6 +3,7 @@
 use crate::NONE;
 use crate::adjacency::{FLAGS, next, prev, unflagged};
 use crate::star::Fans;
+use crate::threads::Word;
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
 /// For each triangle the twin of its half-edge that flips, with the place of that in the triangle in the bits of
@@ -22,7 +23,7 @@ impl Selected {
         for x in edge {
             let word = &self.0[x as usize / 3];
             // Those that lose need no more than a load.
-            if key < word.load(Relaxed) {
+            if key < word.get() {
                 word.fetch_min(key, Relaxed);
             }
         }
@@ -31,13 +32,13 @@ impl Selected {
     /// Whether the edge has won both its triangles, once all have bidden.
     #[inline(always)]
     pub(crate) fn has_won(&self, edge: [u32; 2], key: u32) -> bool {
-        edge.iter().fold(true, |all, &x| all & (self.0[x as usize / 3].load(Relaxed) == key))
+        edge.iter().fold(true, |all, &x| all & (self.0[x as usize / 3].get() == key))
     }
 
     /// Selects the edge of two half-edges.
     pub(crate) fn choose(&self, [h, g]: [u32; 2]) {
         for (x, twin) in [(h, g), (g, h)] {
-            self.0[x as usize / 3].store(twin | (x % 3) << FLAGS.trailing_zeros(), Relaxed);
+            self.0[x as usize / 3].set(twin | (x % 3) << FLAGS.trailing_zeros());
         }
     }
 
@@ -45,19 +46,19 @@ impl Selected {
     #[inline(always)]
     pub(crate) fn release(&self, edge: [u32; 2]) {
         for x in edge {
-            self.0[x as usize / 3].store(NONE, Relaxed);
+            self.0[x as usize / 3].set(NONE);
         }
     }
 
     /// Whether no edge of the triangle of `h` is selected.
     #[inline(always)]
     pub(crate) fn is_free(&self, h: u32) -> bool {
-        self.0[h as usize / 3].load(Relaxed) == NONE
+        self.0[h as usize / 3].get() == NONE
     }
 
     /// The selected half-edge of triangle `t`, and its twin.
     pub(crate) fn pair(&self, t: u32) -> Option<(u32, u32)> {
-        let word = self.0[t as usize].load(Relaxed);
+        let word = self.0[t as usize].get();
         (word != NONE).then_some((3 * t + (word >> FLAGS.trailing_zeros()), word & !FLAGS))
     }
 
@@ -69,7 +70,7 @@ impl Selected {
         if x == NONE {
             return NONE;
         }
-        let word = self.0[x as usize / 3].load(Relaxed);
+        let word = self.0[x as usize / 3].get();
         if prev(x) % 3 == word >> FLAGS.trailing_zeros() { word & !FLAGS | entry & FLAGS } else { entry }
     }
 }
@@ -90,8 +91,8 @@ pub(crate) fn move_anchors(fans: &mut Fans, triangles: &[u32], selected: &Select
 /// entries of the neighbours that are not selected themselves.
 #[inline(always)]
 pub(crate) fn flip(triangles: &[AtomicU32], twins: &[AtomicU32], selected: &Selected, [h, g]: [u32; 2]) {
-    let read = |words: &[AtomicU32], i: u32| words[i as usize].load(Relaxed);
-    let write = |words: &[AtomicU32], i: u32, word: u32| words[i as usize].store(word, Relaxed);
+    let read = |words: &[AtomicU32], i: u32| words[i as usize].get();
+    let write = |words: &[AtomicU32], i: u32, word: u32| words[i as usize].set(word);
     let [hn, hp, gn, gp] = [next(h), prev(h), next(g), prev(g)];
     let [c, d] = [read(triangles, hp), read(triangles, gp)];
     let outer = [(h, read(twins, gn)), (hp, read(twins, hp)), (g, read(twins, hn)), (gp, read(twins, gp))];

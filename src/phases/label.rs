@@ -61,13 +61,12 @@ impl Diamond {
     /// That of half-edge `h`.
     #[inline(always)]
     pub(crate) fn new(mesh: Topology, h: u32) -> Self {
-        let twin = mesh.twins[h as usize];
-        let corner = |x: u32| mesh.triangles[x as usize];
-        let corners = [corner(h), corner(next(h)), corner(prev(h)), corner(prev(unflagged(twin)))];
+        let twin = mesh.twin(h);
+        let corners = [h, next(h), prev(h), prev(unflagged(twin))].map(|x| mesh.corner(x));
         Self { h, twin, corners }
     }
 
-    /// Writes the interior edges whose lower half-edges are among these, and returns how many they are.
+    /// Writes the edges of two of the triangles whose lower half-edges are among these, and returns how many they are.
     #[inline(always)]
     pub(crate) fn write<const N: usize>(
         mesh: Topology,
@@ -77,9 +76,9 @@ impl Diamond {
         let mut edges = [0; N];
         let mut count = 0;
         for h in half_edges {
-            let g = unflagged(mesh.twins[h as usize]);
+            let g = unflagged(mesh.twin(h));
             edges[count] = h;
-            count += usize::from((h < g) & (g != NONE));
+            count += usize::from((h < g) & mesh.has(g));
         }
         for (diamond, &h) in diamonds.iter_mut().zip(&edges[..count]) {
             *diamond = Self::new(mesh, h);
@@ -87,17 +86,16 @@ impl Diamond {
         count
     }
 
-    /// The four around an edge that has flipped, by its half-edges then: those that have a twin, that is.
+    /// The four around an edge that has flipped, by its half-edges then: those of two of the triangles, that is.
     #[inline(always)]
     pub(crate) fn around(mesh: Topology, [h, g]: [u32; 2]) -> impl Iterator<Item = Self> {
-        let corner = move |x: u32| mesh.triangles[x as usize];
         // The triangles are (a, d, c) and (b, c, d) now.
-        let [a, c, b, d] = [h, prev(h), g, prev(g)].map(corner);
+        let [a, c, b, d] = [h, prev(h), g, prev(g)].map(|x| mesh.corner(x));
         let sides = [(h, [a, d, c]), (prev(h), [c, a, d]), (g, [b, c, d]), (prev(g), [d, b, c])];
         sides.into_iter().filter_map(move |(h, [from, to, apex])| {
-            let twin = mesh.twins[h as usize];
+            let twin = mesh.twin(h);
             let g = unflagged(twin);
-            (g != NONE).then(|| Self { h, twin, corners: [from, to, apex, corner(prev(g))] })
+            mesh.has(g).then(|| Self { h, twin, corners: [from, to, apex, mesh.corner(prev(g))] })
         })
     }
 }
@@ -108,15 +106,8 @@ pub(crate) fn verdict(geometry: &Geometry, mesh: Topology, h: u32) -> Verdict {
     if keep_non_delaunay(geometry, &[diamond], &mut [0]) == 0 {
         return Verdict::Delaunay;
     }
-    verdict_of_non_delaunay(geometry, mesh, &diamond)
-}
-
-/// The same for an edge that is known not to be Delaunay.
-pub(crate) fn verdict_of_non_delaunay(geometry: &Geometry, mesh: Topology, diamond: &Diamond) -> Verdict {
-    match verdict_of_shape(geometry, diamond) {
-        Verdict::Labelled if makes_duplicate(geometry, mesh, diamond.h) => {
-            Verdict::Blocked(Reason::Duplicate)
-        }
+    match verdict_of_shape(geometry, &diamond) {
+        Verdict::Labelled if makes_duplicate(geometry, mesh, h) => Verdict::Blocked(Reason::Duplicate),
         verdict => verdict,
     }
 }

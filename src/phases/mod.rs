@@ -19,11 +19,11 @@ mod select;
 pub(crate) use crease::flag_creases;
 pub(crate) use flip::{Selected, flip, move_anchors};
 pub(crate) use label::{
-    Diamond, Verdict, keep_non_delaunay, label, makes_duplicate, verdict, verdict_of_non_delaunay,
-    verdict_of_shape,
+    Diamond, Verdict, keep_non_delaunay, label, makes_duplicate, verdict, verdict_of_shape,
 };
 pub(crate) use select::{select, yields};
 
+use crate::adjacency::unflagged;
 use crate::embedded::Embedded;
 use crate::mesh::Dimension;
 use crate::star::Fans;
@@ -62,12 +62,41 @@ pub(crate) struct Geometry<'a> {
     pub(crate) embedded: &'a Embedded,
 }
 
-/// The triangulation that an iteration starts from.
+/// The triangulation that an iteration starts from, or some of its triangles that follow each other.
 #[derive(Clone, Copy)]
 pub(crate) struct Topology<'a> {
+    /// The first half-edge.
+    pub(crate) first: u32,
     pub(crate) triangles: &'a [u32],
     pub(crate) twins: &'a [u32],
     pub(crate) fans: &'a Fans,
+}
+
+impl Topology<'_> {
+    /// The vertex that a half-edge starts at.
+    #[inline(always)]
+    pub(crate) fn corner(&self, h: u32) -> u32 {
+        self.triangles[(h - self.first) as usize]
+    }
+
+    /// The entry of a half-edge in the twins.
+    #[inline(always)]
+    pub(crate) fn twin(&self, h: u32) -> u32 {
+        self.twins[(h - self.first) as usize]
+    }
+
+    /// Whether it is a half-edge of these triangles; [`NONE`] is not.
+    #[inline(always)]
+    pub(crate) fn has(&self, h: u32) -> bool {
+        (h.wrapping_sub(self.first) as usize) < self.twins.len()
+    }
+
+    /// Whether a half-edge has a twin that is of other triangles.
+    #[inline(always)]
+    pub(crate) fn leaves(&self, h: u32) -> bool {
+        let g = unflagged(self.twin(h));
+        g != NONE && !self.has(g)
+    }
 }
 
 /// The priority of an edge in an iteration; the smallest wins. A bijection of the edge id for each iteration,

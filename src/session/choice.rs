@@ -39,7 +39,13 @@ pub(super) fn engine_for<'a>(mesh: &'a Arc<Mesh>, options: &'a Options) -> Answe
                     format!("a mesh of fewer than {FEWEST_FOR_GPU} triangles is done sooner on the cpu");
                 Ok((open(Backend::Cpu, mesh, options).await?, Some(why)))
             }
-            (Order::Reproducible, Backend::Auto) => first_of(&ORDER, Vec::new(), mesh, options).await,
+            (Order::Reproducible, Backend::Auto) => {
+                #[cfg(all(target_arch = "wasm32", feature = "js"))]
+                let backends = &ORDER[..ORDER.len() - usize::from(options.leaves_cpu)];
+                #[cfg(not(all(target_arch = "wasm32", feature = "js")))]
+                let backends = &ORDER;
+                first_of(backends, Vec::new(), mesh, options).await
+            }
             (Order::Reproducible, backend) => Ok((open(backend, mesh, options).await?, None)),
         }
     })

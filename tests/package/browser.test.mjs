@@ -11,7 +11,7 @@ import { after, before, describe, test } from 'node:test';
 import { setTimeout as pause } from 'node:timers/promises';
 import { fileURLToPath, pathToFileURL } from 'node:url';
 import { build, createServer } from 'vite';
-import { closeAll, openPage, serve, startChromium, startFirefox } from '../browsers.mjs';
+import { closeAll, ISOLATED, openPage, serve, startChromium, startFirefox } from '../browsers.mjs';
 
 const repository = fileURLToPath(new URL('../..', import.meta.url));
 const folder = mkdtempSync(join(tmpdir(), 'edgeflip-package-'));
@@ -33,6 +33,15 @@ const withAudit = `
   const session = await FlipSession.create({ positions, indices, dimension: 2 }, { backend: 'auto' });
   const audit = await session.verify();
   document.body.append(\`\${JSON.stringify(audit.remaining)} on \${await session.backend()}: \${audit.clean}\`);
+`;
+const withThreads = `
+  import { makeDelaunay } from './node_modules/edgeflip/dist/index.js';
+  import { generate } from './node_modules/edgeflip/dist/files.js';
+  const mesh = await generate('random 190');
+  const runs = ['reproducible', 'any'].map((order) => makeDelaunay(mesh, { backend: 'auto', order, threads: 3 }));
+  const [{ backend, flips, indices }, any] = await Promise.all(runs);
+  const sum = (words) => words.reduce((sum, word) => (Math.imul(sum, 31) + word) | 0, 0);
+  document.body.append(\`\${flips} and \${any.flips} flips on \${backend}: \${sum(indices)}, \${sum(any.indices)}\`);
 `;
 
 /** The same lines on another engine. */
@@ -56,6 +65,7 @@ const pages = [
   { name: 'webgl2', lines: on('webgl2', fiveLines), writes: '' },
   { name: 'files', lines: on('cpu', withFiles), writes: '' },
   { name: 'audit', lines: on('cpu', withAudit), writes: '' },
+  { name: 'threads', lines: on('cpu', withThreads), writes: '' },
 ];
 
 function run(program, args, cwd) {
@@ -106,8 +116,8 @@ after(async () => {
   rmSync(folder, { recursive: true, force: true });
 });
 
-/** Opens every page and compares what it writes. */
-async function check(browser, address) {
+/** Opens every page and compares what it writes; threads have workers where memory can be shared. */
+async function check(browser, address, isIsolated) {
   for (const { name, lines, writes } of pages) {
     const { page, problems } = await openPage(browser, `${address}${name}.html`);
     let text = '';
@@ -116,7 +126,9 @@ async function check(browser, address) {
       await pause(50);
       text = await page.evaluate(() => document.body?.textContent.trim() ?? '');
     }
+    const workers = page.workers().length;
     await page.close();
+    assert.deepEqual({ name, workers }, { name, workers: isIsolated && name === 'threads' ? 3 : 0 });
     assert.deepEqual({ name, problems }, { name, problems: [] });
     const [, backend] = lines.match(/backend: '(\w+)'/);
     const [, engine] = text.match(/ on (\w+): /) ?? assert.fail(`${name} writes “${text}”`);
@@ -183,22 +195,25 @@ describe('in a browser', { concurrency: true }, () => {
     chromium = await startChromium();
   });
 
-  test('plain pages in Chromium', async () => check(chromium, await serve(plainPages('plain'))));
+  test('plain pages in Chromium', async () => check(chromium, await serve(plainPages('plain'), ISOLATED), true));
 
-  test('plain pages in Firefox', async () => check(await startFirefox(), await serve(plainPages('plain-firefox'))));
+  test('plain pages that are not isolated, in Chromium', async () =>
+    check(chromium, await serve(plainPages('plain-alone')), false));
+
+  test('plain pages in Firefox', async () => check(await startFirefox(), await serve(plainPages('plain-firefox'), ISOLATED), true));
 
   test('a Vite project, built, in Chromium', async () => {
     const root = viteProject('vite-build');
     const input = pages.map(({ name }) => join(root, `${name}.html`));
     await build({ root, configFile: false, logLevel: 'warn', build: { rolldownOptions: { input } } });
-    await check(chromium, await serve(join(root, 'dist')));
+    await check(chromium, await serve(join(root, 'dist'), ISOLATED), true);
   });
 
   test('a Vite project on the development server, in Chromium', async (t) => {
     const root = viteProject('vite-dev');
-    const server = await createServer({ root, configFile: false, logLevel: 'warn', server: { port: 0 } });
+    const server = await createServer({ root, configFile: false, logLevel: 'warn', server: { port: 0, headers: ISOLATED } });
     t.after(() => server.close());
     await server.listen();
-    await check(chromium, server.resolvedUrls.local[0]);
+    await check(chromium, server.resolvedUrls.local[0], true);
   });
 });

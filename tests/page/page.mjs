@@ -10,6 +10,7 @@ import { setTimeout as pause } from 'node:timers/promises';
 import { fileURLToPath } from 'node:url';
 import { FlipSession } from 'edgeflip';
 import { angles, change, generate, measures, readMesh, writeMesh } from 'edgeflip/files';
+import site from '../../www/vite.config.js';
 import { closeAll, openPage, serve } from '../browsers.mjs';
 import { Picture } from './picture.mjs';
 
@@ -89,7 +90,7 @@ let address;
  * @param {(() => void)[]} scripts - Functions that run in the page before its own scripts (Chromium).
  */
 export async function openEdgeflip(browser, ...scripts) {
-  address ??= await serve(fileURLToPath(new URL('../../target/www', import.meta.url)));
+  address ??= await serve(fileURLToPath(new URL('../../target/www', import.meta.url)), site.preview.headers);
   const { page, problems } = await openPage(browser, 'about:blank');
   for (const script of scripts) await page.addInitScript(script);
   // Every address that is asked for; `data:` and `blob:` are the page's own.

@@ -247,7 +247,7 @@ pub enum OrderArg {
     /// The parallel pipeline: the same bits on every backend after every iteration
     #[default]
     Reproducible,
-    /// Lawson's sequential algorithm on the CPU: often faster on one thread, no iterations to count
+    /// Lawson's sequential algorithm on the CPU: often faster, no iterations to count
     Any,
 }
 

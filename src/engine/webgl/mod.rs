@@ -103,7 +103,7 @@ impl WebGl {
 
         let adjacency = Adjacency::new(mesh);
         let winding = Winding::new(mesh, &adjacency.twins, &Threads::default());
-        let fans = Fans::new(mesh.vertex_count(), mesh.triangles(), &adjacency.twins, |_| false);
+        let fans = Fans::new(mesh.vertex_count(), mesh.triangles(), &adjacency.twins);
         if context.ends_loops_early {
             refuse_large_star(&context, mesh)?;
         }

@@ -131,7 +131,7 @@ impl WebGpu {
     /// Vertices of several fans are rare too: their table is appended to the topology.
     async fn add_fans(&mut self, mesh: &Mesh) -> Result<(), Error> {
         let twins = self.gpu.read(&self.buffers.twins, mesh.triangles().len()).await?;
-        let table = Fans::new(mesh.vertex_count(), mesh.triangles(), &twins, |_| false).table;
+        let table = Fans::new(mesh.vertex_count(), mesh.triangles(), &twins).table;
         let before = self.params.fans as usize;
         refuse_large_buffer(&self.gpu, before + table.len())?;
         self.params.fans_length = table.len() as u32;

@@ -1,0 +1,200 @@
+/** Sessions on the CPU engine's threads: workers, each with an instance of one module, which share its memory. */
+
+import { EdgeflipError } from './error.js';
+import type { IndexedMesh } from './mesh.js';
+import type { Answer, Call, Calls, Question } from './thread.js';
+import type { Options } from './types.js';
+import type { Session } from './wasm/edgeflip.js';
+
+/** What a session is asked, in whatever module it is. */
+export type ModuleSession = Omit<Session, typeof Symbol.dispose>;
+
+/** Triangles that are done on one thread before others have woken up, as `src/threads.rs` has it. */
+const FEWEST_TRIANGLES = 65_536;
+
+/** Threads at most, as `src/js.rs` has it. */
+const MOST_THREADS = 256;
+
+/** Node's, where there are no workers of the web. */
+const node = typeof process === 'undefined' ? undefined : process.getBuiltinModule?.('node:worker_threads');
+
+/** Whether memory can be shared here. */
+const isShared = typeof SharedArrayBuffer !== 'undefined' && (globalThis.crossOriginIsolated ?? node !== undefined);
+
+/** How many threads the CPU engine would have. What is no number of threads is left to the module, which refuses it. */
+export function threadCount(triangles: number, { threads = coreCount() }: Options): number {
+  const isCount = Number.isInteger(threads) && threads > 0 && threads <= MOST_THREADS;
+  return isShared && triangles >= FEWEST_TRIANGLES && isCount ? threads : 1;
+}
+
+function coreCount(): number {
+  return globalThis.navigator?.hardwareConcurrency ?? process.getBuiltinModule('node:os').availableParallelism();
+}
+
+/** A worker of the web, or one of Node, which keeps the process alive only while it is waited for. */
+interface Thread {
+  post(call: Call): void;
+  end(): void;
+  wait(isWaiting: boolean): void;
+}
+
+function startThread(onAnswer: (answer: Answer) => void, onError: (message: string) => void): Thread {
+  if (typeof Worker === 'undefined' && node) {
+    const worker = new node.Worker(new URL('./thread.js', import.meta.url));
+    worker.on('message', onAnswer).on('error', ({ message }) => onError(message));
+    worker.unref();
+    return {
+      post: (call) => worker.postMessage(call),
+      end: () => void worker.terminate(),
+      wait: (isWaiting) => (isWaiting ? worker.ref() : worker.unref()),
+    };
+  }
+  const worker = new Worker(new URL('./thread.js', import.meta.url), { type: 'module' });
+  worker.onmessage = ({ data }) => onAnswer(data);
+  worker.onerror = (event) => {
+    event.preventDefault();
+    onError(event.message ?? 'a worker could not be started');
+  };
+  return { post: (call) => worker.postMessage(call), end: () => worker.terminate(), wait: () => undefined };
+}
+
+type Given<M extends keyof Calls> = Awaited<ReturnType<Calls[M]>>;
+
+/** The threads that work together. */
+class Pool {
+  readonly #threads: Thread[] = [];
+  readonly #calls = new Map<number, { resolve: (value: never) => void; reject: (error: Error) => void }>();
+  readonly #onEnd: () => void;
+  #numbers = 0;
+  #error: EdgeflipError | undefined;
+
+  private constructor(onEnd: () => void) {
+    this.#onEnd = onEnd;
+  }
+
+  /** The first thread answers calls, the others work with it. */
+  static async start(module: WebAssembly.Module, count: number, onEnd: () => void): Promise<[Pool, WebAssembly.Memory]> {
+    const pool = new Pool(onEnd);
+    pool.#add();
+    const memory = await pool.call('start', module, count);
+    for (let i = 1; i < count; i++) pool.#add().post({ id: -1, method: 'work', args: [module, memory] });
+    return [pool, memory];
+  }
+
+  #add(): Thread {
+    const onAnswer = ({ id, value, error }: Answer): void => {
+      const call = this.#calls.get(id);
+      this.#calls.delete(id);
+      if (this.#calls.size === 0) this.#threads[0]?.wait(false);
+      if (error) call?.reject(new EdgeflipError(error.code, error.message));
+      else call?.resolve(value as never);
+    };
+    const thread = startThread(onAnswer, (message) => this.#fail(message));
+    this.#threads.push(thread);
+    return thread;
+  }
+
+  async call<M extends keyof Calls>(method: M, ...args: Parameters<Calls[M]>): Promise<Given<M>> {
+    const [first] = this.#threads;
+    if (!first) throw this.#error;
+    const id = this.#numbers++;
+    first.post({ id, method, args });
+    first.wait(true);
+    return new Promise<Given<M>>((resolve, reject) => this.#calls.set(id, { resolve, reject }));
+  }
+
+  /** One that has crashed leaves the memory of all as it is then. */
+  #fail(message: string): void {
+    for (const thread of this.#threads.splice(0)) thread.end();
+    this.#onEnd();
+    this.#error = new EdgeflipError('internal', `a thread has crashed: ${message}`);
+    for (const { reject } of this.#calls.values()) reject(this.#error);
+    this.#calls.clear();
+  }
+}
+
+/** Threads and their memory. */
+type Threads = [pool: Pool, memory: WebAssembly.Memory];
+
+/** Those that there are, by how many. */
+const started = new Map<number, Promise<Threads>>();
+
+/** So many threads, which all sessions share. */
+export function threadsOf(module: WebAssembly.Module, count: number): Promise<Threads> {
+  let threads = started.get(count);
+  if (!threads) {
+    threads = Pool.start(module, count, () => started.delete(count));
+    started.set(count, threads);
+    threads.catch(() => started.delete(count));
+  }
+  return threads;
+}
+
+let sessions = 0;
+
+/** A session of the first thread. */
+export class ThreadsSession implements ModuleSession {
+  iterations = 0;
+  flips = 0;
+  readonly backend = 'cpu';
+  readonly device = undefined;
+  readonly positionBuffer = undefined;
+  readonly indexBuffer = undefined;
+  readonly #pool: Pool;
+  readonly #session: number;
+  readonly #fallback: string | undefined;
+
+  private constructor(pool: Pool, session: number, fallback: string | undefined) {
+    this.#pool = pool;
+    this.#session = session;
+    this.#fallback = fallback;
+  }
+
+  /**
+   * As `Session.create`.
+   *
+   * @param fallback - Why no engine before this one was taken.
+   */
+  static async create(
+    [pool, memory]: Threads,
+    { positions, indices, dimension }: IndexedMesh,
+    { maxNormalAngle, maxDeviation, maxIterations, lockedEdges, lockedTriangles, groups, order }: Options,
+    fallback?: string,
+  ): Promise<ThreadsSession> {
+    const session = sessions++;
+    const locks = { lockedEdges, lockedTriangles, groups };
+    const options: Options = { backend: 'cpu', maxNormalAngle, maxDeviation, maxIterations, order, ...locks };
+    const isDouble = positions instanceof Float64Array;
+    const { length } = positions;
+    const [first, second] = await pool.call('begin', session, options, dimension, isDouble, length, indices.length);
+    new (isDouble ? Float64Array : Float32Array)(memory.buffer, first, length).set(positions);
+    new Uint32Array(memory.buffer, second, indices.length).set(indices);
+    await pool.call('open', session);
+    return new ThreadsSession(pool, session, fallback);
+  }
+
+  step = () => this.#ask('step');
+  advance = () => this.#ask('advance');
+  triangles = () => this.#ask('triangles');
+  edges = () => this.#ask('edges');
+  edgeStates = () => this.#ask('edgeStates');
+  auditInput = () => this.#ask('auditInput');
+  setPositions = (positions: Float32Array | Float64Array) => this.#ask('setPositions', positions);
+
+  async outcome(): ReturnType<Session['outcome']> {
+    const outcome = await this.#ask('outcome');
+    return { ...outcome, fallback: this.#fallback };
+  }
+
+  free(): void {
+    // After a crash there is nothing to be freed.
+    void this.#pool.call('free', this.#session).catch(() => undefined);
+  }
+
+  async #ask<Q extends Question>(question: Q, ...args: Parameters<Session[Q]>): Promise<Awaited<ReturnType<Session[Q]>>> {
+    const { value, iterations, flips } = await this.#pool.call('ask', this.#session, question, args);
+    this.iterations = iterations;
+    this.flips = flips;
+    return value as Awaited<ReturnType<Session[Q]>>;
+  }
+}

@@ -1,0 +1,73 @@
+//! Sessions on the CPU engine's threads, in a module of its own whose instances share their memory: one in each worker.
+
+use crate::Positions;
+use crate::js::{JsOptions, JsSession};
+use crate::js_values::{coded, thrown};
+use rayon::{ThreadBuilder, ThreadPool, ThreadPoolBuilder};
+use std::sync::{Mutex, OnceLock};
+use wasm_bindgen::prelude::*;
+
+/// The threads that no worker has taken yet.
+static WAITING: Mutex<Vec<ThreadBuilder>> = Mutex::new(Vec::new());
+
+static POOL: OnceLock<ThreadPool> = OnceLock::new();
+
+/// Makes this worker the first of so many threads. Each of the others has to call [`work`], in an instance on the memory
+/// that this gives.
+///
+/// # Errors
+/// Where they cannot be had.
+#[wasm_bindgen(js_name = startThreads, unchecked_return_type = "WebAssembly.Memory")]
+pub fn start_threads(count: usize) -> Result<JsValue, JsValue> {
+    let builder = ThreadPoolBuilder::new().num_threads(count).use_current_thread().spawn_handler(|thread| {
+        WAITING.lock().map_err(|_| std::io::ErrorKind::Other)?.push(thread);
+        Ok(())
+    });
+    let pool = builder.build().map_err(|error| coded("internal", &error.to_string()))?;
+    // A module has one pool.
+    let _ = POOL.set(pool);
+    Ok(wasm_bindgen::memory())
+}
+
+/// Makes this worker one of the threads: it works for ever.
+#[wasm_bindgen]
+pub fn work() {
+    let thread = WAITING.lock().ok().and_then(|mut waiting| waiting.pop());
+    if let Some(thread) = thread {
+        thread.run();
+    }
+}
+
+/// The arrays of a mesh, which the page fills: it can write to the memory.
+#[wasm_bindgen]
+pub struct Arrays {
+    positions: Positions,
+    indices: Vec<u32>,
+}
+
+#[wasm_bindgen]
+impl Arrays {
+    /// So many numbers and indices.
+    #[wasm_bindgen(constructor)]
+    pub fn new(numbers: usize, is_double: bool, indices: usize) -> Self {
+        let positions = if is_double { vec![0f64; numbers].into() } else { vec![0f32; numbers].into() };
+        Self { positions, indices: vec![0; indices] }
+    }
+
+    /// Where the positions are in memory, and where the indices are.
+    pub fn places(&self) -> Vec<usize> {
+        let positions = match &self.positions {
+            Positions::F32(numbers) => numbers.as_ptr().addr(),
+            Positions::F64(numbers) => numbers.as_ptr().addr(),
+        };
+        vec![positions, self.indices.as_ptr().addr()]
+    }
+
+    /// A session on the mesh. The threads are those that have been started.
+    ///
+    /// # Errors
+    /// As [`Session::new`](crate::Session::new).
+    pub async fn open(self, dimension: f64, options: JsOptions) -> Result<JsSession, JsValue> {
+        JsSession::open(self.positions, self.indices, dimension, &options).await.map_err(thrown)
+    }
+}

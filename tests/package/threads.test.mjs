@@ -1,0 +1,142 @@
+// The npm package in Node with the CPU engine on several threads: workers that share their memory.
+
+import assert from 'node:assert/strict';
+import { spawnSync } from 'node:child_process';
+import { readFileSync } from 'node:fs';
+import { test } from 'node:test';
+import { fileURLToPath } from 'node:url';
+import workers from 'node:worker_threads';
+import { FlipSession, initThreads, makeDelaunay } from 'edgeflip';
+import { generate } from 'edgeflip/files';
+
+/** Workers that have been started, since a session on one thread would give the same. */
+const started = [];
+workers.Worker = class extends workers.Worker {
+  constructor(...args) {
+    super(...args);
+    started.push(this);
+  }
+};
+
+const meshes = await Promise.all(['random 190', 'shear 190', 'uvsphere 190'].map(generate));
+
+test('the module of the threads comes from bytes too', async () => {
+  await initThreads(readFileSync(new URL('../../dist/wasm/edgeflip_threads_bg.wasm', import.meta.url)));
+});
+
+test('the result is the same for any number of threads, in both orders', async () => {
+  for (const mesh of meshes) {
+    for (const order of ['reproducible', 'any']) {
+      const options = { backend: 'cpu', order, maxNormalAngle: 60 };
+      const { timings, ...one } = await makeDelaunay(mesh, { ...options, threads: 1 });
+      for (const threads of [2, 3]) {
+        const { timings: _, ...several } = await makeDelaunay(mesh, { ...options, threads });
+        assert.deepEqual(several, one);
+      }
+      assert.ok(one.flips > 0 && timings.total > 0);
+    }
+  }
+  assert.equal(started.length, 2 + 3);
+});
+
+test('doubles, locked edges, a cap and moved vertices are as on one thread', async () => {
+  const [{ positions, indices, dimension }] = meshes;
+  const mesh = { positions: Float64Array.from(positions, (x) => x + 1e-9), indices, dimension };
+  const moved = mesh.positions.map((x) => 3 * x);
+  const ends = [];
+  for (const threads of [1, 2]) {
+    const options = { backend: 'cpu', threads, maxIterations: 4, lockedEdges: indices.slice(0, 2), lockedTriangles: [7] };
+    const session = await FlipSession.create(mesh, options);
+    const seen = [];
+    for await (const { index, labelled, flips, blocked } of session) seen.push({ index, labelled, flips, blocked });
+    const audit = await session.verify();
+    assert.ok(audit.clean);
+    const states = await session.edgeStates();
+    await session.setPositions(moved);
+    const progress = [];
+    const { timings, ...result } = await session.run({ onProgress: (step) => progress.push(step) });
+    ends.push({ seen, audit, states, progress, result, edges: await session.edges(), triangles: await session.triangles() });
+    session.free();
+    await assert.rejects(session.step(), { code: 'freed' });
+  }
+  assert.deepEqual(ends[1], ends[0]);
+  assert.equal(ends[0].seen.length, 4);
+});
+
+test('auto says why it takes the CPU, on several threads too', async () => {
+  const results = [];
+  for (const threads of [1, 2]) {
+    const { timings, ...result } = await makeDelaunay(meshes[0], { threads });
+    results.push(result);
+  }
+  assert.deepEqual(results[1], results[0]);
+  assert.match(results[0].fallback, /^backend webgpu is not available: .*; backend webgl2 is not available: /);
+});
+
+test('what is wrong is refused as on one thread', async () => {
+  const [mesh] = meshes;
+  const indices = mesh.indices.slice();
+  indices[5] = 1e6;
+  const positions = mesh.positions.slice();
+  positions[3] = NaN;
+  const wrong = [
+    [{ ...mesh, indices }, {}, 'index-out-of-range'],
+    [{ ...mesh, positions }, {}, 'non-finite'],
+    [{ ...mesh, indices: indices.slice(1) }, {}, 'ragged-array'],
+    [mesh, { maxNormalAngle: 200 }, 'invalid-option'],
+    [mesh, { lockedEdges: [0, 3e5] }, 'invalid-option'],
+    [mesh, { lockedEdges: () => [] }, 'invalid-option'],
+    [mesh, { order: 'none' }, 'invalid-option'],
+    [mesh, { threads: 0 }, 'invalid-option'],
+    [mesh, { threads: 1.5 }, 'invalid-option'],
+    [mesh, { threads: 'all' }, 'invalid-option'],
+    [mesh, { threads: 1000 }, 'invalid-option'],
+  ];
+  for (const [mesh, options, code] of wrong) {
+    const errors = [];
+    for (const threads of [1, 2]) {
+      await assert.rejects(makeDelaunay(mesh, { backend: 'cpu', threads, ...options }), (error) => errors.push(error.message) && error.code === code);
+    }
+    assert.equal(errors[1], errors[0]);
+  }
+});
+
+test('sessions share threads, and a small mesh has none', async () => {
+  const before = started.length;
+  const results = await Promise.all(meshes.map((mesh) => makeDelaunay(mesh, { backend: 'cpu', threads: 2 })));
+  for (const [i, { indices }] of results.entries()) {
+    assert.deepEqual(indices, (await makeDelaunay(meshes[i], { backend: 'cpu', threads: 1 })).indices);
+  }
+  await makeDelaunay(await generate('random 30'), { backend: 'cpu', threads: 5 });
+  assert.equal(started.length, before);
+});
+
+test('when a thread ends, so does its session, and others begin anew', async () => {
+  const options = { backend: 'cpu', threads: 4 };
+  const session = await FlipSession.create(meshes[0], options);
+  const asked = session.run();
+  started.at(-1).emit('error', new Error('out of memory'));
+  await assert.rejects(asked, { code: 'internal', message: /a thread has crashed: out of memory/ });
+  await assert.rejects(session.triangles(), { code: 'internal' });
+  session.free();
+  assert.equal((await makeDelaunay(meshes[0], options)).status, 'done');
+});
+
+test('a mesh that does not fit into the memory ends the threads, and others begin anew', async () => {
+  const options = { backend: 'cpu', threads: 2 };
+  const mesh = { ...meshes[0], indices: new Uint32Array(1.2e9) };
+  await assert.rejects(makeDelaunay(mesh, options), { code: 'internal', message: /^a thread has crashed: / });
+  assert.equal((await makeDelaunay(meshes[0], options)).status, 'done');
+});
+
+test('the threads let the process end', () => {
+  const program = `
+    import { makeDelaunay } from 'edgeflip';
+    import { generate } from 'edgeflip/files';
+    const { status } = await makeDelaunay(await generate('random 190'), { backend: 'cpu', threads: 2 });
+    console.log(status);
+  `;
+  const cwd = fileURLToPath(new URL('../..', import.meta.url));
+  const { stdout, stderr, status } = spawnSync(process.execPath, ['--input-type=module', '-e', program], { cwd, encoding: 'utf8', timeout: 60_000 });
+  assert.deepEqual([stdout, stderr, status], ['done\n', '', 0]);
+});
