@@ -54,8 +54,8 @@ pub struct Options {
     pub order: Order,
     /// How many threads the CPU engine runs on; `None`: one for each core. A mesh of fewer than
     /// 65,536 triangles is done on one, before others have woken up. The result is the same for any
-    /// number. Lawson's algorithm flips surfaces in space on one. Without the feature `threads` it is always one; in
-    /// WebAssembly those are taken that there are.
+    /// number. Lawson's algorithm flips on several in the plane only, where no vertex has triangles on two sides
+    /// that share no edge. Without the feature `threads` it is always one.
     pub threads: Option<NonZeroUsize>,
     /// The device that the GPU engine runs on, instead of one of its own. It is never destroyed here, nothing of it
     /// is set, and its errors about other calls are left alone. Of a software one, `Auto` takes the CPU.

@@ -42,7 +42,8 @@ impl Lawson {
         let size = triangles.div_ceil(REGIONS).max(FEWEST);
         if is_plain && size < triangles {
             whole.work = flip_parts(&geometry, &mut whole.mesh, size, &threads);
-            whole.flip_pending(false);
+            let left = std::mem::take(&mut whole.work.left);
+            whole.flip_some(&left);
         } else {
             whole.flip_each();
         }
@@ -60,7 +61,7 @@ impl Lawson {
     }
 }
 
-/// Flips in regions of so many triangles. What they leave is pending.
+/// Flips in regions of so many triangles.
 fn flip_parts(geometry: &Geometry, mesh: &mut TopologyMut, size: usize, threads: &Threads) -> Work {
     let parts = mesh.triangles.chunks_mut(3 * size).zip(mesh.twins.chunks_mut(3 * size));
     let parts = (0..).step_by(3 * size).zip(parts).map(|(first, (triangles, twins))| Region {
@@ -71,7 +72,7 @@ fn flip_parts(geometry: &Geometry, mesh: &mut TopologyMut, size: usize, threads:
     });
     let mut work = Work::default();
     for mut part in threads.map_each(parts.collect(), Region::flip_all) {
-        work.pending.append(&mut part.left);
+        work.left.append(&mut part.left);
         work.blocked.append(&mut part.blocked);
         work.flips += part.flips;
     }

@@ -78,7 +78,24 @@ impl Region<'_> {
         }
     }
 
-    /// Leaves the edges to triangles behind the part to the end.
+    /// Tests these edges, and flips until nothing is left to flip.
+    pub(super) fn flip_some(&mut self, half_edges: &[u32]) {
+        let mut diamonds = [Diamond::default(); EDGES];
+        for half_edges in half_edges.chunks(EDGES) {
+            let (mesh, mut count) = (self.mesh.get(), 0);
+            for &h in half_edges {
+                if mesh.has(unflagged(mesh.twin(h))) {
+                    diamonds[count] = Diamond::new(mesh, h);
+                    count += 1;
+                }
+            }
+            let is_known = self.test(&diamonds, count);
+            self.flip_pending(is_known);
+        }
+    }
+
+    /// Leaves the edges to triangles behind the part to the end; others do so with those before it. Such a half-edge stays
+    /// where it is.
     fn leave(&mut self, half_edges: Range<u32>) {
         let end = self.mesh.first + self.mesh.twins.len() as u32;
         let behind = (NONE & !FLAGS) - end;
@@ -124,13 +141,6 @@ impl Region<'_> {
                     for diamond in Diamond::around(mesh, [h, g]) {
                         diamonds[count] = diamond;
                         count += 1;
-                    }
-                    if self.mesh.fans.is_none() && count < 4 {
-                        for side in [h, prev(h), g, prev(g)] {
-                            if mesh.leaves(side) {
-                                self.work.left.push(side);
-                            }
-                        }
                     }
                     is_known = self.test(&diamonds, count);
                 }

@@ -10,8 +10,10 @@ import { Session } from './wasm/edgeflip.js';
 /** A session on the engine that the options take; the CPU engine has threads where they are worth while and can be had. */
 export async function open(mesh: IndexedMesh, options: Options): Promise<ModuleSession> {
   const count = threadCount(mesh.indices.length / 3, options);
-  const { backend = 'auto', order } = options;
-  if (count === 1 || backend === 'webgpu' || backend === 'webgl2') return openAlone(mesh, options);
+  const { backend = 'auto', order, device } = options;
+  // What is refused is so there.
+  const isDevice = device === undefined || (typeof GPUDevice !== 'undefined' && device instanceof GPUDevice);
+  if (count === 1 || (backend !== 'auto' && backend !== 'cpu') || !isDevice) return openAlone(mesh, options);
   if (backend === 'cpu' || order === 'any') return openOnThreads(mesh, options, count);
   try {
     return await openAlone(mesh, { ...options, leavesCpu: true });
@@ -31,17 +33,16 @@ async function openAlone(
   return Session.create(positions, indices, dimension, options);
 }
 
-/** Where they cannot be started, a thread alone gives the same result. */
+/** Where they cannot be started, one gives the same result. */
 async function openOnThreads(mesh: IndexedMesh, options: Options, count: number, fallback?: string): Promise<ModuleSession> {
-  const alone: Options = { ...options, backend: 'cpu' };
   const module = await loadThreads().catch(() => undefined);
   const threads = await (module && threadsOf(module, count).catch(() => undefined));
-  if (!threads) return openAlone(mesh, alone);
+  if (!threads) return openAlone(mesh, options);
   try {
     return await ThreadsSession.create(threads, mesh, options, fallback);
   } catch (thrown) {
     // An option that cannot be sent, which is refused there.
-    if (thrown instanceof DOMException && thrown.name === 'DataCloneError') return openAlone(mesh, alone);
+    if (thrown instanceof DOMException && thrown.name === 'DataCloneError') return openAlone(mesh, options);
     throw thrown;
   }
 }

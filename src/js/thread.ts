@@ -96,7 +96,7 @@ port.onmessage = async ({ data: { id, method, args } }) => {
     const value: unknown = await (calls[method] as (...args: unknown[]) => unknown)(...args);
     port.postMessage({ id, value }, buffers(value));
   } catch (thrown) {
-    if (thrown instanceof WebAssembly.RuntimeError) return crash(thrown);
+    if (thrown instanceof WebAssembly.RuntimeError || method === 'work') return crash(thrown);
     const { code, message } = fromModule(thrown);
     port.postMessage({ id, error: { code, message } }, []);
   }

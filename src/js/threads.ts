@@ -22,13 +22,14 @@ const node = typeof process === 'undefined' ? undefined : process.getBuiltinModu
 const isShared = typeof SharedArrayBuffer !== 'undefined' && (globalThis.crossOriginIsolated ?? node !== undefined);
 
 /** How many threads the CPU engine would have. What is no number of threads is left to the module, which refuses it. */
-export function threadCount(triangles: number, { threads = coreCount() }: Options): number {
-  const isCount = Number.isInteger(threads) && threads > 0 && threads <= MOST_THREADS;
-  return isShared && triangles >= FEWEST_TRIANGLES && isCount ? threads : 1;
+export function threadCount(triangles: number, { threads }: Options): number {
+  if (!isShared || triangles < FEWEST_TRIANGLES) return 1;
+  const count = threads ?? Math.min(coreCount(), MOST_THREADS);
+  return Number.isInteger(count) && count > 0 && count <= MOST_THREADS ? count : 1;
 }
 
 function coreCount(): number {
-  return globalThis.navigator?.hardwareConcurrency ?? process.getBuiltinModule('node:os').availableParallelism();
+  return globalThis.navigator?.hardwareConcurrency ?? (node ? process.getBuiltinModule('node:os').availableParallelism() : 1);
 }
 
 /** A worker of the web, or one of Node, which keeps the process alive only while it is waited for. */
@@ -38,10 +39,13 @@ interface Thread {
   wait(isWaiting: boolean): void;
 }
 
-function startThread(onAnswer: (answer: Answer) => void, onError: (message: string) => void): Thread {
-  if (typeof Worker === 'undefined' && node) {
+/** `onError` hears no message where the worker could not be loaded. */
+function startThread(onAnswer: (answer: Answer) => void, onError: (message?: string) => void): Thread {
+  // Bun and Deno have both; theirs of the web keep the process alive.
+  if (node && (typeof window === 'undefined' || typeof Worker === 'undefined')) {
     const worker = new node.Worker(new URL('./thread.js', import.meta.url));
     worker.on('message', onAnswer).on('error', ({ message }) => onError(message));
+    worker.on('messageerror', ({ message }) => onError(message));
     worker.unref();
     return {
       post: (call) => worker.postMessage(call),
@@ -53,8 +57,9 @@ function startThread(onAnswer: (answer: Answer) => void, onError: (message: stri
   worker.onmessage = ({ data }) => onAnswer(data);
   worker.onerror = (event) => {
     event.preventDefault();
-    onError(event.message ?? 'a worker could not be started');
+    onError(event.message);
   };
+  worker.onmessageerror = () => onError('a message could not be read');
   return { post: (call) => worker.postMessage(call), end: () => worker.terminate(), wait: () => undefined };
 }
 
@@ -76,9 +81,14 @@ class Pool {
   static async start(module: WebAssembly.Module, count: number, onEnd: () => void): Promise<[Pool, WebAssembly.Memory]> {
     const pool = new Pool(onEnd);
     pool.#add();
-    const memory = await pool.call('start', module, count);
-    for (let i = 1; i < count; i++) pool.#add().post({ id: -1, method: 'work', args: [module, memory] });
-    return [pool, memory];
+    try {
+      const memory = await pool.call('start', module, count);
+      for (let i = 1; i < count; i++) pool.#add().post({ id: -1, method: 'work', args: [module, memory] });
+      return [pool, memory];
+    } catch (thrown) {
+      pool.#fail(String(thrown));
+      throw thrown;
+    }
   }
 
   #add(): Thread {
@@ -89,7 +99,11 @@ class Pool {
       if (error) call?.reject(new EdgeflipError(error.code, error.message));
       else call?.resolve(value as never);
     };
-    const thread = startThread(onAnswer, (message) => this.#fail(message));
+    const isFirst = this.#threads.length === 0;
+    const thread = startThread(onAnswer, (message) => {
+      // Without one of the others the rest do its work.
+      if (isFirst || message !== undefined) this.#fail(message ?? 'a worker could not be loaded');
+    });
     this.#threads.push(thread);
     return thread;
   }
@@ -105,9 +119,10 @@ class Pool {
 
   /** One that has crashed leaves the memory of all as it is then. */
   #fail(message: string): void {
+    if (this.#error) return;
+    this.#error = new EdgeflipError('internal', `a thread has crashed: ${message}`);
     for (const thread of this.#threads.splice(0)) thread.end();
     this.#onEnd();
-    this.#error = new EdgeflipError('internal', `a thread has crashed: ${message}`);
     for (const { reject } of this.#calls.values()) reject(this.#error);
     this.#calls.clear();
   }
@@ -125,12 +140,14 @@ export function threadsOf(module: WebAssembly.Module, count: number): Promise<Th
   if (!threads) {
     threads = Pool.start(module, count, () => started.delete(count));
     started.set(count, threads);
-    threads.catch(() => started.delete(count));
   }
   return threads;
 }
 
 let sessions = 0;
+
+/** Gives back what a session has that was dropped. */
+const dropped = new FinalizationRegistry<() => void>((free) => free());
 
 /** A session of the first thread. */
 export class ThreadsSession implements ModuleSession {
@@ -143,11 +160,15 @@ export class ThreadsSession implements ModuleSession {
   readonly #pool: Pool;
   readonly #session: number;
   readonly #fallback: string | undefined;
+  readonly #free: () => void;
 
   private constructor(pool: Pool, session: number, fallback: string | undefined) {
     this.#pool = pool;
     this.#session = session;
     this.#fallback = fallback;
+    // After a crash there is nothing to be freed.
+    this.#free = () => void pool.call('free', session).catch(() => undefined);
+    dropped.register(this, this.#free, this);
   }
 
   /**
@@ -187,8 +208,8 @@ export class ThreadsSession implements ModuleSession {
   }
 
   free(): void {
-    // After a crash there is nothing to be freed.
-    void this.#pool.call('free', this.#session).catch(() => undefined);
+    dropped.unregister(this);
+    this.#free();
   }
 
   async #ask<Q extends Question>(question: Q, ...args: Parameters<Session[Q]>): Promise<Awaited<ReturnType<Session[Q]>>> {
