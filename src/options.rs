@@ -63,7 +63,7 @@ pub struct Options {
     pub device: Option<crate::js::GpuDevice>,
     /// Whether `Auto` begins with no engine where it would with the CPU.
     #[cfg(all(target_arch = "wasm32", feature = "js"))]
-    pub(crate) leaves_cpu: bool,
+    pub leaves_cpu: bool,
 }
 
 impl Default for Options {

@@ -63,7 +63,7 @@ test('a file that is read says how far it has come, and one that is too large is
     const look = () => window.seen.push([document.querySelector('#busy-text').textContent, document.querySelector('#progress').value]);
     new MutationObserver(look).observe(document.querySelector('#busy'), { subtree: true, childList: true, attributes: true });
   });
-  await page.open(await meshFile('random 150', 'large.off'));
+  await page.open(await meshFile('random 400', 'large.off'));
   const seen = await page.page.evaluate(() => window.seen);
   const shares = seen.filter(([text]) => text === 'Reading large.off…').map(([, share]) => share);
   assert.ok(shares.some((share) => share > 0 && share < 1), JSON.stringify(seen));
