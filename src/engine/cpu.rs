@@ -47,6 +47,15 @@ impl Found {
     }
 }
 
+fn geometry_of<'a>(
+    mesh: &'a Mesh,
+    winding: &'a Winding,
+    embedded: &'a Embedded,
+    thresholds: Thresholds,
+) -> Geometry<'a> {
+    Geometry { dimension: mesh.dimension(), positions: mesh.positions(), thresholds, winding, embedded }
+}
+
 /// The state of a mesh between two iterations.
 pub(crate) struct Cpu {
     pub(super) threads: Threads,
@@ -107,13 +116,7 @@ impl Cpu {
 
     pub(super) fn geometry(&self) -> Geometry<'_> {
         let Self { mesh, winding, embedded, thresholds, .. } = self;
-        Geometry {
-            dimension: mesh.dimension(),
-            positions: mesh.positions(),
-            thresholds: *thresholds,
-            winding,
-            embedded,
-        }
+        geometry_of(mesh, winding, embedded, *thresholds)
     }
 
     pub(super) fn topology(&self) -> Topology<'_> {
@@ -305,13 +308,7 @@ impl Cpu {
 impl Cpu {
     pub(super) fn parts(&mut self) -> (Geometry<'_>, TopologyMut<'_>) {
         let Self { mesh, winding, embedded, thresholds, triangles, twins, fans, .. } = self;
-        let geometry = Geometry {
-            dimension: mesh.dimension(),
-            positions: mesh.positions(),
-            thresholds: *thresholds,
-            winding,
-            embedded,
-        };
+        let geometry = geometry_of(mesh, winding, embedded, *thresholds);
         (geometry, TopologyMut { first: 0, triangles, twins, fans: Some(fans) })
     }
 

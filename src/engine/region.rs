@@ -122,11 +122,8 @@ impl Region<'_> {
         {
             let mesh = self.mesh.get();
             let g = unflagged(mesh.twin(h));
-            if g == NONE {
-                continue;
-            }
+            // Its edge has moved, and one of the boundary has come: those to other triangles stay where they are.
             if !mesh.has(g) {
-                self.work.left.push(h);
                 continue;
             }
             let diamond = Diamond::new(mesh, h);
