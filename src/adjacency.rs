@@ -7,20 +7,32 @@ mod buckets;
 use crate::threads::{Threads, Word, shared};
 use crate::{Mesh, NONE};
 pub(crate) use buckets::for_each_edge;
-use buckets::{Buckets, Rising, range, visit_edges};
-use std::ops::Range;
+use buckets::{Buckets, Rising, visit_edges};
 use std::sync::atomic::AtomicU32;
 
 /// The half-edge after `h` in its triangle.
 #[inline]
 pub fn next(h: u32) -> u32 {
-    if h % 3 == 2 { h - 2 } else { h + 1 }
+    if is_first(h.wrapping_add(1)) { h - 2 } else { h + 1 }
 }
 
 /// The half-edge before `h` in its triangle.
 #[inline]
 pub fn prev(h: u32) -> u32 {
-    if h.is_multiple_of(3) { h + 2 } else { h - 1 }
+    if is_first(h) { h + 2 } else { h - 1 }
+}
+
+/// Whether a half-edge is the first one of its triangle: a multiple of 3. In WebAssembly a remainder takes several times as
+/// long as this product with the inverse of 3.
+#[inline(always)]
+fn is_first(h: u32) -> bool {
+    h.wrapping_mul(0xaaaa_aaab) <= u32::MAX / 3
+}
+
+/// The triangle of a half-edge: a third of it, rounded down, which WebAssembly finds faster so.
+#[inline(always)]
+pub(crate) fn triangle_of(h: u32) -> u32 {
+    ((u64::from(h) * 0xaaaa_aaab) >> 33) as u32
 }
 
 /// Set in both entries of an engine's twins for an edge that was over β in the input: it stays, whatever its
@@ -78,12 +90,6 @@ pub(crate) fn edge_kind(half_edges: &[u32], triangles: &[u32]) -> EdgeKind {
     }
 }
 
-/// The vertices of an edge, the smaller one first.
-fn edge_vertices(triangles: &[u32], h: u32) -> [u32; 2] {
-    let [from, to] = [h, next(h)].map(|x| triangles[x as usize]);
-    [from.min(to), from.max(to)]
-}
-
 impl Adjacency {
     /// Matches the half-edges of a mesh.
     pub fn new(mesh: &Mesh) -> Self {
@@ -93,56 +99,45 @@ impl Adjacency {
     /// Matches the half-edges of `triangles`, whose indices must be below `vertices`.
     pub(crate) fn of_triangles(vertices: usize, triangles: &[u32], threads: &Threads) -> Self {
         let mut buckets = Buckets::new(vertices, triangles, threads, false);
-        buckets.sort_large();
+        buckets.sort_large(threads);
         let Buckets { ends, highs, mut half_edges } = buckets;
-        let count = ends.last().map_or(0, |&end| end as usize);
         let rising = Rising { ends: &ends, highs: &highs, half_edges: shared(&mut half_edges) };
         // Memory is taken when it is first written, which is work for all threads.
         let mut twins = vec![0; triangles.len()];
         let words = shared(&mut twins);
-        threads.map(words.len(), |piece| words[piece].iter().for_each(|twin| twin.set(NONE)));
-        let taken = threads.map(triangles.len() / 3, |piece| rising.take(triangles, piece, words));
-        let rest = threads.map(count, |piece| rising.rest(triangles, piece)).concat();
-        // Two threads may have taken the same one.
-        let is_taken_twice = taken.iter().map(|(matched, _)| matched).sum::<usize>() + rest.len() != count;
-        let mut is_odd = vec![is_taken_twice; vertices];
-        for v in taken.into_iter().flat_map(|(_, odd)| odd).chain(rest) {
-            is_odd[v as usize] = true;
-        }
-        let plain = threads.map(vertices, |piece| {
-            piece.filter(|&v| !is_odd[v]).map(|v| range(&ends, v).len()).sum::<usize>()
-        });
-        let mut adjacency = Self { edges: plain.into_iter().sum::<usize>() as u32, ..Self::default() };
-        if is_odd.contains(&true) {
-            adjacency.match_with_care(triangles, words, threads, |v| is_odd[v as usize]);
-        }
+        let mut unmatched = rising.match_all(triangles, words, threads);
+        unmatched.sort_unstable();
+        let mut adjacency = Self { edges: rising.count() as u32, ..Self::default() };
+        adjacency.match_with_care(triangles, words, &rising, &unmatched);
         Self { twins, ..adjacency }
     }
 
-    /// Counts the edges of odd vertices, and writes their twins.
+    /// Counts the edges of the vertices of some that have not been matched, and writes their twins. Those of others have
+    /// been counted by their rising half-edges.
     fn match_with_care(
         &mut self,
         triangles: &[u32],
         twins: &[AtomicU32],
-        threads: &Threads,
-        is_odd: impl Fn(u32) -> bool + Sync,
+        rising: &Rising,
+        unmatched: &[(u32, u32)],
     ) {
-        let (corners, _) = triangles.as_chunks::<3>();
-        let mut odd = Vec::new();
-        let find = |piece: Range<usize>, odd: &mut Vec<_>| {
-            for (t, &[a, b, c]) in (piece.start as u32..).zip(&corners[piece]) {
-                if is_odd(a) | is_odd(b) | is_odd(c) {
-                    let lows = (3 * t..3 * t + 3).map(|h| (edge_vertices(triangles, h)[0], h));
-                    odd.extend(lows.filter(|&(low, _)| is_odd(low)));
+        let (mut bucket, mut scratch) = (Vec::new(), Vec::new());
+        for unmatched in unmatched.chunk_by(|x, y| x.0 == y.0) {
+            bucket.clear();
+            for (high, h, is_taken) in rising.of(unmatched[0].0) {
+                self.edges -= 1;
+                bucket.push((high, h));
+                if is_taken {
+                    bucket.push((high, twins[h as usize].get()));
                 }
             }
-        };
-        threads.extend(&mut odd, corners.len(), find, |all, mut part| all.append(&mut part));
-        odd.sort_unstable();
-        let mut scratch = Vec::new();
-        for bucket in odd.chunk_by_mut(|x, y| x.0 == y.0) {
-            bucket.iter_mut().for_each(|(low, h)| *low = edge_vertices(triangles, *h)[1]);
-            visit_edges(bucket, &mut scratch, |edge| {
+            for &(low, h) in unmatched {
+                let from = triangles[h as usize];
+                if from > low || triangles[next(h) as usize] == low {
+                    bucket.push((from, h));
+                }
+            }
+            visit_edges(&mut bucket, &mut scratch, |edge| {
                 self.edges += 1;
                 let kind = edge_kind(edge, triangles);
                 match kind {
@@ -168,6 +163,12 @@ mod tests {
     use proptest::prelude::*;
     use std::collections::BTreeMap;
     use std::num::NonZeroUsize;
+
+    /// The vertices of an edge, the smaller one first.
+    fn edge_vertices(triangles: &[u32], h: u32) -> [u32; 2] {
+        let [from, to] = [h, next(h)].map(|x| triangles[x as usize]);
+        [from.min(to), from.max(to)]
+    }
 
     /// From the half-edges of each edge.
     fn expected(triangles: &[u32]) -> Adjacency {

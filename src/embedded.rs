@@ -9,8 +9,9 @@ use crate::mesh::{Dimension, Mesh};
 use crate::predicates::area_sign;
 use crate::star::Fans;
 use crate::threads::Threads;
-use crate::winding::Winding;
+use crate::winding::{Signs, Winding};
 use glam::DVec2;
+use std::cmp::Ordering;
 use std::ops::Range;
 
 /// How often the triangles at each vertex go across the direction of the x axis, twice standing for more, for an open
@@ -21,19 +22,37 @@ pub(crate) struct Embedded {
 }
 
 impl Embedded {
-    /// Of the vertices of a mesh with these twins.
-    pub(crate) fn new(mesh: &Mesh, twins: &[u32], winding: &Winding, threads: &Threads) -> Self {
+    /// Of the vertices of a mesh with these twins, and how its components lie.
+    pub(crate) fn with_winding(mesh: &Mesh, twins: &[u32], threads: &Threads) -> (Winding, Self) {
         if mesh.dimension() == Dimension::Three {
-            return Self::default();
+            return Default::default();
         }
+        let mut winding = None;
+        loop {
+            let (signs, embedded) = Self::of_triangles(mesh, twins, winding.as_ref(), threads);
+            winding = winding.or_else(|| signs.winding(mesh.triangle_count()));
+            match winding {
+                Some(winding) => return (winding, embedded),
+                None => winding = Some(Winding::of_components(mesh, twins)),
+            }
+        }
+    }
+
+    /// Where there is no `winding`, each triangle lies as it says itself.
+    fn of_triangles(
+        mesh: &Mesh,
+        twins: &[u32],
+        winding: Option<&Winding>,
+        threads: &Threads,
+    ) -> (Signs, Self) {
         let pieces = threads.pieces_with_arrays(mesh.triangle_count());
         let pieces = threads.map_each(pieces, |piece| turns(mesh, twins, winding, piece));
-        let mut pieces = pieces.into_iter();
-        let mut turns = pieces.next().unwrap_or_default();
-        for piece in pieces {
+        let all = pieces.into_iter().reduce(|(signs, mut turns), (other, piece)| {
             turns.iter_mut().zip(piece).for_each(|(sum, turns)| *sum = (*sum + turns).min(2));
-        }
-        Self { turns }
+            (signs.and(other), turns)
+        });
+        let (signs, turns) = all.unwrap_or_default();
+        (signs, Self { turns })
     }
 
     /// The fans of the mesh that it is of, whose twins these are.
@@ -42,16 +61,22 @@ impl Embedded {
         if self.turns.is_empty() {
             return Fans::new(vertices, triangles, twins);
         }
-        let others = threads.map(triangles.len(), |piece| {
-            let corners = (piece.start as u32..).zip(&triangles[piece]);
-            corners.filter(|&(_, &v)| !self.at(v)).map(|(h, _)| h).collect()
+        let (corners, _) = triangles.as_chunks::<3>();
+        let others = threads.map(corners.len(), |piece| {
+            let mut others = Vec::new();
+            for (t, &corners) in (piece.start as u32..).zip(&corners[piece]) {
+                if corners.iter().fold(true, |all, &v| all & self.at(v)) {
+                    continue;
+                }
+                for (h, v) in (3 * t..).zip(corners) {
+                    if !self.at(v) {
+                        others.push(h);
+                    }
+                }
+            }
+            others
         });
-        Fans::of_corners(
-            &mut others.iter().flat_map(|part: &Vec<u32>| part).copied(),
-            vertices,
-            triangles,
-            twins,
-        )
+        Fans::of_corners(&mut others.iter().flatten().copied(), vertices, triangles, twins)
     }
 
     /// Whether the star of vertex `v` is known to be embedded.
@@ -61,8 +86,9 @@ impl Embedded {
     }
 }
 
-/// What some of the triangles add.
-fn turns(mesh: &Mesh, twins: &[u32], winding: &Winding, piece: Range<usize>) -> Vec<u8> {
+/// The signs of some of the triangles, and what these add.
+fn turns(mesh: &Mesh, twins: &[u32], winding: Option<&Winding>, piece: Range<usize>) -> (Signs, Vec<u8>) {
+    let mut signs = Signs::default();
     let mut turns = vec![0u8; mesh.vertex_count()];
     let mut turn = |v: u32, by: u8| turns[v as usize] = (turns[v as usize] + by).min(2);
     // Whether the edge from u to v goes to below the axis through u, or along it. Else the edge from v to u does.
@@ -77,8 +103,10 @@ fn turns(mesh: &Mesh, twins: &[u32], winding: &Winding, piece: Range<usize>) -> 
             }
         }
         let [p, q, r] = mesh.positions().points2([a, b, c]);
-        let is_clockwise = winding.is_clockwise(t as u32);
-        if !winding.is_strict && area_sign(p, q, r) != winding.positive(t as u32) {
+        let sign = area_sign(p, q, r);
+        signs.add(sign);
+        let is_clockwise = winding.map_or(sign.is_lt(), |winding| winding.is_clockwise(t as u32));
+        if sign != if is_clockwise { Ordering::Less } else { Ordering::Greater } {
             for v in [a, b, c] {
                 turn(v, 2);
             }
@@ -95,7 +123,7 @@ fn turns(mesh: &Mesh, twins: &[u32], winding: &Winding, piece: Range<usize>) -> 
         };
         turn(corner, u8::from(first & second | second & third | third & first));
     }
-    turns
+    (signs, turns)
 }
 
 #[cfg(test)]
@@ -115,8 +143,7 @@ mod tests {
             for threads in 1..=4 {
                 let threads = Threads::new(NonZeroUsize::new(threads)).unwrap();
                 let twins = crate::Adjacency::new(&mesh).twins;
-                let winding = Winding::new(&mesh, &twins, &threads);
-                let embedded = Embedded::new(&mesh, &twins, &winding, &threads);
+                let (_, embedded) = Embedded::with_winding(&mesh, &twins, &threads);
                 assert_eq!(embedded.at(0), is_embedded);
                 assert!((1..17).all(|v| !embedded.at(v)));
             }

@@ -7,15 +7,22 @@ mod objects;
 use crate::engine;
 #[cfg(feature = "js")]
 pub use crate::engine::{GpuDevice, WebGl2Module};
+#[cfg(feature = "js-threads")]
+use crate::js_threads::Indices;
 pub use crate::js_values::JsPositions;
 #[cfg(feature = "js")]
 use crate::js_values::coded;
 use crate::js_values::{backend_name, object, parse_dimension, positions_array, reasons_object, thrown};
+use crate::threads::Threads;
 use crate::{Backend, Error, Mesh, Options, Order, Positions, Session};
 use js_sys::{Array, Uint8Array, Uint32Array};
 use objects::outcome_object;
 use std::num::NonZeroUsize;
 use wasm_bindgen::prelude::*;
+
+/// Vertex indices, as JavaScript gets them.
+#[cfg(not(feature = "js-threads"))]
+type Indices = Uint32Array;
 
 #[wasm_bindgen]
 extern "C" {
@@ -69,7 +76,7 @@ impl JsSession {
         dimension: f64,
         options: &JsOptions,
     ) -> Result<JsSession, Error> {
-        let mesh = Mesh::new(parse_dimension(dimension)?, positions, indices)?;
+        let mesh = Mesh::checked(parse_dimension(dimension)?, positions, indices, &Threads::default())?;
         Session::new(mesh, parse_options(options)?).await.map(Self)
     }
 }
@@ -115,9 +122,8 @@ impl JsSession {
     ///
     /// # Errors
     /// As there.
-    pub async fn triangles(&mut self) -> Result<Uint32Array, JsValue> {
-        let triangles = self.0.triangles().await.map_err(thrown)?;
-        Ok(Uint32Array::from(triangles.as_slice()))
+    pub async fn triangles(&mut self) -> Result<Indices, JsValue> {
+        Ok(indices(self.0.triangles().await.map_err(thrown)?))
     }
 
     /// As [`Session::outcome`].
@@ -128,7 +134,7 @@ impl JsSession {
         unchecked_return_type = "Omit<import('../types.js').Result, 'turnedTriangles' | 'joinedVertices' | 'seamEdges'>"
     )]
     pub async fn outcome(&mut self) -> Result<JsValue, JsValue> {
-        Ok(outcome_object(&self.0.outcome().await.map_err(thrown)?))
+        Ok(outcome_object(self.0.outcome().await.map_err(thrown)?))
     }
 
     /// As [`Session::edges`].
@@ -237,6 +243,14 @@ impl JsSession {
     pub fn index_buffer(&self) -> JsValue {
         self.0.shared_objects().map_or(JsValue::UNDEFINED, |objects| objects.triangles)
     }
+}
+
+/// The triangles of a session, for JavaScript.
+fn indices(triangles: Vec<u32>) -> Indices {
+    #[cfg(feature = "js-threads")]
+    return Indices(triangles);
+    #[cfg(not(feature = "js-threads"))]
+    Uint32Array::from(triangles.as_slice())
 }
 
 /// Each is a worker.

@@ -71,3 +71,15 @@ impl Arrays {
         JsSession::open(self.positions, self.indices, dimension, &options).await.map_err(thrown)
     }
 }
+
+/// Vertex indices, which the page copies: it can read the memory.
+#[wasm_bindgen]
+pub struct Indices(pub(crate) Vec<u32>);
+
+#[wasm_bindgen]
+impl Indices {
+    /// Where they are in memory, and how many they are.
+    pub fn place(&self) -> Vec<usize> {
+        vec![self.0.as_ptr().addr(), self.0.len()]
+    }
+}

@@ -1,6 +1,7 @@
 //! `Mesh`: positions and triangles, checked once when it is made, so that nothing behind it can fail on them.
 
 use crate::positions::all;
+use crate::threads::Threads;
 use crate::{Error, Positions};
 use glam::{DVec2, DVec3};
 use std::sync::Arc;
@@ -58,6 +59,16 @@ impl Mesh {
         positions: impl Into<Positions>,
         triangles: Vec<u32>,
     ) -> Result<Self, Error> {
+        Self::checked(dimension, positions, triangles, &Threads::one())
+    }
+
+    /// As [`Mesh::new`].
+    pub(crate) fn checked(
+        dimension: Dimension,
+        positions: impl Into<Positions>,
+        triangles: Vec<u32>,
+        threads: &Threads,
+    ) -> Result<Self, Error> {
         let positions = positions.into().narrowed();
         let stride = dimension.stride();
         for (array, length, stride) in
@@ -75,9 +86,9 @@ impl Mesh {
                 return Err(Error::TooLarge { what, count, limit });
             }
         }
-        positions.refuse_non_finite(dimension)?;
+        positions.refuse_non_finite(dimension, threads)?;
         let is_in_range = |&v: &u32| (v as usize) < vertices;
-        if !all(&triangles, is_in_range)
+        if !all(&triangles, threads, is_in_range)
             && let Some(i) = triangles.iter().position(|v| !is_in_range(v))
         {
             return Err(Error::IndexOutOfRange { triangle: i / 3, index: triangles[i], vertices });

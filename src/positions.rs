@@ -2,6 +2,7 @@
 
 use crate::Error;
 use crate::mesh::Dimension;
+use crate::threads::Threads;
 use glam::{DVec2, DVec3};
 use std::array;
 
@@ -65,10 +66,10 @@ impl Positions {
     }
 
     /// Refuses coordinates that are no numbers, with [`Error::NonFinite`] for the first.
-    pub(crate) fn refuse_non_finite(&self, dimension: Dimension) -> Result<(), Error> {
+    pub(crate) fn refuse_non_finite(&self, dimension: Dimension, threads: &Threads) -> Result<(), Error> {
         let are_finite = match self {
-            Self::F32(numbers) => all(numbers, |x| x.is_finite()),
-            Self::F64(numbers) => all(numbers, |x| x.is_finite()),
+            Self::F32(numbers) => all(numbers, threads, |x| x.is_finite()),
+            Self::F64(numbers) => all(numbers, threads, |x| x.is_finite()),
         };
         let found = if are_finite { None } else { self.iter().position(|x| !x.is_finite()) };
         let stride = dimension.stride();
@@ -111,11 +112,14 @@ impl Positions {
 }
 
 /// Whether all items are so. To look at each is faster than to stop at the first that is not, eight at a time above all.
-#[inline(always)]
-pub(crate) fn all<T>(items: &[T], is_so: impl Fn(&T) -> bool) -> bool {
-    let (eights, rest) = items.as_chunks::<8>();
-    let are_so = eights.iter().fold(true, |all, eight| eight.iter().fold(all, |all, item| all & is_so(item)));
-    rest.iter().fold(are_so, |all, item| all & is_so(item))
+pub(crate) fn all<T: Sync>(items: &[T], threads: &Threads, is_so: impl Fn(&T) -> bool + Sync) -> bool {
+    let pieces = threads.map(items.len(), |piece| {
+        let (eights, rest) = items[piece].as_chunks::<8>();
+        let are_so =
+            eights.iter().fold(true, |all, eight| eight.iter().fold(all, |all, item| all & is_so(item)));
+        rest.iter().fold(are_so, |all, item| all & is_so(item))
+    });
+    !pieces.contains(&false)
 }
 
 #[inline(always)]

@@ -14,7 +14,6 @@ use crate::phases::{Geometry, Thresholds, Topology};
 use crate::quality::{Audit, audit};
 use crate::star::Fans;
 use crate::threads::Threads;
-use crate::winding::Winding;
 use crate::{
     Backend, EdgeState, Edges, Error, Iteration, Mesh, Options, Order, Outcome, Positions, Reason, Status,
     Timings, frozen, locks,
@@ -134,7 +133,7 @@ impl Session {
         if length != expected {
             return Err(Error::PositionCount { length, expected });
         }
-        positions.refuse_non_finite(self.mesh.dimension())?;
+        positions.refuse_non_finite(self.mesh.dimension(), &Threads::one())?;
         let triangles = self.triangles().await?;
         let mesh = Arc::new(Mesh::new(self.mesh.dimension(), positions, triangles)?);
         match self.engine.set_positions(mesh.clone()).await {
@@ -218,12 +217,13 @@ impl Session {
     pub async fn edge_states(&mut self) -> Result<Vec<EdgeState>, Error> {
         let triangles = self.triangles().await?;
         let twins = self.ask(|engine| engine.twins()).await?;
+        // As the engine found it: neither the components nor their areas change with flips.
+        let (winding, _) = Embedded::with_winding(&self.mesh, &twins, &Threads::default());
         let geometry = Geometry {
             dimension: self.mesh.dimension(),
             positions: self.mesh.positions(),
             thresholds: Thresholds::from(&self.options),
-            // As the engine found it: neither the components nor their areas change with flips.
-            winding: &Winding::new(&self.mesh, &twins, &Threads::default()),
+            winding: &winding,
             embedded: &Embedded::default(),
         };
         let vertices = self.mesh.vertex_count();

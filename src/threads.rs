@@ -54,6 +54,11 @@ impl Threads {
         Ok(Self::default())
     }
 
+    /// One, without any of a pool.
+    pub(crate) fn one() -> Self {
+        Self::default().for_triangles(0)
+    }
+
     /// Those that are worth while for so many triangles: one of them, where it has done before others have woken up.
     #[cfg_attr(not(feature = "threads"), expect(unused_variables, reason = "it is one, for any"))]
     pub(crate) fn for_triangles(self, count: usize) -> Self {
@@ -91,7 +96,12 @@ impl Threads {
         if self.count() == 1 {
             return vec![work(0..len)];
         }
-        self.map_each(cut(len, PIECES * self.count()), work)
+        self.map_each(self.pieces(len), work)
+    }
+
+    /// The pieces of a loop over `0..len`, at least one.
+    pub(crate) fn pieces(&self, len: usize) -> Vec<Range<usize>> {
+        cut(len, PIECES * self.count())
     }
 
     /// The pieces of a loop over `0..len`, at least one, each of which holds an array.

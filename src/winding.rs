@@ -2,10 +2,8 @@
 
 use crate::NONE;
 use crate::adjacency::unflagged;
-use crate::mesh::{Dimension, Mesh};
-use crate::predicates::{area_sign, total_area_sign};
-use crate::threads::Threads;
-use std::array;
+use crate::mesh::Mesh;
+use crate::predicates::total_area_sign;
 use std::cmp::Ordering;
 
 /// One bit a triangle: 1 where its edge-connected component has a negative total area. Empty where no
@@ -17,37 +15,31 @@ pub(crate) struct Winding {
     pub(crate) is_strict: bool,
 }
 
-impl Winding {
-    /// What the triangles say, and where they disagree what the components joined by `twins` say.
-    pub(crate) fn new(mesh: &Mesh, twins: &[u32], threads: &Threads) -> Self {
-        Self::of_triangles(mesh, threads).unwrap_or_else(|| Self::of_components(mesh, twins))
+/// Which signs the areas of triangles have: a bit each for negative, zero and positive.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Signs(u32);
+
+impl Signs {
+    #[inline(always)]
+    pub(crate) fn add(&mut self, sign: Ordering) {
+        self.0 |= 1 << (sign as i8 + 1);
     }
 
-    /// What the triangles say one by one; `None` where they disagree, and components have to be found.
-    pub(crate) fn of_triangles(mesh: &Mesh, threads: &Threads) -> Option<Self> {
-        if mesh.dimension() == Dimension::Three {
-            return Some(Self::default());
-        }
-        let signs = threads.map(mesh.triangle_count(), |piece| {
-            let mut seen = [false; 3];
-            for t in piece {
-                let [a, b, c] = corners(mesh, t);
-                seen[(area_sign(a, b, c) as i8 + 1) as usize] = true;
-                if seen[0] && seen[2] {
-                    break;
-                }
-            }
-            seen
-        });
-        let seen: [bool; 3] = array::from_fn(|sign| signs.iter().any(|seen| seen[sign]));
-        if seen[0] && seen[2] {
-            return None;
-        }
+    /// Those of these triangles and of others.
+    pub(crate) fn and(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+
+    /// What they say of all the triangles of a mesh; `None` where they disagree, and components have to be found.
+    pub(crate) fn winding(self, triangles: usize) -> Option<Winding> {
+        let [negative, zero, positive] = [1, 2, 4].map(|bit| self.0 & bit != 0);
         // Where all triangles are flat no edge flips, whatever the sign.
-        let words = if seen[0] { mesh.triangle_count().div_ceil(32) } else { 0 };
-        Some(Self { clockwise: vec![u32::MAX; words], is_strict: !seen[1] })
+        let words = if negative { triangles.div_ceil(32) } else { 0 };
+        (!(negative & positive)).then(|| Winding { clockwise: vec![u32::MAX; words], is_strict: !zero })
     }
+}
 
+impl Winding {
     /// What the components say, joined by `twins`.
     pub(crate) fn of_components(mesh: &Mesh, twins: &[u32]) -> Self {
         let mut clockwise = vec![0u32; mesh.triangle_count().div_ceil(32)];

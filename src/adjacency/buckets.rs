@@ -36,13 +36,7 @@ impl Buckets {
             }
             (piece, counts)
         });
-        // Each count becomes a start: of the part of the bucket that is of the piece.
-        let mut sum = 0;
-        for low in 0..vertices {
-            for (_, starts) in &mut pieces {
-                sum += std::mem::replace(&mut starts[low], sum);
-            }
-        }
+        let sum = become_starts(pieces.iter_mut().map(|(_, counts)| shared(counts)).collect(), threads);
         let sinks = pieces.len() * LINE;
         let [mut highs, mut half_edges] = [(); 2].map(|()| vec![0; sum as usize + LANES + sinks]);
         let (high, half_edge) = (shared(&mut highs), shared(&mut half_edges));
@@ -72,18 +66,40 @@ impl Buckets {
     }
 
     /// Sorts the buckets that a search would take long for.
-    pub(super) fn sort_large(&mut self) {
-        for vertex in 0..self.ends.len() {
-            let bucket = range(&self.ends, vertex);
-            if bucket.len() > FEW {
-                let mut sorted: Vec<_> = self.of(vertex).collect();
-                sorted.sort_unstable();
-                for (i, entry) in bucket.zip(sorted) {
-                    (self.highs[i], self.half_edges[i]) = entry;
-                }
+    pub(super) fn sort_large(&mut self, threads: &Threads) {
+        let is_large = |&vertex: &usize| range(&self.ends, vertex).len() > FEW;
+        let large = threads.map(self.ends.len(), |piece| piece.filter(is_large).collect::<Vec<_>>());
+        for vertex in large.into_iter().flatten() {
+            let mut sorted: Vec<_> = self.of(vertex).collect();
+            sorted.sort_unstable();
+            for (i, entry) in range(&self.ends, vertex).zip(sorted) {
+                (self.highs[i], self.half_edges[i]) = entry;
             }
         }
     }
+}
+
+/// Each count of a vertex in a piece becomes a start: of the part of its bucket that is of the piece. Returns their sum.
+fn become_starts(counts: Vec<&[AtomicU32]>, threads: &Threads) -> u32 {
+    let pieces = threads.pieces(counts.first().map_or(0, |counts| counts.len()));
+    let sums = threads.map_each(pieces.clone(), |piece| {
+        counts.iter().map(|counts| counts[piece.clone()].iter().map(Word::get).sum::<u32>()).sum::<u32>()
+    });
+    let mut end = 0;
+    let starts = sums.into_iter().map(|sum| {
+        end += sum;
+        end - sum
+    });
+    threads.map_each(pieces.into_iter().zip(starts).collect(), |(piece, mut start)| {
+        for vertex in piece {
+            for counts in &counts {
+                let count = counts[vertex].get();
+                counts[vertex].set(start);
+                start += count;
+            }
+        }
+    });
+    end
 }
 
 /// The bucket of a vertex, as the ends of all say.
@@ -115,11 +131,14 @@ pub(super) fn visit_edges(bucket: &mut [(u32, u32)], edge: &mut Vec<u32>, mut vi
     }
 }
 
+/// Set in a rising half-edge that a falling one has taken.
+const TAKEN: u32 = 1 << 31;
+
 /// The rising half-edges, while the falling ones take theirs.
 pub(super) struct Rising<'a> {
     pub(super) ends: &'a [u32],
     pub(super) highs: &'a [u32],
-    /// [`NONE`] for one that is taken.
+    /// With [`TAKEN`] where it is.
     pub(super) half_edges: &'a [AtomicU32],
 }
 
@@ -127,16 +146,49 @@ pub(super) struct Rising<'a> {
 const TRIANGLES: usize = 128;
 
 impl Rising<'_> {
-    /// Matches the falling half-edges of some triangles. Returns how many, and the smaller vertices of the edges of those
-    /// that cannot be.
-    pub(super) fn take(
+    /// How many there are.
+    pub(super) fn count(&self) -> usize {
+        self.ends.last().map_or(0, |&end| end as usize)
+    }
+
+    /// Those of a vertex, each after the larger vertex, and whether it is taken.
+    pub(super) fn of(&self, vertex: u32) -> impl Iterator<Item = (u32, u32, bool)> {
+        let entries = range(self.ends, vertex as usize).map(|i| (self.highs[i], self.half_edges[i].get()));
+        entries.map(|(high, entry)| (high, entry & !TAKEN, entry & TAKEN != 0))
+    }
+
+    /// Matches all half-edges, the first ones where an edge has several. Returns the others, each after the smaller vertex.
+    pub(super) fn match_all(
         &self,
         triangles: &[u32],
-        piece: Range<usize>,
         twins: &[AtomicU32],
-    ) -> (usize, Vec<u32>) {
+        threads: &Threads,
+    ) -> Vec<(u32, u32)> {
+        threads.map(twins.len(), |piece| twins[piece].iter().for_each(|twin| twin.set(NONE)));
+        let half_edges = &self.half_edges[..self.count()];
+        let (mut matched, mut others) = (0, Vec::new());
+        for (count, mut falling) in
+            threads.map(triangles.len() / 3, |piece| self.take(triangles, piece, twins))
+        {
+            matched += count;
+            others.append(&mut falling);
+        }
+        for mut rising in threads.map(half_edges.len(), |piece| self.rest(triangles, piece)) {
+            matched += rising.len();
+            others.append(&mut rising);
+        }
+        // Two threads may have taken the same one.
+        if !cfg!(feature = "threads") || matched == half_edges.len() {
+            return others;
+        }
+        half_edges.iter().for_each(|h| h.set(h.get() & !TAKEN));
+        self.match_all(triangles, twins, &Threads::one())
+    }
+
+    /// Matches the falling half-edges of some triangles. Returns how many, and those that cannot be.
+    fn take(&self, triangles: &[u32], piece: Range<usize>, twins: &[AtomicU32]) -> (usize, Vec<(u32, u32)>) {
         let (corners, _) = triangles.as_chunks::<3>();
-        let (mut matched, mut odd) = (0, Vec::new());
+        let (mut matched, mut others) = (0, Vec::new());
         let mut falling = [[0; 3]; 3 * TRIANGLES];
         for first in piece.clone().step_by(TRIANGLES) {
             let mut count = 0;
@@ -148,19 +200,19 @@ impl Rising<'_> {
             }
             for &[high, low, h] in &falling[..count] {
                 let entry = self.find(low, high);
-                let g = entry.map_or(NONE, |entry| entry.get());
+                let g = entry.map_or(TAKEN, |entry| entry.get());
                 match entry {
-                    Some(entry) if g != NONE && g / 3 != h / 3 => {
-                        entry.set(NONE);
+                    Some(entry) if g & TAKEN == 0 && g / 3 != h / 3 => {
+                        entry.set(g | TAKEN);
                         twins[h as usize].set(g);
                         twins[g as usize].set(h);
                         matched += 1;
                     }
-                    _ => odd.push(low),
+                    _ => others.push((low, h)),
                 }
             }
         }
-        (matched, odd)
+        (matched, others)
     }
 
     /// The first half-edge of the edge of two vertices, if there is one.
@@ -186,9 +238,33 @@ impl Rising<'_> {
         (found < end && self.highs[found] == high).then(|| &self.half_edges[found])
     }
 
-    /// The smaller vertices of the edges of those that have not been taken.
-    pub(super) fn rest(&self, triangles: &[u32], piece: Range<usize>) -> Vec<u32> {
-        let half_edges = self.half_edges[piece].iter().map(|h| h.get());
-        half_edges.filter(|&h| h != NONE).map(|h| triangles[h as usize]).collect()
+    /// Those that have not been taken.
+    fn rest(&self, triangles: &[u32], piece: Range<usize>) -> Vec<(u32, u32)> {
+        let rest = self.half_edges[piece].iter().map(|h| h.get()).filter(|&h| h & TAKEN == 0);
+        rest.map(|h| (triangles[h as usize], h)).collect()
+    }
+}
+
+#[cfg(all(test, feature = "threads"))]
+mod tests {
+    use super::*;
+    use crate::Adjacency;
+
+    /// As after a race, in which one half-edge has been counted twice.
+    #[test]
+    fn what_two_threads_have_taken_is_matched_again() {
+        let triangles = [0, 1, 2, 0, 2, 3, 3, 2, 4, 2, 1, 4];
+        let buckets = Buckets::new(5, &triangles, &Threads::one(), false);
+        let expected = Adjacency::of_triangles(5, &triangles, &Threads::one());
+        for taken in 0..buckets.ends[4] as usize {
+            let mut half_edges = buckets.half_edges.clone();
+            half_edges[taken] |= TAKEN;
+            let mut twins = vec![0; triangles.len()];
+            let (ends, highs) = (&buckets.ends, &buckets.highs);
+            let rising = Rising { ends, highs, half_edges: shared(&mut half_edges) };
+            let others = rising.match_all(&triangles, shared(&mut twins), &Threads::default());
+            assert_eq!(twins, expected.twins);
+            assert_eq!(others.len() as u32, expected.boundary);
+        }
     }
 }

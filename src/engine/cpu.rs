@@ -87,8 +87,7 @@ impl Cpu {
 
     fn prepared(mesh: Arc<Mesh>, thresholds: Thresholds, threads: Threads) -> Self {
         let adjacency = Adjacency::of_triangles(mesh.vertex_count(), mesh.triangles(), &threads);
-        let winding = Winding::new(&mesh, &adjacency.twins, &threads);
-        let embedded = Embedded::new(&mesh, &adjacency.twins, &winding, &threads);
+        let (winding, embedded) = Embedded::with_winding(&mesh, &adjacency.twins, &threads);
         let counts = EdgeCounts::from(&adjacency);
         let triangles = mesh.triangles().to_vec();
         let fans = embedded.fans(&mesh, &adjacency.twins, &threads);
@@ -354,8 +353,7 @@ impl Engine for Cpu {
     }
 
     fn set_positions(&mut self, mesh: Arc<Mesh>) -> Answer<'_, ()> {
-        self.winding = Winding::new(&mesh, &self.twins, &self.threads);
-        self.embedded = Embedded::new(&mesh, &self.twins, &self.winding, &self.threads);
+        (self.winding, self.embedded) = Embedded::with_winding(&mesh, &self.twins, &self.threads);
         if mesh.dimension() == Dimension::Three {
             flag_creases(
                 mesh.positions(),

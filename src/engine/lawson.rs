@@ -1,15 +1,13 @@
 //! Lawson's sequential algorithm: one non-Delaunay edge after the other, from a stack, so that the next one is near.
 //! The paper compares with it; it is the fast path for those who do not need the order of the parallel phases.
 //!
-//! In the plane each thread has a region of the mesh, and edges that touch two are left to the end. The regions, and so
-//! the flips, are the same for any number of threads.
+//! In the plane each thread has a region of the mesh, and then what touches two of them. The regions, and so the flips, are
+//! the same for any number of threads.
 
-use super::region::{Region, TopologyMut, Work};
+use super::region::{Region, Work};
 use super::{Answer, Census, Cpu, EdgeCounts, Engine};
 use crate::Mesh;
 use crate::mesh::Dimension;
-use crate::phases::Geometry;
-use crate::threads::Threads;
 use std::sync::Arc;
 
 /// Regions at most: the flips of one have to take a fraction of a thread's time.
@@ -39,14 +37,8 @@ impl Lawson {
         // Elsewhere it takes walks around vertices to know whether a flip makes a duplicate.
         let is_plain = geometry.dimension == Dimension::Two && whole.mesh.has_no_fans();
         let triangles = whole.mesh.triangles.len() / 3;
-        let size = triangles.div_ceil(REGIONS).max(FEWEST);
-        if is_plain && size < triangles {
-            whole.work = flip_parts(&geometry, &mut whole.mesh, size, &threads);
-            let left = std::mem::take(&mut whole.work.left);
-            whole.flip_some(&left);
-        } else {
-            whole.flip_each();
-        }
+        let size = if is_plain { triangles.div_ceil(REGIONS).max(FEWEST) } else { triangles };
+        whole.flip_parts(size, &threads);
         let mut before = 0;
         // A flip elsewhere may have removed the edge that stood in the way.
         while std::mem::take(&mut whole.work.has_duplicate) && whole.work.flips > before {
@@ -59,24 +51,6 @@ impl Lawson {
         self.cpu.settle(blocked, self.has_ended);
         flips
     }
-}
-
-/// Flips in regions of so many triangles.
-fn flip_parts(geometry: &Geometry, mesh: &mut TopologyMut, size: usize, threads: &Threads) -> Work {
-    let parts = mesh.triangles.chunks_mut(3 * size).zip(mesh.twins.chunks_mut(3 * size));
-    let parts = (0..).step_by(3 * size).zip(parts).map(|(first, (triangles, twins))| Region {
-        geometry,
-        mesh: TopologyMut { first, triangles, twins, fans: None },
-        work: Work::default(),
-        limit: u32::MAX / (2 * REGIONS as u32),
-    });
-    let mut work = Work::default();
-    for mut part in threads.map_each(parts.collect(), Region::flip_all) {
-        work.left.append(&mut part.left);
-        work.blocked.append(&mut part.blocked);
-        work.flips += part.flips;
-    }
-    work
 }
 
 impl Engine for Lawson {

@@ -5,6 +5,7 @@ use crate::phases::{
     Diamond, Geometry, Topology, Verdict, keep_non_delaunay, makes_duplicate, verdict_of_shape,
 };
 use crate::star::Fans;
+use crate::threads::Threads;
 use crate::{NONE, Reason};
 use std::ops::Range;
 
@@ -57,15 +58,40 @@ pub(super) struct Work {
 }
 
 impl Region<'_> {
-    /// Flips until nothing is left to flip, and gives what is left to the end.
-    pub(super) fn flip_all(mut self) -> Work {
-        self.flip_each();
+    /// Tests all edges, and flips until nothing is left to flip: first in each half, on several threads, down to parts of
+    /// up to so many triangles, and then what touches both.
+    pub(super) fn flip_parts(&mut self, size: usize, threads: &Threads) {
+        let TopologyMut { first, triangles, twins, .. } = &mut self.mesh;
+        let count = triangles.len() / 3;
+        if count <= size {
+            self.flip_each();
+        } else {
+            let middle = 3 * (count / 2);
+            let (triangles, twins) = (triangles.split_at_mut(middle), twins.split_at_mut(middle));
+            let halves = [(*first, triangles.0, twins.0), (*first + middle as u32, triangles.1, twins.1)];
+            let halves = halves.map(|(first, triangles, twins)| Region {
+                geometry: self.geometry,
+                mesh: TopologyMut { first, triangles, twins, fans: None },
+                work: Work::default(),
+                limit: self.limit / 3,
+            });
+            let halves = threads.map_each(halves.into(), |mut half| {
+                half.flip_parts(size, threads);
+                half.work
+            });
+            let mut left = Vec::new();
+            for mut half in halves {
+                left.append(&mut half.left);
+                self.work.blocked.append(&mut half.blocked);
+                self.work.flips += half.flips;
+            }
+            self.flip_some(&left);
+        }
         self.work.left.append(&mut self.work.pending);
-        self.work
     }
 
     /// Tests all edges, and flips until nothing is left to flip.
-    pub(super) fn flip_each(&mut self) {
+    fn flip_each(&mut self) {
         let mut diamonds = [Diamond::default(); EDGES];
         let end = self.mesh.first + self.mesh.twins.len() as u32;
         for first in (self.mesh.first..end).step_by(EDGES) {
@@ -78,8 +104,8 @@ impl Region<'_> {
         }
     }
 
-    /// Tests these edges, and flips until nothing is left to flip.
-    pub(super) fn flip_some(&mut self, half_edges: &[u32]) {
+    /// Tests these edges, and flips until nothing is left to flip. Leaves those to other triangles to the end.
+    fn flip_some(&mut self, half_edges: &[u32]) {
         let mut diamonds = [Diamond::default(); EDGES];
         for half_edges in half_edges.chunks(EDGES) {
             let (mesh, mut count) = (self.mesh.get(), 0);
@@ -87,6 +113,8 @@ impl Region<'_> {
                 if mesh.has(unflagged(mesh.twin(h))) {
                     diamonds[count] = Diamond::new(mesh, h);
                     count += 1;
+                } else if mesh.leaves(h) {
+                    self.work.left.push(h);
                 }
             }
             let is_known = self.test(&diamonds, count);

@@ -1,11 +1,12 @@
 //! The result as a JavaScript object, in the words of the npm package: the field names of `src/js/types.ts`.
 
+use super::indices;
 use crate::js_values::{backend_name, object, reasons_object};
 use crate::{Outcome, Status};
 use js_sys::{JsString, Uint32Array};
 use wasm_bindgen::JsValue;
 
-pub(super) fn outcome_object(outcome: &Outcome) -> JsValue {
+pub(super) fn outcome_object(outcome: Outcome) -> JsValue {
     let count = |n: u64| JsValue::from(n as f64);
     let text = |text: &Option<String>| text.as_deref().map_or(JsValue::UNDEFINED, JsValue::from);
     // It quotes errors, in the words of Rust.
@@ -23,7 +24,7 @@ pub(super) fn outcome_object(outcome: &Outcome) -> JsValue {
         ("total", outcome.timings.total.into()),
     ]);
     object([
-        ("indices", Uint32Array::from(outcome.triangles.as_slice()).into()),
+        ("indices", indices(outcome.triangles).into()),
         ("status", status.into()),
         ("backend", backend_name(outcome.backend).into()),
         ("adapter", text(&outcome.adapter)),

@@ -2,7 +2,7 @@
 
 import { type ErrorCode, fromModule } from './error.js';
 import type { Options } from './types.js';
-import { Arrays, initSync, type Session, startThreads, work } from './wasm/edgeflip_threads.js';
+import { Arrays, Indices, initSync, type Session, startThreads, work } from './wasm/edgeflip_threads.js';
 
 /** What a session can be asked. */
 export type Question = 'advance' | 'auditInput' | 'edgeStates' | 'edges' | 'outcome' | 'setPositions' | 'step' | 'triangles';
@@ -16,6 +16,8 @@ export interface Reply {
 
 const begun = new Map<number, { arrays: Arrays; dimension: number; options: Options }>();
 const sessions = new Map<number, Session>();
+/** What the page has not copied yet, by session. */
+const lent = new Map<number, Indices>();
 
 const calls = {
   /** Makes this worker the first of so many threads, and gives the memory for all. */
@@ -43,15 +45,31 @@ const calls = {
   async ask(session: number, question: Question, args: unknown[]): Promise<Reply> {
     const asked = sessions.get(session)!;
     const value = await (asked[question] as (...args: unknown[]) => Promise<unknown>).apply(asked, args);
-    return { value, iterations: asked.iterations, flips: asked.flips };
+    return { value: lend(session, value), iterations: asked.iterations, flips: asked.flips };
+  },
+  /** The page has copied what it was lent. */
+  release(session: number): void {
+    lent.get(session)?.free();
+    lent.delete(session);
   },
   free(session: number): void {
+    calls.release(session);
     sessions.get(session)?.free();
     sessions.delete(session);
   },
 };
 
 export type Calls = typeof calls;
+
+/** What is sent of a value: of its indices, where they are in memory and how many, for the page to copy them. */
+function lend(session: number, value: unknown): unknown {
+  if (value instanceof Indices) {
+    lent.set(session, value);
+    return value.place();
+  }
+  const { indices } = Object(value) as { indices?: unknown };
+  return indices instanceof Indices ? { ...(value as object), indices: lend(session, indices) } : value;
+}
 
 /** A call by its name. */
 export interface Call {

@@ -128,6 +128,9 @@ class Pool {
   }
 }
 
+/** Where pages of memory are larger, more of them are written than need be. */
+const WORDS_OF_PAGE = 1024;
+
 /** Threads and their memory. */
 type Threads = [pool: Pool, memory: WebAssembly.Memory];
 
@@ -158,12 +161,17 @@ export class ThreadsSession implements ModuleSession {
   readonly positionBuffer = undefined;
   readonly indexBuffer = undefined;
   readonly #pool: Pool;
+  readonly #memory: WebAssembly.Memory;
   readonly #session: number;
   readonly #fallback: string | undefined;
   readonly #free: () => void;
+  /** What the next triangles are copied to. */
+  #spare: Uint32Array | undefined;
 
-  private constructor(pool: Pool, session: number, fallback: string | undefined) {
+  private constructor([pool, memory]: Threads, session: number, spare: Uint32Array, fallback: string | undefined) {
     this.#pool = pool;
+    this.#memory = memory;
+    this.#spare = spare;
     this.#session = session;
     this.#fallback = fallback;
     // After a crash there is nothing to be freed.
@@ -177,11 +185,12 @@ export class ThreadsSession implements ModuleSession {
    * @param fallback - Why no engine before this one was taken.
    */
   static async create(
-    [pool, memory]: Threads,
+    threads: Threads,
     { positions, indices, dimension }: IndexedMesh,
     { maxNormalAngle, maxDeviation, maxIterations, lockedEdges, lockedTriangles, groups, order }: Options,
     fallback?: string,
   ): Promise<ThreadsSession> {
+    const [pool, memory] = threads;
     const session = sessions++;
     const locks = { lockedEdges, lockedTriangles, groups };
     const options: Options = { backend: 'cpu', maxNormalAngle, maxDeviation, maxIterations, order, ...locks };
@@ -190,13 +199,18 @@ export class ThreadsSession implements ModuleSession {
     const [first, second] = await pool.call('begin', session, options, dimension, isDouble, length, indices.length);
     new (isDouble ? Float64Array : Float32Array)(memory.buffer, first, length).set(positions);
     new Uint32Array(memory.buffer, second, indices.length).set(indices);
-    await pool.call('open', session);
-    return new ThreadsSession(pool, session, fallback);
+    const opened = pool.call('open', session);
+    const spare = new Uint32Array(indices.length);
+    // The system gives a page of memory when it is first written, which takes longer than the copy: it does so while others
+    // work.
+    for (let i = 0; i < spare.length; i += WORDS_OF_PAGE) spare[i] = 1;
+    await opened;
+    return new ThreadsSession(threads, session, spare, fallback);
   }
 
   step = () => this.#ask('step');
   advance = () => this.#ask('advance');
-  triangles = () => this.#ask('triangles');
+  triangles = async () => this.#copy(await this.#ask('triangles'));
   edges = () => this.#ask('edges');
   edgeStates = () => this.#ask('edgeStates');
   auditInput = () => this.#ask('auditInput');
@@ -204,12 +218,21 @@ export class ThreadsSession implements ModuleSession {
 
   async outcome(): ReturnType<Session['outcome']> {
     const outcome = await this.#ask('outcome');
-    return { ...outcome, fallback: this.#fallback };
+    return { ...outcome, indices: this.#copy(outcome.indices), fallback: this.#fallback };
   }
 
   free(): void {
     dropped.unregister(this);
     this.#free();
+  }
+
+  /** Copies so many indices out of the memory. */
+  #copy([place, length]: Uint32Array): Uint32Array {
+    const copy = this.#spare ?? new Uint32Array(length!);
+    this.#spare = undefined;
+    copy.set(new Uint32Array(this.#memory.buffer, place, length));
+    void this.#pool.call('release', this.#session).catch(() => undefined);
+    return copy;
   }
 
   async #ask<Q extends Question>(question: Q, ...args: Parameters<Session[Q]>): Promise<Awaited<ReturnType<Session[Q]>>> {

@@ -1,7 +1,7 @@
 //! Flip with Update: rotate the two triangles of each selected edge in place and repair the twins around.
 
 use crate::NONE;
-use crate::adjacency::{FLAGS, next, prev, unflagged};
+use crate::adjacency::{FLAGS, next, prev, triangle_of, unflagged};
 use crate::star::Fans;
 use crate::threads::Word;
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
@@ -16,12 +16,18 @@ impl Selected {
         Self(std::iter::repeat_with(|| AtomicU32::new(NONE)).take(triangles).collect())
     }
 
+    /// That of the triangle of `h`.
+    #[inline(always)]
+    fn word(&self, h: u32) -> &AtomicU32 {
+        &self.0[triangle_of(h) as usize]
+    }
+
     /// Lets the edge of two half-edges bid for its triangles, of which no edge is selected: the smallest key stays,
     /// whichever comes first. No two edges have the same.
     #[inline(always)]
     pub(crate) fn bid(&self, edge: [u32; 2], key: u32) {
         for x in edge {
-            let word = &self.0[x as usize / 3];
+            let word = self.word(x);
             // Those that lose need no more than a load.
             if key < word.get() {
                 word.fetch_min(key, Relaxed);
@@ -32,13 +38,13 @@ impl Selected {
     /// Whether the edge has won both its triangles, once all have bidden.
     #[inline(always)]
     pub(crate) fn has_won(&self, edge: [u32; 2], key: u32) -> bool {
-        edge.iter().fold(true, |all, &x| all & (self.0[x as usize / 3].get() == key))
+        edge.iter().fold(true, |all, &x| all & (self.word(x).get() == key))
     }
 
     /// Selects the edge of two half-edges.
     pub(crate) fn choose(&self, [h, g]: [u32; 2]) {
         for (x, twin) in [(h, g), (g, h)] {
-            self.0[x as usize / 3].set(twin | (x % 3) << FLAGS.trailing_zeros());
+            self.word(x).set(twin | (x - 3 * triangle_of(x)) << FLAGS.trailing_zeros());
         }
     }
 
@@ -46,14 +52,14 @@ impl Selected {
     #[inline(always)]
     pub(crate) fn release(&self, edge: [u32; 2]) {
         for x in edge {
-            self.0[x as usize / 3].set(NONE);
+            self.word(x).set(NONE);
         }
     }
 
     /// Whether no edge of the triangle of `h` is selected.
     #[inline(always)]
     pub(crate) fn is_free(&self, h: u32) -> bool {
-        self.0[h as usize / 3].get() == NONE
+        self.word(h).get() == NONE
     }
 
     /// The selected half-edge of triangle `t`, and its twin.
@@ -70,8 +76,12 @@ impl Selected {
         if x == NONE {
             return NONE;
         }
-        let word = self.0[x as usize / 3].get();
-        if prev(x) % 3 == word >> FLAGS.trailing_zeros() { word & !FLAGS | entry & FLAGS } else { entry }
+        let word = self.word(x).get();
+        if prev(x) - 3 * triangle_of(x) == word >> FLAGS.trailing_zeros() {
+            word & !FLAGS | entry & FLAGS
+        } else {
+            entry
+        }
     }
 }
 

@@ -12,6 +12,7 @@ use super::cosine::Cosine;
 use super::probe::SHORT_STAR;
 use super::upload::{Form, Upload};
 use super::{Answer, Census, EdgeCounts, Engine, self_test};
+use crate::embedded::Embedded;
 use crate::locks;
 use crate::mesh::{Dimension, Mesh};
 use crate::phases::{BLOCKED, Thresholds};
@@ -102,7 +103,7 @@ impl WebGl {
         context.compile(&[deciders(form), common, more].concat()).await?;
 
         let adjacency = Adjacency::new(mesh);
-        let winding = Winding::new(mesh, &adjacency.twins, &Threads::default());
+        let (winding, _) = Embedded::with_winding(mesh, &adjacency.twins, &Threads::default());
         let fans = Fans::new(mesh.vertex_count(), mesh.triangles(), &adjacency.twins);
         if context.ends_loops_early {
             refuse_large_star(&context, mesh)?;
