@@ -102,7 +102,6 @@ impl Adjacency {
         buckets.sort_large(threads);
         let Buckets { ends, highs, mut half_edges } = buckets;
         let rising = Rising { ends: &ends, highs: &highs, half_edges: shared(&mut half_edges) };
-        // Memory is taken when it is first written, which is work for all threads.
         let mut twins = vec![0; triangles.len()];
         let words = shared(&mut twins);
         let mut unmatched = rising.match_all(triangles, words, threads);
@@ -131,6 +130,7 @@ impl Adjacency {
                     bucket.push((high, twins[h as usize].get()));
                 }
             }
+            // Those of them that rise are there now.
             for &(low, h) in unmatched {
                 let from = triangles[h as usize];
                 if from > low || triangles[next(h) as usize] == low {

@@ -21,7 +21,7 @@ const FEWEST: usize = if cfg!(debug_assertions) { 4 } else { 4096 };
 const FEWEST_TRIANGLES: usize = 16 * FEWEST;
 
 /// Pieces for each thread, so that none waits long for another.
-const PIECES: usize = 4;
+const PIECES: usize = 8;
 
 /// Threads that hold an array each are so many at most.
 const ARRAYS: usize = 8;

@@ -1,6 +1,5 @@
 //! Half-edges sorted by the smaller vertices of their edges: what finds twins, and the edges of meshes that are not manifold.
 
-use crate::NONE;
 use crate::threads::{Threads, Word, shared};
 use std::ops::Range;
 use std::sync::atomic::AtomicU32;
@@ -157,14 +156,14 @@ impl Rising<'_> {
         entries.map(|(high, entry)| (high, entry & !TAKEN, entry & TAKEN != 0))
     }
 
-    /// Matches all half-edges, the first ones where an edge has several. Returns the others, each after the smaller vertex.
+    /// Writes the twins of all half-edges, the first ones where an edge has several, but for the others, which it returns,
+    /// each after the smaller vertex.
     pub(super) fn match_all(
         &self,
         triangles: &[u32],
         twins: &[AtomicU32],
         threads: &Threads,
     ) -> Vec<(u32, u32)> {
-        threads.map(twins.len(), |piece| twins[piece].iter().for_each(|twin| twin.set(NONE)));
         let half_edges = &self.half_edges[..self.count()];
         let (mut matched, mut others) = (0, Vec::new());
         for (count, mut falling) in
@@ -248,7 +247,7 @@ impl Rising<'_> {
 #[cfg(all(test, feature = "threads"))]
 mod tests {
     use super::*;
-    use crate::Adjacency;
+    use crate::{Adjacency, NONE};
 
     /// As after a race, in which one half-edge has been counted twice.
     #[test]
@@ -259,7 +258,7 @@ mod tests {
         for taken in 0..buckets.ends[4] as usize {
             let mut half_edges = buckets.half_edges.clone();
             half_edges[taken] |= TAKEN;
-            let mut twins = vec![0; triangles.len()];
+            let mut twins = vec![NONE; triangles.len()];
             let (ends, highs) = (&buckets.ends, &buckets.highs);
             let rising = Rising { ends, highs, half_edges: shared(&mut half_edges) };
             let others = rising.match_all(&triangles, shared(&mut twins), &Threads::default());

@@ -128,8 +128,22 @@ class Pool {
   }
 }
 
-/** Where pages of memory are larger, more of them are written than need be. */
+/** Where pages of memory are larger, they are written more often than need be. */
 const WORDS_OF_PAGE = 1024;
+
+/**
+ * Memory for so many indices, if there is any. The system gives a page of it when it is first written, which takes longer
+ * than to copy them there: it does so now, while others work.
+ */
+function reserve(indices: number): Uint32Array | undefined {
+  try {
+    const words = new Uint32Array(indices);
+    for (let i = 0; i < indices; i += WORDS_OF_PAGE) words[i] = 1;
+    return words;
+  } catch {
+    return undefined;
+  }
+}
 
 /** Threads and their memory. */
 type Threads = [pool: Pool, memory: WebAssembly.Memory];
@@ -168,7 +182,7 @@ export class ThreadsSession implements ModuleSession {
   /** What the next triangles are copied to. */
   #spare: Uint32Array | undefined;
 
-  private constructor([pool, memory]: Threads, session: number, spare: Uint32Array, fallback: string | undefined) {
+  private constructor([pool, memory]: Threads, session: number, spare: Uint32Array | undefined, fallback: string | undefined) {
     this.#pool = pool;
     this.#memory = memory;
     this.#spare = spare;
@@ -200,10 +214,7 @@ export class ThreadsSession implements ModuleSession {
     new (isDouble ? Float64Array : Float32Array)(memory.buffer, first, length).set(positions);
     new Uint32Array(memory.buffer, second, indices.length).set(indices);
     const opened = pool.call('open', session);
-    const spare = new Uint32Array(indices.length);
-    // The system gives a page of memory when it is first written, which takes longer than the copy: it does so while others
-    // work.
-    for (let i = 0; i < spare.length; i += WORDS_OF_PAGE) spare[i] = 1;
+    const spare = reserve(indices.length);
     await opened;
     return new ThreadsSession(threads, session, spare, fallback);
   }
