@@ -1,4 +1,4 @@
-//! Lawson's algorithm on neighbouring triangles: all of a mesh, or a part whose other edges are left to the end.
+//! Lawson's algorithm on neighbouring triangles: all of a mesh, or a part that leaves its other edges to where it is joined.
 
 use crate::adjacency::{FLAGS, next, prev, unflagged};
 use crate::phases::{
@@ -50,7 +50,7 @@ pub(super) struct Work {
     pub(super) pending: Vec<u32>,
     /// Those of them that may not flip.
     pub(super) blocked: Vec<u32>,
-    /// Those of edges that a part leaves to the end, Delaunay or not.
+    /// Those of edges that a part leaves to the larger one that it is a half of, Delaunay or not.
     pub(super) left: Vec<u32>,
     /// Whether one of the blocked is so by an edge that may go.
     pub(super) has_duplicate: bool,
@@ -104,7 +104,7 @@ impl Region<'_> {
         }
     }
 
-    /// Tests these edges, and flips until nothing is left to flip. Leaves those to other triangles to the end.
+    /// Tests these edges, and flips until nothing is left to flip. Leaves those to triangles outside of the part.
     fn flip_some(&mut self, half_edges: &[u32]) {
         let mut diamonds = [Diamond::default(); EDGES];
         for half_edges in half_edges.chunks(EDGES) {
@@ -122,8 +122,8 @@ impl Region<'_> {
         }
     }
 
-    /// Leaves the edges to triangles behind the part to the end; others do so with those before it. Such a half-edge stays
-    /// where it is.
+    /// Leaves the edges to triangles behind the part; other parts do so with those before it. Such a half-edge stays where
+    /// it is.
     fn leave(&mut self, half_edges: Range<u32>) {
         let end = self.mesh.first + self.mesh.twins.len() as u32;
         let behind = (NONE & !FLAGS) - end;
