@@ -1,5 +1,6 @@
 //! Half-edges sorted by the smaller vertices of their edges: what finds twins, and the edges of meshes that are not manifold.
 
+use super::triangle_of;
 use crate::threads::{Threads, Word, shared};
 use std::ops::Range;
 use std::sync::atomic::AtomicU32;
@@ -130,6 +131,23 @@ pub(super) fn visit_edges(bucket: &mut [(u32, u32)], edge: &mut Vec<u32>, mut vi
     }
 }
 
+/// A bit for each of some words, set where it is `word`.
+#[cfg(not(target_feature = "simd128"))]
+#[inline(always)]
+fn equals(words: &[u32; LANES], word: u32) -> u32 {
+    (0..).zip(words).fold(0, |bits, (i, &other)| bits | u32::from(other == word) << i)
+}
+
+/// As above; the compiler would do it one after the other.
+#[cfg(target_feature = "simd128")]
+#[inline(always)]
+fn equals(words: &[u32; LANES], word: u32) -> u32 {
+    use std::arch::wasm32::{u32x4_bitmask, u32x4_eq, u32x4_splat, v128};
+    let [low, high]: [v128; 2] = zerocopy::transmute!(*words);
+    let word = u32x4_splat(word);
+    u32::from(u32x4_bitmask(u32x4_eq(low, word))) | u32::from(u32x4_bitmask(u32x4_eq(high, word))) << 4
+}
+
 /// Set in a rising half-edge that a falling one has taken.
 const TAKEN: u32 = 1 << 31;
 
@@ -201,7 +219,7 @@ impl Rising<'_> {
                 let entry = self.find(low, high);
                 let g = entry.map_or(TAKEN, |entry| entry.get());
                 match entry {
-                    Some(entry) if g & TAKEN == 0 && g / 3 != h / 3 => {
+                    Some(entry) if g & TAKEN == 0 && triangle_of(g) != triangle_of(h) => {
                         entry.set(g | TAKEN);
                         twins[h as usize].set(g);
                         twins[g as usize].set(h);
@@ -218,23 +236,18 @@ impl Rising<'_> {
     #[inline(always)]
     fn find(&self, low: u32, high: u32) -> Option<&AtomicU32> {
         let Range { start, end } = range(self.ends, low as usize);
-        let found = if end - start > FEW {
-            start + self.highs[start..end].partition_point(|&v| v < high)
-        } else {
-            let mut at = start;
-            loop {
-                let (lanes, _) = self.highs[at..].split_first_chunk::<LANES>()?;
-                let bits = (0..).zip(lanes).fold(0u32, |bits, (i, &v)| bits | u32::from(v == high) << i);
-                if bits != 0 {
-                    break at + bits.trailing_zeros() as usize;
-                }
-                at += LANES;
-                if at >= end {
-                    return None;
-                }
+        if end - start > FEW {
+            let found = start + self.highs[start..end].partition_point(|&v| v < high);
+            return (found < end && self.highs[found] == high).then(|| &self.half_edges[found]);
+        }
+        for at in (start..end).step_by(LANES) {
+            let bits = equals(self.highs[at..].first_chunk()?, high);
+            if bits != 0 {
+                let found = at + bits.trailing_zeros() as usize;
+                return (found < end).then(|| &self.half_edges[found]);
             }
-        };
-        (found < end && self.highs[found] == high).then(|| &self.half_edges[found])
+        }
+        None
     }
 
     /// Those that have not been taken.

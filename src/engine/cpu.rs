@@ -140,7 +140,7 @@ impl Cpu {
             found.blocked.clear();
             self.threads.extend(
                 &mut found,
-                self.twins.len(),
+                self.twins.len() / 3,
                 |piece, found| self.test_all(piece, found),
                 Found::append,
             );
@@ -149,13 +149,13 @@ impl Cpu {
         self.flipped.get_or_insert_default().clear();
     }
 
-    /// Tests the edges whose lower half-edges are in `range`.
+    /// Tests the edges whose lower half-edges are of these triangles.
     fn test_all(&self, range: Range<usize>, found: &mut Found) {
         let mut diamonds = [Diamond::default(); EDGES];
-        for first in range.clone().step_by(EDGES) {
-            let half_edges = first as u32..range.end.min(first + EDGES) as u32;
-            let count = Diamond::write(self.topology(), half_edges, &mut diamonds);
-            self.test(&diamonds[..count], found);
+        for first in range.clone().step_by(EDGES / 3) {
+            let piece = first..range.end.min(first + EDGES / 3);
+            let count = Diamond::write(self.topology(), piece, &mut diamonds);
+            self.test(&mut diamonds[..count], found);
         }
     }
 
@@ -173,27 +173,27 @@ impl Cpu {
 
     /// Tests the edges around those that have flipped.
     fn test_around(&self, flipped: &[Edge], found: &mut Found) {
+        let mesh = self.topology();
         let mut diamonds = [Diamond::default(); EDGES];
         for flipped in flipped.chunks(EDGES / 4) {
             let mut count = 0;
-            for &edge in flipped {
-                for diamond in Diamond::around(self.topology(), edge) {
-                    let (h, g) = (diamond.h, unflagged(diamond.twin));
-                    diamonds[count] = diamond;
-                    // Between two that have flipped, one of them tests; nothing could predict a branch.
-                    count += usize::from(self.selected.is_free(g) | (h < g));
-                }
+            for &[h, g] in flipped {
+                let sides = [h, prev(h), g, prev(g)];
+                let outer = sides.map(|x| mesh.twin(x));
+                let [a, c, b, d] = sides.map(|x| mesh.corner(x));
+                // Between two that have flipped, one of them tests.
+                let is_wanted = |h, g| self.selected.is_free(g) | (h < g);
+                let room = &mut diamonds[count..];
+                count += Diamond::write_around(mesh, sides, outer, [a, b, c, d], room, is_wanted);
             }
-            self.test(&diamonds[..count], found);
+            self.test(&mut diamonds[..count], found);
         }
     }
 
-    fn test(&self, diamonds: &[Diamond], found: &mut Found) {
+    fn test(&self, diamonds: &mut [Diamond], found: &mut Found) {
         let geometry = self.geometry();
-        let mut kept = [0; EDGES];
-        let count = keep_non_delaunay(&geometry, diamonds, &mut kept);
-        for &i in &kept[..count] {
-            let diamond = &diamonds[i as usize];
+        let count = keep_non_delaunay(&geometry, diamonds);
+        for diamond in &diamonds[..count] {
             let (h, g, [_, _, c, d]) = (diamond.h, unflagged(diamond.twin), diamond.corners);
             let edge = [h.min(g), h.max(g)];
             match verdict_of_shape(&geometry, diamond) {

@@ -43,8 +43,8 @@ impl Lawson {
         // A flip elsewhere may have removed the edge that stood in the way.
         while std::mem::take(&mut whole.work.has_duplicate) && whole.work.flips > before {
             before = whole.work.flips;
-            whole.work.pending = std::mem::take(&mut whole.work.blocked);
-            whole.flip_pending(false);
+            let blocked = std::mem::take(&mut whole.work.blocked);
+            whole.flip_some(&blocked);
         }
         let Work { flips, blocked, .. } = whole.work;
         self.has_ended = flips < u32::MAX;

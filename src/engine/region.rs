@@ -9,8 +9,11 @@ use crate::threads::Threads;
 use crate::{NONE, Reason};
 use std::ops::Range;
 
-/// Edges that are tested in one go, before those of them that are not Delaunay flip.
-const EDGES: usize = 64;
+/// Triangles whose edges are tested in one go, before those of them that are not Delaunay flip.
+const TRIANGLES: usize = 32;
+
+/// Edges of so many triangles at most.
+const EDGES: usize = 3 * TRIANGLES;
 
 /// Triangles that follow each other, with nothing outside of them read or written.
 pub(super) struct Region<'a> {
@@ -46,9 +49,8 @@ impl TopologyMut<'_> {
 /// What is to be done, and what has been.
 #[derive(Default)]
 pub(super) struct Work {
-    /// Half-edges of edges that were not Delaunay when they were tested last; others may have flipped since.
-    pub(super) pending: Vec<u32>,
-    /// Those of them that may not flip.
+    queue: Queue,
+    /// Half-edges of those that may not flip.
     pub(super) blocked: Vec<u32>,
     /// Those of edges that a part leaves to the larger one that it is a half of, Delaunay or not.
     pub(super) left: Vec<u32>,
@@ -87,87 +89,79 @@ impl Region<'_> {
             }
             self.flip_some(&left);
         }
-        self.work.left.append(&mut self.work.pending);
     }
 
     /// Tests all edges, and flips until nothing is left to flip.
     fn flip_each(&mut self) {
-        let mut diamonds = [Diamond::default(); EDGES];
-        let end = self.mesh.first + self.mesh.twins.len() as u32;
-        for first in (self.mesh.first..end).step_by(EDGES) {
-            let half_edges = first..end.min(first + EDGES as u32);
-            let mesh = self.mesh.get();
-            let count = Diamond::write(mesh, half_edges.clone(), &mut diamonds);
-            self.leave(half_edges);
-            let is_known = self.test(&diamonds, count);
-            self.flip_pending(is_known);
+        let end = self.mesh.twins.len() / 3;
+        for first in (0..end).step_by(TRIANGLES) {
+            let piece = first..end.min(first + TRIANGLES);
+            let room = self.work.queue.room(EDGES);
+            let count = Diamond::write(self.mesh.get(), piece.clone(), room);
+            self.leave(piece);
+            self.test(count);
+            self.flip_queue();
         }
     }
 
     /// Tests these edges, and flips until nothing is left to flip. Leaves those to triangles outside of the part.
-    fn flip_some(&mut self, half_edges: &[u32]) {
-        let mut diamonds = [Diamond::default(); EDGES];
+    pub(super) fn flip_some(&mut self, half_edges: &[u32]) {
         for half_edges in half_edges.chunks(EDGES) {
-            let (mesh, mut count) = (self.mesh.get(), 0);
+            let (mesh, room) = (self.mesh.get(), self.work.queue.room(EDGES));
+            let mut count = 0;
             for &h in half_edges {
                 if mesh.has(unflagged(mesh.twin(h))) {
-                    diamonds[count] = Diamond::new(mesh, h);
+                    room[count] = Diamond::new(mesh, h);
                     count += 1;
                 } else if mesh.leaves(h) {
                     self.work.left.push(h);
                 }
             }
-            let is_known = self.test(&diamonds, count);
-            self.flip_pending(is_known);
+            self.test(count);
+            self.flip_queue();
         }
     }
 
-    /// Leaves the edges to triangles behind the part; other parts do so with those before it. Such a half-edge stays where
-    /// it is.
-    fn leave(&mut self, half_edges: Range<u32>) {
+    /// Leaves the edges of these triangles to those behind the part; other parts do so with those before it. Such a
+    /// half-edge stays where it is.
+    fn leave(&mut self, piece: Range<usize>) {
+        let first = self.mesh.first + 3 * piece.start as u32;
         let end = self.mesh.first + self.mesh.twins.len() as u32;
         let behind = (NONE & !FLAGS) - end;
         let is_behind = |twin: u32| (twin & !FLAGS).wrapping_sub(end) < behind;
-        let twins = &self.mesh.twins[(half_edges.start - self.mesh.first) as usize..][..half_edges.len()];
+        let twins = &self.mesh.twins[3 * piece.start..3 * piece.end];
         if twins.iter().fold(false, |any, &twin| any | is_behind(twin)) {
-            let twins = half_edges.zip(twins);
+            let twins = (first..).zip(twins);
             self.work.left.extend(twins.filter(|&(_, &twin)| is_behind(twin)).map(|(h, _)| h));
         }
     }
 
-    /// Tests the first `count` edges. Returns whether some are pending now, of which the last is known not to be Delaunay.
-    fn test<const N: usize>(&mut self, diamonds: &[Diamond; N], count: usize) -> bool {
-        let mut kept = [0; N];
-        let count = keep_non_delaunay(self.geometry, &diamonds[..count], &mut kept);
-        self.work.pending.extend(kept[..count].iter().map(|&i| diamonds[i as usize].h));
-        count > 0
+    /// Tests so many edges that have been written behind the queue, and appends those of them that are not Delaunay.
+    fn test(&mut self, count: usize) {
+        let queue = &mut self.work.queue;
+        queue.end += keep_non_delaunay(self.geometry, &mut queue.places[queue.end..][..count]);
     }
 
-    /// Flips what is pending, the last of it without a test if it `is_known` not to be Delaunay, and then around that.
-    pub(super) fn flip_pending(&mut self, mut is_known: bool) {
+    /// Flips what is in the queue, and then around that.
+    fn flip_queue(&mut self) {
         while self.work.flips < self.limit
-            && let Some(h) = self.work.pending.pop()
+            && let Some(Diamond { h, corners, .. }) = self.work.queue.pop()
         {
             let mesh = self.mesh.get();
             let g = unflagged(mesh.twin(h));
-            // Its edge has moved, and one of the boundary has come: those to other triangles stay where they are.
+            // Its edge may have moved, and one of the boundary come: those to other triangles stay where they are.
             if !mesh.has(g) {
                 continue;
             }
             let diamond = Diamond::new(mesh, h);
-            if !std::mem::take(&mut is_known) && keep_non_delaunay(self.geometry, &[diamond], &mut [0]) == 0 {
+            // After a flip beside it, it has been tested again.
+            if (0..4).fold(0, |bits, i| bits | corners[i] ^ diamond.corners[i]) != 0 {
                 continue;
             }
             match self.verdict(&diamond) {
                 Some(Verdict::Labelled) => {
-                    self.flip(h, g);
-                    let (mut diamonds, mut count) = ([Diamond::default(); 4], 0);
-                    let mesh = self.mesh.get();
-                    for diamond in Diamond::around(mesh, [h, g]) {
-                        diamonds[count] = diamond;
-                        count += 1;
-                    }
-                    is_known = self.test(&diamonds, count);
+                    let count = self.flip(&diamond);
+                    self.test(count);
                 }
                 Some(verdict) => {
                     self.work.has_duplicate |= verdict == Verdict::Blocked(Reason::Duplicate);
@@ -175,6 +169,9 @@ impl Region<'_> {
                 }
                 None => self.work.left.push(h),
             }
+        }
+        while let Some(diamond) = self.work.queue.pop() {
+            self.work.left.push(diamond.h);
         }
     }
 
@@ -195,28 +192,103 @@ impl Region<'_> {
         (is_embedded && is_inside).then_some(shape)
     }
 
-    /// Flips the edge of two half-edges, alone. The triangles around it are others: if it may flip, c is not d.
-    fn flip(&mut self, h: u32, g: u32) {
+    /// Flips an edge, alone, and writes those around it behind the queue; returns how many they are. The triangles around it
+    /// are others: if it may flip, c is not d.
+    #[inline(always)]
+    fn flip(&mut self, diamond: &Diamond) -> usize {
         self.work.flips += 1;
         let TopologyMut { first, triangles, twins, fans } = &mut self.mesh;
         let at = |x: u32| (x - *first) as usize;
+        let &Diamond { h, twin, corners: [a, b, c, d] } = diamond;
+        let g = twin & !FLAGS;
         let [hn, hp, gn, gp] = [next(h), prev(h), next(g), prev(g)];
-        let [c, d] = [triangles[at(hp)], triangles[at(gp)]];
         if let Some(fans) = fans
             && !fans.table.is_empty()
         {
-            fans.move_anchor(triangles[at(hn)], hn, g);
-            fans.move_anchor(triangles[at(gn)], gn, h);
+            fans.move_anchor(b, hn, g);
+            fans.move_anchor(a, gn, h);
         }
-        for (inner, outer) in [(h, twins[at(gn)]), (g, twins[at(hn)])] {
+        let outer = [gn, hp, hn, gp].map(|x| twins[at(x)]);
+        for (inner, outer) in [(h, outer[0]), (g, outer[2])] {
             twins[at(inner)] = outer;
             if outer != NONE {
-                twins[at(unflagged(outer))] = inner | (outer & FLAGS);
+                twins[at(outer & !FLAGS)] = inner | (outer & FLAGS);
             }
         }
         triangles[at(hn)] = d;
         triangles[at(gn)] = c;
         twins[at(hn)] = gn;
         twins[at(gn)] = hn;
+        let room = self.work.queue.room(4);
+        Diamond::write_around(self.mesh.get(), [h, hp, g, gp], outer, diamond.corners, room, |_, _| true)
+    }
+}
+
+/// Edges that were not Delaunay when they were tested, in the order in which they flip: the first ones first, so that the
+/// processor is at the next one while it still tests around the one before.
+#[derive(Default)]
+struct Queue {
+    places: Vec<Diamond>,
+    first: usize,
+    /// What is in the places from here on is not in the queue.
+    end: usize,
+}
+
+impl Queue {
+    fn pop(&mut self) -> Option<Diamond> {
+        if self.first == self.end {
+            (self.first, self.end) = (0, 0);
+            return None;
+        }
+        self.first += 1;
+        Some(self.places[self.first - 1])
+    }
+
+    /// So many places behind the end.
+    #[inline(always)]
+    fn room(&mut self, count: usize) -> &mut [Diamond] {
+        if self.places.len() < self.end + count {
+            self.make_room(count);
+        }
+        &mut self.places[self.end..][..count]
+    }
+
+    #[cold]
+    fn make_room(&mut self, count: usize) {
+        self.places.copy_within(self.first..self.end, 0);
+        (self.first, self.end) = (0, self.end - self.first);
+        // As many again, so that this is seldom done.
+        let length = self.places.len().max(2 * (self.end + count));
+        self.places.resize(length, Diamond::default());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+    use std::collections::VecDeque;
+
+    proptest! {
+        /// Each time some are written behind the queue, a part of them is appended, and some leave.
+        #[test]
+        fn what_is_appended_first_leaves_first(
+            steps in proptest::collection::vec((0usize..20, 0usize..20, 0usize..12), 0..60)
+        ) {
+            let (mut queue, mut expected) = (Queue::default(), VecDeque::new());
+            let mut numbers = 0..;
+            for (written, appended, leaving) in steps {
+                let appended = appended.min(written);
+                for (place, h) in queue.room(written).iter_mut().zip(&mut numbers) {
+                    place.h = h;
+                }
+                let new = queue.places[queue.end..][..appended].iter().map(|diamond| diamond.h);
+                expected.extend(new);
+                queue.end += appended;
+                for _ in 0..leaving {
+                    prop_assert_eq!(queue.pop().map(|diamond| diamond.h), expected.pop_front());
+                }
+            }
+        }
     }
 }

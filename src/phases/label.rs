@@ -1,7 +1,7 @@
 //! Label: each triangle tests its three edges and keeps the best one that may flip.
 
 use super::{BLOCKED, Geometry, Thresholds, Topology, key};
-use crate::adjacency::{CREASE, LOCKED, next, prev, unflagged};
+use crate::adjacency::{CREASE, FLAGS, LOCKED, next, prev, triangle_of, unflagged};
 use crate::mesh::Dimension;
 use crate::predicates::{Quad, area_sign, in_circle_filter, in_circle_sign};
 use crate::star::{Star, any_in_either};
@@ -66,44 +66,60 @@ impl Diamond {
         Self { h, twin, corners }
     }
 
-    /// Writes the edges of two of the triangles whose lower half-edges are among these, and returns how many they are.
+    /// Writes the edges of two of the triangles whose lower half-edges are of these, counted from the first one, and
+    /// returns how many they are. There has to be room for three of each triangle.
     #[inline(always)]
-    pub(crate) fn write<const N: usize>(
-        mesh: Topology,
-        half_edges: Range<u32>,
-        diamonds: &mut [Self; N],
-    ) -> usize {
-        let mut edges = [0; N];
+    pub(crate) fn write(mesh: Topology, piece: Range<usize>, diamonds: &mut [Self]) -> usize {
+        let [(triangles, _), (twins, _)] = [mesh.triangles, mesh.twins].map(|words| words.as_chunks::<3>());
+        let first = mesh.first + 3 * piece.start as u32;
+        let end = mesh.first + mesh.twins.len() as u32;
         let mut count = 0;
-        for h in half_edges {
-            let g = unflagged(mesh.twin(h));
-            edges[count] = h;
-            count += usize::from((h < g) & mesh.has(g));
+        let both = triangles[piece.clone()].iter().zip(&twins[piece]);
+        for (h, (&[a, b, c], &[x, y, z])) in (first..).step_by(3).zip(both) {
+            for (h, twin, corners) in
+                [(h, x, [a, b, c, 0]), (h + 1, y, [b, c, a, 0]), (h + 2, z, [c, a, b, 0])]
+            {
+                diamonds[count] = Self { h, twin, corners };
+                // After h and before the end; where there is no twin it is behind that.
+                count += usize::from((twin & !FLAGS).wrapping_sub(h + 1) < end - (h + 1));
+            }
         }
-        for (diamond, &h) in diamonds.iter_mut().zip(&edges[..count]) {
-            *diamond = Self::new(mesh, h);
+        for diamond in &mut diamonds[..count] {
+            diamond.corners[3] = mesh.corner(prev(diamond.twin & !FLAGS));
         }
         count
     }
 
-    /// The four around an edge that has flipped, by its half-edges then: those of two of the triangles, that is.
+    /// Writes the four around an edge that has flipped, as far as they are between two of the triangles and wanted, by
+    /// their half-edges. Returns how many they are. The corners were a, b, c and d; the triangles are (a, d, c) and
+    /// (b, c, d) now. `sides` are the half-edges from a, c, b and d, and `outer` their entries in the twins.
     #[inline(always)]
-    pub(crate) fn around(mesh: Topology, [h, g]: [u32; 2]) -> impl Iterator<Item = Self> {
-        // The triangles are (a, d, c) and (b, c, d) now.
-        let [a, c, b, d] = [h, prev(h), g, prev(g)].map(|x| mesh.corner(x));
-        let sides = [(h, [a, d, c]), (prev(h), [c, a, d]), (g, [b, c, d]), (prev(g), [d, b, c])];
-        sides.into_iter().filter_map(move |(h, [from, to, apex])| {
-            let twin = mesh.twin(h);
-            let g = unflagged(twin);
-            mesh.has(g).then(|| Self { h, twin, corners: [from, to, apex, mesh.corner(prev(g))] })
-        })
+    pub(crate) fn write_around(
+        mesh: Topology,
+        sides: [u32; 4],
+        outer: [u32; 4],
+        [a, b, c, d]: [u32; 4],
+        diamonds: &mut [Self],
+        is_wanted: impl Fn(u32, u32) -> bool,
+    ) -> usize {
+        let triangles = [[a, d, c], [c, a, d], [b, c, d], [d, b, c]];
+        let mut count = 0;
+        for i in 0..4 {
+            let (h, twin, [from, to, apex]) = (sides[i], outer[i], triangles[i]);
+            let is_here = mesh.has(twin & !FLAGS);
+            // Nothing could predict a branch.
+            let g = if is_here { twin & !FLAGS } else { h };
+            diamonds[count] = Self { h, twin, corners: [from, to, apex, mesh.corner(prev(g))] };
+            count += usize::from(is_here & is_wanted(h, g));
+        }
+        count
     }
 }
 
 /// Tests the interior edge of half-edge `h`. Both half-edges give the same answer, since it is exact.
 pub(crate) fn verdict(geometry: &Geometry, mesh: Topology, h: u32) -> Verdict {
     let diamond = Diamond::new(mesh, h);
-    if keep_non_delaunay(geometry, &[diamond], &mut [0]) == 0 {
+    if keep_non_delaunay(geometry, &mut [diamond]) == 0 {
         return Verdict::Delaunay;
     }
     match verdict_of_shape(geometry, &diamond) {
@@ -112,49 +128,50 @@ pub(crate) fn verdict(geometry: &Geometry, mesh: Topology, h: u32) -> Verdict {
     }
 }
 
-/// Writes which of the edges are not Delaunay, as places in `diamonds`, and returns how many they are.
-pub(crate) fn keep_non_delaunay(geometry: &Geometry, diamonds: &[Diamond], kept: &mut [u32]) -> usize {
+/// Moves the edges that are not Delaunay to the front, in their order, and returns how many they are.
+pub(crate) fn keep_non_delaunay(geometry: &Geometry, diamonds: &mut [Diamond]) -> usize {
     match (geometry.dimension, geometry.positions) {
         (Dimension::Two, Positions::F32(numbers)) => {
-            let (fours, rest) = diamonds.as_chunks();
-            let count = keep_in_fours(geometry, numbers, fours, kept);
-            keep(4 * fours.len(), rest, kept, count, |diamond| is_non_delaunay_in_plane(geometry, diamond))
+            let fours = diamonds.len() / 4;
+            let count = keep_in_fours(geometry, numbers, fours, diamonds);
+            keep(4 * fours, diamonds, count, |diamond| is_non_delaunay_in_plane(geometry, diamond))
         }
         (Dimension::Two, Positions::F64(_)) => {
-            keep(0, diamonds, kept, 0, |diamond| is_non_delaunay_in_plane(geometry, diamond))
+            keep(0, diamonds, 0, |diamond| is_non_delaunay_in_plane(geometry, diamond))
         }
         (Dimension::Three, positions) => {
-            keep(0, diamonds, kept, 0, |diamond| quad(positions, diamond).is_non_delaunay())
+            keep(0, diamonds, 0, |diamond| quad(positions, diamond).is_non_delaunay())
         }
     }
 }
 
-/// Appends to the first `count` of `kept`, without a branch on the answers, which nothing could predict. `first` is the
-/// place of the first edge.
+/// Moves those from `first` on behind `count` others, without a branch on the answers, which nothing could predict.
 #[inline(always)]
 fn keep(
     first: usize,
-    diamonds: &[Diamond],
-    kept: &mut [u32],
+    diamonds: &mut [Diamond],
     mut count: usize,
     is_kept: impl Fn(&Diamond) -> bool,
 ) -> usize {
-    for (i, diamond) in (first as u32..).zip(diamonds) {
-        kept[count] = i;
-        count += usize::from(is_kept(diamond));
+    for i in first..diamonds.len() {
+        let diamond = diamonds[i];
+        diamonds[count] = diamond;
+        count += usize::from(is_kept(&diamond));
     }
     count
 }
 
 /// The same in the plane, for floats, four at a time.
 #[inline(always)]
-fn keep_in_fours(geometry: &Geometry, numbers: &[f32], diamonds: &[[Diamond; 4]], kept: &mut [u32]) -> usize {
+fn keep_in_fours(geometry: &Geometry, numbers: &[f32], fours: usize, diamonds: &mut [Diamond]) -> usize {
     let (points, _) = numbers.as_chunks();
     let mut count = 0;
-    for (first, four) in (0..).step_by(4).zip(diamonds) {
-        let quads = array::from_fn(|lane| four[lane].corners.map(|v| points[v as usize]));
+    for i in 0..fours {
+        let (all, _) = diamonds.as_chunks::<4>();
+        let four = &all[i];
+        let quads = array::from_fn(|lane| array::from_fn(|k| &points[four[lane].corners[k] as usize]));
         let [negative, positive] = in_circle_filter(&quads);
-        let clockwise = geometry.winding.bits(array::from_fn(|lane| four[lane].h / 3));
+        let clockwise = geometry.winding.bits(array::from_fn(|lane| triangle_of(four[lane].h)));
         let mut bits = negative & !clockwise | positive & clockwise;
         let mut undecided = !(negative | positive) & 0xf;
         while undecided != 0 {
@@ -163,7 +180,7 @@ fn keep_in_fours(geometry: &Geometry, numbers: &[f32], diamonds: &[[Diamond; 4]]
             bits |= u32::from(is_non_delaunay_in_plane(geometry, &four[lane as usize])) << lane;
         }
         for lane in 0..4 {
-            kept[count] = first + lane;
+            diamonds[count] = diamonds[4 * i + lane];
             count += (bits >> lane & 1) as usize;
         }
     }

@@ -45,9 +45,8 @@ pub(crate) fn in_circle_sign(a: DVec2, b: DVec2, c: DVec2, d: DVec2) -> Ordering
 /// What f32 knows of [`in_circle_sign`] of four quads (a, b, c, d): the bits of those where it is negative and of those
 /// where it is positive. The others are left to it.
 #[inline(always)]
-pub(crate) fn in_circle_filter(quads: &[[[f32; 2]; 4]; 4]) -> [u32; 2] {
-    let coordinate = |k: usize, i: usize| Vec4::from_array(array::from_fn(|lane| quads[lane][k][i]));
-    let [a, b, c, d] = array::from_fn(|k| [0, 1].map(|i| coordinate(k, i)));
+pub(crate) fn in_circle_filter(quads: &[[&[f32; 2]; 4]; 4]) -> [u32; 2] {
+    let [a, b, c, d] = array::from_fn(|k| by_coordinate(array::from_fn(|lane| quads[lane][k])));
     let minus = |u: [Vec4; 2], v: [Vec4; 2]| [u[0] - v[0], u[1] - v[1]];
     let (p, q, r, s) = (minus(a, c), minus(b, c), minus(a, d), minus(b, d));
     let cross = |u: [Vec4; 2], v: [Vec4; 2]| u[0] * v[1] - u[1] * v[0];
@@ -58,6 +57,30 @@ pub(crate) fn in_circle_filter(quads: &[[[f32; 2]; 4]; 4]) -> [u32; 2] {
     // The bound of the filter in f64, with the ε and the η of f32; differences do not underflow here either.
     let bound = size1 * size2 * (8.0 * f32::EPSILON) + (size1 + size2 + Vec4::ONE) * f32::MIN_POSITIVE;
     [value.cmplt(-bound).bitmask(), value.cmpgt(bound).bitmask()]
+}
+
+/// The x coordinates of four points, and the y coordinates.
+#[cfg(not(target_feature = "simd128"))]
+#[inline(always)]
+fn by_coordinate(points: [&[f32; 2]; 4]) -> [Vec4; 2] {
+    array::from_fn(|i| Vec4::from_array(array::from_fn(|lane| points[lane][i])))
+}
+
+/// As above, with one load a point.
+#[cfg(target_feature = "simd128")]
+#[expect(
+    unsafe_code,
+    reason = "of what is safe, the compiler makes a load and an insertion for each coordinate"
+)]
+#[inline(always)]
+fn by_coordinate(points: [&[f32; 2]; 4]) -> [Vec4; 2] {
+    use std::arch::wasm32::{u32x4_shuffle, v128_load64_lane, v128_load64_zero};
+    let two = |p: &[f32; 2], q: &[f32; 2]| {
+        // SAFETY: both are 8 bytes; these loads take any alignment.
+        unsafe { v128_load64_lane::<1>(v128_load64_zero(p.as_ptr().cast()), q.as_ptr().cast()) }
+    };
+    let (first, second) = (two(points[0], points[1]), two(points[2], points[3]));
+    [u32x4_shuffle::<0, 2, 4, 6>(first, second).into(), u32x4_shuffle::<1, 3, 5, 7>(first, second).into()]
 }
 
 /// The sign of the area of (a, b, c): positive when counter-clockwise.

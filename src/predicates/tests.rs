@@ -151,13 +151,17 @@ fn compare_in_plane([a, b, c, d]: [DVec2; 4]) {
     assert_eq!(total, order(&(area(a3, b3, c3) + area(b3, a3, d3))));
 }
 
+fn filter(quads: [[[f32; 2]; 4]; 4]) -> [u32; 2] {
+    in_circle_filter(&quads.each_ref().map(|quad| quad.each_ref()))
+}
+
 /// Four quads of the points, as f32.
 fn compare_filter(points: [DVec2; 4]) {
     let points = points.map(DVec2::as_vec2);
     if points.iter().all(|p| p.is_finite()) {
         let quads =
             [[0, 1, 2, 3], [1, 0, 3, 2], [0, 2, 1, 3], [3, 1, 2, 0]].map(|quad| quad.map(|k| points[k]));
-        let [negative, positive] = in_circle_filter(&quads.map(|quad| quad.map(<[f32; 2]>::from)));
+        let [negative, positive] = filter(quads.map(|quad| quad.map(<[f32; 2]>::from)));
         for (lane, quad) in quads.into_iter().enumerate() {
             let [a, b, c, d] = quad.map(Vec2::as_dvec2);
             let sign = in_circle_sign(a, b, c, d);
@@ -172,10 +176,10 @@ fn the_filter_decides_what_it_can() {
     let quad = |height: f32, size: f32| {
         [[0., 0.], [2., 0.], [1., height], [1., -height]].map(|p| p.map(|x| size * x))
     };
-    let filter = |size: f32| in_circle_filter(&[0.5, 1.0, 1.0 + 1e-5, 2.0].map(|height| quad(height, size)));
-    assert_eq!([1.0, 1e-8, 1e8].map(filter), [[0b0001, 0b1100]; 3]);
+    let filters = |size: f32| filter([0.5, 1.0, 1.0 + 1e-5, 2.0].map(|height| quad(height, size)));
+    assert_eq!([1.0, 1e-8, 1e8].map(filters), [[0b0001, 0b1100]; 3]);
     // The products underflow or overflow.
-    assert_eq!([1e-12, 1e12].map(filter), [[0, 0]; 2]);
+    assert_eq!([1e-12, 1e12].map(filters), [[0, 0]; 2]);
 }
 
 fn compare_in_space([a, b, c, d]: [DVec3; 4], degrees: f64, most: f32) {
