@@ -5,6 +5,7 @@ import type { FlipSession } from 'edgeflip';
 import {
   angles,
   change,
+  EdgeflipError,
   generate,
   measures,
   readMesh,
@@ -44,7 +45,11 @@ class Desk {
 
   async read(file: File, others: File[], report: Report): Promise<FileMesh> {
     const [bytes, ...rest] = await contentOf([file, ...others], report);
-    return send(await naming(readMesh(bytes!, file.name, { files: named(others, rest) })));
+    const reading = readMesh(bytes!, file.name, { files: named(others, rest) }).catch((error: unknown) => {
+      const isOfFile = error instanceof EdgeflipError && error.code === 'parse';
+      throw isOfFile ? new EdgeflipError('parse', `in ${file.name}: ${error.message}`) : error;
+    });
+    return send(await naming(reading));
   }
 
   /** `files` are those that the mesh was read from. */
