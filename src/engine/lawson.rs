@@ -1,4 +1,5 @@
-//! Lawson's sequential algorithm: one non-Delaunay edge after the other, from a stack, so that the next one is near.
+//! Lawson's sequential algorithm: one non-Delaunay edge after the other, from a queue that the mesh fills bit by bit, so that
+//! the next one is near.
 //! The paper compares with it; it is the fast path for those who do not need the order of the parallel phases.
 //!
 //! In the plane each thread has a region of the mesh, and then what touches two of them. The regions, and so the flips, are
