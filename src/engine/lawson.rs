@@ -1,6 +1,6 @@
 //! Lawson's sequential algorithm: one non-Delaunay edge after the other, from a queue that the mesh fills bit by bit, so that
-//! the next one is near.
-//! The paper compares with it; it is the fast path for those who do not need the order of the parallel phases.
+//! the next one is near. The paper compares with it; it is the fast path for those who do not need the order of the parallel
+//! phases.
 //!
 //! In the plane each thread has a region of the mesh, and then what touches two of them. The regions, and so the flips, are
 //! the same for any number of threads.

@@ -154,7 +154,7 @@ impl Region<'_> {
                 continue;
             }
             let diamond = Diamond::new(mesh, h);
-            // After a flip beside it, it has been tested again.
+            // After a flip beside it, it has been tested again. Word by word: written so, they are slow to read as one.
             if (0..4).fold(0, |bits, i| bits | corners[i] ^ diamond.corners[i]) != 0 {
                 continue;
             }
