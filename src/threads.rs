@@ -101,7 +101,8 @@ impl Threads {
 
     /// The pieces of a loop over `0..len`, at least one.
     pub(crate) fn pieces(&self, len: usize) -> Vec<Range<usize>> {
-        cut(len, PIECES * self.count())
+        let count = self.count();
+        cut(len, if count == 1 { 1 } else { PIECES * count })
     }
 
     /// The pieces of a loop over `0..len`, at least one, each of which holds an array.
@@ -120,6 +121,21 @@ impl Threads {
             };
         }
         items.into_iter().map(work).collect()
+    }
+
+    /// Does `work` with each piece of some items and of as many results.
+    pub(crate) fn fill<I: Sync, T: Send>(
+        &self,
+        items: &[I],
+        results: &mut [T],
+        work: impl Fn(&[I], &mut [T]) + Sync,
+    ) {
+        if self.count() == 1 {
+            return work(items, results);
+        }
+        let size = items.len().div_ceil(self.pieces(items.len()).len()).max(1);
+        let pieces = items.chunks(size).zip(results.chunks_mut(size)).collect();
+        self.map_each(pieces, |(items, results)| work(items, results));
     }
 
     /// Adds to `all` what `work` adds to an empty one for each piece of a loop over `0..len`, in order.
@@ -143,7 +159,11 @@ impl Threads {
 }
 
 /// `0..len` in up to `most` pieces, but at least one.
+#[inline]
 fn cut(len: usize, most: usize) -> Vec<Range<usize>> {
+    if most == 1 {
+        return std::iter::once(0..len).collect();
+    }
     let pieces = most.min(len / FEWEST).max(1);
     let size = len.div_ceil(pieces);
     (0..pieces).map(|i| len.min(i * size)..len.min((i + 1) * size)).collect()
@@ -203,6 +223,20 @@ mod tests {
                 let pieces = cut(len, most);
                 assert!((1..=most).contains(&pieces.len()));
                 assert!(pieces.into_iter().flatten().eq(0..len));
+            }
+        }
+    }
+
+    #[test]
+    fn each_result_is_of_its_item() {
+        for len in [0, 1, 7, 8, 1000] {
+            for count in [1, 2, 3, 8] {
+                let threads = Threads::new(NonZeroUsize::new(count)).unwrap();
+                let (items, mut results) = (Vec::from_iter(0..len), vec![0; len]);
+                threads.fill(&items, &mut results, |items, results| {
+                    items.iter().zip(results).for_each(|(item, result)| *result += item + 1);
+                });
+                assert!(results.into_iter().eq(1..=len));
             }
         }
     }

@@ -3,18 +3,19 @@
 
 use super::region::TopologyMut;
 use super::{Answer, Census, EdgeCounts, Engine};
-use crate::adjacency::{CREASE, LOCKED, prev, unflagged};
+use crate::adjacency::{CREASE, FLAGS, LOCKED, prev, unflagged};
 use crate::embedded::Embedded;
 use crate::locks;
 use crate::mesh::{Dimension, Mesh};
 use crate::phases::{
-    Diamond, Geometry, Selected, Thresholds, Topology, Verdict, flag_creases, flip, keep_non_delaunay, key,
-    makes_duplicate, move_anchors, verdict, verdict_of_shape, yields,
+    Around, Diamond, Geometry, Selected, Thresholds, Topology, Verdict, flag_creases, flip,
+    keep_non_delaunay, key, makes_duplicate, move_anchors, verdict, verdict_of_shape, yields,
 };
 use crate::star::Fans;
 use crate::threads::{Threads, Word, shared};
 use crate::winding::Winding;
 use crate::{Adjacency, NONE};
+use std::hint::black_box;
 use std::ops::Range;
 use std::sync::Arc;
 use std::sync::atomic::AtomicU32;
@@ -47,6 +48,12 @@ impl Found {
     }
 }
 
+/// Reads words ahead of their use: in a loop so short, the processor waits for many of them at once.
+#[inline(always)]
+fn touch(words: impl Iterator<Item = u32>) {
+    black_box(words.fold(0, |all, word| all ^ word));
+}
+
 fn geometry_of<'a>(
     mesh: &'a Mesh,
     winding: &'a Winding,
@@ -70,6 +77,8 @@ pub(crate) struct Cpu {
     found: Found,
     /// The edges that the last iteration has flipped; `None` before the first.
     flipped: Option<Vec<Edge>>,
+    /// What is around each of those now, and some more.
+    around: Vec<Around>,
     /// Those edges by triangle.
     selected: Selected,
     /// For each vertex whose star is not known to be embedded the last iteration, plus one, in which an edge there came
@@ -104,6 +113,7 @@ impl Cpu {
             fans,
             found: Found::default(),
             flipped: None,
+            around: Vec::new(),
             selected: Selected::new(triangles.len() / 3),
             changed: std::iter::repeat_with(AtomicU32::default).take(mesh.vertex_count()).collect(),
             iteration: 0,
@@ -131,11 +141,10 @@ impl Cpu {
             let keep =
                 |piece: Range<usize>, found: &mut Found| self.keep_candidates(&candidates[piece], found);
             self.threads.extend(&mut found, candidates.len(), keep, Found::append);
-            let test = |piece: Range<usize>, found: &mut Found| self.test_around(&flipped[piece], found);
+            let test = |piece: Range<usize>, found: &mut Found| {
+                self.test_around(&flipped[piece.clone()], &self.around[piece], found);
+            };
             self.threads.extend(&mut found, flipped.len(), test, Found::append);
-            self.threads.map(flipped.len(), |piece| {
-                flipped[piece].iter().for_each(|&edge| self.selected.release(edge));
-            });
         } else {
             found.blocked.clear();
             self.threads.extend(
@@ -171,20 +180,18 @@ impl Cpu {
         }
     }
 
-    /// Tests the edges around those that have flipped.
-    fn test_around(&self, flipped: &[Edge], found: &mut Found) {
+    /// Tests the edges around those that have flipped, whose triangles are free again.
+    fn test_around(&self, flipped: &[Edge], around: &[Around], found: &mut Found) {
         let mesh = self.topology();
         let mut diamonds = [Diamond::default(); EDGES];
-        for flipped in flipped.chunks(EDGES / 4) {
+        for (flipped, around) in flipped.chunks(EDGES / 4).zip(around.chunks(EDGES / 4)) {
+            let far = around.iter().flat_map(|[outer, _]| outer).map(|twin| (twin & !FLAGS) as usize);
+            touch(far.map(|g| *self.triangles.get(g).unwrap_or(&0)));
             let mut count = 0;
-            for &[h, g] in flipped {
-                let sides = [h, prev(h), g, prev(g)];
-                let outer = sides.map(|x| mesh.twin(x));
-                let [a, c, b, d] = sides.map(|x| mesh.corner(x));
-                // Between two that have flipped, one of them tests.
-                let is_wanted = |h, g| self.selected.is_free(g) | (h < g);
-                let room = &mut diamonds[count..];
-                count += Diamond::write_around(mesh, sides, outer, [a, b, c, d], room, is_wanted);
+            for (&[h, g], &[outer, corners]) in flipped.iter().zip(around) {
+                self.selected.release([h, g]);
+                let (sides, room) = ([h, prev(h), g, prev(g)], &mut diamonds[count..]);
+                count += Diamond::write_around(mesh, sides, outer, corners, room);
             }
             self.test(&mut diamonds[..count], found);
         }
@@ -263,20 +270,28 @@ impl Cpu {
 
     /// Flip with Update. Returns the number of flips.
     fn flip(&mut self) -> u32 {
-        let Self { threads, triangles, twins, fans, selected, changed, embedded, iteration, .. } = self;
+        let Self { threads, triangles, twins, fans, selected, changed, embedded, iteration, around, .. } =
+            self;
         let flips = self.flipped.as_deref().unwrap_or_default();
         *iteration += 1;
         move_anchors(fans, triangles, selected, flips);
         let (triangles, twins) = (shared(triangles), shared(twins));
-        threads.map(flips.len(), |piece| {
-            for &[h, g] in &flips[piece] {
-                for x in [h, prev(h), g, prev(g)] {
-                    let v = triangles[x as usize].get();
-                    if !embedded.at(v) {
-                        changed[v as usize].set(*iteration);
+        if around.len() < flips.len() {
+            drop(std::mem::take(around));
+            *around = vec![Around::default(); flips.len()];
+        }
+        threads.fill(flips, &mut around[..flips.len()], |flips, around| {
+            for (flips, around) in flips.chunks(EDGES / 4).zip(around.chunks_mut(EDGES / 4)) {
+                let own = flips.iter().flatten().map(|&x| x as usize);
+                touch(own.map(|x| twins[x].get() ^ triangles[x].get()));
+                for (&edge, around) in flips.iter().zip(around) {
+                    *around = flip(triangles, twins, selected, edge);
+                    for v in around[1] {
+                        if !embedded.at(v) {
+                            changed[v as usize].set(*iteration);
+                        }
                     }
                 }
-                flip(triangles, twins, selected, [h, g]);
             }
         });
         flips.len() as u32
@@ -287,6 +302,9 @@ impl Cpu {
         self.label();
         let Found { candidates, blocked } = &self.found;
         let mut census = Census::default();
+        if candidates.is_empty() & blocked.is_empty() {
+            return census;
+        }
         let mut is_counted = vec![false; self.twins.len()];
         for &h in candidates.iter().map(|[h, _]| h).chain(blocked) {
             let g = unflagged(self.twins[h as usize]);

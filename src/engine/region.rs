@@ -220,7 +220,7 @@ impl Region<'_> {
         twins[at(hn)] = gn;
         twins[at(gn)] = hn;
         let room = self.work.queue.room(4);
-        Diamond::write_around(self.mesh.get(), [h, hp, g, gp], outer, diamond.corners, room, |_, _| true)
+        Diamond::write_around(self.mesh.get(), [h, hp, g, gp], outer, diamond.corners, room)
     }
 }
 

@@ -61,17 +61,17 @@ export class FlipSession implements AsyncIterable<Iteration>, Disposable {
 
   /** The iterations that are left. Leaving the loop leaves the session as it is then. */
   async *[Symbol.asyncIterator](): AsyncGenerator<Iteration, void, undefined> {
-    const turns = new Turns();
+    const turns = this.#session.isAway ? undefined : new Turns();
     for (let iteration = await this.step(); iteration; iteration = await this.step()) {
       yield iteration;
-      await turns.give();
+      await turns?.give();
     }
   }
 
   /** Runs to the end, or until the signal stops it. A stopped session can go on. */
   async run({ signal, onProgress }: RunOptions = {}): Promise<Result> {
-    const turns = new Turns();
-    for (let goesOn = true; goesOn && !signal?.aborted; await turns.give()) {
+    const turns = this.#session.isAway ? undefined : new Turns();
+    for (let goesOn = true; goesOn && !signal?.aborted; await turns?.give()) {
       const [more, progress] = await this.#call(async (session) => {
         const more = await session.advance();
         return [more, { iterations: session.iterations, flips: session.flips }];

@@ -7,7 +7,10 @@ import type { Options } from './types.js';
 import type { Session } from './wasm/edgeflip.js';
 
 /** What a session is asked, in whatever module it is. */
-export type ModuleSession = Omit<Session, typeof Symbol.dispose>;
+export interface ModuleSession extends Omit<Session, typeof Symbol.dispose> {
+  /** Whether it is in a worker: the page has its turn while it waits. */
+  readonly isAway?: boolean;
+}
 
 /** Triangles that are done on one thread before others have woken up, as `src/threads.rs` has it. */
 const FEWEST_TRIANGLES = 65_536;
@@ -171,6 +174,7 @@ export class ThreadsSession implements ModuleSession {
   iterations = 0;
   flips = 0;
   readonly backend = 'cpu';
+  readonly isAway = true;
   readonly device = undefined;
   readonly positionBuffer = undefined;
   readonly indexBuffer = undefined;

@@ -127,7 +127,7 @@ export interface Progress {
 export interface RunOptions {
   /** Stops the run after a complete iteration. The result then has the status `'stopped'`; nothing is thrown. */
   signal?: AbortSignal | undefined;
-  /** Called after every batch of iterations: on the CPU one, on the GPU many. */
+  /** Called after every batch of iterations: on one thread of the CPU one, on several those of 32 ms, on the GPU many. */
   onProgress?: ((progress: Progress) => void) | undefined;
 }
 

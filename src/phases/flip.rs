@@ -1,13 +1,13 @@
 //! Flip with Update: rotate the two triangles of each selected edge in place and repair the twins around.
 
 use crate::NONE;
-use crate::adjacency::{FLAGS, next, prev, triangle_of, unflagged};
+use crate::adjacency::{FLAGS, next, prev, triangle_of};
 use crate::star::Fans;
 use crate::threads::Word;
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
-/// For each triangle the twin of its half-edge that flips, with the place of that in the triangle in the bits of
-/// [`FLAGS`]; or [`NONE`], whose place is none.
+/// For each triangle the twin of its half-edge that flips, with the place of the next one in the triangle in the bits of
+/// [`FLAGS`]: that one moves. Or [`NONE`], whose place is none.
 pub(crate) struct Selected(Vec<AtomicU32>);
 
 impl Selected {
@@ -44,7 +44,7 @@ impl Selected {
     /// Selects the edge of two half-edges.
     pub(crate) fn choose(&self, [h, g]: [u32; 2]) {
         for (x, twin) in [(h, g), (g, h)] {
-            self.word(x).set(twin | (x - 3 * triangle_of(x)) << FLAGS.trailing_zeros());
+            self.word(x).set(twin | (next(x) - 3 * triangle_of(x)) << FLAGS.trailing_zeros());
         }
     }
 
@@ -65,23 +65,16 @@ impl Selected {
     /// The selected half-edge of triangle `t`, and its twin.
     pub(crate) fn pair(&self, t: u32) -> Option<(u32, u32)> {
         let word = self.0[t as usize].get();
-        (word != NONE).then_some((3 * t + (word >> FLAGS.trailing_zeros()), word & !FLAGS))
+        (word != NONE).then(|| (prev(3 * t + (word >> FLAGS.trailing_zeros())), word & !FLAGS))
     }
 
-    /// Where the half-edge that an entry of `twins` names will be after the iteration: the half-edge after a
-    /// selected one moves into the place of the selected one's twin. A function of the state before the phase.
+    /// Where a half-edge will be after the iteration: the one after a selected one moves into the place of the selected
+    /// one's twin. A function of the state before the phase. And whether no edge of its triangle is selected.
     #[inline(always)]
-    fn slot(&self, entry: u32) -> u32 {
-        let x = unflagged(entry);
-        if x == NONE {
-            return NONE;
-        }
+    fn slot(&self, x: u32) -> (u32, bool) {
         let word = self.word(x).get();
-        if prev(x) - 3 * triangle_of(x) == word >> FLAGS.trailing_zeros() {
-            word & !FLAGS | entry & FLAGS
-        } else {
-            entry
-        }
+        let moves = x - 3 * triangle_of(x) == word >> FLAGS.trailing_zeros();
+        (if moves { word & !FLAGS } else { x }, word == NONE)
     }
 }
 
@@ -92,31 +85,45 @@ pub(crate) fn move_anchors(fans: &mut Fans, triangles: &[u32], selected: &Select
     }
     for edge in edges {
         for moved in edge.map(next) {
-            fans.move_anchor(triangles[moved as usize], moved, selected.slot(moved));
+            fans.move_anchor(triangles[moved as usize], moved, selected.slot(moved).0);
         }
     }
 }
 
-/// Flips the selected edge of two half-edges. Reads the twins of its own two triangles only; writes those, and the
-/// entries of the neighbours that are not selected themselves.
+/// What is around an edge that has flipped: the entries in the twins of the half-edges from a, c, b and d, [`NONE`] where
+/// the edge is tested from its other side; then a, b, c and d.
+pub(crate) type Around = [[u32; 4]; 2];
+
+/// Flips the selected edge of two half-edges. Reads the corners and twins of its own two triangles only; writes those, and
+/// the entries of the neighbours that are not selected themselves. Returns what is around it after the iteration.
 #[inline(always)]
-pub(crate) fn flip(triangles: &[AtomicU32], twins: &[AtomicU32], selected: &Selected, [h, g]: [u32; 2]) {
+pub(crate) fn flip(
+    triangles: &[AtomicU32],
+    twins: &[AtomicU32],
+    selected: &Selected,
+    [h, g]: [u32; 2],
+) -> Around {
     let read = |words: &[AtomicU32], i: u32| words[i as usize].get();
     let write = |words: &[AtomicU32], i: u32, word: u32| words[i as usize].set(word);
     let [hn, hp, gn, gp] = [next(h), prev(h), next(g), prev(g)];
-    let [c, d] = [read(triangles, hp), read(triangles, gp)];
-    let outer = [(h, read(twins, gn)), (hp, read(twins, hp)), (g, read(twins, hn)), (gp, read(twins, gp))];
-    for (inner, outer) in outer {
-        write(twins, inner, selected.slot(outer));
-        let x = unflagged(outer);
-        if x != NONE {
-            // Where there is nothing to write, a word that is written below; nothing could predict a branch.
-            let place = if selected.is_free(x) { x } else { hn };
-            write(twins, place, inner | (outer & FLAGS));
+    let corners @ [_, _, c, d] = [h, g, hp, gp].map(|x| read(triangles, x));
+    let mut outer = [gn, hp, hn, gp].map(|x| read(twins, x));
+    for (inner, twin) in [h, hp, g, gp].into_iter().zip(&mut outer) {
+        if *twin == NONE {
+            write(twins, inner, NONE);
+            continue;
         }
+        let (x, flags) = (*twin & !FLAGS, *twin & FLAGS);
+        let (slot, is_free) = selected.slot(x);
+        // Where there is nothing to write, a word that is written below; nothing could predict a branch.
+        write(twins, if is_free { x } else { hn }, inner | flags);
+        write(twins, inner, slot | flags);
+        // Between two that have flipped, one of them tests.
+        *twin = if is_free | (inner < slot) { slot | flags } else { NONE };
     }
     write(triangles, hn, d);
     write(triangles, gn, c);
     write(twins, hn, gn);
     write(twins, gn, hn);
+    [outer, corners]
 }

@@ -90,8 +90,8 @@ impl Diamond {
         count
     }
 
-    /// Writes the four around an edge that has flipped, as far as they are between two of the triangles and wanted, by
-    /// their half-edges. Returns how many they are. The corners were a, b, c and d; the triangles are (a, d, c) and
+    /// Writes the four around an edge that has flipped, as far as they are between two of the triangles, by their
+    /// half-edges. Returns how many they are. The corners were a, b, c and d; the triangles are (a, d, c) and
     /// (b, c, d) now. `sides` are the half-edges from a, c, b and d, and `outer` their entries in the twins.
     #[inline(always)]
     pub(crate) fn write_around(
@@ -100,7 +100,6 @@ impl Diamond {
         outer: [u32; 4],
         [a, b, c, d]: [u32; 4],
         diamonds: &mut [Self],
-        is_wanted: impl Fn(u32, u32) -> bool,
     ) -> usize {
         let triangles = [[a, d, c], [c, a, d], [b, c, d], [d, b, c]];
         let mut count = 0;
@@ -110,7 +109,7 @@ impl Diamond {
             // Nothing could predict a branch.
             let g = if is_here { twin & !FLAGS } else { h };
             diamonds[count] = Self { h, twin, corners: [from, to, apex, mesh.corner(prev(g))] };
-            count += usize::from(is_here & is_wanted(h, g));
+            count += usize::from(is_here);
         }
         count
     }

@@ -17,7 +17,7 @@ mod label;
 mod select;
 
 pub(crate) use crease::flag_creases;
-pub(crate) use flip::{Selected, flip, move_anchors};
+pub(crate) use flip::{Around, Selected, flip, move_anchors};
 pub(crate) use label::{
     Diamond, Verdict, keep_non_delaunay, label, makes_duplicate, verdict, verdict_of_shape,
 };

@@ -53,9 +53,10 @@ test('doubles, locked edges, a cap and moved vertices are as on one thread', asy
     assert.ok(audit.clean);
     const states = await session.edgeStates();
     await session.setPositions(moved);
-    const progress = [];
-    const { timings, ...result } = await session.run({ onProgress: (step) => progress.push(step) });
-    ends.push({ seen, audit, states, progress, result, edges: await session.edges(), triangles: await session.triangles() });
+    let progress;
+    const { timings, ...result } = await session.run({ onProgress: (step) => (progress = step) });
+    assert.deepEqual(progress, { iterations: result.iterations, flips: result.flips });
+    ends.push({ seen, audit, states, result, edges: await session.edges(), triangles: await session.triangles() });
     session.free();
     await assert.rejects(session.step(), { code: 'freed' });
   }
