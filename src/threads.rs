@@ -133,7 +133,7 @@ impl Threads {
         if self.count() == 1 {
             return work(items, results);
         }
-        let size = items.len().div_ceil(self.pieces(items.len()).len()).max(1);
+        let size = self.pieces(items.len())[0].len().max(1);
         let pieces = items.chunks(size).zip(results.chunks_mut(size)).collect();
         self.map_each(pieces, |(items, results)| work(items, results));
     }
@@ -161,6 +161,7 @@ impl Threads {
 /// `0..len` in up to `most` pieces, but at least one.
 #[inline]
 fn cut(len: usize, most: usize) -> Vec<Range<usize>> {
+    // So that the compiler leaves out the rest where there are no threads.
     if most == 1 {
         return std::iter::once(0..len).collect();
     }

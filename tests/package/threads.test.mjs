@@ -43,7 +43,7 @@ test('doubles, locked edges, a cap and moved vertices are as on one thread', asy
   const [{ positions, indices, dimension }] = meshes;
   const mesh = { positions: Float64Array.from(positions, (x) => x + 1e-9), indices, dimension };
   const moved = mesh.positions.map((x) => 3 * x);
-  const ends = [];
+  const [ends, progresses] = [[], []];
   for (const threads of [1, 2]) {
     const options = { backend: 'cpu', threads, maxIterations: 4, lockedEdges: indices.slice(0, 2), lockedTriangles: [7] };
     const session = await FlipSession.create(mesh, options);
@@ -53,14 +53,18 @@ test('doubles, locked edges, a cap and moved vertices are as on one thread', asy
     assert.ok(audit.clean);
     const states = await session.edgeStates();
     await session.setPositions(moved);
-    let progress;
-    const { timings, ...result } = await session.run({ onProgress: (step) => (progress = step) });
-    assert.deepEqual(progress, { iterations: result.iterations, flips: result.flips });
+    const progress = [];
+    const { timings, ...result } = await session.run({ onProgress: (step) => progress.push(step) });
+    assert.deepEqual(progress.at(-1), { iterations: result.iterations, flips: result.flips });
+    progresses.push(progress.map(({ iterations, flips }) => `${iterations}: ${flips}`));
     ends.push({ seen, audit, states, result, edges: await session.edges(), triangles: await session.triangles() });
     session.free();
     await assert.rejects(session.step(), { code: 'freed' });
   }
   assert.deepEqual(ends[1], ends[0]);
+  // Several threads skip some of the steps, and each step is as on one.
+  const [each, some] = progresses;
+  assert.deepEqual(some, each.filter((step) => some.includes(step)));
   assert.equal(ends[0].seen.length, 4);
 });
 
