@@ -7,6 +7,9 @@ use std::{error::Error, num::NonZeroUsize, ops::ControlFlow, sync::Arc};
 #[path = "arguments/mod.rs"]
 mod arguments;
 use arguments::{Arguments, median};
+#[path = "warm_up/mod.rs"]
+mod warm_up;
+use warm_up::WarmUp;
 
 /// n²/4 flips in n iterations, and sweep triangulations of random points, which take some ten flips for each of them.
 const MESHES: [&str; 4] = ["strips 1000", "strips 4000", "sweep 100000", "sweep 1000000"];
@@ -45,8 +48,13 @@ fn main() -> Result<(), Box<dyn Error>> {
 /// The result of the first run, and the median time of the iterations of the others.
 fn measure(mesh: &Arc<Mesh>, backend: Backend, runs: usize) -> Result<(Outcome, f64), edgeflip::Error> {
     let options = Options { backend, threads: NonZeroUsize::new(1), ..Options::default() };
-    let run = || make_delaunay(mesh.clone(), &options, |_, _| ControlFlow::Continue(()));
-    let first = run()?;
-    let times: Result<Vec<f64>, _> = (0..runs).map(|_| run().map(|outcome| outcome.timings.flip)).collect();
-    times.map(|times| (first, median(times)))
+    let run = |mesh: &Arc<Mesh>| make_delaunay(mesh.clone(), &options, |_, _| ControlFlow::Continue(()));
+    let first = run(mesh)?;
+    let mut warm_up = WarmUp::new()?;
+    let mut times = Vec::new();
+    for _ in 0..runs {
+        warm_up.before(run)?;
+        times.push(run(mesh)?.timings.flip);
+    }
+    Ok((first, median(times)))
 }
