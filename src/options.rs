@@ -56,6 +56,7 @@ pub struct Options {
     /// 65,536 triangles is done on one, before others have woken up. The result is the same for any
     /// number. Lawson's algorithm flips on several in the plane only, where no vertex has triangles on two sides
     /// that share no edge. Without the feature `threads` it is always one.
+    /// What goes to a GPU and comes back is copied on one for each core.
     pub threads: Option<NonZeroUsize>,
     /// The device that the GPU engine runs on, instead of one of its own. It is never destroyed here, nothing of it
     /// is set, and its errors about other calls are left alone. Of a software one, `Auto` takes the CPU.

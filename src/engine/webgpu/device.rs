@@ -8,6 +8,7 @@ use crate::Error;
 use crate::engine::probe::ends_loops_early;
 use crate::engine::self_test::Tested;
 use crate::engine::upload::Form;
+use crate::threads::Threads;
 use futures_channel::oneshot;
 use std::sync::{Arc, Mutex};
 use wgpu::BufferUsages;
@@ -17,7 +18,11 @@ const MOST_WORKGROUPS: u32 = 65_535;
 
 /// Words that are copied to the device, or from it, at a time: the memory between them is used again, which is far
 /// faster than more of it would be.
-const CHUNK: usize = 1 << 22;
+pub(super) const CHUNK: usize = 1 << 22;
+
+/// Words that one thread copies at a time.
+#[cfg(not(target_arch = "wasm32"))]
+pub(super) const PIECE: usize = 1 << 16;
 
 /// Invocations of one workgroup beyond which a list is seldom as long.
 const LARGEST_TAIL: u32 = 1024;
@@ -353,7 +358,7 @@ impl Device {
         self.check()?;
         let view = staging.get_mapped_range(..).map_err(|error| failed(&error))?;
         match bytemuck::try_cast_slice(&view) {
-            Ok(words) => result.extend_from_slice(words),
+            Ok(words) => Threads::default().append(result, words),
             // The browser's view need not be aligned.
             Err(_) => result.extend(bytemuck::pod_collect_to_vec::<u8, u32>(&view)),
         }
@@ -369,7 +374,7 @@ impl Device {
     pub(super) fn write(&self, buffer: &Buffer, words: &[u32]) {
         for (i, chunk) in words.chunks(CHUNK).enumerate() {
             let place = 4 * (i * CHUNK) as u64;
-            self.queue.write_buffer(buffer, place, bytemuck::cast_slice(chunk));
+            self.stage(buffer, place, chunk);
             #[cfg(not(target_arch = "wasm32"))]
             if chunk.len() == CHUNK {
                 self.queue.submit([]);
@@ -377,5 +382,28 @@ impl Device {
                 let _ = self.wait();
             }
         }
+    }
+
+    /// Copies words from where they are; the next submission takes them to their place.
+    #[cfg(target_arch = "wasm32")]
+    fn stage(&self, buffer: &Buffer, place: u64, words: &[u32]) {
+        self.queue.write_buffer(buffer, place, bytemuck::cast_slice(words));
+    }
+
+    /// The same by several threads.
+    #[cfg(not(target_arch = "wasm32"))]
+    fn stage(&self, buffer: &Buffer, place: u64, words: &[u32]) {
+        let size = wgpu::BufferSize::new(size_of_val(words) as u64);
+        // Where there is none, wgpu has told the error.
+        let Some(mut view) = size.and_then(|size| self.queue.write_buffer_with(buffer, place, size)) else {
+            return;
+        };
+        let (pieces, mut rest) = view.slice(..).into_chunks::<{ 4 * PIECE }>();
+        let (whole, others) = words.as_chunks::<PIECE>();
+        rest.copy_from_slice(bytemuck::cast_slice(others));
+        let pieces: Vec<_> = whole.iter().zip(pieces).collect();
+        Threads::default().map_each(pieces, |(words, copy)| {
+            wgpu::WriteOnly::<[u8]>::from(copy).copy_from_slice(bytemuck::cast_slice(words));
+        });
     }
 }

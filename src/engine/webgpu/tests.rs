@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "what fails here is a failed test")]
 
 use super::adjacency::BUCKETS_EACH;
-use super::device::Device;
+use super::device::{CHUNK, Device, PIECE};
 use super::kernels::{ADJACENCY, PROBE, WORKGROUP_SIZE, phases_sources};
 use super::params::Params;
 use super::{ENTRIES, ENTRY_WORDS};
@@ -192,4 +192,18 @@ fn an_error_of_a_call_is_told() {
     let refused = block_on(gpu.checked(|| gpu.buffer("wrong", 4, no_usage_fits)));
     assert!(matches!(refused, Err(Error::Device { .. })));
     assert!(matches!(gpu.check(), Err(Error::Device { .. })));
+}
+
+#[test]
+fn words_come_back_as_they_were_written() {
+    let device = block_on(Device::shared(true)).unwrap();
+    for words in [0, 1, PIECE - 1, PIECE, 2 * PIECE + 1, CHUNK, CHUNK + PIECE + 3] {
+        let written: Vec<u32> = (0..words as u32).map(|i| i.wrapping_mul(0x9e37_79b9)).collect();
+        let back = block_on(async {
+            let buffer = device.buffer("words", words, wgpu::BufferUsages::STORAGE);
+            device.checked(|| device.write(&buffer, &written)).await?;
+            device.read(&buffer, words).await
+        });
+        assert!(back.unwrap() == written, "{words} words");
+    }
 }
