@@ -8,6 +8,7 @@ mod adjacency;
 #[cfg(target_arch = "wasm32")]
 mod browser;
 mod buffers;
+mod copies;
 mod device;
 mod faults;
 #[cfg(all(target_arch = "wasm32", feature = "js"))]

@@ -3,7 +3,8 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "what fails here is a failed test")]
 
 use super::adjacency::BUCKETS_EACH;
-use super::device::{CHUNK, Device, PIECE};
+use super::copies::{CHUNK, PIECE};
+use super::device::Device;
 use super::kernels::{ADJACENCY, PROBE, WORKGROUP_SIZE, phases_sources};
 use super::params::Params;
 use super::{ENTRIES, ENTRY_WORDS};
