@@ -53,7 +53,9 @@ fn measure(mesh: &Arc<Mesh>, backend: Backend, runs: usize) -> Result<(Outcome, 
     let mut warm_up = WarmUp::new()?;
     let mut times = Vec::new();
     for _ in 0..runs {
-        warm_up.before(run)?;
+        if backend == Backend::Gpu {
+            warm_up.before(run)?;
+        }
         times.push(run(mesh)?.timings.flip);
     }
     Ok((first, median(times)))

@@ -83,12 +83,18 @@ impl Threads {
     pub(crate) fn enter<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
         #[cfg(feature = "threads")]
         if self.count() > 1 {
-            return match &self.pool {
-                Some(pool) => pool.install(work),
-                None => rayon::scope(|_| work()),
-            };
+            return self.install(|| rayon::scope(|_| work()));
         }
         work()
+    }
+
+    /// Does `work`, the loops of which are rayon's: they run on the threads of the pool.
+    #[cfg(feature = "threads")]
+    fn install<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
+        match &self.pool {
+            Some(pool) => pool.install(work),
+            None => work(),
+        }
     }
 
     /// What `work` gives for each piece of a loop over `0..len`, in order.
@@ -117,14 +123,6 @@ impl Threads {
             return self.install(|| items.into_par_iter().with_max_len(1).map(&work).collect());
         }
         items.into_iter().map(work).collect()
-    }
-
-    #[cfg(feature = "threads")]
-    fn install<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
-        match &self.pool {
-            Some(pool) => pool.install(work),
-            None => work(),
-        }
     }
 
     /// Appends a copy of `items` to `all`, whose memory the threads touch for the first time together: that takes several
