@@ -127,7 +127,6 @@ impl Threads {
 
     /// Appends a copy of `items` to `all`, whose memory the threads touch for the first time together: that takes several
     /// times as long as the copying.
-    #[cfg(feature = "gpu")]
     pub(crate) fn append<T: Copy + Send + Sync>(&self, all: &mut Vec<T>, items: &[T]) {
         #[cfg(feature = "threads")]
         if items.len() >= 2 * FEWEST && self.count() > 1 {
@@ -157,17 +156,23 @@ impl Threads {
         all: &mut L,
         len: usize,
         work: impl Fn(Range<usize>, &mut L) + Sync,
-        append: impl Fn(&mut L, L),
+        append: impl Fn(&mut L, Vec<L>),
     ) {
         if self.count() == 1 || len < 2 * FEWEST {
             return work(0..len, all);
         }
-        let pieces = self.map(len, |piece| {
+        let parts = self.map(len, |piece| {
             let mut part = L::default();
             work(piece, &mut part);
             part
         });
-        pieces.into_iter().for_each(|part| append(all, part));
+        append(all, parts);
+    }
+
+    /// Appends some lists to `all`, in order.
+    pub(crate) fn append_all<T: Copy + Send + Sync>(&self, all: &mut Vec<T>, lists: Vec<Vec<T>>) {
+        all.reserve_exact(lists.iter().map(Vec::len).sum());
+        lists.into_iter().for_each(|list| self.append(all, &list));
     }
 }
 
@@ -255,7 +260,6 @@ mod tests {
         }
     }
 
-    #[cfg(feature = "gpu")]
     #[test]
     fn copies_are_appended_in_order() {
         for len in [0, 1, 7, 8, 1000] {
@@ -272,13 +276,15 @@ mod tests {
         for count in [1, 2, 3, 8] {
             let mut list = vec![7];
             let threads = Threads::new(NonZeroUsize::new(count)).unwrap();
-            threads.extend(
-                &mut list,
-                1000,
-                |piece, list: &mut Vec<_>| list.extend(piece),
-                |all, mut part| all.append(&mut part),
-            );
-            assert!(list.into_iter().eq([7].into_iter().chain(0..1000)));
+            for _ in 0..2 {
+                threads.extend(
+                    &mut list,
+                    1000,
+                    |piece, list: &mut Vec<_>| list.extend(piece),
+                    |all, parts| threads.append_all(all, parts),
+                );
+            }
+            assert!(list.into_iter().eq([7].into_iter().chain(0..1000).chain(0..1000)));
         }
     }
 }

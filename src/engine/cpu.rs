@@ -42,9 +42,10 @@ struct Found {
 }
 
 impl Found {
-    fn append(&mut self, mut other: Self) {
-        self.candidates.append(&mut other.candidates);
-        self.blocked.append(&mut other.blocked);
+    fn append(&mut self, parts: Vec<Self>, threads: &Threads) {
+        let (candidates, blocked) = parts.into_iter().map(|part| (part.candidates, part.blocked)).unzip();
+        threads.append_all(&mut self.candidates, candidates);
+        threads.append_all(&mut self.blocked, blocked);
     }
 }
 
@@ -137,21 +138,22 @@ impl Cpu {
     pub(super) fn label(&mut self) {
         let Found { candidates, blocked } = std::mem::take(&mut self.found);
         let mut found = Found { blocked, ..Found::default() };
+        let append = |found: &mut Found, parts| found.append(parts, &self.threads);
         if let Some(flipped) = &self.flipped {
             let keep =
                 |piece: Range<usize>, found: &mut Found| self.keep_candidates(&candidates[piece], found);
-            self.threads.extend(&mut found, candidates.len(), keep, Found::append);
+            self.threads.extend(&mut found, candidates.len(), keep, append);
             let test = |piece: Range<usize>, found: &mut Found| {
                 self.test_around(&flipped[piece.clone()], &self.around[piece], found);
             };
-            self.threads.extend(&mut found, flipped.len(), test, Found::append);
+            self.threads.extend(&mut found, flipped.len(), test, append);
         } else {
             found.blocked.clear();
             self.threads.extend(
                 &mut found,
                 self.twins.len() / 3,
                 |piece, found| self.test_all(piece, found),
-                Found::append,
+                append,
             );
         }
         self.found = found;
@@ -232,7 +234,7 @@ impl Cpu {
                 }
             }
         });
-        let append = |all: &mut Vec<Edge>, mut part| all.append(&mut part);
+        let append = |all: &mut Vec<Edge>, parts| threads.append_all(all, parts);
         let mut flips = Vec::new();
         let win = |piece: Range<usize>, flips: &mut Vec<Edge>| {
             let mut count = flips.len();
@@ -363,7 +365,9 @@ impl Engine for Cpu {
     }
 
     fn triangles(&mut self) -> Answer<'_, Vec<u32>> {
-        Box::pin(std::future::ready(Ok(self.triangles.clone())))
+        let mut triangles = Vec::new();
+        self.threads.append(&mut triangles, &self.triangles);
+        Box::pin(std::future::ready(Ok(triangles)))
     }
 
     fn twins(&mut self) -> Answer<'_, Vec<u32>> {
