@@ -119,5 +119,5 @@ fn crossover<'a>(rows: impl DoubleEndedIterator<Item = &'a Row>) -> Option<usize
 
 fn run(mesh: Mesh, backend: Backend) -> Result<Outcome, edgeflip::Error> {
     let options = Options { backend, ..Options::default() };
-    make_delaunay(&mesh, &options, |_, _| ControlFlow::Continue(()))
+    make_delaunay(mesh, &options, |_, _| ControlFlow::Continue(()))
 }
