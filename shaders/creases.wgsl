@@ -7,12 +7,10 @@ fn crease_verdict(h: u32, g: u32) -> u32 {
     let b = position(vertex(g));
     let c = position(vertex(prev(h)));
     let d = position(vertex(prev(g)));
-    let quad = quad_of(a, b, c, d);
-    let sign = compare_angle(cross(quad[0], quad[1]), cross(quad[3], quad[2]), bound_of(quad));
-    var verdict = select(select(DELAUNAY, BLOCKED_BY + REASON_ANGLE, sign < 0), UNDECIDED, sign == 0);
-    verdict = select(verdict, DELAUNAY, has_any_angle());
-    if verdict == UNDECIDED && decides_exactly() {
-        verdict = exactly_on(a, b, c, d, true);
+    var sign = angle_sign(old_normals(quad_of(a, b, c, d), decides_exactly()));
+    if sign == 0 && decides_exactly() {
+        // Only the angle before the flip is open.
+        sign = exact_signs(a, b, c, d, Signs(-1, 0, 1, 1)).y;
     }
-    return verdict;
+    return select(select(DELAUNAY, BLOCKED_BY + REASON_ANGLE, sign < 0), UNDECIDED, sign == 0);
 }

@@ -4,18 +4,14 @@
 // LABELLED, BLOCKED_BY + REASON_DEVIATION, or UNDECIDED. With ε = 2^-23 as in space.wgsl, n1·r errs by at most 19ε of the
 // product of its sizes, δ|n1 + n2| by 24ε.
 fn filtered_deviation(a: Point, b: Point, c: Point, d: Point) -> u32 {
-    let rounded = unscaled(a, b, c, d);
-    let largest = largest_of(rounded);
-    let scale = scale_for(largest);
-    let quad = scale * rounded;
     // Diagonals are never as far apart as 8 times the largest difference of two coordinates. Nothing overflows.
-    let allowed = 8.0 * (min(0.125 * bitcast<f32>(deviation().w), largest) * scale);
-    let n1 = cross(quad[0], quad[1]);
-    let both = n1 + cross(quad[3], quad[2]);
-    let first = size(quad[0]) * size(quad[1]);
-    let second = size(quad[3]) * size(quad[2]);
-    let bound = SPACE_BOUND * (first * size(quad[2]) + allowed * (first + second)) + SPACE_FLUSHED;
-    let sign = filtered_sign(abs(dot(n1, quad[2])) - allowed * sqrt(dot(both, both)), bound);
+    let largest = largest_of(unscaled(a, b, c, d));
+    let allowed = 8.0 * (min(0.125 * bitcast<f32>(deviation().w), largest) * scale_for(largest));
+    let quad = quad_of(a, b, c, d);
+    let old = old_normals(quad, false);
+    let both = old[0].xyz + old[1].xyz;
+    let value = abs(dot(old[0].xyz, quad[2])) - allowed * sqrt(dot(both, both));
+    let sign = sign_of(value, old[0].w * size(quad[2]) + allowed * (old[0].w + old[1].w));
     return select(select(LABELLED, BLOCKED_BY + REASON_DEVIATION, sign > 0), UNDECIDED, sign == 0);
 }
 

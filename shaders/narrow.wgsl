@@ -8,13 +8,13 @@ fn narrow_of(v: Vector) -> Narrow {
     return Narrow(v[0], v[2], v[4]);
 }
 
-// Whether the edge is seen to be Delaunay, given differences with `count` digits in use.
-fn is_known_delaunay(p: Vector, q: Vector, r: Vector, s: Vector, count: u32) -> bool {
-    var is_known = false;
+// The sign of the angle sum, given differences with `count` digits in use: 0 where those are too many.
+fn narrow_angle_sum_sign(p: Vector, q: Vector, r: Vector, s: Vector, count: u32) -> i32 {
+    var sign = 0;
     if count <= 3u {
-        is_known = !is_narrow_angle_sum_negative(narrow_of(p), narrow_of(q), narrow_of(r), narrow_of(s));
+        sign = select(1, -1, is_narrow_angle_sum_negative(narrow_of(p), narrow_of(q), narrow_of(r), narrow_of(s)));
     }
-    return is_known;
+    return sign;
 }
 
 // As `is_angle_sum_negative`, of the vectors themselves.

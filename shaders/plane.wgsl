@@ -9,16 +9,8 @@ const PLANE_BOUND: f32 = 2.861023e-6;
 // What is flushed, see points.wgsl, is below 2^-48.
 const PLANE_FLUSHED: f32 = 1.4210855e-14;
 
-// Whether an edge may flip by its geometry: DELAUNAY, BLOCKED_BY + REASON_FOLD or LABELLED. `winding` is -1 in a clockwise component, else 1.
-fn verdict_on(a: Point, b: Point, c: Point, d: Point, winding: i32) -> u32 {
-    var verdict = filtered_verdict_on(a, b, c, d, winding);
-    if verdict == UNDECIDED {
-        verdict = exact_verdict_on(a, b, c, d, winding);
-    }
-    return verdict;
-}
-
-// UNDECIDED where exact arithmetic has to decide.
+// Whether an edge may flip by its geometry: DELAUNAY, BLOCKED_BY + REASON_FOLD or LABELLED; UNDECIDED where exact
+// arithmetic has to decide. `winding` is -1 in a clockwise component, else 1.
 fn filtered_verdict_on(a: Point, b: Point, c: Point, d: Point, winding: i32) -> u32 {
     var p = rounded_difference(a, c).xy;
     var q = rounded_difference(b, c).xy;

@@ -3,27 +3,40 @@
 
 const DIMENSION: u32 = 3u;
 
-// As in space.rs, with ε = 2^-23, differences that err by up to 3ε and a sqrt that errs by 5ε: the angle sum errs by at
-// most (14.7 + 9.1 + 1)·2 + 2.1 = 51.7ε, a product of normals less k|n||m| by 19.1 + 31.4 + 0.5 + 2.1 = 53.1ε, cos β
-// being rounded to f32 too, of the product of the four sizes. 64 leaves room.
+// As in space.rs, with ε = 2^-23, differences that err by up to 3ε and a sqrt that errs by 5ε: each of the two terms of
+// the angle sum errs by at most 14.7 + 9.1 + 1 + 1.05 = 25.9ε of the product of its sizes, their sum by 51.7ε of the
+// larger product; a product of normals less k|n||m| by 19.1 + 31.4 + 0.5 + 2.1 = 53.1ε, cos β being rounded to f32 too,
+// of the product of the four sizes. The sizes of a normal are those of the two vectors that it is made from. 64 leaves
+// room.
 const SPACE_BOUND: f32 = 7.6293945e-6;
 // What is flushed, see points.wgsl, is below 2^-46.
 const SPACE_FLUSHED: f32 = 5.684342e-14;
 
-// The vectors p = a - c, q = b - c, r = a - d, s = b - d, scaled; all zero where no filter can decide.
-alias Quad = mat4x3f;
+// The vectors p = a - c, q = b - c, r = a - d, s = b - d.
+alias Sides = mat4x3f;
+
+// They, a - b and c - d, scaled; all zero where no filter can decide.
+alias Quad = array<vec3f, 6>;
 
 fn quad_of(a: Point, b: Point, c: Point, d: Point) -> Quad {
-    let quad = unscaled(a, b, c, d);
-    return scale_for(largest_of(quad)) * quad;
+    let sides = unscaled(a, b, c, d);
+    let scale = scale_for(largest_of(sides));
+    return Quad(
+        scale * sides[0],
+        scale * sides[1],
+        scale * sides[2],
+        scale * sides[3],
+        scale * rounded_difference(a, b),
+        scale * rounded_difference(c, d),
+    );
 }
 
-fn unscaled(a: Point, b: Point, c: Point, d: Point) -> Quad {
-    return Quad(rounded_difference(a, c), rounded_difference(b, c), rounded_difference(a, d), rounded_difference(b, d));
+fn unscaled(a: Point, b: Point, c: Point, d: Point) -> Sides {
+    return Sides(rounded_difference(a, c), rounded_difference(b, c), rounded_difference(a, d), rounded_difference(b, d));
 }
 
-fn largest_of(quad: Quad) -> f32 {
-    let largest = max(max(abs(quad[0]), abs(quad[1])), max(abs(quad[2]), abs(quad[3])));
+fn largest_of(sides: Sides) -> f32 {
+    let largest = max(max(abs(sides[0]), abs(sides[1])), max(abs(sides[2]), abs(sides[3])));
     return max(max(largest.x, largest.y), largest.z);
 }
 
@@ -31,74 +44,114 @@ fn size(v: vec3f) -> f32 {
     return abs(v.x) + abs(v.y) + abs(v.z);
 }
 
-fn bound_of(quad: Quad) -> f32 {
-    return SPACE_BOUND * (size(quad[0]) * size(quad[1])) * (size(quad[3]) * size(quad[2])) + SPACE_FLUSHED;
+// A normal, and the product of the sizes of the two vectors that it is made from.
+alias Normal = vec4f;
+
+// u × v, given w = u - v. A precise one is made from the two shortest of them, as w × v or w × u may be: of a needle
+// that is off by far less.
+fn normal_of(u: vec3f, v: vec3f, w: vec3f, is_precise: bool) -> Normal {
+    let takes_w = is_precise && size(w) < max(size(u), size(v));
+    let first = select(u, w, takes_w);
+    let second = select(v, u, takes_w && size(u) < size(v));
+    return Normal(cross(first, second), size(first) * size(second));
+}
+
+alias Normals = mat2x4f;
+
+// The normals of the triangles (a, b, c) and (b, a, d).
+fn old_normals(quad: Quad, is_precise: bool) -> Normals {
+    return Normals(
+        normal_of(quad[0], quad[1], quad[4], is_precise),
+        normal_of(quad[3], quad[2], -quad[4], is_precise),
+    );
+}
+
+// Those of (c, d, a) and (d, c, b).
+fn new_normals(quad: Quad, is_precise: bool) -> Normals {
+    return Normals(
+        normal_of(quad[2], quad[0], quad[5], is_precise),
+        normal_of(quad[1], quad[3], -quad[5], is_precise),
+    );
+}
+
+// Of a value that is off by as much as `sizes` allow; 0 where the filter cannot decide.
+fn sign_of(value: f32, sizes: f32) -> i32 {
+    return filtered_sign(value, SPACE_BOUND * sizes + SPACE_FLUSHED);
+}
+
+// What the geometry of an edge says: -1 where the opposite angles sum to more than π; where the angle between the normals
+// is larger than β before the flip; after it; where a new normal has a negative dot product with an old one. 1 where not,
+// 0 where that is open.
+alias Signs = vec4i;
+
+// DELAUNAY, BLOCKED_BY + REASON_ANGLE or REASON_FOLD, or LABELLED; UNDECIDED while a sign that matters is open.
+fn verdict_of(signs: Signs) -> u32 {
+    let angle = min(signs.y, signs.z);
+    var verdict = select(select(LABELLED, BLOCKED_BY + REASON_FOLD, signs.w < 0), BLOCKED_BY + REASON_ANGLE, angle < 0);
+    verdict = select(verdict, UNDECIDED, signs.x == 0 || angle == 0 || (angle > 0 && signs.w == 0));
+    return select(verdict, DELAUNAY, signs.x > 0);
 }
 
 // Whether an edge may flip by its geometry: DELAUNAY, BLOCKED_BY + REASON_ANGLE, REASON_FOLD or REASON_DEVIATION, or
-// LABELLED. The winding has no meaning in space.
-fn verdict_on(a: Point, b: Point, c: Point, d: Point, winding: i32) -> u32 {
-    var verdict = filtered_verdict_on(a, b, c, d, winding);
-    if verdict == UNDECIDED {
-        verdict = exact_verdict_on(a, b, c, d, winding);
-    }
-    return verdict;
-}
-
-// UNDECIDED where exact arithmetic has to decide.
+// LABELLED; UNDECIDED where exact arithmetic has to decide. The winding has no meaning in space.
 fn filtered_verdict_on(a: Point, b: Point, c: Point, d: Point, winding: i32) -> u32 {
-    let quad = quad_of(a, b, c, d);
-    let bound = bound_of(quad);
-    let sum = angle_sum_sign(quad, bound);
-    var verdict = DELAUNAY;
-    if sum <= 0 {
-        let angle = compare_angles(quad, bound);
-        let turned = compare_turns(quad);
-        verdict = select(select(LABELLED, BLOCKED_BY + REASON_FOLD, turned < 0), BLOCKED_BY + REASON_ANGLE, angle < 0);
-        verdict = select(verdict, UNDECIDED, sum == 0 || angle == 0 || (angle > 0 && turned == 0));
-    }
+    var verdict = verdict_of(filtered_signs(a, b, c, d, false));
     if verdict == LABELLED {
         verdict = filtered_deviation(a, b, c, d);
     }
     return verdict;
 }
 
-// -1 when the opposite angles sum to more than π; 0 where the filter cannot decide.
-fn angle_sum_sign(quad: Quad, bound: f32) -> i32 {
-    let n1 = cross(quad[0], quad[1]);
-    let n2 = cross(quad[3], quad[2]);
+fn exact_verdict_on(a: Point, b: Point, c: Point, d: Point, winding: i32) -> u32 {
+    var signs = filtered_signs(a, b, c, d, true);
+    if verdict_of(signs) == UNDECIDED {
+        signs = exact_signs(a, b, c, d, signs);
+    }
+    var verdict = verdict_of(signs);
+    if verdict == LABELLED {
+        verdict = filtered_deviation(a, b, c, d);
+    }
+    if verdict == UNDECIDED {
+        verdict = exact_deviation(a, b, c, d);
+    }
+    return verdict;
+}
+
+// All but the first are 1 where that is.
+fn filtered_signs(a: Point, b: Point, c: Point, d: Point, is_precise: bool) -> Signs {
+    let quad = quad_of(a, b, c, d);
+    let old = old_normals(quad, is_precise);
+    var signs = Signs(angle_sum_sign(quad, old), 1, 1, 1);
+    if signs.x <= 0 {
+        let updated = new_normals(quad, is_precise);
+        signs = Signs(signs.x, angle_sign(old), angle_sign(updated), turn_sign(old, updated));
+    }
+    return signs;
+}
+
+fn angle_sum_sign(quad: Quad, old: Normals) -> i32 {
+    let n1 = old[0].xyz;
+    let n2 = old[1].xyz;
     let value = sqrt(dot(n1, n1)) * dot(quad[3], quad[2]) + sqrt(dot(n2, n2)) * dot(quad[0], quad[1]);
-    return filtered_sign(value, bound);
+    return sign_of(value, max(old[0].w * (size(quad[3]) * size(quad[2])), old[1].w * (size(quad[0]) * size(quad[1]))));
 }
 
-// -1 when the angle between the normals is larger than β before the flip or after it, 1 when it is not, 0
-// where the filter cannot decide.
-fn compare_angles(quad: Quad, bound: f32) -> i32 {
-    let before = compare_angle(cross(quad[0], quad[1]), cross(quad[3], quad[2]), bound);
-    let after = compare_angle(cross(quad[2], quad[0]), cross(quad[1], quad[3]), bound);
-    // Not decided where one is 0 and none is -1.
-    return select(min(before, after), 1, has_any_angle());
+fn angle_sign(normals: Normals) -> i32 {
+    let n = normals[0].xyz;
+    let m = normals[1].xyz;
+    let value = dot(n, m) - cos_rounded() * (sqrt(dot(n, n)) * sqrt(dot(m, m)));
+    return select(sign_of(value, normals[0].w * normals[1].w), 1, has_any_angle());
 }
 
-fn compare_angle(n: vec3f, m: vec3f, bound: f32) -> i32 {
-    return filtered_sign(dot(n, m) - cos_rounded() * (sqrt(dot(n, n)) * sqrt(dot(m, m))), bound);
+fn turn_sign(old: Normals, updated: Normals) -> i32 {
+    return min(
+        min(dot_sign(old[0], updated[0]), dot_sign(old[0], updated[1])),
+        min(dot_sign(old[1], updated[0]), dot_sign(old[1], updated[1])),
+    );
 }
 
-// -1 when a new normal has a negative dot product with an old one, 1 when none has, 0 where the filter cannot
-// decide.
-fn compare_turns(quad: Quad) -> i32 {
-    let n1 = cross(quad[0], quad[1]);
-    let n2 = cross(quad[3], quad[2]);
-    let m1 = cross(quad[2], quad[0]);
-    let m2 = cross(quad[1], quad[3]);
-    // Of n1, n2, m1 and m2.
-    let p = size(quad[0]);
-    let q = size(quad[1]);
-    let r = size(quad[2]);
-    let s = size(quad[3]);
-    let bound = SPACE_BOUND * vec4f((p * q) * (r * p), (p * q) * (q * s), (s * r) * (r * p), (s * r) * (q * s)) + SPACE_FLUSHED;
-    let dots = vec4f(dot(n1, m1), dot(n1, m2), dot(n2, m1), dot(n2, m2));
-    return select(select(0, 1, all(dots > bound)), -1, any(dots < -bound));
+fn dot_sign(n: Normal, m: Normal) -> i32 {
+    return sign_of(dot(n.xyz, m.xyz), n.w * m.w);
 }
 
 // x, y and z, of the digits of a Small each.
@@ -129,16 +182,8 @@ fn determinant(u: Medium, v: Medium, x: Medium, y: Medium, count: u32) -> Large 
     return sum_of_medium_products(u, v, x, negated_medium(y), count);
 }
 
-fn exact_verdict_on(a: Point, b: Point, c: Point, d: Point, winding: i32) -> u32 {
-    var verdict = exactly_on(a, b, c, d, false);
-    if verdict == LABELLED {
-        verdict = exact_deviation(a, b, c, d);
-    }
-    return verdict;
-}
-
-// With `angle_only`, only the angle before the flip is looked at: DELAUNAY or BLOCKED_BY + REASON_ANGLE.
-fn exactly_on(a: Point, b: Point, c: Point, d: Point, angle_only: bool) -> u32 {
+// The signs, those that are open and matter by integers.
+fn exact_signs(a: Point, b: Point, c: Point, d: Point, filtered: Signs) -> Signs {
     let grid = grid_of(a, b, c, d);
     let from_ac = exact_differences(a, c, grid);
     let from_bc = exact_differences(b, c, grid);
@@ -151,14 +196,17 @@ fn exactly_on(a: Point, b: Point, c: Point, d: Point, angle_only: bool) -> u32 {
     let q = vector_of(from_bc);
     let r = vector_of(from_ad);
     let s = vector_of(from_bd);
-    var verdict = DELAUNAY;
-    if angle_only || !is_known_delaunay(p, q, r, s, count) {
-        verdict = wide_verdict_on(p, q, r, s, count, angle_only);
+    var signs = filtered;
+    if signs.x == 0 {
+        signs.x = narrow_angle_sum_sign(p, q, r, s, count);
     }
-    return verdict;
+    if verdict_of(signs) == UNDECIDED {
+        signs = wide_signs(p, q, r, s, count, signs);
+    }
+    return signs;
 }
 
-fn wide_verdict_on(p: Vector, q: Vector, r: Vector, s: Vector, count: u32, angle_only: bool) -> u32 {
+fn wide_signs(p: Vector, q: Vector, r: Vector, s: Vector, count: u32, narrow: Signs) -> Signs {
     let pp = dot_of(p, p, count);
     let pq = dot_of(p, q, count);
     let qq = dot_of(q, q, count);
@@ -168,37 +216,39 @@ fn wide_verdict_on(p: Vector, q: Vector, r: Vector, s: Vector, count: u32, angle
     // Of the old normals n1 = p × q and n2 = s × r.
     let n1_square = determinant(pp, qq, pq, pq, count);
     let n2_square = determinant(ss, rr, rs, rs, count);
-    var verdict = DELAUNAY;
-    if angle_only || is_angle_sum_negative(n1_square, rs, n2_square, pq, count) {
+    var signs = narrow;
+    if signs.x == 0 {
+        signs.x = select(1, -1, is_angle_sum_negative(n1_square, rs, n2_square, pq, count));
+    }
+    if verdict_of(signs) == UNDECIDED {
         let pr = dot_of(p, r, count);
         let ps = dot_of(p, s, count);
         let qr = dot_of(q, r, count);
         let qs = dot_of(q, s, count);
-        var is_over = false;
-        if !has_any_angle() {
-            // The old normals, then the new ones, m1 = r × p and m2 = q × s.
-            var n_square = n1_square;
-            var m_square = n2_square;
-            var cosine = determinant(ps, qr, pr, qs, count);
-            let most = select(2u, 1u, angle_only);
-            for (var round = 0u; round < most; round++) {
+        // The old normals, then the new ones, m1 = r × p and m2 = q × s.
+        var n_square = n1_square;
+        var m_square = n2_square;
+        var cosine = determinant(ps, qr, pr, qs, count);
+        for (var round = 0u; round < 2u; round++) {
+            if select(signs.y, signs.z, round == 1u) == 0 {
                 if round == 1u {
                     n_square = determinant(rr, pp, pr, pr, count);
                     m_square = determinant(qq, ss, qs, qs, count);
                     cosine = determinant(qr, ps, rs, pq, count);
                 }
-                is_over = is_over || exceeds_angle(n_square, m_square, cosine);
+                let angle = select(1, -1, exceeds_angle(n_square, m_square, cosine));
+                signs = select(Signs(signs.x, angle, signs.zw), Signs(signs.xy, angle, signs.w), round == 1u);
             }
         }
-        let turned = min(
-            min(large_sign(determinant(pr, pq, pp, qr, count)), large_sign(determinant(pq, qs, ps, qq, count))),
-            min(large_sign(determinant(rs, pr, ps, rr, count)), large_sign(determinant(qs, rs, ss, qr, count))),
-        );
-        verdict = select(LABELLED, BLOCKED_BY + REASON_FOLD, turned < 0);
-        verdict = select(verdict, DELAUNAY, angle_only);
-        verdict = select(verdict, BLOCKED_BY + REASON_ANGLE, is_over);
+        if signs.w == 0 {
+            let turned = min(
+                min(large_sign(determinant(pr, pq, pp, qr, count)), large_sign(determinant(pq, qs, ps, qq, count))),
+                min(large_sign(determinant(rs, pr, ps, rr, count)), large_sign(determinant(qs, rs, ss, qr, count))),
+            );
+            signs.w = select(1, -1, turned < 0);
+        }
     }
-    return verdict;
+    return signs;
 }
 
 // Whether √(n1²)·dot2 + √(n2²)·dot1 < 0: by the squares, with the signs of what was squared.

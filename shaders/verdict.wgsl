@@ -7,7 +7,11 @@ fn geometric_verdict(h: u32, g: u32) -> u32 {
     let c = position(vertex(prev(h)));
     let d = position(vertex(prev(g)));
     let entry = twin_entry(h);
-    var verdict = verdict_on(a, b, c, d, select(1, -1, is_clockwise(h / 3u)));
+    let winding = select(1, -1, is_clockwise(h / 3u));
+    var verdict = filtered_verdict_on(a, b, c, d, winding);
+    if verdict == UNDECIDED {
+        verdict = exact_verdict_on(a, b, c, d, winding);
+    }
     if verdict != DELAUNAY && (entry & FLAGS) != 0u {
         verdict = BLOCKED_BY + select(REASON_ANGLE, REASON_LOCKED, (entry & LOCKED) != 0u);
     }

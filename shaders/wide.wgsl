@@ -1,5 +1,5 @@
 // In the place of narrow.wgsl, where compilers would take twice as long with it.
 
-fn is_known_delaunay(p: Vector, q: Vector, r: Vector, s: Vector, count: u32) -> bool {
-    return false;
+fn narrow_angle_sum_sign(p: Vector, q: Vector, r: Vector, s: Vector, count: u32) -> i32 {
+    return 0;
 }

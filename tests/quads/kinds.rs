@@ -354,7 +354,7 @@ impl Source {
             |u: [i32; 3], v: [i32; 3]| [(1, 2), (2, 0), (0, 1)].map(|(i, j)| u[i] * v[j] - u[j] * v[i]);
         let (e1, e2) = (cross(n1, h), cross(n2, h));
         let reach = self.pick([4, 9, 1000]);
-        let length = self.integer(1, 2 * reach);
+        let length = if self.chance(4) { 1 } else { self.integer(1, 2 * reach) };
         let [along1, along2] = [(); 2].map(|()| self.integer(0, length));
         let [away1, away2] = [(); 2].map(|()| self.integer(1, reach));
         let at = |along: i32, away: i32, e: [i32; 3]| [0, 1, 2].map(|i| (along * h[i] + away * e[i]) as f32);
@@ -362,9 +362,12 @@ impl Source {
     }
 
     fn rounded_hinge(&mut self) -> Floats {
-        let length = self.integer(1, 1 << 12) as f32;
+        // Needles too.
+        let bits = self.integer(0, 12);
+        let length = self.integer(1, 1 << bits) as f32;
         let [along1, along2] = [(); 2].map(|()| self.integer(0, length as i32) as f32);
-        let [away1, away2] = [(); 2].map(|()| self.integer(1, 1 << 11) as f32);
+        let bits = self.integer(0, 11);
+        let [away1, away2] = [(); 2].map(|()| self.integer(1, 1 << bits) as f32);
         let hair = self.pick([0.0, 1e-6, -1e-6, 1e-7, -1e-7]);
         let (sin, cos) = libm::sincos(self.beta.to_radians() + hair);
         // In multiples of 2^-24: what is almost zero is not worth its bits.
