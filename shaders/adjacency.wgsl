@@ -28,7 +28,7 @@ struct Params {
 // Half-edges by bucket.
 @group(0) @binding(3) var<storage, read_write> sorted: array<u32>;
 // The number of half-edges of each bucket, then where its next one goes. For the fans: the number of corners
-// of each vertex, then NONE minus its first one.
+// of each vertex, then one of them.
 @group(0) @binding(4) var<storage, read_write> buckets: array<atomic<u32>>;
 @group(0) @binding(5) var<storage, read_write> counters: array<atomic<u32>>;
 
@@ -112,7 +112,9 @@ fn match_twins(
     @builtin(local_invocation_index) local: u32,
     @builtin(num_workgroups) groups: vec3u,
 ) {
-    for (var h = id.x; h < params.half_edges; h += groups.x * WORKGROUP_SIZE) {
+    // In the order of the buckets: those of one are read together.
+    for (var place = id.x; place < params.half_edges; place += groups.x * WORKGROUP_SIZE) {
+        let h = sorted[place];
         let mine = ends(h);
         let bucket = bucket_of(mine);
         // Scattering has moved the place to the end of the bucket.
@@ -151,17 +153,17 @@ fn match_twins(
     add_kinds(local);
 }
 
-// Corners of each vertex, and the first of them; `buckets` holds zeros.
+// Corners of each vertex, and one of them, whichever is the last that the device writes; `buckets` holds zeros.
 @compute @workgroup_size(WORKGROUP_SIZE)
 fn count_corners(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
     for (var h = id.x; h < params.half_edges; h += groups.x * WORKGROUP_SIZE) {
         let v = triangles[h];
         atomicAdd(&buckets[v], 1u);
-        atomicMax(&buckets[params.buckets + v], NONE - h);
+        atomicStore(&buckets[params.buckets + v], h);
     }
 }
 
-// Counts the vertices whose first fan does not hold all their corners, and finds the most corners at one.
+// Counts the vertices of which one fan does not hold all corners, and finds the most corners at one.
 @compute @workgroup_size(WORKGROUP_SIZE)
 fn count_fans(
     @builtin(global_invocation_id) id: vec3u,
@@ -171,7 +173,7 @@ fn count_fans(
     for (var v = id.x; v < params.vertices; v += groups.x * WORKGROUP_SIZE) {
         let corners = atomicLoad(&buckets[v]);
         atomicMax(&most_corners, corners);
-        if corners > 1u && fan_length(NONE - atomicLoad(&buckets[params.buckets + v])) < corners {
+        if corners > 1u && fan_length(atomicLoad(&buckets[params.buckets + v])) < corners {
             atomicAdd(&kinds[SEVERAL_FANS], 1u);
         }
     }

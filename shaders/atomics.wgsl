@@ -6,3 +6,6 @@
 fn history_word(i: u32) -> u32 {
     return atomicLoad(&history[i]);
 }
+
+// Steps in which one of two stars is walked alone, see guard.wgsl: in the tail few edges wait, for each step of both.
+const ALONE: u32 = 0u;

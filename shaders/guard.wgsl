@@ -9,8 +9,8 @@ fn guarded(verdict: u32, h: u32, g: u32) -> u32 {
     return result;
 }
 
-// Whether an edge joins the vertices that two half-edges start at, or they are the same one. Both stars are
-// walked in turns: each of them alone gives the answer, so the cost is that of the smaller one.
+// Whether an edge joins the vertices that two half-edges start at, or they are the same one. The star of either tells:
+// one is walked alone for some steps, mostly to its end, then both in turns, so the cost is that of the smaller one.
 fn edge_exists(at_c: u32, at_d: u32) -> bool {
     let c = vertex(at_c);
     let d = vertex(at_d);
@@ -18,11 +18,19 @@ fn edge_exists(at_c: u32, at_d: u32) -> bool {
     var exists = c == d;
     var first = star(at_c);
     var second = star(at_d);
+    var steps = 0u;
     while !is_alone && !exists && first.y != NONE && second.y != NONE {
-        exists = vertex(next(first.y)) == d || vertex(prev(first.y)) == d
-            || vertex(next(second.y)) == c || vertex(prev(second.y)) == c;
+        exists = joins(first, d) || (steps >= ALONE && joins(second, c));
         first = advanced(first);
-        second = advanced(second);
+        if steps >= ALONE {
+            second = advanced(second);
+        }
+        steps++;
     }
     return exists;
+}
+
+// Whether an edge of the triangle that a walk is at goes from its vertex to `far`.
+fn joins(walk: Star, far: u32) -> bool {
+    return vertex(next(walk.y)) == far || vertex(prev(walk.y)) == far;
 }

@@ -6,3 +6,6 @@
 fn history_word(i: u32) -> u32 {
     return history[i];
 }
+
+// Steps in which one of two stars is walked alone, see guard.wgsl: in a sweep few of many edges are at a pole.
+const ALONE: u32 = 16u;

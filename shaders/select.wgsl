@@ -21,7 +21,8 @@ fn mutual(t: u32) -> u32 {
     return select(NONE, h, h < BLOCKED && h / 3u == t);
 }
 
-// Whether another selected edge with a smaller key would join the same two vertices.
+// Whether another selected edge with a smaller key would join the same two vertices. As in guard.wgsl, the
+// star of either tells.
 fn yields(h: u32, g: u32, iteration: u32) -> bool {
     let c = vertex(prev(h));
     let d = vertex(prev(g));
@@ -30,10 +31,14 @@ fn yields(h: u32, g: u32, iteration: u32) -> bool {
     var first = star(prev(h));
     var second = star(prev(g));
     var is_beaten = false;
+    var steps = 0u;
     while !is_alone && !is_beaten && first.y != NONE && second.y != NONE {
-        is_beaten = wins(first.y, d, mine, iteration) || wins(second.y, c, mine, iteration);
+        is_beaten = wins(first.y, d, mine, iteration) || (steps >= ALONE && wins(second.y, c, mine, iteration));
         first = advanced(first);
-        second = advanced(second);
+        if steps >= ALONE {
+            second = advanced(second);
+        }
+        steps++;
     }
     return is_beaten;
 }

@@ -21,6 +21,9 @@
 // diagonals of a quad may be apart: words as those of a coordinate, and rounded to f32 for the filter.
 @group(0) @binding(8) var<uniform> params: array<vec4u, 7>;
 
+// Steps in which one of two stars is walked alone, see guard.wgsl.
+const ALONE: u32 = 16u;
+
 fn place(i: u32) -> vec2u {
     let bits = params[0].w;
     return vec2u(i & ((1u << bits) - 1u), i >> bits);
