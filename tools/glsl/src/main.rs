@@ -70,7 +70,14 @@ fn glsl(entry_point: &str, points: &str, geometry: &str) -> Result<String, Box<d
     };
     let mut text = String::new();
     Writer::new(&mut text, &module, &info, &options, &pipeline, Default::default())?.write()?;
-    Ok(text)
+    Ok(shortened(&text))
+}
+
+/// Without the white space that stands for lines and for how deep they are. A directive keeps its line.
+fn shortened(text: &str) -> String {
+    let joined =
+        |line: &str| if line.ends_with([';', '{', '}']) { line.to_owned() } else { format!("{line}\n") };
+    text.lines().map(str::trim).filter(|line| !line.is_empty()).map(joined).collect()
 }
 
 fn stage(module: &Module) -> Result<ShaderStage, String> {
