@@ -74,7 +74,7 @@ fn is_of_word(c: char) -> bool {
     c.is_ascii_alphanumeric() || c == '_'
 }
 
-/// Single letters for the parameters and variables of each function. No function has more of them than there are.
+/// Single letters for the parameters and variables of each function, which has to have no more of them than there are.
 fn shorten_locals(tokens: &mut [Token]) {
     let mut rest = tokens;
     while let Some(start) = rest.iter().position(|token| token.text == "fn") {
@@ -99,6 +99,7 @@ fn shorten_locals(tokens: &mut [Token]) {
         }
         let mut names: Vec<_> = counts.into_iter().collect();
         names.sort_by_key(|&(_, count)| Reverse(count));
+        assert!(names.len() <= letters().count(), "a function of the shaders with {} names", names.len());
         let short: HashMap<_, _> = names.into_iter().map(|(name, _)| name).zip(letters()).collect();
         for i in places {
             function[i].local = short.get(function[i].text).copied();

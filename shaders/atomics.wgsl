@@ -7,5 +7,5 @@ fn history_word(i: u32) -> u32 {
     return atomicLoad(&history[i]);
 }
 
-// Steps in which one of two stars is walked alone, see guard.wgsl: in the tail few edges wait, for each step of both.
+// Steps in which one of two stars is walked alone, see guard.wgsl: none, as the tail has few edges at a time to wait for.
 const ALONE: u32 = 0u;

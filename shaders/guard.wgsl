@@ -10,7 +10,8 @@ fn guarded(verdict: u32, h: u32, g: u32) -> u32 {
 }
 
 // Whether an edge joins the vertices that two half-edges start at, or they are the same one. The star of either tells:
-// one is walked alone for some steps, mostly to its end, then both in turns, so the cost is that of the smaller one.
+// one is walked alone for some steps, mostly to its end, then both in turns, so the cost is that of the smaller one and
+// those steps.
 fn edge_exists(at_c: u32, at_d: u32) -> bool {
     let c = vertex(at_c);
     let d = vertex(at_d);

@@ -93,7 +93,7 @@ fn verdict_of(signs: Signs) -> u32 {
 }
 
 // Whether an edge may flip by its geometry: DELAUNAY, BLOCKED_BY + REASON_ANGLE, REASON_FOLD or REASON_DEVIATION, or
-// LABELLED; UNDECIDED where exact arithmetic has to decide. The winding has no meaning in space.
+// LABELLED; UNDECIDED where `exact_verdict_on` has to decide. The winding has no meaning in space.
 fn filtered_verdict_on(a: Point, b: Point, c: Point, d: Point, winding: i32) -> u32 {
     var verdict = verdict_of(filtered_signs(a, b, c, d, false));
     if verdict == LABELLED {
@@ -102,6 +102,7 @@ fn filtered_verdict_on(a: Point, b: Point, c: Point, d: Point, winding: i32) -> 
     return verdict;
 }
 
+// The same of any edge: by a filter that takes longer and leaves less, then by integers.
 fn exact_verdict_on(a: Point, b: Point, c: Point, d: Point, winding: i32) -> u32 {
     var signs = filtered_signs(a, b, c, d, true);
     if verdict_of(signs) == UNDECIDED {
