@@ -60,6 +60,14 @@ pub enum Error {
         /// How many there may be.
         limit: usize,
     },
+    /// There is not enough memory. Split the mesh, or give back what other sessions hold.
+    #[error("up to {bytes} bytes of memory are needed, {}", whose(*limit))]
+    OutOfMemory {
+        /// How many are needed at most.
+        bytes: u64,
+        /// How many there are for the whole program, where that is known.
+        limit: Option<u64>,
+    },
     /// A file could not be understood. The message names the line (1-based) or the byte.
     #[error("{place}: {message}")]
     Parse {
@@ -125,6 +133,15 @@ pub enum Error {
     },
 }
 
+/// What there is of memory, in a message.
+fn whose(limit: Option<u64>) -> String {
+    limit.map_or("more than can be had".to_owned(), |limit| {
+        format!(
+            "and WebAssembly has {limit} for all meshes: free() sessions that are done, or split the mesh"
+        )
+    })
+}
+
 /// A number in a message.
 #[cfg(not(all(target_arch = "wasm32", feature = "js-values")))]
 pub(crate) fn number(value: f64) -> String {
@@ -138,8 +155,7 @@ pub(crate) fn number(value: f64) -> String {
 }
 
 impl Error {
-    /// One word for the kind of error, the same in every release: what a program compares. Each variant has
-    /// its own.
+    /// One word for the kind of error, the same in every release: what a program compares.
     pub fn code(&self) -> &'static str {
         match self {
             Self::NonFinite { .. } => "non-finite",
@@ -147,7 +163,7 @@ impl Error {
             Self::RaggedArray { .. } => "ragged-array",
             Self::PositionCount { .. } => "position-count",
             Self::TriangleCount { .. } => "triangle-count",
-            Self::TooLarge { .. } => "too-large",
+            Self::TooLarge { .. } | Self::OutOfMemory { .. } => "too-large",
             Self::Parse { .. } => "parse",
             Self::FileTooLarge { .. } => "file-too-large",
             Self::UnknownFormat { .. } => "unknown-format",

@@ -11,7 +11,7 @@ pub use plane::{fan2, grid, random, regular, shear, strips, sweep};
 pub use space::{pillow, pole, roof, uvsphere};
 
 use crate::mesh::MAX_TRIANGLES;
-use crate::{Error, Mesh, NONE};
+use crate::{Error, Mesh, NONE, memory};
 use oorandom::Rand64;
 
 /// The names that [`by_name`] knows.
@@ -80,8 +80,8 @@ fn at_least(smallest: usize, n: usize, family: &str) -> Result<(), Error> {
     Err(Error::Option { option: "family", message: format!("{family} {n}: n must be at least {smallest}") })
 }
 
-/// Refuses what [`Mesh::new`] would refuse for its size, before any memory is taken for it, and what no array can hold
-/// where addresses have 32 bits.
+/// Refuses what [`Mesh::new`] would refuse for its size, before any memory is taken for it, what no array can hold
+/// where addresses have 32 bits, and what there is no memory for.
 fn fits(vertices: usize, triangles: usize) -> Result<(), Error> {
     const LONGEST_ARRAY: usize = isize::MAX as usize / size_of::<[u32; 3]>();
     for (what, count, limit) in
@@ -92,7 +92,8 @@ fn fits(vertices: usize, triangles: usize) -> Result<(), Error> {
             return Err(Error::TooLarge { what, count, limit });
         }
     }
-    Ok(())
+    // Three numbers each, in arrays that double where their length is not known.
+    memory::check(36 * (vertices as u64 + triangles as u64))
 }
 
 fn generator(seed: u64) -> Rand64 {

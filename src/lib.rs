@@ -42,6 +42,7 @@ mod js_values;
 #[cfg(all(target_arch = "wasm32", feature = "js-webgl2"))]
 pub mod js_webgl2;
 mod locks;
+mod memory;
 mod mesh;
 mod options;
 mod outcome;

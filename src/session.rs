@@ -1,6 +1,7 @@
 //! The loop around an engine: options in, iterations and statistics out, and the honest result.
 
 mod choice;
+mod room;
 #[cfg(test)]
 mod tests;
 
@@ -16,7 +17,7 @@ use crate::star::Fans;
 use crate::threads::Threads;
 use crate::{
     Backend, EdgeState, Edges, Error, Iteration, Mesh, Options, Order, Outcome, Positions, Reason, Status,
-    Timings, frozen, locks,
+    Timings, frozen, locks, memory,
 };
 use choice::{engine_after, engine_for};
 use std::ops::ControlFlow;
@@ -38,7 +39,7 @@ impl Session {
     /// Checks the options and makes an engine ready for `mesh`: a mesh, one in an `Arc`, or a reference, which is copied.
     ///
     /// # Errors
-    /// [`Error::Option`]; [`Error::BackendUnavailable`], [`Error::BackendLimit`] or [`Error::Device`] where
+    /// [`Error::Option`]; [`Error::OutOfMemory`] where the CPU has too little memory for a run; [`Error::BackendUnavailable`], [`Error::BackendLimit`] or [`Error::Device`] where
     /// the GPU was asked for (`Auto` takes the CPU instead).
     pub async fn new(mesh: impl Into<Arc<Mesh>>, mut options: Options) -> Result<Self, Error> {
         if !(0.0..=180.0).contains(&options.max_normal_angle) {
@@ -202,8 +203,9 @@ impl Session {
     /// Every edge as it is now.
     ///
     /// # Errors
-    /// [`Error::Device`].
+    /// [`Error::Device`], [`Error::OutOfMemory`].
     pub async fn edges(&mut self) -> Result<Edges, Error> {
+        memory::check(room::EDGES * self.mesh.triangle_count() as u64)?;
         let triangles = self.triangles().await?;
         let twins = self.ask(|engine| engine.twins()).await?;
         Ok(Edges::from_twins(&triangles, &twins))
@@ -213,8 +215,9 @@ impl Session {
     /// [`Session::triangles`]. The two half-edges of an edge agree.
     ///
     /// # Errors
-    /// [`Error::Device`].
+    /// [`Error::Device`], [`Error::OutOfMemory`].
     pub async fn edge_states(&mut self) -> Result<Vec<EdgeState>, Error> {
+        memory::check(room::EDGES * self.mesh.triangle_count() as u64)?;
         let triangles = self.triangles().await?;
         let twins = self.ask(|engine| engine.twins()).await?;
         // As the engine found it: neither the components nor their areas change with flips.
@@ -240,6 +243,12 @@ impl Session {
     pub async fn verify(&mut self) -> Result<Audit, Error> {
         let triangles = self.triangles().await?;
         Ok(audit(&self.mesh, &triangles, &self.options))
+    }
+
+    /// How many bytes a session on the CPU takes at most, beside the mesh: to begin, to run and for its outcome. Where there
+    /// is less, it is refused before it begins.
+    pub fn bytes(mesh: &Mesh, options: &Options) -> u64 {
+        room::bytes(mesh, options)
     }
 
     /// Iterations so far.

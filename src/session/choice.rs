@@ -1,5 +1,6 @@
 //! Which engine a session runs on.
 
+use super::room;
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 use crate::engine::Proxy;
 use crate::engine::{Answer, Cpu, Engine, Lawson};
@@ -7,7 +8,7 @@ use crate::engine::{Answer, Cpu, Engine, Lawson};
 use crate::engine::{Device, Upload, WebGpu, self_test};
 use crate::phases::Thresholds;
 use crate::threads::Threads;
-use crate::{Backend, Error, Mesh, Options, Order, locks};
+use crate::{Backend, Error, Mesh, Options, Order, locks, memory};
 use std::sync::Arc;
 
 /// What `Auto` tries, in this order. The last takes every mesh.
@@ -81,6 +82,8 @@ fn first_of<'a>(
         for &backend in backends {
             match open(backend, mesh, options).await {
                 Ok(engine) => return Ok((engine, (!reasons.is_empty()).then(|| reasons.join("; ")))),
+                // It is the mesh that is too large.
+                Err(error @ Error::OutOfMemory { .. }) => return Err(error),
                 Err(error) => reasons.push(error.to_string()),
             }
         }
@@ -92,7 +95,10 @@ fn first_of<'a>(
 fn open<'a>(backend: Backend, mesh: &'a Arc<Mesh>, options: &'a Options) -> Answer<'a, Box<dyn Engine>> {
     Box::pin(async move {
         let thresholds = Thresholds::from(options);
-        let cpu = || Ok::<_, Error>(Cpu::new(mesh.clone(), thresholds, Threads::new(options.threads)?));
+        let cpu = || {
+            memory::check(room::bytes(mesh, options))?;
+            Ok::<_, Error>(Cpu::new(mesh.clone(), thresholds, Threads::new(options.threads)?))
+        };
         let mut engine = match (backend, options.order) {
             (Backend::Gpu, _) => gpu(mesh, options, thresholds).await?,
             (Backend::WebGl, _) => webgl(mesh, options, thresholds).await?,

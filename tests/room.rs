@@ -1,0 +1,81 @@
+//! A session on the CPU takes no more memory than it asks for before it begins, from its beginning to its outcome.
+// Clippy's exemption for tests does not reach their shared functions.
+#![allow(clippy::unwrap_used)]
+
+use edgeflip::{Backend, Edges, Mesh, Options, Order, Session, families::by_name};
+use peak_alloc::PeakAlloc;
+use std::num::NonZeroUsize;
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+#[global_allocator]
+static PEAK: PeakAlloc = PeakAlloc;
+
+/// What is not of the mesh: threads, and lists of a few words.
+const SLACK: u64 = 1 << 18;
+
+/// Runs a session, and returns the most bytes that it took beside the mesh.
+fn bytes_of(mesh: &Arc<Mesh>, options: Options) -> u64 {
+    let base = PEAK.current_usage();
+    PEAK.reset_peak_usage();
+    pollster::block_on(async {
+        let mut session = Session::new(mesh.clone(), options).await.unwrap();
+        session.step().await.unwrap();
+        session.run(|_, _| ControlFlow::Continue(())).await.unwrap();
+        session.outcome().await.unwrap();
+    });
+    PEAK.peak_usage().saturating_sub(base) as u64
+}
+
+/// One test, since the program has one peak.
+#[test]
+fn sessions_take_what_they_ask_for() {
+    let mut most = 0.0f64;
+    for spec in [
+        "random 120",
+        "shear 120",
+        "shear 120 30",
+        "regular 120",
+        "strips 6000",
+        "fan2 6000",
+        "sweep 6000",
+        "uvsphere 100",
+        "uvsphere 100 0.5",
+        "roof 100",
+        "pillow 6000",
+        "pole 6000",
+    ] {
+        let mesh = by_name(spec).unwrap();
+        let doubles: Vec<f64> = mesh.positions().iter().map(|x| x + x * 1e-10).collect();
+        let doubles = Mesh::new(mesh.dimension(), doubles, mesh.triangles().to_vec()).unwrap();
+        let Edges { v1, v2, .. } = Edges::new(mesh.vertex_count(), mesh.triangles());
+        let all: Vec<[u32; 2]> = v1.into_iter().zip(v2).map(|(u, v)| [u, v]).collect();
+        for mesh in [mesh, doubles].map(Arc::new) {
+            for (order, threads) in
+                [(Order::Reproducible, 1), (Order::Reproducible, 4), (Order::Any, 1), (Order::Any, 4)]
+            {
+                for locked_edges in [Vec::new(), all.clone()] {
+                    let options = Options {
+                        backend: Backend::Cpu,
+                        order,
+                        threads: NonZeroUsize::new(threads),
+                        max_normal_angle: 180.0,
+                        // The worst cases have thousands, each of a few flips.
+                        max_iterations: Some(20),
+                        locked_edges,
+                        ..Options::default()
+                    };
+                    let asked = Session::bytes(&mesh, &options);
+                    let locked = options.locked_edges.len();
+                    let taken = bytes_of(&mesh, options);
+                    assert!(
+                        taken <= asked + SLACK,
+                        "{spec}, {order:?}, {threads} threads, {locked} locked: {taken} bytes taken, {asked} asked for"
+                    );
+                    most = most.max(taken as f64 / asked as f64);
+                }
+            }
+        }
+    }
+    assert!(most > 0.8, "far more is asked for than is ever taken: {most}");
+}
