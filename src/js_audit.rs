@@ -1,30 +1,31 @@
 //! What the npm package calls for the audit of a session, in a module of its own: most pages never load it. Its only
 //! caller is `FlipSession.verify` in `src/js/session.ts`.
 
-use crate::js_values::{JsPositions, object, parse_dimension, reasons_object, thrown};
-use crate::{Mesh, Options, quality};
+use crate::js_values::{JsPositions, mesh_of, object, reasons_object, thrown};
+use crate::threads::Threads;
+use crate::{Options, quality};
 use js_sys::{Array, Uint32Array};
 use wasm_bindgen::prelude::*;
 
 /// As [`quality::audit`]; `locked_edges` are all that the options lock.
 ///
 /// # Errors
-/// Those of [`Mesh::new`]; [`Error::Option`] for the dimension.
+/// Those of [`Mesh::new`](crate::Mesh::new); [`Error::OutOfMemory`](crate::Error::OutOfMemory).
 #[wasm_bindgen(unchecked_return_type = "import('../types.js').Audit")]
 pub fn audit(
     positions: JsPositions,
-    indices: Vec<u32>,
+    indices: &Uint32Array,
     dimension: f64,
-    triangles: &[u32],
+    triangles: &Uint32Array,
     max_normal_angle: f64,
     max_deviation: f64,
-    locked_edges: &[u32],
+    locked_edges: &Uint32Array,
 ) -> Result<JsValue, JsValue> {
     let check = || {
-        let input = Mesh::new(parse_dimension(dimension)?, positions, indices)?;
-        let locked_edges = locked_edges.as_chunks().0.to_vec();
+        let input = mesh_of(positions, indices, dimension, &Threads::one())?;
+        let locked_edges = locked_edges.to_vec().as_chunks().0.to_vec();
         let options = Options { max_normal_angle, max_deviation, locked_edges, ..Options::default() };
-        Ok(quality::audit(&input, triangles, &options))
+        Ok(quality::audit(&input, &triangles.to_vec(), &options))
     };
     let audit = check().map_err(thrown)?;
     let violations: Array =

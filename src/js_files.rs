@@ -6,7 +6,8 @@ mod weld;
 
 use crate::error::number;
 use crate::io::{self, Format, Loaded, ReadOptions};
-use crate::js_values::{JsPositions, object, parse_dimension, thrown};
+use crate::js_values::{JsPositions, mesh_of, object, parse_dimension, thrown};
+use crate::threads::Threads;
 use crate::{Error, Mesh, Options, Positions, families, quality, reoriented};
 use js_sys::{Array, Float32Array, Float64Array, Reflect, Uint8Array, Uint32Array};
 use std::path::Path;
@@ -15,20 +16,30 @@ use wasm_bindgen::prelude::*;
 /// Most bins of a histogram: more would only cost memory.
 const MAX_BINS: u32 = 1 << 16;
 
-/// The mesh in the bytes of a file; see [`ReadOptions`] for the dimension and the bytes. `files` is an object with the
-/// bytes of files beside it, by their names.
+#[wasm_bindgen]
+extern "C" {
+    /// A file; see [`ReadOptions`] for the bytes that it may have. `files` is an object with the bytes of files beside it,
+    /// by their names.
+    #[wasm_bindgen(typescript_type = "Required<import('../types.js').Original>")]
+    pub type JsFile;
+
+    #[wasm_bindgen(method, getter)]
+    fn bytes(this: &JsFile) -> Uint8Array;
+    #[wasm_bindgen(method, getter)]
+    fn name(this: &JsFile) -> String;
+    #[wasm_bindgen(method, getter)]
+    fn files(this: &JsFile) -> JsValue;
+    #[wasm_bindgen(method, getter, js_name = maxBytes)]
+    fn max_bytes(this: &JsFile) -> Option<f64>;
+}
+
+/// The mesh in a file; see [`ReadOptions`] for the dimension.
 ///
 /// # Errors
 /// Those of [`Format::of`] and [`io::parse_with`]; [`Error::Option`] for the dimension and the bytes.
 #[wasm_bindgen(js_name = readMesh, unchecked_return_type = "import('../files.js').FileMesh")]
-pub fn read_mesh(
-    bytes: &Uint8Array,
-    name: &str,
-    dimension: Option<f64>,
-    max_bytes: Option<f64>,
-    files: &JsValue,
-) -> Result<JsValue, JsValue> {
-    let loaded = load(bytes, name, dimension, max_bytes, files).map_err(thrown)?;
+pub fn read_mesh(file: &JsFile, dimension: Option<f64>) -> Result<JsValue, JsValue> {
+    let loaded = load(file, dimension).map_err(thrown)?;
     let mut constraints = Options::default();
     loaded.constrain(&mut constraints).map_err(thrown)?;
     let numbers = |numbers: &[u32]| {
@@ -44,7 +55,7 @@ pub fn read_mesh(
         dimension,
         ("polygons", (loaded.polygons as f64).into()),
         ("dropped", texts(&loaded.dropped)),
-        ("keeps", Format::of(Path::new(name)).is_ok_and(|format| loaded.keeps(format)).into()),
+        ("keeps", Format::of(Path::new(&file.name())).is_ok_and(|format| loaded.keeps(format)).into()),
         ("notes", texts(&loaded.notes)),
         ("placed", placed),
         ("groups", numbers(&constraints.groups)),
@@ -53,39 +64,39 @@ pub fn read_mesh(
     ]))
 }
 
-/// The bytes of a file that holds what [`read_mesh`] reads, with other triangles.
+/// The bytes of a file that holds what [`read_mesh`] reads, with other triangles. The positions have to be those of the
+/// file.
 ///
 /// # Errors
-/// Those of [`read_mesh`] and [`Loaded::file_bytes`].
+/// Those of [`read_mesh`] and [`Loaded::file_bytes`]; [`Error::Option`] for the positions.
 #[wasm_bindgen(js_name = rewriteMesh, unchecked_return_type = "Uint8Array<ArrayBuffer>")]
 pub fn rewrite_mesh(
-    bytes: &Uint8Array,
-    name: &str,
+    file: &JsFile,
+    positions: JsPositions,
+    indices: &Uint32Array,
     dimension: f64,
-    max_bytes: Option<f64>,
-    files: &JsValue,
-    indices: Vec<u32>,
     target: &str,
 ) -> Result<Uint8Array, JsValue> {
-    let rewrite = || load(bytes, name, Some(dimension), max_bytes, files)?.file_bytes(target, indices);
+    let rewrite = || {
+        let loaded = load(file, Some(dimension))?;
+        if !Positions::from(positions).iter().eq(loaded.mesh.positions().iter()) {
+            let message = "its vertices are not where those of the mesh are, and only triangles are written anew: leave it out, and attributes are lost";
+            return Err(Error::Option { option: "original", message: message.to_owned() });
+        }
+        loaded.file_bytes(target, indices.to_vec())
+    };
     rewrite().map(|bytes| Uint8Array::from(bytes.as_slice())).map_err(thrown)
 }
 
-fn load(
-    bytes: &Uint8Array,
-    name: &str,
-    dimension: Option<f64>,
-    max_bytes: Option<f64>,
-    files: &JsValue,
-) -> Result<Loaded, Error> {
-    let format = Format::of(Path::new(name))?;
+fn load(file: &JsFile, dimension: Option<f64>) -> Result<Loaded, Error> {
+    let (format, bytes, files) = (Format::of(Path::new(&file.name()))?, file.bytes(), file.files());
     let mut options = ReadOptions::default();
     options.dimension = dimension.map(parse_dimension).transpose()?;
-    options.max_bytes = max_bytes.map_or(Ok(options.max_bytes), parse_max_bytes)?;
+    options.max_bytes = file.max_bytes().map_or(Ok(options.max_bytes), parse_max_bytes)?;
     options.check(bytes.length().into())?;
     io::parse_with(format, bytes.to_vec(), &options, &|name| {
         let given =
-            Reflect::get(files, &name.into()).ok().and_then(|file| file.dyn_into::<Uint8Array>().ok());
+            Reflect::get(&files, &name.into()).ok().and_then(|file| file.dyn_into::<Uint8Array>().ok());
         given.map(|file| file.to_vec()).ok_or_else(|| "it is not among the `files` given".into())
     })
 }
@@ -97,12 +108,12 @@ fn load(
 #[wasm_bindgen(js_name = writeMesh, unchecked_return_type = "Uint8Array<ArrayBuffer>")]
 pub fn write_mesh(
     positions: JsPositions,
-    indices: Vec<u32>,
+    indices: &Uint32Array,
     dimension: f64,
     name: &str,
 ) -> Result<Uint8Array, JsValue> {
     let write = || {
-        let mesh = Mesh::new(parse_dimension(dimension)?, positions, indices)?;
+        let mesh = self::mesh(positions, indices, dimension)?;
         io::to_file_bytes(name, &mesh)
     };
     write().map(|bytes| Uint8Array::from(bytes.as_slice())).map_err(thrown)
@@ -123,8 +134,8 @@ pub fn generate(spec: &str) -> Result<JsValue, JsValue> {
 /// # Errors
 /// Those of [`Mesh::new`]; [`Error::Option`] for the dimension.
 #[wasm_bindgen(unchecked_return_type = "import('../files.js').Reoriented")]
-pub fn reorient(positions: JsPositions, indices: Vec<u32>, dimension: f64) -> Result<JsValue, JsValue> {
-    let turn = || reoriented(&Mesh::new(parse_dimension(dimension)?, positions, indices)?);
+pub fn reorient(positions: JsPositions, indices: &Uint32Array, dimension: f64) -> Result<JsValue, JsValue> {
+    let turn = || reoriented(&mesh(positions, indices, dimension)?);
     let (mesh, turned) = turn().map_err(thrown)?;
     Ok(object([("indices", Uint32Array::from(mesh.triangles()).into()), ("turned", turned.into())]))
 }
@@ -134,8 +145,8 @@ pub fn reorient(positions: JsPositions, indices: Vec<u32>, dimension: f64) -> Re
 /// # Errors
 /// Those of [`Mesh::new`]; [`Error::Option`] for the dimension.
 #[wasm_bindgen(unchecked_return_type = "import('../files.js').Measures")]
-pub fn measures(positions: JsPositions, indices: Vec<u32>, dimension: f64) -> Result<JsValue, JsValue> {
-    let measure = || Ok(quality::measures(&Mesh::new(parse_dimension(dimension)?, positions, indices)?));
+pub fn measures(positions: JsPositions, indices: &Uint32Array, dimension: f64) -> Result<JsValue, JsValue> {
+    let measure = || Ok(quality::measures(&mesh(positions, indices, dimension)?));
     let measures = measure().map_err(thrown)?;
     Ok(object([
         ("minAngle", measures.min_angle.into()),
@@ -154,17 +165,17 @@ pub fn measures(positions: JsPositions, indices: Vec<u32>, dimension: f64) -> Re
 #[wasm_bindgen(unchecked_return_type = "import('../files.js').Change")]
 pub fn change(
     positions: JsPositions,
-    indices: Vec<u32>,
+    indices: &Uint32Array,
     dimension: f64,
-    after: Vec<u32>,
+    after: &Uint32Array,
 ) -> Result<JsValue, JsValue> {
     let measure = || {
-        let mesh = Mesh::new(parse_dimension(dimension)?, positions, indices)?;
-        let (length, expected) = (after.len(), mesh.triangles().len());
+        let mesh = self::mesh(positions, indices, dimension)?;
+        let (length, expected) = (after.length() as usize, mesh.triangles().len());
         if length != expected {
             return Err(Error::TriangleCount { length, expected });
         }
-        let after = mesh.with_triangles(after)?;
+        let after = mesh.with_triangles(after.to_vec())?;
         let moved = quality::moved(mesh.triangles(), after.triangles());
         Ok((moved, quality::distance(&mesh, after.triangles())))
     };
@@ -179,13 +190,13 @@ pub fn change(
 #[wasm_bindgen(unchecked_return_type = "import('../files.js').Angles")]
 pub fn angles(
     positions: JsPositions,
-    indices: Vec<u32>,
+    indices: &Uint32Array,
     dimension: f64,
     bins: f64,
 ) -> Result<JsValue, JsValue> {
     let measure = || {
         let bins = parse_bins(bins)?;
-        let mesh = Mesh::new(parse_dimension(dimension)?, positions, indices)?;
+        let mesh = self::mesh(positions, indices, dimension)?;
         Ok(quality::angles(&mesh, bins))
     };
     let angles = measure().map_err(thrown)?;
@@ -196,6 +207,10 @@ pub fn angles(
         ("meanMin", angles.mean_min.into()),
         ("counts", Uint32Array::from(counts.as_slice()).into()),
     ]))
+}
+
+fn mesh(positions: JsPositions, indices: &Uint32Array, dimension: f64) -> Result<Mesh, Error> {
+    mesh_of(positions, indices, dimension, &Threads::one())
 }
 
 /// The fields of a mesh, in arrays that JavaScript owns.

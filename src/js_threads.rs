@@ -1,8 +1,6 @@
 //! Sessions on the CPU engine's threads, in a module of its own whose instances share their memory: one in each worker.
 
-use crate::Positions;
-use crate::js::{JsOptions, JsSession};
-use crate::js_values::{coded, thrown};
+use crate::js_values::coded;
 use rayon::{ThreadBuilder, ThreadPool, ThreadPoolBuilder};
 use std::sync::{Mutex, OnceLock};
 use wasm_bindgen::prelude::*;
@@ -35,40 +33,6 @@ pub fn work() {
     let thread = WAITING.lock().ok().and_then(|mut waiting| waiting.pop());
     if let Some(thread) = thread {
         thread.run();
-    }
-}
-
-/// The arrays of a mesh, which the page fills: it can write to the memory.
-#[wasm_bindgen]
-pub struct Arrays {
-    positions: Positions,
-    indices: Vec<u32>,
-}
-
-#[wasm_bindgen]
-impl Arrays {
-    /// So many numbers and indices.
-    #[wasm_bindgen(constructor)]
-    pub fn new(numbers: usize, is_double: bool, indices: usize) -> Self {
-        let positions = if is_double { vec![0f64; numbers].into() } else { vec![0f32; numbers].into() };
-        Self { positions, indices: vec![0; indices] }
-    }
-
-    /// Where the positions are in memory, and where the indices are.
-    pub fn places(&self) -> Vec<usize> {
-        let positions = match &self.positions {
-            Positions::F32(numbers) => numbers.as_ptr().addr(),
-            Positions::F64(numbers) => numbers.as_ptr().addr(),
-        };
-        vec![positions, self.indices.as_ptr().addr()]
-    }
-
-    /// A session on the mesh. The threads are those that have been started.
-    ///
-    /// # Errors
-    /// As [`Session::new`](crate::Session::new).
-    pub async fn open(self, dimension: f64, options: JsOptions) -> Result<JsSession, JsValue> {
-        JsSession::open(self.positions, self.indices, dimension, &options).await.map_err(thrown)
     }
 }
 

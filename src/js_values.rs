@@ -4,10 +4,11 @@
 #[cfg(any(feature = "js-session", feature = "js-audit"))]
 use crate::Reasons;
 use crate::error::number;
-use crate::{Dimension, Error, Positions};
+use crate::threads::Threads;
+use crate::{Dimension, Error, Mesh, Positions, memory};
 #[cfg(any(feature = "js-session", feature = "js-audit", feature = "js-files"))]
 use js_sys::{Array, Object};
-use js_sys::{Float32Array, Float64Array};
+use js_sys::{Float32Array, Float64Array, Uint32Array};
 use wasm_bindgen::prelude::*;
 
 #[wasm_bindgen]
@@ -15,6 +16,9 @@ extern "C" {
     /// Positions, as JavaScript has them.
     #[wasm_bindgen(typescript_type = "Float32Array | Float64Array")]
     pub type JsPositions;
+
+    #[wasm_bindgen(method, getter, js_name = byteLength)]
+    pub(crate) fn byte_length(this: &JsPositions) -> f64;
 }
 
 impl From<JsPositions> for Positions {
@@ -35,11 +39,34 @@ pub(crate) fn positions_array(positions: &Positions) -> JsValue {
     }
 }
 
+/// The mesh of arrays of JavaScript, copied where there is memory for them.
+///
+/// # Errors
+/// Those of [`Mesh::new`]; [`Error::OutOfMemory`]; [`Error::Option`] for the dimension.
+pub(crate) fn mesh_of(
+    positions: JsPositions,
+    indices: &Uint32Array,
+    dimension: f64,
+    threads: &Threads,
+) -> Result<Mesh, Error> {
+    let dimension = parse_dimension(dimension)?;
+    let bytes = positions.byte_length() + f64::from(indices.byte_length());
+    memory::check(bytes as u64)?;
+    Mesh::checked(dimension, positions, indices.to_vec(), threads)
+}
+
 /// Runs once, when a module is loaded.
 #[wasm_bindgen(start)]
 pub fn start() {
     #[cfg(debug_assertions)]
     console_error_panic_hook::set_once();
+}
+
+/// Where memory cannot be had, `tools/build.mjs` lets Rust end here: a trap would not say why. `fromModule` in
+/// `src/js/error.ts` knows the message.
+#[wasm_bindgen(js_name = outOfMemory)]
+pub fn out_of_memory() {
+    wasm_bindgen::throw_str("out of memory");
 }
 
 /// A plain object.

@@ -1,11 +1,15 @@
 //! The WebGL2 engine for the module of the engines, which calls it as `engine::proxy` does: in a module of its own, that
 //! is loaded when the engine is taken.
 
+use crate::Error;
 use crate::engine::{self, Engine, WebGl};
-use crate::js_values::{JsPositions, coded, parse_dimension, thrown};
+use crate::js_promise::promise;
+use crate::js_values::{JsPositions, coded, mesh_of, thrown};
 use crate::phases::Thresholds;
-use crate::{Dimension, Error, Mesh};
-use js_sys::Uint32Array;
+use crate::threads::Threads;
+use js_sys::{Promise, Uint32Array};
+use std::cell::RefCell;
+use std::rc::Rc;
 use std::sync::Arc;
 use wasm_bindgen::prelude::*;
 
@@ -17,117 +21,129 @@ pub fn set_shader_loader(
     engine::set_shader_loader(loader);
 }
 
-/// A mesh on the engine.
+/// A mesh on the engine. A call has the engine while it goes on; one that ends with a trap keeps it.
 #[wasm_bindgen(js_name = WebGl2)]
 pub struct JsWebGl2 {
-    engine: WebGl,
-    dimension: Dimension,
+    engine: Rc<RefCell<Option<WebGl>>>,
+    dimension: f64,
+}
+
+impl JsWebGl2 {
+    /// Asks the engine, and gives JavaScript what `give` makes of the answer.
+    fn ask<T>(
+        &self,
+        question: impl AsyncFnOnce(&mut WebGl) -> Result<T, Error> + 'static,
+        give: impl FnOnce(T) -> JsValue + 'static,
+    ) -> Promise {
+        let place = self.engine.clone();
+        promise(async move {
+            let mut engine = place
+                .take()
+                .ok_or_else(|| coded("internal", "the engine ended when a call of it crashed"))?;
+            let answer = question(&mut engine).await;
+            place.replace(Some(engine));
+            answer.map(give).map_err(bare)
+        })
+    }
+
+    fn get<T: Default>(&self, value: impl FnOnce(&WebGl) -> T) -> T {
+        self.engine.borrow().as_ref().map(value).unwrap_or_default()
+    }
 }
 
 #[wasm_bindgen(js_class = WebGl2)]
 impl JsWebGl2 {
     /// On the context that all share; `cos` is the cosine of β, `deviation` what diagonals may be apart.
     ///
-    /// # Errors
-    /// Where there is no context, it is a software one that is not taken, it fails its self-test, or it cannot take the
-    /// mesh.
-    pub async fn create(
+    /// Rejected where there is no context, it is a software one that is not taken, it fails its self-test, or it cannot
+    /// take the mesh.
+    #[wasm_bindgen(unchecked_return_type = "Promise<WebGl2>")]
+    pub fn create(
         positions: JsPositions,
-        indices: Vec<u32>,
+        indices: &Uint32Array,
         dimension: f64,
         cos: f64,
         deviation: f32,
         takes_software: bool,
-    ) -> Result<JsWebGl2, JsValue> {
-        let create = async {
-            let dimension = parse_dimension(dimension)?;
-            let mesh = Arc::new(Mesh::new(dimension, positions, indices)?);
-            Ok(Self {
-                engine: WebGl::open(mesh, Thresholds { cos, deviation }, takes_software).await?,
-                dimension,
-            })
+    ) -> Promise {
+        let mesh = mesh_of(positions, indices, dimension, &Threads::one());
+        let create = async move {
+            let engine = WebGl::open(Arc::new(mesh?), Thresholds { cos, deviation }, takes_software).await?;
+            Ok(Self { engine: Rc::new(RefCell::new(Some(engine))), dimension })
         };
-        create.await.map_err(bare)
+        promise(async { create.await.map(JsValue::from).map_err(bare) })
+    }
+
+    /// As the engine's. Rejected, as all that follow, where the context is lost.
+    #[wasm_bindgen(unchecked_return_type = "Promise<void>")]
+    pub fn lock(&self, half_edges: &Uint32Array) -> Promise {
+        let half_edges = half_edges.to_vec();
+        self.ask(async |engine| engine.lock(half_edges).await, done)
     }
 
     /// As the engine's.
-    ///
-    /// # Errors
-    /// Where the context is lost.
-    pub async fn lock(&mut self, half_edges: Vec<u32>) -> Result<(), JsValue> {
-        self.engine.lock(half_edges).await.map_err(bare)
-    }
-
-    /// As the engine's.
-    ///
-    /// # Errors
-    /// Where the context is lost.
-    pub async fn iterate(&mut self, count: u32) -> Result<Uint32Array, JsValue> {
-        array(self.engine.iterate(count).await)
+    #[wasm_bindgen(unchecked_return_type = "Promise<Uint32Array>")]
+    pub fn iterate(&self, count: u32) -> Promise {
+        self.ask(async move |engine| engine.iterate(count).await, array)
     }
 
     /// As the shaders count.
-    ///
-    /// # Errors
-    /// Where the context is lost.
-    pub async fn census(&mut self) -> Result<Uint32Array, JsValue> {
-        array(self.engine.census_counts().await)
+    #[wasm_bindgen(unchecked_return_type = "Promise<Uint32Array>")]
+    pub fn census(&self) -> Promise {
+        self.ask(async |engine| engine.census_counts().await, array)
     }
 
     /// As the engine's.
-    ///
-    /// # Errors
-    /// Where the context is lost.
-    pub async fn triangles(&mut self) -> Result<Uint32Array, JsValue> {
-        array(self.engine.triangles().await)
+    #[wasm_bindgen(unchecked_return_type = "Promise<Uint32Array>")]
+    pub fn triangles(&self) -> Promise {
+        self.ask(async |engine| engine.triangles().await, array)
     }
 
     /// As the engine's.
-    ///
-    /// # Errors
-    /// Where the context is lost.
-    pub async fn twins(&mut self) -> Result<Uint32Array, JsValue> {
-        array(self.engine.twins().await)
+    #[wasm_bindgen(unchecked_return_type = "Promise<Uint32Array>")]
+    pub fn twins(&self) -> Promise {
+        self.ask(async |engine| engine.twins().await, array)
     }
 
-    /// As the engine's: `indices` are the triangles as they are now.
-    ///
-    /// # Errors
-    /// Where it cannot take the positions; where the context is lost.
-    #[wasm_bindgen(js_name = setPositions)]
-    pub async fn set_positions(&mut self, positions: JsPositions, indices: Vec<u32>) -> Result<(), JsValue> {
-        let mesh = Mesh::new(self.dimension, positions, indices).map_err(bare)?;
-        self.engine.set_positions(Arc::new(mesh)).await.map_err(bare)
+    /// As the engine's: `indices` are the triangles as they are now. Rejected too where it cannot take the positions.
+    #[wasm_bindgen(js_name = setPositions, unchecked_return_type = "Promise<void>")]
+    pub fn set_positions(&self, positions: JsPositions, indices: &Uint32Array) -> Promise {
+        let mesh = mesh_of(positions, indices, self.dimension, &Threads::one());
+        self.ask(async |engine| engine.set_positions(Arc::new(mesh?)).await, done)
     }
 
     /// How many iterations to ask for at a time.
     #[wasm_bindgen(getter)]
     pub fn batch(&self) -> u32 {
-        self.engine.batch()
+        self.get(WebGl::batch)
     }
 
     /// All edges, those of the boundary, the non-manifold and the inconsistent ones.
     #[wasm_bindgen(getter, js_name = edgeCounts)]
     pub fn edge_counts(&self) -> Vec<u32> {
-        let counts = self.engine.edge_counts();
+        let counts = self.get(WebGl::edge_counts);
         vec![counts.edges, counts.boundary, counts.non_manifold, counts.inconsistent]
     }
 
     /// The renderer's name.
     #[wasm_bindgen(getter)]
     pub fn adapter(&self) -> String {
-        self.engine.adapter().unwrap_or_default()
+        self.get(WebGl::adapter).unwrap_or_default()
     }
 
     /// Passes so far.
     #[wasm_bindgen(getter)]
     pub fn dispatches(&self) -> f64 {
-        self.engine.dispatches() as f64
+        self.get(|engine| engine.dispatches() as f64)
     }
 }
 
-fn array(words: Result<Vec<u32>, Error>) -> Result<Uint32Array, JsValue> {
-    Ok(Uint32Array::from(words.map_err(bare)?.as_slice()))
+fn done((): ()) -> JsValue {
+    JsValue::UNDEFINED
+}
+
+fn array(words: Vec<u32>) -> JsValue {
+    Uint32Array::from(words.as_slice()).into()
 }
 
 /// An `Error` with a `code` whose message is that of the variant alone: the other module makes the variant of it again.

@@ -35,6 +35,8 @@ pub mod js;
 pub mod js_audit;
 #[cfg(all(target_arch = "wasm32", feature = "js-files"))]
 pub mod js_files;
+#[cfg(all(target_arch = "wasm32", any(feature = "js-session", feature = "js-webgl2")))]
+mod js_promise;
 #[cfg(all(target_arch = "wasm32", feature = "js-threads"))]
 pub mod js_threads;
 #[cfg(all(target_arch = "wasm32", feature = "js-values"))]

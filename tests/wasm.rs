@@ -7,11 +7,9 @@
 mod device;
 mod meshes;
 
-use device::{class_of, code_of, options_object};
-use edgeflip::js::JsSession;
+use device::{class_of, code_of, session_of};
 use edgeflip::{Backend, EdgeState, Edges, Error, Options, Positions, Session, families::by_name};
 use js_sys::Reflect;
-use wasm_bindgen::JsValue;
 use wasm_bindgen_test::{wasm_bindgen_test, wasm_bindgen_test_configure};
 
 wasm_bindgen_test_configure!(run_in_browser);
@@ -88,12 +86,8 @@ async fn auto_finds_an_engine() {
 #[wasm_bindgen_test]
 async fn javascript_gets_the_buffers_of_webgpu() {
     let mesh = by_name("random 10").unwrap();
-    let create = |fields: &[(&str, JsValue)]| {
-        let (positions, indices) = (device::positions_array(&mesh), mesh.triangles().to_vec());
-        JsSession::create(positions, indices, 2.0, options_object(fields))
-    };
-    let mut session = create(&[("backend", "webgpu".into())]).await.unwrap();
-    while session.advance().await.unwrap() {}
+    let session = session_of(&mesh, &[("backend", "webgpu".into())]).await.unwrap();
+    while session.advance().await.unwrap().is_truthy() {}
     assert_eq!(session.backend(), "webgpu");
     assert!(session.flips() > 0.0);
     assert_eq!(class_of(&session.device()), "GPUDevice");
@@ -109,8 +103,8 @@ async fn javascript_gets_the_buffers_of_webgpu() {
     let outcome = session.outcome().await.unwrap();
     assert_eq!(Reflect::get(&outcome, &"status".into()).unwrap(), "done");
 
-    let session = create(&[("backend", "cpu".into())]).await.unwrap();
+    let session = session_of(&mesh, &[("backend", "cpu".into())]).await.unwrap();
     assert!(session.device().is_undefined() && session.index_buffer().is_undefined());
-    let error = create(&[("maxNormalAngle", 181.0.into())]).await.err().unwrap();
+    let error = session_of(&mesh, &[("maxNormalAngle", 181.0.into())]).await.err().unwrap();
     assert_eq!(code_of(&error), "invalid-option");
 }

@@ -67,14 +67,25 @@ for (const { name, options } of modules) {
   shorten(`dist/wasm/${name}.js`, `./${name}_bg.js`, JSON.parse(names));
 }
 
-/** Where a panic begins, a trap is left, with which it would end: nobody hears what it says before. */
+/**
+ * Where a panic begins, a trap is left, with which it would end: nobody hears what it says before. Where memory cannot be
+ * had, `out_of_memory` is called instead, which throws.
+ */
 function cutPanics(file) {
-  const begins = /^(core|alloc)\b.*::(panicking::.*|panic_\w+|\w+_fail(ed)?|capacity_overflow|handle_error)$/;
+  const panics = /^(core|alloc)\b.*::(panicking::.*|panic_\w+|\w+_fail(ed)?)$/;
+  const memory = /^alloc\b.*::(handle_alloc_error|handle_error|capacity_overflow)$|::malloc_failure$/;
   const module = binaryen.readBinary(readFileSync(file));
+  const outOfMemory = binaryen.getExportInfo(module.getExport('outOfMemory')).value;
+  let hooks = 0;
   for (let i = 0; i < module.getNumFunctions(); i++) {
     const place = module.getFunctionByIndex(i);
-    if (begins.test(binaryen.getFunctionInfo(place).name)) binaryen.Function.setBody(place, module.unreachable());
+    const { name } = binaryen.getFunctionInfo(place);
+    if (panics.test(name)) binaryen.Function.setBody(place, module.unreachable());
+    if (!memory.test(name)) continue;
+    hooks++;
+    binaryen.Function.setBody(place, module.block(null, [module.call(outOfMemory, [], binaryen.none), module.unreachable()]));
   }
+  if (hooks < 2) throw new Error(`${file}: of what follows where memory cannot be had, too little has a name that is known`);
   writeFileSync(file, module.emitBinary());
   module.dispose();
 }

@@ -30,7 +30,7 @@ extern "C" {
     /// `JsWebGl2`.
     type Remote;
     #[wasm_bindgen(method, catch)]
-    fn lock(this: &Remote, half_edges: &[u32]) -> Result<Promise, JsValue>;
+    fn lock(this: &Remote, half_edges: Uint32Array) -> Result<Promise, JsValue>;
     #[wasm_bindgen(method, catch)]
     fn iterate(this: &Remote, count: u32) -> Result<Promise, JsValue>;
     #[wasm_bindgen(method, catch)]
@@ -40,7 +40,7 @@ extern "C" {
     #[wasm_bindgen(method, catch)]
     fn twins(this: &Remote) -> Result<Promise, JsValue>;
     #[wasm_bindgen(method, catch, js_name = setPositions)]
-    fn set_positions(this: &Remote, positions: JsValue, indices: &[u32]) -> Result<Promise, JsValue>;
+    fn set_positions(this: &Remote, positions: JsValue, indices: Uint32Array) -> Result<Promise, JsValue>;
     #[wasm_bindgen(method, getter)]
     fn batch(this: &Remote) -> u32;
     #[wasm_bindgen(method, getter, js_name = edgeCounts)]
@@ -136,7 +136,7 @@ impl Engine for Proxy {
     }
 
     fn lock(&mut self, half_edges: Vec<u32>) -> Answer<'_, ()> {
-        done(self.remote.lock(&half_edges))
+        done(self.remote.lock(half_edges.as_slice().into()))
     }
 
     fn iterate(&mut self, count: u32) -> Answer<'_, Vec<u32>> {
@@ -157,7 +157,7 @@ impl Engine for Proxy {
     }
 
     fn set_positions(&mut self, mesh: Arc<Mesh>) -> Answer<'_, ()> {
-        done(self.remote.set_positions(positions_array(mesh.positions()), mesh.triangles()))
+        done(self.remote.set_positions(positions_array(mesh.positions()), mesh.triangles().into()))
     }
 
     fn edge_counts(&self) -> EdgeCounts {

@@ -5,13 +5,13 @@
  *
  * | code | what to do |
  * |---|---|
- * | `invalid-input` | pass typed arrays, strings where text is asked for, and 2 or 3 as the dimension |
+ * | `invalid-input` | pass typed arrays that have their memory, strings where text is asked for, and 2 or 3 as the dimension |
  * | `non-finite` | repair or remove the vertex that the message names |
  * | `index-out-of-range` | check the indices of the triangle that the message names |
  * | `ragged-array` | check the array's length and the dimension |
  * | `position-count` | give `setPositions` 2 or 3 numbers for each vertex of the mesh |
  * | `triangle-count` | give `writeMesh` as many triangles as its `original` has |
- * | `too-large` | split the mesh |
+ * | `too-large` | split the mesh, or call `free` on sessions that are done: more than 32 bits can index, or than there is memory for |
  * | `parse` | repair the file at the line, or the vertex, that the message names |
  * | `file-too-large` | pass a larger `maxBytes`, if the file is to be trusted |
  * | `unknown-format` | take a file name with one of the extensions in `FORMATS` |
@@ -60,9 +60,19 @@ export class EdgeflipError extends Error {
   }
 }
 
+/** What a module says where memory cannot be had, `out_of_memory` in `src/js_values.rs`, and what workers make of it. */
+const OUT_OF_MEMORY = /\bout of memory\b/;
+
 /** What the module has thrown, as an `EdgeflipError`. A trap has no code. */
 export function fromModule(thrown: unknown): EdgeflipError {
+  if (thrown instanceof EdgeflipError) return thrown;
   const message = thrown instanceof Error ? thrown.message : String(thrown);
+  // Of an array that JavaScript cannot have.
+  const isOfArray = thrown instanceof RangeError && /alloc|length/i.test(message);
+  if (isOfArray || OUT_OF_MEMORY.test(message)) {
+    const advice = 'WebAssembly has 4 GiB for all meshes: free() sessions that are done, or split the mesh';
+    return new EdgeflipError('too-large', `memory ran out (${message}); ${advice}`, { cause: thrown });
+  }
   const given = thrown instanceof Error && 'code' in thrown ? thrown.code : undefined;
   const code = CODES.find((code) => code === given) ?? 'internal';
   return new EdgeflipError(code, message, { cause: thrown });

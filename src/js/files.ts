@@ -14,8 +14,10 @@
 
 import initModule, * as wasm from './wasm/edgeflip_files.js';
 import { EdgeflipError, fromModule } from './error.js';
-import { checkDimension, type IndexedMesh, type Mesh32, moduleMesh } from './mesh.js';
+import { copyOf, objectOf, read, shown, viewOf } from './given.js';
+import { checkDimension, indicesOf, type IndexedMesh, type Mesh32, moduleMesh } from './mesh.js';
 import { loader } from './module.js';
+import { attributesOf, bytesOf, filesOf, maxBytesOf, originalOf, textOf } from './settings.js';
 import type { Attributes, Files, Mesh, Original, VertexArray } from './types.js';
 
 export { EdgeflipError, type ErrorCode } from './error.js';
@@ -73,7 +75,7 @@ export interface ReadOptions {
 /** What can be chosen for {@link writeMesh}. */
 export interface WriteOptions {
   /**
-   * The file that the mesh was read from, and whose triangles have become others. In the same format it is written again,
+   * The file that the mesh was read from, and whose triangles have become others; its vertices are where they were. In the same format it is written again,
    * with all else as it was: glTF, in either form, with other indices; OFF, OBJ, PLY and binary STL with other faces. Those of
    * which no triangle is another stay, polygons too; the others give way to triangles with their attributes. It takes the
    * triangles of a run with {@link FileMesh.groups}, {@link FileMesh.lockedEdges} and {@link FileMesh.lockedTriangles}.
@@ -156,7 +158,20 @@ export interface Change {
  *
  * @throws {@link EdgeflipError} `load-failed`.
  */
-export const initFiles = loader(initModule, () => new URL('./wasm/edgeflip_files_bg.wasm', import.meta.url));
+export const initFiles = loader(
+  async (source) => {
+    await initModule(source);
+    isLoaded = true;
+  },
+  () => new URL('./wasm/edgeflip_files_bg.wasm', import.meta.url),
+);
+
+let isLoaded = false;
+
+/** The array until the module has it: a copy where that waits for the module. */
+function held<A extends VertexArray>(view: A, what: string): A {
+  return isLoaded ? view : copyOf(view, what);
+}
 
 /**
  * Reads the bytes of a file, gzip'd or not.
@@ -166,14 +181,16 @@ export const initFiles = loader(initModule, () => new URL('./wasm/edgeflip_files
  * dimensions were asked for; `unknown-format`, `file-too-large`, `too-large`, `invalid-input`, `invalid-option`.
  */
 export async function readMesh(bytes: Uint8Array, name: string, options: ReadOptions = {}): Promise<FileMesh> {
-  checkBytes(bytes);
-  if (options.dimension !== undefined) checkDimension(options.dimension);
-  const { dimension, maxBytes, files = {} } = options;
-  checkMaxBytes(maxBytes);
+  const [view, file] = [bytesOf(bytes, 'bytes'), textOf(name, 'name')];
+  const { dimension, maxBytes, files } = read('the options', () => {
+    const { dimension, maxBytes, files } = objectOf(options, 'options') as ReadOptions;
+    if (dimension !== undefined) checkDimension(dimension);
+    return { dimension, maxBytes: maxBytesOf(maxBytes), files: filesOf(files, held) };
+  });
   // The module counts bytes with 32 bits.
-  if (bytes.length >= 2 ** 32) throw new EdgeflipError('file-too-large', 'the file has more than 4294967295 bytes');
-  const file = text(name, 'name');
-  return call(() => wasm.readMesh(bytes, file, dimension, maxBytes, files));
+  if (view.length >= 2 ** 32) throw new EdgeflipError('file-too-large', 'the file has more than 4294967295 bytes');
+  const content = held(view, 'bytes');
+  return call(() => wasm.readMesh({ bytes: content, name: file, files, maxBytes }, dimension));
 }
 
 /**
@@ -184,16 +201,16 @@ export async function readMesh(bytes: Uint8Array, name: string, options: ReadOpt
  * @param name - Its name, such as `bunny.obj` or `bunny.ply.gz`: the extension gives the format.
  * @throws {@link EdgeflipError} about the mesh; `unknown-format`; `io` for coordinates that STL and glTF cannot hold; those of
  * {@link readMesh} about the original, `triangle-count` if it has another number of triangles, and `invalid-option` for
- * triangles that flips across its seams have made.
+ * positions that are not those of the original, and for triangles that flips across its seams have made.
  */
 export async function writeMesh(mesh: Mesh, name: string, options: WriteOptions = {}): Promise<Uint8Array<ArrayBuffer>> {
-  const { positions, indices, dimension } = moduleMesh(mesh);
-  const file = text(name, 'name');
-  const { original } = options;
-  if (original) {
-    const { bytes, name: from, files, maxBytes } = checked(original);
-    return call(() => wasm.rewriteMesh(bytes, from, dimension, maxBytes, files, indices, file));
-  }
+  const { positions, indices, dimension } = moduleMesh(mesh, held);
+  const file = textOf(name, 'name');
+  const original = read('the options', () => {
+    const { original } = objectOf(options, 'options') as WriteOptions;
+    return original === undefined ? undefined : originalOf(original, held);
+  });
+  if (original) return call(() => wasm.rewriteMesh(original, positions, indices, dimension, file));
   return call(() => wasm.writeMesh(positions, indices, dimension, file));
 }
 
@@ -205,7 +222,7 @@ export async function writeMesh(mesh: Mesh, name: string, options: WriteOptions 
  * @throws {@link EdgeflipError} `invalid-option`, `too-large`.
  */
 export async function generate(spec: string): Promise<Mesh32> {
-  const family = text(spec, 'spec');
+  const family = textOf(spec, 'spec');
   return call(() => wasm.generate(family));
 }
 
@@ -216,12 +233,9 @@ export async function generate(spec: string): Promise<Mesh32> {
  * @throws {@link EdgeflipError} about the mesh; `invalid-option`.
  */
 export async function angles(mesh: Mesh, bins = 180): Promise<Angles> {
-  const { positions, indices, dimension } = moduleMesh(mesh);
+  const { positions, indices, dimension } = moduleMesh(mesh, held);
+  if (typeof bins !== 'number') throw new EdgeflipError('invalid-input', `bins: ${shown(bins)} is not a number`);
   return call(() => wasm.angles(positions, indices, dimension, bins));
-}
-
-function checkBytes(bytes: Uint8Array): void {
-  if (!(bytes instanceof Uint8Array)) throw new EdgeflipError('invalid-input', 'bytes are no Uint8Array');
 }
 
 /**
@@ -231,7 +245,7 @@ function checkBytes(bytes: Uint8Array): void {
  * @throws {@link EdgeflipError} about the mesh.
  */
 export async function reorient(mesh: Mesh): Promise<Reoriented> {
-  const { positions, indices, dimension } = moduleMesh(mesh);
+  const { positions, indices, dimension } = moduleMesh(mesh, held);
   return call(() => wasm.reorient(positions, indices, dimension));
 }
 
@@ -243,19 +257,17 @@ export async function reorient(mesh: Mesh): Promise<Reoriented> {
  * @throws {@link EdgeflipError} about the mesh; `invalid-input`; those of {@link readMesh} about the original.
  */
 export async function weld(mesh: Mesh, attributes: Attributes = [], turns = false): Promise<Welded> {
-  const { positions, indices, dimension } = moduleMesh(mesh);
-  if (!isList(attributes)) {
-    const { bytes, name, files, maxBytes } = checked(attributes);
-    return call(() => welded(wasm.Weld.ofFile(bytes, name, dimension, maxBytes, files, indices, turns)));
-  }
+  const { positions, indices, dimension } = moduleMesh(mesh, held);
+  const given = attributesOf(attributes, held);
+  if (!isList(given)) return call(() => welded(wasm.Weld.ofFile(given, indices, dimension, Boolean(turns))));
   const vertices = positions.length / dimension;
-  const arrays = attributes.map((array) => {
-    if (ArrayBuffer.isView(array) && (array.length % vertices === 0 || array.length === vertices)) {
+  const arrays = given.map((array, i) => {
+    if (array.length % vertices === 0 || array.length === vertices) {
       return new Uint8Array(array.buffer, array.byteOffset, array.byteLength);
     }
-    throw new EdgeflipError('invalid-input', `an attribute is no typed array with a multiple of ${vertices} numbers`);
+    throw new EdgeflipError('invalid-input', `attribute ${i} has ${array.length} numbers, not a multiple of ${vertices}`);
   });
-  return call(() => welded(wasm.Weld.of(positions, indices, dimension, arrays, turns)));
+  return call(() => welded(wasm.Weld.of(positions, indices, dimension, arrays, Boolean(turns))));
 }
 
 /**
@@ -264,7 +276,7 @@ export async function weld(mesh: Mesh, attributes: Attributes = [], turns = fals
  * @throws {@link EdgeflipError} about the mesh.
  */
 export async function measures(mesh: Mesh): Promise<Measures> {
-  const { positions, indices, dimension } = moduleMesh(mesh);
+  const { positions, indices, dimension } = moduleMesh(mesh, held);
   return call(() => wasm.measures(positions, indices, dimension));
 }
 
@@ -275,21 +287,24 @@ export async function measures(mesh: Mesh): Promise<Measures> {
  * @throws {@link EdgeflipError} about the mesh; `triangle-count`.
  */
 export async function change(mesh: Mesh, after: Uint32Array | Uint16Array): Promise<Change> {
-  const { positions, indices, dimension } = moduleMesh(mesh);
-  const { indices: changed } = moduleMesh({ ...mesh, indices: after });
+  const { positions, indices, dimension } = moduleMesh(mesh, held);
+  const view = indicesOf(after);
+  const changed = view instanceof Uint32Array ? held(view, 'indices') : Uint32Array.from(view);
   return call(() => wasm.change(positions, indices, dimension, changed));
 }
 
 /** The compiler does not see it where a list is only read. */
-function isList(attributes: Attributes): attributes is readonly VertexArray[] {
+function isList(attributes: readonly VertexArray[] | Required<Original>): attributes is readonly VertexArray[] {
   return Array.isArray(attributes);
 }
 
 function welded(made: wasm.Weld): Welded {
   const { indices, lockedEdges, lockedTriangles, places, joined, turned } = made;
   let isFreed = false;
-  const split = (indices: Uint32Array) => {
+  const split = (given: Uint32Array) => {
     if (isFreed) throw new EdgeflipError('freed', 'what was joined has been freed');
+    const indices = viewOf(given, ['Uint32Array'], 'indices');
+    if (!indices) throw new EdgeflipError('invalid-input', `indices: ${shown(given)} is not a Uint32Array`);
     try {
       return made.split(indices);
     } catch (thrown) {
@@ -303,26 +318,9 @@ function welded(made: wasm.Weld): Welded {
   return { indices, lockedEdges, lockedTriangles, places, joined, turned, split, free };
 }
 
-/** The file, if a program without types has passed something else. */
-function checked({ bytes, name, files = {}, maxBytes }: Original) {
-  checkBytes(bytes);
-  checkMaxBytes(maxBytes);
-  return { bytes, name: text(name, 'original.name'), files, maxBytes };
-}
-
-function checkMaxBytes(maxBytes: number | undefined): void {
-  if (maxBytes === undefined || typeof maxBytes === 'number') return;
-  throw new EdgeflipError('invalid-input', 'maxBytes is not a number');
-}
-
-/** The argument, if a program without types has passed text. */
-function text(given: string, argument: string): string {
-  if (typeof given === 'string') return given;
-  throw new EdgeflipError('invalid-input', `${argument} is not a string`);
-}
-
+/** Runs at once where the module is loaded: nobody can change what was passed. */
 async function call<T>(work: () => T): Promise<T> {
-  await initFiles();
+  if (!isLoaded) await initFiles();
   try {
     return work();
   } catch (thrown) {

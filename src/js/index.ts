@@ -10,6 +10,7 @@
  */
 
 import { FlipSession } from './session.js';
+import { watchOf } from './settings.js';
 import type { MakeDelaunayOptions, Mesh, Result } from './types.js';
 
 export { EDGE_STATES, type EdgeState } from './edge-states.js';
@@ -20,22 +21,23 @@ export { FlipSession } from './session.js';
 export type * from './types.js';
 
 /**
- * Flips edges until none is left that is not Delaunay and may flip. Nothing of the mesh is changed or kept.
+ * Flips edges until none is left that is not Delaunay and may flip. Nothing of the mesh is changed or kept: its arrays
+ * are copied before this returns its promise.
  *
  * @throws {@link EdgeflipError} about the mesh, the options or the backend.
  */
 export async function makeDelaunay(mesh: Mesh, options: MakeDelaunayOptions = {}): Promise<Result> {
-  const { signal, onProgress, onIteration } = options;
+  const { signal, onProgress, onIteration, isStopped } = watchOf(options);
   const session = await FlipSession.create(mesh, options);
   try {
     if (!onIteration) return await session.run({ signal, onProgress });
     let flips = 0;
-    if (!signal?.aborted) {
+    if (!isStopped()) {
       for await (const iteration of session) {
         flips += iteration.flips;
         onIteration(iteration);
         onProgress?.({ iterations: iteration.index + 1, flips });
-        if (signal?.aborted) break;
+        if (isStopped()) break;
       }
     }
     return await session.result();

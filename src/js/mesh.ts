@@ -1,6 +1,8 @@
 /** Checks the types of a mesh before it goes into the module, which checks its values. */
 
 import { EdgeflipError } from './error.js';
+import { copyOf, objectOf, read, shown, viewOf } from './given.js';
+import type { Hold } from './settings.js';
 import type { Mesh } from './types.js';
 
 /** A mesh in the arrays that the modules give. */
@@ -16,30 +18,36 @@ export interface Mesh32 extends IndexedMesh {
 }
 
 /**
- * The mesh in the arrays that the modules take.
+ * The mesh in the arrays that the modules take, which go through `hold`.
  *
- * @throws {@link EdgeflipError} `invalid-input`.
+ * @throws {@link EdgeflipError} `invalid-input`, `too-large`.
  */
-export function moduleMesh({ positions, indices, dimension }: Mesh): IndexedMesh {
-  checkDimension(dimension);
-  checkPositions(positions);
-  return { positions, indices: uint32(indices), dimension };
+export function moduleMesh(mesh: Mesh, hold: Hold = copyOf): IndexedMesh {
+  return read('the mesh', () => {
+    const { positions, indices, dimension } = objectOf(mesh, 'mesh') as unknown as Mesh;
+    checkDimension(dimension);
+    const [points, corners] = [positionsOf(positions), indicesOf(indices)];
+    const words = corners instanceof Uint32Array ? hold(corners, 'indices') : new Uint32Array(corners);
+    return { positions: hold(points, 'positions'), indices: words, dimension };
+  });
 }
 
 /** @throws {@link EdgeflipError} `invalid-input`, for a program without types. */
 export function checkDimension(dimension: number): void {
   if (dimension === 2 || dimension === 3) return;
-  throw new EdgeflipError('invalid-input', `dimension is ${String(dimension)}, not 2 or 3`);
+  throw new EdgeflipError('invalid-input', `dimension: ${shown(dimension)} is not 2 or 3`);
 }
 
 /** @throws {@link EdgeflipError} `invalid-input`, for a program without types. */
-export function checkPositions(positions: Float32Array | Float64Array): void {
-  if (positions instanceof Float32Array || positions instanceof Float64Array) return;
+export function positionsOf(positions: Float32Array | Float64Array): Float32Array | Float64Array {
+  const view = viewOf(positions, ['Float32Array', 'Float64Array'], 'positions');
+  if (view) return view;
   throw new EdgeflipError('invalid-input', 'positions are neither a Float32Array nor a Float64Array');
 }
 
-function uint32(indices: Uint32Array | Uint16Array): Uint32Array {
-  if (indices instanceof Uint32Array) return indices;
-  if (indices instanceof Uint16Array) return Uint32Array.from(indices);
+/** @throws {@link EdgeflipError} `invalid-input`, for a program without types. */
+export function indicesOf(indices: Uint32Array | Uint16Array): Uint32Array | Uint16Array {
+  const view = viewOf(indices, ['Uint32Array', 'Uint16Array'], 'indices');
+  if (view) return view;
   throw new EdgeflipError('invalid-input', 'indices are neither a Uint32Array nor a Uint16Array');
 }

@@ -1,6 +1,8 @@
 /** Loads a WebAssembly module, once. */
 
 import { EdgeflipError } from './error.js';
+import { copyOf, messageOf, shown, viewOf } from './given.js';
+import { VERTEX_ARRAYS } from './settings.js';
 
 /** Where the module comes from: its bytes, the module itself, a response, or an address to fetch. */
 export type ModuleSource = BufferSource | WebAssembly.Module | Response | URL | string;
@@ -16,17 +18,28 @@ type Start = (options: { module_or_path: ModuleSource }) => Promise<unknown>;
  */
 export function loader(start: Start, place: () => URL): (source?: ModuleSource) => Promise<void> {
   let loading: Promise<void> | undefined;
-  const load = async (source: ModuleSource = place()) => {
+  const load = async (given: ModuleSource = place()) => {
+    const source = sourceOf(given);
     await start({ module_or_path: readFile(source) ?? source });
   };
   return (source) => {
     loading ??= load(source).catch((cause: unknown) => {
       loading = undefined;
-      const message = cause instanceof Error ? cause.message : String(cause);
-      throw new EdgeflipError('load-failed', `the WebAssembly module could not be loaded: ${message}`, { cause });
+      throw new EdgeflipError('load-failed', `the WebAssembly module could not be loaded: ${messageOf(cause)}`, { cause });
     });
     return loading;
   };
+}
+
+/** What was passed, read at once. */
+function sourceOf(given: ModuleSource): ModuleSource {
+  if (typeof given === 'string') return given;
+  const view = viewOf(given, VERTEX_ARRAYS, 'the bytes');
+  if (view) return copyOf(view, 'the bytes') as Uint8Array<ArrayBuffer>;
+  const kinds = [URL, WebAssembly.Module, Response, ArrayBuffer];
+  // One that has a `then` would be waited for.
+  if (kinds.some((kind) => given instanceof kind) && !('then' in given)) return given;
+  throw new TypeError(`${shown(given)} is no address, response, module or bytes`);
 }
 
 /** The module of a source, without an instance. */

@@ -1,34 +1,38 @@
 /** What the options have done to a mesh before the run, by the module of `edgeflip/files`. */
 
 import { reorient, weld, type Welded } from './files.js';
-import type { Mesh, Options } from './types.js';
+import type { IndexedMesh } from './mesh.js';
+import type { Chosen, Settings } from './settings.js';
 
 /** What a session begins with. */
 export interface Prepared {
   indices: Uint32Array;
-  turned: number;
+  turned?: number;
   welded?: Welded;
-  options: Options;
+  settings: Settings;
 }
 
 /** Turns triangles and joins vertices, where the options say so. */
-export async function prepare(mesh: Mesh, options: Options): Promise<Prepared> {
-  if (!options.weld) return { ...(await reorient(mesh)), options };
-  const welded = await weld(mesh, options.weld === true ? [] : options.weld, options.reorient);
+export async function prepare(mesh: IndexedMesh, chosen: Chosen): Promise<Prepared> {
+  const { settings } = chosen;
+  if (!chosen.weld) return { ...(await reorient(mesh)), settings };
+  const welded = await weld(mesh, chosen.weld, chosen.reorient);
   const { indices, turned } = welded;
-  return { indices, turned, welded, options: { ...options, ...locks(welded, options) } };
+  return { indices, turned, welded, settings: { ...settings, ...locks(welded, settings) } };
 }
 
-/** What the options name, and what keeps attributes. What is no array is left to the engine, which refuses it. */
-function locks({ places, ...keep }: Welded, { lockedEdges = [], lockedTriangles = [] }: Options): Options {
+/** What the options name, and what keeps attributes. */
+function locks({ places, ...keep }: Welded, { lockedEdges, lockedTriangles }: Settings): Settings {
+  const edges = (lockedEdges ?? new Uint32Array()).map((vertex) => places[vertex] ?? vertex);
   return {
-    lockedEdges: isList(lockedEdges)
-      ? [...Array.from(lockedEdges, (vertex) => places[vertex] ?? vertex), ...keep.lockedEdges]
-      : lockedEdges,
-    lockedTriangles: isList(lockedTriangles) ? [...lockedTriangles, ...keep.lockedTriangles] : lockedTriangles,
+    lockedEdges: joined(edges, keep.lockedEdges),
+    lockedTriangles: joined(lockedTriangles ?? new Uint32Array(), keep.lockedTriangles),
   };
 }
 
-function isList(given: unknown): boolean {
-  return Array.isArray(given) || given instanceof Uint32Array;
+function joined(first: Uint32Array, second: Uint32Array): Uint32Array {
+  const all = new Uint32Array(first.length + second.length);
+  all.set(first);
+  all.set(second, first.length);
+  return all;
 }

@@ -4,10 +4,12 @@
 
 import type { EDGE_STATES } from './edge-states.js';
 import { EdgeflipError, fromModule } from './error.js';
+import type { Welded } from './files.js';
 import { initAudit } from './load.js';
-import { checkPositions, moduleMesh } from './mesh.js';
+import { copyOf } from './given.js';
+import { moduleMesh, positionsOf } from './mesh.js';
 import { open } from './open.js';
-import type { Prepared } from './prepare.js';
+import { chosenOf, watchOf } from './settings.js';
 import type { ModuleSession } from './threads.js';
 import { Turns } from './turn.js';
 import type { Audit, Edges, Engine, Iteration, Mesh, Options, Result, RunOptions } from './types.js';
@@ -31,24 +33,27 @@ export class FlipSession implements AsyncIterable<Iteration>, Disposable {
   #last: Promise<unknown> = Promise.resolve();
   #isFreed = false;
 
-  readonly #prepared: Prepared;
+  readonly #turned: number;
+  readonly #welded: Welded | undefined;
 
-  private constructor(session: ModuleSession, prepared: Prepared) {
+  private constructor(session: ModuleSession, turned = 0, welded?: Welded) {
     this.#session = session;
-    this.#prepared = prepared;
+    this.#turned = turned;
+    this.#welded = welded;
   }
 
   /**
-   * Checks the mesh and makes an engine ready for it.
+   * Checks the mesh and makes an engine ready for it. The arrays of the mesh and of the options are copied before this
+   * returns its promise: they are the caller's again.
    *
    * @throws {@link EdgeflipError} about the mesh, the options or the backend.
    */
   static async create(mesh: Mesh, options: Options = {}): Promise<FlipSession> {
-    const { positions, indices, dimension } = moduleMesh(mesh);
-    const isAsked = options.reorient || options.weld;
-    const prepared = isAsked ? await (await import('./prepare.js')).prepare(mesh, options) : { indices, turned: 0, options };
+    const [copy, chosen] = [moduleMesh(mesh), chosenOf(options)];
     try {
-      return new FlipSession(await open({ positions, indices: prepared.indices, dimension }, prepared.options), prepared);
+      const isAsked = chosen.reorient || chosen.weld;
+      const { turned, welded, ...begun } = isAsked ? await (await import('./prepare.js')).prepare(copy, chosen) : { ...copy, ...chosen };
+      return new FlipSession(await open({ ...copy, indices: begun.indices }, begun.settings), turned, welded);
     } catch (thrown) {
       throw fromModule(thrown);
     }
@@ -69,9 +74,10 @@ export class FlipSession implements AsyncIterable<Iteration>, Disposable {
   }
 
   /** Runs to the end, or until the signal stops it. A stopped session can go on. */
-  async run({ signal, onProgress }: RunOptions = {}): Promise<Result> {
+  async run(options: RunOptions = {}): Promise<Result> {
+    const { onProgress, isStopped } = watchOf(options);
     const turns = this.#session.isAway ? undefined : new Turns();
-    for (let goesOn = true; goesOn && !signal?.aborted; await turns?.give()) {
+    for (let goesOn = true; goesOn && !isStopped(); await turns?.give()) {
       const [more, progress] = await this.#call(async (session) => {
         const more = await session.advance();
         return [more, { iterations: session.iterations, flips: session.flips }];
@@ -92,14 +98,13 @@ export class FlipSession implements AsyncIterable<Iteration>, Disposable {
    * @throws {@link EdgeflipError} `invalid-input`, `position-count`, `non-finite`, `backend-limit`.
    */
   async setPositions(positions: Float32Array | Float64Array): Promise<void> {
-    checkPositions(positions);
-    const moved = positions.slice();
+    const moved = copyOf(positionsOf(positions), 'positions');
     return this.#call((session) => session.setPositions(moved));
   }
 
   /** The result so far. */
   result(): Promise<Result> {
-    const { turned, welded } = this.#prepared;
+    const [turned, welded] = [this.#turned, this.#welded];
     return this.#call(async (session) => {
       const outcome = await session.outcome();
       return {
@@ -116,7 +121,7 @@ export class FlipSession implements AsyncIterable<Iteration>, Disposable {
   triangles(): Promise<Uint32Array> {
     return this.#call(async (session) => {
       const indices = await session.triangles();
-      return this.#prepared.welded?.split(indices) ?? indices;
+      return this.#welded?.split(indices) ?? indices;
     });
   }
 
@@ -174,7 +179,7 @@ export class FlipSession implements AsyncIterable<Iteration>, Disposable {
     this.#isFreed = true;
     void this.#last.then(() => {
       this.#session.free();
-      this.#prepared.welded?.free();
+      this.#welded?.free();
     });
   }
 

@@ -1,8 +1,10 @@
 /** A thread of the CPU engine: a worker. The first of them has the sessions, and answers calls. */
 
+import { buffersOf } from './buffers.js';
 import { type ErrorCode, fromModule } from './error.js';
-import type { Options } from './types.js';
-import { Arrays, Indices, initSync, type Session, startThreads, work } from './wasm/edgeflip_threads.js';
+import type { IndexedMesh } from './mesh.js';
+import type { Settings } from './settings.js';
+import { Indices, initSync, Session, startThreads, work } from './wasm/edgeflip_threads.js';
 
 /** What a session can be asked. */
 export type Question = 'advance' | 'auditInput' | 'edgeStates' | 'edges' | 'outcome' | 'setPositions' | 'step' | 'triangles';
@@ -17,7 +19,8 @@ export interface Reply {
 /** Milliseconds that iterations may take until a run hears of them: two frames. A message takes as long as many small ones. */
 const SLICE = 32;
 
-const begun = new Map<number, { arrays: Arrays; dimension: number; options: Options }>();
+/** Meshes whose sessions are not open yet. */
+const begun = new Map<number, { mesh: IndexedMesh; settings: Settings }>();
 const sessions = new Map<number, Session>();
 /** What the page has not copied yet, by session. */
 const lent = new Map<number, Indices>();
@@ -33,17 +36,15 @@ const calls = {
     initSync({ module, memory });
     work();
   },
-  /** Where to write so many numbers of positions and indices. */
-  begin(session: number, options: Options, dimension: number, isDouble: boolean, numbers: number, indices: number): Uint32Array {
-    const arrays = new Arrays(numbers, isDouble, indices);
-    begun.set(session, { arrays, dimension, options });
-    return arrays.places();
+  /** Takes a mesh for a session. */
+  begin(session: number, mesh: IndexedMesh, settings: Settings): void {
+    begun.set(session, { mesh, settings });
   },
-  /** Opens a session on what has been written. */
+  /** Opens the session. Where there was too little memory, it can be tried again. */
   async open(session: number): Promise<void> {
-    const { arrays, dimension, options } = begun.get(session)!;
+    const { mesh, settings } = begun.get(session)!;
+    sessions.set(session, await Session.create(mesh.positions, mesh.indices, mesh.dimension, settings));
     begun.delete(session);
-    sessions.set(session, await arrays.open(dimension, options));
   },
   async ask(session: number, question: Question, args: unknown[]): Promise<Reply> {
     const asked = sessions.get(session)!;
@@ -60,6 +61,7 @@ const calls = {
   },
   free(session: number): void {
     calls.release(session);
+    begun.delete(session);
     sessions.get(session)?.free();
     sessions.delete(session);
   },
@@ -91,13 +93,6 @@ export interface Answer {
   error?: { code: ErrorCode; message: string };
 }
 
-/** What of a value need not be copied. */
-function buffers(value: unknown): ArrayBuffer[] {
-  if (ArrayBuffer.isView(value)) return value.buffer instanceof ArrayBuffer ? [value.buffer] : [];
-  if (typeof value !== 'object' || value === null || value instanceof WebAssembly.Memory) return [];
-  return Object.values(value).flatMap(buffers);
-}
-
 const node = typeof process === 'undefined' ? undefined : process.getBuiltinModule?.('node:worker_threads');
 /** Both have these two. */
 const port = (node?.parentPort ?? globalThis) as unknown as {
@@ -112,13 +107,10 @@ function crash(reason: unknown): void {
   });
 }
 
-// Where a function of the module has waited before, its promise does not hear of a trap. In Node it is such an error.
-globalThis.addEventListener?.('unhandledrejection', (event) => crash(event.reason));
-
 port.onmessage = async ({ data: { id, method, args } }) => {
   try {
     const value: unknown = await (calls[method] as (...args: unknown[]) => unknown)(...args);
-    port.postMessage({ id, value }, buffers(value));
+    port.postMessage({ id, value }, buffersOf(value));
   } catch (thrown) {
     if (thrown instanceof WebAssembly.RuntimeError || method === 'work') return crash(thrown);
     const { code, message } = fromModule(thrown);

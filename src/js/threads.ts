@@ -1,9 +1,11 @@
 /** Sessions on the CPU engine's threads: workers, each with an instance of one module, which share its memory. */
 
-import { EdgeflipError } from './error.js';
+import { collecting } from './collect.js';
+import { EdgeflipError, fromModule } from './error.js';
 import type { IndexedMesh } from './mesh.js';
+import { buffersOf } from './buffers.js';
 import type { Answer, Call, Calls, Question } from './thread.js';
-import type { Options } from './types.js';
+import { MOST_THREADS, type Settings } from './settings.js';
 import type { Session } from './wasm/edgeflip.js';
 
 /** What a session is asked, in whatever module it is. */
@@ -15,8 +17,8 @@ export interface ModuleSession extends Omit<Session, typeof Symbol.dispose> {
 /** Triangles that are done on one thread before others have woken up, as `src/threads.rs` has it. */
 const FEWEST_TRIANGLES = 65_536;
 
-/** Threads at most, as `src/js.rs` has it. */
-const MOST_THREADS = 256;
+/** Triangles of each thread at least: with fewer it would have nothing to do. */
+const FEWEST_EACH = 4096;
 
 /** Node's, where there are no workers of the web. */
 const node = typeof process === 'undefined' ? undefined : process.getBuiltinModule?.('node:worker_threads');
@@ -24,11 +26,10 @@ const node = typeof process === 'undefined' ? undefined : process.getBuiltinModu
 /** Whether memory can be shared here. */
 const isShared = typeof SharedArrayBuffer !== 'undefined' && (globalThis.crossOriginIsolated ?? node !== undefined);
 
-/** How many threads the CPU engine would have. What is no number of threads is left to the module, which refuses it. */
-export function threadCount(triangles: number, { threads }: Options): number {
+/** How many threads the CPU engine would have. */
+export function threadCount(triangles: number, { threads }: Settings): number {
   if (!isShared || triangles < FEWEST_TRIANGLES) return 1;
-  const count = threads ?? Math.min(coreCount(), MOST_THREADS);
-  return Number.isInteger(count) && count > 0 && count <= MOST_THREADS ? count : 1;
+  return Math.min(threads ?? coreCount(), MOST_THREADS, Math.floor(triangles / FEWEST_EACH));
 }
 
 function coreCount(): number {
@@ -37,7 +38,7 @@ function coreCount(): number {
 
 /** A worker of the web, or one of Node, which keeps the process alive only while it is waited for. */
 interface Thread {
-  post(call: Call): void;
+  post(call: Call, transfer: ArrayBuffer[]): void;
   end(): void;
   wait(isWaiting: boolean): void;
 }
@@ -51,7 +52,7 @@ function startThread(onAnswer: (answer: Answer) => void, onError: (message?: str
     worker.on('messageerror', ({ message }) => onError(message));
     worker.unref();
     return {
-      post: (call) => worker.postMessage(call),
+      post: (call, transfer) => worker.postMessage(call, transfer),
       end: () => void worker.terminate(),
       wait: (isWaiting) => (isWaiting ? worker.ref() : worker.unref()),
     };
@@ -63,7 +64,7 @@ function startThread(onAnswer: (answer: Answer) => void, onError: (message?: str
     onError(event.message);
   };
   worker.onmessageerror = () => onError('a message could not be read');
-  return { post: (call) => worker.postMessage(call), end: () => worker.terminate(), wait: () => undefined };
+  return { post: (call, transfer) => worker.postMessage(call, transfer), end: () => worker.terminate(), wait: () => undefined };
 }
 
 type Given<M extends keyof Calls> = Awaited<ReturnType<Calls[M]>>;
@@ -86,7 +87,7 @@ class Pool {
     pool.#add();
     try {
       const memory = await pool.call('start', module, count);
-      for (let i = 1; i < count; i++) pool.#add().post({ id: -1, method: 'work', args: [module, memory] });
+      for (let i = 1; i < count; i++) pool.#add().post({ id: -1, method: 'work', args: [module, memory] }, []);
       return [pool, memory];
     } catch (thrown) {
       pool.#fail(String(thrown));
@@ -115,7 +116,7 @@ class Pool {
     const [first] = this.#threads;
     if (!first) throw this.#error;
     const id = this.#numbers++;
-    first.post({ id, method, args });
+    first.post({ id, method, args }, method === 'begin' ? buffersOf(args) : []);
     first.wait(true);
     return new Promise<Given<M>>((resolve, reject) => this.#calls.set(id, { resolve, reject }));
   }
@@ -123,7 +124,7 @@ class Pool {
   /** One that has crashed leaves the memory of all as it is then. */
   #fail(message: string): void {
     if (this.#error) return;
-    this.#error = new EdgeflipError('internal', `a thread has crashed: ${message}`);
+    this.#error = fromModule(new Error(`a thread has crashed: ${message}`));
     for (const thread of this.#threads.splice(0)) thread.end();
     this.#onEnd();
     for (const { reject } of this.#calls.values()) reject(this.#error);
@@ -198,28 +199,27 @@ export class ThreadsSession implements ModuleSession {
   }
 
   /**
-   * As `Session.create`.
+   * As `Session.create`; the arrays of the mesh are given away.
    *
    * @param fallback - Why no engine before this one was taken.
    */
   static async create(
     threads: Threads,
     { positions, indices, dimension }: IndexedMesh,
-    { maxNormalAngle, maxDeviation, maxIterations, lockedEdges, lockedTriangles, groups, order }: Options,
+    { device, threads: count, ...rest }: Settings,
     fallback?: string,
   ): Promise<ThreadsSession> {
-    const [pool, memory] = threads;
-    const session = sessions++;
-    const locks = { lockedEdges, lockedTriangles, groups };
-    const options: Options = { backend: 'cpu', maxNormalAngle, maxDeviation, maxIterations, order, ...locks };
-    const isDouble = positions instanceof Float64Array;
-    const { length } = positions;
-    const [first, second] = await pool.call('begin', session, options, dimension, isDouble, length, indices.length);
-    new (isDouble ? Float64Array : Float32Array)(memory.buffer, first, length).set(positions);
-    new Uint32Array(memory.buffer, second, indices.length).set(indices);
-    const opened = pool.call('open', session);
-    const spare = reserve(indices.length);
-    await opened;
+    const [pool] = threads;
+    const [session, { length }] = [sessions++, indices];
+    void pool.call('begin', session, { positions, indices, dimension }, { ...rest, backend: 'cpu' }).catch(() => undefined);
+    const opened = collecting(() => pool.call('open', session));
+    const spare = reserve(length);
+    try {
+      await opened;
+    } catch (thrown) {
+      void pool.call('free', session).catch(() => undefined);
+      throw thrown;
+    }
     return new ThreadsSession(threads, session, spare, fallback);
   }
 

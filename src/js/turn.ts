@@ -10,13 +10,13 @@ export class Turns {
   /** Ends at once, or after everything that was waiting for the thread. */
   async give(): Promise<void> {
     if (performance.now() - this.#since < SLICE) return;
-    await nextTurn();
+    await turn();
     this.#since = performance.now();
   }
 }
 
-/** A message is a task of its own, and is not held back as a timer is. */
-function nextTurn(): Promise<void> {
+/** Ends after everything that was waiting. A message is a task of its own, and is not held back as a timer is. */
+export function turn(): Promise<void> {
   return new Promise((resolve) => {
     const { port1, port2 } = new MessageChannel();
     port1.onmessage = () => {

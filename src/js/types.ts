@@ -2,7 +2,7 @@
 
 /// <reference types="@webgpu/types" preserve="true" />
 
-/** A triangle mesh. It is only read; nothing of it is kept. */
+/** A triangle mesh. Its arrays are copied before a call returns, and stay the caller's. */
 export interface Mesh {
   /**
    * 2 or 3 numbers a vertex. Decisions are exact for the numbers given. WebGPU and WebGL2 take those that span at most
@@ -48,7 +48,7 @@ export type Attributes = readonly VertexArray[] | Original;
 /** An engine. All give the same result, bit for bit. */
 export type Engine = 'webgpu' | 'webgl2' | 'cpu';
 
-/** What can be chosen for a session. */
+/** What can be chosen for a session. Arrays are copied before a call returns. */
 export interface Options {
   /**
    * `'webgpu'`, `'webgl2'` and `'cpu'` take that engine or fail. `'auto'` (default) takes the CPU for a small mesh, and
@@ -102,8 +102,8 @@ export interface Options {
    */
   order?: 'reproducible' | 'any' | undefined;
   /**
-   * How many threads the CPU engine runs on, 1 to 256. Default: one for each core. More than one needs a mesh of 65,536 triangles,
-   * fewer are done before others have woken up, and shared memory: Node has it, a page where it is cross-origin isolated.
+   * How many threads the CPU engine runs on at most, 1 to 256. Default: one for each core. More than one needs a mesh of
+   * 65,536 triangles, with 4,096 for each: fewer are done before others have woken up. It needs shared memory too: Node has it, a page where it is cross-origin isolated.
    * Else it is one. The result is the same for any number.
    */
   threads?: number | undefined;

@@ -1,9 +1,9 @@
 //! Vertices joined for a run, and its triangles split again.
 
-use super::load;
-use crate::js_values::{JsPositions, parse_dimension, thrown};
+use super::{JsFile, load};
+use crate::js_values::{JsPositions, thrown};
 use crate::weld::first_alike;
-use crate::{Error, Mesh, Welded, welded};
+use crate::{Error, Welded, welded};
 use js_sys::{Uint8Array, Uint32Array};
 use wasm_bindgen::prelude::*;
 
@@ -23,13 +23,13 @@ impl JsWeld {
     /// Those of [`Mesh::new`] and [`welded`]; [`Error::Option`] for the dimension.
     pub fn of(
         positions: JsPositions,
-        indices: Vec<u32>,
+        indices: &Uint32Array,
         dimension: f64,
         attributes: Vec<Uint8Array>,
         reorient: bool,
     ) -> Result<JsWeld, JsValue> {
         let weld = || {
-            let mesh = Mesh::new(parse_dimension(dimension)?, positions, indices)?;
+            let mesh = super::mesh(positions, indices, dimension)?;
             let count = mesh.vertex_count();
             let mut alike = vec![0; count];
             for array in attributes {
@@ -49,17 +49,14 @@ impl JsWeld {
     /// Those of [`read_mesh`](super::read_mesh) and [`Mesh::new`].
     #[wasm_bindgen(js_name = ofFile)]
     pub fn of_file(
-        bytes: &Uint8Array,
-        name: &str,
+        file: &JsFile,
+        indices: &Uint32Array,
         dimension: f64,
-        max_bytes: Option<f64>,
-        files: &JsValue,
-        indices: Vec<u32>,
         reorient: bool,
     ) -> Result<JsWeld, JsValue> {
         let weld = || {
-            let mut loaded = load(bytes, name, Some(dimension), max_bytes, files)?;
-            loaded.mesh = loaded.mesh.with_triangles(indices)?;
+            let mut loaded = load(file, Some(dimension))?;
+            loaded.mesh = loaded.mesh.with_triangles(indices.to_vec())?;
             Self::new(loaded.welded()?, reorient)
         };
         weld().map_err(thrown)
@@ -110,8 +107,8 @@ impl JsWeld {
     ///
     /// # Errors
     /// As there.
-    pub fn split(&self, indices: Vec<u32>) -> Result<Uint32Array, JsValue> {
-        let split = self.welded.split(&indices).map_err(thrown)?;
+    pub fn split(&self, indices: &Uint32Array) -> Result<Uint32Array, JsValue> {
+        let split = self.welded.split(&indices.to_vec()).map_err(thrown)?;
         Ok(Uint32Array::from(split.as_slice()))
     }
 }

@@ -44,6 +44,20 @@ const withThreads = `
   document.body.append(\`\${flips} and \${any.flips} flips on \${backend}: \${sum(indices)}, \${sum(any.indices)}\`);
 `;
 
+/** What is no GPUDevice of this window is refused before it reaches the module. */
+const withFakes = `
+  import { makeDelaunay } from './node_modules/edgeflip/dist/index.js';
+  const positions = new Float32Array([-3, 0, 0, -1, 3, 0, 0, 1]);
+  const indices = new Uint32Array([0, 1, 2, 0, 2, 3]);
+  const Device = globalThis.GPUDevice ?? class {};
+  const codes = [];
+  for (const device of [null, {}, Object.create(Device.prototype), new Proxy(Object.create(Device.prototype), {})]) {
+    await makeDelaunay({ positions, indices, dimension: 2 }, { device }).catch(({ code }) => codes.push(code));
+  }
+  const { backend } = await makeDelaunay({ positions, indices, dimension: 2 }, { backend: 'auto' });
+  document.body.append(\`refused on \${backend}: \${codes}\`);
+`;
+
 /** The same lines on another engine. */
 function on(backend, lines) {
   assert.match(lines, /'auto'/);
@@ -66,6 +80,7 @@ const pages = [
   { name: 'files', lines: on('cpu', withFiles), writes: '' },
   { name: 'audit', lines: on('cpu', withAudit), writes: '' },
   { name: 'threads', lines: on('cpu', withThreads), writes: '' },
+  { name: 'fakes', lines: withFakes, writes: '' },
 ];
 
 function run(program, args, cwd) {

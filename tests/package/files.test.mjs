@@ -151,7 +151,7 @@ test('the dimension is that of the file, or the one asked for', async () => {
   assert.deepEqual([...(await readMesh(bytes('2OFF 1 0\n1 2'), 'a.off')).positions], [1, 2]);
   assert.deepEqual([...(await readMesh(raised, 'a.off')).positions], [0, 0, 0, 1, 2, 0.5]);
   await assert.rejects(readMesh(raised, 'a.off', { dimension: 2 }), refused('parse', /^vertex 1: z is 0\.5/));
-  await assert.rejects(readMesh(raised, 'a.off', { dimension: 4 }), refused('invalid-input', /dimension is 4/));
+  await assert.rejects(readMesh(raised, 'a.off', { dimension: 4 }), refused('invalid-input', /dimension: 4 is not 2 or 3/));
 });
 
 test('errors have codes and places', async () => {

@@ -150,13 +150,13 @@ test('errors have codes', async () => {
   await assert.rejects(bad({ positions: Float64Array.of(0, 0, 1, 0, 0.1, NaN) }), refused('non-finite', /vertex 2: coordinate y/));
   await assert.rejects(bad({ positions: [0, 0] }), refused('invalid-input', /positions/));
   await assert.rejects(bad({ indices: [0, 1, 2] }), refused('invalid-input', /indices/));
-  await assert.rejects(bad({ dimension: 4 }), refused('invalid-input', /dimension is 4/));
+  await assert.rejects(bad({ dimension: 4 }), refused('invalid-input', /dimension: 4 is not 2 or 3/));
   await assert.rejects(bad({ indices: Uint32Array.of(0, 1, 7) }), refused('index-out-of-range', /triangle 0.* 7 /));
   await assert.rejects(bad({ indices: Uint32Array.of(0, 1) }), refused('ragged-array', /indices has 2/));
   await assert.rejects(makeDelaunay(mesh, { backend: 'webgpu' }), refused('backend-unavailable', /backend webgpu/));
   await assert.rejects(makeDelaunay(mesh, { backend: 'gpu' }), refused('invalid-option', /backend/));
   await assert.rejects(makeDelaunay(mesh, { order: 1 }), refused('invalid-option', /order/));
-  await assert.rejects(makeDelaunay(mesh, { device: {} }), refused('invalid-option', /device: .* is not a GPUDevice/));
+  await assert.rejects(makeDelaunay(mesh, { device: {} }), refused('invalid-option', /device: an object is not a GPUDevice/));
   await assert.rejects(makeDelaunay(mesh, { maxNormalAngle: 200 }), refused('invalid-option', /maxNormalAngle: 200/));
   await assert.rejects(makeDelaunay(mesh, { maxDeviation: -1 }), refused('invalid-option', /maxDeviation: -1 is not a distance/));
   await assert.rejects(makeDelaunay(mesh, { maxDeviation: '1' }), refused('invalid-option', /maxDeviation: .* is not a number/));
@@ -286,6 +286,31 @@ test('vertices move, and the session goes on as a new one', async () => {
   await assert.rejects(session.setPositions([0, 0]), refused('invalid-input', /positions/));
   session.free();
   await assert.rejects(session.setPositions(mesh.positions), refused('freed', /freed/));
+});
+
+test('what is passed is the caller’s again when the call has returned', async () => {
+  const large = await generate('grid 190');
+  for (const [given, threads] of [[strips(12), 1], [large, 1], [large, 2]]) {
+    const options = { backend: 'cpu', threads };
+    const { indices, flips } = await makeDelaunay(given, options);
+    const mesh = { ...given, positions: given.positions.slice(), indices: given.indices.slice() };
+    const asked = makeDelaunay(mesh, options);
+    mesh.indices.fill(0);
+    structuredClone(mesh.positions, { transfer: [mesh.positions.buffer] });
+    const result = await asked;
+    assert.deepEqual([result.indices, result.flips], [indices, flips]);
+    await assert.rejects(makeDelaunay(mesh, options), refused('invalid-input', /^positions have no memory: it was transferred/));
+  }
+});
+
+test('a session that is refused leaves the others alone', async () => {
+  const session = await FlipSession.create(strips(12));
+  const throwing = { get lockedEdges() { throw new Error('mine'); } };
+  await assert.rejects(FlipSession.create(strips(12), throwing), refused('invalid-input', /^the options cannot be read: mine$/));
+  await assert.rejects(makeDelaunay(null), refused('invalid-input', /^mesh: null is not an object$/));
+  await assert.rejects(makeDelaunay(strips(12), null), refused('invalid-input', /^options: null is not an object$/));
+  assert.equal((await session.run()).status, 'done');
+  session.free();
 });
 
 test('a freed session refuses calls, also those that were waiting', async () => {

@@ -75,12 +75,12 @@ test('attributes make seams, which come out as they were', async () => {
   welded.free();
   welded.free();
   assert.throws(() => welded.split(welded.indices), refused('freed', /freed/));
-  await assert.rejects(weld(mesh, [alike.slice(1)]), refused('invalid-input', /a multiple of 6 numbers/));
+  await assert.rejects(weld(mesh, [alike.slice(1)]), refused('invalid-input', /attribute 0 has 5 numbers, not a multiple of 6/));
   const nothing = { positions: new Float32Array(), indices: new Uint32Array(), dimension: 3 };
   assert.equal((await weld(nothing, [new Float32Array()])).joined, 0);
   await assert.rejects(weld(mesh, [new Float32Array()]), refused('invalid-option', /0 numbers, the mesh has 6/));
   await assert.rejects(weld(mesh, [[1, 2]]), refused('invalid-input', /typed array/));
-  await assert.rejects(makeDelaunay(mesh, { weld: 1 }), refused('invalid-input', /bytes/));
+  await assert.rejects(makeDelaunay(mesh, { weld: 1 }), refused('invalid-option', /weld: 1 is not true, false, a list of typed arrays/));
   await assert.rejects(makeDelaunay(mesh, { weld: true, lockedEdges: 'all' }), refused('invalid-option', /lockedEdges/));
 });
 

@@ -1,0 +1,6 @@
+/** The memory of arrays, which a message need not copy. */
+export function buffersOf(value: unknown): ArrayBuffer[] {
+  if (ArrayBuffer.isView(value)) return value.buffer instanceof ArrayBuffer ? [value.buffer] : [];
+  if (typeof value !== 'object' || value === null || value instanceof WebAssembly.Memory) return [];
+  return Object.values(value).flatMap(buffersOf);
+}

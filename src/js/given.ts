@@ -1,0 +1,125 @@
+/**
+ * What callers pass, read once and before the first wait: nobody can change it after that. A program without types may
+ * pass anything, and so may one that is hostile: what an object says of itself is not believed, and what it throws is
+ * an error of the input.
+ */
+
+import { EdgeflipError, type ErrorCode } from './error.js';
+import type { VertexArray } from './types.js';
+
+/** An array of WebAssembly has so many bytes at most. */
+const MOST_BYTES = 2 ** 31 - 1;
+
+/** A list that is no typed array is read number by number, whatever length it says that it has. */
+const MOST_NUMBERS = 2 ** 24;
+
+/**
+ * What `work` reads.
+ *
+ * @throws {@link EdgeflipError} `invalid-input` where it throws, but for errors of this package.
+ */
+export function read<T>(what: string, work: () => T): T {
+  try {
+    return work();
+  } catch (cause) {
+    if (cause instanceof EdgeflipError) throw cause;
+    const isOfMemory = cause instanceof RangeError;
+    const [code, why]: [ErrorCode, string] = isOfMemory ? ['too-large', 'there is no memory for a copy'] : ['invalid-input', messageOf(cause)];
+    throw new EdgeflipError(code, `${what} cannot be read: ${why}`, { cause });
+  }
+}
+
+/** The message of an error, whatever was thrown. */
+export function messageOf(thrown: unknown): string {
+  try {
+    return thrown instanceof Error ? `${thrown.message}` : String(thrown);
+  } catch {
+    return 'something that is no error was thrown';
+  }
+}
+
+/** A value in a message. */
+export function shown(value: unknown): string {
+  if (typeof value === 'string') return `'${value.length > 40 ? `${value.slice(0, 40)}…` : value}'`;
+  if (typeof value === 'function') return 'a function';
+  return typeof value === 'object' && value !== null ? 'an object' : String(value);
+}
+
+/** The object that was passed; `undefined` where nothing was. */
+export function objectOf(given: unknown, what: string): Record<string, unknown> {
+  if (typeof given === 'object' && given !== null) return given as Record<string, unknown>;
+  throw new EdgeflipError('invalid-input', `${what}: ${shown(given)} is not an object`);
+}
+
+/** The function that was passed, if one was. */
+export function functionOf<F>(given: F, what: string): NonNullable<F> | undefined {
+  if (given === undefined || given === null) return undefined;
+  if (typeof given === 'function') return given;
+  throw new EdgeflipError('invalid-input', `${what}: ${shown(given)} is not a function`);
+}
+
+const TypedArray = Object.getPrototypeOf(Uint8Array.prototype) as object;
+const own = (name: string | symbol) => Object.getOwnPropertyDescriptor(TypedArray, name)!.get!;
+const [nameOf, bufferOf, offsetOf, lengthOf] = [own(Symbol.toStringTag), own('buffer'), own('byteOffset'), own('length')];
+
+const KINDS = { Int8Array, Uint8Array, Uint8ClampedArray, Int16Array, Uint16Array, Int32Array, Uint32Array, Float32Array, Float64Array };
+type Kind = keyof typeof KINDS;
+
+/**
+ * A view of the typed array that was passed, if it is one of these kinds, of whatever window. It is what the language
+ * says: subclasses are not asked, proxies and objects that only look like one are none.
+ *
+ * @throws {@link EdgeflipError} `invalid-input` where its memory has been transferred.
+ */
+export function viewOf<K extends Kind>(given: unknown, kinds: readonly K[], what: string): InstanceType<(typeof KINDS)[K]> | undefined {
+  const kind: K | undefined = kinds.find((kind) => kind === nameOf.call(given));
+  if (!kind) return undefined;
+  try {
+    const view: VertexArray = new KINDS[kind](bufferOf.call(given), offsetOf.call(given), lengthOf.call(given));
+    return view as InstanceType<(typeof KINDS)[K]>;
+  } catch (cause) {
+    throw new EdgeflipError('invalid-input', `${what} have no memory: it was transferred or has shrunk`, { cause });
+  }
+}
+
+/**
+ * A copy of a view.
+ *
+ * @throws {@link EdgeflipError} `too-large`, also where WebAssembly can have no such array.
+ */
+export function copyOf<A extends VertexArray>(view: A, what: string): A {
+  if (view.byteLength > MOST_BYTES) {
+    throw new EdgeflipError('too-large', `${what} have ${view.byteLength} bytes, and an array of WebAssembly has ${MOST_BYTES} at most`);
+  }
+  return read(what, () => view.slice() as A);
+}
+
+/**
+ * A copy of the whole numbers of 32 bits that were passed, in a typed array or a list.
+ *
+ * @throws {@link EdgeflipError} `invalid-option` where they are none.
+ */
+export function numbersOf(given: unknown, option: string, what: string): Uint32Array {
+  const view = viewOf(given, ['Uint32Array'], option);
+  if (view) return copyOf(view, option);
+  const numbers: number[] = [];
+  const wrong = () => new EdgeflipError('invalid-option', `option ${option}: it is neither a Uint32Array nor an array of ${what}`);
+  return read(option, () => {
+    if (!Array.isArray(given)) throw wrong();
+    const { length } = given;
+    if (length > MOST_NUMBERS) {
+      throw new EdgeflipError('invalid-option', `option ${option}: an array has at most ${MOST_NUMBERS} numbers; pass a Uint32Array`);
+    }
+    for (let i = 0; i < length; i++) {
+      const number: unknown = given[i];
+      if (!isWhole(number)) throw wrong();
+      numbers.push(number);
+    }
+    return new Uint32Array(numbers);
+  });
+}
+
+/** Whether it is a whole number of 32 bits. */
+export function isWhole(value: unknown): value is number {
+  return Number.isInteger(value) && (value as number) >= 0 && (value as number) < 2 ** 32;
+}

@@ -1,0 +1,56 @@
+// Memory of the package in Node: sessions that nobody frees are collected, and where there is none left, that is said.
+
+import assert from 'node:assert/strict';
+import { test } from 'node:test';
+import { FlipSession, makeDelaunay } from 'edgeflip';
+import { generate, readMesh, writeMesh } from 'edgeflip/files';
+
+/** Some 50 MB in WebAssembly, which has 4 GiB. */
+const mesh = await generate('grid 600');
+
+for (const threads of [1, 2]) {
+  const options = { backend: 'cpu', threads };
+
+  test(`sessions that nobody frees are collected on ${threads} threads`, async () => {
+    const isDone = [];
+    for (let i = 0; i < 130; i++) {
+      const session = await FlipSession.create(mesh, options);
+      if (i % 40 === 0) isDone.push((await session.run()).status);
+    }
+    assert.deepEqual(isDone, ['done', 'done', 'done', 'done']);
+  });
+
+  test(`sessions that are held fill the memory on ${threads} threads, and are of use after that`, async () => {
+    const held = [];
+    await assert.rejects(
+      async () => {
+        for (let i = 0; i < 130; i++) held.push(await FlipSession.create(mesh, options));
+      },
+      { name: 'EdgeflipError', code: 'too-large', message: /^up to \d+ bytes of memory are needed, and WebAssembly has 4294967296 for all meshes: free\(\) sessions / },
+    );
+    assert.ok(held.length > 50, `${held.length}`);
+    const small = await generate('random 12');
+    assert.equal((await makeDelaunay(small, options)).status, 'done');
+    held.slice(1, 20).forEach((session) => session.free());
+    assert.equal((await held[0].run()).status, 'done');
+    assert.equal((await makeDelaunay(mesh, options)).status, 'done');
+    held.forEach((session) => session.free());
+  });
+}
+
+test('a generated mesh that does not fit is refused, and the next one is made', async () => {
+  await assert.rejects(generate('random 9000'), { code: 'too-large', message: /bytes of memory are needed/ });
+  assert.equal((await generate('grid 3')).indices.length, 24);
+});
+
+test('a file is not written with vertices that are elsewhere now', async () => {
+  for (const name of ['a.obj', 'a.ply', 'a.glb']) {
+    const written = await generate('uvsphere 4');
+    const original = { bytes: await writeMesh(written, name), name };
+    const read = await readMesh(original.bytes, name);
+    await writeMesh(read, name, { original });
+    const positions = read.positions.map((x) => x + 1);
+    await assert.rejects(writeMesh({ ...read, positions }, name, { original }), { code: 'invalid-option', message: /^option original: / });
+    await assert.rejects(writeMesh({ ...read, positions: read.positions.slice(3) }, name, { original }), { code: 'invalid-option' });
+  }
+});
