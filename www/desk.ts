@@ -47,7 +47,7 @@ class Desk {
     const [bytes, ...rest] = await contentOf([file, ...others], report);
     const reading = readMesh(bytes!, file.name, { files: named(others, rest) }).catch((error: unknown) => {
       const isOfFile = error instanceof EdgeflipError && error.code === 'parse';
-      throw isOfFile ? new EdgeflipError('parse', `in ${file.name}: ${error.message}`) : error;
+      throw isOfFile ? new EdgeflipError('parse', `${file.name}: ${error.message}`) : error;
     });
     return send(await naming(reading));
   }

@@ -163,9 +163,8 @@ export class Page {
   }
 
   #showError(error: unknown): void {
-    const message = error instanceof Error ? error.message : String(error);
-    // Not β, whose capital looks like a B.
-    element('error-text').textContent = message.replace(/^[a-z]/, (letter) => letter.toUpperCase());
+    // As it is: it may begin with the name of a file.
+    element('error-text').textContent = error instanceof Error ? error.message : String(error);
     element('error').hidden = false;
   }
 
