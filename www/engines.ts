@@ -39,19 +39,13 @@ function isSoftware(adapter: GPUAdapter & { isFallbackAdapter?: boolean }): bool
 export class Office {
   readonly #worker = new Worker(new URL('./desk.ts', import.meta.url), { type: 'module' });
   readonly #desk: Remote<Desk> = wrap<Desk>(this.#worker);
-  #isBroken = false;
   readonly #failed: Promise<never>;
   #fail: (error: Error) => void = () => {};
 
   constructor() {
     this.#failed = new Promise((_, reject) => (this.#fail = reject));
     this.#failed.catch(() => {});
-    this.#worker.onerror = ({ message }) => this.#break(new Error(`The page’s worker failed: ${message || 'it could not be loaded'}`));
-  }
-
-  /** Whether it can be asked no more. */
-  get isBroken(): boolean {
-    return this.#isBroken;
+    this.#worker.onerror = ({ message }) => this.#fail(new Error(`The page’s worker failed: ${message || 'it could not be loaded'}`));
   }
 
   /** Asks the desk. Closing the office ends the wait too. */
@@ -60,20 +54,15 @@ export class Office {
       return await Promise.race([question(this.#desk), this.#failed]);
     } catch (error) {
       // A WebAssembly module that has crashed stays so.
-      if (error instanceof Error && error.name === CRASHED) this.#break(error);
+      if (error instanceof Error && error.name === CRASHED) this.#fail(error);
       throw error;
     }
-  }
-
-  #break(error: Error): void {
-    this.#isBroken = true;
-    this.#fail(error);
   }
 
   /** Stops whatever goes on in it. */
   close(): void {
     this.#worker.terminate();
-    this.#break(new Cancelled());
+    this.#fail(new Cancelled());
   }
 }
 

@@ -4,6 +4,7 @@ import { FORMATS } from 'edgeflip/files';
 import { controls, element } from './controls.ts';
 import { Page } from './page.ts';
 import { FIRST, SAMPLES } from './samples.ts';
+import { chosen, sample, type Source } from './sources.ts';
 
 const page = new Page();
 
@@ -17,9 +18,13 @@ controls.sample.append(Object.assign(new Option('(a file)', ''), { hidden: true 
 // A glTF file may have its buffers in others.
 controls.file.accept = [...FORMATS, '.gz', '.bin'].join(',');
 
-controls.sample.addEventListener('change', () => void page.openSample(controls.sample.value));
+function open(source: Source | undefined): void {
+  if (source) void page.open(source);
+}
+
+controls.sample.addEventListener('change', () => open(sample(controls.sample.value)));
 controls.file.addEventListener('change', () => {
-  void page.openFiles([...(controls.file.files ?? [])]);
+  open(chosen([...(controls.file.files ?? [])]));
   controls.file.value = '';
 });
 for (const control of [controls.backend, controls.beta]) control.addEventListener('change', () => void page.begin());
@@ -57,7 +62,7 @@ document.addEventListener('dragleave', (event) => {
 document.addEventListener('drop', (event) => {
   event.preventDefault();
   dropHere.hidden = true;
-  void page.openFiles([...(event.dataTransfer?.files ?? [])]);
+  open(chosen([...(event.dataTransfer?.files ?? [])]));
 });
 
 void page.start(FIRST);

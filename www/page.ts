@@ -1,44 +1,23 @@
 /** The page between its controls and its engines: opens meshes, begins runs, draws and measures what they do. */
 
 import { EdgeflipError } from 'edgeflip';
-import { proxy } from 'comlink';
-import { FORMATS, type FileMesh, type IndexedMesh } from 'edgeflip/files';
+import { Choices, type Settings } from './choices.ts';
 import { controls, element } from './controls.ts';
 import { LOST } from './crash.ts';
-import type { Quality, Report } from './desk.ts';
-import { beginRun, Cancelled, Office, openGpu, type Backend, type Gpu } from './engines.ts';
+import { beginRun, Cancelled, openGpu, type Gpu } from './engines.ts';
+import { BINS, Opening, type Opened } from './opening.ts';
 import { palette } from './palette.ts';
 import { ENGINES, number, Panel, reasons } from './panel.ts';
 import { Player } from './player.ts';
 import type { Run, Summary } from './run.ts';
 import { Scene } from './scene.ts';
+import { sample, splitName, type Source } from './sources.ts';
 import { unitPositions } from './unit.ts';
 
 /** Meshes of up to so many triangles are shown with their edges from the start. */
 const EDGES_SEEN = 50_000;
-/** Bins of the histogram of angles: 5° each. */
-const BINS = 36;
 /** Milliseconds without a change after which a state is measured. */
 const QUIET = 150;
-
-/** The stem of a file's name, and what its format is known by. */
-const EXTENSION = new RegExp(`^(.*)((?:${FORMATS.map((known) => `\\${known}`).join('|')})(?:\\.gz)?)$`, 'i');
-
-interface Opened {
-  mesh: IndexedMesh;
-  name: string;
-  /** The file that it was read from, and those beside it. */
-  files: File[];
-  /** What reading the file did to it. */
-  remark: string;
-  before: Quality;
-}
-
-/** What a run was begun with. */
-interface Settings {
-  backend: Backend;
-  beta: number;
-}
 
 export class Page {
   readonly #panel = new Panel((at) => this.seek(at));
@@ -51,16 +30,19 @@ export class Page {
   );
   #gpu: Gpu | string = 'it has not been looked for';
   #scene: Scene | undefined;
-  #office = new Office();
+  /** Done when `#gpu` and `#scene` are what they will be. */
+  #lookedForGpu: Promise<void> = Promise.resolve();
+  readonly #choices = new Choices();
+  /** The mesh that was asked for last. */
+  #source: Source | undefined;
+  /** It, until a run of it has begun, or that has failed or was cancelled. */
+  #opening: Opening | undefined;
+  /** The mesh that is open, its run, and what that was begun with. */
   #opened: Opened | undefined;
   #run: Run | undefined;
   #settings: Settings | undefined;
-  /** What opens the mesh that was asked for last. */
-  #reopen: (() => Promise<void>) | undefined;
   /** What goes on and can be cancelled. */
   #job: AbortController | undefined;
-  /** β as it was entered when that began: one that is being typed since then is left alone. */
-  #entered = '';
   /** What the run said of itself when it last came to rest. */
   #summary: Summary | undefined;
   /** Count the states that are drawn and that come to rest: what has been overtaken gives way. */
@@ -73,26 +55,34 @@ export class Page {
     this.#panel.setPalette(palette());
     this.#panel.clear();
     matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => this.#recolour());
-    await this.#attempt('Looking for a GPU…', () => this.#openGpu());
-    await this.openSample(spec);
+    this.#lookedForGpu = this.#openGpu();
+    await this.open(sample(spec));
   }
 
-  openSample(spec: string): Promise<void> {
-    return this.#open(spec, (office) => office.ask((desk) => desk.generate(spec)));
+  /** Opens a mesh in place of the one that is open or being opened. */
+  async open(source: Source): Promise<void> {
+    this.#opening?.close();
+    const opening = new Opening(source, showProgress);
+    this.#opening = opening;
+    this.#source = source;
+    await this.#attempt(`Opening ${source.name}…`, async (signal) => {
+      const opened = await opening.read;
+      signal.throwIfAborted();
+      showProgress('Preparing the mesh…');
+      await this.#begin(opened, signal);
+    });
   }
 
-  /** Opens the first of them that is a mesh; a glTF file may have its buffers in the others. */
-  async openFiles(files: File[]): Promise<void> {
-    const file = files.find(({ name }) => EXTENSION.test(name)) ?? files[0];
-    if (!file) return;
-    const others = files.filter((other) => other !== file);
-    const read = (office: Office, report: Report) => office.ask((desk) => desk.read(file, others, proxy(report)));
-    await this.#open(file.name, read, [file, ...others]);
-  }
-
-  /** Begins again with the same mesh, for another engine or β. */
+  /** Takes the engine and β that were chosen: for the mesh that is being opened, else for the one that is open. */
   async begin(): Promise<void> {
-    const opened = this.#opened;
+    try {
+      this.#choices.enter();
+    } catch (error) {
+      return this.#showError(error);
+    }
+    // What is still being read begins with them.
+    if (this.#opening && !this.#opening.opened) return;
+    const opened = this.#opening?.opened ?? this.#opened;
     if (opened) await this.#attempt('Preparing the mesh…', (signal) => this.#begin(opened, signal));
   }
 
@@ -126,11 +116,11 @@ export class Page {
   async download(): Promise<void> {
     const [run, opened] = [this.#run, this.#opened];
     if (!run || !opened) return;
-    const [, stem = opened.name, extension = '.off'] = EXTENSION.exec(opened.name) ?? [];
+    const [stem, extension] = splitName(opened.name);
     const name = `${stem.replaceAll(' ', '-')}-after-${run.at}${extension}`;
     await this.#attempt('Writing the file…', async (signal) => {
       const mesh = { ...opened.mesh, indices: await run.triangles() };
-      const bytes = await this.#office.ask((desk) => desk.write(mesh, name, opened.files));
+      const bytes = await opened.office.ask((desk) => desk.write(mesh, name, opened.files));
       signal.throwIfAborted();
       const link = document.createElement('a');
       link.href = URL.createObjectURL(new Blob([bytes]));
@@ -168,34 +158,11 @@ export class Page {
     element('error').hidden = false;
   }
 
-  #open(
-    name: string,
-    read: (office: Office, report: Report) => Promise<IndexedMesh | FileMesh>,
-    files: File[] = [],
-  ): Promise<void> {
-    this.#reopen = () => this.#open(name, read, files);
-    return this.#attempt(`Opening ${name}…`, async (signal) => {
-      if (this.#office.isBroken) this.#office = new Office();
-      const office = this.#office;
-      // Reading stops where its worker does; a new one is there for what comes next.
-      signal.addEventListener('abort', () => {
-        office.close();
-        if (this.#office === office) this.#office = new Office();
-      });
-      const mesh = await read(office, (share) => {
-        if (!signal.aborted) showProgress(share < 1 ? `Reading ${name}…` : `Parsing ${name}…`, share);
-      });
-      if (mesh.indices.length === 0) throw new Error(`There are no triangles in ${name}.`);
-      const before = await office.ask((desk) => desk.measure(mesh, BINS));
-      if (!signal.aborted) showProgress('Preparing the mesh…');
-      await this.#begin({ mesh, name, files, remark: remarkOn(mesh), before }, signal);
-    });
-  }
-
   /** Begins a run; the one before it stays if this fails. */
   async #begin(opened: Opened, signal: AbortSignal): Promise<void> {
-    const settings = { backend: controls.backend.value as Backend, beta: controls.beta.valueAsNumber };
-    if (!(settings.beta >= 0 && settings.beta <= 180)) throw new Error('β is an angle from 0 to 180 degrees.');
+    await this.#lookedForGpu;
+    signal.throwIfAborted();
+    const { settings } = this.#choices;
     const run = await beginRun(opened.mesh, settings.beta, settings.backend, this.#gpu, signal);
     if (signal.aborted) {
       run.free();
@@ -205,7 +172,9 @@ export class Page {
     this.#scene?.clear();
     this.#run?.free();
     this.#run = run;
+    if (isNew) this.#opened?.office.close();
     this.#opened = opened;
+    if (this.#opening?.opened === opened) this.#opening = undefined;
     this.#settings = settings;
     this.#summary = undefined;
     this.#scene?.setMesh(unitPositions(opened.mesh), opened.mesh.dimension);
@@ -223,7 +192,6 @@ export class Page {
     const overtaken = this.#job;
     const job = new AbortController();
     this.#job = job;
-    this.#entered = controls.beta.value;
     overtaken?.abort(new Cancelled());
     job.signal.addEventListener('abort', () => this.#end(job));
     element('error').hidden = true;
@@ -242,6 +210,8 @@ export class Page {
   #end(job: AbortController): void {
     if (this.#job !== job) return;
     this.#job = undefined;
+    this.#opening?.close();
+    this.#opening = undefined;
     element('busy').hidden = true;
     this.#showChoices();
     this.#showTransport();
@@ -289,7 +259,7 @@ export class Page {
     element('status').textContent = run ? statusOf(run) : '';
     const isFinal = run?.isOver && this.#summary?.iterations === newest;
     const remains = isFinal && this.#summary ? left(reasons(this.#summary.remaining)) : '';
-    const note = [remains, run ? whyThere(run, this.#summary) : '', this.#opened?.remark].filter(Boolean).join(' ');
+    const note = [remains, this.#opened?.remark, run ? whyThere(run, this.#summary) : ''].filter(Boolean).join(' ');
     element('note').hidden = note === '';
     element('note').textContent = note;
     element('caption').textContent = this.#opened?.name ?? '';
@@ -304,8 +274,7 @@ export class Page {
     // The empty value stands for a file.
     const names = Array.from(controls.sample.options, ({ value }) => value);
     controls.sample.value = names.find((name) => name === opened.name) ?? '';
-    controls.backend.value = settings.backend;
-    if (controls.beta.value === this.#entered) controls.beta.value = `${settings.beta}`;
+    this.#choices.set(settings);
   }
 
   /** Measures the run and the state that is shown, once nothing has changed for a while. */
@@ -329,11 +298,11 @@ export class Page {
       this.#panel.showFacts(opened.mesh, run, this.#summary, this.#settings?.beta, fingerprint);
       this.#panel.showLegend(run.states, this.#summary);
       this.#showTransport();
-      const now = await this.#office.ask((desk) => desk.measure({ ...opened.mesh, indices }, BINS));
+      const now = await opened.office.ask((desk) => desk.measure({ ...opened.mesh, indices }, BINS));
       if (isOutdated()) return;
       this.#panel.showQuality(opened.before, now);
       if (run.isOver) {
-        const change = await this.#office.ask((desk) => desk.compare(opened.mesh, indices));
+        const change = await opened.office.ask((desk) => desk.compare(opened.mesh, indices));
         if (isOutdated()) return;
         this.#panel.showQuality(opened.before, now, change);
       }
@@ -362,31 +331,38 @@ export class Page {
    * to the same bits.
    */
   async #recover(reason: string, isOfPage: boolean): Promise<void> {
-    const [run, opened] = [this.#run, this.#opened];
+    const [run, opening] = [this.#run, this.#opening];
     const at = run?.at ?? 0;
     let hasRecovered = false;
     await this.#attempt('The GPU was lost; going on from the input…', async (signal) => {
       if (isOfPage) {
         this.#scene?.dispose();
         this.#scene = undefined;
-        await this.#openGpu();
+        this.#lookedForGpu = this.#openGpu();
+        await this.#lookedForGpu;
       }
-      if (!run || !opened) return;
+      const opened = (await opening?.read) ?? this.#opened;
+      signal.throwIfAborted();
+      if (!opened) return;
+      const { backend, beta } = this.#choices.settings;
       const isAgain = this.#lost === opened;
       this.#lost = opened;
       // What has lost the GPU twice would go on losing it.
-      const isHopeless = !run.isInWorker && (isAgain || controls.backend.value === 'auto');
-      if (!isOfPage || isHopeless) controls.backend.value = 'cpu';
+      const isHopeless = opening ? isAgain : !run?.isInWorker && (isAgain || backend === 'auto');
+      if (!isOfPage || isHopeless) this.#choices.set({ backend: 'cpu', beta });
       await this.#begin(opened, signal);
-      while (this.#run && this.#run.at < at && !signal.aborted && (await this.#forward(this.#run)));
+      while (!opening && this.#run && this.#run.at < at && !signal.aborted && (await this.#forward(this.#run)));
       hasRecovered = true;
     });
+    // What was chosen meanwhile has taken its place.
+    if (this.#job) return;
     const lost = `The GPU was lost (${reason}).`;
     if (hasRecovered) {
       this.#player.pause();
-      this.#showError(new Error(`${lost} The run went the same way again, to the same triangles.`));
-    } else if (!opened) {
-      await this.#reopen?.();
+      const andNow = opening ? 'The mesh was opened all the same' : 'The run went the same way again, to the same triangles';
+      this.#showError(new Error(`${lost} ${andNow}.`));
+    } else if (!this.#opened && this.#source) {
+      await this.open(this.#source);
     } else if (element('error').hidden) {
       this.#showError(new Error(`${lost} Choose an engine to go on.`));
     }
@@ -420,15 +396,6 @@ function whyThere({ fallback }: Run, summary: Summary | undefined): string {
   if (!fallback || !summary) return '';
   const engine = `${summary.backend === 'cpu' ? 'the ' : ''}${ENGINES[summary.backend]}`;
   return `On ${engine}: ${[fallback, summary.fallback].filter(Boolean).join('; ')}.`;
-}
-
-function remarkOn(mesh: IndexedMesh | FileMesh): string {
-  if (!('polygons' in mesh)) return '';
-  const cut = mesh.polygons > 0 ? `${number.format(mesh.polygons)} faces were cut into triangles.` : '';
-  const dropped = mesh.dropped.length > 0 && !mesh.keeps ? `Not kept: ${mesh.dropped.join(', ')}.` : '';
-  const isDivided = mesh.groups ?? mesh.lockedEdges ?? mesh.lockedTriangles;
-  const locked = isDivided ? 'Edges between groups of faces or along seams stay.' : '';
-  return [cut, dropped, locked, ...mesh.notes.map((note) => `${note}.`)].filter(Boolean).join(' ');
 }
 
 function left(what: string): string {

@@ -4,11 +4,18 @@ import assert from 'node:assert/strict';
 import { mkdirSync, writeFileSync } from 'node:fs';
 import { dirname, join } from 'node:path';
 import { after, before, test } from 'node:test';
+import { makeDelaunay } from '../../dist/index.js';
 import { startChromium } from '../browsers.mjs';
-import { folder, openEdgeflip, tidyUp } from './page.mjs';
+import { assertSameMesh, expected, folder, meshFile, openEdgeflip, tidyUp } from './page.mjs';
 
 let browser;
-before(async () => (browser = await startChromium()));
+let sphere;
+let roof;
+before(async () => {
+  browser = await startChromium();
+  sphere = await meshFile('uvsphere 28 0.1', 'sphere.off');
+  roof = await meshFile('roof 16', 'roof.ply');
+});
 after(tidyUp);
 
 const BROKEN = 'OFF\n3 1 0\n0 0 0\n1 0 0\n0 one 0\n3 0 1 2\n';
@@ -24,6 +31,178 @@ function file(name, text) {
 async function choose(page, ...paths) {
   await (await page.page.$('#file')).setInputFiles(paths);
 }
+
+/** In the page: keeps back what it asks of its workers, by the name of the method, until it is let go. */
+function holdWorkers() {
+  const { postMessage } = Worker.prototype;
+  const held = new Set();
+  const waiting = [];
+  window.hold = (method) => held.add(method);
+  window.waiting = () => waiting.length;
+  window.letGo = () => {
+    held.clear();
+    for (const send of waiting.splice(0)) send();
+  };
+  Worker.prototype.postMessage = function (message, ...more) {
+    const send = () => postMessage.call(this, message, ...more);
+    if (held.has(message.path?.at(-1))) waiting.push(send);
+    else send();
+  };
+}
+
+/** Waits until so many questions are kept back. */
+async function held(page, method, ask, count = 1) {
+  await page.page.evaluate((name) => window.hold(name), method);
+  await ask();
+  await page.page.waitForFunction((many) => window.waiting() >= many, count);
+  assert.equal((await page.look()).state, 'busy');
+}
+
+const letGo = (page) => page.page.evaluate(() => window.letGo());
+
+async function setBeta(page, text) {
+  await page.page.fill('#beta', text);
+  await page.page.press('#beta', 'Tab');
+}
+
+const betaOf = (page) => page.page.inputValue('#beta');
+
+/** Where a mesh is being opened: `read`, its file is read; `open`, its run is prepared. */
+for (const [method, when] of [['read', 'a file is read'], ['open', 'its run is prepared']]) {
+  test(`an engine and β that are chosen while ${when} are those that it plays with`, async () => {
+    const page = await openEdgeflip(browser, holdWorkers);
+    await page.open(roof);
+    await held(page, method, () => choose(page, sphere));
+    for (const engine of ['webgl2', 'auto', 'cpu']) await page.choose('backend', engine);
+    await setBeta(page, '45');
+    assert.equal((await page.look()).state, 'busy');
+    await letGo(page);
+    const opened = await page.rest();
+    assert.deepEqual([opened.caption, opened.error, opened.backend, await betaOf(page)], ['sphere.off', '', 'cpu', '45']);
+    assert.deepEqual([opened.facts.Engine, opened.facts['β']], ['CPU, in a worker', '45°']);
+    const mesh = (await expected(sphere)).mesh;
+    const { indices } = await makeDelaunay(mesh, { backend: 'cpu', maxNormalAngle: 45 });
+    await page.playToEnd();
+    assertSameMesh(await page.download(), { ...mesh, indices }, 'of the result');
+    await page.close();
+  });
+
+  test(`what is cancelled while ${when} takes what was chosen meanwhile with it`, async () => {
+    const page = await openEdgeflip(browser, holdWorkers);
+    await page.open(roof);
+    await page.chooseEngine('cpu');
+    const opened = await page.rest();
+    await held(page, method, () => choose(page, sphere));
+    await page.choose('backend', 'webgl2');
+    await setBeta(page, '45');
+    await page.page.click('#cancel');
+    await letGo(page);
+    const after = await page.rest();
+    assert.deepEqual([after.caption, after.error, after.backend, await betaOf(page)], ['roof.ply', '', 'cpu', '10']);
+    assert.deepEqual(after.facts, opened.facts);
+    await page.close();
+  });
+}
+
+test('a file that turns out to be broken leaves the mesh before it, with its settings', async () => {
+  const page = await openEdgeflip(browser, holdWorkers);
+  const opened = await page.open(roof);
+  await held(page, 'read', () => choose(page, file('broken.off', BROKEN)));
+  await page.choose('backend', 'cpu');
+  await setBeta(page, '45');
+  await letGo(page);
+  const after = await page.until('a message', ({ error, state }) => error !== '' && state !== 'busy');
+  assert.match(after.error, /^\s*broken\.off: line 5: /);
+  assert.deepEqual([after.caption, after.backend, await betaOf(page)], ['roof.ply', opened.backend, '10']);
+  assert.deepEqual((await page.rest()).facts, opened.facts);
+  await page.close();
+});
+
+test('a β that is no angle is refused while a file is read, and the file opens', async () => {
+  const page = await openEdgeflip(browser, holdWorkers);
+  await held(page, 'read', () => choose(page, sphere));
+  await setBeta(page, '181');
+  assert.match((await page.look()).error, /β is an angle from 0 to 180/);
+  await letGo(page);
+  const { caption, facts } = await page.rest();
+  assert.deepEqual([caption, facts['β'], await betaOf(page)], ['sphere.off', '10°', '10']);
+  await page.close();
+});
+
+test('of what is chosen while other meshes are read, the last one opens, and no worker stays behind', async () => {
+  const page = await openEdgeflip(browser, holdWorkers);
+  const workers = page.page.workers().length;
+  const wanted = [
+    ['roof.ply', () => choose(page, roof)],
+    ['random 24', () => page.choose('sample', 'random 24')],
+    ['sphere.off', () => page.dropPaths([sphere])],
+  ];
+  for (let last = 0; last < wanted.length; last++) {
+    const order = [...wanted.slice(last + 1), ...wanted.slice(0, last + 1)];
+    await page.page.evaluate(() => window.hold('generate'));
+    await held(page, 'read', async () => {
+      for (const [, ask] of order) await ask();
+    }, order.length);
+    await page.choose('backend', 'cpu');
+    await letGo(page);
+    const { caption, error, facts } = await page.rest();
+    assert.deepEqual([caption, error, facts.Engine], [wanted[last][0], '', 'CPU, in a worker']);
+    assert.equal(await page.page.inputValue('#sample'), caption === 'random 24' ? caption : '');
+  }
+  assert.equal(page.page.workers().length, workers);
+  await page.close();
+});
+
+test('a file that is chosen before the GPU has been found is the one that opens', async () => {
+  const page = await openEdgeflip(browser, () => {
+    const { requestAdapter } = GPU.prototype;
+    const isChosen = new Promise((resolve) => {
+      addEventListener('DOMContentLoaded', () => {
+        const files = new DataTransfer();
+        files.items.add(new File(['OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3\n'], 'early.off'));
+        const input = document.getElementById('file');
+        input.files = files.files;
+        input.dispatchEvent(new Event('change'));
+        resolve();
+      });
+    });
+    GPU.prototype.requestAdapter = async function (...args) {
+      await isChosen;
+      return requestAdapter.apply(this, args);
+    };
+  });
+  const { caption, error, note } = await page.rest();
+  assert.deepEqual([caption, error], ['early.off', '']);
+  assert.match(note, /On the CPU: the only GPU here is played by the processor/);
+  await page.close();
+});
+
+test('a GPU that is lost while a file is read takes nothing with it', async () => {
+  const page = await openEdgeflip(browser, holdWorkers, () => {
+    const { requestDevice } = GPUAdapter.prototype;
+    window.devices = [];
+    GPUAdapter.prototype.requestDevice = async function (...args) {
+      const device = await requestDevice.apply(this, args);
+      window.devices.push(device);
+      return device;
+    };
+  });
+  // SwiftShader compiles long what surfaces need.
+  const strips = await meshFile('strips 16', 'strips.off');
+  await page.open(strips);
+  await page.chooseEngine('webgpu');
+  await held(page, 'read', async () => choose(page, await meshFile('strips 16', 'meanwhile.off')));
+  await page.page.evaluate(() => window.devices.at(-1).destroy());
+  await page.page.locator('#busy-text').getByText('The GPU was lost').waitFor();
+  await page.page.waitForFunction(() => window.devices.length === 2);
+  await letGo(page);
+  const { caption, error, facts } = await page.rest();
+  assert.deepEqual([caption, facts.Engine], ['meanwhile.off', 'WebGPU']);
+  assert.match(error, /The GPU was lost \(.*\)\. The mesh was opened all the same\./);
+  const end = await page.playToEnd();
+  assert.equal(end.facts.Fingerprint, (await expected(strips)).facts.Fingerprint);
+  await page.close();
+});
 
 test('the name of a file is shown as it is', async () => {
   const page = await openEdgeflip(browser);

@@ -177,6 +177,15 @@ export class EdgeflipPage {
     return this.rest();
   }
 
+  /** Drops files and folders of the disk onto the page, as a file manager does (Chromium). */
+  async dropPaths(paths) {
+    const session = await this.page.context().newCDPSession(this.page);
+    const { x, y, width, height } = await (await this.page.$('#view')).boundingBox();
+    const drag = { x: x + width / 2, y: y + height / 2, data: { items: [], files: paths, dragOperationsMask: 1 } };
+    for (const type of ['dragEnter', 'dragOver', 'drop']) await session.send('Input.dispatchDragEvent', { type, ...drag });
+    await session.detach();
+  }
+
   /** Chooses from a list: an engine, a speed, a sample. */
   async choose(id, value) {
     await (this.page.selectOption ?? this.page.select).call(this.page, `#${id}`, value);

@@ -1,0 +1,68 @@
+/** A mesh on its way to the page: read once, by a worker of its own. Its run may have to be begun more than once. */
+
+import type { FileMesh, IndexedMesh } from 'edgeflip/files';
+import type { Quality } from './desk.ts';
+import { Office } from './engines.ts';
+import { number } from './panel.ts';
+import type { Source } from './sources.ts';
+
+/** Bins of the histogram of angles: 5° each. */
+export const BINS = 36;
+
+/** A mesh that a run can be begun with. */
+export interface Opened {
+  mesh: IndexedMesh;
+  name: string;
+  /** The worker that has read it, which measures and writes it too. */
+  office: Office;
+  /** The file that it was read from, and those beside it. */
+  files: File[];
+  /** What reading the file did to it. */
+  remark: string;
+  before: Quality;
+}
+
+/** Told what goes on, and how much of it is done, from 0 to 1, where that is known. */
+export type Progress = (text: string, share?: number) => void;
+
+export class Opening {
+  /** Whether it is known what is in the files: from then on the settings of the page matter. */
+  opened: Opened | undefined;
+  readonly read: Promise<Opened>;
+  readonly #office = new Office();
+  readonly #progress: Progress;
+  #isClosed = false;
+
+  constructor(source: Source, progress: Progress) {
+    this.#progress = progress;
+    this.read = this.#read(source);
+    // It is the page's affair while it waits for the mesh.
+    this.read.catch(() => {});
+  }
+
+  /** Gives it up, with its worker. */
+  close(): void {
+    this.#isClosed = true;
+    this.#office.close();
+  }
+
+  async #read(source: Source): Promise<Opened> {
+    const office = this.#office;
+    const read = await source.read(office, (share) => {
+      if (!this.#isClosed) this.#progress(share < 1 ? `Reading ${source.name}…` : `Parsing ${source.name}…`, share);
+    });
+    const { mesh, name, files } = read;
+    if (mesh.indices.length === 0) throw new Error(`There are no triangles in ${name}.`);
+    const before = await office.ask((desk) => desk.measure(mesh, BINS));
+    return (this.opened = { mesh, name, office, files, remark: remarkOn(mesh), before });
+  }
+}
+
+function remarkOn(mesh: IndexedMesh | FileMesh): string {
+  if (!('polygons' in mesh)) return '';
+  const cut = mesh.polygons > 0 ? `${number.format(mesh.polygons)} faces were cut into triangles.` : '';
+  const dropped = mesh.dropped.length > 0 && !mesh.keeps ? `Not kept: ${mesh.dropped.join(', ')}.` : '';
+  const isDivided = mesh.groups ?? mesh.lockedEdges ?? mesh.lockedTriangles;
+  const locked = isDivided ? 'Edges between groups of faces or along seams stay.' : '';
+  return [cut, dropped, locked, ...mesh.notes.map((note) => `${note}.`)].filter(Boolean).join(' ');
+}
