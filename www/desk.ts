@@ -12,22 +12,17 @@ import {
   writeMesh,
   type Angles,
   type FileMesh,
-  type Files,
   type IndexedMesh,
   type Measures,
 } from 'edgeflip/files';
 import { naming } from './crash.ts';
 import { changeOf, type Change } from './change.ts';
 import type { Backend } from './engines.ts';
+import { contentOf, contentOfKept, keep, type Kept, type Located, type Report } from './files.ts';
 import { sessionOf, statesOf, summaryOf, type OpenMesh, type Step, type Summary } from './run.ts';
 
-/** What `readMesh` takes; what is larger is not read at all. */
-const MOST_BYTES = 2 ** 30;
 /** Surfaces of up to so many triangles are compared: many more would take seconds. */
 const COMPARED = 50_000;
-
-/** Told how much of the files has been read, from 0 to 1, while they are. */
-export type Report = (share: number) => void;
 
 /** What can be said of a result as a surface. */
 export interface Quality {
@@ -40,22 +35,27 @@ class Desk {
   #before: Uint32Array = new Uint32Array();
 
   async generate(spec: string): Promise<IndexedMesh> {
-    return send(await naming(generate(spec)));
+    const mesh = await naming(generate(spec));
+    return transfer(mesh, buffersOf(mesh));
   }
 
-  async read(file: File, others: File[], report: Report): Promise<FileMesh> {
-    const [bytes, ...rest] = await contentOf([file, ...others], report);
-    const reading = readMesh(bytes!, file.name, { files: named(others, rest) }).catch((error: unknown) => {
+  /** `beside` are files that this one may name. */
+  async read(main: Located, beside: Located[], report: Report): Promise<{ mesh: FileMesh; kept: Kept }> {
+    const content = await contentOf(main, beside, report);
+    report(main.path, 1);
+    const { name } = main.file;
+    const reading = readMesh(content.bytes, name, { files: Object.fromEntries(content.beside) }).catch((error: unknown) => {
       const isOfFile = error instanceof EdgeflipError && error.code === 'parse';
-      throw isOfFile ? new EdgeflipError('parse', `${file.name}: ${error.message}`) : error;
+      throw isOfFile ? new EdgeflipError('parse', `${name}: ${error.message}`) : error;
     });
-    return send(await naming(reading));
+    const mesh = await naming(reading);
+    return transfer({ mesh, kept: keep(name, content) }, buffersOf(mesh));
   }
 
-  /** `files` are those that the mesh was read from. */
-  async write(mesh: IndexedMesh, name: string, [file, ...others]: File[]): Promise<Uint8Array<ArrayBuffer>> {
-    const [bytesOfFile, ...rest] = await contentOf(file ? [file, ...others] : [], () => {});
-    const original = file && bytesOfFile && { bytes: bytesOfFile, name: file.name, files: named(others, rest) };
+  /** `kept` are the files that the mesh was read from. */
+  async write(mesh: IndexedMesh, name: string, kept: Kept | undefined): Promise<Uint8Array<ArrayBuffer>> {
+    const content = kept && (await contentOfKept(kept));
+    const original = content && { bytes: content.bytes, name: kept.name, files: Object.fromEntries(content.beside) };
     const bytes = await naming(writeMesh(mesh, name, { original }));
     return transfer(bytes, [bytes.buffer]);
   }
@@ -104,37 +104,8 @@ class Desk {
   }
 }
 
-function send<T extends IndexedMesh & { placed?: Float32Array | undefined }>(mesh: T): T {
-  return transfer(mesh, [mesh.positions.buffer, mesh.indices.buffer, ...(mesh.placed ? [mesh.placed.buffer] : [])]);
-}
-
-/** The bytes of files, one after the other. */
-async function contentOf(files: File[], report: Report): Promise<Uint8Array[]> {
-  const most = files.reduce((sum, { size }) => sum + size, 0);
-  if (most > MOST_BYTES) {
-    throw new Error(`${files[0]?.name} has ${most} bytes, more than the ${MOST_BYTES} that a page can take; use the command line`);
-  }
-  let [read, told] = [0, 0];
-  const bytesOf = async (file: File) => {
-    const bytes = new Uint8Array(file.size);
-    const reader = file.stream().getReader();
-    for (let at = 0; ; ) {
-      const { done, value } = await reader.read();
-      if (done) return bytes;
-      bytes.set(value, at);
-      at += value.length;
-      read += value.length;
-      if (read - told > most / 100) report((told = read) / most);
-    }
-  };
-  const content = [];
-  for (const file of files) content.push(await bytesOf(file));
-  report(1);
-  return content;
-}
-
-function named(files: File[], content: Uint8Array[]): Files {
-  return Object.fromEntries(files.map(({ name }, i) => [name, content[i]!]));
+function buffersOf(mesh: IndexedMesh & { placed?: Float32Array | undefined }): Transferable[] {
+  return [mesh.positions.buffer, mesh.indices.buffer, ...(mesh.placed ? [mesh.placed.buffer] : [])];
 }
 
 export type { Desk };

@@ -62,6 +62,8 @@ export class Office {
   /** Stops whatever goes on in it. */
   close(): void {
     this.#worker.terminate();
+    // Comlink holds the worker until its proxies are collected, and they would be held by the worker through this.
+    this.#worker.onerror = null;
     this.#fail(new Cancelled());
   }
 }

@@ -1,8 +1,9 @@
-/** A mesh on its way to the page: read once, by a worker of its own. Its run may have to be begun more than once. */
+/** A mesh on its way to the page: read once, in workers of its own. Its run may have to be begun more than once. */
 
 import type { FileMesh, IndexedMesh } from 'edgeflip/files';
 import type { Quality } from './desk.ts';
 import { Office } from './engines.ts';
+import type { Kept } from './files.ts';
 import { number } from './panel.ts';
 import type { Source } from './sources.ts';
 
@@ -13,11 +14,11 @@ export const BINS = 36;
 export interface Opened {
   mesh: IndexedMesh;
   name: string;
-  /** The worker that has read it, which measures and writes it too. */
+  /** The worker that measures it. */
   office: Office;
-  /** The file that it was read from, and those beside it. */
-  files: File[];
-  /** What reading the file did to it. */
+  /** The files that it was read from. */
+  kept: Kept | undefined;
+  /** What reading the files did to it. */
   remark: string;
   before: Quality;
 }
@@ -29,7 +30,7 @@ export class Opening {
   /** Whether it is known what is in the files: from then on the settings of the page matter. */
   opened: Opened | undefined;
   readonly read: Promise<Opened>;
-  readonly #office = new Office();
+  #office = new Office();
   readonly #progress: Progress;
   #isClosed = false;
 
@@ -40,21 +41,24 @@ export class Opening {
     this.read.catch(() => {});
   }
 
-  /** Gives it up, with its worker. */
+  /** Gives it up, with the worker that is at it. */
   close(): void {
     this.#isClosed = true;
     this.#office.close();
   }
 
   async #read(source: Source): Promise<Opened> {
-    const office = this.#office;
-    const read = await source.read(office, (share) => {
-      if (!this.#isClosed) this.#progress(share < 1 ? `Reading ${source.name}…` : `Parsing ${source.name}…`, share);
+    const read = await source.read(this.#office, (path, share) => {
+      if (!this.#isClosed) this.#progress(share < 1 ? `Reading ${path}…` : `Parsing ${path}…`, share);
     });
-    const { mesh, name, files } = read;
+    const { mesh, name, kept } = read;
     if (mesh.indices.length === 0) throw new Error(`There are no triangles in ${name}.`);
+    // The memory of a WebAssembly module never shrinks: what reading has taken goes with the worker.
+    this.#office.close();
+    const office = new Office();
+    this.#office = office;
     const before = await office.ask((desk) => desk.measure(mesh, BINS));
-    return (this.opened = { mesh, name, office, files, remark: remarkOn(mesh), before });
+    return (this.opened = { mesh, name, office, kept, remark: remarkOn(mesh), before });
   }
 }
 

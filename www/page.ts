@@ -4,7 +4,7 @@ import { EdgeflipError } from 'edgeflip';
 import { Choices, type Settings } from './choices.ts';
 import { controls, element } from './controls.ts';
 import { LOST } from './crash.ts';
-import { beginRun, Cancelled, openGpu, type Gpu } from './engines.ts';
+import { beginRun, Cancelled, Office, openGpu, type Gpu } from './engines.ts';
 import { BINS, Opening, type Opened } from './opening.ts';
 import { palette } from './palette.ts';
 import { ENGINES, number, Panel, reasons } from './panel.ts';
@@ -120,8 +120,11 @@ export class Page {
     const name = `${stem.replaceAll(' ', '-')}-after-${run.at}${extension}`;
     await this.#attempt('Writing the file…', async (signal) => {
       const mesh = { ...opened.mesh, indices: await run.triangles() };
-      const bytes = await opened.office.ask((desk) => desk.write(mesh, name, opened.files));
       signal.throwIfAborted();
+      // A worker of its own: the memory that writing takes goes with it, and it can be cancelled.
+      const office = new Office();
+      signal.addEventListener('abort', () => office.close());
+      const bytes = await office.ask((desk) => desk.write(mesh, name, opened.kept)).finally(() => office.close());
       const link = document.createElement('a');
       link.href = URL.createObjectURL(new Blob([bytes]));
       link.download = name;
@@ -259,7 +262,7 @@ export class Page {
     element('status').textContent = run ? statusOf(run) : '';
     const isFinal = run?.isOver && this.#summary?.iterations === newest;
     const remains = isFinal && this.#summary ? left(reasons(this.#summary.remaining)) : '';
-    const note = [remains, this.#opened?.remark, run ? whyThere(run, this.#summary) : ''].filter(Boolean).join(' ');
+    const note = [remains, run ? whyThere(run, this.#summary) : '', this.#opened?.remark].filter(Boolean).join(' ');
     element('note').hidden = note === '';
     element('note').textContent = note;
     element('caption').textContent = this.#opened?.name ?? '';

@@ -2,8 +2,8 @@
 
 import { proxy } from 'comlink';
 import { FORMATS, type FileMesh, type IndexedMesh } from 'edgeflip/files';
-import type { Report } from './desk.ts';
 import type { Office } from './engines.ts';
+import { folderOf, GLTF, type Kept, type Located, type Report } from './files.ts';
 
 /** A mesh that can be read. */
 export interface Source {
@@ -16,8 +16,8 @@ export interface Source {
 export interface Read {
   name: string;
   mesh: IndexedMesh | FileMesh;
-  /** The file that it was read from, and those beside it; none of a sample. */
-  files: File[];
+  /** The files that it was read from; `undefined` for a sample. */
+  kept: Kept | undefined;
 }
 
 /** The stem of a file's name, and what its format is known by. */
@@ -32,20 +32,27 @@ export function splitName(name: string): [stem: string, extension: string] {
 export function sample(spec: string): Source {
   const read = async (office: Office) => {
     const mesh = await office.ask((desk) => desk.generate(spec));
-    return { name: spec, mesh, files: [] };
+    return { name: spec, mesh, kept: undefined };
   };
   return { name: spec, read };
 }
 
-/** The first mesh among files, which may have its buffers in the others; `undefined` where there is no file. */
+/** The first mesh among files; `undefined` where there is no file. */
 export function chosen(files: readonly File[]): Source | undefined {
-  const file = files.find(({ name }) => EXTENSION.test(name)) ?? files[0];
-  if (!file) return undefined;
-  const { name } = file;
-  const others = files.filter((other) => other !== file);
-  const read = async (office: Office, report: Report) => {
-    const mesh = await office.ask((desk) => desk.read(file, others, proxy(report)));
-    return { name, mesh, files: [file, ...others] };
-  };
-  return { name, read };
+  const [first] = files;
+  const located = files.map((file) => ({ path: file.name, file }));
+  return first && { name: first.name, read: (office, report) => readFirst(located, office, report) };
+}
+
+async function readFirst(files: readonly Located[], office: Office, report: Report): Promise<Read> {
+  const main = files.find(isMesh) ?? files[0];
+  if (!main) throw new Error('No file was given.');
+  const folder = folderOf(main.path);
+  const beside = GLTF.test(main.file.name) ? files.filter(({ path }) => path !== main.path && path.startsWith(folder)) : [];
+  const { mesh, kept } = await office.ask((desk) => desk.read(main, beside, proxy(report)));
+  return { name: main.file.name, mesh, kept };
+}
+
+function isMesh({ file: { name } }: Located): boolean {
+  return EXTENSION.test(name);
 }

@@ -1,7 +1,7 @@
 // The demo page in Chromium while it opens a mesh: what is chosen meanwhile, files that change or go, folders.
 
 import assert from 'node:assert/strict';
-import { mkdirSync, writeFileSync } from 'node:fs';
+import { mkdirSync, rmSync, writeFileSync } from 'node:fs';
 import { dirname, join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { makeDelaunay } from '../../dist/index.js';
@@ -204,6 +204,42 @@ test('a GPU that is lost while a file is read takes nothing with it', async () =
   await page.close();
 });
 
+for (const [how, load] of [
+  ['chosen', (page, paths) => choose(page, ...paths)],
+  ['dropped', (page, paths) => page.dropPaths(paths)],
+]) {
+  test(`a file that was ${how} is downloaded as it was read when it has changed or gone since`, async () => {
+    const { mesh, indices } = await expected(sphere);
+    const path = await meshFile('uvsphere 28 0.1', `${how}.off`);
+    const page = await openEdgeflip(browser);
+    await load(page, [path]);
+    await page.until('the file', ({ caption }) => caption === `${how}.off`);
+    await page.rest();
+    await page.playToEnd();
+    writeFileSync(path, BROKEN);
+    assertSameMesh(await page.download(), { ...mesh, indices }, 'after the file has changed');
+    rmSync(path);
+    const end = await page.rest();
+    assertSameMesh(await page.download(), { ...mesh, indices }, 'after the file has gone');
+    assert.equal(end.error, '');
+    await page.close();
+  });
+
+  test(`a file that was ${how} and cannot be read is named, with what to do; the mesh before it stays`, async () => {
+    const path = file(`gone-${how}.off`, BROKEN);
+    const page = await openEdgeflip(browser, holdWorkers);
+    const opened = await page.open(roof);
+    await held(page, 'read', () => load(page, [path]));
+    rmSync(path);
+    await letGo(page);
+    const { error, caption } = await page.until('a message', (seen) => seen.error !== '' && seen.state !== 'busy');
+    assert.match(error, new RegExp(`^\\s*gone-${how}\\.off could not be read: it was moved, .*Choose it again\\.`));
+    assert.equal(caption, 'roof.ply');
+    assert.deepEqual((await page.rest()).facts, opened.facts);
+    await page.close();
+  });
+}
+
 test('the name of a file is shown as it is', async () => {
   const page = await openEdgeflip(browser);
   for (const name of ['a.txt', 'äpfel.off', 'ßeta.off', 'Upper.off']) {
@@ -212,5 +248,30 @@ test('the name of a file is shown as it is', async () => {
     assert.ok(error.trim().startsWith(name), error);
     await page.page.click('#dismiss');
   }
+  await page.close();
+});
+
+test('what workers held is given back when other meshes are opened', async () => {
+  const page = await openEdgeflip(browser, () => {
+    window.workers = [];
+    window.Worker = class extends Worker {
+      constructor(...args) {
+        super(...args);
+        window.workers.push(new WeakRef(this));
+      }
+    };
+  });
+  for (const path of [sphere, roof, sphere, roof]) await page.open(path);
+  await page.download();
+  const session = await page.page.context().newCDPSession(page.page);
+  const counts = async () => {
+    await session.send('HeapProfiler.collectGarbage');
+    return page.page.evaluate(() => [window.workers.length, window.workers.filter((worker) => worker.deref()).length]);
+  };
+  // That which measures and that of the run.
+  const end = performance.now() + 30_000;
+  let [made, kept] = await counts();
+  while (kept > 2 && performance.now() < end) [made, kept] = await counts();
+  assert.ok(made > 10 && kept <= 2, `${kept} of ${made} workers are held`);
   await page.close();
 });
