@@ -4,7 +4,7 @@ import { FORMATS } from 'edgeflip/files';
 import { controls, element } from './controls.ts';
 import { Page } from './page.ts';
 import { FIRST, SAMPLES } from './samples.ts';
-import { chosen, sample, type Source } from './sources.ts';
+import { chosen, dropped, sample, type Source } from './sources.ts';
 
 const page = new Page();
 
@@ -62,7 +62,7 @@ document.addEventListener('dragleave', (event) => {
 document.addEventListener('drop', (event) => {
   event.preventDefault();
   dropHere.hidden = true;
-  open(chosen([...(event.dataTransfer?.files ?? [])]));
+  open(dropped(event));
 });
 
 void page.start(FIRST);

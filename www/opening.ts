@@ -5,7 +5,7 @@ import type { Quality } from './desk.ts';
 import { Office } from './engines.ts';
 import type { Kept } from './files.ts';
 import { number } from './panel.ts';
-import type { Source } from './sources.ts';
+import type { Read, Source } from './sources.ts';
 
 /** Bins of the histogram of angles: 5° each. */
 export const BINS = 36;
@@ -18,7 +18,7 @@ export interface Opened {
   office: Office;
   /** The files that it was read from. */
   kept: Kept | undefined;
-  /** What reading the files did to it. */
+  /** What reading the files did to it, and what it left. */
   remark: string;
   before: Quality;
 }
@@ -58,12 +58,16 @@ export class Opening {
     const office = new Office();
     this.#office = office;
     const before = await office.ask((desk) => desk.measure(mesh, BINS));
-    return (this.opened = { mesh, name, office, kept, remark: remarkOn(mesh), before });
+    return (this.opened = { mesh, name, office, kept, remark: remarkOn(read), before });
   }
 }
 
-function remarkOn(mesh: IndexedMesh | FileMesh): string {
-  if (!('polygons' in mesh)) return '';
+function remarkOn({ mesh, others }: Read): string {
+  const left = others > 0 ? `${number.format(others)} other mesh ${others === 1 ? 'file was' : 'files were'} not opened.` : '';
+  return [left, 'polygons' in mesh ? remarkOnFile(mesh) : ''].filter(Boolean).join(' ');
+}
+
+function remarkOnFile(mesh: FileMesh): string {
   const cut = mesh.polygons > 0 ? `${number.format(mesh.polygons)} faces were cut into triangles.` : '';
   const dropped = mesh.dropped.length > 0 && !mesh.keeps ? `Not kept: ${mesh.dropped.join(', ')}.` : '';
   const isDivided = mesh.groups ?? mesh.lockedEdges ?? mesh.lockedTriangles;

@@ -262,7 +262,7 @@ export class Page {
     element('status').textContent = run ? statusOf(run) : '';
     const isFinal = run?.isOver && this.#summary?.iterations === newest;
     const remains = isFinal && this.#summary ? left(reasons(this.#summary.remaining)) : '';
-    const note = [remains, run ? whyThere(run, this.#summary) : '', this.#opened?.remark].filter(Boolean).join(' ');
+    const note = [remains, this.#opened?.remark, run ? whyThere(run, this.#summary) : ''].filter(Boolean).join(' ');
     element('note').hidden = note === '';
     element('note').textContent = note;
     element('caption').textContent = this.#opened?.name ?? '';

@@ -5,6 +5,8 @@ import { mkdirSync, rmSync, writeFileSync } from 'node:fs';
 import { dirname, join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { makeDelaunay } from '../../dist/index.js';
+import { readMesh, writeMesh } from '../../dist/files.js';
+import { riggedGlb } from '../package/gltf.mjs';
 import { startChromium } from '../browsers.mjs';
 import { assertSameMesh, expected, folder, meshFile, openEdgeflip, tidyUp } from './page.mjs';
 
@@ -239,6 +241,98 @@ for (const [how, load] of [
     await page.close();
   });
 }
+
+/** A glTF file with its buffer in another, in folders of this name. */
+async function gltfFolder(name, uri, path) {
+  const original = { bytes: riggedGlb().bytes, name: 'rigged.glb' };
+  const mesh = await readMesh(original.bytes, original.name);
+  const json = JSON.parse(Buffer.from(await writeMesh(mesh, 'rigged.gltf', { original })).toString());
+  const [, base64] = json.buffers[0].uri.split(',');
+  json.buffers[0].uri = uri;
+  file(`${name}/rigged.gltf`, JSON.stringify(json));
+  file(`${name}/${path}`, Buffer.from(base64, 'base64'));
+  return mesh;
+}
+
+test('a folder with a glTF file and its buffer in a folder below plays, and is downloaded when it has gone', async () => {
+  const page = await openEdgeflip(browser);
+  for (const [name, uri, path] of [
+    ['scene', 'data/a%20b.bin', 'data/a b.bin'],
+    ['dots', './a.bin', 'a.bin'],
+    ['above/below', 'deep/er/a.bin', 'deep/er/a.bin'],
+  ]) {
+    const mesh = await gltfFolder(name, uri, path);
+    // It is not read: it is no buffer.
+    file(`${name}/data/large.png`, 'no picture');
+    await page.dropPaths([join(folder, name.split('/')[0])]);
+    await page.until(`the mesh of ${name}`, ({ error, state, measured, note }) => (state === 'ready' && measured === '0' && !/other/.test(note)) || error !== '');
+    const opened = await page.rest();
+    assert.deepEqual([opened.caption, opened.error], ['rigged.gltf', '']);
+    await page.chooseEngine('cpu');
+    await page.playToEnd();
+    const { indices } = await makeDelaunay(mesh, { backend: 'cpu' });
+    rmSync(join(folder, name), { recursive: true });
+    assertSameMesh(await page.download(), { ...mesh, indices }, `of ${name}`);
+    await page.choose('sample', 'random 24');
+    await page.until('a sample', ({ caption }) => caption === 'random 24');
+    await page.rest();
+  }
+  await page.close();
+});
+
+test('of many meshes the first opens, and the page says how many others do not', async () => {
+  const bytes = await writeMesh(await readMesh(Buffer.from(BROKEN.replace('one', '1')), 'a.off'), 'a.off');
+  const paths = Array.from({ length: 50 }, (_, i) => file(`many/mesh ${i + 1}.off`, bytes));
+  file('many/a/first.off', bytes);
+  file('many/._mesh 1.off', 'of macOS');
+  file('many/notes.txt', 'no mesh');
+  const page = await openEdgeflip(browser);
+  for (const [ask, name, note] of [
+    [() => choose(page, ...paths), 'mesh 1.off', '49 other mesh files were not opened.'],
+    [() => page.dropPaths(paths.slice(3, 5)), 'mesh 4.off', '1 other mesh file was not opened.'],
+    [() => page.dropPaths([join(folder, 'many')]), 'mesh 1.off', '50 other mesh files were not opened.'],
+    [() => page.dropPaths([paths[6], join(folder, 'many/a')]), 'mesh 7.off', '1 other mesh file was not opened.'],
+    [() => page.dropPaths([join(folder, 'many/a'), join(folder, 'many/notes.txt')]), 'first.off', ''],
+  ]) {
+    await page.choose('sample', 'random 24');
+    await page.until('a sample', ({ caption }) => caption === 'random 24');
+    await page.rest();
+    await ask();
+    await page.until(name, ({ caption }) => caption === name);
+    const seen = await page.rest();
+    assert.equal(seen.error, '');
+    if (note) assert.ok(seen.note.includes(note), seen.note);
+    else assert.doesNotMatch(seen.note, /not opened/);
+  }
+  // The buffer of a glTF file is none, whatever it is called.
+  const mesh = await gltfFolder('odd', 'the%20buffer.off', 'the buffer.off');
+  await page.dropPaths([join(folder, 'odd')]);
+  await page.until('the glTF file', ({ caption }) => caption === 'rigged.gltf');
+  const odd = await page.rest();
+  assert.equal(odd.facts.Triangles, `${mesh.indices.length / 3}`);
+  assert.doesNotMatch(odd.note, /not opened/);
+  await page.close();
+});
+
+test('a folder without a mesh says that it is one', async () => {
+  const page = await openEdgeflip(browser);
+  const opened = await page.open(roof);
+  mkdirSync(join(folder, 'empty'));
+  file('texts/a.txt', 'no mesh');
+  for (const [names, message] of [
+    [['empty'], /^\s*empty is a folder without a mesh file\. .*\.off, \.obj/],
+    [['texts'], /^\s*texts is a folder without a mesh file\./],
+    [['empty', 'texts'], /^\s*empty and texts are folders without a mesh file\./],
+  ]) {
+    await page.dropPaths(names.map((name) => join(folder, name)));
+    const { error, caption } = await page.until('a message', (seen) => seen.error !== '' && seen.state !== 'busy');
+    assert.match(error, message);
+    assert.equal(caption, 'roof.ply');
+    assert.deepEqual((await page.rest()).facts, opened.facts);
+    await page.page.click('#dismiss');
+  }
+  await page.close();
+});
 
 test('the name of a file is shown as it is', async () => {
   const page = await openEdgeflip(browser);
