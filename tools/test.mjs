@@ -100,12 +100,12 @@ const levels = [
   },
   {
     name: 'npm package',
-    what: 'the package builds, TypeScript is strict about it, and its tests pass in Node on the CPU engine',
+    what: 'the package builds, TypeScript is strict about it, and its tests pass in Node on the CPU engine, hostile values too',
     checks: [
       ['node', 'tools/build.mjs'],
       ['node', 'node_modules/typescript/bin/tsc', '-p', 'tests/package'],
       ['node', '--test', '--test-reporter=tap', 'tests/package/node.test.mjs', 'tests/package/files.test.mjs', 'tests/package/gltf.test.mjs',
-        'tests/package/weld.test.mjs', 'tests/package/threads.test.mjs'],
+        'tests/package/weld.test.mjs', 'tests/package/threads.test.mjs', 'tests/package/memory.test.mjs', 'tests/package/hostile.test.mjs'],
     ],
     counts: true,
   },
