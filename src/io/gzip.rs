@@ -3,7 +3,7 @@
 use super::ReadOptions;
 use crate::Error;
 use flate2::Compression;
-use flate2::bufread::MultiGzDecoder;
+use flate2::bufread::GzDecoder;
 use flate2::write::GzEncoder;
 use std::io::{self, Read, Write};
 use std::path::Path;
@@ -21,24 +21,45 @@ pub(super) fn is_named(path: &Path) -> bool {
     super::extension(path).as_deref() == Some("gz")
 }
 
-/// The content of all members. What it takes grows with the content, never beyond the limit.
+/// The content of all members, one after the other. Zeros behind the last one are padding. What it takes grows with the
+/// content, never beyond the limit.
 ///
 /// # Errors
 /// [`Error::FileTooLarge`]; [`Error::Parse`] where the file is cut off or not what was packed.
 pub(super) fn unpack(packed: &[u8], options: &ReadOptions) -> Result<Vec<u8>, Error> {
-    let mut decoder = MultiGzDecoder::new(packed);
     let mut bytes = Vec::new();
+    let mut rest = packed;
+    loop {
+        rest = member(packed, rest, &mut bytes, options)?;
+        if rest.iter().all(|&byte| byte == 0) {
+            return Ok(bytes);
+        }
+        if !is_magic(rest) {
+            let message = format!("other bytes follow the gzip'd data: {}; cut them off", rest.len());
+            return Err(Error::Parse { place: place(packed, rest), message });
+        }
+    }
+}
+
+/// Adds the content of the member at the start of `rest` to `bytes`, and returns what follows it.
+fn member<'a>(
+    packed: &[u8],
+    rest: &'a [u8],
+    bytes: &mut Vec<u8>,
+    options: &ReadOptions,
+) -> Result<&'a [u8], Error> {
+    let mut decoder = GzDecoder::new(rest);
     loop {
         let length = bytes.len() as u64;
         options.check(length)?;
         // The last byte that is asked for may be the first one too many.
         let more = length.max(FIRST).min(options.max_bytes - length) + 1;
         let read = match bytes.try_reserve_exact(more as usize) {
-            Ok(()) => decoder.by_ref().take(more).read_to_end(&mut bytes),
+            Ok(()) => decoder.by_ref().take(more).read_to_end(bytes),
             Err(error) => Err(error.into()),
         };
         match read {
-            Ok(read) if (read as u64) < more => return Ok(bytes),
+            Ok(read) if (read as u64) < more => return Ok(decoder.into_inner()),
             Ok(_) => {}
             Err(error) => {
                 let what = match error.kind() {
@@ -47,11 +68,15 @@ pub(super) fn unpack(packed: &[u8], options: &ReadOptions) -> Result<Vec<u8>, Er
                     _ => "is damaged",
                 };
                 let message = format!("the gzip'd file {what} ({error})");
-                let place = format!("byte {}", packed.len() - decoder.get_ref().len());
-                return Err(Error::Parse { place, message });
+                return Err(Error::Parse { place: place(packed, decoder.get_ref()), message });
             }
         }
     }
+}
+
+/// Where `rest` begins.
+fn place(packed: &[u8], rest: &[u8]) -> String {
+    format!("byte {}", packed.len() - rest.len())
 }
 
 /// Hands `write` what it is to write to: `out`, or what packs it first.

@@ -54,13 +54,29 @@ fn what_is_damaged_is_refused() {
     refused(off(changed(2)), "byte 10: the gzip'd file is damaged (invalid gzip header)");
     refused(
         off([&whole, b"garbage, and more of it".as_slice()].concat()),
-        &format!("byte {}: the gzip'd file is damaged (invalid gzip header)", end + 10),
+        &format!("byte {end}: other bytes follow the gzip'd data: 23; cut them off"),
     );
     refused(
         off(&whole[..end - 1]),
         &format!("byte {}: the gzip'd file is cut off (unexpected end of file)", end - 1),
     );
     refused(off(packed(b"")), "line 1: the file is empty");
+}
+
+/// gzip(1) takes zeros for padding, too, and leaves other bytes away with a warning.
+#[test]
+fn zeros_may_follow_and_nothing_else() {
+    let whole = packed(TRIANGLE.as_bytes());
+    let end = whole.len();
+    for zeros in [1, 2, 100, 10_000] {
+        assert_eq!(off([&*whole, &vec![0; zeros]].concat()).unwrap(), off(TRIANGLE).unwrap());
+    }
+    for (more, count) in [(&b"abc"[..], 3), (b"\x1f", 1), (b"\0\0a\0", 4), (b"\0\x1f\x8b\x08", 4)] {
+        let message = format!("byte {end}: other bytes follow the gzip'd data: {count}; cut them off");
+        refused(off([&whole, more].concat()), &message);
+    }
+    let cut = [&*whole, &whole[..end - 1]].concat();
+    refused(off(&cut), &format!("byte {}: the gzip'd file is cut off (unexpected end of file)", cut.len()));
 }
 
 #[test]
