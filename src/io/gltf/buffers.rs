@@ -37,7 +37,7 @@ impl<'a> Buffers<'a> {
                 (None, Some(binary)) if index == 0 => Buffer::Present(binary.into()),
                 (None, _) => Buffer::Absent("it has no URI".into()),
                 (Some(uri), _) => match uri.split_once(',') {
-                    Some((head, data)) if head.starts_with("data:") => {
+                    Some((head, data)) if is_data(head) => {
                         Buffer::Present(decode(head, data).map_err(|message| at(index, message))?.into())
                     }
                     _ => Self::from_file(index, uri, read)?,
@@ -105,9 +105,16 @@ fn at(buffer: usize, message: impl Into<String>) -> Error {
     refuse(format!("buffer {buffer}"), message)
 }
 
+/// Whether a URI that begins so is one of data. Schemes are in either case (RFC 3986, section 3.1).
+fn is_data(head: &str) -> bool {
+    head.get(..5).is_some_and(|scheme| scheme.eq_ignore_ascii_case("data:"))
+}
+
 /// The bytes of a data URI, of what is before its comma and behind.
 fn decode(head: &str, data: &str) -> Result<Vec<u8>, String> {
-    if head.ends_with(";base64") {
+    const MARK: &str = ";base64";
+    let mark = head.len().checked_sub(MARK.len()).and_then(|at| head.get(at..));
+    if mark.is_some_and(|mark| mark.eq_ignore_ascii_case(MARK)) {
         return BASE64.decode(data).map_err(|error| format!("its data URI is no base64: {error}"));
     }
     Ok(percent_decode_str(data).collect())

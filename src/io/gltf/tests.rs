@@ -319,6 +319,21 @@ fn buffers_beside_the_file_are_read_if_that_is_allowed() {
     }
 }
 
+/// Schemes are in either case, as is what says that data are base64.
+#[test]
+fn data_uris_are_in_either_case() {
+    let (mut json, buffer) = square();
+    let uri = super::buffers::data_uri(&buffer);
+    for uri in [
+        uri.clone(),
+        uri.replace("data:", "DATA:"),
+        uri.replace("data:", "Data:").replace(";base64", ";BASE64"),
+    ] {
+        json["buffers"][0]["uri"] = uri.into();
+        assert_eq!(read(json.to_string().as_bytes()).unwrap().triangles, INDICES);
+    }
+}
+
 #[test]
 fn compressed_primitives_are_left() {
     let draco = json!({ "KHR_draco_mesh_compression": { "bufferView": 0, "attributes": {} } });
