@@ -8,6 +8,7 @@
 mod accessors;
 mod buffers;
 mod container;
+mod nesting;
 mod placement;
 mod weld;
 mod write;
@@ -158,6 +159,7 @@ struct Asset {
 
 /// The JSON of a file.
 fn json(bytes: &[u8]) -> Result<Root, Error> {
+    nesting::refuse_deep(bytes)?;
     let Asset { version, min_version } = deserialized::<Head>(bytes)?.asset;
     let version = min_version.unwrap_or(version);
     if !version.starts_with("2.") {
