@@ -195,7 +195,7 @@ mod tests {
     fn compare(vertices: usize, triangles: &[u32]) {
         let expected = expected(triangles);
         for threads in 1..=3 {
-            let threads = Threads::new(NonZeroUsize::new(threads)).unwrap();
+            let threads = Threads::new(NonZeroUsize::new(threads), usize::MAX).unwrap();
             assert_eq!(Adjacency::of_triangles(vertices, triangles, &threads), expected);
         }
         let mut number = 0;

@@ -141,7 +141,7 @@ mod tests {
             let triangles: Vec<u32> = (0..16).flat_map(|i| [0, i + 1, (i + 1) % 16 + 1]).collect();
             let mesh = Mesh::new(Dimension::Two, positions, triangles).unwrap();
             for threads in 1..=4 {
-                let threads = Threads::new(NonZeroUsize::new(threads)).unwrap();
+                let threads = Threads::new(NonZeroUsize::new(threads), usize::MAX).unwrap();
                 let twins = crate::Adjacency::new(&mesh).twins;
                 let (_, embedded) = Embedded::with_winding(&mesh, &twins, &threads);
                 assert_eq!(embedded.at(0), is_embedded);

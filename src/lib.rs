@@ -65,7 +65,7 @@ pub use edge_states::EdgeState;
 pub use edges::Edges;
 pub use error::Error;
 pub use mesh::{Dimension, MAX_TRIANGLES, Mesh, NONE};
-pub use options::{Backend, Options, Order};
+pub use options::{Backend, MOST_THREADS, Options, Order};
 pub use outcome::{Iteration, Outcome, Reason, Reasons, Status, Timings};
 pub use positions::Positions;
 pub use predicates::cos_degrees;

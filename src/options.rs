@@ -26,6 +26,9 @@ pub enum Order {
     Any,
 }
 
+/// The largest number for [`Options::threads`].
+pub const MOST_THREADS: usize = 256;
+
 /// What the caller can choose.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Options {
@@ -52,8 +55,9 @@ pub struct Options {
     pub groups: Vec<u32>,
     /// Reproducible pipeline or Lawson's algorithm.
     pub order: Order,
-    /// How many threads the CPU engine runs on; `None`: one for each core. A mesh of fewer than
-    /// 65,536 triangles is done on one, before others have woken up. The result is the same for any
+    /// How many threads the CPU engine runs on, at most [`MOST_THREADS`]; `None`: one for each core. No more are started
+    /// than there are pieces of 4,096 triangles, and a mesh of fewer than 65,536 is done on one, before others have woken
+    /// up. The result is the same for any
     /// number. Lawson's algorithm flips on several in the plane only, where no vertex has triangles on two sides
     /// that share no edge. Without the feature `threads` it is always one.
     /// What goes to a GPU and comes back is copied on one for each core.

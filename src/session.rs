@@ -16,8 +16,8 @@ use crate::quality::{Audit, audit};
 use crate::star::Fans;
 use crate::threads::Threads;
 use crate::{
-    Backend, EdgeState, Edges, Error, Iteration, Mesh, Options, Order, Outcome, Positions, Reason, Status,
-    Timings, frozen, locks, memory,
+    Backend, EdgeState, Edges, Error, Iteration, MOST_THREADS, Mesh, Options, Order, Outcome, Positions,
+    Reason, Status, Timings, frozen, locks, memory,
 };
 use choice::{engine_after, engine_for};
 use std::ops::ControlFlow;
@@ -50,6 +50,10 @@ impl Session {
         if options.max_deviation.is_nan() || options.max_deviation < 0.0 {
             let message = format!("{} is not a distance from 0 on", number(options.max_deviation));
             return Err(Error::Option { option: "max_deviation", message });
+        }
+        if let Some(threads) = options.threads.filter(|threads| threads.get() > MOST_THREADS) {
+            let message = format!("{threads} is not a number of threads, 1 to {MOST_THREADS}");
+            return Err(Error::Option { option: "threads", message });
         }
         let (start, mesh) = (Instant::now(), mesh.into());
         options.locked_edges = locks::edges(&mesh, &options)?;

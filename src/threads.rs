@@ -38,20 +38,36 @@ pub(crate) struct Threads {
 }
 
 impl Threads {
-    /// As many as an option says.
+    /// As many as an option says, or one for each core, but no more than there are pieces of so many triangles.
     ///
     /// # Errors
-    /// [`Error::Option`] where the system has not so many.
+    /// [`Error::Option`] where the system has not as many as the option says.
     #[cfg_attr(not(feature = "threads"), expect(unused_variables, reason = "it is one, whatever it says"))]
-    pub(crate) fn new(option: Option<NonZeroUsize>) -> Result<Self, Error> {
+    pub(crate) fn new(option: Option<NonZeroUsize>, triangles: usize) -> Result<Self, Error> {
         #[cfg(feature = "threads")]
-        if let Some(count) = option {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(count.get()).build().map_err(|error| {
-                Error::Option { option: "threads", message: format!("{count} could not be started: {error}") }
+        if let Some(count) = option
+            && triangles >= FEWEST_TRIANGLES
+        {
+            let count = count.get().min(triangles / FEWEST);
+            if count == 1 {
+                return Ok(Self::one());
+            }
+            let pool = started(count).map_err(|error| {
+                let message = format!("{count} could not be started: {error}");
+                Error::Option { option: "threads", message }
             })?;
-            return Ok(Self { pool: Some(Arc::new(pool)), is_one: false });
+            return Ok(Self { pool: Some(pool), is_one: false });
         }
-        Ok(Self::default())
+        #[cfg(all(feature = "threads", not(target_arch = "wasm32")))]
+        if triangles >= FEWEST_TRIANGLES
+            && let pieces = triangles / FEWEST
+            && std::thread::available_parallelism().is_ok_and(|cores| pieces < cores.get())
+            && !is_started()
+        {
+            let pool = started(pieces).ok();
+            return Ok(Self { is_one: pool.is_none(), pool });
+        }
+        Ok(Self::default().for_triangles(triangles))
     }
 
     /// One, without any of a pool.
@@ -63,7 +79,7 @@ impl Threads {
     #[cfg_attr(not(feature = "threads"), expect(unused_variables, reason = "it is one, for any"))]
     pub(crate) fn for_triangles(self, count: usize) -> Self {
         #[cfg(feature = "threads")]
-        return Self { is_one: count < FEWEST_TRIANGLES, ..self };
+        return Self { is_one: self.is_one || count < FEWEST_TRIANGLES, ..self };
         #[cfg(not(feature = "threads"))]
         self
     }
@@ -74,7 +90,7 @@ impl Threads {
             return 1;
         }
         #[cfg(feature = "threads")]
-        return self.pool.as_ref().map_or_else(rayon::current_num_threads, |pool| pool.current_num_threads());
+        return self.pool.as_ref().map_or_else(count_of_process, |pool| pool.current_num_threads());
         #[cfg(not(feature = "threads"))]
         1
     }
@@ -99,7 +115,7 @@ impl Threads {
 
     /// What `work` gives for each piece of a loop over `0..len`, in order.
     pub(crate) fn map<T: Send>(&self, len: usize, work: impl Fn(Range<usize>) -> T + Sync) -> Vec<T> {
-        if self.count() == 1 {
+        if len < 2 * FEWEST || self.count() == 1 {
             return vec![work(0..len)];
         }
         self.map_each(self.pieces(len), work)
@@ -107,13 +123,14 @@ impl Threads {
 
     /// The pieces of a loop over `0..len`, at least one.
     pub(crate) fn pieces(&self, len: usize) -> Vec<Range<usize>> {
-        let count = self.count();
+        // Threads that there are none of yet are not started for one piece.
+        let count = if len < 2 * FEWEST { 1 } else { self.count() };
         cut(len, if count == 1 { 1 } else { PIECES * count })
     }
 
     /// The pieces of a loop over `0..len`, at least one, each of which holds an array.
     pub(crate) fn pieces_with_arrays(&self, len: usize) -> Vec<Range<usize>> {
-        cut(len, self.count().min(ARRAYS))
+        cut(len, if len < 2 * FEWEST { 1 } else { self.count().min(ARRAYS) })
     }
 
     /// What `work` gives for each item, in order.
@@ -142,7 +159,7 @@ impl Threads {
         results: &mut [T],
         work: impl Fn(&[I], &mut [T]) + Sync,
     ) {
-        if self.count() == 1 {
+        if items.len() < 2 * FEWEST || self.count() == 1 {
             return work(items, results);
         }
         let size = self.pieces(items.len())[0].len().max(1);
@@ -158,7 +175,7 @@ impl Threads {
         work: impl Fn(Range<usize>, &mut L) + Sync,
         append: impl Fn(&mut L, Vec<L>),
     ) {
-        if self.count() == 1 || len < 2 * FEWEST {
+        if len < 2 * FEWEST || self.count() == 1 {
             return work(0..len, all);
         }
         let parts = self.map(len, |piece| {
@@ -174,6 +191,42 @@ impl Threads {
         all.reserve_exact(lists.iter().map(Vec::len).sum());
         lists.into_iter().for_each(|list| self.append(all, &list));
     }
+}
+
+/// So many threads.
+#[cfg(feature = "threads")]
+fn started(count: usize) -> Result<Arc<rayon::ThreadPool>, rayon::ThreadPoolBuildError> {
+    rayon::ThreadPoolBuilder::new().num_threads(count).build().map(Arc::new)
+}
+
+/// Whether the threads of the process could be started, once that has been tried.
+#[cfg(all(feature = "threads", not(target_arch = "wasm32")))]
+static HAS_STARTED: std::sync::OnceLock<bool> = std::sync::OnceLock::new();
+
+/// Whether that has been tried, or this is a thread of some pool.
+#[cfg(all(feature = "threads", not(target_arch = "wasm32")))]
+fn is_started() -> bool {
+    rayon::current_thread_index().is_some() || HAS_STARTED.get().is_some()
+}
+
+/// The threads of the process, or of the pool that this is a thread of. They are started if there are none; where that
+/// fails, rayon would panic, and it is one.
+#[cfg(all(feature = "threads", not(target_arch = "wasm32")))]
+fn count_of_process() -> usize {
+    use std::error::Error;
+    let start = || match rayon::ThreadPoolBuilder::new().build_global() {
+        Ok(()) => true,
+        // Without a source it says that there are some.
+        Err(error) => error.source().is_none(),
+    };
+    let is_there = rayon::current_thread_index().is_some() || *HAS_STARTED.get_or_init(start);
+    if is_there { rayon::current_num_threads() } else { 1 }
+}
+
+/// JavaScript has started them.
+#[cfg(all(feature = "threads", target_arch = "wasm32"))]
+fn count_of_process() -> usize {
+    rayon::current_num_threads()
 }
 
 /// `0..len` in up to `most` pieces, but at least one.
@@ -246,11 +299,29 @@ mod tests {
         }
     }
 
+    /// No thread is started that has no work.
+    #[test]
+    fn no_more_threads_than_pieces() {
+        for (count, triangles, want) in [
+            (256, 2, 1),
+            (256, FEWEST_TRIANGLES - 1, 1),
+            (256, FEWEST_TRIANGLES, 16),
+            (3, FEWEST_TRIANGLES, 3),
+            (1, usize::MAX, 1),
+            (40, 32 * FEWEST, 32),
+        ] {
+            let threads = Threads::new(NonZeroUsize::new(count), triangles).unwrap();
+            assert_eq!(threads.count(), want);
+            assert_eq!(threads.pool.is_some(), want > 1);
+        }
+        assert_eq!(Threads::new(None, FEWEST_TRIANGLES - 1).unwrap().count(), 1);
+    }
+
     #[test]
     fn each_result_is_of_its_item() {
         for len in [0, 1, 7, 8, 1000] {
             for count in [1, 2, 3, 8] {
-                let threads = Threads::new(NonZeroUsize::new(count)).unwrap();
+                let threads = Threads::new(NonZeroUsize::new(count), usize::MAX).unwrap();
                 let (items, mut results) = (Vec::from_iter(0..len), vec![0; len]);
                 threads.fill(&items, &mut results, |items, results| {
                     items.iter().zip(results).for_each(|(item, result)| *result += item + 1);
@@ -265,7 +336,9 @@ mod tests {
         for len in [0, 1, 7, 8, 1000] {
             for count in [1, 2, 3, 8] {
                 let mut all = vec![7];
-                Threads::new(NonZeroUsize::new(count)).unwrap().append(&mut all, &Vec::from_iter(0..len));
+                Threads::new(NonZeroUsize::new(count), usize::MAX)
+                    .unwrap()
+                    .append(&mut all, &Vec::from_iter(0..len));
                 assert!(all.into_iter().eq([7].into_iter().chain(0..len)));
             }
         }
@@ -275,7 +348,7 @@ mod tests {
     fn lists_are_joined_in_order() {
         for count in [1, 2, 3, 8] {
             let mut list = vec![7];
-            let threads = Threads::new(NonZeroUsize::new(count)).unwrap();
+            let threads = Threads::new(NonZeroUsize::new(count), usize::MAX).unwrap();
             for _ in 0..2 {
                 threads.extend(
                     &mut list,

@@ -97,7 +97,8 @@ fn open<'a>(backend: Backend, mesh: &'a Arc<Mesh>, options: &'a Options) -> Answ
         let thresholds = Thresholds::from(options);
         let cpu = || {
             memory::check(room::bytes(mesh, options))?;
-            Ok::<_, Error>(Cpu::new(mesh.clone(), thresholds, Threads::new(options.threads)?))
+            let threads = Threads::new(options.threads, mesh.triangle_count())?;
+            Ok::<_, Error>(Cpu::new(mesh.clone(), thresholds, threads))
         };
         let mut engine = match (backend, options.order) {
             (Backend::Gpu, _) => gpu(mesh, options, thresholds).await?,

@@ -142,9 +142,9 @@ pub struct Args {
     #[arg(long, value_enum, default_value_t, value_name = "ORDER")]
     pub order: OrderArg,
 
-    /// How many threads --backend cpu runs on; without it one for each core. A mesh of fewer than
-    /// 65,536 triangles is done on one. The result is the same for any number
-    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    /// How many threads --backend cpu runs on, 1 to 256; without it one for each core. Fewer are started where a mesh
+    /// has no work for so many: one below 65,536 triangles. The result is the same for any number
+    #[arg(long, value_name = "N", value_parser = threads, allow_negative_numbers = true)]
     pub threads: Option<NonZeroUsize>,
 
     /// Check the result independently; if the check fails, write nothing and end with status 1
@@ -249,6 +249,13 @@ pub enum OrderArg {
     Reproducible,
     /// Lawson's sequential algorithm on the CPU: often faster, no iterations to count
     Any,
+}
+
+/// A number of threads.
+fn threads(text: &str) -> Result<NonZeroUsize, String> {
+    let most = edgeflip::MOST_THREADS;
+    let count = text.parse().ok().filter(|count: &NonZeroUsize| count.get() <= most);
+    count.ok_or_else(|| format!("must be a number from 1 to {most}"))
 }
 
 /// A distance from 0 on.

@@ -36,6 +36,8 @@ impl Failure {
             _ => format!("{}: {error}", path.display()),
         };
         let status = match error {
+            // Its range has been checked; the system has not so many.
+            Error::Option { option: "threads", .. } => 1,
             Error::Option { .. } => 2,
             Error::BackendUnavailable { .. } | Error::BackendLimit { .. } | Error::Device { .. } => 3,
             _ => 1,
