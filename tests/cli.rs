@@ -3,20 +3,13 @@
 // Clippy's exemption for tests does not reach their shared functions.
 #![allow(clippy::unwrap_used)]
 
+mod command;
+
+use command::{Folder, SQUARE, failed, run, text};
 use serde_json::{Value, json};
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
-
-/// Four corners, 1 drawn in, cut along 0-2; the angles at 1 and 3 are 106° and 90°, so that 1-3 is Delaunay.
-///
-/// ```text
-///   3-----2
-///   |   //
-///   | /  1
-///   0 -'
-/// ```
-const SQUARE: &str = "OFF\n4 2 0\n0 0 0\n0.9 0.2 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3\n";
+use std::path::Path;
+use std::process::{Command, Stdio};
 
 /// The keys of the object that `--json` prints, in their order.
 const KEYS: [&str; 28] = [
@@ -49,53 +42,6 @@ const KEYS: [&str; 28] = [
     "attribute_edges",
     "ms",
 ];
-
-struct Folder(tempfile::TempDir);
-
-impl Folder {
-    fn new() -> Self {
-        Self(tempfile::tempdir().unwrap())
-    }
-
-    fn path(&self, name: &str) -> PathBuf {
-        self.0.path().join(name)
-    }
-
-    fn file(&self, name: &str, bytes: impl AsRef<[u8]>) -> PathBuf {
-        let path = self.path(name);
-        fs::write(&path, bytes).unwrap();
-        path
-    }
-
-    fn names(&self) -> Vec<String> {
-        let entries = fs::read_dir(self.0.path()).unwrap();
-        let mut names: Vec<_> = entries.map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
-        names.sort();
-        names
-    }
-}
-
-/// Runs the program on the CPU unless `arguments` say otherwise.
-fn run(input: &Path, output: &Path, arguments: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_edgeflip"));
-    command.arg(input).arg("-o").arg(output);
-    if !arguments.contains(&"--backend") {
-        command.args(["--backend", "cpu"]);
-    }
-    command.args(arguments).stdin(Stdio::null()).output().unwrap()
-}
-
-fn text(bytes: &[u8]) -> &str {
-    std::str::from_utf8(bytes).unwrap()
-}
-
-/// The run ended with `status`, with one line on standard error, and nothing on standard output.
-#[track_caller]
-fn failed(output: &Output, status: i32, line: &str) {
-    assert_eq!(text(&output.stderr), format!("edgeflip: {line}\n"));
-    assert_eq!(output.status.code(), Some(status));
-    assert!(output.stdout.is_empty());
-}
 
 #[test]
 fn json_has_the_documented_keys() {
