@@ -8,5 +8,8 @@ fn main() -> Result<(), Error> {
         eprintln!("usage: generate FAMILY FILE\n{}", families::USAGE);
         std::process::exit(2);
     };
-    io::write(path, &families::by_name(family)?)
+    for lost in io::write(path, &families::by_name(family)?)? {
+        eprintln!("{lost}");
+    }
+    Ok(())
 }

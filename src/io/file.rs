@@ -1,9 +1,9 @@
-//! Mesh files on disk: a whole file is read at once, and a target is replaced at once or not at all.
+//! Mesh files on disk, a whole file at once.
 
-use super::{Format, Loaded, ReadOptions, mesh_writer, parse_edges, parse_numbers, parse_with};
+use super::{Format, Loaded, ReadOptions, parse_edges, parse_numbers, parse_with};
 use crate::{Error, Mesh};
 use std::fs;
-use std::io::{self, BufWriter, Read, Write};
+use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
 /// Reads the mesh of a file; the extension names its format. See [`parse`](super::parse).
@@ -61,54 +61,12 @@ pub fn read_numbers(path: impl AsRef<Path>) -> Result<Vec<u32>, Error> {
     parse_numbers(&bytes)
 }
 
-/// Writes `mesh` to a file; the extension names its format, and if `.gz` follows it is gzip'd. The file appears, or
-/// changes, at once when all is written: a failure leaves what was there before. A link is followed and permissions are
-/// kept.
-///
-/// # Errors
-/// [`Error::UnknownFormat`] or [`Error::Io`].
-pub fn write(path: impl AsRef<Path>, mesh: &Mesh) -> Result<(), Error> {
-    let path = path.as_ref();
-    replace(path, mesh_writer(path, mesh)?).map_err(|source| at(path, source))
-}
-
-/// As [`write()`], what was read with other triangles; see [`Loaded::file_bytes`].
-///
-/// # Errors
-/// As there.
-pub fn rewrite(path: impl AsRef<Path>, loaded: &Loaded, triangles: Vec<u32>) -> Result<(), Error> {
-    let path = path.as_ref();
-    replace(path, loaded.write_to(path, triangles)?).map_err(|source| at(path, source))
-}
-
-fn at(path: &Path, source: io::Error) -> Error {
+pub(super) fn at(path: &Path, source: io::Error) -> Error {
     Error::Io { path: path.display().to_string(), source }
 }
 
-/// Writes through a temporary file beside the target, which is renamed at the end and removed on failure.
-fn replace(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
-    let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
-    let present = fs::metadata(&target).ok();
-    if present.as_ref().is_some_and(fs::Metadata::is_dir) {
-        return Err(io::ErrorKind::IsADirectory.into());
-    }
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".edgeflip-").suffix(".tmp");
-    #[cfg(unix)]
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    let file = builder.tempfile_in(folder(&target))?;
-    let mut out = BufWriter::with_capacity(1 << 18, file.as_file());
-    write(&mut out)?;
-    out.flush()?;
-    drop(out);
-    if let Some(present) = present {
-        file.as_file().set_permissions(present.permissions())?;
-    }
-    file.persist(&target).map_err(|e| e.error)?;
-    Ok(())
-}
-
-fn folder(path: &Path) -> PathBuf {
+/// The folder of a file.
+pub(super) fn folder(path: &Path) -> PathBuf {
     match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder.to_path_buf(),
         _ => PathBuf::from("."),

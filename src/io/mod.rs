@@ -18,16 +18,28 @@ mod lists;
 mod obj;
 mod off;
 mod original;
+#[cfg(not(target_arch = "wasm32"))]
+mod output;
 mod ply;
 mod stl;
+#[cfg(not(target_arch = "wasm32"))]
+mod temporary;
 #[cfg(test)]
 mod tests;
 mod text;
+#[cfg(unix)]
+mod wait;
 
 #[cfg(not(target_arch = "wasm32"))]
-pub use file::{load, read, read_edges, read_numbers, rewrite, write};
+use file::{at, folder};
+#[cfg(not(target_arch = "wasm32"))]
+pub use file::{load, read, read_edges, read_numbers};
 pub use gltf::ReadFile;
 pub use lists::{parse_edges, parse_numbers};
+#[cfg(not(target_arch = "wasm32"))]
+pub use output::{Output, Staged, rewrite, write};
+#[cfg(not(target_arch = "wasm32"))]
+pub use temporary::remove_temporary_files;
 
 use crate::{Dimension, Error, Mesh, Options, Positions, Welded, welded};
 use original::Original;

@@ -30,13 +30,15 @@ Exit status:
   1   a file could not be read or written, the mesh was refused, or --verify found a violation
   2   wrong usage
   3   the backend asked for is not there, cannot take this mesh, or failed
-When a run fails, OUT is not written or changed, and one line on standard error says why.
+When a run fails, OUT is not written or changed, and one line on standard error says why. Only what is no
+regular file keeps what was written into it before.
 
 Examples:
   edgeflip terrain.off -o terrain-delaunay.off
   edgeflip scan.obj -o scan.obj --max-normal-angle 5 --verify
   edgeflip map.off -o map.off --lock-edges rivers.txt
-  edgeflip part.off -o part.obj --backend cpu --json --quiet | jq .flips";
+  edgeflip part.off -o part.obj --backend cpu --json --quiet | jq .flips
+  edgeflip scan.ply.gz -o - | ssh host 'cat >scan.ply.gz'";
 
 /// Makes a triangle mesh Delaunay by flipping edges.
 ///
@@ -51,9 +53,13 @@ pub struct Args {
     #[arg(value_name = "IN")]
     pub input: PathBuf,
 
-    /// The file to write: .off, .obj, .ply, .stl, .gltf or .glb, and .gz after it to gzip it; may be IN itself
+    /// The file to write: .off, .obj, .ply, .stl, .gltf or .glb, and .gz after it to gzip it; may be IN itself. - is
+    /// the standard output
     ///
-    /// The file is replaced at once when everything is done, so that a failure leaves it as it was.
+    /// The file is replaced at once when everything is done, so that a failure leaves it as it was. A link is followed;
+    /// owner, group and mode stay, or a note says why not. A device or a FIFO is written into, and so is the standard
+    /// output under any name. Where it has none of these extensions, it is written in the format of IN, gzip'd if the
+    /// name of IN says so. A FIFO has to be opened by a reader within 10 s. --json cannot share the standard output.
     #[arg(short, long, value_name = "OUT")]
     pub output: PathBuf,
 
@@ -175,17 +181,14 @@ pub struct Args {
 }
 
 impl Args {
-    /// How IN is read.
-    pub fn read_options(&self) -> ReadOptions {
+    /// How IN is read for an OUT of that format.
+    pub fn read_options(&self, output: Format) -> ReadOptions {
         let dimension = match self.dimension {
             DimensionArg::Auto => None,
             DimensionArg::Two => Some(Dimension::Two),
             DimensionArg::Three => Some(Dimension::Three),
         };
-        let is_same = match (Format::of(&self.input), Format::of(&self.output)) {
-            (Ok(input), Ok(output)) => input == output,
-            _ => false,
-        };
+        let is_same = Format::of(&self.input).is_ok_and(|input| input == output);
         ReadOptions {
             dimension,
             max_bytes: self.max_bytes,

@@ -5,7 +5,8 @@ mod report;
 
 use args::Args;
 use clap::Parser;
-use edgeflip::{Error, Mesh, Options, Outcome, Welded, io, make_delaunay, quality, reoriented};
+use edgeflip::io::{self, Output};
+use edgeflip::{Error, Mesh, Options, Outcome, Welded, make_delaunay, quality, reoriented};
 use indicatif::{ProgressBar, ProgressStyle};
 use report::{Check, Milliseconds, Report};
 use std::io::{IsTerminal, Write};
@@ -48,10 +49,7 @@ impl Failure {
 
 fn main() -> ExitCode {
     let args = Args::parse();
-    let bar = progress(&args);
-    let result = run(&args, &bar);
-    bar.finish_and_clear();
-    match result {
+    match run(&args) {
         Ok(report) => match show(&args, &report) {
             Ok(()) => failure(report.violation()),
             Err(e) => failure(Some(Failure { status: 1, line: format!("standard output: {e}") })),
@@ -69,8 +67,8 @@ fn failure(failure: Option<Failure>) -> ExitCode {
 }
 
 /// A spinner where someone can see it and it does not stand between the lines of the result.
-fn progress(args: &Args) -> ProgressBar {
-    let disturbs = args.json && std::io::stdout().is_terminal();
+fn progress(args: &Args, output: &Output) -> ProgressBar {
+    let disturbs = (args.json || output.is_standard()) && std::io::stdout().is_terminal();
     if args.quiet || disturbs || !std::io::stderr().is_terminal() {
         return ProgressBar::hidden();
     }
@@ -83,16 +81,12 @@ fn progress(args: &Args) -> ProgressBar {
 }
 
 /// Everything but the printing. The target is written last, and only if nothing was wrong.
-fn run(args: &Args, bar: &ProgressBar) -> Result<Report, Failure> {
+fn run(args: &Args) -> Result<Report, Failure> {
     let refused = |error| Failure::of(&args.input, &error);
-    let format = io::Format::of(&args.output).map_err(|e| Failure { status: 2, line: e.to_string() })?;
-    let folder = args.output.parent().filter(|folder| !folder.as_os_str().is_empty());
-    if folder.is_some_and(|folder| !folder.is_dir()) {
-        let line = format!("{}: the folder does not exist", args.output.display());
-        return Err(Failure { status: 1, line });
-    }
+    let output = output(args)?;
+    let bar = &progress(args, &output);
     bar.set_message(format!("reading {}", args.input.display()));
-    let (loaded, load) = timed(|| io::load(&args.input, &args.read_options()));
+    let (loaded, load) = timed(|| io::load(&args.input, &args.read_options(output.format())));
     let loaded = loaded.map_err(refused)?;
     let welded = args.weld.then(|| loaded.welded()).transpose().map_err(refused)?;
     let (alone, welded, turned) = turn(args, &loaded.mesh, welded).map_err(refused)?;
@@ -125,7 +119,7 @@ fn run(args: &Args, bar: &ProgressBar) -> Result<Report, Failure> {
         bar.set_message("verifying");
         check(&options, mesh, &outcome)
     });
-    let mut save = None;
+    let (mut lost, mut save) = (Vec::new(), None);
     if check.as_ref().is_none_or(|check| check.violations.is_empty()) {
         bar.set_message(format!("writing {}", args.output.display()));
         let (written, ms) = timed(|| {
@@ -133,15 +127,36 @@ fn run(args: &Args, bar: &ProgressBar) -> Result<Report, Failure> {
                 Some(welded) => welded.split(&outcome.triangles)?,
                 None => outcome.triangles.clone(),
             };
-            io::rewrite(&args.output, &loaded, triangles)
+            output.stage(&loaded, triangles)?.commit()
         });
-        written.map_err(|e| Failure::of(&args.output, &e))?;
+        lost = written.map_err(|e| Failure::of(&args.output, &e))?;
         save = Some(ms);
     }
+    bar.finish_and_clear();
     let ms = Milliseconds::new(load, &outcome.timings, save);
-    Ok(Report::new(args, &result, outcome, [before, after], [turned, moved], check, ms)
+    let mut report = Report::new(args, &result, outcome, [before, after], [turned, moved], check, ms)
         .with_joined(welded.as_ref())
-        .with_attributes(&loaded, format, attribute_edges))
+        .with_attributes(&loaded, output.format(), attribute_edges);
+    report.add_notes(lost);
+    Ok(report)
+}
+
+/// Where OUT leads to.
+fn output(args: &Args) -> Result<Output, Failure> {
+    let is_standard = args.output.as_os_str() == "-";
+    let output =
+        if is_standard { Output::standard(&args.input) } else { Output::of(&args.output, &args.input) };
+    let output = output.map_err(|error| {
+        let is_of_output =
+            matches!(&error, Error::UnknownFormat { path, .. } if *path == args.output.display().to_string());
+        Failure { status: if is_of_output { 2 } else { 1 }, line: error.to_string() }
+    })?;
+    if output.is_standard() && args.json {
+        let line =
+            format!("{}: --json has the standard output for itself; give another OUT", args.output.display());
+        return Err(Failure { status: 2, line });
+    }
+    Ok(output)
 }
 
 /// The list in a file, if there is one.

@@ -188,6 +188,11 @@ impl Report {
         self
     }
 
+    /// Adds what could not be kept of the file that OUT was.
+    pub fn add_notes(&mut self, notes: Vec<String>) {
+        self.notes.extend(notes);
+    }
+
     /// What `--verify` makes of the run.
     pub fn violation(&self) -> Option<Failure> {
         let violations = &self.check.as_ref()?.violations;
