@@ -91,6 +91,21 @@ fn a_full_device_is_one_line() {
     failed(&run(&input, Path::new("/dev/full"), &[]), 1, line);
 }
 
+/// The object is printed before the file has its name.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_standard_output_leaves_the_file_as_it_was() {
+    let folder = Folder::new();
+    let input = folder.file("in.off", SQUARE);
+    for output in [folder.file("old.off", "old"), folder.path("new.off")] {
+        let full = fs::File::options().write(true).open("/dev/full").unwrap();
+        let ran = command(&input, &output, &["--json"]).stdout(full).output().unwrap();
+        failed(&ran, 1, "standard output: No space left on device (os error 28)");
+    }
+    assert_eq!(folder.names(), ["in.off", "old.off"]);
+    assert_eq!(fs::read_to_string(folder.path("old.off")).unwrap(), "old");
+}
+
 #[test]
 fn a_fifo_gets_all_of_it() {
     let folder = Folder::new();

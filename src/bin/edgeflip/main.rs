@@ -5,7 +5,7 @@ mod report;
 
 use args::Args;
 use clap::Parser;
-use edgeflip::io::{self, Output};
+use edgeflip::io::{self, Output, Staged};
 use edgeflip::{Error, Mesh, Options, Outcome, Welded, make_delaunay, quality, reoriented};
 use indicatif::{ProgressBar, ProgressStyle};
 use report::{Check, Milliseconds, Report};
@@ -49,21 +49,18 @@ impl Failure {
 
 fn main() -> ExitCode {
     let args = Args::parse();
-    match run(&args) {
-        Ok(report) => match show(&args, &report) {
-            Ok(()) => failure(report.violation()),
-            Err(e) => failure(Some(Failure { status: 1, line: format!("standard output: {e}") })),
-        },
-        Err(e) => failure(Some(e)),
+    match run(&args).and_then(|(report, staged)| finish(&args, report, staged)) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(Failure { status, line }) => {
+            // If standard error is closed, only the exit status is left to say it.
+            let _ = writeln!(std::io::stderr(), "edgeflip: {}", one_line(&line));
+            ExitCode::from(status)
+        }
     }
 }
 
-/// Says why on standard error; if that is closed, only the exit status is left to say it.
-fn failure(failure: Option<Failure>) -> ExitCode {
-    let Some(Failure { status, line }) = failure else { return ExitCode::SUCCESS };
-    let line = line.replace(|c: char| c.is_control(), " ");
-    let _ = writeln!(std::io::stderr(), "edgeflip: {line}");
-    ExitCode::from(status)
+fn one_line(text: &str) -> String {
+    text.replace(|c: char| c.is_control(), " ")
 }
 
 /// A spinner where someone can see it and it does not stand between the lines of the result.
@@ -81,7 +78,7 @@ fn progress(args: &Args, output: &Output) -> ProgressBar {
 }
 
 /// Everything but the printing. The target is written last, and only if nothing was wrong.
-fn run(args: &Args) -> Result<Report, Failure> {
+fn run(args: &Args) -> Result<(Report, Option<Staged>), Failure> {
     let refused = |error| Failure::of(&args.input, &error);
     let output = output(args)?;
     let bar = &progress(args, &output);
@@ -119,7 +116,7 @@ fn run(args: &Args) -> Result<Report, Failure> {
         bar.set_message("verifying");
         check(&options, mesh, &outcome)
     });
-    let (mut lost, mut save) = (Vec::new(), None);
+    let (mut staged, mut save) = (None, None);
     if check.as_ref().is_none_or(|check| check.violations.is_empty()) {
         bar.set_message(format!("writing {}", args.output.display()));
         let (written, ms) = timed(|| {
@@ -127,18 +124,17 @@ fn run(args: &Args) -> Result<Report, Failure> {
                 Some(welded) => welded.split(&outcome.triangles)?,
                 None => outcome.triangles.clone(),
             };
-            output.stage(&loaded, triangles)?.commit()
+            output.stage(&loaded, triangles)
         });
-        lost = written.map_err(|e| Failure::of(&args.output, &e))?;
+        staged = Some(written.map_err(|e| Failure::of(&args.output, &e))?);
         save = Some(ms);
     }
     bar.finish_and_clear();
     let ms = Milliseconds::new(load, &outcome.timings, save);
-    let mut report = Report::new(args, &result, outcome, [before, after], [turned, moved], check, ms)
+    let report = Report::new(args, &result, outcome, [before, after], [turned, moved], check, ms)
         .with_joined(welded.as_ref())
         .with_attributes(&loaded, output.format(), attribute_edges);
-    report.add_notes(lost);
-    Ok(report)
+    Ok((report, staged))
 }
 
 /// Where OUT leads to.
@@ -206,19 +202,25 @@ fn timed<T>(work: impl FnOnce() -> T) -> (T, f64) {
     (value, start.elapsed().as_secs_f64() * 1e3)
 }
 
-/// Prints the result: one object on standard output, or a summary on standard error. A reader that has
-/// gone away is no failure.
-fn show(args: &Args, report: &Report) -> std::io::Result<()> {
+/// Prints the object for `--json`, then gives OUT its name, so that it is as it was if the object cannot be printed. Then
+/// the notes and the summary.
+fn finish(args: &Args, mut report: Report, staged: Option<Staged>) -> Result<(), Failure> {
+    if args.json {
+        let printed = print(&report);
+        printed.map_err(|error| Failure { status: 1, line: format!("standard output: {error}") })?;
+    }
+    if let Some(staged) = staged {
+        report.add_notes(staged.commit().map_err(|error| Failure::of(&args.output, &error))?);
+    }
     if !args.quiet {
-        let mut text = report.notes();
-        if !args.json {
-            text.push_str(&report.summary(args));
-        }
-        let _ = std::io::stderr().write_all(text.as_bytes());
+        let summary = if args.json { String::new() } else { report.summary(args) };
+        let _ = std::io::stderr().write_all((report.notes() + &summary).as_bytes());
     }
-    if !args.json {
-        return Ok(());
-    }
+    report.violation().map_or(Ok(()), Err)
+}
+
+/// Prints one object on standard output. A reader that has gone away is no failure.
+fn print(report: &Report) -> std::io::Result<()> {
     let mut line = serde_json::to_string(report)?;
     line.push('\n');
     let mut out = std::io::stdout().lock();
