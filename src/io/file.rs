@@ -1,5 +1,7 @@
 //! Mesh files on disk, a whole file at once.
 
+#[cfg(unix)]
+use super::wait::open_to_read;
 use super::{Format, Loaded, ReadOptions, parse_edges, parse_numbers, parse_with};
 use crate::{Error, Mesh};
 use std::fs;
@@ -21,24 +23,58 @@ pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Mesh, Error
 pub fn load(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Loaded, Error> {
     let path = path.as_ref();
     let format = Format::of(path)?;
-    let file = fs::File::open(path).map_err(|source| at(path, source))?;
-    let length = file.metadata().map_err(|source| at(path, source))?.len();
-    options.check(length)?;
-    let mut bytes = Vec::new();
-    bytes.try_reserve_exact(length as usize).map_err(|error| at(path, error.into()))?;
-    // A pipe has the length 0, and a file may grow.
-    let mut limited = file.take(options.max_bytes.saturating_add(1));
-    limited.read_to_end(&mut bytes).map_err(|source| at(path, source))?;
+    let bytes = content(path, options)?;
     parse_with(format, bytes, options, &|name| {
         if !options.external_files {
             return Err("other files are read only if that is allowed (--external-files)".into());
         }
-        let limited = fs::File::open(folder(path).join(name))
-            .map(|file| file.take(options.max_bytes.saturating_add(1)));
-        let mut bytes = Vec::new();
-        let read = limited.and_then(|mut file| file.read_to_end(&mut bytes));
-        read.map(|_| bytes).map_err(|error| error.to_string())
+        beside(&folder(path), name, options).map_err(|error| match error {
+            Error::Io { source, .. } => source.to_string(),
+            Error::FileTooLarge { limit, .. } => {
+                format!("it has more than {limit} bytes; max_bytes (--max-bytes) sets the limit")
+            }
+            error => error.to_string(),
+        })
     })
+}
+
+/// The bytes of a file.
+///
+/// # Errors
+/// [`Error::FileTooLarge`], [`Error::Io`].
+fn content(path: &Path, options: &ReadOptions) -> Result<Vec<u8>, Error> {
+    let failed = |source| at(path, source);
+    let (mut bytes, file) = open_to_read(path).map_err(failed)?;
+    let length = file.metadata().map_err(failed)?.len();
+    options.check(length)?;
+    bytes.try_reserve_exact(length as usize).map_err(|error| failed(error.into()))?;
+    // A pipe has the length 0, and a file may grow.
+    file.take(options.max_bytes.saturating_add(1)).read_to_end(&mut bytes).map_err(failed)?;
+    options.check(bytes.len() as u64)?;
+    Ok(bytes)
+}
+
+/// The bytes of a regular file in `folder` or below, after links are followed.
+///
+/// # Errors
+/// As [`content`].
+fn beside(folder: &Path, name: &str, options: &ReadOptions) -> Result<Vec<u8>, Error> {
+    let failed = |source| at(Path::new(name), source);
+    let folder = fs::canonicalize(folder).map_err(failed)?;
+    let path = fs::canonicalize(folder.join(name)).map_err(failed)?;
+    let refused = |what: &str| failed(io::Error::other(what));
+    if !path.starts_with(folder) {
+        return Err(refused("a link leads out of the folder of IN; only what is in it is read"));
+    }
+    if !fs::metadata(&path).map_err(failed)?.is_file() {
+        return Err(refused("it is no regular file"));
+    }
+    content(&path, options)
+}
+
+#[cfg(not(unix))]
+fn open_to_read(path: &Path) -> io::Result<(Vec<u8>, fs::File)> {
+    Ok((Vec::new(), fs::File::open(path)?))
 }
 
 /// Reads a list of edges, whatever the extension of its file. See [`parse_edges`].
@@ -47,7 +83,7 @@ pub fn load(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Loaded, Err
 /// [`Error::Io`], and those of [`parse_edges`].
 pub fn read_edges(path: impl AsRef<Path>) -> Result<Vec<[u32; 2]>, Error> {
     let path = path.as_ref();
-    let bytes = fs::read(path).map_err(|source| at(path, source))?;
+    let bytes = all(path)?;
     parse_edges(&bytes)
 }
 
@@ -57,8 +93,18 @@ pub fn read_edges(path: impl AsRef<Path>) -> Result<Vec<[u32; 2]>, Error> {
 /// [`Error::Io`], and those of [`parse_numbers`].
 pub fn read_numbers(path: impl AsRef<Path>) -> Result<Vec<u32>, Error> {
     let path = path.as_ref();
-    let bytes = fs::read(path).map_err(|source| at(path, source))?;
+    let bytes = all(path)?;
     parse_numbers(&bytes)
+}
+
+/// The bytes of a list.
+fn all(path: &Path) -> Result<Vec<u8>, Error> {
+    let read = || {
+        let (mut bytes, mut file) = open_to_read(path)?;
+        file.read_to_end(&mut bytes)?;
+        Ok(bytes)
+    };
+    read().map_err(|source| at(path, source))
 }
 
 pub(super) fn at(path: &Path, source: io::Error) -> Error {

@@ -50,6 +50,8 @@ Examples:
 #[command(after_help = "--help tells more: formats, exit status, examples.")]
 pub struct Args {
     /// The mesh to read: .off, .obj, .ply, .stl, .gltf or .glb, also gzip'd
+    ///
+    /// A FIFO, here and for the lists below, has to be opened by a writer within 10 s.
     #[arg(value_name = "IN")]
     pub input: PathBuf,
 
@@ -83,6 +85,8 @@ pub struct Args {
     pub drop_attributes: bool,
 
     /// Let a glTF file have its buffers in other files of its folder and of those below
+    ///
+    /// They are regular files that lie there also when links are followed.
     #[arg(long)]
     pub external_files: bool,
 
