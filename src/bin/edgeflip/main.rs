@@ -2,6 +2,8 @@
 
 mod args;
 mod report;
+#[cfg(unix)]
+mod signals;
 
 use args::Args;
 use clap::Parser;
@@ -49,6 +51,8 @@ impl Failure {
 
 fn main() -> ExitCode {
     let args = Args::parse();
+    #[cfg(unix)]
+    signals::watch();
     match run(&args).and_then(|(report, staged)| finish(&args, report, staged)) {
         Ok(()) => ExitCode::SUCCESS,
         Err(Failure { status, line }) => {
