@@ -179,7 +179,7 @@ pub struct Args {
     #[arg(long)]
     pub json: bool,
 
-    /// No progress, no summary, no notes: only errors
+    /// No progress, no summary, no notes: only errors, and nothing of a GPU's driver
     #[arg(short, long)]
     pub quiet: bool,
 }

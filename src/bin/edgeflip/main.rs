@@ -1,6 +1,7 @@
 //! The command-line program: reads a mesh, makes it Delaunay, writes it, and says what happened.
 
 mod args;
+mod errors;
 mod report;
 #[cfg(unix)]
 mod signals;
@@ -51,13 +52,15 @@ impl Failure {
 
 fn main() -> ExitCode {
     let args = Args::parse();
+    if args.quiet {
+        errors::only_ours();
+    }
     #[cfg(unix)]
     signals::watch();
     match run(&args).and_then(|(report, staged)| finish(&args, report, staged)) {
         Ok(()) => ExitCode::SUCCESS,
         Err(Failure { status, line }) => {
-            // If standard error is closed, only the exit status is left to say it.
-            let _ = writeln!(std::io::stderr(), "edgeflip: {}", one_line(&line));
+            errors::say(format!("edgeflip: {}\n", one_line(&line)).as_bytes());
             ExitCode::from(status)
         }
     }
@@ -218,7 +221,7 @@ fn finish(args: &Args, mut report: Report, staged: Option<Staged>) -> Result<(),
     }
     if !args.quiet {
         let summary = if args.json { String::new() } else { report.summary(args) };
-        let _ = std::io::stderr().write_all((report.notes() + &summary).as_bytes());
+        errors::say((report.notes() + &summary).as_bytes());
     }
     report.violation().map_or(Ok(()), Err)
 }

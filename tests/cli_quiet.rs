@@ -1,0 +1,40 @@
+//! What `--quiet` leaves on standard error: the program's own lines, and none of a driver.
+#![cfg(all(target_os = "linux", feature = "cli"))]
+#![allow(clippy::unwrap_used, reason = "what fails here is a failed test")]
+
+mod command;
+
+use command::{Folder, command, grid, text};
+use edgeflip::io;
+
+#[test]
+fn a_driver_says_nothing() {
+    let folder = Folder::new();
+    let (input, output) = (folder.path("in.off"), folder.path("out.off"));
+    // Large enough for `auto` to look for a GPU.
+    io::write(&input, &grid(80)).unwrap();
+    for backend in ["auto", "gpu"] {
+        for [name, value] in [
+            // Mesa says that there is none, and the loader all that it does.
+            ["XDG_RUNTIME_DIR", "/nonexistent"],
+            ["VK_LOADER_DEBUG", "all"],
+            ["VK_DRIVER_FILES", "/nonexistent.json"],
+            ["VK_DRIVER_FILES", input.to_str().unwrap()],
+        ] {
+            let arguments = ["--quiet", "--backend", backend, "--max-iterations", "1"];
+            let ran = command(&input, &output, &arguments).env(name, value).output().unwrap();
+            let said = text(&ran.stderr);
+            let context = format!("{backend}, {name}={value}: {}, {said}", ran.status);
+            match ran.status.code() {
+                Some(0) => assert_eq!(said, "", "{context}"),
+                Some(3) if backend == "gpu" => {
+                    assert!(
+                        said.starts_with("edgeflip: backend gpu ") && said.lines().count() == 1,
+                        "{context}"
+                    );
+                }
+                _ => panic!("{context}"),
+            }
+        }
+    }
+}
