@@ -27,7 +27,8 @@ are written anew.
 
 Exit status:
   0   done; also when stopped by --max-iterations
-  1   a file could not be read or written, the mesh was refused, or --verify found a violation
+  1   a file could not be read or written, the mesh was refused, --verify found a violation, or
+      memory ran out
   2   wrong usage
   3   the backend asked for is not there, cannot take this mesh, or failed
 When a run fails, OUT is not written or changed, and one line on standard error says why. Only what is no

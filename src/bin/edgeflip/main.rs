@@ -2,6 +2,7 @@
 
 mod args;
 mod errors;
+mod memory;
 mod report;
 #[cfg(unix)]
 mod signals;
@@ -9,7 +10,7 @@ mod signals;
 use args::Args;
 use clap::Parser;
 use edgeflip::io::{self, Output, Staged};
-use edgeflip::{Error, Mesh, Options, Outcome, Welded, make_delaunay, quality, reoriented};
+use edgeflip::{Backend, Error, Mesh, Options, Order, Outcome, Welded, make_delaunay, quality, reoriented};
 use indicatif::{ProgressBar, ProgressStyle};
 use report::{Check, Milliseconds, Report};
 use std::io::{IsTerminal, Write};
@@ -55,6 +56,7 @@ fn main() -> ExitCode {
     if args.quiet {
         errors::only_ours();
     }
+    memory::prepare(&one_line(&args.input.display().to_string()));
     #[cfg(unix)]
     signals::watch();
     match run(&args).and_then(|(report, staged)| finish(&args, report, staged)) {
@@ -97,11 +99,13 @@ fn run(args: &Args) -> Result<(Report, Option<Staged>), Failure> {
     let joined = welded.as_ref().map(|welded| &welded.mesh);
     let mesh = alone.as_ref().or(joined).unwrap_or(&loaded.mesh);
 
-    let mut options = Options {
+    let mut options = args.options();
+    let fallback = without_driver(&mut options, mesh)?;
+    options = Options {
         locked_edges: list(&args.lock_edges, io::read_edges)?,
         locked_triangles: list(&args.lock_triangles, io::read_numbers)?,
         groups: list(&args.groups, io::read_numbers)?,
-        ..args.options()
+        ..options
     };
     if let Some(welded) = &welded {
         welded.constrain(&mut options);
@@ -110,11 +114,12 @@ fn run(args: &Args) -> Result<(Report, Option<Staged>), Failure> {
 
     bar.set_message("preparing");
     let before = quality::measures(mesh);
-    let outcome = make_delaunay(mesh, &options, |iterations, flips| {
+    let mut outcome = make_delaunay(mesh, &options, |iterations, flips| {
         bar.set_message(format!("iteration {iterations}, {flips} flips"));
         ControlFlow::Continue(())
     })
     .map_err(refused)?;
+    outcome.fallback = fallback.or(outcome.fallback);
     let result = mesh.with_triangles(outcome.triangles.clone()).map_err(refused)?;
     let after = quality::measures(&result);
     let moved = quality::moved(mesh.triangles(), result.triangles()).len() as u32;
@@ -160,6 +165,26 @@ fn output(args: &Args) -> Result<Output, Failure> {
         return Err(Failure { status: 2, line });
     }
     Ok(output)
+}
+
+/// Leaves the GPU alone where its driver would end the program for want of memory, and says why.
+fn without_driver(options: &mut Options, mesh: &Mesh) -> Result<Option<String>, Failure> {
+    let why = match (options.order, options.backend) {
+        (Order::Reproducible, Backend::Auto | Backend::Gpu) => {
+            memory::too_little_for_a_driver(mesh.triangle_count())
+        }
+        _ => None,
+    };
+    match why {
+        Some(message) if options.backend == Backend::Gpu => {
+            let error = Error::BackendUnavailable { backend: "gpu", message };
+            Err(Failure { status: 3, line: error.to_string() })
+        }
+        why => {
+            options.backend = if why.is_some() { Backend::Cpu } else { options.backend };
+            Ok(why)
+        }
+    }
 }
 
 /// The list in a file, if there is one.

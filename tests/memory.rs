@@ -1,0 +1,131 @@
+//! The command line where memory runs out: status 0 or 1, one line at most, nothing left behind, on meshes in each format.
+//! `EDGEFLIP_MEMORY=20000000` does so with as many triangles and up to 6 GB, and takes half an hour.
+#![cfg(all(target_os = "linux", feature = "cli"))]
+#![allow(clippy::unwrap_used, reason = "what fails here is a failed test")]
+
+mod command;
+
+use command::{Folder, SQUARE, grid, shell, silent, text};
+use edgeflip::io;
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+use std::process::Output;
+
+const STEPS: u32 = 16;
+
+/// Runs the program with `arguments` in so many KiB of addresses.
+fn limited(kib: u64, arguments: &str, [input, output]: [&Path; 2]) -> Output {
+    let script = format!(r#"ulimit -c 0; ulimit -v {kib}; exec "$0" "$1" -o "$2" {arguments}"#);
+    shell(&script, &[input, output]).output().unwrap()
+}
+
+/// The limits in KiB, from one in which little more than the program fits.
+fn limits(is_full: bool) -> Vec<u64> {
+    let part = |step: u32| f64::from(step) / f64::from(STEPS - 1);
+    let bytes =
+        |step: u32| if is_full { 0.25e9 + 5.75e9 * part(step) } else { 24e6 * 20f64.powf(part(step)) };
+    (0..STEPS).map(|step| bytes(step) as u64 / 1024).collect()
+}
+
+#[test]
+fn what_does_not_fit_is_one_line() {
+    let triangles = std::env::var("EDGEFLIP_MEMORY").ok().map(|count| count.parse::<f64>().unwrap());
+    let mesh = grid((triangles.unwrap_or(160_000.0) / 2.0).sqrt() as usize + 1);
+    let limits = limits(triangles.is_some());
+    let heads: Vec<String> = limits.iter().map(|kib| format!("{}", kib * 1024 / 1_000_000)).collect();
+    println!("| {} triangles, MB | {} |", mesh.triangle_count(), heads.join(" | "));
+    println!("|---|{}", "---:|".repeat(limits.len()));
+    for name in ["in.off", "in.obj", "in.ply", "in.stl", "in.gltf", "in.glb", "in.ply.gz"] {
+        let folder = Folder::new();
+        let (input, output) = (folder.path(name), folder.path(&name.replace("in", "out")));
+        io::write(&input, &mesh).unwrap();
+        silent(&shell(r#"exec "$0" "$1" -o "$2" -q --threads 2"#, &[&input, &output]).output().unwrap());
+        let whole = folder.path("whole");
+        fs::rename(&output, &whole).unwrap();
+        let mut cells = Vec::new();
+        for &kib in &limits {
+            let ran = limited(kib, "-q --threads 2", [&input, &output]);
+            let said = text(&ran.stderr);
+            let context = format!("{name} in {kib} KiB: {}, {said}", ran.status);
+            match ran.status.code() {
+                Some(0) => {
+                    assert_eq!(said, "", "{context}");
+                    assert!(fs::read(&output).unwrap() == fs::read(&whole).unwrap(), "{context}");
+                    fs::remove_file(&output).unwrap();
+                }
+                Some(1) => {
+                    assert!(said.starts_with("edgeflip: ") && said.lines().count() == 1, "{context}");
+                }
+                _ => panic!("{context}"),
+            }
+            assert_eq!(folder.names(), [name, "whole"], "{context}");
+            cells.push(ran.status.code().unwrap_or(-1).to_string());
+        }
+        println!("| {name} | {} |", cells.join(" | "));
+        if triangles.is_none() {
+            assert_eq!((&*cells[0], &*cells[cells.len() - 1]), ("1", "0"), "{name}: {cells:?}");
+        }
+    }
+}
+
+#[test]
+fn the_line_names_the_file_and_what_it_wanted() {
+    let folder = Folder::new();
+    let (input, output) = (folder.path("in.ply"), folder.file("out.off", "old"));
+    io::write(&input, &grid(400)).unwrap();
+    let ran = limited(24_000, "--backend cpu", [&input, &output]);
+    let said = text(&ran.stderr);
+    let start = format!("edgeflip: {}: memory ran out: ", input.display());
+    assert!(said.starts_with(&start) && said.ends_with(" more bytes could not be had\n"), "{said}");
+    assert_eq!((ran.status.code(), said.lines().count()), (Some(1), 1));
+    assert_eq!(fs::read_to_string(output).unwrap(), "old");
+    assert_eq!(folder.names(), ["in.ply", "out.off"]);
+}
+
+/// The stacks of 256 threads would not fit.
+#[test]
+fn threads_without_work_are_not_started() {
+    let folder = Folder::new();
+    let (input, output) = (folder.file("in.off", SQUARE), folder.path("out.off"));
+    silent(&limited(60_000, "--backend cpu --threads 256 -q", [&input, &output]));
+}
+
+/// One thread does it where no others can be had, unless so many are asked for.
+#[test]
+fn threads_that_cannot_be_started_are_done_without() {
+    let folder = Folder::new();
+    let (input, output) = (folder.path("in.off"), folder.path("out.off"));
+    io::write(&input, &grid(10)).unwrap();
+    let limit = |arguments: &str| {
+        (20_000..40_000)
+            .step_by(500)
+            .map(|kib| limited(kib, arguments, [&input, &output]))
+            .collect::<Vec<_>>()
+    };
+    for ran in limit("--backend cpu -q") {
+        let said = text(&ran.stderr);
+        assert!(
+            matches!(ran.status.code(), Some(0 | 1)) && said.lines().count() <= 1,
+            "{}, {said}",
+            ran.status
+        );
+    }
+}
+
+/// Drivers end the process where they get no memory.
+#[test]
+fn a_gpu_is_left_alone_in_little_memory() {
+    let folder = Folder::new();
+    let (input, output) = (folder.path("in.off"), folder.path("out.off"));
+    io::write(&input, &grid(101)).unwrap();
+    let why = "the driver of a GPU may need 1076301824 bytes, and the limit of memory (ulimit -v) leaves ";
+    let ran = limited(500_000, "--backend gpu", [&input, &output]);
+    let said = text(&ran.stderr);
+    assert!(said.starts_with(&format!("edgeflip: backend gpu is not available: {why}")), "{said}");
+    assert_eq!((ran.status.code(), said.lines().count()), (Some(3), 1));
+    let ran = limited(500_000, "--json --max-iterations 0", [&input, &output]);
+    let found: Value = serde_json::from_slice(&ran.stdout).unwrap();
+    assert_eq!((ran.status.code(), &found["backend"]), (Some(0), &"cpu".into()));
+    assert!(found["fallback"].as_str().unwrap().starts_with(why), "{found}");
+}
