@@ -38,7 +38,7 @@ pub(crate) struct Threads {
 }
 
 impl Threads {
-    /// As many as an option says, or one for each core, but no more than there are pieces of so many triangles.
+    /// As many as an option says, but no more than there are pieces of so many triangles; or one for each core.
     ///
     /// # Errors
     /// [`Error::Option`] where the system has not as many as the option says.
@@ -52,20 +52,11 @@ impl Threads {
             if count == 1 {
                 return Ok(Self::one());
             }
-            let pool = started(count).map_err(|error| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(count).build().map_err(|error| {
                 let message = format!("{count} could not be started: {error}");
                 Error::Option { option: "threads", message }
             })?;
-            return Ok(Self { pool: Some(pool), is_one: false });
-        }
-        #[cfg(all(feature = "threads", not(target_arch = "wasm32")))]
-        if triangles >= FEWEST_TRIANGLES
-            && let pieces = triangles / FEWEST
-            && std::thread::available_parallelism().is_ok_and(|cores| pieces < cores.get())
-            && !is_started()
-        {
-            let pool = started(pieces).ok();
-            return Ok(Self { is_one: pool.is_none(), pool });
+            return Ok(Self { pool: Some(Arc::new(pool)), is_one: false });
         }
         Ok(Self::default().for_triangles(triangles))
     }
@@ -193,21 +184,9 @@ impl Threads {
     }
 }
 
-/// So many threads.
-#[cfg(feature = "threads")]
-fn started(count: usize) -> Result<Arc<rayon::ThreadPool>, rayon::ThreadPoolBuildError> {
-    rayon::ThreadPoolBuilder::new().num_threads(count).build().map(Arc::new)
-}
-
 /// Whether the threads of the process could be started, once that has been tried.
 #[cfg(all(feature = "threads", not(target_arch = "wasm32")))]
 static HAS_STARTED: std::sync::OnceLock<bool> = std::sync::OnceLock::new();
-
-/// Whether that has been tried, or this is a thread of some pool.
-#[cfg(all(feature = "threads", not(target_arch = "wasm32")))]
-fn is_started() -> bool {
-    rayon::current_thread_index().is_some() || HAS_STARTED.get().is_some()
-}
 
 /// The threads of the process, or of the pool that this is a thread of. They are started if there are none; where that
 /// fails, rayon would panic, and it is one.
