@@ -1,5 +1,5 @@
 //! The command line where memory runs out: status 0 or 1, one line at most, nothing left behind, on meshes in each format.
-//! `EDGEFLIP_MEMORY=20000000` does so with as many triangles and up to 6 GB, and takes an hour.
+//! `EDGEFLIP_MEMORY=20000000` does so with as many triangles and up to 6 GB, and takes half an hour.
 #![cfg(all(target_os = "linux", feature = "cli"))]
 #![allow(clippy::unwrap_used, reason = "what fails here is a failed test")]
 
