@@ -76,7 +76,7 @@ impl Output {
     }
 
     /// Writes what was read with other triangles; see [`Loaded::file_bytes`]. A file is as it was until [`Staged::commit`];
-    /// what is no regular file has all of it after this.
+    /// a device or a pipe has all of it when this returns.
     ///
     /// # Errors
     /// Those of [`Loaded::file_bytes`]. [`Error::Io`] also where nobody reads a FIFO for 10 s.
@@ -153,6 +153,9 @@ fn keep(present: &Metadata, file: &fs::File) -> io::Result<Vec<String>> {
             lost.push(format!("its {what} was {before} and is {now} now ({error})"));
             // What a program may do as its owner or group is not for another one.
             mode &= 0o777;
+            if what == "group" {
+                mode = for_others(mode);
+            }
         }
     };
     if own.gid() != present.gid() {
@@ -166,6 +169,12 @@ fn keep(present: &Metadata, file: &fs::File) -> io::Result<Vec<String>> {
         lost.push(format!("its other names (hard links: {}) keep the old content", present.nlink() - 1));
     }
     Ok(lost)
+}
+
+/// A mode that lets another group do no more than others may.
+#[cfg(unix)]
+fn for_others(mode: u32) -> u32 {
+    mode & !0o070 | (mode & 0o007) << 3 & mode
 }
 
 #[cfg(not(unix))]
@@ -188,7 +197,7 @@ impl Place {
         let present = match fs::metadata(path) {
             Ok(present) => Some(present),
             Err(error) if error.kind() == io::ErrorKind::NotFound => None,
-            Err(_) if !folder(path).is_dir() => None,
+            Err(error) if error.kind() == io::ErrorKind::NotADirectory => None,
             Err(error) => return Err(error),
         };
         let (path, descriptor) = followed(path);
@@ -280,4 +289,16 @@ pub fn write(path: impl AsRef<Path>, mesh: &Mesh) -> Result<Vec<String>, Error> 
 /// As there.
 pub fn rewrite(path: impl AsRef<Path>, loaded: &Loaded, triangles: Vec<u32>) -> Result<Vec<String>, Error> {
     Output::of(&path, &path)?.stage(loaded, triangles)?.commit()
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::for_others;
+
+    #[test]
+    fn another_group_may_do_what_others_may() {
+        for (mode, want) in [(0o660, 0o600), (0o664, 0o644), (0o640, 0o600), (0o604, 0o604), (0o777, 0o777)] {
+            assert_eq!(for_others(mode), want, "{mode:o}");
+        }
+    }
 }
