@@ -114,8 +114,17 @@ async function buffersOf(bytes: Uint8Array<ArrayBuffer>): Promise<string[]> {
   try {
     const json: unknown = JSON.parse(new TextDecoder().decode(jsonOf(await unpacked(bytes))));
     const { buffers } = json as { buffers: { uri?: unknown }[] };
-    const uris = buffers.flatMap(({ uri }) => (typeof uri === 'string' && !uri.startsWith('data:') ? [uri] : []));
-    return uris.map(decodeURIComponent);
+    const uris = buffers.flatMap(({ uri }) => (typeof uri === 'string' && !/^data:/i.test(uri) ? [uri] : []));
+    return uris.flatMap(decoded);
+  } catch {
+    return [];
+  }
+}
+
+/** The name in a URI; none where it is no right one. */
+function decoded(uri: string): string[] {
+  try {
+    return [decodeURIComponent(uri)];
   } catch {
     return [];
   }
