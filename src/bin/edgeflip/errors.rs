@@ -11,8 +11,23 @@ static OWN: OnceLock<File> = OnceLock::new();
 pub fn say(text: &[u8]) {
     let _ = match OWN.get() {
         Some(mut file) => file.write_all(text),
-        None => io::stderr().write_all(text),
+        None => raw(text),
     };
+}
+
+/// Past the lock of Rust's standard error: a thread that waits for the end may have it.
+#[cfg(unix)]
+fn raw(mut text: &[u8]) -> io::Result<()> {
+    while !text.is_empty() {
+        let written = rustix::io::write(io::stderr(), text)?;
+        text = &text[written..];
+    }
+    Ok(())
+}
+
+#[cfg(not(unix))]
+fn raw(text: &[u8]) -> io::Result<()> {
+    io::stderr().write_all(text)
 }
 
 /// What others in the process write to standard error from now on, such as drivers of a GPU, goes nowhere.
