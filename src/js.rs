@@ -13,7 +13,7 @@ use crate::js_threads::Indices;
 pub use crate::js_values::JsPositions;
 use crate::js_values::{backend_name, coded, mesh_of, object, positions_array, reasons_object, thrown};
 use crate::threads::Threads;
-use crate::{Backend, Error, Options, Order, Positions, Session};
+use crate::{Backend, Error, Options, Order, Session, memory};
 use js_sys::{Array, Promise, Uint8Array, Uint32Array};
 use objects::outcome_object;
 use std::cell::RefCell;
@@ -27,7 +27,7 @@ type Indices = Uint32Array;
 
 #[wasm_bindgen]
 extern "C" {
-    /// The options of a run, as `settingsOf` in `src/js/settings.ts` gives them.
+    /// The options of a run, as `chosenOf` in `src/js/settings.ts` gives them.
     #[wasm_bindgen(typescript_type = "import('../settings.js').Settings")]
     pub type JsOptions;
 
@@ -65,8 +65,11 @@ pub fn set_webgl2(module: WebGl2Module) {
     engine::set_webgl2(module);
 }
 
+/// Why a session answers nothing any more.
+const ENDED: &str = "the session ended when a call of it crashed or ran out of memory; begin a new one";
+
 /// A mesh on an engine. One call at a time: each must have answered before the next. A call has the session while it
-/// goes on; one that ends with a trap keeps it.
+/// goes on; one that ends with an exception or a trap never gives it back.
 #[wasm_bindgen(js_name = Session)]
 pub struct JsSession(Rc<RefCell<Option<Session>>>);
 
@@ -79,9 +82,7 @@ impl JsSession {
     ) -> Promise {
         let place = self.0.clone();
         promise(async move {
-            let mut session = place
-                .take()
-                .ok_or_else(|| coded("internal", "the session ended when a call of it crashed"))?;
+            let mut session = place.take().ok_or_else(|| coded("freed", ENDED))?;
             let answer = question(&mut session).await;
             place.replace(Some(session));
             answer.map(give).map_err(thrown)
@@ -146,11 +147,15 @@ impl JsSession {
         self.ask(Session::advance, JsValue::from)
     }
 
-    /// As [`Session::set_positions`]. The array is copied before it returns.
+    /// As [`Session::set_positions`].
     #[wasm_bindgen(js_name = setPositions, unchecked_return_type = "Promise<void>")]
     pub fn set_positions(&self, positions: JsPositions) -> Promise {
-        let positions = Positions::from(positions);
-        self.ask(async |session| session.set_positions(positions).await, |()| JsValue::UNDEFINED)
+        // Copied in the promise: an exception here would leave the session borrowed.
+        let set = async |session: &mut Session| {
+            memory::check(positions.byte_length() as u64)?;
+            session.set_positions(positions).await
+        };
+        self.ask(set, |()| JsValue::UNDEFINED)
     }
 
     /// As [`Session::triangles`].

@@ -8,7 +8,7 @@ use crate::error::number;
 use crate::io::{self, Format, Loaded, ReadOptions};
 use crate::js_values::{JsPositions, mesh_of, object, parse_dimension, thrown};
 use crate::threads::Threads;
-use crate::{Error, Mesh, Options, Positions, families, quality, reoriented};
+use crate::{Error, Mesh, Options, Positions, families, memory, quality, reoriented};
 use js_sys::{Array, Float32Array, Float64Array, Reflect, Uint8Array, Uint32Array};
 use std::path::Path;
 use wasm_bindgen::prelude::*;
@@ -94,6 +94,9 @@ fn load(file: &JsFile, dimension: Option<f64>) -> Result<Loaded, Error> {
     options.dimension = dimension.map(parse_dimension).transpose()?;
     options.max_bytes = file.max_bytes().map_or(Ok(options.max_bytes), parse_max_bytes)?;
     options.check(bytes.length().into())?;
+    // The bytes, and a mesh that takes as much again, twice while its arrays grow: what is taken when memory runs out in
+    // the middle is lost.
+    memory::check(3 * u64::from(bytes.length()))?;
     io::parse_with(format, bytes.to_vec(), &options, &|name| {
         let given =
             Reflect::get(&files, &name.into()).ok().and_then(|file| file.dyn_into::<Uint8Array>().ok());

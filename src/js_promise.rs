@@ -25,7 +25,7 @@ pub(crate) fn promise(future: impl Future<Output = Result<JsValue, JsValue>> + '
     poll(Box::pin(future))
 }
 
-/// What is thrown in here JavaScript makes a rejection of.
+/// An exception in here rejects the promise. The future is lost then, with all that it has: WebAssembly unwinds nothing.
 fn poll(task: Task) -> Promise {
     let mut task = Some(task);
     Promise::new(&mut |resolve, reject| {

@@ -39,7 +39,7 @@ impl JsWebGl2 {
         promise(async move {
             let mut engine = place
                 .take()
-                .ok_or_else(|| coded("internal", "the engine ended when a call of it crashed"))?;
+                .ok_or_else(|| coded("device-failed", "the engine ended when a call of it crashed"))?;
             let answer = question(&mut engine).await;
             place.replace(Some(engine));
             answer.map(give).map_err(bare)
@@ -76,9 +76,8 @@ impl JsWebGl2 {
 
     /// As the engine's. Rejected, as all that follow, where the context is lost.
     #[wasm_bindgen(unchecked_return_type = "Promise<void>")]
-    pub fn lock(&self, half_edges: &Uint32Array) -> Promise {
-        let half_edges = half_edges.to_vec();
-        self.ask(async |engine| engine.lock(half_edges).await, done)
+    pub fn lock(&self, half_edges: Uint32Array) -> Promise {
+        self.ask(async move |engine| engine.lock(half_edges.to_vec()).await, done)
     }
 
     /// As the engine's.
@@ -107,9 +106,13 @@ impl JsWebGl2 {
 
     /// As the engine's: `indices` are the triangles as they are now. Rejected too where it cannot take the positions.
     #[wasm_bindgen(js_name = setPositions, unchecked_return_type = "Promise<void>")]
-    pub fn set_positions(&self, positions: JsPositions, indices: &Uint32Array) -> Promise {
-        let mesh = mesh_of(positions, indices, self.dimension, &Threads::one());
-        self.ask(async |engine| engine.set_positions(Arc::new(mesh?)).await, done)
+    pub fn set_positions(&self, positions: JsPositions, indices: Uint32Array) -> Promise {
+        let dimension = self.dimension;
+        let set = async move |engine: &mut WebGl| {
+            let mesh = mesh_of(positions, &indices, dimension, &Threads::one())?;
+            engine.set_positions(Arc::new(mesh)).await
+        };
+        self.ask(set, done)
     }
 
     /// How many iterations to ask for at a time.

@@ -1,4 +1,5 @@
-//! Asks for memory before it is needed: where a run finds that there is none, it has nobody to tell.
+//! Asks whether there is memory before it is needed: where a run finds that there is none, it can tell nobody. What is
+//! asked for is not kept, so others may take it in between.
 
 use crate::Error;
 use std::hint::black_box;

@@ -77,7 +77,7 @@ impl Session {
     /// flip, or the cap on iterations is reached.
     ///
     /// # Errors
-    /// [`Error::Device`].
+    /// [`Error::Device`], [`Error::OutOfMemory`].
     pub async fn step(&mut self) -> Result<Option<Iteration>, Error> {
         if !self.may_continue() {
             return Ok(None);
@@ -100,7 +100,7 @@ impl Session {
     /// flips so far; [`ControlFlow::Break`] stops the run after a complete iteration.
     ///
     /// # Errors
-    /// [`Error::Device`], unless the backend is `Auto`: then the CPU takes over.
+    /// [`Error::Device`], unless the backend is `Auto`: then the CPU takes over; [`Error::OutOfMemory`].
     pub async fn run(&mut self, mut watch: impl FnMut(u32, u64) -> ControlFlow<()>) -> Result<(), Error> {
         while self.may_continue() {
             self.advance().await?;
@@ -129,10 +129,11 @@ impl Session {
     ///
     /// # Errors
     /// [`Error::PositionCount`], [`Error::NonFinite`]; [`Error::BackendLimit`] where the GPU cannot decide the new
-    /// positions exactly; [`Error::Device`]. The session is then as it was before. With `Auto` the CPU takes over
+    /// positions exactly; [`Error::Device`], [`Error::OutOfMemory`]. The session is then as it was before. With `Auto` the CPU takes over
     /// from a GPU that refuses or fails.
     pub async fn set_positions(&mut self, positions: impl Into<Positions>) -> Result<(), Error> {
         let start = Instant::now();
+        self.check_room(room::POSITIONS)?;
         let positions = positions.into();
         let (length, expected) = (positions.len(), self.mesh.positions().len());
         if length != expected {
@@ -161,15 +162,16 @@ impl Session {
     /// The triangles as they are now: vertex indices, 3 a triangle.
     ///
     /// # Errors
-    /// [`Error::Device`].
+    /// [`Error::Device`], [`Error::OutOfMemory`].
     pub async fn triangles(&mut self) -> Result<Vec<u32>, Error> {
+        self.check_room(room::COPY)?;
         self.ask(|engine| engine.triangles()).await
     }
 
     /// The result so far: reads the triangles back and counts what remains.
     ///
     /// # Errors
-    /// [`Error::Device`].
+    /// [`Error::Device`], [`Error::OutOfMemory`].
     pub async fn outcome(&mut self) -> Result<Outcome, Error> {
         let start = Instant::now();
         let triangles = self.triangles().await?;
@@ -209,7 +211,7 @@ impl Session {
     /// # Errors
     /// [`Error::Device`], [`Error::OutOfMemory`].
     pub async fn edges(&mut self) -> Result<Edges, Error> {
-        memory::check(room::EDGES * self.mesh.triangle_count() as u64)?;
+        self.check_room(room::EDGES)?;
         let triangles = self.triangles().await?;
         let twins = self.ask(|engine| engine.twins()).await?;
         Ok(Edges::from_twins(&triangles, &twins))
@@ -221,7 +223,7 @@ impl Session {
     /// # Errors
     /// [`Error::Device`], [`Error::OutOfMemory`].
     pub async fn edge_states(&mut self) -> Result<Vec<EdgeState>, Error> {
-        memory::check(room::EDGES * self.mesh.triangle_count() as u64)?;
+        self.check_room(room::EDGES)?;
         let triangles = self.triangles().await?;
         let twins = self.ask(|engine| engine.twins()).await?;
         // As the engine found it: neither the components nor their areas change with flips.
@@ -292,7 +294,17 @@ impl Session {
         self.options.max_iterations.map_or(u32::MAX, |cap| cap.saturating_sub(done))
     }
 
+    /// Asks for so many bytes a triangle: a call that runs out of memory takes its session with it, one that is refused
+    /// leaves it as it was.
+    fn check_room(&self, bytes: u64) -> Result<(), Error> {
+        memory::check(bytes * self.mesh.triangle_count() as u64)
+    }
+
     async fn iterate(&mut self, count: u32) -> Result<(), Error> {
+        // Later iterations take what the first has taken.
+        if self.flips_per_iteration.is_empty() && self.engine.backend() == "cpu" {
+            memory::check(room::of_run(&self.mesh, &self.options))?;
+        }
         let start = Instant::now();
         let flips = self.ask(|engine| engine.iterate(count)).await?;
         self.has_ended = (flips.len() as u32) < count;

@@ -73,19 +73,20 @@ for (const { name, options } of modules) {
  */
 function cutPanics(file) {
   const panics = /^(core|alloc)\b.*::(panicking::.*|panic_\w+|\w+_fail(ed)?)$/;
-  const memory = /^alloc\b.*::(handle_alloc_error|handle_error|capacity_overflow)$|::malloc_failure$/;
+  const memory = /^alloc\b.*::(handle_alloc_error|handle_error|capacity_overflow)$/;
   const module = binaryen.readBinary(readFileSync(file));
   const outOfMemory = binaryen.getExportInfo(module.getExport('outOfMemory')).value;
-  let hooks = 0;
+  const hooks = new Set();
   for (let i = 0; i < module.getNumFunctions(); i++) {
     const place = module.getFunctionByIndex(i);
     const { name } = binaryen.getFunctionInfo(place);
     if (panics.test(name)) binaryen.Function.setBody(place, module.unreachable());
-    if (!memory.test(name)) continue;
-    hooks++;
+    const [, hook] = memory.exec(name) ?? [];
+    if (!hook) continue;
+    hooks.add(hook);
     binaryen.Function.setBody(place, module.block(null, [module.call(outOfMemory, [], binaryen.none), module.unreachable()]));
   }
-  if (hooks < 2) throw new Error(`${file}: of what follows where memory cannot be had, too little has a name that is known`);
+  if (hooks.size < 3) throw new Error(`${file}: of what follows where memory cannot be had, too little has a name that is known`);
   writeFileSync(file, module.emitBinary());
   module.dispose();
 }

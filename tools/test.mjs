@@ -105,7 +105,7 @@ const levels = [
       ['node', 'tools/build.mjs'],
       ['node', 'node_modules/typescript/bin/tsc', '-p', 'tests/package'],
       ['node', '--test', '--test-reporter=tap', 'tests/package/node.test.mjs', 'tests/package/files.test.mjs', 'tests/package/gltf.test.mjs',
-        'tests/package/weld.test.mjs', 'tests/package/threads.test.mjs', 'tests/package/memory.test.mjs', 'tests/package/hostile.test.mjs'],
+        'tests/package/weld.test.mjs', 'tests/package/threads.test.mjs', 'tests/package/memory.test.mjs', 'tests/package/limited.test.mjs', 'tests/package/hostile.test.mjs'],
     ],
     counts: true,
   },

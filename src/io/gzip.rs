@@ -1,7 +1,7 @@
 //! Gzip'd files: known by their first bytes when they are read, by their name when they are written.
 
 use super::ReadOptions;
-use crate::Error;
+use crate::{Error, memory};
 use flate2::Compression;
 use flate2::bufread::GzDecoder;
 use flate2::write::GzEncoder;
@@ -64,7 +64,9 @@ fn member<'a>(
             Err(error) => {
                 let what = match error.kind() {
                     io::ErrorKind::UnexpectedEof => "is cut off",
-                    io::ErrorKind::OutOfMemory => "does not fit the memory",
+                    io::ErrorKind::OutOfMemory => {
+                        return Err(Error::OutOfMemory { bytes: length + more, limit: memory::LIMIT });
+                    }
                     _ => "is damaged",
                 };
                 let message = format!("the gzip'd file {what} ({error})");

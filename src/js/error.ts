@@ -21,7 +21,7 @@
  * | `backend-limit` | take `'auto'` or `'cpu'`: the GPU cannot take this mesh |
  * | `device-failed` | begin again: the GPU was lost, or the `device` given is |
  * | `load-failed` | see that the package's `wasm/*.wasm` are served, or pass them to `init`, `initWebGl2`, `initThreads`, `initAudit` and `initFiles` |
- * | `freed` | do not use a session after `free` |
+ * | `freed` | do not use a session after `free`, or after a call of it that crashed or ran out of memory |
  * | `internal` | report it: the module has crashed, and is of no use until the page or the worker is loaded anew; or a thread has, and with it the sessions on threads: others begin anew |
  */
 export type ErrorCode = (typeof CODES)[number];
@@ -67,13 +67,12 @@ const OUT_OF_MEMORY = /\bout of memory\b/;
 export function fromModule(thrown: unknown): EdgeflipError {
   if (thrown instanceof EdgeflipError) return thrown;
   const message = thrown instanceof Error ? thrown.message : String(thrown);
+  const given = thrown instanceof Error && 'code' in thrown ? thrown.code : undefined;
+  const code = CODES.find((code) => code === given);
+  if (code) return new EdgeflipError(code, message, { cause: thrown });
   // Of an array that JavaScript cannot have.
   const isOfArray = thrown instanceof RangeError && /alloc|length/i.test(message);
-  if (isOfArray || OUT_OF_MEMORY.test(message)) {
-    const advice = 'WebAssembly has 4 GiB for all meshes: free() sessions that are done, or split the mesh';
-    return new EdgeflipError('too-large', `memory ran out (${message}); ${advice}`, { cause: thrown });
-  }
-  const given = thrown instanceof Error && 'code' in thrown ? thrown.code : undefined;
-  const code = CODES.find((code) => code === given) ?? 'internal';
-  return new EdgeflipError(code, message, { cause: thrown });
+  if (!isOfArray && !OUT_OF_MEMORY.test(message)) return new EdgeflipError('internal', message, { cause: thrown });
+  const advice = 'WebAssembly has 4 GiB for all meshes: free() sessions that are done, or split the mesh';
+  return new EdgeflipError('too-large', `memory ran out (${message}); ${advice}`, { cause: thrown });
 }

@@ -312,8 +312,13 @@ function welded(made: wasm.Weld): Welded {
     }
   };
   const free = () => {
-    if (!isFreed) made.free();
+    if (isFreed) return;
     isFreed = true;
+    try {
+      made.free();
+    } catch {
+      // A call that has crashed has it still.
+    }
   };
   return { indices, lockedEdges, lockedTriangles, places, joined, turned, split, free };
 }

@@ -177,10 +177,9 @@ export class FlipSession implements AsyncIterable<Iteration>, Disposable {
   free(): void {
     if (this.#isFreed) return;
     this.#isFreed = true;
-    void this.#last.then(() => {
-      this.#session.free();
-      this.#welded?.free();
-    });
+    void this.#last.then(() => this.#welded?.free());
+    // A call that has crashed may have it still.
+    void this.#last.then(() => this.#session.free()).catch(() => undefined);
   }
 
   /** As {@link FlipSession.free}: `using session = await FlipSession.create(mesh)`. */

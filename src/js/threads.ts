@@ -243,11 +243,14 @@ export class ThreadsSession implements ModuleSession {
 
   /** Copies so many indices out of the memory. */
   #copy([place, length]: Uint32Array): Uint32Array {
-    const copy = this.#spare ?? new Uint32Array(length!);
-    this.#spare = undefined;
-    copy.set(new Uint32Array(this.#memory.buffer, place, length));
-    void this.#pool.call('release', this.#session).catch(() => undefined);
-    return copy;
+    try {
+      const copy = this.#spare ?? new Uint32Array(length!);
+      this.#spare = undefined;
+      copy.set(new Uint32Array(this.#memory.buffer, place, length));
+      return copy;
+    } finally {
+      void this.#pool.call('release', this.#session).catch(() => undefined);
+    }
   }
 
   async #ask<Q extends Question>(question: Q, ...args: Parameters<Session[Q]>): Promise<Awaited<ReturnType<Session[Q]>>> {

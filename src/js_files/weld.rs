@@ -3,7 +3,7 @@
 use super::{JsFile, load};
 use crate::js_values::{JsPositions, thrown};
 use crate::weld::first_alike;
-use crate::{Error, Welded, welded};
+use crate::{Error, Welded, memory, welded};
 use js_sys::{Uint8Array, Uint32Array};
 use wasm_bindgen::prelude::*;
 
@@ -108,7 +108,11 @@ impl JsWeld {
     /// # Errors
     /// As there.
     pub fn split(&self, indices: &Uint32Array) -> Result<Uint32Array, JsValue> {
-        let split = self.welded.split(&indices.to_vec()).map_err(thrown)?;
-        Ok(Uint32Array::from(split.as_slice()))
+        let split = || {
+            // An exception for want of memory would leave this borrowed.
+            memory::check(4 * u64::from(indices.byte_length()))?;
+            self.welded.split(&indices.to_vec())
+        };
+        Ok(Uint32Array::from(split().map_err(thrown)?.as_slice()))
     }
 }

@@ -5,6 +5,17 @@ use crate::{Dimension, Mesh, Options, Order};
 /// Bytes a triangle that the lists of edges and of their states take, while they are made.
 pub(super) const EDGES: u64 = 88;
 
+/// Bytes a triangle that a copy of the triangles takes.
+pub(super) const COPY: u64 = 12;
+
+/// Bytes a triangle that are taken while positions change.
+pub(super) const POSITIONS: u64 = 44;
+
+/// What of it a run takes after its session has begun.
+pub(super) fn of_run(mesh: &Mesh, options: &Options) -> u64 {
+    bytes(mesh, options) / 5 * 2
+}
+
 /// Bytes a vertex: marks and fans.
 const VERTEX: u64 = 24;
 
