@@ -95,7 +95,7 @@ export class FlipSession implements AsyncIterable<Iteration>, Disposable {
    * triangles are read back once. After an error the session is as before; with `'auto'` the CPU takes over what the GPU
    * cannot take.
    *
-   * @throws {@link EdgeflipError} `invalid-input`, `position-count`, `non-finite`, `backend-limit`.
+   * @throws {@link EdgeflipError} `invalid-input`, `too-large`, `position-count`, `non-finite`, `backend-limit`.
    */
   async setPositions(positions: Float32Array | Float64Array): Promise<void> {
     const moved = copyOf(positionsOf(positions), 'positions');
