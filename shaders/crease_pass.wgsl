@@ -1,9 +1,5 @@
 // The entry points of the creases over textures, before the first iteration on a surface.
 
-fn decides_exactly() -> bool {
-    return true;
-}
-
 // Whether the edge of a half-edge, the lower one, is over β: 1 or 0.
 @fragment
 fn crease_pass(@builtin(position) fragment: vec4f) -> @location(0) u32 {
@@ -12,10 +8,23 @@ fn crease_pass(@builtin(position) fragment: vec4f) -> @location(0) u32 {
     if h < 3u * params[0].x {
         let g = twin(h);
         if g != NONE && h < g {
-            is_over = select(0u, 1u, crease_verdict(h, g) != DELAUNAY);
+            is_over = select(0u, 1u, is_crease(h, g));
         }
     }
     return is_over;
+}
+
+fn is_crease(h: u32, g: u32) -> bool {
+    let a = position(vertex(h));
+    let b = position(vertex(g));
+    let c = position(vertex(prev(h)));
+    let d = position(vertex(prev(g)));
+    var verdict = filtered_crease(a, b, c, d);
+    if verdict == UNDECIDED {
+        // Only the angle before the flip is open.
+        verdict = verdict_of(exact_signs(a, b, c, d, Signs(-1, 0, 1, 1)));
+    }
+    return verdict == BLOCKED_BY + REASON_ANGLE;
 }
 
 // Flags the twins of those edges, and no others.

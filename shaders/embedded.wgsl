@@ -7,12 +7,19 @@ const NOT_EMBEDDED: u32 = 0x10000u;
 
 var<workgroup> signs: atomic<u32>;
 
-// Whether exact arithmetic decides what the filter leaves, or a later dispatch does.
-override EXACT: bool = true;
+// The sign of each triangle, plus 1, in the place of its choice; DOUBTFUL where exact arithmetic has to decide.
+@compute @workgroup_size(WORKGROUP_SIZE)
+fn prepare_all(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
+    for (var t = id.x; t < params.triangles; t += groups.x * WORKGROUP_SIZE) {
+        let sign = filtered_sign_of(position(vertex(3u * t)), position(vertex(3u * t + 1u)), position(vertex(3u * t + 2u)));
+        let choice = wait_for(t, sign == 0);
+        choices[t] = select(choice, u32(sign + 1), sign != 0);
+    }
+}
 
 // Counts, in the lists, how often the triangles at each vertex go across the direction of the x axis, and finds out which
 // signs triangles have: bits 0 to 2 for negative, flat, positive. Unless the winding is known, that of each triangle is
-// taken for its sign: the count holds if there is one only. With EXACT, only the triangles that wait for it.
+// taken for its sign: the count holds if there is one only.
 @compute @workgroup_size(WORKGROUP_SIZE)
 fn count_turns(
     @builtin(global_invocation_id) id: vec3u,
@@ -21,21 +28,11 @@ fn count_turns(
 ) {
     var seen = 0u;
     for (var t = id.x; t < params.triangles; t += groups.x * WORKGROUP_SIZE) {
-        if EXACT && best(t) != DOUBTFUL {
-            continue;
-        }
+        let sign = i32(choices[t]) - 1;
+        choices[t] = NONE;
         var a = position(vertex(3u * t));
         var b = position(vertex(3u * t + 1u));
         var c = position(vertex(3u * t + 2u));
-        var sign = filtered_sign_of(a, b, c);
-        if EXACT {
-            sign = exact_sign_of(a, b, c);
-        }
-        let is_left = !EXACT && sign == 0;
-        choices[t] = select(NONE, DOUBTFUL, is_left);
-        if is_left {
-            continue;
-        }
         let winding = select(sign, select(1, -1, is_clockwise(t)), params.knows_winding == 1u);
         let is_positive = sign * winding > 0;
         seen |= 1u << u32(sign + 1);
@@ -62,7 +59,7 @@ fn count_turns(
     atomicOr(&signs, seen);
     workgroupBarrier();
     if local == 0u {
-        atomicOr(&history[CENSUS], atomicLoad(&signs));
+        atomicOr(&history[COUNTED], atomicLoad(&signs));
     }
 }
 

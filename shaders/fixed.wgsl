@@ -21,12 +21,12 @@ fn grid_of(a: Point, b: Point, c: Point, d: Point) -> i32 {
     return 0;
 }
 
-fn exact_differences(u: Point, v: Point, grid: i32) -> Differences {
-    return Differences(
-        difference(vec4u(u[0].x, u[1].x, u[2].x, 0u), vec4u(v[0].x, v[1].x, v[2].x, 0u)),
-        difference(vec4u(u[0].y, u[1].y, u[2].y, 0u), vec4u(v[0].y, v[1].y, v[2].y, 0u)),
-        difference(vec4u(u[0].z, u[1].z, u[2].z, 0u), vec4u(v[0].z, v[1].z, v[2].z, 0u)),
-    );
+fn exact_difference(u: Point, v: Point, axis: u32, grid: i32) -> vec4u {
+    return difference(fixed_at(u, axis), fixed_at(v, axis));
+}
+
+fn fixed_at(u: Point, axis: u32) -> vec4u {
+    return vec4u(component_of(u[0], axis), component_of(u[1], axis), component_of(u[2], axis), 0u);
 }
 
 fn deviation_grid() -> i32 {

@@ -1,33 +1,27 @@
-// The entry point of the creases, before the first iteration on a surface.
+// Flags the edges of the input over β, and no others, from each of their half-edges.
 
-// Whether exact arithmetic decides what the filter leaves, or a later dispatch does.
-override EXACT: bool = true;
-
-fn decides_exactly() -> bool {
-    return EXACT;
-}
-
-// Flags the edges of the input over β, and no others, from each of their half-edges. With EXACT, only those of the
-// triangles that wait for it.
-@compute @workgroup_size(WORKGROUP_SIZE)
-fn flag_creases(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
-    for (var t = id.x; t < params.triangles; t += groups.x * WORKGROUP_SIZE) {
-        if !EXACT || best(t) == DOUBTFUL {
-            choices[t] = select(NONE, DOUBTFUL, flag_edges(t));
-        }
-    }
-}
-
-// Whether an edge of the triangle is left, as exact arithmetic has to decide.
-fn flag_edges(t: u32) -> bool {
-    var is_left = false;
+// Whether each edge of a triangle is one, by a filter.
+fn filtered_creases(t: u32) -> vec3u {
+    var verdicts = vec3u();
     for (var h = 3u * t; h < 3u * t + 3u; h++) {
-        let entry = twin_entry(h);
+        let g = twin(h);
+        var verdict = DELAUNAY;
+        if g != NONE {
+            let a = position(vertex(h));
+            let b = position(vertex(g));
+            verdict = filtered_crease(a, b, position(vertex(prev(h))), position(vertex(prev(g))));
+        }
+        verdicts = vec3u(verdicts.yz, verdict);
+    }
+    return verdicts;
+}
+
+fn flag_creases(t: u32, verdicts: vec3u) {
+    for (var k = 0u; k < 3u; k++) {
+        let entry = twin_entry(3u * t + k);
         if entry != NONE {
-            let verdict = crease_verdict(h, unflagged(entry));
-            set_twin_entry(h, select(entry & ~CREASE, entry | CREASE, verdict != DELAUNAY));
-            is_left = is_left || verdict == UNDECIDED;
+            let is_crease = verdict_at(verdicts, k) == BLOCKED_BY + REASON_ANGLE;
+            set_twin_entry(3u * t + k, select(entry & ~CREASE, entry | CREASE, is_crease));
         }
     }
-    return is_left;
 }

@@ -50,12 +50,8 @@ fn magnitude_of(bits: u32) -> u32 {
 }
 
 // u - v on a grid that both are on.
-fn exact_differences(u: Point, v: Point, grid: i32) -> Differences {
-    return Differences(
-        difference(on_grid(u.x, grid), on_grid(v.x, grid)),
-        difference(on_grid(u.y, grid), on_grid(v.y, grid)),
-        difference(on_grid(u.z, grid), on_grid(v.z, grid)),
-    );
+fn exact_difference(u: Point, v: Point, axis: u32, grid: i32) -> vec4u {
+    return difference(on_grid(component_of(u, axis), grid), on_grid(component_of(v, axis), grid));
 }
 
 fn deviation_grid() -> i32 {

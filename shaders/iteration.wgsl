@@ -1,8 +1,10 @@
-// The entry points of Flip, of a run of iterations in one workgroup, when there is little to do, and of the census.
+// The entry points of Flip, and of a run of iterations in one workgroup, when there is little to do.
 
 var<workgroup> flips: atomic<u32>;
-var<workgroup> census_counts: array<atomic<u32>, ENTRIES>;
+var<workgroup> tail_first: u32;
 var<workgroup> tail_count: u32;
+var<workgroup> doubtful: atomic<u32>;
+var<workgroup> is_paused: u32;
 
 @compute @workgroup_size(WORKGROUP_SIZE)
 fn flip_all(
@@ -21,9 +23,7 @@ fn flip_all(
                 flipped += flip_triangle(t, index, params.first + index, builds);
             }
         }
-        for (var i = doubts() + id.x; i < arrayLength(&frontier); i += groups.x * WORKGROUP_SIZE) {
-            atomicStore(&frontier[i], 0u);
-        }
+        clear_doubts(id.x, groups.x * WORKGROUP_SIZE);
         for (var i = params.vertices + id.x; i < params.fans_length; i += groups.x * WORKGROUP_SIZE) {
             move_anchor(i);
         }
@@ -47,10 +47,20 @@ fn flip_all(
 // Invocations of the tail, as many as the device allows.
 override TAIL_SIZE: u32 = WORKGROUP_SIZE;
 
-// Iterations in one workgroup, as long as their lists are short.
+// Iterations in one workgroup, as long as their lists are short. Pauses in one that needs exact arithmetic, for which there is a
+// dispatch before it is resumed.
 @compute @workgroup_size(TAIL_SIZE)
 fn tail(@builtin(local_invocation_index) local: u32) {
-    for (var index = params.tail; index < params.tail + params.tail_iterations; index++) {
+    if local == 0u {
+        tail_first = params.tail;
+        if step_.task == RESUME {
+            // NONE, which no iteration follows, where it has not paused.
+            tail_first = atomicExchange(&history[PAUSED], 0u) - 1u;
+            atomicStore(&frontier[doubts()], 0u);
+        }
+    }
+    let first = workgroupUniformLoad(&tail_first);
+    for (var index = first; index < params.tail + params.tail_iterations; index++) {
         if local == 0u {
             let work = active_at(index);
             tail_count = select(0u, work.count, work.is_listed && work.count <= params.tail_length);
@@ -61,12 +71,29 @@ fn tail(@builtin(local_invocation_index) local: u32) {
         }
         let iteration = params.first + index;
         let work = Work(count, true, true, (iteration & 1u) * params.triangles);
-        for (var i = local; i < count; i += TAIL_SIZE) {
-            let t = active_triangle(work, i);
-            choices[t] = label(t, iteration, exact_verdicts(t, filtered_verdicts(t)));
-            clear_flip(t);
+        if step_.task != RESUME || index > first {
+            for (var i = local; i < count; i += TAIL_SIZE) {
+                let t = active_triangle(work, i);
+                let choice = label(t, iteration, verdicts_on(t, false, true));
+                choices[t] = choice;
+                clear_flip(t);
+                if choice == DOUBTFUL {
+                    doubt(i / WORKGROUP_SIZE);
+                    atomicStore(&doubtful, 1u);
+                }
+            }
         }
         storageBarrier();
+        workgroupBarrier();
+        if local == 0u {
+            is_paused = atomicLoad(&doubtful);
+            if is_paused == 1u {
+                atomicStore(&history[PAUSED], index + 1u);
+            }
+        }
+        if workgroupUniformLoad(&is_paused) == 1u {
+            break;
+        }
         for (var i = local; i < count; i += TAIL_SIZE) {
             let g = selection(active_triangle(work, i), iteration);
             if g != NONE {
@@ -89,30 +116,5 @@ fn tail(@builtin(local_invocation_index) local: u32) {
             atomicStore(&history[entry(index + 1u, RAN)], 1u);
         }
         storageBarrier();
-    }
-}
-
-// Counts the verdicts of all interior edges: labelled, then blocked by reason.
-@compute @workgroup_size(WORKGROUP_SIZE)
-fn census(
-    @builtin(global_invocation_id) id: vec3u,
-    @builtin(local_invocation_index) local: u32,
-    @builtin(num_workgroups) groups: vec3u,
-) {
-    for (var h = id.x; h < 3u * params.triangles; h += groups.x * WORKGROUP_SIZE) {
-        let g = twin(h);
-        if g != NONE && h < g {
-            let verdict = guarded(geometric_verdict(h, g), h, g);
-            if verdict != DELAUNAY {
-                atomicAdd(&census_counts[verdict - LABELLED], 1u);
-            }
-        }
-    }
-    workgroupBarrier();
-    if local < ENTRIES {
-        let count = atomicLoad(&census_counts[local]);
-        if count > 0u {
-            atomicAdd(&history[CENSUS + local], count);
-        }
     }
 }

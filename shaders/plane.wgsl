@@ -1,6 +1,9 @@
-// The plane: orientation and the in-circle test, as src/predicates/plane.rs.
+// The plane: the filters of orientation and the in-circle test, as src/predicates/plane.rs, and both where few bits do.
 
 const DIMENSION: u32 = 2u;
+
+// Whether Label takes the close look at once: on a lattice every edge needs it.
+const LABELS_CLOSELY: bool = true;
 
 // A filter of degree 4 in f32. WGSL and GLSL ES leave the direction of rounding open: each operation errs by at most
 // ε = 2^-23, fused or not. As in plane.rs, but with differences that err by up to 3ε, the value errs by at most 18.2ε of
@@ -49,18 +52,6 @@ fn area_sign(u: vec2f, v: vec2f) -> i32 {
     return filtered_sign(u.x * v.y - u.y * v.x, PLANE_BOUND * (abs(u.x * v.y) + abs(u.y * v.x)) + PLANE_FLUSHED);
 }
 
-// The sign of a triangle, by exact arithmetic.
-fn exact_sign_of(a: Point, b: Point, c: Point) -> i32 {
-    let grid = grid_of(a, b, c, c);
-    let u = exact_differences(b, a, grid);
-    let v = exact_differences(c, a, grid);
-    let count = digits_in_use(u[0] | u[1] | v[0] | v[1]);
-    let zero = Small();
-    let ux = digits_of(u[0]);
-    let uy = digits_of(u[1]);
-    return medium_sign(sum_of_products(ux, digits_of(v[1]), uy, negated_small(digits_of(v[0])), zero, zero, count));
-}
-
 // The sign of a triangle; 0 where the filter cannot decide.
 fn filtered_sign_of(a: Point, b: Point, c: Point) -> i32 {
     let u = rounded_difference(b, a).xy;
@@ -70,42 +61,26 @@ fn filtered_sign_of(a: Point, b: Point, c: Point) -> i32 {
     return area_sign(u * scale, v * scale);
 }
 
-fn exact_verdict_on(a: Point, b: Point, c: Point, d: Point, winding: i32) -> u32 {
+// The same of any edge where its differences are below 2^30: everything fits 128 bits then. The ties of most lattices are
+// decided here.
+fn close_verdict_on(a: Point, b: Point, c: Point, d: Point, winding: i32) -> u32 {
+    var verdict = filtered_verdict_on(a, b, c, d, winding);
+    if verdict == UNDECIDED {
+        verdict = narrow_verdict_on(a, b, c, d, winding);
+    }
+    return verdict;
+}
+
+fn narrow_verdict_on(a: Point, b: Point, c: Point, d: Point, winding: i32) -> u32 {
     let grid = grid_of(a, b, c, d);
     let p = exact_differences(a, c, grid);
     let q = exact_differences(b, c, grid);
     let r = exact_differences(a, d, grid);
     let s = exact_differences(b, d, grid);
     let widest = p[0] | p[1] | q[0] | q[1] | r[0] | r[1] | s[0] | s[1];
-    // Below 2^30 everything fits 128 bits; the ties of most lattices take this path.
-    var verdict = DELAUNAY;
+    var verdict = UNDECIDED;
     if widest.x < 0x40000000u && (widest.y | widest.z) == 0u {
         verdict = verdict_in_narrow_plane(p, q, r, s, winding);
-    } else {
-        verdict = verdict_in_wide_plane(p, q, r, s, digits_in_use(widest), winding);
-    }
-    return verdict;
-}
-
-fn verdict_in_wide_plane(p: Differences, q: Differences, r: Differences, s: Differences, count: u32, winding: i32) -> u32 {
-    let px = digits_of(p[0]);
-    let py = digits_of(p[1]);
-    let qx = digits_of(q[0]);
-    let qy = digits_of(q[1]);
-    let rx = digits_of(r[0]);
-    let ry = digits_of(r[1]);
-    let sx = digits_of(s[0]);
-    let sy = digits_of(s[1]);
-    let zero = Small();
-    let cross1 = sum_of_products(px, qy, py, negated_small(qx), zero, zero, count);
-    let dot1 = sum_of_products(px, qx, py, qy, zero, zero, count);
-    let cross2 = sum_of_products(sx, ry, sy, negated_small(rx), zero, zero, count);
-    let dot2 = sum_of_products(sx, rx, sy, ry, zero, zero, count);
-    var verdict = DELAUNAY;
-    if winding * large_sign(sum_of_medium_products(cross1, dot2, dot1, cross2, count)) < 0 {
-        let area1 = medium_sign(sum_of_products(rx, py, ry, negated_small(px), zero, zero, count));
-        let area2 = medium_sign(sum_of_products(qx, sy, qy, negated_small(sx), zero, zero, count));
-        verdict = select(LABELLED, BLOCKED_BY + REASON_FOLD, min(winding * area1, winding * area2) <= 0);
     }
     return verdict;
 }

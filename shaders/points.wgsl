@@ -46,3 +46,22 @@ fn difference(x: vec4u, y: vec4u) -> vec4u {
     let rest_of_all = vec4u(larger.x - smaller.x, rest - borrow_low, larger.z - smaller.z - borrow, sign);
     return select(rest_of_all, sum, x.w != y.w);
 }
+
+fn component_of(v: vec3u, axis: u32) -> u32 {
+    return select(select(v.x, v.y, axis == 1u), v.z, axis == 2u);
+}
+
+// u - v on a grid that both are on.
+fn exact_differences(u: Point, v: Point, grid: i32) -> Differences {
+    return Differences(
+        exact_difference(u, v, 0u, grid),
+        exact_difference(u, v, 1u, grid),
+        exact_difference(u, v, 2u, grid),
+    );
+}
+
+// The sign of the highest digit that is not zero, or `below` if all are.
+fn highest_sign(digits: vec4i, below: i32) -> i32 {
+    let signs = sign(digits);
+    return select(select(select(select(below, signs.x, signs.x != 0), signs.y, signs.y != 0), signs.z, signs.z != 0), signs.w, signs.w != 0);
+}

@@ -30,9 +30,8 @@ struct Params {
     knows_winding: u32,
     // 1 where all triangles are positive, or all negative: no edge that is not Delaunay can fold then.
     is_strict: u32,
-    // |cos β| is exactly mantissa / power: digits as in exact.wgsl.
-    cos_mantissa: array<vec4i, 2>,
-    cos_power: array<vec4i, 2>,
+    // |cos β| is exactly mantissa / power: eight digits each, as in numbers.wgsl.
+    cos_digits: array<vec4i, 4>,
     // What the diagonals of a quad may be apart: words as those of a coordinate, and rounded to f32 for the filter.
     deviation: vec4u,
 }
@@ -40,6 +39,8 @@ struct Params {
 struct Step {
     // The iteration's index in the batch.
     index: u32,
+    // See doubts.wgsl.
+    task: u32,
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
@@ -57,9 +58,12 @@ struct Step {
 // Winding bits, then the bits of the embedded stars, then the table of the fans.
 @group(0) @binding(8) var<storage, read_write> topology: array<u32>;
 
-// Words of the history. An entry tells of the iteration before it.
-const CENSUS: u32 = 0u;
-const ENTRIES: u32 = 6u;
+// Words of the history: what was counted, 1 plus the index of the iteration that the tail has paused in, or 0, and the
+// entries. An entry tells of the iteration before it.
+const COUNTED: u32 = 0u;
+const COUNTS: u32 = 6u;
+const PAUSED: u32 = 6u;
+const ENTRIES: u32 = 8u;
 const ENTRY_WORDS: u32 = 4u;
 const FLIPS: u32 = 0u;
 // Length of the list of the triangles to look at; meaningful where it was built.
@@ -148,12 +152,8 @@ fn cos_sign() -> i32 {
     return params.cos_sign;
 }
 
-fn cos_mantissa() -> Small {
-    return params.cos_mantissa;
-}
-
-fn cos_power() -> Small {
-    return params.cos_power;
+fn cos_digit(i: u32) -> i32 {
+    return params.cos_digits[i / 4u][i % 4u];
 }
 
 fn deviation() -> vec4u {

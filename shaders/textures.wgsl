@@ -17,7 +17,7 @@
 @group(0) @binding(7) var counts: texture_2d<u32>;
 
 // (triangles, vertices, the iteration, bits of the column in an index), (words in the table of the fans, whether β is
-// 180°, the sign of cos β, cos β rounded to f32), then the digits of its mantissa and power, as in exact.wgsl, then what the
+// 180°, the sign of cos β, cos β rounded to f32), then the digits of its mantissa and power, as in digits.wgsl, then what the
 // diagonals of a quad may be apart: words as those of a coordinate, and rounded to f32 for the filter.
 @group(0) @binding(8) var<uniform> params: array<vec4u, 7>;
 

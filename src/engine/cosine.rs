@@ -2,7 +2,7 @@
 
 use crate::predicates::cosine_fraction;
 
-/// Bits of a digit, as in `exact.wgsl`.
+/// Bits of a digit, as in `digits.wgsl` and `numbers.wgsl`.
 pub(super) const DIGIT_BITS: u32 = 13;
 
 pub(super) struct Cosine {

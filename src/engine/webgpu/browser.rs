@@ -60,13 +60,13 @@ impl GpuDevice {
         Some(JsValue::from(device.as_webgpu()?.clone()).unchecked_into())
     }
 
-    fn push_error_scopes(&self) {
+    pub(super) fn push_error_scopes(&self) {
         for filter in ["validation", "internal", "out-of-memory"] {
             self.push_error_scope(filter);
         }
     }
 
-    fn pop_error_scopes(&self) -> Word {
+    pub(super) fn pop_error_scopes(&self) -> Word {
         Box::pin(word([(); 3].map(|()| JsFuture::from(self.pop_error_scope()))))
     }
 

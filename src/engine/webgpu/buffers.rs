@@ -1,9 +1,10 @@
 //! The buffers of a mesh whose sizes are known from the start.
 
+use super::HISTORY_WORDS;
 use super::device::{Buffer, Device};
 use super::kernels::WORKGROUP_SIZE;
 use super::params::{Params, Places};
-use super::{BATCH, HISTORY_WORDS, STEP_WORDS};
+use super::steps::Step;
 use crate::engine::upload::Upload;
 use wgpu::BufferUsages;
 
@@ -35,7 +36,7 @@ impl Buffers {
         let drawn = |label, words, usage| gpu.buffer(label, words, BufferUsages::STORAGE | usage);
         let buffers = Self {
             uniform: gpu.buffer("params", size_of::<Params>() / 4, BufferUsages::UNIFORM),
-            steps: gpu.buffer("steps", (BATCH * STEP_WORDS) as usize, BufferUsages::UNIFORM),
+            steps: gpu.buffer("steps", Step::words().len(), BufferUsages::UNIFORM),
             // A page may draw from these two without a copy.
             positions: drawn("positions", upload.words().len(), BufferUsages::VERTEX),
             triangles: drawn("triangles", 3 * count, BufferUsages::INDEX),
@@ -50,8 +51,7 @@ impl Buffers {
                 .then(|| drawn("floats", mesh.positions().len(), BufferUsages::VERTEX)),
         };
         gpu.write(&buffers.triangles, mesh.triangles());
-        let indices: Vec<u32> = (0..BATCH * STEP_WORDS).map(|word| word / STEP_WORDS).collect();
-        gpu.write(&buffers.steps, &indices);
+        gpu.write(&buffers.steps, &Step::words());
         buffers.write_positions(gpu, upload);
         buffers
     }
@@ -88,8 +88,9 @@ impl Buffers {
             uniform, steps, positions, triangles, twins, choices, frontier, history, topology, ..
         } = self;
         let whole = [positions, triangles, twins, choices, frontier, history, topology];
-        let mut buffers = vec![(uniform, None), (steps, Some(4))];
+        let mut buffers = vec![(uniform, None), (steps, Some(8))];
         buffers.extend(whole.map(|buffer| (buffer, None)));
+        buffers.push((&gpu.numbers, None));
         gpu.bind(layout, &buffers)
     }
 }

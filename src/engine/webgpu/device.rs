@@ -1,9 +1,10 @@
 //! A GPU's device, with the kernels compiled for it.
 
-#[cfg(target_arch = "wasm32")]
-use super::browser;
 use super::faults::{Fault, Word, refuse, unavailable, watch};
-use super::kernels::{self, Kernels, WORKGROUP_SIZE};
+use super::kernels::{Kernels, Plan, WORKGROUP_SIZE};
+use super::programs;
+#[cfg(target_arch = "wasm32")]
+use super::{ahead, browser};
 use crate::Error;
 use crate::engine::probe::ends_loops_early;
 use crate::engine::self_test::Tested;
@@ -46,6 +47,8 @@ pub(crate) struct Device {
     pub(super) ends_loops_early: bool,
     pub(crate) tested: Tested,
     failure: Failure,
+    /// Programs and lanes of exact arithmetic: nothing of a mesh stays there.
+    pub(super) numbers: Buffer,
     pub(super) adjacency: Kernels,
     /// By the form of meshes, once one has needed them.
     phases: Mutex<[Option<Arc<Kernels>>; Form::COUNT]>,
@@ -56,6 +59,22 @@ type Failure = Arc<Mutex<Option<String>>>;
 
 fn report(failure: &Failure, message: String) {
     failure.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).get_or_insert(message);
+}
+
+fn new_buffer(device: &wgpu::Device, label: &str, words: usize, usage: BufferUsages) -> Buffer {
+    Buffer(device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some(label),
+        size: 4 * words.max(4) as u64,
+        usage: usage | BufferUsages::COPY_DST | BufferUsages::COPY_SRC,
+        mapped_at_creation: false,
+    }))
+}
+
+/// With the programs in it.
+fn numbers(device: &wgpu::Device, queue: &wgpu::Queue) -> Buffer {
+    let buffer = new_buffer(device, "numbers", programs::WORDS, BufferUsages::STORAGE);
+    queue.write_buffer(&buffer, 0, bytemuck::cast_slice(&programs::words()));
+    buffer
 }
 
 /// Waits for the device's word on kernels.
@@ -132,8 +151,14 @@ impl Device {
             #[cfg(all(target_arch = "wasm32", feature = "js"))]
             super::shared::let_idle_go();
         });
-        let compile = || (kernels::adjacency(&device), kernels::probe(&device));
-        let ((adjacency, probe), word) = watch(&device, compile);
+        let (adjacency, probe) = (Plan::adjacency(), Plan::probe());
+        #[cfg(target_arch = "wasm32")]
+        let _ahead = (ahead::compiled(&adjacency, &device).await, ahead::compiled(&probe, &device).await);
+        let (adjacency, word) = adjacency.compile(&device);
+        accepted(word).await?;
+        let (probe, word) = probe.compile(&device);
+        accepted(word).await?;
+        let (numbers, word) = watch(&device, || numbers(&device, &queue));
         accepted(word).await?;
         let limits = device.limits();
         let largest = limits.max_compute_invocations_per_workgroup.min(limits.max_compute_workgroup_size_x);
@@ -148,6 +173,7 @@ impl Device {
             ends_loops_early: false,
             tested: Tested::default(),
             failure,
+            numbers,
             adjacency,
             phases: Mutex::default(),
         };
@@ -164,14 +190,19 @@ impl Device {
     /// [`Error::BackendUnavailable`] if the device's compiler refuses them.
     pub(super) async fn phases(&self, form: Form) -> Result<Arc<Kernels>, Error> {
         let known = || self.phases.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+        if let Some(kernels) = &known()[form.index()] {
+            return Ok(kernels.clone());
+        }
+        let plan = Plan::phases(form, self.tail_size);
+        #[cfg(target_arch = "wasm32")]
+        let _ahead = ahead::compiled(&plan, &self.device).await;
         let (kernels, word) = {
             let place = &mut known()[form.index()];
             if let Some(kernels) = place {
                 return Ok(kernels.clone());
             }
-            let (kernels, word) =
-                watch(&self.device, || Arc::new(kernels::phases(&self.device, form, self.tail_size)));
-            (place.insert(kernels).clone(), word)
+            let (kernels, word) = plan.compile(&self.device);
+            (place.insert(Arc::new(kernels)).clone(), word)
         };
         let result = accepted(word).await;
         if result.is_err() {
@@ -243,12 +274,7 @@ impl Device {
 
     /// A buffer of `words` words of zeros, readable by copies. Never empty: a binding cannot be.
     pub(super) fn buffer(&self, label: &str, words: usize, usage: BufferUsages) -> Buffer {
-        Buffer(self.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some(label),
-            size: 4 * words.max(4) as u64,
-            usage: usage | BufferUsages::COPY_DST | BufferUsages::COPY_SRC,
-            mapped_at_creation: false,
-        }))
+        new_buffer(&self.device, label, words, usage)
     }
 
     /// Binds whole buffers in the order of the layout, except those with a size given in bytes.

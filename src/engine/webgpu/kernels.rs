@@ -1,5 +1,6 @@
 //! The kernels, compiled from `shaders/` as `build.rs` leaves them, and their bindings.
 
+use super::faults::{Word, watch};
 use crate::engine::upload::Form;
 use crate::mesh::Dimension;
 use wgpu::{BindingType, BufferBindingType};
@@ -13,24 +14,38 @@ macro_rules! shaders {
     };
 }
 
-/// The shaders of the phases, for meshes of one form, in an order in which a reader can follow them: of those kernels
-/// that only read lists and history, and of the others.
-pub(super) fn phases_sources(form: Form) -> [String; 2] {
-    let points = if form.is_fixed { shaders!("fixed") } else { shaders!("floats") };
-    let (geometry, creases, embedded) = match form.dimension {
-        Dimension::Two => (shaders!("plane"), "", shaders!("embedded")),
-        Dimension::Three => (shaders!("space" "narrow"), shaders!("creases" "flag_creases"), ""),
+/// The shaders of the phases, for meshes of one form, in an order in which a reader can follow them: of the kernels that only
+/// read lists and history, of those that write them, and of exact arithmetic.
+pub(super) fn phases_sources(form: Form) -> [String; 3] {
+    let points = if form.is_fixed { shaders!("points" "fixed") } else { shaders!("points" "floats") };
+    let (geometry, numbers, creases, preparation) = match form.dimension {
+        Dimension::Two => (shaders!("plane"), shaders!("plane_numbers"), "", shaders!("embedded")),
+        Dimension::Three => (
+            shaders!("space"),
+            shaders!("space_numbers"),
+            shaders!("creases" "flag_creases"),
+            shaders!("prepare_creases"),
+        ),
     };
-    let deviation = match (form.dimension, form.has_deviation) {
-        (Dimension::Two, _) => "",
-        (_, false) => shaders!("any_deviation"),
-        (_, true) => shaders!("deviation"),
+    let (deviation, far) = match (form.dimension, form.has_deviation) {
+        (Dimension::Two, _) => ("", ""),
+        (_, false) => (shaders!("any_deviation"), ""),
+        (_, true) => (shaders!("deviation"), shaders!("deviation_numbers")),
     };
-    let numbers = [shaders!("mesh" "exact" "state" "points"), points, geometry, deviation].concat();
-    let phases = shaders!("verdict" "star" "guard" "verdicts" "label" "select" "active" "doubts");
+    let common = [shaders!("mesh" "state"), points, geometry, deviation].concat();
+    let phases = shaders!("star" "guard" "verdicts" "label" "active" "doubts");
     [
-        [&numbers, shaders!("reads"), phases, creases, shaders!("sweeps")].concat(),
-        [&numbers, shaders!("atomics"), phases, embedded, shaders!("slot" "flip" "frontier" "iteration")]
+        [&common, shaders!("reads"), phases, shaders!("select" "sweeps")].concat(),
+        [
+            &common,
+            shaders!("atomics"),
+            phases,
+            creases,
+            preparation,
+            shaders!("select" "slot" "flip" "frontier" "iteration" "census"),
+        ]
+        .concat(),
+        [&common, shaders!("reads"), phases, creases, shaders!("numbers"), far, numbers, shaders!("decide")]
             .concat(),
     ]
 }
@@ -50,10 +65,10 @@ pub(crate) enum Kernel {
     Flip,
     Tail,
     Census,
-    /// Before the first iteration: the turns of the stars in 2D, the creases in 3D.
+    /// Before the first iteration: the signs of the triangles in 2D, the creases in 3D.
     Prepare,
-    /// The rest of that.
-    Complete,
+    /// The turns of the stars, in 2D.
+    Turn,
     /// Which stars are embedded, in 2D.
     Mark,
 }
@@ -67,7 +82,7 @@ impl Kernel {
         Self::Tail,
         Self::Census,
         Self::Prepare,
-        Self::Complete,
+        Self::Turn,
         Self::Mark,
     ];
 
@@ -75,80 +90,189 @@ impl Kernel {
     fn all(dimension: Dimension) -> &'static [Self] {
         match dimension {
             Dimension::Two => &Self::ALL,
-            Dimension::Three => &Self::ALL[..Self::Mark as usize],
+            Dimension::Three => &Self::ALL[..=Self::Prepare as usize],
         }
     }
 
-    /// The kernels before the first iteration.
+    /// The kernels before the first iteration; exact arithmetic decides between the first of them and the others.
     pub(super) fn preparation(dimension: Dimension) -> &'static [Self] {
-        &Self::all(dimension)[Self::Prepare as usize..]
+        match dimension {
+            Dimension::Two => &[Self::Prepare, Self::Decide, Self::Turn, Self::Mark],
+            Dimension::Three => &[Self::Prepare, Self::Decide],
+        }
     }
 
     /// The kernels of one iteration.
     pub(crate) const ITERATION: [Self; 4] = [Self::Label, Self::Decide, Self::Select, Self::Flip];
 
     /// In the sources of [`phases_sources`].
-    fn entry(self, dimension: Dimension, tail_size: u32) -> Entry {
-        match (self, dimension) {
-            (Self::Label, _) => (READS, "label_all", None),
-            (Self::Decide, _) => (READS, "decide_all", None),
-            (Self::Select, _) => (READS, "select_all", None),
-            (Self::Flip, _) => (WRITES, "flip_all", None),
-            (Self::Tail, _) => (WRITES, "tail", Some(("TAIL_SIZE", f64::from(tail_size)))),
-            (Self::Census, _) => (WRITES, "census", None),
-            (Self::Prepare, Dimension::Two) => (WRITES, "count_turns", Some(("EXACT", 0.0))),
-            (Self::Complete, Dimension::Two) => (WRITES, "count_turns", None),
-            (Self::Mark, _) => (WRITES, "mark_embedded", None),
-            (Self::Prepare, Dimension::Three) => (READS, "flag_creases", Some(("EXACT", 0.0))),
-            (Self::Complete, Dimension::Three) => (READS, "flag_creases", None),
+    fn entry(self, tail_size: u32) -> Entry {
+        match self {
+            Self::Label => (READS, "label_all", None),
+            Self::Decide => (NUMBERS, "decide_all", None),
+            Self::Select => (READS, "select_all", None),
+            Self::Flip => (WRITES, "flip_all", None),
+            Self::Tail => (WRITES, "tail", Some(("TAIL_SIZE", f64::from(tail_size)))),
+            Self::Census => (WRITES, "census", None),
+            Self::Prepare => (WRITES, "prepare_all", None),
+            Self::Turn => (WRITES, "count_turns", None),
+            Self::Mark => (WRITES, "mark_embedded", None),
         }
     }
 }
 
-/// Places of the sources that only read lists and history, and that write them.
+/// Places of the sources.
 const READS: usize = 0;
 const WRITES: usize = 1;
+const NUMBERS: usize = 2;
 
 /// The place of a source, an entry point in it, and one of its constants that is not as the source says.
-type Entry = (usize, &'static str, Option<(&'static str, f64)>);
+pub(super) type Entry = (usize, &'static str, Option<(&'static str, f64)>);
 
-/// The pipelines of one shader, which share their bindings.
+/// The pipelines of some kernels, which share their bindings.
 pub(super) struct Kernels {
     pub(super) layout: wgpu::BindGroupLayout,
     pub(super) pipelines: Vec<wgpu::ComputePipeline>,
 }
 
-/// count, allocate, scatter, match_twins, count_corners, count_fans.
-pub(super) fn adjacency(device: &wgpu::Device) -> Kernels {
+/// What is compiled together: entry points of sources that have the same bindings.
+pub(super) struct Plan {
+    pub(super) bindings: Vec<BindingType>,
+    pub(super) sources: Vec<String>,
+    pub(super) entries: Vec<Entry>,
+}
+
+impl Plan {
+    /// count, allocate, scatter, match_twins, count_corners, count_fans.
+    pub(super) fn adjacency() -> Self {
+        let (read, write) = (storage(true), storage(false));
+        let names = ["count", "allocate", "scatter", "match_twins", "count_corners", "count_fans"];
+        Self {
+            bindings: vec![uniform(false), read, write, write, write, write],
+            sources: vec![ADJACENCY.to_owned()],
+            entries: names.map(|name| (0, name, None)).to_vec(),
+        }
+    }
+
+    /// In the order of [`Kernel`]; the tail has so many invocations.
+    pub(super) fn phases(form: Form, tail_size: u32) -> Self {
+        let entries = Kernel::all(form.dimension).iter().map(|kernel| kernel.entry(tail_size)).collect();
+        Self { bindings: phases_bindings(), sources: phases_sources(form).into(), entries }
+    }
+
+    pub(super) fn probe() -> Self {
+        Self {
+            bindings: vec![storage(false)],
+            sources: vec![PROBE.to_owned()],
+            entries: vec![(0, "probe", None)],
+        }
+    }
+
+    /// Says how often the filter decides.
+    #[cfg(test)]
+    pub(super) fn tiers(form: Form) -> Self {
+        let [_, writes, _] = phases_sources(form);
+        let source = [&writes, include_str!("tiers.wgsl")].concat();
+        Self { bindings: phases_bindings(), sources: vec![source], entries: vec![(0, "tiers", None)] }
+    }
+
+    /// The pipelines, and the device's word on them.
+    pub(super) fn compile(&self, device: &wgpu::Device) -> (Kernels, Word) {
+        let (parts, word) = watch(device, || Parts::new(self, device));
+        let (pipelines, words) = parts.pipelines(self, device);
+        let all = async move {
+            let mut faults = vec![word.await];
+            for word in words {
+                faults.push(word.await);
+            }
+            faults.into_iter().flatten().next()
+        };
+        (Kernels { pipelines, layout: parts.layout }, Box::pin(all))
+    }
+}
+
+/// What pipelines are made of.
+struct Parts {
+    layout: wgpu::BindGroupLayout,
+    pipeline_layout: wgpu::PipelineLayout,
+    modules: Vec<wgpu::ShaderModule>,
+}
+
+impl Parts {
+    fn new(plan: &Plan, device: &wgpu::Device) -> Self {
+        let places: Vec<_> = plan
+            .bindings
+            .iter()
+            .zip(0u32..)
+            .map(|(&ty, binding)| wgpu::BindGroupLayoutEntry {
+                binding,
+                visibility: wgpu::ShaderStages::COMPUTE,
+                ty,
+                count: None,
+            })
+            .collect();
+        let layout = device
+            .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: None, entries: &places });
+        let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: None,
+            bind_group_layouts: &[Some(&layout)],
+            immediate_size: 0,
+        });
+        let module = |source: &String| {
+            device.create_shader_module(wgpu::ShaderModuleDescriptor {
+                label: None,
+                source: wgpu::ShaderSource::Wgsl(source.as_str().into()),
+            })
+        };
+        Self { layout, pipeline_layout, modules: plan.sources.iter().map(module).collect() }
+    }
+
+    fn pipeline(&self, (place, name, constant): &Entry, device: &wgpu::Device) -> wgpu::ComputePipeline {
+        device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: Some(*name),
+            layout: Some(&self.pipeline_layout),
+            module: &self.modules[*place],
+            entry_point: Some(*name),
+            compilation_options: wgpu::PipelineCompilationOptions {
+                constants: constant.as_slice(),
+                ..Default::default()
+            },
+            cache: None,
+        })
+    }
+
+    /// All at the same time: a driver compiles on the thread that asks for it, and takes long.
+    #[cfg(not(target_arch = "wasm32"))]
+    fn pipelines(&self, plan: &Plan, device: &wgpu::Device) -> (Vec<wgpu::ComputePipeline>, Vec<Word>) {
+        let compile = |entry| {
+            let (pipeline, word) = watch(device, || self.pipeline(entry, device));
+            (pipeline, pollster::block_on(word))
+        };
+        std::thread::scope(|scope| {
+            let others: Vec<_> =
+                plan.entries[1..].iter().map(|entry| scope.spawn(|| compile(entry))).collect();
+            let first = compile(&plan.entries[0]);
+            let joined = others
+                .into_iter()
+                .map(|thread| thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)));
+            std::iter::once(first)
+                .chain(joined)
+                .map(|(pipeline, fault)| -> (_, Word) { (pipeline, Box::pin(std::future::ready(fault))) })
+                .unzip()
+        })
+    }
+
+    #[cfg(target_arch = "wasm32")]
+    fn pipelines(&self, plan: &Plan, device: &wgpu::Device) -> (Vec<wgpu::ComputePipeline>, Vec<Word>) {
+        let compile = || plan.entries.iter().map(|entry| self.pipeline(entry, device)).collect();
+        let (pipelines, word) = watch(device, compile);
+        (pipelines, vec![word])
+    }
+}
+
+fn phases_bindings() -> Vec<BindingType> {
     let (read, write) = (storage(true), storage(false));
-    let names = ["count", "allocate", "scatter", "match_twins", "count_corners", "count_fans"];
-    let entries = names.map(|name| -> Entry { (0, name, None) });
-    kernels(device, &[uniform(false), read, write, write, write, write], &[ADJACENCY], &entries)
-}
-
-/// In the order of [`Kernel`]; the tail has so many invocations.
-pub(super) fn phases(device: &wgpu::Device, form: Form, tail_size: u32) -> Kernels {
-    let sources = phases_sources(form);
-    let entries: Vec<_> =
-        Kernel::all(form.dimension).iter().map(|kernel| kernel.entry(form.dimension, tail_size)).collect();
-    kernels(device, &phases_bindings(), &sources.each_ref().map(String::as_str), &entries)
-}
-
-fn phases_bindings() -> [BindingType; 9] {
-    let (read, write) = (storage(true), storage(false));
-    [uniform(false), uniform(true), read, write, write, write, write, write, write]
-}
-
-/// Says how often the filter decides.
-#[cfg(test)]
-pub(super) fn tiers(device: &wgpu::Device, form: Form) -> Kernels {
-    let [_, writes] = phases_sources(form);
-    let source = [&writes, include_str!("tiers.wgsl")].concat();
-    kernels(device, &phases_bindings(), &[&source], &[(0, "tiers", None)])
-}
-
-pub(super) fn probe(device: &wgpu::Device) -> Kernels {
-    kernels(device, &[storage(false)], &[PROBE], &[(0, "probe", None)])
+    vec![uniform(false), uniform(true), read, write, write, write, write, write, write, write]
 }
 
 fn uniform(has_dynamic_offset: bool) -> BindingType {
@@ -161,46 +285,4 @@ fn storage(read_only: bool) -> BindingType {
 
 fn binding(ty: BufferBindingType, has_dynamic_offset: bool) -> BindingType {
     BindingType::Buffer { ty, has_dynamic_offset, min_binding_size: None }
-}
-
-/// Entry points of shaders that have the same bindings.
-fn kernels(device: &wgpu::Device, bindings: &[BindingType], sources: &[&str], entries: &[Entry]) -> Kernels {
-    let places: Vec<_> = bindings
-        .iter()
-        .zip(0u32..)
-        .map(|(&ty, binding)| wgpu::BindGroupLayoutEntry {
-            binding,
-            visibility: wgpu::ShaderStages::COMPUTE,
-            ty,
-            count: None,
-        })
-        .collect();
-    let layout =
-        device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: None, entries: &places });
-    let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        label: None,
-        bind_group_layouts: &[Some(&layout)],
-        immediate_size: 0,
-    });
-    let module = |source: &&str| {
-        device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: None,
-            source: wgpu::ShaderSource::Wgsl((*source).into()),
-        })
-    };
-    let modules: Vec<_> = sources.iter().map(module).collect();
-    let pipeline = |(place, name, constant): &Entry| {
-        device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-            label: Some(*name),
-            layout: Some(&pipeline_layout),
-            module: &modules[*place],
-            entry_point: Some(*name),
-            compilation_options: wgpu::PipelineCompilationOptions {
-                constants: constant.as_slice(),
-                ..Default::default()
-            },
-            cache: None,
-        })
-    };
-    Kernels { pipelines: entries.iter().map(pipeline).collect(), layout }
 }

@@ -6,6 +6,8 @@
 
 mod adjacency;
 #[cfg(target_arch = "wasm32")]
+mod ahead;
+#[cfg(target_arch = "wasm32")]
 mod browser;
 mod buffers;
 mod copies;
@@ -16,8 +18,10 @@ mod host;
 mod kernels;
 mod limits;
 mod params;
+mod programs;
 mod shared;
 mod start;
+mod steps;
 #[cfg(test)]
 mod tests;
 
@@ -38,8 +42,12 @@ use crate::mesh::Mesh;
 use crate::phases::Thresholds;
 use buffers::Buffers;
 use kernels::Kernels;
+#[cfg(test)]
+use kernels::Plan;
 use params::Params;
+use programs::{DECIDERS, LANE_COUNT};
 use std::sync::Arc;
+use steps::Step;
 
 /// Iterations with a dispatch for each phase in one submission.
 const BATCH: u32 = 12;
@@ -47,11 +55,12 @@ const BATCH: u32 = 12;
 const TAIL: u32 = 256;
 /// The same where loops end too early.
 const SHORT_TAIL: u32 = 4;
-/// Words from one step to the next: the alignment of a dynamic offset that every device offers.
-const STEP_WORDS: u32 = 64;
+/// How often it may pause in a submission for exact arithmetic.
+const PAUSES: u32 = 8;
 
 // Words of the history, as in `state.wgsl`.
-const ENTRIES: usize = 6;
+const COUNTS: usize = 6;
+const ENTRIES: usize = 8;
 const ENTRY_WORDS: usize = 4;
 const HISTORY_WORDS: usize = ENTRIES + ENTRY_WORDS * (1 + BATCH as usize + TAIL as usize);
 
@@ -83,17 +92,21 @@ impl WebGpu {
         self.params.tail = batch;
         self.params.tail_iterations =
             (count - batch).min(if self.gpu.ends_loops_early { SHORT_TAIL } else { TAIL });
-        self.dispatches += u64::from(4 * batch + self.params.tail_iterations.min(1));
+        self.dispatches += u64::from(4 * batch + self.params.tail_iterations.min(1) * (1 + 2 * PAUSES));
         let record = |pass: &mut wgpu::ComputePass| {
-            let groups = self.gpu.workgroups(self.params.triangles);
-            for step in 0..batch {
-                pass.set_bind_group(0, &self.bindings, &[4 * step * STEP_WORDS]);
+            for index in 0..batch {
+                self.at_step(pass, Step::Iterate(index));
                 for kernel in Kernel::ITERATION {
-                    self.dispatch(pass, kernel, groups);
+                    self.dispatch(pass, kernel, self.params.triangles);
                 }
             }
             if self.params.tail_iterations > 0 {
                 self.dispatch(pass, Kernel::Tail, 1);
+                self.at_step(pass, Step::Resume);
+                for _ in 0..PAUSES {
+                    self.dispatch(pass, Kernel::Decide, self.params.tail_length);
+                    self.dispatch(pass, Kernel::Tail, 1);
+                }
             }
         };
         let history = self.read_history(&record).await?;
@@ -138,9 +151,16 @@ impl WebGpu {
         encoder
     }
 
-    fn dispatch(&self, pass: &mut wgpu::ComputePass, kernel: Kernel, workgroups: u32) {
+    fn at_step(&self, pass: &mut wgpu::ComputePass, step: Step) {
+        pass.set_bind_group(0, &self.bindings, &[step.offset()]);
+    }
+
+    /// For so many triangles.
+    fn dispatch(&self, pass: &mut wgpu::ComputePass, kernel: Kernel, triangles: u32) {
+        let groups = self.gpu.workgroups(triangles);
+        let groups = if kernel == Kernel::Decide { groups.min(LANE_COUNT / DECIDERS) } else { groups };
         pass.set_pipeline(&self.kernels.pipelines[kernel as usize]);
-        pass.dispatch_workgroups(workgroups, 1, 1);
+        pass.dispatch_workgroups(groups, 1, 1);
     }
 
     async fn run(&mut self, count: u32) -> Result<Vec<u32>, Error> {
@@ -161,22 +181,30 @@ impl WebGpu {
     }
 
     async fn count(&mut self) -> Result<Census, Error> {
-        self.dispatches += 1;
-        let counts = self.count_by(&self.kernels.pipelines[Kernel::Census as usize]).await?;
+        self.dispatches += 3;
+        let counts = self
+            .count_by(&|pass| {
+                for (step, kernel) in [
+                    (Step::Census, Kernel::Census),
+                    (Step::Census, Kernel::Decide),
+                    (Step::Resume, Kernel::Census),
+                ] {
+                    self.at_step(pass, step);
+                    self.dispatch(pass, kernel, self.params.triangles);
+                }
+            })
+            .await?;
         Ok(Census::of_counts(&counts))
     }
 
-    /// What a kernel counts of all half-edges.
-    async fn count_by(&self, kernel: &wgpu::ComputePipeline) -> Result<Vec<u32>, Error> {
+    /// What kernels count.
+    async fn count_by(&self, record: &dyn Fn(&mut wgpu::ComputePass)) -> Result<Vec<u32>, Error> {
         let commands = || {
             let history = &self.buffers.history;
             self.gpu.queue.write_buffer(history, 0, bytemuck::cast_slice(&[0u32; ENTRIES]));
-            self.encode(&|pass| {
-                pass.set_pipeline(kernel);
-                pass.dispatch_workgroups(self.gpu.workgroups(3 * self.params.triangles), 1, 1);
-            })
+            self.encode(record)
         };
-        self.gpu.submit_and_read(&commands, &self.buffers.history, ENTRIES).await
+        self.gpu.submit_and_read(&commands, &self.buffers.history, COUNTS).await
     }
 }
 
@@ -248,15 +276,18 @@ impl Engine for WebGpu {
 impl WebGpu {
     /// Runs one phase of the next iteration; after the flips, which end it, returns their number.
     pub(crate) async fn run_phase(&mut self, kernel: Kernel) -> Result<u32, Error> {
-        let groups = self.gpu.workgroups(self.params.triangles);
-        let history = self.read_history(&|pass| self.dispatch(pass, kernel, groups)).await?;
+        let history = self.read_history(&|pass| self.dispatch(pass, kernel, self.params.triangles)).await?;
         Ok(self.take_over(&history).last().copied().unwrap_or(0))
     }
 
     /// Interior edges that the filter decides, and those that it does not.
     pub(crate) async fn tiers(&self) -> Result<[u32; 2], Error> {
-        let kernels = kernels::tiers(&self.gpu.device, self.form);
-        let counts = self.count_by(&kernels.pipelines[0]).await?;
+        let (kernels, _) = Plan::tiers(self.form).compile(&self.gpu.device);
+        let record = |pass: &mut wgpu::ComputePass| {
+            pass.set_pipeline(&kernels.pipelines[0]);
+            pass.dispatch_workgroups(self.gpu.workgroups(self.params.triangles), 1, 1);
+        };
+        let counts = self.count_by(&record).await?;
         Ok([counts[0], counts[1]])
     }
 

@@ -48,8 +48,7 @@ pub(super) struct Params {
     pub(super) embedded: u32,
     pub(super) knows_winding: u32,
     pub(super) is_strict: u32,
-    pub(super) cos_mantissa: [i32; 8],
-    pub(super) cos_power: [i32; 8],
+    pub(super) cos_digits: [[i32; 8]; 2],
     pub(super) deviation: [u32; 4],
 }
 
@@ -76,8 +75,7 @@ impl Params {
             embedded: topology.embedded,
             knows_winding: 0,
             is_strict: 0,
-            cos_mantissa: cosine.mantissa,
-            cos_power: cosine.power,
+            cos_digits: [cosine.mantissa, cosine.power],
             deviation: upload.deviation,
         }
     }

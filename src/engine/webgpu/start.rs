@@ -6,6 +6,7 @@ use super::faults::refuse;
 use super::kernels::Kernel;
 use super::limits::{refuse_large_buffer, refuse_large_mesh};
 use super::params::{Params, Places};
+use super::steps::Step;
 use super::{Entry, Handle, WebGpu};
 use crate::engine::probe::SHORT_STAR;
 use crate::engine::upload::Upload;
@@ -82,9 +83,9 @@ impl WebGpu {
         // The turns of stars are counted in the frontier.
         encoder.clear_buffer(&self.buffers.frontier, 0, None);
         let mut pass = encoder.begin_compute_pass(&Default::default());
-        pass.set_bind_group(0, &self.bindings, &[0]);
+        self.at_step(&mut pass, Step::Prepare);
         for &kernel in Kernel::preparation(self.form.dimension) {
-            self.dispatch(&mut pass, kernel, self.gpu.workgroups(self.params.triangles));
+            self.dispatch(&mut pass, kernel, self.params.triangles);
         }
         drop(pass);
         // What is left there would be taken for stamps.

@@ -5,9 +5,9 @@
 use super::adjacency::BUCKETS_EACH;
 use super::copies::{CHUNK, PIECE};
 use super::device::Device;
-use super::kernels::{ADJACENCY, PROBE, WORKGROUP_SIZE, phases_sources};
+use super::kernels::{ADJACENCY, PROBE, Plan, WORKGROUP_SIZE, phases_sources};
 use super::params::Params;
-use super::{ENTRIES, ENTRY_WORDS};
+use super::{COUNTS, ENTRIES, ENTRY_WORDS, programs};
 use crate::adjacency::{CREASE, FLAGS, LOCKED};
 use crate::engine::cosine::DIGIT_BITS;
 use crate::engine::upload::{Form, SPAN};
@@ -16,6 +16,7 @@ use crate::{Dimension, Error, NONE, Reason};
 use pollster::block_on;
 use std::collections::HashMap;
 use std::mem::offset_of;
+use std::time::Instant;
 
 /// Every shader.
 fn sources() -> Vec<String> {
@@ -24,7 +25,7 @@ fn sources() -> Vec<String> {
 
 /// The phases on surfaces.
 fn space() -> naga::Module {
-    let [_, writes] =
+    let [_, writes, _] =
         phases_sources(Form { dimension: Dimension::Three, is_fixed: false, has_deviation: true });
     parse(&writes)
 }
@@ -70,7 +71,7 @@ fn constants_of_the_phases_agree() {
         ("FLAGS", u64::from(FLAGS)),
         ("WORKGROUP_SIZE", u64::from(WORKGROUP_SIZE)),
         ("SPAN", u64::from(SPAN)),
-        ("DIGIT_BITS", u64::from(DIGIT_BITS)),
+        ("COUNTS", COUNTS as u64),
         ("ENTRIES", ENTRIES as u64),
         ("ENTRY_WORDS", ENTRY_WORDS as u64),
         ("REASON_ANGLE", Reason::Angle as u64),
@@ -79,7 +80,7 @@ fn constants_of_the_phases_agree() {
         ("REASON_LOCKED", Reason::Locked as u64),
         ("REASON_DEVIATION", Reason::Deviation as u64),
         // The host reads the census and an entry by place.
-        ("CENSUS", 0),
+        ("COUNTED", 0),
         ("LABELLED", 1),
         ("BLOCKED_BY", 2),
         ("FLIPS", 0),
@@ -90,7 +91,45 @@ fn constants_of_the_phases_agree() {
     for (name, value) in host {
         assert_eq!(shader.get(name), Some(&value), "{name}");
     }
-    // The longest numbers, see `exact.wgsl`: a difference, and n·m times the power of cos β.
+}
+
+#[test]
+fn constants_of_exact_arithmetic_agree() {
+    let form = Form { dimension: Dimension::Three, is_fixed: false, has_deviation: true };
+    let [_, _, space] = phases_sources(form);
+    let [_, _, plane] = phases_sources(Form { dimension: Dimension::Two, has_deviation: false, ..form });
+    let (space, plane) = (parse(&space), parse(&plane));
+    let (space, plane) = (constants(&space), constants(&plane));
+    let places = [
+        ("DIFFERENCES", programs::P),
+        ("VECTOR", programs::Q - programs::P),
+        ("MANTISSA", programs::MANTISSA),
+        ("POWER", programs::POWER),
+        ("DIAGONALS", programs::E),
+        ("ALLOWED", programs::ALLOWED),
+        ("PQ", programs::PQ),
+        ("RS", programs::RS),
+        ("N", programs::N),
+        ("M", programs::M),
+        ("COSINE", programs::COSINE),
+        ("LAST", programs::LAST),
+        ("OFFSET", programs::LAST),
+    ];
+    let sizes = [
+        ("DIGIT_BITS", DIGIT_BITS),
+        ("LANES", programs::LANES as u32),
+        ("STEP", programs::STEP as u32),
+        ("LANE_COUNT", programs::LANE_COUNT),
+        ("DECIDERS", programs::DECIDERS),
+    ];
+    for (name, value) in places.into_iter().chain(sizes) {
+        assert_eq!(space[name], u64::from(value), "{name}");
+    }
+    for (name, place) in [("FIRST", programs::N), ("SECOND", programs::M)] {
+        assert_eq!(plane[name], u64::from(place), "{name}");
+    }
+    assert!(programs::words().len() <= programs::LANES);
+    // The longest numbers: a difference, and n·m times the power of cos β, which has a word for its length and one more digit.
     let digits = |bits: u32| (bits + 1).div_ceil(DIGIT_BITS);
     assert!(digits(SPAN + 1) <= 7 && digits(4 * (SPAN + 1) + 6 + 106) <= 36);
 }
@@ -135,8 +174,7 @@ fn params_have_one_layout() {
         embedded,
         knows_winding,
         is_strict,
-        cos_mantissa,
-        cos_power,
+        cos_digits,
         deviation
     );
     let shader = members(&space(), "Params");
@@ -168,6 +206,53 @@ fn shaders_stay_within_the_limits_of_every_browser() {
             }
         }
     }
+}
+
+/// Words of the longest kernel in SPIR-V: what a driver has to compile before the first result.
+const MOST_WORDS: usize = 18_000;
+
+/// `cargo test --release --lib one_by_one -- --nocapture` prints what each kernel takes on the device there is, unless its
+/// driver has compiled it before: `__GL_SHADER_DISK_CACHE=0` or `MESA_SHADER_CACHE_DISABLE=true` lets it forget.
+#[test]
+fn kernels_are_short_one_by_one() {
+    let (adapter, is_software) = block_on(Device::find_adapter()).unwrap();
+    let gpu = block_on(Device::open(adapter, is_software)).unwrap();
+    println!("{}\n\n| kernels | kernel | SPIR-V words | ms |\n|---|---|---:|---:|", gpu.adapter);
+    let form = |dimension, has_deviation| Form { dimension, is_fixed: false, has_deviation };
+    let plans = [
+        ("plane", Plan::phases(form(Dimension::Two, false), WORKGROUP_SIZE)),
+        ("space", Plan::phases(form(Dimension::Three, false), WORKGROUP_SIZE)),
+        ("deviation", Plan::phases(form(Dimension::Three, true), WORKGROUP_SIZE)),
+        ("adjacency", Plan::adjacency()),
+    ];
+    for (name, Plan { bindings, sources, entries }) in plans {
+        for entry in entries {
+            let words = spirv_words(&sources[entry.0], entry.1);
+            let one = Plan { bindings: bindings.clone(), sources: sources.clone(), entries: vec![entry] };
+            let start = Instant::now();
+            let (_, word) = one.compile(&gpu.device);
+            let ms = start.elapsed().as_secs_f64() * 1e3;
+            assert!(block_on(word).is_none(), "{name}: {}", entry.1);
+            println!("| {name} | {} | {words} | {ms:.0} |", entry.1);
+            assert!(words <= MOST_WORDS, "{name}: {} has {words} words", entry.1);
+        }
+    }
+}
+
+/// Of one entry point and what it calls.
+fn spirv_words(source: &str, entry: &str) -> usize {
+    let mut module = parse(source);
+    module.entry_points.retain(|point| point.name == entry);
+    naga::compact::compact(&mut module, naga::compact::KeepUnused::No);
+    let mut validator = naga::valid::Validator::new(
+        naga::valid::ValidationFlags::all(),
+        naga::valid::Capabilities::default(),
+    );
+    // Constants that are set when a pipeline is made take their own values.
+    let info = validator.validate(&module).unwrap();
+    let (module, info) =
+        naga::back::pipeline_constants::process_overrides(&module, &info, None, &Default::default()).unwrap();
+    naga::back::spv::write_vec(&module, &info, &naga::back::spv::Options::default(), None).unwrap().len()
 }
 
 /// Chromium's compiler (seen in 156, on SwiftShader) does not clear a variable that is declared in a loop without

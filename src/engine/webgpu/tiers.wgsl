@@ -9,7 +9,7 @@ fn tiers(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) grou
             let c = position(vertex(prev(h)));
             let d = position(vertex(prev(g)));
             let verdict = filtered_verdict_on(a, b, c, d, select(1, -1, is_clockwise(h / 3u)));
-            atomicAdd(&history[CENSUS + select(0u, 1u, verdict == UNDECIDED)], 1u);
+            atomicAdd(&history[COUNTED + select(0u, 1u, verdict == UNDECIDED)], 1u);
         }
     }
 }

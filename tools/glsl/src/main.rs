@@ -50,7 +50,7 @@ const FIXED_DEVIATION: [Program; 1] = [("verdict3_fixed_deviation", "verdict_pas
 /// The program of an entry point, with the files that say what a point is and what the dimension is.
 fn glsl(entry_point: &str, points: &str, geometry: &str) -> Result<String, Box<dyn Error>> {
     let source = [
-        shaders!("mesh" "exact" "textures" "points"),
+        shaders!("mesh" "digits" "textures" "points"),
         points,
         geometry,
         shaders!("verdict" "star" "guard" "label" "select" "slot" "rounds" "passes"),
@@ -88,9 +88,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let path = std::env::args().nth(1).ok_or("usage: glsl FILE")?;
     let mut programs = BTreeMap::new();
     let (floats, fixed) = (shaders!("floats"), shaders!("fixed"));
-    let plane = shaders!("plane");
-    let space = shaders!("space" "wide" "any_deviation" "creases" "crease_pass");
-    let deviation = shaders!("space" "wide" "deviation" "creases" "crease_pass");
+    let plane = shaders!("plane" "plane_digits");
+    let space = shaders!("space" "any_deviation" "space_digits" "creases" "crease_pass");
+    let deviation = shaders!("space" "deviation" "deviation_digits" "space_digits" "creases" "crease_pass");
     for (points, geometry, list) in [
         (floats, plane, &PLANE[..]),
         (floats, space, &SPACE[..]),

@@ -42,12 +42,6 @@ fn digit_of(column: i32) -> i32 {
     return ((column + HALF_DIGIT) & DIGIT_MASK) - HALF_DIGIT;
 }
 
-// The sign of the highest digit that is not zero, or `below` if all are.
-fn highest_sign(digits: vec4i, below: i32) -> i32 {
-    let signs = sign(digits);
-    return select(select(select(select(below, signs.x, signs.x != 0), signs.y, signs.y != 0), signs.z, signs.z != 0), signs.w, signs.w != 0);
-}
-
 fn medium_sign(x: Medium) -> i32 {
     return highest_sign(x[3], highest_sign(x[2], highest_sign(x[1], highest_sign(x[0], 0))));
 }

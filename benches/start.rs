@@ -1,0 +1,78 @@
+//! What each engine takes from the first call of a process to its result: cold, where the driver has compiled none of the
+//! kernels before, and warm, where it has. `cargo bench --bench start -- [--runs N] [FAMILY…]`.
+//!
+//! Drivers of NVIDIA and Mesa are told by their own variables to keep no compiled kernels; another driver may be warm in both.
+//! `cargo test --release --lib one_by_one -- --nocapture` prints the kernels one by one.
+
+use edgeflip::{Backend, Options, families, make_delaunay};
+use std::process::Command;
+use std::sync::Arc;
+use std::time::Instant;
+use std::{env, error::Error, ops::ControlFlow};
+
+#[path = "arguments/mod.rs"]
+mod arguments;
+use arguments::{Arguments, median};
+
+/// By what this program asks itself for one job.
+const JOB: &str = "EDGEFLIP_START_JOB";
+
+/// What drivers keep compiled kernels by, and how each is told not to.
+const CACHES: [(&str, &str); 2] = [("__GL_SHADER_DISK_CACHE", "0"), ("MESA_SHADER_CACHE_DISABLE", "true")];
+
+const ENGINES: [(&str, Backend); 3] = [("cpu", Backend::Cpu), ("gpu", Backend::Gpu), ("auto", Backend::Auto)];
+
+fn main() -> Result<(), Box<dyn Error>> {
+    if let Ok(job) = env::var(JOB) {
+        return one_job(&job);
+    }
+    let Arguments { runs, specs } = Arguments::read(5, &["random 100", "uvsphere 100"])?;
+    println!(
+        "Milliseconds from the call to the result, the driver and the device included; medians of {runs} processes each."
+    );
+    println!();
+    println!("| mesh | engine | cold | warm | the same again in one process |");
+    println!("|---|---|---:|---:|---:|");
+    for spec in &specs {
+        for (name, _) in ENGINES {
+            let jobs =
+                |is_cold| (0..runs).map(|_| in_a_process(name, spec, is_cold)).collect::<Result<Vec<_>, _>>();
+            let cold = jobs(true)?;
+            // One more fills the caches.
+            in_a_process(name, spec, false)?;
+            let warm = jobs(false)?;
+            let of = |jobs: &[[f64; 2]], which: usize| median(jobs.iter().map(|job| job[which]).collect());
+            println!("| {spec} | {name} | {:.1} | {:.1} | {:.1} |", of(&cold, 0), of(&warm, 0), of(&warm, 1));
+        }
+    }
+    Ok(())
+}
+
+/// The times of the first job of a process and of a second one.
+fn in_a_process(engine: &str, spec: &str, is_cold: bool) -> Result<[f64; 2], Box<dyn Error>> {
+    let mut command = Command::new(env::current_exe()?);
+    command.env(JOB, format!("{engine} {spec}"));
+    if is_cold {
+        command.envs(CACHES);
+    }
+    let output = command.output()?;
+    if !output.status.success() {
+        return Err(String::from_utf8_lossy(&output.stderr).into_owned().into());
+    }
+    let text = String::from_utf8(output.stdout)?;
+    let times: Vec<f64> = text.split_whitespace().map(str::parse).collect::<Result<_, _>>()?;
+    <[f64; 2]>::try_from(times).map_err(|times| format!("two times were expected, not {times:?}").into())
+}
+
+fn one_job(job: &str) -> Result<(), Box<dyn Error>> {
+    let (name, spec) = job.split_once(' ').ok_or("an engine and a mesh are expected")?;
+    let (_, backend) = ENGINES.into_iter().find(|(engine, _)| *engine == name).ok_or("no such engine")?;
+    let mesh = Arc::new(families::by_name(spec)?);
+    let options = Options { backend, ..Options::default() };
+    for _ in 0..2 {
+        let start = Instant::now();
+        make_delaunay(mesh.clone(), &options, |_, _| ControlFlow::Continue(()))?;
+        println!("{}", start.elapsed().as_secs_f64() * 1e3);
+    }
+    Ok(())
+}

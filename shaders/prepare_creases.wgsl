@@ -1,0 +1,10 @@
+// The entry point of the creases, before the first iteration on a surface.
+
+@compute @workgroup_size(WORKGROUP_SIZE)
+fn prepare_all(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
+    for (var t = id.x; t < params.triangles; t += groups.x * WORKGROUP_SIZE) {
+        let verdicts = filtered_creases(t);
+        flag_creases(t, verdicts);
+        choices[t] = wait_for(t, any(verdicts == vec3u(UNDECIDED)));
+    }
+}
