@@ -20,6 +20,7 @@ mod off;
 mod original;
 #[cfg(not(target_arch = "wasm32"))]
 mod output;
+mod pieces;
 mod ply;
 mod stl;
 #[cfg(not(target_arch = "wasm32"))]
@@ -41,6 +42,7 @@ pub use output::{Output, Staged, rewrite, write};
 #[cfg(not(target_arch = "wasm32"))]
 pub use temporary::remove_temporary_files;
 
+use crate::threads::Threads;
 use crate::{Dimension, Error, Mesh, Options, Positions, Welded, welded};
 use original::Original;
 use std::borrow::Cow;
@@ -221,16 +223,16 @@ impl Loaded {
         }
         let mesh = self.mesh.with_triangles(triangles)?;
         let content = match &self.document {
-            Some(document) if format.is_gltf() => {
-                Content::Bytes(document.with_triangles(before, mesh.triangles(), format == Format::Glb)?)
-            }
+            Some(document) if format.is_gltf() => Content::Parts(vec![
+                document.with_triangles(before, mesh.triangles(), format == Format::Glb)?.into(),
+            ]),
             Some(document) => {
                 let placed = document.placed(&mesh);
                 Content::Mesh(Mesh::new(Dimension::Three, placed, mesh.triangles().to_vec())?)
             }
             None => match &self.original {
                 Some(original) if original.format == format => {
-                    Content::Bytes(original.with_triangles(&self.mesh, &mesh)?)
+                    Content::Parts(original.with_triangles(&self.mesh, &mesh)?)
                 }
                 _ => Content::Mesh(mesh),
             },
@@ -238,7 +240,7 @@ impl Loaded {
         let is_packed = gzip::is_named(name);
         Ok(move |out: &mut dyn Write| {
             gzip::write(is_packed, out, |mut out| match &content {
-                Content::Bytes(bytes) => out.write_all(bytes),
+                Content::Parts(parts) => parts.iter().try_for_each(|part| out.write_all(part)),
                 Content::Mesh(mesh) => write_to(format, mesh, &mut out),
             })
         })
@@ -246,8 +248,8 @@ impl Loaded {
 }
 
 /// What a file is written of.
-enum Content {
-    Bytes(Vec<u8>),
+enum Content<'a> {
+    Parts(Vec<Cow<'a, [u8]>>),
     Mesh(Mesh),
 }
 
@@ -294,10 +296,17 @@ pub fn parse_with<'a>(
         Format::Stl => (stl::parse(&bytes)?, stl::is_held(&bytes)),
         Format::Gltf | Format::Glb => return gltf::load(bytes.into_owned(), options, read),
     };
+    // The corners of OBJ may refer to what is not there.
+    let is_plain = parsed.dropped.0.is_empty() && format != Format::Obj;
     let loaded = finish(parsed, options.dimension)?;
     let max_bytes = options.max_bytes;
-    let original =
-        (options.keep && can_be_held).then(|| Original { format, bytes: bytes.into_owned(), max_bytes });
+    let plain = is_plain.then_some(loaded.mesh.triangle_count());
+    let original = (options.keep && can_be_held).then(|| Original {
+        format,
+        bytes: bytes.into_owned(),
+        max_bytes,
+        plain,
+    });
     Ok(Loaded { original, ..loaded })
 }
 
@@ -406,7 +415,8 @@ fn finish(parsed: Parsed, dimension: Option<Dimension>) -> Result<Loaded, Error>
         Positions::F32(numbers) => with_stride(numbers, stride, dimension.stride()).into(),
         Positions::F64(numbers) => with_stride(numbers, stride, dimension.stride()).into(),
     };
-    let mesh = Mesh::new(dimension, positions, faces.triangles)?;
+    let threads = Threads::default().for_triangles(faces.triangles.len() / 3);
+    let mesh = Mesh::checked(dimension, positions, faces.triangles, &threads)?;
     Ok(Loaded {
         mesh,
         polygons: faces.polygons,

@@ -2,7 +2,10 @@
 //! Source: the Geomview manual, "OFF Files". Text only, read line by line.
 
 use super::original::{Face, Faces, Numbers, line_end, place};
-use super::text::{Digits, Dropped, Fans, Lines, Parsed, Tokens, coordinate, float, integer, quoted};
+use super::pieces::{self, Piece};
+use super::text::{
+    Digits, Dropped, Fans, Lines, Parsed, Tokens, coordinate, float, integer, quoted, without_comment,
+};
 use crate::{Error, Mesh};
 use std::io::{self, Write};
 
@@ -13,15 +16,28 @@ const COLOURS: &str = "face colours";
 pub(super) fn parse(bytes: &[u8]) -> Result<Parsed, Error> {
     let mut lines = Lines::new(bytes);
     let header = Header::parse(&mut lines)?;
-    let mut dropped = Dropped::default();
-    let positions = vertices(&mut lines, &header, &mut dropped)?;
-    let faces = faces(&mut lines, &header, &mut dropped)?;
-    if let Some(line) = content(&mut lines) {
-        let found = quoted(line.0.trim_ascii());
-        let message = format!("expected the end of the file after {} faces, found {found}", header.faces);
-        return Err(lines.refuse(message));
+    let threads = pieces::threads(lines.bytes_left());
+    let pieces = pieces::cut(&lines, is_content, &threads);
+    let parts = threads.map_each(pieces, |piece| Part::read(piece, &header));
+    let (mut positions, mut faces, mut dropped) = (Vec::new(), Vec::new(), Dropped::default());
+    let (mut found, mut end) = (0, lines);
+    for part in parts {
+        let part = part?;
+        positions.push(part.positions);
+        faces.push(part.faces);
+        part.dropped.0.iter().for_each(|what| dropped.note(what));
+        (found, end) = (part.found, part.end);
     }
-    Ok(Parsed { stride: header.stride, positions: positions.into(), faces, dropped })
+    let Header { stride, vertices, faces: announced, .. } = header;
+    let message = match found.checked_sub(vertices) {
+        None => format!("the file ends after {found} of {vertices} vertices"),
+        Some(found) if found < announced => format!("the file ends after {found} of {announced} faces"),
+        Some(_) => {
+            let positions = pieces::joined(positions, &threads).into();
+            return Ok(Parsed { stride, positions, faces: Fans::joined(faces, &threads), dropped });
+        }
+    };
+    Err(end.refuse(message))
 }
 
 /// The faces of a file that has been read; what follows the vertices of one is its colour.
@@ -29,16 +45,30 @@ pub(super) fn held_faces(bytes: &[u8]) -> Result<Faces<'_>, Error> {
     let mut lines = Lines::new(bytes);
     let header = Header::parse(&mut lines)?;
     let counts = header.growing.iter().map(|count| place(bytes, count)).collect();
-    let vertices = usize::try_from(header.vertices).unwrap_or(usize::MAX);
-    let (mut list, mut colours) = (Vec::new(), Numbers::default());
-    for line in std::iter::from_fn(|| content(&mut lines)).skip(vertices) {
-        let line = line.0.trim_ascii();
-        let mut rest = Tokens(line);
-        let corners = rest.next().and_then(integer).and_then(|corners| usize::try_from(corners).ok());
-        let corners = rest.by_ref().take(corners.unwrap_or_default()).count();
-        let colour = rest.0.trim_ascii_start();
-        let group = colours.of(&colour);
-        list.push(Face { bytes: place(bytes, line), triangles: corners.saturating_sub(2), group });
+    let threads = pieces::threads(lines.bytes_left());
+    let pieces = pieces::cut(&lines, is_content, &threads);
+    let parts = threads.map_each(pieces, |Piece { mut lines, items }| {
+        let vertices = usize::try_from(header.vertices.saturating_sub(items.start)).unwrap_or(usize::MAX);
+        let (mut list, mut colours) = (Vec::new(), Numbers::default());
+        for line in std::iter::from_fn(|| content(&mut lines)).skip(vertices) {
+            let line = line.0.trim_ascii();
+            let mut rest = Tokens(line);
+            let corners = rest.next().and_then(integer).and_then(|corners| usize::try_from(corners).ok());
+            let corners = rest.by_ref().take(corners.unwrap_or_default()).count();
+            let colour = rest.0.trim_ascii_start();
+            let group = colours.of(&colour);
+            list.push(Face { bytes: place(bytes, line), triangles: corners.saturating_sub(2), group });
+        }
+        (list, colours.into_known())
+    });
+    let (mut lists, mut colours) = (Vec::new(), Numbers::default());
+    for (mut list, known) in parts {
+        // The groups of a piece become those of the file.
+        let groups: Vec<u32> = known.iter().map(|colour| colours.of(colour)).collect();
+        if groups.iter().zip(0..).any(|(&group, own)| group != own) {
+            list.iter_mut().for_each(|face| face.group = groups[face.group as usize]);
+        }
+        lists.push(list);
     }
     let colours = colours.into_known();
     let write = move |out: &mut Vec<u8>, group: u32, triangle: [u32; 3], _: [u32; 3]| {
@@ -55,46 +85,42 @@ pub(super) fn held_faces(bytes: &[u8]) -> Result<Faces<'_>, Error> {
         }
         Ok(())
     };
-    Ok(Faces { list, corners: Vec::new(), counts, separator: line_end(bytes), write: Box::new(write) })
+    Ok(Faces { lists, corners: Vec::new(), counts, separator: line_end(bytes), write: Box::new(write) })
 }
 
 /// Writes `mesh`; z is 0 in a 2D mesh.
 pub(super) fn write(mesh: &Mesh, out: &mut impl Write) -> io::Result<()> {
-    let (mut digits, mut line) = (Digits::default(), Vec::new());
     writeln!(out, "OFF\n{} {} 0", mesh.vertex_count(), mesh.triangle_count())?;
     let stride = mesh.dimension().stride();
-    for vertex in 0..mesh.vertex_count() {
-        line.clear();
+    pieces::write(mesh.vertex_count(), out, |vertex, digits, text| {
         for i in stride * vertex..stride * (vertex + 1) {
-            digits.coordinate(&mut line, mesh.positions(), i);
-            line.push(b' ');
+            digits.coordinate(text, mesh.positions(), i);
+            text.push(b' ');
         }
         if stride == 2 {
-            line.extend_from_slice(b"0 ");
+            text.extend_from_slice(b"0 ");
         }
-        line.pop();
-        line.push(b'\n');
-        out.write_all(&line)?;
-    }
-    for triangle in mesh.triangles().chunks_exact(3) {
-        line.clear();
-        line.push(b'3');
-        for &v in triangle {
-            line.push(b' ');
-            digits.integer(&mut line, u64::from(v));
+        text.pop();
+        text.push(b'\n');
+    })?;
+    let triangles = mesh.triangles().as_chunks::<3>().0;
+    pieces::write(triangles.len(), out, |triangle, digits, text| {
+        text.push(b'3');
+        for v in triangles[triangle] {
+            text.push(b' ');
+            digits.integer(text, u64::from(v));
         }
-        line.push(b'\n');
-        out.write_all(&line)?;
-    }
-    Ok(())
+        text.push(b'\n');
+    })
 }
 
 /// The next line that holds more than white space and a comment.
 fn content<'a>(lines: &mut Lines<'a>) -> Option<Tokens<'a>> {
-    lines
-        .map(super::text::without_comment)
-        .find(|line| line.iter().any(|b| !b.is_ascii_whitespace()))
-        .map(Tokens)
+    lines.find(|line| is_content(line)).map(without_comment).map(Tokens)
+}
+
+fn is_content(line: &[u8]) -> bool {
+    without_comment(line).iter().any(|b| !b.is_ascii_whitespace())
 }
 
 /// What the keyword and the counts announce.
@@ -205,34 +231,59 @@ fn capacity(lines: &Lines, count: u64, numbers: usize) -> usize {
     usize::try_from(count).unwrap_or(usize::MAX).min(limit)
 }
 
-fn vertices(lines: &mut Lines, header: &Header, dropped: &mut Dropped) -> Result<Vec<f32>, Error> {
-    let stride = header.stride;
-    let mut positions = Vec::with_capacity(stride * capacity(lines, header.vertices, stride));
-    for vertex in 0..header.vertices {
-        let Some(mut tokens) = content(lines) else {
-            let announced = header.vertices;
-            return Err(lines.refuse(format!("the file ends after {vertex} of {announced} vertices")));
-        };
-        for found in 0..stride {
-            let Some(token) = tokens.next() else {
-                return Err(lines.refuse(format!("expected {stride} coordinates, found {found}")));
-            };
-            positions.push(coordinate(token).map_err(|message| lines.refuse(message))?);
-        }
-        drop_numbers(lines, tokens, ATTRIBUTES, dropped)?;
-    }
-    Ok(positions)
+/// What a piece of the file holds.
+struct Part<'a> {
+    positions: Vec<f32>,
+    faces: Fans,
+    dropped: Dropped,
+    /// How many vertices and faces there are up to its end.
+    found: u64,
+    end: Lines<'a>,
 }
 
-fn faces(lines: &mut Lines, header: &Header, dropped: &mut Dropped) -> Result<Fans, Error> {
-    let mut fans = Fans::default();
-    fans.triangles.reserve_exact(3 * capacity(lines, header.faces, 4));
-    let mut corners = Vec::new();
-    for face in 0..header.faces {
-        let Some(mut tokens) = content(lines) else {
-            let announced = header.faces;
-            return Err(lines.refuse(format!("the file ends after {face} of {announced} faces")));
+impl<'a> Part<'a> {
+    fn read(Piece { lines, items }: Piece<'a>, header: &Header) -> Result<Self, Error> {
+        let &Header { stride, vertices, faces, .. } = header;
+        let count = |first: u64, end: u64| end.min(items.end).saturating_sub(first.max(items.start));
+        let positions = stride * capacity(&lines, count(0, vertices), stride);
+        let triangles = 3 * capacity(&lines, count(vertices, vertices + faces), 4);
+        let fans = Fans { triangles: Vec::with_capacity(triangles), polygons: 0 };
+        let dropped = Dropped::default();
+        let mut part = Self {
+            positions: Vec::with_capacity(positions),
+            faces: fans,
+            dropped,
+            found: items.start,
+            end: lines,
         };
+        let mut corners = Vec::new();
+        while let Some(tokens) = content(&mut part.end) {
+            match part.found.checked_sub(vertices) {
+                None => part.vertex(tokens, stride)?,
+                Some(face) if face < faces => part.face(tokens, vertices, &mut corners)?,
+                Some(_) => {
+                    let found = quoted(tokens.0.trim_ascii());
+                    let message = format!("expected the end of the file after {faces} faces, found {found}");
+                    return Err(part.end.refuse(message));
+                }
+            }
+            part.found += 1;
+        }
+        Ok(part)
+    }
+
+    fn vertex(&mut self, mut tokens: Tokens, stride: usize) -> Result<(), Error> {
+        for found in 0..stride {
+            let Some(token) = tokens.next() else {
+                return Err(self.end.refuse(format!("expected {stride} coordinates, found {found}")));
+            };
+            self.positions.push(coordinate(token).map_err(|message| self.end.refuse(message))?);
+        }
+        drop_numbers(&self.end, tokens, ATTRIBUTES, &mut self.dropped)
+    }
+
+    fn face(&mut self, mut tokens: Tokens, vertices: u64, corners: &mut Vec<u32>) -> Result<(), Error> {
+        let lines = &self.end;
         let first = tokens.next().unwrap_or_default();
         let Some(size) = integer(first) else {
             let message = format!("expected a face's number of corners, found {}", quoted(first));
@@ -246,12 +297,11 @@ fn faces(lines: &mut Lines, header: &Header, dropped: &mut Dropped) -> Result<Fa
             let Some(token) = tokens.next() else {
                 return Err(lines.refuse(format!("expected {size} vertex indices, found {found}")));
             };
-            corners.push(index(token, header.vertices).map_err(|message| lines.refuse(message))?);
+            corners.push(index(token, vertices).map_err(|message| lines.refuse(message))?);
         }
-        fans.push(&corners);
-        drop_numbers(lines, tokens, COLOURS, dropped)?;
+        self.faces.push(corners);
+        drop_numbers(lines, tokens, COLOURS, &mut self.dropped)
     }
-    Ok(fans)
 }
 
 /// A vertex index below `vertices`, or what is wrong with it.

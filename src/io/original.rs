@@ -1,13 +1,16 @@
 //! A file that is held to be written again with other triangles, and all else as it was: what OFF, OBJ, PLY and STL
 //! share of that. A format says where its faces are, what they and their corners have, and how it writes a triangle.
 
-use super::{Format, obj, off, ply, stl};
+use super::{Format, obj, off, pieces, ply, stl};
+use crate::threads::Threads;
 use crate::{Adjacency, Error, Mesh, NONE, Options, Wedges, locks, reoriented};
 use memchr::memchr2;
-use std::borrow::Borrow;
+use std::borrow::{Borrow, Cow};
 use std::collections::HashMap;
 use std::hash::Hash;
 use std::ops::Range;
+use std::sync::atomic::AtomicU64;
+use std::sync::atomic::Ordering::Relaxed;
 
 /// A file as it was read, unpacked and without UTF-16.
 #[derive(Clone, Debug, PartialEq)]
@@ -16,11 +19,20 @@ pub(super) struct Original {
     pub(super) bytes: Vec<u8>,
     /// Bytes that it may have, also when it is written again.
     pub(super) max_bytes: u64,
+    /// Its triangles, where it is known that neither its faces nor their corners have attributes.
+    pub(super) plain: Option<usize>,
 }
+
+/// Faces that are written by one thread at a time.
+const FACES: usize = 1 << 14;
+
+/// Bytes that one thread writes before all are counted again.
+const COUNTED: usize = 1 << 16;
 
 /// The faces of a file, in its order.
 pub(super) struct Faces<'a> {
-    pub(super) list: Vec<Face>,
+    /// Lists that follow each other.
+    pub(super) lists: Vec<Vec<Face>>,
     /// A number for each corner of their triangles, equal at corners of a vertex of which the file says the same; empty
     /// where it says nothing of any.
     pub(super) corners: Vec<u32>,
@@ -32,7 +44,7 @@ pub(super) struct Faces<'a> {
     pub(super) write: Write<'a>,
 }
 
-type Write<'a> = Box<dyn Fn(&mut Vec<u8>, u32, [u32; 3], [u32; 3]) -> Result<(), Error> + 'a>;
+type Write<'a> = Box<dyn Fn(&mut Vec<u8>, u32, [u32; 3], [u32; 3]) -> Result<(), Error> + Sync + 'a>;
 
 /// A face that makes triangles.
 pub(super) struct Face {
@@ -47,6 +59,9 @@ pub(super) struct Face {
 impl Original {
     /// Adds to `options` what keeps the attributes where they are, and returns how many edges that locks.
     pub(super) fn constrain(&self, mesh: &Mesh, options: &mut Options) -> Result<usize, Error> {
+        if self.plain == Some(mesh.triangle_count()) {
+            return Ok(0);
+        }
         let faces = self.faces(mesh)?;
         let mut own = Options { groups: faces.groups(), ..Options::default() };
         for wedges in faces.wedges(mesh)? {
@@ -71,48 +86,42 @@ impl Original {
         Ok(locked.len())
     }
 
-    /// The bytes of the file of `mesh` with the triangles of `after`, as many. Faces of which no triangle is another stay
-    /// as they are; the others give way to their triangles.
-    pub(super) fn with_triangles(&self, mesh: &Mesh, after: &Mesh) -> Result<Vec<u8>, Error> {
-        let faces = self.faces(mesh)?;
+    /// The bytes of the file of `mesh` with the triangles of `after`, as many, in parts. Faces of which no triangle is
+    /// another stay as they are; the others give way to their triangles.
+    pub(super) fn with_triangles(&self, mesh: &Mesh, after: &Mesh) -> Result<Vec<Cow<'_, [u8]>>, Error> {
+        let threads = pieces::threads(self.bytes.len());
+        let faces = &self.faces(mesh)?;
         let corners = faces.carried(mesh, after)?;
-        let [before, after, corners] =
-            [mesh.triangles(), after.triangles(), &corners].map(|numbers| numbers.as_chunks::<3>().0);
+        let lists = faces.lists();
+        let start = lists.first().map_or(self.bytes.len(), |list| list[0].bytes.start);
+        let ends = lists.iter().skip(1).map(|list| list[0].bytes.start).chain([self.bytes.len()]);
         let mut first = 0;
-        let changed = faces.list.iter().filter_map(|face| {
-            let triangles = first..first + face.triangles;
-            first = triangles.end;
-            (before[triangles.clone()] != after[triangles.clone()]).then_some((face, triangles))
+        let pieces = lists.iter().zip(ends).zip(faces.triangles(&threads)).map(|((list, end), count)| {
+            first += count;
+            Piece { list, first: first - count, end }
         });
-        let changed: Vec<_> = changed.collect();
-        let more: u64 = changed.iter().map(|(face, _)| face.triangles as u64 - 1).sum();
-        let mut out = Vec::with_capacity(self.bytes.len());
-        let mut copied = 0;
+        let rewriting = Rewriting {
+            original: self,
+            faces,
+            triangles: [mesh.triangles(), after.triangles(), &corners].map(|numbers| numbers.as_chunks().0),
+            length: AtomicU64::new(start as u64),
+        };
+        let parts = threads.map_each(pieces.collect(), |piece| rewriting.piece(&piece));
+        // First of all errors, so that it is the same for any number of threads.
+        rewriting.refuse_too_long()?;
+        let parts = parts.into_iter().collect::<Result<Vec<_>, _>>()?;
+        let more: u64 = parts.iter().map(|(_, more)| more).sum();
+        let (mut all, mut copied) = (Vec::new(), 0);
         for count in faces.counts.iter().filter(|_| more > 0) {
-            out.extend_from_slice(&self.bytes[copied..count.start]);
+            all.push(Cow::Borrowed(&self.bytes[copied..count.start]));
             let number = super::text::integer(&self.bytes[count.clone()]).unwrap_or_default();
             // That of edges can be any.
-            out.extend_from_slice(number.saturating_add_unsigned(more).to_string().as_bytes());
+            all.push(Cow::Owned(number.saturating_add_unsigned(more).to_string().into_bytes()));
             copied = count.end;
         }
-        for (face, triangles) in changed {
-            out.extend_from_slice(&self.bytes[copied..face.bytes.start]);
-            copied = face.bytes.end;
-            let start = triangles.start;
-            for triangle in triangles {
-                if triangle > start {
-                    out.extend_from_slice(faces.separator);
-                }
-                let corners = corners.get(triangle).copied().unwrap_or_default();
-                (faces.write)(&mut out, face.group, after[triangle], corners)?;
-                // What a polygon has, each of its triangles has.
-                if out.len() as u64 > self.max_bytes {
-                    return Err(Error::FileTooLarge { limit: self.max_bytes, option: "max_bytes" });
-                }
-            }
-        }
-        out.extend_from_slice(&self.bytes[copied..]);
-        Ok(out)
+        all.push(Cow::Borrowed(&self.bytes[copied..start]));
+        all.extend(parts.into_iter().map(|(bytes, _)| Cow::Owned(bytes)));
+        Ok(all)
     }
 
     fn faces<'a>(&'a self, mesh: &'a Mesh) -> Result<Faces<'a>, Error> {
@@ -123,19 +132,96 @@ impl Original {
             Format::Ply => ply::held_faces(bytes, mesh),
             _ => Ok(stl::held_faces(bytes, mesh)),
         }?;
-        let expected = 3 * faces.list.iter().map(|face| face.triangles).sum::<usize>();
+        let expected = 3 * faces.triangles(&pieces::threads(bytes.len())).iter().sum::<usize>();
         let length = mesh.triangles().len();
         if length == expected { Ok(faces) } else { Err(Error::TriangleCount { length, expected }) }
     }
 }
 
+/// Faces that follow each other, on their way into another file.
+struct Piece<'a> {
+    list: &'a [Face],
+    /// The number of their first triangle.
+    first: usize,
+    /// Where what follows them ends.
+    end: usize,
+}
+
+/// A file that is written again.
+struct Rewriting<'a> {
+    original: &'a Original,
+    faces: &'a Faces<'a>,
+    /// Before and after, and the numbers of the corners.
+    triangles: [&'a [[u32; 3]]; 3],
+    /// Bytes that have been written by all threads. It only grows, so what it refuses does not depend on who is first.
+    length: AtomicU64,
+}
+
+impl Rewriting<'_> {
+    /// The bytes of a piece, and how many faces it has more.
+    fn piece(&self, piece: &Piece) -> Result<(Vec<u8>, u64), Error> {
+        let (bytes, [before, after, corners]) = (&self.original.bytes, self.triangles);
+        let mut copied = piece.list[0].bytes.start;
+        let mut out = Vec::with_capacity(piece.end - copied);
+        let (mut counted, mut more, mut next) = (0, 0, piece.first);
+        for face in piece.list {
+            let triangles = next..next + face.triangles;
+            next = triangles.end;
+            if before[triangles.clone()] == after[triangles.clone()] {
+                continue;
+            }
+            out.extend_from_slice(&bytes[copied..face.bytes.start]);
+            copied = face.bytes.end;
+            more += face.triangles as u64 - 1;
+            let start = triangles.start;
+            for triangle in triangles {
+                if triangle > start {
+                    out.extend_from_slice(self.faces.separator);
+                }
+                let corners = corners.get(triangle).copied().unwrap_or_default();
+                (self.faces.write)(&mut out, face.group, after[triangle], corners)?;
+                // What a polygon has, each of its triangles has.
+                if out.len() >= counted + COUNTED {
+                    self.length.fetch_add((out.len() - counted) as u64, Relaxed);
+                    counted = out.len();
+                    self.refuse_too_long()?;
+                }
+            }
+        }
+        out.extend_from_slice(&bytes[copied..piece.end]);
+        self.length.fetch_add((out.len() - counted) as u64, Relaxed);
+        Ok((out, more))
+    }
+
+    fn refuse_too_long(&self) -> Result<(), Error> {
+        let limit = self.original.max_bytes;
+        if self.length.load(Relaxed) > limit {
+            return Err(Error::FileTooLarge { limit, option: "max_bytes" });
+        }
+        Ok(())
+    }
+}
+
 impl Faces<'_> {
+    /// All faces, in lists for one thread each.
+    fn lists(&self) -> Vec<&[Face]> {
+        self.lists.iter().flat_map(|list| list.chunks(FACES)).collect()
+    }
+
+    /// How many triangles each list has.
+    fn triangles(&self, threads: &Threads) -> Vec<usize> {
+        threads.map_each(self.lists(), |list| list.iter().map(|face| face.triangles).sum())
+    }
+
     /// The group of each triangle; nothing if there is only one.
     fn groups(&self) -> Vec<u32> {
-        if self.list.iter().all(|face| face.group == self.list[0].group) {
+        let mut faces = self.lists.iter().flatten();
+        let Some(first) = faces.next() else { return Vec::new() };
+        if faces.all(|face| face.group == first.group) {
             return Vec::new();
         }
-        self.list.iter().flat_map(|face| std::iter::repeat_n(face.group, face.triangles)).collect()
+        let faces = self.lists.iter().flatten();
+        faces.flat_map(|face| std::iter::repeat_n(face.group, face.triangles)).collect()
     }
 
     /// The wedges of the mesh as it is and, where triangles are turned against each other, as [`reoriented`] turns them.

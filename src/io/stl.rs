@@ -69,7 +69,13 @@ pub(super) fn held_faces<'a>(bytes: &'a [u8], mesh: &'a Mesh) -> Faces<'a> {
         out.extend_from_slice(&bytes_of(corners, (group as u16).to_le_bytes()));
         Ok(())
     };
-    Faces { list, corners: Vec::new(), counts: Vec::new(), separator: b"", write: Box::new(write) }
+    Faces {
+        lists: vec![list],
+        corners: Vec::new(),
+        counts: Vec::new(),
+        separator: b"",
+        write: Box::new(write),
+    }
 }
 
 /// How many facets the header of a binary file announces.

@@ -2,6 +2,8 @@
 
 mod gzip;
 mod original;
+#[cfg(feature = "threads")]
+mod pieces;
 mod ply;
 mod stl;
 

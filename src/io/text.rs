@@ -1,6 +1,8 @@
 //! What the formats share: lines with their numbers, tokens, exact numbers, faces cut into triangles, and what a parser
 //! hands over.
 
+use super::pieces;
+use crate::threads::Threads;
 use crate::{Error, Positions};
 use memchr::{memchr, memchr2};
 
@@ -8,9 +10,11 @@ use memchr::{memchr, memchr2};
 const QUOTE: usize = 32;
 
 /// The lines of a file, ended by LF, CRLF or CR, with their 1-based numbers.
+#[derive(Clone)]
 pub(super) struct Lines<'a> {
-    rest: &'a [u8],
-    number: usize,
+    pub(super) rest: &'a [u8],
+    /// How many lines are before the rest.
+    pub(super) number: usize,
 }
 
 impl<'a> Lines<'a> {
@@ -135,6 +139,13 @@ impl Fans {
         for pair in rest.windows(2) {
             self.triangles.extend_from_slice(&[first, pair[0], pair[1]]);
         }
+    }
+
+    /// Those of the pieces of a file, in order.
+    pub(super) fn joined(parts: Vec<Self>, threads: &Threads) -> Self {
+        let polygons = parts.iter().map(|part| part.polygons).sum();
+        let triangles = parts.into_iter().map(|part| part.triangles).collect();
+        Self { triangles: pieces::joined(triangles, threads), polygons }
     }
 }
 

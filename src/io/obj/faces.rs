@@ -82,7 +82,13 @@ pub(in crate::io) fn held_faces<'a>(bytes: &'a [u8], mesh: &Mesh) -> Faces<'a> {
         }
         Ok(())
     };
-    Faces { list, corners, counts: Vec::new(), separator: line_end(bytes), write: Box::new(write) }
+    Faces {
+        lists: vec![list],
+        corners,
+        counts: Vec::new(),
+        separator: line_end(bytes),
+        write: Box::new(write),
+    }
 }
 
 fn after_keyword(line: &[u8]) -> &[u8] {

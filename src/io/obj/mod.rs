@@ -5,8 +5,9 @@ mod faces;
 
 pub(super) use faces::held_faces;
 
+use super::pieces;
 use super::text::{
-    Digits, Dropped, Fans, Lines, Parsed, Tokens, coordinate, float, integer, quoted, without_comment,
+    Dropped, Fans, Lines, Parsed, Tokens, coordinate, float, integer, quoted, without_comment,
 };
 use crate::{Error, Mesh};
 use std::borrow::Cow;
@@ -29,29 +30,24 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Parsed, Error> {
 
 /// Writes `mesh`; z is 0 in a 2D mesh.
 pub(super) fn write(mesh: &Mesh, out: &mut impl Write) -> io::Result<()> {
-    let (mut digits, mut line) = (Digits::default(), Vec::new());
     let stride = mesh.dimension().stride();
-    for vertex in 0..mesh.vertex_count() {
-        line.clear();
-        line.push(b'v');
+    pieces::write(mesh.vertex_count(), out, |vertex, digits, text| {
+        text.push(b'v');
         for i in stride * vertex..stride * (vertex + 1) {
-            line.push(b' ');
-            digits.coordinate(&mut line, mesh.positions(), i);
+            text.push(b' ');
+            digits.coordinate(text, mesh.positions(), i);
         }
-        line.extend_from_slice(if stride == 2 { b" 0\n" } else { b"\n" });
-        out.write_all(&line)?;
-    }
-    for triangle in mesh.triangles().chunks_exact(3) {
-        line.clear();
-        line.push(b'f');
-        for &v in triangle {
-            line.push(b' ');
-            digits.integer(&mut line, u64::from(v) + 1);
+        text.extend_from_slice(if stride == 2 { b" 0\n" } else { b"\n" });
+    })?;
+    let triangles = mesh.triangles().as_chunks::<3>().0;
+    pieces::write(triangles.len(), out, |triangle, digits, text| {
+        text.push(b'f');
+        for v in triangles[triangle] {
+            text.push(b' ');
+            digits.integer(text, u64::from(v) + 1);
         }
-        line.push(b'\n');
-        out.write_all(&line)?;
-    }
-    Ok(())
+        text.push(b'\n');
+    })
 }
 
 /// The mesh read so far.

@@ -78,7 +78,7 @@ fn of<'a>(
         let corners = corners.map(|corner| coordinates.get(corner as usize).copied().unwrap_or_default());
         form.write(out, &groups[group as usize], triangle, corners)
     };
-    Ok(Faces { list, corners, counts, separator, write: Box::new(write) })
+    Ok(Faces { lists: vec![list], corners, counts, separator, write: Box::new(write) })
 }
 
 impl<'a> Form<'a> {

@@ -1,0 +1,93 @@
+//! Files in pieces, for several threads: text is cut at the ends of lines, and what is written is put together in order.
+//! Neither what is read nor what is written depends on how many pieces there are.
+
+use super::text::{Digits, Lines};
+use crate::threads::Threads;
+use std::io::{self, Write};
+use std::ops::Range;
+
+/// Bytes that a triangle takes in a file, at least nearly: smaller files are done on one thread.
+const TRIANGLE: usize = 16;
+
+/// Items that are held as bytes at a time, before they are written.
+const HELD: usize = 1 << 17;
+
+/// Bytes that are made room for, for each item.
+const ITEM: usize = 24;
+
+/// A piece of a text.
+pub(super) struct Piece<'a> {
+    /// With their numbers in the file.
+    pub(super) lines: Lines<'a>,
+    /// Which of the file's items are in it; of the only piece nobody has counted them.
+    pub(super) items: Range<u64>,
+}
+
+/// Those that are worth while for so many bytes.
+pub(super) fn threads(bytes: usize) -> Threads {
+    Threads::default().for_triangles(bytes / TRIANGLE)
+}
+
+/// The rest of a text in pieces for these threads. A line is an item, or it is not.
+pub(super) fn cut<'a>(
+    lines: &Lines<'a>,
+    is_item: impl Fn(&[u8]) -> bool + Sync,
+    threads: &Threads,
+) -> Vec<Piece<'a>> {
+    let cuts = threads.pieces(lines.bytes_left());
+    if cuts.len() == 1 {
+        return vec![Piece { lines: lines.clone(), items: 0..u64::MAX }];
+    }
+    let mut rest = lines.rest;
+    let mut texts: Vec<&[u8]> = Vec::new();
+    for cut in cuts {
+        // The line in which a piece would end belongs to it.
+        let mut after = Lines { rest: lines.rest.get(cut.end..).unwrap_or_default(), number: 0 };
+        after.next();
+        let length = rest.len().saturating_sub(after.rest.len());
+        let (text, left) = rest.split_at(length);
+        texts.push(text);
+        rest = left;
+    }
+    let counts = threads.map_each(texts.clone(), |text| {
+        let mut lines = Lines { rest: text, number: 0 };
+        let items = lines.by_ref().filter(|line| is_item(line)).count();
+        (lines.number, items as u64)
+    });
+    let (mut number, mut first) = (lines.number, 0);
+    let pieces = texts.into_iter().zip(counts).map(|(rest, (lines, items))| {
+        let piece = Piece { lines: Lines { rest, number }, items: first..first + items };
+        (number, first) = (number + lines, first + items);
+        piece
+    });
+    pieces.collect()
+}
+
+/// The lists of the pieces as one.
+pub(super) fn joined<T: Copy + Send + Sync>(mut lists: Vec<Vec<T>>, threads: &Threads) -> Vec<T> {
+    if lists.len() == 1 {
+        return lists.pop().unwrap_or_default();
+    }
+    let mut all = Vec::new();
+    threads.append_all(&mut all, lists);
+    all
+}
+
+/// Writes what `write` appends for each of `count` items.
+pub(super) fn write(
+    count: usize,
+    out: &mut (impl Write + ?Sized),
+    write: impl Fn(usize, &mut Digits, &mut Vec<u8>) + Sync,
+) -> io::Result<()> {
+    let threads = Threads::default().for_triangles(count);
+    for first in (0..count).step_by(HELD) {
+        let parts = threads.map(HELD.min(count - first), |piece| {
+            let mut bytes = Vec::with_capacity(ITEM * piece.len());
+            let mut digits = Digits::default();
+            piece.for_each(|item| write(first + item, &mut digits, &mut bytes));
+            bytes
+        });
+        parts.iter().try_for_each(|part| out.write_all(part))?;
+    }
+    Ok(())
+}
