@@ -1,6 +1,7 @@
 //! Numbers about the shape of a mesh, before and after. In f64, for reports: no decision is taken on them.
 
-use super::{Angles, angles};
+use super::triangle_angles;
+use crate::threads::Threads;
 use crate::{Dimension, Mesh};
 use glam::DVec3;
 use rstar::{AABB, PointDistance, RTree, RTreeObject};
@@ -24,33 +25,91 @@ pub struct Measures {
     pub volume: f64,
 }
 
+/// Triangles that are measured by one thread at a time. Their sums are added in order, so that all bits are the same on any
+/// number of threads.
+const CHUNK: usize = 1 << 12;
+
 /// Measures a mesh.
 pub fn measures(mesh: &Mesh) -> Measures {
-    let Angles { min: min_angle, mean_min: mean_min_angle, .. } = angles(mesh, 1);
-    let mut measures =
-        Measures { min_angle, mean_min_angle, mean_aspect: 0.0, flat: 0, area: 0.0, volume: 0.0 };
+    let (count, triangles) = (mesh.triangle_count(), mesh.triangles());
     // From a point nearby, so that a large offset costs no digits.
-    let origin = mesh.triangles().first().map_or(DVec3::ZERO, |&v| mesh.point3(v));
-    for corners in triangles(mesh, mesh.triangles()) {
-        let [a, b, c] = corners.map(|corner| corner - origin);
-        let doubled = (b - a).cross(c - a).length();
-        measures.area += doubled / 2.0;
-        measures.volume += a.dot(b.cross(c)) / 6.0;
-        let edges = [a - b, b - c, c - a].map(DVec3::length);
-        if doubled > 0.0 {
-            let [longest, around] = [edges.into_iter().fold(0.0, f64::max), edges.iter().sum::<f64>()];
-            // The radius of the incircle is twice the area by the perimeter.
-            measures.mean_aspect += longest * around / (2.0 * 3f64.sqrt() * doubled);
-        } else {
-            measures.flat += 1;
+    let origin = triangles.first().map_or(DVec3::ZERO, |&v| mesh.point3(v));
+    let chunks = triangles.chunks(3 * CHUNK).collect();
+    let threads = Threads::default().for_triangles(count);
+    let all = threads.map_each(chunks, |chunk| Sums::of(mesh, chunk, origin)).into_iter();
+    let sums = all.fold(Sums { min_angle: 60.0, ..Sums::default() }, Sums::and);
+    let mean = |sum: f64, count: usize, of_none: f64| if count == 0 { of_none } else { sum / count as f64 };
+    Measures {
+        min_angle: sums.min_angle,
+        mean_min_angle: mean(sums.min_angles, count, 60.0),
+        mean_aspect: mean(sums.aspects, count - sums.flat, 1.0),
+        flat: sums.flat,
+        area: sums.area,
+        volume: if mesh.dimension() == Dimension::Two { 0.0 } else { sums.volume },
+    }
+}
+
+/// What is added up over triangles.
+#[derive(Clone, Copy, Default)]
+struct Sums {
+    min_angle: f64,
+    min_angles: f64,
+    aspects: f64,
+    flat: usize,
+    area: f64,
+    volume: f64,
+}
+
+impl Sums {
+    fn of(mesh: &Mesh, chunk: &[u32], origin: DVec3) -> Self {
+        let mut sums = Self { min_angle: 60.0, ..Self::default() };
+        for corners in triangles(mesh, chunk) {
+            let angle = smallest_angle(corners);
+            sums.min_angle = sums.min_angle.min(angle);
+            sums.min_angles += angle;
+            let [a, b, c] = corners.map(|corner| corner - origin);
+            let doubled = (b - a).cross(c - a).length();
+            sums.area += doubled / 2.0;
+            sums.volume += a.dot(b.cross(c)) / 6.0;
+            let edges = [a - b, b - c, c - a].map(DVec3::length);
+            if doubled > 0.0 {
+                let [longest, around] = [edges.into_iter().fold(0.0, f64::max), edges.iter().sum::<f64>()];
+                // The radius of the incircle is twice the area by the perimeter.
+                sums.aspects += longest * around / (2.0 * 3f64.sqrt() * doubled);
+            } else {
+                sums.flat += 1;
+            }
+        }
+        sums
+    }
+
+    fn and(self, other: Self) -> Self {
+        Self {
+            min_angle: self.min_angle.min(other.min_angle),
+            min_angles: self.min_angles + other.min_angles,
+            aspects: self.aspects + other.aspects,
+            flat: self.flat + other.flat,
+            area: self.area + other.area,
+            volume: self.volume + other.volume,
         }
     }
-    let proper = mesh.triangle_count() - measures.flat;
-    measures.mean_aspect = if proper == 0 { 1.0 } else { measures.mean_aspect / proper as f64 };
-    if mesh.dimension() == Dimension::Two {
-        measures.volume = 0.0;
+}
+
+/// The smallest angle of a triangle, in degrees: the one opposite to its shortest edge.
+fn smallest_angle(corners: [DVec3; 3]) -> f64 {
+    let [a, b, c] = corners;
+    let squares = [b - c, c - a, a - b].map(DVec3::length_squared);
+    // Others over- or underflow, or are 0.
+    if !squares.iter().all(|square| (1e-200..1e200).contains(square)) {
+        return triangle_angles(corners).into_iter().fold(f64::INFINITY, f64::min);
     }
-    measures
+    let opposite = match squares {
+        [x, y, z] if x <= y && x <= z => 0,
+        [_, y, z] if y <= z => 1,
+        _ => 2,
+    };
+    let [p, q] = [1, 2].map(|k| corners[(opposite + k) % 3] - corners[opposite]);
+    libm::atan2(p.cross(q).length(), p.dot(q)).to_degrees()
 }
 
 fn triangles(mesh: &Mesh, triangles: &[u32]) -> impl Iterator<Item = [DVec3; 3]> {
@@ -61,8 +120,12 @@ fn triangles(mesh: &Mesh, triangles: &[u32]) -> impl Iterator<Item = [DVec3; 3]>
 /// triangle that begins at another corner is the same.
 pub fn moved(before: &[u32], after: &[u32]) -> Vec<u32> {
     let is_same = |[a, b, c]: [u32; 3], other| [[a, b, c], [b, c, a], [c, a, b]].contains(other);
-    let both = before.as_chunks().0.iter().zip(after.as_chunks().0);
-    (0..).zip(both).filter(|(_, (before, after))| !is_same(**before, after)).map(|(t, _)| t).collect()
+    let [before, after] = [before, after].map(|triangles| triangles.as_chunks::<3>().0);
+    let count = before.len().min(after.len());
+    let lists = Threads::default().for_triangles(count).map(count, |piece| {
+        piece.filter(|&t| !is_same(before[t], &after[t])).map(|t| t as u32).collect::<Vec<_>>()
+    });
+    lists.concat()
 }
 
 /// The largest distance between the surfaces of `triangles` and of the mesh, either way, in the unit of its
@@ -152,6 +215,7 @@ fn to_segment(point: DVec3, from: DVec3, to: DVec3) -> f64 {
 mod tests {
     use super::*;
     use crate::families::by_name;
+    use crate::quality::angles;
 
     fn mesh(positions: &[f64], triangles: &[u32]) -> Mesh {
         Mesh::new(Dimension::Three, positions.to_vec(), triangles.to_vec()).unwrap()
@@ -183,6 +247,29 @@ mod tests {
             (none.min_angle, none.mean_min_angle, none.mean_aspect, none.area),
             (60.0, 60.0, 1.0, 0.0)
         );
+    }
+
+    #[test]
+    fn the_smallest_angle_is_that_of_all_angles() {
+        for family in ["random 40", "uvsphere 20", "strips 30"] {
+            let mesh = by_name(family).unwrap();
+            let (found, all) = (measures(&mesh), angles(&mesh, 1));
+            assert!((found.min_angle - all.min).abs() < 1e-9, "{family}");
+            assert!((found.mean_min_angle - all.mean_min).abs() < 1e-9, "{family}");
+        }
+    }
+
+    #[cfg(feature = "threads")]
+    #[test]
+    fn measures_are_the_same_on_any_number_of_threads() {
+        let mesh = by_name("uvsphere 60").unwrap();
+        let on = |count| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(count).build().unwrap();
+            pool.install(|| format!("{:?}", measures(&mesh)))
+        };
+        for count in 2..5 {
+            assert_eq!(on(count), on(1));
+        }
     }
 
     #[test]
