@@ -72,6 +72,6 @@ pub use predicates::cos_degrees;
 pub use reorient::reoriented;
 pub use session::Session;
 #[cfg(not(target_arch = "wasm32"))]
-pub use session::make_delaunay;
+pub use session::{EarlyGpu, close_gpu, make_delaunay};
 pub use wedges::Wedges;
 pub use weld::{Welded, welded};

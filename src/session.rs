@@ -1,6 +1,8 @@
 //! The loop around an engine: options in, iterations and statistics out, and the honest result.
 
 mod choice;
+#[cfg(not(target_arch = "wasm32"))]
+mod early;
 mod room;
 #[cfg(test)]
 mod tests;
@@ -20,6 +22,8 @@ use crate::{
     Reason, Status, Timings, frozen, locks, memory,
 };
 use choice::{engine_after, engine_for};
+#[cfg(not(target_arch = "wasm32"))]
+pub use early::{EarlyGpu, close_gpu};
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use web_time::Instant;

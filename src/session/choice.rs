@@ -23,6 +23,16 @@ const FEWEST_FOR_GPU: usize = 10_000;
 /// An engine, and why `Auto` did not take those before it.
 type Choice = (Box<dyn Engine>, Option<String>);
 
+/// Whether a session with these options asks for a GPU first, for so many triangles.
+#[cfg(not(target_arch = "wasm32"))]
+pub(super) fn asks_gpu(options: &Options, triangles: usize) -> bool {
+    match (options.order, options.backend) {
+        (Order::Reproducible, Backend::Auto) => triangles >= FEWEST_FOR_GPU,
+        (Order::Reproducible, backend) => backend == Backend::Gpu,
+        (Order::Any, _) => false,
+    }
+}
+
 /// The engine for the options. Boxed, as below.
 ///
 /// # Errors

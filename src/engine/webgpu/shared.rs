@@ -93,6 +93,12 @@ impl Device {
         Ok(device)
     }
 
+    /// Takes the shared device from the sessions to come; it is closed with the last that has it.
+    #[cfg(not(target_arch = "wasm32"))]
+    pub(crate) fn taken() -> Option<Handle> {
+        with_shared(|shared| shared.opened.take())
+    }
+
     /// The device that the page has made. It is never destroyed here, and nothing of it is set.
     ///
     /// # Errors
