@@ -5,11 +5,12 @@
 
 mod command;
 
-use command::{Folder, SQUARE, failed, run, text};
+use command::{Folder, SQUARE, failed, grid, run, text};
 use serde_json::{Value, json};
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Stdio};
+use std::time::Instant;
 
 /// The keys of the object that `--json` prints, in their order.
 const KEYS: [&str; 28] = [
@@ -43,6 +44,39 @@ const KEYS: [&str; 28] = [
     "ms",
 ];
 
+/// The parts of the wall time.
+const PARTS: [&str; 11] = [
+    "start",
+    "load",
+    "prepare",
+    "device",
+    "upload",
+    "adjacency",
+    "flip",
+    "count",
+    "measure",
+    "verify",
+    "save",
+];
+
+#[test]
+fn the_parts_add_up_to_the_wall_time() {
+    let folder = Folder::new();
+    let (input, output) = (folder.path("in.off"), folder.path("out.off"));
+    edgeflip::io::write(&input, &grid(300)).unwrap();
+    for arguments in
+        [["--json", "-q"].as_slice(), &["--json", "--verify"], &["--json", "--weld", "--reorient"]]
+    {
+        let start = Instant::now();
+        let ran = run(&input, &output, arguments);
+        let wall = start.elapsed().as_secs_f64() * 1e3;
+        let found: Value = serde_json::from_slice(&ran.stdout).unwrap();
+        let ms = |key: &str| found["ms"][key].as_f64();
+        let (sum, total) = (PARTS.iter().filter_map(|part| ms(part)).sum::<f64>(), ms("total").unwrap());
+        assert!(sum <= total + 0.1 && sum >= 0.95 * total && total <= wall, "{wall} ms: {}", found["ms"]);
+    }
+}
+
 #[test]
 fn json_has_the_documented_keys() {
     let folder = Folder::new();
@@ -60,8 +94,10 @@ fn json_has_the_documented_keys() {
     assert_eq!(found["dimension"], 2);
     assert_eq!((&found["backend"], &found["status"]), (&"cpu".into(), &"done".into()));
     assert!(found["flips_per_iteration"].is_array() && found["remaining"].is_object());
-    for key in ["load", "upload", "adjacency", "flip", "total", "save"] {
-        assert!(found["ms"][key].is_number(), "ms.{key}");
+    let ms = found["ms"].as_object().unwrap();
+    assert_eq!(Vec::from_iter(ms.keys()), [&PARTS[..], &["total"]].concat());
+    for (key, ms) in ms {
+        assert!(ms.is_number() || key == "verify" && ms.is_null(), "ms.{key}");
     }
     assert!(found["min_angle_before_deg"].is_number() && found["min_angle_after_deg"].is_number());
     // The smallest angles of the two triangles: 32.5° and 45° before, 45° and 45° after.

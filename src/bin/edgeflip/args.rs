@@ -154,7 +154,8 @@ pub struct Args {
     pub order: OrderArg,
 
     /// How many threads --backend cpu runs on, 1 to 256; without it one for each core. Fewer are started where a mesh
-    /// has no work for so many: one below 65,536 triangles. The result is the same for any number
+    /// has no work for so many: one below 65,536 triangles. As many read, measure and write the mesh. The result is the
+    /// same for any number
     #[arg(long, value_name = "N", value_parser = threads, allow_negative_numbers = true)]
     pub threads: Option<NonZeroUsize>,
 
@@ -174,9 +175,12 @@ pub struct Args {
     /// status (done or stopped), iterations, flips, flips_per_iteration, dispatches, device_bytes, remaining (by reason),
     /// min_angle_before_deg, min_angle_after_deg, before and after (min_angle_deg, mean_min_angle_deg, mean_aspect,
     /// flat_triangles, area, volume), turned_triangles, joined_vertices, seam_edges, moved_triangles, attribute_edges
-    /// (locked for attributes' sake), ms (load, upload, adjacency, flip, total, save; total is the
-    /// run without load and save), and with --verify audit (the violations), remaining_edges (by reason, the two
-    /// vertices of each edge left, counted from 0) and distance (between the surfaces before and after).
+    /// (locked for attributes' sake), ms (milliseconds of wall time, of which all but total add up to it: start; load,
+    /// IN read; prepare, lists read, vertices joined, triangles turned, edges locked; device, the GPU waited for, which
+    /// is opened while IN is read; upload; adjacency; flip; count, triangles read back and the edges left counted;
+    /// measure; verify; save; total, from the start of the program to this object, after which OUT has its name), and
+    /// with --verify audit (the violations), remaining_edges (by reason, the two vertices of each edge left, counted
+    /// from 0) and distance (between the surfaces before and after).
     #[arg(long)]
     pub json: bool,
 
@@ -186,6 +190,11 @@ pub struct Args {
 }
 
 impl Args {
+    /// Whether anybody sees what is measured.
+    pub fn is_reported(&self) -> bool {
+        self.json || !self.quiet
+    }
+
     /// How IN is read for an OUT of that format.
     pub fn read_options(&self, output: Format) -> ReadOptions {
         let dimension = match self.dimension {

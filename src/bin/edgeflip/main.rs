@@ -6,17 +6,21 @@ mod memory;
 mod report;
 #[cfg(unix)]
 mod signals;
+mod threads;
 
 use args::Args;
 use clap::Parser;
 use edgeflip::io::{self, Output, Staged};
-use edgeflip::{Backend, Error, Mesh, Options, Order, Outcome, Welded, make_delaunay, quality, reoriented};
+use edgeflip::{
+    Backend, EarlyGpu, Error, Mesh, Options, Order, Outcome, Welded, close_gpu, make_delaunay, quality,
+    reoriented,
+};
 use indicatif::{ProgressBar, ProgressStyle};
-use report::{Check, Milliseconds, Report};
+use report::{Changes, Check, Milliseconds, Report};
 use std::io::{IsTerminal, Write};
+use std::mem;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
-use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
 /// Why the program ends without a result: the exit status and one line for standard error.
@@ -51,21 +55,24 @@ impl Failure {
     }
 }
 
-fn main() -> ExitCode {
+fn main() {
+    let clock = Clock::new();
     let args = Args::parse();
     if args.quiet {
         errors::only_ours();
     }
     memory::prepare(&one_line(&args.input.display().to_string()));
+    threads::limit(args.threads);
     #[cfg(unix)]
     signals::watch();
-    match run(&args).and_then(|(report, staged)| finish(&args, report, staged)) {
-        Ok(()) => ExitCode::SUCCESS,
+    let status = match run(&args, clock).and_then(|done| finish(&args, done)) {
+        Ok(()) => 0,
         Err(Failure { status, line }) => {
             errors::say(format!("edgeflip: {}\n", one_line(&line)).as_bytes());
-            ExitCode::from(status)
+            status
         }
-    }
+    };
+    memory::end(status)
 }
 
 fn one_line(text: &str) -> String {
@@ -86,21 +93,31 @@ fn progress(args: &Args, output: &Output) -> ProgressBar {
     bar
 }
 
+/// A run up to the printing.
+struct Done {
+    /// If somebody wants to see it.
+    report: Option<Report>,
+    /// What `--verify` makes of the run.
+    violation: Option<Failure>,
+    staged: Option<Staged>,
+    clock: Clock,
+}
+
 /// Everything but the printing. The target is written last, and only if nothing was wrong.
-fn run(args: &Args) -> Result<(Report, Option<Staged>), Failure> {
+fn run(args: &Args, mut clock: Clock) -> Result<Done, Failure> {
     let refused = |error| Failure::of(&args.input, &error);
     let output = output(args)?;
     let bar = &progress(args, &output);
     bar.set_message(format!("reading {}", args.input.display()));
-    let (loaded, load) = timed(|| io::load(&args.input, &args.read_options(output.format())));
-    let loaded = loaded.map_err(refused)?;
+    let mut options = args.options();
+    let gpu = memory::limit().is_none().then(|| EarlyGpu::open(&options, most_triangles(args)));
+    let mut ms = Milliseconds { start: clock.lap(), ..Milliseconds::default() };
+    let loaded = io::load(&args.input, &args.read_options(output.format())).map_err(refused)?;
+    ms.load = clock.lap();
     let welded = args.weld.then(|| loaded.welded()).transpose().map_err(refused)?;
     let (alone, welded, turned) = turn(args, &loaded.mesh, welded).map_err(refused)?;
     let joined = welded.as_ref().map(|welded| &welded.mesh);
     let mesh = alone.as_ref().or(joined).unwrap_or(&loaded.mesh);
-
-    let mut options = args.options();
-    let fallback = without_driver(&mut options, mesh)?;
     options = Options {
         locked_edges: list(&args.lock_edges, io::read_edges)?,
         locked_triangles: list(&args.lock_triangles, io::read_numbers)?,
@@ -111,42 +128,55 @@ fn run(args: &Args) -> Result<(Report, Option<Staged>), Failure> {
         welded.constrain(&mut options);
     }
     let attribute_edges = loaded.constrain(&mut options).map_err(refused)?;
+    ms.prepare = clock.lap();
+    // While the GPU is being opened.
+    let before = args.is_reported().then(|| quality::measures(mesh));
+    ms.measure = before.map(|_| clock.lap());
+    let fallback = without_gpu(&mut options, mesh, gpu)?;
+    ms.device = clock.lap();
 
     bar.set_message("preparing");
-    let before = quality::measures(mesh);
     let mut outcome = make_delaunay(mesh, &options, |iterations, flips| {
         bar.set_message(format!("iteration {iterations}, {flips} flips"));
         ControlFlow::Continue(())
     })
     .map_err(refused)?;
+    close_gpu();
     outcome.fallback = fallback.or(outcome.fallback);
-    let result = mesh.with_triangles(outcome.triangles.clone()).map_err(refused)?;
-    let after = quality::measures(&result);
-    let moved = quality::moved(mesh.triangles(), result.triangles()).len() as u32;
+    ms.of_run(&outcome.timings);
+    clock.lap();
 
+    let changes = before.map(|before| Changes::new(mesh, before, &outcome)).transpose().map_err(refused)?;
+    ms.measure = ms.measure.map(|before| before + clock.lap());
     let check = args.verify.then(|| {
         bar.set_message("verifying");
         check(&options, mesh, &outcome)
     });
-    let (mut staged, mut save) = (None, None);
+    ms.verify = check.as_ref().map(|_| clock.lap());
+    let mut staged = None;
     if check.as_ref().is_none_or(|check| check.violations.is_empty()) {
         bar.set_message(format!("writing {}", args.output.display()));
-        let (written, ms) = timed(|| {
-            let triangles = match &welded {
-                Some(welded) => welded.split(&outcome.triangles)?,
-                None => outcome.triangles.clone(),
-            };
-            output.stage(&loaded, triangles)
-        });
+        let split = welded.as_ref().map(|welded| welded.split(&outcome.triangles));
+        let triangles = split.unwrap_or_else(|| Ok(mem::take(&mut outcome.triangles)));
+        let written = triangles.and_then(|triangles| output.stage(&loaded, triangles));
         staged = Some(written.map_err(|e| Failure::of(&args.output, &e))?);
-        save = Some(ms);
+        ms.save = Some(clock.lap());
     }
     bar.finish_and_clear();
-    let ms = Milliseconds::new(load, &outcome.timings, save);
-    let report = Report::new(args, &result, outcome, [before, after], [turned, moved], check, ms)
-        .with_joined(welded.as_ref())
-        .with_attributes(&loaded, output.format(), attribute_edges);
-    Ok((report, staged))
+    let violation = check.as_ref().and_then(|check| check.violation(&args.input));
+    let report = changes.map(|changes| {
+        Report::new(args, mesh, outcome, changes, turned, check, ms)
+            .with_joined(welded.as_ref())
+            .with_attributes(&loaded, output.format(), attribute_edges)
+    });
+    Ok(Done { report, violation, staged, clock })
+}
+
+/// How many triangles IN may have, so far as its length says: each takes a byte, unless it is packed.
+fn most_triangles(args: &Args) -> usize {
+    let is_packed = args.input.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("gz"));
+    let length = args.input.metadata().ok().filter(|metadata| metadata.is_file() && !is_packed);
+    length.map_or(usize::MAX, |metadata| usize::try_from(metadata.len()).unwrap_or(usize::MAX))
 }
 
 /// Where OUT leads to.
@@ -167,23 +197,24 @@ fn output(args: &Args) -> Result<Output, Failure> {
     Ok(output)
 }
 
-/// Leaves the GPU alone where its driver would end the program for want of memory, and says why.
-fn without_driver(options: &mut Options, mesh: &Mesh) -> Result<Option<String>, Failure> {
-    let why = match (options.order, options.backend) {
-        (Order::Reproducible, Backend::Auto | Backend::Gpu) => {
-            memory::too_little_for_a_driver(mesh.triangle_count())
-        }
-        _ => None,
+/// Leaves the GPU alone where there is none, or where its driver would end the program for want of memory, and says why.
+fn without_gpu(options: &mut Options, mesh: &Mesh, gpu: Option<EarlyGpu>) -> Result<Option<String>, Failure> {
+    let unavailable = |message| Error::BackendUnavailable { backend: "gpu", message };
+    let refusal = match gpu {
+        _ if options.order != Order::Reproducible || options.backend == Backend::Cpu => None,
+        Some(gpu) => gpu.wait(mesh, options).err().map(|error| (error.to_string(), error)),
+        None => memory::too_little_for_a_driver(mesh.triangle_count())
+            .map(|message| (message.clone(), unavailable(message))),
     };
-    match why {
-        Some(message) if options.backend == Backend::Gpu => {
-            let error = Error::BackendUnavailable { backend: "gpu", message };
+    match refusal {
+        Some((_, error)) if options.backend == Backend::Gpu => {
             Err(Failure { status: 3, line: error.to_string() })
         }
-        why => {
-            options.backend = if why.is_some() { Backend::Cpu } else { options.backend };
-            Ok(why)
+        Some((why, _)) => {
+            options.backend = Backend::Cpu;
+            Ok(Some(why))
         }
+        None => Ok(None),
     }
 }
 
@@ -228,27 +259,54 @@ fn check(options: &Options, mesh: &Mesh, outcome: &Outcome) -> Check {
     Check { violations, remaining_edges, distance: quality::distance(mesh, &outcome.triangles) }
 }
 
-fn timed<T>(work: impl FnOnce() -> T) -> (T, f64) {
-    let start = Instant::now();
-    let value = work();
-    (value, start.elapsed().as_secs_f64() * 1e3)
+/// Wall time since the program began, lap by lap.
+struct Clock {
+    start: Instant,
+    last: Instant,
+}
+
+impl Clock {
+    fn new() -> Self {
+        let start = Instant::now();
+        Self { start, last: start }
+    }
+
+    /// Milliseconds since the last lap.
+    fn lap(&mut self) -> f64 {
+        let now = Instant::now();
+        milliseconds(now - mem::replace(&mut self.last, now))
+    }
+
+    /// Milliseconds since the start.
+    fn total(&self) -> f64 {
+        milliseconds(self.start.elapsed())
+    }
+}
+
+/// To the microsecond.
+fn milliseconds(time: Duration) -> f64 {
+    time.as_micros() as f64 / 1e3
 }
 
 /// Prints the object for `--json`, then gives OUT its name, so that it is as it was if the object cannot be printed. Then
 /// the notes and the summary.
-fn finish(args: &Args, mut report: Report, staged: Option<Staged>) -> Result<(), Failure> {
-    if args.json {
-        let printed = print(&report);
-        printed.map_err(|error| Failure { status: 1, line: format!("standard output: {error}") })?;
+fn finish(args: &Args, done: Done) -> Result<(), Failure> {
+    let Done { mut report, violation, staged, clock } = done;
+    if let Some(report) = &mut report {
+        report.ms.total = clock.total();
+        if args.json {
+            let printed = print(report);
+            printed.map_err(|error| Failure { status: 1, line: format!("standard output: {error}") })?;
+        }
     }
-    if let Some(staged) = staged {
-        report.add_notes(staged.commit().map_err(|error| Failure::of(&args.output, &error))?);
-    }
-    if !args.quiet {
+    let notes = staged.map_or(Ok(Vec::new()), Staged::commit);
+    let notes = notes.map_err(|error| Failure::of(&args.output, &error))?;
+    if let Some(mut report) = report.filter(|_| !args.quiet) {
+        report.add_notes(notes);
         let summary = if args.json { String::new() } else { report.summary(args) };
         errors::say((report.notes() + &summary).as_bytes());
     }
-    report.violation().map_or(Ok(()), Err)
+    violation.map_or(Ok(()), Err)
 }
 
 /// Prints one object on standard output. A reader that has gone away is no failure.

@@ -52,12 +52,36 @@ fn had(place: *mut u8, bytes: usize) -> *mut u8 {
     if place.is_null() {
         ran_out(bytes);
     }
+    if bytes >= LARGE {
+        in_large_pages(place, bytes);
+    }
     place
 }
 
-/// Gives the line its beginning, which names the file that is read.
+/// Bytes of a large page, and of what is worth asking for them.
+const PAGE: usize = 1 << 21;
+const LARGE: usize = 4 * PAGE;
+
+/// Asks for large pages, where the system gives them to those who ask: many small ones take long to be touched first.
+#[cfg(target_os = "linux")]
+fn in_large_pages(place: *mut u8, bytes: usize) {
+    let before = place.addr().next_multiple_of(PAGE) - place.addr();
+    // SAFETY: these pages are parts of the allocation, and what is in them stays.
+    unsafe { libc::madvise(place.add(before).cast(), (bytes - before) / PAGE * PAGE, libc::MADV_HUGEPAGE) };
+}
+
+#[cfg(not(target_os = "linux"))]
+fn in_large_pages(_: *mut u8, _: usize) {}
+
+/// Gives the line its beginning, which names the file that is read. Before there are threads.
 pub fn prepare(input: &str) {
     let _ = START.set(format!("edgeflip: {input}: "));
+    #[cfg(all(target_os = "linux", target_env = "gnu"))]
+    if limit().is_some() {
+        // Each thread would set 64 MiB of addresses aside.
+        // SAFETY: the call changes a setting of the allocator.
+        unsafe { libc::mallopt(libc::M_ARENA_MAX, 1) };
+    }
 }
 
 /// Ends the process, without an allocation and without destructors.
@@ -67,7 +91,7 @@ fn ran_out(bytes: usize) -> ! {
     if IS_ENDING.swap(true, Ordering::Relaxed) {
         // Another thread ends it, unless it is this one, here for the second time.
         thread::sleep(PATIENCE);
-        end();
+        end(1);
     }
     remove_temporary_files();
     let mut line = Cursor::new([0; 128]);
@@ -75,17 +99,30 @@ fn ran_out(bytes: usize) -> ! {
     let length = line.position() as usize;
     errors::say(START.get().map_or(b"edgeflip: ", |start| start.as_bytes()));
     errors::say(&line.get_ref()[..length]);
-    end()
+    end(1)
 }
 
+/// Ends the process at once: what else runs in it, such as the driver of a GPU that begins, is not waited for.
 #[cfg(unix)]
-fn end() -> ! {
-    signal_hook::low_level::exit(1)
+pub fn end(status: u8) -> ! {
+    signal_hook::low_level::exit(status.into())
 }
 
 #[cfg(not(unix))]
-fn end() -> ! {
-    std::process::exit(1)
+pub fn end(status: u8) -> ! {
+    std::process::exit(status.into())
+}
+
+/// Bytes of addresses that the process may have, if that is limited.
+#[cfg(target_os = "linux")]
+pub fn limit() -> Option<u64> {
+    rustix::process::getrlimit(rustix::process::Resource::As).current
+}
+
+/// Other systems do not keep to a limit of addresses.
+#[cfg(not(target_os = "linux"))]
+pub fn limit() -> Option<u64> {
+    None
 }
 
 /// Bytes of addresses that the driver of a GPU may want before there is a mesh, and for each triangle, in its buffers and
@@ -98,8 +135,7 @@ const TRIANGLE: u64 = 128;
 /// Why no GPU is to be looked for: its driver might not get its memory.
 #[cfg(target_os = "linux")]
 pub fn too_little_for_a_driver(triangles: usize) -> Option<String> {
-    use rustix::process::{Resource, getrlimit};
-    let limit = getrlimit(Resource::As).current?;
+    let limit = limit()?;
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let taken = status.lines().find_map(|line| line.strip_prefix("VmSize:")?.trim().strip_suffix(" kB"))?;
     let left = limit.saturating_sub(1024 * taken.parse::<u64>().ok()?);
@@ -111,7 +147,6 @@ pub fn too_little_for_a_driver(triangles: usize) -> Option<String> {
     })
 }
 
-/// Other systems do not keep to a limit of addresses.
 #[cfg(not(target_os = "linux"))]
 pub fn too_little_for_a_driver(_: usize) -> Option<String> {
     None

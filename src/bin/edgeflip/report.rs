@@ -3,12 +3,14 @@
 use crate::Failure;
 use crate::args::Args;
 use edgeflip::io::{Format, Loaded};
-use edgeflip::quality::Measures;
-use edgeflip::{Dimension, Mesh, Outcome, Reasons, Status, Timings, Welded};
+use edgeflip::quality::{self, Measures};
+use edgeflip::{Dimension, Error, Mesh, Outcome, Reasons, Status, Timings, Welded};
 use indicatif::{HumanBytes, HumanCount};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fmt::Write;
+use std::mem;
+use std::path::Path;
 
 /// The keys of `--json`, in their order; the rest is for the summary.
 #[derive(Serialize)]
@@ -39,9 +41,9 @@ pub struct Report {
     turned_triangles: u32,
     joined_vertices: usize,
     seam_edges: usize,
-    moved_triangles: u32,
+    moved_triangles: usize,
     attribute_edges: usize,
-    ms: Milliseconds,
+    pub ms: Milliseconds,
     #[serde(flatten)]
     check: Option<Check>,
     #[serde(skip)]
@@ -86,41 +88,84 @@ pub struct Check {
     pub distance: f64,
 }
 
-/// Wall times in milliseconds.
-#[derive(Serialize)]
+impl Check {
+    /// What the program ends with, if anything was violated in the mesh of that file.
+    pub fn violation(&self, input: &Path) -> Option<Failure> {
+        let (first, more) = (self.violations.first()?, self.violations.len() - 1);
+        let more = if more == 0 { String::new() } else { format!(" (and {more} more)") };
+        Some(Failure { status: 1, line: format!("{}: the audit found: {first}{more}", input.display()) })
+    }
+}
+
+/// How a run has changed the mesh.
+pub struct Changes {
+    before: Measures,
+    after: Measures,
+    moved: usize,
+}
+
+impl Changes {
+    /// Measures the mesh after the run.
+    pub fn new(mesh: &Mesh, before: Measures, outcome: &Outcome) -> Result<Self, Error> {
+        let result = mesh.with_triangles(outcome.triangles.clone())?;
+        let moved = quality::moved(mesh.triangles(), result.triangles()).len();
+        Ok(Self { before, after: quality::measures(&result), moved })
+    }
+}
+
+/// Wall times in milliseconds, of which all but the total add up to it. `null` for what was not done.
+#[derive(Default, Serialize)]
 pub struct Milliseconds {
-    load: f64,
-    upload: f64,
-    adjacency: f64,
-    flip: f64,
-    total: f64,
-    /// `null` if nothing was written.
-    save: Option<f64>,
+    pub start: f64,
+    pub load: f64,
+    pub prepare: f64,
+    pub device: f64,
+    pub upload: f64,
+    pub adjacency: f64,
+    pub flip: f64,
+    pub count: f64,
+    pub measure: Option<f64>,
+    pub verify: Option<f64>,
+    pub save: Option<f64>,
+    pub total: f64,
 }
 
 impl Milliseconds {
-    /// The library's times between those of reading and writing, to the microsecond.
-    pub fn new(load: f64, run: &Timings, save: Option<f64>) -> Self {
-        let round = |ms: f64| (ms * 1e3).round() / 1e3;
-        Self {
-            load: round(load),
-            upload: round(run.upload),
-            adjacency: round(run.adjacency),
-            flip: round(run.flip),
-            total: round(run.total),
-            save: save.map(round),
-        }
+    /// Adds those of the library, to the microsecond.
+    pub fn of_run(&mut self, &Timings { upload, adjacency, flip, total }: &Timings) {
+        let [upload, adjacency, flip, count] =
+            [upload, adjacency, flip, total - upload - adjacency - flip].map(|ms| (ms * 1e3).round() / 1e3);
+        *self = Self { upload, adjacency, flip, count, ..mem::take(self) };
+    }
+
+    /// The parts that were done, with their names.
+    fn parts(&self) -> impl Iterator<Item = (&'static str, f64)> {
+        let &Self { start, load, prepare, device, upload, adjacency, flip, count, .. } = self;
+        let all = [
+            ("start", Some(start)),
+            ("load", Some(load)),
+            ("prepare", Some(prepare)),
+            ("device", Some(device)),
+            ("upload", Some(upload)),
+            ("adjacency", Some(adjacency)),
+            ("flips", Some(flip)),
+            ("count", Some(count)),
+            ("measure", self.measure),
+            ("verify", self.verify),
+            ("save", self.save),
+        ];
+        all.into_iter().filter_map(|(name, ms)| Some((name, ms?)))
     }
 }
 
 impl Report {
-    /// `measures`: before and after. `turned`: triangles that were turned first; `moved`: that are others after it.
+    /// `turned`: triangles that were turned first.
     pub fn new(
         args: &Args,
         mesh: &Mesh,
         outcome: Outcome,
-        measures: [Measures; 2],
-        [turned, moved]: [u32; 2],
+        Changes { before, after, moved }: Changes,
+        turned: u32,
         check: Option<Check>,
         ms: Milliseconds,
     ) -> Self {
@@ -146,10 +191,10 @@ impl Report {
             dispatches: outcome.dispatches,
             device_bytes: outcome.device_bytes,
             remaining: outcome.remaining.iter().map(|(reason, n)| (reason.name(), n)).collect(),
-            min_angle_before_deg: measures[0].min_angle,
-            min_angle_after_deg: measures[1].min_angle,
-            before: measures[0].into(),
-            after: measures[1].into(),
+            min_angle_before_deg: before.min_angle,
+            min_angle_after_deg: after.min_angle,
+            before: before.into(),
+            after: after.into(),
             turned_triangles: turned,
             joined_vertices: 0,
             seam_edges: 0,
@@ -191,14 +236,6 @@ impl Report {
     /// Adds what could not be kept of the file that OUT was.
     pub fn add_notes(&mut self, notes: Vec<String>) {
         self.notes.extend(notes);
-    }
-
-    /// What `--verify` makes of the run.
-    pub fn violation(&self) -> Option<Failure> {
-        let violations = &self.check.as_ref()?.violations;
-        let (first, more) = (violations.first()?, violations.len() - 1);
-        let more = if more == 0 { String::new() } else { format!(" (and {more} more)") };
-        Some(Failure { status: 1, line: format!("{}: the audit found: {first}{more}", self.input) })
     }
 
     /// The notes, a line each.
@@ -274,7 +311,7 @@ impl Report {
             };
             line("joined", format!("{} vertices{seams}", HumanCount(self.joined_vertices as u64)));
         }
-        line("moved", format!("{} triangles{distance}", HumanCount(self.moved_triangles.into())));
+        line("moved", format!("{} triangles{distance}", HumanCount(self.moved_triangles as u64)));
         if is_surface {
             line("area", change(before.area, after.area));
             line("volume", change(before.volume, after.volume));
@@ -286,14 +323,10 @@ impl Report {
             };
             line("audit", found);
         }
-        let Milliseconds { load, upload, adjacency, flip, total, save } = &self.ms;
-        let save = save.map(|ms| format!(", save {ms:.1} ms")).unwrap_or_default();
-        line(
-            "time",
-            format!(
-                "load {load:.1} ms, run {total:.1} ms (upload {upload:.1} ms, adjacency {adjacency:.1} ms, flips {flip:.1} ms){save}"
-            ),
-        );
+        // What takes less than is printed is left out.
+        let parts = self.ms.parts().filter(|&(_, ms)| ms >= 0.05);
+        let parts: Vec<_> = parts.map(|(name, ms)| format!("{name} {ms:.1}")).collect();
+        line("time", format!("{:.1} ms: {}", self.ms.total, parts.join(", ")));
         if self.ms.save.is_some() {
             line("wrote", args.output.display().to_string());
         }
