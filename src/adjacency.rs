@@ -102,7 +102,7 @@ impl Adjacency {
         buckets.sort_large(threads);
         let Buckets { ends, highs, mut half_edges } = buckets;
         let rising = Rising { ends: &ends, highs: &highs, half_edges: shared(&mut half_edges) };
-        let mut twins = vec![0; triangles.len()];
+        let mut twins = threads.zeros(triangles.len());
         let words = shared(&mut twins);
         let mut unmatched = rising.match_all(triangles, words, threads);
         unmatched.sort_unstable();

@@ -13,6 +13,7 @@ use crate::winding::{Signs, Winding};
 use glam::DVec2;
 use std::cmp::Ordering;
 use std::ops::Range;
+use std::sync::atomic::{AtomicU8, Ordering::Relaxed};
 
 /// How often the triangles at each vertex go across the direction of the x axis, twice standing for more, for an open
 /// star and for one with a triangle that is not positive. Empty in 3D.
@@ -45,38 +46,25 @@ impl Embedded {
         winding: Option<&Winding>,
         threads: &Threads,
     ) -> (Signs, Self) {
-        let pieces = threads.pieces_with_arrays(mesh.triangle_count());
-        let pieces = threads.map_each(pieces, |piece| turns(mesh, twins, winding, piece));
-        let all = pieces.into_iter().reduce(|(signs, mut turns), (other, piece)| {
-            turns.iter_mut().zip(piece).for_each(|(sum, turns)| *sum = (*sum + turns).min(2));
-            (signs.and(other), turns)
-        });
-        let (signs, turns) = all.unwrap_or_default();
-        (signs, Self { turns })
+        let mut turns = vec![0u8; mesh.vertex_count()];
+        let words: &mut [AtomicU8] = zerocopy::transmute_mut!(turns.as_mut_slice());
+        let is_alone = threads.is_one();
+        let turn = |v: u32, by: u8| {
+            let (word, sum) = (&words[v as usize], |before: u8| (before + by).min(2));
+            if is_alone {
+                word.store(sum(word.load(Relaxed)), Relaxed);
+            } else {
+                let _ = word.fetch_update(Relaxed, Relaxed, |before| Some(sum(before)));
+            }
+        };
+        let pieces = threads.map(mesh.triangle_count(), |piece| add_turns(mesh, twins, winding, piece, turn));
+        (pieces.into_iter().fold(Signs::default(), Signs::and), Self { turns })
     }
 
     /// The fans of the mesh that it is of, whose twins these are.
     pub(crate) fn fans(&self, mesh: &Mesh, twins: &[u32], threads: &Threads) -> Fans {
         let (vertices, triangles) = (mesh.vertex_count(), mesh.triangles());
-        if self.turns.is_empty() {
-            return Fans::new(vertices, triangles, twins);
-        }
-        let (corners, _) = triangles.as_chunks::<3>();
-        let others = threads.map(corners.len(), |piece| {
-            let mut others = Vec::new();
-            for (t, &corners) in (piece.start as u32..).zip(&corners[piece]) {
-                if corners.iter().fold(true, |all, &v| all & self.at(v)) {
-                    continue;
-                }
-                for (h, v) in (3 * t..).zip(corners) {
-                    if !self.at(v) {
-                        others.push(h);
-                    }
-                }
-            }
-            others
-        });
-        Fans::of_corners(&mut others.iter().flatten().copied(), vertices, triangles, twins)
+        Fans::of_vertices(|v| !self.at(v), vertices, triangles, twins, threads)
     }
 
     /// Whether the star of vertex `v` is known to be embedded.
@@ -86,11 +74,15 @@ impl Embedded {
     }
 }
 
-/// The signs of some of the triangles, and what these add.
-fn turns(mesh: &Mesh, twins: &[u32], winding: Option<&Winding>, piece: Range<usize>) -> (Signs, Vec<u8>) {
+/// The signs of some of the triangles; `turn` hears of what these add to a vertex.
+fn add_turns(
+    mesh: &Mesh,
+    twins: &[u32],
+    winding: Option<&Winding>,
+    piece: Range<usize>,
+    turn: impl Fn(u32, u8),
+) -> Signs {
     let mut signs = Signs::default();
-    let mut turns = vec![0u8; mesh.vertex_count()];
-    let mut turn = |v: u32, by: u8| turns[v as usize] = (turns[v as usize] + by).min(2);
     // Whether the edge from u to v goes to below the axis through u, or along it. Else the edge from v to u does.
     let goes_down = |u: DVec2, v: DVec2| (v.y < u.y) | ((v.y == u.y) & (v.x > u.x));
     let (triangles, _) = mesh.triangles().as_chunks();
@@ -123,7 +115,7 @@ fn turns(mesh: &Mesh, twins: &[u32], winding: Option<&Winding>, piece: Range<usi
         };
         turn(corner, u8::from(first & second | second & third | third & first));
     }
-    (signs, turns)
+    signs
 }
 
 #[cfg(test)]

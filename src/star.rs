@@ -4,6 +4,8 @@
 
 use crate::NONE;
 use crate::adjacency::{next, prev, unflagged};
+use crate::threads::{Threads, Word, shared};
+use std::sync::atomic::Ordering::Relaxed;
 
 /// One anchor, a half-edge that starts at the vertex, for each fan of the vertices that have several fans.
 /// The table holds a word for each vertex, [`NONE`] or the place of its list of anchors in the table; a list
@@ -19,9 +21,49 @@ impl Fans {
         Self::of_corners(&mut (0..triangles.len() as u32), vertices, triangles, twins)
     }
 
+    /// Walks one fan of each vertex that `may` have several, and all of those that have.
+    pub(crate) fn of_vertices(
+        may: impl Fn(u32) -> bool + Sync,
+        vertices: usize,
+        triangles: &[u32],
+        twins: &[u32],
+        threads: &Threads,
+    ) -> Self {
+        let mut lengths = threads.zeros(vertices);
+        let words = shared(&mut lengths);
+        let is_alone = threads.is_one();
+        let left_out = threads.map(triangles.len(), |piece| {
+            let mut count = 0u32;
+            for h in piece {
+                let v = triangles[h];
+                if !may(v) {
+                    continue;
+                }
+                count = count.wrapping_add(1);
+                let word = &words[v as usize];
+                if word.get() == 0 && (is_alone || word.compare_exchange(0, 1, Relaxed, Relaxed).is_ok()) {
+                    let length = Star::of_fan(twins, h as u32).count() as u32;
+                    word.set(length);
+                    count = count.wrapping_sub(length);
+                }
+            }
+            count
+        });
+        if left_out.into_iter().fold(0, u32::wrapping_add) == 0 {
+            return Self::default();
+        }
+        // What is left of a length is of other fans.
+        for &v in triangles {
+            lengths[v as usize] = lengths[v as usize].wrapping_sub(1);
+        }
+        let has_several = |v: u32| may(v) && lengths[v as usize] != 0;
+        let mut corners = (0..triangles.len() as u32).filter(|&h| has_several(triangles[h as usize]));
+        Self::of_corners(&mut corners, vertices, triangles, twins)
+    }
+
     /// Walks the fans of the vertices that these ascending half-edges start at, which are all that do; the others are known
     /// to have one fan.
-    pub(crate) fn of_corners(
+    fn of_corners(
         corners: &mut dyn Iterator<Item = u32>,
         vertices: usize,
         triangles: &[u32],

@@ -14,7 +14,7 @@ use std::sync::atomic::Ordering::Relaxed;
 
 /// A piece has so many items at least: fewer are done before another thread has woken up. Without optimisation it has
 /// few, so that small meshes test the threads.
-const FEWEST: usize = if cfg!(debug_assertions) { 4 } else { 4096 };
+pub(crate) const FEWEST: usize = if cfg!(debug_assertions) { 4 } else { 4096 };
 
 /// A mesh on several threads has so many triangles at least, for the same reason.
 #[cfg(feature = "threads")]
@@ -22,9 +22,6 @@ const FEWEST_TRIANGLES: usize = 16 * FEWEST;
 
 /// Pieces for each thread, so that none waits long for another.
 const PIECES: usize = 8;
-
-/// Threads that hold an array each are so many at most.
-const ARRAYS: usize = 8;
 
 /// How many threads there are; by default one for each core. Without the feature `threads` it is one, and the compiler
 /// knows.
@@ -75,6 +72,10 @@ impl Threads {
         self
     }
 
+    pub(crate) fn is_one(&self) -> bool {
+        self.count() == 1
+    }
+
     fn count(&self) -> usize {
         #[cfg(feature = "threads")]
         if self.is_one {
@@ -109,19 +110,14 @@ impl Threads {
         if len < 2 * FEWEST || self.count() == 1 {
             return vec![work(0..len)];
         }
-        self.map_each(self.pieces(len), work)
+        self.map_each(self.pieces(len, FEWEST), work)
     }
 
-    /// The pieces of a loop over `0..len`, at least one.
-    pub(crate) fn pieces(&self, len: usize) -> Vec<Range<usize>> {
+    /// The pieces of a loop over `0..len`, at least one, of so many items at least.
+    pub(crate) fn pieces(&self, len: usize, fewest: usize) -> Vec<Range<usize>> {
         // Threads that there are none of yet are not started for one piece.
-        let count = if len < 2 * FEWEST { 1 } else { self.count() };
-        cut(len, if count == 1 { 1 } else { PIECES * count })
-    }
-
-    /// The pieces of a loop over `0..len`, at least one, each of which holds an array.
-    pub(crate) fn pieces_with_arrays(&self, len: usize) -> Vec<Range<usize>> {
-        cut(len, if len < 2 * FEWEST { 1 } else { self.count().min(ARRAYS) })
+        let count = if len < 2 * fewest { 1 } else { self.count() };
+        cut(len, if count == 1 { 1 } else { PIECES * count }, fewest)
     }
 
     /// What `work` gives for each item, in order.
@@ -133,6 +129,29 @@ impl Threads {
         items.into_iter().map(work).collect()
     }
 
+    /// As [`Threads::map_each`], for items that stay where they are.
+    pub(crate) fn each<I: Send, T: Send>(
+        &self,
+        items: &mut [I],
+        work: impl Fn(&mut I) -> T + Sync,
+    ) -> Vec<T> {
+        self.map_each(items.iter_mut().collect(), work)
+    }
+
+    /// What `item` gives for each of `0..len`, in order, in memory that the threads touch for the first time together.
+    pub(crate) fn collect<T: Send>(&self, len: usize, item: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
+        #[cfg(feature = "threads")]
+        if len >= 2 * FEWEST && self.count() > 1 {
+            return self.install(|| (0..len).into_par_iter().with_min_len(FEWEST).map(item).collect());
+        }
+        (0..len).map(item).collect()
+    }
+
+    /// So many words. One thread has the system give them as zeros, when they are touched first.
+    pub(crate) fn zeros(&self, len: usize) -> Vec<u32> {
+        if self.is_one() { vec![0; len] } else { self.collect(len, |_| 0) }
+    }
+
     /// Appends a copy of `items` to `all`, whose memory the threads touch for the first time together: that takes several
     /// times as long as the copying.
     pub(crate) fn append<T: Copy + Send + Sync>(&self, all: &mut Vec<T>, items: &[T]) {
@@ -141,46 +160,6 @@ impl Threads {
             return self.install(|| all.par_extend(items.par_iter().with_min_len(FEWEST)));
         }
         all.extend_from_slice(items);
-    }
-
-    /// Does `work` with each piece of some items and of as many results.
-    pub(crate) fn fill<I: Sync, T: Send>(
-        &self,
-        items: &[I],
-        results: &mut [T],
-        work: impl Fn(&[I], &mut [T]) + Sync,
-    ) {
-        if items.len() < 2 * FEWEST || self.count() == 1 {
-            return work(items, results);
-        }
-        let size = self.pieces(items.len())[0].len().max(1);
-        let pieces = items.chunks(size).zip(results.chunks_mut(size)).collect();
-        self.map_each(pieces, |(items, results)| work(items, results));
-    }
-
-    /// Adds to `all` what `work` adds to an empty one for each piece of a loop over `0..len`, in order.
-    pub(crate) fn extend<L: Default + Send>(
-        &self,
-        all: &mut L,
-        len: usize,
-        work: impl Fn(Range<usize>, &mut L) + Sync,
-        append: impl Fn(&mut L, Vec<L>),
-    ) {
-        if len < 2 * FEWEST || self.count() == 1 {
-            return work(0..len, all);
-        }
-        let parts = self.map(len, |piece| {
-            let mut part = L::default();
-            work(piece, &mut part);
-            part
-        });
-        append(all, parts);
-    }
-
-    /// Appends some lists to `all`, in order.
-    pub(crate) fn append_all<T: Copy + Send + Sync>(&self, all: &mut Vec<T>, lists: Vec<Vec<T>>) {
-        all.reserve_exact(lists.iter().map(Vec::len).sum());
-        lists.into_iter().for_each(|list| self.append(all, &list));
     }
 }
 
@@ -208,14 +187,14 @@ fn count_of_process() -> usize {
     rayon::current_num_threads()
 }
 
-/// `0..len` in up to `most` pieces, but at least one.
+/// `0..len` in up to `most` pieces of `fewest` items at least, but at least one.
 #[inline]
-fn cut(len: usize, most: usize) -> Vec<Range<usize>> {
+fn cut(len: usize, most: usize, fewest: usize) -> Vec<Range<usize>> {
     // So that the compiler leaves out the rest where there are no threads.
     if most == 1 {
         return std::iter::once(0..len).collect();
     }
-    let pieces = most.min(len / FEWEST).max(1);
+    let pieces = most.min(len / fewest).max(1);
     let size = len.div_ceil(pieces);
     (0..pieces).map(|i| len.min(i * size)..len.min((i + 1) * size)).collect()
 }
@@ -271,7 +250,7 @@ mod tests {
     fn pieces_are_the_whole_in_order() {
         for len in [0, 1, 7, 8, 1000] {
             for most in [1, 2, 3, 64] {
-                let pieces = cut(len, most);
+                let pieces = cut(len, most, 4);
                 assert!((1..=most).contains(&pieces.len()));
                 assert!(pieces.into_iter().flatten().eq(0..len));
             }
@@ -297,20 +276,6 @@ mod tests {
     }
 
     #[test]
-    fn each_result_is_of_its_item() {
-        for len in [0, 1, 7, 8, 1000] {
-            for count in [1, 2, 3, 8] {
-                let threads = Threads::new(NonZeroUsize::new(count), usize::MAX).unwrap();
-                let (items, mut results) = (Vec::from_iter(0..len), vec![0; len]);
-                threads.fill(&items, &mut results, |items, results| {
-                    items.iter().zip(results).for_each(|(item, result)| *result += item + 1);
-                });
-                assert!(results.into_iter().eq(1..=len));
-            }
-        }
-    }
-
-    #[test]
     fn copies_are_appended_in_order() {
         for len in [0, 1, 7, 8, 1000] {
             for count in [1, 2, 3, 8] {
@@ -320,23 +285,6 @@ mod tests {
                     .append(&mut all, &Vec::from_iter(0..len));
                 assert!(all.into_iter().eq([7].into_iter().chain(0..len)));
             }
-        }
-    }
-
-    #[test]
-    fn lists_are_joined_in_order() {
-        for count in [1, 2, 3, 8] {
-            let mut list = vec![7];
-            let threads = Threads::new(NonZeroUsize::new(count), usize::MAX).unwrap();
-            for _ in 0..2 {
-                threads.extend(
-                    &mut list,
-                    1000,
-                    |piece, list: &mut Vec<_>| list.extend(piece),
-                    |all, parts| threads.append_all(all, parts),
-                );
-            }
-            assert!(list.into_iter().eq([7].into_iter().chain(0..1000).chain(0..1000)));
         }
     }
 }

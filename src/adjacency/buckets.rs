@@ -1,11 +1,11 @@
 //! Half-edges sorted by the smaller vertices of their edges: what finds twins, and the edges of meshes that are not manifold.
 
 use super::triangle_of;
-use crate::threads::{Threads, Word, shared};
+use crate::threads::{FEWEST, Threads, Word, shared};
 use std::ops::Range;
-use std::sync::atomic::AtomicU32;
+use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
-/// Half-edges in buckets by the smaller vertices of their edges. In each bucket they ascend.
+/// Half-edges in buckets by the smaller vertices of their edges. Their order in a bucket depends on the threads.
 pub(super) struct Buckets {
     /// Where the bucket of each vertex ends, and the next one starts.
     pub(super) ends: Vec<u32>,
@@ -17,8 +17,8 @@ pub(super) struct Buckets {
 /// Vertices that are compared at once.
 const LANES: usize = 8;
 
-/// Words between places that two threads write to, lest they share a line of a cache.
-const LINE: usize = 16;
+/// Triangles of which the half-edges in question are listed first, so that the processor is ahead of the memory.
+const TRIANGLES: usize = 128;
 
 /// A larger bucket is sorted before it is searched, lest a pole cost the square of its edges.
 const FEW: usize = 64;
@@ -27,36 +27,32 @@ impl Buckets {
     /// Of all half-edges, or of those that rise: that go from the smaller vertex to the larger one. A counting sort.
     pub(super) fn new(vertices: usize, triangles: &[u32], threads: &Threads, all: bool) -> Self {
         let (corners, _) = triangles.as_chunks::<3>();
-        let mut pieces = threads.map_each(threads.pieces_with_arrays(corners.len()), |piece| {
-            let mut counts = vec![0u32; vertices];
-            for &[a, b, c] in &corners[piece.clone()] {
+        let mut ends = threads.zeros(vertices);
+        let words = shared(&mut ends);
+        let is_alone = threads.is_one();
+        threads.map(corners.len(), |piece| {
+            for &[a, b, c] in &corners[piece] {
                 for (from, to) in [(a, b), (b, c), (c, a)] {
-                    counts[if all { from.min(to) } else { from } as usize] += u32::from(all | (from < to));
-                }
-            }
-            (piece, counts)
-        });
-        let sum = become_starts(pieces.iter_mut().map(|(_, counts)| shared(counts)).collect(), threads);
-        let sinks = pieces.len() * LINE;
-        let [mut highs, mut half_edges] = [(); 2].map(|()| vec![0; sum as usize + LANES + sinks]);
-        let (high, half_edge) = (shared(&mut highs), shared(&mut half_edges));
-        let pieces = (sum + LANES as u32..).step_by(LINE).zip(pieces).collect();
-        let mut ends = threads.map_each(pieces, |(sink, (piece, mut starts))| {
-            for (t, &[a, b, c]) in (piece.start as u32..).zip(&corners[piece]) {
-                for (from, to, h) in [(a, b, 3 * t), (b, c, 3 * t + 1), (c, a, 3 * t + 2)] {
-                    let start = &mut starts[if all { from.min(to) } else { from } as usize];
+                    let word = &words[if all { from.min(to) } else { from } as usize];
                     let is_wanted = all | (from < to);
-                    // What is not wanted goes to a place of the piece's own; nothing could predict a branch.
-                    let at = if is_wanted { *start } else { sink } as usize;
-                    *start += u32::from(is_wanted);
-                    high[at].set(from.max(to));
-                    half_edge[at].set(h);
+                    if is_alone {
+                        word.set(word.get() + u32::from(is_wanted));
+                    } else if is_wanted {
+                        word.fetch_add(1, Relaxed);
+                    }
                 }
             }
-            starts
         });
-        // Each start has moved to the end of its part.
-        Self { ends: ends.pop().unwrap_or_default(), highs, half_edges }
+        let sum = become_starts(words, threads);
+        let [mut highs, mut half_edges] = [(); 2].map(|()| threads.zeros(sum as usize + LANES + 1));
+        let lists = [shared(&mut highs), shared(&mut half_edges)];
+        if is_alone {
+            scatter(corners, words, lists, all, sum + LANES as u32);
+        } else {
+            threads.map(corners.len(), |piece| scatter_beside_others(corners, piece, words, lists, all));
+        }
+        // Each start has moved to the end of its bucket.
+        Self { ends, highs, half_edges }
     }
 
     /// The half-edges of a bucket, each after the larger vertex.
@@ -79,24 +75,64 @@ impl Buckets {
     }
 }
 
-/// Each count of a vertex in a piece becomes a start: of the part of its bucket that is of the piece. Returns their sum.
-fn become_starts(counts: Vec<&[AtomicU32]>, threads: &Threads) -> u32 {
-    let pieces = threads.pieces(counts.first().map_or(0, |counts| counts.len()));
-    let sums = threads.map_each(pieces.clone(), |piece| {
-        counts.iter().map(|counts| counts[piece.clone()].iter().map(Word::get).sum::<u32>()).sum::<u32>()
-    });
+/// Writes the larger vertices of all wanted half-edges, and these themselves, to where the buckets start, which move on.
+fn scatter(corners: &[[u32; 3]], starts: &[AtomicU32], lists: [&[AtomicU32]; 2], all: bool, sink: u32) {
+    let [highs, half_edges] = lists;
+    for (t, &[a, b, c]) in (0..).zip(corners) {
+        for (from, to, h) in [(a, b, 3 * t), (b, c, 3 * t + 1), (c, a, 3 * t + 2)] {
+            let word = &starts[if all { from.min(to) } else { from } as usize];
+            let (start, is_wanted) = (word.get(), all | (from < to));
+            // What is not wanted goes to the sink; nothing could predict a branch.
+            let at = if is_wanted { start } else { sink } as usize;
+            word.set(start + u32::from(is_wanted));
+            highs[at].set(from.max(to));
+            half_edges[at].set(h);
+        }
+    }
+}
+
+/// The same for some of the triangles, while other threads do it for others.
+fn scatter_beside_others(
+    corners: &[[u32; 3]],
+    piece: Range<usize>,
+    starts: &[AtomicU32],
+    [highs, half_edges]: [&[AtomicU32]; 2],
+    all: bool,
+) {
+    let mut wanted = [[0; 3]; 3 * TRIANGLES];
+    for first in piece.clone().step_by(TRIANGLES) {
+        let mut count = 0;
+        for (t, &[a, b, c]) in (first as u32..).zip(&corners[first..piece.end.min(first + TRIANGLES)]) {
+            for (from, to, h) in [(a, b, 3 * t), (b, c, 3 * t + 1), (c, a, 3 * t + 2)] {
+                wanted[count] = [if all { from.min(to) } else { from }, from.max(to), h];
+                count += usize::from(all | (from < to));
+            }
+        }
+        // First all additions, since each of them waits for the writes before it.
+        for [low, ..] in &mut wanted[..count] {
+            *low = starts[*low as usize].fetch_add(1, Relaxed);
+        }
+        for &[at, high, h] in &wanted[..count] {
+            highs[at as usize].set(high);
+            half_edges[at as usize].set(h);
+        }
+    }
+}
+
+/// Each count becomes the sum of those before it. Returns the sum of all.
+fn become_starts(counts: &[AtomicU32], threads: &Threads) -> u32 {
+    let pieces = threads.pieces(counts.len(), FEWEST);
+    let sums = threads.map_each(pieces.clone(), |piece| counts[piece].iter().map(Word::get).sum::<u32>());
     let mut end = 0;
     let starts = sums.into_iter().map(|sum| {
         end += sum;
         end - sum
     });
     threads.map_each(pieces.into_iter().zip(starts).collect(), |(piece, mut start)| {
-        for vertex in piece {
-            for counts in &counts {
-                let count = counts[vertex].get();
-                counts[vertex].set(start);
-                start += count;
-            }
+        for count in &counts[piece] {
+            let end = start + count.get();
+            count.set(start);
+            start = end;
         }
     });
     end
@@ -158,9 +194,6 @@ pub(super) struct Rising<'a> {
     /// With [`TAKEN`] where it is.
     pub(super) half_edges: &'a [AtomicU32],
 }
-
-/// Triangles of which the falling half-edges are listed first, so that the processor is ahead of the memory.
-const TRIANGLES: usize = 128;
 
 impl Rising<'_> {
     /// How many there are.

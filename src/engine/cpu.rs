@@ -23,6 +23,9 @@ use std::sync::atomic::AtomicU32;
 /// Edges that are tested in one go.
 const EDGES: usize = 256;
 
+/// Candidates of a part at least: with fewer, a thread is done before another has woken up.
+const FEWEST: usize = if cfg!(debug_assertions) { 4 } else { 512 };
+
 /// An edge by its half-edges, the lower one first.
 type Edge = [u32; 2];
 
@@ -32,21 +35,20 @@ const DUPLICATE: u32 = LOCKED;
 /// In the second half-edge of a candidate: it may make such an edge after other flips.
 const GUARDED: u32 = CREASE;
 
-/// The edges that are not Delaunay.
+/// Some of the edges that are not Delaunay. One thread goes through them at a time; no bit of the result depends on which
+/// they are.
 #[derive(Default)]
-struct Found {
+struct Part {
     /// Those that may flip, or could but for a duplicate.
     candidates: Vec<Edge>,
     /// A half-edge of each of the others, beside some of edges that have gone since.
     blocked: Vec<u32>,
-}
-
-impl Found {
-    fn append(&mut self, parts: Vec<Self>, threads: &Threads) {
-        let (candidates, blocked) = parts.into_iter().map(|part| (part.candidates, part.blocked)).unzip();
-        threads.append_all(&mut self.candidates, candidates);
-        threads.append_all(&mut self.blocked, blocked);
-    }
+    /// Those that the last iteration has flipped.
+    flipped: Vec<Edge>,
+    /// What is around each of those now.
+    around: Vec<Around>,
+    /// Half-edges of the triangles whose best edge is no other one's.
+    vain: Vec<u32>,
 }
 
 /// Reads words ahead of their use: in a loop so short, the processor waits for many of them at once.
@@ -75,15 +77,15 @@ pub(crate) struct Cpu {
     pub(crate) triangles: Vec<u32>,
     pub(crate) twins: Vec<u32>,
     pub(crate) fans: Fans,
-    found: Found,
-    /// The edges that the last iteration has flipped; `None` before the first.
-    flipped: Option<Vec<Edge>>,
-    /// What is around each of those now, and some more.
-    around: Vec<Around>,
-    /// Those edges by triangle.
+    parts: Vec<Part>,
+    /// More of what parts have as blocked, from before they were cut anew.
+    blocked: Vec<Vec<u32>>,
+    /// Whether the parts have all edges that are not Delaunay; not before the first iteration.
+    is_known: bool,
+    /// The edges that flip, by triangle; none until the parts are known.
     selected: Selected,
     /// For each vertex whose star is not known to be embedded the last iteration, plus one, in which an edge there came
-    /// or went.
+    /// or went. Empty as long as the parts are not known.
     changed: Vec<AtomicU32>,
     iteration: u32,
 }
@@ -99,28 +101,29 @@ impl Cpu {
         let adjacency = Adjacency::of_triangles(mesh.vertex_count(), mesh.triangles(), &threads);
         let (winding, embedded) = Embedded::with_winding(&mesh, &adjacency.twins, &threads);
         let counts = EdgeCounts::from(&adjacency);
-        let triangles = mesh.triangles().to_vec();
+        let mut triangles = Vec::new();
+        threads.append(&mut triangles, mesh.triangles());
         let fans = embedded.fans(&mesh, &adjacency.twins, &threads);
         let mut twins = adjacency.twins;
         if mesh.dimension() == Dimension::Three {
             flag_creases(mesh.positions(), &triangles, &mut twins, thresholds.cos, &threads);
         }
         Self {
-            threads,
             thresholds,
             winding,
             embedded,
             counts,
             fans,
-            found: Found::default(),
-            flipped: None,
-            around: Vec::new(),
-            selected: Selected::new(triangles.len() / 3),
-            changed: std::iter::repeat_with(AtomicU32::default).take(mesh.vertex_count()).collect(),
+            parts: Vec::new(),
+            blocked: Vec::new(),
+            is_known: false,
+            selected: Selected::default(),
+            changed: Vec::new(),
             iteration: 0,
             triangles,
             twins,
             mesh,
+            threads,
         }
     }
 
@@ -136,54 +139,52 @@ impl Cpu {
     /// Label: tests the edges around those that have flipped, which are Delaunay now, and all edges before the first
     /// iteration; looks for duplicates again where one may have come or gone.
     pub(super) fn label(&mut self) {
-        let Found { candidates, blocked } = std::mem::take(&mut self.found);
-        let mut found = Found { blocked, ..Found::default() };
-        let append = |found: &mut Found, parts| found.append(parts, &self.threads);
-        if let Some(flipped) = &self.flipped {
-            let keep =
-                |piece: Range<usize>, found: &mut Found| self.keep_candidates(&candidates[piece], found);
-            self.threads.extend(&mut found, candidates.len(), keep, append);
-            let test = |piece: Range<usize>, found: &mut Found| {
-                self.test_around(&flipped[piece.clone()], &self.around[piece], found);
-            };
-            self.threads.extend(&mut found, flipped.len(), test, append);
+        let mut parts = std::mem::take(&mut self.parts);
+        if self.is_known {
+            self.threads.each(&mut parts, |part| self.keep_candidates(&mut part.candidates));
+            self.threads.each(&mut parts, |part| self.test_around(part));
         } else {
-            found.blocked.clear();
-            self.threads.extend(
-                &mut found,
-                self.twins.len() / 3,
-                |piece, found| self.test_all(piece, found),
-                append,
-            );
+            self.blocked.clear();
+            self.selected = Selected::new(self.twins.len() / 3, &self.threads);
+            self.changed = self.threads.collect(self.mesh.vertex_count(), |_| AtomicU32::default());
+            parts = self.threads.map(self.twins.len() / 3, |piece| self.test_all(piece));
         }
-        self.found = found;
-        self.flipped.get_or_insert_default().clear();
+        self.is_known = true;
+        self.parts = parts;
+        self.deal();
     }
 
     /// Tests the edges whose lower half-edges are of these triangles.
-    fn test_all(&self, range: Range<usize>, found: &mut Found) {
+    fn test_all(&self, range: Range<usize>) -> Part {
+        let mut part = Part::default();
         let mut diamonds = [Diamond::default(); EDGES];
         for first in range.clone().step_by(EDGES / 3) {
             let piece = first..range.end.min(first + EDGES / 3);
             let count = Diamond::write(self.topology(), piece, &mut diamonds);
-            self.test(&mut diamonds[..count], found);
+            self.test(&mut diamonds[..count], &mut part.candidates, &mut part.blocked);
         }
+        part
     }
 
-    /// Finds the candidates of which no triangle has flipped.
-    fn keep_candidates(&self, candidates: &[Edge], found: &mut Found) {
-        for &[h, twin] in candidates {
+    /// Keeps the candidates of which no triangle has flipped.
+    fn keep_candidates(&self, candidates: &mut Vec<Edge>) {
+        let mut count = 0;
+        for i in 0..candidates.len() {
+            let [h, twin] = candidates[i];
             let g = unflagged(twin);
-            if self.selected.is_free(h) && self.selected.is_free(g) {
-                let is_open = twin & GUARDED != 0
-                    && [h, g].iter().all(|&x| self.has_changed(self.triangles[prev(x) as usize]));
-                found.candidates.push(if is_open { self.guarded([h, g]) } else { [h, twin] });
-            }
+            let is_kept = self.selected.is_free(h) & self.selected.is_free(g);
+            let is_open = is_kept
+                && twin & GUARDED != 0
+                && [h, g].iter().all(|&x| self.has_changed(self.triangles[prev(x) as usize]));
+            candidates[count] = if is_open { self.guarded([h, g]) } else { [h, twin] };
+            count += usize::from(is_kept);
         }
+        candidates.truncate(count);
     }
 
     /// Tests the edges around those that have flipped, whose triangles are free again.
-    fn test_around(&self, flipped: &[Edge], around: &[Around], found: &mut Found) {
+    fn test_around(&self, part: &mut Part) {
+        let Part { candidates, blocked, flipped, around, .. } = part;
         let mesh = self.topology();
         let mut diamonds = [Diamond::default(); EDGES];
         for (flipped, around) in flipped.chunks(EDGES / 4).zip(around.chunks(EDGES / 4)) {
@@ -191,26 +192,49 @@ impl Cpu {
             touch(far.map(|g| *self.triangles.get(g).unwrap_or(&0)));
             let mut count = 0;
             for (&[h, g], &[outer, corners]) in flipped.iter().zip(around) {
-                self.selected.release([h, g]);
+                self.selected.release(h);
+                self.selected.release(g);
                 let (sides, room) = ([h, prev(h), g, prev(g)], &mut diamonds[count..]);
                 count += Diamond::write_around(mesh, sides, outer, corners, room);
             }
-            self.test(&mut diamonds[..count], found);
+            self.test(&mut diamonds[..count], candidates, blocked);
         }
+        flipped.clear();
     }
 
-    fn test(&self, diamonds: &mut [Diamond], found: &mut Found) {
+    fn test(&self, diamonds: &mut [Diamond], candidates: &mut Vec<Edge>, blocked: &mut Vec<u32>) {
         let geometry = self.geometry();
         let count = keep_non_delaunay(&geometry, diamonds);
         for diamond in &diamonds[..count] {
             let (h, g, [_, _, c, d]) = (diamond.h, unflagged(diamond.twin), diamond.corners);
             let edge = [h.min(g), h.max(g)];
             match verdict_of_shape(&geometry, diamond) {
-                Verdict::Labelled if self.embedded.at(c) | self.embedded.at(d) => found.candidates.push(edge),
-                Verdict::Labelled => found.candidates.push(self.guarded(edge)),
-                _ => found.blocked.push(h),
+                Verdict::Labelled if self.embedded.at(c) | self.embedded.at(d) => candidates.push(edge),
+                Verdict::Labelled => candidates.push(self.guarded(edge)),
+                _ => blocked.push(h),
             }
         }
+    }
+
+    /// Cuts the candidates anew where one part has many more of them than others, or each has few.
+    fn deal(&mut self) {
+        let sizes = self.parts.iter().map(|part| part.candidates.len());
+        let (total, most) = (sizes.clone().sum(), sizes.max().unwrap_or(0));
+        let pieces = self.threads.pieces(total, FEWEST);
+        if self.parts.len() < 2 * pieces.len() && most <= 2 * pieces[0].len() {
+            return;
+        }
+        let parts = std::mem::take(&mut self.parts);
+        self.parts = self.threads.map_each(pieces, |Range { start, end }| {
+            let (mut candidates, mut before) = (Vec::with_capacity(end - start), 0);
+            for part in &parts {
+                let within = |at: usize| at.saturating_sub(before).min(part.candidates.len());
+                candidates.extend_from_slice(&part.candidates[within(start)..within(end)]);
+                before += part.candidates.len();
+            }
+            Part { candidates, ..Part::default() }
+        });
+        self.blocked.extend(parts.into_iter().map(|part| part.blocked).filter(|blocked| !blocked.is_empty()));
     }
 
     /// A candidate, once it is known whether it makes a duplicate.
@@ -226,89 +250,104 @@ impl Cpu {
 
     /// Select: the edges that flip are those with the smallest key in both their triangles, but for those that yield.
     fn select(&mut self) {
-        let Self { threads, selected, iteration, found: Found { candidates, .. }, .. } = &*self;
-        threads.map(candidates.len(), |piece| {
-            for &[h, twin] in &candidates[piece] {
+        let mut parts = std::mem::take(&mut self.parts);
+        let Self { threads, selected, iteration, .. } = &*self;
+        threads.each(&mut parts, |part| {
+            for &[h, twin] in &part.candidates {
                 if twin & DUPLICATE == 0 {
                     selected.bid([h, unflagged(twin)], key(h, *iteration));
                 }
             }
         });
-        let append = |all: &mut Vec<Edge>, parts| threads.append_all(all, parts);
-        let mut flips = Vec::new();
-        let win = |piece: Range<usize>, flips: &mut Vec<Edge>| {
-            let mut count = flips.len();
-            flips.resize(count + piece.len(), [0; 2]);
-            for &[h, twin] in &candidates[piece] {
-                flips[count] = [h, twin];
-                let has_won = selected.has_won([h, unflagged(twin)], key(h, *iteration));
-                count += usize::from(has_won & (twin & DUPLICATE == 0));
+        threads.each(&mut parts, |Part { candidates, flipped, vain, .. }| {
+            let (mut wins, mut halves) = ([[0; 2]; EDGES], [0; EDGES]);
+            for candidates in candidates.chunks(EDGES) {
+                let mut counts = [0; 2];
+                for &[h, twin] in candidates {
+                    let g = unflagged(twin);
+                    let may = twin & DUPLICATE == 0;
+                    let [has_h, has_g] = [h, g].map(|x| may & selected.has_won(x, key(h, *iteration)));
+                    wins[counts[0]] = [h, twin];
+                    counts[0] += usize::from(has_h & has_g);
+                    halves[counts[1]] = if has_h { h } else { g };
+                    counts[1] += usize::from(has_h ^ has_g);
+                }
+                flipped.extend_from_slice(&wins[..counts[0]]);
+                vain.extend_from_slice(&halves[..counts[1]]);
             }
-            flips.truncate(count);
-        };
-        threads.extend(&mut flips, candidates.len(), win, append);
-        threads.map(candidates.len(), |piece| {
-            candidates[piece].iter().for_each(|&[h, twin]| selected.release([h, unflagged(twin)]));
         });
-        threads.map(flips.len(), |piece| {
-            flips[piece].iter().for_each(|&[h, twin]| selected.choose([h, unflagged(twin)]));
+        let guarded = threads.each(&mut parts, |Part { flipped, vain, .. }| {
+            vain.drain(..).for_each(|x| selected.release(x));
+            flipped.iter().for_each(|&[h, twin]| selected.choose([h, unflagged(twin)]));
+            flipped.iter().fold(0, |all, [_, twin]| all | twin) & GUARDED != 0
         });
-        let mut yielding = Vec::new();
-        let yields = |piece: Range<usize>, yielding: &mut Vec<Edge>| {
-            let guarded = flips[piece].iter().filter(|[_, twin]| twin & GUARDED != 0);
-            let guarded = guarded.map(|&[h, twin]| [h, unflagged(twin)]);
-            yielding.extend(
-                guarded.filter(|&[h, g]| yields(self.topology(), *iteration, h, g, |t| selected.pair(t))),
-            );
+        let find_yielding = |part: &mut Part| {
+            let mut is_yielding = false;
+            for [h, twin] in part.flipped.iter_mut().filter(|[_, twin]| twin & GUARDED != 0) {
+                *twin = unflagged(*twin);
+                if yields(self.topology(), *iteration, *h, *twin, |t| selected.pair(t)) {
+                    *twin |= DUPLICATE;
+                    is_yielding = true;
+                }
+            }
+            is_yielding
         };
-        threads.extend(&mut yielding, flips.len(), yields, append);
-        if !yielding.is_empty() {
-            yielding.iter().for_each(|&edge| selected.release(edge));
-            flips.retain(|&[h, _]| !selected.is_free(h));
+        if guarded.contains(&true) && threads.each(&mut parts, find_yielding).contains(&true) {
+            threads.each(&mut parts, |part| {
+                part.flipped.retain(|&[h, twin]| {
+                    let is_yielding = twin & DUPLICATE != 0;
+                    if is_yielding {
+                        selected.release(h);
+                        selected.release(unflagged(twin));
+                    }
+                    !is_yielding
+                });
+            });
         }
-        flips.iter_mut().for_each(|[_, twin]| *twin = unflagged(*twin));
-        self.flipped = Some(flips);
+        self.parts = parts;
     }
 
     /// Flip with Update. Returns the number of flips.
     fn flip(&mut self) -> u32 {
-        let Self { threads, triangles, twins, fans, selected, changed, embedded, iteration, around, .. } =
+        let Self { threads, triangles, twins, fans, selected, changed, embedded, iteration, parts, .. } =
             self;
-        let flips = self.flipped.as_deref().unwrap_or_default();
         *iteration += 1;
-        move_anchors(fans, triangles, selected, flips);
-        let (triangles, twins) = (shared(triangles), shared(twins));
-        if around.len() < flips.len() {
-            drop(std::mem::take(around));
-            *around = vec![Around::default(); flips.len()];
+        for part in &*parts {
+            move_anchors(fans, triangles, selected, &part.flipped);
         }
-        threads.fill(flips, &mut around[..flips.len()], |flips, around| {
-            for (flips, around) in flips.chunks(EDGES / 4).zip(around.chunks_mut(EDGES / 4)) {
-                let own = flips.iter().flatten().map(|&x| x as usize);
+        let (triangles, twins) = (shared(triangles), shared(twins));
+        threads.each(parts, |Part { flipped, around, .. }| {
+            around.clear();
+            around.reserve_exact(flipped.len());
+            for flipped in flipped.chunks(EDGES / 4) {
+                let own = flipped.iter().flatten().map(|&x| x as usize);
                 touch(own.map(|x| twins[x].get() ^ triangles[x].get()));
-                for (&edge, around) in flips.iter().zip(around) {
-                    *around = flip(triangles, twins, selected, edge);
+                around.extend(flipped.iter().map(|&edge| {
+                    let around = flip(triangles, twins, selected, edge);
                     for v in around[1] {
                         if !embedded.at(v) {
                             changed[v as usize].set(*iteration);
                         }
                     }
-                }
+                    around
+                }));
             }
         });
-        flips.len() as u32
+        parts.iter().map(|part| part.flipped.len() as u32).sum()
     }
 
     /// Counts the edges that are not Delaunay: tests those again that have been found so.
     pub(crate) fn count(&mut self) -> Census {
         self.label();
-        let Found { candidates, blocked } = &self.found;
+        let candidates = self.parts.iter().flat_map(|part| &part.candidates).map(|[h, _]| h);
+        let blocked = self.parts.iter().map(|part| &part.blocked).chain(&self.blocked).flatten();
+        let mut found = candidates.chain(blocked).peekable();
         let mut census = Census::default();
-        if candidates.is_empty() & blocked.is_empty() {
+        if found.peek().is_none() {
             return census;
         }
         let mut is_counted = vec![false; self.twins.len()];
-        for &h in candidates.iter().map(|[h, _]| h).chain(blocked) {
+        for &h in found {
             let g = unflagged(self.twins[h as usize]);
             if g == NONE || std::mem::replace(&mut is_counted[h.min(g) as usize], true) {
                 continue;
@@ -333,8 +372,9 @@ impl Cpu {
 
     /// After flips of others: all edges are Delaunay but some of these, or else, as at first, none is known.
     pub(super) fn settle(&mut self, others: Vec<u32>, is_known: bool) {
-        self.found = Found { blocked: others, ..Found::default() };
-        self.flipped = is_known.then(Vec::new);
+        self.parts.clear();
+        self.blocked = vec![others];
+        self.is_known = is_known;
     }
 }
 
@@ -385,10 +425,8 @@ impl Engine for Cpu {
                 &self.threads,
             );
         }
-        self.found = Found::default();
-        self.flipped = None;
-        self.selected = Selected::new(self.triangles.len() / 3);
-        self.changed.fill_with(AtomicU32::default);
+        self.parts.clear();
+        self.is_known = false;
         self.iteration = 0;
         self.mesh = mesh;
         Box::pin(std::future::ready(Ok(())))

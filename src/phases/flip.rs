@@ -3,17 +3,18 @@
 use crate::NONE;
 use crate::adjacency::{FLAGS, next, prev, triangle_of};
 use crate::star::Fans;
-use crate::threads::Word;
+use crate::threads::{Threads, Word};
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
 /// For each triangle the twin of its half-edge that flips, with the place of the next one in the triangle in the bits of
 /// [`FLAGS`]: that one moves. Or [`NONE`], whose place is none.
+#[derive(Default)]
 pub(crate) struct Selected(Vec<AtomicU32>);
 
 impl Selected {
     /// No edge of so many triangles.
-    pub(crate) fn new(triangles: usize) -> Self {
-        Self(std::iter::repeat_with(|| AtomicU32::new(NONE)).take(triangles).collect())
+    pub(crate) fn new(triangles: usize, threads: &Threads) -> Self {
+        Self(threads.collect(triangles, |_| AtomicU32::new(NONE)))
     }
 
     /// That of the triangle of `h`.
@@ -35,10 +36,10 @@ impl Selected {
         }
     }
 
-    /// Whether the edge has won both its triangles, once all have bidden.
+    /// Whether an edge has won the triangle of its half-edge `x`, once all have bidden.
     #[inline(always)]
-    pub(crate) fn has_won(&self, edge: [u32; 2], key: u32) -> bool {
-        edge.iter().fold(true, |all, &x| all & (self.word(x).get() == key))
+    pub(crate) fn has_won(&self, x: u32, key: u32) -> bool {
+        self.word(x).get() == key
     }
 
     /// Selects the edge of two half-edges.
@@ -48,12 +49,10 @@ impl Selected {
         }
     }
 
-    /// No edge of the triangles of two half-edges is selected.
+    /// No edge of the triangle of `x` is selected.
     #[inline(always)]
-    pub(crate) fn release(&self, edge: [u32; 2]) {
-        for x in edge {
-            self.word(x).set(NONE);
-        }
+    pub(crate) fn release(&self, x: u32) {
+        self.word(x).set(NONE);
     }
 
     /// Whether no edge of the triangle of `h` is selected.
