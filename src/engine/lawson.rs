@@ -11,12 +11,12 @@ use crate::Mesh;
 use crate::mesh::Dimension;
 use std::sync::Arc;
 
-/// Regions at most: the flips of one have to take a fraction of a thread's time.
-const REGIONS: usize = 16;
+/// Regions at most, several for each thread of most machines, so that none waits long for another.
+const REGIONS: usize = 64;
 
 /// Triangles of a region at least: few of them are near others. Without optimisation it has few, so that small meshes test
 /// regions.
-const FEWEST: usize = if cfg!(debug_assertions) { 16 } else { 1 << 16 };
+const FEWEST: usize = if cfg!(debug_assertions) { 16 } else { 1 << 15 };
 
 /// The state of the CPU engine, flipped in another order.
 pub(crate) struct Lawson {
