@@ -1,16 +1,17 @@
 //! The CPU engine, the phases and Lawson's algorithm, on one thread and on one for each core, beside crates that
-//! triangulate the same points from scratch on one. `cargo bench --bench native -- [--runs N] [FAMILY…]`, a family being
-//! what `edgeflip::families::by_name` takes, with its points in a grid: `cargo bench --bench native -- "random 300" "shear 1000"`.
+//! triangulate the same points from scratch on one, where these are in a grid in the plane. `cargo bench --bench native --
+//! [--runs N] [FAMILY…]`, a family being what `edgeflip::families::by_name` takes: `cargo bench --bench native -- "random 300" "uvsphere 1000"`.
 //!
 //! The runs are interleaved, so that a busy machine disturbs all of them alike; the figures are medians.
 
 use delaunator::Point;
 use edgeflip::{Backend, Dimension, Mesh, Options, Order, Timings, families, make_delaunay};
 use i_triangle::float::triangulatable::Triangulatable;
-use peak_alloc::PeakAlloc;
+use peakmem_alloc::{PeakMemAlloc, PeakMemAllocTrait};
 use spade::{DelaunayTriangulation, Point2, Triangulation};
 use std::{
-    error::Error, hint::black_box, num::NonZeroUsize, ops::ControlFlow, sync::Arc, thread, time::Instant,
+    alloc::System, error::Error, hint::black_box, num::NonZeroUsize, ops::ControlFlow, sync::Arc, thread,
+    time::Instant,
 };
 
 #[path = "arguments/mod.rs"]
@@ -18,10 +19,11 @@ mod arguments;
 use arguments::{Arguments, median};
 
 #[global_allocator]
-static ALLOCATOR: PeakAlloc = PeakAlloc;
+static ALLOCATOR: PeakMemAlloc<System> = PeakMemAlloc::system();
 
 /// From 2,000 to 2,000,000 triangles, and twice as many flips.
-const MESHES: [&str; 6] = ["random 33", "random 76", "random 179", "random 423", "random 1001", "shear 1000"];
+const MESHES: [&str; 7] =
+    ["random 33", "random 76", "random 179", "random 423", "random 1001", "shear 1000", "uvsphere 1000"];
 
 /// A whole job, with what it says itself of where the time went.
 type Job<'a> = dyn Fn() -> Result<Timings, Box<dyn Error>> + 'a;
@@ -48,12 +50,14 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!(
         "first one's time by the second one's: above 1, the second is faster. Memory is the most that is held beside the input."
     );
-    println!();
-    for (i, spec) in specs.iter().enumerate() {
-        let table = table(spec, runs)?;
-        for line in &table[if i == 0 { 0 } else { 2 }..] {
-            println!("{line}");
+    let mut last = None;
+    for spec in &specs {
+        let [head, ruler, row] = table(spec, runs)?;
+        if last.as_ref() != Some(&head) {
+            println!("\n{head}\n{ruler}");
+            last = Some(head);
         }
+        println!("{row}");
     }
     Ok(())
 }
@@ -61,39 +65,40 @@ fn main() -> Result<(), Box<dyn Error>> {
 /// Two lines of head, and that of the mesh.
 fn table(spec: &str, runs: usize) -> Result<[String; 3], Box<dyn Error>> {
     let mesh = Arc::new(families::by_name(spec)?);
-    let n = mesh.vertex_count().isqrt();
-    if mesh.dimension() != Dimension::Two || n * n != mesh.vertex_count() {
-        return Err(format!("{spec} is no mesh in the plane with its points in a grid").into());
-    }
     let positions: Vec<f64> = mesh.positions().iter().collect();
-    let pairs: Vec<[f64; 2]> = positions.chunks_exact(2).map(|p| [p[0], p[1]]).collect();
+    let size = positions.len() / mesh.vertex_count();
+    let pairs: Vec<[f64; 2]> = positions.chunks_exact(size).map(|p| [p[0], p[1]]).collect();
     let points: Vec<Point> = pairs.iter().map(|&[x, y]| Point { x, y }).collect();
     let vertices: Vec<Point2<f64>> = pairs.iter().map(|&[x, y]| Point2::new(x, y)).collect();
+    let n = mesh.vertex_count().isqrt();
+    let is_grid = mesh.dimension() == Dimension::Two && n * n == mesh.vertex_count();
     let corners = [0, n - 1, n * n - 1, n * n - n].map(|i| pairs[i]);
     let is_inside = |i: usize| [i % n, i / n].iter().all(|k| (1..n - 1).contains(k));
     let inside: Vec<[f64; 2]> = (0..n * n).filter(|&i| is_inside(i)).map(|i| pairs[i]).collect();
     let one = NonZeroUsize::new(1);
     let edges = flip(&mesh, Order::Reproducible, one)?.0;
     let cores = if cfg!(feature = "threads") { thread::available_parallelism()?.get() } else { 1 };
-    let mut contenders = [
+    let mut contenders = vec![
         contender("phases", || Ok(flip(&mesh, Order::Reproducible, one)?.1)),
         contender("Lawson", || Ok(flip(&mesh, Order::Any, one)?.1)),
         contender(&format!("phases on {cores} threads"), || Ok(flip(&mesh, Order::Reproducible, None)?.1)),
         contender(&format!("Lawson on {cores} threads"), || Ok(flip(&mesh, Order::Any, None)?.1)),
-        contender("delaunator", || {
+    ];
+    if is_grid {
+        contenders.push(contender("delaunator", || {
             black_box(delaunator::triangulate(black_box(&points)));
             Ok(Timings::default())
-        }),
-        contender("spade", || {
+        }));
+        contenders.push(contender("spade", || {
             black_box(DelaunayTriangulation::<_>::bulk_load(vertices.clone())?.num_vertices());
             Ok(Timings::default())
-        }),
-        contender("i_triangle", || {
+        }));
+        contenders.push(contender("i_triangle", || {
             let delaunay = corners.triangulate_with_steiner_points(&inside).into_delaunay();
             black_box(delaunay.to_triangulation::<u32>());
             Ok(Timings::default())
-        }),
-    ];
+        }));
+    }
     for _ in 0..runs {
         for contender in &mut contenders {
             measure(contender)?;
@@ -104,7 +109,8 @@ fn table(spec: &str, runs: usize) -> Result<[String; 3], Box<dyn Error>> {
         contenders.iter().map(|contender| per_edge(median(contender.ms.clone()) * 1e6)).collect();
     let mut head = vec!["mesh".to_owned(), "edges".to_owned()];
     let mut row = vec![spec.to_owned(), edges.to_string()];
-    for (our, others) in [(0, 3..6), (1, 3..6), (2, 0..1)] {
+    let others = 4..contenders.len();
+    for (our, others) in [(0, others.clone()), (1, others), (2, 0..1), (3, 1..2)] {
         for other in others {
             head.push(format!("{} : {}", contenders[other].name, contenders[our].name));
             row.push(format!("{:.2}", ns[other] / ns[our]));
@@ -114,7 +120,7 @@ fn table(spec: &str, runs: usize) -> Result<[String; 3], Box<dyn Error>> {
         head.push(format!("{}, ns an edge", contender.name));
         row.push(format!("{:.1}", ns[i]));
     }
-    for Contender { name, timings, .. } in &contenders[..3] {
+    for Contender { name, timings, .. } in &contenders[..4] {
         let parts: [(&str, Part); 2] = [("adjacency", |t| t.adjacency), ("flips", |t| t.flip)];
         for (part, of) in parts {
             head.push(format!("{name}: {part}"));
@@ -140,13 +146,12 @@ fn contender<'a>(name: &str, job: impl Fn() -> Result<Timings, Box<dyn Error>> +
 }
 
 fn measure(contender: &mut Contender) -> Result<(), Box<dyn Error>> {
-    ALLOCATOR.reset_peak_usage();
-    let before = ALLOCATOR.current_usage();
+    ALLOCATOR.reset_peak_memory();
     let start = Instant::now();
     let timings = (contender.job)()?;
     contender.ms.push(start.elapsed().as_secs_f64() * 1e3);
     contender.timings.push(timings);
-    contender.bytes.push((ALLOCATOR.peak_usage() - before) as f64);
+    contender.bytes.push(ALLOCATOR.get_peak_memory() as f64);
     Ok(())
 }
 
