@@ -161,6 +161,12 @@ impl Threads {
         }
         all.extend_from_slice(items);
     }
+
+    /// Appends some lists to `all`, in order.
+    pub(crate) fn append_all<T: Copy + Send + Sync>(&self, all: &mut Vec<T>, lists: Vec<Vec<T>>) {
+        all.reserve_exact(lists.iter().map(Vec::len).sum());
+        lists.into_iter().for_each(|list| self.append(all, &list));
+    }
 }
 
 /// Whether the threads of the process could be started, once that has been tried.

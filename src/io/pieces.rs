@@ -2,7 +2,7 @@
 //! Neither what is read nor what is written depends on how many pieces there are.
 
 use super::text::{Digits, Lines};
-use crate::threads::Threads;
+use crate::threads::{FEWEST, Threads};
 use std::io::{self, Write};
 use std::ops::Range;
 
@@ -34,7 +34,7 @@ pub(super) fn cut<'a>(
     is_item: impl Fn(&[u8]) -> bool + Sync,
     threads: &Threads,
 ) -> Vec<Piece<'a>> {
-    let cuts = threads.pieces(lines.bytes_left());
+    let cuts = threads.pieces(lines.bytes_left(), FEWEST);
     if cuts.len() == 1 {
         return vec![Piece { lines: lines.clone(), items: 0..u64::MAX }];
     }
