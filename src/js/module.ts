@@ -1,7 +1,7 @@
 /** Loads a WebAssembly module, once. */
 
 import { EdgeflipError } from './error.js';
-import { copyOf, messageOf, shown, viewOf } from './given.js';
+import { copyOf, messageOf, read, shown, viewOf } from './given.js';
 import { VERTEX_ARRAYS } from './settings.js';
 
 /** Where the module comes from: its bytes, the module itself, a response, or an address to fetch. */
@@ -36,10 +36,19 @@ function sourceOf(given: ModuleSource): ModuleSource {
   if (typeof given === 'string') return given;
   const view = viewOf(given, VERTEX_ARRAYS, 'the bytes');
   if (view) return copyOf(view, 'the bytes') as Uint8Array<ArrayBuffer>;
-  const kinds = [URL, WebAssembly.Module, Response, ArrayBuffer];
+  if (given instanceof ArrayBuffer || ArrayBuffer.isView(given)) return bytesOf(given);
+  const kinds = [URL, WebAssembly.Module, Response];
   // One that has a `then` would be waited for.
   if (kinds.some((kind) => given instanceof kind) && !('then' in given)) return given;
   throw new TypeError(`${shown(given)} is no address, response, module or bytes`);
+}
+
+/** A copy of the bytes in a buffer, or in a view of any kind: V8 compiles no DataView. */
+function bytesOf(given: ArrayBuffer | ArrayBufferView): Uint8Array<ArrayBuffer> {
+  return read('the bytes', () => {
+    const copy = structuredClone(given);
+    return ArrayBuffer.isView(copy) ? new Uint8Array(copy.buffer as ArrayBuffer, copy.byteOffset, copy.byteLength) : new Uint8Array(copy);
+  });
 }
 
 /** The module of a source, without an instance. */
