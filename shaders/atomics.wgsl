@@ -1,6 +1,6 @@
 // The history, for kernels that write it.
 
-// The census, then an entry for the state before each iteration of a batch.
+// What its words are, state.wgsl says.
 @group(0) @binding(7) var<storage, read_write> history: array<atomic<u32>>;
 
 fn history_word(i: u32) -> u32 {

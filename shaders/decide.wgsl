@@ -4,11 +4,16 @@
 // Invocations of a workgroup: each has a lane.
 const DECIDERS: u32 = 64u;
 
+// Whether each invocation decides one triangle in a dispatch, of which there are several: where loops end too early, see
+// rounds.wgsl.
+override DECIDES_ONE: bool = false;
+
 var<workgroup> limit: u32;
 var<workgroup> together: u32;
 // Triangles that wait, in no order.
 var<workgroup> waiting: array<u32, CHUNKS * WORKGROUP_SIZE>;
 var<workgroup> waiting_count: atomic<u32>;
+var<workgroup> found: u32;
 
 @compute @workgroup_size(DECIDERS)
 fn decide_all(
@@ -22,7 +27,7 @@ fn decide_all(
     if local == 0u {
         limit = work.count;
         // In a list most chunks may be doubtful: those are done side by side.
-        together = select(CHUNKS, 1u, work.is_listed);
+        together = select(CHUNKS, 1u, work.is_listed || DECIDES_ONE);
     }
     let end = workgroupUniformLoad(&limit);
     let step = workgroupUniformLoad(&together);
@@ -34,13 +39,16 @@ fn decide_all(
             }
         }
         workgroupBarrier();
-        let count = atomicLoad(&waiting_count);
-        for (var i = local; i < count; i += DECIDERS) {
+        if local == 0u {
+            found = atomicExchange(&waiting_count, 0u);
+        }
+        let count = workgroupUniformLoad(&found);
+        let end_of_answers = select(count, min(count, DECIDERS), DECIDES_ONE);
+        for (var i = local; i < end_of_answers; i += DECIDERS) {
             answer(waiting[i], params.first + index);
         }
-        workgroupBarrier();
-        if local == 0u {
-            atomicStore(&waiting_count, 0u);
+        if DECIDES_ONE && count > 0u {
+            break;
         }
         workgroupBarrier();
     }

@@ -46,8 +46,8 @@ fn count_turns(
             let is_below = from_below.y < 0 || (from_below.y == 0 && from_below.x > 0);
             let is_above = to_above.y > 0 || (to_above.y == 0 && to_above.x < 0);
             let turns = select(NOT_EMBEDDED, select(0u, 1u, is_below && is_above), is_positive && is_inner);
-            // Vertices of no triangle may be more than there are words.
-            if turns > 0u && vertex(h) < arrayLength(&frontier) {
+            // Vertices of no triangle may be more than there are words before the doubts.
+            if turns > 0u && vertex(h) < doubts() {
                 atomicAdd(&frontier[vertex(h)], turns);
             }
             let corner = a;
@@ -68,7 +68,7 @@ fn count_turns(
 fn mark_embedded(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
     for (var word = id.x; word < (params.vertices + 31u) / 32u; word += groups.x * WORKGROUP_SIZE) {
         var bits = 0u;
-        let end = min(min(32u * word + 32u, params.vertices), arrayLength(&frontier));
+        let end = min(min(32u * word + 32u, params.vertices), doubts());
         for (var v = 32u * word; v < end; v++) {
             bits |= select(0u, 1u, atomicLoad(&frontier[v]) == 1u) << (v % 32u);
         }

@@ -1,6 +1,6 @@
 // The history, for kernels that only read it: a word that all invocations read as an atomic takes long.
 
-// The census, then an entry for the state before each iteration of a batch.
+// What its words are, state.wgsl says.
 @group(0) @binding(7) var<storage, read_write> history: array<u32>;
 
 fn history_word(i: u32) -> u32 {

@@ -15,10 +15,10 @@ fn selection(t: u32, iteration: u32) -> u32 {
 fn mutual(t: u32) -> u32 {
     let g = best(t);
     var h = NONE;
-    if g < BLOCKED {
+    if g < DOUBTFUL {
         h = best(g / 3u);
     }
-    return select(NONE, h, h < BLOCKED && h / 3u == t);
+    return select(NONE, h, h < DOUBTFUL && h / 3u == t);
 }
 
 // Whether another selected edge with a smaller key would join the same two vertices. As in guard.wgsl, the

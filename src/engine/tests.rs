@@ -115,6 +115,16 @@ fn surfaces_agree_on_how_far_diagonals_are_apart() {
     }
 }
 
+/// On llvmpipe, which ends the loops of an invocation that has gone round too often, a workgroup of exact arithmetic that
+/// decided all that it is asked for would stop halfway.
+#[test]
+fn many_edges_wait_for_exact_arithmetic() {
+    let mesh = families::by_name("uvsphere 48").unwrap();
+    let doubles: Vec<f64> = mesh.positions().iter().map(|x| x * (1.0 + f64::EPSILON)).collect();
+    let doubled = Mesh::new(mesh.dimension(), doubles, mesh.triangles().to_vec()).unwrap();
+    compare_mesh("uvsphere 48", doubled, any_deviation(10.0));
+}
+
 #[test]
 fn long_runs_agree_in_batches() {
     compare_runs("strips 400", 10.0);

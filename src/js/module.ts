@@ -46,8 +46,8 @@ function sourceOf(given: ModuleSource): ModuleSource {
 /** A copy of the bytes in a buffer, or in a view of any kind: V8 compiles no DataView. */
 function bytesOf(given: ArrayBuffer | ArrayBufferView): Uint8Array<ArrayBuffer> {
   return read('the bytes', () => {
-    const copy = structuredClone(given);
-    return ArrayBuffer.isView(copy) ? new Uint8Array(copy.buffer as ArrayBuffer, copy.byteOffset, copy.byteLength) : new Uint8Array(copy);
+    const bytes = ArrayBuffer.isView(given) ? new Uint8Array(given.buffer, given.byteOffset, given.byteLength) : new Uint8Array(given);
+    return new Uint8Array(bytes);
   });
 }
 

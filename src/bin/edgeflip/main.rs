@@ -172,11 +172,17 @@ fn run(args: &Args, mut clock: Clock) -> Result<Done, Failure> {
     Ok(Done { report, violation, staged, clock })
 }
 
-/// How many triangles IN may have, so far as its length says: each takes a byte, unless it is packed.
+/// How many triangles IN may have, so far as its length says: each takes a byte, unless it is packed. None where it is not
+/// there.
 fn most_triangles(args: &Args) -> usize {
     let is_packed = args.input.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("gz"));
-    let length = args.input.metadata().ok().filter(|metadata| metadata.is_file() && !is_packed);
-    length.map_or(usize::MAX, |metadata| usize::try_from(metadata.len()).unwrap_or(usize::MAX))
+    match args.input.metadata() {
+        Ok(metadata) if metadata.is_file() && !is_packed => {
+            usize::try_from(metadata.len()).unwrap_or(usize::MAX)
+        }
+        Ok(_) => usize::MAX,
+        Err(_) => 0,
+    }
 }
 
 /// Where OUT leads to.

@@ -48,9 +48,10 @@ fn unwatched(plan: &Plan, device: &GpuDevice) -> Result<Array, JsValue> {
             ("entryPoint", (*name).into()),
             ("constants", object(constants.as_slice())),
         ]);
-        device.pipeline(&object(&[("layout", layout.clone()), ("compute", stage)])).map(JsValue::from)
+        let descriptor = object(&[("layout", layout.clone()), ("compute", stage)]);
+        device.pipeline(&descriptor).unwrap_or_else(|error| Promise::reject(&error))
     };
-    Ok(plan.entries.iter().map(promise).collect::<Result<Vec<_>, _>>()?.into_iter().collect())
+    Ok(plan.entries.iter().map(promise).collect())
 }
 
 fn layout_entry(ty: BindingType, binding: u32) -> JsValue {

@@ -193,7 +193,7 @@ impl Device {
         if let Some(kernels) = &known()[form.index()] {
             return Ok(kernels.clone());
         }
-        let plan = Plan::phases(form, self.tail_size);
+        let plan = Plan::phases(form, self.tail_size, self.ends_loops_early);
         #[cfg(target_arch = "wasm32")]
         let _ahead = ahead::compiled(&plan, &self.device).await;
         let (kernels, word) = {

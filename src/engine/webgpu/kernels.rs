@@ -106,10 +106,12 @@ impl Kernel {
     pub(crate) const ITERATION: [Self; 4] = [Self::Label, Self::Decide, Self::Select, Self::Flip];
 
     /// In the sources of [`phases_sources`].
-    fn entry(self, tail_size: u32) -> Entry {
+    fn entry(self, tail_size: u32, ends_loops_early: bool) -> Entry {
         match self {
             Self::Label => (READS, "label_all", None),
-            Self::Decide => (NUMBERS, "decide_all", None),
+            Self::Decide => {
+                (NUMBERS, "decide_all", Some(("DECIDES_ONE", f64::from(u8::from(ends_loops_early)))))
+            }
             Self::Select => (READS, "select_all", None),
             Self::Flip => (WRITES, "flip_all", None),
             Self::Tail => (WRITES, "tail", Some(("TAIL_SIZE", f64::from(tail_size)))),
@@ -155,8 +157,9 @@ impl Plan {
     }
 
     /// In the order of [`Kernel`]; the tail has so many invocations.
-    pub(super) fn phases(form: Form, tail_size: u32) -> Self {
-        let entries = Kernel::all(form.dimension).iter().map(|kernel| kernel.entry(tail_size)).collect();
+    pub(super) fn phases(form: Form, tail_size: u32, ends_loops_early: bool) -> Self {
+        let entry = |kernel: &Kernel| kernel.entry(tail_size, ends_loops_early);
+        let entries = Kernel::all(form.dimension).iter().map(entry).collect();
         Self { bindings: phases_bindings(), sources: phases_sources(form).into(), entries }
     }
 
@@ -249,14 +252,14 @@ impl Parts {
             (pipeline, pollster::block_on(word))
         };
         std::thread::scope(|scope| {
-            let others: Vec<_> =
-                plan.entries[1..].iter().map(|entry| scope.spawn(|| compile(entry))).collect();
-            let first = compile(&plan.entries[0]);
-            let joined = others
-                .into_iter()
-                .map(|thread| thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)));
-            std::iter::once(first)
-                .chain(joined)
+            let start = |entry| std::thread::Builder::new().spawn_scoped(scope, move || compile(entry));
+            let threads: Vec<_> = plan.entries.iter().map(start).collect();
+            let compiled = threads.into_iter().zip(&plan.entries).map(|(thread, entry)| match thread {
+                Ok(thread) => thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)),
+                // The system has no more threads.
+                Err(_) => compile(entry),
+            });
+            compiled
                 .map(|(pipeline, fault)| -> (_, Word) { (pipeline, Box::pin(std::future::ready(fault))) })
                 .unzip()
         })

@@ -41,9 +41,9 @@ use crate::adjacency::unflagged;
 use crate::mesh::Mesh;
 use crate::phases::Thresholds;
 use buffers::Buffers;
-use kernels::Kernels;
 #[cfg(test)]
 use kernels::Plan;
+use kernels::{Kernels, WORKGROUP_SIZE};
 use params::Params;
 use programs::{DECIDERS, LANE_COUNT};
 use std::sync::Arc;
@@ -158,9 +158,17 @@ impl WebGpu {
     /// For so many triangles.
     fn dispatch(&self, pass: &mut wgpu::ComputePass, kernel: Kernel, triangles: u32) {
         let groups = self.gpu.workgroups(triangles);
-        let groups = if kernel == Kernel::Decide { groups.min(LANE_COUNT / DECIDERS) } else { groups };
         pass.set_pipeline(&self.kernels.pipelines[kernel as usize]);
-        pass.dispatch_workgroups(groups, 1, 1);
+        if kernel != Kernel::Decide {
+            return pass.dispatch_workgroups(groups, 1, 1);
+        }
+        let most = LANE_COUNT / DECIDERS;
+        // Where loops end too early, each invocation decides one triangle at a time.
+        let all =
+            if self.gpu.ends_loops_early { groups.div_ceil(most) * WORKGROUP_SIZE / DECIDERS } else { 1 };
+        for _ in 0..all {
+            pass.dispatch_workgroups(groups.min(most), 1, 1);
+        }
     }
 
     async fn run(&mut self, count: u32) -> Result<Vec<u32>, Error> {

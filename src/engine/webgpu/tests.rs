@@ -220,9 +220,9 @@ fn kernels_are_short_one_by_one() {
     println!("{}\n\n| kernels | kernel | SPIR-V words | ms |\n|---|---|---:|---:|", gpu.adapter);
     let form = |dimension, has_deviation| Form { dimension, is_fixed: false, has_deviation };
     let plans = [
-        ("plane", Plan::phases(form(Dimension::Two, false), WORKGROUP_SIZE)),
-        ("space", Plan::phases(form(Dimension::Three, false), WORKGROUP_SIZE)),
-        ("deviation", Plan::phases(form(Dimension::Three, true), WORKGROUP_SIZE)),
+        ("plane", Plan::phases(form(Dimension::Two, false), WORKGROUP_SIZE, false)),
+        ("space", Plan::phases(form(Dimension::Three, false), WORKGROUP_SIZE, false)),
+        ("deviation", Plan::phases(form(Dimension::Three, true), WORKGROUP_SIZE, false)),
         ("adjacency", Plan::adjacency()),
     ];
     for (name, Plan { bindings, sources, entries }) in plans {
