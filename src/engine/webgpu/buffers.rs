@@ -34,9 +34,10 @@ impl Buffers {
         let count = mesh.triangle_count();
         let storage = |label, words| gpu.buffer(label, words, BufferUsages::STORAGE);
         let drawn = |label, words, usage| gpu.buffer(label, words, BufferUsages::STORAGE | usage);
+        let step_words = Step::words();
         let buffers = Self {
             uniform: gpu.buffer("params", size_of::<Params>() / 4, BufferUsages::UNIFORM),
-            steps: gpu.buffer("steps", Step::words().len(), BufferUsages::UNIFORM),
+            steps: gpu.buffer("steps", step_words.len(), BufferUsages::UNIFORM),
             // A page may draw from these two without a copy.
             positions: drawn("positions", upload.words().len(), BufferUsages::VERTEX),
             triangles: drawn("triangles", 3 * count, BufferUsages::INDEX),
@@ -51,7 +52,7 @@ impl Buffers {
                 .then(|| drawn("floats", mesh.positions().len(), BufferUsages::VERTEX)),
         };
         gpu.write(&buffers.triangles, mesh.triangles());
-        gpu.write(&buffers.steps, &Step::words());
+        gpu.write(&buffers.steps, &step_words);
         buffers.write_positions(gpu, upload);
         buffers
     }
