@@ -4,10 +4,6 @@
 // Invocations of a workgroup: each has a lane.
 const DECIDERS: u32 = 64u;
 
-// Whether each invocation decides one triangle in a dispatch, of which there are several: where loops end too early, see
-// rounds.wgsl.
-override DECIDES_ONE: bool = false;
-
 var<workgroup> limit: u32;
 var<workgroup> together: u32;
 // Triangles that wait, in no order.
@@ -27,7 +23,7 @@ fn decide_all(
     if local == 0u {
         limit = work.count;
         // In a list most chunks may be doubtful: those are done side by side.
-        together = select(CHUNKS, 1u, work.is_listed || DECIDES_ONE);
+        together = select(CHUNKS, 1u, work.is_listed || decides_one());
     }
     let end = workgroupUniformLoad(&limit);
     let step = workgroupUniformLoad(&together);
@@ -43,15 +39,21 @@ fn decide_all(
             found = atomicExchange(&waiting_count, 0u);
         }
         let count = workgroupUniformLoad(&found);
-        let end_of_answers = select(count, min(count, DECIDERS), DECIDES_ONE);
+        let end_of_answers = select(count, min(count, DECIDERS), decides_one());
         for (var i = local; i < end_of_answers; i += DECIDERS) {
             answer(waiting[i], params.first + index);
         }
-        if DECIDES_ONE && count > 0u {
+        if decides_one() && count > 0u {
             break;
         }
         workgroupBarrier();
     }
+}
+
+// Whether each invocation decides one triangle in a dispatch, of which there are several: where loops end too early, see
+// rounds.wgsl.
+fn decides_one() -> bool {
+    return params.decides_one == 1u;
 }
 
 // Which iteration; of no meaning for other tasks.

@@ -3,6 +3,8 @@
 const WORKGROUP_SIZE: u32 = 256u;
 
 struct Params {
+    // HAS_WINDING and IS_STRICT.
+    found: u32,
     vertices: u32,
     triangles: u32,
     // The number of the batch's first iteration.
@@ -10,8 +12,6 @@ struct Params {
     // Where the fans' table begins in `topology`, how long it is, and how many words of it are per vertex.
     fans: u32,
     fans_length: u32,
-    // Words of winding bits at the start of `topology`; none if every component is counter-clockwise.
-    winding_length: u32,
     // The first entry of the tail.
     tail: u32,
     // cos β, rounded to f32 for the filter, and its sign.
@@ -28,13 +28,18 @@ struct Params {
     embedded: u32,
     // 1 where the winding bits are there before the stars are looked at.
     knows_winding: u32,
-    // 1 where all triangles are positive, or all negative: no edge that is not Delaunay can fold then.
-    is_strict: u32,
+    // 1 where an invocation of decide.wgsl decides one triangle in a dispatch.
+    decides_one: u32,
     // |cos β| is exactly mantissa / power: eight digits each, as in numbers.wgsl.
     cos_digits: array<vec4i, 4>,
     // What the diagonals of a quad may be apart: words as those of a coordinate, and rounded to f32 for the filter.
     deviation: vec4u,
 }
+
+// There are winding bits at the start of `topology`: some component is clockwise.
+const HAS_WINDING: u32 = 1u;
+// All triangles are positive, or all negative: no edge that is not Delaunay can fold then.
+const IS_STRICT: u32 = 2u;
 
 struct Step {
     // The iteration's index in the batch.
@@ -119,7 +124,7 @@ fn coordinates(i: u32) -> vec3u {
 }
 
 fn is_clockwise(t: u32) -> bool {
-    return t / 32u < params.winding_length && ((topology[t / 32u] >> (t % 32u)) & 1u) == 1u;
+    return (params.found & HAS_WINDING) != 0u && ((topology[t / 32u] >> (t % 32u)) & 1u) == 1u;
 }
 
 // Whether the star of a vertex is known to be embedded, see embedded.wgsl.
@@ -128,7 +133,7 @@ fn is_embedded(v: u32) -> bool {
 }
 
 fn is_strict() -> bool {
-    return params.is_strict == 1u;
+    return (params.found & IS_STRICT) != 0u;
 }
 
 fn has_fans() -> bool {

@@ -14,7 +14,7 @@ use std::sync::Arc;
 
 fn engines(mesh: &Arc<Mesh>, thresholds: Thresholds) -> (Cpu, WebGpu) {
     let upload = Upload::new("gpu", mesh.clone(), thresholds).unwrap();
-    let gpu = block_on(async { WebGpu::new(Device::shared(true).await?, upload).await }).unwrap();
+    let gpu = block_on(async { WebGpu::new(Device::shared(true, None).await?, upload).await }).unwrap();
     (Cpu::new(mesh.clone(), thresholds, Threads::default()), gpu)
 }
 
@@ -188,7 +188,7 @@ fn tiers_of_the_gpu() {
     println!("| mesh | interior edges | f32 filter | exact |\n|---|---:|---:|---:|");
     for (name, mesh) in kinds(N as usize).unwrap() {
         let Ok(upload) = Upload::new("gpu", Arc::new(mesh), any_deviation(0.0)) else { continue };
-        let gpu = block_on(async { WebGpu::new(Device::shared(true).await?, upload).await }).unwrap();
+        let gpu = block_on(async { WebGpu::new(Device::shared(true, None).await?, upload).await }).unwrap();
         let [filter, exact] = block_on(gpu.tiers()).unwrap();
         println!("| {name} | {} | {filter} | {exact} |", filter + exact);
         let EdgeCounts { edges, boundary, .. } = gpu.edge_counts();

@@ -125,16 +125,17 @@ fn open<'a>(backend: Backend, mesh: &'a Arc<Mesh>, options: &'a Options) -> Answ
 
 #[cfg(feature = "gpu")]
 async fn gpu(mesh: &Arc<Mesh>, options: &Options, thresholds: Thresholds) -> Result<Box<dyn Engine>, Error> {
+    let upload = Upload::new("gpu", mesh.clone(), thresholds)?;
+    let form = Some(upload.form());
     // `Auto` leaves a GPU alone that the processor plays.
     let takes_software = options.backend == Backend::Gpu;
     #[cfg(all(target_arch = "wasm32", feature = "js"))]
     let device = match &options.device {
-        Some(given) => Device::adopted(given, takes_software).await?,
-        None => Device::shared(takes_software).await?,
+        Some(given) => Device::adopted(given, takes_software, form).await?,
+        None => Device::shared(takes_software, form).await?,
     };
     #[cfg(not(all(target_arch = "wasm32", feature = "js")))]
-    let device = Device::shared(takes_software).await?;
-    let upload = Upload::new("gpu", mesh.clone(), thresholds)?;
+    let device = Device::shared(takes_software, form).await?;
     let make = |upload: Upload| -> Answer<'static, Box<dyn Engine>> {
         let device = device.clone();
         Box::pin(async move { Ok(Box::new(WebGpu::new(device, upload).await?) as Box<dyn Engine>) })

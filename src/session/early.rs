@@ -42,7 +42,7 @@ pub fn close_gpu() {
 
 #[cfg(feature = "gpu")]
 fn opened(takes_software: bool) -> Result<(), Error> {
-    pollster::block_on(Device::shared(takes_software)).map(drop)
+    pollster::block_on(Device::shared(takes_software, None)).map(drop)
 }
 
 #[cfg(not(feature = "gpu"))]

@@ -21,21 +21,18 @@ extern "C" {
     fn pipeline(this: &GpuDevice, descriptor: &JsValue) -> Result<Promise, JsValue>;
 }
 
-/// The pipelines of a plan, which the browser forgets when they go. What is wrong with them, it will say again.
-pub(super) async fn compiled(plan: &Plan, device: &wgpu::Device) -> Option<JsValue> {
-    let promises = promises(plan, &GpuDevice::of(device)?).ok()?;
-    JsFuture::from(Promise::all_settled(&promises)).await.ok()
-}
-
-fn promises(plan: &Plan, device: &GpuDevice) -> Result<Array, JsValue> {
+/// The pipelines of plans, which the browser forgets when they go. What is wrong with them, it will say again.
+pub(super) async fn compiled(plans: &[Plan], device: &wgpu::Device) -> Option<JsValue> {
+    let device = GpuDevice::of(device)?;
     device.push_error_scopes();
-    let result = unwatched(plan, device);
-    // Those are told when wgpu does the same.
+    let promises: Result<Vec<_>, _> = plans.iter().map(|plan| promises(plan, &device)).collect();
+    // Errors are told when wgpu does the same.
     drop(device.pop_error_scopes());
-    result
+    let all: Array = promises.ok()?.into_iter().flatten().collect();
+    JsFuture::from(Promise::all_settled(&all)).await.ok()
 }
 
-fn unwatched(plan: &Plan, device: &GpuDevice) -> Result<Array, JsValue> {
+fn promises(plan: &Plan, device: &GpuDevice) -> Result<Vec<Promise>, JsValue> {
     let places = plan.bindings.iter().zip(0u32..).map(|(ty, binding)| layout_entry(*ty, binding));
     let layout = device.bind_group_layout(&object(&[("entries", list(places))]))?;
     let layout = device.pipeline_layout(&object(&[("bindGroupLayouts", list([layout]))]))?;

@@ -1,10 +1,10 @@
 //! A GPU's device, with the kernels compiled for it.
 
-use super::faults::{Fault, Word, refuse, unavailable, watch};
-use super::kernels::{Kernels, Plan, WORKGROUP_SIZE};
-use super::programs;
 #[cfg(target_arch = "wasm32")]
-use super::{ahead, browser};
+use super::browser;
+use super::faults::{Fault, refuse, unavailable, watch};
+use super::kernels::{self, Kernels, Plan, WORKGROUP_SIZE};
+use super::programs;
 use crate::Error;
 use crate::engine::probe::ends_loops_early;
 use crate::engine::self_test::Tested;
@@ -50,9 +50,12 @@ pub(crate) struct Device {
     /// Programs and lanes of exact arithmetic: nothing of a mesh stays there.
     pub(super) numbers: Buffer,
     pub(super) adjacency: Kernels,
-    /// By the form of meshes, once one has needed them.
-    phases: Mutex<[Option<Arc<Kernels>>; Form::COUNT]>,
+    /// Those that a mesh has needed.
+    phases: Mutex<Phases>,
 }
+
+/// The kernels of the phases by the form of meshes.
+type Phases = [Option<Arc<Kernels>>; Form::COUNT];
 
 /// What has failed first since the device was opened, in the words of the device.
 type Failure = Arc<Mutex<Option<String>>>;
@@ -77,9 +80,8 @@ fn numbers(device: &wgpu::Device, queue: &wgpu::Queue) -> Buffer {
     buffer
 }
 
-/// Waits for the device's word on kernels.
-async fn accepted(word: Word) -> Result<(), Error> {
-    word.await.map_or(Ok(()), |fault| Err(unavailable(format!("it refuses the kernels: {fault}"))))
+fn refused_kernels(fault: Fault) -> Error {
+    unavailable(format!("it refuses the kernels: {fault}"))
 }
 
 impl Device {
@@ -102,7 +104,12 @@ impl Device {
         Ok((adapter, is_software))
     }
 
-    pub(super) async fn open(adapter: wgpu::Adapter, is_software: bool) -> Result<Self, Error> {
+    /// Opens the adapter, with the kernels that every mesh needs, and those of a form.
+    pub(super) async fn open(
+        adapter: wgpu::Adapter,
+        is_software: bool,
+        form: Option<Form>,
+    ) -> Result<Self, Error> {
         let offered = adapter.limits();
         let limits = wgpu::Limits {
             max_buffer_size: offered.max_buffer_size,
@@ -123,10 +130,10 @@ impl Device {
         };
         #[cfg(target_arch = "wasm32")]
         let name = browser::GpuDevice::of(&device).map_or_else(String::new, |raw| raw.adapter_name());
-        Self::compile(device, queue, name, is_software).await
+        Self::compile(device, queue, name, is_software, form).await
     }
 
-    /// Compiles the kernels that every mesh needs.
+    /// Compiles the kernels that every mesh needs, and those of a form beside them.
     ///
     /// # Errors
     /// As [`Device::shared`].
@@ -135,6 +142,7 @@ impl Device {
         queue: wgpu::Queue,
         adapter: String,
         is_software: bool,
+        form: Option<Form>,
     ) -> Result<Self, Error> {
         let failure = Failure::default();
         // In a browser the handler is the page's to set. Here no one else uses the device.
@@ -151,19 +159,22 @@ impl Device {
             #[cfg(all(target_arch = "wasm32", feature = "js"))]
             super::shared::let_idle_go();
         });
-        let (adjacency, probe) = (Plan::adjacency(), Plan::probe());
-        #[cfg(target_arch = "wasm32")]
-        let _ahead = (ahead::compiled(&adjacency, &device).await, ahead::compiled(&probe, &device).await);
-        let (adjacency, word) = adjacency.compile(&device);
-        accepted(word).await?;
-        let (probe, word) = probe.compile(&device);
-        accepted(word).await?;
-        let (numbers, word) = watch(&device, || numbers(&device, &queue));
-        accepted(word).await?;
         let limits = device.limits();
         let largest = limits.max_compute_invocations_per_workgroup.min(limits.max_compute_workgroup_size_x);
         let (most_workgroups, tail_size) =
             if is_software { (64, WORKGROUP_SIZE) } else { (2048, largest.min(LARGEST_TAIL)) };
+        let phases = form.map(|form| Plan::phases(form, tail_size));
+        let plans: Vec<_> = [Plan::adjacency(), Plan::probe()].into_iter().chain(phases).collect();
+        let mut compiled = kernels::compile(&plans, &device).await.map_err(refused_kernels)?;
+        let mut phases = Phases::default();
+        if let Some(form) = form {
+            phases[form.index()] = Some(Arc::new(compiled.remove(2)));
+        }
+        let (probe, adjacency) = (compiled.remove(1), compiled.remove(0));
+        let (numbers, word) = watch(&device, || numbers(&device, &queue));
+        if let Some(fault) = word.await {
+            return Err(unavailable(fault.to_string()));
+        }
         let mut result = Self {
             device,
             queue,
@@ -175,7 +186,7 @@ impl Device {
             failure,
             numbers,
             adjacency,
-            phases: Mutex::default(),
+            phases: Mutex::new(phases),
         };
         result.ends_loops_early = result.probe_loops(&probe).await?;
         if result.ends_loops_early {
@@ -184,7 +195,7 @@ impl Device {
         Ok(result)
     }
 
-    /// The kernels of the phases; compiled at the first call, once for all that begin at the same time.
+    /// The kernels of the phases; compiled at the first call. Those that begin at the same time may compile them twice.
     ///
     /// # Errors
     /// [`Error::BackendUnavailable`] if the device's compiler refuses them.
@@ -193,22 +204,9 @@ impl Device {
         if let Some(kernels) = &known()[form.index()] {
             return Ok(kernels.clone());
         }
-        let plan = Plan::phases(form, self.tail_size, self.ends_loops_early);
-        #[cfg(target_arch = "wasm32")]
-        let _ahead = ahead::compiled(&plan, &self.device).await;
-        let (kernels, word) = {
-            let place = &mut known()[form.index()];
-            if let Some(kernels) = place {
-                return Ok(kernels.clone());
-            }
-            let (kernels, word) = plan.compile(&self.device);
-            (place.insert(Arc::new(kernels)).clone(), word)
-        };
-        let result = accepted(word).await;
-        if result.is_err() {
-            known()[form.index()] = None;
-        }
-        result.map(|()| kernels)
+        let compiled = kernels::compile(&[Plan::phases(form, self.tail_size)], &self.device).await;
+        let kernels = Arc::new(compiled.map_err(refused_kernels)?.remove(0));
+        Ok(known()[form.index()].get_or_insert(kernels).clone())
     }
 
     /// Runs `shaders/probe.wgsl` and compares.

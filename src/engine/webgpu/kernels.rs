@@ -1,6 +1,8 @@
 //! The kernels, compiled from `shaders/` as `build.rs` leaves them, and their bindings.
 
-use super::faults::{Word, watch};
+#[cfg(target_arch = "wasm32")]
+use super::ahead;
+use super::faults::{Fault, watch};
 use crate::engine::upload::Form;
 use crate::mesh::Dimension;
 use wgpu::{BindingType, BufferBindingType};
@@ -106,12 +108,10 @@ impl Kernel {
     pub(crate) const ITERATION: [Self; 4] = [Self::Label, Self::Decide, Self::Select, Self::Flip];
 
     /// In the sources of [`phases_sources`].
-    fn entry(self, tail_size: u32, ends_loops_early: bool) -> Entry {
+    fn entry(self, tail_size: u32) -> Entry {
         match self {
             Self::Label => (READS, "label_all", None),
-            Self::Decide => {
-                (NUMBERS, "decide_all", Some(("DECIDES_ONE", f64::from(u8::from(ends_loops_early)))))
-            }
+            Self::Decide => (NUMBERS, "decide_all", None),
             Self::Select => (READS, "select_all", None),
             Self::Flip => (WRITES, "flip_all", None),
             Self::Tail => (WRITES, "tail", Some(("TAIL_SIZE", f64::from(tail_size)))),
@@ -157,8 +157,8 @@ impl Plan {
     }
 
     /// In the order of [`Kernel`]; the tail has so many invocations.
-    pub(super) fn phases(form: Form, tail_size: u32, ends_loops_early: bool) -> Self {
-        let entry = |kernel: &Kernel| kernel.entry(tail_size, ends_loops_early);
+    pub(super) fn phases(form: Form, tail_size: u32) -> Self {
+        let entry = |kernel: &Kernel| kernel.entry(tail_size);
         let entries = Kernel::all(form.dimension).iter().map(entry).collect();
         Self { bindings: phases_bindings(), sources: phases_sources(form).into(), entries }
     }
@@ -178,20 +178,51 @@ impl Plan {
         let source = [&writes, include_str!("tiers.wgsl")].concat();
         Self { bindings: phases_bindings(), sources: vec![source], entries: vec![(0, "tiers", None)] }
     }
+}
 
-    /// The pipelines, and the device's word on them.
-    pub(super) fn compile(&self, device: &wgpu::Device) -> (Kernels, Word) {
-        let (parts, word) = watch(device, || Parts::new(self, device));
-        let (pipelines, words) = parts.pipelines(self, device);
-        let all = async move {
-            let mut faults = vec![word.await];
-            for word in words {
-                faults.push(word.await);
-            }
-            faults.into_iter().flatten().next()
-        };
-        (Kernels { pipelines, layout: parts.layout }, Box::pin(all))
-    }
+/// The kernels of plans, all compiled at the same time: a driver compiles on the thread that asks for it, and takes long.
+#[cfg(not(target_arch = "wasm32"))]
+pub(super) async fn compile(plans: &[Plan], device: &wgpu::Device) -> Result<Vec<Kernels>, Fault> {
+    let (parts, word) =
+        watch(device, || plans.iter().map(|plan| Parts::new(plan, device)).collect::<Vec<_>>());
+    told(word.await)?;
+    let compile = |parts: &Parts, entry| {
+        let (pipeline, word) = watch(device, || parts.pipeline(entry, device));
+        told(pollster::block_on(word)).map(|()| pipeline)
+    };
+    std::thread::scope(|scope| {
+        let start =
+            |parts, entry| std::thread::Builder::new().spawn_scoped(scope, move || compile(parts, entry));
+        let all: Vec<Vec<_>> = (parts.iter().zip(plans))
+            .map(|(parts, plan)| plan.entries.iter().map(|entry| (start(parts, entry), entry)).collect())
+            .collect();
+        let kernels = parts.iter().zip(all).map(|(parts, threads)| {
+            let pipelines = threads.into_iter().map(|(thread, entry)| match thread {
+                Ok(thread) => thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)),
+                // The system has no more threads.
+                Err(_) => compile(parts, entry),
+            });
+            Ok(Kernels { pipelines: pipelines.collect::<Result<_, _>>()?, layout: parts.layout.clone() })
+        });
+        kernels.collect()
+    })
+}
+
+/// The same in a browser.
+#[cfg(target_arch = "wasm32")]
+pub(super) async fn compile(plans: &[Plan], device: &wgpu::Device) -> Result<Vec<Kernels>, Fault> {
+    let _ahead = ahead::compiled(plans, device).await;
+    let kernels = |plan: &Plan| {
+        let parts = Parts::new(plan, device);
+        let pipelines = plan.entries.iter().map(|entry| parts.pipeline(entry, device)).collect();
+        Kernels { pipelines, layout: parts.layout }
+    };
+    let (kernels, word) = watch(device, || plans.iter().map(kernels).collect());
+    told(word.await).map(|()| kernels)
+}
+
+fn told(fault: Option<Fault>) -> Result<(), Fault> {
+    fault.map_or(Ok(()), Err)
 }
 
 /// What pipelines are made of.
@@ -242,34 +273,6 @@ impl Parts {
             },
             cache: None,
         })
-    }
-
-    /// All at the same time: a driver compiles on the thread that asks for it, and takes long.
-    #[cfg(not(target_arch = "wasm32"))]
-    fn pipelines(&self, plan: &Plan, device: &wgpu::Device) -> (Vec<wgpu::ComputePipeline>, Vec<Word>) {
-        let compile = |entry| {
-            let (pipeline, word) = watch(device, || self.pipeline(entry, device));
-            (pipeline, pollster::block_on(word))
-        };
-        std::thread::scope(|scope| {
-            let start = |entry| std::thread::Builder::new().spawn_scoped(scope, move || compile(entry));
-            let threads: Vec<_> = plan.entries.iter().map(start).collect();
-            let compiled = threads.into_iter().zip(&plan.entries).map(|(thread, entry)| match thread {
-                Ok(thread) => thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)),
-                // The system has no more threads.
-                Err(_) => compile(entry),
-            });
-            compiled
-                .map(|(pipeline, fault)| -> (_, Word) { (pipeline, Box::pin(std::future::ready(fault))) })
-                .unzip()
-        })
-    }
-
-    #[cfg(target_arch = "wasm32")]
-    fn pipelines(&self, plan: &Plan, device: &wgpu::Device) -> (Vec<wgpu::ComputePipeline>, Vec<Word>) {
-        let compile = || plan.entries.iter().map(|entry| self.pipeline(entry, device)).collect();
-        let (pipelines, word) = watch(device, compile);
-        (pipelines, vec![word])
     }
 }
 

@@ -290,7 +290,10 @@ impl WebGpu {
 
     /// Interior edges that the filter decides, and those that it does not.
     pub(crate) async fn tiers(&self) -> Result<[u32; 2], Error> {
-        let (kernels, _) = Plan::tiers(self.form).compile(&self.gpu.device);
+        let compiled = kernels::compile(&[Plan::tiers(self.form)], &self.gpu.device).await;
+        let [kernels] = &compiled.unwrap_or_default()[..] else {
+            return Err(Error::Device { message: "the tiers do not compile".to_owned() });
+        };
         let record = |pass: &mut wgpu::ComputePass| {
             pass.set_pipeline(&kernels.pipelines[0]);
             pass.dispatch_workgroups(self.gpu.workgroups(self.params.triangles), 1, 1);

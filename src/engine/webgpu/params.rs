@@ -29,15 +29,19 @@ impl Places {
 }
 
 /// As in `state.wgsl`.
+pub(super) const HAS_WINDING: u32 = 1;
+pub(super) const IS_STRICT: u32 = 2;
+
+/// As in `state.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 pub(super) struct Params {
+    pub(super) found: u32,
     pub(super) vertices: u32,
     pub(super) triangles: u32,
     pub(super) first: u32,
     pub(super) fans: u32,
     pub(super) fans_length: u32,
-    pub(super) winding_length: u32,
     pub(super) tail: u32,
     pub(super) cos: f32,
     pub(super) cos_sign: i32,
@@ -47,7 +51,7 @@ pub(super) struct Params {
     pub(super) list_below: u32,
     pub(super) embedded: u32,
     pub(super) knows_winding: u32,
-    pub(super) is_strict: u32,
+    pub(super) decides_one: u32,
     pub(super) cos_digits: [[i32; 8]; 2],
     pub(super) deviation: [u32; 4],
 }
@@ -58,12 +62,12 @@ impl Params {
         let (mesh, cosine) = (&upload.mesh, Cosine::new(upload.thresholds.cos));
         let count = mesh.triangle_count();
         Self {
+            found: 0,
             vertices: mesh.vertex_count() as u32,
             triangles: count as u32,
             first: 0,
             fans: topology.fans,
             fans_length: 0,
-            winding_length: 0,
             tail: 0,
             cos: cosine.rounded,
             cos_sign: cosine.sign,
@@ -74,7 +78,7 @@ impl Params {
             list_below: if count <= SMALL_MESH { u32::MAX } else { count as u32 / 256 },
             embedded: topology.embedded,
             knows_winding: 0,
-            is_strict: 0,
+            decides_one: u32::from(ends_loops_early),
             cos_digits: [cosine.mantissa, cosine.power],
             deviation: upload.deviation,
         }

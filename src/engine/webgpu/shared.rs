@@ -5,6 +5,7 @@ use super::browser::GpuDevice;
 use super::device::Device;
 use super::faults::unavailable;
 use crate::Error;
+use crate::engine::upload::Form;
 use std::sync::Mutex;
 
 /// The devices that sessions share.
@@ -73,12 +74,12 @@ pub(super) fn let_idle_go() {
 }
 
 impl Device {
-    /// The shared device; opened at the first call, and again after a failure.
+    /// The shared device; opened at the first call, and again after a failure, with the kernels for meshes of a form.
     ///
     /// # Errors
     /// [`Error::BackendUnavailable`] where there is none, or a software one that is not taken, or its compiler
     /// refuses the kernels; [`Error::Device`] where it fails at once.
-    pub(crate) async fn shared(takes_software: bool) -> Result<Handle, Error> {
+    pub(crate) async fn shared(takes_software: bool, form: Option<Form>) -> Result<Handle, Error> {
         let (opened, is_software) = with_shared(|shared| (shared.opened.clone(), shared.is_software));
         // Known from the last time: no adapter has to be found to refuse it.
         refuse_software(is_software, takes_software)?;
@@ -88,7 +89,7 @@ impl Device {
         let (adapter, is_software) = Self::find_adapter().await?;
         with_shared(|shared| shared.is_software = is_software);
         refuse_software(is_software, takes_software)?;
-        let device = Handle::new(Self::open(adapter, is_software).await?);
+        let device = Handle::new(Self::open(adapter, is_software, form).await?);
         with_shared(|shared| shared.opened = Some(device.clone()));
         Ok(device)
     }
@@ -104,7 +105,11 @@ impl Device {
     /// # Errors
     /// [`Error::Device`] if it is lost; else as [`Device::shared`].
     #[cfg(all(target_arch = "wasm32", feature = "js"))]
-    pub(crate) async fn adopted(given: &GpuDevice, takes_software: bool) -> Result<Handle, Error> {
+    pub(crate) async fn adopted(
+        given: &GpuDevice,
+        takes_software: bool,
+        form: Option<Form>,
+    ) -> Result<Handle, Error> {
         if let Some(why) = given.loss().await {
             return Err(Error::Device { message: format!("the device given is lost: {why}") });
         }
@@ -121,7 +126,8 @@ impl Device {
             return Ok(device);
         }
         let (device, queue) = given.adopt().await.map_err(unavailable)?;
-        let device = Handle::new(Self::compile(device, queue, given.adapter_name(), is_software).await?);
+        let device =
+            Handle::new(Self::compile(device, queue, given.adapter_name(), is_software, form).await?);
         with_shared(|shared| shared.adopted.push(device.clone()));
         Ok(device)
     }

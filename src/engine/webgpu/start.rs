@@ -5,7 +5,7 @@ use super::buffers::Buffers;
 use super::faults::refuse;
 use super::kernels::Kernel;
 use super::limits::{refuse_large_buffer, refuse_large_mesh};
-use super::params::{Params, Places};
+use super::params::{HAS_WINDING, IS_STRICT, Params, Places};
 use super::steps::Step;
 use super::{Entry, Handle, WebGpu};
 use crate::engine::probe::SHORT_STAR;
@@ -118,8 +118,9 @@ impl WebGpu {
         } else {
             Vec::new()
         };
-        self.params.winding_length = clockwise.len() as u32;
-        self.params.is_strict = u32::from(signs == POSITIVE || signs == NEGATIVE);
+        let is_strict = signs == POSITIVE || signs == NEGATIVE;
+        self.params.found =
+            if clockwise.is_empty() { 0 } else { HAS_WINDING } | if is_strict { IS_STRICT } else { 0 };
         self.gpu.checked(|| self.gpu.write(&self.buffers.topology, &clockwise)).await?;
         if is_mixed {
             self.params.knows_winding = 1;
