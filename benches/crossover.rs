@@ -1,4 +1,4 @@
-//! From which size on the GPU is faster than the CPU: `cargo bench --bench crossover -- [--runs N] [FAMILY…]`, the
+//! From which size on the GPU is faster than the CPU, and whether `auto` knows: `cargo bench --bench crossover -- [--runs N] [FAMILY…]`, the
 //! meshes of a family from small to large. `benches/crossover.html` is the same for a browser.
 //!
 //! The program needs nothing beside it but a GPU driver: build it with `cargo bench --bench crossover --no-run`, copy it
@@ -14,9 +14,12 @@ use std::{
 #[path = "arguments/mod.rs"]
 mod arguments;
 use arguments::{Arguments, median};
+#[path = "rule/mod.rs"]
+mod rule;
+use rule::{is_late, verdict};
 
-/// About 200 to 2,000,000 triangles, the same numbers in the plane and in space.
-const MESHES: [&str; 16] = [
+/// About 200 to 20,000,000 triangles, the same numbers in the plane and in space.
+const MESHES: [&str; 20] = [
     "random 11",
     "random 20",
     "random 38",
@@ -25,6 +28,8 @@ const MESHES: [&str; 16] = [
     "random 269",
     "random 519",
     "random 1001",
+    "random 2001",
+    "random 3163",
     "uvsphere 10",
     "uvsphere 19",
     "uvsphere 37",
@@ -33,9 +38,11 @@ const MESHES: [&str; 16] = [
     "uvsphere 268",
     "uvsphere 518",
     "uvsphere 1000",
+    "uvsphere 2000",
+    "uvsphere 3162",
 ];
 
-const ENGINES: [Backend; 2] = [Backend::Cpu, Backend::Gpu];
+const ENGINES: [Backend; 3] = [Backend::Cpu, Backend::Gpu, Backend::Auto];
 
 /// An engine that took longer for a mesh is spared the larger ones of its family.
 const SLOW: Duration = Duration::from_secs(5);
@@ -47,7 +54,9 @@ struct Row {
     family: String,
     triangles: usize,
     /// Medians in milliseconds, in the order of [`ENGINES`]; none where it was spared.
-    ms: [Option<f64>; 2],
+    ms: [Option<f64>; 3],
+    /// Whether `auto` took too long.
+    is_late: bool,
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -61,17 +70,23 @@ fn main() -> Result<(), Box<dyn Error>> {
     );
     println!("and its kernels compiled. – where a smaller mesh took more than {} s.", SLOW.as_secs());
     println!();
-    println!("| mesh | triangles | runs | GPU : CPU | CPU ms | GPU ms |");
-    println!("|---|---:|---:|---:|---:|---:|");
+    println!("| mesh | triangles | runs | GPU : CPU | auto : best | CPU ms | GPU ms | auto ms | auto took |");
+    println!("|---|---:|---:|---:|---:|---:|---:|---:|---|");
     let mut rows: Vec<Row> = Vec::new();
     for spec in specs {
         let family = spec.split_whitespace().next().unwrap_or_default().to_owned();
         let smaller = rows.iter().rfind(|row| row.family == family);
         let is_spared = |ms: Option<f64>| ms.is_none_or(|ms| ms > SLOW.as_secs_f64() * 1e3);
-        let spared = smaller.map_or([false; 2], |row| row.ms.map(is_spared));
+        let spared = smaller.map_or([false; 3], |row| row.ms.map(is_spared));
         rows.push(measure(&spec, family, runs, spared)?);
     }
     println!();
+    let late: Vec<String> = rows
+        .iter()
+        .filter(|row| row.is_late)
+        .map(|row| format!("{} {}", row.family, row.triangles))
+        .collect();
+    println!("{}", verdict(&late));
     let mut families: Vec<&str> = rows.iter().map(|row| row.family.as_str()).collect();
     families.sort_unstable();
     families.dedup();
@@ -85,33 +100,38 @@ fn main() -> Result<(), Box<dyn Error>> {
 }
 
 /// Measures a mesh and prints its line.
-fn measure(spec: &str, family: String, runs: usize, spared: [bool; 2]) -> Result<Row, Box<dyn Error>> {
+fn measure(spec: &str, family: String, runs: usize, spared: [bool; 3]) -> Result<Row, Box<dyn Error>> {
     let mesh = families::by_name(spec)?;
-    let mut times = [const { Vec::new() }; 2];
+    let mut times = [const { Vec::new() }; 3];
+    let mut took = "–";
     let begun = Instant::now();
     let mut rounds = 0;
     while rounds < runs && (rounds == 0 || begun.elapsed() < ENOUGH) {
         for (engine, times) in times.iter_mut().enumerate().filter(|&(engine, _)| !spared[engine]) {
             let (positions, triangles) = (mesh.positions().clone(), mesh.triangles().to_vec());
             let start = Instant::now();
-            run(Mesh::new(mesh.dimension(), positions, triangles)?, ENGINES[engine])?;
+            took = run(Mesh::new(mesh.dimension(), positions, triangles)?, ENGINES[engine])?.backend;
             times.push(start.elapsed().as_secs_f64() * 1e3);
         }
         rounds += 1;
     }
     let ms = times.map(|times| (!times.is_empty()).then(|| median(times)));
     let cell = |number: Option<f64>| number.map_or("–".to_owned(), |number| format!("{number:.2}"));
-    let [cpu, gpu] = ms;
+    let [cpu, gpu, auto] = ms;
     let ratio = cell(cpu.zip(gpu).map(|(cpu, gpu)| gpu / cpu));
+    let best = cpu.into_iter().chain(gpu).reduce(f64::min);
+    let to_best = cell(auto.zip(best).map(|(auto, best)| auto / best));
+    let is_late = auto.zip(best).is_some_and(|(auto, best)| is_late(auto, best));
     let triangles = mesh.triangle_count();
-    println!("| {spec} | {triangles} | {rounds} | {ratio} | {} | {} |", cell(cpu), cell(gpu));
-    Ok(Row { family, triangles, ms })
+    let [cpu, gpu, auto] = ms.map(cell);
+    println!("| {spec} | {triangles} | {rounds} | {ratio} | {to_best} | {cpu} | {gpu} | {auto} | {took} |");
+    Ok(Row { family, triangles, ms, is_late })
 }
 
 /// The triangles of the first mesh from which on the GPU is faster, if it is for the last one that both did.
 fn crossover<'a>(rows: impl DoubleEndedIterator<Item = &'a Row>) -> Option<usize> {
     let compared = rows.rev().filter_map(|row| match row.ms {
-        [Some(cpu), Some(gpu)] => Some((row.triangles, gpu < cpu)),
+        [Some(cpu), Some(gpu), _] => Some((row.triangles, gpu < cpu)),
         _ => None,
     });
     compared.take_while(|&(_, is_faster)| is_faster).last().map(|(triangles, _)| triangles)

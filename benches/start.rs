@@ -13,6 +13,9 @@ use std::{env, error::Error, ops::ControlFlow};
 #[path = "arguments/mod.rs"]
 mod arguments;
 use arguments::{Arguments, median};
+#[path = "rule/mod.rs"]
+mod rule;
+use rule::{is_late, verdict};
 
 /// By what this program asks itself for one job.
 const JOB: &str = "EDGEFLIP_START_JOB";
@@ -33,8 +36,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!();
     println!("| mesh | engine | cold | warm | the same again in one process |");
     println!("|---|---|---:|---:|---:|");
+    let mut late = Vec::new();
     for spec in &specs {
-        for (name, _) in ENGINES {
+        let mut best = [f64::INFINITY; 3];
+        for (name, backend) in ENGINES {
             let jobs =
                 |is_cold| (0..runs).map(|_| in_a_process(name, spec, is_cold)).collect::<Result<Vec<_>, _>>();
             let cold = jobs(true)?;
@@ -42,9 +47,19 @@ fn main() -> Result<(), Box<dyn Error>> {
             in_a_process(name, spec, false)?;
             let warm = jobs(false)?;
             let of = |jobs: &[[f64; 2]], which: usize| median(jobs.iter().map(|job| job[which]).collect());
-            println!("| {spec} | {name} | {:.1} | {:.1} | {:.1} |", of(&cold, 0), of(&warm, 0), of(&warm, 1));
+            let times = [of(&cold, 0), of(&warm, 0), of(&warm, 1)];
+            println!("| {spec} | {name} | {:.1} | {:.1} | {:.1} |", times[0], times[1], times[2]);
+            for ((time, best), state) in times.into_iter().zip(&mut best).zip(["cold", "warm", "again"]) {
+                if backend != Backend::Auto {
+                    *best = best.min(time);
+                } else if is_late(time, *best) {
+                    late.push(format!("{spec} {state}"));
+                }
+            }
         }
     }
+    println!();
+    println!("{}", verdict(&late));
     Ok(())
 }
 

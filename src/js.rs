@@ -11,7 +11,11 @@ use crate::js_promise::promise;
 #[cfg(feature = "js-threads")]
 use crate::js_threads::Indices;
 pub use crate::js_values::JsPositions;
+#[cfg(feature = "js")]
+use crate::js_values::parse_dimension;
 use crate::js_values::{backend_name, coded, mesh_of, object, positions_array, reasons_object, thrown};
+#[cfg(feature = "js")]
+use crate::session::{self, Job};
 use crate::threads::Threads;
 use crate::{Backend, Error, Options, Order, Session, memory};
 use js_sys::{Array, Promise, Uint8Array, Uint32Array};
@@ -63,6 +67,24 @@ extern "C" {
 #[wasm_bindgen(js_name = setWebGl2)]
 pub fn set_webgl2(module: WebGl2Module) {
     engine::set_webgl2(module);
+}
+
+/// Why `'auto'` takes the CPU on so many threads for a mesh, without asking for a GPU, if it does.
+///
+/// # Errors
+/// Those of the options.
+#[cfg(feature = "js")]
+#[wasm_bindgen(js_name = whyCpu)]
+pub fn why_cpu(
+    triangles: usize,
+    dimension: f64,
+    is_double: bool,
+    threads: usize,
+    options: &JsOptions,
+) -> Result<Option<String>, JsValue> {
+    let job = parse_dimension(dimension).map(|dimension| Job { triangles, dimension, threads });
+    let why = job.and_then(|job| Ok(session::why_cpu(job, is_double, &parse_options(options)?)));
+    why.map_err(thrown)
 }
 
 /// Why a session answers nothing any more.

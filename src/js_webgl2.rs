@@ -55,8 +55,7 @@ impl JsWebGl2 {
 impl JsWebGl2 {
     /// On the context that all share; `cos` is the cosine of β, `deviation` what diagonals may be apart.
     ///
-    /// Rejected where there is no context, it is a software one that is not taken, it fails its self-test, or it cannot
-    /// take the mesh.
+    /// Rejected where there is no context, it fails its self-test, or it cannot take the mesh.
     #[wasm_bindgen(unchecked_return_type = "Promise<WebGl2>")]
     pub fn create(
         positions: JsPositions,
@@ -64,11 +63,10 @@ impl JsWebGl2 {
         dimension: f64,
         cos: f64,
         deviation: f32,
-        takes_software: bool,
     ) -> Promise {
         let mesh = mesh_of(positions, indices, dimension, &Threads::one());
         let create = async move {
-            let engine = WebGl::open(Arc::new(mesh?), Thresholds { cos, deviation }, takes_software).await?;
+            let engine = WebGl::open(Arc::new(mesh?), Thresholds { cos, deviation }).await?;
             Ok(Self { engine: Rc::new(RefCell::new(Some(engine))), dimension })
         };
         promise(async { create.await.map(JsValue::from).map_err(bare) })

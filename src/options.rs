@@ -71,6 +71,17 @@ pub struct Options {
     pub leaves_cpu: bool,
 }
 
+#[cfg(feature = "gpu")]
+impl Options {
+    /// The device that they give, if they do.
+    pub(crate) fn given_device(&self) -> Option<&crate::engine::GivenDevice> {
+        #[cfg(all(target_arch = "wasm32", feature = "js"))]
+        return self.device.as_ref();
+        #[cfg(not(all(target_arch = "wasm32", feature = "js")))]
+        None
+    }
+}
+
 impl Default for Options {
     fn default() -> Self {
         Self {

@@ -42,6 +42,11 @@ impl Positions {
         self.len() == 0
     }
 
+    /// Whether they have 64 bits.
+    pub(crate) fn is_double(&self) -> bool {
+        matches!(self, Self::F64(_))
+    }
+
     /// The numbers in their order; f32 to f64 is exact.
     pub fn iter(&self) -> impl DoubleEndedIterator<Item = f64> + ExactSizeIterator {
         (0..self.len()).map(|i| self.at(i))

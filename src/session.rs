@@ -1,8 +1,11 @@
 //! The loop around an engine: options in, iterations and statistics out, and the honest result.
 
 mod choice;
+mod cost;
 #[cfg(not(target_arch = "wasm32"))]
 mod early;
+#[cfg_attr(not(feature = "gpu"), path = "session/no_gpu.rs")]
+mod gpu;
 mod room;
 #[cfg(test)]
 mod tests;
@@ -21,7 +24,11 @@ use crate::{
     Backend, EdgeState, Edges, Error, Iteration, MOST_THREADS, Mesh, Options, Order, Outcome, Positions,
     Reason, Status, Timings, frozen, locks, memory,
 };
-use choice::{engine_after, engine_for};
+#[cfg(all(target_arch = "wasm32", feature = "js"))]
+pub(crate) use choice::why_cpu;
+use choice::{Choice, cpu_after, engine_for};
+#[cfg(all(target_arch = "wasm32", feature = "js"))]
+pub(crate) use cost::Job;
 #[cfg(not(target_arch = "wasm32"))]
 pub use early::{EarlyGpu, close_gpu};
 use std::ops::ControlFlow;
@@ -33,7 +40,10 @@ pub struct Session {
     mesh: Arc<Mesh>,
     options: Options,
     engine: Box<dyn Engine>,
+    /// Why `Auto` took no other one.
     fallback: Option<String>,
+    /// Whether it is the CPU only until a GPU is ready.
+    may_change: bool,
     flips_per_iteration: Vec<u32>,
     has_ended: bool,
     timings: Timings,
@@ -63,7 +73,7 @@ impl Session {
         options.locked_edges = locks::edges(&mesh, &options)?;
         // `auto` would take a refusal by an engine for a reason to go on.
         locks::half_edges(&mesh, &options.locked_edges)?;
-        let (engine, fallback) = engine_for(&mesh, &options).await?;
+        let Choice { engine, fallback, may_change } = engine_for(&mesh, &options).await?;
         let set_up = ms_since(start);
         let adjacency = engine.adjacency_ms().unwrap_or(set_up);
         Ok(Self {
@@ -71,6 +81,7 @@ impl Session {
             options,
             engine,
             fallback,
+            may_change,
             flips_per_iteration: Vec::new(),
             has_ended: false,
             timings: Timings { upload: set_up - adjacency, adjacency, ..Timings::default() },
@@ -123,6 +134,9 @@ impl Session {
         if self.may_continue() {
             self.iterate(self.engine.batch().min(self.iterations_left())).await?;
         }
+        if self.may_change && self.may_continue() {
+            self.change_to_gpu().await;
+        }
         Ok(self.may_continue())
     }
 
@@ -146,15 +160,20 @@ impl Session {
         positions.refuse_non_finite(self.mesh.dimension(), &Threads::one())?;
         let triangles = self.triangles().await?;
         let mesh = Arc::new(Mesh::new(self.mesh.dimension(), positions, triangles)?);
-        match self.engine.set_positions(mesh.clone()).await {
-            Err(error @ (Error::BackendLimit { .. } | Error::Device { .. }))
-                if self.options.backend == Backend::Auto =>
-            {
-                let why = format!("after the vertices moved: {error}");
-                (self.engine, self.fallback) =
-                    engine_after(self.engine.backend(), why, &mesh, &self.options).await?;
+        if self.may_change && choice::changes_to_gpu(&mesh, &self.options, 0.0) {
+            let choice = engine_for(&mesh, &self.options).await?;
+            self.take(choice);
+        } else {
+            match self.engine.set_positions(mesh.clone()).await {
+                Err(error @ (Error::BackendLimit { .. } | Error::Device { .. }))
+                    if self.options.backend == Backend::Auto =>
+                {
+                    let why = format!("after the vertices moved: {error}");
+                    let choice = cpu_after(why, &mesh, &self.options).await?;
+                    self.take(choice);
+                }
+                answer => answer?,
             }
-            answer => answer?,
         }
         self.mesh = mesh;
         self.flips_per_iteration.clear();
@@ -332,21 +351,39 @@ impl Session {
         }
     }
 
-    /// The next engine goes the same way again up to the last complete iteration, which determinism allows. Boxed, so
-    /// that it is compiled into one place only.
-    fn recover(&mut self, mut message: String) -> Answer<'_, ()> {
+    /// The CPU goes the same way again up to the last complete iteration, which determinism allows. Boxed, so that it is
+    /// compiled into one place only.
+    fn recover(&mut self, message: String) -> Answer<'_, ()> {
         Box::pin(async move {
-            loop {
-                let before = self.fallback.as_deref().map_or(String::new(), |before| format!("{before}; "));
-                let why = format!("{before}the device failed during the run: {message}");
-                (self.engine, self.fallback) =
-                    engine_after(self.engine.backend(), why, &self.mesh, &self.options).await?;
-                match self.engine.iterate(self.flips_per_iteration.len() as u32).await {
-                    Err(Error::Device { message: again }) => message = again,
-                    answer => return answer.map(drop),
-                }
-            }
+            let before = self.fallback.as_deref().map_or(String::new(), |before| format!("{before}; "));
+            let why = format!("{before}the device failed during the run: {message}");
+            let choice = cpu_after(why, &self.mesh, &self.options).await?;
+            self.take(choice);
+            self.engine.iterate(self.iterations()).await.map(drop)
         })
+    }
+
+    /// Where the GPU has become ready and is done first from here, it goes the same way again and then on. Where it fails, the
+    /// CPU goes on.
+    async fn change_to_gpu(&mut self) {
+        let Timings { upload, adjacency, flip, .. } = self.timings;
+        if !choice::changes_to_gpu(&self.mesh, &self.options, upload + adjacency + flip) {
+            return;
+        }
+        self.may_change = false;
+        let start = Instant::now();
+        match choice::gpu_after(self.iterations(), &self.mesh, &self.options).await {
+            Ok(engine) => {
+                self.engine = engine;
+                self.fallback = Some("the cpu began, until the gpu was ready".to_owned());
+            }
+            Err(error) => self.fallback = Some(error.to_string()),
+        }
+        self.timings.flip += ms_since(start);
+    }
+
+    fn take(&mut self, choice: Choice) {
+        Choice { engine: self.engine, fallback: self.fallback, may_change: self.may_change } = choice;
     }
 }
 

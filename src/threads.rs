@@ -58,6 +58,16 @@ impl Threads {
         Ok(Self::default().for_triangles(triangles))
     }
 
+    /// How many [`Threads::new`] gives.
+    #[cfg_attr(not(feature = "threads"), expect(unused_variables, reason = "it is one, whatever it says"))]
+    pub(crate) fn count_for(option: Option<NonZeroUsize>, triangles: usize) -> usize {
+        #[cfg(feature = "threads")]
+        if let Some(count) = option.filter(|_| triangles >= FEWEST_TRIANGLES) {
+            return count.get().min(triangles / FEWEST);
+        }
+        Self::default().for_triangles(triangles).count()
+    }
+
     /// One, without any of a pool.
     pub(crate) fn one() -> Self {
         Self::default().for_triangles(0)
@@ -276,6 +286,7 @@ mod tests {
         ] {
             let threads = Threads::new(NonZeroUsize::new(count), triangles).unwrap();
             assert_eq!(threads.count(), want);
+            assert_eq!(Threads::count_for(NonZeroUsize::new(count), triangles), want);
             assert_eq!(threads.pool.is_some(), want > 1);
         }
         assert_eq!(Threads::new(None, FEWEST_TRIANGLES - 1).unwrap().count(), 1);

@@ -29,13 +29,13 @@ pub(crate) use proxy::{Proxy, set_webgl2};
 #[cfg(feature = "gpu")]
 pub(crate) use self_test::self_test;
 #[cfg(feature = "gpu")]
-pub(crate) use upload::Upload;
+pub(crate) use upload::{Form, Upload};
 #[cfg(all(target_arch = "wasm32", feature = "js-webgl2"))]
 pub(crate) use webgl::{WebGl, set_shader_loader};
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 pub use webgpu::GpuDevice;
 #[cfg(feature = "gpu")]
-pub(crate) use webgpu::{Device, WebGpu};
+pub(crate) use webgpu::{Device, GivenDevice, Handle as DeviceHandle, WebGpu};
 
 #[cfg(feature = "gpu")]
 use crate::Reason;

@@ -24,7 +24,6 @@ extern "C" {
         dimension: u32,
         cos: f64,
         deviation: f32,
-        takes_software: bool,
     ) -> Result<Promise, JsValue>;
 
     /// `JsWebGl2`.
@@ -73,19 +72,14 @@ impl Proxy {
     ///
     /// # Errors
     /// [`Error::BackendUnavailable`] too where the module cannot be loaded.
-    pub(crate) async fn new(
-        mesh: &Mesh,
-        thresholds: Thresholds,
-        takes_software: bool,
-    ) -> Result<Self, Error> {
-        let Thresholds { cos, deviation } = thresholds;
+    pub(crate) async fn new(mesh: &Mesh, Thresholds { cos, deviation }: Thresholds) -> Result<Self, Error> {
         let module = MODULE.with_borrow(Clone::clone);
         let module = module.ok_or_else(|| unavailable("it was not said where its module is".to_owned()))?;
         let positions = positions_array(mesh.positions());
         // A copy, since it waits for the module.
         let indices = Uint32Array::from(mesh.triangles());
         let dimension = mesh.dimension().stride() as u32;
-        let created = module.create(positions, indices, dimension, cos, deviation, takes_software);
+        let created = module.create(positions, indices, dimension, cos, deviation);
         let remote: Remote = answer(created).await?.unchecked_into();
         let counts = remote.edge_counts();
         let counts = EdgeCounts {

@@ -19,6 +19,12 @@ const DEVIATION: f32 = 0.005;
 #[derive(Default)]
 pub(crate) struct Tested([AtomicBool; Form::COUNT]);
 
+impl Tested {
+    pub(crate) fn has_passed(&self, form: Form) -> bool {
+        self.0[form.index()].load(Ordering::Relaxed)
+    }
+}
+
 /// Makes an engine for a mesh.
 pub(crate) type Make<'a> = dyn Fn(Upload) -> Answer<'static, Box<dyn Engine>> + 'a;
 
@@ -33,8 +39,7 @@ pub(crate) async fn self_test(
     form: Form,
     make: &Make<'_>,
 ) -> Result<(), Error> {
-    let has_passed = &tested.0[form.index()];
-    if has_passed.load(Ordering::Relaxed) {
+    if tested.has_passed(form) {
         return Ok(());
     }
     let mesh = Arc::new(test_mesh(form)?);
@@ -50,7 +55,7 @@ pub(crate) async fn self_test(
         let message = "it failed its self-test: it flips other edges than the cpu".to_owned();
         return Err(Error::BackendUnavailable { backend, message });
     }
-    has_passed.store(true, Ordering::Relaxed);
+    tested.0[form.index()].store(true, Ordering::Relaxed);
     Ok(())
 }
 

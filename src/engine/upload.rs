@@ -34,6 +34,11 @@ impl Form {
         Self { dimension: Dimension::Three, is_fixed: true, has_deviation: false },
         Self { dimension: Dimension::Three, is_fixed: true, has_deviation: true },
     ];
+    pub(crate) fn new(dimension: Dimension, is_fixed: bool, thresholds: Thresholds) -> Self {
+        let has_deviation = dimension == Dimension::Three && thresholds.deviation.is_finite();
+        Self { dimension, is_fixed, has_deviation }
+    }
+
     /// How many there are.
     pub(crate) const COUNT: usize = Self::ALL.len();
 
@@ -87,9 +92,7 @@ impl Upload {
     }
 
     pub(crate) fn form(&self) -> Form {
-        let dimension = self.mesh.dimension();
-        let has_deviation = dimension == Dimension::Three && self.thresholds.deviation.is_finite();
-        Form { dimension, is_fixed: self.fixed.is_some(), has_deviation }
+        Form::new(self.mesh.dimension(), self.fixed.is_some(), self.thresholds)
     }
 
     /// The coordinates as the shaders of its form read them, one word for each axis after the other.

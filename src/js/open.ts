@@ -6,7 +6,7 @@ import { init, loadThreads } from './load.js';
 import type { IndexedMesh } from './mesh.js';
 import type { Settings } from './settings.js';
 import { type ModuleSession, threadCount, ThreadsSession, threadsOf } from './threads.js';
-import { Session } from './wasm/edgeflip.js';
+import { Session, whyCpu } from './wasm/edgeflip.js';
 
 /**
  * A session on the engine that the settings take; the CPU engine has threads where they are worth while and can be had.
@@ -17,13 +17,21 @@ export async function open(mesh: IndexedMesh, settings: Settings): Promise<Modul
   const { backend = 'auto', order } = settings;
   if (count === 1 || (backend !== 'auto' && backend !== 'cpu')) return openAlone(mesh, settings);
   if (backend === 'cpu' || order === 'any') return openOnThreads(mesh, settings, count);
+  await init();
+  const { positions, indices, dimension } = mesh;
+  const why = whyCpu(indices.length / 3, dimension, positions instanceof Float64Array, count, settings);
+  if (why !== undefined) return openOnThreads(mesh, settings, count, inWordsOfPackage(why));
   try {
     return await openAlone(mesh, { ...settings, leavesCpu: true });
   } catch (thrown) {
     const { code, message } = fromModule(thrown);
     if (code !== 'backend-unavailable') throw thrown;
-    return openOnThreads(mesh, settings, count, message.replace('backend gpu ', 'backend webgpu '));
+    return openOnThreads(mesh, settings, count, inWordsOfPackage(message));
   }
+}
+
+function inWordsOfPackage(why: string): string {
+  return why.replace('backend gpu ', 'backend webgpu ');
 }
 
 /** In the module of the engines; `leavesCpu`: but for the CPU engine, where `'auto'` would take that. */

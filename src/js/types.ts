@@ -51,9 +51,11 @@ export type Engine = 'webgpu' | 'webgl2' | 'cpu';
 /** What can be chosen for a session. Arrays are copied before a call returns. */
 export interface Options {
   /**
-   * `'webgpu'`, `'webgl2'` and `'cpu'` take that engine or fail. `'auto'` (default) takes the CPU for a small mesh, and
-   * else the first of WebGPU, WebGL2 and the CPU that is on a real GPU, gets a test mesh right and can take the mesh;
-   * where a device is lost it goes on with the next. {@link Result.fallback} says why.
+   * `'webgpu'`, `'webgl2'` and `'cpu'` take that engine or fail. `'auto'` (default) takes the one that is done first: the
+   * CPU for a small mesh, and WebGPU for a large one, on a hardware GPU that gets a test mesh right. Where the browser still
+   * has to make that GPU ready, the run begins on the CPU and the GPU is made ready behind it, unless the mesh is so large
+   * that waiting is faster. Where the device is lost, the CPU goes on. It never takes WebGL2, which takes longer than the
+   * CPU. {@link Result.fallback} says why it is the CPU.
    */
   backend?: 'auto' | Engine | undefined;
   /**

@@ -1,36 +1,55 @@
 //! Which engine a session runs on.
 
-use super::room;
+use super::cost::Job;
+use super::{gpu, room};
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 use crate::engine::Proxy;
 use crate::engine::{Answer, Cpu, Engine, Lawson};
-#[cfg(feature = "gpu")]
-use crate::engine::{Device, Upload, WebGpu, self_test};
 use crate::phases::Thresholds;
 use crate::threads::Threads;
 use crate::{Backend, Error, Mesh, Options, Order, locks, memory};
 use std::sync::Arc;
 
-/// What `Auto` tries, in this order. The last takes every mesh.
-#[cfg(target_arch = "wasm32")]
-const ORDER: [Backend; 3] = [Backend::Gpu, Backend::WebGl, Backend::Cpu];
+/// An engine, and why `Auto` took no other.
+pub(super) struct Choice {
+    pub(super) engine: Box<dyn Engine>,
+    pub(super) fallback: Option<String>,
+    /// Whether it is the CPU only until a GPU is ready.
+    pub(super) may_change: bool,
+}
+
+/// What a mesh is as a job for `Auto`.
+pub(super) fn job_of(mesh: &Mesh, options: &Options) -> Job {
+    let triangles = mesh.triangle_count();
+    Job { triangles, dimension: mesh.dimension(), threads: Threads::count_for(options.threads, triangles) }
+}
+
+/// Whether a session with these options asks for a GPU first, for such a job.
 #[cfg(not(target_arch = "wasm32"))]
-const ORDER: [Backend; 2] = [Backend::Gpu, Backend::Cpu];
-
-/// A mesh of fewer triangles is done on the CPU before a GPU has answered once: see the crossover in README.
-const FEWEST_FOR_GPU: usize = 10_000;
-
-/// An engine, and why `Auto` did not take those before it.
-type Choice = (Box<dyn Engine>, Option<String>);
-
-/// Whether a session with these options asks for a GPU first, for so many triangles.
-#[cfg(not(target_arch = "wasm32"))]
-pub(super) fn asks_gpu(options: &Options, triangles: usize) -> bool {
+pub(super) fn asks_gpu(options: &Options, job: Job) -> bool {
     match (options.order, options.backend) {
-        (Order::Reproducible, Backend::Auto) => triangles >= FEWEST_FOR_GPU,
+        (Order::Reproducible, Backend::Auto) => job.waits_for_gpu(),
         (Order::Reproducible, backend) => backend == Backend::Gpu,
         (Order::Any, _) => false,
     }
+}
+
+/// Why `Auto` takes the CPU without asking for a GPU, if it does: the CPU is done first. A browser then makes its GPU ready
+/// for later runs, where those are worth it; `is_double` says whether coordinates are.
+pub(crate) fn why_cpu(job: Job, is_double: bool, options: &Options) -> Option<String> {
+    if !job.is_for_gpu(0.0) {
+        return Some(format!("{} triangles are done first on the cpu", job.triangles));
+    }
+    if job.waits_for_gpu() || gpu::is_ready(job, is_double, options) {
+        return None;
+    }
+    Some(gpu::why_not_ready(job, is_double, options))
+}
+
+/// Whether `Auto` goes on with a GPU `spent` milliseconds after it has begun on the CPU.
+pub(super) fn changes_to_gpu(mesh: &Mesh, options: &Options, spent: f64) -> bool {
+    let job = job_of(mesh, options);
+    job.is_for_gpu(spent) && gpu::is_ready(job, mesh.positions().is_double(), options)
 }
 
 /// The engine for the options. Boxed, as below.
@@ -44,61 +63,76 @@ pub(super) fn engine_for<'a>(mesh: &'a Arc<Mesh>, options: &'a Options) -> Answe
                 let message = "`any` is sequential and runs on the cpu only".to_owned();
                 Err(Error::Option { option: "order", message })
             }
-            (Order::Any, _) => Ok((open(Backend::Cpu, mesh, options).await?, None)),
-            (Order::Reproducible, Backend::Auto) if mesh.triangle_count() < FEWEST_FOR_GPU => {
-                let why =
-                    format!("a mesh of fewer than {FEWEST_FOR_GPU} triangles is done sooner on the cpu");
-                Ok((open(Backend::Cpu, mesh, options).await?, Some(why)))
-            }
             (Order::Reproducible, Backend::Auto) => {
-                #[cfg(all(target_arch = "wasm32", feature = "js"))]
-                let backends = &ORDER[..ORDER.len() - usize::from(options.leaves_cpu)];
-                #[cfg(not(all(target_arch = "wasm32", feature = "js")))]
-                let backends = &ORDER;
-                first_of(backends, Vec::new(), mesh, options).await
+                let is_double = mesh.positions().is_double();
+                match why_cpu(job_of(mesh, options), is_double, options) {
+                    None => auto(mesh, options).await,
+                    #[cfg(all(target_arch = "wasm32", feature = "js"))]
+                    Some(message) if options.leaves_cpu => Err(Error::Device { message }),
+                    fallback => {
+                        let engine = open(Backend::Cpu, mesh, options).await?;
+                        Ok(Choice { engine, fallback, may_change: true })
+                    }
+                }
             }
-            (Order::Reproducible, backend) => Ok((open(backend, mesh, options).await?, None)),
+            (Order::Any, _) => alone(Backend::Cpu, mesh, options, None).await,
+            (Order::Reproducible, backend) => alone(backend, mesh, options, None).await,
         }
     })
 }
 
-/// The engine that `Auto` takes where the one named `failed` has failed with `why`.
+/// The GPU, or the CPU where that does not take the mesh.
+async fn auto(mesh: &Arc<Mesh>, options: &Options) -> Result<Choice, Error> {
+    match open(Backend::Gpu, mesh, options).await {
+        Ok(engine) => Ok(Choice { engine, fallback: None, may_change: false }),
+        // It is the mesh that is too large.
+        Err(error @ Error::OutOfMemory { .. }) => Err(error),
+        #[cfg(all(target_arch = "wasm32", feature = "js"))]
+        Err(error) if options.leaves_cpu => Err(Error::Device { message: without_gpu(error.to_string()) }),
+        Err(error) => alone(Backend::Cpu, mesh, options, Some(without_gpu(error.to_string()))).await,
+    }
+}
+
+/// Why it is the CPU where the GPU does not take the mesh for this reason.
+pub(super) fn without_gpu(why: String) -> String {
+    if cfg!(all(target_arch = "wasm32", feature = "js")) {
+        return why + "; webgl2 is left out: it takes longer than the cpu";
+    }
+    why
+}
+
+/// The CPU, which takes every mesh, where another engine has failed with `why`.
 ///
 /// # Errors
-/// As [`engine_for`].
-pub(super) fn engine_after<'a>(
-    failed: &str,
-    why: String,
-    mesh: &'a Arc<Mesh>,
-    options: &'a Options,
-) -> Answer<'a, Choice> {
-    let names = |backend: &Backend| match backend {
-        Backend::Gpu => "gpu",
-        Backend::WebGl => "webgl2",
-        Backend::Auto | Backend::Cpu => "cpu",
-    };
-    let place = ORDER.iter().position(|backend| names(backend) == failed).unwrap_or(0);
-    first_of(&ORDER[place + 1..], vec![why], mesh, options)
+/// [`Error::OutOfMemory`]; [`Error::Device`] with the reason where the options leave the CPU.
+pub(super) fn cpu_after<'a>(why: String, mesh: &'a Arc<Mesh>, options: &'a Options) -> Answer<'a, Choice> {
+    Box::pin(alone(Backend::Cpu, mesh, options, Some(why)))
 }
 
-/// The first engine that takes the mesh. Boxed, as below.
-fn first_of<'a>(
-    backends: &'a [Backend],
-    mut reasons: Vec<String>,
+/// The GPU after so many iterations.
+///
+/// # Errors
+/// As [`engine_for`] for the GPU.
+pub(super) fn gpu_after<'a>(
+    iterations: u32,
     mesh: &'a Arc<Mesh>,
     options: &'a Options,
-) -> Answer<'a, Choice> {
+) -> Answer<'a, Box<dyn Engine>> {
     Box::pin(async move {
-        for &backend in backends {
-            match open(backend, mesh, options).await {
-                Ok(engine) => return Ok((engine, (!reasons.is_empty()).then(|| reasons.join("; ")))),
-                // It is the mesh that is too large.
-                Err(error @ Error::OutOfMemory { .. }) => return Err(error),
-                Err(error) => reasons.push(error.to_string()),
-            }
-        }
-        Err(Error::Device { message: reasons.join("; ") })
+        let mut engine = open(Backend::Gpu, mesh, options).await?;
+        engine.iterate(iterations).await?;
+        Ok(engine)
     })
+}
+
+/// An engine that the session stays on.
+async fn alone(
+    backend: Backend,
+    mesh: &Arc<Mesh>,
+    options: &Options,
+    fallback: Option<String>,
+) -> Result<Choice, Error> {
+    Ok(Choice { engine: open(backend, mesh, options).await?, fallback, may_change: false })
 }
 
 /// Boxed, so that what an engine does to begin is compiled into one place only.
@@ -111,8 +145,8 @@ fn open<'a>(backend: Backend, mesh: &'a Arc<Mesh>, options: &'a Options) -> Answ
             Ok::<_, Error>(Cpu::new(mesh.clone(), thresholds, threads))
         };
         let mut engine = match (backend, options.order) {
-            (Backend::Gpu, _) => gpu(mesh, options, thresholds).await?,
-            (Backend::WebGl, _) => webgl(mesh, options, thresholds).await?,
+            (Backend::Gpu, _) => gpu::engine(mesh, options).await?,
+            (Backend::WebGl, _) => webgl(mesh, thresholds).await?,
             (_, Order::Reproducible) => Box::new(cpu()?),
             (_, Order::Any) => Box::new(Lawson::new(cpu()?)),
         };
@@ -123,52 +157,13 @@ fn open<'a>(backend: Backend, mesh: &'a Arc<Mesh>, options: &'a Options) -> Answ
     })
 }
 
-#[cfg(feature = "gpu")]
-async fn gpu(mesh: &Arc<Mesh>, options: &Options, thresholds: Thresholds) -> Result<Box<dyn Engine>, Error> {
-    let upload = Upload::new("gpu", mesh.clone(), thresholds)?;
-    let form = Some(upload.form());
-    // `Auto` leaves a GPU alone that the processor plays.
-    let takes_software = options.backend == Backend::Gpu;
-    #[cfg(all(target_arch = "wasm32", feature = "js"))]
-    let device = match &options.device {
-        Some(given) => Device::adopted(given, takes_software, form).await?,
-        None => Device::shared(takes_software, form).await?,
-    };
-    #[cfg(not(all(target_arch = "wasm32", feature = "js")))]
-    let device = Device::shared(takes_software, form).await?;
-    let make = |upload: Upload| -> Answer<'static, Box<dyn Engine>> {
-        let device = device.clone();
-        Box::pin(async move { Ok(Box::new(WebGpu::new(device, upload).await?) as Box<dyn Engine>) })
-    };
-    self_test(&device.tested, "gpu", upload.form(), &make).await?;
-    make(upload).await
-}
-
-#[cfg(not(feature = "gpu"))]
-async fn gpu(
-    _mesh: &Arc<Mesh>,
-    _options: &Options,
-    _thresholds: Thresholds,
-) -> Result<Box<dyn Engine>, Error> {
-    let message = "this build has no GPU engine (feature `gpu`)".to_owned();
-    Err(Error::BackendUnavailable { backend: "gpu", message })
-}
-
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
-async fn webgl(
-    mesh: &Arc<Mesh>,
-    options: &Options,
-    thresholds: Thresholds,
-) -> Result<Box<dyn Engine>, Error> {
-    Ok(Box::new(Proxy::new(mesh, thresholds, options.backend == Backend::WebGl).await?))
+async fn webgl(mesh: &Arc<Mesh>, thresholds: Thresholds) -> Result<Box<dyn Engine>, Error> {
+    Ok(Box::new(Proxy::new(mesh, thresholds).await?))
 }
 
 #[cfg(not(all(target_arch = "wasm32", feature = "js")))]
-async fn webgl(
-    _mesh: &Arc<Mesh>,
-    _options: &Options,
-    _thresholds: Thresholds,
-) -> Result<Box<dyn Engine>, Error> {
+async fn webgl(_mesh: &Arc<Mesh>, _thresholds: Thresholds) -> Result<Box<dyn Engine>, Error> {
     let message = "WebGL2 is there in browsers only, through the npm package".to_owned();
     Err(Error::BackendUnavailable { backend: "webgl2", message })
 }

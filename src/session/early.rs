@@ -1,9 +1,11 @@
 //! A GPU that is opened while a mesh is read, and closed while the result is written.
 
-use super::choice::asks_gpu;
+use super::choice::{asks_gpu, job_of};
+use super::cost::Job;
 #[cfg(feature = "gpu")]
 use crate::engine::Device;
-use crate::{Backend, Error, Mesh, Options};
+use crate::threads::Threads;
+use crate::{Backend, Dimension, Error, Mesh, Options};
 use std::thread::{self, JoinHandle};
 
 /// A GPU that a thread of its own opens for the sessions to come. Nobody has to wait for it; but whoever ends the process
@@ -15,8 +17,11 @@ impl EarlyGpu {
     pub fn open(options: &Options, triangles: usize) -> Self {
         let takes_software = options.backend == Backend::Gpu;
         let open = move || opened(takes_software);
+        let threads = Threads::count_for(options.threads, triangles);
+        // In space the CPU takes longer.
+        let job = Job { triangles, dimension: Dimension::Three, threads };
         // Where no thread can be had, the session opens it.
-        Self(asks_gpu(options, triangles).then(|| thread::Builder::new().spawn(open).ok()).flatten())
+        Self(asks_gpu(options, job).then(|| thread::Builder::new().spawn(open).ok()).flatten())
     }
 
     /// Waits for it, if a session with these options asks for it with this mesh.
@@ -24,7 +29,7 @@ impl EarlyGpu {
     /// # Errors
     /// Those that the session would have: [`Error::BackendUnavailable`] and [`Error::Device`].
     pub fn wait(self, mesh: &Mesh, options: &Options) -> Result<(), Error> {
-        let thread = self.0.filter(|_| asks_gpu(options, mesh.triangle_count()));
+        let thread = self.0.filter(|_| asks_gpu(options, job_of(mesh, options)));
         // A session says itself what it panics at.
         thread.map_or(Ok(()), |thread| thread.join().unwrap_or(Ok(())))
     }

@@ -188,3 +188,39 @@ fn vertices_move_from_floats_to_doubles_and_back() {
     assert_eq!(gpu_end.triangles, end.triangles);
     assert_eq!(gpu_end.remaining, end.remaining);
 }
+
+/// A software GPU stands for one that has become ready: `Auto` takes none, so the session says that it asks for it.
+#[cfg(feature = "gpu")]
+#[test]
+fn a_run_goes_on_with_a_gpu_that_has_become_ready() {
+    let mesh = Arc::new(crate::families::by_name("random 160").unwrap());
+    let locked_edges = mesh.triangles().chunks(15).map(|t| [t[0], t[1]]).collect();
+    let threads = std::num::NonZeroUsize::new(1);
+    let options =
+        |backend| Options { backend, threads, locked_edges: Vec::clone(&locked_edges), ..Options::default() };
+    let session = |backend| block_on(Session::new(mesh.clone(), options(backend))).unwrap();
+    let (expected, outcome) = watch(session(Backend::Cpu)).unwrap();
+    // Opens the device.
+    drop(session(Backend::Gpu));
+    for iterations in [1, 3] {
+        let mut session = session(Backend::Cpu);
+        session.options.backend = Backend::Gpu;
+        for _ in 0..iterations {
+            assert!(block_on(session.advance()).unwrap());
+        }
+        session.may_change = true;
+        // However long it has taken here.
+        session.timings = Timings::default();
+        block_on(session.change_to_gpu());
+        assert_eq!((session.engine.backend(), session.may_change), ("gpu", false));
+        assert_eq!(block_on(session.triangles()).unwrap(), expected[iterations - 1]);
+        block_on(session.run(|_, _| ControlFlow::Continue(()))).unwrap();
+        let changed = block_on(session.outcome()).unwrap();
+        assert_eq!(changed.fallback.as_deref(), Some("the cpu began, until the gpu was ready"));
+        assert_eq!(changed.flips_per_iteration, outcome.flips_per_iteration);
+        assert_eq!(
+            (changed.triangles, changed.remaining),
+            (outcome.triangles.clone(), outcome.remaining)
+        );
+    }
+}

@@ -4,7 +4,7 @@ use super::texture::Texture;
 use crate::Error;
 use crate::engine::probe::ends_loops_early;
 use crate::engine::self_test::Tested;
-use js_sys::{Function, JsString, Object, Promise, Reflect, Uint32Array};
+use js_sys::{Function, Object, Promise, Reflect, Uint32Array};
 use std::cell::RefCell;
 use std::rc::Rc;
 use wasm_bindgen::prelude::*;
@@ -19,8 +19,6 @@ const PAUSE: i32 = 1;
 const COMPLETION_STATUS: u32 = 0x91b1;
 /// `UNMASKED_RENDERER_WEBGL`.
 const UNMASKED_RENDERER: u32 = 0x9246;
-/// How software renderers call themselves.
-const SOFTWARE: [&str; 4] = ["swiftshader", "llvmpipe", "softpipe", "basic render"];
 
 #[wasm_bindgen]
 extern "C" {
@@ -69,22 +67,14 @@ impl Context {
     /// The shared context; opened at the first call, and again after a loss.
     ///
     /// # Errors
-    /// [`Error::BackendUnavailable`] where there is none, or a software one that is not taken; [`Error::Device`] where
-    /// it fails at once.
-    pub(super) async fn shared(takes_software: bool) -> Result<Rc<Self>, Error> {
+    /// [`Error::BackendUnavailable`] where there is none; [`Error::Device`] where it fails at once.
+    pub(super) async fn shared() -> Result<Rc<Self>, Error> {
         let known = SHARED.with_borrow(Clone::clone).filter(|context| !context.gl.is_context_lost());
-        let context = match known {
-            Some(context) => context,
-            None => {
-                // Before its programs, so that a renderer that is not taken costs little.
-                let gl = create(takes_software)?;
-                refuse_software(&renderer(&gl), takes_software)?;
-                let context = Rc::new(Self::open(gl).await?);
-                SHARED.set(Some(context.clone()));
-                context
-            }
-        };
-        refuse_software(&context.adapter, takes_software)?;
+        if let Some(context) = known {
+            return Ok(context);
+        }
+        let context = Rc::new(Self::open(create()?).await?);
+        SHARED.set(Some(context.clone()));
         Ok(context)
     }
 
@@ -261,25 +251,12 @@ pub(super) fn lost(gl: &Gl) -> Error {
     Error::Device { message: message.to_owned() }
 }
 
-fn refuse_software(renderer: &str, takes_software: bool) -> Result<(), Error> {
-    let name = JsString::from(renderer).to_lower_case();
-    if !takes_software && SOFTWARE.iter().any(|software| name.includes(software, 0)) {
-        return Err(unavailable("the renderer is software, slower than the cpu engine"));
-    }
-    Ok(())
-}
-
 /// On a canvas that is never shown.
-fn create(takes_software: bool) -> Result<Gl, Error> {
+fn create() -> Result<Gl, Error> {
     let options = Object::new();
-    for (name, value) in [
-        ("alpha", false),
-        ("antialias", false),
-        ("depth", false),
-        ("failIfMajorPerformanceCaveat", !takes_software),
-    ] {
+    for name in ["alpha", "antialias", "depth"] {
         // Setting a field of a new object does not fail.
-        let _ = Reflect::set(&options, &name.into(), &value.into());
+        let _ = Reflect::set(&options, &name.into(), &false.into());
     }
     let _ = Reflect::set(&options, &"powerPreference".into(), &"high-performance".into());
     let offscreen = OffscreenCanvas::new(1, 1)

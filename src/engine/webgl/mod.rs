@@ -73,14 +73,9 @@ impl WebGl {
     /// On the shared context, once it has passed the self-test.
     ///
     /// # Errors
-    /// [`Error::BackendUnavailable`] without a context, with a software one that is not taken, and with one that gets the
-    /// test wrong; those of [`WebGl::new`].
-    pub(crate) async fn open(
-        mesh: Arc<Mesh>,
-        thresholds: Thresholds,
-        takes_software: bool,
-    ) -> Result<Self, Error> {
-        let context = Context::shared(takes_software).await?;
+    /// [`Error::BackendUnavailable`] without a context, and with one that gets the test wrong; those of [`WebGl::new`].
+    pub(crate) async fn open(mesh: Arc<Mesh>, thresholds: Thresholds) -> Result<Self, Error> {
+        let context = Context::shared().await?;
         let upload = Upload::new("webgl2", mesh, thresholds)?;
         let make = |upload: Upload| -> Answer<'static, Box<dyn Engine>> {
             let context = context.clone();

@@ -85,12 +85,20 @@ fn refused_kernels(fault: Fault) -> Error {
 }
 
 impl Device {
+    /// # Errors
+    /// [`Error::BackendUnavailable`] where no adapter has to be asked for.
+    #[cfg(target_arch = "wasm32")]
+    pub(super) fn look_for_webgpu() -> Result<(), Error> {
+        if browser::has_webgpu() {
+            return Ok(());
+        }
+        Err(unavailable("there is no WebGPU here (navigator.gpu)".to_owned()))
+    }
+
     /// An adapter, and whether it is software.
     pub(super) async fn find_adapter() -> Result<(wgpu::Adapter, bool), Error> {
         #[cfg(target_arch = "wasm32")]
-        if !browser::has_webgpu() {
-            return Err(unavailable("there is no WebGPU here (navigator.gpu)".to_owned()));
-        }
+        Self::look_for_webgpu()?;
         let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
         let options = wgpu::RequestAdapterOptions {
             power_preference: wgpu::PowerPreference::HighPerformance,
@@ -193,6 +201,11 @@ impl Device {
             result.most_workgroups = MOST_WORKGROUPS;
         }
         Ok(result)
+    }
+
+    /// Whether a mesh of a form can begin at once: nothing has failed, and its kernels are compiled and tested.
+    pub(crate) fn is_ready(&self, form: Form) -> bool {
+        self.check().is_ok() && self.tested.has_passed(form)
     }
 
     /// The kernels of the phases; compiled at the first call. Those that begin at the same time may compile them twice.

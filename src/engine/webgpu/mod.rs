@@ -29,7 +29,7 @@ mod tests;
 pub use browser::GpuDevice;
 pub(crate) use device::Device;
 pub(crate) use kernels::Kernel;
-pub(crate) use shared::Handle;
+pub(crate) use shared::{GivenDevice, Handle};
 
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 use super::SharedObjects;

@@ -1,12 +1,24 @@
 //! One device for all sessions, or one that the page has made.
 
-#[cfg(all(target_arch = "wasm32", feature = "js"))]
-use super::browser::GpuDevice;
 use super::device::Device;
 use super::faults::unavailable;
 use crate::Error;
 use crate::engine::upload::Form;
+#[cfg(all(target_arch = "wasm32", feature = "js"))]
+use crate::js_promise::promise;
+#[cfg(all(target_arch = "wasm32", feature = "js"))]
+use js_sys::{Array, Promise};
 use std::sync::Mutex;
+#[cfg(all(target_arch = "wasm32", feature = "js"))]
+use wasm_bindgen::JsValue;
+
+/// A device of the page.
+#[cfg(all(target_arch = "wasm32", feature = "js"))]
+pub(crate) use super::browser::GpuDevice as GivenDevice;
+
+/// Elsewhere nobody can give one.
+#[cfg(not(all(target_arch = "wasm32", feature = "js")))]
+pub(crate) type GivenDevice = std::convert::Infallible;
 
 /// The devices that sessions share.
 struct Shared {
@@ -14,6 +26,11 @@ struct Shared {
     opened: Option<Handle>,
     /// Whether the adapter that was found last is software: the processor plays the GPU.
     is_software: bool,
+    /// Whether one is made ready for sessions to come, and why the last one was not.
+    #[cfg(all(target_arch = "wasm32", feature = "js"))]
+    is_preparing: bool,
+    #[cfg(all(target_arch = "wasm32", feature = "js"))]
+    refusal: Option<String>,
     /// Those of the page: in use, and the last one also when it is idle, for the sake of its kernels.
     #[cfg(all(target_arch = "wasm32", feature = "js"))]
     adopted: Vec<Handle>,
@@ -24,6 +41,10 @@ impl Shared {
         Self {
             opened: None,
             is_software: false,
+            #[cfg(all(target_arch = "wasm32", feature = "js"))]
+            is_preparing: false,
+            #[cfg(all(target_arch = "wasm32", feature = "js"))]
+            refusal: None,
             #[cfg(all(target_arch = "wasm32", feature = "js"))]
             adopted: Vec::new(),
         }
@@ -74,11 +95,44 @@ pub(super) fn let_idle_go() {
 }
 
 impl Device {
-    /// The shared device; opened at the first call, and again after a failure, with the kernels for meshes of a form.
+    /// The device for a session, with the kernels for meshes of a form: the one given, else the one that sessions share.
     ///
     /// # Errors
     /// [`Error::BackendUnavailable`] where there is none, or a software one that is not taken, or its compiler
-    /// refuses the kernels; [`Error::Device`] where it fails at once.
+    /// refuses the kernels; [`Error::Device`] where it fails at once, or the one given is lost.
+    pub(crate) async fn for_session(
+        given: Option<&GivenDevice>,
+        takes_software: bool,
+        form: Form,
+    ) -> Result<Handle, Error> {
+        #[cfg(all(target_arch = "wasm32", feature = "js"))]
+        if let Some(given) = given {
+            return Self::adopted(given, takes_software, form).await;
+        }
+        #[cfg(not(all(target_arch = "wasm32", feature = "js")))]
+        let _ = given;
+        Self::shared(takes_software, Some(form)).await
+    }
+
+    /// The device for a session, if it is open and nothing has failed.
+    pub(crate) fn known(given: Option<&GivenDevice>) -> Option<Handle> {
+        #[cfg(all(target_arch = "wasm32", feature = "js"))]
+        if let Some(given) = given {
+            return with_shared(|shared| {
+                let is_given = |device: &&Handle| GivenDevice::of(&device.device).as_ref() == Some(given);
+                let mut devices = shared.adopted.iter().chain(&shared.opened).filter(is_given);
+                devices.find(|device| device.check().is_ok()).cloned()
+            });
+        }
+        #[cfg(not(all(target_arch = "wasm32", feature = "js")))]
+        let _ = given;
+        with_shared(|shared| shared.opened.clone()).filter(|device| device.check().is_ok())
+    }
+
+    /// The shared device; opened at the first call, and again after a failure, with the kernels for meshes of a form.
+    ///
+    /// # Errors
+    /// As [`Device::for_session`].
     pub(crate) async fn shared(takes_software: bool, form: Option<Form>) -> Result<Handle, Error> {
         let (opened, is_software) = with_shared(|shared| (shared.opened.clone(), shared.is_software));
         // Known from the last time: no adapter has to be found to refuse it.
@@ -94,6 +148,28 @@ impl Device {
         Ok(device)
     }
 
+    /// Has `prepare` make a device ready behind whatever else goes on, unless that goes on already.
+    ///
+    /// # Errors
+    /// Why there is none, or why the last one was not made ready; then it is tried again.
+    #[cfg(all(target_arch = "wasm32", feature = "js"))]
+    pub(crate) fn ahead(prepare: impl Future<Output = Result<(), Error>> + 'static) -> Result<(), String> {
+        let is_software = with_shared(|shared| shared.is_software);
+        Self::look_for_webgpu()
+            .and_then(|()| refuse_software(is_software, false))
+            .map_err(|error| error.to_string())?;
+        if !with_shared(|shared| std::mem::replace(&mut shared.is_preparing, true)) {
+            let ended = promise(async {
+                let refusal = prepare.await.err().map(|error| error.to_string());
+                with_shared(|shared| (shared.is_preparing, shared.refusal) = (false, refusal));
+                Ok(JsValue::UNDEFINED)
+            });
+            // Nobody waits for it: a rejection would be told to the page.
+            let _ = Promise::all_settled(&Array::of1(&ended));
+        }
+        with_shared(|shared| shared.refusal.clone()).map_or(Ok(()), Err)
+    }
+
     /// Takes the shared device from the sessions to come; it is closed with the last that has it.
     #[cfg(not(target_arch = "wasm32"))]
     pub(crate) fn taken() -> Option<Handle> {
@@ -103,31 +179,22 @@ impl Device {
     /// The device that the page has made. It is never destroyed here, and nothing of it is set.
     ///
     /// # Errors
-    /// [`Error::Device`] if it is lost; else as [`Device::shared`].
+    /// As [`Device::for_session`].
     #[cfg(all(target_arch = "wasm32", feature = "js"))]
-    pub(crate) async fn adopted(
-        given: &GpuDevice,
-        takes_software: bool,
-        form: Option<Form>,
-    ) -> Result<Handle, Error> {
+    async fn adopted(given: &GivenDevice, takes_software: bool, form: Form) -> Result<Handle, Error> {
         if let Some(why) = given.loss().await {
             return Err(Error::Device { message: format!("the device given is lost: {why}") });
         }
         let is_software = given.is_software();
         refuse_software(is_software, takes_software)?;
-        let known = with_shared(|shared| {
-            let is_given = |device: &&Handle| GpuDevice::of(&device.device).as_ref() == Some(given);
-            let mut devices = shared.adopted.iter().chain(&shared.opened);
-            let known = devices.find(|device| is_given(device) && device.check().is_ok()).cloned();
-            shared.let_idle_go();
-            known
-        });
+        let known = Self::known(Some(given));
+        with_shared(Shared::let_idle_go);
         if let Some(device) = known {
             return Ok(device);
         }
         let (device, queue) = given.adopt().await.map_err(unavailable)?;
         let device =
-            Handle::new(Self::compile(device, queue, given.adapter_name(), is_software, form).await?);
+            Handle::new(Self::compile(device, queue, given.adapter_name(), is_software, Some(form)).await?);
         with_shared(|shared| shared.adopted.push(device.clone()));
         Ok(device)
     }

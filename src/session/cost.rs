@@ -1,0 +1,97 @@
+//! How long a whole job takes on each engine, from the caller's arrays to the result: what `auto` chooses by.
+//!
+//! The constants fit the tables of `npm run crossover` on an NVIDIA H200 with 16 cores, those of the start the table of
+//! `cargo bench --bench start`. On another machine all engines are faster or slower together, more or less; `npm run
+//! crossover` says whether the choice is right there.
+
+use crate::Dimension;
+
+/// What the size of a job says of its time.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Job {
+    pub(crate) triangles: usize,
+    pub(crate) dimension: Dimension,
+    /// Those of the CPU engine.
+    pub(crate) threads: usize,
+}
+
+/// A difference of so few milliseconds wakes up no GPU.
+const MARGIN: f64 = 2.5;
+
+/// Constants of one kind of build.
+struct Rates {
+    /// Nanoseconds a triangle on one thread of the CPU, in the plane and in space.
+    cpu: [f64; 2],
+    /// The part of it that more threads do not divide.
+    alone: f64,
+    /// Milliseconds for any job on a GPU that is ready.
+    gpu: f64,
+    /// Nanoseconds a triangle on it.
+    gpu_triangle: f64,
+    /// Milliseconds until a GPU is ready whose driver has to compile all kernels.
+    start: f64,
+}
+
+#[cfg(not(target_arch = "wasm32"))]
+const RATES: Rates = Rates { cpu: [175.0, 250.0], alone: 0.19, gpu: 1.0, gpu_triangle: 8.0, start: 600.0 };
+
+#[cfg(target_arch = "wasm32")]
+const RATES: Rates = Rates { cpu: [220.0, 330.0], alone: 0.19, gpu: 12.0, gpu_triangle: 60.0, start: 850.0 };
+
+impl Job {
+    fn cpu(self) -> f64 {
+        let rate = RATES.cpu[self.dimension.stride() - 2];
+        let share = RATES.alone + (1.0 - RATES.alone) / self.threads as f64;
+        1e-6 * rate * share * self.triangles as f64
+    }
+
+    fn gpu(self) -> f64 {
+        RATES.gpu + 1e-6 * RATES.gpu_triangle * self.triangles as f64
+    }
+
+    /// Whether a GPU is done first that is ready, `spent` milliseconds after the CPU has begun.
+    pub(crate) fn is_for_gpu(self, spent: f64) -> bool {
+        self.cpu() - spent > self.gpu() + MARGIN
+    }
+
+    /// Whether a GPU is done first that has to start.
+    pub(crate) fn waits_for_gpu(self) -> bool {
+        self.cpu() > self.gpu() + RATES.start
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn job(triangles: usize, threads: usize) -> Job {
+        Job { triangles, dimension: Dimension::Three, threads }
+    }
+
+    #[test]
+    fn small_jobs_are_for_the_cpu_and_large_ones_for_the_gpu() {
+        assert!(!job(0, 1).is_for_gpu(0.0));
+        assert!(!job(1000, 1).is_for_gpu(0.0));
+        for threads in [1, 16] {
+            assert!(job(1_000_000, threads).is_for_gpu(0.0));
+            assert!(!job(50_000, threads).waits_for_gpu());
+            assert!(job(50_000_000, threads).waits_for_gpu());
+        }
+    }
+
+    #[test]
+    fn what_waits_for_a_gpu_is_for_a_gpu_and_stays_so_as_it_grows() {
+        for threads in [1, 2, 16, 256] {
+            let jobs: Vec<_> = (0..27).map(|power| job(1 << power, threads)).collect();
+            assert!(jobs.iter().all(|job| !job.waits_for_gpu() || job.is_for_gpu(0.0)));
+            assert!(jobs.is_sorted_by_key(|job| job.is_for_gpu(0.0)));
+            assert!(jobs.is_sorted_by_key(|job| job.waits_for_gpu()));
+        }
+    }
+
+    #[test]
+    fn a_job_that_is_nearly_done_stays_where_it_is() {
+        assert!(job(2_000_000, 1).is_for_gpu(100.0));
+        assert!(!job(2_000_000, 1).is_for_gpu(1000.0));
+    }
+}

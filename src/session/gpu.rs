@@ -1,0 +1,65 @@
+//! The GPU as sessions see it: whether it is ready, and an engine on it.
+
+use super::cost::Job;
+use crate::engine::{Answer, Device, DeviceHandle, Engine, Form, GivenDevice, Upload, WebGpu, self_test};
+use crate::phases::Thresholds;
+use crate::{Backend, Dimension, Error, Mesh, Options};
+use std::sync::Arc;
+
+/// The form that a mesh has, unless its floats span too many bits.
+fn form_of(dimension: Dimension, is_double: bool, options: &Options) -> Form {
+    Form::new(dimension, is_double, Thresholds::from(options))
+}
+
+/// Whether a job can begin on the GPU at once.
+pub(super) fn is_ready(job: Job, is_double: bool, options: &Options) -> bool {
+    let form = form_of(job.dimension, is_double, options);
+    Device::known(options.given_device()).is_some_and(|device| device.is_ready(form))
+}
+
+/// Why a GPU is not taken that a job is worth, but not worth waiting for. In a browser it is made ready meanwhile.
+#[cfg(all(target_arch = "wasm32", feature = "js"))]
+pub(super) fn why_not_ready(job: Job, is_double: bool, options: &Options) -> String {
+    let form = form_of(job.dimension, is_double, options);
+    let given = options.device.clone();
+    let ahead = Device::ahead(async move { tested(given.as_ref(), false, form).await.map(drop) });
+    ahead.map_or_else(super::choice::without_gpu, |()| "the gpu is made ready behind this run".to_owned())
+}
+
+/// Elsewhere a process may end at any time, and drivers do not expect that while they compile.
+#[cfg(not(all(target_arch = "wasm32", feature = "js")))]
+pub(super) fn why_not_ready(job: Job, _: bool, _: &Options) -> String {
+    format!("{} triangles are done on the cpu before the gpu is ready", job.triangles)
+}
+
+/// # Errors
+/// [`Error::BackendUnavailable`], [`Error::BackendLimit`], [`Error::Device`].
+pub(super) async fn engine(mesh: &Arc<Mesh>, options: &Options) -> Result<Box<dyn Engine>, Error> {
+    // `Auto` leaves a GPU alone that the processor plays.
+    let takes_software = options.backend == Backend::Gpu;
+    let form = form_of(mesh.dimension(), mesh.positions().is_double(), options);
+    let device = tested(options.given_device(), takes_software, form).await?;
+    let upload = Upload::new("gpu", mesh.clone(), Thresholds::from(options))?;
+    test(&device, upload.form()).await?;
+    Ok(Box::new(WebGpu::new(device, upload).await?))
+}
+
+/// The device, once it has passed the self-test for a form.
+async fn tested(
+    given: Option<&GivenDevice>,
+    takes_software: bool,
+    form: Form,
+) -> Result<DeviceHandle, Error> {
+    let device = Device::for_session(given, takes_software, form).await?;
+    test(&device, form).await?;
+    Ok(device)
+}
+
+/// Once for each form.
+async fn test(device: &DeviceHandle, form: Form) -> Result<(), Error> {
+    let make = |upload: Upload| -> Answer<'static, Box<dyn Engine>> {
+        let device = device.clone();
+        Box::pin(async move { Ok(Box::new(WebGpu::new(device, upload).await?) as Box<dyn Engine>) })
+    };
+    self_test(&device.tested, "gpu", form, &make).await
+}

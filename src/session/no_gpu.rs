@@ -1,0 +1,20 @@
+//! A build without the GPU engine (feature `gpu`).
+
+use super::cost::Job;
+use crate::engine::Engine;
+use crate::{Error, Mesh, Options};
+use std::sync::Arc;
+
+/// As if it were: opening it says why it is not.
+pub(super) fn is_ready(_: Job, _: bool, _: &Options) -> bool {
+    true
+}
+
+pub(super) fn why_not_ready(_: Job, _: bool, _: &Options) -> String {
+    String::new()
+}
+
+pub(super) async fn engine(_: &Arc<Mesh>, _: &Options) -> Result<Box<dyn Engine>, Error> {
+    let message = "this build has no GPU engine (feature `gpu`)".to_owned();
+    Err(Error::BackendUnavailable { backend: "gpu", message })
+}
