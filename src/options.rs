@@ -5,7 +5,8 @@ use std::num::NonZeroUsize;
 /// Which engine runs the phases.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Backend {
-    /// The GPU where there is one that can take the mesh, else the CPU; the outcome says which and why.
+    /// The one of the CPU and the GPU that is done first, start-up included; the outcome says which and why. A GPU that a
+    /// session before has made ready needs no start-up.
     #[default]
     Auto,
     /// The CPU. Takes every mesh.
