@@ -63,9 +63,12 @@ fn count_turns(
     }
 }
 
-// A bit for each vertex.
+// A bit for each vertex. All signs are known now, so that the iterations can begin.
 @compute @workgroup_size(WORKGROUP_SIZE)
 fn mark_embedded(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
+    if id.x == 0u {
+        begin_history(are_both(history_word(COUNTED)));
+    }
     for (var word = id.x; word < (params.vertices + 31u) / 32u; word += groups.x * WORKGROUP_SIZE) {
         var bits = 0u;
         let end = min(min(32u * word + 32u, params.vertices), doubts());

@@ -2,6 +2,9 @@
 
 @compute @workgroup_size(WORKGROUP_SIZE)
 fn prepare_all(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
+    if id.x == 0u {
+        begin_history(false);
+    }
     for (var t = id.x; t < params.triangles; t += groups.x * WORKGROUP_SIZE) {
         let verdicts = filtered_creases(t);
         flag_creases(t, verdicts);

@@ -3,8 +3,8 @@
 const WORKGROUP_SIZE: u32 = 256u;
 
 struct Params {
-    // HAS_WINDING and IS_STRICT.
-    found: u32,
+    // Which signs the triangles have, in 2D: a bit each. The device writes it before the first iteration.
+    signs: u32,
     vertices: u32,
     triangles: u32,
     // The number of the batch's first iteration.
@@ -36,10 +36,9 @@ struct Params {
     deviation: vec4u,
 }
 
-// There are winding bits at the start of `topology`: some component is clockwise.
-const HAS_WINDING: u32 = 1u;
-// All triangles are positive, or all negative: no edge that is not Delaunay can fold then.
-const IS_STRICT: u32 = 2u;
+// Bits of signs, and one for flat triangles between them.
+const NEGATIVE: u32 = 1u;
+const POSITIVE: u32 = 4u;
 
 struct Step {
     // The iteration's index in the batch.
@@ -60,14 +59,15 @@ struct Step {
 // is due, and one more for none; a bit for each chunk of triangles, see `doubt`.
 @group(0) @binding(6) var<storage, read_write> frontier: array<atomic<u32>>;
 // 7: reads.wgsl, atomics.wgsl.
-// Winding bits, then the bits of the embedded stars, then the table of the fans.
+// Winding bits, which are right where triangles have both signs, then the bits of the embedded stars, then the table of the fans.
 @group(0) @binding(8) var<storage, read_write> topology: array<u32>;
 
-// Words of the history: what was counted, 1 plus the index of the iteration that the tail has paused in, or 0, and the
-// entries. An entry tells of the iteration before it.
+// Words of the history: what was counted, 1 plus the index of the iteration that the tail has paused in, or 0, how many
+// vertices have several fans, and the entries. An entry tells of the iteration before it.
 const COUNTED: u32 = 0u;
 const COUNTS: u32 = 6u;
 const PAUSED: u32 = 6u;
+const SEVERAL_FANS: u32 = 7u;
 const ENTRIES: u32 = 8u;
 const ENTRY_WORDS: u32 = 4u;
 const FLIPS: u32 = 0u;
@@ -124,7 +124,13 @@ fn coordinates(i: u32) -> vec3u {
 }
 
 fn is_clockwise(t: u32) -> bool {
-    return (params.found & HAS_WINDING) != 0u && ((topology[t / 32u] >> (t % 32u)) & 1u) == 1u;
+    let has_both = are_both(params.signs);
+    return (params.signs & NEGATIVE) != 0u && (!has_both || ((topology[t / 32u] >> (t % 32u)) & 1u) == 1u);
+}
+
+// Whether triangles have both signs. Then each component has its winding, which the host finds.
+fn are_both(signs: u32) -> bool {
+    return (signs & (NEGATIVE | POSITIVE)) == (NEGATIVE | POSITIVE);
 }
 
 // Whether the star of a vertex is known to be embedded, see embedded.wgsl.
@@ -132,8 +138,9 @@ fn is_embedded(v: u32) -> bool {
     return DIMENSION == 2u && ((topology[params.embedded + v / 32u] >> (v % 32u)) & 1u) == 1u;
 }
 
+// All triangles are positive, or all negative: no edge that is not Delaunay can fold then.
 fn is_strict() -> bool {
-    return (params.found & IS_STRICT) != 0u;
+    return params.signs == NEGATIVE || params.signs == POSITIVE;
 }
 
 fn has_fans() -> bool {

@@ -122,7 +122,8 @@ pub struct Timings {
     /// On a GPU what comes before the adjacency: checks, memory and the copies to the device; for the first session
     /// also the device and its shaders. Else 0.
     pub upload: f64,
-    /// The adjacency and what else is found out of the input. After the vertices have moved: that move.
+    /// The adjacency and what else is found out of the input. After the vertices have moved: that move. A browser's WebGPU
+    /// is not waited for: 0 then, it counts as iterations, as do the copies.
     pub adjacency: f64,
     /// The iterations.
     pub flip: f64,

@@ -92,7 +92,7 @@ impl Session {
     /// flip, or the cap on iterations is reached.
     ///
     /// # Errors
-    /// [`Error::Device`], [`Error::OutOfMemory`].
+    /// [`Error::Device`], [`Error::BackendLimit`], [`Error::OutOfMemory`].
     pub async fn step(&mut self) -> Result<Option<Iteration>, Error> {
         if !self.may_continue() {
             return Ok(None);
@@ -115,7 +115,7 @@ impl Session {
     /// flips so far; [`ControlFlow::Break`] stops the run after a complete iteration.
     ///
     /// # Errors
-    /// [`Error::Device`], unless the backend is `Auto`: then the CPU takes over; [`Error::OutOfMemory`].
+    /// [`Error::Device`] and [`Error::BackendLimit`], unless the backend is `Auto`: then the CPU takes over; [`Error::OutOfMemory`].
     pub async fn run(&mut self, mut watch: impl FnMut(u32, u64) -> ControlFlow<()>) -> Result<(), Error> {
         while self.may_continue() {
             self.advance().await?;
@@ -336,15 +336,15 @@ impl Session {
         Ok(())
     }
 
-    /// Asks the engine, and where the device fails and the backend is `Auto` the next one.
+    /// Asks the engine, and the CPU where the device fails or refuses the mesh and the backend is `Auto`.
     async fn ask<T>(
         &mut self,
         question: impl for<'a> Fn(&'a mut dyn Engine) -> Answer<'a, T>,
     ) -> Result<T, Error> {
         loop {
             match question(self.engine.as_mut()).await {
-                Err(Error::Device { message }) if self.options.backend == Backend::Auto => {
-                    self.recover(message).await?;
+                Err(error) if self.options.backend == Backend::Auto => {
+                    self.recover(why_go_on(error)?).await?;
                 }
                 answer => return answer,
             }
@@ -353,11 +353,10 @@ impl Session {
 
     /// The CPU goes the same way again up to the last complete iteration, which determinism allows. Boxed, so that it is
     /// compiled into one place only.
-    fn recover(&mut self, message: String) -> Answer<'_, ()> {
+    fn recover(&mut self, why: String) -> Answer<'_, ()> {
         Box::pin(async move {
             let before = self.fallback.as_deref().map_or(String::new(), |before| format!("{before}; "));
-            let why = format!("{before}the device failed during the run: {message}");
-            let choice = cpu_after(why, &self.mesh, &self.options).await?;
+            let choice = cpu_after(before + &why, &self.mesh, &self.options).await?;
             self.take(choice);
             self.engine.iterate(self.iterations()).await.map(drop)
         })
@@ -384,6 +383,18 @@ impl Session {
 
     fn take(&mut self, choice: Choice) {
         Choice { engine: self.engine, fallback: self.fallback, may_change: self.may_change } = choice;
+    }
+}
+
+/// Why the CPU goes on where an engine has failed, or finds out late that it cannot take the mesh.
+///
+/// # Errors
+/// Any other error.
+fn why_go_on(error: Error) -> Result<String, Error> {
+    match error {
+        Error::Device { message } => Ok(format!("the device failed during the run: {message}")),
+        Error::BackendLimit { .. } => Ok(error.to_string()),
+        error => Err(error),
     }
 }
 

@@ -2,6 +2,8 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "what fails here is a failed test")]
 
+mod ahead;
+
 use super::webgpu::{Device, Kernel, WebGpu};
 use super::{Census, Cpu, EdgeCounts, Engine, Upload};
 use crate::mesh::Mesh;

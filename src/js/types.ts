@@ -202,7 +202,11 @@ export interface Result {
   seamEdges: number;
   /** Edges that are still not Delaunay. */
   remaining: Reasons;
-  /** Milliseconds: on a GPU making the engine ready and the copies to it, the adjacency, the iterations, and all of it. */
+  /**
+   * Milliseconds: on a GPU making the engine ready and the copies to it, the adjacency, the iterations, and all of it.
+   * WebGPU is waited for once, behind the first iterations: `flip` has the copies and the adjacency then, and what is read
+   * back with them.
+   */
   timings: { upload: number; adjacency: number; flip: number; total: number };
 }
 

@@ -218,9 +218,6 @@ fn a_run_goes_on_with_a_gpu_that_has_become_ready() {
         let changed = block_on(session.outcome()).unwrap();
         assert_eq!(changed.fallback.as_deref(), Some("the cpu began, until the gpu was ready"));
         assert_eq!(changed.flips_per_iteration, outcome.flips_per_iteration);
-        assert_eq!(
-            (changed.triangles, changed.remaining),
-            (outcome.triangles.clone(), outcome.remaining)
-        );
+        assert_eq!((changed.triangles, changed.remaining), (outcome.triangles.clone(), outcome.remaining));
     }
 }

@@ -9,6 +9,7 @@ use wgpu::BufferUsages;
 /// As in `shaders/adjacency.wgsl`.
 pub(super) const BUCKETS_EACH: u32 = 8;
 pub(super) const COUNTERS: usize = 7;
+pub(super) const SEVERAL_FANS: usize = 5;
 /// Kernels that [`record`] dispatches.
 pub(super) const DISPATCHES: u64 = 6;
 
@@ -81,7 +82,7 @@ impl Found {
         let [edges, boundary, non_manifold, inconsistent] = [1, 2, 3, 4].map(|i| counters[i]);
         Self {
             counts: EdgeCounts { edges, boundary, non_manifold, inconsistent },
-            has_several_fans: counters[5] > 0,
+            has_several_fans: counters[SEVERAL_FANS] > 0,
             most_corners: counters[6],
         }
     }

@@ -1,10 +1,13 @@
 //! What goes to a device, and comes back.
 
 use super::device::{Buffer, Device};
-use super::faults::{Word, watch};
+use super::faults::watch;
 use crate::Error;
 use crate::threads::Threads;
 use futures_channel::oneshot;
+use std::ops::Range;
+#[cfg(test)]
+use std::sync::atomic::Ordering::Relaxed;
 use wgpu::BufferUsages;
 
 /// Words that are copied to the device, or from it, at a time: the memory between them is used again, which is far
@@ -15,67 +18,116 @@ pub(super) const CHUNK: usize = 1 << 22;
 #[cfg(not(target_arch = "wasm32"))]
 pub(super) const PIECE: usize = 1 << 16;
 
+/// What is read: so many words of a buffer, from one of them on.
+pub(super) struct Source<'a> {
+    pub(super) buffer: &'a Buffer,
+    pub(super) first: usize,
+    pub(super) words: usize,
+}
+
+impl<'a> Source<'a> {
+    /// From the start of a buffer.
+    pub(super) fn new(buffer: &'a Buffer, words: usize) -> Self {
+        Self { buffer, first: 0, words }
+    }
+}
+
+/// Words that have come back, in memory that both sides see.
+pub(super) struct Landed {
+    staging: Buffer,
+    /// Where those of each source are, in bytes.
+    places: Vec<Range<u64>>,
+}
+
+impl Landed {
+    /// The words of the source of this index.
+    ///
+    /// # Errors
+    /// [`Error::Device`].
+    pub(super) fn words(&self, source: usize) -> Result<Vec<u32>, Error> {
+        let mut words = Vec::new();
+        self.append(source, &mut words).map(|()| words)
+    }
+
+    fn append(&self, source: usize, result: &mut Vec<u32>) -> Result<(), Error> {
+        let place = self.places[source].clone();
+        if place.is_empty() {
+            return Ok(());
+        }
+        let failed = |error: wgpu::MapRangeError| Error::Device { message: error.to_string() };
+        let view = self.staging.get_mapped_range(place).map_err(failed)?;
+        match bytemuck::try_cast_slice(&view) {
+            Ok(words) => Threads::default().append(result, words),
+            // The browser's view need not be aligned.
+            Err(_) => result.extend(bytemuck::pod_collect_to_vec::<u8, u32>(&view)),
+        }
+        Ok(())
+    }
+}
+
 impl Device {
     /// Reads `words` words from the start of `buffer`.
     ///
     /// # Errors
     /// [`Error::Device`].
     pub(super) async fn read(&self, buffer: &Buffer, words: usize) -> Result<Vec<u32>, Error> {
-        let nothing = || self.device.create_command_encoder(&Default::default());
-        self.submit_and_read(&nothing, buffer, words).await
+        let mut result = Vec::with_capacity(words);
+        while result.len() < words {
+            let first = result.len();
+            let source = Source { buffer, first, words: (words - first).min(CHUNK) };
+            let nothing = || self.device.create_command_encoder(&Default::default());
+            self.submit_and_read(&nothing, &[source]).await?.append(0, &mut result)?;
+        }
+        Ok(result)
     }
 
-    /// Submits the commands that `record` makes, and reads `words` words from the start of `buffer` behind them.
+    /// Submits commands.
+    pub(super) fn submit(&self, encoder: wgpu::CommandEncoder) {
+        self.queue.submit([encoder.finish()]);
+        #[cfg(test)]
+        self.asked.submissions.fetch_add(1, Relaxed);
+    }
+
+    /// Submits the commands that `record` makes, and reads the sources behind them: all of it at once.
     ///
     /// # Errors
     /// [`Error::Device`].
     pub(super) async fn submit_and_read(
         &self,
         record: &dyn Fn() -> wgpu::CommandEncoder,
-        buffer: &Buffer,
-        words: usize,
-    ) -> Result<Vec<u32>, Error> {
-        let mut result = Vec::with_capacity(words);
-        let mut record = Some(record);
-        // A first chunk there is always, for the sake of the commands.
-        while record.is_some() || result.len() < words {
-            let first = result.len();
-            let chunk = (words - first).min(CHUNK);
-            let (sender, receiver) = oneshot::channel();
-            let submit = || {
-                let staging = Buffer(self.device.create_buffer(&wgpu::BufferDescriptor {
-                    label: Some("read-back"),
-                    size: 4 * chunk.max(1) as u64,
-                    usage: BufferUsages::MAP_READ | BufferUsages::COPY_DST,
-                    mapped_at_creation: false,
-                }));
-                let mut encoder = match record.take() {
-                    Some(record) => record(),
-                    None => self.device.create_command_encoder(&Default::default()),
-                };
-                encoder.copy_buffer_to_buffer(buffer, 4 * first as u64, &staging, 0, 4 * chunk as u64);
-                self.queue.submit([encoder.finish()]);
-                staging.map_async(wgpu::MapMode::Read, .., move |result| {
-                    // The receiver is gone only if the caller has given up waiting.
-                    let _ = sender.send(result);
-                });
-                staging
-            };
-            let (staging, word) = watch(&self.device, submit);
-            self.read_back(staging, word, receiver, &mut result).await?;
-            result.truncate(first + chunk);
-        }
-        Ok(result)
-    }
-
-    /// Appends the words of a buffer to `result`.
-    async fn read_back(
-        &self,
-        staging: Buffer,
-        word: Word,
-        receiver: oneshot::Receiver<Result<(), wgpu::BufferAsyncError>>,
-        result: &mut Vec<u32>,
-    ) -> Result<(), Error> {
+        sources: &[Source<'_>],
+    ) -> Result<Landed, Error> {
+        let mut end = 0;
+        let place = |source: &Source<'_>| {
+            // A view begins at a multiple of eight bytes.
+            let begin = u64::next_multiple_of(end, 8);
+            end = begin + 4 * source.words as u64;
+            begin..end
+        };
+        let places: Vec<_> = sources.iter().map(place).collect();
+        let (sender, receiver) = oneshot::channel();
+        let submit = || {
+            let staging = Buffer(self.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("read-back"),
+                size: end.max(8),
+                usage: BufferUsages::MAP_READ | BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            }));
+            let mut encoder = record();
+            for (Source { buffer, first, words }, place) in sources.iter().zip(&places) {
+                let size = 4 * *words as u64;
+                encoder.copy_buffer_to_buffer(buffer, 4 * *first as u64, &staging, place.start, size);
+            }
+            self.submit(encoder);
+            staging.map_async(wgpu::MapMode::Read, .., move |result| {
+                // The receiver is gone only if the caller has given up waiting.
+                let _ = sender.send(result);
+            });
+            #[cfg(test)]
+            self.asked.maps.fetch_add(1, Relaxed);
+            staging
+        };
+        let (staging, word) = watch(&self.device, submit);
         self.judge(word.await)?;
         let failed = |error: &dyn std::fmt::Display| {
             self.check().err().unwrap_or_else(|| Error::Device { message: error.to_string() })
@@ -84,18 +136,20 @@ impl Device {
         self.wait().map_err(|error| failed(&error))?;
         receiver.await.map_err(|error| failed(&error))?.map_err(|error| failed(&error))?;
         self.check()?;
-        let view = staging.get_mapped_range(..).map_err(|error| failed(&error))?;
-        match bytemuck::try_cast_slice(&view) {
-            Ok(words) => Threads::default().append(result, words),
-            // The browser's view need not be aligned.
-            Err(_) => result.extend(bytemuck::pod_collect_to_vec::<u8, u32>(&view)),
-        }
-        Ok(())
+        Ok(Landed { staging, places })
     }
 
     #[cfg(not(target_arch = "wasm32"))]
     fn wait(&self) -> Result<wgpu::PollStatus, wgpu::PollError> {
         self.device.poll(wgpu::PollType::wait_indefinitely())
+    }
+
+    /// Waits for the copies of all that was written.
+    #[cfg(not(target_arch = "wasm32"))]
+    pub(super) fn finish_copies(&self) {
+        self.queue.submit([]);
+        // A failure is told by the next call that can fail.
+        let _ = self.wait();
     }
 
     /// Writes words to the start of `buffer`, before the next submission.
@@ -105,9 +159,7 @@ impl Device {
             self.stage(buffer, place, chunk);
             #[cfg(not(target_arch = "wasm32"))]
             if chunk.len() == CHUNK {
-                self.queue.submit([]);
-                // A failure is told by the next call that can fail.
-                let _ = self.wait();
+                self.finish_copies();
             }
         }
     }

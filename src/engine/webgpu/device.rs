@@ -2,6 +2,7 @@
 
 #[cfg(target_arch = "wasm32")]
 use super::browser;
+use super::copies::Source;
 use super::faults::{Fault, refuse, unavailable, watch};
 use super::kernels::{self, Kernels, Plan, WORKGROUP_SIZE};
 use super::programs;
@@ -9,6 +10,8 @@ use crate::Error;
 use crate::engine::probe::ends_loops_early;
 use crate::engine::self_test::Tested;
 use crate::engine::upload::Form;
+#[cfg(test)]
+use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 use std::sync::{Arc, Mutex};
 use wgpu::BufferUsages;
 
@@ -52,6 +55,17 @@ pub(crate) struct Device {
     pub(super) adjacency: Kernels,
     /// Those that a mesh has needed.
     phases: Mutex<Phases>,
+    #[cfg(test)]
+    pub(super) asked: Asked,
+}
+
+/// What a device was asked for.
+#[cfg(test)]
+#[derive(Default)]
+pub(super) struct Asked {
+    pub(super) submissions: AtomicU32,
+    /// Buffers that were mapped: each is waited for.
+    pub(super) maps: AtomicU32,
 }
 
 /// The kernels of the phases by the form of meshes.
@@ -82,6 +96,20 @@ fn numbers(device: &wgpu::Device, queue: &wgpu::Queue) -> Buffer {
 
 fn refused_kernels(fault: Fault) -> Error {
     unavailable(format!("it refuses the kernels: {fault}"))
+}
+
+#[cfg(test)]
+impl Device {
+    /// One that nobody else has.
+    pub(crate) async fn own() -> Result<super::Handle, Error> {
+        let (adapter, is_software) = Self::find_adapter().await?;
+        Ok(super::Handle::new(Self::open(adapter, is_software, None).await?))
+    }
+
+    /// Submissions, and buffers mapped.
+    pub(crate) fn asked(&self) -> [u32; 2] {
+        [&self.asked.submissions, &self.asked.maps].map(|count| count.load(Relaxed))
+    }
 }
 
 impl Device {
@@ -195,6 +223,8 @@ impl Device {
             numbers,
             adjacency,
             phases: Mutex::new(phases),
+            #[cfg(test)]
+            asked: Asked::default(),
         };
         result.ends_loops_early = result.probe_loops(&probe).await?;
         if result.ends_loops_early {
@@ -235,8 +265,8 @@ impl Device {
             drop(pass);
             encoder
         };
-        let found = self.submit_and_read(&record, &buffer, 1).await?;
-        Ok(ends_loops_early(found[0]))
+        let found = self.submit_and_read(&record, &[Source::new(&buffer, 1)]).await?;
+        Ok(ends_loops_early(found.words(0)?[0]))
     }
 
     /// Whether any call of ours has failed since the device was opened, or it was lost.

@@ -2,7 +2,8 @@
 //!
 //! An iteration is four dispatches, and a batch of them with a tail of short ones is one submission: a later
 //! iteration sees on the device that an earlier one has flipped nothing. The host reads the history of a
-//! batch when it has ended.
+//! batch when it has ended. A wait takes a browser longer than most runs take: there the host waits for nothing before
+//! the first batch, and reads behind it what it will be asked for.
 
 mod adjacency;
 #[cfg(target_arch = "wasm32")]
@@ -19,6 +20,7 @@ mod kernels;
 mod limits;
 mod params;
 mod programs;
+mod run;
 mod shared;
 mod start;
 mod steps;
@@ -28,6 +30,7 @@ mod tests;
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 pub use browser::GpuDevice;
 pub(crate) use device::Device;
+#[cfg(test)]
 pub(crate) use kernels::Kernel;
 pub(crate) use shared::{GivenDevice, Handle};
 
@@ -35,19 +38,20 @@ pub(crate) use shared::{GivenDevice, Handle};
 use super::SharedObjects;
 use super::upload::Form;
 use super::{Answer, Census, EdgeCounts, Engine};
+#[cfg(test)]
 use crate::Error;
 #[cfg(test)]
 use crate::adjacency::unflagged;
 use crate::mesh::Mesh;
 use crate::phases::Thresholds;
 use buffers::Buffers;
+use device::Buffer;
+use kernels::Kernels;
 #[cfg(test)]
 use kernels::Plan;
-use kernels::{Kernels, WORKGROUP_SIZE};
 use params::Params;
-use programs::{DECIDERS, LANE_COUNT};
+use run::Known;
 use std::sync::Arc;
-use steps::Step;
 
 /// Iterations with a dispatch for each phase in one submission.
 const BATCH: u32 = 12;
@@ -60,6 +64,7 @@ const PAUSES: u32 = 8;
 
 // Words of the history, as in `state.wgsl`.
 const COUNTS: usize = 6;
+const SEVERAL_FANS: usize = 7;
 const ENTRIES: usize = 8;
 const ENTRY_WORDS: usize = 4;
 const HISTORY_WORDS: usize = ENTRIES + ENTRY_WORDS * (1 + BATCH as usize + TAIL as usize);
@@ -77,143 +82,19 @@ pub(crate) struct WebGpu {
     counts: EdgeCounts,
     bindings: wgpu::BindGroup,
     buffers: Buffers,
+    /// Of the adjacency, and the signs of the triangles.
+    counters: Buffer,
+    /// The mesh, until the host has read the counters.
+    unsettled: Option<Arc<Mesh>>,
+    /// Whether it reads them before the first iteration, and else only what it is asked for.
+    waits: bool,
+    /// What it has read before it was asked.
+    known: Known,
     state: Entry,
     dispatches: u64,
     adjacency_ms: f64,
     /// The most that its buffers took at a time.
     bytes: u64,
-}
-
-impl WebGpu {
-    /// One submission of up to `count` iterations; returns the flips of those that ran, the last of which may
-    /// be zero.
-    async fn submit(&mut self, count: u32) -> Result<Vec<u32>, Error> {
-        let batch = count.min(BATCH);
-        self.params.tail = batch;
-        self.params.tail_iterations =
-            (count - batch).min(if self.gpu.ends_loops_early { SHORT_TAIL } else { TAIL });
-        self.dispatches += u64::from(4 * batch + self.params.tail_iterations.min(1) * (1 + 2 * PAUSES));
-        let record = |pass: &mut wgpu::ComputePass| {
-            for index in 0..batch {
-                self.at_step(pass, Step::Iterate(index));
-                for kernel in Kernel::ITERATION {
-                    self.dispatch(pass, kernel, self.params.triangles);
-                }
-            }
-            if self.params.tail_iterations > 0 {
-                self.dispatch(pass, Kernel::Tail, 1);
-                self.at_step(pass, Step::Resume);
-                for _ in 0..PAUSES {
-                    self.dispatch(pass, Kernel::Decide, self.params.tail_length);
-                    self.dispatch(pass, Kernel::Tail, 1);
-                }
-            }
-        };
-        let history = self.read_history(&record).await?;
-        Ok(self.take_over(&history))
-    }
-
-    /// Writes the state as the first entry, and zeros behind it.
-    fn begin_history(&self) {
-        let mut history = [0u32; HISTORY_WORDS];
-        history[ENTRIES..ENTRIES + ENTRY_WORDS].copy_from_slice(&self.state);
-        self.gpu.queue.write_buffer(&self.buffers.history, 0, bytemuck::cast_slice(&history));
-    }
-
-    /// Submits commands that continue the history, and reads it behind them.
-    async fn read_history(&self, record: &dyn Fn(&mut wgpu::ComputePass)) -> Result<Vec<u32>, Error> {
-        let commands = || {
-            self.begin_history();
-            self.encode(record)
-        };
-        self.gpu.submit_and_read(&commands, &self.buffers.history, HISTORY_WORDS).await
-    }
-
-    /// Takes over the last state of a history, and returns the flips of the iterations that ran.
-    fn take_over(&mut self, history: &[u32]) -> Vec<u32> {
-        let entries = history[ENTRIES..].chunks_exact(ENTRY_WORDS).skip(1);
-        let ran: Vec<&[u32]> = entries.take_while(|entry| entry[3] == 1).collect();
-        if let Some(last) = ran.last() {
-            self.state.copy_from_slice(last);
-        }
-        self.params.first += ran.len() as u32;
-        ran.iter().map(|entry| entry[0]).collect()
-    }
-
-    /// Commands in one compute pass, with the parameters as they are now and the first step bound.
-    fn encode(&self, record: &dyn Fn(&mut wgpu::ComputePass)) -> wgpu::CommandEncoder {
-        self.gpu.queue.write_buffer(&self.buffers.uniform, 0, bytemuck::bytes_of(&self.params));
-        let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
-        let mut pass = encoder.begin_compute_pass(&Default::default());
-        pass.set_bind_group(0, &self.bindings, &[0]);
-        record(&mut pass);
-        drop(pass);
-        encoder
-    }
-
-    fn at_step(&self, pass: &mut wgpu::ComputePass, step: Step) {
-        pass.set_bind_group(0, &self.bindings, &[step.offset()]);
-    }
-
-    /// For so many triangles.
-    fn dispatch(&self, pass: &mut wgpu::ComputePass, kernel: Kernel, triangles: u32) {
-        let groups = self.gpu.workgroups(triangles);
-        pass.set_pipeline(&self.kernels.pipelines[kernel as usize]);
-        if kernel != Kernel::Decide {
-            return pass.dispatch_workgroups(groups, 1, 1);
-        }
-        let most = LANE_COUNT / DECIDERS;
-        // Where loops end too early, each invocation decides one triangle at a time.
-        let all =
-            if self.gpu.ends_loops_early { groups.div_ceil(most) * WORKGROUP_SIZE / DECIDERS } else { 1 };
-        for _ in 0..all {
-            pass.dispatch_workgroups(groups.min(most), 1, 1);
-        }
-    }
-
-    async fn run(&mut self, count: u32) -> Result<Vec<u32>, Error> {
-        let mut flips = Vec::new();
-        // The first word of the state: the flips of the last iteration.
-        while self.state[0] > 0 && (flips.len() as u32) < count {
-            let ran = self.submit(count - flips.len() as u32).await?;
-            if ran.is_empty() {
-                return Err(Error::Device { message: "the device ran no iteration".to_owned() });
-            }
-            flips.extend(ran);
-            if flips.last() == Some(&0) {
-                flips.pop();
-                break;
-            }
-        }
-        Ok(flips)
-    }
-
-    async fn count(&mut self) -> Result<Census, Error> {
-        self.dispatches += 3;
-        let counts = self
-            .count_by(&|pass| {
-                for (step, kernel) in [
-                    (Step::Census, Kernel::Census),
-                    (Step::Census, Kernel::Decide),
-                    (Step::Resume, Kernel::Census),
-                ] {
-                    self.at_step(pass, step);
-                    self.dispatch(pass, kernel, self.params.triangles);
-                }
-            })
-            .await?;
-        Ok(Census::of_counts(&counts))
-    }
-
-    /// What kernels count.
-    async fn count_by(&self, record: &dyn Fn(&mut wgpu::ComputePass)) -> Result<Vec<u32>, Error> {
-        let commands = || {
-            let history = &self.buffers.history;
-            self.gpu.queue.write_buffer(history, 0, bytemuck::cast_slice(&[0u32; ENTRIES]));
-            self.encode(record)
-        };
-        self.gpu.submit_and_read(&commands, &self.buffers.history, COUNTS).await
-    }
 }
 
 impl Engine for WebGpu {
@@ -234,7 +115,10 @@ impl Engine for WebGpu {
     }
 
     fn triangles(&mut self) -> Answer<'_, Vec<u32>> {
-        Box::pin(self.gpu.read(&self.buffers.triangles, 3 * self.params.triangles as usize))
+        match self.known.triangles.take() {
+            Some(triangles) => Box::pin(std::future::ready(Ok(triangles))),
+            None => Box::pin(self.gpu.read(&self.buffers.triangles, 3 * self.params.triangles as usize)),
+        }
     }
 
     fn twins(&mut self) -> Answer<'_, Vec<u32>> {
@@ -305,6 +189,11 @@ impl WebGpu {
     /// Lists from the start and sweeps in between, whatever the size of the mesh.
     pub(crate) fn set_list_below(&mut self, flips: u32) {
         self.params.list_below = flips;
+    }
+
+    /// Has to look again for what it is asked next.
+    pub(crate) fn forget(&mut self) {
+        self.known = Known::default();
     }
 
     /// `best` and `selected`.

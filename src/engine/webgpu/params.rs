@@ -28,15 +28,16 @@ impl Places {
     }
 }
 
-/// As in `state.wgsl`.
-pub(super) const HAS_WINDING: u32 = 1;
-pub(super) const IS_STRICT: u32 = 2;
+/// Bits of the signs of triangles, as in `state.wgsl`.
+pub(super) const NEGATIVE: u32 = 1;
+pub(super) const POSITIVE: u32 = 4;
 
 /// As in `state.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 pub(super) struct Params {
-    pub(super) found: u32,
+    /// The device knows them: it writes them behind the preparation.
+    pub(super) signs: u32,
     pub(super) vertices: u32,
     pub(super) triangles: u32,
     pub(super) first: u32,
@@ -57,12 +58,12 @@ pub(super) struct Params {
 }
 
 impl Params {
-    /// Before the first iteration, with no winding bits and no vertex of several fans.
+    /// Before the first iteration, with no vertex of several fans.
     pub(super) fn new(upload: &Upload, topology: &Places, ends_loops_early: bool) -> Self {
         let (mesh, cosine) = (&upload.mesh, Cosine::new(upload.thresholds.cos));
         let count = mesh.triangle_count();
         Self {
-            found: 0,
+            signs: 0,
             vertices: mesh.vertex_count() as u32,
             triangles: count as u32,
             first: 0,
@@ -82,5 +83,11 @@ impl Params {
             cos_digits: [cosine.mantissa, cosine.power],
             deviation: upload.deviation,
         }
+    }
+
+    /// What the host writes, and where.
+    pub(super) fn of_host(&self) -> (u64, &[u8]) {
+        let first = size_of_val(&self.signs);
+        (first as u64, &bytemuck::bytes_of(self)[first..])
     }
 }

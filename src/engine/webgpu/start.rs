@@ -1,13 +1,14 @@
 //! What is done before the first iteration: the mesh goes up, its adjacency is built, stars and creases are looked at.
 
-use super::adjacency::{self, COUNTERS, Found};
+use super::adjacency::{self, COUNTERS, Found, Scratch};
 use super::buffers::Buffers;
 use super::faults::refuse;
 use super::kernels::Kernel;
 use super::limits::{refuse_large_buffer, refuse_large_mesh};
-use super::params::{HAS_WINDING, IS_STRICT, Params, Places};
+use super::params::{NEGATIVE, POSITIVE, Params, Places};
+use super::run::Known;
 use super::steps::Step;
-use super::{Entry, Handle, WebGpu};
+use super::{Entry, Handle, SEVERAL_FANS, WebGpu};
 use crate::engine::probe::SHORT_STAR;
 use crate::engine::upload::Upload;
 use crate::engine::{EdgeCounts, Engine};
@@ -19,69 +20,76 @@ use std::sync::Arc;
 use web_time::Instant;
 use wgpu::BufferUsages;
 
-// Bits of the signs of triangles, as in `embedded.wgsl`.
-const NEGATIVE: u32 = 1;
-const POSITIVE: u32 = 4;
-
 impl WebGpu {
     /// Uploads the mesh and builds its adjacency.
     ///
     /// # Errors
-    /// [`Error::BackendLimit`] for a mesh that is too large for the device; [`Error::Device`].
+    /// [`Error::BackendLimit`] for a mesh that is too large for the device; [`Error::Device`]. In a browser the engine may
+    /// find out only when it is asked something that it is [`Error::BackendLimit`].
     pub(crate) async fn new(gpu: Handle, upload: Upload) -> Result<Self, Error> {
+        // Natively a wait takes little, and tells times apart. Where loops end early the host has to look first.
+        let waits = cfg!(not(target_arch = "wasm32")) || gpu.ends_loops_early;
+        Self::begun(gpu, upload, waits).await
+    }
+
+    /// `waits`: whether the host looks at the mesh before the first iteration.
+    pub(in crate::engine) async fn begun(gpu: Handle, upload: Upload, waits: bool) -> Result<Self, Error> {
         refuse_large_mesh(&gpu, &upload)?;
-        let mesh = &upload.mesh;
         let kernels = gpu.phases(upload.form()).await?;
-        let allocate = || (Buffers::new(&gpu, &upload), adjacency::Scratch::new(&gpu, mesh));
-        let (buffers, scratch) = gpu.allocated(allocate).await?;
-        let bindings = gpu.checked(|| buffers.bind(&gpu, &kernels.layout)).await?;
-        // Waits for the copies.
-        gpu.read(&scratch.counters, 1).await?;
-        let start = Instant::now();
-        let mut result = Self {
-            kernels,
-            thresholds: upload.thresholds,
-            form: upload.form(),
-            params: Params::new(&upload, &Places::new(mesh), gpu.ends_loops_early),
-            counts: EdgeCounts::default(),
-            bindings,
-            bytes: buffers.bytes() + scratch.bytes(),
-            buffers,
-            state: Entry::default(),
-            dispatches: adjacency::DISPATCHES + Kernel::preparation(mesh.dimension()).len() as u64,
-            adjacency_ms: 0.0,
-            gpu,
-        };
-        let record = || {
-            let mut encoder = result.gpu.device.create_command_encoder(&Default::default());
-            adjacency::record(&result.gpu, mesh, &result.buffers, &scratch, &mut encoder);
+        let mut start = Instant::now();
+        let begin = || {
+            let mesh = &upload.mesh;
+            let (buffers, scratch) = (Buffers::new(&gpu, &upload), Scratch::new(&gpu, mesh));
+            #[cfg(not(target_arch = "wasm32"))]
+            if waits {
+                gpu.finish_copies();
+                start = Instant::now();
+            }
+            let params = Params::new(&upload, &Places::new(mesh), gpu.ends_loops_early);
+            let bytes = buffers.bytes() + scratch.bytes();
+            let mut encoder = gpu.device.create_command_encoder(&Default::default());
+            adjacency::record(&gpu, mesh, &buffers, &scratch, &mut encoder);
+            let result = Self {
+                bindings: buffers.bind(&gpu, &kernels.layout),
+                kernels,
+                thresholds: upload.thresholds,
+                form: upload.form(),
+                params,
+                counts: EdgeCounts::default(),
+                bytes,
+                buffers,
+                counters: scratch.counters,
+                unsettled: None,
+                waits,
+                known: Known::default(),
+                state: Entry::default(),
+                dispatches: adjacency::DISPATCHES,
+                adjacency_ms: 0.0,
+                gpu: gpu.clone(),
+            };
             result.record_preparation(&mut encoder);
-            let signs = 4 * COUNTERS as u64;
-            encoder.copy_buffer_to_buffer(&result.buffers.history, 0, &scratch.counters, signs, 4);
-            encoder
+            gpu.submit(encoder);
+            result
         };
-        let counters = result.gpu.submit_and_read(&record, &scratch.counters, COUNTERS + 1).await?;
-        let found = Found::of(&counters);
-        if result.gpu.ends_loops_early && found.most_corners > SHORT_STAR {
-            let (corners, adapter) = (found.most_corners, &result.gpu.adapter);
-            return refuse(format!("a vertex has {corners} triangles, {adapter} ends loops early"));
+        let mut result = gpu.allocated(begin).await?;
+        result.begin(upload.mesh).await?;
+        if waits {
+            result.adjacency_ms = start.elapsed().as_secs_f64() * 1e3;
         }
-        result.counts = found.counts;
-        if found.has_several_fans {
-            result.add_fans(mesh).await?;
-        }
-        result.begin(mesh, counters[COUNTERS]).await?;
-        result.adjacency_ms = start.elapsed().as_secs_f64() * 1e3;
         Ok(result)
     }
 
     /// Records what the positions say of the input: the turns of the stars and the signs of the triangles in 2D, the
-    /// creases in 3D.
+    /// creases in 3D; and then begins the history, unless the host has to help first.
     fn record_preparation(&self, encoder: &mut wgpu::CommandEncoder) {
-        self.gpu.queue.write_buffer(&self.buffers.uniform, 0, bytemuck::bytes_of(&self.params));
-        encoder.clear_buffer(&self.buffers.history, 0, None);
+        let Buffers { uniform, history, frontier, .. } = &self.buffers;
+        self.write_params();
+        encoder.clear_buffer(history, 0, None);
+        let word = |index: usize| 4 * index as u64;
+        let fans = word(adjacency::SEVERAL_FANS);
+        encoder.copy_buffer_to_buffer(&self.counters, fans, history, word(SEVERAL_FANS), word(1));
         // The turns of stars are counted in the frontier.
-        encoder.clear_buffer(&self.buffers.frontier, 0, None);
+        encoder.clear_buffer(frontier, 0, None);
         let mut pass = encoder.begin_compute_pass(&Default::default());
         self.at_step(&mut pass, Step::Prepare);
         for &kernel in Kernel::preparation(self.form.dimension) {
@@ -89,48 +97,77 @@ impl WebGpu {
         }
         drop(pass);
         // What is left there would be taken for stamps.
-        encoder.clear_buffer(&self.buffers.frontier, 0, None);
+        encoder.clear_buffer(frontier, 0, None);
+        // The signs, for the kernels and for the host.
+        encoder.copy_buffer_to_buffer(history, 0, uniform, 0, word(1));
+        encoder.copy_buffer_to_buffer(history, 0, &self.counters, word(COUNTERS), word(1));
     }
 
-    /// The same once more, for positions that have moved or a winding that is known now. Returns the signs.
-    async fn prepare(&mut self) -> Result<u32, Error> {
+    fn prepare(&self) {
+        let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
+        self.record_preparation(&mut encoder);
+        self.gpu.submit(encoder);
+    }
+
+    /// Begins the iterations: the triangles of the mesh are on the device, which prepares them.
+    async fn begin(&mut self, mesh: Arc<Mesh>) -> Result<(), Error> {
         self.dispatches += Kernel::preparation(self.form.dimension).len() as u64;
-        let record = || {
-            let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
-            self.record_preparation(&mut encoder);
-            encoder
-        };
-        Ok(self.gpu.submit_and_read(&record, &self.buffers.history, 1).await?[0])
+        self.params.first = 0;
+        // As the device has it, if it needs no help: as if an iteration before had flipped something and built no list.
+        self.state = [self.params.triangles, 0, 0, 1];
+        self.known = Known::default();
+        self.unsettled = Some(mesh);
+        if self.waits { self.settle().await } else { Ok(()) }
     }
 
-    /// Begins the iterations: the mesh has the triangles that are on the device, which have these signs.
-    async fn begin(&mut self, mesh: &Mesh, signs: u32) -> Result<(), Error> {
-        self.params.first = 0;
-        // As if an iteration before had flipped something and built no list.
-        self.state = [self.params.triangles, 0, 0, 1];
-        let is_mixed = signs & NEGATIVE != 0 && signs & POSITIVE != 0;
-        let clockwise = if is_mixed {
-            // Components of both windings, and dirty ones, are rare: the host has time.
-            let twins = self.gpu.read(&self.buffers.twins, mesh.triangles().len()).await?;
-            Winding::of_components(mesh, &twins).clockwise
-        } else if signs & NEGATIVE != 0 {
-            vec![u32::MAX; mesh.triangle_count().div_ceil(32)]
-        } else {
-            Vec::new()
-        };
-        let is_strict = signs == POSITIVE || signs == NEGATIVE;
-        self.params.found =
-            if clockwise.is_empty() { 0 } else { HAS_WINDING } | if is_strict { IS_STRICT } else { 0 };
-        self.gpu.checked(|| self.gpu.write(&self.buffers.topology, &clockwise)).await?;
-        if is_mixed {
-            self.params.knows_winding = 1;
-            self.prepare().await?;
-            self.params.knows_winding = 0;
+    /// Reads the counters, unless the host knows them.
+    pub(super) async fn settle(&mut self) -> Result<(), Error> {
+        if let Some(mesh) = self.unsettled.clone() {
+            let counters = self.gpu.read(&self.counters, COUNTERS + 1).await?;
+            self.settle_by(&mesh, &counters).await?;
         }
         Ok(())
     }
 
-    /// Vertices of several fans are rare too: their table is appended to the topology.
+    /// Takes over the counters. Whether the host had to help, and no iteration has run: with the fans of the mesh, or the
+    /// windings of its components.
+    pub(super) async fn settle_by(&mut self, mesh: &Mesh, counters: &[u32]) -> Result<bool, Error> {
+        let (found, signs) = (Found::of(counters), counters[COUNTERS]);
+        if self.gpu.ends_loops_early && found.most_corners > SHORT_STAR {
+            let (corners, adapter) = (found.most_corners, &self.gpu.adapter);
+            return refuse(format!("a vertex has {corners} triangles, {adapter} ends loops early"));
+        }
+        self.counts = found.counts;
+        let needs_fans = found.has_several_fans && self.params.fans_length == 0;
+        if needs_fans {
+            self.add_fans(mesh).await?;
+        }
+        let needs_windings = signs & NEGATIVE != 0 && signs & POSITIVE != 0;
+        if needs_windings {
+            self.add_windings(mesh).await?;
+        }
+        self.unsettled = None;
+        Ok(needs_fans || needs_windings)
+    }
+
+    /// Components of both windings, and dirty ones, are rare: the host has time. The stars are looked at once more then.
+    async fn add_windings(&mut self, mesh: &Mesh) -> Result<(), Error> {
+        let twins = self.gpu.read(&self.buffers.twins, mesh.triangles().len()).await?;
+        let mut clockwise = Winding::of_components(mesh, &twins).clockwise;
+        // It has none where no component is clockwise.
+        clockwise.resize(mesh.triangle_count().div_ceil(32), 0);
+        self.dispatches += Kernel::preparation(self.form.dimension).len() as u64;
+        self.params.knows_winding = 1;
+        let calls = || {
+            self.gpu.write(&self.buffers.topology, &clockwise);
+            self.prepare();
+        };
+        let answer = self.gpu.checked(calls).await;
+        self.params.knows_winding = 0;
+        answer
+    }
+
+    /// Vertices of several fans are rare: their table is appended to the topology.
     async fn add_fans(&mut self, mesh: &Mesh) -> Result<(), Error> {
         let twins = self.gpu.read(&self.buffers.twins, mesh.triangles().len()).await?;
         let table = Fans::new(mesh.vertex_count(), mesh.triangles(), &twins).table;
@@ -144,7 +181,7 @@ impl WebGpu {
             gpu.queue.write_buffer(&self.buffers.topology, 4 * before as u64, bytemuck::cast_slice(&table));
             let mut encoder = gpu.device.create_command_encoder(&Default::default());
             encoder.copy_buffer_to_buffer(&topology, 0, &self.buffers.topology, 0, 4 * before as u64);
-            gpu.queue.submit([encoder.finish()]);
+            gpu.submit(encoder);
             self.buffers.bind(gpu, &self.kernels.layout)
         };
         self.bindings = gpu.checked(copy).await?;
@@ -153,6 +190,7 @@ impl WebGpu {
 
     /// Whoever locks edges has named them on the host, which has time for the twins too.
     pub(super) async fn flag_locked(&mut self, half_edges: Vec<u32>) -> Result<(), Error> {
+        self.known = Known::default();
         let mut twins = self.twins().await?;
         locks::flag(&mut twins, &half_edges);
         self.gpu.checked(|| self.gpu.write(&self.buffers.twins, &twins)).await
@@ -161,13 +199,16 @@ impl WebGpu {
     pub(super) async fn move_vertices(&mut self, mesh: Arc<Mesh>) -> Result<(), Error> {
         let upload = Upload::new(self.backend(), mesh, self.thresholds)?;
         if upload.form() == self.form {
-            self.gpu.checked(|| self.buffers.write_positions(&self.gpu, &upload)).await?;
             self.params.deviation = upload.deviation;
+            let calls = || {
+                self.buffers.write_positions(&self.gpu, &upload);
+                self.prepare();
+            };
+            self.gpu.checked(calls).await?;
             self.dispatches = 0;
-            let signs = self.prepare().await?;
-            return self.begin(&upload.mesh, signs).await;
+            return self.begin(upload.mesh).await;
         }
-        let mut moved = Self::new(self.gpu.clone(), upload).await?;
+        let mut moved = Self::begun(self.gpu.clone(), upload, self.waits).await?;
         let locked = locks::flagged(&self.twins().await?);
         if !locked.is_empty() {
             moved.flag_locked(locked).await?;

@@ -6,8 +6,8 @@ use super::adjacency::BUCKETS_EACH;
 use super::copies::{CHUNK, PIECE};
 use super::device::Device;
 use super::kernels::{self, ADJACENCY, PROBE, Plan, WORKGROUP_SIZE, phases_sources};
-use super::params::{HAS_WINDING, IS_STRICT, Params};
-use super::{COUNTS, ENTRIES, ENTRY_WORDS, programs};
+use super::params::{NEGATIVE, POSITIVE, Params};
+use super::{COUNTS, ENTRIES, ENTRY_WORDS, SEVERAL_FANS, programs};
 use crate::adjacency::{CREASE, FLAGS, LOCKED};
 use crate::engine::cosine::DIGIT_BITS;
 use crate::engine::upload::{Form, SPAN};
@@ -87,8 +87,9 @@ fn constants_of_the_phases_agree() {
         ("LENGTH", 1),
         ("BUILT", 2),
         ("RAN", 3),
-        ("HAS_WINDING", u64::from(HAS_WINDING)),
-        ("IS_STRICT", u64::from(IS_STRICT)),
+        ("SEVERAL_FANS", SEVERAL_FANS as u64),
+        ("NEGATIVE", u64::from(NEGATIVE)),
+        ("POSITIVE", u64::from(POSITIVE)),
     ];
     for (name, value) in host {
         assert_eq!(shader.get(name), Some(&value), "{name}");
@@ -160,7 +161,7 @@ fn params_have_one_layout() {
         };
     }
     let host = host!(
-        found,
+        signs,
         vertices,
         triangles,
         first,

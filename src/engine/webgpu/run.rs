@@ -1,0 +1,210 @@
+//! The iterations, and what is read behind them.
+
+use super::adjacency::COUNTERS;
+use super::copies::{CHUNK, Source};
+use super::kernels::{Kernel, WORKGROUP_SIZE};
+use super::programs::{DECIDERS, LANE_COUNT};
+use super::steps::Step;
+use super::{BATCH, COUNTS, ENTRIES, ENTRY_WORDS, HISTORY_WORDS, PAUSES, SHORT_TAIL, TAIL, WebGpu};
+use crate::Error;
+use crate::engine::Census;
+
+/// Kernels of a census.
+const CENSUS_DISPATCHES: u64 = 3;
+
+/// What was read behind the last iteration, before anybody has asked.
+#[derive(Default)]
+pub(super) struct Known {
+    pub(super) census: Option<Census>,
+    /// Gone once they were asked for.
+    pub(super) triangles: Option<Vec<u32>>,
+}
+
+impl WebGpu {
+    pub(super) async fn run(&mut self, count: u32) -> Result<Vec<u32>, Error> {
+        let mut flips = Vec::new();
+        // The first word of the state: the flips of the last iteration.
+        while self.state[0] > 0 && (flips.len() as u32) < count {
+            let may_wait = self.unsettled.is_some();
+            let ran = self.submit_iterations(count - flips.len() as u32).await?;
+            if ran.is_empty() && !may_wait {
+                return Err(Error::Device { message: "the device ran no iteration".to_owned() });
+            }
+            flips.extend(ran);
+            if flips.last() == Some(&0) {
+                flips.pop();
+                break;
+            }
+        }
+        Ok(flips)
+    }
+
+    /// One submission of up to `count` iterations; returns the flips of those that ran, the last of which may
+    /// be zero. None has run where the host had to help first, which it then has done.
+    async fn submit_iterations(&mut self, count: u32) -> Result<Vec<u32>, Error> {
+        self.known = Known::default();
+        let batch = count.min(BATCH);
+        self.params.tail = batch;
+        self.params.tail_iterations =
+            (count - batch).min(if self.gpu.ends_loops_early { SHORT_TAIL } else { TAIL });
+        self.dispatches += u64::from(4 * batch + self.params.tail_iterations.min(1) * (1 + 2 * PAUSES));
+        if !self.waits {
+            self.dispatches += CENSUS_DISPATCHES;
+        }
+        let iterate = |pass: &mut wgpu::ComputePass| self.record_iterations(pass, batch);
+        let record = || {
+            if self.unsettled.is_none() {
+                self.begin_history();
+            }
+            let mut encoder = self.encode(&iterate);
+            if !self.waits {
+                encoder.clear_buffer(&self.buffers.history, 0, Some(4 * COUNTS as u64));
+                self.encode_pass(&mut encoder, &|pass| self.record_census(pass));
+            }
+            encoder
+        };
+        let triangles = 3 * self.params.triangles as usize;
+        let mut sources = vec![
+            Source::new(&self.buffers.history, HISTORY_WORDS),
+            Source::new(&self.counters, COUNTERS + 1),
+        ];
+        // Most runs end in their first submission.
+        let is_run = self.params.first == 0 && count > 1;
+        if !self.waits && is_run && triangles + HISTORY_WORDS + COUNTERS < CHUNK {
+            sources.push(Source::new(&self.buffers.triangles, triangles));
+        }
+        let landed = self.gpu.submit_and_read(&record, &sources).await?;
+        let (history, has_triangles) = (landed.words(0)?, sources.len() > 2);
+        if let Some(mesh) = self.unsettled.clone() {
+            let counters = landed.words(1)?;
+            if self.settle_by(&mesh, &counters).await? {
+                return Ok(Vec::new());
+            }
+        }
+        if !self.waits {
+            self.known.census = Some(Census::of_counts(&history[..COUNTS]));
+        }
+        if has_triangles {
+            self.known.triangles = Some(landed.words(2)?);
+        }
+        Ok(self.take_over(&history))
+    }
+
+    /// Counts the edges, unless that was done behind the last iteration.
+    pub(super) async fn count(&mut self) -> Result<Census, Error> {
+        self.settle().await?;
+        if let Some(census) = self.known.census {
+            return Ok(census);
+        }
+        self.dispatches += CENSUS_DISPATCHES;
+        let counts = self.count_by(&|pass| self.record_census(pass)).await?;
+        Ok(Census::of_counts(&counts))
+    }
+
+    /// What kernels count.
+    pub(super) async fn count_by(&self, record: &dyn Fn(&mut wgpu::ComputePass)) -> Result<Vec<u32>, Error> {
+        let commands = || {
+            let history = &self.buffers.history;
+            self.gpu.queue.write_buffer(history, 0, bytemuck::cast_slice(&[0u32; ENTRIES]));
+            self.encode(record)
+        };
+        self.gpu.submit_and_read(&commands, &[Source::new(&self.buffers.history, COUNTS)]).await?.words(0)
+    }
+
+    /// Writes the state as the first entry, and zeros behind it.
+    fn begin_history(&self) {
+        let mut history = [0u32; HISTORY_WORDS];
+        history[ENTRIES..ENTRIES + ENTRY_WORDS].copy_from_slice(&self.state);
+        self.gpu.queue.write_buffer(&self.buffers.history, 0, bytemuck::cast_slice(&history));
+    }
+
+    /// Submits commands that continue the history, and reads it behind them.
+    #[cfg(test)]
+    pub(super) async fn read_history(
+        &self,
+        record: &dyn Fn(&mut wgpu::ComputePass),
+    ) -> Result<Vec<u32>, Error> {
+        let commands = || {
+            self.begin_history();
+            self.encode(record)
+        };
+        let history = Source::new(&self.buffers.history, HISTORY_WORDS);
+        self.gpu.submit_and_read(&commands, &[history]).await?.words(0)
+    }
+
+    /// Takes over the last state of a history, and returns the flips of the iterations that ran.
+    pub(super) fn take_over(&mut self, history: &[u32]) -> Vec<u32> {
+        let entries = history[ENTRIES..].chunks_exact(ENTRY_WORDS).skip(1);
+        let ran: Vec<&[u32]> = entries.take_while(|entry| entry[3] == 1).collect();
+        if let Some(last) = ran.last() {
+            self.state.copy_from_slice(last);
+        }
+        self.params.first += ran.len() as u32;
+        ran.iter().map(|entry| entry[0]).collect()
+    }
+
+    /// Commands in one compute pass, with the parameters as they are now and the first step bound.
+    fn encode(&self, record: &dyn Fn(&mut wgpu::ComputePass)) -> wgpu::CommandEncoder {
+        self.write_params();
+        let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
+        self.encode_pass(&mut encoder, record);
+        encoder
+    }
+
+    fn encode_pass(&self, encoder: &mut wgpu::CommandEncoder, record: &dyn Fn(&mut wgpu::ComputePass)) {
+        let mut pass = encoder.begin_compute_pass(&Default::default());
+        pass.set_bind_group(0, &self.bindings, &[0]);
+        record(&mut pass);
+    }
+
+    pub(super) fn write_params(&self) {
+        let (place, bytes) = self.params.of_host();
+        self.gpu.queue.write_buffer(&self.buffers.uniform, place, bytes);
+    }
+
+    pub(super) fn at_step(&self, pass: &mut wgpu::ComputePass, step: Step) {
+        pass.set_bind_group(0, &self.bindings, &[step.offset()]);
+    }
+
+    /// For so many triangles.
+    pub(super) fn dispatch(&self, pass: &mut wgpu::ComputePass, kernel: Kernel, triangles: u32) {
+        let groups = self.gpu.workgroups(triangles);
+        pass.set_pipeline(&self.kernels.pipelines[kernel as usize]);
+        if kernel != Kernel::Decide {
+            return pass.dispatch_workgroups(groups, 1, 1);
+        }
+        let most = LANE_COUNT / DECIDERS;
+        // Where loops end too early, each invocation decides one triangle at a time.
+        let all =
+            if self.gpu.ends_loops_early { groups.div_ceil(most) * WORKGROUP_SIZE / DECIDERS } else { 1 };
+        for _ in 0..all {
+            pass.dispatch_workgroups(groups.min(most), 1, 1);
+        }
+    }
+
+    fn record_iterations(&self, pass: &mut wgpu::ComputePass, batch: u32) {
+        for index in 0..batch {
+            self.at_step(pass, Step::Iterate(index));
+            for kernel in Kernel::ITERATION {
+                self.dispatch(pass, kernel, self.params.triangles);
+            }
+        }
+        if self.params.tail_iterations > 0 {
+            self.dispatch(pass, Kernel::Tail, 1);
+            self.at_step(pass, Step::Resume);
+            for _ in 0..PAUSES {
+                self.dispatch(pass, Kernel::Decide, self.params.tail_length);
+                self.dispatch(pass, Kernel::Tail, 1);
+            }
+        }
+    }
+
+    fn record_census(&self, pass: &mut wgpu::ComputePass) {
+        for (step, kernel) in
+            [(Step::Census, Kernel::Census), (Step::Census, Kernel::Decide), (Step::Resume, Kernel::Census)]
+        {
+            self.at_step(pass, step);
+            self.dispatch(pass, kernel, self.params.triangles);
+        }
+    }
+}
