@@ -160,7 +160,7 @@ impl Session {
         positions.refuse_non_finite(self.mesh.dimension(), &Threads::one())?;
         let triangles = self.triangles().await?;
         let mesh = Arc::new(Mesh::new(self.mesh.dimension(), positions, triangles)?);
-        if self.may_change && choice::changes_to_gpu(&mesh, &self.options, 0.0) {
+        if self.may_change && choice::changes_to_gpu(&mesh, &self.options, (0.0, 0.0)) {
             let choice = engine_for(&mesh, &self.options).await?;
             self.take(choice);
         } else {
@@ -366,7 +366,7 @@ impl Session {
     /// CPU goes on.
     async fn change_to_gpu(&mut self) {
         let Timings { upload, adjacency, flip, .. } = self.timings;
-        if !choice::changes_to_gpu(&self.mesh, &self.options, upload + adjacency + flip) {
+        if !choice::changes_to_gpu(&self.mesh, &self.options, (upload + adjacency, flip)) {
             return;
         }
         self.may_change = false;

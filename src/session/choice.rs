@@ -37,7 +37,7 @@ pub(super) fn asks_gpu(options: &Options, job: Job) -> bool {
 /// Why `Auto` takes the CPU without asking for a GPU, if it does: the CPU is done first. A browser then makes its GPU ready
 /// for later runs, where those are worth it; `is_double` says whether coordinates are.
 pub(crate) fn why_cpu(job: Job, is_double: bool, options: &Options) -> Option<String> {
-    if !job.is_for_gpu(0.0) {
+    if !job.is_for_gpu() {
         return Some(format!("{} triangles are done first on the cpu", job.triangles));
     }
     if job.waits_for_gpu() || gpu::is_ready(job, is_double, options) {
@@ -46,10 +46,10 @@ pub(crate) fn why_cpu(job: Job, is_double: bool, options: &Options) -> Option<St
     Some(gpu::why_not_ready(job, is_double, options))
 }
 
-/// Whether `Auto` goes on with a GPU `spent` milliseconds after it has begun on the CPU.
-pub(super) fn changes_to_gpu(mesh: &Mesh, options: &Options, spent: f64) -> bool {
+/// Whether `Auto` goes on with a GPU that has become ready, after so many milliseconds of set-up and of iterations.
+pub(super) fn changes_to_gpu(mesh: &Mesh, options: &Options, (set_up, flip): (f64, f64)) -> bool {
     let job = job_of(mesh, options);
-    job.is_for_gpu(spent) && gpu::is_ready(job, mesh.positions().is_double(), options)
+    job.goes_on_with_gpu(set_up, flip) && gpu::is_ready(job, mesh.positions().is_double(), options)
 }
 
 /// The engine for the options. Boxed, as below.

@@ -18,6 +18,9 @@ pub(crate) struct Job {
 /// A difference of so few milliseconds wakes up no GPU.
 const MARGIN: f64 = 2.5;
 
+/// The part of a job on the CPU that comes before its first iteration.
+const SET_UP: f64 = 0.5;
+
 /// Constants of one kind of build.
 struct Rates {
     /// Nanoseconds a triangle on one thread of the CPU, in the plane and in space.
@@ -49,9 +52,16 @@ impl Job {
         RATES.gpu + 1e-6 * RATES.gpu_triangle * self.triangles as f64
     }
 
-    /// Whether a GPU is done first that is ready, `spent` milliseconds after the CPU has begun.
-    pub(crate) fn is_for_gpu(self, spent: f64) -> bool {
-        self.cpu() - spent > self.gpu() + MARGIN
+    /// Whether a GPU is done first that is ready.
+    pub(crate) fn is_for_gpu(self) -> bool {
+        self.cpu() > self.gpu() + MARGIN
+    }
+
+    /// The same for what is left after so many milliseconds of set-up and of iterations on the CPU. The set-up tells of a CPU
+    /// that is slower than others.
+    pub(crate) fn goes_on_with_gpu(self, set_up: f64, flip: f64) -> bool {
+        let whole = self.cpu().max(set_up / SET_UP);
+        whole - set_up - flip > self.gpu() + MARGIN
     }
 
     /// Whether a GPU is done first that has to start.
@@ -70,10 +80,10 @@ mod tests {
 
     #[test]
     fn small_jobs_are_for_the_cpu_and_large_ones_for_the_gpu() {
-        assert!(!job(0, 1).is_for_gpu(0.0));
-        assert!(!job(1000, 1).is_for_gpu(0.0));
+        assert!(!job(0, 1).is_for_gpu());
+        assert!(!job(1000, 1).is_for_gpu());
         for threads in [1, 16] {
-            assert!(job(1_000_000, threads).is_for_gpu(0.0));
+            assert!(job(1_000_000, threads).is_for_gpu());
             assert!(!job(50_000, threads).waits_for_gpu());
             assert!(job(50_000_000, threads).waits_for_gpu());
         }
@@ -83,15 +93,17 @@ mod tests {
     fn what_waits_for_a_gpu_is_for_a_gpu_and_stays_so_as_it_grows() {
         for threads in [1, 2, 16, 256] {
             let jobs: Vec<_> = (0..27).map(|power| job(1 << power, threads)).collect();
-            assert!(jobs.iter().all(|job| !job.waits_for_gpu() || job.is_for_gpu(0.0)));
-            assert!(jobs.is_sorted_by_key(|job| job.is_for_gpu(0.0)));
+            assert!(jobs.iter().all(|job| !job.waits_for_gpu() || job.is_for_gpu()));
+            assert!(jobs.is_sorted_by_key(|job| job.is_for_gpu()));
             assert!(jobs.is_sorted_by_key(|job| job.waits_for_gpu()));
         }
     }
 
     #[test]
     fn a_job_that_is_nearly_done_stays_where_it_is() {
-        assert!(job(2_000_000, 1).is_for_gpu(100.0));
-        assert!(!job(2_000_000, 1).is_for_gpu(1000.0));
+        assert!(job(2_000_000, 1).goes_on_with_gpu(100.0, 100.0));
+        assert!(!job(2_000_000, 1).goes_on_with_gpu(400.0, 600.0));
+        // On a slow machine.
+        assert!(job(2_000_000, 1).goes_on_with_gpu(1000.0, 600.0));
     }
 }
