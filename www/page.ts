@@ -4,14 +4,16 @@ import { EdgeflipError } from 'edgeflip';
 import { Choices, type Settings } from './choices.ts';
 import { controls, element } from './controls.ts';
 import { LOST } from './crash.ts';
-import { beginRun, Cancelled, Office, openGpu, type Gpu } from './engines.ts';
+import { download } from './download.ts';
+import { beginRun, Cancelled, openGpu, type Gpu } from './engines.ts';
 import { BINS, Opening, type Opened } from './opening.ts';
 import { palette } from './palette.ts';
-import { ENGINES, number, Panel, reasons } from './panel.ts';
+import { Panel } from './panel.ts';
 import { Player } from './player.ts';
 import type { Run, Summary } from './run.ts';
 import { Scene } from './scene.ts';
 import { sample, splitName, type Source } from './sources.ts';
+import { showTransport, statusOf } from './transport.ts';
 import { unitPositions } from './unit.ts';
 
 /** Meshes of up to so many triangles are shown with their edges from the start. */
@@ -121,15 +123,7 @@ export class Page {
     await this.#attempt('Writing the file…', async (signal) => {
       const mesh = { ...opened.mesh, indices: await run.triangles() };
       signal.throwIfAborted();
-      // A worker of its own: the memory that writing takes goes with it, and it can be cancelled.
-      const office = new Office();
-      signal.addEventListener('abort', () => office.close());
-      const bytes = await office.ask((desk) => desk.write(mesh, name, opened.kept)).finally(() => office.close());
-      const link = document.createElement('a');
-      link.href = URL.createObjectURL(new Blob([bytes]));
-      link.download = name;
-      link.click();
-      setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
+      await download(mesh, name, opened.kept, signal);
     });
   }
 
@@ -246,28 +240,8 @@ export class Page {
   }
 
   #showTransport(): void {
-    const run = this.#run;
-    const [at, newest] = [run?.at ?? 0, run?.iterations.length ?? 0];
-    const isIdle = run !== undefined && this.#job === undefined;
-    controls.play.textContent = this.#player.isPlaying ? 'Pause' : 'Play';
-    controls.play.disabled = !isIdle;
-    controls.step.disabled = !isIdle || run.isOver;
-    controls.reset.disabled = !isIdle || at === 0;
-    controls.slider.disabled = !isIdle || newest === 0;
-    controls.slider.max = `${newest}`;
-    controls.slider.value = `${at}`;
-    controls.download.disabled = !isIdle;
-    const position = run ? `${number.format(at)} / ${number.format(newest)}${run.hasEnded ? '' : '…'}` : '';
-    element('position').textContent = position;
-    element('status').textContent = run ? statusOf(run) : '';
-    const isFinal = run?.isOver && this.#summary?.iterations === newest;
-    const remains = isFinal && this.#summary ? left(reasons(this.#summary.remaining)) : '';
-    const note = [remains, this.#opened?.remark, run ? whyThere(run, this.#summary) : ''].filter(Boolean).join(' ');
-    element('note').hidden = note === '';
-    element('note').textContent = note;
-    element('caption').textContent = this.#opened?.name ?? '';
-    const state = this.#job ? 'busy' : !run ? 'empty' : this.#player.isPlaying ? 'playing' : run.isOver ? 'done' : 'ready';
-    document.body.dataset['state'] = state;
+    const [run, opened, summary] = [this.#run, this.#opened, this.#summary];
+    showTransport({ run, opened, summary, isBusy: this.#job !== undefined, isPlaying: this.#player.isPlaying });
   }
 
   /** What was chosen in vain gives way to what the run was begun with. */
@@ -385,24 +359,6 @@ function showProgress(text: string, share = 1): void {
   const bar = element<HTMLProgressElement>('progress');
   if (share < 1) bar.value = share;
   else bar.removeAttribute('value');
-}
-
-function statusOf({ at, isOver, iterations }: Run): string {
-  if (at === 0) return isOver ? 'No edge of the input may flip' : 'The input';
-  const flips = iterations.slice(0, at).reduce((sum, iteration) => sum + iteration.flips, 0);
-  const so = `${number.format(flips)} ${flips === 1 ? 'flip' : 'flips'} in ${number.format(at)} ${at === 1 ? 'iteration' : 'iterations'}`;
-  return isOver ? `Done: ${so}` : so;
-}
-
-/** Why `auto` has come to the engine that it is on. */
-function whyThere({ fallback }: Run, summary: Summary | undefined): string {
-  if (!fallback || !summary) return '';
-  const engine = `${summary.backend === 'cpu' ? 'the ' : ''}${ENGINES[summary.backend]}`;
-  return `On ${engine}: ${[fallback, summary.fallback].filter(Boolean).join('; ')}.`;
-}
-
-function left(what: string): string {
-  return what === 'none' ? 'Every edge is Delaunay.' : `Not Delaunay, and may not flip: ${what}.`;
 }
 
 /** The first 64 bits of the SHA-256 of the triangles, as 32-bit little-endian words. */
