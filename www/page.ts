@@ -275,19 +275,27 @@ export class Page {
       this.#panel.showFacts(opened.mesh, run, this.#summary, this.#settings?.beta, fingerprint);
       this.#panel.showLegend(run.states, this.#summary);
       this.#showTransport();
-      const now = await opened.office.ask((desk) => desk.measure({ ...opened.mesh, indices }, BINS));
+      await this.#measure(indices, isOutdated);
       if (isOutdated()) return;
-      this.#panel.showQuality(opened.before, now);
-      if (run.isOver) {
-        const change = await opened.office.ask((desk) => desk.compare(opened.mesh, indices));
-        if (isOutdated()) return;
-        this.#panel.showQuality(opened.before, now, change);
-      }
       element('announcement').textContent = `${statusOf(run)}. ${element('note').textContent}`;
       document.body.dataset['measured'] = `${run.at}`;
     } catch (error) {
       if (!isOutdated()) this.#showFailure(error);
     }
+  }
+
+  /** Measures the triangles, which are those that are shown. */
+  async #measure(indices: Uint32Array, isOutdated: () => boolean): Promise<void> {
+    const [run, opened] = [this.#run, this.#opened];
+    if (!run || !opened) return;
+    const { mesh, office } = opened;
+    const before = await opened.before();
+    const now = run.at === 0 ? before : await office.ask((desk) => desk.measure({ ...mesh, indices }, BINS));
+    if (isOutdated()) return;
+    this.#panel.showQuality(before, now);
+    if (!run.isOver) return;
+    const change = await office.ask((desk) => desk.compare(mesh, indices));
+    if (!isOutdated()) this.#panel.showQuality(before, now, change);
   }
 
   async #openGpu(): Promise<void> {
