@@ -317,7 +317,6 @@ export class Page {
    */
   async #recover(reason: string, isOfPage: boolean): Promise<void> {
     const [run, opening] = [this.#run, this.#opening];
-    const at = run?.at ?? 0;
     let hasRecovered = false;
     await this.#attempt('The GPU was lost; going on from the input…', async (signal) => {
       if (isOfPage) {
@@ -336,7 +335,7 @@ export class Page {
       const isHopeless = opening ? isAgain : !run?.isInWorker && (isAgain || backend === 'auto');
       if (!isOfPage || isHopeless) this.#choices.set({ backend: 'cpu', beta });
       await this.#begin(opened, signal);
-      while (!opening && this.#run && this.#run.at < at && !signal.aborted && (await this.#forward(this.#run)));
+      if (!opening && run) await this.#goThere(run, signal);
       hasRecovered = true;
     });
     // What was chosen meanwhile has taken its place.
@@ -351,6 +350,16 @@ export class Page {
     } else if (element('error').hidden) {
       this.#showError(new Error(`${lost} Choose an engine to go on.`));
     }
+  }
+
+  /** Lets the run go the way of the one before it. */
+  async #goThere(before: Run, signal: AbortSignal): Promise<void> {
+    try {
+      await this.#run?.follow(before, signal);
+    } catch (error) {
+      this.#showFailure(error);
+    }
+    await this.redraw();
   }
 
   #recolour(): void {

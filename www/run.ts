@@ -188,6 +188,19 @@ export class Run {
     while (this.#at > at) this.#track.apply(--this.#at);
   }
 
+  /**
+   * Goes the way that another run of the mesh has gone, and shows the state that it shows.
+   *
+   * @throws where it ends sooner.
+   */
+  async follow(other: Run, signal?: AbortSignal): Promise<void> {
+    const isBehind = () => this.iterations.length < other.iterations.length || (other.hasEnded && !this.#hasEnded);
+    this.seek(this.iterations.length);
+    while (isBehind() && !signal?.aborted && (await this.forward()));
+    if (this.#hasEnded && isBehind()) throw new Error('it came to another end than the engine before');
+    this.seek(Math.min(other.at, this.iterations.length));
+  }
+
   get drawn(): Drawn {
     return this.#track.drawn(this.isNewest && !this.#isAhead);
   }
