@@ -86,7 +86,9 @@ export class Run {
   /** Whether the engine is in a worker, and not on the GPU that draws. */
   readonly isInWorker: boolean;
   /** Why `auto` did not take the GPU that draws; the summary tells what else it did not take. */
-  readonly fallback: string | undefined;
+  fallback: string | undefined;
+  /** Whether it is on the CPU only until the GPU that draws is ready. */
+  awaitsGpu = false;
   readonly iterations: Iteration[] = [];
   readonly #states: (Uint8Array | undefined)[];
   readonly #stepper: Stepper;
