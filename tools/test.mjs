@@ -129,7 +129,7 @@ const levels = [
   {
     name: 'page in Chromium',
     what: 'the demo page opens files, plays, scrubs and downloads on every engine, draws from the buffer that the flips write, and recovers',
-    checks: [...builtPage, pageTests('files', 'opening', 'buffer', 'controls')],
+    checks: [...builtPage, pageTests('files', 'opening', 'buffer', 'controls', 'handover')],
     counts: true,
   },
   {

@@ -1,7 +1,7 @@
 /** The worker: reads, generates and measures meshes, or runs an engine, so that the page never waits. */
 
 import { expose, transfer } from 'comlink';
-import type { FlipSession } from 'edgeflip';
+import { init, type FlipSession } from 'edgeflip';
 import {
   angles,
   change,
@@ -69,6 +69,11 @@ class Desk {
     if (mesh.dimension === 3 && after.length > 3 * COMPARED) return undefined;
     const { moved, distance } = await naming(change(mesh, after));
     return { moved: moved.length, distance };
+  }
+
+  /** Loads the engine, so that a run begins sooner. */
+  async load(): Promise<void> {
+    await init();
   }
 
   /** Begins a run. Returns what its edges are, if they are to be drawn. */

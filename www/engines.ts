@@ -6,11 +6,16 @@ import { ArrayTrack } from './array-track.ts';
 import { CRASHED } from './crash.ts';
 import type { Desk } from './desk.ts';
 import { GpuTrack } from './gpu-track.ts';
+import { Kernels } from './kernels.ts';
 import { Run, sessionOf, statesOf, summaryOf, type OpenMesh } from './run.ts';
+
+/** So many triangles at most the CPU takes before a GPU has compiled its programs. */
+const BEGUN_SOON = 1_000_000;
 
 /** A GPU that both the flips and the drawing use. */
 export interface Gpu {
   device: GPUDevice;
+  kernels: Kernels;
   /** Whether the processor plays it: `auto` leaves it alone then. */
   isSoftware: boolean;
 }
@@ -23,7 +28,7 @@ export async function openGpu(): Promise<Gpu | string> {
     if (!adapter) return 'WebGPU found no GPU';
     const { maxBufferSize, maxStorageBufferBindingSize } = adapter.limits;
     const device = await adapter.requestDevice({ requiredLimits: { maxBufferSize, maxStorageBufferBindingSize } });
-    return { device, isSoftware: isSoftware(adapter) };
+    return { device, kernels: new Kernels(device), isSoftware: isSoftware(adapter) };
   } catch (error) {
     return `WebGPU could not be used (${error instanceof Error ? error.message : String(error)})`;
   }
@@ -33,6 +38,12 @@ export async function openGpu(): Promise<Gpu | string> {
 function isSoftware(adapter: GPUAdapter & { isFallbackAdapter?: boolean }): boolean {
   const { isFallbackAdapter }: { isFallbackAdapter?: boolean } = adapter.info;
   return isFallbackAdapter ?? adapter.isFallbackAdapter ?? false;
+}
+
+/** The GPU that `auto` takes, or why it takes none. */
+export function forAuto(gpu: Gpu | string): Gpu | string {
+  if (typeof gpu === 'string' || !gpu.isSoftware) return gpu;
+  return 'the only GPU here is played by the processor, which is slower';
 }
 
 /** A worker with the desk that it answers at. */
@@ -73,8 +84,23 @@ export class Cancelled extends Error {}
 
 export type Backend = 'auto' | Engine;
 
+/** The worker of the first run. */
+let first: Office | undefined;
+
+/** Starts it, with its engine, while there is no mesh yet. */
+export function startWorker(): void {
+  first = new Office();
+  // The run tries again, and says what is wrong.
+  first.ask((desk) => desk.load()).catch(() => {});
+}
+
+/** Whether a run waits until the GPU has been looked for, and compiles. */
+export function waitsForGpu({ indices }: OpenMesh, backend: Backend): boolean {
+  return backend === 'webgpu' || (backend === 'auto' && indices.length > 3 * BEGUN_SOON);
+}
+
 /**
- * Begins a run.
+ * Begins a run. `auto` begins on the CPU while the GPU is looked for, which `undefined` stands for, or has not compiled.
  *
  * @throws an error that can be shown, about the mesh, β or the backend that was asked for.
  */
@@ -82,20 +108,20 @@ export async function beginRun(
   mesh: OpenMesh,
   maxNormalAngle: number,
   backend: Backend,
-  gpu: Gpu | string,
+  gpu: Gpu | string | undefined,
   signal: AbortSignal,
 ): Promise<Run> {
   if (backend === 'webgl2' || backend === 'cpu') return inWorker(mesh, maxNormalAngle, backend, signal, undefined);
-  if (typeof gpu === 'string') {
-    if (backend === 'webgpu') throw new Error(`The WebGPU engine is not available: ${gpu}.`);
-    return inWorker(mesh, maxNormalAngle, 'auto', signal, gpu);
+  if (gpu === undefined) return inWorker(mesh, maxNormalAngle, 'cpu', signal, undefined);
+  const usable = backend === 'auto' ? forAuto(gpu) : gpu;
+  if (typeof usable === 'string') {
+    if (backend === 'webgpu') throw new Error(`The WebGPU engine is not available: ${usable}.`);
+    return inWorker(mesh, maxNormalAngle, 'auto', signal, usable);
   }
-  if (backend === 'auto' && gpu.isSoftware) {
-    const why = 'the only GPU here is played by the processor, which is slower';
-    return inWorker(mesh, maxNormalAngle, 'auto', signal, why);
-  }
+  const takesGpu = waitsForGpu(mesh, backend) || usable.kernels.areReadyFor(mesh);
+  if (!takesGpu) return inWorker(mesh, maxNormalAngle, 'cpu', signal, undefined);
   try {
-    return await onGpu(mesh, maxNormalAngle, gpu.device);
+    return await onGpu(mesh, maxNormalAngle, usable);
   } catch (error) {
     const isOfGpu = error instanceof EdgeflipError && /^(backend|device)-/.test(error.code);
     if (backend === 'webgpu' || !isOfGpu) throw error;
@@ -103,7 +129,15 @@ export async function beginRun(
   }
 }
 
-async function onGpu(mesh: OpenMesh, maxNormalAngle: number, device: GPUDevice): Promise<Run> {
+/** Begins the run that takes the place of one on the CPU, once the picture on screen has been drawn. */
+export async function beginBehind(mesh: OpenMesh, maxNormalAngle: number, gpu: Gpu): Promise<Run> {
+  await new Promise(requestAnimationFrame);
+  await gpu.device.queue.onSubmittedWorkDone();
+  return onGpu(mesh, maxNormalAngle, gpu);
+}
+
+async function onGpu(mesh: OpenMesh, maxNormalAngle: number, { device, kernels }: Gpu): Promise<Run> {
+  await kernels.makeReadyFor(mesh);
   const session = await sessionOf(mesh, { backend: 'webgpu', device, maxNormalAngle });
   try {
     const shared = await session.gpu();
@@ -134,7 +168,8 @@ async function inWorker(
   signal: AbortSignal,
   fallback: string | undefined,
 ): Promise<Run> {
-  const office = new Office();
+  const office = first ?? new Office();
+  first = undefined;
   const close = () => office.close();
   signal.addEventListener('abort', close);
   try {

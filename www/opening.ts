@@ -20,7 +20,8 @@ export interface Opened {
   kept: Kept | undefined;
   /** What reading the files did to it, and what it left. */
   remark: string;
-  before: Quality;
+  /** Its quality, measured when it is first asked for: a picture of it needs none. */
+  before: () => Promise<Quality>;
 }
 
 /** Told what goes on, and how much of it is done, from 0 to 1, where that is known. */
@@ -57,7 +58,8 @@ export class Opening {
     this.#office.close();
     const office = new Office();
     this.#office = office;
-    const before = await office.ask((desk) => desk.measure(mesh, BINS));
+    let measured: Promise<Quality> | undefined;
+    const before = () => (measured ??= office.ask((desk) => desk.measure(mesh, BINS)));
     return (this.opened = { mesh, name, office, kept, remark: remarkOn(read), before });
   }
 }

@@ -4,14 +4,17 @@ import { EdgeflipError } from 'edgeflip';
 import { Choices, type Settings } from './choices.ts';
 import { controls, element } from './controls.ts';
 import { LOST } from './crash.ts';
-import { beginRun, Cancelled, Office, openGpu, type Gpu } from './engines.ts';
+import { download } from './download.ts';
+import { beginBehind, beginRun, Cancelled, forAuto, openGpu, startWorker, waitsForGpu, type Gpu } from './engines.ts';
+import { Handover } from './handover.ts';
 import { BINS, Opening, type Opened } from './opening.ts';
 import { palette } from './palette.ts';
-import { ENGINES, number, Panel, reasons } from './panel.ts';
+import { Panel } from './panel.ts';
 import { Player } from './player.ts';
-import type { Run, Summary } from './run.ts';
+import type { OpenMesh, Run, Summary } from './run.ts';
 import { Scene } from './scene.ts';
 import { sample, splitName, type Source } from './sources.ts';
+import { showTransport, statusOf } from './transport.ts';
 import { unitPositions } from './unit.ts';
 
 /** Meshes of up to so many triangles are shown with their edges from the start. */
@@ -28,7 +31,8 @@ export class Page {
       void this.#rest();
     },
   );
-  #gpu: Gpu | string = 'it has not been looked for';
+  /** `undefined` while it is looked for. */
+  #gpu: Gpu | string | undefined;
   #scene: Scene | undefined;
   /** Done when `#gpu` and `#scene` are what they will be. */
   #lookedForGpu: Promise<void> = Promise.resolve();
@@ -41,6 +45,8 @@ export class Page {
   #opened: Opened | undefined;
   #run: Run | undefined;
   #settings: Settings | undefined;
+  /** Puts the run on the GPU, where it waits for that. */
+  #handover: Handover | undefined;
   /** What goes on and can be cancelled. */
   #job: AbortController | undefined;
   /** What the run said of itself when it last came to rest. */
@@ -56,7 +62,9 @@ export class Page {
     this.#panel.clear();
     matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => this.#recolour());
     this.#lookedForGpu = this.#openGpu();
-    await this.open(sample(spec));
+    const opening = this.open(sample(spec));
+    startWorker();
+    await opening;
   }
 
   /** Opens a mesh in place of the one that is open or being opened. */
@@ -121,15 +129,7 @@ export class Page {
     await this.#attempt('Writing the file…', async (signal) => {
       const mesh = { ...opened.mesh, indices: await run.triangles() };
       signal.throwIfAborted();
-      // A worker of its own: the memory that writing takes goes with it, and it can be cancelled.
-      const office = new Office();
-      signal.addEventListener('abort', () => office.close());
-      const bytes = await office.ask((desk) => desk.write(mesh, name, opened.kept)).finally(() => office.close());
-      const link = document.createElement('a');
-      link.href = URL.createObjectURL(new Blob([bytes]));
-      link.download = name;
-      link.click();
-      setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
+      await download(mesh, name, opened.kept, signal);
     });
   }
 
@@ -144,15 +144,21 @@ export class Page {
     this.#showTransport();
     if (!this.#player.isPlaying) void this.#rest();
     if (!scene) return;
-    const states = controls.wireframe.checked ? run.states : undefined;
-    const lines = controls.wireframe.checked && !states ? run.lines() : undefined;
-    scene.show(run.drawn, opened.mesh.indices.length, lines);
+    const states = this.#showTriangles(run, opened);
     try {
       const indices = states && (await run.triangles());
       if (draw === this.#draws) scene.showEdges(indices, states);
     } catch (error) {
       if (draw === this.#draws) this.#showFailure(error);
     }
+  }
+
+  /** Draws the triangles, and their lines where no edges are coloured; returns the states of those that are. */
+  #showTriangles(run: Run, { mesh }: Opened): Uint8Array | undefined {
+    const states = controls.wireframe.checked ? run.states : undefined;
+    const lines = controls.wireframe.checked && !states ? run.lines() : undefined;
+    this.#scene?.show(run.drawn, mesh.indices.length, lines);
+    return states;
   }
 
   #showError(error: unknown): void {
@@ -163,10 +169,15 @@ export class Page {
 
   /** Begins a run; the one before it stays if this fails. */
   async #begin(opened: Opened, signal: AbortSignal): Promise<void> {
-    await this.#lookedForGpu;
-    signal.throwIfAborted();
     const { settings } = this.#choices;
-    const run = await beginRun(opened.mesh, settings.beta, settings.backend, this.#gpu, signal);
+    const { mesh } = opened;
+    if (waitsForGpu(mesh, settings.backend)) await this.#lookedForGpu;
+    signal.throwIfAborted();
+    const compiles = settings.backend === 'webgpu' && typeof this.#gpu === 'object' && !this.#gpu.kernels.areReadyFor(mesh);
+    if (compiles) showProgress('Compiling the GPU’s programs…');
+    const run = await beginRun(mesh, settings.beta, settings.backend, this.#gpu, signal);
+    // What draws comes with it.
+    await this.#lookedForGpu;
     if (signal.aborted) {
       run.free();
       throw signal.reason;
@@ -180,14 +191,57 @@ export class Page {
     if (this.#opening?.opened === opened) this.#opening = undefined;
     this.#settings = settings;
     this.#summary = undefined;
-    this.#scene?.setMesh(unitPositions(opened.mesh), opened.mesh.dimension);
+    this.#scene?.setMesh(unitPositions(mesh), mesh.dimension);
     if (isNew || !this.#scene?.isLooking) this.#scene?.lookAtAll();
-    if (isNew) controls.wireframe.checked = opened.mesh.indices.length <= 3 * EDGES_SEEN;
+    if (isNew) controls.wireframe.checked = mesh.indices.length <= 3 * EDGES_SEEN;
     element('no-mesh').hidden = this.#scene !== undefined;
-    element('beta-label').hidden = opened.mesh.dimension === 2;
+    element('beta-label').hidden = mesh.dimension === 2;
     this.#panel.clear();
+    this.#expectGpu(run, mesh, settings);
     await this.redraw();
     this.#player.pause();
+  }
+
+  /** Makes the GPU ready behind a run that `auto` has begun on the CPU, or lets it say why it stays there. */
+  #expectGpu(run: Run, mesh: OpenMesh, { backend, beta }: Settings): void {
+    this.#handover?.close();
+    this.#handover = undefined;
+    if (backend !== 'auto' || !run.isInWorker || run.fallback !== undefined || this.#gpu === undefined) return;
+    const gpu = forAuto(this.#gpu);
+    if (typeof gpu === 'string') {
+      run.fallback = gpu;
+      return;
+    }
+    run.awaitsGpu = true;
+    const begin = () => beginBehind(mesh, beta, gpu);
+    this.#handover = new Handover(begin, () => void this.#handOver(), (error) => this.#stayOnCpu(run, error));
+  }
+
+  /** Goes over to the GPU that is ready, as soon as nothing goes on. The picture is the same. */
+  async #handOver(): Promise<void> {
+    const [run, opened, handover] = [this.#run, this.#opened, this.#handover];
+    if (!run || !opened || !handover) return;
+    const isMeasured = () => document.body.dataset['measured'] === `${run.at}`;
+    const isAtRest = () => run === this.#run && !this.#job && this.#player.isAtRest && isMeasured();
+    try {
+      const next = await handover.follow(run, isAtRest);
+      if (!next) return;
+      [this.#run, this.#summary, this.#handover] = [next.run, next.summary, undefined];
+      this.#showTriangles(next.run, opened);
+      run.free();
+      this.#panel.showTimes(next.run.iterations);
+      void this.#rest('Now on WebGPU.');
+    } catch (error) {
+      if (handover === this.#handover) this.#stayOnCpu(run, error);
+    }
+  }
+
+  #stayOnCpu(run: Run, error: unknown): void {
+    this.#handover?.close();
+    this.#handover = undefined;
+    run.awaitsGpu = false;
+    run.fallback = error instanceof Error ? error.message : String(error);
+    if (!this.#player.isPlaying) void this.#rest();
   }
 
   /** Shows what goes on, with a way to cancel it; what was begun before is cancelled. */
@@ -246,28 +300,8 @@ export class Page {
   }
 
   #showTransport(): void {
-    const run = this.#run;
-    const [at, newest] = [run?.at ?? 0, run?.iterations.length ?? 0];
-    const isIdle = run !== undefined && this.#job === undefined;
-    controls.play.textContent = this.#player.isPlaying ? 'Pause' : 'Play';
-    controls.play.disabled = !isIdle;
-    controls.step.disabled = !isIdle || run.isOver;
-    controls.reset.disabled = !isIdle || at === 0;
-    controls.slider.disabled = !isIdle || newest === 0;
-    controls.slider.max = `${newest}`;
-    controls.slider.value = `${at}`;
-    controls.download.disabled = !isIdle;
-    const position = run ? `${number.format(at)} / ${number.format(newest)}${run.hasEnded ? '' : '…'}` : '';
-    element('position').textContent = position;
-    element('status').textContent = run ? statusOf(run) : '';
-    const isFinal = run?.isOver && this.#summary?.iterations === newest;
-    const remains = isFinal && this.#summary ? left(reasons(this.#summary.remaining)) : '';
-    const note = [remains, this.#opened?.remark, run ? whyThere(run, this.#summary) : ''].filter(Boolean).join(' ');
-    element('note').hidden = note === '';
-    element('note').textContent = note;
-    element('caption').textContent = this.#opened?.name ?? '';
-    const state = this.#job ? 'busy' : !run ? 'empty' : this.#player.isPlaying ? 'playing' : run.isOver ? 'done' : 'ready';
-    document.body.dataset['state'] = state;
+    const [run, opened, summary] = [this.#run, this.#opened, this.#summary];
+    showTransport({ run, opened, summary, isBusy: this.#job !== undefined, isPlaying: this.#player.isPlaying });
   }
 
   /** What was chosen in vain gives way to what the run was begun with. */
@@ -280,8 +314,8 @@ export class Page {
     this.#choices.set(settings);
   }
 
-  /** Measures the run and the state that is shown, once nothing has changed for a while. */
-  async #rest(): Promise<void> {
+  /** Measures the run and the state that is shown, once nothing has changed for a while; where there is news, only the run. */
+  async #rest(news?: string): Promise<void> {
     const [run, opened] = [this.#run, this.#opened];
     if (!run || !opened) return;
     const rest = ++this.#rests;
@@ -301,31 +335,41 @@ export class Page {
       this.#panel.showFacts(opened.mesh, run, this.#summary, this.#settings?.beta, fingerprint);
       this.#panel.showLegend(run.states, this.#summary);
       this.#showTransport();
-      const now = await opened.office.ask((desk) => desk.measure({ ...opened.mesh, indices }, BINS));
+      if (news === undefined) await this.#measure(indices, isOutdated);
       if (isOutdated()) return;
-      this.#panel.showQuality(opened.before, now);
-      if (run.isOver) {
-        const change = await opened.office.ask((desk) => desk.compare(opened.mesh, indices));
-        if (isOutdated()) return;
-        this.#panel.showQuality(opened.before, now, change);
-      }
-      element('announcement').textContent = `${statusOf(run)}. ${element('note').textContent}`;
+      element('announcement').textContent = news ?? `${statusOf(run)}. ${element('note').textContent}`;
       document.body.dataset['measured'] = `${run.at}`;
+      void this.#handOver();
     } catch (error) {
       if (!isOutdated()) this.#showFailure(error);
     }
   }
 
+  /** Measures the triangles, which are those that are shown. */
+  async #measure(indices: Uint32Array, isOutdated: () => boolean): Promise<void> {
+    const [run, opened] = [this.#run, this.#opened];
+    if (!run || !opened) return;
+    const { mesh, office } = opened;
+    const before = await opened.before();
+    const now = run.at === 0 ? before : await office.ask((desk) => desk.measure({ ...mesh, indices }, BINS));
+    if (isOutdated()) return;
+    this.#panel.showQuality(before, now);
+    if (!run.isOver) return;
+    const change = await office.ask((desk) => desk.compare(mesh, indices));
+    if (!isOutdated()) this.#panel.showQuality(before, now, change);
+  }
+
   async #openGpu(): Promise<void> {
-    this.#gpu = await openGpu();
-    const device = typeof this.#gpu === 'string' ? undefined : this.#gpu.device;
+    this.#gpu = undefined;
+    const gpu = await openGpu();
+    const device = typeof gpu === 'string' ? undefined : gpu.device;
     try {
       this.#scene = await Scene.create(element('view'), device, palette());
     } catch {
       element('no-mesh').textContent = 'This browser can draw neither with WebGPU nor with WebGL2. The numbers are right all the same.';
       element('no-mesh').hidden = false;
     }
-    if (device && !this.#scene?.isOnWebGpu) this.#gpu = 'the page could not draw with WebGPU';
+    this.#gpu = device && !this.#scene?.isOnWebGpu ? 'the page could not draw with WebGPU' : gpu;
     void device?.lost.then(({ message }) => this.#recover(message || 'no reason given', true));
   }
 
@@ -335,7 +379,6 @@ export class Page {
    */
   async #recover(reason: string, isOfPage: boolean): Promise<void> {
     const [run, opening] = [this.#run, this.#opening];
-    const at = run?.at ?? 0;
     let hasRecovered = false;
     await this.#attempt('The GPU was lost; going on from the input…', async (signal) => {
       if (isOfPage) {
@@ -350,11 +393,12 @@ export class Page {
       const { backend, beta } = this.#choices.settings;
       const isAgain = this.#lost === opened;
       this.#lost = opened;
-      // What has lost the GPU twice would go on losing it.
-      const isHopeless = opening ? isAgain : !run?.isInWorker && (isAgain || backend === 'auto');
+      // What has lost the GPU twice would go on losing it; `auto` does not go back to it with what was on it.
+      const [isAuto, isOnGpu] = [backend === 'auto', !opening && !run?.isInWorker];
+      const isHopeless = isAgain ? opening || isOnGpu || isAuto : isOnGpu && isAuto;
       if (!isOfPage || isHopeless) this.#choices.set({ backend: 'cpu', beta });
       await this.#begin(opened, signal);
-      while (!opening && this.#run && this.#run.at < at && !signal.aborted && (await this.#forward(this.#run)));
+      if (!opening && run) await this.#goThere(run, signal);
       hasRecovered = true;
     });
     // What was chosen meanwhile has taken its place.
@@ -371,6 +415,16 @@ export class Page {
     }
   }
 
+  /** Lets the run go the way of the one before it. */
+  async #goThere(before: Run, signal: AbortSignal): Promise<void> {
+    try {
+      await this.#run?.follow(before, signal);
+    } catch (error) {
+      this.#showFailure(error);
+    }
+    await this.redraw();
+  }
+
   #recolour(): void {
     const colours = palette();
     this.#scene?.setPalette(colours);
@@ -385,24 +439,6 @@ function showProgress(text: string, share = 1): void {
   const bar = element<HTMLProgressElement>('progress');
   if (share < 1) bar.value = share;
   else bar.removeAttribute('value');
-}
-
-function statusOf({ at, isOver, iterations }: Run): string {
-  if (at === 0) return isOver ? 'No edge of the input may flip' : 'The input';
-  const flips = iterations.slice(0, at).reduce((sum, iteration) => sum + iteration.flips, 0);
-  const so = `${number.format(flips)} ${flips === 1 ? 'flip' : 'flips'} in ${number.format(at)} ${at === 1 ? 'iteration' : 'iterations'}`;
-  return isOver ? `Done: ${so}` : so;
-}
-
-/** Why `auto` has come to the engine that it is on. */
-function whyThere({ fallback }: Run, summary: Summary | undefined): string {
-  if (!fallback || !summary) return '';
-  const engine = `${summary.backend === 'cpu' ? 'the ' : ''}${ENGINES[summary.backend]}`;
-  return `On ${engine}: ${[fallback, summary.fallback].filter(Boolean).join('; ')}.`;
-}
-
-function left(what: string): string {
-  return what === 'none' ? 'Every edge is Delaunay.' : `Not Delaunay, and may not flip: ${what}.`;
 }
 
 /** The first 64 bits of the SHA-256 of the triangles, as 32-bit little-endian words. */

@@ -72,6 +72,14 @@ export class Panel {
     }
   }
 
+  /** The times of the same iterations on another engine. */
+  showTimes(iterations: readonly Iteration[]): void {
+    iterations.slice(0, MOST_ROWS).forEach((iteration, i) => {
+      const [, , , , time] = this.#rows.children[i]?.children ?? [];
+      if (time) time.textContent = ms.format(iteration.ms);
+    });
+  }
+
   /** The states of the edges that are drawn in colours. */
   showLegend(states: Uint8Array | undefined, summary?: Summary): void {
     element('legend-section').hidden = !states;
@@ -110,7 +118,9 @@ export class Panel {
       ...frozen('Non-manifold', summary.nonManifoldEdges),
       ...frozen('Inconsistent', summary.inconsistentEdges),
       ...(mesh.dimension === 3 ? { β: `${beta}°` } : {}),
-      Engine: `${ENGINES[summary.backend]}${run.isInWorker ? ', in a worker' : ''}`,
+      ...(run.awaitsGpu
+        ? { Engine: 'CPU, until WebGPU is ready', Adapter: '…', Dispatches: '…' }
+        : { Engine: `${ENGINES[summary.backend]}${run.isInWorker ? ', in a worker' : ''}` }),
       ...(summary.backend !== 'cpu'
         ? { Adapter: summary.adapter || 'the browser gives no name', Dispatches: measured(number.format(summary.dispatches)) }
         : {}),

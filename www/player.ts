@@ -20,6 +20,11 @@ export class Player {
     return this.#loop !== undefined;
   }
 
+  /** Whether no iteration has been asked for that is still to come. */
+  get isAtRest(): boolean {
+    return !this.isPlaying && !this.#isStepping;
+  }
+
   /** Plays to the end. `interval` gives the milliseconds from one iteration to the next. */
   async play(run: Run, interval: () => number): Promise<void> {
     const loop = {};

@@ -86,7 +86,9 @@ export class Run {
   /** Whether the engine is in a worker, and not on the GPU that draws. */
   readonly isInWorker: boolean;
   /** Why `auto` did not take the GPU that draws; the summary tells what else it did not take. */
-  readonly fallback: string | undefined;
+  fallback: string | undefined;
+  /** Whether it is on the CPU only until the GPU that draws is ready. */
+  awaitsGpu = false;
   readonly iterations: Iteration[] = [];
   readonly #states: (Uint8Array | undefined)[];
   readonly #stepper: Stepper;
@@ -186,6 +188,19 @@ export class Run {
   #move(at: number): void {
     while (this.#at < at) this.#track.apply(this.#at++);
     while (this.#at > at) this.#track.apply(--this.#at);
+  }
+
+  /**
+   * Goes the way that another run of the mesh has gone, and shows the state that it shows.
+   *
+   * @throws where it ends sooner.
+   */
+  async follow(other: Run, signal?: AbortSignal): Promise<void> {
+    const isBehind = () => this.iterations.length < other.iterations.length || (other.hasEnded && !this.#hasEnded);
+    this.seek(this.iterations.length);
+    while (isBehind() && !signal?.aborted && (await this.forward()));
+    if (this.#hasEnded && isBehind()) throw new Error('it came to another end than the engine before');
+    this.seek(Math.min(other.at, this.iterations.length));
   }
 
   get drawn(): Drawn {

@@ -1,0 +1,48 @@
+/** The programs of the flips on the page's GPU. They take far longer to compile than a small mesh to flip. */
+
+import { FlipSession } from 'edgeflip';
+import type { OpenMesh } from './run.ts';
+
+export class Kernels {
+  readonly #device: GPUDevice;
+  /** Those that are ready or on their way, by the form of the meshes that they are for. */
+  readonly #made = new Map<string, Promise<void>>();
+  readonly #ready = new Set<string>();
+
+  constructor(device: GPUDevice) {
+    this.#device = device;
+  }
+
+  areReadyFor(mesh: OpenMesh): boolean {
+    return this.#ready.has(formOf(mesh));
+  }
+
+  /**
+   * Compiles and tests what a mesh needs, once for all meshes of its form. After a failure the next call tries again.
+   *
+   * @throws {@link EdgeflipError} about the GPU.
+   */
+  makeReadyFor(mesh: OpenMesh): Promise<void> {
+    const form = formOf(mesh);
+    let made = this.#made.get(form);
+    if (!made) {
+      made = this.#make(mesh).then(() => void this.#ready.add(form));
+      this.#made.set(form, made);
+      made.catch(() => this.#made.delete(form));
+    }
+    return made;
+  }
+
+  /** The package keeps what it has compiled for a device when the session has gone. */
+  async #make({ dimension, positions }: OpenMesh): Promise<void> {
+    const corners = [0, 0, 0, 1, 0, 0, 0, 1, 0].filter((_, i) => i % 3 < dimension);
+    const Floats = positions instanceof Float64Array ? Float64Array : Float32Array;
+    const triangle = { dimension, positions: new Floats(corners), indices: new Uint32Array([0, 1, 2]) };
+    const session = await FlipSession.create(triangle, { backend: 'webgpu', device: this.#device });
+    session.free();
+  }
+}
+
+function formOf({ dimension, positions }: OpenMesh): string {
+  return `${dimension}, ${positions.BYTES_PER_ELEMENT}`;
+}
