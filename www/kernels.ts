@@ -35,7 +35,8 @@ export class Kernels {
 
   /** The package keeps what it has compiled for a device when the session has gone. */
   async #make({ dimension, positions }: OpenMesh): Promise<void> {
-    const corners = [0, 0, 0, 1, 0, 0, 0, 1, 0].filter((_, i) => i % 3 < dimension);
+    // A double that is a 32-bit float too would be taken for one.
+    const corners = [0, 0, 0, 0.1, 0, 0, 0, 0.1, 0].filter((_, i) => i % 3 < dimension);
     const Floats = positions instanceof Float64Array ? Float64Array : Float32Array;
     const triangle = { dimension, positions: new Floats(corners), indices: new Uint32Array([0, 1, 2]) };
     const session = await FlipSession.create(triangle, { backend: 'webgpu', device: this.#device });
