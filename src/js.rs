@@ -4,11 +4,13 @@
 mod objects;
 
 #[cfg(feature = "js")]
+use crate::Mesh;
+#[cfg(feature = "js")]
 use crate::engine;
 #[cfg(feature = "js")]
 pub use crate::engine::{GpuDevice, WebGl2Module};
 use crate::js_promise::promise;
-#[cfg(feature = "js-threads")]
+#[cfg(all(feature = "js-threads", not(feature = "js")))]
 use crate::js_threads::Indices;
 pub use crate::js_values::JsPositions;
 #[cfg(feature = "js")]
@@ -18,15 +20,31 @@ use crate::js_values::{backend_name, coded, mesh_of, object, positions_array, re
 use crate::session::{self, Job};
 use crate::threads::Threads;
 use crate::{Backend, Error, Options, Order, Session, memory};
+#[cfg(feature = "js")]
+use js_sys::Reflect;
 use js_sys::{Array, Promise, Uint8Array, Uint32Array};
 use objects::outcome_object;
 use std::cell::RefCell;
 use std::num::NonZeroUsize;
 use std::rc::Rc;
+use std::sync::Arc;
 use wasm_bindgen::prelude::*;
 
-/// Vertex indices, as JavaScript gets them.
-#[cfg(not(feature = "js-threads"))]
+/// An error with the mesh that was refused.
+#[cfg(feature = "js")]
+fn with_mesh(error: JsValue, mesh: &Mesh) -> JsValue {
+    let arrays = object([
+        ("positions", positions_array(mesh.positions())),
+        ("indices", Uint32Array::from(mesh.triangles()).into()),
+        ("dimension", (mesh.dimension().stride() as u32).into()),
+    ]);
+    // Setting a field of an error does not fail.
+    let _ = Reflect::set(&error, &"mesh".into(), &arrays);
+    error
+}
+
+/// Vertex indices, as JavaScript gets them from an engine that has them in the memory of the module.
+#[cfg(not(any(feature = "js-threads", feature = "js")))]
 type Indices = Uint32Array;
 
 #[wasm_bindgen]
@@ -122,7 +140,7 @@ impl JsSession {
     ///
     /// # Errors
     /// Those of [`Mesh::new`](crate::Mesh::new) and [`Session::new`]; `backend-unavailable`, with the reasons alone, where the options leave
-    /// the CPU.
+    /// the CPU. Where another engine or another try may take it, a promise gives the mesh back with the error, as `mesh`.
     #[wasm_bindgen(unchecked_return_type = "Promise<Session>")]
     pub fn create(
         positions: JsPositions,
@@ -135,13 +153,16 @@ impl JsSession {
             Ok((mesh, parse_options(&options)?))
         };
         let (mesh, chosen) = open().map_err(thrown)?;
+        let mesh = Arc::new(mesh);
         Ok(promise(async move {
-            match Session::new(mesh, chosen).await {
+            match Session::new(mesh.clone(), chosen).await {
                 Ok(session) => Ok(Self(Rc::new(RefCell::new(Some(session)))).into()),
                 #[cfg(feature = "js")]
                 Err(Error::Device { message }) if options.leaves_cpu() == Some(true) => {
-                    Err(coded("backend-unavailable", &message))
+                    Err(with_mesh(coded("backend-unavailable", &message), &mesh))
                 }
+                #[cfg(feature = "js")]
+                Err(error @ Error::OutOfMemory { .. }) => Err(with_mesh(thrown(error), &mesh)),
                 Err(error) => Err(thrown(error)),
             }
         }))
@@ -183,6 +204,9 @@ impl JsSession {
     /// As [`Session::triangles`].
     #[wasm_bindgen(unchecked_return_type = "Promise<Uint32Array>")]
     pub fn triangles(&self) -> Promise {
+        #[cfg(feature = "js")]
+        return self.ask(Session::triangles_array, JsValue::from);
+        #[cfg(not(feature = "js"))]
         self.ask(Session::triangles, |triangles| indices(triangles).into())
     }
 
@@ -191,7 +215,13 @@ impl JsSession {
         unchecked_return_type = "Promise<Omit<import('../types.js').Result, 'turnedTriangles' | 'joinedVertices' | 'seamEdges'>>"
     )]
     pub fn outcome(&self) -> Promise {
-        self.ask(Session::outcome, outcome_object)
+        #[cfg(feature = "js")]
+        return self.ask(Session::outcome_array, |(outcome, array)| outcome_object(outcome, array.into()));
+        #[cfg(not(feature = "js"))]
+        self.ask(Session::outcome, |mut outcome| {
+            let triangles = std::mem::take(&mut outcome.triangles);
+            outcome_object(outcome, indices(triangles).into())
+        })
     }
 
     /// As [`Session::edges`].
@@ -287,6 +317,7 @@ impl JsSession {
 }
 
 /// The triangles of a session, for JavaScript.
+#[cfg(not(feature = "js"))]
 fn indices(triangles: Vec<u32>) -> Indices {
     #[cfg(feature = "js-threads")]
     return Indices(triangles);

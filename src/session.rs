@@ -31,6 +31,9 @@ use choice::{Choice, cpu_after, engine_for};
 pub(crate) use cost::Job;
 #[cfg(not(target_arch = "wasm32"))]
 pub use early::{EarlyGpu, close_gpu};
+#[cfg(all(target_arch = "wasm32", feature = "js"))]
+use js_sys::Uint32Array;
+use std::borrow::Cow;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use web_time::Instant;
@@ -198,19 +201,45 @@ impl Session {
     pub async fn outcome(&mut self) -> Result<Outcome, Error> {
         let start = Instant::now();
         let triangles = self.triangles().await?;
+        let outcome = self.summary(start, &|| Cow::Borrowed(&triangles)).await?;
+        Ok(Outcome { triangles, ..outcome })
+    }
+
+    /// As [`Session::outcome`], with the triangles in an array of JavaScript.
+    #[cfg(all(target_arch = "wasm32", feature = "js"))]
+    pub(crate) async fn outcome_array(&mut self) -> Result<(Outcome, Uint32Array), Error> {
+        let start = Instant::now();
+        let array = self.triangles_array().await?;
+        let outcome = self.summary(start, &|| Cow::Owned(array.to_vec())).await?;
+        Ok((outcome, array))
+    }
+
+    /// As [`Session::triangles`], in an array of JavaScript.
+    #[cfg(all(target_arch = "wasm32", feature = "js"))]
+    pub(crate) async fn triangles_array(&mut self) -> Result<Uint32Array, Error> {
+        self.check_room(room::COPY)?;
+        self.ask(|engine| engine.triangles_array()).await
+    }
+
+    /// The outcome without the triangles, which are asked for only where they are looked at.
+    async fn summary<'a>(
+        &mut self,
+        start: Instant,
+        triangles: &dyn Fn() -> Cow<'a, [u32]>,
+    ) -> Result<Outcome, Error> {
         let census = self.ask(|engine| engine.census()).await?;
         let counts = self.engine.edge_counts();
         let mut remaining = census.blocked;
         remaining[Reason::Stopped] = u64::from(census.labelled);
         if counts.non_manifold + counts.inconsistent > 0 {
-            let frozen = frozen::count_non_delaunay(&self.mesh, &triangles);
+            let frozen = frozen::count_non_delaunay(&self.mesh, &triangles());
             for reason in [Reason::NonManifold, Reason::Inconsistent] {
                 remaining[reason] = frozen[reason];
             }
         }
         let Timings { upload, adjacency, flip, .. } = self.timings;
         Ok(Outcome {
-            triangles,
+            triangles: Vec::new(),
             status: if census.labelled == 0 { Status::Done } else { Status::Stopped },
             backend: self.engine.backend(),
             adapter: self.engine.adapter(),

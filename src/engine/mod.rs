@@ -95,6 +95,13 @@ pub(crate) trait Engine {
     /// The triangles as they are now.
     fn triangles(&mut self) -> Answer<'_, Vec<u32>>;
 
+    /// The same in an array of JavaScript.
+    #[cfg(all(target_arch = "wasm32", feature = "js"))]
+    fn triangles_array(&mut self) -> Answer<'_, js_sys::Uint32Array> {
+        let triangles = self.triangles();
+        Box::pin(async { Ok(triangles.await?.as_slice().into()) })
+    }
+
     /// The twins as they are now, with the flags [`CREASE`](crate::adjacency::CREASE) and
     /// [`LOCKED`](crate::adjacency::LOCKED).
     fn twins(&mut self) -> Answer<'_, Vec<u32>>;

@@ -88,10 +88,19 @@ export function viewOf<K extends Kind>(given: unknown, kinds: readonly K[], what
  * @throws {@link EdgeflipError} `too-large`, also where WebAssembly can have no such array.
  */
 export function copyOf<A extends VertexArray>(view: A, what: string): A {
+  return read(what, () => itselfOf(view, what).slice() as A);
+}
+
+/**
+ * The view itself, for a module that copies it before anything waits.
+ *
+ * @throws {@link EdgeflipError} `too-large` where WebAssembly can have no such array.
+ */
+export function itselfOf<A extends VertexArray>(view: A, what: string): A {
   if (view.byteLength > MOST_BYTES) {
     throw new EdgeflipError('too-large', `${what} have ${view.byteLength} bytes, and an array of WebAssembly has ${MOST_BYTES} at most`);
   }
-  return read(what, () => view.slice() as A);
+  return view;
 }
 
 /**

@@ -3,8 +3,16 @@
 import initModule, { setWebGl2 } from './wasm/edgeflip.js';
 import { compile, loader } from './module.js';
 
+let isStarted = false;
+
+/** Whether the module of the engines can be called at once. */
+export function isLoaded(): boolean {
+  return isStarted;
+}
+
 const start: typeof initModule = async (source) => {
   const module = await initModule(source);
+  isStarted = true;
   setWebGl2({
     async create(...mesh) {
       await initWebGl2();

@@ -32,6 +32,15 @@ export function moduleMesh(mesh: Mesh, hold: Hold = copyOf): IndexedMesh {
   });
 }
 
+/**
+ * A mesh in arrays of its own.
+ *
+ * @throws {@link EdgeflipError} `too-large`.
+ */
+export function copied({ positions, indices, dimension }: IndexedMesh): IndexedMesh {
+  return { positions: copyOf(positions, 'positions'), indices: copyOf(indices, 'indices'), dimension };
+}
+
 /** @throws {@link EdgeflipError} `invalid-input`, for a program without types. */
 export function checkDimension(dimension: number): void {
   if (dimension === 2 || dimension === 3) return;

@@ -1,12 +1,12 @@
 //! The result as a JavaScript object, in the words of the npm package: the field names of `src/js/types.ts`.
 
-use super::indices;
 use crate::js_values::{backend_name, object, reasons_object};
 use crate::{Outcome, Status};
 use js_sys::{JsString, Uint32Array};
 use wasm_bindgen::JsValue;
 
-pub(super) fn outcome_object(outcome: Outcome) -> JsValue {
+/// `indices` are the triangles.
+pub(super) fn outcome_object(outcome: Outcome, indices: JsValue) -> JsValue {
     let count = |n: u64| JsValue::from(n as f64);
     let text = |text: &Option<String>| text.as_deref().map_or(JsValue::UNDEFINED, JsValue::from);
     // It quotes errors, in the words of Rust.
@@ -24,7 +24,7 @@ pub(super) fn outcome_object(outcome: Outcome) -> JsValue {
         ("total", outcome.timings.total.into()),
     ]);
     object([
-        ("indices", indices(outcome.triangles).into()),
+        ("indices", indices),
         ("status", status.into()),
         ("backend", backend_name(outcome.backend).into()),
         ("adapter", text(&outcome.adapter)),

@@ -2,31 +2,37 @@
 
 import { collecting } from './collect.js';
 import { fromModule } from './error.js';
-import { init, loadThreads } from './load.js';
-import type { IndexedMesh } from './mesh.js';
+import { init, isLoaded, loadThreads } from './load.js';
+import { copied, type IndexedMesh } from './mesh.js';
 import type { Settings } from './settings.js';
 import { type ModuleSession, threadCount, ThreadsSession, threadsOf } from './threads.js';
 import { Session, whyCpu } from './wasm/edgeflip.js';
 
 /**
  * A session on the engine that the settings take; the CPU engine has threads where they are worth while and can be had.
- * The arrays of the mesh are given away.
+ * The arrays of the mesh are read before this returns its promise, and not after it.
  */
 export async function open(mesh: IndexedMesh, settings: Settings): Promise<ModuleSession> {
   const count = threadCount(mesh.indices.length / 3, settings);
   const { backend = 'auto', order } = settings;
   if (count === 1 || (backend !== 'auto' && backend !== 'cpu')) return openAlone(mesh, settings);
-  if (backend === 'cpu' || order === 'any') return openOnThreads(mesh, settings, count);
-  await init();
+  if (backend === 'cpu' || order === 'any') return openOnThreads(copied(mesh), settings, count);
+  let given = mesh;
+  if (!isLoaded()) {
+    given = copied(mesh);
+    await init();
+  }
   const { positions, indices, dimension } = mesh;
   const why = whyCpu(indices.length / 3, dimension, positions instanceof Float64Array, count, settings);
-  if (why !== undefined) return openOnThreads(mesh, settings, count, inWordsOfPackage(why));
+  if (why !== undefined) {
+    return openOnThreads(given === mesh ? copied(mesh) : given, settings, count, inWordsOfPackage(why));
+  }
   try {
-    return await openAlone(mesh, { ...settings, leavesCpu: true });
+    return await openAlone(given, { ...settings, leavesCpu: true });
   } catch (thrown) {
     const { code, message } = fromModule(thrown);
     if (code !== 'backend-unavailable') throw thrown;
-    return openOnThreads(mesh, settings, count, inWordsOfPackage(message));
+    return openOnThreads((thrown as Refusal).mesh, settings, count, inWordsOfPackage(message));
   }
 }
 
@@ -36,14 +42,33 @@ function inWordsOfPackage(why: string): string {
 
 /** In the module of the engines; `leavesCpu`: but for the CPU engine, where `'auto'` would take that. */
 async function openAlone(
-  { positions, indices, dimension }: IndexedMesh,
+  mesh: IndexedMesh,
   settings: Settings & { leavesCpu?: boolean },
 ): Promise<ModuleSession> {
-  await init();
-  return collecting(() => Session.create(positions, indices, dimension, settings));
+  let given = mesh;
+  if (!isLoaded()) {
+    given = copied(mesh);
+    await init();
+  }
+  return collecting(async () => {
+    let opening: Promise<ModuleSession> | undefined;
+    try {
+      opening = Session.create(given.positions, given.indices, given.dimension, settings);
+      return await opening;
+    } catch (thrown) {
+      // Another try needs the arrays, which are the caller's once this has waited.
+      given = opening ? ((thrown as Partial<Refusal>).mesh ?? given) : copied(given);
+      throw thrown;
+    }
+  });
 }
 
-/** Where they cannot be started, one gives the same result. */
+/** What the module throws where another engine, or another try, may take the mesh. */
+interface Refusal extends Error {
+  mesh: IndexedMesh;
+}
+
+/** Where they cannot be started, one gives the same result. The arrays of the mesh are given away. */
 async function openOnThreads(mesh: IndexedMesh, settings: Settings, count: number, fallback?: string): Promise<ModuleSession> {
   const module = await loadThreads().catch(() => undefined);
   const threads = await (module && threadsOf(module, count).catch(() => undefined));

@@ -6,8 +6,8 @@ import type { EDGE_STATES } from './edge-states.js';
 import { EdgeflipError, fromModule } from './error.js';
 import type { Welded } from './files.js';
 import { initAudit } from './load.js';
-import { copyOf } from './given.js';
-import { moduleMesh, positionsOf } from './mesh.js';
+import { copyOf, itselfOf } from './given.js';
+import { copied, moduleMesh, positionsOf } from './mesh.js';
 import { open } from './open.js';
 import { chosenOf, watchOf } from './settings.js';
 import type { ModuleSession } from './threads.js';
@@ -49,11 +49,14 @@ export class FlipSession implements AsyncIterable<Iteration>, Disposable {
    * @throws {@link EdgeflipError} about the mesh, the options or the backend.
    */
   static async create(mesh: Mesh, options: Options = {}): Promise<FlipSession> {
-    const [copy, chosen] = [moduleMesh(mesh), chosenOf(options)];
+    const [views, chosen] = [moduleMesh(mesh, itselfOf), chosenOf(options)];
     try {
-      const isAsked = chosen.reorient || chosen.weld;
-      const { turned, welded, ...begun } = isAsked ? await (await import('./prepare.js')).prepare(copy, chosen) : { ...copy, ...chosen };
-      return new FlipSession(await open({ ...copy, indices: begun.indices }, begun.settings), turned, welded);
+      // What is asked for first has to be loaded first.
+      if (!chosen.reorient && !chosen.weld) return new FlipSession(await open(views, chosen.settings));
+      const copy = copied(views);
+      const { prepare } = await import('./prepare.js');
+      const { indices, turned, welded, settings } = await prepare(copy, chosen);
+      return new FlipSession(await open({ ...copy, indices }, settings), turned, welded);
     } catch (thrown) {
       throw fromModule(thrown);
     }

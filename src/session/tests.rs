@@ -6,17 +6,20 @@ use super::*;
 use crate::engine::{Census, Cpu, EdgeCounts};
 use pollster::block_on;
 
-/// A device that is lost at a certain question.
+/// A device that is lost at a certain question, or finds out there that it cannot take the mesh.
 struct Failing {
     cpu: Cpu,
     questions_left: u32,
+    refuses: bool,
 }
 
 impl Failing {
     fn answer<'a, T: 'a>(&'a mut self, ask: impl FnOnce(&'a mut Cpu) -> Answer<'a, T>) -> Answer<'a, T> {
         if self.questions_left == 0 {
             let message = "lost on purpose".to_owned();
-            return Box::pin(std::future::ready(Err(Error::Device { message })));
+            let limit = Error::BackendLimit { backend: "gpu", message: message.clone() };
+            let error = if self.refuses { limit } else { Error::Device { message } };
+            return Box::pin(std::future::ready(Err(error)));
         }
         self.questions_left -= 1;
         ask(&mut self.cpu)
@@ -61,7 +64,7 @@ fn session(backend: Backend, questions_left: u32) -> Session {
     let mut session = block_on(Session::new(mesh, options)).unwrap();
     let mut cpu = Cpu::new(session.mesh.clone(), Thresholds::from(&session.options), Threads::default());
     block_on(cpu.lock(locks::half_edges(&session.mesh, &session.options.locked_edges).unwrap())).unwrap();
-    session.engine = Box::new(Failing { cpu, questions_left });
+    session.engine = Box::new(Failing { cpu, questions_left, refuses: false });
     session.options.backend = backend;
     session
 }
@@ -100,6 +103,20 @@ fn a_lost_device_changes_no_result_at_any_moment() {
         assert!(counts.is_sorted());
         assert_eq!(block_on(session.outcome()).unwrap().triangles, outcome.triangles);
     }
+}
+
+#[test]
+fn a_mesh_that_is_refused_late_goes_to_the_next_engine() {
+    let refusing = |backend| {
+        let mut session = session(backend, 0);
+        let cpu = Cpu::new(session.mesh.clone(), Thresholds::from(&session.options), Threads::default());
+        session.engine = Box::new(Failing { cpu, questions_left: 0, refuses: true });
+        watch(session)
+    };
+    let (_, outcome) = refusing(Backend::Auto).unwrap();
+    assert_eq!((outcome.backend, outcome.status), ("cpu", Status::Done));
+    assert!(outcome.fallback.is_some_and(|why| why.starts_with("backend gpu ")));
+    assert!(matches!(refusing(Backend::Gpu), Err(Error::BackendLimit { .. })));
 }
 
 #[test]

@@ -51,9 +51,8 @@ impl Buffers {
                 .is_fixed
                 .then(|| drawn("floats", mesh.positions().len(), BufferUsages::VERTEX)),
         };
-        gpu.write(&buffers.triangles, mesh.triangles());
         gpu.write(&buffers.steps, &step_words);
-        buffers.write_positions(gpu, upload);
+        buffers.write(gpu, upload, mesh.triangles());
         buffers
     }
 
@@ -75,12 +74,12 @@ impl Buffers {
         all.into_iter().chain(floats).map(|buffer| buffer.size()).sum()
     }
 
-    pub(super) fn write_positions(&self, gpu: &Device, upload: &Upload) {
-        gpu.write(&self.positions, upload.words());
-        if let Some(floats) = &self.floats {
-            let numbers = upload.mesh.positions().to_f32();
-            gpu.write(floats, bytemuck::cast_slice(&numbers));
-        }
+    /// Writes the positions, and triangles unless they stay.
+    pub(super) fn write(&self, gpu: &Device, upload: &Upload, triangles: &[u32]) {
+        let numbers = self.floats.as_ref().map(|floats| (floats, upload.mesh.positions().to_f32()));
+        let mut writes = vec![(&self.triangles, triangles), (&self.positions, upload.words())];
+        writes.extend(numbers.iter().map(|(floats, numbers)| (*floats, bytemuck::cast_slice(numbers))));
+        gpu.write_all(&writes);
     }
 
     /// Bound for the phases.

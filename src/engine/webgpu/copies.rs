@@ -1,8 +1,12 @@
 //! What goes to a device, and comes back.
 
 use super::device::{Buffer, Device};
-use super::faults::watch;
+use super::faults::{Word, watch};
+#[cfg(target_arch = "wasm32")]
+use super::staging;
+use super::staging::Kept;
 use crate::Error;
+#[cfg(not(target_arch = "wasm32"))]
 use crate::threads::Threads;
 use futures_channel::oneshot;
 use std::ops::Range;
@@ -12,11 +16,25 @@ use wgpu::BufferUsages;
 
 /// Words that are copied to the device, or from it, at a time: the memory between them is used again, which is far
 /// faster than more of it would be.
+#[cfg(not(target_arch = "wasm32"))]
 pub(super) const CHUNK: usize = 1 << 22;
+/// In a browser each time is a wait: as many as the memory between them has that is kept.
+#[cfg(target_arch = "wasm32")]
+pub(super) const CHUNK: usize = staging::MOST as usize / 4;
 
 /// Words that one thread copies at a time.
 #[cfg(not(target_arch = "wasm32"))]
 pub(super) const PIECE: usize = 1 << 16;
+
+/// Words for whoever has asked for a result.
+#[cfg(not(target_arch = "wasm32"))]
+pub(super) type Words = Vec<u32>;
+
+/// Room for so many.
+#[cfg(not(target_arch = "wasm32"))]
+pub(super) fn room(words: usize) -> Option<Words> {
+    Some(Vec::with_capacity(words))
+}
 
 /// What is read: so many words of a buffer, from one of them on.
 pub(super) struct Source<'a> {
@@ -32,14 +50,52 @@ impl<'a> Source<'a> {
     }
 }
 
-/// Words that have come back, in memory that both sides see.
-pub(super) struct Landed {
+/// Words that are on their way.
+pub(super) struct Coming<'a> {
+    gpu: &'a Device,
     staging: Buffer,
-    /// Where those of each source are, in bytes.
+    word: Word,
+    receiver: oneshot::Receiver<Result<(), wgpu::BufferAsyncError>>,
     places: Vec<Range<u64>>,
 }
 
-impl Landed {
+impl<'a> Coming<'a> {
+    /// Waits for them.
+    ///
+    /// # Errors
+    /// [`Error::Device`].
+    pub(super) async fn landed(self) -> Result<Landed<'a>, Error> {
+        let Self { gpu, staging, word, receiver, places } = self;
+        gpu.judge(word.await)?;
+        let failed = |error: &dyn std::fmt::Display| {
+            gpu.check().err().unwrap_or_else(|| Error::Device { message: error.to_string() })
+        };
+        #[cfg(not(target_arch = "wasm32"))]
+        gpu.wait().map_err(|error| failed(&error))?;
+        receiver.await.map_err(|error| failed(&error))?.map_err(|error| failed(&error))?;
+        gpu.check()?;
+        Ok(Landed { staging: Some(staging), kept: &gpu.read_back, places })
+    }
+}
+
+/// Words that have come back, in memory that both sides see, which the next ones get afterwards.
+pub(super) struct Landed<'a> {
+    pub(super) staging: Option<Buffer>,
+    kept: &'a Kept,
+    /// Where those of each source are, in bytes.
+    pub(super) places: Vec<Range<u64>>,
+}
+
+impl Drop for Landed<'_> {
+    fn drop(&mut self) {
+        if let Some(staging) = self.staging.take() {
+            staging.unmap();
+            self.kept.put(staging);
+        }
+    }
+}
+
+impl Landed<'_> {
     /// The words of the source of this index.
     ///
     /// # Errors
@@ -49,18 +105,22 @@ impl Landed {
         self.append(source, &mut words).map(|()| words)
     }
 
+    /// Puts the words of a source into room for them.
+    ///
+    /// # Errors
+    /// [`Error::Device`].
+    #[cfg(not(target_arch = "wasm32"))]
+    pub(super) fn fill(&self, source: usize, mut room: Words) -> Result<Words, Error> {
+        self.append(source, &mut room).map(|()| room)
+    }
+
+    #[cfg(not(target_arch = "wasm32"))]
     fn append(&self, source: usize, result: &mut Vec<u32>) -> Result<(), Error> {
         let place = self.places[source].clone();
-        if place.is_empty() {
-            return Ok(());
-        }
+        let Some(staging) = self.staging.as_ref().filter(|_| !place.is_empty()) else { return Ok(()) };
         let failed = |error: wgpu::MapRangeError| Error::Device { message: error.to_string() };
-        let view = self.staging.get_mapped_range(place).map_err(failed)?;
-        match bytemuck::try_cast_slice(&view) {
-            Ok(words) => Threads::default().append(result, words),
-            // The browser's view need not be aligned.
-            Err(_) => result.extend(bytemuck::pod_collect_to_vec::<u8, u32>(&view)),
-        }
+        let view = staging.get_mapped_range(place).map_err(failed)?;
+        Threads::default().append(result, bytemuck::cast_slice(&view));
         Ok(())
     }
 }
@@ -71,7 +131,10 @@ impl Device {
     /// # Errors
     /// [`Error::Device`].
     pub(super) async fn read(&self, buffer: &Buffer, words: usize) -> Result<Vec<u32>, Error> {
-        let mut result = Vec::with_capacity(words);
+        let mut result = Vec::new();
+        if words > CHUNK {
+            result.reserve_exact(words);
+        }
         while result.len() < words {
             let first = result.len();
             let source = Source { buffer, first, words: (words - first).min(CHUNK) };
@@ -96,7 +159,16 @@ impl Device {
         &self,
         record: &dyn Fn() -> wgpu::CommandEncoder,
         sources: &[Source<'_>],
-    ) -> Result<Landed, Error> {
+    ) -> Result<Landed<'_>, Error> {
+        self.submit_and_map(record, sources).landed().await
+    }
+
+    /// The same, without a wait.
+    pub(super) fn submit_and_map(
+        &self,
+        record: &dyn Fn() -> wgpu::CommandEncoder,
+        sources: &[Source<'_>],
+    ) -> Coming<'_> {
         let mut end = 0;
         let place = |source: &Source<'_>| {
             // A view begins at a multiple of eight bytes.
@@ -107,19 +179,15 @@ impl Device {
         let places: Vec<_> = sources.iter().map(place).collect();
         let (sender, receiver) = oneshot::channel();
         let submit = || {
-            let staging = Buffer(self.device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some("read-back"),
-                size: end.max(8),
-                usage: BufferUsages::MAP_READ | BufferUsages::COPY_DST,
-                mapped_at_creation: false,
-            }));
+            let new = || self.staging(end, BufferUsages::MAP_READ | BufferUsages::COPY_DST);
+            let staging = self.read_back.take(end).unwrap_or_else(new);
             let mut encoder = record();
             for (Source { buffer, first, words }, place) in sources.iter().zip(&places) {
                 let size = 4 * *words as u64;
                 encoder.copy_buffer_to_buffer(buffer, 4 * *first as u64, &staging, place.start, size);
             }
             self.submit(encoder);
-            staging.map_async(wgpu::MapMode::Read, .., move |result| {
+            staging.map_async(wgpu::MapMode::Read, ..end.max(4), move |result| {
                 // The receiver is gone only if the caller has given up waiting.
                 let _ = sender.send(result);
             });
@@ -128,15 +196,7 @@ impl Device {
             staging
         };
         let (staging, word) = watch(&self.device, submit);
-        self.judge(word.await)?;
-        let failed = |error: &dyn std::fmt::Display| {
-            self.check().err().unwrap_or_else(|| Error::Device { message: error.to_string() })
-        };
-        #[cfg(not(target_arch = "wasm32"))]
-        self.wait().map_err(|error| failed(&error))?;
-        receiver.await.map_err(|error| failed(&error))?.map_err(|error| failed(&error))?;
-        self.check()?;
-        Ok(Landed { staging, places })
+        Coming { gpu: self, staging, word, receiver, places }
     }
 
     #[cfg(not(target_arch = "wasm32"))]
@@ -144,12 +204,20 @@ impl Device {
         self.device.poll(wgpu::PollType::wait_indefinitely())
     }
 
-    /// Waits for the copies of all that was written.
-    #[cfg(not(target_arch = "wasm32"))]
+    /// Waits for the copies of all that was written, where that can be waited for.
     pub(super) fn finish_copies(&self) {
-        self.queue.submit([]);
-        // A failure is told by the next call that can fail.
-        let _ = self.wait();
+        #[cfg(not(target_arch = "wasm32"))]
+        {
+            self.queue.submit([]);
+            // A failure is told by the next call that can fail.
+            let _ = self.wait();
+        }
+    }
+
+    /// Writes words to the starts of buffers, before the next submission.
+    #[cfg(not(target_arch = "wasm32"))]
+    pub(super) fn write_all(&self, writes: &[(&Buffer, &[u32])]) {
+        writes.iter().for_each(|(buffer, words)| self.write(buffer, words));
     }
 
     /// Writes words to the start of `buffer`, before the next submission.
@@ -157,20 +225,13 @@ impl Device {
         for (i, chunk) in words.chunks(CHUNK).enumerate() {
             let place = 4 * (i * CHUNK) as u64;
             self.stage(buffer, place, chunk);
-            #[cfg(not(target_arch = "wasm32"))]
             if chunk.len() == CHUNK {
                 self.finish_copies();
             }
         }
     }
 
-    /// Copies words from where they are; the next submission takes them to their place.
-    #[cfg(target_arch = "wasm32")]
-    fn stage(&self, buffer: &Buffer, place: u64, words: &[u32]) {
-        self.queue.write_buffer(buffer, place, bytemuck::cast_slice(words));
-    }
-
-    /// The same by several threads.
+    /// Copies words by several threads; the next submission takes them to their place.
     #[cfg(not(target_arch = "wasm32"))]
     fn stage(&self, buffer: &Buffer, place: u64, words: &[u32]) {
         let size = wgpu::BufferSize::new(size_of_val(words) as u64);

@@ -6,10 +6,13 @@ use super::copies::Source;
 use super::faults::{Fault, refuse, unavailable, watch};
 use super::kernels::{self, Kernels, Plan, WORKGROUP_SIZE};
 use super::programs;
+use super::staging::Kept;
 use crate::Error;
 use crate::engine::probe::ends_loops_early;
 use crate::engine::self_test::Tested;
 use crate::engine::upload::Form;
+#[cfg(target_arch = "wasm32")]
+use std::rc::Rc;
 #[cfg(test)]
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 use std::sync::{Arc, Mutex};
@@ -55,6 +58,11 @@ pub(crate) struct Device {
     pub(super) adjacency: Kernels,
     /// Those that a mesh has needed.
     phases: Mutex<Phases>,
+    /// For what comes back.
+    pub(super) read_back: Kept,
+    /// For what is written, mapped.
+    #[cfg(target_arch = "wasm32")]
+    pub(super) written: Rc<Kept>,
     #[cfg(test)]
     pub(super) asked: Asked,
 }
@@ -223,6 +231,9 @@ impl Device {
             numbers,
             adjacency,
             phases: Mutex::new(phases),
+            read_back: Kept::default(),
+            #[cfg(target_arch = "wasm32")]
+            written: Rc::default(),
             #[cfg(test)]
             asked: Asked::default(),
         };

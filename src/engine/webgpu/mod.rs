@@ -18,10 +18,13 @@ mod faults;
 mod host;
 mod kernels;
 mod limits;
+#[cfg(target_arch = "wasm32")]
+mod mapped;
 mod params;
 mod programs;
 mod run;
 mod shared;
+mod staging;
 mod start;
 mod steps;
 #[cfg(test)]
@@ -115,9 +118,24 @@ impl Engine for WebGpu {
     }
 
     fn triangles(&mut self) -> Answer<'_, Vec<u32>> {
-        match self.known.triangles.take() {
+        #[cfg(not(target_arch = "wasm32"))]
+        let known = self.known.triangles.take();
+        #[cfg(target_arch = "wasm32")]
+        let known = self.known.triangles.take().map(|array| array.to_vec());
+        match known {
             Some(triangles) => Box::pin(std::future::ready(Ok(triangles))),
             None => Box::pin(self.gpu.read(&self.buffers.triangles, 3 * self.params.triangles as usize)),
+        }
+    }
+
+    #[cfg(all(target_arch = "wasm32", feature = "js"))]
+    fn triangles_array(&mut self) -> Answer<'_, js_sys::Uint32Array> {
+        match self.known.triangles.take() {
+            Some(triangles) => Box::pin(std::future::ready(Ok(triangles))),
+            None => {
+                let words = 3 * self.params.triangles as usize;
+                Box::pin(self.gpu.read_array(&self.buffers.triangles, words))
+            }
         }
     }
 

@@ -1,9 +1,14 @@
 //! The iterations, and what is read behind them.
 
 use super::adjacency::COUNTERS;
-use super::copies::{CHUNK, Source};
+use super::copies::Source;
+#[cfg(not(target_arch = "wasm32"))]
+use super::copies::{Words, room};
 use super::kernels::{Kernel, WORKGROUP_SIZE};
+#[cfg(target_arch = "wasm32")]
+use super::mapped::{Words, room};
 use super::programs::{DECIDERS, LANE_COUNT};
+use super::staging;
 use super::steps::Step;
 use super::{BATCH, COUNTS, ENTRIES, ENTRY_WORDS, HISTORY_WORDS, PAUSES, SHORT_TAIL, TAIL, WebGpu};
 use crate::Error;
@@ -17,7 +22,7 @@ const CENSUS_DISPATCHES: u64 = 3;
 pub(super) struct Known {
     pub(super) census: Option<Census>,
     /// Gone once they were asked for.
-    pub(super) triangles: Option<Vec<u32>>,
+    pub(super) triangles: Option<Words>,
 }
 
 impl WebGpu {
@@ -70,11 +75,15 @@ impl WebGpu {
         ];
         // Most runs end in their first submission.
         let is_run = self.params.first == 0 && count > 1;
-        if !self.waits && is_run && triangles + HISTORY_WORDS + COUNTERS < CHUNK {
+        let has_triangles = !self.waits && is_run && (4 * triangles as u64) < staging::MOST;
+        if has_triangles {
             sources.push(Source::new(&self.buffers.triangles, triangles));
         }
-        let landed = self.gpu.submit_and_read(&record, &sources).await?;
-        let (history, has_triangles) = (landed.words(0)?, sources.len() > 2);
+        let gpu = self.gpu.clone();
+        let coming = gpu.submit_and_map(&record, &sources);
+        let room = if has_triangles { room(triangles) } else { None };
+        let landed = coming.landed().await?;
+        let history = landed.words(0)?;
         if let Some(mesh) = self.unsettled.clone() {
             let counters = landed.words(1)?;
             if self.settle_by(&mesh, &counters).await? {
@@ -84,9 +93,7 @@ impl WebGpu {
         if !self.waits {
             self.known.census = Some(Census::of_counts(&history[..COUNTS]));
         }
-        if has_triangles {
-            self.known.triangles = Some(landed.words(2)?);
-        }
+        self.known.triangles = room.map(|room| landed.fill(2, room)).transpose()?;
         Ok(self.take_over(&history))
     }
 

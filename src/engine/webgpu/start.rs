@@ -40,7 +40,6 @@ impl WebGpu {
         let begin = || {
             let mesh = &upload.mesh;
             let (buffers, scratch) = (Buffers::new(&gpu, &upload), Scratch::new(&gpu, mesh));
-            #[cfg(not(target_arch = "wasm32"))]
             if waits {
                 gpu.finish_copies();
                 start = Instant::now();
@@ -201,7 +200,7 @@ impl WebGpu {
         if upload.form() == self.form {
             self.params.deviation = upload.deviation;
             let calls = || {
-                self.buffers.write_positions(&self.gpu, &upload);
+                self.buffers.write(&self.gpu, &upload, &[]);
                 self.prepare();
             };
             self.gpu.checked(calls).await?;

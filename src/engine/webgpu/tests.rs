@@ -287,12 +287,34 @@ fn an_error_of_a_call_is_told() {
 fn words_come_back_as_they_were_written() {
     let device = block_on(Device::shared(true, None)).unwrap();
     for words in [0, 1, PIECE - 1, PIECE, 2 * PIECE + 1, CHUNK, CHUNK + PIECE + 3] {
-        let written: Vec<u32> = (0..words as u32).map(|i| i.wrapping_mul(0x9e37_79b9)).collect();
-        let back = block_on(async {
-            let buffer = device.buffer("words", words, wgpu::BufferUsages::STORAGE);
-            device.checked(|| device.write(&buffer, &written)).await?;
-            device.read(&buffer, words).await
-        });
-        assert!(back.unwrap() == written, "{words} words");
+        assert!(come_back(&device, words, 0x9e37_79b9), "{words} words");
     }
+}
+
+fn come_back(device: &Device, words: usize, factor: u32) -> bool {
+    let written: Vec<u32> = (0..words as u32).map(|i| i.wrapping_mul(factor)).collect();
+    let back = block_on(async {
+        let buffer = device.buffer("words", words, wgpu::BufferUsages::STORAGE);
+        device.checked(|| device.write(&buffer, &written)).await?;
+        device.read(&buffer, words).await
+    });
+    back.unwrap() == written
+}
+
+/// Whoever reads while another does gets memory of its own.
+#[test]
+fn threads_share_what_is_kept() {
+    let device = block_on(Device::own()).unwrap();
+    std::thread::scope(|scope| {
+        for thread in 1..5 {
+            let device = &device;
+            scope.spawn(move || {
+                for round in 1..20 {
+                    assert!(come_back(device, 5000 * thread * (round % 5), 2 * round as u32 + 1));
+                }
+            });
+        }
+    });
+    let kept = device.read_back.take(0).unwrap().size();
+    assert!(come_back(&device, 1, 7) && device.read_back.take(0).unwrap().size() < kept);
 }
