@@ -36,10 +36,10 @@ struct Rates {
 }
 
 #[cfg(not(target_arch = "wasm32"))]
-const RATES: Rates = Rates { cpu: [175.0, 250.0], alone: 0.19, gpu: 1.0, gpu_triangle: 8.0, start: 600.0 };
+const RATES: Rates = Rates { cpu: [200.0, 220.0], alone: 0.08, gpu: 1.5, gpu_triangle: 13.0, start: 700.0 };
 
 #[cfg(target_arch = "wasm32")]
-const RATES: Rates = Rates { cpu: [220.0, 330.0], alone: 0.19, gpu: 12.0, gpu_triangle: 60.0, start: 850.0 };
+const RATES: Rates = Rates { cpu: [220.0, 260.0], alone: 0.19, gpu: 4.2, gpu_triangle: 22.0, start: 850.0 };
 
 impl Job {
     fn cpu(self) -> f64 {

@@ -28,7 +28,7 @@ async function openPage() {
 async function runAndLose() {
   const { FlipSession, makeDelaunay } = await import('/dist/index.js');
   const { generate } = await import('/dist/files.js');
-  const mesh = await generate('random 400');
+  const mesh = await generate('random 200');
   // An edge of every seventh triangle.
   const options = { maxIterations: 4, lockedEdges: mesh.indices.filter((_, i) => i % 21 < 2) };
   const first = await makeDelaunay(mesh, options);
@@ -71,6 +71,28 @@ test('auto waits for no GPU, takes it once it is ready, and a lost one changes n
   assert.match(fallback, /^the device failed during the run: /);
   assert.deepEqual([status, remaining, again], ['stopped', counted, 'cpu']);
   assert.ok(remaining.locked > 0);
+});
+
+/** Runs in the page: a run that goes on while the GPU becomes ready. */
+async function runAndChange() {
+  const { FlipSession, makeDelaunay } = await import('/dist/index.js');
+  const { generate } = await import('/dist/files.js');
+  const mesh = await generate('random 300');
+  const session = await FlipSession.create(mesh);
+  const begun = await session.backend();
+  while ((await makeDelaunay(mesh, { maxIterations: 1 })).backend === 'cpu') await new Promise((resolve) => setTimeout(resolve, 100));
+  const progress = [];
+  const result = await session.run({ onProgress: ({ iterations }) => progress.push(iterations) });
+  const cpu = await makeDelaunay(mesh, { backend: 'cpu' });
+  const { backend, fallback } = result;
+  const isSame = cpu.indices.every((vertex, i) => vertex === result.indices[i]) && `${cpu.flipsPerIteration}` === `${result.flipsPerIteration}`;
+  return { begun, backend, fallback, first: progress[0], isSorted: progress.every((n, i) => i === 0 || n >= progress[i - 1]), isSame };
+}
+
+test('a run that has begun on the CPU goes on with the GPU that has become ready', async () => {
+  const found = await (await openPage()).evaluate(runAndChange);
+  const fallback = 'the cpu began, until the gpu was ready';
+  assert.deepEqual(found, { begun: 'cpu', backend: 'webgpu', fallback, first: 1, isSorted: true, isSame: true });
 });
 
 /** Runs in the page. */

@@ -35,7 +35,7 @@ const refused = (code, pattern) => (error) => {
 };
 
 test('auto says of each engine why it is not there', async () => {
-  const { backend, fallback } = await makeDelaunay(await generate('random 500'), { threads: 1 });
+  const { backend, fallback } = await makeDelaunay(await generate('random 200'));
   assert.equal(backend, 'cpu');
   assert.match(fallback, /^backend webgpu is not available: there is no WebGPU here.*; webgl2 is left out: it takes longer than the cpu$/);
 });

@@ -34,9 +34,11 @@ impl Kept {
 }
 
 impl Device {
-    /// A buffer of so many bytes at least: of a size that others will need too, if it may be kept.
+    /// A buffer of so many bytes at least: of a size that others will need too, if it may be kept. Not much larger, since a
+    /// browser copies all of what is mapped.
     pub(super) fn staging(&self, bytes: u64, usage: BufferUsages) -> Buffer {
-        let size = if bytes > MOST { bytes } else { bytes.next_power_of_two().max(FEWEST) };
+        let step = bytes.next_power_of_two() / 8;
+        let size = if bytes > MOST { bytes } else { bytes.next_multiple_of(step.max(FEWEST)).max(FEWEST) };
         Buffer(self.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("staging"),
             size,
