@@ -33,11 +33,13 @@ use wasm_bindgen::prelude::*;
 /// An error with the mesh that was refused.
 #[cfg(feature = "js")]
 fn with_mesh(error: JsValue, mesh: &Mesh) -> JsValue {
-    let arrays = object([
-        ("positions", positions_array(mesh.positions())),
-        ("indices", Uint32Array::from(mesh.triangles()).into()),
-        ("dimension", (mesh.dimension().stride() as u32).into()),
-    ]);
+    let arrays: Array = [
+        positions_array(mesh.positions()),
+        Uint32Array::from(mesh.triangles()).into(),
+        (mesh.dimension().stride() as u32).into(),
+    ]
+    .iter()
+    .collect();
     // Setting a field of an error does not fail.
     let _ = Reflect::set(&error, &"mesh".into(), &arrays);
     error
@@ -140,7 +142,8 @@ impl JsSession {
     ///
     /// # Errors
     /// Those of [`Mesh::new`](crate::Mesh::new) and [`Session::new`]; `backend-unavailable`, with the reasons alone, where the options leave
-    /// the CPU. Where another engine or another try may take it, a promise gives the mesh back with the error, as `mesh`.
+    /// the CPU. Where another engine or another try may take it, a promise gives the mesh back with the error: `mesh`, the
+    /// first arguments of another call.
     #[wasm_bindgen(unchecked_return_type = "Promise<Session>")]
     pub fn create(
         positions: JsPositions,
@@ -158,11 +161,15 @@ impl JsSession {
             match Session::new(mesh.clone(), chosen).await {
                 Ok(session) => Ok(Self(Rc::new(RefCell::new(Some(session)))).into()),
                 #[cfg(feature = "js")]
-                Err(Error::Device { message }) if options.leaves_cpu() == Some(true) => {
-                    Err(with_mesh(coded("backend-unavailable", &message), &mesh))
+                Err(error @ (Error::Device { .. } | Error::OutOfMemory { .. })) => {
+                    let refused = match error {
+                        Error::Device { message } if options.leaves_cpu() == Some(true) => {
+                            coded("backend-unavailable", &message)
+                        }
+                        error => thrown(error),
+                    };
+                    Err(with_mesh(refused, &mesh))
                 }
-                #[cfg(feature = "js")]
-                Err(error @ Error::OutOfMemory { .. }) => Err(with_mesh(thrown(error), &mesh)),
                 Err(error) => Err(thrown(error)),
             }
         }))

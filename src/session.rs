@@ -372,18 +372,21 @@ impl Session {
     ) -> Result<T, Error> {
         loop {
             match question(self.engine.as_mut()).await {
-                Err(error) if self.options.backend == Backend::Auto => {
-                    self.recover(why_go_on(error)?).await?;
-                }
+                Err(error) if self.options.backend == Backend::Auto => self.recover(error).await?,
                 answer => return answer,
             }
         }
     }
 
-    /// The CPU goes the same way again up to the last complete iteration, which determinism allows. Boxed, so that it is
-    /// compiled into one place only.
-    fn recover(&mut self, why: String) -> Answer<'_, ()> {
+    /// Where the device fails, or the engine finds out late that it cannot take the mesh, the CPU goes the same way again up
+    /// to the last complete iteration, which determinism allows. Boxed, so that it is compiled into one place only.
+    fn recover(&mut self, error: Error) -> Answer<'_, ()> {
         Box::pin(async move {
+            let why = match error {
+                Error::Device { message } => format!("the device failed during the run: {message}"),
+                Error::BackendLimit { .. } => error.to_string(),
+                error => return Err(error),
+            };
             let before = self.fallback.as_deref().map_or(String::new(), |before| format!("{before}; "));
             let choice = cpu_after(before + &why, &self.mesh, &self.options).await?;
             self.take(choice);
@@ -412,18 +415,6 @@ impl Session {
 
     fn take(&mut self, choice: Choice) {
         Choice { engine: self.engine, fallback: self.fallback, may_change: self.may_change } = choice;
-    }
-}
-
-/// Why the CPU goes on where an engine has failed, or finds out late that it cannot take the mesh.
-///
-/// # Errors
-/// Any other error.
-fn why_go_on(error: Error) -> Result<String, Error> {
-    match error {
-        Error::Device { message } => Ok(format!("the device failed during the run: {message}")),
-        Error::BackendLimit { .. } => Ok(error.to_string()),
-        error => Err(error),
     }
 }
 

@@ -76,6 +76,12 @@ pub(crate) struct EdgeCounts {
     pub(crate) inconsistent: u32,
 }
 
+/// Triangles in an array of JavaScript.
+#[cfg(all(target_arch = "wasm32", feature = "js"))]
+fn array(triangles: Answer<'_, Vec<u32>>) -> Answer<'_, js_sys::Uint32Array> {
+    Box::pin(async { Ok(triangles.await?.as_slice().into()) })
+}
+
 /// One mesh on one engine, between two iterations.
 pub(crate) trait Engine {
     /// How many iterations to ask for at a time: as many as make it worth while to ask.
@@ -98,8 +104,7 @@ pub(crate) trait Engine {
     /// The same in an array of JavaScript.
     #[cfg(all(target_arch = "wasm32", feature = "js"))]
     fn triangles_array(&mut self) -> Answer<'_, js_sys::Uint32Array> {
-        let triangles = self.triangles();
-        Box::pin(async { Ok(triangles.await?.as_slice().into()) })
+        self::array(self.triangles())
     }
 
     /// The twins as they are now, with the flags [`CREASE`](crate::adjacency::CREASE) and

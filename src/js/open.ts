@@ -32,7 +32,7 @@ export async function open(mesh: IndexedMesh, settings: Settings): Promise<Modul
   } catch (thrown) {
     const { code, message } = fromModule(thrown);
     if (code !== 'backend-unavailable') throw thrown;
-    return openOnThreads((thrown as Refusal).mesh, settings, count, inWordsOfPackage(message));
+    return openOnThreads(refused(thrown) ?? given, settings, count, inWordsOfPackage(message));
   }
 }
 
@@ -45,27 +45,28 @@ async function openAlone(
   mesh: IndexedMesh,
   settings: Settings & { leavesCpu?: boolean },
 ): Promise<ModuleSession> {
-  let given = mesh;
-  if (!isLoaded()) {
-    given = copied(mesh);
-    await init();
-  }
+  const ours = isLoaded() ? undefined : copied(mesh);
+  if (ours) await init();
+  let [given, error]: [IndexedMesh | undefined, unknown] = [ours ?? mesh, undefined];
   return collecting(async () => {
+    if (!given) throw error;
     let opening: Promise<ModuleSession> | undefined;
     try {
       opening = Session.create(given.positions, given.indices, given.dimension, settings);
       return await opening;
     } catch (thrown) {
-      // Another try needs the arrays, which are the caller's once this has waited.
-      given = opening ? ((thrown as Partial<Refusal>).mesh ?? given) : copied(given);
+      // Another try needs the arrays. Those of the caller are not read again after a wait.
+      given = opening ? (refused(thrown) ?? ours) : copied(given);
+      error = thrown;
       throw thrown;
     }
   });
 }
 
-/** What the module throws where another engine, or another try, may take the mesh. */
-interface Refusal extends Error {
-  mesh: IndexedMesh;
+/** The mesh that the module has thrown where another engine, or another try, may take it. */
+function refused(thrown: unknown): IndexedMesh | undefined {
+  const { mesh } = thrown as { mesh?: [IndexedMesh['positions'], Uint32Array, IndexedMesh['dimension']] };
+  return mesh && { positions: mesh[0], indices: mesh[1], dimension: mesh[2] };
 }
 
 /** Where they cannot be started, one gives the same result. The arrays of the mesh are given away. */

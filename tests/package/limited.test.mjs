@@ -62,7 +62,8 @@ test('sessions that fill the memory lose nothing, however often', async () => {
     held[0].free();
     assert.deepEqual((await makeDelaunay(mesh, options)).indices, expected.indices);
   }
-  assert.deepEqual(counts, counts.map(() => counts[0]));
+  // Where calls have left room elsewhere, one more may fit.
+  assert.ok(counts.every((count) => count >= counts[0]), `${counts}`);
 });
 
 test('positions that are too many leave the session as it was', async () => {

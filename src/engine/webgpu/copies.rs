@@ -4,7 +4,6 @@ use super::device::{Buffer, Device};
 use super::faults::{Word, watch};
 #[cfg(target_arch = "wasm32")]
 use super::staging;
-use super::staging::Kept;
 use crate::Error;
 #[cfg(not(target_arch = "wasm32"))]
 use crate::threads::Threads;
@@ -67,21 +66,20 @@ impl<'a> Coming<'a> {
     pub(super) async fn landed(self) -> Result<Landed<'a>, Error> {
         let Self { gpu, staging, word, receiver, places } = self;
         gpu.judge(word.await)?;
-        let failed = |error: &dyn std::fmt::Display| {
-            gpu.check().err().unwrap_or_else(|| Error::Device { message: error.to_string() })
-        };
         #[cfg(not(target_arch = "wasm32"))]
-        gpu.wait().map_err(|error| failed(&error))?;
-        receiver.await.map_err(|error| failed(&error))?.map_err(|error| failed(&error))?;
+        gpu.wait().map_err(|_| gpu.not_mapped())?;
+        if !matches!(receiver.await, Ok(Ok(()))) {
+            return Err(gpu.not_mapped());
+        }
         gpu.check()?;
-        Ok(Landed { staging: Some(staging), kept: &gpu.read_back, places })
+        Ok(Landed { gpu, staging: Some(staging), places })
     }
 }
 
 /// Words that have come back, in memory that both sides see, which the next ones get afterwards.
 pub(super) struct Landed<'a> {
+    pub(super) gpu: &'a Device,
     pub(super) staging: Option<Buffer>,
-    kept: &'a Kept,
     /// Where those of each source are, in bytes.
     pub(super) places: Vec<Range<u64>>,
 }
@@ -90,7 +88,7 @@ impl Drop for Landed<'_> {
     fn drop(&mut self) {
         if let Some(staging) = self.staging.take() {
             staging.unmap();
-            self.kept.put(staging);
+            self.gpu.read_back.put(staging);
         }
     }
 }
@@ -118,8 +116,7 @@ impl Landed<'_> {
     fn append(&self, source: usize, result: &mut Vec<u32>) -> Result<(), Error> {
         let place = self.places[source].clone();
         let Some(staging) = self.staging.as_ref().filter(|_| !place.is_empty()) else { return Ok(()) };
-        let failed = |error: wgpu::MapRangeError| Error::Device { message: error.to_string() };
-        let view = staging.get_mapped_range(place).map_err(failed)?;
+        let view = staging.get_mapped_range(place).map_err(|_| self.gpu.not_mapped())?;
         Threads::default().append(result, bytemuck::cast_slice(&view));
         Ok(())
     }
@@ -142,6 +139,12 @@ impl Device {
             self.submit_and_read(&nothing, &[source]).await?.append(0, &mut result)?;
         }
         Ok(result)
+    }
+
+    /// Why memory is not mapped: mostly the device has said so.
+    pub(super) fn not_mapped(&self) -> Error {
+        let message = || "memory could not be mapped".to_owned();
+        self.check().err().unwrap_or_else(|| Error::Device { message: message() })
     }
 
     /// Submits commands.

@@ -1,6 +1,6 @@
 //! Copies in a browser, straight between mapped memory and that of the module: wgpu would copy everything once more.
 
-use super::copies::{CHUNK, Landed, Source};
+use super::copies::Landed;
 use super::device::{Buffer, Device};
 use super::faults::watch;
 use super::staging;
@@ -65,26 +65,11 @@ impl Landed<'_> {
     /// The words where they are, once for each source.
     fn view(&self, source: usize) -> Result<Uint32Array, Error> {
         let view = self.staging.as_ref().and_then(|staging| mapped(staging, &self.places[source]));
-        view.ok_or_else(|| Error::Device { message: "what was read has gone".to_owned() })
+        view.ok_or_else(|| self.gpu.not_mapped())
     }
 }
 
 impl Device {
-    /// As [`Device::read`].
-    #[cfg(feature = "js")]
-    pub(super) async fn read_array(&self, buffer: &Buffer, words: usize) -> Result<Words, Error> {
-        let nothing = || self.device.create_command_encoder(&Default::default());
-        let whole = [Source::new(buffer, words)];
-        if words > CHUNK {
-            return Ok(self.read(buffer, words).await?.as_slice().into());
-        }
-        let coming = self.submit_and_map(&nothing, &whole);
-        let room = room(words);
-        let landed = coming.landed().await?;
-        let room = room.ok_or(Error::OutOfMemory { bytes: 4 * words as u64, limit: None })?;
-        landed.fill(0, room)
-    }
-
     /// The same through memory that is kept, if that is ready; else it is for the next time.
     pub(super) fn write_all(&self, writes: &[(&Buffer, &[u32])]) {
         let bytes = writes.iter().map(|(_, words)| size_of_val(*words) as u64).sum();

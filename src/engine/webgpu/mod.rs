@@ -132,10 +132,7 @@ impl Engine for WebGpu {
     fn triangles_array(&mut self) -> Answer<'_, js_sys::Uint32Array> {
         match self.known.triangles.take() {
             Some(triangles) => Box::pin(std::future::ready(Ok(triangles))),
-            None => {
-                let words = 3 * self.params.triangles as usize;
-                Box::pin(self.gpu.read_array(&self.buffers.triangles, words))
-            }
+            None => super::array(self.triangles()),
         }
     }
 
