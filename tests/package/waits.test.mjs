@@ -1,0 +1,80 @@
+// A run on WebGPU in Chromium waits once, and its arrays are copied through memory that is kept, with the bits of the CPU; also
+// where sessions run at the same time, and where the caller changes its arrays at once. Takes the dist/ that is there.
+
+import assert from 'node:assert/strict';
+import { after, test } from 'node:test';
+import { fileURLToPath } from 'node:url';
+import { closeAll, openPage, serve, startChromium } from '../browsers.mjs';
+
+const repository = fileURLToPath(new URL('../..', import.meta.url));
+
+after(closeAll);
+
+/** Runs in the page: what each run asked the browser for, and which runs went wrong. */
+async function runs() {
+  const { FlipSession, makeDelaunay } = await import('/dist/index.js');
+  const { generate } = await import('/dist/files.js');
+  let asked = {};
+  const count = (prototype, name, kind) => {
+    const call = prototype[name];
+    prototype[name] = function (...args) {
+      const what = kind(...args);
+      if (what) asked[what] = (asked[what] ?? 0) + 1;
+      return call.apply(this, args);
+    };
+  };
+  count(GPUBuffer.prototype, 'mapAsync', (mode) => (mode === GPUMapMode.READ ? 'waits' : 'kept'));
+  count(GPUQueue.prototype, 'submit', () => 'submissions');
+  // Parameters, and the state of a run.
+  const FEW = 8192;
+  count(GPUQueue.prototype, 'writeBuffer', (buffer, place, data, first, size = data.byteLength) => (size > FEW ? 'arrays' : undefined));
+  const [mesh, surface] = [await generate('random 150'), await generate('uvsphere 140')];
+  const wanted = new Map();
+  for (const one of [mesh, surface]) wanted.set(one, await makeDelaunay(one, { backend: 'cpu' }));
+  const wrong = [];
+  const check = (what, one, { indices, remaining, flips, backend }) => {
+    const right = wanted.get(one);
+    const isSame = backend === 'webgpu' && flips === right.flips && JSON.stringify(remaining) === JSON.stringify(right.remaining);
+    if (!isSame || indices.some((vertex, i) => vertex !== right.indices[i])) wrong.push(what);
+  };
+  const told = [];
+  for (const one of [mesh, mesh, mesh, surface, mesh, surface]) {
+    asked = {};
+    const { positions, indices, dimension } = one;
+    const own = { positions: positions.slice(), indices: indices.slice(), dimension };
+    const run = makeDelaunay(own, { backend: 'webgpu' });
+    own.positions.fill(0);
+    own.indices.fill(0);
+    check(`run ${told.length}`, one, await run);
+    told.push(asked);
+  }
+  asked = {};
+  const together = await Promise.all([mesh, surface, mesh, surface].map((one) => makeDelaunay(one, { backend: 'webgpu' })));
+  together.forEach((result, i) => check(`together ${i}`, [mesh, surface][i % 2], result));
+
+  // One that goes on after its end, and after a move.
+  const session = await FlipSession.create(mesh, { backend: 'webgpu' });
+  const cpu = await FlipSession.create(mesh, { backend: 'cpu' });
+  for (let turn = 0; turn < 3; turn++) {
+    const [result, right] = [await session.run(), await cpu.run()];
+    wanted.set(session, right);
+    check(`turn ${turn}`, session, result);
+    check(`turn ${turn} again`, session, await session.result());
+    result.indices.fill(0);
+    if ((await session.triangles()).some((vertex, i) => vertex !== right.indices[i])) wrong.push(`triangles ${turn}`);
+    const moved = mesh.positions.map((x, i) => x * (1 + (turn + 1) * (i % 2)));
+    await session.setPositions(moved);
+    await cpu.setPositions(moved);
+  }
+  return { told, wrong };
+}
+
+test('a run waits once, and copies through memory that is kept', async () => {
+  const browser = await startChromium();
+  const { page } = await openPage(browser, `${await serve(repository)}tests/engines.html`);
+  const { told, wrong } = await page.evaluate(runs);
+  console.log(JSON.stringify(told));
+  assert.deepEqual(wrong, []);
+  // The first run makes the device, and the first of each size memory for the next.
+  for (const run of [2, 4, 5]) assert.deepEqual(told[run], { waits: 1, kept: 1, submissions: 3 }, `run ${run}`);
+});
