@@ -142,7 +142,7 @@ pub struct Outcome {
     pub backend: &'static str,
     /// The GPU's name and driver.
     pub adapter: Option<String>,
-    /// Why `auto` did not take an engine it tried first.
+    /// Why `auto` is on the CPU, or began there.
     pub fallback: Option<String>,
     /// Iterations with at least one flip.
     pub iterations: u32,

@@ -177,6 +177,9 @@ impl Session {
                 }
                 answer => answer?,
             }
+            if self.engine.backend() == "gpu" {
+                self.fallback = None;
+            }
         }
         self.mesh = mesh;
         self.flips_per_iteration.clear();

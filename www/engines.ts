@@ -116,7 +116,7 @@ export async function beginRun(
   const usable = backend === 'auto' ? forAuto(gpu) : gpu;
   if (typeof usable === 'string') {
     if (backend === 'webgpu') throw new Error(`The WebGPU engine is not available: ${usable}.`);
-    return inWorker(mesh, maxNormalAngle, 'auto', signal, usable);
+    return inWorker(mesh, maxNormalAngle, 'cpu', signal, usable);
   }
   const takesGpu = waitsForGpu(mesh, backend) || usable.kernels.areReadyFor(mesh);
   if (!takesGpu) return inWorker(mesh, maxNormalAngle, 'cpu', signal, undefined);
@@ -125,7 +125,7 @@ export async function beginRun(
   } catch (error) {
     const isOfGpu = error instanceof EdgeflipError && /^(backend|device)-/.test(error.code);
     if (backend === 'webgpu' || !isOfGpu) throw error;
-    return inWorker(mesh, maxNormalAngle, 'auto', signal, error.message);
+    return inWorker(mesh, maxNormalAngle, 'cpu', signal, error.message);
   }
 }
 

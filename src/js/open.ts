@@ -22,13 +22,13 @@ export async function open(mesh: IndexedMesh, settings: Settings): Promise<Modul
     given = copied(mesh);
     await init();
   }
-  const { positions, indices, dimension } = mesh;
+  const { positions, indices, dimension } = given;
   const why = whyCpu(indices.length / 3, dimension, positions instanceof Float64Array, count, settings);
   if (why !== undefined) {
     return openOnThreads(given === mesh ? copied(mesh) : given, settings, count, inWordsOfPackage(why));
   }
   try {
-    return await openAlone(given, { ...settings, leavesCpu: true });
+    return await openAlone(given, { ...settings, threads: count, leavesCpu: true });
   } catch (thrown) {
     const { code, message } = fromModule(thrown);
     if (code !== 'backend-unavailable') throw thrown;
@@ -56,8 +56,9 @@ async function openAlone(
       return await opening;
     } catch (thrown) {
       // Another try needs the arrays. Those of the caller are not read again after a wait.
-      given = opening ? (refused(thrown) ?? ours) : copied(given);
-      error = thrown;
+      const last = given;
+      [given, error] = [undefined, thrown];
+      given = opening ? (refused(thrown) ?? ours) : copied(last);
       throw thrown;
     }
   });

@@ -94,8 +94,8 @@ export class FlipSession implements AsyncIterable<Iteration>, Disposable {
   /**
    * Moves the vertices: all of them, as many as before, copied at once. Afterwards the session is as a new one on these
    * positions and the triangles as they are then: iterations, flips, sharp edges and what `verify` compares with begin
-   * anew. Adjacency, device and buffers stay, unless doubles follow 32-bit floats or these follow doubles, and the
-   * triangles are read back once. After an error the session is as before; with `'auto'` the CPU takes over what the GPU
+   * anew. The triangles are read back once. Adjacency, device and buffers stay, unless `'auto'` changes the engine, or
+   * doubles follow 32-bit floats or these follow doubles. After an error the session is as before; with `'auto'` the CPU takes over what the GPU
    * cannot take.
    *
    * @throws {@link EdgeflipError} `invalid-input`, `too-large`, `position-count`, `non-finite`, `backend-limit`.

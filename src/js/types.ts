@@ -54,8 +54,9 @@ export interface Options {
    * `'webgpu'`, `'webgl2'` and `'cpu'` take that engine or fail. `'auto'` (default) takes the one that is done first: the
    * CPU for a small mesh, and WebGPU for a large one, on a hardware GPU that gets a test mesh right. Where the browser still
    * has to make that GPU ready, the run begins on the CPU and the GPU is made ready behind it, unless the mesh is so large
-   * that waiting is faster. Where the device is lost, the CPU goes on. It never takes WebGL2, which takes longer than the
-   * CPU. {@link Result.fallback} says why it is the CPU.
+   * that waiting is faster. A session on one thread may go over to the GPU later, in `run` or in `setPositions`; one on
+   * several threads stays on the CPU. Where the device is lost, the CPU goes on. It never takes WebGL2, which takes longer
+   * than the CPU. {@link Result.fallback} says why it is the CPU.
    */
   backend?: 'auto' | Engine | undefined;
   /**
@@ -174,7 +175,7 @@ export interface Result {
   backend: Engine;
   /** The name of the GPU. */
   adapter: string | undefined;
-  /** Why `'auto'` did not take, or did not stay with, the engines before this one. */
+  /** Why `'auto'` is on the CPU, or began there. */
   fallback: string | undefined;
   /** Iterations with at least one flip. */
   iterations: number;

@@ -21,7 +21,11 @@ pub(super) struct Choice {
 /// What a mesh is as a job for `Auto`.
 pub(super) fn job_of(mesh: &Mesh, options: &Options) -> Job {
     let triangles = mesh.triangle_count();
-    Job { triangles, dimension: mesh.dimension(), threads: Threads::count_for(options.threads, triangles) }
+    let threads = Threads::count_for(options.threads, triangles);
+    // The CPU that is left has threads in another module.
+    #[cfg(all(target_arch = "wasm32", feature = "js"))]
+    let threads = options.threads.filter(|_| options.leaves_cpu).map_or(threads, |threads| threads.get());
+    Job { triangles, dimension: mesh.dimension(), threads }
 }
 
 /// Whether a session with these options asks for a GPU first, for such a job.
@@ -104,7 +108,7 @@ pub(super) fn without_gpu(why: String) -> String {
 /// The CPU, which takes every mesh, where another engine has failed with `why`.
 ///
 /// # Errors
-/// [`Error::OutOfMemory`]; [`Error::Device`] with the reason where the options leave the CPU.
+/// [`Error::OutOfMemory`].
 pub(super) fn cpu_after<'a>(why: String, mesh: &'a Arc<Mesh>, options: &'a Options) -> Answer<'a, Choice> {
     Box::pin(alone(Backend::Cpu, mesh, options, Some(why)))
 }

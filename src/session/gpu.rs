@@ -14,15 +14,16 @@ fn form_of(dimension: Dimension, is_double: bool, options: &Options) -> Form {
 /// Whether a job can begin on the GPU at once.
 pub(super) fn is_ready(job: Job, is_double: bool, options: &Options) -> bool {
     let form = form_of(job.dimension, is_double, options);
-    Device::known(options.given_device()).is_some_and(|device| device.is_ready(form))
+    let takes_software = options.backend == Backend::Gpu;
+    Device::known(options.given_device()).is_some_and(|device| device.is_ready(form, takes_software))
 }
 
 /// Why a GPU is not taken that a job is worth, but not worth waiting for. In a browser it is made ready meanwhile.
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 pub(super) fn why_not_ready(job: Job, is_double: bool, options: &Options) -> String {
     let form = form_of(job.dimension, is_double, options);
-    let given = options.device.clone();
-    let ahead = Device::ahead(async move { tested(given.as_ref(), false, form).await.map(drop) });
+    let (given, is_given) = (options.device.clone(), options.device.is_some());
+    let ahead = Device::ahead(is_given, async move { tested(given.as_ref(), false, form).await.map(drop) });
     ahead.map_or_else(super::choice::without_gpu, |()| "the gpu is made ready behind this run".to_owned())
 }
 

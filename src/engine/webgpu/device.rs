@@ -45,6 +45,7 @@ pub(crate) struct Device {
     pub(super) device: wgpu::Device,
     pub(super) queue: wgpu::Queue,
     pub(super) adapter: String,
+    pub(super) is_software: bool,
     /// As many workgroups as keep the device busy; every kernel strides over what is left.
     most_workgroups: u32,
     /// Invocations of the tail.
@@ -223,6 +224,7 @@ impl Device {
             device,
             queue,
             adapter,
+            is_software,
             most_workgroups,
             tail_size,
             ends_loops_early: false,
@@ -244,9 +246,10 @@ impl Device {
         Ok(result)
     }
 
-    /// Whether a mesh of a form can begin at once: nothing has failed, and its kernels are compiled and tested.
-    pub(crate) fn is_ready(&self, form: Form) -> bool {
-        self.check().is_ok() && self.tested.has_passed(form)
+    /// Whether a mesh of a form can begin at once: nothing has failed, its kernels are compiled and tested, and software is
+    /// taken where it is that.
+    pub(crate) fn is_ready(&self, form: Form, takes_software: bool) -> bool {
+        self.check().is_ok() && self.tested.has_passed(form) && (takes_software || !self.is_software)
     }
 
     /// The kernels of the phases; compiled at the first call. Those that begin at the same time may compile them twice.

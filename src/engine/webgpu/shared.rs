@@ -6,11 +6,11 @@ use crate::Error;
 use crate::engine::upload::Form;
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 use crate::js_promise::promise;
-#[cfg(all(target_arch = "wasm32", feature = "js"))]
-use js_sys::{Array, Promise};
 use std::sync::Mutex;
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 use wasm_bindgen::JsValue;
+#[cfg(all(target_arch = "wasm32", feature = "js"))]
+use wasm_bindgen_futures::JsFuture;
 
 /// A device of the page.
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
@@ -148,24 +148,31 @@ impl Device {
         Ok(device)
     }
 
-    /// Has `prepare` make a device ready behind whatever else goes on, unless that goes on already.
+    /// Has `prepare` make a device ready behind whatever else goes on, unless that goes on already: the shared one, or one that
+    /// was given.
     ///
     /// # Errors
     /// Why there is none, or why the last one was not made ready; then it is tried again.
     #[cfg(all(target_arch = "wasm32", feature = "js"))]
-    pub(crate) fn ahead(prepare: impl Future<Output = Result<(), Error>> + 'static) -> Result<(), String> {
-        let is_software = with_shared(|shared| shared.is_software);
+    pub(crate) fn ahead(
+        is_given: bool,
+        prepare: impl Future<Output = Result<(), Error>> + 'static,
+    ) -> Result<(), String> {
+        let is_software = !is_given && with_shared(|shared| shared.is_software);
         Self::look_for_webgpu()
             .and_then(|()| refuse_software(is_software, false))
             .map_err(|error| error.to_string())?;
         if !with_shared(|shared| std::mem::replace(&mut shared.is_preparing, true)) {
-            let ended = promise(async {
-                let refusal = prepare.await.err().map(|error| error.to_string());
+            let prepared = promise(async {
+                prepare.await.map(|()| JsValue::UNDEFINED).map_err(|error| error.to_string().into())
+            });
+            // On its own, since an exception in `prepare` ends it where it is.
+            let _ = promise(async move {
+                let thrown = JsFuture::from(prepared).await.err();
+                let refusal = thrown.map(|thrown| thrown.as_string().unwrap_or(format!("{thrown:?}")));
                 with_shared(|shared| (shared.is_preparing, shared.refusal) = (false, refusal));
                 Ok(JsValue::UNDEFINED)
             });
-            // Nobody waits for it: a rejection would be told to the page.
-            let _ = Promise::all_settled(&Array::of1(&ended));
         }
         with_shared(|shared| shared.refusal.clone()).map_or(Ok(()), Err)
     }

@@ -24,8 +24,8 @@ impl WebGpu {
     /// Uploads the mesh and builds its adjacency.
     ///
     /// # Errors
-    /// [`Error::BackendLimit`] for a mesh that is too large for the device; [`Error::Device`]. In a browser the engine may
-    /// find out only when it is asked something that it is [`Error::BackendLimit`].
+    /// [`Error::BackendLimit`] for a mesh that is too large for the device; [`Error::Device`]. In a browser
+    /// [`Error::BackendLimit`] may come from the first question instead.
     pub(crate) async fn new(gpu: Handle, upload: Upload) -> Result<Self, Error> {
         // Natively a wait takes little, and tells times apart. Where loops end early the host has to look first.
         let waits = cfg!(not(target_arch = "wasm32")) || gpu.ends_loops_early;
@@ -172,7 +172,6 @@ impl WebGpu {
         let table = Fans::new(mesh.vertex_count(), mesh.triangles(), &twins).table;
         let before = self.params.fans as usize;
         refuse_large_buffer(&self.gpu, before + table.len())?;
-        self.params.fans_length = table.len() as u32;
         let gpu = &self.gpu;
         let longer = || gpu.buffer("topology", before + table.len(), BufferUsages::STORAGE);
         let topology = std::mem::replace(&mut self.buffers.topology, gpu.allocated(longer).await?);
@@ -184,6 +183,8 @@ impl WebGpu {
             self.buffers.bind(gpu, &self.kernels.layout)
         };
         self.bindings = gpu.checked(copy).await?;
+        // Now that nothing is refused any more.
+        self.params.fans_length = table.len() as u32;
         Ok(())
     }
 
