@@ -27,6 +27,8 @@ struct Rates {
     cpu: [f64; 2],
     /// The part of it that more threads do not divide.
     alone: f64,
+    /// Milliseconds until several threads work.
+    several: f64,
     /// Milliseconds for any job on a GPU that is ready.
     gpu: f64,
     /// Nanoseconds a triangle on it.
@@ -36,16 +38,19 @@ struct Rates {
 }
 
 #[cfg(not(target_arch = "wasm32"))]
-const RATES: Rates = Rates { cpu: [200.0, 220.0], alone: 0.08, gpu: 1.5, gpu_triangle: 13.0, start: 700.0 };
+const RATES: Rates =
+    Rates { cpu: [200.0, 220.0], alone: 0.06, several: 2.0, gpu: 1.5, gpu_triangle: 13.0, start: 700.0 };
 
 #[cfg(target_arch = "wasm32")]
-const RATES: Rates = Rates { cpu: [220.0, 260.0], alone: 0.19, gpu: 4.2, gpu_triangle: 22.0, start: 850.0 };
+const RATES: Rates =
+    Rates { cpu: [220.0, 260.0], alone: 0.15, several: 7.0, gpu: 4.2, gpu_triangle: 22.0, start: 850.0 };
 
 impl Job {
     fn cpu(self) -> f64 {
         let rate = RATES.cpu[self.dimension.stride() - 2];
         let share = RATES.alone + (1.0 - RATES.alone) / self.threads as f64;
-        1e-6 * rate * share * self.triangles as f64
+        let start = if self.threads > 1 { RATES.several } else { 0.0 };
+        start + 1e-6 * rate * share * self.triangles as f64
     }
 
     fn gpu(self) -> f64 {
@@ -85,7 +90,7 @@ mod tests {
         for threads in [1, 16] {
             assert!(job(1_000_000, threads).is_for_gpu());
             assert!(!job(50_000, threads).waits_for_gpu());
-            assert!(job(50_000_000, threads).waits_for_gpu());
+            assert!(job(100_000_000, threads).waits_for_gpu());
         }
     }
 
