@@ -92,7 +92,7 @@ pub fn set_webgl2(module: WebGl2Module) {
 /// Why `'auto'` takes the CPU on so many threads for a mesh, without asking for a GPU, if it does.
 ///
 /// # Errors
-/// Those of the options.
+/// [`Error::Option`] for the dimension.
 #[cfg(feature = "js")]
 #[wasm_bindgen(js_name = whyCpu)]
 pub fn why_cpu(
@@ -103,8 +103,7 @@ pub fn why_cpu(
     options: &JsOptions,
 ) -> Result<Option<String>, JsValue> {
     let job = parse_dimension(dimension).map(|dimension| Job { triangles, dimension, threads });
-    let why = job.and_then(|job| Ok(session::why_cpu(job, is_double, &parse_options(options)?)));
-    why.map_err(thrown)
+    job.map(|job| session::why_cpu(job, is_double, &without_lists(options))).map_err(thrown)
 }
 
 /// Why a session answers nothing any more.
@@ -339,10 +338,22 @@ fn words(array: Option<Uint32Array>) -> Vec<u32> {
 
 /// What is not there keeps its default.
 fn parse_options(given: &JsOptions) -> Result<Options, Error> {
-    let mut options = Options {
-        max_iterations: given.max_iterations(),
+    let numbers = words(given.locked_edges());
+    let (locked_edges, []) = numbers.as_chunks() else {
+        return Err(Error::RaggedArray { array: "lockedEdges", length: numbers.len(), stride: 2 });
+    };
+    Ok(Options {
+        locked_edges: locked_edges.to_vec(),
         locked_triangles: words(given.locked_triangles()),
         groups: words(given.groups()),
+        ..without_lists(given)
+    })
+}
+
+/// Those that are no lists, which would be copied.
+fn without_lists(given: &JsOptions) -> Options {
+    let mut options = Options {
+        max_iterations: given.max_iterations(),
         threads: given.threads().and_then(|count| NonZeroUsize::new(count as usize)),
         #[cfg(feature = "js")]
         device: given.device(),
@@ -365,10 +376,5 @@ fn parse_options(given: &JsOptions) -> Result<Options, Error> {
     if let Some(most) = given.max_deviation() {
         options.max_deviation = most;
     }
-    let numbers = words(given.locked_edges());
-    options.locked_edges = match numbers.as_chunks() {
-        (pairs, []) => pairs.to_vec(),
-        _ => return Err(Error::RaggedArray { array: "lockedEdges", length: numbers.len(), stride: 2 }),
-    };
-    Ok(options)
+    options
 }

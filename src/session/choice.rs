@@ -71,12 +71,7 @@ pub(super) fn engine_for<'a>(mesh: &'a Arc<Mesh>, options: &'a Options) -> Answe
                 let is_double = mesh.positions().is_double();
                 match why_cpu(job_of(mesh, options), is_double, options) {
                     None => auto(mesh, options).await,
-                    #[cfg(all(target_arch = "wasm32", feature = "js"))]
-                    Some(message) if options.leaves_cpu => Err(Error::Device { message }),
-                    fallback => {
-                        let engine = open(Backend::Cpu, mesh, options).await?;
-                        Ok(Choice { engine, fallback, may_change: true })
-                    }
+                    Some(why) => Ok(Choice { may_change: true, ..cpu_for(why, mesh, options).await? }),
                 }
             }
             (Order::Any, _) => alone(Backend::Cpu, mesh, options, None).await,
@@ -91,10 +86,17 @@ async fn auto(mesh: &Arc<Mesh>, options: &Options) -> Result<Choice, Error> {
         Ok(engine) => Ok(Choice { engine, fallback: None, may_change: false }),
         // It is the mesh that is too large.
         Err(error @ Error::OutOfMemory { .. }) => Err(error),
-        #[cfg(all(target_arch = "wasm32", feature = "js"))]
-        Err(error) if options.leaves_cpu => Err(Error::Device { message: without_gpu(error.to_string()) }),
-        Err(error) => alone(Backend::Cpu, mesh, options, Some(without_gpu(error.to_string()))).await,
+        Err(error) => cpu_for(without_gpu(error.to_string()), mesh, options).await,
     }
+}
+
+/// The CPU, unless the options leave it: then [`Error::Device`] with the reason.
+fn cpu_for<'a>(why: String, mesh: &'a Arc<Mesh>, options: &'a Options) -> Answer<'a, Choice> {
+    #[cfg(all(target_arch = "wasm32", feature = "js"))]
+    if options.leaves_cpu {
+        return Box::pin(std::future::ready(Err(Error::Device { message: why })));
+    }
+    cpu_after(why, mesh, options)
 }
 
 /// Why it is the CPU where the GPU does not take the mesh for this reason.

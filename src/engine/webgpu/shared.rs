@@ -134,10 +134,9 @@ impl Device {
     /// # Errors
     /// As [`Device::for_session`].
     pub(crate) async fn shared(takes_software: bool, form: Option<Form>) -> Result<Handle, Error> {
-        let (opened, is_software) = with_shared(|shared| (shared.opened.clone(), shared.is_software));
         // Known from the last time: no adapter has to be found to refuse it.
-        refuse_software(is_software, takes_software)?;
-        if let Some(device) = opened.filter(|device| device.check().is_ok()) {
+        refuse_software(with_shared(|shared| shared.is_software), takes_software)?;
+        if let Some(device) = Self::known(None) {
             return Ok(device);
         }
         let (adapter, is_software) = Self::find_adapter().await?;
