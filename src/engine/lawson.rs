@@ -2,13 +2,12 @@
 //! the next one is near. The paper compares with it; it is the fast path for those who do not need the order of the parallel
 //! phases.
 //!
-//! In the plane each thread has a region of the mesh, and then what touches two of them. The regions, and so the flips, are
-//! the same for any number of threads.
+//! Each thread has a region of the mesh, and then what touches two of them. The regions, and so the flips, are the same for
+//! any number of threads.
 
 use super::region::{Region, Work};
 use super::{Answer, Census, Cpu, EdgeCounts, Engine};
 use crate::Mesh;
-use crate::mesh::Dimension;
 use std::sync::Arc;
 
 /// Regions at most, several for each thread of most machines, so that none waits long for another.
@@ -35,10 +34,10 @@ impl Lawson {
         let threads = self.cpu.threads.clone();
         let (geometry, mesh) = self.cpu.parts();
         let mut whole = Region { geometry: &geometry, mesh, work: Work::default(), limit: u32::MAX };
-        // Elsewhere it takes walks around vertices to know whether a flip makes a duplicate.
-        let is_plain = geometry.dimension == Dimension::Two && whole.mesh.has_no_fans();
         let triangles = whole.mesh.triangles.len() / 3;
-        let size = if is_plain { triangles.div_ceil(REGIONS).max(FEWEST) } else { triangles };
+        // A region does not know of other fans than those inside of it.
+        let is_cut = whole.mesh.has_no_fans();
+        let size = if is_cut { triangles.div_ceil(REGIONS).max(FEWEST) } else { triangles };
         whole.flip_parts(size, &threads);
         let mut before = 0;
         // A flip elsewhere may have removed the edge that stood in the way.

@@ -29,7 +29,7 @@ pub(super) struct TopologyMut<'a> {
     pub(super) first: u32,
     pub(super) triangles: &'a mut [u32],
     pub(super) twins: &'a mut [u32],
-    /// Those of the whole mesh; a part has none, and every star there is embedded that a flip needs to be.
+    /// Those of the whole mesh; a part has none, since a mesh is cut only where every vertex has one fan.
     pub(super) fans: Option<&'a mut Fans>,
 }
 
@@ -85,6 +85,7 @@ impl Region<'_> {
             for mut half in halves {
                 left.append(&mut half.left);
                 self.work.blocked.append(&mut half.blocked);
+                self.work.has_duplicate |= half.has_duplicate;
                 self.work.flips += half.flips;
             }
             self.flip_some(&left);
@@ -178,18 +179,20 @@ impl Region<'_> {
     /// Whether an edge that is not Delaunay may flip. `None` where that, or the flip, takes more than the part.
     fn verdict(&self, diamond: &Diamond) -> Option<Verdict> {
         let shape = verdict_of_shape(self.geometry, diamond);
-        let (h, [_, _, c, d]) = (diamond.h, diamond.corners);
-        let mesh = self.mesh.get();
         if shape != Verdict::Labelled {
             return Some(shape);
         }
-        if self.mesh.fans.is_some() {
-            let is_duplicate = makes_duplicate(self.geometry, mesh, h);
-            return Some(if is_duplicate { Verdict::Blocked(Reason::Duplicate) } else { shape });
-        }
-        let is_embedded = self.geometry.embedded.at(c) | self.geometry.embedded.at(d);
-        let is_inside = !mesh.leaves(next(h)) & !mesh.leaves(next(unflagged(diamond.twin)));
-        (is_embedded && is_inside).then_some(shape)
+        let (h, [_, _, c, d]) = (diamond.h, diamond.corners);
+        let mesh = self.mesh.get();
+        let is_duplicate = if self.mesh.fans.is_some() {
+            makes_duplicate(self.geometry, mesh, h)
+        } else if mesh.leaves(next(h)) || mesh.leaves(next(unflagged(diamond.twin))) {
+            return None;
+        } else {
+            let is_embedded = self.geometry.embedded.at(c) || self.geometry.embedded.at(d);
+            !is_embedded && makes_duplicate_inside(mesh, h)?
+        };
+        Some(if is_duplicate { Verdict::Blocked(Reason::Duplicate) } else { shape })
     }
 
     /// Flips an edge, alone, and writes those around it behind the queue; returns how many they are. The triangles around it
@@ -221,6 +224,69 @@ impl Region<'_> {
         twins[at(gn)] = hn;
         let room = self.work.queue.room(4);
         Diamond::write_around(self.mesh.get(), [h, hp, g, gp], outer, diamond.corners, room)
+    }
+}
+
+/// Whether a flip makes an edge that exists, where each vertex has one fan. `None` where both stars leave the part before
+/// either of them says so. As [`makes_duplicate`], it walks both in turns.
+fn makes_duplicate_inside(mesh: Topology, h: u32) -> Option<bool> {
+    let ends = [prev(h), prev(unflagged(mesh.twin(h)))];
+    let [c, d] = ends.map(|corner| mesh.corner(corner));
+    if c == d {
+        return Some(true);
+    }
+    let [mut at_c, mut at_d] = [Walk::new(ends[0], d), Walk::new(ends[1], c)];
+    while at_c.is_inside || at_d.is_inside {
+        for walk in [&mut at_c, &mut at_d] {
+            if walk.is_inside
+                && let Some(is_joined) = walk.step(mesh)
+            {
+                return Some(is_joined);
+            }
+        }
+    }
+    None
+}
+
+/// A walk around a vertex, from triangle to triangle of a part, in search of an edge to another vertex.
+struct Walk {
+    start: u32,
+    at: u32,
+    to: u32,
+    clockwise: bool,
+    /// Whether it has not left the part.
+    is_inside: bool,
+}
+
+impl Walk {
+    fn new(start: u32, to: u32) -> Self {
+        Self { start, at: start, to, clockwise: false, is_inside: true }
+    }
+
+    /// Looks at one triangle and goes on to the next one; says whether there is such an edge once that is known.
+    #[inline(always)]
+    fn step(&mut self, mesh: Topology) -> Option<bool> {
+        let side = prev(self.at);
+        if mesh.corner(next(self.at)) == self.to || mesh.corner(side) == self.to {
+            return Some(true);
+        }
+        if !self.clockwise {
+            self.at = unflagged(mesh.twin(side));
+            if self.at == self.start {
+                return Some(false);
+            }
+            // The fan is open: it goes back to where it began and round the other way.
+            self.clockwise = self.at == NONE;
+        }
+        if self.clockwise {
+            let from = if self.at == NONE { self.start } else { self.at };
+            match unflagged(mesh.twin(from)) {
+                NONE => return Some(false),
+                twin => self.at = next(twin),
+            }
+        }
+        self.is_inside = mesh.has(self.at);
+        None
     }
 }
 
@@ -265,9 +331,55 @@ impl Queue {
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::unwrap_used, reason = "what fails here is a failed test")]
+
     use super::*;
+    use crate::embedded::Embedded;
+    use crate::families;
+    use crate::phases::Thresholds;
+    use crate::winding::Winding;
+    use crate::{Adjacency, Options};
     use proptest::prelude::*;
     use std::collections::VecDeque;
+
+    /// Every part of a surface whose flips often make edges that exist: what a part says is so in the whole, which itself is
+    /// a part that always says it.
+    #[test]
+    fn a_part_finds_the_duplicates_of_the_whole() {
+        let (mut known, mut left) = ([0, 0], 0);
+        for spec in ["uvsphere 5", "pillow 3", "pole 12"] {
+            let mesh = families::by_name(spec).unwrap();
+            let (triangles, twins) = (mesh.triangles(), Adjacency::new(&mesh).twins);
+            let (winding, embedded) = (Winding::default(), Embedded::default());
+            let thresholds = Thresholds::from(&Options::default());
+            let (dimension, positions) = (mesh.dimension(), mesh.positions());
+            let geometry =
+                Geometry { dimension, positions, thresholds, winding: &winding, embedded: &embedded };
+            let fans = Fans::default();
+            let whole = Topology { first: 0, triangles, twins: &twins, fans: &fans };
+            let count = triangles.len();
+            for (first, end) in
+                (0..count).step_by(3).flat_map(|a| (a + 3..=count).step_by(3).map(move |b| (a, b)))
+            {
+                let (triangles, twins) = (&triangles[first..end], &twins[first..end]);
+                let part = Topology { first: first as u32, triangles, twins, fans: &fans };
+                for h in (first as u32..end as u32).filter(|&h| part.has(unflagged(part.twin(h)))) {
+                    let expected = makes_duplicate(&geometry, whole, h);
+                    match makes_duplicate_inside(part, h) {
+                        Some(found) => {
+                            assert_eq!(found, expected, "{spec}: {h} in {first}..{end}");
+                            known[usize::from(found)] += 1;
+                        }
+                        None => {
+                            assert!(end - first < count, "{spec}: {h}");
+                            left += 1;
+                        }
+                    }
+                }
+            }
+        }
+        assert!(known.iter().all(|&count| count > 20) && left > 20, "{known:?}, {left}");
+    }
 
     proptest! {
         /// Each time some are written behind the queue, a part of them is appended, and some leave.
