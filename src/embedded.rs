@@ -50,11 +50,12 @@ impl Embedded {
         let words: &mut [AtomicU8] = zerocopy::transmute_mut!(turns.as_mut_slice());
         let is_alone = threads.is_one();
         let turn = |v: u32, by: u8| {
-            let (word, sum) = (&words[v as usize], |before: u8| (before + by).min(2));
+            let word = &words[v as usize];
             if is_alone {
-                word.store(sum(word.load(Relaxed)), Relaxed);
-            } else {
-                let _ = word.fetch_update(Relaxed, Relaxed, |before| Some(sum(before)));
+                word.store((word.load(Relaxed) + by).min(2), Relaxed);
+            } else if by == 2 || by == 1 && word.swap(1, Relaxed) != 0 {
+                // Whoever finds something there writes last.
+                word.store(2, Relaxed);
             }
         };
         let pieces = threads.map(mesh.triangle_count(), |piece| add_turns(mesh, twins, winding, piece, turn));
