@@ -103,6 +103,29 @@ fn numbers(device: &wgpu::Device, queue: &wgpu::Queue) -> Buffer {
     buffer
 }
 
+/// Has a device answer once, on a thread of its own: the first time takes its driver long, and beside the compiler it costs
+/// nothing. What fails here fails again.
+#[cfg(not(target_arch = "wasm32"))]
+fn wake(device: &wgpu::Device, queue: &wgpu::Queue) -> std::io::Result<std::thread::JoinHandle<()>> {
+    let (device, queue) = (device.clone(), queue.clone());
+    std::thread::Builder::new().spawn(move || {
+        let ask = || {
+            let [from, to] =
+                [BufferUsages::COPY_SRC, BufferUsages::COPY_DST | BufferUsages::MAP_READ].map(|usage| {
+                    let (label, size) = (Some("wake"), 16);
+                    let descriptor = wgpu::BufferDescriptor { label, size, usage, mapped_at_creation: false };
+                    Buffer(device.create_buffer(&descriptor))
+                });
+            let mut encoder = device.create_command_encoder(&Default::default());
+            encoder.copy_buffer_to_buffer(&from, 0, &to, 0, 16);
+            queue.submit([encoder.finish()]);
+            to.map_async(wgpu::MapMode::Read, .., |_| ());
+            let _ = device.poll(wgpu::PollType::wait_indefinitely());
+        };
+        drop(watch(&device, ask));
+    })
+}
+
 fn refused_kernels(fault: Fault) -> Error {
     unavailable(format!("it refuses the kernels: {fault}"))
 }
@@ -210,7 +233,12 @@ impl Device {
             if is_software { (64, WORKGROUP_SIZE) } else { (2048, largest.min(LARGEST_TAIL)) };
         let phases = form.map(|form| Plan::phases(form, tail_size));
         let plans: Vec<_> = [Plan::adjacency(), Plan::probe()].into_iter().chain(phases).collect();
-        let mut compiled = kernels::compile(&plans, &device).await.map_err(refused_kernels)?;
+        #[cfg(not(target_arch = "wasm32"))]
+        let waking = wake(&device, &queue);
+        let compiled = kernels::compile(&plans, &device).await;
+        #[cfg(not(target_arch = "wasm32"))]
+        drop(waking.map(std::thread::JoinHandle::join));
+        let mut compiled = compiled.map_err(refused_kernels)?;
         let mut phases = Phases::default();
         if let Some(form) = form {
             phases[form.index()] = Some(Arc::new(compiled.remove(2)));
@@ -315,9 +343,13 @@ impl Device {
     /// [`Error::Device`].
     pub(super) async fn allocated<T>(&self, calls: impl FnOnce() -> T) -> Result<T, Error> {
         let (result, word) = watch(&self.device, calls);
-        match word.await {
+        self.judge_allocation(word.await).map(|()| result)
+    }
+
+    pub(super) fn judge_allocation(&self, fault: Option<Fault>) -> Result<(), Error> {
+        match fault {
             Some(Fault::OutOfMemory) => refuse(format!("{} has no memory left for it", self.adapter)),
-            fault => self.judge(fault).map(|()| result),
+            fault => self.judge(fault),
         }
     }
 

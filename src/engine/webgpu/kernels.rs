@@ -183,28 +183,44 @@ impl Plan {
 /// The kernels of plans, all compiled at the same time: a driver compiles on the thread that asks for it, and takes long.
 #[cfg(not(target_arch = "wasm32"))]
 pub(super) async fn compile(plans: &[Plan], device: &wgpu::Device) -> Result<Vec<Kernels>, Fault> {
-    let (parts, word) =
-        watch(device, || plans.iter().map(|plan| Parts::new(plan, device)).collect::<Vec<_>>());
+    let sources: Vec<&String> = plans.iter().flat_map(|plan| &plan.sources).collect();
+    let mut modules = at_once(&sources, device, |source| module(source, device))?.into_iter();
+    let parts = |plan: &Plan| Parts::new(plan, device, modules.by_ref().take(plan.sources.len()).collect());
+    let (parts, word) = watch(device, || plans.iter().map(parts).collect::<Vec<_>>());
     told(word.await)?;
-    let compile = |parts: &Parts, entry| {
-        let (pipeline, word) = watch(device, || parts.pipeline(entry, device));
-        told(pollster::block_on(word)).map(|()| pipeline)
+    let entries: Vec<_> = (parts.iter().zip(plans))
+        .flat_map(|(parts, plan)| plan.entries.iter().map(move |entry| (parts, entry)))
+        .collect();
+    let mut pipelines =
+        at_once(&entries, device, |(parts, entry)| parts.pipeline(entry, device))?.into_iter();
+    let kernels = parts.iter().zip(plans).map(|(parts, plan)| Kernels {
+        pipelines: pipelines.by_ref().take(plan.entries.len()).collect(),
+        layout: parts.layout.clone(),
+    });
+    Ok(kernels.collect())
+}
+
+/// What the device makes of each item, each on a thread of its own.
+#[cfg(not(target_arch = "wasm32"))]
+fn at_once<T: Sync, R: Send>(
+    items: &[T],
+    device: &wgpu::Device,
+    make: impl Fn(&T) -> R + Sync,
+) -> Result<Vec<R>, Fault> {
+    let make = |item| {
+        let (result, word) = watch(device, || make(item));
+        told(pollster::block_on(word)).map(|()| result)
     };
+    let make = &make;
     std::thread::scope(|scope| {
-        let start =
-            |parts, entry| std::thread::Builder::new().spawn_scoped(scope, move || compile(parts, entry));
-        let all: Vec<Vec<_>> = (parts.iter().zip(plans))
-            .map(|(parts, plan)| plan.entries.iter().map(|entry| (start(parts, entry), entry)).collect())
-            .collect();
-        let kernels = parts.iter().zip(all).map(|(parts, threads)| {
-            let pipelines = threads.into_iter().map(|(thread, entry)| match thread {
-                Ok(thread) => thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)),
-                // The system has no more threads.
-                Err(_) => compile(parts, entry),
-            });
-            Ok(Kernels { pipelines: pipelines.collect::<Result<_, _>>()?, layout: parts.layout.clone() })
+        let start = |item| (std::thread::Builder::new().spawn_scoped(scope, move || make(item)), item);
+        let threads: Vec<_> = items.iter().map(start).collect();
+        let results = threads.into_iter().map(|(thread, item)| match thread {
+            Ok(thread) => thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)),
+            // The system has no more threads.
+            Err(_) => make(item),
         });
-        kernels.collect()
+        results.collect()
     })
 }
 
@@ -213,7 +229,8 @@ pub(super) async fn compile(plans: &[Plan], device: &wgpu::Device) -> Result<Vec
 pub(super) async fn compile(plans: &[Plan], device: &wgpu::Device) -> Result<Vec<Kernels>, Fault> {
     let _ahead = ahead::compiled(plans, device).await;
     let kernels = |plan: &Plan| {
-        let parts = Parts::new(plan, device);
+        let modules = plan.sources.iter().map(|source| module(source, device)).collect();
+        let parts = Parts::new(plan, device, modules);
         let pipelines = plan.entries.iter().map(|entry| parts.pipeline(entry, device)).collect();
         Kernels { pipelines, layout: parts.layout }
     };
@@ -225,6 +242,13 @@ fn told(fault: Option<Fault>) -> Result<(), Fault> {
     fault.map_or(Ok(()), Err)
 }
 
+fn module(source: &str, device: &wgpu::Device) -> wgpu::ShaderModule {
+    device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: None,
+        source: wgpu::ShaderSource::Wgsl(source.into()),
+    })
+}
+
 /// What pipelines are made of.
 struct Parts {
     layout: wgpu::BindGroupLayout,
@@ -233,7 +257,7 @@ struct Parts {
 }
 
 impl Parts {
-    fn new(plan: &Plan, device: &wgpu::Device) -> Self {
+    fn new(plan: &Plan, device: &wgpu::Device, modules: Vec<wgpu::ShaderModule>) -> Self {
         let places: Vec<_> = plan
             .bindings
             .iter()
@@ -252,13 +276,7 @@ impl Parts {
             bind_group_layouts: &[Some(&layout)],
             immediate_size: 0,
         });
-        let module = |source: &String| {
-            device.create_shader_module(wgpu::ShaderModuleDescriptor {
-                label: None,
-                source: wgpu::ShaderSource::Wgsl(source.as_str().into()),
-            })
-        };
-        Self { layout, pipeline_layout, modules: plan.sources.iter().map(module).collect() }
+        Self { layout, pipeline_layout, modules }
     }
 
     fn pipeline(&self, (place, name, constant): &Entry, device: &wgpu::Device) -> wgpu::ComputePipeline {

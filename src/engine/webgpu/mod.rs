@@ -49,6 +49,7 @@ use crate::mesh::Mesh;
 use crate::phases::Thresholds;
 use buffers::Buffers;
 use device::Buffer;
+use faults::Word;
 use kernels::Kernels;
 #[cfg(test)]
 use kernels::Plan;
@@ -89,6 +90,8 @@ pub(crate) struct WebGpu {
     counters: Buffer,
     /// The mesh, until the host has read the counters.
     unsettled: Option<Arc<Mesh>>,
+    /// What the device has to say of the buffers of the mesh, until the host has heard it.
+    word: Option<Word>,
     /// Whether it reads them before the first iteration, and else only what it is asked for.
     waits: bool,
     /// What it has read before it was asked.
@@ -124,7 +127,7 @@ impl Engine for WebGpu {
         let known = self.known.triangles.take().map(|array| array.to_vec());
         match known {
             Some(triangles) => Box::pin(std::future::ready(Ok(triangles))),
-            None => Box::pin(self.gpu.read(&self.buffers.triangles, 3 * self.params.triangles as usize)),
+            None => self.read(|buffers| &buffers.triangles),
         }
     }
 
@@ -137,7 +140,7 @@ impl Engine for WebGpu {
     }
 
     fn twins(&mut self) -> Answer<'_, Vec<u32>> {
-        Box::pin(self.gpu.read(&self.buffers.twins, 3 * self.params.triangles as usize))
+        self.read(|buffers| &buffers.twins)
     }
 
     fn set_positions(&mut self, mesh: Arc<Mesh>) -> Answer<'_, ()> {

@@ -1,9 +1,11 @@
 //! The iterations, and what is read behind them.
 
 use super::adjacency::COUNTERS;
+use super::buffers::Buffers;
 use super::copies::Source;
 #[cfg(not(target_arch = "wasm32"))]
 use super::copies::{Words, room};
+use super::device::Buffer;
 use super::kernels::{Kernel, WORKGROUP_SIZE};
 #[cfg(target_arch = "wasm32")]
 use super::mapped::{Words, room};
@@ -12,7 +14,7 @@ use super::staging;
 use super::steps::Step;
 use super::{BATCH, COUNTS, ENTRIES, ENTRY_WORDS, HISTORY_WORDS, PAUSES, SHORT_TAIL, TAIL, WebGpu};
 use crate::Error;
-use crate::engine::Census;
+use crate::engine::{Answer, Census};
 
 /// Kernels of a census.
 const CENSUS_DISPATCHES: u64 = 3;
@@ -82,6 +84,7 @@ impl WebGpu {
         let gpu = self.gpu.clone();
         let coming = gpu.submit_and_map(&record, &sources);
         let room = if has_triangles { room(triangles) } else { None };
+        self.heard().await?;
         let landed = coming.landed().await?;
         let history = landed.words(0)?;
         if let Some(mesh) = self.unsettled.clone() {
@@ -95,6 +98,14 @@ impl WebGpu {
         }
         self.known.triangles = room.map(|room| landed.fill(2, room)).transpose()?;
         Ok(self.take_over(&history))
+    }
+
+    /// A word of each half-edge, from a buffer that has them.
+    pub(super) fn read(&mut self, of: fn(&Buffers) -> &Buffer) -> Answer<'_, Vec<u32>> {
+        Box::pin(async move {
+            self.heard().await?;
+            self.gpu.read(of(&self.buffers), 3 * self.params.triangles as usize).await
+        })
     }
 
     /// Counts the edges, unless that was done behind the last iteration.

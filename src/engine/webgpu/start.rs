@@ -2,7 +2,7 @@
 
 use super::adjacency::{self, COUNTERS, Found, Scratch};
 use super::buffers::Buffers;
-use super::faults::refuse;
+use super::faults::{refuse, watch};
 use super::kernels::Kernel;
 use super::limits::{refuse_large_buffer, refuse_large_mesh};
 use super::params::{NEGATIVE, POSITIVE, Params, Places};
@@ -59,6 +59,7 @@ impl WebGpu {
                 buffers,
                 counters: scratch.counters,
                 unsettled: None,
+                word: None,
                 waits,
                 known: Known::default(),
                 state: Entry::default(),
@@ -70,12 +71,27 @@ impl WebGpu {
             gpu.submit(encoder);
             result
         };
-        let mut result = gpu.allocated(begin).await?;
+        let (mut result, word) = watch(&gpu.device, begin);
+        result.word = Some(word);
+        if waits {
+            result.heard().await?;
+        }
         result.begin(upload.mesh).await?;
         if waits {
             result.adjacency_ms = start.elapsed().as_secs_f64() * 1e3;
         }
         Ok(result)
+    }
+
+    /// Waits for the word of the device on the buffers of the mesh, unless it is known.
+    ///
+    /// # Errors
+    /// As [`Device::allocated`](super::Device::allocated).
+    pub(super) async fn heard(&mut self) -> Result<(), Error> {
+        match self.word.take() {
+            Some(word) => self.gpu.judge_allocation(word.await),
+            None => Ok(()),
+        }
     }
 
     /// Records what the positions say of the input: the turns of the stars and the signs of the triangles in 2D, the
@@ -121,6 +137,7 @@ impl WebGpu {
 
     /// Reads the counters, unless the host knows them.
     pub(super) async fn settle(&mut self) -> Result<(), Error> {
+        self.heard().await?;
         if let Some(mesh) = self.unsettled.clone() {
             let counters = self.gpu.read(&self.counters, COUNTERS + 1).await?;
             self.settle_by(&mesh, &counters).await?;
