@@ -24,6 +24,7 @@ mod adjacency;
 mod edge_states;
 mod edges;
 mod embedded;
+mod ends;
 mod engine;
 mod error;
 pub mod families;

@@ -1,6 +1,6 @@
 //! `Mesh`: positions and triangles, checked once when it is made, so that nothing behind it can fail on them.
 
-use crate::positions::all;
+use crate::ends::Ends;
 use crate::threads::Threads;
 use crate::{Error, Positions};
 use glam::{DVec2, DVec3};
@@ -87,9 +87,9 @@ impl Mesh {
             }
         }
         positions.refuse_non_finite(dimension, threads)?;
-        let is_in_range = |&v: &u32| (v as usize) < vertices;
-        if !all(&triangles, threads, is_in_range)
-            && let Some(i) = triangles.iter().position(|v| !is_in_range(v))
+        if !triangles.is_empty()
+            && Ends::of(&triangles, u32::MAX, threads).largest as usize >= vertices
+            && let Some(i) = triangles.iter().position(|&v| v as usize >= vertices)
         {
             return Err(Error::IndexOutOfRange { triangle: i / 3, index: triangles[i], vertices });
         }

@@ -1,5 +1,6 @@
 //! What an engine on a GPU takes: a mesh with coordinates that its shaders decide exactly.
 
+use crate::ends::{Ends, MAGNITUDE};
 use crate::mesh::{Dimension, Mesh};
 use crate::phases::Thresholds;
 use crate::threads::Threads;
@@ -167,16 +168,10 @@ fn parts(x: f64) -> (u64, i32) {
 
 /// Exponents that are quickly found, and between which those of [`exponents`] lie.
 fn most_exponents(floats: &[f32]) -> (i32, i32) {
-    let magnitude = |x: &f32| x.to_bits() & !(1 << 31);
-    // Of zeros the one below is the largest of all.
-    let below = |x: &f32| magnitude(x).wrapping_sub(1);
     // A mesh has about as many triangles as coordinates.
-    let ends = Threads::default().for_triangles(floats.len()).map(floats.len(), |piece| {
-        let floats = &floats[piece];
-        (floats.iter().map(below).fold(u32::MAX, u32::min), floats.iter().map(magnitude).fold(0, u32::max))
-    });
-    let (lowest, largest) = ends.into_iter().fold((u32::MAX, 0), |(a, b), (c, d)| (a.min(c), b.max(d)));
-    let smallest = lowest.wrapping_add(1);
+    let threads = Threads::default().for_triangles(floats.len());
+    let Ends { below, largest } = Ends::of(bytemuck::cast_slice(floats), MAGNITUDE, &threads);
+    let smallest = below.wrapping_add(1);
     let exponent = |bits: u32| (bits >> 23).max(1) as i32 - 127;
     if largest == 0 { (0, 0) } else { (exponent(smallest) - 23, exponent(largest)) }
 }
