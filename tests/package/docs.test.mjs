@@ -1,5 +1,5 @@
 // The JavaScript in README and docs/: TypeScript is strict about every block, and each block in `js` runs in Node on the
-// CPU. Links in the documents lead to files and headings that exist.
+// CPU. So do the programs in examples/. Links in the documents lead to files and headings that exist.
 
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
@@ -47,6 +47,21 @@ for (const { name, file, code } of blocks.filter(({ isRun }) => isRun)) {
     if (name === 'README.md, block 1') assert.equal(stdout, '1 flip on cpu: 3,1,2,0,1,3\n');
   });
 }
+
+const example = (name, ...args) => {
+  const { status, stdout, stderr } = node([join(repository, `examples/${name}.mjs`), ...args]);
+  assert.equal(status, 0, stderr);
+  return stdout;
+};
+
+test('the examples run', () => {
+  assert.match(example('one-call'), /^1 flip on cpu: 3,1,2,0,1,3\n/);
+  assert.match(example('step-by-step'), /^iteration 0: .*\niteration 1: .*\n(\d+ flips in \d+ iterations\n)+done; .* \{\}\n$/);
+  const [input, output] = ['thin.obj', 'delaunay.obj'].map((name) => join(folder, name));
+  writeFileSync(input, 'v -3 0 0\nv 0 -1 0\nv 3 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\nf 1 3 4\n');
+  assert.equal(example('file', input, output), '1 flips\n');
+  assert.match(readFileSync(output, 'utf8'), /^usemtl red$/m);
+});
 
 /** The anchor that GitHub gives a heading. */
 const anchor = (heading) => heading.toLowerCase().replace(/[^\w\- ]/g, '').replaceAll(' ', '-');
