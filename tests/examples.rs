@@ -47,7 +47,7 @@ fn the_command_lines_in_readme() {
     let folder = tempfile::tempdir().unwrap();
     let mut bash = std::process::Command::new("bash");
     bash.args(["-euc", &script, env!("CARGO_BIN_EXE_edgeflip")]).current_dir(folder.path());
-    assert!(bash.status().unwrap().success());
+    assert!(bash.output().unwrap().status.success());
     let written = fs::read_to_string(folder.path().join("delaunay.off")).unwrap();
     assert!(written.ends_with("3 3 1 2\n3 0 1 3\n"), "{written}");
 }
