@@ -51,10 +51,9 @@ const levels = [
     checks: [['cargo', 'clippy', '--locked', '--workspace', '--all-targets', '--', '-D', 'warnings']],
   },
   {
-    name: 'rustdoc',
-    what: 'the documentation builds without a warning or a dead link',
-    checks: [['cargo', 'doc', '--no-deps']],
-    env: { RUSTDOCFLAGS: '-D warnings' },
+    name: 'docs',
+    what: 'the API reference of both languages builds without a warning or a dead link',
+    checks: [['node', 'tools/docs.mjs']],
   },
   {
     name: 'unit',
