@@ -1,5 +1,5 @@
-// Draws the page in each of its states, light and dark, wide and narrow, into target/screenshots:
-// `npm run screenshots`, after `npm start` has built the page. To be looked at.
+// Takes screenshots of the page that `npm start` has built. `npm run screenshots` takes every state, light and dark, wide
+// and narrow, into target/screenshots, to be looked at. `npm run picture` takes the one picture in README: docs/page.png.
 
 import { mkdirSync } from 'node:fs';
 import { resolve } from 'node:path';
@@ -8,7 +8,7 @@ import { closeAll, serve, startChromium } from '../tests/browsers.mjs';
 
 process.chdir(fileURLToPath(new URL('..', import.meta.url)));
 const folder = 'target/screenshots';
-mkdirSync(folder, { recursive: true });
+const picture = 'docs/page.png';
 
 const looks = [];
 for (const colorScheme of ['light', 'dark']) {
@@ -65,9 +65,24 @@ const states = {
   },
 };
 
-try {
-  const address = await serve(resolve('target/www'));
-  const browser = await startChromium();
+/** Random points in the middle of their run, light and wide. */
+async function takePicture(browser, address) {
+  const page = await browser.newPage({ colorScheme: 'light', viewport: { width: 1280, height: 800 } });
+  await page.goto(address);
+  await measured(page);
+  await sample(page, 'random 24');
+  for (let i = 1; i <= 2; i++) {
+    await page.click('#step');
+    await page.waitForFunction((at) => document.body.dataset.measured === at, `${i}`);
+  }
+  await page.waitForTimeout(300); // drawn
+  await page.screenshot({ path: picture });
+  console.log(picture);
+}
+
+/** Each state in each look. */
+async function takeAll(browser, address) {
+  mkdirSync(folder, { recursive: true });
   for (const { look, ...options } of looks) {
     const context = await browser.newContext(options);
     const page = await context.newPage();
@@ -88,6 +103,12 @@ try {
     await context.close();
     console.log(`${folder}/${look}-*.png`);
   }
+}
+
+try {
+  const address = await serve(resolve('target/www'));
+  const browser = await startChromium();
+  await (process.argv[2] === 'picture' ? takePicture : takeAll)(browser, address);
 } finally {
   await closeAll();
 }

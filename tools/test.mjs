@@ -51,10 +51,9 @@ const levels = [
     checks: [['cargo', 'clippy', '--locked', '--workspace', '--all-targets', '--', '-D', 'warnings']],
   },
   {
-    name: 'rustdoc',
-    what: 'the documentation builds without a warning or a dead link',
-    checks: [['cargo', 'doc', '--no-deps']],
-    env: { RUSTDOCFLAGS: '-D warnings' },
+    name: 'docs',
+    what: 'the API reference of both languages builds without a warning or a dead link',
+    checks: [['node', 'tools/docs.mjs']],
   },
   {
     name: 'unit',
@@ -100,11 +99,11 @@ const levels = [
   },
   {
     name: 'npm package',
-    what: 'the package builds, TypeScript is strict about it, and its tests pass in Node on the CPU engine, hostile values too',
+    what: 'the package builds, TypeScript is strict about it, and its tests pass in Node on the CPU engine, hostile values too; so does the code in README and docs/',
     checks: [
       ['node', 'tools/build.mjs'],
       ['node', 'node_modules/typescript/bin/tsc', '-p', 'tests/package'],
-      ['node', '--test', '--test-reporter=tap', 'tests/package/node.test.mjs', 'tests/package/files.test.mjs', 'tests/package/gltf.test.mjs',
+      ['node', '--test', '--test-reporter=tap', 'tests/package/node.test.mjs', 'tests/package/docs.test.mjs', 'tests/package/files.test.mjs', 'tests/package/gltf.test.mjs',
         'tests/package/weld.test.mjs', 'tests/package/threads.test.mjs', 'tests/package/memory.test.mjs', 'tests/package/limited.test.mjs', 'tests/package/hostile.test.mjs'],
     ],
     counts: true,

@@ -1,24 +1,24 @@
-/** What goes into the package and what comes out of it. */
+/** The types of the input, the options and the results. */
 
 /// <reference types="@webgpu/types" preserve="true" />
 
-/** A triangle mesh. Its arrays are copied before a call returns, and stay the caller's. */
+/** A triangle mesh. A call copies its arrays before it returns. */
 export interface Mesh {
   /**
-   * 2 or 3 numbers a vertex. Decisions are exact for the numbers given. WebGPU and WebGL2 take those that span at most
-   * 84 bits and a sign as seen from the middle of the bounding box, the CPU takes all.
+   * 2 or 3 numbers per vertex. Decisions are exact for these numbers. The CPU accepts all finite numbers. WebGPU and
+   * WebGL2 accept multiples of a power of two, at most 84 bits and a sign relative to the centre of the bounding box.
    */
   positions: Float32Array | Float64Array;
-  /** Vertex indices, 3 a triangle. */
+  /** Vertex indices, 3 per triangle. */
   indices: Uint32Array | Uint16Array;
   /** 2 for a mesh in the plane, 3 for a surface in space. */
   dimension: 2 | 3;
 }
 
-/** Bytes of files by their names, such as `{ 'scene.bin': bytes }`. */
+/** The bytes of files by name, such as `{ 'scene.bin': bytes }`. */
 export type Files = Readonly<Record<string, Uint8Array>>;
 
-/** A file that a mesh was read from, with what it was read with. */
+/** The file that a mesh was read from, and the options that it was read with. */
 export interface Original {
   bytes: Uint8Array;
   name: string;
@@ -26,7 +26,7 @@ export interface Original {
   maxBytes?: number | undefined;
 }
 
-/** Numbers for the vertices of a mesh, the same count for each, such as 2 texture coordinates. */
+/** An attribute of the vertices: the same count of numbers for each vertex, such as 2 texture coordinates. */
 export type VertexArray =
   | Int8Array
   | Uint8Array
@@ -39,81 +39,81 @@ export type VertexArray =
   | Float64Array;
 
 /**
- * What vertices at one place have: those with the same bits in all arrays are the same. Or the file that the mesh was
- * read from: of glTF the vertices of each primitive are joined for themselves, and those are the same that have the
- * same bytes in all accessors. Files of other formats say nothing here: write what comes of them without `original`.
+ * The attributes that vertices at the same position are compared by: two vertices are equal if all arrays have the same
+ * bits for them. Instead of arrays, it can be the file that the mesh was read from. In glTF, the vertices of each
+ * primitive are joined separately, and they are equal if all accessors have the same bytes for them. In other formats,
+ * all vertices at the same position are equal; write the result without `original` then.
  */
 export type Attributes = readonly VertexArray[] | Original;
 
-/** An engine. All give the same result, bit for bit. */
+/** An engine. All engines give the same result, bit for bit. */
 export type Engine = 'webgpu' | 'webgl2' | 'cpu';
 
-/** What can be chosen for a session. Arrays are copied before a call returns. */
+/** The options of a session. A call copies arrays before it returns. */
 export interface Options {
   /**
-   * `'webgpu'`, `'webgl2'` and `'cpu'` take that engine or fail. `'auto'` (default) takes the one that is done first: the
-   * CPU for a small mesh, and WebGPU for a large one, on a hardware GPU that gets a test mesh right. Where the browser still
-   * has to make that GPU ready, the run begins on the CPU and the GPU is made ready behind it, unless the mesh is so large
-   * that waiting is faster. A session on one thread may go over to the GPU later, in `run` or in `setPositions`; one on
-   * several threads stays on the CPU. Where the device is lost, the CPU goes on. It never takes WebGL2, which takes longer
-   * than the CPU. {@link Result.fallback} says why it is the CPU.
+   * `'webgpu'`, `'webgl2'` and `'cpu'` take that engine or fail. `'auto'`, the default, takes the engine that is
+   * estimated to finish first: the CPU for a small mesh, WebGPU for a large one. It takes WebGPU only on a hardware GPU
+   * that has flipped a test mesh correctly. While the browser prepares that GPU, the run starts on the CPU, unless the
+   * mesh is so large that waiting is faster. A session on one thread may move to the GPU later, in `run` or in
+   * `setPositions`; a session on several threads stays on the CPU. If the device is lost, the CPU continues. `'auto'`
+   * never takes WebGL2, which is slower than the CPU. {@link Result.fallback} says why the CPU ran.
    */
   backend?: 'auto' | Engine | undefined;
   /**
-   * The largest angle in degrees between the normals of two triangles whose edge may flip, before and after; sharper
-   * edges stay. For surfaces only. Default 10.
+   * β: an edge flips only if the normals of its two triangles differ by at most this angle in degrees, before and after
+   * the flip. For surfaces only. Default: 10.
    */
   maxNormalAngle?: number | undefined;
   /**
-   * The largest distance between the old and the new diagonal of a flip, in the units of the positions, rounded down to
-   * a 32-bit float: what one flip may move the surface by. Of the lines that they lie on, where the diagonals themselves
-   * do not pass each other. For surfaces only. Default: `Infinity`.
+   * How far one flip may move the surface: the largest distance between the old and the new diagonal, in the units of
+   * the positions, rounded down to a 32-bit float. If the diagonals do not pass each other, the distance between their
+   * lines counts. For surfaces only. Default: `Infinity`.
    */
   maxDeviation?: number | undefined;
-  /** Stop after so many iterations. Default: run to the end, which is always reached. */
+  /** Stops the run after so many iterations. Default: no limit; every run ends by itself. */
   maxIterations?: number | undefined;
   /**
-   * Edges that never flip: two vertices each, one pair after the other, in any order; repeated pairs are one. Each has
-   * to be an edge of the mesh. Those that are not Delaunay in the end are counted as `locked`.
+   * Edges that never flip, as pairs of vertices, one pair after the other, in any order. Every pair has to be an edge
+   * of the mesh; pairs may repeat. Locked edges that are not Delaunay at the end are counted as `locked`.
    */
   lockedEdges?: Uint32Array | readonly number[] | undefined;
-  /** Triangles that stay as they are, by their numbers: their edges are locked. */
+  /** The indices of triangles that never change. Their edges are locked. */
   lockedTriangles?: Uint32Array | readonly number[] | undefined;
   /**
-   * A number for each triangle: edges between triangles of different numbers are locked, so that every group keeps its
-   * border. Flips leave each triangle in its group.
+   * A number for each triangle. Edges between triangles with different numbers are locked, so every group keeps its
+   * border.
    */
   groups?: Uint32Array | readonly number[] | undefined;
   /**
-   * Turns triangles first, so that neighbours agree about the side that is outside: in each component where that is
-   * possible, the fewer. Else edges between triangles turned against each other stay. Loads the module of
-   * `edgeflip/files`.
+   * First reverses the minority of inconsistently oriented triangles in each orientable component. Without it, edges
+   * between inconsistently oriented triangles never flip. Loads the module of `edgeflip/files`.
    */
   reorient?: boolean | undefined;
   /**
-   * Joins vertices at exactly the same position for the run, so that edges flip where triangles have no vertices in
-   * common; the indices of the result are split again. Where vertices of one place differ in these attributes, the edges
-   * of the seam are locked, and every corner of the result has a vertex with its attributes; with `true` all of one place
-   * are the same. The vertices of a place have to stay at one place when the positions of a session change. What
-   * `edges`, `verify` and `gpu` give is of the joined mesh, which has the first vertex of each place. Loads the module of
+   * Joins vertices at exactly the same position for the run, so that edges flip between triangles that share no
+   * vertices, and splits them again in the result. If vertices at the same position differ in these attributes, the
+   * edges of that seam are locked, and every corner of the result has a vertex with its attributes. `true` ignores
+   * attributes. When the positions of a session change, vertices that were joined have to stay together. `edges`,
+   * `verify` and `gpu` describe the joined mesh, which has the first vertex at each position. Loads the module of
    * `edgeflip/files`.
    */
   weld?: boolean | Attributes | undefined;
   /**
-   * `'reproducible'` (default): the parallel iterations, the same on every engine. `'any'`: Lawson's sequential
-   * algorithm, on the CPU only: faster, and a run is one iteration.
+   * `'reproducible'`, the default, runs the parallel iterations, which are the same on every engine. `'any'` runs
+   * Lawson's algorithm on the CPU, which is faster; a run is then one iteration.
    */
   order?: 'reproducible' | 'any' | undefined;
   /**
-   * How many threads the CPU engine runs on at most, 1 to 256. Default: one for each core. More than one needs a mesh of
-   * 65,536 triangles, with 4,096 for each: fewer are done before others have woken up. It needs shared memory too: Node has it, a page where it is cross-origin isolated.
-   * Else it is one. The result is the same for any number.
+   * The largest number of threads of the CPU engine, 1 to 256. Default: one per core. A mesh of fewer than 65,536
+   * triangles runs on one thread, a larger one on at most one thread per 4,096 triangles. Several threads need shared
+   * memory: Node has it, and so does a cross-origin isolated page. The result is the same for any number.
    */
   threads?: number | undefined;
   /**
-   * The page's own GPUDevice, for `'webgpu'` and `'auto'` to run on: buffers of the session can then be used with it.
-   * Default limits are enough. The session neither destroys it nor sets anything of it, and leaves errors alone that it
-   * did not make. `'auto'` leaves a software device. Without effect on the CPU.
+   * Your own `GPUDevice`, for `'webgpu'` and `'auto'` to run on; you can then use the buffers of the session with it.
+   * Its default limits suffice. The session does not destroy it, changes no setting of it, and ignores errors that it
+   * did not cause. `'auto'` takes no software device. The CPU ignores this option.
    */
   device?: GPUDevice | undefined;
 }
@@ -126,121 +126,131 @@ export interface Progress {
   flips: number;
 }
 
-/** What can be chosen for a run. */
+/** The options of a run. */
 export interface RunOptions {
-  /** Stops the run after a complete iteration. The result then has the status `'stopped'`; nothing is thrown. */
+  /** Stops the run after a complete iteration. The result then has the status `'stopped'`, and nothing is thrown. */
   signal?: AbortSignal | undefined;
-  /** Called after every batch of iterations: on one thread of the CPU one, on several those of 32 ms, on the GPU many. */
+  /**
+   * Called after every batch: one iteration on one CPU thread, the iterations of 32 ms on several, many on a GPU.
+   */
   onProgress?: ((progress: Progress) => void) | undefined;
 }
 
-/** What can be chosen for {@link makeDelaunay}. */
+/** The options of {@link makeDelaunay}. */
 export interface MakeDelaunayOptions extends Options, RunOptions {
-  /** Called after every iteration. Watching costs time: each iteration is then counted and waited for. */
+  /** Called after every iteration. Watching costs time, because each iteration is then counted and awaited. */
   onIteration?: ((iteration: Iteration) => void) | undefined;
 }
 
 /**
- * Why an edge is still not Delaunay. `angle`: the normals differ by more than `maxNormalAngle`. `fold`: a new
- * triangle would turn over. `duplicate`: the edge that the flip would make exists already. `locked`: the
- * options lock it, whatever else it is. `deviation`: the diagonals are further apart than `maxDeviation`. `non-manifold`: three or more triangles, or one twice, meet there.
- * `inconsistent`: its two triangles are oriented against each other. `stopped`: the run was stopped before.
+ * Why an edge is still not Delaunay.
+ *
+ * | reason | meaning |
+ * |---|---|
+ * | `angle` | the normals differ by more than `maxNormalAngle`, or did so in the input |
+ * | `fold` | a new triangle would turn over |
+ * | `duplicate` | the new edge exists already |
+ * | `locked` | the options lock the edge; this takes precedence over all other reasons |
+ * | `deviation` | the diagonals are further apart than `maxDeviation` |
+ * | `non-manifold` | the edge has three or more triangles, or one triangle twice |
+ * | `inconsistent` | its two triangles are oriented inconsistently |
+ * | `stopped` | the run stopped before it flipped the edge |
  */
 export type Reason = 'angle' | 'fold' | 'duplicate' | 'locked' | 'deviation' | 'non-manifold' | 'inconsistent' | 'stopped';
 
-/** Numbers of edges that are not Delaunay, by reason. A reason without an edge is absent. */
+/** The number of edges that are not Delaunay, by reason. A reason without edges is absent. */
 export type Reasons = Partial<Record<Reason, number>>;
 
-/** What one watched iteration did. */
+/** A watched iteration. */
 export interface Iteration {
-  /** Its number, from 0. */
+  /** Its index, from 0. */
   index: number;
-  /** Edges of the whole mesh that were not Delaunay and might flip, before it. */
+  /** The edges of the whole mesh that were not Delaunay and could flip, before the iteration. */
   labelled: number;
-  /** Edges flipped. */
+  /** The edges that it flipped. */
   flips: number;
-  /** Edges that were not Delaunay and might not flip, before it. Frozen edges are counted in the result only. */
+  /** The edges that were not Delaunay and could not flip, before the iteration. Only the result counts frozen edges. */
   blocked: Reasons;
-  /** Milliseconds. */
+  /** Its time in milliseconds. */
   ms: number;
 }
 
 /** The result of a run. */
 export interface Result {
-  /** Vertex indices, 3 a triangle; the vertices are those of the input. */
+  /** Vertex indices, 3 per triangle. The vertices are those of the input. */
   indices: Uint32Array;
-  /** `'done'`: no edge is left that may flip. `'stopped'`: by the signal or by `maxIterations`. */
+  /** `'done'` if no edge is left that can flip; `'stopped'` by the signal or by `maxIterations`. */
   status: 'done' | 'stopped';
   /** The engine that ran. */
   backend: Engine;
   /** The name of the GPU. */
   adapter: string | undefined;
-  /** Why `'auto'` is on the CPU, or began there. */
+  /** Why `'auto'` ran on the CPU, or started there. */
   fallback: string | undefined;
   /** Iterations with at least one flip. */
   iterations: number;
-  /** Flips in all. */
+  /** All flips. */
   flips: number;
   /** Flips of each iteration. */
   flipsPerIteration: Uint32Array;
   /** Compute dispatches on WebGPU, passes on WebGL2. */
   dispatches: number;
-  /** The most bytes that the buffers of WebGPU took at a time; 0 on other engines. */
+  /** The largest size of the buffers of WebGPU, in bytes; 0 on other engines. */
   deviceBytes: number;
   /** Edges of the mesh. */
   edges: number;
   /** Edges with one triangle. */
   boundaryEdges: number;
-  /** Edges with three or more triangles, or one twice. They stay. */
+  /** Edges with three or more triangles, or with one triangle twice. They never flip. */
   nonManifoldEdges: number;
-  /** Edges whose two triangles are oriented against each other. They stay. */
+  /** Edges whose two triangles are oriented inconsistently. They never flip. */
   inconsistentEdges: number;
-  /** Triangles that `reorient` has turned. */
+  /** Triangles that `reorient` reversed. */
   turnedTriangles: number;
-  /** Vertices that `weld` has joined to another one. */
+  /** Vertices that `weld` joined to another vertex. */
   joinedVertices: number;
-  /** Edges that `weld` has locked, since attributes differ on their two sides. */
+  /** Edges that `weld` locked, because attributes differ across them. */
   seamEdges: number;
   /** Edges that are still not Delaunay. */
   remaining: Reasons;
   /**
-   * Milliseconds: on a GPU making the engine ready and the copies to it, the adjacency, the iterations, and all of it.
-   * WebGPU is waited for once, behind the first iterations: `flip` has the copies and the adjacency then, and what is read
-   * back with them.
+   * Times in milliseconds: `upload` is the preparation of a GPU and the copies to it, `adjacency` the construction of
+   * the twins, `flip` the iterations, `total` all of it. WebGPU in a browser is awaited once, after the first
+   * iterations; `flip` then includes the copies and the adjacency.
    */
   timings: { upload: number; adjacency: number; flip: number; total: number };
 }
 
 /**
- * Every edge, one entry in each array: the Edges array of Navarro, Hitschfeld-Kahler and Scheihing (2011). `ta` and
- * `tb` are positions in the triangle indices: `indices[ta]` is `v1`, and the edge is one of triangle `ta / 3`. Edges
- * come in the order of `ta`, the smaller of the two.
+ * All edges, with one entry per edge in each array: the Edges array of Navarro, Hitschfeld-Kahler and Scheihing (2011).
+ * `ta` and `tb` are half-edges, that is indices into the triangle indices: `indices[ta]` is `v1`, and the edge belongs
+ * to triangle `floor(ta / 3)`. Edges are in the order of `ta`, the smaller of the two half-edges.
  */
 export interface Edges {
   /** First vertex. */
   v1: Uint32Array;
   /** Second vertex. */
   v2: Uint32Array;
-  /** Where the edge starts in its first triangle. */
+  /** The half-edge in the first triangle, from `v1` to `v2`. */
   ta: Uint32Array;
-  /** Where it starts, from `v2`, in its second one; 0xffffffff on the boundary and on edges that are frozen. */
+  /** The half-edge in the second triangle, from `v2` to `v1`; 0xffffffff on the boundary and on frozen edges. */
   tb: Uint32Array;
 }
 
-/** What an independent check of the triangles found, against the input. */
+/** The result of an independent check of the triangles against the input. */
 export interface Audit {
-  /** Whether nothing is wrong. Edges that remain are not wrong. */
+  /** Whether there is no violation. Edges that are not Delaunay are no violation. */
   clean: boolean;
-  /** What is wrong: at most 100 sentences. */
+  /** The violations: at most 100 sentences. */
   violations: string[];
-  /** How many more there are. */
+  /** How many more violations there are. */
   unlisted: number;
-  /** Numbers of edges that are not Delaunay, by the reason for which they cannot flip; `stopped` if they could. */
+  /** The number of edges that are not Delaunay, by the reason why they cannot flip; `stopped` if they can. */
   remaining: Reasons;
   /**
-   * Which edges these are: the two vertices of each, one edge after the other, by reason. So an array has two numbers
-   * an edge, as an index buffer of line segments does. The smaller vertex comes first, and the edges are in ascending
-   * order. A reason without an edge is absent.
+   * These edges, by reason, as pairs of vertices, one pair after the other. An array therefore serves as the index
+   * buffer of line segments. Each pair has the smaller vertex first, and the pairs are in ascending order. A reason
+   * without edges is absent.
    */
   remainingEdges: Partial<Record<Reason, Uint32Array>>;
 }

@@ -1,5 +1,5 @@
-// The packed npm package, installed into fresh projects, in real browsers: the five lines that README has for a page
-// run as they are, and with Vite by the package's name; so do edgeflip/files and the audit. Every page has to write what
+// The packed npm package, installed into fresh projects, in real browsers: the five lines that docs/package.md has for a
+// page run as they are, and with Vite by the package's name; so do edgeflip/files and the audit. Every page has to write what
 // Node does. Packs the dist/ that is there.
 
 import assert from 'node:assert/strict';
@@ -16,9 +16,9 @@ import { closeAll, ISOLATED, openPage, serve, startChromium, startFirefox } from
 const repository = fileURLToPath(new URL('../..', import.meta.url));
 const folder = mkdtempSync(join(tmpdir(), 'edgeflip-package-'));
 
-const [, fiveLines] = readFileSync(join(repository, 'README.md'), 'utf8').match(
+const [, fiveLines] = readFileSync(join(repository, 'docs/package.md'), 'utf8').match(
   /^```html\n<script type="module">\n([^]*?)<\/script>\n```$/m,
-) ?? assert.fail('README has no script for a page');
+) ?? assert.fail('docs/package.md has no script for a page');
 const withFiles = `
   import { makeDelaunay } from './node_modules/edgeflip/dist/index.js';
   import { generate } from './node_modules/edgeflip/dist/files.js';
@@ -172,7 +172,7 @@ function viteProject(folder) {
   return root;
 }
 
-test('README has five lines, and they flip the long diagonal', () => {
+test('docs/package.md has five lines, and they flip the long diagonal', () => {
   assert.equal(fiveLines.trim().split('\n').length, 5);
   const written = pages.map(({ writes }) => writes);
   assert.deepEqual(written.slice(0, 4), Array(4).fill('1 flip on cpu: 3,1,2,0,1,3'));

@@ -1,0 +1,50 @@
+// Writes the API reference into target/docs: `npm run docs`. TypeDoc writes that of the npm package, rustdoc that of the
+// crate. A warning of either is an error.
+
+import { spawnSync } from 'node:child_process';
+import { cpSync, mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { fileURLToPath } from 'node:url';
+
+process.chdir(fileURLToPath(new URL('..', import.meta.url)));
+
+const folder = 'target/docs';
+const { name, description } = JSON.parse(readFileSync('package.json', 'utf8'));
+
+function run(program, args, env = {}) {
+  console.log(`$ ${[program, ...args].join(' ')}`);
+  const { status, error } = spawnSync(program, args, { stdio: 'inherit', env: { ...process.env, ...env } });
+  if (status === 0) return;
+  console.error(`docs: stopped: ${program} failed${error ? `: ${error.message}` : ' (see above)'}`);
+  process.exit(1);
+}
+
+rmSync(folder, { recursive: true, force: true });
+mkdirSync(folder, { recursive: true });
+
+run(process.execPath, [
+  'node_modules/typedoc/bin/typedoc',
+  ...['--name', name, '--out', `${folder}/javascript`, '--tsconfig', 'src/js/tsconfig.json'],
+  ...['--entryPoints', 'src/js/index.ts', '--entryPoints', 'src/js/files.ts'],
+  ...['--readme', 'none', '--disableSources', '--excludePrivate', '--treatWarningsAsErrors'],
+  ...['--intentionallyNotExported', 'CODES'],
+  '--skipErrorChecking', // of the modules' types, which only a build writes
+]);
+
+run('cargo', ['doc', '--no-deps', '--lib'], { RUSTDOCFLAGS: '-D warnings' });
+cpSync(`${process.env.CARGO_TARGET_DIR ?? 'target'}/doc`, `${folder}/rust`, { recursive: true });
+
+writeFileSync(
+  `${folder}/index.html`,
+  `<!doctype html>
+<html lang="en">
+<meta charset="utf-8">
+<title>${name}</title>
+<h1>${name}</h1>
+<p>${description}.</p>
+<ul>
+<li><a href="javascript/index.html">JavaScript and TypeScript</a></li>
+<li><a href="rust/edgeflip/index.html">Rust</a></li>
+</ul>
+`,
+);
+console.log(`${folder}/index.html`);
