@@ -10,9 +10,12 @@ use std::{env, fs};
 fn main() -> Result<(), Box<dyn Error>> {
     println!("cargo::rerun-if-changed=shaders");
     let mut texts = BTreeMap::new();
-    for entry in fs::read_dir("shaders")? {
-        let entry = entry?;
-        texts.insert(entry.file_name(), fs::read_to_string(entry.path())?);
+    for folder in ["shared", "webgpu"] {
+        for entry in fs::read_dir(format!("shaders/{folder}"))? {
+            let entry = entry?;
+            texts.insert(PathBuf::from(folder).join(entry.file_name()), fs::read_to_string(entry.path())?);
+        }
+        fs::create_dir_all(PathBuf::from(&env::var("OUT_DIR")?).join(folder))?;
     }
     if env::var("CARGO_CFG_TARGET_ARCH")? == "wasm32" {
         shorten(&mut texts);

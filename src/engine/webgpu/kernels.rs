@@ -19,44 +19,50 @@ macro_rules! shaders {
 /// The shaders of the phases, for meshes of one form, in an order in which a reader can follow them: of the kernels that only
 /// read lists and history, of those that write them, and of exact arithmetic.
 pub(super) fn phases_sources(form: Form) -> [String; 3] {
-    let points = if form.is_fixed { shaders!("points" "fixed") } else { shaders!("points" "floats") };
+    let points = if form.is_fixed {
+        shaders!("shared/points" "shared/fixed")
+    } else {
+        shaders!("shared/points" "shared/floats")
+    };
     let (geometry, numbers, creases, preparation) = match form.dimension {
-        Dimension::Two => (shaders!("plane"), shaders!("plane_numbers"), "", shaders!("embedded")),
+        Dimension::Two => {
+            (shaders!("shared/plane"), shaders!("webgpu/plane_numbers"), "", shaders!("webgpu/embedded"))
+        }
         Dimension::Three => (
-            shaders!("space"),
-            shaders!("space_numbers"),
-            shaders!("creases" "flag_creases"),
-            shaders!("prepare_creases"),
+            shaders!("shared/space"),
+            shaders!("webgpu/space_numbers"),
+            shaders!("shared/creases" "webgpu/flag_creases"),
+            shaders!("webgpu/prepare_creases"),
         ),
     };
     let (deviation, far) = match (form.dimension, form.has_deviation) {
         (Dimension::Two, _) => ("", ""),
-        (_, false) => (shaders!("any_deviation"), ""),
-        (_, true) => (shaders!("deviation"), shaders!("deviation_numbers")),
+        (_, false) => (shaders!("shared/any_deviation"), ""),
+        (_, true) => (shaders!("shared/deviation"), shaders!("webgpu/deviation_numbers")),
     };
-    let common = [shaders!("mesh" "state"), points, geometry, deviation].concat();
-    let phases = shaders!("star" "guard" "verdicts" "label" "active" "doubts");
+    let common = [shaders!("shared/mesh" "webgpu/state"), points, geometry, deviation].concat();
+    let phases = shaders!("shared/star" "shared/guard" "webgpu/verdicts" "shared/label" "webgpu/active" "webgpu/doubts");
     [
-        [&common, shaders!("reads"), phases, shaders!("select" "sweeps")].concat(),
+        [&common, shaders!("webgpu/history_read"), phases, shaders!("shared/select" "webgpu/sweeps")].concat(),
         [
             &common,
-            shaders!("atomics"),
+            shaders!("webgpu/history_write"),
             phases,
             creases,
             preparation,
-            shaders!("select" "slot" "flip" "frontier" "iteration" "census"),
+            shaders!("shared/select" "shared/slot" "webgpu/flip" "webgpu/frontier" "webgpu/iteration" "webgpu/census"),
         ]
         .concat(),
-        [&common, shaders!("reads"), phases, creases, shaders!("numbers"), far, numbers, shaders!("decide")]
+        [&common, shaders!("webgpu/history_read"), phases, creases, shaders!("webgpu/numbers"), far, numbers, shaders!("webgpu/decide")]
             .concat(),
     ]
 }
 
 /// The shader that builds the adjacency.
-pub(super) const ADJACENCY: &str = shaders!("adjacency");
+pub(super) const ADJACENCY: &str = shaders!("webgpu/adjacency");
 
 /// The shader that finds drivers whose loops end too early.
-pub(super) const PROBE: &str = shaders!("rounds" "probe");
+pub(super) const PROBE: &str = shaders!("shared/rounds" "webgpu/probe");
 
 /// What is done in an iteration and around it.
 #[derive(Clone, Copy, PartialEq, Eq)]

@@ -50,10 +50,10 @@ const FIXED_DEVIATION: [Program; 1] = [("verdict3_fixed_deviation", "verdict_pas
 /// The program of an entry point, with the files that say what a point is and what the dimension is.
 fn glsl(entry_point: &str, points: &str, geometry: &str) -> Result<String, Box<dyn Error>> {
     let source = [
-        shaders!("mesh" "digits" "textures" "points"),
+        shaders!("shared/mesh" "webgl2/digits" "webgl2/state" "shared/points"),
         points,
         geometry,
-        shaders!("verdict" "star" "guard" "label" "select" "slot" "rounds" "passes"),
+        shaders!("webgl2/verdict" "shared/star" "shared/guard" "shared/label" "shared/select" "shared/slot" "shared/rounds" "webgl2/passes"),
     ]
     .concat();
     let mut module = naga::front::wgsl::parse_str(&source).map_err(|error| error.emit_to_string(&source))?;
@@ -87,10 +87,10 @@ fn stage(module: &Module) -> Result<ShaderStage, String> {
 fn main() -> Result<(), Box<dyn Error>> {
     let path = std::env::args().nth(1).ok_or("usage: glsl FILE")?;
     let mut programs = BTreeMap::new();
-    let (floats, fixed) = (shaders!("floats"), shaders!("fixed"));
-    let plane = shaders!("plane" "plane_digits");
-    let space = shaders!("space" "any_deviation" "space_digits" "creases" "crease_pass");
-    let deviation = shaders!("space" "deviation" "deviation_digits" "space_digits" "creases" "crease_pass");
+    let (floats, fixed) = (shaders!("shared/floats"), shaders!("shared/fixed"));
+    let plane = shaders!("shared/plane" "webgl2/plane_digits");
+    let space = shaders!("shared/space" "shared/any_deviation" "webgl2/space_digits" "shared/creases" "webgl2/crease_pass");
+    let deviation = shaders!("shared/space" "shared/deviation" "webgl2/deviation_digits" "webgl2/space_digits" "shared/creases" "webgl2/crease_pass");
     for (points, geometry, list) in [
         (floats, plane, &PLANE[..]),
         (floats, space, &SPACE[..]),

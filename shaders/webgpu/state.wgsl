@@ -58,7 +58,7 @@ struct Step {
 // Two lists of triangles that change places with every iteration; for each triangle a stamp, the iteration in which it
 // is due, and one more for none; a bit for each chunk of triangles, see `doubt`.
 @group(0) @binding(6) var<storage, read_write> frontier: array<atomic<u32>>;
-// 7: reads.wgsl, atomics.wgsl.
+// 7: history_read.wgsl, history_write.wgsl.
 // Winding bits, which are right where triangles have both signs, then the bits of the embedded stars, then the table of the fans.
 @group(0) @binding(8) var<storage, read_write> topology: array<u32>;
 
