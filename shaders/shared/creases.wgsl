@@ -1,4 +1,7 @@
-// Creases: the edges of the input over β, as src/phases/crease.rs.
+// Finds creases, the edges of the input whose normals differ by more than β, as src/phases/crease.rs.
+#import mesh
+#import normals
+#import points
 
 // Whether an edge is one, by a filter: DELAUNAY or BLOCKED_BY + REASON_ANGLE; UNDECIDED where exact arithmetic has to decide.
 fn filtered_crease(a: Point, b: Point, c: Point, d: Point) -> u32 {

@@ -1,5 +1,9 @@
-// How far apart the lines are that the diagonals of a quad lie on, against what is allowed, as `deviates` in src/predicates/space.rs:
-// |n1·r| against δ|n1 + n2|.
+// Tests how far a flip moves the surface: the distance of the lines on which the diagonals of a quad lie, against the limit,
+// as `deviates` in src/predicates/space.rs. It compares |n1·r| with δ|n1 + n2|.
+#import mesh
+#import normals
+#import points
+#import state
 
 // LABELLED, BLOCKED_BY + REASON_DEVIATION, or UNDECIDED. With ε = 2^-23 as in space.wgsl, n1·r errs by at most 19ε of the
 // product of its sizes, δ|n1 + n2| by 24ε.

@@ -1,5 +1,7 @@
-// Points of fixed-point coordinates: how far the vertex is from the corner of the bounding box, in units of the mesh's
-// grid. No predicate depends on where the mesh is or how large that unit is.
+// Reads points of fixed-point coordinates: the distance of a vertex from the corner of the bounding box, in units of the
+// mesh's grid. No predicate depends on where the mesh is or how large that unit is.
+#import integers
+#import state
 
 // The low words of the coordinates, the middle ones, the high ones.
 alias Point = array<vec3u, 3>;
@@ -39,8 +41,11 @@ fn deviation_on(grid: i32) -> vec4u {
 
 // u - v. A word that becomes an f32 errs by ε, and so does each of two sums of numbers of one sign: 3ε.
 fn rounded_difference(u: Point, v: Point) -> vec3f {
-    let exact = exact_differences(u, v, 0);
-    return vec3f(rounded(exact[0]), rounded(exact[1]), rounded(exact[2]));
+    return vec3f(
+        rounded(exact_difference(u, v, 0u, 0)),
+        rounded(exact_difference(u, v, 1u, 0)),
+        rounded(exact_difference(u, v, 2u, 0)),
+    );
 }
 
 fn rounded(x: vec4u) -> f32 {

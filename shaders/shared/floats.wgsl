@@ -1,4 +1,6 @@
-// Points of f32 coordinates.
+// Reads points of f32 coordinates.
+#import integers
+#import state
 
 // The coordinates as bits.
 alias Point = vec3u;

@@ -1,4 +1,9 @@
-// The guard: no flip makes an edge that is there, as `edge_exists` in src/phases/label.rs.
+// The guard: blocks a flip whose new edge exists already, as `edge_exists` in src/phases/label.rs.
+#import mesh
+#import star
+#import state
+#import walk_both if tail
+#import walk_one_first if sweep
 
 // The verdict on the edge of `h` and `g`, given that on its geometry.
 fn guarded(verdict: u32, h: u32, g: u32) -> u32 {

@@ -1,4 +1,7 @@
 // Label: each triangle tests its three edges and keeps the best one that may flip, as src/phases/label.rs.
+#import guard
+#import mesh
+#import state
 
 // The choice of triangle `t`, given what the geometry of its three edges says: the twin of its labelled edge with the
 // smallest key, or BLOCKED, or NONE; DOUBTFUL where exact arithmetic has to decide first.

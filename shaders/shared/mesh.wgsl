@@ -1,4 +1,4 @@
-// Half-edges and verdicts: what the state of a mesh means, wherever it is kept.
+// Half-edges, their flags, and verdicts: names and functions that every engine and phase shares.
 
 const NONE: u32 = 0xffffffffu;
 const BLOCKED: u32 = 0xfffffffeu;

@@ -1,9 +1,8 @@
-// The plane: the filters of orientation and the in-circle test, as src/predicates/plane.rs, and both where few bits do.
-
-const DIMENSION: u32 = 2u;
-
-// Whether Label takes the close look at once: on a lattice every edge needs it.
-const LABELS_CLOSELY: bool = true;
+// Tests edges in the plane: float filters of orientation and of the in-circle test, as src/predicates/plane.rs, and both tests
+// on integers where few bits do.
+#import mesh
+#import points
+#import state
 
 // A filter of degree 4 in f32. WGSL and GLSL ES leave the direction of rounding open: each operation errs by at most
 // ε = 2^-23, fused or not. As in plane.rs, but with differences that err by up to 3ε, the value errs by at most 18.2ε of

@@ -1,5 +1,5 @@
-// Whether loops run as often as they say. llvmpipe ends every loop of an invocation once 65,535 rounds have
-// been made in all of its loops, silently; the work must then be cut into smaller pieces.
+// Counts whether a driver runs as many rounds of a loop as the loop says. llvmpipe ends every loop of an invocation once
+// 65,535 rounds have been made in all of its loops, silently; the work must then be cut into smaller pieces.
 
 const ROUNDS: u32 = 100000u;
 

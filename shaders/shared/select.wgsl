@@ -1,5 +1,10 @@
 // Select: an edge flips if it is the best of both its triangles and no better one makes the same new edge,
 // as src/phases/select.rs.
+#import mesh
+#import star
+#import state
+#import walk_both if tail
+#import walk_one_first if sweep
 
 // The half-edge on the other side of triangle `t`'s selected edge, or NONE.
 fn selection(t: u32, iteration: u32) -> u32 {

@@ -1,4 +1,6 @@
-// Where half-edges go in an iteration, as src/phases/flip.rs.
+// Says where a half-edge is after the flips of an iteration, as src/phases/flip.rs.
+#import mesh
+#import state
 
 // Where half-edge `x`, given with its flags, will be after the iteration.
 fn slot(entry: u32) -> u32 {

@@ -1,4 +1,6 @@
-// Walking around a vertex, as src/star.rs.
+// Walks around a vertex, from triangle to triangle, as src/star.rs.
+#import mesh
+#import state
 
 // Where the walk of a fan began, where it is, whether it goes clockwise (0 or 1), and where the next anchor stands in
 // the table of the fans, if the vertex has several fans.

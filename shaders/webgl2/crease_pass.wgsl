@@ -1,4 +1,10 @@
-// The entry points of the creases over textures, before the first iteration on a surface.
+// The passes that flag creases, before the first iteration on a surface.
+#import creases
+#import mesh
+#import points
+#import space
+#import space_digits
+#import state
 
 // Whether the edge of a half-edge, the lower one, is over β: 1 or 0.
 @fragment

@@ -1,4 +1,8 @@
-// How far apart diagonals are, by exact integers as digits: for WebGL2.
+// Tests how far a flip moves the surface, by exact integers as digits.
+#import digits
+#import mesh
+#import points
+#import vector_digits
 
 // With e = a - b, f = c - d, p = a - c and V their determinant, by the identity of Desnanot and Jacobi
 // V²·f² = (e × f)²·(f × p)² - ((e·f)(f·p) - f²(e·p))²: V² > δ²(e × f)² if

@@ -1,7 +1,8 @@
-// Exact integers as digits: the sum of digit i times 2^(13·i), the lowest first. Products of such numbers are summed
-// column by column from the lowest digit on, which needs neither an array with a computed index, which old drivers
+// Computes with exact integers as digits: the sum of digit i times 2^(13·i), the lowest first. Products of such numbers are
+// summed column by column from the lowest digit on, which needs neither an array with a computed index, which old drivers
 // get wrong, nor a carry inside of a column.
-//
+#import integers
+
 // Digits that are computed here are balanced, from -4096 to 4095: a number is zero where all of them are, its sign
 // is that of its highest one that is not zero, and n digits hold every number up to 4095/8192·2^(13·n). With c digits
 // in use in each coordinate's difference, 2c + 1 hold a product of three pairs of differences (below 3·2^(26·c)),

@@ -1,6 +1,14 @@
-// The entry points over textures: every phase is a pass over all triangles, in which those that nothing has changed
-// around keep what they had. What has loops of its own is in a pass over the half-edges, without a loop around it:
-// compilers that inline everything take very long over loops in loops.
+// The passes of the phases and of the census: each looks at all triangles, and those that nothing has changed around keep what
+// they had. What has loops of its own is in a pass over the half-edges, without a loop around it: compilers that inline
+// everything take very long over loops in loops.
+#import guard
+#import label
+#import mesh
+#import rounds
+#import select
+#import slot
+#import state
+#import verdict
 
 // Side of the square of texels that one fragment sums.
 const BLOCK: u32 = 8u;

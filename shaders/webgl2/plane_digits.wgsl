@@ -1,4 +1,8 @@
-// The plane, by exact integers as digits: for WebGL2.
+// Tests edges in the plane by exact integers as digits.
+#import digits
+#import mesh
+#import plane
+#import points
 
 fn exact_verdict_on(a: Point, b: Point, c: Point, d: Point, winding: i32) -> u32 {
     var verdict = narrow_verdict_on(a, b, c, d, winding);

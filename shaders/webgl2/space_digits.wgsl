@@ -1,4 +1,13 @@
-// Surfaces in space, by exact integers as digits: for WebGL2.
+// Tests edges of surfaces by exact integers as digits.
+#import any_deviation if any_deviation
+#import deviation if deviation
+#import deviation_digits if deviation
+#import digits
+#import mesh
+#import points
+#import space
+#import state
+#import vector_digits
 
 // The verdict on any edge: by a filter that takes longer and leaves less, then by integers.
 fn exact_verdict_on(a: Point, b: Point, c: Point, d: Point, winding: i32) -> u32 {
@@ -14,34 +23,6 @@ fn exact_verdict_on(a: Point, b: Point, c: Point, d: Point, winding: i32) -> u32
         verdict = exact_deviation(a, b, c, d);
     }
     return verdict;
-}
-
-// x, y and z, of the digits of a Small each.
-alias Vector = array<vec4i, 6>;
-
-fn vector_of(differences: Differences) -> Vector {
-    let x = digits_of(differences[0]);
-    let y = digits_of(differences[1]);
-    let z = digits_of(differences[2]);
-    return Vector(x[0], x[1], y[0], y[1], z[0], z[1]);
-}
-
-fn dot_of(u: Vector, v: Vector, count: u32) -> Medium {
-    return sum_of_products(
-        Small(u[0], u[1]),
-        Small(v[0], v[1]),
-        Small(u[2], u[3]),
-        Small(v[2], v[3]),
-        Small(u[4], u[5]),
-        Small(v[4], v[5]),
-        count,
-    );
-}
-
-// u·v - x·y: dot products of normals by the identity of Binet and Cauchy,
-// (u × v)·(x × y) = (u·x)(v·y) - (u·y)(v·x).
-fn determinant(u: Medium, v: Medium, x: Medium, y: Medium, count: u32) -> Large {
-    return sum_of_medium_products(u, v, x, negated_medium(y), count);
 }
 
 // The signs, those that are open and matter by integers.

@@ -1,5 +1,7 @@
-// The state of a mesh in textures, as src/engine/webgl binds it: a texel an element, row after row. A fragment reads
-// what it likes of the state before its pass, and writes the texel of its own triangle in another texture.
+// The state of a mesh in textures, as the WebGL2 engine binds it: a texel an element, row after row. A fragment reads what it
+// likes of the state before its pass, and writes the texel of its own triangle in another texture.
+#import digits
+#import mesh
 
 // A texel each of three words: what floats.wgsl and fixed.wgsl say of positions; vertices; twins. The fourth word of a
 // triangle is 1 where its component is clockwise.
@@ -20,9 +22,6 @@
 // 180°, the sign of cos β, cos β rounded to f32), then the digits of its mantissa and power, as in digits.wgsl, then what the
 // diagonals of a quad may be apart: words as those of a coordinate, and rounded to f32 for the filter.
 @group(0) @binding(8) var<uniform> params: array<vec4u, 7>;
-
-// Steps in which one of two stars is walked alone, see guard.wgsl.
-const ALONE: u32 = 16u;
 
 fn place(i: u32) -> vec2u {
     let bits = params[0].w;

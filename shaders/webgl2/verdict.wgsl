@@ -1,4 +1,11 @@
-// The test of an interior edge, as `verdict` in src/phases/label.rs: its geometry, then the guard.
+// Tests an interior edge, as `verdict` in src/phases/label.rs, but for the guard.
+#import mesh
+#import plane if plane
+#import plane_digits if plane
+#import points
+#import space if space
+#import space_digits if space
+#import state
 
 // Whether the interior edge of the half-edges `h` and `g` may flip by its geometry, and is neither locked nor a crease.
 fn geometric_verdict(h: u32, g: u32) -> u32 {

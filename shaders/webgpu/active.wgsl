@@ -1,5 +1,9 @@
-// Which triangles an iteration looks at: while many edges flip all of them, to see which are due; once few do, those of
-// the list that the iteration before has built.
+// Says which triangles an iteration looks at: while many edges flip, all of them, to see which are due; once few do, those
+// of the list that the iteration before has built.
+#import history_read if reads
+#import history_write if writes
+#import mesh
+#import state
 
 struct Work {
     // 0 where the run has ended: the iteration before flipped nothing.

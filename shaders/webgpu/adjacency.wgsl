@@ -1,7 +1,7 @@
-// Twins from triangles, as src/adjacency.rs, by buckets: count the half-edges of each, allocate, scatter,
-// match. The order within a bucket is left to the device; no result depends on it.
+// Finds the twins from the triangles, as src/adjacency.rs, by buckets: counts the half-edges of each, allocates, scatters,
+// matches. The order within a bucket is left to the device; no result depends on it.
+#import mesh
 
-const NONE: u32 = 0xffffffffu;
 const WORKGROUP_SIZE: u32 = 256u;
 // Buckets that one invocation of `allocate` adds up.
 const BUCKETS_EACH: u32 = 8u;
@@ -36,14 +36,6 @@ var<workgroup> sums: array<u32, WORKGROUP_SIZE>;
 var<workgroup> base: u32;
 var<workgroup> kinds: array<atomic<u32>, 6>;
 var<workgroup> most_corners: atomic<u32>;
-
-fn next(h: u32) -> u32 {
-    return select(h + 1u, h - 2u, h % 3u == 2u);
-}
-
-fn prev(h: u32) -> u32 {
-    return select(h - 1u, h + 2u, h % 3u == 0u);
-}
 
 fn ends(h: u32) -> vec2u {
     let u = triangles[h];

@@ -1,4 +1,10 @@
-// The entry point of the census, which is dispatched twice: exact arithmetic has a dispatch between the two.
+// Counts the verdicts on all edges, in two dispatches: exact arithmetic has one between them.
+#import doubts
+#import guard
+#import history_write
+#import mesh
+#import state
+#import verdicts
 
 var<workgroup> census_counts: array<atomic<u32>, COUNTS>;
 

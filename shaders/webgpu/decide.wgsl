@@ -1,5 +1,15 @@
-// The entry point of exact arithmetic, for all that the filters leave: of an iteration, of the census, and of what is done
-// before the first iteration.
+// Decides by exact arithmetic what the filters leave open: in an iteration, in the census, and before the first iteration.
+#import active
+#import doubts
+#import history_read
+#import label
+#import mesh
+#import numbers
+#import plane_numbers if plane
+#import points
+#import space_numbers if space
+#import state
+#import verdicts
 
 // Invocations of a workgroup: each has a lane.
 const DECIDERS: u32 = 64u;

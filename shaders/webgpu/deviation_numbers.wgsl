@@ -1,4 +1,7 @@
-// How far apart diagonals are, by exact integers in memory.
+// Tests how far a flip moves the surface, by exact integers in memory.
+#import mesh
+#import numbers
+#import points
 
 const OFFSETS: u32 = 9u;
 

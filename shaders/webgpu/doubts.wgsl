@@ -1,6 +1,8 @@
-// What waits for exact arithmetic: a triangle has DOUBTFUL in the place of its choice, and each chunk of as many triangles
-// as a workgroup has invocations a bit that says whether it holds one. Mostly few do, and a look at every triangle would
-// take longer than deciding those.
+// Keeps track of what waits for exact arithmetic: such a triangle has DOUBTFUL as its choice, and each chunk of as many
+// triangles as a workgroup has invocations has a bit that says whether it holds one. Mostly few do, and a look at every
+// triangle would take longer than deciding those.
+#import mesh
+#import state
 
 // Chunks that are looked at together in a sweep.
 const CHUNKS: u32 = 8u;

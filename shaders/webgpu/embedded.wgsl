@@ -1,6 +1,13 @@
-// Stars in the plane that are embedded: the triangles at a vertex are positive and go round it once. An edge that is to
+// Finds the embedded stars in the plane: the triangles at a vertex are positive and go round it once. An edge that is to
 // flip crosses its new edge c-d between them, so at such a vertex c, or d, no other edge c-d can be, and no other flip can
 // make one: its star has one triangle in each direction. Flips of strictly convex quads leave it so.
+#import begin
+#import doubts
+#import history_write
+#import mesh
+#import plane
+#import points
+#import state
 
 // What makes a star other than embedded.
 const NOT_EMBEDDED: u32 = 0x10000u;

@@ -1,4 +1,9 @@
-// Flags the edges of the input over β, and no others, from each of their half-edges.
+// Flags the creases, and no other edges, from each of their half-edges.
+#import creases
+#import mesh
+#import points
+#import state
+#import verdicts
 
 // Whether each edge of a triangle is one, by a filter.
 fn filtered_creases(t: u32) -> vec3u {

@@ -1,6 +1,10 @@
-// Flip with Update in place: rotate the two triangles of each selected edge and repair the twins around, as
-// src/phases/flip.rs. Reads the twins of its own two triangles only; writes those, and the entries of the neighbours that
-// are not selected themselves. What is read is read before anything is written, and so once.
+// Flip with Update, in place: rotates the two triangles of each selected edge and repairs the twins around it, as
+// src/phases/flip.rs. It reads the twins of its own two triangles only. It writes those, and the entries of the neighbours
+// that are not selected themselves. What is read is read before anything is written, and so once.
+#import mesh
+#import slot
+#import state
+
 fn flip_edge(h: u32, g: u32, outer_h: vec2u, outer_g: vec2u) {
     let hn = next(h);
     let hp = prev(h);

@@ -1,6 +1,11 @@
-// The frontier, the triangles that are due in the next iteration: those that have flipped and their neighbours, which are
-// stamped, and those with an edge that was labelled and has not flipped, or was blocked as a duplicate. An edge's verdict
-// can change only where one of its triangles has changed, or, for duplicates, anywhere.
+// Flips triangles and builds the frontier, the triangles that are due in the next iteration: those that have flipped and their
+// neighbours, which are stamped, and those with an edge that was labelled and has not flipped, or was blocked as a duplicate.
+// An edge's verdict can change only where one of its triangles has changed, or, for duplicates, anywhere.
+#import active
+#import flip
+#import history_write
+#import mesh
+#import state
 
 // Whether an iteration builds the list for the next one.
 fn builds_list(index: u32) -> bool {

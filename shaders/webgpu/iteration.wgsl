@@ -1,4 +1,14 @@
-// The entry points of Flip, and of a run of iterations in one workgroup, when there is little to do.
+// The kernels of Flip, and of a run of whole iterations in one workgroup when there is little to do.
+#import active
+#import doubts
+#import flip
+#import frontier
+#import history_write
+#import label
+#import mesh
+#import select
+#import state
+#import verdicts
 
 var<workgroup> flips: atomic<u32>;
 var<workgroup> tail_first: u32;

@@ -1,7 +1,12 @@
-// Exact integers in memory: a number at a place is its length, then its digits, the lowest first: the sum of digit i times
-// 2^(13·i). Each invocation has a lane of its own. What is computed, programs say (src/engine/webgpu/programs.rs), so that
-// the product of two numbers stands here once: compilers take seconds where it is inlined for each.
-//
+// Computes with exact integers in memory: a number at a place is its length, then its digits, the lowest first: the sum of
+// digit i times 2^(13·i). Each invocation has a lane of its own. What is computed, programs say
+// (src/engine/webgpu/programs.rs), so that the product of two numbers stands here once: compilers take seconds where it is
+// inlined for each.
+#import integers
+#import points
+#import three_axes if space
+#import two_axes if plane
+
 // Digits that are computed are balanced, from -4096 to 4095: the sign of a number is that of its highest digit.
 
 const DIGIT_BITS: u32 = 13u;

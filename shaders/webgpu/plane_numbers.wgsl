@@ -1,4 +1,10 @@
-// The plane, by exact integers in memory.
+// Tests edges in the plane by exact integers in memory.
+#import doubts
+#import mesh
+#import numbers
+#import points
+#import state
+#import verdicts
 
 const IN_CIRCLE: u32 = 0u;
 const AREAS: u32 = 1u;

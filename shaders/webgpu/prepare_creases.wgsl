@@ -1,4 +1,9 @@
-// The entry point of the creases, before the first iteration on a surface.
+// The kernel that flags creases, before the first iteration on a surface.
+#import begin
+#import doubts
+#import flag_creases
+#import mesh
+#import state
 
 @compute @workgroup_size(WORKGROUP_SIZE)
 fn prepare_all(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {

@@ -1,4 +1,5 @@
-// The entry point of rounds.wgsl.
+// The kernel that finds drivers whose loops end too early, by rounds.wgsl.
+#import rounds
 
 @group(0) @binding(0) var<storage, read_write> result: array<u32>;
 

@@ -1,4 +1,15 @@
-// Surfaces in space, by exact integers in memory.
+// Tests edges of surfaces by exact integers in memory.
+#import any_deviation if any_deviation
+#import deviation if deviation
+#import deviation_numbers if deviation
+#import doubts
+#import flag_creases
+#import mesh
+#import numbers
+#import points
+#import space
+#import state
+#import verdicts
 
 // Programs, in the order in which they are run: the squares of the old normals; their angle sum, squared; the dot products
 // that the rest takes, and that of the old normals; the angle between them; that of the new normals; the angle between

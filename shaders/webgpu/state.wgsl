@@ -1,4 +1,7 @@
-// The state of a mesh on the device, as src/engine/webgpu binds it for the phases.
+// The state of a mesh in buffers, as src/engine/webgpu binds it for the phases.
+#import mesh
+#import three_axes if space
+#import two_axes if plane
 
 const WORKGROUP_SIZE: u32 = 256u;
 
@@ -58,7 +61,7 @@ struct Step {
 // Two lists of triangles that change places with every iteration; for each triangle a stamp, the iteration in which it
 // is due, and one more for none; a bit for each chunk of triangles, see `doubt`.
 @group(0) @binding(6) var<storage, read_write> frontier: array<atomic<u32>>;
-// 7: history_read.wgsl, history_write.wgsl.
+// Binding 7 is the history, see history_read.wgsl and history_write.wgsl.
 // Winding bits, which are right where triangles have both signs, then the bits of the embedded stars, then the table of the fans.
 @group(0) @binding(8) var<storage, read_write> topology: array<u32>;
 

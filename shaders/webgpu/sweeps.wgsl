@@ -1,4 +1,16 @@
-// The entry points of Label and Select: exact arithmetic, where the filter leaves something to it, has a dispatch between them.
+// The kernels of Label and Select: exact arithmetic, where the filter leaves something to it, has a dispatch between them.
+#import active
+#import doubts
+#import label
+#import mesh
+#import select
+#import state
+#import three_axes if space
+#import two_axes if plane
+#import verdicts
+
+// Whether Label takes the close look at once: on a lattice in the plane every edge needs it, on a surface few do.
+const LABELS_CLOSELY: bool = DIMENSION == 2u;
 
 @compute @workgroup_size(WORKGROUP_SIZE)
 fn label_all(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {

@@ -1,4 +1,9 @@
-// The verdicts on the three edges of a triangle.
+// Finds the verdicts on the three edges of a triangle, by filters.
+#import mesh
+#import plane if plane
+#import points
+#import space if space
+#import state
 
 // By the filter, or a close look: UNDECIDED where exact arithmetic has to decide. Of the edges that count, which are all from
 // their lower half-edge for a census, else those that may flip; of the others, nothing.
