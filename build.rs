@@ -1,5 +1,5 @@
 //! Lists the shaders of the WebGPU engine for `src/engine/webgpu/kernels.rs`: in `shaders.rs`, pairs of a path in `shaders/` and
-//! its text. Browsers download them, so the wasm32 build leaves their comments out.
+//! its text. Browsers download them, so the wasm32 build leaves comments and indentation out.
 
 use std::error::Error;
 use std::path::Path;
@@ -13,7 +13,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         for entry in fs::read_dir(Path::new("shaders").join(folder))? {
             let entry = entry?;
             let text = fs::read_to_string(entry.path())?;
-            let text = if is_for_browsers { without_comments(&text) } else { text };
+            let text = if is_for_browsers { bare(&text) } else { text };
             files.push((format!("{folder}/{}", entry.file_name().display()), text));
         }
     }
@@ -22,7 +22,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-fn without_comments(text: &str) -> String {
-    let lines = text.lines().map(|line| line.split("//").next().unwrap_or("").trim_end());
+fn bare(text: &str) -> String {
+    let lines = text.lines().map(|line| line.split("//").next().unwrap_or("").trim());
     lines.filter(|line| !line.is_empty()).flat_map(|line| [line, "\n"]).collect()
 }
