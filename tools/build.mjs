@@ -1,6 +1,6 @@
 // Builds the npm package into dist/: `npm run build`. For each of its modules, cargo compiles the library for wasm32,
-// wasm-bindgen writes the glue, panics are cut off and wasm-opt makes both smaller; tools/glsl writes the programs of the WebGL2 engine; then
-// tsc checks the TypeScript and compiles it. Ends with a table of sizes.
+// wasm-bindgen writes the glue, panics are cut off and wasm-opt makes the module smaller; tools/glsl writes the programs of the WebGL2
+// engine; then tsc checks the TypeScript and compiles it. Ends with a table of sizes.
 
 import { spawnSync } from 'node:child_process';
 import { cpSync, mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';

@@ -1,5 +1,6 @@
 // Tests edges in the plane: float filters of orientation and of the in-circle test, as src/predicates/plane.rs, and both tests
 // on integers where few bits do.
+#import integers
 #import mesh
 #import points
 #import state
