@@ -1,6 +1,6 @@
 // Builds the npm package into dist/: `npm run build`. For each of its modules, cargo compiles the library for wasm32,
-// wasm-bindgen writes the glue, panics are cut off and wasm-opt makes both smaller; tools/glsl writes the programs of the WebGL2 engine; then
-// tsc checks the TypeScript and compiles it. Ends with a table of sizes.
+// wasm-bindgen writes the glue, panics are cut off and wasm-opt makes the module smaller; tools/glsl writes the programs of the WebGL2
+// engine; then tsc checks the TypeScript and compiles it. Ends with a table of sizes.
 
 import { spawnSync } from 'node:child_process';
 import { cpSync, mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
@@ -11,15 +11,9 @@ import binaryen from 'binaryen';
 process.chdir(fileURLToPath(new URL('..', import.meta.url)));
 
 function run(program, ...args) {
-  return output('inherit', program, ...args);
-}
-
-/** Runs a program, and returns what it prints where `stdout` is a pipe. */
-function output(stdout, program, ...args) {
   console.log(`$ ${[program, ...args].join(' ')}`);
-  const stdio = ['inherit', stdout, 'inherit'];
-  const { status, error, stdout: printed } = spawnSync(program, args, { stdio, encoding: 'utf8' });
-  if (status === 0) return printed;
+  const { status, error } = spawnSync(program, args, { stdio: 'inherit' });
+  if (status === 0) return;
   console.error(`build: stopped: ${program} failed${error ? `: ${error.message}` : ' (see above)'}`);
   console.error('  If a tool is missing: bash tools/setup.sh');
   process.exit(1);
@@ -61,10 +55,8 @@ for (const { name, options } of modules) {
   // No pointer of Rust is below 1024: the stack, which comes first, grows down from 1 MiB. Done twice, since the first
   // time uncovers more.
   const features = options ? [...wasmFeatures, 'threads'] : wasmFeatures;
-  const names = output('pipe', process.execPath, 'node_modules/binaryen/bin/wasm-opt', '-Oz', '-Oz',
-    '--low-memory-unused', '--minify-imports-and-exports-and-modules', '--strip-debug',
+  run(process.execPath, 'node_modules/binaryen/bin/wasm-opt', '-Oz', '-Oz', '--low-memory-unused', '--strip-debug',
     ...features.map((feature) => `--enable-${feature}`), wasm, '-o', wasm);
-  shorten(`dist/wasm/${name}.js`, `./${name}_bg.js`, JSON.parse(names));
 }
 
 /**
@@ -91,16 +83,6 @@ function cutPanics(file) {
   module.dispose();
 }
 
-/** Gives the imports and exports of a module the names in its glue that wasm-opt has given them. */
-function shorten(file, module, names) {
-  const imports = new Map(names.imports.map(([, long, short]) => [long, short]));
-  const exports = new Map(names.exports);
-  const text = readFileSync(file, 'utf8')
-    .replace(`"${module}": `, '"a": ')
-    .replace(/\b\w+(?=: (function\(|memory \|\|))/g, (name) => imports.get(name) ?? name)
-    .replace(/(?<=\bwasm\.)\w+/g, (name) => exports.get(name) ?? name);
-  writeFileSync(file, text);
-}
 run('cargo', 'run', '--package', 'glsl', '--', 'dist/glsl.js');
 run(process.execPath, 'node_modules/typescript/bin/tsc', '-p', 'src/js');
 
@@ -109,4 +91,9 @@ const glueFiles = modules.flatMap(({ name }) => [`wasm/${name}_bg.wasm`, `wasm/$
 for (const file of [...glueFiles, 'glsl.js', 'session.js', 'index.js', 'files.js'].map((file) => `dist/${file}`)) {
   const bytes = readFileSync(file);
   console.log(`| ${file} | ${bytes.length} | ${gzipSync(bytes).length} | ${brotliCompressSync(bytes).length} |`);
+}
+const [engines, most] = ['dist/wasm/edgeflip_bg.wasm', 140_000]; // bytes, gzipped
+if (gzipSync(readFileSync(engines)).length > most) {
+  console.error(`build: ${engines} has more than ${most} bytes gzipped (see the table)`);
+  process.exitCode = 1;
 }

@@ -54,7 +54,7 @@ pub(super) struct Context {
     pub(super) adapter: String,
     /// The largest side of a texture.
     pub(super) largest_side: u32,
-    /// See `shaders/rounds.wgsl`.
+    /// See `shaders/shared/rounds.wgsl`.
     pub(super) ends_loops_early: bool,
     pub(super) tested: Tested,
     pub(super) params: WebGlBuffer,
@@ -154,7 +154,7 @@ impl Context {
     }
 
     /// Runs a compiled program for every texel of `target`, or for one of its first row. Each of `inputs` goes to the
-    /// place that it has in `textures.wgsl`.
+    /// place that it has in `shaders/webgl2/state.wgsl`.
     ///
     /// # Errors
     /// [`Error::Device`] if the context is lost.

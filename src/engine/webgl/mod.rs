@@ -36,7 +36,7 @@ const SMALL_HEIGHT: usize = 256;
 /// Words of the parameters.
 const PARAMS: usize = 28;
 
-// Places of the textures, as in `textures.wgsl`.
+// Places of the textures, as in `shaders/webgl2/state.wgsl`.
 const POSITIONS: u32 = 0;
 const TRIANGLES: u32 = 1;
 const TWINS: u32 = 2;
@@ -340,7 +340,7 @@ fn refuse_large_star(context: &Context, mesh: &Mesh) -> Result<(), Error> {
     }
 }
 
-/// As in `textures.wgsl`.
+/// As in `shaders/webgl2/state.wgsl`.
 fn params(upload: &Upload, bits: u32, fans: usize) -> [u32; PARAMS] {
     let (mesh, cosine) = (&upload.mesh, Cosine::new(upload.thresholds.cos));
     let mut params = [0; PARAMS];

@@ -6,7 +6,7 @@ use crate::engine::EdgeCounts;
 use crate::mesh::Mesh;
 use wgpu::BufferUsages;
 
-/// As in `shaders/adjacency.wgsl`.
+/// As in `shaders/webgpu/adjacency.wgsl`.
 pub(super) const BUCKETS_EACH: u32 = 8;
 pub(super) const COUNTERS: usize = 7;
 pub(super) const SEVERAL_FANS: usize = 5;

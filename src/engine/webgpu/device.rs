@@ -50,7 +50,7 @@ pub(crate) struct Device {
     most_workgroups: u32,
     /// Invocations of the tail.
     tail_size: u32,
-    /// See `shaders/rounds.wgsl`.
+    /// See `shaders/shared/rounds.wgsl`.
     pub(super) ends_loops_early: bool,
     pub(crate) tested: Tested,
     failure: Failure,
@@ -294,7 +294,7 @@ impl Device {
         Ok(known()[form.index()].get_or_insert(kernels).clone())
     }
 
-    /// Runs `shaders/probe.wgsl` and compares.
+    /// Runs `shaders/webgpu/probe.wgsl` and compares.
     async fn probe_loops(&self, probe: &Kernels) -> Result<bool, Error> {
         let buffer = self.checked(|| self.buffer("probe", 1, BufferUsages::STORAGE)).await?;
         let record = || {

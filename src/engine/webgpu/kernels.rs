@@ -1,62 +1,15 @@
-//! The kernels, compiled from `shaders/` as `build.rs` leaves them, and their bindings.
+//! The kernels, compiled from `shaders/`, and their bindings.
 
 #[cfg(target_arch = "wasm32")]
 use super::ahead;
 use super::faults::{Fault, watch};
+use super::sources;
 use crate::engine::upload::Form;
 use crate::mesh::Dimension;
 use wgpu::{BindingType, BufferBindingType};
 
 /// Invocations of a workgroup of every kernel.
 pub(super) const WORKGROUP_SIZE: u32 = 256;
-
-macro_rules! shaders {
-    ($($name:literal)*) => {
-        concat!($(include_str!(concat!(env!("OUT_DIR"), "/", $name, ".wgsl"))),*)
-    };
-}
-
-/// The shaders of the phases, for meshes of one form, in an order in which a reader can follow them: of the kernels that only
-/// read lists and history, of those that write them, and of exact arithmetic.
-pub(super) fn phases_sources(form: Form) -> [String; 3] {
-    let points = if form.is_fixed { shaders!("points" "fixed") } else { shaders!("points" "floats") };
-    let (geometry, numbers, creases, preparation) = match form.dimension {
-        Dimension::Two => (shaders!("plane"), shaders!("plane_numbers"), "", shaders!("embedded")),
-        Dimension::Three => (
-            shaders!("space"),
-            shaders!("space_numbers"),
-            shaders!("creases" "flag_creases"),
-            shaders!("prepare_creases"),
-        ),
-    };
-    let (deviation, far) = match (form.dimension, form.has_deviation) {
-        (Dimension::Two, _) => ("", ""),
-        (_, false) => (shaders!("any_deviation"), ""),
-        (_, true) => (shaders!("deviation"), shaders!("deviation_numbers")),
-    };
-    let common = [shaders!("mesh" "state"), points, geometry, deviation].concat();
-    let phases = shaders!("star" "guard" "verdicts" "label" "active" "doubts");
-    [
-        [&common, shaders!("reads"), phases, shaders!("select" "sweeps")].concat(),
-        [
-            &common,
-            shaders!("atomics"),
-            phases,
-            creases,
-            preparation,
-            shaders!("select" "slot" "flip" "frontier" "iteration" "census"),
-        ]
-        .concat(),
-        [&common, shaders!("reads"), phases, creases, shaders!("numbers"), far, numbers, shaders!("decide")]
-            .concat(),
-    ]
-}
-
-/// The shader that builds the adjacency.
-pub(super) const ADJACENCY: &str = shaders!("adjacency");
-
-/// The shader that finds drivers whose loops end too early.
-pub(super) const PROBE: &str = shaders!("rounds" "probe");
 
 /// What is done in an iteration and around it.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -107,7 +60,7 @@ impl Kernel {
     /// The kernels of one iteration.
     pub(crate) const ITERATION: [Self; 4] = [Self::Label, Self::Decide, Self::Select, Self::Flip];
 
-    /// In the sources of [`phases_sources`].
+    /// In the sources of [`sources::phases`].
     fn entry(self, tail_size: u32) -> Entry {
         match self {
             Self::Label => (READS, "label_all", None),
@@ -151,7 +104,7 @@ impl Plan {
         let names = ["count", "allocate", "scatter", "match_twins", "count_corners", "count_fans"];
         Self {
             bindings: vec![uniform(false), read, write, write, write, write],
-            sources: vec![ADJACENCY.to_owned()],
+            sources: vec![sources::adjacency()],
             entries: names.map(|name| (0, name, None)).to_vec(),
         }
     }
@@ -160,13 +113,13 @@ impl Plan {
     pub(super) fn phases(form: Form, tail_size: u32) -> Self {
         let entry = |kernel: &Kernel| kernel.entry(tail_size);
         let entries = Kernel::all(form.dimension).iter().map(entry).collect();
-        Self { bindings: phases_bindings(), sources: phases_sources(form).into(), entries }
+        Self { bindings: phases_bindings(), sources: sources::phases(form).into(), entries }
     }
 
     pub(super) fn probe() -> Self {
         Self {
             bindings: vec![storage(false)],
-            sources: vec![PROBE.to_owned()],
+            sources: vec![sources::probe()],
             entries: vec![(0, "probe", None)],
         }
     }
@@ -174,9 +127,11 @@ impl Plan {
     /// Says how often the filter decides.
     #[cfg(test)]
     pub(super) fn tiers(form: Form) -> Self {
-        let [_, writes, _] = phases_sources(form);
-        let source = [&writes, include_str!("tiers.wgsl")].concat();
-        Self { bindings: phases_bindings(), sources: vec![source], entries: vec![(0, "tiers", None)] }
+        Self {
+            bindings: phases_bindings(),
+            sources: vec![sources::tiers(form)],
+            entries: vec![(0, "tiers", None)],
+        }
     }
 }
 

@@ -24,6 +24,7 @@ mod params;
 mod programs;
 mod run;
 mod shared;
+mod sources;
 mod staging;
 mod start;
 mod steps;

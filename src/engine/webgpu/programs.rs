@@ -1,4 +1,4 @@
-//! What exact arithmetic computes on the device, as `shaders/numbers.wgsl` runs it: programs of steps, each a sum of products
+//! What exact arithmetic computes on the device, as `shaders/webgpu/numbers.wgsl` runs it: programs of steps, each a sum of products
 //! of two integers. An integer has a place in the lane of an invocation.
 
 /// Words before the lanes, those of a step, and the lanes: as in `numbers.wgsl`.

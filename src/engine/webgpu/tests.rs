@@ -5,9 +5,9 @@
 use super::adjacency::BUCKETS_EACH;
 use super::copies::{CHUNK, PIECE};
 use super::device::Device;
-use super::kernels::{self, ADJACENCY, PROBE, Plan, WORKGROUP_SIZE, phases_sources};
+use super::kernels::{self, Plan, WORKGROUP_SIZE};
 use super::params::{NEGATIVE, POSITIVE, Params};
-use super::{COUNTS, ENTRIES, ENTRY_WORDS, SEVERAL_FANS, programs};
+use super::{COUNTS, ENTRIES, ENTRY_WORDS, SEVERAL_FANS, programs, sources};
 use crate::adjacency::{CREASE, FLAGS, LOCKED};
 use crate::engine::cosine::DIGIT_BITS;
 use crate::engine::upload::{Form, SPAN};
@@ -19,14 +19,14 @@ use std::mem::offset_of;
 use std::time::Instant;
 
 /// Every shader.
-fn sources() -> Vec<String> {
-    Form::ALL.into_iter().flat_map(phases_sources).chain([ADJACENCY, PROBE].map(str::to_owned)).collect()
+fn all_sources() -> Vec<String> {
+    Form::ALL.into_iter().flat_map(sources::phases).chain([sources::adjacency(), sources::probe()]).collect()
 }
 
 /// The phases on surfaces.
 fn space() -> naga::Module {
     let [_, writes, _] =
-        phases_sources(Form { dimension: Dimension::Three, is_fixed: false, has_deviation: true });
+        sources::phases(Form { dimension: Dimension::Three, is_fixed: false, has_deviation: true });
     parse(&writes)
 }
 
@@ -99,8 +99,8 @@ fn constants_of_the_phases_agree() {
 #[test]
 fn constants_of_exact_arithmetic_agree() {
     let form = Form { dimension: Dimension::Three, is_fixed: false, has_deviation: true };
-    let [_, _, space] = phases_sources(form);
-    let [_, _, plane] = phases_sources(Form { dimension: Dimension::Two, has_deviation: false, ..form });
+    let [_, _, space] = sources::phases(form);
+    let [_, _, plane] = sources::phases(Form { dimension: Dimension::Two, has_deviation: false, ..form });
     let (space, plane) = (parse(&space), parse(&plane));
     let (space, plane) = (constants(&space), constants(&plane));
     let places = [
@@ -139,7 +139,7 @@ fn constants_of_exact_arithmetic_agree() {
 
 #[test]
 fn constants_of_the_adjacency_agree() {
-    let module = parse(ADJACENCY);
+    let module = parse(&sources::adjacency());
     let shader = constants(&module);
     assert_eq!(shader["NONE"], u64::from(NONE));
     assert_eq!(shader["WORKGROUP_SIZE"], u64::from(WORKGROUP_SIZE));
@@ -189,7 +189,7 @@ fn params_have_one_layout() {
 
 #[test]
 fn shaders_stay_within_the_limits_of_every_browser() {
-    for source in sources() {
+    for source in all_sources() {
         let module = parse(&source);
         let capabilities = naga::valid::Capabilities::default();
         let mut validator = naga::valid::Validator::new(naga::valid::ValidationFlags::all(), capabilities);
@@ -262,7 +262,7 @@ fn spirv_words(source: &str, entry: &str) -> usize {
 /// a value: it keeps that of the round before. Functions are inlined into loops, so no variable goes without.
 #[test]
 fn variables_are_given_a_value() {
-    for line in sources().iter().flat_map(|source| source.lines()) {
+    for line in all_sources().iter().flat_map(|source| source.lines()) {
         let in_function = line.starts_with("    ") && line.trim_start().starts_with("var ");
         assert!(!in_function || line.contains(" = "), "{}", line.trim());
     }

@@ -1,4 +1,11 @@
-// For the tests: counts the interior edges that the filter decides, and those that it does not.
+// Counts the interior edges that the filter decides, and those that it does not: for the tests.
+#import history_write
+#import mesh
+#import plane if plane
+#import points
+#import space if space
+#import state
+
 @compute @workgroup_size(WORKGROUP_SIZE)
 fn tiers(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
     for (var h = id.x; h < 3u * params.triangles; h += groups.x * WORKGROUP_SIZE) {

@@ -1,7 +1,9 @@
 //! Writes the programs of the WebGL2 engine as a JavaScript module: `cargo run -p glsl -- FILE`. GLSL ES 3.00 from the
-//! WGSL in `shaders/`, by naga, a program for each entry point of `passes.wgsl` and, where it decides anything, for
-//! each form of meshes. Refuses what old drivers get wrong.
+//! WGSL in `shaders/`, by naga, a program for each entry point of `passes.wgsl` and `crease_pass.wgsl` and, where it decides
+//! anything, for each form of meshes. Refuses what old drivers get wrong.
 
+#[path = "../../../shaders/compose.rs"]
+mod compose;
 mod lint;
 
 use naga::back::glsl::{Options, PipelineOptions, Version, Writer, WriterFlags};
@@ -11,52 +13,77 @@ use naga::{Module, ShaderStage};
 use std::collections::BTreeMap;
 use std::error::Error;
 
-macro_rules! shaders {
-    ($($name:literal)*) => {
-        concat!($(include_str!(concat!("../../../shaders/", $name, ".wgsl"))),*)
-    };
-}
-
-/// The name of a program, and its entry point.
-type Program = (&'static str, &'static str);
+/// A program: its name, the file of its entry point, and that.
+type Program = (&'static str, &'static str, &'static str);
 
 /// For meshes in the plane, with coordinates as floats; all but `verdict2` are for every mesh.
 const PLANE: [Program; 12] = [
-    ("cover", "cover"),
-    ("verdict2", "verdict_pass"),
-    ("label", "label_pass"),
-    ("select", "select_pass"),
-    ("flip", "flip_pass"),
-    ("update", "update_pass"),
-    ("anchor", "anchor_pass"),
-    ("census", "census_pass"),
-    ("more", "more_pass"),
-    ("flips", "flips_pass"),
-    ("sum", "sum_pass"),
-    ("probe", "probe_pass"),
+    ("cover", "passes", "cover"),
+    ("verdict2", "passes", "verdict_pass"),
+    ("label", "passes", "label_pass"),
+    ("select", "passes", "select_pass"),
+    ("flip", "passes", "flip_pass"),
+    ("update", "passes", "update_pass"),
+    ("anchor", "passes", "anchor_pass"),
+    ("census", "passes", "census_pass"),
+    ("more", "passes", "more_pass"),
+    ("flips", "passes", "flips_pass"),
+    ("sum", "passes", "sum_pass"),
+    ("probe", "passes", "probe_pass"),
 ];
 
 /// For surfaces; `flag` is for all of them.
-const SPACE: [Program; 3] = [("verdict3", "verdict_pass"), ("crease", "crease_pass"), ("flag", "flag_pass")];
+const SPACE: [Program; 3] = [
+    ("verdict3", "passes", "verdict_pass"),
+    ("crease", "crease_pass", "crease_pass"),
+    ("flag", "crease_pass", "flag_pass"),
+];
 
 /// For coordinates as fixed-point numbers.
-const FIXED_PLANE: [Program; 1] = [("verdict2_fixed", "verdict_pass")];
-const FIXED_SPACE: [Program; 2] = [("verdict3_fixed", "verdict_pass"), ("crease_fixed", "crease_pass")];
+const FIXED_PLANE: [Program; 1] = [("verdict2_fixed", "passes", "verdict_pass")];
+const FIXED_SPACE: [Program; 2] =
+    [("verdict3_fixed", "passes", "verdict_pass"), ("crease_fixed", "crease_pass", "crease_pass")];
 
 /// For surfaces where what a flip moves has a limit.
-const DEVIATION: [Program; 1] = [("verdict3_deviation", "verdict_pass")];
-const FIXED_DEVIATION: [Program; 1] = [("verdict3_fixed_deviation", "verdict_pass")];
+const DEVIATION: [Program; 1] = [("verdict3_deviation", "passes", "verdict_pass")];
+const FIXED_DEVIATION: [Program; 1] = [("verdict3_fixed_deviation", "passes", "verdict_pass")];
 
-/// The program of an entry point, with the files that say what a point is and what the dimension is.
-fn glsl(entry_point: &str, points: &str, geometry: &str) -> Result<String, Box<dyn Error>> {
-    let source = [
-        shaders!("mesh" "digits" "textures" "points"),
-        points,
-        geometry,
-        shaders!("verdict" "star" "guard" "label" "select" "slot" "rounds" "passes"),
-    ]
-    .concat();
-    let mut module = naga::front::wgsl::parse_str(&source).map_err(|error| error.emit_to_string(&source))?;
+/// The programs of each form of meshes, with the choices of `shaders/compose.rs` that make it. Every pass is a sweep.
+const FORMS: [([&str; 4], &[Program]); 6] = [
+    (["plane", "floats", "any_deviation", "sweep"], &PLANE),
+    (["space", "floats", "any_deviation", "sweep"], &SPACE),
+    (["plane", "fixed", "any_deviation", "sweep"], &FIXED_PLANE),
+    (["space", "fixed", "any_deviation", "sweep"], &FIXED_SPACE),
+    (["space", "floats", "deviation", "sweep"], &DEVIATION),
+    (["space", "fixed", "deviation", "sweep"], &FIXED_DEVIATION),
+];
+
+/// The texts of the shaders by their paths in `shaders/`.
+type Texts = BTreeMap<String, String>;
+
+fn texts() -> std::io::Result<Texts> {
+    let mut texts = Texts::new();
+    for folder in ["shared", "webgl2"] {
+        for entry in std::fs::read_dir(format!("{}/../../shaders/{folder}", env!("CARGO_MANIFEST_DIR")))? {
+            let entry = entry?;
+            let path = format!("{folder}/{}", entry.file_name().display());
+            texts.insert(path, std::fs::read_to_string(entry.path())?);
+        }
+    }
+    Ok(texts)
+}
+
+fn composed(file: &str, choices: &[&str], texts: &Texts) -> String {
+    compose::compose("webgl2", file, choices, &|path| texts.get(path).map(String::as_str))
+}
+
+fn parsed(source: &str) -> Result<Module, String> {
+    naga::front::wgsl::parse_str(source).map_err(|error| error.emit_to_string(source))
+}
+
+/// The program of an entry point in WGSL.
+fn glsl(entry_point: &str, source: &str) -> Result<String, Box<dyn Error>> {
+    let mut module = parsed(source)?;
     module.entry_points.retain(|entry| entry.name == entry_point);
     compact(&mut module, KeepUnused::No);
     lint::check(&module).map_err(|fault| format!("{entry_point}: {fault}"))?;
@@ -87,23 +114,36 @@ fn stage(module: &Module) -> Result<ShaderStage, String> {
 fn main() -> Result<(), Box<dyn Error>> {
     let path = std::env::args().nth(1).ok_or("usage: glsl FILE")?;
     let mut programs = BTreeMap::new();
-    let (floats, fixed) = (shaders!("floats"), shaders!("fixed"));
-    let plane = shaders!("plane" "plane_digits");
-    let space = shaders!("space" "any_deviation" "space_digits" "creases" "crease_pass");
-    let deviation = shaders!("space" "deviation" "deviation_digits" "space_digits" "creases" "crease_pass");
-    for (points, geometry, list) in [
-        (floats, plane, &PLANE[..]),
-        (floats, space, &SPACE[..]),
-        (fixed, plane, &FIXED_PLANE[..]),
-        (fixed, space, &FIXED_SPACE[..]),
-        (floats, deviation, &DEVIATION[..]),
-        (fixed, deviation, &FIXED_DEVIATION[..]),
-    ] {
-        for &(name, entry_point) in list {
-            programs.insert(name, glsl(entry_point, points, geometry)?);
+    let texts = texts()?;
+    for (choices, list) in FORMS {
+        for &(name, file, entry_point) in list {
+            programs.insert(name, glsl(entry_point, &composed(file, &choices, &texts))?);
         }
     }
     let text = serde_json::to_string_pretty(&programs)?;
     std::fs::write(path, format!("// Made from shaders/ by tools/glsl.\nexport default {text};\n"))?;
     Ok(())
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "what fails here is a failed test")]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_file_imports_what_it_needs() {
+        let texts = texts().unwrap();
+        for path in texts.keys() {
+            let name = path.split(['/', '.']).nth(1).unwrap();
+            let faults = FORMS.map(|(choices, _)| parsed(&composed(name, &choices, &texts)).err());
+            assert!(faults.iter().any(Option::is_none), "{path}: {}", faults[0].as_deref().unwrap_or(""));
+        }
+    }
+
+    #[test]
+    fn files_begin_with_what_they_do() {
+        for (path, text) in texts().unwrap() {
+            assert!(text.starts_with("// "), "{path}");
+        }
+    }
 }

@@ -1,0 +1,10 @@
+// Finds creases, the edges of the input whose normals differ by more than β, as src/phases/crease.rs.
+#import mesh
+#import normals
+#import points
+
+// Whether an edge is one, by a filter: DELAUNAY or BLOCKED_BY + REASON_ANGLE; UNDECIDED where exact arithmetic has to decide.
+fn filtered_crease(a: Point, b: Point, c: Point, d: Point) -> u32 {
+    let sign = angle_sign(old_normals(quad_of(a, b, c, d), true));
+    return select(select(DELAUNAY, BLOCKED_BY + REASON_ANGLE, sign < 0), UNDECIDED, sign == 0);
+}

@@ -1,0 +1,54 @@
+// Reads points of fixed-point coordinates: the distance of a vertex from the corner of the bounding box, in units of the
+// mesh's grid. No predicate depends on where the mesh is or how large that unit is.
+#import integers
+#import state
+
+// The low words of the coordinates, the middle ones, the high ones.
+alias Point = array<vec3u, 3>;
+
+fn position(v: u32) -> Point {
+    return Point(coordinates(3u * v), coordinates(3u * v + 1u), coordinates(3u * v + 2u));
+}
+
+// Of each axis, which of u and v is greater: 1 if u is, -1 if v is.
+fn order(u: Point, v: Point) -> vec3i {
+    let high = vec3i(u[2] > v[2]) - vec3i(u[2] < v[2]);
+    let middle = vec3i(u[1] > v[1]) - vec3i(u[1] < v[1]);
+    let low = vec3i(u[0] > v[0]) - vec3i(u[0] < v[0]);
+    return select(high, select(middle, low, middle == vec3i()), high == vec3i());
+}
+
+// All are on the grid of the mesh.
+fn grid_of(a: Point, b: Point, c: Point, d: Point) -> i32 {
+    return 0;
+}
+
+fn exact_difference(u: Point, v: Point, axis: u32, grid: i32) -> vec4u {
+    return difference(fixed_at(u, axis), fixed_at(v, axis));
+}
+
+fn fixed_at(u: Point, axis: u32) -> vec4u {
+    return vec4u(component_of(u[0], axis), component_of(u[1], axis), component_of(u[2], axis), 0u);
+}
+
+fn deviation_grid() -> i32 {
+    return 0;
+}
+
+fn deviation_on(grid: i32) -> vec4u {
+    return vec4u(deviation().xyz, 0u);
+}
+
+// u - v. A word that becomes an f32 errs by ε, and so does each of two sums of numbers of one sign: 3ε.
+fn rounded_difference(u: Point, v: Point) -> vec3f {
+    return vec3f(
+        rounded(exact_difference(u, v, 0u, 0)),
+        rounded(exact_difference(u, v, 1u, 0)),
+        rounded(exact_difference(u, v, 2u, 0)),
+    );
+}
+
+fn rounded(x: vec4u) -> f32 {
+    let magnitude = f32(x.z) * 1.8446744e19 + (f32(x.y) * 4294967296.0 + f32(x.x));
+    return select(magnitude, -magnitude, x.w == 1u);
+}

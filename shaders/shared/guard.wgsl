@@ -1,0 +1,42 @@
+// The guard: blocks a flip whose new edge exists already, as `edge_exists` in src/phases/label.rs.
+#import mesh
+#import star
+#import state
+#import walk_both if tail
+#import walk_one_first if sweep
+
+// The verdict on the edge of `h` and `g`, given that on its geometry.
+fn guarded(verdict: u32, h: u32, g: u32) -> u32 {
+    var result = verdict;
+    if verdict == LABELLED {
+        result = select(verdict, BLOCKED_BY + REASON_DUPLICATE, edge_exists(prev(h), prev(g)));
+    }
+    return result;
+}
+
+// Whether an edge joins the vertices that two half-edges start at, or they are the same one. The star of either tells:
+// one is walked alone for some steps, mostly to its end, then both in turns, so the cost is that of the smaller one and
+// those steps.
+fn edge_exists(at_c: u32, at_d: u32) -> bool {
+    let c = vertex(at_c);
+    let d = vertex(at_d);
+    let is_alone = is_embedded(c) || is_embedded(d);
+    var exists = c == d;
+    var first = star(at_c);
+    var second = star(at_d);
+    var steps = 0u;
+    while !is_alone && !exists && first.y != NONE && second.y != NONE {
+        exists = joins(first, d) || (steps >= ALONE && joins(second, c));
+        first = advanced(first);
+        if steps >= ALONE {
+            second = advanced(second);
+        }
+        steps++;
+    }
+    return exists;
+}
+
+// Whether an edge of the triangle that a walk is at goes from its vertex to `far`.
+fn joins(walk: Star, far: u32) -> bool {
+    return vertex(next(walk.y)) == far || vertex(prev(walk.y)) == far;
+}

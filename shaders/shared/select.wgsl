@@ -1,0 +1,60 @@
+// Select: an edge flips if it is the best of both its triangles and no better one makes the same new edge,
+// as src/phases/select.rs.
+#import mesh
+#import star
+#import state
+#import walk_both if tail
+#import walk_one_first if sweep
+
+// The half-edge on the other side of triangle `t`'s selected edge, or NONE.
+fn selection(t: u32, iteration: u32) -> u32 {
+    let h = mutual(t);
+    var choice = NONE;
+    if h != NONE {
+        choice = select(best(t), NONE, yields(h, best(t), iteration));
+    }
+    return choice;
+}
+
+// The half-edge of triangle `t` that is the best of both its triangles, or NONE.
+fn mutual(t: u32) -> u32 {
+    let g = best(t);
+    var h = NONE;
+    if g < DOUBTFUL {
+        h = best(g / 3u);
+    }
+    return select(NONE, h, h < DOUBTFUL && h / 3u == t);
+}
+
+// Whether another selected edge with a smaller key would join the same two vertices. As in guard.wgsl, the
+// star of either tells.
+fn yields(h: u32, g: u32, iteration: u32) -> bool {
+    let c = vertex(prev(h));
+    let d = vertex(prev(g));
+    let mine = key(min(h, g), iteration);
+    let is_alone = is_embedded(c) || is_embedded(d);
+    var first = star(prev(h));
+    var second = star(prev(g));
+    var is_beaten = false;
+    var steps = 0u;
+    while !is_alone && !is_beaten && first.y != NONE && second.y != NONE {
+        is_beaten = wins(first.y, d, mine, iteration) || (steps >= ALONE && wins(second.y, c, mine, iteration));
+        first = advanced(first);
+        if steps >= ALONE {
+            second = advanced(second);
+        }
+        steps++;
+    }
+    return is_beaten;
+}
+
+// Whether the edge opposite to `corner` is selected, lies opposite to the vertex `far` too and is better.
+fn wins(corner: u32, far: u32, mine: u32, iteration: u32) -> bool {
+    let h = mutual(corner / 3u);
+    var is_better = false;
+    if h == next(corner) {
+        let g = best(corner / 3u);
+        is_better = vertex(prev(g)) == far && key(min(h, g), iteration) < mine;
+    }
+    return is_better;
+}

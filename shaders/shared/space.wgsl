@@ -1,0 +1,69 @@
+// Tests edges of surfaces by float filters: the angle sum, the angle between normals against β, and normals that turn over,
+// as src/predicates/space.rs.
+#import any_deviation if any_deviation
+#import deviation if deviation
+#import mesh
+#import normals
+#import points
+
+// What the geometry of an edge says: -1 where the opposite angles sum to more than π; where the angle between the normals
+// is larger than β before the flip; after it; where a new normal has a negative dot product with an old one. 1 where not,
+// 0 where that is open.
+alias Signs = vec4i;
+
+// DELAUNAY, BLOCKED_BY + REASON_ANGLE or REASON_FOLD, or LABELLED; UNDECIDED while a sign that matters is open.
+fn verdict_of(signs: Signs) -> u32 {
+    let angle = min(signs.y, signs.z);
+    var verdict = select(select(LABELLED, BLOCKED_BY + REASON_FOLD, signs.w < 0), BLOCKED_BY + REASON_ANGLE, angle < 0);
+    verdict = select(verdict, UNDECIDED, signs.x == 0 || angle == 0 || (angle > 0 && signs.w == 0));
+    return select(verdict, DELAUNAY, signs.x > 0);
+}
+
+// Whether an edge may flip by its geometry: DELAUNAY, BLOCKED_BY + REASON_ANGLE, REASON_FOLD or REASON_DEVIATION, or
+// LABELLED; UNDECIDED where `exact_verdict_on` has to decide. The winding has no meaning in space.
+fn filtered_verdict_on(a: Point, b: Point, c: Point, d: Point, winding: i32) -> u32 {
+    return verdict_by(a, b, c, d, false);
+}
+
+// The same by a filter that takes longer and leaves less.
+fn close_verdict_on(a: Point, b: Point, c: Point, d: Point, winding: i32) -> u32 {
+    return verdict_by(a, b, c, d, true);
+}
+
+fn verdict_by(a: Point, b: Point, c: Point, d: Point, is_precise: bool) -> u32 {
+    var verdict = verdict_of(filtered_signs(a, b, c, d, is_precise));
+    if verdict == LABELLED {
+        verdict = filtered_deviation(a, b, c, d);
+    }
+    return verdict;
+}
+
+// All but the first are 1 where that is.
+fn filtered_signs(a: Point, b: Point, c: Point, d: Point, is_precise: bool) -> Signs {
+    let quad = quad_of(a, b, c, d);
+    let old = old_normals(quad, is_precise);
+    var signs = Signs(angle_sum_sign(quad, old), 1, 1, 1);
+    if signs.x <= 0 {
+        let updated = new_normals(quad, is_precise);
+        signs = Signs(signs.x, angle_sign(old), angle_sign(updated), turn_sign(old, updated));
+    }
+    return signs;
+}
+
+fn angle_sum_sign(quad: Quad, old: Normals) -> i32 {
+    let n1 = old[0].xyz;
+    let n2 = old[1].xyz;
+    let value = sqrt(dot(n1, n1)) * dot(quad[3], quad[2]) + sqrt(dot(n2, n2)) * dot(quad[0], quad[1]);
+    return sign_of(value, max(old[0].w * (size(quad[3]) * size(quad[2])), old[1].w * (size(quad[0]) * size(quad[1]))));
+}
+
+fn turn_sign(old: Normals, updated: Normals) -> i32 {
+    return min(
+        min(dot_sign(old[0], updated[0]), dot_sign(old[0], updated[1])),
+        min(dot_sign(old[1], updated[0]), dot_sign(old[1], updated[1])),
+    );
+}
+
+fn dot_sign(n: Normal, m: Normal) -> i32 {
+    return sign_of(dot(n.xyz, m.xyz), n.w * m.w);
+}

@@ -1,0 +1,3 @@
+// Surfaces in space: a vertex has three coordinates.
+
+const DIMENSION: u32 = 3u;

@@ -1,0 +1,51 @@
+// The passes that flag creases, before the first iteration on a surface.
+#import creases
+#import mesh
+#import points
+#import space
+#import space_digits
+#import state
+
+// Whether the edge of a half-edge, the lower one, is over β: 1 or 0.
+@fragment
+fn crease_pass(@builtin(position) fragment: vec4f) -> @location(0) u32 {
+    let h = index_at(fragment);
+    var is_over = 0u;
+    if h < 3u * params[0].x {
+        let g = twin(h);
+        if g != NONE && h < g {
+            is_over = select(0u, 1u, is_crease(h, g));
+        }
+    }
+    return is_over;
+}
+
+fn is_crease(h: u32, g: u32) -> bool {
+    let a = position(vertex(h));
+    let b = position(vertex(g));
+    let c = position(vertex(prev(h)));
+    let d = position(vertex(prev(g)));
+    var verdict = filtered_crease(a, b, c, d);
+    if verdict == UNDECIDED {
+        // Only the angle before the flip is open.
+        verdict = verdict_of(exact_signs(a, b, c, d, Signs(-1, 0, 1, 1)));
+    }
+    return verdict == BLOCKED_BY + REASON_ANGLE;
+}
+
+// Flags the twins of those edges, and no others.
+@fragment
+fn flag_pass(@builtin(position) fragment: vec4f) -> @location(0) vec4u {
+    let t = index_at(fragment);
+    var entries = vec4u(NONE);
+    if t < params[0].x {
+        entries = vec4u(flagged(3u * t), flagged(3u * t + 1u), flagged(3u * t + 2u), NONE);
+    }
+    return entries;
+}
+
+fn flagged(h: u32) -> u32 {
+    let g = twin(h);
+    let is_over = textureLoad(verdicts, place(min(h, g)), 0).x == 1u;
+    return select(g, g | CREASE, is_over && g != NONE);
+}

@@ -1,0 +1,125 @@
+// The state of a mesh in textures, as the WebGL2 engine binds it: a texel an element, row after row. A fragment reads what it
+// likes of the state before its pass, and writes the texel of its own triangle in another texture.
+#import digits
+#import mesh
+
+// A texel each of three words: what floats.wgsl and fixed.wgsl say of positions; vertices; twins. The fourth word of a
+// triangle is 1 where its component is clockwise.
+@group(0) @binding(0) var positions: texture_2d<u32>;
+@group(0) @binding(1) var triangles: texture_2d<u32>;
+@group(0) @binding(2) var twins: texture_2d<u32>;
+// A texel each of one word.
+@group(0) @binding(3) var bests: texture_2d<u32>;
+@group(0) @binding(4) var selections: texture_2d<u32>;
+// The table of the fans.
+@group(0) @binding(5) var fans: texture_2d<u32>;
+// A half-edge a texel: the verdict on the geometry of its edge, where it is the lower one.
+@group(0) @binding(6) var verdicts: texture_2d<u32>;
+// Four counts a texel.
+@group(0) @binding(7) var counts: texture_2d<u32>;
+
+// (triangles, vertices, the iteration, bits of the column in an index), (words in the table of the fans, whether β is
+// 180°, the sign of cos β, cos β rounded to f32), then the digits of its mantissa and power, as in digits.wgsl, then what the
+// diagonals of a quad may be apart: words as those of a coordinate, and rounded to f32 for the filter.
+@group(0) @binding(8) var<uniform> params: array<vec4u, 7>;
+
+fn place(i: u32) -> vec2u {
+    let bits = params[0].w;
+    return vec2u(i & ((1u << bits) - 1u), i >> bits);
+}
+
+// The index of the fragment's texel.
+fn index_at(fragment: vec4f) -> u32 {
+    return (u32(fragment.y) << params[0].w) + u32(fragment.x);
+}
+
+// One of the first three.
+fn component(v: vec4u, k: u32) -> u32 {
+    return select(select(v.x, v.y, k == 1u), v.z, k == 2u);
+}
+
+fn with_component(v: vec4u, k: u32, x: u32) -> vec4u {
+    return vec4u(select(v.x, x, k == 0u), select(v.y, x, k == 1u), select(v.z, x, k == 2u), v.w);
+}
+
+fn vertex(h: u32) -> u32 {
+    return component(textureLoad(triangles, place(h / 3u), 0), h % 3u);
+}
+
+// The half-edge on the other side, with its flags, or NONE.
+fn twin_entry(h: u32) -> u32 {
+    return component(textureLoad(twins, place(h / 3u), 0), h % 3u);
+}
+
+fn twin(h: u32) -> u32 {
+    return unflagged(twin_entry(h));
+}
+
+fn best(t: u32) -> u32 {
+    return textureLoad(bests, place(t), 0).x;
+}
+
+fn selected(t: u32) -> u32 {
+    return textureLoad(selections, place(t), 0).x;
+}
+
+// The two half-edges of the selected edge of triangle `t`, its own one first; NONE where no edge is.
+fn flip_of(t: u32) -> vec2u {
+    let g = selected(t);
+    var h = NONE;
+    if g != NONE {
+        h = selected(g / 3u);
+    }
+    return vec2u(h, g);
+}
+
+// Words of the positions, one for each axis.
+fn coordinates(i: u32) -> vec3u {
+    return textureLoad(positions, place(i), 0).xyz;
+}
+
+fn is_clockwise(t: u32) -> bool {
+    return textureLoad(triangles, place(t), 0).w == 1u;
+}
+
+// Nothing is known of the stars here.
+fn is_embedded(v: u32) -> bool {
+    return false;
+}
+
+fn is_strict() -> bool {
+    return false;
+}
+
+fn has_fans() -> bool {
+    return params[1].x > 0u;
+}
+
+// A word of the table of the fans, see src/star.rs.
+fn fan_entry(i: u32) -> u32 {
+    return textureLoad(fans, place(i), 0).x;
+}
+
+fn has_any_angle() -> bool {
+    return params[1].y == 1u;
+}
+
+fn cos_rounded() -> f32 {
+    return bitcast<f32>(params[1].w);
+}
+
+fn cos_sign() -> i32 {
+    return bitcast<i32>(params[1].z);
+}
+
+fn cos_mantissa() -> Small {
+    return Small(bitcast<vec4i>(params[2]), bitcast<vec4i>(params[3]));
+}
+
+fn cos_power() -> Small {
+    return Small(bitcast<vec4i>(params[4]), bitcast<vec4i>(params[5]));
+}
+
+fn deviation() -> vec4u {
+    return params[6];
+}

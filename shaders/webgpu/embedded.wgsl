@@ -1,0 +1,87 @@
+// Finds the embedded stars in the plane: the triangles at a vertex are positive and go round it once. An edge that is to
+// flip crosses its new edge c-d between them, so at such a vertex c, or d, no other edge c-d can be, and no other flip can
+// make one: its star has one triangle in each direction. Flips of strictly convex quads leave it so.
+#import begin
+#import doubts
+#import history_write
+#import mesh
+#import plane
+#import points
+#import state
+
+// What makes a star other than embedded.
+const NOT_EMBEDDED: u32 = 0x10000u;
+
+var<workgroup> signs: atomic<u32>;
+
+// The sign of each triangle, plus 1, in the place of its choice; DOUBTFUL where exact arithmetic has to decide.
+@compute @workgroup_size(WORKGROUP_SIZE)
+fn prepare_all(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
+    for (var t = id.x; t < params.triangles; t += groups.x * WORKGROUP_SIZE) {
+        let sign = filtered_sign_of(position(vertex(3u * t)), position(vertex(3u * t + 1u)), position(vertex(3u * t + 2u)));
+        let choice = wait_for(t, sign == 0);
+        choices[t] = select(choice, u32(sign + 1), sign != 0);
+    }
+}
+
+// Counts, in the lists, how often the triangles at each vertex go across the direction of the x axis, and finds out which
+// signs triangles have: bits 0 to 2 for negative, flat, positive. Unless the winding is known, that of each triangle is
+// taken for its sign: the count holds if there is one only.
+@compute @workgroup_size(WORKGROUP_SIZE)
+fn count_turns(
+    @builtin(global_invocation_id) id: vec3u,
+    @builtin(local_invocation_index) local: u32,
+    @builtin(num_workgroups) groups: vec3u,
+) {
+    var seen = 0u;
+    for (var t = id.x; t < params.triangles; t += groups.x * WORKGROUP_SIZE) {
+        let sign = i32(choices[t]) - 1;
+        choices[t] = NONE;
+        var a = position(vertex(3u * t));
+        var b = position(vertex(3u * t + 1u));
+        var c = position(vertex(3u * t + 2u));
+        let winding = select(sign, select(1, -1, is_clockwise(t)), params.knows_winding == 1u);
+        let is_positive = sign * winding > 0;
+        seen |= 1u << u32(sign + 1);
+        for (var h = 3u * t; h < 3u * t + 3u; h++) {
+            let is_inner = twin_entry(h) != NONE && twin_entry(prev(h)) != NONE;
+            let first = order(b, a);
+            let last = order(c, a);
+            // From below the axis, or on it, to above it; in a clockwise mesh the other way round.
+            let from_below = select(last, first, winding > 0);
+            let to_above = select(first, last, winding > 0);
+            let is_below = from_below.y < 0 || (from_below.y == 0 && from_below.x > 0);
+            let is_above = to_above.y > 0 || (to_above.y == 0 && to_above.x < 0);
+            let turns = select(NOT_EMBEDDED, select(0u, 1u, is_below && is_above), is_positive && is_inner);
+            // Vertices of no triangle may be more than there are words before the doubts.
+            if turns > 0u && vertex(h) < doubts() {
+                atomicAdd(&frontier[vertex(h)], turns);
+            }
+            let corner = a;
+            a = b;
+            b = c;
+            c = corner;
+        }
+    }
+    atomicOr(&signs, seen);
+    workgroupBarrier();
+    if local == 0u {
+        atomicOr(&history[COUNTED], atomicLoad(&signs));
+    }
+}
+
+// A bit for each vertex. All signs are known now, so that the iterations can begin.
+@compute @workgroup_size(WORKGROUP_SIZE)
+fn mark_embedded(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
+    if id.x == 0u {
+        begin_history(are_both(history_word(COUNTED)));
+    }
+    for (var word = id.x; word < (params.vertices + 31u) / 32u; word += groups.x * WORKGROUP_SIZE) {
+        var bits = 0u;
+        let end = min(min(32u * word + 32u, params.vertices), doubts());
+        for (var v = 32u * word; v < end; v++) {
+            bits |= select(0u, 1u, atomicLoad(&frontier[v]) == 1u) << (v % 32u);
+        }
+        topology[params.embedded + word] = bits;
+    }
+}

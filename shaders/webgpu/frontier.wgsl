@@ -1,0 +1,74 @@
+// Flips triangles and builds the frontier, the triangles that are due in the next iteration: those that have flipped and their
+// neighbours, which are stamped, and those with an edge that was labelled and has not flipped, or was blocked as a duplicate.
+// An edge's verdict can change only where one of its triangles has changed, or, for duplicates, anywhere.
+#import active
+#import flip
+#import history_write
+#import mesh
+#import state
+
+// Whether an iteration builds the list for the next one.
+fn builds_list(index: u32) -> bool {
+    return history_word(entry(index, FLIPS)) < params.list_below;
+}
+
+// Flips the selected edge of triangle `t`, from its lower half-edge, and says which triangles are due then. Returns the
+// number of flips.
+fn flip_triangle(t: u32, index: u32, iteration: u32, builds: bool) -> u32 {
+    let flip = flip_of(t);
+    if builds && flip.x == NONE && best(t) != NONE {
+        append(vec3u(stamped(t, iteration), NONE, NONE), vec3u(NONE), index, iteration);
+    }
+    if flip.x >= flip.y {
+        return 0u;
+    }
+    let outer_h = vec2u(twin_entry(next(flip.x)), twin_entry(prev(flip.x)));
+    let outer_g = vec2u(twin_entry(next(flip.y)), twin_entry(prev(flip.y)));
+    let here = vec2u(unflagged(outer_h.x), unflagged(outer_h.y)) / 3u;
+    let there = vec2u(unflagged(outer_g.x), unflagged(outer_g.y)) / 3u;
+    if builds {
+        // None waits for another: an exchange takes long.
+        let first = vec3u(stamped(t, iteration), stamped(here.x, iteration), stamped(here.y, iteration));
+        let second = vec3u(stamped(flip.y / 3u, iteration), stamped(there.x, iteration), stamped(there.y, iteration));
+        append(first, second, index, iteration);
+    } else {
+        stamp(here, iteration);
+        stamp(there, iteration);
+    }
+    flip_edge(flip.x, flip.y, outer_h, outer_g);
+    return 1u;
+}
+
+// Stamps neighbours, which may be none. The triangles that flip are due anyway, as they have a choice.
+fn stamp(neighbours: vec2u, iteration: u32) {
+    atomicStore(&frontier[stamp_place(neighbours.x)], iteration + 1u);
+    atomicStore(&frontier[stamp_place(neighbours.y)], iteration + 1u);
+}
+
+// Stamps a triangle. NONE if that has been done before, or it is none.
+fn stamped(t: u32, iteration: u32) -> u32 {
+    let before = atomicExchange(&frontier[stamp_place(t)], iteration + 1u);
+    return select(t, NONE, before == iteration + 1u || t >= params.triangles);
+}
+
+// Appends triangles to the list of the next iteration, those that are not NONE.
+fn append(first: vec3u, second: vec3u, index: u32, iteration: u32) {
+    let count = dot(vec3u(first != vec3u(NONE)) + vec3u(second != vec3u(NONE)), vec3u(1u));
+    if count > 0u {
+        var at = ((iteration + 1u) & 1u) * params.triangles + atomicAdd(&history[entry(index + 1u, LENGTH)], count);
+        at = listed(first.x, at);
+        at = listed(first.y, at);
+        at = listed(first.z, at);
+        at = listed(second.x, at);
+        at = listed(second.y, at);
+        at = listed(second.z, at);
+    }
+}
+
+// Writes a triangle to its place in a list, and returns the place of the next one.
+fn listed(t: u32, at: u32) -> u32 {
+    if t != NONE {
+        atomicStore(&frontier[at], t);
+    }
+    return at + select(1u, 0u, t == NONE);
+}

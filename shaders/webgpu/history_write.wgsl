@@ -1,0 +1,8 @@
+// The history, for kernels that write it.
+
+// state.wgsl says what its words mean.
+@group(0) @binding(7) var<storage, read_write> history: array<atomic<u32>>;
+
+fn history_word(i: u32) -> u32 {
+    return atomicLoad(&history[i]);
+}

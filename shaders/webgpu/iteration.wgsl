@@ -1,0 +1,130 @@
+// The kernels of Flip, and of a run of whole iterations in one workgroup when there is little to do.
+#import active
+#import doubts
+#import flip
+#import frontier
+#import history_write
+#import label
+#import mesh
+#import select
+#import state
+#import verdicts
+
+var<workgroup> flips: atomic<u32>;
+var<workgroup> tail_first: u32;
+var<workgroup> tail_count: u32;
+var<workgroup> doubtful: atomic<u32>;
+var<workgroup> is_paused: u32;
+
+@compute @workgroup_size(WORKGROUP_SIZE)
+fn flip_all(
+    @builtin(global_invocation_id) id: vec3u,
+    @builtin(local_invocation_index) local: u32,
+    @builtin(num_workgroups) groups: vec3u,
+) {
+    let index = step_.index;
+    let work = active_at(index);
+    if work.count > 0u {
+        let builds = builds_list(index);
+        var flipped = 0u;
+        for (var i = id.x; i < work.count; i += groups.x * WORKGROUP_SIZE) {
+            let t = active_triangle(work, i);
+            if best(t) != NONE {
+                flipped += flip_triangle(t, index, params.first + index, builds);
+            }
+        }
+        clear_doubts(id.x, groups.x * WORKGROUP_SIZE);
+        for (var i = params.vertices + id.x; i < params.fans_length; i += groups.x * WORKGROUP_SIZE) {
+            move_anchor(i);
+        }
+        if flipped > 0u {
+            atomicAdd(&flips, flipped);
+        }
+        if id.x == 0u {
+            atomicStore(&history[entry(index + 1u, BUILT)], select(0u, 1u, builds));
+            atomicStore(&history[entry(index + 1u, RAN)], 1u);
+        }
+    }
+    workgroupBarrier();
+    if local == 0u {
+        let total = atomicLoad(&flips);
+        if total > 0u {
+            atomicAdd(&history[entry(index + 1u, FLIPS)], total);
+        }
+    }
+}
+
+// Invocations of the tail, as many as the device allows.
+override TAIL_SIZE: u32 = WORKGROUP_SIZE;
+
+// Iterations in one workgroup, as long as their lists are short. Pauses in one that needs exact arithmetic, for which there is a
+// dispatch before it is resumed.
+@compute @workgroup_size(TAIL_SIZE)
+fn tail(@builtin(local_invocation_index) local: u32) {
+    if local == 0u {
+        tail_first = params.tail;
+        if step_.task == RESUME {
+            // NONE, which no iteration follows, where it has not paused.
+            tail_first = atomicExchange(&history[PAUSED], 0u) - 1u;
+            atomicStore(&frontier[doubts()], 0u);
+        }
+    }
+    let first = workgroupUniformLoad(&tail_first);
+    for (var index = first; index < params.tail + params.tail_iterations; index++) {
+        if local == 0u {
+            let work = active_at(index);
+            tail_count = select(0u, work.count, work.is_listed && work.count <= params.tail_length);
+        }
+        let count = workgroupUniformLoad(&tail_count);
+        if count == 0u {
+            break;
+        }
+        let iteration = params.first + index;
+        let work = Work(count, true, true, (iteration & 1u) * params.triangles);
+        if step_.task != RESUME || index > first {
+            for (var i = local; i < count; i += TAIL_SIZE) {
+                let t = active_triangle(work, i);
+                let choice = label(t, iteration, verdicts_on(t, false, true));
+                choices[t] = choice;
+                clear_flip(t);
+                if choice == DOUBTFUL {
+                    doubt(i / WORKGROUP_SIZE);
+                    atomicStore(&doubtful, 1u);
+                }
+            }
+        }
+        storageBarrier();
+        workgroupBarrier();
+        if local == 0u {
+            is_paused = atomicLoad(&doubtful);
+            if is_paused == 1u {
+                atomicStore(&history[PAUSED], index + 1u);
+            }
+        }
+        if workgroupUniformLoad(&is_paused) == 1u {
+            break;
+        }
+        for (var i = local; i < count; i += TAIL_SIZE) {
+            let g = selection(active_triangle(work, i), iteration);
+            if g != NONE {
+                set_flip(best(g / 3u), g);
+            }
+        }
+        storageBarrier();
+        var flipped = 0u;
+        for (var i = local; i < count; i += TAIL_SIZE) {
+            flipped += flip_triangle(active_triangle(work, i), index, iteration, true);
+        }
+        for (var i = params.vertices + local; i < params.fans_length; i += TAIL_SIZE) {
+            move_anchor(i);
+        }
+        if flipped > 0u {
+            atomicAdd(&history[entry(index + 1u, FLIPS)], flipped);
+        }
+        if local == 0u {
+            atomicStore(&history[entry(index + 1u, BUILT)], 1u);
+            atomicStore(&history[entry(index + 1u, RAN)], 1u);
+        }
+        storageBarrier();
+    }
+}

@@ -1,0 +1,18 @@
+// The kernel that flags creases, before the first iteration on a surface.
+#import begin
+#import doubts
+#import flag_creases
+#import mesh
+#import state
+
+@compute @workgroup_size(WORKGROUP_SIZE)
+fn prepare_all(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
+    if id.x == 0u {
+        begin_history(false);
+    }
+    for (var t = id.x; t < params.triangles; t += groups.x * WORKGROUP_SIZE) {
+        let verdicts = filtered_creases(t);
+        flag_creases(t, verdicts);
+        choices[t] = wait_for(t, any(verdicts == vec3u(UNDECIDED)));
+    }
+}

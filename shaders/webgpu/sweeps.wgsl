@@ -1,0 +1,44 @@
+// The kernels of Label and Select: exact arithmetic, where the filter leaves something to it, has a dispatch between them.
+#import active
+#import doubts
+#import label
+#import mesh
+#import select
+#import state
+#import three_axes if space
+#import two_axes if plane
+#import verdicts
+
+// Whether Label takes the close look at once: on a lattice in the plane every edge needs it, on a surface few do.
+const LABELS_CLOSELY: bool = DIMENSION == 2u;
+
+@compute @workgroup_size(WORKGROUP_SIZE)
+fn label_all(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
+    let work = active_at(step_.index);
+    let iteration = params.first + step_.index;
+    for (var i = id.x; i < work.count; i += groups.x * WORKGROUP_SIZE) {
+        let t = active_triangle(work, i);
+        if is_due(work, t, iteration) {
+            let choice = label(t, iteration, verdicts_on(t, false, LABELS_CLOSELY));
+            choices[t] = choice;
+            if flip_of(t).x != NONE {
+                clear_flip(t);
+            }
+            if choice == DOUBTFUL {
+                doubt(i / WORKGROUP_SIZE);
+            }
+        }
+    }
+}
+
+@compute @workgroup_size(WORKGROUP_SIZE)
+fn select_all(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
+    let work = active_at(step_.index);
+    let iteration = params.first + step_.index;
+    for (var i = id.x; i < work.count; i += groups.x * WORKGROUP_SIZE) {
+        let g = selection(active_triangle(work, i), iteration);
+        if g != NONE {
+            set_flip(best(g / 3u), g);
+        }
+    }
+}

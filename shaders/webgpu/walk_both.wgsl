@@ -1,0 +1,3 @@
+// Lets the tail walk two stars in turns from the first step: it has few edges at a time to wait for.
+
+const ALONE: u32 = 0u;

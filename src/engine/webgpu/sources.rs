@@ -1,0 +1,102 @@
+//! What the kernels are compiled from: the shaders in `shaders/`, composed when they are needed.
+
+#[path = "../../../shaders/compose.rs"]
+mod compose;
+
+use crate::engine::upload::Form;
+use crate::mesh::Dimension;
+
+/// The path in `shaders/` of each file, and its text.
+const FILES: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/shaders.rs"));
+
+/// The shaders of the phases, for meshes of one form: of the kernels that only read lists and history, of those that write
+/// them, and of exact arithmetic.
+pub(super) fn phases(form: Form) -> [String; 3] {
+    [phase("sweeps", form, READS), phase("writes", form, WRITES), phase("decide", form, READS)]
+}
+
+/// The shader that builds the adjacency.
+pub(super) fn adjacency() -> String {
+    compose::compose("webgpu", "adjacency", &[], &text_of)
+}
+
+/// The shader that finds drivers whose loops end too early.
+pub(super) fn probe() -> String {
+    compose::compose("webgpu", "probe", &[], &text_of)
+}
+
+/// The shader that counts how often the filter decides.
+#[cfg(test)]
+pub(super) fn tiers(form: Form) -> String {
+    phase("tiers", form, WRITES)
+}
+
+const READS: [&str; 2] = ["reads", "sweep"];
+const WRITES: [&str; 2] = ["writes", "tail"];
+
+fn phase(file: &str, form: Form, [history, guard]: [&str; 2]) -> String {
+    let dimension = match form.dimension {
+        Dimension::Two => "plane",
+        Dimension::Three => "space",
+    };
+    let coordinates = if form.is_fixed { "fixed" } else { "floats" };
+    let deviation = if form.has_deviation { "deviation" } else { "any_deviation" };
+    compose::compose("webgpu", file, &[dimension, coordinates, deviation, history, guard], &text_of)
+}
+
+fn text_of(path: &str) -> Option<&'static str> {
+    // In no build but that of the tests.
+    #[cfg(test)]
+    if path == "webgpu/tiers.wgsl" {
+        return Some(include_str!("tiers.wgsl"));
+    }
+    FILES.iter().find(|(name, _)| *name == path).map(|&(_, text)| text)
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, clippy::panic, reason = "what fails here is a failed test")]
+mod tests {
+    use super::*;
+
+    /// The fault of a file by itself, with what it imports; none where it compiles for one of the forms.
+    fn fault(file: &str) -> Option<String> {
+        let kinds = Form::ALL.into_iter().flat_map(|form| [(form, READS), (form, WRITES)]);
+        let mut faults = kinds.map(|(form, kind)| {
+            let source = phase(file, form, kind);
+            naga::front::wgsl::parse_str(&source).err().map(|error| error.emit_to_string(&source))
+        });
+        let first = faults.next().unwrap();
+        if faults.any(|fault| fault.is_none()) { None } else { first }
+    }
+
+    #[test]
+    fn each_file_imports_what_it_needs() {
+        for (path, _) in FILES {
+            let name = path.split(['/', '.']).nth(1).unwrap();
+            if let Some(fault) = fault(name) {
+                panic!("{path}: {fault}");
+            }
+        }
+    }
+
+    #[test]
+    fn files_begin_with_what_they_do() {
+        for (path, text) in FILES {
+            let mut lines = text.lines().skip_while(|line| line.starts_with("// "));
+            assert!(text.starts_with("// "), "{path}");
+            assert!(
+                lines.by_ref().find(|line| !line.starts_with("#import ")).is_none_or(str::is_empty),
+                "{path}"
+            );
+            assert!(lines.all(|line| !line.starts_with("#import ")), "{path}: an import below");
+        }
+    }
+
+    #[test]
+    fn an_import_of_no_file_is_named() {
+        let text_of = |path: &str| (path == "shared/a.wgsl").then_some("// A.\n#import b\n#import c if d\n");
+        assert_eq!(compose::compose("webgpu", "a", &[], &text_of), "// shared/a.wgsl\n// A.\n#import b\n");
+        let text = compose::compose("webgpu", "a", &["d"], &text_of);
+        assert_eq!(text, "// shared/a.wgsl\n// A.\n#import b\n#import c if d\n");
+    }
+}
