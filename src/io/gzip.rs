@@ -1,7 +1,8 @@
 //! Gzip'd files: known by their first bytes when they are read, by their name when they are written.
 
 use super::ReadOptions;
-use crate::{Error, memory};
+use crate::Error;
+use crate::system::memory;
 use flate2::Compression;
 use flate2::bufread::GzDecoder;
 use flate2::write::GzEncoder;

@@ -42,7 +42,7 @@ pub use output::{Output, Staged, rewrite, write};
 #[cfg(not(target_arch = "wasm32"))]
 pub use temporary::remove_temporary_files;
 
-use crate::threads::Threads;
+use crate::system::threads::Threads;
 use crate::{Dimension, Error, Mesh, Options, Positions, Welded, welded};
 use original::Original;
 use std::borrow::Cow;

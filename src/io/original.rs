@@ -2,8 +2,9 @@
 //! share of that. A format says where its faces are, what they and their corners have, and how it writes a triangle.
 
 use super::{Format, obj, off, pieces, ply, stl};
-use crate::threads::Threads;
-use crate::{Adjacency, Error, Mesh, NONE, Options, Wedges, locks, reoriented};
+use crate::session::locks;
+use crate::system::threads::Threads;
+use crate::{Adjacency, Error, Mesh, NONE, Options, Wedges, reoriented};
 use memchr::memchr2;
 use std::borrow::{Borrow, Cow};
 use std::collections::HashMap;

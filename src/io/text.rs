@@ -2,7 +2,7 @@
 //! hands over.
 
 use super::pieces;
-use crate::threads::Threads;
+use crate::system::threads::Threads;
 use crate::{Error, Positions};
 use memchr::{memchr, memchr2};
 

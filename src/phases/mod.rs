@@ -13,6 +13,7 @@
 
 mod crease;
 mod flip;
+pub(crate) mod frozen;
 mod label;
 mod select;
 
@@ -23,11 +24,11 @@ pub(crate) use label::{
 };
 pub(crate) use select::{select, yields};
 
-use crate::adjacency::unflagged;
-use crate::embedded::Embedded;
 use crate::mesh::Dimension;
-use crate::star::Fans;
-use crate::winding::Winding;
+use crate::mesh::adjacency::unflagged;
+use crate::mesh::embedded::Embedded;
+use crate::mesh::star::Fans;
+use crate::mesh::winding::Winding;
 use crate::{NONE, Options, Positions, cos_degrees};
 
 /// In `best`: no labelled edge, but one blocked as a duplicate, so that the triangle stays in the frontier.

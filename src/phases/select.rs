@@ -2,8 +2,8 @@
 
 use super::{BLOCKED, Topology, key};
 use crate::NONE;
-use crate::adjacency::{next, prev};
-use crate::star::{Star, any_in_either};
+use crate::mesh::adjacency::{next, prev};
+use crate::mesh::star::{Star, any_in_either};
 
 /// For each triangle the twin of its edge that flips, or [`NONE`]. `best` is what [`label`](super::label()) gives.
 pub(crate) fn select(mesh: Topology, iteration: u32, best: &[u32]) -> Vec<u32> {

@@ -6,8 +6,10 @@ use super::{gpu, room};
 use crate::engine::Proxy;
 use crate::engine::{Answer, Cpu, Engine, Lawson};
 use crate::phases::Thresholds;
-use crate::threads::Threads;
-use crate::{Backend, Error, Mesh, Options, Order, locks, memory};
+use crate::session::locks;
+use crate::system::memory;
+use crate::system::threads::Threads;
+use crate::{Backend, Error, Mesh, Options, Order};
 use std::sync::Arc;
 
 /// An engine, and why `Auto` took no other.

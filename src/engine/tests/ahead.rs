@@ -4,8 +4,9 @@
 use super::{Cpu, Device, Engine, Mesh, Upload, WebGpu, any_deviation, assert_same, families};
 use crate::engine::EdgeCounts;
 use crate::phases::Thresholds;
-use crate::threads::Threads;
-use crate::{Dimension, Error, locks};
+use crate::session::locks;
+use crate::system::threads::Threads;
+use crate::{Dimension, Error};
 use pollster::block_on;
 use std::sync::Arc;
 

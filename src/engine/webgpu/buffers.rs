@@ -5,7 +5,7 @@ use super::device::{Buffer, Device};
 use super::kernels::WORKGROUP_SIZE;
 use super::params::{Params, Places};
 use super::steps::Step;
-use crate::engine::upload::Upload;
+use crate::engine::gpu::upload::Upload;
 use wgpu::BufferUsages;
 
 /// Words of the frontier of so many triangles, the longest buffer: see `state.wgsl`.

@@ -6,7 +6,7 @@ use super::faults::{Word, watch};
 use super::staging;
 use crate::Error;
 #[cfg(not(target_arch = "wasm32"))]
-use crate::threads::Threads;
+use crate::system::threads::Threads;
 use futures_channel::oneshot;
 use std::ops::Range;
 #[cfg(test)]

@@ -8,9 +8,9 @@ use super::kernels::{self, Kernels, Plan, WORKGROUP_SIZE};
 use super::programs;
 use super::staging::Kept;
 use crate::Error;
-use crate::engine::probe::ends_loops_early;
-use crate::engine::self_test::Tested;
-use crate::engine::upload::Form;
+use crate::engine::gpu::probe::ends_loops_early;
+use crate::engine::gpu::self_test::Tested;
+use crate::engine::gpu::upload::Form;
 #[cfg(target_arch = "wasm32")]
 use std::rc::Rc;
 #[cfg(test)]

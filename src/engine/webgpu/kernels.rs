@@ -3,7 +3,7 @@
 #[cfg(target_arch = "wasm32")]
 use super::ahead;
 use super::faults::{Fault, watch};
-use crate::engine::upload::Form;
+use crate::engine::gpu::upload::Form;
 use crate::mesh::Dimension;
 use wgpu::{BindingType, BufferBindingType};
 

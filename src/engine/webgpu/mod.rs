@@ -39,13 +39,13 @@ pub(crate) use shared::{GivenDevice, Handle};
 
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 use super::SharedObjects;
-use super::upload::Form;
 use super::{Answer, Census, EdgeCounts, Engine};
 #[cfg(test)]
 use crate::Error;
-#[cfg(test)]
-use crate::adjacency::unflagged;
+use crate::engine::gpu::Form;
 use crate::mesh::Mesh;
+#[cfg(test)]
+use crate::mesh::adjacency::unflagged;
 use crate::phases::Thresholds;
 use buffers::Buffers;
 use device::Buffer;
@@ -132,7 +132,7 @@ impl Engine for WebGpu {
     fn triangles_array(&mut self) -> Answer<'_, js_sys::Uint32Array> {
         match self.known.triangles.take() {
             Some(triangles) => Box::pin(std::future::ready(Ok(triangles))),
-            None => super::array(self.triangles()),
+            None => crate::engine::interface::array(self.triangles()),
         }
     }
 

@@ -1,7 +1,7 @@
 //! The parameters that every kernel of the phases reads.
 
-use crate::engine::cosine::Cosine;
-use crate::engine::upload::Upload;
+use crate::engine::gpu::cosine::Cosine;
+use crate::engine::gpu::upload::Upload;
 use crate::mesh::{Dimension, Mesh};
 
 /// Iterations of the tail run on lists of up to so many triangles.

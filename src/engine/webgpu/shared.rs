@@ -3,9 +3,9 @@
 use super::device::Device;
 use super::faults::unavailable;
 use crate::Error;
-use crate::engine::upload::Form;
+use crate::engine::gpu::upload::Form;
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
-use crate::js_promise::promise;
+use crate::system::promise::promise;
 use std::sync::Mutex;
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 use wasm_bindgen::JsValue;

@@ -3,7 +3,7 @@
 use super::accessors::Accessors;
 use super::container::Container;
 use super::{Document, Part, deserialized, json};
-use crate::weld::{first_alike, place};
+use crate::prepare::weld::{first_alike, place};
 use crate::{Error, Mesh, Welded};
 use serde::Deserialize;
 use serde_json::Value;
