@@ -30,9 +30,12 @@ pub mod wasm;
 
 pub use error::Error;
 pub use mesh::adjacency::Adjacency;
+pub use mesh::dimension::Dimension;
 pub use mesh::edges::Edges;
+pub use mesh::half_edge::NONE;
 pub use mesh::positions::Positions;
-pub use mesh::{Dimension, MAX_TRIANGLES, Mesh, NONE};
+pub use mesh::{MAX_TRIANGLES, Mesh};
+pub use phases::reason::{Reason, Reasons};
 pub use predicates::cos_degrees;
 pub use prepare::reorient::reoriented;
 pub use prepare::wedges::Wedges;
@@ -40,7 +43,7 @@ pub use prepare::weld::{Welded, welded};
 pub use session::Session;
 pub use session::edge_states::EdgeState;
 pub use session::options::{Backend, MOST_THREADS, Options, Order};
-pub use session::outcome::{Iteration, Outcome, Reason, Reasons, Status, Timings};
+pub use session::outcome::{Iteration, Outcome, Status, Timings};
 #[cfg(not(target_arch = "wasm32"))]
 pub use session::{EarlyGpu, close_gpu, make_delaunay};
 #[cfg(all(target_arch = "wasm32", feature = "js-session"))]

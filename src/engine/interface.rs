@@ -70,8 +70,8 @@ pub(crate) trait Engine {
         self::array(self.triangles())
     }
 
-    /// The twins as they are now, with the flags [`CREASE`](crate::mesh::adjacency::CREASE) and
-    /// [`LOCKED`](crate::mesh::adjacency::LOCKED).
+    /// The twins as they are now, with the flags [`CREASE`](crate::mesh::half_edge::CREASE) and
+    /// [`LOCKED`](crate::mesh::half_edge::LOCKED).
     fn twins(&mut self) -> Answer<'_, Vec<u32>>;
 
     /// Moves the vertices: from now on as a new engine on `mesh`, whose triangles are those of the engine as they

@@ -1,52 +1,10 @@
 //! Twins from triangles: which half-edge lies on the other side of each half-edge.
-//!
-//! Half-edge h belongs to triangle h / 3 and goes from `triangles[h]` to `triangles[next(h)]`.
 
 use super::buckets::{Buckets, Rising, visit_edges};
+use super::half_edge::next;
 use crate::system::threads::{Threads, Word, shared};
 use crate::{Mesh, NONE};
 use std::sync::atomic::AtomicU32;
-
-/// The half-edge after `h` in its triangle.
-#[inline]
-pub fn next(h: u32) -> u32 {
-    if is_first(h.wrapping_add(1)) { h - 2 } else { h + 1 }
-}
-
-/// The half-edge before `h` in its triangle.
-#[inline]
-pub fn prev(h: u32) -> u32 {
-    if is_first(h) { h + 2 } else { h - 1 }
-}
-
-/// Whether a half-edge is the first one of its triangle: a multiple of 3. In WebAssembly a remainder takes several times as
-/// long as this product with the inverse of 3.
-#[inline(always)]
-fn is_first(h: u32) -> bool {
-    h.wrapping_mul(0xaaaa_aaab) <= u32::MAX / 3
-}
-
-/// The triangle of a half-edge: a third of it, rounded down, which WebAssembly finds faster so.
-#[inline(always)]
-pub(crate) fn triangle_of(h: u32) -> u32 {
-    ((u64::from(h) * 0xaaaa_aaab) >> 33) as u32
-}
-
-/// Set in both entries of an engine's twins for an edge that was over β in the input: it stays, whatever its
-/// angle becomes. The flag moves with the half-edges.
-pub(crate) const CREASE: u32 = 1 << 31;
-
-/// The same for an edge that the user has locked.
-pub(crate) const LOCKED: u32 = 1 << 30;
-
-/// All flags. Half-edges are below the lowest.
-pub(crate) const FLAGS: u32 = CREASE | LOCKED;
-
-/// The half-edge that an entry of an engine's twins names, without its flags.
-#[inline]
-pub(crate) fn unflagged(entry: u32) -> u32 {
-    if entry == NONE { NONE } else { entry & !FLAGS }
-}
 
 /// The half-edges of a mesh matched in pairs, and how many edges there are of each kind.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -241,13 +199,6 @@ mod tests {
 
     fn matched(vertices: usize, triangles: &[u32]) -> Adjacency {
         Adjacency::of_triangles(vertices, triangles, &Threads::default())
-    }
-
-    #[test]
-    fn half_edges_leave_room_for_flags() {
-        let last = 3 * crate::MAX_TRIANGLES as u32 - 1;
-        assert!(last < LOCKED && last | FLAGS < crate::phases::BLOCKED);
-        assert_eq!([unflagged(last | FLAGS), unflagged(NONE)], [last, NONE]);
     }
 
     /// ```text

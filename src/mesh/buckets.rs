@@ -1,6 +1,6 @@
 //! Half-edges sorted by the smaller vertices of their edges: what finds twins, and the edges of meshes that are not manifold.
 
-use super::adjacency::triangle_of;
+use super::half_edge::triangle_of;
 use crate::system::threads::{FEWEST, Threads, Word, shared};
 use std::ops::Range;
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};

@@ -1,7 +1,7 @@
 //! The edges of a mesh as arrays: the Edges array of Navarro, Hitschfeld-Kahler and Scheihing (2011, §3).
 
 use crate::Adjacency;
-use crate::mesh::adjacency::{next, unflagged};
+use crate::mesh::half_edge::{next, unflagged};
 use crate::system::threads::Threads;
 
 /// Every edge, one entry in each array. An edge is named by its lower half-edge, and edges come in the order

@@ -7,9 +7,9 @@
 use crate::NONE;
 use crate::mesh::star::Fans;
 use crate::mesh::winding::{Signs, Winding};
-use crate::mesh::{Dimension, Mesh};
 use crate::predicates::area_sign;
 use crate::system::threads::Threads;
+use crate::{Dimension, Mesh};
 use glam::DVec2;
 use std::cmp::Ordering;
 use std::ops::Range;

@@ -2,43 +2,25 @@
 
 pub(crate) mod adjacency;
 pub(crate) mod buckets;
+pub(crate) mod dimension;
 pub(crate) mod edges;
 pub(crate) mod embedded;
+pub(crate) mod half_edge;
 pub(crate) mod positions;
 pub(crate) mod star;
 pub(crate) mod winding;
 
 use crate::Error;
 use crate::system::threads::Threads;
+use dimension::Dimension;
 use glam::{DVec2, DVec3};
+use half_edge::NONE;
 use positions::{Positions, all};
 use std::sync::Arc;
-
-/// "No half-edge": the twin of a half-edge on the boundary or on a frozen edge.
-pub const NONE: u32 = u32::MAX;
 
 /// Largest number of triangles: the engines name half-edges with 30 bits, beside two flags, and keep the two highest
 /// words for themselves.
 pub const MAX_TRIANGLES: usize = ((1 << 30) - 2) / 3;
-
-/// Whether the mesh lies in the plane or is a surface in space.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Dimension {
-    /// Two numbers a vertex; the flips follow the signed in-circle test.
-    Two,
-    /// Three numbers a vertex; the flips follow the angle sum and the normal-angle threshold β.
-    Three,
-}
-
-impl Dimension {
-    /// Numbers per vertex: 2 or 3.
-    pub fn stride(self) -> usize {
-        match self {
-            Self::Two => 2,
-            Self::Three => 3,
-        }
-    }
-}
 
 /// A triangle mesh with finite coordinates and indices in range. Everything else may be dirty:
 /// boundary, several components, non-manifold edges, degenerate triangles.

@@ -1,7 +1,7 @@
 //! `Positions`: the coordinates of a mesh, in the precision that they need.
 
+use crate::Dimension;
 use crate::Error;
-use crate::mesh::Dimension;
 use crate::system::threads::Threads;
 use glam::{DVec2, DVec3};
 use std::array;

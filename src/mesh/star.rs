@@ -3,7 +3,7 @@
 //! from the start.
 
 use crate::NONE;
-use crate::mesh::adjacency::{next, prev, unflagged};
+use crate::mesh::half_edge::{next, prev, unflagged};
 use crate::system::threads::{Threads, Word, shared};
 use std::sync::atomic::Ordering::Relaxed;
 

@@ -2,7 +2,7 @@
 
 use crate::NONE;
 use crate::mesh::Mesh;
-use crate::mesh::adjacency::unflagged;
+use crate::mesh::half_edge::unflagged;
 use crate::predicates::total_area_sign;
 use std::cmp::Ordering;
 

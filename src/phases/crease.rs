@@ -1,7 +1,7 @@
 //! Creases, before the first iteration: the edges of the input over β stay, even if flips around them lower
 //! their angle.
 
-use crate::mesh::adjacency::{CREASE, LOCKED, next, prev, unflagged};
+use crate::mesh::half_edge::{CREASE, LOCKED, next, prev, unflagged};
 use crate::predicates::Quad;
 use crate::system::threads::{Threads, Word, shared};
 use crate::{NONE, Positions};

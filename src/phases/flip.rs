@@ -1,7 +1,7 @@
 //! Flip with Update: rotate the two triangles of each selected edge in place and repair the twins around.
 
 use crate::NONE;
-use crate::mesh::adjacency::{FLAGS, next, prev, triangle_of};
+use crate::mesh::half_edge::{FLAGS, next, prev, triangle_of};
 use crate::mesh::star::Fans;
 use crate::system::threads::{Threads, Word};
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};

@@ -2,8 +2,9 @@
 //! They are counted when a run has ended, since what lies opposite to them may have changed.
 
 use crate::mesh::Mesh;
-use crate::mesh::adjacency::{EdgeKind, edge_kind, next, prev};
+use crate::mesh::adjacency::{EdgeKind, edge_kind};
 use crate::mesh::buckets::for_each_edge;
+use crate::mesh::half_edge::{next, prev};
 use crate::predicates::{Quad, corner};
 use crate::{Reason, Reasons};
 

@@ -3,7 +3,7 @@
 
 use super::exact::WIDEST;
 use super::{Quad, in_circle_sign, plane, space};
-use crate::mesh::adjacency::prev;
+use crate::mesh::half_edge::prev;
 use crate::{Adjacency, Backend, Dimension, Error, Mesh, NONE, Options, families, make_delaunay};
 
 #[path = "../../benches/kinds/mod.rs"]

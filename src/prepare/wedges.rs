@@ -6,8 +6,9 @@
 //! inside; and the half-edge that this one starts with is there in every result. Source: Hoppe, "Efficient implementation
 //! of progressive meshes", 1998 (wedges).
 
-use crate::mesh::adjacency::{EdgeKind, edge_kind, next, prev};
+use crate::mesh::adjacency::{EdgeKind, edge_kind};
 use crate::mesh::buckets::for_each_edge;
+use crate::mesh::half_edge::{next, prev};
 use crate::{Error, Mesh, NONE};
 
 /// What keeps attributes at the corners of a mesh through flips: the edges and triangles to lock, and which of the

@@ -1,7 +1,8 @@
 //! What the next iteration will do with each edge, and why: the phases' own decisions, over all triangles.
 
-use crate::mesh::adjacency::{EdgeKind, edge_kind, unflagged};
+use crate::mesh::adjacency::{EdgeKind, edge_kind};
 use crate::mesh::buckets::for_each_edge;
+use crate::mesh::half_edge::unflagged;
 use crate::phases::{Geometry, Topology, Verdict, label, select, verdict};
 use crate::{NONE, Reason};
 

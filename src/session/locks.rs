@@ -2,9 +2,9 @@
 //! flip.
 
 use crate::mesh::Mesh;
-use crate::mesh::adjacency::{LOCKED, next};
 use crate::mesh::buckets::for_each_edge;
-use crate::{Error, NONE, Options};
+use crate::mesh::half_edge::next;
+use crate::{Error, Options};
 
 /// The edges that `options` lock, each by its two vertices: those named first, then those of triangles and between
 /// groups. What is named has yet to be found in the mesh.
@@ -75,21 +75,4 @@ pub(crate) fn half_edges(mesh: &Mesh, pairs: &[[u32; 2]]) -> Result<Vec<u32>, Er
             Err(Error::Option { option: "locked_edges", message })
         }
     }
-}
-
-/// Flags the entries of these half-edges, as far as they have a twin.
-pub(crate) fn flag(twins: &mut [u32], half_edges: &[u32]) {
-    for &h in half_edges {
-        let entry = &mut twins[h as usize];
-        if *entry != NONE {
-            *entry |= LOCKED;
-        }
-    }
-}
-
-/// The half-edges whose entries are flagged so.
-#[cfg(feature = "gpu")]
-pub(crate) fn flagged(twins: &[u32]) -> Vec<u32> {
-    let is_locked = |entry: u32| entry != NONE && entry & LOCKED != 0;
-    (0..).zip(twins).filter(|&(_, &entry)| is_locked(entry)).map(|(h, _)| h).collect()
 }

@@ -1,5 +1,7 @@
 //! What the caller of a run can choose.
 
+use crate::cos_degrees;
+use crate::phases::Thresholds;
 use std::num::NonZeroUsize;
 
 /// Which engine runs the phases.
@@ -80,6 +82,17 @@ impl Options {
         return self.device.as_ref();
         #[cfg(not(all(target_arch = "wasm32", feature = "js")))]
         None
+    }
+}
+
+impl From<&Options> for Thresholds {
+    fn from(options: &Options) -> Self {
+        let most = options.max_deviation;
+        let nearest = most as f32;
+        Self {
+            cos: cos_degrees(options.max_normal_angle),
+            deviation: if f64::from(nearest) > most { nearest.next_down() } else { nearest },
+        }
     }
 }
 

@@ -3,18 +3,18 @@
 
 use super::region::TopologyMut;
 use crate::engine::{Answer, Census, EdgeCounts, Engine};
-use crate::mesh::adjacency::{CREASE, FLAGS, LOCKED, prev, unflagged};
 use crate::mesh::embedded::Embedded;
+use crate::mesh::half_edge;
+use crate::mesh::half_edge::{CREASE, FLAGS, LOCKED, prev, unflagged};
 use crate::mesh::star::Fans;
 use crate::mesh::winding::Winding;
-use crate::mesh::{Dimension, Mesh};
 use crate::phases::{
     Around, Diamond, Geometry, Selected, Thresholds, Topology, Verdict, flag_creases, flip,
     keep_non_delaunay, key, makes_duplicate, move_anchors, verdict, verdict_of_shape, yields,
 };
-use crate::session::locks;
 use crate::system::threads::{Threads, Word, shared};
 use crate::{Adjacency, NONE};
+use crate::{Dimension, Mesh};
 use std::hint::black_box;
 use std::ops::Range;
 use std::sync::Arc;
@@ -380,7 +380,7 @@ impl Cpu {
 
 impl Engine for Cpu {
     fn lock(&mut self, half_edges: Vec<u32>) -> Answer<'_, ()> {
-        locks::flag(&mut self.twins, &half_edges);
+        half_edge::lock(&mut self.twins, &half_edges);
         Box::pin(std::future::ready(Ok(())))
     }
 

@@ -1,6 +1,6 @@
 //! Lawson's algorithm on neighbouring triangles: all of a mesh, or a part that leaves its other edges to where it is joined.
 
-use crate::mesh::adjacency::{FLAGS, next, prev, unflagged};
+use crate::mesh::half_edge::{FLAGS, next, prev, unflagged};
 use crate::mesh::star::Fans;
 use crate::phases::{
     Diamond, Geometry, Topology, Verdict, keep_non_delaunay, makes_duplicate, verdict_of_shape,

@@ -1,8 +1,8 @@
 //! What an engine on a GPU takes: a mesh with coordinates that its shaders decide exactly.
 
-use crate::mesh::{Dimension, Mesh};
 use crate::phases::Thresholds;
 use crate::system::threads::Threads;
+use crate::{Dimension, Mesh};
 use crate::{Error, Positions};
 use std::sync::Arc;
 

@@ -10,13 +10,14 @@ use crate::engine::gpu::probe::SHORT_STAR;
 use crate::engine::gpu::upload::{Form, Upload};
 use crate::engine::{Answer, Census, EdgeCounts, Engine, self_test};
 use crate::mesh::embedded::Embedded;
+use crate::mesh::half_edge;
 use crate::mesh::star::Fans;
 use crate::mesh::winding::Winding;
-use crate::mesh::{Dimension, Mesh};
-use crate::phases::{BLOCKED, Thresholds};
-use crate::session::locks;
+use crate::phases::Thresholds;
+use crate::phases::state::BLOCKED;
 use crate::system::threads::Threads;
 use crate::{Adjacency, Error, NONE};
+use crate::{Dimension, Mesh};
 use std::rc::Rc;
 use std::sync::Arc;
 use web_sys::WebGl2RenderingContext as Gl;
@@ -264,7 +265,7 @@ impl WebGl {
     async fn flag_locked(&mut self, half_edges: Vec<u32>) -> Result<(), Error> {
         self.context.compile(&["more"]).await?;
         let mut twins = self.read_threes(&self.twins.front).await?;
-        locks::flag(&mut twins, &half_edges);
+        half_edge::lock(&mut twins, &half_edges);
         self.has_locks = true;
         self.twins.front.write(in_fours(&twins, |_| NONE))
     }
@@ -280,7 +281,7 @@ impl WebGl {
         let mut moved = Self::new(self.context.clone(), upload).await?;
         if self.has_locks {
             let twins = self.read_threes(&self.twins.front).await?;
-            moved.flag_locked(locks::flagged(&twins)).await?;
+            moved.flag_locked(half_edge::locked(&twins)).await?;
         }
         moved.passes += self.passes;
         *self = moved;

@@ -3,8 +3,8 @@
 #[cfg(target_arch = "wasm32")]
 use super::ahead;
 use super::faults::{Fault, watch};
+use crate::Dimension;
 use crate::engine::gpu::upload::Form;
-use crate::mesh::Dimension;
 use wgpu::{BindingType, BufferBindingType};
 
 /// Invocations of a workgroup of every kernel.

@@ -45,7 +45,7 @@ use crate::Error;
 use crate::engine::gpu::Form;
 use crate::mesh::Mesh;
 #[cfg(test)]
-use crate::mesh::adjacency::unflagged;
+use crate::mesh::half_edge::unflagged;
 use crate::phases::Thresholds;
 use buffers::Buffers;
 use device::Buffer;

@@ -2,7 +2,7 @@
 
 use crate::engine::gpu::cosine::Cosine;
 use crate::engine::gpu::upload::Upload;
-use crate::mesh::{Dimension, Mesh};
+use crate::{Dimension, Mesh};
 
 /// Iterations of the tail run on lists of up to so many triangles.
 const TAIL_LENGTH: u32 = 2048;

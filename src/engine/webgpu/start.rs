@@ -14,9 +14,9 @@ use crate::engine::gpu::probe::SHORT_STAR;
 use crate::engine::gpu::upload::Upload;
 use crate::engine::{EdgeCounts, Engine};
 use crate::mesh::Mesh;
+use crate::mesh::half_edge;
 use crate::mesh::star::Fans;
 use crate::mesh::winding::Winding;
-use crate::session::locks;
 use std::sync::Arc;
 use web_time::Instant;
 use wgpu::BufferUsages;
@@ -193,7 +193,7 @@ impl WebGpu {
     pub(super) async fn flag_locked(&mut self, half_edges: Vec<u32>) -> Result<(), Error> {
         self.known = Known::default();
         let mut twins = self.twins().await?;
-        locks::flag(&mut twins, &half_edges);
+        half_edge::lock(&mut twins, &half_edges);
         self.gpu.checked(|| self.gpu.write(&self.buffers.twins, &twins)).await
     }
 
@@ -210,7 +210,7 @@ impl WebGpu {
             return self.begin(upload.mesh).await;
         }
         let mut moved = Self::begun(self.gpu.clone(), upload, self.waits).await?;
-        let locked = locks::flagged(&self.twins().await?);
+        let locked = half_edge::locked(&self.twins().await?);
         if !locked.is_empty() {
             moved.flag_locked(locked).await?;
         }
