@@ -3,7 +3,7 @@
 
 use super::edges::{Class, Edge};
 use super::exact;
-use super::surface::{Limits, Surface};
+use super::surface::{Limits, RemainingEdge, Surface};
 use crate::{Dimension, Mesh, Options, Reason, Reasons, cos_degrees};
 use std::cmp::Ordering;
 
@@ -113,17 +113,6 @@ pub enum Violation {
         /// In the result.
         after: usize,
     },
-}
-
-/// An edge of a result that is not Delaunay.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct RemainingEdge {
-    /// Smaller end.
-    pub u: u32,
-    /// Larger end.
-    pub v: u32,
-    /// Why it cannot flip; `Stopped` if it could.
-    pub reason: Reason,
 }
 
 /// What [`audit`] found.

@@ -1,6 +1,6 @@
 //! Numbers about the shape of a mesh, before and after. In f64, for reports: no decision is taken on them.
 
-use super::triangle_angles;
+use super::angles::triangle_angles;
 use crate::system::threads::Threads;
 use crate::{Dimension, Mesh};
 use glam::DVec3;

@@ -1,6 +1,7 @@
 //! Which engine a session runs on.
 
 use super::cost::Job;
+use super::fallback::without_gpu;
 use super::{gpu, room};
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 use crate::engine::Proxy;
@@ -99,14 +100,6 @@ fn cpu_for<'a>(why: String, mesh: &'a Arc<Mesh>, options: &'a Options) -> Answer
         return Box::pin(std::future::ready(Err(Error::Device { message: why })));
     }
     cpu_after(why, mesh, options)
-}
-
-/// Why it is the CPU where the GPU does not take the mesh for this reason.
-pub(super) fn without_gpu(why: String) -> String {
-    if cfg!(all(target_arch = "wasm32", feature = "js")) {
-        return why + "; webgl2 is left out: it takes longer than the cpu";
-    }
-    why
 }
 
 /// The CPU, which takes every mesh, where another engine has failed with `why`.

@@ -24,7 +24,7 @@ pub(super) fn why_not_ready(job: Job, is_double: bool, options: &Options) -> Str
     let form = form_of(job.dimension, is_double, options);
     let (given, is_given) = (options.device.clone(), options.device.is_some());
     let ahead = Device::ahead(is_given, async move { tested(given.as_ref(), false, form).await.map(drop) });
-    ahead.map_or_else(super::choice::without_gpu, |()| "the gpu is made ready behind this run".to_owned())
+    ahead.map_or_else(super::fallback::without_gpu, |()| "the gpu is made ready behind this run".to_owned())
 }
 
 /// Elsewhere a process may end at any time, and drivers do not expect that while they compile.

@@ -5,6 +5,7 @@ mod cost;
 #[cfg(not(target_arch = "wasm32"))]
 mod early;
 pub(crate) mod edge_states;
+mod fallback;
 #[cfg_attr(not(feature = "gpu"), path = "no_gpu.rs")]
 mod gpu;
 pub(crate) mod locks;
