@@ -8,7 +8,9 @@ mod ply;
 mod stl;
 
 use super::*;
+use crate::{Dimension, Error, Mesh, Options, Positions};
 use proptest::prelude::*;
+use std::path::Path;
 
 /// Those that have vertices which triangles share.
 const INDEXED: [Format; 3] = [Format::Off, Format::Obj, Format::Ply];
