@@ -1,6 +1,7 @@
 //! A WebGL2 context of our own, and the programs compiled for it.
 
-use super::texture::Texture;
+use super::errors::{lost, unavailable};
+use super::texture::{Pair, Texture};
 use crate::Error;
 use crate::engine::gpu::probe::ends_loops_early;
 use crate::engine::gpu::self_test::Tested;
@@ -37,14 +38,6 @@ thread_local! {
 /// text of each program by its name.
 pub(crate) fn set_shader_loader(loader: Function) {
     LOADER.set(Some(loader));
-}
-
-pub(super) fn unavailable(message: impl Into<String>) -> Error {
-    Error::BackendUnavailable { backend: "webgl2", message: message.into() }
-}
-
-pub(super) fn refuse<T>(message: String) -> Result<T, Error> {
-    Err(Error::BackendLimit { backend: "webgl2", message })
 }
 
 /// A context and its programs.
@@ -92,12 +85,28 @@ impl Context {
             gl,
         };
         context.compile(&["probe"]).await?;
-        let target = Texture::new(&context, (1, 1), 4)?;
+        let target = context.texture((1, 1), 4)?;
         context.pass("probe", &[], &target, None)?;
         let found = context.read(&target, 1).await?;
         context.ends_loops_early = ends_loops_early(found[0]);
         drop(target);
         Ok(context)
+    }
+
+    /// A texture of zeros.
+    ///
+    /// # Errors
+    /// [`Error::BackendLimit`] where there is no memory for it; [`Error::Device`].
+    pub(super) fn texture(&self, size: (u32, u32), words: usize) -> Result<Texture, Error> {
+        Texture::new(&self.gl, &self.adapter, size, words)
+    }
+
+    /// Two of them.
+    ///
+    /// # Errors
+    /// As [`Context::texture`].
+    pub(super) fn pair(&self, size: (u32, u32), words: usize) -> Result<Pair, Error> {
+        Ok(Pair { front: self.texture(size, words)?, back: self.texture(size, words)? })
     }
 
     /// Bits of the width of textures for `count` texels, about square.
@@ -243,12 +252,6 @@ impl Drop for Context {
             self.gl.delete_program(Some(program));
         }
     }
-}
-
-/// What has happened where a call gives nothing.
-pub(super) fn lost(gl: &Gl) -> Error {
-    let message = if gl.is_context_lost() { "the WebGL2 context was lost" } else { "WebGL2 gave no object" };
-    Error::Device { message: message.to_owned() }
 }
 
 /// On a canvas that is never shown.

@@ -3,7 +3,8 @@
 //! Every phase is a pass over all triangles that writes another texture than it reads. The host builds the adjacency,
 //! and reads the flips of a batch of iterations when it has ended.
 
-use super::context::{Context, refuse};
+use super::context::Context;
+use super::errors::refuse;
 use super::texture::{Pair, Texture};
 use crate::engine::gpu::cosine::Cosine;
 use crate::engine::gpu::probe::SHORT_STAR;
@@ -103,12 +104,12 @@ impl WebGl {
         let bits = context.width_bits(count);
         let size = |texels: usize| size_of(&context, texels, bits);
         let whole = size(count)?;
-        let pair = |size, words| Pair::new(&context, size, words);
+        let pair = |size, words| context.pair(size, words);
         let mut sums = Vec::new();
         let mut side = whole;
         while sums.is_empty() || side.0 > BLOCK || side.1 > BLOCK {
             side = (side.0.div_ceil(BLOCK), side.1.div_ceil(BLOCK));
-            sums.push(Texture::new(&context, side, 4)?);
+            sums.push(context.texture(side, 4)?);
         }
         let mut result = Self {
             thresholds: upload.thresholds,
@@ -116,15 +117,15 @@ impl WebGl {
             count,
             counts: EdgeCounts::from(&adjacency),
             params: params(&upload, bits, fans.table.len()),
-            positions: Texture::new(&context, size(upload.words().len() / form.dimension.stride())?, 4)?,
+            positions: context.texture(size(upload.words().len() / form.dimension.stride())?, 4)?,
             triangles: pair(whole, 4)?,
             twins: pair(whole, 4)?,
             verdicts: pair(size(3 * count)?, 1)?,
             bests: pair(whole, 1)?,
-            selections: Texture::new(&context, whole, 1)?,
+            selections: context.texture(whole, 1)?,
             fans: pair(size(fans.table.len())?, 1)?,
             sums,
-            history: Texture::new(&context, (BATCH, 1), 4)?,
+            history: context.texture((BATCH, 1), 4)?,
             has_locks: false,
             passes: 0,
             context,

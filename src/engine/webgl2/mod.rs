@@ -4,6 +4,8 @@
 #[cfg(feature = "js-webgl2")]
 mod context;
 #[cfg(feature = "js-webgl2")]
+mod errors;
+#[cfg(feature = "js-webgl2")]
 mod iteration;
 #[cfg(feature = "js")]
 mod proxy;

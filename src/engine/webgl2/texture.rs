@@ -1,9 +1,8 @@
 //! Integer textures: an element a texel, row after row.
 
-use super::context::{Context, lost, refuse};
+use super::errors::{lost, refuse};
 use crate::Error;
 use js_sys::Uint32Array;
-use std::rc::Rc;
 use web_sys::{WebGl2RenderingContext as Gl, WebGlFramebuffer, WebGlTexture};
 
 /// A texture of words that a pass can write. It is deleted when it goes.
@@ -18,12 +17,11 @@ pub(super) struct Texture {
 }
 
 impl Texture {
-    /// Of zeros.
+    /// Of zeros. `adapter` is the name of the renderer.
     ///
     /// # Errors
     /// [`Error::BackendLimit`] where there is no memory for it; [`Error::Device`].
-    pub(super) fn new(context: &Context, size: (u32, u32), words: usize) -> Result<Self, Error> {
-        let gl = &context.gl;
+    pub(super) fn new(gl: &Gl, adapter: &str, size: (u32, u32), words: usize) -> Result<Self, Error> {
         let (Some(texture), Some(framebuffer)) = (gl.create_texture(), gl.create_framebuffer()) else {
             return Err(lost(gl));
         };
@@ -41,7 +39,7 @@ impl Texture {
         gl.framebuffer_texture_2d(Gl::FRAMEBUFFER, point, target, Some(&result.texture), 0);
         match gl.get_error() {
             Gl::NO_ERROR => Ok(result),
-            Gl::OUT_OF_MEMORY => refuse(format!("{} has no memory left for it", context.adapter)),
+            Gl::OUT_OF_MEMORY => refuse(format!("{adapter} has no memory left for it")),
             Gl::CONTEXT_LOST_WEBGL => Err(lost(gl)),
             code => Err(Error::Device { message: format!("WebGL2 reports the error {code:#06x}") }),
         }
@@ -91,10 +89,6 @@ pub(super) struct Pair {
 
 impl Pair {
     /// As [`Texture::new`].
-    pub(super) fn new(context: &Rc<Context>, size: (u32, u32), words: usize) -> Result<Self, Error> {
-        Ok(Self { front: Texture::new(context, size, words)?, back: Texture::new(context, size, words)? })
-    }
-
     /// What was written is what is read from now on.
     pub(super) fn swap(&mut self) {
         std::mem::swap(&mut self.front, &mut self.back);

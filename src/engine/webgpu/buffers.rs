@@ -1,7 +1,8 @@
 //! The buffers of a mesh whose sizes are known from the start.
 
-use super::HISTORY_WORDS;
-use super::device::{Buffer, Device};
+use super::buffer::Buffer;
+use super::device::Device;
+use super::history::HISTORY_WORDS;
 use super::kernels::WORKGROUP_SIZE;
 use super::params::{Params, Places};
 use super::steps::Step;

@@ -1,14 +1,16 @@
 //! What is done before the first iteration: the mesh goes up, its adjacency is built, stars and creases are looked at.
 
+use super::WebGpu;
 use super::adjacency::{self, COUNTERS, Found, Scratch};
 use super::buffers::Buffers;
 use super::faults::refuse;
+use super::history::{Entry, SEVERAL_FANS};
 use super::kernels::Kernel;
+use super::known::Known;
 use super::limits::{refuse_large_buffer, refuse_large_mesh};
 use super::params::{NEGATIVE, POSITIVE, Params, Places};
-use super::run::Known;
+use super::shared::Handle;
 use super::steps::Step;
-use super::{Entry, Handle, SEVERAL_FANS, WebGpu};
 use crate::Error;
 use crate::engine::gpu::probe::SHORT_STAR;
 use crate::engine::gpu::upload::Upload;
