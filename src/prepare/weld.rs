@@ -1,7 +1,7 @@
 //! Vertices at one place joined, so that edges flip where only attributes change from one vertex to the other, or where
 //! triangles share no vertices at all; and the triangles of such a mesh given their own vertices again.
 
-use crate::{Error, Mesh, Options, Wedges, reoriented};
+use crate::{Error, Mesh, Wedges, reoriented};
 
 /// A mesh whose vertices at one place are one.
 #[derive(Clone, Debug, PartialEq)]
@@ -45,16 +45,6 @@ impl Welded {
     /// How many vertices are joined to another one.
     pub fn joined(&self) -> usize {
         (0..).zip(&self.places).filter(|&(vertex, first)| *first != vertex).count()
-    }
-
-    /// Adds to the options of a run what has to be locked. Edges that they lock already are those between the places of
-    /// their vertices.
-    pub fn constrain(&self, options: &mut Options) {
-        for vertex in options.locked_edges.as_flattened_mut() {
-            *vertex = self.places.get(*vertex as usize).copied().unwrap_or(*vertex);
-        }
-        options.locked_edges.extend_from_slice(self.wedges.locked_edges());
-        options.locked_triangles.extend_from_slice(self.wedges.locked_triangles());
     }
 
     /// The same with triangles turned, as by [`reoriented`], and how many were.

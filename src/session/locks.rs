@@ -4,7 +4,7 @@
 use crate::mesh::Mesh;
 use crate::mesh::buckets::for_each_edge;
 use crate::mesh::half_edge::next;
-use crate::{Error, Options};
+use crate::{Error, Options, Welded};
 
 /// The edges that `options` lock, each by its two vertices: those named first, then those of triangles and between
 /// groups. What is named has yet to be found in the mesh.
@@ -74,5 +74,17 @@ pub(crate) fn half_edges(mesh: &Mesh, pairs: &[[u32; 2]]) -> Result<Vec<u32>, Er
             let message = format!("the mesh has no edge between vertices {u} and {v}");
             Err(Error::Option { option: "locked_edges", message })
         }
+    }
+}
+
+impl Welded {
+    /// Adds to the options of a run what has to be locked. Edges that they lock already are those between the places of
+    /// their vertices.
+    pub fn constrain(&self, options: &mut Options) {
+        for vertex in options.locked_edges.as_flattened_mut() {
+            *vertex = self.places.get(*vertex as usize).copied().unwrap_or(*vertex);
+        }
+        options.locked_edges.extend_from_slice(self.wedges.locked_edges());
+        options.locked_triangles.extend_from_slice(self.wedges.locked_triangles());
     }
 }

@@ -23,7 +23,6 @@ use crate::mesh::embedded::Embedded;
 use crate::mesh::star::Fans;
 use crate::phases::frozen;
 use crate::phases::{Geometry, Thresholds, Topology};
-use crate::quality::{Audit, audit};
 use crate::session::edge_states::edge_states;
 use crate::system::memory;
 use crate::system::threads::Threads;
@@ -304,15 +303,6 @@ impl Session {
         Ok(edge_states(&geometry, topology, vertices, iteration))
     }
 
-    /// The audit of the triangles as they are now.
-    ///
-    /// # Errors
-    /// [`Error::Device`].
-    pub async fn verify(&mut self) -> Result<Audit, Error> {
-        let triangles = self.triangles().await?;
-        Ok(audit(&self.mesh, &triangles, &self.options))
-    }
-
     /// How many bytes a session on the CPU takes at most, beside the mesh: to begin, to run and for its outcome. Where there
     /// is less, it is refused before it begins.
     pub fn bytes(mesh: &Mesh, options: &Options) -> u64 {
@@ -336,7 +326,6 @@ impl Session {
     }
 
     /// What the audit compares with: the mesh as it was given, or as its vertices moved last, and the options.
-    #[cfg(all(target_arch = "wasm32", feature = "js-session"))]
     pub(crate) fn input(&self) -> (&Mesh, &Options) {
         (&self.mesh, &self.options)
     }

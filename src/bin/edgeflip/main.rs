@@ -2,6 +2,7 @@
 
 mod args;
 mod errors;
+mod failure;
 mod memory;
 mod report;
 #[cfg(unix)]
@@ -15,6 +16,7 @@ use edgeflip::{
     Backend, EarlyGpu, Error, Mesh, Options, Order, Outcome, Welded, close_gpu, make_delaunay, quality,
     reoriented,
 };
+use failure::Failure;
 use indicatif::{ProgressBar, ProgressStyle};
 use report::{Changes, Check, Milliseconds, Report};
 use std::io::{IsTerminal, Write};
@@ -22,38 +24,6 @@ use std::mem;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
-
-/// Why the program ends without a result: the exit status and one line for standard error.
-struct Failure {
-    status: u8,
-    line: String,
-}
-
-impl Failure {
-    /// What went wrong with `path`; an error that names its path, or is about none, stays as it is.
-    fn of(path: &std::path::Path, error: &Error) -> Self {
-        let line = match error {
-            &Error::FileTooLarge { limit, .. } => {
-                let error = Error::FileTooLarge { limit, option: "--max-bytes" };
-                format!("{}: {error}", path.display())
-            }
-            Error::Io { .. }
-            | Error::UnknownFormat { .. }
-            | Error::Option { .. }
-            | Error::BackendUnavailable { .. }
-            | Error::Device { .. } => error.to_string(),
-            _ => format!("{}: {error}", path.display()),
-        };
-        let status = match error {
-            // Its range has been checked; the system has not so many.
-            Error::Option { option: "threads", .. } => 1,
-            Error::Option { .. } => 2,
-            Error::BackendUnavailable { .. } | Error::BackendLimit { .. } | Error::Device { .. } => 3,
-            _ => 1,
-        };
-        Self { status, line }
-    }
-}
 
 fn main() {
     let clock = Clock::new();

@@ -1,7 +1,7 @@
 //! What a run is reported as: one JSON object, or a few aligned lines.
 
-use crate::Failure;
 use crate::args::Args;
+use crate::failure::Failure;
 use edgeflip::io::{Format, Loaded};
 use edgeflip::quality::{self, Measures};
 use edgeflip::{Dimension, Error, Mesh, Outcome, Reasons, Status, Timings, Welded};
