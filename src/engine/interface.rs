@@ -2,7 +2,7 @@
 
 #[cfg(feature = "gpu")]
 use crate::Reason;
-use crate::{Error, Mesh, Reasons};
+use crate::{Adjacency, Error, Mesh, Reasons};
 use std::pin::Pin;
 use std::sync::Arc;
 
@@ -37,6 +37,13 @@ pub(crate) struct EdgeCounts {
     pub(crate) boundary: u32,
     pub(crate) non_manifold: u32,
     pub(crate) inconsistent: u32,
+}
+
+impl From<&Adjacency> for EdgeCounts {
+    fn from(adjacency: &Adjacency) -> Self {
+        let &Adjacency { edges, boundary, non_manifold, inconsistent, .. } = adjacency;
+        Self { edges, boundary, non_manifold, inconsistent }
+    }
 }
 
 /// Triangles in an array of JavaScript.

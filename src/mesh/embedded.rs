@@ -4,12 +4,11 @@
 //! c-d, and no other flip makes one: the star has one triangle in each direction. Flips of strictly convex quads leave
 //! it so.
 
-use crate::NONE;
 use crate::mesh::star::Fans;
 use crate::mesh::winding::{Signs, Winding};
 use crate::predicates::area_sign;
 use crate::system::threads::Threads;
-use crate::{Dimension, Mesh};
+use crate::{Dimension, Mesh, NONE};
 use glam::DVec2;
 use std::cmp::Ordering;
 use std::ops::Range;

@@ -1,8 +1,7 @@
 //! `Positions`: the coordinates of a mesh, in the precision that they need.
 
-use crate::Dimension;
-use crate::Error;
 use crate::system::threads::Threads;
+use crate::{Dimension, Error};
 use glam::{DVec2, DVec3};
 use std::array;
 

@@ -1,11 +1,10 @@
 //! What the phases read and never write, and the order of edges in an iteration.
 
-use crate::Dimension;
 use crate::mesh::embedded::Embedded;
 use crate::mesh::half_edge::unflagged;
 use crate::mesh::star::Fans;
 use crate::mesh::winding::Winding;
-use crate::{NONE, Positions};
+use crate::{Dimension, NONE, Positions};
 
 /// In `best`: no labelled edge, but one blocked as a duplicate, so that the triangle stays in the frontier.
 pub(crate) const BLOCKED: u32 = NONE - 1;

@@ -7,9 +7,8 @@
 
 use super::phases::Cpu;
 use super::region::{Region, Work};
-use crate::Dimension;
-use crate::Mesh;
 use crate::engine::{Answer, Census, EdgeCounts, Engine};
+use crate::{Dimension, Mesh};
 use std::sync::Arc;
 
 /// Regions at most, several for each thread of most machines, so that none waits long for another.

@@ -4,8 +4,7 @@
 use super::region::TopologyMut;
 use crate::engine::{Answer, Census, EdgeCounts, Engine};
 use crate::mesh::embedded::Embedded;
-use crate::mesh::half_edge;
-use crate::mesh::half_edge::{CREASE, FLAGS, LOCKED, prev, unflagged};
+use crate::mesh::half_edge::{self, CREASE, FLAGS, LOCKED, prev, unflagged};
 use crate::mesh::star::Fans;
 use crate::mesh::winding::Winding;
 use crate::phases::{
@@ -13,8 +12,7 @@ use crate::phases::{
     keep_non_delaunay, key, makes_duplicate, move_anchors, verdict, verdict_of_shape, yields,
 };
 use crate::system::threads::{Threads, Word, shared};
-use crate::{Adjacency, NONE};
-use crate::{Dimension, Mesh};
+use crate::{Adjacency, Dimension, Mesh, NONE};
 use std::hint::black_box;
 use std::ops::Range;
 use std::sync::Arc;
@@ -442,12 +440,5 @@ impl Engine for Cpu {
 
     fn backend(&self) -> &'static str {
         "cpu"
-    }
-}
-
-impl From<&Adjacency> for EdgeCounts {
-    fn from(adjacency: &Adjacency) -> Self {
-        let &Adjacency { edges, boundary, non_manifold, inconsistent, .. } = adjacency;
-        Self { edges, boundary, non_manifold, inconsistent }
     }
 }

@@ -2,8 +2,7 @@
 
 use crate::phases::Thresholds;
 use crate::system::threads::Threads;
-use crate::{Dimension, Mesh};
-use crate::{Error, Positions};
+use crate::{Dimension, Error, Mesh, Positions};
 use std::sync::Arc;
 
 /// Bits that the coordinates may take on the grid of their mesh, the power of two that all of them are multiples of,
