@@ -30,7 +30,7 @@ impl Default for ReadOptions {
 
 impl ReadOptions {
     /// Refuses a file of more bytes than it may have.
-    pub(super) fn check(&self, bytes: u64) -> Result<(), Error> {
+    pub(crate) fn check(&self, bytes: u64) -> Result<(), Error> {
         if bytes > self.max_bytes {
             return Err(Error::FileTooLarge { limit: self.max_bytes, option: "max_bytes" });
         }
