@@ -1,4 +1,4 @@
-//! Counts the edges that each tier decides, as src/engine/tests.rs does on a GPU: `cargo test --lib tiers -- --nocapture`.
+//! Counts the edges that each tier decides, as src/engine/tests/mod.rs does on a GPU: `cargo test --lib tiers -- --nocapture`.
 //! `cargo bench --bench tiers` says what they cost.
 
 use super::exact::WIDEST;
