@@ -15,6 +15,7 @@
 //! `docs/architecture.md` names the rooms of the crate, from top to bottom. Imports run down that order.
 
 mod engine;
+mod engine_kind;
 mod error;
 pub mod families;
 pub mod io;
@@ -28,6 +29,7 @@ mod system;
 #[cfg(all(target_arch = "wasm32", feature = "js-values"))]
 pub mod wasm;
 
+pub use engine_kind::EngineKind;
 pub use error::Error;
 pub use mesh::adjacency::Adjacency;
 pub use mesh::dimension::Dimension;

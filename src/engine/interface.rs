@@ -2,7 +2,7 @@
 
 #[cfg(feature = "gpu")]
 use crate::Reason;
-use crate::{Adjacency, Error, Mesh, Reasons};
+use crate::{Adjacency, EngineKind, Error, Mesh, Reasons};
 use std::pin::Pin;
 use std::sync::Arc;
 
@@ -89,7 +89,7 @@ pub(crate) trait Engine {
     fn edge_counts(&self) -> EdgeCounts;
 
     /// `cpu`, `gpu` or `webgl2`.
-    fn backend(&self) -> &'static str;
+    fn backend(&self) -> EngineKind;
 
     /// The device's name and driver, on a GPU.
     fn adapter(&self) -> Option<String> {

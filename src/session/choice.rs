@@ -166,5 +166,5 @@ async fn webgl(mesh: &Arc<Mesh>, thresholds: Thresholds) -> Result<Box<dyn Engin
 #[cfg(not(all(target_arch = "wasm32", feature = "js")))]
 async fn webgl(_mesh: &Arc<Mesh>, _thresholds: Thresholds) -> Result<Box<dyn Engine>, Error> {
     let message = "WebGL2 is there in browsers only, through the npm package".to_owned();
-    Err(Error::BackendUnavailable { backend: "webgl2", message })
+    Err(Error::BackendUnavailable { backend: crate::EngineKind::WebGl, message })
 }

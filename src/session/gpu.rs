@@ -3,7 +3,7 @@
 use super::cost::Job;
 use crate::engine::{Answer, Device, DeviceHandle, Engine, Form, GivenDevice, Upload, WebGpu, self_test};
 use crate::phases::Thresholds;
-use crate::{Backend, Dimension, Error, Mesh, Options};
+use crate::{Backend, Dimension, EngineKind, Error, Mesh, Options};
 use std::sync::Arc;
 
 /// The form that a mesh has, unless its floats span too many bits.
@@ -40,7 +40,7 @@ pub(super) async fn engine(mesh: &Arc<Mesh>, options: &Options) -> Result<Box<dy
     let takes_software = options.backend == Backend::Gpu;
     let form = form_of(mesh.dimension(), mesh.positions().is_double(), options);
     let device = tested(options.given_device(), takes_software, form).await?;
-    let upload = Upload::new("gpu", mesh.clone(), Thresholds::from(options))?;
+    let upload = Upload::new(EngineKind::Gpu, mesh.clone(), Thresholds::from(options))?;
     test(&device, upload.form()).await?;
     Ok(Box::new(WebGpu::new(device, upload).await?))
 }
@@ -62,5 +62,5 @@ async fn test(device: &DeviceHandle, form: Form) -> Result<(), Error> {
         let device = device.clone();
         Box::pin(async move { Ok(Box::new(WebGpu::new(device, upload).await?) as Box<dyn Engine>) })
     };
-    self_test(&device.tested, "gpu", form, &make).await
+    self_test(&device.tested, EngineKind::Gpu, form, &make).await
 }

@@ -27,8 +27,8 @@ use crate::session::edge_states::edge_states;
 use crate::system::memory;
 use crate::system::threads::Threads;
 use crate::{
-    Backend, EdgeState, Edges, Error, Iteration, MOST_THREADS, Mesh, Options, Order, Outcome, Positions,
-    Reason, Status, Timings,
+    Backend, EdgeState, Edges, EngineKind, Error, Iteration, MOST_THREADS, Mesh, Options, Order, Outcome,
+    Positions, Reason, Status, Timings,
 };
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 pub(crate) use choice::why_cpu;
@@ -183,7 +183,7 @@ impl Session {
                 }
                 answer => answer?,
             }
-            if self.engine.backend() == "gpu" {
+            if self.engine.backend() == EngineKind::Gpu {
                 self.fallback = None;
             }
         }
@@ -321,7 +321,7 @@ impl Session {
 
     /// The engine that runs now: `cpu` or `gpu`.
     #[cfg(all(target_arch = "wasm32", feature = "js-session"))]
-    pub(crate) fn backend(&self) -> &'static str {
+    pub(crate) fn backend(&self) -> EngineKind {
         self.engine.backend()
     }
 
@@ -353,7 +353,7 @@ impl Session {
 
     async fn iterate(&mut self, count: u32) -> Result<(), Error> {
         // Later iterations take what the first has taken.
-        if self.flips_per_iteration.is_empty() && self.engine.backend() == "cpu" {
+        if self.flips_per_iteration.is_empty() && self.engine.backend() == EngineKind::Cpu {
             memory::check(room::of_run(&self.mesh, &self.options))?;
         }
         let start = Instant::now();

@@ -1,6 +1,6 @@
 //! What a run says of its iterations and of its result.
 
-use crate::Reasons;
+use crate::{EngineKind, Reasons};
 
 /// What one watched iteration did.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,8 +49,8 @@ pub struct Outcome {
     pub triangles: Vec<u32>,
     /// Done or stopped.
     pub status: Status,
-    /// The engine that ran: `cpu` or `gpu`.
-    pub backend: &'static str,
+    /// The engine that ran.
+    pub backend: EngineKind,
     /// The GPU's name and driver.
     pub adapter: Option<String>,
     /// Why `auto` is on the CPU, or began there.

@@ -1,18 +1,14 @@
 //! The result as a JavaScript object, in the words of the npm package: the field names of `src/js/types.ts`.
 
-use crate::wasm::values::{backend_name, object, reasons_object};
+use crate::wasm::values::{object, reasons_object};
 use crate::{Outcome, Status};
-use js_sys::{JsString, Uint32Array};
+use js_sys::Uint32Array;
 use wasm_bindgen::JsValue;
 
 /// `indices` are the triangles.
 pub(super) fn outcome_object(outcome: Outcome, indices: JsValue) -> JsValue {
     let count = |n: u64| JsValue::from(n as f64);
     let text = |text: &Option<String>| text.as_deref().map_or(JsValue::UNDEFINED, JsValue::from);
-    // It quotes errors, in the words of Rust.
-    let fallback = outcome.fallback.as_deref().map_or(JsValue::UNDEFINED, |why| {
-        JsString::from(why).replace("backend gpu ", "backend webgpu ").into()
-    });
     let status = match outcome.status {
         Status::Done => "done",
         Status::Stopped => "stopped",
@@ -26,9 +22,9 @@ pub(super) fn outcome_object(outcome: Outcome, indices: JsValue) -> JsValue {
     object([
         ("indices", indices),
         ("status", status.into()),
-        ("backend", backend_name(outcome.backend).into()),
+        ("backend", outcome.backend.name().into()),
         ("adapter", text(&outcome.adapter)),
-        ("fallback", fallback),
+        ("fallback", text(&outcome.fallback)),
         ("iterations", outcome.iterations.into()),
         ("flips", count(outcome.flips)),
         ("flipsPerIteration", Uint32Array::from(outcome.flips_per_iteration.as_slice()).into()),

@@ -18,7 +18,7 @@ use crate::wasm::threads::Indices;
 pub use crate::wasm::values::JsPositions;
 #[cfg(feature = "js")]
 use crate::wasm::values::parse_dimension;
-use crate::wasm::values::{backend_name, coded, mesh_of, object, reasons_object, thrown};
+use crate::wasm::values::{coded, mesh_of, object, reasons_object, thrown};
 use crate::{Backend, Error, Options, Order, Session};
 #[cfg(feature = "js")]
 use js_sys::Reflect;
@@ -287,7 +287,7 @@ impl JsSession {
     /// The engine that runs now.
     #[wasm_bindgen(getter, unchecked_return_type = "import('../types.js').Engine")]
     pub fn backend(&self) -> String {
-        backend_name(self.get(Session::backend)).to_owned()
+        self.get(|session| session.backend().name().to_owned())
     }
 }
 

@@ -75,11 +75,6 @@ pub(crate) fn reasons_object(reasons: &Reasons) -> JsValue {
     object(reasons.iter().map(|(reason, edges)| (reason.name(), (edges as f64).into())))
 }
 
-/// The engine's name in JavaScript.
-pub(crate) fn backend_name(name: &'static str) -> &'static str {
-    if name == "gpu" { "webgpu" } else { name }
-}
-
 /// 2 or 3.
 pub(crate) fn parse_dimension(dimension: f64) -> Result<Dimension, Error> {
     if dimension == 2.0 {
@@ -110,12 +105,6 @@ pub(crate) fn coded(code: &str, message: &str) -> JsValue {
 
 fn in_words_of_javascript(error: Error) -> Error {
     match error {
-        Error::BackendUnavailable { backend: name, message } => {
-            Error::BackendUnavailable { backend: backend_name(name), message }
-        }
-        Error::BackendLimit { backend: name, message } => {
-            Error::BackendLimit { backend: backend_name(name), message }
-        }
         Error::RaggedArray { array: "triangles", length, stride } => {
             Error::RaggedArray { array: "indices", length, stride }
         }

@@ -13,8 +13,8 @@ use args::Args;
 use clap::Parser;
 use edgeflip::io::{self, Output, Staged};
 use edgeflip::{
-    Backend, EarlyGpu, Error, Mesh, Options, Order, Outcome, Welded, close_gpu, make_delaunay, quality,
-    reoriented,
+    Backend, EarlyGpu, EngineKind, Error, Mesh, Options, Order, Outcome, Welded, close_gpu, make_delaunay,
+    quality, reoriented,
 };
 use failure::Failure;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -177,7 +177,7 @@ fn output(args: &Args) -> Result<Output, Failure> {
 
 /// Leaves the GPU alone where there is none, or where its driver would end the program for want of memory, and says why.
 fn without_gpu(options: &mut Options, mesh: &Mesh, gpu: Option<EarlyGpu>) -> Result<Option<String>, Failure> {
-    let unavailable = |message| Error::BackendUnavailable { backend: "gpu", message };
+    let unavailable = |message| Error::BackendUnavailable { backend: EngineKind::Gpu, message };
     let refusal = match gpu {
         _ if options.order != Order::Reproducible || options.backend == Backend::Cpu => None,
         Some(gpu) => gpu.wait(mesh, options).err().map(|error| (error.to_string(), error)),

@@ -178,7 +178,7 @@ impl Report {
             non_manifold_edges: outcome.non_manifold_edges,
             inconsistent_edges: outcome.inconsistent_edges,
             dimension: mesh.dimension().stride(),
-            backend: outcome.backend,
+            backend: outcome.backend.name(),
             adapter: outcome.adapter,
             fallback: outcome.fallback,
             status: match outcome.status {

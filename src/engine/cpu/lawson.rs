@@ -8,7 +8,7 @@
 use super::phases::Cpu;
 use super::region::{Region, Work};
 use crate::engine::{Answer, Census, EdgeCounts, Engine};
-use crate::{Dimension, Mesh};
+use crate::{Dimension, EngineKind, Mesh};
 use std::sync::Arc;
 
 /// Regions at most, several for each thread of most machines, so that none waits long for another.
@@ -91,7 +91,7 @@ impl Engine for Lawson {
         self.cpu.edge_counts()
     }
 
-    fn backend(&self) -> &'static str {
+    fn backend(&self) -> EngineKind {
         self.cpu.backend()
     }
 }

@@ -12,7 +12,7 @@ use crate::phases::{
     keep_non_delaunay, key, makes_duplicate, move_anchors, verdict, verdict_of_shape, yields,
 };
 use crate::system::threads::{Threads, Word, shared};
-use crate::{Adjacency, Dimension, Mesh, NONE};
+use crate::{Adjacency, Dimension, EngineKind, Mesh, NONE};
 use std::hint::black_box;
 use std::ops::Range;
 use std::sync::Arc;
@@ -438,7 +438,7 @@ impl Engine for Cpu {
         self.counts
     }
 
-    fn backend(&self) -> &'static str {
-        "cpu"
+    fn backend(&self) -> EngineKind {
+        EngineKind::Cpu
     }
 }

@@ -5,7 +5,7 @@ use crate::engine::{Answer, Cpu, Engine};
 use crate::mesh::Mesh;
 use crate::phases::Thresholds;
 use crate::system::threads::Threads;
-use crate::{Error, Positions, cos_degrees};
+use crate::{EngineKind, Error, Positions, cos_degrees};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -35,7 +35,7 @@ pub(crate) type Make<'a> = dyn Fn(Upload) -> Answer<'static, Box<dyn Engine>> + 
 /// [`Error::BackendUnavailable`] if they differ; those of `make` and of the engine.
 pub(crate) async fn self_test(
     tested: &Tested,
-    backend: &'static str,
+    backend: EngineKind,
     form: Form,
     make: &Make<'_>,
 ) -> Result<(), Error> {
@@ -102,7 +102,8 @@ mod tests {
     #[test]
     fn the_mesh_flips_in_several_iterations_and_has_ties_and_blocked_edges() {
         for form in Form::ALL {
-            let upload = Upload::new("gpu", Arc::new(test_mesh(form).unwrap()), thresholds(form)).unwrap();
+            let upload =
+                Upload::new(EngineKind::Gpu, Arc::new(test_mesh(form).unwrap()), thresholds(form)).unwrap();
             assert!(upload.form() == form);
             let mut cpu = Cpu::new(upload.mesh, upload.thresholds, Threads::default());
             assert!(block_on(cpu.iterate(u32::MAX)).unwrap().len() > 2);
@@ -127,11 +128,11 @@ mod tests {
                 let sheared = Mesh::new(form.dimension, leaning, mesh.triangles().to_vec()).unwrap();
                 made(Cpu::new(Arc::new(sheared), upload.thresholds, Threads::default()))
             };
-            let refused = block_on(self_test(&tested, "gpu", form, &wrong));
-            assert!(matches!(refused, Err(Error::BackendUnavailable { backend: "gpu", .. })));
-            block_on(self_test(&tested, "gpu", form, &right)).unwrap();
+            let refused = block_on(self_test(&tested, EngineKind::Gpu, form, &wrong));
+            assert!(matches!(refused, Err(Error::BackendUnavailable { backend: EngineKind::Gpu, .. })));
+            block_on(self_test(&tested, EngineKind::Gpu, form, &right)).unwrap();
             // From now on it is not asked again.
-            block_on(self_test(&tested, "gpu", form, &wrong)).unwrap();
+            block_on(self_test(&tested, EngineKind::Gpu, form, &wrong)).unwrap();
         }
     }
 }

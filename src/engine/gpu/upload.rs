@@ -2,7 +2,7 @@
 
 use crate::phases::Thresholds;
 use crate::system::threads::Threads;
-use crate::{Dimension, Error, Mesh, Positions};
+use crate::{Dimension, EngineKind, Error, Mesh, Positions};
 use std::sync::Arc;
 
 /// Bits that the coordinates may take on the grid of their mesh, the power of two that all of them are multiples of,
@@ -60,7 +60,7 @@ pub(crate) struct Upload {
 impl Upload {
     /// # Errors
     /// [`Error::BackendLimit`] for a mesh whose coordinates the shaders cannot decide exactly.
-    pub(crate) fn new(backend: &'static str, mesh: Arc<Mesh>, thresholds: Thresholds) -> Result<Self, Error> {
+    pub(crate) fn new(backend: EngineKind, mesh: Arc<Mesh>, thresholds: Thresholds) -> Result<Self, Error> {
         // Counts as a coordinate, but for what is beyond them.
         let deviation = |highest| match mesh.dimension() {
             Dimension::Two => 0.0,
@@ -201,7 +201,7 @@ mod tests {
     fn upload(positions: impl Into<Positions>) -> Result<Upload, String> {
         let mesh = Mesh::new(Dimension::Two, positions, Vec::new()).unwrap();
         let thresholds = Thresholds::from(&Options::default());
-        Upload::new("gpu", Arc::new(mesh), thresholds).map_err(|error| error.to_string())
+        Upload::new(EngineKind::Gpu, Arc::new(mesh), thresholds).map_err(|error| error.to_string())
     }
 
     /// From the corner of the box, in units of the grid.

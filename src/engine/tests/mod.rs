@@ -10,12 +10,12 @@ use crate::mesh::Mesh;
 use crate::phases::{Thresholds, label, select};
 use crate::predicates::tiers::kinds::kinds;
 use crate::system::threads::Threads;
-use crate::{Reason, cos_degrees, families};
+use crate::{EngineKind, Reason, cos_degrees, families};
 use pollster::block_on;
 use std::sync::Arc;
 
 fn engines(mesh: &Arc<Mesh>, thresholds: Thresholds) -> (Cpu, WebGpu) {
-    let upload = Upload::new("gpu", mesh.clone(), thresholds).unwrap();
+    let upload = Upload::new(EngineKind::Gpu, mesh.clone(), thresholds).unwrap();
     let gpu = block_on(async { WebGpu::new(Device::shared(true, None).await?, upload).await }).unwrap();
     (Cpu::new(mesh.clone(), thresholds, Threads::default()), gpu)
 }
@@ -189,7 +189,7 @@ fn tiers_of_the_gpu() {
     const N: u32 = 100;
     println!("| mesh | interior edges | f32 filter | exact |\n|---|---:|---:|---:|");
     for (name, mesh) in kinds(N as usize).unwrap() {
-        let Ok(upload) = Upload::new("gpu", Arc::new(mesh), any_deviation(0.0)) else { continue };
+        let Ok(upload) = Upload::new(EngineKind::Gpu, Arc::new(mesh), any_deviation(0.0)) else { continue };
         let gpu = block_on(async { WebGpu::new(Device::shared(true, None).await?, upload).await }).unwrap();
         let [filter, exact] = block_on(gpu.tiers()).unwrap();
         println!("| {name} | {} | {filter} | {exact} |", filter + exact);

@@ -1,16 +1,16 @@
 //! Errors of the WebGL2 engine.
 
-use crate::Error;
+use crate::{EngineKind, Error};
 use web_sys::WebGl2RenderingContext as Gl;
 
 /// There is no context, or none that is taken.
 pub(super) fn unavailable(message: impl Into<String>) -> Error {
-    Error::BackendUnavailable { backend: "webgl2", message: message.into() }
+    Error::BackendUnavailable { backend: EngineKind::WebGl, message: message.into() }
 }
 
 /// The engine cannot take the mesh.
 pub(super) fn refuse<T>(message: String) -> Result<T, Error> {
-    Err(Error::BackendLimit { backend: "webgl2", message })
+    Err(Error::BackendLimit { backend: EngineKind::WebGl, message })
 }
 
 /// What has happened where a call gives nothing.

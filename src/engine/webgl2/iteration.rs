@@ -17,7 +17,7 @@ use crate::mesh::winding::Winding;
 use crate::phases::Thresholds;
 use crate::phases::state::BLOCKED;
 use crate::system::threads::Threads;
-use crate::{Adjacency, Dimension, Error, Mesh, NONE};
+use crate::{Adjacency, Dimension, EngineKind, Error, Mesh, NONE};
 use std::rc::Rc;
 use std::sync::Arc;
 use web_sys::WebGl2RenderingContext as Gl;
@@ -72,12 +72,12 @@ impl WebGl {
     /// [`Error::BackendUnavailable`] without a context, and with one that gets the test wrong; those of [`WebGl::new`].
     pub(crate) async fn open(mesh: Arc<Mesh>, thresholds: Thresholds) -> Result<Self, Error> {
         let context = Context::shared().await?;
-        let upload = Upload::new("webgl2", mesh, thresholds)?;
+        let upload = Upload::new(EngineKind::WebGl, mesh, thresholds)?;
         let make = |upload: Upload| -> Answer<'static, Box<dyn Engine>> {
             let context = context.clone();
             Box::pin(async move { Ok(Box::new(Self::new(context, upload).await?) as Box<dyn Engine>) })
         };
-        self_test(&context.tested, "webgl2", upload.form(), &make).await?;
+        self_test(&context.tested, EngineKind::WebGl, upload.form(), &make).await?;
         Self::new(context, upload).await
     }
 
@@ -387,8 +387,8 @@ impl Engine for WebGl {
         self.counts
     }
 
-    fn backend(&self) -> &'static str {
-        "webgl2"
+    fn backend(&self) -> EngineKind {
+        EngineKind::WebGl
     }
 
     fn adapter(&self) -> Option<String> {

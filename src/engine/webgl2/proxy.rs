@@ -2,7 +2,7 @@
 
 use crate::engine::{Answer, Census, EdgeCounts, Engine};
 use crate::phases::Thresholds;
-use crate::{Error, Mesh};
+use crate::{EngineKind, Error, Mesh};
 use js_sys::{Promise, Reflect, Uint32Array};
 use std::cell::RefCell;
 use std::sync::Arc;
@@ -104,7 +104,7 @@ async fn answer(asked: Result<Promise, JsValue>) -> Result<JsValue, Error> {
         let text = |name: &str| Reflect::get(&thrown, &name.into()).ok().and_then(|text| text.as_string());
         let message = text("message").unwrap_or_default();
         match text("code").as_deref() {
-            Some("backend-limit") => Error::BackendLimit { backend: "webgl2", message },
+            Some("backend-limit") => Error::BackendLimit { backend: EngineKind::WebGl, message },
             Some("backend-unavailable" | "load-failed") => unavailable(message),
             _ => Error::Device { message },
         }
@@ -112,7 +112,7 @@ async fn answer(asked: Result<Promise, JsValue>) -> Result<JsValue, Error> {
 }
 
 fn unavailable(message: String) -> Error {
-    Error::BackendUnavailable { backend: "webgl2", message }
+    Error::BackendUnavailable { backend: EngineKind::WebGl, message }
 }
 
 fn words(asked: Result<Promise, JsValue>) -> Answer<'static, Vec<u32>> {
@@ -157,8 +157,8 @@ impl Engine for Proxy {
         self.counts
     }
 
-    fn backend(&self) -> &'static str {
-        "webgl2"
+    fn backend(&self) -> EngineKind {
+        EngineKind::WebGl
     }
 
     fn adapter(&self) -> Option<String> {

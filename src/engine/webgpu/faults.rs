@@ -3,7 +3,7 @@
 
 #[cfg(target_arch = "wasm32")]
 use super::browser::{GpuDevice, Told};
-use crate::Error;
+use crate::{EngineKind, Error};
 use std::fmt;
 use std::pin::Pin;
 
@@ -26,12 +26,12 @@ impl fmt::Display for Fault {
 
 /// There is no device, or none that is taken.
 pub(super) fn unavailable(message: String) -> Error {
-    Error::BackendUnavailable { backend: "gpu", message }
+    Error::BackendUnavailable { backend: EngineKind::Gpu, message }
 }
 
 /// The device cannot take the mesh.
 pub(super) fn refuse<T>(message: String) -> Result<T, Error> {
-    Err(Error::BackendLimit { backend: "gpu", message })
+    Err(Error::BackendLimit { backend: EngineKind::Gpu, message })
 }
 
 /// The word of the device on calls, once it has given it: the fault that says most.

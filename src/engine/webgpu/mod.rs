@@ -48,10 +48,10 @@ use super::{Answer, Census, EdgeCounts, Engine};
 #[cfg(test)]
 use crate::Error;
 use crate::engine::gpu::Form;
-use crate::mesh::Mesh;
 #[cfg(test)]
 use crate::mesh::half_edge::unflagged;
 use crate::phases::Thresholds;
+use crate::{EngineKind, Mesh};
 use buffer::Buffer;
 use buffers::Buffers;
 use history::{BATCH, Entry, TAIL};
@@ -135,8 +135,8 @@ impl Engine for WebGpu {
         self.counts
     }
 
-    fn backend(&self) -> &'static str {
-        "gpu"
+    fn backend(&self) -> EngineKind {
+        EngineKind::Gpu
     }
 
     fn adapter(&self) -> Option<String> {
