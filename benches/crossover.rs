@@ -110,7 +110,7 @@ fn measure(spec: &str, family: String, runs: usize, spared: [bool; 3]) -> Result
         for (engine, times) in times.iter_mut().enumerate().filter(|&(engine, _)| !spared[engine]) {
             let (positions, triangles) = (mesh.positions().clone(), mesh.triangles().to_vec());
             let start = Instant::now();
-            took = run(Mesh::new(mesh.dimension(), positions, triangles)?, ENGINES[engine])?.backend;
+            took = run(Mesh::new(mesh.dimension(), positions, triangles)?, ENGINES[engine])?.backend.name();
             times.push(start.elapsed().as_secs_f64() * 1e3);
         }
         rounds += 1;

@@ -1,5 +1,7 @@
 //! The one error type: every variant names the place and says what the user can do.
 
+use crate::EngineKind;
+
 /// Why a mesh, a file or a backend was refused. Nothing has been changed when one is returned.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -111,8 +113,8 @@ pub enum Error {
     /// The backend asked for is not there (`auto` would have taken another one).
     #[error("backend {backend} is not available: {message}")]
     BackendUnavailable {
-        /// `gpu` or `cpu`.
-        backend: &'static str,
+        /// Which one.
+        backend: EngineKind,
         /// Why.
         message: String,
     },
@@ -120,8 +122,8 @@ pub enum Error {
     /// decides exactly. Use `auto` or `cpu`.
     #[error("backend {backend} cannot take this mesh: {message}")]
     BackendLimit {
-        /// `gpu` or `cpu`.
-        backend: &'static str,
+        /// Which one.
+        backend: EngineKind,
         /// Which limit, and by how much.
         message: String,
     },

@@ -12,67 +12,41 @@
 //! # Ok::<(), edgeflip::Error>(())
 //! ```
 //!
-//! The rooms: [`Mesh`] is checked input, in [`Positions`] of 32 or 64 bits; `adjacency` finds twins, `star` walks around
-//! a vertex, `winding` and `frozen` know what a dirty mesh adds, `embedded` what a clean one spares, `locks` what the
-//! user wants; `predicates` decide exactly; `phases` are the four phases of an iteration, `engine` runs them on the CPU,
-//! on several `threads`, or through the shaders of the same names; `session` is the loop, `options` and `outcome` are what goes in and out.
-//! Beside them: [`reoriented`] turns triangles towards one side, [`welded`] joins vertices at one place, [`Wedges`] keeps attributes of corners through flips, [`quality`] measures and audits, [`io`] reads and writes, [`families`] generates; [`Edges`] lists
-//! the edges as the paper does, [`EdgeState`] is what each of them waits for; `js`, `js_webgl2`, `js_audit` and `js_files` are what the npm
-//! package calls, each in a WebAssembly module of its own, and `js_values` is what they share.
+//! `docs/architecture.md` names the rooms of the crate, from top to bottom. Imports run down that order.
 
-mod adjacency;
-mod edge_states;
-mod edges;
-mod embedded;
-mod ends;
 mod engine;
+mod engine_kind;
 mod error;
 pub mod families;
-mod frozen;
 pub mod io;
-#[cfg(all(target_arch = "wasm32", feature = "js-session"))]
-pub mod js;
-#[cfg(all(target_arch = "wasm32", feature = "js-audit"))]
-pub mod js_audit;
-#[cfg(all(target_arch = "wasm32", feature = "js-files"))]
-pub mod js_files;
-#[cfg(all(target_arch = "wasm32", any(feature = "js-session", feature = "js-webgl2")))]
-mod js_promise;
-#[cfg(all(target_arch = "wasm32", feature = "js-threads"))]
-pub mod js_threads;
-#[cfg(all(target_arch = "wasm32", feature = "js-values"))]
-mod js_values;
-#[cfg(all(target_arch = "wasm32", feature = "js-webgl2"))]
-pub mod js_webgl2;
-mod locks;
-mod memory;
 mod mesh;
-mod options;
-mod outcome;
 mod phases;
-mod positions;
 mod predicates;
+mod prepare;
 pub mod quality;
-mod reorient;
 mod session;
-mod star;
-mod threads;
-mod wedges;
-mod weld;
-mod winding;
+mod system;
+#[cfg(all(target_arch = "wasm32", feature = "js-values"))]
+pub mod wasm;
 
-pub use adjacency::Adjacency;
-pub use edge_states::EdgeState;
-pub use edges::Edges;
+pub use engine_kind::EngineKind;
 pub use error::Error;
-pub use mesh::{Dimension, MAX_TRIANGLES, Mesh, NONE};
-pub use options::{Backend, MOST_THREADS, Options, Order};
-pub use outcome::{Iteration, Outcome, Reason, Reasons, Status, Timings};
-pub use positions::Positions;
+pub use mesh::adjacency::Adjacency;
+pub use mesh::dimension::Dimension;
+pub use mesh::edges::Edges;
+pub use mesh::half_edge::NONE;
+pub use mesh::positions::Positions;
+pub use mesh::{MAX_TRIANGLES, Mesh};
+pub use phases::reason::{Reason, Reasons};
 pub use predicates::cos_degrees;
-pub use reorient::reoriented;
+pub use prepare::reorient::reoriented;
+pub use prepare::wedges::Wedges;
+pub use prepare::weld::{Welded, welded};
 pub use session::Session;
+pub use session::edge_states::EdgeState;
+pub use session::options::{Backend, MOST_THREADS, Options, Order};
+pub use session::outcome::{Iteration, Outcome, Status, Timings};
 #[cfg(not(target_arch = "wasm32"))]
 pub use session::{EarlyGpu, close_gpu, make_delaunay};
-pub use wedges::Wedges;
-pub use weld::{Welded, welded};
+#[cfg(all(target_arch = "wasm32", feature = "js-session"))]
+pub use wasm::session as js;

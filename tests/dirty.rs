@@ -6,7 +6,7 @@ mod meshes;
 
 use edgeflip::quality::audit;
 use edgeflip::{
-    Backend, Dimension, Mesh, Options, Outcome, Reason, Status, families::by_name, make_delaunay,
+    Backend, Dimension, EngineKind, Mesh, Options, Outcome, Reason, Status, families::by_name, make_delaunay,
 };
 use meshes::{joined, lifted, moved, moved_wide, plane, reversed, signed, space};
 use oorandom::Rand64;
@@ -19,7 +19,7 @@ fn run(mesh: &Mesh, beta: f64) -> Outcome {
     let options = |backend| Options { backend, max_normal_angle: beta, ..Options::default() };
     let [cpu, gpu] = [Backend::Cpu, Backend::Gpu]
         .map(|backend| make_delaunay(mesh, &options(backend), |_, _| ControlFlow::Continue(())).unwrap());
-    assert_eq!((cpu.backend, gpu.backend), ("cpu", "gpu"));
+    assert_eq!((cpu.backend, gpu.backend), (EngineKind::Cpu, EngineKind::Gpu));
     assert_eq!(cpu.triangles, gpu.triangles);
     assert_eq!(cpu.flips_per_iteration, gpu.flips_per_iteration);
     assert_eq!((kinds(&cpu), cpu.remaining), (kinds(&gpu), gpu.remaining));

@@ -8,7 +8,9 @@ mod device;
 mod meshes;
 
 use device::{class_of, code_of, session_of};
-use edgeflip::{Backend, EdgeState, Edges, Error, Options, Positions, Session, families::by_name};
+use edgeflip::{
+    Backend, EdgeState, Edges, EngineKind, Error, Options, Positions, Session, families::by_name,
+};
 use js_sys::Reflect;
 use wasm_bindgen_test::{wasm_bindgen_test, wasm_bindgen_test_configure};
 
@@ -78,8 +80,8 @@ async fn auto_finds_an_engine() {
     while session.advance().await.unwrap() {}
     let outcome = session.outcome().await.unwrap();
     assert_eq!(outcome.remaining.total(), 0);
-    assert_eq!(outcome.backend == "cpu", outcome.fallback.is_some());
-    assert!(outcome.backend != "cpu" || device::devices_asked_for() == asked);
+    assert_eq!(outcome.backend == EngineKind::Cpu, outcome.fallback.is_some());
+    assert!(outcome.backend != EngineKind::Cpu || device::devices_asked_for() == asked);
 }
 
 /// What the npm package calls: the GPU's objects are those that the page can draw from.

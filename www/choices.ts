@@ -1,7 +1,7 @@
 /** The engine and β as they were last entered: what runs are begun with, unlike what is still being typed. */
 
 import { controls } from './controls.ts';
-import type { Backend } from './engines.ts';
+import type { Backend } from './run.ts';
 
 /** What a run is begun with. */
 export interface Settings {

@@ -17,9 +17,8 @@ import {
 } from 'edgeflip/files';
 import { naming } from './crash.ts';
 import { changeOf, type Change } from './change.ts';
-import type { Backend } from './engines.ts';
 import { contentOf, contentOfKept, keep, type Kept, type Located, type Report } from './files.ts';
-import { sessionOf, statesOf, summaryOf, type OpenMesh, type Step, type Summary } from './run.ts';
+import { sessionOf, statesOf, summaryOf, type Backend, type OpenMesh, type Step, type Summary } from './run.ts';
 
 /** Surfaces of up to so many triangles are compared: many more would take seconds. */
 const COMPARED = 50_000;

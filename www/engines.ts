@@ -1,13 +1,13 @@
 /** Where the flips happen: on the GPU that the page draws with, or in a worker, on WebGL2 or the CPU. */
 
 import { wrap, type Remote } from 'comlink';
-import { EdgeflipError, type Engine } from 'edgeflip';
+import { EdgeflipError } from 'edgeflip';
 import { ArrayTrack } from './array-track.ts';
 import { CRASHED } from './crash.ts';
 import type { Desk } from './desk.ts';
 import { GpuTrack } from './gpu-track.ts';
 import { Kernels } from './kernels.ts';
-import { Run, sessionOf, statesOf, summaryOf, type OpenMesh } from './run.ts';
+import { Run, sessionOf, statesOf, summaryOf, type Backend, type OpenMesh } from './run.ts';
 
 /** So many triangles at most the CPU takes before a GPU has compiled its programs. */
 const BEGUN_SOON = 1_000_000;
@@ -81,8 +81,6 @@ export class Office {
 
 /** What a call ends with whose worker has been closed. */
 export class Cancelled extends Error {}
-
-export type Backend = 'auto' | Engine;
 
 /** The worker of the first run. */
 let first: Office | undefined;

@@ -15,7 +15,7 @@ export interface Palette {
   states: Record<EdgeState, string>;
 }
 
-/** What the custom properties in `style.css` say now. */
+/** What the custom properties in `colours.css` say now. */
 export function palette(): Palette {
   const style = getComputedStyle(document.documentElement);
   const colour = (name: string) => style.getPropertyValue(`--${name}`).trim();

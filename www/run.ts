@@ -1,11 +1,14 @@
 /** A run that can be watched: every iteration is kept, so that the slider can go back to it. */
 
-import { EDGE_STATES, FlipSession, type Iteration, type Options, type Result } from 'edgeflip';
+import { EDGE_STATES, FlipSession, type Engine, type Iteration, type Options, type Result } from 'edgeflip';
 import type { FileMesh, IndexedMesh } from 'edgeflip/files';
 import type { Change } from './change.ts';
 
 /** Meshes of up to so many triangles have their edges drawn in colours. */
 export const COLOURED = 20_000;
+
+/** The engine that a run is asked for. */
+export type Backend = 'auto' | Engine;
 
 /** A result; the triangles are on screen. */
 export type Summary = Omit<Result, 'indices'>;

@@ -1,6 +1,6 @@
 //! Families in the plane. Every triangle is counter-clockwise.
 
-use super::{at_least, fits, generator, signed, split, split_cells, turn};
+use super::lattice::{at_least, fits, generator, signed, split, split_cells, turn};
 use crate::{Dimension, Error, Mesh, NONE};
 use oorandom::Rand64;
 

@@ -1,6 +1,6 @@
 //! Surfaces in space. Triangles are counter-clockwise seen from outside or from above.
 
-use super::{at_least, fits, generator, signed, split, split_cells};
+use super::lattice::{at_least, fits, generator, signed, split, split_cells};
 use crate::{Dimension, Error, Mesh};
 use std::f64::consts::{PI, TAU};
 

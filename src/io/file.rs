@@ -1,8 +1,12 @@
 //! Mesh files on disk, a whole file at once.
 
+use super::format::Format;
+use super::lists::{parse_edges, parse_numbers};
+use super::loaded::Loaded;
+use super::options::ReadOptions;
+use super::parse::parse_with;
 #[cfg(unix)]
 use super::wait::open_to_read;
-use super::{Format, Loaded, ReadOptions, parse_edges, parse_numbers, parse_with};
 use crate::{Error, Mesh};
 use std::fs;
 use std::io::{self, Read};

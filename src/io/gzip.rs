@@ -1,7 +1,8 @@
 //! Gzip'd files: known by their first bytes when they are read, by their name when they are written.
 
-use super::ReadOptions;
-use crate::{Error, memory};
+use super::options::ReadOptions;
+use crate::Error;
+use crate::system::memory;
 use flate2::Compression;
 use flate2::bufread::GzDecoder;
 use flate2::write::GzEncoder;
@@ -16,9 +17,14 @@ pub(super) fn is_magic(bytes: &[u8]) -> bool {
     bytes.starts_with(&[0x1f, 0x8b])
 }
 
+/// What follows the last dot, in lower case.
+pub(super) fn extension(path: &Path) -> Option<String> {
+    path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase)
+}
+
 /// Whether the name is that of one.
 pub(super) fn is_named(path: &Path) -> bool {
-    super::extension(path).as_deref() == Some("gz")
+    extension(path).as_deref() == Some("gz")
 }
 
 /// The content of all members, one after the other. Zeros behind the last one are padding. What it takes grows with the

@@ -1,11 +1,10 @@
 //! OFF, Geomview's object file format: `[ST][C][N][n]OFF`, counts, one line a vertex, one line a face.
 //! Source: the Geomview manual, "OFF Files". Text only, read line by line.
 
-use super::original::{Face, Faces, Numbers, line_end, place};
+use super::held::{Face, Faces, Numbers, line_end, place};
+use super::parsed::{Dropped, Fans, Parsed};
 use super::pieces::{self, Piece};
-use super::text::{
-    Digits, Dropped, Fans, Lines, Parsed, Tokens, coordinate, float, integer, quoted, without_comment,
-};
+use super::text::{Digits, Lines, Tokens, coordinate, float, integer, quoted, without_comment};
 use crate::{Error, Mesh};
 use std::io::{self, Write};
 

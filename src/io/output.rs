@@ -1,7 +1,10 @@
 //! Where a mesh is written: a file changes at once or not at all; devices, pipes and the standard output are written into.
 
+use super::file::{at, folder};
+use super::format::Format;
+use super::loaded::Loaded;
 use super::temporary::Temporary;
-use super::{Format, Loaded, at, folder, mesh_writer};
+use super::write::mesh_writer;
 use crate::{Error, Mesh};
 use std::fs::{self, Metadata};
 use std::io::{self, BufWriter, Write};

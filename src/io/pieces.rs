@@ -2,7 +2,7 @@
 //! Neither what is read nor what is written depends on how many pieces there are.
 
 use super::text::{Digits, Lines};
-use crate::threads::{FEWEST, Threads};
+use crate::system::threads::{FEWEST, Threads};
 use std::io::{self, Write};
 use std::ops::Range;
 

@@ -2,8 +2,10 @@
 //! same position become one vertex, numbered in the order in which they appear.
 //! Source: 3D Systems, "StereoLithography Interface Specification", 1988.
 
-use super::original::{Face, Faces};
-use super::text::{Dropped, Fans, Lines, Parsed, Tokens, coordinate, float, quoted};
+use super::held::{Face, Faces};
+use super::parsed::{Dropped, Fans, Parsed};
+use super::rounded::rounded;
+use super::text::{Lines, Tokens, coordinate, float, quoted};
 use crate::{Dimension, Error, MAX_TRIANGLES, Mesh};
 use glam::{DVec3, Vec3};
 use std::io::{self, Write};
@@ -28,7 +30,7 @@ pub(super) fn is_held(bytes: &[u8]) -> bool {
 /// Writes `mesh` in the binary form: 32-bit floats, the nearest ones; z is 0 in a 2D mesh. The normal of a triangle
 /// without an area is 0.
 pub(super) fn write(mesh: &Mesh, out: &mut impl Write) -> io::Result<()> {
-    let points = super::rounded(mesh, "STL")?;
+    let points = rounded(mesh, "STL")?;
     let mut header = [0; HEADER];
     header[..8].copy_from_slice(b"edgeflip");
     header[80..].copy_from_slice(&(mesh.triangle_count() as u32).to_le_bytes());

@@ -60,7 +60,7 @@ export class EdgeflipError extends Error {
   }
 }
 
-/** What a module says where memory cannot be had, `out_of_memory` in `src/js_values.rs`, and what workers make of it. */
+/** What a module says where memory cannot be had, `out_of_memory` in `src/wasm/values.rs`, and what workers make of it. */
 const OUT_OF_MEMORY = /\bout of memory\b/;
 
 /** What the module has thrown, as an `EdgeflipError`. A trap has no code. */

@@ -25,19 +25,15 @@ export async function open(mesh: IndexedMesh, settings: Settings): Promise<Modul
   const { positions, indices, dimension } = given;
   const why = whyCpu(indices.length / 3, dimension, positions instanceof Float64Array, count, settings);
   if (why !== undefined) {
-    return openOnThreads(given === mesh ? copied(mesh) : given, settings, count, inWordsOfPackage(why));
+    return openOnThreads(given === mesh ? copied(mesh) : given, settings, count, why);
   }
   try {
     return await openAlone(given, { ...settings, threads: count, leavesCpu: true });
   } catch (thrown) {
     const { code, message } = fromModule(thrown);
     if (code !== 'backend-unavailable') throw thrown;
-    return openOnThreads(refused(thrown) ?? given, settings, count, inWordsOfPackage(message));
+    return openOnThreads(refused(thrown) ?? given, settings, count, message);
   }
-}
-
-function inWordsOfPackage(why: string): string {
-  return why.replace('backend gpu ', 'backend webgpu ');
 }
 
 /** In the module of the engines; `leavesCpu`: but for the CPU engine, where `'auto'` would take that. */

@@ -14,7 +14,7 @@ export interface ModuleSession extends Omit<Session, typeof Symbol.dispose> {
   readonly isAway?: boolean;
 }
 
-/** Triangles that are done on one thread before others have woken up, as `src/threads.rs` has it. */
+/** Triangles that are done on one thread before others have woken up, as `src/system/threads.rs` has it. */
 const FEWEST_TRIANGLES = 65_536;
 
 /** Triangles of each thread at least: with fewer it would have nothing to do. */

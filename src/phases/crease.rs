@@ -1,9 +1,9 @@
 //! Creases, before the first iteration: the edges of the input over β stay, even if flips around them lower
 //! their angle.
 
-use crate::adjacency::{CREASE, LOCKED, next, prev, unflagged};
+use crate::mesh::half_edge::{CREASE, LOCKED, next, prev, unflagged};
 use crate::predicates::Quad;
-use crate::threads::{Threads, Word, shared};
+use crate::system::threads::{Threads, Word, shared};
 use crate::{NONE, Positions};
 
 /// Flags both entries of `twins` for each interior edge whose triangles' normals differ by more than β, and no

@@ -1,9 +1,9 @@
 //! Flip with Update: rotate the two triangles of each selected edge in place and repair the twins around.
 
 use crate::NONE;
-use crate::adjacency::{FLAGS, next, prev, triangle_of};
-use crate::star::Fans;
-use crate::threads::{Threads, Word};
+use crate::mesh::half_edge::{FLAGS, next, prev, triangle_of};
+use crate::mesh::star::Fans;
+use crate::system::threads::{Threads, Word};
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
 /// For each triangle the twin of its half-edge that flips, with the place of the next one in the triangle in the bits of

@@ -1,11 +1,10 @@
 //! Label: each triangle tests its three edges and keeps the best one that may flip.
 
-use super::{BLOCKED, Geometry, Thresholds, Topology, key};
-use crate::adjacency::{CREASE, FLAGS, LOCKED, next, prev, triangle_of, unflagged};
-use crate::mesh::Dimension;
+use super::state::{BLOCKED, Geometry, Thresholds, Topology, key};
+use crate::mesh::half_edge::{CREASE, FLAGS, LOCKED, next, prev, triangle_of, unflagged};
+use crate::mesh::star::{Star, any_in_either};
 use crate::predicates::{Quad, area_sign, in_circle_filter, in_circle_sign};
-use crate::star::{Star, any_in_either};
-use crate::{NONE, Positions, Reason};
+use crate::{Dimension, NONE, Positions, Reason};
 use std::array;
 use std::ops::Range;
 

@@ -1,9 +1,9 @@
 //! Select: an edge flips if it is the best of both its triangles and no better one makes the same new edge.
 
-use super::{BLOCKED, Topology, key};
+use super::state::{BLOCKED, Topology, key};
 use crate::NONE;
-use crate::adjacency::{next, prev};
-use crate::star::{Star, any_in_either};
+use crate::mesh::half_edge::{next, prev};
+use crate::mesh::star::{Star, any_in_either};
 
 /// For each triangle the twin of its edge that flips, or [`NONE`]. `best` is what [`label`](super::label()) gives.
 pub(crate) fn select(mesh: Topology, iteration: u32, best: &[u32]) -> Vec<u32> {

@@ -1,5 +1,6 @@
 //! Surfaces in space: the angle sum, the angle between normals against β, and normals that turn over.
 
+use super::cosine::cosine_fraction;
 use super::exact::{Bounded, Differences, Ring, Unbounded};
 use glam::DVec3;
 use std::cmp::Ordering;
@@ -225,7 +226,7 @@ fn angle_sum<R: Ring>(v: &[R; COUNT]) -> Ordering {
 /// Whether n·m < k|n||m| for the normals before the flip or, with `after` too, for those after it.
 fn angle_exceeded<R: Ring>(v: &[R; COUNT], k: f64, after: bool) -> bool {
     let [p, q, r, s] = vectors(v);
-    let (mantissa, shift) = super::cosine_fraction(k);
+    let (mantissa, shift) = cosine_fraction(k);
     let mantissa = R::new(mantissa as i64, 0);
     let (k_square, unit_square) = (mantissa.mul(&mantissa), R::new(1, 2 * shift));
     let exceeds = |n: Vector<R>, m: Vector<R>| {

@@ -1,9 +1,9 @@
-//! Counts the edges that each tier decides, as src/engine/tests.rs does on a GPU: `cargo test --lib tiers -- --nocapture`.
+//! Counts the edges that each tier decides, as src/engine/tests/mod.rs does on a GPU: `cargo test --lib tiers -- --nocapture`.
 //! `cargo bench --bench tiers` says what they cost.
 
 use super::exact::WIDEST;
 use super::{Quad, in_circle_sign, plane, space};
-use crate::adjacency::prev;
+use crate::mesh::half_edge::prev;
 use crate::{Adjacency, Backend, Dimension, Error, Mesh, NONE, Options, families, make_delaunay};
 
 #[path = "../../benches/kinds/mod.rs"]

@@ -3,8 +3,8 @@
 
 use super::edges::{Class, Edge};
 use super::exact;
-use super::surface::{Limits, Surface};
-use crate::{Dimension, Mesh, Options, Reason, Reasons, cos_degrees};
+use super::surface::{Limits, RemainingEdge, Surface};
+use crate::{Dimension, Error, Mesh, Options, Reason, Reasons, Session, cos_degrees};
 use std::cmp::Ordering;
 
 /// Violations that an [`Audit`] lists; further ones are only counted.
@@ -115,17 +115,6 @@ pub enum Violation {
     },
 }
 
-/// An edge of a result that is not Delaunay.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct RemainingEdge {
-    /// Smaller end.
-    pub u: u32,
-    /// Larger end.
-    pub v: u32,
-    /// Why it cannot flip; `Stopped` if it could.
-    pub reason: Reason,
-}
-
 /// What [`audit`] found.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Audit {
@@ -209,6 +198,18 @@ pub fn audit(input: &Mesh, triangles: &[u32], options: &Options) -> Audit {
     audit.remaining_edges = after.remaining(limits, &creases, &locked);
     audit.remaining = audit.remaining_edges.iter().map(|edge| edge.reason).collect();
     audit
+}
+
+impl Session {
+    /// The audit of the triangles as they are now.
+    ///
+    /// # Errors
+    /// [`Error::Device`].
+    pub async fn verify(&mut self) -> Result<Audit, Error> {
+        let triangles = self.triangles().await?;
+        let (mesh, options) = self.input();
+        Ok(audit(mesh, &triangles, options))
+    }
 }
 
 /// The largest 32-bit float that is no larger.

@@ -1,7 +1,7 @@
 //! Numbers about the shape of a mesh, before and after. In f64, for reports: no decision is taken on them.
 
-use super::triangle_angles;
-use crate::threads::Threads;
+use super::angles::triangle_angles;
+use crate::system::threads::Threads;
 use crate::{Dimension, Mesh};
 use glam::DVec3;
 use rstar::{AABB, PointDistance, RTree, RTreeObject};

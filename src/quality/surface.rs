@@ -1,11 +1,21 @@
 //! A surface as the audit sees it: edge table, components, areas, and the edges that are not Delaunay.
 
-use super::audit::RemainingEdge;
 use super::edges::{Class, Edge, EdgeTable, next, prev};
 use super::exact::{self, ExactSum, Triangle};
 use crate::{Dimension, Mesh, Reason};
 use num_bigint::{BigInt, Sign};
 use std::cmp::Ordering;
+
+/// An edge of a result that is not Delaunay.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RemainingEdge {
+    /// Smaller end.
+    pub u: u32,
+    /// Larger end.
+    pub v: u32,
+    /// Why it cannot flip; `Stopped` if it could.
+    pub reason: Reason,
+}
 
 /// What a flip may do to a surface.
 #[derive(Clone, Copy)]

@@ -1,13 +1,16 @@
 //! Which engine a session runs on.
 
 use super::cost::Job;
+use super::fallback::without_gpu;
 use super::{gpu, room};
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 use crate::engine::Proxy;
 use crate::engine::{Answer, Cpu, Engine, Lawson};
 use crate::phases::Thresholds;
-use crate::threads::Threads;
-use crate::{Backend, Error, Mesh, Options, Order, locks, memory};
+use crate::session::locks;
+use crate::system::memory;
+use crate::system::threads::Threads;
+use crate::{Backend, Error, Mesh, Options, Order};
 use std::sync::Arc;
 
 /// An engine, and why `Auto` took no other.
@@ -99,14 +102,6 @@ fn cpu_for<'a>(why: String, mesh: &'a Arc<Mesh>, options: &'a Options) -> Answer
     cpu_after(why, mesh, options)
 }
 
-/// Why it is the CPU where the GPU does not take the mesh for this reason.
-pub(super) fn without_gpu(why: String) -> String {
-    if cfg!(all(target_arch = "wasm32", feature = "js")) {
-        return why + "; webgl2 is left out: it takes longer than the cpu";
-    }
-    why
-}
-
 /// The CPU, which takes every mesh, where another engine has failed with `why`.
 ///
 /// # Errors
@@ -171,5 +166,5 @@ async fn webgl(mesh: &Arc<Mesh>, thresholds: Thresholds) -> Result<Box<dyn Engin
 #[cfg(not(all(target_arch = "wasm32", feature = "js")))]
 async fn webgl(_mesh: &Arc<Mesh>, _thresholds: Thresholds) -> Result<Box<dyn Engine>, Error> {
     let message = "WebGL2 is there in browsers only, through the npm package".to_owned();
-    Err(Error::BackendUnavailable { backend: "webgl2", message })
+    Err(Error::BackendUnavailable { backend: crate::EngineKind::WebGl, message })
 }

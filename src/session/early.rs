@@ -4,7 +4,7 @@ use super::choice::{asks_gpu, job_of};
 use super::cost::Job;
 #[cfg(feature = "gpu")]
 use crate::engine::Device;
-use crate::threads::Threads;
+use crate::system::threads::Threads;
 use crate::{Backend, Dimension, Error, Mesh, Options};
 use std::thread::{self, JoinHandle};
 

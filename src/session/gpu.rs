@@ -3,7 +3,7 @@
 use super::cost::Job;
 use crate::engine::{Answer, Device, DeviceHandle, Engine, Form, GivenDevice, Upload, WebGpu, self_test};
 use crate::phases::Thresholds;
-use crate::{Backend, Dimension, Error, Mesh, Options};
+use crate::{Backend, Dimension, EngineKind, Error, Mesh, Options};
 use std::sync::Arc;
 
 /// The form that a mesh has, unless its floats span too many bits.
@@ -24,7 +24,7 @@ pub(super) fn why_not_ready(job: Job, is_double: bool, options: &Options) -> Str
     let form = form_of(job.dimension, is_double, options);
     let (given, is_given) = (options.device.clone(), options.device.is_some());
     let ahead = Device::ahead(is_given, async move { tested(given.as_ref(), false, form).await.map(drop) });
-    ahead.map_or_else(super::choice::without_gpu, |()| "the gpu is made ready behind this run".to_owned())
+    ahead.map_or_else(super::fallback::without_gpu, |()| "the gpu is made ready behind this run".to_owned())
 }
 
 /// Elsewhere a process may end at any time, and drivers do not expect that while they compile.
@@ -40,7 +40,7 @@ pub(super) async fn engine(mesh: &Arc<Mesh>, options: &Options) -> Result<Box<dy
     let takes_software = options.backend == Backend::Gpu;
     let form = form_of(mesh.dimension(), mesh.positions().is_double(), options);
     let device = tested(options.given_device(), takes_software, form).await?;
-    let upload = Upload::new("gpu", mesh.clone(), Thresholds::from(options))?;
+    let upload = Upload::new(EngineKind::Gpu, mesh.clone(), Thresholds::from(options))?;
     test(&device, upload.form()).await?;
     Ok(Box::new(WebGpu::new(device, upload).await?))
 }
@@ -62,5 +62,5 @@ async fn test(device: &DeviceHandle, form: Form) -> Result<(), Error> {
         let device = device.clone();
         Box::pin(async move { Ok(Box::new(WebGpu::new(device, upload).await?) as Box<dyn Engine>) })
     };
-    self_test(&device.tested, "gpu", form, &make).await
+    self_test(&device.tested, EngineKind::Gpu, form, &make).await
 }

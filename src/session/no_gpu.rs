@@ -2,7 +2,7 @@
 
 use super::cost::Job;
 use crate::engine::Engine;
-use crate::{Error, Mesh, Options};
+use crate::{EngineKind, Error, Mesh, Options};
 use std::sync::Arc;
 
 /// As if it were: opening it says why it is not.
@@ -16,5 +16,5 @@ pub(super) fn why_not_ready(_: Job, _: bool, _: &Options) -> String {
 
 pub(super) async fn engine(_: &Arc<Mesh>, _: &Options) -> Result<Box<dyn Engine>, Error> {
     let message = "this build has no GPU engine (feature `gpu`)".to_owned();
-    Err(Error::BackendUnavailable { backend: "gpu", message })
+    Err(Error::BackendUnavailable { backend: EngineKind::Gpu, message })
 }

@@ -17,7 +17,7 @@ impl Failing {
     fn answer<'a, T: 'a>(&'a mut self, ask: impl FnOnce(&'a mut Cpu) -> Answer<'a, T>) -> Answer<'a, T> {
         if self.questions_left == 0 {
             let message = "lost on purpose".to_owned();
-            let limit = Error::BackendLimit { backend: "gpu", message: message.clone() };
+            let limit = Error::BackendLimit { backend: EngineKind::Gpu, message: message.clone() };
             let error = if self.refuses { limit } else { Error::Device { message } };
             return Box::pin(std::future::ready(Err(error)));
         }
@@ -51,8 +51,8 @@ impl Engine for Failing {
     fn edge_counts(&self) -> EdgeCounts {
         self.cpu.edge_counts()
     }
-    fn backend(&self) -> &'static str {
-        "gpu"
+    fn backend(&self) -> EngineKind {
+        EngineKind::Gpu
     }
 }
 
@@ -89,7 +89,7 @@ fn a_lost_device_changes_no_result_at_any_moment() {
         let (seen, other) = watch(session(Backend::Auto, questions_left)).unwrap();
         assert_eq!(seen, expected, "lost after {questions_left} questions");
         assert!(other.fallback.is_some_and(|why| why.contains("lost on purpose")));
-        assert_eq!((other.backend, other.status), ("cpu", Status::Done));
+        assert_eq!((other.backend, other.status), (EngineKind::Cpu, Status::Done));
         assert_eq!(other.flips_per_iteration, outcome.flips_per_iteration);
         assert_eq!(other.remaining, outcome.remaining);
 
@@ -114,7 +114,7 @@ fn a_mesh_that_is_refused_late_goes_to_the_next_engine() {
         watch(session)
     };
     let (_, outcome) = refusing(Backend::Auto).unwrap();
-    assert_eq!((outcome.backend, outcome.status), ("cpu", Status::Done));
+    assert_eq!((outcome.backend, outcome.status), (EngineKind::Cpu, Status::Done));
     assert!(outcome.fallback.is_some_and(|why| why.starts_with("backend gpu ")));
     assert!(matches!(refusing(Backend::Gpu), Err(Error::BackendLimit { .. })));
 }
@@ -168,7 +168,7 @@ fn the_cpu_takes_over_positions_that_the_gpu_refuses() {
         session.options.backend = Backend::Auto;
         block_on(session.set_positions(positions)).unwrap();
         let (_, outcome) = watch(session).unwrap();
-        assert_eq!((outcome.backend, outcome.status), ("cpu", Status::Done));
+        assert_eq!((outcome.backend, outcome.status), (EngineKind::Cpu, Status::Done));
         assert!(outcome.fallback.is_some_and(|said| said.contains("span")));
     }
 }
@@ -200,7 +200,7 @@ fn vertices_move_from_floats_to_doubles_and_back() {
     let ((expected, end), (found, gpu_end)) = (run(Backend::Cpu), run(Backend::Gpu));
     assert!(end.flips > 50);
     for ((expected, _), (found, backend)) in expected.iter().zip(&found) {
-        assert_eq!((found, *backend), (expected, "gpu"));
+        assert_eq!((found, *backend), (expected, EngineKind::Gpu));
     }
     assert_eq!(gpu_end.triangles, end.triangles);
     assert_eq!(gpu_end.remaining, end.remaining);
@@ -229,7 +229,7 @@ fn a_run_goes_on_with_a_gpu_that_has_become_ready() {
         // However long it has taken here.
         session.timings = Timings::default();
         block_on(session.change_to_gpu());
-        assert_eq!((session.engine.backend(), session.may_change), ("gpu", false));
+        assert_eq!((session.engine.backend(), session.may_change), (EngineKind::Gpu, false));
         assert_eq!(block_on(session.triangles()).unwrap(), expected[iterations - 1]);
         block_on(session.run(|_, _| ControlFlow::Continue(()))).unwrap();
         let changed = block_on(session.outcome()).unwrap();

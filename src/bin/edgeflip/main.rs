@@ -2,6 +2,7 @@
 
 mod args;
 mod errors;
+mod failure;
 mod memory;
 mod report;
 #[cfg(unix)]
@@ -12,9 +13,10 @@ use args::Args;
 use clap::Parser;
 use edgeflip::io::{self, Output, Staged};
 use edgeflip::{
-    Backend, EarlyGpu, Error, Mesh, Options, Order, Outcome, Welded, close_gpu, make_delaunay, quality,
-    reoriented,
+    Backend, EarlyGpu, EngineKind, Error, Mesh, Options, Order, Outcome, Welded, close_gpu, make_delaunay,
+    quality, reoriented,
 };
+use failure::Failure;
 use indicatif::{ProgressBar, ProgressStyle};
 use report::{Changes, Check, Milliseconds, Report};
 use std::io::{IsTerminal, Write};
@@ -22,38 +24,6 @@ use std::mem;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
-
-/// Why the program ends without a result: the exit status and one line for standard error.
-struct Failure {
-    status: u8,
-    line: String,
-}
-
-impl Failure {
-    /// What went wrong with `path`; an error that names its path, or is about none, stays as it is.
-    fn of(path: &std::path::Path, error: &Error) -> Self {
-        let line = match error {
-            &Error::FileTooLarge { limit, .. } => {
-                let error = Error::FileTooLarge { limit, option: "--max-bytes" };
-                format!("{}: {error}", path.display())
-            }
-            Error::Io { .. }
-            | Error::UnknownFormat { .. }
-            | Error::Option { .. }
-            | Error::BackendUnavailable { .. }
-            | Error::Device { .. } => error.to_string(),
-            _ => format!("{}: {error}", path.display()),
-        };
-        let status = match error {
-            // Its range has been checked; the system has not so many.
-            Error::Option { option: "threads", .. } => 1,
-            Error::Option { .. } => 2,
-            Error::BackendUnavailable { .. } | Error::BackendLimit { .. } | Error::Device { .. } => 3,
-            _ => 1,
-        };
-        Self { status, line }
-    }
-}
 
 fn main() {
     let clock = Clock::new();
@@ -207,7 +177,7 @@ fn output(args: &Args) -> Result<Output, Failure> {
 
 /// Leaves the GPU alone where there is none, or where its driver would end the program for want of memory, and says why.
 fn without_gpu(options: &mut Options, mesh: &Mesh, gpu: Option<EarlyGpu>) -> Result<Option<String>, Failure> {
-    let unavailable = |message| Error::BackendUnavailable { backend: "gpu", message };
+    let unavailable = |message| Error::BackendUnavailable { backend: EngineKind::Gpu, message };
     let refusal = match gpu {
         _ if options.order != Order::Reproducible || options.backend == Backend::Cpu => None,
         Some(gpu) => gpu.wait(mesh, options).err().map(|error| (error.to_string(), error)),

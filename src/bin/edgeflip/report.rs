@@ -1,7 +1,7 @@
 //! What a run is reported as: one JSON object, or a few aligned lines.
 
-use crate::Failure;
 use crate::args::Args;
+use crate::failure::Failure;
 use edgeflip::io::{Format, Loaded};
 use edgeflip::quality::{self, Measures};
 use edgeflip::{Dimension, Error, Mesh, Outcome, Reasons, Status, Timings, Welded};
@@ -178,7 +178,7 @@ impl Report {
             non_manifold_edges: outcome.non_manifold_edges,
             inconsistent_edges: outcome.inconsistent_edges,
             dimension: mesh.dimension().stride(),
-            backend: outcome.backend,
+            backend: outcome.backend.name(),
             adapter: outcome.adapter,
             fallback: outcome.fallback,
             status: match outcome.status {

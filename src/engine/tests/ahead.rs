@@ -4,14 +4,15 @@
 use super::{Cpu, Device, Engine, Mesh, Upload, WebGpu, any_deviation, assert_same, families};
 use crate::engine::EdgeCounts;
 use crate::phases::Thresholds;
-use crate::threads::Threads;
-use crate::{Dimension, Error, locks};
+use crate::session::locks;
+use crate::system::threads::Threads;
+use crate::{Dimension, EngineKind, Error};
 use pollster::block_on;
 use std::sync::Arc;
 
 fn engines(mesh: &Arc<Mesh>, thresholds: Thresholds) -> (Cpu, WebGpu) {
     let gpu = block_on(async {
-        let upload = Upload::new("gpu", mesh.clone(), thresholds)?;
+        let upload = Upload::new(EngineKind::Gpu, mesh.clone(), thresholds)?;
         WebGpu::begun(Device::shared(true, None).await?, upload, false).await
     });
     (Cpu::new(mesh.clone(), thresholds, Threads::default()), gpu.unwrap())
@@ -170,7 +171,7 @@ fn a_run_waits_once() {
     let asked = |mesh: Mesh| {
         block_on(async {
             let gpu = Device::own().await?;
-            let upload = Upload::new("gpu", Arc::new(mesh), any_deviation(10.0))?;
+            let upload = Upload::new(EngineKind::Gpu, Arc::new(mesh), any_deviation(10.0))?;
             let before = gpu.asked();
             let mut engine = WebGpu::begun(gpu.clone(), upload, false).await?;
             assert!(engine.iterate(u32::MAX).await?.len() > 1);

@@ -1,7 +1,8 @@
 //! Twins from triangles, and whether any vertex has several fans, on the device.
 
+use super::buffer::Buffer;
 use super::buffers::Buffers;
-use super::device::{Buffer, Device};
+use super::device::Device;
 use crate::engine::EdgeCounts;
 use crate::mesh::Mesh;
 use wgpu::BufferUsages;

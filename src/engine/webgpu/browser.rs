@@ -1,6 +1,5 @@
 //! The browser's side of a device: where WebGPU is, and what there is no way to through wgpu.
 
-use super::faults::{Fault, Word};
 use js_sys::{Object, Promise, Reflect};
 use wasm_bindgen::prelude::*;
 use wasm_bindgen_futures::JsFuture;
@@ -66,8 +65,9 @@ impl GpuDevice {
         }
     }
 
-    pub(super) fn pop_error_scopes(&self) -> Word {
-        Box::pin(word([(); 3].map(|()| JsFuture::from(self.pop_error_scope()))))
+    /// What they say, the last that was pushed first.
+    pub(super) fn pop_error_scopes(&self) -> [JsFuture; 3] {
+        [(); 3].map(|()| JsFuture::from(self.pop_error_scope()))
     }
 
     /// Vendor and architecture, such as `nvidia ampere`: what a browser says of a GPU. Empty where it says nothing.
@@ -75,22 +75,5 @@ impl GpuDevice {
         let info = self.adapter_info();
         let words = info.map(|info| [info.vendor(), info.architecture(), info.description()]);
         words.map_or_else(String::new, |words| words.join(" ").trim().to_owned())
-    }
-}
-
-/// As natively. Not through wgpu, which panics on an internal error.
-pub(super) fn watch<T>(device: &wgpu::Device, calls: impl FnOnce() -> T) -> (T, Word) {
-    let Some(device) = GpuDevice::of(device) else { return (calls(), Box::pin(std::future::ready(None))) };
-    device.push_error_scopes();
-    let result = calls();
-    (result, device.pop_error_scopes())
-}
-
-async fn word([memory, internal, validation]: [JsFuture; 3]) -> Option<Fault> {
-    // The promises of a lost device may be refused: its loss is told elsewhere.
-    let told = |error: Result<JsValue, JsValue>| error.ok().filter(JsValue::is_object);
-    match (told(memory.await), told(internal.await).or(told(validation.await))) {
-        (Some(_), _) => Some(Fault::OutOfMemory),
-        (None, other) => other.map(|error| Fault::Other(error.unchecked_into::<Told>().message())),
     }
 }

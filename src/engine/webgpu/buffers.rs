@@ -1,11 +1,12 @@
 //! The buffers of a mesh whose sizes are known from the start.
 
-use super::HISTORY_WORDS;
-use super::device::{Buffer, Device};
+use super::buffer::Buffer;
+use super::device::Device;
+use super::history::HISTORY_WORDS;
 use super::kernels::WORKGROUP_SIZE;
 use super::params::{Params, Places};
 use super::steps::Step;
-use crate::engine::upload::Upload;
+use crate::engine::gpu::upload::Upload;
 use wgpu::BufferUsages;
 
 /// Words of the frontier of so many triangles, the longest buffer: see `state.wgsl`.

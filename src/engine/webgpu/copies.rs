@@ -1,12 +1,13 @@
 //! What goes to a device, and comes back.
 
-use super::device::{Buffer, Device};
-use super::faults::{Word, watch};
+use super::buffer::Buffer;
 #[cfg(target_arch = "wasm32")]
-use super::staging;
+use super::buffer::MOST_KEPT;
+use super::device::Device;
+use super::faults::{Word, watch};
 use crate::Error;
 #[cfg(not(target_arch = "wasm32"))]
-use crate::threads::Threads;
+use crate::system::threads::Threads;
 use futures_channel::oneshot;
 use std::ops::Range;
 #[cfg(test)]
@@ -19,7 +20,7 @@ use wgpu::BufferUsages;
 pub(super) const CHUNK: usize = 1 << 22;
 /// In a browser each time is a wait: as many as the memory between them has that is kept.
 #[cfg(target_arch = "wasm32")]
-pub(super) const CHUNK: usize = staging::MOST as usize / 4;
+pub(super) const CHUNK: usize = MOST_KEPT as usize / 4;
 
 /// Words that one thread copies at a time.
 #[cfg(not(target_arch = "wasm32"))]

@@ -2,15 +2,14 @@
 
 #[cfg(target_arch = "wasm32")]
 use super::browser;
-use super::copies::Source;
+use super::buffer::{Buffer, Kept};
+use super::compile;
 use super::faults::{Fault, refuse, unavailable, watch};
-use super::kernels::{self, Kernels, Plan, WORKGROUP_SIZE};
+use super::kernels::{Kernels, Plan, WORKGROUP_SIZE};
 use super::programs;
-use super::staging::Kept;
 use crate::Error;
-use crate::engine::probe::ends_loops_early;
-use crate::engine::self_test::Tested;
-use crate::engine::upload::Form;
+use crate::engine::gpu::self_test::Tested;
+use crate::engine::gpu::upload::Form;
 #[cfg(target_arch = "wasm32")]
 use std::rc::Rc;
 #[cfg(test)]
@@ -23,22 +22,6 @@ const MOST_WORKGROUPS: u32 = 65_535;
 
 /// Invocations of one workgroup beyond which a list is seldom as long.
 const LARGEST_TAIL: u32 = 1024;
-
-/// A buffer that is destroyed when it goes: in a browser the garbage collector would take its time.
-pub(super) struct Buffer(pub(super) wgpu::Buffer);
-
-impl std::ops::Deref for Buffer {
-    type Target = wgpu::Buffer;
-    fn deref(&self) -> &wgpu::Buffer {
-        &self.0
-    }
-}
-
-impl Drop for Buffer {
-    fn drop(&mut self) {
-        self.0.destroy();
-    }
-}
 
 /// A device and what was compiled for it.
 pub(crate) struct Device {
@@ -132,12 +115,6 @@ fn refused_kernels(fault: Fault) -> Error {
 
 #[cfg(test)]
 impl Device {
-    /// One that nobody else has.
-    pub(crate) async fn own() -> Result<super::Handle, Error> {
-        let (adapter, is_software) = Self::find_adapter().await?;
-        Ok(super::Handle::new(Self::open(adapter, is_software, None).await?))
-    }
-
     /// Submissions, and buffers mapped.
     pub(crate) fn asked(&self) -> [u32; 2] {
         [&self.asked.submissions, &self.asked.maps].map(|count| count.load(Relaxed))
@@ -172,11 +149,13 @@ impl Device {
         Ok((adapter, is_software))
     }
 
-    /// Opens the adapter, with the kernels that every mesh needs, and those of a form.
+    /// Opens the adapter, with the kernels that every mesh needs, and those of a form. `on_loss` is called
+    /// when the device is lost.
     pub(super) async fn open(
         adapter: wgpu::Adapter,
         is_software: bool,
         form: Option<Form>,
+        on_loss: fn(),
     ) -> Result<Self, Error> {
         let offered = adapter.limits();
         let limits = wgpu::Limits {
@@ -198,7 +177,7 @@ impl Device {
         };
         #[cfg(target_arch = "wasm32")]
         let name = browser::GpuDevice::of(&device).map_or_else(String::new, |raw| raw.adapter_name());
-        Self::compile(device, queue, name, is_software, form).await
+        Self::compile(device, queue, name, is_software, form, on_loss).await
     }
 
     /// Compiles the kernels that every mesh needs, and those of a form beside them.
@@ -211,6 +190,7 @@ impl Device {
         adapter: String,
         is_software: bool,
         form: Option<Form>,
+        on_loss: fn(),
     ) -> Result<Self, Error> {
         let failure = Failure::default();
         // In a browser the handler is the page's to set. Here no one else uses the device.
@@ -224,8 +204,7 @@ impl Device {
         let lost = failure.clone();
         device.set_device_lost_callback(move |reason, message| {
             report(&lost, format!("device lost ({reason:?}): {message}"));
-            #[cfg(all(target_arch = "wasm32", feature = "js"))]
-            super::shared::let_idle_go();
+            on_loss();
         });
         let limits = device.limits();
         let largest = limits.max_compute_invocations_per_workgroup.min(limits.max_compute_workgroup_size_x);
@@ -235,7 +214,7 @@ impl Device {
         let plans: Vec<_> = [Plan::adjacency(), Plan::probe()].into_iter().chain(phases).collect();
         #[cfg(not(target_arch = "wasm32"))]
         let waking = wake(&device, &queue);
-        let compiled = kernels::compile(&plans, &device).await;
+        let compiled = compile::compile(&plans, &device).await;
         #[cfg(not(target_arch = "wasm32"))]
         drop(waking.map(std::thread::JoinHandle::join));
         let mut compiled = compiled.map_err(refused_kernels)?;
@@ -289,26 +268,9 @@ impl Device {
         if let Some(kernels) = &known()[form.index()] {
             return Ok(kernels.clone());
         }
-        let compiled = kernels::compile(&[Plan::phases(form, self.tail_size)], &self.device).await;
+        let compiled = compile::compile(&[Plan::phases(form, self.tail_size)], &self.device).await;
         let kernels = Arc::new(compiled.map_err(refused_kernels)?.remove(0));
         Ok(known()[form.index()].get_or_insert(kernels).clone())
-    }
-
-    /// Runs `shaders/webgpu/probe.wgsl` and compares.
-    async fn probe_loops(&self, probe: &Kernels) -> Result<bool, Error> {
-        let buffer = self.checked(|| self.buffer("probe", 1, BufferUsages::STORAGE)).await?;
-        let record = || {
-            let bindings = self.bind(&probe.layout, &[(&buffer, None)]);
-            let mut encoder = self.device.create_command_encoder(&Default::default());
-            let mut pass = encoder.begin_compute_pass(&Default::default());
-            pass.set_pipeline(&probe.pipelines[0]);
-            pass.set_bind_group(0, &bindings, &[]);
-            pass.dispatch_workgroups(1, 1, 1);
-            drop(pass);
-            encoder
-        };
-        let found = self.submit_and_read(&record, &[Source::new(&buffer, 1)]).await?;
-        Ok(ends_loops_early(found.words(0)?[0]))
     }
 
     /// Whether any call of ours has failed since the device was opened, or it was lost.

@@ -1,7 +1,9 @@
 //! What a device has to say of our own calls, by error scopes. A page may share the device and its handler of
 //! uncaptured errors, so an error outside of our scopes is none of ours.
 
-use crate::Error;
+#[cfg(target_arch = "wasm32")]
+use super::browser::{GpuDevice, Told};
+use crate::{EngineKind, Error};
 use std::fmt;
 use std::pin::Pin;
 
@@ -24,12 +26,12 @@ impl fmt::Display for Fault {
 
 /// There is no device, or none that is taken.
 pub(super) fn unavailable(message: String) -> Error {
-    Error::BackendUnavailable { backend: "gpu", message }
+    Error::BackendUnavailable { backend: EngineKind::Gpu, message }
 }
 
 /// The device cannot take the mesh.
 pub(super) fn refuse<T>(message: String) -> Result<T, Error> {
-    Err(Error::BackendLimit { backend: "gpu", message })
+    Err(Error::BackendLimit { backend: EngineKind::Gpu, message })
 }
 
 /// The word of the device on calls, once it has given it: the fault that says most.
@@ -53,5 +55,23 @@ pub(super) fn watch<T>(device: &wgpu::Device, calls: impl FnOnce() -> T) -> (T, 
     (result, Box::pin(word))
 }
 
+/// As natively. Not through wgpu, which panics on an internal error.
 #[cfg(target_arch = "wasm32")]
-pub(super) use super::browser::watch;
+pub(super) fn watch<T>(device: &wgpu::Device, calls: impl FnOnce() -> T) -> (T, Word) {
+    let Some(device) = GpuDevice::of(device) else { return (calls(), Box::pin(std::future::ready(None))) };
+    device.push_error_scopes();
+    let result = calls();
+    let told = device.pop_error_scopes();
+    (result, Box::pin(word(told)))
+}
+
+#[cfg(target_arch = "wasm32")]
+async fn word([memory, internal, validation]: [wasm_bindgen_futures::JsFuture; 3]) -> Option<Fault> {
+    use wasm_bindgen::{JsCast, JsValue};
+    // The promises of a lost device may be refused: its loss is told elsewhere.
+    let told = |error: Result<JsValue, JsValue>| error.ok().filter(JsValue::is_object);
+    match (told(memory.await), told(internal.await).or(told(validation.await))) {
+        (Some(_), _) => Some(Fault::OutOfMemory),
+        (None, other) => other.map(|error| Fault::Other(error.unchecked_into::<Told>().message())),
+    }
+}

@@ -4,7 +4,7 @@ use super::buffers::frontier_words;
 use super::device::Device;
 use super::faults::refuse;
 use crate::Error;
-use crate::engine::upload::Upload;
+use crate::engine::gpu::upload::Upload;
 
 /// Refuses a mesh that the device cannot hold.
 pub(super) fn refuse_large_mesh(gpu: &Device, upload: &Upload) -> Result<(), Error> {

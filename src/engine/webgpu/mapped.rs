@@ -1,9 +1,10 @@
 //! Copies in a browser, straight between mapped memory and that of the module: wgpu would copy everything once more.
 
+use super::buffer::Buffer;
+use super::buffer::MOST_KEPT;
 use super::copies::Landed;
-use super::device::{Buffer, Device};
+use super::device::Device;
 use super::faults::watch;
-use super::staging;
 use crate::Error;
 use js_sys::Uint32Array;
 use std::ops::Range;
@@ -73,7 +74,7 @@ impl Device {
     /// The same through memory that is kept, if that is ready; else it is for the next time.
     pub(super) fn write_all(&self, writes: &[(&Buffer, &[u32])]) {
         let bytes = writes.iter().map(|(_, words)| size_of_val(*words) as u64).sum();
-        let is_staged = (FEWEST_STAGED..=staging::MOST).contains(&bytes);
+        let is_staged = (FEWEST_STAGED..=MOST_KEPT).contains(&bytes);
         if is_staged && self.write_staged(bytes, writes).is_some() {
             return;
         }

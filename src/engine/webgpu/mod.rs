@@ -10,17 +10,22 @@ mod adjacency;
 mod ahead;
 #[cfg(target_arch = "wasm32")]
 mod browser;
+mod buffer;
 mod buffers;
+mod compile;
 mod copies;
 mod device;
 mod faults;
+mod history;
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 mod host;
 mod kernels;
+mod known;
 mod limits;
 #[cfg(target_arch = "wasm32")]
 mod mapped;
 mod params;
+mod probe;
 mod programs;
 mod run;
 mod shared;
@@ -40,42 +45,24 @@ pub(crate) use shared::{GivenDevice, Handle};
 
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 use super::SharedObjects;
-use super::upload::Form;
 use super::{Answer, Census, EdgeCounts, Engine};
 #[cfg(test)]
 use crate::Error;
+use crate::engine::gpu::Form;
 #[cfg(test)]
-use crate::adjacency::unflagged;
-use crate::mesh::Mesh;
+use crate::mesh::half_edge::unflagged;
 use crate::phases::Thresholds;
+use crate::{EngineKind, Mesh};
+use buffer::Buffer;
 use buffers::Buffers;
-use device::Buffer;
 use faults::Word;
+use history::{BATCH, Entry, TAIL};
 use kernels::Kernels;
 #[cfg(test)]
 use kernels::Plan;
+use known::Known;
 use params::Params;
-use run::Known;
 use std::sync::Arc;
-
-/// Iterations with a dispatch for each phase in one submission.
-const BATCH: u32 = 12;
-/// Iterations that the tail may run after them.
-const TAIL: u32 = 256;
-/// The same where loops end too early.
-const SHORT_TAIL: u32 = 4;
-/// How often it may pause in a submission for exact arithmetic.
-const PAUSES: u32 = 8;
-
-// Words of the history, as in `state.wgsl`.
-const COUNTS: usize = 6;
-const SEVERAL_FANS: usize = 7;
-const ENTRIES: usize = 8;
-const ENTRY_WORDS: usize = 4;
-const HISTORY_WORDS: usize = ENTRIES + ENTRY_WORDS * (1 + BATCH as usize + TAIL as usize);
-
-/// The entry of the history that the next iteration starts from: FLIPS, LENGTH, BUILT, RAN.
-type Entry = [u32; ENTRY_WORDS];
 
 /// A mesh on the device.
 pub(crate) struct WebGpu {
@@ -136,7 +123,7 @@ impl Engine for WebGpu {
     fn triangles_array(&mut self) -> Answer<'_, js_sys::Uint32Array> {
         match self.known.triangles.take() {
             Some(triangles) => Box::pin(std::future::ready(Ok(triangles))),
-            None => super::array(self.triangles()),
+            None => crate::engine::interface::array(self.triangles()),
         }
     }
 
@@ -152,8 +139,8 @@ impl Engine for WebGpu {
         self.counts
     }
 
-    fn backend(&self) -> &'static str {
-        "gpu"
+    fn backend(&self) -> EngineKind {
+        EngineKind::Gpu
     }
 
     fn adapter(&self) -> Option<String> {
@@ -193,7 +180,7 @@ impl WebGpu {
 
     /// Interior edges that the filter decides, and those that it does not.
     pub(crate) async fn tiers(&self) -> Result<[u32; 2], Error> {
-        let compiled = kernels::compile(&[Plan::tiers(self.form)], &self.gpu.device).await;
+        let compiled = compile::compile(&[Plan::tiers(self.form)], &self.gpu.device).await;
         let [kernels] = &compiled.unwrap_or_default()[..] else {
             return Err(Error::Device { message: "the tiers do not compile".to_owned() });
         };

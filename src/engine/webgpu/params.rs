@@ -1,8 +1,8 @@
 //! The parameters that every kernel of the phases reads.
 
-use crate::engine::cosine::Cosine;
-use crate::engine::upload::Upload;
-use crate::mesh::{Dimension, Mesh};
+use crate::engine::gpu::cosine::Cosine;
+use crate::engine::gpu::upload::Upload;
+use crate::{Dimension, Mesh};
 
 /// Iterations of the tail run on lists of up to so many triangles.
 const TAIL_LENGTH: u32 = 2048;

@@ -1,31 +1,24 @@
 //! The iterations, and what is read behind them.
 
+use super::WebGpu;
 use super::adjacency::COUNTERS;
+use super::buffer::{Buffer, MOST_KEPT};
 use super::buffers::Buffers;
 use super::copies::Source;
 #[cfg(not(target_arch = "wasm32"))]
-use super::copies::{Words, room};
-use super::device::Buffer;
+use super::copies::room;
+use super::history::{BATCH, COUNTS, ENTRIES, ENTRY_WORDS, HISTORY_WORDS, PAUSES, SHORT_TAIL, TAIL};
 use super::kernels::{Kernel, WORKGROUP_SIZE};
+use super::known::Known;
 #[cfg(target_arch = "wasm32")]
-use super::mapped::{Words, room};
+use super::mapped::room;
 use super::programs::{DECIDERS, LANE_COUNT};
-use super::staging;
 use super::steps::Step;
-use super::{BATCH, COUNTS, ENTRIES, ENTRY_WORDS, HISTORY_WORDS, PAUSES, SHORT_TAIL, TAIL, WebGpu};
 use crate::Error;
 use crate::engine::{Answer, Census};
 
 /// Kernels of a census.
 const CENSUS_DISPATCHES: u64 = 3;
-
-/// What was read behind the last iteration, before anybody has asked.
-#[derive(Default)]
-pub(super) struct Known {
-    pub(super) census: Option<Census>,
-    /// Gone once they were asked for.
-    pub(super) triangles: Option<Words>,
-}
 
 impl WebGpu {
     pub(super) async fn run(&mut self, count: u32) -> Result<Vec<u32>, Error> {
@@ -77,7 +70,7 @@ impl WebGpu {
         ];
         // Most runs end in their first submission.
         let is_run = self.params.first == 0 && count > 1;
-        let has_triangles = !self.waits && is_run && (4 * triangles as u64) < staging::MOST;
+        let has_triangles = !self.waits && is_run && (4 * triangles as u64) < MOST_KEPT;
         if has_triangles {
             sources.push(Source::new(&self.buffers.triangles, triangles));
         }

@@ -3,9 +3,9 @@
 use super::device::Device;
 use super::faults::unavailable;
 use crate::Error;
-use crate::engine::upload::Form;
+use crate::engine::gpu::upload::Form;
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
-use crate::js_promise::promise;
+use crate::system::promise::promise;
 use std::sync::Mutex;
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 use wasm_bindgen::JsValue;
@@ -88,9 +88,9 @@ fn refuse_software(is_software: bool, takes_software: bool) -> Result<(), Error>
     Ok(())
 }
 
-/// For the time after the loss of a device: without it, its memory would wait for the next session.
-#[cfg(all(target_arch = "wasm32", feature = "js"))]
-pub(super) fn let_idle_go() {
+/// After the loss of a device. Without it, its memory would wait for the next session.
+fn on_loss() {
+    #[cfg(all(target_arch = "wasm32", feature = "js"))]
     with_shared(Shared::let_idle_go);
 }
 
@@ -142,7 +142,7 @@ impl Device {
         let (adapter, is_software) = Self::find_adapter().await?;
         with_shared(|shared| shared.is_software = is_software);
         refuse_software(is_software, takes_software)?;
-        let device = Handle::new(Self::open(adapter, is_software, form).await?);
+        let device = Handle::new(Self::open(adapter, is_software, form, on_loss).await?);
         with_shared(|shared| shared.opened = Some(device.clone()));
         Ok(device)
     }
@@ -199,9 +199,19 @@ impl Device {
             return Ok(device);
         }
         let (device, queue) = given.adopt().await.map_err(unavailable)?;
-        let device =
-            Handle::new(Self::compile(device, queue, given.adapter_name(), is_software, Some(form)).await?);
+        let device = Handle::new(
+            Self::compile(device, queue, given.adapter_name(), is_software, Some(form), on_loss).await?,
+        );
         with_shared(|shared| shared.adopted.push(device.clone()));
         Ok(device)
+    }
+}
+
+#[cfg(test)]
+impl Device {
+    /// One that nobody else has.
+    pub(crate) async fn own() -> Result<Handle, Error> {
+        let (adapter, is_software) = Self::find_adapter().await?;
+        Ok(Handle::new(Self::open(adapter, is_software, None, on_loss).await?))
     }
 }

@@ -3,8 +3,8 @@
 #[path = "../../../shaders/compose.rs"]
 mod compose;
 
-use crate::engine::upload::Form;
-use crate::mesh::Dimension;
+use crate::Dimension;
+use crate::engine::gpu::upload::Form;
 
 /// The path in `shaders/` of each file, and its text.
 const FILES: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/shaders.rs"));

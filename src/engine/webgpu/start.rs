@@ -1,21 +1,24 @@
 //! What is done before the first iteration: the mesh goes up, its adjacency is built, stars and creases are looked at.
 
+use super::WebGpu;
 use super::adjacency::{self, COUNTERS, Found, Scratch};
 use super::buffers::Buffers;
 use super::faults::{refuse, watch};
+use super::history::{Entry, SEVERAL_FANS};
 use super::kernels::Kernel;
+use super::known::Known;
 use super::limits::{refuse_large_buffer, refuse_large_mesh};
 use super::params::{NEGATIVE, POSITIVE, Params, Places};
-use super::run::Known;
+use super::shared::Handle;
 use super::steps::Step;
-use super::{Entry, Handle, SEVERAL_FANS, WebGpu};
-use crate::engine::probe::SHORT_STAR;
-use crate::engine::upload::Upload;
+use crate::Error;
+use crate::engine::gpu::probe::SHORT_STAR;
+use crate::engine::gpu::upload::Upload;
 use crate::engine::{EdgeCounts, Engine};
 use crate::mesh::Mesh;
-use crate::star::Fans;
-use crate::winding::Winding;
-use crate::{Error, locks};
+use crate::mesh::half_edge;
+use crate::mesh::star::Fans;
+use crate::mesh::winding::Winding;
 use std::sync::Arc;
 use web_time::Instant;
 use wgpu::BufferUsages;
@@ -209,7 +212,7 @@ impl WebGpu {
     pub(super) async fn flag_locked(&mut self, half_edges: Vec<u32>) -> Result<(), Error> {
         self.known = Known::default();
         let mut twins = self.twins().await?;
-        locks::flag(&mut twins, &half_edges);
+        half_edge::lock(&mut twins, &half_edges);
         self.gpu.checked(|| self.gpu.write(&self.buffers.twins, &twins)).await
     }
 
@@ -226,7 +229,7 @@ impl WebGpu {
             return self.begin(upload.mesh).await;
         }
         let mut moved = Self::begun(self.gpu.clone(), upload, self.waits).await?;
-        let locked = locks::flagged(&self.twins().await?);
+        let locked = half_edge::locked(&self.twins().await?);
         if !locked.is_empty() {
             moved.flag_locked(locked).await?;
         }

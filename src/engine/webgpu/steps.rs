@@ -1,6 +1,6 @@
 //! What the dispatches of a submission are about.
 
-use super::BATCH;
+use super::history::BATCH;
 
 /// Words from one step to the next: the alignment of a dynamic offset that every device offers.
 const WORDS: u32 = 64;

@@ -5,13 +5,14 @@
 use super::adjacency::BUCKETS_EACH;
 use super::copies::{CHUNK, PIECE};
 use super::device::Device;
-use super::kernels::{self, Plan, WORKGROUP_SIZE};
+use super::history::{COUNTS, ENTRIES, ENTRY_WORDS, SEVERAL_FANS};
+use super::kernels::{Plan, WORKGROUP_SIZE};
 use super::params::{NEGATIVE, POSITIVE, Params};
-use super::{COUNTS, ENTRIES, ENTRY_WORDS, SEVERAL_FANS, programs, sources};
-use crate::adjacency::{CREASE, FLAGS, LOCKED};
-use crate::engine::cosine::DIGIT_BITS;
-use crate::engine::upload::{Form, SPAN};
-use crate::phases::BLOCKED;
+use super::{compile, programs, sources};
+use crate::engine::gpu::cosine::DIGIT_BITS;
+use crate::engine::gpu::upload::{Form, SPAN};
+use crate::mesh::half_edge::{CREASE, FLAGS, LOCKED};
+use crate::phases::state::BLOCKED;
 use crate::{Dimension, Error, NONE, Reason};
 use pollster::block_on;
 use std::collections::HashMap;
@@ -219,7 +220,7 @@ const MOST_WORDS: usize = 18_000;
 #[test]
 fn kernels_are_short_one_by_one() {
     let (adapter, is_software) = block_on(Device::find_adapter()).unwrap();
-    let gpu = block_on(Device::open(adapter, is_software, None)).unwrap();
+    let gpu = block_on(Device::open(adapter, is_software, None, || {})).unwrap();
     println!("{}\n\n| kernels | kernel | SPIR-V words | ms |\n|---|---|---:|---:|", gpu.adapter);
     let form = |dimension, has_deviation| Form { dimension, is_fixed: false, has_deviation };
     let plans = [
@@ -233,7 +234,7 @@ fn kernels_are_short_one_by_one() {
             let words = spirv_words(&sources[entry.0], entry.1);
             let one = Plan { bindings: bindings.clone(), sources: sources.clone(), entries: vec![entry] };
             let start = Instant::now();
-            let compiled = block_on(kernels::compile(std::slice::from_ref(&one), &gpu.device));
+            let compiled = block_on(compile::compile(std::slice::from_ref(&one), &gpu.device));
             let ms = start.elapsed().as_secs_f64() * 1e3;
             assert!(compiled.is_ok(), "{name}: {}", entry.1);
             println!("| {name} | {} | {words} | {ms:.0} |", entry.1);
@@ -273,7 +274,7 @@ fn variables_are_given_a_value() {
 fn an_error_of_a_call_is_told() {
     let gpu = block_on(async {
         let (adapter, is_software) = Device::find_adapter().await?;
-        Device::open(adapter, is_software, None).await
+        Device::open(adapter, is_software, None, || {}).await
     })
     .unwrap();
     assert!(block_on(gpu.checked(|| gpu.buffer("small", 4, wgpu::BufferUsages::STORAGE))).is_ok());

@@ -1,7 +1,8 @@
 //! Numbers out of buffers, by accessors and buffer views, with every bound checked.
 
 use super::buffers::Buffers;
-use super::{Root, refuse};
+use super::errors::refuse;
+use super::root::Root;
 use crate::Error;
 use gltf::json::accessor::{Accessor, ComponentType, Type};
 use gltf::json::buffer::View;

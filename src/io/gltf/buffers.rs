@@ -1,7 +1,9 @@
 //! The bytes that a glTF file has in its binary chunk, in its JSON, or in files beside it.
 
-use super::{ReadFile, Root, quoted, refuse};
+use super::errors::{quoted, refuse};
+use super::root::Root;
 use crate::Error;
+use crate::io::options::ReadFile;
 use base64::Engine;
 use base64::alphabet::STANDARD;
 use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};

@@ -1,7 +1,7 @@
 //! The two shapes of a glTF file: JSON alone (`.gltf`), and JSON with a binary chunk behind a header (`.glb`).
 //! Source: the glTF 2.0 specification, section 4, "GLB File Format Specification".
 
-use super::refuse;
+use super::errors::refuse;
 use crate::Error;
 use std::ops::Range;
 

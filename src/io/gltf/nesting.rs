@@ -1,7 +1,7 @@
 //! How deep the JSON of a file is nested. Reading skips what it does not know at any depth, but a file is written from a
 //! `serde_json::Value`, which has a limit: a deeper file is refused where it is read.
 
-use super::refuse;
+use super::errors::refuse;
 use crate::Error;
 use memchr::memchr2;
 

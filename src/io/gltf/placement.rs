@@ -1,6 +1,7 @@
 //! Where the nodes of the scene place a mesh.
 
-use super::{Root, refuse};
+use super::errors::refuse;
+use super::root::Root;
 use crate::Error;
 use glam::{DMat3, DMat4, DQuat, DVec3};
 use gltf::json::scene::Node;

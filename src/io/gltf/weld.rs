@@ -2,8 +2,9 @@
 
 use super::accessors::Accessors;
 use super::container::Container;
-use super::{Document, Part, deserialized, json};
-use crate::weld::{first_alike, place};
+use super::document::{Document, Part};
+use super::root::{deserialized, json};
+use crate::prepare::weld::{first_alike, place};
 use crate::{Error, Mesh, Welded};
 use serde::Deserialize;
 use serde_json::Value;
@@ -80,9 +81,9 @@ impl Part {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{container::glb, load};
     use super::*;
-    use crate::io::{Loaded, ReadOptions};
+    use crate::io::gltf::container::glb;
+    use crate::io::{Format, Loaded, ReadOptions, parse};
     use serde_json::json;
 
     /// A square of two triangles without a common vertex: corners 0 and 3 are at one place, and 2 and 4.
@@ -112,7 +113,7 @@ mod tests {
 
     fn read((json, buffer): &(Value, Vec<u8>)) -> Loaded {
         let bytes = glb(json.to_string().as_bytes(), Some(buffer), &[]).unwrap();
-        load(bytes, &ReadOptions::default(), &|_| Err(String::new())).unwrap()
+        parse(Format::Glb, bytes, &ReadOptions::default()).unwrap()
     }
 
     /// Whether the diagonal is a seam.
@@ -139,11 +140,8 @@ mod tests {
         assert_eq!(welded.split(welded.mesh.triangles()).unwrap(), loaded.mesh.triangles());
         let flipped = welded.split(&[0, 1, 5, 1, 2, 5]).unwrap();
         assert_eq!(flipped, [0, 1, 5, 1, 4, 5]);
-        let again =
-            load(loaded.file_bytes("out.glb", flipped.clone()).unwrap(), &ReadOptions::default(), &|_| {
-                Err(String::new())
-            });
-        let again = again.unwrap();
+        let again = loaded.file_bytes("out.glb", flipped.clone()).unwrap();
+        let again = parse(Format::Glb, again, &ReadOptions::default()).unwrap();
         assert_eq!((again.mesh.positions(), again.mesh.triangles()), (loaded.mesh.positions(), &flipped[..]));
     }
 

@@ -6,8 +6,10 @@
 use super::accessors::{Accessors, component};
 use super::buffers::{Buffers, data_uri};
 use super::container::{Container, glb};
-use super::{Document, Part, json, refuse, uses};
-use crate::io::rounded;
+use super::document::{Document, Part};
+use super::errors::refuse;
+use super::root::{json, uses};
+use crate::io::rounded::rounded;
 use crate::{Error, Mesh};
 use gltf::json::accessor::ComponentType;
 use serde_json::{Value, json};

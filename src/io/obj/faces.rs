@@ -1,8 +1,8 @@
 //! Where the faces of an OBJ file are, the texture vertices and normals of their corners, and the groups that they are in.
 
-use super::continued;
+use super::lines::continued;
 use crate::Mesh;
-use crate::io::original::{Face, Faces, Numbers, line_end, numbered, place};
+use crate::io::held::{Face, Faces, Numbers, line_end, numbered, place};
 use crate::io::text::{Digits, Lines, Tokens, integer, without_comment};
 
 /// What a line of these says is so for the faces after it.

@@ -2,15 +2,15 @@
 //! Source: Wavefront's Advanced Visualizer manual, appendix B1. Groups, objects and materials divide nothing.
 
 mod faces;
+mod lines;
 
 pub(super) use faces::held_faces;
 
+use super::parsed::{Dropped, Fans, Parsed};
 use super::pieces;
-use super::text::{
-    Dropped, Fans, Lines, Parsed, Tokens, coordinate, float, integer, quoted, without_comment,
-};
+use super::text::{Lines, Tokens, coordinate, float, integer, quoted, without_comment};
 use crate::{Error, Mesh};
-use std::borrow::Cow;
+use lines::continued;
 use std::io::{self, Write};
 
 /// Reads a file's bytes.
@@ -174,21 +174,4 @@ impl Reader {
             },
         }
     }
-}
-
-/// The line with those that follow it after a backslash, and the last of them.
-fn continued<'a>(line: &'a [u8], lines: &mut Lines<'a>) -> (Cow<'a, [u8]>, &'a [u8]) {
-    let Some(start) = line.strip_suffix(b"\\") else { return (Cow::Borrowed(line), line) };
-    let mut joined = start.to_vec();
-    let mut last = line;
-    for line in lines {
-        joined.push(b' ');
-        last = without_comment(line);
-        let start = last.strip_suffix(b"\\");
-        joined.extend_from_slice(start.unwrap_or(last));
-        if start.is_none() {
-            break;
-        }
-    }
-    (Cow::Owned(joined), last)
 }

@@ -1,9 +1,8 @@
 //! Where the faces of a PLY file are, and what they and their corners have beside their vertices.
 
-use super::header::{Element, Encoding, Header, Property, Scalar};
-use super::source::{Ascii, Source};
-use super::{Role, binary, role};
-use crate::io::original::{Face, Faces, Numbers, line_end, numbered, place};
+use super::header::{Element, Encoding, Header, Property, Role, Scalar, role};
+use super::source::{Ascii, Source, binary};
+use crate::io::held::{Face, Faces, Numbers, line_end, numbered, place};
 use crate::io::text::{Digits, Lines, Tokens, quoted};
 use crate::{Error, Mesh};
 

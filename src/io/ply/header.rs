@@ -169,3 +169,28 @@ fn property<'e, 'a>(
         None => Err(lines.refuse("a property before the first element")),
     }
 }
+
+/// What the reader does with a property.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Role {
+    Coordinate(usize),
+    Polygon,
+    Strip,
+    Skipped,
+}
+
+/// The role of a property of the element of that name.
+pub(super) fn role(element: &[u8], property: &Property) -> Role {
+    match (element, property.name, property.length) {
+        (b"vertex", b"x", None) => Role::Coordinate(0),
+        (b"vertex", b"y", None) => Role::Coordinate(1),
+        (b"vertex", b"z", None) => Role::Coordinate(2),
+        (b"face", b"vertex_indices" | b"vertex_index", Some(_)) if property.scalar.is_integer() => {
+            Role::Polygon
+        }
+        (b"tristrips", b"vertex_indices" | b"vertex_index", Some(_)) if property.scalar.is_integer() => {
+            Role::Strip
+        }
+        _ => Role::Skipped,
+    }
+}

@@ -8,11 +8,12 @@ mod source;
 
 pub(super) use faces::{held_faces, is_held};
 
-use super::text::{Dropped, Fans, Lines, Parsed, Tokens, quoted};
+use super::parsed::{Dropped, Fans, Parsed};
+use super::text::{Lines, Tokens, quoted};
 use crate::error::number;
 use crate::{Error, Mesh, Positions};
-use header::{Element, Encoding, Header, Property, Scalar};
-use source::{Ascii, Binary, Source};
+use header::{Element, Encoding, Header, Property, Role, Scalar, role};
+use source::{Ascii, Source, binary};
 use std::io::{self, Write};
 
 /// Names of properties that a note lists at most.
@@ -26,15 +27,6 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Parsed, Error> {
         Encoding::Ascii => Body::read(Ascii { lines, words: Tokens(b"") }, &elements),
         _ => Body::read(binary(bytes, &lines, encoding), &elements),
     }
-}
-
-/// What follows the header, whose lines have been read, in a file that is no text.
-fn binary<'a>(bytes: &'a [u8], lines: &Lines, encoding: Encoding) -> Binary<'a> {
-    let mut start = bytes.len() - lines.bytes_left();
-    // Where the lines of the header end with CR alone, a LF after it is the first byte of a number.
-    let ends_with_cr = bytes.starts_with(b"ply\r") && !bytes.starts_with(b"ply\r\n");
-    start -= usize::from(ends_with_cr && bytes[..start].ends_with(b"\r\n"));
-    Binary::new(bytes, start, encoding == Encoding::BigEndian)
 }
 
 /// Writes `mesh` with the least significant byte first and coordinates as wide as the mesh's; z is 0 in a 2D mesh.
@@ -77,31 +69,6 @@ fn write_numbers<T: Copy + Default, const N: usize>(
         }
     }
     Ok(())
-}
-
-/// What the reader does with a property.
-#[derive(Clone, Copy, PartialEq)]
-enum Role {
-    Coordinate(usize),
-    Polygon,
-    Strip,
-    Skipped,
-}
-
-/// The role of a property of the element of that name.
-fn role(element: &[u8], property: &Property) -> Role {
-    match (element, property.name, property.length) {
-        (b"vertex", b"x", None) => Role::Coordinate(0),
-        (b"vertex", b"y", None) => Role::Coordinate(1),
-        (b"vertex", b"z", None) => Role::Coordinate(2),
-        (b"face", b"vertex_indices" | b"vertex_index", Some(_)) if property.scalar.is_integer() => {
-            Role::Polygon
-        }
-        (b"tristrips", b"vertex_indices" | b"vertex_index", Some(_)) if property.scalar.is_integer() => {
-            Role::Strip
-        }
-        _ => Role::Skipped,
-    }
 }
 
 /// The mesh read so far.

@@ -1,6 +1,6 @@
 //! The numbers after the header of a PLY file, as text or not.
 
-use super::header::{Property, Scalar};
+use super::header::{Encoding, Property, Scalar};
 use crate::Error;
 use crate::io::text::{Lines, Tokens, float, integer, quoted};
 
@@ -205,4 +205,13 @@ impl<'a> Source<'a> for Binary<'a> {
     fn least(&self, scalar: Scalar) -> usize {
         scalar.size()
     }
+}
+
+/// What follows the header, whose lines have been read, in a file that is no text.
+pub(super) fn binary<'a>(bytes: &'a [u8], lines: &Lines, encoding: Encoding) -> Binary<'a> {
+    let mut start = bytes.len() - lines.bytes_left();
+    // Where the lines of the header end with CR alone, a LF after it is the first byte of a number.
+    let ends_with_cr = bytes.starts_with(b"ply\r") && !bytes.starts_with(b"ply\r\n");
+    start -= usize::from(ends_with_cr && bytes[..start].ends_with(b"\r\n"));
+    Binary::new(bytes, start, encoding == Encoding::BigEndian)
 }

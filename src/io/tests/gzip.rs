@@ -4,6 +4,7 @@ use super::super::gzip as io_gzip;
 use super::*;
 use flate2::Compression;
 use flate2::write::GzEncoder;
+use std::io::Write;
 
 fn packed(bytes: &[u8]) -> Vec<u8> {
     let mut encoder = GzEncoder::new(Vec::new(), Compression::best());

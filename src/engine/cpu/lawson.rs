@@ -1,0 +1,97 @@
+//! Lawson's sequential algorithm: one non-Delaunay edge after the other, from a queue that the mesh fills bit by bit, so that
+//! the next one is near. The paper compares with it; it is the fast path for those who do not need the order of the parallel
+//! phases.
+//!
+//! Each thread has a region of the mesh, and then what touches two of them. The regions, and so the flips, are the same for
+//! any number of threads.
+
+use super::phases::Cpu;
+use super::region::{Region, Work};
+use crate::engine::{Answer, Census, EdgeCounts, Engine};
+use crate::{EngineKind, Mesh};
+use std::sync::Arc;
+
+/// Regions at most, several for each thread of most machines, so that none waits long for another.
+const REGIONS: usize = 64;
+
+/// Triangles of a region at least: few of them are near others. Without optimisation it has few, so that small meshes test
+/// regions.
+const FEWEST: usize = if cfg!(debug_assertions) { 16 } else { 1 << 15 };
+
+/// The state of the CPU engine, flipped in another order.
+pub(crate) struct Lawson {
+    cpu: Cpu,
+    /// Whether nothing is left to flip.
+    has_ended: bool,
+}
+
+impl Lawson {
+    pub(crate) fn new(cpu: Cpu) -> Self {
+        Self { cpu, has_ended: false }
+    }
+
+    /// Flips until nothing is left to flip, or the number of flips, which it returns, is at its limit.
+    fn flip_all(&mut self) -> u32 {
+        let threads = self.cpu.threads.clone();
+        let (geometry, mesh) = self.cpu.parts();
+        let mut whole = Region { geometry: &geometry, mesh, work: Work::default(), limit: u32::MAX };
+        let triangles = whole.mesh.triangles.len() / 3;
+        // A region does not know of other fans than those inside of it.
+        let is_cut = whole.mesh.has_no_fans();
+        let size = if is_cut { triangles.div_ceil(REGIONS).max(FEWEST) } else { triangles };
+        whole.flip_parts(size, &threads);
+        let mut before = 0;
+        // A flip elsewhere may have removed the edge that stood in the way.
+        while std::mem::take(&mut whole.work.has_duplicate) && whole.work.flips > before {
+            before = whole.work.flips;
+            let blocked = std::mem::take(&mut whole.work.blocked);
+            whole.flip_some(&blocked);
+        }
+        let Work { flips, blocked, .. } = whole.work;
+        self.has_ended = flips < u32::MAX;
+        self.cpu.settle(blocked, self.has_ended);
+        flips
+    }
+}
+
+impl Engine for Lawson {
+    fn batch(&self) -> u32 {
+        1
+    }
+
+    fn lock(&mut self, half_edges: Vec<u32>) -> Answer<'_, ()> {
+        self.cpu.lock(half_edges)
+    }
+
+    /// A whole pass counts as one iteration.
+    fn iterate(&mut self, _count: u32) -> Answer<'_, Vec<u32>> {
+        let threads = self.cpu.threads.clone();
+        let flips = if self.has_ended { 0 } else { threads.enter(|| self.flip_all()) };
+        Box::pin(std::future::ready(Ok(if flips == 0 { Vec::new() } else { vec![flips] })))
+    }
+
+    fn census(&mut self) -> Answer<'_, Census> {
+        self.cpu.census()
+    }
+
+    fn triangles(&mut self) -> Answer<'_, Vec<u32>> {
+        Engine::triangles(&mut self.cpu)
+    }
+
+    fn twins(&mut self) -> Answer<'_, Vec<u32>> {
+        Engine::twins(&mut self.cpu)
+    }
+
+    fn set_positions(&mut self, mesh: Arc<Mesh>) -> Answer<'_, ()> {
+        self.has_ended = false;
+        self.cpu.set_positions(mesh)
+    }
+
+    fn edge_counts(&self) -> EdgeCounts {
+        self.cpu.edge_counts()
+    }
+
+    fn backend(&self) -> EngineKind {
+        self.cpu.backend()
+    }
+}

@@ -1,0 +1,444 @@
+//! The phases on the CPU, an edge at a time and on several threads: the edges that are not Delaunay are kept in lists,
+//! and an edge is tested again only where one of its triangles has flipped.
+
+use super::region::TopologyMut;
+use crate::engine::{Answer, Census, EdgeCounts, Engine};
+use crate::mesh::embedded::Embedded;
+use crate::mesh::half_edge::{self, CREASE, FLAGS, LOCKED, prev, unflagged};
+use crate::mesh::star::Fans;
+use crate::mesh::winding::Winding;
+use crate::phases::{
+    Around, Diamond, Geometry, Selected, Thresholds, Topology, Verdict, flag_creases, flip,
+    keep_non_delaunay, key, makes_duplicate, move_anchors, verdict, verdict_of_shape, yields,
+};
+use crate::system::threads::{Threads, Word, shared};
+use crate::{Adjacency, Dimension, EngineKind, Mesh, NONE};
+use std::hint::black_box;
+use std::ops::Range;
+use std::sync::Arc;
+use std::sync::atomic::AtomicU32;
+
+/// Edges that are tested in one go.
+const EDGES: usize = 256;
+
+/// Candidates of a part at least: with fewer, a thread is done before another has woken up.
+const FEWEST: usize = if cfg!(debug_assertions) { 4 } else { 512 };
+
+/// An edge by its half-edges, the lower one first.
+type Edge = [u32; 2];
+
+/// In the second half-edge of a candidate: it makes an edge that exists.
+const DUPLICATE: u32 = LOCKED;
+
+/// In the second half-edge of a candidate: it may make such an edge after other flips.
+const GUARDED: u32 = CREASE;
+
+/// Some of the edges that are not Delaunay. One thread goes through them at a time; no bit of the result depends on which
+/// they are.
+#[derive(Default)]
+struct Part {
+    /// Those that may flip, or could but for a duplicate.
+    candidates: Vec<Edge>,
+    /// A half-edge of each of the others, beside some of edges that have gone since.
+    blocked: Vec<u32>,
+    /// Those that the last iteration has flipped.
+    flipped: Vec<Edge>,
+    /// What is around each of those now.
+    around: Vec<Around>,
+    /// Half-edges of the triangles whose best edge is no other one's.
+    vain: Vec<u32>,
+}
+
+/// Reads words ahead of their use: in a loop so short, the processor waits for many of them at once.
+#[inline(always)]
+fn touch(words: impl Iterator<Item = u32>) {
+    black_box(words.fold(0, |all, word| all ^ word));
+}
+
+fn geometry_of<'a>(
+    mesh: &'a Mesh,
+    winding: &'a Winding,
+    embedded: &'a Embedded,
+    thresholds: Thresholds,
+) -> Geometry<'a> {
+    Geometry { dimension: mesh.dimension(), positions: mesh.positions(), thresholds, winding, embedded }
+}
+
+/// The state of a mesh between two iterations.
+pub(crate) struct Cpu {
+    pub(super) threads: Threads,
+    mesh: Arc<Mesh>,
+    thresholds: Thresholds,
+    winding: Winding,
+    embedded: Embedded,
+    counts: EdgeCounts,
+    pub(crate) triangles: Vec<u32>,
+    pub(crate) twins: Vec<u32>,
+    pub(crate) fans: Fans,
+    parts: Vec<Part>,
+    /// More of what parts have as blocked, from before they were cut anew.
+    blocked: Vec<Vec<u32>>,
+    /// Whether the parts have all edges that are not Delaunay; not before the first iteration.
+    is_known: bool,
+    /// The edges that flip, by triangle; none until the parts are known.
+    selected: Selected,
+    /// For each vertex whose star is not known to be embedded the last iteration, plus one, in which an edge there came
+    /// or went. Empty as long as the parts are not known.
+    changed: Vec<AtomicU32>,
+    iteration: u32,
+}
+
+impl Cpu {
+    /// Builds the adjacency.
+    pub(crate) fn new(mesh: Arc<Mesh>, thresholds: Thresholds, threads: Threads) -> Self {
+        let threads = threads.for_triangles(mesh.triangle_count());
+        threads.clone().enter(|| Self::prepared(mesh, thresholds, threads))
+    }
+
+    fn prepared(mesh: Arc<Mesh>, thresholds: Thresholds, threads: Threads) -> Self {
+        let adjacency = Adjacency::of_triangles(mesh.vertex_count(), mesh.triangles(), &threads);
+        let (winding, embedded) = Embedded::with_winding(&mesh, &adjacency.twins, &threads);
+        let counts = EdgeCounts::from(&adjacency);
+        let mut triangles = Vec::new();
+        threads.append(&mut triangles, mesh.triangles());
+        let fans = embedded.fans(&mesh, &adjacency.twins, &threads);
+        let mut twins = adjacency.twins;
+        if mesh.dimension() == Dimension::Three {
+            flag_creases(mesh.positions(), &triangles, &mut twins, thresholds.cos, &threads);
+        }
+        Self {
+            thresholds,
+            winding,
+            embedded,
+            counts,
+            fans,
+            parts: Vec::new(),
+            blocked: Vec::new(),
+            is_known: false,
+            selected: Selected::default(),
+            changed: Vec::new(),
+            iteration: 0,
+            triangles,
+            twins,
+            mesh,
+            threads,
+        }
+    }
+
+    pub(in crate::engine) fn geometry(&self) -> Geometry<'_> {
+        let Self { mesh, winding, embedded, thresholds, .. } = self;
+        geometry_of(mesh, winding, embedded, *thresholds)
+    }
+
+    pub(in crate::engine) fn topology(&self) -> Topology<'_> {
+        Topology { first: 0, triangles: &self.triangles, twins: &self.twins, fans: &self.fans }
+    }
+
+    /// Label: tests the edges around those that have flipped, which are Delaunay now, and all edges before the first
+    /// iteration; looks for duplicates again where one may have come or gone.
+    pub(in crate::engine) fn label(&mut self) {
+        let mut parts = std::mem::take(&mut self.parts);
+        if self.is_known {
+            self.threads.each(&mut parts, |part| self.keep_candidates(&mut part.candidates));
+            self.threads.each(&mut parts, |part| self.test_around(part));
+        } else {
+            self.blocked.clear();
+            self.selected = Selected::new(self.twins.len() / 3, &self.threads);
+            self.changed = self.threads.collect(self.mesh.vertex_count(), |_| AtomicU32::default());
+            parts = self.threads.map(self.twins.len() / 3, |piece| self.test_all(piece));
+        }
+        self.is_known = true;
+        self.parts = parts;
+        self.deal();
+    }
+
+    /// Tests the edges whose lower half-edges are of these triangles.
+    fn test_all(&self, range: Range<usize>) -> Part {
+        let mut part = Part::default();
+        let mut diamonds = [Diamond::default(); EDGES];
+        for first in range.clone().step_by(EDGES / 3) {
+            let piece = first..range.end.min(first + EDGES / 3);
+            let count = Diamond::write(self.topology(), piece, &mut diamonds);
+            self.test(&mut diamonds[..count], &mut part.candidates, &mut part.blocked);
+        }
+        part
+    }
+
+    /// Keeps the candidates of which no triangle has flipped.
+    fn keep_candidates(&self, candidates: &mut Vec<Edge>) {
+        let mut count = 0;
+        for i in 0..candidates.len() {
+            let [h, twin] = candidates[i];
+            let g = unflagged(twin);
+            let is_kept = self.selected.is_free(h) & self.selected.is_free(g);
+            let is_open = is_kept
+                && twin & GUARDED != 0
+                && [h, g].iter().all(|&x| self.has_changed(self.triangles[prev(x) as usize]));
+            candidates[count] = if is_open { self.guarded([h, g]) } else { [h, twin] };
+            count += usize::from(is_kept);
+        }
+        candidates.truncate(count);
+    }
+
+    /// Tests the edges around those that have flipped, whose triangles are free again.
+    fn test_around(&self, part: &mut Part) {
+        let Part { candidates, blocked, flipped, around, .. } = part;
+        let mesh = self.topology();
+        let mut diamonds = [Diamond::default(); EDGES];
+        for (flipped, around) in flipped.chunks(EDGES / 4).zip(around.chunks(EDGES / 4)) {
+            let far = around.iter().flat_map(|[outer, _]| outer).map(|twin| (twin & !FLAGS) as usize);
+            touch(far.map(|g| *self.triangles.get(g).unwrap_or(&0)));
+            let mut count = 0;
+            for (&[h, g], &[outer, corners]) in flipped.iter().zip(around) {
+                self.selected.release(h);
+                self.selected.release(g);
+                let (sides, room) = ([h, prev(h), g, prev(g)], &mut diamonds[count..]);
+                count += Diamond::write_around(mesh, sides, outer, corners, room);
+            }
+            self.test(&mut diamonds[..count], candidates, blocked);
+        }
+        flipped.clear();
+    }
+
+    fn test(&self, diamonds: &mut [Diamond], candidates: &mut Vec<Edge>, blocked: &mut Vec<u32>) {
+        let geometry = self.geometry();
+        let count = keep_non_delaunay(&geometry, diamonds);
+        for diamond in &diamonds[..count] {
+            let (h, g, [_, _, c, d]) = (diamond.h, unflagged(diamond.twin), diamond.corners);
+            let edge = [h.min(g), h.max(g)];
+            match verdict_of_shape(&geometry, diamond) {
+                Verdict::Labelled if self.embedded.at(c) | self.embedded.at(d) => candidates.push(edge),
+                Verdict::Labelled => candidates.push(self.guarded(edge)),
+                _ => blocked.push(h),
+            }
+        }
+    }
+
+    /// Cuts the candidates anew where one part has many more of them than others, or each has few.
+    fn deal(&mut self) {
+        let sizes = self.parts.iter().map(|part| part.candidates.len());
+        let (total, most) = (sizes.clone().sum(), sizes.max().unwrap_or(0));
+        let pieces = self.threads.pieces(total, FEWEST);
+        if self.parts.len() < 2 * pieces.len() && most <= 2 * pieces[0].len() {
+            return;
+        }
+        let parts = std::mem::take(&mut self.parts);
+        self.parts = self.threads.map_each(pieces, |Range { start, end }| {
+            let (mut candidates, mut before) = (Vec::with_capacity(end - start), 0);
+            for part in &parts {
+                let within = |at: usize| at.saturating_sub(before).min(part.candidates.len());
+                candidates.extend_from_slice(&part.candidates[within(start)..within(end)]);
+                before += part.candidates.len();
+            }
+            Part { candidates, ..Part::default() }
+        });
+        self.blocked.extend(parts.into_iter().map(|part| part.blocked).filter(|blocked| !blocked.is_empty()));
+    }
+
+    /// A candidate, once it is known whether it makes a duplicate.
+    fn guarded(&self, [h, g]: Edge) -> Edge {
+        let is_duplicate = makes_duplicate(&self.geometry(), self.topology(), h);
+        [h, g | GUARDED | if is_duplicate { DUPLICATE } else { 0 }]
+    }
+
+    /// Whether an edge at `v` has come or gone in the last iteration, as far as that is of interest.
+    fn has_changed(&self, v: u32) -> bool {
+        self.iteration > 0 && self.changed[v as usize].get() == self.iteration
+    }
+
+    /// Select: the edges that flip are those with the smallest key in both their triangles, but for those that yield.
+    fn select(&mut self) {
+        let mut parts = std::mem::take(&mut self.parts);
+        let Self { threads, selected, iteration, .. } = &*self;
+        threads.each(&mut parts, |part| {
+            for &[h, twin] in &part.candidates {
+                if twin & DUPLICATE == 0 {
+                    selected.bid([h, unflagged(twin)], key(h, *iteration));
+                }
+            }
+        });
+        threads.each(&mut parts, |Part { candidates, flipped, vain, .. }| {
+            let (mut wins, mut halves) = ([[0; 2]; EDGES], [0; EDGES]);
+            for candidates in candidates.chunks(EDGES) {
+                let mut counts = [0; 2];
+                for &[h, twin] in candidates {
+                    let g = unflagged(twin);
+                    let may = twin & DUPLICATE == 0;
+                    let [has_h, has_g] = [h, g].map(|x| may & selected.has_won(x, key(h, *iteration)));
+                    wins[counts[0]] = [h, twin];
+                    counts[0] += usize::from(has_h & has_g);
+                    halves[counts[1]] = if has_h { h } else { g };
+                    counts[1] += usize::from(has_h ^ has_g);
+                }
+                flipped.extend_from_slice(&wins[..counts[0]]);
+                vain.extend_from_slice(&halves[..counts[1]]);
+            }
+        });
+        let guarded = threads.each(&mut parts, |Part { flipped, vain, .. }| {
+            vain.drain(..).for_each(|x| selected.release(x));
+            flipped.iter().for_each(|&[h, twin]| selected.choose([h, unflagged(twin)]));
+            flipped.iter().fold(0, |all, [_, twin]| all | twin) & GUARDED != 0
+        });
+        let find_yielding = |part: &mut Part| {
+            let mut is_yielding = false;
+            for [h, twin] in part.flipped.iter_mut().filter(|[_, twin]| twin & GUARDED != 0) {
+                *twin = unflagged(*twin);
+                if yields(self.topology(), *iteration, *h, *twin, |t| selected.pair(t)) {
+                    *twin |= DUPLICATE;
+                    is_yielding = true;
+                }
+            }
+            is_yielding
+        };
+        if guarded.contains(&true) && threads.each(&mut parts, find_yielding).contains(&true) {
+            threads.each(&mut parts, |part| {
+                part.flipped.retain(|&[h, twin]| {
+                    let is_yielding = twin & DUPLICATE != 0;
+                    if is_yielding {
+                        selected.release(h);
+                        selected.release(unflagged(twin));
+                    }
+                    !is_yielding
+                });
+            });
+        }
+        self.parts = parts;
+    }
+
+    /// Flip with Update. Returns the number of flips.
+    fn flip(&mut self) -> u32 {
+        let Self { threads, triangles, twins, fans, selected, changed, embedded, iteration, parts, .. } =
+            self;
+        *iteration += 1;
+        for part in &*parts {
+            move_anchors(fans, triangles, selected, &part.flipped);
+        }
+        let (triangles, twins) = (shared(triangles), shared(twins));
+        threads.each(parts, |Part { flipped, around, .. }| {
+            around.clear();
+            around.reserve_exact(flipped.len());
+            for flipped in flipped.chunks(EDGES / 4) {
+                let own = flipped.iter().flatten().map(|&x| x as usize);
+                touch(own.map(|x| twins[x].get() ^ triangles[x].get()));
+                around.extend(flipped.iter().map(|&edge| {
+                    let around = flip(triangles, twins, selected, edge);
+                    for v in around[1] {
+                        if !embedded.at(v) {
+                            changed[v as usize].set(*iteration);
+                        }
+                    }
+                    around
+                }));
+            }
+        });
+        parts.iter().map(|part| part.flipped.len() as u32).sum()
+    }
+
+    /// Counts the edges that are not Delaunay: tests those again that have been found so.
+    pub(crate) fn count(&mut self) -> Census {
+        self.label();
+        let candidates = self.parts.iter().flat_map(|part| &part.candidates).map(|[h, _]| h);
+        let blocked = self.parts.iter().map(|part| &part.blocked).chain(&self.blocked).flatten();
+        let mut found = candidates.chain(blocked).peekable();
+        let mut census = Census::default();
+        if found.peek().is_none() {
+            return census;
+        }
+        let mut is_counted = vec![false; self.twins.len()];
+        for &h in found {
+            let g = unflagged(self.twins[h as usize]);
+            if g == NONE || std::mem::replace(&mut is_counted[h.min(g) as usize], true) {
+                continue;
+            }
+            match verdict(&self.geometry(), self.topology(), h) {
+                Verdict::Delaunay => {}
+                Verdict::Labelled => census.labelled += 1,
+                Verdict::Blocked(reason) => census.blocked[reason] += 1,
+            }
+        }
+        census
+    }
+}
+
+/// What Lawson's algorithm needs of it.
+impl Cpu {
+    pub(super) fn parts(&mut self) -> (Geometry<'_>, TopologyMut<'_>) {
+        let Self { mesh, winding, embedded, thresholds, triangles, twins, fans, .. } = self;
+        let geometry = geometry_of(mesh, winding, embedded, *thresholds);
+        (geometry, TopologyMut { first: 0, triangles, twins, fans: Some(fans) })
+    }
+
+    /// After flips of others: all edges are Delaunay but some of these, or else, as at first, none is known.
+    pub(super) fn settle(&mut self, others: Vec<u32>, is_known: bool) {
+        self.parts.clear();
+        self.blocked = vec![others];
+        self.is_known = is_known;
+    }
+}
+
+impl Engine for Cpu {
+    fn lock(&mut self, half_edges: Vec<u32>) -> Answer<'_, ()> {
+        half_edge::lock(&mut self.twins, &half_edges);
+        Box::pin(std::future::ready(Ok(())))
+    }
+
+    fn iterate(&mut self, count: u32) -> Answer<'_, Vec<u32>> {
+        let threads = self.threads.clone();
+        let mut flips = Vec::new();
+        threads.enter(|| {
+            while (flips.len() as u32) < count {
+                self.label();
+                self.select();
+                match self.flip() {
+                    0 => break,
+                    flipped => flips.push(flipped),
+                }
+            }
+        });
+        Box::pin(std::future::ready(Ok(flips)))
+    }
+
+    fn census(&mut self) -> Answer<'_, Census> {
+        Box::pin(std::future::ready(Ok(self.count())))
+    }
+
+    fn triangles(&mut self) -> Answer<'_, Vec<u32>> {
+        let mut triangles = Vec::new();
+        self.threads.append(&mut triangles, &self.triangles);
+        Box::pin(std::future::ready(Ok(triangles)))
+    }
+
+    fn twins(&mut self) -> Answer<'_, Vec<u32>> {
+        Box::pin(std::future::ready(Ok(self.twins.clone())))
+    }
+
+    fn set_positions(&mut self, mesh: Arc<Mesh>) -> Answer<'_, ()> {
+        (self.winding, self.embedded) = Embedded::with_winding(&mesh, &self.twins, &self.threads);
+        if mesh.dimension() == Dimension::Three {
+            flag_creases(
+                mesh.positions(),
+                &self.triangles,
+                &mut self.twins,
+                self.thresholds.cos,
+                &self.threads,
+            );
+        }
+        self.parts.clear();
+        self.is_known = false;
+        self.iteration = 0;
+        self.mesh = mesh;
+        Box::pin(std::future::ready(Ok(())))
+    }
+
+    fn batch(&self) -> u32 {
+        1
+    }
+
+    fn edge_counts(&self) -> EdgeCounts {
+        self.counts
+    }
+
+    fn backend(&self) -> EngineKind {
+        EngineKind::Cpu
+    }
+}

@@ -1,0 +1,406 @@
+//! Lawson's algorithm on neighbouring triangles: all of a mesh, or a part that leaves its other edges to where it is joined.
+
+use crate::mesh::half_edge::{FLAGS, next, prev, unflagged};
+use crate::mesh::star::Fans;
+use crate::phases::{
+    Diamond, Geometry, Topology, Verdict, keep_non_delaunay, makes_duplicate, verdict_of_shape,
+};
+use crate::system::threads::Threads;
+use crate::{NONE, Reason};
+use std::ops::Range;
+
+/// Triangles whose edges are tested in one go, before those of them that are not Delaunay flip.
+const TRIANGLES: usize = 32;
+
+/// Edges of so many triangles at most.
+const EDGES: usize = 3 * TRIANGLES;
+
+/// Triangles that follow each other, with nothing outside of them read or written.
+pub(super) struct Region<'a> {
+    pub(super) geometry: &'a Geometry<'a>,
+    pub(super) mesh: TopologyMut<'a>,
+    pub(super) work: Work,
+    /// Flips that are left.
+    pub(super) limit: u32,
+}
+
+/// The triangulation, as [`Topology`].
+pub(super) struct TopologyMut<'a> {
+    pub(super) first: u32,
+    pub(super) triangles: &'a mut [u32],
+    pub(super) twins: &'a mut [u32],
+    /// Those of the whole mesh; a part has none, since a mesh is cut only where every vertex has one fan.
+    pub(super) fans: Option<&'a mut Fans>,
+}
+
+impl TopologyMut<'_> {
+    /// Whether every vertex has one fan.
+    pub(super) fn has_no_fans(&self) -> bool {
+        self.fans.as_ref().is_none_or(|fans| fans.table.is_empty())
+    }
+
+    fn get(&self) -> Topology<'_> {
+        const NO_FANS: &Fans = &Fans { table: Vec::new() };
+        let fans = self.fans.as_deref().unwrap_or(NO_FANS);
+        Topology { first: self.first, triangles: self.triangles, twins: self.twins, fans }
+    }
+}
+
+/// What is to be done, and what has been.
+#[derive(Default)]
+pub(super) struct Work {
+    queue: Queue,
+    /// Half-edges of those that may not flip.
+    pub(super) blocked: Vec<u32>,
+    /// Those of edges that a part leaves to the larger one that it is a half of, Delaunay or not.
+    pub(super) left: Vec<u32>,
+    /// Whether one of the blocked is so by an edge that may go.
+    pub(super) has_duplicate: bool,
+    pub(super) flips: u32,
+}
+
+impl Region<'_> {
+    /// Tests all edges, and flips until nothing is left to flip: first in each half, on several threads, down to parts of
+    /// up to so many triangles, and then what touches both.
+    pub(super) fn flip_parts(&mut self, size: usize, threads: &Threads) {
+        let TopologyMut { first, triangles, twins, .. } = &mut self.mesh;
+        let count = triangles.len() / 3;
+        if count <= size {
+            self.flip_each();
+        } else {
+            let middle = 3 * (count / 2);
+            let (triangles, twins) = (triangles.split_at_mut(middle), twins.split_at_mut(middle));
+            let halves = [(*first, triangles.0, twins.0), (*first + middle as u32, triangles.1, twins.1)];
+            let halves = halves.map(|(first, triangles, twins)| Region {
+                geometry: self.geometry,
+                mesh: TopologyMut { first, triangles, twins, fans: None },
+                work: Work::default(),
+                limit: self.limit / 3,
+            });
+            let halves = threads.map_each(halves.into(), |mut half| {
+                half.flip_parts(size, threads);
+                half.work
+            });
+            let mut left = Vec::new();
+            for mut half in halves {
+                left.append(&mut half.left);
+                self.work.blocked.append(&mut half.blocked);
+                self.work.has_duplicate |= half.has_duplicate;
+                self.work.flips += half.flips;
+            }
+            self.flip_some(&left);
+        }
+    }
+
+    /// Tests all edges, and flips until nothing is left to flip.
+    fn flip_each(&mut self) {
+        let end = self.mesh.twins.len() / 3;
+        for first in (0..end).step_by(TRIANGLES) {
+            let piece = first..end.min(first + TRIANGLES);
+            let room = self.work.queue.room(EDGES);
+            let count = Diamond::write(self.mesh.get(), piece.clone(), room);
+            self.leave(piece);
+            self.test(count);
+            self.flip_queue();
+        }
+    }
+
+    /// Tests these edges, and flips until nothing is left to flip. Leaves those to triangles outside of the part.
+    pub(super) fn flip_some(&mut self, half_edges: &[u32]) {
+        for half_edges in half_edges.chunks(EDGES) {
+            let (mesh, room) = (self.mesh.get(), self.work.queue.room(EDGES));
+            let mut count = 0;
+            for &h in half_edges {
+                if mesh.has(unflagged(mesh.twin(h))) {
+                    room[count] = Diamond::new(mesh, h);
+                    count += 1;
+                } else if mesh.leaves(h) {
+                    self.work.left.push(h);
+                }
+            }
+            self.test(count);
+            self.flip_queue();
+        }
+    }
+
+    /// Leaves the edges of these triangles to those behind the part; other parts do so with those before it. Such a
+    /// half-edge stays where it is.
+    fn leave(&mut self, piece: Range<usize>) {
+        let first = self.mesh.first + 3 * piece.start as u32;
+        let end = self.mesh.first + self.mesh.twins.len() as u32;
+        let behind = (NONE & !FLAGS) - end;
+        let is_behind = |twin: u32| (twin & !FLAGS).wrapping_sub(end) < behind;
+        let twins = &self.mesh.twins[3 * piece.start..3 * piece.end];
+        if twins.iter().fold(false, |any, &twin| any | is_behind(twin)) {
+            let twins = (first..).zip(twins);
+            self.work.left.extend(twins.filter(|&(_, &twin)| is_behind(twin)).map(|(h, _)| h));
+        }
+    }
+
+    /// Tests so many edges that have been written behind the queue, and appends those of them that are not Delaunay.
+    fn test(&mut self, count: usize) {
+        let queue = &mut self.work.queue;
+        queue.end += keep_non_delaunay(self.geometry, &mut queue.places[queue.end..][..count]);
+    }
+
+    /// Flips what is in the queue, and then around that.
+    fn flip_queue(&mut self) {
+        while self.work.flips < self.limit
+            && let Some(Diamond { h, corners, .. }) = self.work.queue.pop()
+        {
+            let mesh = self.mesh.get();
+            let g = unflagged(mesh.twin(h));
+            // Its edge may have moved, and one of the boundary come: those to other triangles stay where they are.
+            if !mesh.has(g) {
+                continue;
+            }
+            let diamond = Diamond::new(mesh, h);
+            // After a flip beside it, it has been tested again. Word by word: written so, they are slow to read as one.
+            if (0..4).fold(0, |bits, i| bits | corners[i] ^ diamond.corners[i]) != 0 {
+                continue;
+            }
+            match self.verdict(&diamond) {
+                Some(Verdict::Labelled) => {
+                    let count = self.flip(&diamond);
+                    self.test(count);
+                }
+                Some(verdict) => {
+                    self.work.has_duplicate |= verdict == Verdict::Blocked(Reason::Duplicate);
+                    self.work.blocked.push(h);
+                }
+                None => self.work.left.push(h),
+            }
+        }
+        while let Some(diamond) = self.work.queue.pop() {
+            self.work.left.push(diamond.h);
+        }
+    }
+
+    /// Whether an edge that is not Delaunay may flip. `None` where that, or the flip, takes more than the part.
+    fn verdict(&self, diamond: &Diamond) -> Option<Verdict> {
+        let shape = verdict_of_shape(self.geometry, diamond);
+        if shape != Verdict::Labelled {
+            return Some(shape);
+        }
+        let (h, [_, _, c, d]) = (diamond.h, diamond.corners);
+        let mesh = self.mesh.get();
+        let is_duplicate = if self.mesh.fans.is_some() {
+            makes_duplicate(self.geometry, mesh, h)
+        } else if mesh.leaves(next(h)) || mesh.leaves(next(unflagged(diamond.twin))) {
+            return None;
+        } else {
+            let is_embedded = self.geometry.embedded.at(c) || self.geometry.embedded.at(d);
+            !is_embedded && makes_duplicate_inside(mesh, h)?
+        };
+        Some(if is_duplicate { Verdict::Blocked(Reason::Duplicate) } else { shape })
+    }
+
+    /// Flips an edge, alone, and writes those around it behind the queue; returns how many they are. The triangles around it
+    /// are others: if it may flip, c is not d.
+    #[inline(always)]
+    fn flip(&mut self, diamond: &Diamond) -> usize {
+        self.work.flips += 1;
+        let TopologyMut { first, triangles, twins, fans } = &mut self.mesh;
+        let at = |x: u32| (x - *first) as usize;
+        let &Diamond { h, twin, corners: [a, b, c, d] } = diamond;
+        let g = twin & !FLAGS;
+        let [hn, hp, gn, gp] = [next(h), prev(h), next(g), prev(g)];
+        if let Some(fans) = fans
+            && !fans.table.is_empty()
+        {
+            fans.move_anchor(b, hn, g);
+            fans.move_anchor(a, gn, h);
+        }
+        let outer = [gn, hp, hn, gp].map(|x| twins[at(x)]);
+        for (inner, outer) in [(h, outer[0]), (g, outer[2])] {
+            twins[at(inner)] = outer;
+            if outer != NONE {
+                twins[at(outer & !FLAGS)] = inner | (outer & FLAGS);
+            }
+        }
+        triangles[at(hn)] = d;
+        triangles[at(gn)] = c;
+        twins[at(hn)] = gn;
+        twins[at(gn)] = hn;
+        let room = self.work.queue.room(4);
+        Diamond::write_around(self.mesh.get(), [h, hp, g, gp], outer, diamond.corners, room)
+    }
+}
+
+/// Whether a flip makes an edge that exists, where each vertex has one fan. `None` where both stars leave the part before
+/// either of them says so. As [`makes_duplicate`], it walks both in turns.
+fn makes_duplicate_inside(mesh: Topology, h: u32) -> Option<bool> {
+    let ends = [prev(h), prev(unflagged(mesh.twin(h)))];
+    let [c, d] = ends.map(|corner| mesh.corner(corner));
+    if c == d {
+        return Some(true);
+    }
+    let [mut at_c, mut at_d] = [Walk::new(ends[0], d), Walk::new(ends[1], c)];
+    while at_c.is_inside || at_d.is_inside {
+        for walk in [&mut at_c, &mut at_d] {
+            if walk.is_inside
+                && let Some(is_joined) = walk.step(mesh)
+            {
+                return Some(is_joined);
+            }
+        }
+    }
+    None
+}
+
+/// A walk around a vertex, from triangle to triangle of a part, in search of an edge to another vertex.
+struct Walk {
+    start: u32,
+    at: u32,
+    to: u32,
+    clockwise: bool,
+    /// Whether it has not left the part.
+    is_inside: bool,
+}
+
+impl Walk {
+    fn new(start: u32, to: u32) -> Self {
+        Self { start, at: start, to, clockwise: false, is_inside: true }
+    }
+
+    /// Looks at one triangle and goes on to the next one; says whether there is such an edge once that is known.
+    #[inline(always)]
+    fn step(&mut self, mesh: Topology) -> Option<bool> {
+        let side = prev(self.at);
+        if mesh.corner(next(self.at)) == self.to || mesh.corner(side) == self.to {
+            return Some(true);
+        }
+        if !self.clockwise {
+            self.at = unflagged(mesh.twin(side));
+            if self.at == self.start {
+                return Some(false);
+            }
+            // The fan is open: it goes back to where it began and round the other way.
+            self.clockwise = self.at == NONE;
+        }
+        if self.clockwise {
+            let from = if self.at == NONE { self.start } else { self.at };
+            match unflagged(mesh.twin(from)) {
+                NONE => return Some(false),
+                twin => self.at = next(twin),
+            }
+        }
+        self.is_inside = mesh.has(self.at);
+        None
+    }
+}
+
+/// Edges that were not Delaunay when they were tested, in the order in which they flip: the first ones first, so that the
+/// processor is at the next one while it still tests around the one before.
+#[derive(Default)]
+struct Queue {
+    places: Vec<Diamond>,
+    first: usize,
+    /// What is in the places from here on is not in the queue.
+    end: usize,
+}
+
+impl Queue {
+    fn pop(&mut self) -> Option<Diamond> {
+        if self.first == self.end {
+            (self.first, self.end) = (0, 0);
+            return None;
+        }
+        self.first += 1;
+        Some(self.places[self.first - 1])
+    }
+
+    /// So many places behind the end.
+    #[inline(always)]
+    fn room(&mut self, count: usize) -> &mut [Diamond] {
+        if self.places.len() < self.end + count {
+            self.make_room(count);
+        }
+        &mut self.places[self.end..][..count]
+    }
+
+    #[cold]
+    fn make_room(&mut self, count: usize) {
+        self.places.copy_within(self.first..self.end, 0);
+        (self.first, self.end) = (0, self.end - self.first);
+        // As many again, so that this is seldom done.
+        let length = self.places.len().max(2 * (self.end + count));
+        self.places.resize(length, Diamond::default());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "what fails here is a failed test")]
+
+    use super::*;
+    use crate::families;
+    use crate::mesh::embedded::Embedded;
+    use crate::mesh::winding::Winding;
+    use crate::phases::Thresholds;
+    use crate::{Adjacency, Options};
+    use proptest::prelude::*;
+    use std::collections::VecDeque;
+
+    /// Every part of a surface whose flips often make edges that exist: what a part says is so in the whole, which itself is
+    /// a part that always says it.
+    #[test]
+    fn a_part_finds_the_duplicates_of_the_whole() {
+        let (mut known, mut left) = ([0, 0], 0);
+        for spec in ["uvsphere 5", "pillow 3", "pole 12"] {
+            let mesh = families::by_name(spec).unwrap();
+            let (triangles, twins) = (mesh.triangles(), Adjacency::new(&mesh).twins);
+            let (winding, embedded) = (Winding::default(), Embedded::default());
+            let thresholds = Thresholds::from(&Options::default());
+            let (dimension, positions) = (mesh.dimension(), mesh.positions());
+            let geometry =
+                Geometry { dimension, positions, thresholds, winding: &winding, embedded: &embedded };
+            let fans = Fans::default();
+            let whole = Topology { first: 0, triangles, twins: &twins, fans: &fans };
+            let count = triangles.len();
+            for (first, end) in
+                (0..count).step_by(3).flat_map(|a| (a + 3..=count).step_by(3).map(move |b| (a, b)))
+            {
+                let (triangles, twins) = (&triangles[first..end], &twins[first..end]);
+                let part = Topology { first: first as u32, triangles, twins, fans: &fans };
+                for h in (first as u32..end as u32).filter(|&h| part.has(unflagged(part.twin(h)))) {
+                    let expected = makes_duplicate(&geometry, whole, h);
+                    match makes_duplicate_inside(part, h) {
+                        Some(found) => {
+                            assert_eq!(found, expected, "{spec}: {h} in {first}..{end}");
+                            known[usize::from(found)] += 1;
+                        }
+                        None => {
+                            assert!(end - first < count, "{spec}: {h}");
+                            left += 1;
+                        }
+                    }
+                }
+            }
+        }
+        assert!(known.iter().all(|&count| count > 20) && left > 20, "{known:?}, {left}");
+    }
+
+    proptest! {
+        /// Each time some are written behind the queue, a part of them is appended, and some leave.
+        #[test]
+        fn what_is_appended_first_leaves_first(
+            steps in proptest::collection::vec((0usize..20, 0usize..20, 0usize..12), 0..60)
+        ) {
+            let (mut queue, mut expected) = (Queue::default(), VecDeque::new());
+            let mut numbers = 0..;
+            for (written, appended, leaving) in steps {
+                let appended = appended.min(written);
+                for (place, h) in queue.room(written).iter_mut().zip(&mut numbers) {
+                    place.h = h;
+                }
+                let new = queue.places[queue.end..][..appended].iter().map(|diamond| diamond.h);
+                expected.extend(new);
+                queue.end += appended;
+                for _ in 0..leaving {
+                    prop_assert_eq!(queue.pop().map(|diamond| diamond.h), expected.pop_front());
+                }
+            }
+        }
+    }
+}

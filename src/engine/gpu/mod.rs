@@ -1,0 +1,9 @@
+//! What both GPU engines share: the numbers that go up, the test of a device, and the drivers that end loops too early.
+
+pub(super) mod cosine;
+pub(super) mod probe;
+pub(super) mod self_test;
+pub(super) mod upload;
+
+pub(crate) use self_test::self_test;
+pub(crate) use upload::{Form, Upload};

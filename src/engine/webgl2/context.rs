@@ -1,0 +1,304 @@
+//! A WebGL2 context of our own, and the programs compiled for it.
+
+use super::errors::{lost, unavailable};
+use super::texture::{Pair, Texture};
+use crate::Error;
+use crate::engine::gpu::probe::ends_loops_early;
+use crate::engine::gpu::self_test::Tested;
+use js_sys::{Function, Object, Promise, Reflect, Uint32Array};
+use std::cell::RefCell;
+use std::rc::Rc;
+use wasm_bindgen::prelude::*;
+use wasm_bindgen_futures::JsFuture;
+use web_sys::{HtmlCanvasElement, OffscreenCanvas, WebGl2RenderingContext as Gl, WebGlBuffer, WebGlProgram};
+
+/// Bits of the width of a texture: rows longer than this are of no use.
+const MOST_WIDTH_BITS: u32 = 12;
+/// Milliseconds between two looks at what the context is doing.
+const PAUSE: i32 = 1;
+/// `COMPLETION_STATUS_KHR`.
+const COMPLETION_STATUS: u32 = 0x91b1;
+/// `UNMASKED_RENDERER_WEBGL`.
+const UNMASKED_RENDERER: u32 = 0x9246;
+
+#[wasm_bindgen]
+extern "C" {
+    #[wasm_bindgen(js_name = setTimeout)]
+    fn set_timeout(callback: &Function, ms: i32);
+}
+
+thread_local! {
+    /// What gives the sources of the programs, which are loaded only when they are needed.
+    static LOADER: RefCell<Option<Function>> = const { RefCell::new(None) };
+    /// The context that all sessions share.
+    static SHARED: RefCell<Option<Rc<Context>>> = const { RefCell::new(None) };
+}
+
+/// Says where the sources come from: a function that returns a promise of a module, whose default export has the
+/// text of each program by its name.
+pub(crate) fn set_shader_loader(loader: Function) {
+    LOADER.set(Some(loader));
+}
+
+/// A context and its programs.
+pub(super) struct Context {
+    pub(super) gl: Gl,
+    /// The renderer's name.
+    pub(super) adapter: String,
+    /// The largest side of a texture.
+    pub(super) largest_side: u32,
+    /// See `shaders/shared/rounds.wgsl`.
+    pub(super) ends_loops_early: bool,
+    pub(super) tested: Tested,
+    pub(super) params: WebGlBuffer,
+    sources: JsValue,
+    programs: RefCell<Vec<(&'static str, WebGlProgram)>>,
+    compiles_beside: bool,
+}
+
+impl Context {
+    /// The shared context; opened at the first call, and again after a loss.
+    ///
+    /// # Errors
+    /// [`Error::BackendUnavailable`] where there is none; [`Error::Device`] where it fails at once.
+    pub(super) async fn shared() -> Result<Rc<Self>, Error> {
+        let known = SHARED.with_borrow(Clone::clone).filter(|context| !context.gl.is_context_lost());
+        if let Some(context) = known {
+            return Ok(context);
+        }
+        let context = Rc::new(Self::open(create()?).await?);
+        SHARED.set(Some(context.clone()));
+        Ok(context)
+    }
+
+    async fn open(gl: Gl) -> Result<Self, Error> {
+        let largest_side = gl.get_parameter(Gl::MAX_TEXTURE_SIZE).ok().and_then(|side| side.as_f64());
+        let mut context = Self {
+            adapter: renderer(&gl),
+            largest_side: largest_side.map_or(0, |side| side as u32),
+            ends_loops_early: false,
+            tested: Tested::default(),
+            params: gl.create_buffer().ok_or_else(|| lost(&gl))?,
+            sources: load_sources().await?,
+            programs: RefCell::default(),
+            compiles_beside: matches!(gl.get_extension("KHR_parallel_shader_compile"), Ok(Some(_))),
+            gl,
+        };
+        context.compile(&["probe"]).await?;
+        let target = context.texture((1, 1), 4)?;
+        context.pass("probe", &[], &target, None)?;
+        let found = context.read(&target, 1).await?;
+        context.ends_loops_early = ends_loops_early(found[0]);
+        drop(target);
+        Ok(context)
+    }
+
+    /// A texture of zeros.
+    ///
+    /// # Errors
+    /// [`Error::BackendLimit`] where there is no memory for it; [`Error::Device`].
+    pub(super) fn texture(&self, size: (u32, u32), words: usize) -> Result<Texture, Error> {
+        Texture::new(&self.gl, &self.adapter, size, words)
+    }
+
+    /// Two of them.
+    ///
+    /// # Errors
+    /// As [`Context::texture`].
+    pub(super) fn pair(&self, size: (u32, u32), words: usize) -> Result<Pair, Error> {
+        Ok(Pair { front: self.texture(size, words)?, back: self.texture(size, words)? })
+    }
+
+    /// Bits of the width of textures for `count` texels, about square.
+    pub(super) fn width_bits(&self, count: usize) -> u32 {
+        count.next_power_of_two().ilog2().div_ceil(2).min(MOST_WIDTH_BITS).min(self.largest_side.ilog2())
+    }
+
+    /// Compiles those programs that have not been compiled yet.
+    ///
+    /// # Errors
+    /// [`Error::BackendUnavailable`] with what the compiler says; [`Error::Device`].
+    pub(super) async fn compile(&self, names: &[&'static str]) -> Result<(), Error> {
+        let is_known = |name: &str| self.programs.borrow().iter().any(|(known, _)| *known == name);
+        let missing: Vec<_> = names.iter().copied().filter(|name| !is_known(name)).collect();
+        let linked: Vec<_> =
+            missing.into_iter().map(|name| Ok((name, self.link(name)?))).collect::<Result<_, Error>>()?;
+        for (name, program) in linked {
+            while self.compiles_beside
+                && self.gl.get_program_parameter(&program, COMPLETION_STATUS).is_falsy()
+                && !self.gl.is_context_lost()
+            {
+                pause().await;
+            }
+            if self.gl.get_program_parameter(&program, Gl::LINK_STATUS).is_falsy() {
+                if self.gl.is_context_lost() {
+                    return Err(lost(&self.gl));
+                }
+                let log = self.gl.get_program_info_log(&program).unwrap_or_default();
+                return Err(unavailable(format!("it refuses the program {name}: {log}")));
+            }
+            self.gl.use_program(Some(&program));
+            for unit in 0..8 {
+                let sampler = self.gl.get_uniform_location(&program, &format!("_group_0_binding_{unit}_fs"));
+                self.gl.uniform1i(sampler.as_ref(), unit);
+            }
+            self.programs.borrow_mut().push((name, program));
+        }
+        Ok(())
+    }
+
+    /// Starts the compiler; what it says is asked for when it has ended.
+    fn link(&self, name: &str) -> Result<WebGlProgram, Error> {
+        let gl = &self.gl;
+        let program = gl.create_program().ok_or_else(|| lost(gl))?;
+        for (kind, source) in [(Gl::VERTEX_SHADER, "cover"), (Gl::FRAGMENT_SHADER, name)] {
+            let shader = gl.create_shader(kind).ok_or_else(|| lost(gl))?;
+            let text = Reflect::get(&self.sources, &source.into()).ok().and_then(|text| text.as_string());
+            gl.shader_source(&shader, &text.unwrap_or_default());
+            gl.compile_shader(&shader);
+            gl.attach_shader(&program, &shader);
+        }
+        gl.link_program(&program);
+        Ok(program)
+    }
+
+    /// Runs a compiled program for every texel of `target`, or for one of its first row. Each of `inputs` goes to the
+    /// place that it has in `shaders/webgl2/state.wgsl`.
+    ///
+    /// # Errors
+    /// [`Error::Device`] if the context is lost.
+    pub(super) fn pass(
+        &self,
+        name: &str,
+        inputs: &[(u32, &Texture)],
+        target: &Texture,
+        column: Option<u32>,
+    ) -> Result<(), Error> {
+        let gl = &self.gl;
+        let programs = self.programs.borrow();
+        let program = programs.iter().find(|(known, _)| *known == name);
+        gl.use_program(program.map(|(_, program)| program));
+        gl.bind_buffer_base(Gl::UNIFORM_BUFFER, 0, Some(&self.params));
+        for (unit, texture) in inputs {
+            gl.active_texture(Gl::TEXTURE0 + unit);
+            gl.bind_texture(Gl::TEXTURE_2D, Some(&texture.texture));
+        }
+        gl.bind_framebuffer(Gl::FRAMEBUFFER, Some(&target.framebuffer));
+        let (width, height) = if column.is_some() { (1, 1) } else { target.size };
+        gl.viewport(column.unwrap_or(0) as i32, 0, width as i32, height as i32);
+        gl.draw_arrays(Gl::TRIANGLES, 0, 3);
+        if gl.is_context_lost() { Err(lost(gl)) } else { Ok(()) }
+    }
+
+    /// Reads texels row by row, at least the first `count`: four words each, however many the texture has.
+    ///
+    /// # Errors
+    /// [`Error::Device`].
+    pub(super) async fn read(&self, texture: &Texture, count: usize) -> Result<Vec<u32>, Error> {
+        let gl = &self.gl;
+        let width = texture.size.0;
+        let rows = (count as u32).div_ceil(width);
+        let columns = width.min(count as u32);
+        let words = 4 * columns * rows;
+        let buffer = gl.create_buffer().ok_or_else(|| lost(gl))?;
+        gl.bind_framebuffer(Gl::FRAMEBUFFER, Some(&texture.framebuffer));
+        gl.bind_buffer(Gl::PIXEL_PACK_BUFFER, Some(&buffer));
+        gl.buffer_data_with_f64(Gl::PIXEL_PACK_BUFFER, 4.0 * f64::from(words), Gl::STREAM_READ);
+        let copied = gl.read_pixels_with_f64(
+            0,
+            0,
+            columns as i32,
+            rows as i32,
+            Gl::RGBA_INTEGER,
+            Gl::UNSIGNED_INT,
+            0.0,
+        );
+        gl.bind_buffer(Gl::PIXEL_PACK_BUFFER, None);
+        let result = Uint32Array::new_with_length(words);
+        let ended = if copied.is_ok() { self.finish().await } else { Err(lost(gl)) };
+        if ended.is_ok() {
+            gl.bind_buffer(Gl::PIXEL_PACK_BUFFER, Some(&buffer));
+            gl.get_buffer_sub_data_with_i32_and_array_buffer_view(Gl::PIXEL_PACK_BUFFER, 0, &result);
+            gl.bind_buffer(Gl::PIXEL_PACK_BUFFER, None);
+        }
+        gl.delete_buffer(Some(&buffer));
+        ended?;
+        match gl.get_error() {
+            Gl::NO_ERROR if !gl.is_context_lost() => Ok(result.to_vec()),
+            Gl::CONTEXT_LOST_WEBGL | Gl::NO_ERROR => Err(lost(gl)),
+            code => Err(Error::Device { message: format!("WebGL2 reports the error {code:#06x}") }),
+        }
+    }
+
+    /// Waits until the context has done all that it was told, and lets the page do other things meanwhile.
+    async fn finish(&self) -> Result<(), Error> {
+        let gl = &self.gl;
+        let sync = gl.fence_sync(Gl::SYNC_GPU_COMMANDS_COMPLETE, 0).ok_or_else(|| lost(gl))?;
+        gl.flush();
+        let is_signalled =
+            || gl.get_sync_parameter(&sync, Gl::SYNC_STATUS).as_f64() == Some(f64::from(Gl::SIGNALED));
+        while !is_signalled() && !gl.is_context_lost() {
+            pause().await;
+        }
+        gl.delete_sync(Some(&sync));
+        if gl.is_context_lost() { Err(lost(gl)) } else { Ok(()) }
+    }
+}
+
+impl Drop for Context {
+    fn drop(&mut self) {
+        self.gl.delete_buffer(Some(&self.params));
+        for (_, program) in self.programs.borrow().iter() {
+            self.gl.delete_program(Some(program));
+        }
+    }
+}
+
+/// On a canvas that is never shown.
+fn create() -> Result<Gl, Error> {
+    let options = Object::new();
+    for name in ["alpha", "antialias", "depth"] {
+        // Setting a field of a new object does not fail.
+        let _ = Reflect::set(&options, &name.into(), &false.into());
+    }
+    let _ = Reflect::set(&options, &"powerPreference".into(), &"high-performance".into());
+    let offscreen = OffscreenCanvas::new(1, 1)
+        .ok()
+        .and_then(|canvas| canvas.get_context_with_context_options("webgl2", &options).ok().flatten());
+    let context = offscreen.or_else(|| {
+        let canvas = web_sys::window()?.document()?.create_element("canvas").ok()?;
+        let canvas = canvas.dyn_into::<HtmlCanvasElement>().ok()?;
+        canvas.get_context_with_context_options("webgl2", &options).ok().flatten()
+    });
+    context
+        .and_then(|context| context.dyn_into::<Gl>().ok())
+        .ok_or_else(|| unavailable("there is no WebGL2 context to be had"))
+}
+
+/// What the browser says of the renderer. Chromium and Safari say it to those who ask by an extension, which Firefox
+/// warns of.
+fn renderer(gl: &Gl) -> String {
+    let text = |parameter| gl.get_parameter(parameter).ok().and_then(|text| text.as_string());
+    let name = text(Gl::RENDERER).unwrap_or_default();
+    if name.starts_with("WebKit") && matches!(gl.get_extension("WEBGL_debug_renderer_info"), Ok(Some(_))) {
+        return text(UNMASKED_RENDERER).unwrap_or(name);
+    }
+    name
+}
+
+async fn load_sources() -> Result<JsValue, Error> {
+    let loader = LOADER.with_borrow(Clone::clone);
+    let loader = loader.ok_or_else(|| unavailable("it was not said where its programs are"))?;
+    let load = async {
+        let module = loader.call0(&JsValue::UNDEFINED)?;
+        let module = JsFuture::from(Promise::resolve(&module)).await?;
+        Reflect::get(&module, &"default".into())
+    };
+    load.await.map_err(|error| unavailable(format!("its programs could not be loaded: {error:?}")))
+}
+
+async fn pause() {
+    let promise = Promise::new(&mut |resolve, _| set_timeout(&resolve, PAUSE));
+    // It is never refused.
+    let _ = JsFuture::from(promise).await;
+}

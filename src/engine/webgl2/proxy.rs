@@ -1,0 +1,171 @@
+//! The WebGL2 engine as the module of the other engines sees it: it calls what `src/wasm/webgl2.rs` exports.
+
+use crate::engine::{Answer, Census, EdgeCounts, Engine};
+use crate::phases::Thresholds;
+use crate::{EngineKind, Error, Mesh};
+use js_sys::{Promise, Reflect, Uint32Array};
+use std::cell::RefCell;
+use std::sync::Arc;
+use wasm_bindgen::prelude::*;
+use wasm_bindgen_futures::JsFuture;
+
+#[wasm_bindgen]
+extern "C" {
+    /// What makes a `JsWebGl2`, and loads its module before the first.
+    #[wasm_bindgen(typescript_type = "Pick<typeof import('./edgeflip_webgl2.js').WebGl2, 'create'>")]
+    #[derive(Clone)]
+    pub type WebGl2Module;
+    #[wasm_bindgen(method, catch)]
+    fn create(
+        this: &WebGl2Module,
+        positions: JsValue,
+        indices: Uint32Array,
+        dimension: u32,
+        cos: f64,
+        deviation: f32,
+    ) -> Result<Promise, JsValue>;
+
+    /// `JsWebGl2`.
+    type Remote;
+    #[wasm_bindgen(method, catch)]
+    fn lock(this: &Remote, half_edges: Uint32Array) -> Result<Promise, JsValue>;
+    #[wasm_bindgen(method, catch)]
+    fn iterate(this: &Remote, count: u32) -> Result<Promise, JsValue>;
+    #[wasm_bindgen(method, catch)]
+    fn census(this: &Remote) -> Result<Promise, JsValue>;
+    #[wasm_bindgen(method, catch)]
+    fn triangles(this: &Remote) -> Result<Promise, JsValue>;
+    #[wasm_bindgen(method, catch)]
+    fn twins(this: &Remote) -> Result<Promise, JsValue>;
+    #[wasm_bindgen(method, catch, js_name = setPositions)]
+    fn set_positions(this: &Remote, positions: JsValue, indices: Uint32Array) -> Result<Promise, JsValue>;
+    #[wasm_bindgen(method, getter)]
+    fn batch(this: &Remote) -> u32;
+    #[wasm_bindgen(method, getter, js_name = edgeCounts)]
+    fn edge_counts(this: &Remote) -> Vec<u32>;
+    #[wasm_bindgen(method, getter)]
+    fn adapter(this: &Remote) -> String;
+    #[wasm_bindgen(method, getter)]
+    fn dispatches(this: &Remote) -> f64;
+    #[wasm_bindgen(method, catch)]
+    fn free(this: &Remote) -> Result<(), JsValue>;
+}
+
+thread_local! {
+    static MODULE: RefCell<Option<WebGl2Module>> = const { RefCell::new(None) };
+}
+
+/// Says where the engine comes from.
+pub(crate) fn set_webgl2(module: WebGl2Module) {
+    MODULE.set(Some(module));
+}
+
+/// A mesh on the engine of the other module.
+pub(crate) struct Proxy {
+    remote: Remote,
+    counts: EdgeCounts,
+}
+
+impl Proxy {
+    /// As `WebGl::open`.
+    ///
+    /// # Errors
+    /// [`Error::BackendUnavailable`] too where the module cannot be loaded.
+    pub(crate) async fn new(mesh: &Mesh, Thresholds { cos, deviation }: Thresholds) -> Result<Self, Error> {
+        let module = MODULE.with_borrow(Clone::clone);
+        let module = module.ok_or_else(|| unavailable("it was not said where its module is".to_owned()))?;
+        let positions = mesh.positions().to_typed_array();
+        // A copy, since it waits for the module.
+        let indices = Uint32Array::from(mesh.triangles());
+        let dimension = mesh.dimension().stride() as u32;
+        let created = module.create(positions, indices, dimension, cos, deviation);
+        let remote: Remote = answer(created).await?.unchecked_into();
+        let counts = remote.edge_counts();
+        let counts = EdgeCounts {
+            edges: counts[0],
+            boundary: counts[1],
+            non_manifold: counts[2],
+            inconsistent: counts[3],
+        };
+        Ok(Self { remote, counts })
+    }
+}
+
+impl Drop for Proxy {
+    fn drop(&mut self) {
+        // Refused only after a trap in the other module, which may have it still.
+        let _ = self.remote.free();
+    }
+}
+
+async fn answer(asked: Result<Promise, JsValue>) -> Result<JsValue, Error> {
+    let answer = async { JsFuture::from(asked?).await };
+    answer.await.map_err(|thrown| {
+        let text = |name: &str| Reflect::get(&thrown, &name.into()).ok().and_then(|text| text.as_string());
+        let message = text("message").unwrap_or_default();
+        match text("code").as_deref() {
+            Some("backend-limit") => Error::BackendLimit { backend: EngineKind::WebGl, message },
+            Some("backend-unavailable" | "load-failed") => unavailable(message),
+            _ => Error::Device { message },
+        }
+    })
+}
+
+fn unavailable(message: String) -> Error {
+    Error::BackendUnavailable { backend: EngineKind::WebGl, message }
+}
+
+fn words(asked: Result<Promise, JsValue>) -> Answer<'static, Vec<u32>> {
+    Box::pin(async { Ok(Uint32Array::new(&answer(asked).await?).to_vec()) })
+}
+
+fn done(asked: Result<Promise, JsValue>) -> Answer<'static, ()> {
+    Box::pin(async { answer(asked).await.map(drop) })
+}
+
+impl Engine for Proxy {
+    fn batch(&self) -> u32 {
+        self.remote.batch()
+    }
+
+    fn lock(&mut self, half_edges: Vec<u32>) -> Answer<'_, ()> {
+        done(self.remote.lock(half_edges.as_slice().into()))
+    }
+
+    fn iterate(&mut self, count: u32) -> Answer<'_, Vec<u32>> {
+        words(self.remote.iterate(count))
+    }
+
+    fn census(&mut self) -> Answer<'_, Census> {
+        let counts = words(self.remote.census());
+        Box::pin(async { Ok(Census::of_counts(&counts.await?)) })
+    }
+
+    fn triangles(&mut self) -> Answer<'_, Vec<u32>> {
+        words(self.remote.triangles())
+    }
+
+    fn twins(&mut self) -> Answer<'_, Vec<u32>> {
+        words(self.remote.twins())
+    }
+
+    fn set_positions(&mut self, mesh: Arc<Mesh>) -> Answer<'_, ()> {
+        done(self.remote.set_positions(mesh.positions().to_typed_array(), mesh.triangles().into()))
+    }
+
+    fn edge_counts(&self) -> EdgeCounts {
+        self.counts
+    }
+
+    fn backend(&self) -> EngineKind {
+        EngineKind::WebGl
+    }
+
+    fn adapter(&self) -> Option<String> {
+        Some(self.remote.adapter())
+    }
+
+    fn dispatches(&self) -> u64 {
+        self.remote.dispatches() as u64
+    }
+}

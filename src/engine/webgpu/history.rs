@@ -1,0 +1,20 @@
+//! The iterations of a submission, and what the device writes about them.
+
+/// Iterations with a dispatch for each phase in one submission.
+pub(super) const BATCH: u32 = 12;
+/// Iterations that the tail may run after them.
+pub(super) const TAIL: u32 = 256;
+/// The same where loops end too early.
+pub(super) const SHORT_TAIL: u32 = 4;
+/// How often it may pause in a submission for exact arithmetic.
+pub(super) const PAUSES: u32 = 8;
+
+// Words of the history, as in `state.wgsl`.
+pub(super) const COUNTS: usize = 6;
+pub(super) const SEVERAL_FANS: usize = 7;
+pub(super) const ENTRIES: usize = 8;
+pub(super) const ENTRY_WORDS: usize = 4;
+pub(super) const HISTORY_WORDS: usize = ENTRIES + ENTRY_WORDS * (1 + BATCH as usize + TAIL as usize);
+
+/// The entry of the history that the next iteration starts from: FLIPS, LENGTH, BUILT, RAN.
+pub(super) type Entry = [u32; ENTRY_WORDS];

@@ -1,0 +1,50 @@
+//! The formats of files, by their extensions.
+
+use super::gzip;
+use crate::Error;
+use std::path::Path;
+
+/// A file format.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Format {
+    /// Geomview's object file format, text: `.off`.
+    Off,
+    /// Wavefront's object format: `.obj`.
+    Obj,
+    /// The Stanford triangle format, text or binary: `.ply`. New files are binary. It is the one that keeps the
+    /// bits of 64-bit floats.
+    Ply,
+    /// Stereolithography, text or binary: `.stl`. It has no vertices that triangles share: corners at the same position
+    /// are read as one. It is written in binary and has 32-bit floats, to which 64-bit floats are rounded.
+    Stl,
+    /// glTF 2.0 as JSON: `.gltf`. It has 32-bit floats, to which 64-bit floats are rounded.
+    Gltf,
+    /// glTF 2.0 in one binary file: `.glb`.
+    Glb,
+}
+
+impl Format {
+    /// The extensions that are known, as [`Error::UnknownFormat`] lists them.
+    pub const KNOWN: &'static str = ".off, .obj, .ply, .stl, .gltf, .glb, also gzip'd (.gz)";
+
+    /// The format that the extension of `path` names, in either case; `.gz` after it does not count.
+    ///
+    /// # Errors
+    /// [`Error::UnknownFormat`].
+    pub fn of(path: &Path) -> Result<Self, Error> {
+        let name = if gzip::is_named(path) { Path::new(path.file_stem().unwrap_or_default()) } else { path };
+        match gzip::extension(name).as_deref() {
+            Some("off") => Ok(Self::Off),
+            Some("obj") => Ok(Self::Obj),
+            Some("ply") => Ok(Self::Ply),
+            Some("stl") => Ok(Self::Stl),
+            Some("gltf") => Ok(Self::Gltf),
+            Some("glb") => Ok(Self::Glb),
+            _ => Err(Error::UnknownFormat { path: path.display().to_string(), known: Self::KNOWN }),
+        }
+    }
+
+    pub(super) fn is_gltf(self) -> bool {
+        matches!(self, Self::Gltf | Self::Glb)
+    }
+}

@@ -1,0 +1,148 @@
+//! The bytes of a file as a mesh, in any format.
+
+use super::format::Format;
+use super::loaded::Loaded;
+use super::options::{ReadFile, ReadOptions};
+use super::original::Original;
+use super::parsed::Parsed;
+use super::text::Digits;
+use super::{gltf, gzip, obj, off, ply, stl};
+use crate::system::threads::Threads;
+use crate::{Dimension, Error, Mesh, Positions};
+use std::borrow::Cow;
+
+/// Reads the bytes of a file, which may be gzip'd. Borrowed ones are copied where the file is held ([`ReadOptions::keep`]).
+///
+/// # Errors
+/// [`Error::Parse`], which names the line or the byte, or the vertex that has a height where 2D was asked for;
+/// [`Error::TooLarge`]; [`Error::FileTooLarge`].
+pub fn parse<'a>(
+    format: Format,
+    bytes: impl Into<Cow<'a, [u8]>>,
+    options: &ReadOptions,
+) -> Result<Loaded, Error> {
+    parse_with(format, bytes, options, &|_| Err("other files are read only if that is allowed".into()))
+}
+
+/// As [`parse`]; `read` gives the content of a file beside this one, or says why it does not.
+///
+/// # Errors
+/// As there.
+pub fn parse_with<'a>(
+    format: Format,
+    bytes: impl Into<Cow<'a, [u8]>>,
+    options: &ReadOptions,
+    read: ReadFile<'_>,
+) -> Result<Loaded, Error> {
+    let mut bytes = bytes.into();
+    options.check(bytes.len() as u64)?;
+    if gzip::is_magic(&bytes) {
+        bytes = gzip::unpack(&bytes, options)?.into();
+    }
+    if bytes.trim_ascii().is_empty() {
+        return Err(Error::Parse { place: "line 1".into(), message: "the file is empty".into() });
+    }
+    if let Format::Off | Format::Obj = format
+        && let Some(text) = utf8(&bytes)
+    {
+        bytes = text.into();
+    }
+    let (parsed, can_be_held) = match format {
+        Format::Off => (off::parse(&bytes)?, true),
+        Format::Obj => (obj::parse(&bytes)?, true),
+        Format::Ply => (ply::parse(&bytes)?, ply::is_held(&bytes)),
+        Format::Stl => (stl::parse(&bytes)?, stl::is_held(&bytes)),
+        Format::Gltf | Format::Glb => {
+            let gltf::Content { parsed, document, notes } =
+                gltf::read(bytes.into_owned(), read, options.max_bytes)?;
+            let loaded = finish(parsed, Some(options.dimension.unwrap_or(Dimension::Three)))?;
+            return Ok(Loaded { notes, document: Some(document), ..loaded });
+        }
+    };
+    // The corners of OBJ may refer to what is not there.
+    let is_plain = parsed.dropped.0.is_empty() && format != Format::Obj;
+    let loaded = finish(parsed, options.dimension)?;
+    let max_bytes = options.max_bytes;
+    let plain = is_plain.then_some(loaded.mesh.triangle_count());
+    let original = (options.keep && can_be_held).then(|| Original {
+        format,
+        bytes: bytes.into_owned(),
+        max_bytes,
+        plain,
+    });
+    Ok(Loaded { original, ..loaded })
+}
+
+/// Text that begins with the byte order mark of UTF-16, in UTF-8; other text is as it is.
+fn utf8(bytes: &[u8]) -> Option<Vec<u8>> {
+    let decoded = |word: fn([u8; 2]) -> u16| {
+        let words = bytes[2..].as_chunks().0.iter().map(|&pair| word(pair));
+        char::decode_utf16(words).map(|c| c.unwrap_or(char::REPLACEMENT_CHARACTER)).collect::<String>()
+    };
+    match bytes {
+        [0xfe, 0xff, ..] => Some(decoded(u16::from_be_bytes).into_bytes()),
+        [0xff, 0xfe, ..] => Some(decoded(u16::from_le_bytes).into_bytes()),
+        _ => None,
+    }
+}
+
+/// Decides the dimension and makes the mesh.
+fn finish(parsed: Parsed, dimension: Option<Dimension>) -> Result<Loaded, Error> {
+    let Parsed { stride, positions, faces, dropped } = parsed;
+    let raised = match (&positions, stride) {
+        (Positions::F32(numbers), 3) => first_raised(numbers),
+        (Positions::F64(numbers), 3) => first_raised(numbers),
+        _ => None,
+    };
+    let dimension = match (dimension, raised) {
+        (Some(Dimension::Two), Some(vertex)) => {
+            let mut z = Vec::new();
+            Digits::default().coordinate(&mut z, &positions, 3 * vertex + 2);
+            return Err(Error::Parse {
+                place: format!("vertex {vertex}"),
+                message: format!(
+                    "z is {}, but the mesh was asked for in 2D, where every z must be 0",
+                    z.escape_ascii()
+                ),
+            });
+        }
+        (Some(dimension), _) => dimension,
+        (None, Some(_)) => Dimension::Three,
+        (None, None) => Dimension::Two,
+    };
+    let positions: Positions = match positions {
+        Positions::F32(numbers) => with_stride(numbers, stride, dimension.stride()).into(),
+        Positions::F64(numbers) => with_stride(numbers, stride, dimension.stride()).into(),
+    };
+    let threads = Threads::default().for_triangles(faces.triangles.len() / 3);
+    let mesh = Mesh::checked(dimension, positions, faces.triangles, &threads)?;
+    Ok(Loaded {
+        mesh,
+        polygons: faces.polygons,
+        dropped: dropped.0,
+        notes: Vec::new(),
+        document: None,
+        original: None,
+    })
+}
+
+/// The first vertex with a height.
+fn first_raised<T: Copy + Default + PartialEq>(numbers: &[T]) -> Option<usize> {
+    numbers.chunks_exact(3).position(|p| p[2] != T::default())
+}
+
+/// Leaves out every third number, in place, or adds a 0 to every two.
+fn with_stride<T: Copy + Default>(mut numbers: Vec<T>, from: usize, to: usize) -> Vec<T> {
+    match (from, to) {
+        (3, 2) => {
+            let vertices = numbers.len() / 3;
+            for v in 0..vertices {
+                numbers.copy_within(3 * v..3 * v + 2, 2 * v);
+            }
+            numbers.truncate(2 * vertices);
+            numbers
+        }
+        (2, 3) => numbers.chunks_exact(2).flat_map(|p| [p[0], p[1], T::default()]).collect(),
+        _ => numbers,
+    }
+}

@@ -1,0 +1,19 @@
+//! Positions in the 32-bit floats of a format.
+
+use crate::Mesh;
+use std::io;
+
+/// The positions of a mesh in the 32 bits of a format, 3 numbers a vertex.
+pub(super) fn rounded(mesh: &Mesh, format: &str) -> io::Result<Vec<[f32; 3]>> {
+    let round = |vertex| {
+        let point = mesh.point3(vertex).as_vec3();
+        let message = || {
+            format!(
+                "vertex {vertex} is too far away for the 32-bit numbers of {format}; write PLY, OBJ or OFF"
+            )
+        };
+        let error = || io::Error::new(io::ErrorKind::InvalidInput, message());
+        point.is_finite().then(|| point.to_array()).ok_or_else(error)
+    };
+    (0..mesh.vertex_count() as u32).map(round).collect()
+}

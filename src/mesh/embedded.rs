@@ -1,0 +1,144 @@
+//! Stars in the plane that are embedded: the triangles at a vertex are positive and go round it once.
+//!
+//! An edge that may flip crosses its new edge c-d between the two, so at such a vertex c, or d, there is no other edge
+//! c-d, and no other flip makes one: the star has one triangle in each direction. Flips of strictly convex quads leave
+//! it so.
+
+use crate::mesh::star::Fans;
+use crate::mesh::winding::{Signs, Winding};
+use crate::predicates::area_sign;
+use crate::system::threads::Threads;
+use crate::{Dimension, Mesh, NONE};
+use glam::DVec2;
+use std::cmp::Ordering;
+use std::ops::Range;
+use std::sync::atomic::{AtomicU8, Ordering::Relaxed};
+
+/// How often the triangles at each vertex go across the direction of the x axis, twice standing for more, for an open
+/// star and for one with a triangle that is not positive. Empty in 3D.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Embedded {
+    turns: Vec<u8>,
+}
+
+impl Embedded {
+    /// Of the vertices of a mesh with these twins, and how its components lie.
+    pub(crate) fn with_winding(mesh: &Mesh, twins: &[u32], threads: &Threads) -> (Winding, Self) {
+        if mesh.dimension() == Dimension::Three {
+            return Default::default();
+        }
+        let mut winding = None;
+        loop {
+            let (signs, embedded) = Self::of_triangles(mesh, twins, winding.as_ref(), threads);
+            winding = winding.or_else(|| signs.winding(mesh.triangle_count()));
+            match winding {
+                Some(winding) => return (winding, embedded),
+                None => winding = Some(Winding::of_components(mesh, twins)),
+            }
+        }
+    }
+
+    /// Where there is no `winding`, each triangle lies as it says itself.
+    fn of_triangles(
+        mesh: &Mesh,
+        twins: &[u32],
+        winding: Option<&Winding>,
+        threads: &Threads,
+    ) -> (Signs, Self) {
+        let mut turns = vec![0u8; mesh.vertex_count()];
+        let words: &mut [AtomicU8] = zerocopy::transmute_mut!(turns.as_mut_slice());
+        let is_alone = threads.is_one();
+        let turn = |v: u32, by: u8| {
+            let word = &words[v as usize];
+            if is_alone {
+                word.store((word.load(Relaxed) + by).min(2), Relaxed);
+            } else if by == 2 || by == 1 && word.swap(1, Relaxed) != 0 {
+                // Whoever finds something there writes last.
+                word.store(2, Relaxed);
+            }
+        };
+        let pieces = threads.map(mesh.triangle_count(), |piece| add_turns(mesh, twins, winding, piece, turn));
+        (pieces.into_iter().fold(Signs::default(), Signs::and), Self { turns })
+    }
+
+    /// The fans of the mesh that it is of, whose twins these are.
+    pub(crate) fn fans(&self, mesh: &Mesh, twins: &[u32], threads: &Threads) -> Fans {
+        let (vertices, triangles) = (mesh.vertex_count(), mesh.triangles());
+        Fans::of_vertices(|v| !self.at(v), vertices, triangles, twins, threads)
+    }
+
+    /// Whether the star of vertex `v` is known to be embedded.
+    #[inline]
+    pub(crate) fn at(&self, v: u32) -> bool {
+        self.turns.get(v as usize) == Some(&1)
+    }
+}
+
+/// The signs of some of the triangles; `turn` hears of what these add to a vertex.
+fn add_turns(
+    mesh: &Mesh,
+    twins: &[u32],
+    winding: Option<&Winding>,
+    piece: Range<usize>,
+    turn: impl Fn(u32, u8),
+) -> Signs {
+    let mut signs = Signs::default();
+    // Whether the edge from u to v goes to below the axis through u, or along it. Else the edge from v to u does.
+    let goes_down = |u: DVec2, v: DVec2| (v.y < u.y) | ((v.y == u.y) & (v.x > u.x));
+    let (triangles, _) = mesh.triangles().as_chunks();
+    let (sides, _) = twins.as_chunks::<3>();
+    for t in piece {
+        let [a, b, c] = triangles[t];
+        for (twin, ends) in sides[t].iter().zip([[a, b], [b, c], [c, a]]) {
+            if *twin == NONE {
+                ends.into_iter().for_each(|v| turn(v, 2));
+            }
+        }
+        let [p, q, r] = mesh.positions().points2([a, b, c]);
+        let sign = area_sign(p, q, r);
+        signs.add(sign);
+        let is_clockwise = winding.map_or(sign.is_lt(), |winding| winding.is_clockwise(t as u32));
+        if sign != if is_clockwise { Ordering::Less } else { Ordering::Greater } {
+            for v in [a, b, c] {
+                turn(v, 2);
+            }
+            continue;
+        }
+        // At the corner between two edges that go down, a counter-clockwise triangle goes across; not all three do.
+        let [first, second, third] = [(p, q), (q, r), (r, p)].map(|(u, v)| goes_down(u, v) != is_clockwise);
+        let corner = if first & second {
+            b
+        } else if second & third {
+            c
+        } else {
+            a
+        };
+        turn(corner, u8::from(first & second | second & third | third & first));
+    }
+    signs
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::num::NonZeroUsize;
+
+    /// Sixteen triangles around the first vertex. The others are on the boundary.
+    #[test]
+    fn a_star_that_goes_round_twice_is_not_embedded() {
+        for (rounds, is_embedded) in [(1, true), (2, false), (4, false)] {
+            let at = |i: u32| f64::from(i * rounds) * std::f64::consts::TAU / 16.0;
+            let positions: Vec<f64> =
+                [0.0; 2].into_iter().chain((0..16).flat_map(|i| [at(i).cos(), at(i).sin()])).collect();
+            let triangles: Vec<u32> = (0..16).flat_map(|i| [0, i + 1, (i + 1) % 16 + 1]).collect();
+            let mesh = Mesh::new(Dimension::Two, positions, triangles).unwrap();
+            for threads in 1..=4 {
+                let threads = Threads::new(NonZeroUsize::new(threads), usize::MAX).unwrap();
+                let twins = crate::Adjacency::new(&mesh).twins;
+                let (_, embedded) = Embedded::with_winding(&mesh, &twins, &threads);
+                assert_eq!(embedded.at(0), is_embedded);
+                assert!((1..17).all(|v| !embedded.at(v)));
+            }
+        }
+    }
+}

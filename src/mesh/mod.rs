@@ -1,0 +1,140 @@
+//! `Mesh`: positions and triangles, checked once when it is made, so that nothing behind it can fail on them.
+
+pub(crate) mod adjacency;
+pub(crate) mod buckets;
+pub(crate) mod dimension;
+pub(crate) mod edges;
+pub(crate) mod embedded;
+pub(crate) mod ends;
+pub(crate) mod half_edge;
+pub(crate) mod positions;
+pub(crate) mod star;
+pub(crate) mod winding;
+
+use crate::Error;
+use crate::system::threads::Threads;
+use dimension::Dimension;
+use ends::Ends;
+use glam::{DVec2, DVec3};
+use half_edge::NONE;
+use positions::Positions;
+use std::sync::Arc;
+
+/// Largest number of triangles: the engines name half-edges with 30 bits, beside two flags, and keep the two highest
+/// words for themselves.
+pub const MAX_TRIANGLES: usize = ((1 << 30) - 2) / 3;
+
+/// A triangle mesh with finite coordinates and indices in range. Everything else may be dirty:
+/// boundary, several components, non-manifold edges, degenerate triangles.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mesh {
+    dimension: Dimension,
+    positions: Positions,
+    triangles: Vec<u32>,
+}
+
+impl From<&Mesh> for Arc<Mesh> {
+    fn from(mesh: &Mesh) -> Self {
+        Self::new(mesh.clone())
+    }
+}
+
+impl Mesh {
+    /// Checks and takes `positions` (2 or 3 numbers a vertex, `Vec<f32>` or `Vec<f64>`) and `triangles` (3 vertex
+    /// indices each). Doubles that are all 32-bit floats become such, without a change of any bit.
+    ///
+    /// # Errors
+    /// [`Error::RaggedArray`], [`Error::TooLarge`], [`Error::NonFinite`] or [`Error::IndexOutOfRange`],
+    /// each naming the first place.
+    pub fn new(
+        dimension: Dimension,
+        positions: impl Into<Positions>,
+        triangles: Vec<u32>,
+    ) -> Result<Self, Error> {
+        Self::checked(dimension, positions, triangles, &Threads::one())
+    }
+
+    /// As [`Mesh::new`].
+    pub(crate) fn checked(
+        dimension: Dimension,
+        positions: impl Into<Positions>,
+        triangles: Vec<u32>,
+        threads: &Threads,
+    ) -> Result<Self, Error> {
+        let positions = positions.into().narrowed();
+        let stride = dimension.stride();
+        for (array, length, stride) in
+            [("positions", positions.len(), stride), ("triangles", triangles.len(), 3)]
+        {
+            if length % stride != 0 {
+                return Err(Error::RaggedArray { array, length, stride });
+            }
+        }
+        let vertices = positions.len() / stride;
+        for (what, count, limit) in
+            [("vertices", vertices, NONE as usize), ("triangles", triangles.len() / 3, MAX_TRIANGLES)]
+        {
+            if count > limit {
+                return Err(Error::TooLarge { what, count, limit });
+            }
+        }
+        positions.refuse_non_finite(dimension, threads)?;
+        if !triangles.is_empty()
+            && Ends::of(&triangles, u32::MAX, threads).largest as usize >= vertices
+            && let Some(i) = triangles.iter().position(|&v| v as usize >= vertices)
+        {
+            return Err(Error::IndexOutOfRange { triangle: i / 3, index: triangles[i], vertices });
+        }
+        Ok(Self { dimension, positions, triangles })
+    }
+
+    /// Plane or space.
+    pub fn dimension(&self) -> Dimension {
+        self.dimension
+    }
+
+    /// Coordinates, 2 or 3 a vertex.
+    pub fn positions(&self) -> &Positions {
+        &self.positions
+    }
+
+    /// Vertex indices, 3 a triangle.
+    pub fn triangles(&self) -> &[u32] {
+        &self.triangles
+    }
+
+    /// Number of vertices, unreferenced ones included.
+    pub fn vertex_count(&self) -> usize {
+        self.positions.len() / self.dimension.stride()
+    }
+
+    /// Number of triangles.
+    pub fn triangle_count(&self) -> usize {
+        self.triangles.len() / 3
+    }
+
+    /// The same vertices with other triangles, such as [`crate::Outcome::triangles`].
+    ///
+    /// # Errors
+    /// As [`Mesh::new`].
+    pub fn with_triangles(&self, triangles: Vec<u32>) -> Result<Self, Error> {
+        Self::new(self.dimension, self.positions.clone(), triangles)
+    }
+
+    /// The vertex's coordinates, a 2D mesh only.
+    pub(crate) fn point2(&self, vertex: u32) -> DVec2 {
+        let [point] = self.positions.points2([vertex]);
+        point
+    }
+
+    /// The vertex's coordinates; z is 0 in a 2D mesh.
+    pub(crate) fn point3(&self, vertex: u32) -> DVec3 {
+        match self.dimension {
+            Dimension::Two => self.point2(vertex).extend(0.0),
+            Dimension::Three => {
+                let [point] = self.positions.points3([vertex]);
+                point
+            }
+        }
+    }
+}

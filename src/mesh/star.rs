@@ -1,0 +1,277 @@
+//! The triangles around a vertex. Their corners fall into fans: runs of triangles joined by twins, open at
+//! the boundary or closed. A flip neither joins nor splits fans, so which vertices have several is known
+//! from the start.
+
+use crate::NONE;
+use crate::mesh::half_edge::{next, prev, unflagged};
+use crate::system::threads::{Threads, Word, shared};
+use std::sync::atomic::Ordering::Relaxed;
+
+/// One anchor, a half-edge that starts at the vertex, for each fan of the vertices that have several fans.
+/// The table holds a word for each vertex, [`NONE`] or the place of its list of anchors in the table; a list
+/// ends with [`NONE`]. It is empty where every vertex has one fan, which any half-edge leads around.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Fans {
+    pub(crate) table: Vec<u32>,
+}
+
+impl Fans {
+    /// Walks every fan of the mesh once.
+    pub(crate) fn new(vertices: usize, triangles: &[u32], twins: &[u32]) -> Self {
+        Self::of_corners(&mut (0..triangles.len() as u32), vertices, triangles, twins)
+    }
+
+    /// Walks one fan of each vertex that `may` have several, and all of those that have.
+    pub(crate) fn of_vertices(
+        may: impl Fn(u32) -> bool + Sync,
+        vertices: usize,
+        triangles: &[u32],
+        twins: &[u32],
+        threads: &Threads,
+    ) -> Self {
+        let mut lengths = threads.zeros(vertices);
+        let words = shared(&mut lengths);
+        let is_alone = threads.is_one();
+        let left_out = threads.map(triangles.len(), |piece| {
+            let mut count = 0u32;
+            for h in piece {
+                let v = triangles[h];
+                if !may(v) {
+                    continue;
+                }
+                count = count.wrapping_add(1);
+                let word = &words[v as usize];
+                if word.get() == 0 && (is_alone || word.compare_exchange(0, 1, Relaxed, Relaxed).is_ok()) {
+                    let length = Star::of_fan(twins, h as u32).count() as u32;
+                    word.set(length);
+                    count = count.wrapping_sub(length);
+                }
+            }
+            count
+        });
+        if left_out.into_iter().fold(0, u32::wrapping_add) == 0 {
+            return Self::default();
+        }
+        // What is left of a length is of other fans.
+        for &v in triangles {
+            lengths[v as usize] = lengths[v as usize].wrapping_sub(1);
+        }
+        let has_several = |v: u32| may(v) && lengths[v as usize] != 0;
+        let mut corners = (0..triangles.len() as u32).filter(|&h| has_several(triangles[h as usize]));
+        Self::of_corners(&mut corners, vertices, triangles, twins)
+    }
+
+    /// Walks the fans of the vertices that these ascending half-edges start at, which are all that do; the others are known
+    /// to have one fan.
+    fn of_corners(
+        corners: &mut dyn Iterator<Item = u32>,
+        vertices: usize,
+        triangles: &[u32],
+        twins: &[u32],
+    ) -> Self {
+        let mut first = vec![NONE; vertices];
+        let mut visited = vec![false; triangles.len()];
+        let mut further = Vec::new();
+        for h in corners {
+            let v = triangles[h as usize];
+            if visited[h as usize] {
+                continue;
+            }
+            for corner in Star::of_fan(twins, h) {
+                visited[corner as usize] = true;
+            }
+            if first[v as usize] == NONE {
+                first[v as usize] = h;
+            } else {
+                further.push((v, h));
+            }
+        }
+        if further.is_empty() {
+            return Self::default();
+        }
+        further.sort_unstable();
+        let mut table = vec![NONE; vertices];
+        for fans in further.chunk_by(|x, y| x.0 == y.0) {
+            let v = fans[0].0 as usize;
+            table[v] = table.len() as u32;
+            table.push(first[v]);
+            table.extend(fans.iter().map(|&(_, h)| h));
+            table.push(NONE);
+        }
+        Self { table }
+    }
+
+    /// The anchors of a vertex with several fans, up to the end of the table; none for any other vertex.
+    #[inline]
+    fn of(&self, vertex: u32) -> Option<&[u32]> {
+        let list = self.table.get(vertex as usize).copied().unwrap_or(NONE);
+        (list != NONE).then(|| &self.table[list as usize..])
+    }
+
+    /// Moves one anchor of `vertex`, where `from` is one.
+    pub(crate) fn move_anchor(&mut self, vertex: u32, from: u32, to: u32) {
+        let list = self.table.get(vertex as usize).copied().unwrap_or(NONE);
+        if list != NONE {
+            let anchors = self.table[list as usize..].iter_mut().take_while(|anchor| **anchor != NONE);
+            for anchor in anchors.filter(|anchor| **anchor == from) {
+                *anchor = to;
+            }
+        }
+    }
+}
+
+/// Iterates over the corners at a vertex: the half-edges that start there.
+pub(crate) struct Star<'a> {
+    twins: &'a [u32],
+    start: u32,
+    at: u32,
+    clockwise: bool,
+    further: &'a [u32],
+}
+
+impl<'a> Star<'a> {
+    /// All corners at the vertex that `corner` starts at.
+    pub(crate) fn new(triangles: &[u32], twins: &'a [u32], fans: &'a Fans, corner: u32) -> Self {
+        match fans.of(triangles[corner as usize]) {
+            None => Self::of_fan(twins, corner),
+            Some(anchors) => Self { further: &anchors[1..], ..Self::of_fan(twins, anchors[0]) },
+        }
+    }
+
+    /// The corners of the fan that `corner` belongs to.
+    fn of_fan(twins: &'a [u32], corner: u32) -> Self {
+        Self { twins, start: corner, at: corner, clockwise: false, further: &[NONE] }
+    }
+
+    fn begin_next_fan(&mut self) {
+        self.start = self.further[0];
+        self.at = self.start;
+        self.clockwise = false;
+        if self.start != NONE {
+            self.further = &self.further[1..];
+        }
+    }
+
+    #[inline(always)]
+    fn advance(&mut self) {
+        if !self.clockwise {
+            self.at = unflagged(self.twins[prev(self.at) as usize]);
+            if self.at == self.start {
+                return self.begin_next_fan();
+            }
+            if self.at != NONE {
+                return;
+            }
+            // The fan is open: go back to where it began and round the other way.
+            self.clockwise = true;
+            self.at = self.start;
+        }
+        match unflagged(self.twins[self.at as usize]) {
+            NONE => self.begin_next_fan(),
+            twin => self.at = next(twin),
+        }
+    }
+}
+
+impl Iterator for Star<'_> {
+    type Item = u32;
+
+    #[inline(always)]
+    fn next(&mut self) -> Option<u32> {
+        (self.at != NONE).then(|| {
+            let corner = self.at;
+            self.advance();
+            corner
+        })
+    }
+}
+
+/// Whether a corner of two stars passes its test. The stars are walked in turns: each of them alone gives
+/// the answer, so the cost is that of the smaller one.
+pub(crate) fn any_in_either(
+    mut first: (Star, impl Fn(u32) -> bool),
+    mut second: (Star, impl Fn(u32) -> bool),
+) -> bool {
+    loop {
+        match first.0.next() {
+            None => return false,
+            Some(corner) if first.1(corner) => return true,
+            Some(_) => {}
+        }
+        match second.0.next() {
+            None => return false,
+            Some(corner) if second.1(corner) => return true,
+            Some(_) => {}
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Adjacency;
+    use crate::system::threads::Threads;
+
+    /// The vertices opposite to vertex `v`'s corners, walked from its first one.
+    fn around(vertices: usize, triangles: &[u32], v: u32) -> Vec<[u32; 2]> {
+        let twins = Adjacency::of_triangles(vertices, triangles, &Threads::default()).twins;
+        let fans = Fans::new(vertices, triangles, &twins);
+        let corner = triangles.iter().position(|&u| u == v).map_or(NONE, |h| h as u32);
+        let ends = |x| [next(x), prev(x)].map(|h| triangles[h as usize]);
+        let mut ends: Vec<_> = Star::new(triangles, &twins, &fans, corner).map(ends).collect();
+        ends.sort_unstable();
+        ends
+    }
+
+    /// ```text
+    ///   3---2
+    ///   | \ | \      vertex 1 has an open fan of three triangles, whichever of them the walk begins in
+    ///   0---1--4
+    /// ```
+    #[test]
+    fn an_open_fan_is_walked_in_both_directions() {
+        for triangles in
+            [[0, 1, 3, 1, 2, 3, 4, 2, 1], [1, 2, 3, 4, 2, 1, 0, 1, 3], [4, 2, 1, 0, 1, 3, 1, 2, 3]]
+        {
+            assert_eq!(around(5, &triangles, 1), [[2, 3], [3, 0], [4, 2]]);
+        }
+    }
+
+    #[test]
+    fn a_closed_fan_is_walked_once() {
+        assert_eq!(around(4, &[0, 1, 2, 0, 2, 3, 0, 3, 1], 0), [[1, 2], [2, 3], [3, 1]]);
+    }
+
+    /// ```text
+    ///   1       3
+    ///   | \   / |
+    ///   |   0   |    a bow-tie: two fans at vertex 0
+    ///   | /   \ |
+    ///   2       4
+    /// ```
+    #[test]
+    fn all_fans_of_a_bow_tie_are_walked() {
+        let triangles = [0, 1, 2, 0, 4, 3];
+        assert_eq!(around(5, &triangles, 0), [[1, 2], [4, 3]]);
+        assert_eq!(around(5, &triangles, 1), [[2, 0]]);
+        let fans = Fans::new(5, &triangles, &[NONE; 6]);
+        assert_eq!(fans.table, [5, NONE, NONE, NONE, NONE, 0, 3, NONE]);
+    }
+
+    /// The corners (0, 1, 2), (0, 2, 3), … (0, n, 1) are one fan; a walk from either end of the spoke 1-0 ends
+    /// after at most the shorter star.
+    #[test]
+    fn the_shorter_star_decides() {
+        let triangles: Vec<u32> = (1..=100).flat_map(|i| [0, i, i % 100 + 1]).collect();
+        let twins = Adjacency::of_triangles(101, &triangles, &Threads::default()).twins;
+        let fans = Fans::default();
+        let star = |corner| Star::new(&triangles, &twins, &fans, corner);
+        let steps = std::cell::Cell::new(0);
+        let never = |_| {
+            steps.set(steps.get() + 1);
+            false
+        };
+        assert!(!any_in_either((star(0), never), (star(1), never)));
+        assert!(steps.get() <= 2 * 2 + 1, "{}", steps.get());
+    }
+}

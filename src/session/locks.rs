@@ -1,0 +1,90 @@
+//! Locked edges: those that the user has named, by themselves, by their triangles or by groups of triangles, which never
+//! flip.
+
+use crate::mesh::Mesh;
+use crate::mesh::buckets::for_each_edge;
+use crate::mesh::half_edge::next;
+use crate::{Error, Options, Welded};
+
+/// The edges that `options` lock, each by its two vertices: those named first, then those of triangles and between
+/// groups. What is named has yet to be found in the mesh.
+///
+/// # Errors
+/// [`Error::Option`] for a triangle that the mesh has not, and for groups of another number of triangles.
+pub(crate) fn edges(mesh: &Mesh, options: &Options) -> Result<Vec<[u32; 2]>, Error> {
+    let Options { locked_edges, locked_triangles, groups, .. } = options;
+    let (triangles, _) = mesh.triangles().as_chunks::<3>();
+    let mut edges = locked_edges.clone();
+    for &triangle in locked_triangles {
+        let Some(&[a, b, c]) = triangles.get(triangle as usize) else {
+            let message = format!("there is no triangle {triangle}; the mesh has {}", triangles.len());
+            return Err(Error::Option { option: "locked_triangles", message });
+        };
+        edges.extend([[a, b], [b, c], [c, a]]);
+    }
+    if !groups.is_empty() && groups.len() != triangles.len() {
+        let message = format!("it has {} numbers, the mesh has {} triangles", groups.len(), triangles.len());
+        return Err(Error::Option { option: "groups", message });
+    }
+    if groups.iter().any(|group| *group != groups[0]) {
+        for_each_edge(mesh.vertex_count(), mesh.triangles(), |half_edges| {
+            let group = |h: u32| groups[h as usize / 3];
+            if half_edges.iter().any(|&h| group(h) != group(half_edges[0])) {
+                edges.push([half_edges[0], next(half_edges[0])].map(|h| mesh.triangles()[h as usize]));
+            }
+        });
+    }
+    Ok(edges)
+}
+
+/// The half-edges of the edges that `pairs` name by their vertices, in ascending order.
+///
+/// # Errors
+/// [`Error::Option`] with the first pair that is no edge of the mesh.
+pub(crate) fn half_edges(mesh: &Mesh, pairs: &[[u32; 2]]) -> Result<Vec<u32>, Error> {
+    let mut half_edges = Vec::new();
+    if pairs.is_empty() {
+        return Ok(half_edges);
+    }
+    let ordered = |[u, v]: [u32; 2]| (u.min(v), u.max(v));
+    let mut edges: Vec<(u32, u32)> = pairs.iter().map(|&pair| ordered(pair)).collect();
+    edges.sort_unstable();
+    edges.dedup();
+    let mut is_found = vec![false; edges.len()];
+    // Most half-edges are ruled out by one look.
+    let mut is_end = vec![false; mesh.vertex_count()];
+    for &(u, _) in &edges {
+        if let Some(is_end) = is_end.get_mut(u as usize) {
+            *is_end = true;
+        }
+    }
+    for h in 0..mesh.triangles().len() as u32 {
+        let ends = ordered([h, next(h)].map(|x| mesh.triangles()[x as usize]));
+        if is_end[ends.0 as usize]
+            && let Ok(place) = edges.binary_search(&ends)
+        {
+            is_found[place] = true;
+            half_edges.push(h);
+        }
+    }
+    match pairs.iter().find(|&&pair| edges.binary_search(&ordered(pair)).is_ok_and(|place| !is_found[place]))
+    {
+        None => Ok(half_edges),
+        Some([u, v]) => {
+            let message = format!("the mesh has no edge between vertices {u} and {v}");
+            Err(Error::Option { option: "locked_edges", message })
+        }
+    }
+}
+
+impl Welded {
+    /// Adds to the options of a run what has to be locked. Edges that they lock already are those between the places of
+    /// their vertices.
+    pub fn constrain(&self, options: &mut Options) {
+        for vertex in options.locked_edges.as_flattened_mut() {
+            *vertex = self.places.get(*vertex as usize).copied().unwrap_or(*vertex);
+        }
+        options.locked_edges.extend_from_slice(self.wedges.locked_edges());
+        options.locked_triangles.extend_from_slice(self.wedges.locked_triangles());
+    }
+}

@@ -1,0 +1,439 @@
+//! The loop around an engine: options in, iterations and statistics out, and the honest result.
+
+mod choice;
+mod cost;
+#[cfg(not(target_arch = "wasm32"))]
+mod early;
+pub(crate) mod edge_states;
+mod fallback;
+#[cfg_attr(not(feature = "gpu"), path = "no_gpu.rs")]
+mod gpu;
+pub(crate) mod locks;
+pub(crate) mod options;
+pub(crate) mod outcome;
+mod room;
+#[cfg(test)]
+mod tests;
+
+#[cfg(all(target_arch = "wasm32", feature = "js"))]
+use crate::engine::SharedObjects;
+use crate::engine::{Answer, Engine};
+use crate::error::number;
+use crate::mesh::embedded::Embedded;
+use crate::mesh::star::Fans;
+use crate::phases::frozen;
+use crate::phases::{Geometry, Thresholds, Topology};
+use crate::session::edge_states::edge_states;
+use crate::system::memory;
+use crate::system::threads::Threads;
+use crate::{
+    Backend, EdgeState, Edges, EngineKind, Error, Iteration, MOST_THREADS, Mesh, Options, Order, Outcome,
+    Positions, Reason, Status, Timings,
+};
+#[cfg(all(target_arch = "wasm32", feature = "js"))]
+pub(crate) use choice::why_cpu;
+use choice::{Choice, cpu_after, engine_for};
+#[cfg(all(target_arch = "wasm32", feature = "js"))]
+pub(crate) use cost::Job;
+#[cfg(not(target_arch = "wasm32"))]
+pub use early::{EarlyGpu, close_gpu};
+#[cfg(all(target_arch = "wasm32", feature = "js"))]
+use js_sys::Uint32Array;
+use std::borrow::Cow;
+use std::ops::ControlFlow;
+use std::sync::Arc;
+use web_time::Instant;
+
+/// A mesh on an engine, step by step.
+pub struct Session {
+    mesh: Arc<Mesh>,
+    options: Options,
+    engine: Box<dyn Engine>,
+    /// Why `Auto` took no other one.
+    fallback: Option<String>,
+    /// Whether it is the CPU only until a GPU is ready.
+    may_change: bool,
+    flips_per_iteration: Vec<u32>,
+    has_ended: bool,
+    timings: Timings,
+}
+
+impl Session {
+    /// Checks the options and makes an engine ready for `mesh`: a mesh, one in an `Arc`, or a reference, which is copied.
+    ///
+    /// # Errors
+    /// [`Error::Option`]; [`Error::OutOfMemory`] where the CPU has too little memory for a run; [`Error::BackendUnavailable`], [`Error::BackendLimit`] or [`Error::Device`] where
+    /// the GPU was asked for (`Auto` takes the CPU instead).
+    pub async fn new(mesh: impl Into<Arc<Mesh>>, mut options: Options) -> Result<Self, Error> {
+        if !(0.0..=180.0).contains(&options.max_normal_angle) {
+            let message =
+                format!("{} is not an angle from 0 to 180 degrees", number(options.max_normal_angle));
+            return Err(Error::Option { option: "max_normal_angle", message });
+        }
+        if options.max_deviation.is_nan() || options.max_deviation < 0.0 {
+            let message = format!("{} is not a distance from 0 on", number(options.max_deviation));
+            return Err(Error::Option { option: "max_deviation", message });
+        }
+        if let Some(threads) = options.threads.filter(|threads| threads.get() > MOST_THREADS) {
+            let message = format!("{threads} is not a number of threads, 1 to {MOST_THREADS}");
+            return Err(Error::Option { option: "threads", message });
+        }
+        let (start, mesh) = (Instant::now(), mesh.into());
+        options.locked_edges = locks::edges(&mesh, &options)?;
+        // `auto` would take a refusal by an engine for a reason to go on.
+        locks::half_edges(&mesh, &options.locked_edges)?;
+        let Choice { engine, fallback, may_change } = engine_for(&mesh, &options).await?;
+        let set_up = ms_since(start);
+        let adjacency = engine.adjacency_ms().unwrap_or(set_up);
+        Ok(Self {
+            mesh,
+            options,
+            engine,
+            fallback,
+            may_change,
+            flips_per_iteration: Vec::new(),
+            has_ended: false,
+            timings: Timings { upload: set_up - adjacency, adjacency, ..Timings::default() },
+        })
+    }
+
+    /// One iteration, watched: counts the edges of the whole mesh before it. `None` when nothing is left to
+    /// flip, or the cap on iterations is reached.
+    ///
+    /// # Errors
+    /// [`Error::Device`], [`Error::BackendLimit`], [`Error::OutOfMemory`].
+    pub async fn step(&mut self) -> Result<Option<Iteration>, Error> {
+        if !self.may_continue() {
+            return Ok(None);
+        }
+        let start = Instant::now();
+        let census = self.ask(|engine| engine.census()).await?;
+        let index = self.flips_per_iteration.len() as u32;
+        self.iterate(1).await?;
+        let ms = ms_since(start);
+        Ok(self.flips_per_iteration.get(index as usize).map(|&flips| Iteration {
+            index,
+            labelled: census.labelled,
+            flips,
+            blocked: census.blocked,
+            ms,
+        }))
+    }
+
+    /// Runs to the end. `watch` is called after every batch of iterations with the numbers of iterations and
+    /// flips so far; [`ControlFlow::Break`] stops the run after a complete iteration.
+    ///
+    /// # Errors
+    /// [`Error::Device`] and [`Error::BackendLimit`], unless the backend is `Auto`: then the CPU takes over; [`Error::OutOfMemory`].
+    pub async fn run(&mut self, mut watch: impl FnMut(u32, u64) -> ControlFlow<()>) -> Result<(), Error> {
+        while self.may_continue() {
+            self.advance().await?;
+            if watch(self.iterations(), self.flips()).is_break() {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    /// One batch of iterations, as many as the engine runs in one go. Returns whether there may be more.
+    ///
+    /// # Errors
+    /// As [`Session::run`].
+    pub async fn advance(&mut self) -> Result<bool, Error> {
+        if self.may_continue() {
+            self.iterate(self.engine.batch().min(self.iterations_left())).await?;
+        }
+        if self.may_change && self.may_continue() {
+            self.change_to_gpu().await;
+        }
+        Ok(self.may_continue())
+    }
+
+    /// Moves the vertices, all of them: 2 or 3 numbers each, `Vec<f32>` or `Vec<f64>`, as many as before. From now on the session is as a new
+    /// one on these positions and the triangles as they are now: its iterations and flips, its creases and the base
+    /// of its audit begin here, and it gives the same bits. Adjacency, device and buffers stay; the triangles are
+    /// read back once.
+    ///
+    /// # Errors
+    /// [`Error::PositionCount`], [`Error::NonFinite`]; [`Error::BackendLimit`] where the GPU cannot decide the new
+    /// positions exactly; [`Error::Device`], [`Error::OutOfMemory`]. The session is then as it was before. With `Auto` the CPU takes over
+    /// from a GPU that refuses or fails.
+    pub async fn set_positions(&mut self, positions: impl Into<Positions>) -> Result<(), Error> {
+        let start = Instant::now();
+        self.check_room(room::POSITIONS)?;
+        let positions = positions.into();
+        let (length, expected) = (positions.len(), self.mesh.positions().len());
+        if length != expected {
+            return Err(Error::PositionCount { length, expected });
+        }
+        positions.refuse_non_finite(self.mesh.dimension(), &Threads::one())?;
+        let triangles = self.triangles().await?;
+        let mesh = Arc::new(Mesh::new(self.mesh.dimension(), positions, triangles)?);
+        if self.may_change && choice::changes_to_gpu(&mesh, &self.options, (0.0, 0.0)) {
+            let choice = engine_for(&mesh, &self.options).await?;
+            self.take(choice);
+        } else {
+            match self.engine.set_positions(mesh.clone()).await {
+                Err(error @ (Error::BackendLimit { .. } | Error::Device { .. }))
+                    if self.options.backend == Backend::Auto =>
+                {
+                    let why = format!("after the vertices moved: {error}");
+                    let choice = cpu_after(why, &mesh, &self.options).await?;
+                    self.take(choice);
+                }
+                answer => answer?,
+            }
+            if self.engine.backend() == EngineKind::Gpu {
+                self.fallback = None;
+            }
+        }
+        self.mesh = mesh;
+        self.flips_per_iteration.clear();
+        self.has_ended = false;
+        self.timings = Timings { adjacency: ms_since(start), ..Timings::default() };
+        Ok(())
+    }
+
+    /// The triangles as they are now: vertex indices, 3 a triangle.
+    ///
+    /// # Errors
+    /// [`Error::Device`], [`Error::OutOfMemory`].
+    pub async fn triangles(&mut self) -> Result<Vec<u32>, Error> {
+        self.check_room(room::COPY)?;
+        self.ask(|engine| engine.triangles()).await
+    }
+
+    /// The result so far: reads the triangles back and counts what remains.
+    ///
+    /// # Errors
+    /// [`Error::Device`], [`Error::OutOfMemory`].
+    pub async fn outcome(&mut self) -> Result<Outcome, Error> {
+        let start = Instant::now();
+        let triangles = self.triangles().await?;
+        let outcome = self.summary(start, &|| Cow::Borrowed(&triangles)).await?;
+        Ok(Outcome { triangles, ..outcome })
+    }
+
+    /// As [`Session::outcome`], with the triangles in an array of JavaScript.
+    #[cfg(all(target_arch = "wasm32", feature = "js"))]
+    pub(crate) async fn outcome_array(&mut self) -> Result<(Outcome, Uint32Array), Error> {
+        let start = Instant::now();
+        let array = self.triangles_array().await?;
+        let outcome = self.summary(start, &|| Cow::Owned(array.to_vec())).await?;
+        Ok((outcome, array))
+    }
+
+    /// As [`Session::triangles`], in an array of JavaScript.
+    #[cfg(all(target_arch = "wasm32", feature = "js"))]
+    pub(crate) async fn triangles_array(&mut self) -> Result<Uint32Array, Error> {
+        self.check_room(room::COPY)?;
+        self.ask(|engine| engine.triangles_array()).await
+    }
+
+    /// The outcome without the triangles, which are asked for only where they are looked at.
+    async fn summary<'a>(
+        &mut self,
+        start: Instant,
+        triangles: &dyn Fn() -> Cow<'a, [u32]>,
+    ) -> Result<Outcome, Error> {
+        let census = self.ask(|engine| engine.census()).await?;
+        let counts = self.engine.edge_counts();
+        let mut remaining = census.blocked;
+        remaining[Reason::Stopped] = u64::from(census.labelled);
+        if counts.non_manifold + counts.inconsistent > 0 {
+            let frozen = frozen::count_non_delaunay(&self.mesh, &triangles());
+            for reason in [Reason::NonManifold, Reason::Inconsistent] {
+                remaining[reason] = frozen[reason];
+            }
+        }
+        let Timings { upload, adjacency, flip, .. } = self.timings;
+        Ok(Outcome {
+            triangles: Vec::new(),
+            status: if census.labelled == 0 { Status::Done } else { Status::Stopped },
+            backend: self.engine.backend(),
+            adapter: self.engine.adapter(),
+            fallback: self.fallback.clone(),
+            iterations: self.flips_per_iteration.len() as u32,
+            flips: self.flips(),
+            flips_per_iteration: self.flips_per_iteration.clone(),
+            dispatches: self.engine.dispatches(),
+            device_bytes: self.engine.device_bytes(),
+            edges: u64::from(counts.edges),
+            boundary_edges: u64::from(counts.boundary),
+            non_manifold_edges: u64::from(counts.non_manifold),
+            inconsistent_edges: u64::from(counts.inconsistent),
+            remaining,
+            timings: Timings { total: upload + adjacency + flip + ms_since(start), ..self.timings },
+        })
+    }
+
+    /// Every edge as it is now.
+    ///
+    /// # Errors
+    /// [`Error::Device`], [`Error::OutOfMemory`].
+    pub async fn edges(&mut self) -> Result<Edges, Error> {
+        self.check_room(room::EDGES)?;
+        let triangles = self.triangles().await?;
+        let twins = self.ask(|engine| engine.twins()).await?;
+        Ok(Edges::from_twins(&triangles, &twins))
+    }
+
+    /// The state of the edge of every half-edge as it is now: 3 a triangle, in the order of
+    /// [`Session::triangles`]. The two half-edges of an edge agree.
+    ///
+    /// # Errors
+    /// [`Error::Device`], [`Error::OutOfMemory`].
+    pub async fn edge_states(&mut self) -> Result<Vec<EdgeState>, Error> {
+        self.check_room(room::EDGES)?;
+        let triangles = self.triangles().await?;
+        let twins = self.ask(|engine| engine.twins()).await?;
+        // As the engine found it: neither the components nor their areas change with flips.
+        let (winding, _) = Embedded::with_winding(&self.mesh, &twins, &Threads::default());
+        let geometry = Geometry {
+            dimension: self.mesh.dimension(),
+            positions: self.mesh.positions(),
+            thresholds: Thresholds::from(&self.options),
+            winding: &winding,
+            embedded: &Embedded::default(),
+        };
+        let vertices = self.mesh.vertex_count();
+        let fans = &Fans::new(vertices, &triangles, &twins);
+        let topology = Topology { first: 0, triangles: &triangles, twins: &twins, fans };
+        let iteration = (self.options.order == Order::Reproducible).then(|| self.iterations());
+        Ok(edge_states(&geometry, topology, vertices, iteration))
+    }
+
+    /// How many bytes a session on the CPU takes at most, beside the mesh: to begin, to run and for its outcome. Where there
+    /// is less, it is refused before it begins.
+    pub fn bytes(mesh: &Mesh, options: &Options) -> u64 {
+        room::bytes(mesh, options)
+    }
+
+    /// Iterations so far.
+    pub fn iterations(&self) -> u32 {
+        self.flips_per_iteration.len() as u32
+    }
+
+    /// Flips so far.
+    pub fn flips(&self) -> u64 {
+        self.flips_per_iteration.iter().map(|&n| u64::from(n)).sum::<u64>()
+    }
+
+    /// The engine that runs now: `cpu` or `gpu`.
+    #[cfg(all(target_arch = "wasm32", feature = "js-session"))]
+    pub(crate) fn backend(&self) -> EngineKind {
+        self.engine.backend()
+    }
+
+    /// What the audit compares with: the mesh as it was given, or as its vertices moved last, and the options.
+    pub(crate) fn input(&self) -> (&Mesh, &Options) {
+        (&self.mesh, &self.options)
+    }
+
+    /// What a page can draw from.
+    #[cfg(all(target_arch = "wasm32", feature = "js"))]
+    pub(crate) fn shared_objects(&self) -> Option<SharedObjects> {
+        self.engine.shared_objects()
+    }
+
+    fn may_continue(&self) -> bool {
+        !self.has_ended && self.iterations_left() > 0
+    }
+
+    fn iterations_left(&self) -> u32 {
+        let done = self.flips_per_iteration.len() as u32;
+        self.options.max_iterations.map_or(u32::MAX, |cap| cap.saturating_sub(done))
+    }
+
+    /// Asks for so many bytes a triangle: a call that runs out of memory takes its session with it, one that is refused
+    /// leaves it as it was.
+    fn check_room(&self, bytes: u64) -> Result<(), Error> {
+        memory::check(bytes * self.mesh.triangle_count() as u64)
+    }
+
+    async fn iterate(&mut self, count: u32) -> Result<(), Error> {
+        // Later iterations take what the first has taken.
+        if self.flips_per_iteration.is_empty() && self.engine.backend() == EngineKind::Cpu {
+            memory::check(room::of_run(&self.mesh, &self.options))?;
+        }
+        let start = Instant::now();
+        let flips = self.ask(|engine| engine.iterate(count)).await?;
+        self.has_ended = (flips.len() as u32) < count;
+        self.flips_per_iteration.extend(flips);
+        self.timings.flip += ms_since(start);
+        Ok(())
+    }
+
+    /// Asks the engine, and the CPU where the device fails or refuses the mesh and the backend is `Auto`.
+    async fn ask<T>(
+        &mut self,
+        question: impl for<'a> Fn(&'a mut dyn Engine) -> Answer<'a, T>,
+    ) -> Result<T, Error> {
+        loop {
+            match question(self.engine.as_mut()).await {
+                Err(error) if self.options.backend == Backend::Auto => self.recover(error).await?,
+                answer => return answer,
+            }
+        }
+    }
+
+    /// Where the device fails, or the engine finds out late that it cannot take the mesh, the CPU goes the same way again up
+    /// to the last complete iteration, which determinism allows. Boxed, so that it is compiled into one place only.
+    fn recover(&mut self, error: Error) -> Answer<'_, ()> {
+        Box::pin(async move {
+            let why = match error {
+                Error::Device { message } => format!("the device failed during the run: {message}"),
+                Error::BackendLimit { .. } => error.to_string(),
+                error => return Err(error),
+            };
+            let before = self.fallback.as_deref().map_or(String::new(), |before| format!("{before}; "));
+            let choice = cpu_after(before + &why, &self.mesh, &self.options).await?;
+            self.take(choice);
+            self.engine.iterate(self.iterations()).await.map(drop)
+        })
+    }
+
+    /// Where the GPU has become ready and is done first from here, it goes the same way again and then on. Where it fails, the
+    /// CPU goes on.
+    async fn change_to_gpu(&mut self) {
+        let Timings { upload, adjacency, flip, .. } = self.timings;
+        if !choice::changes_to_gpu(&self.mesh, &self.options, (upload + adjacency, flip)) {
+            return;
+        }
+        self.may_change = false;
+        let start = Instant::now();
+        match choice::gpu_after(self.iterations(), &self.mesh, &self.options).await {
+            Ok(engine) => {
+                self.engine = engine;
+                self.fallback = Some("the cpu began, until the gpu was ready".to_owned());
+            }
+            Err(error) => self.fallback = Some(error.to_string()),
+        }
+        self.timings.flip += ms_since(start);
+    }
+
+    fn take(&mut self, choice: Choice) {
+        Choice { engine: self.engine, fallback: self.fallback, may_change: self.may_change } = choice;
+    }
+}
+
+fn ms_since(start: Instant) -> f64 {
+    start.elapsed().as_secs_f64() * 1e3
+}
+
+/// Makes `mesh` Delaunay by flipping edges; the mesh is given as to [`Session::new`]. `watch` is as in [`Session::run`].
+///
+/// # Errors
+/// Those of [`Session::new`] and [`Session::run`].
+#[cfg(not(target_arch = "wasm32"))]
+pub fn make_delaunay(
+    mesh: impl Into<Arc<Mesh>>,
+    options: &Options,
+    watch: impl FnMut(u32, u64) -> ControlFlow<()>,
+) -> Result<Outcome, Error> {
+    pollster::block_on(async {
+        let mut session = Session::new(mesh, options.clone()).await?;
+        session.run(watch).await?;
+        session.outcome().await
+    })
+}

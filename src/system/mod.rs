@@ -1,0 +1,6 @@
+//! What the machine below gives: memory, threads, and promises of a browser.
+
+pub(crate) mod memory;
+#[cfg(all(target_arch = "wasm32", any(feature = "js-session", feature = "js-webgl2")))]
+pub(crate) mod promise;
+pub(crate) mod threads;

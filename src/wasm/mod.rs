@@ -1,0 +1,16 @@
+//! What wasm-bindgen exports for the npm package, one file a WebAssembly module: nothing else in the crate imports it. The
+//! TypeScript in `src/js/` is the public face.
+
+#[cfg(feature = "js-audit")]
+pub mod audit;
+#[cfg(feature = "js-files")]
+pub mod files;
+#[cfg(feature = "js-session")]
+mod objects;
+#[cfg(feature = "js-session")]
+pub mod session;
+#[cfg(feature = "js-threads")]
+pub mod threads;
+mod values;
+#[cfg(feature = "js-webgl2")]
+pub mod webgl2;

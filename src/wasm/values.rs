@@ -1,0 +1,124 @@
+//! What the modules of the npm package share: plain objects, errors and dimensions as JavaScript has them, in the
+//! words of the package: `webgpu` for the GPU engine, `indices` for the triangles.
+
+#[cfg(any(feature = "js-session", feature = "js-audit"))]
+use crate::Reasons;
+use crate::error::number;
+use crate::system::memory;
+use crate::system::threads::Threads;
+use crate::{Dimension, Error, Mesh, Positions};
+#[cfg(any(feature = "js-session", feature = "js-audit", feature = "js-files"))]
+use js_sys::{Array, Object};
+use js_sys::{Float32Array, Float64Array, Uint32Array};
+use wasm_bindgen::prelude::*;
+
+#[wasm_bindgen]
+extern "C" {
+    /// Positions, as JavaScript has them.
+    #[wasm_bindgen(typescript_type = "Float32Array | Float64Array")]
+    pub type JsPositions;
+
+    #[wasm_bindgen(method, getter, js_name = byteLength)]
+    pub(crate) fn byte_length(this: &JsPositions) -> f64;
+}
+
+impl From<JsPositions> for Positions {
+    fn from(array: JsPositions) -> Self {
+        match array.dyn_into::<Float32Array>() {
+            Ok(array) => array.to_vec().into(),
+            Err(array) => Float64Array::new(&array).to_vec().into(),
+        }
+    }
+}
+
+/// The mesh of arrays of JavaScript, copied where there is memory for them.
+///
+/// # Errors
+/// Those of [`Mesh::new`]; [`Error::OutOfMemory`]; [`Error::Option`] for the dimension.
+pub(crate) fn mesh_of(
+    positions: JsPositions,
+    indices: &Uint32Array,
+    dimension: f64,
+    threads: &Threads,
+) -> Result<Mesh, Error> {
+    let dimension = parse_dimension(dimension)?;
+    let bytes = positions.byte_length() + f64::from(indices.byte_length());
+    memory::check(bytes as u64)?;
+    Mesh::checked(dimension, positions, indices.to_vec(), threads)
+}
+
+/// Runs once, when a module is loaded.
+#[wasm_bindgen(start)]
+pub fn start() {
+    #[cfg(debug_assertions)]
+    console_error_panic_hook::set_once();
+}
+
+/// Where memory cannot be had, `tools/build.mjs` lets Rust end here: a trap would not say why. `fromModule` in
+/// `src/js/error.ts` knows the message.
+#[wasm_bindgen(js_name = outOfMemory)]
+pub fn out_of_memory() {
+    wasm_bindgen::throw_str("out of memory");
+}
+
+/// A plain object.
+#[cfg(any(feature = "js-session", feature = "js-audit", feature = "js-files"))]
+pub(crate) fn object<'a>(fields: impl IntoIterator<Item = (&'a str, JsValue)>) -> JsValue {
+    let entries: Array = fields.into_iter().map(|(name, value)| Array::of2(&name.into(), &value)).collect();
+    // Fails only on what is no list of pairs.
+    Object::from_entries(&entries).map_or_else(|error| error, JsValue::from)
+}
+
+/// The reasons with at least one edge.
+#[cfg(any(feature = "js-session", feature = "js-audit"))]
+pub(crate) fn reasons_object(reasons: &Reasons) -> JsValue {
+    object(reasons.iter().map(|(reason, edges)| (reason.name(), (edges as f64).into())))
+}
+
+/// 2 or 3.
+pub(crate) fn parse_dimension(dimension: f64) -> Result<Dimension, Error> {
+    if dimension == 2.0 {
+        Ok(Dimension::Two)
+    } else if dimension == 3.0 {
+        Ok(Dimension::Three)
+    } else {
+        Err(Error::Option {
+            option: "dimension",
+            message: format!("{} is neither 2 nor 3", number(dimension)),
+        })
+    }
+}
+
+/// What a call throws: an `Error` with a `code`.
+pub(crate) fn thrown(error: Error) -> JsValue {
+    let code = error.code();
+    coded(code, &in_words_of_javascript(error).to_string())
+}
+
+/// An `Error` with a `code`.
+pub(crate) fn coded(code: &str, message: &str) -> JsValue {
+    let thrown = js_sys::Error::new(message);
+    // Setting a field of a new object does not fail.
+    let _ = js_sys::Reflect::set(thrown.unchecked_ref(), &"code".into(), &code.into());
+    thrown.into()
+}
+
+fn in_words_of_javascript(error: Error) -> Error {
+    match error {
+        Error::RaggedArray { array: "triangles", length, stride } => {
+            Error::RaggedArray { array: "indices", length, stride }
+        }
+        Error::FileTooLarge { limit, .. } => Error::FileTooLarge { limit, option: "maxBytes" },
+        Error::Option { option: "max_normal_angle", message } => {
+            Error::Option { option: "maxNormalAngle", message }
+        }
+        Error::Option { option: "max_deviation", message } => {
+            Error::Option { option: "maxDeviation", message }
+        }
+        Error::Option { option: "locked_edges", message } => Error::Option { option: "lockedEdges", message },
+        Error::Option { option: "locked_triangles", message } => {
+            Error::Option { option: "lockedTriangles", message }
+        }
+        error => error,
+    }
+}

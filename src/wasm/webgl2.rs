@@ -1,0 +1,159 @@
+//! The WebGL2 engine for the module of the engines, which calls it through `engine::webgl2::proxy`: in a module of its own, that
+//! is loaded when the engine is taken.
+
+use crate::Error;
+use crate::engine::{self, Engine, WebGl};
+use crate::phases::Thresholds;
+use crate::system::promise::promise;
+use crate::system::threads::Threads;
+use crate::wasm::values::{JsPositions, coded, mesh_of, thrown};
+use js_sys::{Promise, Uint32Array};
+use std::cell::RefCell;
+use std::rc::Rc;
+use std::sync::Arc;
+use wasm_bindgen::prelude::*;
+
+/// Says where the programs come from: a function that returns a promise of their module.
+#[wasm_bindgen(js_name = setShaderLoader)]
+pub fn set_shader_loader(
+    #[wasm_bindgen(unchecked_param_type = "() => Promise<unknown>")] loader: js_sys::Function,
+) {
+    engine::set_shader_loader(loader);
+}
+
+/// A mesh on the engine. A call has the engine while it goes on; one that ends with a trap keeps it.
+#[wasm_bindgen(js_name = WebGl2)]
+pub struct JsWebGl2 {
+    engine: Rc<RefCell<Option<WebGl>>>,
+    dimension: f64,
+}
+
+impl JsWebGl2 {
+    /// Asks the engine, and gives JavaScript what `give` makes of the answer.
+    fn ask<T>(
+        &self,
+        question: impl AsyncFnOnce(&mut WebGl) -> Result<T, Error> + 'static,
+        give: impl FnOnce(T) -> JsValue + 'static,
+    ) -> Promise {
+        let place = self.engine.clone();
+        promise(async move {
+            let mut engine = place
+                .take()
+                .ok_or_else(|| coded("device-failed", "the engine ended when a call of it crashed"))?;
+            let answer = question(&mut engine).await;
+            place.replace(Some(engine));
+            answer.map(give).map_err(bare)
+        })
+    }
+
+    fn get<T: Default>(&self, value: impl FnOnce(&WebGl) -> T) -> T {
+        self.engine.borrow().as_ref().map(value).unwrap_or_default()
+    }
+}
+
+#[wasm_bindgen(js_class = WebGl2)]
+impl JsWebGl2 {
+    /// On the context that all share; `cos` is the cosine of β, `deviation` what diagonals may be apart.
+    ///
+    /// Rejected where there is no context, it fails its self-test, or it cannot take the mesh.
+    #[wasm_bindgen(unchecked_return_type = "Promise<WebGl2>")]
+    pub fn create(
+        positions: JsPositions,
+        indices: &Uint32Array,
+        dimension: f64,
+        cos: f64,
+        deviation: f32,
+    ) -> Promise {
+        let mesh = mesh_of(positions, indices, dimension, &Threads::one());
+        let create = async move {
+            let engine = WebGl::open(Arc::new(mesh?), Thresholds { cos, deviation }).await?;
+            Ok(Self { engine: Rc::new(RefCell::new(Some(engine))), dimension })
+        };
+        promise(async { create.await.map(JsValue::from).map_err(bare) })
+    }
+
+    /// As the engine's. Rejected, as all that follow, where the context is lost.
+    #[wasm_bindgen(unchecked_return_type = "Promise<void>")]
+    pub fn lock(&self, half_edges: Uint32Array) -> Promise {
+        self.ask(async move |engine| engine.lock(half_edges.to_vec()).await, done)
+    }
+
+    /// As the engine's.
+    #[wasm_bindgen(unchecked_return_type = "Promise<Uint32Array>")]
+    pub fn iterate(&self, count: u32) -> Promise {
+        self.ask(async move |engine| engine.iterate(count).await, array)
+    }
+
+    /// As the shaders count.
+    #[wasm_bindgen(unchecked_return_type = "Promise<Uint32Array>")]
+    pub fn census(&self) -> Promise {
+        self.ask(async |engine| engine.census_counts().await, array)
+    }
+
+    /// As the engine's.
+    #[wasm_bindgen(unchecked_return_type = "Promise<Uint32Array>")]
+    pub fn triangles(&self) -> Promise {
+        self.ask(async |engine| engine.triangles().await, array)
+    }
+
+    /// As the engine's.
+    #[wasm_bindgen(unchecked_return_type = "Promise<Uint32Array>")]
+    pub fn twins(&self) -> Promise {
+        self.ask(async |engine| engine.twins().await, array)
+    }
+
+    /// As the engine's: `indices` are the triangles as they are now. Rejected too where it cannot take the positions.
+    #[wasm_bindgen(js_name = setPositions, unchecked_return_type = "Promise<void>")]
+    pub fn set_positions(&self, positions: JsPositions, indices: Uint32Array) -> Promise {
+        let dimension = self.dimension;
+        let set = async move |engine: &mut WebGl| {
+            let mesh = mesh_of(positions, &indices, dimension, &Threads::one())?;
+            engine.set_positions(Arc::new(mesh)).await
+        };
+        self.ask(set, done)
+    }
+
+    /// How many iterations to ask for at a time.
+    #[wasm_bindgen(getter)]
+    pub fn batch(&self) -> u32 {
+        self.get(WebGl::batch)
+    }
+
+    /// All edges, those of the boundary, the non-manifold and the inconsistent ones.
+    #[wasm_bindgen(getter, js_name = edgeCounts)]
+    pub fn edge_counts(&self) -> Vec<u32> {
+        let counts = self.get(WebGl::edge_counts);
+        vec![counts.edges, counts.boundary, counts.non_manifold, counts.inconsistent]
+    }
+
+    /// The renderer's name.
+    #[wasm_bindgen(getter)]
+    pub fn adapter(&self) -> String {
+        self.get(WebGl::adapter).unwrap_or_default()
+    }
+
+    /// Passes so far.
+    #[wasm_bindgen(getter)]
+    pub fn dispatches(&self) -> f64 {
+        self.get(|engine| engine.dispatches() as f64)
+    }
+}
+
+fn done((): ()) -> JsValue {
+    JsValue::UNDEFINED
+}
+
+fn array(words: Vec<u32>) -> JsValue {
+    Uint32Array::from(words.as_slice()).into()
+}
+
+/// An `Error` with a `code` whose message is that of the variant alone: the other module makes the variant of it again.
+fn bare(error: Error) -> JsValue {
+    let code = error.code();
+    match error {
+        Error::BackendUnavailable { message, .. }
+        | Error::BackendLimit { message, .. }
+        | Error::Device { message } => coded(code, &message),
+        error => thrown(error),
+    }
+}
