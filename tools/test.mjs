@@ -46,6 +46,11 @@ const levels = [
     checks: [['cargo', 'fmt', '--all', '--check']],
   },
   {
+    name: 'layout',
+    what: 'imports run down the rooms of docs/architecture.md, no files import each other in a circle, none is too long',
+    checks: [['node', 'tools/layout.mjs']],
+  },
+  {
     name: 'lints',
     what: 'no warning from clippy in any target; Cargo.lock fits Cargo.toml',
     checks: [['cargo', 'clippy', '--locked', '--workspace', '--all-targets', '--', '-D', 'warnings']],
