@@ -1,4 +1,4 @@
-// Walks around a vertex, from triangle to triangle, as src/star.rs.
+// Walks around a vertex, from triangle to triangle, as src/mesh/star.rs.
 #import mesh
 #import state
 

@@ -95,7 +95,7 @@ fn has_fans() -> bool {
     return params[1].x > 0u;
 }
 
-// A word of the table of the fans, see src/star.rs.
+// A word of the table of the fans, see src/mesh/star.rs.
 fn fan_entry(i: u32) -> u32 {
     return textureLoad(fans, place(i), 0).x;
 }

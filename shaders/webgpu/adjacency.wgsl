@@ -1,4 +1,4 @@
-// Finds the twins from the triangles, as src/adjacency.rs, by buckets: counts the half-edges of each, allocates, scatters,
+// Finds the twins from the triangles, as src/mesh/adjacency.rs, by buckets: counts the half-edges of each, allocates, scatters,
 // matches. The order within a bucket is left to the device; no result depends on it.
 #import mesh
 

@@ -150,7 +150,7 @@ fn has_fans() -> bool {
     return params.fans_length > 0u;
 }
 
-// A word of the table of the fans, see src/star.rs.
+// A word of the table of the fans, see src/mesh/star.rs.
 fn fan_entry(i: u32) -> u32 {
     return topology[params.fans + i];
 }

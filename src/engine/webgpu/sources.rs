@@ -54,8 +54,9 @@ fn text_of(path: &str) -> Option<&'static str> {
 }
 
 #[cfg(test)]
-#[allow(clippy::unwrap_used, clippy::panic, reason = "what fails here is a failed test")]
 mod tests {
+    #![allow(clippy::unwrap_used, clippy::panic, reason = "what fails here is a failed test")]
+
     use super::*;
 
     /// The fault of a file by itself, with what it imports; none where it compiles for one of the forms.
