@@ -4,6 +4,8 @@
 use super::ahead;
 use super::faults::{Fault, watch};
 use super::kernels::{Entry, Kernels, Plan};
+use crate::engine::gpu::upload::Form;
+use std::sync::Arc;
 
 /// The kernels of plans, all compiled at the same time: a driver compiles on the thread that asks for it, and takes long.
 #[cfg(not(target_arch = "wasm32"))]
@@ -18,11 +20,9 @@ pub(super) async fn compile(plans: &[Plan], device: &wgpu::Device) -> Result<Vec
         .collect();
     let mut pipelines =
         at_once(&entries, device, |(parts, entry)| parts.pipeline(entry, device))?.into_iter();
-    let kernels = parts.iter().zip(plans).map(|(parts, plan)| Kernels {
-        pipelines: pipelines.by_ref().take(plan.entries.len()).collect(),
-        layout: parts.layout.clone(),
-    });
-    Ok(kernels.collect())
+    let kernels = parts.into_iter().zip(plans);
+    let mut pipelines_of = |plan: &Plan| pipelines.by_ref().take(plan.entries.len()).collect();
+    Ok(kernels.map(|(parts, plan)| Kernels::new(parts.layout, pipelines_of(plan))).collect())
 }
 
 /// What the device makes of each item, each on a thread of its own.
@@ -57,10 +57,49 @@ pub(super) async fn compile(plans: &[Plan], device: &wgpu::Device) -> Result<Vec
         let modules = plan.sources.iter().map(|source| module(source, device)).collect();
         let parts = Parts::new(plan, device, modules);
         let pipelines = plan.entries.iter().map(|entry| parts.pipeline(entry, device)).collect();
-        Kernels { pipelines, layout: parts.layout }
+        Kernels::new(parts.layout, pipelines)
     };
     let (kernels, word) = watch(device, || plans.iter().map(kernels).collect());
     told(word.await).map(|()| kernels)
+}
+
+/// The kernels of some plans, and behind them those of the phases for a form.
+///
+/// In a browser the tail follows behind the first runs. Natively it is compiled along, since a process may end at any time,
+/// and drivers do not expect that while they compile.
+pub(super) async fn compile_phases(
+    mut plans: Vec<Plan>,
+    form: Form,
+    tail_size: u32,
+    device: &wgpu::Device,
+) -> Result<(Vec<Kernels>, Arc<Kernels>), Fault> {
+    plans.push(Plan::phases(form));
+    let tail = Plan::tail(form, tail_size);
+    #[cfg(not(target_arch = "wasm32"))]
+    plans.push(tail);
+    let mut compiled = compile(&plans, device).await?;
+    #[cfg(not(target_arch = "wasm32"))]
+    let tail = compiled.pop();
+    let phases = Arc::new(compiled.remove(compiled.len() - 1));
+    #[cfg(not(target_arch = "wasm32"))]
+    keep_tail(&phases, tail);
+    #[cfg(target_arch = "wasm32")]
+    {
+        let (phases, device) = (phases.clone(), device.clone());
+        wasm_bindgen_futures::spawn_local(async move {
+            // Where the compiler refuses it, iterations run one by one.
+            let compiled = compile(&[tail], &device).await;
+            keep_tail(&phases, compiled.ok().and_then(|mut kernels| kernels.pop()));
+        });
+    }
+    Ok((compiled, phases))
+}
+
+fn keep_tail(phases: &Kernels, tail: Option<Kernels>) {
+    if let Some(pipeline) = tail.and_then(|mut tail| tail.pipelines.pop()) {
+        // It is compiled once for each of them.
+        let _ = phases.tail.set(pipeline);
+    }
 }
 
 fn told(fault: Option<Fault>) -> Result<(), Fault> {

@@ -210,17 +210,22 @@ impl Device {
         let largest = limits.max_compute_invocations_per_workgroup.min(limits.max_compute_workgroup_size_x);
         let (most_workgroups, tail_size) =
             if is_software { (64, WORKGROUP_SIZE) } else { (2048, largest.min(LARGEST_TAIL)) };
-        let phases = form.map(|form| Plan::phases(form, tail_size));
-        let plans: Vec<_> = [Plan::adjacency(), Plan::probe()].into_iter().chain(phases).collect();
+        let plans = vec![Plan::adjacency(), Plan::probe()];
         #[cfg(not(target_arch = "wasm32"))]
         let waking = wake(&device, &queue);
-        let compiled = compile::compile(&plans, &device).await;
+        let compiled = match form {
+            Some(form) => {
+                let compiled = compile::compile_phases(plans, form, tail_size, &device).await;
+                compiled.map(|(kernels, phases)| (kernels, Some(phases)))
+            }
+            None => compile::compile(&plans, &device).await.map(|kernels| (kernels, None)),
+        };
         #[cfg(not(target_arch = "wasm32"))]
         drop(waking.map(std::thread::JoinHandle::join));
-        let mut compiled = compiled.map_err(refused_kernels)?;
+        let (mut compiled, for_form) = compiled.map_err(refused_kernels)?;
         let mut phases = Phases::default();
         if let Some(form) = form {
-            phases[form.index()] = Some(Arc::new(compiled.remove(2)));
+            phases[form.index()] = for_form;
         }
         let (probe, adjacency) = (compiled.remove(1), compiled.remove(0));
         let (numbers, word) = watch(&device, || numbers(&device, &queue));
@@ -268,8 +273,8 @@ impl Device {
         if let Some(kernels) = &known()[form.index()] {
             return Ok(kernels.clone());
         }
-        let compiled = compile::compile(&[Plan::phases(form, self.tail_size)], &self.device).await;
-        let kernels = Arc::new(compiled.map_err(refused_kernels)?.remove(0));
+        let compiled = compile::compile_phases(Vec::new(), form, self.tail_size, &self.device).await;
+        let (_, kernels) = compiled.map_err(refused_kernels)?;
         Ok(known()[form.index()].get_or_insert(kernels).clone())
     }
 

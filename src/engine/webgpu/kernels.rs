@@ -3,19 +3,19 @@
 use super::sources;
 use crate::Dimension;
 use crate::engine::gpu::upload::Form;
+use std::sync::OnceLock;
 use wgpu::{BindingType, BufferBindingType};
 
 /// Invocations of a workgroup of every kernel.
 pub(super) const WORKGROUP_SIZE: u32 = 256;
 
-/// What is done in an iteration and around it.
+/// What is done in an iteration and around it. The tail, which runs many short iterations, is apart ([`Plan::tail`]).
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Kernel {
     Label,
     Decide,
     Select,
     Flip,
-    Tail,
     Census,
     /// Before the first iteration: the signs of the triangles in 2D, the creases in 3D.
     Prepare,
@@ -26,12 +26,11 @@ pub(crate) enum Kernel {
 }
 
 impl Kernel {
-    const ALL: [Self; 9] = [
+    const ALL: [Self; 8] = [
         Self::Label,
         Self::Decide,
         Self::Select,
         Self::Flip,
-        Self::Tail,
         Self::Census,
         Self::Prepare,
         Self::Turn,
@@ -58,13 +57,12 @@ impl Kernel {
     pub(crate) const ITERATION: [Self; 4] = [Self::Label, Self::Decide, Self::Select, Self::Flip];
 
     /// In the sources of [`sources::phases`].
-    fn entry(self, tail_size: u32) -> Entry {
+    fn entry(self) -> Entry {
         match self {
             Self::Label => (READS, "label_all", None),
             Self::Decide => (NUMBERS, "decide_all", None),
             Self::Select => (READS, "select_all", None),
             Self::Flip => (WRITES, "flip_all", None),
-            Self::Tail => (WRITES, "tail", Some(("TAIL_SIZE", f64::from(tail_size)))),
             Self::Census => (WRITES, "census", None),
             Self::Prepare => (WRITES, "prepare_all", None),
             Self::Turn => (WRITES, "count_turns", None),
@@ -85,6 +83,14 @@ pub(super) type Entry = (usize, &'static str, Option<(&'static str, f64)>);
 pub(super) struct Kernels {
     pub(super) layout: wgpu::BindGroupLayout,
     pub(super) pipelines: Vec<wgpu::ComputePipeline>,
+    /// Beside those of the phases, once it is compiled.
+    pub(super) tail: OnceLock<wgpu::ComputePipeline>,
+}
+
+impl Kernels {
+    pub(super) fn new(layout: wgpu::BindGroupLayout, pipelines: Vec<wgpu::ComputePipeline>) -> Self {
+        Self { layout, pipelines, tail: OnceLock::new() }
+    }
 }
 
 /// What is compiled together: entry points of sources that have the same bindings.
@@ -106,11 +112,17 @@ impl Plan {
         }
     }
 
-    /// In the order of [`Kernel`]; the tail has so many invocations.
-    pub(super) fn phases(form: Form, tail_size: u32) -> Self {
-        let entry = |kernel: &Kernel| kernel.entry(tail_size);
-        let entries = Kernel::all(form.dimension).iter().map(entry).collect();
+    /// In the order of [`Kernel`].
+    pub(super) fn phases(form: Form) -> Self {
+        let entries = Kernel::all(form.dimension).iter().map(|kernel| kernel.entry()).collect();
         Self { bindings: phases_bindings(), sources: sources::phases(form).into(), entries }
+    }
+
+    /// The tail, with so many invocations. It takes longest to compile, and no mesh needs it in its first iterations.
+    pub(super) fn tail(form: Form, size: u32) -> Self {
+        let mut sources = Vec::from(sources::phases(form));
+        let entries = vec![(0, "tail", Some(("TAIL_SIZE", f64::from(size))))];
+        Self { bindings: phases_bindings(), sources: vec![sources.swap_remove(WRITES)], entries }
     }
 
     pub(super) fn probe() -> Self {

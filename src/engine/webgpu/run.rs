@@ -45,13 +45,14 @@ impl WebGpu {
         self.known = Known::default();
         let batch = count.min(BATCH);
         self.params.tail = batch;
-        self.params.tail_iterations =
-            (count - batch).min(if self.gpu.ends_loops_early { SHORT_TAIL } else { TAIL });
+        let longest = if self.gpu.ends_loops_early { SHORT_TAIL } else { TAIL };
+        let tail = self.kernels.tail.get();
+        self.params.tail_iterations = if tail.is_some() { (count - batch).min(longest) } else { 0 };
         self.dispatches += u64::from(4 * batch + self.params.tail_iterations.min(1) * (1 + 2 * PAUSES));
         if !self.waits {
             self.dispatches += CENSUS_DISPATCHES;
         }
-        let iterate = |pass: &mut wgpu::ComputePass| self.record_iterations(pass, batch);
+        let iterate = |pass: &mut wgpu::ComputePass| self.record_iterations(pass, batch, tail);
         let record = || {
             if self.unsettled.is_none() {
                 self.begin_history();
@@ -193,19 +194,28 @@ impl WebGpu {
         }
     }
 
-    fn record_iterations(&self, pass: &mut wgpu::ComputePass, batch: u32) {
+    fn record_iterations(
+        &self,
+        pass: &mut wgpu::ComputePass,
+        batch: u32,
+        tail: Option<&wgpu::ComputePipeline>,
+    ) {
         for index in 0..batch {
             self.at_step(pass, Step::Iterate(index));
             for kernel in Kernel::ITERATION {
                 self.dispatch(pass, kernel, self.params.triangles);
             }
         }
-        if self.params.tail_iterations > 0 {
-            self.dispatch(pass, Kernel::Tail, 1);
+        if let Some(tail) = tail.filter(|_| self.params.tail_iterations > 0) {
+            let dispatch = |pass: &mut wgpu::ComputePass| {
+                pass.set_pipeline(tail);
+                pass.dispatch_workgroups(1, 1, 1);
+            };
+            dispatch(pass);
             self.at_step(pass, Step::Resume);
             for _ in 0..PAUSES {
                 self.dispatch(pass, Kernel::Decide, self.params.tail_length);
-                self.dispatch(pass, Kernel::Tail, 1);
+                dispatch(pass);
             }
         }
     }

@@ -224,9 +224,12 @@ fn kernels_are_short_one_by_one() {
     println!("{}\n\n| kernels | kernel | SPIR-V words | ms |\n|---|---|---:|---:|", gpu.adapter);
     let form = |dimension, has_deviation| Form { dimension, is_fixed: false, has_deviation };
     let plans = [
-        ("plane", Plan::phases(form(Dimension::Two, false), WORKGROUP_SIZE)),
-        ("space", Plan::phases(form(Dimension::Three, false), WORKGROUP_SIZE)),
-        ("deviation", Plan::phases(form(Dimension::Three, true), WORKGROUP_SIZE)),
+        ("plane", Plan::phases(form(Dimension::Two, false))),
+        ("space", Plan::phases(form(Dimension::Three, false))),
+        ("deviation", Plan::phases(form(Dimension::Three, true))),
+        ("plane", Plan::tail(form(Dimension::Two, false), WORKGROUP_SIZE)),
+        ("space", Plan::tail(form(Dimension::Three, false), WORKGROUP_SIZE)),
+        ("deviation", Plan::tail(form(Dimension::Three, true), WORKGROUP_SIZE)),
         ("adjacency", Plan::adjacency()),
     ];
     for (name, Plan { bindings, sources, entries }) in plans {
