@@ -94,7 +94,7 @@ for (const file of [...glueFiles, 'glsl.js', 'session.js', 'index.js', 'files.js
   const bytes = readFileSync(file);
   console.log(`| ${file} | ${bytes.length} | ${gzipSync(bytes).length} | ${brotliCompressSync(bytes).length} |`);
 }
-const [engines, most] = ['dist/wasm/edgeflip_bg.wasm', 140_000]; // bytes, gzipped
+const [engines, most] = ['dist/wasm/edgeflip_bg.wasm', 140 * 1024]; // bytes, gzipped
 if (gzipSync(readFileSync(engines)).length > most) {
   console.error(`build: ${engines} has more than ${most} bytes gzipped (see the table)`);
   process.exitCode = 1;
