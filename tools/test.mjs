@@ -109,7 +109,7 @@ const levels = [
       ['node', 'tools/build.mjs'],
       ['node', 'node_modules/typescript/bin/tsc', '-p', 'tests/package'],
       ['node', '--test', '--test-reporter=tap', 'tests/package/node.test.mjs', 'tests/package/docs.test.mjs', 'tests/package/files.test.mjs', 'tests/package/gltf.test.mjs',
-        'tests/package/weld.test.mjs', 'tests/package/threads.test.mjs', 'tests/package/memory.test.mjs', 'tests/package/limited.test.mjs', 'tests/package/hostile.test.mjs'],
+        'tests/package/weld.test.mjs', 'tests/package/threads.test.mjs', 'tests/package/memory.test.mjs', 'tests/package/limited.test.mjs', 'tests/package/hostile.test.mjs', 'tests/package/options.test.mjs'],
     ],
     counts: true,
   },
@@ -127,7 +127,7 @@ const levels = [
   {
     name: 'npm package in browsers',
     what: 'the packed package in fresh projects: plain pages in Chromium and Firefox, Vite, TypeScript, on the CPU and WebGPU',
-    checks: [['node', '--test', '--test-reporter=tap', 'tests/package/browser.test.mjs', 'tests/package/loss.test.mjs', 'tests/package/waits.test.mjs']],
+    checks: [['node', '--test', '--test-reporter=tap', 'tests/package/browser.test.mjs', 'tests/package/loss.test.mjs', 'tests/package/waits.test.mjs', 'tests/package/options.browser.test.mjs']],
     counts: true,
   },
   {

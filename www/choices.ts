@@ -3,10 +3,10 @@
 import { controls } from './controls.ts';
 import type { Backend } from './run.ts';
 
-/** What a run is begun with. */
+/** What a run is begun with, as options of the package. */
 export interface Settings {
   readonly backend: Backend;
-  readonly beta: number;
+  readonly maxNormalAngle: number;
 }
 
 export class Choices {
@@ -44,14 +44,14 @@ export class Choices {
   set(settings: Settings): void {
     const isTyping = controls.beta.value !== this.#beta;
     this.#settings = settings;
-    this.#beta = `${settings.beta}`;
+    this.#beta = `${settings.maxNormalAngle}`;
     controls.backend.value = settings.backend;
     if (!isTyping) controls.beta.value = this.#beta;
   }
 }
 
 function settingsNow(): Settings {
-  return { backend: controls.backend.value as Backend, beta: controls.beta.valueAsNumber };
+  return { backend: controls.backend.value as Backend, maxNormalAngle: controls.beta.valueAsNumber };
 }
 
 function isAngle(degrees: number): boolean {

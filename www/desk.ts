@@ -1,7 +1,7 @@
 /** The worker: reads, generates and measures meshes, or runs an engine, so that the page never waits. */
 
 import { expose, transfer } from 'comlink';
-import { init, type FlipSession } from 'edgeflip';
+import { init, type FlipSession, type Options } from 'edgeflip';
 import {
   angles,
   change,
@@ -18,7 +18,7 @@ import {
 import { naming } from './crash.ts';
 import { changeOf, type Change } from './change.ts';
 import { contentOf, contentOfKept, keep, type Kept, type Located, type Report } from './files.ts';
-import { sessionOf, statesOf, summaryOf, type Backend, type OpenMesh, type Step, type Summary } from './run.ts';
+import { sessionOf, statesOf, summaryOf, type OpenMesh, type Step, type Summary } from './run.ts';
 
 /** Surfaces of up to so many triangles are compared: many more would take seconds. */
 const COMPARED = 50_000;
@@ -76,8 +76,8 @@ class Desk {
   }
 
   /** Begins a run. Returns what its edges are, if they are to be drawn. */
-  async open(mesh: OpenMesh, maxNormalAngle: number, backend: Backend): Promise<Uint8Array | undefined> {
-    const session = await sessionOf(mesh, { backend, maxNormalAngle });
+  async open(mesh: OpenMesh, options: Options): Promise<Uint8Array | undefined> {
+    const session = await sessionOf(mesh, options);
     this.#session = session;
     this.#before = mesh.indices;
     return statesOf(session, mesh.indices.length);

@@ -1,7 +1,7 @@
 /** Where the flips happen: on the GPU that the page draws with, or in a worker, on WebGL2 or the CPU. */
 
 import { wrap, type Remote } from 'comlink';
-import { EdgeflipError } from 'edgeflip';
+import { EdgeflipError, type Options } from 'edgeflip';
 import { ArrayTrack } from './array-track.ts';
 import { CRASHED } from './crash.ts';
 import type { Desk } from './desk.ts';
@@ -104,39 +104,40 @@ export function waitsForGpu({ indices }: OpenMesh, backend: Backend): boolean {
  */
 export async function beginRun(
   mesh: OpenMesh,
-  maxNormalAngle: number,
-  backend: Backend,
+  options: Options & { backend: Backend },
   gpu: Gpu | string | undefined,
   signal: AbortSignal,
 ): Promise<Run> {
-  if (backend === 'webgl2' || backend === 'cpu') return inWorker(mesh, maxNormalAngle, backend, signal, undefined);
-  if (gpu === undefined) return inWorker(mesh, maxNormalAngle, 'cpu', signal, undefined);
+  const { backend } = options;
+  const onCpu = (fallback?: string) => inWorker(mesh, { ...options, backend: 'cpu' }, signal, fallback);
+  if (backend === 'webgl2' || backend === 'cpu') return inWorker(mesh, options, signal, undefined);
+  if (gpu === undefined) return onCpu();
   const usable = backend === 'auto' ? forAuto(gpu) : gpu;
   if (typeof usable === 'string') {
     if (backend === 'webgpu') throw new Error(`The WebGPU engine is not available: ${usable}.`);
-    return inWorker(mesh, maxNormalAngle, 'cpu', signal, usable);
+    return onCpu(usable);
   }
   const takesGpu = waitsForGpu(mesh, backend) || usable.kernels.areReadyFor(mesh);
-  if (!takesGpu) return inWorker(mesh, maxNormalAngle, 'cpu', signal, undefined);
+  if (!takesGpu) return onCpu();
   try {
-    return await onGpu(mesh, maxNormalAngle, usable);
+    return await onGpu(mesh, options, usable);
   } catch (error) {
     const isOfGpu = error instanceof EdgeflipError && /^(backend|device)-/.test(error.code);
     if (backend === 'webgpu' || !isOfGpu) throw error;
-    return inWorker(mesh, maxNormalAngle, 'cpu', signal, error.message);
+    return onCpu(error.message);
   }
 }
 
 /** Begins the run that takes the place of one on the CPU, once the picture on screen has been drawn. */
-export async function beginBehind(mesh: OpenMesh, maxNormalAngle: number, gpu: Gpu): Promise<Run> {
+export async function beginBehind(mesh: OpenMesh, options: Options, gpu: Gpu): Promise<Run> {
   await new Promise(requestAnimationFrame);
   await gpu.device.queue.onSubmittedWorkDone();
-  return onGpu(mesh, maxNormalAngle, gpu);
+  return onGpu(mesh, options, gpu);
 }
 
-async function onGpu(mesh: OpenMesh, maxNormalAngle: number, { device, kernels }: Gpu): Promise<Run> {
+async function onGpu(mesh: OpenMesh, options: Options, { device, kernels }: Gpu): Promise<Run> {
   await kernels.makeReadyFor(mesh);
-  const session = await sessionOf(mesh, { backend: 'webgpu', device, maxNormalAngle });
+  const session = await sessionOf(mesh, { ...options, backend: 'webgpu', device });
   try {
     const shared = await session.gpu();
     if (!shared) throw new Error('the session shows no buffers');
@@ -161,8 +162,7 @@ async function onGpu(mesh: OpenMesh, maxNormalAngle: number, { device, kernels }
 /** The run has a worker of its own, so that another one can go on beside it, and ends with it. */
 async function inWorker(
   mesh: OpenMesh,
-  maxNormalAngle: number,
-  backend: Backend,
+  options: Options,
   signal: AbortSignal,
   fallback: string | undefined,
 ): Promise<Run> {
@@ -172,7 +172,7 @@ async function inWorker(
   signal.addEventListener('abort', close);
   try {
     signal.throwIfAborted();
-    const states = await office.ask((desk) => desk.open(mesh, maxNormalAngle, backend));
+    const states = await office.ask((desk) => desk.open(mesh, options));
     const stepper = {
       step: () => office.ask((desk) => desk.step()),
       result: () => office.ask((desk) => desk.result()),

@@ -139,7 +139,7 @@ export class Page {
     if (!run || !opened) return;
     const draw = ++this.#draws;
     this.#panel.showIterations(run.iterations, run.at);
-    this.#panel.showFacts(opened.mesh, run, this.#summary, this.#settings?.beta, undefined);
+    this.#panel.showFacts(opened.mesh, run, this.#summary, this.#settings?.maxNormalAngle, undefined);
     this.#panel.showLegend(run.states, this.#summary);
     this.#showTransport();
     if (!this.#player.isPlaying) void this.#rest();
@@ -175,7 +175,7 @@ export class Page {
     signal.throwIfAborted();
     const compiles = settings.backend === 'webgpu' && typeof this.#gpu === 'object' && !this.#gpu.kernels.areReadyFor(mesh);
     if (compiles) showProgress('Compiling the GPU’s programs…');
-    const run = await beginRun(mesh, settings.beta, settings.backend, this.#gpu, signal);
+    const run = await beginRun(mesh, settings, this.#gpu, signal);
     // What draws comes with it.
     await this.#lookedForGpu;
     if (signal.aborted) {
@@ -203,17 +203,17 @@ export class Page {
   }
 
   /** Makes the GPU ready behind a run that `auto` has begun on the CPU, or lets it say why it stays there. */
-  #expectGpu(run: Run, mesh: OpenMesh, { backend, beta }: Settings): void {
+  #expectGpu(run: Run, mesh: OpenMesh, settings: Settings): void {
     this.#handover?.close();
     this.#handover = undefined;
-    if (backend !== 'auto' || !run.isInWorker || run.fallback !== undefined || this.#gpu === undefined) return;
+    if (settings.backend !== 'auto' || !run.isInWorker || run.fallback !== undefined || this.#gpu === undefined) return;
     const gpu = forAuto(this.#gpu);
     if (typeof gpu === 'string') {
       run.fallback = gpu;
       return;
     }
     run.awaitsGpu = true;
-    const begin = () => beginBehind(mesh, beta, gpu);
+    const begin = () => beginBehind(mesh, settings, gpu);
     this.#handover = new Handover(begin, () => void this.#handOver(), (error) => this.#stayOnCpu(run, error));
   }
 
@@ -332,7 +332,7 @@ export class Page {
       const indices = await run.triangles();
       const fingerprint = await fingerprintOf(indices);
       if (isOutdated()) return;
-      this.#panel.showFacts(opened.mesh, run, this.#summary, this.#settings?.beta, fingerprint);
+      this.#panel.showFacts(opened.mesh, run, this.#summary, this.#settings?.maxNormalAngle, fingerprint);
       this.#panel.showLegend(run.states, this.#summary);
       this.#showTransport();
       if (news === undefined) await this.#measure(indices, isOutdated);
@@ -390,13 +390,13 @@ export class Page {
       const opened = (await opening?.read) ?? this.#opened;
       signal.throwIfAborted();
       if (!opened) return;
-      const { backend, beta } = this.#choices.settings;
+      const { settings } = this.#choices;
       const isAgain = this.#lost === opened;
       this.#lost = opened;
       // What has lost the GPU twice would go on losing it; `auto` does not go back to it with what was on it.
-      const [isAuto, isOnGpu] = [backend === 'auto', !opening && !run?.isInWorker];
+      const [isAuto, isOnGpu] = [settings.backend === 'auto', !opening && !run?.isInWorker];
       const isHopeless = isAgain ? opening || isOnGpu || isAuto : isOnGpu && isAuto;
-      if (!isOfPage || isHopeless) this.#choices.set({ backend: 'cpu', beta });
+      if (!isOfPage || isHopeless) this.#choices.set({ ...settings, backend: 'cpu' });
       await this.#begin(opened, signal);
       if (!opening && run) await this.#goThere(run, signal);
       hasRecovered = true;

@@ -14,9 +14,10 @@
 
 import initModule, * as wasm from './wasm/edgeflip_files.js';
 import { EdgeflipError, fromModule } from './error.js';
-import { copyOf, objectOf, read, shown, viewOf } from './given.js';
+import { copyOf, read, shown, viewOf } from './given.js';
 import { checkDimension, indicesOf, type IndexedMesh, type Mesh32, moduleMesh } from './mesh.js';
 import { loader } from './module.js';
+import { namesOf, optionsOf } from './names.js';
 import { attributesOf, bytesOf, filesOf, maxBytesOf, originalOf, textOf } from './settings.js';
 import type { Attributes, Files, Mesh, Original, VertexArray } from './types.js';
 
@@ -168,6 +169,9 @@ export const initFiles = loader(
 
 let isLoaded = false;
 
+const READ_OPTIONS = namesOf<ReadOptions>({ dimension: true, maxBytes: true, files: true });
+const WRITE_OPTIONS = namesOf<WriteOptions>({ original: true });
+
 /** The array until the module has it: a copy where that waits for the module. */
 function held<A extends VertexArray>(view: A, what: string): A {
   return isLoaded ? view : copyOf(view, what);
@@ -183,7 +187,7 @@ function held<A extends VertexArray>(view: A, what: string): A {
 export async function readMesh(bytes: Uint8Array, name: string, options: ReadOptions = {}): Promise<FileMesh> {
   const [view, file] = [bytesOf(bytes, 'bytes'), textOf(name, 'name')];
   const { dimension, maxBytes, files } = read('the options', () => {
-    const { dimension, maxBytes, files } = objectOf(options, 'options') as ReadOptions;
+    const { dimension, maxBytes, files } = optionsOf(options, READ_OPTIONS) as ReadOptions;
     if (dimension !== undefined) checkDimension(dimension);
     return { dimension, maxBytes: maxBytesOf(maxBytes), files: filesOf(files, held) };
   });
@@ -207,7 +211,7 @@ export async function writeMesh(mesh: Mesh, name: string, options: WriteOptions 
   const { positions, indices, dimension } = moduleMesh(mesh, held);
   const file = textOf(name, 'name');
   const original = read('the options', () => {
-    const { original } = objectOf(options, 'options') as WriteOptions;
+    const { original } = optionsOf(options, WRITE_OPTIONS) as WriteOptions;
     return original === undefined ? undefined : originalOf(original, held);
   });
   if (original) return call(() => wasm.rewriteMesh(original, positions, indices, dimension, file));

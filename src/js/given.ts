@@ -108,11 +108,11 @@ export function itselfOf<A extends VertexArray>(view: A, what: string): A {
  *
  * @throws {@link EdgeflipError} `invalid-option` where they are none.
  */
-export function numbersOf(given: unknown, option: string, what: string): Uint32Array {
+export function numbersOf(given: unknown, option: string): Uint32Array {
   const view = viewOf(given, ['Uint32Array'], option);
   if (view) return copyOf(view, option);
   const numbers: number[] = [];
-  const wrong = () => new EdgeflipError('invalid-option', `option ${option}: it is neither a Uint32Array nor an array of ${what}`);
+  const wrong = () => new EdgeflipError('invalid-option', `option ${option}: it is neither a Uint32Array nor an array of whole numbers`);
   return read(option, () => {
     if (!Array.isArray(given)) throw wrong();
     const { length } = given;

@@ -9,7 +9,7 @@
  * @packageDocumentation
  */
 
-import { FlipSession } from './session.js';
+import { createWatched } from './session.js';
 import { watchOf } from './settings.js';
 import type { MakeDelaunayOptions, Mesh, Result } from './types.js';
 
@@ -27,8 +27,8 @@ export type * from './types.js';
  * @throws {@link EdgeflipError} about the mesh, the options or the backend.
  */
 export async function makeDelaunay(mesh: Mesh, options: MakeDelaunayOptions = {}): Promise<Result> {
-  const { signal, onProgress, onIteration, isStopped } = watchOf(options);
-  const session = await FlipSession.create(mesh, options);
+  const { signal, onProgress, onIteration, isStopped } = watchOf(options, true);
+  const session = await createWatched(mesh, options);
   try {
     if (!onIteration) return await session.run({ signal, onProgress });
     let flips = 0;

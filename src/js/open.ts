@@ -28,7 +28,7 @@ export async function open(mesh: IndexedMesh, settings: Settings): Promise<Modul
     return openOnThreads(given === mesh ? copied(mesh) : given, settings, count, why);
   }
   try {
-    return await openAlone(given, { ...settings, threads: count, leavesCpu: true });
+    return await openAlone(given, { ...settings, leavesCpu: count });
   } catch (thrown) {
     const { code, message } = fromModule(thrown);
     if (code !== 'backend-unavailable') throw thrown;
@@ -36,10 +36,10 @@ export async function open(mesh: IndexedMesh, settings: Settings): Promise<Modul
   }
 }
 
-/** In the module of the engines; `leavesCpu`: but for the CPU engine, where `'auto'` would take that. */
+/** In the module of the engines. `leavesCpu`: `'auto'` fails where it would take the CPU, which another module has, on so many threads. */
 async function openAlone(
   mesh: IndexedMesh,
-  settings: Settings & { leavesCpu?: boolean },
+  settings: Settings & { leavesCpu?: number },
 ): Promise<ModuleSession> {
   const ours = isLoaded() ? undefined : copied(mesh);
   if (ours) await init();

@@ -2,7 +2,7 @@
 
 import { reorient, weld, type Welded } from './files.js';
 import type { IndexedMesh } from './mesh.js';
-import type { Chosen, Settings } from './settings.js';
+import type { Settings } from './settings.js';
 
 /** What a session begins with. */
 export interface Prepared {
@@ -12,11 +12,10 @@ export interface Prepared {
   settings: Settings;
 }
 
-/** Turns triangles and joins vertices, where the options say so. */
-export async function prepare(mesh: IndexedMesh, chosen: Chosen): Promise<Prepared> {
-  const { settings } = chosen;
-  if (!chosen.weld) return { ...(await reorient(mesh)), settings };
-  const welded = await weld(mesh, chosen.weld, chosen.reorient);
+/** Turns triangles and joins vertices, where the options say so. The settings that are left are for the run. */
+export async function prepare(mesh: IndexedMesh, { weld: attributes, reorient: turns, ...settings }: Settings): Promise<Prepared> {
+  if (!attributes) return { ...(await reorient(mesh)), settings };
+  const welded = await weld(mesh, attributes, turns);
   const { indices, turned } = welded;
   return { indices, turned, welded, settings: { ...settings, ...locks(welded, settings) } };
 }

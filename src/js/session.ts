@@ -9,13 +9,16 @@ import { initAudit } from './load.js';
 import { copyOf, itselfOf } from './given.js';
 import { copied, moduleMesh, positionsOf } from './mesh.js';
 import { open } from './open.js';
-import { chosenOf, watchOf } from './settings.js';
+import { settingsOf, watchOf } from './settings.js';
 import type { ModuleSession } from './threads.js';
 import { Turns } from './turn.js';
-import type { Audit, Edges, Engine, Iteration, Mesh, Options, Result, RunOptions } from './types.js';
+import type { Audit, Edges, Engine, Iteration, MakeDelaunayOptions, Mesh, Options, Result, RunOptions } from './types.js';
 
 /** Not every browser has `Symbol.dispose` yet. */
 const dispose: typeof Symbol.dispose = Symbol.dispose ?? Symbol.for('Symbol.dispose');
+
+/** As {@link FlipSession.create}, with the options of {@link makeDelaunay}. */
+export let createWatched: (mesh: Mesh, options: MakeDelaunayOptions) => Promise<FlipSession>;
 
 /**
  * A mesh that is made Delaunay step by step.
@@ -48,11 +51,19 @@ export class FlipSession implements AsyncIterable<Iteration>, Disposable {
    *
    * @throws {@link EdgeflipError} about the mesh, the options or the backend.
    */
-  static async create(mesh: Mesh, options: Options = {}): Promise<FlipSession> {
-    const [views, chosen] = [moduleMesh(mesh, itselfOf), chosenOf(options)];
+  static create(mesh: Mesh, options: Options = {}): Promise<FlipSession> {
+    return FlipSession.#create(mesh, options, false);
+  }
+
+  static {
+    createWatched = (mesh, options) => FlipSession.#create(mesh, options, true);
+  }
+
+  static async #create(mesh: Mesh, options: Options, isWatched: boolean): Promise<FlipSession> {
+    const [views, chosen] = [moduleMesh(mesh, itselfOf), settingsOf(options, isWatched)];
     try {
       // What is asked for first has to be loaded first.
-      if (!chosen.reorient && !chosen.weld) return new FlipSession(await open(views, chosen.settings));
+      if (!chosen.reorient && !chosen.weld) return new FlipSession(await open(views, chosen));
       const copy = copied(views);
       const { prepare } = await import('./prepare.js');
       const { indices, turned, welded, settings } = await prepare(copy, chosen);

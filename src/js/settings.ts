@@ -2,30 +2,20 @@
 
 import { EdgeflipError } from './error.js';
 import { copyOf, functionOf, isWhole, numbersOf, objectOf, read, shown, viewOf } from './given.js';
-import type { Attributes, Files, MakeDelaunayOptions, Options, Original, RunOptions, VertexArray } from './types.js';
+import { namesOf, optionsOf } from './names.js';
+import { type Attributes, type Files, type MakeDelaunayOptions, OPTION_KINDS, type Options, type Original, type RunOptions, type VertexArray } from './types.js';
 
-/** What the modules take. Values are theirs to check. */
-export interface Settings {
-  backend?: NonNullable<Options['backend']>;
-  maxNormalAngle?: number;
-  maxDeviation?: number;
-  /** Absent where there is no cap. */
-  maxIterations?: number;
-  lockedEdges?: Uint32Array;
-  lockedTriangles?: Uint32Array;
-  groups?: Uint32Array;
-  order?: NonNullable<Options['order']>;
-  threads?: number;
-  device?: GPUDevice;
-}
-
-/** What a session is asked for. */
-export interface Chosen {
-  settings: Settings;
-  reorient: boolean;
+/**
+ * The options, as they cross between the modules: one object, passed on whole. `src/wasm/options.rs` reads it; values are
+ * for the library to check.
+ */
+export type Settings = { [Name in keyof Omit<Options, 'weld'>]?: Read<NonNullable<Options[Name]>> } & {
   /** Absent where vertices stay as they are. */
   weld?: Attributes;
-}
+};
+
+/** Lists are copied. */
+type Read<T> = T extends readonly number[] ? Uint32Array : T;
 
 /** Each thread is a worker. */
 export const MOST_THREADS = 256;
@@ -39,37 +29,60 @@ export const VERTEX_ARRAYS = [
   ...['Int32Array', 'Uint32Array', 'Float32Array', 'Float64Array'] as const,
 ] as const;
 
-/** @throws {@link EdgeflipError} `invalid-option`, `invalid-input`. */
-export function chosenOf(options: Options): Chosen {
+/** The names of the options of a session, of a run, and of {@link makeDelaunay}. */
+const OPTIONS = Object.keys(OPTION_KINDS);
+const RUN_OPTIONS = namesOf<RunOptions>({ signal: true, onProgress: true });
+const WATCHED_OPTIONS = namesOf<Omit<MakeDelaunayOptions, keyof Options>>({ signal: true, onProgress: true, onIteration: true });
+
+/**
+ * The options of a session.
+ *
+ * @param isWatched - Whether options of {@link makeDelaunay} may be among them.
+ * @throws {@link EdgeflipError} `invalid-option`, `invalid-input`.
+ */
+export function settingsOf(options: Options, isWatched = false): Settings {
   return read('the options', () => {
-    const { backend, order, maxNormalAngle, maxDeviation, maxIterations, threads, device, ...rest } = given(options);
-    const settings: Settings = {};
-    if (backend !== undefined) settings.backend = oneOf('backend', backend, ['auto', 'webgpu', 'webgl2', 'cpu']);
-    if (order !== undefined) settings.order = oneOf('order', order, ['reproducible', 'any']);
-    if (maxNormalAngle !== undefined) settings.maxNormalAngle = numberOf('maxNormalAngle', maxNormalAngle);
-    if (maxDeviation !== undefined) settings.maxDeviation = numberOf('maxDeviation', maxDeviation);
-    if (maxIterations !== undefined && maxIterations !== Infinity) {
-      if (!isWhole(maxIterations)) throw wrong('maxIterations', maxIterations, 'a number of iterations');
-      settings.maxIterations = maxIterations;
+    const given = optionsOf(options, isWatched ? [...OPTIONS, ...WATCHED_OPTIONS] : OPTIONS);
+    const settings: Record<string, unknown> = {};
+    for (const [name, kind] of Object.entries(OPTION_KINDS)) {
+      const value = given[name];
+      const kept = value === undefined ? undefined : typeof kind === 'object' ? oneOf(name, value, kind) : READERS[kind](name, value);
+      if (kept !== undefined) settings[name] = kept;
     }
-    if (threads !== undefined) {
-      if (!isWhole(threads) || threads < 1 || threads > MOST_THREADS) {
-        throw wrong('threads', threads, `a number of threads, 1 to ${MOST_THREADS}`);
-      }
-      settings.threads = threads;
-    }
-    if (device !== undefined) settings.device = deviceOf(device);
-    const { lockedEdges, lockedTriangles, groups, reorient, weld } = rest;
-    if (lockedEdges !== undefined) settings.lockedEdges = numbersOf(lockedEdges, 'lockedEdges', 'vertex indices');
-    if (lockedTriangles !== undefined) settings.lockedTriangles = numbersOf(lockedTriangles, 'lockedTriangles', 'numbers of triangles');
-    if (groups !== undefined) settings.groups = numbersOf(groups, 'groups', 'whole numbers');
-    const chosen: Chosen = { settings, reorient: isSet('reorient', reorient) };
-    if (weld === true) chosen.weld = [];
-    else if (typeof weld === 'object' && weld !== null) chosen.weld = attributesOf(weld, copyOf);
-    else if (weld !== undefined && weld !== false) throw wrong('weld', weld, 'true, false, a list of typed arrays or the file of the mesh');
-    return chosen;
+    return settings;
   });
 }
+
+type Kind = (typeof OPTION_KINDS)[keyof Options];
+
+/** What is kept of a value; `undefined` stands for the default. */
+const READERS: Record<Extract<Kind, string>, (option: string, value: unknown) => unknown> = {
+  flag: (option, value) => {
+    if (typeof value === 'boolean') return value;
+    throw wrong(option, value, 'true or false');
+  },
+  number: (option, value) => {
+    if (typeof value === 'number') return value;
+    throw wrong(option, value, 'a number');
+  },
+  whole: (option, value) => {
+    if (isWhole(value)) return value;
+    throw wrong(option, value, 'a whole number of 32 bits');
+  },
+  limit: (option, value) => {
+    if (value === Infinity) return undefined;
+    if (isWhole(value)) return value;
+    throw wrong(option, value, 'a whole number of 32 bits or Infinity');
+  },
+  list: (option, value) => numbersOf(value, option),
+  attributes: (option, value) => {
+    if (value === true) return [];
+    if (value === false) return undefined;
+    if (typeof value === 'object' && value !== null) return attributesOf(value as Attributes, copyOf);
+    throw wrong(option, value, 'true, false, a list of typed arrays or the file of the mesh');
+  },
+  device: deviceOf,
+};
 
 /** What is called during a run, and what stops it. */
 export interface Watch extends RunOptions {
@@ -78,10 +91,16 @@ export interface Watch extends RunOptions {
   isStopped: () => boolean;
 }
 
-/** @throws {@link EdgeflipError} `invalid-input`. */
-export function watchOf(options: MakeDelaunayOptions): Watch {
+/**
+ * The options of a run.
+ *
+ * @param isWatched - Whether they are those of {@link makeDelaunay}.
+ * @throws {@link EdgeflipError} `invalid-input`, `invalid-option`.
+ */
+export function watchOf(options: MakeDelaunayOptions, isWatched = false): Watch {
   return read('the options', () => {
-    const { signal, onProgress, onIteration } = given(options);
+    const given = optionsOf(options, isWatched ? [...OPTIONS, ...WATCHED_OPTIONS] : RUN_OPTIONS);
+    const { signal, onProgress, onIteration } = given as MakeDelaunayOptions;
     const watched = signal ?? undefined;
     if (watched) objectOf(watched, 'signal');
     return {
@@ -155,33 +174,19 @@ export function textOf(given: string, what: string): string {
   throw new EdgeflipError('invalid-input', `${what}: ${shown(given)} is not a string`);
 }
 
-function given<O>(options: O): O {
-  return objectOf(options, 'options') as unknown as O;
-}
-
-function wrong(option: keyof Options, value: unknown, known: string): EdgeflipError {
+function wrong(option: string, value: unknown, known: string): EdgeflipError {
   return new EdgeflipError('invalid-option', `option ${option}: ${shown(value)} is not ${known}`);
 }
 
-function oneOf<T extends string>(option: keyof Options, value: unknown, known: readonly T[]): T {
+function oneOf(option: string, value: unknown, known: readonly string[]): string {
   const found = known.find((name) => name === value);
   if (found) return found;
   const names = known.map((name) => `'${name}'`);
   throw wrong(option, value, `${names.slice(0, -1).join(', ')} or ${names.at(-1)}`);
 }
 
-function numberOf(option: keyof Options, value: unknown): number {
-  if (typeof value === 'number') return value;
-  throw wrong(option, value, 'a number');
-}
-
-function isSet(option: keyof Options, value: unknown): boolean {
-  if (value === undefined || typeof value === 'boolean') return value ?? false;
-  throw wrong(option, value, 'true or false');
-}
-
 /** One of this window or worker: its own getter knows it. */
-function deviceOf(device: unknown): GPUDevice {
+function deviceOf(option: string, device: unknown): GPUDevice {
   try {
     const limits = Object.getOwnPropertyDescriptor(GPUDevice.prototype, 'limits')?.get;
     limits?.call(device);
@@ -189,5 +194,5 @@ function deviceOf(device: unknown): GPUDevice {
   } catch {
     // Not even a browser with WebGPU.
   }
-  throw wrong('device', device, 'a GPUDevice of this window or worker');
+  throw wrong(option, device, 'a GPUDevice of this window or worker');
 }

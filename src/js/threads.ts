@@ -29,7 +29,7 @@ const isShared = typeof SharedArrayBuffer !== 'undefined' && (globalThis.crossOr
 /** How many threads the CPU engine would have. */
 export function threadCount(triangles: number, { threads }: Settings): number {
   if (!isShared || triangles < FEWEST_TRIANGLES) return 1;
-  return Math.min(threads ?? coreCount(), MOST_THREADS, Math.floor(triangles / FEWEST_EACH));
+  return Math.max(1, Math.min(threads ?? coreCount(), MOST_THREADS, Math.floor(triangles / FEWEST_EACH)));
 }
 
 function coreCount(): number {
@@ -199,19 +199,19 @@ export class ThreadsSession implements ModuleSession {
   }
 
   /**
-   * As `Session.create`; the arrays of the mesh are given away.
+   * As `Session.create`; the arrays of the mesh are given away. All settings go to the worker but the device, which cannot.
    *
    * @param fallback - Why no engine before this one was taken.
    */
   static async create(
     threads: Threads,
     { positions, indices, dimension }: IndexedMesh,
-    { device, threads: count, ...rest }: Settings,
+    { device, ...settings }: Settings,
     fallback?: string,
   ): Promise<ThreadsSession> {
     const [pool] = threads;
     const [session, { length }] = [sessions++, indices];
-    void pool.call('begin', session, { positions, indices, dimension }, { ...rest, backend: 'cpu' }).catch(() => undefined);
+    void pool.call('begin', session, { positions, indices, dimension }, { ...settings, backend: 'cpu' }).catch(() => undefined);
     const opened = collecting(() => pool.call('open', session));
     const spare = reserve(length);
     try {

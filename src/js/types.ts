@@ -118,6 +118,33 @@ export interface Options {
   device?: GPUDevice | undefined;
 }
 
+/**
+ * How the package reads an option; `settings.ts` has a reader for each kind, and the modules check the values. A list of
+ * texts names all values.
+ */
+type KindOf<T> =
+  [T] extends [boolean] ? 'flag'
+  : [T] extends [string] ? readonly T[]
+  : [T] extends [number] ? 'number' | 'whole' | 'limit'
+  : [T] extends [Uint32Array | readonly number[]] ? 'list'
+  : 'attributes' | 'device';
+
+/** The kind of each option. One without an entry does not compile. */
+export const OPTION_KINDS = {
+  backend: ['auto', 'webgpu', 'webgl2', 'cpu'],
+  maxNormalAngle: 'number',
+  maxDeviation: 'number',
+  maxIterations: 'limit',
+  lockedEdges: 'list',
+  lockedTriangles: 'list',
+  groups: 'list',
+  reorient: 'flag',
+  weld: 'attributes',
+  order: ['reproducible', 'any'],
+  threads: 'whole',
+  device: 'device',
+} as const satisfies { [Name in keyof Options]-?: KindOf<NonNullable<Options[Name]>> };
+
 /** How far a run has come. */
 export interface Progress {
   /** Iterations so far. */

@@ -27,7 +27,7 @@ pub(super) fn job_of(mesh: &Mesh, options: &Options) -> Job {
     let threads = Threads::count_for(options.threads, triangles);
     // The CPU that is left has threads in another module.
     #[cfg(all(target_arch = "wasm32", feature = "js"))]
-    let threads = options.threads.filter(|_| options.leaves_cpu).map_or(threads, |threads| threads.get());
+    let threads = options.leaves_cpu.unwrap_or(threads);
     Job { triangles, dimension: mesh.dimension(), threads }
 }
 
@@ -96,7 +96,7 @@ async fn auto(mesh: &Arc<Mesh>, options: &Options) -> Result<Choice, Error> {
 /// The CPU, unless the options leave it: then [`Error::Device`] with the reason.
 fn cpu_for<'a>(why: String, mesh: &'a Arc<Mesh>, options: &'a Options) -> Answer<'a, Choice> {
     #[cfg(all(target_arch = "wasm32", feature = "js"))]
-    if options.leaves_cpu {
+    if options.leaves_cpu.is_some() {
         return Box::pin(std::future::ready(Err(Error::Device { message: why })));
     }
     cpu_after(why, mesh, options)
@@ -147,7 +147,7 @@ fn open<'a>(backend: Backend, mesh: &'a Arc<Mesh>, options: &'a Options) -> Answ
         };
         let mut engine = match (backend, options.order) {
             (Backend::Gpu, _) => gpu::engine(mesh, options).await?,
-            (Backend::WebGl, _) => webgl(mesh, thresholds).await?,
+            (Backend::WebGl, _) => webgl(mesh, options).await?,
             (_, Order::Reproducible) => Box::new(cpu()?),
             (_, Order::Any) => Box::new(Lawson::new(cpu()?)),
         };
@@ -159,12 +159,12 @@ fn open<'a>(backend: Backend, mesh: &'a Arc<Mesh>, options: &'a Options) -> Answ
 }
 
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
-async fn webgl(mesh: &Arc<Mesh>, thresholds: Thresholds) -> Result<Box<dyn Engine>, Error> {
-    Ok(Box::new(Proxy::new(mesh, thresholds).await?))
+async fn webgl(mesh: &Arc<Mesh>, options: &Options) -> Result<Box<dyn Engine>, Error> {
+    Ok(Box::new(Proxy::new(mesh, &options.given).await?))
 }
 
 #[cfg(not(all(target_arch = "wasm32", feature = "js")))]
-async fn webgl(_mesh: &Arc<Mesh>, _thresholds: Thresholds) -> Result<Box<dyn Engine>, Error> {
+async fn webgl(_mesh: &Arc<Mesh>, _options: &Options) -> Result<Box<dyn Engine>, Error> {
     let message = "WebGL2 is there in browsers only, through the npm package".to_owned();
     Err(Error::BackendUnavailable { backend: crate::EngineKind::WebGl, message })
 }

@@ -18,7 +18,6 @@ mod tests;
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 use crate::engine::SharedObjects;
 use crate::engine::{Answer, Engine};
-use crate::error::number;
 use crate::mesh::embedded::Embedded;
 use crate::mesh::star::Fans;
 use crate::phases::frozen;
@@ -27,8 +26,8 @@ use crate::session::edge_states::edge_states;
 use crate::system::memory;
 use crate::system::threads::Threads;
 use crate::{
-    Backend, EdgeState, Edges, EngineKind, Error, Iteration, MOST_THREADS, Mesh, Options, Order, Outcome,
-    Positions, Reason, Status, Timings,
+    Backend, EdgeState, Edges, EngineKind, Error, Iteration, Mesh, Options, Order, Outcome, Positions,
+    Reason, Status, Timings,
 };
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 pub(crate) use choice::why_cpu;
@@ -65,19 +64,7 @@ impl Session {
     /// [`Error::Option`]; [`Error::OutOfMemory`] where the CPU has too little memory for a run; [`Error::BackendUnavailable`], [`Error::BackendLimit`] or [`Error::Device`] where
     /// the GPU was asked for (`Auto` takes the CPU instead).
     pub async fn new(mesh: impl Into<Arc<Mesh>>, mut options: Options) -> Result<Self, Error> {
-        if !(0.0..=180.0).contains(&options.max_normal_angle) {
-            let message =
-                format!("{} is not an angle from 0 to 180 degrees", number(options.max_normal_angle));
-            return Err(Error::Option { option: "max_normal_angle", message });
-        }
-        if options.max_deviation.is_nan() || options.max_deviation < 0.0 {
-            let message = format!("{} is not a distance from 0 on", number(options.max_deviation));
-            return Err(Error::Option { option: "max_deviation", message });
-        }
-        if let Some(threads) = options.threads.filter(|threads| threads.get() > MOST_THREADS) {
-            let message = format!("{threads} is not a number of threads, 1 to {MOST_THREADS}");
-            return Err(Error::Option { option: "threads", message });
-        }
+        options.check()?;
         let (start, mesh) = (Instant::now(), mesh.into());
         options.locked_edges = locks::edges(&mesh, &options)?;
         // `auto` would take a refusal by an engine for a reason to go on.

@@ -1,7 +1,8 @@
 //! What the caller of a run can choose.
 
-use crate::cos_degrees;
+use crate::error::number;
 use crate::phases::Thresholds;
+use crate::{Error, cos_degrees};
 use std::num::NonZeroUsize;
 
 /// Which engine runs the phases.
@@ -69,9 +70,41 @@ pub struct Options {
     /// is set, and its errors about other calls are left alone. Of a software one, `Auto` takes the CPU.
     #[cfg(all(target_arch = "wasm32", feature = "js"))]
     pub device: Option<crate::wasm::session::GpuDevice>,
-    /// Whether `Auto` begins with no engine where it would with the CPU.
+    /// If set, `Auto` fails where it would take the CPU: another module has the CPU engine, on so many threads.
     #[cfg(all(target_arch = "wasm32", feature = "js"))]
-    pub leaves_cpu: bool,
+    pub leaves_cpu: Option<usize>,
+    /// The object of JavaScript that these options were read from, without its lists. Other modules read it again.
+    #[cfg(all(target_arch = "wasm32", feature = "js-session"))]
+    pub given: js_sys::Object,
+}
+
+impl Options {
+    /// Checks each value alone, without the mesh.
+    ///
+    /// # Errors
+    /// [`Error::Option`].
+    pub(super) fn check(&self) -> Result<(), Error> {
+        if !(0.0..=180.0).contains(&self.max_normal_angle) {
+            let message = format!("{} is not an angle from 0 to 180 degrees", number(self.max_normal_angle));
+            return Err(Error::Option { option: "max_normal_angle", message });
+        }
+        if self.max_deviation.is_nan() || self.max_deviation < 0.0 {
+            let message = format!("{} is not a distance from 0 on", number(self.max_deviation));
+            return Err(Error::Option { option: "max_deviation", message });
+        }
+        self.threads.map_or(Ok(()), |count| threads(count.get()).map(drop))
+    }
+}
+
+/// A number of threads, if it is one.
+///
+/// # Errors
+/// [`Error::Option`].
+pub(crate) fn threads(count: usize) -> Result<NonZeroUsize, Error> {
+    NonZeroUsize::new(count).filter(|_| count <= MOST_THREADS).ok_or_else(|| {
+        let message = format!("{count} is not a number of threads, 1 to {MOST_THREADS}");
+        Error::Option { option: "threads", message }
+    })
 }
 
 #[cfg(feature = "gpu")]
@@ -111,7 +144,9 @@ impl Default for Options {
             #[cfg(all(target_arch = "wasm32", feature = "js"))]
             device: None,
             #[cfg(all(target_arch = "wasm32", feature = "js"))]
-            leaves_cpu: false,
+            leaves_cpu: None,
+            #[cfg(all(target_arch = "wasm32", feature = "js-session"))]
+            given: js_sys::Object::new(),
         }
     }
 }

@@ -35,13 +35,17 @@ pub(crate) struct Threads {
 }
 
 impl Threads {
-    /// As many as an option says, but no more than there are pieces of so many triangles; or one for each core.
+    /// As many as an option says, but no more than there are pieces of so many triangles; or one for each core. In a
+    /// browser JavaScript has started as many as the option says.
     ///
     /// # Errors
     /// [`Error::Option`] where the system has not as many as the option says.
-    #[cfg_attr(not(feature = "threads"), expect(unused_variables, reason = "it is one, whatever it says"))]
+    #[cfg_attr(
+        any(not(feature = "threads"), target_arch = "wasm32"),
+        expect(unused_variables, reason = "they are there already, or it is one")
+    )]
     pub(crate) fn new(option: Option<NonZeroUsize>, triangles: usize) -> Result<Self, Error> {
-        #[cfg(feature = "threads")]
+        #[cfg(all(feature = "threads", not(target_arch = "wasm32")))]
         if let Some(count) = option
             && triangles >= FEWEST_TRIANGLES
         {

@@ -2,12 +2,13 @@
 //! caller is `FlipSession.verify` in `src/js/session.ts`.
 
 use crate::system::threads::Threads;
+use crate::wasm::options::{JsOptions, without_lists};
 use crate::wasm::values::{JsPositions, mesh_of, object, reasons_object, thrown};
 use crate::{Options, quality};
 use js_sys::{Array, Uint32Array};
 use wasm_bindgen::prelude::*;
 
-/// As [`quality::audit`]; `locked_edges` are all that the options lock.
+/// As [`quality::audit`]. `locked_edges` are all edges that the options lock, 2 vertices each; `options` has no lists.
 ///
 /// # Errors
 /// Those of [`Mesh::new`](crate::Mesh::new); [`Error::OutOfMemory`](crate::Error::OutOfMemory).
@@ -17,14 +18,13 @@ pub fn audit(
     indices: &Uint32Array,
     dimension: f64,
     triangles: &Uint32Array,
-    max_normal_angle: f64,
-    max_deviation: f64,
     locked_edges: &Uint32Array,
+    options: &JsOptions,
 ) -> Result<JsValue, JsValue> {
     let check = || {
         let input = mesh_of(positions, indices, dimension, &Threads::one())?;
         let locked_edges = locked_edges.to_vec().as_chunks().0.to_vec();
-        let options = Options { max_normal_angle, max_deviation, locked_edges, ..Options::default() };
+        let options = Options { locked_edges, ..without_lists(options)? };
         Ok(quality::audit(&input, &triangles.to_vec(), &options))
     };
     let audit = check().map_err(thrown)?;

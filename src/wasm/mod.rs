@@ -7,6 +7,8 @@ pub mod audit;
 pub mod files;
 #[cfg(feature = "js-session")]
 mod objects;
+#[cfg(any(feature = "js-session", feature = "js-webgl2", feature = "js-audit"))]
+mod options;
 #[cfg(feature = "js-session")]
 pub mod session;
 #[cfg(feature = "js-threads")]

@@ -2,6 +2,7 @@
 //! Arguments arrive checked in type, not in value. Everything that is thrown is an `Error` with a `code`.
 
 use super::objects::outcome_object;
+use super::options::{self, JsOptions};
 #[cfg(feature = "js")]
 use crate::Mesh;
 #[cfg(feature = "js")]
@@ -19,12 +20,11 @@ pub use crate::wasm::values::JsPositions;
 #[cfg(feature = "js")]
 use crate::wasm::values::parse_dimension;
 use crate::wasm::values::{coded, mesh_of, object, reasons_object, thrown};
-use crate::{Backend, Error, Options, Order, Session};
+use crate::{Error, Session};
 #[cfg(feature = "js")]
 use js_sys::Reflect;
 use js_sys::{Array, Promise, Uint8Array, Uint32Array};
 use std::cell::RefCell;
-use std::num::NonZeroUsize;
 use std::rc::Rc;
 use std::sync::Arc;
 use wasm_bindgen::prelude::*;
@@ -48,39 +48,6 @@ fn with_mesh(error: JsValue, mesh: &Mesh) -> JsValue {
 #[cfg(not(any(feature = "js-threads", feature = "js")))]
 type Indices = Uint32Array;
 
-#[wasm_bindgen]
-extern "C" {
-    /// The options of a run, as `chosenOf` in `src/js/settings.ts` gives them.
-    #[wasm_bindgen(typescript_type = "import('../settings.js').Settings")]
-    pub type JsOptions;
-
-    #[wasm_bindgen(method, getter)]
-    fn backend(this: &JsOptions) -> Option<String>;
-    #[wasm_bindgen(method, getter, js_name = maxNormalAngle)]
-    fn max_normal_angle(this: &JsOptions) -> Option<f64>;
-    #[wasm_bindgen(method, getter, js_name = maxDeviation)]
-    fn max_deviation(this: &JsOptions) -> Option<f64>;
-    #[wasm_bindgen(method, getter, js_name = maxIterations)]
-    fn max_iterations(this: &JsOptions) -> Option<u32>;
-    #[wasm_bindgen(method, getter, js_name = lockedEdges)]
-    fn locked_edges(this: &JsOptions) -> Option<Uint32Array>;
-    #[wasm_bindgen(method, getter, js_name = lockedTriangles)]
-    fn locked_triangles(this: &JsOptions) -> Option<Uint32Array>;
-    #[wasm_bindgen(method, getter)]
-    fn groups(this: &JsOptions) -> Option<Uint32Array>;
-    #[wasm_bindgen(method, getter)]
-    fn order(this: &JsOptions) -> Option<String>;
-    #[wasm_bindgen(method, getter)]
-    fn threads(this: &JsOptions) -> Option<u32>;
-    #[cfg(feature = "js")]
-    #[wasm_bindgen(method, getter)]
-    fn device(this: &JsOptions) -> Option<GpuDevice>;
-    /// Not for users: to have no session at all where `'auto'` would take the CPU.
-    #[cfg(feature = "js")]
-    #[wasm_bindgen(method, getter, js_name = leavesCpu)]
-    fn leaves_cpu(this: &JsOptions) -> Option<bool>;
-}
-
 /// Says where the WebGL2 engine comes from.
 #[cfg(feature = "js")]
 #[wasm_bindgen(js_name = setWebGl2)]
@@ -91,7 +58,7 @@ pub fn set_webgl2(module: WebGl2Module) {
 /// Why `'auto'` takes the CPU on so many threads for a mesh, without asking for a GPU, if it does.
 ///
 /// # Errors
-/// [`Error::Option`] for the dimension.
+/// [`Error::Option`] for the dimension, and for an option.
 #[cfg(feature = "js")]
 #[wasm_bindgen(js_name = whyCpu)]
 pub fn why_cpu(
@@ -102,7 +69,8 @@ pub fn why_cpu(
     options: &JsOptions,
 ) -> Result<Option<String>, JsValue> {
     let job = parse_dimension(dimension).map(|dimension| Job { triangles, dimension, threads });
-    job.map(|job| session::why_cpu(job, is_double, &without_lists(options))).map_err(thrown)
+    let why = || Ok(session::why_cpu(job?, is_double, &options::without_lists(options)?));
+    why().map_err(thrown)
 }
 
 /// Why a session answers nothing any more.
@@ -151,19 +119,19 @@ impl JsSession {
     ) -> Result<Promise, JsValue> {
         let open = || {
             let mesh = mesh_of(positions, indices, dimension, &Threads::default())?;
-            Ok((mesh, parse_options(&options)?))
+            Ok((mesh, options::read(&options)?))
         };
         let (mesh, chosen) = open().map_err(thrown)?;
         let mesh = Arc::new(mesh);
+        #[cfg(feature = "js")]
+        let leaves_cpu = chosen.leaves_cpu.is_some();
         Ok(promise(async move {
             match Session::new(mesh.clone(), chosen).await {
                 Ok(session) => Ok(Self(Rc::new(RefCell::new(Some(session)))).into()),
                 #[cfg(feature = "js")]
                 Err(error @ (Error::Device { .. } | Error::OutOfMemory { .. })) => {
                     let refused = match error {
-                        Error::Device { message } if options.leaves_cpu() == Some(true) => {
-                            coded("backend-unavailable", &message)
-                        }
+                        Error::Device { message } if leaves_cpu => coded("backend-unavailable", &message),
                         error => thrown(error),
                     };
                     Err(with_mesh(refused, &mesh))
@@ -264,9 +232,8 @@ impl JsSession {
                 array(mesh.triangles()),
                 (mesh.dimension().stride() as u32).into(),
                 array(&triangles),
-                options.max_normal_angle.into(),
-                options.max_deviation.into(),
                 array(options.locked_edges.as_flattened()),
+                options.given.clone().into(),
             ])
         };
         self.ask(input, |arguments| arguments.iter().collect::<Array>().into())
@@ -328,52 +295,4 @@ fn indices(triangles: Vec<u32>) -> Indices {
     return Indices(triangles);
     #[cfg(not(feature = "js-threads"))]
     Uint32Array::from(triangles.as_slice())
-}
-
-/// None, where there is no array.
-fn words(array: Option<Uint32Array>) -> Vec<u32> {
-    array.map_or(Vec::new(), |array| array.to_vec())
-}
-
-/// What is not there keeps its default.
-fn parse_options(given: &JsOptions) -> Result<Options, Error> {
-    let numbers = words(given.locked_edges());
-    let (locked_edges, []) = numbers.as_chunks() else {
-        return Err(Error::RaggedArray { array: "lockedEdges", length: numbers.len(), stride: 2 });
-    };
-    Ok(Options {
-        locked_edges: locked_edges.to_vec(),
-        locked_triangles: words(given.locked_triangles()),
-        groups: words(given.groups()),
-        ..without_lists(given)
-    })
-}
-
-/// Those that are no lists, which would be copied.
-fn without_lists(given: &JsOptions) -> Options {
-    let mut options = Options {
-        max_iterations: given.max_iterations(),
-        threads: given.threads().and_then(|count| NonZeroUsize::new(count as usize)),
-        #[cfg(feature = "js")]
-        device: given.device(),
-        #[cfg(feature = "js")]
-        leaves_cpu: given.leaves_cpu().unwrap_or_default(),
-        ..Options::default()
-    };
-    options.backend = match given.backend().as_deref() {
-        Some("webgpu") => Backend::Gpu,
-        Some("webgl2") => Backend::WebGl,
-        Some("cpu") => Backend::Cpu,
-        _ => Backend::Auto,
-    };
-    if given.order().as_deref() == Some("any") {
-        options.order = Order::Any;
-    }
-    if let Some(degrees) = given.max_normal_angle() {
-        options.max_normal_angle = degrees;
-    }
-    if let Some(most) = given.max_deviation() {
-        options.max_deviation = most;
-    }
-    options
 }

@@ -92,7 +92,23 @@ pub(crate) fn parse_dimension(dimension: f64) -> Result<Dimension, Error> {
 /// What a call throws: an `Error` with a `code`.
 pub(crate) fn thrown(error: Error) -> JsValue {
     let code = error.code();
-    coded(code, &in_words_of_javascript(error).to_string())
+    match error {
+        Error::Option { option, message } => {
+            coded(code, &format!("option {}: {message}", in_camel_case(option)))
+        }
+        error => coded(code, &in_words_of_javascript(error).to_string()),
+    }
+}
+
+/// `maxNormalAngle` for `max_normal_angle`.
+fn in_camel_case(name: &str) -> String {
+    let mut is_after_line = false;
+    let of_char = |letter: char| match (letter, std::mem::replace(&mut is_after_line, letter == '_')) {
+        ('_', _) => None,
+        (letter, true) => Some(letter.to_ascii_uppercase()),
+        (letter, false) => Some(letter),
+    };
+    name.chars().filter_map(of_char).collect()
 }
 
 /// An `Error` with a `code`.
@@ -109,16 +125,6 @@ fn in_words_of_javascript(error: Error) -> Error {
             Error::RaggedArray { array: "indices", length, stride }
         }
         Error::FileTooLarge { limit, .. } => Error::FileTooLarge { limit, option: "maxBytes" },
-        Error::Option { option: "max_normal_angle", message } => {
-            Error::Option { option: "maxNormalAngle", message }
-        }
-        Error::Option { option: "max_deviation", message } => {
-            Error::Option { option: "maxDeviation", message }
-        }
-        Error::Option { option: "locked_edges", message } => Error::Option { option: "lockedEdges", message },
-        Error::Option { option: "locked_triangles", message } => {
-            Error::Option { option: "lockedTriangles", message }
-        }
         error => error,
     }
 }

@@ -6,6 +6,7 @@ use crate::engine::{self, Engine, WebGl};
 use crate::phases::Thresholds;
 use crate::system::promise::promise;
 use crate::system::threads::Threads;
+use crate::wasm::options::{JsOptions, without_lists};
 use crate::wasm::values::{JsPositions, coded, mesh_of, thrown};
 use js_sys::{Promise, Uint32Array};
 use std::cell::RefCell;
@@ -53,7 +54,7 @@ impl JsWebGl2 {
 
 #[wasm_bindgen(js_class = WebGl2)]
 impl JsWebGl2 {
-    /// On the context that all share; `cos` is the cosine of β, `deviation` what diagonals may be apart.
+    /// Opens an engine on the context that all share. `options` has no lists; the engine takes its thresholds.
     ///
     /// Rejected where there is no context, it fails its self-test, or it cannot take the mesh.
     #[wasm_bindgen(unchecked_return_type = "Promise<WebGl2>")]
@@ -61,12 +62,12 @@ impl JsWebGl2 {
         positions: JsPositions,
         indices: &Uint32Array,
         dimension: f64,
-        cos: f64,
-        deviation: f32,
+        options: &JsOptions,
     ) -> Promise {
         let mesh = mesh_of(positions, indices, dimension, &Threads::one());
+        let options = without_lists(options);
         let create = async move {
-            let engine = WebGl::open(Arc::new(mesh?), Thresholds { cos, deviation }).await?;
+            let engine = WebGl::open(Arc::new(mesh?), Thresholds::from(&options?)).await?;
             Ok(Self { engine: Rc::new(RefCell::new(Some(engine))), dimension })
         };
         promise(async { create.await.map(JsValue::from).map_err(bare) })

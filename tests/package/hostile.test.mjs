@@ -31,8 +31,8 @@ const original = () => ({ bytes: obj.slice(), name: 'a.obj', files: { 'b.bin': n
 
 const meshPaths = [[0], [0, 'positions'], [0, 'indices'], [0, 'dimension']];
 const optionNames = ['backend', 'maxNormalAngle', 'maxDeviation', 'maxIterations', 'lockedEdges', 'lockedTriangles', 'groups',
-  'reorient', 'weld', 'order', 'threads', 'device'];
-const runNames = ['signal', 'onProgress', 'onIteration'];
+  'reorient', 'weld', 'order', 'threads', 'device', 'max_iterations'];
+const runNames = ['signal', 'onProgress', 'onIteration', 'unknown'];
 const sessionPaths = [...meshPaths, [1], ...optionNames.map((name) => [1, name])];
 const originalPaths = (at) => [at, [...at, 'bytes'], [...at, 'name'], [...at, 'files'], [...at, 'files', 'b.bin'], [...at, 'maxBytes']];
 /** Options that need nothing else, and those that do more before the run. */
@@ -66,16 +66,16 @@ const sessionEntries = (mesh, threads) => [
   { name: 'makeDelaunay', call: makeDelaunay, args: () => [copy(mesh), plain(threads)], paths: [...sessionPaths, ...runNames.map((name) => [1, name])] },
   { name: 'FlipSession.create', call: wholeSession, args: () => [copy(mesh), plain(threads)], paths: sessionPaths },
   { name: 'setPositions', call: onSession(mesh, threads, (session, moved) => session.setPositions(moved)), args: () => [mesh.positions.slice()], paths: [[0]] },
-  { name: 'run', call: onSession(mesh, threads, (session, options) => session.run(options)), args: () => [{}], paths: [[0], [0, 'signal'], [0, 'onProgress']] },
+  { name: 'run', call: onSession(mesh, threads, (session, options) => session.run(options)), args: () => [{}], paths: [[0], [0, 'signal'], [0, 'onProgress'], [0, 'unknown']] },
 ];
 
 const fileEntries = [
   { name: 'makeDelaunay with weld', call: makeDelaunay, args: () => [copy(small), rich(small)], paths: [...sessionPaths, [1, 'weld', 0]] },
   { name: 'makeDelaunay with the file', call: makeDelaunay, args: () => [copy(small), { weld: original() }], paths: originalPaths([1, 'weld']) },
   { name: 'readMesh', call: files.readMesh, args: () => [obj.slice(), 'a.obj', { dimension: 2, maxBytes: 1e6, files: { 'b.bin': new Uint8Array(4) } }],
-    paths: [[0], [1], [2], [2, 'dimension'], [2, 'maxBytes'], [2, 'files'], [2, 'files', 'b.bin']] },
+    paths: [[0], [1], [2], [2, 'dimension'], [2, 'maxBytes'], [2, 'files'], [2, 'files', 'b.bin'], [2, 'unknown']] },
   { name: 'writeMesh', call: files.writeMesh, args: () => [copy(small), 'b.obj', { original: original() }],
-    paths: [...meshPaths, [1], [2], ...originalPaths([2, 'original'])] },
+    paths: [...meshPaths, [1], [2], [2, 'unknown'], ...originalPaths([2, 'original'])] },
   { name: 'generate', call: files.generate, args: () => ['grid 4'], paths: [[0]] },
   { name: 'angles', call: files.angles, args: () => [copy(small), 12], paths: [...meshPaths, [1]] },
   { name: 'reorient', call: files.reorient, args: () => [copy(small)], paths: meshPaths },

@@ -1,9 +1,8 @@
 //! The WebGL2 engine as the module of the other engines sees it: it calls what `src/wasm/webgl2.rs` exports.
 
 use crate::engine::{Answer, Census, EdgeCounts, Engine};
-use crate::phases::Thresholds;
 use crate::{EngineKind, Error, Mesh};
-use js_sys::{Promise, Reflect, Uint32Array};
+use js_sys::{Object, Promise, Reflect, Uint32Array};
 use std::cell::RefCell;
 use std::sync::Arc;
 use wasm_bindgen::prelude::*;
@@ -21,8 +20,7 @@ extern "C" {
         positions: JsValue,
         indices: Uint32Array,
         dimension: u32,
-        cos: f64,
-        deviation: f32,
+        options: &Object,
     ) -> Result<Promise, JsValue>;
 
     /// `JsWebGl2`.
@@ -67,18 +65,18 @@ pub(crate) struct Proxy {
 }
 
 impl Proxy {
-    /// As `WebGl::open`.
+    /// As `WebGl::open`. The options are those that JavaScript gave: the other module reads them again.
     ///
     /// # Errors
     /// [`Error::BackendUnavailable`] too where the module cannot be loaded.
-    pub(crate) async fn new(mesh: &Mesh, Thresholds { cos, deviation }: Thresholds) -> Result<Self, Error> {
+    pub(crate) async fn new(mesh: &Mesh, options: &Object) -> Result<Self, Error> {
         let module = MODULE.with_borrow(Clone::clone);
         let module = module.ok_or_else(|| unavailable("it was not said where its module is".to_owned()))?;
         let positions = mesh.positions().to_typed_array();
         // A copy, since it waits for the module.
         let indices = Uint32Array::from(mesh.triangles());
         let dimension = mesh.dimension().stride() as u32;
-        let created = module.create(positions, indices, dimension, cos, deviation);
+        let created = module.create(positions, indices, dimension, options);
         let remote: Remote = answer(created).await?.unchecked_into();
         let counts = remote.edge_counts();
         let counts = EdgeCounts {

@@ -1,0 +1,31 @@
+// Each option of src/js/types.ts has its effect on the WebGL2 engine, whose module reads the options that the module of the
+// engines passes on: the same as on the CPU. In Chromium; takes the dist/ that is there.
+
+import assert from 'node:assert/strict';
+import { after, test } from 'node:test';
+import { fileURLToPath } from 'node:url';
+import { closeAll, serve, startChromium } from '../browsers.mjs';
+
+after(closeAll);
+
+/** Runs in the page: what each case gives, or what it throws. */
+async function askAll(backend) {
+  const { FlipSession, makeDelaunay } = await import('/dist/index.js');
+  const { generate } = await import('/dist/files.js');
+  const { cases } = await import('/tests/package/options.mjs');
+  const [mesh, base] = [await generate('uvsphere 24'), { backend }];
+  const plain = await makeDelaunay(mesh, base);
+  const given = {};
+  for (const [option, run] of Object.entries(cases)) {
+    given[option] = await run({ makeDelaunay, FlipSession, mesh, base, plain }).then((value) => JSON.stringify(value ?? null), (error) => `${error}`);
+  }
+  return given;
+}
+
+test('every option has its effect on WebGL2', async () => {
+  const page = await (await startChromium()).newPage();
+  await page.goto(`${await serve(fileURLToPath(new URL('../..', import.meta.url)))}tests/engines.html`);
+  const [webgl2, cpu] = [await page.evaluate(askAll, 'webgl2'), await page.evaluate(askAll, 'cpu')];
+  assert.deepEqual(webgl2, cpu);
+  for (const [option, value] of Object.entries(webgl2)) assert.doesNotMatch(value, /Error/, option);
+});

@@ -1,0 +1,89 @@
+// What each option does, for any engine: `options.test.mjs` asks the module of the engines and that of the threads, and
+// `options.browser.test.mjs` asks that of the WebGL2 engine. Each case throws where a value that is not the default has no
+// effect, or no error.
+
+/** @typedef {{ makeDelaunay: Function, FlipSession: any, mesh: object, base: object, plain: object }} Given */
+
+function check(condition, what) {
+  if (!condition) throw new Error(what);
+}
+
+/** A value that the library refuses, by the name of the option. */
+async function isRefused({ makeDelaunay, mesh, base }, name, value) {
+  const { code, message } = await makeDelaunay(mesh, { ...base, [name]: value }).catch((error) => error);
+  check(code === 'invalid-option' && message.startsWith(`option ${name}: `), `${name}: ${value} is not refused: ${code}: ${message}`);
+}
+
+/** A threshold leaves other edges than the default does, and the audit knows it. */
+async function isThreshold({ FlipSession, mesh, base, plain }, name, value) {
+  const session = await FlipSession.create(mesh, { ...base, [name]: value });
+  const { flips, remaining } = await session.run();
+  const audit = await session.verify();
+  session.free();
+  check(flips !== plain.flips, `${name} has no effect`);
+  check(audit.clean && JSON.stringify(audit.remaining) === JSON.stringify(remaining), `${name}: the audit does not know it: ${audit.violations[0]}`);
+  return { flips, remaining };
+}
+
+/** All edges are locked. */
+async function locksAll({ makeDelaunay, mesh, base }, options) {
+  const { flips, remaining } = await makeDelaunay(mesh, { ...base, ...options });
+  check(flips === 0 && remaining.locked > 0, `${Object.keys(options)} does not lock`);
+  return { flips, remaining };
+}
+
+const corners = ({ indices }) => Array.from({ length: indices.length / 3 }, (_, t) => t);
+
+/**
+ * By option; what a case returns is the same on all engines.
+ *
+ * @type {Record<string, (given: Given) => Promise<unknown>>}
+ */
+export const cases = {
+  backend: async ({ makeDelaunay, mesh, base }) => {
+    const { backend, fallback } = await makeDelaunay(mesh, base);
+    check(backend === base.backend && fallback === undefined, `it ran on ${backend}: ${fallback}`);
+  },
+  maxNormalAngle: async (given) => {
+    await isRefused(given, 'maxNormalAngle', 181);
+    return isThreshold(given, 'maxNormalAngle', 1);
+  },
+  maxDeviation: async (given) => {
+    await isRefused(given, 'maxDeviation', -1);
+    return isThreshold(given, 'maxDeviation', 0);
+  },
+  maxIterations: async ({ makeDelaunay, mesh, base }) => {
+    const { iterations, status, flips } = await makeDelaunay(mesh, { ...base, maxIterations: 1 });
+    check(iterations === 1 && status === 'stopped', `${iterations} iterations, ${status}`);
+    return flips;
+  },
+  lockedEdges: (given) => {
+    const { indices } = given.mesh;
+    const edges = corners(given.mesh).flatMap((t) => [0, 1, 1, 2, 2, 0].map((i) => indices[3 * t + i]));
+    return locksAll(given, { lockedEdges: Uint32Array.from(edges) });
+  },
+  lockedTriangles: (given) => locksAll(given, { lockedTriangles: corners(given.mesh) }),
+  groups: (given) => locksAll(given, { groups: corners(given.mesh) }),
+  reorient: async ({ makeDelaunay, mesh, base }) => {
+    const indices = mesh.indices.slice();
+    [indices[0], indices[1]] = [indices[1], indices[0]];
+    const { turnedTriangles } = await makeDelaunay({ ...mesh, indices }, { ...base, reorient: true });
+    check(turnedTriangles === 1, `${turnedTriangles} triangles were turned`);
+  },
+  weld: async ({ makeDelaunay, mesh, base, plain }) => {
+    const positions = Float32Array.from([...mesh.indices].flatMap((vertex) => [...mesh.positions.subarray(3 * vertex, 3 * vertex + 3)]));
+    const indices = mesh.indices.map((_, i) => i);
+    const { joinedVertices, flips } = await makeDelaunay({ positions, indices, dimension: 3 }, { ...base, weld: true });
+    check(joinedVertices === indices.length - mesh.positions.length / 3, `${joinedVertices} vertices were joined`);
+    check(flips > 0 && plain.flips > 0, 'nothing flips');
+  },
+  order: async ({ makeDelaunay, mesh, base }) => {
+    if (base.backend !== 'cpu') return isRefused({ makeDelaunay, mesh, base }, 'order', 'any');
+    const { iterations, flips } = await makeDelaunay(mesh, { ...base, order: 'any' });
+    check(iterations === 1 && flips > 0, `${iterations} iterations`);
+  },
+  // `options.test.mjs` counts the workers.
+  threads: (given) => isRefused(given, 'threads', 257),
+  // Only a browser has one, and only WebGPU takes it: `loss.test.mjs`.
+  device: (given) => isRefused(given, 'device', {}),
+};
