@@ -37,6 +37,7 @@ test('a module that cannot be loaded is an error, and the next call tries again'
   await assert.rejects(init({ files: bytes('no module') }), refused('load-failed', /could not be loaded/));
   await assert.rejects(init({ base: new URL('nowhere', import.meta.url) }), refused('load-failed', /ENOENT.*nowhere.edgeflip_files_bg\.wasm/));
   await assert.rejects(init({ core: bytes('no module') }), refused('invalid-option', /^core is not an option; there are base, files$/));
+  await assert.rejects(init(new URL('https://example.org/a.wasm')), refused('invalid-input', /^name the module of a source: init\(\{ files: … \}\)$/));
   await init({ base: new URL('../../dist/wasm', import.meta.url).href });
   await init({ files: 'https://example.org/not-looked-at.wasm' });
 });
