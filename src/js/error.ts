@@ -20,7 +20,7 @@
  * | `backend-unavailable` | take `'auto'` or `'cpu'`: there is no such GPU here, or it fails its self-test |
  * | `backend-limit` | take `'auto'` or `'cpu'`: the GPU cannot take this mesh |
  * | `device-failed` | begin again: the GPU was lost, or the `device` given is |
- * | `load-failed` | see that the package's `wasm/*.wasm` are served, or pass them to `init`, `initWebGl2`, `initThreads`, `initAudit` and `initFiles` |
+ * | `load-failed` | see that the package's `wasm/*.wasm` are served, or tell `init` where they are |
  * | `freed` | do not use a session after `free`, or after a call of it that crashed or ran out of memory |
  * | `internal` | report it: the module has crashed, and is of no use until the page or the worker is loaded anew; or a thread has, and with it the sessions on threads: others begin anew |
  */

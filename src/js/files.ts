@@ -12,18 +12,19 @@
  * @packageDocumentation
  */
 
-import initModule, * as wasm from './wasm/edgeflip_files.js';
+import * as wasm from './wasm/edgeflip_files.js';
 import { EdgeflipError, fromModule } from './error.js';
 import { copyOf, read, shown, viewOf } from './given.js';
+import { areFilesLoaded, loadFiles } from './load-files.js';
 import { checkDimension, indicesOf, type IndexedMesh, type Mesh32, moduleMesh } from './mesh.js';
-import { loader } from './module.js';
+import { initOf } from './module.js';
 import { namesOf, optionsOf } from './names.js';
 import { attributesOf, bytesOf, filesOf, maxBytesOf, originalOf, textOf } from './settings.js';
 import type { Attributes, Files, Mesh, Original, VertexArray } from './types.js';
 
 export { EdgeflipError, type ErrorCode } from './error.js';
 export type { IndexedMesh, Mesh32 } from './mesh.js';
-export type { ModuleSource } from './module.js';
+export type { ModuleSource, Sources } from './module.js';
 export type { Attributes, Files, Mesh, Original, VertexArray } from './types.js';
 
 /**
@@ -153,28 +154,21 @@ export interface Change {
 }
 
 /**
- * Loads the WebAssembly module of this entry. Everything else calls it by itself: call it to load early, or with a
- * source where the module does not lie beside this file. The first call counts; after a failure the next one tries
- * again.
+ * Loads the WebAssembly module of this entry. Every other function loads it by itself. Call this to load early, or if the
+ * module does not lie in `wasm/` beside this file. `init` of `edgeflip` does the same, and takes sources for all modules.
  *
- * @throws {@link EdgeflipError} `load-failed`.
+ * A module is loaded once: later sources of it are ignored. After a failure the next call tries again.
+ *
+ * @throws {@link EdgeflipError} `load-failed`; `invalid-input` and `invalid-option` about `sources`.
  */
-export const initFiles = loader(
-  async (source) => {
-    await initModule(source);
-    isLoaded = true;
-  },
-  () => new URL('./wasm/edgeflip_files_bg.wasm', import.meta.url),
-);
-
-let isLoaded = false;
+export const init = initOf('files', { files: loadFiles });
 
 const READ_OPTIONS = namesOf<ReadOptions>({ dimension: true, maxBytes: true, files: true });
 const WRITE_OPTIONS = namesOf<WriteOptions>({ original: true });
 
 /** The array until the module has it: a copy where that waits for the module. */
 function held<A extends VertexArray>(view: A, what: string): A {
-  return isLoaded ? view : copyOf(view, what);
+  return areFilesLoaded() ? view : copyOf(view, what);
 }
 
 /**
@@ -329,7 +323,7 @@ function welded(made: wasm.Weld): Welded {
 
 /** Runs at once where the module is loaded: nobody can change what was passed. */
 async function call<T>(work: () => T): Promise<T> {
-  if (!isLoaded) await initFiles();
+  if (!areFilesLoaded()) await loadFiles();
   try {
     return work();
   } catch (thrown) {

@@ -15,8 +15,8 @@ import type { MakeDelaunayOptions, Mesh, Result } from './types.js';
 
 export { EDGE_STATES, type EdgeState } from './edge-states.js';
 export { EdgeflipError, type ErrorCode } from './error.js';
-export { init, initAudit, initThreads, initWebGl2 } from './load.js';
-export type { ModuleSource } from './module.js';
+export { init } from './load.js';
+export type { ModuleSource, Sources } from './module.js';
 export { FlipSession } from './session.js';
 export type * from './types.js';
 

@@ -1,7 +1,7 @@
-/** Loads the module of the engines, those of the WebGL2 engine and of the CPU engine's threads, and that of the audit. */
+/** Loads the modules of the entry `edgeflip`: that of the engines, and those that only some sessions need. */
 
 import initModule, { setWebGl2 } from './wasm/edgeflip.js';
-import { compile, loader } from './module.js';
+import { compile, initOf, loader } from './module.js';
 
 let isStarted = false;
 
@@ -15,7 +15,7 @@ const start: typeof initModule = async (source) => {
   isStarted = true;
   setWebGl2({
     async create(...mesh) {
-      await initWebGl2();
+      await loadWebGl2();
       const { WebGl2 } = await import('./wasm/edgeflip_webgl2.js');
       return WebGl2.create(...mesh);
     },
@@ -23,60 +23,58 @@ const start: typeof initModule = async (source) => {
   return module;
 };
 
-/**
- * Loads the WebAssembly module. Everything else calls it by itself: call it to load early, or with a source where the
- * module does not lie beside this file. The first call counts; after a failure the next one tries again.
- *
- * @throws {@link EdgeflipError} `load-failed`.
- */
-export const init = loader(start, () => new URL('./wasm/edgeflip_bg.wasm', import.meta.url));
+/** Loads the module of the engines. */
+export const loadCore = loader(start, 'edgeflip_bg.wasm', () => new URL('./wasm/edgeflip_bg.wasm', import.meta.url));
 
-/**
- * Loads the module of the WebGL2 engine; a session does so by itself where it takes that engine. Call it to load early,
- * or with a source where `edgeflip_webgl2_bg.wasm` does not lie beside this file. The first call counts; after a failure
- * the next one tries again.
- *
- * @throws {@link EdgeflipError} `load-failed`.
- */
-export const initWebGl2 = loader(
+const loadWebGl2 = loader(
   async (source) => {
     const { default: initModule, setShaderLoader } = await import('./wasm/edgeflip_webgl2.js');
     await initModule(source);
     setShaderLoader(() => import('./glsl.js'));
   },
+  'edgeflip_webgl2_bg.wasm',
   () => new URL('./wasm/edgeflip_webgl2_bg.wasm', import.meta.url),
 );
 
 let threadsModule: WebAssembly.Module;
 
-/** The module of the threads. */
-export async function loadThreads(): Promise<WebAssembly.Module> {
-  await initThreads();
-  return threadsModule;
-}
-
-/**
- * Loads the module of the CPU engine's threads; a session does so by itself where it takes that engine for a large mesh,
- * and the page is cross-origin isolated. Call it to load early, or with a source where `edgeflip_threads_bg.wasm` does not
- * lie beside this file. The first call counts; after a failure the next one tries again.
- *
- * @throws {@link EdgeflipError} `load-failed`.
- */
-export const initThreads = loader(
+const loadThreads = loader(
   async ({ module_or_path }) => {
     threadsModule = await compile(module_or_path);
   },
+  'edgeflip_threads_bg.wasm',
   () => new URL('./wasm/edgeflip_threads_bg.wasm', import.meta.url),
 );
 
-/**
- * Loads the module that `FlipSession.verify` calls; `verify` does so by itself. Call it to load early, or with a source
- * where `edgeflip_audit_bg.wasm` does not lie beside this file. The first call counts; after a failure the next one tries
- * again.
- *
- * @throws {@link EdgeflipError} `load-failed`.
- */
-export const initAudit = loader(
+/** The module of the threads. */
+export async function moduleOfThreads(): Promise<WebAssembly.Module> {
+  await loadThreads();
+  return threadsModule;
+}
+
+/** Loads the module that `FlipSession.verify` calls. */
+export const loadAudit = loader(
   async (source) => (await import('./wasm/edgeflip_audit.js')).default(source),
+  'edgeflip_audit_bg.wasm',
   () => new URL('./wasm/edgeflip_audit_bg.wasm', import.meta.url),
 );
+
+/**
+ * Loads the WebAssembly modules that `sources` names, or that of the engines if it names none. The package loads each
+ * module by itself where it needs one. Call this to load early, or if the modules do not lie in `wasm/` beside this file:
+ *
+ * ```ts
+ * await init({ base: '/static/edgeflip' });
+ * ```
+ *
+ * A module is loaded once: later sources of it are ignored. After a failure the next call tries again.
+ *
+ * @throws {@link EdgeflipError} `load-failed`; `invalid-input` and `invalid-option` about `sources`.
+ */
+export const init = initOf('core', {
+  core: loadCore,
+  webgl2: loadWebGl2,
+  threads: loadThreads,
+  audit: loadAudit,
+  files: async (source) => (await import('./load-files.js')).loadFiles(source),
+});

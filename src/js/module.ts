@@ -1,34 +1,112 @@
-/** Loads a WebAssembly module, once. */
+/** Loads WebAssembly modules, each once. */
 
 import { EdgeflipError } from './error.js';
 import { copyOf, messageOf, read, shown, viewOf } from './given.js';
+import { optionsOf } from './names.js';
 import { VERTEX_ARRAYS } from './settings.js';
 
-/** Where the module comes from: its bytes, the module itself, a response, or an address to fetch. */
+/** Where a module comes from: its bytes, the module itself, a response, or a URL to fetch. */
 export type ModuleSource = BufferSource | WebAssembly.Module | Response | URL | string;
+
+/** Where the WebAssembly modules come from: one URL for all, or a source for each. */
+export interface Sources {
+  /**
+   * The URL of a folder with the files of the package's `dist/wasm`, under their names there. Modules without a source of
+   * their own are loaded from it.
+   */
+  base?: URL | string | undefined;
+  /** The engines, for every run: `edgeflip_bg.wasm`. */
+  core?: ModuleSource | undefined;
+  /** The WebGL2 engine: `edgeflip_webgl2_bg.wasm`. */
+  webgl2?: ModuleSource | undefined;
+  /** The CPU engine on several threads: `edgeflip_threads_bg.wasm`. */
+  threads?: ModuleSource | undefined;
+  /** What `FlipSession.verify` calls: `edgeflip_audit_bg.wasm`. */
+  audit?: ModuleSource | undefined;
+  /** The entry `edgeflip/files`, and the options `weld` and `reorient`: `edgeflip_files_bg.wasm`. */
+  files?: ModuleSource | undefined;
+}
 
 /** What wasm-bindgen writes to start its module. */
 type Start = (options: { module_or_path: ModuleSource }) => Promise<unknown>;
+
+/** Loads one module. */
+type Load = (source?: ModuleSource) => Promise<void>;
+
+/** The URL of the folder with the modules, if `init` was given one. */
+let base: string | undefined;
 
 /**
  * A function that loads one module. Its first call counts; after a failure the next one tries again.
  *
  * @param start - Starts the module.
- * @param place - Where the module lies if the call does not say.
+ * @param file - The name of the module's file.
+ * @param beside - Where the module lies if nobody says it: a bundler sees this URL.
  */
-export function loader(start: Start, place: () => URL): (source?: ModuleSource) => Promise<void> {
+export function loader(start: Start, file: string, beside: () => URL): Load {
   let loading: Promise<void> | undefined;
-  const load = async (given: ModuleSource = place()) => {
+  const load = async (given: ModuleSource = base === undefined ? beside() : absolute(base + file)) => {
     const source = sourceOf(given);
     await start({ module_or_path: readFile(source) ?? source });
   };
   return (source) => {
     loading ??= load(source).catch((cause: unknown) => {
       loading = undefined;
-      throw new EdgeflipError('load-failed', `the WebAssembly module could not be loaded: ${messageOf(cause)}`, { cause });
+      throw failed(cause);
     });
     return loading;
   };
+}
+
+/**
+ * The function `init` of an entry.
+ *
+ * @param first - The module that is loaded if none is named.
+ */
+export function initOf<Name extends Exclude<keyof Sources, 'base'>>(
+  first: NoInfer<Name>,
+  loads: Record<Name, Load>,
+): (sources?: Pick<Sources, Name | 'base'>) => Promise<void> {
+  const names = Object.keys(loads) as Name[];
+  return async (sources) => {
+    const named = read('the sources', () => {
+      if (sources === undefined) return [];
+      if (isSource(sources)) throw new EdgeflipError('invalid-input', `name the module of a source: init({ ${first}: … })`);
+      const given = optionsOf(sources, ['base', ...names], 'the sources') as Sources;
+      const folder = given.base;
+      const named = names.map((name) => [name, given[name]] as const).filter(([, source]) => source !== undefined);
+      if (folder !== undefined) base = folderOf(folder);
+      // A source is read before anything waits.
+      return named.map(([name, source]) => [name, attempt(() => sourceOf(source!))] as const);
+    });
+    if (named.length === 0) return loads[first]();
+    await Promise.all(named.map(([name, source]) => loads[name](source)));
+  };
+}
+
+/** What `work` gives. What it throws is an error of loading. */
+function attempt<T>(work: () => T): T {
+  try {
+    return work();
+  } catch (cause) {
+    throw failed(cause);
+  }
+}
+
+function failed(cause: unknown): EdgeflipError {
+  return new EdgeflipError('load-failed', `the WebAssembly module could not be loaded: ${messageOf(cause)}`, { cause });
+}
+
+/** The URL of a folder, with a slash at its end. */
+function folderOf(given: unknown): string {
+  const url = given instanceof URL ? given.href : given;
+  if (typeof url !== 'string') throw new EdgeflipError('invalid-input', `base: ${shown(given)} is no URL`);
+  return url === '' || url.endsWith('/') ? url : `${url}/`;
+}
+
+/** A URL object, which `readFile` knows; a relative one stays as it is. */
+function absolute(url: string): URL | string {
+  return /^[a-z][-+.\w]*:/i.test(url) ? new URL(url) : url;
 }
 
 /** What was passed, read at once. */
@@ -37,10 +115,14 @@ function sourceOf(given: ModuleSource): ModuleSource {
   const view = viewOf(given, VERTEX_ARRAYS, 'the bytes');
   if (view) return copyOf(view, 'the bytes') as Uint8Array<ArrayBuffer>;
   if (given instanceof ArrayBuffer || ArrayBuffer.isView(given)) return bytesOf(given);
-  const kinds = [URL, WebAssembly.Module, Response];
   // One that has a `then` would be waited for.
-  if (kinds.some((kind) => given instanceof kind) && !('then' in given)) return given;
+  if (isSource(given) && !('then' in given)) return given;
   throw new TypeError(`${shown(given)} is no address, response, module or bytes`);
+}
+
+/** Whether it is an object that a module comes from, but for bytes. */
+function isSource(given: unknown): given is URL | WebAssembly.Module | Response {
+  return [URL, WebAssembly.Module, Response].some((kind) => given instanceof kind);
 }
 
 /** A copy of the bytes in a buffer, or in a view of any kind: V8 compiles no DataView. */

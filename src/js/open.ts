@@ -2,7 +2,7 @@
 
 import { collecting } from './collect.js';
 import { fromModule } from './error.js';
-import { init, isLoaded, loadThreads } from './load.js';
+import { isLoaded, loadCore, moduleOfThreads } from './load.js';
 import { copied, type IndexedMesh } from './mesh.js';
 import type { Settings } from './settings.js';
 import { type ModuleSession, threadCount, ThreadsSession, threadsOf } from './threads.js';
@@ -20,7 +20,7 @@ export async function open(mesh: IndexedMesh, settings: Settings): Promise<Modul
   let given = mesh;
   if (!isLoaded()) {
     given = copied(mesh);
-    await init();
+    await loadCore();
   }
   const { positions, indices, dimension } = given;
   const why = whyCpu(indices.length / 3, dimension, positions instanceof Float64Array, count, settings);
@@ -42,7 +42,7 @@ async function openAlone(
   settings: Settings & { leavesCpu?: number },
 ): Promise<ModuleSession> {
   const ours = isLoaded() ? undefined : copied(mesh);
-  if (ours) await init();
+  if (ours) await loadCore();
   let [given, error]: [IndexedMesh | undefined, unknown] = [ours ?? mesh, undefined];
   return collecting(async () => {
     if (!given) throw error;
@@ -68,7 +68,7 @@ function refused(thrown: unknown): IndexedMesh | undefined {
 
 /** Where they cannot be started, one gives the same result. The arrays of the mesh are given away. */
 async function openOnThreads(mesh: IndexedMesh, settings: Settings, count: number, fallback?: string): Promise<ModuleSession> {
-  const module = await loadThreads().catch(() => undefined);
+  const module = await moduleOfThreads().catch(() => undefined);
   const threads = await (module && threadsOf(module, count).catch(() => undefined));
   if (!threads) return openAlone(mesh, settings);
   return ThreadsSession.create(threads, mesh, settings, fallback);

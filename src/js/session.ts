@@ -5,7 +5,7 @@
 import type { EDGE_STATES } from './edge-states.js';
 import { EdgeflipError, fromModule } from './error.js';
 import type { Welded } from './files.js';
-import { initAudit } from './load.js';
+import { loadAudit } from './load.js';
 import { copyOf, itselfOf } from './given.js';
 import { copied, moduleMesh, positionsOf } from './mesh.js';
 import { open } from './open.js';
@@ -156,12 +156,12 @@ export class FlipSession implements AsyncIterable<Iteration>, Disposable {
    * Checks the triangles against the input, exactly, with code that shares nothing with what made them, and lists the
    * edges that are not Delaunay. That code is in a WebAssembly module of its own, which the first call loads.
    *
-   * @throws {@link EdgeflipError} `load-failed`; see {@link initAudit}.
+   * @throws {@link EdgeflipError} `load-failed`; see {@link init}.
    */
   verify(): Promise<Audit> {
     return this.#call(async (session) => {
       const input = await session.auditInput();
-      await initAudit();
+      await loadAudit();
       const { audit } = await import('./wasm/edgeflip_audit.js');
       return audit(...input);
     });

@@ -18,6 +18,13 @@ pub(crate) struct Thresholds {
     pub(crate) deviation: f32,
 }
 
+impl Default for Thresholds {
+    /// Under which everything may flip.
+    fn default() -> Self {
+        Self { cos: -1.0, deviation: f32::INFINITY }
+    }
+}
+
 /// What the phases read and never write.
 pub(crate) struct Geometry<'a> {
     pub(crate) dimension: Dimension,

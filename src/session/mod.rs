@@ -329,7 +329,7 @@ impl Session {
 
     fn iterations_left(&self) -> u32 {
         let done = self.flips_per_iteration.len() as u32;
-        self.options.max_iterations.map_or(u32::MAX, |cap| cap.saturating_sub(done))
+        self.options.iterations_left(done)
     }
 
     /// Asks for so many bytes a triangle: a call that runs out of memory takes its session with it, one that is refused

@@ -94,6 +94,11 @@ impl Options {
         }
         self.threads.map_or(Ok(()), |count| threads(count.get()).map(drop))
     }
+
+    /// How many iterations a run may do after so many.
+    pub(super) fn iterations_left(&self, done: u32) -> u32 {
+        self.max_iterations.map_or(u32::MAX, |most| most.saturating_sub(done))
+    }
 }
 
 /// A number of threads, if it is one.

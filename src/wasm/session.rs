@@ -2,7 +2,8 @@
 //! Arguments arrive checked in type, not in value. Everything that is thrown is an `Error` with a `code`.
 
 use super::objects::outcome_object;
-use super::options::{self, JsOptions};
+use super::options;
+pub use super::options::JsOptions;
 #[cfg(feature = "js")]
 use crate::Mesh;
 #[cfg(feature = "js")]

@@ -5,7 +5,7 @@ import { readFileSync } from 'node:fs';
 import { test } from 'node:test';
 import { gunzipSync, gzipSync } from 'node:zlib';
 import { makeDelaunay } from 'edgeflip';
-import { angles, change, measures, reorient, EdgeflipError, FORMATS, generate, initFiles, readMesh, writeMesh } from 'edgeflip/files';
+import { angles, change, measures, reorient, EdgeflipError, FORMATS, generate, init, readMesh, writeMesh } from 'edgeflip/files';
 
 const bytes = (text) => new TextEncoder().encode(text);
 const text = (bytes) => new TextDecoder().decode(bytes);
@@ -34,9 +34,12 @@ const awkward = () => ({
 });
 
 test('a module that cannot be loaded is an error, and the next call tries again', async () => {
-  await assert.rejects(initFiles(bytes('no module')), refused('load-failed', /could not be loaded/));
-  await initFiles();
-  await initFiles('https://example.org/not-looked-at.wasm');
+  await assert.rejects(init({ files: bytes('no module') }), refused('load-failed', /could not be loaded/));
+  await assert.rejects(init({ base: new URL('nowhere', import.meta.url) }), refused('load-failed', /ENOENT.*nowhere.edgeflip_files_bg\.wasm/));
+  await assert.rejects(init({ core: bytes('no module') }), refused('invalid-option', /^core is not an option; there are base, files$/));
+  await assert.rejects(init(new URL('https://example.org/a.wasm')), refused('invalid-input', /^name the module of a source: init\(\{ files: … \}\)$/));
+  await init({ base: new URL('../../dist/wasm', import.meta.url).href });
+  await init({ files: 'https://example.org/not-looked-at.wasm' });
 });
 
 /** What is said of a file of which there is nothing to say. */

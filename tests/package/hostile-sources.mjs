@@ -10,29 +10,41 @@ import fc from 'fast-check';
 import { hostile } from './hostile.mjs';
 
 const { runs, seed, patience } = workerData;
-const modules = {
-  edgeflip: edgeflip.init,
-  edgeflip_webgl2: edgeflip.initWebGl2,
-  edgeflip_threads: edgeflip.initThreads,
-  edgeflip_audit: edgeflip.initAudit,
-  edgeflip_files: files.initFiles,
-};
+const inits = [
+  ...['core', 'webgl2', 'threads', 'audit', 'files'].map((name) => (source) => edgeflip.init({ [name]: source })),
+  (source) => files.init({ files: source }),
+];
 
 /** `undefined` is the module beside the package. */
 const source = hostile.filter((make) => make() !== undefined);
-const property = fc.asyncProperty(fc.constantFrom(...Object.values(modules)), source, async (init, make) => {
+const property = fc.asyncProperty(fc.constantFrom(...inits), source, async (init, make) => {
   const asked = init(make()).then(() => 'loaded', ({ code }) => code);
   assert.equal(await Promise.race([asked, pause(patience, 'late', { ref: false })]), 'load-failed');
 });
 await fc.assert(property, { numRuns: runs, seed, endOnFailure: true });
 
 // A source that is right loads them after all, in whatever kind its bytes are, and whatever becomes of them after the call.
+const modules = { core: 'edgeflip', webgl2: 'edgeflip_webgl2', threads: 'edgeflip_threads', audit: 'edgeflip_audit', files: 'edgeflip_files' };
 const kinds = [(bytes) => bytes, ({ buffer }) => buffer, ({ buffer }) => new DataView(buffer)];
-for (const [i, [name, init]] of Object.entries(modules).entries()) {
-  const bytes = new Uint8Array(readFileSync(new URL(`../../dist/wasm/${name}_bg.wasm`, import.meta.url)));
-  const loaded = init(kinds[i % kinds.length](bytes));
+for (const [i, [name, file]] of Object.entries(modules).entries()) {
+  const bytes = new Uint8Array(readFileSync(new URL(`../../dist/wasm/${file}_bg.wasm`, import.meta.url)));
+  const loaded = edgeflip.init({ [name]: kinds[i % kinds.length](bytes) });
   bytes.fill(0);
   await loaded;
 }
+
+// What is no object of sources, or no folder, is an error of this package; an object without sources is none.
+const given = fc.oneof(
+  hostile.map((make) => () => make()),
+  hostile.map((make) => () => ({ base: make(), core: 0 })),
+  hostile.map((make) => () => ({ other: make(), core: 0 })),
+);
+const sources = fc.asyncProperty(given, async (make) => {
+  const asked = edgeflip.init(make()).then(() => 'loaded', ({ name, code }) => (name === 'EdgeflipError' ? code : name));
+  const end = await Promise.race([asked, pause(patience, 'late', { ref: false })]);
+  assert.ok(['loaded', 'load-failed', 'invalid-input', 'invalid-option'].includes(end), end);
+});
+await fc.assert(sources, { numRuns: runs, seed, endOnFailure: true });
+
 const { flips } = await edgeflip.makeDelaunay(await files.generate('random 12'), { backend: 'cpu' });
 parentPort.postMessage(flips);

@@ -4,7 +4,7 @@ import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { test } from 'node:test';
 import { FlipSession, init, makeDelaunay } from 'edgeflip';
-import { generate, initFiles, readMesh, weld, writeMesh } from 'edgeflip/files';
+import { generate, readMesh, weld, writeMesh } from 'edgeflip/files';
 
 /** The bytes of a module whose memory has so many pages of 64 KiB at most: its section 5, as the core specification has it. */
 function limited(name, pages) {
@@ -30,8 +30,7 @@ function limited(name, pages) {
   return Buffer.concat(parts);
 }
 
-await init(limited('edgeflip', 100));
-await initFiles(limited('edgeflip_files', 3200));
+await init({ core: limited('edgeflip', 100), files: limited('edgeflip_files', 3200) });
 const mesh = await generate('random 60');
 const options = { backend: 'cpu' };
 const expected = await makeDelaunay(mesh, options);

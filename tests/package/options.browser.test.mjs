@@ -1,5 +1,5 @@
 // Each option of src/js/types.ts has its effect on the WebGL2 engine, whose module reads the options that the module of the
-// engines passes on: the same as on the CPU. In Chromium; takes the dist/ that is there.
+// engines passes on: the same as on the CPU. The modules come from a folder that `init` names. In Chromium; takes the dist/ that is there.
 
 import assert from 'node:assert/strict';
 import { after, test } from 'node:test';
@@ -10,7 +10,8 @@ after(closeAll);
 
 /** Runs in the page: what each case gives, or what it throws. */
 async function askAll(backend) {
-  const { FlipSession, makeDelaunay } = await import('/dist/index.js');
+  const { FlipSession, init, makeDelaunay } = await import('/dist/index.js');
+  await init({ base: '../dist/wasm' });
   const { generate } = await import('/dist/files.js');
   const { cases } = await import('/tests/package/options.mjs');
   const [mesh, base] = [await generate('uvsphere 24'), { backend }];

@@ -6,7 +6,7 @@ import { readFileSync } from 'node:fs';
 import { test } from 'node:test';
 import { fileURLToPath } from 'node:url';
 import workers from 'node:worker_threads';
-import { FlipSession, initThreads, makeDelaunay } from 'edgeflip';
+import { FlipSession, init, makeDelaunay } from 'edgeflip';
 import { generate } from 'edgeflip/files';
 
 /** Workers that have been started, since a session on one thread would give the same. */
@@ -21,7 +21,7 @@ workers.Worker = class extends workers.Worker {
 const meshes = await Promise.all(['random 190', 'shear 190', 'uvsphere 190'].map(generate));
 
 test('the module of the threads comes from bytes too', async () => {
-  await initThreads(readFileSync(new URL('../../dist/wasm/edgeflip_threads_bg.wasm', import.meta.url)));
+  await init({ threads: readFileSync(new URL('../../dist/wasm/edgeflip_threads_bg.wasm', import.meta.url)) });
 });
 
 test('the result is the same for any number of threads, in both orders', async () => {

@@ -1,12 +1,12 @@
 // Compiled, never run: what a strict TypeScript program sees of the package.
 
-import { EDGE_STATES, EdgeflipError, type EdgeState, type ErrorCode, FlipSession, type Iteration, init, initAudit, initWebGl2, makeDelaunay, type Mesh } from 'edgeflip';
-import { type Angles, angles, type FileMesh, FORMATS, generate, initFiles, type Original, readMesh, type Welded, weld, writeMesh } from 'edgeflip/files';
+import { EDGE_STATES, EdgeflipError, type EdgeState, type ErrorCode, FlipSession, type Iteration, init, makeDelaunay, type Mesh, type Sources } from 'edgeflip';
+import { type Angles, angles, type FileMesh, FORMATS, generate, init as initFiles, type Original, readMesh, type Welded, weld, writeMesh } from 'edgeflip/files';
 
 export async function use(mesh: Mesh, signal: AbortSignal, device?: GPUDevice): Promise<Uint32Array> {
-  await init(new URL('https://example.org/edgeflip.wasm'));
-  await initWebGl2(new URL('https://example.org/edgeflip_webgl2.wasm'));
-  await initAudit(new URL('https://example.org/edgeflip_audit.wasm'));
+  await init({ base: new URL('https://example.org/wasm') });
+  const sources: Sources = { core: new URL('https://example.org/edgeflip.wasm'), webgl2: new Uint8Array(8), files: undefined };
+  await init(sources);
   const iterations: Iteration[] = [];
   const result = await makeDelaunay(mesh, {
     backend: 'auto',
@@ -34,7 +34,7 @@ export async function use(mesh: Mesh, signal: AbortSignal, device?: GPUDevice): 
 }
 
 export async function copy(file: File): Promise<Blob> {
-  await initFiles(new URL('https://example.org/edgeflip_files.wasm'));
+  await initFiles({ files: new URL('https://example.org/edgeflip_files.wasm') });
   const format: '.off' | '.obj' | '.ply' | '.stl' | '.gltf' | '.glb' | undefined = FORMATS.find((format) => file.name.endsWith(format));
   const mesh: FileMesh = await readMesh(new Uint8Array(await file.arrayBuffer()), file.name, { dimension: 3 });
   const positions: Float32Array = (await generate('uvsphere 20')).positions;
@@ -61,6 +61,12 @@ export function codeOf(error: unknown): ErrorCode | undefined {
 
 // @ts-expect-error: there is no such backend
 void makeDelaunay({ positions: new Float32Array(), indices: new Uint16Array(), dimension: 2 }, { backend: 'gpu' });
+// @ts-expect-error: a source has the name of its module
+void init('https://example.org/edgeflip.wasm');
+// @ts-expect-error: this entry has one module
+void initFiles({ core: 'https://example.org/edgeflip.wasm' });
+// @ts-expect-error: there is no such option
+void makeDelaunay({ positions: new Float32Array(), indices: new Uint16Array(), dimension: 2 }, { maxNormalAngel: 10 });
 // @ts-expect-error: text is no bytes
 void readMesh('OFF', 'a.off');
 // @ts-expect-error: a plain array is no typed array

@@ -61,10 +61,11 @@ pub(crate) async fn self_test(
 
 /// Under which the test mesh has edges that may flip and others that may not.
 fn thresholds(form: Form) -> Thresholds {
-    Thresholds {
-        cos: cos_degrees(20.0),
-        deviation: if form.has_deviation { DEVIATION } else { f32::INFINITY },
+    let mut thresholds = Thresholds { cos: cos_degrees(20.0), ..Thresholds::default() };
+    if form.has_deviation {
+        thresholds.deviation = DEVIATION;
     }
+    thresholds
 }
 
 /// A lattice of spacing 0.1, whose squares only exact arithmetic knows to be cocircular or not, under one that is
