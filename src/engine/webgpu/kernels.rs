@@ -1,14 +1,14 @@
-//! The kernels, compiled from `shaders/`, and their bindings.
+//! The kernels in `shaders/`, and their bindings.
 
 use super::sources;
 use crate::Dimension;
 use crate::engine::gpu::upload::Form;
 use wgpu::{BindingType, BufferBindingType};
 
-/// Invocations of a workgroup of every kernel.
+/// Invocations per workgroup of every kernel.
 pub(super) const WORKGROUP_SIZE: u32 = 256;
 
-/// What is done in an iteration and around it.
+/// The kernels of the phases.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Kernel {
     Label,
@@ -19,9 +19,9 @@ pub(crate) enum Kernel {
     Census,
     /// Before the first iteration: the signs of the triangles in 2D, the creases in 3D.
     Prepare,
-    /// The turns of the stars, in 2D.
+    /// Counts the turns of the stars, in 2D.
     Turn,
-    /// Which stars are embedded, in 2D.
+    /// Marks the embedded stars, in 2D.
     Mark,
 }
 
@@ -38,7 +38,7 @@ impl Kernel {
         Self::Mark,
     ];
 
-    /// Those that there are, each at its index.
+    /// The kernels of a dimension, each at its index.
     fn all(dimension: Dimension) -> &'static [Self] {
         match dimension {
             Dimension::Two => &Self::ALL,
@@ -46,7 +46,7 @@ impl Kernel {
         }
     }
 
-    /// The kernels before the first iteration; exact arithmetic decides between the first of them and the others.
+    /// The kernels before the first iteration.
     pub(super) fn preparation(dimension: Dimension) -> &'static [Self] {
         match dimension {
             Dimension::Two => &[Self::Prepare, Self::Decide, Self::Turn, Self::Mark],
@@ -57,7 +57,7 @@ impl Kernel {
     /// The kernels of one iteration.
     pub(crate) const ITERATION: [Self; 4] = [Self::Label, Self::Decide, Self::Select, Self::Flip];
 
-    /// In the sources of [`sources::phases`].
+    /// Its entry point in the sources of [`sources::phases`].
     fn entry(self, tail_size: u32) -> Entry {
         match self {
             Self::Label => (READS, "label_all", None),
@@ -73,21 +73,21 @@ impl Kernel {
     }
 }
 
-/// Places of the sources.
+// Indices of the sources.
 const READS: usize = 0;
 const WRITES: usize = 1;
 const NUMBERS: usize = 2;
 
-/// The place of a source, an entry point in it, and one of its constants that is not as the source says.
+/// The index of a source, an entry point in it, and a value that overrides one of its constants.
 pub(super) type Entry = (usize, &'static str, Option<(&'static str, f64)>);
 
-/// The pipelines of some kernels, which share their bindings.
+/// The pipelines of kernels that share their bindings.
 pub(super) struct Kernels {
     pub(super) layout: wgpu::BindGroupLayout,
     pub(super) pipelines: Vec<wgpu::ComputePipeline>,
 }
 
-/// What is compiled together: entry points of sources that have the same bindings.
+/// Entry points that are compiled together and share their bindings.
 pub(super) struct Plan {
     pub(super) bindings: Vec<BindingType>,
     pub(super) sources: Vec<String>,
@@ -106,7 +106,7 @@ impl Plan {
         }
     }
 
-    /// In the order of [`Kernel`]; the tail has so many invocations.
+    /// The kernels of the phases, in the order of [`Kernel`]. The tail has `tail_size` invocations.
     pub(super) fn phases(form: Form, tail_size: u32) -> Self {
         let entry = |kernel: &Kernel| kernel.entry(tail_size);
         let entries = Kernel::all(form.dimension).iter().map(entry).collect();
@@ -121,7 +121,7 @@ impl Plan {
         }
     }
 
-    /// Says how often the filter decides.
+    /// Counts how often the filter decides.
     #[cfg(test)]
     pub(super) fn tiers(form: Form) -> Self {
         Self {
