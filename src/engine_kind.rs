@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-/// The kind of an engine: of the one that ran, or of the one that an error is about.
+/// Which engine ran, or which engine an error is about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum EngineKind {
     /// The CPU engine.
@@ -14,7 +14,7 @@ pub enum EngineKind {
 }
 
 impl EngineKind {
-    /// The word in results and messages: `cpu`, `gpu` or `webgl2`. In the npm package `gpu` is `webgpu`.
+    /// The name in results and messages: `cpu`, `gpu` or `webgl2`. In the npm package `gpu` is `webgpu`.
     pub fn name(self) -> &'static str {
         match self {
             Self::Cpu => "cpu",

@@ -1,8 +1,8 @@
-//! The one error type: every variant names the place and says what the user can do.
+//! The one error type: every variant says what is wrong, where, and what the user can do.
 
 use crate::EngineKind;
 
-/// Why a mesh, a file or a backend was refused. Nothing has been changed when one is returned.
+/// Why a call refused a mesh, a file or a backend. A call that returns an error has changed nothing.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
@@ -26,8 +26,8 @@ pub enum Error {
         /// Number of vertices.
         vertices: usize,
     },
-    /// The array of positions, of triangles or of locked edges has a length that is no multiple of what one element takes.
-    #[error("{array} has {length} numbers, which is not a multiple of {stride}")]
+    /// The length of an array of positions, triangles or locked edges is not a multiple of the numbers per element.
+    #[error("{array} has {length} numbers, not a multiple of {stride}")]
     RaggedArray {
         /// `positions`, `triangles` or `lockedEdges`.
         array: &'static str,
@@ -36,38 +36,38 @@ pub enum Error {
         /// Numbers per element.
         stride: usize,
     },
-    /// New positions are not those of as many vertices as the mesh has. Give 2 or 3 numbers for each of them.
-    #[error("positions has {length} numbers, and the vertices of the mesh have {expected}")]
+    /// The new positions do not fit the number of vertices. Give 2 or 3 numbers for each vertex.
+    #[error("positions has {length} numbers, but the vertices of the mesh take {expected}")]
     PositionCount {
         /// How many numbers were given.
         length: usize,
-        /// How many there have to be.
+        /// How many are expected.
         expected: usize,
     },
-    /// Other triangles for a file are not as many as it has. Give 3 vertices for each of them.
-    #[error("triangles has {length} numbers, and those of the file have {expected}")]
+    /// The triangles to write do not fit the number of triangles in the file. Give 3 vertices for each triangle.
+    #[error("triangles has {length} numbers, but the triangles of the file take {expected}")]
     TriangleCount {
         /// How many numbers were given.
         length: usize,
-        /// How many there have to be.
+        /// How many are expected.
         expected: usize,
     },
     /// More triangles or vertices than 32-bit indices can name. Split the mesh.
-    #[error("the mesh has {count} {what}; at most {limit} can be indexed")]
+    #[error("the mesh has {count} {what}; 32-bit indices allow at most {limit}")]
     TooLarge {
         /// `triangles` or `vertices`.
         what: &'static str,
         /// How many there are.
         count: usize,
-        /// How many there may be.
+        /// How many are allowed.
         limit: usize,
     },
-    /// There is not enough memory. Split the mesh, or give back what other sessions hold.
+    /// There is not enough memory. Split the mesh, or free other sessions.
     #[error("up to {bytes} bytes of memory are needed, {}", whose(*limit))]
     OutOfMemory {
-        /// How many are needed at most.
+        /// An upper bound on the bytes needed.
         bytes: u64,
-        /// How many there are for the whole program, where that is known.
+        /// How many bytes the whole program may use, where that is known.
         limit: Option<u64>,
     },
     /// A file could not be understood. The message names the line (1-based) or the byte.
@@ -78,12 +78,12 @@ pub enum Error {
         /// What was expected and what was found.
         message: String,
     },
-    /// A file has more bytes than an option allows, or would have once it is unpacked. Raise `max_bytes` if you trust it.
+    /// The file has more bytes than an option allows, packed or unpacked. Raise `max_bytes` if you trust the file.
     #[error("the file has more than {limit} bytes, packed or unpacked; {option} sets the limit")]
     FileTooLarge {
-        /// Bytes that it may have.
+        /// How many bytes are allowed.
         limit: u64,
-        /// The option that says so.
+        /// The option that sets the limit.
         option: &'static str,
     },
     /// The extension names no format that can be read or written.
@@ -91,7 +91,7 @@ pub enum Error {
     UnknownFormat {
         /// The path given.
         path: String,
-        /// The extensions that are known.
+        /// The known extensions.
         known: &'static str,
     },
     /// A file could not be opened, read or written.
@@ -99,10 +99,10 @@ pub enum Error {
     Io {
         /// The path given.
         path: String,
-        /// What the system said.
+        /// The error of the operating system.
         source: std::io::Error,
     },
-    /// An option has a value that makes no sense.
+    /// An option has an invalid value.
     #[error("option {option}: {message}")]
     Option {
         /// The option's name.
@@ -110,34 +110,34 @@ pub enum Error {
         /// What is wrong with its value.
         message: String,
     },
-    /// The backend asked for is not there (`auto` would have taken another one).
+    /// The requested backend is not available. `auto` would take another one.
     #[error("backend {backend} is not available: {message}")]
     BackendUnavailable {
-        /// Which one.
+        /// The backend.
         backend: EngineKind,
         /// Why.
         message: String,
     },
-    /// The backend cannot take this mesh: too large for the device, or coordinates outside the span it
-    /// decides exactly. Use `auto` or `cpu`.
+    /// The backend cannot take this mesh: it is too large for the device, or its coordinates span more bits than the
+    /// backend decides exactly. Use `auto` or `cpu`.
     #[error("backend {backend} cannot take this mesh: {message}")]
     BackendLimit {
-        /// Which one.
+        /// The backend.
         backend: EngineKind,
         /// Which limit, and by how much.
         message: String,
     },
-    /// The device was lost or reported an error in the middle of a run.
+    /// The device was lost or reported an error during a run.
     #[error("the device failed: {message}")]
     Device {
-        /// What the driver said.
+        /// The message of the driver.
         message: String,
     },
 }
 
-/// What there is of memory, in a message.
+/// The second half of the message of [`Error::OutOfMemory`].
 fn whose(limit: Option<u64>) -> String {
-    limit.map_or("more than can be had".to_owned(), |limit| {
+    limit.map_or("more than is available".to_owned(), |limit| {
         format!(
             "and WebAssembly has {limit} for all meshes: free() sessions that are done, or split the mesh"
         )
@@ -150,14 +150,14 @@ pub(crate) fn number(value: f64) -> String {
     value.to_string()
 }
 
-/// As JavaScript writes it: Rust's way would take 15 KB of a module.
+/// The same, formatted by JavaScript: Rust's formatter would add 15 KB to the module.
 #[cfg(all(target_arch = "wasm32", feature = "js-values"))]
 pub(crate) fn number(value: f64) -> String {
     js_sys::Number::from(value).to_string_with_radix(10).map_or_else(|_| String::new(), String::from)
 }
 
 impl Error {
-    /// One word for the kind of error, the same in every release: what a program compares.
+    /// A name for the kind of error, for programs to compare. It stays the same in every release.
     pub fn code(&self) -> &'static str {
         match self {
             Self::NonFinite { .. } => "non-finite",

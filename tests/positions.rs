@@ -149,7 +149,7 @@ fn bad_positions_change_nothing() {
         block_on(session.step()).unwrap();
         let (outcome, audit, mut session) = said(session);
         let error = block_on(session.set_positions(vec![0f32; 3])).unwrap_err();
-        assert_eq!(error.to_string(), "positions has 3 numbers, and the vertices of the mesh have 128");
+        assert_eq!(error.to_string(), "positions has 3 numbers, but the vertices of the mesh take 128");
         let mut positions = mesh.positions().to_f32();
         positions[5] = f32::NAN;
         let error = block_on(session.set_positions(positions)).unwrap_err();

@@ -251,7 +251,7 @@ fn what_is_no_result_is_refused() {
     let wedges = Wedges::new(&square, vec![1, 1, 1, 2, 1, 1]).unwrap();
     assert_eq!(wedges.carried(&[0, 1, 2, 0, 2, 3]).unwrap(), [1, 1, 1, 2, 1, 1]);
     let refused = |triangles: &[u32]| wedges.carried(triangles).unwrap_err().to_string();
-    assert_eq!(refused(&[0, 1, 2]), "triangles has 3 numbers, and those of the file have 6");
+    assert_eq!(refused(&[0, 1, 2]), "triangles has 3 numbers, but the triangles of the file take 6");
     assert_eq!(
         refused(&[0, 1, 2, 0, 2, 4]),
         "triangle 1: vertex index 4 is out of range, the mesh has 4 vertices"

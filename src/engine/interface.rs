@@ -6,21 +6,21 @@ use crate::{Adjacency, EngineKind, Error, Mesh, Reasons};
 use std::pin::Pin;
 use std::sync::Arc;
 
-/// What an engine answers, once its device has.
+/// A future for the answer of an engine.
 pub(crate) type Answer<'a, T> = Pin<Box<dyn Future<Output = Result<T, Error>> + 'a>>;
 
-/// Every non-Delaunay interior edge of the mesh, counted.
+/// The numbers of non-Delaunay interior edges in the whole mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Census {
-    /// Those that may flip.
+    /// Edges that may flip.
     pub(crate) labelled: u32,
-    /// Those that may not, by `Angle`, `Fold`, `Duplicate`, `Locked` or `Deviation`.
+    /// Edges that may not, by `Angle`, `Fold`, `Duplicate`, `Locked` or `Deviation`.
     pub(crate) blocked: Reasons,
 }
 
 #[cfg(feature = "gpu")]
 impl Census {
-    /// As the shaders count: the labelled ones, then those blocked by each reason.
+    /// From the counts of the shaders: the labelled edges, then the edges blocked by each reason.
     pub(super) fn of_counts(counts: &[u32]) -> Self {
         let mut census = Self { labelled: counts[0], ..Self::default() };
         for (reason, count) in Reason::ALL.into_iter().zip(&counts[1..]) {
@@ -30,7 +30,7 @@ impl Census {
     }
 }
 
-/// Numbers of edges of the mesh as it was given; flips do not change them.
+/// The numbers of edges of each kind. Flips do not change them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct EdgeCounts {
     pub(crate) edges: u32,
@@ -46,7 +46,7 @@ impl From<&Adjacency> for EdgeCounts {
     }
 }
 
-/// Triangles in an array of JavaScript.
+/// Triangles in a JavaScript array.
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 pub(super) fn array(triangles: Answer<'_, Vec<u32>>) -> Answer<'_, js_sys::Uint32Array> {
     Box::pin(async { Ok(triangles.await?.as_slice().into()) })
@@ -54,38 +54,38 @@ pub(super) fn array(triangles: Answer<'_, Vec<u32>>) -> Answer<'_, js_sys::Uint3
 
 /// One mesh on one engine, between two iterations.
 pub(crate) trait Engine {
-    /// How many iterations to ask for at a time: as many as make it worth while to ask.
+    /// How many iterations to request at a time, so that the cost of a request is small.
     fn batch(&self) -> u32;
 
-    /// Locks the edges of these half-edges, which are those of both sides: they never flip. Those without a twin are
-    /// passed over. Before the first iteration.
+    /// Locks edges, so that they never flip. `half_edges` has both half-edges of each edge; half-edges without a twin are
+    /// skipped. Called before the first iteration.
     fn lock(&mut self, half_edges: Vec<u32>) -> Answer<'_, ()>;
 
-    /// Runs up to `count` iterations and returns the flips of each; fewer than `count` when there is nothing
-    /// left to flip.
+    /// Runs up to `count` iterations and returns the flips of each. Returns fewer than `count` when no edge is left to
+    /// flip.
     fn iterate(&mut self, count: u32) -> Answer<'_, Vec<u32>>;
 
     /// Counts the non-Delaunay interior edges of the whole mesh.
     fn census(&mut self) -> Answer<'_, Census>;
 
-    /// The triangles as they are now.
+    /// The present triangles.
     fn triangles(&mut self) -> Answer<'_, Vec<u32>>;
 
-    /// The same in an array of JavaScript.
+    /// The same in a JavaScript array.
     #[cfg(all(target_arch = "wasm32", feature = "js"))]
     fn triangles_array(&mut self) -> Answer<'_, js_sys::Uint32Array> {
         self::array(self.triangles())
     }
 
-    /// The twins as they are now, with the flags [`CREASE`](crate::mesh::half_edge::CREASE) and
+    /// The present twins, with the flags [`CREASE`](crate::mesh::half_edge::CREASE) and
     /// [`LOCKED`](crate::mesh::half_edge::LOCKED).
     fn twins(&mut self) -> Answer<'_, Vec<u32>>;
 
-    /// Moves the vertices: from now on as a new engine on `mesh`, whose triangles are those of the engine as they
-    /// are now, with the same locks. Where it fails with [`Error::BackendLimit`], the engine is as before.
+    /// Replaces the positions. The engine then equals a new one on `mesh` with the same locks; `mesh` has the present
+    /// triangles of the engine. After [`Error::BackendLimit`] the engine is unchanged.
     fn set_positions(&mut self, mesh: Arc<Mesh>) -> Answer<'_, ()>;
 
-    /// What the adjacency found.
+    /// The numbers of edges of each kind.
     fn edge_counts(&self) -> EdgeCounts;
 
     /// `cpu`, `gpu` or `webgl2`.
@@ -101,30 +101,30 @@ pub(crate) trait Engine {
         0
     }
 
-    /// The most bytes that its buffers took on a GPU at a time.
+    /// The peak size of the WebGPU buffers in bytes.
     fn device_bytes(&self) -> u64 {
         0
     }
 
-    /// Milliseconds that the adjacency took, where more than that is done to begin.
+    /// Milliseconds for the adjacency, if the engine measures them apart from its other start-up.
     fn adjacency_ms(&self) -> Option<f64> {
         None
     }
 
-    /// What a page can draw from, where the engine runs on the browser's GPU.
+    /// The buffers that a page can draw from, if the engine runs on the browser's WebGPU.
     #[cfg(all(target_arch = "wasm32", feature = "js"))]
     fn shared_objects(&self) -> Option<SharedObjects> {
         None
     }
 }
 
-/// The browser's objects of an engine.
+/// The browser's objects behind an engine.
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 pub(crate) struct SharedObjects {
     /// GPUDevice.
     pub(crate) device: wasm_bindgen::JsValue,
-    /// GPUBuffer: f32, 2 or 3 a vertex; of doubles the nearest ones.
+    /// GPUBuffer: f32, 2 or 3 per vertex; 64-bit floats are rounded to the nearest f32.
     pub(crate) positions: wasm_bindgen::JsValue,
-    /// GPUBuffer: u32, 3 a triangle.
+    /// GPUBuffer: u32, 3 per triangle.
     pub(crate) triangles: wasm_bindgen::JsValue,
 }

@@ -1,7 +1,7 @@
-//! Engines run the phases. All give the same triangles after every iteration.
+//! Engines run the phases. All engines give the same triangles after every iteration.
 //!
-//! From top to bottom: `webgpu` and `webgl2` run the shaders, `gpu` is what these two share, `cpu` runs the phases on the
-//! processor, and `interface` is the trait that a session sees.
+//! From top to bottom: `webgpu` and `webgl2` run the shaders, `gpu` has what both need, `cpu` runs the phases on the
+//! processor, and `interface` has the trait that a session calls.
 
 mod cpu;
 #[cfg(feature = "gpu")]

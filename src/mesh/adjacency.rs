@@ -1,4 +1,4 @@
-//! Twins from triangles: which half-edge lies on the other side of each half-edge.
+//! Twins from triangles: the half-edge on the other side of each half-edge.
 
 use super::buckets::{Buckets, Rising, visit_edges};
 use super::half_edge::next;
@@ -6,12 +6,12 @@ use crate::system::threads::{Threads, Word, shared};
 use crate::{Mesh, NONE};
 use std::sync::atomic::AtomicU32;
 
-/// The half-edges of a mesh matched in pairs, and how many edges there are of each kind.
+/// The twins of the half-edges of a mesh, and the number of edges of each kind.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Adjacency {
-    /// For each half-edge the one on the other side; [`NONE`] on the boundary and on frozen edges.
+    /// For each half-edge, the half-edge on the other side; [`NONE`] on the boundary and on frozen edges.
     pub twins: Vec<u32>,
-    /// Edges in all: pairs of vertices joined by a half-edge.
+    /// All edges: pairs of vertices joined by a half-edge.
     pub edges: u32,
     /// Edges with one half-edge.
     pub boundary: u32,
@@ -21,7 +21,7 @@ pub struct Adjacency {
     pub inconsistent: u32,
 }
 
-/// What an edge is, by its half-edges.
+/// The kind of an edge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum EdgeKind {
     Interior,
@@ -30,7 +30,7 @@ pub(crate) enum EdgeKind {
     Inconsistent,
 }
 
-/// The kind of the edge that these half-edges, all between the same two vertices, make up.
+/// The kind of an edge, from all half-edges between its two vertices.
 pub(crate) fn edge_kind(half_edges: &[u32], triangles: &[u32]) -> EdgeKind {
     match *half_edges {
         [_] => EdgeKind::Boundary,
@@ -66,8 +66,8 @@ impl Adjacency {
         Self { twins, ..adjacency }
     }
 
-    /// Counts the edges of the vertices of some that have not been matched, and writes their twins. Those of others have
-    /// been counted by their rising half-edges.
+    /// Counts the edges in the buckets of the unmatched half-edges again, edge by edge, and writes their twins. In the other
+    /// buckets, the number of rising half-edges is the number of edges.
     fn match_with_care(
         &mut self,
         triangles: &[u32],
@@ -85,7 +85,7 @@ impl Adjacency {
                     bucket.push((high, twins[h as usize].get()));
                 }
             }
-            // Those of them that rise are there now.
+            // The rising ones among the unmatched half-edges are in the bucket already.
             for &(low, h) in unmatched {
                 let from = triangles[h as usize];
                 if from > low || triangles[next(h) as usize] == low {
@@ -126,7 +126,7 @@ mod tests {
         [from.min(to), from.max(to)]
     }
 
-    /// From the half-edges of each edge.
+    /// The adjacency, from a map of edges.
     fn expected(triangles: &[u32]) -> Adjacency {
         let mut edges = BTreeMap::<_, Vec<u32>>::new();
         for h in 0..triangles.len() as u32 {
@@ -166,7 +166,7 @@ mod tests {
     }
 
     proptest! {
-        /// From nearly all edges non-manifold to nearly all on the boundary; triangles that have a corner twice.
+        /// Few vertices make nearly all edges non-manifold, many make nearly all boundary. Triangles may repeat a corner.
         #[test]
         fn the_half_edges_of_any_triangles_are_matched(
             triangles in (2u32..40).prop_flat_map(|vertices| vec(0..vertices, 0..40).prop_map(|mut corners| {
@@ -177,7 +177,7 @@ mod tests {
             compare(40, &triangles);
         }
 
-        /// Cones of many triangles, the apex being the first vertex or the last, with some of them again or turned.
+        /// Cones of many triangles around the first or the last vertex. Some triangles are repeated or reversed.
         #[test]
         fn the_half_edges_of_poles_are_matched(
             [is_first, is_last] in any::<[bool; 2]>(), size in 3u32..300, dirt in vec((0usize..300, any::<bool>()), 0..4)
@@ -223,7 +223,7 @@ mod tests {
     }
 
     #[test]
-    fn an_edge_between_triangles_turned_against_each_other_is_frozen() {
+    fn an_edge_between_triangles_of_opposite_orientation_is_frozen() {
         let adjacency = matched(4, &[0, 1, 2, 0, 1, 3]);
         assert_eq!(adjacency.twins, [NONE; 6]);
         assert_eq!((adjacency.boundary, adjacency.inconsistent), (4, 1));

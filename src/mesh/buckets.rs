@@ -1,30 +1,30 @@
-//! Half-edges sorted by the smaller vertices of their edges: what finds twins, and the edges of meshes that are not manifold.
+//! Sorts half-edges by the smaller vertex of their edges, to find twins, and the edges of meshes that are not manifold.
 
 use super::half_edge::triangle_of;
 use crate::system::threads::{FEWEST, Threads, Word, shared};
 use std::ops::Range;
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
-/// Half-edges in buckets by the smaller vertices of their edges. Their order in a bucket depends on the threads.
+/// Half-edges in buckets, one bucket per smaller vertex. The order in a bucket depends on the threads.
 pub(super) struct Buckets {
-    /// Where the bucket of each vertex ends, and the next one starts.
+    /// For each vertex, the index at which its bucket ends and the next one starts.
     pub(super) ends: Vec<u32>,
-    /// The larger vertices, those of all buckets and some more, at least [`LANES`].
+    /// The larger vertices of all buckets, and at least [`LANES`] more words.
     pub(super) highs: Vec<u32>,
     pub(super) half_edges: Vec<u32>,
 }
 
-/// Vertices that are compared at once.
+/// Vertices that one comparison handles.
 const LANES: usize = 8;
 
-/// Triangles of which the half-edges in question are listed first, so that the processor is ahead of the memory.
+/// Triangles per block. A first loop lists the half-edges of a block, so that the second can access memory ahead.
 const TRIANGLES: usize = 128;
 
-/// A larger bucket is sorted before it is searched, lest a pole cost the square of its edges.
+/// A larger bucket is sorted before a search; otherwise a pole of n edges would cost n² steps.
 const FEW: usize = 64;
 
 impl Buckets {
-    /// Of all half-edges, or of those that rise: that go from the smaller vertex to the larger one. A counting sort.
+    /// Sorts all half-edges, or only the rising ones: those from the smaller vertex to the larger. A counting sort.
     pub(super) fn new(vertices: usize, triangles: &[u32], threads: &Threads, all: bool) -> Self {
         let (corners, _) = triangles.as_chunks::<3>();
         let mut ends = threads.zeros(vertices);
@@ -49,19 +49,19 @@ impl Buckets {
         if is_alone {
             scatter(corners, words, lists, all, sum + LANES as u32);
         } else {
-            threads.map(corners.len(), |piece| scatter_beside_others(corners, piece, words, lists, all));
+            threads.map(corners.len(), |piece| scatter_concurrently(corners, piece, words, lists, all));
         }
-        // Each start has moved to the end of its bucket.
+        // The scatter has moved each start to the end of its bucket.
         Self { ends, highs, half_edges }
     }
 
-    /// The half-edges of a bucket, each after the larger vertex.
+    /// The entries of a bucket: the larger vertex, then the half-edge.
     fn of(&self, vertex: usize) -> impl Iterator<Item = (u32, u32)> {
         let bucket = range(&self.ends, vertex);
         self.highs[bucket.clone()].iter().copied().zip(self.half_edges[bucket].iter().copied())
     }
 
-    /// Sorts the buckets that a search would take long for.
+    /// Sorts the large buckets.
     pub(super) fn sort_large(&mut self, threads: &Threads) {
         let is_large = |&vertex: &usize| range(&self.ends, vertex).len() > FEW;
         let large = threads.map(self.ends.len(), |piece| piece.filter(is_large).collect::<Vec<_>>());
@@ -75,14 +75,14 @@ impl Buckets {
     }
 }
 
-/// Writes the larger vertices of all wanted half-edges, and these themselves, to where the buckets start, which move on.
+/// Writes the wanted half-edges and their larger vertices to the starts of their buckets, and advances the starts.
 fn scatter(corners: &[[u32; 3]], starts: &[AtomicU32], lists: [&[AtomicU32]; 2], all: bool, sink: u32) {
     let [highs, half_edges] = lists;
     for (t, &[a, b, c]) in (0..).zip(corners) {
         for (from, to, h) in [(a, b, 3 * t), (b, c, 3 * t + 1), (c, a, 3 * t + 2)] {
             let word = &starts[if all { from.min(to) } else { from } as usize];
             let (start, is_wanted) = (word.get(), all | (from < to));
-            // What is not wanted goes to the sink; nothing could predict a branch.
+            // Unwanted half-edges go to the sink: a branch would be unpredictable.
             let at = if is_wanted { start } else { sink } as usize;
             word.set(start + u32::from(is_wanted));
             highs[at].set(from.max(to));
@@ -91,8 +91,8 @@ fn scatter(corners: &[[u32; 3]], starts: &[AtomicU32], lists: [&[AtomicU32]; 2],
     }
 }
 
-/// The same for some of the triangles, while other threads do it for others.
-fn scatter_beside_others(
+/// The same for a piece of the triangles, while other threads handle other pieces.
+fn scatter_concurrently(
     corners: &[[u32; 3]],
     piece: Range<usize>,
     starts: &[AtomicU32],
@@ -108,7 +108,7 @@ fn scatter_beside_others(
                 count += usize::from(all | (from < to));
             }
         }
-        // First all additions, since each of them waits for the writes before it.
+        // All additions come first, because each atomic addition waits for earlier writes.
         for [low, ..] in &mut wanted[..count] {
             *low = starts[*low as usize].fetch_add(1, Relaxed);
         }
@@ -119,7 +119,7 @@ fn scatter_beside_others(
     }
 }
 
-/// Each count becomes the sum of those before it. Returns the sum of all.
+/// Replaces each count by the sum of the counts before it. Returns the total.
 fn become_starts(counts: &[AtomicU32], threads: &Threads) -> u32 {
     let pieces = threads.pieces(counts.len(), FEWEST);
     let sums = threads.map_each(pieces.clone(), |piece| counts[piece].iter().map(Word::get).sum::<u32>());
@@ -138,15 +138,15 @@ fn become_starts(counts: &[AtomicU32], threads: &Threads) -> u32 {
     end
 }
 
-/// The bucket of a vertex, as the ends of all say.
+/// The index range of the bucket of a vertex.
 #[inline(always)]
 pub(super) fn range(ends: &[u32], vertex: usize) -> Range<usize> {
     let start = if vertex == 0 { 0 } else { ends[vertex - 1] };
     start as usize..ends[vertex] as usize
 }
 
-/// Calls `visit` once for each edge with its half-edges in ascending order, edges by their smaller vertex. A vertex of n
-/// edges costs n log n.
+/// Calls `visit` once for each edge, with its half-edges in ascending order. The edges come in the order of their smaller
+/// vertices. A vertex with n edges costs n log n.
 pub(crate) fn for_each_edge(vertices: usize, triangles: &[u32], mut visit: impl FnMut(&[u32])) {
     let buckets = Buckets::new(vertices, triangles, &Threads::default(), true);
     let (mut bucket, mut edge) = (Vec::new(), Vec::new());
@@ -157,7 +157,7 @@ pub(crate) fn for_each_edge(vertices: usize, triangles: &[u32], mut visit: impl 
     }
 }
 
-/// Calls `visit` for each edge of a bucket: half-edges, each after the larger vertex, which are sorted. `edge` is scratch.
+/// Sorts the entries of a bucket (larger vertex, half-edge) and calls `visit` for each edge. `edge` is scratch memory.
 pub(super) fn visit_edges(bucket: &mut [(u32, u32)], edge: &mut Vec<u32>, mut visit: impl FnMut(&[u32])) {
     bucket.sort_unstable();
     for entries in bucket.chunk_by(|x, y| x.0 == y.0) {
@@ -167,14 +167,14 @@ pub(super) fn visit_edges(bucket: &mut [(u32, u32)], edge: &mut Vec<u32>, mut vi
     }
 }
 
-/// A bit for each of some words, set where it is `word`.
+/// A bit for each of `words`, set if it equals `word`.
 #[cfg(not(target_feature = "simd128"))]
 #[inline(always)]
 fn equals(words: &[u32; LANES], word: u32) -> u32 {
     (0..).zip(words).fold(0, |bits, (i, &other)| bits | u32::from(other == word) << i)
 }
 
-/// As above; the compiler would do it one after the other.
+/// The same; the compiler would not vectorize it.
 #[cfg(target_feature = "simd128")]
 #[inline(always)]
 fn equals(words: &[u32; LANES], word: u32) -> u32 {
@@ -184,31 +184,31 @@ fn equals(words: &[u32; LANES], word: u32) -> u32 {
     u32::from(u32x4_bitmask(u32x4_eq(low, word))) | u32::from(u32x4_bitmask(u32x4_eq(high, word))) << 4
 }
 
-/// Set in a rising half-edge that a falling one has taken.
+/// Flag of a rising half-edge that a falling one has taken as its twin.
 const TAKEN: u32 = 1 << 31;
 
-/// The rising half-edges, while the falling ones take theirs.
+/// The rising half-edges, while the falling ones take their twins from them.
 pub(super) struct Rising<'a> {
     pub(super) ends: &'a [u32],
     pub(super) highs: &'a [u32],
-    /// With [`TAKEN`] where it is.
+    /// Flagged with [`TAKEN`].
     pub(super) half_edges: &'a [AtomicU32],
 }
 
 impl Rising<'_> {
-    /// How many there are.
+    /// The number of rising half-edges.
     pub(super) fn count(&self) -> usize {
         self.ends.last().map_or(0, |&end| end as usize)
     }
 
-    /// Those of a vertex, each after the larger vertex, and whether it is taken.
+    /// The entries of a vertex: the larger vertex, the half-edge, and whether it is taken.
     pub(super) fn of(&self, vertex: u32) -> impl Iterator<Item = (u32, u32, bool)> {
         let entries = range(self.ends, vertex as usize).map(|i| (self.highs[i], self.half_edges[i].get()));
         entries.map(|(high, entry)| (high, entry & !TAKEN, entry & TAKEN != 0))
     }
 
-    /// Writes the twins of all half-edges, the first ones where an edge has several, but for the others, which it returns,
-    /// each after the smaller vertex.
+    /// Matches half-edges in pairs and writes their twins. Returns the unmatched half-edges, each after its smaller vertex.
+    /// At a frozen edge it may match the first two half-edges.
     pub(super) fn match_all(
         &self,
         triangles: &[u32],
@@ -216,29 +216,29 @@ impl Rising<'_> {
         threads: &Threads,
     ) -> Vec<(u32, u32)> {
         let half_edges = &self.half_edges[..self.count()];
-        let (mut matched, mut others) = (0, Vec::new());
+        let (mut matched, mut unmatched) = (0, Vec::new());
         for (count, mut falling) in
             threads.map(triangles.len() / 3, |piece| self.take(triangles, piece, twins))
         {
             matched += count;
-            others.append(&mut falling);
+            unmatched.append(&mut falling);
         }
         for mut rising in threads.map(half_edges.len(), |piece| self.rest(triangles, piece)) {
             matched += rising.len();
-            others.append(&mut rising);
+            unmatched.append(&mut rising);
         }
-        // Two threads may have taken the same one.
+        // Two threads may have taken the same rising half-edge. Then one thread matches everything again.
         if !cfg!(feature = "threads") || matched == half_edges.len() {
-            return others;
+            return unmatched;
         }
         half_edges.iter().for_each(|h| h.set(h.get() & !TAKEN));
         self.match_all(triangles, twins, &Threads::one())
     }
 
-    /// Matches the falling half-edges of some triangles. Returns how many, and those that cannot be.
+    /// Matches the falling half-edges of a piece of the triangles. Returns how many it matched, and the unmatched ones.
     fn take(&self, triangles: &[u32], piece: Range<usize>, twins: &[AtomicU32]) -> (usize, Vec<(u32, u32)>) {
         let (corners, _) = triangles.as_chunks::<3>();
-        let (mut matched, mut others) = (0, Vec::new());
+        let (mut matched, mut unmatched) = (0, Vec::new());
         let mut falling = [[0; 3]; 3 * TRIANGLES];
         for first in piece.clone().step_by(TRIANGLES) {
             let mut count = 0;
@@ -258,14 +258,14 @@ impl Rising<'_> {
                         twins[g as usize].set(h);
                         matched += 1;
                     }
-                    _ => others.push((low, h)),
+                    _ => unmatched.push((low, h)),
                 }
             }
         }
-        (matched, others)
+        (matched, unmatched)
     }
 
-    /// The first half-edge of the edge of two vertices, if there is one.
+    /// The first rising half-edge from `low` to `high`, if there is one.
     #[inline(always)]
     fn find(&self, low: u32, high: u32) -> Option<&AtomicU32> {
         let Range { start, end } = range(self.ends, low as usize);
@@ -283,7 +283,7 @@ impl Rising<'_> {
         None
     }
 
-    /// Those that have not been taken.
+    /// The rising half-edges that have not been taken.
     fn rest(&self, triangles: &[u32], piece: Range<usize>) -> Vec<(u32, u32)> {
         let rest = self.half_edges[piece].iter().map(|h| h.get()).filter(|&h| h & TAKEN == 0);
         rest.map(|h| (triangles[h as usize], h)).collect()
@@ -295,9 +295,9 @@ mod tests {
     use super::*;
     use crate::{Adjacency, NONE};
 
-    /// As after a race, in which one half-edge has been counted twice.
+    /// Simulates a race in which two threads have taken the same half-edge.
     #[test]
-    fn what_two_threads_have_taken_is_matched_again() {
+    fn a_half_edge_that_two_threads_have_taken_is_matched_again() {
         let triangles = [0, 1, 2, 0, 2, 3, 3, 2, 4, 2, 1, 4];
         let buckets = Buckets::new(5, &triangles, &Threads::one(), false);
         let expected = Adjacency::of_triangles(5, &triangles, &Threads::one());
@@ -307,9 +307,9 @@ mod tests {
             let mut twins = vec![NONE; triangles.len()];
             let (ends, highs) = (&buckets.ends, &buckets.highs);
             let rising = Rising { ends, highs, half_edges: shared(&mut half_edges) };
-            let others = rising.match_all(&triangles, shared(&mut twins), &Threads::default());
+            let unmatched = rising.match_all(&triangles, shared(&mut twins), &Threads::default());
             assert_eq!(twins, expected.twins);
-            assert_eq!(others.len() as u32, expected.boundary);
+            assert_eq!(unmatched.len() as u32, expected.boundary);
         }
     }
 }

@@ -3,9 +3,9 @@
 /// Whether the mesh lies in the plane or is a surface in space.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Dimension {
-    /// Two numbers a vertex; the flips follow the signed in-circle test.
+    /// Two numbers per vertex; the flips follow the signed in-circle test.
     Two,
-    /// Three numbers a vertex; the flips follow the angle sum and the normal-angle threshold β.
+    /// Three numbers per vertex; the flips follow the angle sum and the normal-angle threshold β.
     Three,
 }
 

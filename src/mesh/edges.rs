@@ -4,13 +4,13 @@ use crate::Adjacency;
 use crate::mesh::half_edge::{next, unflagged};
 use crate::system::threads::Threads;
 
-/// Every edge, one entry in each array. An edge is named by its lower half-edge, and edges come in the order
-/// of these names. Each half-edge of a frozen edge counts as an edge of its own, as it does for the flips.
+/// Every edge, one entry in each array, in the order of the lower half-edges. Each half-edge of a frozen edge counts as an
+/// edge of its own, as it does for the flips.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Edges {
     /// The vertex that the lower half-edge starts at.
     pub v1: Vec<u32>,
-    /// The vertex that it goes to.
+    /// The vertex that the lower half-edge goes to.
     pub v2: Vec<u32>,
     /// The lower half-edge: `triangles[ta]` is `v1`.
     pub ta: Vec<u32>,
@@ -59,7 +59,7 @@ mod tests {
         assert_eq!(edges.tb, [NONE, NONE, 3, NONE, NONE]);
     }
 
-    /// Three triangles at the edge 0-1: each keeps its side of it.
+    /// Three triangles at the edge 0-1: each keeps its own half-edge.
     #[test]
     fn half_edges_of_a_frozen_edge_are_edges() {
         let edges = Edges::new(5, &[0, 1, 2, 1, 0, 3, 0, 1, 4]);

@@ -1,8 +1,8 @@
-//! Stars in the plane that are embedded: the triangles at a vertex are positive and go round it once.
+//! Embedded stars in the plane: the triangles at a vertex are positive and go round it once.
 //!
-//! An edge that may flip crosses its new edge c-d between the two, so at such a vertex c, or d, there is no other edge
-//! c-d, and no other flip makes one: the star has one triangle in each direction. Flips of strictly convex quads leave
-//! it so.
+//! The old edge of a flip crosses the new edge c-d. If the star of c or d is embedded, it has one triangle in each
+//! direction: so it has no other edge c-d, and no other flip makes one. Flips of strictly convex quads keep stars
+//! embedded.
 
 use crate::mesh::star::Fans;
 use crate::mesh::winding::{Signs, Winding};
@@ -14,15 +14,15 @@ use std::cmp::Ordering;
 use std::ops::Range;
 use std::sync::atomic::{AtomicU8, Ordering::Relaxed};
 
-/// How often the triangles at each vertex go across the direction of the x axis, twice standing for more, for an open
-/// star and for one with a triangle that is not positive. Empty in 3D.
+/// How often the triangles at each vertex cross the direction of the x axis, capped at 2. An open star, and a star with a
+/// triangle that is not positive, also has 2. Empty in 3D.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Embedded {
     turns: Vec<u8>,
 }
 
 impl Embedded {
-    /// Of the vertices of a mesh with these twins, and how its components lie.
+    /// The winding of a mesh with these twins, and its embedded stars.
     pub(crate) fn with_winding(mesh: &Mesh, twins: &[u32], threads: &Threads) -> (Winding, Self) {
         if mesh.dimension() == Dimension::Three {
             return Default::default();
@@ -38,7 +38,7 @@ impl Embedded {
         }
     }
 
-    /// Where there is no `winding`, each triangle lies as it says itself.
+    /// Without a `winding`, each triangle has the winding of its own sign.
     fn of_triangles(
         mesh: &Mesh,
         twins: &[u32],
@@ -53,7 +53,7 @@ impl Embedded {
             if is_alone {
                 word.store((word.load(Relaxed) + by).min(2), Relaxed);
             } else if by == 2 || by == 1 && word.swap(1, Relaxed) != 0 {
-                // Whoever finds something there writes last.
+                // A thread that finds another count writes last.
                 word.store(2, Relaxed);
             }
         };
@@ -61,7 +61,7 @@ impl Embedded {
         (pieces.into_iter().fold(Signs::default(), Signs::and), Self { turns })
     }
 
-    /// The fans of the mesh that it is of, whose twins these are.
+    /// The fans of the mesh. `twins` are its twins.
     pub(crate) fn fans(&self, mesh: &Mesh, twins: &[u32], threads: &Threads) -> Fans {
         let (vertices, triangles) = (mesh.vertex_count(), mesh.triangles());
         Fans::of_vertices(|v| !self.at(v), vertices, triangles, twins, threads)
@@ -74,7 +74,7 @@ impl Embedded {
     }
 }
 
-/// The signs of some of the triangles; `turn` hears of what these add to a vertex.
+/// The signs of a piece of the triangles. Calls `turn` with each vertex and the turns that a triangle adds to it.
 fn add_turns(
     mesh: &Mesh,
     twins: &[u32],
@@ -83,7 +83,7 @@ fn add_turns(
     turn: impl Fn(u32, u8),
 ) -> Signs {
     let mut signs = Signs::default();
-    // Whether the edge from u to v goes to below the axis through u, or along it. Else the edge from v to u does.
+    // Whether v is below the axis through u, or on it to the right. If not, this holds for the edge from v to u.
     let goes_down = |u: DVec2, v: DVec2| (v.y < u.y) | ((v.y == u.y) & (v.x > u.x));
     let (triangles, _) = mesh.triangles().as_chunks();
     let (sides, _) = twins.as_chunks::<3>();
@@ -104,7 +104,7 @@ fn add_turns(
             }
             continue;
         }
-        // At the corner between two edges that go down, a counter-clockwise triangle goes across; not all three do.
+        // A counter-clockwise triangle crosses the axis at the corner between two edges that go down. Never all three do.
         let [first, second, third] = [(p, q), (q, r), (r, p)].map(|(u, v)| goes_down(u, v) != is_clockwise);
         let corner = if first & second {
             b
@@ -123,7 +123,7 @@ mod tests {
     use super::*;
     use std::num::NonZeroUsize;
 
-    /// Sixteen triangles around the first vertex. The others are on the boundary.
+    /// Sixteen triangles around the first vertex. The other vertices are on the boundary.
     #[test]
     fn a_star_that_goes_round_twice_is_not_embedded() {
         for (rounds, is_embedded) in [(1, true), (2, false), (4, false)] {

@@ -1,11 +1,11 @@
-//! The ends of many words: the checks of indices and coordinates, in as few passes over them as possible.
+//! The extremes of many words: they check indices and coordinates in one pass.
 
 use crate::system::threads::Threads;
 
-/// The bits of a 32-bit float but for its sign.
+/// The bits of a 32-bit float without its sign.
 pub(crate) const MAGNITUDE: u32 = !(1 << 31);
 
-/// Of the masked words, the largest, and the smallest that is not 0 less one; `u32::MAX` where all are 0.
+/// The largest masked word, and the smallest one that is not 0, minus one; `u32::MAX` if all are 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Ends {
     pub(crate) below: u32,
@@ -32,7 +32,7 @@ impl Ends {
         words.iter().fold(Self::NONE, |ends, word| ends.and(word & mask))
     }
 
-    /// The compiler would look at one after the other.
+    /// The same; the compiler would not vectorize it.
     #[cfg(target_feature = "simd128")]
     fn of_piece(words: &[u32], mask: u32) -> Self {
         use std::arch::wasm32::{u32x4_max, u32x4_min, u32x4_splat, u32x4_sub, v128, v128_and};

@@ -1,4 +1,4 @@
-//! Half-edges, and what an engine writes about them into its twins.
+//! Half-edges, and the flags that an engine sets in its twins.
 //!
 //! Half-edge h belongs to triangle h / 3 and goes from `triangles[h]` to `triangles[next(h)]`.
 
@@ -17,36 +17,36 @@ pub fn prev(h: u32) -> u32 {
     if is_first(h) { h + 2 } else { h - 1 }
 }
 
-/// Whether a half-edge is the first one of its triangle: a multiple of 3. In WebAssembly a remainder takes several times as
-/// long as this product with the inverse of 3.
+/// Whether a half-edge is the first of its triangle: a multiple of 3. In WebAssembly, this product with the inverse of 3
+/// is several times as fast as a remainder.
 #[inline(always)]
 fn is_first(h: u32) -> bool {
     h.wrapping_mul(0xaaaa_aaab) <= u32::MAX / 3
 }
 
-/// The triangle of a half-edge: a third of it, rounded down, which WebAssembly finds faster so.
+/// The triangle of a half-edge: `h / 3`, in a form that is faster in WebAssembly.
 #[inline(always)]
 pub(crate) fn triangle_of(h: u32) -> u32 {
     ((u64::from(h) * 0xaaaa_aaab) >> 33) as u32
 }
 
-/// Set in both entries of an engine's twins for an edge that was over β in the input: it stays, whatever its
-/// angle becomes. The flag moves with the half-edges.
+/// Flag in both entries of an engine's twins, for an edge that was over β in the input: it never flips, whatever its angle
+/// becomes. The flag moves with the half-edges.
 pub(crate) const CREASE: u32 = 1 << 31;
 
 /// The same for an edge that the user has locked.
 pub(crate) const LOCKED: u32 = 1 << 30;
 
-/// All flags. Half-edges are below the lowest.
+/// All flags. Half-edges are smaller than the lowest flag.
 pub(crate) const FLAGS: u32 = CREASE | LOCKED;
 
-/// The half-edge that an entry of an engine's twins names, without its flags.
+/// The half-edge in an entry of an engine's twins, without the flags.
 #[inline]
 pub(crate) fn unflagged(entry: u32) -> u32 {
     if entry == NONE { NONE } else { entry & !FLAGS }
 }
 
-/// Flags the entries of these half-edges with [`LOCKED`], as far as they have a twin.
+/// Sets [`LOCKED`] in the entries of these half-edges, unless they have no twin.
 pub(crate) fn lock(twins: &mut [u32], half_edges: &[u32]) {
     for &h in half_edges {
         let entry = &mut twins[h as usize];

@@ -1,4 +1,4 @@
-//! `Mesh`: positions and triangles, checked once when it is made, so that nothing behind it can fail on them.
+//! `Mesh`: positions and triangles. The constructor checks them, so that no later code can fail on them.
 
 pub(crate) mod adjacency;
 pub(crate) mod buckets;
@@ -20,8 +20,8 @@ use half_edge::NONE;
 use positions::Positions;
 use std::sync::Arc;
 
-/// Largest number of triangles: the engines name half-edges with 30 bits, beside two flags, and keep the two highest
-/// words for themselves.
+/// The largest number of triangles. Engines store a half-edge in 30 bits with two flags, and use the two highest values
+/// for other purposes.
 pub const MAX_TRIANGLES: usize = ((1 << 30) - 2) / 3;
 
 /// A triangle mesh with finite coordinates and indices in range. Everything else may be dirty:
@@ -40,12 +40,12 @@ impl From<&Mesh> for Arc<Mesh> {
 }
 
 impl Mesh {
-    /// Checks and takes `positions` (2 or 3 numbers a vertex, `Vec<f32>` or `Vec<f64>`) and `triangles` (3 vertex
-    /// indices each). Doubles that are all 32-bit floats become such, without a change of any bit.
+    /// Checks and takes `positions` (2 or 3 numbers per vertex, `Vec<f32>` or `Vec<f64>`) and `triangles` (3 vertex indices
+    /// per triangle). If all 64-bit floats are exactly 32-bit floats, the mesh stores 32-bit floats.
     ///
     /// # Errors
-    /// [`Error::RaggedArray`], [`Error::TooLarge`], [`Error::NonFinite`] or [`Error::IndexOutOfRange`],
-    /// each naming the first place.
+    /// [`Error::RaggedArray`], [`Error::TooLarge`], [`Error::NonFinite`] or [`Error::IndexOutOfRange`] for the first vertex
+    /// or triangle that is wrong.
     pub fn new(
         dimension: Dimension,
         positions: impl Into<Positions>,
@@ -54,7 +54,7 @@ impl Mesh {
         Self::checked(dimension, positions, triangles, &Threads::one())
     }
 
-    /// As [`Mesh::new`].
+    /// As [`Mesh::new`], on several threads.
     pub(crate) fn checked(
         dimension: Dimension,
         positions: impl Into<Positions>,
@@ -93,12 +93,12 @@ impl Mesh {
         self.dimension
     }
 
-    /// Coordinates, 2 or 3 a vertex.
+    /// Coordinates, 2 or 3 per vertex.
     pub fn positions(&self) -> &Positions {
         &self.positions
     }
 
-    /// Vertex indices, 3 a triangle.
+    /// Vertex indices, 3 per triangle.
     pub fn triangles(&self) -> &[u32] {
         &self.triangles
     }
@@ -116,12 +116,12 @@ impl Mesh {
     /// The same vertices with other triangles, such as [`crate::Outcome::triangles`].
     ///
     /// # Errors
-    /// As [`Mesh::new`].
+    /// Those of [`Mesh::new`].
     pub fn with_triangles(&self, triangles: Vec<u32>) -> Result<Self, Error> {
         Self::new(self.dimension, self.positions.clone(), triangles)
     }
 
-    /// The vertex's coordinates, a 2D mesh only.
+    /// The vertex's coordinates; only for a 2D mesh.
     pub(crate) fn point2(&self, vertex: u32) -> DVec2 {
         let [point] = self.positions.points2([vertex]);
         point

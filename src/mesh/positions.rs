@@ -7,8 +7,8 @@ use glam::{DVec2, DVec3};
 use std::array;
 use std::ops::Range;
 
-/// Coordinates, 2 or 3 a vertex. A [`Mesh`](crate::Mesh) holds 64-bit floats only where at least one of them is no
-/// 32-bit float.
+/// Coordinates, 2 or 3 per vertex. A [`Mesh`](crate::Mesh) stores 64-bit floats only if at least one of them is not exactly
+/// a 32-bit float.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Positions {
     /// 32-bit floats.
@@ -30,7 +30,7 @@ impl From<Vec<f64>> for Positions {
 }
 
 impl Positions {
-    /// How many numbers there are.
+    /// The number of coordinates.
     pub fn len(&self) -> usize {
         match self {
             Self::F32(numbers) => numbers.len(),
@@ -38,22 +38,22 @@ impl Positions {
         }
     }
 
-    /// Whether there are none.
+    /// Whether there are no coordinates.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// Whether they have 64 bits.
+    /// Whether they are 64-bit floats.
     pub(crate) fn is_double(&self) -> bool {
         matches!(self, Self::F64(_))
     }
 
-    /// The numbers in their order; f32 to f64 is exact.
+    /// The coordinates in their order; f32 to f64 is exact.
     pub fn iter(&self) -> impl DoubleEndedIterator<Item = f64> + ExactSizeIterator {
         (0..self.len()).map(|i| self.at(i))
     }
 
-    /// The numbers as 32-bit floats, the nearest ones; infinite where they are too large.
+    /// The coordinates rounded to the nearest 32-bit floats; infinite if they are too large.
     pub fn to_f32(&self) -> Vec<f32> {
         match self {
             Self::F32(numbers) => numbers.clone(),
@@ -61,7 +61,7 @@ impl Positions {
         }
     }
 
-    /// A copy of them for JavaScript: a Float32Array or a Float64Array.
+    /// A copy for JavaScript: a Float32Array or a Float64Array.
     #[cfg(all(target_arch = "wasm32", feature = "js-session"))]
     pub(crate) fn to_typed_array(&self) -> wasm_bindgen::JsValue {
         match self {
@@ -70,7 +70,7 @@ impl Positions {
         }
     }
 
-    /// 32-bit floats wherever no bit is lost, the sign of a zero included.
+    /// 32-bit floats, if that loses no bit, including the signs of zeros.
     pub(crate) fn narrowed(self) -> Self {
         match &self {
             Self::F64(numbers) if numbers.iter().all(|&x| f64::from(x as f32).to_bits() == x.to_bits()) => {
@@ -80,7 +80,7 @@ impl Positions {
         }
     }
 
-    /// Refuses coordinates that are no numbers, with [`Error::NonFinite`] for the first.
+    /// Refuses coordinates that are NaN or infinite, with [`Error::NonFinite`] for the first.
     pub(crate) fn refuse_non_finite(&self, dimension: Dimension, threads: &Threads) -> Result<(), Error> {
         let are_finite = match self {
             Self::F32(numbers) => {
@@ -101,15 +101,15 @@ impl Positions {
         })
     }
 
-    /// Vertices of a 2D mesh.
+    /// Points of a 2D mesh.
     #[inline(always)]
     pub(crate) fn points2<const N: usize>(&self, vertices: [u32; N]) -> [DVec2; N] {
         let tuples = self.tuples(vertices);
-        // `map` is not always inlined, here and below.
+        // Not `map`, which is not always inlined; the same below.
         array::from_fn(|i| DVec2::from_array(tuples[i]))
     }
 
-    /// Vertices of a 3D mesh.
+    /// Points of a 3D mesh.
     #[inline(always)]
     pub(crate) fn points3<const N: usize>(&self, vertices: [u32; N]) -> [DVec3; N] {
         let tuples = self.tuples(vertices);

@@ -1,15 +1,14 @@
-//! The triangles around a vertex. Their corners fall into fans: runs of triangles joined by twins, open at
-//! the boundary or closed. A flip neither joins nor splits fans, so which vertices have several is known
-//! from the start.
+//! The star of a vertex: the triangles around it. A star consists of fans: runs of triangles joined by twins, open at the
+//! boundary or closed. A flip neither joins nor splits fans, so the number of fans of each vertex never changes.
 
 use crate::NONE;
 use crate::mesh::half_edge::{next, prev, unflagged};
 use crate::system::threads::{Threads, Word, shared};
 use std::sync::atomic::Ordering::Relaxed;
 
-/// One anchor, a half-edge that starts at the vertex, for each fan of the vertices that have several fans.
-/// The table holds a word for each vertex, [`NONE`] or the place of its list of anchors in the table; a list
-/// ends with [`NONE`]. It is empty where every vertex has one fan, which any half-edge leads around.
+/// The anchors of the vertices that have several fans. An anchor is a half-edge that starts at the vertex, one for each fan.
+/// The table has a word for each vertex: [`NONE`], or the index in the table of its list of anchors, which ends with
+/// [`NONE`]. It is empty if every vertex has one fan: then any half-edge is an anchor.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Fans {
     pub(crate) table: Vec<u32>,
@@ -21,7 +20,7 @@ impl Fans {
         Self::of_corners(&mut (0..triangles.len() as u32), vertices, triangles, twins)
     }
 
-    /// Walks one fan of each vertex that `may` have several, and all of those that have.
+    /// Walks one fan of each vertex that `may` have several, and all fans of each vertex that has several.
     pub(crate) fn of_vertices(
         may: impl Fn(u32) -> bool + Sync,
         vertices: usize,
@@ -32,7 +31,7 @@ impl Fans {
         let mut lengths = threads.zeros(vertices);
         let words = shared(&mut lengths);
         let is_alone = threads.is_one();
-        let left_out = threads.map(triangles.len(), |piece| {
+        let unvisited = threads.map(triangles.len(), |piece| {
             let mut count = 0u32;
             for h in piece {
                 let v = triangles[h];
@@ -49,10 +48,10 @@ impl Fans {
             }
             count
         });
-        if left_out.into_iter().fold(0, u32::wrapping_add) == 0 {
+        if unvisited.into_iter().fold(0, u32::wrapping_add) == 0 {
             return Self::default();
         }
-        // What is left of a length is of other fans.
+        // A vertex whose length does not become 0 has further fans.
         for &v in triangles {
             lengths[v as usize] = lengths[v as usize].wrapping_sub(1);
         }
@@ -61,8 +60,8 @@ impl Fans {
         Self::of_corners(&mut corners, vertices, triangles, twins)
     }
 
-    /// Walks the fans of the vertices that these ascending half-edges start at, which are all that do; the others are known
-    /// to have one fan.
+    /// Walks the fans of some vertices. `corners` are all half-edges that start at them, in ascending order. Every other
+    /// vertex has one fan.
     fn of_corners(
         corners: &mut dyn Iterator<Item = u32>,
         vertices: usize,
@@ -101,14 +100,14 @@ impl Fans {
         Self { table }
     }
 
-    /// The anchors of a vertex with several fans, up to the end of the table; none for any other vertex.
+    /// The rest of the table from the first anchor of a vertex; `None` if the vertex has one fan.
     #[inline]
     fn of(&self, vertex: u32) -> Option<&[u32]> {
         let list = self.table.get(vertex as usize).copied().unwrap_or(NONE);
         (list != NONE).then(|| &self.table[list as usize..])
     }
 
-    /// Moves one anchor of `vertex`, where `from` is one.
+    /// Replaces the anchor `from` of `vertex`, if it is one.
     pub(crate) fn move_anchor(&mut self, vertex: u32, from: u32, to: u32) {
         let list = self.table.get(vertex as usize).copied().unwrap_or(NONE);
         if list != NONE {
@@ -162,7 +161,7 @@ impl<'a> Star<'a> {
             if self.at != NONE {
                 return;
             }
-            // The fan is open: go back to where it began and round the other way.
+            // The fan is open: return to its start and turn clockwise.
             self.clockwise = true;
             self.at = self.start;
         }
@@ -186,8 +185,8 @@ impl Iterator for Star<'_> {
     }
 }
 
-/// Whether a corner of two stars passes its test. The stars are walked in turns: each of them alone gives
-/// the answer, so the cost is that of the smaller one.
+/// Whether any corner of a star passes the test of that star. Each of the two stars alone gives the answer. The walk
+/// alternates between them, so it costs twice the smaller star.
 pub(crate) fn any_in_either(
     mut first: (Star, impl Fn(u32) -> bool),
     mut second: (Star, impl Fn(u32) -> bool),
@@ -212,7 +211,7 @@ mod tests {
     use crate::Adjacency;
     use crate::system::threads::Threads;
 
-    /// The vertices opposite to vertex `v`'s corners, walked from its first one.
+    /// The two other vertices of each triangle in the star of `v`, sorted.
     fn around(vertices: usize, triangles: &[u32], v: u32) -> Vec<[u32; 2]> {
         let twins = Adjacency::of_triangles(vertices, triangles, &Threads::default()).twins;
         let fans = Fans::new(vertices, triangles, &twins);
@@ -225,7 +224,7 @@ mod tests {
 
     /// ```text
     ///   3---2
-    ///   | \ | \      vertex 1 has an open fan of three triangles, whichever of them the walk begins in
+    ///   | \ | \      vertex 1 has an open fan of three triangles; the walk may start in each of them
     ///   0---1--4
     /// ```
     #[test]
@@ -258,8 +257,8 @@ mod tests {
         assert_eq!(fans.table, [5, NONE, NONE, NONE, NONE, 0, 3, NONE]);
     }
 
-    /// The corners (0, 1, 2), (0, 2, 3), … (0, n, 1) are one fan; a walk from either end of the spoke 1-0 ends
-    /// after at most the shorter star.
+    /// The triangles (0, 1, 2), (0, 2, 3), … (0, n, 1) are the star of 0. Walks around 0 and 1 in turns end with the shorter
+    /// star.
     #[test]
     fn the_shorter_star_decides() {
         let triangles: Vec<u32> = (1..=100).flat_map(|i| [0, i, i % 100 + 1]).collect();

@@ -1,4 +1,4 @@
-//! Which way round the components of a 2D mesh lie: the sign of their total areas.
+//! The winding of the components of a 2D mesh: the sign of their total areas.
 
 use crate::NONE;
 use crate::mesh::Mesh;
@@ -6,16 +6,16 @@ use crate::mesh::half_edge::unflagged;
 use crate::predicates::total_area_sign;
 use std::cmp::Ordering;
 
-/// One bit a triangle: 1 where its edge-connected component has a negative total area. Empty where no
-/// component has, and in 3D, where it has no meaning.
+/// One bit per triangle: 1 if its edge-connected component has a negative total area. Empty if no component has, and in 3D,
+/// where winding has no meaning.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Winding {
     pub(crate) clockwise: Vec<u32>,
-    /// Whether all triangles are known to be positive, those of the components with a bit negative.
+    /// Whether every triangle is known to have the strict sign of its component: positive, or negative where the bit is 1.
     pub(crate) is_strict: bool,
 }
 
-/// Which signs the areas of triangles have: a bit each for negative, zero and positive.
+/// The signs that occur among areas of triangles: one bit each for negative, zero and positive.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Signs(u32);
 
@@ -25,22 +25,22 @@ impl Signs {
         self.0 |= 1 << (sign as i8 + 1);
     }
 
-    /// Those of these triangles and of others.
+    /// The signs of both sets of triangles.
     pub(crate) fn and(self, other: Self) -> Self {
         Self(self.0 | other.0)
     }
 
-    /// What they say of all the triangles of a mesh; `None` where they disagree, and components have to be found.
+    /// The winding of a mesh whose triangles have these signs; `None` if both signs occur: then the components decide.
     pub(crate) fn winding(self, triangles: usize) -> Option<Winding> {
         let [negative, zero, positive] = [1, 2, 4].map(|bit| self.0 & bit != 0);
-        // Where all triangles are flat no edge flips, whatever the sign.
+        // If all triangles are flat, no edge flips, whatever the winding.
         let words = if negative { triangles.div_ceil(32) } else { 0 };
         (!(negative & positive)).then(|| Winding { clockwise: vec![u32::MAX; words], is_strict: !zero })
     }
 }
 
 impl Winding {
-    /// What the components say, joined by `twins`.
+    /// The winding by components, joined by `twins`.
     pub(crate) fn of_components(mesh: &Mesh, twins: &[u32]) -> Self {
         let mut clockwise = vec![0u32; mesh.triangle_count().div_ceil(32)];
         let mut visited = vec![false; mesh.triangle_count()];
@@ -70,7 +70,7 @@ impl Winding {
         Self { clockwise, is_strict: false }
     }
 
-    /// The sign of the area of triangle `t` where it lies as its component does.
+    /// The sign of the total area of the component of triangle `t`.
     #[inline]
     pub(crate) fn positive(&self, t: u32) -> Ordering {
         if self.is_clockwise(t) { Ordering::Less } else { Ordering::Greater }

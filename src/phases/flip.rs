@@ -1,4 +1,4 @@
-//! Flip with Update: rotate the two triangles of each selected edge in place and repair the twins around.
+//! Flip and update: rewrites the two triangles of each selected edge, and the twins around them.
 
 use crate::NONE;
 use crate::mesh::half_edge::{FLAGS, next, prev, triangle_of};
@@ -6,50 +6,51 @@ use crate::mesh::star::Fans;
 use crate::system::threads::{Threads, Word};
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
-/// For each triangle the twin of its half-edge that flips, with the place of the next one in the triangle in the bits of
-/// [`FLAGS`]: that one moves. Or [`NONE`], whose place is none.
+/// A word for each triangle. If one of its half-edges flips: the twin of that half-edge, and in the bits of [`FLAGS`] the
+/// index in the triangle, 0 to 2, of the next half-edge, which moves. Otherwise [`NONE`], whose index bits are 3. While
+/// edges bid: the smallest key.
 #[derive(Default)]
 pub(crate) struct Selected(Vec<AtomicU32>);
 
 impl Selected {
-    /// No edge of so many triangles.
+    /// Selects no edge, for `triangles` triangles.
     pub(crate) fn new(triangles: usize, threads: &Threads) -> Self {
         Self(threads.collect(triangles, |_| AtomicU32::new(NONE)))
     }
 
-    /// That of the triangle of `h`.
+    /// The word of the triangle of `h`.
     #[inline(always)]
     fn word(&self, h: u32) -> &AtomicU32 {
         &self.0[triangle_of(h) as usize]
     }
 
-    /// Lets the edge of two half-edges bid for its triangles, of which no edge is selected: the smallest key stays,
-    /// whichever comes first. No two edges have the same.
+    /// Lets an edge bid for its two triangles, which have no selected edge. The smallest key wins, in any order of bids. No
+    /// two edges have the same key.
     #[inline(always)]
     pub(crate) fn bid(&self, edge: [u32; 2], key: u32) {
         for x in edge {
             let word = self.word(x);
-            // Those that lose need no more than a load.
+            // A bid that loses costs only this load.
             if key < word.get() {
                 word.fetch_min(key, Relaxed);
             }
         }
     }
 
-    /// Whether an edge has won the triangle of its half-edge `x`, once all have bidden.
+    /// Whether an edge has won the triangle of its half-edge `x`, after all bids.
     #[inline(always)]
     pub(crate) fn has_won(&self, x: u32, key: u32) -> bool {
         self.word(x).get() == key
     }
 
-    /// Selects the edge of two half-edges.
+    /// Selects an edge.
     pub(crate) fn choose(&self, [h, g]: [u32; 2]) {
         for (x, twin) in [(h, g), (g, h)] {
             self.word(x).set(twin | (next(x) - 3 * triangle_of(x)) << FLAGS.trailing_zeros());
         }
     }
 
-    /// No edge of the triangle of `x` is selected.
+    /// Selects no edge of the triangle of `x`.
     #[inline(always)]
     pub(crate) fn release(&self, x: u32) {
         self.word(x).set(NONE);
@@ -67,8 +68,8 @@ impl Selected {
         (word != NONE).then(|| (prev(3 * t + (word >> FLAGS.trailing_zeros())), word & !FLAGS))
     }
 
-    /// Where a half-edge will be after the iteration: the one after a selected one moves into the place of the selected
-    /// one's twin. A function of the state before the phase. And whether no edge of its triangle is selected.
+    /// The index of a half-edge after the iteration, and whether no edge of its triangle is selected. The half-edge after a
+    /// selected one gets the index of the twin of the selected one. Depends only on the state before the phase.
     #[inline(always)]
     fn slot(&self, x: u32) -> (u32, bool) {
         let word = self.word(x).get();
@@ -77,7 +78,7 @@ impl Selected {
     }
 }
 
-/// Moves the anchors of the fans with their half-edges; before the flips of these edges.
+/// Moves the anchors of the fans with their half-edges. Call it before the flips of these edges.
 pub(crate) fn move_anchors(fans: &mut Fans, triangles: &[u32], selected: &Selected, edges: &[[u32; 2]]) {
     if fans.table.is_empty() {
         return;
@@ -89,12 +90,12 @@ pub(crate) fn move_anchors(fans: &mut Fans, triangles: &[u32], selected: &Select
     }
 }
 
-/// What is around an edge that has flipped: the entries in the twins of the half-edges from a, c, b and d, [`NONE`] where
-/// the edge is tested from its other side; then a, b, c and d.
+/// The surroundings of a flipped edge: the entries in the twins of the half-edges from a, c, b and d, [`NONE`] where another
+/// flipped edge is the one to test this edge; then a, b, c and d.
 pub(crate) type Around = [[u32; 4]; 2];
 
-/// Flips the selected edge of two half-edges. Reads the corners and twins of its own two triangles only; writes those, and
-/// the entries of the neighbours that are not selected themselves. Returns what is around it after the iteration.
+/// Flips a selected edge. Reads only the corners and twins of its own two triangles. Writes these, and the entries of
+/// neighbours without a selected edge. Returns the surroundings after the iteration.
 #[inline(always)]
 pub(crate) fn flip(
     triangles: &[AtomicU32],
@@ -114,10 +115,10 @@ pub(crate) fn flip(
         }
         let (x, flags) = (*twin & !FLAGS, *twin & FLAGS);
         let (slot, is_free) = selected.slot(x);
-        // Where there is nothing to write, a word that is written below; nothing could predict a branch.
+        // If there is nothing to write, this writes a word that is overwritten below: a branch would be unpredictable.
         write(twins, if is_free { x } else { hn }, inner | flags);
         write(twins, inner, slot | flags);
-        // Between two that have flipped, one of them tests.
+        // If both edges have flipped, only one of them tests the edge between.
         *twin = if is_free | (inner < slot) { slot | flags } else { NONE };
     }
     write(triangles, hn, d);

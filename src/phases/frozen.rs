@@ -1,5 +1,5 @@
-//! Frozen edges: those that can never flip because not exactly two triangles lie on two sides of them.
-//! They are counted when a run has ended, since what lies opposite to them may have changed.
+//! Frozen edges can never flip, because they do not have exactly two triangles, one on each side. The session counts those
+//! that are not Delaunay after the run, since flips may change their opposite angles.
 
 use crate::mesh::Mesh;
 use crate::mesh::adjacency::{EdgeKind, edge_kind};
@@ -8,8 +8,8 @@ use crate::mesh::half_edge::{next, prev};
 use crate::predicates::{Quad, corner};
 use crate::{Reason, Reasons};
 
-/// Counts the frozen edges of `triangles` at which two of the opposite angles sum to more than π.
-/// Angles have no sign here: the triangles at such an edge agree on no side.
+/// Counts the frozen edges of `triangles` at which any two opposite angles sum to more than π. Angles are unsigned here,
+/// because a frozen edge has no two sides.
 pub(crate) fn count_non_delaunay(mesh: &Mesh, triangles: &[u32]) -> Reasons {
     let mut reasons = Reasons::default();
     for_each_edge(mesh.vertex_count(), triangles, |half_edges| {
@@ -20,9 +20,8 @@ pub(crate) fn count_non_delaunay(mesh: &Mesh, triangles: &[u32]) -> Reasons {
         };
         let [a, b] = [half_edges[0], next(half_edges[0])].map(|h| mesh.point3(triangles[h as usize]));
         let opposite = |h: u32| mesh.point3(triangles[prev(h) as usize]);
-        // A sum over π needs an obtuse angle. One of a proper triangle decides against all others at once:
-        // a second obtuse one makes a sum over π with it. Without such, one of a flat triangle, which is π,
-        // decides, because all of those are alike.
+        // A sum over π needs an obtuse angle. It suffices to compare one with all other angles: two obtuse angles of proper
+        // triangles always sum to more than π. If only flat triangles have obtuse angles, these are all π, and any decides.
         let obtuse = half_edges.iter().enumerate().filter_map(|(i, &h)| {
             let (is_obtuse, is_flat) = corner(a, b, opposite(h));
             is_obtuse.then_some((is_flat, i))

@@ -1,4 +1,4 @@
-//! Label: each triangle tests its three edges and keeps the best one that may flip.
+//! Label: each triangle tests its three edges, and keeps the best of those that may flip.
 
 use super::state::{BLOCKED, Geometry, Thresholds, Topology, key};
 use crate::mesh::half_edge::{CREASE, FLAGS, LOCKED, next, prev, triangle_of, unflagged};
@@ -8,17 +8,18 @@ use crate::{Dimension, NONE, Positions, Reason};
 use std::array;
 use std::ops::Range;
 
-/// What the test of an interior edge says.
+/// The result of testing an interior edge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Verdict {
     Delaunay,
-    /// Non-Delaunay, and may not flip.
+    /// Not Delaunay, and may not flip.
     Blocked(Reason),
-    /// Non-Delaunay, and may flip.
+    /// Not Delaunay, and may flip.
     Labelled,
 }
 
-/// For each triangle the twin of its labelled edge with the smallest key, or [`BLOCKED`], or [`NONE`].
+/// For each triangle, the twin of its labelled edge with the smallest key. Without a labelled edge: [`BLOCKED`] if an edge is
+/// blocked as a duplicate, otherwise [`NONE`].
 pub(crate) fn label(geometry: &Geometry, mesh: Topology, iteration: u32) -> Vec<u32> {
     let best = |t: u32| {
         let mut choice = NONE;
@@ -26,7 +27,7 @@ pub(crate) fn label(geometry: &Geometry, mesh: Topology, iteration: u32) -> Vec<
         for h in 3 * t..3 * t + 3 {
             let g = mesh.twins[h as usize];
             if g >= LOCKED {
-                // No twin, or an edge that stays.
+                // No twin, or a locked edge or a crease.
                 continue;
             }
             match verdict(geometry, mesh, h) {
@@ -57,7 +58,7 @@ pub(crate) struct Diamond {
 }
 
 impl Diamond {
-    /// That of half-edge `h`.
+    /// The diamond of half-edge `h`.
     #[inline(always)]
     pub(crate) fn new(mesh: Topology, h: u32) -> Self {
         let twin = mesh.twin(h);
@@ -65,8 +66,8 @@ impl Diamond {
         Self { h, twin, corners }
     }
 
-    /// Writes the edges of two of the triangles whose lower half-edges are of these, counted from the first one, and
-    /// returns how many they are. There has to be room for three of each triangle.
+    /// Writes the edges between two triangles of `mesh` whose lower half-edge belongs to the triangles `piece`, counted from
+    /// the first triangle of `mesh`. Returns their number. `diamonds` needs three slots per triangle.
     #[inline(always)]
     pub(crate) fn write(mesh: Topology, piece: Range<usize>, diamonds: &mut [Self]) -> usize {
         let [(triangles, _), (twins, _)] = [mesh.triangles, mesh.twins].map(|words| words.as_chunks::<3>());
@@ -79,7 +80,7 @@ impl Diamond {
                 [(h, x, [a, b, c, 0]), (h + 1, y, [b, c, a, 0]), (h + 2, z, [c, a, b, 0])]
             {
                 diamonds[count] = Self { h, twin, corners };
-                // After h and before the end; where there is no twin it is behind that.
+                // Counts if h < twin < end. NONE is not below the end.
                 count += usize::from((twin & !FLAGS).wrapping_sub(h + 1) < end - (h + 1));
             }
         }
@@ -89,9 +90,9 @@ impl Diamond {
         count
     }
 
-    /// Writes the four around an edge that has flipped, as far as they are between two of the triangles, by their
-    /// half-edges. Returns how many they are. The corners were a, b, c and d; the triangles are (a, d, c) and
-    /// (b, c, d) now. `sides` are the half-edges from a, c, b and d, and `outer` their entries in the twins.
+    /// Writes those of the four edges around a flipped edge that are between two triangles of `mesh`. Returns their number.
+    /// The diamond had the corners a, b, c and d; its triangles now are (a, d, c) and (b, c, d). `sides` are the half-edges
+    /// from a, c, b and d, and `outer` their entries in the twins.
     #[inline(always)]
     pub(crate) fn write_around(
         mesh: Topology,
@@ -105,7 +106,7 @@ impl Diamond {
         for i in 0..4 {
             let (h, twin, [from, to, apex]) = (sides[i], outer[i], triangles[i]);
             let is_here = mesh.has(twin & !FLAGS);
-            // Nothing could predict a branch.
+            // A branch would be unpredictable.
             let g = if is_here { twin & !FLAGS } else { h };
             diamonds[count] = Self { h, twin, corners: [from, to, apex, mesh.corner(prev(g))] };
             count += usize::from(is_here);
@@ -114,7 +115,7 @@ impl Diamond {
     }
 }
 
-/// Tests the interior edge of half-edge `h`. Both half-edges give the same answer, since it is exact.
+/// Tests the interior edge of half-edge `h`. The tests are exact, so both half-edges give the same result.
 pub(crate) fn verdict(geometry: &Geometry, mesh: Topology, h: u32) -> Verdict {
     let diamond = Diamond::new(mesh, h);
     if keep_non_delaunay(geometry, &mut [diamond]) == 0 {
@@ -126,7 +127,7 @@ pub(crate) fn verdict(geometry: &Geometry, mesh: Topology, h: u32) -> Verdict {
     }
 }
 
-/// Moves the edges that are not Delaunay to the front, in their order, and returns how many they are.
+/// Moves the edges that are not Delaunay to the front, in their order. Returns their number.
 pub(crate) fn keep_non_delaunay(geometry: &Geometry, diamonds: &mut [Diamond]) -> usize {
     match (geometry.dimension, geometry.positions) {
         (Dimension::Two, Positions::F32(numbers)) => {
@@ -143,7 +144,8 @@ pub(crate) fn keep_non_delaunay(geometry: &Geometry, diamonds: &mut [Diamond]) -
     }
 }
 
-/// Moves those from `first` on behind `count` others, without a branch on the answers, which nothing could predict.
+/// Moves the kept edges from `first` on to `count` and up. Returns the new count. A branch on `is_kept` would be
+/// unpredictable.
 #[inline(always)]
 fn keep(
     first: usize,
@@ -159,7 +161,7 @@ fn keep(
     count
 }
 
-/// The same in the plane, for floats, four at a time.
+/// The same in the plane, for 32-bit floats, four edges at a time.
 #[inline(always)]
 fn keep_in_fours(geometry: &Geometry, numbers: &[f32], fours: usize, diamonds: &mut [Diamond]) -> usize {
     let (points, _) = numbers.as_chunks();
@@ -197,13 +199,13 @@ fn quad(positions: &Positions, diamond: &Diamond) -> Quad {
     Quad::new(a, b, c, d)
 }
 
-/// Whether a non-Delaunay edge may flip as far as its two triangles say, or why it may not.
+/// Whether an edge that is not Delaunay may flip, and why not, as far as its two triangles decide.
 pub(crate) fn verdict_of_shape(geometry: &Geometry, diamond: &Diamond) -> Verdict {
     if diamond.twin & LOCKED != 0 {
         return Verdict::Blocked(Reason::Locked);
     }
     match geometry.dimension {
-        // The angles at a and b are together smaller than π, if both triangles are positive.
+        // With two positive triangles, the angles at a and b sum to less than π, so both new triangles are positive.
         Dimension::Two if geometry.winding.is_strict => {}
         Dimension::Two => {
             let [a, b, c, d] = geometry.positions.points2(diamond.corners);
@@ -229,7 +231,7 @@ pub(crate) fn verdict_of_shape(geometry: &Geometry, diamond: &Diamond) -> Verdic
     Verdict::Labelled
 }
 
-/// Whether an edge joins the far corners c and d of an edge already, or c is d.
+/// Whether an edge between the opposite corners c and d exists already, or c is d.
 pub(crate) fn makes_duplicate(geometry: &Geometry, mesh: Topology, h: u32) -> bool {
     let [at_c, at_d] = [prev(h), prev(unflagged(mesh.twins[h as usize]))];
     let [c, d] = [at_c, at_d].map(|corner| mesh.triangles[corner as usize]);

@@ -1,12 +1,12 @@
-//! The four phases of an iteration, as pure functions over slices: Label, Select, Flip with Update. Every
-//! decision is a gather from the state before the phase, every word has one writer.
+//! The phases of an iteration, as functions over slices: label, select, flip and update. Every decision reads only the state
+//! before its phase, and every word has one writer.
 //!
 //! ```text
 //!         c                   c
 //!       /   \               / | \        h: a → b, twin g: b → a
 //!  prev/     \next      prev  |  g       after the flip the triangles are
-//!    a ---h--- b          a   |   b      (a, d, c) in the place of (a, b, c) and
-//!      \     /              h | prev     (b, c, d) in the place of (b, a, d)
+//!    a ---h--- b          a   |   b      (a, d, c), with the index of (a, b, c), and
+//!      \     /              h | prev     (b, c, d), with the index of (b, a, d)
 //!       \   /               \ | /
 //!         d                   d
 //! ```

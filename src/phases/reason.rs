@@ -1,30 +1,30 @@
-//! Why an edge that is not Delaunay stays.
+//! The reasons why edges that are not Delaunay remain.
 
-/// Why a non-Delaunay edge was left.
+/// Why an edge that is not Delaunay remains.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Reason {
-    /// The triangles' normals differ by more than β before or after the flip, or did so in the input.
+    /// The normals of the triangles differ by more than β before or after the flip, or differed by more than β in the input.
     Angle,
-    /// A new triangle would turn over (3D) or not be strictly positive (2D).
+    /// A new triangle would turn over (3D), or would not be strictly positive (2D).
     Fold,
-    /// The edge that the flip would make exists already.
+    /// The flip would make an edge that exists already.
     Duplicate,
-    /// The user has locked it: [`Options::locked_edges`](crate::Options::locked_edges), its triangles or the border of its
-    /// group. Goes before all other reasons.
+    /// The user has locked the edge: by [`Options::locked_edges`](crate::Options::locked_edges), `locked_triangles` or
+    /// `groups`. Takes precedence over the other reasons.
     Locked,
     /// The old and the new diagonal are further apart than
     /// [`Options::max_deviation`](crate::Options::max_deviation).
     Deviation,
-    /// Three or more triangles, or one triangle twice, meet at the edge.
+    /// The edge has three or more triangles, or one triangle twice.
     NonManifold,
-    /// Its two triangles are oriented against each other.
+    /// Its two triangles have opposite orientations.
     Inconsistent,
-    /// The run was stopped, by cancellation or the cap on iterations, before it was flipped.
+    /// The run stopped before it flipped the edge: it was cancelled, or reached the cap on iterations.
     Stopped,
 }
 
 impl Reason {
-    /// All reasons, in the order in which they are reported.
+    /// All reasons, in the order of reports.
     pub const ALL: [Self; 8] = [
         Self::Angle,
         Self::Fold,
@@ -36,7 +36,7 @@ impl Reason {
         Self::Stopped,
     ];
 
-    /// The word used in results: `angle`, `fold`, `duplicate`, `locked`, `deviation`, `non-manifold`, `inconsistent`,
+    /// The name in results: `angle`, `fold`, `duplicate`, `locked`, `deviation`, `non-manifold`, `inconsistent`,
     /// `stopped`.
     pub fn name(self) -> &'static str {
         match self {
@@ -57,12 +57,12 @@ impl Reason {
 pub struct Reasons([u64; Reason::ALL.len()]);
 
 impl Reasons {
-    /// Edges in all.
+    /// The number of edges, with any reason.
     pub fn total(&self) -> u64 {
         self.0.iter().sum()
     }
 
-    /// The reasons with at least one edge.
+    /// The reasons with at least one edge, and their numbers of edges.
     pub fn iter(&self) -> impl Iterator<Item = (Reason, u64)> + '_ {
         Reason::ALL.into_iter().map(|reason| (reason, self[reason])).filter(|&(_, n)| n > 0)
     }

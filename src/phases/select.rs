@@ -1,11 +1,11 @@
-//! Select: an edge flips if it is the best of both its triangles and no better one makes the same new edge.
+//! Select: an edge flips if it is the best of both its triangles, and no better edge would make the same new edge.
 
 use super::state::{BLOCKED, Topology, key};
 use crate::NONE;
 use crate::mesh::half_edge::{next, prev};
 use crate::mesh::star::{Star, any_in_either};
 
-/// For each triangle the twin of its edge that flips, or [`NONE`]. `best` is what [`label`](super::label()) gives.
+/// For each triangle, the twin of its half-edge that flips, or [`NONE`]. `best` is the result of [`label`](super::label()).
 pub(crate) fn select(mesh: Topology, iteration: u32, best: &[u32]) -> Vec<u32> {
     let selected = |t: u32| match mutual(best, t) {
         Some((h, g)) if !yields(mesh, iteration, h, g, |t| mutual(best, t)) => g,
@@ -14,8 +14,8 @@ pub(crate) fn select(mesh: Topology, iteration: u32, best: &[u32]) -> Vec<u32> {
     (0..best.len() as u32).map(selected).collect()
 }
 
-/// The half-edge of triangle `t`, and its twin, that is the best of both its triangles. Where two triangles
-/// share two edges both take the same one, since keys do not tie.
+/// The half-edge of triangle `t` whose edge is the best of both its triangles, and its twin. If two triangles share two
+/// edges, both choose the same one, since keys do not tie.
 fn mutual(best: &[u32], t: u32) -> Option<(u32, u32)> {
     let g = best[t as usize];
     if g >= BLOCKED {
@@ -25,9 +25,9 @@ fn mutual(best: &[u32], t: u32) -> Option<(u32, u32)> {
     (h < BLOCKED && h / 3 == t).then_some((h, g))
 }
 
-/// Whether another edge with a smaller key that is the best of both its triangles would join the same two vertices c
-/// and d. One of its triangles has a corner at c, the other one at d, and it lies opposite to both. `mutual` gives the
-/// half-edge of a triangle, and its twin, that is such an edge.
+/// Whether an edge has to yield to another edge whose flip would join the same vertices c and d. The other edge is the best
+/// of both its triangles, has a smaller key, and is opposite to a corner at c and to one at d. `mutual` returns the
+/// half-edge of a triangle whose edge is the best of both its triangles, and its twin.
 pub(crate) fn yields(
     mesh: Topology,
     iteration: u32,

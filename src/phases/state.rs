@@ -1,4 +1,4 @@
-//! What the phases read and never write, and the order of edges in an iteration.
+//! The state that the phases read, and the order of edges in an iteration.
 
 use crate::mesh::embedded::Embedded;
 use crate::mesh::half_edge::unflagged;
@@ -6,26 +6,26 @@ use crate::mesh::star::Fans;
 use crate::mesh::winding::Winding;
 use crate::{Dimension, NONE, Positions};
 
-/// In `best`: no labelled edge, but one blocked as a duplicate, so that the triangle stays in the frontier.
+/// In `best`: the triangle has no labelled edge, but an edge blocked as a duplicate, so it stays in the frontier.
 pub(crate) const BLOCKED: u32 = NONE - 1;
 
-/// What a flip may do to a surface (3D).
+/// Limits for flips in space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Thresholds {
     /// cos β.
     pub(crate) cos: f64,
-    /// How far apart the lines of the old and the new diagonal may be; infinite: any distance.
+    /// The largest distance between the lines of the old and the new diagonal. Infinity sets no limit.
     pub(crate) deviation: f32,
 }
 
 impl Default for Thresholds {
-    /// Under which everything may flip.
+    /// Without limits.
     fn default() -> Self {
         Self { cos: -1.0, deviation: f32::INFINITY }
     }
 }
 
-/// What the phases read and never write.
+/// The geometry. The phases never write it.
 pub(crate) struct Geometry<'a> {
     pub(crate) dimension: Dimension,
     pub(crate) positions: &'a Positions,
@@ -34,10 +34,10 @@ pub(crate) struct Geometry<'a> {
     pub(crate) embedded: &'a Embedded,
 }
 
-/// The triangulation that an iteration starts from, or some of its triangles that follow each other.
+/// The triangulation before a phase, or a range of its triangles.
 #[derive(Clone, Copy)]
 pub(crate) struct Topology<'a> {
-    /// The first half-edge.
+    /// The first half-edge of the range.
     pub(crate) first: u32,
     pub(crate) triangles: &'a [u32],
     pub(crate) twins: &'a [u32],
@@ -57,13 +57,13 @@ impl Topology<'_> {
         self.twins[(h - self.first) as usize]
     }
 
-    /// Whether it is a half-edge of these triangles; [`NONE`] is not.
+    /// Whether `h` is a half-edge of these triangles. [`NONE`] is not.
     #[inline(always)]
     pub(crate) fn has(&self, h: u32) -> bool {
         (h.wrapping_sub(self.first) as usize) < self.twins.len()
     }
 
-    /// Whether a half-edge has a twin that is of other triangles.
+    /// Whether a half-edge has a twin outside these triangles.
     #[inline(always)]
     pub(crate) fn leaves(&self, h: u32) -> bool {
         let g = unflagged(self.twin(h));
@@ -71,8 +71,8 @@ impl Topology<'_> {
     }
 }
 
-/// The priority of an edge in an iteration; the smallest wins. A bijection of the edge id for each iteration,
-/// so no two edges tie; it changes with the iteration, or chains of neighbours would flip one by one.
+/// The priority of an edge in an iteration; the smallest key wins. For each iteration it is a bijection of the lower
+/// half-edge, so no two edges tie. It changes with the iteration; otherwise chains of neighbours would flip one by one.
 #[inline]
 pub(crate) fn key(edge: u32, iteration: u32) -> u32 {
     let mut x = edge ^ iteration.wrapping_mul(0x9e37_79b9);

@@ -2,8 +2,8 @@
 
 use super::exact::decode;
 
-/// The cosine that the β test uses: an f64, so a rational number, and the same one on every platform. It is the cosine
-/// of 0°, 60°, 90°, 120° and 180°, and less than 3 units in the last place from that of any other angle.
+/// The cosine for the β test: an f64, and so a rational number, the same on every platform. It is exact for 0°, 60°, 90°,
+/// 120° and 180°, and less than 3 units in the last place off for any other angle.
 ///
 /// `degrees` is an angle from 0 to 180.
 pub fn cos_degrees(degrees: f64) -> f64 {
@@ -20,7 +20,7 @@ pub fn cos_degrees(degrees: f64) -> f64 {
     }
 }
 
-/// The sine of up to 45 degrees, if `odd` is 1, or the cosine, if it is 0: what is left out is below 2^-58.
+/// The sine (`odd` = 1) or the cosine (`odd` = 0) of up to 45 degrees. The truncation error is below 2^-58.
 fn taylor(degrees: f64, odd: u32) -> f64 {
     let x = degrees * (std::f64::consts::PI / 180.0);
     let mut rest = 1.0;
@@ -31,7 +31,7 @@ fn taylor(degrees: f64, odd: u32) -> f64 {
     if odd == 1 { x * rest } else { rest }
 }
 
-/// |k| = mantissa / 2^shift, exactly, for a cosine k from [`cos_degrees`]; the shift is at most 106.
+/// Mantissa and shift with |k| = mantissa / 2^shift, exactly, for a cosine k from [`cos_degrees`]. The shift is at most 106.
 pub(crate) fn cosine_fraction(k: f64) -> (u64, u32) {
     let (mantissa, exponent) = decode(k);
     (mantissa.unsigned_abs(), if mantissa == 0 { 0 } else { -exponent as u32 })

@@ -1,9 +1,9 @@
-//! Exact integers: points with floating-point coordinates are integers times one power of two, and every predicate is
-//! the sign of a polynomial in their differences.
+//! Exact integers. Floating-point coordinates are integers times one power of two, and every predicate is the sign of a
+//! polynomial in their differences.
 
 use std::cmp::Ordering;
 
-/// What a polynomial needs of the numbers it is evaluated in.
+/// The operations that polynomials need.
 pub(super) trait Ring {
     /// `mantissa * 2^shift`.
     fn new(mantissa: i64, shift: u32) -> Self;
@@ -31,9 +31,9 @@ impl Ring for i64 {
     }
 }
 
-/// Room for limbs of 64 bits, the least significant first.
+/// Storage for 64-bit limbs, the least significant first.
 pub(super) trait Limbs: AsRef<[u64]> + AsMut<[u64]> {
-    /// At least `len` of them, if there is room for so many.
+    /// At least `len` zero limbs; an array always has its own length.
     fn zeros(len: usize) -> Self;
 }
 
@@ -49,7 +49,7 @@ impl Limbs for Vec<u64> {
     }
 }
 
-/// A signed integer: sign and magnitude, `len` limbs in use.
+/// A signed integer: sign and magnitude, with `len` limbs in use.
 #[derive(Debug)]
 pub(super) struct Int<L> {
     negative: bool,
@@ -57,10 +57,10 @@ pub(super) struct Int<L> {
     limbs: L,
 }
 
-/// Of up to `N` limbs. The callers choose `N` so that no result is larger.
+/// An integer of up to `N` limbs. The callers choose `N` so that no result is larger.
 pub(super) type Bounded<const N: usize> = Int<[u64; N]>;
 
-/// Of any size: where the exponents are far apart.
+/// An integer of any size, for exponents that are far apart.
 pub(super) type Unbounded = Int<Vec<u64>>;
 
 impl<L: Limbs> Int<L> {
@@ -68,7 +68,7 @@ impl<L: Limbs> Int<L> {
         &self.limbs.as_ref()[..self.len]
     }
 
-    /// The sum with a number that has the magnitude of `other`, and the sign given.
+    /// The sum with a number of the magnitude of `other` and the given sign.
     #[inline(never)]
     fn add_signed(&self, other: &Self, negative: bool) -> Self {
         let mut limbs = L::zeros(self.len.max(other.len) + 1);
@@ -80,7 +80,7 @@ impl<L: Limbs> Int<L> {
     }
 }
 
-/// How many limbs there are up to the last that is not zero.
+/// The number of limbs up to the last one that is not zero.
 fn significant(limbs: &[u64]) -> usize {
     limbs.iter().rposition(|&limb| limb != 0).map_or(0, |last| last + 1)
 }
@@ -89,7 +89,8 @@ fn compare(x: &[u64], y: &[u64]) -> Ordering {
     x.len().cmp(&y.len()).then_with(|| x.iter().rev().cmp(y.iter().rev()))
 }
 
-/// Writes `large` + `small`, or else their difference, over zeros and returns the number of its limbs. `large` >= `small`.
+/// Writes `large` + `small`, or their difference, to `result`, which is all zero. Returns the number of limbs of the result.
+/// `large` >= `small`.
 fn add_or_subtract(large: &[u64], small: &[u64], is_sum: bool, result: &mut [u64]) -> usize {
     let step = |x: u64, y| if is_sum { x.overflowing_add(y) } else { x.overflowing_sub(y) };
     let mut carry = false;
@@ -106,7 +107,7 @@ fn add_or_subtract(large: &[u64], small: &[u64], is_sum: bool, result: &mut [u64
     significant(&result[..large.len() + usize::from(carry)])
 }
 
-/// Writes the product over zeros and returns the number of its limbs.
+/// Writes the product to `products`, which is all zero. Returns the number of limbs of the product.
 fn multiply(x: &[u64], y: &[u64], products: &mut [u64]) -> usize {
     for (i, &x) in x.iter().enumerate() {
         let mut carry = 0u128;
@@ -156,8 +157,8 @@ impl<L: Limbs> Ring for Int<L> {
     }
 }
 
-/// `x = mantissa * 2^exponent` with an odd mantissa; zero is `(0, i32::MAX)`, so that it never is the
-/// smallest exponent.
+/// Mantissa and exponent with `x = mantissa * 2^exponent`. The mantissa is odd; zero is `(0, i32::MAX)`, so that it never has
+/// the smallest exponent.
 pub(super) fn decode(x: f64) -> (i64, i32) {
     let bits = x.to_bits();
     let field = (bits >> 52 & 0x7ff) as i32;
@@ -177,20 +178,20 @@ thread_local! {
     pub(super) static WIDEST: std::cell::Cell<u32> = const { std::cell::Cell::new(0) };
 }
 
-/// Differences of numbers as integers times one power of two, a unit that no sign depends on.
+/// Differences of numbers, as integers times one power of two. No sign depends on that unit.
 pub(super) struct Differences<const K: usize> {
     /// Mantissas and exponents.
     minuends: [(i64, i32); K],
-    /// None where f64 holds all differences: those are the minuends then.
+    /// `None` if all differences are exact in f64: then the minuends are the differences.
     subtrahends: Option<[(i64, i32); K]>,
     /// The smallest exponent.
     unit: i32,
-    /// Each difference is below `2^bits` in size.
+    /// Each difference is below `2^bits` in magnitude.
     pub(super) bits: u32,
 }
 
 impl<const K: usize> Differences<K> {
-    /// Of x - y for each (x, y), any finite numbers. `bits` is at most 2099.
+    /// The differences x - y of pairs (x, y) of finite numbers. `bits` is at most 2099.
     pub(super) fn new(pairs: [(f64, f64); K]) -> Self {
         let exact = pairs.iter().all(|&(x, y)| difference_is_exact(x, y));
         let minuends = pairs.map(|(x, y)| decode(if exact { x - y } else { x }));
@@ -205,7 +206,7 @@ impl<const K: usize> Differences<K> {
         Self { minuends, subtrahends, unit, bits }
     }
 
-    /// The integers; `R` must have room for `bits`, and for what is computed from them.
+    /// The integers. `R` must hold `bits` bits, and whatever the caller computes from the integers.
     pub(super) fn integers<R: Ring>(&self) -> [R; K] {
         let integer = |(m, e): (i64, i32)| R::new(m, if m == 0 { 0 } else { (e - self.unit) as u32 });
         match self.subtrahends {
@@ -217,8 +218,8 @@ impl<const K: usize> Differences<K> {
     }
 }
 
-/// True where `x - y`, computed in f64, is the exact difference: the roundoff of Knuth's TwoDiff is zero. Sums of f64
-/// do not underflow, and of a difference that overflows no part of the roundoff is a number.
+/// Whether `x - y`, computed in f64, is the exact difference: the roundoff of Knuth's TwoDiff is zero. Sums of f64 do not
+/// underflow. If the difference overflows, the roundoff is NaN, so this returns false.
 fn difference_is_exact(x: f64, y: f64) -> bool {
     let difference = x - y;
     let y_virtual = x - difference;

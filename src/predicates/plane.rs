@@ -8,32 +8,32 @@ use std::cmp::Ordering;
 /// Unit roundoff of f64.
 const EPSILON: f64 = f64::EPSILON / 2.0;
 
-/// What underflow may add to the error of a filter, with room: a product that underflows is off by at most
-/// η = 2^-1075, and sums and differences do not underflow. Where anything overflows, the filter's bound is infinite
-/// or no number, and decides nothing.
+/// A generous bound for the error that underflow adds to a filter. A product that underflows is off by at most η = 2^-1075;
+/// sums and differences do not underflow. If anything overflows, the bound of the filter is infinite or NaN, and the
+/// filter decides nothing.
 const UNDERFLOW: f64 = f64::MIN_POSITIVE;
 
-/// Differences up to this width keep degree 2 within i64, and degree 4 within i128: a cross or dot product of two such
-/// vectors is below 2^61, the product of two of those below 2^122, the sum of two below 2^123.
+/// With differences up to this width, degree 2 fits i64 and degree 4 fits i128: a cross or dot product of two such vectors
+/// is below 2^61, the product of two of these is below 2^122, and a sum of two products is below 2^123.
 pub(super) const NARROW_BITS: u32 = 30;
 
 /// The same within 20 limbs, 1280 bits: 4·319 + 3 = 1279. Differences of f32 have at most 278 bits.
 pub(super) const WIDE_BITS: u32 = 319;
 
-/// The sign of cross(λ)·dot(γ) + dot(λ)·cross(γ), where λ = angle at `c` and γ = angle at `d`, opposite to
-/// the edge (`a`, `b`) of the triangles (a, b, c) and (b, a, d): negative when λ + γ > π, for
-/// counter-clockwise triangles. It is minus the in-circle determinant.
+/// The sign of cross(λ)·dot(γ) + dot(λ)·cross(γ), where λ and γ are the angles at `c` and `d`, opposite to the edge
+/// (`a`, `b`) of the triangles (a, b, c) and (b, a, d). For counter-clockwise triangles it is negative if λ + γ > π. It is
+/// the sign of minus the in-circle determinant.
 #[inline(always)]
 pub(crate) fn in_circle_sign(a: DVec2, b: DVec2, c: DVec2, d: DVec2) -> Ordering {
     let (p, q, r, s) = (a - c, b - c, a - d, b - d);
     let (cross1, dot1, cross2, dot2) = (p.perp_dot(q), p.dot(q), s.perp_dot(r), s.dot(r));
     let value = cross1 * dot2 + dot1 * cross2;
-    // Without underflow each difference, product and sum has a relative error of at most ε. A cross or dot product
-    // so differs from the true one by at most ((1+ε)^4 - 1) of the sum of the magnitudes of its two products, the
-    // value by at most ((1+ε)^10 - 1) < 10.1ε of the sum of the magnitudes of its products. The magnitudes of cross and
-    // dot product of two vectors have the product of the 1-norms as their sum, so that sum is at most `size1 * size2`
-    // of the true differences, which is at most (1+ε)^9 times the computed one. Underflow puts each of the four sums of
-    // products off by at most 2.1η, and so the value by at most 2.2η(size1 + size2) + 3η; of the sizes it takes less.
+    // Without underflow, each difference, product and sum has a relative error of at most ε. So a cross or dot product is
+    // off by at most ((1+ε)^4 - 1) times the sum of the magnitudes of its two products, and the value by at most
+    // ((1+ε)^10 - 1) < 10.1ε times the sum of the magnitudes of its products. For the cross and the dot product of two
+    // vectors, these magnitudes sum to the product of the 1-norms. So the last sum is at most the true `size1 * size2`,
+    // which is at most (1+ε)^9 times the computed one. Underflow puts each of the four sums of products off by at most
+    // 2.1η, and so the value by at most 2.2η(size1 + size2) + 3η; its effect on the sizes is smaller.
     let size = |v: DVec2| v.x.abs() + v.y.abs();
     let (size1, size2) = (size(p) * size(q), size(s) * size(r));
     if value.abs() > 16.0 * EPSILON * (size1 * size2) + UNDERFLOW * (size1 + size2 + 1.0) {
@@ -42,8 +42,8 @@ pub(crate) fn in_circle_sign(a: DVec2, b: DVec2, c: DVec2, d: DVec2) -> Ordering
     in_circle_exact(a, b, c, d)
 }
 
-/// What f32 knows of [`in_circle_sign`] of four quads (a, b, c, d): the bits of those where it is negative and of those
-/// where it is positive. The others are left to it.
+/// The filter of [`in_circle_sign`] in f32, for four quads (a, b, c, d): a bit mask of the negative ones and one of the
+/// positive ones. Quads in neither are undecided.
 #[inline(always)]
 pub(crate) fn in_circle_filter(quads: &[[&[f32; 2]; 4]; 4]) -> [u32; 2] {
     let [a, b, c, d] = array::from_fn(|k| by_coordinate(array::from_fn(|lane| quads[lane][k])));
@@ -54,7 +54,7 @@ pub(crate) fn in_circle_filter(quads: &[[&[f32; 2]; 4]; 4]) -> [u32; 2] {
     let value = cross(p, q) * dot(s, r) + dot(p, q) * cross(s, r);
     let size = |v: [Vec4; 2]| v[0].abs() + v[1].abs();
     let (size1, size2) = (size(p) * size(q), size(s) * size(r));
-    // The bound of the filter in f64, with the ε and the η of f32; differences do not underflow here either.
+    // The bound of the f64 filter, with the ε and the η of f32. Differences do not underflow here either.
     let bound = size1 * size2 * (8.0 * f32::EPSILON) + (size1 + size2 + Vec4::ONE) * f32::MIN_POSITIVE;
     [value.cmplt(-bound).bitmask(), value.cmpgt(bound).bitmask()]
 }
@@ -66,17 +66,14 @@ fn by_coordinate(points: [&[f32; 2]; 4]) -> [Vec4; 2] {
     array::from_fn(|i| Vec4::from_array(array::from_fn(|lane| points[lane][i])))
 }
 
-/// As above, with one load a point.
+/// The same, with one load per point.
 #[cfg(target_feature = "simd128")]
-#[expect(
-    unsafe_code,
-    reason = "of what is safe, the compiler makes a load and an insertion for each coordinate"
-)]
+#[expect(unsafe_code, reason = "for safe code, the compiler emits a load and an insertion per coordinate")]
 #[inline(always)]
 fn by_coordinate(points: [&[f32; 2]; 4]) -> [Vec4; 2] {
     use std::arch::wasm32::{u32x4_shuffle, v128_load64_lane, v128_load64_zero};
     let two = |p: &[f32; 2], q: &[f32; 2]| {
-        // SAFETY: both are 8 bytes; these loads take any alignment.
+        // SAFETY: both references are to 8 bytes, and these loads accept any alignment.
         unsafe { v128_load64_lane::<1>(v128_load64_zero(p.as_ptr().cast()), q.as_ptr().cast()) }
     };
     let (first, second) = (two(points[0], points[1]), two(points[2], points[3]));
@@ -89,7 +86,7 @@ pub(crate) fn area_sign(a: DVec2, b: DVec2, c: DVec2) -> Ordering {
     let (p, q) = (a - c, b - c);
     let (left, right) = (p.x * q.y, p.y * q.x);
     let value = left - right;
-    // As above: ((1+ε)^4 - 1) of the sum of the magnitudes, and 2.1η.
+    // As in `in_circle_sign`: the error is at most ((1+ε)^4 - 1) times the sum of the magnitudes, plus 2.1η.
     if value.abs() > 8.0 * EPSILON * (left.abs() + right.abs()) + UNDERFLOW {
         return sign(value);
     }
@@ -107,8 +104,8 @@ pub(crate) fn total_area_sign(count: usize, triangle: &dyn Fn(usize) -> [DVec2; 
         magnitude += left.abs() + right.abs();
     }
     let terms = count as f64;
-    // Each term errs by at most 5ε of its magnitude and 2.1η; summing n terms one after the other by (n - 1)ε of the
-    // sum of the magnitudes.
+    // Each term is off by at most 5ε of its magnitude plus 2.1η. Summing n terms one after another adds at most (n - 1)ε
+    // times the sum of the magnitudes.
     if sum.abs() > (terms + 8.0) * 2.0 * EPSILON * magnitude + terms * UNDERFLOW {
         return sign(sum);
     }
@@ -156,7 +153,7 @@ fn doubled_area<R: Ring>([px, py, qx, qy]: &[R; 4]) -> R {
     px.mul(qy).sub(&py.mul(qx))
 }
 
-/// Of the vectors p and q, and s and r, by x and y of p, q, r, s.
+/// Cross and dot product of p and q, then of s and r, from x and y of p, q, r, s.
 fn crosses_and_dots<R: Ring>([px, py, qx, qy, rx, ry, sx, sy]: &[R; 8]) -> [R; 4] {
     let dot = |[ax, ay]: [&R; 2], [bx, by]: [&R; 2]| ax.mul(bx).add(&ay.mul(by));
     let cross = |[ax, ay]: [&R; 2], [bx, by]: [&R; 2]| ax.mul(by).sub(&ay.mul(bx));

@@ -1,35 +1,35 @@
-//! Surfaces in space: the angle sum, the angle between normals against β, and normals that turn over.
+//! Surfaces in space: the angle sum, the angle between normals, the deviation, and normals that turn over.
 
 use super::cosine::cosine_fraction;
 use super::exact::{Bounded, Differences, Ring, Unbounded};
 use glam::DVec3;
 use std::cmp::Ordering;
 
-/// Bound of every filter here, relative to the product of the sizes of its vectors: 32 unit roundoffs.
+/// The error bound of every filter here, relative to the product of the sizes of its vectors: 32 unit roundoffs.
 ///
-/// A size is the 1-norm, which is at least the Euclidean one; L1 = |p|·|q|, L2 = |s|·|r| in 1-norms. With
-/// relative errors of at most ε an operation (sqrt included), a component of a computed normal differs from
-/// the true one by at most ((1+ε)^4 - 1) of the sum of the magnitudes of its two products, so the normal by
-/// at most 4.01ε·L, its computed length by at most 7ε·L (three more roundings on a length of at most L), a
-/// computed dot product of two differences by at most 5.01ε·L.
+/// A size is the 1-norm, which is at least the Euclidean norm. Let L1 = |p|·|q| and L2 = |s|·|r| in 1-norms. Each operation
+/// (sqrt included) has a relative error of at most ε. So a component of a computed normal is off by at most
+/// ((1+ε)^4 - 1) times the sum of the magnitudes of its two products, the normal by at most 4.01ε·L, its computed length by
+/// at most 7ε·L (three more roundings on a length of at most L), and a computed dot product of two differences by at most
+/// 5.01ε·L. The errors of the values are at most:
 /// - angle sum |n1|·dot2 + |n2|·dot1: (7 + 5.01 + 1)ε·L1·L2 for each term, 2.1ε for the sum: 28.2ε·L1·L2;
 /// - n·n': (4.01 + 4.01 + 3)ε·L·L' = 11.1ε·L·L', which also decides `turns_over`;
 /// - n·n' - k|n||n'|: 11.1ε + (7 + 7 + 2)ε + 2.1ε = 29.2ε·L·L';
 /// - |n1·r| - δ|n1 + n2|: 7.1ε·L1·|r| and 9.1ε·δ·(L1 + L2), and 1.1ε of both for the difference.
 ///
-/// The products L·L' are rounded eight times; 32 leaves room for that.
+/// The products L·L' are rounded eight times; a bound of 32 covers that too.
 const BOUND: f64 = 32.0 * (f64::EPSILON / 2.0);
 
-/// What underflow adds to the errors, relative to the square of the sum of all sizes: 2^-530.
+/// A bound for the error that underflow adds, relative to the square of the sum of all sizes: 2^-530.
 ///
-/// A product that underflows is off by at most η = 2^-1075; sums and differences do not underflow. A component of a
-/// normal or a dot product is so off by at most 3.1η, a normal by 5.4η. The square of a length is off by 3.1η beyond
-/// that, and the length by at most the root of it, 2^-536.6 in all. Each value, a sum of products of two lengths,
-/// normals or dot products of sizes L and L', is so off by at most 2^-534·(L + L') + 12η, for |k| is at most 1; the
-/// product of the sizes by less. Both L and L' are at most a quarter of the square of the sum of all sizes.
+/// A product that underflows is off by at most η = 2^-1075; sums and differences do not underflow. So a component of a
+/// normal, or a dot product, is off by at most 3.1η, and a normal by 5.4η. The square of a length is off by another 3.1η,
+/// and the length by at most the root of that, 2^-536.6 in all. Each value is a sum of products of two lengths, normals or
+/// dot products of sizes L and L'. As |k| is at most 1, it is off by at most 2^-534·(L + L') + 12η; the product of the
+/// sizes is off by less. Both L and L' are at most a quarter of the square of the sum of all sizes.
 const UNDERFLOW: f64 = f64::from_bits((1023 - 530) << 52);
 
-/// Differences up to this width are evaluated in 20 limbs, 1280 bits: of `b` bits, degree 8 with sums is below
+/// Differences up to this width fit 20 limbs, 1280 bits: from differences of b bits, degree 8 with its sums is below
 /// 2^(8b + 9), and the β test multiplies by at most 2^212 (the square of an f64 cosine in units of 2^-106).
 pub(super) const BITS: u32 = 132;
 
@@ -40,18 +40,18 @@ pub(crate) struct Quad {
     q: DVec3,
     r: DVec3,
     s: DVec3,
-    /// What the value of a filter must exceed, if the sizes of its four vectors are those of p, q, r and s.
+    /// The error bound of a filter whose four vectors have the sizes of p, q, r and s.
     bound: f64,
 }
 
-/// Evaluates a function that is generic over the integers, on p, q, r, s: 12 components, and on one more number, 0 if
-/// none is given. Apart from the filters, which are called for every edge and should be small.
+/// Evaluates a function exactly. The function is generic over the integers; it gets the 12 components of p, q, r, s and one
+/// more number, 0 by default. The code is out of line, so that the filters, which run for every edge, stay small.
 macro_rules! exactly {
     ($quad:expr, $function:ident $(, $argument:expr)*) => {
         exactly!($quad, with 0.0, $function $(, $argument)*)
     };
     ($quad:expr, with $number:expr, $function:ident $(, $argument:expr)*) => {
-        apart(|| {
+        out_of_line(|| {
             let differences = $quad.differences($number);
             if differences.bits <= BITS {
                 $function::<Bounded<20>>(&differences.integers() $(, $argument)*)
@@ -64,7 +64,7 @@ macro_rules! exactly {
 
 #[cold]
 #[inline(never)]
-fn apart<T>(decide: impl FnOnce() -> T) -> T {
+fn out_of_line<T>(decide: impl FnOnce() -> T) -> T {
     decide()
 }
 
@@ -85,10 +85,10 @@ impl Quad {
         if value.abs() > self.bound { value < 0.0 } else { exactly!(self, angle_sum).is_lt() }
     }
 
-    /// Whether the angle between the normals is larger than β = acos(`cos`), before the flip or after it.
-    /// A zero normal is at no angle to anything.
+    /// Whether the angle between the normals is larger than β = acos(`cos`), before or after the flip. A zero normal makes no
+    /// angle with any other.
     pub(crate) fn exceeds_angle(&self, cos: f64) -> bool {
-        // By Cauchy and Schwarz no angle exceeds 180°.
+        // By the Cauchy–Schwarz inequality, no angle exceeds 180°.
         if cos <= -1.0 {
             return false;
         }
@@ -101,7 +101,7 @@ impl Quad {
         }
     }
 
-    /// Whether the angle between the normals, before any flip, is larger than β = acos(`cos`).
+    /// Whether the angle between the present normals is larger than β = acos(`cos`).
     #[inline(always)]
     pub(crate) fn is_over_angle(&self, cos: f64) -> bool {
         if cos <= -1.0 {
@@ -114,7 +114,7 @@ impl Quad {
         }
     }
 
-    /// n·m - k|n||m| against zero; `Equal` where the filter cannot decide.
+    /// Compares n·m - k|n||m| with zero; `Equal` if the filter cannot decide.
     #[inline]
     fn compare_angle(&self, n: DVec3, m: DVec3, cos: f64) -> Ordering {
         let value = n.dot(m) - cos * (n.length() * m.length());
@@ -127,8 +127,8 @@ impl Quad {
         }
     }
 
-    /// Whether the lines that the old and the new diagonal lie on are further apart than `most`, which is finite and
-    /// not negative: |n1·r| > δ|n1 + n2|. Parallel ones are at no distance.
+    /// Whether the lines through the old and the new diagonal are further apart than `most` = δ: |n1·r| > δ|n1 + n2|. `most`
+    /// is finite and not negative. Parallel lines count as distance 0.
     pub(crate) fn deviates(&self, most: f64) -> bool {
         let (n1, n2) = (self.p.cross(self.q), self.s.cross(self.r));
         let (u, v, w, x) = (size(self.p), size(self.q), size(self.r), size(self.s));
@@ -142,7 +142,7 @@ impl Quad {
     pub(crate) fn turns_over(&self) -> bool {
         let (old1, old2) = (self.p.cross(self.q), self.s.cross(self.r));
         let (new1, new2) = (self.r.cross(self.p), self.q.cross(self.s));
-        // Each bound is a product of four of the four sizes, one of them twice.
+        // Each bound is a product of four sizes, in which one of the sizes occurs twice.
         let largest = size(self.p).max(size(self.q)).max(size(self.r)).max(size(self.s));
         let bound = bound((largest * largest) * (largest * largest), 4.0 * largest);
         let dots = [old1.dot(new1), old1.dot(new2), old2.dot(new1), old2.dot(new2)];
@@ -165,13 +165,14 @@ impl Quad {
     }
 }
 
-/// Whether the triangle (a, b, c) has an angle of more than 90° at c, and whether its area is zero.
+/// Whether the triangle (a, b, c) has an obtuse angle at c, and whether its area is zero.
 pub(crate) fn corner(a: DVec3, b: DVec3, c: DVec3) -> (bool, bool) {
     exactly!(Quad::new(a, b, c, c), obtuse_and_flat)
 }
 
-/// Of the product of the sizes of a filter's four vectors, and the sum of all sizes. The fourth power of the sum is
-/// larger than anything that a filter computes: where that overflows the bound is infinite, and decides nothing.
+/// The error bound of a filter, from the product of the sizes of its four vectors and the sum of all sizes. The fourth power
+/// of the sum is larger than anything that a filter computes. If that overflows, the bound is infinite, and the filter
+/// decides nothing.
 #[inline]
 fn bound(product: f64, sum: f64) -> f64 {
     let square = sum * sum;
@@ -184,7 +185,7 @@ fn size(v: DVec3) -> f64 {
     v.abs().element_sum()
 }
 
-/// Numbers that are evaluated exactly.
+/// How many numbers an exact function gets.
 const COUNT: usize = 13;
 
 /// One of p, q, r and s.
@@ -205,7 +206,7 @@ fn cross<R: Ring>(u: &Vector<R>, v: &Vector<R>) -> Vector<R> {
     [component(1, 2), component(2, 0), component(0, 1)]
 }
 
-/// The sign of √(n1²)·dot2 + √(n2²)·dot1: of equal signs of the two terms that sign, else by their squares.
+/// The sign of √(n1²)·dot2 + √(n2²)·dot1: the common sign of the two terms, or else decided by their squares.
 fn angle_sum<R: Ring>(v: &[R; COUNT]) -> Ordering {
     let [p, q, r, s] = vectors(v);
     let (n1, n2) = (cross(p, q), cross(s, r));
@@ -223,7 +224,7 @@ fn angle_sum<R: Ring>(v: &[R; COUNT]) -> Ordering {
     if first.is_gt() { larger } else { larger.reverse() }
 }
 
-/// Whether n·m < k|n||m| for the normals before the flip or, with `after` too, for those after it.
+/// Whether n·m < k|n||m| for the normals before the flip or, if `after`, for those after it.
 fn angle_exceeded<R: Ring>(v: &[R; COUNT], k: f64, after: bool) -> bool {
     let [p, q, r, s] = vectors(v);
     let (mantissa, shift) = cosine_fraction(k);

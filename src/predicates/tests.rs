@@ -1,4 +1,4 @@
-//! The predicates against independent arithmetic: `robust` in 2D, big integers everywhere.
+//! Compares the predicates with independent arithmetic: the crate `robust` in 2D, and big integers.
 
 use super::{Quad, area_sign, corner, cos_degrees, in_circle_filter, in_circle_sign, total_area_sign};
 use glam::{DVec2, DVec3, Vec2};
@@ -6,7 +6,7 @@ use num_bigint::{BigInt, Sign};
 use proptest::prelude::*;
 use std::cmp::Ordering;
 
-/// Any finite f32: of the usual sizes, of any exponent, small integers, or subnormal.
+/// A finite f32: of the usual sizes, with any exponent, a small integer, or subnormal.
 fn coordinate() -> BoxedStrategy<f32> {
     prop_oneof![
         4 => -1.0f32..1.0,
@@ -22,7 +22,7 @@ fn coordinate() -> BoxedStrategy<f32> {
     .boxed()
 }
 
-/// Any finite f64, of the same kinds.
+/// A finite f64, of the same kinds.
 fn double() -> BoxedStrategy<f64> {
     prop_oneof![
         4 => coordinate().prop_map(f64::from),
@@ -39,7 +39,7 @@ fn nudged(x: f64, ulps: i64) -> f64 {
     f64::from_bits(x.to_bits().wrapping_add_signed(ulps))
 }
 
-/// Four points of f32, of f64, and of f64 that all are multiplied by the same power of two.
+/// Four points of f32, of f64, or of f64 scaled by a common power of two.
 fn quad<const K: usize>() -> impl Strategy<Value = [[f64; K]; 4]> {
     let narrow = [(); 4].map(|()| [(); K].map(|()| coordinate().prop_map(f64::from)));
     let wide = [(); 4].map(|()| [(); K].map(|()| double()));
@@ -48,7 +48,7 @@ fn quad<const K: usize>() -> impl Strategy<Value = [[f64; K]; 4]> {
     prop_oneof![narrow, wide, scaled]
 }
 
-/// Points that are often cocircular, collinear or equal, or are so up to one unit in the last place.
+/// Points that are often cocircular, collinear or equal, exactly or up to one unit in the last place.
 fn quad2() -> impl Strategy<Value = [DVec2; 4]> {
     let lattice = (0i32..4, 0i32..4, -2i32..=2).prop_map(|(x, y, ulps)| {
         let nudged = f32::from_bits((x as f32 * 0.1 + 100.0).to_bits().wrapping_add_signed(ulps / 2));
@@ -56,7 +56,7 @@ fn quad2() -> impl Strategy<Value = [DVec2; 4]> {
     });
     let wide = (0i32..4, 0i32..4, -2i64..=2)
         .prop_map(|(x, y, ulps)| [nudged(f64::from(x + 1), ulps / 2), f64::from(y)]);
-    // The spacing is a power of two, or a tenth, with an offset of which no f32 has the bits.
+    // The spacing is a power of two, or a tenth with an offset that no f32 holds.
     let wide = ([wide.clone(), wide.clone(), wide.clone(), wide], -1074i32..1021, any::<bool>());
     let wide = wide.prop_map(|(points, e, tenths)| {
         points.map(|p| DVec2::from(p.map(|x| if tenths { 0.1 * x + 1e6 } else { libm::scalbn(x, e) })))
@@ -68,18 +68,18 @@ fn quad2() -> impl Strategy<Value = [DVec2; 4]> {
     ]
 }
 
-/// Opposite angles whose sum is π, or so up to one unit in the last place: the heights over the common edge,
-/// 5 and 4·5, have the square of its half as their product.
+/// Opposite angles whose sum is π, exactly or up to one unit in the last place: the product of the heights over the common
+/// edge, 5 and 20, is the square of half its length.
 fn angles_of_pi() -> impl Strategy<Value = [DVec3; 4]> {
-    (-1070i32..1018, 0usize..12, -1i64..=1).prop_map(|(e, place, ulps)| {
+    (-1070i32..1018, 0usize..12, -1i64..=1).prop_map(|(e, index, ulps)| {
         let mut points = [[-10., 0., 0.], [10., 0., 0.], [0., 5., 0.], [0., -12., -16.]];
-        let number = &mut points.as_flattened_mut()[place];
+        let number = &mut points.as_flattened_mut()[index];
         *number = nudged(*number, ulps);
         points.map(|p| DVec3::from(p.map(|x| libm::scalbn(x, e))))
     })
 }
 
-/// As `quad2`, and often coplanar.
+/// As `quad2`, in space, and often coplanar.
 fn quad3() -> impl Strategy<Value = [DVec3; 4]> {
     prop_oneof![
         quad::<3>().prop_map(|points| points.map(DVec3::from)),
@@ -155,7 +155,7 @@ fn filter(quads: [[[f32; 2]; 4]; 4]) -> [u32; 2] {
     in_circle_filter(&quads.each_ref().map(|quad| quad.each_ref()))
 }
 
-/// Four quads of the points, as f32.
+/// Compares the filter with the sign, for four quads of the points as f32.
 fn compare_filter(points: [DVec2; 4]) {
     let points = points.map(DVec2::as_vec2);
     if points.iter().all(|p| p.is_finite()) {
@@ -194,7 +194,7 @@ fn compare_in_space([a, b, c, d]: [DVec3; 4], degrees: f64, most: f32) {
     assert_eq!(quad.is_over_angle(k), exceeds(&n1, &n2, k));
     let turned = [&n1, &n2].iter().any(|n| [&m1, &m2].iter().any(|m| dot(n, m).sign() == Sign::Minus));
     assert_eq!(quad.turns_over(), turned);
-    // By another formula than that of the filter: the determinant of the edge, the diagonal and what joins them.
+    // Another formula than in the filter: the determinant of the edge, the diagonal, and a vector between the two.
     let across = cross(&minus(a, b), &minus(c, d));
     let (volume, most_big) = (dot(&across, &minus(a, c)), big(most.into()));
     let deviates = &volume * &volume > &most_big * &most_big * dot(&across, &across);
@@ -233,7 +233,7 @@ proptest! {
         compare_in_space(quad, degrees, most.abs());
     }
 
-    /// The diagonals of a box are as far apart as it is high.
+    /// The distance of the two diagonals of a box is its height.
     #[test]
     fn distances_of_whole_numbers_are_decided(
         [w, d, h] in [1u16..100, 1u16..100, 0u16..100], e in -120i32..100, turn in 0usize..3, ulps in -1i32..=1
@@ -265,14 +265,14 @@ fn the_largest_and_smallest_floats_are_decided() {
     assert_eq!(area_sign(a, b, c), Ordering::Less);
 }
 
-/// Where filters that leave out overflow and underflow decide wrongly.
+/// Cases that filters decide wrongly if they ignore overflow and underflow.
 #[test]
 fn filters_leave_what_overflows_or_underflows() {
     // The differences from c are rounded, and then their products to 5 and 4 times the smallest number.
-    let place = |x: i64, y: i64| DVec2::new(x as f64, y as f64) * 2f64.powi(-592);
-    let a = place(54_043_195_528_445_928, 54_043_195_528_445_952);
-    let b = place(108_086_391_056_891_904, 108_086_391_056_891_952);
-    compare_in_plane([a, b, place(-4, -4), DVec2::new(1.0, 0.0)]);
+    let point = |x: i64, y: i64| DVec2::new(x as f64, y as f64) * 2f64.powi(-592);
+    let a = point(54_043_195_528_445_928, 54_043_195_528_445_952);
+    let b = point(108_086_391_056_891_904, 108_086_391_056_891_952);
+    compare_in_plane([a, b, point(-4, -4), DVec2::new(1.0, 0.0)]);
 
     // The angle at c is 2^-40 below π, the one at d 2^-41: the square of the first normal is rounded to 0.
     let half = 2f64.powi(-252);
@@ -280,7 +280,7 @@ fn filters_leave_what_overflows_or_underflows() {
     let [a, b] = [-half, half].map(|x| DVec3::new(x, 0.0, 0.0));
     compare_in_space([a, b, on_axis(2f64.powi(-293)), on_axis(-2f64.powi(-210))], 10.0, 1e-30);
 
-    // The edge is short, c far off and d near: by rounding the square of the first normal is infinite.
+    // The edge is short, c is far away and d is near: rounding makes the square of the first normal infinite.
     let [a, b] = [DVec3::new(1e90, 1e90, 0.0), DVec3::new(1e90, 1e90, 1e-20)];
     compare_in_space(
         [a, b, DVec3::new(-1e90, 1e90, 1e-20), DVec3::new(1e90, 1e90 + 1e80, 0.0)],
@@ -289,7 +289,7 @@ fn filters_leave_what_overflows_or_underflows() {
     );
 }
 
-/// Also the widest that each kind of integer takes, and the ones next to it.
+/// Includes the widest differences of each kind of integer, and the next wider ones.
 #[test]
 fn differences_of_every_width_are_decided() {
     let tiny = f64::from_bits(1);
@@ -311,7 +311,7 @@ fn cosines_are_right_to_the_last_places() {
     for step in 1..=18_000 {
         let degrees = f64::from(step) / 100.0;
         let cosine = cos_degrees(degrees);
-        // Off by as much as the radians are.
+        // The tolerance includes the rounding of the radians.
         let radians = degrees.to_radians();
         let exact = libm::cos(radians);
         assert!(

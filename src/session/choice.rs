@@ -13,25 +13,25 @@ use crate::system::threads::Threads;
 use crate::{Backend, Error, Mesh, Options, Order};
 use std::sync::Arc;
 
-/// An engine, and why `Auto` took no other.
+/// An engine, and why `Auto` chose no other.
 pub(super) struct Choice {
     pub(super) engine: Box<dyn Engine>,
     pub(super) fallback: Option<String>,
-    /// Whether it is the CPU only until a GPU is ready.
+    /// Whether the session may change from the CPU to a GPU that becomes ready.
     pub(super) may_change: bool,
 }
 
-/// What a mesh is as a job for `Auto`.
+/// The job that `Auto` estimates for a mesh.
 pub(super) fn job_of(mesh: &Mesh, options: &Options) -> Job {
     let triangles = mesh.triangle_count();
     let threads = Threads::count_for(options.threads, triangles);
-    // The CPU that is left has threads in another module.
+    // With `leaves_cpu`, another module runs the CPU engine, with these threads.
     #[cfg(all(target_arch = "wasm32", feature = "js"))]
     let threads = options.leaves_cpu.unwrap_or(threads);
     Job { triangles, dimension: mesh.dimension(), threads }
 }
 
-/// Whether a session with these options asks for a GPU first, for such a job.
+/// Whether a session with these options tries a GPU first for this job.
 #[cfg(not(target_arch = "wasm32"))]
 pub(super) fn asks_gpu(options: &Options, job: Job) -> bool {
     match (options.order, options.backend) {
@@ -41,8 +41,8 @@ pub(super) fn asks_gpu(options: &Options, job: Job) -> bool {
     }
 }
 
-/// Why `Auto` takes the CPU without asking for a GPU, if it does: the CPU is done first. A browser then makes its GPU ready
-/// for later runs, where those are worth it; `is_double` says whether coordinates are.
+/// Why `Auto` takes the CPU without trying a GPU, or `None` if it tries one. If the job suits a GPU that is not ready, a
+/// browser starts to prepare it for later runs. `is_double`: whether the coordinates are 64-bit.
 pub(crate) fn why_cpu(job: Job, is_double: bool, options: &Options) -> Option<String> {
     if !job.is_for_gpu() {
         return Some(format!("{} triangles are done first on the cpu", job.triangles));
@@ -53,16 +53,16 @@ pub(crate) fn why_cpu(job: Job, is_double: bool, options: &Options) -> Option<St
     Some(gpu::why_not_ready(job, is_double, options))
 }
 
-/// Whether `Auto` goes on with a GPU that has become ready, after so many milliseconds of set-up and of iterations.
+/// Whether `Auto` continues on a GPU that has become ready, after `set_up` and `flip` milliseconds on the CPU.
 pub(super) fn changes_to_gpu(mesh: &Mesh, options: &Options, (set_up, flip): (f64, f64)) -> bool {
     let job = job_of(mesh, options);
-    job.goes_on_with_gpu(set_up, flip) && gpu::is_ready(job, mesh.positions().is_double(), options)
+    job.continues_on_gpu(set_up, flip) && gpu::is_ready(job, mesh.positions().is_double(), options)
 }
 
-/// The engine for the options. Boxed, as below.
+/// The engine for the options. Boxed, as [`open`].
 ///
 /// # Errors
-/// Those of the engine asked for; none for `Auto`.
+/// Those of the requested engine; for `Auto`, only [`Error::OutOfMemory`].
 pub(super) fn engine_for<'a>(mesh: &'a Arc<Mesh>, options: &'a Options) -> Answer<'a, Choice> {
     Box::pin(async move {
         match (options.order, options.backend) {
@@ -83,17 +83,17 @@ pub(super) fn engine_for<'a>(mesh: &'a Arc<Mesh>, options: &'a Options) -> Answe
     })
 }
 
-/// The GPU, or the CPU where that does not take the mesh.
+/// The GPU, or the CPU where the GPU does not take the mesh.
 async fn auto(mesh: &Arc<Mesh>, options: &Options) -> Result<Choice, Error> {
     match open(Backend::Gpu, mesh, options).await {
         Ok(engine) => Ok(Choice { engine, fallback: None, may_change: false }),
-        // It is the mesh that is too large.
+        // The CPU would need the same memory.
         Err(error @ Error::OutOfMemory { .. }) => Err(error),
         Err(error) => cpu_for(without_gpu(error.to_string()), mesh, options).await,
     }
 }
 
-/// The CPU, unless the options leave it: then [`Error::Device`] with the reason.
+/// The CPU, or [`Error::Device`] with the reason where the option `leaves_cpu` is set.
 fn cpu_for<'a>(why: String, mesh: &'a Arc<Mesh>, options: &'a Options) -> Answer<'a, Choice> {
     #[cfg(all(target_arch = "wasm32", feature = "js"))]
     if options.leaves_cpu.is_some() {
@@ -102,7 +102,7 @@ fn cpu_for<'a>(why: String, mesh: &'a Arc<Mesh>, options: &'a Options) -> Answer
     cpu_after(why, mesh, options)
 }
 
-/// The CPU, which takes every mesh, where another engine has failed with `why`.
+/// The CPU, which takes every mesh, after another engine has failed with `why`.
 ///
 /// # Errors
 /// [`Error::OutOfMemory`].
@@ -110,10 +110,10 @@ pub(super) fn cpu_after<'a>(why: String, mesh: &'a Arc<Mesh>, options: &'a Optio
     Box::pin(alone(Backend::Cpu, mesh, options, Some(why)))
 }
 
-/// The GPU after so many iterations.
+/// The GPU, after it has repeated `iterations` iterations.
 ///
 /// # Errors
-/// As [`engine_for`] for the GPU.
+/// Those of [`engine_for`] for the GPU.
 pub(super) fn gpu_after<'a>(
     iterations: u32,
     mesh: &'a Arc<Mesh>,
@@ -126,7 +126,7 @@ pub(super) fn gpu_after<'a>(
     })
 }
 
-/// An engine that the session stays on.
+/// An engine that the session keeps.
 async fn alone(
     backend: Backend,
     mesh: &Arc<Mesh>,
@@ -136,7 +136,7 @@ async fn alone(
     Ok(Choice { engine: open(backend, mesh, options).await?, fallback, may_change: false })
 }
 
-/// Boxed, so that what an engine does to begin is compiled into one place only.
+/// Boxed, so that the code that starts an engine is compiled only once.
 fn open<'a>(backend: Backend, mesh: &'a Arc<Mesh>, options: &'a Options) -> Answer<'a, Box<dyn Engine>> {
     Box::pin(async move {
         let thresholds = Thresholds::from(options);
@@ -165,6 +165,6 @@ async fn webgl(mesh: &Arc<Mesh>, options: &Options) -> Result<Box<dyn Engine>, E
 
 #[cfg(not(all(target_arch = "wasm32", feature = "js")))]
 async fn webgl(_mesh: &Arc<Mesh>, _options: &Options) -> Result<Box<dyn Engine>, Error> {
-    let message = "WebGL2 is there in browsers only, through the npm package".to_owned();
+    let message = "WebGL2 runs only in browsers, through the npm package".to_owned();
     Err(Error::BackendUnavailable { backend: crate::EngineKind::WebGl, message })
 }

@@ -1,39 +1,39 @@
-//! How long a whole job takes on each engine, from the caller's arrays to the result: what `auto` chooses by.
+//! Estimates how long a whole job takes on each engine, from the caller's arrays to the result. `auto` compares them.
 //!
-//! The constants fit the tables of `npm run crossover` on an NVIDIA H200 with 16 cores, those of the start the table of
-//! `cargo bench --bench start`. On another machine all engines are faster or slower together, more or less; `npm run
-//! crossover` says whether the choice is right there.
+//! The constants fit the tables of `npm run crossover` on an NVIDIA H200 with 16 cores; `Rates::start` fits the table of
+//! `cargo bench --bench start`. On another machine, the times of all engines change by about the same factor; `npm run
+//! crossover` shows whether the choice is right there.
 
 use crate::Dimension;
 
-/// What the size of a job says of its time.
+/// What the estimates depend on.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Job {
     pub(crate) triangles: usize,
     pub(crate) dimension: Dimension,
-    /// Those of the CPU engine.
+    /// Threads of the CPU engine.
     pub(crate) threads: usize,
 }
 
-/// A difference of so few milliseconds wakes up no GPU.
+/// Milliseconds that a GPU has to save to be chosen.
 const MARGIN: f64 = 2.5;
 
-/// The part of a job on the CPU that comes before its first iteration.
+/// The fraction of a CPU job that precedes its first iteration.
 const SET_UP: f64 = 0.5;
 
-/// Constants of one kind of build.
+/// Constants of a native or a WebAssembly build.
 struct Rates {
-    /// Nanoseconds a triangle on one thread of the CPU, in the plane and in space.
+    /// Nanoseconds per triangle on one thread of the CPU, in the plane and in space.
     cpu: [f64; 2],
-    /// The part of it that more threads do not divide.
+    /// The sequential fraction of that time.
     alone: f64,
-    /// Milliseconds until several threads work.
+    /// Milliseconds to start several threads.
     several: f64,
-    /// Milliseconds for any job on a GPU that is ready.
+    /// Milliseconds for an empty job on a GPU that is ready.
     gpu: f64,
-    /// Nanoseconds a triangle on it.
+    /// Nanoseconds per triangle on the GPU.
     gpu_triangle: f64,
-    /// Milliseconds until a GPU is ready whose driver has to compile all kernels.
+    /// Milliseconds to make a GPU ready if its driver has to compile all kernels.
     start: f64,
 }
 
@@ -57,19 +57,19 @@ impl Job {
         RATES.gpu + 1e-6 * RATES.gpu_triangle * self.triangles as f64
     }
 
-    /// Whether a GPU is done first that is ready.
+    /// Whether a GPU that is ready finishes first.
     pub(crate) fn is_for_gpu(self) -> bool {
         self.cpu() > self.gpu() + MARGIN
     }
 
-    /// The same for what is left after so many milliseconds of set-up and of iterations on the CPU. The set-up tells of a CPU
-    /// that is slower than others.
-    pub(crate) fn goes_on_with_gpu(self, set_up: f64, flip: f64) -> bool {
+    /// The same for the rest of a job, after `set_up` and `flip` milliseconds on the CPU. A slow set-up raises the
+    /// estimate for the CPU.
+    pub(crate) fn continues_on_gpu(self, set_up: f64, flip: f64) -> bool {
         let whole = self.cpu().max(set_up / SET_UP);
         whole - set_up - flip > self.gpu() + MARGIN
     }
 
-    /// Whether a GPU is done first that has to start.
+    /// Whether a GPU finishes first even if it has to start.
     pub(crate) fn waits_for_gpu(self) -> bool {
         self.cpu() > self.gpu() + RATES.start
     }
@@ -95,7 +95,7 @@ mod tests {
     }
 
     #[test]
-    fn what_waits_for_a_gpu_is_for_a_gpu_and_stays_so_as_it_grows() {
+    fn jobs_that_wait_for_a_gpu_suit_a_gpu_and_larger_ones_do_too() {
         for threads in [1, 2, 16, 256] {
             let jobs: Vec<_> = (0..27).map(|power| job(1 << power, threads)).collect();
             assert!(jobs.iter().all(|job| !job.waits_for_gpu() || job.is_for_gpu()));
@@ -105,10 +105,10 @@ mod tests {
     }
 
     #[test]
-    fn a_job_that_is_nearly_done_stays_where_it_is() {
-        assert!(job(2_000_000, 1).goes_on_with_gpu(100.0, 100.0));
-        assert!(!job(2_000_000, 1).goes_on_with_gpu(400.0, 600.0));
+    fn a_job_that_is_nearly_done_stays_on_the_cpu() {
+        assert!(job(2_000_000, 1).continues_on_gpu(100.0, 100.0));
+        assert!(!job(2_000_000, 1).continues_on_gpu(400.0, 600.0));
         // On a slow machine.
-        assert!(job(2_000_000, 1).goes_on_with_gpu(1000.0, 600.0));
+        assert!(job(2_000_000, 1).continues_on_gpu(1000.0, 600.0));
     }
 }

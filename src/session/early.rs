@@ -1,4 +1,4 @@
-//! A GPU that is opened while a mesh is read, and closed while the result is written.
+//! Opens a GPU while the program reads a mesh, and closes it while the program writes the result.
 
 use super::choice::{asks_gpu, job_of};
 use super::cost::Job;
@@ -8,39 +8,39 @@ use crate::system::threads::Threads;
 use crate::{Backend, Dimension, Error, Mesh, Options};
 use std::thread::{self, JoinHandle};
 
-/// A GPU that a thread of its own opens for the sessions to come. Nobody has to wait for it; but whoever ends the process
-/// while it is being opened leaves out what the system does at an end: drivers do not expect it.
+/// A GPU that a background thread opens for later sessions. Waiting for it is optional. A process that ends while the
+/// thread opens the GPU has to skip its exit handlers: drivers do not expect them at that moment.
 pub struct EarlyGpu(Option<JoinHandle<Result<(), Error>>>);
 
 impl EarlyGpu {
-    /// Begins, if a session with these options asks for the GPU where a mesh has so many triangles.
+    /// Starts the thread, if a session with these options would try the GPU for a mesh of `triangles` triangles.
     pub fn open(options: &Options, triangles: usize) -> Self {
         let takes_software = options.backend == Backend::Gpu;
         let open = move || opened(takes_software);
         let threads = Threads::count_for(options.threads, triangles);
-        // In space the CPU takes longer.
+        // The dimension is not known yet: in space the CPU takes longer.
         let job = Job { triangles, dimension: Dimension::Three, threads };
-        // Where no thread can be had, the session opens it.
+        // If no thread starts, the session opens the GPU.
         Self(asks_gpu(options, job).then(|| thread::Builder::new().spawn(open).ok()).flatten())
     }
 
-    /// Waits for it, if a session with these options asks for it with this mesh.
+    /// Waits for the GPU, if a session with these options would try it for this mesh.
     ///
     /// # Errors
-    /// Those that the session would have: [`Error::BackendUnavailable`] and [`Error::Device`].
+    /// The session would return the same: [`Error::BackendUnavailable`] and [`Error::Device`].
     pub fn wait(self, mesh: &Mesh, options: &Options) -> Result<(), Error> {
         let thread = self.0.filter(|_| asks_gpu(options, job_of(mesh, options)));
-        // A session says itself what it panics at.
+        // After a panic in the thread, the session opens the GPU itself and meets the same panic.
         thread.map_or(Ok(()), |thread| thread.join().unwrap_or(Ok(())))
     }
 }
 
-/// Closes the GPU, which no session has any more, on a thread of its own; another session opens it again. The end of a
-/// process does so too, but takes its time.
+/// Closes the shared GPU on a background thread, once no session holds it. A later session opens it again. Without this
+/// call the process closes the GPU when it ends, and ends later.
 pub fn close_gpu() {
     #[cfg(feature = "gpu")]
     if let Some(device) = Device::taken() {
-        // Where no thread can be had, it is closed here.
+        // If no thread starts, this thread closes it.
         let _ = thread::Builder::new().spawn(move || drop(device));
     }
 }

@@ -1,4 +1,4 @@
-//! What the next iteration will do with each edge, and why: the phases' own decisions, over all triangles.
+//! What the next iteration does with each edge, and why: the rules of `phases/`, applied to all triangles.
 
 use crate::mesh::adjacency::{EdgeKind, edge_kind};
 use crate::mesh::buckets::for_each_edge;
@@ -26,16 +26,16 @@ pub enum EdgeState {
     Locked,
     /// Not Delaunay, and blocked by [`Reason::Deviation`].
     Deviation,
-    /// Frozen, whatever its angles: three or more triangles, or one triangle twice.
+    /// Frozen, whatever its angles: it has three or more triangles, or one triangle twice.
     NonManifold,
-    /// Frozen, whatever its angles: two triangles oriented against each other.
+    /// Frozen, whatever its angles: its two triangles have opposite orientations.
     Inconsistent,
-    /// One triangle.
+    /// On the boundary: it has one triangle.
     Boundary,
 }
 
 impl EdgeState {
-    /// All states, each at the place of its number.
+    /// All states, each at the index of its number.
     pub const ALL: [Self; 11] = [
         Self::Delaunay,
         Self::Flips,
@@ -50,7 +50,7 @@ impl EdgeState {
         Self::Boundary,
     ];
 
-    /// The word for it: `delaunay`, `flips`, `waits`, `angle`, `fold`, `duplicate`, `locked`,
+    /// The name of the state: `delaunay`, `flips`, `waits`, `angle`, `fold`, `duplicate`, `locked`,
     /// `deviation`, `non-manifold`, `inconsistent`, `boundary`.
     pub fn name(self) -> &'static str {
         match self {
@@ -85,7 +85,7 @@ impl From<Verdict> for EdgeState {
     }
 }
 
-/// The state of each half-edge's edge before `iteration`; `None` where nothing selects.
+/// The state of each half-edge's edge before `iteration`; `None` for Lawson's algorithm, which has no select phase.
 pub(crate) fn edge_states(
     geometry: &Geometry,
     mesh: Topology,
@@ -102,7 +102,7 @@ pub(crate) fn edge_states(
     }
     if let Some(iteration) = iteration {
         let best = label(geometry, mesh, iteration);
-        // Each of the two triangles names the other one's half-edge.
+        // A selected triangle stores the half-edge of the other triangle.
         for g in select(mesh, iteration, &best).into_iter().filter(|&g| g != NONE) {
             states[g as usize] = EdgeState::Flips;
         }

@@ -1,6 +1,6 @@
-//! Why `auto` takes the CPU, in words.
+//! Why `auto` takes the CPU, as a message.
 
-/// Why it is the CPU where the GPU does not take the mesh for this reason.
+/// The message for a GPU that failed or refused the mesh with `why`.
 pub(super) fn without_gpu(why: String) -> String {
     if cfg!(all(target_arch = "wasm32", feature = "js")) {
         return why + "; webgl2 is left out: it takes longer than the cpu";

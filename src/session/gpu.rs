@@ -6,19 +6,19 @@ use crate::phases::Thresholds;
 use crate::{Backend, Dimension, EngineKind, Error, Mesh, Options};
 use std::sync::Arc;
 
-/// The form that a mesh has, unless its floats span too many bits.
+/// The form of a mesh. A mesh of 32-bit floats that span too many bits gets the fixed-point form at upload instead.
 fn form_of(dimension: Dimension, is_double: bool, options: &Options) -> Form {
     Form::new(dimension, is_double, Thresholds::from(options))
 }
 
-/// Whether a job can begin on the GPU at once.
+/// Whether a job can start on the GPU at once.
 pub(super) fn is_ready(job: Job, is_double: bool, options: &Options) -> bool {
     let form = form_of(job.dimension, is_double, options);
     let takes_software = options.backend == Backend::Gpu;
     Device::known(options.given_device()).is_some_and(|device| device.is_ready(form, takes_software))
 }
 
-/// Why a GPU is not taken that a job is worth, but not worth waiting for. In a browser it is made ready meanwhile.
+/// Why a job that suits a GPU does not wait until one is ready. A browser prepares the GPU meanwhile.
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 pub(super) fn why_not_ready(job: Job, is_double: bool, options: &Options) -> String {
     let form = form_of(job.dimension, is_double, options);
@@ -27,16 +27,18 @@ pub(super) fn why_not_ready(job: Job, is_double: bool, options: &Options) -> Str
     ahead.map_or_else(super::fallback::without_gpu, |()| "the gpu is made ready behind this run".to_owned())
 }
 
-/// Elsewhere a process may end at any time, and drivers do not expect that while they compile.
+/// Natively nothing prepares the GPU: the process may end at any time, and drivers do not expect that while they compile.
 #[cfg(not(all(target_arch = "wasm32", feature = "js")))]
 pub(super) fn why_not_ready(job: Job, _: bool, _: &Options) -> String {
     format!("{} triangles are done on the cpu before the gpu is ready", job.triangles)
 }
 
+/// An engine on the GPU, which has passed the self-test.
+///
 /// # Errors
 /// [`Error::BackendUnavailable`], [`Error::BackendLimit`], [`Error::Device`].
 pub(super) async fn engine(mesh: &Arc<Mesh>, options: &Options) -> Result<Box<dyn Engine>, Error> {
-    // `Auto` leaves a GPU alone that the processor plays.
+    // `Auto` never takes a software GPU.
     let takes_software = options.backend == Backend::Gpu;
     let form = form_of(mesh.dimension(), mesh.positions().is_double(), options);
     let device = tested(options.given_device(), takes_software, form).await?;
@@ -45,7 +47,7 @@ pub(super) async fn engine(mesh: &Arc<Mesh>, options: &Options) -> Result<Box<dy
     Ok(Box::new(WebGpu::new(device, upload).await?))
 }
 
-/// The device, once it has passed the self-test for a form.
+/// The device, after the self-test for a form.
 async fn tested(
     given: Option<&GivenDevice>,
     takes_software: bool,
@@ -56,7 +58,7 @@ async fn tested(
     Ok(device)
 }
 
-/// Once for each form.
+/// Runs the self-test, unless the device has passed it for this form.
 async fn test(device: &DeviceHandle, form: Form) -> Result<(), Error> {
     let make = |upload: Upload| -> Answer<'static, Box<dyn Engine>> {
         let device = device.clone();

@@ -1,16 +1,15 @@
-//! Locked edges: those that the user has named, by themselves, by their triangles or by groups of triangles, which never
-//! flip.
+//! Locked edges never flip. The user names them one by one, by their triangles, or by groups of triangles.
 
 use crate::mesh::Mesh;
 use crate::mesh::buckets::for_each_edge;
 use crate::mesh::half_edge::next;
 use crate::{Error, Options, Welded};
 
-/// The edges that `options` lock, each by its two vertices: those named first, then those of triangles and between
-/// groups. What is named has yet to be found in the mesh.
+/// The edges that `options` lock, each by its two vertices: `locked_edges` first, then the edges of `locked_triangles` and
+/// those between `groups`. [`half_edges`] finds them in the mesh.
 ///
 /// # Errors
-/// [`Error::Option`] for a triangle that the mesh has not, and for groups of another number of triangles.
+/// [`Error::Option`] for a triangle that does not exist, and for `groups` of the wrong length.
 pub(crate) fn edges(mesh: &Mesh, options: &Options) -> Result<Vec<[u32; 2]>, Error> {
     let Options { locked_edges, locked_triangles, groups, .. } = options;
     let (triangles, _) = mesh.triangles().as_chunks::<3>();
@@ -51,7 +50,7 @@ pub(crate) fn half_edges(mesh: &Mesh, pairs: &[[u32; 2]]) -> Result<Vec<u32>, Er
     edges.sort_unstable();
     edges.dedup();
     let mut is_found = vec![false; edges.len()];
-    // Most half-edges are ruled out by one look.
+    // One lookup rules out most half-edges.
     let mut is_end = vec![false; mesh.vertex_count()];
     for &(u, _) in &edges {
         if let Some(is_end) = is_end.get_mut(u as usize) {
@@ -61,13 +60,13 @@ pub(crate) fn half_edges(mesh: &Mesh, pairs: &[[u32; 2]]) -> Result<Vec<u32>, Er
     for h in 0..mesh.triangles().len() as u32 {
         let ends = ordered([h, next(h)].map(|x| mesh.triangles()[x as usize]));
         if is_end[ends.0 as usize]
-            && let Ok(place) = edges.binary_search(&ends)
+            && let Ok(index) = edges.binary_search(&ends)
         {
-            is_found[place] = true;
+            is_found[index] = true;
             half_edges.push(h);
         }
     }
-    match pairs.iter().find(|&&pair| edges.binary_search(&ordered(pair)).is_ok_and(|place| !is_found[place]))
+    match pairs.iter().find(|&&pair| edges.binary_search(&ordered(pair)).is_ok_and(|index| !is_found[index]))
     {
         None => Ok(half_edges),
         Some([u, v]) => {
@@ -78,8 +77,8 @@ pub(crate) fn half_edges(mesh: &Mesh, pairs: &[[u32; 2]]) -> Result<Vec<u32>, Er
 }
 
 impl Welded {
-    /// Adds to the options of a run what has to be locked. Edges that they lock already are those between the places of
-    /// their vertices.
+    /// Adds the edges and triangles that have to stay to the locks of `options`. Its `locked_edges` name vertices of the
+    /// mesh before the weld; this call renumbers them.
     pub fn constrain(&self, options: &mut Options) {
         for vertex in options.locked_edges.as_flattened_mut() {
             *vertex = self.places.get(*vertex as usize).copied().unwrap_or(*vertex);

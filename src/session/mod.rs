@@ -1,4 +1,4 @@
-//! The loop around an engine: options in, iterations and statistics out, and the honest result.
+//! The loop around an engine: it takes options, runs iterations and counts what remains.
 
 mod choice;
 mod cost;
@@ -48,9 +48,9 @@ pub struct Session {
     mesh: Arc<Mesh>,
     options: Options,
     engine: Box<dyn Engine>,
-    /// Why `Auto` took no other one.
+    /// Why `Auto` chose no other engine.
     fallback: Option<String>,
-    /// Whether it is the CPU only until a GPU is ready.
+    /// Whether the session may change from the CPU to a GPU that becomes ready.
     may_change: bool,
     flips_per_iteration: Vec<u32>,
     has_ended: bool,
@@ -58,16 +58,17 @@ pub struct Session {
 }
 
 impl Session {
-    /// Checks the options and makes an engine ready for `mesh`: a mesh, one in an `Arc`, or a reference, which is copied.
+    /// Checks the options and prepares an engine for `mesh`: a mesh, an `Arc` of one, or a reference, which is copied.
     ///
     /// # Errors
-    /// [`Error::Option`]; [`Error::OutOfMemory`] where the CPU has too little memory for a run; [`Error::BackendUnavailable`], [`Error::BackendLimit`] or [`Error::Device`] where
-    /// the GPU was asked for (`Auto` takes the CPU instead).
+    /// [`Error::Option`]; [`Error::OutOfMemory`] if a run on the CPU would need too much memory;
+    /// [`Error::BackendUnavailable`], [`Error::BackendLimit`] or [`Error::Device`] if the options request a GPU. With
+    /// `Auto` the CPU takes over instead.
     pub async fn new(mesh: impl Into<Arc<Mesh>>, mut options: Options) -> Result<Self, Error> {
         options.check()?;
         let (start, mesh) = (Instant::now(), mesh.into());
         options.locked_edges = locks::edges(&mesh, &options)?;
-        // `auto` would take a refusal by an engine for a reason to go on.
+        // Checked here: `auto` would take the error of an engine for a reason to try the next engine.
         locks::half_edges(&mesh, &options.locked_edges)?;
         let Choice { engine, fallback, may_change } = engine_for(&mesh, &options).await?;
         let set_up = ms_since(start);
@@ -84,8 +85,8 @@ impl Session {
         })
     }
 
-    /// One iteration, watched: counts the edges of the whole mesh before it. `None` when nothing is left to
-    /// flip, or the cap on iterations is reached.
+    /// Runs one iteration, and counts the edges of the whole mesh before it. `None` when no edge is left to flip, or at
+    /// the cap on iterations.
     ///
     /// # Errors
     /// [`Error::Device`], [`Error::BackendLimit`], [`Error::OutOfMemory`].
@@ -107,11 +108,11 @@ impl Session {
         }))
     }
 
-    /// Runs to the end. `watch` is called after every batch of iterations with the numbers of iterations and
-    /// flips so far; [`ControlFlow::Break`] stops the run after a complete iteration.
+    /// Runs to the end. It calls `watch` after every batch of iterations with the numbers of iterations and flips so far;
+    /// [`ControlFlow::Break`] stops the run after a complete iteration.
     ///
     /// # Errors
-    /// [`Error::Device`] and [`Error::BackendLimit`], unless the backend is `Auto`: then the CPU takes over; [`Error::OutOfMemory`].
+    /// [`Error::OutOfMemory`]; [`Error::Device`] and [`Error::BackendLimit`], unless the backend is `Auto`: then the CPU takes over.
     pub async fn run(&mut self, mut watch: impl FnMut(u32, u64) -> ControlFlow<()>) -> Result<(), Error> {
         while self.may_continue() {
             self.advance().await?;
@@ -122,10 +123,10 @@ impl Session {
         Ok(())
     }
 
-    /// One batch of iterations, as many as the engine runs in one go. Returns whether there may be more.
+    /// Runs one batch of iterations, of the size that the engine prefers. Returns whether edges may be left to flip.
     ///
     /// # Errors
-    /// As [`Session::run`].
+    /// Those of [`Session::run`].
     pub async fn advance(&mut self) -> Result<bool, Error> {
         if self.may_continue() {
             self.iterate(self.engine.batch().min(self.iterations_left())).await?;
@@ -136,18 +137,18 @@ impl Session {
         Ok(self.may_continue())
     }
 
-    /// Moves the vertices, all of them: 2 or 3 numbers each, `Vec<f32>` or `Vec<f64>`, as many as before. From now on the session is as a new
-    /// one on these positions and the triangles as they are now: its iterations and flips, its creases and the base
-    /// of its audit begin here, and it gives the same bits. Adjacency, device and buffers stay; the triangles are
-    /// read back once.
+    /// Replaces the positions of all vertices: `Vec<f32>` or `Vec<f64>`, 2 or 3 numbers per vertex. The session then equals
+    /// a new one on these positions and the present triangles, bit for bit: it counts iterations and flips from 0, flags
+    /// the creases again, and the audit compares with this state. Adjacency, device and buffers stay. The call reads the
+    /// triangles back once.
     ///
     /// # Errors
-    /// [`Error::PositionCount`], [`Error::NonFinite`]; [`Error::BackendLimit`] where the GPU cannot decide the new
-    /// positions exactly; [`Error::Device`], [`Error::OutOfMemory`]. The session is then as it was before. With `Auto` the CPU takes over
-    /// from a GPU that refuses or fails.
+    /// [`Error::PositionCount`], [`Error::NonFinite`], [`Error::OutOfMemory`]; [`Error::BackendLimit`] where the GPU cannot
+    /// decide the new positions exactly; [`Error::Device`]. After an error the session is unchanged. With `Auto` the CPU
+    /// takes over from a GPU that refuses or fails.
     pub async fn set_positions(&mut self, positions: impl Into<Positions>) -> Result<(), Error> {
         let start = Instant::now();
-        self.check_room(room::POSITIONS)?;
+        self.check_memory(room::POSITIONS)?;
         let positions = positions.into();
         let (length, expected) = (positions.len(), self.mesh.positions().len());
         if length != expected {
@@ -181,16 +182,16 @@ impl Session {
         Ok(())
     }
 
-    /// The triangles as they are now: vertex indices, 3 a triangle.
+    /// The present triangles: 3 vertex indices per triangle.
     ///
     /// # Errors
     /// [`Error::Device`], [`Error::OutOfMemory`].
     pub async fn triangles(&mut self) -> Result<Vec<u32>, Error> {
-        self.check_room(room::COPY)?;
+        self.check_memory(room::COPY)?;
         self.ask(|engine| engine.triangles()).await
     }
 
-    /// The result so far: reads the triangles back and counts what remains.
+    /// The result so far: reads the triangles back and counts the edges that are not Delaunay.
     ///
     /// # Errors
     /// [`Error::Device`], [`Error::OutOfMemory`].
@@ -201,7 +202,7 @@ impl Session {
         Ok(Outcome { triangles, ..outcome })
     }
 
-    /// As [`Session::outcome`], with the triangles in an array of JavaScript.
+    /// As [`Session::outcome`], with the triangles in a JavaScript array.
     #[cfg(all(target_arch = "wasm32", feature = "js"))]
     pub(crate) async fn outcome_array(&mut self) -> Result<(Outcome, Uint32Array), Error> {
         let start = Instant::now();
@@ -210,14 +211,14 @@ impl Session {
         Ok((outcome, array))
     }
 
-    /// As [`Session::triangles`], in an array of JavaScript.
+    /// As [`Session::triangles`], in a JavaScript array.
     #[cfg(all(target_arch = "wasm32", feature = "js"))]
     pub(crate) async fn triangles_array(&mut self) -> Result<Uint32Array, Error> {
-        self.check_room(room::COPY)?;
+        self.check_memory(room::COPY)?;
         self.ask(|engine| engine.triangles_array()).await
     }
 
-    /// The outcome without the triangles, which are asked for only where they are looked at.
+    /// The outcome without the triangles. It calls `triangles` only to count frozen edges.
     async fn summary<'a>(
         &mut self,
         start: Instant,
@@ -254,27 +255,27 @@ impl Session {
         })
     }
 
-    /// Every edge as it is now.
+    /// The present edges.
     ///
     /// # Errors
     /// [`Error::Device`], [`Error::OutOfMemory`].
     pub async fn edges(&mut self) -> Result<Edges, Error> {
-        self.check_room(room::EDGES)?;
+        self.check_memory(room::EDGES)?;
         let triangles = self.triangles().await?;
         let twins = self.ask(|engine| engine.twins()).await?;
         Ok(Edges::from_twins(&triangles, &twins))
     }
 
-    /// The state of the edge of every half-edge as it is now: 3 a triangle, in the order of
-    /// [`Session::triangles`]. The two half-edges of an edge agree.
+    /// The present state of the edge of each half-edge: 3 per triangle, in the order of [`Session::triangles`]. The two
+    /// half-edges of an edge have the same state.
     ///
     /// # Errors
     /// [`Error::Device`], [`Error::OutOfMemory`].
     pub async fn edge_states(&mut self) -> Result<Vec<EdgeState>, Error> {
-        self.check_room(room::EDGES)?;
+        self.check_memory(room::EDGES)?;
         let triangles = self.triangles().await?;
         let twins = self.ask(|engine| engine.twins()).await?;
-        // As the engine found it: neither the components nor their areas change with flips.
+        // Flips change neither the components nor their areas, so the winding is the one that the engine found.
         let (winding, _) = Embedded::with_winding(&self.mesh, &twins, &Threads::default());
         let geometry = Geometry {
             dimension: self.mesh.dimension(),
@@ -290,8 +291,8 @@ impl Session {
         Ok(edge_states(&geometry, topology, vertices, iteration))
     }
 
-    /// How many bytes a session on the CPU takes at most, beside the mesh: to begin, to run and for its outcome. Where there
-    /// is less, it is refused before it begins.
+    /// An upper bound on the bytes that a session on the CPU takes in addition to the mesh, from its start to its outcome.
+    /// With less memory, [`Session::new`] fails with [`Error::OutOfMemory`].
     pub fn bytes(mesh: &Mesh, options: &Options) -> u64 {
         room::bytes(mesh, options)
     }
@@ -306,18 +307,18 @@ impl Session {
         self.flips_per_iteration.iter().map(|&n| u64::from(n)).sum::<u64>()
     }
 
-    /// The engine that runs now: `cpu` or `gpu`.
+    /// The present engine.
     #[cfg(all(target_arch = "wasm32", feature = "js-session"))]
     pub(crate) fn backend(&self) -> EngineKind {
         self.engine.backend()
     }
 
-    /// What the audit compares with: the mesh as it was given, or as its vertices moved last, and the options.
+    /// What the audit compares with: the mesh given to `new` or made by the last `set_positions`, and the options.
     pub(crate) fn input(&self) -> (&Mesh, &Options) {
         (&self.mesh, &self.options)
     }
 
-    /// What a page can draw from.
+    /// The buffers that a page can draw from.
     #[cfg(all(target_arch = "wasm32", feature = "js"))]
     pub(crate) fn shared_objects(&self) -> Option<SharedObjects> {
         self.engine.shared_objects()
@@ -332,14 +333,14 @@ impl Session {
         self.options.iterations_left(done)
     }
 
-    /// Asks for so many bytes a triangle: a call that runs out of memory takes its session with it, one that is refused
-    /// leaves it as it was.
-    fn check_room(&self, bytes: u64) -> Result<(), Error> {
+    /// Checks that so many bytes per triangle are available. Without the check, the call could run out of memory and end
+    /// the session; with it, an error leaves the session unchanged.
+    fn check_memory(&self, bytes: u64) -> Result<(), Error> {
         memory::check(bytes * self.mesh.triangle_count() as u64)
     }
 
     async fn iterate(&mut self, count: u32) -> Result<(), Error> {
-        // Later iterations take what the first has taken.
+        // Later iterations use the memory of the first.
         if self.flips_per_iteration.is_empty() && self.engine.backend() == EngineKind::Cpu {
             memory::check(room::of_run(&self.mesh, &self.options))?;
         }
@@ -351,7 +352,7 @@ impl Session {
         Ok(())
     }
 
-    /// Asks the engine, and the CPU where the device fails or refuses the mesh and the backend is `Auto`.
+    /// Asks the engine. With `Auto`, asks the CPU again if the device fails or refuses the mesh.
     async fn ask<T>(
         &mut self,
         question: impl for<'a> Fn(&'a mut dyn Engine) -> Answer<'a, T>,
@@ -364,8 +365,8 @@ impl Session {
         }
     }
 
-    /// Where the device fails, or the engine finds out late that it cannot take the mesh, the CPU goes the same way again up
-    /// to the last complete iteration, which determinism allows. Boxed, so that it is compiled into one place only.
+    /// Changes to the CPU after the device failed or the engine refused the mesh late. The CPU repeats the run up to the last
+    /// complete iteration; all engines give the same triangles. Boxed, so that this code is compiled only once.
     fn recover(&mut self, error: Error) -> Answer<'_, ()> {
         Box::pin(async move {
             let why = match error {
@@ -380,8 +381,8 @@ impl Session {
         })
     }
 
-    /// Where the GPU has become ready and is done first from here, it goes the same way again and then on. Where it fails, the
-    /// CPU goes on.
+    /// Changes to a GPU that has become ready, if it finishes first from here: it repeats the iterations so far. If it fails,
+    /// the CPU continues.
     async fn change_to_gpu(&mut self) {
         let Timings { upload, adjacency, flip, .. } = self.timings;
         if !choice::changes_to_gpu(&self.mesh, &self.options, (upload + adjacency, flip)) {
@@ -408,7 +409,7 @@ fn ms_since(start: Instant) -> f64 {
     start.elapsed().as_secs_f64() * 1e3
 }
 
-/// Makes `mesh` Delaunay by flipping edges; the mesh is given as to [`Session::new`]. `watch` is as in [`Session::run`].
+/// Makes `mesh` Delaunay by flipping edges. [`Session::new`] describes `mesh`, and [`Session::run`] describes `watch`.
 ///
 /// # Errors
 /// Those of [`Session::new`] and [`Session::run`].

@@ -5,7 +5,7 @@ use crate::engine::Engine;
 use crate::{EngineKind, Error, Mesh, Options};
 use std::sync::Arc;
 
-/// As if it were: opening it says why it is not.
+/// Says yes, so that the session opens the engine and gets its error.
 pub(super) fn is_ready(_: Job, _: bool, _: &Options) -> bool {
     true
 }

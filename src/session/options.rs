@@ -1,4 +1,4 @@
-//! What the caller of a run can choose.
+//! The options of a run.
 
 use crate::error::number;
 use crate::phases::Thresholds;
@@ -8,8 +8,8 @@ use std::num::NonZeroUsize;
 /// Which engine runs the phases.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Backend {
-    /// The one of the CPU and the GPU that is done first, start-up included; the outcome says which and why. A GPU that a
-    /// session before has made ready needs no start-up.
+    /// The CPU or the GPU, whichever is estimated to finish first, start-up included; the outcome says which and why. A GPU
+    /// that an earlier session has opened needs no start-up.
     #[default]
     Auto,
     /// The CPU. Takes every mesh.
@@ -20,7 +20,7 @@ pub enum Backend {
     WebGl,
 }
 
-/// Which of the many valid orders of flips is taken.
+/// The order of the flips. Each order gives a valid result.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Order {
     /// The parallel pipeline: the same bits on every engine after every iteration.
@@ -33,44 +33,42 @@ pub enum Order {
 /// The largest number for [`Options::threads`].
 pub const MOST_THREADS: usize = 256;
 
-/// What the caller can choose.
+/// The options of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Options {
-    /// Which engine.
+    /// The engine.
     pub backend: Backend,
-    /// β: the largest angle in degrees, 0 to 180, between the normals of two triangles whose edge may
-    /// flip, before and after (3D only). An edge of the input over β is a crease and stays, even if flips around
-    /// it lower its angle.
+    /// β: the largest angle in degrees, 0 to 180, between the normals of two triangles whose edge may flip, before and
+    /// after the flip (3D only). An edge of the input over β is a crease: it never flips, even if flips around it lower
+    /// its angle.
     pub max_normal_angle: f64,
     /// The largest distance between the old and the new diagonal of a flip, in the units of the positions, rounded down to
-    /// a 32-bit float (3D only): what one flip may move the surface by. Infinite: any. Of the lines that they lie on, where
-    /// the diagonals themselves do not pass each other.
+    /// a 32-bit float (3D only). It limits how far one flip moves the surface; infinity sets no limit. The distance is the
+    /// one between the lines through the diagonals, also where the diagonals do not pass each other.
     pub max_deviation: f64,
-    /// Stop after so many iterations; `None`: run to the end, which is always reached.
+    /// The most iterations; `None`: no limit. Every run ends by itself.
     pub max_iterations: Option<u32>,
-    /// Edges that never flip, by the two vertices of each, in any order; repeated pairs are one. Those that are still
-    /// not Delaunay at the end are counted by [`Reason::Locked`](crate::Reason::Locked). Every pair has to be an edge
-    /// of the mesh; to lock one that cannot flip, on the boundary or frozen, changes nothing.
+    /// Edges that never flip, each by its two vertices in any order. Pairs may repeat, and each has to be an edge of the
+    /// mesh. [`Reason::Locked`](crate::Reason::Locked) counts those that are not Delaunay at the end. Locking a boundary
+    /// edge or a frozen edge changes nothing.
     pub locked_edges: Vec<[u32; 2]>,
-    /// Triangles that stay as they are, by their numbers: their edges are locked.
+    /// Triangles that stay, by their indices: all of their edges are locked.
     pub locked_triangles: Vec<u32>,
-    /// A number for each triangle, or nothing: edges between triangles of different numbers are locked, so that every
-    /// group keeps its border. Flips leave each triangle in its group.
+    /// A number for each triangle, or empty. Edges between triangles of different numbers are locked, so every group keeps
+    /// its border, and every triangle stays in its group.
     pub groups: Vec<u32>,
-    /// Reproducible pipeline or Lawson's algorithm.
+    /// The order of the flips.
     pub order: Order,
-    /// How many threads the CPU engine runs on, at most [`MOST_THREADS`]; `None`: one for each core. No more are started
-    /// than there are pieces of 4,096 triangles, and a mesh of fewer than 65,536 is done on one, before others have woken
-    /// up. The result is the same for any
-    /// number. Lawson's algorithm flips on several in the plane only, where no vertex has triangles on two sides
-    /// that share no edge. Without the feature `threads` it is always one.
-    /// What goes to a GPU and comes back is copied on one for each core.
+    /// Threads of the CPU engine, at most [`MOST_THREADS`]; `None`: one per core. The engine starts at most one thread per
+    /// 4,096 triangles, and runs meshes of fewer than 65,536 triangles on one thread. The result does not depend on the
+    /// number. Lawson's algorithm flips on several threads only if every vertex has one fan. Without the feature
+    /// `threads` the engine always has one thread. Copies to and from a GPU use one thread per core.
     pub threads: Option<NonZeroUsize>,
-    /// The device that the GPU engine runs on, instead of one of its own. It is never destroyed here, nothing of it
-    /// is set, and its errors about other calls are left alone. Of a software one, `Auto` takes the CPU.
+    /// The device for the GPU engine, instead of one of its own. The engine never destroys it, changes none of its
+    /// settings, and ignores errors of calls that are not its own. If it is a software GPU, `Auto` takes the CPU.
     #[cfg(all(target_arch = "wasm32", feature = "js"))]
     pub device: Option<crate::wasm::session::GpuDevice>,
-    /// If set, `Auto` fails where it would take the CPU: another module has the CPU engine, on so many threads.
+    /// If set, `Auto` fails where it would choose the CPU: another module then runs the CPU engine, on this number of threads.
     #[cfg(all(target_arch = "wasm32", feature = "js"))]
     pub leaves_cpu: Option<usize>,
     /// The object of JavaScript that these options were read from, without its lists. Other modules read it again.
@@ -89,7 +87,7 @@ impl Options {
             return Err(Error::Option { option: "max_normal_angle", message });
         }
         if self.max_deviation.is_nan() || self.max_deviation < 0.0 {
-            let message = format!("{} is not a distance from 0 on", number(self.max_deviation));
+            let message = format!("{} is not a distance: give 0 or more", number(self.max_deviation));
             return Err(Error::Option { option: "max_deviation", message });
         }
         self.threads.map_or(Ok(()), |count| threads(count.get()).map(drop))
@@ -107,14 +105,14 @@ impl Options {
 /// [`Error::Option`].
 pub(crate) fn threads(count: usize) -> Result<NonZeroUsize, Error> {
     NonZeroUsize::new(count).filter(|_| count <= MOST_THREADS).ok_or_else(|| {
-        let message = format!("{count} is not a number of threads, 1 to {MOST_THREADS}");
+        let message = format!("{count} is not a number of threads: give 1 to {MOST_THREADS}");
         Error::Option { option: "threads", message }
     })
 }
 
 #[cfg(feature = "gpu")]
 impl Options {
-    /// The device that they give, if they do.
+    /// The device that the caller gives, if any.
     pub(crate) fn given_device(&self) -> Option<&crate::engine::GivenDevice> {
         #[cfg(all(target_arch = "wasm32", feature = "js"))]
         return self.device.as_ref();

@@ -1,20 +1,20 @@
-//! What a run says of its iterations and of its result.
+//! The result of a run, and statistics of its iterations.
 
 use crate::{EngineKind, Reasons};
 
-/// What one watched iteration did.
+/// Statistics of one iteration of [`Session::step`](crate::Session::step).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Iteration {
-    /// Its number, from 0.
+    /// Its index, from 0.
     pub index: u32,
     /// Non-Delaunay edges that may flip, in the whole mesh, before the iteration.
     pub labelled: u32,
     /// Edges flipped.
     pub flips: u32,
-    /// Non-Delaunay edges of two triangles that may not flip, in the whole mesh, before the iteration: by
-    /// `Angle`, `Fold`, `Duplicate`, `Locked` or `Deviation`. Frozen edges are counted at the end only.
+    /// Non-Delaunay edges of two triangles that may not flip, in the whole mesh, before the iteration: by `Angle`, `Fold`,
+    /// `Duplicate`, `Locked` or `Deviation`. Only the outcome counts frozen edges.
     pub blocked: Reasons,
-    /// Wall time in milliseconds, the counts for the watcher included.
+    /// Wall time in milliseconds, including these counts.
     pub ms: f64,
 }
 
@@ -30,22 +30,22 @@ pub enum Status {
 /// Wall times in milliseconds.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Timings {
-    /// On a GPU what comes before the adjacency: checks, memory and the copies to the device; for the first session
-    /// also the device and its shaders. Else 0.
+    /// On a GPU the time before the adjacency: checks, allocation and copies to the device; in the first session also
+    /// opening the device and compiling the shaders. On the CPU 0.
     pub upload: f64,
-    /// The adjacency and what else is found out of the input. After the vertices have moved: that move. A browser's WebGPU
-    /// is not waited for: 0 then, it counts as iterations, as do the copies.
+    /// The adjacency, the creases and the winding. After [`Session::set_positions`](crate::Session::set_positions): the
+    /// time of that call. With WebGPU in a browser 0: the engine does not wait, so `flip` has this time and the copies.
     pub adjacency: f64,
     /// The iterations.
     pub flip: f64,
-    /// All of it, with the read-back and the final count.
+    /// The sum of the others, plus the read-back and the final count.
     pub total: f64,
 }
 
-/// The result of a run, and what there is to say about it.
+/// The result of a run, with statistics.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outcome {
-    /// Vertex indices, 3 a triangle; a flip rotates two triangles in place.
+    /// 3 vertex indices per triangle. The two triangles of a flip keep their indices.
     pub triangles: Vec<u32>,
     /// Done or stopped.
     pub status: Status,
@@ -53,25 +53,25 @@ pub struct Outcome {
     pub backend: EngineKind,
     /// The GPU's name and driver.
     pub adapter: Option<String>,
-    /// Why `auto` is on the CPU, or began there.
+    /// Why `auto` chose the CPU, or started there.
     pub fallback: Option<String>,
     /// Iterations with at least one flip.
     pub iterations: u32,
     /// Flips in all.
     pub flips: u64,
-    /// Flips of each iteration; a whole pass of Lawson's algorithm is one.
+    /// Flips of each iteration; a whole pass of Lawson's algorithm counts as one iteration.
     pub flips_per_iteration: Vec<u32>,
     /// Compute dispatches encoded on the GPU.
     pub dispatches: u64,
-    /// The most bytes that the buffers of WebGPU took at a time; 0 on other engines.
+    /// The peak size of the WebGPU buffers in bytes; 0 on other engines.
     pub device_bytes: u64,
     /// Edges of the mesh.
     pub edges: u64,
     /// Edges with one triangle.
     pub boundary_edges: u64,
-    /// Frozen edges: three or more triangles, or one triangle twice.
+    /// Frozen edges with three or more triangles, or with one triangle twice.
     pub non_manifold_edges: u64,
-    /// Frozen edges: two triangles oriented against each other.
+    /// Frozen edges whose two triangles have opposite orientations.
     pub inconsistent_edges: u64,
     /// Non-Delaunay edges left, by reason.
     pub remaining: Reasons,

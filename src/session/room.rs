@@ -1,30 +1,30 @@
-//! How much memory a session takes on the CPU, from measuring the most that each family of meshes takes: `tests/room.rs`.
+//! How much memory a session takes on the CPU. `tests/room.rs` measures each family of meshes against these bounds.
 
 use crate::{Dimension, Mesh, Options, Order};
 
-/// Bytes a triangle that the lists of edges and of their states take, while they are made.
+/// Bytes per triangle to make the list of edges, or of their states.
 pub(super) const EDGES: u64 = 88;
 
-/// Bytes a triangle that a copy of the triangles takes.
+/// Bytes per triangle of a copy of the triangles.
 pub(super) const COPY: u64 = 12;
 
-/// Bytes a triangle that are taken while positions change.
+/// Bytes per triangle to change the positions.
 pub(super) const POSITIONS: u64 = 44;
 
-/// What of it a run takes after its session has begun.
+/// The part of [`bytes`] that a run takes after `Session::new`.
 pub(super) fn of_run(mesh: &Mesh, options: &Options) -> u64 {
     bytes(mesh, options) / 5 * 2
 }
 
-/// Bytes a vertex: marks and fans.
+/// Bytes per vertex: marks and fans.
 const VERTEX: u64 = 24;
 
-/// Bytes an edge that is locked: the options' pair and what finds its half-edges.
+/// Bytes per locked edge: its pair in the options, and the search for its half-edges.
 const LOCKED: u64 = 24;
 
 /// As [`Session::bytes`](crate::Session::bytes).
 pub(super) fn bytes(mesh: &Mesh, options: &Options) -> u64 {
-    // Adjacency and triangles, and the lists of edges that an iteration goes through, or those of Lawson's regions.
+    // Adjacency, triangles, and the lists of edges of an iteration or of Lawson's regions.
     let triangle = match (options.order, mesh.dimension()) {
         (Order::Reproducible, Dimension::Two) => 52,
         (Order::Reproducible, Dimension::Three) => 64,

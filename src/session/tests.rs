@@ -1,4 +1,4 @@
-//! What becomes of a session when its device is lost.
+//! Sessions whose device is lost, refuses the mesh, or becomes ready during the run.
 
 #![allow(clippy::unwrap_used, reason = "what fails here is a failed test")]
 
@@ -6,7 +6,7 @@ use super::*;
 use crate::engine::{Census, Cpu, EdgeCounts};
 use pollster::block_on;
 
-/// A device that is lost at a certain question, or finds out there that it cannot take the mesh.
+/// An engine that fails after `questions_left` questions: its device is lost, or it refuses the mesh.
 struct Failing {
     cpu: Cpu,
     questions_left: u32,
@@ -56,7 +56,7 @@ impl Engine for Failing {
     }
 }
 
-/// An edge of every fifth triangle is locked.
+/// One edge of every fifth triangle is locked.
 fn session(backend: Backend, questions_left: u32) -> Session {
     let mesh = crate::families::by_name("random 20").unwrap();
     let locked_edges = mesh.triangles().chunks(15).map(|t| [t[0], t[1]]).collect();
@@ -69,7 +69,7 @@ fn session(backend: Backend, questions_left: u32) -> Session {
     session
 }
 
-/// What a caller sees of a run: the triangles after every iteration, and the outcome.
+/// The triangles after every iteration, and the outcome.
 fn watch(mut session: Session) -> Result<(Vec<Vec<u32>>, Outcome), Error> {
     block_on(async {
         let mut seen = Vec::new();
@@ -124,7 +124,7 @@ fn an_explicit_backend_never_falls_back() {
     assert!(matches!(watch(session(Backend::Gpu, 4)), Err(Error::Device { .. })));
 }
 
-/// The triangles at the end, after the vertices have moved in the middle of a run.
+/// As [`watch`], after one iteration and a move of the vertices.
 fn watch_moved(mut session: Session) -> Result<(Vec<Vec<u32>>, Outcome), Error> {
     let moved: Vec<f64> =
         session.mesh.positions().iter().enumerate().map(|(i, x)| x * (1.0 + (i % 2) as f64)).collect();
@@ -152,7 +152,7 @@ fn a_lost_device_changes_no_result_when_vertices_move() {
     }
 }
 
-/// Coordinates of magnitudes too far apart for the GPU, as floats and as doubles.
+/// Coordinates that span too many bits for the GPU, as floats and as doubles.
 #[cfg(feature = "gpu")]
 #[test]
 fn the_cpu_takes_over_positions_that_the_gpu_refuses() {
@@ -169,11 +169,11 @@ fn the_cpu_takes_over_positions_that_the_gpu_refuses() {
         block_on(session.set_positions(positions)).unwrap();
         let (_, outcome) = watch(session).unwrap();
         assert_eq!((outcome.backend, outcome.status), (EngineKind::Cpu, Status::Done));
-        assert!(outcome.fallback.is_some_and(|said| said.contains("span")));
+        assert!(outcome.fallback.is_some_and(|why| why.contains("span")));
     }
 }
 
-/// A GPU reads floats by other shaders than doubles, and floats that are too large like those.
+/// The GPU has one set of shaders for floats and one for doubles. Floats that are too large use those for doubles.
 #[cfg(feature = "gpu")]
 #[test]
 fn vertices_move_from_floats_to_doubles_and_back() {
@@ -184,9 +184,9 @@ fn vertices_move_from_floats_to_doubles_and_back() {
         block_on(async {
             let mut session = Session::new(mesh.clone(), options).await?;
             let mut states = Vec::new();
-            for (turn, place) in moves.into_iter().enumerate() {
+            for (turn, moved) in moves.into_iter().enumerate() {
                 session.step().await?;
-                let stretch = |(i, x)| place(x) * if i % 2 == turn % 2 { 1.0 } else { 0.25 };
+                let stretch = |(i, x)| moved(x) * if i % 2 == turn % 2 { 1.0 } else { 0.25 };
                 session
                     .set_positions(mesh.positions().iter().enumerate().map(stretch).collect::<Vec<f64>>())
                     .await?;
@@ -206,10 +206,10 @@ fn vertices_move_from_floats_to_doubles_and_back() {
     assert_eq!(gpu_end.remaining, end.remaining);
 }
 
-/// A software GPU stands for one that has become ready: `Auto` takes none, so the session says that it asks for it.
+/// `Auto` never takes a software GPU, so this test sets `Backend::Gpu` before the change.
 #[cfg(feature = "gpu")]
 #[test]
-fn a_run_goes_on_with_a_gpu_that_has_become_ready() {
+fn a_run_continues_on_a_gpu_that_has_become_ready() {
     let mesh = Arc::new(crate::families::by_name("random 160").unwrap());
     let locked_edges = mesh.triangles().chunks(15).map(|t| [t[0], t[1]]).collect();
     let threads = std::num::NonZeroUsize::new(1);
@@ -226,7 +226,7 @@ fn a_run_goes_on_with_a_gpu_that_has_become_ready() {
             assert!(block_on(session.advance()).unwrap());
         }
         session.may_change = true;
-        // However long it has taken here.
+        // So that the estimate does not depend on the speed of this machine.
         session.timings = Timings::default();
         block_on(session.change_to_gpu());
         assert_eq!((session.engine.backend(), session.may_change), (EngineKind::Gpu, false));

@@ -1,9 +1,9 @@
-//! Lawson's sequential algorithm: one non-Delaunay edge after the other, from a queue that the mesh fills bit by bit, so that
-//! the next one is near. The paper compares with it; it is the fast path for those who do not need the order of the parallel
-//! phases.
+//! Lawson's sequential algorithm flips one non-Delaunay edge after another, from a queue. The triangles enter the queue a
+//! few at a time, so that consecutive edges are near each other in memory. The paper compares with this algorithm; it is
+//! faster than the parallel phases.
 //!
-//! Each thread has a region of the mesh, and then what touches two of them. The regions, and so the flips, are the same for
-//! any number of threads.
+//! Each thread flips inside a region of the mesh, then across the border of two regions. The regions, and so the flips,
+//! are the same for any number of threads.
 
 use super::phases::Cpu;
 use super::region::{Region, Work};
@@ -11,17 +11,17 @@ use crate::engine::{Answer, Census, EdgeCounts, Engine};
 use crate::{EngineKind, Mesh};
 use std::sync::Arc;
 
-/// Regions at most, several for each thread of most machines, so that none waits long for another.
+/// The most regions: several per thread on most machines, so that no thread waits long for another.
 const REGIONS: usize = 64;
 
-/// Triangles of a region at least: few of them are near others. Without optimisation it has few, so that small meshes test
-/// regions.
+/// The fewest triangles of a region: few of them are near the border. In debug builds it is small, so that tests with
+/// small meshes have regions.
 const FEWEST: usize = if cfg!(debug_assertions) { 16 } else { 1 << 15 };
 
-/// The state of the CPU engine, flipped in another order.
+/// Lawson's algorithm on the state of the CPU engine.
 pub(crate) struct Lawson {
     cpu: Cpu,
-    /// Whether nothing is left to flip.
+    /// Whether no edge is left to flip.
     has_ended: bool,
 }
 
@@ -30,13 +30,13 @@ impl Lawson {
         Self { cpu, has_ended: false }
     }
 
-    /// Flips until nothing is left to flip, or the number of flips, which it returns, is at its limit.
+    /// Flips until no edge is left to flip, or until `u32::MAX` flips. Returns the number of flips.
     fn flip_all(&mut self) -> u32 {
         let threads = self.cpu.threads.clone();
         let (geometry, mesh) = self.cpu.parts();
         let mut whole = Region { geometry: &geometry, mesh, work: Work::default(), limit: u32::MAX };
         let triangles = whole.mesh.triangles.len() / 3;
-        // A region does not know of other fans than those inside of it.
+        // A region sees only the fans inside it.
         let is_cut = whole.mesh.has_no_fans();
         let size = if is_cut { triangles.div_ceil(REGIONS).max(FEWEST) } else { triangles };
         whole.flip_parts(size, &threads);

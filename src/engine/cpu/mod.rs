@@ -1,4 +1,4 @@
-//! The CPU engine: the phases in their fast form, and Lawson's algorithm, which flips one edge after another.
+//! The CPU engine: the fast form of the phases, and Lawson's algorithm, which flips one edge after another.
 
 mod lawson;
 mod phases;

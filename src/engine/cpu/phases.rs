@@ -1,5 +1,5 @@
-//! The phases on the CPU, an edge at a time and on several threads: the edges that are not Delaunay are kept in lists,
-//! and an edge is tested again only where one of its triangles has flipped.
+//! The phases on the CPU, edge by edge, on several threads. Lists hold the edges that are not Delaunay. An edge is tested
+//! again only if one of its triangles has flipped.
 
 use super::region::TopologyMut;
 use crate::engine::{Answer, Census, EdgeCounts, Engine};
@@ -18,38 +18,37 @@ use std::ops::Range;
 use std::sync::Arc;
 use std::sync::atomic::AtomicU32;
 
-/// Edges that are tested in one go.
+/// Edges that one pass tests.
 const EDGES: usize = 256;
 
-/// Candidates of a part at least: with fewer, a thread is done before another has woken up.
+/// The fewest candidates of a part. With fewer, one thread finishes before another starts.
 const FEWEST: usize = if cfg!(debug_assertions) { 4 } else { 512 };
 
 /// An edge by its half-edges, the lower one first.
 type Edge = [u32; 2];
 
-/// In the second half-edge of a candidate: it makes an edge that exists.
+/// Flag in the second half-edge of a candidate: its flip would make an edge that exists.
 const DUPLICATE: u32 = LOCKED;
 
-/// In the second half-edge of a candidate: it may make such an edge after other flips.
+/// Flag in the second half-edge of a candidate: after other flips, its flip may make an edge that exists.
 const GUARDED: u32 = CREASE;
 
-/// Some of the edges that are not Delaunay. One thread goes through them at a time; no bit of the result depends on which
-/// they are.
+/// Some of the edges that are not Delaunay, for one thread. No bit of the result depends on how the edges are divided.
 #[derive(Default)]
 struct Part {
-    /// Those that may flip, or could but for a duplicate.
+    /// Edges that may flip, or are blocked only as duplicates.
     candidates: Vec<Edge>,
-    /// A half-edge of each of the others, beside some of edges that have gone since.
+    /// One half-edge of each other edge; also of some edges that no longer exist.
     blocked: Vec<u32>,
-    /// Those that the last iteration has flipped.
+    /// Edges that the last iteration has flipped.
     flipped: Vec<Edge>,
-    /// What is around each of those now.
+    /// The surroundings of each flipped edge.
     around: Vec<Around>,
-    /// Half-edges of the triangles whose best edge is no other one's.
+    /// Half-edges that won the bid for their own triangle only.
     vain: Vec<u32>,
 }
 
-/// Reads words ahead of their use: in a loop so short, the processor waits for many of them at once.
+/// Reads words before they are used. In so short a loop, the processor waits for many of them at once.
 #[inline(always)]
 fn touch(words: impl Iterator<Item = u32>) {
     black_box(words.fold(0, |all, word| all ^ word));
@@ -76,14 +75,14 @@ pub(crate) struct Cpu {
     pub(crate) twins: Vec<u32>,
     pub(crate) fans: Fans,
     parts: Vec<Part>,
-    /// More of what parts have as blocked, from before they were cut anew.
+    /// More blocked edges, from parts that `deal` has replaced.
     blocked: Vec<Vec<u32>>,
-    /// Whether the parts have all edges that are not Delaunay; not before the first iteration.
+    /// Whether the parts have all edges that are not Delaunay. False before the first iteration.
     is_known: bool,
-    /// The edges that flip, by triangle; none until the parts are known.
+    /// The edges that flip, by triangle. Empty while `is_known` is false.
     selected: Selected,
-    /// For each vertex whose star is not known to be embedded the last iteration, plus one, in which an edge there came
-    /// or went. Empty as long as the parts are not known.
+    /// For each vertex, unless its star is known to be embedded: one plus the last iteration that added or removed an edge
+    /// there. Empty while `is_known` is false.
     changed: Vec<AtomicU32>,
     iteration: u32,
 }
@@ -134,8 +133,8 @@ impl Cpu {
         Topology { first: 0, triangles: &self.triangles, twins: &self.twins, fans: &self.fans }
     }
 
-    /// Label: tests the edges around those that have flipped, which are Delaunay now, and all edges before the first
-    /// iteration; looks for duplicates again where one may have come or gone.
+    /// Label: tests the edges around the flipped edges, or all edges before the first iteration. The flipped edges
+    /// themselves are Delaunay now. Tests for duplicates again where an edge may have come or gone.
     pub(in crate::engine) fn label(&mut self) {
         let mut parts = std::mem::take(&mut self.parts);
         if self.is_known {
@@ -152,7 +151,7 @@ impl Cpu {
         self.deal();
     }
 
-    /// Tests the edges whose lower half-edges are of these triangles.
+    /// Tests the edges whose lower half-edge belongs to a triangle in `range`.
     fn test_all(&self, range: Range<usize>) -> Part {
         let mut part = Part::default();
         let mut diamonds = [Diamond::default(); EDGES];
@@ -164,7 +163,7 @@ impl Cpu {
         part
     }
 
-    /// Keeps the candidates of which no triangle has flipped.
+    /// Keeps the candidates none of whose triangles has flipped.
     fn keep_candidates(&self, candidates: &mut Vec<Edge>) {
         let mut count = 0;
         for i in 0..candidates.len() {
@@ -180,7 +179,7 @@ impl Cpu {
         candidates.truncate(count);
     }
 
-    /// Tests the edges around those that have flipped, whose triangles are free again.
+    /// Tests the edges around the flipped edges, and releases the triangles of these.
     fn test_around(&self, part: &mut Part) {
         let Part { candidates, blocked, flipped, around, .. } = part;
         let mesh = self.topology();
@@ -192,8 +191,8 @@ impl Cpu {
             for (&[h, g], &[outer, corners]) in flipped.iter().zip(around) {
                 self.selected.release(h);
                 self.selected.release(g);
-                let (sides, room) = ([h, prev(h), g, prev(g)], &mut diamonds[count..]);
-                count += Diamond::write_around(mesh, sides, outer, corners, room);
+                let (sides, free) = ([h, prev(h), g, prev(g)], &mut diamonds[count..]);
+                count += Diamond::write_around(mesh, sides, outer, corners, free);
             }
             self.test(&mut diamonds[..count], candidates, blocked);
         }
@@ -214,7 +213,7 @@ impl Cpu {
         }
     }
 
-    /// Cuts the candidates anew where one part has many more of them than others, or each has few.
+    /// Divides the candidates again if one part has many more than the others, or if every part has few.
     fn deal(&mut self) {
         let sizes = self.parts.iter().map(|part| part.candidates.len());
         let (total, most) = (sizes.clone().sum(), sizes.max().unwrap_or(0));
@@ -235,18 +234,18 @@ impl Cpu {
         self.blocked.extend(parts.into_iter().map(|part| part.blocked).filter(|blocked| !blocked.is_empty()));
     }
 
-    /// A candidate, once it is known whether it makes a duplicate.
+    /// A candidate, flagged as guarded, and as a duplicate if its flip would make an edge that exists.
     fn guarded(&self, [h, g]: Edge) -> Edge {
         let is_duplicate = makes_duplicate(&self.geometry(), self.topology(), h);
         [h, g | GUARDED | if is_duplicate { DUPLICATE } else { 0 }]
     }
 
-    /// Whether an edge at `v` has come or gone in the last iteration, as far as that is of interest.
+    /// Whether the last iteration added or removed an edge at `v`. Tracked only for stars not known to be embedded.
     fn has_changed(&self, v: u32) -> bool {
         self.iteration > 0 && self.changed[v as usize].get() == self.iteration
     }
 
-    /// Select: the edges that flip are those with the smallest key in both their triangles, but for those that yield.
+    /// Select: an edge flips if it has the smallest key in both its triangles and does not yield.
     fn select(&mut self) {
         let mut parts = std::mem::take(&mut self.parts);
         let Self { threads, selected, iteration, .. } = &*self;
@@ -305,7 +304,7 @@ impl Cpu {
         self.parts = parts;
     }
 
-    /// Flip with Update. Returns the number of flips.
+    /// Flip and update. Returns the number of flips.
     fn flip(&mut self) -> u32 {
         let Self { threads, triangles, twins, fans, selected, changed, embedded, iteration, parts, .. } =
             self;
@@ -334,7 +333,7 @@ impl Cpu {
         parts.iter().map(|part| part.flipped.len() as u32).sum()
     }
 
-    /// Counts the edges that are not Delaunay: tests those again that have been found so.
+    /// Counts the edges that are not Delaunay, by testing the edges in the lists again.
     pub(crate) fn count(&mut self) -> Census {
         self.label();
         let candidates = self.parts.iter().flat_map(|part| &part.candidates).map(|[h, _]| h);
@@ -360,7 +359,7 @@ impl Cpu {
     }
 }
 
-/// What Lawson's algorithm needs of it.
+/// What Lawson's algorithm needs.
 impl Cpu {
     pub(super) fn parts(&mut self) -> (Geometry<'_>, TopologyMut<'_>) {
         let Self { mesh, winding, embedded, thresholds, triangles, twins, fans, .. } = self;
@@ -368,10 +367,10 @@ impl Cpu {
         (geometry, TopologyMut { first: 0, triangles, twins, fans: Some(fans) })
     }
 
-    /// After flips of others: all edges are Delaunay but some of these, or else, as at first, none is known.
-    pub(super) fn settle(&mut self, others: Vec<u32>, is_known: bool) {
+    /// Resets the lists after flips outside of the phases. If `is_known`, every edge that is not Delaunay is in `blocked`.
+    pub(super) fn settle(&mut self, blocked: Vec<u32>, is_known: bool) {
         self.parts.clear();
-        self.blocked = vec![others];
+        self.blocked = vec![blocked];
         self.is_known = is_known;
     }
 }

@@ -1,4 +1,4 @@
-//! Lawson's algorithm on neighbouring triangles: all of a mesh, or a part that leaves its other edges to where it is joined.
+//! Lawson's algorithm on a range of triangles: the whole mesh, or a region that defers the edges on its border.
 
 use crate::mesh::half_edge::{FLAGS, next, prev, unflagged};
 use crate::mesh::star::Fans;
@@ -9,27 +9,27 @@ use crate::system::threads::Threads;
 use crate::{NONE, Reason};
 use std::ops::Range;
 
-/// Triangles whose edges are tested in one go, before those of them that are not Delaunay flip.
+/// Triangles whose edges one pass tests before it flips.
 const TRIANGLES: usize = 32;
 
-/// Edges of so many triangles at most.
+/// The most edges of so many triangles.
 const EDGES: usize = 3 * TRIANGLES;
 
-/// Triangles that follow each other, with nothing outside of them read or written.
+/// A range of triangles. The code reads and writes nothing outside it.
 pub(super) struct Region<'a> {
     pub(super) geometry: &'a Geometry<'a>,
     pub(super) mesh: TopologyMut<'a>,
     pub(super) work: Work,
-    /// Flips that are left.
+    /// The most flips.
     pub(super) limit: u32,
 }
 
-/// The triangulation, as [`Topology`].
+/// A [`Topology`] that can change.
 pub(super) struct TopologyMut<'a> {
     pub(super) first: u32,
     pub(super) triangles: &'a mut [u32],
     pub(super) twins: &'a mut [u32],
-    /// Those of the whole mesh; a part has none, since a mesh is cut only where every vertex has one fan.
+    /// The fans of the whole mesh. A region has none: a mesh is divided only if every vertex has one fan.
     pub(super) fans: Option<&'a mut Fans>,
 }
 
@@ -46,22 +46,22 @@ impl TopologyMut<'_> {
     }
 }
 
-/// What is to be done, and what has been.
+/// The edges to flip, and the results so far.
 #[derive(Default)]
 pub(super) struct Work {
     queue: Queue,
-    /// Half-edges of those that may not flip.
+    /// Half-edges of edges that may not flip.
     pub(super) blocked: Vec<u32>,
-    /// Those of edges that a part leaves to the larger one that it is a half of, Delaunay or not.
-    pub(super) left: Vec<u32>,
-    /// Whether one of the blocked is so by an edge that may go.
+    /// Half-edges of edges that a region defers to the larger region that contains it, Delaunay or not.
+    pub(super) deferred: Vec<u32>,
+    /// Whether a blocked edge is a duplicate: a flip may remove the edge that blocks it.
     pub(super) has_duplicate: bool,
     pub(super) flips: u32,
 }
 
 impl Region<'_> {
-    /// Tests all edges, and flips until nothing is left to flip: first in each half, on several threads, down to parts of
-    /// up to so many triangles, and then what touches both.
+    /// Tests all edges, and flips until no edge is left to flip. Divides the region down to `size` triangles and flips both
+    /// halves in parallel, then the edges across their border.
     pub(super) fn flip_parts(&mut self, size: usize, threads: &Threads) {
         let TopologyMut { first, triangles, twins, .. } = &mut self.mesh;
         let count = triangles.len() / 3;
@@ -81,41 +81,41 @@ impl Region<'_> {
                 half.flip_parts(size, threads);
                 half.work
             });
-            let mut left = Vec::new();
+            let mut deferred = Vec::new();
             for mut half in halves {
-                left.append(&mut half.left);
+                deferred.append(&mut half.deferred);
                 self.work.blocked.append(&mut half.blocked);
                 self.work.has_duplicate |= half.has_duplicate;
                 self.work.flips += half.flips;
             }
-            self.flip_some(&left);
+            self.flip_some(&deferred);
         }
     }
 
-    /// Tests all edges, and flips until nothing is left to flip.
+    /// Tests all edges, and flips until no edge is left to flip.
     fn flip_each(&mut self) {
         let end = self.mesh.twins.len() / 3;
         for first in (0..end).step_by(TRIANGLES) {
             let piece = first..end.min(first + TRIANGLES);
-            let room = self.work.queue.room(EDGES);
-            let count = Diamond::write(self.mesh.get(), piece.clone(), room);
-            self.leave(piece);
+            let free = self.work.queue.free_slots(EDGES);
+            let count = Diamond::write(self.mesh.get(), piece.clone(), free);
+            self.defer(piece);
             self.test(count);
             self.flip_queue();
         }
     }
 
-    /// Tests these edges, and flips until nothing is left to flip. Leaves those to triangles outside of the part.
+    /// Tests these edges, and flips until no edge is left to flip. Defers edges on the border of the region.
     pub(super) fn flip_some(&mut self, half_edges: &[u32]) {
         for half_edges in half_edges.chunks(EDGES) {
-            let (mesh, room) = (self.mesh.get(), self.work.queue.room(EDGES));
+            let (mesh, free) = (self.mesh.get(), self.work.queue.free_slots(EDGES));
             let mut count = 0;
             for &h in half_edges {
                 if mesh.has(unflagged(mesh.twin(h))) {
-                    room[count] = Diamond::new(mesh, h);
+                    free[count] = Diamond::new(mesh, h);
                     count += 1;
                 } else if mesh.leaves(h) {
-                    self.work.left.push(h);
+                    self.work.deferred.push(h);
                 }
             }
             self.test(count);
@@ -123,9 +123,9 @@ impl Region<'_> {
         }
     }
 
-    /// Leaves the edges of these triangles to those behind the part; other parts do so with those before it. Such a
-    /// half-edge stays where it is.
-    fn leave(&mut self, piece: Range<usize>) {
+    /// Defers the edges between these triangles and triangles after the region. The region before defers the edges to
+    /// triangles before this one. No flip moves these half-edges.
+    fn defer(&mut self, piece: Range<usize>) {
         let first = self.mesh.first + 3 * piece.start as u32;
         let end = self.mesh.first + self.mesh.twins.len() as u32;
         let behind = (NONE & !FLAGS) - end;
@@ -133,29 +133,30 @@ impl Region<'_> {
         let twins = &self.mesh.twins[3 * piece.start..3 * piece.end];
         if twins.iter().fold(false, |any, &twin| any | is_behind(twin)) {
             let twins = (first..).zip(twins);
-            self.work.left.extend(twins.filter(|&(_, &twin)| is_behind(twin)).map(|(h, _)| h));
+            self.work.deferred.extend(twins.filter(|&(_, &twin)| is_behind(twin)).map(|(h, _)| h));
         }
     }
 
-    /// Tests so many edges that have been written behind the queue, and appends those of them that are not Delaunay.
+    /// Tests `count` edges in the slots behind the queue, and appends those that are not Delaunay to it.
     fn test(&mut self, count: usize) {
         let queue = &mut self.work.queue;
-        queue.end += keep_non_delaunay(self.geometry, &mut queue.places[queue.end..][..count]);
+        queue.end += keep_non_delaunay(self.geometry, &mut queue.slots[queue.end..][..count]);
     }
 
-    /// Flips what is in the queue, and then around that.
+    /// Flips the edges in the queue, and the edges around them.
     fn flip_queue(&mut self) {
         while self.work.flips < self.limit
             && let Some(Diamond { h, corners, .. }) = self.work.queue.pop()
         {
             let mesh = self.mesh.get();
             let g = unflagged(mesh.twin(h));
-            // Its edge may have moved, and one of the boundary come: those to other triangles stay where they are.
+            // After a flip, `h` may belong to a boundary edge. Half-edges on the border of the region do not move.
             if !mesh.has(g) {
                 continue;
             }
             let diamond = Diamond::new(mesh, h);
-            // After a flip beside it, it has been tested again. Word by word: written so, they are slow to read as one.
+            // A flip beside this edge has tested it again. Compared word by word: one wide read would wait for the
+            // narrow writes.
             if (0..4).fold(0, |bits, i| bits | corners[i] ^ diamond.corners[i]) != 0 {
                 continue;
             }
@@ -168,15 +169,15 @@ impl Region<'_> {
                     self.work.has_duplicate |= verdict == Verdict::Blocked(Reason::Duplicate);
                     self.work.blocked.push(h);
                 }
-                None => self.work.left.push(h),
+                None => self.work.deferred.push(h),
             }
         }
         while let Some(diamond) = self.work.queue.pop() {
-            self.work.left.push(diamond.h);
+            self.work.deferred.push(diamond.h);
         }
     }
 
-    /// Whether an edge that is not Delaunay may flip. `None` where that, or the flip, takes more than the part.
+    /// Whether an edge that is not Delaunay may flip. `None` where the answer or the flip needs triangles outside the region.
     fn verdict(&self, diamond: &Diamond) -> Option<Verdict> {
         let shape = verdict_of_shape(self.geometry, diamond);
         if shape != Verdict::Labelled {
@@ -195,8 +196,8 @@ impl Region<'_> {
         Some(if is_duplicate { Verdict::Blocked(Reason::Duplicate) } else { shape })
     }
 
-    /// Flips an edge, alone, and writes those around it behind the queue; returns how many they are. The triangles around it
-    /// are others: if it may flip, c is not d.
+    /// Flips one edge, and writes the edges around it to the slots behind the queue. Returns their number. No triangle
+    /// around it is one of its own: c is not d in an edge that may flip.
     #[inline(always)]
     fn flip(&mut self, diamond: &Diamond) -> usize {
         self.work.flips += 1;
@@ -222,13 +223,13 @@ impl Region<'_> {
         triangles[at(gn)] = c;
         twins[at(hn)] = gn;
         twins[at(gn)] = hn;
-        let room = self.work.queue.room(4);
-        Diamond::write_around(self.mesh.get(), [h, hp, g, gp], outer, diamond.corners, room)
+        let free = self.work.queue.free_slots(4);
+        Diamond::write_around(self.mesh.get(), [h, hp, g, gp], outer, diamond.corners, free)
     }
 }
 
-/// Whether a flip makes an edge that exists, where each vertex has one fan. `None` where both stars leave the part before
-/// either of them says so. As [`makes_duplicate`], it walks both in turns.
+/// Whether a flip makes an edge that exists, in a mesh whose vertices have one fan each. `None` if both stars leave the
+/// region before either gives the answer. As [`makes_duplicate`], it walks both stars in turns.
 fn makes_duplicate_inside(mesh: Topology, h: u32) -> Option<bool> {
     let ends = [prev(h), prev(unflagged(mesh.twin(h)))];
     let [c, d] = ends.map(|corner| mesh.corner(corner));
@@ -248,13 +249,13 @@ fn makes_duplicate_inside(mesh: Topology, h: u32) -> Option<bool> {
     None
 }
 
-/// A walk around a vertex, from triangle to triangle of a part, in search of an edge to another vertex.
+/// A walk around a vertex, from triangle to triangle of a region, in search of an edge to the vertex `to`.
 struct Walk {
     start: u32,
     at: u32,
     to: u32,
     clockwise: bool,
-    /// Whether it has not left the part.
+    /// Whether it has not left the region.
     is_inside: bool,
 }
 
@@ -263,7 +264,7 @@ impl Walk {
         Self { start, at: start, to, clockwise: false, is_inside: true }
     }
 
-    /// Looks at one triangle and goes on to the next one; says whether there is such an edge once that is known.
+    /// Visits one triangle. Returns whether the edge exists, once that is known.
     #[inline(always)]
     fn step(&mut self, mesh: Topology) -> Option<bool> {
         let side = prev(self.at);
@@ -275,7 +276,7 @@ impl Walk {
             if self.at == self.start {
                 return Some(false);
             }
-            // The fan is open: it goes back to where it began and round the other way.
+            // The fan is open: the walk returns to its start and turns clockwise.
             self.clockwise = self.at == NONE;
         }
         if self.clockwise {
@@ -290,13 +291,13 @@ impl Walk {
     }
 }
 
-/// Edges that were not Delaunay when they were tested, in the order in which they flip: the first ones first, so that the
-/// processor is at the next one while it still tests around the one before.
+/// Edges that were not Delaunay when they were tested, first in, first out: then the processor can start on the next edge
+/// while it tests the edges around the last one.
 #[derive(Default)]
 struct Queue {
-    places: Vec<Diamond>,
+    slots: Vec<Diamond>,
     first: usize,
-    /// What is in the places from here on is not in the queue.
+    /// The slots from here on are not in the queue.
     end: usize,
 }
 
@@ -307,25 +308,25 @@ impl Queue {
             return None;
         }
         self.first += 1;
-        Some(self.places[self.first - 1])
+        Some(self.slots[self.first - 1])
     }
 
-    /// So many places behind the end.
+    /// `count` free slots behind the end.
     #[inline(always)]
-    fn room(&mut self, count: usize) -> &mut [Diamond] {
-        if self.places.len() < self.end + count {
-            self.make_room(count);
+    fn free_slots(&mut self, count: usize) -> &mut [Diamond] {
+        if self.slots.len() < self.end + count {
+            self.add_slots(count);
         }
-        &mut self.places[self.end..][..count]
+        &mut self.slots[self.end..][..count]
     }
 
     #[cold]
-    fn make_room(&mut self, count: usize) {
-        self.places.copy_within(self.first..self.end, 0);
+    fn add_slots(&mut self, count: usize) {
+        self.slots.copy_within(self.first..self.end, 0);
         (self.first, self.end) = (0, self.end - self.first);
-        // As many again, so that this is seldom done.
-        let length = self.places.len().max(2 * (self.end + count));
-        self.places.resize(length, Diamond::default());
+        // Twice as many as needed, so that this is rare.
+        let length = self.slots.len().max(2 * (self.end + count));
+        self.slots.resize(length, Diamond::default());
     }
 }
 
@@ -342,11 +343,11 @@ mod tests {
     use proptest::prelude::*;
     use std::collections::VecDeque;
 
-    /// Every part of a surface whose flips often make edges that exist: what a part says is so in the whole, which itself is
-    /// a part that always says it.
+    /// For every region of surfaces with many duplicates: an answer of the region is the answer of the whole mesh, and the
+    /// whole mesh as a region always answers.
     #[test]
-    fn a_part_finds_the_duplicates_of_the_whole() {
-        let (mut known, mut left) = ([0, 0], 0);
+    fn a_region_finds_the_duplicates_of_the_whole() {
+        let (mut known, mut unknown) = ([0, 0], 0);
         for spec in ["uvsphere 5", "pillow 3", "pole 12"] {
             let mesh = families::by_name(spec).unwrap();
             let (triangles, twins) = (mesh.triangles(), Adjacency::new(&mesh).twins);
@@ -372,29 +373,29 @@ mod tests {
                         }
                         None => {
                             assert!(end - first < count, "{spec}: {h}");
-                            left += 1;
+                            unknown += 1;
                         }
                     }
                 }
             }
         }
-        assert!(known.iter().all(|&count| count > 20) && left > 20, "{known:?}, {left}");
+        assert!(known.iter().all(|&count| count > 20) && unknown > 20, "{known:?}, {unknown}");
     }
 
     proptest! {
-        /// Each time some are written behind the queue, a part of them is appended, and some leave.
+        /// Each step writes edges behind the queue, appends some of them, and pops some.
         #[test]
-        fn what_is_appended_first_leaves_first(
+        fn the_queue_is_first_in_first_out(
             steps in proptest::collection::vec((0usize..20, 0usize..20, 0usize..12), 0..60)
         ) {
             let (mut queue, mut expected) = (Queue::default(), VecDeque::new());
             let mut numbers = 0..;
             for (written, appended, leaving) in steps {
                 let appended = appended.min(written);
-                for (place, h) in queue.room(written).iter_mut().zip(&mut numbers) {
-                    place.h = h;
+                for (slot, h) in queue.free_slots(written).iter_mut().zip(&mut numbers) {
+                    slot.h = h;
                 }
-                let new = queue.places[queue.end..][..appended].iter().map(|diamond| diamond.h);
+                let new = queue.slots[queue.end..][..appended].iter().map(|diamond| diamond.h);
                 expected.extend(new);
                 queue.end += appended;
                 for _ in 0..leaving {

@@ -1,4 +1,4 @@
-//! What both GPU engines share: the numbers that go up, the test of a device, and the drivers that end loops too early.
+//! What both GPU engines share: the upload, the self-test, and the probe for drivers that end loops too early.
 
 pub(super) mod cosine;
 pub(super) mod probe;

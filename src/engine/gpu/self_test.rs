@@ -1,4 +1,4 @@
-//! A known small mesh that an engine has to get right before it is trusted with another.
+//! The self-test: an engine has to flip a small mesh as the CPU does, before it gets other meshes.
 
 use super::upload::{Form, Upload};
 use crate::engine::{Answer, Cpu, Engine};
@@ -12,10 +12,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// Vertices along a side of the test mesh.
 const SIDE: u16 = 9;
 
-/// What diagonals of the test mesh may be apart, where that has a limit.
+/// The limit for the deviation in the test mesh.
 const DEVIATION: f32 = 0.005;
 
-/// For which forms of meshes a device has passed.
+/// The forms of meshes for which a device has passed.
 #[derive(Default)]
 pub(crate) struct Tested([AtomicBool; Form::COUNT]);
 
@@ -28,8 +28,8 @@ impl Tested {
 /// Makes an engine for a mesh.
 pub(crate) type Make<'a> = dyn Fn(Upload) -> Answer<'static, Box<dyn Engine>> + 'a;
 
-/// Has an engine that `make` makes flip the test mesh, and compares the flips of each iteration and the triangles with those
-/// of the CPU; once for each form.
+/// Runs the test mesh on an engine from `make`, and compares the counts, the flips of each iteration and the triangles with
+/// those of the CPU. Does nothing if the device has passed for this form.
 ///
 /// # Errors
 /// [`Error::BackendUnavailable`] if they differ; those of `make` and of the engine.
@@ -52,14 +52,14 @@ pub(crate) async fn self_test(
         && engine.triangles().await? == cpu.triangles
         && engine.census().await? == cpu.count();
     if !is_same {
-        let message = "it failed its self-test: it flips other edges than the cpu".to_owned();
+        let message = "it failed its self-test: its flips differ from those of the cpu".to_owned();
         return Err(Error::BackendUnavailable { backend, message });
     }
     tested.0[form.index()].store(true, Ordering::Relaxed);
     Ok(())
 }
 
-/// Under which the test mesh has edges that may flip and others that may not.
+/// With these thresholds the test mesh has both labelled and blocked edges.
 fn thresholds(form: Form) -> Thresholds {
     let mut thresholds = Thresholds { cos: cos_degrees(20.0), ..Thresholds::default() };
     if form.has_deviation {
@@ -68,8 +68,8 @@ fn thresholds(form: Form) -> Thresholds {
     thresholds
 }
 
-/// A lattice of spacing 0.1, whose squares only exact arithmetic knows to be cocircular or not, under one that is
-/// sheared, which has to flip; as a surface, with a step.
+/// A lattice of spacing 0.1, whose nearly cocircular squares need exact arithmetic. Its upper half is sheared, so that it
+/// has to flip. In space it also has a step.
 fn test_mesh(form: Form) -> Result<Mesh, Error> {
     let (mut doubles, mut triangles) = (Vec::new(), Vec::new());
     for vertex in 0..SIDE * SIDE {
@@ -132,7 +132,7 @@ mod tests {
             let refused = block_on(self_test(&tested, EngineKind::Gpu, form, &wrong));
             assert!(matches!(refused, Err(Error::BackendUnavailable { backend: EngineKind::Gpu, .. })));
             block_on(self_test(&tested, EngineKind::Gpu, form, &right)).unwrap();
-            // From now on it is not asked again.
+            // A device that has passed is not tested again.
             block_on(self_test(&tested, EngineKind::Gpu, form, &wrong)).unwrap();
         }
     }

@@ -1,4 +1,4 @@
-//! What an engine on a GPU takes: a mesh with coordinates that its shaders decide exactly.
+//! Prepares a mesh for a GPU engine: coordinates that its shaders decide exactly.
 
 use crate::mesh::ends::{Ends, MAGNITUDE};
 use crate::phases::Thresholds;
@@ -6,26 +6,26 @@ use crate::system::threads::Threads;
 use crate::{Dimension, EngineKind, Error, Mesh, Positions};
 use std::sync::Arc;
 
-/// Bits that the coordinates may take on the grid of their mesh, the power of two that all of them are multiples of,
-/// beside their sign; as in `points.wgsl`.
+/// The most bits of a coordinate without its sign, in units of the grid of the mesh: the largest power of two that divides
+/// all coordinates. The same in `points.wgsl`.
 pub(in crate::engine) const SPAN: u32 = 84;
-/// Below this power of two no difference of two floats overflows: shaders promise nothing for infinities.
+/// Below this power of two, no difference of two floats overflows. WGSL guarantees nothing for infinities.
 const LARGEST_EXPONENT: i32 = 126;
 /// Words of a fixed-point coordinate.
 const FIXED_WORDS: usize = 3;
 
-/// Which shaders decide a mesh.
+/// Which set of shaders a mesh needs.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Form {
     pub(crate) dimension: Dimension,
     /// Whether the coordinates are fixed-point numbers (`fixed.wgsl`), not floats (`floats.wgsl`).
     pub(crate) is_fixed: bool,
-    /// Whether the deviation has a limit (`deviation.wgsl`).
+    /// Whether there is a limit for the deviation (`deviation.wgsl`).
     pub(crate) has_deviation: bool,
 }
 
 impl Form {
-    /// All of them, each at its index.
+    /// All forms, each at its index.
     pub(crate) const ALL: [Self; 6] = [
         Self { dimension: Dimension::Two, is_fixed: false, has_deviation: false },
         Self { dimension: Dimension::Three, is_fixed: false, has_deviation: false },
@@ -39,22 +39,22 @@ impl Form {
         Self { dimension, is_fixed, has_deviation }
     }
 
-    /// How many there are.
+    /// The number of forms.
     pub(crate) const COUNT: usize = Self::ALL.len();
 
-    /// Its place in [`Form::ALL`].
+    /// Its index in [`Form::ALL`].
     pub(crate) fn index(self) -> usize {
         self.dimension.stride() - 2 + usize::from(self.has_deviation) + 3 * usize::from(self.is_fixed)
     }
 }
 
-/// A mesh that a GPU takes.
+/// A mesh that the GPU engines can decide exactly.
 pub(crate) struct Upload {
     pub(crate) mesh: Arc<Mesh>,
     pub(crate) thresholds: Thresholds,
-    /// In the order of `fixed.wgsl`; none where the floats go as they are.
+    /// Fixed-point coordinates in the order of `fixed.wgsl`; `None` if the upload is 32-bit floats.
     fixed: Option<Vec<u32>>,
-    /// What the diagonals of a quad may be apart, as `state.wgsl` has it.
+    /// The limit for the deviation, in the layout of `state.wgsl`.
     pub(crate) deviation: [u32; 4],
 }
 
@@ -62,7 +62,7 @@ impl Upload {
     /// # Errors
     /// [`Error::BackendLimit`] for a mesh whose coordinates the shaders cannot decide exactly.
     pub(crate) fn new(backend: EngineKind, mesh: Arc<Mesh>, thresholds: Thresholds) -> Result<Self, Error> {
-        // Counts as a coordinate, but for what is beyond them.
+        // The limit takes bits as a coordinate does. It is capped: no two points are further apart.
         let deviation = |highest| match mesh.dimension() {
             Dimension::Two => 0.0,
             Dimension::Three => f64::from(thresholds.deviation).min(libm::scalbn(1.0, highest + 3)),
@@ -85,7 +85,7 @@ impl Upload {
         }
         let ends = with(exponents(mesh.positions().iter()));
         let (fixed, most) = fixed_point(&mesh, ends, deviation(ends.1)).map_err(|span| {
-            let message = format!("its coordinates span {span} bits, and it decides {SPAN} bits exactly");
+            let message = format!("the coordinates span {span} bits; it decides at most {SPAN} bits exactly");
             Error::BackendLimit { backend, message }
         })?;
         Ok(Self { mesh, thresholds, fixed: Some(fixed), deviation: most })
@@ -95,19 +95,19 @@ impl Upload {
         Form::new(self.mesh.dimension(), self.fixed.is_some(), self.thresholds)
     }
 
-    /// The coordinates as the shaders of its form read them, one word for each axis after the other.
+    /// The coordinates as the shaders of its form read them: words, axis after axis.
     pub(crate) fn words(&self) -> &[u32] {
         match (&self.fixed, self.mesh.positions()) {
             (Some(words), _) => words,
             (None, Positions::F32(floats)) => bytemuck::cast_slice(floats),
-            // Those are fixed-point numbers always.
+            // 64-bit floats are always uploaded as fixed-point numbers.
             (None, Positions::F64(_)) => &[],
         }
     }
 }
 
-/// The coordinates as integers that count from the corner of the bounding box, in units of the grid of the mesh, and the
-/// deviation in those units; or how many bits they would take, if those are too many. `ends` are their exponents.
+/// The coordinates and the deviation as integers in units of the grid, relative to the lowest corner of the bounding box.
+/// The error is the number of bits that they would take. `lowest` and `highest` are the exponents of the coordinates.
 fn fixed_point(
     mesh: &Mesh,
     (lowest, highest): (i32, i32),
@@ -124,7 +124,7 @@ fn fixed_point(
         let numbers = || positions.iter().skip(axis).step_by(stride);
         let [low, high] = [numbers().reduce(f64::min), numbers().reduce(f64::max)]
             .map(|end| on_grid(end.unwrap_or_default(), lowest));
-        // Seen from its middle, a box has a bit less to each side.
+        // Relative to the centre of the box, a coordinate takes one bit less.
         let bits = (i128::BITS - (high - low).leading_zeros()).saturating_sub(1);
         if bits > SPAN {
             return Err(bits);
@@ -139,7 +139,7 @@ fn fixed_point(
             words.extend(point.iter().zip(&corner).map(word_of));
         }
     }
-    // No two points of such a box are as far apart.
+    // No two points of such a box are this far apart.
     let most = on_grid(deviation, lowest).min(1 << (SPAN + 2));
     let rounded = (most as f32).to_bits();
     Ok((words, [most as u32, (most >> 32) as u32, (most >> 64) as u32, rounded]))
@@ -149,7 +149,7 @@ fn fixed_point(
 fn on_grid(x: f64, grid: i32) -> i128 {
     let (magnitude, unit) = parts(x);
     let whole = match unit - grid {
-        // Of 0 the unit says nothing.
+        // The unit of 0 means nothing.
         _ if magnitude == 0 => 0,
         shift if shift < 0 => i128::from(magnitude >> -shift),
         shift => i128::from(magnitude) << shift,
@@ -157,7 +157,7 @@ fn on_grid(x: f64, grid: i32) -> i128 {
     if x < 0.0 { -whole } else { whole }
 }
 
-/// Magnitude and unit, given as an exponent: |`x`| is their product.
+/// Magnitude m and unit e of |`x`| = m·2^e.
 fn parts(x: f64) -> (u64, i32) {
     let bits = x.to_bits();
     let (field, fraction) = ((bits >> 52 & 0x7ff) as i32, bits & ((1 << 52) - 1));
@@ -165,7 +165,7 @@ fn parts(x: f64) -> (u64, i32) {
     (magnitude, field.max(1) - 1075)
 }
 
-/// Exponents that are quickly found, and between which those of [`exponents`] lie.
+/// Bounds on the results of [`exponents`], which are faster to find.
 fn most_exponents(floats: &[f32]) -> (i32, i32) {
     // A mesh has about as many triangles as coordinates.
     let threads = Threads::default().for_triangles(floats.len());
@@ -175,7 +175,7 @@ fn most_exponents(floats: &[f32]) -> (i32, i32) {
     if largest == 0 { (0, 0) } else { (exponent(smallest) - 23, exponent(largest)) }
 }
 
-/// Exponents of the lowest and of the highest bit that is set in any number; 0 and 0 if none is.
+/// The exponents of the lowest and the highest bit set in any number; (0, 0) if no bit is set.
 fn exponents(numbers: impl Iterator<Item = f64>) -> (i32, i32) {
     let (mut lowest, mut highest) = (i32::MAX, i32::MIN);
     for x in numbers.filter(|&x| x != 0.0) {
@@ -199,7 +199,7 @@ mod tests {
         Upload::new(EngineKind::Gpu, Arc::new(mesh), thresholds).map_err(|error| error.to_string())
     }
 
-    /// From the corner of the box, in units of the grid.
+    /// The fixed-point coordinates of an upload.
     fn fixed(positions: &[f64]) -> Vec<u128> {
         let upload = upload(positions.to_vec()).unwrap();
         assert!(upload.form().is_fixed);
@@ -215,7 +215,7 @@ mod tests {
     }
 
     #[test]
-    fn floats_go_as_they_are_where_their_span_allows() {
+    fn floats_stay_floats_where_their_span_allows() {
         let numbers = [1.0, -0.0, -(2f32.powi(-60)), 2f32.powi(23)];
         let upload = upload(numbers.to_vec()).unwrap();
         assert!(!upload.form().is_fixed);
@@ -234,7 +234,7 @@ mod tests {
     }
 
     #[test]
-    fn exponents_lie_between_those_that_are_quickly_found() {
+    fn exponents_lie_between_their_bounds() {
         let tiny = f32::from_bits(1);
         for numbers in [
             vec![],
@@ -257,11 +257,11 @@ mod tests {
         assert_eq!(fixed(&[-far, 0.0, far - one * 2f64.powi(32), one])[..2], [0, 0]);
         let refused = upload(vec![-far, 0.0, far, one]).err().unwrap();
         assert!(refused.contains("span 85 bits"), "{refused}");
-        // Too far apart for any integer here, in each direction.
+        // Exponents too far apart for an i128.
         for numbers in [[f64::MAX, f64::from_bits(1)], [-f64::MAX, f64::MIN_POSITIVE], [1.0, 1e-300]] {
             assert!(upload(numbers.to_vec()).err().unwrap().contains("span"));
         }
-        // Floats that would overflow, and some that span too much from zero but not from their corner.
+        // Floats whose differences overflow, and floats that span too many bits from zero but not from their corner.
         assert!(upload(vec![f32::MAX, f32::MIN]).unwrap().form().is_fixed);
         assert!(upload(vec![2f32.powi(100), 1.0, 2f32.powi(100), 2.0]).unwrap().form().is_fixed);
         assert!(upload(vec![2f32.powi(100), 1.0, 0.0, 2.0]).is_err());

@@ -1,5 +1,5 @@
-//! The WebGPU engine as it is in browsers: it waits for nothing before its first iterations, and reads behind them what it
-//! will be asked for.
+//! The WebGPU engine as it runs in browsers: it does not wait before its first iterations, and reads the results of a run
+//! with them.
 
 use super::{Cpu, Device, Engine, Mesh, Upload, WebGpu, any_deviation, assert_same, families};
 use crate::engine::EdgeCounts;
@@ -18,7 +18,7 @@ fn engines(mesh: &Arc<Mesh>, thresholds: Thresholds) -> (Cpu, WebGpu) {
     (Cpu::new(mesh.clone(), thresholds, Threads::default()), gpu.unwrap())
 }
 
-/// What both engines say of a mesh after a run, of which the GPU knows it already, and when it is asked once more.
+/// Compares the results of both engines after a run: those that the GPU has read in advance, then without them.
 #[track_caller]
 fn assert_same_end(what: &str, cpu: &mut Cpu, gpu: &mut WebGpu) {
     let census = block_on(gpu.census()).unwrap();
@@ -39,23 +39,23 @@ fn iterate(what: &str, count: u32, cpu: &mut Cpu, gpu: &mut WebGpu) -> usize {
     flips.len()
 }
 
-/// Where a point goes.
+/// A map of points.
 type Map = fn([f32; 2]) -> [f32; 2];
 
-/// Copies of a sheet in the plane, each by a map of its points and with its vertex 0, which stays, or the first copy's.
+/// Copies of a sheet in the plane, one per map. The maps keep vertex 0; if `are_joined`, the copies share it.
 fn sheets(maps: &[Map], are_joined: bool) -> Mesh {
     let sheet = families::by_name("random 8").unwrap();
     let count = sheet.vertex_count() as u32;
     let (mut positions, mut triangles) = (Vec::new(), Vec::new());
     for (copy, map) in (0..).zip(maps) {
         positions.extend(sheet.positions().to_f32().chunks(2).flat_map(|p| map([p[0], p[1]])));
-        let place = |&v: &u32| if are_joined && v == 0 { 0 } else { v + copy * count };
-        triangles.extend(sheet.triangles().iter().map(place));
+        let renumbered = |&v: &u32| if are_joined && v == 0 { 0 } else { v + copy * count };
+        triangles.extend(sheet.triangles().iter().map(renumbered));
     }
     Mesh::new(Dimension::Two, positions, triangles).unwrap()
 }
 
-/// Meshes that need no help of the host, and those that do: with several fans, both windings, and both of these.
+/// Meshes that need no help of the host, then meshes that do: with several fans, with both windings, with both.
 fn meshes() -> Vec<(&'static str, Mesh)> {
     let turned = |p: [f32; 2]| [-p[0], -p[1]];
     let mirrored = |p: [f32; 2]| [-p[0], p[1]];
@@ -87,7 +87,7 @@ fn runs_end_alike() {
     }
 }
 
-/// After 0 to 20 iterations, which is more than a submission has on llvmpipe, and then to the end.
+/// Stops after 0 to 20 iterations, more than one submission has on llvmpipe, and then runs to the end.
 #[test]
 fn runs_stop_alike() {
     for (name, mesh) in meshes() {
@@ -102,7 +102,7 @@ fn runs_stop_alike() {
     }
 }
 
-/// An iteration at a time, with the questions of a session that is watched.
+/// Runs one iteration at a time, with the questions of `Session::step`.
 #[test]
 fn steps_are_alike() {
     for (name, mesh) in meshes() {
@@ -135,7 +135,7 @@ fn an_engine_is_asked_before_it_runs() {
     assert_same_end("empty", &mut cpu, &mut gpu);
 }
 
-/// Moves of the vertices, which turn sheets over or lay them together, and locks that stay.
+/// Moves vertices, so that sheets turn over or overlap, with locks that stay.
 #[test]
 fn vertices_move_alike() {
     let moves: [fn(usize, f32) -> f32; 4] =
@@ -150,11 +150,11 @@ fn vertices_move_alike() {
                 block_on(cpu.lock(half_edges.clone())).unwrap();
                 block_on(gpu.lock(half_edges)).unwrap();
             }
-            for (turn, place) in moves.into_iter().enumerate() {
-                // Of some the run has not ended, of one it has not begun.
+            for (turn, map) in moves.into_iter().enumerate() {
+                // Some runs have not ended when the vertices move; one has not begun.
                 iterate(name, [u32::MAX, 2, 0, 1][turn], &mut cpu, &mut gpu);
                 let moved = mesh.positions().to_f32().into_iter().enumerate();
-                let moved: Vec<f32> = moved.map(|(i, x)| place(i, x)).collect();
+                let moved: Vec<f32> = moved.map(|(i, x)| map(i, x)).collect();
                 let moved = Arc::new(Mesh::new(mesh.dimension(), moved, cpu.triangles.clone()).unwrap());
                 block_on(cpu.set_positions(moved.clone())).unwrap();
                 block_on(gpu.set_positions(moved)).unwrap();
@@ -165,7 +165,7 @@ fn vertices_move_alike() {
     }
 }
 
-/// On a device of its own, which counts what it is asked for.
+/// On a device of its own, since the device counts its calls.
 #[test]
 fn a_run_waits_once() {
     let asked = |mesh: Mesh| {
@@ -182,7 +182,7 @@ fn a_run_waits_once() {
         })
         .unwrap()
     };
-    // The preparation and the iterations, which are waited for.
+    // Two submissions: the preparation and the iterations. The host waits for the second.
     assert_eq!(asked(families::by_name("random 12").unwrap()), [2, 1]);
     assert_eq!(asked(families::by_name("uvsphere 12").unwrap()), [2, 1]);
     assert_eq!(asked(sheets(&[|p| [-p[0], p[1]]], false)), [2, 1]);

@@ -1,4 +1,4 @@
-//! The WebGPU engine against the CPU engine, array by array after every phase, on whatever adapter there is.
+//! Compares the WebGPU engine with the CPU engine, array by array after every phase, on any adapter.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "what fails here is a failed test")]
 
@@ -65,7 +65,7 @@ fn compare_mesh(name: &str, mesh: Mesh, thresholds: Thresholds) -> Census {
     unreachable!()
 }
 
-/// Runs both engines in batches.
+/// Runs both engines to the end, in batches.
 fn compare_runs(name: &str, degrees: f64) {
     let mesh = Arc::new(families::by_name(name).unwrap());
     let (mut cpu, mut gpu) = engines(&mesh, any_deviation(degrees));
@@ -100,9 +100,9 @@ fn surfaces_agree_phase_by_phase() {
     }
 }
 
-/// As floats and as fixed-point numbers, under limits from none at all to one that stops nothing.
+/// With floats and fixed-point numbers, and limits from 0 to one that blocks nothing.
 #[test]
-fn surfaces_agree_on_how_far_diagonals_are_apart() {
+fn surfaces_agree_on_the_deviation() {
     for name in ["uvsphere 8", "uvsphere 8 0.5", "roof 8"] {
         let mesh = families::by_name(name).unwrap();
         let doubles: Vec<f64> = mesh.positions().iter().map(|x| x * (1.0 + f64::EPSILON)).collect();
@@ -117,8 +117,8 @@ fn surfaces_agree_on_how_far_diagonals_are_apart() {
     }
 }
 
-/// On llvmpipe, which ends the loops of an invocation that has gone round too often, a workgroup of exact arithmetic that
-/// decided all that it is asked for would stop halfway.
+/// llvmpipe ends the loop of an invocation after too many rounds. If one workgroup decided all of these edges, it would
+/// stop halfway.
 #[test]
 fn many_edges_wait_for_exact_arithmetic() {
     let mesh = families::by_name("uvsphere 48").unwrap();
@@ -135,7 +135,7 @@ fn long_runs_agree_in_batches() {
     compare_runs("uvsphere 60", 10.0);
 }
 
-/// Lists while few edges flip, sweeps while many do, and back: the flips of `strips` rise and fall.
+/// The engine uses lists while few edges flip and sweeps while many do. The flips of `strips` rise and fall.
 #[test]
 fn sweeps_and_lists_take_turns() {
     for (name, list_below) in [("strips 100", 20), ("random 30", 64), ("uvsphere 30", 64), ("fan2 200", 8)] {
@@ -150,7 +150,7 @@ fn sweeps_and_lists_take_turns() {
     }
 }
 
-/// Four sheets that meet in their corners only: vertices of several fans, whose anchors move.
+/// Four sheets that share one vertex, which has several fans with moving anchors.
 #[test]
 fn anchors_move_alike() {
     let sheet = families::by_name("random 8").unwrap();
@@ -183,7 +183,7 @@ fn an_empty_mesh_is_done() {
     assert_eq!(block_on(gpu.triangles()).unwrap(), Vec::<u32>::new());
 }
 
-/// `cargo test --lib tiers -- --nocapture` prints the table beside that of the CPU.
+/// `cargo test --lib tiers -- --nocapture` prints this table and that of the CPU.
 #[test]
 fn tiers_of_the_gpu() {
     const N: u32 = 100;

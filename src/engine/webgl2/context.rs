@@ -1,4 +1,4 @@
-//! A WebGL2 context of our own, and the programs compiled for it.
+//! The WebGL2 context, and the programs compiled for it.
 
 use super::errors::{lost, unavailable};
 use super::texture::{Pair, Texture};
@@ -12,9 +12,9 @@ use wasm_bindgen::prelude::*;
 use wasm_bindgen_futures::JsFuture;
 use web_sys::{HtmlCanvasElement, OffscreenCanvas, WebGl2RenderingContext as Gl, WebGlBuffer, WebGlProgram};
 
-/// Bits of the width of a texture: rows longer than this are of no use.
+/// The most bits of the width of a texture. Wider rows have no advantage.
 const MOST_WIDTH_BITS: u32 = 12;
-/// Milliseconds between two looks at what the context is doing.
+/// Milliseconds between two polls of the context.
 const PAUSE: i32 = 1;
 /// `COMPLETION_STATUS_KHR`.
 const COMPLETION_STATUS: u32 = 0x91b1;
@@ -28,14 +28,14 @@ extern "C" {
 }
 
 thread_local! {
-    /// What gives the sources of the programs, which are loaded only when they are needed.
+    /// The function that loads the sources of the programs, called only when they are needed.
     static LOADER: RefCell<Option<Function>> = const { RefCell::new(None) };
     /// The context that all sessions share.
     static SHARED: RefCell<Option<Rc<Context>>> = const { RefCell::new(None) };
 }
 
-/// Says where the sources come from: a function that returns a promise of a module, whose default export has the
-/// text of each program by its name.
+/// Sets the loader of the sources: a function that returns a promise of a module whose default export maps each program's
+/// name to its text.
 pub(crate) fn set_shader_loader(loader: Function) {
     LOADER.set(Some(loader));
 }
@@ -57,10 +57,10 @@ pub(super) struct Context {
 }
 
 impl Context {
-    /// The shared context; opened at the first call, and again after a loss.
+    /// The shared context. Opened at the first call, and again after a loss.
     ///
     /// # Errors
-    /// [`Error::BackendUnavailable`] where there is none; [`Error::Device`] where it fails at once.
+    /// [`Error::BackendUnavailable`] if there is no context; [`Error::Device`] if it fails at once.
     pub(super) async fn shared() -> Result<Rc<Self>, Error> {
         let known = SHARED.with_borrow(Clone::clone).filter(|context| !context.gl.is_context_lost());
         if let Some(context) = known {
@@ -93,7 +93,7 @@ impl Context {
         Ok(context)
     }
 
-    /// A texture of zeros.
+    /// A texture, all zero.
     ///
     /// # Errors
     /// [`Error::BackendLimit`] where there is no memory for it; [`Error::Device`].
@@ -101,23 +101,23 @@ impl Context {
         Texture::new(&self.gl, &self.adapter, size, words)
     }
 
-    /// Two of them.
+    /// Two equal textures.
     ///
     /// # Errors
-    /// As [`Context::texture`].
+    /// Those of [`Context::texture`].
     pub(super) fn pair(&self, size: (u32, u32), words: usize) -> Result<Pair, Error> {
         Ok(Pair { front: self.texture(size, words)?, back: self.texture(size, words)? })
     }
 
-    /// Bits of the width of textures for `count` texels, about square.
+    /// Bits of the width of an about square texture for `count` texels.
     pub(super) fn width_bits(&self, count: usize) -> u32 {
         count.next_power_of_two().ilog2().div_ceil(2).min(MOST_WIDTH_BITS).min(self.largest_side.ilog2())
     }
 
-    /// Compiles those programs that have not been compiled yet.
+    /// Compiles the named programs, unless they are compiled.
     ///
     /// # Errors
-    /// [`Error::BackendUnavailable`] with what the compiler says; [`Error::Device`].
+    /// [`Error::BackendUnavailable`] with the log of the compiler; [`Error::Device`].
     pub(super) async fn compile(&self, names: &[&'static str]) -> Result<(), Error> {
         let is_known = |name: &str| self.programs.borrow().iter().any(|(known, _)| *known == name);
         let missing: Vec<_> = names.iter().copied().filter(|name| !is_known(name)).collect();
@@ -147,7 +147,7 @@ impl Context {
         Ok(())
     }
 
-    /// Starts the compiler; what it says is asked for when it has ended.
+    /// Starts the compiler. The caller reads its log when it has finished.
     fn link(&self, name: &str) -> Result<WebGlProgram, Error> {
         let gl = &self.gl;
         let program = gl.create_program().ok_or_else(|| lost(gl))?;
@@ -162,8 +162,8 @@ impl Context {
         Ok(program)
     }
 
-    /// Runs a compiled program for every texel of `target`, or for one of its first row. Each of `inputs` goes to the
-    /// place that it has in `shaders/webgl2/state.wgsl`.
+    /// Runs a compiled program for every texel of `target`, or only for texel `column` of its first row. `inputs` are texture
+    /// units, as in `shaders/webgl2/state.wgsl`, and their textures.
     ///
     /// # Errors
     /// [`Error::Device`] if the context is lost.
@@ -190,7 +190,7 @@ impl Context {
         if gl.is_context_lost() { Err(lost(gl)) } else { Ok(()) }
     }
 
-    /// Reads texels row by row, at least the first `count`: four words each, however many the texture has.
+    /// Reads at least the first `count` texels, row by row: four words per texel, even if the texture has one.
     ///
     /// # Errors
     /// [`Error::Device`].
@@ -230,7 +230,7 @@ impl Context {
         }
     }
 
-    /// Waits until the context has done all that it was told, and lets the page do other things meanwhile.
+    /// Waits until the context has finished all calls. The page's event loop runs meanwhile.
     async fn finish(&self) -> Result<(), Error> {
         let gl = &self.gl;
         let sync = gl.fence_sync(Gl::SYNC_GPU_COMMANDS_COMPLETE, 0).ok_or_else(|| lost(gl))?;
@@ -254,7 +254,7 @@ impl Drop for Context {
     }
 }
 
-/// On a canvas that is never shown.
+/// Makes a context on a canvas that is never shown.
 fn create() -> Result<Gl, Error> {
     let options = Object::new();
     for name in ["alpha", "antialias", "depth"] {
@@ -272,11 +272,10 @@ fn create() -> Result<Gl, Error> {
     });
     context
         .and_then(|context| context.dyn_into::<Gl>().ok())
-        .ok_or_else(|| unavailable("there is no WebGL2 context to be had"))
+        .ok_or_else(|| unavailable("the browser gives no WebGL2 context"))
 }
 
-/// What the browser says of the renderer. Chromium and Safari say it to those who ask by an extension, which Firefox
-/// warns of.
+/// The name of the renderer. Chromium and Safari tell it only through an extension, about which Firefox warns.
 fn renderer(gl: &Gl) -> String {
     let text = |parameter| gl.get_parameter(parameter).ok().and_then(|text| text.as_string());
     let name = text(Gl::RENDERER).unwrap_or_default();
@@ -288,7 +287,7 @@ fn renderer(gl: &Gl) -> String {
 
 async fn load_sources() -> Result<JsValue, Error> {
     let loader = LOADER.with_borrow(Clone::clone);
-    let loader = loader.ok_or_else(|| unavailable("it was not said where its programs are"))?;
+    let loader = loader.ok_or_else(|| unavailable("the loader of its programs is not set"))?;
     let load = async {
         let module = loader.call0(&JsValue::UNDEFINED)?;
         let module = JsFuture::from(Promise::resolve(&module)).await?;
@@ -299,6 +298,6 @@ async fn load_sources() -> Result<JsValue, Error> {
 
 async fn pause() {
     let promise = Promise::new(&mut |resolve, _| set_timeout(&resolve, PAUSE));
-    // It is never refused.
+    // This promise never rejects.
     let _ = JsFuture::from(promise).await;
 }

@@ -1,7 +1,7 @@
 //! The phases as fragment programs over integer textures, for browsers without WebGPU.
 //!
-//! Every phase is a pass over all triangles that writes another texture than it reads. The host builds the adjacency,
-//! and reads the flips of a batch of iterations when it has ended.
+//! Every phase is a pass over all triangles. It reads one texture of a pair and writes the other. The host builds the
+//! adjacency, and reads the flips after each batch of iterations.
 
 use super::context::Context;
 use super::errors::refuse;
@@ -22,17 +22,17 @@ use std::rc::Rc;
 use std::sync::Arc;
 use web_sys::WebGl2RenderingContext as Gl;
 
-/// Iterations of one batch. Behind the end they only cost time: they flip nothing.
+/// Iterations of one batch. Those after the end of a run flip nothing and only cost time.
 const BATCH: u32 = 16;
-/// Side of the square of texels that one fragment sums, as in `passes.wgsl`.
+/// Side of the square of texels that one fragment sums; the same in `passes.wgsl`.
 const BLOCK: u32 = 8;
-/// Textures of up to so many rows are as high as a power of two: Mesa compiles a program anew for textures whose sides
-/// are none.
+/// The height of a texture with at most so many rows is rounded up to a power of two. Mesa compiles a program again for
+/// other heights.
 const SMALL_HEIGHT: usize = 256;
 /// Words of the parameters.
 const PARAMS: usize = 28;
 
-// Places of the textures, as in `shaders/webgl2/state.wgsl`.
+// Texture units, as in `shaders/webgl2/state.wgsl`.
 const POSITIONS: u32 = 0;
 const TRIANGLES: u32 = 1;
 const TWINS: u32 = 2;
@@ -57,19 +57,19 @@ pub(crate) struct WebGl {
     bests: Pair,
     selections: Texture,
     fans: Pair,
-    /// Each an eighth as wide and as high as the one before; the last is one block.
+    /// Each is an eighth as wide and as high as the one before. The last one is one block.
     sums: Vec<Texture>,
-    /// The flips of a batch's iterations, twice; or a census.
+    /// Twice the flips of each iteration of a batch; or a census.
     history: Texture,
     has_locks: bool,
     passes: u64,
 }
 
 impl WebGl {
-    /// On the shared context, once it has passed the self-test.
+    /// Makes an engine on the shared context, after the self-test.
     ///
     /// # Errors
-    /// [`Error::BackendUnavailable`] without a context, and with one that gets the test wrong; those of [`WebGl::new`].
+    /// [`Error::BackendUnavailable`] if there is no context, or if it fails the self-test; those of [`WebGl::new`].
     pub(crate) async fn open(mesh: Arc<Mesh>, thresholds: Thresholds) -> Result<Self, Error> {
         let context = Context::shared().await?;
         let upload = Upload::new(EngineKind::WebGl, mesh, thresholds)?;
@@ -84,7 +84,7 @@ impl WebGl {
     /// Builds the adjacency and uploads the mesh.
     ///
     /// # Errors
-    /// [`Error::BackendLimit`] for a mesh that is too large for the context; [`Error::BackendUnavailable`] if its
+    /// [`Error::BackendLimit`] for a mesh that is too large for the context; [`Error::BackendUnavailable`] if the
     /// compiler refuses the programs; [`Error::Device`].
     async fn new(context: Rc<Context>, upload: Upload) -> Result<Self, Error> {
         let mesh = &upload.mesh;
@@ -142,7 +142,7 @@ impl WebGl {
         self.triangles.front.write(in_fours(upload.mesh.triangles(), is_clockwise))?;
         self.twins.front.write(in_fours(twins, |_| NONE))?;
         self.fans.front.write(fans.table)?;
-        // Every triangle is looked at in the first iteration: as if each had been blocked before, and none selected.
+        // With these values, the first iteration tests every triangle.
         self.bests.front.write(vec![BLOCKED; self.count])?;
         self.selections.write(vec![NONE; self.count])
     }
@@ -159,12 +159,12 @@ impl WebGl {
         Ok(())
     }
 
-    /// What every pass that looks at the mesh reads.
+    /// The inputs of every pass that reads the mesh.
     fn mesh(&self) -> [(u32, &Texture); 3] {
         [(POSITIONS, &self.positions), (TRIANGLES, &self.triangles.front), (TWINS, &self.twins.front)]
     }
 
-    /// The verdicts on all edges as they are now, without the guard.
+    /// Computes the verdicts on all present edges, without the test for duplicates.
     fn judge(&mut self) -> Result<(), Error> {
         self.write_params();
         let before = [(SELECTIONS, &self.selections), (VERDICTS, &self.verdicts.front)];
@@ -186,7 +186,7 @@ impl WebGl {
         gl.buffer_data_with_array_buffer_view(Gl::UNIFORM_BUFFER, &words, Gl::DYNAMIC_DRAW);
     }
 
-    /// The passes of one iteration; its flips, twice, go to a column of the history.
+    /// Encodes the passes of one iteration. Twice its flips goes to a column of the history.
     fn encode_iteration(&mut self, column: u32) -> Result<(), Error> {
         self.judge()?;
         let (context, mesh) = (&self.context, self.mesh());
@@ -213,7 +213,7 @@ impl WebGl {
         self.sum_up(column)
     }
 
-    /// Sums the counts in the first of the sums into a column of the history.
+    /// Sums the counts in `sums[0]` into a column of the history.
     fn sum_up(&mut self, column: u32) -> Result<(), Error> {
         for pair in self.sums.windows(2) {
             self.context.pass("sum", &[(COUNTS, &pair[0])], &pair[1], None)?;
@@ -245,7 +245,7 @@ impl WebGl {
         Ok(flips)
     }
 
-    /// What [`Census::of_counts`] takes.
+    /// Counts for [`Census::of_counts`].
     pub(crate) async fn census_counts(&mut self) -> Result<Vec<u32>, Error> {
         self.judge()?;
         // A texel has four counts.
@@ -253,7 +253,7 @@ impl WebGl {
         let programs = &["census", "more"][..1 + usize::from(has_more)];
         for (column, program) in (0..).zip(programs) {
             let more = [(VERDICTS, &self.verdicts.front), (FANS, &self.fans.front)];
-            // Nothing is there between two iterations.
+            // The back texture is free between two iterations.
             self.context.pass(program, &[&self.mesh()[..], &more].concat(), &self.triangles.back, None)?;
             self.context.pass("sum", &[(COUNTS, &self.triangles.back)], &self.sums[0], None)?;
             self.passes += 2;
@@ -270,7 +270,7 @@ impl WebGl {
         self.twins.front.write(in_fours(&twins, |_| NONE))
     }
 
-    /// The first three words of each triangle's texel.
+    /// Reads the first three words of each triangle's texel.
     async fn read_threes(&self, texture: &Texture) -> Result<Vec<u32>, Error> {
         let words = self.context.read(texture, self.count).await?;
         Ok(words.chunks_exact(4).take(self.count).flat_map(|texel| [texel[0], texel[1], texel[2]]).collect())
@@ -289,7 +289,7 @@ impl WebGl {
     }
 }
 
-/// The programs that decide meshes of a form: the verdict on an edge; of surfaces also the creases.
+/// The programs with the exact tests for a form: the verdict on edges; in space also the creases.
 fn deciders(form: Form) -> &'static [&'static str] {
     match (form.dimension, form.is_fixed) {
         (Dimension::Two, false) => &["verdict2"],
@@ -303,19 +303,19 @@ fn deciders(form: Form) -> &'static [&'static str] {
     }
 }
 
-/// A texel for every three words, with a fourth.
+/// Texels of three words each and a fourth from `fourth`.
 fn in_fours(words: &[u32], fourth: impl Fn(usize) -> u32) -> Vec<u32> {
     words.chunks_exact(3).enumerate().flat_map(|(i, w)| [w[0], w[1], w[2], fourth(i)]).collect()
 }
 
-/// Width and height of a texture for so many texels; never empty.
+/// Width and height of a texture for `texels` texels. It is never empty.
 fn size_of(context: &Context, texels: usize, bits: u32) -> Result<(u32, u32), Error> {
     let rows = texels.div_ceil(1 << bits).max(1);
     let rows = if rows <= SMALL_HEIGHT { rows.next_power_of_two() } else { rows };
     if rows > context.largest_side as usize {
         let side = context.largest_side;
         return refuse(format!(
-            "it needs a texture of {} by {rows}, {} has sides of at most {side}",
+            "it takes a texture of {} by {rows} texels; {} allows sides of at most {side}",
             1u32 << bits,
             context.adapter
         ));
@@ -330,13 +330,16 @@ fn refuse_large_star(context: &Context, mesh: &Mesh) -> Result<(), Error> {
     }
     match corners.into_iter().max() {
         Some(most) if most > SHORT_STAR => {
-            refuse(format!("a vertex has {most} triangles, {} ends loops early", context.adapter))
+            let adapter = &context.adapter;
+            refuse(format!(
+                "a vertex has {most} triangles; {adapter} allows {SHORT_STAR}, as it ends loops early"
+            ))
         }
         _ => Ok(()),
     }
 }
 
-/// As in `shaders/webgl2/state.wgsl`.
+/// The parameters, in the layout of `shaders/webgl2/state.wgsl`.
 fn params(upload: &Upload, bits: u32, fans: usize) -> [u32; PARAMS] {
     let (mesh, cosine) = (&upload.mesh, Cosine::new(upload.thresholds.cos));
     let mut params = [0; PARAMS];

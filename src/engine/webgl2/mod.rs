@@ -1,5 +1,5 @@
-//! The WebGL2 engine. It has a WebAssembly module of its own (feature `js-webgl2`); the module of the other engines (feature
-//! `js`) has a proxy of it.
+//! The WebGL2 engine. It is in a WebAssembly module of its own (feature `js-webgl2`). The module of the other engines
+//! (feature `js`) calls it through a proxy.
 
 #[cfg(feature = "js-webgl2")]
 mod context;

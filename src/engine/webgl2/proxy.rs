@@ -1,4 +1,4 @@
-//! The WebGL2 engine as the module of the other engines sees it: it calls what `src/wasm/webgl2.rs` exports.
+//! A proxy of the WebGL2 engine, in the module of the other engines. It calls the exports of `src/wasm/webgl2.rs`.
 
 use crate::engine::{Answer, Census, EdgeCounts, Engine};
 use crate::{EngineKind, Error, Mesh};
@@ -10,7 +10,7 @@ use wasm_bindgen_futures::JsFuture;
 
 #[wasm_bindgen]
 extern "C" {
-    /// What makes a `JsWebGl2`, and loads its module before the first.
+    /// Loads the module of the engine at the first call of `create`, and makes a `JsWebGl2`.
     #[wasm_bindgen(typescript_type = "Pick<typeof import('./edgeflip_webgl2.js').WebGl2, 'create'>")]
     #[derive(Clone)]
     pub type WebGl2Module;
@@ -53,12 +53,12 @@ thread_local! {
     static MODULE: RefCell<Option<WebGl2Module>> = const { RefCell::new(None) };
 }
 
-/// Says where the engine comes from.
+/// Sets the module of the engine.
 pub(crate) fn set_webgl2(module: WebGl2Module) {
     MODULE.set(Some(module));
 }
 
-/// A mesh on the engine of the other module.
+/// A mesh on the engine in the other module.
 pub(crate) struct Proxy {
     remote: Remote,
     counts: EdgeCounts,
@@ -68,12 +68,12 @@ impl Proxy {
     /// As `WebGl::open`. The options are those that JavaScript gave: the other module reads them again.
     ///
     /// # Errors
-    /// [`Error::BackendUnavailable`] too where the module cannot be loaded.
+    /// Those of `WebGl::open`, and [`Error::BackendUnavailable`] if the module cannot be loaded.
     pub(crate) async fn new(mesh: &Mesh, options: &Object) -> Result<Self, Error> {
         let module = MODULE.with_borrow(Clone::clone);
-        let module = module.ok_or_else(|| unavailable("it was not said where its module is".to_owned()))?;
+        let module = module.ok_or_else(|| unavailable("its module is not set".to_owned()))?;
         let positions = mesh.positions().to_typed_array();
-        // A copy, since it waits for the module.
+        // A copy: the call waits for the module.
         let indices = Uint32Array::from(mesh.triangles());
         let dimension = mesh.dimension().stride() as u32;
         let created = module.create(positions, indices, dimension, options);
@@ -91,7 +91,7 @@ impl Proxy {
 
 impl Drop for Proxy {
     fn drop(&mut self) {
-        // Refused only after a trap in the other module, which may have it still.
+        // `free` throws only after a trap in the other module, which may still hold the object.
         let _ = self.remote.free();
     }
 }

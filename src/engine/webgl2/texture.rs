@@ -1,23 +1,23 @@
-//! Integer textures: an element a texel, row after row.
+//! Integer textures: one element per texel, row after row.
 
 use super::errors::{lost, refuse};
 use crate::Error;
 use js_sys::Uint32Array;
 use web_sys::{WebGl2RenderingContext as Gl, WebGlFramebuffer, WebGlTexture};
 
-/// A texture of words that a pass can write. It is deleted when it goes.
+/// A texture of words that a pass can write. It is deleted on drop.
 pub(super) struct Texture {
     gl: Gl,
     pub(super) texture: WebGlTexture,
     pub(super) framebuffer: WebGlFramebuffer,
     /// Width and height.
     pub(super) size: (u32, u32),
-    /// Words of a texel: 1 or 4.
+    /// Words per texel: 1 or 4.
     words: usize,
 }
 
 impl Texture {
-    /// Of zeros. `adapter` is the name of the renderer.
+    /// A texture, all zero. `adapter` is the name of the renderer.
     ///
     /// # Errors
     /// [`Error::BackendLimit`] where there is no memory for it; [`Error::Device`].
@@ -30,7 +30,7 @@ impl Texture {
         gl.bind_texture(Gl::TEXTURE_2D, Some(&result.texture));
         let format = if words == 1 { Gl::R32UI } else { Gl::RGBA32UI };
         gl.tex_storage_2d(Gl::TEXTURE_2D, 1, format, size.0 as i32, size.1 as i32);
-        // Integers cannot be blended: without these two a texture is not complete.
+        // Integers cannot be interpolated: with other filters the texture is incomplete.
         for filter in [Gl::TEXTURE_MIN_FILTER, Gl::TEXTURE_MAG_FILTER] {
             gl.tex_parameteri(Gl::TEXTURE_2D, filter, Gl::NEAREST as i32);
         }
@@ -39,13 +39,13 @@ impl Texture {
         gl.framebuffer_texture_2d(Gl::FRAMEBUFFER, point, target, Some(&result.texture), 0);
         match gl.get_error() {
             Gl::NO_ERROR => Ok(result),
-            Gl::OUT_OF_MEMORY => refuse(format!("{adapter} has no memory left for it")),
+            Gl::OUT_OF_MEMORY => refuse(format!("{adapter} has no memory left for the mesh")),
             Gl::CONTEXT_LOST_WEBGL => Err(lost(gl)),
             code => Err(Error::Device { message: format!("WebGL2 reports the error {code:#06x}") }),
         }
     }
 
-    /// Writes texels from the first on, row by row; the rest of the last row is zeros.
+    /// Writes texels from the first on, row by row, and fills the last row with zeros.
     ///
     /// # Errors
     /// [`Error::Device`].
@@ -81,15 +81,14 @@ impl Drop for Texture {
     }
 }
 
-/// Two textures of one kind: what a pass reads, and where it writes.
+/// Two equal textures: a pass reads the front and writes the back.
 pub(super) struct Pair {
     pub(super) front: Texture,
     pub(super) back: Texture,
 }
 
 impl Pair {
-    /// As [`Texture::new`].
-    /// What was written is what is read from now on.
+    /// Exchanges front and back, so that the next pass reads what this one wrote.
     pub(super) fn swap(&mut self) {
         std::mem::swap(&mut self.front, &mut self.back);
     }

@@ -1,4 +1,4 @@
-//! Twins from triangles, and whether any vertex has several fans, on the device.
+//! Builds the twins on the device, and finds out whether any vertex has several fans.
 
 use super::buffer::Buffer;
 use super::buffers::Buffers;
@@ -7,14 +7,14 @@ use crate::engine::EdgeCounts;
 use crate::mesh::Mesh;
 use wgpu::BufferUsages;
 
-/// As in `shaders/webgpu/adjacency.wgsl`.
+/// The same in `shaders/webgpu/adjacency.wgsl`.
 pub(super) const BUCKETS_EACH: u32 = 8;
 pub(super) const COUNTERS: usize = 7;
 pub(super) const SEVERAL_FANS: usize = 5;
 /// Kernels that [`record`] dispatches.
 pub(super) const DISPATCHES: u64 = 6;
 
-/// What the host learns of the adjacency; the twins stay on the device.
+/// What the host reads back of the adjacency. The twins stay on the device.
 pub(super) struct Found {
     pub(super) counts: EdgeCounts,
     pub(super) has_several_fans: bool,
@@ -22,7 +22,7 @@ pub(super) struct Found {
     pub(super) most_corners: u32,
 }
 
-/// What building the adjacency needs beside the buffers of the mesh. Behind the counters there is a word for others.
+/// Buffers for the adjacency only. The word behind the counters is for the signs of the triangles.
 pub(super) struct Scratch {
     params: Buffer,
     buckets: Buffer,
@@ -38,7 +38,7 @@ impl Scratch {
         }
     }
 
-    /// What they take on the device.
+    /// Their size on the device.
     pub(super) fn bytes(&self) -> u64 {
         [&self.params, &self.buckets, &self.counters].map(|buffer| buffer.size()).iter().sum()
     }
@@ -48,7 +48,7 @@ fn bucket_count(mesh: &Mesh) -> u32 {
     (mesh.vertex_count() as u32).div_ceil(256) * 256
 }
 
-/// Records the filling of the twins. The frontier is used too: whatever is in it afterwards has to be cleared.
+/// Records the kernels that fill the twins. They also use the frontier: the caller has to clear it afterwards.
 pub(super) fn record(
     gpu: &Device,
     mesh: &Mesh,
@@ -78,7 +78,7 @@ pub(super) fn record(
 }
 
 impl Found {
-    /// What the counters say.
+    /// Decodes the counters.
     pub(super) fn of(counters: &[u32]) -> Self {
         let [edges, boundary, non_manifold, inconsistent] = [1, 2, 3, 4].map(|i| counters[i]);
         Self {

@@ -1,6 +1,6 @@
-//! Pipelines compiled at the same time in a browser. wgpu creates one after the other, and a browser that creates one without
-//! a promise compiles it at once, while nothing else happens. Those that have come by a promise it knows: wgpu is given the
-//! same ones.
+//! Compiles pipelines in parallel in a browser. wgpu creates pipelines one after another with the synchronous call, which
+//! blocks. This file first creates the same pipelines with the asynchronous call; the browser then has them in its cache
+//! when wgpu asks for them.
 
 use super::browser::GpuDevice;
 use super::kernels::{Entry, Plan};
@@ -21,27 +21,28 @@ extern "C" {
     fn pipeline(this: &GpuDevice, descriptor: &JsValue) -> Result<Promise, JsValue>;
 }
 
-/// The pipelines of plans, which the browser forgets when they go. What is wrong with them, it will say again.
+/// The pipelines of `plans`. The browser's cache keeps them as long as the result lives. Errors in them are ignored here:
+/// wgpu gets the same errors.
 pub(super) async fn compiled(plans: &[Plan], device: &wgpu::Device) -> Option<JsValue> {
     let device = GpuDevice::of(device)?;
     device.push_error_scopes();
     let promises: Result<Vec<_>, _> = plans.iter().map(|plan| promises(plan, &device)).collect();
-    // Errors are told when wgpu does the same.
+    // wgpu gets the same errors.
     drop(device.pop_error_scopes());
     let all: Array = promises.ok()?.into_iter().flatten().collect();
     JsFuture::from(Promise::all_settled(&all)).await.ok()
 }
 
 fn promises(plan: &Plan, device: &GpuDevice) -> Result<Vec<Promise>, JsValue> {
-    let places = plan.bindings.iter().zip(0u32..).map(|(ty, binding)| layout_entry(*ty, binding));
-    let layout = device.bind_group_layout(&object(&[("entries", list(places))]))?;
+    let entries = plan.bindings.iter().zip(0u32..).map(|(ty, binding)| layout_entry(*ty, binding));
+    let layout = device.bind_group_layout(&object(&[("entries", list(entries))]))?;
     let layout = device.pipeline_layout(&object(&[("bindGroupLayouts", list([layout]))]))?;
     let module = |source: &String| device.shader_module(&object(&[("code", source.into())]));
     let modules = plan.sources.iter().map(module).collect::<Result<Vec<_>, _>>()?;
-    let promise = |(place, name, constant): &Entry| {
+    let promise = |(source, name, constant): &Entry| {
         let constants = constant.map(|(name, value)| (name, JsValue::from(value)));
         let stage = object(&[
-            ("module", modules[*place].clone()),
+            ("module", modules[*source].clone()),
             ("entryPoint", (*name).into()),
             ("constants", object(constants.as_slice())),
         ]);

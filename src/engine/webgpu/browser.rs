@@ -1,4 +1,4 @@
-//! The browser's side of a device: where WebGPU is, and what there is no way to through wgpu.
+//! The browser's WebGPU objects: how to find them, and calls that wgpu does not offer.
 
 use js_sys::{Object, Promise, Reflect};
 use wasm_bindgen::prelude::*;
@@ -31,9 +31,9 @@ extern "C" {
     pub(super) fn is_fallback_adapter(this: &GpuAdapterInfo) -> Option<bool>;
 
     /// GPUError and GPUDeviceLostInfo.
-    pub(super) type Told;
+    pub(super) type HasMessage;
     #[wasm_bindgen(method, getter)]
-    pub(super) fn message(this: &Told) -> String;
+    pub(super) fn message(this: &HasMessage) -> String;
 }
 
 /// The navigator of a window or a worker. Elsewhere, as in Node, wgpu's instance panics.
@@ -65,12 +65,12 @@ impl GpuDevice {
         }
     }
 
-    /// What they say, the last that was pushed first.
+    /// The errors that the scopes caught, in the reverse order of [`Self::push_error_scopes`].
     pub(super) fn pop_error_scopes(&self) -> [JsFuture; 3] {
         [(); 3].map(|()| JsFuture::from(self.pop_error_scope()))
     }
 
-    /// Vendor and architecture, such as `nvidia ampere`: what a browser says of a GPU. Empty where it says nothing.
+    /// Vendor and architecture, such as `nvidia ampere`. Empty where the browser does not tell them.
     pub(super) fn adapter_name(&self) -> String {
         let info = self.adapter_info();
         let words = info.map(|info| [info.vendor(), info.architecture(), info.description()]);

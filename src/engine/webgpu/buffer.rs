@@ -1,11 +1,11 @@
-//! A buffer on a device, and one that is kept from one copy to the next.
+//! Buffers on a device, and a staging buffer that is kept for the next copy.
 
 use std::sync::Mutex;
 
-/// The most bytes that a buffer has which is kept.
+/// The largest buffer that is kept, in bytes.
 pub(super) const MOST_KEPT: u64 = 1 << 26;
 
-/// A buffer that is destroyed when it goes: in a browser the garbage collector would take its time.
+/// A buffer that is destroyed on drop. In a browser, the garbage collector would free it much later.
 pub(super) struct Buffer(pub(super) wgpu::Buffer);
 
 impl std::ops::Deref for Buffer {
@@ -21,7 +21,7 @@ impl Drop for Buffer {
     }
 }
 
-/// A buffer for the next copy, unless it is in use: then there are two for a while.
+/// A staging buffer for the next copy. While it is in use, the slot is empty and a second copy makes its own buffer.
 #[derive(Default)]
 pub(super) struct Kept(Mutex<Option<Buffer>>);
 
@@ -30,12 +30,12 @@ impl Kept {
         f(&mut self.0.lock().unwrap_or_else(|poisoned| poisoned.into_inner()))
     }
 
-    /// Takes it, if it has so many bytes; one that is too small goes.
+    /// Takes the buffer, if it has at least `bytes` bytes; drops it if it is smaller.
     pub(super) fn take(&self, bytes: u64) -> Option<Buffer> {
         self.with(Option::take).filter(|buffer| buffer.size() >= bytes)
     }
 
-    /// Keeps a buffer, unless it is too large or there is one as large.
+    /// Keeps `buffer`, unless it is larger than [`MOST_KEPT`] or not larger than the one already kept.
     pub(super) fn put(&self, buffer: Buffer) {
         self.with(|kept| {
             let size = kept.as_ref().map_or(0, |kept| kept.size());

@@ -4,12 +4,12 @@ use super::buffer::Buffer;
 use super::device::Device;
 use super::history::HISTORY_WORDS;
 use super::kernels::WORKGROUP_SIZE;
-use super::params::{Params, Places};
+use super::params::{Params, TopologyOffsets};
 use super::steps::Step;
 use crate::engine::gpu::upload::Upload;
 use wgpu::BufferUsages;
 
-/// Words of the frontier of so many triangles, the longest buffer: see `state.wgsl`.
+/// Words of the frontier for `triangles` triangles. It is the longest buffer: see `state.wgsl`.
 pub(super) fn frontier_words(triangles: usize) -> usize {
     3 * triangles + 1 + triangles.div_ceil(WORKGROUP_SIZE as usize).div_ceil(32)
 }
@@ -24,12 +24,12 @@ pub(super) struct Buffers {
     pub(super) frontier: Buffer,
     pub(super) history: Buffer,
     pub(super) topology: Buffer,
-    /// The positions as floats, where those that the shaders read are none.
+    /// The positions as floats, if the shaders read fixed-point numbers.
     pub(super) floats: Option<Buffer>,
 }
 
 impl Buffers {
-    /// With the mesh and the steps in them.
+    /// Makes the buffers, and writes the mesh and the steps.
     pub(super) fn new(gpu: &Device, upload: &Upload) -> Self {
         let mesh = &upload.mesh;
         let count = mesh.triangle_count();
@@ -39,14 +39,14 @@ impl Buffers {
         let buffers = Self {
             uniform: gpu.buffer("params", size_of::<Params>() / 4, BufferUsages::UNIFORM),
             steps: gpu.buffer("steps", step_words.len(), BufferUsages::UNIFORM),
-            // A page may draw from these two without a copy.
+            // A page may draw from these two buffers without a copy.
             positions: drawn("positions", upload.words().len(), BufferUsages::VERTEX),
             triangles: drawn("triangles", 3 * count, BufferUsages::INDEX),
             twins: storage("twins", 3 * count),
             choices: storage("choices", 2 * count),
             frontier: storage("frontier", frontier_words(count)),
             history: storage("history", HISTORY_WORDS),
-            topology: storage("topology", Places::new(mesh).fans as usize),
+            topology: storage("topology", TopologyOffsets::new(mesh).fans as usize),
             floats: upload
                 .form()
                 .is_fixed
@@ -57,7 +57,7 @@ impl Buffers {
         buffers
     }
 
-    /// What they take on the device.
+    /// Their size on the device.
     pub(super) fn bytes(&self) -> u64 {
         let Self {
             uniform,
@@ -75,7 +75,7 @@ impl Buffers {
         all.into_iter().chain(floats).map(|buffer| buffer.size()).sum()
     }
 
-    /// Writes the positions, and triangles unless they stay.
+    /// Writes the positions and the triangles. An empty slice leaves the triangles as they are.
     pub(super) fn write(&self, gpu: &Device, upload: &Upload, triangles: &[u32]) {
         let numbers = self.floats.as_ref().map(|floats| (floats, upload.mesh.positions().to_f32()));
         let mut writes = vec![(&self.triangles, triangles), (&self.positions, upload.words())];
@@ -83,7 +83,7 @@ impl Buffers {
         gpu.write_all(&writes);
     }
 
-    /// Bound for the phases.
+    /// The bind group for the phases.
     pub(super) fn bind(&self, gpu: &Device, layout: &wgpu::BindGroupLayout) -> wgpu::BindGroup {
         let Self {
             uniform, steps, positions, triangles, twins, choices, frontier, history, topology, ..

@@ -1,4 +1,4 @@
-//! Kernels out of plans: all are compiled at the same time.
+//! Compiles the kernels of plans, in parallel.
 
 #[cfg(target_arch = "wasm32")]
 use super::ahead;
@@ -7,14 +7,14 @@ use super::kernels::{Entry, Kernels, Plan};
 use crate::engine::gpu::upload::Form;
 use std::sync::Arc;
 
-/// The kernels of plans, all compiled at the same time: a driver compiles on the thread that asks for it, and takes long.
+/// The kernels of plans, compiled in parallel. A driver compiles on the thread that calls it, and takes long.
 #[cfg(not(target_arch = "wasm32"))]
 pub(super) async fn compile(plans: &[Plan], device: &wgpu::Device) -> Result<Vec<Kernels>, Fault> {
     let sources: Vec<&String> = plans.iter().flat_map(|plan| &plan.sources).collect();
     let mut modules = at_once(&sources, device, |source| module(source, device))?.into_iter();
     let parts = |plan: &Plan| Parts::new(plan, device, modules.by_ref().take(plan.sources.len()).collect());
-    let (parts, word) = watch(device, || plans.iter().map(parts).collect::<Vec<_>>());
-    told(word.await)?;
+    let (parts, caught) = watch(device, || plans.iter().map(parts).collect::<Vec<_>>());
+    no_fault(caught.await)?;
     let entries: Vec<_> = (parts.iter().zip(plans))
         .flat_map(|(parts, plan)| plan.entries.iter().map(move |entry| (parts, entry)))
         .collect();
@@ -25,7 +25,7 @@ pub(super) async fn compile(plans: &[Plan], device: &wgpu::Device) -> Result<Vec
     Ok(kernels.map(|(parts, plan)| Kernels::new(parts.layout, pipelines_of(plan))).collect())
 }
 
-/// What the device makes of each item, each on a thread of its own.
+/// Calls `make` for each item, each on its own thread.
 #[cfg(not(target_arch = "wasm32"))]
 fn at_once<T: Sync, R: Send>(
     items: &[T],
@@ -33,8 +33,8 @@ fn at_once<T: Sync, R: Send>(
     make: impl Fn(&T) -> R + Sync,
 ) -> Result<Vec<R>, Fault> {
     let make = |item| {
-        let (result, word) = watch(device, || make(item));
-        told(pollster::block_on(word)).map(|()| result)
+        let (result, caught) = watch(device, || make(item));
+        no_fault(pollster::block_on(caught)).map(|()| result)
     };
     let make = &make;
     std::thread::scope(|scope| {
@@ -59,14 +59,14 @@ pub(super) async fn compile(plans: &[Plan], device: &wgpu::Device) -> Result<Vec
         let pipelines = plan.entries.iter().map(|entry| parts.pipeline(entry, device)).collect();
         Kernels::new(parts.layout, pipelines)
     };
-    let (kernels, word) = watch(device, || plans.iter().map(kernels).collect());
-    told(word.await).map(|()| kernels)
+    let (kernels, caught) = watch(device, || plans.iter().map(kernels).collect());
+    no_fault(caught.await).map(|()| kernels)
 }
 
-/// The kernels of some plans, and behind them those of the phases for a form.
+/// The kernels of some plans, and those of the phases for a form.
 ///
-/// In a browser the tail follows behind the first runs. Natively it is compiled along, since a process may end at any time,
-/// and drivers do not expect that while they compile.
+/// In a browser the tail compiles behind the first runs. Natively it compiles with the others: a process may end at any
+/// time, and drivers do not expect that while they compile.
 pub(super) async fn compile_phases(
     mut plans: Vec<Plan>,
     form: Form,
@@ -87,7 +87,7 @@ pub(super) async fn compile_phases(
     {
         let (phases, device) = (phases.clone(), device.clone());
         wasm_bindgen_futures::spawn_local(async move {
-            // Where the compiler refuses it, iterations run one by one.
+            // Without a tail, every iteration has its own dispatches.
             let compiled = compile(&[tail], &device).await;
             keep_tail(&phases, compiled.ok().and_then(|mut kernels| kernels.pop()));
         });
@@ -97,12 +97,12 @@ pub(super) async fn compile_phases(
 
 fn keep_tail(phases: &Kernels, tail: Option<Kernels>) {
     if let Some(pipeline) = tail.and_then(|mut tail| tail.pipelines.pop()) {
-        // It is compiled once for each of them.
+        // Nobody else sets it.
         let _ = phases.tail.set(pipeline);
     }
 }
 
-fn told(fault: Option<Fault>) -> Result<(), Fault> {
+fn no_fault(fault: Option<Fault>) -> Result<(), Fault> {
     fault.map_or(Ok(()), Err)
 }
 
@@ -122,7 +122,7 @@ struct Parts {
 
 impl Parts {
     fn new(plan: &Plan, device: &wgpu::Device, modules: Vec<wgpu::ShaderModule>) -> Self {
-        let places: Vec<_> = plan
+        let entries: Vec<_> = plan
             .bindings
             .iter()
             .zip(0u32..)
@@ -134,7 +134,7 @@ impl Parts {
             })
             .collect();
         let layout = device
-            .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: None, entries: &places });
+            .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: None, entries: &entries });
         let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: None,
             bind_group_layouts: &[Some(&layout)],
@@ -143,11 +143,11 @@ impl Parts {
         Self { layout, pipeline_layout, modules }
     }
 
-    fn pipeline(&self, (place, name, constant): &Entry, device: &wgpu::Device) -> wgpu::ComputePipeline {
+    fn pipeline(&self, (source, name, constant): &Entry, device: &wgpu::Device) -> wgpu::ComputePipeline {
         device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
             label: Some(*name),
             layout: Some(&self.pipeline_layout),
-            module: &self.modules[*place],
+            module: &self.modules[*source],
             entry_point: Some(*name),
             compilation_options: wgpu::PipelineCompilationOptions {
                 constants: constant.as_slice(),

@@ -1,10 +1,10 @@
-//! What goes to a device, and comes back.
+//! Copies to a device, and back.
 
 use super::buffer::Buffer;
 #[cfg(target_arch = "wasm32")]
 use super::buffer::MOST_KEPT;
 use super::device::Device;
-use super::faults::{Word, watch};
+use super::faults::{Caught, watch};
 use crate::Error;
 #[cfg(not(target_arch = "wasm32"))]
 use crate::system::threads::Threads;
@@ -14,29 +14,29 @@ use std::ops::Range;
 use std::sync::atomic::Ordering::Relaxed;
 use wgpu::BufferUsages;
 
-/// Words that are copied to the device, or from it, at a time: the memory between them is used again, which is far
-/// faster than more of it would be.
+/// The most words of one copy to the device, or from it. Longer arrays go in several copies through the same staging
+/// memory, which is far faster than new memory.
 #[cfg(not(target_arch = "wasm32"))]
 pub(super) const CHUNK: usize = 1 << 22;
-/// In a browser each time is a wait: as many as the memory between them has that is kept.
+/// In a browser each copy is a wait: as many words as the largest staging buffer that is kept.
 #[cfg(target_arch = "wasm32")]
 pub(super) const CHUNK: usize = MOST_KEPT as usize / 4;
 
-/// Words that one thread copies at a time.
+/// Words that one thread copies without a break.
 #[cfg(not(target_arch = "wasm32"))]
 pub(super) const PIECE: usize = 1 << 16;
 
-/// Words for whoever has asked for a result.
+/// The array that a result is read into.
 #[cfg(not(target_arch = "wasm32"))]
 pub(super) type Words = Vec<u32>;
 
-/// Room for so many.
+/// Memory for `words` words.
 #[cfg(not(target_arch = "wasm32"))]
-pub(super) fn room(words: usize) -> Option<Words> {
+pub(super) fn reserve(words: usize) -> Option<Words> {
     Some(Vec::with_capacity(words))
 }
 
-/// What is read: so many words of a buffer, from one of them on.
+/// What to read: `words` words of `buffer`, from word `first` on.
 pub(super) struct Source<'a> {
     pub(super) buffer: &'a Buffer,
     pub(super) first: usize,
@@ -50,52 +50,52 @@ impl<'a> Source<'a> {
     }
 }
 
-/// Words that are on their way.
-pub(super) struct Coming<'a> {
+/// A read that the device has not finished.
+pub(super) struct PendingRead<'a> {
     gpu: &'a Device,
     staging: Buffer,
-    word: Word,
+    caught: Caught,
     receiver: oneshot::Receiver<Result<(), wgpu::BufferAsyncError>>,
-    places: Vec<Range<u64>>,
+    ranges: Vec<Range<u64>>,
 }
 
-impl<'a> Coming<'a> {
-    /// Waits for them.
+impl<'a> PendingRead<'a> {
+    /// Waits for the device.
     ///
     /// # Errors
     /// [`Error::Device`].
-    pub(super) async fn landed(self) -> Result<Landed<'a>, Error> {
-        let Self { gpu, staging, word, receiver, places } = self;
-        gpu.judge(word.await)?;
+    pub(super) async fn finished(self) -> Result<ReadBack<'a>, Error> {
+        let Self { gpu, staging, caught, receiver, ranges } = self;
+        gpu.judge(caught.await)?;
         #[cfg(not(target_arch = "wasm32"))]
         gpu.wait().map_err(|_| gpu.not_mapped())?;
         if !matches!(receiver.await, Ok(Ok(()))) {
             return Err(gpu.not_mapped());
         }
         gpu.check()?;
-        Ok(Landed { gpu, staging: Some(staging), places })
+        Ok(ReadBack { gpu, staging: Some(staging), ranges })
     }
 }
 
-/// Words that have come back, in memory that both sides see, which the next ones get afterwards.
-pub(super) struct Landed<'a> {
+/// Words read back, in a mapped staging buffer. On drop, the device keeps the buffer for the next read.
+pub(super) struct ReadBack<'a> {
     pub(super) gpu: &'a Device,
     pub(super) staging: Option<Buffer>,
-    /// Where those of each source are, in bytes.
-    pub(super) places: Vec<Range<u64>>,
+    /// The byte range of each source in the staging buffer.
+    pub(super) ranges: Vec<Range<u64>>,
 }
 
-impl Drop for Landed<'_> {
+impl Drop for ReadBack<'_> {
     fn drop(&mut self) {
         if let Some(staging) = self.staging.take() {
             staging.unmap();
-            self.gpu.read_back.put(staging);
+            self.gpu.kept_for_reads.put(staging);
         }
     }
 }
 
-impl Landed<'_> {
-    /// The words of the source of this index.
+impl ReadBack<'_> {
+    /// The words of the source with index `source`.
     ///
     /// # Errors
     /// [`Error::Device`].
@@ -104,20 +104,20 @@ impl Landed<'_> {
         self.append(source, &mut words).map(|()| words)
     }
 
-    /// Puts the words of a source into room for them.
+    /// Copies the words of a source into memory from [`reserve`].
     ///
     /// # Errors
     /// [`Error::Device`].
     #[cfg(not(target_arch = "wasm32"))]
-    pub(super) fn fill(&self, source: usize, mut room: Words) -> Result<Words, Error> {
-        self.append(source, &mut room).map(|()| room)
+    pub(super) fn fill(&self, source: usize, mut reserved: Words) -> Result<Words, Error> {
+        self.append(source, &mut reserved).map(|()| reserved)
     }
 
     #[cfg(not(target_arch = "wasm32"))]
     fn append(&self, source: usize, result: &mut Vec<u32>) -> Result<(), Error> {
-        let place = self.places[source].clone();
-        let Some(staging) = self.staging.as_ref().filter(|_| !place.is_empty()) else { return Ok(()) };
-        let view = staging.get_mapped_range(place).map_err(|_| self.gpu.not_mapped())?;
+        let range = self.ranges[source].clone();
+        let Some(staging) = self.staging.as_ref().filter(|_| !range.is_empty()) else { return Ok(()) };
+        let view = staging.get_mapped_range(range).map_err(|_| self.gpu.not_mapped())?;
         Threads::default().append(result, bytemuck::cast_slice(&view));
         Ok(())
     }
@@ -142,9 +142,9 @@ impl Device {
         Ok(result)
     }
 
-    /// Why memory is not mapped: mostly the device has said so.
+    /// Why a buffer is not mapped: the first error of the device, if there is one.
     pub(super) fn not_mapped(&self) -> Error {
-        let message = || "memory could not be mapped".to_owned();
+        let message = || "the driver did not map a staging buffer".to_owned();
         self.check().err().unwrap_or_else(|| Error::Device { message: message() })
     }
 
@@ -155,7 +155,7 @@ impl Device {
         self.asked.submissions.fetch_add(1, Relaxed);
     }
 
-    /// Submits the commands that `record` makes, and reads the sources behind them: all of it at once.
+    /// Submits the commands from `record` together with reads of the sources after them, and waits.
     ///
     /// # Errors
     /// [`Error::Device`].
@@ -163,44 +163,44 @@ impl Device {
         &self,
         record: &dyn Fn() -> wgpu::CommandEncoder,
         sources: &[Source<'_>],
-    ) -> Result<Landed<'_>, Error> {
-        self.submit_and_map(record, sources).landed().await
+    ) -> Result<ReadBack<'_>, Error> {
+        self.submit_and_map(record, sources).finished().await
     }
 
-    /// The same, without a wait.
+    /// The same, without the wait.
     pub(super) fn submit_and_map(
         &self,
         record: &dyn Fn() -> wgpu::CommandEncoder,
         sources: &[Source<'_>],
-    ) -> Coming<'_> {
+    ) -> PendingRead<'_> {
         let mut end = 0;
-        let place = |source: &Source<'_>| {
+        let range = |source: &Source<'_>| {
             // A view begins at a multiple of eight bytes.
             let begin = u64::next_multiple_of(end, 8);
             end = begin + 4 * source.words as u64;
             begin..end
         };
-        let places: Vec<_> = sources.iter().map(place).collect();
+        let ranges: Vec<_> = sources.iter().map(range).collect();
         let (sender, receiver) = oneshot::channel();
         let submit = || {
             let new = || self.staging(end, BufferUsages::MAP_READ | BufferUsages::COPY_DST);
-            let staging = self.read_back.take(end).unwrap_or_else(new);
+            let staging = self.kept_for_reads.take(end).unwrap_or_else(new);
             let mut encoder = record();
-            for (Source { buffer, first, words }, place) in sources.iter().zip(&places) {
+            for (Source { buffer, first, words }, range) in sources.iter().zip(&ranges) {
                 let size = 4 * *words as u64;
-                encoder.copy_buffer_to_buffer(buffer, 4 * *first as u64, &staging, place.start, size);
+                encoder.copy_buffer_to_buffer(buffer, 4 * *first as u64, &staging, range.start, size);
             }
             self.submit(encoder);
             staging.map_async(wgpu::MapMode::Read, ..end.max(4), move |result| {
-                // The receiver is gone only if the caller has given up waiting.
+                // The receiver is gone only if the caller has stopped waiting.
                 let _ = sender.send(result);
             });
             #[cfg(test)]
             self.asked.maps.fetch_add(1, Relaxed);
             staging
         };
-        let (staging, word) = watch(&self.device, submit);
-        Coming { gpu: self, staging, word, receiver, places }
+        let (staging, caught) = watch(&self.device, submit);
+        PendingRead { gpu: self, staging, caught, receiver, ranges }
     }
 
     #[cfg(not(target_arch = "wasm32"))]
@@ -208,12 +208,12 @@ impl Device {
         self.device.poll(wgpu::PollType::wait_indefinitely())
     }
 
-    /// Waits for the copies of all that was written, where that can be waited for.
+    /// Natively, waits for all copies to the device.
     pub(super) fn finish_copies(&self) {
         #[cfg(not(target_arch = "wasm32"))]
         {
             self.queue.submit([]);
-            // A failure is told by the next call that can fail.
+            // The next call that returns an error reports a failure.
             let _ = self.wait();
         }
     }
@@ -227,25 +227,25 @@ impl Device {
     /// Writes words to the start of `buffer`, before the next submission.
     pub(super) fn write(&self, buffer: &Buffer, words: &[u32]) {
         for (i, chunk) in words.chunks(CHUNK).enumerate() {
-            let place = 4 * (i * CHUNK) as u64;
-            self.stage(buffer, place, chunk);
+            let offset = 4 * (i * CHUNK) as u64;
+            self.stage(buffer, offset, chunk);
             if chunk.len() == CHUNK {
                 self.finish_copies();
             }
         }
     }
 
-    /// Copies words by several threads; the next submission takes them to their place.
+    /// Copies words to staging memory, on several threads. The next submission copies them to `buffer` at byte `offset`.
     #[cfg(not(target_arch = "wasm32"))]
-    fn stage(&self, buffer: &Buffer, place: u64, words: &[u32]) {
+    fn stage(&self, buffer: &Buffer, offset: u64, words: &[u32]) {
         let size = wgpu::BufferSize::new(size_of_val(words) as u64);
-        // Where there is none, wgpu has told the error.
-        let Some(mut view) = size.and_then(|size| self.queue.write_buffer_with(buffer, place, size)) else {
+        // Without a view, wgpu has reported the error.
+        let Some(mut view) = size.and_then(|size| self.queue.write_buffer_with(buffer, offset, size)) else {
             return;
         };
         let (pieces, mut rest) = view.slice(..).into_chunks::<{ 4 * PIECE }>();
-        let (whole, others) = words.as_chunks::<PIECE>();
-        rest.copy_from_slice(bytemuck::cast_slice(others));
+        let (whole, last) = words.as_chunks::<PIECE>();
+        rest.copy_from_slice(bytemuck::cast_slice(last));
         let pieces: Vec<_> = whole.iter().zip(pieces).collect();
         Threads::default().map_each(pieces, |(words, copy)| {
             wgpu::WriteOnly::<[u8]>::from(copy).copy_from_slice(bytemuck::cast_slice(words));

@@ -1,4 +1,4 @@
-//! A GPU's device, with the kernels compiled for it.
+//! A GPU device, and the kernels compiled for it.
 
 #[cfg(target_arch = "wasm32")]
 use super::browser;
@@ -20,16 +20,16 @@ use wgpu::BufferUsages;
 /// Workgroups that WebGPU allows in one dimension.
 const MOST_WORKGROUPS: u32 = 65_535;
 
-/// Invocations of one workgroup beyond which a list is seldom as long.
+/// The most invocations of the tail. Few lists of a tail are longer.
 const LARGEST_TAIL: u32 = 1024;
 
-/// A device and what was compiled for it.
+/// A device, and what was compiled for it.
 pub(crate) struct Device {
     pub(super) device: wgpu::Device,
     pub(super) queue: wgpu::Queue,
     pub(super) adapter: String,
     pub(super) is_software: bool,
-    /// As many workgroups as keep the device busy; every kernel strides over what is left.
+    /// Enough workgroups to keep the device busy. Every kernel loops over the remaining items.
     most_workgroups: u32,
     /// Invocations of the tail.
     tail_size: u32,
@@ -37,33 +37,33 @@ pub(crate) struct Device {
     pub(super) ends_loops_early: bool,
     pub(crate) tested: Tested,
     failure: Failure,
-    /// Programs and lanes of exact arithmetic: nothing of a mesh stays there.
+    /// Programs and lanes of exact arithmetic. It holds no data of a mesh between submissions.
     pub(super) numbers: Buffer,
     pub(super) adjacency: Kernels,
-    /// Those that a mesh has needed.
+    /// The kernels of the phases that a mesh has needed.
     phases: Mutex<Phases>,
-    /// For what comes back.
-    pub(super) read_back: Kept,
-    /// For what is written, mapped.
+    /// The staging buffer for the next read.
+    pub(super) kept_for_reads: Kept,
+    /// The staging buffer for the next write, mapped.
     #[cfg(target_arch = "wasm32")]
-    pub(super) written: Rc<Kept>,
+    pub(super) kept_for_writes: Rc<Kept>,
     #[cfg(test)]
     pub(super) asked: Asked,
 }
 
-/// What a device was asked for.
+/// Counts of calls to a device.
 #[cfg(test)]
 #[derive(Default)]
 pub(super) struct Asked {
     pub(super) submissions: AtomicU32,
-    /// Buffers that were mapped: each is waited for.
+    /// Buffers that were mapped. The host waits for each.
     pub(super) maps: AtomicU32,
 }
 
-/// The kernels of the phases by the form of meshes.
+/// The kernels of the phases, by form.
 type Phases = [Option<Arc<Kernels>>; Form::COUNT];
 
-/// What has failed first since the device was opened, in the words of the device.
+/// The first error since the device was opened, as the device reported it.
 type Failure = Arc<Mutex<Option<String>>>;
 
 fn report(failure: &Failure, message: String) {
@@ -79,15 +79,15 @@ fn new_buffer(device: &wgpu::Device, label: &str, words: usize, usage: BufferUsa
     }))
 }
 
-/// With the programs in it.
+/// The buffer of exact arithmetic, with the programs written to it.
 fn numbers(device: &wgpu::Device, queue: &wgpu::Queue) -> Buffer {
     let buffer = new_buffer(device, "numbers", programs::WORDS, BufferUsages::STORAGE);
     queue.write_buffer(&buffer, 0, bytemuck::cast_slice(&programs::words()));
     buffer
 }
 
-/// Has a device answer once, on a thread of its own: the first time takes its driver long, and beside the compiler it costs
-/// nothing. What fails here fails again.
+/// Submits one copy to a device and waits for it, on another thread. The first submission takes a driver long; while the
+/// kernels compile, it costs no time. Errors are ignored: later calls get them too.
 #[cfg(not(target_arch = "wasm32"))]
 fn wake(device: &wgpu::Device, queue: &wgpu::Queue) -> std::io::Result<std::thread::JoinHandle<()>> {
     let (device, queue) = (device.clone(), queue.clone());
@@ -123,7 +123,7 @@ impl Device {
 
 impl Device {
     /// # Errors
-    /// [`Error::BackendUnavailable`] where no adapter has to be asked for.
+    /// [`Error::BackendUnavailable`] where the browser has no WebGPU.
     #[cfg(target_arch = "wasm32")]
     pub(super) fn look_for_webgpu() -> Result<(), Error> {
         if browser::has_webgpu() {
@@ -149,8 +149,8 @@ impl Device {
         Ok((adapter, is_software))
     }
 
-    /// Opens the adapter, with the kernels that every mesh needs, and those of a form. `on_loss` is called
-    /// when the device is lost.
+    /// Opens the adapter, and compiles the kernels that every mesh needs and those of `form`. The device calls `on_loss`
+    /// when it is lost.
     pub(super) async fn open(
         adapter: wgpu::Adapter,
         is_software: bool,
@@ -180,10 +180,10 @@ impl Device {
         Self::compile(device, queue, name, is_software, form, on_loss).await
     }
 
-    /// Compiles the kernels that every mesh needs, and those of a form beside them.
+    /// Compiles the kernels that every mesh needs and those of `form`.
     ///
     /// # Errors
-    /// As [`Device::shared`].
+    /// Those of [`Device::shared`].
     pub(super) async fn compile(
         device: wgpu::Device,
         queue: wgpu::Queue,
@@ -193,7 +193,7 @@ impl Device {
         on_loss: fn(),
     ) -> Result<Self, Error> {
         let failure = Failure::default();
-        // In a browser the handler is the page's to set. Here no one else uses the device.
+        // In a browser this handler belongs to the page. Natively nobody else uses the device.
         #[cfg(not(target_arch = "wasm32"))]
         {
             let uncaptured = failure.clone();
@@ -228,8 +228,8 @@ impl Device {
             phases[form.index()] = for_form;
         }
         let (probe, adjacency) = (compiled.remove(1), compiled.remove(0));
-        let (numbers, word) = watch(&device, || numbers(&device, &queue));
-        if let Some(fault) = word.await {
+        let (numbers, caught) = watch(&device, || numbers(&device, &queue));
+        if let Some(fault) = caught.await {
             return Err(unavailable(fault.to_string()));
         }
         let mut result = Self {
@@ -245,9 +245,9 @@ impl Device {
             numbers,
             adjacency,
             phases: Mutex::new(phases),
-            read_back: Kept::default(),
+            kept_for_reads: Kept::default(),
             #[cfg(target_arch = "wasm32")]
-            written: Rc::default(),
+            kept_for_writes: Rc::default(),
             #[cfg(test)]
             asked: Asked::default(),
         };
@@ -258,13 +258,13 @@ impl Device {
         Ok(result)
     }
 
-    /// Whether a mesh of a form can begin at once: nothing has failed, its kernels are compiled and tested, and software is
-    /// taken where it is that.
+    /// Whether a mesh of a form can start at once: nothing has failed, the kernels are compiled and tested, and the device
+    /// is not a software GPU, unless `takes_software`.
     pub(crate) fn is_ready(&self, form: Form, takes_software: bool) -> bool {
         self.check().is_ok() && self.tested.has_passed(form) && (takes_software || !self.is_software)
     }
 
-    /// The kernels of the phases; compiled at the first call. Those that begin at the same time may compile them twice.
+    /// The kernels of the phases, compiled at the first call. Two concurrent first calls may both compile them.
     ///
     /// # Errors
     /// [`Error::BackendUnavailable`] if the device's compiler refuses them.
@@ -278,15 +278,16 @@ impl Device {
         Ok(known()[form.index()].get_or_insert(kernels).clone())
     }
 
-    /// Whether any call of ours has failed since the device was opened, or it was lost.
+    /// Fails if any of our calls has failed since the device was opened, or if the device is lost.
     ///
     /// # Errors
-    /// [`Error::Device`] with what the device said first.
+    /// [`Error::Device`] with the first error of the device.
     pub(super) fn check(&self) -> Result<(), Error> {
         let failure = self.failure.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
         failure.clone().map_or(Ok(()), |message| Err(Error::Device { message }))
     }
 
+    /// Records a fault, and checks the device.
     pub(super) fn judge(&self, fault: Option<Fault>) -> Result<(), Error> {
         if let Some(fault) = fault {
             report(&self.failure, fault.to_string());
@@ -294,44 +295,43 @@ impl Device {
         self.check()
     }
 
-    /// Makes calls to the device, all at once, and waits for its word on them.
+    /// Makes calls to the device, and waits for their faults.
     ///
     /// # Errors
     /// [`Error::Device`].
     pub(super) async fn checked<T>(&self, calls: impl FnOnce() -> T) -> Result<T, Error> {
-        let (result, word) = watch(&self.device, calls);
-        self.judge(word.await).map(|()| result)
+        let (result, caught) = watch(&self.device, calls);
+        self.judge(caught.await).map(|()| result)
     }
 
     /// The same for calls that make the buffers of a mesh.
     ///
     /// # Errors
-    /// [`Error::BackendLimit`] where there is no memory for them, which does no harm to others;
-    /// [`Error::Device`].
+    /// [`Error::BackendLimit`] where there is no memory for the buffers; the device stays usable. [`Error::Device`].
     pub(super) async fn allocated<T>(&self, calls: impl FnOnce() -> T) -> Result<T, Error> {
-        let (result, word) = watch(&self.device, calls);
-        self.judge_allocation(word.await).map(|()| result)
+        let (result, caught) = watch(&self.device, calls);
+        self.judge_allocation(caught.await).map(|()| result)
     }
 
     pub(super) fn judge_allocation(&self, fault: Option<Fault>) -> Result<(), Error> {
         match fault {
-            Some(Fault::OutOfMemory) => refuse(format!("{} has no memory left for it", self.adapter)),
+            Some(Fault::OutOfMemory) => refuse(format!("{} has no memory left for the mesh", self.adapter)),
             fault => self.judge(fault),
         }
     }
 
-    /// Bytes that one binding can hold.
+    /// The size limit of a binding, in bytes.
     pub(super) fn largest_binding(&self) -> u64 {
         let limits = self.device.limits();
         limits.max_storage_buffer_binding_size.min(limits.max_buffer_size)
     }
 
-    /// A buffer of `words` words of zeros, readable by copies. Never empty: a binding cannot be.
+    /// A buffer of at least `words` words, all zero. It can be copied from and to. It is never empty: a binding cannot be.
     pub(super) fn buffer(&self, label: &str, words: usize, usage: BufferUsages) -> Buffer {
         new_buffer(&self.device, label, words, usage)
     }
 
-    /// Binds whole buffers in the order of the layout, except those with a size given in bytes.
+    /// Binds buffers in the order of the layout. A size binds only so many bytes; `None` binds the whole buffer.
     pub(super) fn bind(
         &self,
         layout: &wgpu::BindGroupLayout,

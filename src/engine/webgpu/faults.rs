@@ -1,8 +1,8 @@
-//! What a device has to say of our own calls, by error scopes. A page may share the device and its handler of
-//! uncaptured errors, so an error outside of our scopes is none of ours.
+//! Errors of our own calls, caught by error scopes. A page may share the device and its handler of uncaptured errors, so
+//! errors outside our scopes are not ours.
 
 #[cfg(target_arch = "wasm32")]
-use super::browser::{GpuDevice, Told};
+use super::browser::{GpuDevice, HasMessage};
 use crate::{EngineKind, Error};
 use std::fmt;
 use std::pin::Pin;
@@ -11,7 +11,7 @@ use std::pin::Pin;
 pub(super) enum Fault {
     /// There was no memory for a buffer.
     OutOfMemory,
-    /// Anything else, in the words of the device.
+    /// Any other error, with the message of the device.
     Other(String),
 }
 
@@ -24,54 +24,54 @@ impl fmt::Display for Fault {
     }
 }
 
-/// There is no device, or none that is taken.
+/// The error for a device that does not exist or is refused.
 pub(super) fn unavailable(message: String) -> Error {
     Error::BackendUnavailable { backend: EngineKind::Gpu, message }
 }
 
-/// The device cannot take the mesh.
+/// The error for a mesh that the device cannot take.
 pub(super) fn refuse<T>(message: String) -> Result<T, Error> {
     Err(Error::BackendLimit { backend: EngineKind::Gpu, message })
 }
 
-/// The word of the device on calls, once it has given it: the fault that says most.
-pub(super) type Word = Pin<Box<dyn Future<Output = Option<Fault>>>>;
+/// A future for the most telling fault that the error scopes of some calls caught.
+pub(super) type Caught = Pin<Box<dyn Future<Output = Option<Fault>>>>;
 
-/// Makes calls to the device, whose word on them is to be waited for.
+/// Makes calls to the device within error scopes.
 #[cfg(not(target_arch = "wasm32"))]
-pub(super) fn watch<T>(device: &wgpu::Device, calls: impl FnOnce() -> T) -> (T, Word) {
+pub(super) fn watch<T>(device: &wgpu::Device, calls: impl FnOnce() -> T) -> (T, Caught) {
     use wgpu::ErrorFilter::{Internal, OutOfMemory, Validation};
     let [validation, internal, memory] =
         [Validation, Internal, OutOfMemory].map(|filter| device.push_error_scope(filter));
     let result = calls();
     let (memory, internal, validation) = (memory.pop(), internal.pop(), validation.pop());
-    let word = async move {
-        // What follows from a buffer that is not there is told as well, but says less.
+    let caught = async move {
+        // A failed allocation also causes validation errors, which say less.
         match (memory.await, internal.await.or(validation.await)) {
             (Some(_), _) => Some(Fault::OutOfMemory),
             (None, other) => other.map(|error| Fault::Other(error.to_string())),
         }
     };
-    (result, Box::pin(word))
+    (result, Box::pin(caught))
 }
 
-/// As natively. Not through wgpu, which panics on an internal error.
+/// The same in a browser. Not through wgpu, which panics on an internal error.
 #[cfg(target_arch = "wasm32")]
-pub(super) fn watch<T>(device: &wgpu::Device, calls: impl FnOnce() -> T) -> (T, Word) {
+pub(super) fn watch<T>(device: &wgpu::Device, calls: impl FnOnce() -> T) -> (T, Caught) {
     let Some(device) = GpuDevice::of(device) else { return (calls(), Box::pin(std::future::ready(None))) };
     device.push_error_scopes();
     let result = calls();
-    let told = device.pop_error_scopes();
-    (result, Box::pin(word(told)))
+    let scopes = device.pop_error_scopes();
+    (result, Box::pin(caught(scopes)))
 }
 
 #[cfg(target_arch = "wasm32")]
-async fn word([memory, internal, validation]: [wasm_bindgen_futures::JsFuture; 3]) -> Option<Fault> {
+async fn caught([memory, internal, validation]: [wasm_bindgen_futures::JsFuture; 3]) -> Option<Fault> {
     use wasm_bindgen::{JsCast, JsValue};
-    // The promises of a lost device may be refused: its loss is told elsewhere.
-    let told = |error: Result<JsValue, JsValue>| error.ok().filter(JsValue::is_object);
-    match (told(memory.await), told(internal.await).or(told(validation.await))) {
+    // A lost device may reject these promises. The loss callback reports the loss.
+    let error_of = |error: Result<JsValue, JsValue>| error.ok().filter(JsValue::is_object);
+    match (error_of(memory.await), error_of(internal.await).or(error_of(validation.await))) {
         (Some(_), _) => Some(Fault::OutOfMemory),
-        (None, other) => other.map(|error| Fault::Other(error.unchecked_into::<Told>().message())),
+        (None, other) => other.map(|error| Fault::Other(error.unchecked_into::<HasMessage>().message())),
     }
 }

@@ -1,15 +1,15 @@
-//! The iterations of a submission, and what the device writes about them.
+//! The iterations of a submission, and the history that the device writes of them.
 
 /// Iterations with a dispatch for each phase in one submission.
 pub(super) const BATCH: u32 = 12;
-/// Iterations that the tail may run after them.
+/// The most iterations that the tail runs after the batch.
 pub(super) const TAIL: u32 = 256;
-/// The same where loops end too early.
+/// The same on drivers that end loops too early.
 pub(super) const SHORT_TAIL: u32 = 4;
-/// How often it may pause in a submission for exact arithmetic.
+/// How often the tail may pause in a submission for exact arithmetic.
 pub(super) const PAUSES: u32 = 8;
 
-// Words of the history, as in `state.wgsl`.
+// The layout of the history in words, as in `state.wgsl`.
 pub(super) const COUNTS: usize = 6;
 pub(super) const SEVERAL_FANS: usize = 7;
 pub(super) const ENTRIES: usize = 8;

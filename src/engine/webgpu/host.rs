@@ -1,26 +1,26 @@
-//! A device that the page has made, as wgpu has it.
+//! Hands a device that the page has made to wgpu.
 
-use super::browser::{GpuDevice, Told, navigator};
+use super::browser::{GpuDevice, HasMessage, navigator};
 use js_sys::{Array, Object, Promise, Reflect};
 use wasm_bindgen::prelude::*;
 use wasm_bindgen_futures::JsFuture;
 
 impl GpuDevice {
-    /// Whether the browser says that the processor plays the GPU.
+    /// Whether it is a software GPU, as far as the browser tells.
     pub(super) fn is_software(&self) -> bool {
         self.adapter_info().and_then(|info| info.is_fallback_adapter()) == Some(true)
     }
 
     /// Why the device was lost, if it was.
     pub(super) async fn loss(&self) -> Option<String> {
-        // Of promises that are settled, the first wins.
+        // If both promises are settled, the race takes the first.
         let entrants = Array::of2(&self.lost(), &Promise::resolve(&JsValue::NULL));
         let loss = JsFuture::from(Promise::race(&entrants)).await.ok()?;
-        loss.is_object().then(|| loss.unchecked_into::<Told>().message())
+        loss.is_object().then(|| loss.unchecked_into::<HasMessage>().message())
     }
 
-    /// The device as wgpu has it. wgpu takes a device from an adapter, and an adapter from `navigator.gpu`, so
-    /// for the one call that reads it something else stands there, whose adapter hands this device out.
+    /// The device as a wgpu device. wgpu gets devices only from an adapter, and adapters only from `navigator.gpu`. So this
+    /// call replaces `navigator.gpu`, while wgpu reads it, by an object whose adapter returns this device.
     pub(super) async fn adopt(&self) -> Result<(wgpu::Device, wgpu::Queue), String> {
         let device = self.clone();
         let request_device = Closure::<dyn Fn() -> Promise<Self>>::new(move || Promise::resolve(&device));
@@ -40,10 +40,10 @@ impl GpuDevice {
         set(&stand_in, "value", &gpu);
         set(&stand_in, "configurable", &true.into());
         if Reflect::define_property(&navigator, &"gpu".into(), &stand_in) != Ok(true) {
-            return Err("wgpu cannot be given a device: navigator.gpu cannot be replaced".to_owned());
+            return Err("the device cannot be handed to wgpu: navigator.gpu cannot be replaced".to_owned());
         }
         let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
-        // What was just made configurable can be removed or put back.
+        // The property was made configurable above, so this succeeds.
         let _ = match own.dyn_into::<Object>() {
             Ok(own) => Reflect::define_property(&navigator, &"gpu".into(), &own),
             Err(_) => Reflect::delete_property(&navigator, &"gpu".into()),

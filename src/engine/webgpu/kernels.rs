@@ -1,4 +1,4 @@
-//! The kernels, compiled from `shaders/`, and their bindings.
+//! The kernels in `shaders/`, and their bindings.
 
 use super::sources;
 use crate::Dimension;
@@ -6,10 +6,10 @@ use crate::engine::gpu::upload::Form;
 use std::sync::OnceLock;
 use wgpu::{BindingType, BufferBindingType};
 
-/// Invocations of a workgroup of every kernel.
+/// Invocations per workgroup of every kernel.
 pub(super) const WORKGROUP_SIZE: u32 = 256;
 
-/// What is done in an iteration and around it. The tail, which runs many short iterations, is apart ([`Plan::tail`]).
+/// The kernels of the phases, without the tail, which runs many short iterations ([`Plan::tail`]).
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Kernel {
     Label,
@@ -19,9 +19,9 @@ pub(crate) enum Kernel {
     Census,
     /// Before the first iteration: the signs of the triangles in 2D, the creases in 3D.
     Prepare,
-    /// The turns of the stars, in 2D.
+    /// Counts the turns of the stars, in 2D.
     Turn,
-    /// Which stars are embedded, in 2D.
+    /// Marks the embedded stars, in 2D.
     Mark,
 }
 
@@ -37,7 +37,7 @@ impl Kernel {
         Self::Mark,
     ];
 
-    /// Those that there are, each at its index.
+    /// The kernels of a dimension, each at its index.
     fn all(dimension: Dimension) -> &'static [Self] {
         match dimension {
             Dimension::Two => &Self::ALL,
@@ -45,7 +45,7 @@ impl Kernel {
         }
     }
 
-    /// The kernels before the first iteration; exact arithmetic decides between the first of them and the others.
+    /// The kernels before the first iteration.
     pub(super) fn preparation(dimension: Dimension) -> &'static [Self] {
         match dimension {
             Dimension::Two => &[Self::Prepare, Self::Decide, Self::Turn, Self::Mark],
@@ -56,7 +56,7 @@ impl Kernel {
     /// The kernels of one iteration.
     pub(crate) const ITERATION: [Self; 4] = [Self::Label, Self::Decide, Self::Select, Self::Flip];
 
-    /// In the sources of [`sources::phases`].
+    /// Its entry point in the sources of [`sources::phases`].
     fn entry(self) -> Entry {
         match self {
             Self::Label => (READS, "label_all", None),
@@ -71,15 +71,15 @@ impl Kernel {
     }
 }
 
-/// Places of the sources.
+// Indices of the sources.
 const READS: usize = 0;
 const WRITES: usize = 1;
 const NUMBERS: usize = 2;
 
-/// The place of a source, an entry point in it, and one of its constants that is not as the source says.
+/// The index of a source, an entry point in it, and a value that overrides one of its constants.
 pub(super) type Entry = (usize, &'static str, Option<(&'static str, f64)>);
 
-/// The pipelines of some kernels, which share their bindings.
+/// The pipelines of kernels that share their bindings.
 pub(super) struct Kernels {
     pub(super) layout: wgpu::BindGroupLayout,
     pub(super) pipelines: Vec<wgpu::ComputePipeline>,
@@ -93,7 +93,7 @@ impl Kernels {
     }
 }
 
-/// What is compiled together: entry points of sources that have the same bindings.
+/// Entry points that are compiled together and share their bindings.
 pub(super) struct Plan {
     pub(super) bindings: Vec<BindingType>,
     pub(super) sources: Vec<String>,
@@ -112,7 +112,7 @@ impl Plan {
         }
     }
 
-    /// In the order of [`Kernel`].
+    /// The kernels of the phases, in the order of [`Kernel`].
     pub(super) fn phases(form: Form) -> Self {
         let entries = Kernel::all(form.dimension).iter().map(|kernel| kernel.entry()).collect();
         Self { bindings: phases_bindings(), sources: sources::phases(form).into(), entries }
@@ -133,7 +133,7 @@ impl Plan {
         }
     }
 
-    /// Says how often the filter decides.
+    /// Counts how often the filter decides.
     #[cfg(test)]
     pub(super) fn tiers(form: Form) -> Self {
         Self {

@@ -1,4 +1,4 @@
-//! What the host has read before it was asked.
+//! Results that the host reads before the session asks for them.
 
 #[cfg(not(target_arch = "wasm32"))]
 use super::copies::Words;
@@ -6,10 +6,10 @@ use super::copies::Words;
 use super::mapped::Words;
 use crate::engine::Census;
 
-/// What was read behind the last iteration, before anybody has asked.
+/// Results read in the submission of the last iteration.
 #[derive(Default)]
 pub(super) struct Known {
     pub(super) census: Option<Census>,
-    /// Gone once they were asked for.
+    /// Handed out once.
     pub(super) triangles: Option<Words>,
 }

@@ -1,4 +1,4 @@
-//! What the device cannot take: a mesh too large for its buffers.
+//! Refuses meshes that are too large for the buffers of the device.
 
 use super::buffers::frontier_words;
 use super::device::Device;
@@ -16,7 +16,7 @@ pub(super) fn refuse_large_mesh(gpu: &Device, upload: &Upload) -> Result<(), Err
 pub(super) fn refuse_large_buffer(gpu: &Device, words: usize) -> Result<(), Error> {
     let (bytes, limit) = (4 * words as u64, gpu.largest_binding());
     if bytes > limit {
-        return refuse(format!("it needs a buffer of {bytes} bytes, {} binds at most {limit}", gpu.adapter));
+        return refuse(format!("it takes a buffer of {bytes} bytes; {} allows at most {limit}", gpu.adapter));
     }
     Ok(())
 }

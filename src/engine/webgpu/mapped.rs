@@ -1,8 +1,8 @@
-//! Copies in a browser, straight between mapped memory and that of the module: wgpu would copy everything once more.
+//! Copies in a browser, directly between mapped buffers and the memory of the module. wgpu would copy everything twice.
 
 use super::buffer::Buffer;
 use super::buffer::MOST_KEPT;
-use super::copies::Landed;
+use super::copies::ReadBack;
 use super::device::Device;
 use super::faults::watch;
 use crate::Error;
@@ -11,10 +11,10 @@ use std::ops::Range;
 use wasm_bindgen::prelude::*;
 use wgpu::BufferUsages;
 
-/// Bytes from which on memory that is kept is faster than the browser's own way to write.
+/// From so many bytes on, a kept staging buffer is faster than `writeBuffer`.
 const FEWEST_STAGED: u64 = 1 << 19;
 
-/// The words of a buffer that is mapped, where they are. Views of it must have nothing in common.
+/// A view of the words in a range of a mapped buffer. Two views of a buffer must not overlap.
 fn mapped(buffer: &wgpu::Buffer, bytes: &Range<u64>) -> Option<Uint32Array> {
     if bytes.is_empty() {
         return Some(Uint32Array::new_with_length(0));
@@ -24,33 +24,33 @@ fn mapped(buffer: &wgpu::Buffer, bytes: &Range<u64>) -> Option<Uint32Array> {
     Some(Uint32Array::new(&memory))
 }
 
-/// Words for whoever has asked for a result.
+/// The array that a result is read into.
 pub(super) type Words = Uint32Array;
 
 #[wasm_bindgen]
 extern "C" {
     #[wasm_bindgen(js_name = Uint32Array)]
-    type Room;
+    type FallibleArray;
     #[wasm_bindgen(catch, constructor, js_class = "Uint32Array")]
-    fn new(length: f64) -> Result<Room, JsValue>;
+    fn new(length: f64) -> Result<FallibleArray, JsValue>;
 }
 
-/// Words of a page of memory, or of a part of it where pages are larger.
+/// Words of a memory page. Pages may be larger.
 const PAGE: usize = 1024;
 
-/// Room for so many, if there is any. The system gives a page of it when it is first written, which takes longer than a
-/// copy: it does so now.
-pub(super) fn room(words: usize) -> Option<Words> {
-    let room: Uint32Array = Room::new(words as f64).ok()?.unchecked_into();
-    (0..words as u32).step_by(PAGE).for_each(|word| room.set_index(word, 1));
-    Some(room)
+/// Memory for `words` words, if available. The system allocates each page at its first write, which takes longer than a
+/// copy. So this call writes to each page, while the GPU works.
+pub(super) fn reserve(words: usize) -> Option<Words> {
+    let reserved: Uint32Array = FallibleArray::new(words as f64).ok()?.unchecked_into();
+    (0..words as u32).step_by(PAGE).for_each(|word| reserved.set_index(word, 1));
+    Some(reserved)
 }
 
-impl Landed<'_> {
-    /// Puts the words of a source into room for them.
-    pub(super) fn fill(&self, source: usize, room: Words) -> Result<Words, Error> {
-        room.set(&self.view(source)?.into(), 0);
-        Ok(room)
+impl ReadBack<'_> {
+    /// Copies the words of a source into memory from [`reserve`].
+    pub(super) fn fill(&self, source: usize, reserved: Words) -> Result<Words, Error> {
+        reserved.set(&self.view(source)?.into(), 0);
+        Ok(reserved)
     }
 
     pub(super) fn append(&self, source: usize, result: &mut Vec<u32>) -> Result<(), Error> {
@@ -63,15 +63,16 @@ impl Landed<'_> {
         Ok(())
     }
 
-    /// The words where they are, once for each source.
+    /// A view of the words of a source. Call it once per source.
     fn view(&self, source: usize) -> Result<Uint32Array, Error> {
-        let view = self.staging.as_ref().and_then(|staging| mapped(staging, &self.places[source]));
+        let view = self.staging.as_ref().and_then(|staging| mapped(staging, &self.ranges[source]));
         view.ok_or_else(|| self.gpu.not_mapped())
     }
 }
 
 impl Device {
-    /// The same through memory that is kept, if that is ready; else it is for the next time.
+    /// Writes words to the starts of buffers, through the kept staging buffer if it is mapped. If not, prepares one for the
+    /// next call.
     pub(super) fn write_all(&self, writes: &[(&Buffer, &[u32])]) {
         let bytes = writes.iter().map(|(_, words)| size_of_val(*words) as u64).sum();
         let is_staged = (FEWEST_STAGED..=MOST_KEPT).contains(&bytes);
@@ -82,22 +83,22 @@ impl Device {
         if is_staged {
             let new =
                 || self.make_ready(self.staging(bytes, BufferUsages::MAP_WRITE | BufferUsages::COPY_SRC));
-            // Where there is no memory for it, that is not the fault of the mesh.
+            // A failed allocation is ignored: the mesh does not need this buffer.
             drop(watch(&self.device, new));
         }
     }
 
-    /// None where it was not ready.
+    /// `None` if no staging buffer is mapped.
     fn write_staged(&self, bytes: u64, writes: &[(&Buffer, &[u32])]) -> Option<()> {
-        let staging = self.written.take(bytes)?;
+        let staging = self.kept_for_writes.take(bytes)?;
         let view = mapped(&staging, &(0..bytes))?;
         let mut encoder = self.device.create_command_encoder(&Default::default());
         let mut first = 0;
         for (buffer, words) in writes {
             let end = first + words.len() as u32;
             view.subarray(first, end).copy_from(words);
-            let (place, size) = (4 * u64::from(first), size_of_val(*words) as u64);
-            encoder.copy_buffer_to_buffer(&staging, place, buffer, 0, size);
+            let (offset, size) = (4 * u64::from(first), size_of_val(*words) as u64);
+            encoder.copy_buffer_to_buffer(&staging, offset, buffer, 0, size);
             first = end;
         }
         staging.unmap();
@@ -106,18 +107,18 @@ impl Device {
         Some(())
     }
 
-    /// Maps a buffer for the next copies to the device, which have it once the last ones are done.
+    /// Maps a staging buffer, and keeps it for the next writes once the device has finished its copies.
     fn make_ready(&self, staging: Buffer) {
-        let (buffer, written) = (staging.0.clone(), self.written.clone());
+        let (buffer, kept) = (staging.0.clone(), self.kept_for_writes.clone());
         buffer.map_async(wgpu::MapMode::Write, .., move |result| {
             if result.is_ok() {
-                written.put(staging);
+                kept.put(staging);
             }
         });
     }
 
-    /// Copies words from where they are; the next submission takes them to their place.
-    pub(super) fn stage(&self, buffer: &Buffer, place: u64, words: &[u32]) {
-        self.queue.write_buffer(buffer, place, bytemuck::cast_slice(words));
+    /// Copies words to staging memory. The next submission copies them to `buffer` at byte `offset`.
+    pub(super) fn stage(&self, buffer: &Buffer, offset: u64, words: &[u32]) {
+        self.queue.write_buffer(buffer, offset, bytemuck::cast_slice(words));
     }
 }

@@ -1,9 +1,9 @@
 //! The phases as compute shaders, through wgpu: natively and in the browser.
 //!
-//! An iteration is four dispatches, and a batch of them with a tail of short ones is one submission: a later
-//! iteration sees on the device that an earlier one has flipped nothing. The host reads the history of a
-//! batch when it has ended. A wait takes a browser longer than most runs take: there the host waits for nothing before
-//! the first batch, and reads behind it what it will be asked for.
+//! An iteration is four dispatches. One submission has a batch of iterations and a tail, a single dispatch for many short
+//! iterations. An iteration on the device does nothing if the one before flipped no edge. The host reads the history after
+//! each batch. In a browser, one wait takes longer than most runs: there the host does not wait before the first batch, and
+//! reads the results that the session will ask for in the same submission.
 
 mod adjacency;
 #[cfg(target_arch = "wasm32")]
@@ -55,7 +55,7 @@ use crate::phases::Thresholds;
 use crate::{EngineKind, Mesh};
 use buffer::Buffer;
 use buffers::Buffers;
-use faults::Word;
+use faults::Caught;
 use history::{BATCH, Entry, TAIL};
 use kernels::Kernels;
 #[cfg(test)]
@@ -74,20 +74,20 @@ pub(crate) struct WebGpu {
     counts: EdgeCounts,
     bindings: wgpu::BindGroup,
     buffers: Buffers,
-    /// Of the adjacency, and the signs of the triangles.
+    /// The counters of the adjacency, then the signs of the triangles.
     counters: Buffer,
     /// The mesh, until the host has read the counters.
     unsettled: Option<Arc<Mesh>>,
-    /// What the device has to say of the buffers of the mesh, until the host has heard it.
-    word: Option<Word>,
-    /// Whether it reads them before the first iteration, and else only what it is asked for.
+    /// The faults of allocating the buffers, until the host has checked them.
+    allocation: Option<Caught>,
+    /// Whether the host reads the counters before the first iteration. If so, it also reads no results in advance.
     waits: bool,
-    /// What it has read before it was asked.
+    /// Results that the host has read in advance.
     known: Known,
     state: Entry,
     dispatches: u64,
     adjacency_ms: f64,
-    /// The most that its buffers took at a time.
+    /// The peak size of its buffers.
     bytes: u64,
 }
 
@@ -169,16 +169,16 @@ impl Engine for WebGpu {
     }
 }
 
-/// One phase at a time, for the tests.
+/// Runs one phase at a time, for the tests.
 #[cfg(test)]
 impl WebGpu {
-    /// Runs one phase of the next iteration; after the flips, which end it, returns their number.
+    /// Runs one phase of the next iteration. Returns the number of flips after the flip phase.
     pub(crate) async fn run_phase(&mut self, kernel: Kernel) -> Result<u32, Error> {
         let history = self.read_history(&|pass| self.dispatch(pass, kernel, self.params.triangles)).await?;
         Ok(self.take_over(&history).last().copied().unwrap_or(0))
     }
 
-    /// Interior edges that the filter decides, and those that it does not.
+    /// The numbers of interior edges that the filter decides and does not decide.
     pub(crate) async fn tiers(&self) -> Result<[u32; 2], Error> {
         let compiled = compile::compile(&[Plan::tiers(self.form)], &self.gpu.device).await;
         let [kernels] = &compiled.unwrap_or_default()[..] else {
@@ -192,12 +192,12 @@ impl WebGpu {
         Ok([counts[0], counts[1]])
     }
 
-    /// Lists from the start and sweeps in between, whatever the size of the mesh.
+    /// Makes even small meshes change between lists and sweeps: lists below `flips` flips.
     pub(crate) fn set_list_below(&mut self, flips: u32) {
         self.params.list_below = flips;
     }
 
-    /// Has to look again for what it is asked next.
+    /// Drops the results read in advance.
     pub(crate) fn forget(&mut self) {
         self.known = Known::default();
     }

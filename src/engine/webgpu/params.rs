@@ -1,23 +1,23 @@
-//! The parameters that every kernel of the phases reads.
+//! The parameters of the kernels of the phases.
 
 use crate::engine::gpu::cosine::Cosine;
 use crate::engine::gpu::upload::Upload;
 use crate::{Dimension, Mesh};
 
-/// Iterations of the tail run on lists of up to so many triangles.
+/// The longest list that the tail works on.
 const TAIL_LENGTH: u32 = 2048;
-/// The same where loops end too early: a few thousand rounds for each of a few triangles are safe.
+/// The same on drivers that end loops too early: a few thousand rounds for each of a few triangles are safe.
 const SHORT_TAIL_LENGTH: u32 = 256;
-/// Meshes of up to so many triangles go by lists from the start.
+/// The largest mesh that uses lists from the start.
 const SMALL_MESH: usize = 4096;
 
-/// Where the parts of the topology begin, in words: the winding bits at 0.
-pub(super) struct Places {
+/// Word offsets in the topology buffer. The winding bits are at 0.
+pub(super) struct TopologyOffsets {
     pub(super) embedded: u32,
     pub(super) fans: u32,
 }
 
-impl Places {
+impl TopologyOffsets {
     pub(super) fn new(mesh: &Mesh) -> Self {
         let bits = |count: usize| match mesh.dimension() {
             Dimension::Two => count.div_ceil(32) as u32,
@@ -32,11 +32,11 @@ impl Places {
 pub(super) const NEGATIVE: u32 = 1;
 pub(super) const POSITIVE: u32 = 4;
 
-/// As in `state.wgsl`.
+/// The same layout as in `state.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 pub(super) struct Params {
-    /// The device knows them: it writes them behind the preparation.
+    /// Written by the device, after the preparation.
     pub(super) signs: u32,
     pub(super) vertices: u32,
     pub(super) triangles: u32,
@@ -58,8 +58,8 @@ pub(super) struct Params {
 }
 
 impl Params {
-    /// Before the first iteration, with no vertex of several fans.
-    pub(super) fn new(upload: &Upload, topology: &Places, ends_loops_early: bool) -> Self {
+    /// The parameters of the first iteration, for a mesh whose vertices have one fan each.
+    pub(super) fn new(upload: &Upload, topology: &TopologyOffsets, ends_loops_early: bool) -> Self {
         let (mesh, cosine) = (&upload.mesh, Cosine::new(upload.thresholds.cos));
         let count = mesh.triangle_count();
         Self {
@@ -75,7 +75,7 @@ impl Params {
             any_angle: u32::from(cosine.is_of_any_angle),
             tail_iterations: 0,
             tail_length: if ends_loops_early { SHORT_TAIL_LENGTH } else { TAIL_LENGTH },
-            // A flip appends six triangles at most; a small mesh is not worth a sweep.
+            // A flip appends at most six triangles to a list. For a small mesh, a sweep is never faster.
             list_below: if count <= SMALL_MESH { u32::MAX } else { count as u32 / 256 },
             embedded: topology.embedded,
             knows_winding: 0,
@@ -85,7 +85,7 @@ impl Params {
         }
     }
 
-    /// What the host writes, and where.
+    /// The byte offset and the bytes of the part that the host writes.
     pub(super) fn of_host(&self) -> (u64, &[u8]) {
         let first = size_of_val(&self.signs);
         (first as u64, &bytemuck::bytes_of(self)[first..])

@@ -1,4 +1,4 @@
-//! Whether a device ends loops too early.
+//! Tests whether a device ends loops too early.
 
 use super::copies::Source;
 use super::device::Device;
@@ -8,7 +8,7 @@ use crate::engine::gpu::probe::ends_loops_early;
 use wgpu::BufferUsages;
 
 impl Device {
-    /// Runs `shaders/probe.wgsl` and compares.
+    /// Runs `shaders/webgpu/probe.wgsl` and compares its result.
     pub(super) async fn probe_loops(&self, probe: &Kernels) -> Result<bool, Error> {
         let buffer = self.checked(|| self.buffer("probe", 1, BufferUsages::STORAGE)).await?;
         let record = || {

@@ -1,92 +1,93 @@
-//! What exact arithmetic computes on the device, as `shaders/webgpu/numbers.wgsl` runs it: programs of steps, each a sum of products
-//! of two integers. An integer has a place in the lane of an invocation.
+//! The programs of exact arithmetic, which `shaders/webgpu/numbers.wgsl` runs. A step of a program is a sum of products of
+//! two integers. Each invocation has a lane of words; an integer is stored in it at a fixed offset.
 
-/// Words before the lanes, those of a step, and the lanes: as in `numbers.wgsl`.
+/// The word offset of the lanes, the words of a step, and the number of lanes: the same in `numbers.wgsl`.
 pub(super) const LANES: usize = 512;
 pub(super) const STEP: usize = 5;
 pub(super) const LANE_COUNT: u32 = 8192;
-/// Invocations of a workgroup of the kernel, each with a lane.
+/// Invocations per workgroup of the kernel, each with its own lane.
 pub(super) const DECIDERS: u32 = 64;
-/// Words of the programs and the lanes.
+/// Words of the whole buffer: programs and lanes.
 pub(super) const WORDS: usize = LANES + LANE * LANE_COUNT as usize;
 
-type Place = u32;
+/// A word offset in a lane.
+type Offset = u32;
 
-/// Words of a number that is given, and of a vector of three.
+/// Words of an input number, and of a vector of three.
 const GIVEN: u32 = 9;
 const VECTOR: u32 = 3 * GIVEN;
 
 /// The differences of two points, axis by axis: a - c, b - c, a - d, b - d.
-pub(super) const P: Place = 0;
-pub(super) const Q: Place = P + VECTOR;
-const R: Place = Q + VECTOR;
-const S: Place = R + VECTOR;
+pub(super) const P: Offset = 0;
+pub(super) const Q: Offset = P + VECTOR;
+const R: Offset = Q + VECTOR;
+const S: Offset = R + VECTOR;
 
 /// |cos β| is mantissa / power.
-pub(super) const MANTISSA: Place = S + VECTOR;
-pub(super) const POWER: Place = MANTISSA + GIVEN;
+pub(super) const MANTISSA: Offset = S + VECTOR;
+pub(super) const POWER: Offset = MANTISSA + GIVEN;
 
-/// a - b and c - d, and what diagonals may be apart.
-pub(super) const E: Place = POWER + GIVEN;
-const F: Place = E + VECTOR;
-pub(super) const ALLOWED: Place = F + VECTOR;
+/// The diagonals a - b and c - d, and the limit for the deviation.
+pub(super) const E: Offset = POWER + GIVEN;
+const F: Offset = E + VECTOR;
+pub(super) const ALLOWED: Offset = F + VECTOR;
 
 /// Integers of degree 2 in the differences.
-const fn medium(i: u32) -> Place {
+const fn medium(i: u32) -> Offset {
     ALLOWED + GIVEN + 17 * i
 }
-const PP: Place = medium(0);
-pub(super) const PQ: Place = medium(1);
-const PR: Place = medium(2);
-const PS: Place = medium(3);
-const QQ: Place = medium(4);
-const QR: Place = medium(5);
-const QS: Place = medium(6);
-const RR: Place = medium(7);
-pub(super) const RS: Place = medium(8);
-const SS: Place = medium(9);
+const PP: Offset = medium(0);
+pub(super) const PQ: Offset = medium(1);
+const PR: Offset = medium(2);
+const PS: Offset = medium(3);
+const QQ: Offset = medium(4);
+const QR: Offset = medium(5);
+const QS: Offset = medium(6);
+const RR: Offset = medium(7);
+pub(super) const RS: Offset = medium(8);
+const SS: Offset = medium(9);
 
-// Others in the same places: in the plane, and of diagonals.
-const CROSS1: Place = medium(0);
-const DOT1: Place = medium(1);
-const CROSS2: Place = medium(2);
-const DOT2: Place = medium(3);
-const EE: Place = medium(0);
-const FF: Place = medium(1);
-const EF: Place = medium(2);
-const FP: Place = medium(3);
-const EP: Place = medium(4);
-const BEYOND: Place = medium(5);
+// The same offsets, used in the plane and for the deviation.
+const CROSS1: Offset = medium(0);
+const DOT1: Offset = medium(1);
+const CROSS2: Offset = medium(2);
+const DOT2: Offset = medium(3);
+const EE: Offset = medium(0);
+const FF: Offset = medium(1);
+const EF: Offset = medium(2);
+const FP: Offset = medium(3);
+const EP: Offset = medium(4);
+const BEYOND: Offset = medium(5);
 
-/// Integers of degree 4, and those times a factor of cos β.
-const fn large(i: u32) -> Place {
+/// Integers of degree 4, also multiplied by the mantissa or the power of cos β.
+const fn large(i: u32) -> Offset {
     medium(10) + 37 * i
 }
 /// The squares of two normals, and their product.
-pub(super) const N: Place = large(0);
-pub(super) const M: Place = large(1);
-pub(super) const COSINE: Place = large(2);
-const X: Place = large(3);
-const Y: Place = large(4);
-const Z: Place = large(5);
-/// Of degree 8, and times those factors.
-pub(super) const LAST: Place = large(6);
+pub(super) const N: Offset = large(0);
+pub(super) const M: Offset = large(1);
+pub(super) const COSINE: Offset = large(2);
+const X: Offset = large(3);
+const Y: Offset = large(4);
+const Z: Offset = large(5);
+/// An integer of degree 8, also multiplied by both of their squares.
+pub(super) const LAST: Offset = large(6);
 
 /// Words of a lane.
 const LANE: usize = LAST as usize + 75;
 
-/// A place and how many terms there are, then the terms: two places each, and whether the product is subtracted.
+/// The offset of the result and the number of terms; then the terms: two offsets, and whether the product is subtracted.
 type Step = [u32; STEP];
 
-const fn plus(x: Place, y: Place) -> u32 {
+const fn plus(x: Offset, y: Offset) -> u32 {
     x | y << 10
 }
 
-const fn minus(x: Place, y: Place) -> u32 {
+const fn minus(x: Offset, y: Offset) -> u32 {
     plus(x, y) | 1 << 20
 }
 
-const fn step(to: Place, terms: &[u32]) -> Step {
+const fn step(to: Offset, terms: &[u32]) -> Step {
     let mut step = [0; STEP];
     step[0] = to | (terms.len() as u32) << 16;
     let mut i = 0;
@@ -98,21 +99,22 @@ const fn step(to: Place, terms: &[u32]) -> Step {
 }
 
 /// x·y - u·v
-const fn difference(to: Place, x: Place, y: Place, u: Place, v: Place) -> Step {
+const fn difference(to: Offset, x: Offset, y: Offset, u: Offset, v: Offset) -> Step {
     step(to, &[plus(x, y), minus(u, v)])
 }
 
-/// In the plane: the cross product of two vectors, and the dot product.
-const fn cross(to: Place, u: Place, v: Place) -> Step {
+/// The cross product of two vectors in the plane.
+const fn cross(to: Offset, u: Offset, v: Offset) -> Step {
     difference(to, u, v + GIVEN, u + GIVEN, v)
 }
 
-const fn flat_dot(to: Place, u: Place, v: Place) -> Step {
+/// The dot product of two vectors in the plane.
+const fn flat_dot(to: Offset, u: Offset, v: Offset) -> Step {
     step(to, &[plus(u, v), plus(u + GIVEN, v + GIVEN)])
 }
 
-/// In space.
-const fn dot(to: Place, u: Place, v: Place) -> Step {
+/// The dot product of two vectors in space.
+const fn dot(to: Offset, u: Offset, v: Offset) -> Step {
     step(to, &[plus(u, v), plus(u + GIVEN, v + GIVEN), plus(u + 2 * GIVEN, v + 2 * GIVEN)])
 }
 
@@ -124,7 +126,7 @@ const ANGLE: &[Step] = &[
     difference(LAST, X, X, Y, Z),
 ];
 
-/// In the order of their numbers in the shaders. Dot products of normals are by the identity of Binet and Cauchy,
+/// The programs, in the order of their numbers in the shaders. Dot products of normals use the Binet–Cauchy identity
 /// (u × v)·(x × y) = (u·x)(v·y) - (u·y)(v·x).
 const PROGRAMS: [&[Step]; 10] = [
     // In the plane: cross(λ)·dot(γ) + dot(λ)·cross(γ).
@@ -153,7 +155,7 @@ const PROGRAMS: [&[Step]; 10] = [
     // The product of the old normals.
     &[dot(PR, P, R), dot(PS, P, S), dot(QR, Q, R), dot(QS, Q, S), difference(COSINE, PS, QR, PR, QS)],
     ANGLE,
-    // Of the new normals n = r × p and m = q × s the squares and the product.
+    // The squares and the product of the new normals n = r × p and m = q × s.
     &[difference(N, RR, PP, PR, PR), difference(M, QQ, SS, QS, QS), difference(COSINE, QR, PS, RS, PQ)],
     ANGLE,
     // The products of the old normals and the new ones.
@@ -163,7 +165,7 @@ const PROGRAMS: [&[Step]; 10] = [
         difference(COSINE, RS, PR, PS, RR),
         difference(LAST, QS, RS, SS, QR),
     ],
-    // How far apart diagonals are, see `deviation_numbers.wgsl`.
+    // The distance of the diagonals, see `deviation_numbers.wgsl`.
     &[
         dot(EE, E, E),
         dot(FF, F, F),
@@ -186,7 +188,7 @@ const PROGRAMS: [&[Step]; 10] = [
     ],
 ];
 
-/// As the shaders read them: where each begins and the last one ends, then the steps.
+/// The programs as the shaders read them: the offset of each program, the end of the last one, then the steps.
 pub(super) fn words() -> Vec<u32> {
     let mut words = vec![0; PROGRAMS.len() + 1];
     for (i, program) in PROGRAMS.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! The iterations, and what is read behind them.
+//! Runs iterations, and reads results in the same submission.
 
 use super::WebGpu;
 use super::adjacency::COUNTERS;
@@ -6,18 +6,18 @@ use super::buffer::{Buffer, MOST_KEPT};
 use super::buffers::Buffers;
 use super::copies::Source;
 #[cfg(not(target_arch = "wasm32"))]
-use super::copies::room;
+use super::copies::reserve;
 use super::history::{BATCH, COUNTS, ENTRIES, ENTRY_WORDS, HISTORY_WORDS, PAUSES, SHORT_TAIL, TAIL};
 use super::kernels::{Kernel, WORKGROUP_SIZE};
 use super::known::Known;
 #[cfg(target_arch = "wasm32")]
-use super::mapped::room;
+use super::mapped::reserve;
 use super::programs::{DECIDERS, LANE_COUNT};
 use super::steps::Step;
 use crate::Error;
 use crate::engine::{Answer, Census};
 
-/// Kernels of a census.
+/// Dispatches of a census.
 const CENSUS_DISPATCHES: u64 = 3;
 
 impl WebGpu {
@@ -39,8 +39,8 @@ impl WebGpu {
         Ok(flips)
     }
 
-    /// One submission of up to `count` iterations; returns the flips of those that ran, the last of which may
-    /// be zero. None has run where the host had to help first, which it then has done.
+    /// Submits up to `count` iterations at once. Returns the flips of those that ran; the last number may be zero. Returns
+    /// an empty list if the host had to prepare the mesh first, which it then has done.
     async fn submit_iterations(&mut self, count: u32) -> Result<Vec<u32>, Error> {
         self.known = Known::default();
         let batch = count.min(BATCH);
@@ -69,20 +69,20 @@ impl WebGpu {
             Source::new(&self.buffers.history, HISTORY_WORDS),
             Source::new(&self.counters, COUNTERS + 1),
         ];
-        // Most runs end in their first submission.
+        // Most runs end in their first submission: then the triangles are read with it.
         let is_run = self.params.first == 0 && count > 1;
         let has_triangles = !self.waits && is_run && (4 * triangles as u64) < MOST_KEPT;
         if has_triangles {
             sources.push(Source::new(&self.buffers.triangles, triangles));
         }
         let gpu = self.gpu.clone();
-        let coming = gpu.submit_and_map(&record, &sources);
-        let room = if has_triangles { room(triangles) } else { None };
-        self.heard().await?;
-        let landed = coming.landed().await?;
-        let history = landed.words(0)?;
+        let pending = gpu.submit_and_map(&record, &sources);
+        let reserved = if has_triangles { reserve(triangles) } else { None };
+        self.check_allocation().await?;
+        let read = pending.finished().await?;
+        let history = read.words(0)?;
         if let Some(mesh) = self.unsettled.clone() {
-            let counters = landed.words(1)?;
+            let counters = read.words(1)?;
             if self.settle_by(&mesh, &counters).await? {
                 return Ok(Vec::new());
             }
@@ -90,19 +90,19 @@ impl WebGpu {
         if !self.waits {
             self.known.census = Some(Census::of_counts(&history[..COUNTS]));
         }
-        self.known.triangles = room.map(|room| landed.fill(2, room)).transpose()?;
+        self.known.triangles = reserved.map(|reserved| read.fill(2, reserved)).transpose()?;
         Ok(self.take_over(&history))
     }
 
-    /// A word of each half-edge, from a buffer that has them.
+    /// Reads a buffer that has one word per half-edge.
     pub(super) fn read(&mut self, of: fn(&Buffers) -> &Buffer) -> Answer<'_, Vec<u32>> {
         Box::pin(async move {
-            self.heard().await?;
+            self.check_allocation().await?;
             self.gpu.read(of(&self.buffers), 3 * self.params.triangles as usize).await
         })
     }
 
-    /// Counts the edges, unless that was done behind the last iteration.
+    /// Counts the edges, unless the last submission has done so.
     pub(super) async fn count(&mut self) -> Result<Census, Error> {
         self.settle().await?;
         if let Some(census) = self.known.census {
@@ -113,7 +113,7 @@ impl WebGpu {
         Ok(Census::of_counts(&counts))
     }
 
-    /// What kernels count.
+    /// Runs kernels that count, and reads their counts.
     pub(super) async fn count_by(&self, record: &dyn Fn(&mut wgpu::ComputePass)) -> Result<Vec<u32>, Error> {
         let commands = || {
             let history = &self.buffers.history;
@@ -123,14 +123,14 @@ impl WebGpu {
         self.gpu.submit_and_read(&commands, &[Source::new(&self.buffers.history, COUNTS)]).await?.words(0)
     }
 
-    /// Writes the state as the first entry, and zeros behind it.
+    /// Writes the state as the first entry of the history, and zeros after it.
     fn begin_history(&self) {
         let mut history = [0u32; HISTORY_WORDS];
         history[ENTRIES..ENTRIES + ENTRY_WORDS].copy_from_slice(&self.state);
         self.gpu.queue.write_buffer(&self.buffers.history, 0, bytemuck::cast_slice(&history));
     }
 
-    /// Submits commands that continue the history, and reads it behind them.
+    /// Submits commands that continue the history, and reads it.
     #[cfg(test)]
     pub(super) async fn read_history(
         &self,
@@ -144,7 +144,7 @@ impl WebGpu {
         self.gpu.submit_and_read(&commands, &[history]).await?.words(0)
     }
 
-    /// Takes over the last state of a history, and returns the flips of the iterations that ran.
+    /// Takes over the last state in the history, and returns the flips of the iterations that ran.
     pub(super) fn take_over(&mut self, history: &[u32]) -> Vec<u32> {
         let entries = history[ENTRIES..].chunks_exact(ENTRY_WORDS).skip(1);
         let ran: Vec<&[u32]> = entries.take_while(|entry| entry[3] == 1).collect();
@@ -155,7 +155,7 @@ impl WebGpu {
         ran.iter().map(|entry| entry[0]).collect()
     }
 
-    /// Commands in one compute pass, with the parameters as they are now and the first step bound.
+    /// Encodes one compute pass, with the present parameters and the first step bound.
     fn encode(&self, record: &dyn Fn(&mut wgpu::ComputePass)) -> wgpu::CommandEncoder {
         self.write_params();
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
@@ -170,15 +170,15 @@ impl WebGpu {
     }
 
     pub(super) fn write_params(&self) {
-        let (place, bytes) = self.params.of_host();
-        self.gpu.queue.write_buffer(&self.buffers.uniform, place, bytes);
+        let (offset, bytes) = self.params.of_host();
+        self.gpu.queue.write_buffer(&self.buffers.uniform, offset, bytes);
     }
 
     pub(super) fn at_step(&self, pass: &mut wgpu::ComputePass, step: Step) {
         pass.set_bind_group(0, &self.bindings, &[step.offset()]);
     }
 
-    /// For so many triangles.
+    /// Dispatches a kernel for `triangles` triangles.
     pub(super) fn dispatch(&self, pass: &mut wgpu::ComputePass, kernel: Kernel, triangles: u32) {
         let groups = self.gpu.workgroups(triangles);
         pass.set_pipeline(&self.kernels.pipelines[kernel as usize]);
@@ -186,7 +186,7 @@ impl WebGpu {
             return pass.dispatch_workgroups(groups, 1, 1);
         }
         let most = LANE_COUNT / DECIDERS;
-        // Where loops end too early, each invocation decides one triangle at a time.
+        // On drivers that end loops too early, each invocation decides one triangle per dispatch.
         let all =
             if self.gpu.ends_loops_early { groups.div_ceil(most) * WORKGROUP_SIZE / DECIDERS } else { 1 };
         for _ in 0..all {

@@ -1,4 +1,4 @@
-//! One device for all sessions, or one that the page has made.
+//! The device that sessions share, and devices that the page has made.
 
 use super::device::Device;
 use super::faults::unavailable;
@@ -12,26 +12,27 @@ use wasm_bindgen::JsValue;
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 use wasm_bindgen_futures::JsFuture;
 
-/// A device of the page.
+/// A device that the page has made.
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 pub(crate) use super::browser::GpuDevice as GivenDevice;
 
-/// Elsewhere nobody can give one.
+/// Natively nobody can give a device.
 #[cfg(not(all(target_arch = "wasm32", feature = "js")))]
 pub(crate) type GivenDevice = std::convert::Infallible;
 
 /// The devices that sessions share.
 struct Shared {
-    /// The one that was opened here.
+    /// The device that this code has opened.
     opened: Option<Handle>,
-    /// Whether the adapter that was found last is software: the processor plays the GPU.
+    /// Whether the adapter found last is a software GPU.
     is_software: bool,
-    /// Whether one is made ready for sessions to come, and why the last one was not.
+    /// Whether a device is being prepared for later sessions.
     #[cfg(all(target_arch = "wasm32", feature = "js"))]
     is_preparing: bool,
+    /// Why the last preparation failed.
     #[cfg(all(target_arch = "wasm32", feature = "js"))]
     refusal: Option<String>,
-    /// Those of the page: in use, and the last one also when it is idle, for the sake of its kernels.
+    /// Devices of the page: those in use, and the last one also when it is idle, to keep its kernels.
     #[cfg(all(target_arch = "wasm32", feature = "js"))]
     adopted: Vec<Handle>,
 }
@@ -51,19 +52,19 @@ impl Shared {
     }
 
     #[cfg(all(target_arch = "wasm32", feature = "js"))]
-    fn let_idle_go(&mut self) {
+    fn drop_idle(&mut self) {
         self.adopted.retain(|device| Handle::strong_count(device) > 1);
     }
 }
 
-/// Sessions share a device, and on a computer threads do.
+/// A shared device. Natively, threads share it too.
 #[cfg(not(target_arch = "wasm32"))]
 pub(crate) type Handle = std::sync::Arc<Device>;
 
 #[cfg(not(target_arch = "wasm32"))]
 static SHARED: Mutex<Shared> = Mutex::new(Shared::new());
 
-/// In a browser a device belongs to its thread.
+/// A shared device. In a browser it belongs to one thread.
 #[cfg(target_arch = "wasm32")]
 pub(crate) type Handle = std::rc::Rc<Device>;
 
@@ -88,18 +89,18 @@ fn refuse_software(is_software: bool, takes_software: bool) -> Result<(), Error>
     Ok(())
 }
 
-/// After the loss of a device. Without it, its memory would wait for the next session.
+/// Called when a device is lost: frees its memory now, not at the next session.
 fn on_loss() {
     #[cfg(all(target_arch = "wasm32", feature = "js"))]
-    with_shared(Shared::let_idle_go);
+    with_shared(Shared::drop_idle);
 }
 
 impl Device {
-    /// The device for a session, with the kernels for meshes of a form: the one given, else the one that sessions share.
+    /// The device for a session, with the kernels for meshes of a form: the given device, or else the shared one.
     ///
     /// # Errors
-    /// [`Error::BackendUnavailable`] where there is none, or a software one that is not taken, or its compiler
-    /// refuses the kernels; [`Error::Device`] where it fails at once, or the one given is lost.
+    /// [`Error::BackendUnavailable`] if there is no device, or only a software GPU without `takes_software`, or if its
+    /// compiler refuses the kernels; [`Error::Device`] if it fails at once, or if the given device is lost.
     pub(crate) async fn for_session(
         given: Option<&GivenDevice>,
         takes_software: bool,
@@ -114,7 +115,7 @@ impl Device {
         Self::shared(takes_software, Some(form)).await
     }
 
-    /// The device for a session, if it is open and nothing has failed.
+    /// The device for a session, if it is open and has not failed.
     pub(crate) fn known(given: Option<&GivenDevice>) -> Option<Handle> {
         #[cfg(all(target_arch = "wasm32", feature = "js"))]
         if let Some(given) = given {
@@ -129,12 +130,12 @@ impl Device {
         with_shared(|shared| shared.opened.clone()).filter(|device| device.check().is_ok())
     }
 
-    /// The shared device; opened at the first call, and again after a failure, with the kernels for meshes of a form.
+    /// The shared device, with the kernels for meshes of a form. Opened at the first call, and again after a failure.
     ///
     /// # Errors
     /// As [`Device::for_session`].
     pub(crate) async fn shared(takes_software: bool, form: Option<Form>) -> Result<Handle, Error> {
-        // Known from the last time: no adapter has to be found to refuse it.
+        // Known from the last call, so a software GPU is refused without another search.
         refuse_software(with_shared(|shared| shared.is_software), takes_software)?;
         if let Some(device) = Self::known(None) {
             return Ok(device);
@@ -147,11 +148,11 @@ impl Device {
         Ok(device)
     }
 
-    /// Has `prepare` make a device ready behind whatever else goes on, unless that goes on already: the shared one, or one that
-    /// was given.
+    /// Starts `prepare` in the background, unless a preparation is running. It prepares the shared device or, with
+    /// `is_given`, a device of the page.
     ///
     /// # Errors
-    /// Why there is none, or why the last one was not made ready; then it is tried again.
+    /// Why there is no device, or why the last preparation failed; this call then tries again.
     #[cfg(all(target_arch = "wasm32", feature = "js"))]
     pub(crate) fn ahead(
         is_given: bool,
@@ -165,7 +166,7 @@ impl Device {
             let prepared = promise(async {
                 prepare.await.map(|()| JsValue::UNDEFINED).map_err(|error| error.to_string().into())
             });
-            // On its own, since an exception in `prepare` ends it where it is.
+            // A promise of its own, because an exception in `prepare` would also end this code.
             let _ = promise(async move {
                 let thrown = JsFuture::from(prepared).await.err();
                 let refusal = thrown.map(|thrown| thrown.as_string().unwrap_or(format!("{thrown:?}")));
@@ -176,13 +177,13 @@ impl Device {
         with_shared(|shared| shared.refusal.clone()).map_or(Ok(()), Err)
     }
 
-    /// Takes the shared device from the sessions to come; it is closed with the last that has it.
+    /// Takes the shared device away from later sessions. It closes when its last handle goes.
     #[cfg(not(target_arch = "wasm32"))]
     pub(crate) fn taken() -> Option<Handle> {
         with_shared(|shared| shared.opened.take())
     }
 
-    /// The device that the page has made. It is never destroyed here, and nothing of it is set.
+    /// The device that the page has made. This code never destroys it and changes none of its settings.
     ///
     /// # Errors
     /// As [`Device::for_session`].
@@ -194,7 +195,7 @@ impl Device {
         let is_software = given.is_software();
         refuse_software(is_software, takes_software)?;
         let known = Self::known(Some(given));
-        with_shared(Shared::let_idle_go);
+        with_shared(Shared::drop_idle);
         if let Some(device) = known {
             return Ok(device);
         }
@@ -209,7 +210,7 @@ impl Device {
 
 #[cfg(test)]
 impl Device {
-    /// One that nobody else has.
+    /// A device that is not shared.
     pub(crate) async fn own() -> Result<Handle, Error> {
         let (adapter, is_software) = Self::find_adapter().await?;
         Ok(Handle::new(Self::open(adapter, is_software, None, on_loss).await?))

@@ -1,4 +1,4 @@
-//! What the kernels are compiled from: the shaders in `shaders/`, composed when they are needed.
+//! The sources of the kernels: the files of `shaders/`, composed when they are needed.
 
 #[path = "../../../shaders/compose.rs"]
 mod compose;
@@ -9,8 +9,8 @@ use crate::engine::gpu::upload::Form;
 /// The path in `shaders/` of each file, and its text.
 const FILES: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/shaders.rs"));
 
-/// The shaders of the phases, for meshes of one form: of the kernels that only read lists and history, of those that write
-/// them, and of exact arithmetic.
+/// The shaders of the phases for meshes of one form: the kernels that only read lists and history, the kernels that write
+/// them, and exact arithmetic.
 pub(super) fn phases(form: Form) -> [String; 3] {
     [phase("sweeps", form, READS), phase("writes", form, WRITES), phase("decide", form, READS)]
 }
@@ -45,7 +45,7 @@ fn phase(file: &str, form: Form, [history, guard]: [&str; 2]) -> String {
 }
 
 fn text_of(path: &str) -> Option<&'static str> {
-    // In no build but that of the tests.
+    // Only in test builds.
     #[cfg(test)]
     if path == "webgpu/tiers.wgsl" {
         return Some(include_str!("tiers.wgsl"));
@@ -59,7 +59,7 @@ mod tests {
 
     use super::*;
 
-    /// The fault of a file by itself, with what it imports; none where it compiles for one of the forms.
+    /// The error of a file, composed with its imports; `None` if it compiles for at least one form.
     fn fault(file: &str) -> Option<String> {
         let kinds = Form::ALL.into_iter().flat_map(|form| [(form, READS), (form, WRITES)]);
         let mut faults = kinds.map(|(form, kind)| {
@@ -81,7 +81,7 @@ mod tests {
     }
 
     #[test]
-    fn files_begin_with_what_they_do() {
+    fn files_begin_with_a_description() {
         for (path, text) in FILES {
             let mut lines = text.lines().skip_while(|line| line.starts_with("// "));
             assert!(text.starts_with("// "), "{path}");
@@ -94,7 +94,7 @@ mod tests {
     }
 
     #[test]
-    fn an_import_of_no_file_is_named() {
+    fn an_import_without_a_file_stays_in_the_text() {
         let text_of = |path: &str| (path == "shared/a.wgsl").then_some("// A.\n#import b\n#import c if d\n");
         assert_eq!(compose::compose("webgpu", "a", &[], &text_of), "// shared/a.wgsl\n// A.\n#import b\n");
         let text = compose::compose("webgpu", "a", &["d"], &text_of);

@@ -1,15 +1,15 @@
-//! Memory between the host and a device, which is kept from one copy to the next: new memory takes longer than the copy.
+//! Staging buffers. One is kept from each copy to the next, since allocating takes longer than copying.
 
 use super::buffer::{Buffer, MOST_KEPT};
 use super::device::Device;
 use wgpu::BufferUsages;
 
-/// The fewest bytes that a buffer has which is kept.
+/// The smallest staging buffer, in bytes.
 const FEWEST: u64 = 1 << 16;
 
 impl Device {
-    /// A buffer of so many bytes at least: of a size that others will need too, if it may be kept. Not much larger, since a
-    /// browser copies all of what is mapped.
+    /// A buffer of at least `bytes` bytes. A size that may be kept is rounded up, so that later copies fit too; only a
+    /// little, since a browser copies all bytes of a mapped range.
     pub(super) fn staging(&self, bytes: u64, usage: BufferUsages) -> Buffer {
         let step = bytes.next_power_of_two() / 8;
         let size =

@@ -1,4 +1,4 @@
-//! What is done before the first iteration: the mesh goes up, its adjacency is built, stars and creases are looked at.
+//! The work before the first iteration: uploads the mesh, builds its adjacency, and prepares stars, signs and creases.
 
 use super::WebGpu;
 use super::adjacency::{self, COUNTERS, Found, Scratch};
@@ -8,7 +8,7 @@ use super::history::{Entry, SEVERAL_FANS};
 use super::kernels::Kernel;
 use super::known::Known;
 use super::limits::{refuse_large_buffer, refuse_large_mesh};
-use super::params::{NEGATIVE, POSITIVE, Params, Places};
+use super::params::{NEGATIVE, POSITIVE, Params, TopologyOffsets};
 use super::shared::Handle;
 use super::steps::Step;
 use crate::Error;
@@ -27,15 +27,15 @@ impl WebGpu {
     /// Uploads the mesh and builds its adjacency.
     ///
     /// # Errors
-    /// [`Error::BackendLimit`] for a mesh that is too large for the device; [`Error::Device`]. In a browser
-    /// [`Error::BackendLimit`] may come from the first question instead.
+    /// [`Error::BackendLimit`] for a mesh that is too large for the device; [`Error::Device`]. In a browser, the first
+    /// question to the engine may return [`Error::BackendLimit`] instead.
     pub(crate) async fn new(gpu: Handle, upload: Upload) -> Result<Self, Error> {
-        // Natively a wait takes little, and tells times apart. Where loops end early the host has to look first.
+        // Natively a wait is short, and separates the timings. If loops end early, the host has to check the mesh first.
         let waits = cfg!(not(target_arch = "wasm32")) || gpu.ends_loops_early;
         Self::begun(gpu, upload, waits).await
     }
 
-    /// `waits`: whether the host looks at the mesh before the first iteration.
+    /// As [`Self::new`]. `waits`: whether the host reads the counters before the first iteration.
     pub(in crate::engine) async fn begun(gpu: Handle, upload: Upload, waits: bool) -> Result<Self, Error> {
         refuse_large_mesh(&gpu, &upload)?;
         let kernels = gpu.phases(upload.form()).await?;
@@ -47,7 +47,7 @@ impl WebGpu {
                 gpu.finish_copies();
                 start = Instant::now();
             }
-            let params = Params::new(&upload, &Places::new(mesh), gpu.ends_loops_early);
+            let params = Params::new(&upload, &TopologyOffsets::new(mesh), gpu.ends_loops_early);
             let bytes = buffers.bytes() + scratch.bytes();
             let mut encoder = gpu.device.create_command_encoder(&Default::default());
             adjacency::record(&gpu, mesh, &buffers, &scratch, &mut encoder);
@@ -62,7 +62,7 @@ impl WebGpu {
                 buffers,
                 counters: scratch.counters,
                 unsettled: None,
-                word: None,
+                allocation: None,
                 waits,
                 known: Known::default(),
                 state: Entry::default(),
@@ -74,10 +74,10 @@ impl WebGpu {
             gpu.submit(encoder);
             result
         };
-        let (mut result, word) = watch(&gpu.device, begin);
-        result.word = Some(word);
+        let (mut result, caught) = watch(&gpu.device, begin);
+        result.allocation = Some(caught);
         if waits {
-            result.heard().await?;
+            result.check_allocation().await?;
         }
         result.begin(upload.mesh).await?;
         if waits {
@@ -86,27 +86,27 @@ impl WebGpu {
         Ok(result)
     }
 
-    /// Waits for the word of the device on the buffers of the mesh, unless it is known.
+    /// Waits for the faults of allocating the buffers, unless that was done.
     ///
     /// # Errors
-    /// As [`Device::allocated`](super::Device::allocated).
-    pub(super) async fn heard(&mut self) -> Result<(), Error> {
-        match self.word.take() {
-            Some(word) => self.gpu.judge_allocation(word.await),
+    /// Those of [`Device::allocated`](super::Device::allocated).
+    pub(super) async fn check_allocation(&mut self) -> Result<(), Error> {
+        match self.allocation.take() {
+            Some(caught) => self.gpu.judge_allocation(caught.await),
             None => Ok(()),
         }
     }
 
-    /// Records what the positions say of the input: the turns of the stars and the signs of the triangles in 2D, the
-    /// creases in 3D; and then begins the history, unless the host has to help first.
+    /// Records the kernels that depend on the positions: in 2D the turns of the stars and the signs of the triangles, in 3D
+    /// the creases. They also begin the history, unless the host has to help first.
     fn record_preparation(&self, encoder: &mut wgpu::CommandEncoder) {
         let Buffers { uniform, history, frontier, .. } = &self.buffers;
         self.write_params();
         encoder.clear_buffer(history, 0, None);
-        let word = |index: usize| 4 * index as u64;
-        let fans = word(adjacency::SEVERAL_FANS);
-        encoder.copy_buffer_to_buffer(&self.counters, fans, history, word(SEVERAL_FANS), word(1));
-        // The turns of stars are counted in the frontier.
+        let bytes = |words: usize| 4 * words as u64;
+        let fans = bytes(adjacency::SEVERAL_FANS);
+        encoder.copy_buffer_to_buffer(&self.counters, fans, history, bytes(SEVERAL_FANS), bytes(1));
+        // The kernels count the turns of stars in the frontier.
         encoder.clear_buffer(frontier, 0, None);
         let mut pass = encoder.begin_compute_pass(&Default::default());
         self.at_step(&mut pass, Step::Prepare);
@@ -114,11 +114,11 @@ impl WebGpu {
             self.dispatch(&mut pass, kernel, self.params.triangles);
         }
         drop(pass);
-        // What is left there would be taken for stamps.
+        // The phases would take these counts for stamps.
         encoder.clear_buffer(frontier, 0, None);
         // The signs, for the kernels and for the host.
-        encoder.copy_buffer_to_buffer(history, 0, uniform, 0, word(1));
-        encoder.copy_buffer_to_buffer(history, 0, &self.counters, word(COUNTERS), word(1));
+        encoder.copy_buffer_to_buffer(history, 0, uniform, 0, bytes(1));
+        encoder.copy_buffer_to_buffer(history, 0, &self.counters, bytes(COUNTERS), bytes(1));
     }
 
     fn prepare(&self) {
@@ -127,20 +127,20 @@ impl WebGpu {
         self.gpu.submit(encoder);
     }
 
-    /// Begins the iterations: the triangles of the mesh are on the device, which prepares them.
+    /// Begins the iterations. The device already has the triangles and the commands that prepare them.
     async fn begin(&mut self, mesh: Arc<Mesh>) -> Result<(), Error> {
         self.dispatches += Kernel::preparation(self.form.dimension).len() as u64;
         self.params.first = 0;
-        // As the device has it, if it needs no help: as if an iteration before had flipped something and built no list.
+        // The state that the device writes, if it needs no help: the iteration before flipped edges and built no list.
         self.state = [self.params.triangles, 0, 0, 1];
         self.known = Known::default();
         self.unsettled = Some(mesh);
         if self.waits { self.settle().await } else { Ok(()) }
     }
 
-    /// Reads the counters, unless the host knows them.
+    /// Reads the counters, unless the host has read them.
     pub(super) async fn settle(&mut self) -> Result<(), Error> {
-        self.heard().await?;
+        self.check_allocation().await?;
         if let Some(mesh) = self.unsettled.clone() {
             let counters = self.gpu.read(&self.counters, COUNTERS + 1).await?;
             self.settle_by(&mesh, &counters).await?;
@@ -148,13 +148,15 @@ impl WebGpu {
         Ok(())
     }
 
-    /// Takes over the counters. Whether the host had to help, and no iteration has run: with the fans of the mesh, or the
-    /// windings of its components.
+    /// Takes over the counters. Computes the fans of the mesh or the windings of its components, if the device needs them;
+    /// returns whether it did. In that case no iteration has run.
     pub(super) async fn settle_by(&mut self, mesh: &Mesh, counters: &[u32]) -> Result<bool, Error> {
         let (found, signs) = (Found::of(counters), counters[COUNTERS]);
         if self.gpu.ends_loops_early && found.most_corners > SHORT_STAR {
             let (corners, adapter) = (found.most_corners, &self.gpu.adapter);
-            return refuse(format!("a vertex has {corners} triangles, {adapter} ends loops early"));
+            return refuse(format!(
+                "a vertex has {corners} triangles; {adapter} allows {SHORT_STAR}, as it ends loops early"
+            ));
         }
         self.counts = found.counts;
         let needs_fans = found.has_several_fans && self.params.fans_length == 0;
@@ -169,11 +171,12 @@ impl WebGpu {
         Ok(needs_fans || needs_windings)
     }
 
-    /// Components of both windings, and dirty ones, are rare: the host has time. The stars are looked at once more then.
+    /// Adds the windings of the components, found by the host, and prepares the stars again. Meshes that need them are
+    /// rare: they have components of both windings, or triangles of both signs in one component.
     async fn add_windings(&mut self, mesh: &Mesh) -> Result<(), Error> {
         let twins = self.gpu.read(&self.buffers.twins, mesh.triangles().len()).await?;
         let mut clockwise = Winding::of_components(mesh, &twins).clockwise;
-        // It has none where no component is clockwise.
+        // `clockwise` is empty if no component is clockwise.
         clockwise.resize(mesh.triangle_count().div_ceil(32), 0);
         self.dispatches += Kernel::preparation(self.form.dimension).len() as u64;
         self.params.knows_winding = 1;
@@ -186,7 +189,7 @@ impl WebGpu {
         answer
     }
 
-    /// Vertices of several fans are rare: their table is appended to the topology.
+    /// Appends the table of fans, found by the host, to the topology. Vertices with several fans are rare.
     async fn add_fans(&mut self, mesh: &Mesh) -> Result<(), Error> {
         let twins = self.gpu.read(&self.buffers.twins, mesh.triangles().len()).await?;
         let table = Fans::new(mesh.vertex_count(), mesh.triangles(), &twins).table;
@@ -203,12 +206,12 @@ impl WebGpu {
             self.buffers.bind(gpu, &self.kernels.layout)
         };
         self.bindings = gpu.checked(copy).await?;
-        // Now that nothing is refused any more.
+        // Set last, after everything that can fail.
         self.params.fans_length = table.len() as u32;
         Ok(())
     }
 
-    /// Whoever locks edges has named them on the host, which has time for the twins too.
+    /// Flags locked edges on the host: reads the twins, and writes them back.
     pub(super) async fn flag_locked(&mut self, half_edges: Vec<u32>) -> Result<(), Error> {
         self.known = Known::default();
         let mut twins = self.twins().await?;

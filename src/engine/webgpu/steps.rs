@@ -1,23 +1,23 @@
-//! What the dispatches of a submission are about.
+//! The steps of a submission: a uniform tells each dispatch which iteration or task it is for.
 
 use super::history::BATCH;
 
-/// Words from one step to the next: the alignment of a dynamic offset that every device offers.
+/// Words per step: an alignment of dynamic offsets that every device supports.
 const WORDS: u32 = 64;
 
-/// As in `doubts.wgsl`.
+/// The same numbers as in `doubts.wgsl`.
 #[derive(Clone, Copy)]
 pub(super) enum Step {
     /// The iteration of this index in the batch.
     Iterate(u32),
-    /// The iteration that the tail has paused in, or the census once exact arithmetic has decided the rest.
+    /// The iteration in which the tail has paused, or the census after exact arithmetic.
     Resume,
     Census,
     Prepare,
 }
 
 impl Step {
-    /// All of them, each at its place.
+    /// All steps, each at its offset.
     pub(super) fn words() -> Vec<u32> {
         let all = (0..BATCH).map(Self::Iterate).chain([Self::Resume, Self::Census, Self::Prepare]);
         all.flat_map(|step| {
@@ -39,10 +39,10 @@ impl Step {
 
     /// Its dynamic offset.
     pub(super) fn offset(self) -> u32 {
-        let place = match self {
+        let slot = match self {
             Self::Iterate(index) => index,
             other => BATCH - 1 + other.index_and_task()[1],
         };
-        4 * WORDS * place
+        4 * WORDS * slot
     }
 }

@@ -1,4 +1,4 @@
-//! What the host and the shaders both say, read from the shaders by naga: constants, layouts, bindings.
+//! Compares constants, layouts and bindings of the host with those of the shaders, as naga reads them.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "what fails here is a failed test")]
 
@@ -24,7 +24,7 @@ fn all_sources() -> Vec<String> {
     Form::ALL.into_iter().flat_map(sources::phases).chain([sources::adjacency(), sources::probe()]).collect()
 }
 
-/// The phases on surfaces.
+/// The phases in space.
 fn space() -> naga::Module {
     let [_, writes, _] =
         sources::phases(Form { dimension: Dimension::Three, is_fixed: false, has_deviation: true });
@@ -80,7 +80,7 @@ fn constants_of_the_phases_agree() {
         ("REASON_DUPLICATE", Reason::Duplicate as u64),
         ("REASON_LOCKED", Reason::Locked as u64),
         ("REASON_DEVIATION", Reason::Deviation as u64),
-        // The host reads the census and an entry by place.
+        // The host reads the census and an entry by index.
         ("COUNTED", 0),
         ("LABELLED", 1),
         ("BLOCKED_BY", 2),
@@ -104,7 +104,7 @@ fn constants_of_exact_arithmetic_agree() {
     let [_, _, plane] = sources::phases(Form { dimension: Dimension::Two, has_deviation: false, ..form });
     let (space, plane) = (parse(&space), parse(&plane));
     let (space, plane) = (constants(&space), constants(&plane));
-    let places = [
+    let offsets = [
         ("DIFFERENCES", programs::P),
         ("VECTOR", programs::Q - programs::P),
         ("MANTISSA", programs::MANTISSA),
@@ -126,14 +126,14 @@ fn constants_of_exact_arithmetic_agree() {
         ("LANE_COUNT", programs::LANE_COUNT),
         ("DECIDERS", programs::DECIDERS),
     ];
-    for (name, value) in places.into_iter().chain(sizes) {
+    for (name, value) in offsets.into_iter().chain(sizes) {
         assert_eq!(space[name], u64::from(value), "{name}");
     }
-    for (name, place) in [("FIRST", programs::N), ("SECOND", programs::M)] {
-        assert_eq!(plane[name], u64::from(place), "{name}");
+    for (name, offset) in [("FIRST", programs::N), ("SECOND", programs::M)] {
+        assert_eq!(plane[name], u64::from(offset), "{name}");
     }
     assert!(programs::words().len() <= programs::LANES);
-    // The longest numbers: a difference, and n·m times the power of cos β, which has a word for its length and one more digit.
+    // The longest numbers: a difference, and n·m times the power of cos β, with a word for its length and one more digit.
     let digits = |bits: u32| (bits + 1).div_ceil(DIGIT_BITS);
     assert!(digits(SPAN + 1) <= 7 && digits(4 * (SPAN + 1) + 6 + 106) <= 36);
 }
@@ -147,8 +147,8 @@ fn constants_of_the_adjacency_agree() {
     assert_eq!(shader["BUCKETS_EACH"], u64::from(BUCKETS_EACH));
     let counters =
         ["ALLOCATED", "EDGES", "BOUNDARY", "NON_MANIFOLD", "INCONSISTENT", "SEVERAL_FANS", "MOST_CORNERS"];
-    for (name, place) in counters.into_iter().zip(0..) {
-        assert_eq!(shader[name], place, "{name}");
+    for (name, index) in counters.into_iter().zip(0..) {
+        assert_eq!(shader[name], index, "{name}");
     }
     let sizes: Vec<_> = members(&module, "Params").into_iter().map(|(_, at, size)| (at, size)).collect();
     assert_eq!(sizes, [(0, 4), (4, 4), (8, 4)]);
@@ -182,8 +182,8 @@ fn params_have_one_layout() {
         deviation
     );
     let shader = members(&space(), "Params");
-    let places: Vec<_> = shader.iter().map(|(name, offset, _)| (name.as_str(), *offset)).collect();
-    assert_eq!(places, host);
+    let offsets: Vec<_> = shader.iter().map(|(name, offset, _)| (name.as_str(), *offset)).collect();
+    assert_eq!(offsets, host);
     let (_, offset, size) = &shader[shader.len() - 1];
     assert_eq!(offset + size, size_of::<Params>());
 }
@@ -212,11 +212,11 @@ fn shaders_stay_within_the_limits_of_every_browser() {
     }
 }
 
-/// Words of the longest kernel in SPIR-V: what a driver has to compile before the first result.
+/// The most SPIR-V words of a kernel. A driver has to compile them before the first result.
 const MOST_WORDS: usize = 18_000;
 
-/// `cargo test --release --lib one_by_one -- --nocapture` prints what each kernel takes on the device there is, unless its
-/// driver has compiled it before: `__GL_SHADER_DISK_CACHE=0` or `MESA_SHADER_CACHE_DISABLE=true` lets it forget.
+/// `cargo test --release --lib one_by_one -- --nocapture` prints how long each kernel compiles on this machine's device.
+/// `__GL_SHADER_DISK_CACHE=0` or `MESA_SHADER_CACHE_DISABLE=true` turns off the cache of the driver.
 #[test]
 fn kernels_are_short_one_by_one() {
     let (adapter, is_software) = block_on(Device::find_adapter()).unwrap();
@@ -246,7 +246,7 @@ fn kernels_are_short_one_by_one() {
     }
 }
 
-/// Of one entry point and what it calls.
+/// The SPIR-V words of one entry point and the functions that it calls.
 fn spirv_words(source: &str, entry: &str) -> usize {
     let mut module = parse(source);
     module.entry_points.retain(|point| point.name == entry);
@@ -255,26 +255,26 @@ fn spirv_words(source: &str, entry: &str) -> usize {
         naga::valid::ValidationFlags::all(),
         naga::valid::Capabilities::default(),
     );
-    // Constants that are set when a pipeline is made take their own values.
+    // Overridable constants get their default values.
     let info = validator.validate(&module).unwrap();
     let (module, info) =
         naga::back::pipeline_constants::process_overrides(&module, &info, None, &Default::default()).unwrap();
     naga::back::spv::write_vec(&module, &info, &naga::back::spv::Options::default(), None).unwrap().len()
 }
 
-/// Chromium's compiler (seen in 156, on SwiftShader) does not clear a variable that is declared in a loop without
-/// a value: it keeps that of the round before. Functions are inlined into loops, so no variable goes without.
+/// Chromium's compiler (seen in 156, on SwiftShader) does not clear a variable declared in a loop without a value: the
+/// variable keeps its value from the round before. Functions are inlined into loops, so every variable needs a value.
 #[test]
-fn variables_are_given_a_value() {
+fn variables_have_an_initial_value() {
     for line in all_sources().iter().flat_map(|source| source.lines()) {
         let in_function = line.starts_with("    ") && line.trim_start().starts_with("var ");
         assert!(!in_function || line.contains(" = "), "{}", line.trim());
     }
 }
 
-/// On a device of its own, which does not serve any longer then.
+/// On a device of its own, which is unusable afterwards.
 #[test]
-fn an_error_of_a_call_is_told() {
+fn an_error_of_a_call_is_reported() {
     let gpu = block_on(async {
         let (adapter, is_software) = Device::find_adapter().await?;
         Device::open(adapter, is_software, None, || {}).await
@@ -305,9 +305,9 @@ fn come_back(device: &Device, words: usize, factor: u32) -> bool {
     back.unwrap() == written
 }
 
-/// Whoever reads while another does gets memory of its own.
+/// Two threads that read at the same time get different staging buffers.
 #[test]
-fn threads_share_what_is_kept() {
+fn threads_share_the_kept_buffer() {
     let device = block_on(Device::own()).unwrap();
     std::thread::scope(|scope| {
         for thread in 1..5 {
@@ -319,6 +319,6 @@ fn threads_share_what_is_kept() {
             });
         }
     });
-    let kept = device.read_back.take(0).unwrap().size();
-    assert!(come_back(&device, 1, 7) && device.read_back.take(0).unwrap().size() < kept);
+    let kept = device.kept_for_reads.take(0).unwrap().size();
+    assert!(come_back(&device, 1, 7) && device.kept_for_reads.take(0).unwrap().size() < kept);
 }
