@@ -24,9 +24,8 @@ const glue = 'target/js/wasm'; // also where src/js/tsconfig.json finds the type
 // quarter smaller. Loops are unrolled only where their length is known: it is no slower, and 2 % smaller.
 const engine = ['-C', 'llvm-args=-inline-threshold=10 -unroll-runtime=0'];
 // Vectors where they are written, and nowhere else: it is no slower, and 2 % smaller.
-// Panics are cut off below, so nothing needs to know where in the source they are. The compiler calls that flag unstable.
+// Panics are cut off below, so nothing needs to know where in the source they are.
 const all = ['-C', 'no-vectorize-loops', '-C', 'no-vectorize-slp', '-Z', 'location-detail=none'];
-process.env.RUSTC_BOOTSTRAP = 'edgeflip';
 // One module for each entry of the package, one for the WebGL2 engine, one for the CPU engine's threads, and one for the
 // audit.
 const modules = [

@@ -35,6 +35,8 @@ if [ "${1:-}" = --which ]; then
   exit
 fi
 export CARGO_TARGET_DIR="$PWD/target/wasm"
+# For the flag of tools/build.mjs that the compiler calls unstable. Always, since build scripts run again where it changes.
+export RUSTC_BOOTSTRAP=edgeflip
 # Vectors; tools/build.mjs says who has them.
 export RUSTFLAGS="-C target-feature=+simd128 ${RUSTFLAGS:-}"
 if [ "${1:-}" = --threads ]; then
