@@ -120,9 +120,8 @@ impl Plan {
 
     /// The tail, with so many invocations. It takes longest to compile, and no mesh needs it in its first iterations.
     pub(super) fn tail(form: Form, size: u32) -> Self {
-        let mut sources = Vec::from(sources::phases(form));
         let entries = vec![(0, "tail", Some(("TAIL_SIZE", f64::from(size))))];
-        Self { bindings: phases_bindings(), sources: vec![sources.swap_remove(WRITES)], entries }
+        Self { bindings: phases_bindings(), sources: vec![sources::writes(form)], entries }
     }
 
     pub(super) fn probe() -> Self {

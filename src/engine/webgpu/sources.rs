@@ -12,7 +12,12 @@ const FILES: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/shaders.rs"))
 /// The shaders of the phases for meshes of one form: the kernels that only read lists and history, the kernels that write
 /// them, and exact arithmetic.
 pub(super) fn phases(form: Form) -> [String; 3] {
-    [phase("sweeps", form, READS), phase("writes", form, WRITES), phase("decide", form, READS)]
+    [phase("sweeps", form, READS), writes(form), phase("decide", form, READS)]
+}
+
+/// The second of them alone: the tail needs no other.
+pub(super) fn writes(form: Form) -> String {
+    phase("writes", form, WRITES)
 }
 
 /// The shader that builds the adjacency.
