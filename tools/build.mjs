@@ -56,6 +56,10 @@ const tools = [
   readFileSync('node_modules/binaryen/package.json'),
 ];
 
+// Beside the modules, for which one core is enough at their ends. Of the whole workspace, as tests are built: else its
+// dependencies, with fewer features, would be compiled again.
+const glsl = run('cargo', 'build', '--workspace', '--bin', 'glsl');
+
 mkdirSync(glue, { recursive: true });
 const finishing = [];
 for (const module of modules) {
@@ -115,8 +119,7 @@ function cutPanics(file) {
 }
 
 await Promise.all([
-  // Of the whole workspace, as tests are built: else its dependencies, with fewer features, would be compiled again.
-  run('cargo', 'build', '--workspace', '--bin', 'glsl').then(() => run('target/debug/glsl', 'dist/glsl.js')),
+  glsl.then(() => run('target/debug/glsl', 'dist/glsl.js')),
   // Whether the types of Node and of WebGPU are right in themselves is not ours to check: half of the time.
   run(process.execPath, 'node_modules/typescript/bin/tsc', '-p', 'src/js', '--skipLibCheck'),
 ]);
