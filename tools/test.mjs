@@ -28,6 +28,9 @@ const cargoTest = ['cargo', 'test', '--workspace'];
 /** The tests of quads. */
 const quads = [...cargoTest, '--test', 'quads', '--'];
 
+// Formats and lints JavaScript and TypeScript: biome.json.
+const biome = ['node', 'node_modules/@biomejs/biome/bin/biome', 'ci'];
+
 // The page needs the package in dist/.
 const builtPage = [
   ['node', 'node_modules/typescript/bin/tsc', '-p', 'www'],
@@ -42,8 +45,8 @@ const pageTests = (files, atOnce = 1) => [
 const levels = [
   {
     name: 'formatting',
-    what: 'rustfmt would change nothing',
-    checks: [['cargo', 'fmt', '--all', '--check']],
+    what: 'rustfmt and Biome would change nothing',
+    checks: [['cargo', 'fmt', '--all', '--check'], [...biome, '--linter-enabled=false']],
   },
   {
     name: 'layout',
@@ -52,8 +55,11 @@ const levels = [
   },
   {
     name: 'lints',
-    what: 'no warning from clippy in any target; Cargo.lock fits Cargo.toml',
-    checks: [['cargo', 'clippy', '--locked', '--workspace', '--all-targets', '--', '-D', 'warnings']],
+    what: 'no warning from clippy in any target, nor from Biome; Cargo.lock fits Cargo.toml',
+    checks: [
+      ['cargo', 'clippy', '--locked', '--workspace', '--all-targets', '--', '-D', 'warnings'],
+      [...biome, '--formatter-enabled=false', '--error-on-warnings'],
+    ],
   },
   {
     name: 'docs',
