@@ -1,5 +1,5 @@
-// Takes screenshots of the page that `npm start` has built. `npm run screenshots` takes every state, light and dark, wide
-// and narrow, into target/screenshots, to be looked at. `npm run picture` takes the one picture in README: docs/page.png.
+// Takes screenshots of the page in target/www. `npm run screenshots` builds it there and takes every state, light and dark,
+// wide and narrow, into target/screenshots, to be looked at. `npm run picture` takes the one picture in README: docs/page.png.
 
 import { mkdirSync } from 'node:fs';
 import { resolve } from 'node:path';

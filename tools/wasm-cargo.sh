@@ -35,8 +35,12 @@ if [ "${1:-}" = --which ]; then
   exit
 fi
 export CARGO_TARGET_DIR="$PWD/target/wasm"
-# For the flag of tools/build.mjs that the compiler calls unstable. Always, since build scripts run again where it changes.
-export RUSTC_BOOTSTRAP=edgeflip
+# To build std, and flags of tools/build.mjs, are things of nightly compilers, unless they are told that this is known.
+# Always told, since some build scripts run again where this changes.
+export RUSTC_BOOTSTRAP=1
+# Cargo calls the library's file edgeflip.wasm with any features, so that each module would overwrite the last one and be
+# compiled again every time. With this its name has a hash, as the names of other crates' files have.
+export __CARGO_DEFAULT_LIB_METADATA=edgeflip
 # Vectors; tools/build.mjs says who has them.
 export RUSTFLAGS="-C target-feature=+simd128 ${RUSTFLAGS:-}"
 if [ "${1:-}" = --threads ]; then
@@ -45,8 +49,7 @@ if [ "${1:-}" = --threads ]; then
   link=(--shared-memory --import-memory --max-memory=4294967296 --export=__heap_base --export=__wasm_init_tls
     --export=__tls_base --export=__tls_size --export=__tls_align)
   RUSTFLAGS+=" -C target-feature=+atomics ${link[*]/#/-C link-arg=}"
-  # The std that comes with the compiler has no atomics; to build one is a thing of nightly compilers, unless they are
-  # told that this is known. What is built so is apart, lest everything is built again each time.
-  export RUSTC_BOOTSTRAP=1 CARGO_UNSTABLE_BUILD_STD=std,panic_abort CARGO_TARGET_DIR="$CARGO_TARGET_DIR-threads"
+  # The std that comes with the compiler has no atomics.
+  export CARGO_UNSTABLE_BUILD_STD=std,panic_abort
 fi
 exec cargo "$@"

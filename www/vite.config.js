@@ -1,4 +1,4 @@
-// Builds the page into target/www: static files that any server can serve.
+// Serves the page while somebody works on it, and builds it into target/www: static files that any server can serve.
 
 import { readFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
@@ -8,6 +8,16 @@ const at = (path) => fileURLToPath(new URL(path, import.meta.url));
 
 // The policy of the page is that of its workers too, which only a header tells them.
 const [, policy] = readFileSync(at('index.html'), 'utf8').match(/content="(default-src [^"]*)"/);
+
+// While somebody works on the page, Vite inserts imported styles into it.
+const whileWorking = (text) => text.replace("style-src 'self'", "style-src 'self' 'unsafe-inline'");
+
+// Isolated, so that the threads of the CPU engine may share memory.
+const headersWith = (policy) => ({
+  'Content-Security-Policy': policy,
+  'Cross-Origin-Opener-Policy': 'same-origin',
+  'Cross-Origin-Embedder-Policy': 'require-corp',
+});
 
 export default defineConfig({
   root: at('.'),
@@ -19,14 +29,9 @@ export default defineConfig({
     ],
   },
   worker: { format: 'es' },
-  // Isolated, so that the threads of the CPU engine may share memory.
-  preview: {
-    headers: {
-      'Content-Security-Policy': policy,
-      'Cross-Origin-Opener-Policy': 'same-origin',
-      'Cross-Origin-Embedder-Policy': 'require-corp',
-    },
-  },
+  plugins: [{ name: 'policy-while-working', apply: 'serve', transformIndexHtml: whileWorking }],
+  server: { headers: headersWith(whileWorking(policy)), fs: { allow: [at('..')] } },
+  preview: { headers: headersWith(policy) },
   build: {
     outDir: at('../target/www'),
     emptyOutDir: true,
