@@ -47,12 +47,14 @@ function program(what, candidates) {
  */
 export async function startChromium() {
   const browser = await chromium.launch({
-    executablePath: process.env.CHROMIUM ?? program('Chromium', [
-      'chromium',
-      'chromium-browser',
-      'google-chrome',
-      '/Applications/Google Chrome.app/Contents/MacOS/Google Chrome',
-    ]),
+    executablePath:
+      process.env.CHROMIUM ??
+      program('Chromium', [
+        'chromium',
+        'chromium-browser',
+        'google-chrome',
+        '/Applications/Google Chrome.app/Contents/MacOS/Google Chrome',
+      ]),
     args: [
       '--no-sandbox',
       '--enable-unsafe-webgpu',
@@ -80,11 +82,9 @@ export async function startFirefox() {
   const needsDisplay = process.platform === 'linux' && !process.env.DISPLAY && !process.env.WAYLAND_DISPLAY;
   const browser = await puppeteer.launch({
     browser: 'firefox',
-    executablePath: process.env.FIREFOX ?? program('Firefox', [
-      'firefox-esr',
-      'firefox',
-      '/Applications/Firefox.app/Contents/MacOS/firefox',
-    ]),
+    executablePath:
+      process.env.FIREFOX ??
+      program('Firefox', ['firefox-esr', 'firefox', '/Applications/Firefox.app/Contents/MacOS/firefox']),
     headless: false,
     protocolTimeout: 0, // a test knows how long it waits
     env: needsDisplay ? { ...process.env, DISPLAY: await display() } : process.env,

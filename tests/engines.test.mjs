@@ -24,9 +24,20 @@ const browsers = [
   {
     name: 'Chromium',
     start: startChromium,
-    engines: [{ backend: 'cpu', watched: 1000 }, { backend: 'webgpu', watched: 200 }, { backend: 'webgl2', watched: 200 }],
+    engines: [
+      { backend: 'cpu', watched: 1000 },
+      { backend: 'webgpu', watched: 200 },
+      { backend: 'webgl2', watched: 200 },
+    ],
   },
-  { name: 'Firefox', start: startFirefox, engines: [{ backend: 'webgpu', watched: 150 }, { backend: 'webgl2', watched: 150 }] },
+  {
+    name: 'Firefox',
+    start: startFirefox,
+    engines: [
+      { backend: 'webgpu', watched: 150 },
+      { backend: 'webgl2', watched: 150 },
+    ],
+  },
 ];
 const titles = { cpu: 'CPU wasm', webgpu: 'WebGPU', webgl2: 'WebGL2' };
 

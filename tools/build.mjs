@@ -44,8 +44,17 @@ const modules = [
   { name: 'edgeflip_files', features: 'js-files', flags: [] },
 ];
 // The features that rustc turns on for wasm32, and vectors: every browser with WebGPU has them, and all since 2023.
-const wasmFeatures = ['bulk-memory', 'bulk-memory-opt', 'call-indirect-overlong', 'multivalue', 'mutable-globals',
-  'nontrapping-float-to-int', 'reference-types', 'sign-ext', 'simd'];
+const wasmFeatures = [
+  'bulk-memory',
+  'bulk-memory-opt',
+  'call-indirect-overlong',
+  'multivalue',
+  'mutable-globals',
+  'nontrapping-float-to-int',
+  'reference-types',
+  'sign-ext',
+  'simd',
+];
 
 const sha256 = (...parts) => parts.reduce((hash, part) => hash.update(part), createHash('sha256')).digest('hex');
 // What makes a module of what cargo has compiled: this file, wasm-bindgen and binaryen.
@@ -64,8 +73,25 @@ mkdirSync(glue, { recursive: true });
 const finishing = [];
 for (const module of modules) {
   const { name, features, flags, options = [] } = module;
-  await run('bash', 'tools/wasm-cargo.sh', ...options, 'rustc', '--lib', '--crate-type', 'cdylib', '--profile', 'web',
-    '--target', 'wasm32-unknown-unknown', '--no-default-features', '--features', features, '--', ...all, ...flags);
+  await run(
+    'bash',
+    'tools/wasm-cargo.sh',
+    ...options,
+    'rustc',
+    '--lib',
+    '--crate-type',
+    'cdylib',
+    '--profile',
+    'web',
+    '--target',
+    'wasm32-unknown-unknown',
+    '--no-default-features',
+    '--features',
+    features,
+    '--',
+    ...all,
+    ...flags,
+  );
   const compiled = 'target/wasm/wasm32-unknown-unknown/web/edgeflip.wasm';
   // Where cargo's file and the tools are those of the last time, so is the module.
   const stamp = `${glue}/${name}.sha256`;
@@ -80,7 +106,8 @@ await Promise.all(finishing);
 
 rmSync('dist', { recursive: true, force: true });
 for (const { name } of modules) {
-  for (const end of ['.js', '.d.ts', '_bg.wasm', '_bg.wasm.d.ts']) cpSync(`${glue}/${name}${end}`, `dist/wasm/${name}${end}`);
+  for (const end of ['.js', '.d.ts', '_bg.wasm', '_bg.wasm.d.ts'])
+    cpSync(`${glue}/${name}${end}`, `dist/wasm/${name}${end}`);
 }
 
 /** Cuts off the panics of a module and makes it smaller. */
@@ -90,8 +117,18 @@ async function optimize({ name, options }) {
   // No pointer of Rust is below 1024: the stack, which comes first, grows down from 1 MiB. Done twice, since the first
   // time uncovers more.
   const features = options ? [...wasmFeatures, 'threads'] : wasmFeatures;
-  await run(process.execPath, 'node_modules/binaryen/bin/wasm-opt', '-Oz', '-Oz', '--low-memory-unused', '--strip-debug',
-    ...features.map((feature) => `--enable-${feature}`), wasm, '-o', wasm);
+  await run(
+    process.execPath,
+    'node_modules/binaryen/bin/wasm-opt',
+    '-Oz',
+    '-Oz',
+    '--low-memory-unused',
+    '--strip-debug',
+    ...features.map((feature) => `--enable-${feature}`),
+    wasm,
+    '-o',
+    wasm,
+  );
 }
 
 /**
@@ -111,9 +148,13 @@ function cutPanics(file) {
     const [, hook] = memory.exec(name) ?? [];
     if (!hook) continue;
     hooks.add(hook);
-    binaryen.Function.setBody(place, module.block(null, [module.call(outOfMemory, [], binaryen.none), module.unreachable()]));
+    binaryen.Function.setBody(
+      place,
+      module.block(null, [module.call(outOfMemory, [], binaryen.none), module.unreachable()]),
+    );
   }
-  if (hooks.size < 3) throw new Error(`${file}: of what follows where memory cannot be had, too little has a name that is known`);
+  if (hooks.size < 3)
+    throw new Error(`${file}: of what follows where memory cannot be had, too little has a name that is known`);
   writeFileSync(file, module.emitBinary());
   module.dispose();
 }

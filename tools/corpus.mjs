@@ -48,7 +48,10 @@ function convert(folder, modules) {
   for (const module of modules) {
     const { positions, cells } = createRequire(import.meta.url)(join(folder, 'package', module));
     const lines = [`OFF\n${positions.length} ${cells.length} 0`, ...positions.map((p) => p.join(' '))];
-    writeFileSync(join(folder, module.replace('.js', '.off')), [...lines, ...cells.map((c) => `3 ${c.join(' ')}`)].join('\n'));
+    writeFileSync(
+      join(folder, module.replace('.js', '.off')),
+      [...lines, ...cells.map((c) => `3 ${c.join(' ')}`)].join('\n'),
+    );
   }
 }
 

@@ -18,7 +18,12 @@ const env = { ...process.env, RUSTC_BOOTSTRAP: '1' };
 
 /** Runs cargo; its standard error comes back where it is captured. */
 function cargo(args, captured = false) {
-  return spawnSync('cargo', args, { env, encoding: 'utf8', maxBuffer: 1 << 30, stdio: ['ignore', 'inherit', captured ? 'pipe' : 'inherit'] });
+  return spawnSync('cargo', args, {
+    env,
+    encoding: 'utf8',
+    maxBuffer: 1 << 30,
+    stdio: ['ignore', 'inherit', captured ? 'pipe' : 'inherit'],
+  });
 }
 
 function orStop({ status, error }, what) {

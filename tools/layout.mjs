@@ -9,7 +9,11 @@ process.chdir(fileURLToPath(new URL('..', import.meta.url)));
 
 const MOST_LINES = 450;
 const folders = ['benches', 'examples', 'fuzz/src', 'shaders', 'src', 'tests', 'tools', 'www'];
-const files = folders.flatMap((folder) => readdirSync(folder, { recursive: true }).sort().map((file) => posix.join(folder, file)));
+const files = folders.flatMap((folder) =>
+  readdirSync(folder, { recursive: true })
+    .sort()
+    .map((file) => posix.join(folder, file)),
+);
 const text = new Map(
   files.filter((file) => /\.(rs|ts|m?js|css|html|wgsl)$/.test(file)).map((file) => [file, readFileSync(file, 'utf8')]),
 );
@@ -24,7 +28,12 @@ for (const [file, content] of text) {
 
 const isTest = (file) => /(^|\/)tests(\/|\.rs$)|predicates\/tiers\.rs$/.test(file);
 const crate = [...text.keys()].filter((file) => /^src\/.*\.rs$/.test(file) && !file.startsWith('src/bin/'));
-const moduleOf = (file) => file.slice('src/'.length).replace(/(\/?mod)?\.rs$/, '').replace(/^lib$/, '').replaceAll('/', '::');
+const moduleOf = (file) =>
+  file
+    .slice('src/'.length)
+    .replace(/(\/?mod)?\.rs$/, '')
+    .replace(/^lib$/, '')
+    .replaceAll('/', '::');
 const fileOf = new Map(crate.map((file) => [moduleOf(file), file]));
 
 /** Without comments and tests. */
@@ -70,7 +79,9 @@ const renamed = new Map();
 for (const [module, file] of fileOf) {
   const code = bare(text.get(file));
   const uses = [...code.matchAll(/\buse\s+([^;]+);/g)].flatMap(([, tree]) => expand(tree));
-  const inline = [...code.replace(/\buse\s+[^;]+;/g, '').matchAll(/\b(?:crate|super)(?:::\w+)+/g)].map(([path]) => path);
+  const inline = [...code.replace(/\buse\s+[^;]+;/g, '').matchAll(/\b(?:crate|super)(?:::\w+)+/g)].map(
+    ([path]) => path,
+  );
   const paths = [...uses, ...inline].map((path) => absolute(path, module)).filter((path) => path !== undefined);
   used.set(module, paths);
   for (const path of paths) renamed.set([module, path.split('::').at(-1)].filter(Boolean).join('::'), path);
@@ -99,7 +110,10 @@ for (const [module, paths] of used) {
 
 // The order: the first column of the tables in docs/architecture.md, of the crate and then of its engines.
 
-const [, , house] = readFileSync('docs/architecture.md', 'utf8').split(/^## /m)[1].match(/(^|\n)(\|[^]*)/) ?? [];
+const [, , house] =
+  readFileSync('docs/architecture.md', 'utf8')
+    .split(/^## /m)[1]
+    .match(/(^|\n)(\|[^]*)/) ?? [];
 const rows = (house ?? '').split('\n').filter((line) => line.startsWith('| `'));
 const rooms = rows.map((row) => [...row.split('|')[1].matchAll(/`([^`]+)`/g)].map(([, name]) => name));
 const engine = rooms.findIndex(([name]) => name === 'engine/');
@@ -112,7 +126,8 @@ for (const [file, to] of imports) {
   for (const other of to) {
     if (process.argv.includes('-v')) console.log(`${file} -> ${other}`);
     if (isFacade(file) || isFacade(other)) continue;
-    if (room(file) < 0 || room(other) < 0) errors.push(`${file} imports ${other}, and docs/architecture.md has no room for one of them`);
+    if (room(file) < 0 || room(other) < 0)
+      errors.push(`${file} imports ${other}, and docs/architecture.md has no room for one of them`);
     else if (room(other) < room(file)) errors.push(`${file} imports ${other}, which is in a room above`);
   }
 }
@@ -122,8 +137,10 @@ for (const [file, to] of imports) {
 for (const [file, content] of text) {
   const to = new Set();
   if (/^src\/bin\//.test(file)) {
-    for (const [, module] of bare(content).matchAll(/\b(?:mod|use crate::|use)\s+?(\w+)(?=;|::)/g)) to.add(posix.join(posix.dirname(file), `${module}.rs`));
-    for (const [, module] of bare(content).matchAll(/\bcrate::(\w+)/g)) to.add(posix.join(posix.dirname(file), `${module}.rs`));
+    for (const [, module] of bare(content).matchAll(/\b(?:mod|use crate::|use)\s+?(\w+)(?=;|::)/g))
+      to.add(posix.join(posix.dirname(file), `${module}.rs`));
+    for (const [, module] of bare(content).matchAll(/\bcrate::(\w+)/g))
+      to.add(posix.join(posix.dirname(file), `${module}.rs`));
   } else if (/^(src\/js|www)\/.*\.ts$/.test(file)) {
     const code = content.replace(/\/\*[^]*?\*\//g, '').replace(/(^|\s)\/\/[^\n]*/g, '');
     for (const [, path] of code.matchAll(/(?:\bfrom\s*|\bimport\s*\(?\s*|new URL\()['"](\.[^'"?]+)/g)) {

@@ -16,7 +16,8 @@ for (const colorScheme of ['light', 'dark']) {
   looks.push({ look: `narrow-${colorScheme}`, colorScheme, viewport: { width: 390, height: 844 } });
 }
 
-const state = (page, ...states) => page.waitForFunction((states) => states.includes(document.body.dataset.state), states);
+const state = (page, ...states) =>
+  page.waitForFunction((states) => states.includes(document.body.dataset.state), states);
 const measured = (page) => page.waitForFunction(() => document.body.dataset.measured !== undefined);
 const sample = async (page, spec) => {
   await page.selectOption('#sample', spec);

@@ -46,7 +46,10 @@ const levels = [
   {
     name: 'formatting',
     what: 'rustfmt and Biome would change nothing',
-    checks: [['cargo', 'fmt', '--all', '--check'], [...biome, '--linter-enabled=false']],
+    checks: [
+      ['cargo', 'fmt', '--all', '--check'],
+      [...biome, '--linter-enabled=false'],
+    ],
   },
   {
     name: 'layout',
@@ -114,8 +117,21 @@ const levels = [
     checks: [
       ['node', 'tools/build.mjs'],
       ['node', 'node_modules/typescript/bin/tsc', '-p', 'tests/package'],
-      ['node', '--test', '--test-reporter=tap', 'tests/package/node.test.mjs', 'tests/package/docs.test.mjs', 'tests/package/files.test.mjs', 'tests/package/gltf.test.mjs',
-        'tests/package/weld.test.mjs', 'tests/package/threads.test.mjs', 'tests/package/memory.test.mjs', 'tests/package/limited.test.mjs', 'tests/package/hostile.test.mjs', 'tests/package/options.test.mjs'],
+      [
+        'node',
+        '--test',
+        '--test-reporter=tap',
+        'tests/package/node.test.mjs',
+        'tests/package/docs.test.mjs',
+        'tests/package/files.test.mjs',
+        'tests/package/gltf.test.mjs',
+        'tests/package/weld.test.mjs',
+        'tests/package/threads.test.mjs',
+        'tests/package/memory.test.mjs',
+        'tests/package/limited.test.mjs',
+        'tests/package/hostile.test.mjs',
+        'tests/package/options.test.mjs',
+      ],
     ],
     counts: true,
   },
@@ -133,7 +149,17 @@ const levels = [
   {
     name: 'npm package in browsers',
     what: 'the packed package in fresh projects: plain pages in Chromium and Firefox, Vite, TypeScript, on the CPU and WebGPU',
-    checks: [['node', '--test', '--test-reporter=tap', 'tests/package/browser.test.mjs', 'tests/package/loss.test.mjs', 'tests/package/waits.test.mjs', 'tests/package/options.browser.test.mjs']],
+    checks: [
+      [
+        'node',
+        '--test',
+        '--test-reporter=tap',
+        'tests/package/browser.test.mjs',
+        'tests/package/loss.test.mjs',
+        'tests/package/waits.test.mjs',
+        'tests/package/options.browser.test.mjs',
+      ],
+    ],
     counts: true,
   },
   {
@@ -183,7 +209,12 @@ function integrationTests() {
 
 function firstSentence(source) {
   const [block] = source.match(/^(\/\/!.*\n)+/m) ?? [];
-  return block?.replace(/^\/\/! ?/gm, '').replace(/\s+/g, ' ').trim().split(/(?<=\.) /)[0].replace(/\.$/, '');
+  return block
+    ?.replace(/^\/\/! ?/gm, '')
+    .replace(/\s+/g, ' ')
+    .trim()
+    .split(/(?<=\.) /)[0]
+    .replace(/\.$/, '');
 }
 
 /** Runs a command, passes its output on as it comes, and gives its exit status and output when it ends. */
@@ -192,7 +223,10 @@ function run([program, ...args], env = {}) {
   return new Promise((resolve) => {
     const child = spawn(program, args, { env: { ...process.env, ...env }, stdio: ['ignore', 'pipe', 'pipe'] });
     let output = '';
-    for (const [from, to] of [[child.stdout, process.stdout], [child.stderr, process.stderr]]) {
+    for (const [from, to] of [
+      [child.stdout, process.stdout],
+      [child.stderr, process.stderr],
+    ]) {
       from.setEncoding('utf8');
       from.on('data', (text) => {
         to.write(text);
@@ -270,14 +304,17 @@ async function runLevel(level) {
 const words = process.argv.slice(2);
 const chosen = levels.filter(({ name }) => words.length === 0 || words.some((word) => name.includes(word)));
 if (chosen.length === 0) {
-  console.error(`test: no level is named like ${words.join(' or ')}; there are ${levels.map(({ name }) => name).join(', ')}`);
+  console.error(
+    `test: no level is named like ${words.join(' or ')}; there are ${levels.map(({ name }) => name).join(', ')}`,
+  );
   process.exit(2);
 }
 
 /** @type {Result[]} */
 const results = [];
 // Everything is compiled first, in one go, so that the seconds of a test level are those of its tests.
-if (chosen.some(({ checks }) => checks.some(([program, verb]) => program === 'cargo' && verb === 'test'))) await run([...cargoTest, '--no-run']);
+if (chosen.some(({ checks }) => checks.some(([program, verb]) => program === 'cargo' && verb === 'test')))
+  await run([...cargoTest, '--no-run']);
 for (const level of chosen) results.push(await runLevel(level));
 
 console.log('\n| level | what it checks | tests | result | seconds |\n|---|---|---:|---|---:|');

@@ -47,8 +47,10 @@ const axis = (palette: Palette, label: string, size: number): uPlot.Axis => ({
 });
 
 const short = new Intl.NumberFormat('en', { notation: 'compact', maximumFractionDigits: 1 });
-const compact: uPlot.Axis.DynamicValues = (_, values) => values.map((value) => (value === null ? '' : short.format(value)));
-const whole: uPlot.Axis.DynamicValues = (_, values) => values.map((value) => (Number.isInteger(value) ? `${value}` : ''));
+const compact: uPlot.Axis.DynamicValues = (_, values) =>
+  values.map((value) => (value === null ? '' : short.format(value)));
+const whole: uPlot.Axis.DynamicValues = (_, values) =>
+  values.map((value) => (Number.isInteger(value) ? `${value}` : ''));
 
 export class FlipsChart {
   readonly #chart: Chart;
@@ -136,7 +138,8 @@ export class AnglesChart {
   show(before: Angles | undefined, now: Angles | undefined): void {
     const bins = before?.counts.length ?? 0;
     const edges = Array.from({ length: bins + 1 }, (_, bin) => (bin * 180) / bins);
-    const closed = (angles: Angles | undefined) => edges.map((_, bin) => angles?.counts[Math.min(bin, bins - 1)] ?? null);
+    const closed = (angles: Angles | undefined) =>
+      edges.map((_, bin) => angles?.counts[Math.min(bin, bins - 1)] ?? null);
     this.#chart.show([edges, closed(before), closed(now)]);
   }
 }

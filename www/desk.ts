@@ -43,10 +43,12 @@ class Desk {
     const content = await contentOf(main, beside, report);
     report(main.path, 1);
     const { name } = main.file;
-    const reading = readMesh(content.bytes, name, { files: Object.fromEntries(content.beside) }).catch((error: unknown) => {
-      const isOfFile = error instanceof EdgeflipError && error.code === 'parse';
-      throw isOfFile ? new EdgeflipError('parse', `${name}: ${error.message}`) : error;
-    });
+    const reading = readMesh(content.bytes, name, { files: Object.fromEntries(content.beside) }).catch(
+      (error: unknown) => {
+        const isOfFile = error instanceof EdgeflipError && error.code === 'parse';
+        throw isOfFile ? new EdgeflipError('parse', `${name}: ${error.message}`) : error;
+      },
+    );
     const mesh = await naming(reading);
     return transfer({ mesh, kept: keep(name, content) }, buffersOf(mesh));
   }

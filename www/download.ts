@@ -5,7 +5,12 @@ import type { Kept } from './files.ts';
 import type { OpenMesh } from './run.ts';
 
 /** Writes the mesh and hands the file over. `kept` are the files that it was read from. */
-export async function download(mesh: OpenMesh, name: string, kept: Kept | undefined, signal: AbortSignal): Promise<void> {
+export async function download(
+  mesh: OpenMesh,
+  name: string,
+  kept: Kept | undefined,
+  signal: AbortSignal,
+): Promise<void> {
   // A worker of its own: the memory that writing takes goes with it, and it can be cancelled.
   const office = new Office();
   signal.addEventListener('abort', () => office.close());

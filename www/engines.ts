@@ -56,7 +56,8 @@ export class Office {
   constructor() {
     this.#failed = new Promise((_, reject) => (this.#fail = reject));
     this.#failed.catch(() => {});
-    this.#worker.onerror = ({ message }) => this.#fail(new Error(`The page’s worker failed: ${message || 'it could not be loaded'}`));
+    this.#worker.onerror = ({ message }) =>
+      this.#fail(new Error(`The page’s worker failed: ${message || 'it could not be loaded'}`));
   }
 
   /** Asks the desk. Closing the office ends the wait too. */

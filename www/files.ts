@@ -65,7 +65,11 @@ export async function contentOf(main: Located, beside: readonly Located[], repor
 
 /** Leaves the bytes to the browser, which may put them on the disk. */
 export function keep(name: string, { bytes, beside }: Content): Kept {
-  return { name, bytes: new Blob([bytes]), beside: new Map(Array.from(beside, ([other, its]) => [other, new Blob([its])])) };
+  return {
+    name,
+    bytes: new Blob([bytes]),
+    beside: new Map(Array.from(beside, ([other, its]) => [other, new Blob([its])])),
+  };
 }
 
 /** The bytes that were kept. */
@@ -76,7 +80,9 @@ export async function contentOfKept({ name, bytes, beside }: Kept): Promise<Cont
     for (const [other, blob] of beside) others.set(other, await read(blob));
     return { bytes: await read(bytes), beside: others };
   } catch {
-    throw new Error(`The browser had no room to keep ${name}. Use the command line, or close other pages and open it again.`);
+    throw new Error(
+      `The browser had no room to keep ${name}. Use the command line, or close other pages and open it again.`,
+    );
   }
 }
 

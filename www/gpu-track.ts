@@ -59,7 +59,11 @@ export class GpuTrack implements Track {
     // A flip changes two of the six indices of its triangles.
     const size = 16 * iteration.flips;
     const changes = await withMemory(this.#device, () =>
-      this.#device.createBuffer({ label: `changes of iteration ${iteration.index}`, size, usage: GPUBufferUsage.STORAGE }),
+      this.#device.createBuffer({
+        label: `changes of iteration ${iteration.index}`,
+        size,
+        usage: GPUBufferUsage.STORAGE,
+      }),
     );
     if (this.#isFreed) return changes.destroy();
     this.#changes.push(changes);

@@ -65,7 +65,8 @@ export class Opening {
 }
 
 function remarkOn({ mesh, others }: Read): string {
-  const left = others > 0 ? `${number.format(others)} other mesh ${others === 1 ? 'file was' : 'files were'} not opened.` : '';
+  const left =
+    others > 0 ? `${number.format(others)} other mesh ${others === 1 ? 'file was' : 'files were'} not opened.` : '';
   return [left, 'polygons' in mesh ? remarkOnFile(mesh) : ''].filter(Boolean).join(' ');
 }
 

@@ -173,7 +173,8 @@ export class Page {
     const { mesh } = opened;
     if (waitsForGpu(mesh, settings.backend)) await this.#lookedForGpu;
     signal.throwIfAborted();
-    const compiles = settings.backend === 'webgpu' && typeof this.#gpu === 'object' && !this.#gpu.kernels.areReadyFor(mesh);
+    const compiles =
+      settings.backend === 'webgpu' && typeof this.#gpu === 'object' && !this.#gpu.kernels.areReadyFor(mesh);
     if (compiles) showProgress('Compiling the GPU’s programs…');
     const run = await beginRun(mesh, settings, this.#gpu, signal);
     // What draws comes with it.
@@ -214,7 +215,11 @@ export class Page {
     }
     run.awaitsGpu = true;
     const begin = () => beginBehind(mesh, settings, gpu);
-    this.#handover = new Handover(begin, () => void this.#handOver(), (error) => this.#stayOnCpu(run, error));
+    this.#handover = new Handover(
+      begin,
+      () => void this.#handOver(),
+      (error) => this.#stayOnCpu(run, error),
+    );
   }
 
   /** Goes over to the GPU that is ready, as soon as nothing goes on. The picture is the same. */
@@ -366,7 +371,8 @@ export class Page {
     try {
       this.#scene = await Scene.create(element('view'), device, palette());
     } catch {
-      element('no-mesh').textContent = 'This browser can draw neither with WebGPU nor with WebGL2. The numbers are right all the same.';
+      element('no-mesh').textContent =
+        'This browser can draw neither with WebGPU nor with WebGL2. The numbers are right all the same.';
       element('no-mesh').hidden = false;
     }
     this.#gpu = device && !this.#scene?.isOnWebGpu ? 'the page could not draw with WebGPU' : gpu;
@@ -406,7 +412,9 @@ export class Page {
     const lost = `The GPU was lost (${reason}).`;
     if (hasRecovered) {
       this.#player.pause();
-      const andNow = opening ? 'The mesh was opened all the same' : 'The run went the same way again, to the same triangles';
+      const andNow = opening
+        ? 'The mesh was opened all the same'
+        : 'The run went the same way again, to the same triangles';
       this.#showError(new Error(`${lost} ${andNow}.`));
     } else if (!this.#opened && this.#source) {
       await this.open(this.#source);

@@ -60,7 +60,10 @@ export class Panel {
 
   /** The iterations so far, and the one that is shown. */
   showIterations(iterations: readonly Iteration[], at: number): void {
-    this.#flips.show(iterations.map(({ flips }) => flips), at);
+    this.#flips.show(
+      iterations.map(({ flips }) => flips),
+      at,
+    );
     for (const iteration of iterations.slice(this.#rows.childElementCount, MOST_ROWS)) this.#addRow(iteration);
     this.#rows.querySelector('[aria-current]')?.removeAttribute('aria-current');
     const row = this.#rows.children[at - 1];
@@ -122,7 +125,10 @@ export class Panel {
         ? { Engine: 'CPU, until WebGPU is ready', Adapter: '…', Dispatches: '…' }
         : { Engine: `${ENGINES[summary.backend]}${run.isInWorker ? ', in a worker' : ''}` }),
       ...(summary.backend !== 'cpu'
-        ? { Adapter: summary.adapter || 'the browser gives no name', Dispatches: measured(number.format(summary.dispatches)) }
+        ? {
+            Adapter: summary.adapter || 'the browser gives no name',
+            Dispatches: measured(number.format(summary.dispatches)),
+          }
         : {}),
       Iterations: number.format(run.iterations.length),
       Flips: number.format(flips),

@@ -37,7 +37,10 @@ export class Scene {
   readonly #renderer: WebGPURenderer;
   readonly #scene = new ThreeScene();
   readonly #surface = new Mesh<BufferGeometry, MeshBasicNodeMaterial | MeshStandardNodeMaterial>();
-  readonly #wire = new LineSegments(new BufferGeometry(), new LineBasicNodeMaterial({ transparent: true, opacity: 0.55 }));
+  readonly #wire = new LineSegments(
+    new BufferGeometry(),
+    new LineBasicNodeMaterial({ transparent: true, opacity: 0.55 }),
+  );
   readonly #edges: EdgeLines;
   readonly #light = new DirectionalLight(0xffffff, 2.2);
   readonly #attributes = new WeakMap<Drawn, BufferAttribute>();
@@ -130,7 +133,13 @@ export class Scene {
     this.#palette = palette;
     this.#scene.background = new Color(palette.ground);
     this.#surface.material.dispose();
-    const common = { color: palette.surface, side: DoubleSide, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 };
+    const common = {
+      color: palette.surface,
+      side: DoubleSide,
+      polygonOffset: true,
+      polygonOffsetFactor: 1,
+      polygonOffsetUnits: 1,
+    };
     this.#surface.material =
       this.#dimension === 2
         ? new MeshBasicNodeMaterial(common)

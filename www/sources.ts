@@ -91,7 +91,9 @@ async function readFirst(files: readonly Located[], office: Office, report: Repo
   const main = meshes[0] ?? files[0];
   if (!main) throw new Error('No file was given.');
   const folder = folderOf(main.path);
-  const beside = GLTF.test(main.file.name) ? files.filter(({ path }) => path !== main.path && path.startsWith(folder)) : [];
+  const beside = GLTF.test(main.file.name)
+    ? files.filter(({ path }) => path !== main.path && path.startsWith(folder))
+    : [];
   const { mesh, kept } = await office.ask((desk) => desk.read(main, beside, proxy(report)));
   const used = new Set(Array.from(kept.beside.keys(), (name) => plain(folder + name)));
   const others = meshes.filter((file) => file !== main && !used.has(file.path)).length;

@@ -201,7 +201,11 @@ export async function readMesh(bytes: Uint8Array, name: string, options: ReadOpt
  * {@link readMesh} about the original, `triangle-count` if it has another number of triangles, and `invalid-option` for
  * positions that are not those of the original, and for triangles that flips across its seams have made.
  */
-export async function writeMesh(mesh: Mesh, name: string, options: WriteOptions = {}): Promise<Uint8Array<ArrayBuffer>> {
+export async function writeMesh(
+  mesh: Mesh,
+  name: string,
+  options: WriteOptions = {},
+): Promise<Uint8Array<ArrayBuffer>> {
   const { positions, indices, dimension } = moduleMesh(mesh, held);
   const file = textOf(name, 'name');
   const original = read('the options', () => {
@@ -263,7 +267,10 @@ export async function weld(mesh: Mesh, attributes: Attributes = [], turns = fals
     if (array.length % vertices === 0 || array.length === vertices) {
       return new Uint8Array(array.buffer, array.byteOffset, array.byteLength);
     }
-    throw new EdgeflipError('invalid-input', `attribute ${i} has ${array.length} numbers, not a multiple of ${vertices}`);
+    throw new EdgeflipError(
+      'invalid-input',
+      `attribute ${i} has ${array.length} numbers, not a multiple of ${vertices}`,
+    );
   });
   return call(() => welded(wasm.Weld.of(positions, indices, dimension, arrays, Boolean(turns))));
 }

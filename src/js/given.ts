@@ -24,7 +24,9 @@ export function read<T>(what: string, work: () => T): T {
   } catch (cause) {
     if (cause instanceof EdgeflipError) throw cause;
     const isOfMemory = cause instanceof RangeError;
-    const [code, why]: [ErrorCode, string] = isOfMemory ? ['too-large', 'there is no memory for a copy'] : ['invalid-input', messageOf(cause)];
+    const [code, why]: [ErrorCode, string] = isOfMemory
+      ? ['too-large', 'there is no memory for a copy']
+      : ['invalid-input', messageOf(cause)];
     throw new EdgeflipError(code, `${what} cannot be read: ${why}`, { cause });
   }
 }
@@ -60,9 +62,24 @@ export function functionOf<F>(given: F, what: string): NonNullable<F> | undefine
 
 const TypedArray = Object.getPrototypeOf(Uint8Array.prototype) as object;
 const own = (name: string | symbol) => Object.getOwnPropertyDescriptor(TypedArray, name)!.get!;
-const [nameOf, bufferOf, offsetOf, lengthOf] = [own(Symbol.toStringTag), own('buffer'), own('byteOffset'), own('length')];
+const [nameOf, bufferOf, offsetOf, lengthOf] = [
+  own(Symbol.toStringTag),
+  own('buffer'),
+  own('byteOffset'),
+  own('length'),
+];
 
-const KINDS = { Int8Array, Uint8Array, Uint8ClampedArray, Int16Array, Uint16Array, Int32Array, Uint32Array, Float32Array, Float64Array };
+const KINDS = {
+  Int8Array,
+  Uint8Array,
+  Uint8ClampedArray,
+  Int16Array,
+  Uint16Array,
+  Int32Array,
+  Uint32Array,
+  Float32Array,
+  Float64Array,
+};
 type Kind = keyof typeof KINDS;
 
 /**
@@ -71,7 +88,11 @@ type Kind = keyof typeof KINDS;
  *
  * @throws {@link EdgeflipError} `invalid-input` where its memory has been transferred.
  */
-export function viewOf<K extends Kind>(given: unknown, kinds: readonly K[], what: string): InstanceType<(typeof KINDS)[K]> | undefined {
+export function viewOf<K extends Kind>(
+  given: unknown,
+  kinds: readonly K[],
+  what: string,
+): InstanceType<(typeof KINDS)[K]> | undefined {
   const kind: K | undefined = kinds.find((kind) => kind === nameOf.call(given));
   if (!kind) return undefined;
   try {
@@ -98,7 +119,10 @@ export function copyOf<A extends VertexArray>(view: A, what: string): A {
  */
 export function itselfOf<A extends VertexArray>(view: A, what: string): A {
   if (view.byteLength > MOST_BYTES) {
-    throw new EdgeflipError('too-large', `${what} have ${view.byteLength} bytes, and an array of WebAssembly has ${MOST_BYTES} at most`);
+    throw new EdgeflipError(
+      'too-large',
+      `${what} have ${view.byteLength} bytes, and an array of WebAssembly has ${MOST_BYTES} at most`,
+    );
   }
   return view;
 }
@@ -112,12 +136,16 @@ export function numbersOf(given: unknown, option: string): Uint32Array {
   const view = viewOf(given, ['Uint32Array'], option);
   if (view) return copyOf(view, option);
   const numbers: number[] = [];
-  const wrong = () => new EdgeflipError('invalid-option', `option ${option}: it is neither a Uint32Array nor an array of whole numbers`);
+  const wrong = () =>
+    new EdgeflipError('invalid-option', `option ${option}: it is neither a Uint32Array nor an array of whole numbers`);
   return read(option, () => {
     if (!Array.isArray(given)) throw wrong();
     const { length } = given;
     if (length > MOST_NUMBERS) {
-      throw new EdgeflipError('invalid-option', `option ${option}: an array has at most ${MOST_NUMBERS} numbers; pass a Uint32Array`);
+      throw new EdgeflipError(
+        'invalid-option',
+        `option ${option}: an array has at most ${MOST_NUMBERS} numbers; pass a Uint32Array`,
+      );
     }
     for (let i = 0; i < length; i++) {
       const number: unknown = given[i];

@@ -71,7 +71,8 @@ export function initOf<Name extends Exclude<keyof Sources, 'base'>>(
   return async (sources) => {
     const named = read('the sources', () => {
       if (sources === undefined) return [];
-      if (isSource(sources)) throw new EdgeflipError('invalid-input', `name the module of a source: init({ ${first}: … })`);
+      if (isSource(sources))
+        throw new EdgeflipError('invalid-input', `name the module of a source: init({ ${first}: … })`);
       const given = optionsOf(sources, ['base', ...names], 'the sources') as Sources;
       const folder = given.base;
       const named = names.map((name) => [name, given[name]] as const).filter(([, source]) => source !== undefined);
@@ -128,7 +129,9 @@ function isSource(given: unknown): given is URL | WebAssembly.Module | Response 
 /** A copy of the bytes in a buffer, or in a view of any kind: V8 compiles no DataView. */
 function bytesOf(given: ArrayBuffer | ArrayBufferView): Uint8Array<ArrayBuffer> {
   return read('the bytes', () => {
-    const bytes = ArrayBuffer.isView(given) ? new Uint8Array(given.buffer, given.byteOffset, given.byteLength) : new Uint8Array(given);
+    const bytes = ArrayBuffer.isView(given)
+      ? new Uint8Array(given.buffer, given.byteOffset, given.byteLength)
+      : new Uint8Array(given);
     return new Uint8Array(bytes);
   });
 }

@@ -37,10 +37,7 @@ export async function open(mesh: IndexedMesh, settings: Settings): Promise<Modul
 }
 
 /** In the module of the engines. `leavesCpu`: `'auto'` fails where it would take the CPU, which another module has, on so many threads. */
-async function openAlone(
-  mesh: IndexedMesh,
-  settings: Settings & { leavesCpu?: number },
-): Promise<ModuleSession> {
+async function openAlone(mesh: IndexedMesh, settings: Settings & { leavesCpu?: number }): Promise<ModuleSession> {
   const ours = isLoaded() ? undefined : copied(mesh);
   if (ours) await loadCore();
   let [given, error]: [IndexedMesh | undefined, unknown] = [ours ?? mesh, undefined];
@@ -67,7 +64,12 @@ function refused(thrown: unknown): IndexedMesh | undefined {
 }
 
 /** Where they cannot be started, one gives the same result. The arrays of the mesh are given away. */
-async function openOnThreads(mesh: IndexedMesh, settings: Settings, count: number, fallback?: string): Promise<ModuleSession> {
+async function openOnThreads(
+  mesh: IndexedMesh,
+  settings: Settings,
+  count: number,
+  fallback?: string,
+): Promise<ModuleSession> {
   const module = await moduleOfThreads().catch(() => undefined);
   const threads = await (module && threadsOf(module, count).catch(() => undefined));
   if (!threads) return openAlone(mesh, settings);

@@ -13,7 +13,10 @@ export interface Prepared {
 }
 
 /** Turns triangles and joins vertices, where the options say so. The settings that are left are for the run. */
-export async function prepare(mesh: IndexedMesh, { weld: attributes, reorient: turns, ...settings }: Settings): Promise<Prepared> {
+export async function prepare(
+  mesh: IndexedMesh,
+  { weld: attributes, reorient: turns, ...settings }: Settings,
+): Promise<Prepared> {
   if (!attributes) return { ...(await reorient(mesh)), settings };
   const welded = await weld(mesh, attributes, turns);
   const { indices, turned } = welded;

@@ -12,7 +12,17 @@ import { open } from './open.js';
 import { settingsOf, watchOf } from './settings.js';
 import type { ModuleSession } from './threads.js';
 import { Turns } from './turn.js';
-import type { Audit, Edges, Engine, Iteration, MakeDelaunayOptions, Mesh, Options, Result, RunOptions } from './types.js';
+import type {
+  Audit,
+  Edges,
+  Engine,
+  Iteration,
+  MakeDelaunayOptions,
+  Mesh,
+  Options,
+  Result,
+  RunOptions,
+} from './types.js';
 
 /** Not every browser has `Symbol.dispose` yet. */
 const dispose: typeof Symbol.dispose = Symbol.dispose ?? Symbol.for('Symbol.dispose');
@@ -181,9 +191,7 @@ export class FlipSession implements AsyncIterable<Iteration>, Disposable {
    */
   gpu(): Promise<{ device: GPUDevice; positions: GPUBuffer; indices: GPUBuffer } | undefined> {
     return this.#call(async ({ device, positionBuffer, indexBuffer }) =>
-      device && positionBuffer && indexBuffer
-        ? { device, positions: positionBuffer, indices: indexBuffer }
-        : undefined,
+      device && positionBuffer && indexBuffer ? { device, positions: positionBuffer, indices: indexBuffer } : undefined,
     );
   }
 

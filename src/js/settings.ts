@@ -3,7 +3,16 @@
 import { EdgeflipError } from './error.js';
 import { copyOf, functionOf, isWhole, numbersOf, objectOf, read, shown, viewOf } from './given.js';
 import { namesOf, optionsOf } from './names.js';
-import { type Attributes, type Files, type MakeDelaunayOptions, OPTION_KINDS, type Options, type Original, type RunOptions, type VertexArray } from './types.js';
+import {
+  type Attributes,
+  type Files,
+  type MakeDelaunayOptions,
+  OPTION_KINDS,
+  type Options,
+  type Original,
+  type RunOptions,
+  type VertexArray,
+} from './types.js';
 
 /**
  * The options, as they cross between the modules: one object, passed on whole. `src/wasm/options.rs` reads it; values are
@@ -25,14 +34,18 @@ const MOST_ATTRIBUTES = 1024;
 
 /** Kinds of arrays with numbers of vertices. */
 export const VERTEX_ARRAYS = [
-  ...['Int8Array', 'Uint8Array', 'Uint8ClampedArray', 'Int16Array', 'Uint16Array'] as const,
-  ...['Int32Array', 'Uint32Array', 'Float32Array', 'Float64Array'] as const,
+  ...(['Int8Array', 'Uint8Array', 'Uint8ClampedArray', 'Int16Array', 'Uint16Array'] as const),
+  ...(['Int32Array', 'Uint32Array', 'Float32Array', 'Float64Array'] as const),
 ] as const;
 
 /** The names of the options of a session, of a run, and of {@link makeDelaunay}. */
 const OPTIONS = Object.keys(OPTION_KINDS);
 const RUN_OPTIONS = namesOf<RunOptions>({ signal: true, onProgress: true });
-const WATCHED_OPTIONS = namesOf<Omit<MakeDelaunayOptions, keyof Options>>({ signal: true, onProgress: true, onIteration: true });
+const WATCHED_OPTIONS = namesOf<Omit<MakeDelaunayOptions, keyof Options>>({
+  signal: true,
+  onProgress: true,
+  onIteration: true,
+});
 
 /**
  * The options of a session.
@@ -46,7 +59,12 @@ export function settingsOf(options: Options, isWatched = false): Settings {
     const settings: Record<string, unknown> = {};
     for (const [name, kind] of Object.entries(OPTION_KINDS)) {
       const value = given[name];
-      const kept = value === undefined ? undefined : typeof kind === 'object' ? oneOf(name, value, kind) : READERS[kind](name, value);
+      const kept =
+        value === undefined
+          ? undefined
+          : typeof kind === 'object'
+            ? oneOf(name, value, kind)
+            : READERS[kind](name, value);
       if (kept !== undefined) settings[name] = kept;
     }
     return settings;
@@ -124,10 +142,12 @@ export function attributesOf(attributes: Attributes, hold: Hold): readonly Verte
   return read('attributes', () => {
     if (!Array.isArray(attributes)) return originalOf(attributes as Original, hold);
     const { length } = attributes;
-    if (length > MOST_ATTRIBUTES) throw new EdgeflipError('invalid-input', `there are more than ${MOST_ATTRIBUTES} attributes`);
+    if (length > MOST_ATTRIBUTES)
+      throw new EdgeflipError('invalid-input', `there are more than ${MOST_ATTRIBUTES} attributes`);
     return Array.from({ length }, (_, i) => {
       const view = viewOf(attributes[i], VERTEX_ARRAYS, 'attributes');
-      if (!view) throw new EdgeflipError('invalid-input', `attribute ${i}: ${shown(attributes[i])} is not a typed array`);
+      if (!view)
+        throw new EdgeflipError('invalid-input', `attribute ${i}: ${shown(attributes[i])} is not a typed array`);
       return hold(view, 'attributes');
     });
   });
@@ -158,7 +178,9 @@ export function filesOf(given: Files | undefined, hold: Hold): Files {
   if (given === undefined) return {};
   return read('files', () => {
     const entries = Object.entries(objectOf(given, 'files'));
-    return Object.fromEntries(entries.map(([name, bytes]) => [name, hold(bytesOf(bytes as Uint8Array, `files: ${shown(name)}`), 'files')]));
+    return Object.fromEntries(
+      entries.map(([name, bytes]) => [name, hold(bytesOf(bytes as Uint8Array, `files: ${shown(name)}`), 'files')]),
+    );
   });
 }
 

@@ -7,7 +7,15 @@ import type { Settings } from './settings.js';
 import { Indices, initSync, Session, startThreads, work } from './wasm/edgeflip_threads.js';
 
 /** What a session can be asked. */
-export type Question = 'advance' | 'auditInput' | 'edgeStates' | 'edges' | 'outcome' | 'setPositions' | 'step' | 'triangles';
+export type Question =
+  | 'advance'
+  | 'auditInput'
+  | 'edgeStates'
+  | 'edges'
+  | 'outcome'
+  | 'setPositions'
+  | 'step'
+  | 'triangles';
 
 /** What the session answers, and how far it is then. */
 export interface Reply {

@@ -33,7 +33,9 @@ export function threadCount(triangles: number, { threads }: Settings): number {
 }
 
 function coreCount(): number {
-  return globalThis.navigator?.hardwareConcurrency ?? (node ? process.getBuiltinModule('node:os').availableParallelism() : 1);
+  return (
+    globalThis.navigator?.hardwareConcurrency ?? (node ? process.getBuiltinModule('node:os').availableParallelism() : 1)
+  );
 }
 
 /** A worker of the web, or one of Node, which keeps the process alive only while it is waited for. */
@@ -64,7 +66,11 @@ function startThread(onAnswer: (answer: Answer) => void, onError: (message?: str
     onError(event.message);
   };
   worker.onmessageerror = () => onError('a message could not be read');
-  return { post: (call, transfer) => worker.postMessage(call, transfer), end: () => worker.terminate(), wait: () => undefined };
+  return {
+    post: (call, transfer) => worker.postMessage(call, transfer),
+    end: () => worker.terminate(),
+    wait: () => undefined,
+  };
 }
 
 type Given<M extends keyof Calls> = Awaited<ReturnType<Calls[M]>>;
@@ -82,7 +88,11 @@ class Pool {
   }
 
   /** The first thread answers calls, the others work with it. */
-  static async start(module: WebAssembly.Module, count: number, onEnd: () => void): Promise<[Pool, WebAssembly.Memory]> {
+  static async start(
+    module: WebAssembly.Module,
+    count: number,
+    onEnd: () => void,
+  ): Promise<[Pool, WebAssembly.Memory]> {
     const pool = new Pool(onEnd);
     pool.#add();
     try {
@@ -187,7 +197,12 @@ export class ThreadsSession implements ModuleSession {
   /** What the next triangles are copied to. */
   #spare: Uint32Array | undefined;
 
-  private constructor([pool, memory]: Threads, session: number, spare: Uint32Array | undefined, fallback: string | undefined) {
+  private constructor(
+    [pool, memory]: Threads,
+    session: number,
+    spare: Uint32Array | undefined,
+    fallback: string | undefined,
+  ) {
     this.#pool = pool;
     this.#memory = memory;
     this.#spare = spare;
@@ -211,7 +226,9 @@ export class ThreadsSession implements ModuleSession {
   ): Promise<ThreadsSession> {
     const [pool] = threads;
     const [session, { length }] = [sessions++, indices];
-    void pool.call('begin', session, { positions, indices, dimension }, { ...settings, backend: 'cpu' }).catch(() => undefined);
+    void pool
+      .call('begin', session, { positions, indices, dimension }, { ...settings, backend: 'cpu' })
+      .catch(() => undefined);
     const opened = collecting(() => pool.call('open', session));
     const spare = reserve(length);
     try {
@@ -253,7 +270,10 @@ export class ThreadsSession implements ModuleSession {
     }
   }
 
-  async #ask<Q extends Question>(question: Q, ...args: Parameters<Session[Q]>): Promise<Awaited<ReturnType<Session[Q]>>> {
+  async #ask<Q extends Question>(
+    question: Q,
+    ...args: Parameters<Session[Q]>
+  ): Promise<Awaited<ReturnType<Session[Q]>>> {
     const { value, iterations, flips } = await this.#pool.call('ask', this.#session, question, args);
     this.iterations = iterations;
     this.flips = flips;

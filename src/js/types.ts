@@ -122,12 +122,15 @@ export interface Options {
  * How the package reads an option; `settings.ts` has a reader for each kind, and the modules check the values. A list of
  * texts names all values.
  */
-type KindOf<T> =
-  [T] extends [boolean] ? 'flag'
-  : [T] extends [string] ? readonly T[]
-  : [T] extends [number] ? 'number' | 'whole' | 'limit'
-  : [T] extends [Uint32Array | readonly number[]] ? 'list'
-  : 'attributes' | 'device';
+type KindOf<T> = [T] extends [boolean]
+  ? 'flag'
+  : [T] extends [string]
+    ? readonly T[]
+    : [T] extends [number]
+      ? 'number' | 'whole' | 'limit'
+      : [T] extends [Uint32Array | readonly number[]]
+        ? 'list'
+        : 'attributes' | 'device';
 
 /** The kind of each option. One without an entry does not compile. */
 export const OPTION_KINDS = {
@@ -183,7 +186,15 @@ export interface MakeDelaunayOptions extends Options, RunOptions {
  * | `inconsistent` | its two triangles are oriented inconsistently |
  * | `stopped` | the run stopped before it flipped the edge |
  */
-export type Reason = 'angle' | 'fold' | 'duplicate' | 'locked' | 'deviation' | 'non-manifold' | 'inconsistent' | 'stopped';
+export type Reason =
+  | 'angle'
+  | 'fold'
+  | 'duplicate'
+  | 'locked'
+  | 'deviation'
+  | 'non-manifold'
+  | 'inconsistent'
+  | 'stopped';
 
 /** The number of edges that are not Delaunay, by reason. A reason without edges is absent. */
 export type Reasons = Partial<Record<Reason, number>>;

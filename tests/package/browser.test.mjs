@@ -16,9 +16,10 @@ import { closeAll, ISOLATED, openPage, serve, startChromium, startFirefox } from
 const repository = fileURLToPath(new URL('../..', import.meta.url));
 const folder = mkdtempSync(join(tmpdir(), 'edgeflip-package-'));
 
-const [, fiveLines] = readFileSync(join(repository, 'docs/package.md'), 'utf8').match(
-  /^```html\n<script type="module">\n([^]*?)<\/script>\n```$/m,
-) ?? assert.fail('docs/package.md has no script for a page');
+const [, fiveLines] =
+  readFileSync(join(repository, 'docs/package.md'), 'utf8').match(
+    /^```html\n<script type="module">\n([^]*?)<\/script>\n```$/m,
+  ) ?? assert.fail('docs/package.md has no script for a page');
 const withFiles = `
   import { makeDelaunay } from './node_modules/edgeflip/dist/index.js';
   import { generate } from './node_modules/edgeflip/dist/files.js';
@@ -218,7 +219,8 @@ describe('in a browser', { concurrency: true }, () => {
   test('plain pages that are not isolated, in Chromium', async () =>
     check(chromium, await serve(plainPages('plain-alone')), false));
 
-  test('plain pages in Firefox', async () => check(await startFirefox(), await serve(plainPages('plain-firefox'), ISOLATED), true));
+  test('plain pages in Firefox', async () =>
+    check(await startFirefox(), await serve(plainPages('plain-firefox'), ISOLATED), true));
 
   test('a Vite project, built, in Chromium', async () => {
     const root = viteProject('vite-build');
@@ -229,7 +231,12 @@ describe('in a browser', { concurrency: true }, () => {
 
   test('a Vite project on the development server, in Chromium', async (t) => {
     const root = viteProject('vite-dev');
-    const server = await createServer({ root, configFile: false, logLevel: 'warn', server: { port: 0, headers: ISOLATED } });
+    const server = await createServer({
+      root,
+      configFile: false,
+      logLevel: 'warn',
+      server: { port: 0, headers: ISOLATED },
+    });
     t.after(() => server.close());
     await server.listen();
     await check(chromium, server.resolvedUrls.local[0], true);

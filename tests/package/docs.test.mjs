@@ -32,7 +32,14 @@ const node = (args) => spawnSync(process.execPath, args, { cwd: folder, encoding
 
 test('TypeScript is strict about all blocks', () => {
   assert.ok(blocks.length > 0);
-  const compilerOptions = { target: 'ES2022', module: 'NodeNext', lib: ['ES2022', 'DOM'], types: [], strict: true, noEmit: true };
+  const compilerOptions = {
+    target: 'ES2022',
+    module: 'NodeNext',
+    lib: ['ES2022', 'DOM'],
+    types: [],
+    strict: true,
+    noEmit: true,
+  };
   writeFileSync(join(folder, 'tsconfig.json'), JSON.stringify({ compilerOptions, include: ['*.mts'] }));
   for (const { file, code } of blocks) writeFileSync(join(folder, `${file}.mts`), code);
   const { status, stdout } = node([join(repository, 'node_modules/typescript/bin/tsc'), '-p', folder]);
@@ -56,7 +63,10 @@ const example = (name, ...args) => {
 
 test('the examples run', () => {
   assert.match(example('one-call'), /^1 flip on cpu: 3,1,2,0,1,3\n/);
-  assert.match(example('step-by-step'), /^iteration 0: .*\niteration 1: .*\n(\d+ flips in \d+ iterations\n)+done; .* \{\}\n$/);
+  assert.match(
+    example('step-by-step'),
+    /^iteration 0: .*\niteration 1: .*\n(\d+ flips in \d+ iterations\n)+done; .* \{\}\n$/,
+  );
   const [input, output] = ['thin.obj', 'delaunay.obj'].map((name) => join(folder, name));
   writeFileSync(input, 'v -3 0 0\nv 0 -1 0\nv 3 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\nf 1 3 4\n');
   assert.equal(example('file', input, output), '1 flips\n');
@@ -64,7 +74,11 @@ test('the examples run', () => {
 });
 
 /** The anchor that GitHub gives a heading. */
-const anchor = (heading) => heading.toLowerCase().replace(/[^\w\- ]/g, '').replaceAll(' ', '-');
+const anchor = (heading) =>
+  heading
+    .toLowerCase()
+    .replace(/[^\w\- ]/g, '')
+    .replaceAll(' ', '-');
 
 test('the links lead to files and headings', () => {
   for (const { name, text } of documents) {

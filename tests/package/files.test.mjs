@@ -5,7 +5,18 @@ import { readFileSync } from 'node:fs';
 import { test } from 'node:test';
 import { gunzipSync, gzipSync } from 'node:zlib';
 import { makeDelaunay } from 'edgeflip';
-import { angles, change, measures, reorient, EdgeflipError, FORMATS, generate, init, readMesh, writeMesh } from 'edgeflip/files';
+import {
+  angles,
+  change,
+  measures,
+  reorient,
+  EdgeflipError,
+  FORMATS,
+  generate,
+  init,
+  readMesh,
+  writeMesh,
+} from 'edgeflip/files';
 
 const bytes = (text) => new TextEncoder().encode(text);
 const text = (bytes) => new TextDecoder().decode(bytes);
@@ -35,9 +46,18 @@ const awkward = () => ({
 
 test('a module that cannot be loaded is an error, and the next call tries again', async () => {
   await assert.rejects(init({ files: bytes('no module') }), refused('load-failed', /could not be loaded/));
-  await assert.rejects(init({ base: new URL('nowhere', import.meta.url) }), refused('load-failed', /ENOENT.*nowhere.edgeflip_files_bg\.wasm/));
-  await assert.rejects(init({ core: bytes('no module') }), refused('invalid-option', /^core is not an option; there are base, files$/));
-  await assert.rejects(init(new URL('https://example.org/a.wasm')), refused('invalid-input', /^name the module of a source: init\(\{ files: … \}\)$/));
+  await assert.rejects(
+    init({ base: new URL('nowhere', import.meta.url) }),
+    refused('load-failed', /ENOENT.*nowhere.edgeflip_files_bg\.wasm/),
+  );
+  await assert.rejects(
+    init({ core: bytes('no module') }),
+    refused('invalid-option', /^core is not an option; there are base, files$/),
+  );
+  await assert.rejects(
+    init(new URL('https://example.org/a.wasm')),
+    refused('invalid-input', /^name the module of a source: init\(\{ files: … \}\)$/),
+  );
   await init({ base: new URL('../../dist/wasm', import.meta.url).href });
   await init({ files: 'https://example.org/not-looked-at.wasm' });
 });
@@ -48,7 +68,11 @@ const PLAIN = { polygons: 0, dropped: [], keeps: true, notes: [], placed: undefi
 
 test('every bit comes back, in each format and in both dimensions', async () => {
   const flat = awkward();
-  const raised = { positions: new Float32Array([...flat.positions, 7.5, -0]), indices: Uint32Array.of(0, 1, 2, 3, 2, 1), dimension: 3 };
+  const raised = {
+    positions: new Float32Array([...flat.positions, 7.5, -0]),
+    indices: Uint32Array.of(0, 1, 2, 3, 2, 1),
+    dimension: 3,
+  };
   for (const mesh of [flat, raised]) {
     for (const format of [...FORMATS, '.ply.gz'].filter((format) => format !== '.stl')) {
       const file = await writeMesh(mesh, `a${format.toUpperCase()}`);
@@ -79,7 +103,11 @@ test('a PLY file keeps doubles, and an STL file what its corners say', async () 
     assert.deepEqual(await readMesh(await writeMesh(mesh, name), name), { ...mesh, ...PLAIN });
   }
   await assert.rejects(writeMesh(mesh, 'a.stl'), refused('io', /^a\.stl: vertex 0 is too far away/));
-  const near = { ...mesh, positions: Float64Array.of(5, 6, 0.1, 0, 1, 0, 0, 1), indices: Uint32Array.of(1, 2, 3, 3, 2, 1) };
+  const near = {
+    ...mesh,
+    positions: Float64Array.of(5, 6, 0.1, 0, 1, 0, 0, 1),
+    indices: Uint32Array.of(1, 2, 3, 3, 2, 1),
+  };
   for (const name of ['a.stl', 'a.stl.gz']) {
     const read = await readMesh(await writeMesh(near, name), name);
     const corners = { positions: Float32Array.of(0.1, 0, 1, 0, 0, 1), indices: Uint32Array.of(0, 1, 2, 2, 1, 0) };
@@ -99,10 +127,19 @@ test('gzip is known by its bytes, and a file has a limit, unpacked', async () =>
   assert.deepEqual(new Uint8Array(gunzipSync(await writeMesh(mesh, 'a.stl.gz'))), await writeMesh(mesh, 'a.stl'));
   const limit = { maxBytes: thin.length - 1 };
   for (const file of [thin, packed, new Uint8Array(gzipSync(new Uint8Array(1 << 26)))]) {
-    await assert.rejects(readMesh(file, 'a.off', limit), refused('file-too-large', /more than 133 bytes, packed or unpacked; maxBytes sets/));
+    await assert.rejects(
+      readMesh(file, 'a.off', limit),
+      refused('file-too-large', /more than 133 bytes, packed or unpacked; maxBytes sets/),
+    );
   }
-  await assert.rejects(readMesh(packed.subarray(0, -1), 'a.off'), refused('parse', /^byte \d+: the gzip'd file is cut off/));
-  await assert.rejects(readMesh(thin, 'a.off', { maxBytes: -1 }), refused('invalid-option', /maxBytes: -1 is no number of bytes/));
+  await assert.rejects(
+    readMesh(packed.subarray(0, -1), 'a.off'),
+    refused('parse', /^byte \d+: the gzip'd file is cut off/),
+  );
+  await assert.rejects(
+    readMesh(thin, 'a.off', { maxBytes: -1 }),
+    refused('invalid-option', /maxBytes: -1 is no number of bytes/),
+  );
   await assert.rejects(readMesh(thin, 'a.off', { maxBytes: '9' }), refused('invalid-input', /maxBytes/));
 });
 
@@ -112,13 +149,18 @@ test('what is read can be flipped, and what was passed is unchanged', async () =
   const mesh = await readMesh(file, 'thin.off');
   assert.equal(mesh.dimension, 2);
   const { indices } = await makeDelaunay(mesh);
-  assert.equal(text(await writeMesh({ ...mesh, indices }, 'out.obj')), 'v -3 0 0\nv 0 -1 0\nv 3 0 0\nv 0 1 0\nf 4 2 3\nf 1 2 4\n');
+  assert.equal(
+    text(await writeMesh({ ...mesh, indices }, 'out.obj')),
+    'v -3 0 0\nv 0 -1 0\nv 3 0 0\nv 0 1 0\nf 4 2 3\nf 1 2 4\n',
+  );
   assert.equal(text(file), thin);
   assert.equal(text(await writeMesh(mesh, 'same.off')), thin);
 });
 
 test('polygons of an OBJ file become fans, and what is dropped is named', async () => {
-  const file = bytes('o house\nv 0 0 0\nv 2 0 0\nv 2 2 0\nv 1 3 1\nv 0 2 0\nvn 0 0 1\nf 1//1 2//1 3//1 4//1 5//1\nf -1 -2 -3\n');
+  const file = bytes(
+    'o house\nv 0 0 0\nv 2 0 0\nv 2 2 0\nv 1 3 1\nv 0 2 0\nvn 0 0 1\nf 1//1 2//1 3//1 4//1 5//1\nf -1 -2 -3\n',
+  );
   const mesh = await readMesh(file, 'house.obj');
   assert.equal(mesh.dimension, 3);
   assert.deepEqual([...mesh.indices], [0, 1, 2, 0, 2, 3, 0, 3, 4, 4, 3, 2]);
@@ -127,11 +169,18 @@ test('polygons of an OBJ file become fans, and what is dropped is named', async 
 });
 
 test('a file comes out with other triangles and all else as it was', async () => {
-  const points = '# by hand\r\nv 0 0 0\r\nv 0.90000000001 0.2 0\r\nv 1 1 0\r\nv 0 1 0\r\nv 0.5 -9 0\r\nvt 0 0\r\nvt 1 1\r\n';
-  const original = { bytes: bytes(`${points}usemtl a\r\nf 1/1 2/1 3/1 4/1\r\nusemtl b\r\nf 2/2 1/2 5/2\r\n`), name: 'a.obj' };
+  const points =
+    '# by hand\r\nv 0 0 0\r\nv 0.90000000001 0.2 0\r\nv 1 1 0\r\nv 0 1 0\r\nv 0.5 -9 0\r\nvt 0 0\r\nvt 1 1\r\n';
+  const original = {
+    bytes: bytes(`${points}usemtl a\r\nf 1/1 2/1 3/1 4/1\r\nusemtl b\r\nf 2/2 1/2 5/2\r\n`),
+    name: 'a.obj',
+  };
   const mesh = await readMesh(original.bytes, original.name);
   const { groups, lockedEdges, lockedTriangles, keeps } = mesh;
-  assert.deepEqual([groups, lockedEdges, lockedTriangles, keeps], [Uint32Array.of(0, 0, 1), Uint32Array.of(0, 1), undefined, true]);
+  assert.deepEqual(
+    [groups, lockedEdges, lockedTriangles, keeps],
+    [Uint32Array.of(0, 0, 1), Uint32Array.of(0, 1), undefined, true],
+  );
   const { indices, flips } = await makeDelaunay(mesh, { groups, lockedEdges, lockedTriangles });
   assert.equal(flips, 1);
   const written = text(await writeMesh({ ...mesh, indices }, 'b.obj', { original }));
@@ -141,8 +190,12 @@ test('a file comes out with other triangles and all else as it was', async () =>
   assert.match(text(await writeMesh({ ...mesh, indices }, 'b.off', { original })), /^OFF\n5 3 0\n0 0\b/);
   assert.match(text(await writeMesh({ ...mesh, indices }, 'b.obj')), /^v 0 0 0\nv 0.9 0.2 0\n/);
   const turned = { ...mesh, indices: Uint32Array.of(0, 2, 1, 0, 3, 2, 1, 0, 4) };
-  await assert.rejects(writeMesh(turned, 'b.obj', { original }), refused('invalid-option', /none that flips make while seams are locked/));
-  const strips = 'ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nelement tristrips 1\nproperty list int int vertex_index\nend_header\n0 0\n1 0\n0 1\n3 0 1 2\n';
+  await assert.rejects(
+    writeMesh(turned, 'b.obj', { original }),
+    refused('invalid-option', /none that flips make while seams are locked/),
+  );
+  const strips =
+    'ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nelement tristrips 1\nproperty list int int vertex_index\nend_header\n0 0\n1 0\n0 1\n3 0 1 2\n';
   assert.equal((await readMesh(bytes(strips), 'a.ply')).keeps, false);
 });
 
@@ -154,25 +207,40 @@ test('the dimension is that of the file, or the one asked for', async () => {
   assert.deepEqual([...(await readMesh(bytes('2OFF 1 0\n1 2'), 'a.off')).positions], [1, 2]);
   assert.deepEqual([...(await readMesh(raised, 'a.off')).positions], [0, 0, 0, 1, 2, 0.5]);
   await assert.rejects(readMesh(raised, 'a.off', { dimension: 2 }), refused('parse', /^vertex 1: z is 0\.5/));
-  await assert.rejects(readMesh(raised, 'a.off', { dimension: 4 }), refused('invalid-input', /dimension: 4 is not 2 or 3/));
+  await assert.rejects(
+    readMesh(raised, 'a.off', { dimension: 4 }),
+    refused('invalid-input', /dimension: 4 is not 2 or 3/),
+  );
 });
 
 test('errors have codes and places', async () => {
   const mesh = awkward();
-  await assert.rejects(readMesh(bytes('OFF\n3 1 0\n0 0 0\n1 x 0\n'), 'a.off'), refused('parse', /^line 4: expected a number, found `x`$/));
+  await assert.rejects(
+    readMesh(bytes('OFF\n3 1 0\n0 0 0\n1 x 0\n'), 'a.off'),
+    refused('parse', /^line 4: expected a number, found `x`$/),
+  );
   await assert.rejects(readMesh(bytes('v 0 0 0\nf 1 1 2\n'), 'a.obj'), refused('parse', /^line 2: vertex index `2`/));
   await assert.rejects(readMesh(new Uint8Array(), 'a.obj'), refused('parse', /^line 1: the file is empty$/));
   await assert.rejects(readMesh(Uint8Array.of(0xff, 0, 0x0a), 'a.obj'), refused('parse', /^line 1: /));
   await assert.rejects(readMesh(new Uint8Array(), 'a.mesh'), refused('unknown-format', /^a\.mesh: /));
-  await assert.rejects(readMesh(bytes('ply\nformat ascii 1.0\nelement\n'), 'a.ply'), refused('parse', /^line 3: .* found `element`$/));
+  await assert.rejects(
+    readMesh(bytes('ply\nformat ascii 1.0\nelement\n'), 'a.ply'),
+    refused('parse', /^line 3: .* found `element`$/),
+  );
   await assert.rejects(readMesh(new Uint8Array(90), 'a.stl'), refused('parse', /^byte 84: .* found 6 more bytes$/));
   await assert.rejects(writeMesh(mesh, 'mesh'), refused('unknown-format', /^mesh: /));
-  await assert.rejects(writeMesh({ ...mesh, indices: Uint32Array.of(0, 1, 9) }, 'a.off'), refused('index-out-of-range', /9/));
+  await assert.rejects(
+    writeMesh({ ...mesh, indices: Uint32Array.of(0, 1, 9) }, 'a.off'),
+    refused('index-out-of-range', /9/),
+  );
   await assert.rejects(readMesh('OFF', 'a.off'), refused('invalid-input', /bytes/));
   await assert.rejects(readMesh(new Uint8Array(), undefined), refused('invalid-input', /name/));
   await assert.rejects(writeMesh(mesh, 1), refused('invalid-input', /name/));
   await assert.rejects(generate(['grid', 5]), refused('invalid-input', /spec/));
-  await assert.rejects(generate('sphere 5'), refused('invalid-option', /"sphere 5" is not one of: grid N, .*uvsphere N/));
+  await assert.rejects(
+    generate('sphere 5'),
+    refused('invalid-option', /"sphere 5" is not one of: grid N, .*uvsphere N/),
+  );
   await assert.rejects(generate('grid 12000'), refused('too-large', /triangles/));
   for (const bins of [0, 1.5, NaN, 2 ** 20]) {
     await assert.rejects(angles(mesh, bins), refused('invalid-option', /bins: .* 1 to 65536/));
@@ -180,11 +248,16 @@ test('errors have codes and places', async () => {
 });
 
 test('the formats are those that the module knows', async () => {
-  await assert.rejects(readMesh(new Uint8Array(), 'a'), (error) => error.message.endsWith(`use one of: ${FORMATS.join(', ')}, also gzip'd (.gz)`));
+  await assert.rejects(readMesh(new Uint8Array(), 'a'), (error) =>
+    error.message.endsWith(`use one of: ${FORMATS.join(', ')}, also gzip'd (.gz)`),
+  );
 });
 
 test('generated meshes are those of the crate', async () => {
-  const lines = readFileSync(new URL('generated.txt', import.meta.url), 'utf8').trimEnd().split('\n').slice(1);
+  const lines = readFileSync(new URL('generated.txt', import.meta.url), 'utf8')
+    .trimEnd()
+    .split('\n')
+    .slice(1);
   assert.ok(lines.length > 10);
   for (const line of lines) {
     const [, off, obj, spec] = line.match(/^(\w+) (\w+) (.+)$/);
@@ -200,7 +273,11 @@ test('angles of a right triangle', async () => {
   assert.ok(Math.abs(min - 45) < 1e-12 && Math.abs(meanMin - 45) < 1e-12);
   assert.deepEqual(counts, Uint32Array.of(0, 2, 1, 0));
   assert.equal((await angles(mesh)).counts.length, 180);
-  assert.deepEqual(await angles({ ...mesh, indices: new Uint32Array() }, 1), { min: 60, meanMin: 60, counts: Uint32Array.of(0) });
+  assert.deepEqual(await angles({ ...mesh, indices: new Uint32Array() }, 1), {
+    min: 60,
+    meanMin: 60,
+    counts: Uint32Array.of(0),
+  });
 });
 
 test('720,000 triangles are generated, written and read back', async () => {
@@ -214,14 +291,19 @@ test('720,000 triangles are generated, written and read back', async () => {
     assert.deepEqual(bits(read), bits(mesh));
   }
   const { counts } = await angles(mesh, 18);
-  assert.equal(counts.reduce((sum, count) => sum + count), 3 * 720_000);
+  assert.equal(
+    counts.reduce((sum, count) => sum + count),
+    3 * 720_000,
+  );
 });
 
 test('a mesh is measured, and what a run has changed', async () => {
   const mesh = await generate('uvsphere 12');
   const { indices } = await makeDelaunay(mesh, { maxNormalAngle: 60 });
   const [before, after] = [await measures(mesh), await measures({ ...mesh, indices })];
-  assert.ok(after.meanMinAngle > before.meanMinAngle && after.meanAspect < before.meanAspect && after.area < before.area);
+  assert.ok(
+    after.meanMinAngle > before.meanMinAngle && after.meanAspect < before.meanAspect && after.area < before.area,
+  );
   assert.ok(before.volume > 3 && before.volume < 4.2 && Math.abs(after.volume - before.volume) < 0.2);
   assert.equal(before.flat, 0);
   const { moved, distance } = await change(mesh, indices);

@@ -21,7 +21,12 @@ const PNG = Buffer.from(
 );
 
 const TYPES = { 1: 'SCALAR', 2: 'VEC2', 3: 'VEC3', 4: 'VEC4', 16: 'MAT4' };
-const COMPONENTS = new Map([[Float32Array, FLOAT], [Uint32Array, 5125], [Uint16Array, 5123], [Uint8Array, 5121]]);
+const COMPONENTS = new Map([
+  [Float32Array, FLOAT],
+  [Uint32Array, 5125],
+  [Uint16Array, 5123],
+  [Uint8Array, 5121],
+]);
 
 /** The bytes of a buffer, as they grow, and what refers to them. */
 class Content {
@@ -38,7 +43,9 @@ class Content {
 
   accessor(array, width, target, hasBounds = false) {
     const columns = Array.from({ length: width }, (_, axis) => [...array].filter((_, i) => i % width === axis));
-    const bounds = hasBounds ? { min: columns.map((c) => Math.min(...c)), max: columns.map((c) => Math.max(...c)) } : {};
+    const bounds = hasBounds
+      ? { min: columns.map((c) => Math.min(...c)), max: columns.map((c) => Math.max(...c)) }
+      : {};
     this.accessors.push({
       bufferView: this.view(array, target ? { target } : {}),
       componentType: COMPONENTS.get(array.constructor),
@@ -72,7 +79,9 @@ export function riggedGlb({ isIndexed = true } = {}) {
   const content = new Content();
   const primitives = [Uint16Array, Uint32Array].map((Indices, number) => {
     const { positions: shared, indices } = ribbon(24, number);
-    const positions = isIndexed ? shared : Float32Array.from(indices.flatMap((i) => [...shared.slice(3 * i, 3 * i + 3)]));
+    const positions = isIndexed
+      ? shared
+      : Float32Array.from(indices.flatMap((i) => [...shared.slice(3 * i, 3 * i + 3)]));
     const count = positions.length / 3;
     const perVertex = (values) => Array.from({ length: count }, () => values).flat();
     const texture = perVertex([0.5, 0.25]);
@@ -103,10 +112,12 @@ export function riggedGlb({ isIndexed = true } = {}) {
     nodes: [{ mesh: 0, skin: 0, name: 'ribbons' }, { children: [2], name: 'root' }, { translation: [0, 0.1, 0] }],
     meshes: [{ primitives, weights: [0.25] }],
     skins: [{ joints: [1, 2], inverseBindMatrices: bind }],
-    animations: [{
-      channels: [{ sampler: 0, target: { node: 2, path: 'translation' } }],
-      samplers: [{ input: times, output: moves }],
-    }],
+    animations: [
+      {
+        channels: [{ sampler: 0, target: { node: 2, path: 'translation' } }],
+        samplers: [{ input: times, output: moves }],
+      },
+    ],
     materials: [{ pbrMetallicRoughness: { baseColorTexture: { index: 0 } } }],
     textures: [{ source: 0 }],
     images: [{ bufferView: image, mimeType: 'image/png' }],
@@ -120,13 +131,21 @@ export function riggedGlb({ isIndexed = true } = {}) {
   const length = 12 + 8 + padded.length + 8 + content.bytes.length;
   const start = 12 + 8 + padded.length + 8;
   const bytes = Buffer.concat([
-    Buffer.from('glTF'), word(2), word(length),
-    word(padded.length), Buffer.from('JSON'), padded,
-    word(content.bytes.length), Buffer.from('BIN\0'), content.bytes,
+    Buffer.from('glTF'),
+    word(2),
+    word(length),
+    word(padded.length),
+    Buffer.from('JSON'),
+    padded,
+    word(content.bytes.length),
+    Buffer.from('BIN\0'),
+    content.bytes,
   ]);
-  const ranges = primitives.filter(() => isIndexed).map(({ indices }) => {
-    const { byteOffset, byteLength } = content.bufferViews[content.accessors[indices].bufferView];
-    return [start + byteOffset, start + byteOffset + byteLength];
-  });
+  const ranges = primitives
+    .filter(() => isIndexed)
+    .map(({ indices }) => {
+      const { byteOffset, byteLength } = content.bufferViews[content.accessors[indices].bufferView];
+      return [start + byteOffset, start + byteOffset + byteLength];
+    });
   return { bytes: new Uint8Array(bytes), ranges };
 }

@@ -42,19 +42,32 @@ test('a rigged GLB becomes a glTF, and a strip a list, without a fault', async (
   primitive.mode = 5;
   const strip = Buffer.from(JSON.stringify(json));
   const files = { 'a b.bin': new Uint8Array(buffer) };
-  await assert.rejects(readMesh(strip, 'strip.gltf'), { code: 'parse', message: /buffer 0: .*`a b.bin`: it is not among the `files` given/ });
+  await assert.rejects(readMesh(strip, 'strip.gltf'), {
+    code: 'parse',
+    message: /buffer 0: .*`a b.bin`: it is not among the `files` given/,
+  });
   const { mesh, after: again } = await flipped(strip, 'strip.gltf', files);
   // A triangle that begins at another corner.
   const indices = mesh.indices.slice();
   [indices[0], indices[1], indices[2]] = [indices[1], indices[2], indices[0]];
   const original = { bytes: new Uint8Array(strip), name: 'strip.gltf', files };
-  for (const [name, changed] of [['out.glb', again], ['out.gltf', { ...mesh, indices }]]) {
+  for (const [name, changed] of [
+    ['out.glb', again],
+    ['out.gltf', { ...mesh, indices }],
+  ]) {
     const out = await writeMesh(changed, name, { original });
-    assert.deepEqual((await faults(out, files)).filter(({ severity }) => severity === 0), []);
+    assert.deepEqual(
+      (await faults(out, files)).filter(({ severity }) => severity === 0),
+      [],
+    );
     assert.deepEqual((await readMesh(out, name, { files })).indices, changed.indices);
   }
-  await assert.rejects(writeMesh(mesh, 'out.glb', { original: { ...original, maxBytes: 100 } }), { code: 'file-too-large' });
-  await assert.rejects(writeMesh({ ...mesh, indices: indices.slice(3) }, 'out.glb', { original }), { code: 'triangle-count' });
+  await assert.rejects(writeMesh(mesh, 'out.glb', { original: { ...original, maxBytes: 100 } }), {
+    code: 'file-too-large',
+  });
+  await assert.rejects(writeMesh({ ...mesh, indices: indices.slice(3) }, 'out.glb', { original }), {
+    code: 'triangle-count',
+  });
 });
 
 test('a generated mesh becomes a file without a fault', async () => {

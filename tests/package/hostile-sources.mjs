@@ -18,13 +18,22 @@ const inits = [
 /** `undefined` is the module beside the package. */
 const source = hostile.filter((make) => make() !== undefined);
 const property = fc.asyncProperty(fc.constantFrom(...inits), source, async (init, make) => {
-  const asked = init(make()).then(() => 'loaded', ({ code }) => code);
+  const asked = init(make()).then(
+    () => 'loaded',
+    ({ code }) => code,
+  );
   assert.equal(await Promise.race([asked, pause(patience, 'late', { ref: false })]), 'load-failed');
 });
 await fc.assert(property, { numRuns: runs, seed, endOnFailure: true });
 
 // A source that is right loads them after all, in whatever kind its bytes are, and whatever becomes of them after the call.
-const modules = { core: 'edgeflip', webgl2: 'edgeflip_webgl2', threads: 'edgeflip_threads', audit: 'edgeflip_audit', files: 'edgeflip_files' };
+const modules = {
+  core: 'edgeflip',
+  webgl2: 'edgeflip_webgl2',
+  threads: 'edgeflip_threads',
+  audit: 'edgeflip_audit',
+  files: 'edgeflip_files',
+};
 const kinds = [(bytes) => bytes, ({ buffer }) => buffer, ({ buffer }) => new DataView(buffer)];
 for (const [i, [name, file]] of Object.entries(modules).entries()) {
   const bytes = new Uint8Array(readFileSync(new URL(`../../dist/wasm/${file}_bg.wasm`, import.meta.url)));
@@ -40,7 +49,10 @@ const given = fc.oneof(
   hostile.map((make) => () => ({ other: make(), core: 0 })),
 );
 const sources = fc.asyncProperty(given, async (make) => {
-  const asked = edgeflip.init(make()).then(() => 'loaded', ({ name, code }) => (name === 'EdgeflipError' ? code : name));
+  const asked = edgeflip.init(make()).then(
+    () => 'loaded',
+    ({ name, code }) => (name === 'EdgeflipError' ? code : name),
+  );
   const end = await Promise.race([asked, pause(patience, 'late', { ref: false })]);
   assert.ok(['loaded', 'load-failed', 'invalid-input', 'invalid-option'].includes(end), end);
 });

@@ -2,8 +2,25 @@
 
 import fc from 'fast-check';
 
-const traps = ['get', 'has', 'getPrototypeOf', 'ownKeys', 'getOwnPropertyDescriptor', 'apply', 'construct', 'set', 'defineProperty'];
-const throwing = Object.fromEntries(traps.map((trap) => [trap, () => { throw new Error(`trap ${trap}`); }]));
+const traps = [
+  'get',
+  'has',
+  'getPrototypeOf',
+  'ownKeys',
+  'getOwnPropertyDescriptor',
+  'apply',
+  'construct',
+  'set',
+  'defineProperty',
+];
+const throwing = Object.fromEntries(
+  traps.map((trap) => [
+    trap,
+    () => {
+      throw new Error(`trap ${trap}`);
+    },
+  ]),
+);
 
 function revoked(target) {
   const { proxy, revoke } = Proxy.revocable(target, {});
@@ -40,14 +57,30 @@ function shared(Kind) {
 /** A subclass that lies about all that it inherits. */
 function lying(Kind) {
   class Lying extends Kind {
-    get length() { return 3e9; }
-    get byteLength() { return -1; }
-    get buffer() { return 'none'; }
-    get [Symbol.toStringTag]() { return 'Float32Array'; }
-    static get [Symbol.species]() { throw new Error('species'); }
-    slice() { throw new Error('slice'); }
-    subarray() { return null; }
-    *[Symbol.iterator]() { for (;;) yield NaN; }
+    get length() {
+      return 3e9;
+    }
+    get byteLength() {
+      return -1;
+    }
+    get buffer() {
+      return 'none';
+    }
+    get [Symbol.toStringTag]() {
+      return 'Float32Array';
+    }
+    static get [Symbol.species]() {
+      throw new Error('species');
+    }
+    slice() {
+      throw new Error('slice');
+    }
+    subarray() {
+      return null;
+    }
+    *[Symbol.iterator]() {
+      for (;;) yield NaN;
+    }
   }
   return new Lying(6);
 }
@@ -57,9 +90,22 @@ function pretending(Kind) {
   return Object.create(Kind.prototype);
 }
 
-const kinds = [Int8Array, Uint8Array, Uint8ClampedArray, Int16Array, Uint16Array, Int32Array, Uint32Array, Float32Array, Float64Array, BigInt64Array];
+const kinds = [
+  Int8Array,
+  Uint8Array,
+  Uint8ClampedArray,
+  Int16Array,
+  Uint16Array,
+  Int32Array,
+  Uint32Array,
+  Float32Array,
+  Float64Array,
+  BigInt64Array,
+];
 
-const oddArrays = [detached, shrunk, growing, shared, lying, pretending].flatMap((make) => kinds.map((Kind) => () => make(Kind, 6)));
+const oddArrays = [detached, shrunk, growing, shared, lying, pretending].flatMap((make) =>
+  kinds.map((Kind) => () => make(Kind, 6)),
+);
 
 const odd = [
   ...oddArrays,
@@ -75,11 +121,30 @@ const odd = [
   () => revoked({}),
   () => revoked([]),
   () => Object.create(null),
-  () => ({ toString() { throw new Error('toString'); }, get message() { throw new Error('message'); } }),
-  () => ({ valueOf: () => { throw new Error('valueOf'); }, [Symbol.toPrimitive]: () => { throw new Error('toPrimitive'); } }),
+  () => ({
+    toString() {
+      throw new Error('toString');
+    },
+    get message() {
+      throw new Error('message');
+    },
+  }),
+  () => ({
+    valueOf: () => {
+      throw new Error('valueOf');
+    },
+    [Symbol.toPrimitive]: () => {
+      throw new Error('toPrimitive');
+    },
+  }),
   () => ({ then() {} }),
   () => ({ length: 2 ** 53 }),
-  () => Object.defineProperty([1, 2], 1, { get: () => { throw new Error('element'); } }),
+  () =>
+    Object.defineProperty([1, 2], 1, {
+      get: () => {
+        throw new Error('element');
+      },
+    }),
   () => Object.assign([], { length: 2 ** 32 - 1 }),
   () => [[], {}, null],
   () => [1n, 2n],
@@ -98,16 +163,69 @@ const odd = [
   () => globalThis,
 ];
 
-const words = ['', 'auto', 'webgpu', 'webgl2', 'cpu', 'gpu', 'any', 'reproducible', 'a.obj', 'a.off.gz', 'a.glb', 'random 9', 'grid 4', 'uvsphere 3 nan', '__proto__', '\0', '\ud800'];
-const numbers = [NaN, -0, -1, 0, 0.5, 1, 2, 3, 4, 1e9, 2 ** 31, 2 ** 32 - 1, 2 ** 32, 2 ** 53, 1e308, Infinity, -Infinity];
+const words = [
+  '',
+  'auto',
+  'webgpu',
+  'webgl2',
+  'cpu',
+  'gpu',
+  'any',
+  'reproducible',
+  'a.obj',
+  'a.off.gz',
+  'a.glb',
+  'random 9',
+  'grid 4',
+  'uvsphere 3 nan',
+  '__proto__',
+  '\0',
+  '\ud800',
+];
+const numbers = [
+  NaN,
+  -0,
+  -1,
+  0,
+  0.5,
+  1,
+  2,
+  3,
+  4,
+  1e9,
+  2 ** 31,
+  2 ** 32 - 1,
+  2 ** 32,
+  2 ** 53,
+  1e308,
+  Infinity,
+  -Infinity,
+];
 
 /** Makes a hostile value; a new one each time, since some are good for one call only. */
 export const hostile = fc.oneof(
   { arbitrary: fc.constantFrom(...odd), weight: 6 },
-  { arbitrary: fc.constantFrom(undefined, null, true, false, 1n, ...words, ...numbers).map((value) => () => value), weight: 3 },
-  { arbitrary: fc.tuple(fc.constantFrom(...kinds.slice(0, -1)), fc.array(fc.constantFrom(...numbers), { maxLength: 12 })).map(([Kind, list]) => () => Kind.from(list)), weight: 2 },
+  {
+    arbitrary: fc.constantFrom(undefined, null, true, false, 1n, ...words, ...numbers).map((value) => () => value),
+    weight: 3,
+  },
+  {
+    arbitrary: fc
+      .tuple(fc.constantFrom(...kinds.slice(0, -1)), fc.array(fc.constantFrom(...numbers), { maxLength: 12 }))
+      .map(
+        ([Kind, list]) =>
+          () =>
+            Kind.from(list),
+      ),
+    weight: 2,
+  },
   { arbitrary: fc.array(fc.constantFrom(...numbers), { maxLength: 12 }).map((list) => () => list.slice()), weight: 1 },
-  { arbitrary: fc.anything({ withTypedArray: true, withBigInt: true, withNullPrototype: true, withSparseArray: true, maxDepth: 2 }).map((value) => () => value), weight: 1 },
+  {
+    arbitrary: fc
+      .anything({ withTypedArray: true, withBigInt: true, withNullPrototype: true, withSparseArray: true, maxDepth: 2 })
+      .map((value) => () => value),
+    weight: 1,
+  },
 );
 
 /** How a value is put where it is read. */
@@ -129,7 +247,9 @@ export function place(args, path, make, how) {
   const key = path.at(-1);
   if (typeof target !== 'object' || target === null) return;
   if (how === 'value' || path.length === 1) {
-    attempt(() => Reflect.defineProperty(target, key, { value: make(), enumerable: true, configurable: true, writable: true }));
+    attempt(() =>
+      Reflect.defineProperty(target, key, { value: make(), enumerable: true, configurable: true, writable: true }),
+    );
     return;
   }
   let reads = 0;
@@ -145,7 +265,12 @@ export function takeAway(value, depth = 0) {
   attempt(() => {
     if (ArrayBuffer.isView(value)) {
       if (value.buffer instanceof ArrayBuffer) structuredClone(value.buffer, { transfer: [value.buffer] });
-    } else if (typeof value === 'object' && value !== null && depth < 4 && [Object.prototype, Array.prototype].includes(Object.getPrototypeOf(value))) {
+    } else if (
+      typeof value === 'object' &&
+      value !== null &&
+      depth < 4 &&
+      [Object.prototype, Array.prototype].includes(Object.getPrototypeOf(value))
+    ) {
       for (const key of Object.keys(value)) {
         takeAway(value[key], depth + 1);
         delete value[key];

@@ -18,26 +18,57 @@ const seed = Number(process.env.EDGEFLIP_SEED ?? 24);
 const PATIENCE = 5000;
 
 const uncaught = [];
-process.on('uncaughtException', (error) => uncaught.push(error)).on('unhandledRejection', (error) => uncaught.push(error));
+process
+  .on('uncaughtException', (error) => uncaught.push(error))
+  .on('unhandledRejection', (error) => uncaught.push(error));
 
 const small = await files.generate('random 12');
 const large = await files.generate('grid 183');
 const expected = new Map();
 for (const mesh of [small, large]) expected.set(mesh, await makeDelaunay(mesh, { backend: 'cpu', threads: 1 }));
 
-const copy = ({ positions, indices, dimension }) => ({ positions: positions.slice(), indices: indices.slice(), dimension });
+const copy = ({ positions, indices, dimension }) => ({
+  positions: positions.slice(),
+  indices: indices.slice(),
+  dimension,
+});
 const obj = await files.writeMesh(small, 'a.obj');
 const original = () => ({ bytes: obj.slice(), name: 'a.obj', files: { 'b.bin': new Uint8Array(4) }, maxBytes: 1e6 });
 
 const meshPaths = [[0], [0, 'positions'], [0, 'indices'], [0, 'dimension']];
-const optionNames = ['backend', 'maxNormalAngle', 'maxDeviation', 'maxIterations', 'lockedEdges', 'lockedTriangles', 'groups',
-  'reorient', 'weld', 'order', 'threads', 'device', 'max_iterations'];
+const optionNames = [
+  'backend',
+  'maxNormalAngle',
+  'maxDeviation',
+  'maxIterations',
+  'lockedEdges',
+  'lockedTriangles',
+  'groups',
+  'reorient',
+  'weld',
+  'order',
+  'threads',
+  'device',
+  'max_iterations',
+];
 const runNames = ['signal', 'onProgress', 'onIteration', 'unknown'];
 const sessionPaths = [...meshPaths, [1], ...optionNames.map((name) => [1, name])];
-const originalPaths = (at) => [at, [...at, 'bytes'], [...at, 'name'], [...at, 'files'], [...at, 'files', 'b.bin'], [...at, 'maxBytes']];
+const originalPaths = (at) => [
+  at,
+  [...at, 'bytes'],
+  [...at, 'name'],
+  [...at, 'files'],
+  [...at, 'files', 'b.bin'],
+  [...at, 'maxBytes'],
+];
 /** Options that need nothing else, and those that do more before the run. */
 const plain = (threads) => ({ backend: 'cpu', threads });
-const rich = (mesh) => ({ backend: 'cpu', weld: [new Float32Array(mesh.positions.length)], reorient: true, lockedEdges: [...mesh.indices.slice(0, 2)] });
+const rich = (mesh) => ({
+  backend: 'cpu',
+  weld: [new Float32Array(mesh.positions.length)],
+  reorient: true,
+  lockedEdges: [...mesh.indices.slice(0, 2)],
+});
 
 /** Whole sessions, with everything that they are asked. */
 async function wholeSession(mesh, options) {
@@ -53,36 +84,81 @@ async function wholeSession(mesh, options) {
 }
 
 /** One call on a good session. */
-const onSession = (mesh, threads, ask) => async (...args) => {
-  const session = await FlipSession.create(mesh, plain(threads));
-  try {
-    return await ask(session, ...args);
-  } finally {
-    session.free();
-  }
-};
+const onSession =
+  (mesh, threads, ask) =>
+  async (...args) => {
+    const session = await FlipSession.create(mesh, plain(threads));
+    try {
+      return await ask(session, ...args);
+    } finally {
+      session.free();
+    }
+  };
 
 const sessionEntries = (mesh, threads) => [
-  { name: 'makeDelaunay', call: makeDelaunay, args: () => [copy(mesh), plain(threads)], paths: [...sessionPaths, ...runNames.map((name) => [1, name])] },
+  {
+    name: 'makeDelaunay',
+    call: makeDelaunay,
+    args: () => [copy(mesh), plain(threads)],
+    paths: [...sessionPaths, ...runNames.map((name) => [1, name])],
+  },
   { name: 'FlipSession.create', call: wholeSession, args: () => [copy(mesh), plain(threads)], paths: sessionPaths },
-  { name: 'setPositions', call: onSession(mesh, threads, (session, moved) => session.setPositions(moved)), args: () => [mesh.positions.slice()], paths: [[0]] },
-  { name: 'run', call: onSession(mesh, threads, (session, options) => session.run(options)), args: () => [{}], paths: [[0], [0, 'signal'], [0, 'onProgress'], [0, 'unknown']] },
+  {
+    name: 'setPositions',
+    call: onSession(mesh, threads, (session, moved) => session.setPositions(moved)),
+    args: () => [mesh.positions.slice()],
+    paths: [[0]],
+  },
+  {
+    name: 'run',
+    call: onSession(mesh, threads, (session, options) => session.run(options)),
+    args: () => [{}],
+    paths: [[0], [0, 'signal'], [0, 'onProgress'], [0, 'unknown']],
+  },
 ];
 
 const fileEntries = [
-  { name: 'makeDelaunay with weld', call: makeDelaunay, args: () => [copy(small), rich(small)], paths: [...sessionPaths, [1, 'weld', 0]] },
-  { name: 'makeDelaunay with the file', call: makeDelaunay, args: () => [copy(small), { weld: original() }], paths: originalPaths([1, 'weld']) },
-  { name: 'readMesh', call: files.readMesh, args: () => [obj.slice(), 'a.obj', { dimension: 2, maxBytes: 1e6, files: { 'b.bin': new Uint8Array(4) } }],
-    paths: [[0], [1], [2], [2, 'dimension'], [2, 'maxBytes'], [2, 'files'], [2, 'files', 'b.bin'], [2, 'unknown']] },
-  { name: 'writeMesh', call: files.writeMesh, args: () => [copy(small), 'b.obj', { original: original() }],
-    paths: [...meshPaths, [1], [2], [2, 'unknown'], ...originalPaths([2, 'original'])] },
+  {
+    name: 'makeDelaunay with weld',
+    call: makeDelaunay,
+    args: () => [copy(small), rich(small)],
+    paths: [...sessionPaths, [1, 'weld', 0]],
+  },
+  {
+    name: 'makeDelaunay with the file',
+    call: makeDelaunay,
+    args: () => [copy(small), { weld: original() }],
+    paths: originalPaths([1, 'weld']),
+  },
+  {
+    name: 'readMesh',
+    call: files.readMesh,
+    args: () => [obj.slice(), 'a.obj', { dimension: 2, maxBytes: 1e6, files: { 'b.bin': new Uint8Array(4) } }],
+    paths: [[0], [1], [2], [2, 'dimension'], [2, 'maxBytes'], [2, 'files'], [2, 'files', 'b.bin'], [2, 'unknown']],
+  },
+  {
+    name: 'writeMesh',
+    call: files.writeMesh,
+    args: () => [copy(small), 'b.obj', { original: original() }],
+    paths: [...meshPaths, [1], [2], [2, 'unknown'], ...originalPaths([2, 'original'])],
+  },
   { name: 'generate', call: files.generate, args: () => ['grid 4'], paths: [[0]] },
   { name: 'angles', call: files.angles, args: () => [copy(small), 12], paths: [...meshPaths, [1]] },
   { name: 'reorient', call: files.reorient, args: () => [copy(small)], paths: meshPaths },
   { name: 'measures', call: files.measures, args: () => [copy(small)], paths: meshPaths },
   { name: 'change', call: files.change, args: () => [copy(small), small.indices.slice()], paths: [...meshPaths, [1]] },
-  { name: 'weld', call: files.weld, args: () => [copy(small), [new Uint8Array(small.positions.length)], true], paths: [...meshPaths, [1], [1, 0], [2]] },
-  { name: 'split', call: async (indices) => (await files.weld(small)).split(indices), args: () => [small.indices.slice()], paths: [[0]] },
+  {
+    name: 'weld',
+    call: files.weld,
+    args: () => [copy(small), [new Uint8Array(small.positions.length)], true],
+    paths: [...meshPaths, [1], [1, 0], [2]],
+  },
+  {
+    name: 'split',
+    call: async (indices) => (await files.weld(small)).split(indices),
+    args: () => [small.indices.slice()],
+    paths: [[0]],
+  },
 ];
 
 /** Calls an entry, and says what it gave in the end. */
@@ -91,21 +167,29 @@ async function outcomeOf(call, args, isTaken) {
   if (isTaken) args.forEach((arg) => takeAway(arg));
   const done = new AbortController();
   const late = pause(PATIENCE, 'late', { signal: done.signal }).catch(() => undefined);
-  const end = await Promise.race([asked.then(() => 'result', (thrown) => thrown), late]);
+  const end = await Promise.race([
+    asked.then(
+      () => 'result',
+      (thrown) => thrown,
+    ),
+    late,
+  ]);
   done.abort();
   return end;
 }
 
 /** Hostile values at one or two places of entries. */
 function attack(entries, runs) {
-  const place2 = ({ paths }) => fc.array(fc.tuple(fc.constantFrom(...paths), hostile, placing), { minLength: 1, maxLength: 2 });
+  const place2 = ({ paths }) =>
+    fc.array(fc.tuple(fc.constantFrom(...paths), hostile, placing), { minLength: 1, maxLength: 2 });
   const cases = fc.constantFrom(...entries).chain((entry) => fc.tuple(fc.constant(entry), place2(entry), fc.boolean()));
   const property = fc.asyncProperty(cases, async ([{ name, call, args: good, paths }, places, isTaken]) => {
     const args = good();
     for (const [path, make, how] of places) place(args, path, make, how);
     const end = await outcomeOf(call, args, isTaken);
     // What a callback throws goes through unchanged.
-    const isOfCallback = end instanceof Error && places.some(([path]) => ['onProgress', 'onIteration'].includes(path.at(-1)));
+    const isOfCallback =
+      end instanceof Error && places.some(([path]) => ['onProgress', 'onIteration'].includes(path.at(-1)));
     if (end === 'result' || (isOfCallback && !(end instanceof EdgeflipError))) return;
     assert.ok(end instanceof EdgeflipError, `${name}: ${String(end?.stack ?? end)}`);
     assert.notEqual(end.code, 'internal', `${name}: ${end.message}`);
@@ -134,7 +218,9 @@ test('on two threads', async () => {
 
 /** In a worker, where no module is loaded yet: none of these loads one. */
 test('sources of the modules', async () => {
-  const worker = new Worker(new URL('hostile-sources.mjs', import.meta.url), { workerData: { runs: 0.1 * CASES, seed, patience: PATIENCE } });
+  const worker = new Worker(new URL('hostile-sources.mjs', import.meta.url), {
+    workerData: { runs: 0.1 * CASES, seed, patience: PATIENCE },
+  });
   const flips = await new Promise((resolve, reject) => worker.on('message', resolve).on('error', reject));
   assert.equal(flips, expected.get(small).flips);
   await worker.terminate();
@@ -146,7 +232,11 @@ test('huge arrays', async () => {
   const numbers = new Float32Array(2 ** 30);
   for (const threads of [1, 2]) {
     const options = plain(threads);
-    const refused = (mesh, more) => assert.rejects(makeDelaunay(mesh, { ...options, ...more }), (error) => error instanceof EdgeflipError && error.code !== 'internal');
+    const refused = (mesh, more) =>
+      assert.rejects(
+        makeDelaunay(mesh, { ...options, ...more }),
+        (error) => error instanceof EdgeflipError && error.code !== 'internal',
+      );
     const start = performance.now();
     await refused({ ...large, positions: numbers });
     await refused({ ...large, indices: words });

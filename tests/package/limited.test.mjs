@@ -44,12 +44,21 @@ test('sessions that fill the memory lose nothing, however often', async () => {
       for (;;) held.push(await FlipSession.create(mesh, options));
     }, isRefused);
     counts.push(held.length);
-    const asked = [(session) => session.run(), (session) => session.edges(), (session) => session.edgeStates(),
-      (session) => session.setPositions(mesh.positions), (session) => session.triangles(), (session) => session.verify()];
+    const asked = [
+      (session) => session.run(),
+      (session) => session.edges(),
+      (session) => session.edgeStates(),
+      (session) => session.setPositions(mesh.positions),
+      (session) => session.triangles(),
+      (session) => session.verify(),
+    ];
     let refused = 0;
     for (const ask of asked) {
       for (const session of held) {
-        const code = await ask(session).then(() => undefined, ({ code }) => code);
+        const code = await ask(session).then(
+          () => undefined,
+          ({ code }) => code,
+        );
         if (code) assert.equal(code, 'too-large');
         refused += code ? 1 : 0;
       }
@@ -62,7 +71,10 @@ test('sessions that fill the memory lose nothing, however often', async () => {
     assert.deepEqual((await makeDelaunay(mesh, options)).indices, expected.indices);
   }
   // Where calls have left room elsewhere, one more may fit.
-  assert.ok(counts.every((count) => count >= counts[0]), `${counts}`);
+  assert.ok(
+    counts.every((count) => count >= counts[0]),
+    `${counts}`,
+  );
 });
 
 test('positions that are too many leave the session as it was', async () => {
@@ -73,7 +85,10 @@ test('positions that are too many leave the session as it was', async () => {
 });
 
 test('a file that is too large leaves room for others', async () => {
-  const [small, large] = [await writeMesh(await generate('grid 100'), 'a.obj'), await writeMesh(await generate('grid 500'), 'a.obj')];
+  const [small, large] = [
+    await writeMesh(await generate('grid 100'), 'a.obj'),
+    await writeMesh(await generate('grid 500'), 'a.obj'),
+  ];
   const huge = Buffer.concat(Array.from({ length: 5 }, () => large));
   for (let round = 0; round < 3; round++) {
     await assert.rejects(readMesh(new Uint8Array(huge), 'a.obj'), isRefused);

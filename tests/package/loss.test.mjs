@@ -48,7 +48,8 @@ async function runAndLose() {
     await cpu.step();
     engines.push(await session.backend());
     const wanted = await cpu.triangles();
-    if ((await session.triangles()).some((vertex, i) => vertex !== wanted[i])) return `iteration ${engines.length} is wrong`;
+    if ((await session.triangles()).some((vertex, i) => vertex !== wanted[i]))
+      return `iteration ${engines.length} is wrong`;
     if (!iteration) break;
     if (engines.length === 2) (await session.gpu()).device.destroy();
   }
@@ -80,13 +81,23 @@ async function runAndChange() {
   const mesh = await generate('random 300');
   const session = await FlipSession.create(mesh);
   const begun = await session.backend();
-  while ((await makeDelaunay(mesh, { maxIterations: 1 })).backend === 'cpu') await new Promise((resolve) => setTimeout(resolve, 100));
+  while ((await makeDelaunay(mesh, { maxIterations: 1 })).backend === 'cpu')
+    await new Promise((resolve) => setTimeout(resolve, 100));
   const progress = [];
   const result = await session.run({ onProgress: ({ iterations }) => progress.push(iterations) });
   const cpu = await makeDelaunay(mesh, { backend: 'cpu' });
   const { backend, fallback } = result;
-  const isSame = cpu.indices.every((vertex, i) => vertex === result.indices[i]) && `${cpu.flipsPerIteration}` === `${result.flipsPerIteration}`;
-  return { begun, backend, fallback, first: progress[0], isSorted: progress.every((n, i) => i === 0 || n >= progress[i - 1]), isSame };
+  const isSame =
+    cpu.indices.every((vertex, i) => vertex === result.indices[i]) &&
+    `${cpu.flipsPerIteration}` === `${result.flipsPerIteration}`;
+  return {
+    begun,
+    backend,
+    fallback,
+    first: progress[0],
+    isSorted: progress.every((n, i) => i === 0 || n >= progress[i - 1]),
+    isSame,
+  };
 }
 
 test('a run that has begun on the CPU goes on with the GPU that has become ready', async () => {

@@ -26,7 +26,12 @@ for (const threads of [1, 2]) {
       async () => {
         for (let i = 0; i < 260; i++) held.push(await FlipSession.create(mesh, options));
       },
-      { name: 'EdgeflipError', code: 'too-large', message: /^up to \d+ bytes of memory are needed, and WebAssembly has 4294967296 for all meshes: free\(\) sessions / },
+      {
+        name: 'EdgeflipError',
+        code: 'too-large',
+        message:
+          /^up to \d+ bytes of memory are needed, and WebAssembly has 4294967296 for all meshes: free\(\) sessions /,
+      },
     );
     assert.ok(held.length > 50, `${held.length}`);
     const small = await generate('random 12');
@@ -50,7 +55,12 @@ test('a file is not written with vertices that are elsewhere now', async () => {
     const read = await readMesh(original.bytes, name);
     await writeMesh(read, name, { original });
     const positions = read.positions.map((x) => x + 1);
-    await assert.rejects(writeMesh({ ...read, positions }, name, { original }), { code: 'invalid-option', message: /^option original: / });
-    await assert.rejects(writeMesh({ ...read, positions: read.positions.slice(3) }, name, { original }), { code: 'invalid-option' });
+    await assert.rejects(writeMesh({ ...read, positions }, name, { original }), {
+      code: 'invalid-option',
+      message: /^option original: /,
+    });
+    await assert.rejects(writeMesh({ ...read, positions: read.positions.slice(3) }, name, { original }), {
+      code: 'invalid-option',
+    });
   }
 });

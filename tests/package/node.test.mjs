@@ -37,7 +37,10 @@ const refused = (code, pattern) => (error) => {
 test('auto says of each engine why it is not there', async () => {
   const { backend, fallback } = await makeDelaunay(await generate('random 200'));
   assert.equal(backend, 'cpu');
-  assert.match(fallback, /^backend webgpu is not available: there is no WebGPU here.*; webgl2 is left out: it takes longer than the cpu$/);
+  assert.match(
+    fallback,
+    /^backend webgpu is not available: there is no WebGPU here.*; webgl2 is left out: it takes longer than the cpu$/,
+  );
 });
 
 test('makeDelaunay flips the long diagonal', async () => {
@@ -61,7 +64,13 @@ test('strips flip as in the paper, whole and step by step', async () => {
   const whole = await makeDelaunay(mesh, { backend: 'cpu' });
   const watched = await makeDelaunay(mesh, { onIteration: ({ index, flips }) => seen.push([index, flips]) });
   assert.deepEqual([...whole.flipsPerIteration], [1, 2, 3, 2, 1]);
-  assert.deepEqual(seen, [[0, 1], [1, 2], [2, 3], [3, 2], [4, 1]]);
+  assert.deepEqual(seen, [
+    [0, 1],
+    [1, 2],
+    [2, 3],
+    [3, 2],
+    [4, 1],
+  ]);
   assert.deepEqual(watched.indices, whole.indices);
 });
 
@@ -147,7 +156,10 @@ test('errors have codes', async () => {
   const positions = Float32Array.from(mesh.positions);
   positions[5] = NaN;
   await assert.rejects(bad({ positions }), refused('non-finite', /vertex 2: coordinate y/));
-  await assert.rejects(bad({ positions: Float64Array.of(0, 0, 1, 0, 0.1, NaN) }), refused('non-finite', /vertex 2: coordinate y/));
+  await assert.rejects(
+    bad({ positions: Float64Array.of(0, 0, 1, 0, 0.1, NaN) }),
+    refused('non-finite', /vertex 2: coordinate y/),
+  );
   await assert.rejects(bad({ positions: [0, 0] }), refused('invalid-input', /positions/));
   await assert.rejects(bad({ indices: [0, 1, 2] }), refused('invalid-input', /indices/));
   await assert.rejects(bad({ dimension: 4 }), refused('invalid-input', /dimension: 4 is not 2 or 3/));
@@ -156,15 +168,30 @@ test('errors have codes', async () => {
   await assert.rejects(makeDelaunay(mesh, { backend: 'webgpu' }), refused('backend-unavailable', /backend webgpu/));
   await assert.rejects(makeDelaunay(mesh, { backend: 'gpu' }), refused('invalid-option', /backend/));
   await assert.rejects(makeDelaunay(mesh, { order: 1 }), refused('invalid-option', /order/));
-  await assert.rejects(makeDelaunay(mesh, { device: {} }), refused('invalid-option', /device: an object is not a GPUDevice/));
+  await assert.rejects(
+    makeDelaunay(mesh, { device: {} }),
+    refused('invalid-option', /device: an object is not a GPUDevice/),
+  );
   await assert.rejects(makeDelaunay(mesh, { maxNormalAngle: 200 }), refused('invalid-option', /maxNormalAngle: 200/));
-  await assert.rejects(makeDelaunay(mesh, { maxDeviation: -1 }), refused('invalid-option', /maxDeviation: -1 is not a distance/));
-  await assert.rejects(makeDelaunay(mesh, { maxDeviation: '1' }), refused('invalid-option', /maxDeviation: .* is not a number/));
+  await assert.rejects(
+    makeDelaunay(mesh, { maxDeviation: -1 }),
+    refused('invalid-option', /maxDeviation: -1 is not a distance/),
+  );
+  await assert.rejects(
+    makeDelaunay(mesh, { maxDeviation: '1' }),
+    refused('invalid-option', /maxDeviation: .* is not a number/),
+  );
   await assert.rejects(makeDelaunay(mesh, { maxIterations: -1 }), refused('invalid-option', /maxIterations/));
   const locking = (lockedEdges) => makeDelaunay(mesh, { lockedEdges });
-  await assert.rejects(locking([0, 1, 1, 3]), refused('invalid-option', /lockedEdges: .*no edge between vertices 1 and 3/));
+  await assert.rejects(
+    locking([0, 1, 1, 3]),
+    refused('invalid-option', /lockedEdges: .*no edge between vertices 1 and 3/),
+  );
   await assert.rejects(locking([0, 1, 2]), refused('ragged-array', /lockedEdges has 3 numbers.*multiple of 2/));
-  await assert.rejects(makeDelaunay(mesh, { lockedTriangles: [2] }), refused('invalid-option', /lockedTriangles: there is no triangle 2; the mesh has 2/));
+  await assert.rejects(
+    makeDelaunay(mesh, { lockedTriangles: [2] }),
+    refused('invalid-option', /lockedTriangles: there is no triangle 2; the mesh has 2/),
+  );
   await assert.rejects(makeDelaunay(mesh, { groups: [2] }), refused('invalid-option', /groups: it has 1 numbers/));
   await assert.rejects(makeDelaunay(mesh, { groups: 'all' }), refused('invalid-option', /groups: it is neither/));
   for (const wrong of [null, 'edges', [0, -1], [0, 0.5], ['0', '1'], new Float32Array(2)]) {
@@ -239,8 +266,9 @@ test('an audit names the edges that remain', async () => {
   const { stopped } = (await capped.verify()).remainingEdges;
   assert.equal(stopped.length, 2 * remaining.stopped);
   const [triangles, states] = [await capped.triangles(), await capped.edgeStates()];
-  const waits = Array.from(triangles, (v, h) => [v, triangles[h % 3 === 2 ? h - 2 : h + 1]])
-    .filter(([u, v], h) => u < v && ['flips', 'waits'].includes(EDGE_STATES[states[h]]));
+  const waits = Array.from(triangles, (v, h) => [v, triangles[h % 3 === 2 ? h - 2 : h + 1]]).filter(
+    ([u, v], h) => u < v && ['flips', 'waits'].includes(EDGE_STATES[states[h]]),
+  );
   assert.deepEqual([...stopped], waits.sort(([a, b], [c, d]) => a - c || b - d).flat());
   capped.free();
 });
@@ -275,7 +303,11 @@ test('vertices move, and the session goes on as a new one', async () => {
   const before = await session.result();
   assert.deepEqual([before.iterations, before.flips, before.indices], [0, 0, indices]);
   const result = await session.run();
-  const expected = await makeDelaunay({ ...mesh, indices, positions: mesh.positions.map((x, i) => (i % 2 ? 16 * x : x)) });
+  const expected = await makeDelaunay({
+    ...mesh,
+    indices,
+    positions: mesh.positions.map((x, i) => (i % 2 ? 16 * x : x)),
+  });
   assert.ok(result.flips > 0);
   assert.deepEqual([result.indices, result.flipsPerIteration], [expected.indices, expected.flipsPerIteration]);
   await session.setPositions(Float64Array.from(mesh.positions));
@@ -290,7 +322,11 @@ test('vertices move, and the session goes on as a new one', async () => {
 
 test('what is passed is the caller’s again when the call has returned', async () => {
   const large = await generate('grid 190');
-  for (const [given, threads] of [[strips(12), 1], [large, 1], [large, 2]]) {
+  for (const [given, threads] of [
+    [strips(12), 1],
+    [large, 1],
+    [large, 2],
+  ]) {
     const options = { backend: 'cpu', threads };
     const { indices, flips } = await makeDelaunay(given, options);
     const mesh = { ...given, positions: given.positions.slice(), indices: given.indices.slice() };
@@ -299,14 +335,24 @@ test('what is passed is the caller’s again when the call has returned', async 
     structuredClone(mesh.positions, { transfer: [mesh.positions.buffer] });
     const result = await asked;
     assert.deepEqual([result.indices, result.flips], [indices, flips]);
-    await assert.rejects(makeDelaunay(mesh, options), refused('invalid-input', /^positions have no memory: it was transferred/));
+    await assert.rejects(
+      makeDelaunay(mesh, options),
+      refused('invalid-input', /^positions have no memory: it was transferred/),
+    );
   }
 });
 
 test('a session that is refused leaves the others alone', async () => {
   const session = await FlipSession.create(strips(12));
-  const throwing = { get lockedEdges() { throw new Error('mine'); } };
-  await assert.rejects(FlipSession.create(strips(12), throwing), refused('invalid-input', /^the options cannot be read: mine$/));
+  const throwing = {
+    get lockedEdges() {
+      throw new Error('mine');
+    },
+  };
+  await assert.rejects(
+    FlipSession.create(strips(12), throwing),
+    refused('invalid-input', /^the options cannot be read: mine$/),
+  );
   await assert.rejects(makeDelaunay(null), refused('invalid-input', /^mesh: null is not an object$/));
   await assert.rejects(makeDelaunay(strips(12), null), refused('invalid-input', /^options: null is not an object$/));
   assert.equal((await session.run()).status, 'done');
@@ -324,5 +370,12 @@ test('a freed session refuses calls, also those that were waiting', async () => 
 
 test('what a callback throws goes through unchanged', async () => {
   const mine = new Error('mine');
-  await assert.rejects(makeDelaunay(strips(8), { onProgress: () => { throw mine; } }), (error) => error === mine);
+  await assert.rejects(
+    makeDelaunay(strips(8), {
+      onProgress: () => {
+        throw mine;
+      },
+    }),
+    (error) => error === mine,
+  );
 });

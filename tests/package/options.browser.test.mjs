@@ -18,7 +18,10 @@ async function askAll(backend) {
   const plain = await makeDelaunay(mesh, base);
   const given = {};
   for (const [option, run] of Object.entries(cases)) {
-    given[option] = await run({ makeDelaunay, FlipSession, mesh, base, plain }).then((value) => JSON.stringify(value ?? null), (error) => `${error}`);
+    given[option] = await run({ makeDelaunay, FlipSession, mesh, base, plain }).then(
+      (value) => JSON.stringify(value ?? null),
+      (error) => `${error}`,
+    );
   }
   return given;
 }

@@ -11,7 +11,10 @@ function check(condition, what) {
 /** A value that the library refuses, by the name of the option. */
 async function isRefused({ makeDelaunay, mesh, base }, name, value) {
   const { code, message } = await makeDelaunay(mesh, { ...base, [name]: value }).catch((error) => error);
-  check(code === 'invalid-option' && message.startsWith(`option ${name}: `), `${name}: ${value} is not refused: ${code}: ${message}`);
+  check(
+    code === 'invalid-option' && message.startsWith(`option ${name}: `),
+    `${name}: ${value} is not refused: ${code}: ${message}`,
+  );
 }
 
 /** A threshold leaves other edges than the default does, and the audit knows it. */
@@ -21,7 +24,10 @@ async function isThreshold({ FlipSession, mesh, base, plain }, name, value) {
   const audit = await session.verify();
   session.free();
   check(flips !== plain.flips, `${name} has no effect`);
-  check(audit.clean && JSON.stringify(audit.remaining) === JSON.stringify(remaining), `${name}: the audit does not know it: ${audit.violations[0]}`);
+  check(
+    audit.clean && JSON.stringify(audit.remaining) === JSON.stringify(remaining),
+    `${name}: the audit does not know it: ${audit.violations[0]}`,
+  );
   return { flips, remaining };
 }
 
@@ -71,7 +77,9 @@ export const cases = {
     check(turnedTriangles === 1, `${turnedTriangles} triangles were turned`);
   },
   weld: async ({ makeDelaunay, mesh, base, plain }) => {
-    const positions = Float32Array.from([...mesh.indices].flatMap((vertex) => [...mesh.positions.subarray(3 * vertex, 3 * vertex + 3)]));
+    const positions = Float32Array.from(
+      [...mesh.indices].flatMap((vertex) => [...mesh.positions.subarray(3 * vertex, 3 * vertex + 3)]),
+    );
     const indices = mesh.indices.map((_, i) => i);
     const { joinedVertices, flips } = await makeDelaunay({ positions, indices, dimension: 3 }, { ...base, weld: true });
     check(joinedVertices === indices.length - mesh.positions.length / 3, `${joinedVertices} vertices were joined`);

@@ -22,7 +22,9 @@ workers.Worker = class extends workers.Worker {
 function fieldsOf(name) {
   const path = new URL('../../src/js/types.ts', import.meta.url);
   const source = ts.createSourceFile('types.ts', readFileSync(path, 'utf8'), ts.ScriptTarget.Latest);
-  const found = source.statements.find((statement) => ts.isInterfaceDeclaration(statement) && statement.name.text === name);
+  const found = source.statements.find(
+    (statement) => ts.isInterfaceDeclaration(statement) && statement.name.text === name,
+  );
   return found.members.map((member) => member.name.text);
 }
 
@@ -62,13 +64,28 @@ test('an unknown option is refused, with the nearest name', async () => {
   ];
   for (const [options, message] of wrong) await assert.rejects(makeDelaunay(mesh, options), refused(message));
   const session = await FlipSession.create(mesh, { backend: 'cpu' });
-  await assert.rejects(FlipSession.create(mesh, { onProgres() {} }), refused(/^onProgres is not an option; there are backend, .*, device$/));
-  await assert.rejects(FlipSession.create(mesh, { signal: AbortSignal.abort() }), refused(/^signal is not an option; /));
-  await assert.rejects(session.run({ maxIterations: 4 }), refused('maxIterations is not an option; there are signal, onProgress'));
+  await assert.rejects(
+    FlipSession.create(mesh, { onProgres() {} }),
+    refused(/^onProgres is not an option; there are backend, .*, device$/),
+  );
+  await assert.rejects(
+    FlipSession.create(mesh, { signal: AbortSignal.abort() }),
+    refused(/^signal is not an option; /),
+  );
+  await assert.rejects(
+    session.run({ maxIterations: 4 }),
+    refused('maxIterations is not an option; there are signal, onProgress'),
+  );
   session.free();
   const bytes = await writeMesh(mesh, 'a.off');
-  await assert.rejects(readMesh(bytes, 'a.off', { maxbytes: 4 }), refused('maxbytes is not an option; did you mean maxBytes?'));
-  await assert.rejects(writeMesh(mesh, 'a.off', { origin: 4 }), refused('origin is not an option; did you mean original?'));
+  await assert.rejects(
+    readMesh(bytes, 'a.off', { maxbytes: 4 }),
+    refused('maxbytes is not an option; did you mean maxBytes?'),
+  );
+  await assert.rejects(
+    writeMesh(mesh, 'a.off', { origin: 4 }),
+    refused('origin is not an option; did you mean original?'),
+  );
 });
 
 test('an option that is undefined keeps its default', async () => {
@@ -84,6 +101,9 @@ test('options may be inherited, and a list is none', async () => {
   const { iterations } = await makeDelaunay(mesh, Object.create({ maxIterations: 2, backend: 'cpu' }));
   assert.equal(iterations, 2);
   for (const list of [[], new Uint8Array(2), new Uint32Array(2 ** 28)]) {
-    await assert.rejects(makeDelaunay(mesh, list), { code: 'invalid-input', message: 'options: a list is not an object with options' });
+    await assert.rejects(makeDelaunay(mesh, list), {
+      code: 'invalid-input',
+      message: 'options: a list is not an object with options',
+    });
   }
 });

@@ -45,7 +45,13 @@ test('doubles, locked edges, a cap and moved vertices are as on one thread', asy
   const moved = mesh.positions.map((x) => 3 * x);
   const [ends, progresses] = [[], []];
   for (const threads of [1, 2]) {
-    const options = { backend: 'cpu', threads, maxIterations: 4, lockedEdges: indices.slice(0, 2), lockedTriangles: [7] };
+    const options = {
+      backend: 'cpu',
+      threads,
+      maxIterations: 4,
+      lockedEdges: indices.slice(0, 2),
+      lockedTriangles: [7],
+    };
     const session = await FlipSession.create(mesh, options);
     const seen = [];
     for await (const { index, labelled, flips, blocked } of session) seen.push({ index, labelled, flips, blocked });
@@ -64,7 +70,10 @@ test('doubles, locked edges, a cap and moved vertices are as on one thread', asy
   assert.deepEqual(ends[1], ends[0]);
   // Several threads skip some of the steps, and each step is as on one.
   const [each, some] = progresses;
-  assert.deepEqual(some, each.filter((step) => some.includes(step)));
+  assert.deepEqual(
+    some,
+    each.filter((step) => some.includes(step)),
+  );
   assert.equal(ends[0].seen.length, 4);
 });
 
@@ -97,7 +106,10 @@ test('what is wrong is refused as on one thread', async () => {
   for (const [mesh, options, code] of wrong) {
     const errors = [];
     for (const threads of [1, 2]) {
-      await assert.rejects(makeDelaunay(mesh, { backend: 'cpu', threads, ...options }), (error) => errors.push(error.message) && error.code === code);
+      await assert.rejects(
+        makeDelaunay(mesh, { backend: 'cpu', threads, ...options }),
+        (error) => errors.push(error.message) && error.code === code,
+      );
     }
     assert.equal(errors[1], errors[0]);
   }
@@ -133,7 +145,8 @@ test('a mesh that does not fit into the memory is refused, and other sessions go
   for (const threads of [1, 2]) {
     await assert.rejects(makeDelaunay(mesh, { backend: 'cpu', threads }), {
       code: 'too-large',
-      message: /^up to \d+ bytes of memory are needed, and WebAssembly has 4294967296 for all meshes: free\(\) sessions that are done, or split the mesh$/,
+      message:
+        /^up to \d+ bytes of memory are needed, and WebAssembly has 4294967296 for all meshes: free\(\) sessions that are done, or split the mesh$/,
     });
   }
   assert.equal((await other.run()).status, 'done');
@@ -149,6 +162,10 @@ test('the threads let the process end', () => {
     console.log(status);
   `;
   const cwd = fileURLToPath(new URL('../..', import.meta.url));
-  const { stdout, stderr, status } = spawnSync(process.execPath, ['--input-type=module', '-e', program], { cwd, encoding: 'utf8', timeout: 60_000 });
+  const { stdout, stderr, status } = spawnSync(process.execPath, ['--input-type=module', '-e', program], {
+    cwd,
+    encoding: 'utf8',
+    timeout: 60_000,
+  });
   assert.deepEqual([stdout, stderr, status], ['done\n', '', 0]);
 });

@@ -1,11 +1,38 @@
 // Compiled, never run: what a strict TypeScript program sees of the package.
 
-import { EDGE_STATES, EdgeflipError, type EdgeState, type ErrorCode, FlipSession, type Iteration, init, makeDelaunay, type Mesh, type Sources } from 'edgeflip';
-import { type Angles, angles, type FileMesh, FORMATS, generate, init as initFiles, type Original, readMesh, type Welded, weld, writeMesh } from 'edgeflip/files';
+import {
+  EDGE_STATES,
+  EdgeflipError,
+  type EdgeState,
+  type ErrorCode,
+  FlipSession,
+  type Iteration,
+  init,
+  makeDelaunay,
+  type Mesh,
+  type Sources,
+} from 'edgeflip';
+import {
+  type Angles,
+  angles,
+  type FileMesh,
+  FORMATS,
+  generate,
+  init as initFiles,
+  type Original,
+  readMesh,
+  type Welded,
+  weld,
+  writeMesh,
+} from 'edgeflip/files';
 
 export async function use(mesh: Mesh, signal: AbortSignal, device?: GPUDevice): Promise<Uint32Array> {
   await init({ base: new URL('https://example.org/wasm') });
-  const sources: Sources = { core: new URL('https://example.org/edgeflip.wasm'), webgl2: new Uint8Array(8), files: undefined };
+  const sources: Sources = {
+    core: new URL('https://example.org/edgeflip.wasm'),
+    webgl2: new Uint8Array(8),
+    files: undefined,
+  };
   await init(sources);
   const iterations: Iteration[] = [];
   const result = await makeDelaunay(mesh, {
@@ -35,7 +62,9 @@ export async function use(mesh: Mesh, signal: AbortSignal, device?: GPUDevice): 
 
 export async function copy(file: File): Promise<Blob> {
   await initFiles({ files: new URL('https://example.org/edgeflip_files.wasm') });
-  const format: '.off' | '.obj' | '.ply' | '.stl' | '.gltf' | '.glb' | undefined = FORMATS.find((format) => file.name.endsWith(format));
+  const format: '.off' | '.obj' | '.ply' | '.stl' | '.gltf' | '.glb' | undefined = FORMATS.find((format) =>
+    file.name.endsWith(format),
+  );
   const mesh: FileMesh = await readMesh(new Uint8Array(await file.arrayBuffer()), file.name, { dimension: 3 });
   const positions: Float32Array = (await generate('uvsphere 20')).positions;
   const { min, counts }: Angles = await angles({ ...mesh, positions }, 18);

@@ -27,14 +27,17 @@ async function runs() {
   count(GPUQueue.prototype, 'submit', () => 'submissions');
   // Parameters, and the state of a run.
   const FEW = 8192;
-  count(GPUQueue.prototype, 'writeBuffer', (buffer, place, data, first, size = data.byteLength) => (size > FEW ? 'arrays' : undefined));
+  count(GPUQueue.prototype, 'writeBuffer', (buffer, place, data, first, size = data.byteLength) =>
+    size > FEW ? 'arrays' : undefined,
+  );
   const [mesh, surface] = [await generate('random 150'), await generate('uvsphere 140')];
   const wanted = new Map();
   for (const one of [mesh, surface]) wanted.set(one, await makeDelaunay(one, { backend: 'cpu' }));
   const wrong = [];
   const check = (what, one, { indices, remaining, flips, backend }) => {
     const right = wanted.get(one);
-    const isSame = backend === 'webgpu' && flips === right.flips && JSON.stringify(remaining) === JSON.stringify(right.remaining);
+    const isSame =
+      backend === 'webgpu' && flips === right.flips && JSON.stringify(remaining) === JSON.stringify(right.remaining);
     if (!isSame || indices.some((vertex, i) => vertex !== right.indices[i])) wrong.push(what);
   };
   const told = [];
@@ -49,7 +52,9 @@ async function runs() {
     told.push(asked);
   }
   asked = {};
-  const together = await Promise.all([mesh, surface, mesh, surface].map((one) => makeDelaunay(one, { backend: 'webgpu' })));
+  const together = await Promise.all(
+    [mesh, surface, mesh, surface].map((one) => makeDelaunay(one, { backend: 'webgpu' })),
+  );
   together.forEach((result, i) => check(`together ${i}`, [mesh, surface][i % 2], result));
 
   // One that goes on after its end, and after a move.

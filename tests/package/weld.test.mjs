@@ -10,7 +10,11 @@ import { faults, riggedGlb } from './gltf.mjs';
 /** The mesh with a vertex for each corner. */
 function soup({ positions, indices, dimension }) {
   const point = (vertex) => [...positions.subarray(dimension * vertex, dimension * (vertex + 1))];
-  return { positions: Float32Array.from([...indices].flatMap(point)), indices: indices.map((_, corner) => corner), dimension };
+  return {
+    positions: Float32Array.from([...indices].flatMap(point)),
+    indices: indices.map((_, corner) => corner),
+    dimension,
+  };
 }
 
 const refused = (code, pattern) => (error) => {
@@ -31,9 +35,15 @@ test('triangles without common vertices flip as those that have some', async () 
     const found = await session.run();
     assert.ok(wanted.flips > 10);
     assert.deepEqual([found.flips, found.edges, found.remaining], [wanted.flips, wanted.edges, wanted.remaining]);
-    assert.deepEqual([found.joinedVertices, found.seamEdges], [apart.indices.length - mesh.positions.length / mesh.dimension, 0]);
+    assert.deepEqual(
+      [found.joinedVertices, found.seamEdges],
+      [apart.indices.length - mesh.positions.length / mesh.dimension, 0],
+    );
     // A corner is a vertex of its own: which one of the mesh it was is known.
-    assert.deepEqual(found.indices.map((vertex) => mesh.indices[vertex]), indices);
+    assert.deepEqual(
+      found.indices.map((vertex) => mesh.indices[vertex]),
+      indices,
+    );
     assert.deepEqual(await session.triangles(), found.indices);
     assert.ok((await session.verify()).clean);
     session.free();
@@ -75,13 +85,22 @@ test('attributes make seams, which come out as they were', async () => {
   welded.free();
   welded.free();
   assert.throws(() => welded.split(welded.indices), refused('freed', /freed/));
-  await assert.rejects(weld(mesh, [alike.slice(1)]), refused('invalid-input', /attribute 0 has 5 numbers, not a multiple of 6/));
+  await assert.rejects(
+    weld(mesh, [alike.slice(1)]),
+    refused('invalid-input', /attribute 0 has 5 numbers, not a multiple of 6/),
+  );
   const nothing = { positions: new Float32Array(), indices: new Uint32Array(), dimension: 3 };
   assert.equal((await weld(nothing, [new Float32Array()])).joined, 0);
   await assert.rejects(weld(mesh, [new Float32Array()]), refused('invalid-option', /0 numbers, the mesh has 6/));
   await assert.rejects(weld(mesh, [[1, 2]]), refused('invalid-input', /typed array/));
-  await assert.rejects(makeDelaunay(mesh, { weld: 1 }), refused('invalid-option', /weld: 1 is not true, false, a list of typed arrays/));
-  await assert.rejects(makeDelaunay(mesh, { weld: true, lockedEdges: 'all' }), refused('invalid-option', /lockedEdges/));
+  await assert.rejects(
+    makeDelaunay(mesh, { weld: 1 }),
+    refused('invalid-option', /weld: 1 is not true, false, a list of typed arrays/),
+  );
+  await assert.rejects(
+    makeDelaunay(mesh, { weld: true, lockedEdges: 'all' }),
+    refused('invalid-option', /lockedEdges/),
+  );
 });
 
 test('the positions of a session change, and attributes stay', async () => {
@@ -106,7 +125,10 @@ test('a rigged GLB without indices gets some, and nothing else changes', async (
   const { indices, flips, joinedVertices, seamEdges, remaining } = await makeDelaunay(mesh, { weld: original });
   assert.ok(flips > 20 && joinedVertices > 100, `${flips} ${joinedVertices}`);
   assert.equal(seamEdges, 1);
-  assert.deepEqual(Object.keys(remaining).filter((reason) => reason !== 'locked'), []);
+  assert.deepEqual(
+    Object.keys(remaining).filter((reason) => reason !== 'locked'),
+    [],
+  );
   const out = await writeMesh({ ...mesh, indices }, 'out.glb', { original });
   assert.deepEqual(await faults(out), []);
   const again = await readMesh(out, 'out.glb');

@@ -59,9 +59,13 @@ function watchBuffers() {
     const target = args.find((arg, i) => i > 0 && arg instanceof GPUBuffer);
     note('copy', { from: idOf(args[0]), to: idOf(target), size: args.at(-1) });
   });
-  watch(GPUQueue, 'writeBuffer', (_, __, [buffer, , data]) => note('write', { buffer: idOf(buffer), size: data.byteLength }));
+  watch(GPUQueue, 'writeBuffer', (_, __, [buffer, , data]) =>
+    note('write', { buffer: idOf(buffer), size: data.byteLength }),
+  );
   // Memory that is kept from one read to the next may be larger than what is read.
-  watch(GPUBuffer, 'mapAsync', (_, buffer, [, first = 0, size = buffer.size - first]) => note('map', { buffer: idOf(buffer), size }));
+  watch(GPUBuffer, 'mapAsync', (_, buffer, [, first = 0, size = buffer.size - first]) =>
+    note('map', { buffer: idOf(buffer), size }),
+  );
 }
 
 /** Bytes of counters and the like. */
@@ -76,7 +80,10 @@ test('while it plays on WebGPU, the page draws from the session’s own buffer, 
   await page.open(path);
   await page.chooseEngine('webgpu');
   const end = await page.playToEnd(120);
-  assert.deepEqual(end.rows.map((row) => row.slice(0, 4)), rows);
+  assert.deepEqual(
+    end.rows.map((row) => row.slice(0, 4)),
+    rows,
+  );
   assert.equal(end.facts.Fingerprint, facts.Fingerprint);
 
   const { events, buffers, devices } = await page.page.evaluate(() => window.seen());
@@ -101,7 +108,9 @@ test('while it plays on WebGPU, the page draws from the session’s own buffer, 
   assert.deepEqual([...new Set([...draws, ...passes].map(({ device }) => device))], [triangles.device]);
 
   // Each iteration ends where the page keeps what it has changed; a draw follows before the next one does.
-  const kept = playing.flatMap(({ what, buffer }, at) => (what === 'create' && /^changes of/.test(buffers[buffer].label) ? [at] : []));
+  const kept = playing.flatMap(({ what, buffer }, at) =>
+    what === 'create' && /^changes of/.test(buffers[buffer].label) ? [at] : [],
+  );
   assert.equal(kept.length, rows.length, 'iterations');
   kept.forEach((from, i) => {
     const until = kept[i + 1] ?? playing.length;
@@ -113,14 +122,23 @@ test('while it plays on WebGPU, the page draws from the session’s own buffer, 
   assert.ok(maps.length > 0, 'the counters are read');
   const largest = Math.max(...maps.map(({ size }) => size));
   assert.ok(largest <= SMALL, `${largest} bytes are mapped`);
-  const read = playing.filter(({ what, from, to, size }) => what === 'copy' && (from === id || size >= bytes) && buffers[to].usage & MAP_READ);
+  const read = playing.filter(
+    ({ what, from, to, size }) => what === 'copy' && (from === id || size >= bytes) && buffers[to].usage & MAP_READ,
+  );
   assert.deepEqual(read, [], 'copies to where the page can read');
   const toIndex = ({ buffer }) => buffers[buffer].usage & INDEX;
   const written = playing.filter((event) => event.what === 'write' && (toIndex(event) || event.size > SMALL));
   assert.deepEqual(written, [], 'writes of an index buffer');
-  const prefilled = playing.filter((event) => event.what === 'create' && toIndex(event) && (buffers[event.buffer].mappedAtCreation || buffers[event.buffer].usage & COPY_DST));
+  const prefilled = playing.filter(
+    (event) =>
+      event.what === 'create' &&
+      toIndex(event) &&
+      (buffers[event.buffer].mappedAtCreation || buffers[event.buffer].usage & COPY_DST),
+  );
   assert.deepEqual(prefilled, [], 'new index buffers that could be filled');
-  t.diagnostic(`${draws.length} draws of ${rows.length} iterations, ${passes.length} compute passes, ${maps.length} reads of at most ${largest} bytes`);
+  t.diagnostic(
+    `${draws.length} draws of ${rows.length} iterations, ${passes.length} compute passes, ${maps.length} reads of at most ${largest} bytes`,
+  );
 
   // The same watch sees a read-back where there is one: at rest, for the fingerprint.
   assert.ok(events.some(({ what, size, state }) => what === 'map' && state !== 'playing' && size >= bytes));

@@ -32,7 +32,10 @@ async function openRefused(page, path) {
 async function playAndCompare(page, path) {
   const { rows, facts, fingerprints } = await expected(path);
   const end = await page.playToEnd();
-  assert.deepEqual(end.rows.map((row) => row.slice(0, 4)), rows);
+  assert.deepEqual(
+    end.rows.map((row) => row.slice(0, 4)),
+    rows,
+  );
   assert.equal(end.facts.Fingerprint, facts.Fingerprint);
   let seen = await page.scrub('Home');
   assert.equal(seen.facts.Fingerprint, fingerprints[0]);
@@ -226,7 +229,10 @@ test('a GPU that is lost in the middle of a run is replaced, and the result is t
   assert.ok(Number(recovered.at) > 2, `at ${recovered.at}`);
   assert.equal(await page.page.evaluate(() => window.devices.length), 2);
   const end = await page.playToEnd();
-  assert.deepEqual(end.rows.map((row) => row.slice(0, 4)), rows);
+  assert.deepEqual(
+    end.rows.map((row) => row.slice(0, 4)),
+    rows,
+  );
   assert.deepEqual([end.facts.Engine, end.facts.Fingerprint], ['WebGPU', facts.Fingerprint]);
   assert.ok((await page.picture()).colours > 3);
   assert.equal(await page.page.evaluate(() => document.querySelectorAll('#view canvas').length), 1);
@@ -257,11 +263,15 @@ async function loseContext(page) {
   await page.choose('speed', '50');
   await page.page.click('#play');
   await page.until('a few iterations', ({ state, at }) => state === 'playing' && Number(at) > 2);
-  const lost = await Promise.all(page.page.workers().map((worker) => worker.evaluate(() => {
-    const context = self.contexts?.at(-1);
-    context?.getExtension('WEBGL_lose_context').loseContext();
-    return context?.isContextLost() ?? false;
-  })));
+  const lost = await Promise.all(
+    page.page.workers().map((worker) =>
+      worker.evaluate(() => {
+        const context = self.contexts?.at(-1);
+        context?.getExtension('WEBGL_lose_context').loseContext();
+        return context?.isContextLost() ?? false;
+      }),
+    ),
+  );
   assert.equal(lost.filter(Boolean).length, 1, 'contexts that are lost');
 }
 
@@ -279,7 +289,10 @@ test('a WebGL2 context that is lost in the middle of a run gives way to the CPU,
   assert.ok(Number(recovered.at) > 2 && Number(recovered.at) < rows.length, `at ${recovered.at}`);
   assert.deepEqual([recovered.backend, recovered.facts.Engine], ['cpu', 'CPU, in a worker']);
   const end = await page.playToEnd();
-  assert.deepEqual(end.rows.map((row) => row.slice(0, 4)), rows);
+  assert.deepEqual(
+    end.rows.map((row) => row.slice(0, 4)),
+    rows,
+  );
   assert.equal(end.facts.Fingerprint, facts.Fingerprint);
   await page.close();
 });
@@ -292,7 +305,10 @@ test('without WebGPU, auto takes the CPU and says why', async () => {
   assert.deepEqual([opened.backend, opened.facts.Engine], ['auto', 'CPU, in a worker']);
   assert.match(opened.note, /On the CPU: this browser has no WebGPU/);
   const end = await page.playToEnd();
-  assert.deepEqual(end.rows.map((row) => row.slice(0, 4)), rows);
+  assert.deepEqual(
+    end.rows.map((row) => row.slice(0, 4)),
+    rows,
+  );
   assert.equal(end.facts.Fingerprint, facts.Fingerprint);
   assert.equal((await page.scrub('Home')).facts.Fingerprint, fingerprints[0]);
   await page.close();
@@ -313,9 +329,13 @@ for (const backend of ['webgpu', 'cpu']) {
     assert.equal(back.facts.Fingerprint, fingerprints[0]);
 
     await page.page.evaluate(() => {
-      for (let i = 0; i < 4; i++) document.dispatchEvent(new KeyboardEvent('keydown', { key: 'ArrowRight', bubbles: true }));
+      for (let i = 0; i < 4; i++)
+        document.dispatchEvent(new KeyboardEvent('keydown', { key: 'ArrowRight', bubbles: true }));
     });
-    const stepped = await page.until('an iteration', ({ at, measured, newest }) => Number(at) >= 1 && measured === at && at === newest);
+    const stepped = await page.until(
+      'an iteration',
+      ({ at, measured, newest }) => Number(at) >= 1 && measured === at && at === newest,
+    );
     assert.equal(stepped.facts.Fingerprint, fingerprints[stepped.at]);
 
     await page.choose('speed', '50');
@@ -327,7 +347,10 @@ for (const backend of ['webgpu', 'cpu']) {
     assert.equal(paused.state, 'ready');
     await page.page.keyboard.press(' ');
     const end = await page.until('the end', ({ state, measured, at }) => state === 'done' && measured === at);
-    assert.deepEqual(end.rows.map((row) => row.slice(0, 4)), rows);
+    assert.deepEqual(
+      end.rows.map((row) => row.slice(0, 4)),
+      rows,
+    );
     await page.scrub('Home');
     for (const fingerprint of fingerprints.slice(1)) {
       const seen = await page.scrub('ArrowRight');
@@ -365,13 +388,18 @@ for (const backend of ['webgpu', 'cpu']) {
 test('the page asks for nothing from elsewhere, and may not', async () => {
   const page = await openEdgeflip(browser);
   const refused = await page.page.evaluate(() => {
-    const violation = new Promise((done) => document.addEventListener('securitypolicyviolation', (event) => done(event.effectiveDirective), { once: true }));
+    const violation = new Promise((done) =>
+      document.addEventListener('securitypolicyviolation', (event) => done(event.effectiveDirective), { once: true }),
+    );
     fetch('https://example.com/').catch(() => {});
     return violation;
   });
   assert.equal(refused, 'connect-src');
   // That try, and nothing else, is on the console.
-  const [tried, rest] = [page.problems.filter((problem) => /example\.com/.test(problem)), page.problems.filter((problem) => !/example\.com/.test(problem))];
+  const [tried, rest] = [
+    page.problems.filter((problem) => /example\.com/.test(problem)),
+    page.problems.filter((problem) => !/example\.com/.test(problem)),
+  ];
   assert.ok(tried.length > 0);
   assert.deepEqual(rest, []);
   await page.page.close();

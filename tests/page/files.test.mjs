@@ -60,20 +60,31 @@ test('a file that is read says how far it has come, and one that is too large is
   const page = await openEdgeflip(browser);
   await page.page.evaluate(() => {
     window.seen = [];
-    const look = () => window.seen.push([document.querySelector('#busy-text').textContent, document.querySelector('#progress').value]);
-    new MutationObserver(look).observe(document.querySelector('#busy'), { subtree: true, childList: true, attributes: true });
+    const look = () =>
+      window.seen.push([document.querySelector('#busy-text').textContent, document.querySelector('#progress').value]);
+    new MutationObserver(look).observe(document.querySelector('#busy'), {
+      subtree: true,
+      childList: true,
+      attributes: true,
+    });
   });
   await page.open(await meshFile('random 400', 'large.off'));
   const seen = await page.page.evaluate(() => window.seen);
   const shares = seen.filter(([text]) => text === 'Reading large.off…').map(([, share]) => share);
-  assert.ok(shares.some((share) => share > 0 && share < 1), JSON.stringify(seen));
+  assert.ok(
+    shares.some((share) => share > 0 && share < 1),
+    JSON.stringify(seen),
+  );
   assert.ok(seen.some(([text]) => text === 'Parsing large.off…'));
 
   const path = join(folder, 'huge.off');
   writeFileSync(path, '');
   truncateSync(path, 2 ** 30 + 1);
   await (await page.page.$('#file')).setInputFiles(path);
-  await page.page.locator('#error-text').getByText('huge.off has 1073741825 bytes, more than the 1073741824 that a page can take').waitFor();
+  await page.page
+    .locator('#error-text')
+    .getByText('huge.off has 1073741825 bytes, more than the 1073741824 that a page can take')
+    .waitFor();
   assert.equal((await page.look()).caption, 'large.off');
   await page.close();
 });

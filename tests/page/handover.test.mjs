@@ -73,7 +73,8 @@ const seen = (page) => page.page.evaluate(() => ({ ...window.seen, devices: wind
 const announcement = (page) => page.page.textContent('#announcement');
 const focus = (page) => page.page.evaluate(() => document.activeElement.id);
 const columns = ({ rows }) => rows.map((row) => row.slice(0, 4));
-const onWebGpu = (page) => page.until('WebGPU', ({ facts, measured, at }) => facts.Engine === 'WebGPU' && measured === at);
+const onWebGpu = (page) =>
+  page.until('WebGPU', ({ facts, measured, at }) => facts.Engine === 'WebGPU' && measured === at);
 
 test('the first mesh is drawn before any kernel is asked for, plays on the CPU, and is on WebGPU once they are compiled', async (t) => {
   const sphere = await meshFile('uvsphere 28 0.1', 'sphere.off');
@@ -83,8 +84,13 @@ test('the first mesh is drawn before any kernel is asked for, plays on the CPU, 
   assert.deepEqual([opened.backend, opened.facts.Engine, opened.note], ['auto', UNTIL_READY, '']);
   await page.page.waitForFunction(() => window.seen.kernels > 0);
   const { picture, kernel, measured } = await seen(page);
-  t.diagnostic(`picture after ${picture.toFixed(0)} ms, measured from ${measured.toFixed(0)} ms, kernels from ${kernel.toFixed(0)} ms`);
-  assert.ok(picture < kernel && picture < measured, `picture at ${picture}, kernels at ${kernel}, measured at ${measured}`);
+  t.diagnostic(
+    `picture after ${picture.toFixed(0)} ms, measured from ${measured.toFixed(0)} ms, kernels from ${kernel.toFixed(0)} ms`,
+  );
+  assert.ok(
+    picture < kernel && picture < measured,
+    `picture at ${picture}, kernels at ${kernel}, measured at ${measured}`,
+  );
 
   const end = await page.playToEnd();
   assert.deepEqual([end.facts.Engine, columns(end), end.facts.Fingerprint], [UNTIL_READY, rows, facts.Fingerprint]);
@@ -98,7 +104,18 @@ test('the first mesh is drawn before any kernel is asked for, plays on the CPU, 
   const after = await onWebGpu(page);
   assert.match(after.facts.Adapter, /\S/);
   assert.equal(await announcement(page), 'Now on WebGPU.');
-  const same = ({ at, newest, state, status, error, note, caption, facts: { Fingerprint, Smallest, Area } }) => ({ at, newest, state, status, error, note, caption, Fingerprint, Smallest, Area });
+  const same = ({ at, newest, state, status, error, note, caption, facts: { Fingerprint, Smallest, Area } }) => ({
+    at,
+    newest,
+    state,
+    status,
+    error,
+    note,
+    caption,
+    Fingerprint,
+    Smallest,
+    Area,
+  });
   assert.deepEqual(same(after), same(before));
   assert.deepEqual(columns(after), rows);
   assert.deepEqual([await focus(page), (await seen(page)).busy], ['slider', busy]);
@@ -126,7 +143,10 @@ test('a run that plays while the kernels become ready goes over when it is pause
   await page.page.waitForFunction(() => window.seen.behind !== undefined);
   const { at, state } = await page.look();
   assert.equal(state, 'playing');
-  const later = await page.until('a few more iterations', (seen) => Number(seen.at) >= Number(at) + 4 || seen.state !== 'playing');
+  const later = await page.until(
+    'a few more iterations',
+    (seen) => Number(seen.at) >= Number(at) + 4 || seen.state !== 'playing',
+  );
   assert.deepEqual([later.state, later.facts.Engine], ['playing', UNTIL_READY]);
   await page.page.click('#play');
   const paused = await page.until('the pause', ({ state }) => state === 'ready');
@@ -150,7 +170,10 @@ test('where the GPU refuses the kernels, the run stays on the CPU and says why',
   const after = await page.until('the reason', ({ note, measured }) => note !== '' && measured === '1');
   assert.match(after.note, /^On the CPU: .*it refuses the kernels.*\.$/s);
   assert.match(await announcement(page), /On the CPU: /);
-  assert.deepEqual([after.backend, after.error, after.at, after.facts.Engine, after.facts.Adapter], ['auto', '', '1', 'CPU, in a worker', undefined]);
+  assert.deepEqual(
+    [after.backend, after.error, after.at, after.facts.Engine, after.facts.Adapter],
+    ['auto', '', '1', 'CPU, in a worker', undefined],
+  );
   assert.equal(after.facts.Fingerprint, before.facts.Fingerprint);
   const end = await page.playToEnd();
   assert.deepEqual([columns(end), end.facts.Fingerprint], [rows, facts.Fingerprint]);
@@ -166,12 +189,21 @@ test('a GPU that is lost while it compiles is replaced, and the run on the CPU i
     await page.until('an iteration', (seen) => seen.at === at && seen.measured === at);
   }
   await page.scrub('ArrowLeft');
-  for (const [devices, backend, engine] of [[2, 'auto', UNTIL_READY], [3, 'cpu', 'CPU, in a worker']]) {
+  for (const [devices, backend, engine] of [
+    [2, 'auto', UNTIL_READY],
+    [3, 'cpu', 'CPU, in a worker'],
+  ]) {
     await page.page.evaluate(() => window.seen.devices.at(-1).destroy());
     await page.page.waitForFunction((many) => window.seen.devices.length === many, devices);
-    await page.until('a message', ({ error, state }) => /The GPU was lost.*The run went the same way again/.test(error) && state !== 'busy');
+    await page.until(
+      'a message',
+      ({ error, state }) => /The GPU was lost.*The run went the same way again/.test(error) && state !== 'busy',
+    );
     const { at, newest, facts, ...seen } = await page.rest();
-    assert.deepEqual([seen.backend, facts.Engine, at, newest, facts.Fingerprint], [backend, engine, '2', '3', fingerprints[2]]);
+    assert.deepEqual(
+      [seen.backend, facts.Engine, at, newest, facts.Fingerprint],
+      [backend, engine, '2', '3', fingerprints[2]],
+    );
     assert.ok((await page.picture()).colours > 3);
     await page.page.click('#dismiss');
   }

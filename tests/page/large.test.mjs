@@ -69,7 +69,8 @@ for (const backend of ['cpu', 'webgpu']) {
 
     const tasks = await trace.end();
     assert.ok(tasks.length > 100, `${tasks.length} tasks`);
-    const longest = (list) => list.reduce((most, task) => (task.ms > most.ms ? task : most), { ms: 0, busy: 0, within: [] });
+    const longest = (list) =>
+      list.reduce((most, task) => (task.ms > most.ms ? task : most), { ms: 0, busy: 0, within: [] });
     const besidesDrawing = tasks.filter(({ draws, isOfPage }) => isOfPage && !draws);
     const [drawing, other, foreign] = [
       longest(tasks.filter(({ draws }) => draws)),
@@ -82,8 +83,12 @@ for (const backend of ['cpu', 'webgpu']) {
     t.diagnostic(`longest task besides drawing: ${say(other)}`);
     t.diagnostic(`longest task with drawing: ${say(drawing)}`);
     t.diagnostic(`longest task of the browser's own: ${say(foreign)}`);
-    t.diagnostic(`long tasks of the browser's own count: ${seen.length}, at most ${Math.max(0, ...seen).toFixed(0)} ms`);
-    t.diagnostic(`long tasks while the page opened: ${whileOpening.length}, at most ${Math.max(0, ...whileOpening).toFixed(0)} ms`);
+    t.diagnostic(
+      `long tasks of the browser's own count: ${seen.length}, at most ${Math.max(0, ...seen).toFixed(0)} ms`,
+    );
+    t.diagnostic(
+      `long tasks while the page opened: ${whileOpening.length}, at most ${Math.max(0, ...whileOpening).toFixed(0)} ms`,
+    );
     // Not how long it took: that is a matter of what else this machine has to do.
     const busiest = besidesDrawing.reduce((most, task) => (task.busy > most.busy ? task : most));
     assert.ok(busiest.busy <= LONGEST, `a task takes ${say(busiest)}`);

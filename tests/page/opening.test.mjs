@@ -70,7 +70,10 @@ async function setBeta(page, text) {
 const betaOf = (page) => page.page.inputValue('#beta');
 
 /** Where a mesh is being opened: `read`, its file is read; `open`, its run is prepared. */
-for (const [method, when] of [['read', 'a file is read'], ['open', 'its run is prepared']]) {
+for (const [method, when] of [
+  ['read', 'a file is read'],
+  ['open', 'its run is prepared'],
+]) {
   test(`an engine and β that are chosen while ${when} are those that it plays with`, async () => {
     const page = await openEdgeflip(browser, holdWorkers);
     await page.open(roof);
@@ -80,7 +83,10 @@ for (const [method, when] of [['read', 'a file is read'], ['open', 'its run is p
     assert.equal((await page.look()).state, 'busy');
     await letGo(page);
     const opened = await page.rest();
-    assert.deepEqual([opened.caption, opened.error, opened.backend, await betaOf(page)], ['sphere.off', '', 'cpu', '45']);
+    assert.deepEqual(
+      [opened.caption, opened.error, opened.backend, await betaOf(page)],
+      ['sphere.off', '', 'cpu', '45'],
+    );
     assert.deepEqual([opened.facts.Engine, opened.facts['β']], ['CPU, in a worker', '45°']);
     const mesh = (await expected(sphere)).mesh;
     const { indices } = await makeDelaunay(mesh, { backend: 'cpu', maxNormalAngle: 45 });
@@ -142,9 +148,14 @@ test('of what is chosen while other meshes are read, the last one opens, and no 
   for (let last = 0; last < wanted.length; last++) {
     const order = [...wanted.slice(last + 1), ...wanted.slice(0, last + 1)];
     await page.page.evaluate(() => window.hold('generate'));
-    await held(page, 'read', async () => {
-      for (const [, ask] of order) await ask();
-    }, order.length);
+    await held(
+      page,
+      'read',
+      async () => {
+        for (const [, ask] of order) await ask();
+      },
+      order.length,
+    );
     await page.choose('backend', 'cpu');
     await letGo(page);
     const { caption, error, facts } = await page.rest();
@@ -265,7 +276,11 @@ test('a folder with a glTF file and its buffer in a folder below plays, and is d
     // It is not read: it is no buffer.
     file(`${name}/data/large.png`, 'no picture');
     await page.dropPaths([join(folder, name.split('/')[0])]);
-    await page.until(`the mesh of ${name}`, ({ error, state, measured, note }) => (state === 'ready' && measured === '0' && !/other/.test(note)) || error !== '');
+    await page.until(
+      `the mesh of ${name}`,
+      ({ error, state, measured, note }) =>
+        (state === 'ready' && measured === '0' && !/other/.test(note)) || error !== '',
+    );
     const opened = await page.rest();
     assert.deepEqual([opened.caption, opened.error], ['rigged.gltf', '']);
     await page.chooseEngine('cpu');

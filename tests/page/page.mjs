@@ -95,7 +95,8 @@ export async function openEdgeflip(browser, ...scripts) {
   for (const script of scripts) await page.addInitScript(script);
   // Every address that is asked for; `data:` and `blob:` are the page's own.
   page.on('request', (request) => {
-    if (!/^(data|blob):/.test(request.url()) && !request.url().startsWith(address)) problems.push(`asked for ${request.url()}`);
+    if (!/^(data|blob):/.test(request.url()) && !request.url().startsWith(address))
+      problems.push(`asked for ${request.url()}`);
   });
   await page.goto(address);
   const edgeflip = new EdgeflipPage(page, problems);
@@ -133,7 +134,9 @@ export class EdgeflipPage {
         note: text('note'),
         status: text('status'),
         caption: text('caption'),
-        facts: Object.fromEntries([...document.querySelectorAll('dd[data-fact]')].map((dd) => [dd.dataset.fact, dd.textContent])),
+        facts: Object.fromEntries(
+          [...document.querySelectorAll('dd[data-fact]')].map((dd) => [dd.dataset.fact, dd.textContent]),
+        ),
         rows: [...document.querySelectorAll('#rows tr')].map((row) => [...row.cells].map((cell) => cell.textContent)),
       };
     });
@@ -145,14 +148,21 @@ export class EdgeflipPage {
     for (;;) {
       const seen = await this.look();
       if (isSo(seen)) return seen;
-      assert.ok(performance.now() < end, `not after ${seconds} s: ${what}; the page says ${JSON.stringify({ ...seen, rows: seen.rows.length })}`);
+      assert.ok(
+        performance.now() < end,
+        `not after ${seconds} s: ${what}; the page says ${JSON.stringify({ ...seen, rows: seen.rows.length })}`,
+      );
       await pause(30);
     }
   }
 
   /** Waits until nothing goes on and the numbers of what is shown are there. */
   rest(seconds) {
-    return this.until('a page at rest', ({ state, measured, at }) => /^(ready|done)$/.test(state) && measured === at, seconds);
+    return this.until(
+      'a page at rest',
+      ({ state, measured, at }) => /^(ready|done)$/.test(state) && measured === at,
+      seconds,
+    );
   }
 
   async open(path) {
@@ -169,7 +179,9 @@ export class EdgeflipPage {
         const dataTransfer = new DataTransfer();
         dataTransfer.items.add(new File([Uint8Array.from(atob(base64), (char) => char.charCodeAt(0))], file));
         for (const type of ['dragover', 'drop']) {
-          document.getElementById('view').dispatchEvent(new DragEvent(type, { dataTransfer, bubbles: true, cancelable: true }));
+          document
+            .getElementById('view')
+            .dispatchEvent(new DragEvent(type, { dataTransfer, bubbles: true, cancelable: true }));
         }
       },
       [bytes, name],
@@ -182,7 +194,8 @@ export class EdgeflipPage {
     const session = await this.page.context().newCDPSession(this.page);
     const { x, y, width, height } = await (await this.page.$('#view')).boundingBox();
     const drag = { x: x + width / 2, y: y + height / 2, data: { items: [], files: paths, dragOperationsMask: 1 } };
-    for (const type of ['dragEnter', 'dragOver', 'drop']) await session.send('Input.dispatchDragEvent', { type, ...drag });
+    for (const type of ['dragEnter', 'dragOver', 'drop'])
+      await session.send('Input.dispatchDragEvent', { type, ...drag });
     await session.detach();
   }
 
@@ -214,7 +227,9 @@ export class EdgeflipPage {
 
   /** What the canvas shows. */
   async picture() {
-    await this.page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done()))));
+    await this.page.evaluate(
+      () => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done()))),
+    );
     const canvas = await this.page.$('#view canvas');
     return new Picture(await canvas.screenshot());
   }
@@ -240,13 +255,19 @@ export async function assertPlays(page, { rows, facts }, engine) {
   const inputPicture = await page.picture();
   assert.ok(inputPicture.colours > 3, `${inputPicture.colours} colours of the input`);
   const end = await page.playToEnd();
-  assert.deepEqual(end.rows.map((row) => row.slice(0, 4)), rows);
+  assert.deepEqual(
+    end.rows.map((row) => row.slice(0, 4)),
+    rows,
+  );
   assert.equal(end.at, `${rows.length}`);
   for (const [fact, value] of Object.entries(facts)) assert.equal(end.facts[fact], value, fact);
   assert.equal(end.facts.Engine, engine);
   if (!engine.startsWith('CPU')) {
     assert.match(end.facts.Adapter, /\S/);
-    assert.ok(Number(end.facts.Dispatches.replaceAll(',', '')) >= 3 * rows.length, `${end.facts.Dispatches} dispatches`);
+    assert.ok(
+      Number(end.facts.Dispatches.replaceAll(',', '')) >= 3 * rows.length,
+      `${end.facts.Dispatches} dispatches`,
+    );
   } else {
     assert.deepEqual([end.facts.Adapter, end.facts.Dispatches], [undefined, undefined]);
   }

@@ -9,7 +9,10 @@ export class Picture {
     const bytes = Buffer.from(png);
     const parts = [];
     for (let at = 8; at < bytes.length; at += bytes.readUInt32BE(at) + 12) {
-      const [type, data] = [bytes.toString('latin1', at + 4, at + 8), bytes.subarray(at + 8, at + 8 + bytes.readUInt32BE(at))];
+      const [type, data] = [
+        bytes.toString('latin1', at + 4, at + 8),
+        bytes.subarray(at + 8, at + 8 + bytes.readUInt32BE(at)),
+      ];
       if (type === 'IHDR') {
         this.width = data.readUInt32BE(0);
         this.height = data.readUInt32BE(4);

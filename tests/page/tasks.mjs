@@ -33,7 +33,9 @@ export async function tasksOf(page) {
       await session.detach();
       const marked = events.find(({ name, args }) => name === 'TimeStamp' && args?.data?.message === mark);
       if (!marked) throw new Error('the trace does not have the mark');
-      const mine = events.filter(({ pid, tid, ph, ts }) => pid === marked.pid && tid === marked.tid && ph === 'X' && ts > marked.ts);
+      const mine = events.filter(
+        ({ pid, tid, ph, ts }) => pid === marked.pid && tid === marked.tid && ph === 'X' && ts > marked.ts,
+      );
       mine.sort((a, b) => a.ts - b.ts || b.dur - a.dur);
       const tasks = [];
       for (const { name, ts, dur, tdur, args } of mine) {
@@ -45,7 +47,10 @@ export async function tasksOf(page) {
         if (!task || ts >= task.end) continue;
         task.draws ||= DRAWING.has(name);
         const { functionName, url } = args?.data ?? {};
-        task.parts.push({ ms: dur / 1000, name: [name, functionName, url?.split('/').at(-1)].filter(Boolean).join(' ') });
+        task.parts.push({
+          ms: dur / 1000,
+          name: [name, functionName, url?.split('/').at(-1)].filter(Boolean).join(' '),
+        });
       }
       return tasks.map(({ ms, busy, draws, parts }) => ({
         ms,

@@ -5,7 +5,9 @@ import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { isDeepStrictEqual } from 'node:util';
 
-const { cases, table, seconds } = JSON.parse(readFileSync(new URL('../../target/parity.json', import.meta.url), 'utf8'));
+const { cases, table, seconds } = JSON.parse(
+  readFileSync(new URL('../../target/parity.json', import.meta.url), 'utf8'),
+);
 
 /**
  * Throws where the run is not what the simulation of the mesh gives; else the word for its cell. Runs of more iterations

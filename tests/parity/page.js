@@ -16,7 +16,12 @@ async function run({ positions, isWide, indices, dimension, beta, deviation, loc
     indices: Uint32Array.from(indices),
     dimension,
   };
-  const session = await FlipSession.create(mesh, { backend, maxNormalAngle: beta, maxDeviation: deviation ?? Infinity, lockedEdges: locked });
+  const session = await FlipSession.create(mesh, {
+    backend,
+    maxNormalAngle: beta,
+    maxDeviation: deviation ?? Infinity,
+    lockedEdges: locked,
+  });
   try {
     const iterations = [];
     if (isWatched) {
@@ -43,12 +48,18 @@ window.runAll = async ({ backend, watched }) => {
   const runs = [];
   const take = async (index) => {
     const mesh = cases[index];
-    runs[index] = await run(mesh, backend, mesh.iterations.length <= watched).catch(({ code, message }) => ({ code, message }));
+    runs[index] = await run(mesh, backend, mesh.iterations.length <= watched).catch(({ code, message }) => ({
+      code,
+      message,
+    }));
   };
   // The first one opens the device for all; then the longest begin first.
   await take(0);
   const length = (index) => cases[index].iterations.length;
-  const queue = cases.map((_, index) => index).slice(1).sort((a, b) => length(b) - length(a));
+  const queue = cases
+    .map((_, index) => index)
+    .slice(1)
+    .sort((a, b) => length(b) - length(a));
   const next = async () => {
     for (let index = queue.shift(); index !== undefined; index = queue.shift()) await take(index);
   };

@@ -54,12 +54,14 @@ export async function check(page, { title, backend }) {
   }
   const seconds = ((performance.now() - began) / 1000).toFixed(1);
   const line = (row, sums, last) => `| ${[title, row, ...columns.map((column) => sums[column]), last].join(' | ')} |`;
-  console.log([
-    '',
-    '| engine | mesh | kind | quads | exact ties | labelled | angle | fold | deviation | mismatches | seconds |',
-    '|---|---|---|---:|---:|---:|---:|---:|---:|---:|---:|',
-    ...[...rows].map(([row, sums]) => line(row, sums, '')).sort(),
-    line('all | all', all, seconds),
-  ].join('\n'));
+  console.log(
+    [
+      '',
+      '| engine | mesh | kind | quads | exact ties | labelled | angle | fold | deviation | mismatches | seconds |',
+      '|---|---|---|---:|---:|---:|---:|---:|---:|---:|---:|',
+      ...[...rows].map(([row, sums]) => line(row, sums, '')).sort(),
+      line('all | all', all, seconds),
+    ].join('\n'),
+  );
   assert.deepEqual(mismatches, []);
 }
