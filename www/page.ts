@@ -5,14 +5,16 @@ import { Choices, type Settings } from './choices.ts';
 import { controls, element } from './controls.ts';
 import { LOST } from './crash.ts';
 import { download } from './download.ts';
-import { beginBehind, beginRun, Cancelled, forAuto, openGpu, startWorker, waitsForGpu, type Gpu } from './engines.ts';
+import { beginBehind, beginRun, Cancelled, forAuto, startWorker, waitsForGpu } from './engines.ts';
+import { Graphics } from './graphics.ts';
 import { Handover } from './handover.ts';
-import { BINS, Opening, type Opened } from './opening.ts';
+import { Jobs, showError, showProgress } from './jobs.ts';
+import { fingerprintOf, measure } from './measure.ts';
+import { Opening, type Opened } from './opening.ts';
 import { palette } from './palette.ts';
 import { Panel } from './panel.ts';
 import { Player } from './player.ts';
 import type { OpenMesh, Run, Summary } from './run.ts';
-import { Scene } from './scene.ts';
 import { sample, splitName, type Source } from './sources.ts';
 import { showTransport, statusOf } from './transport.ts';
 import { unitPositions } from './unit.ts';
@@ -31,11 +33,11 @@ export class Page {
       void this.#rest();
     },
   );
-  /** `undefined` while it is looked for. */
-  #gpu: Gpu | string | undefined;
-  #scene: Scene | undefined;
-  /** Done when `#gpu` and `#scene` are what they will be. */
-  #lookedForGpu: Promise<void> = Promise.resolve();
+  readonly #graphics = new Graphics((reason) => void this.#recover(reason, true));
+  readonly #jobs = new Jobs(
+    () => this.#showTransport(),
+    () => this.#endOfJob(),
+  );
   readonly #choices = new Choices();
   /** The mesh that was asked for last. */
   #source: Source | undefined;
@@ -47,8 +49,6 @@ export class Page {
   #settings: Settings | undefined;
   /** Puts the run on the GPU, where it waits for that. */
   #handover: Handover | undefined;
-  /** What goes on and can be cancelled. */
-  #job: AbortController | undefined;
   /** What the run said of itself when it last came to rest. */
   #summary: Summary | undefined;
   /** Count the states that are drawn and that come to rest: what has been overtaken gives way. */
@@ -61,7 +61,7 @@ export class Page {
     this.#panel.setPalette(palette());
     this.#panel.clear();
     matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => this.#recolour());
-    this.#lookedForGpu = this.#openGpu();
+    this.#graphics.open();
     const opening = this.open(sample(spec));
     startWorker();
     await opening;
@@ -73,7 +73,7 @@ export class Page {
     const opening = new Opening(source, showProgress);
     this.#opening = opening;
     this.#source = source;
-    await this.#attempt(`Opening ${source.name}…`, async (signal) => {
+    await this.#jobs.attempt(`Opening ${source.name}…`, async (signal) => {
       const opened = await opening.read;
       signal.throwIfAborted();
       showProgress('Preparing the mesh…');
@@ -86,16 +86,16 @@ export class Page {
     try {
       this.#choices.enter();
     } catch (error) {
-      return this.#showError(error);
+      return showError(error);
     }
     // What is still being read begins with them.
     if (this.#opening && !this.#opening.opened) return;
     const opened = this.#opening?.opened ?? this.#opened;
-    if (opened) await this.#attempt('Preparing the mesh…', (signal) => this.#begin(opened, signal));
+    if (opened) await this.#jobs.attempt('Preparing the mesh…', (signal) => this.#begin(opened, signal));
   }
 
   cancel(): void {
-    this.#job?.abort(new Cancelled());
+    this.#jobs.cancel();
   }
 
   async play(): Promise<void> {
@@ -111,7 +111,7 @@ export class Page {
   }
 
   seek(at: number): void {
-    if (this.#job || !this.#run) return;
+    if (this.#jobs.isBusy || !this.#run) return;
     this.#run.seek(Math.max(0, Math.min(at, this.#run.iterations.length)));
     this.#player.pause();
     void this.redraw();
@@ -126,7 +126,7 @@ export class Page {
     if (!run || !opened) return;
     const [stem, extension] = splitName(opened.name);
     const name = `${stem.replaceAll(' ', '-')}-after-${run.at}${extension}`;
-    await this.#attempt('Writing the file…', async (signal) => {
+    await this.#jobs.attempt('Writing the file…', async (signal) => {
       const mesh = { ...opened.mesh, indices: await run.triangles() };
       signal.throwIfAborted();
       await download(mesh, name, opened.kept, signal);
@@ -135,7 +135,7 @@ export class Page {
 
   /** Draws the state that the run is in. */
   async redraw(): Promise<void> {
-    const [run, opened, scene] = [this.#run, this.#opened, this.#scene];
+    const [run, opened, scene] = [this.#run, this.#opened, this.#graphics.scene];
     if (!run || !opened) return;
     const draw = ++this.#draws;
     this.#panel.showIterations(run.iterations, run.at);
@@ -157,34 +157,30 @@ export class Page {
   #showTriangles(run: Run, { mesh }: Opened): Uint8Array | undefined {
     const states = controls.wireframe.checked ? run.states : undefined;
     const lines = controls.wireframe.checked && !states ? run.lines() : undefined;
-    this.#scene?.show(run.drawn, mesh.indices.length, lines);
+    this.#graphics.scene?.show(run.drawn, mesh.indices.length, lines);
     return states;
-  }
-
-  #showError(error: unknown): void {
-    // As it is: it may begin with the name of a file.
-    element('error-text').textContent = error instanceof Error ? error.message : String(error);
-    element('error').hidden = false;
   }
 
   /** Begins a run; the one before it stays if this fails. */
   async #begin(opened: Opened, signal: AbortSignal): Promise<void> {
     const { settings } = this.#choices;
     const { mesh } = opened;
-    if (waitsForGpu(mesh, settings.backend)) await this.#lookedForGpu;
+    if (waitsForGpu(mesh, settings.backend)) await this.#graphics.ready;
     signal.throwIfAborted();
     const compiles =
-      settings.backend === 'webgpu' && typeof this.#gpu === 'object' && !this.#gpu.kernels.areReadyFor(mesh);
+      settings.backend === 'webgpu' &&
+      typeof this.#graphics.gpu === 'object' &&
+      !this.#graphics.gpu.kernels.areReadyFor(mesh);
     if (compiles) showProgress('Compiling the GPU’s programs…');
-    const run = await beginRun(mesh, settings, this.#gpu, signal);
+    const run = await beginRun(mesh, settings, this.#graphics.gpu, signal);
     // What draws comes with it.
-    await this.#lookedForGpu;
+    await this.#graphics.ready;
     if (signal.aborted) {
       run.free();
       throw signal.reason;
     }
     const isNew = this.#opened !== opened;
-    this.#scene?.clear();
+    this.#graphics.scene?.clear();
     this.#run?.free();
     this.#run = run;
     if (isNew) this.#opened?.office.close();
@@ -192,10 +188,10 @@ export class Page {
     if (this.#opening?.opened === opened) this.#opening = undefined;
     this.#settings = settings;
     this.#summary = undefined;
-    this.#scene?.setMesh(unitPositions(mesh), mesh.dimension);
-    if (isNew || !this.#scene?.isLooking) this.#scene?.lookAtAll();
+    this.#graphics.scene?.setMesh(unitPositions(mesh), mesh.dimension);
+    if (isNew || !this.#graphics.scene?.isLooking) this.#graphics.scene?.lookAtAll();
     if (isNew) controls.wireframe.checked = mesh.indices.length <= 3 * EDGES_SEEN;
-    element('no-mesh').hidden = this.#scene !== undefined;
+    element('no-mesh').hidden = this.#graphics.scene !== undefined;
     element('beta-label').hidden = mesh.dimension === 2;
     this.#panel.clear();
     this.#expectGpu(run, mesh, settings);
@@ -207,8 +203,14 @@ export class Page {
   #expectGpu(run: Run, mesh: OpenMesh, settings: Settings): void {
     this.#handover?.close();
     this.#handover = undefined;
-    if (settings.backend !== 'auto' || !run.isInWorker || run.fallback !== undefined || this.#gpu === undefined) return;
-    const gpu = forAuto(this.#gpu);
+    if (
+      settings.backend !== 'auto' ||
+      !run.isInWorker ||
+      run.fallback !== undefined ||
+      this.#graphics.gpu === undefined
+    )
+      return;
+    const gpu = forAuto(this.#graphics.gpu);
     if (typeof gpu === 'string') {
       run.fallback = gpu;
       return;
@@ -227,7 +229,7 @@ export class Page {
     const [run, opened, handover] = [this.#run, this.#opened, this.#handover];
     if (!run || !opened || !handover) return;
     const isMeasured = () => document.body.dataset['measured'] === `${run.at}`;
-    const isAtRest = () => run === this.#run && !this.#job && this.#player.isAtRest && isMeasured();
+    const isAtRest = () => run === this.#run && !this.#jobs.isBusy && this.#player.isAtRest && isMeasured();
     try {
       const next = await handover.follow(run, isAtRest);
       if (!next) return;
@@ -249,32 +251,9 @@ export class Page {
     if (!this.#player.isPlaying) void this.#rest();
   }
 
-  /** Shows what goes on, with a way to cancel it; what was begun before is cancelled. */
-  async #attempt(text: string, work: (signal: AbortSignal) => Promise<void>): Promise<void> {
-    const overtaken = this.#job;
-    const job = new AbortController();
-    this.#job = job;
-    overtaken?.abort(new Cancelled());
-    job.signal.addEventListener('abort', () => this.#end(job));
-    element('error').hidden = true;
-    showProgress(text);
-    element('busy').hidden = false;
-    this.#showTransport();
-    try {
-      await work(job.signal);
-    } catch (error) {
-      if (!job.signal.aborted) this.#showError(error);
-    } finally {
-      this.#end(job);
-    }
-  }
-
-  #end(job: AbortController): void {
-    if (this.#job !== job) return;
-    this.#job = undefined;
+  #endOfJob(): void {
     this.#opening?.close();
     this.#opening = undefined;
-    element('busy').hidden = true;
     this.#showChoices();
     this.#showTransport();
     // What was being measured may have been cancelled with it.
@@ -297,16 +276,16 @@ export class Page {
   #showFailure(error: unknown): void {
     if (error instanceof Error && error.name === LOST) {
       // What goes on may be the recovery; else the measurement after it asks the worker again.
-      if (!this.#job) void this.#recover(error.message, false);
+      if (!this.#jobs.isBusy) void this.#recover(error.message, false);
       return;
     }
     const isLost = error instanceof EdgeflipError && error.code === 'device-failed';
-    if (!isLost && !(error instanceof Cancelled) && !(error instanceof DOMException)) this.#showError(error);
+    if (!isLost && !(error instanceof Cancelled) && !(error instanceof DOMException)) showError(error);
   }
 
   #showTransport(): void {
     const [run, opened, summary] = [this.#run, this.#opened, this.#summary];
-    showTransport({ run, opened, summary, isBusy: this.#job !== undefined, isPlaying: this.#player.isPlaying });
+    showTransport({ run, opened, summary, isBusy: this.#jobs.isBusy, isPlaying: this.#player.isPlaying });
   }
 
   /** What was chosen in vain gives way to what the run was begun with. */
@@ -340,7 +319,7 @@ export class Page {
       this.#panel.showFacts(opened.mesh, run, this.#summary, this.#settings?.maxNormalAngle, fingerprint);
       this.#panel.showLegend(run.states, this.#summary);
       this.#showTransport();
-      if (news === undefined) await this.#measure(indices, isOutdated);
+      if (news === undefined) await measure(this.#panel, opened, run, indices, isOutdated);
       if (isOutdated()) return;
       element('announcement').textContent = news ?? `${statusOf(run)}. ${element('note').textContent}`;
       document.body.dataset['measured'] = `${run.at}`;
@@ -350,35 +329,6 @@ export class Page {
     }
   }
 
-  /** Measures the triangles, which are those that are shown. */
-  async #measure(indices: Uint32Array, isOutdated: () => boolean): Promise<void> {
-    const [run, opened] = [this.#run, this.#opened];
-    if (!run || !opened) return;
-    const { mesh, office } = opened;
-    const before = await opened.before();
-    const now = run.at === 0 ? before : await office.ask((desk) => desk.measure({ ...mesh, indices }, BINS));
-    if (isOutdated()) return;
-    this.#panel.showQuality(before, now);
-    if (!run.isOver) return;
-    const change = await office.ask((desk) => desk.compare(mesh, indices));
-    if (!isOutdated()) this.#panel.showQuality(before, now, change);
-  }
-
-  async #openGpu(): Promise<void> {
-    this.#gpu = undefined;
-    const gpu = await openGpu();
-    const device = typeof gpu === 'string' ? undefined : gpu.device;
-    try {
-      this.#scene = await Scene.create(element('view'), device, palette());
-    } catch {
-      element('no-mesh').textContent =
-        'This browser can draw neither with WebGPU nor with WebGL2. The numbers are right all the same.';
-      element('no-mesh').hidden = false;
-    }
-    this.#gpu = device && !this.#scene?.isOnWebGpu ? 'the page could not draw with WebGPU' : gpu;
-    void device?.lost.then(({ message }) => this.#recover(message || 'no reason given', true));
-  }
-
   /**
    * The device is gone, and with it what was drawn; or the context of the worker is. The run goes the same way again,
    * to the same bits.
@@ -386,12 +336,10 @@ export class Page {
   async #recover(reason: string, isOfPage: boolean): Promise<void> {
     const [run, opening] = [this.#run, this.#opening];
     let hasRecovered = false;
-    await this.#attempt('The GPU was lost; going on from the input…', async (signal) => {
+    await this.#jobs.attempt('The GPU was lost; going on from the input…', async (signal) => {
       if (isOfPage) {
-        this.#scene?.dispose();
-        this.#scene = undefined;
-        this.#lookedForGpu = this.#openGpu();
-        await this.#lookedForGpu;
+        this.#graphics.open();
+        await this.#graphics.ready;
       }
       const opened = (await opening?.read) ?? this.#opened;
       signal.throwIfAborted();
@@ -408,18 +356,18 @@ export class Page {
       hasRecovered = true;
     });
     // What was chosen meanwhile has taken its place.
-    if (this.#job) return;
+    if (this.#jobs.isBusy) return;
     const lost = `The GPU was lost (${reason}).`;
     if (hasRecovered) {
       this.#player.pause();
       const andNow = opening
         ? 'The mesh was opened all the same'
         : 'The run went the same way again, to the same triangles';
-      this.#showError(new Error(`${lost} ${andNow}.`));
+      showError(new Error(`${lost} ${andNow}.`));
     } else if (!this.#opened && this.#source) {
       await this.open(this.#source);
     } else if (element('error').hidden) {
-      this.#showError(new Error(`${lost} Choose an engine to go on.`));
+      showError(new Error(`${lost} Choose an engine to go on.`));
     }
   }
 
@@ -435,22 +383,8 @@ export class Page {
 
   #recolour(): void {
     const colours = palette();
-    this.#scene?.setPalette(colours);
+    this.#graphics.scene?.setPalette(colours);
     this.#panel.setPalette(colours);
     void this.redraw();
   }
-}
-
-/** What goes on, and how much of it is done, from 0 to 1, where that is known. */
-function showProgress(text: string, share = 1): void {
-  element('busy-text').textContent = text;
-  const bar = element<HTMLProgressElement>('progress');
-  if (share < 1) bar.value = share;
-  else bar.removeAttribute('value');
-}
-
-/** The first 64 bits of the SHA-256 of the triangles, as 32-bit little-endian words. */
-async function fingerprintOf(indices: Uint32Array): Promise<string> {
-  const digest = await crypto.subtle.digest('SHA-256', indices as Uint32Array<ArrayBuffer>);
-  return Array.from(new Uint8Array(digest, 0, 8), (byte) => byte.toString(16).padStart(2, '0')).join('');
 }

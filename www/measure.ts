@@ -1,0 +1,28 @@
+/** Numbers about the triangles that the page shows. */
+
+import { BINS, type Opened } from './opening.ts';
+import type { Panel } from './panel.ts';
+import type { Run } from './run.ts';
+
+/** Measures the triangles that `run` shows, and shows the numbers unless they are outdated by then. */
+export async function measure(
+  panel: Panel,
+  { mesh, office, before: measureInput }: Opened,
+  run: Run,
+  indices: Uint32Array,
+  isOutdated: () => boolean,
+): Promise<void> {
+  const before = await measureInput();
+  const now = run.at === 0 ? before : await office.ask((desk) => desk.measure({ ...mesh, indices }, BINS));
+  if (isOutdated()) return;
+  panel.showQuality(before, now);
+  if (!run.isOver) return;
+  const change = await office.ask((desk) => desk.compare(mesh, indices));
+  if (!isOutdated()) panel.showQuality(before, now, change);
+}
+
+/** The first 64 bits of the SHA-256 of the triangles, as 32-bit little-endian words. */
+export async function fingerprintOf(indices: Uint32Array): Promise<string> {
+  const digest = await crypto.subtle.digest('SHA-256', indices as Uint32Array<ArrayBuffer>);
+  return Array.from(new Uint8Array(digest, 0, 8), (byte) => byte.toString(16).padStart(2, '0')).join('');
+}
