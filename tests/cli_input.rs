@@ -16,7 +16,7 @@ use std::time::Duration;
 const QUIET: &[&str] = &["--quiet"];
 
 /// Without optimisation it waits for 2 s.
-const LATE: &str = "no program has opened this FIFO to write into it within 2 s";
+const LATE: &str = "no program has opened this FIFO for writing within 2 s";
 
 #[test]
 fn a_fifo_that_nobody_writes_into_is_not_waited_for_for_ever() {
@@ -110,13 +110,13 @@ fn only_regular_files_in_the_folder_are_read() {
     for name in ["below/inside.bin", "inside"] {
         silent(&run(&gltf(&folder, name), &output, &["--external-files", "-q"]));
     }
-    let leads_out = "a link leads out of the folder of IN; only what is in it is read";
+    let leads_out = "a link leads out of the folder of IN; only files in this folder are read";
     for (name, why) in [
         ("below/outside", leads_out),
         ("up/outside.bin", leads_out),
         ("zero", leads_out),
-        ("fifo", "it is no regular file"),
-        ("below", "it is no regular file"),
+        ("fifo", "it is not a regular file"),
+        ("below", "it is not a regular file"),
         ("gone", "No such file or directory (os error 2)"),
     ] {
         let input = gltf(&folder, name);

@@ -128,7 +128,7 @@ fn a_fifo_that_nobody_reads_is_not_waited_for_for_ever() {
     let folder = Folder::new();
     let (input, output) = (folder.file("in.off", SQUARE), folder.fifo("out.off"));
     // Without optimisation it waits for 2 s.
-    let line = format!("{}: no program has opened this FIFO to read it within 2 s", output.display());
+    let line = format!("{}: no program has opened this FIFO for reading within 2 s", output.display());
     failed(&run(&input, &output, &[]), 1, &line);
 }
 
