@@ -131,7 +131,7 @@ fn threads_that_cannot_be_started_are_done_without() {
         shell(&(script.to_owned() + arguments), &[&input, &output]).output().unwrap()
     };
     silent(&ran("--quiet"));
-    let line = "option threads: 2 could not be started: Resource temporarily unavailable (os error 11)";
+    let line = "option threads: cannot start 2 threads: Resource temporarily unavailable (os error 11)";
     failed(&ran("--threads 2"), 1, line);
 }
 

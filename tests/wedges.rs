@@ -258,7 +258,7 @@ fn what_is_no_result_is_refused() {
     );
     assert_eq!(
         refused(&[0, 3, 1, 1, 3, 2]),
-        "option triangles: triangle 0 is none that flips make while seams are locked"
+        "option triangles: triangle 0 cannot result from flips while seams are locked"
     );
 }
 
