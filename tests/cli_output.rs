@@ -34,7 +34,7 @@ fn the_standard_output_is_written_into_by_any_name() {
         let ran = run(&input, output, QUIET);
         assert_eq!((ran.status.code(), text(&ran.stdout), text(&ran.stderr)), (Some(0), FLIPPED, ""));
         let line =
-            format!("{}: --json has the standard output for itself; give another OUT", output.display());
+            format!("{}: --json also writes to the standard output; give another OUT", output.display());
         failed(&run(&input, output, &["--json"]), 2, &line);
     }
     assert!(link.is_symlink() && again.is_symlink());
@@ -266,7 +266,7 @@ fn the_owner_stays_or_a_note_says_why_not() {
     }
     let ran = as_nobody(&mut command(&input, &output, &["--json"])).unwrap();
     let said = text(&ran.stderr);
-    let note = format!("note       {}: its owner was {OTHER} and is {NOBODY} now (", output.display());
+    let note = format!("note       {}: its owner changed from {OTHER} to {NOBODY} (", output.display());
     assert!(said.starts_with(&note) && said.lines().count() == 1, "{said}");
     assert_eq!(ran.status.code(), Some(0));
     assert_eq!(found(), (NOBODY, NOBODY, 0o750));

@@ -78,7 +78,7 @@ fn the_line_names_the_file_and_what_it_wanted() {
     let ran = limited(24_000, "--backend cpu", [&input, &output]);
     let said = text(&ran.stderr);
     let start = format!("edgeflip: {}: memory ran out: ", input.display());
-    assert!(said.starts_with(&start) && said.ends_with(" more bytes could not be had\n"), "{said}");
+    assert!(said.starts_with(&start) && said.ends_with(" more bytes are not available\n"), "{said}");
     assert_eq!((ran.status.code(), said.lines().count()), (Some(1), 1));
     assert_eq!(fs::read_to_string(output).unwrap(), "old");
     assert_eq!(folder.names(), ["in.ply", "out.off"]);
@@ -141,7 +141,7 @@ fn a_gpu_is_left_alone_in_little_memory() {
     let folder = Folder::new();
     let (input, output) = (folder.path("in.off"), folder.path("out.off"));
     io::write(&input, &grid(101)).unwrap();
-    let why = "the driver of a GPU may need 1076301824 bytes, and the limit of memory (ulimit -v) leaves ";
+    let why = "a GPU driver may need 1076301824 bytes, and the limit of memory (ulimit -v) leaves ";
     let ran = limited(500_000, "--backend gpu", [&input, &output]);
     let said = text(&ran.stderr);
     assert!(said.starts_with(&format!("edgeflip: backend gpu is not available: {why}")), "{said}");

@@ -210,7 +210,7 @@ fn text_refused_with_its_line() {
         ("float z", "float y", "header: element `vertex` has two properties `y`"),
         ("element vertex 3\n", "", "line 3: a property before the first element"),
         ("face 1", "vertex 1", "header: there are two elements `vertex`"),
-        ("list uchar", "list float", "line 8: the length of a list has to be of an integer type"),
+        ("list uchar", "list float", "line 8: the length of a list must have an integer type"),
         (
             "uchar int",
             "uchar float",
