@@ -1,4 +1,4 @@
-//! What the command line reads: pipes are waited for so long only, and files beside a glTF file lie in its folder.
+//! The input of the command line: waits for pipes only a limited time, and reads other files of a glTF file in its folder only.
 #![cfg(all(unix, feature = "cli"))]
 #![allow(clippy::unwrap_used, reason = "what fails here is a failed test")]
 
@@ -15,7 +15,7 @@ use std::time::Duration;
 
 const QUIET: &[&str] = &["--quiet"];
 
-/// Without optimisation it waits for 2 s.
+/// In debug builds the program waits for 2 s.
 const LATE: &str = "no program has opened this FIFO for writing within 2 s";
 
 #[test]
@@ -31,7 +31,7 @@ fn a_fifo_that_nobody_writes_into_is_not_waited_for_for_ever() {
     assert_eq!(folder.names(), ["fifo.off", "in.off"]);
 }
 
-/// It may open the FIFO late, and take its time once it has.
+/// A writer that opens the FIFO late, and writes late.
 #[test]
 fn a_writer_is_waited_for() {
     let folder = Folder::new();

@@ -102,7 +102,7 @@ fn a_bad_file_gives_one_line_and_no_output() {
     }
 }
 
-/// A kite of vertices 0 to 3 with what scans and exports add to it, in three formats.
+/// A kite of vertices 0 to 3 with typical faults of scans and exports, in three formats.
 ///
 /// ```text
 ///        2
