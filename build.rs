@@ -1,5 +1,5 @@
-//! Lists the shaders of the WebGPU engine for `src/engine/webgpu/kernels.rs`: in `shaders.rs`, pairs of a path in `shaders/` and
-//! its text. Browsers download them, so the wasm32 build leaves comments and indentation out.
+//! Writes `shaders.rs` for `src/engine/webgpu/sources.rs`: the path and the text of each shader of the WebGPU engine. Browsers
+//! download the shaders, so the wasm32 build removes comments and indentation.
 
 use std::error::Error;
 use std::path::Path;

@@ -1,18 +1,18 @@
-//! Composes a shader from its file and the files that it imports: for the WebGPU engine, for `tools/glsl`, and for the tests.
+//! Composes a shader from its file and the files that it imports. The WebGPU engine, `tools/glsl` and the tests use it.
 //!
-//! A file names what it needs in lines at its top. `#import NAME` takes `NAME.wgsl` from the folder of the engine, else from
-//! `shared/`. `#import NAME if CHOICE` takes it only where the caller makes that choice:
+//! The first lines of a file list its imports. `#import NAME` takes `NAME.wgsl` from the folder of the engine, or else from
+//! `shared/`. `#import NAME if CHOICE` takes it only if the caller makes that choice:
 //!
-//! | choices | between |
+//! | choices | meaning |
 //! |---|---|
-//! | `plane`, `space` | meshes in the plane, and surfaces |
-//! | `floats`, `fixed` | coordinates as they are, and as fixed-point numbers |
-//! | `any_deviation`, `deviation` | no limit for what a flip moves the surface, and one |
-//! | `sweep`, `tail` | many edges at a time in the guard, and few |
-//! | `reads`, `writes` | WebGPU only: kernels that only read the history, and those that write it |
+//! | `plane`, `space` | meshes in the plane, or in space |
+//! | `floats`, `fixed` | coordinates as 32-bit floats, or as fixed-point numbers |
+//! | `any_deviation`, `deviation` | without or with a limit for the deviation |
+//! | `sweep`, `tail` | the guard tests many edges, or few |
+//! | `reads`, `writes` | WebGPU only: the kernel only reads the history, or writes it |
 
-/// The text of the file `entry`, behind the texts of all files that it imports, each once. `text_of` gives the text of a file
-/// by its path, such as `shared/mesh.wgsl`. An import that no file answers stays in the text, where the compiler names it.
+/// The text of the file `entry` after the texts of all files that it imports, each once. `text_of` returns the text of a file
+/// by its path, such as `shared/mesh.wgsl`. An import without a file stays in the text, so that the compiler reports it.
 pub fn compose<'a>(
     engine: &str,
     entry: &str,
@@ -33,7 +33,7 @@ struct Composer<'a, 'b> {
 }
 
 impl Composer<'_, '_> {
-    /// Appends a file and, before it, what it imports. False where there is no such file.
+    /// Appends the imports of a file, then the file. Returns false if the file does not exist.
     fn take(&mut self, name: &str) -> bool {
         let paths = [self.engine, "shared"].map(|folder| format!("{folder}/{name}.wgsl"));
         let Some((path, text)) = paths.iter().find_map(|path| Some((path, (self.text_of)(path)?))) else {
@@ -50,7 +50,7 @@ impl Composer<'_, '_> {
         true
     }
 
-    /// Whether a line is an import, and has been taken or is not wanted.
+    /// Whether a line is an import that has been taken, or whose choice the caller did not make.
     fn is_answered(&mut self, line: &str) -> bool {
         let Some(import) = line.strip_prefix("#import ") else { return false };
         let (name, choice) = import.split_once(" if ").unzip();

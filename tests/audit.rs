@@ -1,4 +1,4 @@
-//! Faults planted in results: the audit must name each.
+//! Results with planted faults: the audit must name each fault.
 #![allow(clippy::unwrap_used, reason = "a test that cannot make its mesh must stop")]
 
 mod meshes;
@@ -8,14 +8,14 @@ use edgeflip::quality::{Audit, MAX_LISTED, RemainingEdge, Violation, audit};
 use edgeflip::{Mesh, Options, Reason, families::by_name};
 use meshes::{joined, plane, reversed};
 
-/// The audit of `mesh`'s own triangles after `fault` was done to them.
+/// The audit of the mesh's own triangles after `fault` has changed them.
 fn audit_of(mesh: &Mesh, fault: impl FnOnce(&mut Vec<u32>)) -> Audit {
     let mut triangles = mesh.triangles().to_vec();
     fault(&mut triangles);
     audit(mesh, &triangles, &Options::default())
 }
 
-/// Flips the edge between two vertices, whatever that does.
+/// Flips the edge between two vertices, without any check.
 fn flip(triangles: &mut [u32], u: u32, v: u32) {
     let next = |h: usize| if h % 3 == 2 { h - 2 } else { h + 1 };
     let find = |u, v| (0..triangles.len()).find(|&h| (triangles[h], triangles[next(h)]) == (u, v)).unwrap();
@@ -52,7 +52,7 @@ fn a_turned_triangle() {
     let violations = audit_of(&by_name("grid 5").unwrap(), |t| t.swap(30, 31)).violations;
     assert!(violations.iter().any(|v| matches!(v, Violation::NewInconsistent { .. })), "{violations:?}");
     assert!(violations.contains(&Violation::Area));
-    // Alone, a turned triangle is its own component: it is not inverted, but its boundary and area are.
+    // A single reversed triangle is its own component: it is not inverted, but its boundary and its area change.
     let alone = plane(&[[0., 0.], [1., 0.], [0., 1.]], &[[0, 1, 2]]);
     let violations = audit_of(&alone, |t| t.swap(0, 1)).violations;
     assert!(violations.contains(&Violation::Boundary { u: 0, v: 1 }));
@@ -119,7 +119,7 @@ fn a_lost_lock() {
     assert_eq!((kept.remaining[Reason::Locked], kept.remaining.total()), (1, 1));
     let mut triangles = kite().triangles().to_vec();
     flip(&mut triangles, 0, 1);
-    // Pairs that were no edge are not lost.
+    // Locked pairs that were not edges do not count as missing.
     assert_eq!(audit(&kite(), &triangles, &options).violations, [Violation::Locked { u: 0, v: 1 }]);
 }
 

@@ -1,4 +1,4 @@
-//! The command-line program from outside: what it writes, says and returns.
+//! The command-line program as a process: its files, its messages and its exit status.
 #![cfg(feature = "cli")]
 // Clippy's exemption for tests does not reach their shared functions.
 #![allow(clippy::unwrap_used)]
@@ -93,8 +93,8 @@ fn json_has_the_documented_keys() {
     assert!(line.ends_with("}\n") && line.lines().count() == 1);
     let found: Value = serde_json::from_str(line).unwrap();
     assert_eq!(found.as_object().unwrap().len(), KEYS.len());
-    let places: Vec<_> = KEYS.iter().map(|key| line.find(&format!("\"{key}\":")).unwrap()).collect();
-    assert!(places.is_sorted());
+    let offsets: Vec<_> = KEYS.iter().map(|key| line.find(&format!("\"{key}\":")).unwrap()).collect();
+    assert!(offsets.is_sorted());
     assert_eq!(found["input"], input.display().to_string());
     assert_eq!((&found["vertices"], &found["triangles"]), (&4.into(), &2.into()));
     assert_eq!(found["dimension"], 2);

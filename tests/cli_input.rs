@@ -1,4 +1,4 @@
-//! What the command line reads: pipes are waited for so long only, and files beside a glTF file lie in its folder.
+//! The input of the command line: waits for pipes only a limited time, and reads other files of a glTF file in its folder only.
 #![cfg(all(unix, feature = "cli"))]
 #![allow(clippy::unwrap_used, reason = "what fails here is a failed test")]
 
@@ -15,8 +15,8 @@ use std::time::Duration;
 
 const QUIET: &[&str] = &["--quiet"];
 
-/// Without optimisation it waits for 2 s.
-const LATE: &str = "no program has opened this FIFO to write into it within 2 s";
+/// In debug builds the program waits for 2 s.
+const LATE: &str = "no program has opened this FIFO for writing within 2 s";
 
 #[test]
 fn a_fifo_that_nobody_writes_into_is_not_waited_for_for_ever() {
@@ -31,7 +31,7 @@ fn a_fifo_that_nobody_writes_into_is_not_waited_for_for_ever() {
     assert_eq!(folder.names(), ["fifo.off", "in.off"]);
 }
 
-/// It may open the FIFO late, and take its time once it has.
+/// A writer that opens the FIFO late, and writes late.
 #[test]
 fn a_writer_is_waited_for() {
     let folder = Folder::new();
@@ -110,13 +110,13 @@ fn only_regular_files_in_the_folder_are_read() {
     for name in ["below/inside.bin", "inside"] {
         silent(&run(&gltf(&folder, name), &output, &["--external-files", "-q"]));
     }
-    let leads_out = "a link leads out of the folder of IN; only what is in it is read";
+    let leads_out = "a link leads out of the folder of IN; only files in this folder are read";
     for (name, why) in [
         ("below/outside", leads_out),
         ("up/outside.bin", leads_out),
         ("zero", leads_out),
-        ("fifo", "it is no regular file"),
-        ("below", "it is no regular file"),
+        ("fifo", "it is not a regular file"),
+        ("below", "it is not a regular file"),
         ("gone", "No such file or directory (os error 2)"),
     ] {
         let input = gltf(&folder, name);

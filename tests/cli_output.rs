@@ -1,5 +1,5 @@
-//! Where the command line writes: devices and pipes are written into, links are followed, and a file that is replaced
-//! keeps its owner and mode, or a note says why not.
+//! The output of the command line: it writes into devices and pipes, follows links, and replaces files, which keep their
+//! owner and mode, or a note says why not.
 #![cfg(all(unix, feature = "cli"))]
 #![allow(clippy::unwrap_used, reason = "what fails here is a failed test")]
 
@@ -34,7 +34,7 @@ fn the_standard_output_is_written_into_by_any_name() {
         let ran = run(&input, output, QUIET);
         assert_eq!((ran.status.code(), text(&ran.stdout), text(&ran.stderr)), (Some(0), FLIPPED, ""));
         let line =
-            format!("{}: --json has the standard output for itself; give another OUT", output.display());
+            format!("{}: --json also writes to the standard output; give another OUT", output.display());
         failed(&run(&input, output, &["--json"]), 2, &line);
     }
     assert!(link.is_symlink() && again.is_symlink());
@@ -66,12 +66,12 @@ fn a_device_stays_one() {
     let link = folder.link("null.off", "/dev/null");
     for output in [&*link, Path::new("/dev/null")] {
         silent(&run(&input, output, QUIET));
-        // The null device mixes nothing up.
+        // Two writers to the null device do no harm.
         let ran = command(&input, output, &["--quiet", "--json"]).stdout(Stdio::null()).output().unwrap();
         silent(&ran);
     }
     assert!(link.is_symlink() && Path::new("/dev/null").metadata().unwrap().file_type().is_char_device());
-    // Where the system lets us make one, as it does root.
+    // Only if the system allows it, as it does for root.
     let node = folder.path("node.off");
     let made = Command::new("mknod").arg(&node).args(["c", "1", "3"]).output().unwrap();
     if made.status.success() {
@@ -91,7 +91,7 @@ fn a_full_device_is_one_line() {
     failed(&run(&input, Path::new("/dev/full"), &[]), 1, line);
 }
 
-/// The object is printed before the file has its name.
+/// The program prints the object before it renames the file.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_full_standard_output_leaves_the_file_as_it_was() {
@@ -127,8 +127,8 @@ fn a_fifo_gets_all_of_it() {
 fn a_fifo_that_nobody_reads_is_not_waited_for_for_ever() {
     let folder = Folder::new();
     let (input, output) = (folder.file("in.off", SQUARE), folder.fifo("out.off"));
-    // Without optimisation it waits for 2 s.
-    let line = format!("{}: no program has opened this FIFO to read it within 2 s", output.display());
+    // In debug builds the program waits for 2 s.
+    let line = format!("{}: no program has opened this FIFO for reading within 2 s", output.display());
     failed(&run(&input, &output, &[]), 1, &line);
 }
 
@@ -140,7 +140,7 @@ fn a_reader_that_goes_away_is_one_line() {
     drop(reader);
     let ran = command(&input, Path::new("-"), &[]).stdout(writer).output().unwrap();
     failed(&ran, 1, "standard output: Broken pipe (os error 32)");
-    // More than a pipe holds.
+    // More bytes than a pipe buffers.
     let (large, output) = (folder.path("large.off"), folder.fifo("out.off"));
     io::write(&large, &grid(60)).unwrap();
     let path = output.clone();
@@ -151,7 +151,7 @@ fn a_reader_that_goes_away_is_one_line() {
     assert!(output.metadata().unwrap().file_type().is_fifo());
 }
 
-/// An extension of OUT decides, else the name of IN.
+/// The extension of OUT decides the format, or else the name of IN.
 #[test]
 fn what_has_no_extension_is_written_as_the_input_is() {
     let folder = Folder::new();
@@ -238,7 +238,7 @@ fn other_names_keep_the_old_content() {
     assert_eq!(fs::read_to_string(output).unwrap(), FLIPPED);
 }
 
-/// Only root can have files of others; what it tests is left out for everybody else.
+/// Only root can give files to other users, so the test does nothing for other users.
 #[test]
 fn the_owner_stays_or_a_note_says_why_not() {
     const OTHER: u32 = 65_533;
@@ -256,17 +256,17 @@ fn the_owner_stays_or_a_note_says_why_not() {
     mode(0o4750);
     silent(&run(&input, &output, QUIET));
     assert_eq!(found(), (OTHER, NOBODY, 0o4750));
-    // Somebody else, who may write into the folder but not give files away.
+    // Another user, who may write into the folder but not change the owner of files.
     fs::set_permissions(input.parent().unwrap(), fs::Permissions::from_mode(0o777)).unwrap();
     let as_nobody =
         |command: &mut Command| -> Option<Output> { command.uid(NOBODY).gid(NOBODY).output().ok() };
     if as_nobody(Command::new(env!("CARGO_BIN_EXE_edgeflip")).arg("--version")).is_none() {
-        // The program lies where nobody may go.
+        // The folder of the program is not accessible to that user.
         return;
     }
     let ran = as_nobody(&mut command(&input, &output, &["--json"])).unwrap();
     let said = text(&ran.stderr);
-    let note = format!("note       {}: its owner was {OTHER} and is {NOBODY} now (", output.display());
+    let note = format!("note       {}: its owner changed from {OTHER} to {NOBODY} (", output.display());
     assert!(said.starts_with(&note) && said.lines().count() == 1, "{said}");
     assert_eq!(ran.status.code(), Some(0));
     assert_eq!(found(), (NOBODY, NOBODY, 0o750));

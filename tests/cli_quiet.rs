@@ -1,4 +1,4 @@
-//! What `--quiet` leaves on standard error: the program's own lines, and none of a driver.
+//! With `--quiet`, standard error has only the program's own lines, and none of a driver.
 #![cfg(all(target_os = "linux", feature = "cli"))]
 #![allow(clippy::unwrap_used, reason = "what fails here is a failed test")]
 
@@ -15,7 +15,7 @@ fn a_driver_says_nothing() {
     io::write(&input, &grid(80)).unwrap();
     for backend in ["auto", "gpu"] {
         for [name, value] in [
-            // Mesa says that there is none, and the loader all that it does.
+            // Mesa reports that there is no GPU, and the loader logs everything.
             ["XDG_RUNTIME_DIR", "/nonexistent"],
             ["VK_LOADER_DEBUG", "all"],
             ["VK_DRIVER_FILES", "/nonexistent.json"],

@@ -1,4 +1,4 @@
-//! How the command line ends by a signal: at once and by that signal, and no temporary file stays.
+//! A signal ends the command line at once, by that signal, and without temporary files.
 #![cfg(all(unix, feature = "cli"))]
 #![allow(clippy::unwrap_used, reason = "what fails here is a failed test")]
 
@@ -14,14 +14,14 @@ use std::process::{Child, ExitStatus, Stdio};
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// A mesh that takes a while to be packed.
+/// A mesh that takes a while to compress.
 fn large(folder: &Folder) -> PathBuf {
     let path = folder.path("in.ply");
     io::write(&path, &grid(500)).unwrap();
     path
 }
 
-/// Sends the signal once there is a temporary file, and returns how the program ends.
+/// Sends the signal when a temporary file exists, and returns how the program ends.
 fn interrupted(folder: &Folder, mut child: Child, signal: Signal) -> ExitStatus {
     let start = Instant::now();
     while !folder.names().iter().any(|name| name.starts_with(".edgeflip-")) {
@@ -32,7 +32,7 @@ fn interrupted(folder: &Folder, mut child: Child, signal: Signal) -> ExitStatus 
     child.wait().unwrap()
 }
 
-/// The program, which packs the mesh; `first` is what the shell does before.
+/// The program, which compresses the mesh. The shell runs `first` before it.
 fn packing(folder: &Folder, first: &str, arguments: [&Path; 2]) -> Child {
     let script = format!(r#"{first}; exec "$0" "$1" -o "$2" --backend cpu --max-iterations 0 -q"#);
     let mut command = shell(&script, &arguments);

@@ -1,4 +1,4 @@
-//! Results in the plane against Delaunay triangulations of the same points by another crate: equal up to ties.
+//! Compares results in the plane with Delaunay triangulations of the same points by another crate: equal up to ties.
 
 #![allow(clippy::unwrap_used, reason = "what fails here is a failed test")]
 
@@ -81,14 +81,14 @@ fn random_points() {
     }
 }
 
-/// Points of a lattice, many of them left out: cocircular and collinear ones in plenty.
+/// Some points of a lattice: many are cocircular or collinear.
 #[test]
 fn points_of_a_lattice() {
     for seed in 0..12 {
         let mut random = Rand64::new(seed);
         let n = 4 + seed as u32;
         let keep = (0..n * n).filter(|_| random.rand_float() < 0.8).collect::<Vec<_>>();
-        // A power of two keeps the points cocircular, 0.1 leaves them so up to one ulp.
+        // Scaled by a power of two, the points stay cocircular; by 0.1, they are cocircular up to one ulp.
         let step = if seed % 2 == 0 { 0.125 } else { 0.1 };
         let positions: Vec<f32> =
             keep.iter().flat_map(|i| [(i % n) as f32 * step, (i / n) as f32 * step]).collect();

@@ -1,5 +1,5 @@
-//! The simulation against `digests.txt` and against the audit: two readings of the same rules, with no
-//! line of code in common. `EDGEFLIP_BLESS=1 cargo test --test digests` writes the file anew.
+//! Compares the simulation with `digests.txt` and with the audit: two readings of the same rules, with no
+//! line of code in common. `EDGEFLIP_BLESS=1 cargo test --test digests` writes the file.
 
 mod meshes;
 mod simulation;
@@ -13,7 +13,7 @@ fn at(max_normal_angle: f64) -> Options {
     Options { max_normal_angle, ..Options::default() }
 }
 
-/// A finished run that the audit finds nothing wrong with.
+/// A finished run without violations in the audit.
 fn audited_run(name: &str, mesh: &Mesh, options: &Options) -> Simulation {
     let beta = options.max_normal_angle;
     let run = simulate_with(mesh, options);
@@ -71,7 +71,7 @@ fn soups_end_and_pass_the_audit() {
     }
 }
 
-/// Sound connectivity, but every vertex on one of 4 x 4 (x 4) places: collinear, coincident, folded.
+/// Valid connectivity, but every vertex at one of 4 x 4 (x 4) positions: collinear, coincident, folded.
 #[test]
 fn crushed_meshes_end_and_pass_the_audit() {
     for seed in 0..rounds() {

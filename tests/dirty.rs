@@ -13,7 +13,7 @@ use oorandom::Rand64;
 use std::collections::BTreeSet;
 use std::ops::ControlFlow;
 
-/// The end of a run, which both engines agree on and the audit finds nothing in.
+/// The outcome of a run, which both engines agree on, without violations in the audit.
 #[track_caller]
 fn run(mesh: &Mesh, beta: f64) -> Outcome {
     let options = |backend| Options { backend, max_normal_angle: beta, ..Options::default() };
@@ -196,14 +196,14 @@ fn needles() {
     }
 }
 
-/// A mesh with one of its vertices drawn onto a neighbour.
+/// A mesh with one of its vertices moved onto a neighbour.
 #[test]
 fn zero_length_edges() {
     let mesh = integers();
     let [from, to] = [mesh.triangles()[150], mesh.triangles()[151]];
-    let place = |v: u32| mesh.positions().to_f32()[2 * v as usize..][..2].to_vec();
+    let position = |v: u32| mesh.positions().to_f32()[2 * v as usize..][..2].to_vec();
     let mut positions = mesh.positions().to_f32();
-    positions[2 * from as usize..][..2].copy_from_slice(&place(to));
+    positions[2 * from as usize..][..2].copy_from_slice(&position(to));
     let drawn = Mesh::new(Dimension::Two, positions, mesh.triangles().to_vec()).unwrap();
     for mesh in [flat(&drawn), drawn] {
         let outcome = run(&mesh, 10.0);
@@ -234,7 +234,7 @@ fn mixed_winding_2d() {
     assert_eq!(outcome.remaining.total(), 0);
 }
 
-/// The number of triangles that are turned over or flat, and the area of the former, may only fall.
+/// The number of inverted or flat triangles, and the area of the inverted ones, may only fall.
 #[test]
 fn folded_2d() {
     let mut improved = 0;
@@ -256,7 +256,7 @@ fn folded_2d() {
     assert!(improved > 6);
 }
 
-/// What a flip can unfold, what is a tie, and what has to stay.
+/// Quads that a flip unfolds, a tie, and quads that have to stay.
 /// ```text
 ///        2              2     3          2
 ///       / \             |\   /|         / '.3
@@ -280,7 +280,7 @@ fn folded_quads_2d() {
     }
 }
 
-/// The third of these quads as a surface, whose two triangles lie back to back: no flip turns neither over.
+/// The third of these quads in space, where its triangles lie back to back: every flip turns a triangle over.
 #[test]
 fn folded_3d() {
     let quad = space(&[[0., 0., 0.], [4., 0., 0.], [1., 2., 0.], [3., 1., 0.]], &[[0, 1, 2], [1, 0, 3]]);
@@ -344,7 +344,7 @@ fn huge_offsets() {
     assert_eq!(run(&doubles, 10.0).triangles, near.triangles);
 }
 
-/// A kite in two halves, which have vertices of their own at the same places: a seam.
+/// A kite in two halves with their own vertices at the same positions: a seam.
 #[test]
 fn duplicate_vertices() {
     let whole = plane(&[[-2., 0.], [2., 0.], [0., 1.], [0., -1.]], &[[0, 1, 2], [1, 0, 3]]);

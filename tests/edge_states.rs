@@ -1,4 +1,4 @@
-//! The states of the edges foretell every step: what flips, what waits, what is blocked, on the CPU and the GPU.
+//! The states of the edges predict every step, on the CPU and the GPU: which edges flip, wait or are blocked.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "what fails here is a failed test")]
 
@@ -81,7 +81,7 @@ fn states_foretell_every_step() {
     assert!(on_cpu > 100 && on_gpu > 50, "{on_cpu} on the CPU, {on_gpu} on the GPU");
 }
 
-/// Three triangles at the edge 0-1, two of them turned alike, and a fourth that is turned against its neighbour.
+/// Three triangles at the edge 0-1, two with the same orientation, and a fourth with the opposite one of its neighbour.
 ///
 /// ```text
 ///       2

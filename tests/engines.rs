@@ -1,4 +1,4 @@
-//! Runs that the parity matrix has not: Lawson's algorithm, random dirty meshes, runs that are capped.
+//! Runs that the parity matrix lacks: Lawson's algorithm, random dirty meshes, and capped runs.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "what fails here is a failed test")]
 

@@ -1,4 +1,4 @@
-//! The seeds of the fuzz targets, each as its target takes it.
+//! Runs each fuzz target on its seeds.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a seed that fails must stop")]
 
 #[path = "../fuzz/src/lib.rs"]

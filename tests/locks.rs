@@ -1,5 +1,5 @@
-//! Random locks on random meshes: the engines do what the simulation does, and each locked edge is there at the end;
-//! pairs that are no edges are refused.
+//! Random locks on random meshes: the engines agree with the simulation, and every locked edge stays. Pairs that are not edges
+//! are refused.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "what fails here is a failed test")]
 
 mod meshes;
@@ -71,7 +71,7 @@ fn locks_on_the_boundary_change_nothing() {
     assert_eq!(with, simulate(&case.mesh, case.beta, None));
 }
 
-/// Also by `auto`, which would take another engine's refusal for a reason to go on.
+/// Also with `auto`, which would take the error of an engine for a reason to try the next engine.
 #[test]
 fn pairs_that_are_no_edges_are_refused() {
     let mesh = by_name("random 8").unwrap();
@@ -159,7 +159,7 @@ fn triangles_and_groups_that_are_not_of_the_mesh_are_refused() {
     );
 }
 
-/// For a GPU doubles are another form of mesh, on a new engine.
+/// For a GPU, doubles need another form, and so a new engine.
 #[test]
 fn locks_stay_when_vertices_move_to_doubles() {
     let mesh = by_name("uvsphere 9").unwrap();

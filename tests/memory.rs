@@ -1,4 +1,4 @@
-//! The command line where memory runs out: status 0 or 1, one line at most, nothing left behind, on meshes in each format.
+//! The command line with too little memory: status 0 or 1, at most one line, and no files left behind, in each format.
 //! `EDGEFLIP_MEMORY=20000000` does so with as many triangles and up to 6 GB, and takes half an hour.
 #![cfg(all(target_os = "linux", feature = "cli"))]
 #![allow(clippy::unwrap_used, reason = "what fails here is a failed test")]
@@ -78,19 +78,19 @@ fn the_line_names_the_file_and_what_it_wanted() {
     let ran = limited(24_000, "--backend cpu", [&input, &output]);
     let said = text(&ran.stderr);
     let start = format!("edgeflip: {}: memory ran out: ", input.display());
-    assert!(said.starts_with(&start) && said.ends_with(" more bytes could not be had\n"), "{said}");
+    assert!(said.starts_with(&start) && said.ends_with(" more bytes are not available\n"), "{said}");
     assert_eq!((ran.status.code(), said.lines().count()), (Some(1), 1));
     assert_eq!(fs::read_to_string(output).unwrap(), "old");
     assert_eq!(folder.names(), ["in.ply", "out.off"]);
 }
 
-/// The limit comes when there is a temporary file, and before all of the bytes that are written have their place.
+/// The limit is set when a temporary file exists, before all output is in memory.
 #[test]
 fn no_temporary_file_stays() {
     let folder = Folder::new();
     let (input, output) = (folder.path("in.ply"), folder.file("out.glb", "old"));
     io::write(&input, &grid(400)).unwrap();
-    // It may come too late.
+    // The limit may come too late.
     let has_run_out = (0..20).any(|_| {
         let mut command = command(&input, &output, &["--quiet", "--max-iterations", "0"]);
         let mut child = command.stderr(Stdio::null()).spawn().unwrap();
@@ -99,7 +99,7 @@ fn no_temporary_file_stays() {
                 return false;
             }
         }
-        // Where it has ended already there is nothing to limit.
+        // The program may have ended already.
         let none = Rlimit { current: Some(1), maximum: Some(1) };
         let _ = prlimit(Some(Pid::from_child(&child)), Resource::As, none);
         let status = child.wait().unwrap();
@@ -118,12 +118,12 @@ fn threads_without_work_are_not_started() {
     silent(&limited(60_000, "--backend cpu --threads 256 -q", [&input, &output]));
 }
 
-/// One thread does it where no others can be had, unless so many are asked for. Stacks of 1 TB do not fit.
+/// If no threads can be started, one thread does the work, unless an option requests more. Stacks of 1 TB do not fit.
 #[test]
 fn threads_that_cannot_be_started_are_done_without() {
     let folder = Folder::new();
     let (input, output) = (folder.path("in.off"), folder.path("out.off"));
-    // Enough for two threads, also where it is tested with optimisation.
+    // Enough for two threads, also in release builds.
     io::write(&input, &grid(200)).unwrap();
     let ran = |arguments: &str| {
         let script =
@@ -131,17 +131,17 @@ fn threads_that_cannot_be_started_are_done_without() {
         shell(&(script.to_owned() + arguments), &[&input, &output]).output().unwrap()
     };
     silent(&ran("--quiet"));
-    let line = "option threads: 2 could not be started: Resource temporarily unavailable (os error 11)";
+    let line = "option threads: cannot start 2 threads: Resource temporarily unavailable (os error 11)";
     failed(&ran("--threads 2"), 1, line);
 }
 
-/// Drivers end the process where they get no memory.
+/// Drivers end the process if they get no memory.
 #[test]
 fn a_gpu_is_left_alone_in_little_memory() {
     let folder = Folder::new();
     let (input, output) = (folder.path("in.off"), folder.path("out.off"));
     io::write(&input, &grid(101)).unwrap();
-    let why = "the driver of a GPU may need 1076301824 bytes, and the limit of memory (ulimit -v) leaves ";
+    let why = "a GPU driver may need 1076301824 bytes, and the limit of memory (ulimit -v) leaves ";
     let ran = limited(500_000, "--backend gpu", [&input, &output]);
     let said = text(&ran.stderr);
     assert!(said.starts_with(&format!("edgeflip: backend gpu is not available: {why}")), "{said}");

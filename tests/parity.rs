@@ -1,7 +1,7 @@
 //! The parity matrix: meshes by engines, every cell equal to the simulation after every iteration.
 //!
-//! Here are the columns of the engines that run natively. `EDGEFLIP_PARITY=FILE` writes them, the meshes and what
-//! every engine must give for `tests/parity/matrix.mjs`, which adds those in browsers and prints the table.
+//! This test makes the columns of the native engines. `EDGEFLIP_PARITY=FILE` writes them, the meshes and the results that
+//! every engine must give, for `tests/parity/matrix.mjs`, which adds the engines in browsers and prints the table.
 //! The compiled test reads no file: with `--nocapture` it prints its columns on any machine that has a GPU.
 #![cfg(feature = "cli")]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "what fails here is a failed test")]
@@ -17,7 +17,7 @@ use serde_json::{Value, json};
 use simulation::{Digest, Expected, Simulation, expected, simulate_with};
 use std::time::Instant;
 
-/// Meshes with coordinates outside the span that the engines on a GPU decide exactly.
+/// Meshes whose coordinates span more bits than the GPU engines decide.
 const REFUSED_BY_GPUS: [&str; 6] = [
     "magnitudes",
     "magnitudes-3d",
@@ -59,7 +59,7 @@ fn title(outcome: &Outcome) -> String {
     }
 }
 
-/// Runs the mesh one iteration at a time, and again from end to end, in batches.
+/// Runs the mesh one iteration at a time, and again to the end in batches.
 fn cell(backend: Backend, case: &Case, want: &Simulation) -> Result<&'static str, String> {
     let options = case.options(backend);
     let is_refused = backend == Backend::Gpu && REFUSED_BY_GPUS.contains(&case.name.as_str());

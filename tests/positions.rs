@@ -1,4 +1,4 @@
-//! A session whose vertices have moved is as a new one on the triangles that it has then, on the CPU and the GPU.
+//! A session whose vertices have moved equals a new one on its present triangles, on the CPU and the GPU.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "what fails here is a failed test")]
 
@@ -8,7 +8,7 @@ use edgeflip::{Backend, Error, Mesh, Options, Order, Outcome, Positions, Session
 use oorandom::Rand64;
 use pollster::block_on;
 
-/// What an outcome says, without the time and the work that it took.
+/// An outcome without times and dispatches.
 fn said(mut session: Session) -> (Outcome, String, Session) {
     let mut outcome = block_on(session.outcome()).unwrap();
     (outcome.timings, outcome.dispatches, outcome.device_bytes, outcome.fallback) =
@@ -67,26 +67,26 @@ fn compare(
     (session, true)
 }
 
-/// Ways to move the vertices of a mesh, to 32-bit floats: shaken, stretched and mirrored, folded over, and all in one
-/// place.
+/// Ways to move the vertices of a mesh, to 32-bit floats: shaken, stretched and mirrored, folded over, and all at one
+/// position.
 fn moves(mesh: &Mesh) -> Vec<Positions> {
     let mut random = Rand64::new(7);
-    let place = |place: &mut dyn FnMut([f32; 3]) -> [f32; 3]| {
+    let mapped = |map: &mut dyn FnMut([f32; 3]) -> [f32; 3]| {
         let finite = |p: [f32; 3]| p.map(|x| x.clamp(f32::MIN, f32::MAX));
-        meshes::moved(mesh, |p| finite(place(finite(p)))).positions().clone()
+        meshes::moved(mesh, |p| finite(map(finite(p)))).positions().clone()
     };
     // Halves and quarters keep the bits few, so that the GPU takes them.
     let shaken =
         &mut |p: [f32; 3]| p.map(|x| x + x.abs().max(0.0625) * (random.rand_range(0..8) as f32 / 16.0));
     let mirrored = &mut |[x, y, z]: [f32; 3]| [-x, 4.0 * y, 0.5 * z];
     let folded = &mut |[x, y, z]: [f32; 3]| [(x - 0.5).abs(), y, z + 0.5 * y];
-    vec![place(shaken), place(mirrored), place(folded), vec![0f32; mesh.positions().len()].into()]
+    vec![mapped(shaken), mapped(mirrored), mapped(folded), vec![0f32; mesh.positions().len()].into()]
 }
 
 fn deform(name: &str, mesh: &Mesh, options: &Options) -> u32 {
     let mut taken = 0;
     let Ok(mut session) = block_on(Session::new(mesh.clone(), options.clone())) else { return 0 };
-    // In the middle of a run at first, at its end afterwards.
+    // First in the middle of a run, later at its end.
     block_on(session.step()).unwrap();
     for (positions, number) in moves(mesh).iter().chain([mesh.positions()]).zip(0..) {
         let name = format!("{name}, {:?}, move {number}", options.backend);

@@ -1,7 +1,7 @@
-//! Millions of quads, everyday and adversarial ones, decided by every engine as by integers of any size.
+//! Millions of ordinary and adversarial quads: every engine decides them as integers of any size do.
 //!
-//! `EDGEFLIP_QUADS` says how many for each GPU engine; the CPU takes ten times as many. The tests need no file but
-//! those that they write.
+//! `EDGEFLIP_QUADS` is the number of quads for each GPU engine; the CPU gets ten times as many. The tests read no files except
+//! their own.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "what fails here is a failed test")]
 
@@ -48,7 +48,7 @@ async fn iterate(batch: &Batch, backend: Backend) -> Result<(u64, Reasons, Vec<u
     Ok((labelled, blocked, session.triangles().await?))
 }
 
-/// The quads that the engine flips and should not, or the other way; and the first that it counts wrongly.
+/// The quads that the engine flips or keeps wrongly, and the first quad that it counts wrongly.
 fn mismatches(batch: &Batch, backend: Backend) -> Vec<(usize, String)> {
     let (triangles, is_miscounted) = run(batch, backend);
     let expected = batch.triangles_after();

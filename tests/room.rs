@@ -1,4 +1,4 @@
-//! A session on the CPU takes no more memory than it asks for before it begins, from its beginning to its outcome.
+//! A session on the CPU never takes more memory than it checks for before it starts.
 // Clippy's exemption for tests does not reach their shared functions.
 #![allow(clippy::unwrap_used)]
 #![allow(unsafe_code, reason = "the trait for allocators is unsafe")]
@@ -10,7 +10,7 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
-/// Counts bytes, but for those of memory that is only asked for: no array takes so many at once.
+/// Counts allocated bytes, except those of the check itself, which is larger than any array.
 struct Counter;
 
 #[global_allocator]
@@ -30,19 +30,19 @@ unsafe impl GlobalAlloc for Counter {
         unsafe { System.alloc(layout) }
     }
 
-    unsafe fn dealloc(&self, place: *mut u8, layout: Layout) {
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
         if layout.size() < ONLY_ASKED_FOR.load(Relaxed) {
             NOW.fetch_sub(layout.size(), Relaxed);
         }
         // SAFETY: as above.
-        unsafe { System.dealloc(place, layout) }
+        unsafe { System.dealloc(pointer, layout) }
     }
 }
 
-/// What is not of the mesh: threads, and lists of a few words.
+/// Bytes that do not depend on the mesh: threads, and short lists.
 const SLACK: u64 = 1 << 18;
 
-/// Runs a session that asks for so many bytes, and returns the most that it took beside the mesh.
+/// Runs a session, and returns its peak memory in addition to the mesh.
 fn bytes_of(mesh: &Arc<Mesh>, options: Options, asked: u64) -> u64 {
     let base = NOW.load(Relaxed);
     MOST.store(base, Relaxed);
@@ -57,7 +57,7 @@ fn bytes_of(mesh: &Arc<Mesh>, options: Options, asked: u64) -> u64 {
     (MOST.load(Relaxed) - base) as u64
 }
 
-/// One test, since the program has one peak.
+/// One test, since the program has only one peak.
 #[test]
 fn sessions_take_what_they_ask_for() {
     let mut most = 0.0f64;

@@ -1,4 +1,4 @@
-//! In headless Chromium: what the parity matrix has not of the CPU engine and the WebGPU engine.
+//! Tests of the CPU engine and the WebGPU engine in headless Chromium that the parity matrix lacks.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "what fails here is a failed test")]
 #![cfg(target_arch = "wasm32")]

@@ -1,5 +1,5 @@
-//! Attributes of corners through flips on dirty meshes, beside flips that are followed one by one; vertices joined and
-//! split again.
+//! Carries attributes of corners through flips on dirty meshes, and compares with following each flip. Also welds and splits
+//! vertices.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "what fails here is a failed test")]
 
 mod meshes;
@@ -27,7 +27,7 @@ fn below(random: &mut Rand64, n: usize) -> usize {
     random.rand_range(0..n as u64) as usize
 }
 
-/// Two balls that share some vertices, so that they touch, with triangles twice, turned, and with a corner twice.
+/// Two balls that share some vertices, with repeated and reversed triangles, and triangles with a repeated corner.
 fn glued(random: &mut Rand64, n: usize) -> Mesh {
     let mut ball = || {
         moved(&by_name(&format!("uvsphere {n}")).unwrap(), |p| p.map(|x| x * (1.0 + 0.3 * signed(random))))
@@ -105,7 +105,7 @@ fn run(mesh: &Mesh, options: &Options) -> (Vec<Vec<u32>>, bool) {
     })
 }
 
-/// What the wedges lock; on surfaces with β = 180.
+/// The locks of the wedges; in space with β = 180.
 fn options(wedges: &Wedges) -> Options {
     Options {
         backend: Backend::Cpu,
@@ -258,7 +258,7 @@ fn what_is_no_result_is_refused() {
     );
     assert_eq!(
         refused(&[0, 3, 1, 1, 3, 2]),
-        "option triangles: triangle 0 is none that flips make while seams are locked"
+        "option triangles: triangle 0 cannot result from flips while seams are locked"
     );
 }
 
@@ -306,7 +306,7 @@ fn a_mesh_with_seams_goes_the_way_of_one_that_is_cut() {
     assert!(iterations.iter().all(|&count| count > rounds()), "{iterations:?}");
 }
 
-/// What has no common vertices at all flips as what has; a corner that stays keeps its vertex.
+/// A welded soup flips as the mesh with shared vertices does; a corner that stays keeps its vertex.
 #[test]
 fn a_soup_is_joined_and_split_again() {
     for name in ["random 12", "uvsphere 9", "uvsphere 6 0.5"] {
@@ -329,7 +329,7 @@ fn a_soup_is_joined_and_split_again() {
     }
 }
 
-/// 0 and -0 are one place; the next number is another one. Vertices that no triangle has are joined too.
+/// 0 and -0 are the same position; the next float is another one. Unreferenced vertices are joined too.
 #[test]
 fn places_are_exact() {
     let tiny = f64::from_bits(1);
@@ -351,8 +351,7 @@ fn places_are_exact() {
     assert_eq!(refused.to_string(), "option attributes: it has 5 numbers, the mesh has 6 vertices");
 }
 
-/// The triangles of a square, changed one for the other: their first corners are at one place still, on other sides of
-/// the seam.
+/// The triangles of a square, swapped: their first corners are at the same position, but on the other sides of the seam.
 #[test]
 fn a_corner_keeps_its_vertex_only_with_its_attributes() {
     let square = plane(&[[0., 0.], [1., 0.], [1., 1.], [0., 1.], [0., 0.]], &[[0, 1, 2], [4, 2, 3]]);
@@ -363,7 +362,7 @@ fn a_corner_keeps_its_vertex_only_with_its_attributes() {
     assert_eq!(split([7; 5]), [0, 2, 3, 4, 1, 2]);
 }
 
-/// Triangles turned at random in a soup: joined, they are turned back, and each keeps its vertices.
+/// A soup of triangles, some reversed: welded, they are reversed back, and each keeps its vertices.
 #[test]
 fn what_is_joined_can_be_turned() {
     let mesh = by_name("uvsphere 9").unwrap();

@@ -1,4 +1,4 @@
-//! In a worker of headless Chromium: sessions on a device of the worker's own.
+//! Sessions on a device of a worker, in headless Chromium.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "what fails here is a failed test")]
 #![cfg(target_arch = "wasm32")]

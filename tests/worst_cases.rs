@@ -1,4 +1,4 @@
-//! The meshes on which others cycle, hang or leave wrong edges, at full size: each ends, and the audit agrees.
+//! Meshes at full size on which other programs cycle, hang or leave wrong edges: each run ends, and the audit agrees.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "what fails here is a failed test")]
 
@@ -10,7 +10,7 @@ fn flipped(mesh: &Mesh, options: &Options) -> Outcome {
     make_delaunay(mesh, options, |_, _| ControlFlow::Continue(())).unwrap()
 }
 
-/// Runs `mesh` to the end with the phases and with Lawson's algorithm; returns the former's outcome.
+/// Runs `mesh` to the end with the phases and with Lawson's algorithm. Returns the outcome of the phases.
 fn run(name: &str, mesh: &Mesh, beta: f64) -> Outcome {
     let options = Options { backend: Backend::Cpu, max_normal_angle: beta, ..Options::default() };
     let any = flipped(mesh, &Options { order: Order::Any, ..options.clone() });

@@ -1,5 +1,5 @@
-// Tests how far a flip moves the surface: the distance of the lines on which the diagonals of a quad lie, against the limit,
-// as `deviates` in src/predicates/space.rs. It compares |n1·r| with δ|n1 + n2|.
+// Tests how far a flip moves the surface: compares the distance of the lines through the two diagonals with the limit, as
+// `deviates` in src/predicates/space.rs. It compares |n1·r| with δ|n1 + n2|.
 #import mesh
 #import normals
 #import points
@@ -8,7 +8,7 @@
 // LABELLED, BLOCKED_BY + REASON_DEVIATION, or UNDECIDED. With ε = 2^-23 as in space.wgsl, n1·r errs by at most 19ε of the
 // product of its sizes, δ|n1 + n2| by 24ε.
 fn filtered_deviation(a: Point, b: Point, c: Point, d: Point) -> u32 {
-    // Diagonals are never as far apart as 8 times the largest difference of two coordinates. Nothing overflows.
+    // The distance is always below 8 times the largest difference of two coordinates. Nothing overflows.
     let largest = largest_of(unscaled(a, b, c, d));
     let allowed = 8.0 * (min(0.125 * bitcast<f32>(deviation().w), largest) * scale_for(largest));
     let quad = quad_of(a, b, c, d);

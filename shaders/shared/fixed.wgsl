@@ -1,5 +1,5 @@
-// Reads points of fixed-point coordinates: the distance of a vertex from the corner of the bounding box, in units of the
-// mesh's grid. No predicate depends on where the mesh is or how large that unit is.
+// Reads points with fixed-point coordinates: relative to the corner of the bounding box, in units of the mesh's grid. No
+// predicate depends on the origin or on the unit.
 #import integers
 #import state
 
@@ -10,7 +10,7 @@ fn position(v: u32) -> Point {
     return Point(coordinates(3u * v), coordinates(3u * v + 1u), coordinates(3u * v + 2u));
 }
 
-// Of each axis, which of u and v is greater: 1 if u is, -1 if v is.
+// For each axis, 1 if u is greater than v, -1 if v is greater.
 fn order(u: Point, v: Point) -> vec3i {
     let high = vec3i(u[2] > v[2]) - vec3i(u[2] < v[2]);
     let middle = vec3i(u[1] > v[1]) - vec3i(u[1] < v[1]);
@@ -18,7 +18,7 @@ fn order(u: Point, v: Point) -> vec3i {
     return select(high, select(middle, low, middle == vec3i()), high == vec3i());
 }
 
-// All are on the grid of the mesh.
+// All points are on the grid of the mesh.
 fn grid_of(a: Point, b: Point, c: Point, d: Point) -> i32 {
     return 0;
 }
@@ -39,7 +39,7 @@ fn deviation_on(grid: i32) -> vec4u {
     return vec4u(deviation().xyz, 0u);
 }
 
-// u - v. A word that becomes an f32 errs by ε, and so does each of two sums of numbers of one sign: 3ε.
+// u - v. Converting a word to f32 errs by ε, and so does each of two sums of numbers of one sign: 3ε in all.
 fn rounded_difference(u: Point, v: Point) -> vec3f {
     return vec3f(
         rounded(exact_difference(u, v, 0u, 0)),

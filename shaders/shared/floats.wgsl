@@ -9,14 +9,14 @@ fn position(v: u32) -> Point {
     return coordinates(v);
 }
 
-// Of each axis, which of u and v is greater: 1 if u is, -1 if v is.
+// For each axis, 1 if u is greater than v, -1 if v is greater.
 fn order(u: Point, v: Point) -> vec3i {
     let x = ordered(u);
     let y = ordered(v);
     return vec3i(x > y) - vec3i(x < y);
 }
 
-// Integers that are in the order of the floats.
+// Integers in the same order as the floats.
 fn ordered(bits: Point) -> vec3i {
     let magnitude = vec3i(bits & vec3u(0x7fffffffu));
     return select(magnitude, -magnitude, bits > vec3u(0x7fffffffu));
@@ -40,18 +40,18 @@ fn unit_exponent(v: Point) -> i32 {
 fn lowest_exponent(bits: u32) -> i32 {
     let field = (bits >> 23u) & 0xffu;
     let magnitude = magnitude_of(bits);
-    // A power of two, whose f32 is exact: GLSL ES 3.00 cannot count zeros.
+    // The f32 of a power of two is exact. GLSL ES 3.00 cannot count zeros.
     let lowest = f32(magnitude & (~magnitude + 1u));
     return select(i32(max(field, 1u)) - 277 + i32(bitcast<u32>(lowest) >> 23u), 1000, magnitude == 0u);
 }
 
-// The 24 bits of an f32 before its exponent.
+// The 24-bit mantissa of an f32.
 fn magnitude_of(bits: u32) -> u32 {
     let fraction = bits & 0x7fffffu;
     return select(fraction | 0x800000u, fraction, ((bits >> 23u) & 0xffu) == 0u);
 }
 
-// u - v on a grid that both are on.
+// u - v, on a grid of both.
 fn exact_difference(u: Point, v: Point, axis: u32, grid: i32) -> vec4u {
     return difference(on_grid(component_of(u, axis), grid), on_grid(component_of(v, axis), grid));
 }
@@ -68,13 +68,13 @@ fn deviation_on(grid: i32) -> vec4u {
 fn on_grid(bits: u32, grid: i32) -> vec4u {
     let magnitude = magnitude_of(bits);
     let exponent = i32(max((bits >> 23u) & 0xffu, 1u)) - 150 - grid;
-    // Bits below the grid are zeros. Of zero the exponent says nothing.
+    // Bits below the grid are zeros. The exponent of zero means nothing.
     let whole = magnitude >> u32(clamp(-exponent, 0, 24));
     let shift = u32(clamp(exponent, 0, 95));
     let low = whole << (shift % 32u);
     let high = (whole >> 1u) >> (31u - shift % 32u);
     let word = shift / 32u;
-    // Below 84 bits nothing is left for a fourth word.
+    // At most 84 bits never need a fourth word.
     return vec4u(
         select(0u, low, word == 0u),
         select(select(0u, low, word == 1u), high, word == 0u),

@@ -5,7 +5,7 @@
 #import walk_both if tail
 #import walk_one_first if sweep
 
-// The verdict on the edge of `h` and `g`, given that on its geometry.
+// The verdict on the edge of `h` and `g`, from the verdict on its geometry.
 fn guarded(verdict: u32, h: u32, g: u32) -> u32 {
     var result = verdict;
     if verdict == LABELLED {
@@ -14,9 +14,9 @@ fn guarded(verdict: u32, h: u32, g: u32) -> u32 {
     return result;
 }
 
-// Whether an edge joins the vertices that two half-edges start at, or they are the same one. The star of either tells:
-// one is walked alone for some steps, mostly to its end, then both in turns, so the cost is that of the smaller one and
-// those steps.
+// Whether an edge joins the vertices at which two half-edges start, or the vertices are the same. The star of each vertex
+// alone gives the answer. The first is walked alone for some steps, mostly to its end, then both in turns: the cost is these
+// steps and twice the smaller star.
 fn edge_exists(at_c: u32, at_d: u32) -> bool {
     let c = vertex(at_c);
     let d = vertex(at_d);
@@ -36,7 +36,7 @@ fn edge_exists(at_c: u32, at_d: u32) -> bool {
     return exists;
 }
 
-// Whether an edge of the triangle that a walk is at goes from its vertex to `far`.
+// Whether the present triangle of a walk has an edge from its vertex to `far`.
 fn joins(walk: Star, far: u32) -> bool {
     return vertex(next(walk.y)) == far || vertex(prev(walk.y)) == far;
 }

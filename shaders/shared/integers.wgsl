@@ -1,11 +1,11 @@
-// Subtracts exact integers of 96 bits, and reads their parts.
+// Subtracts exact 96-bit integers, and reads their parts.
 
-// Shaders have one way out of a function: where there are several, compilers that inline everything take very long.
+// Functions have one return each: with several, compilers that inline everything take very long.
 fn magnitude_is_less(x: vec4u, y: vec4u) -> bool {
     return select(select(x.x < y.x, x.y < y.y, x.y != y.y), x.z < y.z, x.z != y.z);
 }
 
-// x - y of magnitudes with signs.
+// x - y, each as magnitude and sign.
 fn difference(x: vec4u, y: vec4u) -> vec4u {
     let low = x.x + y.x;
     let carry_low = select(0u, 1u, low < x.x);

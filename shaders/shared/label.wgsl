@@ -1,10 +1,10 @@
-// Label: each triangle tests its three edges and keeps the best one that may flip, as src/phases/label.rs.
+// Label: each triangle tests its three edges, and keeps the best of those that may flip, as src/phases/label.rs.
 #import guard
 #import mesh
 #import state
 
-// The choice of triangle `t`, given what the geometry of its three edges says: the twin of its labelled edge with the
-// smallest key, or BLOCKED, or NONE; DOUBTFUL where exact arithmetic has to decide first.
+// The choice of triangle `t`, from the verdicts on the geometry of its three edges: the twin of its labelled edge with the
+// smallest key, or BLOCKED, or NONE; DOUBTFUL if exact arithmetic has to decide first.
 fn label(t: u32, iteration: u32, verdicts: vec3u) -> u32 {
     var choice = NONE;
     var left = verdicts;
@@ -13,7 +13,7 @@ fn label(t: u32, iteration: u32, verdicts: vec3u) -> u32 {
         choice = DOUBTFUL;
         k = 3u;
     }
-    // The guard takes long: it looks at the best one first, and mostly at no other.
+    // The guard takes long: it tests the best edge first, and mostly no other.
     while k < 3u {
         let h = 3u * t + k;
         let g = twin_entry(h);
@@ -24,7 +24,7 @@ fn label(t: u32, iteration: u32, verdicts: vec3u) -> u32 {
     return choice;
 }
 
-// Which of the three labelled edges has the smallest key; 3 where none is labelled.
+// Which of the three edges is labelled and has the smallest key; 3 if none is labelled.
 fn best_of(t: u32, iteration: u32, verdicts: vec3u) -> u32 {
     var best = 3u;
     var smallest = 0u;

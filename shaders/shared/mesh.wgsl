@@ -2,20 +2,20 @@
 
 const NONE: u32 = 0xffffffffu;
 const BLOCKED: u32 = 0xfffffffeu;
-// A choice that waits for exact arithmetic.
+// The choice of a triangle that waits for exact arithmetic.
 const DOUBTFUL: u32 = 0xfffffffdu;
-// Set in both twin entries of an edge that was over β in the input: it stays, whatever its angle becomes.
+// Flag in both twin entries of an edge that was over β in the input: it never flips, whatever its angle becomes.
 const CREASE: u32 = 0x80000000u;
 // The same for an edge that the user has locked.
 const LOCKED: u32 = 0x40000000u;
-// All flags. Half-edges are below the lowest.
+// All flags. Half-edges are smaller than the lowest flag.
 const FLAGS: u32 = 0xc0000000u;
 
 // The verdict on an interior edge; a blocked one is BLOCKED_BY plus the index of its reason.
 const DELAUNAY: u32 = 0u;
 const LABELLED: u32 = 1u;
 const BLOCKED_BY: u32 = 2u;
-// A filter's: exact arithmetic has to decide.
+// The filter cannot decide: exact arithmetic has to.
 const UNDECIDED: u32 = 0xffffffffu;
 const REASON_ANGLE: u32 = 0u;
 const REASON_FOLD: u32 = 1u;
@@ -31,12 +31,12 @@ fn prev(h: u32) -> u32 {
     return select(h - 1u, h + 2u, h % 3u == 0u);
 }
 
-// The half-edge that an entry of the twins names, without its flags.
+// The half-edge in an entry of the twins, without the flags.
 fn unflagged(entry: u32) -> u32 {
     return select(entry & ~FLAGS, NONE, entry == NONE);
 }
 
-// The priority of an edge in an iteration; the smallest wins.
+// The priority of an edge in an iteration; the smallest key wins.
 fn key(edge: u32, iteration: u32) -> u32 {
     var x = edge ^ (iteration * 0x9e3779b9u);
     x = (x ^ (x >> 16u)) * 0x7feb352du;

@@ -1,21 +1,21 @@
-// Computes the normals of the triangles of a quad in floats, and the sign of what is made from them where rounding leaves it
-// certain.
+// Computes the normals of the triangles of a quad in floats, and signs of expressions of them, unless rounding makes these
+// uncertain.
 #import points
 #import state
 
 // As in space.rs, with ε = 2^-23, differences that err by up to 3ε and a sqrt that errs by 5ε: each of the two terms of
 // the angle sum errs by at most 14.7 + 9.1 + 1 + 1.05 = 25.9ε of the product of its sizes, their sum by 51.7ε of the
 // larger product; a product of normals less k|n||m| by 19.1 + 31.4 + 0.5 + 2.1 = 53.1ε, cos β being rounded to f32 too,
-// of the product of the four sizes. The sizes of a normal are those of the two vectors that it is made from. 64 leaves
-// room.
+// of the product of the four sizes. The sizes of a normal are those of its two vectors. The bound is
+// 64.
 const SPACE_BOUND: f32 = 7.6293945e-6;
-// What is flushed, see points.wgsl, is below 2^-46.
+// Flushed values, see points.wgsl, are below 2^-46.
 const SPACE_FLUSHED: f32 = 5.684342e-14;
 
 // The vectors p = a - c, q = b - c, r = a - d, s = b - d.
 alias Sides = mat4x3f;
 
-// They, a - b and c - d, scaled; all zero where no filter can decide.
+// These vectors, a - b and c - d, scaled; all zero if no filter can decide.
 alias Quad = array<vec3f, 6>;
 
 fn quad_of(a: Point, b: Point, c: Point, d: Point) -> Quad {
@@ -44,11 +44,11 @@ fn size(v: vec3f) -> f32 {
     return abs(v.x) + abs(v.y) + abs(v.z);
 }
 
-// A normal, and the product of the sizes of the two vectors that it is made from.
+// A normal, and the product of the sizes of its two vectors.
 alias Normal = vec4f;
 
-// u × v, given w = u - v. A precise one is made from the two shortest of them, as w × v or w × u may be: of a needle
-// that is off by far less.
+// u × v, given w = u - v. If precise, it uses the two shortest of u, v and w: for a needle, w × v or w × u has a far smaller
+// error.
 fn normal_of(u: vec3f, v: vec3f, w: vec3f, is_precise: bool) -> Normal {
     let takes_w = is_precise && size(w) < max(size(u), size(v));
     let first = select(u, w, takes_w);
@@ -66,7 +66,7 @@ fn old_normals(quad: Quad, is_precise: bool) -> Normals {
     );
 }
 
-// Those of (c, d, a) and (d, c, b).
+// The normals of the triangles (c, d, a) and (d, c, b).
 fn new_normals(quad: Quad, is_precise: bool) -> Normals {
     return Normals(
         normal_of(quad[2], quad[0], quad[5], is_precise),
@@ -74,12 +74,12 @@ fn new_normals(quad: Quad, is_precise: bool) -> Normals {
     );
 }
 
-// Of a value that is off by as much as `sizes` allow; 0 where the filter cannot decide.
+// The sign of a value whose error is relative to `sizes`; 0 if the filter cannot decide.
 fn sign_of(value: f32, sizes: f32) -> i32 {
     return filtered_sign(value, SPACE_BOUND * sizes + SPACE_FLUSHED);
 }
 
-// Whether the angle between two normals is at most β: 1 if it is, -1 if not, 0 where the filter cannot decide.
+// Whether the angle between two normals is at most β: 1 if it is, -1 if not, 0 if the filter cannot decide.
 fn angle_sign(normals: Normals) -> i32 {
     let n = normals[0].xyz;
     let m = normals[1].xyz;

@@ -1,5 +1,5 @@
-// Tests edges in the plane: float filters of orientation and of the in-circle test, as src/predicates/plane.rs, and both tests
-// on integers where few bits do.
+// Tests edges in the plane: float filters for orientation and in-circle, as src/predicates/plane.rs, and both tests on
+// integers of few bits.
 #import integers
 #import mesh
 #import points
@@ -7,13 +7,13 @@
 
 // A filter of degree 4 in f32. WGSL and GLSL ES leave the direction of rounding open: each operation errs by at most
 // ε = 2^-23, fused or not. As in plane.rs, but with differences that err by up to 3ε, the value errs by at most 18.2ε of
-// `magnitude`; 24 leaves room.
+// `magnitude`; the bound is 24.
 const PLANE_BOUND: f32 = 2.861023e-6;
-// What is flushed, see points.wgsl, is below 2^-48.
+// Flushed values, see points.wgsl, are below 2^-48.
 const PLANE_FLUSHED: f32 = 1.4210855e-14;
 
-// Whether an edge may flip by its geometry: DELAUNAY, BLOCKED_BY + REASON_FOLD or LABELLED; UNDECIDED where exact
-// arithmetic has to decide. `winding` is -1 in a clockwise component, else 1.
+// The verdict on the geometry of an edge: DELAUNAY, BLOCKED_BY + REASON_FOLD or LABELLED; UNDECIDED if exact arithmetic has
+// to decide. `winding` is -1 in a clockwise component, else 1.
 fn filtered_verdict_on(a: Point, b: Point, c: Point, d: Point, winding: i32) -> u32 {
     var p = rounded_difference(a, c).xy;
     var q = rounded_difference(b, c).xy;
@@ -61,8 +61,8 @@ fn filtered_sign_of(a: Point, b: Point, c: Point) -> i32 {
     return area_sign(u * scale, v * scale);
 }
 
-// The same of any edge where its differences are below 2^30: everything fits 128 bits then. The ties of most lattices are
-// decided here.
+// The same for an edge whose differences are below 2^30, so that everything fits 128 bits. It decides the ties of most
+// lattices.
 fn close_verdict_on(a: Point, b: Point, c: Point, d: Point, winding: i32) -> u32 {
     var verdict = filtered_verdict_on(a, b, c, d, winding);
     if verdict == UNDECIDED {
@@ -133,11 +133,11 @@ fn narrow_sign(x: vec3u, u: vec3u, y: vec3u, v: vec3u) -> i32 {
     let left_sign = select(select(1, -1, x.z != u.z), 0, all(left == vec4u()));
     let right_sign = select(select(1, -1, y.z != v.z), 0, all(right == vec4u()));
     let larger = highest_sign(vec4i(left > right) - vec4i(left < right), 0);
-    // Of two different signs, that of the larger magnitude.
+    // If the signs differ, the sign of the larger magnitude.
     return select(sign(left_sign + right_sign), left_sign * larger, left_sign * right_sign < 0);
 }
 
-// 64 by 64 bits.
+// The 128-bit product of two 64-bit integers.
 fn narrow_product(x: vec2u, y: vec2u) -> vec4u {
     let low = multiply_words(x.x, y.x);
     let cross1 = multiply_words(x.x, y.y);

@@ -1,32 +1,32 @@
-// Subtracts points: rounded for the filters, exact on the grid of four points, which are integers times one power of two.
-// What a point is, floats.wgsl and fixed.wgsl say; the plane leaves the last of its three coordinates 0.
+// Subtracts points: rounded for the filters, and exactly on the grid of four points, which are integers times one power of
+// two. floats.wgsl and fixed.wgsl define points. In the plane, the third coordinate is 0.
 #import fixed if fixed
 #import floats if floats
 
 // The magnitude in 96 bits and a sign, for each axis.
 alias Differences = array<vec4u, 3>;
 
-// Bits that a coordinate, or its distance from the middle of the bounding box, may take on the grid of its mesh: what the
-// engine accepts at upload.
+// The most bits of a coordinate, or of its distance from the centre of the bounding box, on the grid of its mesh. The engine
+// checks this at upload.
 const SPAN: u32 = 84u;
 
 // Subnormals may be flushed. The differences are scaled so that the largest lies in [1, 2) and none was
-// computed from a quad smaller than 2^-67; what is flushed then changes a filter's value by less than its bound says.
+// computed from a quad smaller than 2^-67. So flushing changes a filter's value by less than its bound.
 const SMALLEST_FIELD: u32 = 60u;
 const LARGEST_FIELD: u32 = 250u;
 
-// The power of two that scales `largest` into [1, 2); 0 where a filter cannot be trusted.
+// The power of two that scales `largest` into [1, 2); 0 if a filter cannot be trusted.
 fn scale_for(largest: f32) -> f32 {
     let field = (bitcast<u32>(largest) >> 23u) & 0xffu;
     return select(0.0, bitcast<f32>((254u - field) << 23u), field >= SMALLEST_FIELD && field <= LARGEST_FIELD);
 }
 
-// 0 where the filter cannot decide.
+// The sign of a value with this error bound; 0 if the filter cannot decide.
 fn filtered_sign(value: f32, bound: f32) -> i32 {
     return select(0, select(1, -1, value < 0.0), abs(value) > bound);
 }
 
-// u - v on a grid that both are on.
+// u - v, on a grid of both.
 fn exact_differences(u: Point, v: Point, grid: i32) -> Differences {
     return Differences(
         exact_difference(u, v, 0u, grid),

@@ -1,9 +1,9 @@
-// Counts whether a driver runs as many rounds of a loop as the loop says. llvmpipe ends every loop of an invocation once
-// 65,535 rounds have been made in all of its loops, silently; the work must then be cut into smaller pieces.
+// Tests whether a driver runs all rounds of a loop. llvmpipe silently ends every loop of an invocation after 65,535 rounds in
+// all of its loops together; the work must then be cut into smaller pieces.
 
 const ROUNDS: u32 = 100000u;
 
-// The sum of no closed form that a compiler knows.
+// A recurrence that no compiler can replace by a closed form.
 fn rounds() -> u32 {
     var x = 1u;
     for (var i = 0u; i < ROUNDS; i++) {

@@ -1,4 +1,4 @@
-// Select: an edge flips if it is the best of both its triangles and no better one makes the same new edge,
+// Select: an edge flips if it is the best of both its triangles and no better edge would make the same new edge,
 // as src/phases/select.rs.
 #import mesh
 #import star
@@ -16,7 +16,7 @@ fn selection(t: u32, iteration: u32) -> u32 {
     return choice;
 }
 
-// The half-edge of triangle `t` that is the best of both its triangles, or NONE.
+// The half-edge of triangle `t` whose edge is the best of both its triangles, or NONE.
 fn mutual(t: u32) -> u32 {
     let g = best(t);
     var h = NONE;
@@ -26,8 +26,8 @@ fn mutual(t: u32) -> u32 {
     return select(NONE, h, h < DOUBTFUL && h / 3u == t);
 }
 
-// Whether another selected edge with a smaller key would join the same two vertices. As in guard.wgsl, the
-// star of either tells.
+// Whether another selected edge with a smaller key would join the same two vertices. As in guard.wgsl, the star of each
+// vertex alone gives the answer.
 fn yields(h: u32, g: u32, iteration: u32) -> bool {
     let c = vertex(prev(h));
     let d = vertex(prev(g));
@@ -48,7 +48,7 @@ fn yields(h: u32, g: u32, iteration: u32) -> bool {
     return is_beaten;
 }
 
-// Whether the edge opposite to `corner` is selected, lies opposite to the vertex `far` too and is better.
+// Whether the edge opposite to `corner` is selected, is also opposite to the vertex `far`, and is better.
 fn wins(corner: u32, far: u32, mine: u32, iteration: u32) -> bool {
     let h = mutual(corner / 3u);
     var is_better = false;

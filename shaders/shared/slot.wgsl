@@ -1,16 +1,16 @@
-// Says where a half-edge is after the flips of an iteration, as src/phases/flip.rs.
+// Finds the index of a half-edge after the flips of an iteration, as src/phases/flip.rs.
 #import mesh
 #import state
 
-// Where half-edge `x`, given with its flags, will be after the iteration.
+// The index of half-edge `x`, with its flags, after the iteration.
 fn slot(entry: u32) -> u32 {
     let x = unflagged(entry);
-    var place = entry;
+    var result = entry;
     if x != NONE {
         let flip = flip_of(x / 3u);
         if flip.x != NONE && x == next(flip.x) {
-            place = flip.y | (entry & FLAGS);
+            result = flip.y | (entry & FLAGS);
         }
     }
-    return place;
+    return result;
 }

@@ -1,17 +1,17 @@
-// Tests edges of surfaces by float filters: the angle sum, the angle between normals against β, and normals that turn over,
-// as src/predicates/space.rs.
+// Tests edges in space by float filters: the angle sum, the angle between normals, and normals that turn over, as
+// src/predicates/space.rs.
 #import any_deviation if any_deviation
 #import deviation if deviation
 #import mesh
 #import normals
 #import points
 
-// What the geometry of an edge says: -1 where the opposite angles sum to more than π; where the angle between the normals
-// is larger than β before the flip; after it; where a new normal has a negative dot product with an old one. 1 where not,
-// 0 where that is open.
+// Four signs of an edge. -1 if the opposite angles sum to more than π; if the angle between the normals is larger than β
+// before the flip; the same after the flip; if a new normal has a negative dot product with an old one. 1 if not, 0 if
+// undecided.
 alias Signs = vec4i;
 
-// DELAUNAY, BLOCKED_BY + REASON_ANGLE or REASON_FOLD, or LABELLED; UNDECIDED while a sign that matters is open.
+// DELAUNAY, BLOCKED_BY + REASON_ANGLE or REASON_FOLD, or LABELLED; UNDECIDED if a sign that matters is undecided.
 fn verdict_of(signs: Signs) -> u32 {
     let angle = min(signs.y, signs.z);
     var verdict = select(select(LABELLED, BLOCKED_BY + REASON_FOLD, signs.w < 0), BLOCKED_BY + REASON_ANGLE, angle < 0);
@@ -19,13 +19,13 @@ fn verdict_of(signs: Signs) -> u32 {
     return select(verdict, DELAUNAY, signs.x > 0);
 }
 
-// Whether an edge may flip by its geometry: DELAUNAY, BLOCKED_BY + REASON_ANGLE, REASON_FOLD or REASON_DEVIATION, or
-// LABELLED; UNDECIDED where `exact_verdict_on` has to decide. The winding has no meaning in space.
+// The verdict on the geometry of an edge: DELAUNAY, BLOCKED_BY + REASON_ANGLE, REASON_FOLD or REASON_DEVIATION, or LABELLED;
+// UNDECIDED if `exact_verdict_on` has to decide. The winding has no meaning in space.
 fn filtered_verdict_on(a: Point, b: Point, c: Point, d: Point, winding: i32) -> u32 {
     return verdict_by(a, b, c, d, false);
 }
 
-// The same by a filter that takes longer and leaves less.
+// The same by a filter that is slower and decides more.
 fn close_verdict_on(a: Point, b: Point, c: Point, d: Point, winding: i32) -> u32 {
     return verdict_by(a, b, c, d, true);
 }
@@ -38,7 +38,7 @@ fn verdict_by(a: Point, b: Point, c: Point, d: Point, is_precise: bool) -> u32 {
     return verdict;
 }
 
-// All but the first are 1 where that is.
+// If the first sign is 1, the others are 1 too.
 fn filtered_signs(a: Point, b: Point, c: Point, d: Point, is_precise: bool) -> Signs {
     let quad = quad_of(a, b, c, d);
     let old = old_normals(quad, is_precise);

@@ -2,11 +2,11 @@
 #import mesh
 #import state
 
-// Where the walk of a fan began, where it is, whether it goes clockwise (0 or 1), and where the next anchor stands in
-// the table of the fans, if the vertex has several fans.
+// A walk of a fan: its first corner, its present corner, whether it goes clockwise (0 or 1), and the index of the next anchor
+// in the table of the fans, if the vertex has several fans.
 alias Star = vec4u;
 
-// All corners at the vertex that `corner` starts at.
+// A walk of all corners at the vertex at which `corner` starts.
 fn star(corner: u32) -> Star {
     var list = NONE;
     if has_fans() {
@@ -19,7 +19,7 @@ fn star(corner: u32) -> Star {
     return walk;
 }
 
-// The fan whose anchor is a word of the table; behind the last one, or without a table, none.
+// A walk of the fan whose anchor is this word of the table; of no fan after the last anchor, or without a table.
 fn fan_at(word: u32) -> Star {
     var anchor = NONE;
     if word != NONE {
@@ -28,7 +28,7 @@ fn fan_at(word: u32) -> Star {
     return Star(anchor, anchor, 0u, select(word + 1u, NONE, word == NONE));
 }
 
-// At the next corner; at NONE (in y) behind the last one.
+// Moves the walk to the next corner; NONE (in y) after the last one.
 fn advanced(walk: Star) -> Star {
     var corner = NONE;
     var is_clockwise = walk.z;
@@ -36,7 +36,7 @@ fn advanced(walk: Star) -> Star {
         corner = twin(prev(walk.y));
     }
     if corner == NONE {
-        // The fan is open: back to where it began and round the other way.
+        // The fan is open: return to its start and turn clockwise.
         let other = twin(select(walk.x, walk.y, is_clockwise == 1u));
         corner = select(next(other), NONE, other == NONE);
         is_clockwise = 1u;

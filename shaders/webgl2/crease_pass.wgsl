@@ -1,4 +1,4 @@
-// The passes that flag creases, before the first iteration on a surface.
+// The passes that flag creases, before the first iteration in space.
 #import creases
 #import mesh
 #import points
@@ -27,13 +27,13 @@ fn is_crease(h: u32, g: u32) -> bool {
     let d = position(vertex(prev(g)));
     var verdict = filtered_crease(a, b, c, d);
     if verdict == UNDECIDED {
-        // Only the angle before the flip is open.
+        // Only the angle before the flip is undecided.
         verdict = verdict_of(exact_signs(a, b, c, d, Signs(-1, 0, 1, 1)));
     }
     return verdict == BLOCKED_BY + REASON_ANGLE;
 }
 
-// Flags the twins of those edges, and no others.
+// Sets the flag in the twins of creases, and clears it in all others.
 @fragment
 fn flag_pass(@builtin(position) fragment: vec4f) -> @location(0) vec4u {
     let t = index_at(fragment);
@@ -46,6 +46,6 @@ fn flag_pass(@builtin(position) fragment: vec4f) -> @location(0) vec4u {
 
 fn flagged(h: u32) -> u32 {
     let g = twin(h);
-    let is_over = textureLoad(verdicts, place(min(h, g)), 0).x == 1u;
+    let is_over = textureLoad(verdicts, texel_at(min(h, g)), 0).x == 1u;
     return select(g, g | CREASE, is_over && g != NONE);
 }

@@ -3,7 +3,7 @@
 // get wrong, nor a carry inside of a column.
 #import integers
 
-// Digits that are computed here are balanced, from -4096 to 4095: a number is zero where all of them are, its sign
+// Computed digits are balanced, from -4096 to 4095. A number is zero if all digits are, its sign
 // is that of its highest one that is not zero, and n digits hold every number up to 4095/8192·2^(13·n). With c digits
 // in use in each coordinate's difference, 2c + 1 hold a product of three pairs of differences (below 3·2^(26·c)),
 // 4c + 1 a sum of two products of such (below 18·2^(52·c)).
@@ -26,7 +26,7 @@ fn digits_of(x: vec4u) -> Small {
     return Small(sign * vec4i(low), sign * vec4i(high));
 }
 
-// Digits in use of the widest of magnitudes that were joined by a bitwise or.
+// Digits in use of the widest of several magnitudes, given their bitwise or.
 fn digits_in_use(x: vec4u) -> u32 {
     let digits = digits_of(vec4u(x.xyz, 0u));
     let low = last_in_use(digits[0]);
@@ -38,7 +38,7 @@ fn last_in_use(x: vec4i) -> u32 {
     return select(select(select(select(0u, 1u, x.x != 0), 2u, x.y != 0), 3u, x.z != 0), 4u, x.w != 0);
 }
 
-// The balanced digit of a column; what is left of the column goes to the next one.
+// The balanced digit of a column. The carry goes to the next column.
 fn digit_of(column: i32) -> i32 {
     return ((column + HALF_DIGIT) & DIGIT_MASK) - HALF_DIGIT;
 }
@@ -130,7 +130,7 @@ fn sum_of_products(x: Small, u: Small, y: Small, v: Small, z: Small, w: Small, c
     var left_u = u;
     var left_v = v;
     var left_w = w;
-    // Each the digits so far, the last one first: digit i of x meets digit k - i of u in column k.
+    // The digits so far, the last one first: column k multiplies digit i of x by digit k - i of u.
     var turned_u = Small();
     var turned_v = Small();
     var turned_w = Small();

@@ -1,6 +1,6 @@
-// The passes of the phases and of the census: each looks at all triangles, and those that nothing has changed around keep what
-// they had. What has loops of its own is in a pass over the half-edges, without a loop around it: compilers that inline
-// everything take very long over loops in loops.
+// The passes of the phases and of the census. Each visits all triangles; triangles without changes around them keep their
+// values. A test with loops of its own is in a pass over half-edges, without a loop around it: compilers that inline everything
+// take very long for nested loops.
 #import guard
 #import label
 #import mesh
@@ -19,7 +19,7 @@ fn cover(@builtin(vertex_index) corner: u32) -> @builtin(position) vec4f {
     return vec4f(f32(corner & 1u) * 4.0 - 1.0, f32(corner >> 1u) * 4.0 - 1.0, 0.0, 1.0);
 }
 
-// The verdict on the geometry of the edge of half-edge `h`, kept where neither of its triangles has flipped.
+// The verdict on the geometry of the edge of half-edge `h`. It is kept if neither of its triangles has flipped.
 // `selections` are those of the iteration before.
 @fragment
 fn verdict_pass(@builtin(position) fragment: vec4f) -> @location(0) u32 {
@@ -27,7 +27,7 @@ fn verdict_pass(@builtin(position) fragment: vec4f) -> @location(0) u32 {
     var verdict = DELAUNAY;
     if h < 3u * params[0].x {
         let g = twin(h);
-        verdict = textureLoad(verdicts, place(h), 0).x;
+        verdict = textureLoad(verdicts, texel_at(h), 0).x;
         if g != NONE && h < g && (params[0].z == 0u || selected(h / 3u) != NONE || selected(g / 3u) != NONE) {
             verdict = geometric_verdict(h, g);
         }
@@ -40,7 +40,7 @@ fn verdict_pass(@builtin(position) fragment: vec4f) -> @location(0) u32 {
 @fragment
 fn label_pass(@builtin(position) fragment: vec4f) -> @location(0) u32 {
     let t = index_at(fragment);
-    let around = textureLoad(twins, place(t), 0);
+    let around = textureLoad(twins, texel_at(t), 0);
     let is_active = best(t) != NONE || selected(t) != NONE
         || has_flipped(around.x) || has_flipped(around.y) || has_flipped(around.z);
     var choice = NONE;
@@ -50,12 +50,12 @@ fn label_pass(@builtin(position) fragment: vec4f) -> @location(0) u32 {
     return choice;
 }
 
-// What the pass before has found; of no twin, and of an edge that stays, nothing.
+// The verdict of the pass before; none for a half-edge without a twin, or an edge that never flips.
 fn known_verdict(h: u32) -> u32 {
     let g = twin_entry(h);
     var verdict = DELAUNAY;
     if g < LOCKED {
-        verdict = textureLoad(verdicts, place(min(h, g)), 0).x;
+        verdict = textureLoad(verdicts, texel_at(min(h, g)), 0).x;
     }
     return verdict;
 }
@@ -78,7 +78,7 @@ fn select_pass(@builtin(position) fragment: vec4f) -> @location(0) u32 {
 @fragment
 fn flip_pass(@builtin(position) fragment: vec4f) -> @location(0) vec4u {
     let t = index_at(fragment);
-    var result = textureLoad(triangles, place(t), 0);
+    var result = textureLoad(triangles, texel_at(t), 0);
     let flip = flip_of(t);
     if flip.x != NONE {
         result = with_component(result, next(flip.x) % 3u, vertex(prev(flip.y)));
@@ -86,11 +86,11 @@ fn flip_pass(@builtin(position) fragment: vec4f) -> @location(0) vec4u {
     return result;
 }
 
-// Update, into another texture: the twins of a triangle. The vertices are not looked at.
+// Update, into another texture: the twins of a triangle. It does not read the vertices.
 @fragment
 fn update_pass(@builtin(position) fragment: vec4f) -> @location(0) vec4u {
     let t = index_at(fragment);
-    let old = textureLoad(twins, place(t), 0);
+    let old = textureLoad(twins, texel_at(t), 0);
     var entries = vec4u(slot(old.x), slot(old.y), slot(old.z), 0u);
     let flip = flip_of(t);
     if flip.x != NONE {
@@ -100,7 +100,7 @@ fn update_pass(@builtin(position) fragment: vec4f) -> @location(0) vec4u {
     return entries;
 }
 
-// The anchors of the fans, which stand behind a word for each vertex.
+// The anchors of the fans, which come after one word per vertex.
 @fragment
 fn anchor_pass(@builtin(position) fragment: vec4f) -> @location(0) u32 {
     let i = index_at(fragment);
@@ -112,7 +112,7 @@ fn anchor_pass(@builtin(position) fragment: vec4f) -> @location(0) u32 {
 }
 
 // The verdicts on the interior edges of a triangle, each from its lower half-edge: labelled, then blocked by each reason
-// but the locks.
+// except locks.
 @fragment
 fn census_pass(@builtin(position) fragment: vec4f) -> @location(0) vec4u {
     let t = index_at(fragment);
@@ -121,7 +121,7 @@ fn census_pass(@builtin(position) fragment: vec4f) -> @location(0) vec4u {
     for (var h = 3u * t; h < end; h++) {
         let g = twin(h);
         if g != NONE && h < g {
-            let verdict = vec4u(guarded(textureLoad(verdicts, place(h), 0).x, h, g));
+            let verdict = vec4u(guarded(textureLoad(verdicts, texel_at(h), 0).x, h, g));
             result += vec4u(verdict == vec4u(LABELLED, LABELLED + 1u, LABELLED + 2u, LABELLED + 3u));
         }
     }
@@ -137,7 +137,7 @@ fn more_pass(@builtin(position) fragment: vec4f) -> @location(0) vec4u {
     for (var h = 3u * t; h < end; h++) {
         let g = twin(h);
         if g != NONE && h < g {
-            let verdict = textureLoad(verdicts, place(h), 0).x;
+            let verdict = textureLoad(verdicts, texel_at(h), 0).x;
             result.x += u32(verdict == BLOCKED_BY + REASON_LOCKED);
             result.y += u32(verdict == BLOCKED_BY + REASON_DEVIATION);
         }
@@ -145,7 +145,7 @@ fn more_pass(@builtin(position) fragment: vec4f) -> @location(0) vec4u {
     return result;
 }
 
-// How many triangles of a block are selected.
+// The number of triangles in a block that have a selected edge.
 @fragment
 fn flips_pass(@builtin(position) fragment: vec4f) -> @location(0) vec4u {
     let first = vec2u(fragment.xy) * BLOCK;
@@ -159,7 +159,7 @@ fn flips_pass(@builtin(position) fragment: vec4f) -> @location(0) vec4u {
     return result;
 }
 
-// The sum of a block of counts, or of all where one block holds them.
+// The sum of a block of counts, or of all counts if they are one block.
 @fragment
 fn sum_pass(@builtin(position) fragment: vec4f) -> @location(0) vec4u {
     let size = textureDimensions(counts);

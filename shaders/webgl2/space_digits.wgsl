@@ -1,4 +1,4 @@
-// Tests edges of surfaces by exact integers as digits.
+// Tests edges in space by exact integers as digits.
 #import any_deviation if any_deviation
 #import deviation if deviation
 #import deviation_digits if deviation
@@ -9,7 +9,7 @@
 #import state
 #import vector_digits
 
-// The verdict on any edge: by a filter that takes longer and leaves less, then by integers.
+// The verdict on any edge: by a filter that is slower and decides more, then by integers.
 fn exact_verdict_on(a: Point, b: Point, c: Point, d: Point, winding: i32) -> u32 {
     var signs = filtered_signs(a, b, c, d, true);
     if verdict_of(signs) == UNDECIDED {
@@ -25,7 +25,7 @@ fn exact_verdict_on(a: Point, b: Point, c: Point, d: Point, winding: i32) -> u32
     return verdict;
 }
 
-// The signs, those that are open and matter by integers.
+// The signs. Integers decide the undecided ones that matter.
 fn exact_signs(a: Point, b: Point, c: Point, d: Point, filtered: Signs) -> Signs {
     let grid = grid_of(a, b, c, d);
     let from_ac = exact_differences(a, c, grid);

@@ -1,29 +1,29 @@
-// The state of a mesh in textures, as the WebGL2 engine binds it: a texel an element, row after row. A fragment reads what it
-// likes of the state before its pass, and writes the texel of its own triangle in another texture.
+// The state of a mesh in textures, as the WebGL2 engine binds it: one element per texel, row after row. A fragment reads any
+// texel of the state before its pass, and writes the texel of its own triangle in another texture.
 #import digits
 #import mesh
 
-// A texel each of three words: what floats.wgsl and fixed.wgsl say of positions; vertices; twins. The fourth word of a
+// Three words per texel: positions, as floats.wgsl and fixed.wgsl define them; vertices; twins. The fourth word of a
 // triangle is 1 where its component is clockwise.
 @group(0) @binding(0) var positions: texture_2d<u32>;
 @group(0) @binding(1) var triangles: texture_2d<u32>;
 @group(0) @binding(2) var twins: texture_2d<u32>;
-// A texel each of one word.
+// One word per texel.
 @group(0) @binding(3) var bests: texture_2d<u32>;
 @group(0) @binding(4) var selections: texture_2d<u32>;
 // The table of the fans.
 @group(0) @binding(5) var fans: texture_2d<u32>;
-// A half-edge a texel: the verdict on the geometry of its edge, where it is the lower one.
+// One half-edge per texel: the verdict on the geometry of its edge, if it is the lower half-edge.
 @group(0) @binding(6) var verdicts: texture_2d<u32>;
-// Four counts a texel.
+// Four counts per texel.
 @group(0) @binding(7) var counts: texture_2d<u32>;
 
 // (triangles, vertices, the iteration, bits of the column in an index), (words in the table of the fans, whether β is
-// 180°, the sign of cos β, cos β rounded to f32), then the digits of its mantissa and power, as in digits.wgsl, then what the
-// diagonals of a quad may be apart: words as those of a coordinate, and rounded to f32 for the filter.
+// 180°, the sign of cos β, cos β rounded to f32), then the digits of its mantissa and power, as in digits.wgsl, then the
+// limit for the deviation: the words of a coordinate, and rounded to f32 for the filter.
 @group(0) @binding(8) var<uniform> params: array<vec4u, 7>;
 
-fn place(i: u32) -> vec2u {
+fn texel_at(i: u32) -> vec2u {
     let bits = params[0].w;
     return vec2u(i & ((1u << bits) - 1u), i >> bits);
 }
@@ -33,7 +33,7 @@ fn index_at(fragment: vec4f) -> u32 {
     return (u32(fragment.y) << params[0].w) + u32(fragment.x);
 }
 
-// One of the first three.
+// One of the first three components.
 fn component(v: vec4u, k: u32) -> u32 {
     return select(select(v.x, v.y, k == 1u), v.z, k == 2u);
 }
@@ -43,12 +43,12 @@ fn with_component(v: vec4u, k: u32, x: u32) -> vec4u {
 }
 
 fn vertex(h: u32) -> u32 {
-    return component(textureLoad(triangles, place(h / 3u), 0), h % 3u);
+    return component(textureLoad(triangles, texel_at(h / 3u), 0), h % 3u);
 }
 
 // The half-edge on the other side, with its flags, or NONE.
 fn twin_entry(h: u32) -> u32 {
-    return component(textureLoad(twins, place(h / 3u), 0), h % 3u);
+    return component(textureLoad(twins, texel_at(h / 3u), 0), h % 3u);
 }
 
 fn twin(h: u32) -> u32 {
@@ -56,14 +56,14 @@ fn twin(h: u32) -> u32 {
 }
 
 fn best(t: u32) -> u32 {
-    return textureLoad(bests, place(t), 0).x;
+    return textureLoad(bests, texel_at(t), 0).x;
 }
 
 fn selected(t: u32) -> u32 {
-    return textureLoad(selections, place(t), 0).x;
+    return textureLoad(selections, texel_at(t), 0).x;
 }
 
-// The two half-edges of the selected edge of triangle `t`, its own one first; NONE where no edge is.
+// The two half-edges of the selected edge of triangle `t`, its own one first; NONE if no edge is selected.
 fn flip_of(t: u32) -> vec2u {
     let g = selected(t);
     var h = NONE;
@@ -73,16 +73,16 @@ fn flip_of(t: u32) -> vec2u {
     return vec2u(h, g);
 }
 
-// Words of the positions, one for each axis.
+// Words of a position, one for each axis.
 fn coordinates(i: u32) -> vec3u {
-    return textureLoad(positions, place(i), 0).xyz;
+    return textureLoad(positions, texel_at(i), 0).xyz;
 }
 
 fn is_clockwise(t: u32) -> bool {
-    return textureLoad(triangles, place(t), 0).w == 1u;
+    return textureLoad(triangles, texel_at(t), 0).w == 1u;
 }
 
-// Nothing is known of the stars here.
+// This engine does not know the embedded stars.
 fn is_embedded(v: u32) -> bool {
     return false;
 }
@@ -97,7 +97,7 @@ fn has_fans() -> bool {
 
 // A word of the table of the fans, see src/mesh/star.rs.
 fn fan_entry(i: u32) -> u32 {
-    return textureLoad(fans, place(i), 0).x;
+    return textureLoad(fans, texel_at(i), 0).x;
 }
 
 fn has_any_angle() -> bool {

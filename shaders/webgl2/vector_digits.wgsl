@@ -24,7 +24,7 @@ fn dot_of(u: Vector, v: Vector, count: u32) -> Medium {
     );
 }
 
-// u·v - x·y: dot products of normals by the identity of Binet and Cauchy,
+// u·v - x·y, for dot products of normals by the Binet–Cauchy identity
 // (u × v)·(x × y) = (u·x)(v·y) - (u·y)(v·x).
 fn determinant(u: Medium, v: Medium, x: Medium, y: Medium, count: u32) -> Large {
     return sum_of_medium_products(u, v, x, negated_medium(y), count);

@@ -1,4 +1,4 @@
-// Tests an interior edge, as `verdict` in src/phases/label.rs, but for the guard.
+// Tests an interior edge, as `verdict` in src/phases/label.rs, without the guard.
 #import mesh
 #import plane if plane
 #import plane_digits if plane
@@ -7,7 +7,7 @@
 #import space_digits if space
 #import state
 
-// Whether the interior edge of the half-edges `h` and `g` may flip by its geometry, and is neither locked nor a crease.
+// The verdict on the geometry of the interior edge of the half-edges `h` and `g`, and on its flags.
 fn geometric_verdict(h: u32, g: u32) -> u32 {
     let a = position(vertex(h));
     let b = position(vertex(g));

@@ -1,17 +1,17 @@
-// Says which triangles an iteration looks at: while many edges flip, all of them, to see which are due; once few do, those
-// of the list that the iteration before has built.
+// Selects the triangles that an iteration visits: all triangles, to find the due ones, while many edges flip; when few flip,
+// the list that the iteration before has built.
 #import history_read if reads
 #import history_write if writes
 #import mesh
 #import state
 
 struct Work {
-    // 0 where the run has ended: the iteration before flipped nothing.
+    // 0 if the run has ended: the iteration before flipped nothing.
     count: u32,
     is_listed: bool,
-    // Whether nearly all of them are due: then none is asked.
+    // Whether nearly all triangles are due: then all count as due.
     is_full: bool,
-    // Where the list begins.
+    // The offset of the list.
     first: u32,
 }
 
@@ -38,8 +38,8 @@ fn active_triangle(work: Work, i: u32) -> u32 {
     return t;
 }
 
-// A triangle is due where its choice can be another one than in the iteration before: where it or a neighbour has flipped,
-// and where it had one, since keys change and, for duplicates, anything may have.
+// A triangle is due if its choice may differ from that of the iteration before: if it or a neighbour has flipped, or if it had
+// a choice, since keys change, and any flip may remove a duplicate.
 fn is_due(work: Work, t: u32, iteration: u32) -> bool {
-    return work.is_full || best(t) != NONE || atomicLoad(&frontier[stamp_place(t)]) == iteration;
+    return work.is_full || best(t) != NONE || atomicLoad(&frontier[stamp_index(t)]) == iteration;
 }

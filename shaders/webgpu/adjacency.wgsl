@@ -1,9 +1,9 @@
 // Finds the twins from the triangles, as src/mesh/adjacency.rs, by buckets: counts the half-edges of each, allocates, scatters,
-// matches. The order within a bucket is left to the device; no result depends on it.
+// matches. The order within a bucket depends on the device; no result depends on it.
 #import mesh
 
 const WORKGROUP_SIZE: u32 = 256u;
-// Buckets that one invocation of `allocate` adds up.
+// Buckets that one invocation of `allocate` sums.
 const BUCKETS_EACH: u32 = 8u;
 
 // Words of `counters`.
@@ -27,7 +27,7 @@ struct Params {
 @group(0) @binding(2) var<storage, read_write> twins: array<u32>;
 // Half-edges by bucket.
 @group(0) @binding(3) var<storage, read_write> sorted: array<u32>;
-// The number of half-edges of each bucket, then where its next one goes. For the fans: the number of corners
+// The number of half-edges of each bucket, then the index for its next half-edge. For the fans: the number of corners
 // of each vertex, then one of them.
 @group(0) @binding(4) var<storage, read_write> buckets: array<atomic<u32>>;
 @group(0) @binding(5) var<storage, read_write> counters: array<atomic<u32>>;
@@ -43,7 +43,7 @@ fn ends(h: u32) -> vec2u {
     return vec2u(min(u, v), max(u, v));
 }
 
-// By the smaller vertex, whose half-edges are spread over 256 buckets: a pole would else fill a single one.
+// By the smaller vertex. Its half-edges are spread over 256 buckets, so that a pole does not fill a single one.
 fn bucket_of(ends: vec2u) -> u32 {
     let hash = (ends.y * 0x9e3779b9u) >> 24u;
     return (ends.x & ~255u) | ((ends.x + hash) & 255u);
@@ -56,7 +56,7 @@ fn count(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) grou
     }
 }
 
-// Gives each bucket its place in `sorted`. A workgroup takes the room for its buckets at once.
+// Gives each bucket its range in `sorted`. A workgroup allocates the ranges of its buckets at once.
 @compute @workgroup_size(WORKGROUP_SIZE)
 fn allocate(
     @builtin(workgroup_id) group: vec3u,
@@ -104,12 +104,12 @@ fn match_twins(
     @builtin(local_invocation_index) local: u32,
     @builtin(num_workgroups) groups: vec3u,
 ) {
-    // In the order of the buckets: those of one are read together.
-    for (var place = id.x; place < params.half_edges; place += groups.x * WORKGROUP_SIZE) {
-        let h = sorted[place];
+    // In the order of the buckets, so that the half-edges of a bucket are read together.
+    for (var index = id.x; index < params.half_edges; index += groups.x * WORKGROUP_SIZE) {
+        let h = sorted[index];
         let mine = ends(h);
         let bucket = bucket_of(mine);
-        // Scattering has moved the place to the end of the bucket.
+        // The scatter has moved this index to the end of the bucket.
         let end = atomicLoad(&buckets[params.buckets + bucket]);
         var others = 0u;
         var other = NONE;
@@ -145,7 +145,7 @@ fn match_twins(
     add_kinds(local);
 }
 
-// Corners of each vertex, and one of them, whichever is the last that the device writes; `buckets` holds zeros.
+// Counts the corners of each vertex, and stores one of them, the last that the device writes. `buckets` must be zero.
 @compute @workgroup_size(WORKGROUP_SIZE)
 fn count_corners(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
     for (var h = id.x; h < params.half_edges; h += groups.x * WORKGROUP_SIZE) {
@@ -155,7 +155,7 @@ fn count_corners(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgrou
     }
 }
 
-// Counts the vertices of which one fan does not hold all corners, and finds the most corners at one.
+// Counts the vertices that have several fans, and finds the most corners at one vertex.
 @compute @workgroup_size(WORKGROUP_SIZE)
 fn count_fans(
     @builtin(global_invocation_id) id: vec3u,

@@ -1,4 +1,4 @@
-// Counts the verdicts on all edges, in two dispatches: exact arithmetic has one between them.
+// Counts the verdicts on all edges, in two dispatches, with one of exact arithmetic between them.
 #import doubts
 #import guard
 #import history_write

@@ -1,4 +1,4 @@
-// Decides by exact arithmetic what the filters leave open: in an iteration, in the census, and before the first iteration.
+// Decides the edges that the filters leave undecided, by exact arithmetic: in an iteration, the census or the preparation.
 #import active
 #import doubts
 #import history_read
@@ -11,12 +11,12 @@
 #import state
 #import verdicts
 
-// Invocations of a workgroup: each has a lane.
+// Invocations of a workgroup, each with its own lane.
 const DECIDERS: u32 = 64u;
 
 var<workgroup> limit: u32;
 var<workgroup> together: u32;
-// Triangles that wait, in no order.
+// Waiting triangles, in no order.
 var<workgroup> waiting: array<u32, CHUNKS * WORKGROUP_SIZE>;
 var<workgroup> waiting_count: atomic<u32>;
 var<workgroup> found: u32;
@@ -32,7 +32,7 @@ fn decide_all(
     let work = work_of_task(index);
     if local == 0u {
         limit = work.count;
-        // In a list most chunks may be doubtful: those are done side by side.
+        // In a list, most chunks may be doubtful: the invocations share them.
         together = select(CHUNKS, 1u, work.is_listed || decides_one());
     }
     let end = workgroupUniformLoad(&limit);
@@ -60,13 +60,13 @@ fn decide_all(
     }
 }
 
-// Whether each invocation decides one triangle in a dispatch, of which there are several: where loops end too early, see
+// Whether each invocation decides one triangle per dispatch, in several dispatches: for drivers that end loops too early, see
 // rounds.wgsl.
 fn decides_one() -> bool {
     return params.decides_one == 1u;
 }
 
-// Which iteration; of no meaning for other tasks.
+// The iteration; without meaning for other tasks.
 fn index_of_task() -> u32 {
     return select(step_.index, history_word(PAUSED) - 1u, step_.task == RESUME);
 }
@@ -81,11 +81,11 @@ fn work_of_task(index: u32) -> Work {
     return work;
 }
 
-// The triangles of a chunk that wait.
+// Collects the waiting triangles of a chunk.
 fn collect(first: u32, work: Work, local: u32) {
     for (var i = first + local; i < min(first + WORKGROUP_SIZE, work.count); i += DECIDERS) {
         let t = active_triangle(work, i);
-        if choices[place_of_wait(t)] == DOUBTFUL {
+        if choices[waiting_index(t)] == DOUBTFUL {
             waiting[atomicAdd(&waiting_count, 1u)] = t;
         }
     }
@@ -96,14 +96,14 @@ fn answer(t: u32, iteration: u32) {
     if step_.task == PREPARE {
         prepare(t, answers);
     } else if step_.task == CENSUS {
-        choices[place_of_wait(t)] = packed(answers);
+        choices[waiting_index(t)] = packed(answers);
     } else {
         choices[t] = label(t, iteration, answers);
     }
 }
 
-// With exact arithmetic for those that the filter leaves. Mostly it leaves one: then all invocations decide theirs at the
-// same time, whichever edge of its triangle it is.
+// Uses exact arithmetic for the edges that the filter does not decide. Mostly it is one edge: then all invocations decide at
+// the same time, whichever edge of its triangle it is.
 fn exact_answers(t: u32, filtered: vec3u, task: u32) -> vec3u {
     let winding = select(1, -1, is_clockwise(t));
     var answers = filtered;
@@ -113,7 +113,7 @@ fn exact_answers(t: u32, filtered: vec3u, task: u32) -> vec3u {
         let a = position(vertex(h));
         let b = position(vertex(next(h)));
         let c = position(vertex(prev(h)));
-        // To prepare in the plane no edge is asked for, and this one may have no twin.
+        // The preparation in the plane tests no edge, and this edge may have no twin.
         let g = twin(h);
         let d = position(vertex(select(prev(g), h, g == NONE)));
         answers = with_verdict(answers, k, exact_verdict_on(a, b, c, d, winding, task));
@@ -122,7 +122,7 @@ fn exact_answers(t: u32, filtered: vec3u, task: u32) -> vec3u {
     return answers;
 }
 
-// 3 where all are decided.
+// The first undecided edge; 3 if all are decided.
 fn first_undecided(verdicts: vec3u) -> u32 {
     let is_undecided = verdicts == vec3u(UNDECIDED);
     return select(select(select(3u, 2u, is_undecided.z), 1u, is_undecided.y), 0u, is_undecided.x);

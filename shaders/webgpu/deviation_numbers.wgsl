@@ -5,7 +5,7 @@
 
 const OFFSETS: u32 = 9u;
 
-// Places of a - b, c - d and a - c and of δ, and of what the program writes.
+// Offsets of a - b, c - d and a - c, of δ, and of the results of the program.
 const DIAGONALS: u32 = 126u;
 const ALLOWED: u32 = 180u;
 const OFFSET: u32 = 581u;

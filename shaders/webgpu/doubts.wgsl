@@ -1,33 +1,33 @@
-// Keeps track of what waits for exact arithmetic: such a triangle has DOUBTFUL as its choice, and each chunk of as many
-// triangles as a workgroup has invocations has a bit that says whether it holds one. Mostly few do, and a look at every
-// triangle would take longer than deciding those.
+// Keeps track of the triangles that wait for exact arithmetic: their choice is DOUBTFUL. A chunk has as many triangles as a
+// workgroup has invocations; each chunk has a bit, set if one of its triangles waits. Mostly few do, and visiting every
+// triangle would take longer than deciding these.
 #import mesh
 #import state
 
-// Chunks that are looked at together in a sweep.
+// Chunks that a sweep checks together.
 const CHUNKS: u32 = 8u;
 
-// What a step of a submission is about: an iteration, the one that the tail has paused in, the census or what comes before
-// the first iteration.
+// The task of a step of a submission: an iteration, the iteration in which the tail has paused, the census, or the
+// preparation.
 const ITERATE: u32 = 0u;
 const RESUME: u32 = 1u;
 const CENSUS: u32 = 2u;
 const PREPARE: u32 = 3u;
 
-// Where the bits begin.
+// The offset of the bits.
 fn doubts() -> u32 {
     return 3u * params.triangles + 1u;
 }
 
 fn doubt(chunk: u32) {
     let bit = 1u << (chunk % 32u);
-    let place = doubts() + chunk / 32u;
-    if (atomicLoad(&frontier[place]) & bit) == 0u {
-        atomicOr(&frontier[place], bit);
+    let index = doubts() + chunk / 32u;
+    if (atomicLoad(&frontier[index]) & bit) == 0u {
+        atomicOr(&frontier[index], bit);
     }
 }
 
-// A bit for each of `count` chunks from `first` on, a multiple of the count.
+// A bit for each of `count` chunks from `first` on. `first` is a multiple of `count`.
 fn doubtful_chunks(first: u32, count: u32) -> u32 {
     return (atomicLoad(&frontier[doubts() + first / 32u]) >> (first % 32u)) & ((1u << count) - 1u);
 }
@@ -38,7 +38,7 @@ fn clear_doubts(first: u32, stride: u32) {
     }
 }
 
-// The choice of a triangle in a sweep that is no iteration: none, or to wait.
+// The choice of a triangle in a sweep outside of iterations: none, or to wait.
 fn wait_for(t: u32, is_left: bool) -> u32 {
     if is_left {
         doubt(t / WORKGROUP_SIZE);
@@ -46,12 +46,12 @@ fn wait_for(t: u32, is_left: bool) -> u32 {
     return select(NONE, DOUBTFUL, is_left);
 }
 
-// Where a triangle waits: choices go on after a census, selections do not.
-fn place_of_wait(t: u32) -> u32 {
+// The index at which a triangle waits. A census must keep the choices of Label, but not those of Select.
+fn waiting_index(t: u32) -> u32 {
     return t + select(0u, params.triangles, step_.task == CENSUS);
 }
 
-// Verdicts in one word, which is no half-edge with a side of its triangle: three bits each.
+// Verdicts packed into one word, three bits each. No half-edge with a side has the same word.
 const PACKED: u32 = 0xc0000000u;
 
 fn packed(verdicts: vec3u) -> u32 {

@@ -1,6 +1,6 @@
-// Finds the embedded stars in the plane: the triangles at a vertex are positive and go round it once. An edge that is to
-// flip crosses its new edge c-d between them, so at such a vertex c, or d, no other edge c-d can be, and no other flip can
-// make one: its star has one triangle in each direction. Flips of strictly convex quads leave it so.
+// Finds the embedded stars in the plane: the triangles at a vertex are positive and go round it once. The old edge of a flip
+// crosses the new edge c-d. If the star of c or d is embedded, it has one triangle in each direction: so it has no other edge
+// c-d, and no other flip makes one. Flips of strictly convex quads keep stars embedded.
 #import begin
 #import doubts
 #import history_write
@@ -9,12 +9,12 @@
 #import points
 #import state
 
-// What makes a star other than embedded.
+// Marks a star that is not embedded.
 const NOT_EMBEDDED: u32 = 0x10000u;
 
 var<workgroup> signs: atomic<u32>;
 
-// The sign of each triangle, plus 1, in the place of its choice; DOUBTFUL where exact arithmetic has to decide.
+// Stores the sign of each triangle plus 1 as its choice; DOUBTFUL if exact arithmetic has to decide.
 @compute @workgroup_size(WORKGROUP_SIZE)
 fn prepare_all(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
     for (var t = id.x; t < params.triangles; t += groups.x * WORKGROUP_SIZE) {
@@ -24,9 +24,9 @@ fn prepare_all(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups
     }
 }
 
-// Counts, in the lists, how often the triangles at each vertex go across the direction of the x axis, and finds out which
-// signs triangles have: bits 0 to 2 for negative, flat, positive. Unless the winding is known, that of each triangle is
-// taken for its sign: the count holds if there is one only.
+// Counts, in the memory of the lists, how often the triangles at each vertex cross the direction of the x axis. Also collects
+// the signs of the triangles: bits 0 to 2 for negative, flat, positive. If the winding is not known, each triangle has the
+// winding of its own sign: the count is right if all have the same.
 @compute @workgroup_size(WORKGROUP_SIZE)
 fn count_turns(
     @builtin(global_invocation_id) id: vec3u,
@@ -53,7 +53,7 @@ fn count_turns(
             let is_below = from_below.y < 0 || (from_below.y == 0 && from_below.x > 0);
             let is_above = to_above.y > 0 || (to_above.y == 0 && to_above.x < 0);
             let turns = select(NOT_EMBEDDED, select(0u, 1u, is_below && is_above), is_positive && is_inner);
-            // Vertices of no triangle may be more than there are words before the doubts.
+            // Unreferenced vertices may be more than there are words before the doubts.
             if turns > 0u && vertex(h) < doubts() {
                 atomicAdd(&frontier[vertex(h)], turns);
             }
@@ -70,7 +70,7 @@ fn count_turns(
     }
 }
 
-// A bit for each vertex. All signs are known now, so that the iterations can begin.
+// Writes a bit for each vertex. All signs are known now, so the iterations can begin.
 @compute @workgroup_size(WORKGROUP_SIZE)
 fn mark_embedded(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
     if id.x == 0u {

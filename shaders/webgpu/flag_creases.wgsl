@@ -5,7 +5,7 @@
 #import state
 #import verdicts
 
-// Whether each edge of a triangle is one, by a filter.
+// Whether each edge of a triangle is a crease, by a filter.
 fn filtered_creases(t: u32) -> vec3u {
     var verdicts = vec3u();
     for (var h = 3u * t; h < 3u * t + 3u; h++) {

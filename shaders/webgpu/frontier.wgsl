@@ -1,6 +1,6 @@
 // Flips triangles and builds the frontier, the triangles that are due in the next iteration: those that have flipped and their
 // neighbours, which are stamped, and those with an edge that was labelled and has not flipped, or was blocked as a duplicate.
-// An edge's verdict can change only where one of its triangles has changed, or, for duplicates, anywhere.
+// An edge's verdict changes only if one of its triangles has changed; a duplicate may also end by any other flip.
 #import active
 #import flip
 #import history_write
@@ -12,7 +12,7 @@ fn builds_list(index: u32) -> bool {
     return history_word(entry(index, FLIPS)) < params.list_below;
 }
 
-// Flips the selected edge of triangle `t`, from its lower half-edge, and says which triangles are due then. Returns the
+// Flips the selected edge of triangle `t`, from its lower half-edge, and marks the triangles that are due. Returns the
 // number of flips.
 fn flip_triangle(t: u32, index: u32, iteration: u32, builds: bool) -> u32 {
     let flip = flip_of(t);
@@ -27,7 +27,7 @@ fn flip_triangle(t: u32, index: u32, iteration: u32, builds: bool) -> u32 {
     let here = vec2u(unflagged(outer_h.x), unflagged(outer_h.y)) / 3u;
     let there = vec2u(unflagged(outer_g.x), unflagged(outer_g.y)) / 3u;
     if builds {
-        // None waits for another: an exchange takes long.
+        // All exchanges come first, so that none waits for another: an exchange takes long.
         let first = vec3u(stamped(t, iteration), stamped(here.x, iteration), stamped(here.y, iteration));
         let second = vec3u(stamped(flip.y / 3u, iteration), stamped(there.x, iteration), stamped(there.y, iteration));
         append(first, second, index, iteration);
@@ -39,19 +39,19 @@ fn flip_triangle(t: u32, index: u32, iteration: u32, builds: bool) -> u32 {
     return 1u;
 }
 
-// Stamps neighbours, which may be none. The triangles that flip are due anyway, as they have a choice.
+// Stamps neighbours, which may be NONE. The triangles that flip are due anyway, as they have a choice.
 fn stamp(neighbours: vec2u, iteration: u32) {
-    atomicStore(&frontier[stamp_place(neighbours.x)], iteration + 1u);
-    atomicStore(&frontier[stamp_place(neighbours.y)], iteration + 1u);
+    atomicStore(&frontier[stamp_index(neighbours.x)], iteration + 1u);
+    atomicStore(&frontier[stamp_index(neighbours.y)], iteration + 1u);
 }
 
-// Stamps a triangle. NONE if that has been done before, or it is none.
+// Stamps a triangle. Returns NONE if it was stamped before, or is NONE.
 fn stamped(t: u32, iteration: u32) -> u32 {
-    let before = atomicExchange(&frontier[stamp_place(t)], iteration + 1u);
+    let before = atomicExchange(&frontier[stamp_index(t)], iteration + 1u);
     return select(t, NONE, before == iteration + 1u || t >= params.triangles);
 }
 
-// Appends triangles to the list of the next iteration, those that are not NONE.
+// Appends the triangles that are not NONE to the list of the next iteration.
 fn append(first: vec3u, second: vec3u, index: u32, iteration: u32) {
     let count = dot(vec3u(first != vec3u(NONE)) + vec3u(second != vec3u(NONE)), vec3u(1u));
     if count > 0u {
@@ -65,7 +65,7 @@ fn append(first: vec3u, second: vec3u, index: u32, iteration: u32) {
     }
 }
 
-// Writes a triangle to its place in a list, and returns the place of the next one.
+// Writes a triangle into a list, and returns the index for the next one.
 fn listed(t: u32, at: u32) -> u32 {
     if t != NONE {
         atomicStore(&frontier[at], t);

@@ -1,6 +1,6 @@
-// The history, for kernels that only read it: a word that all invocations read as an atomic takes long.
+// The history, for kernels that only read it: atomic reads of the same word by all invocations are slow.
 
-// state.wgsl says what its words mean.
+// state.wgsl defines its words.
 @group(0) @binding(7) var<storage, read_write> history: array<u32>;
 
 fn history_word(i: u32) -> u32 {

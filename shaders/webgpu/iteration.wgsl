@@ -1,4 +1,4 @@
-// The kernels of Flip, and of a run of whole iterations in one workgroup when there is little to do.
+// The kernel of Flip, and the tail: a kernel that runs whole iterations in one workgroup while few triangles are due.
 #import active
 #import doubts
 #import flip
@@ -57,14 +57,14 @@ fn flip_all(
 // Invocations of the tail, as many as the device allows.
 override TAIL_SIZE: u32 = WORKGROUP_SIZE;
 
-// Iterations in one workgroup, as long as their lists are short. Pauses in one that needs exact arithmetic, for which there is a
-// dispatch before it is resumed.
+// Runs iterations in one workgroup while their lists are short. Pauses in an iteration that needs exact arithmetic: another
+// dispatch decides, then the tail resumes.
 @compute @workgroup_size(TAIL_SIZE)
 fn tail(@builtin(local_invocation_index) local: u32) {
     if local == 0u {
         tail_first = params.tail;
         if step_.task == RESUME {
-            // NONE, which no iteration follows, where it has not paused.
+            // NONE, which no iteration follows, if it has not paused.
             tail_first = atomicExchange(&history[PAUSED], 0u) - 1u;
             atomicStore(&frontier[doubts()], 0u);
         }

@@ -1,57 +1,56 @@
-// Computes with exact integers in memory: a number at a place is its length, then its digits, the lowest first: the sum of
-// digit i times 2^(13·i). Each invocation has a lane of its own. What is computed, programs say
-// (src/engine/webgpu/programs.rs), so that the product of two numbers stands here once: compilers take seconds where it is
-// inlined for each.
+// Computes with exact integers in memory. A number is stored as its length, then its digits, the lowest first: it is the sum of
+// digit i times 2^(13·i). Each invocation has its own lane. Programs (src/engine/webgpu/programs.rs) define the computations,
+// so that the product of two numbers is compiled only once: inlined everywhere, it would compile for seconds.
 #import integers
 #import points
 #import three_axes if space
 #import two_axes if plane
 
-// Digits that are computed are balanced, from -4096 to 4095: the sign of a number is that of its highest digit.
+// Computed digits are balanced, from -4096 to 4095: the sign of a number is the sign of its highest digit.
 
 const DIGIT_BITS: u32 = 13u;
 const HALF_DIGIT: i32 = 4096;
 const DIGIT_MASK: i32 = 8191;
 
-// The programs: where each begins, then their steps; then the lanes, word by word.
+// The offset of each program, the steps of the programs, then the lanes, interleaved word by word.
 @group(0) @binding(9) var<storage, read_write> numbers: array<i32>;
 
-// Words before the lanes, those of a step, and the lanes that there are.
+// The offset of the lanes, the words of a step, and the number of lanes.
 const LANES: u32 = 512u;
 const STEP: u32 = 5u;
 const LANE_COUNT: u32 = 8192u;
 
-// Digits of an integer of up to 91 bits, the words of a number that has room for 8, and those of a vector of three.
+// Digits of an integer of up to 91 bits, words of a number of up to 8 digits, and words of a vector of three.
 const DIGITS: u32 = 7u;
 const GIVEN_WORDS: u32 = 9u;
 const VECTOR: u32 = 27u;
 
-// Where a lane is given the differences of points, by vector and axis.
+// The offset of the differences of points in a lane, by vector and axis.
 const DIFFERENCES: u32 = 0u;
 
 var<private> lane: u32;
 
-fn word(place: u32) -> u32 {
-    return LANES + place * LANE_COUNT + lane;
+fn word(offset: u32) -> u32 {
+    return LANES + offset * LANE_COUNT + lane;
 }
 
-fn sign_at(place: u32) -> i32 {
-    let length = u32(numbers[word(place)]);
-    return select(0, sign(numbers[word(place + length)]), length > 0u);
+fn sign_at(offset: u32) -> i32 {
+    let length = u32(numbers[word(offset)]);
+    return select(0, sign(numbers[word(offset + length)]), length > 0u);
 }
 
-// Writes an integer that is given as magnitude and sign.
-fn put(place: u32, x: vec4u) {
+// Writes an integer, from magnitude and sign.
+fn put(offset: u32, x: vec4u) {
     var length = 0;
     for (var i = 0u; i < DIGITS; i++) {
         let bit = DIGIT_BITS * i;
         let low = component_of(x.xyz, bit / 32u);
         let high = component_of(vec3u(x.yz, 0u), bit / 32u);
         let digit = i32(((low >> (bit % 32u)) | ((high << 1u) << (31u - bit % 32u))) & u32(DIGIT_MASK));
-        numbers[word(place + 1u + i)] = select(digit, -digit, x.w == 1u);
+        numbers[word(offset + 1u + i)] = select(digit, -digit, x.w == 1u);
         length = select(length, i32(i) + 1, digit != 0);
     }
-    numbers[word(place)] = length;
+    numbers[word(offset)] = length;
 }
 
 // Writes p = a - c, q = b - c, r = a - d and s = b - d.
@@ -70,9 +69,9 @@ fn put_differences(a: Point, b: Point, c: Point, d: Point, grid: i32) {
 }
 
 // Writes u - v, axis by axis.
-fn put_vector(place: u32, u: Point, v: Point, grid: i32) {
+fn put_vector(offset: u32, u: Point, v: Point, grid: i32) {
     for (var axis = 0u; axis < DIMENSION; axis++) {
-        put(place + GIVEN_WORDS * axis, exact_difference(u, v, axis, grid));
+        put(offset + GIVEN_WORDS * axis, exact_difference(u, v, axis, grid));
     }
 }
 
@@ -108,7 +107,7 @@ fn run_step(step: u32) {
     numbers[word(to)] = length;
 }
 
-// What the product of two numbers adds to a column: digit i of one meets digit column - i of the other.
+// The sum that the product of two numbers adds to a column: digit i of one times digit column - i of the other.
 fn part_of_column(x: u32, y: u32, column: i32) -> i32 {
     var sum = 0;
     let end = min(column + 1, numbers[word(x)]);

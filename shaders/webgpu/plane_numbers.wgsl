@@ -9,11 +9,11 @@
 const IN_CIRCLE: u32 = 0u;
 const AREAS: u32 = 1u;
 
-// Places of what they write: the sign of the in-circle test, or those of both new triangles.
+// Offsets of their results: the sign of the in-circle test, or the signs of both new triangles.
 const FIRST: u32 = 359u;
 const SECOND: u32 = 396u;
 
-// The verdict on any edge. To prepare, 1 plus the sign of the triangle a, b, c.
+// The verdict on any edge. In the preparation, 1 plus the sign of the triangle a, b, c.
 fn exact_verdict_on(a: Point, b: Point, c: Point, d: Point, winding: i32, task: u32) -> u32 {
     var far = d;
     if task == PREPARE {
@@ -36,7 +36,7 @@ fn exact_verdict_on(a: Point, b: Point, c: Point, d: Point, winding: i32, task: 
     return verdict;
 }
 
-// To prepare, the sign of the triangle waits; else what the geometry of each edge says.
+// In the preparation, the sign of the triangle waits; else the verdict on the geometry of each edge.
 fn filtered_answers(t: u32, task: u32) -> vec3u {
     var answers = vec3u(UNDECIDED, 0u, 0u);
     if task != PREPARE {

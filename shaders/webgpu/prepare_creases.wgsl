@@ -1,4 +1,4 @@
-// The kernel that flags creases, before the first iteration on a surface.
+// The kernel that flags creases, before the first iteration in space.
 #import begin
 #import doubts
 #import flag_creases

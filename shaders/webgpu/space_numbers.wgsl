@@ -1,4 +1,4 @@
-// Tests edges of surfaces by exact integers in memory.
+// Tests edges in space by exact integers in memory.
 #import any_deviation if any_deviation
 #import deviation if deviation
 #import deviation_numbers if deviation
@@ -21,7 +21,7 @@ const NEW_NORMALS: u32 = 6u;
 const NEW_ANGLE: u32 = 7u;
 const TURNS: u32 = 8u;
 
-// Places of what they write: dot products of two sides, and results.
+// Offsets of their results: dot products of two sides, and values.
 const PQ: u32 = 206u;
 const RS: u32 = 325u;
 const N: u32 = 359u;
@@ -33,8 +33,8 @@ const LAST: u32 = 581u;
 const MANTISSA: u32 = 108u;
 const POWER: u32 = 117u;
 
-// The verdict on any edge: by a filter that takes longer and leaves less, then by integers. To prepare, LABELLED stands
-// for an edge that is no crease.
+// The verdict on any edge: by a filter that is slower and decides more, then by integers. In the preparation, LABELLED stands
+// for an edge that is not a crease.
 fn exact_verdict_on(a: Point, b: Point, c: Point, d: Point, winding: i32, task: u32) -> u32 {
     var signs = Signs(-1, 0, 1, 1);
     if task != PREPARE {
@@ -53,7 +53,7 @@ fn exact_verdict_on(a: Point, b: Point, c: Point, d: Point, winding: i32, task: 
     return verdict;
 }
 
-// The signs, those that are open and matter by integers.
+// The signs. Integers decide the undecided ones that matter.
 fn exact_signs(a: Point, b: Point, c: Point, d: Point, filtered: Signs) -> Signs {
     put_differences(a, b, c, d, grid_of(a, b, c, d));
     put_cosine();
@@ -70,14 +70,14 @@ fn exact_signs(a: Point, b: Point, c: Point, d: Point, filtered: Signs) -> Signs
 
 fn put_cosine() {
     for (var factor = 0u; factor < 2u; factor++) {
-        let place = select(MANTISSA, POWER, factor == 1u);
+        let offset = select(MANTISSA, POWER, factor == 1u);
         var length = 0;
         for (var i = 0u; i < 8u; i++) {
             let digit = cos_digit(8u * factor + i);
-            numbers[word(place + 1u + i)] = digit;
+            numbers[word(offset + 1u + i)] = digit;
             length = select(length, i32(i) + 1, digit != 0);
         }
-        numbers[word(place)] = length;
+        numbers[word(offset)] = length;
     }
 }
 
@@ -104,7 +104,7 @@ fn signs_after(program: u32, before: Signs) -> Signs {
     return signs;
 }
 
-// To prepare, whether each edge is a crease, else what the geometry of each says.
+// In the preparation, whether each edge is a crease; else the verdict on the geometry of each.
 fn filtered_answers(t: u32, task: u32) -> vec3u {
     var answers = vec3u();
     if task == PREPARE {

@@ -6,13 +6,13 @@
 const WORKGROUP_SIZE: u32 = 256u;
 
 struct Params {
-    // Which signs the triangles have, in 2D: a bit each. The device writes it before the first iteration.
+    // The signs of the triangles, in 2D, a bit each. The device writes it before the first iteration.
     signs: u32,
     vertices: u32,
     triangles: u32,
-    // The number of the batch's first iteration.
+    // The index of the batch's first iteration.
     first: u32,
-    // Where the fans' table begins in `topology`, how long it is, and how many words of it are per vertex.
+    // The offset of the table of the fans in `topology`, and its length.
     fans: u32,
     fans_length: u32,
     // The first entry of the tail.
@@ -20,26 +20,26 @@ struct Params {
     // cos β, rounded to f32 for the filter, and its sign.
     cos: f32,
     cos_sign: i32,
-    // 1 where β is 180°.
+    // 1 if β is 180°.
     any_angle: u32,
     tail_iterations: u32,
     // The longest list that the tail takes.
     tail_length: u32,
     // An iteration builds the list for the next one if the one before it made fewer flips than this.
     list_below: u32,
-    // Where a bit for each vertex begins in `topology`, in 2D.
+    // The offset of the bits of the vertices in `topology`, in 2D.
     embedded: u32,
-    // 1 where the winding bits are there before the stars are looked at.
+    // 1 if the winding bits are known before the preparation.
     knows_winding: u32,
-    // 1 where an invocation of decide.wgsl decides one triangle in a dispatch.
+    // 1 if an invocation of decide.wgsl decides one triangle per dispatch.
     decides_one: u32,
     // |cos β| is exactly mantissa / power: eight digits each, as in numbers.wgsl.
     cos_digits: array<vec4i, 4>,
-    // What the diagonals of a quad may be apart: words as those of a coordinate, and rounded to f32 for the filter.
+    // The limit for the deviation: the words of a coordinate, and rounded to f32 for the filter.
     deviation: vec4u,
 }
 
-// Bits of signs, and one for flat triangles between them.
+// Bits of signs. The bit between them is for flat triangles.
 const NEGATIVE: u32 = 1u;
 const POSITIVE: u32 = 4u;
 
@@ -52,21 +52,21 @@ struct Step {
 
 @group(0) @binding(0) var<uniform> params: Params;
 @group(0) @binding(1) var<uniform> step_: Step;
-// What they hold, floats.wgsl and fixed.wgsl say: the exact tests read integers.
+// floats.wgsl and fixed.wgsl define the layout: the exact tests read integers.
 @group(0) @binding(2) var<storage, read> positions: array<u32>;
 @group(0) @binding(3) var<storage, read_write> triangles: array<u32>;
 @group(0) @binding(4) var<storage, read_write> twins: array<u32>;
-// The choice of Label for each triangle, then that of Select, see `flip_of`.
+// The choice of Label for each triangle, then the choice of Select, see `flip_of`.
 @group(0) @binding(5) var<storage, read_write> choices: array<u32>;
-// Two lists of triangles that change places with every iteration; for each triangle a stamp, the iteration in which it
+// Two lists of triangles that alternate between iterations; for each triangle a stamp, the iteration in which it
 // is due, and one more for none; a bit for each chunk of triangles, see `doubt`.
 @group(0) @binding(6) var<storage, read_write> frontier: array<atomic<u32>>;
 // Binding 7 is the history, see history_read.wgsl and history_write.wgsl.
 // Winding bits, which are right where triangles have both signs, then the bits of the embedded stars, then the table of the fans.
 @group(0) @binding(8) var<storage, read_write> topology: array<u32>;
 
-// Words of the history: what was counted, 1 plus the index of the iteration that the tail has paused in, or 0, how many
-// vertices have several fans, and the entries. An entry tells of the iteration before it.
+// Words of the history: the counts, 1 plus the index of the iteration in which the tail has paused, or 0, how many
+// vertices have several fans, and the entries. An entry is about the iteration before it.
 const COUNTED: u32 = 0u;
 const COUNTS: u32 = 6u;
 const PAUSED: u32 = 6u;
@@ -74,7 +74,7 @@ const SEVERAL_FANS: u32 = 7u;
 const ENTRIES: u32 = 8u;
 const ENTRY_WORDS: u32 = 4u;
 const FLIPS: u32 = 0u;
-// Length of the list of the triangles to look at; meaningful where it was built.
+// The length of the list of due triangles, if it was built.
 const LENGTH: u32 = 1u;
 const BUILT: u32 = 2u;
 // Whether the iteration ran at all.
@@ -101,8 +101,8 @@ fn best(t: u32) -> u32 {
     return choices[t];
 }
 
-// The two half-edges of the selected edge of triangle `t`, its own one first; NONE where no edge is. The choice names the
-// other one, and in the place of flags which side of the triangle the edge is.
+// The two half-edges of the selected edge of triangle `t`, its own one first; NONE if no edge is selected. The choice has the
+// other half-edge, and in the bits of the flags the side of the triangle.
 fn flip_of(t: u32) -> vec2u {
     let entry = choices[params.triangles + t];
     return select(vec2u(3u * t + (entry >> 30u), entry & ~FLAGS), vec2u(NONE), entry == NONE);
@@ -116,11 +116,11 @@ fn clear_flip(t: u32) {
     choices[params.triangles + t] = NONE;
 }
 
-fn stamp_place(t: u32) -> u32 {
+fn stamp_index(t: u32) -> u32 {
     return 2u * params.triangles + min(t, params.triangles);
 }
 
-// Words of the positions, one for each axis.
+// Words of a position, one for each axis.
 fn coordinates(i: u32) -> vec3u {
     let at = DIMENSION * i;
     return vec3u(positions[at], positions[at + 1u], select(0u, positions[at + DIMENSION - 1u], DIMENSION == 3u));
@@ -141,7 +141,7 @@ fn is_embedded(v: u32) -> bool {
     return DIMENSION == 2u && ((topology[params.embedded + v / 32u] >> (v % 32u)) & 1u) == 1u;
 }
 
-// All triangles are positive, or all negative: no edge that is not Delaunay can fold then.
+// Whether all triangles are positive, or all are negative: then no edge that is not Delaunay can fold.
 fn is_strict() -> bool {
     return params.signs == NEGATIVE || params.signs == POSITIVE;
 }

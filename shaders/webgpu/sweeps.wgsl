@@ -1,4 +1,4 @@
-// The kernels of Label and Select: exact arithmetic, where the filter leaves something to it, has a dispatch between them.
+// The kernels of Label and Select. Exact arithmetic has a dispatch between them, for edges that the filter does not decide.
 #import active
 #import doubts
 #import label
@@ -9,7 +9,7 @@
 #import two_axes if plane
 #import verdicts
 
-// Whether Label takes the close look at once: on a lattice in the plane every edge needs it, on a surface few do.
+// Whether Label uses the slower filter at once: on a lattice in the plane every edge needs it, in space few do.
 const LABELS_CLOSELY: bool = DIMENSION == 2u;
 
 @compute @workgroup_size(WORKGROUP_SIZE)

@@ -1,4 +1,4 @@
-// The kernels that write the history: those of Flip, of the tail, of the census, and of what comes before the first iteration.
+// The kernels that write the history: Flip, the tail, the census, and the preparation.
 #import census
 #import embedded if plane
 #import iteration

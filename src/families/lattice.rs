@@ -1,4 +1,4 @@
-//! What the families share: sizes that fit, random numbers, and lattices whose cells are cut into triangles.
+//! What the families share: checks of sizes, random numbers, and lattices whose cells are cut into triangles.
 
 use crate::mesh::MAX_TRIANGLES;
 use crate::system::memory;
@@ -25,7 +25,7 @@ pub(super) fn fits(vertices: usize, triangles: usize) -> Result<(), Error> {
             return Err(Error::TooLarge { what, count, limit });
         }
     }
-    // Three numbers each, in arrays that double where their length is not known.
+    // Three numbers each, in arrays that double if their length is not known.
     memory::check(36 * (vertices as u64 + triangles as u64))
 }
 

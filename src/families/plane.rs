@@ -78,7 +78,7 @@ pub fn regular(n: usize, offset: f64, seed: u64) -> Result<Mesh, Error> {
     Mesh::new(Dimension::Two, positions, triangles)
 }
 
-/// The worst case of the paper's figure 11: two rows of `n`/2 points, (n/2 - 1)² flips for n vertices.
+/// The worst case of the paper's figure 11: two rows of `n`/2 points, which need (n/2 - 1)² flips.
 /// All coordinates are small integers.
 ///
 /// ```text
@@ -189,9 +189,9 @@ fn twins(triangles: &[u32], vertices: usize) -> Vec<u32> {
     let first_of = end_of.clone();
     let mut around = vec![0u32; triangles.len()];
     for h in 0..triangles.len() {
-        let place = &mut end_of[lower(h)];
-        around[*place as usize] = h as u32;
-        *place += 1;
+        let end = &mut end_of[lower(h)];
+        around[*end as usize] = h as u32;
+        *end += 1;
     }
     (0..triangles.len())
         .map(|h| {

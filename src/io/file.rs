@@ -1,4 +1,4 @@
-//! Mesh files on disk, a whole file at once.
+//! Reads whole mesh files from disk.
 
 use super::format::Format;
 use super::lists::{parse_edges, parse_numbers};
@@ -12,7 +12,7 @@ use std::fs;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
-/// Reads the mesh of a file; the extension names its format. See [`parse`](super::parse).
+/// Reads the mesh of a file. The extension names its format. See [`parse`](super::parse).
 ///
 /// # Errors
 /// [`Error::UnknownFormat`], [`Error::Io`], and those of [`parse`](super::parse).
@@ -20,17 +20,19 @@ pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Mesh, Error
     load(path, &ReadOptions { keep: false, ..*options }).map(|loaded| loaded.mesh)
 }
 
-/// As [`read`], and says what was done to the file's content.
+/// As [`read`], and returns what else the file holds and how it was read.
 ///
 /// # Errors
-/// As [`read`].
+/// Those of [`read`].
 pub fn load(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Loaded, Error> {
     let path = path.as_ref();
     let format = Format::of(path)?;
     let bytes = content(path, options)?;
     parse_with(format, bytes, options, &|name| {
         if !options.external_files {
-            return Err("other files are read only if that is allowed (--external-files)".into());
+            return Err(
+                "reading other files is not allowed; external_files (--external-files) allows it".into()
+            );
         }
         beside(&folder(path), name, options).map_err(|error| match error {
             Error::Io { source, .. } => source.to_string(),
@@ -52,26 +54,26 @@ fn content(path: &Path, options: &ReadOptions) -> Result<Vec<u8>, Error> {
     let length = file.metadata().map_err(failed)?.len();
     options.check(length)?;
     bytes.try_reserve_exact(length as usize).map_err(|error| failed(error.into()))?;
-    // A pipe has the length 0, and a file may grow.
+    // A pipe has length 0, and a file may grow.
     file.take(options.max_bytes.saturating_add(1)).read_to_end(&mut bytes).map_err(failed)?;
     options.check(bytes.len() as u64)?;
     Ok(bytes)
 }
 
-/// The bytes of a regular file in `folder` or below, after links are followed.
+/// The bytes of a regular file in `folder` or a folder below it. Links are followed, and must not lead out.
 ///
 /// # Errors
-/// As [`content`].
+/// Those of [`content`].
 fn beside(folder: &Path, name: &str, options: &ReadOptions) -> Result<Vec<u8>, Error> {
     let failed = |source| at(Path::new(name), source);
     let folder = fs::canonicalize(folder).map_err(failed)?;
     let path = fs::canonicalize(folder.join(name)).map_err(failed)?;
     let refused = |what: &str| failed(io::Error::other(what));
     if !path.starts_with(folder) {
-        return Err(refused("a link leads out of the folder of IN; only what is in it is read"));
+        return Err(refused("a link leads out of the folder of IN; only files in this folder are read"));
     }
     if !fs::metadata(&path).map_err(failed)?.is_file() {
-        return Err(refused("it is no regular file"));
+        return Err(refused("it is not a regular file"));
     }
     content(&path, options)
 }
@@ -81,7 +83,7 @@ fn open_to_read(path: &Path) -> io::Result<(Vec<u8>, fs::File)> {
     Ok((Vec::new(), fs::File::open(path)?))
 }
 
-/// Reads a list of edges, whatever the extension of its file. See [`parse_edges`].
+/// Reads a list of edges from a file with any extension. See [`parse_edges`].
 ///
 /// # Errors
 /// [`Error::Io`], and those of [`parse_edges`].
@@ -91,7 +93,7 @@ pub fn read_edges(path: impl AsRef<Path>) -> Result<Vec<[u32; 2]>, Error> {
     parse_edges(&bytes)
 }
 
-/// The same for a list of numbers. See [`parse_numbers`].
+/// Reads a list of numbers from a file with any extension. See [`parse_numbers`].
 ///
 /// # Errors
 /// [`Error::Io`], and those of [`parse_numbers`].

@@ -1,4 +1,4 @@
-//! The formats of files, by their extensions.
+//! File formats, by extension.
 
 use super::gzip;
 use crate::Error;
@@ -11,23 +11,23 @@ pub enum Format {
     Off,
     /// Wavefront's object format: `.obj`.
     Obj,
-    /// The Stanford triangle format, text or binary: `.ply`. New files are binary. It is the one that keeps the
-    /// bits of 64-bit floats.
+    /// The Stanford triangle format, text or binary: `.ply`. New files are binary. Only this format keeps all bits of 64-bit
+    /// floats.
     Ply,
-    /// Stereolithography, text or binary: `.stl`. It has no vertices that triangles share: corners at the same position
-    /// are read as one. It is written in binary and has 32-bit floats, to which 64-bit floats are rounded.
+    /// Stereolithography, text or binary: `.stl`. Its triangles share no vertices: the reader makes one vertex of all
+    /// corners at the same position. New files are binary, with 32-bit floats; 64-bit floats are rounded.
     Stl,
-    /// glTF 2.0 as JSON: `.gltf`. It has 32-bit floats, to which 64-bit floats are rounded.
+    /// glTF 2.0 as JSON: `.gltf`. It has 32-bit floats; 64-bit floats are rounded.
     Gltf,
     /// glTF 2.0 in one binary file: `.glb`.
     Glb,
 }
 
 impl Format {
-    /// The extensions that are known, as [`Error::UnknownFormat`] lists them.
+    /// The known extensions, as [`Error::UnknownFormat`] lists them.
     pub const KNOWN: &'static str = ".off, .obj, .ply, .stl, .gltf, .glb, also gzip'd (.gz)";
 
-    /// The format that the extension of `path` names, in either case; `.gz` after it does not count.
+    /// The format of the extension of `path`, in upper or lower case. Skips `.gz` after the extension.
     ///
     /// # Errors
     /// [`Error::UnknownFormat`].

@@ -1,4 +1,4 @@
-//! Gzip'd files: known by their first bytes when they are read, by their name when they are written.
+//! Gzip'd files. The reader recognizes them by their first bytes, the writer by their name.
 
 use super::options::ReadOptions;
 use crate::Error;
@@ -9,7 +9,7 @@ use flate2::write::GzEncoder;
 use std::io::{self, Read, Write};
 use std::path::Path;
 
-/// Bytes that are made room for at first.
+/// The first allocation, in bytes.
 const FIRST: u64 = 1 << 16;
 
 /// Whether these are the bytes of a gzip'd file.
@@ -17,21 +17,21 @@ pub(super) fn is_magic(bytes: &[u8]) -> bool {
     bytes.starts_with(&[0x1f, 0x8b])
 }
 
-/// What follows the last dot, in lower case.
+/// The extension, in lower case.
 pub(super) fn extension(path: &Path) -> Option<String> {
     path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase)
 }
 
-/// Whether the name is that of one.
+/// Whether the path names a gzip'd file.
 pub(super) fn is_named(path: &Path) -> bool {
     extension(path).as_deref() == Some("gz")
 }
 
-/// The content of all members, one after the other. Zeros behind the last one are padding. What it takes grows with the
-/// content, never beyond the limit.
+/// The content of all members, joined. Zeros after the last member are padding. Memory grows with the content, up to the
+/// limit.
 ///
 /// # Errors
-/// [`Error::FileTooLarge`]; [`Error::Parse`] where the file is cut off or not what was packed.
+/// [`Error::FileTooLarge`]; [`Error::Parse`] if the file is cut off or damaged.
 pub(super) fn unpack(packed: &[u8], options: &ReadOptions) -> Result<Vec<u8>, Error> {
     let mut bytes = Vec::new();
     let mut rest = packed;
@@ -41,13 +41,13 @@ pub(super) fn unpack(packed: &[u8], options: &ReadOptions) -> Result<Vec<u8>, Er
             return Ok(bytes);
         }
         if !is_magic(rest) {
-            let message = format!("other bytes follow the gzip'd data: {}; cut them off", rest.len());
-            return Err(Error::Parse { place: place(packed, rest), message });
+            let message = format!("{} other bytes follow the gzip'd data; cut them off", rest.len());
+            return Err(Error::Parse { place: location(packed, rest), message });
         }
     }
 }
 
-/// Adds the content of the member at the start of `rest` to `bytes`, and returns what follows it.
+/// Appends the content of the member at the start of `rest` to `bytes`, and returns the bytes after the member.
 fn member<'a>(
     packed: &[u8],
     rest: &'a [u8],
@@ -58,7 +58,7 @@ fn member<'a>(
     loop {
         let length = bytes.len() as u64;
         options.check(length)?;
-        // The last byte that is asked for may be the first one too many.
+        // One byte more than allowed, to detect that there are more.
         let more = length.max(FIRST).min(options.max_bytes - length) + 1;
         let read = match bytes.try_reserve_exact(more as usize) {
             Ok(()) => decoder.by_ref().take(more).read_to_end(bytes),
@@ -76,18 +76,18 @@ fn member<'a>(
                     _ => "is damaged",
                 };
                 let message = format!("the gzip'd file {what} ({error})");
-                return Err(Error::Parse { place: place(packed, decoder.get_ref()), message });
+                return Err(Error::Parse { place: location(packed, decoder.get_ref()), message });
             }
         }
     }
 }
 
-/// Where `rest` begins.
-fn place(packed: &[u8], rest: &[u8]) -> String {
+/// Names the byte at which `rest` begins.
+fn location(packed: &[u8], rest: &[u8]) -> String {
     format!("byte {}", packed.len() - rest.len())
 }
 
-/// Hands `write` what it is to write to: `out`, or what packs it first.
+/// Calls `write` with `out`, or with a compressor in front of it.
 pub(super) fn write(
     is_packed: bool,
     out: &mut dyn Write,

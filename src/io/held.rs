@@ -1,5 +1,5 @@
-//! The faces of a file that is held to be written again with other triangles. Each format says where its faces are, what
-//! they and their corners have, and how it writes a triangle.
+//! The faces of a held file, which can be written again with other triangles. Each format provides the byte ranges of its
+//! faces, the attributes of faces and corners, and a function that writes a triangle.
 
 use crate::system::threads::Threads;
 use crate::{Adjacency, Error, Mesh, NONE, Wedges, reoriented};
@@ -9,21 +9,21 @@ use std::collections::HashMap;
 use std::hash::Hash;
 use std::ops::Range;
 
-/// Faces that are written by one thread at a time.
+/// The most faces of one piece of work.
 const FACES: usize = 1 << 14;
 
 /// The faces of a file, in its order.
 pub(super) struct Faces<'a> {
-    /// Lists that follow each other.
+    /// Consecutive lists.
     pub(super) lists: Vec<Vec<Face>>,
-    /// A number for each corner of their triangles, equal at corners of a vertex of which the file says the same; empty
-    /// where it says nothing of any.
+    /// A number for each corner of their triangles. Two corners of a vertex have the same number if they have the same
+    /// attributes. Empty if no corner has attributes.
     pub(super) corners: Vec<u32>,
-    /// Numbers of the header that grow with the number of faces.
+    /// Byte ranges of the numbers in the header that grow with the number of faces.
     pub(super) counts: Vec<Range<usize>>,
-    /// What stands between two faces.
+    /// The bytes between two faces.
     pub(super) separator: &'a [u8],
-    /// Writes a triangle of that group: its vertices, and the numbers of its corners, 0 where they have none.
+    /// Writes a triangle: its group, its vertices, and the numbers of its corners, 0 if `corners` is empty.
     pub(super) write: Write<'a>,
 }
 
@@ -31,26 +31,26 @@ type Write<'a> = Box<dyn Fn(&mut Vec<u8>, u32, [u32; 3], [u32; 3]) -> Result<(),
 
 /// A face that makes triangles.
 pub(super) struct Face {
-    /// Where it is, without what ends it.
+    /// Its byte range, without a line end.
     pub(super) bytes: Range<usize>,
-    /// How many triangles it is cut into.
+    /// The number of triangles that it is cut into.
     pub(super) triangles: usize,
-    /// Equal where what the file says of the faces is.
+    /// A number, equal for faces with the same attributes.
     pub(super) group: u32,
 }
 
 impl Faces<'_> {
-    /// All faces, in lists for one thread each.
+    /// All faces, in lists of at most [`FACES`].
     pub(super) fn lists(&self) -> Vec<&[Face]> {
         self.lists.iter().flat_map(|list| list.chunks(FACES)).collect()
     }
 
-    /// How many triangles each list has.
+    /// The number of triangles of each list.
     pub(super) fn triangles(&self, threads: &Threads) -> Vec<usize> {
         threads.map_each(self.lists(), |list| list.iter().map(|face| face.triangles).sum())
     }
 
-    /// The group of each triangle; nothing if there is only one.
+    /// The group of each triangle; empty if there is only one group.
     pub(super) fn groups(&self) -> Vec<u32> {
         let mut faces = self.lists.iter().flatten();
         let Some(first) = faces.next() else { return Vec::new() };
@@ -61,7 +61,7 @@ impl Faces<'_> {
         faces.flat_map(|face| std::iter::repeat_n(face.group, face.triangles)).collect()
     }
 
-    /// The wedges of the mesh as it is and, where triangles are turned against each other, as [`reoriented`] turns them.
+    /// The wedges of the mesh and, if its orientation is inconsistent, those of the [`reoriented`] mesh.
     pub(super) fn wedges(&self, mesh: &Mesh) -> Result<Vec<Wedges>, Error> {
         if self.corners.is_empty() {
             return Ok(Vec::new());
@@ -87,7 +87,7 @@ impl Faces<'_> {
     pub(super) fn carried(&self, mesh: &Mesh, after: &Mesh) -> Result<Vec<u32>, Error> {
         let mut wedges = self.wedges(mesh)?;
         let Some(mut last) = wedges.pop() else { return Ok(Vec::new()) };
-        // No flip makes triangles agree that did not: they were turned before, or not.
+        // Flips do not change the number of inconsistent edges. If it is unchanged, no triangle was reversed.
         if let Some(first) = wedges.pop() {
             let inconsistent = |mesh: &Mesh| Adjacency::new(mesh).inconsistent;
             if inconsistent(mesh) == inconsistent(after) {
@@ -98,12 +98,12 @@ impl Faces<'_> {
     }
 }
 
-/// Numbers from 0, equal for equal keys.
+/// Numbers keys from 0. Equal keys have the same number.
 pub(super) struct Numbers<K> {
     numbers: HashMap<K, u32>,
     /// The keys by their numbers.
     known: Vec<K>,
-    /// The number given last: often the next one is the same.
+    /// The last number: often the next one is the same.
     last: u32,
 }
 
@@ -136,17 +136,17 @@ impl<K: Clone + Eq + Hash> Numbers<K> {
     }
 }
 
-/// Numbers for what the corners of a mesh have, from 0, and what each number stands for: equal at corners of a vertex
-/// whose keys are.
+/// Numbers the attributes of the corners of a mesh, from 0, and returns the attributes of each number. Corners of a vertex
+/// with equal keys have the same number.
 pub(super) fn numbered<T: Copy + PartialEq, K: Eq + Hash>(
     mesh: &Mesh,
     corners: &[T],
     mut key: impl FnMut(T) -> K,
 ) -> (Vec<u32>, Vec<T>) {
     let mut known: Vec<T> = Vec::new();
-    // Most vertices have one for all their corners.
+    // Most vertices have one number for all their corners.
     let mut first = vec![NONE; mesh.vertex_count()];
-    let mut others = HashMap::new();
+    let mut further = HashMap::new();
     let numbers = mesh.triangles().iter().zip(corners).map(|(&vertex, &corner)| {
         let first = &mut first[vertex as usize];
         if known.get(*first as usize).is_some_and(|&first| first == corner || key(first) == key(corner)) {
@@ -157,7 +157,7 @@ pub(super) fn numbered<T: Copy + PartialEq, K: Eq + Hash>(
             *first = next;
             next
         } else {
-            *others.entry((vertex, key(corner))).or_insert(next)
+            *further.entry((vertex, key(corner))).or_insert(next)
         };
         if number == next {
             known.push(corner);
@@ -167,13 +167,13 @@ pub(super) fn numbered<T: Copy + PartialEq, K: Eq + Hash>(
     (numbers.collect(), known)
 }
 
-/// Where `part` is in `file`, a part of which it has to be.
-pub(super) fn place(file: &[u8], part: &[u8]) -> Range<usize> {
+/// The byte range of `part` in `file`. `part` must be a slice of `file`.
+pub(super) fn range_in(file: &[u8], part: &[u8]) -> Range<usize> {
     let start = part.as_ptr() as usize - file.as_ptr() as usize;
     start..start + part.len()
 }
 
-/// How the first line of a text ends.
+/// The line end of the first line of a text.
 pub(super) fn line_end(text: &[u8]) -> &[u8] {
     match memchr2(b'\n', b'\r', text).map(|end| &text[end..]) {
         Some(end) if end.starts_with(b"\r\n") => &end[..2],

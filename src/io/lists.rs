@@ -1,9 +1,9 @@
-//! Lists as text: of edges, a line with the two vertices of each, counted from 0, or of any numbers; `#` begins a comment.
+//! Lists as text: edges, one line with two vertex indices from 0 for each, or numbers. `#` begins a comment.
 
 use super::text::{Lines, Tokens, integer, quoted, without_comment};
 use crate::Error;
 
-/// Parses the bytes of a list: two vertex indices an edge. No mesh is asked whether it has them.
+/// Parses a list of edges: a line with two vertex indices for each. Does not check the indices against a mesh.
 ///
 /// # Errors
 /// [`Error::Parse`], which names the line.
@@ -25,7 +25,7 @@ pub fn parse_edges(bytes: &[u8]) -> Result<Vec<[u32; 2]>, Error> {
     Ok(edges)
 }
 
-/// Parses the bytes of a list of numbers from 0, such as those of triangles: any of them in a line.
+/// Parses a list of numbers from 0, such as indices of triangles. A line may have any number of them.
 ///
 /// # Errors
 /// [`Error::Parse`], which names the line.

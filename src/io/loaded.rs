@@ -1,4 +1,4 @@
-//! A mesh with the file that it was read from, and that file with other triangles.
+//! A mesh together with its file, to write the file again with other triangles.
 
 use super::format::Format;
 use super::gltf;
@@ -10,36 +10,36 @@ use std::borrow::Cow;
 use std::io::{self, Write};
 use std::path::Path;
 
-/// A mesh as it was read, and what was done to the file's content to get it.
+/// A mesh that was read from a file, and what else the file holds.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Loaded {
-    /// The file's vertices, all of them, in its order, and its faces as triangles.
+    /// All vertices of the file, in its order, and its faces as triangles.
     pub mesh: Mesh,
     /// Faces with more than three corners; each was cut into a fan of triangles around its first corner.
     pub polygons: usize,
-    /// What the file holds that a [`Mesh`] has no place for, such as `normals`. [`Loaded::dropped_in`] says what a file of
-    /// some format does not keep of it.
+    /// What the file has that a [`Mesh`] cannot hold, such as `normals`. [`Loaded::dropped_in`] says what a file of a given
+    /// format loses.
     pub dropped: Vec<String>,
-    /// What else there is to say about the file, a sentence each.
+    /// Other notes about the file, a sentence each.
     pub notes: Vec<String>,
     /// The file itself, if it is glTF.
     pub(super) document: Option<gltf::Document>,
-    /// The file itself, if it is held and of another format.
+    /// The file itself, if it is held and not glTF.
     pub(super) original: Option<Original>,
 }
 
 impl Loaded {
-    /// Positions to draw the mesh at, 3 numbers a vertex, where its parts are placed in a scene: a glTF file has each
-    /// with coordinates of its own, by which it is also decided what is Delaunay.
+    /// The positions in the scene of a glTF file, to draw the mesh: 3 numbers per vertex. The mesh itself has the
+    /// coordinates of the file, each part in its own system, and the flips use those. `None` for other formats.
     pub fn placed(&self) -> Option<Vec<f32>> {
         self.document.as_ref().map(|document| document.placed(&self.mesh))
     }
 
-    /// The mesh with the vertices at one place joined. Of a glTF file these are the vertices of one primitive, and those
-    /// with the same bytes in all accessors are the same in all else; of other files all of one place are.
+    /// The mesh with the vertices at the same position joined. In a glTF file, only vertices of the same primitive are
+    /// joined, and an edge where their other accessors differ is a seam.
     ///
     /// # Errors
-    /// [`Error::Parse`] for a glTF file in whose JSON an array stands for an object.
+    /// [`Error::Parse`] for a glTF file whose JSON has an array where an object is expected.
     pub fn welded(&self) -> Result<Welded, Error> {
         match &self.document {
             Some(document) => document.welded(&self.mesh),
@@ -47,44 +47,44 @@ impl Loaded {
         }
     }
 
-    /// What is lost in a file of that format; see [`Loaded::dropped`].
+    /// What a file of that format loses of [`Loaded::dropped`].
     pub fn dropped_in(&self, format: Format) -> &[String] {
         if self.keeps(format) { &[] } else { &self.dropped }
     }
 
-    /// Whether a file of that format is this one again, but for its triangles.
+    /// Whether a file of that format is this file with other triangles.
     pub fn keeps(&self, format: Format) -> bool {
         let is_same = self.original.as_ref().is_some_and(|original| original.format == format);
         is_same || format.is_gltf() && self.document.is_some()
     }
 
-    /// Adds to the options of a run what keeps attributes of faces and corners in their places, for a file of the same
-    /// format, and returns how many edges that locks: groups of triangles that differ in their material or colour, and
-    /// seams, where corners of a vertex differ in their texture coordinates or normals. What glTF has is at vertices, and
-    /// needs nothing.
+    /// Adds locks to the options of a run, so that faces and corners keep their attributes in a file of the same format.
+    /// Returns the number of locked edges. They are the borders of groups of triangles with the same material or colour,
+    /// and seams, where corners of a vertex differ in texture coordinates or normals. A glTF file needs no locks, since its
+    /// attributes belong to vertices.
     ///
     /// # Errors
-    /// [`Error::TriangleCount`] if [`Loaded::mesh`] is another than that of the file.
+    /// [`Error::TriangleCount`] if [`Loaded::mesh`] is not the mesh of the file.
     pub fn constrain(&self, options: &mut Options) -> Result<usize, Error> {
         self.original.as_ref().map_or(Ok(0), |original| original.constrain(&self.mesh, options))
     }
 
-    /// The bytes of a file of this name that holds the mesh with other triangles, gzip'd if it ends in `.gz`. In the same
-    /// format it is the file again, and only triangles change: each keeps the attributes of its face, faces of which no
-    /// triangle is another stay as they are, and new corners have the attributes that their vertex had there before, if
-    /// the run was [constrained](Loaded::constrain). A glTF file has other indices, in either form; in other formats its
-    /// parts are where its scene places them.
+    /// The bytes of a file with this name that holds the mesh with other triangles, gzip'd if the name ends in `.gz`. In
+    /// the same format it is the same file, and only faces that contain a changed triangle are rewritten. If the run was
+    /// [constrained](Loaded::constrain), each triangle keeps the attributes of its face, and each new corner has the
+    /// attributes of its vertex there. A glTF file gets other indices, as `.gltf` or `.glb`. In other formats, the parts of
+    /// a glTF file have their positions in the scene.
     ///
     /// # Errors
-    /// [`Error::UnknownFormat`]; those of [`Mesh::new`] for the triangles, of which there must be as many as before;
-    /// [`Error::Option`] for triangles that flips across seams have made; [`Error::FileTooLarge`] where polygons are cut
-    /// that have much; [`Error::Io`] as [`write_to`](super::write_to); [`Error::TooLarge`] for 4 GiB and more of `.glb`.
+    /// [`Error::UnknownFormat`]; [`Error::TriangleCount`] and those of [`Mesh::new`] for the triangles; [`Error::Option`]
+    /// for triangles from flips across seams; [`Error::FileTooLarge`] if cut polygons repeat too many attributes;
+    /// [`Error::Io`] as in [`write_to`](super::write_to); [`Error::TooLarge`] for a `.glb` file of 4 GiB or more.
     pub fn file_bytes(&self, name: impl AsRef<Path>, triangles: Vec<u32>) -> Result<Vec<u8>, Error> {
         let name = name.as_ref();
         collected(name, self.write_to(name, triangles)?)
     }
 
-    /// What writes such a file.
+    /// A function that writes such a file.
     pub(super) fn write_to(
         &self,
         name: &Path,
@@ -121,7 +121,7 @@ impl Loaded {
     }
 }
 
-/// What a file is written of.
+/// The content of a file to write.
 enum Content<'a> {
     Parts(Vec<Cow<'a, [u8]>>),
     Mesh(Mesh),

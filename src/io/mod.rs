@@ -1,14 +1,12 @@
-//! Mesh files: reading and writing by extension, and the same on bytes where there is no file system. And lists of
-//! edges and of numbers.
+//! Reads and writes mesh files, on disk or as bytes, and reads lists of edges and of numbers.
 //!
-//! The parsers are our own. What was looked at (2026-11): `tobj` splits a file into models with vertices
-//! of their own, `obj-rs` gives no line numbers, `obj` checks no index and wants UTF-8 everywhere, `off-rs`
-//! knows no header but a bare `OFF`; `ply-rs-bw` compares
-//! the name of a property for each of its numbers, allocates for each face, names no byte, and fills the memory with
-//! 2^64 elements without properties; `serde-ply` names neither line nor byte; `stl_io` takes every file that begins
-//! with `solid` for text, -0 and 0 for two places, and NaN for a number. None keeps the contract: the same vertices in
-//! the same order, and an error that names the line or the byte. `ply-rs-bw` and `stl_io` are what the tests compare
-//! with. What is packed is left to `flate2`, and the JSON of glTF to `gltf`.
+//! The parsers are our own, because they keep all vertices in their order and name the line or byte of each error. No crate
+//! does both (2026-11): `tobj` splits a file into models with their own vertices; `obj-rs` has no line numbers; `obj` checks
+//! no index and wants UTF-8 everywhere; `off-rs` knows only the header `OFF`; `ply-rs-bw` compares the name of a property for
+//! each number, allocates for each face, names no byte, and fills the memory with 2^64 elements without properties;
+//! `serde-ply` names neither line nor byte; `stl_io` takes every file that begins with `solid` for text, -0 and 0 for
+//! different positions, and NaN for a number. The tests compare with `ply-rs-bw` and `stl_io`. The crate `flate2` handles
+//! gzip, and `gltf` the JSON of glTF.
 
 #[cfg(not(target_arch = "wasm32"))]
 mod file;

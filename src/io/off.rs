@@ -1,7 +1,7 @@
-//! OFF, Geomview's object file format: `[ST][C][N][n]OFF`, counts, one line a vertex, one line a face.
+//! OFF, Geomview's object file format: `[ST][C][N][n]OFF`, counts, one line per vertex, one line per face.
 //! Source: the Geomview manual, "OFF Files". Text only, read line by line.
 
-use super::held::{Face, Faces, Numbers, line_end, place};
+use super::held::{Face, Faces, Numbers, line_end, range_in};
 use super::parsed::{Dropped, Fans, Parsed};
 use super::pieces::{self, Piece};
 use super::text::{Digits, Lines, Tokens, coordinate, float, integer, quoted, without_comment};
@@ -39,11 +39,11 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Parsed, Error> {
     Err(end.refuse(message))
 }
 
-/// The faces of a file that has been read; what follows the vertices of one is its colour.
+/// The faces of a file that has been read. The text after the vertices of a face is its colour.
 pub(super) fn held_faces(bytes: &[u8]) -> Result<Faces<'_>, Error> {
     let mut lines = Lines::new(bytes);
     let header = Header::parse(&mut lines)?;
-    let counts = header.growing.iter().map(|count| place(bytes, count)).collect();
+    let counts = header.growing.iter().map(|count| range_in(bytes, count)).collect();
     let threads = pieces::threads(lines.bytes_left());
     let pieces = pieces::cut(&lines, is_content, &threads);
     let parts = threads.map_each(pieces, |Piece { mut lines, items }| {
@@ -56,13 +56,13 @@ pub(super) fn held_faces(bytes: &[u8]) -> Result<Faces<'_>, Error> {
             let corners = rest.by_ref().take(corners.unwrap_or_default()).count();
             let colour = rest.0.trim_ascii_start();
             let group = colours.of(&colour);
-            list.push(Face { bytes: place(bytes, line), triangles: corners.saturating_sub(2), group });
+            list.push(Face { bytes: range_in(bytes, line), triangles: corners.saturating_sub(2), group });
         }
         (list, colours.into_known())
     });
     let (mut lists, mut colours) = (Vec::new(), Numbers::default());
     for (mut list, known) in parts {
-        // The groups of a piece become those of the file.
+        // Replaces the group numbers of the piece by those of the file.
         let groups: Vec<u32> = known.iter().map(|colour| colours.of(colour)).collect();
         if groups.iter().zip(0..).any(|(&group, own)| group != own) {
             list.iter_mut().for_each(|face| face.group = groups[face.group as usize]);
@@ -113,7 +113,7 @@ pub(super) fn write(mesh: &Mesh, out: &mut impl Write) -> io::Result<()> {
     })
 }
 
-/// The next line that holds more than white space and a comment.
+/// The next line that has more than white space and a comment.
 fn content<'a>(lines: &mut Lines<'a>) -> Option<Tokens<'a>> {
     lines.find(|line| is_content(line)).map(without_comment).map(Tokens)
 }
@@ -122,12 +122,12 @@ fn is_content(line: &[u8]) -> bool {
     without_comment(line).iter().any(|b| !b.is_ascii_whitespace())
 }
 
-/// What the keyword and the counts announce.
+/// The keyword and the counts.
 struct Header<'a> {
     stride: usize,
     vertices: u64,
     faces: u64,
-    /// The counts, as they are written, that grow where faces are cut: of faces, and of edges where they were counted.
+    /// The text of the counts that grow when faces are cut: the number of faces, and that of edges unless it is 0.
     growing: Vec<&'a [u8]>,
 }
 
@@ -195,7 +195,7 @@ struct Keyword {
 }
 
 impl Keyword {
-    /// The keyword and what is glued to it: some well-known data sets write `OFF490 518 0`.
+    /// The keyword and the text glued to it: some well-known data sets write `OFF490 518 0`.
     fn split(word: &[u8]) -> Option<(Self, &[u8])> {
         let mut keyword = Self { stride: 3, homogeneous: false, dimension_follows: false };
         let mut rest = word;
@@ -223,19 +223,19 @@ impl Keyword {
     }
 }
 
-/// How many of the announced `count` elements, of `numbers` numbers each, the rest of the file can hold at
-/// most: a number takes a digit and a separator.
+/// The smaller of `count` and the number of elements that fit the rest of the file. An element has `numbers` numbers, each
+/// of at least a digit and a separator.
 fn capacity(lines: &Lines, count: u64, numbers: usize) -> usize {
     let limit = (lines.bytes_left() + 1) / (2 * numbers);
     usize::try_from(count).unwrap_or(usize::MAX).min(limit)
 }
 
-/// What a piece of the file holds.
+/// The content of a piece of the file.
 struct Part<'a> {
     positions: Vec<f32>,
     faces: Fans,
     dropped: Dropped,
-    /// How many vertices and faces there are up to its end.
+    /// The number of vertices and faces up to its end.
     found: u64,
     end: Lines<'a>,
 }

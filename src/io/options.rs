@@ -1,19 +1,19 @@
-//! What the caller of a reader can choose.
+//! The options for reading a file.
 
 use crate::{Dimension, Error};
 
-/// What can be chosen for reading a file.
+/// The options for reading a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ReadOptions {
-    /// Whether the mesh lies in the plane; `None`: if the file has two coordinates a vertex or every z is 0, and is no
-    /// glTF.
+    /// Whether the mesh is in the plane. `None`: it is in the plane if the file has two coordinates per vertex or every z is
+    /// 0; a glTF file is always in space.
     pub dimension: Option<Dimension>,
-    /// How many bytes a file may have, and a gzip'd one also once it is unpacked. By default 4 GiB, in WebAssembly 1 GiB.
+    /// The most bytes of a file, packed and unpacked. By default 4 GiB, in WebAssembly 1 GiB.
     pub max_bytes: u64,
-    /// Whether [`load`](super::load) may read the files beside a glTF file, in its folder and those below, that its buffers are in.
+    /// Whether [`load`](super::load) may read the buffers of a glTF file from other files, in its folder and folders below.
     pub external_files: bool,
-    /// Whether an OFF, OBJ, PLY or binary STL file is held in memory, beside the mesh, so that it can be written again
-    /// with all that a mesh has no place for. By default it is. A glTF file always is.
+    /// Whether to hold an OFF, OBJ, PLY or binary STL file in memory together with the mesh, so that it can be written again
+    /// with its attributes. True by default. A glTF file is always held.
     pub keep: bool,
 }
 
@@ -29,7 +29,7 @@ impl Default for ReadOptions {
 }
 
 impl ReadOptions {
-    /// Refuses a file of more bytes than it may have.
+    /// Refuses a file of more than `max_bytes` bytes.
     pub(crate) fn check(&self, bytes: u64) -> Result<(), Error> {
         if bytes > self.max_bytes {
             return Err(Error::FileTooLarge { limit: self.max_bytes, option: "max_bytes" });
@@ -38,6 +38,5 @@ impl ReadOptions {
     }
 }
 
-/// Reads a file that lies beside the one that is read, by its name there.
-/// Else it says why not.
+/// Reads another file by its path relative to the first one, or returns why it does not.
 pub type ReadFile<'a> = &'a dyn Fn(&str) -> Result<Vec<u8>, String>;

@@ -1,4 +1,4 @@
-//! A file that is held: it is written again with other triangles, and all else as it was. OFF, OBJ, PLY and STL share this.
+//! A held OFF, OBJ, PLY or STL file: written again with other triangles, and with everything else unchanged.
 
 use super::format::Format;
 use super::held::{Face, Faces, Numbers};
@@ -14,17 +14,17 @@ use std::sync::atomic::Ordering::Relaxed;
 pub(super) struct Original {
     pub(super) format: Format,
     pub(super) bytes: Vec<u8>,
-    /// Bytes that it may have, also when it is written again.
+    /// The most bytes that it may have, also when it is written again.
     pub(super) max_bytes: u64,
-    /// Its triangles, where it is known that neither its faces nor their corners have attributes.
+    /// The number of its triangles, if neither its faces nor their corners have attributes.
     pub(super) plain: Option<usize>,
 }
 
-/// Bytes that one thread writes before all are counted again.
+/// Bytes that a thread writes between two checks of the total.
 const COUNTED: usize = 1 << 16;
 
 impl Original {
-    /// Adds to `options` what keeps the attributes where they are, and returns how many edges that locks.
+    /// Adds the locks that keep the attributes to `options`, and returns the number of locked edges.
     pub(super) fn constrain(&self, mesh: &Mesh, options: &mut Options) -> Result<usize, Error> {
         if self.plain == Some(mesh.triangle_count()) {
             return Ok(0);
@@ -44,7 +44,7 @@ impl Original {
         if options.groups.is_empty() {
             options.groups = own.groups;
         } else {
-            // What divides the triangles in one way or in the other.
+            // Two triangles are in one group if both divisions have them in one group.
             let mut numbers = Numbers::default();
             for (group, own) in options.groups.iter_mut().zip(own.groups) {
                 *group = numbers.of(&(*group, own));
@@ -53,8 +53,8 @@ impl Original {
         Ok(locked.len())
     }
 
-    /// The bytes of the file of `mesh` with the triangles of `after`, as many, in parts. Faces of which no triangle is
-    /// another stay as they are; the others give way to their triangles.
+    /// The bytes of the file with the triangles of `after`, in parts. Faces without a changed triangle stay; other faces are
+    /// replaced by their triangles.
     pub(super) fn with_triangles(&self, mesh: &Mesh, after: &Mesh) -> Result<Vec<Cow<'_, [u8]>>, Error> {
         let threads = pieces::threads(self.bytes.len());
         let faces = &self.faces(mesh)?;
@@ -74,7 +74,7 @@ impl Original {
             length: AtomicU64::new(start as u64),
         };
         let parts = threads.map_each(pieces.collect(), |piece| rewriting.piece(&piece));
-        // First of all errors, so that it is the same for any number of threads.
+        // This error comes before all others, so that the error does not depend on the number of threads.
         rewriting.refuse_too_long()?;
         let parts = parts.into_iter().collect::<Result<Vec<_>, _>>()?;
         let more: u64 = parts.iter().map(|(_, more)| more).sum();
@@ -82,7 +82,7 @@ impl Original {
         for count in faces.counts.iter().filter(|_| more > 0) {
             all.push(Cow::Borrowed(&self.bytes[copied..count.start]));
             let number = text::integer(&self.bytes[count.clone()]).unwrap_or_default();
-            // That of edges can be any.
+            // The number of edges in a file may be wrong.
             all.push(Cow::Owned(number.saturating_add_unsigned(more).to_string().into_bytes()));
             copied = count.end;
         }
@@ -105,27 +105,27 @@ impl Original {
     }
 }
 
-/// Faces that follow each other, on their way into another file.
+/// Consecutive faces to write.
 struct Piece<'a> {
     list: &'a [Face],
-    /// The number of their first triangle.
+    /// The index of their first triangle.
     first: usize,
-    /// Where what follows them ends.
+    /// The end of the bytes after them, up to the next piece.
     end: usize,
 }
 
-/// A file that is written again.
+/// A file being written again.
 struct Rewriting<'a> {
     original: &'a Original,
     faces: &'a Faces<'a>,
-    /// Before and after, and the numbers of the corners.
+    /// The triangles before and after, and the numbers of the corners.
     triangles: [&'a [[u32; 3]]; 3],
-    /// Bytes that have been written by all threads. It only grows, so what it refuses does not depend on who is first.
+    /// Bytes that all threads have written. It only grows, so the result of the check does not depend on their order.
     length: AtomicU64,
 }
 
 impl Rewriting<'_> {
-    /// The bytes of a piece, and how many faces it has more.
+    /// The bytes of a piece, and how many faces it has in addition.
     fn piece(&self, piece: &Piece) -> Result<(Vec<u8>, u64), Error> {
         let (bytes, [before, after, corners]) = (&self.original.bytes, self.triangles);
         let mut copied = piece.list[0].bytes.start;
@@ -147,7 +147,7 @@ impl Rewriting<'_> {
                 }
                 let corners = corners.get(triangle).copied().unwrap_or_default();
                 (self.faces.write)(&mut out, face.group, after[triangle], corners)?;
-                // What a polygon has, each of its triangles has.
+                // Each triangle repeats the attributes of its polygon.
                 if out.len() >= counted + COUNTED {
                     self.length.fetch_add((out.len() - counted) as u64, Relaxed);
                     counted = out.len();

@@ -1,4 +1,4 @@
-//! Where a mesh is written: a file changes at once or not at all; devices, pipes and the standard output are written into.
+//! Writes meshes: replaces a file atomically, or writes into a device, a pipe or the standard output.
 
 use super::file::{at, folder};
 use super::format::Format;
@@ -10,17 +10,17 @@ use std::fs::{self, Metadata};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-/// Bytes that are written at once.
+/// Bytes of the write buffer.
 const BUFFER: usize = 1 << 18;
 
-/// Links that are followed one after another, as many as Linux follows.
+/// The most consecutive links to follow, as in Linux.
 const LINKS: usize = 40;
 
-/// Where a mesh is to be written, and in which format.
+/// Where to write a mesh, and in which format.
 #[derive(Clone, Debug)]
 pub struct Output {
-    place: Place,
-    /// As it is in messages.
+    target: Target,
+    /// The path in messages.
     path: PathBuf,
     /// A name with the extension of the format, and `.gz` if it is gzip'd.
     name: PathBuf,
@@ -28,70 +28,69 @@ pub struct Output {
 }
 
 #[derive(Clone, Debug)]
-enum Place {
-    /// A regular file, without links on the way, or where there is none yet.
+enum Target {
+    /// A regular file, which may not exist yet; the path has no links.
     File(PathBuf),
-    /// What is no regular file.
+    /// An existing file that is not regular.
     Stream(PathBuf),
     Standard,
 }
 
 impl Output {
-    /// What is at `path` after links are followed; the link of a file that is not there yet leads to where it will be.
-    /// The extension names the format, and if `.gz` follows, it is gzip'd. What is no regular file, such as a device, a
-    /// FIFO or the standard output by one of its names, may have no extension that is known: then it is written as a file
-    /// with the name `like`.
+    /// The target at `path`. Links are followed, also to a file that does not exist yet. The extension names the format;
+    /// `.gz` after it means gzip. If `path` is a device, a FIFO or a name of the standard output, and has no known extension,
+    /// the name `like` decides the format.
     ///
     /// # Errors
-    /// [`Error::UnknownFormat`]; [`Error::Io`] for a folder, for links that go round, and where there is no folder for a
-    /// new file.
+    /// [`Error::UnknownFormat`]; [`Error::Io`] for a folder, for a cycle of links, and if the folder of a new file does not
+    /// exist.
     pub fn of(path: impl AsRef<Path>, like: impl AsRef<Path>) -> Result<Self, Error> {
         let path = path.as_ref();
-        let place = Place::of(path);
-        let name = match (Format::of(path), &place) {
+        let target = Target::of(path);
+        let name = match (Format::of(path), &target) {
             (Ok(_), _) => path,
-            (Err(_), Ok(Place::Stream(_) | Place::Standard)) => like.as_ref(),
+            (Err(_), Ok(Target::Stream(_) | Target::Standard)) => like.as_ref(),
             (Err(error), _) => return Err(error),
         };
         let format = Format::of(name)?;
-        let place = place.map_err(|source| at(path, source))?;
-        Ok(Self { place, path: path.into(), name: name.into(), format })
+        let target = target.map_err(|source| at(path, source))?;
+        Ok(Self { target, path: path.into(), name: name.into(), format })
     }
 
-    /// The standard output, which is written as a file with the name `like`.
+    /// The standard output. The name `like` decides the format.
     ///
     /// # Errors
     /// [`Error::UnknownFormat`].
     pub fn standard(like: impl AsRef<Path>) -> Result<Self, Error> {
         let name = like.as_ref();
         let format = Format::of(name)?;
-        Ok(Self { place: Place::Standard, path: "standard output".into(), name: name.into(), format })
+        Ok(Self { target: Target::Standard, path: "standard output".into(), name: name.into(), format })
     }
 
-    /// The format that is written.
+    /// The format.
     pub fn format(&self) -> Format {
         self.format
     }
 
     /// Whether it is the standard output.
     pub fn is_standard(&self) -> bool {
-        matches!(self.place, Place::Standard)
+        matches!(self.target, Target::Standard)
     }
 
-    /// Writes what was read with other triangles; see [`Loaded::file_bytes`]. A file is as it was until [`Staged::commit`];
-    /// a device or a pipe has all of it when this returns.
+    /// Writes `loaded` with other triangles; see [`Loaded::file_bytes`]. A regular file stays unchanged until
+    /// [`Staged::commit`]. A device or a pipe has all bytes when this returns.
     ///
     /// # Errors
-    /// Those of [`Loaded::file_bytes`]. [`Error::Io`] also where nobody reads a FIFO for 10 s.
+    /// Those of [`Loaded::file_bytes`]; also [`Error::Io`] if no process opens a FIFO for reading within 10 s.
     pub fn stage(&self, loaded: &Loaded, triangles: Vec<u32>) -> Result<Staged, Error> {
         self.stage_with(loaded.write_to(&self.name, triangles)?)
     }
 
     fn stage_with(&self, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<Staged, Error> {
-        let replacement = match &self.place {
-            Place::File(target) => Replacement::written(target, write).map(Some),
-            Place::Stream(path) => open_to_write(path).and_then(|file| buffered(file, write)).map(|()| None),
-            Place::Standard => buffered(io::stdout().lock(), write).map(|()| None),
+        let replacement = match &self.target {
+            Target::File(path) => Replacement::written(path, write).map(Some),
+            Target::Stream(path) => open_to_write(path).and_then(|file| buffered(file, write)).map(|()| None),
+            Target::Standard => buffered(io::stdout().lock(), write).map(|()| None),
         };
         let path = self.path.clone();
         match replacement {
@@ -101,7 +100,7 @@ impl Output {
     }
 }
 
-/// A file that is written and has not taken the place of the old one. If it is dropped, it is removed.
+/// A written file that has not replaced the old one yet. Dropping it removes the file.
 #[must_use = "the file has its name after `commit`"]
 pub struct Staged {
     path: PathBuf,
@@ -109,7 +108,7 @@ pub struct Staged {
 }
 
 impl Staged {
-    /// Gives the file its name. What of an old one could not be kept is said in a sentence each.
+    /// Gives the file its name. Returns what could not be kept of the old file, a sentence each.
     ///
     /// # Errors
     /// [`Error::Io`].
@@ -144,7 +143,7 @@ fn buffered(out: impl Write, write: impl FnOnce(&mut dyn Write) -> io::Result<()
     out.flush()
 }
 
-/// Gives a new file the owner, the group and the mode of the one it replaces, and says what could not be kept of that.
+/// Gives a new file the owner, group and mode of the file that it replaces. Returns what could not be kept.
 #[cfg(unix)]
 fn keep(present: &Metadata, file: &fs::File) -> io::Result<Vec<String>> {
     use std::os::unix::fs::{MetadataExt, PermissionsExt, fchown};
@@ -153,8 +152,8 @@ fn keep(present: &Metadata, file: &fs::File) -> io::Result<Vec<String>> {
     let mut mode = present.mode() & 0o7777;
     let mut hand_over = |what, before: u32, now: u32, result: io::Result<()>| {
         if let Err(error) = result {
-            lost.push(format!("its {what} was {before} and is {now} now ({error})"));
-            // What a program may do as its owner or group is not for another one.
+            lost.push(format!("its {what} changed from {before} to {now} ({error})"));
+            // The bits set-user-id and set-group-id must not pass to another owner or group.
             mode &= 0o777;
             if what == "group" {
                 mode = for_others(mode);
@@ -174,7 +173,7 @@ fn keep(present: &Metadata, file: &fs::File) -> io::Result<Vec<String>> {
     Ok(lost)
 }
 
-/// A mode that lets another group do no more than others may.
+/// The mode with the permissions of the group limited to those of all users.
 #[cfg(unix)]
 fn for_others(mode: u32) -> u32 {
     mode & !0o070 | (mode & 0o007) << 3 & mode
@@ -194,9 +193,9 @@ fn open_to_write(path: &Path) -> io::Result<fs::File> {
     fs::File::options().write(true).open(path)
 }
 
-impl Place {
+impl Target {
     fn of(path: &Path) -> io::Result<Self> {
-        // The system says where links go round.
+        // For a cycle of links, the system returns an error here.
         let present = match fs::metadata(path) {
             Ok(present) => Some(present),
             Err(error) if error.kind() == io::ErrorKind::NotFound => None,
@@ -220,9 +219,9 @@ impl Place {
     }
 }
 
-/// Where links lead, whether there is something or not. The name of an open file of a process is not followed: it leads
-/// to that file even if the file has another name now, or none. Then its number is given too, or `u32::MAX` where it
-/// is of another process.
+/// The path at the end of a chain of links, whether it exists or not. A path that names an open file of a process, such as
+/// `/proc/self/fd/1`, is not followed: that file may have lost its name. Then the result has its descriptor, or `u32::MAX`
+/// if it belongs to another process.
 fn followed(path: &Path) -> (PathBuf, Option<u32>) {
     let mut path = path.to_path_buf();
     for _ in 0..LINKS {
@@ -238,7 +237,7 @@ fn followed(path: &Path) -> (PathBuf, Option<u32>) {
     (path, None)
 }
 
-/// The number of the open file that `path` is the name of, as in `/proc/self/fd/1` or `/dev/fd/1`.
+/// The descriptor that a path such as `/proc/self/fd/1` or `/dev/fd/1` names.
 #[cfg(unix)]
 fn descriptor(path: &Path) -> Option<u32> {
     let folder = fs::canonicalize(folder(path)).ok()?;
@@ -255,8 +254,8 @@ fn descriptor(_: &Path) -> Option<u32> {
     None
 }
 
-/// Whether this is the file or the pipe that the standard output is. What is written twice into a device, such as the null
-/// device, is not mixed up.
+/// Whether this is the file or the pipe behind the standard output. False for devices: two writers to a device, such as the
+/// null device, do no harm.
 #[cfg(unix)]
 fn is_standard_output(present: &Metadata) -> bool {
     use std::os::fd::AsFd;
@@ -274,10 +273,10 @@ fn is_standard_output(_: &Metadata) -> bool {
     false
 }
 
-/// Writes `mesh` to a file; the extension names its format, and if `.gz` follows it is gzip'd. The file appears, or
-/// changes, at once when all is written: a failure leaves what was there before. Links are followed. Owner, group and mode
-/// of a file that was there are kept; what could not be kept of it is given back, a sentence each. A device, a FIFO or
-/// another name of the standard output is written into.
+/// Writes `mesh` to a file. The extension names the format; `.gz` after it means gzip. The file appears or changes in one
+/// step, after everything is written, so a failure leaves the old file unchanged. Links are followed. A replaced file keeps
+/// its owner, group and mode; the result says what could not be kept, a sentence each. A device, a FIFO or the standard
+/// output is written into.
 ///
 /// # Errors
 /// [`Error::UnknownFormat`] or [`Error::Io`].
@@ -286,10 +285,10 @@ pub fn write(path: impl AsRef<Path>, mesh: &Mesh) -> Result<Vec<String>, Error> 
     output.stage_with(mesh_writer(&output.name, mesh)?)?.commit()
 }
 
-/// As [`write()`], what was read with other triangles; see [`Loaded::file_bytes`].
+/// As [`write()`], for a file that was read and has other triangles; see [`Loaded::file_bytes`].
 ///
 /// # Errors
-/// As there.
+/// Those of [`Output::of`], [`Output::stage`] and [`Staged::commit`].
 pub fn rewrite(path: impl AsRef<Path>, loaded: &Loaded, triangles: Vec<u32>) -> Result<Vec<String>, Error> {
     Output::of(&path, &path)?.stage(loaded, triangles)?.commit()
 }

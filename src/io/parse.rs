@@ -1,4 +1,4 @@
-//! The bytes of a file as a mesh, in any format.
+//! Parses the bytes of a file of any format.
 
 use super::format::Format;
 use super::loaded::Loaded;
@@ -11,23 +11,23 @@ use crate::system::threads::Threads;
 use crate::{Dimension, Error, Mesh, Positions};
 use std::borrow::Cow;
 
-/// Reads the bytes of a file, which may be gzip'd. Borrowed ones are copied where the file is held ([`ReadOptions::keep`]).
+/// Parses the bytes of a file, which may be gzip'd. Copies borrowed bytes if the file is held ([`ReadOptions::keep`]).
 ///
 /// # Errors
-/// [`Error::Parse`], which names the line or the byte, or the vertex that has a height where 2D was asked for;
-/// [`Error::TooLarge`]; [`Error::FileTooLarge`].
+/// [`Error::Parse`], which names the line, the byte, or the vertex whose z is not 0 in a 2D mesh; [`Error::TooLarge`];
+/// [`Error::FileTooLarge`].
 pub fn parse<'a>(
     format: Format,
     bytes: impl Into<Cow<'a, [u8]>>,
     options: &ReadOptions,
 ) -> Result<Loaded, Error> {
-    parse_with(format, bytes, options, &|_| Err("other files are read only if that is allowed".into()))
+    parse_with(format, bytes, options, &|_| Err("reading other files is not allowed".into()))
 }
 
-/// As [`parse`]; `read` gives the content of a file beside this one, or says why it does not.
+/// As [`parse`]. `read` returns the content of another file that this one names, or why it does not.
 ///
 /// # Errors
-/// As there.
+/// Those of [`parse`].
 pub fn parse_with<'a>(
     format: Format,
     bytes: impl Into<Cow<'a, [u8]>>,
@@ -59,7 +59,7 @@ pub fn parse_with<'a>(
             return Ok(Loaded { notes, document: Some(document), ..loaded });
         }
     };
-    // The corners of OBJ may refer to what is not there.
+    // The corners of an OBJ file may have references even if nothing was dropped.
     let is_plain = parsed.dropped.0.is_empty() && format != Format::Obj;
     let loaded = finish(parsed, options.dimension)?;
     let max_bytes = options.max_bytes;
@@ -73,7 +73,7 @@ pub fn parse_with<'a>(
     Ok(Loaded { original, ..loaded })
 }
 
-/// Text that begins with the byte order mark of UTF-16, in UTF-8; other text is as it is.
+/// Text with a UTF-16 byte order mark, converted to UTF-8; `None` for other text.
 fn utf8(bytes: &[u8]) -> Option<Vec<u8>> {
     let decoded = |word: fn([u8; 2]) -> u16| {
         let words = bytes[2..].as_chunks().0.iter().map(|&pair| word(pair));
@@ -101,7 +101,7 @@ fn finish(parsed: Parsed, dimension: Option<Dimension>) -> Result<Loaded, Error>
             return Err(Error::Parse {
                 place: format!("vertex {vertex}"),
                 message: format!(
-                    "z is {}, but the mesh was asked for in 2D, where every z must be 0",
+                    "z is {}, but every z must be 0 in the 2D mesh that was requested",
                     z.escape_ascii()
                 ),
             });
@@ -126,12 +126,12 @@ fn finish(parsed: Parsed, dimension: Option<Dimension>) -> Result<Loaded, Error>
     })
 }
 
-/// The first vertex with a height.
+/// The first vertex whose z is not 0.
 fn first_raised<T: Copy + Default + PartialEq>(numbers: &[T]) -> Option<usize> {
     numbers.chunks_exact(3).position(|p| p[2] != T::default())
 }
 
-/// Leaves out every third number, in place, or adds a 0 to every two.
+/// Removes every third number, or appends a 0 to every pair.
 fn with_stride<T: Copy + Default>(mut numbers: Vec<T>, from: usize, to: usize) -> Vec<T> {
     match (from, to) {
         (3, 2) => {

@@ -1,4 +1,4 @@
-//! What a parser hands over.
+//! The result of a parser.
 
 use super::pieces;
 use crate::Positions;
@@ -7,14 +7,14 @@ use crate::system::threads::Threads;
 /// Faces as triangles: a polygon becomes the fan around its first corner.
 #[derive(Default)]
 pub(super) struct Fans {
-    /// Vertex indices, 3 a triangle.
+    /// Vertex indices, 3 per triangle.
     pub(super) triangles: Vec<u32>,
     /// Faces with more than 3 corners.
     pub(super) polygons: usize,
 }
 
 impl Fans {
-    /// Adds a face of at least 3 corners, in their order.
+    /// Adds a face of at least 3 corners.
     pub(super) fn push(&mut self, corners: &[u32]) {
         let Some((&first, rest)) = corners.split_first() else { return };
         self.polygons += usize::from(rest.len() > 2);
@@ -23,7 +23,7 @@ impl Fans {
         }
     }
 
-    /// Those of the pieces of a file, in order.
+    /// Joins the pieces of a file, in order.
     pub(super) fn joined(parts: Vec<Self>, threads: &Threads) -> Self {
         let polygons = parts.iter().map(|part| part.polygons).sum();
         let triangles = parts.into_iter().map(|part| part.triangles).collect();
@@ -31,12 +31,12 @@ impl Fans {
     }
 }
 
-/// What a file held that a [`crate::Mesh`] has no place for, each named once.
+/// What a file has that a [`crate::Mesh`] cannot hold, each named once.
 #[derive(Default)]
 pub(super) struct Dropped(pub(super) Vec<String>);
 
 impl Dropped {
-    /// Names one more.
+    /// Adds a name.
     pub(super) fn note(&mut self, what: &str) {
         if !self.0.iter().any(|known| known == what) {
             self.0.push(what.to_owned());
@@ -44,14 +44,14 @@ impl Dropped {
     }
 }
 
-/// What a parser hands over: finite positions and indices in range.
+/// The result of a parser: finite positions, and indices in range.
 pub(super) struct Parsed {
     /// Numbers per vertex: 2 or 3.
     pub(super) stride: usize,
-    /// `stride` numbers a vertex.
+    /// `stride` numbers per vertex.
     pub(super) positions: Positions,
     /// The faces.
     pub(super) faces: Fans,
-    /// What was left out.
+    /// What was dropped.
     pub(super) dropped: Dropped,
 }

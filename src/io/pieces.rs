@@ -1,34 +1,34 @@
-//! Files in pieces, for several threads: text is cut at the ends of lines, and what is written is put together in order.
-//! Neither what is read nor what is written depends on how many pieces there are.
+//! Reads and writes files in pieces, on several threads. Text is cut at line ends, and output is joined in order. The result
+//! does not depend on the number of pieces.
 
 use super::text::{Digits, Lines};
 use crate::system::threads::{FEWEST, Threads};
 use std::io::{self, Write};
 use std::ops::Range;
 
-/// Bytes that a triangle takes in a file, at least nearly: smaller files are done on one thread.
+/// About the fewest bytes of a triangle in a file. It decides which files are too small for several threads.
 const TRIANGLE: usize = 16;
 
-/// Items that are held as bytes at a time, before they are written.
+/// Items that are formatted before they are written.
 const HELD: usize = 1 << 17;
 
-/// Bytes that are made room for, for each item.
+/// Bytes reserved for each item.
 const ITEM: usize = 24;
 
 /// A piece of a text.
 pub(super) struct Piece<'a> {
-    /// With their numbers in the file.
+    /// The lines, with their numbers in the file.
     pub(super) lines: Lines<'a>,
-    /// Which of the file's items are in it; of the only piece nobody has counted them.
+    /// The range of the file's items in it. If there is only one piece, the end is not counted.
     pub(super) items: Range<u64>,
 }
 
-/// Those that are worth while for so many bytes.
+/// The threads for a file of so many bytes.
 pub(super) fn threads(bytes: usize) -> Threads {
     Threads::default().for_triangles(bytes / TRIANGLE)
 }
 
-/// The rest of a text in pieces for these threads. A line is an item, or it is not.
+/// Cuts the rest of a text into pieces for these threads. `is_item` says whether a line is an item.
 pub(super) fn cut<'a>(
     lines: &Lines<'a>,
     is_item: impl Fn(&[u8]) -> bool + Sync,
@@ -41,7 +41,7 @@ pub(super) fn cut<'a>(
     let mut rest = lines.rest;
     let mut texts: Vec<&[u8]> = Vec::new();
     for cut in cuts {
-        // The line in which a piece would end belongs to it.
+        // A piece includes the whole line in which it would end.
         let mut after = Lines { rest: lines.rest.get(cut.end..).unwrap_or_default(), number: 0 };
         after.next();
         let length = rest.len().saturating_sub(after.rest.len());
@@ -63,7 +63,7 @@ pub(super) fn cut<'a>(
     pieces.collect()
 }
 
-/// The lists of the pieces as one.
+/// Joins the lists of the pieces.
 pub(super) fn joined<T: Copy + Send + Sync>(mut lists: Vec<Vec<T>>, threads: &Threads) -> Vec<T> {
     if lists.len() == 1 {
         return lists.pop().unwrap_or_default();
@@ -73,7 +73,7 @@ pub(super) fn joined<T: Copy + Send + Sync>(mut lists: Vec<Vec<T>>, threads: &Th
     all
 }
 
-/// Writes what `write` appends for each of `count` items.
+/// Writes `count` items. `write` appends an item to a buffer.
 pub(super) fn write(
     count: usize,
     out: &mut (impl Write + ?Sized),

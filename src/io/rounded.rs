@@ -1,9 +1,9 @@
-//! Positions in the 32-bit floats of a format.
+//! Positions rounded to 32-bit floats.
 
 use crate::Mesh;
 use std::io;
 
-/// The positions of a mesh in the 32 bits of a format, 3 numbers a vertex.
+/// The positions of a mesh as 32-bit floats, 3 per vertex. `format` is for the message of the error.
 pub(super) fn rounded(mesh: &Mesh, format: &str) -> io::Result<Vec<[f32; 3]>> {
     let round = |vertex| {
         let point = mesh.point3(vertex).as_vec3();

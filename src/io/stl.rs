@@ -1,5 +1,5 @@
-//! STL, the format of stereolithography: triangles, each with its own three positions, as text or not. Corners at the
-//! same position become one vertex, numbered in the order in which they appear.
+//! STL, the format of stereolithography, text or binary: triangles, each with its own three positions. Corners at the same
+//! position become one vertex. Vertices are numbered in the order of their first corners.
 //! Source: 3D Systems, "StereoLithography Interface Specification", 1988.
 
 use super::held::{Face, Faces};
@@ -14,7 +14,7 @@ use std::io::{self, Write};
 const HEADER: usize = 84;
 /// Bytes of a facet: its normal and its corners, 3 numbers each, and an attribute.
 const FACET: usize = 50;
-/// Where in a facet its attribute begins.
+/// The offset of the attribute in a facet.
 const ATTRIBUTE: usize = 48;
 
 /// Reads a file's bytes.
@@ -27,8 +27,8 @@ pub(super) fn is_held(bytes: &[u8]) -> bool {
     !is_text(&bytes[..bytes.len().min(HEADER)], bytes.len())
 }
 
-/// Writes `mesh` in the binary form: 32-bit floats, the nearest ones; z is 0 in a 2D mesh. The normal of a triangle
-/// without an area is 0.
+/// Writes `mesh` in the binary form, rounded to 32-bit floats. z is 0 in a 2D mesh. The normal of a triangle without area
+/// is 0.
 pub(super) fn write(mesh: &Mesh, out: &mut impl Write) -> io::Result<()> {
     let points = rounded(mesh, "STL")?;
     let mut header = [0; HEADER];
@@ -44,7 +44,7 @@ pub(super) fn write(mesh: &Mesh, out: &mut impl Write) -> io::Result<()> {
 /// A facet of a binary file with its attribute.
 fn bytes_of(corners: [Vec3; 3], attribute: [u8; 2]) -> [u8; FACET] {
     let [a, b, c] = corners.map(DVec3::from);
-    // Of 32-bit coordinates it neither overflows nor vanishes in 64 bits.
+    // For 32-bit coordinates, the cross product neither overflows nor underflows in 64 bits.
     let normal = (b - a).cross(c - a).normalize_or_zero().as_vec3();
     let mut facet = [0; FACET];
     for (bytes, point) in facet.chunks_exact_mut(12).zip([normal, corners[0], corners[1], corners[2]]) {
@@ -56,8 +56,7 @@ fn bytes_of(corners: [Vec3; 3], attribute: [u8; 2]) -> [u8; FACET] {
     facet
 }
 
-/// The facets of a binary file that has been read; what is in the attribute of one, a colour in some dialects, its
-/// triangle keeps.
+/// The facets of a binary file that has been read. The attribute of a facet, a colour in some dialects, is its group.
 pub(super) fn held_faces<'a>(bytes: &'a [u8], mesh: &'a Mesh) -> Faces<'a> {
     let (facets, _) = bytes.get(HEADER..).unwrap_or_default().as_chunks::<FACET>();
     let face = |(f, facet): (usize, &[u8; FACET])| {
@@ -80,14 +79,14 @@ pub(super) fn held_faces<'a>(bytes: &'a [u8], mesh: &'a Mesh) -> Faces<'a> {
     }
 }
 
-/// How many facets the header of a binary file announces.
+/// The number of facets in the header of a binary file.
 fn announced(header: &[u8]) -> Option<usize> {
     let count = header.get(80..HEADER)?.first_chunk()?;
     Some(u32::from_le_bytes(*count) as usize)
 }
 
-/// Whether a file of so many bytes that begins with `header` is text. Binary files may begin with `solid` too: what
-/// gives them away is their length, or a byte that no text has. The number of facets has one below 2^24.
+/// Whether a file of `length` bytes that begins with `header` is text. A binary file may also begin with `solid`; then its
+/// length fits its number of facets, or it has a zero byte, as every number of facets below 2^24 does.
 pub(super) fn is_text(header: &[u8], length: usize) -> bool {
     let binary = announced(header).and_then(|count| count.checked_mul(FACET)?.checked_add(HEADER));
     let word = Lines::new(header).find_map(|line| Tokens(line).next()).unwrap_or_default();
@@ -135,13 +134,13 @@ fn binary(bytes: &[u8]) -> Result<Parsed, Error> {
     Ok(merged(corners, Fans { triangles: (0..3 * count as u32).collect(), polygons: 0 }, dropped))
 }
 
-/// `solid … endsolid`, again and again; between them facets.
+/// Parses blocks `solid … endsolid` with facets in them.
 fn text(bytes: &[u8]) -> Result<Parsed, Error> {
     let mut words = Words { lines: Lines::new(bytes), line: Tokens(b"") };
     let (mut corners, mut faces) = (Vec::new(), Fans::default());
     while let Some(word) = words.next() {
         words.is(word, "solid")?;
-        words.line = Tokens(b""); // a name, of any words
+        words.line = Tokens(b""); // skips the name
         loop {
             let word = words.after("facet or endsolid")?;
             if word.eq_ignore_ascii_case(b"endsolid") {
@@ -157,7 +156,7 @@ fn text(bytes: &[u8]) -> Result<Parsed, Error> {
     Ok(merged(corners, faces, Dropped::default()))
 }
 
-/// Reads a facet after its first word. Some have more than three corners.
+/// Reads a facet after its first word. It may have more than three corners.
 fn facet(words: &mut Words, corners: &mut Vec<[f32; 3]>, faces: &mut Fans) -> Result<(), Error> {
     words.keyword("normal")?;
     for _ in 0..3 {
@@ -185,7 +184,7 @@ fn facet(words: &mut Words, corners: &mut Vec<[f32; 3]>, faces: &mut Fans) -> Re
     words.keyword("endfacet")
 }
 
-/// The words of a text, whatever the lines.
+/// The words of a text, across lines.
 struct Words<'a> {
     lines: Lines<'a>,
     line: Tokens<'a>,
@@ -220,7 +219,7 @@ impl<'a> Words<'a> {
     }
 }
 
-/// Corners are counted with 32 bits.
+/// Refuses more facets than 32-bit indices of corners allow.
 fn refuse_too_many(count: usize) -> Result<(), Error> {
     if count > MAX_TRIANGLES {
         return Err(Error::TooLarge { what: "triangles", count, limit: MAX_TRIANGLES });
@@ -228,8 +227,8 @@ fn refuse_too_many(count: usize) -> Result<(), Error> {
     Ok(())
 }
 
-/// The mesh of `faces` over `corners`, of which those at the same position become one vertex, the first. They are
-/// sorted: no file can make that slow, as it can with hashes.
+/// The mesh of `faces` over `corners`. Corners at the same position become one vertex. It sorts the corners, because no file
+/// can make sorting slow, as it can with hashing.
 fn merged(corners: Vec<[f32; 3]>, mut faces: Fans, dropped: Dropped) -> Parsed {
     let key = |(i, corner): (usize, &[f32; 3])| {
         // -0 + 0 is 0.
@@ -238,7 +237,7 @@ fn merged(corners: Vec<[f32; 3]>, mut faces: Fans, dropped: Dropped) -> Parsed {
     };
     let mut sorted: Vec<u128> = corners.iter().enumerate().map(key).collect();
     sorted.sort_unstable();
-    // The first corner at each one's position, then its vertex.
+    // For each corner, first the first corner at its position, later its vertex.
     let mut vertices = vec![0; corners.len()];
     for group in sorted.chunk_by(|a, b| a >> 32 == b >> 32) {
         for corner in group {

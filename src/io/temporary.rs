@@ -1,4 +1,5 @@
-//! Temporary files beside the files that they will be, and what removes them where a program ends without destructors.
+//! Temporary files, in the folder of the file that they replace. They are removed even if a program ends without
+//! destructors.
 
 use std::fs::File;
 use std::io;
@@ -8,21 +9,21 @@ use std::sync::{Mutex, MutexGuard, PoisonError, TryLockError};
 use std::thread;
 use std::time::Duration;
 
-/// A path that the system takes as it is, without an allocation.
+/// A path in the form that the system takes without an allocation.
 #[cfg(unix)]
 type Stored = std::ffi::CString;
 #[cfg(not(unix))]
 type Stored = std::path::PathBuf;
 
-/// The temporary files that are there. A file is made, renamed and removed under the lock.
+/// The existing temporary files. Files are created, renamed and removed under this lock.
 static PATHS: Mutex<Vec<Stored>> = Mutex::new(Vec::new());
 
-/// How often [`remove_temporary_files`] looks whether it can have the lock, and how long it waits in between.
+/// How often [`remove_temporary_files`] tries to take the lock, and the pause between two tries.
 const TRIES: u32 = 1000;
 const PAUSE: Duration = Duration::from_millis(1);
 
-/// Removes the temporary files of all writes that are under way. A program calls it where it ends by a signal or for want
-/// of memory, as the last thing: it does not allocate, and whoever writes a file afterwards waits for ever.
+/// Removes the temporary files of all unfinished writes. A program calls it last, when a signal or a lack of memory ends it.
+/// It does not allocate. A thread that writes a file afterwards waits for ever.
 pub fn remove_temporary_files() {
     for _ in 0..TRIES {
         let paths = match PATHS.try_lock() {
@@ -36,22 +37,22 @@ pub fn remove_temporary_files() {
         for path in paths.iter() {
             let _ = remove(path);
         }
-        // So that no file is made or renamed any more.
+        // Keeps the lock, so that no file is created or renamed any more.
         mem::forget(paths);
         return;
     }
 }
 
-/// A temporary file, which is removed when this is dropped.
+/// A temporary file. It is removed on drop.
 pub(super) struct Temporary {
     file: File,
     path: Stored,
-    is_there: bool,
+    exists: bool,
 }
 
 impl Temporary {
-    /// A new file in `folder`. Nobody else may read it where it is to replace a file, which others may not read either;
-    /// else it has the permissions of any new file.
+    /// A new file in `folder`. If it replaces a file, only its owner may read it, since the old file may be private. If not,
+    /// it has the permissions of a new file.
     pub(super) fn new_in(folder: &Path, replaces: bool) -> io::Result<Self> {
         let mut options = File::options();
         options.write(true).create_new(true);
@@ -63,11 +64,11 @@ impl Temporary {
             let path = stored(path)?;
             let listed = path.clone();
             let mut paths = paths();
-            // From the file on nothing may fail.
+            // After the file exists, nothing may fail before it is in the list.
             paths.reserve(1);
             let file = options.open(as_path(&path))?;
             paths.push(listed);
-            Ok(Self { file, path, is_there: true })
+            Ok(Self { file, path, exists: true })
         };
         let mut names = tempfile::Builder::new();
         names.prefix(".edgeflip-").suffix(".tmp").disable_cleanup(true);
@@ -78,7 +79,7 @@ impl Temporary {
         &self.file
     }
 
-    /// Gives the file its name, and takes that from the file which has it.
+    /// Renames the file to `target`, and replaces any file there.
     pub(super) fn rename(mut self, target: &Path) -> io::Result<()> {
         let target = stored(target)?;
         let paths = paths();
@@ -87,16 +88,16 @@ impl Temporary {
         Ok(())
     }
 
-    /// Takes the file from the list.
+    /// Removes the file from the list.
     fn leave(&mut self, mut paths: MutexGuard<'_, Vec<Stored>>) {
         paths.retain(|path| *path != self.path);
-        self.is_there = false;
+        self.exists = false;
     }
 }
 
 impl Drop for Temporary {
     fn drop(&mut self) {
-        if self.is_there {
+        if self.exists {
             let paths = paths();
             let _ = remove(&self.path);
             self.leave(paths);

@@ -1,17 +1,16 @@
-//! What the formats share: lines with their numbers, tokens, exact numbers, faces cut into triangles, and what a parser
-//! hands over.
+//! What the text formats share: lines with their numbers, tokens, and exact numbers.
 
 use crate::{Error, Positions};
 use memchr::{memchr, memchr2};
 
-/// Bytes of an offending token that a message repeats.
+/// The most bytes of a token that a message quotes.
 const QUOTE: usize = 32;
 
 /// The lines of a file, ended by LF, CRLF or CR, with their 1-based numbers.
 #[derive(Clone)]
 pub(super) struct Lines<'a> {
     pub(super) rest: &'a [u8],
-    /// How many lines are before the rest.
+    /// The number of lines before the rest.
     pub(super) number: usize,
 }
 
@@ -21,12 +20,12 @@ impl<'a> Lines<'a> {
         Self { rest: bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes), number: 0 }
     }
 
-    /// Number of the line that `next` gave last.
+    /// The number of the line that `next` returned last.
     pub(super) fn number(&self) -> usize {
         self.number.max(1)
     }
 
-    /// Bytes not yet read: the bound of everything that is allocated ahead.
+    /// Bytes not yet read. They bound every allocation ahead of reading.
     pub(super) fn bytes_left(&self) -> usize {
         self.rest.len()
     }
@@ -77,7 +76,7 @@ impl<'a> Iterator for Tokens<'a> {
     }
 }
 
-/// A token as a message repeats it: one line, printable, short.
+/// A token as messages quote it: on one line, printable, short.
 pub(super) fn quoted(token: &[u8]) -> String {
     match token.get(..QUOTE) {
         Some(head) if token.len() > QUOTE => format!("`{}…`", head.escape_ascii()),
@@ -85,8 +84,7 @@ pub(super) fn quoted(token: &[u8]) -> String {
     }
 }
 
-/// The f32 nearest to the decimal number written, rounded once; `None` if it is no number.
-/// NaN and infinities come back as such.
+/// The f32 nearest to a decimal number, rounded once; `None` if the token is not a number. Accepts NaN and infinities.
 pub(super) fn float(token: &[u8]) -> Option<f32> {
     std::str::from_utf8(token).ok()?.parse().ok()
 }
@@ -100,7 +98,7 @@ pub(super) fn coordinate(token: &[u8]) -> Result<f32, String> {
     }
 }
 
-/// A decimal integer; beyond 64 bits the nearest one that fits, `None` if it is no integer.
+/// A decimal integer, clamped to 64 bits; `None` if the token is not an integer.
 pub(super) fn integer(token: &[u8]) -> Option<i64> {
     let (negative, digits) = match token {
         [b'-', digits @ ..] => (true, digits),
@@ -120,7 +118,7 @@ pub(super) fn integer(token: &[u8]) -> Option<i64> {
     Some(if negative { -value } else { value })
 }
 
-/// Numbers appended to a line with the fewest digits that read back to the same bits.
+/// Formats numbers with the fewest digits that read back to the same bits.
 #[derive(Default)]
 pub(super) struct Digits {
     float: zmij::Buffer,

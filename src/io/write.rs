@@ -1,4 +1,4 @@
-//! A mesh as the bytes of a new file.
+//! Writes a mesh as a new file.
 
 use super::format::Format;
 use super::{gltf, gzip, obj, off, ply, stl};
@@ -6,8 +6,8 @@ use crate::{Error, Mesh};
 use std::io::{self, Write};
 use std::path::Path;
 
-/// Writes `mesh`. As text, each number has the fewest digits that read back to the same bits, 32 or 64 of them;
-/// [`parse`](super::parse) reads 32 of text that is no PLY. Give it something buffered.
+/// Writes `mesh`. In text formats, each number has the fewest digits that read back to the same 32 or 64 bits;
+/// [`parse`](super::parse) reads 32-bit floats from OFF and OBJ. `out` should be buffered.
 ///
 /// # Errors
 /// Those of `out`; [`io::ErrorKind::InvalidInput`] for coordinates that STL and glTF cannot hold.
@@ -21,26 +21,26 @@ pub fn write_to(format: Format, mesh: &Mesh, out: &mut impl Write) -> io::Result
     }
 }
 
-/// What [`write_to`] writes.
+/// The bytes that [`write_to`] writes.
 ///
 /// # Errors
-/// As there.
+/// Those of [`write_to`].
 pub fn to_bytes(format: Format, mesh: &Mesh) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     write_to(format, mesh, &mut bytes)?;
     Ok(bytes)
 }
 
-/// The bytes of a file of this name that holds `mesh`: in the format of its extension, gzip'd if `.gz` follows.
+/// The bytes of a file with this name that holds `mesh`: in the format of the extension, gzip'd if `.gz` follows.
 ///
 /// # Errors
-/// [`Error::UnknownFormat`], and [`Error::Io`] as [`write_to`].
+/// [`Error::UnknownFormat`]; [`Error::Io`] with an error of [`write_to`].
 pub fn to_file_bytes(name: impl AsRef<Path>, mesh: &Mesh) -> Result<Vec<u8>, Error> {
     let name = name.as_ref();
     collected(name, mesh_writer(name, mesh)?)
 }
 
-/// What writes a file of that name.
+/// A function that writes a file with this name.
 pub(super) fn mesh_writer(
     name: &Path,
     mesh: &Mesh,
@@ -49,7 +49,7 @@ pub(super) fn mesh_writer(
     Ok(move |out: &mut dyn Write| gzip::write(is_packed, out, |mut out| write_to(format, mesh, &mut out)))
 }
 
-/// The bytes that `write` writes of a file of that name.
+/// The bytes that `write` writes. `name` is for the error.
 pub(super) fn collected(
     name: &Path,
     write: impl FnOnce(&mut dyn Write) -> io::Result<()>,

@@ -1,4 +1,4 @@
-//! Before and after a run: triangles turned towards one side, vertices joined and split again, attributes carried along.
+//! Before and after a run: makes the orientation consistent, welds and splits vertices, and carries attributes along.
 
 pub(crate) mod reorient;
 pub(crate) mod wedges;

@@ -1,18 +1,18 @@
-//! Triangles turned so that neighbours agree about the side that is outside.
+//! Reverses triangles, so that neighbours have the same orientation.
 
 use crate::mesh::buckets::for_each_edge;
 use crate::{Error, Mesh, NONE};
 
-/// In a list of neighbours: this one runs along the edge in the same direction, so it is turned the other way.
+/// Flag in a list of neighbours: this neighbour has the opposite orientation, since it runs along the edge in the same
+/// direction.
 const AGAINST: u32 = 1 << 31;
 
-/// `mesh` with triangles turned so that the two at each edge of two triangles agree, in each component of triangles that
-/// are joined by such edges, if that is possible at all (on a Möbius strip it is not: such a component is left as it
-/// is); and how many were turned: in each component the fewer. A triangle is turned by changing its second with its
-/// third corner.
+/// `mesh` with consistent orientation, and the number of reversed triangles. In each component of triangles joined by edges
+/// of two triangles, it reverses the minority. A component that is not orientable, such as a Möbius strip, stays unchanged.
+/// Reversing a triangle swaps its second and its third corner.
 ///
 /// # Errors
-/// None for a mesh that is one.
+/// Those of [`Mesh::new`], which do not occur for a valid mesh.
 pub fn reoriented(mesh: &Mesh) -> Result<(Mesh, u32), Error> {
     let neighbours = neighbours(mesh);
     let count = mesh.triangle_count();
@@ -41,9 +41,9 @@ pub fn reoriented(mesh: &Mesh) -> Result<(Mesh, u32), Error> {
                 }
             }
         }
-        let others = component.iter().filter(|&&t| is_turned[t as usize]).count();
-        let turns_others = 2 * others <= component.len();
-        for &t in component.iter().filter(|&&t| is_orientable && is_turned[t as usize] == turns_others) {
+        let marked = component.iter().filter(|&&t| is_turned[t as usize]).count();
+        let turns_marked = 2 * marked <= component.len();
+        for &t in component.iter().filter(|&&t| is_orientable && is_turned[t as usize] == turns_marked) {
             triangles.swap(3 * t as usize + 1, 3 * t as usize + 2);
             turned += 1;
         }
@@ -51,7 +51,7 @@ pub fn reoriented(mesh: &Mesh) -> Result<(Mesh, u32), Error> {
     Ok((mesh.with_triangles(triangles)?, turned))
 }
 
-/// The triangles beside each, at edges of two triangles.
+/// The neighbours of each triangle, across edges of two triangles.
 fn neighbours(mesh: &Mesh) -> Vec<[u32; 3]> {
     let mut neighbours = vec![[NONE; 3]; mesh.triangle_count()];
     for_each_edge(mesh.vertex_count(), mesh.triangles(), |half_edges| {
@@ -80,7 +80,7 @@ mod tests {
     }
 
     #[test]
-    fn triangles_turned_at_random_are_turned_back() {
+    fn triangles_reversed_at_random_are_reversed_back() {
         for name in ["uvsphere 9", "random 8", "roof 5"] {
             let mesh = by_name(name).unwrap();
             let mut triangles = mesh.triangles().to_vec();
@@ -97,23 +97,23 @@ mod tests {
         }
     }
 
-    /// Two triangles of three go one way: the third is turned. A component alone stays.
+    /// Two of three triangles have one orientation: the third is reversed. A component of one triangle stays.
     #[test]
-    fn the_fewer_are_turned() {
+    fn the_minority_is_reversed() {
         let mesh = strip(&[0, 1, 2, 1, 2, 3, 2, 3, 4, 5, 7, 6], 8);
         let (clean, turned) = reoriented(&mesh).unwrap();
         assert_eq!((clean.triangles(), turned), (&[0, 1, 2, 1, 3, 2, 2, 3, 4, 5, 7, 6][..], 1));
     }
 
     #[test]
-    fn a_moebius_strip_stays_as_it_is() {
+    fn a_moebius_strip_stays_unchanged() {
         let moebius = strip(&[0, 1, 2, 1, 3, 2, 2, 3, 4, 3, 5, 4, 4, 5, 1, 5, 0, 1], 6);
         assert!(Adjacency::new(&moebius).inconsistent > 0);
         assert_eq!(reoriented(&moebius).unwrap(), (moebius, 0));
     }
 
     #[test]
-    fn edges_of_three_triangles_and_corners_that_are_one_join_nothing() {
+    fn edges_of_three_triangles_and_repeated_corners_join_nothing() {
         let book = strip(&[0, 1, 2, 0, 1, 3, 0, 1, 4, 5, 5, 6], 7);
         assert_eq!(reoriented(&book).unwrap(), (book, 0));
     }

@@ -1,38 +1,37 @@
 //! Wedges: the corners around a vertex that share their attributes, such as texture coordinates and normals.
 //!
-//! A flip leaves the edges around its two triangles where they are, and the attributes of the corner at which each of
-//! their half-edges starts. It crosses no edge that is locked, on the boundary or frozen. So the corners at a vertex from
-//! one such barrier to the next, a sector, have the attributes of its first corner, counter-clockwise, whatever flips
-//! inside; and the half-edge that this one starts with is there in every result. Source: Hoppe, "Efficient implementation
-//! of progressive meshes", 1998 (wedges).
+//! A barrier is a locked edge, a boundary edge or a frozen edge: no flip removes it. A sector is a run of corners at a vertex
+//! from one barrier to the next, counter-clockwise. All corners of a sector have the same attributes, whatever flips inside.
+//! The half-edge of the barrier at which a sector begins exists in every result, and identifies the sector. Source: Hoppe,
+//! "Efficient implementation of progressive meshes", 1998 (wedges).
 
 use crate::mesh::adjacency::{EdgeKind, edge_kind};
 use crate::mesh::buckets::for_each_edge;
 use crate::mesh::half_edge::{next, prev};
 use crate::{Error, Mesh, NONE};
 
-/// What keeps attributes at the corners of a mesh through flips: the edges and triangles to lock, and which of the
-/// attributes each corner of the result has.
+/// Keeps attributes at the corners of a mesh through flips: the edges and triangles to lock, and the attributes of each
+/// corner of a result.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Wedges {
-    /// The number of each corner of the mesh.
+    /// The attributes of each corner of the mesh, as a number.
     classes: Vec<u32>,
-    /// The first corner of each vertex whose corners all have one number; [`NONE`] for a vertex of several, or of none.
+    /// The first corner of each vertex whose corners all have the same number; [`NONE`] for other vertices.
     first: Vec<u32>,
-    /// At vertices of several numbers: the half-edges of barriers that start there, by their two vertices.
+    /// The half-edges of barriers that start at a vertex with several numbers, by their two vertices.
     barriers: Vec<([u32; 2], u32)>,
     locked_edges: Vec<[u32; 2]>,
     locked_triangles: Vec<u32>,
-    /// The vertices of these.
+    /// The vertices of the locked triangles.
     locked_vertices: Vec<u32>,
 }
 
 impl Wedges {
-    /// Takes a number for each corner, 3 a triangle: corners of the same vertex have the same attributes if they have the
-    /// same number. Takes time for the edges of the mesh, unless each vertex has one number.
+    /// Takes a number for each corner, 3 per triangle. Corners of the same vertex have the same attributes if they have the
+    /// same number. Fast if the corners of each vertex have one number; else it visits all edges.
     ///
     /// # Errors
-    /// [`Error::Option`] for another number of corners.
+    /// [`Error::Option`] for a wrong number of corners.
     pub fn new(mesh: &Mesh, classes: Vec<u32>) -> Result<Self, Error> {
         let triangles = mesh.triangles();
         if classes.len() != triangles.len() {
@@ -63,13 +62,13 @@ impl Wedges {
                 barriers.extend(starts.map(|&h| (ends(triangles, h), h)));
             });
             barriers.sort_unstable();
-            // Half-edges between the same two vertices: in a result only their triangles tell which is which.
+            // Half-edges with the same two vertices: in a result, only their triangles distinguish them.
             for alike in barriers.chunk_by(|x, y| x.0 == y.0) {
                 if alike.iter().any(|&(_, h)| class(h) != class(alike[0].1)) {
                     locked_triangles.extend(alike.iter().map(|&(_, h)| h / 3));
                 }
             }
-            // What no barrier leads to goes all around its vertex.
+            // A sector without a barrier goes all around its vertex.
             let mut sources = vec![NONE; triangles.len()];
             for &(_, h) in &barriers {
                 spread(&mut sources, &twins, h, h);
@@ -88,45 +87,44 @@ impl Wedges {
         Ok(Self { classes, first, barriers, locked_edges, locked_triangles, locked_vertices })
     }
 
-    /// Seams: the edges of two triangles whose attributes differ at one of its ends, in ascending order. They are for
+    /// The seams: edges whose two triangles have different attributes at an end of the edge, in ascending order. Add them to
     /// [`Options::locked_edges`](crate::Options::locked_edges).
     pub fn locked_edges(&self) -> &[[u32; 2]] {
         &self.locked_edges
     }
 
-    /// Triangles that have to stay because nothing else of them would tell the attributes of their corners, in ascending
-    /// order: few, and only at frozen edges and where vertices of several surfaces are one. They are for
+    /// Triangles that have to stay, since no barrier would identify the attributes of their corners, in ascending order.
+    /// They are few: only at frozen edges, and where several surfaces share a vertex. Add them to
     /// [`Options::locked_triangles`](crate::Options::locked_triangles).
     pub fn locked_triangles(&self) -> &[u32] {
         &self.locked_triangles
     }
 
-    /// The number of each corner of a result: of triangles that flips make of the mesh's while those edges and triangles
-    /// are locked.
+    /// The number of each corner of a result: the triangles after flips with these edges and triangles locked.
     ///
     /// # Errors
-    /// [`Error::TriangleCount`], [`Error::IndexOutOfRange`]; [`Error::Option`] for triangles that are no such result, as
-    /// far as that is noticed.
+    /// [`Error::TriangleCount`], [`Error::IndexOutOfRange`]; [`Error::Option`] for triangles that are not such a result, if
+    /// that is noticed.
     pub fn carried(&self, triangles: &[u32]) -> Result<Vec<u32>, Error> {
         let mut sources = self.sources(triangles)?;
         sources.iter_mut().for_each(|corner| *corner = self.classes[*corner as usize]);
         Ok(sources)
     }
 
-    /// The number of a corner of the mesh.
+    /// The number of `corner` of the mesh.
     pub(crate) fn class(&self, corner: u32) -> u32 {
         self.classes[corner as usize]
     }
 
-    /// The numbers that it was made of.
+    /// The numbers given to [`Wedges::new`].
     pub(crate) fn into_classes(self) -> Vec<u32> {
         self.classes
     }
 
-    /// For each corner of a result one of the mesh that has its vertex and its number.
+    /// For each corner of a result, a corner of the mesh with the same vertex and the same number.
     ///
     /// # Errors
-    /// As [`Wedges::carried`].
+    /// Those of [`Wedges::carried`].
     pub(crate) fn sources(&self, triangles: &[u32]) -> Result<Vec<u32>, Error> {
         let (length, expected) = (triangles.len(), self.classes.len());
         if length != expected {
@@ -163,24 +161,24 @@ impl Wedges {
             }
         }
         for h in starts {
-            if let Ok(place) =
+            if let Ok(index) =
                 self.barriers.binary_search_by_key(&ends(triangles, h), |&(barrier, _)| barrier)
             {
-                spread(&mut sources, &twins, h, self.barriers[place].1);
+                spread(&mut sources, &twins, h, self.barriers[index].1);
             }
         }
         match sources.iter().position(|&source| source == NONE) {
             None => Ok(sources),
             Some(corner) => {
                 let message =
-                    format!("triangle {} is none that flips make while seams are locked", corner / 3);
+                    format!("triangle {} cannot result from flips while seams are locked", corner / 3);
                 Err(Error::Option { option: "triangles", message })
             }
         }
     }
 }
 
-/// The first corner of each vertex; [`NONE`] where its corners have several numbers.
+/// The first corner of each vertex; [`NONE`] if its corners have several numbers.
 fn first_corners(mesh: &Mesh, classes: &[u32]) -> Vec<u32> {
     let mut first = vec![NONE; mesh.vertex_count()];
     for (corner, &v) in mesh.triangles().iter().enumerate().rev() {
@@ -200,7 +198,7 @@ fn corners(triangles: &[u32]) -> impl Iterator<Item = u32> {
     triangles.iter().flat_map(|&t| 3 * t..3 * t + 3)
 }
 
-/// The two vertices of a half-edge, from the first to the second.
+/// The two vertices of a half-edge, in its direction.
 fn ends(triangles: &[u32], h: u32) -> [u32; 2] {
     [h, next(h)].map(|x| triangles[x as usize])
 }
@@ -209,7 +207,7 @@ fn sorted([u, v]: [u32; 2]) -> [u32; 2] {
     [u.min(v), u.max(v)]
 }
 
-/// Gives `source` to a corner and to those that follow it counter-clockwise in its sector, up to one that has one.
+/// Sets the source of a corner and of the following corners of its sector, counter-clockwise, up to one that has a source.
 fn spread(sources: &mut [u32], twins: &[u32], corner: u32, source: u32) {
     let mut at = corner;
     while at != NONE && sources[at as usize] == NONE {

@@ -1,26 +1,26 @@
-//! Vertices at one place joined, so that edges flip where only attributes change from one vertex to the other, or where
-//! triangles share no vertices at all; and the triangles of such a mesh given their own vertices again.
+//! Welds vertices at the same position, so that edges between them can flip, and splits them again after the run. Files
+//! repeat a vertex where attributes differ, or repeat the vertices of every triangle.
 
 use crate::{Error, Mesh, Wedges, reoriented};
 
-/// A mesh whose vertices at one place are one.
+/// A mesh whose vertices at the same position are joined.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Welded {
-    /// The same vertices, of which triangles name the first of each place.
+    /// The same vertices. Triangles use the first vertex at each position.
     pub mesh: Mesh,
-    /// What has to be locked, so that each corner finds a vertex with its attributes again.
+    /// The locks that each corner needs to find a vertex with its attributes again.
     pub wedges: Wedges,
-    /// For each vertex the first one at its place.
+    /// For each vertex, the first vertex at its position.
     pub places: Vec<u32>,
-    /// The vertex of each corner before.
+    /// The vertex of each corner before the weld.
     corners: Vec<u32>,
 }
 
-/// Joins the vertices at exactly the same position; -0 is 0. `attributes` is a number for each vertex: vertices of one
-/// place with the same number are the same in all else. Without it all vertices of a place are.
+/// Joins the vertices at exactly the same position; -0 equals 0. `attributes` is a number for each vertex: vertices at the
+/// same position with the same number have the same attributes. Without it, all vertices at a position have.
 ///
 /// # Errors
-/// [`Error::Option`] for another number of vertices.
+/// [`Error::Option`] for a wrong number of `attributes`.
 pub fn welded(mesh: &Mesh, attributes: Option<&[u32]>) -> Result<Welded, Error> {
     let count = mesh.vertex_count();
     if let Some(attributes) = attributes
@@ -29,12 +29,12 @@ pub fn welded(mesh: &Mesh, attributes: Option<&[u32]>) -> Result<Welded, Error> 
         let message = format!("it has {} numbers, the mesh has {count} vertices", attributes.len());
         return Err(Error::Option { option: "attributes", message });
     }
-    let places = first_alike((0..count as u32).map(|vertex| place(mesh, vertex)));
+    let places = first_alike((0..count as u32).map(|vertex| position_bits(mesh, vertex)));
     Welded::new(mesh, places, attributes.unwrap_or(&vec![0; count]))
 }
 
 impl Welded {
-    /// `places` and `attributes` have a number for each vertex: the first one at its place, and that of [`welded`].
+    /// For each vertex, `places` has the first vertex at its position, and `attributes` the number as in [`welded`].
     pub(crate) fn new(mesh: &Mesh, places: Vec<u32>, attributes: &[u32]) -> Result<Self, Error> {
         let corners = mesh.triangles().to_vec();
         let joined = mesh.with_triangles(corners.iter().map(|&v| places[v as usize]).collect())?;
@@ -42,15 +42,15 @@ impl Welded {
         Ok(Self { mesh: joined, wedges, places, corners })
     }
 
-    /// How many vertices are joined to another one.
+    /// How many vertices are joined to an earlier one.
     pub fn joined(&self) -> usize {
         (0..).zip(&self.places).filter(|&(vertex, first)| *first != vertex).count()
     }
 
-    /// The same with triangles turned, as by [`reoriented`], and how many were.
+    /// The same with the mesh [`reoriented`], and the number of reversed triangles.
     ///
     /// # Errors
-    /// None for a mesh that is one.
+    /// Those of [`reoriented`].
     pub fn reoriented(mut self) -> Result<(Self, u32), Error> {
         let (mesh, turned) = reoriented(&self.mesh)?;
         let mut classes = self.wedges.into_classes();
@@ -64,16 +64,16 @@ impl Welded {
         Ok((Self { mesh, wedges, ..self }, turned))
     }
 
-    /// The triangles of a result, each corner with a vertex of its place that has its attributes: the one that it had, if
-    /// its triangle has that still, or one that another corner had. [`Wedges::carried`] says what a result is.
+    /// Splits the vertices again: the triangles of a result, where each corner has a vertex at its position with its
+    /// attributes. A corner that did not move keeps its vertex. [`Wedges::carried`] defines a result.
     ///
     /// # Errors
-    /// As there.
+    /// Those of [`Wedges::carried`].
     pub fn split(&self, triangles: &[u32]) -> Result<Vec<u32>, Error> {
         let mut sources = self.wedges.sources(triangles)?;
         for (corner, source) in (0..).zip(&mut sources) {
-            let is_there = self.mesh.triangles()[corner as usize] == triangles[corner as usize];
-            if is_there && self.wedges.class(corner) == self.wedges.class(*source) {
+            let is_kept = self.mesh.triangles()[corner as usize] == triangles[corner as usize];
+            if is_kept && self.wedges.class(corner) == self.wedges.class(*source) {
                 *source = corner;
             }
             *source = self.corners[*source as usize];
@@ -82,14 +82,14 @@ impl Welded {
     }
 }
 
-/// The bits of a position, of which equal ones have the same.
-pub(crate) fn place(mesh: &Mesh, vertex: u32) -> [u64; 3] {
+/// The bits of a position. Equal positions have equal bits.
+pub(crate) fn position_bits(mesh: &Mesh, vertex: u32) -> [u64; 3] {
     // -0 + 0 is 0.
     mesh.point3(vertex).to_array().map(|x| (x + 0.0).to_bits())
 }
 
-/// For each of these the place of the first one that is equal. They are sorted: nothing can make that slow, as it can
-/// hashes.
+/// For each item, the index of the first equal item. It sorts the items, because no input can make sorting slow, as it can
+/// with hashing.
 pub(crate) fn first_alike<T: Ord>(these: impl Iterator<Item = T>) -> Vec<u32> {
     let mut sorted: Vec<(T, u32)> = these.zip(0..).collect();
     sorted.sort_unstable();

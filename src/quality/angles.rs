@@ -3,10 +3,10 @@
 use crate::Mesh;
 use glam::DVec3;
 
-/// How many of a mesh's angles fall into each of equal bins over 0° to 180°.
+/// A histogram of the angles of a mesh, with equal bins from 0° to 180°.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct AngleHistogram {
-    /// Angles in each bin; a bin includes its lower end, the last one also 180°.
+    /// Angles in each bin. A bin includes its lower end, and the last one also 180°.
     pub counts: Vec<u64>,
 }
 
@@ -17,20 +17,19 @@ impl AngleHistogram {
     }
 }
 
-/// What the angles of a mesh say about its triangles. A degenerate triangle counts as one whose smallest
-/// angle is 0.
+/// Statistics of the angles of a mesh. A degenerate triangle counts with the smallest angle 0.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Angles {
     /// Smallest angle of the mesh in degrees; 60 for a mesh without triangles.
     pub min: f64,
-    /// Mean over the triangles of their smallest angle, in degrees; 60 for a mesh without triangles.
+    /// Mean of the smallest angles of the triangles, in degrees; 60 for a mesh without triangles.
     pub mean_min: f64,
-    /// All angles, three a triangle.
+    /// All angles, three per triangle.
     pub histogram: AngleHistogram,
 }
 
-/// The angles of `mesh`, with a histogram of `bins` bins (at least one). In f64, for statistics: no
-/// decision is taken on them.
+/// The angles of `mesh`, with a histogram of `bins` bins (at least one). They are computed in f64, for statistics only: no
+/// flip depends on them.
 pub fn angles(mesh: &Mesh, bins: usize) -> Angles {
     let mut counts = vec![0u64; bins.max(1)];
     let (mut min, mut sum) = (60f64, 0f64);
@@ -58,8 +57,8 @@ pub(super) fn triangle_angles(corners: [DVec3; 3]) -> [f64; 3] {
     })
 }
 
-/// A vector from one point towards the other: their difference, or where products of such over- or underflow, that
-/// times some number. No f32 needs it.
+/// A vector from one point towards the other: their difference, scaled if products of differences would overflow or
+/// underflow. f32 coordinates never need scaling.
 fn direction(from: DVec3, to: DVec3) -> DVec3 {
     let difference = to - from;
     let difference = if difference.is_finite() { difference } else { to / 2.0 - from / 2.0 };

@@ -1,5 +1,5 @@
-//! The audit: what a result must have kept of its input, and which edges it left, exactly.
-//! It shares no code with what made the result.
+//! The audit: checks what a result must keep of its input, and lists the edges that remain, with exact arithmetic. It shares
+//! no code with the engines.
 
 use super::edges::{Class, Edge};
 use super::exact;
@@ -7,14 +7,14 @@ use super::surface::{Limits, RemainingEdge, Surface};
 use crate::{Dimension, Error, Mesh, Options, Reason, Reasons, Session, cos_degrees};
 use std::cmp::Ordering;
 
-/// Violations that an [`Audit`] lists; further ones are only counted.
+/// The most violations that an [`Audit`] lists. It only counts the others.
 pub const MAX_LISTED: usize = 100;
 
-/// One thing that a result must not differ in from its input, but does.
+/// A difference between a result and its input that must not be.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Violation {
-    /// Another number of vertex indices.
+    /// The number of vertex indices changed.
     #[error("{after} vertex indices instead of {before}")]
     Length {
         /// In the input.
@@ -22,7 +22,7 @@ pub enum Violation {
         /// In the result.
         after: usize,
     },
-    /// An index names no vertex.
+    /// A vertex index is out of range.
     #[error("triangle {triangle}: vertex index {index} is out of range")]
     IndexOutOfRange {
         /// Index of the triangle.
@@ -30,47 +30,47 @@ pub enum Violation {
         /// The index found.
         index: u32,
     },
-    /// A boundary edge appeared, disappeared or turned around.
-    #[error("boundary edge {u}-{v} is not as it was")]
+    /// A boundary edge appeared, disappeared or was reversed.
+    #[error("boundary edge {u}-{v} changed")]
     Boundary {
         /// Smaller end.
         u: u32,
         /// Larger end.
         v: u32,
     },
-    /// An edge that may not flip, for it is not manifold or not consistently oriented, changed.
-    #[error("frozen edge {u}-{v} is not as it was")]
+    /// A frozen edge changed: one that is not manifold or not consistently oriented.
+    #[error("frozen edge {u}-{v} changed")]
     Frozen {
         /// Smaller end.
         u: u32,
         /// Larger end.
         v: u32,
     },
-    /// More half-edges at an edge than before, and more than two.
-    #[error("edge {u}-{v} is used by {half_edges} half-edges")]
+    /// An edge has more half-edges than before, and more than two.
+    #[error("edge {u}-{v} has {half_edges} half-edges")]
     NewNonManifold {
         /// Smaller end.
         u: u32,
         /// Larger end.
         v: u32,
-        /// How many there are now.
+        /// The number of its half-edges in the result.
         half_edges: usize,
     },
-    /// Two half-edges in the same direction where there were none.
-    #[error("edge {u}-{v} is used twice in the same direction")]
+    /// An edge has two half-edges in the same direction, and had not before.
+    #[error("edge {u}-{v} has two half-edges in the same direction")]
     NewInconsistent {
         /// Smaller end.
         u: u32,
         /// Larger end.
         v: u32,
     },
-    /// A vertex is used by a triangle only before or only after.
+    /// Triangles use a vertex only before or only after the run.
     #[error("vertex {vertex} is used only in the input or only in the result")]
     Vertex {
         /// Index of the vertex.
         vertex: usize,
     },
-    /// Another Euler characteristic.
+    /// The Euler characteristic changed.
     #[error("Euler characteristic {after} instead of {before}")]
     Euler {
         /// In the input.
@@ -78,7 +78,7 @@ pub enum Violation {
         /// In the result.
         after: i64,
     },
-    /// Another number of edge-connected components.
+    /// The number of edge-connected components changed.
     #[error("{after} components instead of {before}")]
     Components {
         /// In the input.
@@ -86,26 +86,26 @@ pub enum Violation {
         /// In the result.
         after: usize,
     },
-    /// An edge whose normals, in the input, differed by more than β is no longer there (3D).
-    #[error("crease {u}-{v} is lost")]
+    /// A crease is missing: an edge whose normals differed by more than β in the input (3D).
+    #[error("crease {u}-{v} is missing")]
     Crease {
         /// Smaller end.
         u: u32,
         /// Larger end.
         v: u32,
     },
-    /// An edge that was locked is no longer there.
-    #[error("locked edge {u}-{v} is lost")]
+    /// A locked edge is missing.
+    #[error("locked edge {u}-{v} is missing")]
     Locked {
         /// Smaller end.
         u: u32,
         /// Larger end.
         v: u32,
     },
-    /// The signed areas of the components, as a whole, are not exactly the same (2D).
+    /// The signed areas of the components, sorted, are not exactly the same (2D).
     #[error("the signed area of a component changed")]
     Area,
-    /// More triangles without area, or turned against their component, than before (2D).
+    /// More triangles than before are flat or inverted: they have the opposite sign of their component (2D).
     #[error("{after} inverted or flat triangles instead of {before}")]
     Inverted {
         /// In the input.
@@ -115,22 +115,22 @@ pub enum Violation {
     },
 }
 
-/// What [`audit`] found.
+/// The result of [`audit`].
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Audit {
     /// The first [`MAX_LISTED`] violations.
     pub violations: Vec<Violation>,
-    /// Violations beyond those.
+    /// The number of further violations.
     pub unlisted: usize,
-    /// Every edge of the result that is not Delaunay, in ascending order of its ends. An edge is a pair of
-    /// vertices, however many triangles share it. Empty when the indices are wrong.
+    /// Every edge of the result that is not Delaunay, in ascending order of its ends. An edge is a pair of vertices,
+    /// however many triangles share it. Empty if the indices are wrong.
     pub remaining_edges: Vec<RemainingEdge>,
-    /// How many of them there are, by reason.
+    /// The number of these edges, by reason.
     pub remaining: Reasons,
 }
 
 impl Audit {
-    /// Whether no violation was found. What remains is no violation.
+    /// Whether there are no violations. Remaining edges are not violations.
     pub fn is_clean(&self) -> bool {
         self.violations.is_empty()
     }
@@ -155,8 +155,8 @@ impl Audit {
     }
 }
 
-/// Checks `triangles` as a result of flipping edges of `input` with these options: exactly, with edge table,
-/// components and arithmetic of its own. What they lock and `input` has not is passed over.
+/// Checks `triangles` as a result of flipping edges of `input` with these options, exactly. It has its own edge table,
+/// components and arithmetic. Locks of edges that `input` does not have are ignored.
 pub fn audit(input: &Mesh, triangles: &[u32], options: &Options) -> Audit {
     let mut audit = Audit::default();
     audit.compare(input.triangles().len(), triangles.len(), |before, after| Violation::Length {
@@ -201,7 +201,7 @@ pub fn audit(input: &Mesh, triangles: &[u32], options: &Options) -> Audit {
 }
 
 impl Session {
-    /// The audit of the triangles as they are now.
+    /// The audit of the present triangles.
     ///
     /// # Errors
     /// [`Error::Device`].
@@ -212,7 +212,7 @@ impl Session {
     }
 }
 
-/// The largest 32-bit float that is no larger.
+/// The largest 32-bit float that is not larger than `x`.
 fn rounded_down(x: f64) -> f64 {
     let nearest = x as f32;
     f64::from(if f64::from(nearest) > x { nearest.next_down() } else { nearest })
@@ -239,8 +239,8 @@ fn locked(before: &Surface, options: &Options) -> Vec<(u32, u32)> {
     before.table.edges().filter(is_locked).map(|edge| (edge.u, edge.v)).collect()
 }
 
-/// Walks through both tables side by side; only edges between two consistent triangles may come and go, and of
-/// those the ones over β may not go. Returns the latter, in the order of the tables.
+/// Compares both tables in step. Only edges between two consistent triangles may appear and disappear, and creases may not
+/// disappear. Returns the creases, in the order of the tables.
 fn compare_edges(audit: &mut Audit, before: &Surface, after: &Surface, cosine: f64) -> Vec<(u32, u32)> {
     let mut creases = Vec::new();
     let (mut old_edges, mut new_edges) = (before.table.edges().peekable(), after.table.edges().peekable());
@@ -272,9 +272,9 @@ fn compare_edges(audit: &mut Audit, before: &Surface, after: &Surface, cosine: f
     }
 }
 
-/// The violation in what became of one edge.
+/// The violation at one edge, if any.
 fn changed(old: Option<Edge>, new: Option<Edge>) -> Option<Violation> {
-    // An edge that may flip counts as absent: it may be so before and after.
+    // An edge that may flip counts as absent, since it may appear or disappear.
     let signature = |edge: Option<Edge>| match edge {
         None | Some(Edge { class: Class::Twins(..), .. }) => None,
         Some(edge) => Some((edge.class, edge.directed)),

@@ -1,6 +1,6 @@
-//! The audit's own table of edges: all half-edges, sorted by smaller end, larger end, number.
+//! The audit's own table of edges: all half-edges, sorted by smaller end, larger end and index.
 
-/// What stands at an edge.
+/// The class of an edge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Class {
     /// One half-edge.
@@ -34,7 +34,7 @@ impl Edge<'_> {
 /// All edges of a mesh.
 pub(super) struct EdgeTable<'a> {
     triangles: &'a [u32],
-    /// Where the half-edges begin whose smaller end is this vertex.
+    /// For each vertex, the index of the first entry whose smaller end it is.
     first: Vec<u32>,
     /// Larger end in the upper word, half-edge in the lower.
     entries: Vec<u64>,
@@ -65,9 +65,9 @@ impl<'a> EdgeTable<'a> {
         let mut entries = vec![0u64; triangles.len()];
         for h in 0..triangles.len() as u32 {
             let (u, v) = ends(h);
-            let place = &mut first[u as usize + 1];
-            entries[*place as usize] = u64::from(v) << 32 | u64::from(h);
-            *place += 1;
+            let next = &mut first[u as usize + 1];
+            entries[*next as usize] = u64::from(v) << 32 | u64::from(h);
+            *next += 1;
         }
         for u in 0..vertices {
             entries[first[u] as usize..first[u + 1] as usize].sort_unstable();
@@ -101,11 +101,11 @@ impl<'a> EdgeTable<'a> {
         Edge { u, v, class, directed, entries }
     }
 
-    /// Whether some triangle has both vertices.
+    /// Whether an edge joins the two vertices.
     pub fn contains(&self, p: u32, q: u32) -> bool {
         let around = self.at(p.min(q));
         let largest = u64::from(p.max(q));
-        let place = around.partition_point(|&entry| entry >> 32 < largest);
-        around.get(place).is_some_and(|&entry| entry >> 32 == largest)
+        let index = around.partition_point(|&entry| entry >> 32 < largest);
+        around.get(index).is_some_and(|&entry| entry >> 32 == largest)
     }
 }

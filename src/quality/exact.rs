@@ -1,22 +1,22 @@
-//! The audit's own exact decisions: an f64 evaluation where it is far enough from zero, else integers.
+//! The audit's own exact tests: an f64 evaluation if it is far enough from zero, or else integers.
 
 use glam::DVec3;
 use num_bigint::{BigInt, Sign};
 use robust::Coord;
 use std::cmp::Ordering;
 
-/// Three points; the normal of (p, q, r) is (p - r) × (q - r), and its angle is the one at r.
+/// Three points p, q, r. The normal is (p - r) × (q - r), and the angle is the one at r.
 pub(super) type Triangle = [DVec3; 3];
 
-/// Relative bound of every f64 evaluation below. With u = 2^-53 and s = |p - r|·|q - r|: a component of
-/// the normal is off by at most 8us, the normal by 16us, its length by 24us, the dot product at r by
-/// 8us; a product of two such terms of triangles with s1 and s2 by 64u·s1·s2 and the sum of two products
-/// by 150u·s1·s2, which is below 1.7e-14·s1·s2. For coordinates that are not [`ordinary`] nothing is decided by it.
+/// Relative error bound of every f64 evaluation below. Let u = 2^-53 and s = |p - r|·|q - r|. A component of the normal is
+/// off by at most 8us, the normal by 16us, its length by 24us, and the dot product at r by 8us. A product of two such terms
+/// of triangles with s1 and s2 is off by 64u·s1·s2, and the sum of two products by 150u·s1·s2, which is below
+/// 1.7e-14·s1·s2. The bound holds only for [`ordinary`] coordinates.
 const BOUND: f64 = 1e-13;
 
-/// Whether each number is 0 or from 2^-160 to 2^160 in size. They are multiples of 2^-212, and so are their
-/// differences: a polynomial of degree 4 in those, and each term of it, is 0 or from 2^-848 to 2^660 in size, so that
-/// nothing over- or underflows, in `robust` neither.
+/// Whether each number is 0 or has a magnitude from 2^-160 to 2^160. Such numbers and their differences are multiples of
+/// 2^-212. So a polynomial of degree 4 in the differences, and each of its terms, is 0 or has a magnitude from 2^-848 to
+/// 2^660: nothing overflows or underflows, also not in `robust`.
 fn ordinary(numbers: &[f64]) -> bool {
     numbers.iter().all(|&x| x == 0.0 || (LEAST..=1.0 / LEAST).contains(&x.abs()))
 }
@@ -27,7 +27,7 @@ const LEAST: f64 = f64::from_bits((1023 - 160) << 52);
 struct Corner {
     normal: DVec3,
     dot: f64,
-    /// |p - r|·|q - r|: what the errors are relative to; infinite where they are not known.
+    /// |p - r|·|q - r|, to which the errors are relative; infinite if the bound does not hold.
     size: f64,
 }
 
@@ -62,7 +62,7 @@ fn dot(x: &[BigInt; 3], y: &[BigInt; 3]) -> BigInt {
     &x[0] * &y[0] + &x[1] * &y[1] + &x[2] * &y[2]
 }
 
-/// x = mantissa · 2^exponent with an odd mantissa, or zero.
+/// Mantissa and exponent with x = mantissa · 2^exponent; the mantissa is odd, or 0.
 fn decode(x: f64) -> (i64, i32) {
     if x == 0.0 {
         return (0, 0);
@@ -98,7 +98,7 @@ fn sign(x: &BigInt) -> Ordering {
     }
 }
 
-/// Sign of x·√m + y·√n, m and n not negative.
+/// The sign of x·√m + y·√n. m and n are not negative.
 fn sign_of_sum(x: &BigInt, m: &BigInt, y: &BigInt, n: &BigInt) -> Ordering {
     let (left, right) = (sign(&(x * m)), sign(&(y * n)));
     if left == Ordering::Equal || left == right {
@@ -114,7 +114,7 @@ fn sign_of_sum(x: &BigInt, m: &BigInt, y: &BigInt, n: &BigInt) -> Ordering {
     }
 }
 
-/// Sign of |n1|·dot2 + |n2|·dot1: `Less` when the angles at the third points sum to more than π.
+/// The sign of |n1|·dot2 + |n2|·dot1: `Less` if the angles at the third points sum to more than π.
 pub(super) fn sum_of_angles(first: Triangle, second: Triangle) -> Ordering {
     let (one, two) = (Corner::new(first), Corner::new(second));
     let value = one.normal.length() * two.dot + two.normal.length() * one.dot;
@@ -136,8 +136,7 @@ pub(super) fn compare_angles(first: Triangle, second: Triangle) -> Ordering {
     sign_of_sum(&two.dot, &one.squared(), &-one.dot, &two.squared())
 }
 
-/// Whether the angle between the normals is larger than the one whose cosine is `cosine`:
-/// n1·n2 < cosine·|n1|·|n2|, never so for a zero normal.
+/// Whether the angle between the normals is larger than acos(`cosine`): n1·n2 < cosine·|n1|·|n2|. False for a zero normal.
 pub(super) fn normals_differ(first: Triangle, second: Triangle, cosine: f64) -> bool {
     let (one, two) = (Corner::new(first), Corner::new(second));
     let value = one.normal.dot(two.normal) - cosine * (one.normal.length() * two.normal.length());
@@ -168,7 +167,7 @@ pub(super) fn normals_oppose(first: Triangle, second: Triangle) -> bool {
     dot(&one.normal, &two.normal).sign() == Sign::Minus
 }
 
-/// Whether the lines through a, b and through c, d are further apart than `most`; parallel ones are not.
+/// Whether the lines through a, b and through c, d are further apart than `most`. False for parallel lines.
 pub(super) fn lines_apart([a, b, c, d]: [DVec3; 4], most: f64) -> bool {
     let (x, y, z) = (b - a, d - c, c - a);
     let across = x.cross(y);
@@ -187,7 +186,7 @@ pub(super) fn lines_apart([a, b, c, d]: [DVec3; 4], most: f64) -> bool {
     &volume * &volume > &most * &most * corner.squared()
 }
 
-/// Whether the triangle's points are collinear, and if so the sign of the dot product at the third point.
+/// If the triangle's points are collinear, the sign of the dot product at the third point.
 pub(super) fn flat(triangle: Triangle) -> Option<Ordering> {
     let corner = Corner::new(triangle);
     if corner.normal.length() > BOUND * corner.size {
@@ -197,7 +196,7 @@ pub(super) fn flat(triangle: Triangle) -> Option<Ordering> {
     (exact.squared() == BigInt::ZERO).then(|| sign(&exact.dot))
 }
 
-/// The sign of the area of a triangle in the plane: `Greater` when counter-clockwise.
+/// The sign of the area of a triangle in the plane: `Greater` if it is counter-clockwise.
 pub(super) fn turn(triangle: [Coord<f64>; 3]) -> Ordering {
     let [p, q, r] = triangle;
     if ordinary(&[p.x, p.y, q.x, q.y, r.x, r.y]) {
@@ -208,8 +207,8 @@ pub(super) fn turn(triangle: [Coord<f64>; 3]) -> Ordering {
     sign(&corner.normal[2])
 }
 
-/// The sign of the in-circle determinant: `Greater` when d lies inside the circle of a, b, c, counter-clockwise.
-/// It is the polynomial -(cross1·dot2 + dot1·cross2) of the angles at c and d, whatever the orientations.
+/// The sign of the in-circle determinant: `Greater` if d is inside the circle of the counter-clockwise triangle a, b, c. For
+/// any orientation it is the polynomial -(cross1·dot2 + dot1·cross2) of the angles at c and d.
 pub(super) fn in_circle([a, b, c, d]: [Coord<f64>; 4]) -> Ordering {
     if ordinary(&[a.x, a.y, b.x, b.y, c.x, c.y, d.x, d.y]) {
         return sign_of(robust::incircle(a, b, c, d));
@@ -218,7 +217,7 @@ pub(super) fn in_circle([a, b, c, d]: [Coord<f64>; 4]) -> Ordering {
     sign(&(&one.normal[2] * &two.dot + &one.dot * &two.normal[2])).reverse()
 }
 
-/// Of a number, which may be -0.
+/// The sign of a number, which may be -0.
 fn sign_of(x: f64) -> Ordering {
     (x + 0.0).total_cmp(&0.0)
 }
@@ -227,7 +226,7 @@ fn in_space(p: Coord<f64>) -> DVec3 {
     DVec3::new(p.x, p.y, 0.0)
 }
 
-/// A sum of products of two numbers, without any rounding: integers in bins of 32 binary orders.
+/// An exact sum of products of two numbers: integers in bins of 32 bits.
 pub(super) struct ExactSum {
     /// Each number is a multiple of 2^unit.
     unit: i32,
@@ -244,8 +243,8 @@ impl ExactSum {
         numbers.filter(|&x| x != 0.0).map(|x| decode(x).1).min().unwrap_or(0)
     }
 
-    /// Adds x·y. Fewer than 2^40 additions cannot overflow a bin: each half of a product is below 2^54, and is
-    /// moved by less than 32.
+    /// Adds x·y. Fewer than 2^40 additions cannot overflow a bin: each half of a product is below 2^54, and is shifted by
+    /// less than 32.
     pub fn add(&mut self, x: f64, y: f64) {
         let ((m, e), (n, f)) = (decode(x), decode(y));
         let product = i128::from(m) * i128::from(n);

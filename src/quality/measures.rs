@@ -1,4 +1,4 @@
-//! Numbers about the shape of a mesh, before and after. In f64, for reports: no decision is taken on them.
+//! Measures of the shape of a mesh. They are computed in f64, for reports only: no flip depends on them.
 
 use super::angles::triangle_angles;
 use crate::system::threads::Threads;
@@ -6,33 +6,33 @@ use crate::{Dimension, Mesh};
 use glam::DVec3;
 use rstar::{AABB, PointDistance, RTree, RTreeObject};
 
-/// What can be measured on a mesh.
+/// Measures of a mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measures {
     /// Smallest angle in degrees; 60 for a mesh without triangles.
     pub min_angle: f64,
-    /// Mean over the triangles of their smallest angle, in degrees; 60 for a mesh without triangles.
+    /// Mean of the smallest angles of the triangles, in degrees; 60 for a mesh without triangles.
     pub mean_min_angle: f64,
-    /// Mean aspect ratio of the triangles that are not flat: longest edge by the diameter of the incircle, 1 for an
-    /// equilateral triangle; 1 for a mesh without such triangles.
+    /// Mean aspect ratio of the triangles that are not flat: the longest edge divided by the diameter of the incircle,
+    /// scaled to 1 for an equilateral triangle; 1 for a mesh without such triangles.
     pub mean_aspect: f64,
-    /// Flat triangles: those without area, as far as f64 can tell.
+    /// The number of flat triangles: their area is 0 in f64.
     pub flat: usize,
-    /// Area, all triangles counted positive.
+    /// The sum of the unsigned areas of the triangles.
     pub area: f64,
-    /// The volume that a closed surface encloses, negative where triangles are clockwise from outside. The volumes of
-    /// two open surfaces with the same boundary differ by what lies between them. 0 in the plane.
+    /// The volume inside a closed surface, negative if its triangles are clockwise from outside. For two open surfaces with
+    /// the same boundary, the difference of the volumes is the volume between them. 0 in the plane.
     pub volume: f64,
 }
 
-/// Triangles that are measured by one thread at a time. Their sums are added in order, so that all bits are the same on any
-/// number of threads.
+/// Triangles per chunk of work. The sums of the chunks are added in order, so the result has the same bits on any number of
+/// threads.
 const CHUNK: usize = 1 << 12;
 
 /// Measures a mesh.
 pub fn measures(mesh: &Mesh) -> Measures {
     let (count, triangles) = (mesh.triangle_count(), mesh.triangles());
-    // From a point nearby, so that a large offset costs no digits.
+    // Relative to a point nearby, so that a large offset costs no precision.
     let origin = triangles.first().map_or(DVec3::ZERO, |&v| mesh.point3(v));
     let chunks = triangles.chunks(3 * CHUNK).collect();
     let threads = Threads::default().for_triangles(count);
@@ -49,7 +49,7 @@ pub fn measures(mesh: &Mesh) -> Measures {
     }
 }
 
-/// What is added up over triangles.
+/// Sums over triangles.
 #[derive(Clone, Copy, Default)]
 struct Sums {
     min_angle: f64,
@@ -74,7 +74,7 @@ impl Sums {
             let edges = [a - b, b - c, c - a].map(DVec3::length);
             if doubled > 0.0 {
                 let [longest, around] = [edges.into_iter().fold(0.0, f64::max), edges.iter().sum::<f64>()];
-                // The radius of the incircle is twice the area by the perimeter.
+                // The radius of the incircle is twice the area divided by the perimeter.
                 sums.aspects += longest * around / (2.0 * 3f64.sqrt() * doubled);
             } else {
                 sums.flat += 1;
@@ -99,7 +99,7 @@ impl Sums {
 fn smallest_angle(corners: [DVec3; 3]) -> f64 {
     let [a, b, c] = corners;
     let squares = [b - c, c - a, a - b].map(DVec3::length_squared);
-    // Others over- or underflow, or are 0.
+    // Outside this range, products overflow, underflow or are 0.
     if !squares.iter().all(|square| (1e-200..1e200).contains(square)) {
         return triangle_angles(corners).into_iter().fold(f64::INFINITY, f64::min);
     }
@@ -116,8 +116,8 @@ fn triangles(mesh: &Mesh, triangles: &[u32]) -> impl Iterator<Item = [DVec3; 3]>
     triangles.as_chunks::<3>().0.iter().map(|triangle| triangle.map(|v| mesh.point3(v)))
 }
 
-/// Which triangles of `after` are others than those of `before` in the same places: their numbers, in ascending order. A
-/// triangle that begins at another corner is the same.
+/// The indices of the triangles that differ between `before` and `after`, in ascending order. A triangle that only starts at
+/// another corner does not differ.
 pub fn moved(before: &[u32], after: &[u32]) -> Vec<u32> {
     let is_same = |[a, b, c]: [u32; 3], other| [[a, b, c], [b, c, a], [c, a, b]].contains(other);
     let [before, after] = [before, after].map(|triangles| triangles.as_chunks::<3>().0);
@@ -128,8 +128,9 @@ pub fn moved(before: &[u32], after: &[u32]) -> Vec<u32> {
     lists.concat()
 }
 
-/// The largest distance between the surfaces of `triangles` and of the mesh, either way, in the unit of its
-/// coordinates: measured at three points of each edge that is only in one of the two, where flips move a surface most.
+/// The largest distance between the surfaces of `triangles` and of the mesh, in both directions, in the unit of its
+/// coordinates. It is measured at three points of each edge that only one of the two surfaces has: there, flips move a
+/// surface most.
 pub fn distance(mesh: &Mesh, triangles: &[u32]) -> f64 {
     let moved = moved(mesh.triangles(), triangles);
     if moved.is_empty() || mesh.dimension() == Dimension::Two {
@@ -156,13 +157,14 @@ fn edges(triangles: &[u32], these: &[u32]) -> Vec<[u32; 2]> {
     edges
 }
 
-fn without(edges: &[[u32; 2]], others: &[[u32; 2]]) -> Vec<[u32; 2]> {
-    edges.iter().filter(|edge| others.binary_search(edge).is_err()).copied().collect()
+/// The edges that are not in `excluded`, which is sorted.
+fn without(edges: &[[u32; 2]], excluded: &[[u32; 2]]) -> Vec<[u32; 2]> {
+    edges.iter().filter(|edge| excluded.binary_search(edge).is_err()).copied().collect()
 }
 
-/// The largest distance from points of the edges to a surface.
+/// The largest distance from points on the edges to a surface.
 fn one_way(mesh: &Mesh, edges: &[[u32; 2]], surface: &[u32]) -> f64 {
-    // No square of a coordinate overflows then.
+    // So that no square of a coordinate overflows.
     let scale = mesh.positions().iter().fold(f64::MIN_POSITIVE, |scale, x| scale.max(x.abs()));
     let scaled = |triangle: [DVec3; 3]| Patch(triangle.map(|corner| corner / scale));
     let tree = RTree::bulk_load(triangles(mesh, surface).map(scaled).collect());
@@ -174,7 +176,7 @@ fn one_way(mesh: &Mesh, edges: &[[u32; 2]], surface: &[u32]) -> f64 {
     scale * squares.fold(0.0, f64::max).sqrt()
 }
 
-/// A triangle in space, to be found by its place.
+/// A triangle in space, for searches by position.
 struct Patch([DVec3; 3]);
 
 impl RTreeObject for Patch {
@@ -221,7 +223,7 @@ mod tests {
         Mesh::new(Dimension::Three, positions.to_vec(), triangles.to_vec()).unwrap()
     }
 
-    /// The corner of a cube of side 2, far from the origin, its outside counter-clockwise.
+    /// The corner of a cube of side 2, far from the origin, counter-clockwise from outside.
     const CORNER: [f64; 12] = [1e6, 0., 0., 1e6 + 2., 0., 0., 1e6, 2., 0., 1e6, 0., 2.];
     const TETRAHEDRON: [u32; 12] = [0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3];
 
@@ -232,7 +234,7 @@ mod tests {
         assert!((found.volume - 8.0 / 6.0).abs() < 1e-9, "{found:?}");
         assert!((found.min_angle - 45.0).abs() < 1e-9, "{found:?}");
         assert!((found.mean_min_angle - 48.75).abs() < 1e-9, "{found:?}");
-        // Of a right triangle with legs 1: (1 + √2)·√2 / √3, and of the equilateral one: 1.
+        // The aspect of a right triangle with legs 1 is (1 + √2)·√2 / √3; that of an equilateral triangle is 1.
         let right = (2f64.sqrt() + 2.0) * 2f64.sqrt() / (2.0 * 3f64.sqrt());
         assert!((found.mean_aspect - (3.0 * right + 1.0) / 4.0).abs() < 1e-9, "{found:?}");
     }
@@ -273,7 +275,7 @@ mod tests {
     }
 
     #[test]
-    fn a_turned_triangle_has_not_moved() {
+    fn a_rotated_triangle_has_not_moved() {
         assert_eq!(moved(&[0, 1, 2, 3, 4, 5, 6, 7, 8], &[1, 2, 0, 3, 5, 4, 6, 7, 9]), [1, 2]);
     }
 
@@ -284,7 +286,7 @@ mod tests {
         for h in [0.0, 1e-3] {
             let square = mesh(&[0., 0., 0., 1., 0., 0., 1., 1., h, 0., 1., 0.], &before);
             let found = distance(&square, &after);
-            // The middle of one diagonal is as far from the nearest point of the other surface.
+            // The middle of a diagonal has about this distance from the other surface.
             assert!(found <= h / 2.0 && found >= 0.99 * h / 2.0, "{found}");
             assert_eq!(distance(&square, &before), 0.0);
             for scale in [1e300, 1e-300] {

@@ -13,20 +13,20 @@ pub struct RemainingEdge {
     pub u: u32,
     /// Larger end.
     pub v: u32,
-    /// Why it cannot flip; `Stopped` if it could.
+    /// Why it does not flip; `Stopped` if it could.
     pub reason: Reason,
 }
 
-/// What a flip may do to a surface.
+/// Limits for flips in space.
 #[derive(Clone, Copy)]
 pub(super) struct Limits {
     /// cos β.
     pub cosine: f64,
-    /// How far apart the lines of the two diagonals may be.
+    /// The largest distance between the lines of the two diagonals.
     pub deviation: f64,
 }
 
-/// A mesh's vertices with one of its two lists of triangles, and what the audit knows of them.
+/// The vertices of a mesh with the triangles of the input or of the result, and data for the audit.
 pub(super) struct Surface<'a> {
     pub mesh: &'a Mesh,
     triangles: &'a [u32],
@@ -71,13 +71,13 @@ impl<'a> Surface<'a> {
         areas
     }
 
-    /// The sign as it is, or reversed in a component whose area is negative.
+    /// The sign, reversed if the component of the triangle has a negative area.
     fn oriented(&self, triangle: usize, sign: Ordering) -> Ordering {
         let negative = self.areas[self.component_of[triangle] as usize].sign() == Sign::Minus;
         if negative { sign.reverse() } else { sign }
     }
 
-    /// Triangles that are flat or turned against their component (2D).
+    /// The number of triangles that are flat or have the opposite sign of their component (2D).
     pub fn inverted(&self) -> usize {
         let turn = |t: usize| exact::turn([0, 1, 2].map(|k| self.coord(self.triangles[3 * t + k])));
         let positive = |t: usize| self.oriented(t, turn(t)).is_gt();
@@ -93,13 +93,13 @@ impl<'a> Surface<'a> {
         corners.map(|v| self.mesh.point3(v))
     }
 
-    /// The triangle of half-edge `h` from its start on: the third point is the one opposite.
+    /// The points of the triangle of half-edge `h`, from its start on. The third point is opposite to `h`.
     pub fn triangle_of(&self, h: u32) -> Triangle {
         self.points([h, next(h), prev(h)].map(|x| self.triangles[x as usize]))
     }
 
-    /// The edges that are not Delaunay, in the order of the table. `creases` are edges that may not flip,
-    /// whatever their angle is now, and `locked` those that may not at all, both in the same order.
+    /// The edges that are not Delaunay, in the order of the table. `creases` may not flip, whatever their present angle, and
+    /// `locked` may not flip at all. Both are in the same order.
     pub fn remaining(
         &self,
         limits: Limits,
@@ -130,12 +130,12 @@ impl<'a> Surface<'a> {
         remaining
     }
 
-    /// Ends a, b of the edge and the far corners c, d: its triangles are (a, b, c) and (b, a, d).
+    /// The ends a, b of an edge and the opposite corners c, d: its triangles are (a, b, c) and (b, a, d).
     fn quad(&self, h: u32, g: u32) -> [u32; 4] {
         [h, next(h), prev(h), prev(g)].map(|x| self.triangles[x as usize])
     }
 
-    /// Why the edge is still there, if it is not Delaunay (2D).
+    /// Why the edge remains, if it is not Delaunay (2D).
     fn judge_in_plane(&self, h: u32, g: u32) -> Option<Reason> {
         let [a, b, c, d] = self.quad(h, g);
         let oriented = |sign| self.oriented(h as usize / 3, sign);
@@ -152,7 +152,7 @@ impl<'a> Surface<'a> {
         }
     }
 
-    /// Why the edge is still there, if it is not Delaunay (3D).
+    /// Why the edge remains, if it is not Delaunay (3D).
     fn judge_in_space(&self, h: u32, g: u32, Limits { cosine, deviation }: Limits) -> Option<Reason> {
         let [a, b, c, d] = self.quad(h, g);
         let [old1, old2] = [[a, b, c], [b, a, d]].map(|corners| self.points(corners));
@@ -174,9 +174,9 @@ impl<'a> Surface<'a> {
         })
     }
 
-    /// Whether two of the triangles at a frozen edge have opposite angles that sum to more than π.
-    /// Comparing each with the widest so far finds such a pair in one pass, however many there are; flat
-    /// triangles have no place in that order: a cap (angle π) goes with any triangle that is not flat.
+    /// Whether any two triangles at a frozen edge have opposite angles that sum to more than π. One pass compares each
+    /// triangle with the widest so far. Flat triangles are handled apart: a cap (angle π) makes such a pair with any triangle
+    /// that is not flat.
     fn frozen_excess(&self, edge: &Edge) -> bool {
         let mut widest: Option<Triangle> = None;
         let mut cap = false;
@@ -186,14 +186,14 @@ impl<'a> Surface<'a> {
                 cap |= dot == Ordering::Less;
                 continue;
             }
-            let Some(other) = widest else {
+            let Some(widest_so_far) = widest else {
                 widest = Some(triangle);
                 continue;
             };
-            if exact::sum_of_angles(other, triangle) == Ordering::Less {
+            if exact::sum_of_angles(widest_so_far, triangle) == Ordering::Less {
                 return true;
             }
-            if exact::compare_angles(triangle, other) == Ordering::Greater {
+            if exact::compare_angles(triangle, widest_so_far) == Ordering::Greater {
                 widest = Some(triangle);
             }
         }
@@ -214,7 +214,7 @@ fn components(table: &EdgeTable, triangles: usize) -> (Vec<u32>, usize) {
     for edge in table.edges() {
         if let Class::Twins(h, g) = edge.class {
             let (s, t) = (root(&mut parent, h / 3), root(&mut parent, g / 3));
-            // The smaller root stays, so that a root comes before its triangles below.
+            // The smaller root stays, so that a root comes before all its triangles.
             parent[s.max(t) as usize] = s.min(t);
         }
     }
@@ -228,7 +228,7 @@ fn components(table: &EdgeTable, triangles: usize) -> (Vec<u32>, usize) {
     (component_of, count as usize)
 }
 
-/// The doubled signed area of each component, without rounding.
+/// The exact doubled signed area of each component.
 fn areas(mesh: &Mesh, triangles: &[u32], component_of: &[u32], count: usize) -> Vec<BigInt> {
     let mut order: Vec<u32> = (0..component_of.len() as u32).collect();
     order.sort_by_key(|&t| component_of[t as usize]);
@@ -265,7 +265,7 @@ mod tests {
         let mut random = oorandom::Rand64::new(7);
         for _ in 0..10_000 {
             let p = [0; 8].map(|_: i64| random.rand_range(0..9) as i64 - 4);
-            // The last two are beyond what is ordinary.
+            // The last two scales are not ordinary.
             for scale in [1.0, 2f64.powi(-1000), 2f64.powi(1000)] {
                 let at = |i: usize| robust::Coord { x: p[i] as f64 * scale, y: p[i + 1] as f64 * scale };
                 assert_eq!(exact::in_circle([at(0), at(2), at(4), at(6)]), 0.cmp(&s(p)));

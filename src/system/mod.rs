@@ -1,4 +1,4 @@
-//! What the machine below gives: memory, threads, and promises of a browser.
+//! What the machine provides: memory, threads, and promises of a browser.
 
 pub(crate) mod memory;
 #[cfg(all(target_arch = "wasm32", any(feature = "js-session", feature = "js-webgl2")))]

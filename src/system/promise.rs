@@ -1,5 +1,5 @@
-//! Promises that hear of everything: an exception or a trap while a future is polled rejects them. Those of wasm-bindgen
-//! never settle then, and the exception ends a process of Node.
+//! Promises that reject if an exception or a trap occurs while a future is polled. The promises of wasm-bindgen would never
+//! settle, and the exception would end a Node process.
 
 use js_sys::{Function, Promise};
 use std::pin::Pin;
@@ -11,21 +11,21 @@ type Task = Pin<Box<dyn Future<Output = Result<JsValue, JsValue>>>>;
 
 #[wasm_bindgen]
 extern "C" {
-    /// A promise whose `then` takes what a promise gives.
+    /// A promise with a `then` whose callback returns a promise.
     #[wasm_bindgen(js_name = Promise)]
     type Waking;
     #[wasm_bindgen(constructor, js_class = "Promise")]
     fn new(executor: &mut dyn FnMut(Function)) -> Waking;
     #[wasm_bindgen(method)]
-    fn then(this: &Waking, go_on: JsValue) -> Promise;
+    fn then(this: &Waking, continuation: JsValue) -> Promise;
 }
 
-/// A promise of what the future gives. It is polled at once.
+/// A promise of the result of a future. The future is polled at once.
 pub(crate) fn promise(future: impl Future<Output = Result<JsValue, JsValue>> + 'static) -> Promise {
     poll(Box::pin(future))
 }
 
-/// An exception in here rejects the promise. The future is lost then, with all that it has: WebAssembly unwinds nothing.
+/// An exception in here rejects the promise. The future is then leaked with everything it owns: WebAssembly does not unwind.
 fn poll(task: Task) -> Promise {
     let mut task = Some(task);
     Promise::new(&mut |resolve, reject| {
@@ -47,7 +47,7 @@ fn poll(task: Task) -> Promise {
 struct Alarm(Option<Function>);
 
 #[expect(unsafe_code, reason = "wakers can be sent, and a function of JavaScript cannot")]
-// SAFETY: who polls a task is woken by promises of JavaScript, and these are of the same thread.
+// SAFETY: only promises of JavaScript wake a task, and they belong to the thread that polls it.
 unsafe impl Send for Alarm {}
 
 #[expect(unsafe_code, reason = "as above")]

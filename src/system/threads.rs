@@ -1,5 +1,5 @@
-//! Loops on several threads. What they give does not depend on how many there are: each word is written by one piece of
-//! a loop, and the lists of the pieces are joined in order.
+//! Loops on several threads. The result does not depend on their number: only one piece of a loop writes each word, and the
+//! lists of the pieces are joined in order.
 
 use crate::Error;
 #[cfg(feature = "threads")]
@@ -12,22 +12,21 @@ use std::sync::atomic::AtomicU32;
 #[cfg(not(all(target_arch = "wasm32", target_feature = "atomics")))]
 use std::sync::atomic::Ordering::Relaxed;
 
-/// A piece has so many items at least: fewer are done before another thread has woken up. Without optimisation it has
-/// few, so that small meshes test the threads.
+/// The fewest items of a piece. With fewer, one thread finishes before another starts. In debug builds it is small, so that
+/// small meshes test the threads.
 pub(crate) const FEWEST: usize = if cfg!(debug_assertions) { 4 } else { 4096 };
 
-/// A mesh on several threads has so many triangles at least, for the same reason.
+/// The fewest triangles of a mesh on several threads, for the same reason.
 #[cfg(feature = "threads")]
 const FEWEST_TRIANGLES: usize = 16 * FEWEST;
 
-/// Pieces for each thread, so that none waits long for another.
+/// Pieces per thread, so that no thread waits long for another.
 const PIECES: usize = 8;
 
-/// How many threads there are; by default one for each core. Without the feature `threads` it is one, and the compiler
-/// knows.
+/// A number of threads, by default one per core. Without the feature `threads` it is always one, which the compiler knows.
 #[derive(Clone, Default)]
 pub(crate) struct Threads {
-    /// Those of the process, where there is none.
+    /// `None`: the threads of the process.
     #[cfg(feature = "threads")]
     pool: Option<Arc<rayon::ThreadPool>>,
     #[cfg(feature = "threads")]
@@ -35,14 +34,14 @@ pub(crate) struct Threads {
 }
 
 impl Threads {
-    /// As many as an option says, but no more than there are pieces of so many triangles; or one for each core. In a
-    /// browser JavaScript has started as many as the option says.
+    /// As many threads as `option` says, or one per core; at most one per piece of the triangles. In a browser, JavaScript
+    /// has started the threads already.
     ///
     /// # Errors
-    /// [`Error::Option`] where the system has not as many as the option says.
+    /// [`Error::Option`] if the system cannot start the threads.
     #[cfg_attr(
         any(not(feature = "threads"), target_arch = "wasm32"),
-        expect(unused_variables, reason = "they are there already, or it is one")
+        expect(unused_variables, reason = "there is one thread, or JavaScript has started them")
     )]
     pub(crate) fn new(option: Option<NonZeroUsize>, triangles: usize) -> Result<Self, Error> {
         #[cfg(all(feature = "threads", not(target_arch = "wasm32")))]
@@ -54,7 +53,7 @@ impl Threads {
                 return Ok(Self::one());
             }
             let pool = rayon::ThreadPoolBuilder::new().num_threads(count).build().map_err(|error| {
-                let message = format!("{count} could not be started: {error}");
+                let message = format!("cannot start {count} threads: {error}");
                 Error::Option { option: "threads", message }
             })?;
             return Ok(Self { pool: Some(Arc::new(pool)), is_one: false });
@@ -62,7 +61,7 @@ impl Threads {
         Ok(Self::default().for_triangles(triangles))
     }
 
-    /// How many [`Threads::new`] gives.
+    /// The number of threads of [`Threads::new`].
     #[cfg_attr(not(feature = "threads"), expect(unused_variables, reason = "it is one, whatever it says"))]
     pub(crate) fn count_for(option: Option<NonZeroUsize>, triangles: usize) -> usize {
         #[cfg(feature = "threads")]
@@ -72,12 +71,12 @@ impl Threads {
         Self::default().for_triangles(triangles).count()
     }
 
-    /// One, without any of a pool.
+    /// One thread.
     pub(crate) fn one() -> Self {
         Self::default().for_triangles(0)
     }
 
-    /// Those that are worth while for so many triangles: one of them, where it has done before others have woken up.
+    /// The same threads, or one thread if the mesh is too small for several.
     #[cfg_attr(not(feature = "threads"), expect(unused_variables, reason = "it is one, for any"))]
     pub(crate) fn for_triangles(self, count: usize) -> Self {
         #[cfg(feature = "threads")]
@@ -101,7 +100,7 @@ impl Threads {
         1
     }
 
-    /// Does `work`, which has loops, on one of the threads: they find the others awake.
+    /// Runs `work` on one of the threads. Its loops then find the other threads awake.
     pub(crate) fn enter<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
         #[cfg(feature = "threads")]
         if self.count() > 1 {
@@ -110,7 +109,7 @@ impl Threads {
         work()
     }
 
-    /// Does `work`, the loops of which are rayon's: they run on the threads of the pool.
+    /// Runs `work`, whose rayon loops use the threads of the pool.
     #[cfg(feature = "threads")]
     fn install<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
         match &self.pool {
@@ -119,7 +118,7 @@ impl Threads {
         }
     }
 
-    /// What `work` gives for each piece of a loop over `0..len`, in order.
+    /// The results of `work` for each piece of a loop over `0..len`, in order.
     pub(crate) fn map<T: Send>(&self, len: usize, work: impl Fn(Range<usize>) -> T + Sync) -> Vec<T> {
         if len < 2 * FEWEST || self.count() == 1 {
             return vec![work(0..len)];
@@ -127,14 +126,14 @@ impl Threads {
         self.map_each(self.pieces(len, FEWEST), work)
     }
 
-    /// The pieces of a loop over `0..len`, at least one, of so many items at least.
+    /// The pieces of a loop over `0..len`: at least one, each of at least `fewest` items.
     pub(crate) fn pieces(&self, len: usize, fewest: usize) -> Vec<Range<usize>> {
-        // Threads that there are none of yet are not started for one piece.
+        // `count` may start the threads, so it is not called for one piece.
         let count = if len < 2 * fewest { 1 } else { self.count() };
         cut(len, if count == 1 { 1 } else { PIECES * count }, fewest)
     }
 
-    /// What `work` gives for each item, in order.
+    /// The results of `work` for each item, in order.
     pub(crate) fn map_each<I: Send, T: Send>(&self, items: Vec<I>, work: impl Fn(I) -> T + Sync) -> Vec<T> {
         #[cfg(feature = "threads")]
         if items.len() > 1 && self.count() > 1 {
@@ -143,7 +142,7 @@ impl Threads {
         items.into_iter().map(work).collect()
     }
 
-    /// As [`Threads::map_each`], for items that stay where they are.
+    /// As [`Threads::map_each`], for items in a slice.
     pub(crate) fn each<I: Send, T: Send>(
         &self,
         items: &mut [I],
@@ -152,7 +151,7 @@ impl Threads {
         self.map_each(items.iter_mut().collect(), work)
     }
 
-    /// What `item` gives for each of `0..len`, in order, in memory that the threads touch for the first time together.
+    /// The results of `item` for `0..len`, in order. The threads share the first access to the memory.
     pub(crate) fn collect<T: Send>(&self, len: usize, item: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
         #[cfg(feature = "threads")]
         if len >= 2 * FEWEST && self.count() > 1 {
@@ -161,13 +160,13 @@ impl Threads {
         (0..len).map(item).collect()
     }
 
-    /// So many words. One thread has the system give them as zeros, when they are touched first.
+    /// `len` zeros. With one thread, the system provides zeroed memory at the first access.
     pub(crate) fn zeros(&self, len: usize) -> Vec<u32> {
         if self.is_one() { vec![0; len] } else { self.collect(len, |_| 0) }
     }
 
-    /// Appends a copy of `items` to `all`, whose memory the threads touch for the first time together: that takes several
-    /// times as long as the copying.
+    /// Appends a copy of `items` to `all`. The threads share the first access to the memory, which takes several times as
+    /// long as copying.
     pub(crate) fn append<T: Copy + Send + Sync>(&self, all: &mut Vec<T>, items: &[T]) {
         #[cfg(feature = "threads")]
         if items.len() >= 2 * FEWEST && self.count() > 1 {
@@ -176,41 +175,41 @@ impl Threads {
         all.extend_from_slice(items);
     }
 
-    /// Appends some lists to `all`, in order.
+    /// Appends lists to `all`, in order.
     pub(crate) fn append_all<T: Copy + Send + Sync>(&self, all: &mut Vec<T>, lists: Vec<Vec<T>>) {
         all.reserve_exact(lists.iter().map(Vec::len).sum());
         lists.into_iter().for_each(|list| self.append(all, &list));
     }
 }
 
-/// Whether the threads of the process could be started, once that has been tried.
+/// Whether the threads of the process could be started; set at the first try.
 #[cfg(all(feature = "threads", not(target_arch = "wasm32")))]
 static HAS_STARTED: std::sync::OnceLock<bool> = std::sync::OnceLock::new();
 
-/// The threads of the process, or of the pool that this is a thread of. They are started if there are none; where that
-/// fails, rayon would panic, and it is one.
+/// The number of threads of the process, or of the pool of the present thread. Starts the threads at the first call. If that
+/// fails, rayon would panic, so the result is 1.
 #[cfg(all(feature = "threads", not(target_arch = "wasm32")))]
 fn count_of_process() -> usize {
     use std::error::Error;
     let start = || match rayon::ThreadPoolBuilder::new().build_global() {
         Ok(()) => true,
-        // Without a source it says that there are some.
+        // An error without a source means that they are already started.
         Err(error) => error.source().is_none(),
     };
     let is_there = rayon::current_thread_index().is_some() || *HAS_STARTED.get_or_init(start);
     if is_there { rayon::current_num_threads() } else { 1 }
 }
 
-/// JavaScript has started them.
+/// The number of threads that JavaScript has started.
 #[cfg(all(feature = "threads", target_arch = "wasm32"))]
 fn count_of_process() -> usize {
     rayon::current_num_threads()
 }
 
-/// `0..len` in up to `most` pieces of `fewest` items at least, but at least one.
+/// Cuts `0..len` into at least one and at most `most` pieces of at least `fewest` items.
 #[inline]
 fn cut(len: usize, most: usize, fewest: usize) -> Vec<Range<usize>> {
-    // So that the compiler leaves out the rest where there are no threads.
+    // Lets the compiler remove the rest in builds without threads.
     if most == 1 {
         return std::iter::once(0..len).collect();
     }
@@ -219,7 +218,7 @@ fn cut(len: usize, most: usize, fewest: usize) -> Vec<Range<usize>> {
     (0..pieces).map(|i| len.min(i * size)..len.min((i + 1) * size)).collect()
 }
 
-/// A word that several threads may read and write. What one has written the others see after the loop at the latest.
+/// A word that several threads may read and write. After a loop, all threads see the values written in it.
 pub(crate) trait Word {
     fn get(&self) -> u32;
     fn set(&self, word: u32);
@@ -238,15 +237,15 @@ impl Word for AtomicU32 {
     }
 }
 
-/// WebAssembly has no relaxed accesses but its plain ones: the others are sequentially consistent, and take several times
-/// as long.
+/// In WebAssembly, atomic accesses are sequentially consistent and several times as slow. Its plain accesses are the relaxed
+/// ones.
 #[cfg(all(target_arch = "wasm32", target_feature = "atomics"))]
-#[expect(unsafe_code, reason = "Rust has no other way to a plain access")]
+#[expect(unsafe_code, reason = "Rust offers no other plain access to an atomic")]
 impl Word for AtomicU32 {
     #[inline(always)]
     fn get(&self) -> u32 {
-        // SAFETY: the place is valid and aligned. WebAssembly defines plain accesses that race, and those of aligned words
-        // do not tear; volatile ones are those that are written here.
+        // SAFETY: the pointer is valid and aligned. WebAssembly defines plain accesses that race, and accesses to aligned words
+        // do not tear. Volatile accesses are neither removed nor merged.
         unsafe { self.as_ptr().read_volatile() }
     }
 
@@ -277,7 +276,7 @@ mod tests {
         }
     }
 
-    /// No thread is started that has no work.
+    /// No thread starts without work.
     #[test]
     fn no_more_threads_than_pieces() {
         for (count, triangles, want) in [

@@ -5,6 +5,8 @@
 pub mod audit;
 #[cfg(feature = "js-files")]
 pub mod files;
+#[cfg(feature = "js")]
+pub mod gpu;
 #[cfg(feature = "js-session")]
 mod objects;
 #[cfg(any(feature = "js-session", feature = "js-webgl2", feature = "js-audit"))]

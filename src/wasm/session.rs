@@ -1,89 +1,39 @@
-//! What the npm package calls, and no one else: the hand-written TypeScript in `src/js/` is its public face.
-//! Arguments arrive checked in type, not in value. Everything that is thrown is an `Error` with a `code`.
+//! A session, as JavaScript calls it. The TypeScript in `src/js/` has checked the types of all arguments, but not their
+//! values. Every exception is an `Error` with a `code`.
 
+#[cfg(feature = "js")]
+use super::gpu::refused;
 use super::objects::outcome_object;
 use super::options;
 pub use super::options::JsOptions;
-#[cfg(feature = "js")]
-use crate::Mesh;
-#[cfg(feature = "js")]
-use crate::engine;
-#[cfg(feature = "js")]
-pub use crate::engine::{GpuDevice, WebGl2Module};
-#[cfg(feature = "js")]
-use crate::session::{self, Job};
 use crate::system::memory;
 use crate::system::promise::promise;
 use crate::system::threads::Threads;
 #[cfg(all(feature = "js-threads", not(feature = "js")))]
 use crate::wasm::threads::Indices;
 pub use crate::wasm::values::JsPositions;
-#[cfg(feature = "js")]
-use crate::wasm::values::parse_dimension;
 use crate::wasm::values::{coded, mesh_of, object, reasons_object, thrown};
 use crate::{Error, Session};
-#[cfg(feature = "js")]
-use js_sys::Reflect;
 use js_sys::{Array, Promise, Uint8Array, Uint32Array};
 use std::cell::RefCell;
 use std::rc::Rc;
 use std::sync::Arc;
 use wasm_bindgen::prelude::*;
 
-/// An error with the mesh that was refused.
-#[cfg(feature = "js")]
-fn with_mesh(error: JsValue, mesh: &Mesh) -> JsValue {
-    let arrays: Array = [
-        mesh.positions().to_typed_array(),
-        Uint32Array::from(mesh.triangles()).into(),
-        (mesh.dimension().stride() as u32).into(),
-    ]
-    .iter()
-    .collect();
-    // Setting a field of an error does not fail.
-    let _ = Reflect::set(&error, &"mesh".into(), &arrays);
-    error
-}
-
 /// Vertex indices, as JavaScript gets them from an engine that has them in the memory of the module.
 #[cfg(not(any(feature = "js-threads", feature = "js")))]
 type Indices = Uint32Array;
 
-/// Says where the WebGL2 engine comes from.
-#[cfg(feature = "js")]
-#[wasm_bindgen(js_name = setWebGl2)]
-pub fn set_webgl2(module: WebGl2Module) {
-    engine::set_webgl2(module);
-}
-
-/// Why `'auto'` takes the CPU on so many threads for a mesh, without asking for a GPU, if it does.
-///
-/// # Errors
-/// [`Error::Option`] for the dimension, and for an option.
-#[cfg(feature = "js")]
-#[wasm_bindgen(js_name = whyCpu)]
-pub fn why_cpu(
-    triangles: usize,
-    dimension: f64,
-    is_double: bool,
-    threads: usize,
-    options: &JsOptions,
-) -> Result<Option<String>, JsValue> {
-    let job = parse_dimension(dimension).map(|dimension| Job { triangles, dimension, threads });
-    let why = || Ok(session::why_cpu(job?, is_double, &options::without_lists(options)?));
-    why().map_err(thrown)
-}
-
-/// Why a session answers nothing any more.
+/// The error of every call after the one that crashed.
 const ENDED: &str = "the session ended when a call of it crashed or ran out of memory; begin a new one";
 
-/// A mesh on an engine. One call at a time: each must have answered before the next. A call has the session while it
-/// goes on; one that ends with an exception or a trap never gives it back.
+/// A mesh on an engine. It takes one call at a time: each must have settled before the next begins. A call holds the
+/// session while it runs, so a call that ends with an exception or a trap never returns it.
 #[wasm_bindgen(js_name = Session)]
 pub struct JsSession(Rc<RefCell<Option<Session>>>);
 
 impl JsSession {
-    /// Asks the session, and gives JavaScript what `give` makes of the answer.
+    /// Asks the session, and returns a promise of what `give` makes of the answer.
     fn ask<T>(
         &self,
         question: impl AsyncFnOnce(&mut Session) -> Result<T, Error> + 'static,
@@ -98,19 +48,19 @@ impl JsSession {
         })
     }
 
-    fn get<T: Default>(&self, value: impl FnOnce(&Session) -> T) -> T {
+    pub(super) fn get<T: Default>(&self, value: impl FnOnce(&Session) -> T) -> T {
         self.0.borrow().as_ref().map(value).unwrap_or_default()
     }
 }
 
 #[wasm_bindgen(js_class = Session)]
 impl JsSession {
-    /// As [`Session::new`]. The arrays are copied before it returns.
+    /// As [`Session::new`]. Copies the arrays before it returns.
     ///
     /// # Errors
-    /// Those of [`Mesh::new`](crate::Mesh::new) and [`Session::new`]; `backend-unavailable`, with the reasons alone, where the options leave
-    /// the CPU. Where another engine or another try may take it, a promise gives the mesh back with the error: `mesh`, the
-    /// first arguments of another call.
+    /// Those of [`Mesh::new`](crate::Mesh::new) and [`Session::new`]; `backend-unavailable` if the options exclude the CPU
+    /// engine and no other engine is available. If another engine or a second attempt may succeed, the error has the mesh,
+    /// as the first arguments of the next call: `error.mesh`.
     #[wasm_bindgen(unchecked_return_type = "Promise<Session>")]
     pub fn create(
         positions: JsPositions,
@@ -130,13 +80,8 @@ impl JsSession {
             match Session::new(mesh.clone(), chosen).await {
                 Ok(session) => Ok(Self(Rc::new(RefCell::new(Some(session)))).into()),
                 #[cfg(feature = "js")]
-                Err(error @ (Error::Device { .. } | Error::OutOfMemory { .. })) => {
-                    let refused = match error {
-                        Error::Device { message } if leaves_cpu => coded("backend-unavailable", &message),
-                        error => thrown(error),
-                    };
-                    Err(with_mesh(refused, &mesh))
-                }
+                Err(error) => Err(refused(error, &mesh, leaves_cpu)),
+                #[cfg(not(feature = "js"))]
                 Err(error) => Err(thrown(error)),
             }
         }))
@@ -256,36 +201,6 @@ impl JsSession {
     #[wasm_bindgen(getter, unchecked_return_type = "import('../types.js').Engine")]
     pub fn backend(&self) -> String {
         self.get(|session| session.backend().name().to_owned())
-    }
-}
-
-/// What a session on a GPU has beside.
-#[cfg(feature = "js")]
-#[wasm_bindgen(js_class = Session)]
-impl JsSession {
-    /// The engine's GPUDevice, if it runs on one.
-    #[wasm_bindgen(getter, unchecked_return_type = "GPUDevice | undefined")]
-    pub fn device(&self) -> JsValue {
-        self.shared_objects().map_or(JsValue::UNDEFINED, |objects| objects.device)
-    }
-
-    /// The GPUBuffer with the positions.
-    #[wasm_bindgen(getter, js_name = positionBuffer, unchecked_return_type = "GPUBuffer | undefined")]
-    pub fn position_buffer(&self) -> JsValue {
-        self.shared_objects().map_or(JsValue::UNDEFINED, |objects| objects.positions)
-    }
-
-    /// The GPUBuffer with the triangles.
-    #[wasm_bindgen(getter, js_name = indexBuffer, unchecked_return_type = "GPUBuffer | undefined")]
-    pub fn index_buffer(&self) -> JsValue {
-        self.shared_objects().map_or(JsValue::UNDEFINED, |objects| objects.triangles)
-    }
-}
-
-#[cfg(feature = "js")]
-impl JsSession {
-    fn shared_objects(&self) -> Option<engine::SharedObjects> {
-        self.get(Session::shared_objects)
     }
 }
 

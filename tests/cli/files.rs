@@ -32,7 +32,7 @@ fn gltf_comes_out_with_other_indices() {
     });
     let input = folder.file("in.gltf", json.to_string());
     let line = format!(
-        "{}: buffer 0: it is in the file `data/a b.bin`: other files are read only if that is allowed (--external-files)",
+        "{}: buffer 0: it is in the file `data/a b.bin`: reading other files is not allowed; external_files (--external-files) allows it",
         input.display()
     );
     failed(&run(&input, &folder.path("out.glb"), &[]), 1, &line);
@@ -102,7 +102,7 @@ fn a_bad_file_gives_one_line_and_no_output() {
     }
 }
 
-/// A kite of vertices 0 to 3 with what scans and exports add to it, in three formats.
+/// A kite of vertices 0 to 3 with typical faults of scans and exports, in three formats.
 ///
 /// ```text
 ///        2
@@ -245,7 +245,7 @@ fn the_dimension_can_be_forced() {
     let raised = folder.file("in.off", SQUARE.replace("1 1 0", "1 1 0.5"));
     let output = folder.path("out.off");
     let line = format!(
-        "{}: vertex 2: z is 0.5, but the mesh was asked for in 2D, where every z must be 0",
+        "{}: vertex 2: z is 0.5, but every z must be 0 in the 2D mesh that was requested",
         raised.display()
     );
     failed(&run(&raised, &output, &["--dimension", "2"]), 1, &line);

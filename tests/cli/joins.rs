@@ -9,7 +9,7 @@ use std::path::Path;
 const CORNERS: [[f32; 3]; 6] =
     [[0.0, 0.0, 0.0], [0.9, 0.2, 0.0], [1.0, 1.0, 0.0], [-0.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
 
-/// The object that `--json` prints of a run, which `--verify` finds nothing in.
+/// The object that `--json` prints for a run without violations in `--verify`.
 #[track_caller]
 fn verified(input: &Path, output: &Path, arguments: &[&str]) -> Value {
     let ran = run(input, output, &[&["--json", "--quiet", "--verify"], arguments].concat());
@@ -44,7 +44,7 @@ fn triangles_without_common_vertices_are_joined() {
     let found = verified(&input, &output, &["--weld", "--lock-edges", list.to_str().unwrap()]);
     assert_eq!((&found["flips"], &found["remaining"]), (&0.into(), &json!({ "locked": 1 })));
     assert_eq!(found["remaining_edges"], json!({ "locked": [[0, 2]] }));
-    // The second triangle turned round.
+    // The second triangle is reversed.
     let turned = folder.file("turned.obj", format!("{vertices}f 1 2 3\nf 4 6 5\n"));
     let found = verified(&turned, &output, &["--weld"]);
     assert_eq!((&found["flips"], &found["inconsistent_edges"]), (&0.into(), &1.into()));

@@ -1,4 +1,4 @@
-//! What stays: edges, triangles, borders of groups and attributes.
+//! Locked edges and triangles, borders of groups, and attributes.
 
 use crate::command::{Folder, SQUARE, failed, run, text};
 use serde_json::{Value, json};

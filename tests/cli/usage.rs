@@ -97,7 +97,7 @@ fn help_explains() {
     }
 }
 
-/// A reader of standard output or standard error that goes away is no reason to panic or to fail.
+/// If the reader of standard output or standard error goes away, the program neither panics nor fails.
 #[cfg(unix)]
 #[test]
 fn a_closed_pipe_is_no_panic() {

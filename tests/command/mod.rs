@@ -6,7 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
-/// Four corners, 1 drawn in, cut along 0-2; the angles at 1 and 3 are 106° and 90°, so that 1-3 is Delaunay.
+/// A square with corner 1 moved inwards, cut along 0-2. The angles at 1 and 3 are 106° and 90°, so 1-3 is Delaunay.
 ///
 /// ```text
 ///   3-----2
@@ -16,7 +16,7 @@ use std::process::{Command, Output, Stdio};
 /// ```
 pub const SQUARE: &str = "OFF\n4 2 0\n0 0 0\n0.9 0.2 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3\n";
 
-/// What the program makes of [`SQUARE`].
+/// The output of the program for [`SQUARE`].
 pub const FLIPPED: &str = "OFF\n4 2 0\n0 0 0\n0.9 0.2 0\n1 1 0\n0 1 0\n3 3 1 2\n3 0 1 3\n";
 
 /// A folder that is removed with what is in it.

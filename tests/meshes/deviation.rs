@@ -1,4 +1,4 @@
-//! Surfaces on which flips may move little, also by exactly so much, or by as much as they like.
+//! Surfaces with a limit for the deviation: small, met exactly, or none.
 
 use super::{Case, case, lifted, moved, signed, soup};
 use edgeflip::{Mesh, families::by_name};
@@ -7,8 +7,8 @@ use oorandom::Rand64;
 pub fn all() -> Vec<Case> {
     let mut cases = Vec::new();
     let mut add = |name: &str, mesh: &Mesh, beta: f64, limits: &[f64]| {
-        for (place, &deviation) in limits.iter().enumerate() {
-            let name = format!("deviation-{name}-{place}");
+        for (index, &deviation) in limits.iter().enumerate() {
+            let name = format!("deviation-{name}-{index}");
             cases.push(Case { deviation, ..case(&name, mesh.clone(), beta) });
         }
     };

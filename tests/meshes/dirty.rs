@@ -81,7 +81,7 @@ fn bow_tie() -> Mesh {
     )
 }
 
-/// One quad whose outline crosses itself: its second triangle is turned over.
+/// A quad whose outline crosses itself: its second triangle is inverted.
 /// ```text
 ///   2     3
 ///   |\   /|     triangles (0, 1, 2) and (1, 0, 3) would be one quad
@@ -207,7 +207,7 @@ fn fan_of_three() -> Mesh {
     )
 }
 
-/// The kite with one triangle turned around: edge 0-1 runs in the same direction twice. On its left a
+/// The kite with one triangle reversed: edge 0-1 runs in the same direction twice. On its left a
 /// proper kite with the vertices 0, 2 and two more, so that something flips beside it.
 fn inconsistent_pair() -> Mesh {
     plane(
@@ -229,7 +229,7 @@ fn hole() -> Mesh {
 }
 
 /// A fan of positive triangles that winds twice around its centre: no fold, yet it covers itself.
-/// Points of the second turn take the places of the first at another distance.
+/// The points of the second turn have the directions of the first, at another distance.
 fn winding_twice() -> Mesh {
     let mut points = vec![[0., 0.]];
     let mut random = Rand64::new(13);

@@ -1,4 +1,4 @@
-//! Coordinates at the ends of what f32 and f64 hold, and ties that are missed by a hair.
+//! The smallest and largest coordinates in f32 and f64, and near ties.
 
 use super::{Case, case, lifted, moved, moved_wide, plane, signed};
 use edgeflip::families::by_name;
@@ -43,8 +43,8 @@ pub fn all() -> Vec<Case> {
 /// Numbers that no f32 holds.
 fn doubles() -> Vec<Case> {
     let mut cases = Vec::new();
-    let mut both = |name: &str, mesh: &edgeflip::Mesh, place: &mut dyn FnMut(f64) -> f64| {
-        let mesh = moved_wide(mesh, |p| p.map(&mut *place).to_vec());
+    let mut both = |name: &str, mesh: &edgeflip::Mesh, map: &mut dyn FnMut(f64) -> f64| {
+        let mesh = moved_wide(mesh, |p| p.map(&mut *map).to_vec());
         let surface = moved_wide(&mesh, |[x, y]| vec![x, y, x * 0.25 + y * 0.125]);
         cases.push(case(&format!("f64-{name}"), mesh, 10.0));
         cases.push(case(&format!("f64-{name}-3d"), surface, 60.0));
@@ -61,7 +61,7 @@ fn doubles() -> Vec<Case> {
     // Metres of Web Mercator, a micrometre apart.
     both("mercator", &random, &mut |x| 1.2e7 + 12e-6 * x);
     both("scale-max", &random, &mut |x| (2.0 * x - 1.0) * f64::MAX);
-    // Products of two over- or underflow, those of four do, and only the smallest numbers are lost.
+    // Products of two coordinates overflow or underflow, products of four do, and only the smallest numbers are lost.
     for (name, scale) in
         [("1e160", 1e160), ("1e80", 1e80), ("1e-80", 1e-80), ("1e-160", 1e-160), ("1e-300", 1e-300)]
     {

@@ -89,17 +89,17 @@ pub fn space(points: &[[f32; 3]], triangles: &[[u32; 3]]) -> Mesh {
 }
 
 /// The mesh with every vertex moved; in 2D the third number is 0 and goes.
-pub fn moved(mesh: &Mesh, mut place: impl FnMut([f32; 3]) -> [f32; 3]) -> Mesh {
+pub fn moved(mesh: &Mesh, mut map: impl FnMut([f32; 3]) -> [f32; 3]) -> Mesh {
     let stride = mesh.dimension().stride();
-    let move_one = |p: &[f32]| place([p[0], p[1], p.get(2).copied().unwrap_or(0.0)])[..stride].to_vec();
+    let move_one = |p: &[f32]| map([p[0], p[1], p.get(2).copied().unwrap_or(0.0)])[..stride].to_vec();
     let positions: Vec<_> = mesh.positions().to_f32().chunks(stride).flat_map(move_one).collect();
     Mesh::new(mesh.dimension(), positions, mesh.triangles().to_vec()).unwrap()
 }
 
 /// The mesh with every vertex moved, in doubles.
-pub fn moved_wide(mesh: &Mesh, mut place: impl FnMut([f64; 2]) -> Vec<f64>) -> Mesh {
+pub fn moved_wide(mesh: &Mesh, mut map: impl FnMut([f64; 2]) -> Vec<f64>) -> Mesh {
     let numbers: Vec<_> = mesh.positions().iter().collect();
-    let positions: Vec<_> = numbers.chunks(2).flat_map(|p| place([p[0], p[1]])).collect();
+    let positions: Vec<_> = numbers.chunks(2).flat_map(|p| map([p[0], p[1]])).collect();
     let dimension = if positions.len() == numbers.len() { Dimension::Two } else { Dimension::Three };
     Mesh::new(dimension, positions, mesh.triangles().to_vec()).unwrap()
 }
@@ -124,7 +124,7 @@ pub fn lifted(mesh: &Mesh, mut height: impl FnMut(f32, f32) -> f32) -> Mesh {
     Mesh::new(Dimension::Three, positions, mesh.triangles().to_vec()).unwrap()
 }
 
-/// All triangles turned around.
+/// The mesh with all triangles reversed.
 pub fn reversed(mesh: &Mesh) -> Mesh {
     mesh.with_triangles(mesh.triangles().chunks(3).flat_map(|t| [t[0], t[2], t[1]]).collect()).unwrap()
 }

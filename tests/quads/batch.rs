@@ -1,4 +1,4 @@
-//! A mesh of many quads that share no vertex, and what exact arithmetic says of each of them.
+//! A mesh of many quads that share no vertex, and the exact verdict on each.
 
 use super::kinds::{Kind, Quad, Source};
 use crate::simulation::Predicates;
@@ -11,7 +11,7 @@ const BETAS: [f64; 6] = [10.0, 0.0, 60.0, 90.0, 120.0, 180.0];
 /// Powers of two that floats are multiplied by: up to 2^125, down to where most of them are subnormal.
 const SCALES: [i32; 5] = [0, 101, -64, -89, -126];
 
-/// What diagonals may be apart, before the scale, where that has a limit.
+/// The limit for the deviation, before scaling, if there is one.
 pub const DEVIATION: f32 = 0.1;
 
 /// How many batches `quads` quads are cut into. 12 have all thresholds in both dimensions and all scales, 60 have them
@@ -20,7 +20,7 @@ pub fn batch_count(quads: usize) -> usize {
     (quads / 8000).clamp(12, BETAS.len() * SCALES.len() * 2)
 }
 
-/// What is to be done with the edge of a quad.
+/// The exact verdict on the edge of a quad.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
     Delaunay,
@@ -47,7 +47,7 @@ pub struct Batch {
     pub index: usize,
     /// In degrees.
     pub beta: f64,
-    /// What diagonals may be apart.
+    /// The limit for the deviation.
     pub deviation: f64,
     pub mesh: Mesh,
     /// Of each quad, and whether it rests on a sign that is zero.

@@ -211,17 +211,17 @@ impl Source {
 
     /// Four points of a circle, in the plane or on a tilted plane, moved and scaled without rounding.
     fn cocircular(&mut self) -> Floats {
-        let mut places = [(); 4].map(|()| self.integer(0, 4 * self.arc.len() as i32 - 1));
+        let mut indices = [(); 4].map(|()| self.integer(0, 4 * self.arc.len() as i32 - 1));
         if self.chance(2) {
             // On an axis.
-            places[0] = 0;
+            indices[0] = 0;
         }
         if !self.chance(8) {
-            places.sort_unstable();
+            indices.sort_unstable();
         }
-        let [a, d, b, c] = places.map(|place| {
-            let [x, y] = self.arc[place as usize % self.arc.len()];
-            match place as usize / self.arc.len() {
+        let [a, d, b, c] = indices.map(|index| {
+            let [x, y] = self.arc[index as usize % self.arc.len()];
+            match index as usize / self.arc.len() {
                 0 => [x, y],
                 1 => [-y, x],
                 2 => [-x, -y],
@@ -306,8 +306,8 @@ impl Source {
             }
             7 => {
                 let direction = [(); 3].map(|()| self.integer(-3, 3));
-                let places = [(); 4].map(|()| self.integer(0, 5));
-                [a, b, c, d] = places.map(|place| direction.map(|x| (x * place) as f32));
+                let steps = [(); 4].map(|()| self.integer(0, 5));
+                [a, b, c, d] = steps.map(|step| direction.map(|x| (x * step) as f32));
             }
             // Three on a line.
             8 => (b[1], b[2], c[1], c[2]) = (a[1], a[2], a[1], a[2]),

@@ -1,11 +1,11 @@
-//! What an engine has decided, and what of it was wrong.
+//! The decisions of an engine, and its mismatches.
 
 use crate::batch::{Batch, Tally};
 use std::collections::BTreeMap;
 
 #[derive(Default)]
 pub struct Report {
-    /// By what meshes they are in, and the place and name of the kind; with the number of mismatches.
+    /// By the form of the mesh, the index and the name of the kind; with the number of mismatches.
     rows: BTreeMap<(String, usize, &'static str), (Tally, usize)>,
     /// What is wrong, in words.
     pub mismatches: Vec<String>,
@@ -14,9 +14,9 @@ pub struct Report {
 impl Report {
     /// `mismatches`: the quads that are decided otherwise, and how.
     pub fn add(&mut self, batch: &Batch, mismatches: Vec<(usize, String)>) {
-        for (place, (kind, quads)) in batch.kinds.iter().enumerate() {
+        for (index, (kind, quads)) in batch.kinds.iter().enumerate() {
             let wrong = mismatches.iter().filter(|(quad, _)| quads.contains(quad)).count();
-            let row = self.rows.entry((batch.form(), place, kind)).or_default();
+            let row = self.rows.entry((batch.form(), index, kind)).or_default();
             *row = sum([&*row, &(batch.tally(quads.clone()), wrong)].into_iter());
         }
         self.mismatches.extend(mismatches.into_iter().map(|(_, how)| how));

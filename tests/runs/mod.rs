@@ -1,4 +1,4 @@
-//! Runs of the engines: watched after every iteration, or from end to end.
+//! Runs of the engines: one iteration at a time, or to the end at once.
 
 use super::simulation::{Digest, IterationRecord, Simulation};
 use edgeflip::{Backend, Error, Mesh, Options, Outcome, Session};
@@ -9,7 +9,7 @@ pub fn options(backend: Backend, beta: f64) -> Options {
     Options { backend, max_normal_angle: beta, ..Options::default() }
 }
 
-/// Steps through a run; says of it what the simulation does.
+/// Steps through a run, and returns the same data as the simulation.
 pub fn watched(mesh: &Mesh, options: &Options) -> Result<Simulation, Error> {
     block_on(async {
         let mut session = Session::new(mesh.clone(), options.clone()).await?;
@@ -26,7 +26,7 @@ pub fn watched(mesh: &Mesh, options: &Options) -> Result<Simulation, Error> {
     })
 }
 
-/// A run from end to end, as most callers want it.
+/// A run to the end, as most callers use it.
 pub fn unwatched(mesh: &Mesh, options: &Options) -> Result<Outcome, Error> {
     edgeflip::make_delaunay(mesh, options, |_, _| ControlFlow::Continue(()))
 }

@@ -1,4 +1,4 @@
-//! `digests.txt`: what every engine must reproduce, one line a mesh.
+//! `digests.txt`: what every engine must reproduce, one line per mesh.
 
 use super::Simulation;
 use edgeflip::{Reason, Reasons};
@@ -94,7 +94,7 @@ impl fmt::Display for Expected {
     }
 }
 
-/// Where `digests.txt` lies.
+/// The path of `digests.txt`.
 pub fn digests_path() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/digests.txt")
 }

@@ -1,5 +1,5 @@
-//! The oracle of the engines: the rules of the flips, one after the other, as plainly as they can be
-//! written. The edges are collected anew before every iteration; every number is an integer of any size.
+//! The oracle for the engines: the rules of the flips, one after another, as plainly as possible.
+//! It collects the edges again before every iteration, and every number is an integer of any size.
 #![allow(dead_code, unused_imports, reason = "each test crate takes what it needs of this module")]
 
 mod digest;
@@ -84,7 +84,7 @@ fn edges(triangles: &[u32]) -> HashMap<(u32, u32), Vec<u32>> {
     edges
 }
 
-/// What the half-edges of one pair of vertices are to each other.
+/// The class of the half-edges of one pair of vertices.
 enum Kind {
     Boundary,
     /// The lower half-edge first.
@@ -264,13 +264,13 @@ fn select(labels: &Labels, iteration: u32) -> Vec<(u32, u32)> {
     makers.into_values().collect()
 }
 
-/// Runs the rules on `mesh` with the threshold β to their end, or for `max_iterations`.
+/// Runs the rules on `mesh` with the threshold β to the end, or for `max_iterations`.
 pub fn simulate(mesh: &Mesh, beta_deg: f64, max_iterations: Option<u32>) -> Simulation {
     let options = Options { max_normal_angle: beta_deg, max_iterations, ..Options::default() };
     simulate_with(mesh, &options)
 }
 
-/// The same with all that matters to the flips of what can be chosen, but for triangles and groups.
+/// The same with all options that affect the flips, except locked triangles and groups.
 pub fn simulate_with(mesh: &Mesh, options: &Options) -> Simulation {
     let mut triangles = mesh.triangles().to_vec();
     let mut rules = Rules::new(mesh, options);

@@ -15,7 +15,7 @@ pub struct Predicates {
     points: Vec<Vector>,
     /// cos β = mantissa / 2^shift.
     cosine: (BigInt, u32),
-    /// How far apart the lines of two diagonals may be, in the units of the points.
+    /// The limit for the deviation, in the units of the points.
     deviation: Option<BigInt>,
 }
 
@@ -51,7 +51,7 @@ fn root_sum_sign(x: &BigInt, m: &BigInt, y: &BigInt, n: &BigInt) -> Ordering {
 impl Predicates {
     pub fn new(mesh: &Mesh, beta_deg: f64, deviation: f64) -> Self {
         let positions: Vec<f64> = mesh.positions().iter().collect();
-        // The largest 32-bit float that is no larger.
+        // The largest 32-bit float that is not larger.
         let mut most = deviation as f32;
         while f64::from(most) > deviation {
             most = most.next_down();
@@ -123,7 +123,7 @@ impl Predicates {
             && self.angle_sign(&self.normal([a, b, c]), &self.normal([b, a, d])).is_lt()
     }
 
-    /// How far the lines a b and c d are apart, against what they may be.
+    /// Compares the distance of the lines a b and c d with the limit.
     fn compare_distance(&self, quad: [u32; 4]) -> Ordering {
         let Some(most) = &self.deviation else { return Ordering::Less };
         let [a, b, c, d] = quad.map(|v| &self.points[v as usize]);
@@ -132,7 +132,7 @@ impl Predicates {
         (&volume * &volume).cmp(&(most * most * dot(&across, &across)))
     }
 
-    /// What the four points alone tell of an edge.
+    /// The verdict of the four points alone.
     pub fn verdict(&self, quad: [u32; 4], clockwise: bool) -> Verdict {
         self.decide(quad, clockwise).0
     }

@@ -127,7 +127,7 @@ async fn triangles_of(session: &JsSession) -> Vec<u32> {
     Uint32Array::from(session.triangles().await.unwrap()).to_vec()
 }
 
-/// What the CPU makes of the mesh.
+/// The result of the CPU for the mesh.
 async fn expected(mesh: &Mesh) -> Vec<u32> {
     let options = Options { backend: Backend::Cpu, ..Options::default() };
     let mut session = Session::new(mesh.clone(), options).await.unwrap();
@@ -168,7 +168,7 @@ async fn a_session_runs_on_the_device_of_the_page() {
     let copy = words(&device, &session.index_buffer()).await;
     assert_eq!(Uint32Array::from(copy).to_vec(), mesh.triangles());
 
-    // Our own errors are ours, and the page hears nothing of them.
+    // The page does not see errors of our own calls.
     let before = seen(&device);
     spoil_buffers(&device, true);
     let spoiled = create(&mesh, "webgpu", &device).await.unwrap();
@@ -179,7 +179,7 @@ async fn a_session_runs_on_the_device_of_the_page() {
     let session = create(&mesh, "webgpu", &device).await.unwrap();
     assert!(session.step().await.unwrap().is_truthy());
 
-    // A lost device is told, in the middle of a run and before one.
+    // A lost device is an error, during a run and before one.
     destroy(&device);
     for error in [session.step().await.err(), create(&mesh, "webgpu", &device).await.err()] {
         assert_eq!(code_of(&error.unwrap()), "device-failed");

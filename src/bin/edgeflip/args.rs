@@ -10,29 +10,29 @@ const AFTER: &str = "\
 Formats, by extension:
   .off   Geomview OFF, text (also COFF, NOFF, STOFF, and nOFF with 2 or 3 dimensions)
   .obj   Wavefront OBJ; all groups and objects are read as one mesh
-  .ply   PLY, text or binary; new files are in binary; the only one whose doubles are read as such
+  .ply   PLY, text or binary; new files are binary; the only format that is read with 64-bit floats
   .stl   STL, text or binary, written in binary with 32-bit floats; corners at the same position are
          read as one vertex
-  .gltf  glTF 2.0, .glb in one binary file. Each primitive is a part of the mesh; what two of them
-         share stays. --weld joins the vertices of a primitive that are at the same position
-Any of them may be gzip'd: IN whatever its name, OUT where .gz follows, as in bunny.ply.gz.
+  .gltf  glTF 2.0, .glb in one binary file. Each primitive is a part of the mesh, and the borders
+         between parts stay. --weld joins the vertices of a primitive that are at the same position
+Each format may be gzip'd: IN under any name, OUT if .gz follows the extension, as in bunny.ply.gz.
 Vertices keep their number and order. Polygons are cut into triangles.
 
-Where OUT has the format of IN, it is IN with other triangles: normals, colours, texture coordinates,
-groups, materials and comments stay, as does a polygon whose edges stay. So that attributes of faces
-and corners stay with them, edges between groups of faces that differ (OBJ: usemtl, g, o, s; OFF, PLY,
-STL: what a face has beside its vertices) and along seams never flip, unless --drop-attributes is
-given. Otherwise only positions and triangles are written. Text STL, and PLY with strips of triangles,
-are written anew.
+If OUT has the format of IN, it is IN with other triangles: normals, colours, texture coordinates,
+groups, materials and comments stay, and so does a polygon whose edges stay. Faces and corners keep
+their attributes: edges between groups of faces that differ (OBJ: usemtl, g, o, s; OFF, PLY, STL: other
+attributes of faces) and edges along seams never flip, unless --drop-attributes is given. If OUT has
+another format, only positions and triangles are written. The same holds for text STL, and for PLY with
+triangle strips.
 
 Exit status:
   0   done; also when stopped by --max-iterations
   1   a file could not be read or written, the mesh was refused, --verify found a violation, or
       memory ran out
   2   wrong usage
-  3   the backend asked for is not there, cannot take this mesh, or failed
-When a run fails, OUT is not written or changed, and one line on standard error says why. Only what is no
-regular file keeps what was written into it before.
+  3   the requested backend is not available, cannot take this mesh, or failed
+When a run fails, OUT is not written or changed, and one line on standard error says why. Only a device or
+a pipe keeps what was written into it before the failure.
 
 Examples:
   edgeflip terrain.off -o terrain-delaunay.off
@@ -43,30 +43,30 @@ Examples:
 
 /// Makes a triangle mesh Delaunay by flipping edges.
 ///
-/// Reads a triangle mesh, in the plane or a surface in space, keeps its vertices, and flips edges until no
-/// edge is left that is not Delaunay and may flip. What is left, and why, is reported. Decisions are exact
-/// and the result is the same, bit for bit, on every backend.
+/// Reads a triangle mesh, in the plane or in space, keeps its vertices, and flips edges until every edge is
+/// Delaunay or may not flip. The summary counts the edges that are left, by reason. All tests are exact, and
+/// the result is the same, bit for bit, on every backend.
 #[derive(Debug, Parser)]
 #[command(name = "edgeflip", version, after_long_help = AFTER)]
-#[command(after_help = "--help tells more: formats, exit status, examples.")]
+#[command(after_help = "--help shows more: formats, exit status, examples.")]
 pub struct Args {
     /// The mesh to read: .off, .obj, .ply, .stl, .gltf or .glb, also gzip'd
     ///
-    /// A FIFO, here and for the lists below, has to be opened by a writer within 10 s.
+    /// If it is a FIFO, another process has to open it for writing within 10 s; so also for the lists below.
     #[arg(value_name = "IN")]
     pub input: PathBuf,
 
-    /// The file to write: .off, .obj, .ply, .stl, .gltf or .glb, and .gz after it to gzip it; may be IN itself. - is
-    /// the standard output
+    /// The file to write: .off, .obj, .ply, .stl, .gltf or .glb, then .gz for gzip; may be IN itself. - is the standard
+    /// output
     ///
-    /// The file is replaced at once when everything is done, so that a failure leaves it as it was. A link is followed;
-    /// owner, group and mode stay, or a note says why not. A device or a FIFO is written into, and so is the standard
-    /// output under any name. Where it has none of these extensions, it is written in the format of IN, gzip'd if the
-    /// name of IN says so. A FIFO has to be opened by a reader within 10 s. --json cannot share the standard output.
+    /// The file is replaced in one step after everything has succeeded, so a failure leaves it unchanged. Links are
+    /// followed. Owner, group and mode stay, or a note says why not. A device, a FIFO or the standard output is written
+    /// into; without one of these extensions it gets the format of IN, gzip'd if IN is named .gz. Another process has to
+    /// open a FIFO for reading within 10 s. --json cannot share the standard output.
     #[arg(short, long, value_name = "OUT")]
     pub output: PathBuf,
 
-    /// What does the work
+    /// The engine
     #[arg(long, value_enum, default_value_t, value_name = "BACKEND")]
     pub backend: BackendArg,
 
@@ -74,50 +74,49 @@ pub struct Args {
     #[arg(long, value_enum, default_value_t, value_name = "DIM")]
     pub dimension: DimensionArg,
 
-    /// How many bytes IN may have, and if it is gzip'd also once it is unpacked
+    /// The most bytes of IN, packed and unpacked
     #[arg(long, value_name = "N", default_value_t = ReadOptions::default().max_bytes, allow_negative_numbers = true)]
     pub max_bytes: u64,
 
-    /// Write positions and triangles only, and let edges flip that keep attributes in their places
+    /// Write positions and triangles only, and let the edges flip that would stay to keep attributes
     ///
-    /// Without it, edges between groups of faces and along seams stay where OUT has the format of IN. It has no effect
-    /// on glTF, whose parts share no vertices.
+    /// Without it, edges between groups of faces and along seams stay if OUT has the format of IN. It has no effect on
+    /// glTF, whose parts share no vertices.
     #[arg(long)]
     pub drop_attributes: bool,
 
-    /// Let a glTF file have its buffers in other files of its folder and of those below
+    /// Read the buffers of a glTF file from other files, in its folder and folders below
     ///
-    /// They are regular files that lie there also when links are followed.
+    /// They must be regular files, also after links are followed.
     #[arg(long)]
     pub external_files: bool,
 
     /// β: largest angle between the normals of two triangles whose edge may flip, in degrees, 0 to 180
     ///
-    /// Only for surfaces in space. An edge flips only if the normals of its two triangles differ by at most
-    /// β before the flip, and those of the new triangles after it: small values keep the shape, large ones
-    /// leave fewer edges that are not Delaunay. An edge over β in the input is a crease and stays. Edges left
-    /// for this reason are counted as `angle`.
+    /// Only in space. An edge flips only if the normals of its two triangles differ by at most β, before and after the flip.
+    /// Small values keep the shape; large values leave fewer edges that are not Delaunay. An edge over β in the input is a
+    /// crease and stays. The summary counts edges left for this reason as `angle`.
     #[arg(long, value_name = "DEG", default_value_t = 10.0, value_parser = degrees, allow_negative_numbers = true)]
     pub max_normal_angle: f64,
 
     /// Largest distance between the old and the new diagonal of a flip, in the units of IN
     ///
-    /// Only for surfaces in space: what one flip may move the surface by. It is rounded down to a 32-bit float. Edges
-    /// left for this reason are counted as `deviation`.
+    /// Only in space. It limits how far one flip moves the surface, and is rounded down to a 32-bit float. The summary
+    /// counts edges left for this reason as `deviation`.
     #[arg(long, value_name = "D", default_value_t = f64::INFINITY, value_parser = distance, allow_negative_numbers = true)]
     pub max_deviation: f64,
 
     /// Edges that never flip: a text file with the two vertices of an edge in each line
     ///
-    /// Vertices are counted from 0, in the order of IN, also where IN is an OBJ file; # begins a comment. Each
-    /// pair has to be an edge of the mesh. Locked edges that are not Delaunay in the end are counted as `locked`.
+    /// Vertices count from 0, in the order of IN, even if IN is an OBJ file; # begins a comment. Each pair has to be an edge
+    /// of the mesh. The summary counts locked edges that are not Delaunay as `locked`.
     #[arg(long, value_name = "FILE")]
     pub lock_edges: Option<PathBuf>,
 
-    /// Triangles that stay as they are: a text file with their numbers
+    /// Triangles that stay: a text file with their indices
     ///
-    /// They are counted from 0, in the order of IN, where a polygon of n corners is n - 2 triangles; # begins a comment.
-    /// All edges of these triangles are locked.
+    /// Triangles count from 0, in the order of IN, where a polygon of n corners is n - 2 triangles; # begins a comment. All
+    /// edges of these triangles are locked.
     #[arg(long, value_name = "FILE")]
     pub lock_triangles: Option<PathBuf>,
 
@@ -127,44 +126,42 @@ pub struct Args {
     #[arg(long, value_name = "FILE")]
     pub groups: Option<PathBuf>,
 
-    /// Turn triangles first, so that neighbours agree about the side that is outside
+    /// Reverse triangles first, so that neighbours have the same orientation
     ///
-    /// In each component of triangles that two share an edge, where that is possible, the fewer are turned. Without it
-    /// edges between triangles turned against each other stay, and are counted as `inconsistent`.
+    /// In each component that is orientable, the minority is reversed. Without it, edges between triangles of opposite
+    /// orientation stay, and the summary counts them as `inconsistent`.
     #[arg(long)]
     pub reorient: bool,
 
     /// Join vertices at exactly the same position for the run, and split them again for OUT
     ///
-    /// So edges flip where triangles have no vertices in common, as in files that repeat the vertices of each triangle,
-    /// and where only the number of a vertex changes. In glTF the vertices of each primitive are joined for
-    /// themselves; those that differ in an attribute or a morph target stay two on the two sides of a seam, whose edges
-    /// are locked. A primitive without indices gets some where an edge of it flips. Edges of --lock-edges are those
-    /// between the positions of two vertices; what is reported of edges is of the joined mesh, which has the first
-    /// vertex of each position. Files of other formats than glTF are written as with --drop-attributes.
+    /// Then edges flip even if a file repeats the vertices of each triangle, or repeats vertices along lines. In glTF, only
+    /// vertices of the same primitive are joined, and edges where their attributes or morph targets differ are seams,
+    /// which are locked. A primitive without indices gets indices if one of its edges flips. An edge of --lock-edges is the
+    /// edge between the positions of its two vertices. The summary describes the joined mesh, which has the first vertex
+    /// at each position. Files of other formats than glTF are written as with --drop-attributes.
     #[arg(long)]
     pub weld: bool,
 
-    /// Stop after N iterations; without it the run goes to its end, which always comes
+    /// Stop after N iterations; without it, the run ends by itself
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub max_iterations: Option<u32>,
 
-    /// Which of the valid orders of flips to take
+    /// The order of the flips; each order gives a valid result
     #[arg(long, value_enum, default_value_t, value_name = "ORDER")]
     pub order: OrderArg,
 
-    /// How many threads --backend cpu runs on, 1 to 256; without it one for each core. Fewer are started where a mesh
-    /// has no work for so many: one below 65,536 triangles. As many read, measure and write the mesh. The result is the
-    /// same for any number
+    /// Threads of the CPU engine and of reading, measuring and writing, 1 to 256; without it one per core. A mesh with fewer
+    /// than 65,536 triangles runs on one thread. The result does not depend on the number
     #[arg(long, value_name = "N", value_parser = threads, allow_negative_numbers = true)]
     pub threads: Option<NonZeroUsize>,
 
     /// Check the result independently; if the check fails, write nothing and end with status 1
     ///
-    /// Checks that vertices, boundary, components and orientation are what they were, and that the edges
-    /// left are what the run says they are. The summary names the first edges left for each reason by their
-    /// two vertices, counted from 0; --json has all of them. Measures, too, how far the surface has moved: the
-    /// largest distance between the old and the new one at points of the edges that they do not share.
+    /// Checks that vertices, boundary, components and orientation are unchanged, and that the run has counted the edges
+    /// left correctly. The summary names the first edges left for each reason by their two vertices, counted from 0; --json
+    /// lists all. It also measures how far the surface has moved: the largest distance between the old and the new surface,
+    /// at points of the edges that only one of them has.
     #[arg(long)]
     pub verify: bool,
 
@@ -184,18 +181,18 @@ pub struct Args {
     #[arg(long)]
     pub json: bool,
 
-    /// No progress, no summary, no notes: only errors, and nothing of a GPU's driver
+    /// No progress, no summary, no notes, no output of GPU drivers: only errors
     #[arg(short, long)]
     pub quiet: bool,
 }
 
 impl Args {
-    /// Whether anybody sees what is measured.
+    /// Whether the run reports measures.
     pub fn is_reported(&self) -> bool {
         self.json || !self.quiet
     }
 
-    /// How IN is read for an OUT of that format.
+    /// The options for reading IN, if OUT has this format.
     pub fn read_options(&self, output: Format) -> ReadOptions {
         let dimension = match self.dimension {
             DimensionArg::Auto => None,
@@ -211,7 +208,7 @@ impl Args {
         }
     }
 
-    /// What the library is asked to do, without what is locked.
+    /// The options for the library, without locks.
     pub fn options(&self) -> Options {
         Options {
             backend: match self.backend {
@@ -235,25 +232,25 @@ impl Args {
 /// `--backend`.
 #[derive(Clone, Copy, Debug, Default, ValueEnum)]
 pub enum BackendArg {
-    /// The GPU where there is one that can take the mesh, else the CPU; the summary says which and why
+    /// The CPU or a hardware GPU, whichever is estimated to finish first; the summary says which and why
     #[default]
     Auto,
-    /// The CPU; takes every mesh
+    /// The CPU, which takes every mesh
     Cpu,
-    /// The GPU; never falls back (status 3)
+    /// The GPU, or an error (status 3)
     Gpu,
 }
 
 /// `--dimension`.
 #[derive(Clone, Copy, Debug, Default, ValueEnum)]
 pub enum DimensionArg {
-    /// In the plane if every z is 0, else in space; glTF always in space
+    /// In the plane if every z is 0, or else in space; glTF always in space
     #[default]
     Auto,
     /// In the plane; a z other than 0 is refused
     #[value(name = "2")]
     Two,
-    /// A surface in space, even if every z is 0
+    /// In space, even if every z is 0
     #[value(name = "3")]
     Three,
 }
@@ -264,18 +261,18 @@ pub enum OrderArg {
     /// The parallel pipeline: the same bits on every backend after every iteration
     #[default]
     Reproducible,
-    /// Lawson's sequential algorithm on the CPU: often faster, no iterations to count
+    /// Lawson's sequential algorithm on the CPU: often faster, without iterations
     Any,
 }
 
-/// A number of threads.
+/// Parses a number of threads.
 fn threads(text: &str) -> Result<NonZeroUsize, String> {
     let most = edgeflip::MOST_THREADS;
     let count = text.parse().ok().filter(|count: &NonZeroUsize| count.get() <= most);
     count.ok_or_else(|| format!("must be a number from 1 to {most}"))
 }
 
-/// A distance from 0 on.
+/// Parses a distance of 0 or more.
 fn distance(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(distance) if distance >= 0.0 => Ok(distance),
@@ -284,7 +281,7 @@ fn distance(text: &str) -> Result<f64, String> {
     }
 }
 
-/// An angle from 0 to 180 degrees.
+/// Parses an angle from 0 to 180 degrees.
 fn degrees(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(angle) if (0.0..=180.0).contains(&angle) => Ok(angle),

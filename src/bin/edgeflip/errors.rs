@@ -1,13 +1,13 @@
-//! Standard error as the program's own lines go there, also where nothing else may.
+//! Writes the program's own lines to standard error, even if it is closed to other code.
 
 use std::fs::File;
 use std::io::{self, Write};
 use std::sync::OnceLock;
 
-/// Where lines go once [`only_ours`] has closed standard error to all others.
+/// The original standard error, after [`only_ours`] has closed it to other code.
 static OWN: OnceLock<File> = OnceLock::new();
 
-/// Writes to standard error. If that is closed, only the exit status is left to say something.
+/// Writes to standard error. If that fails, the exit status is the only message.
 pub fn say(text: &[u8]) {
     let _ = match OWN.get() {
         Some(mut file) => file.write_all(text),
@@ -15,7 +15,7 @@ pub fn say(text: &[u8]) {
     };
 }
 
-/// Past the lock of Rust's standard error: a thread that waits for the end may have it.
+/// Bypasses the lock of Rust's standard error: a thread that waits for the end of the process may hold it.
 #[cfg(unix)]
 fn raw(mut text: &[u8]) -> io::Result<()> {
     while !text.is_empty() {
@@ -30,7 +30,7 @@ fn raw(text: &[u8]) -> io::Result<()> {
     io::stderr().write_all(text)
 }
 
-/// What others in the process write to standard error from now on, such as drivers of a GPU, goes nowhere.
+/// Discards what other code in the process, such as a GPU driver, writes to standard error from now on.
 #[cfg(unix)]
 pub fn only_ours() {
     let Ok(own) = rustix::io::fcntl_dupfd_cloexec(io::stderr(), 3) else { return };
@@ -40,6 +40,6 @@ pub fn only_ours() {
     }
 }
 
-/// Drivers elsewhere write nothing there that is known.
+/// No driver is known to write to standard error on other systems.
 #[cfg(not(unix))]
 pub fn only_ours() {}

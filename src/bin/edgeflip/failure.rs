@@ -1,4 +1,4 @@
-//! How the program ends without a result.
+//! Failures: the exit status and the message of a program that ends without a result.
 
 use edgeflip::Error;
 use std::path::Path;
@@ -10,7 +10,7 @@ pub struct Failure {
 }
 
 impl Failure {
-    /// What went wrong with `path`; an error that names its path, or is about none, stays as it is.
+    /// The failure for an error with `path`. An error that has its own path, or none, is not prefixed with `path`.
     pub fn of(path: &Path, error: &Error) -> Self {
         let line = match error {
             &Error::FileTooLarge { limit, .. } => {
@@ -25,7 +25,7 @@ impl Failure {
             _ => format!("{}: {error}", path.display()),
         };
         let status = match error {
-            // Its range has been checked; the system has not so many.
+            // The range was checked, so the system could not start the threads.
             Error::Option { option: "threads", .. } => 1,
             Error::Option { .. } => 2,
             Error::BackendUnavailable { .. } | Error::BackendLimit { .. } | Error::Device { .. } => 3,

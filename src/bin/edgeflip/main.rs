@@ -1,4 +1,4 @@
-//! The command-line program: reads a mesh, makes it Delaunay, writes it, and says what happened.
+//! The command-line program: reads a mesh, makes it Delaunay, writes it, and reports the run.
 
 mod args;
 mod errors;
@@ -49,7 +49,7 @@ fn one_line(text: &str) -> String {
     text.replace(|c: char| c.is_control(), " ")
 }
 
-/// A spinner where someone can see it and it does not stand between the lines of the result.
+/// A spinner, if standard error is a terminal and the result does not go to the same terminal.
 fn progress(args: &Args, output: &Output) -> ProgressBar {
     let disturbs = (args.json || output.is_standard()) && std::io::stdout().is_terminal();
     if args.quiet || disturbs || !std::io::stderr().is_terminal() {
@@ -63,17 +63,17 @@ fn progress(args: &Args, output: &Output) -> ProgressBar {
     bar
 }
 
-/// A run up to the printing.
+/// A run before its report is printed.
 struct Done {
-    /// If somebody wants to see it.
+    /// `None` if the run is not reported.
     report: Option<Report>,
-    /// What `--verify` makes of the run.
+    /// The failure that `--verify` found.
     violation: Option<Failure>,
     staged: Option<Staged>,
     clock: Clock,
 }
 
-/// Everything but the printing. The target is written last, and only if nothing was wrong.
+/// The whole run except printing. It writes the output last, and only if nothing has failed.
 fn run(args: &Args, mut clock: Clock) -> Result<Done, Failure> {
     let refused = |error| Failure::of(&args.input, &error);
     let output = output(args)?;
@@ -142,10 +142,10 @@ fn run(args: &Args, mut clock: Clock) -> Result<Done, Failure> {
     Ok(Done { report, violation, staged, clock })
 }
 
-/// The fewest bytes that a triangle takes in most files, with the half of a vertex that comes with it.
+/// The fewest bytes of a triangle and half a vertex in most files.
 const BYTES_OF_TRIANGLE: u64 = 16;
 
-/// How many triangles IN may have, so far as its length says, unless it is packed. None where it is not there.
+/// An upper bound on the triangles of IN, from its length; 0 if IN does not exist.
 fn most_triangles(args: &Args) -> usize {
     let is_packed = args.input.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("gz"));
     match args.input.metadata() {
@@ -157,7 +157,7 @@ fn most_triangles(args: &Args) -> usize {
     }
 }
 
-/// Where OUT leads to.
+/// The output.
 fn output(args: &Args) -> Result<Output, Failure> {
     let is_standard = args.output.as_os_str() == "-";
     let output =
@@ -169,13 +169,13 @@ fn output(args: &Args) -> Result<Output, Failure> {
     })?;
     if output.is_standard() && args.json {
         let line =
-            format!("{}: --json has the standard output for itself; give another OUT", args.output.display());
+            format!("{}: --json also writes to the standard output; give another OUT", args.output.display());
         return Err(Failure { status: 2, line });
     }
     Ok(output)
 }
 
-/// Leaves the GPU alone where there is none, or where its driver would end the program for want of memory, and says why.
+/// Changes the backend to the CPU if there is no GPU, or if its driver might end the program for lack of memory. Returns why.
 fn without_gpu(options: &mut Options, mesh: &Mesh, gpu: Option<EarlyGpu>) -> Result<Option<String>, Failure> {
     let unavailable = |message| Error::BackendUnavailable { backend: EngineKind::Gpu, message };
     let refusal = match gpu {
@@ -205,7 +205,7 @@ fn list<'a, T>(
     path.as_ref().map_or(Ok(Vec::new()), read)
 }
 
-/// Turns triangles, if that is asked for, of a mesh that is joined or of one that is not; and how many.
+/// With `--reorient`, reverses triangles of the welded mesh, or of the mesh itself. Returns how many.
 fn turn(
     args: &Args,
     mesh: &Mesh,
@@ -224,7 +224,7 @@ fn turn(
     })
 }
 
-/// What the independent check finds: another count of the edges left is a violation too.
+/// Runs the independent check. A different count of the edges left is also a violation.
 fn check(options: &Options, mesh: &Mesh, outcome: &Outcome) -> Check {
     let audit = quality::audit(mesh, &outcome.triangles, options);
     let mut violations: Vec<String> = audit.violations.iter().map(ToString::to_string).collect();
@@ -237,7 +237,7 @@ fn check(options: &Options, mesh: &Mesh, outcome: &Outcome) -> Check {
     Check { violations, remaining_edges, distance: quality::distance(mesh, &outcome.triangles) }
 }
 
-/// Wall time since the program began, lap by lap.
+/// Wall time since the start of the program, with laps.
 struct Clock {
     start: Instant,
     last: Instant,
@@ -261,12 +261,12 @@ impl Clock {
     }
 }
 
-/// To the microsecond.
+/// Milliseconds, rounded down to microseconds.
 fn milliseconds(time: Duration) -> f64 {
     time.as_micros() as f64 / 1e3
 }
 
-/// Prints the object for `--json`, then gives OUT its name, so that it is as it was if the object cannot be printed. Then
+/// Prints the object of `--json`, then commits OUT, so that OUT stays unchanged if the object cannot be printed. Then prints
 /// the notes and the summary.
 fn finish(args: &Args, done: Done) -> Result<(), Failure> {
     let Done { mut report, violation, staged, clock } = done;
@@ -287,7 +287,7 @@ fn finish(args: &Args, done: Done) -> Result<(), Failure> {
     violation.map_or(Ok(()), Err)
 }
 
-/// Prints one object on standard output. A reader that has gone away is no failure.
+/// Prints one object on standard output. A closed pipe is not a failure.
 fn print(report: &Report) -> std::io::Result<()> {
     let mut line = serde_json::to_string(report)?;
     line.push('\n');

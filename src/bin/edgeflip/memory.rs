@@ -1,7 +1,7 @@
-//! What happens where memory runs out: one line says so, no temporary file stays, and the status is 1.
+//! Ends the program when memory runs out: with one line on standard error, without temporary files, and with status 1.
 //!
-//! Rust ends the process by SIGABRT where an allocation fails, in whatever dependency or thread. This allocator ends it
-//! first. So no allocation of the program ever fails, and what has a destructor has to be registered elsewhere.
+//! When an allocation fails, in any dependency or thread, Rust would end the process by SIGABRT. This allocator ends it
+//! first. So no allocation ever returns an error, and no destructor runs: temporary files are kept in a list.
 #![expect(unsafe_code, reason = "the trait for allocators is unsafe; each function hands its arguments on")]
 
 use crate::errors;
@@ -19,66 +19,66 @@ static ALLOCATOR: Allocator = Allocator;
 /// How long a thread may take to end the process.
 const PATIENCE: Duration = Duration::from_secs(5);
 
-/// What the line begins with.
+/// The start of the line.
 static START: OnceLock<String> = OnceLock::new();
 
-/// The system's allocator, or the end.
+/// The system's allocator. A failed allocation ends the process.
 struct Allocator;
 
-// SAFETY: the system's allocator keeps the contract, and a null pointer is never handed on.
+// SAFETY: the system's allocator keeps the contract, and a null pointer is never returned.
 unsafe impl GlobalAlloc for Allocator {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         // SAFETY: the caller keeps the contract of this function, which is the same.
-        had(unsafe { System.alloc(layout) }, layout.size())
+        checked(unsafe { System.alloc(layout) }, layout.size())
     }
 
     unsafe fn alloc_zeroed(&self, layout: Layout) -> *mut u8 {
         // SAFETY: as above.
-        had(unsafe { System.alloc_zeroed(layout) }, layout.size())
+        checked(unsafe { System.alloc_zeroed(layout) }, layout.size())
     }
 
-    unsafe fn realloc(&self, place: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+    unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
         // SAFETY: as above.
-        had(unsafe { System.realloc(place, layout, size) }, size)
+        checked(unsafe { System.realloc(pointer, layout, size) }, size)
     }
 
-    unsafe fn dealloc(&self, place: *mut u8, layout: Layout) {
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
         // SAFETY: as above.
-        unsafe { System.dealloc(place, layout) }
+        unsafe { System.dealloc(pointer, layout) }
     }
 }
 
-fn had(place: *mut u8, bytes: usize) -> *mut u8 {
-    if place.is_null() {
+fn checked(pointer: *mut u8, bytes: usize) -> *mut u8 {
+    if pointer.is_null() {
         ran_out(bytes);
     }
     if bytes >= LARGE {
-        in_large_pages(place, bytes);
+        in_large_pages(pointer, bytes);
     }
-    place
+    pointer
 }
 
-/// Bytes of a large page, and of what is worth asking for them.
+/// Bytes of a large page, and of the smallest allocation that uses them.
 const PAGE: usize = 1 << 21;
 const LARGE: usize = 4 * PAGE;
 
-/// Asks for large pages, where the system gives them to those who ask: many small ones take long to be touched first.
+/// Requests large pages for an allocation: the first access to many small pages takes long.
 #[cfg(target_os = "linux")]
-fn in_large_pages(place: *mut u8, bytes: usize) {
-    let before = place.addr().next_multiple_of(PAGE) - place.addr();
-    // SAFETY: these pages are parts of the allocation, and what is in them stays.
-    unsafe { libc::madvise(place.add(before).cast(), (bytes - before) / PAGE * PAGE, libc::MADV_HUGEPAGE) };
+fn in_large_pages(pointer: *mut u8, bytes: usize) {
+    let before = pointer.addr().next_multiple_of(PAGE) - pointer.addr();
+    // SAFETY: these pages are inside the allocation, and the call keeps their content.
+    unsafe { libc::madvise(pointer.add(before).cast(), (bytes - before) / PAGE * PAGE, libc::MADV_HUGEPAGE) };
 }
 
 #[cfg(not(target_os = "linux"))]
 fn in_large_pages(_: *mut u8, _: usize) {}
 
-/// Gives the line its beginning, which names the file that is read. Before there are threads.
+/// Sets the start of the line, which names the input file. Call it before any thread starts.
 pub fn prepare(input: &str) {
     let _ = START.set(format!("edgeflip: {input}: "));
     #[cfg(all(target_os = "linux", target_env = "gnu"))]
     if limit().is_some() {
-        // Each thread would set 64 MiB of addresses aside.
+        // Each thread would reserve 64 MiB of addresses.
         // SAFETY: the call changes a setting of the allocator.
         unsafe { libc::mallopt(libc::M_ARENA_MAX, 1) };
     }
@@ -89,20 +89,20 @@ pub fn prepare(input: &str) {
 fn ran_out(bytes: usize) -> ! {
     static IS_ENDING: AtomicBool = AtomicBool::new(false);
     if IS_ENDING.swap(true, Ordering::Relaxed) {
-        // Another thread ends it, unless it is this one, here for the second time.
+        // Another thread ends the process, unless this thread is here for the second time.
         thread::sleep(PATIENCE);
         end(1);
     }
     remove_temporary_files();
     let mut line = Cursor::new([0; 128]);
-    let _ = writeln!(line, "memory ran out: {bytes} more bytes could not be had");
+    let _ = writeln!(line, "memory ran out: {bytes} more bytes are not available");
     let length = line.position() as usize;
     errors::say(START.get().map_or(b"edgeflip: ", |start| start.as_bytes()));
     errors::say(&line.get_ref()[..length]);
     end(1)
 }
 
-/// Ends the process at once: what else runs in it, such as the driver of a GPU that begins, is not waited for.
+/// Ends the process at once, without waiting for other code in it, such as a GPU driver that is starting.
 #[cfg(unix)]
 pub fn end(status: u8) -> ! {
     signal_hook::low_level::exit(status.into())
@@ -113,26 +113,26 @@ pub fn end(status: u8) -> ! {
     std::process::exit(status.into())
 }
 
-/// Bytes of addresses that the process may have, if that is limited.
+/// The limit of the process's address space in bytes, if there is one.
 #[cfg(target_os = "linux")]
 pub fn limit() -> Option<u64> {
     rustix::process::getrlimit(rustix::process::Resource::As).current
 }
 
-/// Other systems do not keep to a limit of addresses.
+/// Other systems do not enforce a limit of the address space.
 #[cfg(not(target_os = "linux"))]
 pub fn limit() -> Option<u64> {
     None
 }
 
-/// Bytes of addresses that the driver of a GPU may want before there is a mesh, and for each triangle, in its buffers and
-/// on the way there. Where it cannot have them it may end the process: Mesa's software driver did with up to 910 MB left.
+/// Bytes of addresses that a GPU driver may need before it has a mesh, and for each triangle, in buffers and staging buffers.
+/// A driver without enough memory may end the process: Mesa's software driver did with up to 910 MB left.
 #[cfg(target_os = "linux")]
 const DRIVER: u64 = 1 << 30;
 #[cfg(target_os = "linux")]
 const TRIANGLE: u64 = 128;
 
-/// Why no GPU is to be looked for: its driver might not get its memory.
+/// Why not to use a GPU: its driver might get too little memory.
 #[cfg(target_os = "linux")]
 pub fn too_little_for_a_driver(triangles: usize) -> Option<String> {
     let limit = limit()?;
@@ -141,9 +141,7 @@ pub fn too_little_for_a_driver(triangles: usize) -> Option<String> {
     let left = limit.saturating_sub(1024 * taken.parse::<u64>().ok()?);
     let wanted = DRIVER + TRIANGLE * triangles as u64;
     (left < wanted).then(|| {
-        format!(
-            "the driver of a GPU may need {wanted} bytes, and the limit of memory (ulimit -v) leaves {left}"
-        )
+        format!("a GPU driver may need {wanted} bytes, and the limit of memory (ulimit -v) leaves {left}")
     })
 }
 

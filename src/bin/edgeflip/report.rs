@@ -1,4 +1,4 @@
-//! What a run is reported as: one JSON object, or a few aligned lines.
+//! The report of a run: one JSON object, or a few aligned lines.
 
 use crate::args::Args;
 use crate::failure::Failure;
@@ -12,7 +12,7 @@ use std::fmt::Write;
 use std::mem;
 use std::path::Path;
 
-/// The keys of `--json`, in their order; the rest is for the summary.
+/// The keys of `--json`, in their order. Skipped fields are for the summary.
 #[derive(Serialize)]
 pub struct Report {
     input: String,
@@ -33,7 +33,7 @@ pub struct Report {
     dispatches: u64,
     device_bytes: u64,
     remaining: BTreeMap<&'static str, u64>,
-    /// `null` where there is no angle.
+    /// `null` if there is no angle.
     min_angle_before_deg: f64,
     min_angle_after_deg: f64,
     before: Shape,
@@ -52,7 +52,7 @@ pub struct Report {
     notes: Vec<String>,
 }
 
-/// The shape of the mesh; `null` where a number is none.
+/// The shape of the mesh; `null` for NaN or infinity.
 #[derive(Serialize)]
 struct Shape {
     min_angle_deg: f64,
@@ -89,7 +89,7 @@ pub struct Check {
 }
 
 impl Check {
-    /// What the program ends with, if anything was violated in the mesh of that file.
+    /// The failure of the program, if there are violations. `input` is for its message.
     pub fn violation(&self, input: &Path) -> Option<Failure> {
         let (first, more) = (self.violations.first()?, self.violations.len() - 1);
         let more = if more == 0 { String::new() } else { format!(" (and {more} more)") };
@@ -97,7 +97,7 @@ impl Check {
     }
 }
 
-/// How a run has changed the mesh.
+/// The changes of the mesh by a run.
 pub struct Changes {
     before: Measures,
     after: Measures,
@@ -113,7 +113,7 @@ impl Changes {
     }
 }
 
-/// Wall times in milliseconds, of which all but the total add up to it. `null` for what was not done.
+/// Wall times in milliseconds. All parts add up to the total. `null` for a part that was skipped.
 #[derive(Default, Serialize)]
 pub struct Milliseconds {
     pub start: f64,
@@ -131,7 +131,7 @@ pub struct Milliseconds {
 }
 
 impl Milliseconds {
-    /// Adds those of the library, to the microsecond.
+    /// Adds the times of the library, rounded to microseconds.
     pub fn of_run(&mut self, &Timings { upload, adjacency, flip, total }: &Timings) {
         let [upload, adjacency, flip, count] =
             [upload, adjacency, flip, total - upload - adjacency - flip].map(|ms| (ms * 1e3).round() / 1e3);
@@ -159,7 +159,7 @@ impl Milliseconds {
 }
 
 impl Report {
-    /// `turned`: triangles that were turned first.
+    /// `turned`: the number of triangles that were reversed first.
     pub fn new(
         args: &Args,
         mesh: &Mesh,
@@ -207,7 +207,7 @@ impl Report {
         }
     }
 
-    /// Adds what was joined for the run.
+    /// Adds the numbers of joined vertices and of seams.
     pub fn with_joined(mut self, welded: Option<&Welded>) -> Self {
         if let Some(welded) = welded {
             self.joined_vertices = welded.joined();
@@ -216,8 +216,8 @@ impl Report {
         self
     }
 
-    /// Adds what reading changed, what a file of that format does not keep, and how many edges are locked for what it
-    /// keeps.
+    /// Adds notes about the file that was read and about what a file of this format loses, and the number of edges locked to
+    /// keep attributes.
     pub fn with_attributes(mut self, loaded: &Loaded, format: Format, locked: usize) -> Self {
         self.attribute_edges = locked;
         self.notes.clone_from(&loaded.notes);
@@ -233,17 +233,17 @@ impl Report {
         self
     }
 
-    /// Adds what could not be kept of the file that OUT was.
+    /// Adds notes about the replaced file.
     pub fn add_notes(&mut self, notes: Vec<String>) {
         self.notes.extend(notes);
     }
 
-    /// The notes, a line each.
+    /// The notes, one line each.
     pub fn notes(&self) -> String {
         self.notes.iter().fold(String::new(), |text, note| text + "note       " + note + "\n")
     }
 
-    /// The result for a reader, a few aligned lines.
+    /// The summary: a few aligned lines.
     pub fn summary(&self, args: &Args) -> String {
         let mut text = String::new();
         let mut line = |name: &str, value: String| {
@@ -278,7 +278,7 @@ impl Report {
             let each = self.device_bytes as f64 / self.triangles as f64;
             line(
                 "memory",
-                format!("{} on the device, {each:.1} bytes a triangle", HumanBytes(self.device_bytes)),
+                format!("{} on the device, {each:.1} bytes per triangle", HumanBytes(self.device_bytes)),
             );
         }
         let iterations = match self.iterations {
@@ -323,7 +323,7 @@ impl Report {
             };
             line("audit", found);
         }
-        // What takes less than is printed is left out.
+        // Parts that would be printed as 0.0 are skipped.
         let parts = self.ms.parts().filter(|&(_, ms)| ms >= 0.05);
         let parts: Vec<_> = parts.map(|(name, ms)| format!("{name} {ms:.1}")).collect();
         line("time", format!("{:.1} ms: {}", self.ms.total, parts.join(", ")));
@@ -334,7 +334,7 @@ impl Report {
     }
 }
 
-/// A number of no known size.
+/// Formats a number of any size.
 fn short(number: f64) -> String {
     if number == 0.0 || (1e-3..1e7).contains(&number.abs()) {
         format!("{number:.4}")
@@ -343,13 +343,13 @@ fn short(number: f64) -> String {
     }
 }
 
-/// A number before and after, and by how much of itself it has changed.
+/// Formats a number before and after, and its relative change.
 fn change(before: f64, after: f64) -> String {
     let part = if before == after { 0.0 } else { (after - before) / before.abs() };
     format!("{} → {} ({:+.4} %)", short(before), short(after), 100.0 * part)
 }
 
-/// The first edges left for each reason, by their vertices.
+/// The first edges left for each reason, named by their vertices.
 fn first_edges(remaining: &BTreeMap<&str, Vec<[u32; 2]>>) -> String {
     const LISTED: usize = 5;
     let parts: Vec<String> = remaining
@@ -366,7 +366,7 @@ fn first_edges(remaining: &BTreeMap<&str, Vec<[u32; 2]>>) -> String {
     parts.join("; ")
 }
 
-/// Edges left, by reason, for a reader.
+/// The numbers of edges left by reason, as text.
 pub fn reasons(left: &Reasons) -> String {
     let parts: Vec<String> =
         left.iter().map(|(reason, n)| format!("{} {}", reason.name(), HumanCount(n))).collect();

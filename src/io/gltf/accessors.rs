@@ -1,4 +1,4 @@
-//! Numbers out of buffers, by accessors and buffer views, with every bound checked.
+//! Reads numbers from buffers, through accessors and buffer views, and checks every bound.
 
 use super::buffers::Buffers;
 use super::errors::refuse;
@@ -9,16 +9,16 @@ use gltf::json::buffer::View;
 use gltf::json::validation::Checked;
 use std::ops::Range;
 
-/// Extensions that pack the bytes of a buffer view.
+/// Extensions that compress the bytes of a buffer view.
 const PACKED: [&str; 2] = ["EXT_meshopt_compression", "KHR_meshopt_compression"];
 
 /// Elements of one size in a buffer.
 pub(super) struct Elements {
     pub(super) buffer: usize,
-    /// From the first byte of the first to the last byte of the last.
+    /// From the first byte of the first element to the last byte of the last.
     pub(super) bytes: Range<usize>,
     size: usize,
-    /// Bytes from one to the next.
+    /// Bytes from one element to the next.
     pub(super) stride: usize,
     count: usize,
 }
@@ -28,7 +28,7 @@ impl Elements {
         self.these(buffers, 0..self.count)
     }
 
-    /// Some of them.
+    /// Some of the elements.
     fn these<'a, I: Iterator<Item = usize>>(
         &self,
         buffers: &'a Buffers<'a>,
@@ -48,11 +48,12 @@ pub(super) struct Accessors<'a> {
 impl<'a> Accessors<'a> {
     pub(super) fn get(&self, index: usize) -> Result<&'a Accessor, Error> {
         let accessors = &self.root.accessors;
-        let missing = || refuse(format!("accessor {index}"), format!("there are only {}", accessors.len()));
+        let missing =
+            || refuse(format!("accessor {index}"), format!("out of range, the file has {}", accessors.len()));
         accessors.get(index).ok_or_else(missing)
     }
 
-    /// Whether the accessor's bytes are packed in a way that is not read here.
+    /// Whether the accessor's bytes are compressed.
     pub(super) fn is_packed(&self, index: usize) -> bool {
         let view = self.root.accessors.get(index).and_then(|accessor| accessor.buffer_view);
         let view = view.and_then(|view| self.root.buffer_views.get(view.value()));
@@ -60,19 +61,19 @@ impl<'a> Accessors<'a> {
         extensions.is_some_and(|extensions| PACKED.iter().any(|name| extensions.others.contains_key(*name)))
     }
 
-    /// The elements of an accessor, unless it begins with zeros that are nowhere.
+    /// The elements of an accessor; `None` if it has no buffer view, and so consists of zeros.
     pub(super) fn elements(&self, index: usize) -> Result<Option<Elements>, Error> {
         let accessor = self.get(index)?;
-        let place = || format!("accessor {index}");
-        let size = component(accessor, place)?.size() * components(accessor, place)?;
+        let location = || format!("accessor {index}");
+        let size = component(accessor, location)?.size() * components(accessor, location)?;
         let Some(view) = accessor.buffer_view else { return Ok(None) };
         let offset = accessor.byte_offset.unwrap_or_default().0;
-        self.in_view(view.value(), offset, accessor.count.0, size, place).map(Some)
+        self.in_view(view.value(), offset, accessor.count.0, size, location).map(Some)
     }
 
-    fn view(&self, index: usize, place: impl Fn() -> String) -> Result<&'a View, Error> {
+    fn view(&self, index: usize, location: impl Fn() -> String) -> Result<&'a View, Error> {
         let views = &self.root.buffer_views;
-        views.get(index).ok_or_else(|| refuse(place(), format!("there is no buffer view {index}")))
+        views.get(index).ok_or_else(|| refuse(location(), format!("there is no buffer view {index}")))
     }
 
     fn in_view(
@@ -81,20 +82,20 @@ impl<'a> Accessors<'a> {
         offset: u64,
         count: u64,
         size: usize,
-        place: impl Fn() -> String,
+        location: impl Fn() -> String,
     ) -> Result<Elements, Error> {
-        let view = self.view(index, &place)?;
+        let view = self.view(index, &location)?;
         let buffer = view.buffer.value();
-        let length = self.buffers.length(buffer, &place)? as u64;
+        let length = self.buffers.length(buffer, &location)? as u64;
         let stride = view.byte_stride.map_or(0, |stride| stride.0);
         let stride = if stride == 0 { size } else { stride };
         if stride < size {
             return Err(refuse(
-                place(),
+                location(),
                 format!("elements of {size} bytes lie {stride} bytes apart in buffer view {index}"),
             ));
         }
-        // The last element is followed by no gap.
+        // There is no gap after the last element.
         let taken = count.saturating_sub(1).saturating_mul(stride as u64).saturating_add(size as u64);
         let taken = if count == 0 { 0 } else { taken };
         let start = view.byte_offset.unwrap_or_default().0;
@@ -105,7 +106,7 @@ impl<'a> Accessors<'a> {
             if needed > present {
                 let number = if what == "buffer" { buffer } else { index };
                 return Err(refuse(
-                    place(),
+                    location(),
                     format!("it needs {needed} bytes of {what} {number}, which has {present}"),
                 ));
             }
@@ -114,15 +115,15 @@ impl<'a> Accessors<'a> {
         Ok(Elements { buffer, bytes, size, stride, count: count as usize })
     }
 
-    /// The three coordinates of each element, or of those that are asked for, which must be there, in an accessor that
-    /// is not sparse. Integers come as such, normalized ones too: that is the same mesh, larger.
+    /// The three coordinates of each element, or of `elements`, which must exist, in an accessor that is not sparse. Integers
+    /// become floats of the same value, even normalized ones: that only scales the mesh.
     pub(super) fn positions(&self, index: usize, elements: Option<&Vec<u32>>) -> Result<Vec<f32>, Error> {
         let accessor = self.get(index)?;
-        let place = || format!("accessor {index}");
+        let location = || format!("accessor {index}");
         if accessor.type_ != Checked::Valid(Type::Vec3) {
-            return Err(refuse(place(), "positions are not of type VEC3"));
+            return Err(refuse(location(), "positions are not of type VEC3"));
         }
-        let component = component(accessor, place)?;
+        let component = component(accessor, location)?;
         let read = move |element: &[u8]| -> [f32; 3] {
             std::array::from_fn(|axis| number(&element[axis * component.size()..], component))
         };
@@ -131,12 +132,12 @@ impl<'a> Accessors<'a> {
             (Some(all), Some(these)) => {
                 all.these(self.buffers, these.iter().map(|&i| i as usize)).flat_map(read).collect()
             }
-            (None, _) => vec![0.0; 3 * self.count_of_zeros(accessor, place)?],
+            (None, _) => vec![0.0; 3 * self.count_of_zeros(accessor, location)?],
         };
-        for (vertex, value) in self.sparse(accessor, 3 * component.size(), place)? {
+        for (vertex, value) in self.sparse(accessor, 3 * component.size(), location)? {
             let Some(position) = positions.as_chunks_mut().0.get_mut(vertex) else {
                 return Err(refuse(
-                    place(),
+                    location(),
                     format!("it has no element {vertex}, which its sparse part changes"),
                 ));
             };
@@ -145,23 +146,23 @@ impl<'a> Accessors<'a> {
         Ok(positions)
     }
 
-    /// What the sparse part of an accessor changes: elements of `size` bytes, with their numbers.
+    /// The elements that the sparse part of an accessor replaces: their indices, and their `size` bytes.
     fn sparse(
         &self,
         accessor: &Accessor,
         size: usize,
-        place: impl Fn() -> String + Copy,
+        location: impl Fn() -> String + Copy,
     ) -> Result<impl Iterator<Item = (usize, &'a [u8])>, Error> {
         let parts = accessor.sparse.as_ref().map(|sparse| {
             let (at, values) = (&sparse.indices, &sparse.values);
             let Checked::Valid(kind) = at.component_type else {
-                return Err(refuse(place(), "its sparse indices are of no known type"));
+                return Err(refuse(location(), "the component type of its sparse indices is not known"));
             };
             let (kind, count) = (kind.0, sparse.count.0);
             let indices =
-                self.in_view(at.buffer_view.value(), at.byte_offset.0, count, kind.size(), place)?;
+                self.in_view(at.buffer_view.value(), at.byte_offset.0, count, kind.size(), location)?;
             let values =
-                self.in_view(values.buffer_view.value(), values.byte_offset.0, count, size, place)?;
+                self.in_view(values.buffer_view.value(), values.byte_offset.0, count, size, location)?;
             let indices = indices.iter(self.buffers).map(move |at| integer(at, kind) as usize);
             Ok(indices.zip(values.iter(self.buffers)))
         });
@@ -171,21 +172,21 @@ impl<'a> Accessors<'a> {
     /// The bytes of some elements, in ascending order.
     ///
     /// # Errors
-    /// [`Error::Parse`] where one is not there, or all are packed.
+    /// [`Error::Parse`] if one does not exist, or the accessor is compressed.
     pub(super) fn bytes(&self, index: usize, elements: &[u32]) -> Result<Vec<&'a [u8]>, Error> {
         let accessor = self.get(index)?;
-        let place = || format!("accessor {index}");
+        let location = || format!("accessor {index}");
         let is_there = elements.last().is_none_or(|&last| u64::from(last) < accessor.count.0);
         if !is_there || self.is_packed(index) {
-            return Err(refuse(place(), "it does not have all vertices, or is compressed"));
+            return Err(refuse(location(), "it does not have all vertices, or is compressed"));
         }
-        let size = component(accessor, place)?.size() * components(accessor, place)?;
+        let size = component(accessor, location)?.size() * components(accessor, location)?;
         let numbers = elements.iter().map(|&element| element as usize);
         let mut bytes: Vec<&[u8]> = match self.elements(index)? {
             Some(all) => all.these(self.buffers, numbers).collect(),
             None => vec![&[]; elements.len()],
         };
-        for (element, value) in self.sparse(accessor, size, place)? {
+        for (element, value) in self.sparse(accessor, size, location)? {
             if let Ok(rank) = elements.binary_search(&(element as u32)) {
                 bytes[rank] = value;
             }
@@ -193,16 +194,16 @@ impl<'a> Accessors<'a> {
         Ok(bytes)
     }
 
-    /// How many elements an accessor without a buffer view has: no more than the file has bytes.
-    fn count_of_zeros(&self, accessor: &Accessor, place: impl Fn() -> String) -> Result<usize, Error> {
+    /// The number of elements of an accessor without a buffer view. Refuses more elements than the file has bytes.
+    fn count_of_zeros(&self, accessor: &Accessor, location: impl Fn() -> String) -> Result<usize, Error> {
         let count = accessor.count.0;
         if accessor.sparse.is_some() && count <= self.buffers.total() {
             return Ok(count as usize);
         }
-        Err(refuse(place(), format!("it announces {count} elements and has no data for them")))
+        Err(refuse(location(), format!("it announces {count} elements and has no data for them")))
     }
 
-    /// Whether the numbers fit an accessor of indices. The largest one of its type restarts a strip.
+    /// Whether the numbers fit an accessor of indices. The largest number of its type is reserved: it restarts a strip.
     pub(super) fn can_hold(&self, index: usize, numbers: &[u32]) -> Result<bool, Error> {
         let largest = match component(self.get(index)?, || format!("accessor {index}"))? {
             ComponentType::U8 => u32::from(u8::MAX),
@@ -212,34 +213,34 @@ impl<'a> Accessors<'a> {
         Ok(numbers.iter().all(|&number| number < largest))
     }
 
-    /// The vertices that an accessor of indices names.
+    /// The indices in an accessor.
     pub(super) fn indices(&self, index: usize) -> Result<Vec<u32>, Error> {
         let accessor = self.get(index)?;
-        let place = || format!("accessor {index}");
-        let component = component(accessor, place)?;
+        let location = || format!("accessor {index}");
+        let component = component(accessor, location)?;
         if accessor.type_ != Checked::Valid(Type::Scalar) || !is_unsigned(component) {
-            return Err(refuse(place(), "indices are not unsigned integers of type SCALAR"));
+            return Err(refuse(location(), "indices are not unsigned integers of type SCALAR"));
         }
         match self.elements(index)? {
             Some(elements) if accessor.sparse.is_none() => {
                 Ok(elements.iter(self.buffers).map(|element| integer(element, component)).collect())
             }
-            _ => Err(refuse(place(), "sparse indices are not supported")),
+            _ => Err(refuse(location(), "sparse indices are not supported")),
         }
     }
 }
 
-pub(super) fn component(accessor: &Accessor, place: impl Fn() -> String) -> Result<ComponentType, Error> {
+pub(super) fn component(accessor: &Accessor, location: impl Fn() -> String) -> Result<ComponentType, Error> {
     match accessor.component_type {
         Checked::Valid(component) => Ok(component.0),
-        Checked::Invalid => Err(refuse(place(), "its component type is not known")),
+        Checked::Invalid => Err(refuse(location(), "its component type is not known")),
     }
 }
 
-fn components(accessor: &Accessor, place: impl Fn() -> String) -> Result<usize, Error> {
+fn components(accessor: &Accessor, location: impl Fn() -> String) -> Result<usize, Error> {
     match accessor.type_ {
         Checked::Valid(kind) => Ok(kind.multiplicity()),
-        Checked::Invalid => Err(refuse(place(), "its type is not known")),
+        Checked::Invalid => Err(refuse(location(), "its type is not known")),
     }
 }
 
@@ -247,7 +248,7 @@ fn is_unsigned(component: ComponentType) -> bool {
     matches!(component, ComponentType::U8 | ComponentType::U16 | ComponentType::U32)
 }
 
-/// The component at the start of the bytes, of which there are enough.
+/// The component at the start of `bytes`, which must be long enough.
 fn number(bytes: &[u8], component: ComponentType) -> f32 {
     let word = || bytes.first_chunk().copied().unwrap_or_default();
     match component {
@@ -259,7 +260,7 @@ fn number(bytes: &[u8], component: ComponentType) -> f32 {
     }
 }
 
-/// The unsigned integer at the start of the bytes, of which there are enough.
+/// The unsigned integer at the start of `bytes`, which must be long enough.
 fn integer(bytes: &[u8], component: ComponentType) -> u32 {
     match component {
         ComponentType::U8 => u32::from(bytes[0]),

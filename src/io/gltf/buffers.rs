@@ -1,4 +1,4 @@
-//! The bytes that a glTF file has in its binary chunk, in its JSON, or in files beside it.
+//! The buffers of a glTF file: in its binary chunk, in its JSON, or in other files.
 
 use super::errors::{quoted, refuse};
 use super::root::Root;
@@ -22,16 +22,15 @@ pub(super) struct Buffers<'a>(Vec<Buffer<'a>>);
 
 enum Buffer<'a> {
     Present(Cow<'a, [u8]>),
-    /// Why it is not there.
+    /// Why it is missing.
     Absent(String),
 }
 
 impl<'a> Buffers<'a> {
-    /// Takes the binary chunk as the first buffer where that names no other place, and asks `read` for what lies in
-    /// other files.
+    /// Takes the binary chunk as the first buffer, if that has no URI, and calls `read` for buffers in other files.
     ///
     /// # Errors
-    /// [`Error::Parse`] for a data URI that is none, and for a file that `read` does not give.
+    /// [`Error::Parse`] for an invalid data URI, and for a file that `read` does not return.
     pub(super) fn of(root: &Root, binary: Option<&'a [u8]>, read: ReadFile<'_>) -> Result<Self, Error> {
         let mut buffers = Vec::with_capacity(root.buffers.len());
         for (index, buffer) in root.buffers.iter().enumerate() {
@@ -46,7 +45,7 @@ impl<'a> Buffers<'a> {
                 },
             });
         }
-        // What lies beyond the length that is announced is padding.
+        // Bytes beyond the length in the JSON are padding.
         for (buffer, announced) in buffers.iter_mut().zip(&root.buffers) {
             let announced = usize::try_from(announced.byte_length.0).unwrap_or(usize::MAX);
             match buffer {
@@ -60,7 +59,7 @@ impl<'a> Buffers<'a> {
 
     fn from_file(index: usize, uri: &str, read: ReadFile<'_>) -> Result<Buffer<'a>, Error> {
         let name = percent_decode_str(uri).decode_utf8_lossy();
-        // A path to somewhere else, or to another machine, is never followed.
+        // A path out of the folder, or to another machine, is never followed.
         let is_beside = !name.starts_with('/')
             && !name.contains(['\\', ':', '\0'])
             && name.split('/').all(|part| part != "..");
@@ -72,27 +71,27 @@ impl<'a> Buffers<'a> {
         Ok(Buffer::Present(bytes.into()))
     }
 
-    /// The length of a buffer that is there.
-    pub(super) fn length(&self, index: usize, place: impl Fn() -> String) -> Result<usize, Error> {
+    /// The length of a buffer, or an error at `location` if it is missing.
+    pub(super) fn length(&self, index: usize, location: impl Fn() -> String) -> Result<usize, Error> {
         match self.0.get(index) {
             Some(Buffer::Present(bytes)) => Ok(bytes.len()),
-            Some(Buffer::Absent(why)) => Err(refuse(place(), format!("buffer {index} is missing: {why}"))),
-            None => Err(refuse(place(), format!("there is no buffer {index}"))),
+            Some(Buffer::Absent(why)) => Err(refuse(location(), format!("buffer {index} is missing: {why}"))),
+            None => Err(refuse(location(), format!("there is no buffer {index}"))),
         }
     }
 
-    /// Bytes of all.
+    /// The total number of bytes.
     pub(super) fn total(&self) -> u64 {
         (0..self.0.len()).map(|index| self[index].len() as u64).sum()
     }
 
-    /// Whether there is a buffer of this number, and its bytes are known.
+    /// Whether buffer `index` exists and its bytes are present.
     pub(super) fn has(&self, index: usize) -> bool {
         matches!(self.0.get(index), Some(Buffer::Present(_)))
     }
 }
 
-/// The bytes of a buffer; none where they are not there.
+/// The bytes of a buffer; empty if they are missing.
 impl Index<usize> for Buffers<'_> {
     type Output = [u8];
     fn index(&self, index: usize) -> &[u8] {
@@ -107,22 +106,22 @@ fn at(buffer: usize, message: impl Into<String>) -> Error {
     refuse(format!("buffer {buffer}"), message)
 }
 
-/// Whether a URI that begins so is one of data. Schemes are in either case (RFC 3986, section 3.1).
+/// Whether a URI that begins with `head` is a data URI. Schemes may be in upper or lower case (RFC 3986, section 3.1).
 fn is_data(head: &str) -> bool {
     head.get(..5).is_some_and(|scheme| scheme.eq_ignore_ascii_case("data:"))
 }
 
-/// The bytes of a data URI, of what is before its comma and behind.
+/// The bytes of a data URI. `head` is the part before its comma, `data` the part after it.
 fn decode(head: &str, data: &str) -> Result<Vec<u8>, String> {
     const MARK: &str = ";base64";
     let mark = head.len().checked_sub(MARK.len()).and_then(|at| head.get(at..));
     if mark.is_some_and(|mark| mark.eq_ignore_ascii_case(MARK)) {
-        return BASE64.decode(data).map_err(|error| format!("its data URI is no base64: {error}"));
+        return BASE64.decode(data).map_err(|error| format!("its data URI is not valid base64: {error}"));
     }
     Ok(percent_decode_str(data).collect())
 }
 
-/// Bytes as a data URI.
+/// Encodes bytes as a data URI.
 pub(super) fn data_uri(bytes: &[u8]) -> String {
     let mut uri = String::from("data:application/octet-stream;base64,");
     BASE64.encode_string(bytes, &mut uri);

@@ -1,4 +1,4 @@
-//! The two shapes of a glTF file: JSON alone (`.gltf`), and JSON with a binary chunk behind a header (`.glb`).
+//! The two forms of a glTF file: JSON alone (`.gltf`), and a header with a JSON chunk and a binary chunk (`.glb`).
 //! Source: the glTF 2.0 specification, section 4, "GLB File Format Specification".
 
 use super::errors::refuse;
@@ -10,12 +10,12 @@ const HEADER: usize = 12;
 const JSON: &[u8; 4] = b"JSON";
 const BINARY: &[u8; 4] = b"BIN\0";
 
-/// Where the parts of a file are.
+/// The byte ranges of the parts of a file.
 pub(super) struct Container {
     pub(super) json: Range<usize>,
     /// The binary chunk of a `.glb` file.
     pub(super) binary: Option<Range<usize>>,
-    /// Chunks of other kinds, each with its length and kind before it.
+    /// Chunks of other kinds, including their length and kind.
     pub(super) others: Vec<Range<usize>>,
     pub(super) is_binary: bool,
 }
@@ -34,7 +34,7 @@ impl Container {
         if version != 2 {
             return Err(refuse(
                 "byte 4",
-                format!("the file is of version {version} of glTF; version 2 is read"),
+                format!("the file has glTF version {version}, only version 2 is supported"),
             ));
         }
         let end = word(bytes, 8)? as usize;
@@ -66,7 +66,7 @@ impl Container {
     }
 }
 
-/// Where the chunk at `at` ends.
+/// The end of the chunk at byte `at`.
 fn chunk_end(bytes: &[u8], at: usize, end: usize) -> Result<usize, Error> {
     let length = word(bytes, at)? as usize;
     match (at + 8).checked_add(length) {
@@ -88,7 +88,7 @@ fn word(bytes: &[u8], at: usize) -> Result<u32, Error> {
 /// The bytes of a `.glb` file. `others` are whole chunks.
 ///
 /// # Errors
-/// [`Error::TooLarge`]: such a file has less than 4 GiB.
+/// [`Error::TooLarge`] for 4 GiB or more.
 pub(super) fn glb(json: &[u8], binary: Option<&[u8]>, others: &[&[u8]]) -> Result<Vec<u8>, Error> {
     let padded = |length: usize| length.next_multiple_of(4);
     let chunks = [(JSON, Some(json), b' '), (BINARY, binary, 0)];

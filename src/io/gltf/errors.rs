@@ -1,17 +1,17 @@
-//! Errors of glTF files, and the names in them.
+//! Errors of glTF files, and names in messages.
 
 use crate::Error;
 use crate::io::text::quoted as quoted_bytes;
 
-pub(super) fn refuse(place: impl Into<String>, message: impl Into<String>) -> Error {
-    Error::Parse { place: place.into(), message: message.into() }
+pub(super) fn refuse(location: impl Into<String>, message: impl Into<String>) -> Error {
+    Error::Parse { place: location.into(), message: message.into() }
 }
 
 pub(super) fn quoted(text: &str) -> String {
     quoted_bytes(text.as_bytes())
 }
 
-/// Names of the file, which a message repeats, may have line breaks.
+/// Replaces line breaks, which names in a file may have.
 pub(super) fn one_line(message: String) -> String {
     message.replace(char::is_control, "\u{fffd}")
 }

@@ -1,34 +1,34 @@
-//! How deep the JSON of a file is nested. Reading skips what it does not know at any depth, but a file is written from a
-//! `serde_json::Value`, which has a limit: a deeper file is refused where it is read.
+//! The depth of nesting in the JSON of a file. The reader skips unknown parts of any depth, but the writer needs a
+//! `serde_json::Value`, which has a limit. So the reader refuses deeper files.
 
 use super::errors::refuse;
 use crate::Error;
 use memchr::memchr2;
 
-/// Arrays and objects within each other that `serde_json` reads into a `Value`.
+/// The most nested arrays and objects that `serde_json` reads into a `Value`.
 const DEEPEST: usize = 127;
 
-/// Refuses JSON in which more of them are.
+/// Refuses JSON that is nested more deeply.
 pub(super) fn refuse_deep(bytes: &[u8]) -> Result<(), Error> {
     let (mut depth, mut rest) = (0usize, bytes);
     while let Some(at) = rest.iter().position(|byte| b"[]{}\"".contains(byte)) {
         let byte = rest[at];
         rest = &rest[at + 1..];
         match byte {
-            b'"' => rest = behind_string(rest),
+            b'"' => rest = after_string(rest),
             b'[' | b'{' => depth += 1,
             _ => depth = depth.saturating_sub(1),
         }
         if depth > DEEPEST {
-            let place = format!("JSON, byte {}", bytes.len() - rest.len() - 1);
-            return Err(refuse(place, format!("it is nested more than {DEEPEST} levels deep")));
+            let location = format!("JSON, byte {}", bytes.len() - rest.len() - 1);
+            return Err(refuse(location, format!("it is nested more than {DEEPEST} levels deep")));
         }
     }
     Ok(())
 }
 
-/// What follows a string of which the first quotation mark has been read.
-fn behind_string(mut rest: &[u8]) -> &[u8] {
+/// The bytes after a string whose first quotation mark has been read.
+fn after_string(mut rest: &[u8]) -> &[u8] {
     while let Some(at) = memchr2(b'"', b'\\', rest) {
         let is_end = rest[at] == b'"';
         rest = rest.get(at + if is_end { 1 } else { 2 }..).unwrap_or_default();
@@ -44,7 +44,7 @@ mod tests {
     use crate::io::{Format, Loaded, ReadOptions, parse};
     use crate::{Error, Mesh};
 
-    /// One triangle; `extras` in its asset.
+    /// A file with one triangle, and `extras` in its asset.
     fn with_extras(extras: &str) -> Result<Loaded, Error> {
         let positions = vec![0f32, 0., 0., 1., 0., 0., 0., 1., 0.];
         let mesh = Mesh::new(crate::Dimension::Three, positions, vec![0, 1, 2]).unwrap();
@@ -53,9 +53,9 @@ mod tests {
         parse(Format::Gltf, text.into_bytes(), &ReadOptions::default())
     }
 
-    /// The document and its asset are two levels.
+    /// The document and its asset add two levels.
     #[test]
-    fn what_is_read_can_be_written() {
+    fn a_file_that_can_be_read_can_be_written() {
         for (open, close) in [("[", "]"), (r#"{"a":"#, "}")] {
             let nested = |levels: usize| open.repeat(levels) + "0" + &close.repeat(levels);
             let loaded = with_extras(&nested(super::DEEPEST - 2)).unwrap();

@@ -1,4 +1,4 @@
-//! Where the nodes of the scene place a mesh.
+//! The placement of meshes by the nodes of the scene.
 
 use super::errors::refuse;
 use super::root::Root;
@@ -6,28 +6,28 @@ use crate::Error;
 use glam::{DMat3, DMat4, DQuat, DVec3};
 use gltf::json::scene::Node;
 
-/// Relative to a square of a length: below it two lengths are one. Quaternions and matrices are rounded to 32 bits.
+/// Relative tolerance for squares of lengths, because quaternions and matrices are rounded to 32 bits.
 const ROUNDING: f64 = 1e-5;
 
-/// Where a mesh is in the scene.
+/// The placement of a mesh in the scene.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Placement {
-    /// From the mesh's coordinates to those of the scene, by the first node that has it.
+    /// Maps the mesh's coordinates to those of the scene, by the first node that has the mesh.
     pub(super) world: DMat4,
-    /// What changes the angles of its triangles on the way: a scale that is not uniform, or a shear.
+    /// The linear part of `world`, if it changes angles: a non-uniform scale, or a shear.
     pub(super) stretch: Option<DMat3>,
-    /// How many nodes have it.
+    /// The number of nodes that have the mesh.
     nodes: usize,
-    /// Whether all of them leave its angles as they are.
+    /// Whether all of them keep its angles.
     is_similar_everywhere: bool,
 }
 
 impl Placement {
-    /// That of a mesh which no node has.
+    /// The placement of a mesh that no node has.
     const NOWHERE: Self =
         Self { world: DMat4::IDENTITY, stretch: None, nodes: 0, is_similar_everywhere: true };
 
-    /// Whether the nodes that have the mesh may disagree about its angles.
+    /// Whether two nodes may give the mesh different angles.
     pub(super) fn is_ambiguous(&self) -> bool {
         self.nodes > 1 && !self.is_similar_everywhere
     }
@@ -43,11 +43,11 @@ impl Placement {
     }
 }
 
-/// The placement of each mesh, and how many nodes have two parents or are below themselves; such a node counts where it
-/// is reached first.
+/// The placement of each mesh, and the number of nodes that have two parents or are among their own descendants. Such a node
+/// counts only where it is reached first.
 ///
 /// # Errors
-/// [`Error::Parse`] where there is no such node or mesh.
+/// [`Error::Parse`] for a node or a mesh that does not exist.
 pub(super) fn placements(root: &Root) -> Result<(Vec<Placement>, usize), Error> {
     let mut loops = 0;
     let mut placements = vec![Placement::NOWHERE; root.meshes.len()];
@@ -61,9 +61,9 @@ pub(super) fn placements(root: &Root) -> Result<(Vec<Placement>, usize), Error> 
         }
         let mut pending = vec![(start, DMat4::IDENTITY)];
         while let Some((index, parent)) = pending.pop() {
-            let place = || format!("node {index}");
+            let location = || format!("node {index}");
             let Some(node) = root.nodes.get(index) else {
-                return Err(refuse(place(), format!("there are only {} nodes", root.nodes.len())));
+                return Err(refuse(location(), format!("out of range, the file has {}", root.nodes.len())));
             };
             if std::mem::replace(&mut is_reached[index], true) {
                 loops += 1;
@@ -72,7 +72,7 @@ pub(super) fn placements(root: &Root) -> Result<(Vec<Placement>, usize), Error> 
             let world = parent * transform(node);
             if let Some(mesh) = node.mesh {
                 let Some(placement) = placements.get_mut(mesh.value()) else {
-                    return Err(refuse(place(), format!("there is no mesh {}", mesh.value())));
+                    return Err(refuse(location(), format!("there is no mesh {}", mesh.value())));
                 };
                 // The joints of a skin place its vertices, not the node.
                 placement.add(if node.skin.is_some() { DMat4::IDENTITY } else { world });
@@ -83,7 +83,7 @@ pub(super) fn placements(root: &Root) -> Result<(Vec<Placement>, usize), Error> 
     Ok((placements, loops))
 }
 
-/// From the node's coordinates to those of its parent.
+/// Maps the node's coordinates to those of its parent.
 fn transform(node: &Node) -> DMat4 {
     if let Some(matrix) = node.matrix {
         return DMat4::from_cols_array(&matrix.map(f64::from));
@@ -99,7 +99,7 @@ fn transform(node: &Node) -> DMat4 {
     )
 }
 
-/// Whether the matrix leaves angles as they are, or leaves nothing of them to be measured.
+/// Whether the matrix keeps angles, or is singular or infinite, so that no angles are left.
 fn is_similarity(matrix: DMat3) -> bool {
     let determinant = matrix.determinant();
     if determinant == 0.0 || !determinant.is_finite() {

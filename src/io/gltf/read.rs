@@ -1,4 +1,4 @@
-//! The triangles of a glTF file.
+//! Reads the triangles of a glTF file.
 
 use super::accessors::Accessors;
 use super::buffers::Buffers;
@@ -15,21 +15,21 @@ use gltf::json::mesh::{Mesh as JsonMesh, Mode, Primitive, Semantic};
 use gltf::json::validation::Checked;
 use std::collections::BTreeMap;
 
-/// The extension that packs positions and indices of a primitive.
+/// The extension that compresses positions and indices of a primitive.
 const DRACO: &str = "KHR_draco_mesh_compression";
 
-/// Bytes that a vertex and a triangle take in memory while they are read.
+/// Bytes of a vertex and of a triangle in memory while a file is read.
 const VERTEX_BYTES: u64 = 12;
 const TRIANGLE_BYTES: u64 = 12;
 
-/// What a file holds of triangles.
+/// The triangles of a file, the file itself, and notes about it.
 pub(in crate::io) struct Content {
     pub(in crate::io) parsed: Parsed,
     pub(in crate::io) document: Document,
     pub(in crate::io) notes: Vec<String>,
 }
 
-/// Reads a file's bytes. `max_bytes` limits what the mesh may take, and what files beside this one may have together.
+/// Reads a file's bytes. `max_bytes` limits the bytes of the mesh, and the total bytes of other files.
 pub(in crate::io) fn read(bytes: Vec<u8>, read: ReadFile<'_>, max_bytes: u64) -> Result<Content, Error> {
     let container = Container::of(&bytes)?;
     let root = json(&bytes[container.json.clone()])?;
@@ -41,7 +41,9 @@ pub(in crate::io) fn read(bytes: Vec<u8>, read: ReadFile<'_>, max_bytes: u64) ->
         taken.set(taken.get() + content.len() as u64);
         if taken.get() > max_bytes {
             let taken = taken.get();
-            return Err(format!("with it the buffers take {taken} bytes, more than the {max_bytes} allowed"));
+            return Err(format!(
+                "the buffers up to here take {taken} bytes, more than the {max_bytes} allowed"
+            ));
         }
         files.borrow_mut().insert(name.to_owned(), content.clone());
         Ok(content)
@@ -76,8 +78,8 @@ pub(in crate::io) fn read(bytes: Vec<u8>, read: ReadFile<'_>, max_bytes: u64) ->
     for (count, what) in [
         (packed, "compressed primitives, left as they are"),
         (others, "primitives of points or lines, left as they are"),
-        (loops, "nodes with two parents or below themselves, taken once"),
-        (ambiguous, "meshes that nodes stretch in several ways, taken as the first node shows them"),
+        (loops, "nodes with two parents or among their own descendants, used once"),
+        (ambiguous, "meshes that nodes stretch in several ways, read as the first node stretches them"),
     ] {
         if count > 0 {
             notes.push(format!("{what}: {count}"));
@@ -90,7 +92,7 @@ pub(in crate::io) fn read(bytes: Vec<u8>, read: ReadFile<'_>, max_bytes: u64) ->
     Ok(Content { parsed, document, notes })
 }
 
-/// What a mesh has no place for.
+/// What a mesh cannot hold.
 fn dropped(root: &Root) -> Vec<&'static str> {
     let primitives = || root.meshes.iter().flat_map(|mesh: &JsonMesh| &mesh.primitives);
     let has_more = |primitive: &Primitive| {
@@ -112,7 +114,7 @@ fn positions_of(primitive: &Primitive) -> Option<usize> {
     primitive.attributes.get(&Checked::Valid(Semantic::Positions)).map(|accessor| accessor.value())
 }
 
-/// What makes two primitives the same triangles: positions, indices, mode, and the mesh where it is stretched.
+/// Two primitives with equal keys have the same triangles: positions, indices, mode, and the mesh if it is stretched.
 type Key = (usize, Option<usize>, u32, Option<usize>);
 
 /// The parts so far.
@@ -120,7 +122,7 @@ struct Reader<'a> {
     accessors: Accessors<'a>,
     uses: Vec<usize>,
     max_bytes: u64,
-    /// The part of each key.
+    /// The index of the part for each key.
     found: BTreeMap<Key, usize>,
     parts: Vec<Part>,
     positions: Vec<f32>,
@@ -133,9 +135,9 @@ struct Reader<'a> {
 
 impl Reader<'_> {
     fn add(&mut self, user: [usize; 2], primitive: &Primitive, placement: &Placement) -> Result<(), Error> {
-        let place = || format!("mesh {}, primitive {}", user[0], user[1]);
+        let location = || format!("mesh {}, primitive {}", user[0], user[1]);
         let Checked::Valid(mode) = primitive.mode else {
-            return Err(refuse(place(), "its mode is not known"));
+            return Err(refuse(location(), "its mode is not known"));
         };
         let Some(position) = positions_of(primitive) else {
             self.others += 1;
@@ -157,18 +159,18 @@ impl Reader<'_> {
             return Ok(());
         }
         let count = self.accessors.get(position)?.count.0;
-        // Others have their positions there too, perhaps all of them in one accessor.
+        // Several primitives use the accessor, perhaps each a different range of it: then a part takes only its elements.
         let is_shared = self.uses[position] > 1 && self.accessors.get(position)?.sparse.is_none();
-        self.limit(if is_shared { 0 } else { count }, 0, place)?;
+        self.limit(if is_shared { 0 } else { count }, 0, location)?;
         let mut corners = match index {
             Some(index) => self.accessors.indices(index)?,
-            // What has no indices has an element for each corner.
+            // A primitive without indices has one element per corner.
             None if self.accessors.elements(position)?.is_some() => (0..count as u32).collect(),
             None => Vec::new(),
         };
         if let Some(corner) = corners.iter().find(|&&corner| u64::from(corner) >= count) {
             let message = format!("it names element {corner} of accessor {position}, which has {count}");
-            return Err(refuse(place(), message));
+            return Err(refuse(location(), message));
         }
         let mut triangles = triangles(mode, &corners);
         let mut elements = Vec::new();
@@ -178,7 +180,7 @@ impl Reader<'_> {
             elements = corners;
         }
         let vertices = if is_shared { elements.len() } else { count as usize };
-        self.limit(vertices as u64, triangles.len() as u64 / 3, place)?;
+        self.limit(vertices as u64, triangles.len() as u64 / 3, location)?;
         let first = self.positions.len() / 3;
         for vertex in &mut triangles {
             let rank =
@@ -207,8 +209,8 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// Refuses more vertices and triangles than memory is allowed for.
-    fn limit(&self, vertices: u64, triangles: u64, place: impl Fn() -> String) -> Result<(), Error> {
+    /// Refuses a mesh that would take more than `max_bytes` with these additional vertices and triangles.
+    fn limit(&self, vertices: u64, triangles: u64, location: impl Fn() -> String) -> Result<(), Error> {
         let bytes = |present: usize, more: u64, each: u64| {
             (present as u64 / 3).saturating_add(more).saturating_mul(each)
         };
@@ -220,15 +222,13 @@ impl Reader<'_> {
         if bytes <= self.max_bytes {
             return Ok(());
         }
-        let message = format!(
-            "with it the meshes of the file take {bytes} bytes, more than the {} allowed",
-            self.max_bytes
-        );
-        Err(refuse(place(), message))
+        let message =
+            format!("the meshes up to here take {bytes} bytes, more than the {} allowed", self.max_bytes);
+        Err(refuse(location(), message))
     }
 }
 
-/// The triangles that the corners make up, in that mode.
+/// The triangles of the corners in a given mode.
 fn triangles(mode: Mode, corners: &[u32]) -> Vec<u32> {
     let (whole, _) = corners.as_chunks::<3>();
     match mode {

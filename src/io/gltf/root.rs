@@ -9,7 +9,7 @@ use gltf::json::{Accessor, Buffer, Index, buffer::View};
 use serde::Deserialize;
 use serde_json::Value;
 
-/// What of a file's JSON says where triangles are. The rest may be wrong, and stays as it is.
+/// The parts of a file's JSON that define triangles. The other parts are not checked, and are kept.
 #[derive(Default, Deserialize)]
 #[serde(default, rename_all = "camelCase")]
 pub(super) struct Root {
@@ -38,7 +38,7 @@ pub(super) struct Image {
     pub(super) buffer_view: Option<Index<View>>,
 }
 
-/// What is read first: in another version all else is something else.
+/// The part that is read first: another version may have another structure.
 #[derive(Deserialize)]
 struct Head {
     asset: Asset,
@@ -57,7 +57,7 @@ pub(super) fn json(bytes: &[u8]) -> Result<Root, Error> {
     let Asset { version, min_version } = deserialized::<Head>(bytes)?.asset;
     let version = min_version.unwrap_or(version);
     if !version.starts_with("2.") {
-        let message = format!("the file is of version {} of glTF; version 2 is read", quoted(&version));
+        let message = format!("the file has glTF version {}, only version 2 is supported", quoted(&version));
         return Err(refuse("asset", message));
     }
     deserialized(bytes)
@@ -72,7 +72,7 @@ pub(super) fn deserialized<'a, T: Deserialize<'a>>(bytes: &'a [u8]) -> Result<T,
     Ok(value)
 }
 
-/// How many primitives use each accessor; `accessor_of` says for what.
+/// How many primitives use each accessor. `accessor_of` returns the accessor that a primitive uses.
 pub(super) fn uses(root: &Root, accessor_of: impl Fn(&Primitive) -> Option<usize>) -> Vec<usize> {
     let mut uses = vec![0; root.accessors.len()];
     for accessor in root.meshes.iter().flat_map(|mesh| &mesh.primitives).filter_map(accessor_of) {

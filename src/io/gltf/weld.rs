@@ -1,16 +1,16 @@
-//! Which vertices of a file are one place, and which of these are the same in all else.
+//! Finds vertices at the same position, and which of these have the same attributes.
 
 use super::accessors::Accessors;
 use super::container::Container;
 use super::document::{Document, Part};
 use super::root::{deserialized, json};
-use crate::prepare::weld::{first_alike, place};
+use crate::prepare::weld::{first_alike, position_bits};
 use crate::{Error, Mesh, Welded};
 use serde::Deserialize;
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// What of the JSON says what vertices have: all names, those that are not of glTF too.
+/// The part of the JSON that lists the attributes of vertices, including names that glTF does not define.
 #[derive(Deserialize)]
 struct Meshes {
     #[serde(default)]
@@ -32,10 +32,10 @@ struct Vertices {
 }
 
 impl Document {
-    /// The mesh, which has the vertices that were read, with those of each part joined that are at one place.
+    /// The mesh with the vertices of each part joined that are at the same position. `mesh` has the vertices that were read.
     ///
     /// # Errors
-    /// [`Error::Parse`] where an array stands for an object in the JSON, of which reading knows some.
+    /// [`Error::Parse`] for an array in the JSON where an object is expected: the reader accepts some of these.
     pub(in crate::io) fn welded(&self, mesh: &Mesh) -> Result<Welded, Error> {
         let container = Container::of(&self.bytes)?;
         let text = &self.bytes[container.json.clone()];
@@ -47,7 +47,8 @@ impl Document {
         for part in &self.parts {
             let start = part.vertices.start as u32;
             let end = part.vertices.end as u32;
-            places.extend(first_alike((start..end).map(|v| place(mesh, v))).iter().map(|v| start + v));
+            let positions = (start..end).map(|v| position_bits(mesh, v));
+            places.extend(first_alike(positions).iter().map(|v| start + v));
             attributes.extend(part.attributes(&meshes, &accessors));
         }
         Welded::new(mesh, places, &attributes)
@@ -55,8 +56,8 @@ impl Document {
 }
 
 impl Part {
-    /// For each vertex the first one that has the same bytes in all accessors of all its primitives; each has others
-    /// where one of these cannot be read. Positions do not count.
+    /// For each vertex, the first one with the same bytes in all accessors of all its primitives, except positions. If an
+    /// accessor cannot be read, every vertex counts as different.
     fn attributes(&self, meshes: &[Primitives], accessors: &Accessors) -> Vec<u32> {
         let every: Vec<u32> = (0..self.vertices.len() as u32).collect();
         let elements = self.elements.as_ref().unwrap_or(&every);
@@ -86,11 +87,11 @@ mod tests {
     use crate::io::{Format, Loaded, ReadOptions, parse};
     use serde_json::json;
 
-    /// A square of two triangles without a common vertex: corners 0 and 3 are at one place, and 2 and 4.
+    /// A square of two triangles without a common vertex: corners 0 and 3 have the same position, and so do 2 and 4.
     const CORNERS: [[f32; 3]; 6] =
         [[0., 0., 0.], [2., 0., 0.], [2., 1., 0.], [0., 0., -0.], [2., 1., 0.], [0., 1., 0.]];
 
-    /// A file with these accessors of floats, each of a number for each component, and these primitives.
+    /// A file with these accessors of floats and these primitives.
     fn file(accessors: &[(&str, &[f32])], primitives: &Value) -> (Value, Vec<u8>) {
         let mut json = json!({
             "asset": { "version": "2.0" },
@@ -146,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn what_vertices_have_makes_seams() {
+    fn different_attributes_make_seams() {
         for name in ["TEXCOORD_0", "COLOR_0", "_HEAT", "OF_NO_STANDARD"] {
             let primitive = json!([{ "attributes": { "POSITION": 0, name: 1 } }]);
             assert!(!is_seam(&square(&ALIKE, primitive.clone())), "{name}");
@@ -157,7 +158,7 @@ mod tests {
         assert!(is_seam(&square(&OTHER, target)));
     }
 
-    /// Two primitives with the same triangles are one part: what either has counts.
+    /// Two primitives with the same triangles are one part: the attributes of both count.
     #[test]
     fn all_primitives_of_the_same_triangles_count() {
         let primitives =
@@ -186,9 +187,9 @@ mod tests {
         assert!(is_seam(&file));
     }
 
-    /// Too few numbers, none, and compressed ones.
+    /// Accessors with too few elements, without data, and with compressed data.
     #[test]
-    fn what_cannot_be_read_makes_seams() {
+    fn unreadable_attributes_make_seams() {
         let primitives = json!([{ "attributes": { "POSITION": 0, "_HEAT": 1 } }]);
         let with = |change: &dyn Fn(&mut Value)| {
             let mut file = square(&ALIKE, primitives.clone());
@@ -205,7 +206,7 @@ mod tests {
         }));
     }
 
-    /// Two primitives at the same place, with the same accessor of positions: they stay apart.
+    /// Two primitives with equal positions stay apart.
     #[test]
     fn primitives_are_not_joined() {
         let file = file(

@@ -1,7 +1,7 @@
-//! A glTF file again with other indices, and a new one.
+//! Writes a held glTF file with other indices, or a new file.
 //!
-//! Indices are written over the old ones wherever nothing else lies there, so that no other byte changes. Where that
-//! cannot be, a primitive gets an accessor of its own.
+//! New indices overwrite the old ones if nothing else uses these bytes, so that no other byte changes. If not, the primitive
+//! gets a new accessor.
 
 use super::accessors::{Accessors, component};
 use super::buffers::{Buffers, data_uri};
@@ -22,11 +22,11 @@ const ARRAY_BUFFER: u32 = 34962;
 const TRIANGLES: u32 = 4;
 
 impl Document {
-    /// The bytes of the file with the triangles `after` in place of `before`, in the binary form or in the other.
-    /// Vertices, materials and all else are as they were; a form that the file did not have changes where buffers are.
+    /// The bytes of the file with the triangles `after` instead of `before`, as `.glb` or as `.gltf`. Vertices, materials and
+    /// everything else stay. A change of the form moves buffers.
     ///
     /// # Errors
-    /// [`Error::TooLarge`] for 4 GiB and more in the binary form. Those of reading, if the file's bytes have changed.
+    /// [`Error::TooLarge`] for a `.glb` file of 4 GiB or more; [`Error::Parse`].
     pub(in crate::io) fn with_triangles(
         &self,
         before: &[u32],
@@ -65,27 +65,27 @@ impl Document {
         let mut root: Value =
             serde_json::from_slice(text).map_err(|error| refuse("JSON", error.to_string()))?;
         let others: Vec<&[u8]> = container.others.iter().map(|range| &self.bytes[range.clone()]).collect();
-        // In what is read an array can stand for an object.
+        // The reader accepts an array for an object.
         let meshes = root["meshes"].as_array().into_iter().flatten();
         let primitives = meshes.flat_map(|mesh| mesh["primitives"].as_array().into_iter().flatten());
         let buffers = root["buffers"].as_array().into_iter().flatten();
         if !root.is_object() || !primitives.chain(buffers).all(Value::is_object) {
-            return Err(refuse("JSON", "an array stands for an object"));
+            return Err(refuse("JSON", "expected an object, found an array"));
         }
         file.finish(&mut root, is_binary, &others)
     }
 }
 
 impl Part {
-    /// The elements of the accessor of positions that the corners of its triangles are.
+    /// The elements of the accessor of positions for the corners of its triangles.
     ///
     /// # Errors
     /// [`Error::Parse`] for a vertex of another part.
     fn elements_of(&self, corners: &[u32]) -> Result<Vec<u32>, Error> {
         let element = |(i, &vertex): (usize, &u32)| {
             if !self.vertices.contains(&(vertex as usize)) {
-                let place = format!("triangle {}", self.triangles.start + i / 3);
-                return Err(refuse(place, format!("vertex {vertex} is of another primitive")));
+                let location = format!("triangle {}", self.triangles.start + i / 3);
+                return Err(refuse(location, format!("vertex {vertex} is of another primitive")));
             }
             let rank = vertex as usize - self.vertices.start;
             Ok(self.elements.as_ref().map_or(rank as u32, |elements| elements[rank]))
@@ -94,7 +94,7 @@ impl Part {
     }
 }
 
-/// For each accessor whether it is the indices of one part alone, and its bytes are nothing else's.
+/// For each accessor, whether it has the indices of only one part and nothing else uses its bytes.
 fn alone(accessors: &Accessors, parts: &[Part]) -> Vec<bool> {
     let root = accessors.root;
     let uses = uses(root, |primitive| Some(primitive.indices?.value()));
@@ -123,7 +123,7 @@ fn alone(accessors: &Accessors, parts: &[Part]) -> Vec<bool> {
     is_alone
 }
 
-/// Bytes that something of the file reads.
+/// Bytes that an accessor, an image or a sparse part uses.
 struct Claim {
     buffer: usize,
     bytes: Range<usize>,
@@ -152,12 +152,12 @@ fn claims(accessors: &Accessors) -> Vec<Claim> {
     claims
 }
 
-/// What becomes of a file.
+/// Changes to a file.
 struct File<'a> {
     buffers: &'a Buffers<'a>,
-    /// Buffers with other bytes.
+    /// Buffers with changed bytes.
     changed: BTreeMap<usize, Vec<u8>>,
-    /// Parts that get an accessor of their own, with its indices.
+    /// Parts that get a new accessor, with its indices.
     appended: Vec<(&'a Part, Vec<u32>)>,
 }
 
@@ -174,7 +174,7 @@ impl File<'_> {
         Ok(())
     }
 
-    /// Writes what has changed into the JSON, and gives the bytes of the whole.
+    /// Writes the changes into the JSON, and returns the bytes of the file.
     fn finish(mut self, root: &mut Value, is_binary: bool, others: &[&[u8]]) -> Result<Vec<u8>, Error> {
         let mut buffers = take(root, "buffers");
         // The first buffer is the binary chunk, if its bytes are known.
@@ -210,9 +210,9 @@ impl File<'_> {
     }
 }
 
-/// Adds the indices to the bytes of a buffer, and an accessor for them that the part's primitives take.
+/// Appends indices to a buffer, and adds an accessor for them, which the primitives of the part use.
 fn append(root: &mut Value, buffer: usize, bytes: &mut Vec<u8>, part: &Part, indices: &[u32]) {
-    // The largest number of a type restarts a strip.
+    // The largest number of a type is reserved: it restarts a strip.
     let is_short = indices.iter().all(|&index| index < u32::from(u16::MAX));
     let component = if is_short { ComponentType::U16 } else { ComponentType::U32 };
     bytes.resize(bytes.len().next_multiple_of(4), 0);
@@ -240,7 +240,7 @@ fn append(root: &mut Value, buffer: usize, bytes: &mut Vec<u8>, part: &Part, ind
     }
 }
 
-/// Takes the array of that name out; its place stays.
+/// Takes an array out of the JSON. Its key stays, so the order of the keys does not change.
 fn take(root: &mut Value, name: &str) -> Vec<Value> {
     match root.get_mut(name).map(Value::take) {
         Some(Value::Array(array)) => array,
@@ -248,18 +248,17 @@ fn take(root: &mut Value, name: &str) -> Vec<Value> {
     }
 }
 
-/// Puts an array in its place. Empty ones are not allowed.
+/// Puts an array back, unless it is empty: glTF forbids empty arrays.
 fn put(root: &mut Value, name: &str, array: Vec<Value>) {
     if !array.is_empty() {
         root[name] = array.into();
     }
 }
 
-/// The bytes of a new file with one mesh; without triangles its vertices are points.
+/// The bytes of a new file with one mesh. Without triangles, its vertices are points.
 ///
 /// # Errors
-/// [`io::ErrorKind::InvalidInput`] for 4 GiB and more in the binary form, and for coordinates beyond 32 bits, to which
-/// 64-bit ones are rounded.
+/// [`io::ErrorKind::InvalidInput`] for a `.glb` file of 4 GiB or more, and for coordinates too large for 32-bit floats.
 pub(in crate::io) fn new_file(mesh: &Mesh, is_binary: bool) -> io::Result<Vec<u8>> {
     let mut root = json!({ "asset": { "version": "2.0", "generator": "edgeflip" } });
     let mut bytes = Vec::new();

@@ -1,17 +1,17 @@
-//! Where the faces of an OBJ file are, the texture vertices and normals of their corners, and the groups that they are in.
+//! The byte ranges of the faces of an OBJ file, the texture vertices and normals of their corners, and their groups.
 
 use super::lines::continued;
 use crate::Mesh;
-use crate::io::held::{Face, Faces, Numbers, line_end, numbered, place};
+use crate::io::held::{Face, Faces, Numbers, line_end, numbered, range_in};
 use crate::io::text::{Digits, Lines, Tokens, integer, without_comment};
 
-/// What a line of these says is so for the faces after it.
+/// Keywords of lines that apply to all faces after them.
 const STATES: [&[u8]; 6] = [b"usemtl", b"g", b"o", b"s", b"mg", b"usemap"];
 
 /// The texture vertex and the normal of a corner, counted from 1; 0 for none.
 type References = [u32; 2];
 
-/// What follows the keyword in lines vt or vn, and a number for it, equal where the texts are, once it was asked for.
+/// The texts after the keyword of lines vt or vn, and a number for each, equal for equal texts, set on first use.
 type Texts<'a> = Vec<(&'a [u8], Option<u32>)>;
 
 /// The faces of a file that has been read.
@@ -25,8 +25,8 @@ pub(in crate::io) fn held_faces<'a>(bytes: &'a [u8], mesh: &Mesh) -> Faces<'a> {
     let mut lines = Lines::new(bytes);
     while let Some(line) = lines.next() {
         let (joined, last) = continued(without_comment(line), &mut lines);
-        let start = place(bytes, line.trim_ascii_start()).start;
-        let end = place(bytes, last.trim_ascii_end()).end;
+        let start = range_in(bytes, line.trim_ascii_start()).start;
+        let end = range_in(bytes, last.trim_ascii_end()).end;
         let text = after_keyword(&bytes[start..end.max(start)]);
         let mut tokens = Tokens(&joined);
         match tokens.next() {
@@ -44,7 +44,7 @@ pub(in crate::io) fn held_faces<'a>(bytes: &'a [u8], mesh: &Mesh) -> Faces<'a> {
             Some(b"vn") => texts[1].push((text, None)),
             Some(keyword) => {
                 if let Some(state) = STATES.iter().position(|&state| state == keyword) {
-                    // Some names have a # in them.
+                    // A name may contain #, so this takes the whole line.
                     let end = bytes.len() - lines.bytes_left();
                     states[state] = Some(names.of(&after_keyword(&bytes[start..end])));
                     group = None;
@@ -55,9 +55,9 @@ pub(in crate::io) fn held_faces<'a>(bytes: &'a [u8], mesh: &Mesh) -> Faces<'a> {
     let mut numbers = Numbers::default();
     let value = |references: References| {
         [0, 1].map(|kind| {
-            let place = (references[kind] as usize).wrapping_sub(1);
-            // Of one that the file does not have, its place is all that is known.
-            let found = texts[kind].get_mut(place).ok_or(references[kind]);
+            let index = (references[kind] as usize).wrapping_sub(1);
+            // A reference to a line that does not exist is compared by its index.
+            let found = texts[kind].get_mut(index).ok_or(references[kind]);
             found.map(|(text, number)| *number.get_or_insert_with(|| numbers.of(text)))
         })
     };
@@ -97,7 +97,7 @@ fn after_keyword(line: &[u8]) -> &[u8] {
     words.0.trim_ascii()
 }
 
-/// What a corner such as `1/2/3` refers to; what is not there is none.
+/// The references of a corner such as `1/2/3`; 0 for a missing one.
 fn resolved(corner: &[u8], texts: &[Texts; 2]) -> References {
     let mut parts = corner.split(|&b| b == b'/').skip(1);
     texts.each_ref().map(|texts| {

@@ -1,9 +1,9 @@
-//! Lines that go on after a backslash.
+//! Lines that are continued after a backslash.
 
 use crate::io::text::{Lines, without_comment};
 use std::borrow::Cow;
 
-/// The line with those that follow it after a backslash, and the last of them.
+/// Joins a line with its continuation lines. Returns the joined line, and the last of its lines.
 pub(super) fn continued<'a>(line: &'a [u8], lines: &mut Lines<'a>) -> (Cow<'a, [u8]>, &'a [u8]) {
     let Some(start) = line.strip_suffix(b"\\") else { return (Cow::Borrowed(line), line) };
     let mut joined = start.to_vec();

@@ -1,5 +1,5 @@
 //! OBJ, Wavefront's object format: every `v` and `f` of the file as one mesh, in the file's vertex order.
-//! Source: Wavefront's Advanced Visualizer manual, appendix B1. Groups, objects and materials divide nothing.
+//! Groups, objects and materials do not divide the mesh. Source: Wavefront's Advanced Visualizer manual, appendix B1.
 
 mod faces;
 mod lines;
@@ -18,8 +18,8 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Parsed, Error> {
     let mut reader = Reader::default();
     reader.read(Lines::new(bytes), None)?;
     let vertices = reader.vertices();
-    // A face may name a vertex that follows it, so only the end of the file shows whether an index is out
-    // of range. The second reading, with the number known, finds its line.
+    // A face may name a later vertex, so only the end of the file shows whether an index is out of range. A second pass,
+    // which knows the number of vertices, finds the line.
     if reader.largest >= vertices {
         reader = Reader::default();
         reader.read(Lines::new(bytes), Some(vertices))?;
@@ -55,7 +55,7 @@ struct Reader {
     positions: Vec<f32>,
     faces: Fans,
     dropped: Dropped,
-    /// Largest vertex index named, from 0; -1 before the first.
+    /// The largest vertex index so far, from 0; -1 before the first.
     largest: i64,
     corners: Vec<u32>,
 }
@@ -73,12 +73,12 @@ impl Default for Reader {
 }
 
 impl Reader {
-    /// Number of vertices so far. A slice is never longer than `isize::MAX` bytes, so it fits.
+    /// The number of vertices so far. It fits, since a slice is never longer than `isize::MAX` bytes.
     fn vertices(&self) -> i64 {
         (self.positions.len() / 3) as i64
     }
 
-    /// Reads all lines; `known` is the number of vertices of the whole file where it is known.
+    /// Reads all lines. `known` is the number of vertices of the whole file, if it is known.
     fn read(&mut self, mut lines: Lines, known: Option<i64>) -> Result<(), Error> {
         while let Some(line) = lines.next() {
             let number = lines.number();
@@ -117,7 +117,7 @@ impl Reader {
         Ok(())
     }
 
-    /// `x y z`, and a weight or a colour, which are dropped.
+    /// Reads `x y z`, and drops a weight or a colour.
     fn vertex(&mut self, mut tokens: Tokens) -> Result<(), String> {
         for found in 0..3 {
             let token = tokens.next().ok_or_else(|| format!("expected 3 coordinates, found {found}"))?;
@@ -132,13 +132,13 @@ impl Reader {
         Ok(())
     }
 
-    /// `v`, `v/vt`, `v//vn` or `v/vt/vn` for each corner.
+    /// Reads `v`, `v/vt`, `v//vn` or `v/vt/vn` for each corner.
     fn face(&mut self, tokens: Tokens, known: Option<i64>) -> Result<(), String> {
         self.corners.clear();
         for token in tokens {
             let corner = self.corner(token, known)?;
             self.largest = self.largest.max(corner);
-            // What does not fit 32 bits is beyond the last vertex: `parse` refuses it.
+            // An index that does not fit 32 bits is out of range: `parse` refuses it.
             self.corners.push(u32::try_from(corner).unwrap_or(u32::MAX));
         }
         if self.corners.len() < 3 {
@@ -149,8 +149,8 @@ impl Reader {
         Ok(())
     }
 
-    /// The vertex index of a corner, from 0: positive ones count from 1, negative ones back from the last
-    /// vertex so far.
+    /// The vertex index of a corner, from 0. In the file, positive indices count from 1, and negative ones count back from
+    /// the last vertex so far.
     fn corner(&self, token: &[u8], known: Option<i64>) -> Result<i64, String> {
         let mut parts = token.splitn(3, |&b| b == b'/');
         let vertex = parts.next().and_then(integer);

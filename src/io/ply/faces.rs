@@ -1,15 +1,15 @@
-//! Where the faces of a PLY file are, and what they and their corners have beside their vertices.
+//! The byte ranges of the faces of a PLY file, and the attributes of faces and corners.
 
 use super::header::{Element, Encoding, Header, Property, Role, Scalar, role};
 use super::source::{Ascii, Source, binary};
-use crate::io::held::{Face, Faces, Numbers, line_end, numbered, place};
+use crate::io::held::{Face, Faces, Numbers, line_end, numbered, range_in};
 use crate::io::text::{Digits, Lines, Tokens, quoted};
 use crate::{Error, Mesh};
 
-/// The list of two numbers for each corner of a face.
+/// The property with two numbers for each corner of a face.
 const TEXTURE: &[u8] = b"texcoord";
 
-/// Whether the file, which has been read, can be written again with other triangles: a strip has no place for them.
+/// Whether a file that has been read can be written again with other triangles: it has no triangle strips.
 pub(in crate::io) fn is_held(bytes: &[u8]) -> bool {
     let has_strips = |element: &Element| element.name == b"tristrips" && element.count > 0;
     Header::parse(&mut Lines::new(bytes)).is_ok_and(|header| !header.elements.iter().any(has_strips))
@@ -29,9 +29,9 @@ pub(in crate::io) fn held_faces<'a>(bytes: &'a [u8], mesh: &Mesh) -> Result<Face
 struct Form<'a> {
     encoding: Encoding,
     properties: Vec<Property<'a>>,
-    /// Which of them is the list of vertices.
+    /// The index of the list of vertices in `properties`.
     vertices: usize,
-    /// Which of them is [`TEXTURE`].
+    /// The index of [`TEXTURE`] in `properties`.
     texture: Option<usize>,
 }
 
@@ -50,7 +50,7 @@ fn of<'a>(
             (0..element.count).try_for_each(|_| source.pass(&element.properties))?;
             continue;
         }
-        counts.push(place(bytes, element.digits));
+        counts.push(range_in(bytes, element.digits));
         let at = |test: &dyn Fn(&Property) -> bool| element.properties.iter().position(test);
         form.properties.clone_from(&element.properties);
         form.vertices = at(&|property| role(b"face", property) == Role::Polygon).unwrap_or_default();
@@ -62,7 +62,7 @@ fn of<'a>(
             let triangles = form.read(&mut source, &mut values, &mut pieces)?;
             let record = form.trimmed(&start[..start.len() - source.rest().len()]);
             let group = groups.of(values.as_slice());
-            list.push(Face { bytes: place(bytes, record), triangles, group });
+            list.push(Face { bytes: range_in(bytes, record), triangles, group });
             if form.texture.is_none() {
                 continue;
             }
@@ -81,8 +81,8 @@ fn of<'a>(
 }
 
 impl<'a> Form<'a> {
-    /// Reads a face, and returns how many triangles it is. `pieces` become what each corner has, and `values` what the
-    /// other properties are, but for the vertices.
+    /// Reads a face, and returns its number of triangles. Fills `pieces` with the texture coordinates of each corner, and
+    /// `values` with the other properties except the vertices.
     fn read(
         &self,
         source: &mut impl Source<'a>,
@@ -105,20 +105,20 @@ impl<'a> Form<'a> {
             }
             values.push(self.trimmed(&start[..start.len() - source.rest().len()]));
         }
-        if let (Some((place, count)), Some(texture)) = (texture, self.texture)
+        if let (Some((index, count)), Some(texture)) = (texture, self.texture)
             && count == 2 * corners
         {
-            self.divide(values.remove(place), &self.properties[texture], pieces);
+            self.divide(values.remove(index), &self.properties[texture], pieces);
         }
         Ok((corners as usize).saturating_sub(2))
     }
 
-    /// The coordinates of each corner, in a list of two numbers for each.
+    /// Divides a list into the two numbers of each corner.
     fn divide(&self, list: &'a [u8], property: &Property, pieces: &mut Vec<&'a [u8]>) {
         if self.encoding == Encoding::Ascii {
             let mut words = Tokens(list).skip(1);
             while let (Some(u), Some(v)) = (words.next(), words.next()) {
-                pieces.push(&list[place(list, u).start..place(list, v).end]);
+                pieces.push(&list[range_in(list, u).start..range_in(list, v).end]);
             }
         } else {
             let length = property.length.map_or(0, Scalar::size);
@@ -126,12 +126,12 @@ impl<'a> Form<'a> {
         }
     }
 
-    /// Text without white space around it; else all bytes.
+    /// Text without the white space around it; binary bytes unchanged.
     fn trimmed(&self, bytes: &'a [u8]) -> &'a [u8] {
         if self.encoding == Encoding::Ascii { bytes.trim_ascii() } else { bytes }
     }
 
-    /// Writes a triangle with these values, and what its corners have.
+    /// Writes a triangle with these values and the texture coordinates of its corners.
     fn write(
         &self,
         out: &mut Vec<u8>,
@@ -146,7 +146,8 @@ impl<'a> Form<'a> {
             let length = property.length.unwrap_or(property.scalar);
             if i == self.vertices {
                 if let Some(vertex) = triangle.iter().find(|&&vertex| vertex > property.scalar.most()) {
-                    let message = format!("vertex {vertex} is more than {} holds", quoted(property.name));
+                    let message =
+                        format!("vertex index {vertex} does not fit the type of {}", quoted(property.name));
                     return Err(Error::Parse { place: "element `face`".into(), message });
                 }
                 self.put(out, start, length, 3);
@@ -155,7 +156,7 @@ impl<'a> Form<'a> {
                 if let Some(i) = corners.iter().position(|corner| corner.is_empty()) {
                     let (vertex, name) = (triangle[i], quoted(property.name));
                     let message =
-                        format!("vertex {vertex} has no {name} in triangles with the attributes of this one");
+                        format!("no triangle with these attributes has a {name} at vertex {vertex}");
                     return Err(Error::Option { option: "triangles", message });
                 }
                 self.put(out, start, length, 6);

@@ -1,33 +1,33 @@
-//! The header of a PLY file: how its numbers are written, and which elements with which properties follow.
+//! The header of a PLY file: the encoding of its numbers, and its elements with their properties.
 
 use crate::Error;
 use crate::io::text::{Lines, Tokens, integer, quoted};
 
-/// What lines that mean something begin with.
+/// The first words of lines that are not comments.
 const KEYWORDS: [&[u8]; 4] = [b"format", b"element", b"property", b"end_header"];
 
-/// What the header announces.
+/// A header.
 pub(super) struct Header<'a> {
     pub(super) encoding: Encoding,
     pub(super) elements: Vec<Element<'a>>,
 }
 
-/// How the numbers after the header are written.
+/// The encoding of the numbers after the header.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Encoding {
-    /// As text, an element a line.
+    /// Text, one line per record.
     Ascii,
-    /// Without a gap, least significant byte first.
+    /// Binary without gaps, least significant byte first.
     LittleEndian,
-    /// Without a gap, most significant byte first.
+    /// Binary without gaps, most significant byte first.
     BigEndian,
 }
 
-/// So many records of the same properties.
+/// An element: `count` records with the same properties.
 pub(super) struct Element<'a> {
     pub(super) name: &'a [u8],
     pub(super) count: u64,
-    /// The count as it is written.
+    /// The text of the count.
     pub(super) digits: &'a [u8],
     pub(super) properties: Vec<Property<'a>>,
 }
@@ -36,7 +36,7 @@ pub(super) struct Element<'a> {
 #[derive(Clone, Copy)]
 pub(super) struct Property<'a> {
     pub(super) name: &'a [u8],
-    /// The type of a list's length, which comes before it.
+    /// For a list, the type of its length, which comes first.
     pub(super) length: Option<Scalar>,
     pub(super) scalar: Scalar,
 }
@@ -69,7 +69,7 @@ impl Scalar {
         })
     }
 
-    /// Bytes that a number takes where it is not text.
+    /// Bytes of a number in binary.
     pub(super) fn size(self) -> usize {
         match self {
             Self::I8 | Self::U8 => 1,
@@ -79,12 +79,12 @@ impl Scalar {
         }
     }
 
-    /// Whether 32-bit floats hold each of its numbers.
+    /// Whether each of its numbers fits a 32-bit float.
     pub(super) fn fits_f32(self) -> bool {
         !matches!(self, Self::I32 | Self::U32 | Self::F64)
     }
 
-    /// The largest number that it holds.
+    /// The largest number of the type.
     pub(super) fn most(self) -> u32 {
         match self {
             Self::I8 => 0x7f,
@@ -112,7 +112,7 @@ impl<'a> Header<'a> {
         let mut encoding = None;
         let mut elements: Vec<Element> = Vec::new();
         while let Some(line) = lines.next() {
-            // No line that means something has more words than 5.
+            // Only comments have more than 5 words.
             let words: Vec<&[u8]> = Tokens(line).take(6).collect();
             match words[..] {
                 [b"format", b"ascii", b"1.0"] => encoding = Some(Encoding::Ascii),
@@ -128,7 +128,7 @@ impl<'a> Header<'a> {
                 [b"property", b"list", length, scalar, name] => {
                     let length = scalar_type(length, lines)?;
                     if !length.is_integer() {
-                        return Err(lines.refuse("the length of a list has to be of an integer type"));
+                        return Err(lines.refuse("the length of a list must have an integer type"));
                     }
                     let scalar = scalar_type(scalar, lines)?;
                     property(&mut elements, lines)?.push(Property { name, length: Some(length), scalar });
@@ -141,7 +141,7 @@ impl<'a> Header<'a> {
                     let encoding = encoding.ok_or_else(|| lines.refuse("the header has no line format"))?;
                     return Ok(Self { encoding, elements });
                 }
-                // Comments, some of which are written without their keyword.
+                // Comments; some files write them without a keyword.
                 [] => {}
                 [word, ..] if !KEYWORDS.contains(&word) => {}
                 _ => {
@@ -179,7 +179,7 @@ pub(super) enum Role {
     Skipped,
 }
 
-/// The role of a property of the element of that name.
+/// The role of a property of an element with this name.
 pub(super) fn role(element: &[u8], property: &Property) -> Role {
     match (element, property.name, property.length) {
         (b"vertex", b"x", None) => Role::Coordinate(0),

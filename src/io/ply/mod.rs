@@ -1,5 +1,5 @@
-//! PLY, the Stanford triangle format: a header that names elements and their properties, then their numbers, as text
-//! or not. Of the elements, `vertex`, `face` and `tristrips` make the mesh.
+//! PLY, the Stanford triangle format: a header that names elements and their properties, then their numbers, as text or
+//! binary. The elements `vertex`, `face` and `tristrips` make the mesh.
 //! Source: G. Turk, "The PLY Polygon File Format", 1994.
 
 mod faces;
@@ -16,7 +16,7 @@ use header::{Element, Encoding, Header, Property, Role, Scalar, role};
 use source::{Ascii, Source, binary};
 use std::io::{self, Write};
 
-/// Names of properties that a note lists at most.
+/// The most names of properties that a note lists.
 const LISTED: usize = 12;
 
 /// Reads a file's bytes.
@@ -29,7 +29,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Parsed, Error> {
     }
 }
 
-/// Writes `mesh` with the least significant byte first and coordinates as wide as the mesh's; z is 0 in a 2D mesh.
+/// Writes `mesh` in binary, least significant byte first, with 32-bit or 64-bit floats as in the mesh. z is 0 in a 2D mesh.
 pub(super) fn write(mesh: &Mesh, out: &mut impl Write) -> io::Result<()> {
     let float = match mesh.positions() {
         Positions::F32(_) => "float",
@@ -74,7 +74,7 @@ fn write_numbers<T: Copy + Default, const N: usize>(
 /// The mesh read so far.
 struct Body<S> {
     source: S,
-    /// How many vertices the header announces.
+    /// The number of vertices in the header.
     vertices: u64,
     stride: usize,
     positions: Positions,
@@ -88,7 +88,7 @@ impl<'a, S: Source<'a>> Body<S> {
         let mut body =
             Self { source, vertices, stride, positions, faces: Fans::default(), corners: Vec::new() };
         let mut dropped = Dropped::default();
-        let mut others = Vec::new();
+        let mut skipped = Vec::new();
         for element in elements.iter().filter(|element| element.count > 0) {
             let properties: Vec<_> =
                 element.properties.iter().map(|property| (role(element.name, property), *property)).collect();
@@ -101,12 +101,12 @@ impl<'a, S: Source<'a>> Body<S> {
                         dropped.note(&format!("{element} properties {}", listed(&names)));
                     }
                 }
-                name => others.push(name),
+                name => skipped.push(name),
             }
             body.element(element, &properties)?;
         }
-        if !others.is_empty() {
-            dropped.note(&format!("elements {}", listed(&others)));
+        if !skipped.is_empty() {
+            dropped.note(&format!("elements {}", listed(&skipped)));
         }
         body.source.finish()?;
         let Self { stride, positions, faces, .. } = body;
@@ -115,7 +115,7 @@ impl<'a, S: Source<'a>> Body<S> {
 
     /// Reads all records of an element.
     fn element(&mut self, element: &Element, properties: &[(Role, Property)]) -> Result<(), Error> {
-        // Records of nothing take no bytes: no file ends before their number does.
+        // Records without properties take no bytes, so the file would not limit the loop.
         if properties.is_empty() {
             return Ok(());
         }
@@ -146,7 +146,7 @@ impl<'a, S: Source<'a>> Body<S> {
         Ok(())
     }
 
-    /// Makes room for as much of what is announced as the rest of the file can hold.
+    /// Reserves memory for `count` records, but not for more than fit the rest of the file.
     fn reserve(&mut self, count: u64, properties: &[(Role, Property)]) {
         let least = |(role, property): &(Role, Property)| match (role, property.length) {
             (Role::Polygon, Some(length)) => {
@@ -210,7 +210,7 @@ impl<'a, S: Source<'a>> Body<S> {
         Ok(())
     }
 
-    /// Adds the triangles of a strip, every second one the other way round. Those with a corner twice only turn it.
+    /// Adds the triangles of a strip, with every second one reversed. Skips triangles with a repeated corner.
     fn strip(&mut self) {
         for (i, corners) in self.corners.windows(3).enumerate() {
             let [mut a, mut b, c] = [corners[0], corners[1], corners[2]];
@@ -226,7 +226,7 @@ impl<'a, S: Source<'a>> Body<S> {
     }
 }
 
-/// The number of vertices, of coordinates of each, and where they go. Refuses a header that makes no mesh.
+/// The number of vertices, the coordinates per vertex, and empty positions of the right type. Refuses a header without a mesh.
 fn announced(elements: &[Element]) -> Result<(u64, usize, Positions), Error> {
     let refuse = |message: String| Error::Parse { place: "header".into(), message };
     let named = |name: &'static [u8]| {
@@ -263,7 +263,7 @@ fn announced(elements: &[Element]) -> Result<(u64, usize, Positions), Error> {
     Ok((vertex.count, if z.is_some() { 3 } else { 2 }, positions))
 }
 
-/// Names for a note, the first of many.
+/// The first names, for a note.
 fn listed(names: &[&[u8]]) -> String {
     let mut text: Vec<_> = names.iter().take(LISTED).map(|name| quoted(name)).collect();
     if names.len() > LISTED {

@@ -1,34 +1,34 @@
-//! The numbers after the header of a PLY file, as text or not.
+//! The numbers after the header of a PLY file, as text or binary.
 
 use super::header::{Encoding, Property, Scalar};
 use crate::Error;
 use crate::io::text::{Lines, Tokens, float, integer, quoted};
 
-/// Where records of numbers come from.
+/// A source of records of numbers.
 pub(super) trait Source<'a> {
-    /// Goes to the next record; false where the file ends.
+    /// Moves to the next record; false at the end of the file.
     fn begin(&mut self) -> bool;
-    /// The next number of the record: every one that a PLY file can hold is an f64.
+    /// The next number of the record. An f64 holds every number of a PLY file.
     fn number(&mut self, scalar: Scalar) -> Result<f64, Error>;
-    /// Passes over the next `count` numbers.
+    /// Skips the next `count` numbers.
     fn skip(&mut self, scalar: Scalar, count: u64) -> Result<(), Error>;
-    /// Passes over a whole record of these properties.
+    /// Skips a whole record of these properties.
     fn pass(&mut self, properties: &[Property]) -> Result<(), Error>;
-    /// What is left of the record, or of the file.
+    /// The rest of the record (text) or of the file (binary).
     fn rest(&self) -> &'a [u8];
-    /// Refuses what the record has more.
+    /// Refuses further numbers in the record.
     fn end(&mut self) -> Result<(), Error>;
-    /// Refuses what follows the last record.
+    /// Refuses further bytes after the last record.
     fn finish(&mut self) -> Result<(), Error>;
-    /// An error about what was read last.
+    /// An error at the number that was read last.
     fn refuse(&self, message: impl Into<String>) -> Error;
     /// Bytes not yet read.
     fn bytes_left(&self) -> usize;
-    /// Bytes that a number takes at least.
+    /// The fewest bytes of a number.
     fn least(&self, scalar: Scalar) -> usize;
 }
 
-/// Text, a record a line.
+/// Text, one line per record.
 pub(super) struct Ascii<'a> {
     pub(super) lines: Lines<'a>,
     pub(super) words: Tokens<'a>,
@@ -58,7 +58,7 @@ impl<'a> Source<'a> for Ascii<'a> {
     }
 
     fn skip(&mut self, _: Scalar, count: u64) -> Result<(), Error> {
-        // What is not kept may be any number, whatever type the header says.
+        // A skipped number may be of any type, whatever the header says.
         (0..count).try_for_each(|_| self.number(Scalar::F64).map(drop))
     }
 
@@ -101,18 +101,18 @@ impl<'a> Source<'a> for Ascii<'a> {
     }
 }
 
-/// Numbers as they are in memory, without a gap.
+/// Binary numbers without gaps.
 pub(super) struct Binary<'a> {
     rest: &'a [u8],
-    /// Bytes of the file.
+    /// The length of the file.
     length: usize,
-    /// Where the number that was read last begins.
+    /// The offset of the number that was read last.
     at: usize,
     big_endian: bool,
 }
 
 impl<'a> Binary<'a> {
-    /// The numbers of `file` from the byte `start` on.
+    /// The numbers of `file` from byte `start` on.
     pub(super) fn new(file: &'a [u8], start: usize, big_endian: bool) -> Self {
         Self { rest: &file[start..], length: file.len(), at: start, big_endian }
     }
@@ -207,10 +207,10 @@ impl<'a> Source<'a> for Binary<'a> {
     }
 }
 
-/// What follows the header, whose lines have been read, in a file that is no text.
+/// The numbers of a binary file, after the lines of its header.
 pub(super) fn binary<'a>(bytes: &'a [u8], lines: &Lines, encoding: Encoding) -> Binary<'a> {
     let mut start = bytes.len() - lines.bytes_left();
-    // Where the lines of the header end with CR alone, a LF after it is the first byte of a number.
+    // If the lines of the header end with CR alone, a LF after the header is the first byte of a number.
     let ends_with_cr = bytes.starts_with(b"ply\r") && !bytes.starts_with(b"ply\r\n");
     start -= usize::from(ends_with_cr && bytes[..start].ends_with(b"\r\n"));
     Binary::new(bytes, start, encoding == Encoding::BigEndian)

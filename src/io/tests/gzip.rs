@@ -1,4 +1,4 @@
-//! Gzip'd files, and how large a file may be.
+//! Gzip'd files, and the limit of file sizes.
 
 use super::super::gzip as io_gzip;
 use super::*;
@@ -55,7 +55,7 @@ fn what_is_damaged_is_refused() {
     refused(off(changed(2)), "byte 10: the gzip'd file is damaged (invalid gzip header)");
     refused(
         off([&whole, b"garbage, and more of it".as_slice()].concat()),
-        &format!("byte {end}: other bytes follow the gzip'd data: 23; cut them off"),
+        &format!("byte {end}: 23 other bytes follow the gzip'd data; cut them off"),
     );
     refused(
         off(&whole[..end - 1]),
@@ -64,7 +64,7 @@ fn what_is_damaged_is_refused() {
     refused(off(packed(b"")), "line 1: the file is empty");
 }
 
-/// gzip(1) takes zeros for padding, too, and leaves other bytes away with a warning.
+/// gzip(1) also accepts zeros as padding, and ignores other bytes with a warning.
 #[test]
 fn zeros_may_follow_and_nothing_else() {
     let whole = packed(TRIANGLE.as_bytes());
@@ -73,7 +73,7 @@ fn zeros_may_follow_and_nothing_else() {
         assert_eq!(off([&*whole, &vec![0; zeros]].concat()).unwrap(), off(TRIANGLE).unwrap());
     }
     for (more, count) in [(&b"abc"[..], 3), (b"\x1f", 1), (b"\0\0a\0", 4), (b"\0\x1f\x8b\x08", 4)] {
-        let message = format!("byte {end}: other bytes follow the gzip'd data: {count}; cut them off");
+        let message = format!("byte {end}: {count} other bytes follow the gzip'd data; cut them off");
         refused(off([&whole, more].concat()), &message);
     }
     let cut = [&*whole, &whole[..end - 1]].concat();
@@ -94,7 +94,7 @@ fn no_file_is_larger_than_the_limit() {
         limited(bytes, u64::MAX).unwrap();
         assert!(matches!(limited(bytes, 0), Err(Error::FileTooLarge { limit: 0, .. })));
     }
-    // A bomb: a thousand times as large as it looks.
+    // A zip bomb: unpacked, it is a thousand times as large.
     let bomb = packed(&vec![b' '; 1 << 24]);
     assert!(bomb.len() < 1 << 15);
     assert!(matches!(limited(&bomb, 1 << 20), Err(Error::FileTooLarge { .. })));
@@ -117,7 +117,7 @@ fn a_file_on_disk_is_as_its_bytes() {
     assert_eq!(read(&path, &ReadOptions::default()).unwrap(), mesh);
     let options = ReadOptions { max_bytes: 10, ..ReadOptions::default() };
     assert!(matches!(read(&path, &options), Err(Error::FileTooLarge { limit: 10, .. })));
-    // A name without .gz says nothing about the bytes.
+    // A file whose name lacks .gz may be gzip'd.
     let other = folder.path().join("a.ply");
     std::fs::rename(&path, &other).unwrap();
     assert_eq!(read(&other, &ReadOptions::default()).unwrap(), mesh);

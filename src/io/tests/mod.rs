@@ -1,4 +1,4 @@
-//! Tests of the parsers and writers: what is read, what is refused and how, and that nothing is lost.
+//! Tests of the parsers and writers: what they read and refuse, with which message, and that nothing is lost.
 
 mod gzip;
 mod original;
@@ -12,7 +12,7 @@ use crate::{Dimension, Error, Mesh, Options, Positions};
 use proptest::prelude::*;
 use std::path::Path;
 
-/// Those that have vertices which triangles share.
+/// The text formats whose triangles share vertices.
 const INDEXED: [Format; 3] = [Format::Off, Format::Obj, Format::Ply];
 const ALL: [Format; 4] = [Format::Off, Format::Obj, Format::Ply, Format::Stl];
 
@@ -233,13 +233,13 @@ fn dimension_asked_for() {
     mesh(forced("2OFF 1 0\n1 2", Three), Three, &[1., 2., 0.], &[]);
     refused(
         forced(raised, Two),
-        "vertex 1: z is 0.25, but the mesh was asked for in 2D, where every z must be 0",
+        "vertex 1: z is 0.25, but every z must be 0 in the 2D mesh that was requested",
     );
 }
 
 #[test]
 fn numbers_are_rounded_once() {
-    // Halfway between 1 and the next f32, and a little more than an f64 can hold: up. Through an f64: down.
+    // Slightly more than halfway between 1 and the next f32: rounds up. Rounded to f64 first, it would round down.
     let text = "OFF 1 0\n1.000000059604644775390625000000000001 0 0\n";
     mesh(off(text), Two, &[f32::from_bits(0x3f80_0001), 0.0], &[]);
 }
@@ -293,12 +293,12 @@ fn a_target_is_replaced_at_once() {
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 2);
 }
 
-/// Any finite f32, each bit pattern as likely as another.
+/// A finite f32, with equally likely bit patterns.
 fn coordinate() -> impl Strategy<Value = f32> {
     any::<u32>().prop_map(f32::from_bits).prop_filter("finite", |x| x.is_finite())
 }
 
-/// Text that is nearly a file: its words in any order.
+/// Text that is almost a file: its words in random order.
 fn words() -> impl Strategy<Value = String> {
     let word = prop::sample::select(vec![
         "OFF",

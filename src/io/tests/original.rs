@@ -1,4 +1,4 @@
-//! Files that are written again with other triangles, and all else as it was.
+//! Held files, written again with other triangles and otherwise unchanged.
 
 use super::*;
 use crate::{make_delaunay, reoriented};
@@ -6,7 +6,7 @@ use flate2::read::GzDecoder;
 use std::io::Read;
 use std::ops::ControlFlow;
 
-/// Four corners, 1 drawn in: of the cut 0-2 and 1-3, the second is Delaunay.
+/// A square whose corner 1 is moved inwards: the diagonal 1-3 is Delaunay, 0-2 is not.
 ///
 /// ```text
 ///   3-----2
@@ -15,11 +15,11 @@ use std::ops::ControlFlow;
 ///   0 -'
 /// ```
 const SQUARE: [&str; 4] = ["0 0 0", "0.9000000001 0.2 0", "1 1 0", "0 1 0"];
-/// The triangles that a flip of 0-2 makes of 0 1 2, 0 2 3, as the engines write them.
+/// The triangles after the flip of 0-2 in 0 1 2, 0 2 3, as the engines write them.
 const FLIPPED: [u32; 6] = [3, 1, 2, 0, 1, 3];
 
-/// The mesh in the file made Delaunay, with what keeps its attributes; how many edges that locks; and the file of the same
-/// format that it becomes.
+/// Makes the mesh of a file Delaunay, with locks for its attributes. Returns the number of locked edges, and the file
+/// written in the same format.
 fn run(format: Format, bytes: impl AsRef<[u8]>) -> (usize, Vec<u32>, Vec<u8>) {
     let loaded = parsed(format, bytes).unwrap();
     let mut options = Options { backend: crate::Backend::Cpu, ..Options::default() };
@@ -46,12 +46,12 @@ fn text(bytes: Vec<u8>) -> String {
     String::from_utf8(bytes).unwrap()
 }
 
-/// An OBJ file of [`SQUARE`] and what follows.
+/// An OBJ file of [`SQUARE`], followed by these lines.
 fn square_obj(rest: &str) -> String {
     SQUARE.map(|point| format!("v {point}\n")).concat() + rest
 }
 
-/// A PLY file as text: vertices with a colour, and more of faces in `properties`.
+/// A PLY file as text: vertices with a colour, and faces with these additional properties.
 fn square_ply(properties: &str, faces: &str) -> String {
     let points = SQUARE.map(|point| format!("{point} 7\n")).concat();
     let count = faces.lines().count();
@@ -93,7 +93,7 @@ fn unchanged(format: Format, file: &[u8], expected: &[u8]) {
     let mut bytes = Vec::new();
     GzDecoder::new(packed.as_slice()).read_to_end(&mut bytes).unwrap();
     assert_eq!(bytes, expected);
-    // A file that is not held is as one of a mesh, and so is one of another format.
+    // A file that is not held, or is written in another format, keeps only the mesh.
     let options = ReadOptions { keep: false, ..ReadOptions::default() };
     let bare = parse(format, file, &options).unwrap();
     assert!(!bare.keeps(format));
@@ -116,7 +116,7 @@ fn only_the_faces_of_an_obj_file_change() {
     assert_eq!((locked, &triangles[..6]), (0, FLIPPED.as_slice()));
     let lines = "  f 4/4/1 2/2/1 3/3/1\nf 1/1/1 2/2/1 4/4/1 # 2\nf -4 -3 -2 -1\n";
     assert_eq!(text(written), file.replace("  f 1/1/1 2/2/1 \\\n 3/3/1 4/4/1 # 2\nf -4 -3 -2 -1\n", lines));
-    // Lines end as they did.
+    // Line ends stay.
     for end in ["\r", "\r\n"] {
         let (_, _, written) = run(Format::Obj, file.replace('\n', end));
         assert!(text(written).contains(&lines.replace('\n', end)));
@@ -158,7 +158,7 @@ fn groups_that_were_asked_for_are_divided_further() {
 #[test]
 fn seams_stay_and_new_corners_have_what_their_sector_has() {
     let corners = "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n";
-    // What differs is the number or the text.
+    // References may differ in their number or in their text.
     for (faces, locked) in [
         ("f 1/1 2/2 3/3\nf 1/1 3/3 4/4\n", 0),
         ("f 1/1 2/2 3/3\nf 1/2 3/3 4/4\n", 1),
@@ -167,7 +167,7 @@ fn seams_stay_and_new_corners_have_what_their_sector_has() {
         ("vt 0 0 0\nf 1/1 2/2 3/3\nf 1/5 3/3 4/4\n", 1),
         ("vn 0 0 1\nvn 0 0 1\nf 1//1 2//1 3//1\nf 1//2 3//2 4//2\n", 0),
         ("vn 0 0 1\nvn 0 1 0\nf 1//1 2//1 3//1\nf 1//2 3//2 4//2\n", 1),
-        // One that the file does not have.
+        // A reference that the file does not have.
         ("f 1/9 2/9 3/9\nf 1/9 3/9 4/9\n", 0),
         ("f 1/9 2/9 3/9\nf 1/8 3/9 4/9\n", 1),
         ("f 1/9 2 3\nf 1/9 3/-99 4/0\n", 0),
@@ -195,13 +195,13 @@ fn seams_stay_and_new_corners_have_what_their_sector_has() {
 fn flips_across_seams_are_refused() {
     let loaded = obj(square_obj("vt 0 0\nvt 1 0\nf 1/1 2/1 3/1\nf 1/2 3/1 4/1\n")).unwrap();
     let error = loaded.file_bytes("a.obj", vec![0, 2, 1, 0, 3, 2]).unwrap_err().to_string();
-    assert!(error.contains("none that flips make while seams are locked"), "{error}");
+    assert!(error.contains("cannot result from flips while seams are locked"), "{error}");
     loaded.file_bytes("a.off", FLIPPED.to_vec()).unwrap();
 }
 
 #[test]
 fn triangles_may_have_been_turned_first() {
-    // The second triangle is turned; the first is beside a seam.
+    // The second triangle is reversed; the first is next to a seam.
     let file = square_obj(
         "v 0.5 -9 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n\
         f 1/1 2/2 3/3\nf 1/1 4/4 3/3\nf 2/1 1/3 5/1\n",
@@ -223,7 +223,7 @@ fn triangles_may_have_been_turned_first() {
         assert_eq!(v, vt, "{written}");
     }
     assert!(written.ends_with("\nf 2/1 1/3 5/1\n"));
-    // Nothing was turned.
+    // No triangle was reversed.
     let same = loaded.file_bytes("a.obj", loaded.mesh.triangles().to_vec()).unwrap();
     assert_eq!(text(same), file);
 }
@@ -308,7 +308,7 @@ fn ply_texture_coordinates_are_at_corners() {
         ),
         ("3 0 1 2 6 0 0 1 0 1 1 5\n3 0 2 3 6 .5 0 1 1 0 1 5\n", "", 1),
         ("3 0 1 2 6 0 0 1 0 1 1 5\n3 0 2 3 0 5\n", "", 1),
-        // What is not two numbers for each corner is the face's.
+        // A list with another length belongs to the face, not to its corners.
         ("4 0 1 2 3 3 7 8 9 5\n", "3 3 1 2 3 7 8 9 5\n3 0 1 3 3 7 8 9 5\n", 0),
         ("4 0 1 2 3 0 5\n", "3 3 1 2 0 5\n3 0 1 3 0 5\n", 0),
     ] {
@@ -320,10 +320,7 @@ fn ply_texture_coordinates_are_at_corners() {
     let loaded =
         parsed(Format::Ply, square_ply(properties, "3 0 1 2 6 0 0 1 0 1 1 5\n3 1 3 2 0 5\n")).unwrap();
     let error = loaded.file_bytes("a.ply", vec![1, 2, 3, 1, 3, 2]).unwrap_err().to_string();
-    assert_eq!(
-        error,
-        "option triangles: vertex 2 has no `texcoord` in triangles with the attributes of this one"
-    );
+    assert_eq!(error, "option triangles: no triangle with these attributes has a `texcoord` at vertex 2");
 }
 
 #[test]
@@ -336,7 +333,7 @@ fn indices_that_their_type_does_not_hold_are_refused() {
     let loaded = parsed(Format::Ply, file + "3 0 1 2\n").unwrap();
     loaded.file_bytes("a.ply", vec![0, 1, 127]).unwrap();
     let error = loaded.file_bytes("a.ply", vec![0, 1, 128]).unwrap_err().to_string();
-    assert_eq!(error, "element `face`: vertex 128 is more than `vertex_index` holds");
+    assert_eq!(error, "element `face`: vertex index 128 does not fit the type of `vertex_index`");
 }
 
 #[test]
@@ -382,7 +379,7 @@ fn binary_stl_keeps_its_header_and_what_facets_have() {
 
 #[test]
 fn a_small_file_does_not_become_a_large_one() {
-    // Each of the triangles of the polygon would have its colour of many numbers.
+    // Each triangle of the polygon would repeat a colour with many numbers.
     let polygon: String = (0..2000).map(|i| format!(" {}", i % 3)).collect();
     let file = format!("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n2000{polygon}{}\n", " 0.5".repeat(2000));
     let options = ReadOptions { max_bytes: 1 << 17, ..ReadOptions::default() };
@@ -406,7 +403,7 @@ fn another_mesh_than_that_of_the_file_is_refused() {
 }
 
 proptest! {
-    /// Meshes of all sorts of dirt, whose corners refer to texture vertices and whose faces are in groups.
+    /// Dirty meshes whose corners have texture vertices and whose faces are in groups.
     #[test]
     fn what_corners_and_faces_have_stays_with_them(
         points in prop::collection::vec([0..5i8, 0..5i8], 3..9),

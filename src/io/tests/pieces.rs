@@ -1,10 +1,10 @@
-//! What is read and written on several threads is what one thread reads and writes.
+//! Several threads read and write the same as one thread.
 
 use super::*;
 use crate::families::by_name;
 use std::fmt::Debug;
 
-/// The same on any number of threads.
+/// Compares the result on several numbers of threads.
 #[track_caller]
 fn same<T: Debug + PartialEq + Send>(work: impl Fn() -> T + Sync) -> T {
     let on = |count| rayon::ThreadPoolBuilder::new().num_threads(count).build().unwrap().install(&work);
@@ -15,7 +15,7 @@ fn same<T: Debug + PartialEq + Send>(work: impl Fn() -> T + Sync) -> T {
     one
 }
 
-/// A strip with polygons, colours, comments and empty lines, and ends of lines of each kind.
+/// A strip with polygons, colours, comments, empty lines, and line ends of each kind.
 fn strip() -> Vec<String> {
     let mut lines = vec!["OFF".to_owned(), "80 41 0".to_owned()];
     for v in 0..80 {

@@ -7,7 +7,7 @@ use ply_rs_bw::ply::{
 };
 use ply_rs_bw::writer::Writer;
 
-/// The header of a text with three vertices and a face.
+/// The header of a text file with three vertices and a face.
 pub(super) const HEAD: &str = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n\
     property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n";
 const POINTS: &str = "0 0 0\n1 0 0\n0 1 0.5\n";
@@ -76,7 +76,7 @@ fn strips_turn_and_end() {
     assert_eq!(loaded.mesh.triangles(), [0, 1, 2, 2, 1, 3, 2, 3, 4, 2, 3, 4, 0, 1, 2, 2, 3, 4, 4, 3, 5]);
 }
 
-/// A mesh with more of everything, of which the other crate makes files.
+/// A mesh with many kinds of elements and properties, which the other crate writes to files.
 fn other_crates(
     encoding: Encoding,
     coordinate: ScalarType,
@@ -210,7 +210,7 @@ fn text_refused_with_its_line() {
         ("float z", "float y", "header: element `vertex` has two properties `y`"),
         ("element vertex 3\n", "", "line 3: a property before the first element"),
         ("face 1", "vertex 1", "header: there are two elements `vertex`"),
-        ("list uchar", "list float", "line 8: the length of a list has to be of an integer type"),
+        ("list uchar", "list float", "line 8: the length of a list must have an integer type"),
         (
             "uchar int",
             "uchar float",
@@ -300,11 +300,11 @@ fn binary_refused_with_its_byte() {
 
 #[test]
 fn announced_numbers_take_no_memory() {
-    for (encoding, place) in
+    for (encoding, location) in
         [("ascii", "line 9"), ("binary_little_endian", "byte 187"), ("binary_big_endian", "byte 184")]
     {
         let head = HEAD.replace("ascii", encoding).replace("vertex 3", "vertex 4000000000000000000");
-        let message = format!("{place}: the file ends after 0 of 4000000000000000000 elements `vertex`");
+        let message = format!("{location}: the file ends after 0 of 4000000000000000000 elements `vertex`");
         refused(ply(head), &message);
     }
 }

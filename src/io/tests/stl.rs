@@ -1,4 +1,4 @@
-//! STL as text and not, and how its corners become vertices.
+//! STL as text and binary, and how its corners become vertices.
 
 use super::super::stl as io_stl;
 use super::*;
@@ -13,7 +13,7 @@ const TEXT: &str = "solid a facet of b\n  facet normal 0 0 1\n    outer loop\n  
     \x20     vertex 0 1 0.5\n      vertex 1 0 -0\n      vertex 5 5 5\n    endloop\n  endfacet\nendsolid a facet of b\n";
 const POINTS: [f32; 12] = [0., 0., 0., 1., 0., 0., 0., 1., 0.5, 5., 5., 5.];
 
-/// A binary file of these facets, each its corners.
+/// A binary file with these facets, given by their corners.
 fn binary(head: &[u8], facets: &[[f32; 9]]) -> Vec<u8> {
     let mut bytes = head.to_vec();
     bytes.resize(80, b' ');
@@ -61,7 +61,7 @@ fn binary_whatever_it_begins_with() {
         assert_eq!(stl(coloured).unwrap().dropped, ["attributes of facets"]);
     }
     mesh(stl(binary(b"", &[])), Two, &[], &[]);
-    // So many facets that their number has no byte 0.
+    // So many facets that their number has no zero byte.
     let header = [b"solid".as_slice(), &[b' '; 75], &[1; 4]].concat();
     let length = 84 + 50 * 0x0101_0101;
     assert!(!io_stl::is_text(&header, length) && io_stl::is_text(&header, length + 1));
@@ -76,7 +76,7 @@ fn corners_at_one_position_are_one_vertex() {
 }
 
 #[test]
-fn refused_with_its_place() {
+fn errors_name_their_location() {
     for (from, to, message) in [
         ("normal", "norm", "line 9: expected normal, found `norm`"),
         ("nan nan nan", "0 0 up", "line 9: expected a number, found `up`"),
@@ -168,7 +168,7 @@ fn what_is_written_is_32_bits_wide() {
     let far = Mesh::new(Two, numbers, vec![0, 1, 2]).unwrap();
     let error = to_file_bytes("a.stl", &far).unwrap_err().to_string();
     assert_eq!(error, "a.stl: vertex 1 is too far away for the 32-bit numbers of STL; write PLY, OBJ or OFF");
-    // The longest and the shortest edges have normals.
+    // Triangles with the longest and the shortest edges have normals.
     for x in [f32::MAX, f32::from_bits(1)] {
         let mesh = Mesh::new(Two, vec![-x, -x, x, -x, x, x], vec![0, 1, 2]).unwrap();
         assert_eq!(to_bytes(Format::Stl, &mesh).unwrap()[92..96], 1.0f32.to_le_bytes());
@@ -186,7 +186,7 @@ proptest! {
         let given = Mesh::new(Three, numbers, triangles).unwrap();
         let bytes = to_bytes(Format::Stl, &given).unwrap();
         let found = in_dimension(Format::Stl, bytes, Three).unwrap().mesh;
-        // As values: 0 is -0.
+        // Compared as values: 0 equals -0.
         let corners = |mesh: &Mesh| mesh.triangles().iter().map(|&v| mesh.point3(v)).collect::<Vec<_>>();
         prop_assert_eq!(corners(&given), corners(&found));
         for (i, &v) in found.triangles().iter().enumerate() {

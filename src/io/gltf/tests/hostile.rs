@@ -1,10 +1,10 @@
-//! Tests of glTF files that are wrong: what is refused and how, and what does not matter.
+//! Tests of wrong glTF files: which errors the reader reports, and which it ignores.
 
 use super::*;
 use proptest::prelude::*;
 
 #[test]
-fn hostile_files_are_refused_with_the_place() {
+fn errors_of_hostile_files_name_their_location() {
     let huge = json!(u64::MAX);
     for (pointer, value, message) in [
         (
@@ -42,8 +42,8 @@ fn hostile_files_are_refused_with_the_place() {
             "mesh 0, primitive 0: it names element 3 of accessor 0, which has 3",
         ),
         ("/accessors/0/type", json!("VEC2"), "accessor 0: positions are not of type VEC3"),
-        ("/meshes/0/primitives/0/indices", json!(7), "accessor 7: there are only 2"),
-        ("/meshes/0/primitives/0/attributes/POSITION", json!(7), "accessor 7: there are only 2"),
+        ("/meshes/0/primitives/0/indices", json!(7), "accessor 7: out of range, the file has 2"),
+        ("/meshes/0/primitives/0/attributes/POSITION", json!(7), "accessor 7: out of range, the file has 2"),
         ("/meshes/0/primitives/0/mode", json!(70), "mesh 0, primitive 0: its mode is not known"),
         ("/nodes/0/mesh", json!(5), "node 0: there is no mesh 5"),
         (
@@ -51,7 +51,7 @@ fn hostile_files_are_refused_with_the_place() {
             json!("6"),
             "JSON, accessors[1].count: invalid type: string \"6\", expected u64 at line 1 column 304",
         ),
-        ("/nodes/0/children", json!([4]), "node 4: there are only 1 nodes"),
+        ("/nodes/0/children", json!([4]), "node 4: out of range, the file has 1"),
         (
             "/buffers/0/uri",
             json!("data:;base64,AAAA"),
@@ -60,23 +60,27 @@ fn hostile_files_are_refused_with_the_place() {
         (
             "/buffers/0/uri",
             json!("data:;base64,?"),
-            "buffer 0: its data URI is no base64: Invalid symbol 63, offset 0.",
+            "buffer 0: its data URI is not valid base64: Invalid symbol 63, offset 0.",
         ),
-        ("/asset/version", json!("1.0"), "asset: the file is of version `1.0` of glTF; version 2 is read"),
+        (
+            "/asset/version",
+            json!("1.0"),
+            "asset: the file has glTF version `1.0`, only version 2 is supported",
+        ),
     ] {
         refused(&changed(&[(pointer, value)]), message);
     }
     let count = json!({ "componentType": 5126, "count": 4_000_000_000u64, "type": "VEC3" });
     refused(
         &changed(&[("/accessors/0", count)]),
-        "mesh 0, primitive 0: with it the meshes of the file take 48000000000 bytes, more than the 1048576 allowed",
+        "mesh 0, primitive 0: the meshes up to here take 48000000000 bytes, more than the 1048576 allowed",
     );
     let count = json!({ "componentType": 5126, "count": 70_000, "type": "VEC3" });
     refused(
         &changed(&[("/accessors/0", count)]),
         "accessor 0: it announces 70000 elements and has no data for them",
     );
-    // Many meshes that all unfold the same bytes.
+    // Many meshes that all read the same bytes.
     let mut changes = Vec::new();
     for number in 0..20_000 {
         let accessor = json!({ "bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3" });
@@ -105,7 +109,7 @@ fn what_is_wrong_elsewhere_does_not_matter() {
     }
     let scene =
         read(&changed(&[("/nodes/0/children", json!([0, 1])), ("/nodes/-", json!({ "children": [0] }))]));
-    assert_eq!(scene.unwrap().notes, ["nodes with two parents or below themselves, taken once: 2"]);
+    assert_eq!(scene.unwrap().notes, ["nodes with two parents or among their own descendants, used once: 2"]);
 }
 
 #[test]
@@ -121,7 +125,7 @@ fn a_deep_graph_is_no_deep_recursion() {
 fn broken_containers_are_refused() {
     let bytes = changed(&[]);
     for (at, value, message) in [
-        (4, 1u32, "byte 4: the file is of version 1 of glTF; version 2 is read"),
+        (4, 1u32, "byte 4: the file has glTF version 1, only version 2 is supported"),
         (
             8,
             1 << 30,
@@ -156,7 +160,7 @@ proptest! {
         };
         for (at, value) in edits {
             let at = at.index(bytes.len());
-            // Digits and punctuation keep more of the JSON alive.
+            // Digits and punctuation keep more of the JSON valid.
             bytes[at] = if value < 128 { b"0123456789[]{}\",:-.e"[value as usize % 20] } else { value };
         }
         if let Ok(scene) = read(&bytes) {
@@ -177,7 +181,7 @@ fn a_file_named_many_times_counts_as_often() {
     json["buffers"] = json!(vec![json!({ "byteLength": 60, "uri": "a" }); 9]);
     let read = |_: &str| Ok(vec![0; 1 << 17]);
     let error = parse(json.to_string().into_bytes(), &read, 1 << 20).err().unwrap();
-    let message = "buffer 8: it is in the file `a`: with it the buffers take 1179648 bytes, more than the 1048576 allowed";
+    let message = "buffer 8: it is in the file `a`: the buffers up to here take 1179648 bytes, more than the 1048576 allowed";
     assert_eq!(error.to_string(), message);
 }
 

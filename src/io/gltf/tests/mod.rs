@@ -1,4 +1,4 @@
-//! Tests of reading and rewriting glTF: what is read, and that nothing but indices changes.
+//! Tests of reading and rewriting glTF: the triangles that are read, and that only indices change.
 
 mod hostile;
 
@@ -11,7 +11,7 @@ use crate::io::parsed::Parsed;
 use crate::{Dimension, Error, Mesh, Positions};
 use serde_json::{Value, json};
 
-/// A file with one buffer, made from the bytes that the JSON's buffer views refer to.
+/// A file with one buffer, made of the bytes for the buffer views of the JSON.
 fn glb(json: &Value, buffer: &[u8]) -> Vec<u8> {
     container::glb(json.to_string().as_bytes(), Some(buffer), &[]).unwrap()
 }
@@ -20,7 +20,7 @@ fn denied(_: &str) -> Result<Vec<u8>, String> {
     Err("not allowed".into())
 }
 
-/// What a file holds of triangles.
+/// The triangles of a file.
 struct Scene {
     positions: Vec<f32>,
     triangles: Vec<u32>,
@@ -135,7 +135,7 @@ fn a_file_goes_from_one_form_to_the_other_and_back() {
 
 #[test]
 fn every_primitive_keeps_its_own_index() {
-    // The second one is a strip, with the same positions and a stretch of the same accessor's indices.
+    // The second primitive is a strip, with the same positions and a range of the same accessor's indices.
     let strip = json!({ "attributes": { "POSITION": 0 }, "indices": 2, "mode": 5 });
     let accessor =
         json!({ "bufferView": 1, "componentType": 5123, "count": 4, "type": "SCALAR", "byteOffset": 4 });
@@ -224,7 +224,7 @@ fn positions_may_be_sparse_and_integers() {
         "indices": { "bufferView": 1, "byteOffset": 2, "componentType": 5123 },
         "values": { "bufferView": 0, "byteOffset": 12 },
     });
-    // Element 1 becomes (2, 0, 0), which it was; without a view the others are zeros.
+    // The sparse part sets element 1 to (2, 0, 0), its old value. Without a buffer view, all other elements are zeros.
     assert_eq!(
         numbers(&read(&changed(&[("/accessors/0/sparse", sparse.clone())])).unwrap()),
         SQUARE.concat()
@@ -247,14 +247,14 @@ fn positions_may_be_sparse_and_integers() {
 #[test]
 fn indices_where_something_else_lies_are_not_overwritten() {
     let (mut json, buffer) = square();
-    // An image in the bytes of the indices.
+    // An image uses the bytes of the indices.
     json["images"] = json!([{ "bufferView": 1, "mimeType": "image/png" }]);
     let bytes = glb(&json, &buffer);
     let scene = read(&bytes).unwrap();
     let after = scene.document.with_triangles(&INDICES, &FLIPPED, true).unwrap();
     assert!(after.windows(12).any(|window| window == shorts(&INDICES)));
     assert_eq!(read(&after).unwrap().triangles, FLIPPED);
-    // Two meshes with different positions and the same indices.
+    // Two meshes have different positions and the same indices.
     let accessor = json!({ "bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3" });
     let mesh = json!({ "primitives": [{ "attributes": { "POSITION": 2 }, "indices": 1 }] });
     let bytes = changed(&[("/accessors/-", accessor), ("/meshes/-", mesh)]);
@@ -271,10 +271,10 @@ fn triangles_that_are_none_of_the_file_are_refused() {
     let scene = read(&changed(&[])).unwrap();
     let found = scene.document.with_triangles(&INDICES, &[0, 1, 3, 1, 2, 4], true).unwrap_err();
     assert_eq!(found.to_string(), "triangle 1: vertex 4 is of another primitive");
-    // An array can stand for an object: a buffer of so many bytes, no URI, and no extensions.
+    // The reader accepts an array for an object: a buffer's length, its URI, and its extensions.
     let scene = read(&changed(&[("/buffers/0", json!([60, null, null, {}]))])).unwrap();
     let found = scene.document.with_triangles(&INDICES, &FLIPPED, false).unwrap_err();
-    assert_eq!(found.to_string(), "JSON: an array stands for an object");
+    assert_eq!(found.to_string(), "JSON: expected an object, found an array");
 }
 
 #[test]
@@ -341,9 +341,9 @@ fn buffers_beside_the_file_are_read_if_that_is_allowed() {
     }
 }
 
-/// Schemes are in either case, as is what says that data are base64.
+/// The scheme and the mark `;base64` may be in upper or lower case.
 #[test]
-fn data_uris_are_in_either_case() {
+fn data_uris_may_be_in_upper_or_lower_case() {
     let (mut json, buffer) = square();
     let uri = crate::io::gltf::buffers::data_uri(&buffer);
     for uri in [

@@ -1,0 +1,80 @@
+//! What only the module with the GPU engines exports: the choice of `'auto'`, and a session's objects on a GPU.
+
+use super::options::{self, JsOptions};
+use super::session::JsSession;
+use super::values::{coded, parse_dimension, thrown};
+use crate::engine::{self, SharedObjects};
+pub use crate::engine::{GpuDevice, WebGl2Module};
+use crate::session::{self, Job};
+use crate::{Error, Mesh, Session};
+use js_sys::{Array, Reflect, Uint32Array};
+use wasm_bindgen::prelude::*;
+
+/// Says where the WebGL2 engine comes from.
+#[wasm_bindgen(js_name = setWebGl2)]
+pub fn set_webgl2(module: WebGl2Module) {
+    engine::set_webgl2(module);
+}
+
+/// Why `'auto'` takes the CPU engine on `threads` threads for a mesh, if that is known without asking for a GPU.
+///
+/// # Errors
+/// [`Error::Option`] for the dimension, and for an option.
+#[wasm_bindgen(js_name = whyCpu)]
+pub fn why_cpu(
+    triangles: usize,
+    dimension: f64,
+    is_double: bool,
+    threads: usize,
+    options: &JsOptions,
+) -> Result<Option<String>, JsValue> {
+    let job = parse_dimension(dimension).map(|dimension| Job { triangles, dimension, threads });
+    let why = || Ok(session::why_cpu(job?, is_double, &options::without_lists(options)?));
+    why().map_err(thrown)
+}
+
+/// The error of a session that could not begin. If another engine or a second attempt may succeed, it has the mesh.
+pub(super) fn refused(error: Error, mesh: &Mesh, leaves_cpu: bool) -> JsValue {
+    let error = match error {
+        Error::Device { message } if leaves_cpu => coded("backend-unavailable", &message),
+        error @ (Error::Device { .. } | Error::OutOfMemory { .. }) => thrown(error),
+        error => return thrown(error),
+    };
+    let arrays: Array = [
+        mesh.positions().to_typed_array(),
+        Uint32Array::from(mesh.triangles()).into(),
+        (mesh.dimension().stride() as u32).into(),
+    ]
+    .iter()
+    .collect();
+    // Setting a field of an error does not fail.
+    let _ = Reflect::set(&error, &"mesh".into(), &arrays);
+    error
+}
+
+#[wasm_bindgen(js_class = Session)]
+impl JsSession {
+    /// The engine's GPUDevice, if it runs on one.
+    #[wasm_bindgen(getter, unchecked_return_type = "GPUDevice | undefined")]
+    pub fn device(&self) -> JsValue {
+        self.shared_objects().map_or(JsValue::UNDEFINED, |objects| objects.device)
+    }
+
+    /// The GPUBuffer with the positions.
+    #[wasm_bindgen(getter, js_name = positionBuffer, unchecked_return_type = "GPUBuffer | undefined")]
+    pub fn position_buffer(&self) -> JsValue {
+        self.shared_objects().map_or(JsValue::UNDEFINED, |objects| objects.positions)
+    }
+
+    /// The GPUBuffer with the triangles.
+    #[wasm_bindgen(getter, js_name = indexBuffer, unchecked_return_type = "GPUBuffer | undefined")]
+    pub fn index_buffer(&self) -> JsValue {
+        self.shared_objects().map_or(JsValue::UNDEFINED, |objects| objects.triangles)
+    }
+}
+
+impl JsSession {
+    fn shared_objects(&self) -> Option<SharedObjects> {
+        self.get(Session::shared_objects)
+    }
+}
