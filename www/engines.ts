@@ -43,7 +43,7 @@ function isSoftware(adapter: GPUAdapter & { isFallbackAdapter?: boolean }): bool
 /** The GPU that `auto` takes, or why it takes none. */
 export function forAuto(gpu: Gpu | string): Gpu | string {
   if (typeof gpu === 'string' || !gpu.isSoftware) return gpu;
-  return 'the only GPU here is played by the processor, which is slower';
+  return 'no hardware GPU found; the browser emulates one in software, which is slower';
 }
 
 /** A worker with the desk that it answers at. */

@@ -201,7 +201,7 @@ test('auto leaves a GPU alone that the processor plays, and says why', async () 
   const page = await openEdgeflip(browser);
   const seen = await page.open(small);
   assert.deepEqual([seen.backend, seen.facts.Engine], ['auto', 'CPU, in a worker']);
-  assert.match(seen.note, /On the CPU: the only GPU here is played by the processor/);
+  assert.match(seen.note, /On the CPU: no hardware GPU found/);
   await page.close();
 });
 

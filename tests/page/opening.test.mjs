@@ -186,7 +186,7 @@ test('a file that is chosen before the GPU has been found is the one that opens'
   });
   const { caption, error, note } = await page.rest();
   assert.deepEqual([caption, error], ['early.off', '']);
-  assert.match(note, /On the CPU: the only GPU here is played by the processor/);
+  assert.match(note, /On the CPU: no hardware GPU found/);
   await page.close();
 });
 
