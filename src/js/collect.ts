@@ -1,14 +1,14 @@
-/** Collects what nobody uses any more, where there is no memory left. */
+/** Makes JavaScript collect garbage when memory runs out. */
 
 import { fromModule } from './error.js';
 import { turn } from './turn.js';
 
-/** Bytes that nobody writes to, and how often they are asked for. */
+/** The bytes of each array that starts a garbage collection, and the number of arrays. */
 const [BALLAST, ROUNDS] = [2 ** 30, 4];
 
 /**
- * Opens a session; where there is no memory for it, once more after sessions that nobody uses any more are collected.
- * JavaScript does not see what they have in WebAssembly, so it is shown an array of that size, and collects then.
+ * Opens a session. If memory runs out, tries once more after a garbage collection, which frees unreachable sessions.
+ * JavaScript does not count their memory in WebAssembly, so allocating a large array starts the collection.
  */
 export async function collecting<T>(open: () => Promise<T>): Promise<T> {
   try {
@@ -19,7 +19,7 @@ export async function collecting<T>(open: () => Promise<T>): Promise<T> {
       try {
         void new ArrayBuffer(BALLAST);
       } catch {
-        // Then it has seen enough.
+        // An allocation that fails has started a collection too.
       }
       await turn();
     }

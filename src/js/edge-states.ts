@@ -1,16 +1,16 @@
-/** What an edge can be between two iterations. */
+/** The states of an edge between two iterations. */
 
 /**
- * The states of an edge; `FlipSession.edgeStates` gives their places in this list.
+ * The states of an edge; `FlipSession.edgeStates` returns indices into this list.
  *
  * | state | meaning |
  * |---|---|
- * | `delaunay` | between two triangles, and Delaunay |
+ * | `delaunay` | interior and Delaunay |
  * | `flips` | not Delaunay, and selected: the next iteration, if there is one, flips it |
- * | `waits` | not Delaunay, and may flip, but not in the next iteration (in the order `'any'`: at some time) |
- * | `angle`, `fold`, `duplicate`, `locked`, `deviation` | not Delaunay, and may not flip, for this reason |
- * | `non-manifold`, `inconsistent` | frozen for this reason, Delaunay or not |
- * | `boundary` | of one triangle only |
+ * | `waits` | not Delaunay, and may flip, but the next iteration does not select it (`order: 'any'` selects none) |
+ * | `angle`, `fold`, `duplicate`, `locked`, `deviation` | not Delaunay, and cannot flip for this reason |
+ * | `non-manifold`, `inconsistent` | frozen for this reason, whatever its angles |
+ * | `boundary` | on the boundary: it has one triangle |
  */
 export const EDGE_STATES = [
   'delaunay',
@@ -26,5 +26,5 @@ export const EDGE_STATES = [
   'boundary',
 ] as const;
 
-/** What an edge can be between two iterations. */
+/** The state of an edge between two iterations. */
 export type EdgeState = (typeof EDGE_STATES)[number];

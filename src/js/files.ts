@@ -1,5 +1,5 @@
 /**
- * Mesh files, generated meshes and angles, in a WebAssembly module of their own that is loaded when one is used.
+ * Mesh files, generated meshes and measures, in a WebAssembly module that is loaded on first use.
  *
  * ```ts
  * import { readMesh, writeMesh } from 'edgeflip/files';
@@ -7,7 +7,7 @@
  * const bytes = await writeMesh(mesh, 'copy.off');
  * ```
  *
- * All of it runs on the thread that calls: a file of many million triangles is for a worker.
+ * All functions run on the calling thread, so read a file of many million triangles in a worker.
  *
  * @packageDocumentation
  */
@@ -28,136 +28,142 @@ export type { ModuleSource, Sources } from './module.js';
 export type { Attributes, Files, Mesh, Original, VertexArray } from './types.js';
 
 /**
- * The extensions of the formats that are read and written, in either case. With `.gz` after it, as in `bunny.ply.gz`,
- * the file is gzip'd.
+ * The extensions of the formats that are read and written, in upper or lower case. If `.gz` follows, as in
+ * `bunny.ply.gz`, the written file is compressed with gzip.
  */
 export const FORMATS = ['.off', '.obj', '.ply', '.stl', '.gltf', '.glb'] as const;
 
 /**
- * A mesh as it was read: the file's vertices, all of them, in its order, and its faces as triangles. Its positions are a
- * Float64Array where a PLY file has doubles that are no 32-bit floats. An STL file has no vertices, only corners of
- * triangles: those at the same position become one, in the order in which they appear. In a glTF file every primitive
- * has vertices of its own.
+ * A mesh that was read: all vertices of the file, in its order, and its faces as triangles. The positions are a
+ * Float64Array if a PLY file has doubles that are not 32-bit floats. An STL file has only corners of triangles: corners
+ * at the same position become one vertex, in the order of the file. In a glTF file every primitive has its own
+ * vertices.
  */
 export interface FileMesh extends IndexedMesh {
   /** Faces with more than three corners; each was cut into a fan of triangles around its first corner. */
   polygons: number;
-  /** What the file holds that a mesh has no place for, such as `normals`. Normals of an STL file are its triangles'. */
+  /** The contents of the file that a mesh cannot hold, such as `normals`. */
   dropped: string[];
-  /** Whether {@link writeMesh} keeps it, given the original, in a file of the same format: not of PLY with strips. */
+  /** Whether {@link writeMesh} with `original` keeps them in a file of the same format. Not for PLY with strips. */
   keeps: boolean;
-  /** What else there is to say about the file, a sentence each. */
+  /** Other notes about the file, a sentence each. */
   notes: string[];
   /**
-   * Positions to draw the mesh at, 3 numbers a vertex: a glTF file has each part with coordinates of its own, by which
-   * it is decided what is Delaunay, and places it in a scene.
+   * The positions in the scene of a glTF file, to draw the mesh: 3 numbers per vertex. `positions` has the coordinates
+   * of the file, each part in its own system, and the flips use those. `undefined` for other formats.
    */
   placed: Float32Array | undefined;
   /**
-   * What a run has to be told, as its options of the same names, so that {@link writeMesh} can keep attributes of faces and
-   * corners: a number for each triangle, such as that of its material or colour; the seams, where corners of a vertex
-   * differ in their texture coordinates or normals; and triangles that nothing else would tell. `undefined` where there
-   * are none. What glTF has is at vertices.
+   * Pass these three as options of the same names to a run, so that {@link writeMesh} can keep the attributes of faces
+   * and corners. `groups` has a number for each triangle, such as the index of its material. `lockedEdges` has the
+   * seams, where corners of a vertex differ in texture coordinates or normals. `lockedTriangles` has triangles whose
+   * corners the seams do not protect. Each is `undefined` if it is empty, as for glTF, whose attributes belong to
+   * vertices.
    */
   groups: Uint32Array | undefined;
   lockedEdges: Uint32Array | undefined;
   lockedTriangles: Uint32Array | undefined;
 }
 
-/** What can be chosen for {@link readMesh}. */
+/** The options of {@link readMesh}. */
 export interface ReadOptions {
-  /** Default: 2 if the file has two coordinates a vertex or every z is 0, else 3. */
+  /** Default: 2 if the file has two coordinates per vertex or every z is 0, else 3. */
   dimension?: 2 | 3 | undefined;
-  /** How many bytes the file may have, and a gzip'd one also once it is unpacked. Default: 2^30. */
+  /** The most bytes that the file may have, compressed and unpacked. Default: 2^30. */
   maxBytes?: number | undefined;
-  /** The files that a `.gltf` file has its buffers in. Nothing is fetched. */
+  /** The other files that hold the buffers of a `.gltf` file. Nothing is fetched. */
   files?: Files | undefined;
 }
 
-/** What can be chosen for {@link writeMesh}. */
+/** The options of {@link writeMesh}. */
 export interface WriteOptions {
   /**
-   * The file that the mesh was read from, and whose triangles have become others; its vertices are where they were. In the same format it is written again,
-   * with all else as it was: glTF, in either form, with other indices; OFF, OBJ, PLY and binary STL with other faces. Those of
-   * which no triangle is another stay, polygons too; the others give way to triangles with their attributes. It takes the
-   * triangles of a run with {@link FileMesh.groups}, {@link FileMesh.lockedEdges} and {@link FileMesh.lockedTriangles}.
+   * The file that the mesh was read from; the positions must be those of the file. In the same format, the result is
+   * this file with other triangles. A glTF file gets other indices, as `.gltf` or `.glb`. In OFF, OBJ, PLY and binary
+   * STL, only faces that contain a changed triangle are rewritten, as triangles with the attributes of their face. The
+   * run needs {@link FileMesh.groups}, {@link FileMesh.lockedEdges} and {@link FileMesh.lockedTriangles} as options.
    */
   original?: Original | undefined;
 }
 
-/** What the angles of a mesh say about its triangles. A degenerate triangle counts as one with an angle of 0°. */
+/** Statistics of the angles of a mesh. A degenerate triangle counts as one with an angle of 0°. */
 export interface Angles {
   /** The smallest angle of the mesh in degrees; 60 without triangles. */
   min: number;
-  /** The mean over the triangles of their smallest angle, in degrees; 60 without triangles. */
+  /** The mean of the smallest angles of the triangles, in degrees; 60 without triangles. */
   meanMin: number;
-  /** How many angles, three a triangle, fall into each of equal bins over 0° to 180°; a bin has its lower end. */
+  /** A histogram of all angles, three per triangle, in equal bins from 0° to 180°; a bin includes its lower end. */
   counts: Uint32Array;
 }
 
-/** What {@link reorient} gives. */
+/** The result of {@link reorient}. */
 export interface Reoriented {
-  /** Vertex indices, 3 a triangle. */
+  /** Vertex indices, 3 per triangle. */
   indices: Uint32Array;
-  /** How many triangles were turned. */
+  /** The number of reversed triangles. */
   turned: number;
 }
 
-/** What {@link weld} gives: a mesh whose vertices at one place are one. */
+/** The result of {@link weld}: a mesh whose vertices at the same position are joined. */
 export interface Welded {
-  /** Vertex indices, 3 a triangle: the first vertex of each place. */
+  /** Vertex indices, 3 per triangle: the first vertex at each position. */
   indices: Uint32Array;
-  /** Two vertices an edge: seams, for the option `lockedEdges`. */
+  /** The seams, two vertices per edge, for the option `lockedEdges`. */
   lockedEdges: Uint32Array;
-  /** Triangles that have to stay too, for the option `lockedTriangles`. */
+  /** Triangles whose corners the seams do not protect, for the option `lockedTriangles`. */
   lockedTriangles: Uint32Array;
-  /** For each vertex the first one at its place. */
+  /** For each vertex, the first vertex at its position. */
   places: Uint32Array;
-  /** How many vertices are joined to another one. */
+  /** How many vertices are joined to an earlier one. */
   joined: number;
-  /** How many triangles were turned. */
+  /** The number of reversed triangles. */
   turned: number;
   /**
-   * The indices of a result, which a run makes of `indices` while those edges and triangles are locked: each corner with
-   * a vertex of its place that has its attributes, the one that it had if its triangle has that still.
+   * Splits the vertices again. `indices` is the result of a run that started with {@link Welded.indices} and locked the
+   * edges and triangles above. Each corner gets a vertex at its position with its attributes. A corner that did not
+   * move keeps its vertex.
    *
-   * @throws {@link EdgeflipError} `triangle-count`, `index-out-of-range`; `invalid-option` for what is no such result, as
-   * far as that is noticed; `freed`.
+   * @throws {@link EdgeflipError} `triangle-count`, `index-out-of-range`; `invalid-option` for indices that are not
+   * such a result, if that is noticed; `freed`.
    */
   split(indices: Uint32Array): Uint32Array;
-  /** Gives memory back; the collection of garbage does so too, but later. */
+  /** Frees the memory at once; the garbage collection frees it later. */
   free(): void;
 }
 
-/** What can be measured on a mesh. */
+/** Measures of a mesh. */
 export interface Measures {
   /** Smallest angle in degrees; 60 without triangles. */
   minAngle: number;
-  /** Mean over the triangles of their smallest angle, in degrees; 60 without triangles. */
+  /** Mean of the smallest angles of the triangles, in degrees; 60 without triangles. */
   meanMinAngle: number;
-  /** Mean aspect ratio of the triangles that are not flat: longest edge by the diameter of the incircle, 1 for an equilateral triangle. */
+  /**
+   * Mean aspect ratio of the triangles that are not flat: the longest edge divided by the diameter of the incircle,
+   * scaled to 1 for an equilateral triangle.
+   */
   meanAspect: number;
-  /** Triangles without area. */
+  /** The number of triangles without area. */
   flat: number;
-  /** Area, all triangles counted positive. */
+  /** The sum of the unsigned areas of the triangles. */
   area: number;
-  /** What a closed surface encloses, negative where triangles are clockwise from outside; 0 in the plane. */
+  /** The volume inside a closed surface, negative if its triangles are clockwise from outside; 0 in the plane. */
   volume: number;
 }
 
-/** What a run has changed. */
+/** The changes that a run made. */
 export interface Change {
-  /** The numbers of the triangles that are others now, in ascending order. */
+  /** The indices of the triangles that changed, in ascending order. */
   moved: Uint32Array;
-  /** The largest distance between the surfaces before and after, at points of the edges that they do not share. */
+  /** The largest distance between the surfaces before and after, measured at the edges that only one of them has. */
   distance: number;
 }
 
 /**
- * Loads the WebAssembly module of this entry. Every other function loads it by itself. Call this to load early, or if the
- * module does not lie in `wasm/` beside this file. `init` of `edgeflip` does the same, and takes sources for all modules.
+ * Loads the WebAssembly module of this entry. Every other function loads it by itself. Call this to load early, or if
+ * the module is not in `wasm/` next to this file. `init` of `edgeflip` does the same, and takes sources for all
+ * modules.
  *
- * A module is loaded once: later sources of it are ignored. After a failure the next call tries again.
+ * A module is loaded once; later sources are ignored. After a failure, the next call tries again.
  *
  * @throws {@link EdgeflipError} `load-failed`; `invalid-input` and `invalid-option` about `sources`.
  */
@@ -166,17 +172,17 @@ export const init = initOf('files', { files: loadFiles });
 const READ_OPTIONS = namesOf<ReadOptions>({ dimension: true, maxBytes: true, files: true });
 const WRITE_OPTIONS = namesOf<WriteOptions>({ original: true });
 
-/** The array until the module has it: a copy where that waits for the module. */
+/** The array itself if the module is loaded; else a copy, because the caller may change the array during the wait. */
 function held<A extends VertexArray>(view: A, what: string): A {
   return areFilesLoaded() ? view : copyOf(view, what);
 }
 
 /**
- * Reads the bytes of a file, gzip'd or not.
+ * Reads a mesh from the bytes of a file, which may be compressed with gzip.
  *
- * @param name - Its name, such as `bunny.obj`: the extension gives the format.
- * @throws {@link EdgeflipError} `parse`, which names the line or the byte, or the vertex that has a height where 2
- * dimensions were asked for; `unknown-format`, `file-too-large`, `too-large`, `invalid-input`, `invalid-option`.
+ * @param name - The file's name, such as `bunny.obj`: the extension names the format.
+ * @throws {@link EdgeflipError} `parse`, with the line or the byte, or with a vertex whose z is not 0 if `dimension` is
+ * 2; `unknown-format`, `file-too-large`, `too-large`, `invalid-input`, `invalid-option`.
  */
 export async function readMesh(bytes: Uint8Array, name: string, options: ReadOptions = {}): Promise<FileMesh> {
   const [view, file] = [bytesOf(bytes, 'bytes'), textOf(name, 'name')];
@@ -192,14 +198,14 @@ export async function readMesh(bytes: Uint8Array, name: string, options: ReadOpt
 }
 
 /**
- * The bytes of a file that holds the mesh; of one in the plane every z is 0. In OFF and OBJ each number has the fewest
- * digits that read back to the same 32 or 64 bits, of which {@link readMesh} reads 32. PLY is written in binary and
- * keeps all bits; STL in binary and glTF have positions rounded to 32-bit floats.
+ * The bytes of a file that holds the mesh. If the mesh is in the plane, every z is 0. In OFF and OBJ each number has
+ * the fewest digits that read back to the same 32 or 64 bits; {@link readMesh} reads them as 32-bit floats. PLY is
+ * binary and keeps all bits. STL is binary, and its positions are rounded to 32-bit floats, as in glTF.
  *
- * @param name - Its name, such as `bunny.obj` or `bunny.ply.gz`: the extension gives the format.
- * @throws {@link EdgeflipError} about the mesh; `unknown-format`; `io` for coordinates that STL and glTF cannot hold; those of
- * {@link readMesh} about the original, `triangle-count` if it has another number of triangles, and `invalid-option` for
- * positions that are not those of the original, and for triangles that flips across its seams have made.
+ * @param name - The file's name, such as `bunny.obj` or `bunny.ply.gz`: the extension names the format.
+ * @throws {@link EdgeflipError} about the mesh; `unknown-format`; `io` for coordinates that STL and glTF cannot hold;
+ * for the original the errors of {@link readMesh}, `triangle-count` if it has another number of triangles, and
+ * `invalid-option` if its positions differ from those of the mesh or if flips crossed its seams.
  */
 export async function writeMesh(
   mesh: Mesh,
@@ -217,10 +223,10 @@ export async function writeMesh(
 }
 
 /**
- * A generated mesh, the same bits everywhere.
+ * Generates a mesh, with the same bits on every machine.
  *
- * @param spec - A family, its size, perhaps a parameter and a seed: `uvsphere 600`, `shear 300 30`,
- * `random 100 seed=7`. The message about a wrong one lists them all.
+ * @param spec - A family, its size, and optionally a parameter and a seed: `uvsphere 600`, `shear 300 30`,
+ * `random 100 seed=7`. The message of the error lists all families.
  * @throws {@link EdgeflipError} `invalid-option`, `too-large`.
  */
 export async function generate(spec: string): Promise<Mesh32> {
@@ -229,7 +235,7 @@ export async function generate(spec: string): Promise<Mesh32> {
 }
 
 /**
- * The angles of a mesh, for statistics: in 64-bit floats, not exact.
+ * The angles of a mesh, for statistics: computed in 64-bit floats, not exactly.
  *
  * @param bins - How many bins the histogram has: 1 to 65536.
  * @throws {@link EdgeflipError} about the mesh; `invalid-option`.
@@ -241,8 +247,8 @@ export async function angles(mesh: Mesh, bins = 180): Promise<Angles> {
 }
 
 /**
- * The mesh with triangles turned so that neighbours agree about the side that is outside, in each component where that
- * is possible: the fewer are turned. The option `reorient` does it for a run.
+ * Reverses the minority of inconsistently oriented triangles in each orientable component. The option `reorient` does
+ * so before a run.
  *
  * @throws {@link EdgeflipError} about the mesh.
  */
@@ -252,10 +258,11 @@ export async function reorient(mesh: Mesh): Promise<Reoriented> {
 }
 
 /**
- * Joins the vertices at exactly the same position; -0 is 0. The option `weld` does it for a run.
+ * Joins the vertices at exactly the same position; -0 equals 0. The option `weld` does so for a run.
  *
- * @param attributes - What vertices of one place have to have in common to be the same; nothing, if it is not given.
- * @param turns - Whether triangles are turned then, as by {@link reorient}.
+ * @param attributes - The attributes that vertices at the same position are compared by. By default all such vertices
+ * are equal.
+ * @param turns - Whether to reorient the joined mesh, as {@link reorient} does.
  * @throws {@link EdgeflipError} about the mesh; `invalid-input`; those of {@link readMesh} about the original.
  */
 export async function weld(mesh: Mesh, attributes: Attributes = [], turns = false): Promise<Welded> {
@@ -276,7 +283,7 @@ export async function weld(mesh: Mesh, attributes: Attributes = [], turns = fals
 }
 
 /**
- * Measures a mesh, for reports: in 64-bit floats, not exact.
+ * Measures a mesh, for reports: in 64-bit floats, not exactly.
  *
  * @throws {@link EdgeflipError} about the mesh.
  */
@@ -286,7 +293,7 @@ export async function measures(mesh: Mesh): Promise<Measures> {
 }
 
 /**
- * What a run has changed of a mesh.
+ * Compares a mesh with the result of a run.
  *
  * @param after - The indices of the result.
  * @throws {@link EdgeflipError} about the mesh; `triangle-count`.
@@ -298,7 +305,7 @@ export async function change(mesh: Mesh, after: Uint32Array | Uint16Array): Prom
   return call(() => wasm.change(positions, indices, dimension, changed));
 }
 
-/** The compiler does not see it where a list is only read. */
+/** `Array.isArray` does not narrow the type of a readonly array. */
 function isList(attributes: readonly VertexArray[] | Required<Original>): attributes is readonly VertexArray[] {
   return Array.isArray(attributes);
 }
@@ -307,7 +314,7 @@ function welded(made: wasm.Weld): Welded {
   const { indices, lockedEdges, lockedTriangles, places, joined, turned } = made;
   let isFreed = false;
   const split = (given: Uint32Array) => {
-    if (isFreed) throw new EdgeflipError('freed', 'what was joined has been freed');
+    if (isFreed) throw new EdgeflipError('freed', 'the welded mesh has been freed');
     const indices = viewOf(given, ['Uint32Array'], 'indices');
     if (!indices) throw new EdgeflipError('invalid-input', `indices: ${shown(given)} is not a Uint32Array`);
     try {
@@ -322,13 +329,13 @@ function welded(made: wasm.Weld): Welded {
     try {
       made.free();
     } catch {
-      // A call that has crashed has it still.
+      // After a crash, the object is still borrowed by the call, and cannot be freed.
     }
   };
   return { indices, lockedEdges, lockedTriangles, places, joined, turned, split, free };
 }
 
-/** Runs at once where the module is loaded: nobody can change what was passed. */
+/** Calls the module. If it is loaded, the call runs at once, before the caller can change the arrays. */
 async function call<T>(work: () => T): Promise<T> {
   if (!areFilesLoaded()) await loadFiles();
   try {

@@ -1,22 +1,23 @@
 /**
- * What callers pass, read once and before the first wait: nobody can change it after that. A program without types may
- * pass anything, and so may one that is hostile: what an object says of itself is not believed, and what it throws is
- * an error of the input.
+ * Reads the arguments of callers once, before the first wait, so that later changes have no effect. A program without
+ * types may pass anything, and so may a hostile one. This file therefore trusts no getter of an object, and reports an
+ * exception of one as an error of the input.
  */
 
 import { EdgeflipError, type ErrorCode } from './error.js';
 import type { VertexArray } from './types.js';
 
-/** An array of WebAssembly has so many bytes at most. */
+/** The most bytes of an array in WebAssembly. */
 const MOST_BYTES = 2 ** 31 - 1;
 
-/** A list that is no typed array is read number by number, whatever length it says that it has. */
+/** The most numbers of an array that is not a typed array. It is read number by number, and its length may be false. */
 const MOST_NUMBERS = 2 ** 24;
 
 /**
- * What `work` reads.
+ * Returns the result of `work`, which reads input.
  *
- * @throws {@link EdgeflipError} `invalid-input` where it throws, but for errors of this package.
+ * @throws {@link EdgeflipError} `too-large` for a RangeError, `invalid-input` for other exceptions; errors of this
+ * package pass through.
  */
 export function read<T>(what: string, work: () => T): T {
   try {
@@ -36,24 +37,24 @@ export function messageOf(thrown: unknown): string {
   try {
     return thrown instanceof Error ? `${thrown.message}` : String(thrown);
   } catch {
-    return 'something that is no error was thrown';
+    return 'a value that is not an error was thrown';
   }
 }
 
-/** A value in a message. */
+/** A value, for a message. */
 export function shown(value: unknown): string {
   if (typeof value === 'string') return `'${value.length > 40 ? `${value.slice(0, 40)}…` : value}'`;
   if (typeof value === 'function') return 'a function';
   return typeof value === 'object' && value !== null ? 'an object' : String(value);
 }
 
-/** The object that was passed; `undefined` where nothing was. */
+/** @throws {@link EdgeflipError} `invalid-input` if the value is not an object. */
 export function objectOf(given: unknown, what: string): Record<string, unknown> {
   if (typeof given === 'object' && given !== null) return given as Record<string, unknown>;
   throw new EdgeflipError('invalid-input', `${what}: ${shown(given)} is not an object`);
 }
 
-/** The function that was passed, if one was. */
+/** @throws {@link EdgeflipError} `invalid-input` if the value is neither a function nor absent. */
 export function functionOf<F>(given: F, what: string): NonNullable<F> | undefined {
   if (given === undefined || given === null) return undefined;
   if (typeof given === 'function') return given;
@@ -83,10 +84,10 @@ const KINDS = {
 type Kind = keyof typeof KINDS;
 
 /**
- * A view of the typed array that was passed, if it is one of these kinds, of whatever window. It is what the language
- * says: subclasses are not asked, proxies and objects that only look like one are none.
+ * A view of the typed array, if it is of one of these kinds; it may come from another window. Only the getters of the
+ * language are used: overrides in subclasses are ignored, and proxies and look-alikes give `undefined`.
  *
- * @throws {@link EdgeflipError} `invalid-input` where its memory has been transferred.
+ * @throws {@link EdgeflipError} `invalid-input` if its buffer was transferred or has shrunk.
  */
 export function viewOf<K extends Kind>(
   given: unknown,
@@ -99,38 +100,38 @@ export function viewOf<K extends Kind>(
     const view: VertexArray = new KINDS[kind](bufferOf.call(given), offsetOf.call(given), lengthOf.call(given));
     return view as InstanceType<(typeof KINDS)[K]>;
   } catch (cause) {
-    throw new EdgeflipError('invalid-input', `${what} have no memory: it was transferred or has shrunk`, { cause });
+    throw new EdgeflipError('invalid-input', `${what}: the buffer was transferred or has shrunk`, { cause });
   }
 }
 
 /**
  * A copy of a view.
  *
- * @throws {@link EdgeflipError} `too-large`, also where WebAssembly can have no such array.
+ * @throws {@link EdgeflipError} `too-large`, also if the array is too large for WebAssembly.
  */
 export function copyOf<A extends VertexArray>(view: A, what: string): A {
   return read(what, () => itselfOf(view, what).slice() as A);
 }
 
 /**
- * The view itself, for a module that copies it before anything waits.
+ * The view itself, for a module that copies it before the first wait.
  *
- * @throws {@link EdgeflipError} `too-large` where WebAssembly can have no such array.
+ * @throws {@link EdgeflipError} `too-large` if the array is too large for WebAssembly.
  */
 export function itselfOf<A extends VertexArray>(view: A, what: string): A {
   if (view.byteLength > MOST_BYTES) {
     throw new EdgeflipError(
       'too-large',
-      `${what} have ${view.byteLength} bytes, and an array of WebAssembly has ${MOST_BYTES} at most`,
+      `${what} have ${view.byteLength} bytes; WebAssembly allows at most ${MOST_BYTES} per array`,
     );
   }
   return view;
 }
 
 /**
- * A copy of the whole numbers of 32 bits that were passed, in a typed array or a list.
+ * A copy of a Uint32Array, or of an array of whole numbers of 32 bits.
  *
- * @throws {@link EdgeflipError} `invalid-option` where they are none.
+ * @throws {@link EdgeflipError} `invalid-option` for any other value.
  */
 export function numbersOf(given: unknown, option: string): Uint32Array {
   const view = viewOf(given, ['Uint32Array'], option);
@@ -156,7 +157,7 @@ export function numbersOf(given: unknown, option: string): Uint32Array {
   });
 }
 
-/** Whether it is a whole number of 32 bits. */
+/** Whether the value is a whole number of 32 bits. */
 export function isWhole(value: unknown): value is number {
   return Number.isInteger(value) && (value as number) >= 0 && (value as number) < 2 ** 32;
 }

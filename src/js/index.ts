@@ -1,5 +1,6 @@
 /**
- * Makes a triangle mesh Delaunay by flipping edges: exactly, the same on every engine, without touching a vertex.
+ * Makes an existing triangle mesh Delaunay by flipping edges: exactly, with the same result on every engine. Vertices
+ * stay unchanged.
  *
  * ```ts
  * import { makeDelaunay } from 'edgeflip';
@@ -21,8 +22,8 @@ export { FlipSession } from './session.js';
 export type * from './types.js';
 
 /**
- * Flips edges until none is left that is not Delaunay and may flip. Nothing of the mesh is changed or kept: its arrays
- * are copied before this returns its promise.
+ * Flips edges until every edge is Delaunay or cannot flip. Copies the arrays of the mesh before it returns its promise,
+ * and never changes them.
  *
  * @throws {@link EdgeflipError} about the mesh, the options or the backend.
  */

@@ -5,7 +5,7 @@ import { loader } from './module.js';
 
 let isStarted = false;
 
-/** Whether the module can be called at once. */
+/** Whether the module is loaded. */
 export function areFilesLoaded(): boolean {
   return isStarted;
 }

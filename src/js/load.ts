@@ -1,11 +1,11 @@
-/** Loads the modules of the entry `edgeflip`: that of the engines, and those that only some sessions need. */
+/** Loads the modules of the entry `edgeflip`: the module of the engines, and modules that only some sessions need. */
 
 import initModule, { setWebGl2 } from './wasm/edgeflip.js';
 import { compile, initOf, loader } from './module.js';
 
 let isStarted = false;
 
-/** Whether the module of the engines can be called at once. */
+/** Whether the module of the engines is loaded. */
 export function isLoaded(): boolean {
   return isStarted;
 }
@@ -60,14 +60,14 @@ export const loadAudit = loader(
 );
 
 /**
- * Loads the WebAssembly modules that `sources` names, or that of the engines if it names none. The package loads each
- * module by itself where it needs one. Call this to load early, or if the modules do not lie in `wasm/` beside this file:
+ * Loads the WebAssembly modules that `sources` names, or the module of the engines if it names none. The package loads
+ * each module by itself on first use. Call this to load early, or if the modules are not in `wasm/` next to this file:
  *
  * ```ts
  * await init({ base: '/static/edgeflip' });
  * ```
  *
- * A module is loaded once: later sources of it are ignored. After a failure the next call tries again.
+ * A module is loaded once; later sources are ignored. After a failure, the next call tries again.
  *
  * @throws {@link EdgeflipError} `load-failed`; `invalid-input` and `invalid-option` about `sources`.
  */

@@ -1,24 +1,24 @@
-/** Checks the types of a mesh before it goes into the module, which checks its values. */
+/** Checks the types of a mesh. The modules check its values. */
 
 import { EdgeflipError } from './error.js';
 import { copyOf, objectOf, read, shown, viewOf } from './given.js';
 import type { Hold } from './settings.js';
 import type { Mesh } from './types.js';
 
-/** A mesh in the arrays that the modules give. */
+/** A mesh with 32-bit indices, as the modules take and return it. */
 export interface IndexedMesh extends Mesh {
-  /** Vertex indices, 3 a triangle. */
+  /** Vertex indices, 3 per triangle. */
   indices: Uint32Array;
 }
 
-/** One in 32-bit floats. */
+/** A mesh whose positions are 32-bit floats. */
 export interface Mesh32 extends IndexedMesh {
-  /** 2 or 3 numbers a vertex. */
+  /** 2 or 3 numbers per vertex. */
   positions: Float32Array;
 }
 
 /**
- * The mesh in the arrays that the modules take, which go through `hold`.
+ * The mesh in the arrays that the modules take. `hold` copies each array or returns it.
  *
  * @throws {@link EdgeflipError} `invalid-input`, `too-large`.
  */
@@ -33,7 +33,7 @@ export function moduleMesh(mesh: Mesh, hold: Hold = copyOf): IndexedMesh {
 }
 
 /**
- * A mesh in arrays of its own.
+ * A copy of the mesh.
  *
  * @throws {@link EdgeflipError} `too-large`.
  */
@@ -41,20 +41,20 @@ export function copied({ positions, indices, dimension }: IndexedMesh): IndexedM
   return { positions: copyOf(positions, 'positions'), indices: copyOf(indices, 'indices'), dimension };
 }
 
-/** @throws {@link EdgeflipError} `invalid-input`, for a program without types. */
+/** @throws {@link EdgeflipError} `invalid-input`: a program without types may pass anything. */
 export function checkDimension(dimension: number): void {
   if (dimension === 2 || dimension === 3) return;
   throw new EdgeflipError('invalid-input', `dimension: ${shown(dimension)} is not 2 or 3`);
 }
 
-/** @throws {@link EdgeflipError} `invalid-input`, for a program without types. */
+/** @throws {@link EdgeflipError} `invalid-input`: a program without types may pass anything. */
 export function positionsOf(positions: Float32Array | Float64Array): Float32Array | Float64Array {
   const view = viewOf(positions, ['Float32Array', 'Float64Array'], 'positions');
   if (view) return view;
   throw new EdgeflipError('invalid-input', 'positions are neither a Float32Array nor a Float64Array');
 }
 
-/** @throws {@link EdgeflipError} `invalid-input`, for a program without types. */
+/** @throws {@link EdgeflipError} `invalid-input`: a program without types may pass anything. */
 export function indicesOf(indices: Uint32Array | Uint16Array): Uint32Array | Uint16Array {
   const view = viewOf(indices, ['Uint32Array', 'Uint16Array'], 'indices');
   if (view) return view;

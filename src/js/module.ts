@@ -11,8 +11,8 @@ export type ModuleSource = BufferSource | WebAssembly.Module | Response | URL | 
 /** Where the WebAssembly modules come from: one URL for all, or a source for each. */
 export interface Sources {
   /**
-   * The URL of a folder with the files of the package's `dist/wasm`, under their names there. Modules without a source of
-   * their own are loaded from it.
+   * The URL of a folder that holds the files of the package's `dist/wasm`, under the same names. Modules without their
+   * own source are loaded from it.
    */
   base?: URL | string | undefined;
   /** The engines, for every run: `edgeflip_bg.wasm`. */
@@ -21,13 +21,13 @@ export interface Sources {
   webgl2?: ModuleSource | undefined;
   /** The CPU engine on several threads: `edgeflip_threads_bg.wasm`. */
   threads?: ModuleSource | undefined;
-  /** What `FlipSession.verify` calls: `edgeflip_audit_bg.wasm`. */
+  /** The audit, for `FlipSession.verify`: `edgeflip_audit_bg.wasm`. */
   audit?: ModuleSource | undefined;
   /** The entry `edgeflip/files`, and the options `weld` and `reorient`: `edgeflip_files_bg.wasm`. */
   files?: ModuleSource | undefined;
 }
 
-/** What wasm-bindgen writes to start its module. */
+/** The function of wasm-bindgen that starts a module. */
 type Start = (options: { module_or_path: ModuleSource }) => Promise<unknown>;
 
 /** Loads one module. */
@@ -37,11 +37,11 @@ type Load = (source?: ModuleSource) => Promise<void>;
 let base: string | undefined;
 
 /**
- * A function that loads one module. Its first call counts; after a failure the next one tries again.
+ * A function that loads one module at its first call. After a failure, the next call tries again.
  *
  * @param start - Starts the module.
  * @param file - The name of the module's file.
- * @param beside - Where the module lies if nobody says it: a bundler sees this URL.
+ * @param beside - The default URL of the module, in an expression that bundlers recognize.
  */
 export function loader(start: Start, file: string, beside: () => URL): Load {
   let loading: Promise<void> | undefined;
@@ -61,7 +61,7 @@ export function loader(start: Start, file: string, beside: () => URL): Load {
 /**
  * The function `init` of an entry.
  *
- * @param first - The module that is loaded if none is named.
+ * @param first - The module that `init` loads if its caller names none.
  */
 export function initOf<Name extends Exclude<keyof Sources, 'base'>>(
   first: NoInfer<Name>,
@@ -77,7 +77,7 @@ export function initOf<Name extends Exclude<keyof Sources, 'base'>>(
       const folder = given.base;
       const named = names.map((name) => [name, given[name]] as const).filter(([, source]) => source !== undefined);
       if (folder !== undefined) base = folderOf(folder);
-      // A source is read before anything waits.
+      // Sources are read before the first wait.
       return named.map(([name, source]) => [name, attempt(() => sourceOf(source!))] as const);
     });
     if (named.length === 0) return loads[first]();
@@ -85,7 +85,7 @@ export function initOf<Name extends Exclude<keyof Sources, 'base'>>(
   };
 }
 
-/** What `work` gives. What it throws is an error of loading. */
+/** Returns the result of `work`. An exception becomes `load-failed`. */
 function attempt<T>(work: () => T): T {
   try {
     return work();
@@ -101,32 +101,32 @@ function failed(cause: unknown): EdgeflipError {
 /** The URL of a folder, with a slash at its end. */
 function folderOf(given: unknown): string {
   const url = given instanceof URL ? given.href : given;
-  if (typeof url !== 'string') throw new EdgeflipError('invalid-input', `base: ${shown(given)} is no URL`);
+  if (typeof url !== 'string') throw new EdgeflipError('invalid-input', `base: ${shown(given)} is not a URL`);
   return url === '' || url.endsWith('/') ? url : `${url}/`;
 }
 
-/** A URL object, which `readFile` knows; a relative one stays as it is. */
+/** An absolute URL becomes a URL object, which `readFile` needs; a relative one stays a string. */
 function absolute(url: string): URL | string {
   return /^[a-z][-+.\w]*:/i.test(url) ? new URL(url) : url;
 }
 
-/** What was passed, read at once. */
+/** Checks a source and copies its bytes. */
 function sourceOf(given: ModuleSource): ModuleSource {
   if (typeof given === 'string') return given;
   const view = viewOf(given, VERTEX_ARRAYS, 'the bytes');
   if (view) return copyOf(view, 'the bytes') as Uint8Array<ArrayBuffer>;
   if (given instanceof ArrayBuffer || ArrayBuffer.isView(given)) return bytesOf(given);
-  // One that has a `then` would be waited for.
+  // An `await` would call the `then` of a source.
   if (isSource(given) && !('then' in given)) return given;
-  throw new TypeError(`${shown(given)} is no address, response, module or bytes`);
+  throw new TypeError(`${shown(given)} is not a URL, Response, WebAssembly.Module or bytes`);
 }
 
-/** Whether it is an object that a module comes from, but for bytes. */
+/** Whether the value is a source other than a string or bytes. */
 function isSource(given: unknown): given is URL | WebAssembly.Module | Response {
   return [URL, WebAssembly.Module, Response].some((kind) => given instanceof kind);
 }
 
-/** A copy of the bytes in a buffer, or in a view of any kind: V8 compiles no DataView. */
+/** A copy of the bytes of a buffer or a view, as a Uint8Array: V8 does not compile a DataView. */
 function bytesOf(given: ArrayBuffer | ArrayBufferView): Uint8Array<ArrayBuffer> {
   return read('the bytes', () => {
     const bytes = ArrayBuffer.isView(given)
@@ -136,7 +136,7 @@ function bytesOf(given: ArrayBuffer | ArrayBufferView): Uint8Array<ArrayBuffer> 
   });
 }
 
-/** The module of a source, without an instance. */
+/** Compiles the module of a source. */
 export async function compile(source: ModuleSource): Promise<WebAssembly.Module> {
   if (source instanceof WebAssembly.Module) return source;
   if (source instanceof ArrayBuffer || ArrayBuffer.isView(source)) return WebAssembly.compile(source);
@@ -145,7 +145,9 @@ export async function compile(source: ModuleSource): Promise<WebAssembly.Module>
   return WebAssembly.compile(await response.arrayBuffer());
 }
 
-/** The bytes of a file in Node, whose `fetch` knows no files. No import: a bundler would look for it. */
+/**
+ * The bytes of a file in Node, whose `fetch` does not support `file:`. An import of `node:fs` would fail in bundlers.
+ */
 function readFile(source: ModuleSource): BufferSource | undefined {
   if (!(source instanceof URL) || source.protocol !== 'file:') return undefined;
   if (typeof process === 'undefined') return undefined;

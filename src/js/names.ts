@@ -1,21 +1,21 @@
-/** The names of options: one that is not known is an error, so that a slip of the pen is no silent default. */
+/** Checks the names of options. An unknown name is an error, so that a misspelt option is not ignored. */
 
 import { EdgeflipError } from './error.js';
 import { objectOf, shown } from './given.js';
 
-/** The names of all fields of `O`: TypeScript refuses a list that lacks one. */
+/** The names of all fields of `O`. TypeScript refuses a list with a missing name. */
 export function namesOf<O>(names: Record<keyof O, true>): readonly string[] {
   return Object.keys(names);
 }
 
 /**
- * The object of options that was passed. Those with other names than `known` have to be `undefined`.
+ * The options as an object. An option whose name is not in `known` has to be `undefined`.
  *
- * @throws {@link EdgeflipError} `invalid-option`, with the nearest known name; `invalid-input` for what is no object.
+ * @throws {@link EdgeflipError} `invalid-option`, with the nearest known name; `invalid-input` if it is not an object.
  */
 export function optionsOf(given: unknown, known: readonly string[], what = 'options'): Record<string, unknown> {
   const options = objectOf(given, what);
-  // A list may have more entries than there is memory for their names.
+  // `Object.keys` of a large list could run out of memory.
   if (Array.isArray(options) || ArrayBuffer.isView(options)) {
     throw new EdgeflipError('invalid-input', `${what}: a list is not an object with options`);
   }
@@ -34,17 +34,17 @@ function advice(name: string, known: readonly string[]): string {
   return known.length > 0 ? `there are ${known.join(', ')}` : 'there are none';
 }
 
-/** A short name as it is, a long one or a strange one as text. */
+/** A short name unchanged, any other name quoted. */
 function shownName(name: string): string {
   return /^\w{1,40}$/.test(name) ? name : shown(name);
 }
 
-/** Without what styles of names differ in. */
+/** The name without hyphens, underscores and capitals, so that only the letters are compared. */
 function plain(name: string): string {
   return name.slice(0, 40).replace(/[-_]/g, '').toLowerCase();
 }
 
-/** How many characters to insert, delete or replace: the edit distance of Levenshtein. */
+/** The Levenshtein distance. */
 function distance(from: string, to: string): number {
   let row = Array.from({ length: to.length + 1 }, (_, i) => i);
   for (let i = 0; i < from.length; i++) {

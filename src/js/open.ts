@@ -1,4 +1,4 @@
-/** Opens a session in the module that has its engine. */
+/** Opens a session in the module of its engine. */
 
 import { collecting } from './collect.js';
 import { fromModule } from './error.js';
@@ -9,8 +9,8 @@ import { type ModuleSession, threadCount, ThreadsSession, threadsOf } from './th
 import { Session, whyCpu } from './wasm/edgeflip.js';
 
 /**
- * A session on the engine that the settings take; the CPU engine has threads where they are worth while and can be had.
- * The arrays of the mesh are read before this returns its promise, and not after it.
+ * Opens a session on the engine that the settings choose. The CPU engine uses threads if the mesh is large enough and
+ * they can be started. The arrays of the mesh are read before this returns its promise, and not afterwards.
  */
 export async function open(mesh: IndexedMesh, settings: Settings): Promise<ModuleSession> {
   const count = threadCount(mesh.indices.length / 3, settings);
@@ -36,7 +36,10 @@ export async function open(mesh: IndexedMesh, settings: Settings): Promise<Modul
   }
 }
 
-/** In the module of the engines. `leavesCpu`: `'auto'` fails where it would take the CPU, which another module has, on so many threads. */
+/**
+ * Opens a session in the module of the engines. With `leavesCpu`, `'auto'` fails if it chooses the CPU engine, which
+ * then runs in another module on `leavesCpu` threads.
+ */
 async function openAlone(mesh: IndexedMesh, settings: Settings & { leavesCpu?: number }): Promise<ModuleSession> {
   const ours = isLoaded() ? undefined : copied(mesh);
   if (ours) await loadCore();
@@ -48,7 +51,7 @@ async function openAlone(mesh: IndexedMesh, settings: Settings & { leavesCpu?: n
       opening = Session.create(given.positions, given.indices, given.dimension, settings);
       return await opening;
     } catch (thrown) {
-      // Another try needs the arrays. Those of the caller are not read again after a wait.
+      // Another try needs the arrays. The caller's arrays must not be read after a wait, so they are copied.
       const last = given;
       [given, error] = [undefined, thrown];
       given = opening ? (refused(thrown) ?? ours) : copied(last);
@@ -57,13 +60,13 @@ async function openAlone(mesh: IndexedMesh, settings: Settings & { leavesCpu?: n
   });
 }
 
-/** The mesh that the module has thrown where another engine, or another try, may take it. */
+/** The mesh in an exception of the module, which has it if another engine or another try may succeed. */
 function refused(thrown: unknown): IndexedMesh | undefined {
   const { mesh } = thrown as { mesh?: [IndexedMesh['positions'], Uint32Array, IndexedMesh['dimension']] };
   return mesh && { positions: mesh[0], indices: mesh[1], dimension: mesh[2] };
 }
 
-/** Where they cannot be started, one gives the same result. The arrays of the mesh are given away. */
+/** Transfers the arrays of the mesh. If the threads cannot be started, one thread gives the same result. */
 async function openOnThreads(
   mesh: IndexedMesh,
   settings: Settings,

@@ -1,10 +1,10 @@
-/** What the options have done to a mesh before the run, by the module of `edgeflip/files`. */
+/** Welds and reorients a mesh before the run, in the module of `edgeflip/files`. */
 
 import { reorient, weld, type Welded } from './files.js';
 import type { IndexedMesh } from './mesh.js';
 import type { Settings } from './settings.js';
 
-/** What a session begins with. */
+/** The mesh and the settings that a session starts with. */
 export interface Prepared {
   indices: Uint32Array;
   turned?: number;
@@ -12,7 +12,7 @@ export interface Prepared {
   settings: Settings;
 }
 
-/** Turns triangles and joins vertices, where the options say so. The settings that are left are for the run. */
+/** Applies the options `weld` and `reorient`. The result has the other settings. */
 export async function prepare(
   mesh: IndexedMesh,
   { weld: attributes, reorient: turns, ...settings }: Settings,
@@ -23,7 +23,7 @@ export async function prepare(
   return { indices, turned, welded, settings: { ...settings, ...locks(welded, settings) } };
 }
 
-/** What the options name, and what keeps attributes. */
+/** The locks of the options, and the locks that keep the attributes. */
 function locks({ places, ...keep }: Welded, { lockedEdges, lockedTriangles }: Settings): Settings {
   const edges = (lockedEdges ?? new Uint32Array()).map((vertex) => places[vertex] ?? vertex);
   return {

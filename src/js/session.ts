@@ -39,7 +39,7 @@ export let createWatched: (mesh: Mesh, options: MakeDelaunayOptions) => Promise<
  * session.free();
  * ```
  *
- * Calls may overlap: each waits for those before it. A run lets others in between two batches.
+ * Calls may overlap: each waits for the earlier ones. During a run, other calls execute between two batches.
  */
 export class FlipSession implements AsyncIterable<Iteration>, Disposable {
   readonly #session: ModuleSession;
@@ -56,8 +56,8 @@ export class FlipSession implements AsyncIterable<Iteration>, Disposable {
   }
 
   /**
-   * Checks the mesh and makes an engine ready for it. The arrays of the mesh and of the options are copied before this
-   * returns its promise: they are the caller's again.
+   * Checks the mesh and prepares an engine for it. Copies the arrays of the mesh and of the options before it returns
+   * its promise; the caller may then change or transfer them.
    *
    * @throws {@link EdgeflipError} about the mesh, the options or the backend.
    */
@@ -72,7 +72,7 @@ export class FlipSession implements AsyncIterable<Iteration>, Disposable {
   static async #create(mesh: Mesh, options: Options, isWatched: boolean): Promise<FlipSession> {
     const [views, chosen] = [moduleMesh(mesh, itselfOf), settingsOf(options, isWatched)];
     try {
-      // What is asked for first has to be loaded first.
+      // Without these two options, the module of `edgeflip/files` is not loaded.
       if (!chosen.reorient && !chosen.weld) return new FlipSession(await open(views, chosen));
       const copy = copied(views);
       const { prepare } = await import('./prepare.js');
@@ -83,12 +83,12 @@ export class FlipSession implements AsyncIterable<Iteration>, Disposable {
     }
   }
 
-  /** One iteration. `undefined` when nothing is left to flip, or `maxIterations` is reached. */
+  /** Runs one iteration. `undefined` if no edge can flip, or `maxIterations` is reached. */
   step(): Promise<Iteration | undefined> {
     return this.#call((session) => session.step());
   }
 
-  /** The iterations that are left. Leaving the loop leaves the session as it is then. */
+  /** The remaining iterations. After a `break`, the session keeps its state and can continue. */
   async *[Symbol.asyncIterator](): AsyncGenerator<Iteration, void, undefined> {
     const turns = this.#session.isAway ? undefined : new Turns();
     for (let iteration = await this.step(); iteration; iteration = await this.step()) {
@@ -97,7 +97,7 @@ export class FlipSession implements AsyncIterable<Iteration>, Disposable {
     }
   }
 
-  /** Runs to the end, or until the signal stops it. A stopped session can go on. */
+  /** Runs to the end, or until the signal stops the run. A stopped session can continue. */
   async run(options: RunOptions = {}): Promise<Result> {
     const { onProgress, isStopped } = watchOf(options);
     const turns = this.#session.isAway ? undefined : new Turns();
@@ -113,11 +113,11 @@ export class FlipSession implements AsyncIterable<Iteration>, Disposable {
   }
 
   /**
-   * Moves the vertices: all of them, as many as before, copied at once. Afterwards the session is as a new one on these
-   * positions and the triangles as they are then: iterations, flips, sharp edges and what `verify` compares with begin
-   * anew. The triangles are read back once. Adjacency, device and buffers stay, unless `'auto'` changes the engine, or
-   * doubles follow 32-bit floats or these follow doubles. After an error the session is as before; with `'auto'` the CPU takes over what the GPU
-   * cannot take.
+   * Replaces the positions of all vertices. The array is copied at once. The session then behaves like a new session on
+   * these positions and the present triangles: iterations, flips, creases and the input of `verify` start again. The
+   * triangles are read back once. Adjacency, device and buffers stay, unless `'auto'` changes the engine, or the type
+   * of the array changes between Float32Array and Float64Array. After an error the session is unchanged. With `'auto'`,
+   * the CPU accepts positions that the GPU cannot.
    *
    * @throws {@link EdgeflipError} `invalid-input`, `too-large`, `position-count`, `non-finite`, `backend-limit`.
    */
@@ -141,7 +141,7 @@ export class FlipSession implements AsyncIterable<Iteration>, Disposable {
     });
   }
 
-  /** The triangles so far: vertex indices, 3 a triangle. */
+  /** The triangles so far: vertex indices, 3 per triangle. */
   triangles(): Promise<Uint32Array> {
     return this.#call(async (session) => {
       const indices = await session.triangles();
@@ -149,22 +149,22 @@ export class FlipSession implements AsyncIterable<Iteration>, Disposable {
     });
   }
 
-  /** Every edge, as it is now. */
+  /** All edges of the present triangles. */
   edges(): Promise<Edges> {
     return this.#call((session) => session.edges());
   }
 
   /**
-   * The state of each half-edge's edge, as it is now: 3 a triangle, in the order of {@link FlipSession.triangles}; the
-   * two half-edges of an edge agree. The numbers are places in {@link EDGE_STATES}.
+   * The present state of each half-edge's edge: 3 numbers per triangle, in the order of {@link FlipSession.triangles}.
+   * The two half-edges of an edge have the same state. The numbers are indices into {@link EDGE_STATES}.
    */
   edgeStates(): Promise<Uint8Array> {
     return this.#call((session) => session.edgeStates());
   }
 
   /**
-   * Checks the triangles against the input, exactly, with code that shares nothing with what made them, and lists the
-   * edges that are not Delaunay. That code is in a WebAssembly module of its own, which the first call loads.
+   * Checks the triangles against the input, exactly, and lists the edges that are not Delaunay. The check shares no
+   * code with the engines. It is in a WebAssembly module of its own, which the first call loads.
    *
    * @throws {@link EdgeflipError} `load-failed`; see {@link init}.
    */
@@ -177,17 +177,18 @@ export class FlipSession implements AsyncIterable<Iteration>, Disposable {
     });
   }
 
-  /** The engine that runs now. */
+  /** The present engine. */
   backend(): Promise<Engine> {
     return this.#call(async (session) => session.backend);
   }
 
   /**
-   * The GPU's objects, to draw from without a copy; `undefined` on the CPU. `positions` has 2 or 3 f32 a vertex, of
-   * doubles the nearest ones, `indices` 3 u32 a triangle; their usage has STORAGE, VERTEX or INDEX, COPY_SRC and
-   * COPY_DST. Only read them, and only until `free`; {@link setPositions} says when it keeps them. With `'auto'`, ask
-   * again after each call of the session: where the GPU fails or cannot take new positions, the CPU goes on and these are
-   * gone. The device is the one of the options, else one for all sessions.
+   * The device and the buffers on the GPU, to draw without a copy; `undefined` on the CPU. `positions` has 2 or 3 f32
+   * per vertex (doubles are rounded), `indices` 3 u32 per triangle. The usage of both includes STORAGE, VERTEX or
+   * INDEX, COPY_SRC and COPY_DST. Only read the buffers, and only until `free`; {@link setPositions} says when it keeps
+   * them. With `'auto'`, call this again after each call of the session: if the GPU fails or cannot accept new
+   * positions, the session continues on the CPU. The device is the `device` of the options, else one that all sessions
+   * share.
    */
   gpu(): Promise<{ device: GPUDevice; positions: GPUBuffer; indices: GPUBuffer } | undefined> {
     return this.#call(async ({ device, positionBuffer, indexBuffer }) =>
@@ -195,12 +196,12 @@ export class FlipSession implements AsyncIterable<Iteration>, Disposable {
     );
   }
 
-  /** Gives memory and buffers back, once the call that is going on has ended. Calls that wait are refused. */
+  /** Frees memory and buffers after the present call. Waiting calls fail with `freed`. */
   free(): void {
     if (this.#isFreed) return;
     this.#isFreed = true;
     void this.#last.then(() => this.#welded?.free());
-    // A call that has crashed may have it still.
+    // After a crash, the session may still be borrowed by the call, and cannot be freed.
     void this.#last.then(() => this.#session.free()).catch(() => undefined);
   }
 
@@ -209,7 +210,7 @@ export class FlipSession implements AsyncIterable<Iteration>, Disposable {
     this.free();
   }
 
-  /** Calls the module when the calls before have answered. */
+  /** Calls the module after all earlier calls. */
   #call<T>(work: (session: ModuleSession) => Promise<T>): Promise<T> {
     const call = this.#last.then(async () => {
       if (this.#isFreed) throw new EdgeflipError('freed', 'the session has been freed');

@@ -1,4 +1,4 @@
-/** The options of a session as they were when it was asked for: read once, checked in type, copied. */
+/** Reads the options of a session once: checks their types and copies them. */
 
 import { EdgeflipError } from './error.js';
 import { copyOf, functionOf, isWhole, numbersOf, objectOf, read, shown, viewOf } from './given.js';
@@ -15,24 +15,24 @@ import {
 } from './types.js';
 
 /**
- * The options, as they cross between the modules: one object, passed on whole. `src/wasm/options.rs` reads it; values are
- * for the library to check.
+ * The options as they are passed to the modules: one object. `src/wasm/options.rs` reads it, and the library checks the
+ * values.
  */
 export type Settings = { [Name in keyof Omit<Options, 'weld'>]?: Read<NonNullable<Options[Name]>> } & {
-  /** Absent where vertices stay as they are. */
+  /** Absent if no vertices are joined. */
   weld?: Attributes;
 };
 
-/** Lists are copied. */
+/** The type of an option after reading: a list becomes a Uint32Array. */
 type Read<T> = T extends readonly number[] ? Uint32Array : T;
 
-/** Each thread is a worker. */
+/** The most threads. Each thread is a worker. */
 export const MOST_THREADS = 256;
 
-/** Attributes of vertices; no file has so many. */
+/** The most attributes of vertices: more than any file has. */
 const MOST_ATTRIBUTES = 1024;
 
-/** Kinds of arrays with numbers of vertices. */
+/** The kinds of typed arrays that an attribute of vertices may have. */
 export const VERTEX_ARRAYS = [
   ...(['Int8Array', 'Uint8Array', 'Uint8ClampedArray', 'Int16Array', 'Uint16Array'] as const),
   ...(['Int32Array', 'Uint32Array', 'Float32Array', 'Float64Array'] as const),
@@ -50,7 +50,7 @@ const WATCHED_OPTIONS = namesOf<Omit<MakeDelaunayOptions, keyof Options>>({
 /**
  * The options of a session.
  *
- * @param isWatched - Whether options of {@link makeDelaunay} may be among them.
+ * @param isWatched - Whether the options of {@link makeDelaunay} are allowed.
  * @throws {@link EdgeflipError} `invalid-option`, `invalid-input`.
  */
 export function settingsOf(options: Options, isWatched = false): Settings {
@@ -73,7 +73,7 @@ export function settingsOf(options: Options, isWatched = false): Settings {
 
 type Kind = (typeof OPTION_KINDS)[keyof Options];
 
-/** What is kept of a value; `undefined` stands for the default. */
+/** Check a value and return it, copied if it is an array; `undefined` stands for the default. */
 const READERS: Record<Extract<Kind, string>, (option: string, value: unknown) => unknown> = {
   flag: (option, value) => {
     if (typeof value === 'boolean') return value;
@@ -102,7 +102,7 @@ const READERS: Record<Extract<Kind, string>, (option: string, value: unknown) =>
   device: deviceOf,
 };
 
-/** What is called during a run, and what stops it. */
+/** The callbacks and the signal of a run. */
 export interface Watch extends RunOptions {
   onIteration: NonNullable<MakeDelaunayOptions['onIteration']> | undefined;
   /** Whether the signal says to stop. */
@@ -112,7 +112,7 @@ export interface Watch extends RunOptions {
 /**
  * The options of a run.
  *
- * @param isWatched - Whether they are those of {@link makeDelaunay}.
+ * @param isWatched - Whether they are the options of {@link makeDelaunay}.
  * @throws {@link EdgeflipError} `invalid-input`, `invalid-option`.
  */
 export function watchOf(options: MakeDelaunayOptions, isWatched = false): Watch {
@@ -130,11 +130,11 @@ export function watchOf(options: MakeDelaunayOptions, isWatched = false): Watch 
   });
 }
 
-/** Makes of an array what is kept of it. */
+/** Copies an array, or returns it unchanged. */
 export type Hold = <A extends VertexArray>(view: A, what: string) => A;
 
 /**
- * What vertices have beside positions. The arrays, and the bytes of a file, go through `hold`.
+ * Checks the attributes of vertices. `hold` copies the arrays, or the bytes of a file, or returns them.
  *
  * @throws {@link EdgeflipError} `invalid-input`.
  */
@@ -207,14 +207,14 @@ function oneOf(option: string, value: unknown, known: readonly string[]): string
   throw wrong(option, value, `${names.slice(0, -1).join(', ')} or ${names.at(-1)}`);
 }
 
-/** One of this window or worker: its own getter knows it. */
+/** Accepts only a device of this window or worker: the getter of its `GPUDevice` throws for other objects. */
 function deviceOf(option: string, device: unknown): GPUDevice {
   try {
     const limits = Object.getOwnPropertyDescriptor(GPUDevice.prototype, 'limits')?.get;
     limits?.call(device);
     if (limits) return device as GPUDevice;
   } catch {
-    // Not even a browser with WebGPU.
+    // Not a device of this window, or a browser without WebGPU.
   }
   throw wrong(option, device, 'a GPUDevice of this window or worker');
 }

@@ -1,4 +1,4 @@
-/** A thread of the CPU engine: a worker. The first of them has the sessions, and answers calls. */
+/** A thread of the CPU engine: a worker. The first worker holds the sessions and answers calls. */
 
 import { buffersOf } from './buffers.js';
 import { type ErrorCode, fromModule } from './error.js';
@@ -6,7 +6,7 @@ import type { IndexedMesh } from './mesh.js';
 import type { Settings } from './settings.js';
 import { Indices, initSync, Session, startThreads, work } from './wasm/edgeflip_threads.js';
 
-/** What a session can be asked. */
+/** The methods of a session that a message can call. */
 export type Question =
   | 'advance'
   | 'auditInput'
@@ -17,38 +17,38 @@ export type Question =
   | 'step'
   | 'triangles';
 
-/** What the session answers, and how far it is then. */
+/** The answer of a session, and its progress. */
 export interface Reply {
   value: unknown;
   iterations: number;
   flips: number;
 }
 
-/** Milliseconds that iterations may take until a run hears of them: two frames. A message takes as long as many small ones. */
+/** Milliseconds of iterations per message to a run: two frames. A message takes as long as many small iterations. */
 const SLICE = 32;
 
 /** Meshes whose sessions are not open yet. */
 const begun = new Map<number, { mesh: IndexedMesh; settings: Settings }>();
 const sessions = new Map<number, Session>();
-/** What the page has not copied yet, by session. */
+/** Indices that the client has not copied yet, by session. */
 const lent = new Map<number, Indices>();
 
 const calls = {
-  /** Makes this worker the first of so many threads, and gives the memory for all. */
+  /** Makes this worker the first of `count` threads, and returns the memory that all share. */
   start(module: WebAssembly.Module, count: number): WebAssembly.Memory {
     initSync({ module });
     return startThreads(count);
   },
-  /** Makes this worker another one, for ever. */
+  /** Makes this worker one of the other threads. Never returns. */
   work(module: WebAssembly.Module, memory: WebAssembly.Memory): void {
     initSync({ module, memory });
     work();
   },
-  /** Takes a mesh for a session. */
+  /** Stores the mesh of a session that is not open yet. */
   begin(session: number, mesh: IndexedMesh, settings: Settings): void {
     begun.set(session, { mesh, settings });
   },
-  /** Opens the session. Where there was too little memory, it can be tried again. */
+  /** Opens the session. If memory runs out, the call can be repeated. */
   async open(session: number): Promise<void> {
     const { mesh, settings } = begun.get(session)!;
     sessions.set(session, await Session.create(mesh.positions, mesh.indices, mesh.dimension, settings));
@@ -62,7 +62,7 @@ const calls = {
     while (question === 'advance' && value && performance.now() - start < SLICE) value = await answer();
     return { value: lend(session, value), iterations: asked.iterations, flips: asked.flips };
   },
-  /** The page has copied what it was lent. */
+  /** Frees the indices after the client has copied them. */
   release(session: number): void {
     lent.get(session)?.free();
     lent.delete(session);
@@ -77,7 +77,7 @@ const calls = {
 
 export type Calls = typeof calls;
 
-/** What is sent of a value: of its indices, where they are in memory and how many, for the page to copy them. */
+/** The value to send. Indices become their address and their number, and the client copies them from the memory. */
 function lend(session: number, value: unknown): unknown {
   if (value instanceof Indices) {
     lent.set(session, value);
@@ -87,14 +87,14 @@ function lend(session: number, value: unknown): unknown {
   return indices instanceof Indices ? { ...(value as object), indices: lend(session, indices) } : value;
 }
 
-/** A call by its name. */
+/** A message that calls a method. */
 export interface Call {
   id: number;
   method: keyof Calls;
   args: unknown[];
 }
 
-/** What a call gives. */
+/** The message that answers a call. */
 export interface Answer {
   id: number;
   value?: unknown;
@@ -102,13 +102,16 @@ export interface Answer {
 }
 
 const node = typeof process === 'undefined' ? undefined : process.getBuiltinModule?.('node:worker_threads');
-/** Both have these two. */
+/** A worker of Node and a worker of a browser both have these two members. */
 const port = (node?.parentPort ?? globalThis) as unknown as {
   onmessage: (event: MessageEvent<Call>) => void;
   postMessage(answer: Answer, transfer: ArrayBuffer[]): void;
 };
 
-/** After a trap nothing can be said of the memory: an error of the worker, which ends all. */
+/**
+ * After a trap the shared memory may be corrupt, so this raises an error of the worker, and the client ends all
+ * threads.
+ */
 function crash(reason: unknown): void {
   setTimeout(() => {
     throw reason;

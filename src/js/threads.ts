@@ -1,4 +1,4 @@
-/** Sessions on the CPU engine's threads: workers, each with an instance of one module, which share its memory. */
+/** Sessions on the threads of the CPU engine: workers, each with an instance of one module. They share the memory. */
 
 import { collecting } from './collect.js';
 import { EdgeflipError, fromModule } from './error.js';
@@ -8,25 +8,27 @@ import type { Answer, Call, Calls, Question } from './thread.js';
 import { MOST_THREADS, type Settings } from './settings.js';
 import type { Session } from './wasm/edgeflip.js';
 
-/** What a session is asked, in whatever module it is. */
+/** The methods of a session, in any module. */
 export interface ModuleSession extends Omit<Session, typeof Symbol.dispose> {
-  /** Whether it is in a worker: the page has its turn while it waits. */
+  /** Whether the session is in a worker, so that it does not block the page. */
   readonly isAway?: boolean;
 }
 
-/** Triangles that are done on one thread before others have woken up, as `src/system/threads.rs` has it. */
+/**
+ * The fewest triangles of a mesh on several threads, as in `src/system/threads.rs`: one thread finishes fewer sooner.
+ */
 const FEWEST_TRIANGLES = 65_536;
 
-/** Triangles of each thread at least: with fewer it would have nothing to do. */
+/** The fewest triangles per thread: with fewer, some threads would have no work. */
 const FEWEST_EACH = 4096;
 
-/** Node's, where there are no workers of the web. */
+/** The workers of Node. */
 const node = typeof process === 'undefined' ? undefined : process.getBuiltinModule?.('node:worker_threads');
 
-/** Whether memory can be shared here. */
+/** Whether workers can share memory. */
 const isShared = typeof SharedArrayBuffer !== 'undefined' && (globalThis.crossOriginIsolated ?? node !== undefined);
 
-/** How many threads the CPU engine would have. */
+/** The number of threads of the CPU engine. */
 export function threadCount(triangles: number, { threads }: Settings): number {
   if (!isShared || triangles < FEWEST_TRIANGLES) return 1;
   return Math.max(1, Math.min(threads ?? coreCount(), MOST_THREADS, Math.floor(triangles / FEWEST_EACH)));
@@ -38,16 +40,16 @@ function coreCount(): number {
   );
 }
 
-/** A worker of the web, or one of Node, which keeps the process alive only while it is waited for. */
+/** A worker of a browser or of Node. A worker of Node keeps the process alive only during a call. */
 interface Thread {
   post(call: Call, transfer: ArrayBuffer[]): void;
   end(): void;
   wait(isWaiting: boolean): void;
 }
 
-/** `onError` hears no message where the worker could not be loaded. */
+/** `onError` gets no message if the worker could not be loaded. */
 function startThread(onAnswer: (answer: Answer) => void, onError: (message?: string) => void): Thread {
-  // Bun and Deno have both; theirs of the web keep the process alive.
+  // Bun and Deno have both kinds, but their web workers keep the process alive.
   if (node && (typeof window === 'undefined' || typeof Worker === 'undefined')) {
     const worker = new node.Worker(new URL('./thread.js', import.meta.url));
     worker.on('message', onAnswer).on('error', ({ message }) => onError(message));
@@ -115,7 +117,7 @@ class Pool {
     };
     const isFirst = this.#threads.length === 0;
     const thread = startThread(onAnswer, (message) => {
-      // Without one of the others the rest do its work.
+      // If one of the other workers cannot be loaded, the remaining threads do its work.
       if (isFirst || message !== undefined) this.#fail(message ?? 'a worker could not be loaded');
     });
     this.#threads.push(thread);
@@ -131,7 +133,7 @@ class Pool {
     return new Promise<Given<M>>((resolve, reject) => this.#calls.set(id, { resolve, reject }));
   }
 
-  /** One that has crashed leaves the memory of all as it is then. */
+  /** Ends all threads: after a crash of one, their shared memory may be corrupt. */
   #fail(message: string): void {
     if (this.#error) return;
     this.#error = fromModule(new Error(`a thread has crashed: ${message}`));
@@ -142,12 +144,12 @@ class Pool {
   }
 }
 
-/** Where pages of memory are larger, they are written more often than need be. */
+/** Words of a page of memory. If the system has larger pages, `reserve` writes each more than once. */
 const WORDS_OF_PAGE = 1024;
 
 /**
- * Memory for so many indices, if there is any. The system gives a page of it when it is first written, which takes longer
- * than to copy them there: it does so now, while others work.
+ * Memory for the indices of a result, or `undefined` if there is not enough. The system provides each page at its first
+ * write, which takes longer than the later copy. This writes every page now, while the workers are busy.
  */
 function reserve(indices: number): Uint32Array | undefined {
   try {
@@ -162,10 +164,10 @@ function reserve(indices: number): Uint32Array | undefined {
 /** Threads and their memory. */
 type Threads = [pool: Pool, memory: WebAssembly.Memory];
 
-/** Those that there are, by how many. */
+/** The running threads, by their number. */
 const started = new Map<number, Promise<Threads>>();
 
-/** So many threads, which all sessions share. */
+/** Starts `count` threads, or returns them if they are running. Sessions share them. */
 export function threadsOf(module: WebAssembly.Module, count: number): Promise<Threads> {
   let threads = started.get(count);
   if (!threads) {
@@ -177,10 +179,10 @@ export function threadsOf(module: WebAssembly.Module, count: number): Promise<Th
 
 let sessions = 0;
 
-/** Gives back what a session has that was dropped. */
+/** Frees the memory of sessions that the garbage collection has removed. */
 const dropped = new FinalizationRegistry<() => void>((free) => free());
 
-/** A session of the first thread. */
+/** A session that the first thread holds. */
 export class ThreadsSession implements ModuleSession {
   iterations = 0;
   flips = 0;
@@ -194,7 +196,7 @@ export class ThreadsSession implements ModuleSession {
   readonly #session: number;
   readonly #fallback: string | undefined;
   readonly #free: () => void;
-  /** What the next triangles are copied to. */
+  /** The array for the next copy of triangles. */
   #spare: Uint32Array | undefined;
 
   private constructor(
@@ -208,15 +210,16 @@ export class ThreadsSession implements ModuleSession {
     this.#spare = spare;
     this.#session = session;
     this.#fallback = fallback;
-    // After a crash there is nothing to be freed.
+    // After a crash the memory is gone with the threads.
     this.#free = () => void pool.call('free', session).catch(() => undefined);
     dropped.register(this, this.#free, this);
   }
 
   /**
-   * As `Session.create`; the arrays of the mesh are given away. All settings go to the worker but the device, which cannot.
+   * As `Session.create`, but transfers the arrays of the mesh. The worker gets all settings except the device, which
+   * cannot be sent.
    *
-   * @param fallback - Why no engine before this one was taken.
+   * @param fallback - Why `'auto'` chose the CPU.
    */
   static async create(
     threads: Threads,
@@ -258,12 +261,12 @@ export class ThreadsSession implements ModuleSession {
     this.#free();
   }
 
-  /** Copies so many indices out of the memory. */
-  #copy([place, length]: Uint32Array): Uint32Array {
+  /** Copies indices from the shared memory. */
+  #copy([address, length]: Uint32Array): Uint32Array {
     try {
       const copy = this.#spare ?? new Uint32Array(length!);
       this.#spare = undefined;
-      copy.set(new Uint32Array(this.#memory.buffer, place, length));
+      copy.set(new Uint32Array(this.#memory.buffer, address, length));
       return copy;
     } finally {
       void this.#pool.call('release', this.#session).catch(() => undefined);

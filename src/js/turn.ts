@@ -1,13 +1,13 @@
-/** Gives the page its turn: without it, a run on the CPU would let nothing else happen, not even an abort. */
+/** Lets the page handle events during a run on the CPU; without this, not even an abort would be noticed. */
 
-/** Milliseconds that a run may take at a time: half a frame. */
+/** Milliseconds that a run may block the page: half a frame. */
 const SLICE = 8;
 
-/** Waits for the page, once the last wait is long enough ago. */
+/** Yields to the page at intervals. */
 export class Turns {
   #since = performance.now();
 
-  /** Ends at once, or after everything that was waiting for the thread. */
+  /** Yields if the last time is at least `SLICE` ago. */
   async give(): Promise<void> {
     if (performance.now() - this.#since < SLICE) return;
     await turn();
@@ -15,7 +15,7 @@ export class Turns {
   }
 }
 
-/** Ends after everything that was waiting. A message is a task of its own, and is not held back as a timer is. */
+/** Resolves after the tasks that are already queued. A message is a task, and is not throttled as a timer is. */
 export function turn(): Promise<void> {
   return new Promise((resolve) => {
     const { port1, port2 } = new MessageChannel();

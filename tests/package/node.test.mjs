@@ -337,7 +337,7 @@ test('what is passed is the caller’s again when the call has returned', async 
     assert.deepEqual([result.indices, result.flips], [indices, flips]);
     await assert.rejects(
       makeDelaunay(mesh, options),
-      refused('invalid-input', /^positions have no memory: it was transferred/),
+      refused('invalid-input', /^positions: the buffer was transferred/),
     );
   }
 });
