@@ -1,5 +1,5 @@
-//! What the npm package calls for the audit of a session, in a module of its own: most pages never load it. Its only
-//! caller is `FlipSession.verify` in `src/js/session.ts`.
+//! The audit of a session for the npm package, in a module of its own: most pages never load it. Its only caller is
+//! `FlipSession.verify` in `src/js/session.ts`.
 
 use crate::system::threads::Threads;
 use crate::wasm::options::{JsOptions, without_lists};
@@ -8,7 +8,8 @@ use crate::{Options, quality};
 use js_sys::{Array, Uint32Array};
 use wasm_bindgen::prelude::*;
 
-/// As [`quality::audit`]. `locked_edges` are all edges that the options lock, 2 vertices each; `options` has no lists.
+/// As [`quality::audit`]. `locked_edges` has all edges that the options lock, 2 vertices per edge; `options` has no
+/// lists.
 ///
 /// # Errors
 /// Those of [`Mesh::new`](crate::Mesh::new); [`Error::OutOfMemory`](crate::Error::OutOfMemory).

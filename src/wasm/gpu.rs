@@ -1,4 +1,4 @@
-//! What only the module with the GPU engines exports: the choice of `'auto'`, and a session's objects on a GPU.
+//! The exports that only the module with the GPU engines has: the choice of `'auto'`, and a session's objects on a GPU.
 
 use super::options::{self, JsOptions};
 use super::session::JsSession;
@@ -10,7 +10,7 @@ use crate::{Error, Mesh, Session};
 use js_sys::{Array, Reflect, Uint32Array};
 use wasm_bindgen::prelude::*;
 
-/// Says where the WebGL2 engine comes from.
+/// Sets the object that loads the WebGL2 engine.
 #[wasm_bindgen(js_name = setWebGl2)]
 pub fn set_webgl2(module: WebGl2Module) {
     engine::set_webgl2(module);

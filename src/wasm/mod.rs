@@ -1,5 +1,5 @@
-//! What wasm-bindgen exports for the npm package, one file a WebAssembly module: nothing else in the crate imports it. The
-//! TypeScript in `src/js/` is the public face.
+//! The exports of wasm-bindgen for the npm package. The TypeScript in `src/js/` calls them; no other room of the crate
+//! imports this one.
 
 #[cfg(feature = "js-audit")]
 pub mod audit;

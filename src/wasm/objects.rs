@@ -1,4 +1,4 @@
-//! The result as a JavaScript object, in the words of the npm package: the field names of `src/js/types.ts`.
+//! The result as a JavaScript object with the field names of `src/js/types.ts`.
 
 use crate::wasm::values::{object, reasons_object};
 use crate::{Outcome, Status};

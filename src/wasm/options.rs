@@ -1,5 +1,5 @@
-//! The options of a run as JavaScript gives them: the one place where they become the library's. Between modules they
-//! cross as one object; each module reads it here.
+//! Converts the options of a run from JavaScript to Rust. JavaScript passes them to each module as one object, and each
+//! module reads it here.
 
 #[cfg(feature = "js")]
 use crate::engine::GpuDevice;
@@ -11,7 +11,7 @@ use wasm_bindgen::prelude::*;
 
 #[wasm_bindgen]
 extern "C" {
-    /// The options, as `settingsOf` in `src/js/settings.ts` gives them: checked in type, not in value.
+    /// The options that `settingsOf` in `src/js/settings.ts` returns. It has checked their types, but not their values.
     #[wasm_bindgen(typescript_type = "import('../settings.js').Settings")]
     #[derive(Clone)]
     pub type JsOptions;
@@ -26,10 +26,10 @@ extern "C" {
 /// All options. An absent one keeps its default.
 ///
 /// # Errors
-/// [`Error::RaggedArray`]; [`Error::Option`] for a value that the library has no type for.
+/// [`Error::RaggedArray`]; [`Error::Option`] for a value that its Rust type cannot hold.
 #[cfg(feature = "js-session")]
 pub(crate) fn read(given: &JsOptions) -> Result<Options, Error> {
-    // A copy, because another try reads them again. What the session keeps of it has no lists.
+    // A copy, because another try reads the options again. The session keeps the copy, without its lists.
     let kept: JsOptions = Object::assign(&Object::new(), given.unchecked_ref()).unchecked_into();
     let list = |name| {
         let list = kept.get(name);
@@ -48,10 +48,10 @@ pub(crate) fn read(given: &JsOptions) -> Result<Options, Error> {
     })
 }
 
-/// The options that are no lists: reading a list copies it.
+/// The options except the lists, because reading a list copies it.
 ///
 /// # Errors
-/// [`Error::Option`] for a value that the library has no type for.
+/// [`Error::Option`] for a value that its Rust type cannot hold.
 pub(crate) fn without_lists(given: &JsOptions) -> Result<Options, Error> {
     let number = |name| given.get(name).as_f64();
     let text = |name| given.get(name).as_string();

@@ -39,11 +39,11 @@ impl JsSession {
         question: impl AsyncFnOnce(&mut Session) -> Result<T, Error> + 'static,
         give: impl FnOnce(T) -> JsValue + 'static,
     ) -> Promise {
-        let place = self.0.clone();
+        let shared = self.0.clone();
         promise(async move {
-            let mut session = place.take().ok_or_else(|| coded("freed", ENDED))?;
+            let mut session = shared.take().ok_or_else(|| coded("freed", ENDED))?;
             let answer = question(&mut session).await;
-            place.replace(Some(session));
+            shared.replace(Some(session));
             answer.map(give).map_err(thrown)
         })
     }
@@ -166,7 +166,7 @@ impl JsSession {
         })
     }
 
-    /// What [`Session::verify`] checks, as the arguments of `audit` in `src/wasm/audit.rs`.
+    /// The arguments of `audit` in `src/wasm/audit.rs`, which checks the same as [`Session::verify`].
     #[wasm_bindgen(js_name = auditInput, unchecked_return_type = "Promise<Parameters<typeof import('./edgeflip_audit.js').audit>>")]
     pub fn audit_input(&self) -> Promise {
         let input = async |session: &mut Session| {

@@ -1,4 +1,5 @@
-//! Sessions on the CPU engine's threads, in a module of its own whose instances share their memory: one in each worker.
+//! The threads of the CPU engine, in a module of their own. Each worker has an instance of it, and the instances share
+//! their memory.
 
 use crate::wasm::values::coded;
 use rayon::{ThreadBuilder, ThreadPool, ThreadPoolBuilder};
@@ -10,11 +11,11 @@ static WAITING: Mutex<Vec<ThreadBuilder>> = Mutex::new(Vec::new());
 
 static POOL: OnceLock<ThreadPool> = OnceLock::new();
 
-/// Makes this worker the first of so many threads. Each of the others has to call [`work`], in an instance on the memory
-/// that this gives.
+/// Makes this worker the first of `count` threads, and returns the memory of this instance. Each other worker has to
+/// call [`work`] in an instance on the same memory.
 ///
 /// # Errors
-/// Where they cannot be had.
+/// If rayon cannot build its pool.
 #[wasm_bindgen(js_name = startThreads, unchecked_return_type = "WebAssembly.Memory")]
 pub fn start_threads(count: usize) -> Result<JsValue, JsValue> {
     let builder = ThreadPoolBuilder::new().num_threads(count).use_current_thread().spawn_handler(|thread| {
@@ -22,12 +23,12 @@ pub fn start_threads(count: usize) -> Result<JsValue, JsValue> {
         Ok(())
     });
     let pool = builder.build().map_err(|error| coded("internal", &error.to_string()))?;
-    // A module has one pool.
+    // The pool is never dropped, so its threads run for ever. It is set only once.
     let _ = POOL.set(pool);
     Ok(wasm_bindgen::memory())
 }
 
-/// Makes this worker one of the threads: it works for ever.
+/// Makes this worker one of the threads. Never returns.
 #[wasm_bindgen]
 pub fn work() {
     let thread = WAITING.lock().ok().and_then(|mut waiting| waiting.pop());
@@ -36,13 +37,13 @@ pub fn work() {
     }
 }
 
-/// Vertex indices, which the page copies: it can read the memory.
+/// Vertex indices, which the client copies from the shared memory.
 #[wasm_bindgen]
 pub struct Indices(pub(crate) Vec<u32>);
 
 #[wasm_bindgen]
 impl Indices {
-    /// Where they are in memory, and how many they are.
+    /// The address and the number of the indices.
     pub fn place(&self) -> Vec<usize> {
         vec![self.0.as_ptr().addr(), self.0.len()]
     }

@@ -1,5 +1,5 @@
-//! What the modules of the npm package share: plain objects, errors and dimensions as JavaScript has them, in the
-//! words of the package: `webgpu` for the GPU engine, `indices` for the triangles.
+//! Conversions between Rust and JavaScript that the modules of the npm package share: meshes, plain objects and errors.
+//! The names are those of the package, such as `indices` for the triangles.
 
 #[cfg(any(feature = "js-session", feature = "js-audit"))]
 use crate::Reasons;
@@ -14,7 +14,7 @@ use wasm_bindgen::prelude::*;
 
 #[wasm_bindgen]
 extern "C" {
-    /// Positions, as JavaScript has them.
+    /// Positions in a typed array.
     #[wasm_bindgen(typescript_type = "Float32Array | Float64Array")]
     pub type JsPositions;
 
@@ -31,7 +31,7 @@ impl From<JsPositions> for Positions {
     }
 }
 
-/// The mesh of arrays of JavaScript, copied where there is memory for them.
+/// The mesh of arrays of JavaScript. Copies them after a check that there is enough memory.
 ///
 /// # Errors
 /// Those of [`Mesh::new`]; [`Error::OutOfMemory`]; [`Error::Option`] for the dimension.
@@ -54,8 +54,8 @@ pub fn start() {
     console_error_panic_hook::set_once();
 }
 
-/// Where memory cannot be had, `tools/build.mjs` lets Rust end here: a trap would not say why. `fromModule` in
-/// `src/js/error.ts` knows the message.
+/// Throws if memory runs out. `tools/build.mjs` makes Rust call this function, because a trap would not name the
+/// reason. `fromModule` in `src/js/error.ts` recognizes the message.
 #[wasm_bindgen(js_name = outOfMemory)]
 pub fn out_of_memory() {
     wasm_bindgen::throw_str("out of memory");
@@ -65,7 +65,7 @@ pub fn out_of_memory() {
 #[cfg(any(feature = "js-session", feature = "js-audit", feature = "js-files"))]
 pub(crate) fn object<'a>(fields: impl IntoIterator<Item = (&'a str, JsValue)>) -> JsValue {
     let entries: Array = fields.into_iter().map(|(name, value)| Array::of2(&name.into(), &value)).collect();
-    // Fails only on what is no list of pairs.
+    // Fails only for values that are not a list of pairs.
     Object::from_entries(&entries).map_or_else(|error| error, JsValue::from)
 }
 
@@ -89,7 +89,7 @@ pub(crate) fn parse_dimension(dimension: f64) -> Result<Dimension, Error> {
     }
 }
 
-/// What a call throws: an `Error` with a `code`.
+/// The exception for an error: an `Error` with a `code`.
 pub(crate) fn thrown(error: Error) -> JsValue {
     let code = error.code();
     match error {

@@ -1,5 +1,5 @@
-//! The WebGL2 engine for the module of the engines, which calls it through `engine::webgl2::proxy`: in a module of its own, that
-//! is loaded when the engine is taken.
+//! The WebGL2 engine, in a module of its own that is loaded on first use. The module of the other engines calls it
+//! through `engine::webgl2::proxy`.
 
 use crate::Error;
 use crate::engine::{self, Engine, WebGl};
@@ -14,7 +14,7 @@ use std::rc::Rc;
 use std::sync::Arc;
 use wasm_bindgen::prelude::*;
 
-/// Says where the programs come from: a function that returns a promise of their module.
+/// Sets the function that loads the shaders. It returns a promise of their JavaScript module.
 #[wasm_bindgen(js_name = setShaderLoader)]
 pub fn set_shader_loader(
     #[wasm_bindgen(unchecked_param_type = "() => Promise<unknown>")] loader: js_sys::Function,
@@ -22,7 +22,7 @@ pub fn set_shader_loader(
     engine::set_shader_loader(loader);
 }
 
-/// A mesh on the engine. A call has the engine while it goes on; one that ends with a trap keeps it.
+/// A mesh on the engine. A call holds the engine while it runs, so a call that ends with a trap never returns it.
 #[wasm_bindgen(js_name = WebGl2)]
 pub struct JsWebGl2 {
     engine: Rc<RefCell<Option<WebGl>>>,
@@ -30,19 +30,19 @@ pub struct JsWebGl2 {
 }
 
 impl JsWebGl2 {
-    /// Asks the engine, and gives JavaScript what `give` makes of the answer.
+    /// Asks the engine, and returns a promise of the answer, which `give` converts to a JavaScript value.
     fn ask<T>(
         &self,
         question: impl AsyncFnOnce(&mut WebGl) -> Result<T, Error> + 'static,
         give: impl FnOnce(T) -> JsValue + 'static,
     ) -> Promise {
-        let place = self.engine.clone();
+        let shared = self.engine.clone();
         promise(async move {
-            let mut engine = place
+            let mut engine = shared
                 .take()
                 .ok_or_else(|| coded("device-failed", "the engine ended when a call of it crashed"))?;
             let answer = question(&mut engine).await;
-            place.replace(Some(engine));
+            shared.replace(Some(engine));
             answer.map(give).map_err(bare)
         })
     }
@@ -54,9 +54,9 @@ impl JsWebGl2 {
 
 #[wasm_bindgen(js_class = WebGl2)]
 impl JsWebGl2 {
-    /// Opens an engine on the context that all share. `options` has no lists; the engine takes its thresholds.
+    /// Opens an engine on the WebGL2 context, which all engines share. It uses only the thresholds of `options`.
     ///
-    /// Rejected where there is no context, it fails its self-test, or it cannot take the mesh.
+    /// Rejects if there is no context, if the self-test fails, or if the engine cannot accept the mesh.
     #[wasm_bindgen(unchecked_return_type = "Promise<WebGl2>")]
     pub fn create(
         positions: JsPositions,
@@ -73,37 +73,38 @@ impl JsWebGl2 {
         promise(async { create.await.map(JsValue::from).map_err(bare) })
     }
 
-    /// As the engine's. Rejected, as all that follow, where the context is lost.
+    /// As `Engine::lock`. Like all methods below, it rejects if the context is lost.
     #[wasm_bindgen(unchecked_return_type = "Promise<void>")]
     pub fn lock(&self, half_edges: Uint32Array) -> Promise {
         self.ask(async move |engine| engine.lock(half_edges.to_vec()).await, done)
     }
 
-    /// As the engine's.
+    /// As `Engine::iterate`.
     #[wasm_bindgen(unchecked_return_type = "Promise<Uint32Array>")]
     pub fn iterate(&self, count: u32) -> Promise {
         self.ask(async move |engine| engine.iterate(count).await, array)
     }
 
-    /// As the shaders count.
+    /// The counts of the shaders, as `Census::of_counts` takes them.
     #[wasm_bindgen(unchecked_return_type = "Promise<Uint32Array>")]
     pub fn census(&self) -> Promise {
         self.ask(async |engine| engine.census_counts().await, array)
     }
 
-    /// As the engine's.
+    /// As `Engine::triangles`.
     #[wasm_bindgen(unchecked_return_type = "Promise<Uint32Array>")]
     pub fn triangles(&self) -> Promise {
         self.ask(async |engine| engine.triangles().await, array)
     }
 
-    /// As the engine's.
+    /// As `Engine::twins`.
     #[wasm_bindgen(unchecked_return_type = "Promise<Uint32Array>")]
     pub fn twins(&self) -> Promise {
         self.ask(async |engine| engine.twins().await, array)
     }
 
-    /// As the engine's: `indices` are the triangles as they are now. Rejected too where it cannot take the positions.
+    /// As `Engine::set_positions`; `indices` are the present triangles. Also rejects if the engine cannot accept the
+    /// positions.
     #[wasm_bindgen(js_name = setPositions, unchecked_return_type = "Promise<void>")]
     pub fn set_positions(&self, positions: JsPositions, indices: Uint32Array) -> Promise {
         let dimension = self.dimension;
@@ -114,20 +115,20 @@ impl JsWebGl2 {
         self.ask(set, done)
     }
 
-    /// How many iterations to ask for at a time.
+    /// As `Engine::batch`.
     #[wasm_bindgen(getter)]
     pub fn batch(&self) -> u32 {
         self.get(WebGl::batch)
     }
 
-    /// All edges, those of the boundary, the non-manifold and the inconsistent ones.
+    /// The numbers of all edges, boundary edges, non-manifold edges and inconsistent edges.
     #[wasm_bindgen(getter, js_name = edgeCounts)]
     pub fn edge_counts(&self) -> Vec<u32> {
         let counts = self.get(WebGl::edge_counts);
         vec![counts.edges, counts.boundary, counts.non_manifold, counts.inconsistent]
     }
 
-    /// The renderer's name.
+    /// The name of the GPU.
     #[wasm_bindgen(getter)]
     pub fn adapter(&self) -> String {
         self.get(WebGl::adapter).unwrap_or_default()
@@ -148,7 +149,7 @@ fn array(words: Vec<u32>) -> JsValue {
     Uint32Array::from(words.as_slice()).into()
 }
 
-/// An `Error` with a `code` whose message is that of the variant alone: the other module makes the variant of it again.
+/// An `Error` with a `code` and the message of the variant alone. The proxy makes the variant from it again.
 fn bare(error: Error) -> JsValue {
     let code = error.code();
     match error {

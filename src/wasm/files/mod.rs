@@ -1,6 +1,6 @@
-//! What the second entry of the npm package calls, `edgeflip/files`, and no one else: mesh files, generated meshes and
-//! angles, in a module without an engine. The hand-written `src/js/files.ts` is its public face. Arguments arrive
-//! checked in type, not in value. Everything that is thrown is an `Error` with a `code`.
+//! The module of the entry `edgeflip/files` of the npm package: mesh files, generated meshes and measures, without an
+//! engine. Only `src/js/files.ts` calls it. It has checked the types of all arguments, but not their values. Every
+//! exception is an `Error` with a `code`.
 
 mod weld;
 
@@ -14,13 +14,12 @@ use js_sys::{Array, Float32Array, Float64Array, Reflect, Uint8Array, Uint32Array
 use std::path::Path;
 use wasm_bindgen::prelude::*;
 
-/// Most bins of a histogram: more would only cost memory.
+/// The most bins of a histogram: more would only cost memory.
 const MAX_BINS: u32 = 1 << 16;
 
 #[wasm_bindgen]
 extern "C" {
-    /// A file; see [`ReadOptions`] for the bytes that it may have. `files` is an object with the bytes of files beside it,
-    /// by their names.
+    /// A file. `files` is an object with the bytes of other files by their names; `maxBytes` is as in [`ReadOptions`].
     #[wasm_bindgen(typescript_type = "Required<import('../types.js').Original>")]
     pub type JsFile;
 
@@ -34,10 +33,10 @@ extern "C" {
     fn max_bytes(this: &JsFile) -> Option<f64>;
 }
 
-/// The mesh in a file; see [`ReadOptions`] for the dimension.
+/// Reads the mesh of a file; `dimension` is as in [`ReadOptions`].
 ///
 /// # Errors
-/// Those of [`Format::of`] and [`io::parse_with`]; [`Error::Option`] for the dimension and the bytes.
+/// Those of [`Format::of`] and [`io::parse_with`]; [`Error::Option`] for the dimension and `maxBytes`.
 #[wasm_bindgen(js_name = readMesh, unchecked_return_type = "import('../files.js').FileMesh")]
 pub fn read_mesh(file: &JsFile, dimension: Option<f64>) -> Result<JsValue, JsValue> {
     let loaded = load(file, dimension).map_err(thrown)?;
@@ -65,8 +64,7 @@ pub fn read_mesh(file: &JsFile, dimension: Option<f64>) -> Result<JsValue, JsVal
     ]))
 }
 
-/// The bytes of a file that holds what [`read_mesh`] reads, with other triangles. The positions have to be those of the
-/// file.
+/// The bytes of a file that holds the mesh of `file` with other triangles. The positions have to be those of the file.
 ///
 /// # Errors
 /// Those of [`read_mesh`] and [`Loaded::file_bytes`]; [`Error::Option`] for the positions.
@@ -81,7 +79,7 @@ pub fn rewrite_mesh(
     let rewrite = || {
         let loaded = load(file, Some(dimension))?;
         if !Positions::from(positions).iter().eq(loaded.mesh.positions().iter()) {
-            let message = "its vertices are not where those of the mesh are, and only triangles are written anew: leave it out, and attributes are lost";
+            let message = "its positions differ from those of the mesh, and only triangles can change: omit it to write the mesh without attributes";
             return Err(Error::Option { option: "original", message: message.to_owned() });
         }
         loaded.file_bytes(target, indices.to_vec())
@@ -95,8 +93,8 @@ fn load(file: &JsFile, dimension: Option<f64>) -> Result<Loaded, Error> {
     options.dimension = dimension.map(parse_dimension).transpose()?;
     options.max_bytes = file.max_bytes().map_or(Ok(options.max_bytes), parse_max_bytes)?;
     options.check(bytes.length().into())?;
-    // The bytes, and a mesh that takes as much again, twice while its arrays grow: what is taken when memory runs out in
-    // the middle is lost.
+    // The bytes, and a mesh of the same size, twice while its arrays grow. If memory ran out during the call, the
+    // memory that it had allocated would be lost.
     memory::check(3 * u64::from(bytes.length()))?;
     io::parse_with(format, bytes.to_vec(), &options, &|name| {
         let given =
@@ -126,7 +124,7 @@ pub fn write_mesh(
 /// As [`families::by_name`].
 ///
 /// # Errors
-/// As there.
+/// Those of [`families::by_name`].
 #[wasm_bindgen(unchecked_return_type = "import('../files.js').Mesh32")]
 pub fn generate(spec: &str) -> Result<JsValue, JsValue> {
     let mesh = families::by_name(spec).map_err(thrown)?;
@@ -230,7 +228,7 @@ fn fields(mesh: &Mesh) -> [(&'static str, JsValue); 3] {
     ]
 }
 
-/// Infinity is no limit.
+/// Infinity means no limit: the conversion saturates.
 fn parse_max_bytes(bytes: f64) -> Result<u64, Error> {
     if bytes >= 0.0 {
         return Ok(bytes as u64);

@@ -1,4 +1,4 @@
-//! Vertices joined for a run, and its triangles split again.
+//! Joins vertices for a run, and splits them again afterwards.
 
 use super::{JsFile, load};
 use crate::prepare::weld::first_alike;
@@ -8,7 +8,7 @@ use crate::{Error, Welded, welded};
 use js_sys::{Uint8Array, Uint32Array};
 use wasm_bindgen::prelude::*;
 
-/// As [`Welded`], turned if that was asked for.
+/// As [`Welded`], reoriented if the caller asks for it.
 #[wasm_bindgen(js_name = Weld)]
 pub struct JsWeld {
     welded: Welded,
@@ -17,8 +17,8 @@ pub struct JsWeld {
 
 #[wasm_bindgen(js_class = Weld)]
 impl JsWeld {
-    /// As [`welded`]. Of each of `attributes` a vertex has as many bytes as any other; vertices are the same where all
-    /// of these are.
+    /// As [`welded`]. Each array of `attributes` has the same number of bytes for each vertex; vertices are equal if
+    /// all these bytes are.
     ///
     /// # Errors
     /// Those of [`Mesh::new`] and [`welded`]; [`Error::Option`] for the dimension.
@@ -43,8 +43,7 @@ impl JsWeld {
         weld().map_err(thrown)
     }
 
-    /// As [`io::Loaded::welded`](crate::io::Loaded::welded) of what [`read_mesh`](super::read_mesh) reads, with other
-    /// triangles.
+    /// As [`io::Loaded::welded`](crate::io::Loaded::welded), for the mesh of a file with other triangles.
     ///
     /// # Errors
     /// Those of [`read_mesh`](super::read_mesh) and [`Mesh::new`].
@@ -68,7 +67,7 @@ impl JsWeld {
         Ok(Self { welded, turned })
     }
 
-    /// How many triangles were turned.
+    /// The number of reversed triangles.
     #[wasm_bindgen(getter)]
     pub fn turned(&self) -> u32 {
         self.turned
@@ -92,7 +91,7 @@ impl JsWeld {
         Uint32Array::from(self.welded.places.as_slice())
     }
 
-    /// As [`Wedges::locked_edges`](crate::Wedges::locked_edges), two vertices an edge.
+    /// As [`Wedges::locked_edges`](crate::Wedges::locked_edges), two vertices per edge.
     #[wasm_bindgen(getter, js_name = lockedEdges)]
     pub fn locked_edges(&self) -> Uint32Array {
         Uint32Array::from(self.welded.wedges.locked_edges().as_flattened())
@@ -107,10 +106,10 @@ impl JsWeld {
     /// As [`Welded::split`].
     ///
     /// # Errors
-    /// As there.
+    /// Those of [`Welded::split`].
     pub fn split(&self, indices: &Uint32Array) -> Result<Uint32Array, JsValue> {
         let split = || {
-            // An exception for want of memory would leave this borrowed.
+            // Checked before the copy: an exception of JavaScript would leave this object borrowed.
             memory::check(4 * u64::from(indices.byte_length()))?;
             self.welded.split(&indices.to_vec())
         };
