@@ -1,5 +1,5 @@
-//! Reads every mesh file in some folders, makes it Delaunay on the CPU and on the GPU, compares the two and audits the
-//! result, and prints a table: `npm run corpus`.
+//! Reads every mesh file in the given folders, makes it Delaunay on the CPU and on the GPU, compares the results,
+//! audits them, and prints a table: `npm run corpus`.
 
 use edgeflip::io::{self, Format, ReadOptions};
 use edgeflip::quality::{angles, audit};
@@ -9,7 +9,7 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-/// Parts of paths of files that their package holds to be refused.
+/// Parts of the paths of malformed files: a parser should refuse these files.
 const MALFORMED: [&str; 8] = [
     "/models/invalid/",
     "/SchemaFailures/",
@@ -21,12 +21,12 @@ const MALFORMED: [&str; 8] = [
     "/OBJ/number_formats.obj",
 ];
 
-/// The folder of files in glTF 1.0, which is another format.
+/// The folder of files in glTF 1.0, a different format.
 const OTHER_FORMAT: &str = "/models/glTF/";
 
-/// What came of a file.
+/// The outcome for a file.
 enum Row {
-    /// `only_cpu` says why the GPU does not take the mesh, which its contract allows.
+    /// `only_cpu` says why the GPU refuses the mesh, which it may.
     Done {
         cells: String,
         only_cpu: Option<String>,
@@ -78,7 +78,7 @@ fn main() -> ExitCode {
     ExitCode::from(u8::from(wrong > 0))
 }
 
-/// The files below a folder whose names are those of a format.
+/// Collects the files below a folder that have the extension of a format.
 fn collect(path: &Path, files: &mut Vec<PathBuf>) {
     if let Ok(entries) = fs::read_dir(path) {
         entries.flatten().for_each(|entry| collect(&entry.path(), files));
@@ -103,7 +103,7 @@ fn row(file: &Path) -> Row {
     let (mut only_cpu, mut faults) = (None, Vec::new());
     match run(Backend::Gpu) {
         Ok(gpu) if gpu.triangles == outcome.triangles && gpu.remaining == outcome.remaining => {}
-        Ok(_) => faults.push("the GPU's result is another one".to_owned()),
+        Ok(_) => faults.push("the GPU's result differs".to_owned()),
         Err(Error::BackendLimit { message, .. }) => only_cpu = Some(message),
         Err(error) => faults.push(error.to_string()),
     }

@@ -17,7 +17,7 @@ fn main() -> Result<(), Error> {
     Ok(())
 }
 
-/// The extension of each name gives its format.
+/// The extension of each name gives the format of the file.
 pub fn flip_file(input: &Path, output: &Path) -> Result<Outcome, Error> {
     let loaded = io::load(input, &ReadOptions::default())?;
     let mut options = Options::default();

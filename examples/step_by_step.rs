@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 /// Watches two iterations one by one, and the others batch by batch, for at most a minute.
 pub fn main() -> Result<(), Error> {
     let mesh = families::by_name("random 60")?;
-    // Any executor will do; `pollster` is a small one.
+    // `pollster` is a small executor; any other works too.
     pollster::block_on(async {
         let mut session = Session::new(&mesh, Options::default()).await?;
         for _ in 0..2 {

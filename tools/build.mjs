@@ -1,6 +1,7 @@
-// Builds the npm package into dist/: `npm run build`. For each of its modules, cargo compiles the library for wasm32. Where
-// what it has compiled has changed, wasm-bindgen writes the glue, panics are cut off and wasm-opt makes the module smaller.
-// tools/glsl writes the programs of the WebGL2 engine; tsc checks the TypeScript and compiles it. Ends with a table of sizes.
+// Builds the npm package into dist/: `npm run build`. For each of its modules, cargo compiles the library for wasm32.
+// If the compiled code has changed, wasm-bindgen writes the glue, the panic code is removed and wasm-opt shrinks the
+// module. tools/glsl writes the shaders of the WebGL2 engine; tsc checks and compiles the TypeScript. Ends with a table
+// of sizes.
 
 import { spawn, spawnSync } from 'node:child_process';
 import { createHash } from 'node:crypto';
@@ -12,7 +13,7 @@ import binaryen from 'binaryen';
 
 process.chdir(fileURLToPath(new URL('..', import.meta.url)));
 
-/** Runs a program to its end; the build stops if it fails. */
+/** Runs a program. If it fails, the build stops. */
 function run(program, ...args) {
   console.log(`$ ${[program, ...args].join(' ')}`);
   return new Promise((resolve) => {
@@ -27,14 +28,14 @@ function run(program, ...args) {
   });
 }
 
-const glue = 'target/js/wasm'; // also where src/js/tsconfig.json finds the types of the modules
-// A function of the engines is inlined where it is marked so or nearly free: what is hot is marked, and the rest is a
-// quarter smaller. Loops are unrolled only where their length is known: it is no slower, and 2 % smaller.
+const glue = 'target/js/wasm'; // src/js/tsconfig.json finds the types of the modules here
+// In the engines, only functions with an attribute and tiny functions are inlined. The hot functions have the
+// attribute; the module is a quarter smaller. Only loops of a known length are unrolled: no slower, and 2 % smaller.
 const engine = ['-C', 'llvm-args=-inline-threshold=10 -unroll-runtime=0'];
-// Vectors where they are written, and nowhere else: it is no slower, and 2 % smaller.
-// Panics are cut off below, so nothing needs to know where in the source they are.
+// Only explicit vector code uses vectors: no slower, and 2 % smaller.
+// The panic code is removed below, so the modules need no source locations.
 const all = ['-C', 'no-vectorize-loops', '-C', 'no-vectorize-slp', '-Z', 'location-detail=none'];
-// One module for each entry of the package, one for the WebGL2 engine, one for the CPU engine's threads, and one for the
+// One module for each entry of the package, and one each for the WebGL2 engine, the threads of the CPU engine and the
 // audit.
 const modules = [
   { name: 'edgeflip', features: 'gpu,js', flags: engine },
@@ -43,7 +44,8 @@ const modules = [
   { name: 'edgeflip_audit', features: 'js-audit', flags: [] },
   { name: 'edgeflip_files', features: 'js-files', flags: [] },
 ];
-// The features that rustc turns on for wasm32, and vectors: every browser with WebGPU has them, and all since 2023.
+// The features that rustc enables for wasm32, and SIMD. All browsers have had them since 2023, and so has every browser
+// with WebGPU.
 const wasmFeatures = [
   'bulk-memory',
   'bulk-memory-opt',
@@ -57,7 +59,7 @@ const wasmFeatures = [
 ];
 
 const sha256 = (...parts) => parts.reduce((hash, part) => hash.update(part), createHash('sha256')).digest('hex');
-// What makes a module of what cargo has compiled: this file, wasm-bindgen and binaryen.
+// The tools that process the output of cargo: this file, wasm-bindgen and binaryen.
 const bindgen = 'target/setup/bin/wasm-bindgen';
 const tools = [
   readFileSync('tools/build.mjs'),
@@ -65,8 +67,8 @@ const tools = [
   readFileSync('node_modules/binaryen/package.json'),
 ];
 
-// Beside the modules, for which one core is enough at their ends. Of the whole workspace, as tests are built: else its
-// dependencies, with fewer features, would be compiled again.
+// Runs in parallel with the modules, whose last step uses one core. It builds with the whole workspace, like the tests;
+// alone, the dependencies would have fewer features and would be compiled again.
 const glsl = run('cargo', 'build', '--workspace', '--bin', 'glsl');
 
 mkdirSync(glue, { recursive: true });
@@ -93,13 +95,13 @@ for (const module of modules) {
     ...flags,
   );
   const compiled = 'target/wasm/wasm32-unknown-unknown/web/edgeflip.wasm';
-  // Where cargo's file and the tools are those of the last time, so is the module.
+  // If cargo's file and the tools are unchanged, so is the module.
   const stamp = `${glue}/${name}.sha256`;
   const inputs = sha256(readFileSync(compiled), ...tools);
   if (existsSync(stamp) && readFileSync(stamp, 'utf8') === inputs) continue;
   rmSync(stamp, { force: true });
   await run(bindgen, '--target', 'web', '--out-dir', glue, '--out-name', name, '--remove-producers-section', compiled);
-  // While cargo compiles the next module.
+  // Runs while cargo compiles the next module.
   finishing.push(optimize(module).then(() => writeFileSync(stamp, inputs)));
 }
 await Promise.all(finishing);
@@ -110,12 +112,12 @@ for (const { name } of modules) {
     cpSync(`${glue}/${name}${end}`, `dist/wasm/${name}${end}`);
 }
 
-/** Cuts off the panics of a module and makes it smaller. */
+/** Removes the panic code of a module and shrinks it. */
 async function optimize({ name, options }) {
   const wasm = `${glue}/${name}_bg.wasm`;
   cutPanics(wasm);
-  // No pointer of Rust is below 1024: the stack, which comes first, grows down from 1 MiB. Done twice, since the first
-  // time uncovers more.
+  // --low-memory-unused: no pointer of Rust is below 1024, because the stack is first in memory and grows down from 1
+  // MiB. -Oz twice, because the first pass makes further savings possible.
   const features = options ? [...wasmFeatures, 'threads'] : wasmFeatures;
   await run(
     process.execPath,
@@ -132,8 +134,8 @@ async function optimize({ name, options }) {
 }
 
 /**
- * Where a panic begins, a trap is left, with which it would end: nobody hears what it says before. Where memory cannot be
- * had, `out_of_memory` is called instead, which throws.
+ * Replaces the body of each panic function by a trap. A panic ends with a trap anyway, and nobody sees its message. The
+ * functions that run when memory runs out call `out_of_memory` instead, which throws.
  */
 function cutPanics(file) {
   const panics = /^(core|alloc)\b.*::(panicking::.*|panic_\w+|\w+_fail(ed)?)$/;
@@ -142,26 +144,26 @@ function cutPanics(file) {
   const outOfMemory = binaryen.getExportInfo(module.getExport('outOfMemory')).value;
   const hooks = new Set();
   for (let i = 0; i < module.getNumFunctions(); i++) {
-    const place = module.getFunctionByIndex(i);
-    const { name } = binaryen.getFunctionInfo(place);
-    if (panics.test(name)) binaryen.Function.setBody(place, module.unreachable());
+    const found = module.getFunctionByIndex(i);
+    const { name } = binaryen.getFunctionInfo(found);
+    if (panics.test(name)) binaryen.Function.setBody(found, module.unreachable());
     const [, hook] = memory.exec(name) ?? [];
     if (!hook) continue;
     hooks.add(hook);
     binaryen.Function.setBody(
-      place,
+      found,
       module.block(null, [module.call(outOfMemory, [], binaryen.none), module.unreachable()]),
     );
   }
   if (hooks.size < 3)
-    throw new Error(`${file}: of what follows where memory cannot be had, too little has a name that is known`);
+    throw new Error(`${file}: found ${hooks.size} of the 3 functions of alloc that run when memory runs out`);
   writeFileSync(file, module.emitBinary());
   module.dispose();
 }
 
 await Promise.all([
   glsl.then(() => run('target/debug/glsl', 'dist/glsl.js')),
-  // Whether the types of Node and of WebGPU are right in themselves is not ours to check: half of the time.
+  // --skipLibCheck: checking the types of Node and WebGPU would double the time.
   run(process.execPath, 'node_modules/typescript/bin/tsc', '-p', 'src/js', '--skipLibCheck'),
 ]);
 

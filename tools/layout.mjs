@@ -36,7 +36,7 @@ const moduleOf = (file) =>
     .replaceAll('/', '::');
 const fileOf = new Map(crate.map((file) => [moduleOf(file), file]));
 
-/** Without comments and tests. */
+/** The source without comments and tests. */
 function bare(source) {
   const code = source.replace(/\/\/[^\n]*/g, '').replace(/pub\(in [\w:]+\)/g, 'pub');
   const tests = code.search(/#\[cfg\([^\n]*\btest\b[^\n]*\)\]\nmod tests \{/);
@@ -61,7 +61,7 @@ function expand(tree) {
   return paths.flatMap(expand).map((path) => (path === 'self' ? prefix.replace(/::$/, '') : prefix + path));
 }
 
-/** A path from the root of the crate, or nothing for another crate. */
+/** The path from the root of the crate; `undefined` for another crate. */
 function absolute(path, module) {
   const [first, ...rest] = path.split('::');
   if (first === 'crate') return rest.join('::');
@@ -87,7 +87,7 @@ for (const [module, file] of fileOf) {
   for (const path of paths) renamed.set([module, path.split('::').at(-1)].filter(Boolean).join('::'), path);
 }
 
-/** The module that defines what a path names, through the modules that only re-export it. */
+/** The module that defines the name in a path; follows re-exports. */
 function definer(path, depth = 0) {
   const words = path.split('::');
   for (let length = words.length; length >= 0; length--) {

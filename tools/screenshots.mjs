@@ -1,5 +1,5 @@
-// Takes screenshots of the page in target/www. `npm run screenshots` builds it there and takes every state, light and dark,
-// wide and narrow, into target/screenshots, to be looked at. `npm run picture` takes the one picture in README: docs/page.png.
+// Takes screenshots of the page in target/www. `npm run screenshots` builds the page and takes every state, light and
+// dark, wide and narrow, into target/screenshots. `npm run picture` takes the picture in README: docs/page.png.
 
 import { mkdirSync } from 'node:fs';
 import { resolve } from 'node:path';
@@ -25,7 +25,7 @@ const sample = async (page, spec) => {
   await measured(page);
 };
 
-/** What to do to see each state, in this order on one page. */
+/** The actions that reach each state, in this order on one page. */
 const states = {
   ready: (page) => measured(page),
   running: async (page) => {
@@ -76,7 +76,7 @@ async function takePicture(browser, address) {
     await page.click('#step');
     await page.waitForFunction((at) => document.body.dataset.measured === at, `${i}`);
   }
-  await page.waitForTimeout(300); // drawn
+  await page.waitForTimeout(300); // until it is drawn
   await page.screenshot({ path: picture });
   console.log(picture);
 }
@@ -88,7 +88,7 @@ async function takeAll(browser, address) {
     const context = await browser.newContext(options);
     const page = await context.newPage();
     const shoot = async (name) => {
-      await page.waitForTimeout(300); // drawn
+      await page.waitForTimeout(300); // until it is drawn
       await page.screenshot({ path: `${folder}/${look}-${name}.png`, fullPage: true });
     };
     await page.goto(address);
@@ -96,7 +96,7 @@ async function takeAll(browser, address) {
       await reach(page);
       await shoot(name);
     }
-    // Where the WebAssembly modules are not served, there is no mesh to show.
+    // Without the WebAssembly modules, the page has no mesh to show.
     await context.route('**/*.wasm', (route) => route.abort());
     await page.goto(address);
     await page.waitForSelector('#error:not([hidden])');

@@ -1,20 +1,20 @@
 #!/usr/bin/env bash
-# Makes sure that everything `npm test` needs is there, and installs what is missing where it can.
-# `setup.sh build` does so for what `npm start` and `npm run build` need: the lines with a star.
+# Checks for everything that `npm test` needs, and installs missing parts if it can.
+# `setup.sh build` checks only for the parts that `npm start` and `npm run build` need: the lines with a star.
 #
-# * Rust >= 1.88; with rustfmt and clippy  from rustup; asked for, not installed
+# * Rust >= 1.88; with rustfmt and clippy  from rustup; not installed, the script says how
 # * a C linker                             apt on Debian and Ubuntu
 #   a Vulkan driver for the GPU tests      apt on Debian and Ubuntu (Mesa's software driver, lavapipe)
 # * the wasm32-unknown-unknown target      rustup; on Debian 12 without rustup's server, Debian's compiler
 #   and the source of std
 # * wasm-bindgen, of Cargo.lock's version  cargo install, into target/setup
 # * the packages of package-lock.json      npm ci
-#   Chromium and chromedriver              apt on Debian; asked for elsewhere, not installed
-#   Firefox                                apt on Debian; asked for elsewhere, not installed
-#   Xvfb, where there is no display        apt on Debian and Ubuntu
+#   Chromium and chromedriver              apt on Debian; elsewhere the script says how
+#   Firefox                                apt on Debian; elsewhere the script says how
+#   Xvfb, if there is no display           apt on Debian and Ubuntu
 #
-# It looks first and installs only what it does not find, so a second run changes nothing.
-# On macOS and Windows it installs only what rustup can; the GPU tests use Metal or Direct3D 12 there.
+# It installs only missing parts, so a second run changes nothing.
+# On macOS and Windows it installs only what rustup, cargo and npm can; the GPU tests use Metal or Direct3D 12 there.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -30,12 +30,12 @@ stop() { # WHAT IS MISSING, WHAT TO DO…
 }
 has() { command -v "$1" >/dev/null 2>&1; }
 
-# Runs a command for at most so many seconds, so that a network that swallows packets cannot hold us up.
+# Runs a command for at most SECONDS seconds, because a network that drops packets would block it for ever.
 within() { # SECONDS COMMAND…
   if has timeout; then timeout "$@"; else perl -e 'alarm shift; exec @ARGV' "$@"; fi
 }
 
-# Sets `root` to the words that run a command as root; fails when there is no way.
+# Sets `root` to the prefix that runs a command as root; fails if there is none.
 root=()
 find_root() {
   if [ "$(id -u)" = 0 ]; then
@@ -47,8 +47,8 @@ find_root() {
   fi
 }
 
-# Installs Debian packages. The package lists are fetched only when the first try fails: they may be absent
-# or out of date. --no-remove: better to stop than to take something of the user's away.
+# Installs Debian packages. It fetches the package lists only if the first try fails, because they may be absent
+# or out of date. --no-remove: stops instead of removing packages of the user.
 apt_install() { # WHY PACKAGE…
   local why=$1
   shift
@@ -93,7 +93,7 @@ case $system in
 esac
 
 # --- Vulkan driver ----------------------------------------------------------------------------------------
-# The loader (libvulkan.so.1) finds drivers by their JSON files. Any will do; a software one is installed.
+# The loader (libvulkan.so.1) finds drivers by their JSON files. Any driver suffices; this installs a software driver.
 has_vulkan() {
   [ -z "${VK_DRIVER_FILES:-}${VK_ICD_FILENAMES:-}" ] || return 0 # the user has chosen a driver
   local drivers=(/usr/share/vulkan/icd.d/*.json /usr/local/share/vulkan/icd.d/*.json /etc/vulkan/icd.d/*.json)
@@ -110,8 +110,8 @@ case $system in
 esac
 
 # --- wasm32 target ----------------------------------------------------------------------------------------
-# Debian's rustc-web (the compiler for its browsers) has the source of std but no wasm32 std: build it once
-# and put it where that compiler looks. embed-bitcode: for LTO; test: for cargo test.
+# Debian's rustc-web (the compiler for its browsers) has the source of std, but no std for wasm32. This builds std once
+# and copies it into the compiler's sysroot. embed-bitcode: for LTO; test: for cargo test.
 build_debian_std() {
   apt_install "Debian's Rust compiler and the source of std" \
     rustc-web cargo-web rust-web-src rust-web-llvm rust-web-clippy gcc libc6-dev
@@ -135,7 +135,7 @@ build_debian_std() {
   "${root[@]}" rm -rf "$out"
   "${root[@]}" mkdir -p "$out"
   "${root[@]}" cp "$scratch"/target/wasm32-unknown-unknown/release/deps/lib*.rlib "$out/"
-  rm -rf "$scratch" target/wasm # what was built against another std does not fit this one
+  rm -rf "$scratch" target/wasm # files built against another std do not fit
 }
 by_hand="Run: rustup target add wasm32-unknown-unknown && rustup component add rust-src"
 if ! tools/wasm-cargo.sh --which >/dev/null 2>&1; then
@@ -149,16 +149,16 @@ if ! tools/wasm-cargo.sh --which >/dev/null 2>&1; then
     stop "the wasm32-unknown-unknown target, or the source of std, is missing and rustup could not add it." "$by_hand"
   fi
   tools/wasm-cargo.sh --which >/dev/null 2>&1 ||
-    stop "no compiler compiles for wasm32 even now." "$by_hand, and see what it says"
+    stop "still no compiler can compile for wasm32." "$by_hand, and read its messages"
 fi
 
 # --- wasm-bindgen -----------------------------------------------------------------------------------------
-# The program must be of the same version as the crate. It brings the runner of the browser tests too.
+# The program must have the version of the crate. The install includes the runner of the browser tests.
 wanted=$(sed -n '/^name = "wasm-bindgen"$/{n;s/^version = "\(.*\)"$/\1/p;}' Cargo.lock)
 if [ "$(target/setup/bin/wasm-bindgen --version 2>/dev/null)" != "wasm-bindgen $wanted" ]; then
   say "building wasm-bindgen $wanted, once (about a minute)"
   mkdir -p target/setup
-  # Unoptimised: it then takes half a second for a module, and half as long to build.
+  # Unoptimised: it takes half as long to build, and still only half a second per module.
   CARGO_PROFILE_RELEASE_OPT_LEVEL=0 cargo install wasm-bindgen-cli --version "$wanted" --no-default-features --root target/setup \
     --target-dir target/setup/build >target/setup/wasm-bindgen.log 2>&1 || {
     tail -n 15 target/setup/wasm-bindgen.log >&2
@@ -168,7 +168,7 @@ if [ "$(target/setup/bin/wasm-bindgen --version 2>/dev/null)" != "wasm-bindgen $
 fi
 
 # --- npm packages -----------------------------------------------------------------------------------------
-# npm keeps a copy of the lock file in node_modules; where it is older, something has changed.
+# npm keeps a copy of the lock file in node_modules. If the copy is older, packages have changed.
 if [ ! -e node_modules/.package-lock.json ] || [ package-lock.json -nt node_modules/.package-lock.json ]; then
   say "npm ci"
   npm ci --no-audit --no-fund --loglevel=error ||
@@ -187,7 +187,7 @@ if [ -z "${CHROMEDRIVER:-}" ] && ! has chromedriver; then
   fi
 fi
 
-# tests/browsers.mjs looks for them in the same places.
+# tests/browsers.mjs looks for the same programs.
 has_chromium() {
   [ -n "${CHROMIUM:-}" ] || has chromium || has chromium-browser || has google-chrome ||
     [ -e "/Applications/Google Chrome.app" ]
@@ -201,7 +201,7 @@ if ! has_chromium; then
 fi
 
 # --- Firefox ----------------------------------------------------------------------------------------------
-# Debian's has WebGPU since 153; older package lists know an older one.
+# Debian's Firefox has WebGPU since 153; older package lists have an older version.
 has_firefox() {
   local program
   for program in firefox-esr firefox /Applications/Firefox.app/Contents/MacOS/firefox; do
@@ -223,7 +223,7 @@ if [ -z "${FIREFOX:-}" ] && ! has_firefox; then
     stop "There is no Firefox 153 or newer." "Install Firefox, or set FIREFOX to its program."
   fi
 fi
-# Its window needs a display: without one, one in memory.
+# The window of Firefox needs a display. Xvfb provides one in memory.
 if [ "$system" = Linux ] && [ -z "${DISPLAY:-}${WAYLAND_DISPLAY:-}" ] && ! has Xvfb; then
   apt_install "a display for Firefox" xvfb
 fi

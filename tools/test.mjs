@@ -1,6 +1,6 @@
-// Runs every level of tests in order and ends with a table: `npm test`, or `npm test -- NAME…` for the levels
-// whose name contains one of the words. It fails when a level fails, when one ran no test, and when a test
-// was ignored: a test that does not run proves nothing.
+// Runs every level of tests in order and ends with a table: `npm test`, or `npm test -- NAME…` for the levels whose
+// name contains one of the words. It fails if a level fails, if a level runs no test, or if a test is ignored: a test
+// that does not run proves nothing.
 
 import { spawn, spawnSync } from 'node:child_process';
 import { readFileSync } from 'node:fs';
@@ -9,29 +9,28 @@ import { fileURLToPath } from 'node:url';
 process.chdir(fileURLToPath(new URL('..', import.meta.url)));
 
 /**
- * A level: `checks` are its command lines. Where `counts` is set, they run the test harness of Rust or Node and
- * its tests are counted; otherwise each command is one check.
+ * A level: `checks` are its command lines. If `counts` is set, the commands run the test harness of Rust or Node, and
+ * each of its tests counts; otherwise each command counts as one test.
  * @typedef {{ name: string, what: string, checks: string[][], counts?: boolean, env?: Record<string, string> }} Level
  * @typedef {{ level: Level, passed: number, failed: number, why: string, seconds: number }} Result
  */
 
-// The builds of the library that a browser gets are of `gpu,js`, of `js-webgl2`, of `js-threads`, of `js-audit` and of
-// `js-files`.
+// The features of the modules for browsers: `gpu,js`, `js-webgl2`, `js-threads`, `js-audit` or `js-files`.
 const wasmWith = (features) => ['--target', 'wasm32-unknown-unknown', '--no-default-features', '--features', features];
 const wasm = wasmWith('gpu,js');
 const wasmCargo = ['bash', 'tools/wasm-cargo.sh'];
 
-// Targets of cargo in levels below.
+// Targets of cargo that belong to levels listed below.
 const inLevelsBelow = ['wasm', 'worker', 'parity', 'quads'];
-/** Always of the whole workspace: else the dependencies, with fewer features, would be compiled again. */
+/** Always the whole workspace: alone, the dependencies would have fewer features and would be compiled again. */
 const cargoTest = ['cargo', 'test', '--workspace'];
 /** The tests of quads. */
 const quads = [...cargoTest, '--test', 'quads', '--'];
 
-// Formats and lints JavaScript and TypeScript: biome.json.
+// Formats and lints JavaScript and TypeScript, as biome.json says.
 const biome = ['node', 'node_modules/@biomejs/biome/bin/biome', 'ci'];
 
-// The page needs the package in dist/.
+// Checks and builds the page, which needs the package in dist/.
 const builtPage = [
   ['node', 'node_modules/typescript/bin/tsc', '-p', 'www'],
   ['node', 'node_modules/vite/bin/vite.js', 'build', '-c', 'www/vite.config.js'],
@@ -53,12 +52,12 @@ const levels = [
   },
   {
     name: 'layout',
-    what: 'imports run down the rooms of docs/architecture.md, no files import each other in a circle, none is too long',
+    what: 'imports run down the rooms of docs/architecture.md, no files import each other in a circle, no file is too long',
     checks: [['node', 'tools/layout.mjs']],
   },
   {
     name: 'lints',
-    what: 'no warning from clippy in any target, nor from Biome; Cargo.lock fits Cargo.toml',
+    what: 'clippy and Biome give no warning; Cargo.lock fits Cargo.toml',
     checks: [
       ['cargo', 'clippy', '--locked', '--workspace', '--all-targets', '--', '-D', 'warnings'],
       [...biome, '--formatter-enabled=false', '--error-on-warnings'],
@@ -71,7 +70,7 @@ const levels = [
   },
   {
     name: 'unit',
-    what: 'the tests beside the code in src/ and in tools/glsl',
+    what: 'the unit tests in src/ and tools/glsl',
     checks: [[...cargoTest, '--lib', '--bins']],
     counts: true,
   },
@@ -90,7 +89,7 @@ const levels = [
   },
   {
     name: 'wasm32',
-    what: 'the library for the browser has no warning from clippy: without what JavaScript calls, and as each module of the package',
+    what: 'clippy gives no warning for the library in a browser: without exports for JavaScript, and as each module of the package',
     checks: [
       [...wasmCargo, 'clippy', '--lib', ...wasmWith('gpu'), '--', '-D', 'warnings'],
       [...wasmCargo, 'clippy', '--lib', ...wasmWith('js-webgl2'), '--', '-D', 'warnings'],
@@ -113,7 +112,7 @@ const levels = [
   },
   {
     name: 'npm package',
-    what: 'the package builds, TypeScript is strict about it, and its tests pass in Node on the CPU engine, hostile values too; so does the code in README and docs/',
+    what: 'the package builds, its types pass strict TypeScript, and its tests and the code in README and docs/ run in Node on the CPU engine',
     checks: [
       ['node', 'tools/build.mjs'],
       ['node', 'node_modules/typescript/bin/tsc', '-p', 'tests/package'],
@@ -165,8 +164,8 @@ const levels = [
   {
     name: 'page in Chromium',
     what: 'the demo page opens files, plays, scrubs and downloads on every engine, draws from the buffer that the flips write, and recovers',
-    // Two files at a time: a page mostly compiles the kernels for its software GPU, on one thread. What `handover` checks
-    // is a matter of time.
+    // Two files at a time: a page mostly compiles kernels for the software GPU, on one thread. `handover` runs alone,
+    // because it depends on timing.
     checks: [...builtPage, pageTests(['files', 'opening', 'buffer', 'controls'], 2), pageTests(['handover'])],
     counts: true,
   },
@@ -217,7 +216,7 @@ function firstSentence(source) {
     .replace(/\.$/, '');
 }
 
-/** Runs a command, passes its output on as it comes, and gives its exit status and output when it ends. */
+/** Runs a command and prints its output as it comes. Resolves to its success and its output. */
 function run([program, ...args], env = {}) {
   console.log(`$ ${[program, ...args].join(' ')}`);
   return new Promise((resolve) => {
@@ -241,10 +240,10 @@ function run([program, ...args], env = {}) {
   });
 }
 
-/** Command lines that have built something that several levels need. */
+/** The builds that several levels share, by command line. */
 const built = new Map();
 
-/** Builds the page once for all levels. */
+/** Runs a command, but the builds of the page only once for all levels. */
 function runOnce(check, env) {
   if (!builtPage.includes(check)) return run(check, env);
   if (!built.has(check)) built.set(check, run(check, env));
@@ -252,8 +251,8 @@ function runOnce(check, env) {
 }
 
 /**
- * Sums what Rust's test harness says: `test result: ok. 5 passed; 0 failed; 0 ignored; …`, and what Node's does:
- * `# pass 5`, `# fail 0`, `# skipped 0`.
+ * Sums the counts in the output of a test harness. Rust's prints `test result: ok. 5 passed; 0 failed; 0 ignored; …`,
+ * Node's `# pass 5`, `# fail 0`, `# skipped 0`.
  */
 function count(output) {
   const sums = { passed: 0, failed: 0, ignored: 0 };
@@ -282,7 +281,7 @@ async function runLevel(level) {
     const counted = level.counts ? count(output) : { passed: Number(ok), failed: Number(!ok), ignored: 0 };
     for (const key of Object.keys(sums)) sums[key] += counted[key];
     if (!ok && counted.failed === 0) {
-      // A compile error or a crash: no test of it is counted.
+      // A compile error or a crash: the harness has counted no failure.
       sums.failed += 1;
       reasons.push('did not build or run to its end');
     } else if (counted.failed > 0) {
@@ -305,14 +304,14 @@ const words = process.argv.slice(2);
 const chosen = levels.filter(({ name }) => words.length === 0 || words.some((word) => name.includes(word)));
 if (chosen.length === 0) {
   console.error(
-    `test: no level is named like ${words.join(' or ')}; there are ${levels.map(({ name }) => name).join(', ')}`,
+    `test: no level has ${words.join(' or ')} in its name; the levels are ${levels.map(({ name }) => name).join(', ')}`,
   );
   process.exit(2);
 }
 
 /** @type {Result[]} */
 const results = [];
-// Everything is compiled first, in one go, so that the seconds of a test level are those of its tests.
+// Compiles all native tests first, so that the seconds of a level do not include the compilation.
 if (chosen.some(({ checks }) => checks.some(([program, verb]) => program === 'cargo' && verb === 'test')))
   await run([...cargoTest, '--no-run']);
 for (const level of chosen) results.push(await runLevel(level));

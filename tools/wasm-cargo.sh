@@ -1,12 +1,13 @@
 #!/usr/bin/env bash
 # Cargo for the wasm32 build: `tools/wasm-cargo.sh build --lib --target wasm32-unknown-unknown …`
 #
-# Two toolchains may be on a machine: the one on the PATH (rustup's), with or without the wasm32 target, and
-# Debian's in /usr/bin, for which tools/setup.sh builds the target where rustup's server is out of reach.
-# This takes the first whose compiler can compile a line of std for wasm32, which also catches a std that a
-# newer compiler has left behind, and has the source of std, for `--threads`. Its own target directory keeps the two from rebuilding each other's crates.
-# `tools/wasm-cargo.sh --which` names the compiler found, and fails when there is none.
-# `tools/wasm-cargo.sh --threads build …` builds for instances that share their memory, std with it.
+# A machine may have two toolchains: the one on the PATH (rustup's), with or without the wasm32 target, and
+# Debian's in /usr/bin, for which tools/setup.sh builds the target if rustup's server is out of reach.
+# This script takes the first toolchain that has the source of std, for `--threads`, and whose compiler can compile
+# a line of std for wasm32; that fails if the std belongs to an older compiler. It has its own target directory, so
+# that this build and the native build do not rebuild each other's crates.
+# `tools/wasm-cargo.sh --which` prints the compiler, and fails if there is none.
+# `tools/wasm-cargo.sh --threads build …` builds the crate and std for instances that share their memory.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -23,7 +24,7 @@ if command -v rustc >/dev/null && compiles_wasm rustc; then
 elif [ -x /usr/bin/cargo ] && [ -x /usr/bin/rustc ] && compiles_wasm /usr/bin/rustc; then
   compiler=/usr/bin/rustc
   export RUSTC=/usr/bin/rustc RUSTDOC=/usr/bin/rustdoc
-  # Cargo looks for cargo-clippy along the PATH, but in its own home first unless the PATH names that too.
+  # Cargo looks for cargo-clippy in its own home before the PATH, unless the PATH contains that home too.
   export PATH="/usr/bin:$PATH:${CARGO_HOME:-$HOME/.cargo}/bin"
 else
   echo "wasm-cargo: no Rust compiler here has the wasm32-unknown-unknown target and the source of std; run tools/setup.sh" >&2
@@ -35,21 +36,21 @@ if [ "${1:-}" = --which ]; then
   exit
 fi
 export CARGO_TARGET_DIR="$PWD/target/wasm"
-# To build std, and flags of tools/build.mjs, are things of nightly compilers, unless they are told that this is known.
-# Always told, since some build scripts run again where this changes.
+# Allows a stable compiler to build std and to take the unstable flags of tools/build.mjs. Always set, because some
+# build scripts run again if it changes.
 export RUSTC_BOOTSTRAP=1
-# Cargo calls the library's file edgeflip.wasm with any features, so that each module would overwrite the last one and be
-# compiled again every time. With this its name has a hash, as the names of other crates' files have.
+# Cargo names the library's file edgeflip.wasm for all features, so each module would overwrite the previous one and be
+# compiled again every time. With this variable the name has a hash, like the file names of other crates.
 export __CARGO_DEFAULT_LIB_METADATA=edgeflip
-# Vectors; tools/build.mjs says who has them.
+# SIMD; tools/build.mjs says which browsers have it.
 export RUSTFLAGS="-C target-feature=+simd128 ${RUSTFLAGS:-}"
 if [ "${1:-}" = --threads ]; then
   shift
-  # What wasm-bindgen wants of a module whose memory, of 4 GiB at most, is shared.
+  # The linker flags that wasm-bindgen needs for a module with shared memory, of 4 GiB at most.
   link=(--shared-memory --import-memory --max-memory=4294967296 --export=__heap_base --export=__wasm_init_tls
     --export=__tls_base --export=__tls_size --export=__tls_align)
   RUSTFLAGS+=" -C target-feature=+atomics ${link[*]/#/-C link-arg=}"
-  # The std that comes with the compiler has no atomics.
+  # The prebuilt std of the compiler has no atomics.
   export CARGO_UNSTABLE_BUILD_STD=std,panic_abort
 fi
 exec cargo "$@"

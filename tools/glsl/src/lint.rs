@@ -1,8 +1,8 @@
-//! What old drivers get wrong, and the programs so do without: structures, and computed indices.
+//! Refuses structures and computed indices in the shaders, because old drivers miscompile them.
 
 use naga::{Expression, Function, Module, TypeInner};
 
-/// Finds a structure, or an index that is no constant.
+/// Fails for a structure, or for an index that is not constant.
 pub fn check(module: &Module) -> Result<(), String> {
     let structure = module.types.iter().find(|(_, ty)| matches!(ty.inner, TypeInner::Struct { .. }));
     if let Some((_, ty)) = structure {

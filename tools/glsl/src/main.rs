@@ -1,6 +1,6 @@
-//! Writes the programs of the WebGL2 engine as a JavaScript module: `cargo run -p glsl -- FILE`. GLSL ES 3.00 from the
-//! WGSL in `shaders/`, by naga, a program for each entry point of `passes.wgsl` and `crease_pass.wgsl` and, where it decides
-//! anything, for each form of meshes. Refuses what old drivers get wrong.
+//! Writes the shaders of the WebGL2 engine as a JavaScript module: `cargo run -p glsl -- FILE`. naga translates the
+//! WGSL in `shaders/` to GLSL ES 3.00. There is a program for each entry point of `passes.wgsl` and `crease_pass.wgsl`;
+//! a pass that decides has a program for each form of meshes. Refuses code that old drivers miscompile.
 
 #[path = "../../../shaders/compose.rs"]
 mod compose;
@@ -13,10 +13,10 @@ use naga::{Module, ShaderStage};
 use std::collections::BTreeMap;
 use std::error::Error;
 
-/// A program: its name, the file of its entry point, and that.
+/// A program: its name, the file of its entry point, and the entry point.
 type Program = (&'static str, &'static str, &'static str);
 
-/// For meshes in the plane, with coordinates as floats; all but `verdict2` are for every mesh.
+/// Programs for meshes in the plane with coordinates as floats. All except `verdict2` serve every mesh.
 const PLANE: [Program; 12] = [
     ("cover", "passes", "cover"),
     ("verdict2", "passes", "verdict_pass"),
@@ -32,23 +32,23 @@ const PLANE: [Program; 12] = [
     ("probe", "passes", "probe_pass"),
 ];
 
-/// For surfaces; `flag` is for all of them.
+/// Programs for surfaces. `flag` serves all surfaces.
 const SPACE: [Program; 3] = [
     ("verdict3", "passes", "verdict_pass"),
     ("crease", "crease_pass", "crease_pass"),
     ("flag", "crease_pass", "flag_pass"),
 ];
 
-/// For coordinates as fixed-point numbers.
+/// Programs for coordinates as fixed-point numbers.
 const FIXED_PLANE: [Program; 1] = [("verdict2_fixed", "passes", "verdict_pass")];
 const FIXED_SPACE: [Program; 2] =
     [("verdict3_fixed", "passes", "verdict_pass"), ("crease_fixed", "crease_pass", "crease_pass")];
 
-/// For surfaces where what a flip moves has a limit.
+/// Programs for surfaces with a limit on the deviation.
 const DEVIATION: [Program; 1] = [("verdict3_deviation", "passes", "verdict_pass")];
 const FIXED_DEVIATION: [Program; 1] = [("verdict3_fixed_deviation", "passes", "verdict_pass")];
 
-/// The programs of each form of meshes, with the choices of `shaders/compose.rs` that make it. Every pass is a sweep.
+/// The programs of each form of meshes, with its choices for `shaders/compose.rs`. Every pass is a sweep.
 const FORMS: [([&str; 4], &[Program]); 6] = [
     (["plane", "floats", "any_deviation", "sweep"], &PLANE),
     (["space", "floats", "any_deviation", "sweep"], &SPACE),
@@ -81,7 +81,7 @@ fn parsed(source: &str) -> Result<Module, String> {
     naga::front::wgsl::parse_str(source).map_err(|error| error.emit_to_string(source))
 }
 
-/// The program of an entry point in WGSL.
+/// Translates an entry point from WGSL to GLSL.
 fn glsl(entry_point: &str, source: &str) -> Result<String, Box<dyn Error>> {
     let mut module = parsed(source)?;
     module.entry_points.retain(|entry| entry.name == entry_point);
@@ -100,7 +100,7 @@ fn glsl(entry_point: &str, source: &str) -> Result<String, Box<dyn Error>> {
     Ok(shortened(&text))
 }
 
-/// Without the white space that stands for lines and for how deep they are. A directive keeps its line.
+/// Removes line breaks and indentation. A directive keeps its line.
 fn shortened(text: &str) -> String {
     let joined =
         |line: &str| if line.ends_with([';', '{', '}']) { line.to_owned() } else { format!("{line}\n") };
