@@ -1,8 +1,9 @@
-//! From which size on the GPU is faster than the CPU, and whether `auto` knows: `cargo bench --bench crossover -- [--runs N] [FAMILY…]`, the
-//! meshes of a family from small to large. `benches/crossover.html` is the same for a browser.
+//! Finds the size from which on the GPU is faster than the CPU, and checks the choice of `auto`:
+//! `cargo bench --bench crossover -- [--runs N] [FAMILY…]`, with the meshes of a family from small to large.
+//! `benches/crossover.html` does the same in a browser.
 //!
-//! The program needs nothing beside it but a GPU driver: build it with `cargo bench --bench crossover --no-run`, copy it
-//! to the machine with the GPU and run it there.
+//! The program needs only a GPU driver: build it with `cargo bench --bench crossover --no-run`, copy it to the machine
+//! with the GPU and run it there.
 
 use edgeflip::{Backend, Mesh, Options, Outcome, families, make_delaunay};
 use std::{
@@ -18,7 +19,7 @@ use arguments::{Arguments, median};
 mod rule;
 use rule::{is_late, verdict};
 
-/// About 200 to 20,000,000 triangles, the same numbers in the plane and in space.
+/// About 200 to 20,000,000 triangles, with the same sizes in the plane and in space.
 const MESHES: [&str; 20] = [
     "random 11",
     "random 20",
@@ -44,16 +45,16 @@ const MESHES: [&str; 20] = [
 
 const ENGINES: [Backend; 3] = [Backend::Cpu, Backend::Gpu, Backend::Auto];
 
-/// An engine that took longer for a mesh is spared the larger ones of its family.
+/// An engine that takes longer for a mesh skips the larger meshes of the family.
 const SLOW: Duration = Duration::from_secs(5);
-/// No further run of a mesh begins after so long.
+/// After this time, no further run of a mesh starts.
 const ENOUGH: Duration = Duration::from_secs(5);
 
-/// Times of one mesh.
+/// The times of one mesh.
 struct Row {
     family: String,
     triangles: usize,
-    /// Medians in milliseconds, in the order of [`ENGINES`]; none where it was spared.
+    /// Medians in milliseconds, in the order of [`ENGINES`]; `None` if the engine skipped the mesh.
     ms: [Option<f64>; 3],
     /// Whether `auto` took too long.
     is_late: bool,
@@ -68,7 +69,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!(
         "Milliseconds from host arrays to host arrays, medians of up to {runs} interleaved runs; the device was open"
     );
-    println!("and its kernels compiled. – where a smaller mesh took more than {} s.", SLOW.as_secs());
+    println!(
+        "and its kernels compiled. –: skipped, because a smaller mesh took more than {} s.",
+        SLOW.as_secs()
+    );
     println!();
     println!("| mesh | triangles | runs | GPU : CPU | auto : best | CPU ms | GPU ms | auto ms | auto took |");
     println!("|---|---:|---:|---:|---:|---:|---:|---:|---|");
@@ -76,9 +80,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     for spec in specs {
         let family = spec.split_whitespace().next().unwrap_or_default().to_owned();
         let smaller = rows.iter().rfind(|row| row.family == family);
-        let is_spared = |ms: Option<f64>| ms.is_none_or(|ms| ms > SLOW.as_secs_f64() * 1e3);
-        let spared = smaller.map_or([false; 3], |row| row.ms.map(is_spared));
-        rows.push(measure(&spec, family, runs, spared)?);
+        let is_slow = |ms: Option<f64>| ms.is_none_or(|ms| ms > SLOW.as_secs_f64() * 1e3);
+        let skips = smaller.map_or([false; 3], |row| row.ms.map(is_slow));
+        rows.push(measure(&spec, family, runs, skips)?);
     }
     println!();
     let late: Vec<String> = rows
@@ -93,21 +97,21 @@ fn main() -> Result<(), Box<dyn Error>> {
     for family in families {
         match crossover(rows.iter().filter(|row| row.family == family)) {
             Some(triangles) => println!("{family}: the GPU is faster from {triangles} triangles on."),
-            None => println!("{family}: the GPU is faster at no size."),
+            None => println!("{family}: the GPU is not faster at the largest size."),
         }
     }
     Ok(())
 }
 
-/// Measures a mesh and prints its line.
-fn measure(spec: &str, family: String, runs: usize, spared: [bool; 3]) -> Result<Row, Box<dyn Error>> {
+/// Measures a mesh and prints its line. `skips`: the engines that skip it.
+fn measure(spec: &str, family: String, runs: usize, skips: [bool; 3]) -> Result<Row, Box<dyn Error>> {
     let mesh = families::by_name(spec)?;
     let mut times = [const { Vec::new() }; 3];
     let mut took = "–";
     let begun = Instant::now();
     let mut rounds = 0;
     while rounds < runs && (rounds == 0 || begun.elapsed() < ENOUGH) {
-        for (engine, times) in times.iter_mut().enumerate().filter(|&(engine, _)| !spared[engine]) {
+        for (engine, times) in times.iter_mut().enumerate().filter(|&(engine, _)| !skips[engine]) {
             let (positions, triangles) = (mesh.positions().clone(), mesh.triangles().to_vec());
             let start = Instant::now();
             took = run(Mesh::new(mesh.dimension(), positions, triangles)?, ENGINES[engine])?.backend.name();
@@ -128,7 +132,8 @@ fn measure(spec: &str, family: String, runs: usize, spared: [bool; 3]) -> Result
     Ok(Row { family, triangles, ms, is_late })
 }
 
-/// The triangles of the first mesh from which on the GPU is faster, if it is for the last one that both did.
+/// The number of triangles from which on the GPU is faster at every size that both engines ran; `None` if the CPU is
+/// faster at the largest.
 fn crossover<'a>(rows: impl DoubleEndedIterator<Item = &'a Row>) -> Option<usize> {
     let compared = rows.rev().filter_map(|row| match row.ms {
         [Some(cpu), Some(gpu), _] => Some((row.triangles, gpu < cpu)),

@@ -1,9 +1,9 @@
-//! The GPU, measured and checked: every result is audited and compared with the CPU's, triangle by triangle.
+//! Measures the GPU, audits every result, and compares it with the CPU's, triangle by triangle.
 //! `cargo bench --bench gpu -- [--runs N] [FAMILY…]`, for example `-- "uvsphere 600" "random 1000"`.
 //!
-//! The program needs nothing beside it but a GPU driver: build it with `cargo bench --bench gpu --no-run`, copy
-//! it to the machine with the GPU and run it there. `EDGEFLIP_COMMIT`, when it is built or when it is run, says
-//! of which commit it is; without it, git is asked where it runs.
+//! The program needs only a GPU driver: build it with `cargo bench --bench gpu --no-run`, copy it to the machine with
+//! the GPU and run it there. Set `EDGEFLIP_COMMIT` to the commit when you build or run it; otherwise the program asks
+//! git.
 
 use edgeflip::{Backend, Mesh, Options, Outcome, Reasons, families, make_delaunay, quality};
 use std::{error::Error, ops::ControlFlow, process::Command, sync::Arc};
@@ -18,7 +18,7 @@ use clock::Clock;
 mod warm_up;
 use warm_up::WarmUp;
 
-/// The paper's mesh 5, far from Delaunay, large, long runs, ties, and nearly collinear points.
+/// Mesh 5 of the paper; meshes far from Delaunay; large meshes; long runs; ties; nearly collinear points.
 const MESHES: [&str; 10] = [
     "uvsphere 600",
     "random 1000",
@@ -37,7 +37,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let opened = run(&Arc::new(families::by_name("random 10")?), Backend::Gpu, || ())?;
     println!("adapter and driver: {}", opened.adapter.as_deref().unwrap_or("unknown"));
     println!("commit: {}", commit());
-    println!("medians of {runs} runs, before which others bring the clock up; times as the caller sees them");
+    println!(
+        "medians of {runs} runs; other runs raise the clock rate before each; times as the caller sees them"
+    );
     println!();
     println!(
         "| mesh | edges | iterations | flips | upload ms | adjacency ms | flips ms | total ms | bytes a triangle | dispatches | clock MHz | remaining | \
@@ -55,7 +57,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     if wrong > 0 { Err(format!("{wrong} meshes failed, or have a wrong result").into()) } else { Ok(()) }
 }
 
-/// The mesh's line of the table, and whether all its results are right.
+/// The mesh's line of the table, and whether all its results are correct.
 fn row(spec: &str, runs: usize, clock: &Clock) -> Result<(String, bool), edgeflip::Error> {
     let mesh = Arc::new(families::by_name(spec)?);
     let cpu = run(&mesh, Backend::Cpu, || ())?;
@@ -79,7 +81,7 @@ fn row(spec: &str, runs: usize, clock: &Clock) -> Result<(String, bool), edgefli
         && first.flips_per_iteration == cpu.flips_per_iteration
         && first.remaining == cpu.remaining;
     let audit = quality::audit(&mesh, &first.triangles, &Options::default());
-    // The audit counts what remains by itself.
+    // The audit counts the remaining edges independently.
     let is_honest = audit.remaining == first.remaining;
     let verdict = match audit.violations.first() {
         Some(violation) => violation.to_string(),
@@ -111,7 +113,7 @@ fn by_reason(remaining: Reasons) -> String {
     if words.is_empty() { "0".to_owned() } else { words.join(", ") }
 }
 
-/// `watch` is called after every batch of iterations, so at last when the flips are done and the triangles not yet read
+/// `watch` is called after every batch of iterations; the last call is after all flips, before the triangles are read
 /// back.
 fn run(mesh: &Arc<Mesh>, backend: Backend, mut watch: impl FnMut()) -> Result<Outcome, edgeflip::Error> {
     let options = Options { backend, ..Options::default() };
@@ -121,7 +123,7 @@ fn run(mesh: &Arc<Mesh>, backend: Backend, mut watch: impl FnMut()) -> Result<Ou
     })
 }
 
-/// The commit this was built from, as far as anyone knows.
+/// The commit that this program was built from, if it is known.
 fn commit() -> String {
     let named = std::env::var("EDGEFLIP_COMMIT").ok().or(option_env!("EDGEFLIP_COMMIT").map(str::to_owned));
     let asked = || {

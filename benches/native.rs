@@ -1,8 +1,9 @@
-//! The CPU engine, the phases and Lawson's algorithm, on one thread and on one for each core, beside crates that
-//! triangulate the same points from scratch on one, where these are in a grid in the plane. `cargo bench --bench native --
-//! [--runs N] [FAMILY…]`, a family being what `edgeflip::families::by_name` takes: `cargo bench --bench native -- "random 300" "uvsphere 1000"`.
+//! Measures the phases and Lawson's algorithm on the CPU, on one thread and on all cores. If the points are a grid in
+//! the plane, it also measures crates that triangulate the same points from scratch on one thread. `cargo bench --bench
+//! native -- [--runs N] [FAMILY…]`, for example `-- "random 300" "uvsphere 1000"`; a family is an argument of
+//! `edgeflip::families::by_name`.
 //!
-//! The runs are interleaved, so that a busy machine disturbs all of them alike; the figures are medians.
+//! The runs are interleaved, so that a busy machine disturbs all of them equally; the figures are medians.
 
 use delaunator::Point;
 use edgeflip::{Backend, Dimension, Mesh, Options, Order, Timings, families, make_delaunay};
@@ -25,12 +26,12 @@ static ALLOCATOR: PeakMemAlloc<System> = PeakMemAlloc::system();
 const MESHES: [&str; 7] =
     ["random 33", "random 76", "random 179", "random 423", "random 1001", "shear 1000", "uvsphere 1000"];
 
-/// A whole job, with what it says itself of where the time went.
+/// A whole job. Returns the times of its parts, which are 0 for other crates.
 type Job<'a> = dyn Fn() -> Result<Timings, Box<dyn Error>> + 'a;
 
 type Part = fn(&Timings) -> f64;
 
-/// What is measured, each with its own idea of the input.
+/// A measured algorithm. Its job holds the input in the form that it needs.
 struct Contender<'a> {
     name: String,
     job: Box<Job<'a>>,
@@ -42,14 +43,15 @@ struct Contender<'a> {
 fn main() -> Result<(), Box<dyn Error>> {
     let Arguments { runs, specs } = Arguments::read(5, &MESHES)?;
     println!(
-        "One thread where nothing else is said, from arrays to arrays, medians of {runs} interleaved runs. The others"
+        "On one thread unless the column says otherwise, from arrays to arrays, medians of {runs} interleaved runs."
     );
     println!(
-        "triangulate the points from scratch; i_triangle gets those inside and the four corners. Ratios are the"
+        "Other crates triangulate the points from scratch; i_triangle gets the inner points and the four corners."
     );
     println!(
-        "first one's time by the second one's: above 1, the second is faster. Memory is the most that is held beside the input."
+        "Ratios are the time of the first divided by that of the second: above 1, the second is faster. Memory is the peak"
     );
+    println!("in addition to the input.");
     let mut last = None;
     for spec in &specs {
         let [head, ruler, row] = table(spec, runs)?;
@@ -62,7 +64,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Two lines of head, and that of the mesh.
+/// The two lines of the table's head, and the line of the mesh.
 fn table(spec: &str, runs: usize) -> Result<[String; 3], Box<dyn Error>> {
     let mesh = Arc::new(families::by_name(spec)?);
     let positions: Vec<f64> = mesh.positions().iter().collect();
@@ -155,7 +157,7 @@ fn measure(contender: &mut Contender) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// The number of edges, and where the time went.
+/// The number of edges, and the times of the parts.
 fn flip(
     mesh: &Arc<Mesh>,
     order: Order,

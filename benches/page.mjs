@@ -1,6 +1,6 @@
-// Runs a benchmark that is a page, crossover.html or peers.html, in Chromium on a software GPU, on the dist/ that is
-// there, and prints what it prints: `node benches/page.mjs peers`. `node benches/page.mjs peers serve` prints the page's
-// address instead, for a browser with a GPU.
+// Runs a benchmark page, crossover.html or peers.html, in Chromium on a software GPU and prints its output: `node
+// benches/page.mjs peers`. `node benches/page.mjs peers serve` prints the page's URL instead, for a browser with a
+// hardware GPU. Uses the existing dist/.
 
 import { fileURLToPath } from 'node:url';
 import { closeAll, ISOLATED, openPage, serve, startChromium } from '../tests/browsers.mjs';

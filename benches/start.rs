@@ -1,8 +1,8 @@
-//! What each engine takes from the first call of a process to its result: cold, where the driver has compiled none of the
-//! kernels before, and warm, where it has. `cargo bench --bench start -- [--runs N] [FAMILY…]`.
+//! Measures the time of each engine from the first call of a process to its result: cold, without compiled kernels in
+//! the driver's cache, and warm, with them. `cargo bench --bench start -- [--runs N] [FAMILY…]`.
 //!
-//! Drivers of NVIDIA and Mesa are told by their own variables to keep no compiled kernels; another driver may be warm in both.
-//! `cargo test --release --lib one_by_one -- --nocapture` prints the kernels one by one.
+//! Environment variables switch off the cache of NVIDIA's and Mesa's drivers; another driver may be warm in both
+//! columns. `cargo test --release --lib one_by_one -- --nocapture` prints the time of each kernel.
 
 use edgeflip::{Backend, Options, families, make_delaunay};
 use std::process::Command;
@@ -17,10 +17,10 @@ use arguments::{Arguments, median};
 mod rule;
 use rule::{is_late, verdict};
 
-/// By what this program asks itself for one job.
+/// The environment variable by which this program starts itself for one job.
 const JOB: &str = "EDGEFLIP_START_JOB";
 
-/// What drivers keep compiled kernels by, and how each is told not to.
+/// The environment variables that switch off the drivers' caches of compiled kernels.
 const CACHES: [(&str, &str); 2] = [("__GL_SHADER_DISK_CACHE", "0"), ("MESA_SHADER_CACHE_DISABLE", "true")];
 
 const ENGINES: [(&str, Backend); 3] = [("cpu", Backend::Cpu), ("gpu", Backend::Gpu), ("auto", Backend::Auto)];
@@ -31,7 +31,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     let Arguments { runs, specs } = Arguments::read(5, &["random 100", "uvsphere 100"])?;
     println!(
-        "Milliseconds from the call to the result, the driver and the device included; medians of {runs} processes each."
+        "Milliseconds from the call to the result, including the driver and the device; medians of {runs} processes."
     );
     println!();
     println!("| mesh | engine | cold | warm | the same again in one process |");
@@ -43,13 +43,13 @@ fn main() -> Result<(), Box<dyn Error>> {
             let jobs =
                 |is_cold| (0..runs).map(|_| in_a_process(name, spec, is_cold)).collect::<Result<Vec<_>, _>>();
             let cold = jobs(true)?;
-            // One more fills the caches.
+            // This run fills the caches.
             in_a_process(name, spec, false)?;
             let warm = jobs(false)?;
             let of = |jobs: &[[f64; 2]], which: usize| median(jobs.iter().map(|job| job[which]).collect());
             let times = [of(&cold, 0), of(&warm, 0), of(&warm, 1)];
             println!("| {spec} | {name} | {:.1} | {:.1} | {:.1} |", times[0], times[1], times[2]);
-            // Again in its own process, `auto` has no GPU that another session has made ready.
+            // The third time is not judged: in the process of `auto`, no earlier session may have prepared the GPU.
             for ((time, best), state) in times.into_iter().zip(&mut best).zip(["cold", "warm"]) {
                 if backend != Backend::Auto {
                     *best = best.min(time);
@@ -64,7 +64,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// The times of the first job of a process and of a second one.
+/// The times of the first and the second job of a process.
 fn in_a_process(engine: &str, spec: &str, is_cold: bool) -> Result<[f64; 2], Box<dyn Error>> {
     let mut command = Command::new(env::current_exe()?);
     command.env(JOB, format!("{engine} {spec}"));

@@ -1,10 +1,10 @@
-// What the pages share: their output, the line of a table, the median, and a whole job of ours.
+// Functions that the benchmark pages share: output, a line of a table, the median, and a whole job of edgeflip.
 
 import { FlipSession } from '../dist/index.js';
 
 export const print = (line) => document.querySelector('pre').append(`${line}\n`);
 export const row = (cells) => print(`| ${cells.join(' | ')} |`);
-/** A number, or a dash for none. */
+/** The text of a number; a dash if it is missing. */
 export const cell = (number, digits = 2) => number?.toFixed(digits) ?? '–';
 export const median = (times) => times.sort((a, b) => a - b)[times.length >> 1];
 

@@ -1,5 +1,5 @@
-//! What the tiers of the predicates cost: one sweep over meshes that are Delaunay already, so that every edge is tested
-//! and none flips. `cargo bench --bench tiers -- [--runs N] [SIZE]`, of about SIZE x SIZE points each.
+//! Measures the tiers of the predicates: one sweep over Delaunay meshes, which tests every edge and flips none.
+//! `cargo bench --bench tiers -- [--runs N] [SIZE]`, with about SIZE x SIZE points per mesh.
 //!
 //! `cargo test --lib tiers -- --nocapture` counts the edges that each tier decides.
 
@@ -16,7 +16,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let Arguments { runs, specs } = Arguments::read(5, &["300"])?;
     let [size] = specs.as_slice() else { return Err("one SIZE is enough".into()) };
     println!(
-        "Nanoseconds an edge of one sweep, which tests it from both sides; medians of {runs} interleaved runs after one that is not counted."
+        "Nanoseconds per edge of one sweep, which tests each edge from both sides; medians of {runs} interleaved runs after an uncounted run."
     );
     println!();
     println!("| mesh | edges | CPU | GPU |");

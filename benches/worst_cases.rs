@@ -1,5 +1,5 @@
-//! Meshes that take many iterations or many flips: a worst case of flips must not become one of passes over the mesh, so
-//! the time is to grow with the flips. `cargo bench --bench worst_cases -- [--runs N] [FAMILY…]`
+//! Measures meshes with many iterations or many flips. The time must grow with the flips, not with iterations times the
+//! size of the mesh. `cargo bench --bench worst_cases -- [--runs N] [FAMILY…]`
 
 use edgeflip::{Backend, Mesh, Options, Outcome, families, make_delaunay};
 use std::{error::Error, num::NonZeroUsize, ops::ControlFlow, sync::Arc};
@@ -11,14 +11,12 @@ use arguments::{Arguments, median};
 mod warm_up;
 use warm_up::WarmUp;
 
-/// n²/4 flips in n iterations, and sweep triangulations of random points, which take some ten flips for each of them.
+/// Strips take n²/4 flips in n iterations. Sweep triangulations of random points take about ten flips per point.
 const MESHES: [&str; 4] = ["strips 1000", "strips 4000", "sweep 100000", "sweep 1000000"];
 
 fn main() -> Result<(), Box<dyn Error>> {
     let Arguments { runs, specs } = Arguments::read(3, &MESHES)?;
-    println!(
-        "The iterations alone, the CPU on one thread; medians of {runs} runs after one that is not counted."
-    );
+    println!("The iterations alone, the CPU on one thread; medians of {runs} runs after an uncounted run.");
     println!();
     println!(
         "| mesh | edges | iterations | flips | CPU ns a flip | GPU ns a flip | CPU ms | GPU ms | same result |"
@@ -42,7 +40,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         );
         are_same &= is_same;
     }
-    if are_same { Ok(()) } else { Err("the GPU's result is not the CPU's".into()) }
+    if are_same { Ok(()) } else { Err("the GPU's result differs from the CPU's".into()) }
 }
 
 /// The result of the first run, and the median time of the iterations of the others.

@@ -1,23 +1,23 @@
-//! What the benchmarks share: their command line and the median.
+//! The command line of the benchmarks, and the median.
 
 use std::error::Error;
 
 /// `[--runs N] [FAMILY…]`
 pub struct Arguments {
-    /// How often each thing is measured.
+    /// The number of runs of each measurement.
     pub runs: usize,
     /// Specifications of meshes for `edgeflip::families::by_name`.
     pub specs: Vec<String>,
 }
 
 impl Arguments {
-    /// Reads the command line; the defaults stand for what it leaves out.
+    /// Reads the command line; the arguments are the defaults.
     pub fn read(runs: usize, specs: &[&str]) -> Result<Self, Box<dyn Error>> {
         let mut read = Self { runs, specs: Vec::new() };
         let mut words = std::env::args().skip(1);
         while let Some(word) = words.next() {
             match word.as_str() {
-                // `cargo bench` says this to every benchmark.
+                // `cargo bench` passes this to every benchmark.
                 "--bench" => {}
                 "--runs" => {
                     let number = words.next().and_then(|n| n.parse().ok()).filter(|&n| n > 0);
@@ -36,7 +36,7 @@ impl Arguments {
     }
 }
 
-/// The middle of `times`, the upper one of an even number; NaN of none.
+/// The median of `times`: of an even number, the upper of the two in the middle; NaN if there are none.
 pub fn median(mut times: Vec<f64>) -> f64 {
     times.sort_by(f64::total_cmp);
     times.get(times.len() / 2).copied().unwrap_or(f64::NAN)

@@ -1,4 +1,4 @@
-//! The clock of a GPU, read while something runs.
+//! The clock rate of a GPU during a run.
 
 use std::{
     io::{BufRead, BufReader},
@@ -9,14 +9,14 @@ use std::{
     },
 };
 
-/// Reads the clock of the first NVIDIA GPU every 10 ms, in a process of its own.
+/// Reads the clock rate of the first NVIDIA GPU every 10 ms, in a process of its own.
 pub struct Clock {
     reader: Option<Child>,
     mhz: Arc<AtomicU32>,
 }
 
 impl Clock {
-    /// Begins to read; where there is no such GPU, nothing is ever read.
+    /// Starts reading. Without an NVIDIA GPU, the rate stays 0.
     pub fn watch() -> Self {
         let mhz = Arc::new(AtomicU32::new(0));
         let query = ["--id=0", "--query-gpu=clocks.sm", "--format=csv,noheader,nounits", "--loop-ms=10"];
@@ -33,7 +33,7 @@ impl Clock {
         Self { reader, mhz }
     }
 
-    /// In MHz, as it was read last; 0 if it never was.
+    /// The latest rate in MHz; 0 before the first reading.
     pub fn mhz(&self) -> u32 {
         self.mhz.load(Ordering::Relaxed)
     }
@@ -42,7 +42,7 @@ impl Clock {
 impl Drop for Clock {
     fn drop(&mut self) {
         if let Some(reader) = &mut self.reader {
-            // It may have ended by itself.
+            // `kill` fails if the process has already ended.
             let _ = reader.kill();
             let _ = reader.wait();
         }

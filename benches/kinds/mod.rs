@@ -1,15 +1,16 @@
-//! Delaunay meshes that the tiers of the predicates share differently, for `tiers.rs` and for the unit test that counts.
+//! Delaunay meshes whose edges are decided by different tiers of the predicates, for `tiers.rs` and for the unit test
+//! that counts these edges.
 
 use super::{Backend, Dimension, Error, Mesh, Options, families, make_delaunay};
 use oorandom::Rand64;
 use std::ops::ControlFlow;
 
-/// Each kind with its name, about `n` x `n` points.
+/// The meshes with their names; each has about `n` x `n` points.
 pub fn kinds(n: usize) -> Result<Vec<(&'static str, Mesh)>, Error> {
     let lattice = families::regular(n, 0.0, 1)?;
     let far = families::regular(n, 1e5, 1)?;
     let mut random = Rand64::new(1);
-    // Not from 0, whose neighbour is 2^-149.
+    // 0 stays, because its neighbour is 2^-149.
     let noise = |x: f32| if x > 0.0 && random.rand_range(0..2) == 1 { x.next_up() } else { x };
     let noisy: Vec<f32> = lattice.positions().to_f32().into_iter().map(noise).collect();
     let noisy = Mesh::new(Dimension::Two, noisy, lattice.triangles().to_vec())?;
@@ -18,7 +19,7 @@ pub fn kinds(n: usize) -> Result<Vec<(&'static str, Mesh)>, Error> {
         let positions: Vec<f64> = (0..n * n).flat_map(|v| [at(v % n), at(v / n)]).collect();
         Mesh::new(Dimension::Two, positions, lattice.triangles().to_vec())
     };
-    // In 32 bits it spans 84 bits, which the GPU takes.
+    // As 32-bit floats, the coordinates span 84 bits, which the GPU accepts.
     let mixed = lines(0.0, 60.0)?;
     let mixed = Mesh::new(Dimension::Two, mixed.positions().to_f32(), mixed.triangles().to_vec())?;
     let far_apart = lines(-200.0, 200.0)?;
@@ -39,7 +40,7 @@ pub fn kinds(n: usize) -> Result<Vec<(&'static str, Mesh)>, Error> {
     kinds.into_iter().map(|(name, mesh)| Ok((name, delaunay(&mesh)?))).collect()
 }
 
-/// The points (x, y) as (x, y, y): cocircular ones stay so.
+/// Maps the points (x, y) to (x, y, y). The corners of the lattice's rectangles stay cocircular.
 fn lifted(mesh: &Mesh) -> Result<Mesh, Error> {
     let positions = mesh.positions().to_f32();
     let lifted: Vec<f32> = positions.chunks_exact(2).flat_map(|p| [p[0], p[1], p[1]]).collect();

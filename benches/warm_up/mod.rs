@@ -1,4 +1,5 @@
-//! A GPU that mostly waits lowers its clock, and raises it slowly: before a run that counts, others keep it busy.
+//! Raises the clock rate of the GPU before a measured run: a GPU that mostly waits lowers the rate, and raises it
+//! slowly.
 
 use edgeflip::{Error, Mesh, families};
 use std::{
@@ -6,25 +7,25 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// How long a GPU has to be busy before its clock is up.
+/// The time for which a GPU has to be busy to reach its full clock rate.
 const RISE: Duration = Duration::from_millis(500);
-/// For how long it stays up while the GPU mostly waits.
+/// The time for which the rate stays while the GPU mostly waits.
 const STAY: Duration = Duration::from_millis(200);
 
-/// Brings the clock of the GPU up, with work that leaves hardly anything to the host.
+/// Keeps the GPU busy with work that needs hardly any time of the host.
 pub struct WarmUp {
     mesh: Arc<Mesh>,
     ended: Option<Instant>,
 }
 
 impl WarmUp {
-    /// Nothing runs yet.
+    /// Generates the mesh for the warm-up.
     pub fn new() -> Result<Self, Error> {
-        // All its iterations are one dispatch or two.
+        // All iterations of this mesh take one or two dispatches.
         Ok(Self { mesh: Arc::new(families::by_name("strips 1000")?), ended: None })
     }
 
-    /// Calls `run`, which runs a mesh on the GPU, until the clock is up; not at all if it still is.
+    /// Calls `run`, which runs a mesh on the GPU, until the clock rate is high. Does nothing if it still is.
     pub fn before<T>(&mut self, run: impl Fn(&Arc<Mesh>) -> Result<T, Error>) -> Result<(), Error> {
         if self.ended.is_some_and(|ended| ended.elapsed() < STAY) {
             return Ok(());
