@@ -1,4 +1,4 @@
-/** The triangles of a run in a worker: in main memory. */
+/** The triangles of a run whose engine is in a worker: they are in main memory. */
 
 import { applyChange, type Change, writeLines } from './change.ts';
 import type { Step, Track } from './run.ts';

@@ -1,12 +1,12 @@
-/** What an iteration has changed, kept so that it can be taken back and done again. */
+/** The change of an iteration, in a form that can be undone and redone. */
 
-/** Places in the indices, and what was there xor what is there now: the same in both directions. */
+/** Offsets into the indices, and the old value xor the new value at each: the same change in both directions. */
 export interface Change {
   at: Uint32Array<ArrayBuffer>;
   xor: Uint32Array<ArrayBuffer>;
 }
 
-/** What turns `before` into `now`. */
+/** The change from `before` to `now`. */
 export function changeOf(before: Uint32Array, now: Uint32Array): Change {
   let count = 0;
   for (let i = 0; i < now.length; i++) if (before[i] !== now[i]) count++;
@@ -21,12 +21,12 @@ export function changeOf(before: Uint32Array, now: Uint32Array): Change {
   return change;
 }
 
-/** Turns the state before the iteration into that after it, or back. */
+/** Applies the change of an iteration, or undoes it. */
 export function applyChange(indices: Uint32Array, { at, xor }: Change): void {
   for (let k = 0; k < at.length; k++) indices[at[k]!]! ^= xor[k]!;
 }
 
-/** The lines around all triangles, as indices: 6 a triangle. */
+/** The outlines of all triangles, as indices of line segments: 6 per triangle. */
 export function writeLines(lines: Uint32Array, indices: Uint32Array): void {
   for (let h = 0; h < indices.length; h++) {
     lines[2 * h] = indices[h]!;

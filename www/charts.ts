@@ -8,7 +8,7 @@ import type { Palette } from './palette.ts';
 
 const HEIGHT = 170;
 
-/** A chart in a box, made anew when the colours change. */
+/** A chart in a box. When the colours change, it is made again. */
 class Chart {
   readonly #box: HTMLElement;
   readonly #make: (palette: Palette) => Omit<uPlot.Options, 'width' | 'height'>;
@@ -87,13 +87,13 @@ export class FlipsChart {
     this.#chart.setPalette(palette);
   }
 
-  /** The flips of all iterations so far, and the one that is shown. */
+  /** Shows the flips of all iterations so far, and marks iteration `at`. */
   show(flips: readonly number[], at: number): void {
     this.#at = at;
     this.#chart.show([flips.map((_, index) => index + 1), [...flips]]);
   }
 
-  /** A line behind the iteration that is shown. */
+  /** Draws a line at the shown iteration. */
   #mark(plot: uPlot, palette: Palette): void {
     if (this.#at === 0) return;
     const x = plot.valToPos(this.#at, 'x', true);

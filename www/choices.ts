@@ -1,9 +1,9 @@
-/** The engine and β as they were last entered: what runs are begun with, unlike what is still being typed. */
+/** The engine and β that were last entered. Runs use these, and not a value that the user is still typing. */
 
 import { controls } from './controls.ts';
 import type { Backend } from './run.ts';
 
-/** What a run is begun with, as options of the package. */
+/** The settings of a run, as options of the package. */
 export interface Settings {
   readonly backend: Backend;
   readonly maxNormalAngle: number;
@@ -11,10 +11,10 @@ export interface Settings {
 
 export class Choices {
   #settings: Settings;
-  /** β as its control had it then. */
+  /** The text of β's control at the last entry. */
   #beta: string;
 
-  /** Takes what the controls say: some browsers restore it where a page is loaded again. */
+  /** Takes the values of the controls, because some browsers restore them when a page is reloaded. */
   constructor() {
     const { beta } = controls;
     if (!isAngle(beta.valueAsNumber)) beta.value = beta.defaultValue;
@@ -27,9 +27,9 @@ export class Choices {
   }
 
   /**
-   * Takes what the controls say.
+   * Takes the values of the controls.
    *
-   * @throws where β is no angle; it gives way to the one before.
+   * @throws if β is not an angle; its control then shows the previous value.
    */
   enter(): void {
     if (!isAngle(controls.beta.valueAsNumber)) {
@@ -40,7 +40,7 @@ export class Choices {
     this.#beta = controls.beta.value;
   }
 
-  /** Goes over to other settings and shows them, but for a β that is being typed. */
+  /** Changes the settings and shows them, but does not overwrite a β that the user is typing. */
   set(settings: Settings): void {
     const isTyping = controls.beta.value !== this.#beta;
     this.#settings = settings;

@@ -1,4 +1,4 @@
-/** The elements of the page that the code names. */
+/** The elements of the page that the code uses. */
 
 export function element<T extends HTMLElement = HTMLElement>(id: string): T {
   const found = document.getElementById(id);

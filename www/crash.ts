@@ -1,13 +1,15 @@
-/** How the worker says what an error means for the page: by the name of what it throws. */
+/** The names of errors by which the worker tells the page what to do. */
 
 import { EdgeflipError } from 'edgeflip/files';
 
-/** Its WebAssembly module has crashed. */
+/** The WebAssembly module of the worker has crashed. */
 export const CRASHED = 'Crashed';
-/** The GPU that its run was on is lost. */
+/** The GPU of the worker's run was lost. */
 export const LOST = 'Lost';
 
-/** Names the errors that the page tells apart: names get through to it, codes do not. */
+/**
+ * Gives names to the errors that the page handles. Comlink sends the name of an error to the page, but not its code.
+ */
 export async function naming<T>(work: Promise<T>): Promise<T> {
   try {
     return await work;

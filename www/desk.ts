@@ -1,4 +1,4 @@
-/** The worker: reads, generates and measures meshes, or runs an engine, so that the page never waits. */
+/** The worker: reads, generates and measures meshes, or runs an engine, so that the page never blocks. */
 
 import { expose, transfer } from 'comlink';
 import { init, type FlipSession, type Options } from 'edgeflip';
@@ -20,10 +20,12 @@ import { changeOf, type Change } from './change.ts';
 import { contentOf, contentOfKept, keep, type Kept, type Located, type Report } from './files.ts';
 import { sessionOf, statesOf, summaryOf, type OpenMesh, type Step, type Summary } from './run.ts';
 
-/** Surfaces of up to so many triangles are compared: many more would take seconds. */
+/**
+ * The most triangles of a surface that is compared with its input: with many more, the comparison would take seconds.
+ */
 const COMPARED = 50_000;
 
-/** What can be said of a result as a surface. */
+/** The measures of a mesh. */
 export interface Quality {
   angles: Angles;
   measures: Measures;
@@ -38,7 +40,7 @@ class Desk {
     return transfer(mesh, buffersOf(mesh));
   }
 
-  /** `beside` are files that this one may name. */
+  /** `beside` has files that `main` may name. */
   async read(main: Located, beside: Located[], report: Report): Promise<{ mesh: FileMesh; kept: Kept }> {
     const content = await contentOf(main, beside, report);
     report(main.path, 1);
@@ -53,7 +55,7 @@ class Desk {
     return transfer({ mesh, kept: keep(name, content) }, buffersOf(mesh));
   }
 
-  /** `kept` are the files that the mesh was read from. */
+  /** `kept` has the files that the mesh was read from. */
   async write(mesh: IndexedMesh, name: string, kept: Kept | undefined): Promise<Uint8Array<ArrayBuffer>> {
     const content = kept && (await contentOfKept(kept));
     const original = content && { bytes: content.bytes, name: kept.name, files: Object.fromEntries(content.beside) };
@@ -65,19 +67,19 @@ class Desk {
     return { angles: await naming(angles(mesh, bins)), measures: await naming(measures(mesh)) };
   }
 
-  /** How many triangles are others now and how far the surface has moved; `undefined` for a large one. */
+  /** How many triangles changed, and how far the surface moved; `undefined` for a large surface. */
   async compare(mesh: IndexedMesh, after: Uint32Array): Promise<{ moved: number; distance: number } | undefined> {
     if (mesh.dimension === 3 && after.length > 3 * COMPARED) return undefined;
     const { moved, distance } = await naming(change(mesh, after));
     return { moved: moved.length, distance };
   }
 
-  /** Loads the engine, so that a run begins sooner. */
+  /** Loads the engine, so that a run starts sooner. */
   async load(): Promise<void> {
     await init();
   }
 
-  /** Begins a run. Returns what its edges are, if they are to be drawn. */
+  /** Starts a run. Returns the states of the edges, if the mesh is small enough to draw them. */
   async open(mesh: OpenMesh, options: Options): Promise<Uint8Array | undefined> {
     const session = await sessionOf(mesh, options);
     this.#session = session;

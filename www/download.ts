@@ -4,14 +4,14 @@ import { Office } from './engines.ts';
 import type { Kept } from './files.ts';
 import type { OpenMesh } from './run.ts';
 
-/** Writes the mesh and hands the file over. `kept` are the files that it was read from. */
+/** Writes the mesh to a file and downloads it. `kept` has the files that the mesh was read from. */
 export async function download(
   mesh: OpenMesh,
   name: string,
   kept: Kept | undefined,
   signal: AbortSignal,
 ): Promise<void> {
-  // A worker of its own: the memory that writing takes goes with it, and it can be cancelled.
+  // Writing has its own worker. Closing the worker frees the memory and can cancel the job.
   const office = new Office();
   signal.addEventListener('abort', () => office.close());
   const bytes = await office.ask((desk) => desk.write(mesh, name, kept)).finally(() => office.close());

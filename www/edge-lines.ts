@@ -1,4 +1,4 @@
-/** The edges of a small mesh in the colours of their states: thick where something is about to happen. */
+/** Draws the edges of a small mesh in the colours of their states. */
 
 import { EDGE_STATES } from 'edgeflip';
 import { LineSegmentsGeometry } from 'three/addons/lines/LineSegmentsGeometry.js';
@@ -6,7 +6,7 @@ import { LineSegments2 } from 'three/addons/lines/webgpu/LineSegments2.js';
 import { Group, Line2NodeMaterial } from 'three/webgpu';
 import type { Palette } from './palette.ts';
 
-/** Widths in pixels of edges about which nothing is to be said, of the boundary, and of all others. */
+/** Widths in pixels: of Delaunay edges, of boundary edges, and of all others. */
 function widthsFor(triangles: number): { plain: number; boundary: number; coloured: number } {
   if (triangles <= 600) return { plain: 1.4, boundary: 2.4, coloured: 4 };
   if (triangles <= 4000) return { plain: 1.1, boundary: 2, coloured: 2.6 };
@@ -16,7 +16,7 @@ function widthsFor(triangles: number): { plain: number; boundary: number; colour
 export class EdgeLines {
   readonly group = new Group();
 
-  /** `positions` has 3 a vertex, `states` one entry for each of the half-edges `indices`. */
+  /** `positions` has 3 numbers per vertex, `states` one entry per half-edge. */
   show(positions: Float32Array, indices: Uint32Array, states: Uint8Array, palette: Palette): void {
     const widths = widthsFor(indices.length / 3);
     const byState = EDGE_STATES.map((): number[] => []);
@@ -41,7 +41,7 @@ export class EdgeLines {
       material.linewidth = name === 'delaunay' ? widths.plain : name === 'boundary' ? widths.boundary : widths.coloured;
       const lines = new LineSegments2(geometry, material);
       lines.frustumCulled = false;
-      // Coloured ones over the others where they meet.
+      // Coloured edges are drawn over plain edges.
       lines.renderOrder = name === 'delaunay' ? 1 : 2;
       this.group.add(lines);
     });

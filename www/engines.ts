@@ -1,4 +1,4 @@
-/** Where the flips happen: on the GPU that the page draws with, or in a worker, on WebGL2 or the CPU. */
+/** Starts runs: on the GPU that the page draws with, or in a worker, on WebGL2 or the CPU. */
 
 import { wrap, type Remote } from 'comlink';
 import { EdgeflipError, type Options } from 'edgeflip';
@@ -9,18 +9,18 @@ import { GpuTrack } from './gpu-track.ts';
 import { Kernels } from './kernels.ts';
 import { Run, sessionOf, statesOf, summaryOf, type Backend, type OpenMesh } from './run.ts';
 
-/** So many triangles at most the CPU takes before a GPU has compiled its programs. */
-const BEGUN_SOON = 1_000_000;
+/** The most triangles with which `auto` starts on the CPU while the GPU compiles its kernels. */
+const MOST_ON_CPU = 1_000_000;
 
-/** A GPU that both the flips and the drawing use. */
+/** The GPU that both the flips and the drawing use. */
 export interface Gpu {
   device: GPUDevice;
   kernels: Kernels;
-  /** Whether the processor plays it: `auto` leaves it alone then. */
+  /** Whether the browser emulates it in software. `auto` does not use it then. */
   isSoftware: boolean;
 }
 
-/** The GPU of this browser, or why there is none. */
+/** Opens the GPU of this browser, or returns why there is none. */
 export async function openGpu(): Promise<Gpu | string> {
   if (!navigator.gpu) return 'this browser has no WebGPU';
   try {
@@ -34,19 +34,19 @@ export async function openGpu(): Promise<Gpu | string> {
   }
 }
 
-/** Older browsers say it of the adapter, newer ones of its information. */
+/** Older browsers have `isFallbackAdapter` on the adapter, newer ones on its `info`. */
 function isSoftware(adapter: GPUAdapter & { isFallbackAdapter?: boolean }): boolean {
   const { isFallbackAdapter }: { isFallbackAdapter?: boolean } = adapter.info;
   return isFallbackAdapter ?? adapter.isFallbackAdapter ?? false;
 }
 
-/** The GPU that `auto` takes, or why it takes none. */
+/** The GPU that `auto` uses, or why it uses none. */
 export function forAuto(gpu: Gpu | string): Gpu | string {
   if (typeof gpu === 'string' || !gpu.isSoftware) return gpu;
   return 'no hardware GPU found; the browser emulates one in software, which is slower';
 }
 
-/** A worker with the desk that it answers at. */
+/** A worker, and the proxy of its {@link Desk}. */
 export class Office {
   readonly #worker = new Worker(new URL('./desk.ts', import.meta.url), { type: 'module' });
   readonly #desk: Remote<Desk> = wrap<Desk>(this.#worker);
@@ -60,48 +60,49 @@ export class Office {
       this.#fail(new Error(`The page’s worker failed: ${message || 'it could not be loaded'}`));
   }
 
-  /** Asks the desk. Closing the office ends the wait too. */
+  /** Calls the desk. If the office is closed, the call fails. */
   async ask<T>(question: (desk: Remote<Desk>) => Promise<T>): Promise<T> {
     try {
       return await Promise.race([question(this.#desk), this.#failed]);
     } catch (error) {
-      // A WebAssembly module that has crashed stays so.
+      // A WebAssembly module cannot be used after a crash, so all later calls fail.
       if (error instanceof Error && error.name === CRASHED) this.#fail(error);
       throw error;
     }
   }
 
-  /** Stops whatever goes on in it. */
+  /** Ends the worker and everything that runs in it. */
   close(): void {
     this.#worker.terminate();
-    // Comlink holds the worker until its proxies are collected, and they would be held by the worker through this.
+    // Comlink keeps the worker until its proxies are collected. Through this handler, the worker would keep the
+    // proxies.
     this.#worker.onerror = null;
     this.#fail(new Cancelled());
   }
 }
 
-/** What a call ends with whose worker has been closed. */
+/** The error of a call whose worker was closed. */
 export class Cancelled extends Error {}
 
 /** The worker of the first run. */
 let first: Office | undefined;
 
-/** Starts it, with its engine, while there is no mesh yet. */
+/** Starts the worker of the first run and loads its engine, while the mesh is not ready yet. */
 export function startWorker(): void {
   first = new Office();
-  // The run tries again, and says what is wrong.
+  // The run loads the engine again and reports the error.
   first.ask((desk) => desk.load()).catch(() => {});
 }
 
-/** Whether a run waits until the GPU has been looked for, and compiles. */
+/** Whether a run waits until the GPU is open and has compiled its kernels. */
 export function waitsForGpu({ indices }: OpenMesh, backend: Backend): boolean {
-  return backend === 'webgpu' || (backend === 'auto' && indices.length > 3 * BEGUN_SOON);
+  return backend === 'webgpu' || (backend === 'auto' && indices.length > 3 * MOST_ON_CPU);
 }
 
 /**
- * Begins a run. `auto` begins on the CPU while the GPU is looked for, which `undefined` stands for, or has not compiled.
+ * Starts a run. `auto` starts on the CPU if the GPU is not open yet (`undefined`) or has not compiled its kernels.
  *
- * @throws an error that can be shown, about the mesh, β or the backend that was asked for.
+ * @throws an error for the user about the mesh, β or the chosen engine.
  */
 export async function beginRun(
   mesh: OpenMesh,
@@ -129,7 +130,7 @@ export async function beginRun(
   }
 }
 
-/** Begins the run that takes the place of one on the CPU, once the picture on screen has been drawn. */
+/** Starts the run that replaces a run on the CPU, after the GPU has drawn the present picture. */
 export async function beginBehind(mesh: OpenMesh, options: Options, gpu: Gpu): Promise<Run> {
   await new Promise(requestAnimationFrame);
   await gpu.device.queue.onSubmittedWorkDone();
@@ -141,7 +142,7 @@ async function onGpu(mesh: OpenMesh, options: Options, { device, kernels }: Gpu)
   const session = await sessionOf(mesh, { ...options, backend: 'webgpu', device });
   try {
     const shared = await session.gpu();
-    if (!shared) throw new Error('the session shows no buffers');
+    if (!shared) throw new Error('the session has no buffers on the GPU');
     const { length } = mesh.indices;
     const stepper = {
       async step() {
@@ -160,7 +161,7 @@ async function onGpu(mesh: OpenMesh, options: Options, { device, kernels }: Gpu)
   }
 }
 
-/** The run has a worker of its own, so that another one can go on beside it, and ends with it. */
+/** Starts a run in a worker of its own, so that another run can continue meanwhile. The worker ends with the run. */
 async function inWorker(
   mesh: OpenMesh,
   options: Options,

@@ -1,40 +1,40 @@
-/** The bytes of the files that a mesh is in: read once, kept in memory, there when the files have changed or gone. */
+/** The bytes of a mesh's files. They are read once and kept, so that later changes of the files have no effect. */
 
-/** A file, and the path by which those beside it name it. */
+/** A file, and its path relative to the chosen or dropped files. */
 export interface Located {
   path: string;
   file: File;
 }
 
-/** The files that a mesh was read from, as they were then. The browser holds their bytes, the page only handles. */
+/** The bytes that a mesh was read from. They are in Blobs, which the browser may store on disk. */
 export interface Kept {
   name: string;
   bytes: Blob;
-  /** Those that it names, such as the buffers of a glTF file, by these names. */
+  /** The files that it names, such as the buffers of a glTF file, by these names. */
   beside: Map<string, Blob>;
 }
 
-/** What has been read of a file, and of those that it names. */
+/** The bytes of a file, and of the files that it names. */
 export interface Content {
   bytes: Uint8Array<ArrayBuffer>;
   beside: Map<string, Uint8Array<ArrayBuffer>>;
 }
 
-/** Told how much of a file has been read, from 0 to 1, while it is. */
+/** Called while a file is read, with the share of its bytes that has been read, from 0 to 1. */
 export type Report = (path: string, share: number) => void;
 
-/** What `readMesh` takes; what is larger is not read at all. */
+/** The limit of `readMesh`. Larger files are not read at all. */
 const MOST_BYTES = 2 ** 30;
 
-/** Files that may have their buffers in others. */
+/** The names of files that may have their buffers in other files. */
 export const GLTF = /\.(gltf|glb)(\.gz)?$/i;
 
-/** The folder of a path, with a slash at its end where it is not the top. */
+/** The folder of a path, with a slash at its end; empty for a path without folders. */
 export function folderOf(path: string): string {
   return path.slice(0, path.lastIndexOf('/') + 1);
 }
 
-/** The path without parts that say nothing, as in `/./a//b`. */
+/** The path without empty parts and parts that are `.`: `a/b` for `/./a//b`. */
 export function plain(path: string): string {
   return path
     .split('/')
@@ -43,9 +43,9 @@ export function plain(path: string): string {
 }
 
 /**
- * The bytes of a file, and of those files beside it that it names, by these names.
+ * Reads a file, and the files in `beside` that it names.
  *
- * @throws where a file cannot be read, or all are too large.
+ * @throws if a file cannot be read, or if the files together are too large.
  */
 export async function contentOf(main: Located, beside: readonly Located[], report: Report): Promise<Content> {
   checkSize(`${main.path} has`, main.file.size);
@@ -63,7 +63,7 @@ export async function contentOf(main: Located, beside: readonly Located[], repor
   return { bytes, beside: others };
 }
 
-/** Leaves the bytes to the browser, which may put them on the disk. */
+/** Stores the bytes in Blobs, which the browser may move to the disk. */
 export function keep(name: string, { bytes, beside }: Content): Kept {
   return {
     name,
@@ -72,7 +72,7 @@ export function keep(name: string, { bytes, beside }: Content): Kept {
   };
 }
 
-/** The bytes that were kept. */
+/** Reads the stored bytes. */
 export async function contentOfKept({ name, bytes, beside }: Kept): Promise<Content> {
   const read = async (blob: Blob) => new Uint8Array(await blob.arrayBuffer());
   try {
@@ -100,7 +100,7 @@ async function bytesOf({ path, file }: Located, report: Report): Promise<Uint8Ar
     }
     if (at < bytes.length) throw new Error('the file has become shorter');
   } catch {
-    // Browsers say no more than `network error`.
+    // The message of the browser is only `network error`.
     const why = 'it was moved, changed or removed after it was chosen, or you may not read it';
     throw new Error(`${path} could not be read: ${why}. Choose it again.`);
   }
@@ -113,8 +113,8 @@ function checkSize(what: string, bytes: number): void {
 }
 
 /**
- * The files that a glTF file has its buffers in, by their names relative to it. None where it cannot be read: what is
- * wrong with it is for the parser to say.
+ * The names of the files that hold the buffers of a glTF file, relative to it. Empty if the glTF file is invalid; the
+ * parser reports that later.
  */
 async function buffersOf(bytes: Uint8Array<ArrayBuffer>): Promise<string[]> {
   try {
@@ -127,7 +127,7 @@ async function buffersOf(bytes: Uint8Array<ArrayBuffer>): Promise<string[]> {
   }
 }
 
-/** The name in a URI; none where it is no right one. */
+/** The name in a URI; empty if the URI is malformed. */
 function decoded(uri: string): string[] {
   try {
     return [decodeURIComponent(uri)];
@@ -143,7 +143,7 @@ function jsonOf(bytes: Uint8Array): Uint8Array {
   return isBinary ? bytes.subarray(20, 20 + view.getUint32(12, true)) : bytes;
 }
 
-/** The bytes, unpacked where they are gzip'd. */
+/** The bytes, unpacked if they are compressed with gzip. */
 async function unpacked(bytes: Uint8Array<ArrayBuffer>): Promise<Uint8Array> {
   if (bytes[0] !== 0x1f || bytes[1] !== 0x8b) return bytes;
   const parts: Uint8Array<ArrayBuffer>[] = [];

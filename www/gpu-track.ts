@@ -1,20 +1,20 @@
-/** The triangles of a run on the GPU: they never leave it, except to be downloaded or measured. */
+/** The triangles of a run on the GPU. They are copied to main memory only to be downloaded or measured. */
 
 import { EdgeflipError } from 'edgeflip';
 import source from './gpu-track.wgsl?raw';
 import type { Step, Track } from './run.ts';
 
-/** Workgroups of 256 that keep a GPU busy; the kernels stride over the rest. */
+/** The most workgroups, of 256 threads each. They keep a GPU busy; each thread loops over further items. */
 const MOST_WORKGROUPS = 4096;
 
 type Kernel = 'record' | 'apply' | 'lines';
 
 export class GpuTrack implements Track {
   readonly #device: GPUDevice;
-  /** The session's: the flips write it. */
+  /** The session's buffer, which the flips write. */
   readonly #newest: GPUBuffer;
   readonly #length: number;
-  /** The state where the track stands. */
+  /** The triangles of the shown iteration. */
   readonly #shown: GPUBuffer;
   readonly #count: GPUBuffer;
   readonly #changes: GPUBuffer[] = [];
@@ -47,9 +47,9 @@ export class GpuTrack implements Track {
   }
 
   /**
-   * `length` is the number of indices; the smallest buffers have room for more.
+   * `length` is the number of indices; a buffer of a small mesh is larger.
    *
-   * @throws {@link EdgeflipError} `backend-limit` where there is no memory for it.
+   * @throws {@link EdgeflipError} `backend-limit` if memory runs out.
    */
   static create(device: GPUDevice, newest: GPUBuffer, length: number): Promise<GpuTrack> {
     return withMemory(device, () => new GpuTrack(device, newest, length));
@@ -126,7 +126,7 @@ export class GpuTrack implements Track {
   }
 }
 
-/** Makes what needs memory of the device, and waits for its word that there was some. */
+/** Calls `make`, which allocates GPU memory, and waits until the device confirms that there was enough. */
 async function withMemory<T>(device: GPUDevice, make: () => T): Promise<T> {
   device.pushErrorScope('out-of-memory');
   const made = make();

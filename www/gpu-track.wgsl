@@ -1,5 +1,5 @@
-// The history of a run on the GPU, without a read-back: each iteration as the places that it changed and what was
-// there xor what is there now, which does it again or takes it back.
+// The history of a run on the GPU, without a read-back. Each iteration is stored as offsets into the indices, and the
+// old value xor the new value at each offset. Applying it redoes or undoes the iteration.
 
 @group(0) @binding(0) var<storage, read> newest: array<u32>;
 @group(0) @binding(1) var<storage, read_write> shown: array<u32>;
@@ -8,7 +8,7 @@
 
 const SIZE = 256u;
 
-// What turns `shown` into `newest`. The order of the entries has no meaning: each is at a place of its own.
+// Stores the change from `shown` to `newest`. The order of the entries does not matter, because their offsets differ.
 @compute @workgroup_size(SIZE)
 fn record(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
     for (var i = id.x; i < arrayLength(&newest); i += groups.x * SIZE) {
@@ -20,7 +20,7 @@ fn record(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) gro
     }
 }
 
-// Entries that were not needed are zeros, and change nothing.
+// Applies a change. Unused entries are zeros and change nothing.
 @compute @workgroup_size(SIZE)
 fn apply(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
     for (var k = id.x; k < arrayLength(&changes); k += groups.x * SIZE) {
@@ -31,7 +31,7 @@ fn apply(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) grou
     }
 }
 
-// The lines around the triangles of `shown`, as indices; they go into the binding of the changes.
+// Writes the outlines of the triangles of `shown`, as indices of line segments, to the binding of `changes`.
 @compute @workgroup_size(SIZE)
 fn lines(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
     for (var h = id.x; h < arrayLength(&shown); h += groups.x * SIZE) {

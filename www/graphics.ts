@@ -8,9 +8,9 @@ import { Scene } from './scene.ts';
 export class Graphics {
   readonly #lost: (reason: string) => void;
   #ready: Promise<void> = Promise.resolve();
-  /** The device, or why there is none; `undefined` while it is looked for. */
+  /** The device, or why there is none; `undefined` until the search has ended. */
   gpu: Gpu | string | undefined;
-  /** `undefined` while the device is looked for, and where nothing can be drawn. */
+  /** `undefined` until the search for a device has ended, and if the browser cannot draw. */
   scene: Scene | undefined;
 
   /** `lost` is called with the reason when the device is lost. */
@@ -18,12 +18,12 @@ export class Graphics {
     this.#lost = lost;
   }
 
-  /** Settles when `gpu` and `scene` are what they will be. */
+  /** Settles when `gpu` and `scene` have their final values. */
   get ready(): Promise<void> {
     return this.#ready;
   }
 
-  /** Opens a device and a scene, in place of those that were open. */
+  /** Opens a device and a scene, which replace the present ones. */
   open(): void {
     this.scene?.dispose();
     this.scene = undefined;

@@ -1,8 +1,8 @@
-/** How a run that has begun on the CPU goes over to the GPU, once that has compiled its programs. */
+/** Moves a run from the CPU to the GPU, after the GPU has compiled its kernels. */
 
 import type { Run, Summary } from './run.ts';
 
-/** The run on the GPU, where the other one stands, and what it says of itself there. */
+/** The run on the GPU, at the same iteration as the run on the CPU, and its summary there. */
 export interface Successor {
   run: Run;
   summary: Summary;
@@ -14,7 +14,7 @@ export class Handover {
   #isFollowing = false;
   #isClosed = false;
 
-  /** `begin` begins the run on the GPU; then `ready` is called, or `failed` with the reason. */
+  /** `begin` starts the run on the GPU; then `ready` is called, or `failed` with the reason. */
   constructor(begin: () => Promise<Run>, ready: () => void, failed: (error: unknown) => void) {
     this.#next = begin();
     this.#next.then(
@@ -30,10 +30,10 @@ export class Handover {
   }
 
   /**
-   * Lets the new run go the way of `run`, and gives it where both stand at the same iteration: `undefined` where it is
-   * not ready, or `isAtRest` says that `run` has gone on meanwhile.
+   * Repeats the iterations of `run` on the GPU, and returns the new run when both are at the same iteration. Returns
+   * `undefined` if the GPU is not ready, or if `isAtRest` says that `run` has continued meanwhile.
    *
-   * @throws what the GPU fails with.
+   * @throws the error of the GPU.
    */
   async follow(run: Run, isAtRest: () => boolean): Promise<Successor | undefined> {
     if (!this.#isReady || this.#isFollowing) return undefined;
@@ -52,7 +52,7 @@ export class Handover {
     }
   }
 
-  /** Gives the run on the GPU up. */
+  /** Ends the run on the GPU. */
   close(): void {
     this.#isClosed = true;
     if (this.#isReady) void this.#next.then((next) => next.free());

@@ -1,4 +1,4 @@
-/** What goes on and takes a while, one job at a time: shown, with a way to cancel it, and with the error that ended it. */
+/** Runs one long job at a time. Shows its progress, a button to cancel it, and its error. */
 
 import { element } from './controls.ts';
 import { Cancelled } from './engines.ts';
@@ -8,7 +8,7 @@ export class Jobs {
   readonly #begun: () => void;
   readonly #ended: () => void;
 
-  /** `begun` and `ended` are called when a job takes the place of another, and when none goes on any more. */
+  /** `begun` is called when a job starts, and `ended` when no job runs any more. */
   constructor(begun: () => void, ended: () => void) {
     this.#begun = begun;
     this.#ended = ended;
@@ -18,12 +18,12 @@ export class Jobs {
     return this.#job !== undefined;
   }
 
-  /** Does the work, under a text that says what it is; cancels what was begun before. */
+  /** Runs `work` and shows `text` meanwhile. Cancels the job before it. */
   async attempt(text: string, work: (signal: AbortSignal) => Promise<void>): Promise<void> {
-    const overtaken = this.#job;
+    const previous = this.#job;
     const job = new AbortController();
     this.#job = job;
-    overtaken?.abort(new Cancelled());
+    previous?.abort(new Cancelled());
     job.signal.addEventListener('abort', () => this.#end(job));
     element('error').hidden = true;
     showProgress(text);
@@ -50,7 +50,7 @@ export class Jobs {
   }
 }
 
-/** The text of the job that goes on, and how much of it is done, from 0 to 1, where that is known. */
+/** Shows the text of the present job, and its completed share from 0 to 1, if it is known. */
 export function showProgress(text: string, share = 1): void {
   element('busy-text').textContent = text;
   const bar = element<HTMLProgressElement>('progress');
@@ -58,7 +58,7 @@ export function showProgress(text: string, share = 1): void {
   else bar.removeAttribute('value');
 }
 
-/** Shows the message of an error unchanged: it may begin with the name of a file. */
+/** Shows the message of an error unchanged: it may start with the name of a file. */
 export function showError(error: unknown): void {
   element('error-text').textContent = error instanceof Error ? error.message : String(error);
   element('error').hidden = false;

@@ -1,11 +1,11 @@
-/** The programs of the flips on the page's GPU. They take far longer to compile than a small mesh to flip. */
+/** The kernels of the flips on the page's GPU. Compiling them takes far longer than flipping a small mesh. */
 
 import { FlipSession } from 'edgeflip';
 import type { OpenMesh } from './run.ts';
 
 export class Kernels {
   readonly #device: GPUDevice;
-  /** Those that are ready or on their way, by the form of the meshes that they are for. */
+  /** The kernels that are ready or being compiled, by the form of their meshes. */
   readonly #made = new Map<string, Promise<void>>();
   readonly #ready = new Set<string>();
 
@@ -18,7 +18,8 @@ export class Kernels {
   }
 
   /**
-   * Compiles and tests what a mesh needs, once for all meshes of its form. After a failure the next call tries again.
+   * Compiles and tests the kernels for a mesh, once for all meshes of its form. After a failure, the next call tries
+   * again.
    *
    * @throws {@link EdgeflipError} about the GPU.
    */
@@ -33,9 +34,9 @@ export class Kernels {
     return made;
   }
 
-  /** The package keeps what it has compiled for a device when the session has gone. */
+  /** The package keeps the kernels of a device after the session has been freed. */
   async #make({ dimension, positions }: OpenMesh): Promise<void> {
-    // A double that is a 32-bit float too would be taken for one.
+    // 0.1 as a double is not a 32-bit float. Doubles that are would use the kernels for 32-bit floats.
     const corners = [0, 0, 0, 0.1, 0, 0, 0, 0.1, 0].filter((_, i) => i % 3 < dimension);
     const Floats = positions instanceof Float64Array ? Float64Array : Float32Array;
     const triangle = { dimension, positions: new Floats(corners), indices: new Uint32Array([0, 1, 2]) };

@@ -1,8 +1,8 @@
-/** Charts that do not wait for the GPU. */
+/** Keeps charts in main memory, so that they do not wait for the GPU. */
 
 /**
- * Calls `make`; the 2D canvases that it asks for are in main memory. Else the page would stand still after it has drawn
- * a chart until a GPU that is busy with a large mesh has taken it.
+ * Calls `make`; the 2D canvases that it creates are in main memory. With canvases on the GPU, the page would block
+ * after it draws a chart while the GPU is busy with a large mesh.
  */
 export function inMainMemory<T>(make: () => T): T {
   const { prototype } = HTMLCanvasElement;

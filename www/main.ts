@@ -1,4 +1,4 @@
-/** Ties the controls to the page and starts it. */
+/** Connects the controls to the page and starts it. */
 
 import { FORMATS } from 'edgeflip/files';
 import { controls, element } from './controls.ts';
@@ -15,7 +15,7 @@ for (const { group, samples } of SAMPLES) {
   controls.sample.append(options);
 }
 controls.sample.append(Object.assign(new Option('(a file)', ''), { hidden: true }));
-// A glTF file may have its buffers in others.
+// A glTF file may have its buffers in `.bin` files.
 controls.file.accept = [...FORMATS, '.gz', '.bin'].join(',');
 
 function open(source: Source | undefined): void {
@@ -37,7 +37,7 @@ controls.download.addEventListener('click', () => void page.download());
 element('cancel').addEventListener('click', () => page.cancel());
 element('dismiss').addEventListener('click', () => (element('error').hidden = true));
 
-// What has the focus keeps the keys that it knows. A button that is disabled ignores the click.
+// A focused element keeps the keys that it uses itself. A disabled button ignores the click.
 const keys: Record<string, { keptBy: string; act: () => void }> = {
   ' ': { keptBy: 'button, summary, a, input, select', act: () => controls.play.click() },
   ArrowRight: { keptBy: 'input, select', act: () => controls.step.click() },

@@ -1,10 +1,10 @@
-/** Numbers about the triangles that the page shows. */
+/** Measures the triangles that the page shows. */
 
 import { BINS, type Opened } from './opening.ts';
 import type { Panel } from './panel.ts';
 import type { Run } from './run.ts';
 
-/** Measures the triangles that `run` shows, and shows the numbers unless they are outdated by then. */
+/** Measures `indices`, the shown triangles of `run`, and shows the numbers unless they are outdated by then. */
 export async function measure(
   panel: Panel,
   { mesh, office, before: measureInput }: Opened,

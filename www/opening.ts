@@ -1,4 +1,4 @@
-/** A mesh on its way to the page: read once, in workers of its own. Its run may have to be begun more than once. */
+/** Opens a mesh: reads it once, in a worker. The page may start its run several times. */
 
 import type { FileMesh, IndexedMesh } from 'edgeflip/files';
 import type { Quality } from './desk.ts';
@@ -10,7 +10,7 @@ import type { Read, Source } from './sources.ts';
 /** Bins of the histogram of angles: 5° each. */
 export const BINS = 36;
 
-/** A mesh that a run can be begun with. */
+/** A mesh for a run. */
 export interface Opened {
   mesh: IndexedMesh;
   name: string;
@@ -18,17 +18,17 @@ export interface Opened {
   office: Office;
   /** The files that it was read from. */
   kept: Kept | undefined;
-  /** What reading the files did to it, and what it left. */
+  /** Notes about reading: changes to the mesh, and contents that were not read. */
   remark: string;
-  /** Its quality, measured when it is first asked for: a picture of it needs none. */
+  /** The measures of the mesh, computed at the first call, because drawing does not need them. */
   before: () => Promise<Quality>;
 }
 
-/** Told what goes on, and how much of it is done, from 0 to 1, where that is known. */
+/** Called with the present step, and its completed share from 0 to 1, if it is known. */
 export type Progress = (text: string, share?: number) => void;
 
 export class Opening {
-  /** Whether it is known what is in the files: from then on the settings of the page matter. */
+  /** The mesh, after it has been read. Changes of the settings then start its run again. */
   opened: Opened | undefined;
   readonly read: Promise<Opened>;
   #office = new Office();
@@ -38,11 +38,11 @@ export class Opening {
   constructor(source: Source, progress: Progress) {
     this.#progress = progress;
     this.read = this.#read(source);
-    // It is the page's affair while it waits for the mesh.
+    // The page handles this error when it awaits the mesh.
     this.read.catch(() => {});
   }
 
-  /** Gives it up, with the worker that is at it. */
+  /** Stops reading, and ends the worker. */
   close(): void {
     this.#isClosed = true;
     this.#office.close();
@@ -54,7 +54,7 @@ export class Opening {
     });
     const { mesh, name, kept } = read;
     if (mesh.indices.length === 0) throw new Error(`There are no triangles in ${name}.`);
-    // The memory of a WebAssembly module never shrinks: what reading has taken goes with the worker.
+    // The memory of a WebAssembly module never shrinks, so closing the worker frees the memory that reading used.
     this.#office.close();
     const office = new Office();
     this.#office = office;
@@ -74,6 +74,6 @@ function remarkOnFile(mesh: FileMesh): string {
   const cut = mesh.polygons > 0 ? `${number.format(mesh.polygons)} faces were cut into triangles.` : '';
   const dropped = mesh.dropped.length > 0 && !mesh.keeps ? `Not kept: ${mesh.dropped.join(', ')}.` : '';
   const isDivided = mesh.groups ?? mesh.lockedEdges ?? mesh.lockedTriangles;
-  const locked = isDivided ? 'Edges between groups of faces or along seams stay.' : '';
+  const locked = isDivided ? 'Edges between groups of faces or along seams are locked.' : '';
   return [cut, dropped, locked, ...mesh.notes.map((note) => `${note}.`)].filter(Boolean).join(' ');
 }

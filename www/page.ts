@@ -1,4 +1,4 @@
-/** The page between its controls and its engines: opens meshes, begins runs, draws and measures what they do. */
+/** The page: opens meshes, starts runs, and draws and measures their iterations. */
 
 import { EdgeflipError } from 'edgeflip';
 import { Choices, type Settings } from './choices.ts';
@@ -19,7 +19,7 @@ import { sample, splitName, type Source } from './sources.ts';
 import { showTransport, statusOf } from './transport.ts';
 import { unitPositions } from './unit.ts';
 
-/** Meshes of up to so many triangles are shown with their edges from the start. */
+/** The most triangles of a mesh that is first shown with its edges. */
 const EDGES_SEEN = 50_000;
 /** Milliseconds without a change after which a state is measured. */
 const QUIET = 150;
@@ -39,22 +39,22 @@ export class Page {
     () => this.#endOfJob(),
   );
   readonly #choices = new Choices();
-  /** The mesh that was asked for last. */
+  /** The source of the last mesh that the user chose. */
   #source: Source | undefined;
-  /** It, until a run of it has begun, or that has failed or was cancelled. */
+  /** The mesh that is being opened, until its run starts or fails or is cancelled. */
   #opening: Opening | undefined;
-  /** The mesh that is open, its run, and what that was begun with. */
+  /** The open mesh, its run, and the settings of that run. */
   #opened: Opened | undefined;
   #run: Run | undefined;
   #settings: Settings | undefined;
-  /** Puts the run on the GPU, where it waits for that. */
+  /** Moves the run to the GPU, if it waits for the GPU. */
   #handover: Handover | undefined;
-  /** What the run said of itself when it last came to rest. */
+  /** The summary of the run when it last paused. */
   #summary: Summary | undefined;
-  /** Count the states that are drawn and that come to rest: what has been overtaken gives way. */
+  /** The numbers of draws and of rests so far. A call that is no longer the latest stops. */
   #draws = 0;
   #rests = 0;
-  /** Whose run has lost a GPU before. */
+  /** The mesh whose run has lost a GPU before. */
   #lost: Opened | undefined;
 
   async start(spec: string): Promise<void> {
@@ -67,7 +67,7 @@ export class Page {
     await opening;
   }
 
-  /** Opens a mesh in place of the one that is open or being opened. */
+  /** Opens a mesh, which replaces the open mesh, or the mesh that is being opened. */
   async open(source: Source): Promise<void> {
     this.#opening?.close();
     const opening = new Opening(source, showProgress);
@@ -81,14 +81,14 @@ export class Page {
     });
   }
 
-  /** Takes the engine and β that were chosen: for the mesh that is being opened, else for the one that is open. */
+  /** Starts a run with the chosen engine and β: of the mesh that is being opened, else of the open mesh. */
   async begin(): Promise<void> {
     try {
       this.#choices.enter();
     } catch (error) {
       return showError(error);
     }
-    // What is still being read begins with them.
+    // A mesh that is still being read will start with these settings.
     if (this.#opening && !this.#opening.opened) return;
     const opened = this.#opening?.opened ?? this.#opened;
     if (opened) await this.#jobs.attempt('Preparing the mesh…', (signal) => this.#begin(opened, signal));
@@ -133,7 +133,7 @@ export class Page {
     });
   }
 
-  /** Draws the state that the run is in. */
+  /** Draws the shown iteration of the run. */
   async redraw(): Promise<void> {
     const [run, opened, scene] = [this.#run, this.#opened, this.#graphics.scene];
     if (!run || !opened) return;
@@ -153,7 +153,7 @@ export class Page {
     }
   }
 
-  /** Draws the triangles, and their lines where no edges are coloured; returns the states of those that are. */
+  /** Draws the triangles. If edges are coloured, returns their states; else draws the outlines of the triangles. */
   #showTriangles(run: Run, { mesh }: Opened): Uint8Array | undefined {
     const states = controls.wireframe.checked ? run.states : undefined;
     const lines = controls.wireframe.checked && !states ? run.lines() : undefined;
@@ -161,7 +161,7 @@ export class Page {
     return states;
   }
 
-  /** Begins a run; the one before it stays if this fails. */
+  /** Starts a run. If this fails, the previous run stays. */
   async #begin(opened: Opened, signal: AbortSignal): Promise<void> {
     const { settings } = this.#choices;
     const { mesh } = opened;
@@ -171,9 +171,9 @@ export class Page {
       settings.backend === 'webgpu' &&
       typeof this.#graphics.gpu === 'object' &&
       !this.#graphics.gpu.kernels.areReadyFor(mesh);
-    if (compiles) showProgress('Compiling the GPU’s programs…');
+    if (compiles) showProgress('Compiling the kernels for the GPU…');
     const run = await beginRun(mesh, settings, this.#graphics.gpu, signal);
-    // What draws comes with it.
+    // The scene opens together with the GPU.
     await this.#graphics.ready;
     if (signal.aborted) {
       run.free();
@@ -199,7 +199,7 @@ export class Page {
     this.#player.pause();
   }
 
-  /** Makes the GPU ready behind a run that `auto` has begun on the CPU, or lets it say why it stays there. */
+  /** Prepares the GPU during a run that `auto` has started on the CPU, or sets the reason why the run stays there. */
   #expectGpu(run: Run, mesh: OpenMesh, settings: Settings): void {
     this.#handover?.close();
     this.#handover = undefined;
@@ -224,7 +224,7 @@ export class Page {
     );
   }
 
-  /** Goes over to the GPU that is ready, as soon as nothing goes on. The picture is the same. */
+  /** Moves the run to the GPU when the GPU is ready and the page is idle. The picture stays the same. */
   async #handOver(): Promise<void> {
     const [run, opened, handover] = [this.#run, this.#opened, this.#handover];
     if (!run || !opened || !handover) return;
@@ -256,11 +256,11 @@ export class Page {
     this.#opening = undefined;
     this.#showChoices();
     this.#showTransport();
-    // What was being measured may have been cancelled with it.
+    // The job may have cancelled a measurement, so measure again.
     if (!this.#player.isPlaying) void this.#rest();
   }
 
-  /** One iteration on, drawn. Returns whether there was one. */
+  /** Moves forward by one iteration and draws it. Returns whether there was one. */
   async #forward(run: Run): Promise<boolean> {
     try {
       const went = await run.forward();
@@ -272,10 +272,10 @@ export class Page {
     }
   }
 
-  /** A lost device of the page is told by the device itself, which also sees to what follows. */
+  /** Shows an error, unless the page's device was lost: `Graphics` reports that, and the page recovers. */
   #showFailure(error: unknown): void {
     if (error instanceof Error && error.name === LOST) {
-      // What goes on may be the recovery; else the measurement after it asks the worker again.
+      // A present job may be the recovery. If not, the measurement after it calls the worker again, and fails again.
       if (!this.#jobs.isBusy) void this.#recover(error.message, false);
       return;
     }
@@ -288,7 +288,7 @@ export class Page {
     showTransport({ run, opened, summary, isBusy: this.#jobs.isBusy, isPlaying: this.#player.isPlaying });
   }
 
-  /** What was chosen in vain gives way to what the run was begun with. */
+  /** Shows the mesh and the settings of the run again, after another choice has failed. */
   #showChoices(): void {
     const [opened, settings] = [this.#opened, this.#settings];
     if (!opened || !settings) return;
@@ -298,7 +298,10 @@ export class Page {
     this.#choices.set(settings);
   }
 
-  /** Measures the run and the state that is shown, once nothing has changed for a while; where there is news, only the run. */
+  /**
+   * Measures the run and the shown triangles, if nothing changes for a while. With `news`, announces it and does not
+   * measure the triangles.
+   */
   async #rest(news?: string): Promise<void> {
     const [run, opened] = [this.#run, this.#opened];
     if (!run || !opened) return;
@@ -330,13 +333,13 @@ export class Page {
   }
 
   /**
-   * The device is gone, and with it what was drawn; or the context of the worker is. The run goes the same way again,
-   * to the same bits.
+   * Repeats the run after the page's device, with its pictures, or the worker's context was lost. The triangles have
+   * the same bits.
    */
   async #recover(reason: string, isOfPage: boolean): Promise<void> {
     const [run, opening] = [this.#run, this.#opening];
     let hasRecovered = false;
-    await this.#jobs.attempt('The GPU was lost; going on from the input…', async (signal) => {
+    await this.#jobs.attempt('The GPU was lost; starting again…', async (signal) => {
       if (isOfPage) {
         this.#graphics.open();
         await this.#graphics.ready;
@@ -347,7 +350,8 @@ export class Page {
       const { settings } = this.#choices;
       const isAgain = this.#lost === opened;
       this.#lost = opened;
-      // What has lost the GPU twice would go on losing it; `auto` does not go back to it with what was on it.
+      // A mesh that lost the GPU twice would probably lose it again. `auto` does not repeat a run on the GPU that it
+      // lost.
       const [isAuto, isOnGpu] = [settings.backend === 'auto', !opening && !run?.isInWorker];
       const isHopeless = isAgain ? opening || isOnGpu || isAuto : isOnGpu && isAuto;
       if (!isOfPage || isHopeless) this.#choices.set({ ...settings, backend: 'cpu' });
@@ -355,23 +359,21 @@ export class Page {
       if (!opening && run) await this.#goThere(run, signal);
       hasRecovered = true;
     });
-    // What was chosen meanwhile has taken its place.
+    // The user has started another job meanwhile.
     if (this.#jobs.isBusy) return;
     const lost = `The GPU was lost (${reason}).`;
     if (hasRecovered) {
       this.#player.pause();
-      const andNow = opening
-        ? 'The mesh was opened all the same'
-        : 'The run went the same way again, to the same triangles';
+      const andNow = opening ? 'The mesh was opened nevertheless' : 'The run was repeated, with the same triangles';
       showError(new Error(`${lost} ${andNow}.`));
     } else if (!this.#opened && this.#source) {
       await this.open(this.#source);
     } else if (element('error').hidden) {
-      showError(new Error(`${lost} Choose an engine to go on.`));
+      showError(new Error(`${lost} Choose an engine to continue.`));
     }
   }
 
-  /** Lets the run go the way of the one before it. */
+  /** Repeats the iterations of the previous run. */
   async #goThere(before: Run, signal: AbortSignal): Promise<void> {
     try {
       await this.#run?.follow(before, signal);

@@ -1,4 +1,4 @@
-/** The colours of the page, for what style sheets do not reach. */
+/** The colours of the page, for the canvas and the charts, which style sheets cannot reach. */
 
 import type { EdgeState } from 'edgeflip';
 

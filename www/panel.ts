@@ -8,7 +8,7 @@ import type { Quality } from './desk.ts';
 import type { Palette } from './palette.ts';
 import { countStates, type Run, type Summary } from './run.ts';
 
-/** Rows of the table at most; the chart shows all. */
+/** The most rows of the table; the chart shows all iterations. */
 const MOST_ROWS = 2000;
 
 export const number = new Intl.NumberFormat('en');
@@ -18,7 +18,7 @@ const degrees = new Intl.NumberFormat('en', { maximumFractionDigits: 2, minimumF
 
 export const ENGINES: Record<Engine, string> = { webgpu: 'WebGPU', webgl2: 'WebGL2', cpu: 'CPU' };
 
-/** What the legend says of each state. */
+/** The text of the legend for each state. */
 const MEANINGS: Record<(typeof EDGE_STATES)[number], string> = {
   delaunay: 'Delaunay',
   flips: 'flips next',
@@ -29,7 +29,7 @@ const MEANINGS: Record<(typeof EDGE_STATES)[number], string> = {
   locked: 'blocked: locked',
   deviation: 'blocked: would move the surface too far',
   'non-manifold': 'stays: three or more triangles',
-  inconsistent: 'stays: triangles face against each other',
+  inconsistent: 'stays: its triangles have opposite orientations',
   boundary: 'boundary',
 };
 
@@ -39,7 +39,7 @@ export class Panel {
   readonly #rows = element('rows');
   readonly #seek: (at: number) => void;
 
-  /** `seek` is called with the iteration whose row was chosen. */
+  /** `seek` is called with the iteration whose row the user clicks. */
   constructor(seek: (at: number) => void) {
     this.#seek = seek;
   }
@@ -49,7 +49,7 @@ export class Panel {
     this.#angles.setPalette(palette);
   }
 
-  /** Begins anew, for a run that has done nothing yet. */
+  /** Removes all numbers, for a new run. */
   clear(): void {
     this.#rows.replaceChildren();
     this.#flips.show([], 0);
@@ -58,7 +58,7 @@ export class Panel {
     element('facts').replaceChildren();
   }
 
-  /** The iterations so far, and the one that is shown. */
+  /** Shows the iterations so far, and marks iteration `at`. */
   showIterations(iterations: readonly Iteration[], at: number): void {
     this.#flips.show(
       iterations.map(({ flips }) => flips),
@@ -69,13 +69,13 @@ export class Panel {
     const row = this.#rows.children[at - 1];
     row?.setAttribute('aria-current', 'true');
     if (row instanceof HTMLElement) {
-      // Only the table scrolls, not the page.
+      // `scrollIntoView` would scroll the page too.
       const box = row.closest('.table');
       if (box) box.scrollTop = row.offsetTop - box.clientHeight / 2;
     }
   }
 
-  /** The times of the same iterations on another engine. */
+  /** Replaces the times by those of the same iterations on another engine. */
   showTimes(iterations: readonly Iteration[]): void {
     iterations.slice(0, MOST_ROWS).forEach((iteration, i) => {
       const [, , , , time] = this.#rows.children[i]?.children ?? [];
@@ -83,7 +83,7 @@ export class Panel {
     });
   }
 
-  /** The states of the edges that are drawn in colours. */
+  /** Shows the legend, with the number of edges in each state. */
   showLegend(states: Uint8Array | undefined, summary?: Summary): void {
     element('legend-section').hidden = !states;
     if (!states) return;
@@ -101,7 +101,7 @@ export class Panel {
     element('legend').replaceChildren(...items);
   }
 
-  /** `fingerprint` is that of the triangles shown; without it, what takes time to find out is left open. */
+  /** `fingerprint` belongs to the shown triangles. Without it, facts that take time to compute are shown as `…`. */
   showFacts(
     mesh: IndexedMesh,
     run: Run,
@@ -139,7 +139,7 @@ export class Panel {
     });
   }
 
-  /** Of the input and of the state shown; `change` is what lies between them, once it is known. */
+  /** Shows the measures of the input and of the shown triangles, and how far these differ, once it is known. */
   showQuality(before: Quality | undefined, now?: Quality, change?: { moved: number; distance: number }): void {
     this.#angles.show(before?.angles, now?.angles);
     element('surface-section').hidden = !before;
@@ -181,7 +181,7 @@ export class Panel {
   }
 }
 
-/** Edges by reason, in words. */
+/** A text with the number of edges by reason. */
 export function reasons(by: Reasons): string {
   const parts = Object.entries(by).filter(([, count]) => count > 0);
   if (parts.length === 0) return 'none';
@@ -189,7 +189,7 @@ export function reasons(by: Reasons): string {
   return `${number.format(sum)} (${parts.map(([reason, count]) => `${reason === 'stopped' ? 'can flip' : reason} ${number.format(count)}`).join(', ')})`;
 }
 
-/** The edges of the state that is shown, as the iteration after it found them. */
+/** The edges of the shown state that are not Delaunay, as the next iteration counted them. */
 function notDelaunayAt({ at, iterations }: Run): Reasons {
   const after = iterations[at];
   return after ? { ...after.blocked, stopped: after.labelled } : {};
@@ -199,7 +199,7 @@ function frozen(name: string, count: number): Record<string, string> {
   return count > 0 ? { [name]: `${number.format(count)} edges, left as they are` } : {};
 }
 
-/** Terms and values of a description list; each value has its term as `data-fact`. */
+/** Fills a description list; each value has its term as `data-fact`. */
 function facts(id: string, entries: Record<string, string>): void {
   const items = Object.entries(entries).map(([term, value]) => {
     const item = document.createElement('div');

@@ -1,13 +1,13 @@
-/** Plays a run: one loop at a time, which a pause, a step or the slider ends. */
+/** Plays a run in one loop at a time. A pause, a step or the slider ends the loop. */
 
 import type { Run } from './run.ts';
 
 export class Player {
-  /** Begins one iteration, draws what it did, and says whether there was one. */
+  /** Runs one iteration, draws it, and returns whether there was one. */
   readonly #forward: (run: Run) => Promise<boolean>;
-  /** Called when the run comes to rest. */
+  /** Called when the run pauses. */
   readonly #rest: () => void;
-  /** The loop that plays; another one has taken over where it is not the same. */
+  /** The present loop. A loop that is not the present one stops. */
   #loop: object | undefined;
   #isStepping = false;
 
@@ -20,12 +20,12 @@ export class Player {
     return this.#loop !== undefined;
   }
 
-  /** Whether no iteration has been asked for that is still to come. */
+  /** Whether no iteration is running or scheduled. */
   get isAtRest(): boolean {
     return !this.isPlaying && !this.#isStepping;
   }
 
-  /** Plays to the end. `interval` gives the milliseconds from one iteration to the next. */
+  /** Plays to the end. `interval` returns the milliseconds from one iteration to the next. */
   async play(run: Run, interval: () => number): Promise<void> {
     const loop = {};
     this.#loop = loop;
@@ -39,7 +39,7 @@ export class Player {
     if (this.#loop === loop) this.pause();
   }
 
-  /** One iteration; while one is under way, nothing. */
+  /** Runs one iteration, unless one is running. */
   async step(run: Run): Promise<void> {
     this.#loop = undefined;
     if (this.#isStepping) return;

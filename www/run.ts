@@ -1,65 +1,65 @@
-/** A run that can be watched: every iteration is kept, so that the slider can go back to it. */
+/** A run that keeps every iteration, so that the slider can go back to it. */
 
 import { EDGE_STATES, FlipSession, type Engine, type Iteration, type Options, type Result } from 'edgeflip';
 import type { FileMesh, IndexedMesh } from 'edgeflip/files';
 import type { Change } from './change.ts';
 
-/** Meshes of up to so many triangles have their edges drawn in colours. */
+/** The most triangles of a mesh whose edges are drawn in colours. */
 export const COLOURED = 20_000;
 
-/** The engine that a run is asked for. */
+/** The engine that the user chose. */
 export type Backend = 'auto' | Engine;
 
-/** A result; the triangles are on screen. */
+/** A result without its triangles, which are on screen. */
 export type Summary = Omit<Result, 'indices'>;
 
-/** One iteration, and what the edges are after it (for small meshes). */
+/** One iteration, and the states of the edges after it (for small meshes). */
 export interface Step {
   iteration: Iteration;
   states: Uint8Array | undefined;
-  /** Where the triangles are in main memory. */
+  /** Present if the triangles are in main memory. */
   change?: Change;
 }
 
-/** Where the flips happen: the session of the page, or that of the worker. */
+/** A session, of the page or of a worker. */
 export interface Stepper {
   step(): Promise<Step | undefined>;
   result(): Promise<Summary>;
   free(): void;
 }
 
-/** Triangles as they are drawn: in main memory, or in a buffer of the GPU. */
+/** Indices to draw: in main memory, or in a buffer on the GPU. */
 export type Drawn = Uint32Array | GPUBuffer;
 
-/** The triangles of one iteration, and the changes that lead to the others. */
+/** The triangles of one iteration, its position, and the changes that lead to the other iterations. */
 export interface Track {
   /**
-   * Takes over what the newest iteration has changed; the track must stand at the one before.
+   * Records the changes of the newest iteration. The track must be at the iteration before.
    *
-   * @throws where there is no memory left for it.
+   * @throws if memory runs out.
    */
   record(step: Step): Promise<void>;
-  /** Does iteration `index`, or takes it back. */
+  /** Redoes iteration `index`, or undoes it. */
   apply(index: number): void;
-  /** What to draw, if this is the newest state or not. */
+  /** The triangles to draw. `isNewest`: whether the track is at the newest iteration. */
   drawn(isNewest: boolean): Drawn;
-  /** The lines around its triangles, as indices; `undefined` where they do not fit. */
+  /** The outlines of the triangles, as indices; `undefined` if they are too large for a buffer. */
   lines(): Drawn | undefined;
-  /** A copy of the triangles where the track stands. */
+  /** A copy of the triangles at the track's position. */
   triangles(): Promise<Uint32Array>;
   free(): void;
 }
 
-/** A mesh, and where it is from a file what keeps its attributes in their places. */
+/** A mesh, and the locks that keep its attributes if it is from a file. */
 export type OpenMesh = IndexedMesh & Partial<Pick<FileMesh, 'groups' | 'lockedEdges' | 'lockedTriangles'>>;
 
-/** A session of the mesh, with what keeps its attributes. */
+/** Creates a session of the mesh with its locks. */
 export function sessionOf(mesh: OpenMesh, options: Options): Promise<FlipSession> {
   const { groups, lockedEdges, lockedTriangles } = mesh;
   return FlipSession.create(mesh, { groups, lockedEdges, lockedTriangles, ...options });
 }
 
-/** What the edges of a small mesh are, one entry a half-edge. */
+/** The states of the edges of a small mesh, one entry per half-edge; `undefined` for a large mesh. */
 export async function statesOf(session: FlipSession, indices: number): Promise<Uint8Array | undefined> {
   return indices <= 3 * COLOURED ? session.edgeStates() : undefined;
 }
@@ -71,8 +71,8 @@ export async function summaryOf(session: FlipSession): Promise<Summary> {
 }
 
 /**
- * How many edges are in each state. An edge has two half-edges but on the boundary, where it has one; how many have
- * three or more is known from elsewhere.
+ * The number of edges in each state, from the states of the half-edges. A boundary edge has one half-edge, a
+ * non-manifold edge three or more, and any other edge two. `nonManifold` is the number of non-manifold edges.
  */
 export function countStates(states: Uint8Array, nonManifold: number | undefined): number[] {
   const halves = EDGE_STATES.map(() => 0);
@@ -84,11 +84,11 @@ export function countStates(states: Uint8Array, nonManifold: number | undefined)
   });
 }
 
-/** A mesh on an engine, with all that it went through. */
+/** A mesh on an engine, with all its iterations. */
 export class Run {
   /** Whether the engine is in a worker, and not on the GPU that draws. */
   readonly isInWorker: boolean;
-  /** Why `auto` did not take the GPU that draws; the summary tells what else it did not take. */
+  /** Why `auto` did not use the GPU that draws. The summary may have another reason. */
   fallback: string | undefined;
   /** Whether it is on the CPU only until the GPU that draws is ready. */
   awaitsGpu = false;
@@ -99,9 +99,9 @@ export class Run {
   #at = 0;
   #hasEnded = false;
   #isFreed = false;
-  /** Whether the triangles of the engine are one iteration on from the newest that is recorded. */
+  /** Whether the triangles of the engine are one iteration after the newest recorded iteration. */
   #isAhead = false;
-  /** Where to go when an iteration that is being recorded has been. */
+  /** The iteration to show after the present recording; `undefined` if nothing is being recorded. */
   #sought: number | undefined;
   #last: Promise<unknown> = Promise.resolve();
 
@@ -119,7 +119,7 @@ export class Run {
     this.#states = [states];
   }
 
-  /** The iteration that is shown: 0 is the input. */
+  /** The shown iteration: 0 is the input. */
   get at(): number {
     return this.#at;
   }
@@ -139,8 +139,8 @@ export class Run {
   }
 
   /**
-   * One iteration on, recorded or new. Returns whether there was one. Calls wait for those before them: the track must
-   * record an iteration before the next one changes the triangles.
+   * Moves forward by one iteration, recorded or new. Returns whether there was one. Each call waits for the earlier
+   * ones: the track must record an iteration before the next one changes the triangles.
    */
   forward(): Promise<boolean> {
     const call = this.#last.then(() => this.#forward());
@@ -163,7 +163,7 @@ export class Run {
       this.#hasEnded = true;
       return false;
     }
-    // Someone may have sought another state meanwhile, and may do so while this is recorded.
+    // The user may have moved the slider meanwhile, and may move it again while this is recorded.
     this.#sought = this.#at;
     this.#move(from);
     this.#isAhead = true;
@@ -181,7 +181,7 @@ export class Run {
     return true;
   }
 
-  /** Shows a recorded state. */
+  /** Shows a recorded iteration. */
   seek(at: number): void {
     if (this.#isFreed) return;
     if (this.#sought === undefined) this.#move(at);
@@ -194,15 +194,15 @@ export class Run {
   }
 
   /**
-   * Goes the way that another run of the mesh has gone, and shows the state that it shows.
+   * Repeats the iterations of another run of the mesh, and shows the iteration that it shows.
    *
-   * @throws where it ends sooner.
+   * @throws if this run ends sooner.
    */
   async follow(other: Run, signal?: AbortSignal): Promise<void> {
     const isBehind = () => this.iterations.length < other.iterations.length || (other.hasEnded && !this.#hasEnded);
     this.seek(this.iterations.length);
     while (isBehind() && !signal?.aborted && (await this.forward()));
-    if (this.#hasEnded && isBehind()) throw new Error('it came to another end than the engine before');
+    if (this.#hasEnded && isBehind()) throw new Error('the repeated run ended sooner than the first run');
     this.seek(Math.min(other.at, this.iterations.length));
   }
 
@@ -214,7 +214,7 @@ export class Run {
     return this.#track.lines();
   }
 
-  /** What the edges are in the state that is shown. */
+  /** The states of the edges at the shown iteration. */
   get states(): Uint8Array | undefined {
     return this.#states[this.#at];
   }

@@ -1,4 +1,4 @@
-/** The meshes that the page offers, by the names of the crate's families. */
+/** The generated meshes that the page offers. `spec` names a family of the crate. */
 
 export interface Sample {
   spec: string;
@@ -31,5 +31,5 @@ export const SAMPLES: readonly { group: string; samples: readonly Sample[] }[] =
   },
 ];
 
-/** What is on screen when the page opens. */
+/** The sample that is shown when the page opens. */
 export const FIRST = 'uvsphere 28 0.1';

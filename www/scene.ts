@@ -1,4 +1,4 @@
-/** The mesh on screen: three draws it, from the very buffer that the flips write where there is WebGPU. */
+/** Draws the mesh with three.js. With WebGPU, it draws from the buffer that the flips write. */
 
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 import {
@@ -27,7 +27,7 @@ import type { Drawn } from './run.ts';
 import { EdgeLines } from './edge-lines.ts';
 import type { Palette } from './palette.ts';
 
-/** What three keeps of an attribute on the GPU. */
+/** The part of three's backend that holds the GPU buffers of attributes. */
 interface Backend {
   readonly isWebGPUBackend?: boolean;
   get(attribute: BufferAttribute): { buffer?: GPUBuffer };
@@ -44,7 +44,7 @@ export class Scene {
   readonly #edges: EdgeLines;
   readonly #light = new DirectionalLight(0xffffff, 2.2);
   readonly #attributes = new WeakMap<Drawn, BufferAttribute>();
-  /** Those whose buffers are not three's to destroy. */
+  /** Attributes whose buffers three must not destroy. */
   readonly #shared = new WeakSet<BufferAttribute>();
   readonly #observer: ResizeObserver;
   #camera: PerspectiveCamera | OrthographicCamera = new PerspectiveCamera();
@@ -65,7 +65,7 @@ export class Scene {
     this.#observer = new ResizeObserver(() => this.#resize());
   }
 
-  /** Draws into `view`: with WebGPU on `device`, else with WebGL2. */
+  /** Draws into `view`: with WebGPU if `device` is given, else with WebGL2. */
   static async create(view: HTMLElement, device: GPUDevice | undefined, palette: Palette): Promise<Scene> {
     const renderer = new WebGPURenderer({ antialias: true, ...(device ? { device } : { forceWebGL: true }) });
     renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
@@ -79,17 +79,17 @@ export class Scene {
     return scene;
   }
 
-  /** Whether it draws with WebGPU, on the device given. */
+  /** Whether it draws with WebGPU, on the given device. */
   get isOnWebGpu(): boolean {
     return this.#backend.isWebGPUBackend === true;
   }
 
-  /** Whether it has looked at a mesh yet. */
+  /** Whether the camera has been set. */
   get isLooking(): boolean {
     return this.#controls !== undefined;
   }
 
-  /** Takes the vertices of a mesh, 3 a vertex within the unit ball. */
+  /** Sets the positions of a mesh: 3 numbers per vertex, inside the unit ball. */
   setMesh(positions: Float32Array, dimension: 2 | 3): void {
     this.clear();
     this.#positions = new BufferAttribute(positions, 3);
@@ -100,7 +100,7 @@ export class Scene {
     this.setPalette(this.#palette);
   }
 
-  /** Draws these triangles, and their lines if there are any. */
+  /** Draws these triangles, and the lines if there are any. */
   show(triangles: Drawn, count: number, lines: Drawn | undefined): void {
     this.#surface.geometry.setIndex(this.#index(triangles, count));
     this.#surface.visible = true;
@@ -109,14 +109,14 @@ export class Scene {
     this.redraw();
   }
 
-  /** Draws the edges of a small mesh in colours, or none. */
+  /** Draws the edges of a small mesh in colours; without arguments, none. */
   showEdges(indices: Uint32Array | undefined, states: Uint8Array | undefined): void {
     this.#edges.clear();
     if (indices && states) this.#edges.show(this.#positions.array as Float32Array, indices, states, this.#palette);
     this.redraw();
   }
 
-  /** Lets go of all buffers that are not its own: they may be freed then. */
+  /** Releases all buffers of the run, which may then be destroyed. */
   clear(): void {
     this.#edges.clear();
     for (const object of [this.#surface, this.#wire]) {
@@ -148,7 +148,7 @@ export class Scene {
     this.redraw();
   }
 
-  /** Draws once more, with the next frame of the page. */
+  /** Draws again in the next frame of the page. */
   redraw(): void {
     this.#frame ||= requestAnimationFrame(() => {
       this.#frame = 0;
@@ -157,7 +157,7 @@ export class Scene {
     });
   }
 
-  /** Takes the canvas away; what it has drawn from stays. */
+  /** Removes the canvas. The buffers of the run stay. */
   dispose(): void {
     cancelAnimationFrame(this.#frame);
     this.#frame = -1;
@@ -174,7 +174,7 @@ export class Scene {
     return geometry;
   }
 
-  /** The attribute for these indices: of a buffer, it is that buffer; of an array, a copy as it is now. */
+  /** The attribute for these indices. It uses a buffer directly, and copies an array to the GPU at each call. */
   #index(drawn: Drawn, count: number): BufferAttribute {
     let attribute = this.#attributes.get(drawn);
     if (!attribute) {
@@ -196,7 +196,7 @@ export class Scene {
     return this.#renderer.backend as unknown as Backend;
   }
 
-  /** Puts a new camera in front of the whole mesh: it turns around a surface, and moves over the plane. */
+  /** Sets a new camera that shows the whole mesh: it orbits a surface, and pans over the plane. */
   lookAtAll(): void {
     const flat = this.#dimension === 2;
     this.#controls?.dispose();

@@ -1,4 +1,4 @@
-/** Where meshes come from: samples, files that were chosen, files and folders that were dropped. */
+/** The sources of meshes: samples, chosen files, and dropped files and folders. */
 
 import { proxy } from 'comlink';
 import { FORMATS, type FileMesh, type IndexedMesh } from 'edgeflip/files';
@@ -8,7 +8,7 @@ import { folderOf, GLTF, plain, type Kept, type Located, type Report } from './f
 
 /** A mesh that can be read. */
 export interface Source {
-  /** What it is called before it is known which file it is in. */
+  /** The name to show while the mesh is read. */
   readonly name: string;
   read(office: Office, report: Report): Promise<Read>;
 }
@@ -19,14 +19,14 @@ export interface Read {
   mesh: IndexedMesh | FileMesh;
   /** The files that it was read from; `undefined` for a sample. */
   kept: Kept | undefined;
-  /** How many other meshes were in the files. */
+  /** The number of other mesh files. */
   others: number;
 }
 
-/** The stem of a file's name, and what its format is known by. */
+/** Splits a file's name into the stem and the extension of its format. */
 const EXTENSION = new RegExp(`^(.*)((?:${FORMATS.map((known) => `\\${known}`).join('|')})(?:\\.gz)?)$`, 'i');
 
-/** The name without its extension, and the extension: that of OFF where a mesh is from no file. */
+/** The name without its extension, and the extension; `.off` if the mesh is not from a file. */
 export function splitName(name: string): [stem: string, extension: string] {
   const [, stem = name, extension = '.off'] = EXTENSION.exec(name) ?? [];
   return [stem, extension];
@@ -40,7 +40,7 @@ export function sample(spec: string): Source {
   return { name: spec, read };
 }
 
-/** The first mesh among files; `undefined` where there is no file. */
+/** The first mesh of the files; `undefined` if there are no files. */
 export function chosen(files: readonly File[]): Source | undefined {
   const [first] = files;
   const located = files.map((file) => ({ path: file.name, file }));
@@ -48,8 +48,8 @@ export function chosen(files: readonly File[]): Source | undefined {
 }
 
 /**
- * The first mesh among what is dropped; `undefined` where that is no file. Of a folder it is the one that is nearest to
- * the top. To be called while the event is handled: later its files are out of reach.
+ * The first mesh of the dropped files; `undefined` if no file was dropped. In a folder, the mesh nearest to the top
+ * comes first. Call this in the event handler: the browser releases the files afterwards.
  */
 export function dropped(event: DragEvent): Source | undefined {
   const entries = Array.from(event.dataTransfer?.items ?? [], (item) => item.webkitGetAsEntry());
@@ -57,7 +57,7 @@ export function dropped(event: DragEvent): Source | undefined {
   const name = folders[0] ?? event.dataTransfer?.files[0]?.name;
   if (name === undefined) return undefined;
   const gathering = gather(event, folders);
-  // Whoever reads it is told.
+  // `read` reports the error.
   gathering.catch(() => {});
   const read = async (office: Office, report: Report) => {
     const files = await gathering;
@@ -71,16 +71,16 @@ export function dropped(event: DragEvent): Source | undefined {
   return { name, read };
 }
 
-/** What is dropped, and what lies in the folders. */
+/** The dropped files, and the files in the dropped folders. */
 async function gather(event: DragEvent, folders: readonly string[]): Promise<Located[]> {
   const gathered = fromEvent(event).catch((error: unknown) => {
-    const where = folders.length > 0 ? `all of ${new Intl.ListFormat('en').format(folders)}` : 'what was dropped';
+    const where = folders.length > 0 ? `all of ${new Intl.ListFormat('en').format(folders)}` : 'the dropped files';
     const why = error instanceof Error ? error.message : String(error);
     throw new Error(`The browser could not read ${where} (${why}). Drop only the files of the mesh.`);
   });
   const files = (await gathered).flatMap((file) => ('path' in file ? [{ path: plain(file.path), file }] : []));
   if (folders.length === 0) return files;
-  // In the order of the disk, another mesh might be the first each time.
+  // Sorted, because the order in which the browser lists the files may vary.
   const depth = ({ path }: Located) => path.split('/').length;
   const { compare } = new Intl.Collator('en', { numeric: true });
   return files.sort((a, b) => depth(a) - depth(b) || compare(a.path, b.path));
@@ -100,7 +100,7 @@ async function readFirst(files: readonly Located[], office: Office, report: Repo
   return { name: main.file.name, mesh, kept, others };
 }
 
-/** Hidden files are none: macOS puts `._bunny.ply` beside `bunny.ply` on some disks. */
+/** Whether it is a mesh file. Hidden files are not: on some disks, macOS stores `._bunny.ply` next to `bunny.ply`. */
 function isMesh({ file: { name } }: Located): boolean {
   return EXTENSION.test(name) && !name.startsWith('.');
 }

@@ -1,4 +1,4 @@
-/** The controls below the mesh and the sentences beside it, as the run stands. */
+/** Updates the controls below the mesh and the sentences next to it. */
 
 import type { Reasons } from 'edgeflip';
 import { controls, element } from './controls.ts';
@@ -9,9 +9,9 @@ import type { Run, Summary } from './run.ts';
 export interface Standing {
   run: Run | undefined;
   opened: Opened | undefined;
-  /** What the run said of itself when it last came to rest. */
+  /** The summary of the run when it last paused. */
   summary: Summary | undefined;
-  /** Whether something goes on that can be cancelled. */
+  /** Whether a job is running. */
   isBusy: boolean;
   isPlaying: boolean;
 }
@@ -40,23 +40,23 @@ export function showTransport({ run, opened, summary, isBusy, isPlaying }: Stand
   document.body.dataset['state'] = state;
 }
 
-/** What has been done to come to the state that is shown. */
+/** The flips and iterations up to the shown state, as a text. */
 export function statusOf({ at, isOver, iterations }: Run): string {
-  if (at === 0) return isOver ? 'No edge of the input may flip' : 'The input';
+  if (at === 0) return isOver ? 'No edge of the input can flip' : 'The input';
   const flips = iterations.slice(0, at).reduce((sum, iteration) => sum + iteration.flips, 0);
-  const so = `${number.format(flips)} ${flips === 1 ? 'flip' : 'flips'} in ${number.format(at)} ${at === 1 ? 'iteration' : 'iterations'}`;
-  return isOver ? `Done: ${so}` : so;
+  const progress = `${number.format(flips)} ${flips === 1 ? 'flip' : 'flips'} in ${number.format(at)} ${at === 1 ? 'iteration' : 'iterations'}`;
+  return isOver ? `Done: ${progress}` : progress;
 }
 
-/** Why `auto` has come to the engine that it is on. */
+/** Why `auto` runs on its engine. */
 function whyThere({ fallback }: Run, summary: Summary | undefined): string {
   if (!fallback || !summary) return '';
   const engine = `${summary.backend === 'cpu' ? 'the ' : ''}${ENGINES[summary.backend]}`;
   return `On ${engine}: ${[fallback, summary.fallback].filter(Boolean).join('; ')}.`;
 }
 
-/** What the result leaves. */
+/** A sentence about the remaining edges. */
 function left(remaining: Reasons): string {
   const what = reasons(remaining);
-  return what === 'none' ? 'Every edge is Delaunay.' : `Not Delaunay, and may not flip: ${what}.`;
+  return what === 'none' ? 'Every edge is Delaunay.' : `Not Delaunay, and cannot flip: ${what}.`;
 }

@@ -1,8 +1,8 @@
-/** Vertices as they are drawn: f32 numbers near 0 whatever the mesh's own offset and size. */
+/** Positions to draw: f32 numbers near 0, whatever the mesh's own offset and size. */
 
 import type { FileMesh, IndexedMesh } from 'edgeflip/files';
 
-/** The vertices, where a scene places them, moved and scaled into the unit ball; 3 a vertex. */
+/** The positions, in the scene if the file has one, moved and scaled into the unit ball; 3 numbers per vertex. */
 export function unitPositions(mesh: IndexedMesh | FileMesh): Float32Array {
   const placed = 'placed' in mesh ? mesh.placed : undefined;
   const [positions, dimension] = placed ? [placed, 3] : [mesh.positions, mesh.dimension];

@@ -1,4 +1,4 @@
-// Serves the page while somebody works on it, and builds it into target/www: static files that any server can serve.
+// Serves the page during development, and builds it into target/www: static files that any server can serve.
 
 import { readFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
@@ -6,13 +6,13 @@ import { defineConfig } from 'vite';
 
 const at = (path) => fileURLToPath(new URL(path, import.meta.url));
 
-// The policy of the page is that of its workers too, which only a header tells them.
+// The page's policy, for the header: workers take their policy only from a header.
 const [, policy] = readFileSync(at('index.html'), 'utf8').match(/content="(default-src [^"]*)"/);
 
-// While somebody works on the page, Vite inserts imported styles into it.
+// The development server inserts imported styles into the page.
 const whileWorking = (text) => text.replace("style-src 'self'", "style-src 'self' 'unsafe-inline'");
 
-// Isolated, so that the threads of the CPU engine may share memory.
+// Cross-origin isolated, so that the threads of the CPU engine can share memory.
 const headersWith = (policy) => ({
   'Content-Security-Policy': policy,
   'Cross-Origin-Opener-Policy': 'same-origin',

@@ -284,7 +284,7 @@ test('a WebGL2 context that is lost in the middle of a run gives way to the CPU,
   await page.chooseEngine('webgl2');
   await loseContext(page);
   const { error } = await page.until('a message', ({ error, state }) => error !== '' && state !== 'busy');
-  assert.match(error, /The GPU was lost \(.*the WebGL2 context was lost\)\. The run went the same way again/);
+  assert.match(error, /The GPU was lost \(.*the WebGL2 context was lost\)\. The run was repeated/);
   const recovered = await page.rest();
   assert.ok(Number(recovered.at) > 2 && Number(recovered.at) < rows.length, `at ${recovered.at}`);
   assert.deepEqual([recovered.backend, recovered.facts.Engine], ['cpu', 'CPU, in a worker']);

@@ -197,7 +197,7 @@ test('a GPU that is lost while it compiles is replaced, and the run on the CPU i
     await page.page.waitForFunction((many) => window.seen.devices.length === many, devices);
     await page.until(
       'a message',
-      ({ error, state }) => /The GPU was lost.*The run went the same way again/.test(error) && state !== 'busy',
+      ({ error, state }) => /The GPU was lost.*The run was repeated/.test(error) && state !== 'busy',
     );
     const { at, newest, facts, ...seen } = await page.rest();
     assert.deepEqual(
