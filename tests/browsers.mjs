@@ -1,5 +1,5 @@
-// The two real browsers that tests use, each with WebGPU on a software GPU, and a static server for their pages.
-// Whatever was started here is ended by `closeAll`: `after(closeAll)` in a test file.
+// Starts the two real browsers that tests use, each with WebGPU on a software GPU, and a static server for their pages.
+// `closeAll` ends everything that was started here: a test file calls `after(closeAll)`.
 
 import { spawn } from 'node:child_process';
 import { accessSync, constants } from 'node:fs';
@@ -11,7 +11,7 @@ import { preview } from 'vite';
 /** @type {(() => unknown)[]} */
 const closers = [];
 
-/** Ends every browser, server and display that was started here, the last one first, also if one of them fails. */
+/** Ends every browser, server and display that was started here, in reverse order. Continues if one of them fails. */
 export async function closeAll() {
   const errors = [];
   for (let close = closers.pop(); close; close = closers.pop()) {
@@ -24,7 +24,7 @@ export async function closeAll() {
   if (errors.length > 0) throw new AggregateError(errors, `not closed: ${errors.join('; ')}`);
 }
 
-/** The first program that there is: a path, or a name on the PATH. tools/setup.sh looks for the same ones. */
+/** The first existing program of `candidates`: paths, or names on the PATH. tools/setup.sh looks for the same ones. */
 function program(what, candidates) {
   const folders = (process.env.PATH ?? '').split(delimiter);
   const paths = candidates.flatMap((name) => (isAbsolute(name) ? [name] : folders.map((folder) => join(folder, name))));
@@ -37,11 +37,11 @@ function program(what, candidates) {
     }
   });
   if (found) return found;
-  throw new Error(`${what} is not here: bash tools/setup.sh installs it, or says what to do`);
+  throw new Error(`${what} is missing: bash tools/setup.sh installs it, or says how`);
 }
 
 /**
- * Chromium, headless; its GPU is SwiftShader. All four flags for the GPU are needed to see what WebGPU draws.
+ * Starts Chromium without a window; its GPU is SwiftShader. Screenshots of WebGPU need all four flags for the GPU.
  *
  * @returns {Promise<import('playwright-core').Browser>}
  */
@@ -73,8 +73,8 @@ export async function startChromium() {
 }
 
 /**
- * Firefox, with a window: it has WebGPU only so. On Linux without a display the window is on one that nobody sees.
- * Its GPU is the Vulkan driver's. What waits for its GPU waits 100 ms at least.
+ * Starts Firefox with a window, because it has no WebGPU without one. On Linux without a display, the window is on a
+ * virtual display. Its GPU is the Vulkan driver's. Each wait for the GPU takes at least 100 ms.
  *
  * @returns {Promise<import('puppeteer-core').Browser>}
  */
@@ -86,7 +86,7 @@ export async function startFirefox() {
       process.env.FIREFOX ??
       program('Firefox', ['firefox-esr', 'firefox', '/Applications/Firefox.app/Contents/MacOS/firefox']),
     headless: false,
-    protocolTimeout: 0, // a test knows how long it waits
+    protocolTimeout: 0, // tests have their own time limits
     env: needsDisplay ? { ...process.env, DISPLAY: await display() } : process.env,
     extraPrefsFirefox: { 'dom.webgpu.enabled': true, 'gfx.webgpu.ignore-blocklist': true },
   });
@@ -94,9 +94,9 @@ export async function startFirefox() {
   return browser;
 }
 
-/** Starts an X server without a screen and gives the name of its display. */
+/** Starts an X server without a screen and returns the name of its display. */
 async function display() {
-  // It takes the first number that is free and writes it to the pipe 3 when clients can come.
+  // The server takes the first free number, and writes it to pipe 3 when it accepts clients.
   const options = ['-displayfd', '3', '-screen', '0', '1280x1024x24', '-nolisten', 'tcp'];
   const server = spawn(program('Xvfb', ['Xvfb']), options, { stdio: ['ignore', 'ignore', 'pipe', 'pipe'] });
   const kill = () => server.kill();
@@ -117,22 +117,22 @@ async function display() {
   return `:${number.trim()}`;
 }
 
-/** What a page is cross-origin isolated with, so that its workers may share memory. */
+/** The headers of a cross-origin isolated page, whose workers can share memory. */
 export const ISOLATED = { 'Cross-Origin-Opener-Policy': 'same-origin', 'Cross-Origin-Embedder-Policy': 'require-corp' };
 
 /**
- * Serves the files of a folder on localhost, which browsers take for a secure context: without one there is no WebGPU.
+ * Serves the files of a folder on localhost. For browsers, localhost is a secure context, which WebGPU needs.
  *
  * @param {string} folder
  * @param {Record<string, string>} [headers] - Sent with every answer.
- * @returns {Promise<string>} The address of the folder, with a slash at its end.
+ * @returns {Promise<string>} The URL of the folder, with a slash at its end.
  */
 export async function serve(folder, headers = {}) {
   const server = await preview({
     root: folder,
     configFile: false,
-    appType: 'mpa', // what is not there is a 404, not index.html
-    logLevel: 'error', // not that the folder is no place for a build
+    appType: 'mpa', // a missing file is a 404, not index.html
+    logLevel: 'error', // no warning about the output folder
     build: { outDir: folder },
     preview: { host: 'localhost', port: 0, headers },
   });
@@ -141,8 +141,7 @@ export async function serve(folder, headers = {}) {
 }
 
 /**
- * Opens a page and collects what goes wrong on it: errors and warnings on its console, exceptions that nothing
- * catches, answers of a server that are no success.
+ * Opens a page and collects its problems: errors and warnings on the console, uncaught exceptions, and failed requests.
  *
  * @template {import('playwright-core').Browser | import('puppeteer-core').Browser} B
  * @param {B} browser

@@ -1,5 +1,6 @@
-// The engines of the package in dist/, in real browsers: the parity matrix, quads, locks. All on one page of each browser,
-// which compiles the kernels once: on a software GPU that takes longer than to run them. Prints the matrix last.
+// Tests the engines of the package in dist/ in real browsers: the parity matrix, quads and locks. Each browser uses one
+// page for all tests, so that it compiles the kernels once: a software GPU compiles longer than it runs. Prints the
+// matrix last.
 
 import assert from 'node:assert/strict';
 import { existsSync } from 'node:fs';
@@ -13,7 +14,7 @@ for (const [file, command] of [
   ['target/parity.json', 'npm test -- parity'],
   ['target/quads/batches.json', 'npm test -- parity'],
 ]) {
-  assert.ok(existsSync(repository + file), `${file} is not there: ${command}`);
+  assert.ok(existsSync(repository + file), `${file} is missing; run ${command}`);
 }
 const { fill, matrix } = await import('./parity/matrix.mjs');
 const { check } = await import('./quads/browsers.mjs');
@@ -44,17 +45,17 @@ const titles = { cpu: 'CPU wasm', webgpu: 'WebGPU', webgl2: 'WebGL2' };
 after(closeAll);
 process.on('exit', () => console.log(`\n${matrix()}`));
 
-// Firefox mostly waits, so they share the processor well.
+// In parallel: Firefox mostly waits.
 describe('engines', { concurrency: true }, () => {
   for (const { name, start, engines } of browsers) {
     test(`in ${name}`, { timeout: 900_000 }, async (t) => {
       const { page, problems } = await openPage(await start(), `${await serve(repository)}tests/engines.html`);
       await page.waitForFunction(() => 'runAll' in window && 'iterate' in window);
       for (const engine of engines.map((engine) => ({ ...engine, title: `${titles[engine.backend]} ${name}` }))) {
-        await t.test(`${engine.title} gives what the simulation does`, () => fill(page, engine));
+        await t.test(`${engine.title} gives the results of the simulation`, () => fill(page, engine));
         if (engine.backend === 'cpu') continue;
         await t.test(`${engine.title} decides quads as big integers do`, () => check(page, engine));
-        // Each answer takes Firefox 100 ms.
+        // In Firefox, each wait for the GPU takes 100 ms.
         if (name === 'Firefox') continue;
         await t.test(`${engine.title} holds locks and limits when the vertices move`, () => holdLocks(page, engine));
       }

@@ -1,6 +1,6 @@
-// The packed npm package, installed into fresh projects, in real browsers: the five lines that docs/package.md has for a
-// page run as they are, and with Vite by the package's name; so do edgeflip/files and the audit. Every page has to write what
-// Node does. Packs the dist/ that is there.
+// Tests the packed npm package in fresh projects and real browsers. The five lines for a page in docs/package.md run
+// unchanged, and with Vite by the package's name; so do edgeflip/files and the audit. Every page has to write the same
+// as Node. Packs the existing dist/.
 
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
@@ -45,7 +45,7 @@ const withThreads = `
   document.body.append(\`\${flips} and \${any.flips} flips on \${backend}: \${sum(indices)}, \${sum(any.indices)}\`);
 `;
 
-/** What is no GPUDevice of this window is refused before it reaches the module. */
+/** Lines with values that are not a GPUDevice of this window. The package refuses them before they reach the module. */
 const withFakes = `
   import { makeDelaunay } from './node_modules/edgeflip/dist/index.js';
   const positions = new Float32Array([-3, 0, 0, -1, 3, 0, 0, 1]);
@@ -65,14 +65,14 @@ function on(backend, lines) {
   return lines.replace("'auto'", `'${backend}'`);
 }
 
-/** The same lines where a package is imported by its name. */
+/** The same lines, which import the package by its name. */
 function byName(lines) {
   const named = lines.replace('./node_modules/edgeflip/dist/index.js', 'edgeflip');
   assert.notEqual(named, lines);
   return named.replace('./node_modules/edgeflip/dist/files.js', 'edgeflip/files');
 }
 
-// `writes`: what the same lines write in Node, on the CPU.
+// `writes`: the output of the same lines in Node, on the CPU.
 const pages = [
   { name: 'index', lines: fiveLines, writes: '' },
   { name: 'cpu', lines: on('cpu', fiveLines), writes: '' },
@@ -85,7 +85,7 @@ const pages = [
 ];
 
 function run(program, args, cwd) {
-  const shell = process.platform === 'win32'; // npm is a script there
+  const shell = process.platform === 'win32'; // on Windows, npm is a script
   const { status, stdout, stderr, error } = spawnSync(program, args, { cwd, encoding: 'utf8', shell });
   assert.equal(status, 0, `${program} ${args.join(' ')}: ${error ?? ''}\n${stdout}\n${stderr}`);
   return stdout;
@@ -94,11 +94,11 @@ function run(program, args, cwd) {
 /** @type {{ filename: string, files: { path: string }[] }} */
 let packed;
 
-/** A new folder in which somebody has installed the package. */
+/** A new folder with the installed package. */
 function project(name) {
   const root = join(folder, name);
   mkdirSync(root);
-  // What the package depends on is taken from here, so that no network is needed.
+  // The dependencies of the package are copied from this repository, so that no network is needed.
   const types = join(repository, 'node_modules/@webgpu/types');
   const dependencies = { edgeflip: `file:${join(folder, packed.filename)}`, '@webgpu/types': `file:${types}` };
   writeFileSync(join(root, 'package.json'), JSON.stringify({ name, private: true, type: 'module', dependencies }));
@@ -132,7 +132,7 @@ after(async () => {
   rmSync(folder, { recursive: true, force: true });
 });
 
-/** Opens every page and compares what it writes; threads have workers where memory can be shared. */
+/** Opens every page and compares its output. If memory can be shared, threads have workers. */
 async function check(browser, address, isIsolated) {
   for (const { name, lines, writes } of pages) {
     const { page, problems } = await openPage(browser, `${address}${name}.html`);
@@ -143,7 +143,7 @@ async function check(browser, address, isIsolated) {
       text = await page.evaluate(() => document.body?.textContent.trim() ?? '');
     }
     const wanted = isIsolated && name === 'threads' ? 3 : 0;
-    // The others may be on their way still when the first has done the work.
+    // When the first worker has finished, the other workers may not have loaded yet.
     for (let i = 0; i < 100 && page.workers().length < wanted; i++) await pause(50);
     const workers = page.workers().length;
     await page.close();
@@ -181,7 +181,7 @@ test('docs/package.md has five lines, and they flip the long diagonal', () => {
   assert.match(written[4], /^47 flips on cpu: (\d+,){293}\d+$/);
 });
 
-test('the package holds what its entries need, and no source', () => {
+test('the package contains the files that its entries need, and no source', () => {
   const paths = packed.files.map(({ path }) => path);
   const { exports } = JSON.parse(readFileSync(join(repository, 'package.json'), 'utf8'));
   const entries = Object.values(exports).flatMap((entry) => (typeof entry === 'string' ? entry : Object.values(entry)));

@@ -1,5 +1,5 @@
-// The JavaScript in README and docs/: TypeScript is strict about every block, and each block in `js` runs in Node on the
-// CPU. So do the programs in examples/. Links in the documents lead to files and headings that exist.
+// Tests the JavaScript in README and docs/: every block passes strict TypeScript, and each `js` block runs in Node on
+// the CPU. So do the programs in examples/. Links in the documents lead to existing files and headings.
 
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
@@ -23,14 +23,14 @@ const blocks = documents.flatMap(({ name, text }) =>
   })),
 );
 
-// Below the repository, so that 'edgeflip' is the package here.
+// Inside the repository, so that 'edgeflip' resolves to this package.
 mkdirSync(join(repository, 'target'), { recursive: true });
 const folder = mkdtempSync(join(repository, 'target/docs-test-'));
 after(() => rmSync(folder, { recursive: true, force: true }));
 
 const node = (args) => spawnSync(process.execPath, args, { cwd: folder, encoding: 'utf8' });
 
-test('TypeScript is strict about all blocks', () => {
+test('all blocks pass strict TypeScript', () => {
   assert.ok(blocks.length > 0);
   const compilerOptions = {
     target: 'ES2022',
@@ -73,7 +73,7 @@ test('the examples run', () => {
   assert.match(readFileSync(output, 'utf8'), /^usemtl red$/m);
 });
 
-/** The anchor that GitHub gives a heading. */
+/** GitHub's anchor of a heading. */
 const anchor = (heading) =>
   heading
     .toLowerCase()

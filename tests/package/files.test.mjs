@@ -1,4 +1,4 @@
-// The second entry of the npm package in Node: files, generated meshes, angles.
+// Tests the entry `edgeflip/files` of the npm package in Node: files, generated meshes, measures.
 
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
@@ -20,7 +20,7 @@ import {
 
 const bytes = (text) => new TextEncoder().encode(text);
 const text = (bytes) => new TextDecoder().decode(bytes);
-/** The bits of the positions, so that -0 is not 0. */
+/** The bits of the positions, so that -0 and 0 differ. */
 const bits = ({ positions }) => new Uint32Array(positions.buffer, positions.byteOffset, positions.length);
 
 const refused = (code, pattern) => (error) => {
@@ -30,14 +30,14 @@ const refused = (code, pattern) => (error) => {
   return true;
 };
 
-/** FNV-1a, 64 bits. */
+/** FNV-1a with 64 bits. */
 const digest = (bytes) =>
   bytes
     .reduce((hash, byte) => BigInt.asUintN(64, (hash ^ BigInt(byte)) * 0x100000001b3n), 0xcbf29ce484222325n)
     .toString(16)
     .padStart(16, '0');
 
-/** Five vertices in numbers that are hard to write. */
+/** Five vertices with numbers that are hard to write exactly. */
 const awkward = () => ({
   positions: new Float32Array([1e-45, -0, 0.1, 3.4028235e38, -1.1754942e-38, 16777217, 1 / 3, -1e30, 0.3, 2 ** -126]),
   indices: new Uint32Array([0, 1, 2, 0, 2, 3, 0, 3, 4, 0, 4, 1]),
@@ -62,11 +62,11 @@ test('a module that cannot be loaded is an error, and the next call tries again'
   await init({ files: 'https://example.org/not-looked-at.wasm' });
 });
 
-/** What is said of a file of which there is nothing to say. */
+/** The fields of a file without notes. */
 const FREE = { groups: undefined, lockedEdges: undefined, lockedTriangles: undefined };
 const PLAIN = { polygons: 0, dropped: [], keeps: true, notes: [], placed: undefined, ...FREE };
 
-test('every bit comes back, in each format and in both dimensions', async () => {
+test('every format keeps every bit, in both dimensions', async () => {
   const flat = awkward();
   const raised = {
     positions: new Float32Array([...flat.positions, 7.5, -0]),
@@ -86,7 +86,7 @@ test('every bit comes back, in each format and in both dimensions', async () => 
   }
 });
 
-test('doubles are written in full', async () => {
+test('doubles are written with all digits', async () => {
   const positions = Float64Array.of(0.1, 1e300, 12_000_000.000_001, -0, 5e-324, 1 / 3);
   const mesh = { positions, indices: Uint32Array.of(0, 1, 2), dimension: 2 };
   const lines = ['0.1 1e+300 0', '12000000.000001 -0 0', '5e-324 0.3333333333333333 0'];
@@ -96,7 +96,7 @@ test('doubles are written in full', async () => {
   assert.ok(Math.abs(min - 45) < 1e-12);
 });
 
-test('a PLY file keeps doubles, and an STL file what its corners say', async () => {
+test('a PLY file keeps doubles, and an STL file joins equal corners', async () => {
   const positions = Float64Array.of(0.1, 1e300, 12_000_000.000_001, -0, 5e-324, 1 / 3);
   const mesh = { positions, indices: Uint32Array.of(0, 1, 2), dimension: 2 };
   for (const name of ['a.ply', 'a.ply.gz']) {
@@ -115,7 +115,7 @@ test('a PLY file keeps doubles, and an STL file what its corners say', async () 
   }
 });
 
-test('gzip is known by its bytes, and a file has a limit, unpacked', async () => {
+test('gzip is recognized by its bytes, and the limit applies to the unpacked file', async () => {
   const thin = bytes(`OFF 3 1\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n${' '.repeat(100)}`);
   const packed = new Uint8Array(gzipSync(thin));
   const mesh = await readMesh(thin, 'a.off');
@@ -143,7 +143,7 @@ test('gzip is known by its bytes, and a file has a limit, unpacked', async () =>
   await assert.rejects(readMesh(thin, 'a.off', { maxBytes: '9' }), refused('invalid-input', /maxBytes/));
 });
 
-test('what is read can be flipped, and what was passed is unchanged', async () => {
+test('a mesh from a file can be flipped, and arguments stay unchanged', async () => {
   const thin = 'OFF\n4 2 0\n-3 0 0\n0 -1 0\n3 0 0\n0 1 0\n3 0 1 2\n3 0 2 3\n';
   const file = bytes(thin);
   const mesh = await readMesh(file, 'thin.off');
@@ -157,7 +157,7 @@ test('what is read can be flipped, and what was passed is unchanged', async () =
   assert.equal(text(await writeMesh(mesh, 'same.off')), thin);
 });
 
-test('polygons of an OBJ file become fans, and what is dropped is named', async () => {
+test('polygons of an OBJ file become fans, and `dropped` names lost contents', async () => {
   const file = bytes(
     'o house\nv 0 0 0\nv 2 0 0\nv 2 2 0\nv 1 3 1\nv 0 2 0\nvn 0 0 1\nf 1//1 2//1 3//1 4//1 5//1\nf -1 -2 -3\n',
   );
@@ -168,7 +168,7 @@ test('polygons of an OBJ file become fans, and what is dropped is named', async 
   assert.deepEqual(mesh.dropped, ['groups, objects and materials', 'normals']);
 });
 
-test('a file comes out with other triangles and all else as it was', async () => {
+test('with `original`, a file is written with other triangles and is otherwise unchanged', async () => {
   const points =
     '# by hand\r\nv 0 0 0\r\nv 0.90000000001 0.2 0\r\nv 1 1 0\r\nv 0 1 0\r\nv 0.5 -9 0\r\nvt 0 0\r\nvt 1 1\r\n';
   const original = {
@@ -186,7 +186,7 @@ test('a file comes out with other triangles and all else as it was', async () =>
   const written = text(await writeMesh({ ...mesh, indices }, 'b.obj', { original }));
   assert.equal(written, `${points}usemtl a\r\nf 4/1 2/1 3/1\r\nf 1/1 2/1 4/1\r\nusemtl b\r\nf 2/2 1/2 5/2\r\n`);
   assert.deepEqual(new Uint8Array(gunzipSync(await writeMesh(mesh, 'b.obj.gz', { original }))), original.bytes);
-  // Another format has positions and triangles; so does the same without the original.
+  // Another format, and the same format without the original, have only positions and triangles.
   assert.match(text(await writeMesh({ ...mesh, indices }, 'b.off', { original })), /^OFF\n5 3 0\n0 0\b/);
   assert.match(text(await writeMesh({ ...mesh, indices }, 'b.obj')), /^v 0 0 0\nv 0.9 0.2 0\n/);
   const turned = { ...mesh, indices: Uint32Array.of(0, 2, 1, 0, 3, 2, 1, 0, 4) };
@@ -199,7 +199,7 @@ test('a file comes out with other triangles and all else as it was', async () =>
   assert.equal((await readMesh(bytes(strips), 'a.ply')).keeps, false);
 });
 
-test('the dimension is that of the file, or the one asked for', async () => {
+test('the dimension is that of the file, or that of the option', async () => {
   const flat = bytes('OFF 1 0\n1 2 0\n');
   const raised = bytes('OFF 2 0\n0 0 0\n1 2 0.5\n');
   assert.deepEqual([...(await readMesh(flat, 'a.off')).positions], [1, 2]);
@@ -213,7 +213,7 @@ test('the dimension is that of the file, or the one asked for', async () => {
   );
 });
 
-test('errors have codes and places', async () => {
+test('errors have codes and name the location', async () => {
   const mesh = awkward();
   await assert.rejects(
     readMesh(bytes('OFF\n3 1 0\n0 0 0\n1 x 0\n'), 'a.off'),
@@ -297,7 +297,7 @@ test('720,000 triangles are generated, written and read back', async () => {
   );
 });
 
-test('a mesh is measured, and what a run has changed', async () => {
+test('`measures` and `change` measure a mesh and the changes of a run', async () => {
   const mesh = await generate('uvsphere 12');
   const { indices } = await makeDelaunay(mesh, { maxNormalAngle: 60 });
   const [before, after] = [await measures(mesh), await measures({ ...mesh, indices })];

@@ -1,9 +1,9 @@
-// A GLB file with all that a triangle mesh may carry, made by hand: two primitives with a skin, morph targets and a
-// texture. And what the validator of the Khronos Group says of a file.
+// Makes a GLB file with everything that a triangle mesh may have: two primitives with a skin, morph targets and a
+// texture. Also runs the validator of the Khronos Group on a file.
 
 import validator from 'gltf-validator';
 
-/** What the validator finds. */
+/** The messages of the validator. */
 export async function faults(bytes, files = {}) {
   const externalResourceFunction = async (uri) => files[decodeURIComponent(uri)];
   const { issues } = await validator.validateBytes(bytes, { maxIssues: 20, externalResourceFunction });
@@ -28,7 +28,7 @@ const COMPONENTS = new Map([
   [Uint8Array, 5121],
 ]);
 
-/** The bytes of a buffer, as they grow, and what refers to them. */
+/** A growing buffer, and the buffer views and accessors that refer to it. */
 class Content {
   bytes = Buffer.alloc(0);
   bufferViews = [];
@@ -57,7 +57,7 @@ class Content {
   }
 }
 
-/** A strip of cells beside the x axis, thin and cut the wrong way, bent a little out of the plane. */
+/** A strip of thin cells along the x axis, each split along its long diagonal and slightly bent out of the plane. */
 function ribbon(cells, z) {
   const positions = new Float32Array(6 * (cells + 1));
   const indices = [];
@@ -72,8 +72,8 @@ function ribbon(cells, z) {
 }
 
 /**
- * The file, and where in it the indices are: pairs of the first byte and the one after the last. Without indices every
- * triangle has vertices of its own, and texture coordinates change in the middle of the second primitive.
+ * The file, and the ranges of bytes of its indices: pairs of start and end. Without indices, every triangle has its own
+ * vertices, and the texture coordinates change in the middle of the second primitive.
  */
 export function riggedGlb({ isIndexed = true } = {}) {
   const content = new Content();

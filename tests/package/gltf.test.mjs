@@ -1,5 +1,5 @@
-// A GLB file with skin, morph targets and textures comes out with other indices and nothing else changed, and the
-// validator of the Khronos Group finds no fault in what is written. Takes the dist/ that is there.
+// A GLB file with a skin, morph targets and textures is written with other indices and is otherwise unchanged, and the
+// validator of the Khronos Group finds no error in it. Uses the existing dist/.
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
@@ -28,14 +28,14 @@ test('only the indices of a rigged GLB change', async () => {
   assert.deepEqual((await readMesh(out, 'out.glb')).indices, after.indices);
 });
 
-test('a rigged GLB becomes a glTF, and a strip a list, without a fault', async () => {
+test('a rigged GLB becomes a valid glTF, and a strip a valid list', async () => {
   const { bytes } = riggedGlb();
   const { after } = await flipped(bytes, 'rigged.glb');
   const text = await writeMesh(after, 'out.gltf', { original: { bytes, name: 'rigged.glb' } });
   assert.deepEqual(await faults(text), []);
   const json = JSON.parse(Buffer.from(text).toString());
   assert.deepEqual(json.asset.extras, { 'made by': 'a test', numbers: [1, 2.5, -1e-7] });
-  // The buffer in a file of its own, and the first primitive as a strip over its first vertices.
+  // The buffer is in a separate file, and the first primitive is a strip over its first vertices.
   const buffer = Buffer.from(json.buffers[0].uri.split(',')[1], 'base64');
   json.buffers[0].uri = 'a%20b.bin';
   const primitive = json.meshes[0].primitives[0];
@@ -47,7 +47,7 @@ test('a rigged GLB becomes a glTF, and a strip a list, without a fault', async (
     message: /buffer 0: .*`a b.bin`: it is not among the `files` given/,
   });
   const { mesh, after: again } = await flipped(strip, 'strip.gltf', files);
-  // A triangle that begins at another corner.
+  // The same triangle from another corner.
   const indices = mesh.indices.slice();
   [indices[0], indices[1], indices[2]] = [indices[1], indices[2], indices[0]];
   const original = { bytes: new Uint8Array(strip), name: 'strip.gltf', files };
@@ -70,7 +70,7 @@ test('a rigged GLB becomes a glTF, and a strip a list, without a fault', async (
   });
 });
 
-test('a generated mesh becomes a file without a fault', async () => {
+test('a generated mesh becomes a valid file', async () => {
   for (const spec of ['uvsphere 8', 'random 9']) {
     for (const name of ['mesh.glb', 'mesh.gltf']) {
       const mesh = await generate(spec);

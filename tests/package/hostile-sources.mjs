@@ -1,4 +1,4 @@
-// Hostile values as sources of the package's modules, in a worker that has loaded none of them.
+// Passes hostile values as sources of the package's modules, in a worker that has loaded none of the modules.
 
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
@@ -15,7 +15,7 @@ const inits = [
   (source) => files.init({ files: source }),
 ];
 
-/** `undefined` is the module beside the package. */
+/** All hostile values except `undefined`, which means the module next to the package. */
 const source = hostile.filter((make) => make() !== undefined);
 const property = fc.asyncProperty(fc.constantFrom(...inits), source, async (init, make) => {
   const asked = init(make()).then(
@@ -26,7 +26,7 @@ const property = fc.asyncProperty(fc.constantFrom(...inits), source, async (init
 });
 await fc.assert(property, { numRuns: runs, seed, endOnFailure: true });
 
-// A source that is right loads them after all, in whatever kind its bytes are, and whatever becomes of them after the call.
+// Afterwards a valid source loads each module: bytes of any kind, even if the caller changes them after the call.
 const modules = {
   core: 'edgeflip',
   webgl2: 'edgeflip_webgl2',
@@ -42,7 +42,8 @@ for (const [i, [name, file]] of Object.entries(modules).entries()) {
   await loaded;
 }
 
-// What is no object of sources, or no folder, is an error of this package; an object without sources is none.
+// A value that is not an object of sources, or not a folder, is an error of this package. An object without sources is
+// valid.
 const given = fc.oneof(
   hostile.map((make) => () => make()),
   hostile.map((make) => () => ({ base: make(), core: 0 })),

@@ -1,4 +1,4 @@
-// Values that no program should pass, but one may: what throws, what lies about itself, what has lost its memory.
+// Hostile values: objects that throw, objects with false properties, and arrays that have lost their memory.
 
 import fc from 'fast-check';
 
@@ -34,7 +34,7 @@ function detached(Kind, length) {
   return array;
 }
 
-/** An array whose buffer has shrunk behind it. */
+/** An array whose buffer has shrunk. */
 function shrunk(Kind) {
   const buffer = new ArrayBuffer(8 * Kind.BYTES_PER_ELEMENT, { maxByteLength: 64 * Kind.BYTES_PER_ELEMENT });
   const array = new Kind(buffer, Kind.BYTES_PER_ELEMENT, 4);
@@ -42,7 +42,7 @@ function shrunk(Kind) {
   return array;
 }
 
-/** One that follows its buffer, and so has another length later. */
+/** An array that follows the length of its buffer, and so changes its length later. */
 function growing(Kind) {
   const buffer = new ArrayBuffer(6 * Kind.BYTES_PER_ELEMENT, { maxByteLength: 64 * Kind.BYTES_PER_ELEMENT });
   const array = new Kind(buffer);
@@ -54,7 +54,7 @@ function shared(Kind) {
   return new Kind(new SharedArrayBuffer(6 * Kind.BYTES_PER_ELEMENT));
 }
 
-/** A subclass that lies about all that it inherits. */
+/** A subclass that overrides all inherited properties with false values. */
 function lying(Kind) {
   class Lying extends Kind {
     get length() {
@@ -85,7 +85,7 @@ function lying(Kind) {
   return new Lying(6);
 }
 
-/** An object that has only the prototype. */
+/** An object that has only the prototype of the class. */
 function pretending(Kind) {
   return Object.create(Kind.prototype);
 }
@@ -202,7 +202,7 @@ const numbers = [
   -Infinity,
 ];
 
-/** Makes a hostile value; a new one each time, since some are good for one call only. */
+/** Makes a hostile value. Each call makes a new one, because some values can be used only once. */
 export const hostile = fc.oneof(
   { arbitrary: fc.constantFrom(...odd), weight: 6 },
   {
@@ -228,15 +228,15 @@ export const hostile = fc.oneof(
   },
 );
 
-/** How a value is put where it is read. */
+/** The ways to pass a hostile value: directly, or through a getter. */
 export const placing = fc.constantFrom('value', 'value', 'value', 'getter that throws', 'getter that changes its mind');
 
-/** What was put there before may be hostile to this too. */
+/** Ignores exceptions: a hostile value that was placed before may throw. */
 function attempt(work) {
   try {
     work();
   } catch {
-    // Then it stays as it is.
+    // The previous value stays.
   }
 }
 
@@ -260,7 +260,7 @@ export function place(args, path, make, how) {
   attempt(() => Reflect.defineProperty(target, key, { get, enumerable: true, configurable: true }));
 }
 
-/** Takes away what was passed, as soon as the call has returned: detaches arrays, and clears lists and objects. */
+/** Destroys the arguments after the call has returned: detaches arrays, and clears lists and objects. */
 export function takeAway(value, depth = 0) {
   attempt(() => {
     if (ArrayBuffer.isView(value)) {

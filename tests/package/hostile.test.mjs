@@ -1,5 +1,5 @@
-// Hostile values at every entry of the package, on one thread and on several: each promise settles soon, with a result or
-// an EdgeflipError that says what was wrong, and a good call afterwards gives the right answer.
+// Passes hostile values to every function of the package, on one thread and on several. Each promise settles soon, with
+// a result or an EdgeflipError that names the error, and a valid call afterwards gives the correct result.
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
@@ -10,11 +10,11 @@ import * as files from 'edgeflip/files';
 import fc from 'fast-check';
 import { hostile, place, placing, takeAway } from './hostile.mjs';
 
-/** Cases in all, and which. */
+/** The number of cases, and the seed that chooses them. */
 const CASES = Number(process.env.EDGEFLIP_CASES ?? 10_000);
 const seed = Number(process.env.EDGEFLIP_SEED ?? 24);
 
-/** Milliseconds until a promise has to have settled. */
+/** Milliseconds within which a promise has to settle. */
 const PATIENCE = 5000;
 
 const uncaught = [];
@@ -61,7 +61,7 @@ const originalPaths = (at) => [
   [...at, 'files', 'b.bin'],
   [...at, 'maxBytes'],
 ];
-/** Options that need nothing else, and those that do more before the run. */
+/** Options of a run, and options for work before the run. */
 const plain = (threads) => ({ backend: 'cpu', threads });
 const rich = (mesh) => ({
   backend: 'cpu',
@@ -70,7 +70,7 @@ const rich = (mesh) => ({
   lockedEdges: [...mesh.indices.slice(0, 2)],
 });
 
-/** Whole sessions, with everything that they are asked. */
+/** Whole sessions, with all their methods. */
 async function wholeSession(mesh, options) {
   const session = await FlipSession.create(mesh, options);
   try {
@@ -83,7 +83,7 @@ async function wholeSession(mesh, options) {
   }
 }
 
-/** One call on a good session. */
+/** One call of a valid session. */
 const onSession =
   (mesh, threads, ask) =>
   async (...args) => {
@@ -161,7 +161,7 @@ const fileEntries = [
   },
 ];
 
-/** Calls an entry, and says what it gave in the end. */
+/** Calls a function, and returns how its promise settled. */
 async function outcomeOf(call, args, isTaken) {
   const asked = (async () => call(...args))();
   if (isTaken) args.forEach((arg) => takeAway(arg));
@@ -178,7 +178,7 @@ async function outcomeOf(call, args, isTaken) {
   return end;
 }
 
-/** Hostile values at one or two places of entries. */
+/** Passes hostile values at one or two locations in the arguments. */
 function attack(entries, runs) {
   const place2 = ({ paths }) =>
     fc.array(fc.tuple(fc.constantFrom(...paths), hostile, placing), { minLength: 1, maxLength: 2 });
@@ -187,7 +187,7 @@ function attack(entries, runs) {
     const args = good();
     for (const [path, make, how] of places) place(args, path, make, how);
     const end = await outcomeOf(call, args, isTaken);
-    // What a callback throws goes through unchanged.
+    // Exceptions of callbacks pass through unchanged.
     const isOfCallback =
       end instanceof Error && places.some(([path]) => ['onProgress', 'onIteration'].includes(path.at(-1)));
     if (end === 'result' || (isOfCallback && !(end instanceof EdgeflipError))) return;
@@ -198,7 +198,7 @@ function attack(entries, runs) {
   return fc.assert(property, { numRuns: runs, seed, endOnFailure: true, includeErrorInReport: true });
 }
 
-/** A good call gives the right answer. */
+/** Checks that a valid call gives the correct result. */
 async function isWell(mesh, threads) {
   const { indices, flips } = await makeDelaunay(mesh, plain(threads));
   assert.deepEqual(indices, expected.get(mesh).indices);
@@ -216,7 +216,7 @@ test('on two threads', async () => {
   await isWell(large, 2);
 });
 
-/** In a worker, where no module is loaded yet: none of these loads one. */
+/** In a worker that has loaded no module: none of the hostile values loads one. */
 test('sources of the modules', async () => {
   const worker = new Worker(new URL('hostile-sources.mjs', import.meta.url), {
     workerData: { runs: 0.1 * CASES, seed, patience: PATIENCE },
@@ -226,7 +226,7 @@ test('sources of the modules', async () => {
   await worker.terminate();
 });
 
-/** Arrays of more than there is memory for are refused before they are copied. */
+/** Arrays that are larger than the memory are refused before they are copied. */
 test('huge arrays', async () => {
   const words = new Uint32Array(3 * 2 ** 28);
   const numbers = new Float32Array(2 ** 30);

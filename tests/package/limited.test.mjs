@@ -1,4 +1,4 @@
-// Modules that have little memory, in Node: where it runs out, calls are refused, and nothing is lost.
+// Tests modules with little memory in Node: if memory runs out, calls are refused, and no memory is lost.
 
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
@@ -6,11 +6,13 @@ import { test } from 'node:test';
 import { FlipSession, init, makeDelaunay } from 'edgeflip';
 import { generate, readMesh, weld, writeMesh } from 'edgeflip/files';
 
-/** The bytes of a module whose memory has so many pages of 64 KiB at most: its section 5, as the core specification has it. */
+/**
+ * The bytes of a module with at most `pages` pages of memory, of 64 KiB each. Changes section 5 of the binary format.
+ */
 function limited(name, pages) {
   const bytes = readFileSync(new URL(`../../dist/wasm/${name}_bg.wasm`, import.meta.url));
   const parts = [bytes.subarray(0, 8)];
-  /** A number of 7 bits a byte, and where the next one begins. */
+  /** Reads a number with 7 bits per byte (LEB128). Returns it and the offset after it. */
   const number = (at) => {
     for (let value = 0, shift = 0; ; shift += 7) {
       const byte = bytes[at++];
@@ -36,7 +38,7 @@ const options = { backend: 'cpu' };
 const expected = await makeDelaunay(mesh, options);
 const isRefused = { name: 'EdgeflipError', code: 'too-large', message: /bytes of memory are needed/ };
 
-test('sessions that fill the memory lose nothing, however often', async () => {
+test('sessions that fill the memory again and again lose no memory', async () => {
   const counts = [];
   for (let round = 0; round < 4; round++) {
     const held = [];
@@ -70,21 +72,21 @@ test('sessions that fill the memory lose nothing, however often', async () => {
     held[0].free();
     assert.deepEqual((await makeDelaunay(mesh, options)).indices, expected.indices);
   }
-  // Where calls have left room elsewhere, one more may fit.
+  // If calls have left free blocks elsewhere, one more session may fit.
   assert.ok(
     counts.every((count) => count >= counts[0]),
     `${counts}`,
   );
 });
 
-test('positions that are too many leave the session as it was', async () => {
+test('too many positions leave the session unchanged', async () => {
   const session = await FlipSession.create(mesh, options);
   await assert.rejects(session.setPositions(new Float32Array(3e6)), isRefused);
   assert.deepEqual((await session.run()).indices, expected.indices);
   session.free();
 });
 
-test('a file that is too large leaves room for others', async () => {
+test('after a file that is too large, others can be read', async () => {
   const [small, large] = [
     await writeMesh(await generate('grid 100'), 'a.obj'),
     await writeMesh(await generate('grid 500'), 'a.obj'),
@@ -96,14 +98,14 @@ test('a file that is too large leaves room for others', async () => {
   }
 });
 
-test('indices that are too many leave what was joined as it was', async () => {
+test('too many indices leave the welded mesh unchanged', async () => {
   const welded = await weld(mesh);
   assert.throws(() => welded.split(new Uint32Array(2e7)), isRefused);
   assert.equal(welded.split(welded.indices).length, mesh.indices.length);
   welded.free();
 });
 
-test('an error is of memory only where memory is meant', async () => {
+test('only errors about memory have the code of memory', async () => {
   await assert.rejects(generate('out of memory'), { code: 'invalid-option' });
   await assert.rejects(readMesh(new Uint8Array(4), 'out of memory.xyz'), { code: 'unknown-format' });
 });

@@ -1,8 +1,8 @@
-// Locks and limits hold on the engines of a browser when the vertices move.
+// Checks that locks and limits hold on the engines of a browser after the vertices move.
 
 import assert from 'node:assert/strict';
 
-/** Runs in the page: what a session on the engine says after each step, the vertices moving in between. */
+/** Runs in the page: returns the answers of a session after each step. The vertices move between steps. */
 async function runAndMove({ backend, name, isWide }) {
   const { FlipSession } = await import('/dist/index.js');
   const { generate } = await import('/dist/files.js');
@@ -22,7 +22,7 @@ async function runAndMove({ backend, name, isWide }) {
   return said;
 }
 
-/** Compares an engine with the CPU, and that with the audit. */
+/** Compares an engine with the CPU, and the CPU with the audit. */
 export async function holdLocks(page, { title, backend }) {
   for (const mesh of [{ name: 'random 12' }, { name: 'uvsphere 10' }, { name: 'uvsphere 10', isWide: true }]) {
     const expected = await page.evaluate(runAndMove, { backend: 'cpu', ...mesh });

@@ -1,6 +1,6 @@
-// 'auto' begins on the CPU, takes the GPU once that is ready, and goes on with the CPU when the device is destroyed in the middle of
-// a run with locked edges; a lost context of WebGL2 is one error. The software GPU of the browser passes for a real one here. Takes
-// the dist/ that is there.
+// 'auto' starts on the CPU, moves to the GPU when it is ready, and continues on the CPU after the device is destroyed
+// during a run with locked edges. A lost WebGL2 context is an error of one session. The browser's software GPU pretends
+// to be a hardware GPU here. Uses the existing dist/.
 
 import assert from 'node:assert/strict';
 import { after, test } from 'node:test';
@@ -24,12 +24,12 @@ async function openPage() {
   return page;
 }
 
-/** Runs in the page: what the run gives after every iteration, and what of that the CPU does not. */
+/** Runs in the page: returns every iteration of the run, and the differences from the CPU. */
 async function runAndLose() {
   const { FlipSession, makeDelaunay } = await import('/dist/index.js');
   const { generate } = await import('/dist/files.js');
   const mesh = await generate('random 200');
-  // An edge of every seventh triangle.
+  // Locks an edge of every seventh triangle.
   const options = { maxIterations: 4, lockedEdges: mesh.indices.filter((_, i) => i % 21 < 2) };
   const first = await makeDelaunay(mesh, options);
   let second = first;
@@ -55,12 +55,12 @@ async function runAndLose() {
   }
   const { fallback, status, remaining } = await session.result();
   const counted = (await cpu.result()).remaining;
-  // The next one begins while another device is made ready.
+  // The next session starts while a new device is prepared.
   const { backend: again } = await makeDelaunay(mesh, options);
   return { begun, isSame, engines, fallback, status, remaining, counted, again };
 }
 
-test('auto waits for no GPU, takes it once it is ready, and a lost one changes no result', async () => {
+test('auto does not wait for the GPU, moves to it when it is ready, and a lost GPU changes no result', async () => {
   const page = await openPage();
   const { begun, isSame, engines, fallback, status, remaining, counted, again } = await page.evaluate(runAndLose);
   assert.deepEqual(begun, [
@@ -74,7 +74,7 @@ test('auto waits for no GPU, takes it once it is ready, and a lost one changes n
   assert.ok(remaining.locked > 0);
 });
 
-/** Runs in the page: a run that goes on while the GPU becomes ready. */
+/** Runs in the page: a run that continues while the GPU is prepared. */
 async function runAndChange() {
   const { FlipSession, makeDelaunay } = await import('/dist/index.js');
   const { generate } = await import('/dist/files.js');
@@ -100,7 +100,7 @@ async function runAndChange() {
   };
 }
 
-test('a run that has begun on the CPU goes on with the GPU that has become ready', async () => {
+test('a run that starts on the CPU continues on the GPU when it is ready', async () => {
   const found = await (await openPage()).evaluate(runAndChange);
   const fallback = 'the cpu began, until the gpu was ready';
   assert.deepEqual(found, { begun: 'cpu', backend: 'webgpu', fallback, first: 1, isSorted: true, isSame: true });
@@ -120,7 +120,7 @@ async function loseContext() {
   await session.step();
   context.getExtension('WEBGL_lose_context').loseContext();
   const error = await session.step().catch(({ code, message }) => ({ code, message }));
-  // The next session gets another one.
+  // The next session gets a new context.
   const { indices } = await makeDelaunay(mesh, { backend: 'webgl2' });
   const cpu = await makeDelaunay(mesh, { backend: 'cpu' });
   return { error, isSame: cpu.indices.every((vertex, i) => vertex === indices[i]) };

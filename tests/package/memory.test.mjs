@@ -1,17 +1,17 @@
-// Memory of the package in Node: sessions that nobody frees are collected, and where there is none left, that is said.
+// Tests the memory of the package in Node: unreachable sessions are collected, and an error says that memory ran out.
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { FlipSession, makeDelaunay } from 'edgeflip';
 import { generate, readMesh, writeMesh } from 'edgeflip/files';
 
-/** Less than 260 of it fill the 4 GiB that WebAssembly has. */
+/** Fewer than 260 sessions of this mesh fill the 4 GiB of WebAssembly. */
 const mesh = await generate('grid 600');
 
 for (const threads of [1, 2]) {
   const options = { backend: 'cpu', threads };
 
-  test(`sessions that nobody frees are collected on ${threads} threads`, async () => {
+  test(`unreachable sessions are collected on ${threads} threads`, async () => {
     const isDone = [];
     for (let i = 0; i < 130; i++) {
       const session = await FlipSession.create(mesh, options);
@@ -20,7 +20,7 @@ for (const threads of [1, 2]) {
     assert.deepEqual(isDone, ['done', 'done', 'done', 'done']);
   });
 
-  test(`sessions that are held fill the memory on ${threads} threads, and are of use after that`, async () => {
+  test(`reachable sessions fill the memory on ${threads} threads, and still work`, async () => {
     const held = [];
     await assert.rejects(
       async () => {
@@ -43,12 +43,12 @@ for (const threads of [1, 2]) {
   });
 }
 
-test('a generated mesh that does not fit is refused, and the next one is made', async () => {
+test('a generated mesh that does not fit is refused, and the next mesh is generated', async () => {
   await assert.rejects(generate('random 9000'), { code: 'too-large', message: /bytes of memory are needed/ });
   assert.equal((await generate('grid 3')).indices.length, 24);
 });
 
-test('a file is not written with vertices that are elsewhere now', async () => {
+test('`writeMesh` with `original` refuses other positions', async () => {
   for (const name of ['a.obj', 'a.ply', 'a.glb']) {
     const written = await generate('uvsphere 4');
     const original = { bytes: await writeMesh(written, name), name };

@@ -1,4 +1,4 @@
-// The npm package in Node, where there is no WebGPU: the CPU engine, errors, abort.
+// Tests the npm package in Node, which has no WebGPU: the CPU engine, errors, abort.
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
@@ -34,7 +34,7 @@ const refused = (code, pattern) => (error) => {
   return true;
 };
 
-test('auto says of each engine why it is not there', async () => {
+test('auto says why it uses neither WebGPU nor WebGL2', async () => {
   const { backend, fallback } = await makeDelaunay(await generate('random 200'));
   assert.equal(backend, 'cpu');
   assert.match(
@@ -74,14 +74,14 @@ test('strips flip as in the paper, whole and step by step', async () => {
   assert.deepEqual(watched.indices, whole.indices);
 });
 
-test('16-bit indices and doubles that are floats give the same', async () => {
+test('16-bit indices, and doubles that are 32-bit floats, give the same result', async () => {
   const mesh = strips(12);
   const narrow = { ...mesh, positions: Float64Array.from(mesh.positions), indices: Uint16Array.from(mesh.indices) };
   assert.deepEqual((await makeDelaunay(narrow)).indices, (await makeDelaunay(mesh)).indices);
 });
 
-test('doubles are taken as they are', async () => {
-  // The diamond in metres of Web Mercator, a micrometre wide: in 32 bits all of it is one point.
+test('doubles are not rounded', async () => {
+  // The diamond in metres of Web Mercator, a micrometre wide: as 32-bit floats, all its vertices are one point.
   const mesh = diamond();
   const positions = Float64Array.from(mesh.positions, (x) => 12e6 + x * 1e-6);
   const [doubles, rounded] = [positions, Float32Array.from(positions)].map((positions) => ({ ...mesh, positions }));
@@ -100,8 +100,8 @@ test('doubles are taken as they are', async () => {
   session.free();
 });
 
-test('a surface keeps its sharp edges and says so', async () => {
-  // Two triangles at a right angle, each very flat at the edge that they share.
+test('a surface keeps its creases and counts them', async () => {
+  // Two triangles at a right angle. Both have very small angles at their common edge.
   const mesh = {
     positions: new Float32Array([0, 0, 0, 4, 0, 0, 2, 0.5, 0, 2, 0, 0.5]),
     indices: new Uint32Array([0, 1, 2, 1, 0, 3]),
@@ -136,7 +136,7 @@ test('locked triangles and the borders of groups stay', async () => {
   assert.equal((await makeDelaunay(mesh, { lockedTriangles: [], groups: numbers.map(() => 3) })).flips, 9);
 });
 
-test('triangles are turned first, if that is asked for', async () => {
+test('`reorient` reverses triangles before the run', async () => {
   const mesh = strips(8);
   const indices = mesh.indices.map((_, i, all) => all[i % 6 < 3 ? i : i - (i % 3) + ((3 - (i % 3)) % 3)]);
   const turned = { ...mesh, positions: Float32Array.from(mesh.positions), indices };
@@ -229,7 +229,7 @@ test('maxIterations and Lawson’s order', async () => {
   assert.deepEqual([any.status, any.remaining, any.flips], ['done', {}, 9]);
 });
 
-test('a session is iterated, asked for edges and audited', async () => {
+test('a session iterates, returns its edges and audits them', async () => {
   const session = await FlipSession.create(strips(8));
   const flips = [];
   for await (const iteration of session) flips.push(iteration.flips);
@@ -247,7 +247,8 @@ test('a session is iterated, asked for edges and audited', async () => {
 });
 
 test('an audit names the edges that remain', async () => {
-  // A roof, cut along its ridge 0-1: each side is very flat at it. Beside it a thin diamond, cut along 4-6.
+  // A roof with the ridge 0-1, at which its two sides have very small angles. Next to it a thin diamond, split along
+  // 4-6.
   const mesh = {
     positions: Float32Array.of(0, 0, 0, 4, 0, 0, 2, 0.5, 0, 2, 0, 0.5, 7, 0, 0, 10, -1, 0, 13, 0, 0, 10, 1, 0),
     indices: Uint32Array.of(0, 1, 2, 1, 0, 3, 4, 5, 6, 4, 6, 7),
@@ -273,7 +274,7 @@ test('an audit names the edges that remain', async () => {
   capped.free();
 });
 
-test('the states of the edges foretell every step', async () => {
+test('the states of the edges predict every step', async () => {
   const session = await FlipSession.create(strips(8));
   const counts = [];
   for (;;) {
@@ -290,11 +291,11 @@ test('the states of the edges foretell every step', async () => {
   session.free();
 });
 
-test('vertices move, and the session goes on as a new one', async () => {
+test('after the vertices move, the session continues like a new session', async () => {
   const mesh = strips(12);
   const session = await FlipSession.create(mesh);
   await session.step();
-  // Upright instead of lying: other edges are not Delaunay now.
+  // Stretched in the other direction, so that other edges are not Delaunay.
   const positions = mesh.positions.map((x, i) => (i % 2 ? 16 * x : x));
   const indices = await session.triangles();
   const moving = session.setPositions(positions);
@@ -320,7 +321,7 @@ test('vertices move, and the session goes on as a new one', async () => {
   await assert.rejects(session.setPositions(mesh.positions), refused('freed', /freed/));
 });
 
-test('what is passed is the caller’s again when the call has returned', async () => {
+test('the caller may change the arguments after a call has returned', async () => {
   const large = await generate('grid 190');
   for (const [given, threads] of [
     [strips(12), 1],
@@ -342,7 +343,7 @@ test('what is passed is the caller’s again when the call has returned', async 
   }
 });
 
-test('a session that is refused leaves the others alone', async () => {
+test('a refused session does not affect others', async () => {
   const session = await FlipSession.create(strips(12));
   const throwing = {
     get lockedEdges() {
@@ -359,7 +360,7 @@ test('a session that is refused leaves the others alone', async () => {
   session.free();
 });
 
-test('a freed session refuses calls, also those that were waiting', async () => {
+test('a freed session refuses calls, including waiting calls', async () => {
   const session = await FlipSession.create(strips(40));
   const running = session.run();
   session.free();
@@ -368,7 +369,7 @@ test('a freed session refuses calls, also those that were waiting', async () => 
   await assert.rejects(session.triangles(), refused('freed', /freed/));
 });
 
-test('what a callback throws goes through unchanged', async () => {
+test('an exception of a callback passes through unchanged', async () => {
   const mine = new Error('mine');
   await assert.rejects(
     makeDelaunay(strips(8), {

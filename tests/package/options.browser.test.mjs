@@ -1,5 +1,6 @@
-// Each option of src/js/types.ts has its effect on the WebGL2 engine, whose module reads the options that the module of the
-// engines passes on: the same as on the CPU. The modules come from a folder that `init` names. In Chromium; takes the dist/ that is there.
+// Each option of src/js/types.ts has the same effect on the WebGL2 engine as on the CPU. The module of the WebGL2
+// engine gets the options from the module of the engines. `init` names the folder of the modules. Runs in Chromium;
+// uses the existing dist/.
 
 import assert from 'node:assert/strict';
 import { after, test } from 'node:test';
@@ -8,7 +9,7 @@ import { closeAll, serve, startChromium } from '../browsers.mjs';
 
 after(closeAll);
 
-/** Runs in the page: what each case gives, or what it throws. */
+/** Runs in the page: returns the result of each case, or its exception. */
 async function askAll(backend) {
   const { FlipSession, init, makeDelaunay } = await import('/dist/index.js');
   await init({ base: '../dist/wasm' });
@@ -26,7 +27,7 @@ async function askAll(backend) {
   return given;
 }
 
-test('every option has its effect on WebGL2', async () => {
+test('every option takes effect on WebGL2', async () => {
   const page = await (await startChromium()).newPage();
   await page.goto(`${await serve(fileURLToPath(new URL('../..', import.meta.url)))}tests/engines.html`);
   const [webgl2, cpu] = [await page.evaluate(askAll, 'webgl2'), await page.evaluate(askAll, 'cpu')];

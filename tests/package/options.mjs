@@ -1,6 +1,6 @@
-// What each option does, for any engine: `options.test.mjs` asks the module of the engines and that of the threads, and
-// `options.browser.test.mjs` asks that of the WebGL2 engine. Each case throws where a value that is not the default has no
-// effect, or no error.
+// A test case for each option, for any engine. `options.test.mjs` runs them on the module of the engines and on that of
+// the threads, `options.browser.test.mjs` on that of the WebGL2 engine. A case throws if a value other than the default
+// has no effect, or if a wrong value gives no error.
 
 /** @typedef {{ makeDelaunay: Function, FlipSession: any, mesh: object, base: object, plain: object }} Given */
 
@@ -8,7 +8,7 @@ function check(condition, what) {
   if (!condition) throw new Error(what);
 }
 
-/** A value that the library refuses, by the name of the option. */
+/** Checks that the library refuses a value with an error that names the option. */
 async function isRefused({ makeDelaunay, mesh, base }, name, value) {
   const { code, message } = await makeDelaunay(mesh, { ...base, [name]: value }).catch((error) => error);
   check(
@@ -17,7 +17,7 @@ async function isRefused({ makeDelaunay, mesh, base }, name, value) {
   );
 }
 
-/** A threshold leaves other edges than the default does, and the audit knows it. */
+/** Checks that a threshold leaves other edges than the default, and that the audit uses it too. */
 async function isThreshold({ FlipSession, mesh, base, plain }, name, value) {
   const session = await FlipSession.create(mesh, { ...base, [name]: value });
   const { flips, remaining } = await session.run();
@@ -31,7 +31,7 @@ async function isThreshold({ FlipSession, mesh, base, plain }, name, value) {
   return { flips, remaining };
 }
 
-/** All edges are locked. */
+/** Checks that all edges are locked. */
 async function locksAll({ makeDelaunay, mesh, base }, options) {
   const { flips, remaining } = await makeDelaunay(mesh, { ...base, ...options });
   check(flips === 0 && remaining.locked > 0, `${Object.keys(options)} does not lock`);
@@ -41,7 +41,7 @@ async function locksAll({ makeDelaunay, mesh, base }, options) {
 const corners = ({ indices }) => Array.from({ length: indices.length / 3 }, (_, t) => t);
 
 /**
- * By option; what a case returns is the same on all engines.
+ * The cases by option. A case returns the same on all engines.
  *
  * @type {Record<string, (given: Given) => Promise<unknown>>}
  */
@@ -92,6 +92,6 @@ export const cases = {
   },
   // `options.test.mjs` counts the workers.
   threads: (given) => isRefused(given, 'threads', 257),
-  // Only a browser has one, and only WebGPU takes it: `loss.test.mjs`.
+  // Only a browser has a GPUDevice, and only WebGPU uses it: `loss.test.mjs` tests it.
   device: (given) => isRefused(given, 'device', {}),
 };

@@ -1,5 +1,5 @@
-// Each option of src/js/types.ts crosses into every module: that of the engines, and that of the threads. An option that is
-// not known is refused.
+// Each option of src/js/types.ts takes effect in the module of the engines and in the module of the threads. Unknown
+// options are refused.
 
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
@@ -32,13 +32,13 @@ test('every option has a case', () => {
   assert.deepEqual(Object.keys(cases).sort(), fieldsOf('Options').sort());
 });
 
-// Fewer triangles than the second has are for one thread.
+// The second mesh is large enough for several threads, the first is not.
 const modules = [
   { name: 'the module of the engines', mesh: await generate('uvsphere 24'), threads: 1 },
   { name: 'the module of the threads', mesh: await generate('uvsphere 190'), threads: 2 },
 ];
 for (const { name, mesh, threads } of modules) {
-  test(`every option has its effect in ${name}`, async (t) => {
+  test(`every option takes effect in ${name}`, async (t) => {
     const base = { backend: 'cpu', threads };
     const plain = await makeDelaunay(mesh, base);
     assert.equal(started, threads === 1 ? 0 : 2);
@@ -96,7 +96,7 @@ test('an option that is undefined keeps its default', async () => {
   assert.deepEqual(result, expected);
 });
 
-test('options may be inherited, and a list is none', async () => {
+test('options may be inherited, and a list is refused', async () => {
   const [{ mesh }] = modules;
   const { iterations } = await makeDelaunay(mesh, Object.create({ maxIterations: 2, backend: 'cpu' }));
   assert.equal(iterations, 2);

@@ -1,4 +1,4 @@
-// The npm package in Node with the CPU engine on several threads: workers that share their memory.
+// Tests the CPU engine of the npm package in Node on several threads: workers that share their memory.
 
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
@@ -9,7 +9,7 @@ import workers from 'node:worker_threads';
 import { FlipSession, init, makeDelaunay } from 'edgeflip';
 import { generate } from 'edgeflip/files';
 
-/** Workers that have been started, since a session on one thread would give the same. */
+/** The started workers. Without them a test would not notice that a session runs on one thread. */
 const started = [];
 workers.Worker = class extends workers.Worker {
   constructor(...args) {
@@ -20,7 +20,7 @@ workers.Worker = class extends workers.Worker {
 
 const meshes = await Promise.all(['random 190', 'shear 190', 'uvsphere 190'].map(generate));
 
-test('the module of the threads comes from bytes too', async () => {
+test('the module of the threads can be loaded from bytes', async () => {
   await init({ threads: readFileSync(new URL('../../dist/wasm/edgeflip_threads_bg.wasm', import.meta.url)) });
 });
 
@@ -39,7 +39,7 @@ test('the result is the same for any number of threads, in both orders', async (
   assert.equal(started.length, 2 + 3);
 });
 
-test('doubles, locked edges, a cap and moved vertices are as on one thread', async () => {
+test('doubles, locked edges, a limit of iterations and moved vertices give the same as on one thread', async () => {
   const [{ positions, indices, dimension }] = meshes;
   const mesh = { positions: Float64Array.from(positions, (x) => x + 1e-9), indices, dimension };
   const moved = mesh.positions.map((x) => 3 * x);
@@ -68,7 +68,7 @@ test('doubles, locked edges, a cap and moved vertices are as on one thread', asy
     await assert.rejects(session.step(), { code: 'freed' });
   }
   assert.deepEqual(ends[1], ends[0]);
-  // Several threads skip some of the steps, and each step is as on one.
+  // Several threads report only some of the steps. Each reported step is the same as on one thread.
   const [each, some] = progresses;
   assert.deepEqual(
     some,
@@ -77,14 +77,14 @@ test('doubles, locked edges, a cap and moved vertices are as on one thread', asy
   assert.equal(ends[0].seen.length, 4);
 });
 
-test('auto says why it takes the CPU, on several threads too', async () => {
+test('auto says why it chose the CPU, also on several threads', async () => {
   const { timings, ...one } = await makeDelaunay(meshes[0], { threads: 1 });
   const { timings: _, ...two } = await makeDelaunay(meshes[0], { threads: 2 });
   assert.deepEqual(two, one);
   assert.match(one.fallback, /^backend webgpu is not available: .*; webgl2 is left out: it takes longer than the cpu$/);
 });
 
-test('what is wrong is refused as on one thread', async () => {
+test('errors are the same as on one thread', async () => {
   const [mesh] = meshes;
   const indices = mesh.indices.slice();
   indices[5] = 1e6;
@@ -115,7 +115,7 @@ test('what is wrong is refused as on one thread', async () => {
   }
 });
 
-test('sessions share threads, and a small mesh has none', async () => {
+test('sessions share threads, and a small mesh uses none', async () => {
   const before = started.length;
   const results = await Promise.all(meshes.map((mesh) => makeDelaunay(mesh, { backend: 'cpu', threads: 2 })));
   for (const [i, { indices }] of results.entries()) {
@@ -125,7 +125,7 @@ test('sessions share threads, and a small mesh has none', async () => {
   assert.equal(started.length, before);
 });
 
-test('when a thread ends, so does its session, and others begin anew', async () => {
+test('a thread that crashes ends its session, and new sessions work', async () => {
   const options = { backend: 'cpu', threads: 4 };
   const session = await FlipSession.create(meshes[0], options);
   const asked = session.run();
@@ -136,7 +136,7 @@ test('when a thread ends, so does its session, and others begin anew', async () 
   assert.equal((await makeDelaunay(meshes[0], options)).status, 'done');
 });
 
-test('a mesh that does not fit into the memory is refused, and other sessions go on', async () => {
+test('a mesh that does not fit into the memory is refused, and other sessions continue', async () => {
   const options = { backend: 'cpu', threads: 2 };
   const other = await FlipSession.create(meshes[0], options);
   const before = started.length;
@@ -154,7 +154,7 @@ test('a mesh that does not fit into the memory is refused, and other sessions go
   assert.equal(started.length, before);
 });
 
-test('the threads let the process end', () => {
+test('the threads do not keep the process alive', () => {
   const program = `
     import { makeDelaunay } from 'edgeflip';
     import { generate } from 'edgeflip/files';

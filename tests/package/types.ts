@@ -1,4 +1,4 @@
-// Compiled, never run: what a strict TypeScript program sees of the package.
+// Compiled, never run: uses the types of the package in strict TypeScript.
 
 import {
   EDGE_STATES,
@@ -96,9 +96,9 @@ void init('https://example.org/edgeflip.wasm');
 void initFiles({ core: 'https://example.org/edgeflip.wasm' });
 // @ts-expect-error: there is no such option
 void makeDelaunay({ positions: new Float32Array(), indices: new Uint16Array(), dimension: 2 }, { maxNormalAngel: 10 });
-// @ts-expect-error: text is no bytes
+// @ts-expect-error: a string is not bytes
 void readMesh('OFF', 'a.off');
-// @ts-expect-error: a plain array is no typed array
+// @ts-expect-error: an array is not a typed array
 void makeDelaunay({ positions: [0, 0], indices: new Uint16Array(), dimension: 2 });
-// @ts-expect-error: plain numbers have no bits to compare
+// @ts-expect-error: attributes are typed arrays, whose bits are compared
 void makeDelaunay({ positions: new Float32Array(), indices: new Uint16Array(), dimension: 2 }, { weld: [[0.5, 1]] });

@@ -1,5 +1,6 @@
-// A run on WebGPU in Chromium waits once, and its arrays are copied through memory that is kept, with the bits of the CPU; also
-// where sessions run at the same time, and where the caller changes its arrays at once. Takes the dist/ that is there.
+// A run on WebGPU in Chromium waits once, copies its arrays through buffers that are reused, and has the bits of the
+// CPU. So do sessions that run at the same time, and runs whose caller changes its arrays at once. Uses the existing
+// dist/.
 
 import assert from 'node:assert/strict';
 import { after, test } from 'node:test';
@@ -10,7 +11,7 @@ const repository = fileURLToPath(new URL('../..', import.meta.url));
 
 after(closeAll);
 
-/** Runs in the page: what each run asked the browser for, and which runs went wrong. */
+/** Runs in the page: counts the calls of WebGPU in each run, and collects wrong results. */
 async function runs() {
   const { FlipSession, makeDelaunay } = await import('/dist/index.js');
   const { generate } = await import('/dist/files.js');
@@ -25,7 +26,7 @@ async function runs() {
   };
   count(GPUBuffer.prototype, 'mapAsync', (mode) => (mode === GPUMapMode.READ ? 'waits' : 'kept'));
   count(GPUQueue.prototype, 'submit', () => 'submissions');
-  // Parameters, and the state of a run.
+  // The parameters and the state of a run are smaller.
   const FEW = 8192;
   count(GPUQueue.prototype, 'writeBuffer', (buffer, place, data, first, size = data.byteLength) =>
     size > FEW ? 'arrays' : undefined,
@@ -57,7 +58,7 @@ async function runs() {
   );
   together.forEach((result, i) => check(`together ${i}`, [mesh, surface][i % 2], result));
 
-  // One that goes on after its end, and after a move.
+  // A session that continues after its end, and after its vertices move.
   const session = await FlipSession.create(mesh, { backend: 'webgpu' });
   const cpu = await FlipSession.create(mesh, { backend: 'cpu' });
   for (let turn = 0; turn < 3; turn++) {
@@ -74,12 +75,12 @@ async function runs() {
   return { told, wrong };
 }
 
-test('a run waits once, and copies through memory that is kept', async () => {
+test('a run waits once, and copies through buffers that are reused', async () => {
   const browser = await startChromium();
   const { page } = await openPage(browser, `${await serve(repository)}tests/engines.html`);
   const { told, wrong } = await page.evaluate(runs);
   console.log(JSON.stringify(told));
   assert.deepEqual(wrong, []);
-  // The first run makes the device, and the first of each size memory for the next.
+  // The first run opens the device. The first run of each size creates the buffers for the next.
   for (const run of [2, 4, 5]) assert.deepEqual(told[run], { waits: 1, kept: 1, submissions: 3 }, `run ${run}`);
 });

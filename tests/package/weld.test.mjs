@@ -1,5 +1,5 @@
-// Vertices at one place are joined for a run and split again: the option, the function, and a GLB file without indices.
-// Takes the dist/ that is there.
+// Vertices at the same position are joined for a run and split again: by the option, by the function, and in a GLB file
+// without indices. Uses the existing dist/.
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
@@ -7,7 +7,7 @@ import { EdgeflipError, FlipSession, makeDelaunay } from 'edgeflip';
 import { generate, readMesh, weld, writeMesh } from 'edgeflip/files';
 import { faults, riggedGlb } from './gltf.mjs';
 
-/** The mesh with a vertex for each corner. */
+/** The mesh with a separate vertex for each corner. */
 function soup({ positions, indices, dimension }) {
   const point = (vertex) => [...positions.subarray(dimension * vertex, dimension * (vertex + 1))];
   return {
@@ -24,7 +24,7 @@ const refused = (code, pattern) => (error) => {
   return true;
 };
 
-test('triangles without common vertices flip as those that have some', async () => {
+test('triangles without common vertices flip like triangles with common vertices', async () => {
   for (const name of ['random 9', 'uvsphere 9']) {
     const mesh = await generate(name);
     const apart = soup(mesh);
@@ -39,7 +39,7 @@ test('triangles without common vertices flip as those that have some', async () 
       [found.joinedVertices, found.seamEdges],
       [apart.indices.length - mesh.positions.length / mesh.dimension, 0],
     );
-    // A corner is a vertex of its own: which one of the mesh it was is known.
+    // Each corner is a separate vertex, so it leads to the vertex of the mesh.
     assert.deepEqual(
       found.indices.map((vertex) => mesh.indices[vertex]),
       indices,
@@ -50,8 +50,8 @@ test('triangles without common vertices flip as those that have some', async () 
   }
 });
 
-test('attributes make seams, which come out as they were', async () => {
-  // A square, cut the wrong way; its triangles have 0 and 2 in common.
+test('attributes make seams, and seams stay', async () => {
+  // A square that is split along the wrong diagonal, 0-2.
   const mesh = {
     positions: Float32Array.of(0, 0, 0.9, 0.2, 1, 1, -0, 0, 1, 1, 0, 1),
     indices: Uint16Array.of(0, 1, 2, 3, 4, 5),
@@ -67,9 +67,9 @@ test('attributes make seams, which come out as they were', async () => {
   assert.equal(await flips({ weld: [alike], lockedTriangles: [1] }), 0);
   const { seamEdges, remaining, indices } = await makeDelaunay(mesh, { weld: [alike, other] });
   assert.deepEqual([seamEdges, remaining, [...indices]], [1, { locked: 1 }, [...mesh.indices]]);
-  // -0 is 0 as a place, but not as an attribute.
+  // -0 equals 0 in a position, but not in an attribute.
   assert.equal(await flips({ weld: [Float64Array.of(0, 0, 0, -0, 0, 0)] }), 0);
-  // The second triangle turned round.
+  // The second triangle is reversed.
   const turned = { ...mesh, indices: Uint16Array.of(0, 1, 2, 3, 5, 4) };
   const both = await makeDelaunay(turned, { weld: [alike], reorient: true });
   assert.deepEqual([both.flips, both.turnedTriangles], [1, 1]);

@@ -1,4 +1,4 @@
-// The demo page draws from the buffer that the flips write: seen at WebGPU's own calls, in Chromium.
+// The demo page draws from the buffer that the flips write. The test records the calls of WebGPU in Chromium.
 
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
@@ -9,7 +9,7 @@ let browser;
 before(async () => (browser = await startChromium()));
 after(tidyUp);
 
-/** In the page: writes down what happens to its buffers. Each object has a number of its own: same number, same object. */
+/** Runs in the page: records the calls on its buffers. Each object has its own number. */
 function watchBuffers() {
   const numbers = new Map();
   const idOf = (object) => {
@@ -19,7 +19,7 @@ function watchBuffers() {
   const seen = { events: [], buffers: {}, devices: new Set() };
   window.seen = () => ({ ...seen, devices: seen.devices.size });
   const note = (what, more) => seen.events.push({ what, state: document.body.dataset.state, ...more });
-  /** Calls `look` with what comes out of a method, its object and its arguments. */
+  /** Calls `look` with the result of a method, its object and its arguments. */
   const watch = ({ prototype }, method, look) => {
     const original = prototype[method];
     prototype[method] = function (...args) {
@@ -62,13 +62,13 @@ function watchBuffers() {
   watch(GPUQueue, 'writeBuffer', (_, __, [buffer, , data]) =>
     note('write', { buffer: idOf(buffer), size: data.byteLength }),
   );
-  // Memory that is kept from one read to the next may be larger than what is read.
+  // A reused buffer may be larger than the data that is read.
   watch(GPUBuffer, 'mapAsync', (_, buffer, [, first = 0, size = buffer.size - first]) =>
     note('map', { buffer: idOf(buffer), size }),
   );
 }
 
-/** Bytes of counters and the like. */
+/** The most bytes of small reads, such as counters. */
 const SMALL = 8192;
 
 test('while it plays on WebGPU, the page draws from the session’s own buffer, every iteration, and reads no triangle back', async (t) => {
@@ -94,7 +94,7 @@ test('while it plays on WebGPU, the page draws from the session’s own buffer, 
   assert.equal(devices, 1, 'devices with buffers');
   const playing = events.filter(({ state }) => state === 'playing');
 
-  // The session's: made once, by the module, before the page's own.
+  // The session's buffer: the module creates it once, before the page creates its own.
   const sessions = Object.entries(buffers).filter(([, { label, size }]) => label === 'triangles' && size === bytes);
   assert.equal(sessions.length, 1, 'buffers of that size with the label triangles');
   const [[key, triangles]] = sessions;
@@ -107,7 +107,7 @@ test('while it plays on WebGPU, the page draws from the session’s own buffer, 
   assert.deepEqual([...new Set(draws.map(({ buffer }) => buffer))], [id], 'buffers that are drawn');
   assert.deepEqual([...new Set([...draws, ...passes].map(({ device }) => device))], [triangles.device]);
 
-  // Each iteration ends where the page keeps what it has changed; a draw follows before the next one does.
+  // The page records the change of each iteration, and draws before it records the next.
   const kept = playing.flatMap(({ what, buffer }, at) =>
     what === 'create' && /^changes of/.test(buffers[buffer].label) ? [at] : [],
   );
@@ -140,7 +140,7 @@ test('while it plays on WebGPU, the page draws from the session’s own buffer, 
     `${draws.length} draws of ${rows.length} iterations, ${passes.length} compute passes, ${maps.length} reads of at most ${largest} bytes`,
   );
 
-  // The same watch sees a read-back where there is one: at rest, for the fingerprint.
+  // The recording also notices read-backs: there is one at rest, for the fingerprint.
   assert.ok(events.some(({ what, size, state }) => what === 'map' && state !== 'playing' && size >= bytes));
   await page.close();
 });

@@ -1,4 +1,4 @@
-// The demo page in Chromium when things do not go straight: cancelling, broken input, no GPU, a lost GPU, keys.
+// Tests the controls and the errors of the demo page in Chromium: cancelling, broken input, no GPU, a lost GPU, keys.
 
 import assert from 'node:assert/strict';
 import { writeFileSync } from 'node:fs';
@@ -21,14 +21,14 @@ function file(name, text) {
   return path;
 }
 
-/** Opens a file that is refused, and gives what the page says then. */
+/** Opens a file that is refused, and returns the texts of the page. */
 async function openRefused(page, path) {
   await (await page.page.$('#file')).setInputFiles(path);
   await page.until('a message', ({ error }) => error !== '');
   return page.rest();
 }
 
-/** Plays to the end on the engine that is chosen, and compares each iteration with Node. */
+/** Plays to the end on the chosen engine, and compares each iteration with Node. */
 async function playAndCompare(page, path) {
   const { rows, facts, fingerprints } = await expected(path);
   const end = await page.playToEnd();
@@ -45,7 +45,7 @@ async function playAndCompare(page, path) {
   }
 }
 
-test('opening can be cancelled: the mesh before it stays, and plays', async () => {
+test('opening can be cancelled: the previous mesh stays, and plays', async () => {
   const page = await openEdgeflip(browser);
   const opened = await page.open(small);
   await page.chooseEngine('cpu');
@@ -59,7 +59,7 @@ test('opening can be cancelled: the mesh before it stays, and plays', async () =
   await page.close();
 });
 
-test('a mesh chosen while another one is opened takes its place', async () => {
+test('a mesh that is chosen while another is being opened replaces it', async () => {
   const page = await openEdgeflip(browser);
   await page.choose('sample', 'random 500');
   await page.until('a mesh being opened', ({ state }) => state === 'busy');
@@ -69,7 +69,7 @@ test('a mesh chosen while another one is opened takes its place', async () => {
   await page.close();
 });
 
-test('a run on the CPU pauses where it is, and goes on', async () => {
+test('a run on the CPU pauses at its iteration, and continues', async () => {
   const page = await openEdgeflip(browser);
   const path = await meshFile('strips 80', 'long.off');
   const { fingerprints, facts } = await expected(path);
@@ -88,7 +88,7 @@ test('a run on the CPU pauses where it is, and goes on', async () => {
   await page.close();
 });
 
-test('a broken file is answered with its line, and the mesh before it stays', async () => {
+test('the error of a broken file names the line, and the previous mesh stays', async () => {
   const page = await openEdgeflip(browser);
   const opened = await page.open(small);
   for (const [name, text, message] of [
@@ -108,7 +108,7 @@ test('a broken file is answered with its line, and the mesh before it stays', as
   await page.close();
 });
 
-test('β that is no angle is refused, and one that is taken changes the result', async () => {
+test('a β that is not an angle is refused, and a valid β changes the result', async () => {
   const page = await openEdgeflip(browser);
   await page.open(await meshFile('uvsphere 28 0.1', 'sphere.off'));
   const setBeta = async (text) => {
@@ -133,7 +133,7 @@ test('β that is no angle is refused, and one that is taken changes the result',
   await page.close();
 });
 
-test('what is being typed as β stays while the page goes on, and is taken when it is entered', async () => {
+test('a β that is being typed stays while the page works, and takes effect when it is entered', async () => {
   const page = await openEdgeflip(browser);
   await page.open(await meshFile('uvsphere 28 0.1', 'sphere.off'));
   await page.choose('speed', '1000');
@@ -151,7 +151,7 @@ test('what is being typed as β stays while the page goes on, and is taken when 
   await page.close();
 });
 
-test('an engine that is chosen while a run is prepared is the one that it is prepared for', async () => {
+test('an engine that is chosen while a run is being prepared is the engine of the run', async () => {
   const page = await openEdgeflip(browser);
   await page.page.evaluate(() => {
     for (const backend of ['webgpu', 'cpu']) {
@@ -168,7 +168,7 @@ test('an engine that is chosen while a run is prepared is the one that it is pre
 test('without WebGPU the page says so, plays on the CPU and draws with WebGL2', async () => {
   const page = await openEdgeflip(browser, () => {
     delete Navigator.prototype.gpu;
-    // What kind of canvas there is.
+    // The kind of the canvas.
     const { getContext } = HTMLCanvasElement.prototype;
     HTMLCanvasElement.prototype.getContext = function (kind, ...more) {
       const context = getContext.call(this, kind, ...more);
@@ -197,7 +197,7 @@ test('without WebGPU the page says so, plays on the CPU and draws with WebGL2', 
   await page.close();
 });
 
-test('auto leaves a GPU alone that the processor plays, and says why', async () => {
+test('auto does not use a software GPU, and says why', async () => {
   const page = await openEdgeflip(browser);
   const seen = await page.open(small);
   assert.deepEqual([seen.backend, seen.facts.Engine], ['auto', 'CPU, in a worker']);
@@ -205,7 +205,7 @@ test('auto leaves a GPU alone that the processor plays, and says why', async () 
   await page.close();
 });
 
-test('a GPU that is lost in the middle of a run is replaced, and the result is the same', async () => {
+test('a GPU that is lost during a run is replaced, and the result is the same', async () => {
   const page = await openEdgeflip(browser, () => {
     const { requestDevice } = GPUAdapter.prototype;
     window.devices = [];
@@ -239,7 +239,7 @@ test('a GPU that is lost in the middle of a run is replaced, and the result is t
   await page.close();
 });
 
-/** In a worker, before its own code: keeps its WebGL2 contexts. */
+/** Runs in a worker before its own code: stores its WebGL2 contexts. */
 function watchContexts() {
   self.contexts = [];
   const { getContext } = OffscreenCanvas.prototype;
@@ -250,7 +250,7 @@ function watchContexts() {
   };
 }
 
-/** Workers that start from now on are watched. */
+/** Watches all workers that start later. */
 function watchWorkers({ page }) {
   return page.route('**/desk-*.js', async (route) => {
     const response = await route.fetch();
@@ -258,7 +258,7 @@ function watchWorkers({ page }) {
   });
 }
 
-/** Plays until a few iterations have been on WebGL2; then the context is lost. */
+/** Plays a few iterations on WebGL2; then loses the context. */
 async function loseContext(page) {
   await page.choose('speed', '50');
   await page.page.click('#play');
@@ -275,7 +275,7 @@ async function loseContext(page) {
   assert.equal(lost.filter(Boolean).length, 1, 'contexts that are lost');
 }
 
-test('a WebGL2 context that is lost in the middle of a run gives way to the CPU, and the result is the same', async () => {
+test('after a WebGL2 context is lost during a run, the CPU repeats the run, and the result is the same', async () => {
   const page = await openEdgeflip(browser);
   await watchWorkers(page);
   const path = await meshFile('strips 40', 'strips.off');
@@ -297,7 +297,7 @@ test('a WebGL2 context that is lost in the middle of a run gives way to the CPU,
   await page.close();
 });
 
-test('without WebGPU, auto takes the CPU and says why', async () => {
+test('without WebGPU, auto uses the CPU and says why', async () => {
   const page = await openEdgeflip(browser, () => delete Navigator.prototype.gpu);
   const path = await meshFile('random 110', 'random.off');
   const { facts, fingerprints, rows } = await expected(path);
@@ -315,7 +315,7 @@ test('without WebGPU, auto takes the CPU and says why', async () => {
 });
 
 for (const backend of ['webgpu', 'cpu']) {
-  test(`keys play, pause and step on ${backend}; keys that come fast break nothing`, async () => {
+  test(`keys play, pause and step on ${backend}, also in fast succession`, async () => {
     const page = await openEdgeflip(browser);
     const { fingerprints, rows } = await expected(small);
     await page.open(small);
@@ -359,7 +359,7 @@ for (const backend of ['webgpu', 'cpu']) {
     await page.close();
   });
 
-  test(`the slider that is moved while it plays on ${backend} stays where it was put`, async () => {
+  test(`a slider that is moved during play on ${backend} stays at its new position`, async () => {
     const page = await openEdgeflip(browser);
     const path = await meshFile('strips 40', 'strips.off');
     const { fingerprints, facts } = await expected(path);
@@ -373,7 +373,7 @@ for (const backend of ['webgpu', 'cpu']) {
       slider.value = '2';
       slider.dispatchEvent(new Event('input', { bubbles: true }));
     });
-    // An iteration was under way, and is kept: so it is waited for.
+    // Waits for the iteration that was running, because the page keeps it.
     const [seen] = [await page.rest(), await new Promise((done) => setTimeout(done, 1500))];
     const later = await page.rest();
     for (const { at, state, facts } of [seen, later]) {
@@ -385,7 +385,7 @@ for (const backend of ['webgpu', 'cpu']) {
   });
 }
 
-test('the page asks for nothing from elsewhere, and may not', async () => {
+test('the page makes no request to other servers, and its policy forbids them', async () => {
   const page = await openEdgeflip(browser);
   const refused = await page.page.evaluate(() => {
     const violation = new Promise((done) =>
@@ -395,7 +395,7 @@ test('the page asks for nothing from elsewhere, and may not', async () => {
     return violation;
   });
   assert.equal(refused, 'connect-src');
-  // That try, and nothing else, is on the console.
+  // The console has a message about this request only.
   const [tried, rest] = [
     page.problems.filter((problem) => /example\.com/.test(problem)),
     page.problems.filter((problem) => !/example\.com/.test(problem)),

@@ -1,4 +1,5 @@
-// The demo page in Chromium: mesh files opened, played, scrubbed and downloaded on every engine, bit for bit as in Node.
+// Tests the demo page in Chromium: opens, plays, scrubs and downloads mesh files on every engine, bit for bit as in
+// Node.
 
 import assert from 'node:assert/strict';
 import { truncateSync, writeFileSync } from 'node:fs';
@@ -56,7 +57,7 @@ for (const { how, name, spec, load } of sources) {
   }
 }
 
-test('a file that is read says how far it has come, and one that is too large is not read', async () => {
+test('the page shows the progress of reading a file, and does not read a file that is too large', async () => {
   const page = await openEdgeflip(browser);
   await page.page.evaluate(() => {
     window.seen = [];
@@ -89,7 +90,7 @@ test('a file that is read says how far it has come, and one that is too large is
   await page.close();
 });
 
-test('a glTF file with its buffer in another plays, and is downloaded with other indices and all else as it was', async () => {
+test('a glTF file with its buffer in another file plays, and its download differs only in the indices', async () => {
   const original = { bytes: riggedGlb().bytes, name: 'rigged.glb' };
   const mesh = await readMesh(original.bytes, original.name);
   const json = JSON.parse(Buffer.from(await writeMesh(mesh, 'rigged.gltf', { original })).toString());

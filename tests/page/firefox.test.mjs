@@ -1,4 +1,4 @@
-// The demo page in Firefox: a file played, scrubbed and drawn on every engine, bit for bit as in Node.
+// Tests the demo page in Firefox: plays, scrubs and draws a file on every engine, bit for bit as in Node.
 
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
@@ -9,7 +9,7 @@ let browser;
 before(async () => (browser = await startFirefox()));
 after(tidyUp);
 
-/** Firefox's software renderer takes long to compile WebGL2's programs for surfaces. */
+/** Firefox's software renderer takes long to compile the WebGL2 shaders for surfaces. */
 const plane = { spec: 'random 24', name: 'plane.off' };
 const surface = { spec: 'uvsphere 28 0.1', name: 'sphere.obj' };
 

@@ -1,4 +1,4 @@
-// The demo page in Chromium while its GPU compiles: it begins on the CPU, and goes over to WebGPU when it is at rest.
+// Tests the demo page in Chromium while its GPU compiles: a run starts on the CPU, and moves to WebGPU when it pauses.
 
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
@@ -16,8 +16,9 @@ after(tidyUp);
 const UNTIL_READY = 'CPU, until WebGPU is ready';
 
 /**
- * In the page: its GPU passes for a real one, and no kernel is compiled until `compile` is called, or ever after
- * `refuse`. `seen` has when what happened first, in milliseconds, and how often kernels were asked for.
+ * Runs in the page. Its GPU pretends to be a hardware GPU. No kernel is compiled before `compile` is called, and none
+ * after `refuse`. `seen` has the time of the first event of each kind, in milliseconds, and the number of requested
+ * kernels.
  */
 function holdKernels() {
   Object.defineProperty(GPUAdapterInfo.prototype, 'isFallbackAdapter', { get: () => false });
@@ -26,7 +27,7 @@ function holdKernels() {
   const first = (what) => (seen[what] ??= performance.now());
   const held = new Promise((resolve) => (window.compile = resolve));
   window.refuse = () => {
-    // As a validation error, which is what the package looks for.
+    // A validation error, because the package checks for it.
     const { createComputePipeline } = GPUDevice.prototype;
     GPUDevice.prototype.createComputePipeline = function ({ compute, ...more }) {
       return createComputePipeline.call(this, { ...more, compute: { ...compute, entryPoint: 'none' } });
@@ -76,7 +77,7 @@ const columns = ({ rows }) => rows.map((row) => row.slice(0, 4));
 const onWebGpu = (page) =>
   page.until('WebGPU', ({ facts, measured, at }) => facts.Engine === 'WebGPU' && measured === at);
 
-test('the first mesh is drawn before any kernel is asked for, plays on the CPU, and is on WebGPU once they are compiled', async (t) => {
+test('the first mesh is drawn before any kernel is requested, plays on the CPU, and moves to WebGPU after the compilation', async (t) => {
   const sphere = await meshFile('uvsphere 28 0.1', 'sphere.off');
   const { rows, facts, fingerprints } = await expected(sphere);
   const page = await openEdgeflip(browser, holdKernels);
@@ -126,14 +127,14 @@ test('the first mesh is drawn before any kernel is asked for, plays on the CPU, 
   }
   assert.deepEqual([(await page.look()).state, (await page.look()).at], ['done', `${rows.length}`]);
 
-  // A mesh of the same form is on WebGPU from its beginning, with the same kernels.
+  // A mesh of the same form starts on WebGPU, with the same kernels.
   const { kernels } = await seen(page);
   const next = await page.open(await meshFile('roof 16', 'roof.off'));
   assert.deepEqual([next.caption, next.facts.Engine, (await seen(page)).kernels], ['roof.off', 'WebGPU', kernels]);
   await page.close();
 });
 
-test('a run that plays while the kernels become ready goes over when it is paused, where it is', async () => {
+test('a run that plays while the kernels become ready moves to the GPU when it is paused, at the same iteration', async () => {
   const { rows, facts, fingerprints } = await expected(strips);
   const page = await openEdgeflip(browser, holdKernels);
   await page.open(strips);
@@ -159,7 +160,7 @@ test('a run that plays while the kernels become ready goes over when it is pause
   await page.close();
 });
 
-test('where the GPU refuses the kernels, the run stays on the CPU and says why', async () => {
+test('if the GPU refuses the kernels, the run stays on the CPU and says why', async () => {
   const { rows, facts } = await expected(strips);
   const page = await openEdgeflip(browser, holdKernels);
   await page.open(strips);
@@ -180,7 +181,7 @@ test('where the GPU refuses the kernels, the run stays on the CPU and says why',
   await page.close();
 });
 
-test('a GPU that is lost while it compiles is replaced, and the run on the CPU is where it was', async () => {
+test('a GPU that is lost while it compiles is replaced, and the run on the CPU is at the same iteration', async () => {
   const { fingerprints } = await expected(strips);
   const page = await openEdgeflip(browser, holdKernels);
   await page.open(strips);

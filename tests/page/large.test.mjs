@@ -1,4 +1,4 @@
-// The demo page in Chromium with mesh 5 of the paper: as the native program bit for bit, and the page never waits.
+// Tests the demo page in Chromium with mesh 5 of the paper: it equals the native program bit for bit, and never blocks.
 
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
@@ -12,14 +12,14 @@ import { fingerprintOf, folder, meshFile, openEdgeflip, tidyUp } from './page.mj
 import { tasksOf } from './tasks.mjs';
 
 const SPEC = 'uvsphere 600';
-/** Milliseconds that the page's thread may be busy with a task, besides drawing. */
+/** The most milliseconds of a task of the page's thread, except for drawing. */
 const LONGEST = 200;
 
-/** It comes with Cargo's tests. */
+/** The native program, which cargo builds with its tests. */
 const program = fileURLToPath(new URL('../../target/debug/edgeflip', import.meta.url));
 
 let browser;
-/** What the native program makes of it on its CPU engine. */
+/** The result of the native program on the CPU engine. */
 let native;
 
 before(async () => {
@@ -32,7 +32,7 @@ before(async () => {
 });
 after(tidyUp);
 
-/** In the page: keeps what the browser calls a long task, of 50 ms at least, and how late a timer of 5 ms ever was. */
+/** Runs in the page: stores long tasks (of at least 50 ms), and the longest delay of a timer of 5 ms. */
 function watchLongTasks() {
   window.longTasks = [];
   window.stillFor = 0;
@@ -89,10 +89,10 @@ for (const backend of ['cpu', 'webgpu']) {
     t.diagnostic(
       `long tasks while the page opened: ${whileOpening.length}, at most ${Math.max(0, ...whileOpening).toFixed(0)} ms`,
     );
-    // Not how long it took: that is a matter of what else this machine has to do.
+    // Not the duration, which depends on the load of this machine.
     const busiest = besidesDrawing.reduce((most, task) => (task.busy > most.busy ? task : most));
     assert.ok(busiest.busy <= LONGEST, `a task takes ${say(busiest)}`);
-    // The trace has seen what the page itself has.
+    // The trace has the long tasks that the page itself reports.
     assert.ok(Math.max(0, ...seen) <= longest(tasks).ms + 5, 'a long task is not in the trace');
     await page.close();
   });

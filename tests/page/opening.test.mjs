@@ -1,4 +1,4 @@
-// The demo page in Chromium while it opens a mesh: what is chosen meanwhile, files that change or go, folders.
+// Tests the demo page in Chromium while it opens a mesh: choices meanwhile, files that change or vanish, folders.
 
 import assert from 'node:assert/strict';
 import { mkdirSync, rmSync, writeFileSync } from 'node:fs';
@@ -22,7 +22,7 @@ after(tidyUp);
 
 const BROKEN = 'OFF\n3 1 0\n0 0 0\n1 0 0\n0 one 0\n3 0 1 2\n';
 
-/** Writes a file, and the folders that it is in. */
+/** Writes a file, and creates its folders. */
 function file(name, text) {
   const path = join(folder, name);
   mkdirSync(dirname(path), { recursive: true });
@@ -34,7 +34,7 @@ async function choose(page, ...paths) {
   await (await page.page.$('#file')).setInputFiles(paths);
 }
 
-/** In the page: keeps back what it asks of its workers, by the name of the method, until it is let go. */
+/** Runs in the page: holds back its messages to workers, by the name of the method, until they are released. */
 function holdWorkers() {
   const { postMessage } = Worker.prototype;
   const held = new Set();
@@ -52,7 +52,7 @@ function holdWorkers() {
   };
 }
 
-/** Waits until so many questions are kept back. */
+/** Waits until this number of messages is held back. */
 async function held(page, method, ask, count = 1) {
   await page.page.evaluate((name) => window.hold(name), method);
   await ask();
@@ -69,12 +69,12 @@ async function setBeta(page, text) {
 
 const betaOf = (page) => page.page.inputValue('#beta');
 
-/** Where a mesh is being opened: `read`, its file is read; `open`, its run is prepared. */
+/** The steps of opening a mesh: `read` reads its file, `open` prepares its run. */
 for (const [method, when] of [
   ['read', 'a file is read'],
   ['open', 'its run is prepared'],
 ]) {
-  test(`an engine and β that are chosen while ${when} are those that it plays with`, async () => {
+  test(`an engine and β that are chosen while ${when} take effect`, async () => {
     const page = await openEdgeflip(browser, holdWorkers);
     await page.open(roof);
     await held(page, method, () => choose(page, sphere));
@@ -95,7 +95,7 @@ for (const [method, when] of [
     await page.close();
   });
 
-  test(`what is cancelled while ${when} takes what was chosen meanwhile with it`, async () => {
+  test(`cancelling while ${when} also discards the choices made meanwhile`, async () => {
     const page = await openEdgeflip(browser, holdWorkers);
     await page.open(roof);
     await page.chooseEngine('cpu');
@@ -112,7 +112,7 @@ for (const [method, when] of [
   });
 }
 
-test('a file that turns out to be broken leaves the mesh before it, with its settings', async () => {
+test('after a broken file, the previous mesh stays with its settings', async () => {
   const page = await openEdgeflip(browser, holdWorkers);
   const opened = await page.open(roof);
   await held(page, 'read', () => choose(page, file('broken.off', BROKEN)));
@@ -126,7 +126,7 @@ test('a file that turns out to be broken leaves the mesh before it, with its set
   await page.close();
 });
 
-test('a β that is no angle is refused while a file is read, and the file opens', async () => {
+test('a β that is not an angle is refused while a file is read, and the file opens', async () => {
   const page = await openEdgeflip(browser, holdWorkers);
   await held(page, 'read', () => choose(page, sphere));
   await setBeta(page, '181');
@@ -137,7 +137,7 @@ test('a β that is no angle is refused while a file is read, and the file opens'
   await page.close();
 });
 
-test('of what is chosen while other meshes are read, the last one opens, and no worker stays behind', async () => {
+test('of several meshes chosen while others are read, the last opens, and no worker is left', async () => {
   const page = await openEdgeflip(browser, holdWorkers);
   const workers = page.page.workers().length;
   const wanted = [
@@ -166,7 +166,7 @@ test('of what is chosen while other meshes are read, the last one opens, and no 
   await page.close();
 });
 
-test('a file that is chosen before the GPU has been found is the one that opens', async () => {
+test('a file that is chosen before the GPU is open replaces the sample', async () => {
   const page = await openEdgeflip(browser, () => {
     const { requestAdapter } = GPU.prototype;
     const isChosen = new Promise((resolve) => {
@@ -190,7 +190,7 @@ test('a file that is chosen before the GPU has been found is the one that opens'
   await page.close();
 });
 
-test('a GPU that is lost while a file is read takes nothing with it', async () => {
+test('after a GPU is lost while a file is read, the file opens', async () => {
   const page = await openEdgeflip(browser, holdWorkers, () => {
     const { requestDevice } = GPUAdapter.prototype;
     window.devices = [];
@@ -200,7 +200,7 @@ test('a GPU that is lost while a file is read takes nothing with it', async () =
       return device;
     };
   });
-  // SwiftShader compiles long what surfaces need.
+  // SwiftShader takes long to compile the kernels for surfaces.
   const strips = await meshFile('strips 16', 'strips.off');
   await page.open(strips);
   await page.chooseEngine('webgpu');
@@ -221,7 +221,7 @@ for (const [how, load] of [
   ['chosen', (page, paths) => choose(page, ...paths)],
   ['dropped', (page, paths) => page.dropPaths(paths)],
 ]) {
-  test(`a file that was ${how} is downloaded as it was read when it has changed or gone since`, async () => {
+  test(`a file that was ${how} and has changed or vanished since is downloaded as it was read`, async () => {
     const { mesh, indices } = await expected(sphere);
     const path = await meshFile('uvsphere 28 0.1', `${how}.off`);
     const page = await openEdgeflip(browser);
@@ -238,7 +238,7 @@ for (const [how, load] of [
     await page.close();
   });
 
-  test(`a file that was ${how} and cannot be read is named, with what to do; the mesh before it stays`, async () => {
+  test(`the error of a file that was ${how} and cannot be read names it and says what to do; the previous mesh stays`, async () => {
     const path = file(`gone-${how}.off`, BROKEN);
     const page = await openEdgeflip(browser, holdWorkers);
     const opened = await page.open(roof);
@@ -253,7 +253,7 @@ for (const [how, load] of [
   });
 }
 
-/** A glTF file with its buffer in another, in folders of this name. */
+/** Writes a glTF file and the file of its buffer into the folder `name`. */
 async function gltfFolder(name, uri, path) {
   const original = { bytes: riggedGlb().bytes, name: 'rigged.glb' };
   const mesh = await readMesh(original.bytes, original.name);
@@ -265,7 +265,7 @@ async function gltfFolder(name, uri, path) {
   return mesh;
 }
 
-test('a folder with a glTF file and its buffer in a folder below plays, and is downloaded when it has gone', async () => {
+test('a glTF file with its buffer in a folder below plays, and can be downloaded after the folder has vanished', async () => {
   const page = await openEdgeflip(browser);
   for (const [name, uri, path] of [
     ['scene', 'data/a%20b.bin', 'data/a b.bin'],
@@ -273,7 +273,7 @@ test('a folder with a glTF file and its buffer in a folder below plays, and is d
     ['above/below', 'deep/er/a.bin', 'deep/er/a.bin'],
   ]) {
     const mesh = await gltfFolder(name, uri, path);
-    // It is not read: it is no buffer.
+    // It is not read, because it is not a buffer.
     file(`${name}/data/large.png`, 'no picture');
     await page.dropPaths([join(folder, name.split('/')[0])]);
     await page.until(
@@ -295,7 +295,7 @@ test('a folder with a glTF file and its buffer in a folder below plays, and is d
   await page.close();
 });
 
-test('of many meshes the first opens, and the page says how many others do not', async () => {
+test('of many meshes the first opens, and the page says how many others were not opened', async () => {
   const bytes = await writeMesh(await readMesh(Buffer.from(BROKEN.replace('one', '1')), 'a.off'), 'a.off');
   const paths = Array.from({ length: 50 }, (_, i) => file(`many/mesh ${i + 1}.off`, bytes));
   file('many/a/first.off', bytes);
@@ -319,7 +319,7 @@ test('of many meshes the first opens, and the page says how many others do not',
     if (note) assert.ok(seen.note.includes(note), seen.note);
     else assert.doesNotMatch(seen.note, /not opened/);
   }
-  // The buffer of a glTF file is none, whatever it is called.
+  // The buffer of a glTF file does not count as a mesh, whatever its name.
   const mesh = await gltfFolder('odd', 'the%20buffer.off', 'the buffer.off');
   await page.dropPaths([join(folder, 'odd')]);
   await page.until('the glTF file', ({ caption }) => caption === 'rigged.gltf');
@@ -329,7 +329,7 @@ test('of many meshes the first opens, and the page says how many others do not',
   await page.close();
 });
 
-test('a folder without a mesh says that it is one', async () => {
+test('the page says that a folder has no mesh', async () => {
   const page = await openEdgeflip(browser);
   const opened = await page.open(roof);
   mkdirSync(join(folder, 'empty'));
@@ -349,7 +349,7 @@ test('a folder without a mesh says that it is one', async () => {
   await page.close();
 });
 
-test('the name of a file is shown as it is', async () => {
+test('the name of a file is shown unchanged', async () => {
   const page = await openEdgeflip(browser);
   for (const name of ['a.txt', 'äpfel.off', 'ßeta.off', 'Upper.off']) {
     await choose(page, file(name, BROKEN));
@@ -360,7 +360,7 @@ test('the name of a file is shown as it is', async () => {
   await page.close();
 });
 
-test('what workers held is given back when other meshes are opened', async () => {
+test('the memory of workers is freed when other meshes are opened', async () => {
   const page = await openEdgeflip(browser, () => {
     window.workers = [];
     window.Worker = class extends Worker {
@@ -377,7 +377,7 @@ test('what workers held is given back when other meshes are opened', async () =>
     await session.send('HeapProfiler.collectGarbage');
     return page.page.evaluate(() => [window.workers.length, window.workers.filter((worker) => worker.deref()).length]);
   };
-  // That which measures and that of the run.
+  // The worker that measures, and the worker of the run.
   const end = performance.now() + 30_000;
   let [made, kept] = await counts();
   while (kept > 2 && performance.now() < end) [made, kept] = await counts();

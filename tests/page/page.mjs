@@ -1,5 +1,5 @@
-// The demo page in a real browser, as somebody uses it, and what the package says about the same mesh in Node.
-// Serves the target/www that is there.
+// Uses the demo page in a real browser like a user, and computes the expected results with the package in Node.
+// Serves the existing target/www.
 
 import assert from 'node:assert/strict';
 import { createHash } from 'node:crypto';
@@ -14,7 +14,7 @@ import site from '../../www/vite.config.js';
 import { closeAll, openPage, serve } from '../browsers.mjs';
 import { Picture } from './picture.mjs';
 
-/** Where the meshes of a test file lie. */
+/** The folder for the meshes of a test file. */
 export const folder = mkdtempSync(join(tmpdir(), 'edgeflip-page-'));
 
 /** For `after`: ends the browsers and removes the meshes. */
@@ -35,12 +35,12 @@ const degrees = new Intl.NumberFormat('en', { maximumFractionDigits: 2, minimumF
 
 const digits = new Intl.NumberFormat('en', { maximumSignificantDigits: 6 });
 
-/** What the page calls a fingerprint. */
+/** The fingerprint, as the page shows it. */
 export function fingerprintOf(indices) {
   return createHash('sha256').update(indices).digest('hex').slice(0, 16);
 }
 
-/** What the page has to show of the mesh in this file, from the package on the CPU engine. */
+/** The expected facts for the mesh in this file, from the package on the CPU engine. */
 export async function expected(path) {
   const mesh = await readMesh(readFileSync(path), path);
   const session = await FlipSession.create(mesh, { backend: 'cpu' });
@@ -63,7 +63,7 @@ export async function expected(path) {
     mesh,
     indices: result.indices,
     rows,
-    /** Of the input and after each iteration. */
+    /** Fingerprints of the input and after each iteration. */
     fingerprints,
     facts: {
       Triangles: number.format(mesh.indices.length / 3),
@@ -93,7 +93,7 @@ export async function openEdgeflip(browser, ...scripts) {
   address ??= await serve(fileURLToPath(new URL('../../target/www', import.meta.url)), site.preview.headers);
   const { page, problems } = await openPage(browser, 'about:blank');
   for (const script of scripts) await page.addInitScript(script);
-  // Every address that is asked for; `data:` and `blob:` are the page's own.
+  // Requests to other servers; `data:` and `blob:` are the page's own.
   page.on('request', (request) => {
     if (!/^(data|blob):/.test(request.url()) && !request.url().startsWith(address))
       problems.push(`asked for ${request.url()}`);
@@ -107,17 +107,17 @@ export async function openEdgeflip(browser, ...scripts) {
 export class EdgeflipPage {
   constructor(page, problems) {
     this.page = page;
-    /** What went wrong: messages of the console, exceptions, failed requests. */
+    /** Messages of the console, exceptions and failed requests. */
     this.problems = problems;
   }
 
-  /** Ends the page; everything that it was used for must have gone without a problem. */
+  /** Closes the page, and fails if it had a problem. */
   async close() {
     assert.deepEqual(this.problems, []);
     await this.page.close();
   }
 
-  /** What the page says. */
+  /** The texts and the state of the page. */
   look() {
     return this.page.evaluate(() => {
       const text = (id) => {
@@ -142,7 +142,7 @@ export class EdgeflipPage {
     });
   }
 
-  /** Waits until the page is so, and gives what it says then. */
+  /** Waits until the condition holds for the page, and returns its texts then. */
   async until(what, isSo, seconds = 120) {
     const end = performance.now() + 1000 * seconds;
     for (;;) {
@@ -156,7 +156,7 @@ export class EdgeflipPage {
     }
   }
 
-  /** Waits until nothing goes on and the numbers of what is shown are there. */
+  /** Waits until the page is idle and has measured the shown triangles. */
   rest(seconds) {
     return this.until(
       'a page at rest',
@@ -189,7 +189,7 @@ export class EdgeflipPage {
     return this.rest();
   }
 
-  /** Drops files and folders of the disk onto the page, as a file manager does (Chromium). */
+  /** Drops files and folders from the disk onto the page, as a file manager does (Chromium). */
   async dropPaths(paths) {
     const session = await this.page.context().newCDPSession(this.page);
     const { x, y, width, height } = await (await this.page.$('#view')).boundingBox();
@@ -210,7 +210,7 @@ export class EdgeflipPage {
     await this.rest();
   }
 
-  /** Plays to the end, as fast as it goes. */
+  /** Plays to the end, as fast as possible. */
   async playToEnd(seconds) {
     await this.choose('speed', '0');
     await this.page.click('#play');
@@ -225,7 +225,7 @@ export class EdgeflipPage {
     return this.rest();
   }
 
-  /** What the canvas shows. */
+  /** A picture of the canvas. */
   async picture() {
     await this.page.evaluate(
       () => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done()))),
@@ -243,12 +243,12 @@ export class EdgeflipPage {
 }
 
 /**
- * Plays to the end and asserts that the page shows what the package finds in Node, names a GPU where there is one,
- * and draws something else than before.
+ * Plays to the end. Asserts that the page shows the results of the package in Node, names the GPU if there is one, and
+ * draws another picture than before.
  *
  * @param {EdgeflipPage} page - At the input.
- * @param want - What `expected` gives for its mesh.
- * @param {string} engine - As the page calls it.
+ * @param want - The result of `expected` for its mesh.
+ * @param {string} engine - The engine's name on the page.
  * @returns The picture of the input.
  */
 export async function assertPlays(page, { rows, facts }, engine) {
@@ -277,7 +277,7 @@ export async function assertPlays(page, { rows, facts }, engine) {
   return inputPicture;
 }
 
-/** That two meshes are the same, bit for bit. */
+/** Asserts that two meshes are equal, bit for bit. */
 export function assertSameMesh(actual, { positions, indices }, what) {
   const bits = (floats) => new Uint32Array(floats.buffer, floats.byteOffset, floats.length);
   assert.deepEqual(actual.indices, indices, `indices ${what}`);

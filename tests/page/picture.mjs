@@ -1,10 +1,10 @@
-// A screenshot of the canvas: enough of PNG to read its pixels.
+// A screenshot of the canvas. Decodes as much of PNG as screenshots need.
 
 import assert from 'node:assert/strict';
 import { inflateSync } from 'node:zlib';
 
 export class Picture {
-  /** @param {Uint8Array} png - 8 bits a channel, RGB or RGBA, not interlaced: what browsers write. */
+  /** @param {Uint8Array} png - 8 bits per channel, RGB or RGBA, not interlaced, as browsers write it. */
   constructor(png) {
     const bytes = Buffer.from(png);
     const parts = [];
@@ -26,7 +26,9 @@ export class Picture {
     this.pixels = this.#unfilter(inflateSync(Buffer.concat(parts)));
   }
 
-  /** PNG specification, section 9: each byte was made smaller by what is left of it (a), above (b) and above left (c). */
+  /**
+   * PNG specification, section 9: a prediction from the bytes left (a), above (b) and above left (c) was subtracted.
+   */
   #unfilter(rows) {
     const { width, height, channels } = this;
     const stride = width * channels;
@@ -44,7 +46,7 @@ export class Picture {
     return pixels;
   }
 
-  /** The middle of the picture, where no text lies over it, as one number a pixel. */
+  /** The middle of the picture, which no text covers: one number per pixel. */
   get middle() {
     const { width, height, channels, pixels } = this;
     const middle = [];
@@ -57,12 +59,12 @@ export class Picture {
     return middle;
   }
 
-  /** How many colours the middle has. */
+  /** The number of colours in the middle. */
   get colours() {
     return new Set(this.middle).size;
   }
 
-  /** The share of the middle in which another picture is different. */
+  /** The share of pixels in the middle that differ from another picture. */
   differsFrom(other) {
     const [mine, others] = [this.middle, other.middle];
     assert.equal(mine.length, others.length);

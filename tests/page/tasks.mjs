@@ -1,11 +1,11 @@
-// What the main thread of a page does, task by task, from Chromium's trace.
+// Lists the tasks of a page's main thread, from Chromium's trace.
 
-/** What a task that draws has in it: a frame's callbacks, its layout and paint, and the way to the compositor. */
+/** The trace events of tasks that draw: a frame's callbacks, layout, paint, and the commit to the compositor. */
 const DRAWING = new Set(['FireAnimationFrame', 'Paint', 'PrePaint', 'Layerize', 'Commit', 'UpdateLayerTree']);
 
 /**
- * Starts to trace. `end` gives the tasks of the page's main thread since: milliseconds, how many of them it was busy,
- * whether it drew, and what took longest within it.
+ * Starts a trace. `end` returns the tasks of the page's main thread since then: the duration and the CPU time of each
+ * in milliseconds, whether it drew, whether it belongs to the page, and its five longest events.
  *
  * @param {import('playwright-core').Page} page
  */
@@ -21,7 +21,7 @@ export async function tasksOf(page) {
       excludedCategories: ['*'],
     },
   });
-  // The thread of this page: the one that makes this mark.
+  // This mark identifies the thread of the page.
   const mark = `the main thread of ${Math.random()}`;
   await page.evaluate((name) => console.timeStamp(name), mark);
   return {
@@ -56,7 +56,7 @@ export async function tasksOf(page) {
         ms,
         busy,
         draws,
-        // Chromium has tasks of its own in which nothing of a page happens, such as waiting for its GPU process.
+        // Tasks without events are Chromium's own, such as waiting for its GPU process.
         isOfPage: parts.length > 0,
         within: parts
           .sort((a, b) => b.ms - a.ms)

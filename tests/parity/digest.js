@@ -1,9 +1,9 @@
-/** FNV-1a, 64 bits, over the little-endian bytes of the words fed so far: that of tests/simulation/digest.rs. */
+/** FNV-1a with 64 bits over the little-endian bytes of the words so far, as in tests/simulation/digest.rs. */
 export class Digest {
   #high = 0xcbf29ce4;
   #low = 0x84222325;
 
-  /** @param {Uint32Array} words - The first to feed. */
+  /** @param {Uint32Array} words - The first words. */
   constructor(words) {
     this.feed(words);
   }

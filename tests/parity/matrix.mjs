@@ -1,5 +1,5 @@
-// The parity matrix, continued: the engines in browsers give what the simulation does. Reads what tests/parity.rs has
-// written to target/parity.json, and adds a column for each engine.
+// The browser columns of the parity matrix: compares the engines in browsers with the simulation. Reads
+// target/parity.json, which tests/parity.rs writes, and adds a column for each engine.
 
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
@@ -10,8 +10,8 @@ const { cases, table, seconds } = JSON.parse(
 );
 
 /**
- * Throws where the run is not what the simulation of the mesh gives; else the word for its cell. Runs of more iterations
- * than `watched` are compared at their end only; of a GPU's, some meshes have to be refused.
+ * Compares a run with the simulation of the mesh. Throws if they differ; else returns the text of the cell. Runs of
+ * more than `watched` iterations are compared only at their end. GPUs have to refuse some meshes.
  */
 function compare(run, mesh, { backend, watched }) {
   if (backend !== 'cpu' && mesh.isRefusedByGpus) {
@@ -44,7 +44,7 @@ function judge(runs, column) {
   return { cells, wrong };
 }
 
-/** Adds the column of an engine, and fails where a cell is wrong. */
+/** Adds the column of an engine, and fails if a cell is wrong. */
 export async function fill(page, column) {
   const { runs, seconds: took } = await page.evaluate((column) => window.runAll(column), column);
   const { cells, wrong } = judge(runs, column);

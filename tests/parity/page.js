@@ -3,13 +3,13 @@
 import { FlipSession } from '../../dist/index.js';
 import { Digest } from './digest.js';
 
-/** So many sessions share the wait for a GPU: in Firefox it is 100 ms for each answer, however short the work. */
+/** The number of sessions that wait for the GPU together: in Firefox, each wait takes at least 100 ms. */
 const SESSIONS = 32;
 
 const response = await fetch('../target/parity.json');
 const { cases } = await response.json();
 
-/** What a run of the mesh gives; watched after every iteration or from end to end. */
+/** Runs a mesh, and returns its result and, if `isWatched`, every iteration. */
 async function run({ positions, isWide, indices, dimension, beta, deviation, locked }, backend, isWatched) {
   const mesh = {
     positions: new (isWide ? Float64Array : Float32Array)(Uint32Array.from(positions).buffer),
@@ -40,8 +40,8 @@ async function run({ positions, isWide, indices, dimension, beta, deviation, loc
 }
 
 /**
- * What runs of all meshes give, in their order; where one was refused or failed, its error. Meshes that need at most
- * `watched` iterations are watched.
+ * Runs all meshes, and returns their results in order; for a mesh that was refused or failed, the error. Meshes that
+ * need at most `watched` iterations are watched.
  */
 window.runAll = async ({ backend, watched }) => {
   const start = performance.now();
@@ -53,7 +53,7 @@ window.runAll = async ({ backend, watched }) => {
       message,
     }));
   };
-  // The first one opens the device for all; then the longest begin first.
+  // The first run opens the device for all. Then the longest runs start first.
   await take(0);
   const length = (index) => cases[index].iterations.length;
   const queue = cases
