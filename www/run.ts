@@ -156,7 +156,7 @@ export class Run {
       return true;
     }
     if (this.#hasEnded) return false;
-    if (this.#isAhead) throw new Error('The last iteration could not be kept; begin again.');
+    if (this.#isAhead) throw new Error('The last iteration could not be stored. Choose an engine to start again.');
     const step = await this.#stepper.step();
     if (this.#isFreed) return false;
     if (!step) {

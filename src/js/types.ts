@@ -71,7 +71,7 @@ export interface Options {
    * lines counts. For surfaces only. Default: `Infinity`.
    */
   maxDeviation?: number | undefined;
-  /** Stops the run after so many iterations. Default: no limit; every run ends by itself. */
+  /** Stops the run after this number of iterations. Default: no limit; every run ends by itself. */
   maxIterations?: number | undefined;
   /**
    * Edges that never flip, as pairs of vertices, one pair after the other, in any order. Every pair has to be an edge

@@ -1,5 +1,5 @@
-// Quads in browsers: the GPU engines against what the test `batches_for_browsers` in ../quads.rs has written to
-// target/quads.
+// Tests quads in browsers: compares the GPU engines with the expected verdicts in target/quads, which the test
+// `batches_for_browsers` in ../quads.rs writes.
 
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
@@ -21,12 +21,12 @@ function numbers({ index, dimension }, quad) {
 
 const columns = ['quads', 'ties', 'labelled', 'angle', 'fold', 'deviation', 'mismatches'];
 
-/** Adds numbers of the same names. */
+/** Adds the numbers of each column to `sums`. */
 function add(sums, numbers) {
   for (const column of columns) sums[column] = (sums[column] ?? 0) + numbers[column];
 }
 
-/** Runs all batches on an engine, prints its table, and fails where a quad is decided wrongly. */
+/** Runs all batches on an engine, prints its table, and fails if a quad is decided wrongly. */
 export async function check(page, { title, backend }) {
   const began = performance.now();
   /** @type {Map<string, Record<string, number>>} */

@@ -8,8 +8,8 @@ const read = async (file) => (await fetch(`../target/quads/${file}`)).arrayBuffe
 const LABELLED = 1;
 
 /**
- * One iteration of a batch: what the engine counts before it, and the quads whose triangles are not as expected after
- * it. The layout of the mesh is that of `Batch` in batch.rs.
+ * Runs one iteration of a batch. Returns the engine's counts before it, and the quads with wrong triangles after it.
+ * The mesh has the layout of `Batch` in batch.rs.
  */
 window.iterate = async ({ index, dimension, isWide, beta, deviation }, backend) => {
   const numbers = new Float64Array(await read(`${index}.positions`));
