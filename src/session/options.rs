@@ -67,7 +67,7 @@ pub struct Options {
     /// The device for the GPU engine, instead of one of its own. The engine never destroys it, changes none of its
     /// settings, and ignores errors of calls that are not its own. If it is a software GPU, `Auto` takes the CPU.
     #[cfg(all(target_arch = "wasm32", feature = "js"))]
-    pub device: Option<crate::wasm::session::GpuDevice>,
+    pub device: Option<crate::engine::GpuDevice>,
     /// If set, `Auto` fails where it would choose the CPU: another module then runs the CPU engine, on this number of threads.
     #[cfg(all(target_arch = "wasm32", feature = "js"))]
     pub leaves_cpu: Option<usize>,
