@@ -1,4 +1,4 @@
-// The guard: blocks a flip whose new edge exists already, as `edge_exists` in src/phases/label.rs.
+// The guard: blocks a flip whose new edge exists already, as `makes_duplicate` in src/phases/label.rs.
 #import mesh
 #import star
 #import state

@@ -67,8 +67,8 @@ export interface Options {
   maxNormalAngle?: number | undefined;
   /**
    * How far one flip may move the surface: the largest distance between the old and the new diagonal, in the units of
-   * the positions, rounded down to a 32-bit float. If the diagonals do not pass each other, the distance between their
-   * lines counts. For surfaces only. Default: `Infinity`.
+   * the positions, rounded down to a 32-bit float. The distance is the one between the lines through the two diagonals,
+   * even where the diagonals end before they pass each other. For surfaces only. Default: `Infinity`.
    */
   maxDeviation?: number | undefined;
   /** Stops the run after this number of iterations. Default: no limit; every run ends by itself. */

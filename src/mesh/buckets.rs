@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 pub(super) struct Buckets {
     /// For each vertex, the index at which its bucket ends and the next one starts.
     pub(super) ends: Vec<u32>,
-    /// The larger vertices of all buckets, and at least [`LANES`] more words.
+    /// The larger vertex of the edge of each half-edge, bucket after bucket, and at least [`LANES`] more words.
     pub(super) highs: Vec<u32>,
     pub(super) half_edges: Vec<u32>,
 }
@@ -17,10 +17,11 @@ pub(super) struct Buckets {
 /// Vertices that one comparison handles.
 const LANES: usize = 8;
 
-/// Triangles per block. A first loop lists the half-edges of a block, so that the second can access memory ahead.
+/// Triangles per block. A first loop lists the half-edges of a block, so that the memory accesses of the second loop
+/// overlap.
 const TRIANGLES: usize = 128;
 
-/// A larger bucket is sorted before a search; otherwise a pole of n edges would cost n² steps.
+/// A bucket with more half-edges is sorted before a search; otherwise a vertex of n edges would cost n² steps.
 const FEW: usize = 64;
 
 impl Buckets {
@@ -191,7 +192,7 @@ const TAKEN: u32 = 1 << 31;
 pub(super) struct Rising<'a> {
     pub(super) ends: &'a [u32],
     pub(super) highs: &'a [u32],
-    /// Flagged with [`TAKEN`].
+    /// Those that are taken have the flag [`TAKEN`].
     pub(super) half_edges: &'a [AtomicU32],
 }
 
@@ -207,8 +208,8 @@ impl Rising<'_> {
         entries.map(|(high, entry)| (high, entry & !TAKEN, entry & TAKEN != 0))
     }
 
-    /// Matches half-edges in pairs and writes their twins. Returns the unmatched half-edges, each after its smaller vertex.
-    /// At a frozen edge it may match the first two half-edges.
+    /// Matches half-edges in pairs and writes their twins. Returns the unmatched half-edges, each as a pair: the
+    /// smaller vertex of its edge, and the half-edge. At a frozen edge it may match the first two half-edges.
     pub(super) fn match_all(
         &self,
         triangles: &[u32],

@@ -4,8 +4,8 @@ use crate::Adjacency;
 use crate::mesh::half_edge::{next, unflagged};
 use crate::system::threads::Threads;
 
-/// Every edge, one entry in each array, in the order of the lower half-edges. Each half-edge of a frozen edge counts as an
-/// edge of its own, as it does for the flips.
+/// Every edge, one entry in each array, in the order of the lower half-edges. The lower half-edge is
+/// the one with the smaller index, or the only one. Each half-edge of a frozen edge is an entry of its own.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Edges {
     /// The vertex that the lower half-edge starts at.

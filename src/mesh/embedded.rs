@@ -1,8 +1,8 @@
 //! Embedded stars in the plane: the triangles at a vertex are positive and go round it once.
 //!
-//! The old edge of a flip crosses the new edge c-d. If the star of c or d is embedded, it has one triangle in each
-//! direction: so it has no other edge c-d, and no other flip makes one. Flips of strictly convex quads keep stars
-//! embedded.
+//! The old edge of a flip crosses the new edge c-d. An embedded star has one triangle in each direction. So if the star of
+//! c or d is embedded, it has no other edge c-d, and no other flip of the iteration makes one. Flips of strictly convex
+//! quads keep stars embedded.
 
 use crate::mesh::star::Fans;
 use crate::mesh::winding::{Signs, Winding};
@@ -53,7 +53,7 @@ impl Embedded {
             if is_alone {
                 word.store((word.load(Relaxed) + by).min(2), Relaxed);
             } else if by == 2 || by == 1 && word.swap(1, Relaxed) != 0 {
-                // A thread that finds another count writes last.
+                // A thread whose swap finds an earlier turn writes 2 after it, so 2 stays, whatever other threads swap.
                 word.store(2, Relaxed);
             }
         };
@@ -83,7 +83,8 @@ fn add_turns(
     turn: impl Fn(u32, u8),
 ) -> Signs {
     let mut signs = Signs::default();
-    // Whether v is below the axis through u, or on it to the right. If not, this holds for the edge from v to u.
+    // Whether v is below the horizontal line through u, or on this line to the right of u. Of an edge and its reverse,
+    // exactly one goes down.
     let goes_down = |u: DVec2, v: DVec2| (v.y < u.y) | ((v.y == u.y) & (v.x > u.x));
     let (triangles, _) = mesh.triangles().as_chunks();
     let (sides, _) = twins.as_chunks::<3>();

@@ -5,7 +5,8 @@ use crate::system::threads::Threads;
 /// The bits of a 32-bit float without its sign.
 pub(crate) const MAGNITUDE: u32 = !(1 << 31);
 
-/// The largest masked word, and the smallest one that is not 0, minus one; `u32::MAX` if all are 0.
+/// `largest` is the largest masked word. `below` is the smallest masked word that is not 0, minus 1, or `u32::MAX` if all
+/// are 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Ends {
     pub(crate) below: u32,

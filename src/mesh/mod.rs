@@ -20,8 +20,8 @@ use half_edge::NONE;
 use positions::Positions;
 use std::sync::Arc;
 
-/// The largest number of triangles. Engines store a half-edge in 30 bits with two flags, and use the two highest values
-/// for other purposes.
+/// The largest number of triangles. Engines store a half-edge in 30 bits, with two flags above. The two highest words,
+/// `NONE` and `BLOCKED`, are no half-edges.
 pub const MAX_TRIANGLES: usize = ((1 << 30) - 2) / 3;
 
 /// A triangle mesh with finite coordinates and indices in range. Everything else may be dirty:

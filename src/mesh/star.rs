@@ -107,7 +107,7 @@ impl Fans {
         (list != NONE).then(|| &self.table[list as usize..])
     }
 
-    /// Replaces the anchor `from` of `vertex`, if it is one.
+    /// Replaces `from` by `to` in the anchors of `vertex`, if `from` is one of them.
     pub(crate) fn move_anchor(&mut self, vertex: u32, from: u32, to: u32) {
         let list = self.table.get(vertex as usize).copied().unwrap_or(NONE);
         if list != NONE {
@@ -161,7 +161,7 @@ impl<'a> Star<'a> {
             if self.at != NONE {
                 return;
             }
-            // The fan is open: return to its start and turn clockwise.
+            // The fan is open: return to the corner where the walk began, and walk clockwise.
             self.clockwise = true;
             self.at = self.start;
         }
@@ -185,8 +185,8 @@ impl Iterator for Star<'_> {
     }
 }
 
-/// Whether any corner of a star passes the test of that star. Each of the two stars alone gives the answer. The walk
-/// alternates between them, so it costs twice the smaller star.
+/// Takes two stars, each with a test of its corners. Either star alone gives the answer: whether a corner passes its test.
+/// The walk alternates between the two stars, so its cost is twice that of the smaller star.
 pub(crate) fn any_in_either(
     mut first: (Star, impl Fn(u32) -> bool),
     mut second: (Star, impl Fn(u32) -> bool),

@@ -6,9 +6,9 @@ use crate::mesh::star::Fans;
 use crate::system::threads::{Threads, Word};
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
-/// A word for each triangle. If one of its half-edges flips: the twin of that half-edge, and in the bits of [`FLAGS`] the
-/// index in the triangle, 0 to 2, of the next half-edge, which moves. Otherwise [`NONE`], whose index bits are 3. While
-/// edges bid: the smallest key.
+/// A word for each triangle. While edges bid, it is the smallest key. After that, if an edge of the triangle is selected, it
+/// is the twin of the selected half-edge, and in the bits of [`FLAGS`] the index in the triangle, 0 to 2, of the
+/// half-edge after the selected one, which moves. Otherwise it is [`NONE`], whose bits there are 3.
 #[derive(Default)]
 pub(crate) struct Selected(Vec<AtomicU32>);
 
@@ -69,7 +69,7 @@ impl Selected {
     }
 
     /// The index of a half-edge after the iteration, and whether no edge of its triangle is selected. The half-edge after a
-    /// selected one gets the index of the twin of the selected one. Depends only on the state before the phase.
+    /// selected half-edge gets the index of the twin of that selected half-edge. Depends only on the state before the phase.
     #[inline(always)]
     fn slot(&self, x: u32) -> (u32, bool) {
         let word = self.word(x).get();
@@ -78,7 +78,7 @@ impl Selected {
     }
 }
 
-/// Moves the anchors of the fans with their half-edges. Call it before the flips of these edges.
+/// Moves the anchors of the fans with their half-edges. Call it before `edges` flip.
 pub(crate) fn move_anchors(fans: &mut Fans, triangles: &[u32], selected: &Selected, edges: &[[u32; 2]]) {
     if fans.table.is_empty() {
         return;
@@ -90,8 +90,9 @@ pub(crate) fn move_anchors(fans: &mut Fans, triangles: &[u32], selected: &Select
     }
 }
 
-/// The surroundings of a flipped edge: the entries in the twins of the half-edges from a, c, b and d, [`NONE`] where another
-/// flipped edge is the one to test this edge; then a, b, c and d.
+/// The surroundings of a flipped edge. First the entries in the twins of its four outer half-edges, which start at a, c, b
+/// and d. An entry is [`NONE`] on the boundary, and where the neighbour has flipped too and tests this outer edge. Then the
+/// vertices a, b, c and d.
 pub(crate) type Around = [[u32; 4]; 2];
 
 /// Flips a selected edge. Reads only the corners and twins of its own two triangles. Writes these, and the entries of
@@ -118,7 +119,7 @@ pub(crate) fn flip(
         // If there is nothing to write, this writes a word that is overwritten below: a branch would be unpredictable.
         write(twins, if is_free { x } else { hn }, inner | flags);
         write(twins, inner, slot | flags);
-        // If both edges have flipped, only one of them tests the edge between.
+        // If the neighbour has flipped too, only one of the two flips tests the edge between them.
         *twin = if is_free | (inner < slot) { slot | flags } else { NONE };
     }
     write(triangles, hn, d);

@@ -18,8 +18,8 @@ pub(crate) enum Verdict {
     Labelled,
 }
 
-/// For each triangle, the twin of its labelled edge with the smallest key. Without a labelled edge: [`BLOCKED`] if an edge is
-/// blocked as a duplicate, otherwise [`NONE`].
+/// For each triangle, the half-edge on the other side of its labelled edge with the smallest key. Without a labelled edge:
+/// [`BLOCKED`] if an edge is blocked as a duplicate, otherwise [`NONE`].
 pub(crate) fn label(geometry: &Geometry, mesh: Topology, iteration: u32) -> Vec<u32> {
     let best = |t: u32| {
         let mut choice = NONE;
@@ -46,7 +46,8 @@ pub(crate) fn label(geometry: &Geometry, mesh: Topology, iteration: u32) -> Vec<
     (0..mesh.triangles.len() as u32 / 3).map(best).collect()
 }
 
-/// An interior edge with its two triangles (a, b, c) and (b, a, d).
+/// A quad by indices: an interior edge with its two triangles (a, b, c) and (b, a, d). `predicates::Quad`
+/// has its points.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Diamond {
     /// The half-edge from a to b.
@@ -66,8 +67,9 @@ impl Diamond {
         Self { h, twin, corners }
     }
 
-    /// Writes the edges between two triangles of `mesh` whose lower half-edge belongs to the triangles `piece`, counted from
-    /// the first triangle of `mesh`. Returns their number. `diamonds` needs three slots per triangle.
+    /// Writes the diamonds of the edges between two triangles of `mesh` whose lower half-edge is in a triangle of `piece`.
+    /// `piece` counts from the first triangle of `mesh`. Returns the number of diamonds. `diamonds` needs three slots per
+    /// triangle.
     #[inline(always)]
     pub(crate) fn write(mesh: Topology, piece: Range<usize>, diamonds: &mut [Self]) -> usize {
         let [(triangles, _), (twins, _)] = [mesh.triangles, mesh.twins].map(|words| words.as_chunks::<3>());
@@ -144,8 +146,8 @@ pub(crate) fn keep_non_delaunay(geometry: &Geometry, diamonds: &mut [Diamond]) -
     }
 }
 
-/// Moves the kept edges from `first` on to `count` and up. Returns the new count. A branch on `is_kept` would be
-/// unpredictable.
+/// Of the edges from index `first` on, moves the kept ones to index `count` and the indices after it. Returns the new count.
+/// A branch on `is_kept` would be unpredictable.
 #[inline(always)]
 fn keep(
     first: usize,
@@ -161,7 +163,7 @@ fn keep(
     count
 }
 
-/// The same in the plane, for 32-bit floats, four edges at a time.
+/// As [`keep_non_delaunay`], in the plane, for 32-bit floats, four edges at a time.
 #[inline(always)]
 fn keep_in_fours(geometry: &Geometry, numbers: &[f32], fours: usize, diamonds: &mut [Diamond]) -> usize {
     let (points, _) = numbers.as_chunks();

@@ -17,9 +17,9 @@ pub enum Reason {
     Deviation,
     /// The edge has three or more triangles, or one triangle twice.
     NonManifold,
-    /// Its two triangles have opposite orientations.
+    /// The two triangles of the edge have opposite orientations.
     Inconsistent,
-    /// The run stopped before it flipped the edge: it was cancelled, or reached the cap on iterations.
+    /// The run stopped before it flipped the edge: it was cancelled, or reached the limit on iterations.
     Stopped,
 }
 

@@ -14,8 +14,8 @@ pub(crate) fn select(mesh: Topology, iteration: u32, best: &[u32]) -> Vec<u32> {
     (0..best.len() as u32).map(selected).collect()
 }
 
-/// The half-edge of triangle `t` whose edge is the best of both its triangles, and its twin. If two triangles share two
-/// edges, both choose the same one, since keys do not tie.
+/// The half-edge of triangle `t` whose edge is the best of both triangles of the edge, and the twin of this half-edge. If
+/// two triangles share two edges, both triangles keep the same edge, since keys do not tie.
 fn mutual(best: &[u32], t: u32) -> Option<(u32, u32)> {
     let g = best[t as usize];
     if g >= BLOCKED {

@@ -34,7 +34,7 @@ pub(crate) struct Geometry<'a> {
     pub(crate) embedded: &'a Embedded,
 }
 
-/// The triangulation before a phase, or a range of its triangles.
+/// The triangles and twins before a phase: of the whole mesh, or of a range of its triangles.
 #[derive(Clone, Copy)]
 pub(crate) struct Topology<'a> {
     /// The first half-edge of the range.
@@ -71,8 +71,9 @@ impl Topology<'_> {
     }
 }
 
-/// The priority of an edge in an iteration; the smallest key wins. For each iteration it is a bijection of the lower
-/// half-edge, so no two edges tie. It changes with the iteration; otherwise chains of neighbours would flip one by one.
+/// The key of an edge in an iteration: an integer hash. The edge with the smallest key wins. `edge` is the lower half-edge:
+/// of the two half-edges, the one with the smaller index. For each iteration the hash is a bijection, so no two edges tie.
+/// The key changes with the iteration; otherwise chains of neighbours would flip one by one.
 #[inline]
 pub(crate) fn key(edge: u32, iteration: u32) -> u32 {
     let mut x = edge ^ iteration.wrapping_mul(0x9e37_79b9);

@@ -13,7 +13,7 @@ use crate::system::threads::Threads;
 use crate::{Backend, Error, Mesh, Options, Order};
 use std::sync::Arc;
 
-/// An engine, and why `Auto` chose no other.
+/// An engine, and why `Auto` chose the CPU, or started there.
 pub(super) struct Choice {
     pub(super) engine: Box<dyn Engine>,
     pub(super) fallback: Option<String>,
@@ -25,7 +25,7 @@ pub(super) struct Choice {
 pub(super) fn job_of(mesh: &Mesh, options: &Options) -> Job {
     let triangles = mesh.triangle_count();
     let threads = Threads::count_for(options.threads, triangles);
-    // With `leaves_cpu`, another module runs the CPU engine, with these threads.
+    // With `leaves_cpu`, another WebAssembly module runs the CPU engine, on that number of threads.
     #[cfg(all(target_arch = "wasm32", feature = "js"))]
     let threads = options.leaves_cpu.unwrap_or(threads);
     Job { triangles, dimension: mesh.dimension(), threads }
@@ -102,7 +102,7 @@ fn cpu_for<'a>(why: String, mesh: &'a Arc<Mesh>, options: &'a Options) -> Answer
     cpu_after(why, mesh, options)
 }
 
-/// The CPU, which takes every mesh, after another engine has failed with `why`.
+/// The CPU, which takes every mesh. `why` says why no other engine runs.
 ///
 /// # Errors
 /// [`Error::OutOfMemory`].

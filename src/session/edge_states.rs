@@ -85,7 +85,8 @@ impl From<Verdict> for EdgeState {
     }
 }
 
-/// The state of each half-edge's edge before `iteration`; `None` for Lawson's algorithm, which has no select phase.
+/// The state of the edge of each half-edge before `iteration`. `iteration` is `None` for Lawson's algorithm, which has no
+/// select phase.
 pub(crate) fn edge_states(
     geometry: &Geometry,
     mesh: Topology,
@@ -102,7 +103,7 @@ pub(crate) fn edge_states(
     }
     if let Some(iteration) = iteration {
         let best = label(geometry, mesh, iteration);
-        // A selected triangle stores the half-edge of the other triangle.
+        // For each triangle of a selected edge, `select` gives the half-edge on the other side of the edge.
         for g in select(mesh, iteration, &best).into_iter().filter(|&g| g != NONE) {
             states[g as usize] = EdgeState::Flips;
         }

@@ -6,7 +6,8 @@ use crate::phases::Thresholds;
 use crate::{Backend, Dimension, EngineKind, Error, Mesh, Options};
 use std::sync::Arc;
 
-/// The form of a mesh. A mesh of 32-bit floats that span too many bits gets the fixed-point form at upload instead.
+/// The form of a mesh: the set of shaders that it needs. At upload, a mesh of 32-bit floats that span too many bits gets
+/// the fixed-point form instead.
 fn form_of(dimension: Dimension, is_double: bool, options: &Options) -> Form {
     Form::new(dimension, is_double, Thresholds::from(options))
 }

@@ -77,8 +77,8 @@ pub(crate) fn half_edges(mesh: &Mesh, pairs: &[[u32; 2]]) -> Result<Vec<u32>, Er
 }
 
 impl Welded {
-    /// Adds the edges and triangles that have to stay to the locks of `options`. Its `locked_edges` name vertices of the
-    /// mesh before the weld; this call renumbers them.
+    /// Adds to the locks of `options` the edges and triangles that have to stay. On entry, `options.locked_edges` name
+    /// vertices of the mesh before the weld; this call renumbers these vertices.
     pub fn constrain(&self, options: &mut Options) {
         for vertex in options.locked_edges.as_flattened_mut() {
             *vertex = self.places.get(*vertex as usize).copied().unwrap_or(*vertex);

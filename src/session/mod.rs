@@ -48,7 +48,7 @@ pub struct Session {
     mesh: Arc<Mesh>,
     options: Options,
     engine: Box<dyn Engine>,
-    /// Why `Auto` chose no other engine.
+    /// Why `Auto` chose the CPU, or started there.
     fallback: Option<String>,
     /// Whether the session may change from the CPU to a GPU that becomes ready.
     may_change: bool,
@@ -68,7 +68,7 @@ impl Session {
         options.check()?;
         let (start, mesh) = (Instant::now(), mesh.into());
         options.locked_edges = locks::edges(&mesh, &options)?;
-        // Checked here: `auto` would take the error of an engine for a reason to try the next engine.
+        // Checked here, because `auto` would answer this error of a GPU engine by trying the CPU engine.
         locks::half_edges(&mesh, &options.locked_edges)?;
         let Choice { engine, fallback, may_change } = engine_for(&mesh, &options).await?;
         let set_up = ms_since(start);
@@ -85,8 +85,8 @@ impl Session {
         })
     }
 
-    /// Runs one iteration, and counts the edges of the whole mesh before it. `None` when no edge is left to flip, or at
-    /// the cap on iterations.
+    /// Runs one iteration, and counts the non-Delaunay edges of the whole mesh before it. `None` when no edge is left to
+    /// flip, or at the limit on iterations.
     ///
     /// # Errors
     /// [`Error::Device`], [`Error::BackendLimit`], [`Error::OutOfMemory`].
@@ -123,7 +123,8 @@ impl Session {
         Ok(())
     }
 
-    /// Runs one batch of iterations, of the size that the engine prefers. Returns whether edges may be left to flip.
+    /// Runs one batch of iterations, of the size that the engine prefers. Returns whether the run may continue: edges may be
+    /// left to flip, and the limit on iterations is not reached.
     ///
     /// # Errors
     /// Those of [`Session::run`].
@@ -333,8 +334,8 @@ impl Session {
         self.options.iterations_left(done)
     }
 
-    /// Checks that so many bytes per triangle are available. Without the check, the call could run out of memory and end
-    /// the session; with it, an error leaves the session unchanged.
+    /// Checks that `bytes` bytes per triangle are available. Without the check, the call could run out of memory and end
+    /// the session; with the check, an error leaves the session unchanged.
     fn check_memory(&self, bytes: u64) -> Result<(), Error> {
         memory::check(bytes * self.mesh.triangle_count() as u64)
     }
@@ -365,8 +366,9 @@ impl Session {
         }
     }
 
-    /// Changes to the CPU after the device failed or the engine refused the mesh late. The CPU repeats the run up to the last
-    /// complete iteration; all engines give the same triangles. Boxed, so that this code is compiled only once.
+    /// Changes to the CPU after the device failed, or after the engine refused the mesh during the run. The CPU repeats the
+    /// run up to the last complete iteration; all engines give the same triangles. Boxed, so that this code is compiled only
+    /// once.
     fn recover(&mut self, error: Error) -> Answer<'_, ()> {
         Box::pin(async move {
             let why = match error {
@@ -381,8 +383,8 @@ impl Session {
         })
     }
 
-    /// Changes to a GPU that has become ready, if it finishes first from here: it repeats the iterations so far. If it fails,
-    /// the CPU continues.
+    /// Changes to a GPU that has become ready, if the estimate says that the GPU would finish first from here. The GPU then
+    /// repeats the iterations so far. If the GPU fails, the CPU continues.
     async fn change_to_gpu(&mut self) {
         let Timings { upload, adjacency, flip, .. } = self.timings;
         if !choice::changes_to_gpu(&self.mesh, &self.options, (upload + adjacency, flip)) {

@@ -23,10 +23,10 @@ pub enum Backend {
 /// The order of the flips. Each order gives a valid result.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Order {
-    /// The parallel pipeline: the same bits on every engine after every iteration.
+    /// The parallel iterations: the same bits on every engine after every iteration.
     #[default]
     Reproducible,
-    /// Lawson's sequential algorithm on the CPU: faster, no iterations to watch.
+    /// Lawson's algorithm on the CPU. It is faster, and has no iterations to watch.
     Any,
 }
 
@@ -44,7 +44,7 @@ pub struct Options {
     pub max_normal_angle: f64,
     /// The largest distance between the old and the new diagonal of a flip, in the units of the positions, rounded down to
     /// a 32-bit float (3D only). It limits how far one flip moves the surface; infinity sets no limit. The distance is the
-    /// one between the lines through the diagonals, also where the diagonals do not pass each other.
+    /// one between the lines through the two diagonals, even where the diagonals end before they pass each other.
     pub max_deviation: f64,
     /// The most iterations; `None`: no limit. Every run ends by itself.
     pub max_iterations: Option<u32>,
@@ -64,11 +64,12 @@ pub struct Options {
     /// number. Lawson's algorithm flips on several threads only if every vertex has one fan. Without the feature
     /// `threads` the engine always has one thread. Copies to and from a GPU use one thread per core.
     pub threads: Option<NonZeroUsize>,
-    /// The device for the GPU engine, instead of one of its own. The engine never destroys it, changes none of its
+    /// The device for the WebGPU engine, instead of a device of its own. The engine never destroys it, changes none of its
     /// settings, and ignores errors of calls that are not its own. If it is a software GPU, `Auto` takes the CPU.
     #[cfg(all(target_arch = "wasm32", feature = "js"))]
-    pub device: Option<crate::wasm::session::GpuDevice>,
-    /// If set, `Auto` fails where it would choose the CPU: another module then runs the CPU engine, on this number of threads.
+    pub device: Option<crate::engine::GpuDevice>,
+    /// If set, `Auto` fails where it would choose the CPU. Another WebAssembly module then runs the CPU engine, on this
+    /// number of threads.
     #[cfg(all(target_arch = "wasm32", feature = "js"))]
     pub leaves_cpu: Option<usize>,
     /// The object of JavaScript that these options were read from, without its lists. Other modules read it again.
@@ -93,13 +94,13 @@ impl Options {
         self.threads.map_or(Ok(()), |count| threads(count.get()).map(drop))
     }
 
-    /// How many iterations a run may do after so many.
+    /// How many iterations a run may still do after `done` iterations.
     pub(super) fn iterations_left(&self, done: u32) -> u32 {
         self.max_iterations.map_or(u32::MAX, |most| most.saturating_sub(done))
     }
 }
 
-/// A number of threads, if it is one.
+/// Checks a number of threads: 1 to [`MOST_THREADS`].
 ///
 /// # Errors
 /// [`Error::Option`].

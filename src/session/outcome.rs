@@ -11,7 +11,7 @@ pub struct Iteration {
     pub labelled: u32,
     /// Edges flipped.
     pub flips: u32,
-    /// Non-Delaunay edges of two triangles that may not flip, in the whole mesh, before the iteration: by `Angle`, `Fold`,
+    /// Non-Delaunay interior edges that may not flip, in the whole mesh, before the iteration: by `Angle`, `Fold`,
     /// `Duplicate`, `Locked` or `Deviation`. Only the outcome counts frozen edges.
     pub blocked: Reasons,
     /// Wall time in milliseconds, including these counts.
@@ -23,18 +23,19 @@ pub struct Iteration {
 pub enum Status {
     /// No edge is left that may flip.
     Done,
-    /// Cancelled or capped, after a complete iteration.
+    /// Cancelled, or at the limit on iterations, after a complete iteration.
     Stopped,
 }
 
 /// Wall times in milliseconds.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Timings {
-    /// On a GPU the time before the adjacency: checks, allocation and copies to the device; in the first session also
-    /// opening the device and compiling the shaders. On the CPU 0.
+    /// On a GPU, the time before the adjacency: checks, allocation and copies to the device; in the first session also
+    /// opening the device and compiling the kernels. On the CPU, it is 0.
     pub upload: f64,
     /// The adjacency, the creases and the winding. After [`Session::set_positions`](crate::Session::set_positions): the
-    /// time of that call. With WebGPU in a browser 0: the engine does not wait, so `flip` has this time and the copies.
+    /// time of that call. With WebGPU in a browser, it is 0: the engine does not wait for the device there, so `flip`
+    /// includes the copies and the adjacency.
     pub adjacency: f64,
     /// The iterations.
     pub flip: f64,
@@ -59,7 +60,7 @@ pub struct Outcome {
     pub iterations: u32,
     /// Flips in all.
     pub flips: u64,
-    /// Flips of each iteration; a whole pass of Lawson's algorithm counts as one iteration.
+    /// Flips of each iteration; a whole run of Lawson's algorithm counts as one iteration.
     pub flips_per_iteration: Vec<u32>,
     /// Compute dispatches encoded on the GPU.
     pub dispatches: u64,

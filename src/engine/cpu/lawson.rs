@@ -1,4 +1,4 @@
-//! Lawson's sequential algorithm flips one non-Delaunay edge after another, from a queue. The triangles enter the queue a
+//! Lawson's algorithm flips one non-Delaunay edge after another, from a queue. The triangles enter the queue a
 //! few at a time, so that consecutive edges are near each other in memory. The paper compares with this algorithm; it is
 //! faster than the parallel phases.
 //!

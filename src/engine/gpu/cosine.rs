@@ -1,4 +1,4 @@
-//! cos β in the form that the shaders read.
+//! cos β in the layout that the shaders read.
 
 use crate::predicates::cosine_fraction;
 

@@ -15,7 +15,7 @@ const SIDE: u16 = 9;
 /// The limit for the deviation in the test mesh.
 const DEVIATION: f32 = 0.005;
 
-/// The forms of meshes for which a device has passed.
+/// The forms of meshes for which a device has passed the self-test.
 #[derive(Default)]
 pub(crate) struct Tested([AtomicBool; Form::COUNT]);
 
@@ -29,7 +29,7 @@ impl Tested {
 pub(crate) type Make<'a> = dyn Fn(Upload) -> Answer<'static, Box<dyn Engine>> + 'a;
 
 /// Runs the test mesh on an engine from `make`, and compares the counts, the flips of each iteration and the triangles with
-/// those of the CPU. Does nothing if the device has passed for this form.
+/// those of the CPU. Does nothing if the device has passed the self-test for this form.
 ///
 /// # Errors
 /// [`Error::BackendUnavailable`] if they differ; those of `make` and of the engine.
@@ -68,8 +68,8 @@ fn thresholds(form: Form) -> Thresholds {
     thresholds
 }
 
-/// A lattice of spacing 0.1, whose nearly cocircular squares need exact arithmetic. Its upper half is sheared, so that it
-/// has to flip. In space it also has a step.
+/// A lattice of spacing 0.1, whose nearly cocircular squares need exact arithmetic. Its upper half is sheared, so that
+/// edges there have to flip. In space, the lattice also has a step.
 fn test_mesh(form: Form) -> Result<Mesh, Error> {
     let (mut doubles, mut triangles) = (Vec::new(), Vec::new());
     for vertex in 0..SIDE * SIDE {

@@ -1,4 +1,4 @@
-//! Prepares a mesh for a GPU engine: coordinates that its shaders decide exactly.
+//! Prepares a mesh for a GPU engine, with coordinates for which its shaders decide exactly.
 
 use crate::mesh::ends::{Ends, MAGNITUDE};
 use crate::phases::Thresholds;
@@ -6,8 +6,8 @@ use crate::system::threads::Threads;
 use crate::{Dimension, EngineKind, Error, Mesh, Positions};
 use std::sync::Arc;
 
-/// The most bits of a coordinate without its sign, in units of the grid of the mesh: the largest power of two that divides
-/// all coordinates. The same in `points.wgsl`.
+/// The most bits of a coordinate without its sign, relative to the centre of the bounding box, in units of the grid. The
+/// unit of the grid is the largest power of two that divides all coordinates. The same limit is in `points.wgsl`.
 pub(in crate::engine) const SPAN: u32 = 84;
 /// Below this power of two, no difference of two floats overflows. WGSL guarantees nothing for infinities.
 const LARGEST_EXPONENT: i32 = 126;
@@ -62,7 +62,7 @@ impl Upload {
     /// # Errors
     /// [`Error::BackendLimit`] for a mesh whose coordinates the shaders cannot decide exactly.
     pub(crate) fn new(backend: EngineKind, mesh: Arc<Mesh>, thresholds: Thresholds) -> Result<Self, Error> {
-        // The limit takes bits as a coordinate does. It is capped: no two points are further apart.
+        // The limit for the deviation takes bits as a coordinate does. At most, it is a distance that no two points have.
         let deviation = |highest| match mesh.dimension() {
             Dimension::Two => 0.0,
             Dimension::Three => f64::from(thresholds.deviation).min(libm::scalbn(1.0, highest + 3)),
@@ -106,8 +106,9 @@ impl Upload {
     }
 }
 
-/// The coordinates and the deviation as integers in units of the grid, relative to the lowest corner of the bounding box.
-/// The error is the number of bits that they would take. `lowest` and `highest` are the exponents of the coordinates.
+/// The coordinates and the limit for the deviation, as integers in units of the grid. The coordinates are relative to the
+/// lowest corner of the bounding box. The error is the number of bits that a coordinate would take. `lowest` and `highest`
+/// are the exponents of the lowest and the highest bit set.
 fn fixed_point(
     mesh: &Mesh,
     (lowest, highest): (i32, i32),
@@ -124,7 +125,7 @@ fn fixed_point(
         let numbers = || positions.iter().skip(axis).step_by(stride);
         let [low, high] = [numbers().reduce(f64::min), numbers().reduce(f64::max)]
             .map(|end| on_grid(end.unwrap_or_default(), lowest));
-        // Relative to the centre of the box, a coordinate takes one bit less.
+        // Relative to the centre of the box, a coordinate takes one bit less than relative to the corner.
         let bits = (i128::BITS - (high - low).leading_zeros()).saturating_sub(1);
         if bits > SPAN {
             return Err(bits);
@@ -165,7 +166,7 @@ fn parts(x: f64) -> (u64, i32) {
     (magnitude, field.max(1) - 1075)
 }
 
-/// Bounds on the results of [`exponents`], which are faster to find.
+/// Bounds on the results of [`exponents`]. The bounds are faster to find.
 fn most_exponents(floats: &[f32]) -> (i32, i32) {
     // A mesh has about as many triangles as coordinates.
     let threads = Threads::default().for_triangles(floats.len());

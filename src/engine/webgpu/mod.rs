@@ -1,9 +1,12 @@
 //! The phases as compute shaders, through wgpu: natively and in the browser.
 //!
-//! An iteration is four dispatches. One submission has a batch of iterations and a tail, a single dispatch for many short
-//! iterations. An iteration on the device does nothing if the one before flipped no edge. The host reads the history after
-//! each batch. In a browser, one wait takes longer than most runs: there the host does not wait before the first batch, and
-//! reads the results that the session will ask for in the same submission.
+//! An iteration is four dispatches: Label, exact arithmetic for the edges that Label leaves undecided, Select, and Flip with
+//! update. One submission has a batch of iterations and a tail: a single kernel that runs many iterations while few
+//! triangles are due. An iteration does nothing if the iteration before flipped no edge. The device writes a history: the
+//! flips of each iteration. The host reads the history after each submission.
+//!
+//! In a browser, one wait takes longer than most runs. There the host does not wait before the first submission. The
+//! submission also copies the results that the session will ask for.
 
 mod adjacency;
 #[cfg(target_arch = "wasm32")]
@@ -80,7 +83,7 @@ pub(crate) struct WebGpu {
     unsettled: Option<Arc<Mesh>>,
     /// The faults of allocating the buffers, until the host has checked them.
     allocation: Option<Caught>,
-    /// Whether the host reads the counters before the first iteration. If so, it also reads no results in advance.
+    /// Whether the host reads the counters before the first iteration. If not, it reads results in advance.
     waits: bool,
     /// Results that the host has read in advance.
     known: Known,
@@ -192,7 +195,8 @@ impl WebGpu {
         Ok([counts[0], counts[1]])
     }
 
-    /// Makes even small meshes change between lists and sweeps: lists below `flips` flips.
+    /// After an iteration of fewer than `flips` flips, the next one visits a list of triangles; else it sweeps over all
+    /// triangles. A small limit makes even small meshes do both.
     pub(crate) fn set_list_below(&mut self, flips: u32) {
         self.params.list_below = flips;
     }
@@ -202,7 +206,7 @@ impl WebGpu {
         self.known = Known::default();
     }
 
-    /// `best` and `selected`.
+    /// `best` and `selected`, the choices of each triangle.
     pub(crate) async fn choices(&self) -> Result<(Vec<u32>, Vec<u32>), Error> {
         let count = self.params.triangles as usize;
         let mut best = self.gpu.read(&self.buffers.choices, 2 * count).await?;
