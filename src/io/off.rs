@@ -2,7 +2,7 @@
 //! Source: the Geomview manual, "OFF Files". Text only, read line by line.
 
 use super::held::{Face, Faces, Numbers, line_end, range_in};
-use super::parsed::{Dropped, Fans, Parsed};
+use super::parsed::{CutFaces, Dropped, Parsed};
 use super::pieces::{self, Piece};
 use super::text::{Digits, Lines, Tokens, coordinate, float, integer, quoted, without_comment};
 use crate::{Error, Mesh};
@@ -33,7 +33,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Parsed, Error> {
         Some(found) if found < announced => format!("the file ends after {found} of {announced} faces"),
         Some(_) => {
             let positions = pieces::joined(positions, &threads).into();
-            return Ok(Parsed { stride, positions, faces: Fans::joined(faces, &threads), dropped });
+            return Ok(Parsed { stride, positions, faces: CutFaces::joined(faces, &threads), dropped });
         }
     };
     Err(end.refuse(message))
@@ -233,7 +233,7 @@ fn capacity(lines: &Lines, count: u64, numbers: usize) -> usize {
 /// The content of a piece of the file.
 struct Part<'a> {
     positions: Vec<f32>,
-    faces: Fans,
+    faces: CutFaces,
     dropped: Dropped,
     /// The number of vertices and faces up to its end.
     found: u64,
@@ -246,7 +246,7 @@ impl<'a> Part<'a> {
         let count = |first: u64, end: u64| end.min(items.end).saturating_sub(first.max(items.start));
         let positions = stride * capacity(&lines, count(0, vertices), stride);
         let triangles = 3 * capacity(&lines, count(vertices, vertices + faces), 4);
-        let fans = Fans { triangles: Vec::with_capacity(triangles), polygons: 0 };
+        let fans = CutFaces { triangles: Vec::with_capacity(triangles), polygons: 0 };
         let dropped = Dropped::default();
         let mut part = Self {
             positions: Vec::with_capacity(positions),

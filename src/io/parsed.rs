@@ -6,14 +6,14 @@ use crate::system::threads::Threads;
 
 /// Faces as triangles: a polygon becomes the fan around its first corner.
 #[derive(Default)]
-pub(super) struct Fans {
+pub(super) struct CutFaces {
     /// Vertex indices, 3 per triangle.
     pub(super) triangles: Vec<u32>,
     /// Faces with more than 3 corners.
     pub(super) polygons: usize,
 }
 
-impl Fans {
+impl CutFaces {
     /// Adds a face of at least 3 corners.
     pub(super) fn push(&mut self, corners: &[u32]) {
         let Some((&first, rest)) = corners.split_first() else { return };
@@ -51,7 +51,7 @@ pub(super) struct Parsed {
     /// `stride` numbers per vertex.
     pub(super) positions: Positions,
     /// The faces.
-    pub(super) faces: Fans,
+    pub(super) faces: CutFaces,
     /// What was dropped.
     pub(super) dropped: Dropped,
 }

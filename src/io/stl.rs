@@ -3,7 +3,7 @@
 //! Source: 3D Systems, "StereoLithography Interface Specification", 1988.
 
 use super::held::{Face, Faces};
-use super::parsed::{Dropped, Fans, Parsed};
+use super::parsed::{CutFaces, Dropped, Parsed};
 use super::rounded::rounded;
 use super::text::{Lines, Tokens, coordinate, float, quoted};
 use crate::{Dimension, Error, MAX_TRIANGLES, Mesh};
@@ -131,13 +131,13 @@ fn binary(bytes: &[u8]) -> Result<Parsed, Error> {
             dropped.note("attributes of facets");
         }
     }
-    Ok(merged(corners, Fans { triangles: (0..3 * count as u32).collect(), polygons: 0 }, dropped))
+    Ok(merged(corners, CutFaces { triangles: (0..3 * count as u32).collect(), polygons: 0 }, dropped))
 }
 
 /// Parses blocks `solid … endsolid` with facets in them.
 fn text(bytes: &[u8]) -> Result<Parsed, Error> {
     let mut words = Words { lines: Lines::new(bytes), line: Tokens(b"") };
-    let (mut corners, mut faces) = (Vec::new(), Fans::default());
+    let (mut corners, mut faces) = (Vec::new(), CutFaces::default());
     while let Some(word) = words.next() {
         words.is(word, "solid")?;
         words.line = Tokens(b""); // skips the name
@@ -157,7 +157,7 @@ fn text(bytes: &[u8]) -> Result<Parsed, Error> {
 }
 
 /// Reads a facet after its first word. It may have more than three corners.
-fn facet(words: &mut Words, corners: &mut Vec<[f32; 3]>, faces: &mut Fans) -> Result<(), Error> {
+fn facet(words: &mut Words, corners: &mut Vec<[f32; 3]>, faces: &mut CutFaces) -> Result<(), Error> {
     words.keyword("normal")?;
     for _ in 0..3 {
         let word = words.after("a number")?;
@@ -229,7 +229,7 @@ fn refuse_too_many(count: usize) -> Result<(), Error> {
 
 /// The mesh of `faces` over `corners`. Corners at the same position become one vertex. It sorts the corners, because no file
 /// can make sorting slow, as it can with hashing.
-fn merged(corners: Vec<[f32; 3]>, mut faces: Fans, dropped: Dropped) -> Parsed {
+fn merged(corners: Vec<[f32; 3]>, mut faces: CutFaces, dropped: Dropped) -> Parsed {
     let key = |(i, corner): (usize, &[f32; 3])| {
         // -0 + 0 is 0.
         let [x, y, z] = corner.map(|x| u128::from((x + 0.0).to_bits()));

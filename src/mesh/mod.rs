@@ -5,7 +5,7 @@ pub(crate) mod buckets;
 pub(crate) mod dimension;
 pub(crate) mod edges;
 pub(crate) mod embedded;
-pub(crate) mod ends;
+pub(crate) mod extremes;
 pub(crate) mod half_edge;
 pub(crate) mod positions;
 pub(crate) mod star;
@@ -14,7 +14,7 @@ pub(crate) mod winding;
 use crate::Error;
 use crate::system::threads::Threads;
 use dimension::Dimension;
-use ends::Ends;
+use extremes::Extremes;
 use glam::{DVec2, DVec3};
 use half_edge::NONE;
 use positions::Positions;
@@ -80,7 +80,7 @@ impl Mesh {
         }
         positions.refuse_non_finite(dimension, threads)?;
         if !triangles.is_empty()
-            && Ends::of(&triangles, u32::MAX, threads).largest as usize >= vertices
+            && Extremes::of(&triangles, u32::MAX, threads).largest as usize >= vertices
             && let Some(i) = triangles.iter().position(|&v| v as usize >= vertices)
         {
             return Err(Error::IndexOutOfRange { triangle: i / 3, index: triangles[i], vertices });

@@ -1,6 +1,6 @@
 //! `Positions`: the coordinates of a mesh, in the precision that they need.
 
-use crate::mesh::ends::{Ends, MAGNITUDE};
+use crate::mesh::extremes::{Extremes, MAGNITUDE};
 use crate::system::threads::Threads;
 use crate::{Dimension, Error};
 use glam::{DVec2, DVec3};
@@ -85,7 +85,7 @@ impl Positions {
         let are_finite = match self {
             Self::F32(numbers) => {
                 let words: &[u32] = zerocopy::transmute_ref!(numbers.as_slice());
-                Ends::of(words, MAGNITUDE, threads).largest < f32::INFINITY.to_bits()
+                Extremes::of(words, MAGNITUDE, threads).largest < f32::INFINITY.to_bits()
             }
             Self::F64(numbers) => {
                 let are_finite =

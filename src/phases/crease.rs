@@ -23,9 +23,9 @@ pub(crate) fn flag_creases(
             if g == NONE || g < h {
                 continue;
             }
-            let corner = |x: u32| triangles[x as usize];
-            let corners = [corner(h), corner(next(h)), corner(prev(h)), corner(prev(g))];
-            let [a, b, c, d] = positions.points3(corners);
+            let vertex = |x: u32| triangles[x as usize];
+            let vertices = [vertex(h), vertex(next(h)), vertex(prev(h)), vertex(prev(g))];
+            let [a, b, c, d] = positions.points3(vertices);
             let crease = if Quad::new(a, b, c, d).is_over_angle(cos) { CREASE } else { 0 };
             let flags = entry & LOCKED | crease;
             twins[h as usize].set(g | flags);

@@ -95,7 +95,7 @@ pub(crate) fn move_anchors(fans: &mut Fans, triangles: &[u32], selected: &Select
 /// vertices a, b, c and d.
 pub(crate) type Around = [[u32; 4]; 2];
 
-/// Flips a selected edge. Reads only the corners and twins of its own two triangles. Writes these, and the entries of
+/// Flips a selected edge. Reads only the vertices and twins of its own two triangles. Writes these, and the entries of
 /// neighbours without a selected edge. Returns the surroundings after the iteration.
 #[inline(always)]
 pub(crate) fn flip(
@@ -107,7 +107,7 @@ pub(crate) fn flip(
     let read = |words: &[AtomicU32], i: u32| words[i as usize].get();
     let write = |words: &[AtomicU32], i: u32, word: u32| words[i as usize].set(word);
     let [hn, hp, gn, gp] = [next(h), prev(h), next(g), prev(g)];
-    let corners @ [_, _, c, d] = [h, g, hp, gp].map(|x| read(triangles, x));
+    let vertices @ [_, _, c, d] = [h, g, hp, gp].map(|x| read(triangles, x));
     let mut outer = [gn, hp, hn, gp].map(|x| read(twins, x));
     for (inner, twin) in [h, hp, g, gp].into_iter().zip(&mut outer) {
         if *twin == NONE {
@@ -126,5 +126,5 @@ pub(crate) fn flip(
     write(triangles, gn, c);
     write(twins, hn, gn);
     write(twins, gn, hn);
-    [outer, corners]
+    [outer, vertices]
 }

@@ -55,7 +55,7 @@ pub(crate) struct Diamond {
     /// Its entry in the twins.
     pub(crate) twin: u32,
     /// a, b, c, d.
-    pub(crate) corners: [u32; 4],
+    pub(crate) vertices: [u32; 4],
 }
 
 impl Diamond {
@@ -63,8 +63,8 @@ impl Diamond {
     #[inline(always)]
     pub(crate) fn new(mesh: Topology, h: u32) -> Self {
         let twin = mesh.twin(h);
-        let corners = [h, next(h), prev(h), prev(unflagged(twin))].map(|x| mesh.corner(x));
-        Self { h, twin, corners }
+        let vertices = [h, next(h), prev(h), prev(unflagged(twin))].map(|x| mesh.vertex(x));
+        Self { h, twin, vertices }
     }
 
     /// Writes the diamonds of the edges between two triangles of `mesh` whose lower half-edge is in a triangle of `piece`.
@@ -78,22 +78,22 @@ impl Diamond {
         let mut count = 0;
         let both = triangles[piece.clone()].iter().zip(&twins[piece]);
         for (h, (&[a, b, c], &[x, y, z])) in (first..).step_by(3).zip(both) {
-            for (h, twin, corners) in
+            for (h, twin, vertices) in
                 [(h, x, [a, b, c, 0]), (h + 1, y, [b, c, a, 0]), (h + 2, z, [c, a, b, 0])]
             {
-                diamonds[count] = Self { h, twin, corners };
+                diamonds[count] = Self { h, twin, vertices };
                 // Counts if h < twin < end. NONE is not below the end.
                 count += usize::from((twin & !FLAGS).wrapping_sub(h + 1) < end - (h + 1));
             }
         }
         for diamond in &mut diamonds[..count] {
-            diamond.corners[3] = mesh.corner(prev(diamond.twin & !FLAGS));
+            diamond.vertices[3] = mesh.vertex(prev(diamond.twin & !FLAGS));
         }
         count
     }
 
     /// Writes those of the four edges around a flipped edge that are between two triangles of `mesh`. Returns their number.
-    /// The diamond had the corners a, b, c and d; its triangles now are (a, d, c) and (b, c, d). `sides` are the half-edges
+    /// The diamond had the vertices a, b, c and d; its triangles now are (a, d, c) and (b, c, d). `sides` are the half-edges
     /// from a, c, b and d, and `outer` their entries in the twins.
     #[inline(always)]
     pub(crate) fn write_around(
@@ -110,7 +110,7 @@ impl Diamond {
             let is_here = mesh.has(twin & !FLAGS);
             // A branch would be unpredictable.
             let g = if is_here { twin & !FLAGS } else { h };
-            diamonds[count] = Self { h, twin, corners: [from, to, apex, mesh.corner(prev(g))] };
+            diamonds[count] = Self { h, twin, vertices: [from, to, apex, mesh.vertex(prev(g))] };
             count += usize::from(is_here);
         }
         count
@@ -171,7 +171,7 @@ fn keep_in_fours(geometry: &Geometry, numbers: &[f32], fours: usize, diamonds: &
     for i in 0..fours {
         let (all, _) = diamonds.as_chunks::<4>();
         let four = &all[i];
-        let quads = array::from_fn(|lane| array::from_fn(|k| &points[four[lane].corners[k] as usize]));
+        let quads = array::from_fn(|lane| array::from_fn(|k| &points[four[lane].vertices[k] as usize]));
         let [negative, positive] = in_circle_filter(&quads);
         let clockwise = geometry.winding.bits(array::from_fn(|lane| triangle_of(four[lane].h)));
         let mut bits = negative & !clockwise | positive & clockwise;
@@ -191,13 +191,13 @@ fn keep_in_fours(geometry: &Geometry, numbers: &[f32], fours: usize, diamonds: &
 
 #[inline(never)]
 fn is_non_delaunay_in_plane(geometry: &Geometry, diamond: &Diamond) -> bool {
-    let [a, b, c, d] = geometry.positions.points2(diamond.corners);
+    let [a, b, c, d] = geometry.positions.points2(diamond.vertices);
     in_circle_sign(a, b, c, d) == geometry.winding.positive(diamond.h / 3).reverse()
 }
 
 #[inline(always)]
 fn quad(positions: &Positions, diamond: &Diamond) -> Quad {
-    let [a, b, c, d] = positions.points3(diamond.corners);
+    let [a, b, c, d] = positions.points3(diamond.vertices);
     Quad::new(a, b, c, d)
 }
 
@@ -210,7 +210,7 @@ pub(crate) fn verdict_of_shape(geometry: &Geometry, diamond: &Diamond) -> Verdic
         // With two positive triangles, the angles at a and b sum to less than π, so both new triangles are positive.
         Dimension::Two if geometry.winding.is_strict => {}
         Dimension::Two => {
-            let [a, b, c, d] = geometry.positions.points2(diamond.corners);
+            let [a, b, c, d] = geometry.positions.points2(diamond.vertices);
             let positive = geometry.winding.positive(diamond.h / 3);
             if area_sign(a, d, c) != positive || area_sign(b, c, d) != positive {
                 return Verdict::Blocked(Reason::Fold);
@@ -233,10 +233,10 @@ pub(crate) fn verdict_of_shape(geometry: &Geometry, diamond: &Diamond) -> Verdic
     Verdict::Labelled
 }
 
-/// Whether an edge between the opposite corners c and d exists already, or c is d.
+/// Whether an edge between the opposite vertices c and d exists already, or c is d.
 pub(crate) fn makes_duplicate(geometry: &Geometry, mesh: Topology, h: u32) -> bool {
     let [at_c, at_d] = [prev(h), prev(unflagged(mesh.twins[h as usize]))];
-    let [c, d] = [at_c, at_d].map(|corner| mesh.triangles[corner as usize]);
+    let [c, d] = [at_c, at_d].map(|h| mesh.triangles[h as usize]);
     if geometry.embedded.at(c) || geometry.embedded.at(d) {
         return false;
     }

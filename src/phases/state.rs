@@ -47,7 +47,7 @@ pub(crate) struct Topology<'a> {
 impl Topology<'_> {
     /// The vertex that a half-edge starts at.
     #[inline(always)]
-    pub(crate) fn corner(&self, h: u32) -> u32 {
+    pub(crate) fn vertex(&self, h: u32) -> u32 {
         self.triangles[(h - self.first) as usize]
     }
 

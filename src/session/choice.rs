@@ -2,7 +2,7 @@
 
 use super::cost::Job;
 use super::fallback::without_gpu;
-use super::{gpu, room};
+use super::{gpu, memory_bounds};
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 use crate::engine::Proxy;
 use crate::engine::{Answer, Cpu, Engine, Lawson};
@@ -47,16 +47,16 @@ pub(crate) fn why_cpu(job: Job, is_double: bool, options: &Options) -> Option<St
     if !job.is_for_gpu() {
         return Some(format!("{} triangles are done first on the cpu", job.triangles));
     }
-    if job.waits_for_gpu() || gpu::is_ready(job, is_double, options) {
+    if job.waits_for_gpu() || open_gpu::is_ready(job, is_double, options) {
         return None;
     }
-    Some(gpu::why_not_ready(job, is_double, options))
+    Some(open_gpu::why_not_ready(job, is_double, options))
 }
 
 /// Whether `Auto` continues on a GPU that has become ready, after `set_up` and `flip` milliseconds on the CPU.
 pub(super) fn changes_to_gpu(mesh: &Mesh, options: &Options, (set_up, flip): (f64, f64)) -> bool {
     let job = job_of(mesh, options);
-    job.continues_on_gpu(set_up, flip) && gpu::is_ready(job, mesh.positions().is_double(), options)
+    job.continues_on_gpu(set_up, flip) && open_gpu::is_ready(job, mesh.positions().is_double(), options)
 }
 
 /// The engine for the options. Boxed, as [`open`].
@@ -67,7 +67,7 @@ pub(super) fn engine_for<'a>(mesh: &'a Arc<Mesh>, options: &'a Options) -> Answe
     Box::pin(async move {
         match (options.order, options.backend) {
             (Order::Any, Backend::Gpu | Backend::WebGl) => {
-                let message = "`any` is sequential and runs on the cpu only".to_owned();
+                let message = "`any` runs on the cpu only".to_owned();
                 Err(Error::Option { option: "order", message })
             }
             (Order::Reproducible, Backend::Auto) => {
@@ -141,12 +141,12 @@ fn open<'a>(backend: Backend, mesh: &'a Arc<Mesh>, options: &'a Options) -> Answ
     Box::pin(async move {
         let thresholds = Thresholds::from(options);
         let cpu = || {
-            memory::check(room::bytes(mesh, options))?;
+            memory::check(memory_bounds::bytes(mesh, options))?;
             let threads = Threads::new(options.threads, mesh.triangle_count())?;
             Ok::<_, Error>(Cpu::new(mesh.clone(), thresholds, threads))
         };
         let mut engine = match (backend, options.order) {
-            (Backend::Gpu, _) => gpu::engine(mesh, options).await?,
+            (Backend::Gpu, _) => open_gpu::engine(mesh, options).await?,
             (Backend::WebGl, _) => webgl(mesh, options).await?,
             (_, Order::Reproducible) => Box::new(cpu()?),
             (_, Order::Any) => Box::new(Lawson::new(cpu()?)),

@@ -6,12 +6,12 @@ mod cost;
 mod early;
 pub(crate) mod edge_states;
 mod fallback;
-#[cfg_attr(not(feature = "gpu"), path = "no_gpu.rs")]
-mod gpu;
 pub(crate) mod locks;
+mod memory_bounds;
+#[cfg_attr(not(feature = "gpu"), path = "no_gpu.rs")]
+mod open_gpu;
 pub(crate) mod options;
 pub(crate) mod outcome;
-mod room;
 #[cfg(test)]
 mod tests;
 
@@ -149,7 +149,7 @@ impl Session {
     /// takes over from a GPU that refuses or fails.
     pub async fn set_positions(&mut self, positions: impl Into<Positions>) -> Result<(), Error> {
         let start = Instant::now();
-        self.check_memory(room::POSITIONS)?;
+        self.check_memory(memory_bounds::POSITIONS)?;
         let positions = positions.into();
         let (length, expected) = (positions.len(), self.mesh.positions().len());
         if length != expected {
@@ -188,7 +188,7 @@ impl Session {
     /// # Errors
     /// [`Error::Device`], [`Error::OutOfMemory`].
     pub async fn triangles(&mut self) -> Result<Vec<u32>, Error> {
-        self.check_memory(room::COPY)?;
+        self.check_memory(memory_bounds::COPY)?;
         self.ask(|engine| engine.triangles()).await
     }
 
@@ -215,7 +215,7 @@ impl Session {
     /// As [`Session::triangles`], in a JavaScript array.
     #[cfg(all(target_arch = "wasm32", feature = "js"))]
     pub(crate) async fn triangles_array(&mut self) -> Result<Uint32Array, Error> {
-        self.check_memory(room::COPY)?;
+        self.check_memory(memory_bounds::COPY)?;
         self.ask(|engine| engine.triangles_array()).await
     }
 
@@ -261,7 +261,7 @@ impl Session {
     /// # Errors
     /// [`Error::Device`], [`Error::OutOfMemory`].
     pub async fn edges(&mut self) -> Result<Edges, Error> {
-        self.check_memory(room::EDGES)?;
+        self.check_memory(memory_bounds::EDGES)?;
         let triangles = self.triangles().await?;
         let twins = self.ask(|engine| engine.twins()).await?;
         Ok(Edges::from_twins(&triangles, &twins))
@@ -273,7 +273,7 @@ impl Session {
     /// # Errors
     /// [`Error::Device`], [`Error::OutOfMemory`].
     pub async fn edge_states(&mut self) -> Result<Vec<EdgeState>, Error> {
-        self.check_memory(room::EDGES)?;
+        self.check_memory(memory_bounds::EDGES)?;
         let triangles = self.triangles().await?;
         let twins = self.ask(|engine| engine.twins()).await?;
         // Flips change neither the components nor their areas, so the winding is the one that the engine found.
@@ -295,7 +295,7 @@ impl Session {
     /// An upper bound on the bytes that a session on the CPU takes in addition to the mesh, from its start to its outcome.
     /// With less memory, [`Session::new`] fails with [`Error::OutOfMemory`].
     pub fn bytes(mesh: &Mesh, options: &Options) -> u64 {
-        room::bytes(mesh, options)
+        memory_bounds::bytes(mesh, options)
     }
 
     /// Iterations so far.
@@ -343,7 +343,7 @@ impl Session {
     async fn iterate(&mut self, count: u32) -> Result<(), Error> {
         // Later iterations use the memory of the first.
         if self.flips_per_iteration.is_empty() && self.engine.backend() == EngineKind::Cpu {
-            memory::check(room::of_run(&self.mesh, &self.options))?;
+            memory::check(memory_bounds::of_run(&self.mesh, &self.options))?;
         }
         let start = Instant::now();
         let flips = self.ask(|engine| engine.iterate(count)).await?;

@@ -2,12 +2,11 @@
 
 use super::options::{self, JsOptions};
 use super::session::JsSession;
-use super::values::{coded, parse_dimension, thrown};
+use super::values::{parse_dimension, thrown};
+use crate::Session;
 use crate::engine::{self, SharedObjects};
 pub use crate::engine::{GpuDevice, WebGl2Module};
 use crate::session::{self, Job};
-use crate::{Error, Mesh, Session};
-use js_sys::{Array, Reflect, Uint32Array};
 use wasm_bindgen::prelude::*;
 
 /// Sets the object that loads the WebGL2 engine.
@@ -19,7 +18,7 @@ pub fn set_webgl2(module: WebGl2Module) {
 /// Why `'auto'` takes the CPU engine on `threads` threads for a mesh, if that is known without asking for a GPU.
 ///
 /// # Errors
-/// [`Error::Option`] for the dimension, and for an option.
+/// [`Error::Option`](crate::Error::Option) for the dimension, and for an option.
 #[wasm_bindgen(js_name = whyCpu)]
 pub fn why_cpu(
     triangles: usize,
@@ -31,25 +30,6 @@ pub fn why_cpu(
     let job = parse_dimension(dimension).map(|dimension| Job { triangles, dimension, threads });
     let why = || Ok(session::why_cpu(job?, is_double, &options::without_lists(options)?));
     why().map_err(thrown)
-}
-
-/// The error of a session that could not begin. If another engine or a second attempt may succeed, it has the mesh.
-pub(super) fn refused(error: Error, mesh: &Mesh, leaves_cpu: bool) -> JsValue {
-    let error = match error {
-        Error::Device { message } if leaves_cpu => coded("backend-unavailable", &message),
-        error @ (Error::Device { .. } | Error::OutOfMemory { .. }) => thrown(error),
-        error => return thrown(error),
-    };
-    let arrays: Array = [
-        mesh.positions().to_typed_array(),
-        Uint32Array::from(mesh.triangles()).into(),
-        (mesh.dimension().stride() as u32).into(),
-    ]
-    .iter()
-    .collect();
-    // Setting a field of an error does not fail.
-    let _ = Reflect::set(&error, &"mesh".into(), &arrays);
-    error
 }
 
 #[wasm_bindgen(js_class = Session)]

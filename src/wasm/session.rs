@@ -1,8 +1,6 @@
 //! A session, as JavaScript calls it. The TypeScript in `src/js/` has checked the types of all arguments, but not their
 //! values. Every exception is an `Error` with a `code`.
 
-#[cfg(feature = "js")]
-use super::gpu::refused;
 use super::objects::outcome_object;
 use super::options;
 pub use super::options::JsOptions;
@@ -12,6 +10,8 @@ use crate::system::threads::Threads;
 #[cfg(all(feature = "js-threads", not(feature = "js")))]
 use crate::wasm::threads::Indices;
 pub use crate::wasm::values::JsPositions;
+#[cfg(feature = "js")]
+use crate::wasm::values::refused;
 use crate::wasm::values::{coded, mesh_of, object, reasons_object, thrown};
 use crate::{Error, Session};
 use js_sys::{Array, Promise, Uint8Array, Uint32Array};

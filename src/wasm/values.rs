@@ -100,6 +100,26 @@ pub(crate) fn thrown(error: Error) -> JsValue {
     }
 }
 
+/// The exception for a session that could not begin. If another engine or a second attempt may succeed, it has the mesh.
+#[cfg(feature = "js")]
+pub(super) fn refused(error: Error, mesh: &Mesh, leaves_cpu: bool) -> JsValue {
+    let error = match error {
+        Error::Device { message } if leaves_cpu => coded("backend-unavailable", &message),
+        error @ (Error::Device { .. } | Error::OutOfMemory { .. }) => thrown(error),
+        error => return thrown(error),
+    };
+    let arrays: Array = [
+        mesh.positions().to_typed_array(),
+        Uint32Array::from(mesh.triangles()).into(),
+        (mesh.dimension().stride() as u32).into(),
+    ]
+    .iter()
+    .collect();
+    // Setting a field of an error does not fail.
+    let _ = js_sys::Reflect::set(&error, &"mesh".into(), &arrays);
+    error
+}
+
 /// `maxNormalAngle` for `max_normal_angle`.
 fn in_camel_case(name: &str) -> String {
     let mut is_after_line = false;

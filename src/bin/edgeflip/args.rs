@@ -261,7 +261,7 @@ pub enum OrderArg {
     /// The parallel pipeline: the same bits on every backend after every iteration
     #[default]
     Reproducible,
-    /// Lawson's sequential algorithm on the CPU: often faster, without iterations
+    /// Lawson's algorithm on the CPU: often faster, without iterations
     Any,
 }
 

@@ -188,11 +188,11 @@ impl Cpu {
             let far = around.iter().flat_map(|[outer, _]| outer).map(|twin| (twin & !FLAGS) as usize);
             touch(far.map(|g| *self.triangles.get(g).unwrap_or(&0)));
             let mut count = 0;
-            for (&[h, g], &[outer, corners]) in flipped.iter().zip(around) {
+            for (&[h, g], &[outer, vertices]) in flipped.iter().zip(around) {
                 self.selected.release(h);
                 self.selected.release(g);
                 let (sides, free) = ([h, prev(h), g, prev(g)], &mut diamonds[count..]);
-                count += Diamond::write_around(mesh, sides, outer, corners, free);
+                count += Diamond::write_around(mesh, sides, outer, vertices, free);
             }
             self.test(&mut diamonds[..count], candidates, blocked);
         }
@@ -203,7 +203,7 @@ impl Cpu {
         let geometry = self.geometry();
         let count = keep_non_delaunay(&geometry, diamonds);
         for diamond in &diamonds[..count] {
-            let (h, g, [_, _, c, d]) = (diamond.h, unflagged(diamond.twin), diamond.corners);
+            let (h, g, [_, _, c, d]) = (diamond.h, unflagged(diamond.twin), diamond.vertices);
             let edge = [h.min(g), h.max(g)];
             match verdict_of_shape(&geometry, diamond) {
                 Verdict::Labelled if self.embedded.at(c) | self.embedded.at(d) => candidates.push(edge),

@@ -146,7 +146,7 @@ impl Region<'_> {
     /// Flips the edges in the queue, and the edges around them.
     fn flip_queue(&mut self) {
         while self.work.flips < self.limit
-            && let Some(Diamond { h, corners, .. }) = self.work.queue.pop()
+            && let Some(Diamond { h, vertices, .. }) = self.work.queue.pop()
         {
             let mesh = self.mesh.get();
             let g = unflagged(mesh.twin(h));
@@ -157,7 +157,7 @@ impl Region<'_> {
             let diamond = Diamond::new(mesh, h);
             // A flip beside this edge has tested it again. Compared word by word: one wide read would wait for the
             // narrow writes.
-            if (0..4).fold(0, |bits, i| bits | corners[i] ^ diamond.corners[i]) != 0 {
+            if (0..4).fold(0, |bits, i| bits | vertices[i] ^ diamond.vertices[i]) != 0 {
                 continue;
             }
             match self.verdict(&diamond) {
@@ -183,7 +183,7 @@ impl Region<'_> {
         if shape != Verdict::Labelled {
             return Some(shape);
         }
-        let (h, [_, _, c, d]) = (diamond.h, diamond.corners);
+        let (h, [_, _, c, d]) = (diamond.h, diamond.vertices);
         let mesh = self.mesh.get();
         let is_duplicate = if self.mesh.fans.is_some() {
             makes_duplicate(self.geometry, mesh, h)
@@ -203,7 +203,7 @@ impl Region<'_> {
         self.work.flips += 1;
         let TopologyMut { first, triangles, twins, fans } = &mut self.mesh;
         let at = |x: u32| (x - *first) as usize;
-        let &Diamond { h, twin, corners: [a, b, c, d] } = diamond;
+        let &Diamond { h, twin, vertices: [a, b, c, d] } = diamond;
         let g = twin & !FLAGS;
         let [hn, hp, gn, gp] = [next(h), prev(h), next(g), prev(g)];
         if let Some(fans) = fans
@@ -224,7 +224,7 @@ impl Region<'_> {
         twins[at(hn)] = gn;
         twins[at(gn)] = hn;
         let free = self.work.queue.free_slots(4);
-        Diamond::write_around(self.mesh.get(), [h, hp, g, gp], outer, diamond.corners, free)
+        Diamond::write_around(self.mesh.get(), [h, hp, g, gp], outer, diamond.vertices, free)
     }
 }
 
@@ -232,7 +232,7 @@ impl Region<'_> {
 /// region before either gives the answer. As [`makes_duplicate`], it walks both stars in turns.
 fn makes_duplicate_inside(mesh: Topology, h: u32) -> Option<bool> {
     let ends = [prev(h), prev(unflagged(mesh.twin(h)))];
-    let [c, d] = ends.map(|corner| mesh.corner(corner));
+    let [c, d] = ends.map(|h| mesh.vertex(h));
     if c == d {
         return Some(true);
     }
@@ -268,7 +268,7 @@ impl Walk {
     #[inline(always)]
     fn step(&mut self, mesh: Topology) -> Option<bool> {
         let side = prev(self.at);
-        if mesh.corner(next(self.at)) == self.to || mesh.corner(side) == self.to {
+        if mesh.vertex(next(self.at)) == self.to || mesh.vertex(side) == self.to {
             return Some(true);
         }
         if !self.clockwise {

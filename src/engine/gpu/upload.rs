@@ -1,6 +1,6 @@
 //! Prepares a mesh for a GPU engine, with coordinates for which its shaders decide exactly.
 
-use crate::mesh::ends::{Ends, MAGNITUDE};
+use crate::mesh::extremes::{Extremes, MAGNITUDE};
 use crate::phases::Thresholds;
 use crate::system::threads::Threads;
 use crate::{Dimension, EngineKind, Error, Mesh, Positions};
@@ -170,7 +170,7 @@ fn parts(x: f64) -> (u64, i32) {
 fn most_exponents(floats: &[f32]) -> (i32, i32) {
     // A mesh has about as many triangles as coordinates.
     let threads = Threads::default().for_triangles(floats.len());
-    let Ends { below, largest } = Ends::of(bytemuck::cast_slice(floats), MAGNITUDE, &threads);
+    let Extremes { below, largest } = Extremes::of(bytemuck::cast_slice(floats), MAGNITUDE, &threads);
     let smallest = below.wrapping_add(1);
     let exponent = |bits: u32| (bits >> 23).max(1) as i32 - 127;
     if largest == 0 { (0, 0) } else { (exponent(smallest) - 23, exponent(largest)) }

@@ -10,6 +10,8 @@ mod iteration;
 #[cfg(feature = "js")]
 mod proxy;
 #[cfg(feature = "js-webgl2")]
+mod start;
+#[cfg(feature = "js-webgl2")]
 mod texture;
 
 #[cfg(feature = "js-webgl2")]

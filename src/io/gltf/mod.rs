@@ -16,7 +16,7 @@ mod read;
 mod root;
 #[cfg(test)]
 mod tests;
-mod weld;
+mod weld_primitives;
 mod write;
 
 pub(super) use document::Document;

@@ -9,7 +9,7 @@ use super::placement::{Placement, placements};
 use super::root::{Root, json, uses};
 use crate::Error;
 use crate::io::options::ReadFile;
-use crate::io::parsed::{Dropped, Fans, Parsed};
+use crate::io::parsed::{CutFaces, Dropped, Parsed};
 use glam::{DMat4, DVec3};
 use gltf::json::mesh::{Mesh as JsonMesh, Mode, Primitive, Semantic};
 use gltf::json::validation::Checked;
@@ -86,7 +86,7 @@ pub(in crate::io) fn read(bytes: Vec<u8>, read: ReadFile<'_>, max_bytes: u64) ->
         }
     }
     let dropped = Dropped(dropped(&root).into_iter().map(String::from).collect());
-    let faces = Fans { triangles, polygons: 0 };
+    let faces = CutFaces { triangles, polygons: 0 };
     let parsed = Parsed { stride: 3, positions: positions.into(), faces, dropped };
     let document = Document { bytes, files: files.into_inner(), parts };
     Ok(Content { parsed, document, notes })

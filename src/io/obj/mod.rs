@@ -6,7 +6,7 @@ mod lines;
 
 pub(super) use faces::held_faces;
 
-use super::parsed::{Dropped, Fans, Parsed};
+use super::parsed::{CutFaces, Dropped, Parsed};
 use super::pieces;
 use super::text::{Lines, Tokens, coordinate, float, integer, quoted, without_comment};
 use crate::{Error, Mesh};
@@ -53,7 +53,7 @@ pub(super) fn write(mesh: &Mesh, out: &mut impl Write) -> io::Result<()> {
 /// The mesh read so far.
 struct Reader {
     positions: Vec<f32>,
-    faces: Fans,
+    faces: CutFaces,
     dropped: Dropped,
     /// The largest vertex index so far, from 0; -1 before the first.
     largest: i64,
@@ -64,7 +64,7 @@ impl Default for Reader {
     fn default() -> Self {
         Self {
             positions: Vec::new(),
-            faces: Fans::default(),
+            faces: CutFaces::default(),
             dropped: Dropped::default(),
             largest: -1,
             corners: Vec::new(),

@@ -8,7 +8,7 @@ mod source;
 
 pub(super) use faces::{held_faces, is_held};
 
-use super::parsed::{Dropped, Fans, Parsed};
+use super::parsed::{CutFaces, Dropped, Parsed};
 use super::text::{Lines, Tokens, quoted};
 use crate::error::number;
 use crate::{Error, Mesh, Positions};
@@ -78,7 +78,7 @@ struct Body<S> {
     vertices: u64,
     stride: usize,
     positions: Positions,
-    faces: Fans,
+    faces: CutFaces,
     corners: Vec<u32>,
 }
 
@@ -86,7 +86,7 @@ impl<'a, S: Source<'a>> Body<S> {
     fn read(source: S, elements: &[Element]) -> Result<Parsed, Error> {
         let (vertices, stride, positions) = announced(elements)?;
         let mut body =
-            Self { source, vertices, stride, positions, faces: Fans::default(), corners: Vec::new() };
+            Self { source, vertices, stride, positions, faces: CutFaces::default(), corners: Vec::new() };
         let mut dropped = Dropped::default();
         let mut skipped = Vec::new();
         for element in elements.iter().filter(|element| element.count > 0) {

@@ -8,12 +8,12 @@ pub(crate) const MAGNITUDE: u32 = !(1 << 31);
 /// `largest` is the largest masked word. `below` is the smallest masked word that is not 0, minus 1, or `u32::MAX` if all
 /// are 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Ends {
+pub(crate) struct Extremes {
     pub(crate) below: u32,
     pub(crate) largest: u32,
 }
 
-impl Ends {
+impl Extremes {
     const NONE: Self = Self { below: u32::MAX, largest: 0 };
 
     pub(crate) fn of(words: &[u32], mask: u32, threads: &Threads) -> Self {
@@ -67,8 +67,8 @@ mod tests {
             let mut sorted: Vec<u32> = all.iter().map(|word| word & MAGNITUDE).collect();
             sorted.sort_unstable();
             let below = sorted.iter().find(|&&word| word > 0).map_or(u32::MAX, |word| word - 1);
-            let expected = Ends { below, largest: sorted.last().copied().unwrap_or(0) };
-            prop_assert_eq!(Ends::of(&all, MAGNITUDE, &Threads::default()), expected);
+            let expected = Extremes { below, largest: sorted.last().copied().unwrap_or(0) };
+            prop_assert_eq!(Extremes::of(&all, MAGNITUDE, &Threads::default()), expected);
         }
     }
 }
