@@ -2,7 +2,7 @@
 
 use super::cost::Job;
 use super::fallback::without_gpu;
-use super::{gpu, memory_bounds};
+use super::{memory_bounds, open_gpu};
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 use crate::engine::Proxy;
 use crate::engine::{Answer, Cpu, Engine, Lawson};
