@@ -8,7 +8,7 @@
 //! | `plane`, `space` | meshes in the plane, or in space |
 //! | `floats`, `fixed` | coordinates as 32-bit floats, or as fixed-point numbers |
 //! | `any_deviation`, `deviation` | without or with a limit for the deviation |
-//! | `sweep`, `tail` | the guard tests many edges, or few |
+//! | `sweep`, `tail` | the guard and Select test many edges at a time, or few |
 //! | `reads`, `writes` | WebGPU only: the kernel only reads the history, or writes it |
 
 /// The text of the file `entry` after the texts of all files that it imports, each once. `text_of` returns the text of a file
@@ -50,7 +50,8 @@ impl Composer<'_, '_> {
         true
     }
 
-    /// Whether a line is an import that has been taken, or whose choice the caller did not make.
+    /// Takes the import in a line, unless the caller did not make its choice. Returns false for a line that stays in
+    /// the text: one without an import, or with an import that has no file.
     fn is_answered(&mut self, line: &str) -> bool {
         let Some(import) = line.strip_prefix("#import ") else { return false };
         let (name, choice) = import.split_once(" if ").unzip();

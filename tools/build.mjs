@@ -134,8 +134,8 @@ async function optimize({ name, options }) {
 }
 
 /**
- * Replaces the body of each panic function by a trap. A panic ends with a trap anyway, and nobody sees its message. The
- * functions that run when memory runs out call `out_of_memory` instead, which throws.
+ * Replaces the body of each panic function by a trap. A panic ends with a trap anyway, and nobody sees its message.
+ * The functions that run when memory runs out get a call of `outOfMemory`, which throws.
  */
 function cutPanics(file) {
   const panics = /^(core|alloc)\b.*::(panicking::.*|panic_\w+|\w+_fail(ed)?)$/;

@@ -1,6 +1,6 @@
 // Runs every mesh of some packages through the CPU and the GPU engine and prints a table: `npm run corpus`. It fetches
 // the packages into target/corpus and installs nothing. The project contains none of these meshes, because the licences
-// of some are not clear. Needs apt-get and dpkg-deb (Debian, Ubuntu), npm, pip and tar.
+// of some are not clear. Needs apt-get and dpkg-deb (Debian, Ubuntu), npm, pip, python3 and tar.
 
 import { spawnSync } from 'node:child_process';
 import { existsSync, mkdirSync, readdirSync, renameSync, rmSync, writeFileSync } from 'node:fs';

@@ -33,7 +33,7 @@ function orStop({ status, error }, what) {
 }
 
 if (cargo(['fuzz', '--version'], true).status !== 0) {
-  console.error('fuzz: cargo-fuzz is missing; it is now installed, with cargo install cargo-fuzz --locked');
+  console.error('fuzz: cargo-fuzz is missing; installing it: cargo install cargo-fuzz --locked');
   orStop(cargo(['install', 'cargo-fuzz', '--locked']), 'the installation');
 }
 orStop(cargo(['fuzz', 'build', '--sanitizer', 'none']), 'the build');

@@ -158,7 +158,7 @@ wanted=$(sed -n '/^name = "wasm-bindgen"$/{n;s/^version = "\(.*\)"$/\1/p;}' Carg
 if [ "$(target/setup/bin/wasm-bindgen --version 2>/dev/null)" != "wasm-bindgen $wanted" ]; then
   say "building wasm-bindgen $wanted, once (about a minute)"
   mkdir -p target/setup
-  # Unoptimised: it takes half as long to build, and still only half a second per module.
+  # Unoptimised, wasm-bindgen builds in half the time, and still needs only half a second per module.
   CARGO_PROFILE_RELEASE_OPT_LEVEL=0 cargo install wasm-bindgen-cli --version "$wanted" --no-default-features --root target/setup \
     --target-dir target/setup/build >target/setup/wasm-bindgen.log 2>&1 || {
     tail -n 15 target/setup/wasm-bindgen.log >&2

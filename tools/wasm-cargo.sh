@@ -3,9 +3,9 @@
 #
 # A machine may have two toolchains: the one on the PATH (rustup's), with or without the wasm32 target, and
 # Debian's in /usr/bin, for which tools/setup.sh builds the target if rustup's server is out of reach.
-# This script takes the first toolchain that has the source of std, for `--threads`, and whose compiler can compile
-# a line of std for wasm32; that fails if the std belongs to an older compiler. It has its own target directory, so
-# that this build and the native build do not rebuild each other's crates.
+# This script takes the first toolchain that has the source of std, which `--threads` needs, and whose compiler can
+# compile a line of Rust for wasm32. Its compiler cannot if the std for wasm32 belongs to an older compiler. The script
+# has its own target directory, so that this build and the native build do not rebuild each other's crates.
 # `tools/wasm-cargo.sh --which` prints the compiler, and fails if there is none.
 # `tools/wasm-cargo.sh --threads build …` builds the crate and std for instances that share their memory.
 set -euo pipefail

@@ -1,5 +1,5 @@
-// Reads points with fixed-point coordinates: relative to the corner of the bounding box, in units of the mesh's grid. No
-// predicate depends on the origin or on the unit.
+// Reads points with fixed-point coordinates: relative to the lowest corner of the bounding box, in units of the mesh's
+// grid. No predicate depends on the origin or on the unit.
 #import integers
 #import state
 
@@ -39,7 +39,7 @@ fn deviation_on(grid: i32) -> vec4u {
     return vec4u(deviation().xyz, 0u);
 }
 
-// u - v. Converting a word to f32 errs by ε, and so does each of two sums of numbers of one sign: 3ε in all.
+// u - v. Converting a word to f32 errs by ε. So does each of the two sums, since no term is negative: 3ε in all.
 fn rounded_difference(u: Point, v: Point) -> vec3f {
     return vec3f(
         rounded(exact_difference(u, v, 0u, 0)),

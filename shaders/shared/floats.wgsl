@@ -74,7 +74,7 @@ fn on_grid(bits: u32, grid: i32) -> vec4u {
     let low = whole << (shift % 32u);
     let high = (whole >> 1u) >> (31u - shift % 32u);
     let word = shift / 32u;
-    // At most 84 bits never need a fourth word.
+    // A coordinate on the grid has at most 84 bits, and never needs a fourth word.
     return vec4u(
         select(0u, low, word == 0u),
         select(select(0u, low, word == 1u), high, word == 0u),

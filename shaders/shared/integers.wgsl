@@ -27,7 +27,7 @@ fn component_of(v: vec3u, axis: u32) -> u32 {
     return select(select(v.x, v.y, axis == 1u), v.z, axis == 2u);
 }
 
-// The sign of the highest digit that is not zero, or `below` if all are.
+// The sign of the highest digit that is not zero, or `below` if all digits are zero.
 fn highest_sign(digits: vec4i, below: i32) -> i32 {
     let signs = sign(digits);
     return select(select(select(select(below, signs.x, signs.x != 0), signs.y, signs.y != 0), signs.z, signs.z != 0), signs.w, signs.w != 0);

@@ -1,10 +1,11 @@
-// Half-edges, their flags, and verdicts: names and functions that every engine and phase shares.
+// Half-edges, their flags, and verdicts: names and functions that all phases of both GPU engines share.
 
 const NONE: u32 = 0xffffffffu;
 const BLOCKED: u32 = 0xfffffffeu;
 // The choice of a triangle that waits for exact arithmetic.
 const DOUBTFUL: u32 = 0xfffffffdu;
-// Flag in both twin entries of an edge that was over β in the input: it never flips, whatever its angle becomes.
+// Flag in both twin entries of a crease: an edge whose normals differed by more than β in the input. It never flips,
+// whatever the angle becomes.
 const CREASE: u32 = 0x80000000u;
 // The same for an edge that the user has locked.
 const LOCKED: u32 = 0x40000000u;
@@ -36,7 +37,7 @@ fn unflagged(entry: u32) -> u32 {
     return select(entry & ~FLAGS, NONE, entry == NONE);
 }
 
-// The priority of an edge in an iteration; the smallest key wins.
+// The key of an edge in an iteration, as in src/phases/state.rs; the smallest key wins.
 fn key(edge: u32, iteration: u32) -> u32 {
     var x = edge ^ (iteration * 0x9e3779b9u);
     x = (x ^ (x >> 16u)) * 0x7feb352du;

@@ -1,13 +1,13 @@
-// Computes the normals of the triangles of a quad in floats, and signs of expressions of them, unless rounding makes these
-// uncertain.
+// Computes in floats the normals of the triangles of a quad, and the signs of values that are made of normals. A sign
+// is 0 if rounding makes it uncertain.
 #import points
 #import state
 
-// As in space.rs, with ε = 2^-23, differences that err by up to 3ε and a sqrt that errs by 5ε: each of the two terms of
-// the angle sum errs by at most 14.7 + 9.1 + 1 + 1.05 = 25.9ε of the product of its sizes, their sum by 51.7ε of the
-// larger product; a product of normals less k|n||m| by 19.1 + 31.4 + 0.5 + 2.1 = 53.1ε, cos β being rounded to f32 too,
-// of the product of the four sizes. The sizes of a normal are those of its two vectors. The bound is
-// 64.
+// The bounds are found as in space.rs, with ε = 2^-23, differences that err by up to 3ε and a sqrt that errs by 5ε.
+// Each of the two terms of the angle sum errs by at most 14.7 + 9.1 + 1 + 1.05 = 25.9ε of the product of its sizes.
+// Their sum errs by at most 51.7ε of the larger product. With k = cos β, also rounded to f32, n·m - k|n||m| errs by at
+// most 19.1 + 31.4 + 0.5 + 2.1 = 53.1ε of the product of the four sizes. The sizes of a normal are those of its two
+// vectors. The bound is 64ε.
 const SPACE_BOUND: f32 = 7.6293945e-6;
 // Flushed values, see points.wgsl, are below 2^-46.
 const SPACE_FLUSHED: f32 = 5.684342e-14;
@@ -15,7 +15,7 @@ const SPACE_FLUSHED: f32 = 5.684342e-14;
 // The vectors p = a - c, q = b - c, r = a - d, s = b - d.
 alias Sides = mat4x3f;
 
-// These vectors, a - b and c - d, scaled; all zero if no filter can decide.
+// The vectors p, q, r, s, a - b and c - d, scaled; all are zero if no filter can decide.
 alias Quad = array<vec3f, 6>;
 
 fn quad_of(a: Point, b: Point, c: Point, d: Point) -> Quad {

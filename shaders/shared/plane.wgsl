@@ -6,8 +6,8 @@
 #import state
 
 // A filter of degree 4 in f32. WGSL and GLSL ES leave the direction of rounding open: each operation errs by at most
-// ε = 2^-23, fused or not. As in plane.rs, but with differences that err by up to 3ε, the value errs by at most 18.2ε of
-// `magnitude`; the bound is 24.
+// ε = 2^-23, fused or not. As in plane.rs, but with differences that err by up to 3ε, the value errs by at most 18.2ε
+// of `magnitude`; the bound is 24ε.
 const PLANE_BOUND: f32 = 2.861023e-6;
 // Flushed values, see points.wgsl, are below 2^-48.
 const PLANE_FLUSHED: f32 = 1.4210855e-14;
@@ -34,8 +34,8 @@ fn filtered_verdict_on(a: Point, b: Point, c: Point, d: Point, winding: i32) -> 
     return verdict;
 }
 
-// The sign of cross(λ)·dot(γ) + dot(λ)·cross(γ): -1 when λ + γ > π, for counter-clockwise triangles; 0 where
-// the filter cannot decide.
+// The sign of cross(λ)·dot(γ) + dot(λ)·cross(γ), with the angles λ at c and γ at d: -1 if λ + γ > π, for
+// counter-clockwise triangles; 0 if the filter cannot decide.
 fn in_circle_sign(p: vec2f, q: vec2f, r: vec2f, s: vec2f) -> i32 {
     let cross1 = vec2f(p.x * q.y, p.y * q.x);
     let dot1 = p * q;
@@ -52,7 +52,7 @@ fn area_sign(u: vec2f, v: vec2f) -> i32 {
     return filtered_sign(u.x * v.y - u.y * v.x, PLANE_BOUND * (abs(u.x * v.y) + abs(u.y * v.x)) + PLANE_FLUSHED);
 }
 
-// The sign of a triangle; 0 where the filter cannot decide.
+// The sign of the area of a triangle; 0 where the filter cannot decide.
 fn filtered_sign_of(a: Point, b: Point, c: Point) -> i32 {
     let u = rounded_difference(b, a).xy;
     let v = rounded_difference(c, a).xy;
@@ -61,8 +61,8 @@ fn filtered_sign_of(a: Point, b: Point, c: Point) -> i32 {
     return area_sign(u * scale, v * scale);
 }
 
-// The same for an edge whose differences are below 2^30, so that everything fits 128 bits. It decides the ties of most
-// lattices.
+// The verdict of `filtered_verdict_on`. If that is UNDECIDED, the verdict of 128-bit integers, which decide if all
+// differences are below 2^30. They decide the ties of most lattices.
 fn close_verdict_on(a: Point, b: Point, c: Point, d: Point, winding: i32) -> u32 {
     var verdict = filtered_verdict_on(a, b, c, d, winding);
     if verdict == UNDECIDED {

@@ -1,5 +1,6 @@
-// Subtracts points: rounded for the filters, and exactly on the grid of four points, which are integers times one power of
-// two. floats.wgsl and fixed.wgsl define points. In the plane, the third coordinate is 0.
+// Subtracts points: with rounding for the filters, and exactly for integers. On the grid of four points, their
+// coordinates are integers times one power of two. floats.wgsl and fixed.wgsl define points. In the plane, the third
+// coordinate is 0.
 #import fixed if fixed
 #import floats if floats
 
@@ -10,8 +11,8 @@ alias Differences = array<vec4u, 3>;
 // checks this at upload.
 const SPAN: u32 = 84u;
 
-// Subnormals may be flushed. The differences are scaled so that the largest lies in [1, 2) and none was
-// computed from a quad smaller than 2^-67. So flushing changes a filter's value by less than its bound.
+// A device may flush subnormals to zero. The differences are scaled so that the largest lies in [1, 2). If the largest
+// is below 2^-67 before, no filter decides. So flushing changes the value of a filter by less than its bound.
 const SMALLEST_FIELD: u32 = 60u;
 const LARGEST_FIELD: u32 = 250u;
 

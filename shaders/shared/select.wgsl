@@ -26,8 +26,8 @@ fn mutual(t: u32) -> u32 {
     return select(NONE, h, h < DOUBTFUL && h / 3u == t);
 }
 
-// Whether another selected edge with a smaller key would join the same two vertices. As in guard.wgsl, the star of each
-// vertex alone gives the answer.
+// Whether an edge yields: another edge that is the best of both its triangles, and has a smaller key, would make the
+// same new edge. As in guard.wgsl, the star of each vertex alone gives the answer.
 fn yields(h: u32, g: u32, iteration: u32) -> bool {
     let c = vertex(prev(h));
     let d = vertex(prev(g));
@@ -48,7 +48,8 @@ fn yields(h: u32, g: u32, iteration: u32) -> bool {
     return is_beaten;
 }
 
-// Whether the edge opposite to `corner` is selected, is also opposite to the vertex `far`, and is better.
+// Whether the edge opposite to `corner` is the best of both its triangles, is also opposite to the vertex `far`, and
+// has a smaller key than `mine`.
 fn wins(corner: u32, far: u32, mine: u32, iteration: u32) -> bool {
     let h = mutual(corner / 3u);
     var is_better = false;

@@ -2,7 +2,7 @@
 #import mesh
 #import state
 
-// The index of half-edge `x`, with its flags, after the iteration.
+// A twin entry after the iteration: the new index of its half-edge, with the flags.
 fn slot(entry: u32) -> u32 {
     let x = unflagged(entry);
     var result = entry;

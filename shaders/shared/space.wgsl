@@ -6,9 +6,9 @@
 #import normals
 #import points
 
-// Four signs of an edge. -1 if the opposite angles sum to more than π; if the angle between the normals is larger than β
-// before the flip; the same after the flip; if a new normal has a negative dot product with an old one. 1 if not, 0 if
-// undecided.
+// Four signs of an edge, each -1 if a condition holds, 1 if not, 0 if undecided. The conditions: the opposite angles
+// sum to more than π; before the flip, the angle between the normals is larger than β; after the flip, it is larger
+// than β; a new normal has a negative dot product with an old one.
 alias Signs = vec4i;
 
 // DELAUNAY, BLOCKED_BY + REASON_ANGLE or REASON_FOLD, or LABELLED; UNDECIDED if a sign that matters is undecided.

@@ -19,7 +19,8 @@ fn star(corner: u32) -> Star {
     return walk;
 }
 
-// A walk of the fan whose anchor is this word of the table; of no fan after the last anchor, or without a table.
+// A walk of the fan whose anchor is at index `word` of the table. The walk is empty after the last anchor, or if `word`
+// is NONE.
 fn fan_at(word: u32) -> Star {
     var anchor = NONE;
     if word != NONE {

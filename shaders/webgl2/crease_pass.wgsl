@@ -6,7 +6,7 @@
 #import space_digits
 #import state
 
-// Whether the edge of a half-edge, the lower one, is over β: 1 or 0.
+// 1 if a half-edge is the lower one of a crease, else 0.
 @fragment
 fn crease_pass(@builtin(position) fragment: vec4f) -> @location(0) u32 {
     let h = index_at(fragment);

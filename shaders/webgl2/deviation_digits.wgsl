@@ -4,8 +4,8 @@
 #import points
 #import vector_digits
 
-// With e = a - b, f = c - d, p = a - c and V their determinant, by the identity of Desnanot and Jacobi
-// V²·f² = (e × f)²·(f × p)² - ((e·f)(f·p) - f²(e·p))²: V² > δ²(e × f)² if
+// Let e = a - b, f = c - d, p = a - c, and V the determinant of the three. The identity of Desnanot and Jacobi says
+// V²·f² = (e × f)²·(f × p)² - ((e·f)(f·p) - f²(e·p))². So V² > δ²(e × f)² if and only if
 // (e × f)²·(f²(p² - δ²) - (f·p)²) > (f²(e·p) - (e·f)(f·p))².
 fn exact_deviation(a: Point, b: Point, c: Point, d: Point) -> u32 {
     let grid = min(grid_of(a, b, c, d), deviation_grid());

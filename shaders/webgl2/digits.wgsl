@@ -1,12 +1,12 @@
-// Computes with exact integers as digits: the sum of digit i times 2^(13·i), the lowest first. Products of such numbers are
-// summed column by column from the lowest digit on, which needs neither an array with a computed index, which old drivers
-// get wrong, nor a carry inside of a column.
+// Computes with exact integers that are stored as digits, the lowest first: an integer is the sum of digit i times
+// 2^(13·i). Products are summed column by column, from the lowest digit on. That needs no computed index into an array,
+// which old drivers get wrong, and no carry inside a column.
 #import integers
 
-// Computed digits are balanced, from -4096 to 4095. A number is zero if all digits are, its sign
-// is that of its highest one that is not zero, and n digits hold every number up to 4095/8192·2^(13·n). With c digits
-// in use in each coordinate's difference, 2c + 1 hold a product of three pairs of differences (below 3·2^(26·c)),
-// 4c + 1 a sum of two products of such (below 18·2^(52·c)).
+// Computed digits are balanced, from -4096 to 4095. A number is zero if all its digits are zero. Its sign is the sign
+// of its highest digit that is not zero. n digits hold every number up to 4095/8192·2^(13·n). If every difference of
+// coordinates has c digits in use, 2c + 1 digits hold a sum of three products of differences (below 3·2^(26·c)), and
+// 4c + 1 digits hold a sum of two products of such sums (below 18·2^(52·c)).
 
 const DIGIT_BITS: u32 = 13u;
 const HALF_DIGIT: i32 = 4096;
@@ -16,7 +16,7 @@ const DIGIT_MASK: i32 = 8191;
 alias Small = array<vec4i, 2>;
 // 16 digits: what is of degree 2.
 alias Medium = array<vec4i, 4>;
-// 36 digits: of degree 4, below 2^346, and times a factor of cos β, up to 2^106.
+// 36 digits: what is of degree 4, below 2^346, also after a product with a factor of cos β, up to 2^106.
 alias Large = array<vec4i, 9>;
 
 fn digits_of(x: vec4u) -> Small {
@@ -153,7 +153,7 @@ fn sum_of_products(x: Small, u: Small, y: Small, v: Small, z: Small, w: Small, c
     return result;
 }
 
-// x·u + y·v of what differences with `count` digits give. A column is below 32·2^24.
+// x·u + y·v, where each factor is a `sum_of_products` of differences with `count` digits. A column is below 32·2^24.
 fn sum_of_medium_products(x: Medium, u: Medium, y: Medium, v: Medium, count: u32) -> Large {
     var result = Large();
     var left_u = u;

@@ -1,6 +1,6 @@
-// The passes of the phases and of the census. Each visits all triangles; triangles without changes around them keep their
-// values. A test with loops of its own is in a pass over half-edges, without a loop around it: compilers that inline everything
-// take very long for nested loops.
+// The passes of the phases and of the census. `verdict_pass` visits all half-edges, most others visit all triangles.
+// Triangles without changes around them keep their values. The exact tests have loops of their own. They are in
+// `verdict_pass`, where no loop is around them: compilers that inline everything take very long for nested loops.
 #import guard
 #import label
 #import mesh
@@ -35,8 +35,8 @@ fn verdict_pass(@builtin(position) fragment: vec4f) -> @location(0) u32 {
     return verdict;
 }
 
-// The frontier: a triangle without a candidate keeps having none unless it or a neighbour
-// flipped. `bests` and `selections` are those of the iteration before.
+// The frontier: a triangle without a choice gets one only if it or a neighbour has flipped. `bests` and `selections`
+// are those of the iteration before.
 @fragment
 fn label_pass(@builtin(position) fragment: vec4f) -> @location(0) u32 {
     let t = index_at(fragment);
@@ -50,7 +50,7 @@ fn label_pass(@builtin(position) fragment: vec4f) -> @location(0) u32 {
     return choice;
 }
 
-// The verdict of the pass before; none for a half-edge without a twin, or an edge that never flips.
+// The verdict of `verdict_pass`; DELAUNAY for a half-edge without a twin, and for an edge that never flips.
 fn known_verdict(h: u32) -> u32 {
     let g = twin_entry(h);
     var verdict = DELAUNAY;
@@ -111,8 +111,8 @@ fn anchor_pass(@builtin(position) fragment: vec4f) -> @location(0) u32 {
     return entry;
 }
 
-// The verdicts on the interior edges of a triangle, each from its lower half-edge: labelled, then blocked by each reason
-// except locks.
+// Counts the interior edges of a triangle, each from its lower half-edge, by verdict: labelled, then blocked by angle,
+// fold and duplicate.
 @fragment
 fn census_pass(@builtin(position) fragment: vec4f) -> @location(0) vec4u {
     let t = index_at(fragment);
@@ -128,7 +128,7 @@ fn census_pass(@builtin(position) fragment: vec4f) -> @location(0) vec4u {
     return result;
 }
 
-// The rest of the census: how many of those edges are locked, and how many would deviate.
+// The rest of the census: how many interior edges are blocked by a lock, and how many by the deviation.
 @fragment
 fn more_pass(@builtin(position) fragment: vec4f) -> @location(0) vec4u {
     let t = index_at(fragment);

@@ -45,7 +45,7 @@ fn exact_signs(a: Point, b: Point, c: Point, d: Point, filtered: Signs) -> Signs
     let rr = dot_of(r, r, count);
     let rs = dot_of(r, s, count);
     let ss = dot_of(s, s, count);
-    // Of the old normals n1 = p × q and n2 = s × r.
+    // The squares of the old normals n1 = p × q and n2 = s × r.
     let n1_square = determinant(pp, qq, pq, pq, count);
     let n2_square = determinant(ss, rr, rs, rs, count);
     var signs = filtered;

@@ -1,5 +1,5 @@
-// Selects the triangles that an iteration visits: all triangles, to find the due ones, while many edges flip; when few flip,
-// the list that the iteration before has built.
+// Tells which triangles an iteration visits. While many edges flip, it visits all triangles and finds those that are
+// due. When few flip, it visits the list that the iteration before has built.
 #import history_read if reads
 #import history_write if writes
 #import mesh
@@ -9,7 +9,7 @@ struct Work {
     // 0 if the run has ended: the iteration before flipped nothing.
     count: u32,
     is_listed: bool,
-    // Whether nearly all triangles are due: then all count as due.
+    // Whether all visited triangles count as due: those of a list, and all triangles after many flips.
     is_full: bool,
     // The offset of the list.
     first: u32,

@@ -1,5 +1,6 @@
-// Finds the twins from the triangles, as src/mesh/adjacency.rs, by buckets: counts the half-edges of each, allocates, scatters,
-// matches. The order within a bucket depends on the device; no result depends on it.
+// Finds the twins from the triangles, as src/mesh/adjacency.rs, by buckets: counts the half-edges of each bucket,
+// allocates, scatters, matches. Then finds out whether vertices have several fans. The order within a bucket depends on
+// the device; no result depends on it.
 #import mesh
 
 const WORKGROUP_SIZE: u32 = 256u;
@@ -43,7 +44,8 @@ fn ends(h: u32) -> vec2u {
     return vec2u(min(u, v), max(u, v));
 }
 
-// By the smaller vertex. Its half-edges are spread over 256 buckets, so that a pole does not fill a single one.
+// By the smaller vertex. Its half-edges are spread over 256 buckets, so that a vertex with many triangles does not fill
+// a single one.
 fn bucket_of(ends: vec2u) -> u32 {
     let hash = (ends.y * 0x9e3779b9u) >> 24u;
     return (ends.x & ~255u) | ((ends.x + hash) & 255u);

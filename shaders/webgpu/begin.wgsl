@@ -1,4 +1,4 @@
-// Starts the first iteration.
+// Begins the history, so that the first iteration can run.
 #import active
 #import history_write
 #import state

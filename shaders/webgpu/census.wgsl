@@ -8,8 +8,8 @@
 
 var<workgroup> census_counts: array<atomic<u32>, COUNTS>;
 
-// Counts the verdicts on all interior edges: labelled, then blocked by reason. Those of a triangle that waits for exact
-// arithmetic are counted when it is resumed.
+// Counts the verdicts on all interior edges: labelled, then blocked by reason. The verdicts of a triangle that waits
+// for exact arithmetic are counted in the second dispatch.
 @compute @workgroup_size(WORKGROUP_SIZE)
 fn census(
     @builtin(global_invocation_id) id: vec3u,

@@ -32,7 +32,7 @@ fn decide_all(
     let work = work_of_task(index);
     if local == 0u {
         limit = work.count;
-        // In a list, most chunks may be doubtful: the invocations share them.
+        // In a list, most chunks may be doubtful, so a workgroup takes one at a time, and all workgroups share them.
         together = select(CHUNKS, 1u, work.is_listed || decides_one());
     }
     let end = workgroupUniformLoad(&limit);
@@ -102,8 +102,8 @@ fn answer(t: u32, iteration: u32) {
     }
 }
 
-// Uses exact arithmetic for the edges that the filter does not decide. Mostly it is one edge: then all invocations decide at
-// the same time, whichever edge of its triangle it is.
+// Uses exact arithmetic for the edges that the filter does not decide. Mostly it is one edge of a triangle. The loop
+// begins with that edge, so all invocations decide at the same time.
 fn exact_answers(t: u32, filtered: vec3u, task: u32) -> vec3u {
     let winding = select(1, -1, is_clockwise(t));
     var answers = filtered;

@@ -1,6 +1,6 @@
-// Keeps track of the triangles that wait for exact arithmetic: their choice is DOUBTFUL. A chunk has as many triangles as a
-// workgroup has invocations; each chunk has a bit, set if one of its triangles waits. Mostly few do, and visiting every
-// triangle would take longer than deciding these.
+// Keeps track of the triangles that wait for exact arithmetic: their choice is DOUBTFUL. A chunk has as many triangles
+// as a workgroup has invocations; each chunk has a bit, set if one of its triangles waits. Mostly few triangles wait,
+// and visiting every triangle would take longer than deciding those few.
 #import mesh
 #import state
 
@@ -51,7 +51,8 @@ fn waiting_index(t: u32) -> u32 {
     return t + select(0u, params.triangles, step_.task == CENSUS);
 }
 
-// Verdicts packed into one word, three bits each. No half-edge with a side has the same word.
+// Verdicts packed into one word, three bits each. No choice of Select, a half-edge with the index of a side from
+// 0 to 2, equals such a word.
 const PACKED: u32 = 0xc0000000u;
 
 fn packed(verdicts: vec3u) -> u32 {

@@ -1,6 +1,6 @@
-// Finds the embedded stars in the plane: the triangles at a vertex are positive and go round it once. The old edge of a flip
-// crosses the new edge c-d. If the star of c or d is embedded, it has one triangle in each direction: so it has no other edge
-// c-d, and no other flip makes one. Flips of strictly convex quads keep stars embedded.
+// Finds the embedded stars in the plane: their triangles are positive and go round the vertex once. The old edge of a
+// flip crosses the new edge c-d. If the star of c or d is embedded, it has one triangle in each direction: so it has no
+// other edge c-d, and no other flip makes one. Flips of strictly convex quads keep stars embedded.
 #import begin
 #import doubts
 #import history_write
@@ -24,9 +24,9 @@ fn prepare_all(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups
     }
 }
 
-// Counts, in the memory of the lists, how often the triangles at each vertex cross the direction of the x axis. Also collects
-// the signs of the triangles: bits 0 to 2 for negative, flat, positive. If the winding is not known, each triangle has the
-// winding of its own sign: the count is right if all have the same.
+// Counts, in the memory of the lists, how often the triangles at each vertex cross the direction of the x axis. Also
+// collects the signs of the triangles: bits 0 to 2 for negative, flat, positive. If the winding is not known, each
+// triangle has the winding of its own sign: the counts are right if all triangles have the same sign.
 @compute @workgroup_size(WORKGROUP_SIZE)
 fn count_turns(
     @builtin(global_invocation_id) id: vec3u,
@@ -53,7 +53,7 @@ fn count_turns(
             let is_below = from_below.y < 0 || (from_below.y == 0 && from_below.x > 0);
             let is_above = to_above.y > 0 || (to_above.y == 0 && to_above.x < 0);
             let turns = select(NOT_EMBEDDED, select(0u, 1u, is_below && is_above), is_positive && is_inner);
-            // Unreferenced vertices may be more than there are words before the doubts.
+            // With many unreferenced vertices, there may be more vertices than words before the bits of the chunks.
             if turns > 0u && vertex(h) < doubts() {
                 atomicAdd(&frontier[vertex(h)], turns);
             }

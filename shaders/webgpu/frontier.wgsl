@@ -1,6 +1,7 @@
-// Flips triangles and builds the frontier, the triangles that are due in the next iteration: those that have flipped and their
-// neighbours, which are stamped, and those with an edge that was labelled and has not flipped, or was blocked as a duplicate.
-// An edge's verdict changes only if one of its triangles has changed; a duplicate may also end by any other flip.
+// Flips edges and builds the frontier: the triangles that are due in the next iteration. Triangles that have flipped,
+// and their neighbours, are due; the neighbours are stamped. Triangles with an edge that was labelled and has not
+// flipped, or that was blocked as a duplicate, are also due. The verdict on an edge changes only if one of its
+// triangles has changed; but any flip may remove a duplicate.
 #import active
 #import flip
 #import history_write

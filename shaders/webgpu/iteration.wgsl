@@ -54,7 +54,7 @@ fn flip_all(
     }
 }
 
-// Invocations of the tail, as many as the device allows.
+// Invocations of the tail. The host sets their number for the device.
 override TAIL_SIZE: u32 = WORKGROUP_SIZE;
 
 // Runs iterations in one workgroup while their lists are short. Pauses in an iteration that needs exact arithmetic: another
@@ -64,7 +64,7 @@ fn tail(@builtin(local_invocation_index) local: u32) {
     if local == 0u {
         tail_first = params.tail;
         if step_.task == RESUME {
-            // NONE, which no iteration follows, if it has not paused.
+            // If the tail has not paused, this is NONE, and no iteration follows.
             tail_first = atomicExchange(&history[PAUSED], 0u) - 1u;
             atomicStore(&frontier[doubts()], 0u);
         }

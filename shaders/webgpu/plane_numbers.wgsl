@@ -9,7 +9,7 @@
 const IN_CIRCLE: u32 = 0u;
 const AREAS: u32 = 1u;
 
-// Offsets of their results: the sign of the in-circle test, or the signs of both new triangles.
+// Offsets of the results of these programs: the value of the in-circle test, or the areas of both new triangles.
 const FIRST: u32 = 359u;
 const SECOND: u32 = 396u;
 
@@ -36,7 +36,7 @@ fn exact_verdict_on(a: Point, b: Point, c: Point, d: Point, winding: i32, task: 
     return verdict;
 }
 
-// In the preparation, the sign of the triangle waits; else the verdict on the geometry of each edge.
+// In the preparation, UNDECIDED for the sign of the triangle; else the verdict of the filter on each edge.
 fn filtered_answers(t: u32, task: u32) -> vec3u {
     var answers = vec3u(UNDECIDED, 0u, 0u);
     if task != PREPARE {

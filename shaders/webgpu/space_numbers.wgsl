@@ -11,9 +11,10 @@
 #import state
 #import verdicts
 
-// Programs, in the order in which they are run: the squares of the old normals; their angle sum, squared; the dot products
-// that the rest takes, and that of the old normals; the angle between them; that of the new normals; the angle between
-// those; dot products of old normals and new ones.
+// Programs, in the order in which they are run. 2: the squares of the old normals. 3: the angle sum, by squares. 4: the
+// dot products that the later programs take, and the product of the old normals. 5: the angle between the old normals.
+// 6: the squares and the product of the new normals. 7: the angle between the new normals. 8: the products of old
+// normals and new ones.
 const SQUARES: u32 = 2u;
 const ANGLE_SUM: u32 = 3u;
 const OLD_ANGLE: u32 = 5u;
@@ -21,7 +22,7 @@ const NEW_NORMALS: u32 = 6u;
 const NEW_ANGLE: u32 = 7u;
 const TURNS: u32 = 8u;
 
-// Offsets of their results: dot products of two sides, and values.
+// Offsets of the results of these programs: the dot products p·q and r·s, and values.
 const PQ: u32 = 206u;
 const RS: u32 = 325u;
 const N: u32 = 359u;

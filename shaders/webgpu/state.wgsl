@@ -6,7 +6,8 @@
 const WORKGROUP_SIZE: u32 = 256u;
 
 struct Params {
-    // The signs of the triangles, in 2D, a bit each. The device writes it before the first iteration.
+    // The signs that occur among the triangles, in 2D: a bit for each sign. The device writes this word before the
+    // first iteration.
     signs: u32,
     vertices: u32,
     triangles: u32,
@@ -15,7 +16,7 @@ struct Params {
     // The offset of the table of the fans in `topology`, and its length.
     fans: u32,
     fans_length: u32,
-    // The first entry of the tail.
+    // The index in the submission of the first iteration of the tail.
     tail: u32,
     // cos β, rounded to f32 for the filter, and its sign.
     cos: f32,
@@ -25,7 +26,7 @@ struct Params {
     tail_iterations: u32,
     // The longest list that the tail takes.
     tail_length: u32,
-    // An iteration builds the list for the next one if the one before it made fewer flips than this.
+    // An iteration builds the list for the next iteration if the iteration before made fewer flips than this.
     list_below: u32,
     // The offset of the bits of the vertices in `topology`, in 2D.
     embedded: u32,
@@ -58,15 +59,16 @@ struct Step {
 @group(0) @binding(4) var<storage, read_write> twins: array<u32>;
 // The choice of Label for each triangle, then the choice of Select, see `flip_of`.
 @group(0) @binding(5) var<storage, read_write> choices: array<u32>;
-// Two lists of triangles that alternate between iterations; for each triangle a stamp, the iteration in which it
-// is due, and one more for none; a bit for each chunk of triangles, see `doubt`.
+// Two lists of triangles that alternate between iterations; for each triangle a stamp, the iteration in which it is
+// due; one more stamp, for neighbours that are NONE; a bit for each chunk of triangles, see `doubt`.
 @group(0) @binding(6) var<storage, read_write> frontier: array<atomic<u32>>;
 // Binding 7 is the history, see history_read.wgsl and history_write.wgsl.
-// Winding bits, which are right where triangles have both signs, then the bits of the embedded stars, then the table of the fans.
+// Winding bits, which are valid only if triangles have both signs, then the bits of the embedded stars, then the table
+// of the fans.
 @group(0) @binding(8) var<storage, read_write> topology: array<u32>;
 
-// Words of the history: the counts, 1 plus the index of the iteration in which the tail has paused, or 0, how many
-// vertices have several fans, and the entries. An entry is about the iteration before it.
+// Words of the history: the counts; 1 plus the index of the iteration in which the tail has paused, or 0; how many
+// vertices have several fans; the entries. An entry is about the iteration before the one that reads it.
 const COUNTED: u32 = 0u;
 const COUNTS: u32 = 6u;
 const PAUSED: u32 = 6u;
@@ -101,8 +103,9 @@ fn best(t: u32) -> u32 {
     return choices[t];
 }
 
-// The two half-edges of the selected edge of triangle `t`, its own one first; NONE if no edge is selected. The choice has the
-// other half-edge, and in the bits of the flags the side of the triangle.
+// The two half-edges of the selected edge of triangle `t`, its own one first; NONE if no edge is selected. The choice
+// of Select has the other half-edge, and in the bits of the flags the index of its own half-edge in the triangle,
+// 0 to 2.
 fn flip_of(t: u32) -> vec2u {
     let entry = choices[params.triangles + t];
     return select(vec2u(3u * t + (entry >> 30u), entry & ~FLAGS), vec2u(NONE), entry == NONE);

@@ -5,8 +5,8 @@
 #import space if space
 #import state
 
-// The verdicts by the fast or the slower filter; UNDECIDED if exact arithmetic has to decide. A census tests every edge from
-// its lower half-edge; an iteration tests the edges that may flip. The other edges have no verdict.
+// The verdicts by the fast or the slower filter; UNDECIDED if exact arithmetic has to decide. A census tests every edge
+// from its lower half-edge; an iteration tests the edges that may flip. The other edges get DELAUNAY.
 fn verdicts_on(t: u32, is_census: bool, is_close: bool) -> vec3u {
     let winding = select(1, -1, is_clockwise(t));
     var a = position(vertex(3u * t));

@@ -13,8 +13,8 @@ pub(super) fn at_least(smallest: usize, n: usize, family: &str) -> Result<(), Er
     Err(Error::Option { option: "family", message: format!("{family} {n}: n must be at least {smallest}") })
 }
 
-/// Refuses what [`Mesh::new`](crate::Mesh::new) would refuse for its size, before any memory is taken for it, what no array can hold
-/// where addresses have 32 bits, and what there is no memory for.
+/// Refuses a mesh before any memory is taken for it: if [`Mesh::new`](crate::Mesh::new) would refuse its size, if no
+/// array can hold it where addresses have 32 bits, or if there is no memory for it.
 pub(super) fn fits(vertices: usize, triangles: usize) -> Result<(), Error> {
     const LONGEST_ARRAY: usize = isize::MAX as usize / size_of::<[u32; 3]>();
     for (what, count, limit) in
@@ -38,7 +38,7 @@ pub(super) fn signed(random: &mut Rand64) -> f64 {
     2.0 * random.rand_float() - 1.0
 }
 
-/// Splits the quad p q r s (in this turn) along the diagonal p-r, or else q-s.
+/// Splits the quad with the corners p, q, r and s, in this order around it, along the diagonal p-r, or else q-s.
 pub(super) fn split(triangles: &mut Vec<u32>, [p, q, r, s]: [u32; 4], along_pr: bool) {
     triangles.extend(if along_pr { [p, q, r, p, r, s] } else { [p, q, s, q, r, s] });
 }

@@ -1,4 +1,5 @@
-//! Generated meshes: the families that the tests, the benchmarks and the demo run on.
+//! Generated meshes: the families that the tests, the benchmarks and the page run on. The paper that their descriptions
+//! name is the one that the README cites.
 //!
 //! The same parameters and seed give the same bits on every platform: the numbers come from a PCG
 //! generator, the trigonometry from the crate `libm`, everything is computed in f64 and rounded to f32
@@ -51,7 +52,7 @@ pub fn by_name(spec: &str) -> Result<Mesh, Error> {
     }
 }
 
-/// Name, n, the further number and the seed of a specification.
+/// The name, n, the parameter and the seed of a specification.
 fn parse(spec: &str) -> Option<(&str, usize, Option<f64>, u64)> {
     let mut words: Vec<&str> = spec.split_whitespace().collect();
     let mut seed = DEFAULT_SEED;

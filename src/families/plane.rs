@@ -1,4 +1,4 @@
-//! Families in the plane. Every triangle is counter-clockwise.
+//! Families in the plane. Every triangle is counter-clockwise, except some in a large [`fan2`].
 
 use super::lattice::{at_least, fits, generator, signed, split, split_cells, turn};
 use crate::{Dimension, Error, Mesh, NONE};
@@ -12,8 +12,8 @@ pub fn grid(n: usize, seed: u64) -> Result<Mesh, Error> {
     sheared(n, 0.0, &mut generator(seed), "grid")
 }
 
-/// [`grid`], then `k` tries for each edge at flipping a random edge whose quad is strictly convex: far
-/// from Delaunay everywhere.
+/// [`grid`] after random flips: `k` tries per edge of the mesh. A try takes a random edge, and flips it if its quad is
+/// strictly convex. The result is far from Delaunay everywhere.
 ///
 /// # Errors
 /// [`Error::Option`] for n < 2, [`Error::TooLarge`].
@@ -175,7 +175,7 @@ fn prev_next(h: usize) -> (usize, usize) {
     (t + (h + 2) % 3, t + (h + 1) % 3)
 }
 
-/// The other half-edge of every half-edge of a manifold mesh of low valence.
+/// The twin of every half-edge of a manifold mesh of low valence.
 fn twins(triangles: &[u32], vertices: usize) -> Vec<u32> {
     let ends = |h: usize| (triangles[h], triangles[if h % 3 == 2 { h - 2 } else { h + 1 }]);
     let lower = |h: usize| ends(h).0.min(ends(h).1) as usize;

@@ -70,8 +70,8 @@ pub fn roof(n: usize, seed: u64) -> Result<Mesh, Error> {
     Mesh::new(Dimension::Three, positions, triangles)
 }
 
-/// Two fans of `n` triangles, with apexes at z = ±`h`, glued at their rim, the unit circle. Across a rim
-/// edge lie both apexes, so flips of several rim edges would make the same new edge.
+/// Two fans of `n` triangles, with apexes at z = ±`h`, glued at their rim, the unit circle. The apexes are the opposite
+/// vertices of every rim edge, so flips of several rim edges would make the same new edge.
 ///
 /// # Errors
 /// [`Error::Option`] for n < 3, [`Error::TooLarge`], [`Error::NonFinite`] for an h beyond f32.

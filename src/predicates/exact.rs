@@ -1,5 +1,5 @@
-//! Exact integers. Floating-point coordinates are integers times one power of two, and every predicate is the sign of a
-//! polynomial in their differences.
+//! Exact integers. Floating-point coordinates are integers times one power of two, and signs of polynomials in their
+//! differences decide every predicate.
 
 use std::cmp::Ordering;
 

@@ -17,7 +17,8 @@ const UNDERFLOW: f64 = f64::MIN_POSITIVE;
 /// is below 2^61, the product of two of these is below 2^122, and a sum of two products is below 2^123.
 pub(super) const NARROW_BITS: u32 = 30;
 
-/// The same within 20 limbs, 1280 bits: 4·319 + 3 = 1279. Differences of f32 have at most 278 bits.
+/// With differences up to this width, degree 4 fits 20 limbs, 1280 bits: 4·319 + 3 = 1279. Differences of f32 have at
+/// most 278 bits.
 pub(super) const WIDE_BITS: u32 = 319;
 
 /// The sign of cross(λ)·dot(γ) + dot(λ)·cross(γ), where λ and γ are the angles at `c` and `d`, opposite to the edge
@@ -28,12 +29,13 @@ pub(crate) fn in_circle_sign(a: DVec2, b: DVec2, c: DVec2, d: DVec2) -> Ordering
     let (p, q, r, s) = (a - c, b - c, a - d, b - d);
     let (cross1, dot1, cross2, dot2) = (p.perp_dot(q), p.dot(q), s.perp_dot(r), s.dot(r));
     let value = cross1 * dot2 + dot1 * cross2;
-    // Without underflow, each difference, product and sum has a relative error of at most ε. So a cross or dot product is
-    // off by at most ((1+ε)^4 - 1) times the sum of the magnitudes of its two products, and the value by at most
+    // Without underflow, each difference, product and sum has a relative error of at most ε. So a cross or dot product
+    // is off by at most ((1+ε)^4 - 1) times the sum of the magnitudes of its two products, and the value by at most
     // ((1+ε)^10 - 1) < 10.1ε times the sum of the magnitudes of its products. For the cross and the dot product of two
-    // vectors, these magnitudes sum to the product of the 1-norms. So the last sum is at most the true `size1 * size2`,
-    // which is at most (1+ε)^9 times the computed one. Underflow puts each of the four sums of products off by at most
-    // 2.1η, and so the value by at most 2.2η(size1 + size2) + 3η; its effect on the sizes is smaller.
+    // vectors, these magnitudes sum to the product of the 1-norms. So the sum of the magnitudes for the value is at
+    // most the true `size1 * size2`, which is at most (1+ε)^9 times the computed one. Underflow puts each of the four
+    // sums of products off by at most 2.1η, and so the value by at most 2.2η(size1 + size2) + 3η; its effect on the
+    // sizes is smaller.
     let size = |v: DVec2| v.x.abs() + v.y.abs();
     let (size1, size2) = (size(p) * size(q), size(s) * size(r));
     if value.abs() > 16.0 * EPSILON * (size1 * size2) + UNDERFLOW * (size1 + size2 + 1.0) {

@@ -29,8 +29,9 @@ const BOUND: f64 = 32.0 * (f64::EPSILON / 2.0);
 /// sizes is off by less. Both L and L' are at most a quarter of the square of the sum of all sizes.
 const UNDERFLOW: f64 = f64::from_bits((1023 - 530) << 52);
 
-/// Differences up to this width fit 20 limbs, 1280 bits: from differences of b bits, degree 8 with its sums is below
-/// 2^(8b + 9), and the β test multiplies by at most 2^212 (the square of an f64 cosine in units of 2^-106).
+/// With differences up to this width, every test fits 20 limbs, 1280 bits: from differences of b bits, degree 8 with
+/// its sums is below 2^(8b + 9), and the β test multiplies by at most 2^212 (the square of an f64 cosine in units of
+/// 2^-106).
 pub(super) const BITS: u32 = 132;
 
 /// The two triangles (a, b, c) and (b, a, d) at an edge (a, b).

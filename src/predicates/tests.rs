@@ -131,7 +131,7 @@ fn root_sum_sign(f: &BigInt, x: &BigInt, g: &BigInt, y: &BigInt) -> Ordering {
     order(&(signed_square(f, x) + signed_square(g, y)))
 }
 
-/// The cosine as a fraction over 2^1074.
+/// Whether n·m < k|n||m|, with the cosine k as a fraction over 2^1074.
 fn exceeds(n: &Vector, m: &Vector, cos: f64) -> bool {
     let scale = dot(n, n) * dot(m, m);
     let unit = BigInt::from(1) << 1074;
@@ -258,7 +258,7 @@ fn the_largest_and_smallest_floats_are_decided() {
     let [a, b, c, d] = square;
     assert_eq!(in_circle_sign(a, b, c, d), Ordering::Equal);
     assert_eq!(in_circle_sign(a, b, c, d - DVec2::new(0.0, 0.0)), Ordering::Equal);
-    // One subnormal step inside the circle.
+    // One subnormal step beside the line through a and b.
     let inside = DVec2::new(tiny, 0.0);
     let [a, b, c] = [DVec2::new(0.0, -1.0), DVec2::new(0.0, 1.0), DVec2::new(2.0, 0.0)];
     assert_eq!(area_sign(a, b, inside), Ordering::Less);

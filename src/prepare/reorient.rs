@@ -7,9 +7,9 @@ use crate::{Error, Mesh, NONE};
 /// direction.
 const AGAINST: u32 = 1 << 31;
 
-/// `mesh` with consistent orientation, and the number of reversed triangles. In each component of triangles joined by edges
-/// of two triangles, it reverses the minority. A component that is not orientable, such as a Möbius strip, stays unchanged.
-/// Reversing a triangle swaps its second and its third corner.
+/// `mesh` with consistent orientation, and the number of reversed triangles. Edges of two triangles join triangles into
+/// components. In each component, the triangles with the less frequent orientation are reversed. A component that is
+/// not orientable, such as a Möbius strip, stays unchanged. Reversing a triangle swaps its second and its third corner.
 ///
 /// # Errors
 /// Those of [`Mesh::new`], which do not occur for a valid mesh.

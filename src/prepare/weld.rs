@@ -16,8 +16,9 @@ pub struct Welded {
     corners: Vec<u32>,
 }
 
-/// Joins the vertices at exactly the same position; -0 equals 0. `attributes` is a number for each vertex: vertices at the
-/// same position with the same number have the same attributes. Without it, all vertices at a position have.
+/// Joins the vertices at exactly the same position; -0 equals 0. `attributes` is a number for each vertex: vertices at
+/// the same position with the same number have the same attributes. Without `attributes`, all vertices at a position
+/// have the same attributes.
 ///
 /// # Errors
 /// [`Error::Option`] for a wrong number of `attributes`.
@@ -64,8 +65,8 @@ impl Welded {
         Ok((Self { mesh, wedges, ..self }, turned))
     }
 
-    /// Splits the vertices again: the triangles of a result, where each corner has a vertex at its position with its
-    /// attributes. A corner that did not move keeps its vertex. [`Wedges::carried`] defines a result.
+    /// Splits the vertices again. Returns the triangles of a result, in which each corner has a vertex at its position
+    /// with its attributes. A corner that did not move keeps its vertex. [`Wedges::carried`] defines a result.
     ///
     /// # Errors
     /// Those of [`Wedges::carried`].
@@ -88,8 +89,8 @@ pub(crate) fn position_bits(mesh: &Mesh, vertex: u32) -> [u64; 3] {
     mesh.point3(vertex).to_array().map(|x| (x + 0.0).to_bits())
 }
 
-/// For each item, the index of the first equal item. It sorts the items, because no input can make sorting slow, as it can
-/// with hashing.
+/// For each item, the index of the first equal item. It sorts the items, because some inputs make hashing slow, and
+/// none makes sorting slow.
 pub(crate) fn first_alike<T: Ord>(these: impl Iterator<Item = T>) -> Vec<u32> {
     let mut sorted: Vec<(T, u32)> = these.zip(0..).collect();
     sorted.sort_unstable();

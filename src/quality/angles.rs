@@ -17,7 +17,7 @@ impl AngleHistogram {
     }
 }
 
-/// Statistics of the angles of a mesh. A degenerate triangle counts with the smallest angle 0.
+/// Statistics of the angles of a mesh. A flat triangle counts with the smallest angle 0.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Angles {
     /// Smallest angle of the mesh in degrees; 60 for a mesh without triangles.

@@ -1,5 +1,5 @@
-//! The audit: checks what a result must keep of its input, and lists the edges that remain, with exact arithmetic. It shares
-//! no code with the engines.
+//! The audit: checks what a result must keep of its input, and lists the edges that remain, with exact arithmetic. It
+//! shares no code with the engines, except `cos_degrees`, which defines cos β.
 
 use super::edges::{Class, Edge};
 use super::exact;
@@ -105,7 +105,8 @@ pub enum Violation {
     /// The signed areas of the components, sorted, are not exactly the same (2D).
     #[error("the signed area of a component changed")]
     Area,
-    /// More triangles than before are flat or inverted: they have the opposite sign of their component (2D).
+    /// More triangles than before are flat or inverted (2D). An inverted triangle has the opposite sign of its
+    /// component.
     #[error("{after} inverted or flat triangles instead of {before}")]
     Inverted {
         /// In the input.

@@ -207,8 +207,8 @@ pub(super) fn turn(triangle: [Coord<f64>; 3]) -> Ordering {
     sign(&corner.normal[2])
 }
 
-/// The sign of the in-circle determinant: `Greater` if d is inside the circle of the counter-clockwise triangle a, b, c. For
-/// any orientation it is the polynomial -(cross1·dot2 + dot1·cross2) of the angles at c and d.
+/// The sign of the in-circle determinant: `Greater` if d is inside the circle of the counter-clockwise triangle a, b,
+/// c. For any orientation it is the sign of the polynomial -(cross1·dot2 + dot1·cross2) of the angles at c and d.
 pub(super) fn in_circle([a, b, c, d]: [Coord<f64>; 4]) -> Ordering {
     if ordinary(&[a.x, a.y, b.x, b.y, c.x, c.y, d.x, d.y]) {
         return sign_of(robust::incircle(a, b, c, d));
@@ -238,7 +238,7 @@ impl ExactSum {
         Self { unit, bins: Vec::new() }
     }
 
-    /// The largest unit of all numbers.
+    /// The exponent of the largest power of two of which all numbers are multiples.
     pub fn unit(numbers: impl Iterator<Item = f64>) -> i32 {
         numbers.filter(|&x| x != 0.0).map(|x| decode(x).1).min().unwrap_or(0)
     }

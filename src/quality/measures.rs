@@ -14,7 +14,7 @@ pub struct Measures {
     /// Mean of the smallest angles of the triangles, in degrees; 60 for a mesh without triangles.
     pub mean_min_angle: f64,
     /// Mean aspect ratio of the triangles that are not flat: the longest edge divided by the diameter of the incircle,
-    /// scaled to 1 for an equilateral triangle; 1 for a mesh without such triangles.
+    /// scaled to 1 for an equilateral triangle; 1 if all triangles are flat.
     pub mean_aspect: f64,
     /// The number of flat triangles: their area is 0 in f64.
     pub flat: usize,

@@ -98,8 +98,8 @@ impl<'a> Surface<'a> {
         self.points([h, next(h), prev(h)].map(|x| self.triangles[x as usize]))
     }
 
-    /// The edges that are not Delaunay, in the order of the table. `creases` may not flip, whatever their present angle, and
-    /// `locked` may not flip at all. Both are in the same order.
+    /// The edges that are not Delaunay, in the order of the table. The edges in `creases` and `locked` never flip,
+    /// whatever their present angle. Both lists are in the order of the table.
     pub fn remaining(
         &self,
         limits: Limits,

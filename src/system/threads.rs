@@ -62,7 +62,7 @@ impl Threads {
     }
 
     /// The number of threads of [`Threads::new`].
-    #[cfg_attr(not(feature = "threads"), expect(unused_variables, reason = "it is one, whatever it says"))]
+    #[cfg_attr(not(feature = "threads"), expect(unused_variables, reason = "there is only one thread"))]
     pub(crate) fn count_for(option: Option<NonZeroUsize>, triangles: usize) -> usize {
         #[cfg(feature = "threads")]
         if let Some(count) = option.filter(|_| triangles >= FEWEST_TRIANGLES) {
@@ -77,7 +77,7 @@ impl Threads {
     }
 
     /// The same threads, or one thread if the mesh is too small for several.
-    #[cfg_attr(not(feature = "threads"), expect(unused_variables, reason = "it is one, for any"))]
+    #[cfg_attr(not(feature = "threads"), expect(unused_variables, reason = "there is only one thread"))]
     pub(crate) fn for_triangles(self, count: usize) -> Self {
         #[cfg(feature = "threads")]
         return Self { is_one: self.is_one || count < FEWEST_TRIANGLES, ..self };
@@ -237,8 +237,8 @@ impl Word for AtomicU32 {
     }
 }
 
-/// In WebAssembly, atomic accesses are sequentially consistent and several times as slow. Its plain accesses are the relaxed
-/// ones.
+/// WebAssembly has only sequentially consistent atomic accesses, which are several times as slow. Its plain accesses
+/// are what Rust calls relaxed.
 #[cfg(all(target_arch = "wasm32", target_feature = "atomics"))]
 #[expect(unsafe_code, reason = "Rust offers no other plain access to an atomic")]
 impl Word for AtomicU32 {

@@ -1,6 +1,6 @@
-//! Lawson's algorithm flips one non-Delaunay edge after another, from a queue. The triangles enter the queue a
-//! few at a time, so that consecutive edges are near each other in memory. The paper compares with this algorithm; it is
-//! faster than the parallel phases.
+//! Lawson's algorithm flips one non-Delaunay edge after another, from a queue. The triangles enter the queue a few at a
+//! time, so that consecutive edges are near each other in memory. The paper that the README cites compares its phases
+//! with this algorithm. On the CPU, this algorithm is faster than the phases.
 //!
 //! Each thread flips inside a region of the mesh, then across the border of two regions. The regions, and so the flips,
 //! are the same for any number of threads.
@@ -14,8 +14,8 @@ use std::sync::Arc;
 /// The most regions: several per thread on most machines, so that no thread waits long for another.
 const REGIONS: usize = 64;
 
-/// The fewest triangles of a region: few of them are near the border. In debug builds it is small, so that tests with
-/// small meshes have regions.
+/// A region with at most this many triangles is not divided, so that few triangles are near a border. In debug builds
+/// the number is small, so that tests with small meshes have several regions.
 const FEWEST: usize = if cfg!(debug_assertions) { 16 } else { 1 << 15 };
 
 /// Lawson's algorithm on the state of the CPU engine.
@@ -36,7 +36,7 @@ impl Lawson {
         let (geometry, mesh) = self.cpu.parts();
         let mut whole = Region { geometry: &geometry, mesh, work: Work::default(), limit: u32::MAX };
         let triangles = whole.mesh.triangles.len() / 3;
-        // A region sees only the fans inside it.
+        // A region smaller than the mesh sees only its own triangles, and would miss other fans of a vertex.
         let is_cut = whole.mesh.has_no_fans();
         let size = if is_cut { triangles.div_ceil(REGIONS).max(FEWEST) } else { triangles };
         whole.flip_parts(size, &threads);

@@ -33,12 +33,13 @@ const DUPLICATE: u32 = LOCKED;
 /// Flag in the second half-edge of a candidate: after other flips, its flip may make an edge that exists.
 const GUARDED: u32 = CREASE;
 
-/// Some of the edges that are not Delaunay, for one thread. No bit of the result depends on how the edges are divided.
+/// Some of the edges that are not Delaunay, for one thread. No bit of the result depends on how the edges are divided
+/// into parts.
 #[derive(Default)]
 struct Part {
     /// Edges that may flip, or are blocked only as duplicates.
     candidates: Vec<Edge>,
-    /// One half-edge of each other edge; also of some edges that no longer exist.
+    /// One half-edge of each edge that is blocked for another reason; also of some edges that no longer exist.
     blocked: Vec<u32>,
     /// Edges that the last iteration has flipped.
     flipped: Vec<Edge>,
@@ -48,7 +49,8 @@ struct Part {
     vain: Vec<u32>,
 }
 
-/// Reads words before they are used. In so short a loop, the processor waits for many of them at once.
+/// Brings words into the cache before they are used. The loop is so short that the processor fetches many of them at
+/// the same time.
 #[inline(always)]
 fn touch(words: impl Iterator<Item = u32>) {
     black_box(words.fold(0, |all, word| all ^ word));
@@ -77,12 +79,12 @@ pub(crate) struct Cpu {
     parts: Vec<Part>,
     /// More blocked edges, from parts that `deal` has replaced.
     blocked: Vec<Vec<u32>>,
-    /// Whether the parts have all edges that are not Delaunay. False before the first iteration.
+    /// Whether `parts` and `blocked` have all edges that are not Delaunay. False before the first iteration.
     is_known: bool,
-    /// The edges that flip, by triangle. Empty while `is_known` is false.
+    /// The edges that flip, by triangle. `label` makes it when it tests all edges.
     selected: Selected,
-    /// For each vertex, unless its star is known to be embedded: one plus the last iteration that added or removed an edge
-    /// there. Empty while `is_known` is false.
+    /// For each vertex whose star is not known to be embedded: one plus the index of the last iteration that added or
+    /// removed an edge at this vertex. `label` makes it when it tests all edges.
     changed: Vec<AtomicU32>,
     iteration: u32,
 }
@@ -179,7 +181,7 @@ impl Cpu {
         candidates.truncate(count);
     }
 
-    /// Tests the edges around the flipped edges, and releases the triangles of these.
+    /// Tests the edges around the flipped edges, and releases the triangles of the flipped edges.
     fn test_around(&self, part: &mut Part) {
         let Part { candidates, blocked, flipped, around, .. } = part;
         let mesh = self.topology();

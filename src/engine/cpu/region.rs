@@ -12,7 +12,7 @@ use std::ops::Range;
 /// Triangles whose edges one pass tests before it flips.
 const TRIANGLES: usize = 32;
 
-/// The most edges of so many triangles.
+/// The most edges of `TRIANGLES` triangles.
 const EDGES: usize = 3 * TRIANGLES;
 
 /// A range of triangles. The code reads and writes nothing outside it.
@@ -123,8 +123,8 @@ impl Region<'_> {
         }
     }
 
-    /// Defers the edges between these triangles and triangles after the region. The region before defers the edges to
-    /// triangles before this one. No flip moves these half-edges.
+    /// Defers the edges between these triangles and triangles after the region. The regions before this one defer the
+    /// edges to their triangles. No flip moves these half-edges, because `verdict` defers a flip that would.
     fn defer(&mut self, piece: Range<usize>) {
         let first = self.mesh.first + 3 * piece.start as u32;
         let end = self.mesh.first + self.mesh.twins.len() as u32;
@@ -137,7 +137,7 @@ impl Region<'_> {
         }
     }
 
-    /// Tests `count` edges in the slots behind the queue, and appends those that are not Delaunay to it.
+    /// Tests `count` edges in the slots behind the queue, and appends those that are not Delaunay to the queue.
     fn test(&mut self, count: usize) {
         let queue = &mut self.work.queue;
         queue.end += keep_non_delaunay(self.geometry, &mut queue.slots[queue.end..][..count]);
@@ -150,13 +150,14 @@ impl Region<'_> {
         {
             let mesh = self.mesh.get();
             let g = unflagged(mesh.twin(h));
-            // After a flip, `h` may belong to a boundary edge. Half-edges on the border of the region do not move.
+            // After a flip, `h` may be on a boundary edge. It is never on the border of the region, because the
+            // half-edges there do not move.
             if !mesh.has(g) {
                 continue;
             }
             let diamond = Diamond::new(mesh, h);
-            // A flip beside this edge has tested it again. Compared word by word: one wide read would wait for the
-            // narrow writes.
+            // If the vertices differ, a flip beside this edge has tested the edge again. They are compared word by
+            // word: one wide read would wait for the narrow writes.
             if (0..4).fold(0, |bits, i| bits | vertices[i] ^ diamond.vertices[i]) != 0 {
                 continue;
             }
@@ -196,8 +197,8 @@ impl Region<'_> {
         Some(if is_duplicate { Verdict::Blocked(Reason::Duplicate) } else { shape })
     }
 
-    /// Flips one edge, and writes the edges around it to the slots behind the queue. Returns their number. No triangle
-    /// around it is one of its own: c is not d in an edge that may flip.
+    /// Flips one edge, and writes the edges around it to the slots behind the queue. Returns their number. The
+    /// triangles beyond these edges are not the two of the flipped edge: c is not d if an edge may flip.
     #[inline(always)]
     fn flip(&mut self, diamond: &Diamond) -> usize {
         self.work.flips += 1;
@@ -228,7 +229,7 @@ impl Region<'_> {
     }
 }
 
-/// Whether a flip makes an edge that exists, in a mesh whose vertices have one fan each. `None` if both stars leave the
+/// Whether a flip makes an edge that exists, in a mesh whose vertices have one fan each. `None` if both walks leave the
 /// region before either gives the answer. As [`makes_duplicate`], it walks both stars in turns.
 fn makes_duplicate_inside(mesh: Topology, h: u32) -> Option<bool> {
     let ends = [prev(h), prev(unflagged(mesh.twin(h)))];
@@ -291,7 +292,7 @@ impl Walk {
     }
 }
 
-/// Edges that were not Delaunay when they were tested, first in, first out: then the processor can start on the next edge
+/// Edges that were not Delaunay when they were tested, first in, first out. So the processor can start on the next edge
 /// while it tests the edges around the last one.
 #[derive(Default)]
 struct Queue {

@@ -1,7 +1,7 @@
 //! The phases as fragment programs over integer textures, for browsers without WebGPU.
 //!
-//! Every phase is a pass over all triangles. It reads one texture of a pair and writes the other. The host reads the flips
-//! after each batch of iterations.
+//! Every phase is one or more passes. A pass that renews a texture reads the front of a pair and writes the back. The
+//! host reads the flips after each batch of iterations.
 
 use super::context::Context;
 use super::texture::{Pair, Texture};
@@ -44,9 +44,9 @@ pub(crate) struct WebGl {
     pub(super) bests: Pair,
     pub(super) selections: Texture,
     pub(super) fans: Pair,
-    /// Each is an eighth as wide and as high as the one before. The last one is one block.
+    /// Sums of counts. Each texture is an eighth as wide and as high as the one before. The last one is one block.
     pub(super) sums: Vec<Texture>,
-    /// Twice the flips of each iteration of a batch; or a census.
+    /// For each iteration of a batch, twice its flips, because both triangles of a flip count it; or a census.
     pub(super) history: Texture,
     pub(super) has_locks: bool,
     pub(super) passes: u64,

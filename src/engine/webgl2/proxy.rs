@@ -73,7 +73,7 @@ impl Proxy {
         let module = MODULE.with_borrow(Clone::clone);
         let module = module.ok_or_else(|| unavailable("its module is not set".to_owned()))?;
         let positions = mesh.positions().to_typed_array();
-        // A copy: the call waits for the module.
+        // A copy, because the call reads it only when the module is loaded.
         let indices = Uint32Array::from(mesh.triangles());
         let dimension = mesh.dimension().stride() as u32;
         let created = module.create(positions, indices, dimension, options);

@@ -20,8 +20,8 @@ use std::sync::Arc;
 
 /// Side of the square of texels that one fragment sums; the same in `passes.wgsl`.
 const BLOCK: u32 = 8;
-/// The height of a texture with at most so many rows is rounded up to a power of two. Mesa compiles a program again for
-/// other heights.
+/// The height of a texture with at most this many rows is rounded up to a power of two. Mesa compiles a program again
+/// for each new height.
 const SMALL_HEIGHT: usize = 256;
 
 impl WebGl {

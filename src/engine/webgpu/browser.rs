@@ -36,7 +36,8 @@ extern "C" {
     pub(super) fn message(this: &HasMessage) -> String;
 }
 
-/// The navigator of a window or a worker. Elsewhere, as in Node, wgpu's instance panics.
+/// The navigator of a window or a worker. Elsewhere, as in Node, there is none, and making an instance of wgpu would
+/// panic.
 pub(super) fn navigator() -> Option<Object> {
     match js_sys::global().dyn_into::<web_sys::Window>() {
         Ok(window) => Some(window.navigator().into()),
@@ -54,7 +55,7 @@ pub(super) fn has_webgpu() -> bool {
 }
 
 impl GpuDevice {
-    /// The device behind wgpu's.
+    /// The browser's device behind a device of wgpu.
     pub(super) fn of(device: &wgpu::Device) -> Option<Self> {
         Some(JsValue::from(device.as_webgpu()?.clone()).unchecked_into())
     }
@@ -70,7 +71,7 @@ impl GpuDevice {
         [(); 3].map(|()| JsFuture::from(self.pop_error_scope()))
     }
 
-    /// Vendor and architecture, such as `nvidia ampere`. Empty where the browser does not tell them.
+    /// Vendor, architecture and description, such as `nvidia ampere`. Empty where the browser does not tell them.
     pub(super) fn adapter_name(&self) -> String {
         let info = self.adapter_info();
         let words = info.map(|info| [info.vendor(), info.architecture(), info.description()]);

@@ -1,4 +1,4 @@
-//! The buffers of a mesh whose sizes are known from the start.
+//! The buffers of a mesh. Their sizes are known from the start; only the topology may grow later.
 
 use super::buffer::Buffer;
 use super::device::Device;
@@ -9,7 +9,8 @@ use super::steps::Step;
 use crate::engine::gpu::upload::Upload;
 use wgpu::BufferUsages;
 
-/// Words of the frontier for `triangles` triangles. It is the longest buffer: see `state.wgsl`.
+/// Words of the frontier for `triangles` triangles. It is longer than every other buffer whose length depends on the
+/// triangles; `state.wgsl` has its layout.
 pub(super) fn frontier_words(triangles: usize) -> usize {
     3 * triangles + 1 + triangles.div_ceil(WORKGROUP_SIZE as usize).div_ceil(32)
 }

@@ -65,8 +65,8 @@ pub(super) async fn compile(plans: &[Plan], device: &wgpu::Device) -> Result<Vec
 
 /// The kernels of some plans, and those of the phases for a form.
 ///
-/// In a browser the tail compiles behind the first runs. Natively it compiles with the others: a process may end at any
-/// time, and drivers do not expect that while they compile.
+/// In a browser the tail compiles while the first runs go on. Natively it compiles with the other kernels: a process
+/// may end at any time, and drivers do not expect that while they compile.
 pub(super) async fn compile_phases(
     mut plans: Vec<Plan>,
     form: Form,

@@ -18,7 +18,7 @@ use wgpu::BufferUsages;
 /// memory, which is far faster than new memory.
 #[cfg(not(target_arch = "wasm32"))]
 pub(super) const CHUNK: usize = 1 << 22;
-/// In a browser each copy is a wait: as many words as the largest staging buffer that is kept.
+/// In a browser the host waits for each copy, so a copy may be as long as the largest staging buffer that is kept.
 #[cfg(target_arch = "wasm32")]
 pub(super) const CHUNK: usize = MOST_KEPT as usize / 4;
 
@@ -213,7 +213,7 @@ impl Device {
         #[cfg(not(target_arch = "wasm32"))]
         {
             self.queue.submit([]);
-            // The next call that returns an error reports a failure.
+            // If this fails, the next call that can return an error reports it.
             let _ = self.wait();
         }
     }

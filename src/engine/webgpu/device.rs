@@ -86,8 +86,8 @@ fn numbers(device: &wgpu::Device, queue: &wgpu::Queue) -> Buffer {
     buffer
 }
 
-/// Submits one copy to a device and waits for it, on another thread. The first submission takes a driver long; while the
-/// kernels compile, it costs no time. Errors are ignored: later calls get them too.
+/// Submits one copy to a device and waits for it, on another thread. The first submission to a device takes long.
+/// Beside the compilation of the kernels, it costs no extra time. Errors are ignored: later calls get them too.
 #[cfg(not(target_arch = "wasm32"))]
 fn wake(device: &wgpu::Device, queue: &wgpu::Queue) -> std::io::Result<std::thread::JoinHandle<()>> {
     let (device, queue) = (device.clone(), queue.clone());

@@ -1,4 +1,4 @@
-//! Hands a device that the page has made to wgpu.
+//! Gives wgpu a device that the page has made.
 
 use super::browser::{GpuDevice, HasMessage, navigator};
 use js_sys::{Array, Object, Promise, Reflect};

@@ -83,7 +83,7 @@ pub(super) type Entry = (usize, &'static str, Option<(&'static str, f64)>);
 pub(super) struct Kernels {
     pub(super) layout: wgpu::BindGroupLayout,
     pub(super) pipelines: Vec<wgpu::ComputePipeline>,
-    /// Beside those of the phases, once it is compiled.
+    /// Only for the kernels of the phases: the tail, once it is compiled.
     pub(super) tail: OnceLock<wgpu::ComputePipeline>,
 }
 
@@ -101,7 +101,7 @@ pub(super) struct Plan {
 }
 
 impl Plan {
-    /// count, allocate, scatter, match_twins, count_corners, count_fans.
+    /// The kernels of the adjacency, in the order in which `adjacency::record` dispatches them.
     pub(super) fn adjacency() -> Self {
         let (read, write) = (storage(true), storage(false));
         let names = ["count", "allocate", "scatter", "match_twins", "count_corners", "count_fans"];

@@ -5,8 +5,8 @@
 //! triangles are due. An iteration does nothing if the iteration before flipped no edge. The device writes a history: the
 //! flips of each iteration. The host reads the history after each submission.
 //!
-//! In a browser, one wait takes longer than most runs. There the host does not wait before the first submission. The
-//! submission also copies the results that the session will ask for.
+//! In a browser, one wait for the GPU takes longer than most runs. There the host submits the first iterations without
+//! waiting for the preparation. The same submission also copies the results that the session will ask for.
 
 mod adjacency;
 #[cfg(target_arch = "wasm32")]

@@ -59,7 +59,7 @@ const FP: Offset = medium(3);
 const EP: Offset = medium(4);
 const BEYOND: Offset = medium(5);
 
-/// Integers of degree 4, also multiplied by the mantissa or the power of cos β.
+/// Integers of degree 4, with room for a product with the mantissa or the power of cos β.
 const fn large(i: u32) -> Offset {
     medium(10) + 37 * i
 }
@@ -70,7 +70,7 @@ pub(super) const COSINE: Offset = large(2);
 const X: Offset = large(3);
 const Y: Offset = large(4);
 const Z: Offset = large(5);
-/// An integer of degree 8, also multiplied by both of their squares.
+/// An integer of degree 8, with room for a product with the square of the mantissa or of the power.
 pub(super) const LAST: Offset = large(6);
 
 /// Words of a lane.
@@ -129,7 +129,7 @@ const ANGLE: &[Step] = &[
 /// The programs, in the order of their numbers in the shaders. Dot products of normals use the Binet–Cauchy identity
 /// (u × v)·(x × y) = (u·x)(v·y) - (u·y)(v·x).
 const PROGRAMS: [&[Step]; 10] = [
-    // In the plane: cross(λ)·dot(γ) + dot(λ)·cross(γ).
+    // The in-circle test in the plane: cross(λ)·dot(γ) + dot(λ)·cross(γ), with the angles λ at c and γ at d.
     &[
         cross(CROSS1, P, Q),
         flat_dot(DOT1, P, Q),

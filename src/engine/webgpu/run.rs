@@ -39,8 +39,9 @@ impl WebGpu {
         Ok(flips)
     }
 
-    /// Submits up to `count` iterations at once. Returns the flips of those that ran; the last number may be zero. Returns
-    /// an empty list if the host had to prepare the mesh first, which it then has done.
+    /// Submits up to `count` iterations at once. Returns the flips of those that ran; the last number may be zero.
+    /// Returns an empty list if the device needed fans or windings from the host before it could run; the host has then
+    /// added them.
     async fn submit_iterations(&mut self, count: u32) -> Result<Vec<u32>, Error> {
         self.known = Known::default();
         let batch = count.min(BATCH);
@@ -69,7 +70,7 @@ impl WebGpu {
             Source::new(&self.buffers.history, HISTORY_WORDS),
             Source::new(&self.counters, COUNTERS + 1),
         ];
-        // Most runs end in their first submission: then the triangles are read with it.
+        // Most runs end in their first submission, so the triangles are read with it.
         let is_run = self.params.first == 0 && count > 1;
         let has_triangles = !self.waits && is_run && (4 * triangles as u64) < MOST_KEPT;
         if has_triangles {

@@ -8,8 +8,8 @@ use wgpu::BufferUsages;
 const FEWEST: u64 = 1 << 16;
 
 impl Device {
-    /// A buffer of at least `bytes` bytes. A size that may be kept is rounded up, so that later copies fit too; only a
-    /// little, since a browser copies all bytes of a mapped range.
+    /// A buffer of at least `bytes` bytes. The size of a buffer that may be kept is rounded up, so that slightly longer
+    /// copies fit too. It is rounded up only a little, since a browser copies all bytes of a mapped range.
     pub(super) fn staging(&self, bytes: u64, usage: BufferUsages) -> Buffer {
         let step = bytes.next_power_of_two() / 8;
         let size =

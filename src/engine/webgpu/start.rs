@@ -106,7 +106,7 @@ impl WebGpu {
         let bytes = |words: usize| 4 * words as u64;
         let fans = bytes(adjacency::SEVERAL_FANS);
         encoder.copy_buffer_to_buffer(&self.counters, fans, history, bytes(SEVERAL_FANS), bytes(1));
-        // The kernels count the turns of stars in the frontier.
+        // The kernels count the turns of stars in the buffer of the frontier.
         encoder.clear_buffer(frontier, 0, None);
         let mut pass = encoder.begin_compute_pass(&Default::default());
         self.at_step(&mut pass, Step::Prepare);
@@ -131,7 +131,8 @@ impl WebGpu {
     async fn begin(&mut self, mesh: Arc<Mesh>) -> Result<(), Error> {
         self.dispatches += Kernel::preparation(self.form.dimension).len() as u64;
         self.params.first = 0;
-        // The state that the device writes, if it needs no help: the iteration before flipped edges and built no list.
+        // The same entry as the device writes if it needs no help of the host: as if an iteration before the first had
+        // flipped edges and built no list.
         self.state = [self.params.triangles, 0, 0, 1];
         self.known = Known::default();
         self.unsettled = Some(mesh);
