@@ -5,6 +5,8 @@ use crate::engine::{Answer, Device, DeviceHandle, Engine, Form, GivenDevice, Upl
 use crate::phases::Thresholds;
 use crate::{Backend, Dimension, EngineKind, Error, Mesh, Options};
 use std::sync::Arc;
+#[cfg(all(target_arch = "wasm32", feature = "js"))]
+use {crate::system::in_turn::in_turn, js_sys::Promise, std::cell::RefCell};
 
 /// The form of a mesh: the set of shaders that it needs. At upload, a mesh of 32-bit floats that span too many bits gets
 /// the fixed-point form instead.
@@ -42,14 +44,42 @@ pub(super) async fn engine(mesh: &Arc<Mesh>, options: &Options) -> Result<Box<dy
     // `Auto` never takes a software GPU.
     let takes_software = options.backend == Backend::Gpu;
     let form = form_of(mesh.dimension(), mesh.positions().is_double(), options);
-    let device = tested(options.given_device(), takes_software, form).await?;
+    let mut device = tested(options.given_device(), takes_software, form).await?;
     let upload = Upload::new(EngineKind::Gpu, mesh.clone(), Thresholds::from(options))?;
-    test(&device, upload.form()).await?;
+    if upload.form() != form {
+        device = tested(options.given_device(), takes_software, upload.form()).await?;
+    }
     Ok(Box::new(WebGpu::new(device, upload).await?))
 }
 
 /// The device, after the self-test for a form.
+#[cfg(not(all(target_arch = "wasm32", feature = "js")))]
 async fn tested(
+    given: Option<&GivenDevice>,
+    takes_software: bool,
+    form: Form,
+) -> Result<DeviceHandle, Error> {
+    prepared(given, takes_software, form).await
+}
+
+/// The device, after the self-test for a form. Sessions of a page often begin at the same time: one opens the device and
+/// compiles the kernels, and the others wait for it.
+#[cfg(all(target_arch = "wasm32", feature = "js"))]
+async fn tested(
+    given: Option<&GivenDevice>,
+    takes_software: bool,
+    form: Form,
+) -> Result<DeviceHandle, Error> {
+    thread_local! {
+        static RUNNING: RefCell<Option<Promise>> = const { RefCell::new(None) };
+    }
+    let is_ready = || Device::known(given).is_some_and(|device| device.is_ready(form, takes_software));
+    let given = given.cloned();
+    in_turn(&RUNNING, is_ready, async move { prepared(given.as_ref(), takes_software, form).await }).await
+}
+
+/// Opens the device and compiles the kernels for a form, unless that was done, and runs the self-test.
+async fn prepared(
     given: Option<&GivenDevice>,
     takes_software: bool,
     form: Form,

@@ -84,3 +84,38 @@ test('a run waits once, and copies through buffers that are reused', async () =>
   // The first run opens the device. The first run of each size creates the buffers for the next.
   for (const run of [2, 4, 5]) assert.deepEqual(told[run], { waits: 1, kept: 1, submissions: 3 }, `run ${run}`);
 });
+
+/** Runs in the page: begins sessions at the same time on an engine, and counts the programs that the page compiles. */
+async function compiled({ backend, sessions }) {
+  const { makeDelaunay } = await import('/dist/index.js');
+  const { generate } = await import('/dist/files.js');
+  let programs = 0;
+  for (const [prototype, name] of [
+    [GPUDevice.prototype, 'createComputePipeline'],
+    [WebGL2RenderingContext.prototype, 'linkProgram'],
+  ]) {
+    const call = prototype[name];
+    prototype[name] = function (...args) {
+      // The tail compiles behind the first runs, and may be late.
+      programs += Number(args[0].label !== 'tail');
+      return call.apply(this, args);
+    };
+  }
+  const mesh = await generate('random 20');
+  const results = await Promise.all(Array.from({ length: sessions }, () => makeDelaunay(mesh, { backend })));
+  return { programs, flips: new Set(results.map(({ flips }) => flips)).size };
+}
+
+for (const backend of ['webgpu', 'webgl2']) {
+  test(`sessions that begin at the same time compile ${backend} once`, async () => {
+    const counts = [];
+    for (const sessions of [1, 20]) {
+      const { page } = await openPage(await startChromium(), `${await serve(repository)}tests/engines.html`);
+      const { programs, flips } = await page.evaluate(compiled, { backend, sessions });
+      assert.equal(flips, 1);
+      counts.push(programs);
+    }
+    assert.ok(counts[0] > 0);
+    assert.equal(counts[1], counts[0]);
+  });
+}

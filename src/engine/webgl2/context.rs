@@ -57,13 +57,17 @@ pub(super) struct Context {
 }
 
 impl Context {
+    /// The shared context, if it is open.
+    pub(super) fn known() -> Option<Rc<Self>> {
+        SHARED.with_borrow(Clone::clone).filter(|context| !context.gl.is_context_lost())
+    }
+
     /// The shared context. Opened at the first call, and again after a loss.
     ///
     /// # Errors
     /// [`Error::BackendUnavailable`] if there is no context; [`Error::Device`] if it fails at once.
     pub(super) async fn shared() -> Result<Rc<Self>, Error> {
-        let known = SHARED.with_borrow(Clone::clone).filter(|context| !context.gl.is_context_lost());
-        if let Some(context) = known {
+        if let Some(context) = Self::known() {
             return Ok(context);
         }
         let context = Rc::new(Self::open(create()?).await?);

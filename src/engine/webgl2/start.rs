@@ -13,8 +13,11 @@ use crate::mesh::star::Fans;
 use crate::mesh::winding::Winding;
 use crate::phases::Thresholds;
 use crate::phases::state::BLOCKED;
+use crate::system::in_turn::in_turn;
 use crate::system::threads::Threads;
 use crate::{Adjacency, EngineKind, Error, Mesh, NONE};
+use js_sys::Promise;
+use std::cell::RefCell;
 use std::rc::Rc;
 use std::sync::Arc;
 
@@ -30,13 +33,22 @@ impl WebGl {
     /// # Errors
     /// [`Error::BackendUnavailable`] if there is no context, or if it fails the self-test; those of [`WebGl::new`].
     pub(crate) async fn open(mesh: Arc<Mesh>, thresholds: Thresholds) -> Result<Self, Error> {
-        let context = Context::shared().await?;
+        thread_local! {
+            static RUNNING: RefCell<Option<Promise>> = const { RefCell::new(None) };
+        }
+        // Sessions of a page often begin at the same time: one opens the context and compiles the programs.
+        let context = in_turn(&RUNNING, || Context::known().is_some(), Context::shared()).await?;
         let upload = Upload::new(EngineKind::WebGl, mesh, thresholds)?;
-        let make = |upload: Upload| -> Answer<'static, Box<dyn Engine>> {
-            let context = context.clone();
-            Box::pin(async move { Ok(Box::new(Self::new(context, upload).await?) as Box<dyn Engine>) })
+        let form = upload.form();
+        let (is_tested, tested) = (context.clone(), context.clone());
+        let test = async move {
+            let make = |upload: Upload| -> Answer<'static, Box<dyn Engine>> {
+                let context = tested.clone();
+                Box::pin(async move { Ok(Box::new(Self::new(context, upload).await?) as Box<dyn Engine>) })
+            };
+            self_test(&tested.tested, EngineKind::WebGl, form, &make).await
         };
-        self_test(&context.tested, EngineKind::WebGl, upload.form(), &make).await?;
+        in_turn(&RUNNING, || is_tested.tested.has_passed(form), test).await?;
         Self::new(context, upload).await
     }
 
