@@ -84,7 +84,7 @@ fn help_explains() {
     for words in [
         "β",
         "Lawson",
-        "never falls back",
+        "or an error (status 3)",
         "Exit status",
         ".obj",
         ".ply",

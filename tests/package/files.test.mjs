@@ -192,7 +192,7 @@ test('with `original`, a file is written with other triangles and is otherwise u
   const turned = { ...mesh, indices: Uint32Array.of(0, 2, 1, 0, 3, 2, 1, 0, 4) };
   await assert.rejects(
     writeMesh(turned, 'b.obj', { original }),
-    refused('invalid-option', /none that flips make while seams are locked/),
+    refused('invalid-option', /triangle 0 cannot result from flips while seams are locked/),
   );
   const strips =
     'ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nelement tristrips 1\nproperty list int int vertex_index\nend_header\n0 0\n1 0\n0 1\n3 0 1 2\n';

@@ -258,7 +258,7 @@ pub enum DimensionArg {
 /// `--order`.
 #[derive(Clone, Copy, Debug, Default, ValueEnum)]
 pub enum OrderArg {
-    /// The parallel pipeline: the same bits on every backend after every iteration
+    /// The parallel iterations: the same bits on every backend after every iteration
     #[default]
     Reproducible,
     /// Lawson's algorithm on the CPU: often faster, without iterations
