@@ -10,8 +10,10 @@ process.chdir(fileURLToPath(new URL('..', import.meta.url)));
 
 /**
  * A level: `checks` are its command lines. If `counts` is set, the commands run the test harness of Rust or Node, and
- * each of its tests counts; otherwise each command counts as one test.
- * @typedef {{ name: string, what: string, checks: string[][], counts?: boolean, env?: Record<string, string> }} Level
+ * each of its tests counts; otherwise each command counts as one test. If `beside` is set, the level runs at the same
+ * time as the one before it: kernels for a software GPU compile on one thread.
+ * @typedef {{ name: string, what: string, checks: string[][], counts?: boolean, beside?: boolean,
+ *   env?: Record<string, string> }} Level
  * @typedef {{ level: Level, passed: number, failed: number, why: string, seconds: number }} Result
  */
 
@@ -119,6 +121,7 @@ const levels = [
       [
         'node',
         '--test',
+        '--test-concurrency=2',
         '--test-reporter=tap',
         'tests/package/node.test.mjs',
         'tests/package/docs.test.mjs',
@@ -160,6 +163,7 @@ const levels = [
       ],
     ],
     counts: true,
+    beside: true,
   },
   {
     name: 'page in Chromium',
@@ -314,7 +318,11 @@ const results = [];
 // Compiles all native tests first, so that the seconds of a level do not include the compilation.
 if (chosen.some(({ checks }) => checks.some(([program, verb]) => program === 'cargo' && verb === 'test')))
   await run([...cargoTest, '--no-run']);
-for (const level of chosen) results.push(await runLevel(level));
+const running = [];
+for (const [index, level] of chosen.entries()) {
+  running.push(runLevel(level));
+  if (!chosen[index + 1]?.beside) results.push(...(await Promise.all(running.splice(0))));
+}
 
 console.log('\n| level | what it checks | tests | result | seconds |\n|---|---|---:|---|---:|');
 for (const { level, passed, failed, why, seconds } of results) {
