@@ -111,10 +111,10 @@ fn measure(spec: &str, family: String, runs: usize, skips: [bool; 3]) -> Result<
     let mut times = [const { Vec::new() }; 3];
     let mut took = "–";
     let mut begun = Instant::now();
-    let mut beaten = spared;
+    let mut left_out = skips;
     let mut rounds = 0;
     while rounds < runs && (rounds == 0 || begun.elapsed() < ENOUGH) {
-        for (engine, times) in times.iter_mut().enumerate().filter(|&(engine, _)| !beaten[engine]) {
+        for (engine, times) in times.iter_mut().enumerate().filter(|&(engine, _)| !left_out[engine]) {
             let (positions, triangles) = (mesh.positions().clone(), mesh.triangles().to_vec());
             let start = Instant::now();
             took = run(Mesh::new(mesh.dimension(), positions, triangles)?, ENGINES[engine])?.backend.name();
@@ -122,7 +122,7 @@ fn measure(spec: &str, family: String, runs: usize, skips: [bool; 3]) -> Result<
         }
         if rounds == 0 {
             let best = times.iter().filter_map(|times| times.first().copied()).fold(f64::INFINITY, f64::min);
-            beaten = times.each_ref().map(|times| times.first().is_none_or(|&ms| ms > BEATEN * best));
+            left_out = times.each_ref().map(|times| times.first().is_none_or(|&ms| ms > BEATEN * best));
             begun = Instant::now();
         }
         rounds += 1;
