@@ -24,7 +24,7 @@ for (const [file, content] of text) {
   if (lines > MOST_LINES) errors.push(`${file}: ${lines} lines; at most ${MOST_LINES} are allowed`);
 }
 
-// Rust: what each file imports, by the path of its module, such as `engine::cpu::phases`.
+// Rust: what each file imports, by the path of its module, such as `engine::cpu::engine`.
 
 const isTest = (file) => /(^|\/)tests(\/|\.rs$)|predicates\/tiers\.rs$/.test(file);
 const crate = [...text.keys()].filter((file) => /^src\/.*\.rs$/.test(file) && !file.startsWith('src/bin/'));

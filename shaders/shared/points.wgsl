@@ -1,7 +1,7 @@
 // Subtracts points: with rounding for the filters, and exactly for integers. On the grid of four points, their
-// coordinates are integers times one power of two. floats.wgsl and fixed.wgsl define points. In the plane, the third
-// coordinate is 0.
-#import fixed if fixed
+// coordinates are integers times one power of two. floats.wgsl and fixed_point.wgsl define points. In the plane, the
+// third coordinate is 0.
+#import fixed_point if fixed
 #import floats if floats
 
 // The magnitude in 96 bits and a sign, for each axis.

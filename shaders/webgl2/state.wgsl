@@ -3,8 +3,8 @@
 #import digits
 #import mesh
 
-// Three words per texel: positions, as floats.wgsl and fixed.wgsl define them; vertices; twins. The fourth word of a
-// triangle is 1 where its component is clockwise.
+// Three words per texel: positions, as floats.wgsl and fixed_point.wgsl define them; vertices; twins. The fourth word
+// of a triangle is 1 where its component is clockwise.
 @group(0) @binding(0) var positions: texture_2d<u32>;
 @group(0) @binding(1) var triangles: texture_2d<u32>;
 @group(0) @binding(2) var twins: texture_2d<u32>;

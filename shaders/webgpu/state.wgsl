@@ -53,7 +53,7 @@ struct Step {
 
 @group(0) @binding(0) var<uniform> params: Params;
 @group(0) @binding(1) var<uniform> step_: Step;
-// floats.wgsl and fixed.wgsl define the layout: the exact tests read integers.
+// floats.wgsl and fixed_point.wgsl define the layout: the exact tests read integers.
 @group(0) @binding(2) var<storage, read> positions: array<u32>;
 @group(0) @binding(3) var<storage, read_write> triangles: array<u32>;
 @group(0) @binding(4) var<storage, read_write> twins: array<u32>;

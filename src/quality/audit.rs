@@ -1,8 +1,8 @@
 //! The audit: checks what a result must keep of its input, and lists the edges that remain, with exact arithmetic. It
 //! shares no code with the engines, except `cos_degrees`, which defines cos β.
 
+use super::audit_exact;
 use super::edges::{Class, Edge};
-use super::exact;
 use super::surface::{Limits, RemainingEdge, Surface};
 use crate::{Dimension, Error, Mesh, Options, Reason, Reasons, Session, cos_degrees};
 use std::cmp::Ordering;
@@ -263,7 +263,7 @@ fn compare_edges(audit: &mut Audit, before: &Surface, after: &Surface, cosine: f
             (before.mesh.dimension(), old)
         {
             let [first, second] = [h, g].map(|x| before.triangle_of(x));
-            if exact::normals_differ(first, second, cosine) {
+            if audit_exact::normals_differ(first, second, cosine) {
                 creases.push((u, v));
                 if new.is_none() {
                     audit.report(Violation::Crease { u, v });

@@ -2,8 +2,8 @@
 
 mod angles;
 mod audit;
+mod audit_exact;
 mod edges;
-mod exact;
 mod measures;
 mod surface;
 

@@ -1,7 +1,7 @@
 //! A surface as the audit sees it: edge table, components, areas, and the edges that are not Delaunay.
 
+use super::audit_exact::{self, ExactSum, Triangle};
 use super::edges::{Class, Edge, EdgeTable, next, prev};
-use super::exact::{self, ExactSum, Triangle};
 use crate::{Dimension, Mesh, Reason};
 use num_bigint::{BigInt, Sign};
 use std::cmp::Ordering;
@@ -79,7 +79,7 @@ impl<'a> Surface<'a> {
 
     /// The number of triangles that are flat or have the opposite sign of their component (2D).
     pub fn inverted(&self) -> usize {
-        let turn = |t: usize| exact::turn([0, 1, 2].map(|k| self.coord(self.triangles[3 * t + k])));
+        let turn = |t: usize| audit_exact::turn([0, 1, 2].map(|k| self.coord(self.triangles[3 * t + k])));
         let positive = |t: usize| self.oriented(t, turn(t)).is_gt();
         (0..self.triangles.len() / 3).filter(|&t| !positive(t)).count()
     }
@@ -140,8 +140,8 @@ impl<'a> Surface<'a> {
         let [a, b, c, d] = self.quad(h, g);
         let oriented = |sign| self.oriented(h as usize / 3, sign);
         let [pa, pb, pc, pd] = [a, b, c, d].map(|v| self.coord(v));
-        let positive = |triangle| oriented(exact::turn(triangle)).is_gt();
-        if oriented(exact::in_circle([pa, pb, pc, pd])).is_le() {
+        let positive = |triangle| oriented(audit_exact::turn(triangle)).is_gt();
+        if oriented(audit_exact::in_circle([pa, pb, pc, pd])).is_le() {
             None
         } else if !positive([pa, pd, pc]) || !positive([pb, pc, pd]) {
             Some(Reason::Fold)
@@ -157,21 +157,25 @@ impl<'a> Surface<'a> {
         let [a, b, c, d] = self.quad(h, g);
         let [old1, old2] = [[a, b, c], [b, a, d]].map(|corners| self.points(corners));
         let [new1, new2] = [[a, d, c], [b, c, d]].map(|corners| self.points(corners));
-        if exact::sum_of_angles(old1, old2) != Ordering::Less {
+        if audit_exact::sum_of_angles(old1, old2) != Ordering::Less {
             return None;
         }
-        let oppose = |old| exact::normals_oppose(old, new1) || exact::normals_oppose(old, new2);
-        Some(if exact::normals_differ(old1, old2, cosine) || exact::normals_differ(new1, new2, cosine) {
-            Reason::Angle
-        } else if oppose(old1) || oppose(old2) {
-            Reason::Fold
-        } else if exact::lines_apart([a, b, c, d].map(|v| self.mesh.point3(v)), deviation) {
-            Reason::Deviation
-        } else if c == d || self.table.contains(c, d) {
-            Reason::Duplicate
-        } else {
-            Reason::Stopped
-        })
+        let oppose = |old| audit_exact::normals_oppose(old, new1) || audit_exact::normals_oppose(old, new2);
+        Some(
+            if audit_exact::normals_differ(old1, old2, cosine)
+                || audit_exact::normals_differ(new1, new2, cosine)
+            {
+                Reason::Angle
+            } else if oppose(old1) || oppose(old2) {
+                Reason::Fold
+            } else if audit_exact::lines_apart([a, b, c, d].map(|v| self.mesh.point3(v)), deviation) {
+                Reason::Deviation
+            } else if c == d || self.table.contains(c, d) {
+                Reason::Duplicate
+            } else {
+                Reason::Stopped
+            },
+        )
     }
 
     /// Whether any two triangles at a frozen edge have opposite angles that sum to more than π. One pass compares each
@@ -182,7 +186,7 @@ impl<'a> Surface<'a> {
         let mut cap = false;
         for h in edge.half_edges() {
             let triangle = self.triangle_of(h);
-            if let Some(dot) = exact::flat(triangle) {
+            if let Some(dot) = audit_exact::flat(triangle) {
                 cap |= dot == Ordering::Less;
                 continue;
             }
@@ -190,10 +194,10 @@ impl<'a> Surface<'a> {
                 widest = Some(triangle);
                 continue;
             };
-            if exact::sum_of_angles(widest_so_far, triangle) == Ordering::Less {
+            if audit_exact::sum_of_angles(widest_so_far, triangle) == Ordering::Less {
                 return true;
             }
-            if exact::compare_angles(triangle, widest_so_far) == Ordering::Greater {
+            if audit_exact::compare_angles(triangle, widest_so_far) == Ordering::Greater {
                 widest = Some(triangle);
             }
         }
@@ -249,7 +253,7 @@ fn areas(mesh: &Mesh, triangles: &[u32], component_of: &[u32], count: usize) -> 
 
 #[cfg(test)]
 mod tests {
-    use super::exact;
+    use super::audit_exact;
 
     #[test]
     fn in_circle_is_the_angle_polynomial() {
@@ -268,7 +272,7 @@ mod tests {
             // The last two scales are not ordinary.
             for scale in [1.0, 2f64.powi(-1000), 2f64.powi(1000)] {
                 let at = |i: usize| robust::Coord { x: p[i] as f64 * scale, y: p[i + 1] as f64 * scale };
-                assert_eq!(exact::in_circle([at(0), at(2), at(4), at(6)]), 0.cmp(&s(p)));
+                assert_eq!(audit_exact::in_circle([at(0), at(2), at(4), at(6)]), 0.cmp(&s(p)));
             }
         }
     }

@@ -1,5 +1,5 @@
 //! The WebGL2 engine, in a module of its own that is loaded on first use. The module of the other engines calls it
-//! through `engine::webgl2::proxy`.
+//! through `engine::webgl2::module_proxy`.
 
 use crate::Error;
 use crate::engine::{self, Engine, WebGl};

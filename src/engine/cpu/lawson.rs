@@ -5,7 +5,7 @@
 //! Each thread flips inside a region of the mesh, then across the border of two regions. The regions, and so the flips,
 //! are the same for any number of threads.
 
-use super::phases::Cpu;
+use super::engine::Cpu;
 use super::region::{Region, Work};
 use crate::engine::{Answer, Census, EdgeCounts, Engine};
 use crate::{EngineKind, Mesh};

@@ -18,7 +18,7 @@ const FIXED_WORDS: usize = 3;
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Form {
     pub(crate) dimension: Dimension,
-    /// Whether the coordinates are fixed-point numbers (`fixed.wgsl`), not floats (`floats.wgsl`).
+    /// Whether the coordinates are fixed-point numbers (`fixed_point.wgsl`), not floats (`floats.wgsl`).
     pub(crate) is_fixed: bool,
     /// Whether there is a limit for the deviation (`deviation.wgsl`).
     pub(crate) has_deviation: bool,
@@ -52,7 +52,7 @@ impl Form {
 pub(crate) struct Upload {
     pub(crate) mesh: Arc<Mesh>,
     pub(crate) thresholds: Thresholds,
-    /// Fixed-point coordinates in the order of `fixed.wgsl`; `None` if the upload is 32-bit floats.
+    /// Fixed-point coordinates in the order of `fixed_point.wgsl`; `None` if the upload is 32-bit floats.
     fixed: Option<Vec<u32>>,
     /// The limit for the deviation, in the layout of `state.wgsl`.
     pub(crate) deviation: [u32; 4],

@@ -8,7 +8,7 @@ mod errors;
 #[cfg(feature = "js-webgl2")]
 mod iteration;
 #[cfg(feature = "js")]
-mod proxy;
+mod module_proxy;
 #[cfg(feature = "js-webgl2")]
 mod start;
 #[cfg(feature = "js-webgl2")]
@@ -19,6 +19,6 @@ pub(crate) use context::set_shader_loader;
 #[cfg(feature = "js-webgl2")]
 pub(crate) use iteration::WebGl;
 #[cfg(feature = "js")]
-pub use proxy::WebGl2Module;
+pub use module_proxy::WebGl2Module;
 #[cfg(feature = "js")]
-pub(crate) use proxy::{Proxy, set_webgl2};
+pub(crate) use module_proxy::{Proxy, set_webgl2};
