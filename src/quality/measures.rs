@@ -20,20 +20,20 @@ pub struct Measures {
     pub flat: usize,
     /// The sum of the unsigned areas of the triangles.
     pub area: f64,
-    /// The volume inside a closed surface, negative if its triangles are clockwise from outside. For two open surfaces with
-    /// the same boundary, the difference of the volumes is the volume between them. 0 in the plane.
+    /// The volume inside a closed surface, negative if its triangles are clockwise from outside. 0 in the plane. An open
+    /// surface is closed by a cone from its boundary to the position of the lowest vertex index that a triangle uses.
+    /// Flips change neither, so the difference of the volumes before and after a run is the volume between the surfaces.
     pub volume: f64,
 }
 
-/// Triangles per chunk of work. The sums of the chunks are added in order, so the result has the same bits on any number of
-/// threads.
+/// Triangles per chunk of work. The sums of the chunks are added in order, so the result has the same bits on any number
+/// of threads.
 const CHUNK: usize = 1 << 12;
 
 /// Measures a mesh.
 pub fn measures(mesh: &Mesh) -> Measures {
     let (count, triangles) = (mesh.triangle_count(), mesh.triangles());
-    // Relative to a point nearby, so that a large offset costs no precision.
-    let origin = triangles.first().map_or(DVec3::ZERO, |&v| mesh.point3(v));
+    let origin = origin(mesh);
     let chunks = triangles.chunks(3 * CHUNK).collect();
     let threads = Threads::default().for_triangles(count);
     let all = threads.map_each(chunks, |chunk| Sums::of(mesh, chunk, origin)).into_iter();
@@ -47,6 +47,12 @@ pub fn measures(mesh: &Mesh) -> Measures {
         area: sums.area,
         volume: if mesh.dimension() == Dimension::Two { 0.0 } else { sums.volume },
     }
+}
+
+/// The origin for volumes: the position of the lowest vertex index that a triangle uses, which no flip changes. It is near
+/// the mesh, so that a large offset costs no precision.
+fn origin(mesh: &Mesh) -> DVec3 {
+    mesh.triangles().iter().min().map_or(DVec3::ZERO, |&v| mesh.point3(v))
 }
 
 /// Sums over triangles.
@@ -116,8 +122,8 @@ fn triangles(mesh: &Mesh, triangles: &[u32]) -> impl Iterator<Item = [DVec3; 3]>
     triangles.as_chunks::<3>().0.iter().map(|triangle| triangle.map(|v| mesh.point3(v)))
 }
 
-/// The indices of the triangles that differ between `before` and `after`, in ascending order. A triangle that only starts at
-/// another corner does not differ.
+/// The indices of the triangles that differ between `before` and `after`, in ascending order. A triangle that only starts
+/// at another corner does not differ.
 pub fn moved(before: &[u32], after: &[u32]) -> Vec<u32> {
     let is_same = |[a, b, c]: [u32; 3], other| [[a, b, c], [b, c, a], [c, a, b]].contains(other);
     let [before, after] = [before, after].map(|triangles| triangles.as_chunks::<3>().0);
@@ -237,6 +243,15 @@ mod tests {
         // The aspect of a right triangle with legs 1 is (1 + √2)·√2 / √3; that of an equilateral triangle is 1.
         let right = (2f64.sqrt() + 2.0) * 2f64.sqrt() / (2.0 * 3f64.sqrt());
         assert!((found.mean_aspect - (3.0 * right + 1.0) / 4.0).abs() < 1e-9, "{found:?}");
+    }
+
+    /// Vertex 0 is unused. A square in a plane is flipped; a wall stands on one of its sides.
+    #[test]
+    fn an_open_surface_has_the_same_volume_after_a_flip_inside_a_plane() {
+        let positions = [9., 9., 9., 0., 0., 0., 2., 0., 0., 2., 2., 0., 0., 2., 0., 2., 1., 2.];
+        let [before, after] = [[1, 2, 3, 1, 3, 4, 3, 2, 5], [2, 4, 1, 2, 3, 4, 3, 2, 5]]
+            .map(|triangles| measures(&mesh(&positions, &triangles)).volume);
+        assert_eq!((before, after), (-8.0 / 6.0, -8.0 / 6.0));
     }
 
     #[test]
