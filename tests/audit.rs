@@ -119,7 +119,7 @@ fn a_lost_lock() {
     assert_eq!((kept.remaining[Reason::Locked], kept.remaining.total()), (1, 1));
     let mut triangles = kite().triangles().to_vec();
     flip(&mut triangles, 0, 1);
-    // Locked pairs that were not edges do not count as missing.
+    // Locked pairs that the input has no edge for do not count as missing.
     assert_eq!(audit(&kite(), &triangles, &options).violations, [Violation::Locked { u: 0, v: 1 }]);
 }
 
@@ -137,7 +137,8 @@ fn wrong_arrays() {
 
 #[test]
 fn frozen_edges_of_many_triangles_take_no_quadratic_time() {
-    // A book of 100,000 pages that all end at a right angle or below, and one whose angle is wide.
+    // A book: 100,000 triangles share the edge 0-1, and their opposite angles are at most 90°. The last triangle is
+    // obtuse.
     let pages = 100_000u32;
     let mut points = vec![[0., 0.], [1., 0.]];
     points.extend((0..pages).map(|k| [0.5, 0.5 + k as f32]));

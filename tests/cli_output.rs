@@ -71,7 +71,7 @@ fn a_device_stays_one() {
         silent(&ran);
     }
     assert!(link.is_symlink() && Path::new("/dev/null").metadata().unwrap().file_type().is_char_device());
-    // Only if the system allows it, as it does for root.
+    // Mostly only root may create a device. For other users this part does nothing.
     let node = folder.path("node.off");
     let made = Command::new("mknod").arg(&node).args(["c", "1", "3"]).output().unwrap();
     if made.status.success() {

@@ -15,7 +15,7 @@ fn a_driver_says_nothing() {
     io::write(&input, &grid(80)).unwrap();
     for backend in ["auto", "gpu"] {
         for [name, value] in [
-            // Mesa reports that there is no GPU, and the loader logs everything.
+            // Here Mesa reports that there is no GPU, and the Vulkan loader logs everything.
             ["XDG_RUNTIME_DIR", "/nonexistent"],
             ["VK_LOADER_DEBUG", "all"],
             ["VK_DRIVER_FILES", "/nonexistent.json"],

@@ -54,7 +54,7 @@ fn no_temporary_file_stays() {
 
 /// As under nohup.
 #[test]
-fn a_signal_that_is_ignored_stays_so() {
+fn an_ignored_signal_stays_ignored() {
     let folder = Folder::new();
     let (input, output) = (large(&folder), folder.path("out.ply.gz"));
     let child = packing(&folder, "trap '' HUP", [&input, &output]);

@@ -48,7 +48,7 @@ fn scrambled(mesh: &Mesh, random: &mut Rand64) -> Mesh {
     mesh.with_triangles(triangles).unwrap()
 }
 
-/// Every edge that only one of the two has is a diagonal of four cocircular points.
+/// Asserts that every edge that only one of the two triangulations has is a diagonal of four cocircular points.
 fn assert_equal_up_to_ties(mesh: &Mesh, options: &Options) {
     let result = make_delaunay(mesh, options, |_, _| ControlFlow::Continue(())).unwrap().triangles;
     let expected = edges(&delaunay(&mesh.positions().to_f32()));
@@ -88,7 +88,8 @@ fn points_of_a_lattice() {
         let mut random = Rand64::new(seed);
         let n = 4 + seed as u32;
         let keep = (0..n * n).filter(|_| random.rand_float() < 0.8).collect::<Vec<_>>();
-        // Scaled by a power of two, the points stay cocircular; by 0.1, they are cocircular up to one ulp.
+        // With a step of a power of two, the points are exactly cocircular. With a step of 0.1, they are cocircular up
+        // to one ulp.
         let step = if seed % 2 == 0 { 0.125 } else { 0.1 };
         let positions: Vec<f32> =
             keep.iter().flat_map(|i| [(i % n) as f32 * step, (i / n) as f32 * step]).collect();

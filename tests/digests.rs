@@ -1,5 +1,5 @@
-//! Compares the simulation with `digests.txt` and with the audit: two readings of the same rules, with no
-//! line of code in common. `EDGEFLIP_BLESS=1 cargo test --test digests` writes the file.
+//! Compares the simulation with `digests.txt` and with the audit: two implementations of the same rules that share no
+//! code. `EDGEFLIP_BLESS=1 cargo test --test digests` writes the file.
 
 mod meshes;
 mod simulation;
@@ -71,7 +71,8 @@ fn soups_end_and_pass_the_audit() {
     }
 }
 
-/// Valid connectivity, but every vertex at one of 4 x 4 (x 4) positions: collinear, coincident, folded.
+/// The triangles are those of a valid mesh, but there are only 4 x 4 (x 4) positions: vertices are collinear or
+/// coincident, and triangles fold.
 #[test]
 fn crushed_meshes_end_and_pass_the_audit() {
     for seed in 0..rounds() {

@@ -1,4 +1,4 @@
-//! What the engines promise for each kind of dirt, on the CPU and the GPU.
+//! Tests what the engines promise for each kind of dirty mesh, on the CPU and the GPU.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "what fails here is a failed test")]
 
@@ -13,7 +13,7 @@ use oorandom::Rand64;
 use std::collections::BTreeSet;
 use std::ops::ControlFlow;
 
-/// The outcome of a run, which both engines agree on, without violations in the audit.
+/// The outcome of a run. Asserts that both engines agree, and that the audit finds no violation.
 #[track_caller]
 fn run(mesh: &Mesh, beta: f64) -> Outcome {
     let options = |backend| Options { backend, max_normal_angle: beta, ..Options::default() };
@@ -47,7 +47,7 @@ fn integers() -> Mesh {
     moved(&by_name("random 12").unwrap(), |p| p.map(|x| (1000.0 * x).round()))
 }
 
-/// Edges: all, on the boundary, non-manifold, inconsistent.
+/// The numbers of all edges, boundary edges, non-manifold edges and inconsistent edges.
 fn kinds(outcome: &Outcome) -> [u64; 4] {
     [outcome.edges, outcome.boundary_edges, outcome.non_manifold_edges, outcome.inconsistent_edges]
 }
@@ -69,7 +69,7 @@ fn areas(mesh: &Mesh, triangles: &[u32]) -> Vec<i64> {
     triangles.as_chunks().0.iter().map(area).collect()
 }
 
-/// Three pages at the back 0-1, each a quad that is cut along its wrong diagonal.
+/// Three quads share the edge 0-1, like the pages of a book. Each is cut along its wrong diagonal.
 /// ```text
 ///   1----R
 ///   | \   \       all three meet at 0-1, 1-Q flips to 0-R in each
@@ -89,7 +89,7 @@ fn non_manifold_edges() {
     assert_eq!((kinds(&book), book.flips), ([13, 9, 1, 0], 3));
     assert!([[0, 1], [0, 3], [0, 5], [0, 7]].iter().all(|edge| edges(&book.triangles).contains(edge)));
     assert_eq!(book.remaining.total(), 0);
-    // One that is not Delaunay is counted.
+    // A non-manifold edge that is not Delaunay is counted.
     let fan = run(&dirty("fan-of-three"), 10.0);
     assert_eq!((fan.non_manifold_edges, fan.remaining[Reason::NonManifold]), (1, 1));
     assert_eq!(fan.remaining.total(), 1);
@@ -139,7 +139,7 @@ fn inconsistent_orientation() {
     assert_eq!(pair.inconsistent_edges, 1);
     assert!(edges(&pair.triangles).contains(&[0, 1]));
     assert_eq!((pair.remaining[Reason::Inconsistent], pair.remaining.total()), (1, 1));
-    // All around a band with half a twist, every edge but one agrees.
+    // In a band with half a twist, only one edge is inconsistent.
     let moebius = run(&dirty("moebius"), 60.0);
     assert_eq!((moebius.non_manifold_edges, moebius.inconsistent_edges), (0, 1));
     assert!(moebius.flips > 0);
@@ -147,17 +147,17 @@ fn inconsistent_orientation() {
 
 #[test]
 fn duplicate_triangles() {
-    // Edges 1-2 and 2-0 of the kite have two half-edges in one direction, and 0-1 has three.
+    // Edges 1-2 and 2-0 of the kite have two half-edges in the same direction, and 0-1 has three half-edges.
     let kite = run(&dirty("duplicate-triangle"), 10.0);
     assert_eq!((kinds(&kite), kite.flips), ([5, 2, 1, 2], 0));
     assert_eq!((kite.remaining[Reason::NonManifold], kite.remaining.total()), (1, 1));
-    // One of many takes only its own edges out.
+    // One repeated triangle freezes only its own edges.
     let mesh = by_name("random 12").unwrap();
     let some = [mesh.triangles(), &mesh.triangles()[150..153]].concat();
     let outcome = run(&mesh.with_triangles(some).unwrap(), 10.0);
     assert_eq!((outcome.non_manifold_edges, outcome.inconsistent_edges), (3, 0));
     assert!(outcome.flips > 0);
-    // All of them leave nothing that may flip.
+    // If all triangles are repeated, no edge may flip.
     let all = mesh.with_triangles(mesh.triangles().repeat(2)).unwrap();
     let outcome = run(&all, 10.0);
     assert_eq!((&outcome.triangles[..], outcome.flips), (all.triangles(), 0));
@@ -167,14 +167,14 @@ fn duplicate_triangles() {
 
 #[test]
 fn caps() {
-    // One without area, and one with next to none, both with the long edge 0-1.
+    // A cap without area, and one with almost none. Both have the long edge 0-1.
     for name in ["flat-cap", "flat-cap-3d", "needle", "needle-3d"] {
         let outcome = run(&dirty(name), 10.0);
         let edges = edges(&outcome.triangles);
         assert!(edges.contains(&[2, 3]) && !edges.contains(&[0, 1]), "{name}");
         assert_eq!(outcome.remaining.total(), 0, "{name}");
     }
-    // Two whose four corners are on one line stay: no flip would give them area.
+    // Two caps whose four corners are on one line stay, because no flip would give them area.
     let line = run(&dirty("flat-caps-back-to-back"), 10.0);
     assert_eq!((line.flips, line.remaining.total()), (0, 0));
     // A cap that stands upright has a normal of its own.
@@ -184,7 +184,8 @@ fn caps() {
     assert_eq!((outcome.flips, outcome.remaining[Reason::Angle]), (0, 1));
 }
 
-/// Vertices 3 and 4 are one point, so that two needles have no area: the edge above them flips, they stay.
+/// Vertices 3 and 4 have the same position, so two needles have no area. The edge above the needles flips; the needles
+/// stay.
 #[test]
 fn needles() {
     for mesh in [dirty("coincident-vertices"), dirty("coincident-vertices-3d")] {
@@ -234,7 +235,7 @@ fn mixed_winding_2d() {
     assert_eq!(outcome.remaining.total(), 0);
 }
 
-/// The number of inverted or flat triangles, and the area of the inverted ones, may only fall.
+/// A run never increases the number of inverted or flat triangles, or the area of the inverted ones.
 #[test]
 fn folded_2d() {
     let mut improved = 0;
@@ -256,7 +257,7 @@ fn folded_2d() {
     assert!(improved > 6);
 }
 
-/// Quads that a flip unfolds, a tie, and quads that have to stay.
+/// From left to right: a quad that a flip unfolds, a tie, and a quad that has to stay.
 /// ```text
 ///        2              2     3          2
 ///       / \             |\   /|         / '.3
@@ -270,7 +271,8 @@ fn folded_quads_2d() {
     assert_eq!((inside.flips, inside.remaining.total()), (1, 0));
     let cocircular = run(&dirty("bow-tie-quad"), 10.0);
     assert_eq!((cocircular.flips, cocircular.remaining.total()), (0, 0));
-    // The third one, and one with 3 on the edge 1-2, where a new triangle would be flat: with integers of two sizes.
+    // The third quad; then a quad with 3 on the edge 1-2, where a new triangle would be flat; then the same with
+    // coordinates of very different sizes.
     for (third, x) in [([3., 1.], 0.), ([2.5, 1.], 0.), ([2.5, 1.], 2f32.powi(-40))] {
         let quad = plane(&[[x, 0.], [4., 0.], [1., 2.], third], &[[0, 1, 2], [1, 0, 3]]);
         for quad in [reversed(&quad), quad] {
@@ -280,7 +282,7 @@ fn folded_quads_2d() {
     }
 }
 
-/// The third of these quads in space, where its triangles lie back to back: every flip turns a triangle over.
+/// The third of these quads in space. Its triangles lie back to back, so every flip turns a triangle over.
 #[test]
 fn folded_3d() {
     let quad = space(&[[0., 0., 0.], [4., 0., 0.], [1., 2., 0.], [3., 1., 0.]], &[[0, 1, 2], [1, 0, 3]]);
@@ -290,7 +292,7 @@ fn folded_3d() {
     }
 }
 
-/// The edges 0-2, 1-2, 1-3, 2-2 and 3-3 have three or four half-edges, 0-1 is a proper one and flips.
+/// The edges 0-2, 1-2, 1-3, 2-2 and 3-3 have three or four half-edges. Only 0-1 has two, and flips.
 #[test]
 fn triangles_with_a_vertex_twice() {
     for mesh in [dirty("repeated-index"), dirty("repeated-index-3d")] {
@@ -328,7 +330,7 @@ fn one_triangle() {
     }
 }
 
-/// Where the coordinates can hold the offset, it changes no bit of the result.
+/// An offset that the coordinates can hold exactly changes no bit of the result.
 #[test]
 fn huge_offsets() {
     let mesh = integers();
@@ -344,7 +346,7 @@ fn huge_offsets() {
     assert_eq!(run(&doubles, 10.0).triangles, near.triangles);
 }
 
-/// A kite in two halves with their own vertices at the same positions: a seam.
+/// A kite whose two triangles have vertices of their own at the same positions: no edge joins them.
 #[test]
 fn duplicate_vertices() {
     let whole = plane(&[[-2., 0.], [2., 0.], [0., 1.], [0., -1.]], &[[0, 1, 2], [1, 0, 3]]);

@@ -28,8 +28,9 @@ fn edges(session: &mut Session, mesh: &Mesh) -> [u64; EdgeState::ALL.len()] {
     edges
 }
 
-/// Steps to the end; `None` where the backend refuses the mesh.
-fn foretell(name: &str, mesh: &Mesh, options: Options) -> Option<u32> {
+/// Steps to the end, and compares each step with the states before it. Returns the number of iterations, or `None` if
+/// the backend refuses the mesh.
+fn compare_steps(name: &str, mesh: &Mesh, options: Options) -> Option<u32> {
     let backend = options.backend;
     let mut session = match block_on(Session::new(mesh.clone(), options)) {
         Err(Error::BackendLimit { .. }) if backend == Backend::Gpu => return None,
@@ -71,21 +72,22 @@ fn states_foretell_every_step() {
     let (mut on_cpu, mut on_gpu) = (0, 0);
     for case in meshes::all().into_iter().filter(|case| case.mesh.triangle_count() <= 2000) {
         let options = case.options(Backend::Cpu);
-        let iterations = foretell(&case.name, &case.mesh, options.clone()).unwrap();
+        let iterations = compare_steps(&case.name, &case.mesh, options.clone()).unwrap();
         on_cpu += 1;
         if iterations <= 12 && case.mesh.triangle_count() <= 800 {
-            let gpu = foretell(&case.name, &case.mesh, Options { backend: Backend::Gpu, ..options });
+            let gpu = compare_steps(&case.name, &case.mesh, Options { backend: Backend::Gpu, ..options });
             on_gpu += usize::from(gpu == Some(iterations));
         }
     }
     assert!(on_cpu > 100 && on_gpu > 50, "{on_cpu} on the CPU, {on_gpu} on the GPU");
 }
 
-/// Three triangles at the edge 0-1, two with the same orientation, and a fourth with the opposite one of its neighbour.
+/// Three triangles at the edge 0-1, two of them with the same orientation. A fourth triangle has the opposite
+/// orientation of its neighbour.
 ///
 /// ```text
 ///       2
-///     / | \      4 lies above 0-1 too; (1, 2, 3) goes the other way round
+///     / | \      4 is above 0-1 too; (1, 2, 3) has the opposite orientation
 ///   0---1---3
 /// ```
 #[test]

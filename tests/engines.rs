@@ -44,7 +44,7 @@ fn assert_simulated(name: &str, mesh: &Mesh, beta: f64, backends: &[Backend]) {
 fn soups_flip_as_simulated() {
     for seed in 0..rounds() {
         let (flat, bent) = meshes::soup(seed, 3 + seed as usize % 5, seed as usize / 5 % 23);
-        // The software GPU takes a tenth of them.
+        // The software GPU runs a tenth of them.
         let backends = [Backend::Cpu, Backend::Gpu];
         let backends = &backends[..1 + usize::from(seed % 10 == 0)];
         assert_simulated(&format!("soup {seed}"), &flat, 10.0, backends);

@@ -95,7 +95,7 @@ fn closed_surfaces_are_spheres_seen_from_outside() {
 
 #[test]
 fn sweep_covers_the_hull() {
-    // A disc whose boundary never turns right is convex: nothing between the hull and the boundary is left.
+    // A disc whose boundary never turns right is convex, so it covers the whole hull.
     let mesh = mesh("sweep 2000");
     let mut next = HashMap::new();
     let mut seen = std::collections::HashSet::new();
@@ -165,7 +165,7 @@ fn digest(bytes: &[u8]) -> u64 {
         .fold(0xcbf2_9ce4_8422_2325, |hash, &byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
 }
 
-/// `EDGEFLIP_BLESS=1 cargo test --test families` writes the file anew.
+/// `EDGEFLIP_BLESS=1 cargo test --test families` writes the file of digests.
 #[test]
 fn files_are_those_of_the_npm_package() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/package/generated.txt");

@@ -1,6 +1,6 @@
-//! Lattices of spacing 0.1, on which every edge is a tie or misses one by a hair, on every engine that runs natively.
+//! Lattices of spacing 0.1 on every native engine: every edge is a tie, or a tie up to rounding.
 //!
-//! `EDGEFLIP_SIDE` is the number of vertices along a side. The compiled test reads no file, so that it can be taken to
+//! `EDGEFLIP_SIDE` is the number of vertices along a side. The compiled test reads no file, so it can be copied to
 //! another machine.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "what fails here is a failed test")]
@@ -16,7 +16,7 @@ fn side() -> usize {
     std::env::var("EDGEFLIP_SIDE").map_or(200, |side| side.parse().unwrap())
 }
 
-/// The outcomes on the CPU and on the GPU, which are the same, and with Lawson's algorithm.
+/// The outcomes on the CPU, on the GPU and with Lawson's algorithm. Asserts that CPU and GPU agree.
 fn run(name: &str, mesh: &Mesh) -> [Outcome; 3] {
     let flipped = |backend, order| {
         let options = Options { backend, order, ..Options::default() };

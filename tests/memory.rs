@@ -1,5 +1,5 @@
 //! The command line with too little memory: status 0 or 1, at most one line, and no files left behind, in each format.
-//! `EDGEFLIP_MEMORY=20000000` does so with as many triangles and up to 6 GB, and takes half an hour.
+//! `EDGEFLIP_MEMORY=20000000` tests 20 million triangles with limits up to 6 GB, which takes half an hour.
 #![cfg(all(target_os = "linux", feature = "cli"))]
 #![allow(clippy::unwrap_used, reason = "what fails here is a failed test")]
 
@@ -15,13 +15,13 @@ use std::process::{Output, Stdio};
 
 const STEPS: u32 = 16;
 
-/// Runs the program with `arguments` in so many KiB of addresses.
+/// Runs the program with `arguments` and at most `kib` KiB of addresses.
 fn limited(kib: u64, arguments: &str, [input, output]: [&Path; 2]) -> Output {
     let script = format!(r#"ulimit -c 0; ulimit -v {kib}; exec "$0" "$1" -o "$2" {arguments}"#);
     shell(&script, &[input, output]).output().unwrap()
 }
 
-/// The limits in KiB, from one in which little more than the program fits.
+/// The limits in KiB. The smallest holds little more than the program itself.
 fn limits(is_full: bool) -> Vec<u64> {
     let part = |step: u32| f64::from(step) / f64::from(STEPS - 1);
     let bytes =
@@ -30,7 +30,7 @@ fn limits(is_full: bool) -> Vec<u64> {
 }
 
 #[test]
-fn what_does_not_fit_is_one_line() {
+fn a_mesh_that_does_not_fit_in_memory_gives_one_line() {
     let triangles = std::env::var("EDGEFLIP_MEMORY").ok().map(|count| count.parse::<f64>().unwrap());
     let mesh = grid((triangles.unwrap_or(160_000.0) / 2.0).sqrt() as usize + 1);
     let limits = limits(triangles.is_some());
@@ -90,7 +90,7 @@ fn no_temporary_file_stays() {
     let folder = Folder::new();
     let (input, output) = (folder.path("in.ply"), folder.file("out.glb", "old"));
     io::write(&input, &grid(400)).unwrap();
-    // The limit may come too late.
+    // The limit may take effect too late, so there are several tries.
     let has_run_out = (0..20).any(|_| {
         let mut command = command(&input, &output, &["--quiet", "--max-iterations", "0"]);
         let mut child = command.stderr(Stdio::null()).spawn().unwrap();
@@ -120,7 +120,7 @@ fn threads_without_work_are_not_started() {
 
 /// If no threads can be started, one thread does the work, unless an option requests more. Stacks of 1 TB do not fit.
 #[test]
-fn threads_that_cannot_be_started_are_done_without() {
+fn without_further_threads_one_thread_does_the_work() {
     let folder = Folder::new();
     let (input, output) = (folder.path("in.off"), folder.path("out.off"));
     // Enough for two threads, also in release builds.
@@ -137,7 +137,7 @@ fn threads_that_cannot_be_started_are_done_without() {
 
 /// Drivers end the process if they get no memory.
 #[test]
-fn a_gpu_is_left_alone_in_little_memory() {
+fn no_gpu_is_used_in_little_memory() {
     let folder = Folder::new();
     let (input, output) = (folder.path("in.off"), folder.path("out.off"));
     io::write(&input, &grid(101)).unwrap();

@@ -90,7 +90,7 @@ fn sessions_take_what_they_ask_for() {
                         order,
                         threads: NonZeroUsize::new(threads),
                         max_normal_angle: 180.0,
-                        // The worst cases have thousands, each of a few flips.
+                        // The worst cases have thousands of iterations of a few flips each.
                         max_iterations: Some(20),
                         locked_edges,
                         ..Options::default()

@@ -1,8 +1,8 @@
 //! The parity matrix: meshes by engines, every cell equal to the simulation after every iteration.
 //!
-//! This test makes the columns of the native engines. `EDGEFLIP_PARITY=FILE` writes them, the meshes and the results that
-//! every engine must give, for `tests/parity/matrix.mjs`, which adds the engines in browsers and prints the table.
-//! The compiled test reads no file: with `--nocapture` it prints its columns on any machine that has a GPU.
+//! This test makes the columns of the native engines. `EDGEFLIP_PARITY=FILE` writes these columns, the meshes and the
+//! expected results to a file. `tests/parity/matrix.mjs` reads the file and adds the columns of the engines in
+//! browsers. The compiled test reads no file: with `--nocapture` it prints its columns on any machine that has a GPU.
 #![cfg(feature = "cli")]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "what fails here is a failed test")]
 
@@ -111,7 +111,7 @@ fn table(cases: &[(Case, Simulation)], columns: &[Column]) -> Vec<String> {
     lines
 }
 
-/// A mesh, its positions as the words of f32 or f64, and what an engine must give.
+/// A mesh and its expected results, as JSON. Positions are the 32-bit words of f32 or f64.
 fn exported((case, want): &(Case, Simulation)) -> Value {
     let reasons = |reasons: &Reasons| -> Value { reasons.iter().map(|(r, n)| (r.name(), n)).collect() };
     let mut end = Digest::default();

@@ -17,8 +17,8 @@ fn said(mut session: Session) -> (Outcome, String, Session) {
     (outcome, format!("{audit:?}"), session)
 }
 
-/// Moves the vertices and compares with a new session, iteration by iteration up to `steps`. Returns both of the
-/// moved session and whether the backend took the positions.
+/// Moves the vertices, and compares the session with a new one on the same mesh after every iteration. Returns the
+/// session, and whether the backend accepted the positions.
 fn compare(
     name: &str,
     mut session: Session,
@@ -67,15 +67,14 @@ fn compare(
     (session, true)
 }
 
-/// Ways to move the vertices of a mesh, to 32-bit floats: shaken, stretched and mirrored, folded over, and all at one
-/// position.
+/// Moved positions of the vertices, as 32-bit floats: shaken; stretched and mirrored; folded over; all at one position.
 fn moves(mesh: &Mesh) -> Vec<Positions> {
     let mut random = Rand64::new(7);
     let mapped = |map: &mut dyn FnMut([f32; 3]) -> [f32; 3]| {
         let finite = |p: [f32; 3]| p.map(|x| x.clamp(f32::MIN, f32::MAX));
         meshes::moved(mesh, |p| finite(map(finite(p)))).positions().clone()
     };
-    // Halves and quarters keep the bits few, so that the GPU takes them.
+    // Multiples of powers of two have few bits, so the GPU accepts them.
     let shaken =
         &mut |p: [f32; 3]| p.map(|x| x + x.abs().max(0.0625) * (random.rand_range(0..8) as f32 / 16.0));
     let mirrored = &mut |[x, y, z]: [f32; 3]| [-x, 4.0 * y, 0.5 * z];
@@ -98,7 +97,7 @@ fn deform(name: &str, mesh: &Mesh, options: &Options) -> u32 {
 }
 
 #[test]
-fn moved_vertices_are_as_a_new_session() {
+fn a_session_with_moved_vertices_equals_a_new_one() {
     let (mut on_cpu, mut on_gpu) = (0, 0);
     for case in meshes::all().into_iter().filter(|case| case.mesh.triangle_count() <= 500) {
         let options = case.options(Backend::Cpu);
@@ -111,7 +110,7 @@ fn moved_vertices_are_as_a_new_session() {
 }
 
 #[test]
-fn moved_vertices_are_as_a_new_session_of_lawsons_algorithm() {
+fn with_lawsons_algorithm_it_equals_a_new_one_too() {
     for spec in ["random 12", "uvsphere 9"] {
         let mesh = edgeflip::families::by_name(spec).unwrap();
         let options = Options { backend: Backend::Cpu, order: Order::Any, ..Options::default() };
@@ -119,7 +118,7 @@ fn moved_vertices_are_as_a_new_session_of_lawsons_algorithm() {
     }
 }
 
-/// Both ways to run: by sweeps and by lists, whose stamps must not outlive a move.
+/// The engine runs by sweeps and by lists. Stamps of the lists must not outlive a move.
 #[test]
 fn batches_after_a_move_are_those_of_a_new_session() {
     let mesh = edgeflip::families::by_name("strips 200").unwrap();

@@ -26,7 +26,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
-/// For each GPU engine.
+/// The number of quads for each GPU engine.
 fn quads() -> usize {
     std::env::var("EDGEFLIP_QUADS").map_or(100_000, |quads| quads.parse().unwrap())
 }
@@ -48,7 +48,7 @@ async fn iterate(batch: &Batch, backend: Backend) -> Result<(u64, Reasons, Vec<u
     Ok((labelled, blocked, session.triangles().await?))
 }
 
-/// The quads that the engine flips or keeps wrongly, and the first quad that it counts wrongly.
+/// The quads that the engine flips or keeps wrongly. If there are none, the first quad that it counts wrongly.
 fn mismatches(batch: &Batch, backend: Backend) -> Vec<(usize, String)> {
     let (triangles, is_miscounted) = run(batch, backend);
     let expected = batch.triangles_after();
@@ -83,7 +83,7 @@ fn run(batch: &Batch, backend: Backend) -> (Vec<u32>, bool) {
     (triangles, (labelled, blocked) != (tally.labelled as u64, reasons))
 }
 
-/// Makes all batches, on all cores.
+/// Makes all batches on all cores, and calls `work` with each. `beyond`: as in [`batch`].
 fn for_each_batch(quads: usize, beyond: bool, work: impl Fn(Batch) + Sync) {
     let (batches, next) = (batch_count(quads), AtomicUsize::new(0));
     let work_through = || {
@@ -130,8 +130,8 @@ fn gpu_decides_as_big_integers_do_within_its_span_and_refuses_the_rest() {
     check("GPU", Backend::Gpu, quads(), false);
 }
 
-/// `quads/browsers.mjs` reads them: of each batch `positions` (f64) and `verdicts` (a byte a quad), and
-/// `batches.json` with all the rest.
+/// Writes files that `quads/browsers.mjs` reads: for each batch `positions` (f64) and `verdicts` (a byte per quad), and
+/// one `batches.json` with everything else.
 #[test]
 fn batches_for_browsers() {
     let folder = Path::new("target/quads");

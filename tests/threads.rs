@@ -26,7 +26,7 @@ fn every_mesh_of_the_matrix_flips_as_on_one() {
     }
 }
 
-/// Lawson's algorithm, whose threads have regions.
+/// The same with Lawson's algorithm, which divides the mesh into regions for its threads.
 #[test]
 fn every_mesh_of_the_matrix_flips_in_any_order_as_on_one() {
     for case in meshes::all() {
@@ -61,7 +61,7 @@ fn random_dirty_meshes_flip_as_simulated() {
     }
 }
 
-/// Large enough for threads in any build.
+/// The meshes are so large that release builds use several threads too.
 #[test]
 fn large_meshes_end_alike_with_the_same_flips_and_twins() {
     for spec in ["shear 150", "random 150", "uvsphere 150"] {

@@ -16,7 +16,7 @@ use wasm_bindgen_test::{wasm_bindgen_test, wasm_bindgen_test_configure};
 
 wasm_bindgen_test_configure!(run_in_browser);
 
-/// As natively in `edge_states.rs`.
+/// The same check as `edge_states.rs` makes natively.
 #[wasm_bindgen_test]
 async fn states_foretell_the_flips() {
     // SwiftShader, Chromium's software GPU, is slow, above all to compile the kernels for doubles and for deviations.
@@ -34,7 +34,7 @@ async fn states_foretell_the_flips() {
                 session => session.unwrap_or_else(|error| panic!("{name}: {error}")),
             };
             for _ in 0..iterations {
-                // Both half-edges of an edge flip.
+                // Each edge that flips has two half-edges in the states.
                 let states = session.edge_states().await.unwrap();
                 let foretold = states.iter().filter(|&&state| state == EdgeState::Flips).count() / 2;
                 let step = session.step().await.unwrap();
@@ -49,7 +49,7 @@ async fn states_foretell_the_flips() {
     }
 }
 
-/// The batch with its tail, which watching does not run.
+/// A run without stops also runs the tail, which single steps do not.
 #[wasm_bindgen_test]
 async fn a_whole_run_on_webgpu_is_that_of_the_cpu() {
     for spec in ["strips 50", "uvsphere 14"] {
@@ -71,7 +71,7 @@ async fn a_whole_run_on_webgpu_is_that_of_the_cpu() {
     }
 }
 
-/// It looks before it opens a device, which would compile the kernels.
+/// `auto` looks at the adapter first, because opening a device compiles kernels.
 #[wasm_bindgen_test]
 async fn auto_finds_an_engine() {
     let mesh = by_name("random 80").unwrap();
@@ -84,7 +84,7 @@ async fn auto_finds_an_engine() {
     assert!(outcome.backend != EngineKind::Cpu || device::devices_asked_for() == asked);
 }
 
-/// What the npm package calls: the GPU's objects are those that the page can draw from.
+/// The npm package gets the objects of the GPU that the page can draw from.
 #[wasm_bindgen_test]
 async fn javascript_gets_the_buffers_of_webgpu() {
     let mesh = by_name("random 10").unwrap();
@@ -93,7 +93,7 @@ async fn javascript_gets_the_buffers_of_webgpu() {
     assert_eq!(session.backend(), "webgpu");
     assert!(session.flips() > 0.0);
     assert_eq!(class_of(&session.device()), "GPUDevice");
-    // The page may set it, as three does.
+    // The handler stays free for the page: three.js sets it.
     assert!(Reflect::get(&session.device(), &"onuncapturederror".into()).unwrap().is_null());
     for (buffer, numbers) in [
         (session.position_buffer(), mesh.positions().len()),

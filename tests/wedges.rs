@@ -1,5 +1,5 @@
-//! Carries attributes of corners through flips on dirty meshes, and compares with following each flip. Also welds and splits
-//! vertices.
+//! Attributes of corners survive flips on dirty meshes: `Wedges` gives the same result as following each flip. Vertices
+//! are welded and split.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "what fails here is a failed test")]
 
 mod meshes;
@@ -52,8 +52,8 @@ fn glued(random: &mut Rand64, n: usize) -> Mesh {
     mesh.with_triangles(triangles).unwrap()
 }
 
-/// Numbers for the corners: at random; a few others among equal ones; by triangle; or one for each sector between
-/// edges that are cut at random, of few numbers in all.
+/// Numbers for the corners, made in one of four ways: random numbers; equal numbers except a few; one number for the
+/// first triangles and another for the rest; a number for each sector of a random cut.
 fn classes(mesh: &Mesh, random: &mut Rand64) -> Vec<u32> {
     let corners = mesh.triangles().len();
     let few = 1 + below(random, 3);
@@ -75,7 +75,8 @@ fn classes(mesh: &Mesh, random: &mut Rand64) -> Vec<u32> {
     }
 }
 
-/// The mesh cut along a random share of its edges: for each corner one that stands for those that are still together.
+/// Cuts the mesh along a random share of its edges. Returns, for each corner, the corner that represents its sector:
+/// the corners of a vertex that the cut leaves together.
 fn sectors(mesh: &Mesh, share: f64, random: &mut Rand64) -> Vec<u32> {
     let mut sectors: Vec<u32> = (0..mesh.triangles().len() as u32).collect();
     for (h, &g) in Adjacency::new(mesh).twins.iter().enumerate() {
@@ -147,7 +148,8 @@ fn edges(triangles: &[u32]) -> BTreeMap<[u32; 2], Vec<usize>> {
     edges
 }
 
-/// The half-edges of an edge with their numbers at both ends, and whether a flip can go across it.
+/// For each half-edge of an edge, its first vertex and its numbers at both ends, sorted. Then whether the edge may
+/// flip.
 fn sides(half_edges: &[usize], triangles: &[u32], classes: &[u32]) -> (Vec<[u32; 3]>, bool) {
     let side = |&h: &usize| [triangles[h], classes[h], classes[next(h)]];
     let mut sides: Vec<_> = half_edges.iter().map(side).collect();
@@ -164,8 +166,8 @@ fn sides(half_edges: &[usize], triangles: &[u32], classes: &[u32]) -> (Vec<[u32;
     (sides, is_open)
 }
 
-/// What has to hold whatever the order of flips: all that is no place to flip is as it was, attributes included, all
-/// other edges have the same on both sides, and no vertex has new ones.
+/// Asserts what has to hold in any order of flips. An edge that may not flip is unchanged, and so are its attributes. A
+/// new edge has the same attributes on both sides. No vertex gets new attributes.
 fn assert_carried(mesh: &Mesh, before: &[u32], triangles: &[u32], after: &[u32]) {
     let (old, new) = (edges(mesh.triangles()), edges(triangles));
     for (edge, half_edges) in &old {
@@ -227,9 +229,9 @@ fn an_edge_is_a_seam_if_attributes_differ_at_one_end() {
     assert_eq!(seams([1, 2, 3, 1, 5, 4]), [[0, 2]]);
 }
 
-/// Two closed surfaces that touch at vertex 0, each with attributes of its own there, and three triangles at one edge.
+/// Two closed surfaces that touch at vertex 0, where each has its own attributes. Then three triangles at one edge.
 #[test]
-fn triangles_stay_where_only_their_numbers_tell_attributes() {
+fn triangles_stay_where_no_barrier_identifies_attributes() {
     let tetrahedron = |[a, b, c]: [u32; 3]| [[0, a, b], [0, b, c], [0, c, a], [a, c, b]].concat();
     let points: Vec<f32> = (0..21).map(|i| (i * i) as f32).collect();
     let mesh = |triangles| Mesh::new(Dimension::Three, points.clone(), triangles).unwrap();
@@ -245,7 +247,7 @@ fn triangles_stay_where_only_their_numbers_tell_attributes() {
 }
 
 #[test]
-fn what_is_no_result_is_refused() {
+fn triangles_that_are_no_result_are_refused() {
     let square = plane(&[[0., 0.], [1., 0.], [1., 1.], [0., 1.]], &[[0, 1, 2], [0, 2, 3]]);
     assert!(matches!(Wedges::new(&square, vec![1; 5]), Err(Error::Option { option: "classes", .. })));
     let wedges = Wedges::new(&square, vec![1, 1, 1, 2, 1, 1]).unwrap();
@@ -262,7 +264,7 @@ fn what_is_no_result_is_refused() {
     );
 }
 
-/// The mesh with a vertex of its own for each of these sectors, and nothing for another one.
+/// The mesh with one vertex for each sector, and no other vertices.
 fn cut(mesh: &Mesh, sectors: &[u32]) -> Mesh {
     let mut vertices: Vec<u32> = sectors.to_vec();
     vertices.sort_unstable();
@@ -276,9 +278,10 @@ fn cut(mesh: &Mesh, sectors: &[u32]) -> Mesh {
     Mesh::new(mesh.dimension(), positions, sectors.iter().map(vertex).collect()).unwrap()
 }
 
-/// In the plane always, since no edge there is in the way of another one; on a surface where none is.
+/// In the plane this always holds, because no edge is ever blocked as a duplicate. On a surface, runs with such an edge
+/// are skipped.
 #[test]
-fn a_mesh_with_seams_goes_the_way_of_one_that_is_cut() {
+fn a_mesh_with_seams_flips_like_a_mesh_cut_along_them() {
     let mut iterations = [0; 2];
     for seed in 0..rounds() {
         let random = &mut Rand64::new(seed as u128);
@@ -329,9 +332,9 @@ fn a_soup_is_joined_and_split_again() {
     }
 }
 
-/// 0 and -0 are the same position; the next float is another one. Unreferenced vertices are joined too.
+/// 0 and -0 are the same position; the next float is a different one. Unreferenced vertices are joined too.
 #[test]
-fn places_are_exact() {
+fn positions_are_compared_exactly() {
     let tiny = f64::from_bits(1);
     let points: [[f64; 3]; 6] = [
         [0.0, 1.0, -0.0],
@@ -351,7 +354,8 @@ fn places_are_exact() {
     assert_eq!(refused.to_string(), "option attributes: it has 5 numbers, the mesh has 6 vertices");
 }
 
-/// The triangles of a square, swapped: their first corners are at the same position, but on the other sides of the seam.
+/// The two triangles of a square, swapped. Their first corners have the same position, but are on different sides of
+/// the seam.
 #[test]
 fn a_corner_keeps_its_vertex_only_with_its_attributes() {
     let square = plane(&[[0., 0.], [1., 0.], [1., 1.], [0., 1.], [0., 0.]], &[[0, 1, 2], [4, 2, 3]]);
@@ -362,9 +366,9 @@ fn a_corner_keeps_its_vertex_only_with_its_attributes() {
     assert_eq!(split([7; 5]), [0, 2, 3, 4, 1, 2]);
 }
 
-/// A soup of triangles, some reversed: welded, they are reversed back, and each keeps its vertices.
+/// A soup of triangles, some of them reversed. After the weld they are reversed back, and each keeps its vertices.
 #[test]
-fn what_is_joined_can_be_turned() {
+fn a_welded_mesh_can_be_reoriented() {
     let mesh = by_name("uvsphere 9").unwrap();
     let soup = cut(&mesh, &(0..mesh.triangles().len() as u32).collect::<Vec<_>>());
     let random = &mut Rand64::new(3);

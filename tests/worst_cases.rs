@@ -43,7 +43,7 @@ fn nearly_collinear_fans_end() {
 fn the_worst_case_of_the_paper_takes_all_its_flips() {
     let outcome = family("strips 1000", 10.0);
     assert_eq!((outcome.iterations, outcome.flips), (997, 249_001));
-    // Figure 12: the most flips in the middle.
+    // As in figure 12 of the paper, most flips are in the middle of the run.
     let peak = outcome.flips_per_iteration.iter().position(|&flips| flips == 499);
     assert_eq!(peak, Some(498));
 }
@@ -89,7 +89,7 @@ fn a_clockwise_mesh_flips_like_its_mirror_image() {
 fn a_bow_tie_is_two_meshes() {
     let mesh = families::by_name("random 30").unwrap();
     let count = mesh.vertex_count() as u32;
-    // The second is the first, turned by 180° about its vertex 0 at the corner.
+    // The second mesh is the first, rotated by 180° about the common vertex 0, which is a corner of both.
     let mut positions = mesh.positions().to_f32();
     let (x, y) = (positions[0], positions[1]);
     let turned: Vec<_> = positions[2..].chunks(2).flat_map(|p| [2.0 * x - p[0], 2.0 * y - p[1]]).collect();

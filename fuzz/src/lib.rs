@@ -1,18 +1,19 @@
-//! What has to hold for the bytes of any file: it is read or refused in one line; what was read is made Delaunay, and
-//! the audit is clean, also with its vertices joined; and it is written again in every format, from which the same mesh
-//! is read: in its own with all else as it was. The fuzz targets call this, and so does `tests/fuzz_seeds.rs`.
+//! Checks what has to hold for the bytes of any file. The file is read, or refused with an error of one line. A run on
+//! the mesh, and one on the welded mesh, end with a clean audit. The mesh is written in every format, and each written
+//! file is read back as the same mesh. In its own format, a file also keeps everything else. The fuzz targets call
+//! this, and so does `tests/fuzz_seeds.rs`.
 
 use edgeflip::io::{Format, Loaded, ReadOptions, parse_edges, parse_numbers, parse_with};
 use edgeflip::{Dimension, Error, Mesh, Options, make_delaunay, quality};
 use std::ops::ControlFlow;
 
-/// Bytes that a file may have, and its mesh may take.
+/// The most bytes of a file, and of its mesh.
 const MAX_BYTES: u64 = 1 << 22;
 
-/// Meshes of so many triangles are left as they were read.
+/// Meshes of at least this many triangles are not flipped.
 const MANY: usize = 200;
 
-/// Checks the bytes of a file as the target of that name does.
+/// The check of the fuzz target with this name, on the bytes of a file.
 ///
 /// # Panics
 /// If something does not hold.
@@ -37,7 +38,7 @@ pub fn check(target: &str, bytes: &[u8]) {
     }
 }
 
-/// Reads a file. Those beside it are itself, but for one that is not there.
+/// Reads a file. Every other file that it names has the same bytes, except `none`, which does not exist.
 fn read(format: Format, bytes: &[u8], dimension: Option<Dimension>) -> Result<Loaded, Error> {
     let beside = |name: &str| if name == "none" { Err("not there".into()) } else { Ok(bytes.to_vec()) };
     let options = ReadOptions { dimension, max_bytes: MAX_BYTES, ..ReadOptions::default() };
@@ -58,7 +59,7 @@ fn whole_way(loaded: &Loaded, bytes: &[u8]) {
     joined(loaded);
     let mut reversed = triangles.clone();
     reversed.reverse();
-    // A glTF primitive with other indices may share its vertices with another in another way.
+    // Not in glTF: rotated indices may change which primitives share vertices.
     let is_gltf = loaded.placed().is_some();
     let mut rotated = triangles.clone();
     rotated.chunks_mut(3).filter(|_| !is_gltf).for_each(|triangle| triangle.rotate_left(1));
@@ -70,7 +71,7 @@ fn whole_way(loaded: &Loaded, bytes: &[u8]) {
         ("a.gltf", Format::Gltf),
         ("a.glb", Format::Glb),
     ] {
-        // Triangles that no flips make are written or refused.
+        // No flips lead to these triangles. They are written, or refused with one line.
         drop(loaded.file_bytes(name, reversed.clone()).map_err(one_line));
         for triangles in [&triangles, &rotated] {
             match loaded.file_bytes(name, triangles.clone()) {
@@ -85,7 +86,7 @@ fn whole_way(loaded: &Loaded, bytes: &[u8]) {
     }
 }
 
-/// The triangles of a run, which the audit finds nothing in.
+/// The triangles after a run; the audit must find no violation.
 fn flipped(mesh: &Mesh, options: &Options) -> Vec<u32> {
     if mesh.triangle_count() >= MANY {
         return mesh.triangles().to_vec();
@@ -97,7 +98,8 @@ fn flipped(mesh: &Mesh, options: &Options) -> Vec<u32> {
     outcome.triangles
 }
 
-/// Joins the vertices at one place, flips, and splits: each corner has a vertex of its place, and glTF takes it.
+/// Welds the vertices, flips, and splits them again. Each corner must have a vertex at its position. glTF must accept
+/// the result.
 fn joined(loaded: &Loaded) {
     let welded = match loaded.welded() {
         Ok(welded) => welded,
@@ -114,7 +116,7 @@ fn joined(loaded: &Loaded) {
     }
 }
 
-/// Reads what was written, and compares it with the mesh.
+/// Reads the written file back, and compares its mesh with `loaded`.
 fn same(loaded: &Loaded, triangles: &[u32], name: &str, written: &[u8], beside: &[u8]) {
     let format = Format::of(name.as_ref()).unwrap();
     let is_gltf = matches!(format, Format::Gltf | Format::Glb);
@@ -123,7 +125,8 @@ fn same(loaded: &Loaded, triangles: &[u32], name: &str, written: &[u8], beside: 
         Some(placed) if !is_gltf => Mesh::new(Dimension::Three, placed, triangles.to_vec()).unwrap(),
         _ => as_read,
     };
-    // An OBJ file without a vertex is none, glTF without triangles has points, and text is read in 32 bits.
+    // Not comparable: the reader refuses OBJ without vertices, a new glTF file without triangles has points, and only
+    // PLY keeps coordinates beyond 32-bit floats.
     let is_beyond = format != Format::Ply && mesh.positions().to_f32().iter().any(|x| !x.is_finite());
     if mesh.vertex_count() == 0 && format == Format::Obj || triangles.is_empty() && is_gltf || is_beyond {
         return;
@@ -140,7 +143,7 @@ fn same(loaded: &Loaded, triangles: &[u32], name: &str, written: &[u8], beside: 
         return;
     }
     assert_eq!(back.triangles(), mesh.triangles());
-    // Digits of 64 bits may be rounded to another number than those bits.
+    // The decimal digits of a 64-bit float may round to another 32-bit float than its bits do.
     let digits = || mesh.positions().iter().map(|x| x.to_string().parse().unwrap()).collect::<Vec<f32>>();
     match format {
         Format::Ply => assert_eq!(back.positions(), mesh.positions()),
@@ -149,7 +152,7 @@ fn same(loaded: &Loaded, triangles: &[u32], name: &str, written: &[u8], beside: 
     }
 }
 
-/// Where the corners of each triangle are, in 32 bits.
+/// The positions of the corners of each triangle, as 32-bit floats.
 fn corners(mesh: &Mesh) -> Vec<Vec<f32>> {
     let (numbers, stride) = (mesh.positions().to_f32(), mesh.dimension().stride());
     mesh.triangles().iter().map(|&v| numbers[stride * v as usize..][..stride].to_vec()).collect()

@@ -4,7 +4,7 @@ use crate::command::{Folder, SQUARE, failed, run, text};
 use serde_json::{Value, json};
 use std::fs;
 
-/// The square as glTF whose buffer is in a file beside it, and stretched and moved by its node.
+/// The square as glTF: its buffer is in another file, and its node stretches and moves it.
 #[test]
 fn gltf_comes_out_with_other_indices() {
     let folder = Folder::new();
@@ -113,12 +113,12 @@ fn a_bad_file_gives_one_line_and_no_output() {
 /// ```
 #[test]
 fn dirty_files_say_what_was_left() {
-    // The triangle above twice: 0-1 has three triangles.
+    // The triangle above 0-1 twice, so 0-1 has three triangles.
     let ply = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nelement face 3\n\
         property list uchar int vertex_indices\nend_header\n-2 0\n2 0\n0 1\n0 -1\n3 0 1 2\n3 1 0 3\n3 0 1 2\n";
-    // The triangle below turned over, a vertex that none has, and a triangle that has one vertex three times.
+    // The triangle below 0-1 is reversed. Vertex 4 is unused. The last triangle has one vertex three times.
     let off = "OFF\n5 3 0\n-2 0 0\n2 0 0\n0 1 0\n0 -1 0\n9 9 9\n3 0 1 2\n3 0 1 3\n3 2 2 2\n";
-    // Nothing but a facet without area at the upper left edge.
+    // The kite, with a facet without area at its upper left edge.
     let facet = |corners: [&str; 3]| {
         format!("facet normal 0 0 0\nouter loop\nvertex {}\nendloop\nendfacet\n", corners.join("\nvertex "))
     };
@@ -155,7 +155,8 @@ fn dirty_files_say_what_was_left() {
     }
 }
 
-/// From format to format: the triangles are those of the OFF file, or have their corners, in the same order.
+/// Converts between all formats. The triangles are those of the OFF file. In STL, their corners have the same positions
+/// in the same order.
 #[test]
 fn every_format_is_read_and_written() {
     use edgeflip::io::{ReadOptions, read};

@@ -19,7 +19,7 @@ fn verified(input: &Path, output: &Path, arguments: &[&str]) -> Value {
     found
 }
 
-/// An OBJ file as STL files are: edges flip only where vertices are joined.
+/// An OBJ file whose triangles share no vertices, as in STL: edges flip only after vertices are joined.
 #[test]
 fn triangles_without_common_vertices_are_joined() {
     let folder = Folder::new();
@@ -35,11 +35,11 @@ fn triangles_without_common_vertices_are_joined() {
     assert_eq!(written, format!("{vertices}f 6 2 3\nf 4 2 6\n"));
     let said = text(&run(&input, &output, &["--weld"]).stderr).to_owned();
     assert!(said.contains("\njoined     2 vertices\n"), "{said}");
-    // Vertices that are joined may differ in what only the file knows: it is not kept.
+    // Texture coordinates of joined vertices may differ. They are not kept.
     let textured = folder.file("vt.obj", format!("{vertices}vt 0 0\nf 1/1 2/1 3/1\nf 4/1 5/1 6/1\n"));
     let said = text(&run(&textured, &output, &["--weld"]).stderr).to_owned();
     assert!(said.contains("\njoined     2 vertices\n") && said.contains("note       not kept: "), "{said}");
-    // The diagonal, by vertices that are joined to others.
+    // Locks the diagonal, named by vertices that are joined to others.
     let list = folder.file("list.txt", "3 2\n");
     let found = verified(&input, &output, &["--weld", "--lock-edges", list.to_str().unwrap()]);
     assert_eq!((&found["flips"], &found["remaining"]), (&0.into(), &json!({ "locked": 1 })));
@@ -68,7 +68,7 @@ fn glb(json: &Value, buffer: &[u8]) -> Vec<u8> {
     .concat()
 }
 
-/// The square in glTF without indices. A number for each vertex makes a seam of the diagonal.
+/// The square in glTF without indices. With different attributes of the vertices, the diagonal is a seam.
 #[test]
 fn gltf_without_indices_gets_some() {
     let folder = Folder::new();

@@ -37,10 +37,10 @@ fn wrong_usage_is_2() {
     assert_eq!(folder.names(), ["in.off"]);
 }
 
-/// With no Vulkan driver to find there is no GPU, and the one that was asked for is not replaced.
+/// Without a Vulkan driver there is no GPU. A backend that the user names is never replaced.
 #[cfg(target_os = "linux")]
 #[test]
-fn a_backend_that_is_not_there_is_3() {
+fn an_unavailable_backend_is_3() {
     let folder = Folder::new();
     let (input, output) = (folder.file("in.off", SQUARE), folder.path("out.off"));
     let ran = Command::new(env!("CARGO_BIN_EXE_edgeflip"))

@@ -19,7 +19,7 @@ pub const SQUARE: &str = "OFF\n4 2 0\n0 0 0\n0.9 0.2 0\n1 1 0\n0 1 0\n3 0 1 2\n3
 /// The output of the program for [`SQUARE`].
 pub const FLIPPED: &str = "OFF\n4 2 0\n0 0 0\n0.9 0.2 0\n1 1 0\n0 1 0\n3 3 1 2\n3 0 1 3\n";
 
-/// A folder that is removed with what is in it.
+/// A folder that is removed with its contents.
 pub struct Folder(tempfile::TempDir);
 
 impl Folder {
@@ -51,7 +51,7 @@ impl Folder {
         path
     }
 
-    /// The names of what is in it, sorted.
+    /// The sorted names of its contents.
     pub fn names(&self) -> Vec<String> {
         let entries = fs::read_dir(self.0.path()).unwrap();
         let mut names: Vec<_> = entries.map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
@@ -60,7 +60,7 @@ impl Folder {
     }
 }
 
-/// A command that is the program, on the CPU unless `arguments` say otherwise.
+/// A command that runs the program, on the CPU unless `arguments` name a backend.
 pub fn command(input: &Path, output: &Path, arguments: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_edgeflip"));
     command.arg(input).arg("-o").arg(output);
@@ -88,7 +88,7 @@ pub fn text(bytes: &[u8]) -> &str {
     std::str::from_utf8(bytes).unwrap()
 }
 
-/// The run ended with `status`, with one line on standard error, and nothing on standard output.
+/// Asserts that the run ended with `status`, with one line on standard error, and nothing on standard output.
 #[track_caller]
 pub fn failed(output: &Output, status: i32, line: &str) {
     assert_eq!(text(&output.stderr), format!("edgeflip: {line}\n"));
@@ -96,7 +96,7 @@ pub fn failed(output: &Output, status: i32, line: &str) {
     assert!(output.stdout.is_empty());
 }
 
-/// The run ended well and said nothing.
+/// Asserts that the run succeeded and printed nothing.
 #[track_caller]
 pub fn silent(output: &Output) {
     assert_eq!((output.status.code(), text(&output.stderr)), (Some(0), ""));

@@ -1,4 +1,4 @@
-//! Surfaces with a limit for the deviation: small, met exactly, or none.
+//! Surfaces with a limit for the deviation: a small limit, a limit that some flips meet exactly, or none.
 
 use super::{Case, case, lifted, moved, signed, soup};
 use edgeflip::{Mesh, families::by_name};
@@ -23,7 +23,7 @@ pub fn all() -> Vec<Case> {
     let limits = [height.next_down(), height, height.next_up()].map(f64::from);
     let steps = lattice(height);
     add("steps", &steps, 180.0, &limits);
-    // In doubles, where no limit is as high as the steps.
+    // In doubles. No limit equals the height of the steps.
     add("steps-f64", &wide(&steps, 1e-9), 180.0, &limits[1..]);
     for (name, scale) in [("large", 2f32.powi(100)), ("small", 2f32.powi(-100))] {
         let steps = moved(&steps, |p| p.map(|x| x * scale));
@@ -56,7 +56,7 @@ fn lattice(height: f32) -> Mesh {
     moved(&steps, |[x, y, z]| [x - 0.7 * y, y, z])
 }
 
-/// Scaled up by so little that no f32 shows it.
+/// The mesh scaled up by a factor so near to 1 that 32-bit floats cannot hold the result.
 fn wide(mesh: &Mesh, more: f64) -> Mesh {
     let positions: Vec<f64> = mesh.positions().iter().map(|x| x * (1.0 + more)).collect();
     Mesh::new(mesh.dimension(), positions, mesh.triangles().to_vec()).unwrap()

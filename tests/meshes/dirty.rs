@@ -6,7 +6,7 @@ use oorandom::Rand64;
 
 pub fn all() -> Vec<Case> {
     let mut cases = Vec::new();
-    // Both as they are in the plane and as a flat surface, on which β has no effect below 180°.
+    // Each mesh in the plane, and as a flat surface, where a β below 180° has no effect.
     for (name, mesh) in flat() {
         cases.push(case(&format!("{name}-3d"), lifted(&mesh, |_, _| 0.0), 90.0));
         cases.push(case(name, mesh, 10.0));
@@ -105,8 +105,8 @@ fn folded_quad() -> Mesh {
     plane(&[[0., 0.], [4., 0.], [2., 3.], [2., 1.]], &[[0, 1, 2], [1, 0, 3]])
 }
 
-/// The flip of 0-1 would make 2-3, which the triangle (2, 3, 4) has already; it is joined to the kite by
-/// two vertices but no edge.
+/// The flip of 0-1 would make 2-3, an edge that the triangle (2, 3, 4) has already. This triangle shares two vertices
+/// with the kite, but no edge.
 /// ```text
 ///        2 ------.
 ///      / | \      '.
@@ -118,7 +118,8 @@ fn kite_and_flap() -> Mesh {
     plane(&[[-2., 0.], [2., 0.], [0., 1.], [0., -1.], [5., 0.]], &[[0, 1, 2], [1, 0, 3], [3, 4, 2]])
 }
 
-/// 2 lies on the edge 0-1: the angle there is exactly π. The cap goes where 0-1 can flip, not at 1-2-4.
+/// 2 lies on the edge 0-1: the angle there is exactly π. A flip of 0-1 removes the cap. The edge 1-2 is Delaunay and
+/// stays.
 /// ```text
 ///         4
 ///       .' '.
@@ -168,8 +169,8 @@ fn two_sided_triangle() -> Mesh {
     plane(&[[-2., 0.], [2., 0.], [0., 0.5]], &[[0, 1, 2], [1, 0, 2]])
 }
 
-/// A kite and its back side, split along the same diagonal and so with four half-edges at it, and one
-/// whose back is split along the other: a closed, flat pillow.
+/// Two kites with back sides. The back of the first is split along the same diagonal, which has four half-edges. The
+/// back of the second is split along the other diagonal: a closed, flat pillow.
 /// ```text
 ///        2                    6
 ///      / | \                / | \
@@ -184,7 +185,7 @@ fn two_sided_kite() -> Mesh {
     )
 }
 
-/// Vertices 3 and 4 are one point under two numbers: a triangle without area between two proper ones.
+/// Vertices 3 and 4 have the same position: triangles without area between proper ones.
 fn coincident_vertices() -> Mesh {
     plane(
         &[[0., 0.], [4., 0.], [2., 1.], [2., -1.], [2., -1.], [2., -4.]],
@@ -207,8 +208,8 @@ fn fan_of_three() -> Mesh {
     )
 }
 
-/// The kite with one triangle reversed: edge 0-1 runs in the same direction twice. On its left a
-/// proper kite with the vertices 0, 2 and two more, so that something flips beside it.
+/// The kite with one triangle reversed: edge 0-1 has two half-edges in the same direction. On its left is a proper kite
+/// of the vertices 0, 2 and two more, so that an edge flips beside it.
 fn inconsistent_pair() -> Mesh {
     plane(
         &[[-2., 0.], [2., 0.], [0., 1.], [0., -1.], [-2., 1.5], [-1.2, 1.5]],
@@ -299,7 +300,7 @@ fn flat_tetrahedron() -> Mesh {
     )
 }
 
-/// Three pages at one back (edge 0-1), each a kite of two triangles whose own diagonal should flip.
+/// Three kites share the edge 0-1, like the pages of a book. The diagonal of each kite should flip.
 /// ```text
 ///      2---1---...
 ///      |\  |        page 1: (0, 1, 2) and (0, 2, 5), and so on for 3 and 4
@@ -323,9 +324,8 @@ fn three_pages() -> Mesh {
     space(&points, &triangles)
 }
 
-/// Random triples of the vertices of a small disc: everything that can be wrong at once, in the plane
-/// and in space. The disc comes first, so that some edges can flip; `extra` triangles follow, most of
-/// which share an edge with what is there.
+/// A small disc and `extra` random triangles of its vertices, in the plane and in space. They have every fault at once.
+/// In the disc, some edges can flip. Most of the further triangles share an edge with an earlier one.
 pub fn soup(seed: u64, n: usize, extra: usize) -> (Mesh, Mesh) {
     let disc = by_name(&format!("random {n} seed={seed}")).unwrap();
     let side = 4.0 * n as f32;

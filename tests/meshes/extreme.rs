@@ -40,7 +40,7 @@ pub fn all() -> Vec<Case> {
     cases
 }
 
-/// Numbers that no f32 holds.
+/// Coordinates that 32-bit floats cannot hold.
 fn doubles() -> Vec<Case> {
     let mut cases = Vec::new();
     let mut both = |name: &str, mesh: &edgeflip::Mesh, map: &mut dyn FnMut(f64) -> f64| {
@@ -61,14 +61,15 @@ fn doubles() -> Vec<Case> {
     // Metres of Web Mercator, a micrometre apart.
     both("mercator", &random, &mut |x| 1.2e7 + 12e-6 * x);
     both("scale-max", &random, &mut |x| (2.0 * x - 1.0) * f64::MAX);
-    // Products of two coordinates overflow or underflow, products of four do, and only the smallest numbers are lost.
+    // At 1e160 and 1e-160, products of two coordinates overflow or underflow; at 1e80 and 1e-80, products of four do.
+    // At 1e-300, only the smallest coordinates lose bits.
     for (name, scale) in
         [("1e160", 1e160), ("1e80", 1e80), ("1e-80", 1e-80), ("1e-160", 1e-160), ("1e-300", 1e-300)]
     {
         both(&format!("scale-{name}"), &random, &mut |x| (x - 0.5) * scale);
     }
     both("subnormal", &random, &mut |x| x * 1e-320);
-    // From 1e-300 to 1e300, in the order of the lattice.
+    // Magnitudes from 1e-300 to 1e300, in ascending order along each axis.
     both("magnitudes", &by_name("random 8").unwrap(), &mut |x| {
         (1.0 + x) * 2f64.powi((2000.0 * x) as i32 - 1000)
     });
@@ -79,7 +80,8 @@ fn doubles() -> Vec<Case> {
     cases
 }
 
-/// A regular polygon of 16 points, all joined to the first. cos(π/2) is 6e-17, not 0, and stands beside 1.
+/// A regular polygon of 16 points, all joined to the first. One coordinate is cos(π/2), rounded to 6e-17 and not 0,
+/// next to a 1.
 fn polygon() -> edgeflip::Mesh {
     let points: Vec<_> = (0..16)
         .map(|i| {
@@ -91,7 +93,7 @@ fn polygon() -> edgeflip::Mesh {
     plane(&points, &triangles)
 }
 
-/// Kites that mix numbers far apart: no fixed width of integers holds one of them.
+/// Kites whose coordinates have very different magnitudes: no integers of a fixed width hold all coordinates of a kite.
 /// ```text
 ///            3 (0, 1e30)
 ///          /   \

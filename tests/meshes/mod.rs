@@ -13,8 +13,7 @@ pub use locked::edges;
 use edgeflip::{Backend, Dimension, Mesh, Options, families::by_name};
 use oorandom::Rand64;
 
-/// A mesh, its name and the threshold β in degrees that it is run with (without effect in 2D), and the edges that
-/// are locked.
+/// A mesh with a name and the options of its runs: β in degrees (without effect in 2D), and the locked edges.
 pub struct Case {
     pub name: String,
     pub mesh: Mesh,
@@ -88,7 +87,8 @@ pub fn space(points: &[[f32; 3]], triangles: &[[u32; 3]]) -> Mesh {
     Mesh::new(Dimension::Three, points.concat(), triangles.concat()).unwrap()
 }
 
-/// The mesh with every vertex moved; in 2D the third number is 0 and goes.
+/// The mesh with every vertex moved. In 2D, `map` gets 0 as the third number, and the third number of its result is
+/// dropped.
 pub fn moved(mesh: &Mesh, mut map: impl FnMut([f32; 3]) -> [f32; 3]) -> Mesh {
     let stride = mesh.dimension().stride();
     let move_one = |p: &[f32]| map([p[0], p[1], p.get(2).copied().unwrap_or(0.0)])[..stride].to_vec();
@@ -104,8 +104,8 @@ pub fn moved_wide(mesh: &Mesh, mut map: impl FnMut([f64; 2]) -> Vec<f64>) -> Mes
     Mesh::new(dimension, positions, mesh.triangles().to_vec()).unwrap()
 }
 
-/// Half of the coordinates moved to the next float, up or down. Zeros stay: next to them is the smallest float, outside
-/// the span that the engines on a GPU decide.
+/// The mesh with half of its coordinates moved to the next float, up or down. Zeros stay: the float next to 0 is beyond
+/// the span that the GPU engines decide.
 pub fn off_by_one_ulp(mesh: &Mesh) -> Mesh {
     let noisy = |(x, i): (f32, u32)| match i.wrapping_mul(0x9e37_79b9) >> 30 {
         _ if x == 0.0 => x,

@@ -140,7 +140,7 @@ test('while it plays on WebGPU, the page draws from the session’s own buffer, 
     `${draws.length} draws of ${rows.length} iterations, ${passes.length} compute passes, ${maps.length} reads of at most ${largest} bytes`,
   );
 
-  // The recording also notices read-backs: there is one at rest, for the fingerprint.
+  // The recording also notices read-backs: at rest the page reads the triangles once, for the fingerprint.
   assert.ok(events.some(({ what, size, state }) => what === 'map' && state !== 'playing' && size >= bytes));
   await page.close();
 });

@@ -5,17 +5,18 @@ use crate::simulation::Predicates;
 use edgeflip::{Dimension, Mesh, Reason};
 use std::ops::Range;
 
-/// Thresholds in degrees: the exact cosines, and one that is not.
+/// Thresholds in degrees. All except 10° have an exact cosine.
 const BETAS: [f64; 6] = [10.0, 0.0, 60.0, 90.0, 120.0, 180.0];
 
-/// Powers of two that floats are multiplied by: up to 2^125, down to where most of them are subnormal.
+/// Exponents of the powers of two by which coordinates are multiplied. With the largest, coordinates are up to 2^125;
+/// with the smallest, most are subnormal.
 const SCALES: [i32; 5] = [0, 101, -64, -89, -126];
 
-/// The limit for the deviation, before scaling, if there is one.
+/// The limit for the deviation before scaling, in batches that have a limit.
 pub const DEVIATION: f32 = 0.1;
 
-/// How many batches `quads` quads are cut into. 12 have all thresholds in both dimensions and all scales, 60 have them
-/// together. Every batch costs browsers about a second, however small it is.
+/// The number of batches for `quads` quads. 12 batches have every threshold in both dimensions, and every scale. 60
+/// batches have every combination of them. In a browser, every batch takes about a second, however small it is.
 pub fn batch_count(quads: usize) -> usize {
     (quads / 8000).clamp(12, BETAS.len() * SCALES.len() * 2)
 }
@@ -30,11 +31,11 @@ pub enum Verdict {
     Deviation,
 }
 
-/// Numbers of quads.
+/// The numbers of quads by verdict.
 #[derive(Clone, Debug, Default)]
 pub struct Tally {
     pub quads: usize,
-    /// Those whose verdict rests on a sign that is zero.
+    /// Quads whose verdict depends on a sign that is zero.
     pub ties: usize,
     pub labelled: usize,
     pub angle: usize,
@@ -45,24 +46,25 @@ pub struct Tally {
 /// Quad i has the vertices a = 4i, b = 4i + 1, c = 4i + 2, d = 4i + 3 and the triangles (a, b, c), (b, a, d).
 pub struct Batch {
     pub index: usize,
-    /// In degrees.
+    /// β in degrees.
     pub beta: f64,
     /// The limit for the deviation.
     pub deviation: f64,
     pub mesh: Mesh,
-    /// Of each quad, and whether it rests on a sign that is zero.
+    /// The verdict on each quad, and whether it depends on a sign that is zero.
     pub verdicts: Vec<(Verdict, bool)>,
     /// The quads of each kind, one kind after the other.
     pub kinds: Vec<(&'static str, Range<usize>)>,
 }
 
-/// Makes batch `index` with `quads` quads, or a few more, of all kinds alike; `beyond`: also of those beyond the span
-/// of the GPU engines.
+/// Makes batch `index` with at least `quads` quads, the same number of each kind. `beyond`: also of the kinds beyond
+/// the span of the GPU engines.
 pub fn batch(index: usize, quads: usize, beyond: bool) -> Batch {
     let dimension = [Dimension::Two, Dimension::Three][index % 2];
     let beta = BETAS[index / 2 % BETAS.len()];
     let is_wide = is_wide(index);
-    // Half of those in which a large angle is no obstacle. No limit is as large or small as scaled doubles.
+    // Half of the batches whose β allows large angles have a limit. With a limit, doubles are not scaled, because the
+    // limit is a 32-bit float.
     let is_limited = dimension == Dimension::Three && beta >= 120.0 && (index / 12).is_multiple_of(2);
     let scale = if is_limited && is_wide { 0 } else { SCALES[index % SCALES.len()] };
     let deviation = if is_limited { f64::from(DEVIATION) * 2f64.powi(scale) } else { f64::INFINITY };
@@ -80,7 +82,7 @@ pub fn batch(index: usize, quads: usize, beyond: bool) -> Batch {
     Batch { index, beta, deviation, mesh: mesh(dimension, positions), verdicts, kinds }
 }
 
-/// Whether the batch is one of doubles: half of those of each dimension are, with every β in turn.
+/// Whether the coordinates of the batch are doubles. Half of the batches of each dimension and each β have doubles.
 pub fn is_wide(index: usize) -> bool {
     (index / 2 + index / 12) % 2 == 1
 }
@@ -91,7 +93,7 @@ fn mesh(dimension: Dimension, positions: Vec<f64>) -> Mesh {
     Mesh::new(dimension, positions, triangles).unwrap()
 }
 
-/// Exact arithmetic on each quad by itself.
+/// The exact verdict on each quad, and whether it depends on a sign that is zero.
 fn judge(mesh: &Mesh, beta: f64, deviation: f64) -> impl Iterator<Item = (Verdict, bool)> {
     let predicates = Predicates::new(mesh, beta, deviation);
     let is_plane = mesh.dimension() == Dimension::Two;
@@ -128,7 +130,7 @@ impl Batch {
             .collect()
     }
 
-    /// Of some quads.
+    /// The tally of some quads.
     pub fn tally(&self, quads: Range<usize>) -> Tally {
         let verdicts = &self.verdicts[quads];
         let count = |wanted| verdicts.iter().filter(|(verdict, _)| *verdict == wanted).count();
@@ -142,7 +144,7 @@ impl Batch {
         }
     }
 
-    /// Some quads by themselves.
+    /// A batch of some of its quads.
     pub fn part(&self, quads: Range<usize>) -> Self {
         let stride = 4 * self.mesh.dimension().stride();
         let positions = self.mesh.positions().iter().take(stride * quads.end).skip(stride * quads.start);
@@ -150,7 +152,7 @@ impl Batch {
         Self { mesh, verdicts: self.verdicts[quads].to_vec(), kinds: Vec::new(), ..*self }
     }
 
-    /// A quad as it can be written into a test.
+    /// The coordinates and the verdict of a quad, in a form that can be copied into a test.
     pub fn describe(&self, quad: usize) -> String {
         let part = self.part(quad..quad + 1);
         let numbers: Vec<_> = part.mesh.positions().iter().map(|x| format!("{x:?}")).collect();

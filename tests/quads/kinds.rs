@@ -7,15 +7,15 @@ use oorandom::Rand64;
 /// The points a, b, c, d: the triangles are (a, b, c) and (b, a, d). In the plane the third coordinate is unused.
 pub type Quad = [[f64; 3]; 4];
 
-/// The same in floats, as the kinds make them.
+/// The same in 32-bit floats. The kinds make these.
 type Floats = [[f32; 3]; 4];
 
 /// A way to make quads.
 pub struct Kind {
     pub name: &'static str,
-    /// Whether all coordinates, of quads of all such kinds together, stay in the span that GPU engines decide.
+    /// Whether the coordinates stay in the span that GPU engines decide, even in one mesh with all other such kinds.
     pub in_span: bool,
-    /// Whether it is of use in space only.
+    /// Whether the kind exists in space only.
     only_space: bool,
     make: fn(&mut Source) -> Floats,
 }
@@ -62,7 +62,7 @@ impl Kind {
         Self { in_span: false, ..Self::in_span(name, make) }
     }
 
-    /// Those of a dimension, also the ones beyond the span of the GPU engines if that is wanted.
+    /// The kinds of a dimension. `beyond`: also the kinds beyond the span of the GPU engines.
     pub fn all(dimension: Dimension, beyond: bool) -> impl Iterator<Item = &'static Self> {
         let fits = move |kind: &&Self| !kind.only_space || dimension == Dimension::Three;
         KINDS.iter().filter(fits).filter(move |kind| kind.in_span || beyond)
@@ -72,7 +72,7 @@ impl Kind {
     pub fn quad(&self, source: &mut Source) -> Quad {
         let quad = (self.make)(source);
         let quad = source.turned(quad).map(|point| point.map(f64::from));
-        // Scaling is exact, where the result is not subnormal.
+        // Scaling is exact, unless the result is subnormal.
         let scaled = |quad: Quad, scale| quad.map(|point| point.map(|x| x * 2f64.powi(scale)));
         match (self.in_span, source.is_wide) {
             (false, _) => quad,
@@ -82,7 +82,7 @@ impl Kind {
     }
 }
 
-/// The lowest bit of any number that is in the span, before the scale. The highest is below 2^24.
+/// The lowest bit of a coordinate in the span, before scaling. The highest bit is below 2^24.
 const LOWEST: f32 = 1.0 / (1u64 << 60) as f32;
 
 /// Where coordinates come from.
@@ -90,7 +90,7 @@ const LOWEST: f32 = 1.0 / (1u64 << 60) as f32;
 enum Numbers {
     /// Multiples of 2^-24 from -1 to 1.
     Uniform,
-    /// Integers of so many bits, of which at most 24 follow each other, in units of [`LOWEST`].
+    /// Integers in units of [`LOWEST`] that take at most this number of bits. All but 24 consecutive bits are zero.
     Bits(i32),
     /// Any size, subnormals and the largest included, often with few bits.
     All,
@@ -98,7 +98,7 @@ enum Numbers {
     RandomBits,
 }
 
-/// β in degrees, two normals of equal length that differ by it exactly, and a direction that is normal to both.
+/// Hinges: β in degrees, two normals of equal length whose angle is exactly β, and a direction at right angles to both.
 const HINGES: [(f64, [[i32; 3]; 3]); 7] = [
     (0.0, [[1, 1, 0], [1, 1, 0], [1, -1, 0]]),
     (0.0, [[2, 1, 2], [2, 1, 2], [1, 0, -1]]),
@@ -109,7 +109,7 @@ const HINGES: [(f64, [[i32; 3]; 3]); 7] = [
     (180.0, [[1, 0, 0], [-1, 0, 0], [0, 1, 0]]),
 ];
 
-/// What quads are made from.
+/// Random numbers and the data that quads are made from.
 pub struct Source {
     random: Rand64,
     dimension: Dimension,
@@ -120,12 +120,12 @@ pub struct Source {
     arc: Vec<[i32; 2]>,
 }
 
-/// 5·13·17: no smaller radius has as many integer points on its circle.
+/// The radius of that circle, 5·13·17. No smaller radius has as many integer points.
 const RADIUS: i32 = 1105;
 
 impl Source {
-    /// For a mesh with the threshold β in degrees, whose coordinates are to be multiplied by 2^`scale`, or if it is to
-    /// hold doubles, by the eighth power of that.
+    /// A source for a mesh with the threshold β in degrees. Coordinates are multiplied by 2^`scale`; doubles, if
+    /// `is_wide`, by 2^(8·`scale`).
     pub fn new(seed: u128, dimension: Dimension, beta: f64, scale: i32, is_wide: bool) -> Self {
         let arc = (0..RADIUS)
             .map(|y| [(RADIUS * RADIUS - y * y).isqrt(), y])
@@ -134,7 +134,7 @@ impl Source {
         Self { random: Rand64::new(seed), dimension, beta, scale, is_wide, arc }
     }
 
-    /// From `low` to `high`, both included.
+    /// A random integer from `low` to `high`, both included.
     fn integer(&mut self, low: i32, high: i32) -> i32 {
         low + self.random.rand_range(0..(high - low + 1) as u64) as i32
     }
@@ -147,7 +147,7 @@ impl Source {
         self.random.rand_range(0..one_in) == 0
     }
 
-    /// Among them as many bits as are the most, or just too many, for the narrower arithmetic of an engine.
+    /// Numbers in the span. Some have as many bits as the narrower arithmetic of an engine takes, or a few more.
     fn numbers_in_span(&mut self) -> Numbers {
         match self.pick([0, 24, 28, 29, 30, 31, 32, 48, 59, 60, 61, 83]) {
             0 => Numbers::Uniform,
@@ -181,7 +181,7 @@ impl Source {
         }
     }
 
-    /// A number for the third coordinate, so that some surfaces are flat and some almost.
+    /// A third coordinate. With it, some surfaces are flat and some almost flat.
     fn height(&mut self, numbers: Numbers) -> f32 {
         match numbers {
             _ if self.chance(4) => 0.0,
@@ -213,7 +213,7 @@ impl Source {
     fn cocircular(&mut self) -> Floats {
         let mut indices = [(); 4].map(|()| self.integer(0, 4 * self.arc.len() as i32 - 1));
         if self.chance(2) {
-            // On an axis.
+            // The first point is on an axis.
             indices[0] = 0;
         }
         if !self.chance(8) {
@@ -233,21 +233,21 @@ impl Source {
         let moved = [(); 3].map(|()| self.integer(-reach, reach));
         let unit = 2f32.powi(-self.integer(0, 20));
         [a, b, c, d].map(|[x, y]| {
-            // (1, 2, 2) and (2, 1, -2) are as long and at right angles.
+            // (1, 2, 2) and (2, 1, -2) have the same length and are at right angles.
             let point = if is_tilted { [x + 2 * y, 2 * x + y, 2 * x - 2 * y] } else { [x, y, 0] };
             [0, 1, 2].map(|i| (point[i] + moved[i]) as f32 * unit)
         })
     }
 
-    /// One bit, which may be far below the others, decides.
+    /// Four points that are cocircular except for one bit, which may be far below the others.
     fn cocircular_but_for_a_bit(&mut self) -> Floats {
         let mut quad = self.cocircular();
         let largest = quad.as_flattened().iter().fold(0f32, |largest, x| largest.max(x.abs()));
         let bit = largest * 2f32.powi(-self.integer(10, 45));
-        // The one bit of a power of two.
+        // Rounded down to a power of two.
         let bit = f32::from_bits(bit.to_bits() & 0x7f80_0000);
         let point = &mut quad[self.integer(0, 3) as usize][..self.dimension.stride()];
-        // The coordinate nearest to zero has room for it.
+        // The coordinate nearest to zero can hold this bit.
         if let Some(x) = point.iter_mut().min_by(|x, y| x.abs().total_cmp(&y.abs())) {
             *x += self.pick([bit, -bit]);
         }
@@ -271,7 +271,7 @@ impl Source {
         quad
     }
 
-    /// A kite with its corners on the axes, or off by something tiny that has to decide.
+    /// A kite with its corners on the axes, or next to them by tiny distances that decide the verdict.
     fn near_axes(&mut self) -> Floats {
         let size = 2f32.powi(self.integer(-10, 10));
         let sizes = [(); 4].map(|()| if self.chance(4) { 2.0 * size } else { size });
@@ -299,7 +299,7 @@ impl Source {
             3 => b = a,
             4 => (c, d) = (a, b),
             5 => (b, c, d) = (a, a, a),
-            // On one line, in any order.
+            // All four on one line, in any order.
             6 => {
                 [a, b, c, d] =
                     [a, b, c, d].map(|point| if line == 0 { [point[0], a[1], a[2]] } else { [point[0]; 3] })
@@ -309,14 +309,14 @@ impl Source {
                 let steps = [(); 4].map(|()| self.integer(0, 5));
                 [a, b, c, d] = steps.map(|step| direction.map(|x| (x * step) as f32));
             }
-            // Three on a line.
+            // Three on one line.
             8 => (b[1], b[2], c[1], c[2]) = (a[1], a[2], a[1], a[2]),
             _ => (c[0], d[0], c[2], d[2]) = (a[0], a[0], a[2], a[2]),
         }
         [a, b, c, d]
     }
 
-    /// Normals at β exactly, before the flip or after it, or as near as rounding leaves them.
+    /// Two triangles whose normals differ by β exactly, or by β up to rounding, before the flip or after it.
     fn near_beta(&mut self) -> Floats {
         match self.integer(0, 3) {
             0 => self.rounded_hinge(),
@@ -333,7 +333,7 @@ impl Source {
         if self.chance(2) { [x, y, p, q] } else { [p, q, y, x] }
     }
 
-    /// Normals at 90° exactly, some at 0° or 180°, whatever the numbers are.
+    /// Two triangles whose normals differ by exactly 90°, 0° or 180°, whatever the numbers are.
     fn right_angle(&mut self, numbers: Numbers) -> Floats {
         let [x, y] = [(); 2].map(|()| if self.chance(2) { 0.0 } else { self.number(numbers) });
         let [u, v] = [(); 2].map(|()| self.number(numbers));
@@ -345,7 +345,7 @@ impl Source {
     fn exact_hinge(&mut self) -> Floats {
         let [n1, n2, h] = loop {
             let (beta, hinge) = self.pick(HINGES);
-            // For a β without a hinge of its own, and sometimes else, any.
+            // Mostly a hinge of this β. Sometimes any other, so that a β without a hinge gets one too.
             if beta == self.beta || self.chance(8) {
                 break hinge;
             }
@@ -362,7 +362,7 @@ impl Source {
     }
 
     fn rounded_hinge(&mut self) -> Floats {
-        // Needles too.
+        // Some of the triangles are needles.
         let bits = self.integer(0, 12);
         let length = self.integer(1, 1 << bits) as f32;
         let [along1, along2] = [(); 2].map(|()| self.integer(0, length as i32) as f32);
@@ -370,14 +370,14 @@ impl Source {
         let [away1, away2] = [(); 2].map(|()| self.integer(1, 1 << bits) as f32);
         let hair = self.pick([0.0, 1e-6, -1e-6, 1e-7, -1e-7]);
         let (sin, cos) = libm::sincos(self.beta.to_radians() + hair);
-        // In multiples of 2^-24: what is almost zero is not worth its bits.
+        // Rounded to multiples of 2^-24, so that numbers near zero take few bits.
         let rounded = |x: f64| ((x * 2f64.powi(24)).round() * 2f64.powi(-24)) as f32;
         let away2 = f64::from(away2);
         let q = [along2, rounded(-away2 * cos), rounded(-away2 * sin)];
         self.at_hinge([[0.0; 3], [length, 0.0, 0.0], [along1, away1, 0.0], q])
     }
 
-    /// Diagonals in parallel planes that are as far apart as they may be, or nearly.
+    /// Diagonals in parallel planes whose distance is the limit for the deviation, or almost the limit, or zero.
     fn steps(&mut self) -> Floats {
         let height = self.pick([DEVIATION, DEVIATION, DEVIATION.next_up(), DEVIATION.next_down(), 0.0]);
         let bits = self.integer(2, 16);
@@ -400,7 +400,7 @@ impl Source {
         quad
     }
 
-    /// Moves one coordinate to the next number, and at least by `least`.
+    /// Moves one coordinate to the next float, but at least by `least`.
     fn nudge(&mut self, quad: &mut Floats, least: f32) {
         let axis = self.integer(0, self.dimension.stride() as i32 - 1) as usize;
         let x = &mut quad[self.integer(0, 3) as usize][axis];
@@ -411,7 +411,7 @@ impl Source {
         }
     }
 
-    /// The axes in another order, some of them mirrored: in the plane this gives both windings.
+    /// The quad with its axes rotated and some of them mirrored. In the plane this gives both windings.
     fn turned(&mut self, quad: Floats) -> Floats {
         let dimensions = self.dimension.stride();
         let mut axes = [0, 1, 2];
@@ -420,7 +420,7 @@ impl Source {
         quad.map(|point| [0, 1, 2].map(|i| point[axes[i]] * signs[i]))
     }
 
-    /// The quad as it is, or in doubles that no float holds: off by the last bit, moved, or divided by three.
+    /// The quad unchanged, or in doubles that are not 32-bit floats: off by the last bit, moved, or divided by three.
     fn widened(&mut self, mut quad: Quad) -> Quad {
         let least = f64::from(LOWEST);
         let rounded = |x: f64| (x / least).round() * least;

@@ -5,14 +5,14 @@ use std::collections::BTreeMap;
 
 #[derive(Default)]
 pub struct Report {
-    /// By the form of the mesh, the index and the name of the kind; with the number of mismatches.
+    /// The tally and the number of mismatches, by the form of the mesh, the index and the name of the kind.
     rows: BTreeMap<(String, usize, &'static str), (Tally, usize)>,
-    /// What is wrong, in words.
+    /// A sentence for each mismatch.
     pub mismatches: Vec<String>,
 }
 
 impl Report {
-    /// `mismatches`: the quads that are decided otherwise, and how.
+    /// Adds a batch. `mismatches` are the wrongly decided quads, each with a sentence.
     pub fn add(&mut self, batch: &Batch, mismatches: Vec<(usize, String)>) {
         for (index, (kind, quads)) in batch.kinds.iter().enumerate() {
             let wrong = mismatches.iter().filter(|(quad, _)| quads.contains(quad)).count();
@@ -22,7 +22,7 @@ impl Report {
         self.mismatches.extend(mismatches.into_iter().map(|(_, how)| how));
     }
 
-    /// Of all kinds.
+    /// The number of quads of all kinds.
     pub fn quads(&self) -> usize {
         sum(self.rows.values()).0.quads
     }

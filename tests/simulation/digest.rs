@@ -5,7 +5,7 @@ use edgeflip::{Reason, Reasons};
 use std::fmt;
 use std::path::PathBuf;
 
-/// FNV-1a, 64 bits, over the little-endian bytes of the words fed so far.
+/// FNV-1a with 64 bits over the little-endian bytes of the words so far.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Digest(u64);
 

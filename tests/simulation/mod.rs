@@ -13,7 +13,7 @@ use edgeflip::{Dimension, Mesh, Options, Reason, Reasons};
 use num_bigint::{BigInt, Sign};
 use std::collections::{BTreeMap, HashMap, HashSet};
 
-/// No mesh of the tests needs as many.
+/// More iterations than any test needs.
 const ENDLESS: u32 = 100_000;
 
 /// One iteration that flipped something.
@@ -26,7 +26,7 @@ pub struct IterationRecord {
     /// Non-Delaunay edges between two consistent triangles that may not flip, before it: `angle`, `fold`,
     /// `duplicate`, `locked` and `deviation` only.
     pub blocked: Reasons,
-    /// Of the input's triangles and those after every iteration up to this one.
+    /// The digest of the triangles of the input and after every iteration up to this one.
     pub digest: Digest,
 }
 
@@ -34,11 +34,11 @@ pub struct IterationRecord {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Simulation {
     pub iterations: Vec<IterationRecord>,
-    /// After the last iteration.
+    /// The triangles after the last iteration.
     pub triangles: Vec<u32>,
     /// Non-Delaunay edges after the last iteration.
     pub remaining: Reasons,
-    /// Of the input's triangles and those after every iteration.
+    /// The digest of the triangles of the input and after every iteration.
     pub digest: Digest,
 }
 
@@ -142,9 +142,9 @@ fn clockwise(mesh: &Mesh, predicates: &Predicates) -> Vec<bool> {
 
 /// The edges of one state.
 struct Labels {
-    /// Edge id and the pair of vertices that the flip would join, of every edge that may flip.
+    /// For every edge that may flip, by its lower half-edge: the two vertices that the flip would join.
     labelled: BTreeMap<u32, (u32, u32)>,
-    /// Its half-edges.
+    /// For these edges: the upper half-edge by the lower one.
     twins: BTreeMap<u32, u32>,
     /// Non-Delaunay edges with twins that may not flip, by their ends.
     blocked: BTreeMap<(u32, u32), Reason>,
@@ -167,9 +167,9 @@ struct Rules {
     clockwise: Vec<bool>,
     /// Edges of the input over β: they stay.
     creases: HashSet<(u32, u32)>,
-    /// Edges that the user has named: they stay.
+    /// Locked edges: they stay.
     locked: HashSet<(u32, u32)>,
-    /// A verdict depends on the four vertices and the orientation alone, so it is found once.
+    /// The verdicts found so far. A verdict depends only on the four vertices and the orientation.
     verdicts: HashMap<([u32; 4], bool), Verdict>,
 }
 
@@ -241,8 +241,8 @@ impl Rules {
     }
 }
 
-/// The edges to flip: best of both their triangles, and of those that would make the same edge the one
-/// with the smallest key.
+/// The edges to flip. Each is the best of both its triangles. Of edges whose flips would make the same new edge, only
+/// the one with the smallest key flips.
 fn select(labels: &Labels, iteration: u32) -> Vec<(u32, u32)> {
     let mut best: HashMap<u32, u32> = HashMap::new();
     for (&h, &g) in &labels.twins {

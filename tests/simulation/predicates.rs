@@ -70,7 +70,7 @@ impl Predicates {
         let points = positions.chunks(stride).map(point).collect();
 
         let cosine = cos_degrees(beta_deg);
-        // Times 2^200 the cosine is an integer: it is 0 or at least 2^-60 in size, of 53 bits.
+        // The cosine times 2^200 is an integer: the cosine has 53 bits, and is 0 or at least 2^-60 in magnitude.
         let bits = cosine.to_bits();
         let exponent = (bits >> 52 & 0x7ff) as u32;
         let mantissa = BigInt::from(bits & ((1 << 52) - 1) | 1 << 52);
@@ -84,7 +84,7 @@ impl Predicates {
         cross(&minus(p, r), &minus(q, r))
     }
 
-    /// Of the vectors from the third corner to the other two.
+    /// The dot product of the vectors from the third corner to the other two.
     fn dot(&self, corners: [u32; 3]) -> BigInt {
         let [p, q, r] = corners.map(|v| &self.points[v as usize]);
         dot(&minus(p, r), &minus(q, r))
@@ -132,12 +132,12 @@ impl Predicates {
         (&volume * &volume).cmp(&(most * most * dot(&across, &across)))
     }
 
-    /// The verdict of the four points alone.
+    /// The verdict from the positions of the four vertices alone.
     pub fn verdict(&self, quad: [u32; 4], clockwise: bool) -> Verdict {
         self.decide(quad, clockwise).0
     }
 
-    /// The verdict, and whether it rests on a sign that is zero.
+    /// The verdict, and whether it depends on a sign that is zero.
     pub fn decide(&self, [a, b, c, d]: [u32; 4], clockwise: bool) -> (Verdict, bool) {
         let (old1, old2, new1, new2) = ([a, b, c], [b, a, d], [a, d, c], [b, c, d]);
         match self.dimension {

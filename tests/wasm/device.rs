@@ -8,7 +8,7 @@ use wasm_bindgen::prelude::*;
 use wasm_bindgen_test::wasm_bindgen_test;
 
 #[wasm_bindgen(inline_js = r#"
-// A device with default limits whose page counts the shaders, and keeps the messages of its errors.
+// Opens a device with default limits. It counts its shader modules, and keeps the messages of uncaptured errors.
 export async function open() {
   const device = await (await navigator.gpu.requestAdapter()).requestDevice();
   Object.assign(device, { shaders: 0, seen: [], made: 0 });
@@ -20,7 +20,7 @@ export async function open() {
   };
   return device;
 }
-// Errors of the page's own: one now and one in every task to come, until `stop`.
+// Makes errors of the page's own: one now, and one in every later task until `stop`.
 export function err(device) {
   const make = () => { device.made++; device.createBuffer({ size: 4, usage: 0 }); };
   make();
@@ -32,19 +32,20 @@ export async function stop(device) {
   return device.seen.length === device.made && device.onuncapturederror === device.handler;
 }
 export const shaders = (device) => device.shaders;
-// Until the tail has followed the other kernels, whose modules are counted twice: compiled ahead, and taken by wgpu.
+// Waits until all modules are made, those of the tail last. The modules of the other kernels count twice: once when they
+// are compiled ahead, and once when wgpu makes them.
 export async function allShaders(device) {
   while (device.shaders < 12) await new Promise((resolve) => setTimeout(resolve, 10));
   return device.shaders;
 }
 export const seen = (device) => device.seen.length;
-// From now on buffers lack the usage that a binding needs, or are as they should be.
+// With `spoiled`, later buffers lack the usage that a binding needs. Without it, they have that usage again.
 export function spoilBuffers(device, spoiled) {
   delete device.createBuffer;
   if (spoiled) device.createBuffer = (descriptor) =>
     GPUDevice.prototype.createBuffer.call(device, { ...descriptor, usage: descriptor.usage & ~GPUBufferUsage.STORAGE });
 }
-// What is in a buffer, copied by commands of the page's own.
+// The content of a buffer, copied by commands of the page.
 export async function words(device, buffer) {
   const staging = device.createBuffer({ size: buffer.size, usage: GPUBufferUsage.COPY_DST | GPUBufferUsage.MAP_READ });
   const encoder = device.createCommandEncoder();
@@ -54,13 +55,13 @@ export async function words(device, buffer) {
   return new Uint32Array(staging.getMappedRange().slice());
 }
 export function destroy(device) { device.destroy(); }
-// So that `auto` takes it.
+// Makes the device look like hardware, so that `auto` accepts it.
 export function passForHardware(device) {
   const info = { vendor: 'none', architecture: '', description: '', isFallbackAdapter: false };
   Object.defineProperty(device, 'adapterInfo', { value: info });
 }
 export const navigatorIsItself = () => !Object.hasOwn(navigator, 'gpu') && navigator.gpu instanceof GPU;
-// How often a device has been asked for since the first call.
+// How many devices were requested since the first call.
 let asked;
 export function devicesAskedFor() {
   if (asked === undefined) {
@@ -111,7 +112,7 @@ pub fn class_of(value: &JsValue) -> String {
     Object::from(value.clone()).constructor().name().into()
 }
 
-/// A session as the npm package opens it.
+/// Opens a session as the npm package does.
 pub async fn session_of(mesh: &Mesh, options: &[(&str, JsValue)]) -> Result<JsSession, JsValue> {
     let (positions, indices) = (positions_array(mesh), Uint32Array::from(mesh.triangles()));
     let dimension = mesh.dimension().stride() as f64;
@@ -160,7 +161,7 @@ async fn a_session_runs_on_the_device_of_the_page() {
     let (in_order, alone) = (session.iterations() > 0, stop(&device).await);
     assert!(in_order && alone.is_truthy(), "each error of the page has reached the page, and nothing else");
 
-    // Another session finds the kernels compiled, also when the first is gone.
+    // Another session finds the kernels compiled, even after the first session is freed.
     assert_eq!(all_shaders(&device).await, 12);
     drop(session);
     let session = create(&mesh, "webgpu", &device).await.unwrap();
@@ -196,7 +197,7 @@ async fn auto_leaves_a_device_that_is_software_or_lost() {
     assert!(session.step().await.unwrap().is_truthy());
 
     pass_for_hardware(&device);
-    // A session makes it ready: `auto` does not wait for that.
+    // An explicit session prepares the device; `auto` never waits for that.
     drop(create(&mesh, "webgpu", &device).await.unwrap());
     let session = create(&mesh, "auto", &device).await.unwrap();
     assert_eq!(session.backend(), "webgpu");
