@@ -39,7 +39,7 @@ fn deviation_on(grid: i32) -> vec4u {
     return vec4u(deviation().xyz, 0u);
 }
 
-// u - v. Converting a word to f32 errs by ε. So does each of the two sums, since no term is negative: 3ε in all.
+// u - v. Converting a word to f32 errs by ε. No term is negative, so each of the two sums errs by ε as well: 3ε in all.
 fn rounded_difference(u: Point, v: Point) -> vec3f {
     return vec3f(
         rounded(exact_difference(u, v, 0u, 0)),

@@ -14,9 +14,9 @@ fn guarded(verdict: u32, h: u32, g: u32) -> u32 {
     return result;
 }
 
-// Whether an edge joins the vertices at which two half-edges start, or the vertices are the same. The star of each vertex
-// alone gives the answer. The first is walked alone for some steps, mostly to its end, then both in turns: the cost is these
-// steps and twice the smaller star.
+// Whether an edge joins the vertices at which two half-edges start, or both vertices are the same. The star of either
+// vertex gives the answer. The walk takes ALONE steps around the first vertex, which are mostly enough. Then it
+// alternates between both. Its cost is these steps plus twice the smaller star.
 fn edge_exists(at_c: u32, at_d: u32) -> bool {
     let c = vertex(at_c);
     let d = vertex(at_d);

@@ -11,8 +11,8 @@ alias Differences = array<vec4u, 3>;
 // checks this at upload.
 const SPAN: u32 = 84u;
 
-// A device may flush subnormals to zero. The differences are scaled so that the largest lies in [1, 2). If the largest
-// is below 2^-67 before, no filter decides. So flushing changes the value of a filter by less than its bound.
+// A device may flush subnormals to zero. So the differences are scaled until the largest lies in [1, 2). If the largest
+// is below 2^-67 before that, no filter decides. Flushing then changes the value of a filter by less than its bound.
 const SMALLEST_FIELD: u32 = 60u;
 const LARGEST_FIELD: u32 = 250u;
 

@@ -1,5 +1,5 @@
-// Tests whether a driver runs all rounds of a loop. llvmpipe silently ends every loop of an invocation after 65,535 rounds in
-// all of its loops together; the work must then be cut into smaller pieces.
+// Tests whether a driver runs all rounds of a loop. In llvmpipe, all loops of an invocation together have 65,535
+// rounds. After that, every loop ends silently. For such drivers, the work must be cut into smaller pieces.
 
 const ROUNDS: u32 = 100000u;
 

@@ -2,11 +2,11 @@
 #import mesh
 #import state
 
-// A walk of a fan: its first corner, its present corner, whether it goes clockwise (0 or 1), and the index of the next anchor
-// in the table of the fans, if the vertex has several fans.
+// A walk around a fan: its first corner; its present corner; whether it goes clockwise (0 or 1); and the index of the
+// next anchor in the table of the fans, or NONE if the vertex has one fan.
 alias Star = vec4u;
 
-// A walk of all corners at the vertex at which `corner` starts.
+// A walk over all corners at the vertex at which `corner` starts.
 fn star(corner: u32) -> Star {
     var list = NONE;
     if has_fans() {
@@ -19,8 +19,8 @@ fn star(corner: u32) -> Star {
     return walk;
 }
 
-// A walk of the fan whose anchor is at index `word` of the table. The walk is empty after the last anchor, or if `word`
-// is NONE.
+// A walk around the fan whose anchor is at index `word` of the table. The walk is empty after the last anchor, or if
+// `word` is NONE.
 fn fan_at(word: u32) -> Star {
     var anchor = NONE;
     if word != NONE {

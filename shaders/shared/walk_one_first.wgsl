@@ -1,4 +1,4 @@
-// Lets sweeps walk one of two stars alone for 16 steps: of the many edges of a sweep, few are at a vertex with a larger
-// star.
+// Lets sweeps walk around one of two vertices alone for 16 steps. A sweep tests many edges, and few of them are at a
+// vertex with a larger star.
 
 const ALONE: u32 = 16u;

@@ -1,6 +1,6 @@
 // The passes of the phases and of the census. `verdict_pass` visits all half-edges, most others visit all triangles.
-// Triangles without changes around them keep their values. The exact tests have loops of their own. They are in
-// `verdict_pass`, where no loop is around them: compilers that inline everything take very long for nested loops.
+// Triangles without changes around them keep their values. The exact tests contain loops. They are in `verdict_pass`,
+// where they are not inside another loop, because compilers that inline everything take very long for nested loops.
 #import guard
 #import label
 #import mesh

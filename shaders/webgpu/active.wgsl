@@ -38,8 +38,8 @@ fn active_triangle(work: Work, i: u32) -> u32 {
     return t;
 }
 
-// A triangle is due if its choice may differ from that of the iteration before: if it or a neighbour has flipped, or if it had
-// a choice, since keys change, and any flip may remove a duplicate.
+// A triangle is due if its choice may differ from that of the iteration before. That is so if the triangle or a
+// neighbour has flipped. It is also so if the triangle had a choice: keys change, and any flip may remove a duplicate.
 fn is_due(work: Work, t: u32, iteration: u32) -> bool {
     return work.is_full || best(t) != NONE || atomicLoad(&frontier[stamp_index(t)]) == iteration;
 }

@@ -58,7 +58,8 @@ fn count(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) grou
     }
 }
 
-// Gives each bucket its range in `sorted`. A workgroup allocates the ranges of its buckets at once.
+// Gives each bucket its range in `sorted`. A workgroup allocates the ranges of all its buckets with one atomic
+// addition.
 @compute @workgroup_size(WORKGROUP_SIZE)
 fn allocate(
     @builtin(workgroup_id) group: vec3u,

@@ -102,8 +102,8 @@ fn answer(t: u32, iteration: u32) {
     }
 }
 
-// Uses exact arithmetic for the edges that the filter does not decide. Mostly it is one edge of a triangle. The loop
-// begins with that edge, so all invocations decide at the same time.
+// Uses exact arithmetic for the edges that the filter does not decide: mostly one edge of a triangle. The loop begins
+// with an undecided edge, so that all invocations compute at the same time.
 fn exact_answers(t: u32, filtered: vec3u, task: u32) -> vec3u {
     let winding = select(1, -1, is_clockwise(t));
     var answers = filtered;
@@ -113,7 +113,7 @@ fn exact_answers(t: u32, filtered: vec3u, task: u32) -> vec3u {
         let a = position(vertex(h));
         let b = position(vertex(next(h)));
         let c = position(vertex(prev(h)));
-        // The preparation in the plane tests no edge, and this edge may have no twin.
+        // In the plane, the preparation needs only the triangle, and this edge may have no twin.
         let g = twin(h);
         let d = position(vertex(select(prev(g), h, g == NONE)));
         answers = with_verdict(answers, k, exact_verdict_on(a, b, c, d, winding, task));

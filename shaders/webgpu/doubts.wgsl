@@ -38,7 +38,7 @@ fn clear_doubts(first: u32, stride: u32) {
     }
 }
 
-// The choice of a triangle in a sweep outside of iterations: none, or to wait.
+// The choice of a triangle in a sweep outside of iterations: NONE, or DOUBTFUL if the triangle waits.
 fn wait_for(t: u32, is_left: bool) -> u32 {
     if is_left {
         doubt(t / WORKGROUP_SIZE);
@@ -51,8 +51,8 @@ fn waiting_index(t: u32) -> u32 {
     return t + select(0u, params.triangles, step_.task == CENSUS);
 }
 
-// Verdicts packed into one word, three bits each. No choice of Select, a half-edge with the index of a side from
-// 0 to 2, equals such a word.
+// Verdicts packed into one word, three bits each. A choice of Select has the index of a side, 0 to 2, in the two
+// highest bits. So no choice equals such a word, whose highest bits are 3.
 const PACKED: u32 = 0xc0000000u;
 
 fn packed(verdicts: vec3u) -> u32 {

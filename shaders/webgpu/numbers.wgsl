@@ -1,6 +1,7 @@
-// Computes with exact integers in memory. A number is stored as its length, then its digits, the lowest first: it is the sum of
-// digit i times 2^(13·i). Each invocation has its own lane. Programs (src/engine/webgpu/programs.rs) define the computations,
-// so that the product of two numbers is compiled only once: inlined everywhere, it would compile for seconds.
+// Computes with exact integers in memory. A number is stored as its length, then its digits, the lowest first: it is
+// the sum of digit i times 2^(13·i). Each invocation has its own lane. Programs (src/engine/webgpu/programs.rs) define
+// the computations. The code for the product of two numbers therefore exists only once. Inlined everywhere, it would
+// compile for seconds.
 #import integers
 #import points
 #import three_axes if space

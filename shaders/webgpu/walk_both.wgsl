@@ -1,3 +1,4 @@
-// Lets the tail walk two stars in turns from the first step: it has few edges at a time, and waits for the slowest.
+// Lets the tail alternate between two stars from the first step. It tests few edges at a time, and waits for the
+// slowest test.
 
 const ALONE: u32 = 0u;
