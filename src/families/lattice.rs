@@ -25,7 +25,8 @@ pub(super) fn fits(vertices: usize, triangles: usize) -> Result<(), Error> {
             return Err(Error::TooLarge { what, count, limit });
         }
     }
-    // Three numbers each, in arrays that double if their length is not known.
+    // Each vertex and triangle has three numbers of 4 bytes. While an array doubles, it takes up to three times as
+    // much.
     memory::check(36 * (vertices as u64 + triangles as u64))
 }
 

@@ -121,8 +121,8 @@ pub fn fan2(n: usize) -> Result<Mesh, Error> {
     Mesh::new(Dimension::Two, positions.collect::<Vec<f32>>(), triangles.collect())
 }
 
-/// `n` distinct random points in the unit square, triangulated from left to right: each point is joined
-/// to the edges of the hull so far that it sees. Slivers as long as the mesh is wide.
+/// `n` distinct random points in the unit square, triangulated from left to right: each point is joined to the edges
+/// that it sees of the hull of the earlier points. There are slivers as long as the mesh is wide.
 ///
 /// # Errors
 /// [`Error::Option`] for n < 3, [`Error::TooLarge`].
@@ -141,9 +141,9 @@ pub fn sweep(n: usize, seed: u64) -> Result<Mesh, Error> {
     Mesh::new(Dimension::Two, positions, triangles)
 }
 
-/// The triangles of [`sweep`] for distinct points in the order of x, then y.
-/// `upper` and `lower` run along the hull from the first point to the latest. While all points so far are
-/// collinear both are the whole row of points, and the first point off it sees the row from one side.
+/// The triangles of [`sweep`] for distinct points in the order of x, then y. `upper` and `lower` run along the hull
+/// from the first point to the latest. While all points so far are collinear, both are the whole row of points. The
+/// first point off this line sees the row from one side.
 fn sweep_triangles(positions: &[f32]) -> Vec<u32> {
     let mut triangles = Vec::with_capacity(3 * positions.len());
     let mut upper: Vec<u32> = Vec::new();

@@ -1,4 +1,5 @@
-//! Sorts half-edges by the smaller vertex of their edges, to find twins, and the edges of meshes that are not manifold.
+//! Sorts half-edges by the smaller vertex of their edges. This finds twins, and all half-edges of each edge, however
+//! many triangles share it.
 
 use super::half_edge::triangle_of;
 use crate::system::threads::{FEWEST, Threads, Word, shared};

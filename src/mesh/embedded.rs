@@ -38,7 +38,7 @@ impl Embedded {
         }
     }
 
-    /// Without a `winding`, each triangle has the winding of its own sign.
+    /// Without a `winding`, each triangle counts as counter-clockwise or clockwise by its own sign.
     fn of_triangles(
         mesh: &Mesh,
         twins: &[u32],
@@ -53,7 +53,8 @@ impl Embedded {
             if is_alone {
                 word.store((word.load(Relaxed) + by).min(2), Relaxed);
             } else if by == 2 || by == 1 && word.swap(1, Relaxed) != 0 {
-                // A thread whose swap finds an earlier turn writes 2 after it, so 2 stays, whatever other threads swap.
+                // Each thread whose swap finds an earlier turn writes 2 after it. So the last write is a 2, whatever
+                // other threads swap.
                 word.store(2, Relaxed);
             }
         };

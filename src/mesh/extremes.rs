@@ -5,8 +5,8 @@ use crate::system::threads::Threads;
 /// The bits of a 32-bit float without its sign.
 pub(crate) const MAGNITUDE: u32 = !(1 << 31);
 
-/// `largest` is the largest masked word. `below` is the smallest masked word that is not 0, minus 1, or `u32::MAX` if all
-/// are 0.
+/// The extremes of some words, each after `&` with a mask. `largest` is the largest. `below` is 1 less than the
+/// smallest that is not 0; `u32::MAX` if all are 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Extremes {
     pub(crate) below: u32,

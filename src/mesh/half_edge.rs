@@ -17,8 +17,8 @@ pub fn prev(h: u32) -> u32 {
     if is_first(h) { h + 2 } else { h - 1 }
 }
 
-/// Whether a half-edge is the first of its triangle: a multiple of 3. In WebAssembly, this product with the inverse of 3
-/// is several times as fast as a remainder.
+/// Whether a half-edge is the first of its triangle: whether its index is a multiple of 3. In WebAssembly, a product
+/// with the inverse of 3 is several times as fast as a remainder.
 #[inline(always)]
 fn is_first(h: u32) -> bool {
     h.wrapping_mul(0xaaaa_aaab) <= u32::MAX / 3

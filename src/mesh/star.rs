@@ -6,9 +6,10 @@ use crate::mesh::half_edge::{next, prev, unflagged};
 use crate::system::threads::{Threads, Word, shared};
 use std::sync::atomic::Ordering::Relaxed;
 
-/// The anchors of the vertices that have several fans. An anchor is a half-edge that starts at the vertex, one for each fan.
-/// The table has a word for each vertex: [`NONE`], or the index in the table of its list of anchors, which ends with
-/// [`NONE`]. It is empty if every vertex has one fan: then any half-edge is an anchor.
+/// The anchors of the vertices that have several fans. An anchor is a half-edge that starts at the vertex, one for each
+/// fan. The table has a word for each vertex: [`NONE`], or the index in the table of its list of anchors, which ends
+/// with [`NONE`]. If every vertex has one fan, the table is empty: any half-edge that starts at a vertex is an anchor
+/// of its fan.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Fans {
     pub(crate) table: Vec<u32>,
@@ -51,7 +52,8 @@ impl Fans {
         if unvisited.into_iter().fold(0, u32::wrapping_add) == 0 {
             return Self::default();
         }
-        // A vertex whose length does not become 0 has further fans.
+        // Subtracts every corner from the length of the fan that was walked. A vertex whose length does not become 0
+        // has further fans.
         for &v in triangles {
             lengths[v as usize] = lengths[v as usize].wrapping_sub(1);
         }
@@ -185,8 +187,9 @@ impl Iterator for Star<'_> {
     }
 }
 
-/// Takes two stars, each with a test of its corners. Either star alone gives the answer: whether a corner passes its test.
-/// The walk alternates between the two stars, so its cost is twice that of the smaller star.
+/// Whether a corner of two stars passes the test of its star. Both stars must give the same answer, so the walk ends
+/// with the first star that has one. It alternates between the stars: its cost is at most twice that of the smaller
+/// star.
 pub(crate) fn any_in_either(
     mut first: (Star, impl Fn(u32) -> bool),
     mut second: (Star, impl Fn(u32) -> bool),

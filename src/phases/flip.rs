@@ -6,9 +6,10 @@ use crate::mesh::star::Fans;
 use crate::system::threads::{Threads, Word};
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
-/// A word for each triangle. While edges bid, it is the smallest key. After that, if an edge of the triangle is selected, it
-/// is the twin of the selected half-edge, and in the bits of [`FLAGS`] the index in the triangle, 0 to 2, of the
-/// half-edge after the selected one, which moves. Otherwise it is [`NONE`], whose bits there are 3.
+/// A word for each triangle. While edges bid, the word is the smallest key. After that, it is [`NONE`] if no edge of
+/// the triangle is selected. If one is, the word has the twin of the selected half-edge, and in the bits of [`FLAGS`]
+/// the index of the half-edge that the flip moves: the one after the selected half-edge, counted from 0 to 2 in its
+/// triangle. In [`NONE`], these bits are 3.
 #[derive(Default)]
 pub(crate) struct Selected(Vec<AtomicU32>);
 
@@ -24,8 +25,8 @@ impl Selected {
         &self.0[triangle_of(h) as usize]
     }
 
-    /// Lets an edge bid for its two triangles, which have no selected edge. The smallest key wins, in any order of bids. No
-    /// two edges have the same key.
+    /// Lets an edge bid for its two triangles, which must have no selected edge. The smallest key wins, whatever the
+    /// order of bids. No two edges have the same key.
     #[inline(always)]
     pub(crate) fn bid(&self, edge: [u32; 2], key: u32) {
         for x in edge {
@@ -68,8 +69,9 @@ impl Selected {
         (word != NONE).then(|| (prev(3 * t + (word >> FLAGS.trailing_zeros())), word & !FLAGS))
     }
 
-    /// The index of a half-edge after the iteration, and whether no edge of its triangle is selected. The half-edge after a
-    /// selected half-edge gets the index of the twin of that selected half-edge. Depends only on the state before the phase.
+    /// The index of a half-edge after the iteration, and whether no edge of its triangle is selected. If the half-edge
+    /// follows a selected half-edge, it moves to the index of the twin of that half-edge. The result depends only on
+    /// the state before the phase.
     #[inline(always)]
     fn slot(&self, x: u32) -> (u32, bool) {
         let word = self.word(x).get();
@@ -90,9 +92,9 @@ pub(crate) fn move_anchors(fans: &mut Fans, triangles: &[u32], selected: &Select
     }
 }
 
-/// The surroundings of a flipped edge. First the entries in the twins of its four outer half-edges, which start at a, c, b
-/// and d. An entry is [`NONE`] on the boundary, and where the neighbour has flipped too and tests this outer edge. Then the
-/// vertices a, b, c and d.
+/// The surroundings of a flipped edge. First the twin entries of the four outer half-edges, which start at a, c, b and
+/// d. An entry is [`NONE`] on the boundary. It is also [`NONE`] if the neighbour has flipped too, and the neighbour's
+/// flip is the one that tests this outer edge. Then the vertices a, b, c and d.
 pub(crate) type Around = [[u32; 4]; 2];
 
 /// Flips a selected edge. Reads only the vertices and twins of its own two triangles. Writes these, and the entries of
@@ -116,7 +118,8 @@ pub(crate) fn flip(
         }
         let (x, flags) = (*twin & !FLAGS, *twin & FLAGS);
         let (slot, is_free) = selected.slot(x);
-        // If there is nothing to write, this writes a word that is overwritten below: a branch would be unpredictable.
+        // A branch would be unpredictable. So if nothing has to be written, this writes a word that is overwritten
+        // below.
         write(twins, if is_free { x } else { hn }, inner | flags);
         write(twins, inner, slot | flags);
         // If the neighbour has flipped too, only one of the two flips tests the edge between them.

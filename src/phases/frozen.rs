@@ -9,7 +9,7 @@ use crate::mesh::half_edge::{next, prev};
 use crate::predicates::{Quad, corner};
 use crate::{Reason, Reasons};
 
-/// Counts the frozen edges of `triangles` at which some two opposite angles sum to more than π. Angles are unsigned here,
+/// Counts the frozen edges of `triangles` with two opposite angles that sum to more than π. Angles are unsigned here,
 /// because the triangles of a frozen edge do not lie on two sides of it.
 pub(crate) fn count_non_delaunay(mesh: &Mesh, triangles: &[u32]) -> Reasons {
     let mut reasons = Reasons::default();

@@ -92,9 +92,9 @@ impl Diamond {
         count
     }
 
-    /// Writes those of the four edges around a flipped edge that are between two triangles of `mesh`. Returns their number.
-    /// The diamond had the vertices a, b, c and d; its triangles now are (a, d, c) and (b, c, d). `sides` are the half-edges
-    /// from a, c, b and d, and `outer` their entries in the twins.
+    /// Writes the diamonds of the four edges around a flipped edge, except edges with only one triangle in `mesh`.
+    /// Returns their number. Before the flip, the diamond had the vertices a, b, c and d; its triangles now are (a, d,
+    /// c) and (b, c, d). `sides` are the half-edges from a, c, b and d, and `outer` are their twin entries.
     #[inline(always)]
     pub(crate) fn write_around(
         mesh: Topology,
@@ -146,8 +146,8 @@ pub(crate) fn keep_non_delaunay(geometry: &Geometry, diamonds: &mut [Diamond]) -
     }
 }
 
-/// Of the edges from index `first` on, moves the kept ones to index `count` and the indices after it. Returns the new count.
-/// A branch on `is_kept` would be unpredictable.
+/// Moves the kept edges from index `first` on to the indices from `count` on. Returns the new count. A branch on
+/// `is_kept` would be unpredictable.
 #[inline(always)]
 fn keep(
     first: usize,

@@ -14,8 +14,8 @@ pub(crate) fn select(mesh: Topology, iteration: u32, best: &[u32]) -> Vec<u32> {
     (0..best.len() as u32).map(selected).collect()
 }
 
-/// The half-edge of triangle `t` whose edge is the best of both triangles of the edge, and the twin of this half-edge. If
-/// two triangles share two edges, both triangles keep the same edge, since keys do not tie.
+/// The half-edge of triangle `t` whose edge is the best of both triangles of the edge, and the twin of this half-edge.
+/// Two triangles that share two edges both keep the same one, because no two keys are equal.
 fn mutual(best: &[u32], t: u32) -> Option<(u32, u32)> {
     let g = best[t as usize];
     if g >= BLOCKED {
@@ -25,9 +25,9 @@ fn mutual(best: &[u32], t: u32) -> Option<(u32, u32)> {
     (h < BLOCKED && h / 3 == t).then_some((h, g))
 }
 
-/// Whether an edge has to yield to another edge whose flip would join the same vertices c and d. The other edge is the best
-/// of both its triangles, has a smaller key, and is opposite to a corner at c and to one at d. `mutual` returns the
-/// half-edge of a triangle whose edge is the best of both its triangles, and its twin.
+/// Whether an edge has to yield to another edge whose flip would join the same vertices c and d. The other edge is the
+/// best of both its triangles, has a smaller key, and is opposite to a corner at c and to one at d. `mutual` returns
+/// the half-edge of a triangle whose edge is the best of both triangles of the edge, and the twin of this half-edge.
 pub(crate) fn yields(
     mesh: Topology,
     iteration: u32,

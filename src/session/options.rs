@@ -42,9 +42,9 @@ pub struct Options {
     /// after the flip (3D only). An edge of the input over β is a crease: it never flips, even if flips around it lower
     /// its angle.
     pub max_normal_angle: f64,
-    /// The largest distance between the old and the new diagonal of a flip, in the units of the positions, rounded down to
-    /// a 32-bit float (3D only). It limits how far one flip moves the surface; infinity sets no limit. The distance is the
-    /// one between the lines through the two diagonals, even where the diagonals end before they pass each other.
+    /// The largest distance between the old and the new diagonal of a flip, in the units of the positions, rounded down
+    /// to a 32-bit float (3D only). It limits how far one flip moves the surface; infinity sets no limit. The distance
+    /// is that of the lines through the two diagonals, even if the diagonals end before their lines come closest.
     pub max_deviation: f64,
     /// The most iterations; `None`: no limit. Every run ends by itself.
     pub max_iterations: Option<u32>,

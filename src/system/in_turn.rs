@@ -23,7 +23,7 @@ pub(crate) async fn in_turn<T: 'static>(
     while !is_ready()
         && let Some(other) = running.with_borrow(Clone::clone)
     {
-        // Its caller hears of an error.
+        // An error is for the call that began the work, so it is ignored here.
         let _ = JsFuture::from(other.clone()).await;
         end(&other);
     }

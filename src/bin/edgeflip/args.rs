@@ -52,7 +52,7 @@ Examples:
 pub struct Args {
     /// The mesh to read: .off, .obj, .ply, .stl, .gltf or .glb, also gzip'd
     ///
-    /// If it is a FIFO, another process has to open it for writing within 10 s; so also for the lists below.
+    /// If it is a FIFO, another process has to open it for writing within 10 s. The same holds for the lists below.
     #[arg(value_name = "IN")]
     pub input: PathBuf,
 
@@ -168,16 +168,17 @@ pub struct Args {
     /// Print one JSON object on standard output instead of the summary
     ///
     /// Keys: input, vertices, triangles, edges, boundary_edges, non_manifold_edges, inconsistent_edges, dimension,
-    /// backend, adapter, fallback,
-    /// status (done or stopped), iterations, flips, flips_per_iteration, dispatches, device_bytes, remaining (by reason),
-    /// min_angle_before_deg, min_angle_after_deg, before and after (min_angle_deg, mean_min_angle_deg, mean_aspect,
-    /// flat_triangles, area, volume), turned_triangles, joined_vertices, seam_edges, moved_triangles, attribute_edges
-    /// (locked for attributes' sake), ms (milliseconds of wall time, of which all but total add up to it: start; load,
-    /// IN read; prepare, lists read, vertices joined, triangles turned, edges locked; device, the GPU waited for, which
-    /// is opened while IN is read; upload; adjacency; flip; count, triangles read back and the edges left counted;
-    /// measure; verify; save; total, from the start of the program to this object, after which OUT has its name), and
+    /// backend, adapter, fallback, status (done or stopped), iterations, flips, flips_per_iteration, dispatches,
+    /// device_bytes, remaining (by reason), min_angle_before_deg, min_angle_after_deg, before and after (min_angle_deg,
+    /// mean_min_angle_deg, mean_aspect, flat_triangles, area, volume), turned_triangles, joined_vertices, seam_edges,
+    /// moved_triangles, attribute_edges (locked to keep attributes), ms (wall times in milliseconds, see below), and
     /// with --verify audit (the violations), remaining_edges (by reason, the two vertices of each edge left, counted
     /// from 0) and distance (between the surfaces before and after).
+    ///
+    /// The parts of ms add up to its total: start; load (IN is read); prepare (lists are read, vertices joined, triangles
+    /// reversed, edges locked); device (the wait for the GPU, which opens while IN is read); upload; adjacency; flip;
+    /// count (triangles are read back, and the edges left are counted); measure; verify; save. The total is the time from
+    /// the start of the program to this object. After that, OUT gets its name.
     #[arg(long)]
     pub json: bool,
 

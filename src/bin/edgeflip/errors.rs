@@ -1,4 +1,4 @@
-//! Writes the program's own lines to standard error, even if it is closed to other code.
+//! Writes the program's own lines to standard error, even after standard error is closed to other code.
 
 use std::fs::File;
 use std::io::{self, Write};

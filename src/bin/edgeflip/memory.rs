@@ -89,7 +89,8 @@ pub fn prepare(input: &str) {
 fn ran_out(bytes: usize) -> ! {
     static IS_ENDING: AtomicBool = AtomicBool::new(false);
     if IS_ENDING.swap(true, Ordering::Relaxed) {
-        // Another thread ends the process, unless this thread is here for the second time.
+        // The process is ending already, mostly in another thread. If this thread has come here twice, it waits in vain
+        // and then ends the process.
         thread::sleep(PATIENCE);
         end(1);
     }

@@ -197,8 +197,8 @@ impl Region<'_> {
         Some(if is_duplicate { Verdict::Blocked(Reason::Duplicate) } else { shape })
     }
 
-    /// Flips one edge, and writes the edges around it to the slots behind the queue. Returns their number. The
-    /// triangles beyond these edges are not the two of the flipped edge: c is not d if an edge may flip.
+    /// Flips one edge, and writes the edges around it to the slots behind the queue. Returns their number. An edge that
+    /// may flip has different opposite vertices c and d. So no triangle beyond these edges is one of the two that flip.
     #[inline(always)]
     fn flip(&mut self, diamond: &Diamond) -> usize {
         self.work.flips += 1;
@@ -292,8 +292,8 @@ impl Walk {
     }
 }
 
-/// Edges that were not Delaunay when they were tested, first in, first out. So the processor can start on the next edge
-/// while it tests the edges around the last one.
+/// A queue of edges that were not Delaunay when they were tested. It is first in, first out, so the processor can start
+/// on the next edge while it tests the edges around the last one.
 #[derive(Default)]
 struct Queue {
     slots: Vec<Diamond>,

@@ -15,7 +15,7 @@ pub(super) fn phases(form: Form) -> [String; 3] {
     [phase("sweeps", form, READS), writes(form), phase("decide", form, READS)]
 }
 
-/// The second of them alone: the tail needs no other.
+/// The second of these shaders: the tail needs no other.
 pub(super) fn writes(form: Form) -> String {
     phase("writes", form, WRITES)
 }

@@ -133,7 +133,7 @@ fn constants_of_exact_arithmetic_agree() {
         assert_eq!(plane[name], u64::from(offset), "{name}");
     }
     assert!(programs::words().len() <= programs::LANES);
-    // The longest numbers: a difference, and n·m times the power of cos β, with a word for its length and one more digit.
+    // The digits of the longest numbers have to fit: those of a difference, and those of n·m times the power of cos β.
     let digits = |bits: u32| (bits + 1).div_ceil(DIGIT_BITS);
     assert!(digits(SPAN + 1) <= 7 && digits(4 * (SPAN + 1) + 6 + 106) <= 36);
 }

@@ -115,8 +115,8 @@ impl<'a> Accessors<'a> {
         Ok(Elements { buffer, bytes, size, stride, count: count as usize })
     }
 
-    /// The three coordinates of each element, or of `elements`, which must exist, in an accessor that is not sparse. Integers
-    /// become floats of the same value, even normalized ones: that only scales the mesh.
+    /// The three coordinates of each element. With `elements`, only of these; they must exist, and the accessor must
+    /// not be sparse. Integers become floats of the same value. For normalized integers, this only scales the mesh.
     pub(super) fn positions(&self, index: usize, elements: Option<&Vec<u32>>) -> Result<Vec<f32>, Error> {
         let accessor = self.get(index)?;
         let location = || format!("accessor {index}");

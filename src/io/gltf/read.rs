@@ -159,7 +159,8 @@ impl Reader<'_> {
             return Ok(());
         }
         let count = self.accessors.get(position)?.count.0;
-        // Several primitives use the accessor, perhaps each a different range of it: then a part takes only its elements.
+        // If several primitives use the accessor, each may use a different range of it. A part then takes only the
+        // elements that it uses.
         let is_shared = self.uses[position] > 1 && self.accessors.get(position)?.sparse.is_none();
         self.limit(if is_shared { 0 } else { count }, 0, location)?;
         let mut corners = match index {
