@@ -1,5 +1,5 @@
-//! Writes `shaders.rs` for `src/engine/webgpu/sources.rs`: the path and the text of each shader of the WebGPU engine. Browsers
-//! download the shaders, so the wasm32 build removes comments and indentation.
+//! Writes `shaders.rs` for `src/engine/webgpu/sources.rs`: the path and the text of each shader of the WebGPU engine.
+//! Browsers download the shaders, so the wasm32 build removes comments and indentation.
 
 use std::error::Error;
 use std::path::Path;

@@ -47,7 +47,8 @@ const ENGINES: [Backend; 3] = [Backend::Cpu, Backend::Gpu, Backend::Auto];
 
 /// An engine that takes longer for a mesh skips the larger meshes of the family.
 const SLOW: Duration = Duration::from_secs(5);
-/// If an engine's first run of a mesh takes this many times as long as the fastest engine's, the engine runs the mesh once.
+/// If an engine's first run of a mesh takes this many times as long as the fastest engine's, the engine runs the mesh
+/// once.
 const BEATEN: f64 = 10.0;
 /// The time in which further runs of a mesh begin.
 const ENOUGH: Duration = Duration::from_secs(5);

@@ -1,7 +1,7 @@
 //! Composes a shader from its file and the files that it imports. The WebGPU engine, `tools/glsl` and the tests use it.
 //!
-//! The first lines of a file list its imports. `#import NAME` takes `NAME.wgsl` from the folder of the engine, or else from
-//! `shared/`. `#import NAME if CHOICE` takes it only if the caller makes that choice:
+//! The first lines of a file list its imports. `#import NAME` takes `NAME.wgsl` from the folder of the engine, or else
+//! from `shared/`. `#import NAME if CHOICE` takes it only if the caller makes that choice:
 //!
 //! | choices | meaning |
 //! |---|---|
@@ -11,8 +11,9 @@
 //! | `sweep`, `tail` | the guard and Select test many edges at a time, or few |
 //! | `reads`, `writes` | WebGPU only: the kernel only reads the history, or writes it |
 
-/// The text of the file `entry` after the texts of all files that it imports, each once. `text_of` returns the text of a file
-/// by its path, such as `shared/mesh.wgsl`. An import without a file stays in the text, so that the compiler reports it.
+/// The text of the file `entry` after the texts of all files that it imports, each once. `text_of` returns the text of
+/// a file by its path, such as `shared/mesh.wgsl`. An import without a file stays in the text, so that the compiler
+/// reports it.
 pub fn compose<'a>(
     engine: &str,
     entry: &str,

@@ -12,8 +12,8 @@
 //! # Ok::<(), edgeflip::Error>(())
 //! ```
 //!
-//! `docs/architecture.md` lists the rooms of the crate, which are the folders of `src/`, from top to bottom. A room imports
-//! only rooms below it.
+//! `docs/architecture.md` lists the rooms of the crate, which are the folders of `src/`, from top to bottom. A room
+//! imports only rooms below it.
 
 mod engine;
 mod engine_kind;

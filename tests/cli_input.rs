@@ -1,4 +1,5 @@
-//! The input of the command line: waits for pipes only a limited time, and reads other files of a glTF file in its folder only.
+//! The input of the command line: waits for pipes only a limited time, and reads other files of a glTF file in its
+//! folder only.
 #![cfg(all(unix, feature = "cli"))]
 #![allow(clippy::unwrap_used, reason = "what fails here is a failed test")]
 

@@ -1,5 +1,5 @@
-//! The output of the command line: it writes into devices and pipes, follows links, and replaces files, which keep their
-//! owner and mode, or a note says why not.
+//! The output of the command line: it writes into devices and pipes, follows links, and replaces files, which keep
+//! their owner and mode, or a note says why not.
 #![cfg(all(unix, feature = "cli"))]
 #![allow(clippy::unwrap_used, reason = "what fails here is a failed test")]
 

@@ -1,5 +1,5 @@
-//! Random locks on random meshes: the engines agree with the simulation, and every locked edge stays. Pairs that are not edges
-//! are refused.
+//! Random locks on random meshes: the engines agree with the simulation, and every locked edge stays. Pairs that are
+//! not edges are refused.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "what fails here is a failed test")]
 
 mod meshes;

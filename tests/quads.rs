@@ -1,7 +1,7 @@
 //! Millions of ordinary and adversarial quads: every engine decides them as integers of any size do.
 //!
-//! `EDGEFLIP_QUADS` is the number of quads for each GPU engine; the CPU gets ten times as many. The tests read no files except
-//! their own.
+//! `EDGEFLIP_QUADS` is the number of quads for each GPU engine; the CPU gets ten times as many. The tests read no files
+//! except their own.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "what fails here is a failed test")]
 

@@ -1,5 +1,5 @@
-//! The CPU engine on several threads gives the same bits after every iteration on any number of threads. In debug builds,
-//! even loops over small meshes have several pieces.
+//! The CPU engine on several threads gives the same bits after every iteration on any number of threads. In debug
+//! builds, even loops over small meshes have several pieces.
 
 #![allow(clippy::unwrap_used, reason = "what fails here is a failed test")]
 

@@ -1,5 +1,5 @@
-// Tests how far a flip moves the surface: compares the distance of the lines through the two diagonals with the limit, as
-// `deviates` in src/predicates/space.rs. It compares |n1·r| with δ|n1 + n2|.
+// Tests how far a flip moves the surface: compares the distance of the lines through the two diagonals with the limit,
+// as `deviates` in src/predicates/space.rs. It compares |n1·r| with δ|n1 + n2|.
 #import mesh
 #import normals
 #import points

@@ -3,8 +3,8 @@
 #import mesh
 #import state
 
-// The choice of triangle `t`, from the verdicts on the geometry of its three edges: the twin of its labelled edge with the
-// smallest key, or BLOCKED, or NONE; DOUBTFUL if exact arithmetic has to decide first.
+// The choice of triangle `t`, from the verdicts on the geometry of its three edges: the twin of its labelled edge with
+// the smallest key, or BLOCKED, or NONE; DOUBTFUL if exact arithmetic has to decide first.
 fn label(t: u32, iteration: u32, verdicts: vec3u) -> u32 {
     var choice = NONE;
     var left = verdicts;

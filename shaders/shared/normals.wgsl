@@ -47,8 +47,8 @@ fn size(v: vec3f) -> f32 {
 // A normal, and the product of the sizes of its two vectors.
 alias Normal = vec4f;
 
-// u × v, given w = u - v. If precise, it uses the two shortest of u, v and w: for a needle, w × v or w × u has a far smaller
-// error.
+// u × v, given w = u - v. If precise, it uses the two shortest of u, v and w: for a needle, w × v or w × u has a far
+// smaller error.
 fn normal_of(u: vec3f, v: vec3f, w: vec3f, is_precise: bool) -> Normal {
     let takes_w = is_precise && size(w) < max(size(u), size(v));
     let first = select(u, w, takes_w);

@@ -12,8 +12,8 @@ const PLANE_BOUND: f32 = 2.861023e-6;
 // Flushed values, see points.wgsl, are below 2^-48.
 const PLANE_FLUSHED: f32 = 1.4210855e-14;
 
-// The verdict on the geometry of an edge: DELAUNAY, BLOCKED_BY + REASON_FOLD or LABELLED; UNDECIDED if exact arithmetic has
-// to decide. `winding` is -1 in a clockwise component, else 1.
+// The verdict on the geometry of an edge: DELAUNAY, BLOCKED_BY + REASON_FOLD or LABELLED; UNDECIDED if exact arithmetic
+// has to decide. `winding` is -1 in a clockwise component, else 1.
 fn filtered_verdict_on(a: Point, b: Point, c: Point, d: Point, winding: i32) -> u32 {
     var p = rounded_difference(a, c).xy;
     var q = rounded_difference(b, c).xy;

@@ -19,8 +19,8 @@ fn verdict_of(signs: Signs) -> u32 {
     return select(verdict, DELAUNAY, signs.x > 0);
 }
 
-// The verdict on the geometry of an edge: DELAUNAY, BLOCKED_BY + REASON_ANGLE, REASON_FOLD or REASON_DEVIATION, or LABELLED;
-// UNDECIDED if `exact_verdict_on` has to decide. The winding has no meaning in space.
+// The verdict on the geometry of an edge: DELAUNAY, BLOCKED_BY + REASON_ANGLE, REASON_FOLD or REASON_DEVIATION, or
+// LABELLED; UNDECIDED if `exact_verdict_on` has to decide. The winding has no meaning in space.
 fn filtered_verdict_on(a: Point, b: Point, c: Point, d: Point, winding: i32) -> u32 {
     return verdict_by(a, b, c, d, false);
 }

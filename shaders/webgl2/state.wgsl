@@ -1,5 +1,5 @@
-// The state of a mesh in textures, as the WebGL2 engine binds it: one element per texel, row after row. A fragment reads any
-// texel of the state before its pass, and writes the texel of its own triangle in another texture.
+// The state of a mesh in textures, as the WebGL2 engine binds it: one element per texel, row after row. A fragment
+// reads any texel of the state before its pass, and writes the texel of its own triangle in another texture.
 #import digits
 #import mesh
 
@@ -19,8 +19,8 @@
 @group(0) @binding(7) var counts: texture_2d<u32>;
 
 // (triangles, vertices, the iteration, bits of the column in an index), (words in the table of the fans, whether β is
-// 180°, the sign of cos β, cos β rounded to f32), then the digits of its mantissa and power, as in digits.wgsl, then the
-// limit for the deviation: the words of a coordinate, and rounded to f32 for the filter.
+// 180°, the sign of cos β, cos β rounded to f32), then the digits of its mantissa and power, as in digits.wgsl, then
+// the limit for the deviation: the words of a coordinate, and rounded to f32 for the filter.
 @group(0) @binding(8) var<uniform> params: array<vec4u, 7>;
 
 fn texel_at(i: u32) -> vec2u {

@@ -1,4 +1,5 @@
-// Decides the edges that the filters leave undecided, by exact arithmetic: in an iteration, the census or the preparation.
+// Decides the edges that the filters leave undecided, by exact arithmetic: in an iteration, the census or the
+// preparation.
 #import active
 #import doubts
 #import history_read
@@ -60,8 +61,8 @@ fn decide_all(
     }
 }
 
-// Whether each invocation decides one triangle per dispatch, in several dispatches: for drivers that end loops too early, see
-// rounds.wgsl.
+// Whether each invocation decides one triangle per dispatch, in several dispatches: for drivers that end loops too
+// early, see rounds.wgsl.
 fn decides_one() -> bool {
     return params.decides_one == 1u;
 }

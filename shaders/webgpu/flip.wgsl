@@ -1,6 +1,6 @@
 // Flip and update, in the same buffers: rewrites the two triangles of each selected edge and the twins around it, as
-// src/phases/flip.rs. It reads the twins of its own two triangles only. It writes these, and the entries of neighbours without
-// a selected edge. All reads come before all writes.
+// src/phases/flip.rs. It reads the twins of its own two triangles only. It writes these, and the entries of neighbours
+// without a selected edge. All reads come before all writes.
 #import mesh
 #import slot
 #import state

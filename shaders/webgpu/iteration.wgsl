@@ -57,8 +57,8 @@ fn flip_all(
 // Invocations of the tail. The host sets their number for the device.
 override TAIL_SIZE: u32 = WORKGROUP_SIZE;
 
-// Runs iterations in one workgroup while their lists are short. Pauses in an iteration that needs exact arithmetic: another
-// dispatch decides, then the tail resumes.
+// Runs iterations in one workgroup while their lists are short. Pauses in an iteration that needs exact arithmetic:
+// another dispatch decides, then the tail resumes.
 @compute @workgroup_size(TAIL_SIZE)
 fn tail(@builtin(local_invocation_index) local: u32) {
     if local == 0u {

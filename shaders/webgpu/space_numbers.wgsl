@@ -34,8 +34,8 @@ const LAST: u32 = 581u;
 const MANTISSA: u32 = 108u;
 const POWER: u32 = 117u;
 
-// The verdict on any edge: by a filter that is slower and decides more, then by integers. In the preparation, LABELLED stands
-// for an edge that is not a crease.
+// The verdict on any edge: by a filter that is slower and decides more, then by integers. In the preparation, LABELLED
+// stands for an edge that is not a crease.
 fn exact_verdict_on(a: Point, b: Point, c: Point, d: Point, winding: i32, task: u32) -> u32 {
     var signs = Signs(-1, 0, 1, 1);
     if task != PREPARE {

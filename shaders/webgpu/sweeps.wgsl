@@ -1,4 +1,5 @@
-// The kernels of Label and Select. Exact arithmetic has a dispatch between them, for edges that the filter does not decide.
+// The kernels of Label and Select. Exact arithmetic has a dispatch between them, for edges that the filter does not
+// decide.
 #import active
 #import doubts
 #import label

@@ -57,8 +57,8 @@ pub(crate) trait Engine {
     /// How many iterations to request at a time, so that the cost of a request is small.
     fn batch(&self) -> u32;
 
-    /// Locks edges, so that they never flip. `half_edges` has both half-edges of each edge; half-edges without a twin are
-    /// skipped. Called before the first iteration.
+    /// Locks edges, so that they never flip. `half_edges` has both half-edges of each edge; half-edges without a twin
+    /// are skipped. Called before the first iteration.
     fn lock(&mut self, half_edges: Vec<u32>) -> Answer<'_, ()>;
 
     /// Runs up to `count` iterations and returns the flips of each. Returns fewer than `count` when no edge is left to

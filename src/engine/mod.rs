@@ -1,7 +1,7 @@
 //! Engines run the phases. All engines give the same triangles after every iteration.
 //!
-//! `webgpu` and `webgl2` run the shaders, `gpu` has what both need, `cpu` runs the phases on the CPU, and `interface` has
-//! the trait that a session calls. `docs/architecture.md` has the order of these rooms.
+//! `webgpu` and `webgl2` run the shaders, `gpu` has what both need, `cpu` runs the phases on the CPU, and `interface`
+//! has the trait that a session calls. `docs/architecture.md` has the order of these rooms.
 
 mod cpu;
 #[cfg(feature = "gpu")]

@@ -11,8 +11,8 @@ pub enum Format {
     Off,
     /// Wavefront's object format: `.obj`.
     Obj,
-    /// The Stanford triangle format, text or binary: `.ply`. New files are binary. Only this format keeps all bits of 64-bit
-    /// floats.
+    /// The Stanford triangle format, text or binary: `.ply`. New files are binary. Only this format keeps all bits of
+    /// 64-bit floats.
     Ply,
     /// Stereolithography, text or binary: `.stl`. Its triangles share no vertices: the reader makes one vertex of all
     /// corners at the same position. New files are binary, with 32-bit floats; 64-bit floats are rounded.

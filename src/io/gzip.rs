@@ -27,8 +27,8 @@ pub(super) fn is_named(path: &Path) -> bool {
     extension(path).as_deref() == Some("gz")
 }
 
-/// The content of all members, joined. Zeros after the last member are padding. Memory grows with the content, up to the
-/// limit.
+/// The content of all members, joined. Zeros after the last member are padding. Memory grows with the content, up to
+/// the limit.
 ///
 /// # Errors
 /// [`Error::FileTooLarge`]; [`Error::Parse`] if the file is cut off or damaged.

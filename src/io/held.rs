@@ -1,5 +1,5 @@
-//! The faces of a held file, which can be written again with other triangles. Each format provides the byte ranges of its
-//! faces, the attributes of faces and corners, and a function that writes a triangle.
+//! The faces of a held file, which can be written again with other triangles. Each format provides the byte ranges of
+//! its faces, the attributes of faces and corners, and a function that writes a triangle.
 
 use crate::system::threads::Threads;
 use crate::{Adjacency, Error, Mesh, NONE, Wedges, reoriented};
@@ -136,8 +136,8 @@ impl<K: Clone + Eq + Hash> Numbers<K> {
     }
 }
 
-/// Numbers the attributes of the corners of a mesh, from 0, and returns the attributes of each number. Corners of a vertex
-/// with equal keys have the same number.
+/// Numbers the attributes of the corners of a mesh, from 0, and returns the attributes of each number. Corners of a
+/// vertex with equal keys have the same number.
 pub(super) fn numbered<T: Copy + PartialEq, K: Eq + Hash>(
     mesh: &Mesh,
     corners: &[T],

@@ -17,8 +17,8 @@ pub struct Loaded {
     pub mesh: Mesh,
     /// Faces with more than three corners; each was cut into a fan of triangles around its first corner.
     pub polygons: usize,
-    /// What the file has that a [`Mesh`] cannot hold, such as `normals`. [`Loaded::dropped_in`] says what a file of a given
-    /// format loses.
+    /// What the file has that a [`Mesh`] cannot hold, such as `normals`. [`Loaded::dropped_in`] says what a file of a
+    /// given format loses.
     pub dropped: Vec<String>,
     /// Other notes about the file, a sentence each.
     pub notes: Vec<String>,
@@ -58,10 +58,10 @@ impl Loaded {
         is_same || format.is_gltf() && self.document.is_some()
     }
 
-    /// Adds locks to the options of a run, so that faces and corners keep their attributes in a file of the same format.
-    /// Returns the number of locked edges. They are the borders of groups of triangles with the same material or colour,
-    /// and seams, where corners of a vertex differ in texture coordinates or normals. A glTF file needs no locks, since its
-    /// attributes belong to vertices.
+    /// Adds locks to the options of a run, so that faces and corners keep their attributes in a file of the same
+    /// format. Returns the number of locked edges. They are the borders of groups of triangles with the same material
+    /// or colour, and seams, where corners of a vertex differ in texture coordinates or normals. A glTF file needs no
+    /// locks, since its attributes belong to vertices.
     ///
     /// # Errors
     /// [`Error::TriangleCount`] if [`Loaded::mesh`] is not the mesh of the file.
@@ -69,16 +69,16 @@ impl Loaded {
         self.original.as_ref().map_or(Ok(0), |original| original.constrain(&self.mesh, options))
     }
 
-    /// The bytes of a file with this name that holds the mesh with other triangles, gzip'd if the name ends in `.gz`. In
-    /// the same format it is the same file, and only faces that contain a changed triangle are rewritten. If the run was
-    /// [constrained](Loaded::constrain), each triangle keeps the attributes of its face, and each new corner has the
-    /// attributes of its vertex there. A glTF file gets other indices, as `.gltf` or `.glb`. In other formats, the parts of
-    /// a glTF file have their positions in the scene.
+    /// The bytes of a file with this name that holds the mesh with other triangles, gzip'd if the name ends in `.gz`.
+    /// In the same format it is the same file, and only faces that contain a changed triangle are rewritten. If the run
+    /// was [constrained](Loaded::constrain), each triangle keeps the attributes of its face, and each new corner has
+    /// the attributes of its vertex there. A glTF file gets other indices, as `.gltf` or `.glb`. In other formats, the
+    /// parts of a glTF file have their positions in the scene.
     ///
-    /// # Errors
-    /// [`Error::UnknownFormat`]; [`Error::TriangleCount`] and those of [`Mesh::new`] for the triangles; [`Error::Option`]
-    /// for triangles from flips across seams; [`Error::FileTooLarge`] if cut polygons repeat too many attributes;
-    /// [`Error::Io`] as in [`write_to`](super::write_to); [`Error::TooLarge`] for a `.glb` file of 4 GiB or more.
+    /// # Errors [`Error::UnknownFormat`]; [`Error::TriangleCount`] and those of [`Mesh::new`] for the triangles;
+    /// [`Error::Option`] for triangles from flips across seams; [`Error::FileTooLarge`] if cut polygons repeat too many
+    /// attributes; [`Error::Io`] as in [`write_to`](super::write_to); [`Error::TooLarge`] for a `.glb` file of 4 GiB or
+    /// more.
     pub fn file_bytes(&self, name: impl AsRef<Path>, triangles: Vec<u32>) -> Result<Vec<u8>, Error> {
         let name = name.as_ref();
         collected(name, self.write_to(name, triangles)?)

@@ -1,12 +1,12 @@
 //! Reads and writes mesh files, on disk or as bytes, and reads lists of edges and of numbers.
 //!
-//! The parsers are our own, because they keep all vertices in their order and name the line or byte of each error. No crate
-//! does both (2026-11): `tobj` splits a file into models with their own vertices; `obj-rs` has no line numbers; `obj` checks
-//! no index and wants UTF-8 everywhere; `off-rs` knows only the header `OFF`; `ply-rs-bw` compares the name of a property for
-//! each number, allocates for each face, names no byte, and fills the memory with 2^64 elements without properties;
-//! `serde-ply` names neither line nor byte; `stl_io` takes every file that begins with `solid` for text, -0 and 0 for
-//! different positions, and NaN for a number. The tests compare with `ply-rs-bw` and `stl_io`. The crate `flate2` handles
-//! gzip, and `gltf` the JSON of glTF.
+//! The parsers are our own, because they keep all vertices in their order and name the line or byte of each error. No
+//! crate does both (2026-11): `tobj` splits a file into models with their own vertices; `obj-rs` has no line numbers;
+//! `obj` checks no index and wants UTF-8 everywhere; `off-rs` knows only the header `OFF`; `ply-rs-bw` compares the
+//! name of a property for each number, allocates for each face, names no byte, and fills the memory with 2^64 elements
+//! without properties; `serde-ply` names neither line nor byte; `stl_io` takes every file that begins with `solid` for
+//! text, -0 and 0 for different positions, and NaN for a number. The tests compare with `ply-rs-bw` and `stl_io`. The
+//! crate `flate2` handles gzip, and `gltf` the JSON of glTF.
 
 #[cfg(not(target_arch = "wasm32"))]
 mod file;

@@ -223,8 +223,8 @@ impl Keyword {
     }
 }
 
-/// The smaller of `count` and the number of elements that fit the rest of the file. An element has `numbers` numbers, each
-/// of at least a digit and a separator.
+/// The smaller of `count` and the number of elements that fit the rest of the file. An element has `numbers` numbers,
+/// each of at least a digit and a separator.
 fn capacity(lines: &Lines, count: u64, numbers: usize) -> usize {
     let limit = (lines.bytes_left() + 1) / (2 * numbers);
     usize::try_from(count).unwrap_or(usize::MAX).min(limit)

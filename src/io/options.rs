@@ -5,15 +5,16 @@ use crate::{Dimension, Error};
 /// The options for reading a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ReadOptions {
-    /// Whether the mesh is in the plane. `None`: it is in the plane if the file has two coordinates per vertex or every z is
-    /// 0; a glTF file is always in space.
+    /// Whether the mesh is in the plane. `None`: it is in the plane if the file has two coordinates per vertex or every
+    /// z is 0; a glTF file is always in space.
     pub dimension: Option<Dimension>,
     /// The most bytes of a file, packed and unpacked. By default 4 GiB, in WebAssembly 1 GiB.
     pub max_bytes: u64,
-    /// Whether [`load`](super::load) may read the buffers of a glTF file from other files, in its folder and folders below.
+    /// Whether [`load`](super::load) may read the buffers of a glTF file from other files, in its folder and folders
+    /// below.
     pub external_files: bool,
-    /// Whether to hold an OFF, OBJ, PLY or binary STL file in memory together with the mesh, so that it can be written again
-    /// with its attributes. True by default. A glTF file is always held.
+    /// Whether to hold an OFF, OBJ, PLY or binary STL file in memory together with the mesh, so that it can be written
+    /// again with its attributes. True by default. A glTF file is always held.
     pub keep: bool,
 }
 

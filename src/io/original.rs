@@ -53,8 +53,8 @@ impl Original {
         Ok(locked.len())
     }
 
-    /// The bytes of the file with the triangles of `after`, in parts. Faces without a changed triangle stay; other faces are
-    /// replaced by their triangles.
+    /// The bytes of the file with the triangles of `after`, in parts. Faces without a changed triangle stay; other
+    /// faces are replaced by their triangles.
     pub(super) fn with_triangles(&self, mesh: &Mesh, after: &Mesh) -> Result<Vec<Cow<'_, [u8]>>, Error> {
         let threads = pieces::threads(self.bytes.len());
         let faces = &self.faces(mesh)?;

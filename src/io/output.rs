@@ -37,13 +37,12 @@ enum Target {
 }
 
 impl Output {
-    /// The target at `path`. Links are followed, also to a file that does not exist yet. The extension names the format;
-    /// `.gz` after it means gzip. If `path` is a device, a FIFO or a name of the standard output, and has no known extension,
-    /// the name `like` decides the format.
+    /// The target at `path`. Links are followed, also to a file that does not exist yet. The extension names the
+    /// format; `.gz` after it means gzip. If `path` is a device, a FIFO or a name of the standard output, and has no
+    /// known extension, the name `like` decides the format.
     ///
-    /// # Errors
-    /// [`Error::UnknownFormat`]; [`Error::Io`] for a folder, for a cycle of links, and if the folder of a new file does not
-    /// exist.
+    /// # Errors [`Error::UnknownFormat`]; [`Error::Io`] for a folder, for a cycle of links, and if the folder of a new
+    /// file does not exist.
     pub fn of(path: impl AsRef<Path>, like: impl AsRef<Path>) -> Result<Self, Error> {
         let path = path.as_ref();
         let target = Target::of(path);
@@ -219,9 +218,9 @@ impl Target {
     }
 }
 
-/// The path at the end of a chain of links, whether it exists or not. A path that names an open file of a process, such as
-/// `/proc/self/fd/1`, is not followed: that file may have lost its name. Then the result has its descriptor, or `u32::MAX`
-/// if it belongs to another process.
+/// The path at the end of a chain of links, whether it exists or not. A path that names an open file of a process, such
+/// as `/proc/self/fd/1`, is not followed: that file may have lost its name. Then the result has its descriptor, or
+/// `u32::MAX` if it belongs to another process.
 fn followed(path: &Path) -> (PathBuf, Option<u32>) {
     let mut path = path.to_path_buf();
     for _ in 0..LINKS {
@@ -254,8 +253,8 @@ fn descriptor(_: &Path) -> Option<u32> {
     None
 }
 
-/// Whether this is the file or the pipe behind the standard output. False for devices: two writers to a device, such as the
-/// null device, do no harm.
+/// Whether this is the file or the pipe behind the standard output. False for devices: two writers to a device, such as
+/// the null device, do no harm.
 #[cfg(unix)]
 fn is_standard_output(present: &Metadata) -> bool {
     use std::os::fd::AsFd;
@@ -273,10 +272,10 @@ fn is_standard_output(_: &Metadata) -> bool {
     false
 }
 
-/// Writes `mesh` to a file. The extension names the format; `.gz` after it means gzip. The file appears or changes in one
-/// step, after everything is written, so a failure leaves the old file unchanged. Links are followed. A replaced file keeps
-/// its owner, group and mode; the result says what could not be kept, a sentence each. A device, a FIFO or the standard
-/// output is written into.
+/// Writes `mesh` to a file. The extension names the format; `.gz` after it means gzip. The file appears or changes in
+/// one step, after everything is written, so a failure leaves the old file unchanged. Links are followed. A replaced
+/// file keeps its owner, group and mode; the result says what could not be kept, a sentence each. A device, a FIFO or
+/// the standard output is written into.
 ///
 /// # Errors
 /// [`Error::UnknownFormat`] or [`Error::Io`].

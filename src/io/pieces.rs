@@ -1,5 +1,5 @@
-//! Reads and writes files in pieces, on several threads. Text is cut at line ends, and output is joined in order. The result
-//! does not depend on the number of pieces.
+//! Reads and writes files in pieces, on several threads. Text is cut at line ends, and output is joined in order. The
+//! result does not depend on the number of pieces.
 
 use super::text::{Digits, Lines};
 use crate::system::threads::{FEWEST, Threads};

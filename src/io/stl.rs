@@ -1,6 +1,6 @@
-//! STL, the format of stereolithography, text or binary: triangles, each with its own three positions. Corners at the same
-//! position become one vertex. Vertices are numbered in the order of their first corners.
-//! Source: 3D Systems, "StereoLithography Interface Specification", 1988.
+//! STL, the format of stereolithography, text or binary: triangles, each with its own three positions. Corners at the
+//! same position become one vertex. Vertices are numbered in the order of their first corners. Source: 3D Systems,
+//! "StereoLithography Interface Specification", 1988.
 
 use super::held::{Face, Faces};
 use super::parsed::{CutFaces, Dropped, Parsed};
@@ -27,8 +27,8 @@ pub(super) fn is_held(bytes: &[u8]) -> bool {
     !is_text(&bytes[..bytes.len().min(HEADER)], bytes.len())
 }
 
-/// Writes `mesh` in the binary form, rounded to 32-bit floats. z is 0 in a 2D mesh. The normal of a triangle without area
-/// is 0.
+/// Writes `mesh` in the binary form, rounded to 32-bit floats. z is 0 in a 2D mesh. The normal of a triangle without
+/// area is 0.
 pub(super) fn write(mesh: &Mesh, out: &mut impl Write) -> io::Result<()> {
     let points = rounded(mesh, "STL")?;
     let mut header = [0; HEADER];
@@ -85,8 +85,8 @@ fn announced(header: &[u8]) -> Option<usize> {
     Some(u32::from_le_bytes(*count) as usize)
 }
 
-/// Whether a file of `length` bytes that begins with `header` is text. A binary file may also begin with `solid`; then its
-/// length fits its number of facets, or it has a zero byte, as every number of facets below 2^24 does.
+/// Whether a file of `length` bytes that begins with `header` is text. A binary file may also begin with `solid`; then
+/// its length fits its number of facets, or it has a zero byte, as every number of facets below 2^24 does.
 pub(super) fn is_text(header: &[u8], length: usize) -> bool {
     let binary = announced(header).and_then(|count| count.checked_mul(FACET)?.checked_add(HEADER));
     let word = Lines::new(header).find_map(|line| Tokens(line).next()).unwrap_or_default();
@@ -227,8 +227,8 @@ fn refuse_too_many(count: usize) -> Result<(), Error> {
     Ok(())
 }
 
-/// The mesh of `faces` over `corners`. Corners at the same position become one vertex. It sorts the corners, because no file
-/// can make sorting slow, as it can with hashing.
+/// The mesh of `faces` over `corners`. Corners at the same position become one vertex. It sorts the corners, because no
+/// file can make sorting slow, as it can with hashing.
 fn merged(corners: Vec<[f32; 3]>, mut faces: CutFaces, dropped: Dropped) -> Parsed {
     let key = |(i, corner): (usize, &[f32; 3])| {
         // -0 + 0 is 0.

@@ -22,8 +22,8 @@ static PATHS: Mutex<Vec<Stored>> = Mutex::new(Vec::new());
 const TRIES: u32 = 1000;
 const PAUSE: Duration = Duration::from_millis(1);
 
-/// Removes the temporary files of all unfinished writes. A program calls it last, when a signal or a lack of memory ends it.
-/// It does not allocate. A thread that writes a file afterwards waits for ever.
+/// Removes the temporary files of all unfinished writes. A program calls it last, when a signal or a lack of memory
+/// ends it. It does not allocate. A thread that writes a file afterwards waits for ever.
 pub fn remove_temporary_files() {
     for _ in 0..TRIES {
         let paths = match PATHS.try_lock() {
@@ -51,8 +51,8 @@ pub(super) struct Temporary {
 }
 
 impl Temporary {
-    /// A new file in `folder`. If it replaces a file, only its owner may read it, since the old file may be private. If not,
-    /// it has the permissions of a new file.
+    /// A new file in `folder`. If it replaces a file, only its owner may read it, since the old file may be private. If
+    /// not, it has the permissions of a new file.
     pub(super) fn new_in(folder: &Path, replaces: bool) -> io::Result<Self> {
         let mut options = File::options();
         options.write(true).create_new(true);

@@ -78,8 +78,8 @@ fn late(what: &str) -> io::Error {
     io::Error::new(io::ErrorKind::TimedOut, format!("{what} within {} s", PATIENCE.as_secs()))
 }
 
-/// Whether all writers have closed the FIFO, which may still have bytes in it. Only on Linux: on other systems, a FIFO that
-/// no process has opened yet may look the same.
+/// Whether all writers have closed the FIFO, which may still have bytes in it. Only on Linux: on other systems, a FIFO
+/// that no process has opened yet may look the same.
 fn has_been_left(file: &File) -> bool {
     let mut polled = [PollFd::new(file, PollFlags::IN)];
     let at_once = Timespec { tv_sec: 0, tv_nsec: 0 };

@@ -66,8 +66,8 @@ impl Adjacency {
         Self { twins, ..adjacency }
     }
 
-    /// Counts the edges in the buckets of the unmatched half-edges again, edge by edge, and writes their twins. In the other
-    /// buckets, the number of rising half-edges is the number of edges.
+    /// Counts the edges in the buckets of the unmatched half-edges again, edge by edge, and writes their twins. In the
+    /// other buckets, the number of rising half-edges is the number of edges.
     fn match_with_care(
         &mut self,
         triangles: &[u32],
@@ -166,7 +166,8 @@ mod tests {
     }
 
     proptest! {
-        /// Few vertices make nearly all edges non-manifold, many make nearly all boundary. Triangles may repeat a corner.
+        /// Few vertices make nearly all edges non-manifold, many make nearly all boundary. Triangles may repeat a
+        /// corner.
         #[test]
         fn the_half_edges_of_any_triangles_are_matched(
             triangles in (2u32..40).prop_flat_map(|vertices| vec(0..vertices, 0..40).prop_map(|mut corners| {

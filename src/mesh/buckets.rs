@@ -147,8 +147,8 @@ pub(super) fn range(ends: &[u32], vertex: usize) -> Range<usize> {
     start as usize..ends[vertex] as usize
 }
 
-/// Calls `visit` once for each edge, with its half-edges in ascending order. The edges come in the order of their smaller
-/// vertices. A vertex with n edges costs n log n.
+/// Calls `visit` once for each edge, with its half-edges in ascending order. The edges come in the order of their
+/// smaller vertices. A vertex with n edges costs n log n.
 pub(crate) fn for_each_edge(vertices: usize, triangles: &[u32], mut visit: impl FnMut(&[u32])) {
     let buckets = Buckets::new(vertices, triangles, &Threads::default(), true);
     let (mut bucket, mut edge) = (Vec::new(), Vec::new());

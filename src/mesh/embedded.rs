@@ -1,8 +1,8 @@
 //! Embedded stars in the plane: the triangles at a vertex are positive and go round it once.
 //!
-//! The old edge of a flip crosses the new edge c-d. An embedded star has one triangle in each direction. So if the star of
-//! c or d is embedded, it has no other edge c-d, and no other flip of the iteration makes one. Flips of strictly convex
-//! quads keep stars embedded.
+//! The old edge of a flip crosses the new edge c-d. An embedded star has one triangle in each direction. So if the star
+//! of c or d is embedded, it has no other edge c-d, and no other flip of the iteration makes one. Flips of strictly
+//! convex quads keep stars embedded.
 
 use crate::mesh::star::Fans;
 use crate::mesh::winding::{Signs, Winding};
@@ -14,8 +14,8 @@ use std::cmp::Ordering;
 use std::ops::Range;
 use std::sync::atomic::{AtomicU8, Ordering::Relaxed};
 
-/// How often the triangles at each vertex cross the direction of the x axis, capped at 2. An open star, and a star with a
-/// triangle that is not positive, also has 2. Empty in 3D.
+/// How often the triangles at each vertex cross the direction of the x axis, capped at 2. An open star, and a star with
+/// a triangle that is not positive, also has 2. Empty in 3D.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Embedded {
     turns: Vec<u8>,
@@ -106,7 +106,8 @@ fn add_turns(
             }
             continue;
         }
-        // A counter-clockwise triangle crosses the axis at the corner between two edges that go down. Never all three do.
+        // A counter-clockwise triangle crosses the axis at the corner between two edges that go down. Never all three
+        // do.
         let [first, second, third] = [(p, q), (q, r), (r, p)].map(|(u, v)| goes_down(u, v) != is_clockwise);
         let corner = if first & second {
             b

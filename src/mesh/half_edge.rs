@@ -30,8 +30,8 @@ pub(crate) fn triangle_of(h: u32) -> u32 {
     ((u64::from(h) * 0xaaaa_aaab) >> 33) as u32
 }
 
-/// Flag in both entries of an engine's twins, for an edge that was over β in the input: it never flips, whatever its angle
-/// becomes. The flag moves with the half-edges.
+/// Flag in both entries of an engine's twins, for an edge that was over β in the input: it never flips, whatever its
+/// angle becomes. The flag moves with the half-edges.
 pub(crate) const CREASE: u32 = 1 << 31;
 
 /// The same for an edge that the user has locked.

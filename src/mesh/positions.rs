@@ -7,8 +7,8 @@ use glam::{DVec2, DVec3};
 use std::array;
 use std::ops::Range;
 
-/// Coordinates, 2 or 3 per vertex. A [`Mesh`](crate::Mesh) stores 64-bit floats only if at least one of them is not exactly
-/// a 32-bit float.
+/// Coordinates, 2 or 3 per vertex. A [`Mesh`](crate::Mesh) stores 64-bit floats only if at least one of them is not
+/// exactly a 32-bit float.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Positions {
     /// 32-bit floats.

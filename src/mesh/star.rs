@@ -1,5 +1,5 @@
-//! The star of a vertex: the triangles around it. A star consists of fans: runs of triangles joined by twins, open at the
-//! boundary or closed. A flip neither joins nor splits fans, so the number of fans of each vertex never changes.
+//! The star of a vertex: the triangles around it. A star consists of fans: runs of triangles joined by twins, open at
+//! the boundary or closed. A flip neither joins nor splits fans, so the number of fans of each vertex never changes.
 
 use crate::NONE;
 use crate::mesh::half_edge::{next, prev, unflagged};
@@ -62,8 +62,8 @@ impl Fans {
         Self::of_corners(&mut corners, vertices, triangles, twins)
     }
 
-    /// Walks the fans of some vertices. `corners` are all half-edges that start at them, in ascending order. Every other
-    /// vertex has one fan.
+    /// Walks the fans of some vertices. `corners` are all half-edges that start at them, in ascending order. Every
+    /// other vertex has one fan.
     fn of_corners(
         corners: &mut dyn Iterator<Item = u32>,
         vertices: usize,
@@ -260,8 +260,8 @@ mod tests {
         assert_eq!(fans.table, [5, NONE, NONE, NONE, NONE, 0, 3, NONE]);
     }
 
-    /// The triangles (0, 1, 2), (0, 2, 3), … (0, n, 1) are the star of 0. Walks around 0 and 1 in turns end with the shorter
-    /// star.
+    /// The triangles (0, 1, 2), (0, 2, 3), … (0, n, 1) are the star of 0. Walks around 0 and 1 in turns end with the
+    /// shorter star.
     #[test]
     fn the_shorter_star_decides() {
         let triangles: Vec<u32> = (1..=100).flat_map(|i| [0, i, i % 100 + 1]).collect();

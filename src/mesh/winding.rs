@@ -6,12 +6,13 @@ use crate::mesh::half_edge::unflagged;
 use crate::predicates::total_area_sign;
 use std::cmp::Ordering;
 
-/// One bit per triangle: 1 if its edge-connected component has a negative total area. Empty if no component has, and in 3D,
-/// where winding has no meaning.
+/// One bit per triangle: 1 if its edge-connected component has a negative total area. Empty if no component has, and in
+/// 3D, where winding has no meaning.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Winding {
     pub(crate) clockwise: Vec<u32>,
-    /// Whether every triangle is known to have the strict sign of its component: positive, or negative where the bit is 1.
+    /// Whether every triangle is known to have the strict sign of its component: positive, or negative where the bit is
+    /// 1.
     pub(crate) is_strict: bool,
 }
 

@@ -1,13 +1,13 @@
-//! Creases, flagged before the first iteration: edges of the input over β. They never flip, even if flips around them lower
-//! their angle.
+//! Creases, flagged before the first iteration: edges of the input over β. They never flip, even if flips around them
+//! lower their angle.
 
 use crate::mesh::half_edge::{CREASE, LOCKED, next, prev, unflagged};
 use crate::predicates::Quad;
 use crate::system::threads::{Threads, Word, shared};
 use crate::{NONE, Positions};
 
-/// Sets [`CREASE`] in both entries of `twins` for each interior edge whose triangles' normals differ by more than β, and
-/// clears it for all other edges. Keeps [`LOCKED`]. `cos` is cos β; `positions` are 3D.
+/// Sets [`CREASE`] in both entries of `twins` for each interior edge whose triangles' normals differ by more than β,
+/// and clears it for all other edges. Keeps [`LOCKED`]. `cos` is cos β; `positions` are 3D.
 pub(crate) fn flag_creases(
     positions: &Positions,
     triangles: &[u32],

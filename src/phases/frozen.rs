@@ -1,6 +1,6 @@
-//! Frozen edges never flip: three or more triangles share the edge, one triangle has it twice, or its two triangles have
-//! opposite orientations. Flips around them may change their opposite angles. Therefore the session counts after the run
-//! which of them are not Delaunay.
+//! Frozen edges never flip: three or more triangles share the edge, one triangle has it twice, or its two triangles
+//! have opposite orientations. Flips around them may change their opposite angles. Therefore the session counts after
+//! the run which of them are not Delaunay.
 
 use crate::mesh::Mesh;
 use crate::mesh::adjacency::{EdgeKind, edge_kind};
@@ -21,9 +21,9 @@ pub(crate) fn count_non_delaunay(mesh: &Mesh, triangles: &[u32]) -> Reasons {
         };
         let [a, b] = [half_edges[0], next(half_edges[0])].map(|h| mesh.point3(triangles[h as usize]));
         let opposite = |h: u32| mesh.point3(triangles[prev(h) as usize]);
-        // A sum over π needs an obtuse angle. It suffices to compare one obtuse angle with all other angles, because two
-        // obtuse angles of proper triangles always sum to more than π. If only flat triangles have obtuse angles, all of
-        // these angles are π, and any of them decides.
+        // A sum over π needs an obtuse angle. It suffices to compare one obtuse angle with all other angles, because
+        // two obtuse angles of proper triangles always sum to more than π. If only flat triangles have obtuse angles,
+        // all of these angles are π, and any of them decides.
         let obtuse = half_edges.iter().enumerate().filter_map(|(i, &h)| {
             let (is_obtuse, is_flat) = corner(a, b, opposite(h));
             is_obtuse.then_some((is_flat, i))

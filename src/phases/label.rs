@@ -18,8 +18,8 @@ pub(crate) enum Verdict {
     Labelled,
 }
 
-/// For each triangle, the half-edge on the other side of its labelled edge with the smallest key. Without a labelled edge:
-/// [`BLOCKED`] if an edge is blocked as a duplicate, otherwise [`NONE`].
+/// For each triangle, the half-edge on the other side of its labelled edge with the smallest key. Without a labelled
+/// edge: [`BLOCKED`] if an edge is blocked as a duplicate, otherwise [`NONE`].
 pub(crate) fn label(geometry: &Geometry, mesh: Topology, iteration: u32) -> Vec<u32> {
     let best = |t: u32| {
         let mut choice = NONE;
@@ -67,9 +67,9 @@ impl Diamond {
         Self { h, twin, vertices }
     }
 
-    /// Writes the diamonds of the edges between two triangles of `mesh` whose lower half-edge is in a triangle of `piece`.
-    /// `piece` counts from the first triangle of `mesh`. Returns the number of diamonds. `diamonds` needs three slots per
-    /// triangle.
+    /// Writes the diamonds of the edges between two triangles of `mesh` whose lower half-edge is in a triangle of
+    /// `piece`. `piece` counts from the first triangle of `mesh`. Returns the number of diamonds. `diamonds` needs
+    /// three slots per triangle.
     #[inline(always)]
     pub(crate) fn write(mesh: Topology, piece: Range<usize>, diamonds: &mut [Self]) -> usize {
         let [(triangles, _), (twins, _)] = [mesh.triangles, mesh.twins].map(|words| words.as_chunks::<3>());

@@ -1,5 +1,5 @@
-//! The phases of an iteration, as functions over slices: label, select, flip and update. Every decision reads only the state
-//! before its phase. Every word has one writer, or keeps the smallest of distinct keys.
+//! The phases of an iteration, as functions over slices: label, select, flip and update. Every decision reads only the
+//! state before its phase. Every word has one writer, or keeps the smallest of distinct keys.
 //!
 //! ```text
 //!         c                   c

@@ -3,7 +3,8 @@
 /// Why an edge that is not Delaunay remains.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Reason {
-    /// The normals of the triangles differ by more than β before or after the flip, or differed by more than β in the input.
+    /// The normals of the triangles differ by more than β before or after the flip, or differed by more than β in the
+    /// input.
     Angle,
     /// A new triangle would turn over (3D), or would not be strictly positive (2D).
     Fold,

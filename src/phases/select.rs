@@ -5,7 +5,8 @@ use crate::NONE;
 use crate::mesh::half_edge::{next, prev};
 use crate::mesh::star::{Star, any_in_either};
 
-/// For each triangle, the twin of its half-edge that flips, or [`NONE`]. `best` is the result of [`label`](super::label()).
+/// For each triangle, the twin of its half-edge that flips, or [`NONE`]. `best` is the result of
+/// [`label`](super::label()).
 pub(crate) fn select(mesh: Topology, iteration: u32, best: &[u32]) -> Vec<u32> {
     let selected = |t: u32| match mutual(best, t) {
         Some((h, g)) if !yields(mesh, iteration, h, g, |t| mutual(best, t)) => g,

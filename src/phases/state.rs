@@ -71,9 +71,9 @@ impl Topology<'_> {
     }
 }
 
-/// The key of an edge in an iteration: an integer hash. The edge with the smallest key wins. `edge` is the lower half-edge:
-/// of the two half-edges, the one with the smaller index. For each iteration the hash is a bijection, so no two edges tie.
-/// The key changes with the iteration; otherwise chains of neighbours would flip one by one.
+/// The key of an edge in an iteration: an integer hash. The edge with the smallest key wins. `edge` is the lower
+/// half-edge: of the two half-edges, the one with the smaller index. For each iteration the hash is a bijection, so no
+/// two edges tie. The key changes with the iteration; otherwise chains of neighbours would flip one by one.
 #[inline]
 pub(crate) fn key(edge: u32, iteration: u32) -> u32 {
     let mut x = edge ^ iteration.wrapping_mul(0x9e37_79b9);

@@ -2,8 +2,8 @@
 
 use super::exact::decode;
 
-/// The cosine for the β test: an f64, and so a rational number, the same on every platform. It is exact for 0°, 60°, 90°,
-/// 120° and 180°, and less than 3 units in the last place off for any other angle.
+/// The cosine for the β test: an f64, and so a rational number, the same on every platform. It is exact for 0°, 60°,
+/// 90°, 120° and 180°, and less than 3 units in the last place off for any other angle.
 ///
 /// `degrees` is an angle from 0 to 180.
 pub fn cos_degrees(degrees: f64) -> f64 {
@@ -31,7 +31,8 @@ fn taylor(degrees: f64, odd: u32) -> f64 {
     if odd == 1 { x * rest } else { rest }
 }
 
-/// Mantissa and shift with |k| = mantissa / 2^shift, exactly, for a cosine k from [`cos_degrees`]. The shift is at most 106.
+/// Mantissa and shift with |k| = mantissa / 2^shift, exactly, for a cosine k from [`cos_degrees`]. The shift is at most
+/// 106.
 pub(crate) fn cosine_fraction(k: f64) -> (u64, u32) {
     let (mantissa, exponent) = decode(k);
     (mantissa.unsigned_abs(), if mantissa == 0 { 0 } else { -exponent as u32 })

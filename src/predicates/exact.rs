@@ -89,8 +89,8 @@ fn compare(x: &[u64], y: &[u64]) -> Ordering {
     x.len().cmp(&y.len()).then_with(|| x.iter().rev().cmp(y.iter().rev()))
 }
 
-/// Writes `large` + `small`, or their difference, to `result`, which is all zero. Returns the number of limbs of the result.
-/// `large` >= `small`.
+/// Writes `large` + `small`, or their difference, to `result`, which is all zero. Returns the number of limbs of the
+/// result. `large` >= `small`.
 fn add_or_subtract(large: &[u64], small: &[u64], is_sum: bool, result: &mut [u64]) -> usize {
     let step = |x: u64, y| if is_sum { x.overflowing_add(y) } else { x.overflowing_sub(y) };
     let mut carry = false;
@@ -157,8 +157,8 @@ impl<L: Limbs> Ring for Int<L> {
     }
 }
 
-/// Mantissa and exponent with `x = mantissa * 2^exponent`. The mantissa is odd; zero is `(0, i32::MAX)`, so that it never has
-/// the smallest exponent.
+/// Mantissa and exponent with `x = mantissa * 2^exponent`. The mantissa is odd; zero is `(0, i32::MAX)`, so that it
+/// never has the smallest exponent.
 pub(super) fn decode(x: f64) -> (i64, i32) {
     let bits = x.to_bits();
     let field = (bits >> 52 & 0x7ff) as i32;
@@ -218,8 +218,8 @@ impl<const K: usize> Differences<K> {
     }
 }
 
-/// Whether `x - y`, computed in f64, is the exact difference: the roundoff of Knuth's TwoDiff is zero. Sums of f64 do not
-/// underflow. If the difference overflows, the roundoff is NaN, so this returns false.
+/// Whether `x - y`, computed in f64, is the exact difference: the roundoff of Knuth's TwoDiff is zero. Sums of f64 do
+/// not underflow. If the difference overflows, the roundoff is NaN, so this returns false.
 fn difference_is_exact(x: f64, y: f64) -> bool {
     let difference = x - y;
     let y_virtual = x - difference;

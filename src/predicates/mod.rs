@@ -1,9 +1,9 @@
 //! The exact tests. Signs of polynomials in differences of coordinates decide each test. A floating-point filter with a
 //! proven bound decides nearly all cases, and exact integers decide the rest. There is no epsilon.
 //!
-//! An edge (a, b) has the triangles (a, b, c) and (b, a, d). Let p = a - c, q = b - c, r = a - d and s = b - d. The normals
-//! are n1 = p × q and n2 = s × r. The numerators of the cosines of the opposite angles are dot1 = p·q and dot2 = s·r. After
-//! the flip, the triangles (a, d, c) and (b, c, d) have the normals r × p and q × s.
+//! An edge (a, b) has the triangles (a, b, c) and (b, a, d). Let p = a - c, q = b - c, r = a - d and s = b - d. The
+//! normals are n1 = p × q and n2 = s × r. The numerators of the cosines of the opposite angles are dot1 = p·q and dot2
+//! = s·r. After the flip, the triangles (a, d, c) and (b, c, d) have the normals r × p and q × s.
 
 mod cosine;
 mod exact;

@@ -8,13 +8,13 @@ use std::cmp::Ordering;
 /// Unit roundoff of f64.
 const EPSILON: f64 = f64::EPSILON / 2.0;
 
-/// A generous bound for the error that underflow adds to a filter. A product that underflows is off by at most η = 2^-1075;
-/// sums and differences do not underflow. If anything overflows, the bound of the filter is infinite or NaN, and the
-/// filter decides nothing.
+/// A generous bound for the error that underflow adds to a filter. A product that underflows is off by at most η =
+/// 2^-1075; sums and differences do not underflow. If anything overflows, the bound of the filter is infinite or NaN,
+/// and the filter decides nothing.
 const UNDERFLOW: f64 = f64::MIN_POSITIVE;
 
-/// With differences up to this width, degree 2 fits i64 and degree 4 fits i128: a cross or dot product of two such vectors
-/// is below 2^61, the product of two of these is below 2^122, and a sum of two products is below 2^123.
+/// With differences up to this width, degree 2 fits i64 and degree 4 fits i128: a cross or dot product of two such
+/// vectors is below 2^61, the product of two of these is below 2^122, and a sum of two products is below 2^123.
 pub(super) const NARROW_BITS: u32 = 30;
 
 /// With differences up to this width, degree 4 fits 20 limbs, 1280 bits: 4·319 + 3 = 1279. Differences of f32 have at
@@ -22,8 +22,8 @@ pub(super) const NARROW_BITS: u32 = 30;
 pub(super) const WIDE_BITS: u32 = 319;
 
 /// The sign of cross(λ)·dot(γ) + dot(λ)·cross(γ), where λ and γ are the angles at `c` and `d`, opposite to the edge
-/// (`a`, `b`) of the triangles (a, b, c) and (b, a, d). For counter-clockwise triangles it is negative if λ + γ > π. It is
-/// the sign of minus the in-circle determinant.
+/// (`a`, `b`) of the triangles (a, b, c) and (b, a, d). For counter-clockwise triangles it is negative if λ + γ > π. It
+/// is the sign of minus the in-circle determinant.
 #[inline(always)]
 pub(crate) fn in_circle_sign(a: DVec2, b: DVec2, c: DVec2, d: DVec2) -> Ordering {
     let (p, q, r, s) = (a - c, b - c, a - d, b - d);
@@ -106,8 +106,8 @@ pub(crate) fn total_area_sign(count: usize, triangle: &dyn Fn(usize) -> [DVec2; 
         magnitude += left.abs() + right.abs();
     }
     let terms = count as f64;
-    // Each term is off by at most 5ε of its magnitude plus 2.1η. Summing n terms one after another adds at most (n - 1)ε
-    // times the sum of the magnitudes.
+    // Each term is off by at most 5ε of its magnitude plus 2.1η. Summing n terms one after another adds at most (n -
+    // 1)ε times the sum of the magnitudes.
     if sum.abs() > (terms + 8.0) * 2.0 * EPSILON * magnitude + terms * UNDERFLOW {
         return sign(sum);
     }

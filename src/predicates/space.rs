@@ -7,11 +7,11 @@ use std::cmp::Ordering;
 
 /// The error bound of every filter here, relative to the product of the sizes of its vectors: 32 unit roundoffs.
 ///
-/// A size is the 1-norm, which is at least the Euclidean norm. Let L1 = |p|·|q| and L2 = |s|·|r| in 1-norms. Each operation
-/// (sqrt included) has a relative error of at most ε. So a component of a computed normal is off by at most
-/// ((1+ε)^4 - 1) times the sum of the magnitudes of its two products, the normal by at most 4.01ε·L, its computed length by
-/// at most 7ε·L (three more roundings on a length of at most L), and a computed dot product of two differences by at most
-/// 5.01ε·L. The errors of the values are at most:
+/// A size is the 1-norm, which is at least the Euclidean norm. Let L1 = |p|·|q| and L2 = |s|·|r| in 1-norms. Each
+/// operation (sqrt included) has a relative error of at most ε. So a component of a computed normal is off by at most
+/// ((1+ε)^4 - 1) times the sum of the magnitudes of its two products, the normal by at most 4.01ε·L, its computed
+/// length by at most 7ε·L (three more roundings on a length of at most L), and a computed dot product of two
+/// differences by at most 5.01ε·L. The errors of the values are at most:
 /// - angle sum |n1|·dot2 + |n2|·dot1: (7 + 5.01 + 1)ε·L1·L2 for each term, 2.1ε for the sum: 28.2ε·L1·L2;
 /// - n·n': (4.01 + 4.01 + 3)ε·L·L' = 11.1ε·L·L', which also decides `turns_over`;
 /// - n·n' - k|n||n'|: 11.1ε + (7 + 7 + 2)ε + 2.1ε = 29.2ε·L·L';
@@ -23,10 +23,10 @@ const BOUND: f64 = 32.0 * (f64::EPSILON / 2.0);
 /// A bound for the error that underflow adds, relative to the square of the sum of all sizes: 2^-530.
 ///
 /// A product that underflows is off by at most η = 2^-1075; sums and differences do not underflow. So a component of a
-/// normal, or a dot product, is off by at most 3.1η, and a normal by 5.4η. The square of a length is off by another 3.1η,
-/// and the length by at most the root of that, 2^-536.6 in all. Each value is a sum of products of two lengths, normals or
-/// dot products of sizes L and L'. As |k| is at most 1, it is off by at most 2^-534·(L + L') + 12η; the product of the
-/// sizes is off by less. Both L and L' are at most a quarter of the square of the sum of all sizes.
+/// normal, or a dot product, is off by at most 3.1η, and a normal by 5.4η. The square of a length is off by another
+/// 3.1η, and the length by at most the root of that, 2^-536.6 in all. Each value is a sum of products of two lengths,
+/// normals or dot products of sizes L and L'. As |k| is at most 1, it is off by at most 2^-534·(L + L') + 12η; the
+/// product of the sizes is off by less. Both L and L' are at most a quarter of the square of the sum of all sizes.
 const UNDERFLOW: f64 = f64::from_bits((1023 - 530) << 52);
 
 /// With differences up to this width, every test fits 20 limbs, 1280 bits: from differences of b bits, degree 8 with
@@ -45,8 +45,8 @@ pub(crate) struct Quad {
     bound: f64,
 }
 
-/// Evaluates a function exactly. The function is generic over the integers; it gets the 12 components of p, q, r, s and one
-/// more number, 0 by default. The code is out of line, so that the filters, which run for every edge, stay small.
+/// Evaluates a function exactly. The function is generic over the integers; it gets the 12 components of p, q, r, s and
+/// one more number, 0 by default. The code is out of line, so that the filters, which run for every edge, stay small.
 macro_rules! exactly {
     ($quad:expr, $function:ident $(, $argument:expr)*) => {
         exactly!($quad, with 0.0, $function $(, $argument)*)
@@ -86,8 +86,8 @@ impl Quad {
         if value.abs() > self.bound { value < 0.0 } else { exactly!(self, angle_sum).is_lt() }
     }
 
-    /// Whether the angle between the normals is larger than β = acos(`cos`), before or after the flip. A zero normal makes no
-    /// angle with any other.
+    /// Whether the angle between the normals is larger than β = acos(`cos`), before or after the flip. A zero normal
+    /// makes no angle with any other.
     pub(crate) fn exceeds_angle(&self, cos: f64) -> bool {
         // By the Cauchy–Schwarz inequality, no angle exceeds 180°.
         if cos <= -1.0 {
@@ -128,8 +128,8 @@ impl Quad {
         }
     }
 
-    /// Whether the lines through the old and the new diagonal are further apart than `most` = δ: |n1·r| > δ|n1 + n2|. `most`
-    /// is finite and not negative. Parallel lines count as distance 0.
+    /// Whether the lines through the old and the new diagonal are further apart than `most` = δ: |n1·r| > δ|n1 + n2|.
+    /// `most` is finite and not negative. Parallel lines count as distance 0.
     pub(crate) fn deviates(&self, most: f64) -> bool {
         let (n1, n2) = (self.p.cross(self.q), self.s.cross(self.r));
         let (u, v, w, x) = (size(self.p), size(self.q), size(self.r), size(self.s));
@@ -171,9 +171,9 @@ pub(crate) fn corner(a: DVec3, b: DVec3, c: DVec3) -> (bool, bool) {
     exactly!(Quad::new(a, b, c, c), obtuse_and_flat)
 }
 
-/// The error bound of a filter, from the product of the sizes of its four vectors and the sum of all sizes. The fourth power
-/// of the sum is larger than anything that a filter computes. If that overflows, the bound is infinite, and the filter
-/// decides nothing.
+/// The error bound of a filter, from the product of the sizes of its four vectors and the sum of all sizes. The fourth
+/// power of the sum is larger than anything that a filter computes. If that overflows, the bound is infinite, and the
+/// filter decides nothing.
 #[inline]
 fn bound(product: f64, sum: f64) -> f64 {
     let square = sum * sum;

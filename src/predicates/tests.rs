@@ -68,8 +68,8 @@ fn quad2() -> impl Strategy<Value = [DVec2; 4]> {
     ]
 }
 
-/// Opposite angles whose sum is π, exactly or up to one unit in the last place: the product of the heights over the common
-/// edge, 5 and 20, is the square of half its length.
+/// Opposite angles whose sum is π, exactly or up to one unit in the last place: the product of the heights over the
+/// common edge, 5 and 20, is the square of half its length.
 fn angles_of_pi() -> impl Strategy<Value = [DVec3; 4]> {
     (-1070i32..1018, 0usize..12, -1i64..=1).prop_map(|(e, index, ulps)| {
         let mut points = [[-10., 0., 0.], [10., 0., 0.], [0., 5., 0.], [0., -12., -16.]];

@@ -1,5 +1,5 @@
-//! Counts the edges that each tier decides: `cargo test --lib tiers -- --nocapture`. `src/engine/tests/mod.rs` does the same
-//! on a GPU, and `cargo bench --bench tiers` measures the times.
+//! Counts the edges that each tier decides: `cargo test --lib tiers -- --nocapture`. `src/engine/tests/mod.rs` does the
+//! same on a GPU, and `cargo bench --bench tiers` measures the times.
 
 use super::exact::WIDEST;
 use super::{Quad, in_circle_sign, plane, space};
@@ -9,8 +9,8 @@ use crate::{Adjacency, Backend, Dimension, Error, Mesh, NONE, Options, families,
 #[path = "../../benches/kinds/mod.rs"]
 pub(crate) mod kinds;
 
-/// The numbers of interior edges by the tier that decides them: the filter, narrow, wide or unbounded integers. In space
-/// there is no wide tier.
+/// The numbers of interior edges by the tier that decides them: the filter, narrow, wide or unbounded integers. In
+/// space there is no wide tier.
 fn tiers(mesh: &Mesh) -> [usize; 4] {
     let mut counts = [0; 4];
     for (h, &g) in Adjacency::new(mesh).twins.iter().enumerate() {

@@ -1,9 +1,9 @@
 //! Wedges: the corners around a vertex that share their attributes, such as texture coordinates and normals.
 //!
-//! A barrier is a locked edge, a boundary edge or a frozen edge: no flip removes it. A sector is a run of corners at a vertex
-//! from one barrier to the next, counter-clockwise. All corners of a sector have the same attributes, whatever flips inside.
-//! The half-edge of the barrier at which a sector begins exists in every result, and identifies the sector. Source: Hoppe,
-//! "Efficient implementation of progressive meshes", 1998 (wedges).
+//! A barrier is a locked edge, a boundary edge or a frozen edge: no flip removes it. A sector is a run of corners at a
+//! vertex from one barrier to the next, counter-clockwise. All corners of a sector have the same attributes, whatever
+//! flips inside. The half-edge of the barrier at which a sector begins exists in every result, and identifies the
+//! sector. Source: Hoppe, "Efficient implementation of progressive meshes", 1998 (wedges).
 
 use crate::mesh::adjacency::{EdgeKind, edge_kind};
 use crate::mesh::buckets::for_each_edge;
@@ -27,8 +27,8 @@ pub struct Wedges {
 }
 
 impl Wedges {
-    /// Takes a number for each corner, 3 per triangle. Corners of the same vertex have the same attributes if they have the
-    /// same number. Fast if the corners of each vertex have one number; else it visits all edges.
+    /// Takes a number for each corner, 3 per triangle. Corners of the same vertex have the same attributes if they have
+    /// the same number. Fast if the corners of each vertex have one number; else it visits all edges.
     ///
     /// # Errors
     /// [`Error::Option`] for a wrong number of corners.
@@ -87,14 +87,14 @@ impl Wedges {
         Ok(Self { classes, first, barriers, locked_edges, locked_triangles, locked_vertices })
     }
 
-    /// The seams: edges whose two triangles have different attributes at an end of the edge, in ascending order. Add them to
-    /// [`Options::locked_edges`](crate::Options::locked_edges).
+    /// The seams: edges whose two triangles have different attributes at an end of the edge, in ascending order. Add
+    /// them to [`Options::locked_edges`](crate::Options::locked_edges).
     pub fn locked_edges(&self) -> &[[u32; 2]] {
         &self.locked_edges
     }
 
-    /// Triangles that have to stay, since no barrier would identify the attributes of their corners, in ascending order.
-    /// They are few: only at frozen edges, and where several surfaces share a vertex. Add them to
+    /// Triangles that have to stay, since no barrier would identify the attributes of their corners, in ascending
+    /// order. They are few: only at frozen edges, and where several surfaces share a vertex. Add them to
     /// [`Options::locked_triangles`](crate::Options::locked_triangles).
     pub fn locked_triangles(&self) -> &[u32] {
         &self.locked_triangles
@@ -102,9 +102,8 @@ impl Wedges {
 
     /// The number of each corner of a result: the triangles after flips with these edges and triangles locked.
     ///
-    /// # Errors
-    /// [`Error::TriangleCount`], [`Error::IndexOutOfRange`]; [`Error::Option`] for triangles that are not such a result, if
-    /// that is noticed.
+    /// # Errors [`Error::TriangleCount`], [`Error::IndexOutOfRange`]; [`Error::Option`] for triangles that are not such
+    /// a result, if that is noticed.
     pub fn carried(&self, triangles: &[u32]) -> Result<Vec<u32>, Error> {
         let mut sources = self.sources(triangles)?;
         sources.iter_mut().for_each(|corner| *corner = self.classes[*corner as usize]);
@@ -207,7 +206,8 @@ fn sorted([u, v]: [u32; 2]) -> [u32; 2] {
     [u.min(v), u.max(v)]
 }
 
-/// Sets the source of a corner and of the following corners of its sector, counter-clockwise, up to one that has a source.
+/// Sets the source of a corner and of the following corners of its sector, counter-clockwise, up to one that has a
+/// source.
 fn spread(sources: &mut [u32], twins: &[u32], corner: u32, source: u32) {
     let mut at = corner;
     while at != NONE && sources[at as usize] == NONE {

@@ -28,8 +28,8 @@ pub struct Angles {
     pub histogram: AngleHistogram,
 }
 
-/// The angles of `mesh`, with a histogram of `bins` bins (at least one). They are computed in f64, for statistics only: no
-/// flip depends on them.
+/// The angles of `mesh`, with a histogram of `bins` bins (at least one). They are computed in f64, for statistics only:
+/// no flip depends on them.
 pub fn angles(mesh: &Mesh, bins: usize) -> Angles {
     let mut counts = vec![0u64; bins.max(1)];
     let (mut min, mut sum) = (60f64, 0f64);

@@ -240,8 +240,8 @@ fn locked(before: &Surface, options: &Options) -> Vec<(u32, u32)> {
     before.table.edges().filter(is_locked).map(|edge| (edge.u, edge.v)).collect()
 }
 
-/// Compares both tables in step. Only edges between two consistent triangles may appear and disappear, and creases may not
-/// disappear. Returns the creases, in the order of the tables.
+/// Compares both tables in step. Only edges between two consistent triangles may appear and disappear, and creases may
+/// not disappear. Returns the creases, in the order of the tables.
 fn compare_edges(audit: &mut Audit, before: &Surface, after: &Surface, cosine: f64) -> Vec<(u32, u32)> {
     let mut creases = Vec::new();
     let (mut old_edges, mut new_edges) = (before.table.edges().peekable(), after.table.edges().peekable());

@@ -8,15 +8,15 @@ use std::cmp::Ordering;
 /// Three points p, q, r. The normal is (p - r) × (q - r), and the angle is the one at r.
 pub(super) type Triangle = [DVec3; 3];
 
-/// Relative error bound of every f64 evaluation below. Let u = 2^-53 and s = |p - r|·|q - r|. A component of the normal is
-/// off by at most 8us, the normal by 16us, its length by 24us, and the dot product at r by 8us. A product of two such terms
-/// of triangles with s1 and s2 is off by 64u·s1·s2, and the sum of two products by 150u·s1·s2, which is below
-/// 1.7e-14·s1·s2. The bound holds only for [`ordinary`] coordinates.
+/// Relative error bound of every f64 evaluation below. Let u = 2^-53 and s = |p - r|·|q - r|. A component of the normal
+/// is off by at most 8us, the normal by 16us, its length by 24us, and the dot product at r by 8us. A product of two
+/// such terms of triangles with s1 and s2 is off by 64u·s1·s2, and the sum of two products by 150u·s1·s2, which is
+/// below 1.7e-14·s1·s2. The bound holds only for [`ordinary`] coordinates.
 const BOUND: f64 = 1e-13;
 
-/// Whether each number is 0 or has a magnitude from 2^-160 to 2^160. Such numbers and their differences are multiples of
-/// 2^-212. So a polynomial of degree 4 in the differences, and each of its terms, is 0 or has a magnitude from 2^-848 to
-/// 2^660: nothing overflows or underflows, also not in `robust`.
+/// Whether each number is 0 or has a magnitude from 2^-160 to 2^160. Such numbers and their differences are multiples
+/// of 2^-212. So a polynomial of degree 4 in the differences, and each of its terms, is 0 or has a magnitude from
+/// 2^-848 to 2^660: nothing overflows or underflows, also not in `robust`.
 fn ordinary(numbers: &[f64]) -> bool {
     numbers.iter().all(|&x| x == 0.0 || (LEAST..=1.0 / LEAST).contains(&x.abs()))
 }
@@ -136,7 +136,8 @@ pub(super) fn compare_angles(first: Triangle, second: Triangle) -> Ordering {
     sign_of_sum(&two.dot, &one.squared(), &-one.dot, &two.squared())
 }
 
-/// Whether the angle between the normals is larger than acos(`cosine`): n1·n2 < cosine·|n1|·|n2|. False for a zero normal.
+/// Whether the angle between the normals is larger than acos(`cosine`): n1·n2 < cosine·|n1|·|n2|. False for a zero
+/// normal.
 pub(super) fn normals_differ(first: Triangle, second: Triangle, cosine: f64) -> bool {
     let (one, two) = (Corner::new(first), Corner::new(second));
     let value = one.normal.dot(two.normal) - cosine * (one.normal.length() * two.normal.length());
@@ -243,8 +244,8 @@ impl ExactSum {
         numbers.filter(|&x| x != 0.0).map(|x| decode(x).1).min().unwrap_or(0)
     }
 
-    /// Adds x·y. Fewer than 2^40 additions cannot overflow a bin: each half of a product is below 2^54, and is shifted by
-    /// less than 32.
+    /// Adds x·y. Fewer than 2^40 additions cannot overflow a bin: each half of a product is below 2^54, and is shifted
+    /// by less than 32.
     pub fn add(&mut self, x: f64, y: f64) {
         let ((m, e), (n, f)) = (decode(x), decode(y));
         let product = i128::from(m) * i128::from(n);

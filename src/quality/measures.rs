@@ -20,14 +20,15 @@ pub struct Measures {
     pub flat: usize,
     /// The sum of the unsigned areas of the triangles.
     pub area: f64,
-    /// The volume inside a closed surface, negative if its triangles are clockwise from outside. 0 in the plane. An open
-    /// surface is closed by a cone from its boundary to the position of the lowest vertex index that a triangle uses.
-    /// Flips change neither, so the difference of the volumes before and after a run is the volume between the surfaces.
+    /// The volume inside a closed surface, negative if its triangles are clockwise from outside. 0 in the plane. An
+    /// open surface is closed by a cone from its boundary to the position of the lowest vertex index that a triangle
+    /// uses. Flips change neither, so the difference of the volumes before and after a run is the volume between the
+    /// surfaces.
     pub volume: f64,
 }
 
-/// Triangles per chunk of work. The sums of the chunks are added in order, so the result has the same bits on any number
-/// of threads.
+/// Triangles per chunk of work. The sums of the chunks are added in order, so the result has the same bits on any
+/// number of threads.
 const CHUNK: usize = 1 << 12;
 
 /// Measures a mesh.
@@ -49,8 +50,8 @@ pub fn measures(mesh: &Mesh) -> Measures {
     }
 }
 
-/// The origin for volumes: the position of the lowest vertex index that a triangle uses, which no flip changes. It is near
-/// the mesh, so that a large offset costs no precision.
+/// The origin for volumes: the position of the lowest vertex index that a triangle uses, which no flip changes. It is
+/// near the mesh, so that a large offset costs no precision.
 fn origin(mesh: &Mesh) -> DVec3 {
     mesh.triangles().iter().min().map_or(DVec3::ZERO, |&v| mesh.point3(v))
 }
@@ -122,8 +123,8 @@ fn triangles(mesh: &Mesh, triangles: &[u32]) -> impl Iterator<Item = [DVec3; 3]>
     triangles.as_chunks::<3>().0.iter().map(|triangle| triangle.map(|v| mesh.point3(v)))
 }
 
-/// The indices of the triangles that differ between `before` and `after`, in ascending order. A triangle that only starts
-/// at another corner does not differ.
+/// The indices of the triangles that differ between `before` and `after`, in ascending order. A triangle that only
+/// starts at another corner does not differ.
 pub fn moved(before: &[u32], after: &[u32]) -> Vec<u32> {
     let is_same = |[a, b, c]: [u32; 3], other| [[a, b, c], [b, c, a], [c, a, b]].contains(other);
     let [before, after] = [before, after].map(|triangles| triangles.as_chunks::<3>().0);

@@ -179,8 +179,8 @@ impl<'a> Surface<'a> {
     }
 
     /// Whether any two triangles at a frozen edge have opposite angles that sum to more than π. One pass compares each
-    /// triangle with the widest so far. Flat triangles are handled apart: a cap (angle π) makes such a pair with any triangle
-    /// that is not flat.
+    /// triangle with the widest so far. Flat triangles are handled apart: a cap (angle π) makes such a pair with any
+    /// triangle that is not flat.
     fn frozen_excess(&self, edge: &Edge) -> bool {
         let mut widest: Option<Triangle> = None;
         let mut cap = false;

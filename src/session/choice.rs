@@ -41,8 +41,8 @@ pub(super) fn asks_gpu(options: &Options, job: Job) -> bool {
     }
 }
 
-/// Why `Auto` takes the CPU without trying a GPU, or `None` if it tries one. If the job suits a GPU that is not ready, a
-/// browser starts to prepare it for later runs. `is_double`: whether the coordinates are 64-bit.
+/// Why `Auto` takes the CPU without trying a GPU, or `None` if it tries one. If the job suits a GPU that is not ready,
+/// a browser starts to prepare it for later runs. `is_double`: whether the coordinates are 64-bit.
 pub(crate) fn why_cpu(job: Job, is_double: bool, options: &Options) -> Option<String> {
     if !job.is_for_gpu() {
         return Some(format!("{} triangles are done first on the cpu", job.triangles));

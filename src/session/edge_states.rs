@@ -85,8 +85,8 @@ impl From<Verdict> for EdgeState {
     }
 }
 
-/// The state of the edge of each half-edge before `iteration`. `iteration` is `None` for Lawson's algorithm, which has no
-/// select phase.
+/// The state of the edge of each half-edge before `iteration`. `iteration` is `None` for Lawson's algorithm, which has
+/// no select phase.
 pub(crate) fn edge_states(
     geometry: &Geometry,
     mesh: Topology,

@@ -5,8 +5,8 @@ use crate::mesh::buckets::for_each_edge;
 use crate::mesh::half_edge::next;
 use crate::{Error, Options, Welded};
 
-/// The edges that `options` lock, each by its two vertices: `locked_edges` first, then the edges of `locked_triangles` and
-/// those between `groups`. [`half_edges`] finds them in the mesh.
+/// The edges that `options` lock, each by its two vertices: `locked_edges` first, then the edges of `locked_triangles`
+/// and those between `groups`. [`half_edges`] finds them in the mesh.
 ///
 /// # Errors
 /// [`Error::Option`] for a triangle that does not exist, and for `groups` of the wrong length.

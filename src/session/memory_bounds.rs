@@ -1,4 +1,5 @@
-//! How much memory a session takes on the CPU. `tests/memory_bounds.rs` measures each family of meshes against these bounds.
+//! How much memory a session takes on the CPU. `tests/memory_bounds.rs` measures each family of meshes against these
+//! bounds.
 
 use crate::{Dimension, Mesh, Options, Order};
 

@@ -85,8 +85,8 @@ impl Session {
         })
     }
 
-    /// Runs one iteration, and counts the non-Delaunay edges of the whole mesh before it. `None` when no edge is left to
-    /// flip, or at the limit on iterations.
+    /// Runs one iteration, and counts the non-Delaunay edges of the whole mesh before it. `None` when no edge is left
+    /// to flip, or at the limit on iterations.
     ///
     /// # Errors
     /// [`Error::Device`], [`Error::BackendLimit`], [`Error::OutOfMemory`].
@@ -108,11 +108,11 @@ impl Session {
         }))
     }
 
-    /// Runs to the end. It calls `watch` after every batch of iterations with the numbers of iterations and flips so far;
-    /// [`ControlFlow::Break`] stops the run after a complete iteration.
+    /// Runs to the end. It calls `watch` after every batch of iterations with the numbers of iterations and flips so
+    /// far; [`ControlFlow::Break`] stops the run after a complete iteration.
     ///
-    /// # Errors
-    /// [`Error::OutOfMemory`]; [`Error::Device`] and [`Error::BackendLimit`], unless the backend is `Auto`: then the CPU takes over.
+    /// # Errors [`Error::OutOfMemory`]; [`Error::Device`] and [`Error::BackendLimit`], unless the backend is `Auto`:
+    /// then the CPU takes over.
     pub async fn run(&mut self, mut watch: impl FnMut(u32, u64) -> ControlFlow<()>) -> Result<(), Error> {
         while self.may_continue() {
             self.advance().await?;
@@ -123,8 +123,8 @@ impl Session {
         Ok(())
     }
 
-    /// Runs one batch of iterations, of the size that the engine prefers. Returns whether the run may continue: edges may be
-    /// left to flip, and the limit on iterations is not reached.
+    /// Runs one batch of iterations, of the size that the engine prefers. Returns whether the run may continue: edges
+    /// may be left to flip, and the limit on iterations is not reached.
     ///
     /// # Errors
     /// Those of [`Session::run`].
@@ -138,15 +138,14 @@ impl Session {
         Ok(self.may_continue())
     }
 
-    /// Replaces the positions of all vertices: `Vec<f32>` or `Vec<f64>`, 2 or 3 numbers per vertex. The session then equals
-    /// a new one on these positions and the present triangles, bit for bit: it counts iterations and flips from 0, flags
-    /// the creases again, and the audit compares with this state. Adjacency, device and buffers stay. The call reads the
-    /// triangles back once.
+    /// Replaces the positions of all vertices: `Vec<f32>` or `Vec<f64>`, 2 or 3 numbers per vertex. The session then
+    /// equals a new one on these positions and the present triangles, bit for bit: it counts iterations and flips from
+    /// 0, flags the creases again, and the audit compares with this state. Adjacency, device and buffers stay. The call
+    /// reads the triangles back once.
     ///
-    /// # Errors
-    /// [`Error::PositionCount`], [`Error::NonFinite`], [`Error::OutOfMemory`]; [`Error::BackendLimit`] where the GPU cannot
-    /// decide the new positions exactly; [`Error::Device`]. After an error the session is unchanged. With `Auto` the CPU
-    /// takes over from a GPU that refuses or fails.
+    /// # Errors [`Error::PositionCount`], [`Error::NonFinite`], [`Error::OutOfMemory`]; [`Error::BackendLimit`] where
+    /// the GPU cannot decide the new positions exactly; [`Error::Device`]. After an error the session is unchanged.
+    /// With `Auto` the CPU takes over from a GPU that refuses or fails.
     pub async fn set_positions(&mut self, positions: impl Into<Positions>) -> Result<(), Error> {
         let start = Instant::now();
         self.check_memory(memory_bounds::POSITIONS)?;
@@ -292,8 +291,8 @@ impl Session {
         Ok(edge_states(&geometry, topology, vertices, iteration))
     }
 
-    /// An upper bound on the bytes that a session on the CPU takes in addition to the mesh, from its start to its outcome.
-    /// With less memory, [`Session::new`] fails with [`Error::OutOfMemory`].
+    /// An upper bound on the bytes that a session on the CPU takes in addition to the mesh, from its start to its
+    /// outcome. With less memory, [`Session::new`] fails with [`Error::OutOfMemory`].
     pub fn bytes(mesh: &Mesh, options: &Options) -> u64 {
         memory_bounds::bytes(mesh, options)
     }
@@ -334,8 +333,8 @@ impl Session {
         self.options.iterations_left(done)
     }
 
-    /// Checks that `bytes` bytes per triangle are available. Without the check, the call could run out of memory and end
-    /// the session; with the check, an error leaves the session unchanged.
+    /// Checks that `bytes` bytes per triangle are available. Without the check, the call could run out of memory and
+    /// end the session; with the check, an error leaves the session unchanged.
     fn check_memory(&self, bytes: u64) -> Result<(), Error> {
         memory::check(bytes * self.mesh.triangle_count() as u64)
     }
@@ -366,9 +365,9 @@ impl Session {
         }
     }
 
-    /// Changes to the CPU after the device failed, or after the engine refused the mesh during the run. The CPU repeats the
-    /// run up to the last complete iteration; all engines give the same triangles. Boxed, so that this code is compiled only
-    /// once.
+    /// Changes to the CPU after the device failed, or after the engine refused the mesh during the run. The CPU repeats
+    /// the run up to the last complete iteration; all engines give the same triangles. Boxed, so that this code is
+    /// compiled only once.
     fn recover(&mut self, error: Error) -> Answer<'_, ()> {
         Box::pin(async move {
             let why = match error {
@@ -383,8 +382,8 @@ impl Session {
         })
     }
 
-    /// Changes to a GPU that has become ready, if the estimate says that the GPU would finish first from here. The GPU then
-    /// repeats the iterations so far. If the GPU fails, the CPU continues.
+    /// Changes to a GPU that has become ready, if the estimate says that the GPU would finish first from here. The GPU
+    /// then repeats the iterations so far. If the GPU fails, the CPU continues.
     async fn change_to_gpu(&mut self) {
         let Timings { upload, adjacency, flip, .. } = self.timings;
         if !choice::changes_to_gpu(&self.mesh, &self.options, (upload + adjacency, flip)) {

@@ -8,8 +8,8 @@ use std::sync::Arc;
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 use {crate::system::in_turn::in_turn, js_sys::Promise, std::cell::RefCell};
 
-/// The form of a mesh: the set of shaders that it needs. At upload, a mesh of 32-bit floats that span too many bits gets
-/// the fixed-point form instead.
+/// The form of a mesh: the set of shaders that it needs. At upload, a mesh of 32-bit floats that span too many bits
+/// gets the fixed-point form instead.
 fn form_of(dimension: Dimension, is_double: bool, options: &Options) -> Form {
     Form::new(dimension, is_double, Thresholds::from(options))
 }
@@ -30,7 +30,8 @@ pub(super) fn why_not_ready(job: Job, is_double: bool, options: &Options) -> Str
     ahead.map_or_else(super::fallback::without_gpu, |()| "the gpu is made ready behind this run".to_owned())
 }
 
-/// Natively nothing prepares the GPU: the process may end at any time, and drivers do not expect that while they compile.
+/// Natively nothing prepares the GPU: the process may end at any time, and drivers do not expect that while they
+/// compile.
 #[cfg(not(all(target_arch = "wasm32", feature = "js")))]
 pub(super) fn why_not_ready(job: Job, _: bool, _: &Options) -> String {
     format!("{} triangles are done on the cpu before the gpu is ready", job.triangles)
@@ -62,8 +63,8 @@ async fn tested(
     prepared(given, takes_software, form).await
 }
 
-/// The device, after the self-test for a form. Sessions of a page often begin at the same time: one opens the device and
-/// compiles the kernels, and the others wait for it.
+/// The device, after the self-test for a form. Sessions of a page often begin at the same time: one opens the device
+/// and compiles the kernels, and the others wait for it.
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 async fn tested(
     given: Option<&GivenDevice>,

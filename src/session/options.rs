@@ -8,8 +8,8 @@ use std::num::NonZeroUsize;
 /// Which engine runs the phases.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Backend {
-    /// The CPU or the GPU, whichever is estimated to finish first, start-up included; the outcome says which and why. A GPU
-    /// that an earlier session has opened needs no start-up.
+    /// The CPU or the GPU, whichever is estimated to finish first, start-up included; the outcome says which and why. A
+    /// GPU that an earlier session has opened needs no start-up.
     #[default]
     Auto,
     /// The CPU. Takes every mesh.
@@ -48,24 +48,24 @@ pub struct Options {
     pub max_deviation: f64,
     /// The most iterations; `None`: no limit. Every run ends by itself.
     pub max_iterations: Option<u32>,
-    /// Edges that never flip, each by its two vertices in any order. Pairs may repeat, and each has to be an edge of the
-    /// mesh. [`Reason::Locked`](crate::Reason::Locked) counts those that are not Delaunay at the end. Locking a boundary
-    /// edge or a frozen edge changes nothing.
+    /// Edges that never flip, each by its two vertices in any order. Pairs may repeat, and each has to be an edge of
+    /// the mesh. [`Reason::Locked`](crate::Reason::Locked) counts those that are not Delaunay at the end. Locking a
+    /// boundary edge or a frozen edge changes nothing.
     pub locked_edges: Vec<[u32; 2]>,
     /// Triangles that stay, by their indices: all of their edges are locked.
     pub locked_triangles: Vec<u32>,
-    /// A number for each triangle, or empty. Edges between triangles of different numbers are locked, so every group keeps
-    /// its border, and every triangle stays in its group.
+    /// A number for each triangle, or empty. Edges between triangles of different numbers are locked, so every group
+    /// keeps its border, and every triangle stays in its group.
     pub groups: Vec<u32>,
     /// The order of the flips.
     pub order: Order,
-    /// Threads of the CPU engine, at most [`MOST_THREADS`]; `None`: one per core. The engine starts at most one thread per
-    /// 4,096 triangles, and runs meshes of fewer than 65,536 triangles on one thread. The result does not depend on the
-    /// number. Lawson's algorithm flips on several threads only if every vertex has one fan. Without the feature
+    /// Threads of the CPU engine, at most [`MOST_THREADS`]; `None`: one per core. The engine starts at most one thread
+    /// per 4,096 triangles, and runs meshes of fewer than 65,536 triangles on one thread. The result does not depend on
+    /// the number. Lawson's algorithm flips on several threads only if every vertex has one fan. Without the feature
     /// `threads` the engine always has one thread. Copies to and from a GPU use one thread per core.
     pub threads: Option<NonZeroUsize>,
-    /// The device for the WebGPU engine, instead of a device of its own. The engine never destroys it, changes none of its
-    /// settings, and ignores errors of calls that are not its own. If it is a software GPU, `Auto` takes the CPU.
+    /// The device for the WebGPU engine, instead of a device of its own. The engine never destroys it, changes none of
+    /// its settings, and ignores errors of calls that are not its own. If it is a software GPU, `Auto` takes the CPU.
     #[cfg(all(target_arch = "wasm32", feature = "js"))]
     pub device: Option<crate::engine::GpuDevice>,
     /// If set, `Auto` fails where it would choose the CPU. Another WebAssembly module then runs the CPU engine, on this

@@ -1,5 +1,5 @@
-//! Promises that reject if an exception or a trap occurs while a future is polled. The promises of wasm-bindgen would never
-//! settle, and the exception would end a Node process.
+//! Promises that reject if an exception or a trap occurs while a future is polled. The promises of wasm-bindgen would
+//! never settle, and the exception would end a Node process.
 
 use js_sys::{Function, Promise};
 use std::pin::Pin;
@@ -25,7 +25,8 @@ pub(crate) fn promise(future: impl Future<Output = Result<JsValue, JsValue>> + '
     poll(Box::pin(future))
 }
 
-/// An exception in here rejects the promise. The future is then leaked with everything it owns: WebAssembly does not unwind.
+/// An exception in here rejects the promise. The future is then leaked with everything it owns: WebAssembly does not
+/// unwind.
 fn poll(task: Task) -> Promise {
     let mut task = Some(task);
     Promise::new(&mut |resolve, reject| {

@@ -1,5 +1,5 @@
-//! Loops on several threads. The result does not depend on their number: only one piece of a loop writes each word, and the
-//! lists of the pieces are joined in order.
+//! Loops on several threads. The result does not depend on their number: only one piece of a loop writes each word, and
+//! the lists of the pieces are joined in order.
 
 use crate::Error;
 #[cfg(feature = "threads")]
@@ -12,8 +12,8 @@ use std::sync::atomic::AtomicU32;
 #[cfg(not(all(target_arch = "wasm32", target_feature = "atomics")))]
 use std::sync::atomic::Ordering::Relaxed;
 
-/// The fewest items of a piece. With fewer, one thread finishes before another starts. In debug builds it is small, so that
-/// small meshes test the threads.
+/// The fewest items of a piece. With fewer, one thread finishes before another starts. In debug builds it is small, so
+/// that small meshes test the threads.
 pub(crate) const FEWEST: usize = if cfg!(debug_assertions) { 4 } else { 4096 };
 
 /// The fewest triangles of a mesh on several threads, for the same reason.
@@ -23,7 +23,8 @@ const FEWEST_TRIANGLES: usize = 16 * FEWEST;
 /// Pieces per thread, so that no thread waits long for another.
 const PIECES: usize = 8;
 
-/// A number of threads, by default one per core. Without the feature `threads` it is always one, which the compiler knows.
+/// A number of threads, by default one per core. Without the feature `threads` it is always one, which the compiler
+/// knows.
 #[derive(Clone, Default)]
 pub(crate) struct Threads {
     /// `None`: the threads of the process.
@@ -34,8 +35,8 @@ pub(crate) struct Threads {
 }
 
 impl Threads {
-    /// As many threads as `option` says, or one per core; at most one per piece of the triangles. In a browser, JavaScript
-    /// has started the threads already.
+    /// As many threads as `option` says, or one per core; at most one per piece of the triangles. In a browser,
+    /// JavaScript has started the threads already.
     ///
     /// # Errors
     /// [`Error::Option`] if the system cannot start the threads.
@@ -165,8 +166,8 @@ impl Threads {
         if self.is_one() { vec![0; len] } else { self.collect(len, |_| 0) }
     }
 
-    /// Appends a copy of `items` to `all`. The threads share the first access to the memory, which takes several times as
-    /// long as copying.
+    /// Appends a copy of `items` to `all`. The threads share the first access to the memory, which takes several times
+    /// as long as copying.
     pub(crate) fn append<T: Copy + Send + Sync>(&self, all: &mut Vec<T>, items: &[T]) {
         #[cfg(feature = "threads")]
         if items.len() >= 2 * FEWEST && self.count() > 1 {
@@ -186,8 +187,8 @@ impl Threads {
 #[cfg(all(feature = "threads", not(target_arch = "wasm32")))]
 static HAS_STARTED: std::sync::OnceLock<bool> = std::sync::OnceLock::new();
 
-/// The number of threads of the process, or of the pool of the present thread. Starts the threads at the first call. If that
-/// fails, rayon would panic, so the result is 1.
+/// The number of threads of the process, or of the pool of the present thread. Starts the threads at the first call. If
+/// that fails, rayon would panic, so the result is 1.
 #[cfg(all(feature = "threads", not(target_arch = "wasm32")))]
 fn count_of_process() -> usize {
     use std::error::Error;
@@ -244,8 +245,8 @@ impl Word for AtomicU32 {
 impl Word for AtomicU32 {
     #[inline(always)]
     fn get(&self) -> u32 {
-        // SAFETY: the pointer is valid and aligned. WebAssembly defines plain accesses that race, and accesses to aligned words
-        // do not tear. Volatile accesses are neither removed nor merged.
+        // SAFETY: the pointer is valid and aligned. WebAssembly defines plain accesses that race, and accesses to
+        // aligned words do not tear. Volatile accesses are neither removed nor merged.
         unsafe { self.as_ptr().read_volatile() }
     }
 

@@ -100,7 +100,8 @@ pub(crate) fn thrown(error: Error) -> JsValue {
     }
 }
 
-/// The exception for a session that could not begin. If another engine or a second attempt may succeed, it has the mesh.
+/// The exception for a session that could not begin. If another engine or a second attempt may succeed, it has the
+/// mesh.
 #[cfg(feature = "js")]
 pub(super) fn refused(error: Error, mesh: &Mesh, leaves_cpu: bool) -> JsValue {
     let error = match error {

@@ -32,8 +32,8 @@ export async function stop(device) {
   return device.seen.length === device.made && device.onuncapturederror === device.handler;
 }
 export const shaders = (device) => device.shaders;
-// Waits until all modules are made, those of the tail last. The modules of the other kernels count twice: once when they
-// are compiled ahead, and once when wgpu makes them.
+// Waits until all modules are made, those of the tail last. The modules of the other kernels count twice: once when
+// they are compiled ahead, and once when wgpu makes them.
 export async function allShaders(device) {
   while (device.shaders < 12) await new Promise((resolve) => setTimeout(resolve, 10));
   return device.shaders;

@@ -61,8 +61,8 @@ pub struct Args {
     ///
     /// The file is replaced in one step after everything has succeeded, so a failure leaves it unchanged. Links are
     /// followed. Owner, group and mode stay, or a note says why not. A device, a FIFO or the standard output is written
-    /// into; without one of these extensions it gets the format of IN, gzip'd if IN is named .gz. Another process has to
-    /// open a FIFO for reading within 10 s. --json cannot share the standard output.
+    /// into; without one of these extensions it gets the format of IN, gzip'd if IN is named .gz. Another process has
+    /// to open a FIFO for reading within 10 s. --json cannot share the standard output.
     #[arg(short, long, value_name = "OUT")]
     pub output: PathBuf,
 
@@ -93,9 +93,9 @@ pub struct Args {
 
     /// β: largest angle between the normals of two triangles whose edge may flip, in degrees, 0 to 180
     ///
-    /// Only in space. An edge flips only if the normals of its two triangles differ by at most β, before and after the flip.
-    /// Small values keep the shape; large values leave fewer edges that are not Delaunay. An edge over β in the input is a
-    /// crease and stays. The summary counts edges left for this reason as `angle`.
+    /// Only in space. An edge flips only if the normals of its two triangles differ by at most β, before and after the
+    /// flip. Small values keep the shape; large values leave fewer edges that are not Delaunay. An edge over β in the
+    /// input is a crease and stays. The summary counts edges left for this reason as `angle`.
     #[arg(long, value_name = "DEG", default_value_t = 10.0, value_parser = degrees, allow_negative_numbers = true)]
     pub max_normal_angle: f64,
 
@@ -108,15 +108,15 @@ pub struct Args {
 
     /// Edges that never flip: a text file with the two vertices of an edge in each line
     ///
-    /// Vertices count from 0, in the order of IN, even if IN is an OBJ file; # begins a comment. Each pair has to be an edge
-    /// of the mesh. The summary counts locked edges that are not Delaunay as `locked`.
+    /// Vertices count from 0, in the order of IN, even if IN is an OBJ file; # begins a comment. Each pair has to be an
+    /// edge of the mesh. The summary counts locked edges that are not Delaunay as `locked`.
     #[arg(long, value_name = "FILE")]
     pub lock_edges: Option<PathBuf>,
 
     /// Triangles that stay: a text file with their indices
     ///
-    /// Triangles count from 0, in the order of IN, where a polygon of n corners is n - 2 triangles; # begins a comment. All
-    /// edges of these triangles are locked.
+    /// Triangles count from 0, in the order of IN, where a polygon of n corners is n - 2 triangles; # begins a comment.
+    /// All edges of these triangles are locked.
     #[arg(long, value_name = "FILE")]
     pub lock_triangles: Option<PathBuf>,
 
@@ -135,11 +135,11 @@ pub struct Args {
 
     /// Join vertices at exactly the same position for the run, and split them again for OUT
     ///
-    /// Then edges flip even if a file repeats the vertices of each triangle, or repeats vertices along lines. In glTF, only
-    /// vertices of the same primitive are joined, and edges where their attributes or morph targets differ are seams,
-    /// which are locked. A primitive without indices gets indices if one of its edges flips. An edge of --lock-edges is the
-    /// edge between the positions of its two vertices. The summary describes the joined mesh, which has the first vertex
-    /// at each position. Files of other formats than glTF are written as with --drop-attributes.
+    /// Then edges flip even if a file repeats the vertices of each triangle, or repeats vertices along lines. In glTF,
+    /// only vertices of the same primitive are joined, and edges where their attributes or morph targets differ are
+    /// seams, which are locked. A primitive without indices gets indices if one of its edges flips. An edge of
+    /// --lock-edges is the edge between the positions of its two vertices. The summary describes the joined mesh, which
+    /// has the first vertex at each position. Files of other formats than glTF are written as with --drop-attributes.
     #[arg(long)]
     pub weld: bool,
 
@@ -151,17 +151,17 @@ pub struct Args {
     #[arg(long, value_enum, default_value_t, value_name = "ORDER")]
     pub order: OrderArg,
 
-    /// Threads of the CPU engine and of reading, measuring and writing, 1 to 256; without it one per core. A mesh with fewer
-    /// than 65,536 triangles runs on one thread. The result does not depend on the number
+    /// Threads of the CPU engine and of reading, measuring and writing, 1 to 256; without it one per core. A mesh with
+    /// fewer than 65,536 triangles runs on one thread. The result does not depend on the number
     #[arg(long, value_name = "N", value_parser = threads, allow_negative_numbers = true)]
     pub threads: Option<NonZeroUsize>,
 
     /// Check the result independently; if the check fails, write nothing and end with status 1
     ///
     /// Checks that vertices, boundary, components and orientation are unchanged, and that the run has counted the edges
-    /// left correctly. The summary names the first edges left for each reason by their two vertices, counted from 0; --json
-    /// lists all. It also measures how far the surface has moved: the largest distance between the old and the new surface,
-    /// at points of the edges that only one of them has.
+    /// left correctly. The summary names the first edges left for each reason by their two vertices, counted from 0;
+    /// --json lists all. It also measures how far the surface has moved: the largest distance between the old and the
+    /// new surface, at points of the edges that only one of them has.
     #[arg(long)]
     pub verify: bool,
 
@@ -175,10 +175,10 @@ pub struct Args {
     /// with --verify audit (the violations), remaining_edges (by reason, the two vertices of each edge left, counted
     /// from 0) and distance (between the surfaces before and after).
     ///
-    /// The parts of ms add up to its total: start; load (IN is read); prepare (lists are read, vertices joined, triangles
-    /// reversed, edges locked); device (the wait for the GPU, which opens while IN is read); upload; adjacency; flip;
-    /// count (triangles are read back, and the edges left are counted); measure; verify; save. The total is the time from
-    /// the start of the program to this object. After that, OUT gets its name.
+    /// The parts of ms add up to its total: start; load (IN is read); prepare (lists are read, vertices joined,
+    /// triangles reversed, edges locked); device (the wait for the GPU, which opens while IN is read); upload;
+    /// adjacency; flip; count (triangles are read back, and the edges left are counted); measure; verify; save. The
+    /// total is the time from the start of the program to this object. After that, OUT gets its name.
     #[arg(long)]
     pub json: bool,
 

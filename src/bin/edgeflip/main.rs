@@ -175,7 +175,8 @@ fn output(args: &Args) -> Result<Output, Failure> {
     Ok(output)
 }
 
-/// Changes the backend to the CPU if there is no GPU, or if its driver might end the program for lack of memory. Returns why.
+/// Changes the backend to the CPU if there is no GPU, or if its driver might end the program for lack of memory.
+/// Returns why.
 fn without_gpu(options: &mut Options, mesh: &Mesh, gpu: Option<EarlyGpu>) -> Result<Option<String>, Failure> {
     let unavailable = |message| Error::BackendUnavailable { backend: EngineKind::Gpu, message };
     let refusal = match gpu {
@@ -266,8 +267,8 @@ fn milliseconds(time: Duration) -> f64 {
     time.as_micros() as f64 / 1e3
 }
 
-/// Prints the object of `--json`, then commits OUT, so that OUT stays unchanged if the object cannot be printed. Then prints
-/// the notes and the summary.
+/// Prints the object of `--json`, then commits OUT, so that OUT stays unchanged if the object cannot be printed. Then
+/// prints the notes and the summary.
 fn finish(args: &Args, done: Done) -> Result<(), Failure> {
     let Done { mut report, violation, staged, clock } = done;
     if let Some(report) = &mut report {

@@ -126,8 +126,8 @@ pub fn limit() -> Option<u64> {
     None
 }
 
-/// Bytes of addresses that a GPU driver may need before it has a mesh, and for each triangle, in buffers and staging buffers.
-/// A driver without enough memory may end the process: Mesa's software driver did with up to 910 MB left.
+/// Bytes of addresses that a GPU driver may need before it has a mesh, and for each triangle, in buffers and staging
+/// buffers. A driver without enough memory may end the process: Mesa's software driver did with up to 910 MB left.
 #[cfg(target_os = "linux")]
 const DRIVER: u64 = 1 << 30;
 #[cfg(target_os = "linux")]

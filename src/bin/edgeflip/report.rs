@@ -216,8 +216,8 @@ impl Report {
         self
     }
 
-    /// Adds notes about the file that was read and about what a file of this format loses, and the number of edges locked to
-    /// keep attributes.
+    /// Adds notes about the file that was read and about what a file of this format loses, and the number of edges
+    /// locked to keep attributes.
     pub fn with_attributes(mut self, loaded: &Loaded, format: Format, locked: usize) -> Self {
         self.attribute_edges = locked;
         self.notes.clone_from(&loaded.notes);

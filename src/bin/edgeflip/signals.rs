@@ -14,9 +14,9 @@ use std::thread;
 /// Bytes of the stack of the thread that waits for signals.
 const STACK: usize = 1 << 17;
 
-/// From now on, each of these signals removes the temporary files and then ends the program by the same signal, so that a
-/// shell sees it. Signals that are ignored, such as SIGHUP under nohup, stay ignored. A file that exceeds the size limit
-/// causes a write error instead of a signal.
+/// From now on, each of these signals removes the temporary files and then ends the program by the same signal, so that
+/// a shell sees it. Signals that are ignored, such as SIGHUP under nohup, stay ignored. A file that exceeds the size
+/// limit causes a write error instead of a signal.
 pub fn watch() {
     let _ = signal_hook::flag::register(SIGXFSZ, Arc::default());
     let watched: Vec<c_int> =

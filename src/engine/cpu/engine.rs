@@ -1,5 +1,5 @@
-//! The phases on the CPU, edge by edge, on several threads. Lists hold the edges that are not Delaunay. An edge is tested
-//! again only if one of its triangles has flipped.
+//! The phases on the CPU, edge by edge, on several threads. Lists hold the edges that are not Delaunay. An edge is
+//! tested again only if one of its triangles has flipped.
 
 use super::region::TopologyMut;
 use crate::engine::{Answer, Census, EdgeCounts, Engine};
@@ -369,7 +369,8 @@ impl Cpu {
         (geometry, TopologyMut { first: 0, triangles, twins, fans: Some(fans) })
     }
 
-    /// Resets the lists after flips outside of the phases. If `is_known`, every edge that is not Delaunay is in `blocked`.
+    /// Resets the lists after flips outside of the phases. If `is_known`, every edge that is not Delaunay is in
+    /// `blocked`.
     pub(super) fn settle(&mut self, blocked: Vec<u32>, is_known: bool) {
         self.parts.clear();
         self.blocked = vec![blocked];

@@ -60,8 +60,8 @@ pub(super) struct Work {
 }
 
 impl Region<'_> {
-    /// Tests all edges, and flips until no edge is left to flip. Divides the region down to `size` triangles and flips both
-    /// halves in parallel, then the edges across their border.
+    /// Tests all edges, and flips until no edge is left to flip. Divides the region down to `size` triangles and flips
+    /// both halves in parallel, then the edges across their border.
     pub(super) fn flip_parts(&mut self, size: usize, threads: &Threads) {
         let TopologyMut { first, triangles, twins, .. } = &mut self.mesh;
         let count = triangles.len() / 3;
@@ -178,7 +178,8 @@ impl Region<'_> {
         }
     }
 
-    /// Whether an edge that is not Delaunay may flip. `None` where the answer or the flip needs triangles outside the region.
+    /// Whether an edge that is not Delaunay may flip. `None` where the answer or the flip needs triangles outside the
+    /// region.
     fn verdict(&self, diamond: &Diamond) -> Option<Verdict> {
         let shape = verdict_of_shape(self.geometry, diamond);
         if shape != Verdict::Labelled {
@@ -344,8 +345,8 @@ mod tests {
     use proptest::prelude::*;
     use std::collections::VecDeque;
 
-    /// For every region of surfaces with many duplicates: an answer of the region is the answer of the whole mesh, and the
-    /// whole mesh as a region always answers.
+    /// For every region of surfaces with many duplicates: an answer of the region is the answer of the whole mesh, and
+    /// the whole mesh as a region always answers.
     #[test]
     fn a_region_finds_the_duplicates_of_the_whole() {
         let (mut known, mut unknown) = ([0, 0], 0);

@@ -28,8 +28,8 @@ impl Tested {
 /// Makes an engine for a mesh.
 pub(crate) type Make<'a> = dyn Fn(Upload) -> Answer<'static, Box<dyn Engine>> + 'a;
 
-/// Runs the test mesh on an engine from `make`, and compares the counts, the flips of each iteration and the triangles with
-/// those of the CPU. Does nothing if the device has passed the self-test for this form.
+/// Runs the test mesh on an engine from `make`, and compares the counts, the flips of each iteration and the triangles
+/// with those of the CPU. Does nothing if the device has passed the self-test for this form.
 ///
 /// # Errors
 /// [`Error::BackendUnavailable`] if they differ; those of `make` and of the engine.

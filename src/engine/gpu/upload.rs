@@ -6,8 +6,8 @@ use crate::system::threads::Threads;
 use crate::{Dimension, EngineKind, Error, Mesh, Positions};
 use std::sync::Arc;
 
-/// The most bits of a coordinate without its sign, relative to the centre of the bounding box, in units of the grid. The
-/// unit of the grid is the largest power of two that divides all coordinates. The same limit is in `points.wgsl`.
+/// The most bits of a coordinate without its sign, relative to the centre of the bounding box, in units of the grid.
+/// The unit of the grid is the largest power of two that divides all coordinates. The same limit is in `points.wgsl`.
 pub(in crate::engine) const SPAN: u32 = 84;
 /// Below this power of two, no difference of two floats overflows. WGSL guarantees nothing for infinities.
 const LARGEST_EXPONENT: i32 = 126;
@@ -62,7 +62,8 @@ impl Upload {
     /// # Errors
     /// [`Error::BackendLimit`] for a mesh whose coordinates the shaders cannot decide exactly.
     pub(crate) fn new(backend: EngineKind, mesh: Arc<Mesh>, thresholds: Thresholds) -> Result<Self, Error> {
-        // The limit for the deviation takes bits as a coordinate does. At most, it is a distance that no two points have.
+        // The limit for the deviation takes bits as a coordinate does. At most, it is a distance that no two points
+        // have.
         let deviation = |highest| match mesh.dimension() {
             Dimension::Two => 0.0,
             Dimension::Three => f64::from(thresholds.deviation).min(libm::scalbn(1.0, highest + 3)),
@@ -106,9 +107,9 @@ impl Upload {
     }
 }
 
-/// The coordinates and the limit for the deviation, as integers in units of the grid. The coordinates are relative to the
-/// lowest corner of the bounding box. The error is the number of bits that a coordinate would take. `lowest` and `highest`
-/// are the exponents of the lowest and the highest bit set.
+/// The coordinates and the limit for the deviation, as integers in units of the grid. The coordinates are relative to
+/// the lowest corner of the bounding box. The error is the number of bits that a coordinate would take. `lowest` and
+/// `highest` are the exponents of the lowest and the highest bit set.
 fn fixed_point(
     mesh: &Mesh,
     (lowest, highest): (i32, i32),

@@ -1,5 +1,5 @@
-//! The WebGPU engine as it runs in browsers: it does not wait before its first iterations, and reads the results of a run
-//! with them.
+//! The WebGPU engine as it runs in browsers: it does not wait before its first iterations, and reads the results of a
+//! run with them.
 
 use super::{Cpu, Device, Engine, Mesh, Upload, WebGpu, any_deviation, assert_same, families};
 use crate::engine::EdgeCounts;

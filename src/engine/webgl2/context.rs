@@ -34,8 +34,8 @@ thread_local! {
     static SHARED: RefCell<Option<Rc<Context>>> = const { RefCell::new(None) };
 }
 
-/// Sets the loader of the sources: a function that returns a promise of a module whose default export maps each program's
-/// name to its text.
+/// Sets the loader of the sources: a function that returns a promise of a module whose default export maps each
+/// program's name to its text.
 pub(crate) fn set_shader_loader(loader: Function) {
     LOADER.set(Some(loader));
 }
@@ -166,8 +166,8 @@ impl Context {
         Ok(program)
     }
 
-    /// Runs a compiled program for every texel of `target`, or only for texel `column` of its first row. `inputs` are texture
-    /// units, as in `shaders/webgl2/state.wgsl`, and their textures.
+    /// Runs a compiled program for every texel of `target`, or only for texel `column` of its first row. `inputs` are
+    /// texture units, as in `shaders/webgl2/state.wgsl`, and their textures.
     ///
     /// # Errors
     /// [`Error::Device`] if the context is lost.

@@ -1,6 +1,6 @@
-//! Compiles pipelines in parallel in a browser. wgpu creates pipelines one after another with the synchronous call, which
-//! blocks. This file first creates the same pipelines with the asynchronous call; the browser then has them in its cache
-//! when wgpu asks for them.
+//! Compiles pipelines in parallel in a browser. wgpu creates pipelines one after another with the synchronous call,
+//! which blocks. This file first creates the same pipelines with the asynchronous call; the browser then has them in
+//! its cache when wgpu asks for them.
 
 use super::browser::GpuDevice;
 use super::kernels::{Entry, Plan};
@@ -21,8 +21,8 @@ extern "C" {
     fn pipeline(this: &GpuDevice, descriptor: &JsValue) -> Result<Promise, JsValue>;
 }
 
-/// The pipelines of `plans`. The browser's cache keeps them as long as the result lives. Errors in them are ignored here:
-/// wgpu gets the same errors.
+/// The pipelines of `plans`. The browser's cache keeps them as long as the result lives. Errors in them are ignored
+/// here: wgpu gets the same errors.
 pub(super) async fn compiled(plans: &[Plan], device: &wgpu::Device) -> Option<JsValue> {
     let device = GpuDevice::of(device)?;
     device.push_error_scopes();

@@ -235,7 +235,8 @@ impl Device {
         }
     }
 
-    /// Copies words to staging memory, on several threads. The next submission copies them to `buffer` at byte `offset`.
+    /// Copies words to staging memory, on several threads. The next submission copies them to `buffer` at byte
+    /// `offset`.
     #[cfg(not(target_arch = "wasm32"))]
     fn stage(&self, buffer: &Buffer, offset: u64, words: &[u32]) {
         let size = wgpu::BufferSize::new(size_of_val(words) as u64);

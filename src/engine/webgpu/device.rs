@@ -149,8 +149,8 @@ impl Device {
         Ok((adapter, is_software))
     }
 
-    /// Opens the adapter, and compiles the kernels that every mesh needs and those of `form`. The device calls `on_loss`
-    /// when it is lost.
+    /// Opens the adapter, and compiles the kernels that every mesh needs and those of `form`. The device calls
+    /// `on_loss` when it is lost.
     pub(super) async fn open(
         adapter: wgpu::Adapter,
         is_software: bool,
@@ -258,8 +258,8 @@ impl Device {
         Ok(result)
     }
 
-    /// Whether a mesh of a form can start at once: nothing has failed, the kernels are compiled and tested, and the device
-    /// is not a software GPU, unless `takes_software`.
+    /// Whether a mesh of a form can start at once: nothing has failed, the kernels are compiled and tested, and the
+    /// device is not a software GPU, unless `takes_software`.
     pub(crate) fn is_ready(&self, form: Form, takes_software: bool) -> bool {
         self.check().is_ok() && self.tested.has_passed(form) && (takes_software || !self.is_software)
     }
@@ -326,7 +326,8 @@ impl Device {
         limits.max_storage_buffer_binding_size.min(limits.max_buffer_size)
     }
 
-    /// A buffer of at least `words` words, all zero. It can be copied from and to. It is never empty: a binding cannot be.
+    /// A buffer of at least `words` words, all zero. It can be copied from and to. It is never empty: a binding cannot
+    /// be.
     pub(super) fn buffer(&self, label: &str, words: usize, usage: BufferUsages) -> Buffer {
         new_buffer(&self.device, label, words, usage)
     }

@@ -1,5 +1,5 @@
-//! Errors of our own calls, caught by error scopes. A page may share the device and its handler of uncaptured errors, so
-//! errors outside our scopes are not ours.
+//! Errors of our own calls, caught by error scopes. A page may share the device and its handler of uncaptured errors,
+//! so errors outside our scopes are not ours.
 
 #[cfg(target_arch = "wasm32")]
 use super::browser::{GpuDevice, HasMessage};

@@ -19,8 +19,8 @@ impl GpuDevice {
         loss.is_object().then(|| loss.unchecked_into::<HasMessage>().message())
     }
 
-    /// The device as a wgpu device. wgpu gets devices only from an adapter, and adapters only from `navigator.gpu`. So this
-    /// call replaces `navigator.gpu`, while wgpu reads it, by an object whose adapter returns this device.
+    /// The device as a wgpu device. wgpu gets devices only from an adapter, and adapters only from `navigator.gpu`. So
+    /// this call replaces `navigator.gpu`, while wgpu reads it, by an object whose adapter returns this device.
     pub(super) async fn adopt(&self) -> Result<(wgpu::Device, wgpu::Queue), String> {
         let device = self.clone();
         let request_device = Closure::<dyn Fn() -> Promise<Self>>::new(move || Promise::resolve(&device));

@@ -71,8 +71,8 @@ impl ReadBack<'_> {
 }
 
 impl Device {
-    /// Writes words to the starts of buffers, through the kept staging buffer if it is mapped. If not, prepares one for the
-    /// next call.
+    /// Writes words to the starts of buffers, through the kept staging buffer if it is mapped. If not, prepares one for
+    /// the next call.
     pub(super) fn write_all(&self, writes: &[(&Buffer, &[u32])]) {
         let bytes = writes.iter().map(|(_, words)| size_of_val(*words) as u64).sum();
         let is_staged = (FEWEST_STAGED..=MOST_KEPT).contains(&bytes);

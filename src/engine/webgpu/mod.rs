@@ -1,9 +1,9 @@
 //! The phases as compute shaders, through wgpu: natively and in the browser.
 //!
-//! An iteration is four dispatches: Label, exact arithmetic for the edges that Label leaves undecided, Select, and Flip with
-//! update. One submission has a batch of iterations and a tail: a single kernel that runs many iterations while few
-//! triangles are due. An iteration does nothing if the iteration before flipped no edge. The device writes a history: the
-//! flips of each iteration. The host reads the history after each submission.
+//! An iteration is four dispatches: Label, exact arithmetic for the edges that Label leaves undecided, Select, and Flip
+//! with update. One submission has a batch of iterations and a tail: a single kernel that runs many iterations while
+//! few triangles are due. An iteration does nothing if the iteration before flipped no edge. The device writes a
+//! history: the flips of each iteration. The host reads the history after each submission.
 //!
 //! In a browser, one wait for the GPU takes longer than most runs. There the host submits the first iterations without
 //! waiting for the preparation. The same submission also copies the results that the session will ask for.

@@ -1,5 +1,5 @@
-//! The programs of exact arithmetic, which `shaders/webgpu/numbers.wgsl` runs. A step of a program is a sum of products of
-//! two integers. Each invocation has a lane of words; an integer is stored in it at a fixed offset.
+//! The programs of exact arithmetic, which `shaders/webgpu/numbers.wgsl` runs. A step of a program is a sum of products
+//! of two integers. Each invocation has a lane of words; an integer is stored in it at a fixed offset.
 
 /// The word offset of the lanes, the words of a step, and the number of lanes: the same in `numbers.wgsl`.
 pub(super) const LANES: usize = 512;
@@ -76,7 +76,8 @@ pub(super) const LAST: Offset = large(6);
 /// Words of a lane.
 const LANE: usize = LAST as usize + 75;
 
-/// The offset of the result and the number of terms; then the terms: two offsets, and whether the product is subtracted.
+/// The offset of the result and the number of terms; then the terms: two offsets, and whether the product is
+/// subtracted.
 type Step = [u32; STEP];
 
 const fn plus(x: Offset, y: Offset) -> u32 {

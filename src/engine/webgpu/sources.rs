@@ -9,8 +9,8 @@ use crate::engine::gpu::upload::Form;
 /// The path in `shaders/` of each file, and its text.
 const FILES: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/shaders.rs"));
 
-/// The shaders of the phases for meshes of one form: the kernels that only read lists and history, the kernels that write
-/// them, and exact arithmetic.
+/// The shaders of the phases for meshes of one form: the kernels that only read lists and history, the kernels that
+/// write them, and exact arithmetic.
 pub(super) fn phases(form: Form) -> [String; 3] {
     [phase("sweeps", form, READS), writes(form), phase("decide", form, READS)]
 }

@@ -30,7 +30,8 @@ impl WebGpu {
     /// [`Error::BackendLimit`] for a mesh that is too large for the device; [`Error::Device`]. In a browser, the first
     /// question to the engine may return [`Error::BackendLimit`] instead.
     pub(crate) async fn new(gpu: Handle, upload: Upload) -> Result<Self, Error> {
-        // Natively a wait is short, and separates the timings. If loops end early, the host has to check the mesh first.
+        // Natively a wait is short, and separates the timings. If loops end early, the host has to check the mesh
+        // first.
         let waits = cfg!(not(target_arch = "wasm32")) || gpu.ends_loops_early;
         Self::begun(gpu, upload, waits).await
     }
@@ -97,8 +98,8 @@ impl WebGpu {
         }
     }
 
-    /// Records the kernels that depend on the positions: in 2D the turns of the stars and the signs of the triangles, in 3D
-    /// the creases. They also begin the history, unless the host has to help first.
+    /// Records the kernels that depend on the positions: in 2D the turns of the stars and the signs of the triangles,
+    /// in 3D the creases. They also begin the history, unless the host has to help first.
     fn record_preparation(&self, encoder: &mut wgpu::CommandEncoder) {
         let Buffers { uniform, history, frontier, .. } = &self.buffers;
         self.write_params();
@@ -149,8 +150,8 @@ impl WebGpu {
         Ok(())
     }
 
-    /// Takes over the counters. Computes the fans of the mesh or the windings of its components, if the device needs them;
-    /// returns whether it did. In that case no iteration has run.
+    /// Takes over the counters. Computes the fans of the mesh or the windings of its components, if the device needs
+    /// them; returns whether it did. In that case no iteration has run.
     pub(super) async fn settle_by(&mut self, mesh: &Mesh, counters: &[u32]) -> Result<bool, Error> {
         let (found, signs) = (Found::of(counters), counters[COUNTERS]);
         if self.gpu.ends_loops_early && found.most_corners > SHORT_STAR {

@@ -215,8 +215,8 @@ fn shaders_stay_within_the_limits_of_every_browser() {
 /// The most SPIR-V words of a kernel. A driver has to compile them before the first result.
 const MOST_WORDS: usize = 18_000;
 
-/// `cargo test --release --lib one_by_one -- --nocapture` prints how long each kernel compiles on this machine's device.
-/// `__GL_SHADER_DISK_CACHE=0` or `MESA_SHADER_CACHE_DISABLE=true` turns off the cache of the driver.
+/// `cargo test --release --lib one_by_one -- --nocapture` prints how long each kernel compiles on this machine's
+/// device. `__GL_SHADER_DISK_CACHE=0` or `MESA_SHADER_CACHE_DISABLE=true` turns off the cache of the driver.
 #[test]
 fn kernels_are_short_one_by_one() {
     let (adapter, is_software) = block_on(Device::find_adapter()).unwrap();

@@ -39,8 +39,8 @@ impl Document {
         Buffers::of(root, container.binary.clone().map(|range| &self.bytes[range]), &read)
     }
 
-    /// Positions in the scene, to draw it: 3 numbers per vertex. Each part is at the position of the first node that has it.
-    /// `mesh` has the positions that were read.
+    /// Positions in the scene, to draw it: 3 numbers per vertex. Each part is at the position of the first node that
+    /// has it. `mesh` has the positions that were read.
     pub(in crate::io) fn placed(&self, mesh: &Mesh) -> Vec<f32> {
         let in_scene = |part: &Part| {
             let world = part.world;

@@ -1,9 +1,9 @@
 //! glTF 2.0, JSON (`.gltf`) and binary (`.glb`), by the crate `gltf`. Source: the specification of the Khronos Group,
 //! glTF 2.0.1.
 //!
-//! Each primitive of triangles is a part of the mesh, with its own vertices, so the borders between primitives stay. The mesh
-//! has the positions of the file, so the flips are exact for the file's own numbers. Only where nodes stretch a mesh
-//! unevenly, the mesh has stretched positions. The writer writes the same file with other indices.
+//! Each primitive of triangles is a part of the mesh, with its own vertices, so the borders between primitives stay.
+//! The mesh has the positions of the file, so the flips are exact for the file's own numbers. Only where nodes stretch
+//! a mesh unevenly, the mesh has stretched positions. The writer writes the same file with other indices.
 
 mod accessors;
 mod buffers;

@@ -43,8 +43,8 @@ impl Placement {
     }
 }
 
-/// The placement of each mesh, and the number of nodes that have two parents or are among their own descendants. Such a node
-/// counts only where it is reached first.
+/// The placement of each mesh, and the number of nodes that have two parents or are among their own descendants. Such a
+/// node counts only where it is reached first.
 ///
 /// # Errors
 /// [`Error::Parse`] for a node or a mesh that does not exist.

@@ -32,7 +32,8 @@ struct Vertices {
 }
 
 impl Document {
-    /// The mesh with the vertices of each part joined that are at the same position. `mesh` has the vertices that were read.
+    /// The mesh with the vertices of each part joined that are at the same position. `mesh` has the vertices that were
+    /// read.
     ///
     /// # Errors
     /// [`Error::Parse`] for an array in the JSON where an object is expected: the reader accepts some of these.
@@ -56,8 +57,8 @@ impl Document {
 }
 
 impl Part {
-    /// For each vertex, the first one with the same bytes in all accessors of all its primitives, except positions. If an
-    /// accessor cannot be read, every vertex counts as different.
+    /// For each vertex, the first one with the same bytes in all accessors of all its primitives, except positions. If
+    /// an accessor cannot be read, every vertex counts as different.
     fn attributes(&self, meshes: &[Primitives], accessors: &Accessors) -> Vec<u32> {
         let every: Vec<u32> = (0..self.vertices.len() as u32).collect();
         let elements = self.elements.as_ref().unwrap_or(&every);

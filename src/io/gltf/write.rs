@@ -1,7 +1,7 @@
 //! Writes a held glTF file with other indices, or a new file.
 //!
-//! New indices overwrite the old ones if nothing else uses these bytes, so that no other byte changes. If not, the primitive
-//! gets a new accessor.
+//! New indices overwrite the old ones if nothing else uses these bytes, so that no other byte changes. If not, the
+//! primitive gets a new accessor.
 
 use super::accessors::{Accessors, component};
 use super::buffers::{Buffers, data_uri};
@@ -22,8 +22,8 @@ const ARRAY_BUFFER: u32 = 34962;
 const TRIANGLES: u32 = 4;
 
 impl Document {
-    /// The bytes of the file with the triangles `after` instead of `before`, as `.glb` or as `.gltf`. Vertices, materials and
-    /// everything else stay. A change of the form moves buffers.
+    /// The bytes of the file with the triangles `after` instead of `before`, as `.glb` or as `.gltf`. Vertices,
+    /// materials and everything else stay. A change of the form moves buffers.
     ///
     /// # Errors
     /// [`Error::TooLarge`] for a `.glb` file of 4 GiB or more; [`Error::Parse`].

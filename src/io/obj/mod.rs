@@ -18,8 +18,8 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Parsed, Error> {
     let mut reader = Reader::default();
     reader.read(Lines::new(bytes), None)?;
     let vertices = reader.vertices();
-    // A face may name a later vertex, so only the end of the file shows whether an index is out of range. A second pass,
-    // which knows the number of vertices, finds the line.
+    // A face may name a later vertex, so only the end of the file shows whether an index is out of range. A second
+    // pass, which knows the number of vertices, finds the line.
     if reader.largest >= vertices {
         reader = Reader::default();
         reader.read(Lines::new(bytes), Some(vertices))?;
@@ -149,8 +149,8 @@ impl Reader {
         Ok(())
     }
 
-    /// The vertex index of a corner, from 0. In the file, positive indices count from 1, and negative ones count back from
-    /// the last vertex so far.
+    /// The vertex index of a corner, from 0. In the file, positive indices count from 1, and negative ones count back
+    /// from the last vertex so far.
     fn corner(&self, token: &[u8], known: Option<i64>) -> Result<i64, String> {
         let mut parts = token.splitn(3, |&b| b == b'/');
         let vertex = parts.next().and_then(integer);

@@ -81,8 +81,8 @@ fn of<'a>(
 }
 
 impl<'a> Form<'a> {
-    /// Reads a face, and returns its number of triangles. Fills `pieces` with the texture coordinates of each corner, and
-    /// `values` with the other properties except the vertices.
+    /// Reads a face, and returns its number of triangles. Fills `pieces` with the texture coordinates of each corner,
+    /// and `values` with the other properties except the vertices.
     fn read(
         &self,
         source: &mut impl Source<'a>,

@@ -29,7 +29,8 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Parsed, Error> {
     }
 }
 
-/// Writes `mesh` in binary, least significant byte first, with 32-bit or 64-bit floats as in the mesh. z is 0 in a 2D mesh.
+/// Writes `mesh` in binary, least significant byte first, with 32-bit or 64-bit floats as in the mesh. z is 0 in a 2D
+/// mesh.
 pub(super) fn write(mesh: &Mesh, out: &mut impl Write) -> io::Result<()> {
     let float = match mesh.positions() {
         Positions::F32(_) => "float",
@@ -226,7 +227,8 @@ impl<'a, S: Source<'a>> Body<S> {
     }
 }
 
-/// The number of vertices, the coordinates per vertex, and empty positions of the right type. Refuses a header without a mesh.
+/// The number of vertices, the coordinates per vertex, and empty positions of the right type. Refuses a header without
+/// a mesh.
 fn announced(elements: &[Element]) -> Result<(u64, usize, Positions), Error> {
     let refuse = |message: String| Error::Parse { place: "header".into(), message };
     let named = |name: &'static [u8]| {
