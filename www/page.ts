@@ -51,7 +51,7 @@ export class Page {
   #handover: Handover | undefined;
   /** The summary of the run when it last paused. */
   #summary: Summary | undefined;
-  /** The numbers of draws and of rests so far. A call that is no longer the latest stops. */
+  /** The numbers of calls of `redraw` and of `#rest` so far. A call stops when a later call begins. */
   #draws = 0;
   #rests = 0;
   /** The mesh whose run has lost a GPU before. */
@@ -333,8 +333,8 @@ export class Page {
   }
 
   /**
-   * Repeats the run after the page's device, with its pictures, or the worker's context was lost. The triangles have
-   * the same bits.
+   * Repeats the run after a loss: of the page's device with the pictures on it, or of the worker's context. The
+   * triangles are the same, bit for bit.
    */
   async #recover(reason: string, isOfPage: boolean): Promise<void> {
     const [run, opening] = [this.#run, this.#opening];

@@ -139,7 +139,7 @@ export class Panel {
     });
   }
 
-  /** Shows the measures of the input and of the shown triangles, and how far these differ, once it is known. */
+  /** Shows the measures of the input and of the shown triangles, and in `change` how far they differ, when known. */
   showQuality(before: Quality | undefined, now?: Quality, change?: { moved: number; distance: number }): void {
     this.#angles.show(before?.angles, now?.angles);
     element('surface-section').hidden = !before;

@@ -52,7 +52,7 @@ export class Scene {
   #palette: Palette;
   #positions = new BufferAttribute(new Float32Array(), 3);
   #dimension: 2 | 3 = 3;
-  /** Half the sides of the box around the mesh. */
+  /** Half of each side of the box around the mesh. */
   readonly #extent = new Vector3(1, 1, 1);
   #frame = 0;
 
