@@ -42,7 +42,7 @@ fn members_are_joined() {
 }
 
 #[test]
-fn what_is_damaged_is_refused() {
+fn a_damaged_file_is_refused() {
     let whole = packed(TRIANGLE.as_bytes());
     let end = whole.len();
     let changed = |at: usize| {
@@ -117,7 +117,7 @@ fn a_file_on_disk_is_as_its_bytes() {
     assert_eq!(read(&path, &ReadOptions::default()).unwrap(), mesh);
     let options = ReadOptions { max_bytes: 10, ..ReadOptions::default() };
     assert!(matches!(read(&path, &options), Err(Error::FileTooLarge { limit: 10, .. })));
-    // A file whose name lacks .gz may be gzip'd.
+    // A gzip'd file is also read if its name has no .gz.
     let other = folder.path().join("a.ply");
     std::fs::rename(&path, &other).unwrap();
     assert_eq!(read(&other, &ReadOptions::default()).unwrap(), mesh);

@@ -52,7 +52,7 @@ fn mesh(result: Result<Loaded, Error>, dimension: Dimension, positions: &[f32], 
 use Dimension::{Three, Two};
 
 #[test]
-fn off_in_the_forms_in_which_it_is_found() {
+fn every_common_form_of_off_is_read() {
     let flat = [0.0, 0.0, 1.0, 0.0, 0.0, 1.0];
     for text in [
         "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n",
@@ -223,7 +223,7 @@ fn obj_refused_with_its_line() {
 }
 
 #[test]
-fn dimension_asked_for() {
+fn the_requested_dimension_is_used() {
     let flat = "OFF 2 0\n0 0 0\n1 2 -0\n";
     let raised = "OFF 2 0\n0 0 0\n1 2 0.25\n";
     mesh(off(flat), Two, &[0., 0., 1., 2.], &[]);

@@ -148,7 +148,7 @@ fn groups_of_obj_faces_keep_their_border() {
 }
 
 #[test]
-fn groups_that_were_asked_for_are_divided_further() {
+fn groups_of_the_options_are_divided_further() {
     let loaded = obj(square_obj("f 1 2 3\nusemtl n\nf 1 3 4\nf 4 3 1\n")).unwrap();
     let mut options = Options { groups: vec![9, 9, 5], ..Options::default() };
     assert_eq!(loaded.constrain(&mut options).unwrap(), 1);
@@ -158,7 +158,7 @@ fn groups_that_were_asked_for_are_divided_further() {
 #[test]
 fn seams_stay_and_new_corners_have_what_their_sector_has() {
     let corners = "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n";
-    // References may differ in their number or in their text.
+    // The corners of a seam may have different references, or references to different texts.
     for (faces, locked) in [
         ("f 1/1 2/2 3/3\nf 1/1 3/3 4/4\n", 0),
         ("f 1/1 2/2 3/3\nf 1/2 3/3 4/4\n", 1),
@@ -167,7 +167,7 @@ fn seams_stay_and_new_corners_have_what_their_sector_has() {
         ("vt 0 0 0\nf 1/1 2/2 3/3\nf 1/5 3/3 4/4\n", 1),
         ("vn 0 0 1\nvn 0 0 1\nf 1//1 2//1 3//1\nf 1//2 3//2 4//2\n", 0),
         ("vn 0 0 1\nvn 0 1 0\nf 1//1 2//1 3//1\nf 1//2 3//2 4//2\n", 1),
-        // A reference that the file does not have.
+        // A reference to a line that the file does not have.
         ("f 1/9 2/9 3/9\nf 1/9 3/9 4/9\n", 0),
         ("f 1/9 2/9 3/9\nf 1/8 3/9 4/9\n", 1),
         ("f 1/9 2 3\nf 1/9 3/-99 4/0\n", 0),
@@ -200,7 +200,7 @@ fn flips_across_seams_are_refused() {
 }
 
 #[test]
-fn triangles_may_have_been_turned_first() {
+fn triangles_may_have_been_reversed_first() {
     // The second triangle is reversed; the first is next to a seam.
     let file = square_obj(
         "v 0.5 -9 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n\
@@ -324,7 +324,7 @@ fn ply_texture_coordinates_are_at_corners() {
 }
 
 #[test]
-fn indices_that_their_type_does_not_hold_are_refused() {
+fn indices_too_large_for_their_type_are_refused() {
     let mut file =
         "ply\nformat ascii 1.0\nelement vertex 130\nproperty float x\nproperty float y\nelement face 1\n\
         property list uchar char vertex_index\nend_header\n"
@@ -349,7 +349,7 @@ fn a_file_with_strips_is_not_held() {
 }
 
 #[test]
-fn binary_stl_keeps_its_header_and_what_facets_have() {
+fn binary_stl_keeps_its_header_and_attributes() {
     let points = [[0.0f32, 0.0, 0.0], [0.9, 0.2, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
     let facet = |triangle: [usize; 3], attribute: [u8; 2]| {
         let mut bytes = [0.0f32; 3].iter().flat_map(|x| x.to_le_bytes()).collect::<Vec<u8>>();

@@ -19,7 +19,7 @@ fn ply(bytes: impl AsRef<[u8]>) -> Result<Loaded, Error> {
 const RAISED: [f32; 9] = [0., 0., 0., 1., 0., 0., 0., 1., 0.5];
 
 #[test]
-fn text_in_the_forms_in_which_it_is_found() {
+fn every_common_form_of_text_is_read() {
     let text = format!("{HEAD}{POINTS}3 0 1 2\n");
     for text in [
         text.clone(),
@@ -37,7 +37,7 @@ fn text_in_the_forms_in_which_it_is_found() {
 }
 
 #[test]
-fn what_is_not_kept_is_named_and_elements_come_in_any_order() {
+fn dropped_properties_are_named_and_elements_come_in_any_order() {
     let text = "ply\nformat ascii 1.0\nelement edge 1\nproperty int vertex1\nproperty int vertex2\n\
         element nothing 18446744073709551615\nelement none 0\nproperty int a\nelement face 2\nproperty uchar flags\n\
         property list uchar float texcoord\nproperty list uint ushort vertex_index\nelement vertex 5\n\
@@ -299,7 +299,7 @@ fn binary_refused_with_its_byte() {
 }
 
 #[test]
-fn announced_numbers_take_no_memory() {
+fn a_large_count_in_the_header_takes_no_memory() {
     for (encoding, location) in
         [("ascii", "line 9"), ("binary_little_endian", "byte 187"), ("binary_big_endian", "byte 184")]
     {

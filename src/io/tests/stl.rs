@@ -29,7 +29,7 @@ fn binary(head: &[u8], facets: &[[f32; 9]]) -> Vec<u8> {
 const FACETS: [[f32; 9]; 2] = [[0., 0., 0., 1., 0., 0., 0., 1., 0.5], [0., 1., 0.5, 1., 0., -0., 5., 5., 5.]];
 
 #[test]
-fn text_in_the_forms_in_which_it_is_found() {
+fn every_common_form_of_text_is_read() {
     for text in [
         TEXT.to_owned(),
         TEXT.to_uppercase(),
@@ -61,7 +61,7 @@ fn binary_whatever_it_begins_with() {
         assert_eq!(stl(coloured).unwrap().dropped, ["attributes of facets"]);
     }
     mesh(stl(binary(b"", &[])), Two, &[], &[]);
-    // So many facets that their number has no zero byte.
+    // With so many facets, no byte of their number is zero.
     let header = [b"solid".as_slice(), &[b' '; 75], &[1; 4]].concat();
     let length = 84 + 50 * 0x0101_0101;
     assert!(!io_stl::is_text(&header, length) && io_stl::is_text(&header, length + 1));
@@ -156,7 +156,7 @@ fn another_crate_writes_and_reads_the_same() {
 }
 
 #[test]
-fn what_is_written_is_32_bits_wide() {
+fn written_numbers_have_32_bits() {
     let mut numbers = vec![0.1, 1.0, 0.0, 1.0, 0.1, 2.0];
     let flat = Mesh::new(Two, numbers.clone(), vec![0, 1, 2]).unwrap();
     let bytes = to_bytes(Format::Stl, &flat).unwrap();
