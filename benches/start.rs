@@ -17,7 +17,8 @@ use arguments::{Arguments, median};
 mod rule;
 use rule::{is_late, verdict};
 
-/// The environment variable by which this program starts itself for one job.
+/// If this environment variable is set, the program runs only the job that the variable names. The program starts
+/// itself in this way.
 const JOB: &str = "EDGEFLIP_START_JOB";
 
 /// The environment variables that switch off the drivers' caches of compiled kernels.
@@ -49,7 +50,8 @@ fn main() -> Result<(), Box<dyn Error>> {
             let of = |jobs: &[[f64; 2]], which: usize| median(jobs.iter().map(|job| job[which]).collect());
             let times = [of(&cold, 0), of(&warm, 0), of(&warm, 1)];
             println!("| {spec} | {name} | {:.1} | {:.1} | {:.1} |", times[0], times[1], times[2]);
-            // The third time is not judged: in the process of `auto`, no earlier session may have prepared the GPU.
+            // The third time is not judged: `auto` may take the CPU again, because no session of its process has
+            // prepared the GPU.
             for ((time, best), state) in times.into_iter().zip(&mut best).zip(["cold", "warm"]) {
                 if backend != Backend::Auto {
                     *best = best.min(time);

@@ -26,7 +26,7 @@ const OTHER_FORMAT: &str = "/models/glTF/";
 
 /// The outcome for a file.
 enum Row {
-    /// `only_cpu` says why the GPU refuses the mesh, which it may.
+    /// `only_cpu` says why the GPU refused the mesh. That is no fault.
     Done {
         cells: String,
         only_cpu: Option<String>,

@@ -11,7 +11,7 @@ process.chdir(fileURLToPath(new URL('..', import.meta.url)));
 /**
  * A level: `checks` are its command lines. If `counts` is set, the commands run the test harness of Rust or Node, and
  * each of its tests counts; otherwise each command counts as one test. If `beside` is set, the level runs at the same
- * time as the one before it: kernels for a software GPU compile on one thread.
+ * time as the one before it. That saves time, because kernels for a software GPU compile on one thread.
  * @typedef {{ name: string, what: string, checks: string[][], counts?: boolean, beside?: boolean,
  *   env?: Record<string, string> }} Level
  * @typedef {{ level: Level, passed: number, failed: number, why: string, seconds: number }} Result
@@ -22,7 +22,7 @@ const wasmWith = (features) => ['--target', 'wasm32-unknown-unknown', '--no-defa
 const wasm = wasmWith('gpu,js');
 const wasmCargo = ['bash', 'tools/wasm-cargo.sh'];
 
-// Targets of cargo that belong to levels listed below.
+// Test targets of cargo that other levels below run.
 const inLevelsBelow = ['wasm', 'worker', 'parity', 'quads'];
 /** Always the whole workspace: alone, the dependencies would have fewer features and would be compiled again. */
 const cargoTest = ['cargo', 'test', '--workspace'];
@@ -62,7 +62,7 @@ const levels = [
     what: 'clippy and Biome give no warning; Cargo.lock fits Cargo.toml',
     checks: [
       ['cargo', 'clippy', '--locked', '--workspace', '--all-targets', '--', '-D', 'warnings'],
-      // All targets are those that `cargo test` builds: not the benchmarks with `bench = false`.
+      // `--all-targets` leaves out the benchmarks with `bench = false`, so they are named here.
       ['cargo', 'clippy', '--locked', '--workspace', '--bench', '*', '--', '-D', 'warnings'],
       [...biome, '--formatter-enabled=false', '--error-on-warnings'],
     ],

@@ -11,7 +11,7 @@ pub struct Arguments {
 }
 
 impl Arguments {
-    /// Reads the command line; the arguments are the defaults.
+    /// Reads the command line. `runs` and `specs` are the defaults.
     pub fn read(runs: usize, specs: &[&str]) -> Result<Self, Box<dyn Error>> {
         let mut read = Self { runs, specs: Vec::new() };
         let mut words = std::env::args().skip(1);
@@ -36,7 +36,8 @@ impl Arguments {
     }
 }
 
-/// The median of `times`: of an even number, the upper of the two in the middle; NaN if there are none.
+/// The median of `times`; NaN if there are none. For an even number of times, it is the upper one of the two in the
+/// middle.
 pub fn median(mut times: Vec<f64>) -> f64 {
     times.sort_by(f64::total_cmp);
     times.get(times.len() / 2).copied().unwrap_or(f64::NAN)

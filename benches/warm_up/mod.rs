@@ -25,7 +25,7 @@ impl WarmUp {
         Ok(Self { mesh: Arc::new(families::by_name("strips 1000")?), ended: None })
     }
 
-    /// Calls `run`, which runs a mesh on the GPU, until the clock rate is high. Does nothing if it still is.
+    /// Calls `run`, which runs a mesh on the GPU, until the clock rate is high. Does nothing if the rate is still high.
     pub fn before<T>(&mut self, run: impl Fn(&Arc<Mesh>) -> Result<T, Error>) -> Result<(), Error> {
         if self.ended.is_some_and(|ended| ended.elapsed() < STAY) {
             return Ok(());
