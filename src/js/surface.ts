@@ -36,7 +36,7 @@ export interface Surface {
  */
 export function flip(surface: Surface, options: MakeDelaunayOptions): Promise<Result> {
   const { vertices, positions, attributes } = surface;
-  const { weld = attributes.map((columns) => packed(columns, vertices)), maxDeviation } = options;
+  const { weld = attributes.map((columns) => comparable(columns, vertices)), maxDeviation } = options;
   const units = typeof maxDeviation === 'number' ? { maxDeviation: maxDeviation * unitOf(positions) } : {};
   const mesh = { positions: pointsOf(positions, vertices), indices: cornersOf(surface), dimension: 3 as const };
   return makeDelaunay(mesh, { ...options, ...units, weld });
@@ -52,7 +52,7 @@ export function sequence(first: number, end: number): Uint32Array {
 
 /** The positions as floats without gaps. Each conversion is exact. */
 export function pointsOf(positions: Columns, vertices: number): Float32Array | Float64Array {
-  const numbers = packed(positions, vertices, false);
+  const numbers = packed(positions, vertices);
   if (numbers instanceof Float32Array || numbers instanceof Float64Array) return numbers;
   const isShort = numbers.BYTES_PER_ELEMENT < 4;
   const points = isShort ? new Float32Array(numbers.length) : new Float64Array(numbers.length);
@@ -73,10 +73,20 @@ export function unitOf({ array, isNormalized }: Columns): number {
   return 2 ** (8 * array.BYTES_PER_ELEMENT - Number(isSigned)) - 1;
 }
 
-/** The numbers without gaps; if only their bits count, those of a Float16Array as integers. */
-function packed({ array: given, width, stride, offset }: Columns, vertices: number, isBits = true): VertexArray {
-  const isHalf = isBits && kindOf(given) === 'Float16Array';
-  const array = isHalf ? new Uint16Array(given.buffer, given.byteOffset, given.length) : (given as VertexArray);
+/** The numbers without gaps, to compare their bits: -0 becomes 0, because normals of flat faces have either. */
+function comparable(columns: Columns, vertices: number): VertexArray {
+  const { array } = columns;
+  if (kindOf(array) === 'Float16Array') {
+    const halves = new Uint16Array(array.buffer, array.byteOffset, array.length);
+    return packed({ ...columns, array: halves.map((bits) => (bits === 0x8000 ? 0 : bits)) }, vertices);
+  }
+  const numbers = packed(columns, vertices);
+  return isFloat(array) ? numbers.map((x) => x + 0) : numbers;
+}
+
+/** The numbers without gaps. */
+function packed({ array: given, width, stride, offset }: Columns, vertices: number): VertexArray {
+  const array = given as VertexArray;
   const length = vertices * width;
   if (stride === width) return array.subarray(offset, offset + length);
   const numbers = array.slice(0, length);
