@@ -235,7 +235,14 @@ for (const name of MODELS) {
     );
     document.disposeExtension('KHR_draco_mesh_compression');
     assert.deepEqual(await errorsOf(document), []);
-    // Compressed with meshopt, which rounds the positions to integers, and read again.
+    // Quantized, compressed with meshopt, and read again.
+    document.createExtension(KHRMeshQuantization).setRequired(true);
+    for (const primitive of primitivesOf(document)) {
+      const position = primitive.getAttribute('POSITION');
+      const largest = Math.max(...position.getArray().map(Math.abs));
+      const integers = Int16Array.from(position.getArray(), (x) => Math.round((32767 * x) / largest));
+      position.setArray(integers).setNormalized(true);
+    }
     document
       .createExtension(EXTMeshoptCompression)
       .setRequired(true)
