@@ -14,7 +14,7 @@ import { EdgeflipError } from './error.js';
 import { namesOf, optionsOf } from './names.js';
 import { type Matrix, stretched, stretches } from './placement.js';
 import { type Columns, flip, pointsOf, sequence, type Surface, unitOf } from './surface.js';
-import type { MakeDelaunayOptions, Reason, Reasons } from './types.js';
+import type { MakeDelaunayOptions, Reason, Reasons, Result } from './types.js';
 
 export { EdgeflipError, type ErrorCode } from './error.js';
 
@@ -84,8 +84,7 @@ async function transformed(document: Document, options: DelaunayOptions): Promis
   for (const { name, primitives, stretch } of alike) {
     if (options.signal?.aborted) break;
     done += 1;
-    const first = primitives[0]!;
-    const { indices, ...result } = await flip(surfaceOf(first, stretch), options).catch((cause: unknown) => {
+    const { indices, ...result } = await flipped(primitives[0]!, stretch, options).catch((cause: unknown) => {
       if (!(cause instanceof EdgeflipError)) throw cause;
       throw new EdgeflipError(cause.code, `${name}: ${cause.message}`, { cause });
     });
@@ -102,6 +101,10 @@ async function transformed(document: Document, options: DelaunayOptions): Promis
     reasons.length > 0 ? `edges that are still not Delaunay: ${reasons.join(', ')}` : 'every edge is Delaunay';
   const stopped = done < alike.length ? `; stopped after ${done}` : '';
   logger.info(`${NAME}: ${flips} flips in ${changed} of ${alike.length} primitives${stopped}; ${rest}`);
+}
+
+async function flipped(primitive: Primitive, stretch: Matrix | undefined, options: DelaunayOptions): Promise<Result> {
+  return flip(surfaceOf(primitive, stretch), options);
 }
 
 /** Primitives with the same vertices, triangles and placement. */

@@ -322,6 +322,6 @@ test('options and errors', async () => {
   );
   await assert.rejects(
     run({}, (primitive) => primitive.getAttribute('NORMAL').setArray(new Float32Array(3))),
-    refused('invalid-input', /an attribute has 1 vertices/),
+    refused('invalid-input', /primitive 0: an attribute has 1 vertices/),
   );
 });

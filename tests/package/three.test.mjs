@@ -174,6 +174,8 @@ test('attributes, morph targets and groups decide which edges flip', async () =>
   assert.equal(await flips(withColor(1, 2, 3, 1, 5, 4)), 0);
   assert.equal(await flips(withColor(1, 2, 3, 1, 5, 4), { weld: true }), 1);
   assert.equal(await flips(withColor(1, 2, 3, 1, 5, 4), { weld: [new Float32Array(6)] }), 1);
+  const zeros = new BufferAttribute(Float32Array.of(0, -0, 0, -0, 0, -0), 1);
+  assert.equal(await flips(square(false).setAttribute('zero', zeros)), 1);
   const morph = square(false);
   morph.morphAttributes.normal = [
     new BufferAttribute(
