@@ -170,7 +170,8 @@ function inRange(options: MakeDelaunayOptions, [start, end]: Range, corners: num
   if (end - start === corners) return options;
   const { groups, lockedTriangles } = options;
   const kept = (lockedTriangles as Uint32Array | undefined)?.filter((t) => first <= t && t < last);
-  return { ...options, groups: groups?.slice(first, last), lockedTriangles: kept?.map((t) => t - first) };
+  const sliced = (groups as Uint32Array | undefined)?.slice(first, last);
+  return { ...options, groups: sliced, lockedTriangles: kept?.map((t) => t - first) };
 }
 
 /** Writes the triangles of the range. */
