@@ -130,6 +130,8 @@ const levels = [
         'tests/package/files.test.mjs',
         'tests/package/gltf.test.mjs',
         'tests/package/weld.test.mjs',
+        'tests/package/three.test.mjs',
+        'tests/package/gltf-transform.test.mjs',
         'tests/package/threads.test.mjs',
         'tests/package/memory.test.mjs',
         'tests/package/limited.test.mjs',

@@ -7,6 +7,7 @@ import { existsSync, mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync, 
 import { dirname, join, resolve } from 'node:path';
 import { after, test } from 'node:test';
 import { fileURLToPath } from 'node:url';
+import { riggedGlb } from './gltf.mjs';
 
 const repository = fileURLToPath(new URL('../..', import.meta.url));
 const pages = readdirSync(join(repository, 'docs')).filter((name) => name.endsWith('.md'));
@@ -35,7 +36,7 @@ test('all blocks pass strict TypeScript', () => {
   const compilerOptions = {
     target: 'ES2022',
     module: 'NodeNext',
-    lib: ['ES2022', 'DOM'],
+    lib: ['ES2022', 'ESNext.Float16', 'DOM'], // the types of glTF-Transform have a Float16Array
     types: [],
     strict: true,
     noEmit: true,
@@ -71,6 +72,10 @@ test('the examples run', () => {
   writeFileSync(input, 'v -3 0 0\nv 0 -1 0\nv 3 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\nf 1 3 4\n');
   assert.equal(example('file', input, output), '1 flips\n');
   assert.match(readFileSync(output, 'utf8'), /^usemtl red$/m);
+  const [rigged, result] = ['rigged.glb', 'delaunay.glb'].map((name) => join(folder, name));
+  writeFileSync(rigged, riggedGlb().bytes);
+  assert.match(example('gltf', rigged, result), /^delaunay: \d+ flips in 2 of 2 primitives; every edge is Delaunay\n$/);
+  assert.ok(readFileSync(result).length > 1000);
 });
 
 /** GitHub's anchor of a heading. */

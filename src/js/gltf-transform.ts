@@ -1,0 +1,184 @@
+/**
+ * Makes the meshes of a glTF-Transform document Delaunay.
+ *
+ * ```ts
+ * import { delaunay } from 'edgeflip/gltf-transform';
+ * await document.transform(delaunay());
+ * ```
+ *
+ * @packageDocumentation
+ */
+
+import type { Accessor, Document, ILogger, Primitive, Transform } from '@gltf-transform/core';
+import { EdgeflipError } from './error.js';
+import { namesOf, optionsOf } from './names.js';
+import { type Matrix, stretched, stretches } from './placement.js';
+import { type Columns, flip, pointsOf, sequence, type Surface, unitOf } from './surface.js';
+import type { MakeDelaunayOptions, Reason, Reasons, Result } from './types.js';
+
+export { EdgeflipError, type ErrorCode } from './error.js';
+
+/** The options of {@link delaunay}. `maxDeviation` is in the units of each mesh. */
+export interface DelaunayOptions
+  extends Pick<
+    MakeDelaunayOptions,
+    | 'backend'
+    | 'maxNormalAngle'
+    | 'maxDeviation'
+    | 'maxIterations'
+    | 'reorient'
+    | 'order'
+    | 'threads'
+    | 'device'
+    | 'signal'
+  > {
+  /**
+   * By default, vertices at the same position are joined for the run, and all their attributes are compared, also those
+   * of morph targets. `true` ignores attributes, `false` joins no vertices.
+   */
+  weld?: boolean | undefined;
+}
+
+const OPTIONS = namesOf<DelaunayOptions>({
+  backend: true,
+  maxNormalAngle: true,
+  maxDeviation: true,
+  maxIterations: true,
+  reorient: true,
+  order: true,
+  threads: true,
+  device: true,
+  signal: true,
+  weld: true,
+});
+
+/** Modes of primitives. */
+const [TRIANGLES, TRIANGLE_STRIP, TRIANGLE_FAN] = [4, 5, 6];
+
+/**
+ * A transform that flips the edges of each primitive until every edge is Delaunay or cannot flip. Only indices change,
+ * and their type stays. A primitive without indices gets indices if one of its edges flips. Each primitive is a mesh by
+ * itself: edges between two primitives never flip. Triangle strips and fans stay as they are, with a warning.
+ *
+ * Positions count as the numbers in the document, also if they are quantized. If a node scales a mesh unevenly, the
+ * scaled positions count; if several nodes scale it differently, the first one does.
+ *
+ * The logger of the document gets a line with the number of flips and of edges that are still not Delaunay.
+ *
+ * @throws {@link EdgeflipError} `invalid-option`. The transform throws errors about a mesh, the options or the backend;
+ * primitives before that mesh have changed then.
+ */
+export function delaunay(options: DelaunayOptions = {}): Transform {
+  const settings: DelaunayOptions = { ...optionsOf(options, OPTIONS) };
+  const transform = (document: Document) => transformed(document, settings);
+  return Object.defineProperty(transform, 'name', { value: NAME });
+}
+
+const NAME = 'delaunay';
+
+async function transformed(document: Document, options: DelaunayOptions): Promise<void> {
+  const logger = document.getLogger();
+  let [flips, changed, done] = [0, 0, 0];
+  const remaining: Reasons = {};
+  const alike = surfacesOf(document, logger);
+  for (const { name, primitives, stretch } of alike) {
+    if (options.signal?.aborted) break;
+    done += 1;
+    const { indices, ...result } = await flipped(primitives[0]!, stretch, options).catch((cause: unknown) => {
+      if (!(cause instanceof EdgeflipError)) throw cause;
+      throw new EdgeflipError(cause.code, `${name}: ${cause.message}`, { cause });
+    });
+    flips += result.flips;
+    for (const [reason, count] of Object.entries(result.remaining)) {
+      remaining[reason as Reason] = (remaining[reason as Reason] ?? 0) + count;
+    }
+    if (result.flips + result.turnedTriangles === 0) continue;
+    changed += 1;
+    write(document, primitives, indices);
+  }
+  const reasons = Object.entries(remaining).map(([reason, count]) => `${reason} ${count}`);
+  const rest =
+    reasons.length > 0 ? `edges that are still not Delaunay: ${reasons.join(', ')}` : 'every edge is Delaunay';
+  const stopped = done < alike.length ? `; stopped after ${done}` : '';
+  logger.info(`${NAME}: ${flips} flips in ${changed} of ${alike.length} primitives${stopped}; ${rest}`);
+}
+
+async function flipped(primitive: Primitive, stretch: Matrix | undefined, options: DelaunayOptions): Promise<Result> {
+  return flip(surfaceOf(primitive, stretch), options);
+}
+
+/** Primitives with the same vertices, triangles and placement. */
+interface Alike {
+  /** The name of the first one, for messages. */
+  name: string;
+  primitives: Primitive[];
+  stretch: Matrix | undefined;
+}
+
+/** All primitives that are lists of triangles. */
+function surfacesOf(document: Document, logger: ILogger): Alike[] {
+  const [alike, seen, ids] = [new Map<string, Alike>(), new Set<Primitive>(), new Map<Accessor | null, number>()];
+  const idOf = (accessor: Accessor | null) => ids.get(accessor) ?? ids.set(accessor, ids.size).size - 1;
+  const stretchOf = stretches(document);
+  for (const [m, mesh] of document.getRoot().listMeshes().entries()) {
+    for (const [p, primitive] of mesh.listPrimitives().entries()) {
+      const [mode, name] = [primitive.getMode(), `mesh ${m} ('${mesh.getName()}'), primitive ${p}`];
+      if (mode === TRIANGLE_STRIP || mode === TRIANGLE_FAN) {
+        logger.warn(`${NAME}: ${name}: a triangle ${mode === TRIANGLE_FAN ? 'fan' : 'strip'} stays as it is`);
+      }
+      const positions = primitive.getAttribute('POSITION');
+      if (mode !== TRIANGLES || !positions?.getCount() || seen.has(primitive)) continue;
+      seen.add(primitive);
+      const stretch = stretchOf.get(mesh);
+      const accessors = [primitive.getIndices(), positions, ...attributesOf(primitive)];
+      const key = JSON.stringify([accessors.map(idOf), stretch]);
+      const found = alike.get(key);
+      if (found) found.primitives.push(primitive);
+      else alike.set(key, { name, primitives: [primitive], stretch });
+    }
+  }
+  return [...alike.values()];
+}
+
+/** All attributes except the positions. */
+function attributesOf(primitive: Primitive): Accessor[] {
+  const positions = primitive.getAttribute('POSITION');
+  const targets = primitive.listTargets().flatMap((target) => target.listAttributes());
+  return [...primitive.listAttributes().filter((accessor) => accessor !== positions), ...targets];
+}
+
+function surfaceOf(primitive: Primitive, stretch: Matrix | undefined): Surface {
+  const accessor = primitive.getAttribute('POSITION')!;
+  const vertices = accessor.getCount();
+  const given = columnsOf(accessor);
+  let positions = given;
+  if (stretch) {
+    const scaled = stretch.map((number) => number / unitOf(given));
+    positions = { ...given, array: stretched(pointsOf(given, vertices), scaled), isNormalized: false };
+  }
+  const attributes = attributesOf(primitive).map((attribute) => {
+    const count = attribute.getCount();
+    if (count === vertices) return columnsOf(attribute);
+    throw new EdgeflipError('invalid-input', `an attribute has ${count} vertices, and POSITION has ${vertices}`);
+  });
+  const indices = (primitive.getIndices()?.getArray() as Surface['indices'] | null) ?? sequence(0, vertices);
+  return { vertices, positions, attributes, indices };
+}
+
+function columnsOf(accessor: Accessor): Columns {
+  const width = accessor.getElementSize();
+  return { array: accessor.getArray()!, width, stride: width, offset: 0, isNormalized: accessor.getNormalized() };
+}
+
+/** Gives the primitives their new indices, and changes no indices of other primitives. */
+function write(document: Document, primitives: readonly Primitive[], indices: Uint32Array): void {
+  const [old, root] = [primitives[0]!.getIndices(), document.getRoot()];
+  const positions = primitives[0]!.getAttribute('POSITION')!;
+  // 65535 is no index of 16 bits in glTF.
+  const array = old?.getArray() ?? (positions.getCount() < 2 ** 16 ? new Uint16Array() : new Uint32Array());
+  const owners = old?.listParents().filter((owner) => owner !== root) ?? [];
+  const isOurs = owners.every((owner) => primitives.includes(owner as Primitive));
+  const accessor = old ? (isOurs ? old : old.clone()) : document.createAccessor('', positions.getBuffer());
+  accessor.setArray(new (array.constructor as Uint32ArrayConstructor)(indices));
+  for (const primitive of primitives) primitive.setIndices(accessor);
+}

@@ -1,0 +1,190 @@
+/**
+ * Makes a geometry of three.js Delaunay.
+ *
+ * ```ts
+ * import { delaunayGeometry } from 'edgeflip/three';
+ * const { flips, remaining } = await delaunayGeometry(mesh.geometry);
+ * ```
+ *
+ * This entry does not import three.js; it works with the objects of any copy of it.
+ *
+ * @packageDocumentation
+ */
+
+import type { BufferAttribute, BufferGeometry, GLBufferAttribute, InterleavedBufferAttribute } from 'three';
+import { EdgeflipError } from './error.js';
+import { objectOf, read, shown } from './given.js';
+import { type Columns, flip, sequence, type Surface } from './surface.js';
+import type { MakeDelaunayOptions, Result } from './types.js';
+
+export { EdgeflipError, type ErrorCode } from './error.js';
+
+/**
+ * The options of {@link delaunayGeometry}. `lockedTriangles` and `groups` count all triangles of the geometry.
+ * `maxDeviation` is in the units of the positions; for normalized positions, the largest integer stands for 1.
+ *
+ * Two options have other defaults. `weld` joins vertices at the same position and compares all their attributes, also
+ * those of morph targets; `false` joins no vertices. `groups` are the groups of the geometry.
+ */
+export interface GeometryOptions extends MakeDelaunayOptions {
+  /** Whether to leave the geometry as it is and change a clone of it. Default: `false`. */
+  copy?: boolean | undefined;
+}
+
+/** The result of {@link delaunayGeometry}. Its indices are in the geometry. */
+export interface GeometryResult<G extends BufferGeometry = BufferGeometry> extends Omit<Result, 'indices'> {
+  /** The geometry that was changed: the given one, or its clone. */
+  geometry: G;
+}
+
+type Attribute = BufferAttribute | InterleavedBufferAttribute | GLBufferAttribute;
+
+/**
+ * Flips the edges of a geometry until every edge is Delaunay or cannot flip. Only the content of `geometry.index`
+ * changes: its type, the vertices, the attributes, `groups` and the bounding volumes stay. A geometry without an index
+ * gets one if an edge flips. Only triangles in `drawRange` change.
+ *
+ * Edges of a seam, where the attributes of vertices at the same position differ, stay, and so do edges between
+ * groups. Positions are those without morph targets and skinning.
+ *
+ * Do not change the index during the run. After the run, update what you have derived from the triangles: for
+ * three-mesh-bvh, call `geometry.boundsTree.refit()`.
+ *
+ * @throws {@link EdgeflipError} about the geometry, the options or the backend; the geometry is unchanged then.
+ */
+export async function delaunayGeometry<G extends BufferGeometry>(
+  geometry: G,
+  options: GeometryOptions = {},
+): Promise<GeometryResult<G>> {
+  const { target, surface, range, settings } = read('the geometry', () => opened(geometry, options));
+  const { index } = target;
+  const version = index?.version;
+  const { indices, ...result } = await flip(surface, settings);
+  if (target.index !== index || index?.version !== version) {
+    throw new EdgeflipError('invalid-input', 'the index of the geometry changed during the run');
+  }
+  if (result.flips + result.turnedTriangles > 0) write(target, indices, range, surface.vertices);
+  return { geometry: target, ...result };
+}
+
+/** The first index of the triangles that may change, and the end. */
+type Range = readonly [number, number];
+
+/** Reads a geometry and the options before the first wait. */
+function opened<G extends BufferGeometry>(geometry: G, options: GeometryOptions) {
+  const { copy = false, ...given } = objectOf(options, 'options') as GeometryOptions;
+  if (typeof copy !== 'boolean') {
+    throw new EdgeflipError('invalid-option', `option copy: ${shown(copy)} is not true or false`);
+  }
+  if (objectOf(geometry, 'geometry')['isBufferGeometry'] !== true) {
+    throw invalid('geometry: it is not a BufferGeometry of three.js');
+  }
+  const target = copy ? (geometry.clone() as G) : geometry;
+  const { index, drawRange } = target;
+  const { vertices, positions, attributes } = verticesOf(target, given.weld === undefined);
+  const corners = index?.count ?? vertices;
+  if (corners % 3 > 0) {
+    throw invalid(`the geometry has ${corners} ${index ? 'indices' : 'vertices and no index'}, not a multiple of 3`);
+  }
+  const range = rangeOf('drawRange', drawRange, corners);
+  const indices = (index?.array as Uint32Array | undefined)?.subarray(...range) ?? sequence(...range);
+  const surface: Surface = { vertices, positions, attributes, indices };
+  const groups = given.groups ?? groupsOf(target, corners);
+  return { target, surface, range, settings: inRange({ ...given, groups }, range, corners) };
+}
+
+/** The columns of the positions and, if they are compared, of the other attributes. */
+function verticesOf({ attributes, morphAttributes }: BufferGeometry, isCompared: boolean): Omit<Surface, 'indices'> {
+  const { position, ...others } = attributes as Record<string, Attribute>;
+  if (!position) throw invalid('the geometry has no attribute position');
+  const positions = columnsOf('position', position);
+  if (!positions) throw invalid('attribute position: it belongs to instances, not to vertices');
+  if (positions.width < 3) throw invalid(`attribute position: it has ${positions.width} numbers per vertex, not 3`);
+  const morphs = Object.entries(morphAttributes as Record<string, Attribute[]>);
+  const compared: [string, Attribute][] = [
+    ...Object.entries(others),
+    ...morphs.flatMap(([name, all]) => all.map((one): [string, Attribute] => [`${name} of a morph target`, one])),
+  ];
+  const columns = (isCompared ? compared : []).flatMap(([name, attribute]) => {
+    const columns = columnsOf(name, attribute);
+    if (columns && attribute.count < position.count) {
+      throw invalid(`attribute ${name}: it has ${attribute.count} vertices, and position has ${position.count}`);
+    }
+    return columns ?? [];
+  });
+  return { vertices: position.count, positions: { ...positions, width: 3 }, attributes: columns };
+}
+
+function invalid(message: string): EdgeflipError {
+  return new EdgeflipError('invalid-input', message);
+}
+
+/** Where the numbers of an attribute are; `undefined` if they belong to instances. */
+function columnsOf(name: string, attribute: Attribute): Columns | undefined {
+  if ('isGLBufferAttribute' in attribute) {
+    throw invalid(`attribute ${name}: a GLBufferAttribute is on the GPU and cannot be read`);
+  }
+  const { itemSize: width, normalized: isNormalized } = attribute;
+  if ('data' in attribute) {
+    const { data, offset } = attribute;
+    if ('isInstancedInterleavedBuffer' in data) return undefined;
+    return { array: data.array, width, stride: data.stride, offset, isNormalized };
+  }
+  if ('isInstancedBufferAttribute' in attribute) return undefined;
+  const { array, count } = attribute;
+  if (name !== 'position' || !('isFloat16BufferAttribute' in attribute)) {
+    return { array, width, stride: width, offset: 0, isNormalized };
+  }
+  const floats = new Float32Array(3 * count);
+  for (let i = 0; i < count; i++) floats.set([attribute.getX(i), attribute.getY(i), attribute.getZ(i)], 3 * i);
+  return { array: floats, width: 3, stride: 3, offset: 0, isNormalized: false };
+}
+
+/** The indices of the whole triangles in a range that three.js draws. */
+function rangeOf(name: string, { start, count }: { start: number; count: number }, corners: number): Range {
+  if (start % 3 !== 0) throw invalid(`${name}: it starts at ${start}, inside a triangle`);
+  const end = Math.min(corners, start + count);
+  return [Math.min(start, corners), Math.max(Math.min(start, corners), end - (end % 3))];
+}
+
+/** A number for each triangle. Triangles have the same number if the same groups have them. */
+function groupsOf({ groups }: BufferGeometry, corners: number): Uint32Array | undefined {
+  if (groups.length === 0) return undefined;
+  const numbers = new Uint32Array(corners / 3);
+  let last = 0;
+  groups.forEach((group, i) => {
+    const [first, end] = rangeOf(`group ${i}`, group, corners);
+    const next = new Map<number, number>();
+    for (let t = first / 3; t < end / 3; t++) {
+      const number = numbers[t]!;
+      if (!next.has(number)) next.set(number, ++last);
+      numbers[t] = next.get(number)!;
+    }
+  });
+  return numbers;
+}
+
+/** The options for the triangles in the range. */
+function inRange(options: MakeDelaunayOptions, [start, end]: Range, corners: number): MakeDelaunayOptions {
+  const [first, last] = [start / 3, end / 3];
+  if (end - start === corners) return options;
+  const { groups, lockedTriangles } = options;
+  const kept = (lockedTriangles as Uint32Array | undefined)?.filter((t) => first <= t && t < last);
+  const sliced = (groups as Uint32Array | undefined)?.slice(first, last);
+  return { ...options, groups: sliced, lockedTriangles: kept?.map((t) => t - first) };
+}
+
+/** Writes the triangles of the range. */
+function write(geometry: BufferGeometry, indices: Uint32Array, [start]: Range, vertices: number): void {
+  const { index } = geometry;
+  if (index) {
+    index.array.set(indices, start);
+    index.clearUpdateRanges();
+    index.needsUpdate = true;
+  } else {
+    // three.js makes an attribute with 16 or 32 bits of it.
+    const all = sequence(0, vertices);
+    all.set(indices, start);
+    geometry.setIndex(Array.from(all));
+  }
+}
