@@ -129,6 +129,7 @@ const levels = [
         'tests/package/docs.test.mjs',
         'tests/package/files.test.mjs',
         'tests/package/gltf.test.mjs',
+        'tests/package/mesh.test.mjs',
         'tests/package/weld.test.mjs',
         'tests/package/three.test.mjs',
         'tests/package/gltf-transform.test.mjs',

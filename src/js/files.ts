@@ -14,18 +14,18 @@
 
 import * as wasm from './wasm/edgeflip_files.js';
 import { EdgeflipError, fromModule } from './error.js';
-import { copyOf, read, shown, viewOf } from './given.js';
+import { copyOf, read, shown, viewOf, wordsOf } from './given.js';
 import { areFilesLoaded, loadFiles } from './load-files.js';
-import { checkDimension, indicesOf, type IndexedMesh, type Mesh32, moduleMesh } from './mesh.js';
+import { checkDimension, type IndexedMesh, type Mesh32, moduleMesh } from './mesh.js';
 import { initOf } from './module.js';
 import { namesOf, optionsOf } from './names.js';
 import { attributesOf, bytesOf, filesOf, maxBytesOf, originalOf, textOf } from './settings.js';
-import type { Attributes, Files, Mesh, Original, VertexArray } from './types.js';
+import type { Attributes, Bytes, Files, IndexArray, Mesh, Original, VertexArray } from './types.js';
 
 export { EdgeflipError, type ErrorCode } from './error.js';
 export type { IndexedMesh, Mesh32 } from './mesh.js';
 export type { ModuleSource, Sources } from './module.js';
-export type { Attributes, Files, Mesh, Original, VertexArray } from './types.js';
+export type { Attributes, Bytes, Files, IndexArray, Mesh, Original, VertexArray } from './types.js';
 
 /**
  * The extensions of the formats that are read and written, in upper or lower case. If `.gz` follows, as in
@@ -207,11 +207,7 @@ export async function readMesh(bytes: Uint8Array, name: string, options: ReadOpt
  * for the original the errors of {@link readMesh}, `triangle-count` if it has another number of triangles, and
  * `invalid-option` if its positions differ from those of the mesh or if flips crossed its seams.
  */
-export async function writeMesh(
-  mesh: Mesh,
-  name: string,
-  options: WriteOptions = {},
-): Promise<Uint8Array<ArrayBuffer>> {
+export async function writeMesh(mesh: Mesh, name: string, options: WriteOptions = {}): Promise<Bytes> {
   const { positions, indices, dimension } = moduleMesh(mesh, held);
   const file = textOf(name, 'name');
   const original = read('the options', () => {
@@ -298,10 +294,9 @@ export async function measures(mesh: Mesh): Promise<Measures> {
  * @param after - The indices of the result.
  * @throws {@link EdgeflipError} about the mesh; `triangle-count`.
  */
-export async function change(mesh: Mesh, after: Uint32Array | Uint16Array): Promise<Change> {
+export async function change(mesh: Mesh, after: IndexArray): Promise<Change> {
   const { positions, indices, dimension } = moduleMesh(mesh, held);
-  const view = indicesOf(after);
-  const changed = view instanceof Uint32Array ? held(view, 'indices') : Uint32Array.from(view);
+  const changed = held(wordsOf(after, 'indices'), 'indices');
   return call(() => wasm.change(positions, indices, dimension, changed));
 }
 

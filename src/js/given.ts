@@ -5,7 +5,7 @@
  */
 
 import { EdgeflipError, type ErrorCode } from './error.js';
-import type { VertexArray } from './types.js';
+import type { IndexArray, VertexArray } from './types.js';
 
 /** The most bytes of an array in WebAssembly. */
 const MOST_BYTES = 2 ** 31 - 1;
@@ -83,6 +83,15 @@ const KINDS = {
 };
 type Kind = keyof typeof KINDS;
 
+/** The kinds of typed arrays that hold whole numbers. */
+export const INTEGERS = [
+  ...(['Uint32Array', 'Uint16Array', 'Uint8Array', 'Uint8ClampedArray'] as const),
+  ...(['Int32Array', 'Int16Array', 'Int8Array'] as const),
+] as const;
+
+/** The kinds of typed arrays that hold numbers. */
+export const NUMBERS = [...INTEGERS, 'Float32Array', 'Float64Array'] as const;
+
 /**
  * A view of the typed array, if it is of one of these kinds; it may come from another window. Only the getters of the
  * language are used: overrides in subclasses are ignored, and proxies and look-alikes give `undefined`.
@@ -129,28 +138,22 @@ export function itselfOf<A extends VertexArray>(view: A, what: string): A {
 }
 
 /**
- * A copy of a Uint32Array, or of an array of whole numbers of 32 bits.
- *
- * @throws {@link EdgeflipError} `invalid-option` for any other value.
+ * The numbers of a typed array of integers as words, or those of an array of whole numbers of 32 bits: a copy, or the
+ * Uint32Array itself. `-1` becomes 0xffffffff.
  */
-export function numbersOf(given: unknown, option: string): Uint32Array {
-  const view = viewOf(given, ['Uint32Array'], option);
-  if (view) return copyOf(view, option);
-  const numbers: number[] = [];
-  const wrong = () =>
-    new EdgeflipError('invalid-option', `option ${option}: it is neither a Uint32Array nor an array of whole numbers`);
-  return read(option, () => {
-    if (!Array.isArray(given)) throw wrong();
+export function wordsOf(given: IndexArray, what: string, code: ErrorCode = 'invalid-input'): Uint32Array {
+  const view = viewOf(given, INTEGERS, what);
+  if (view) return view instanceof Uint32Array ? view : new Uint32Array(view);
+  const wrong = (why: string) => new EdgeflipError(code, `${what}: ${why}`);
+  const kinds = 'neither an integer array, such as a Uint32Array, nor an array of whole numbers of 32 bits';
+  return read(what, () => {
+    if (!Array.isArray(given)) throw wrong(`${shown(given)} is ${kinds}`);
     const { length } = given;
-    if (length > MOST_NUMBERS) {
-      throw new EdgeflipError(
-        'invalid-option',
-        `option ${option}: an array has at most ${MOST_NUMBERS} numbers; pass a Uint32Array`,
-      );
-    }
+    if (length > MOST_NUMBERS) throw wrong(`an array has at most ${MOST_NUMBERS} numbers; pass a Uint32Array`);
+    const numbers: number[] = [];
     for (let i = 0; i < length; i++) {
       const number: unknown = given[i];
-      if (!isWhole(number)) throw wrong();
+      if (!isWhole(number)) throw wrong(`it is ${kinds}; number ${i} is ${shown(number)}`);
       numbers.push(number);
     }
     return new Uint32Array(numbers);

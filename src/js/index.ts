@@ -12,7 +12,7 @@
 
 import { createWatched } from './session.js';
 import { watchOf } from './settings.js';
-import type { MakeDelaunayOptions, Mesh, Result } from './types.js';
+import type { IndexArray, MakeDelaunayOptions, Mesh, Result } from './types.js';
 
 export { EDGE_STATES, type EdgeState } from './edge-states.js';
 export { EdgeflipError, type ErrorCode } from './error.js';
@@ -27,7 +27,10 @@ export type * from './types.js';
  *
  * @throws {@link EdgeflipError} about the mesh, the options or the backend.
  */
-export async function makeDelaunay(mesh: Mesh, options: MakeDelaunayOptions = {}): Promise<Result> {
+export async function makeDelaunay<I extends IndexArray>(
+  mesh: Mesh<I>,
+  options: MakeDelaunayOptions = {},
+): Promise<Result<I>> {
   const { signal, onProgress, onIteration, isStopped } = watchOf(options, true);
   const session = await createWatched(mesh, options);
   try {

@@ -1,9 +1,8 @@
 /** Loads WebAssembly modules, each once. */
 
 import { EdgeflipError } from './error.js';
-import { copyOf, messageOf, read, shown, viewOf } from './given.js';
+import { copyOf, messageOf, NUMBERS, read, shown, viewOf } from './given.js';
 import { optionsOf } from './names.js';
-import { VERTEX_ARRAYS } from './settings.js';
 
 /** Where a module comes from: its bytes, the module itself, a response, or a URL to fetch. */
 export type ModuleSource = BufferSource | WebAssembly.Module | Response | URL | string;
@@ -45,14 +44,15 @@ let base: string | undefined;
  */
 export function loader(start: Start, file: string, beside: () => URL): Load {
   let loading: Promise<void> | undefined;
-  const load = async (given: ModuleSource = base === undefined ? beside() : absolute(base + file)) => {
-    const source = sourceOf(given);
-    await start({ module_or_path: readFile(source) ?? source });
-  };
-  return (source) => {
-    loading ??= load(source).catch((cause: unknown) => {
+  return (given) => {
+    const place = given ?? (base === undefined ? beside() : absolute(base + file));
+    const load = async () => {
+      const source = sourceOf(place);
+      await start({ module_or_path: readFile(source) ?? source });
+    };
+    loading ??= load().catch((cause: unknown) => {
       loading = undefined;
-      throw failed(cause);
+      throw failed(cause, file, place);
     });
     return loading;
   };
@@ -94,8 +94,11 @@ function attempt<T>(work: () => T): T {
   }
 }
 
-function failed(cause: unknown): EdgeflipError {
-  return new EdgeflipError('load-failed', `the WebAssembly module could not be loaded: ${messageOf(cause)}`, { cause });
+/** The error of a module that could not be loaded: which one, from where, and what to do. */
+function failed(cause: unknown, file = 'the WebAssembly module', place?: ModuleSource): EdgeflipError {
+  const url = typeof place === 'string' || place instanceof URL ? ` from ${place}` : '';
+  const remedy = url ? `; serve the package's dist/wasm/${file} there, or pass init the URL or the bytes of it` : '';
+  return new EdgeflipError('load-failed', `${file} could not be loaded${url}: ${messageOf(cause)}${remedy}`, { cause });
 }
 
 /** The URL of a folder, with a slash at its end. */
@@ -113,7 +116,7 @@ function absolute(url: string): URL | string {
 /** Checks a source and copies its bytes. */
 function sourceOf(given: ModuleSource): ModuleSource {
   if (typeof given === 'string') return given;
-  const view = viewOf(given, VERTEX_ARRAYS, 'the bytes');
+  const view = viewOf(given, NUMBERS, 'the bytes');
   if (view) return copyOf(view, 'the bytes') as Uint8Array<ArrayBuffer>;
   if (given instanceof ArrayBuffer || ArrayBuffer.isView(given)) return bytesOf(given);
   // An `await` would call the `then` of a source.

@@ -2,20 +2,30 @@
 
 import { collecting } from './collect.js';
 import { fromModule } from './error.js';
+import { messageOf } from './given.js';
 import { isLoaded, loadCore, moduleOfThreads } from './load.js';
 import { copied, type IndexedMesh } from './mesh.js';
 import type { Settings } from './settings.js';
-import { type ModuleSession, threadCount, ThreadsSession, threadsOf } from './threads.js';
+import { type ModuleSession, threadCount, ThreadsSession, threadsOf, whyOneThread } from './threads.js';
 import { Session, whyCpu } from './wasm/edgeflip.js';
+
+/** A session, and why it has one thread of the CPU if it could use more. */
+export interface Opened {
+  session: ModuleSession;
+  alone?: string | undefined;
+}
 
 /**
  * Opens a session on the engine that the settings choose. The CPU engine uses threads if the mesh is large enough and
  * they can be started. The arrays of the mesh are read before this returns its promise, and not afterwards.
  */
-export async function open(mesh: IndexedMesh, settings: Settings): Promise<ModuleSession> {
+export async function open(mesh: IndexedMesh, settings: Settings): Promise<Opened> {
   const count = threadCount(mesh.indices.length / 3, settings);
   const { backend = 'auto', order } = settings;
-  if (count === 1 || (backend !== 'auto' && backend !== 'cpu')) return openAlone(mesh, settings);
+  if (count === 1 || (backend !== 'auto' && backend !== 'cpu')) {
+    const alone = whyOneThread(mesh.indices.length / 3, settings);
+    return { session: await openAlone(mesh, settings), alone };
+  }
   if (backend === 'cpu' || order === 'any') return openOnThreads(copied(mesh), settings, count);
   let given = mesh;
   if (!isLoaded()) {
@@ -28,7 +38,7 @@ export async function open(mesh: IndexedMesh, settings: Settings): Promise<Modul
     return openOnThreads(given === mesh ? copied(mesh) : given, settings, count, why);
   }
   try {
-    return await openAlone(given, { ...settings, leavesCpu: count });
+    return { session: await openAlone(given, { ...settings, leavesCpu: count }) };
   } catch (thrown) {
     const { code, message } = fromModule(thrown);
     if (code !== 'backend-unavailable') throw thrown;
@@ -67,14 +77,13 @@ function refused(thrown: unknown): IndexedMesh | undefined {
 }
 
 /** Transfers the arrays of the mesh. If the threads cannot be started, one thread gives the same result. */
-async function openOnThreads(
-  mesh: IndexedMesh,
-  settings: Settings,
-  count: number,
-  fallback?: string,
-): Promise<ModuleSession> {
-  const module = await moduleOfThreads().catch(() => undefined);
-  const threads = await (module && threadsOf(module, count).catch(() => undefined));
-  if (!threads) return openAlone(mesh, settings);
-  return ThreadsSession.create(threads, mesh, settings, fallback);
+async function openOnThreads(mesh: IndexedMesh, settings: Settings, count: number, fallback?: string): Promise<Opened> {
+  let threads: Awaited<ReturnType<typeof threadsOf>>;
+  try {
+    threads = await threadsOf(await moduleOfThreads(), count);
+  } catch (thrown) {
+    const alone = `the workers could not be started (${messageOf(thrown)})`;
+    return { session: await openAlone(mesh, settings), alone };
+  }
+  return { session: await ThreadsSession.create(threads, count, mesh, settings, fallback) };
 }

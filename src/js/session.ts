@@ -7,8 +7,9 @@ import { EdgeflipError, fromModule } from './error.js';
 import type { Welded } from './files.js';
 import { loadAudit } from './load.js';
 import { copyOf, itselfOf } from './given.js';
-import { copied, moduleMesh, positionsOf } from './mesh.js';
-import { open } from './open.js';
+import { hintOf } from './hint.js';
+import { copied, floatsOf, type Layout, readMesh } from './mesh.js';
+import { open, type Opened } from './open.js';
 import { settingsOf, watchOf } from './settings.js';
 import type { ModuleSession } from './threads.js';
 import { Turns } from './turn.js';
@@ -16,19 +17,27 @@ import type {
   Audit,
   Edges,
   Engine,
+  GpuBuffer,
+  GpuDevice,
+  IndexArray,
+  Indices,
   Iteration,
   MakeDelaunayOptions,
   Mesh,
   Options,
   Result,
   RunOptions,
+  VertexArray,
 } from './types.js';
 
 /** Not every browser has `Symbol.dispose` yet. */
 const dispose: typeof Symbol.dispose = Symbol.dispose ?? Symbol.for('Symbol.dispose');
 
 /** As {@link FlipSession.create}, with the options of {@link makeDelaunay}. */
-export let createWatched: (mesh: Mesh, options: MakeDelaunayOptions) => Promise<FlipSession>;
+export let createWatched: <I extends IndexArray>(
+  mesh: Mesh<I>,
+  options: MakeDelaunayOptions,
+) => Promise<FlipSession<I>>;
 
 /**
  * A mesh that is made Delaunay step by step.
@@ -41,16 +50,20 @@ export let createWatched: (mesh: Mesh, options: MakeDelaunayOptions) => Promise<
  *
  * Calls may overlap: each waits for the earlier ones. During a run, other calls execute between two batches.
  */
-export class FlipSession implements AsyncIterable<Iteration>, Disposable {
+export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIterable<Iteration>, Disposable {
   readonly #session: ModuleSession;
   #last: Promise<unknown> = Promise.resolve();
   #isFreed = false;
 
+  readonly #layout: Layout<I>;
+  readonly #alone: string | undefined;
   readonly #turned: number;
   readonly #welded: Welded | undefined;
 
-  private constructor(session: ModuleSession, turned = 0, welded?: Welded) {
+  private constructor({ session, alone }: Opened, layout: Layout<I>, turned = 0, welded?: Welded) {
     this.#session = session;
+    this.#alone = alone;
+    this.#layout = layout;
     this.#turned = turned;
     this.#welded = welded;
   }
@@ -61,7 +74,7 @@ export class FlipSession implements AsyncIterable<Iteration>, Disposable {
    *
    * @throws {@link EdgeflipError} about the mesh, the options or the backend.
    */
-  static create(mesh: Mesh, options: Options = {}): Promise<FlipSession> {
+  static create<I extends IndexArray>(mesh: Mesh<I>, options: Options = {}): Promise<FlipSession<I>> {
     return FlipSession.#create(mesh, options, false);
   }
 
@@ -69,15 +82,20 @@ export class FlipSession implements AsyncIterable<Iteration>, Disposable {
     createWatched = (mesh, options) => FlipSession.#create(mesh, options, true);
   }
 
-  static async #create(mesh: Mesh, options: Options, isWatched: boolean): Promise<FlipSession> {
-    const [views, chosen] = [moduleMesh(mesh, itselfOf), settingsOf(options, isWatched)];
+  static async #create<I extends IndexArray>(
+    mesh: Mesh<I>,
+    options: Options,
+    isWatched: boolean,
+  ): Promise<FlipSession<I>> {
+    const [views, layout] = readMesh(mesh, itselfOf);
+    const chosen = settingsOf(options, isWatched);
     try {
       // Without these two options, the module of `edgeflip/files` is not loaded.
-      if (!chosen.reorient && !chosen.weld) return new FlipSession(await open(views, chosen));
+      if (!chosen.reorient && !chosen.weld) return new FlipSession(await open(views, chosen), layout);
       const copy = copied(views);
       const { prepare } = await import('./prepare.js');
       const { indices, turned, welded, settings } = await prepare(copy, chosen);
-      return new FlipSession(await open({ ...copy, indices }, settings), turned, welded);
+      return new FlipSession(await open({ ...copy, indices }, settings), layout, turned, welded);
     } catch (thrown) {
       throw fromModule(thrown);
     }
@@ -98,7 +116,7 @@ export class FlipSession implements AsyncIterable<Iteration>, Disposable {
   }
 
   /** Runs to the end, or until the signal stops the run. A stopped session can continue. */
-  async run(options: RunOptions = {}): Promise<Result> {
+  async run(options: RunOptions = {}): Promise<Result<I>> {
     const { onProgress, isStopped } = watchOf(options);
     const turns = this.#session.isAway ? undefined : new Turns();
     for (let goesOn = true; goesOn && !isStopped(); await turns?.give()) {
@@ -113,39 +131,44 @@ export class FlipSession implements AsyncIterable<Iteration>, Disposable {
   }
 
   /**
-   * Replaces the positions of all vertices. The array is copied at once. The session then behaves like a new session on
-   * these positions and the present triangles: iterations, flips, creases and the input of `verify` start again. The
-   * triangles are read back once. Adjacency, device and buffers stay, unless `'auto'` changes the engine, or the type
-   * of the array changes between Float32Array and Float64Array. After an error the session is unchanged. With `'auto'`,
-   * the CPU accepts positions that the GPU cannot.
+   * Replaces the positions of all vertices; they have the stride and the offset of the mesh. The array is copied at
+   * once. The session then behaves like a new session on these positions and the present triangles: iterations, flips,
+   * creases and the input of `verify` start again. The triangles are read back once. Adjacency, device and buffers stay,
+   * unless `'auto'` changes the engine, or the positions change between 32-bit and 64-bit floats. After an error the
+   * session is unchanged. With `'auto'`, the CPU accepts positions that the GPU cannot.
    *
-   * @throws {@link EdgeflipError} `invalid-input`, `too-large`, `position-count`, `non-finite`, `backend-limit`.
+   * @throws {@link EdgeflipError} `invalid-input`, `too-large`, `ragged-array`, `position-count`, `non-finite`,
+   * `backend-limit`.
    */
-  async setPositions(positions: Float32Array | Float64Array): Promise<void> {
-    const moved = copyOf(positionsOf(positions), 'positions');
+  async setPositions(positions: VertexArray): Promise<void> {
+    const moved = floatsOf(positions, this.#layout, copyOf);
     return this.#call((session) => session.setPositions(moved));
   }
 
   /** The result so far. */
-  result(): Promise<Result> {
-    const [turned, welded] = [this.#turned, this.#welded];
+  result(): Promise<Result<I>> {
+    const [layout, turned, welded] = [this.#layout, this.#turned, this.#welded];
     return this.#call(async (session) => {
       const outcome = await session.outcome();
+      const seamEdges = (welded?.lockedEdges.length ?? 0) / 2;
+      const isOnCpu = outcome.backend === 'cpu';
       return {
         ...outcome,
-        indices: welded?.split(outcome.indices) ?? outcome.indices,
+        indices: layout.give(welded?.split(outcome.indices) ?? outcome.indices),
+        threads: isOnCpu ? (session.threads ?? 1) : 0,
+        hint: hintOf(outcome, layout, welded && seamEdges, isOnCpu ? this.#alone : undefined),
         turnedTriangles: turned,
         joinedVertices: welded?.joined ?? 0,
-        seamEdges: (welded?.lockedEdges.length ?? 0) / 2,
+        seamEdges,
       };
     });
   }
 
-  /** The triangles so far: vertex indices, 3 per triangle. */
-  triangles(): Promise<Uint32Array> {
+  /** The triangles so far: vertex indices, 3 per triangle, in an array of the type of the mesh. */
+  triangles(): Promise<Indices<I>> {
     return this.#call(async (session) => {
       const indices = await session.triangles();
-      return this.#welded?.split(indices) ?? indices;
+      return this.#layout.give(this.#welded?.split(indices) ?? indices);
     });
   }
 
@@ -190,7 +213,7 @@ export class FlipSession implements AsyncIterable<Iteration>, Disposable {
    * positions, the session continues on the CPU. The device is the `device` of the options, else one that all sessions
    * share.
    */
-  gpu(): Promise<{ device: GPUDevice; positions: GPUBuffer; indices: GPUBuffer } | undefined> {
+  gpu(): Promise<{ device: GpuDevice; positions: GpuBuffer; indices: GpuBuffer } | undefined> {
     return this.#call(async ({ device, positionBuffer, indexBuffer }) =>
       device && positionBuffer && indexBuffer ? { device, positions: positionBuffer, indices: indexBuffer } : undefined,
     );

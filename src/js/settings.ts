@@ -1,11 +1,13 @@
 /** Reads the options of a session once: checks their types and copies them. */
 
 import { EdgeflipError } from './error.js';
-import { copyOf, functionOf, isWhole, numbersOf, objectOf, read, shown, viewOf } from './given.js';
+import { copyOf, functionOf, isWhole, NUMBERS, objectOf, read, shown, viewOf, wordsOf } from './given.js';
 import { namesOf, optionsOf } from './names.js';
 import {
   type Attributes,
   type Files,
+  type GpuDevice,
+  type IndexArray,
   type MakeDelaunayOptions,
   OPTION_KINDS,
   type Options,
@@ -24,19 +26,13 @@ export type Settings = { [Name in keyof Omit<Options, 'weld'>]?: Read<NonNullabl
 };
 
 /** The type of an option after reading: a list becomes a Uint32Array. */
-type Read<T> = T extends readonly number[] ? Uint32Array : T;
+type Read<T> = [T] extends [IndexArray] ? Uint32Array : T;
 
 /** The most threads. Each thread is a worker. */
 export const MOST_THREADS = 256;
 
 /** The most attributes of vertices: more than any file has. */
 const MOST_ATTRIBUTES = 1024;
-
-/** The kinds of typed arrays that an attribute of vertices may have. */
-export const VERTEX_ARRAYS = [
-  ...(['Int8Array', 'Uint8Array', 'Uint8ClampedArray', 'Int16Array', 'Uint16Array'] as const),
-  ...(['Int32Array', 'Uint32Array', 'Float32Array', 'Float64Array'] as const),
-] as const;
 
 /** The names of the options of a session, of a run, and of {@link makeDelaunay}. */
 const OPTIONS = Object.keys(OPTION_KINDS);
@@ -92,7 +88,7 @@ const READERS: Record<Extract<Kind, string>, (option: string, value: unknown) =>
     if (isWhole(value)) return value;
     throw wrong(option, value, 'a whole number of 32 bits or Infinity');
   },
-  list: (option, value) => numbersOf(value, option),
+  list: (option, value) => copyOf(wordsOf(value as IndexArray, `option ${option}`, 'invalid-option'), option),
   attributes: (option, value) => {
     if (value === true) return [];
     if (value === false) return undefined;
@@ -145,7 +141,7 @@ export function attributesOf(attributes: Attributes, hold: Hold): readonly Verte
     if (length > MOST_ATTRIBUTES)
       throw new EdgeflipError('invalid-input', `there are more than ${MOST_ATTRIBUTES} attributes`);
     return Array.from({ length }, (_, i) => {
-      const view = viewOf(attributes[i], VERTEX_ARRAYS, 'attributes');
+      const view = viewOf(attributes[i], NUMBERS, 'attributes');
       if (!view)
         throw new EdgeflipError('invalid-input', `attribute ${i}: ${shown(attributes[i])} is not a typed array`);
       return hold(view, 'attributes');
@@ -208,11 +204,11 @@ function oneOf(option: string, value: unknown, known: readonly string[]): string
 }
 
 /** Accepts only a device of this window or worker: the getter of its `GPUDevice` throws for other objects. */
-function deviceOf(option: string, device: unknown): GPUDevice {
+function deviceOf(option: string, device: unknown): GpuDevice {
   try {
     const limits = Object.getOwnPropertyDescriptor(GPUDevice.prototype, 'limits')?.get;
     limits?.call(device);
-    if (limits) return device as GPUDevice;
+    if (limits) return device as GpuDevice;
   } catch {
     // Not a device of this window, or a browser without WebGPU.
   }

@@ -47,9 +47,6 @@ export function sequence(first: number, end: number): Uint32Array {
   return Uint32Array.from({ length: end - first }, (_, i) => first + i);
 }
 
-// `makeDelaunay` will take integers, strides and offsets itself. Then `cornersOf` can go, and `pointsOf` except for the
-// smallest integers of normalized positions.
-
 /** The positions as floats without gaps. Each conversion is exact. */
 export function pointsOf(positions: Columns, vertices: number): Float32Array | Float64Array {
   const numbers = packed(positions, vertices);
@@ -62,8 +59,8 @@ export function pointsOf(positions: Columns, vertices: number): Float32Array | F
   return points;
 }
 
-function cornersOf({ indices }: Surface): Uint32Array | Uint16Array {
-  return indices instanceof Uint32Array || indices instanceof Uint16Array ? indices : Uint32Array.from(indices);
+function cornersOf({ indices }: Surface): Uint32Array {
+  return indices instanceof Uint32Array ? indices : Uint32Array.from(indices);
 }
 
 /** The integer that stands for 1. */

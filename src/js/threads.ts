@@ -12,6 +12,8 @@ import type { Session } from './wasm/edgeflip.js';
 export interface ModuleSession extends Omit<Session, typeof Symbol.dispose> {
   /** Whether the session is in a worker, so that it does not block the page. */
   readonly isAway?: boolean;
+  /** The number of its threads, if they are several. */
+  readonly threads?: number;
 }
 
 /**
@@ -167,6 +169,12 @@ type Threads = [pool: Pool, memory: WebAssembly.Memory];
 /** The running threads, by their number. */
 const started = new Map<number, Promise<Threads>>();
 
+/** Why a mesh runs on one thread, if it could use more. */
+export function whyOneThread(triangles: number, { threads }: Settings): string | undefined {
+  if (isShared || triangles < FEWEST_TRIANGLES || threads === 1) return undefined;
+  return 'workers cannot share memory here; make the page cross-origin isolated, by the headers COOP and COEP';
+}
+
 /** Starts `count` threads, or returns them if they are running. Sessions share them. */
 export function threadsOf(module: WebAssembly.Module, count: number): Promise<Threads> {
   let threads = started.get(count);
@@ -201,6 +209,7 @@ export class ThreadsSession implements ModuleSession {
 
   private constructor(
     [pool, memory]: Threads,
+    readonly threads: number,
     session: number,
     spare: Uint32Array | undefined,
     fallback: string | undefined,
@@ -223,6 +232,7 @@ export class ThreadsSession implements ModuleSession {
    */
   static async create(
     threads: Threads,
+    count: number,
     { positions, indices, dimension }: IndexedMesh,
     { device, ...settings }: Settings,
     fallback?: string,
@@ -240,7 +250,7 @@ export class ThreadsSession implements ModuleSession {
       void pool.call('free', session).catch(() => undefined);
       throw thrown;
     }
-    return new ThreadsSession(threads, session, spare, fallback);
+    return new ThreadsSession(threads, count, session, spare, fallback);
   }
 
   step = () => this.#ask('step');

@@ -1,18 +1,58 @@
 /** The types of the input, the options and the results. */
 
-/// <reference types="@webgpu/types" preserve="true" />
+/** A `GPUDevice`, where the types of WebGPU are known. */
+export type GpuDevice = typeof globalThis extends { GPUDevice: { prototype: infer T } } ? T : unknown;
+
+/** A `GPUBuffer`, where the types of WebGPU are known. */
+export type GpuBuffer = typeof globalThis extends { GPUBuffer: { prototype: infer T } } ? T : unknown;
+
+/** Bytes in a buffer of their own. */
+export type Bytes = ReturnType<Uint8Array['slice']>;
+
+/** Vertex indices, in an array of whole numbers. */
+export type IndexArray =
+  | Int8Array
+  | Uint8Array
+  | Uint8ClampedArray
+  | Int16Array
+  | Uint16Array
+  | Int32Array
+  | Uint32Array
+  | readonly number[];
+
+/** Indices of a result, in an array of the type of `I`. */
+export type Indices<I extends IndexArray> = I extends Uint32Array
+  ? Uint32Array
+  : I extends Uint16Array
+    ? Uint16Array
+    : I extends Uint8Array
+      ? Uint8Array
+      : I extends Uint8ClampedArray
+        ? Uint8ClampedArray
+        : I extends Int32Array
+          ? Int32Array
+          : I extends Int16Array
+            ? Int16Array
+            : I extends Int8Array
+              ? Int8Array
+              : number[];
 
 /** A triangle mesh. A call copies its arrays before it returns. */
-export interface Mesh {
+export interface Mesh<I extends IndexArray = IndexArray> {
   /**
-   * 2 or 3 numbers per vertex. Decisions are exact for these numbers. The CPU accepts all finite numbers. WebGPU and
-   * WebGL2 accept multiples of a power of two, at most 84 bits and a sign relative to the centre of the bounding box.
+   * 2 or 3 coordinates per vertex. Integers, as in quantized meshes, count as these numbers. Decisions are exact for
+   * the numbers in the array. The CPU accepts all finite numbers. WebGPU and WebGL2 accept multiples of a power of two,
+   * at most 84 bits and a sign relative to the centre of the bounding box.
    */
-  positions: Float32Array | Float64Array;
-  /** Vertex indices, 3 per triangle. */
-  indices: Uint32Array | Uint16Array;
+  positions: VertexArray;
+  /** Vertex indices, 3 per triangle. Results have indices of the same type. */
+  indices: I;
   /** 2 for a mesh in the plane, 3 for a surface in space. */
   dimension: 2 | 3;
+  /** The count of numbers in `positions` from a vertex to the next, as in interleaved arrays. Default: `dimension`. */
+  stride?: number | undefined;
+  /** The count of numbers in `positions` before the first vertex. Default: 0. */
+  offset?: number | undefined;
 }
 
 /** The bytes of files by name, such as `{ 'scene.bin': bytes }`. */
@@ -77,14 +117,14 @@ export interface Options {
    * Edges that never flip, as pairs of vertices, one pair after the other, in any order. Every pair has to be an edge
    * of the mesh; pairs may repeat. Locked edges that are not Delaunay at the end are counted as `locked`.
    */
-  lockedEdges?: Uint32Array | readonly number[] | undefined;
+  lockedEdges?: IndexArray | undefined;
   /** The indices of triangles that never change. Their edges are locked. */
-  lockedTriangles?: Uint32Array | readonly number[] | undefined;
+  lockedTriangles?: IndexArray | undefined;
   /**
    * A number for each triangle. Edges between triangles with different numbers are locked, so every group keeps its
    * border.
    */
-  groups?: Uint32Array | readonly number[] | undefined;
+  groups?: IndexArray | undefined;
   /**
    * First reverses the minority of inconsistently oriented triangles in each orientable component. Without it, edges
    * between inconsistently oriented triangles never flip. Loads the module of `edgeflip/files`.
@@ -115,7 +155,7 @@ export interface Options {
    * Its default limits suffice. The session does not destroy it, changes no setting of it, and ignores errors that it
    * did not cause. `'auto'` takes no software device. The CPU ignores this option.
    */
-  device?: GPUDevice | undefined;
+  device?: GpuDevice | undefined;
 }
 
 /**
@@ -128,7 +168,7 @@ type KindOf<T> = [T] extends [boolean]
     ? readonly T[]
     : [T] extends [number]
       ? 'number' | 'whole' | 'limit'
-      : [T] extends [Uint32Array | readonly number[]]
+      : [T] extends [IndexArray]
         ? 'list'
         : 'attributes' | 'device';
 
@@ -214,9 +254,9 @@ export interface Iteration {
 }
 
 /** The result of a run. */
-export interface Result {
-  /** Vertex indices, 3 per triangle. The vertices are those of the input. */
-  indices: Uint32Array;
+export interface Result<I extends IndexArray = Uint32Array> {
+  /** Vertex indices, 3 per triangle, in an array of the type of the mesh. The vertices are those of the input. */
+  indices: Indices<I>;
   /** `'done'` if no edge is left that can flip; `'stopped'` by the signal or by `maxIterations`. */
   status: 'done' | 'stopped';
   /** The engine that ran. */
@@ -225,6 +265,10 @@ export interface Result {
   adapter: string | undefined;
   /** Why `'auto'` ran on the CPU, or started there. */
   fallback: string | undefined;
+  /** The threads of the CPU engine; 0 if a GPU ran. */
+  threads: number;
+  /** Advice, if the mesh or the page seems to be set up in a way that you do not want: sentences for a developer. */
+  hint: string | undefined;
   /** Iterations with at least one flip. */
   iterations: number;
   /** All flips. */

@@ -35,19 +35,19 @@ pub fn why_cpu(
 #[wasm_bindgen(js_class = Session)]
 impl JsSession {
     /// The engine's GPUDevice, if it runs on one.
-    #[wasm_bindgen(getter, unchecked_return_type = "GPUDevice | undefined")]
+    #[wasm_bindgen(getter, unchecked_return_type = "import('../types.js').GpuDevice | undefined")]
     pub fn device(&self) -> JsValue {
         self.shared_objects().map_or(JsValue::UNDEFINED, |objects| objects.device)
     }
 
     /// The GPUBuffer with the positions.
-    #[wasm_bindgen(getter, js_name = positionBuffer, unchecked_return_type = "GPUBuffer | undefined")]
+    #[wasm_bindgen(getter, js_name = positionBuffer, unchecked_return_type = "import('../types.js').GpuBuffer | undefined")]
     pub fn position_buffer(&self) -> JsValue {
         self.shared_objects().map_or(JsValue::UNDEFINED, |objects| objects.positions)
     }
 
     /// The GPUBuffer with the triangles.
-    #[wasm_bindgen(getter, js_name = indexBuffer, unchecked_return_type = "GPUBuffer | undefined")]
+    #[wasm_bindgen(getter, js_name = indexBuffer, unchecked_return_type = "import('../types.js').GpuBuffer | undefined")]
     pub fn index_buffer(&self) -> JsValue {
         self.shared_objects().map_or(JsValue::UNDEFINED, |objects| objects.triangles)
     }

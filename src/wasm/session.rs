@@ -130,7 +130,7 @@ impl JsSession {
 
     /// As [`Session::outcome`].
     #[wasm_bindgen(
-        unchecked_return_type = "Promise<Omit<import('../types.js').Result, 'turnedTriangles' | 'joinedVertices' | 'seamEdges'>>"
+        unchecked_return_type = "Promise<Omit<import('../types.js').Result<Uint32Array>, 'threads' | 'hint' | 'turnedTriangles' | 'joinedVertices' | 'seamEdges'>>"
     )]
     pub fn outcome(&self) -> Promise {
         #[cfg(feature = "js")]

@@ -98,9 +98,7 @@ let packed;
 function project(name) {
   const root = join(folder, name);
   mkdirSync(root);
-  // The dependencies of the package are copied from this repository, so that no network is needed.
-  const types = join(repository, 'node_modules/@webgpu/types');
-  const dependencies = { edgeflip: `file:${join(folder, packed.filename)}`, '@webgpu/types': `file:${types}` };
+  const dependencies = { edgeflip: `file:${join(folder, packed.filename)}` };
   writeFileSync(join(root, 'package.json'), JSON.stringify({ name, private: true, type: 'module', dependencies }));
   run('npm', ['install', '--offline', '--install-links', '--ignore-scripts', '--no-audit', '--no-fund'], root);
   return root;

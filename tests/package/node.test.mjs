@@ -161,7 +161,7 @@ test('errors have codes', async () => {
     refused('non-finite', /vertex 2: coordinate y/),
   );
   await assert.rejects(bad({ positions: [0, 0] }), refused('invalid-input', /positions/));
-  await assert.rejects(bad({ indices: [0, 1, 2] }), refused('invalid-input', /indices/));
+  await assert.rejects(bad({ indices: [0, 1, -2] }), refused('invalid-input', /indices: .* number 2 is -2/));
   await assert.rejects(bad({ dimension: 4 }), refused('invalid-input', /dimension: 4 is not 2 or 3/));
   await assert.rejects(bad({ indices: Uint32Array.of(0, 1, 7) }), refused('index-out-of-range', /triangle 0.* 7 /));
   await assert.rejects(bad({ indices: Uint32Array.of(0, 1) }), refused('ragged-array', /indices has 2/));
@@ -193,9 +193,9 @@ test('errors have codes', async () => {
     refused('invalid-option', /lockedTriangles: there is no triangle 2; the mesh has 2/),
   );
   await assert.rejects(makeDelaunay(mesh, { groups: [2] }), refused('invalid-option', /groups: it has 1 numbers/));
-  await assert.rejects(makeDelaunay(mesh, { groups: 'all' }), refused('invalid-option', /groups: it is neither/));
+  await assert.rejects(makeDelaunay(mesh, { groups: 'all' }), refused('invalid-option', /groups: 'all' is neither/));
   for (const wrong of [null, 'edges', [0, -1], [0, 0.5], ['0', '1'], new Float32Array(2)]) {
-    await assert.rejects(locking(wrong), refused('invalid-option', /lockedEdges: it is neither/));
+    await assert.rejects(locking(wrong), refused('invalid-option', /lockedEdges: .* is neither/));
   }
 });
 

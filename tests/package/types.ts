@@ -6,6 +6,8 @@ import {
   type EdgeState,
   type ErrorCode,
   FlipSession,
+  type GpuBuffer,
+  type GpuDevice,
   type Iteration,
   init,
   makeDelaunay,
@@ -26,7 +28,7 @@ import {
   writeMesh,
 } from 'edgeflip/files';
 
-export async function use(mesh: Mesh, signal: AbortSignal, device?: GPUDevice): Promise<Uint32Array> {
+export async function use(mesh: Mesh<Uint32Array>, signal: AbortSignal, device?: GpuDevice): Promise<Uint32Array> {
   await init({ base: new URL('https://example.org/wasm') });
   const sources: Sources = {
     core: new URL('https://example.org/edgeflip.wasm'),
@@ -48,7 +50,7 @@ export async function use(mesh: Mesh, signal: AbortSignal, device?: GPUDevice): 
   const lockedEdges: readonly number[] = [0, 1];
   console.log((await makeDelaunay(mesh, { lockedEdges })).remaining.locked);
   const gpu = await session.gpu();
-  const buffer: GPUBuffer | undefined = gpu?.indices;
+  const buffer: GpuBuffer | undefined = gpu?.indices;
   console.log(buffer?.size);
   const states: EdgeState[] = Array.from(await session.edgeStates(), (number) => EDGE_STATES[number] ?? 'boundary');
   console.log(states);
@@ -76,7 +78,19 @@ export async function copy(file: File): Promise<Blob> {
   return new Blob([await writeMesh(mesh, `copy${format ?? '.off'}`)]);
 }
 
-export async function joined(mesh: Mesh, original: Original): Promise<Uint32Array> {
+/** Indices have the type that came in. */
+export async function types(mesh: Mesh): Promise<number[]> {
+  const short: Uint16Array = (await makeDelaunay({ ...mesh, indices: new Uint16Array(3) })).indices;
+  const list: number[] = (await makeDelaunay({ ...mesh, indices: [0, 1, 2] })).indices;
+  const session: FlipSession<Uint8Array> = await FlipSession.create({ ...mesh, indices: new Uint8Array(3) });
+  const bytes: Uint8Array = await session.triangles();
+  const quantized: Mesh = { positions: new Int16Array(24), stride: 4, offset: 1, indices: short, dimension: 3 };
+  const { hint, threads } = await makeDelaunay(quantized, { lockedEdges: new Uint16Array(2), groups: new Uint8Array(1) });
+  console.log(hint?.length, threads + 1);
+  return [...list, ...bytes];
+}
+
+export async function joined(mesh: Mesh<Uint32Array>, original: Original): Promise<Uint32Array> {
   const { seamEdges } = await makeDelaunay(mesh, { weld: [new Float32Array(8), new Uint8Array(4)] });
   const { joinedVertices } = await makeDelaunay(mesh, { weld: original, reorient: true });
   const welded: Welded = await weld(mesh);
