@@ -51,7 +51,7 @@ export async function use(mesh: Mesh<Uint32Array>, signal: AbortSignal, device?:
   console.log((await makeDelaunay(mesh, { lockedEdges })).remaining.locked);
   const gpu = await session.gpu();
   const buffer: GpuBuffer | undefined = gpu?.indices;
-  console.log(buffer?.size);
+  console.log(buffer);
   const states: EdgeState[] = Array.from(await session.edgeStates(), (number) => EDGE_STATES[number] ?? 'boundary');
   console.log(states);
   const { remainingEdges } = await session.verify();
@@ -85,7 +85,10 @@ export async function types(mesh: Mesh): Promise<number[]> {
   const session: FlipSession<Uint8Array> = await FlipSession.create({ ...mesh, indices: new Uint8Array(3) });
   const bytes: Uint8Array = await session.triangles();
   const quantized: Mesh = { positions: new Int16Array(24), stride: 4, offset: 1, indices: short, dimension: 3 };
-  const { hint, threads } = await makeDelaunay(quantized, { lockedEdges: new Uint16Array(2), groups: new Uint8Array(1) });
+  const { hint, threads } = await makeDelaunay(quantized, {
+    lockedEdges: new Uint16Array(2),
+    groups: new Uint8Array(1),
+  });
   console.log(hint?.length, threads + 1);
   return [...list, ...bytes];
 }
