@@ -188,23 +188,33 @@ test('the package contains the files that its entries need, and no source', () =
   assert.deepEqual(others.sort(), ['LICENSE-APACHE', 'LICENSE-MIT', 'README.md', 'package.json']);
 });
 
-test('a strict TypeScript project with a bundler finds the types', () => {
-  const root = project('typescript');
-  const compilerOptions = {
-    target: 'ES2022',
-    module: 'ESNext',
-    moduleResolution: 'bundler',
-    lib: ['ES2022', 'DOM', 'DOM.Iterable'],
-    strict: true,
-    verbatimModuleSyntax: true,
-    noEmit: true,
-  };
-  writeFileSync(join(root, 'tsconfig.json'), JSON.stringify({ compilerOptions, include: ['*.ts'] }));
-  writeFileSync(join(root, 'lines.ts'), byName(fiveLines));
-  writeFileSync(join(root, 'files.ts'), byName(withFiles));
-  copyFileSync(join(repository, 'tests/package/types.ts'), join(root, 'types.ts'));
-  run(process.execPath, [join(repository, 'node_modules/typescript/bin/tsc'), '-p', root], root);
-});
+for (const version of ['5.4', '', '6', '7']) {
+  const name = `typescript${version && `-${version}`}`;
+  test(`a strict project finds the types with ${name}, with a bundler and in Node, and checks all declarations`, () => {
+    const root = project(name);
+    writeFileSync(join(root, 'lines.ts'), byName(fiveLines));
+    writeFileSync(join(root, 'files.ts'), byName(withFiles));
+    copyFileSync(join(repository, 'tests/package/types.ts'), join(root, 'types.ts'));
+    for (const [module, moduleResolution] of [
+      ['ESNext', 'bundler'],
+      ['NodeNext', 'NodeNext'],
+    ]) {
+      const compilerOptions = {
+        target: 'ES2022',
+        module,
+        moduleResolution,
+        lib: ['ES2022', 'DOM', 'DOM.Iterable'],
+        types: [],
+        strict: true,
+        skipLibCheck: false,
+        verbatimModuleSyntax: true,
+        noEmit: true,
+      };
+      writeFileSync(join(root, 'tsconfig.json'), JSON.stringify({ compilerOptions, include: ['*.ts'] }));
+      run(process.execPath, [join(repository, `node_modules/${name}/bin/tsc`), '-p', root], root);
+    }
+  });
+}
 
 describe('in a browser', { concurrency: true }, () => {
   let chromium;
