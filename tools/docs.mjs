@@ -24,7 +24,10 @@ mkdirSync(folder, { recursive: true });
 run(process.execPath, [
   'node_modules/typedoc/bin/typedoc',
   ...['--name', name, '--out', `${folder}/javascript`, '--tsconfig', 'src/js/tsconfig.json'],
-  ...['index', 'files', 'three', 'gltf-transform'].flatMap((entry) => ['--entryPoints', `src/js/${entry}.ts`]),
+  ...['index', 'inline', 'files', 'three', 'gltf-transform'].flatMap((entry) => [
+    '--entryPoints',
+    `src/js/${entry}.ts`,
+  ]),
   ...['--readme', 'none', '--disableSources', '--excludePrivate', '--treatWarningsAsErrors'],
   ...['--intentionallyNotExported', 'CODES'],
   '--skipErrorChecking', // only a build writes the types of the modules

@@ -155,13 +155,14 @@ const levels = [
   },
   {
     name: 'npm package in browsers',
-    what: 'the packed package in fresh projects: plain pages in Chromium and Firefox, Vite, TypeScript, on the CPU and WebGPU',
+    what: 'the packed package in fresh projects: plain pages in Chromium and Firefox, Vite, Rollup, esbuild, TypeScript, on the CPU and WebGPU',
     checks: [
       [
         'node',
         '--test',
         '--test-reporter=tap',
         'tests/package/browser.test.mjs',
+        'tests/package/bundlers.test.mjs',
         'tests/package/loss.test.mjs',
         'tests/package/waits.test.mjs',
         'tests/package/options.browser.test.mjs',

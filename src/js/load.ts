@@ -23,8 +23,20 @@ const start: typeof initModule = async (source) => {
   return module;
 };
 
+let inlined: (() => Promise<ArrayBuffer>) | undefined;
+
+/** Makes the bytes in the script of `edgeflip/inline` the source of the module of the engines. */
+export function inlineCore(unpack: () => Promise<ArrayBuffer>): void {
+  inlined = unpack;
+}
+
 /** Loads the module of the engines. */
-export const loadCore = loader(start, 'edgeflip_bg.wasm', () => new URL('./wasm/edgeflip_bg.wasm', import.meta.url));
+export const loadCore = loader(
+  start,
+  'edgeflip_bg.wasm',
+  () => new URL('./wasm/edgeflip_bg.wasm', import.meta.url),
+  () => inlined?.(),
+);
 
 const loadWebGl2 = loader(
   async (source) => {

@@ -41,13 +41,20 @@ let base: string | undefined;
  * @param start - Starts the module.
  * @param file - The name of the module's file.
  * @param beside - The default URL of the module, in an expression that bundlers recognize.
+ * @param inline - The bytes of the module, if the script has them; they come before `base`.
  */
-export function loader(start: Start, file: string, beside: () => URL): Load {
+export function loader(
+  start: Start,
+  file: string,
+  beside: () => URL,
+  inline: () => Promise<ArrayBuffer> | undefined = () => undefined,
+): Load {
   let loading: Promise<void> | undefined;
   return (given) => {
     const place = given ?? (base === undefined ? beside() : absolute(base + file));
     const load = async () => {
-      const source = sourceOf(place);
+      const bytes = given === undefined ? inline() : undefined;
+      const source = bytes ? await bytes : sourceOf(place);
       await start({ module_or_path: readFile(source) ?? source });
     };
     loading ??= load().catch((cause: unknown) => {
