@@ -111,6 +111,10 @@ pub(crate) trait Engine {
         None
     }
 
+    /// Whether the triangles stay on the device until somebody asks for them. Else an engine may read them early.
+    #[cfg(all(target_arch = "wasm32", feature = "js"))]
+    fn set_stays(&mut self, _stays: bool) {}
+
     /// The buffers that a page can draw from, if the engine runs on the browser's WebGPU.
     #[cfg(all(target_arch = "wasm32", feature = "js"))]
     fn shared_objects(&self) -> Option<SharedObjects> {

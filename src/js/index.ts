@@ -10,8 +10,8 @@
  * @packageDocumentation
  */
 
-import { createWatched } from './session.js';
-import { watchOf } from './settings.js';
+import { createWatched, runWatched } from './session.js';
+import { MAKE_OPTIONS, watchOf } from './settings.js';
 import type { IndexArray, MakeDelaunayOptions, Mesh, Result } from './types.js';
 
 export { EDGE_STATES, type EdgeState } from './edge-states.js';
@@ -19,6 +19,7 @@ export { EdgeflipError, type ErrorCode } from './error.js';
 export { init } from './load.js';
 export type { ModuleSource, Sources } from './module.js';
 export { FlipSession } from './session.js';
+export { makeDelaunaySync } from './sync.js';
 export type * from './types.js';
 
 /**
@@ -31,20 +32,10 @@ export async function makeDelaunay<I extends IndexArray>(
   mesh: Mesh<I>,
   options: MakeDelaunayOptions = {},
 ): Promise<Result<I>> {
-  const { signal, onProgress, onIteration, isStopped } = watchOf(options, true);
+  const watch = watchOf(options, MAKE_OPTIONS);
   const session = await createWatched(mesh, options);
   try {
-    if (!onIteration) return await session.run({ signal, onProgress });
-    let flips = 0;
-    if (!isStopped()) {
-      for await (const iteration of session) {
-        flips += iteration.flips;
-        onIteration(iteration);
-        onProgress?.({ iterations: iteration.index + 1, flips });
-        if (isStopped()) break;
-      }
-    }
-    return await session.result();
+    return await runWatched(session, watch);
   } finally {
     session.free();
   }

@@ -7,10 +7,10 @@ import { EdgeflipError, fromModule } from './error.js';
 import type { Welded } from './files.js';
 import { loadAudit } from './load.js';
 import { copyOf, itselfOf } from './given.js';
-import { hintOf } from './hint.js';
 import { copied, floatsOf, type Layout, readMesh } from './mesh.js';
 import { open, type Opened } from './open.js';
-import { settingsOf, watchOf } from './settings.js';
+import { resultOf } from './result.js';
+import { MAKE_OPTIONS, settingsOf, type Watch, watchOf } from './settings.js';
 import type { ModuleSession } from './threads.js';
 import { Turns } from './turn.js';
 import type {
@@ -38,6 +38,16 @@ export let createWatched: <I extends IndexArray>(
   mesh: Mesh<I>,
   options: MakeDelaunayOptions,
 ) => Promise<FlipSession<I>>;
+
+/**
+ * As {@link FlipSession.run}, with the callbacks of {@link makeDelaunay}. If the triangles `stay` on a GPU, the result
+ * has no indices.
+ */
+export let runWatched: <I extends IndexArray>(
+  session: FlipSession<I>,
+  watch: Watch,
+  stay?: boolean,
+) => Promise<Result<I>>;
 
 /**
  * A mesh that is made Delaunay step by step.
@@ -75,20 +85,21 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
    * @throws {@link EdgeflipError} about the mesh, the options or the backend.
    */
   static create<I extends IndexArray>(mesh: Mesh<I>, options: Options = {}): Promise<FlipSession<I>> {
-    return FlipSession.#create(mesh, options, false);
+    return FlipSession.#create(mesh, options);
   }
 
   static {
-    createWatched = (mesh, options) => FlipSession.#create(mesh, options, true);
+    createWatched = (mesh, options) => FlipSession.#create(mesh, options, MAKE_OPTIONS);
+    runWatched = (session, watch, stay) => session.#run(watch, stay);
   }
 
   static async #create<I extends IndexArray>(
     mesh: Mesh<I>,
     options: Options,
-    isWatched: boolean,
+    known?: readonly string[],
   ): Promise<FlipSession<I>> {
     const [views, layout] = readMesh(mesh, itselfOf);
-    const chosen = settingsOf(options, isWatched);
+    const chosen = settingsOf(options, known);
     try {
       // Without these two options, the module of `edgeflip/files` is not loaded.
       if (!chosen.reorient && !chosen.weld) return new FlipSession(await open(views, chosen), layout);
@@ -117,17 +128,36 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
 
   /** Runs to the end, or until the signal stops the run. A stopped session can continue. */
   async run(options: RunOptions = {}): Promise<Result<I>> {
-    const { onProgress, isStopped } = watchOf(options);
+    return this.#run(watchOf(options));
+  }
+
+  async #run(watch: Watch, stay = false): Promise<Result<I>> {
+    await (watch.onIteration ? this.#iterate(watch) : this.#advance(watch, stay));
+    return this.#result(stay);
+  }
+
+  async #advance({ onProgress, isStopped }: Watch, stay: boolean): Promise<void> {
     const turns = this.#session.isAway ? undefined : new Turns();
     for (let goesOn = true; goesOn && !isStopped(); await turns?.give()) {
       const [more, progress] = await this.#call(async (session) => {
+        session.stays = stay;
         const more = await session.advance();
         return [more, { iterations: session.iterations, flips: session.flips }];
       });
       onProgress?.(progress);
       goesOn = more;
     }
-    return this.result();
+  }
+
+  async #iterate({ onIteration, onProgress, isStopped }: Watch): Promise<void> {
+    if (isStopped()) return;
+    let flips = 0;
+    for await (const iteration of this) {
+      flips += iteration.flips;
+      onIteration?.(iteration);
+      onProgress?.({ iterations: iteration.index + 1, flips });
+      if (isStopped()) return;
+    }
   }
 
   /**
@@ -147,20 +177,14 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
 
   /** The result so far. */
   result(): Promise<Result<I>> {
-    const [layout, turned, welded] = [this.#layout, this.#turned, this.#welded];
+    return this.#result(false);
+  }
+
+  #result(stay: boolean): Promise<Result<I>> {
     return this.#call(async (session) => {
-      const outcome = await session.outcome();
-      const seamEdges = (welded?.lockedEdges.length ?? 0) / 2;
-      const isOnCpu = outcome.backend === 'cpu';
-      return {
-        ...outcome,
-        indices: layout.give(welded?.split(outcome.indices) ?? outcome.indices),
-        threads: isOnCpu ? (session.threads ?? 1) : 0,
-        hint: hintOf(outcome, layout, welded && seamEdges, isOnCpu ? this.#alone : undefined),
-        turnedTriangles: turned,
-        joinedVertices: welded?.joined ?? 0,
-        seamEdges,
-      };
+      const context = { alone: this.#alone, turned: this.#turned, welded: this.#welded, threads: session.threads };
+      session.stays = stay;
+      return resultOf(await session.outcome(), this.#layout, context);
     });
   }
 

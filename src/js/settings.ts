@@ -13,6 +13,7 @@ import {
   type Options,
   type Original,
   type RunOptions,
+  type SyncOptions,
   type VertexArray,
 } from './types.js';
 
@@ -34,24 +35,34 @@ export const MOST_THREADS = 256;
 /** The most attributes of vertices: more than any file has. */
 const MOST_ATTRIBUTES = 1024;
 
-/** The names of the options of a session, of a run, and of {@link makeDelaunay}. */
-const OPTIONS = Object.keys(OPTION_KINDS);
+/** The names of the options of a session, of a run, and of the functions of the entries. */
+const SESSION_OPTIONS: readonly string[] = Object.keys(OPTION_KINDS);
 const RUN_OPTIONS = namesOf<RunOptions>({ signal: true, onProgress: true });
-const WATCHED_OPTIONS = namesOf<Omit<MakeDelaunayOptions, keyof Options>>({
-  signal: true,
-  onProgress: true,
-  onIteration: true,
+export const MAKE_OPTIONS = [
+  ...SESSION_OPTIONS,
+  ...namesOf<Omit<MakeDelaunayOptions, keyof Options>>({ signal: true, onProgress: true, onIteration: true }),
+];
+export const WORKER_OPTIONS = withoutDevice(SESSION_OPTIONS);
+export const WORKER_MAKE_OPTIONS = withoutDevice(MAKE_OPTIONS);
+export const SYNC_OPTIONS = namesOf<SyncOptions>({
+  maxNormalAngle: true,
+  maxDeviation: true,
+  maxIterations: true,
+  lockedEdges: true,
+  lockedTriangles: true,
+  groups: true,
+  order: true,
 });
 
 /**
  * The options of a session.
  *
- * @param isWatched - Whether the options of {@link makeDelaunay} are allowed.
+ * @param known - The names of the options that are allowed.
  * @throws {@link EdgeflipError} `invalid-option`, `invalid-input`.
  */
-export function settingsOf(options: Options, isWatched = false): Settings {
+export function settingsOf(options: Options, known = SESSION_OPTIONS): Settings {
   return read('the options', () => {
-    const given = optionsOf(options, isWatched ? [...OPTIONS, ...WATCHED_OPTIONS] : OPTIONS);
+    const given = optionsOf(options, known);
     const settings: Record<string, unknown> = {};
     for (const [name, kind] of Object.entries(OPTION_KINDS)) {
       const value = given[name];
@@ -98,6 +109,10 @@ const READERS: Record<Extract<Kind, string>, (option: string, value: unknown) =>
   device: deviceOf,
 };
 
+function withoutDevice(names: readonly string[]): readonly string[] {
+  return names.filter((name) => name !== 'device');
+}
+
 /** The callbacks and the signal of a run. */
 export interface Watch extends RunOptions {
   onIteration: NonNullable<MakeDelaunayOptions['onIteration']> | undefined;
@@ -108,12 +123,12 @@ export interface Watch extends RunOptions {
 /**
  * The options of a run.
  *
- * @param isWatched - Whether they are the options of {@link makeDelaunay}.
+ * @param known - The names of the options that are allowed.
  * @throws {@link EdgeflipError} `invalid-input`, `invalid-option`.
  */
-export function watchOf(options: MakeDelaunayOptions, isWatched = false): Watch {
+export function watchOf(options: MakeDelaunayOptions, known = RUN_OPTIONS): Watch {
   return read('the options', () => {
-    const given = optionsOf(options, isWatched ? [...OPTIONS, ...WATCHED_OPTIONS] : RUN_OPTIONS);
+    const given = optionsOf(options, known);
     const { signal, onProgress, onIteration } = given as MakeDelaunayOptions;
     const watched = signal ?? undefined;
     if (watched) objectOf(watched, 'signal');

@@ -212,6 +212,9 @@ export interface MakeDelaunayOptions extends Options, RunOptions {
   onIteration?: ((iteration: Iteration) => void) | undefined;
 }
 
+/** The options of {@link makeDelaunaySync}: those that need no GPU, no worker and no other module. */
+export type SyncOptions = Omit<Options, 'backend' | 'device' | 'threads' | 'weld' | 'reorient'>;
+
 /**
  * Why an edge is still not Delaunay.
  *

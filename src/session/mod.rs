@@ -55,6 +55,9 @@ pub struct Session {
     flips_per_iteration: Vec<u32>,
     has_ended: bool,
     timings: Timings,
+    /// Whether the triangles stay on the device until somebody asks for them.
+    #[cfg(all(target_arch = "wasm32", feature = "js"))]
+    pub(crate) stays: bool,
 }
 
 impl Session {
@@ -82,6 +85,8 @@ impl Session {
             flips_per_iteration: Vec::new(),
             has_ended: false,
             timings: Timings { upload: set_up - adjacency, adjacency, ..Timings::default() },
+            #[cfg(all(target_arch = "wasm32", feature = "js"))]
+            stays: false,
         })
     }
 
@@ -129,6 +134,8 @@ impl Session {
     /// # Errors
     /// Those of [`Session::run`].
     pub async fn advance(&mut self) -> Result<bool, Error> {
+        #[cfg(all(target_arch = "wasm32", feature = "js"))]
+        self.engine.set_stays(self.stays);
         if self.may_continue() {
             self.iterate(self.engine.batch().min(self.iterations_left())).await?;
         }
@@ -202,11 +209,17 @@ impl Session {
         Ok(Outcome { triangles, ..outcome })
     }
 
-    /// As [`Session::outcome`], with the triangles in a JavaScript array.
+    /// As [`Session::outcome`], with the triangles in a JavaScript array. If they stay on the device, the array is
+    /// empty. They are read back even so if edges are frozen, because those are counted here.
     #[cfg(all(target_arch = "wasm32", feature = "js"))]
     pub(crate) async fn outcome_array(&mut self) -> Result<(Outcome, Uint32Array), Error> {
         let start = Instant::now();
-        let array = self.triangles_array().await?;
+        let counts = self.engine.edge_counts();
+        let array = if self.stays && counts.non_manifold + counts.inconsistent == 0 {
+            Uint32Array::default()
+        } else {
+            self.triangles_array().await?
+        };
         let outcome = self.summary(start, &|| Cow::Owned(array.to_vec())).await?;
         Ok((outcome, array))
     }

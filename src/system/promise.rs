@@ -1,7 +1,7 @@
 //! Promises that reject if an exception or a trap occurs while a future is polled. The promises of wasm-bindgen would
 //! never settle, and the exception would end a Node process.
 
-use js_sys::{Function, Promise};
+use js_sys::{Function, Promise, Reflect};
 use std::pin::Pin;
 use std::sync::Arc;
 use std::task::{Context, Poll, Wake};
@@ -20,7 +20,8 @@ extern "C" {
     fn then(this: &Waking, continuation: JsValue) -> Promise;
 }
 
-/// A promise of the result of a future. The future is polled at once.
+/// A promise of the result of a future. The future is polled at once. If it is then ready, the promise has its result as
+/// a field, `value` or `error`, so that `src/js/sync.ts` need not wait.
 pub(crate) fn promise(future: impl Future<Output = Result<JsValue, JsValue>> + 'static) -> Promise {
     poll(Box::pin(future))
 }
@@ -29,19 +30,31 @@ pub(crate) fn promise(future: impl Future<Output = Result<JsValue, JsValue>> + '
 /// unwind.
 fn poll(task: Task) -> Promise {
     let mut task = Some(task);
-    Promise::new(&mut |resolve, reject| {
+    let mut ready = None;
+    let promise = Promise::new(&mut |resolve, reject| {
         let Some(mut task) = task.take() else { return };
         let mut wake = None;
         let woken = Waking::new(&mut |resolve| wake = Some(resolve));
         let waker = Arc::new(Alarm(wake)).into();
         let (settle, value) = match task.as_mut().poll(&mut Context::from_waker(&waker)) {
-            Poll::Ready(Ok(value)) => (resolve, value),
-            Poll::Ready(Err(thrown)) => (reject, thrown),
+            Poll::Ready(result) => {
+                let (settle, field, value) = match result {
+                    Ok(value) => (resolve, "value", value),
+                    Err(thrown) => (reject, "error", thrown),
+                };
+                ready = Some((field, value.clone()));
+                (settle, value)
+            }
             Poll::Pending => (resolve, woken.then(Closure::once_into_js(move || poll(task))).into()),
         };
         // These functions throw nothing.
         let _ = settle.call1(&JsValue::UNDEFINED, &value);
-    })
+    });
+    if let Some((field, value)) = ready {
+        // Setting a field of a promise does not fail.
+        let _ = Reflect::set(&promise, &field.into(), &value);
+    }
+    promise
 }
 
 /// Resolves the promise that the task waits for.

@@ -128,7 +128,7 @@ impl JsSession {
         self.ask(Session::triangles, |triangles| indices(triangles).into())
     }
 
-    /// As [`Session::outcome`].
+    /// As [`Session::outcome`]. If the triangles stay on a GPU, the outcome may have none.
     #[wasm_bindgen(
         unchecked_return_type = "Promise<Omit<import('../types.js').Result<Uint32Array>, 'threads' | 'hint' | 'turnedTriangles' | 'joinedVertices' | 'seamEdges'>>"
     )]
@@ -182,6 +182,15 @@ impl JsSession {
             ])
         };
         self.ask(input, |arguments| arguments.iter().collect::<Array>().into())
+    }
+
+    /// Whether the triangles stay on a GPU until somebody asks for them. It counts for the next calls.
+    #[cfg(feature = "js")]
+    #[wasm_bindgen(setter)]
+    pub fn set_stays(&self, stays: bool) {
+        if let Some(session) = self.0.borrow_mut().as_mut() {
+            session.stays = stays;
+        }
     }
 
     /// Iterations so far.

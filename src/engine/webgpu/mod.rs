@@ -85,6 +85,8 @@ pub(crate) struct WebGpu {
     allocation: Option<Caught>,
     /// Whether the host reads the counters before the first iteration. If not, it reads results in advance.
     waits: bool,
+    /// Whether the triangles stay on the device until somebody asks for them.
+    stays: bool,
     /// Results that the host has read in advance.
     known: Known,
     state: Entry,
@@ -120,6 +122,11 @@ impl Engine for WebGpu {
             Some(triangles) => Box::pin(std::future::ready(Ok(triangles))),
             None => self.read(|buffers| &buffers.triangles),
         }
+    }
+
+    #[cfg(all(target_arch = "wasm32", feature = "js"))]
+    fn set_stays(&mut self, stays: bool) {
+        self.stays = stays;
     }
 
     #[cfg(all(target_arch = "wasm32", feature = "js"))]

@@ -70,8 +70,8 @@ impl WebGpu {
             Source::new(&self.buffers.history, HISTORY_WORDS),
             Source::new(&self.counters, COUNTERS + 1),
         ];
-        // Most runs end in their first submission, so the triangles are read with it.
-        let is_run = self.params.first == 0 && count > 1;
+        // Most runs end in their first submission, so the triangles are read with it, unless they stay.
+        let is_run = self.params.first == 0 && count > 1 && !self.stays;
         let has_triangles = !self.waits && is_run && (4 * triangles as u64) < MOST_KEPT;
         if has_triangles {
             sources.push(Source::new(&self.buffers.triangles, triangles));

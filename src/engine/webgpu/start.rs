@@ -65,6 +65,7 @@ impl WebGpu {
                 unsettled: None,
                 allocation: None,
                 waits,
+                stays: false,
                 known: Known::default(),
                 state: Entry::default(),
                 dispatches: adjacency::DISPATCHES,
