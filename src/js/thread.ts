@@ -1,8 +1,7 @@
 /** A thread of the CPU engine: a worker. The first worker holds the sessions and answers calls. */
 
-import { buffersOf } from './buffers.js';
-import { type ErrorCode, fromModule } from './error.js';
 import type { IndexedMesh } from './mesh.js';
+import { answerCalls } from './remote.js';
 import type { Settings } from './settings.js';
 import { Indices, initSync, Session, startThreads, work } from './wasm/edgeflip_threads.js';
 
@@ -87,44 +86,5 @@ function lend(session: number, value: unknown): unknown {
   return indices instanceof Indices ? { ...(value as object), indices: lend(session, indices) } : value;
 }
 
-/** A message that calls a method. */
-export interface Call {
-  id: number;
-  method: keyof Calls;
-  args: unknown[];
-}
-
-/** The message that answers a call. */
-export interface Answer {
-  id: number;
-  value?: unknown;
-  error?: { code: ErrorCode; message: string };
-}
-
-const node = typeof process === 'undefined' ? undefined : process.getBuiltinModule?.('node:worker_threads');
-/** A worker of Node and a worker of a browser both have these two members. */
-const port = (node?.parentPort ?? globalThis) as unknown as {
-  onmessage: (event: MessageEvent<Call>) => void;
-  postMessage(answer: Answer, transfer: ArrayBuffer[]): void;
-};
-
-/**
- * After a trap the shared memory may be corrupt, so this raises an error of the worker, and the client ends all
- * threads.
- */
-function crash(reason: unknown): void {
-  setTimeout(() => {
-    throw reason;
-  });
-}
-
-port.onmessage = async ({ data: { id, method, args } }) => {
-  try {
-    const value: unknown = await (calls[method] as (...args: unknown[]) => unknown)(...args);
-    port.postMessage({ id, value }, buffersOf(value));
-  } catch (thrown) {
-    if (thrown instanceof WebAssembly.RuntimeError || method === 'work') return crash(thrown);
-    const { code, message } = fromModule(thrown);
-    port.postMessage({ id, error: { code, message } }, []);
-  }
-};
+// After a trap the shared memory may be corrupt, so the client ends all threads.
+answerCalls(calls, (thrown, method) => thrown instanceof WebAssembly.RuntimeError || method === 'work');

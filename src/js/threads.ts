@@ -1,11 +1,12 @@
 /** Sessions on the threads of the CPU engine: workers, each with an instance of one module. They share the memory. */
 
 import { collecting } from './collect.js';
-import { EdgeflipError, fromModule } from './error.js';
-import type { IndexedMesh } from './mesh.js';
 import { buffersOf } from './buffers.js';
-import type { Answer, Call, Calls, Question } from './thread.js';
+import { fromModule } from './error.js';
+import type { IndexedMesh } from './mesh.js';
+import { node, Remote, type Script, startThread, type Thread } from './remote.js';
 import { MOST_THREADS, type Settings } from './settings.js';
+import type { Calls, Question } from './thread.js';
 import type { Session } from './wasm/edgeflip.js';
 
 /** The methods of a session, in any module. */
@@ -24,9 +25,6 @@ const FEWEST_TRIANGLES = 65_536;
 /** The fewest triangles per thread: with fewer, some threads would have no work. */
 const FEWEST_EACH = 4096;
 
-/** The workers of Node. */
-const node = typeof process === 'undefined' ? undefined : process.getBuiltinModule?.('node:worker_threads');
-
 /** Whether workers can share memory. */
 const isShared = typeof SharedArrayBuffer !== 'undefined' && (globalThis.crossOriginIsolated ?? node !== undefined);
 
@@ -42,53 +40,21 @@ function coreCount(): number {
   );
 }
 
-/** A worker of a browser or of Node. A worker of Node keeps the process alive only during a call. */
-interface Thread {
-  post(call: Call, transfer: ArrayBuffer[]): void;
-  end(): void;
-  wait(isWaiting: boolean): void;
-}
-
-/** `onError` gets no message if the worker could not be loaded. */
-function startThread(onAnswer: (answer: Answer) => void, onError: (message?: string) => void): Thread {
-  // Bun and Deno have both kinds, but their web workers keep the process alive.
-  if (node && (typeof window === 'undefined' || typeof Worker === 'undefined')) {
-    const worker = new node.Worker(new URL('./thread.js', import.meta.url));
-    worker.on('message', onAnswer).on('error', ({ message }) => onError(message));
-    worker.on('messageerror', ({ message }) => onError(message));
-    worker.unref();
-    return {
-      post: (call, transfer) => worker.postMessage(call, transfer),
-      end: () => void worker.terminate(),
-      wait: (isWaiting) => (isWaiting ? worker.ref() : worker.unref()),
-    };
-  }
-  const worker = new Worker(new URL('./thread.js', import.meta.url), { type: 'module' });
-  worker.onmessage = ({ data }) => onAnswer(data);
-  worker.onerror = (event) => {
-    event.preventDefault();
-    onError(event.message);
-  };
-  worker.onmessageerror = () => onError('a message could not be read');
-  return {
-    post: (call, transfer) => worker.postMessage(call, transfer),
-    end: () => worker.terminate(),
-    wait: () => undefined,
-  };
-}
-
-type Given<M extends keyof Calls> = Awaited<ReturnType<Calls[M]>>;
+const script: Script = {
+  worker: () => new Worker(new URL('./thread.js', import.meta.url), { type: 'module' }),
+  url: () => new URL('./thread.js', import.meta.url),
+};
 
 /** The threads that work together. */
 class Pool {
-  readonly #threads: Thread[] = [];
-  readonly #calls = new Map<number, { resolve: (value: never) => void; reject: (error: Error) => void }>();
+  readonly #first: Remote<Calls>;
+  readonly #others: Thread[] = [];
   readonly #onEnd: () => void;
-  #numbers = 0;
-  #error: EdgeflipError | undefined;
+  #hasEnded = false;
 
   private constructor(onEnd: () => void) {
     this.#onEnd = onEnd;
+    this.#first = new Remote(script, (message) => this.#fail(message ?? 'a worker could not be loaded'));
   }
 
   /** The first thread answers calls, the others work with it. */
@@ -98,10 +64,9 @@ class Pool {
     onEnd: () => void,
   ): Promise<[Pool, WebAssembly.Memory]> {
     const pool = new Pool(onEnd);
-    pool.#add();
     try {
       const memory = await pool.call('start', module, count);
-      for (let i = 1; i < count; i++) pool.#add().post({ id: -1, method: 'work', args: [module, memory] }, []);
+      for (let i = 1; i < count; i++) pool.#add(module, memory);
       return [pool, memory];
     } catch (thrown) {
       pool.#fail(String(thrown));
@@ -109,40 +74,27 @@ class Pool {
     }
   }
 
-  #add(): Thread {
-    const onAnswer = ({ id, value, error }: Answer): void => {
-      const call = this.#calls.get(id);
-      this.#calls.delete(id);
-      if (this.#calls.size === 0) this.#threads[0]?.wait(false);
-      if (error) call?.reject(new EdgeflipError(error.code, error.message));
-      else call?.resolve(value as never);
-    };
-    const isFirst = this.#threads.length === 0;
-    const thread = startThread(onAnswer, (message) => {
-      // If one of the other workers cannot be loaded, the remaining threads do its work.
-      if (isFirst || message !== undefined) this.#fail(message ?? 'a worker could not be loaded');
-    });
-    this.#threads.push(thread);
-    return thread;
+  call<M extends keyof Calls>(method: M, ...args: Parameters<Calls[M]>): Promise<Awaited<ReturnType<Calls[M]>>> {
+    return this.#first.call(method, args, { transfer: method === 'begin' ? buffersOf(args) : [] });
   }
 
-  async call<M extends keyof Calls>(method: M, ...args: Parameters<Calls[M]>): Promise<Given<M>> {
-    const [first] = this.#threads;
-    if (!first) throw this.#error;
-    const id = this.#numbers++;
-    first.post({ id, method, args }, method === 'begin' ? buffersOf(args) : []);
-    first.wait(true);
-    return new Promise<Given<M>>((resolve, reject) => this.#calls.set(id, { resolve, reject }));
+  #add(module: WebAssembly.Module, memory: WebAssembly.Memory): void {
+    const onError = (message?: string) => {
+      // If a worker cannot be loaded, the remaining threads do its work.
+      if (message !== undefined) this.#fail(message);
+    };
+    const thread = startThread(script, () => undefined, onError);
+    this.#others.push(thread);
+    thread.post({ id: -1, method: 'work', args: [module, memory] }, []);
   }
 
   /** Ends all threads: after a crash of one, their shared memory may be corrupt. */
   #fail(message: string): void {
-    if (this.#error) return;
-    this.#error = fromModule(new Error(`a thread has crashed: ${message}`));
-    for (const thread of this.#threads.splice(0)) thread.end();
+    if (this.#hasEnded) return;
+    this.#hasEnded = true;
     this.#onEnd();
-    for (const { reject } of this.#calls.values()) reject(this.#error);
-    this.#calls.clear();
+    for (const thread of this.#others.splice(0)) thread.end();
+    this.#first.end(fromModule(new Error(`a thread has crashed: ${message}`)));
   }
 }
 
@@ -196,6 +148,7 @@ export class ThreadsSession implements ModuleSession {
   flips = 0;
   readonly backend = 'cpu';
   readonly isAway = true;
+  stays = false;
   readonly device = undefined;
   readonly positionBuffer = undefined;
   readonly indexBuffer = undefined;

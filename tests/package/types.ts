@@ -11,8 +11,10 @@ import {
   type Iteration,
   init,
   makeDelaunay,
+  makeDelaunaySync,
   type Mesh,
   type Sources,
+  type SyncOptions,
 } from 'edgeflip';
 import {
   type Angles,
@@ -27,6 +29,7 @@ import {
   weld,
   writeMesh,
 } from 'edgeflip/files';
+import { FlipSession as AwaySession, makeDelaunay as makeAway, type WorkerOptions } from 'edgeflip/worker';
 
 export async function use(mesh: Mesh<Uint32Array>, signal: AbortSignal, device?: GpuDevice): Promise<Uint32Array> {
   await init({ base: new URL('https://example.org/wasm') });
@@ -93,6 +96,17 @@ export async function types(mesh: Mesh): Promise<number[]> {
   return [...list, ...bytes];
 }
 
+/** In a worker, and without waiting. */
+export async function elsewhere(mesh: Mesh<Uint16Array>, signal: AbortSignal): Promise<Uint16Array> {
+  const options: SyncOptions = { maxIterations: 3, lockedTriangles: [0] };
+  const now: Uint16Array = makeDelaunaySync(mesh, options).indices;
+  const { threads } = await makeAway(mesh, { ...options, signal, onProgress: ({ flips }) => console.log(flips, now) });
+  const away: WorkerOptions = { backend: 'webgpu', weld: true };
+  const session: AwaySession<Uint16Array> = await AwaySession.create(mesh, away);
+  for await (const { index } of session) console.log(index, threads, (await session.verify()).clean);
+  return session.triangles();
+}
+
 export async function joined(mesh: Mesh<Uint32Array>, original: Original): Promise<Uint32Array> {
   const { seamEdges } = await makeDelaunay(mesh, { weld: [new Float32Array(8), new Uint8Array(4)] });
   const { joinedVertices } = await makeDelaunay(mesh, { weld: original, reorient: true });
@@ -107,6 +121,10 @@ export function codeOf(error: unknown): ErrorCode | undefined {
 
 // @ts-expect-error: there is no such backend
 void makeDelaunay({ positions: new Float32Array(), indices: new Uint16Array(), dimension: 2 }, { backend: 'gpu' });
+// @ts-expect-error: nothing waits for another module
+void makeDelaunaySync({ positions: new Float32Array(), indices: new Uint16Array(), dimension: 2 }, { weld: true });
+// @ts-expect-error: a device cannot be sent to a worker
+void makeAway({ positions: new Float32Array(), indices: new Uint16Array(), dimension: 2 }, { device: undefined });
 // @ts-expect-error: a source has the name of its module
 void init('https://example.org/edgeflip.wasm');
 // @ts-expect-error: this entry has one module

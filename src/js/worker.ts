@@ -1,0 +1,264 @@
+/**
+ * The entry `edgeflip` in a worker, so that no run blocks the page. Same names, same results. The worker starts with
+ * the first call, and all calls share it.
+ *
+ * ```ts
+ * import { makeDelaunay } from 'edgeflip/worker';
+ * const { indices } = await makeDelaunay(mesh, { onProgress: ({ flips }) => show(flips) });
+ * ```
+ *
+ * A `GPUDevice` and its buffers cannot leave a worker or enter it: there is no option `device` and no method `gpu`.
+ *
+ * @packageDocumentation
+ */
+
+/// <reference lib="esnext.disposable" preserve="true" />
+
+import { buffersOf } from './buffers.js';
+import { EdgeflipError, fromModule } from './error.js';
+import { copyOf, read } from './given.js';
+import { floatsOf, type Layout, readMesh } from './mesh.js';
+import type { Sources } from './module.js';
+import { Remote } from './remote.js';
+import { settingsOf, type Watch, WORKER_MAKE_OPTIONS, WORKER_OPTIONS, watchOf } from './settings.js';
+import type {
+  Audit,
+  Edges,
+  Engine,
+  IndexArray,
+  Indices,
+  Iteration,
+  MakeDelaunayOptions,
+  Mesh,
+  Options,
+  Progress,
+  Result,
+  RunOptions,
+  VertexArray,
+} from './types.js';
+import type { Functions, Question, Watched } from './worker-script.js';
+
+export { EDGE_STATES, type EdgeState } from './edge-states.js';
+export { EdgeflipError, type ErrorCode } from './error.js';
+export type { ModuleSource, Sources } from './module.js';
+export type * from './types.js';
+
+/** The options of a session in the worker. */
+export type WorkerOptions = Omit<Options, 'device'>;
+
+/** The options of {@link makeDelaunay} in the worker. */
+export type WorkerMakeOptions = Omit<MakeDelaunayOptions, 'device'>;
+
+let remote: Remote<Functions> | undefined;
+let numbers = 0;
+
+/** The worker. If it ends by an error, the next call starts another. */
+function worker(): Remote<Functions> {
+  const started = (remote ??= new Remote<Functions>(
+    {
+      worker: () => new Worker(new URL('./worker-script.js', import.meta.url), { type: 'module' }),
+      url: () => new URL('./worker-script.js', import.meta.url),
+    },
+    (message) => {
+      if (remote === started) remote = undefined;
+      const error =
+        message === undefined
+          ? new EdgeflipError('load-failed', 'worker-script.js of edgeflip/worker could not be loaded as a worker')
+          : fromModule(new Error(`the worker has crashed: ${message}`));
+      started.end(error);
+    },
+  ));
+  return started;
+}
+
+/** Runs in the worker. The signal stops the run, and events become calls of the callbacks. */
+async function watched<T>(
+  { signal, onProgress, onIteration }: Watch,
+  to: Remote<Functions>,
+  run: number,
+  start: (onEvent: (event: { progress?: Progress; iteration?: Iteration }) => void) => Promise<T>,
+): Promise<T> {
+  const stop = () => void to.call('stop', [run]).catch(() => undefined);
+  let thrown: { error: unknown } | undefined;
+  const running = start(({ progress, iteration }) => {
+    try {
+      if (thrown) return;
+      if (progress) onProgress?.(progress);
+      if (iteration) onIteration?.(iteration);
+    } catch (error) {
+      thrown = { error };
+      stop();
+    }
+  });
+  signal?.addEventListener('abort', stop);
+  try {
+    const value = await running;
+    if (thrown) throw thrown.error;
+    return value;
+  } finally {
+    signal?.removeEventListener('abort', stop);
+  }
+}
+
+/** As `init` of `edgeflip`, for the modules of the worker. Relative URLs count from the page. */
+export async function init(sources: Sources = {}): Promise<void> {
+  const given = read('the sources', () =>
+    Object.fromEntries(
+      Object.entries(sources).map(([name, source]) => [
+        name,
+        typeof source === 'string' || source instanceof URL ? new URL(source, globalThis.location?.href).href : source,
+      ]),
+    ),
+  );
+  await worker().call('init', [given]);
+}
+
+/**
+ * As `makeDelaunay` of `edgeflip`, in the worker. Copies the arrays of the mesh before it returns its promise, and never
+ * changes them.
+ *
+ * @throws {@link EdgeflipError} about the mesh, the options or the backend.
+ */
+export async function makeDelaunay<I extends IndexArray>(
+  mesh: Mesh<I>,
+  options: WorkerMakeOptions = {},
+): Promise<Result<I>> {
+  const watch = watchOf(options, WORKER_MAKE_OPTIONS);
+  const [views, layout] = readMesh(mesh, copyOf);
+  const settings = settingsOf(options, WORKER_MAKE_OPTIONS);
+  const [to, run] = [worker(), numbers++];
+  const result = await watched(watch, to, run, (onEvent) =>
+    to.call('make', [run, views, settings, named(watch)], { transfer: buffersOf([views, settings]), onEvent }),
+  );
+  return { ...result, indices: layout.give(result.indices) };
+}
+
+/** What the worker needs to know of the callbacks and the signal. */
+function named({ onProgress, onIteration, isStopped }: Watch): Watched {
+  return { onProgress: onProgress !== undefined, onIteration: onIteration !== undefined, isStopped: isStopped() };
+}
+
+/** Frees the sessions that the garbage collection has removed. */
+const dropped = new FinalizationRegistry<() => void>((free) => free());
+
+/** Not every browser has `Symbol.dispose` yet. */
+const dispose: typeof Symbol.dispose = Symbol.dispose ?? Symbol.for('Symbol.dispose');
+
+/** As `FlipSession` of `edgeflip`, in the worker. */
+export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIterable<Iteration>, Disposable {
+  readonly #to: Remote<Functions>;
+  readonly #session: number;
+  readonly #layout: Layout<I>;
+  readonly #free: () => void;
+  #isFreed = false;
+
+  private constructor(to: Remote<Functions>, session: number, layout: Layout<I>) {
+    this.#to = to;
+    this.#session = session;
+    this.#layout = layout;
+    this.#free = () => void to.call('free', [session]).catch(() => undefined);
+    dropped.register(this, this.#free, this);
+  }
+
+  /**
+   * Checks the mesh and prepares an engine for it. Copies the arrays of the mesh and of the options before it returns
+   * its promise; the caller may then change or transfer them.
+   *
+   * @throws {@link EdgeflipError} about the mesh, the options or the backend.
+   */
+  static async create<I extends IndexArray>(mesh: Mesh<I>, options: WorkerOptions = {}): Promise<FlipSession<I>> {
+    const [views, layout] = readMesh(mesh, copyOf);
+    const settings = settingsOf(options, WORKER_OPTIONS);
+    const [to, session] = [worker(), numbers++];
+    await to.call('create', [session, views, settings], { transfer: buffersOf([views, settings]) });
+    return new FlipSession(to, session, layout);
+  }
+
+  /** Runs one iteration. `undefined` if no edge can flip, or `maxIterations` is reached. */
+  step(): Promise<Iteration | undefined> {
+    return this.#ask('step');
+  }
+
+  /** The remaining iterations. After a `break`, the session keeps its state and can continue. */
+  async *[Symbol.asyncIterator](): AsyncGenerator<Iteration, void, undefined> {
+    for (let iteration = await this.step(); iteration; iteration = await this.step()) yield iteration;
+  }
+
+  /** Runs to the end, or until the signal stops the run. A stopped session can continue. */
+  async run(options: RunOptions = {}): Promise<Result<I>> {
+    const watch = watchOf(options);
+    this.#check();
+    const run = numbers++;
+    const result = await watched(watch, this.#to, run, (onEvent) =>
+      this.#to.call('run', [this.#session, run, named(watch)], { onEvent }),
+    );
+    return { ...result, indices: this.#layout.give(result.indices) };
+  }
+
+  /**
+   * Replaces the positions of all vertices; they have the stride and the offset of the mesh. The array is copied at
+   * once. The session then behaves like a new session on these positions and the present triangles.
+   *
+   * @throws {@link EdgeflipError} `invalid-input`, `too-large`, `ragged-array`, `position-count`, `non-finite`,
+   * `backend-limit`.
+   */
+  async setPositions(positions: VertexArray): Promise<void> {
+    await this.#ask('setPositions', floatsOf(positions, this.#layout, copyOf));
+  }
+
+  /** The result so far. */
+  async result(): Promise<Result<I>> {
+    const result = await this.#ask<Result>('result');
+    return { ...result, indices: this.#layout.give(result.indices) };
+  }
+
+  /** The triangles so far: vertex indices, 3 per triangle, in an array of the type of the mesh. */
+  async triangles(): Promise<Indices<I>> {
+    return this.#layout.give(await this.#ask('triangles'));
+  }
+
+  /** All edges of the present triangles. */
+  edges(): Promise<Edges> {
+    return this.#ask('edges');
+  }
+
+  /**
+   * The present state of each half-edge's edge: 3 numbers per triangle, in the order of {@link FlipSession.triangles}.
+   * The numbers are indices into {@link EDGE_STATES}.
+   */
+  edgeStates(): Promise<Uint8Array> {
+    return this.#ask('edgeStates');
+  }
+
+  /** Checks the triangles against the input, exactly, and lists the edges that are not Delaunay. */
+  verify(): Promise<Audit> {
+    return this.#ask('verify');
+  }
+
+  /** The present engine. */
+  backend(): Promise<Engine> {
+    return this.#ask('backend');
+  }
+
+  /** Frees memory and buffers after the present call. Later calls fail with `freed`. */
+  free(): void {
+    if (this.#isFreed) return;
+    this.#isFreed = true;
+    dropped.unregister(this);
+    this.#free();
+  }
+
+  /** As {@link FlipSession.free}: `using session = await FlipSession.create(mesh)`. */
+  [dispose](): void {
+    this.free();
+  }
+
+  async #ask<T>(question: Question, ...args: unknown[]): Promise<T> {
+    this.#check();
+    return (await this.#to.call('ask', [this.#session, question, args as never[]], { transfer: buffersOf(args) })) as T;
+  }
+
+  #check(): void {
+    if (this.#isFreed) throw new EdgeflipError('freed', 'the session has been freed');
+  }
+}
