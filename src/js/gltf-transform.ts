@@ -11,9 +11,10 @@
 
 import type { Accessor, Document, ILogger, Primitive, Transform } from '@gltf-transform/core';
 import { EdgeflipError } from './error.js';
+import { makeDelaunay } from './index.js';
 import { namesOf, optionsOf } from './names.js';
 import { type Matrix, stretched, stretches } from './placement.js';
-import { type Columns, flip, pointsOf, sequence, type Surface, unitOf } from './surface.js';
+import { type Columns, meshOf, pointsOf, sequence, type Surface, unitOf } from './surface.js';
 import type { MakeDelaunayOptions, Reason, Reasons, Result } from './types.js';
 
 export { EdgeflipError, type ErrorCode } from './error.js';
@@ -104,7 +105,7 @@ async function transformed(document: Document, options: DelaunayOptions): Promis
 }
 
 async function flipped(primitive: Primitive, stretch: Matrix | undefined, options: DelaunayOptions): Promise<Result> {
-  return flip(surfaceOf(primitive, stretch), options);
+  return makeDelaunay(...meshOf(surfaceOf(primitive, stretch), options));
 }
 
 /** Primitives with the same vertices, triangles and placement. */

@@ -1,7 +1,6 @@
 /** Runs on surfaces in the arrays of other libraries, for `three.ts` and `gltf-transform.ts`. */
 
-import { makeDelaunay } from './index.js';
-import type { MakeDelaunayOptions, Result, VertexArray } from './types.js';
+import type { MakeDelaunayOptions, Mesh, VertexArray } from './types.js';
 
 /** Numbers of vertices: those of vertex `i` are `array[i * stride + offset]` and the following, `width` in all. */
 export interface Columns {
@@ -31,15 +30,15 @@ export interface Surface {
 }
 
 /**
- * As `makeDelaunay`, but `weld` compares all attributes by default, and `maxDeviation` is in the units that normalized
- * positions stand for.
+ * The mesh and the options for `makeDelaunay`. `weld` compares all attributes by default, and `maxDeviation` is in the
+ * units that normalized positions stand for.
  */
-export function flip(surface: Surface, options: MakeDelaunayOptions): Promise<Result> {
+export function meshOf(surface: Surface, options: MakeDelaunayOptions): [Mesh<Uint32Array>, MakeDelaunayOptions] {
   const { vertices, positions, attributes } = surface;
   const { weld = attributes.map((columns) => comparable(columns, vertices)), maxDeviation } = options;
   const units = typeof maxDeviation === 'number' ? { maxDeviation: maxDeviation * unitOf(positions) } : {};
   const mesh = { positions: pointsOf(positions, vertices), indices: cornersOf(surface), dimension: 3 as const };
-  return makeDelaunay(mesh, { ...options, ...units, weld });
+  return [mesh, { ...options, ...units, weld }];
 }
 
 /** The whole numbers from `first` up to `end`, which is excluded: the indices of vertices that make triangles in order. */

@@ -14,10 +14,14 @@
 import type { BufferAttribute, BufferGeometry, GLBufferAttribute, InterleavedBufferAttribute } from 'three';
 import { EdgeflipError } from './error.js';
 import { objectOf, read, shown } from './given.js';
-import { type Columns, flip, sequence, type Surface } from './surface.js';
+import { makeDelaunay } from './index.js';
+import { flipShared, type OnGpu, type Renderer, rendererOf, type Run } from './renderer.js';
+import type { FlipSession } from './session.js';
+import { type Columns, meshOf, sequence, type Surface } from './surface.js';
 import type { MakeDelaunayOptions, Result } from './types.js';
 
 export { EdgeflipError, type ErrorCode } from './error.js';
+export type { Renderer } from './renderer.js';
 
 /**
  * The options of {@link delaunayGeometry}. `lockedTriangles` and `groups` count all triangles of the geometry.
@@ -29,12 +33,26 @@ export { EdgeflipError, type ErrorCode } from './error.js';
 export interface GeometryOptions extends MakeDelaunayOptions {
   /** Whether to leave the geometry as it is and change a clone of it. Default: `false`. */
   copy?: boolean | undefined;
+  /**
+   * The `WebGPURenderer` that draws the geometry. The run uses its device, and the renderer then draws from the buffer
+   * that the flips wrote: the triangles do not travel to the CPU. `geometry.index` becomes a new attribute, whose array
+   * still has the triangles before the run. The default of `weld` is then `false`.
+   *
+   * Without WebGPU, where `'auto'` takes the CPU, with `weld`, for a geometry without an index, and for a part of a
+   * geometry in `drawRange`, the index is written on the CPU as without this option.
+   */
+  renderer?: Renderer | undefined;
 }
 
 /** The result of {@link delaunayGeometry}. Its indices are in the geometry. */
 export interface GeometryResult<G extends BufferGeometry = BufferGeometry> extends Omit<Result, 'indices'> {
   /** The geometry that was changed: the given one, or its clone. */
   geometry: G;
+  /**
+   * The session with the buffer that the `renderer` draws from, if the triangles are on its device. It is freed when
+   * the geometry is disposed of. `await session.triangles()` reads them.
+   */
+  session: FlipSession | undefined;
 }
 
 type Attribute = BufferAttribute | InterleavedBufferAttribute | GLBufferAttribute;
@@ -56,15 +74,34 @@ export async function delaunayGeometry<G extends BufferGeometry>(
   geometry: G,
   options: GeometryOptions = {},
 ): Promise<GeometryResult<G>> {
-  const { target, surface, range, settings } = read('the geometry', () => opened(geometry, options));
+  const { target, surface, range, settings, renderer } = read('the geometry', () => opened(geometry, options));
   const { index } = target;
   const version = index?.version;
-  const { indices, ...result } = await flip(surface, settings);
+  const given = meshOf(surface, settings);
+  const run: Run = renderer ? await flipShared(renderer, ...given) : { result: await makeDelaunay(...given) };
+  const { onGpu } = run;
+  const { indices, ...result } = run.result;
   if (target.index !== index || index?.version !== version) {
+    onGpu?.session.free();
     throw new EdgeflipError('invalid-input', 'the index of the geometry changed during the run');
   }
-  if (result.flips + result.turnedTriangles > 0) write(target, indices, range, surface.vertices);
-  return { geometry: target, ...result };
+  if (onGpu) draw(target, onGpu);
+  else if (result.flips + result.turnedTriangles > 0) write(target, indices, range, surface.vertices);
+  return { geometry: target, session: onGpu?.session, ...result };
+}
+
+/** Gives the geometry an index that is drawn from the buffer of the session. */
+function draw(geometry: BufferGeometry, { session, adopt }: OnGpu): void {
+  const index = geometry.index!.clone();
+  // The renderer takes the size of an index from this array.
+  index.array = Uint32Array.from(index.array);
+  adopt(index);
+  geometry.setIndex(index);
+  const onDispose = () => {
+    geometry.removeEventListener('dispose', onDispose);
+    session.free();
+  };
+  geometry.addEventListener('dispose', onDispose);
 }
 
 /** The first index of the triangles that may change, and the end. */
@@ -72,7 +109,8 @@ type Range = readonly [number, number];
 
 /** Reads a geometry and the options before the first wait. */
 function opened<G extends BufferGeometry>(geometry: G, options: GeometryOptions) {
-  const { copy = false, ...given } = objectOf(options, 'options') as GeometryOptions;
+  const { copy = false, renderer: drawing, ...given } = objectOf(options, 'options') as GeometryOptions;
+  const renderer = rendererOf(drawing);
   if (typeof copy !== 'boolean') {
     throw new EdgeflipError('invalid-option', `option copy: ${shown(copy)} is not true or false`);
   }
@@ -81,7 +119,10 @@ function opened<G extends BufferGeometry>(geometry: G, options: GeometryOptions)
   }
   const target = copy ? (geometry.clone() as G) : geometry;
   const { index, drawRange } = target;
-  const { vertices, positions, attributes } = verticesOf(target, given.weld === undefined);
+  const isWhole = drawRange.start === 0 && drawRange.count >= (index?.count ?? Infinity);
+  const isShared = renderer !== undefined && isWhole && !given.weld;
+  const isCompared = given.weld === undefined && !isShared;
+  const { vertices, positions, attributes } = verticesOf(target, isCompared);
   const corners = index?.count ?? vertices;
   if (corners % 3 > 0) {
     throw invalid(`the geometry has ${corners} ${index ? 'indices' : 'vertices and no index'}, not a multiple of 3`);
@@ -90,7 +131,8 @@ function opened<G extends BufferGeometry>(geometry: G, options: GeometryOptions)
   const indices = (index?.array as Uint32Array | undefined)?.subarray(...range) ?? sequence(...range);
   const surface: Surface = { vertices, positions, attributes, indices };
   const groups = given.groups ?? groupsOf(target, corners);
-  return { target, surface, range, settings: inRange({ ...given, groups }, range, corners) };
+  const settings = inRange({ ...given, groups, ...(isShared && { weld: false }) }, range, corners);
+  return { target, surface, range, settings, renderer: isShared ? renderer : undefined };
 }
 
 /** The columns of the positions and, if they are compared, of the other attributes. */
