@@ -5,10 +5,9 @@
 
 import { spawn, spawnSync } from 'node:child_process';
 import { createHash } from 'node:crypto';
-import { cpSync, existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { cpSync, existsSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
-import { promisify } from 'node:util';
-import { brotliCompress, gzip, gzipSync } from 'node:zlib';
+import { gzipSync } from 'node:zlib';
 import binaryen from 'binaryen';
 
 process.chdir(fileURLToPath(new URL('..', import.meta.url)));
@@ -172,24 +171,17 @@ await Promise.all([
   run(process.execPath, 'node_modules/typescript/bin/tsc', '-p', 'src/js', '--skipLibCheck'),
 ]);
 
-const glueFiles = modules.flatMap(({ name }) => [`wasm/${name}_bg.wasm`, `wasm/${name}.js`]);
-const rows = [
-  ...glueFiles,
-  'glsl.js',
-  'session.js',
-  'index.js',
-  'files.js',
-  'inline-core.js',
-  'three.js',
-  'gltf-transform.js',
-].map(async (name) => {
-  const bytes = readFileSync(`dist/${name}`);
-  const sizes = await Promise.all([bytes, promisify(gzip)(bytes), promisify(brotliCompress)(bytes)]);
-  return `| dist/${name} | ${sizes.map(({ length }) => length).join(' | ')} |`;
-});
-console.log(['\n| file | bytes | gzip | brotli |', '|---|---:|---:|---:|', ...(await Promise.all(rows))].join('\n'));
-const most = 140 * 1024; // bytes, gzipped
-if (gzipSync(readFileSync(engines)).length > most) {
-  console.error(`build: ${engines} has more than ${most} bytes gzipped (see the table)`);
-  process.exitCode = 1;
+// Programs in CommonJS get the same modules by `require`; TypeScript needs declarations of its own for them.
+mkdirSync('dist/cjs');
+writeFileSync('dist/cjs/package.json', '{ "type": "commonjs" }\n');
+for (const file of readdirSync('dist', { recursive: true })) {
+  if (file.endsWith('.d.ts') && !file.startsWith('cjs')) cpSync(`dist/${file}`, `dist/cjs/${file}`);
 }
+const { exports } = JSON.parse(readFileSync('package.json', 'utf8'));
+for (const { require } of Object.values(exports)) {
+  if (!require) continue;
+  const file = require.default.split('/').at(-1);
+  writeFileSync(`dist/cjs/${file}`, `module.exports = require('../${file}');\n`);
+}
+
+await run(process.execPath, 'tools/sizes.mjs');

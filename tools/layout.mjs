@@ -15,7 +15,9 @@ const files = folders.flatMap((folder) =>
     .map((file) => posix.join(folder, file)),
 );
 const text = new Map(
-  files.filter((file) => /\.(rs|ts|m?js|css|html|wgsl)$/.test(file)).map((file) => [file, readFileSync(file, 'utf8')]),
+  files
+    .filter((file) => /\.(rs|ts|m?js|css|html|wgsl)$/.test(file) && !file.includes('/node_modules/'))
+    .map((file) => [file, readFileSync(file, 'utf8')]),
 );
 const errors = [];
 

@@ -9,6 +9,7 @@
 #   and the source of std
 # * wasm-bindgen, of Cargo.lock's version  cargo install, into target/setup
 # * the packages of package-lock.json      npm ci
+#   the bundlers of tests/bundlers         npm ci
 #   Chromium and chromedriver              apt on Debian; elsewhere the script says how
 #   Firefox                                apt on Debian; elsewhere the script says how
 #   Xvfb, if there is no display           apt on Debian and Ubuntu
@@ -169,14 +170,22 @@ fi
 
 # --- npm packages -----------------------------------------------------------------------------------------
 # npm keeps a copy of the lock file in node_modules. If the copy is older, packages have changed.
-if [ ! -e node_modules/.package-lock.json ] || [ package-lock.json -nt node_modules/.package-lock.json ]; then
-  say "npm ci"
-  npm ci --no-audit --no-fund --loglevel=error ||
-    stop "npm ci failed (see above)." "Run: npm ci"
-fi
+install_packages() { # FOLDER ARGUMENT…
+  local folder=$1
+  shift
+  local copy=$folder/node_modules/.package-lock.json
+  [ ! -e "$copy" ] || [ "$folder/package-lock.json" -nt "$copy" ] || return 0
+  say "npm ci in $folder"
+  npm ci --prefix "$folder" --no-audit --no-fund --loglevel=error "$@" ||
+    stop "npm ci failed in $folder (see above)." "Run: npm ci --prefix $folder"
+}
+install_packages .
 
 ready() { say "ready: $(rustc --version); wasm32 with $(tools/wasm-cargo.sh --which)"; }
 $for_tests || { ready; exit; }
+
+# The bundlers that the package is tested with. Their install scripts would fetch what is already there.
+install_packages tests/bundlers --ignore-scripts
 
 # --- Chromium ---------------------------------------------------------------------------------------------
 if [ -z "${CHROMEDRIVER:-}" ] && ! has chromedriver; then

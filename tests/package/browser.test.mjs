@@ -3,18 +3,17 @@
 // as Node. Packs the existing dist/.
 
 import assert from 'node:assert/strict';
-import { spawnSync } from 'node:child_process';
-import { copyFileSync, existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { copyFileSync, readFileSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, describe, test } from 'node:test';
 import { setTimeout as pause } from 'node:timers/promises';
-import { fileURLToPath, pathToFileURL } from 'node:url';
+import { pathToFileURL } from 'node:url';
 import { build, createServer } from 'vite';
 import { closeAll, ISOLATED, openPage, serve, startChromium, startFirefox } from '../browsers.mjs';
+import { Projects, repository, run } from './project.mjs';
 
-const repository = fileURLToPath(new URL('../..', import.meta.url));
-const folder = mkdtempSync(join(tmpdir(), 'edgeflip-package-'));
+const projects = new Projects(join(tmpdir(), 'edgeflip-package-'));
 
 const [, fiveLines] =
   readFileSync(join(repository, 'docs/package.md'), 'utf8').match(
@@ -59,6 +58,18 @@ const withFakes = `
   document.body.append(\`refused on \${backend}: \${codes}\`);
 `;
 
+/** A program in CommonJS. */
+const inCommonJs = `
+  import edgeflip = require('edgeflip');
+  import files = require('edgeflip/files');
+  async function flips(mesh: edgeflip.Mesh, options: edgeflip.Options): Promise<number> {
+    const session: edgeflip.FlipSession<edgeflip.IndexArray> = await edgeflip.FlipSession.create(mesh, options);
+    console.log((await files.generate('random 8')).positions.length);
+    return (await session.run()).flips;
+  }
+  void flips;
+`;
+
 /** The same lines on another engine. */
 function on(backend, lines) {
   assert.match(lines, /'auto'/);
@@ -84,26 +95,6 @@ const pages = [
   { name: 'fakes', lines: withFakes, writes: '' },
 ];
 
-function run(program, args, cwd) {
-  const shell = process.platform === 'win32'; // on Windows, npm is a script
-  const { status, stdout, stderr, error } = spawnSync(program, args, { cwd, encoding: 'utf8', shell });
-  assert.equal(status, 0, `${program} ${args.join(' ')}: ${error ?? ''}\n${stdout}\n${stderr}`);
-  return stdout;
-}
-
-/** @type {{ filename: string, files: { path: string }[] }} */
-let packed;
-
-/** A new folder with the installed package. */
-function project(name) {
-  const root = join(folder, name);
-  mkdirSync(root);
-  const dependencies = { edgeflip: `file:${join(folder, packed.filename)}` };
-  writeFileSync(join(root, 'package.json'), JSON.stringify({ name, private: true, type: 'module', dependencies }));
-  run('npm', ['install', '--offline', '--install-links', '--ignore-scripts', '--no-audit', '--no-fund'], root);
-  return root;
-}
-
 const html = (script) => `<!doctype html>
 <html lang="en">
 <meta charset="utf-8">
@@ -113,9 +104,7 @@ ${script}
 `;
 
 before(async () => {
-  assert.ok(existsSync(join(repository, 'dist/index.js')), 'dist/ is not built: npm run build');
-  [packed] = JSON.parse(run('npm', ['pack', '--json', '--ignore-scripts', '--pack-destination', folder], repository));
-  const root = project('node');
+  const root = projects.project('node');
   globalThis.document = { body: { append: (text) => (globalThis.written = text) } };
   for (const page of pages) {
     const file = join(root, `${page.name}.js`);
@@ -127,7 +116,7 @@ before(async () => {
 });
 after(async () => {
   await closeAll();
-  rmSync(folder, { recursive: true, force: true });
+  projects.remove();
 });
 
 /** Opens every page and compares its output. If memory can be shared, threads have workers. */
@@ -155,7 +144,7 @@ async function check(browser, address, isIsolated) {
 }
 
 function plainPages(folder) {
-  const root = project(folder);
+  const root = projects.project(folder);
   for (const { name, lines } of pages) {
     writeFileSync(join(root, `${name}.html`), html(`<script type="module">\n${lines}</script>`));
   }
@@ -163,7 +152,7 @@ function plainPages(folder) {
 }
 
 function viteProject(folder) {
-  const root = project(folder);
+  const root = projects.project(folder);
   for (const { name, lines } of pages) {
     writeFileSync(join(root, `${name}.html`), html(`<script type="module" src="./${name}.js"></script>`));
     writeFileSync(join(root, `${name}.js`), byName(lines));
@@ -180,24 +169,28 @@ test('docs/package.md has five lines, and they flip the long diagonal', () => {
 });
 
 test('the package contains the files that its entries need, and no source', () => {
-  const paths = packed.files.map(({ path }) => path);
+  const paths = projects.packed.files.map(({ path }) => path);
   const { exports } = JSON.parse(readFileSync(join(repository, 'package.json'), 'utf8'));
-  const entries = Object.values(exports).flatMap((entry) => (typeof entry === 'string' ? entry : Object.values(entry)));
+  const filesOf = (entry) => (typeof entry === 'string' ? entry : Object.values(entry).flatMap(filesOf));
+  const entries = Object.values(exports).flatMap(filesOf);
   for (const entry of entries) assert.ok(paths.includes(entry.replace('./', '')), entry);
-  const others = paths.filter((path) => !/^dist\/(wasm\/)?[\w-]+(\.d\.ts|\.js|\.wasm|\.wasm\.d\.ts)$/.test(path));
-  assert.deepEqual(others.sort(), ['LICENSE-APACHE', 'LICENSE-MIT', 'README.md', 'package.json']);
+  const isBuilt = (path) => /^dist\/(cjs\/)?(wasm\/)?[\w-]+(\.d\.ts|\.js|\.wasm|\.wasm\.d\.ts)$/.test(path);
+  const others = paths.filter((path) => !isBuilt(path) && !/^(docs|examples)\/|^[A-Z]+\.md$/.test(path));
+  assert.deepEqual(others.sort(), ['LICENSE-APACHE', 'LICENSE-MIT', 'dist/cjs/package.json', 'package.json']);
 });
 
 for (const version of ['5.4', '', '6', '7']) {
   const name = `typescript${version && `-${version}`}`;
   test(`a strict project finds the types with ${name}, with a bundler and in old and new Node, and checks all declarations`, () => {
-    const root = project(name);
+    const root = projects.project(name);
     writeFileSync(join(root, 'lines.ts'), byName(fiveLines));
     writeFileSync(join(root, 'files.ts'), byName(withFiles));
     copyFileSync(join(repository, 'tests/package/types.ts'), join(root, 'types.ts'));
+    writeFileSync(join(root, 'common.cts'), inCommonJs);
     for (const [module, moduleResolution] of [
       ['ESNext', 'bundler'],
       ['NodeNext', 'NodeNext'],
+      ['Node16', 'Node16'],
       // TypeScript 6 warns of it, and 7 has none.
       ...(Number(version || '5.9') < 6 ? [['ESNext', 'Node10']] : []),
     ]) {
@@ -212,7 +205,8 @@ for (const version of ['5.4', '', '6', '7']) {
         verbatimModuleSyntax: true,
         noEmit: true,
       };
-      writeFileSync(join(root, 'tsconfig.json'), JSON.stringify({ compilerOptions, include: ['*.ts'] }));
+      const include = ['*.ts', ...(module.startsWith('Node') ? ['*.cts'] : [])];
+      writeFileSync(join(root, 'tsconfig.json'), JSON.stringify({ compilerOptions, include }));
       run(process.execPath, [join(repository, `node_modules/${name}/bin/tsc`), '-p', root], root);
     }
   });

@@ -1,0 +1,72 @@
+// Prints the sizes of the package in dist/ and compares them with their budgets: the WebAssembly modules, and the
+// scripts of each entry, bundled and minified as in a program that uses it. Fails if one exceeds its budget.
+
+import { readFileSync } from 'node:fs';
+import { brotliCompressSync, gzipSync } from 'node:zlib';
+import * as esbuild from 'esbuild';
+
+/** The most bytes after gzip. */
+const BUDGETS = {
+  'edgeflip_bg.wasm': 140 * 1024,
+  edgeflip: 20_000,
+  'edgeflip/inline': 1.4 * 140 * 1024,
+  'edgeflip/worker': 2_000,
+  'edgeflip/files': 6_000,
+  'edgeflip/three': 6_000,
+  'edgeflip/gltf-transform': 6_000,
+};
+
+const { exports } = JSON.parse(readFileSync('package.json', 'utf8'));
+const entries = Object.fromEntries(
+  Object.entries(exports).flatMap(([path, { import: given }]) =>
+    given ? [[`edgeflip${path.slice(1)}`, given.default.replace('./', '')]] : [],
+  ),
+);
+const { outputFiles, metafile } = await esbuild.build({
+  entryPoints: Object.values(entries),
+  bundle: true,
+  splitting: true,
+  minify: true,
+  format: 'esm',
+  outdir: 'target/sizes',
+  metafile: true,
+  write: false,
+});
+const text = new Map(outputFiles.map((file) => [file.path.replaceAll('\\', '/').split('target/sizes/')[1], file]));
+
+/** The scripts that an entry loads at once. Those of `edgeflip` count only for `edgeflip` and `edgeflip/inline`. */
+function scripts(entry) {
+  const outputs = Object.entries(metafile.outputs);
+  const [first] = outputs.find(([, { entryPoint }]) => entryPoint === entries[entry]);
+  const found = new Set([first]);
+  for (const output of found) {
+    for (const { path, kind, external } of metafile.outputs[output].imports) {
+      if (kind === 'import-statement' && !external) found.add(path);
+    }
+  }
+  return found;
+}
+
+const core = scripts('edgeflip');
+const all = (names) => Buffer.concat([...names].map((name) => text.get(name.split('target/sizes/')[1]).contents));
+const rows = [
+  ...['edgeflip', 'edgeflip_threads', 'edgeflip_webgl2', 'edgeflip_audit', 'edgeflip_files'].map((name) => [
+    `${name}_bg.wasm`,
+    readFileSync(`dist/wasm/${name}_bg.wasm`),
+  ]),
+  ...Object.keys(entries).map((entry) => {
+    const isWhole = ['edgeflip', 'edgeflip/inline'].includes(entry);
+    return [entry, all([...scripts(entry)].filter((name) => isWhole || !core.has(name)))];
+  }),
+];
+console.log('\n| module, or scripts of an entry beside those of `edgeflip` | bytes | gzip | brotli | budget, gzip |');
+console.log('|---|---:|---:|---:|---:|');
+for (const [name, bytes] of rows) {
+  const zipped = gzipSync(bytes).length;
+  const most = BUDGETS[name];
+  console.log(`| ${name} | ${bytes.length} | ${zipped} | ${brotliCompressSync(bytes).length} | ${most ?? ''} |`);
+  if (zipped > most) {
+    console.error(`sizes: ${name} has ${zipped} bytes gzipped; its budget is ${most}`);
+    process.exitCode = 1;
+  }
+}
