@@ -138,6 +138,9 @@ const levels = [
         'tests/package/limited.test.mjs',
         'tests/package/hostile.test.mjs',
         'tests/package/options.test.mjs',
+        'tests/package/sync.test.mjs',
+        'tests/package/worker.test.mjs',
+        'tests/package/release.test.mjs',
       ],
     ],
     counts: true,
@@ -155,7 +158,7 @@ const levels = [
   },
   {
     name: 'npm package in browsers',
-    what: 'the packed package in fresh projects: plain pages in Chromium and Firefox, Vite, Rollup, esbuild, TypeScript, on the CPU and WebGPU',
+    what: 'the packed package in fresh projects: plain pages in Chromium and Firefox, every bundler and runtime of docs/package.md, TypeScript, on the CPU and WebGPU',
     checks: [
       [
         'node',
@@ -166,6 +169,9 @@ const levels = [
         'tests/package/loss.test.mjs',
         'tests/package/waits.test.mjs',
         'tests/package/options.browser.test.mjs',
+        'tests/package/three.browser.test.mjs',
+        'tests/package/examples.browser.test.mjs',
+        'tests/package/projects.test.mjs',
       ],
     ],
     counts: true,
