@@ -9,7 +9,7 @@
 #   and the source of std
 # * wasm-bindgen, of Cargo.lock's version  cargo install, into target/setup
 # * the packages of package-lock.json      npm ci
-#   the bundlers of tests/bundlers         npm ci
+#   the packages of tests/peers            npm ci
 #   Chromium and chromedriver              apt on Debian; elsewhere the script says how
 #   Firefox                                apt on Debian; elsewhere the script says how
 #   Xvfb, if there is no display           apt on Debian and Ubuntu
@@ -136,7 +136,7 @@ build_debian_std() {
   "${root[@]}" rm -rf "$out"
   "${root[@]}" mkdir -p "$out"
   "${root[@]}" cp "$scratch"/target/wasm32-unknown-unknown/release/deps/lib*.rlib "$out/"
-  rm -rf "$scratch" target/wasm # files built against another std do not fit
+  rm -rf "$scratch" target/wasm target/wasm-threads # files built against another std do not fit
 }
 by_hand="Run: rustup target add wasm32-unknown-unknown && rustup component add rust-src"
 if ! tools/wasm-cargo.sh --which >/dev/null 2>&1; then
@@ -153,6 +153,24 @@ if ! tools/wasm-cargo.sh --which >/dev/null 2>&1; then
     stop "still no compiler can compile for wasm32." "$by_hand, and read its messages"
 fi
 
+# --- npm packages -----------------------------------------------------------------------------------------
+# npm keeps a copy of the lock file in node_modules. If the copy is older, packages have changed.
+install_packages() { # FOLDER ARGUMENT…
+  local folder=$1
+  shift
+  local copy=$folder/node_modules/.package-lock.json
+  [ ! -e "$copy" ] || [ "$folder/package-lock.json" -nt "$copy" ] || return 0
+  say "npm ci in $folder"
+  npm ci --prefix "$folder" --no-audit --no-fund --loglevel=error "$@" ||
+    stop "npm ci failed in $folder (see above)." "Run: npm ci --prefix $folder"
+}
+# Beside the build of wasm-bindgen. The install scripts of tests/peers would fetch what is already there.
+{
+  install_packages .
+  ! $for_tests || install_packages tests/peers --ignore-scripts
+} &
+packages=$!
+
 # --- wasm-bindgen -----------------------------------------------------------------------------------------
 # The program must have the version of the crate. The install includes the runner of the browser tests.
 wanted=$(sed -n '/^name = "wasm-bindgen"$/{n;s/^version = "\(.*\)"$/\1/p;}' Cargo.lock)
@@ -168,24 +186,10 @@ if [ "$(target/setup/bin/wasm-bindgen --version 2>/dev/null)" != "wasm-bindgen $
   rm -rf target/setup/build
 fi
 
-# --- npm packages -----------------------------------------------------------------------------------------
-# npm keeps a copy of the lock file in node_modules. If the copy is older, packages have changed.
-install_packages() { # FOLDER ARGUMENT…
-  local folder=$1
-  shift
-  local copy=$folder/node_modules/.package-lock.json
-  [ ! -e "$copy" ] || [ "$folder/package-lock.json" -nt "$copy" ] || return 0
-  say "npm ci in $folder"
-  npm ci --prefix "$folder" --no-audit --no-fund --loglevel=error "$@" ||
-    stop "npm ci failed in $folder (see above)." "Run: npm ci --prefix $folder"
-}
-install_packages .
+wait "$packages"
 
 ready() { say "ready: $(rustc --version); wasm32 with $(tools/wasm-cargo.sh --which)"; }
 $for_tests || { ready; exit; }
-
-# The bundlers that the package is tested with. Their install scripts would fetch what is already there.
-install_packages tests/bundlers --ignore-scripts
 
 # --- Chromium ---------------------------------------------------------------------------------------------
 if [ -z "${CHROMEDRIVER:-}" ] && ! has chromedriver; then

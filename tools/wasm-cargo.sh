@@ -5,7 +5,7 @@
 # Debian's in /usr/bin, for which tools/setup.sh builds the target if rustup's server is out of reach.
 # This script takes the first toolchain that has the source of std, which `--threads` needs, and whose compiler can
 # compile a line of Rust for wasm32. Its compiler cannot if the std for wasm32 belongs to an older compiler. The script
-# has its own target directory, so that this build and the native build do not rebuild each other's crates.
+# has its own target directories, so that its builds and the native build do not rebuild each other's crates.
 # `tools/wasm-cargo.sh --which` prints the compiler, and fails if there is none.
 # `tools/wasm-cargo.sh --threads build …` builds the crate and std for instances that share their memory.
 set -euo pipefail
@@ -52,5 +52,7 @@ if [ "${1:-}" = --threads ]; then
   RUSTFLAGS+=" -C target-feature=+atomics ${link[*]/#/-C link-arg=}"
   # The prebuilt std of the compiler has no atomics.
   export CARGO_UNSTABLE_BUILD_STD=std,panic_abort
+  # It shares no crate with the other builds, so it can run beside them.
+  export CARGO_TARGET_DIR="$PWD/target/wasm-threads"
 fi
 exec cargo "$@"
