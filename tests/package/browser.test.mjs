@@ -133,7 +133,13 @@ async function check(browser, address, isIsolated) {
     // When the first worker has finished, the other workers may not have loaded yet.
     for (let i = 0; i < 100 && page.workers().length < wanted; i++) await pause(50);
     const workers = page.workers().length;
+    const fetched = await page.evaluate(() => performance.getEntriesByType('resource').map(({ name }) => name));
     await page.close();
+    // 'auto' on the CPU fetches the module of the engines and no other.
+    if (name === 'index') {
+      const modules = fetched.flatMap((url) => url.match(/edgeflip\w*?_bg(?=[-.\w]*\.wasm)/) ?? []);
+      assert.deepEqual([...new Set(modules)], ['edgeflip_bg']);
+    }
     assert.deepEqual({ name, workers }, { name, workers: wanted });
     assert.deepEqual({ name, problems }, { name, problems: [] });
     const [, backend] = lines.match(/backend: '(\w+)'/);

@@ -14,6 +14,7 @@ import { MeshoptDecoder } from 'meshoptimizer/decoder';
 import { MeshoptEncoder } from 'meshoptimizer/encoder';
 import * as THREE from 'three';
 import { faults, riggedGlb } from './gltf.mjs';
+import { primitivesOf, surfaceOf } from './primitives.mjs';
 import { badEdges, same, sameTexture } from './surfaces.mjs';
 
 const io = new NodeIO().registerExtensions(ALL_EXTENSIONS).registerDependencies({
@@ -28,31 +29,6 @@ function listen(document) {
   const keep = (level) => (line) => lines.push(`${level}: ${line}`);
   document.setLogger({ debug: () => {}, info: keep('info'), warn: keep('warn'), error: keep('error') });
   return lines;
-}
-
-const primitivesOf = (document) =>
-  document
-    .getRoot()
-    .listMeshes()
-    .flatMap((mesh) => mesh.listPrimitives());
-
-const rows = (accessor) => {
-  const width = accessor.getElementSize();
-  const array = accessor.getArray();
-  return Array.from({ length: accessor.getCount() }, (_, i) => [...array.subarray(width * i, width * (i + 1))]);
-};
-
-function surfaceOf(primitive) {
-  const position = primitive.getAttribute('POSITION');
-  const uv = primitive.getAttribute('TEXCOORD_0');
-  const others = primitive.listAttributes().filter((accessor) => accessor !== position);
-  const all = [...others, ...primitive.listTargets().flatMap((target) => target.listAttributes())].map(rows);
-  return {
-    positions: rows(position).flat(),
-    records: Array.from({ length: position.getCount() }, (_, i) => JSON.stringify(all.map((row) => row[i]))),
-    uvs: uv && rows(uv).flat(),
-    indices: [...(primitive.getIndices()?.getArray() ?? Array.from({ length: position.getCount() }, (_, i) => i))],
-  };
 }
 
 /** Transforms the document and compares. Returns the line of the logger. */

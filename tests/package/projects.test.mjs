@@ -1,20 +1,25 @@
 // The packed package in fresh projects of the bundlers and runtimes of docs/package.md, each with the settings of its
-// line in the tables there and no others. Uses the existing dist/, and the programs that tests/bundlers installs.
+// line in the tables there and no others; and beside the functions of glTF-Transform. Uses the existing dist/, and the programs that tests/peers installs.
 
 import assert from 'node:assert/strict';
 import { spawn } from 'node:child_process';
-import { mkdirSync, readdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { copyFileSync, mkdirSync, readdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { pathToFileURL } from 'node:url';
+import { NodeIO } from '@gltf-transform/core';
+import { ALL_EXTENSIONS } from '@gltf-transform/extensions';
 import { closeAll, ISOLATED, openPage, serve, startChromium } from '../browsers.mjs';
+import { faults } from './gltf.mjs';
+import { primitivesOf, surfaceOf } from './primitives.mjs';
 import { Projects, repository, run } from './project.mjs';
+import { badEdges, border } from './surfaces.mjs';
 
-const bundlers = join(repository, 'tests/bundlers');
-const require = createRequire(join(bundlers, 'package.json'));
-// Inside tests/bundlers, so that a project of Next finds React.
-const projects = new Projects(join(bundlers, 'projects-'));
+const peers = join(repository, 'tests/peers');
+const require = createRequire(join(peers, 'package.json'));
+// Inside tests/peers, so that a project of Next finds React.
+const projects = new Projects(join(peers, 'projects-'));
 const docs = readFileSync(join(repository, 'docs/package.md'), 'utf8');
 
 /** Fails if no line of a table in docs/package.md starts with this name and has this setting. */
@@ -58,6 +63,23 @@ function pageProject(name, more = {}, script = './main.js') {
   writeFileSync(join(root, 'main.js'), onPage);
   writeFileSync(join(root, 'index.html'), html(script));
   return root;
+}
+
+/** Fails if a primitive has another material, a vertex with other attributes, or another border or seam. */
+function sameSurfaces(before, after) {
+  const [all, now] = [before, after].map(primitivesOf);
+  const name = (primitive) => primitive.getMaterial()?.getName();
+  assert.deepEqual(now.map(name), all.map(name));
+  all.map(surfaceOf).forEach((old, i) => {
+    const surface = surfaceOf(now[i]);
+    const [vertices, left] = [old, surface].map(({ positions, records }) =>
+      records.map((record, v) => `${positions.slice(3 * v, 3 * v + 3)}|${record}`),
+    );
+    assert.deepEqual(new Set(left), new Set(vertices));
+    assert.deepEqual(border(surface), border(old));
+    assert.equal(surface.indices.length, old.indices.length);
+    assert.ok(badEdges(surface) < badEdges(old) / 2);
+  });
 }
 
 let chromium;
@@ -107,7 +129,7 @@ test('Parcel', async () => {
   const setting = '"@parcel/resolver-default": { "packageExports": true }';
   documented('Parcel 2', setting);
   const root = pageProject('parcel', JSON.parse(`{ ${setting} }`));
-  const parcel = join(bundlers, 'node_modules/parcel/lib/bin.js');
+  const parcel = join(peers, 'node_modules/parcel/lib/bin.js');
   run(process.execPath, [parcel, 'build', 'index.html', '--dist-dir', 'out', '--no-cache', '--public-url', './'], root);
   assert.equal(await textOf(await serve(join(root, 'out'), ISOLATED)), WRITTEN);
 });
@@ -179,7 +201,7 @@ test('Next, in the browser and in a server component', async (t) => {
       return <p id="client">{text}</p>;
     }`,
   );
-  const next = join(bundlers, 'node_modules/next/dist/bin/next');
+  const next = join(peers, 'node_modules/next/dist/bin/next');
   const env = { NEXT_TELEMETRY_DISABLED: '1', NODE_ENV: 'production' };
   run(process.execPath, [next, 'build'], root, env);
   const server = spawn(process.execPath, [next, 'start', '-p', '0'], { cwd: root, env: { ...process.env, ...env } });
@@ -210,7 +232,7 @@ test('Node, Bun and Deno; CommonJS too', () => {
     generate('random 8').then(makeDelaunay).then(({ flips }) => console.log(flips));`,
   );
   const installed = (scope, file) => {
-    const folder = join(bundlers, 'node_modules', scope);
+    const folder = join(peers, 'node_modules', scope);
     const [name] = readdirSync(folder);
     return join(folder, name, process.platform === 'win32' ? `${file}.exe` : file);
   };
@@ -225,8 +247,25 @@ test('Node, Bun and Deno; CommonJS too', () => {
   }
 });
 
+test('glTF-Transform: weld, delaunay and reorder, on models as they are and quantized', async () => {
+  const root = projects.project('gltf');
+  copyFileSync(join(repository, 'tests/package/pipeline.mjs'), join(root, 'pipeline.mjs'));
+  const io = new NodeIO().registerExtensions(ALL_EXTENSIONS);
+  for (const name of ['bunny', 'suzi', 'pmndrs']) {
+    const { default: uri } = await import(`@pmndrs/assets/models/${name}.glb.js`);
+    writeFileSync(join(root, 'in.glb'), Buffer.from(uri.split(',')[1], 'base64'));
+    for (const quantized of [[], ['quantized']]) {
+      const line = run(process.execPath, ['pipeline.mjs', 'in.glb', 'before.glb', 'after.glb', ...quantized], root);
+      assert.match(line, /^delaunay: [1-9]\d+ flips in /, name);
+      const [before, after] = ['before.glb', 'after.glb'].map((file) => readFileSync(join(root, file)));
+      assert.deepEqual(await faults(after), [], name);
+      sameSurfaces(await io.readBinary(before), await io.readBinary(after));
+    }
+  }
+});
+
 test('publint and arethetypeswrong find nothing', () => {
-  const bin = (path) => join(bundlers, 'node_modules', path);
+  const bin = (path) => join(peers, 'node_modules', path);
   assert.match(
     run(process.execPath, [bin('publint/src/cli.js'), 'run', projects.tarball, '--strict'], projects.folder),
     /All good!/,

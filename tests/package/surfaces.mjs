@@ -22,7 +22,7 @@ const recordOf = (surface, vertex) => `${placeOf(surface, vertex)}|${surface.rec
  * How often each edge occurs in one direction more than in the other, in each group. Vertices with the same position
  * and attributes are the same. Flips change nothing here unless they move a border, a seam or a triangle's group.
  */
-function border(surface) {
+export function border(surface) {
   const net = new Map();
   for (let t = 0; t < surface.indices.length / 3; t++) {
     const names = corners(surface, t).map((vertex) => recordOf(surface, vertex));
