@@ -5,7 +5,7 @@
 //! convex quads keep stars embedded.
 
 use crate::mesh::star::Fans;
-use crate::mesh::winding::{Signs, Winding};
+use crate::mesh::winding::{Outline, Signs, Winding};
 use crate::predicates::area_sign;
 use crate::system::threads::Threads;
 use crate::{Dimension, Mesh, NONE};
@@ -24,17 +24,34 @@ pub(crate) struct Embedded {
 impl Embedded {
     /// The winding of a mesh with these twins, and its embedded stars.
     pub(crate) fn with_winding(mesh: &Mesh, twins: &[u32], threads: &Threads) -> (Winding, Self) {
+        Self::with_new_winding(mesh, twins, None, &mut None, threads)
+    }
+
+    /// As [`Self::with_winding`]. A right guess, such as the winding of earlier positions, saves time. Fills in the
+    /// outline if it is needed.
+    pub(crate) fn with_new_winding(
+        mesh: &Mesh,
+        twins: &[u32],
+        mut guess: Option<Winding>,
+        outline: &mut Option<Outline>,
+        threads: &Threads,
+    ) -> (Winding, Self) {
         if mesh.dimension() == Dimension::Three {
             return Default::default();
         }
-        let mut winding = None;
+        let triangles = mesh.triangle_count();
         loop {
-            let (signs, embedded) = Self::of_triangles(mesh, twins, winding.as_ref(), threads);
-            winding = winding.or_else(|| signs.winding(mesh.triangle_count()));
-            match winding {
-                Some(winding) => return (winding, embedded),
-                None => winding = Some(Winding::of_components(mesh, twins)),
+            let (signs, embedded) = Self::of_triangles(mesh, twins, guess.as_ref(), threads);
+            let by_signs = signs.winding(triangles);
+            // Without a guess, each triangle counted by its own sign.
+            let is_alike = guess.is_none() && by_signs.is_some();
+            let winding = by_signs.unwrap_or_else(|| {
+                outline.get_or_insert_with(|| Outline::new(mesh.triangles(), twins)).winding(mesh)
+            });
+            if is_alike || guess.is_some_and(|guess| guess.equals(&winding, triangles)) {
+                return (winding, embedded);
             }
+            guess = Some(winding);
         }
     }
 

@@ -2,7 +2,7 @@
 
 use crate::NONE;
 use crate::mesh::Mesh;
-use crate::mesh::half_edge::unflagged;
+use crate::mesh::half_edge::{next, triangle_of, unflagged};
 use crate::predicates::total_area_sign;
 use std::cmp::Ordering;
 
@@ -40,35 +40,69 @@ impl Signs {
     }
 }
 
-impl Winding {
-    /// The winding by components, joined by `twins`.
-    pub(crate) fn of_components(mesh: &Mesh, twins: &[u32]) -> Self {
-        let mut clockwise = vec![0u32; mesh.triangle_count().div_ceil(32)];
-        let mut visited = vec![false; mesh.triangle_count()];
-        for seed in 0..mesh.triangle_count() {
-            if visited[seed] {
+/// The components of a mesh, joined by its twins, and the boundary of each. Flips change neither.
+pub(crate) struct Outline {
+    /// The component of each triangle.
+    component: Vec<u32>,
+    /// The vertices of the half-edges without a twin, component by component.
+    boundary: Vec<[u32; 2]>,
+    /// The end of each component in `boundary`.
+    ends: Vec<u32>,
+}
+
+impl Outline {
+    pub(crate) fn new(triangles: &[u32], twins: &[u32]) -> Self {
+        let mut component = vec![NONE; triangles.len() / 3];
+        let (mut boundary, mut ends, mut open) = (Vec::new(), Vec::new(), Vec::new());
+        for seed in 0..component.len() as u32 {
+            if component[seed as usize] != NONE {
                 continue;
             }
-            visited[seed] = true;
-            let mut component = vec![seed];
-            let mut at = 0;
-            while at < component.len() {
-                for twin in &twins[3 * component[at]..3 * component[at] + 3] {
-                    let neighbour = unflagged(*twin) as usize / 3;
-                    if *twin != NONE && !visited[neighbour] {
-                        visited[neighbour] = true;
-                        component.push(neighbour);
+            component[seed as usize] = ends.len() as u32;
+            open.push(seed);
+            while let Some(t) = open.pop() {
+                for h in 3 * t..3 * t + 3 {
+                    let twin = twins[h as usize];
+                    if twin == NONE {
+                        boundary.push([h, next(h)].map(|x| triangles[x as usize]));
+                        continue;
+                    }
+                    let neighbour = triangle_of(unflagged(twin));
+                    if component[neighbour as usize] == NONE {
+                        component[neighbour as usize] = ends.len() as u32;
+                        open.push(neighbour);
                     }
                 }
-                at += 1;
             }
-            if total_area_sign(component.len(), &|i| corners(mesh, component[i])).is_lt() {
-                for t in component {
-                    clockwise[t / 32] |= 1 << (t % 32);
-                }
-            }
+            ends.push(boundary.len() as u32);
         }
-        Self { clockwise, is_strict: false }
+        Self { component, boundary, ends }
+    }
+
+    /// The winding for these positions. The area of a component is the area that its boundary encloses, because each
+    /// other edge occurs in both directions.
+    pub(crate) fn winding(&self, mesh: &Mesh) -> Winding {
+        let mut first = 0;
+        let mut negative = Vec::with_capacity(self.ends.len());
+        for &end in &self.ends {
+            let edges = &self.boundary[first as usize..end as usize];
+            first = end;
+            // Triangles from one vertex of the boundary to each of its edges.
+            let triangle = |i: usize| mesh.positions().points2([edges[i][0], edges[i][1], edges[0][0]]);
+            negative.push(total_area_sign(edges.len(), &triangle).is_lt());
+        }
+        let mut clockwise = vec![0u32; self.component.len().div_ceil(32)];
+        for (t, &component) in self.component.iter().enumerate() {
+            clockwise[t / 32] |= u32::from(negative[component as usize]) << (t % 32);
+        }
+        Winding { clockwise, is_strict: false }
+    }
+}
+
+impl Winding {
+    /// Whether both are the same for `triangles` triangles.
+    pub(crate) fn equals(&self, other: &Self, triangles: usize) -> bool {
+        (0..triangles as u32).all(|t| self.is_clockwise(t) == other.is_clockwise(t))
     }
 
     /// The sign of the total area of the component of triangle `t`.
@@ -93,8 +127,39 @@ impl Winding {
     }
 }
 
-#[inline(always)]
-fn corners(mesh: &Mesh, t: usize) -> [glam::DVec2; 3] {
-    let (triangles, _) = mesh.triangles().as_chunks();
-    mesh.positions().points2(triangles[t])
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Adjacency, Dimension};
+    use proptest::prelude::*;
+
+    proptest! {
+        /// On dirty meshes with small integer coordinates: each component has the sign of the sum of its areas.
+        #[test]
+        fn the_boundary_gives_the_sign_of_the_area(
+            points in prop::collection::vec((-4i32..5, -4i32..5), 7),
+            corners in prop::collection::vec(0u32..7, 3..40),
+        ) {
+            let positions: Vec<f64> = points.iter().flat_map(|&(x, y)| [x, y]).map(f64::from).collect();
+            let triangles = corners[..corners.len() / 3 * 3].to_vec();
+            let mesh = Mesh::new(Dimension::Two, positions, triangles).unwrap();
+            let twins = Adjacency::new(&mesh).twins;
+            let outline = Outline::new(mesh.triangles(), &twins);
+            let winding = outline.winding(&mesh);
+            let mut areas = vec![0; outline.ends.len()];
+            for (t, corners) in mesh.triangles().chunks(3).enumerate() {
+                let [a, b, c] = [0, 1, 2].map(|k| points[corners[k] as usize]);
+                let area = (a.0 - c.0) * (b.1 - c.1) - (a.1 - c.1) * (b.0 - c.0);
+                areas[outline.component[t] as usize] += area;
+                for &twin in twins[3 * t..3 * t + 3].iter().filter(|&&twin| twin != NONE) {
+                    let neighbour = triangle_of(twin) as usize;
+                    prop_assert_eq!(outline.component[t], outline.component[neighbour]);
+                }
+            }
+            for t in 0..mesh.triangle_count() {
+                prop_assert_eq!(winding.is_clockwise(t as u32), areas[outline.component[t] as usize] < 0);
+            }
+            prop_assert!(winding.equals(&winding, mesh.triangle_count()));
+        }
+    }
 }

@@ -96,6 +96,7 @@ pub(crate) fn area_sign(a: DVec2, b: DVec2, c: DVec2) -> Ordering {
 }
 
 /// The sign of the sum of the areas of `count` triangles.
+#[inline(never)] // else `triangle` would be inlined three times
 pub(crate) fn total_area_sign(count: usize, triangle: &dyn Fn(usize) -> [DVec2; 3]) -> Ordering {
     let mut sum = 0.0;
     let mut magnitude = 0.0;
@@ -111,8 +112,10 @@ pub(crate) fn total_area_sign(count: usize, triangle: &dyn Fn(usize) -> [DVec2; 
     if sum.abs() > (terms + 8.0) * 2.0 * EPSILON * magnitude + terms * UNDERFLOW {
         return sign(sum);
     }
-    let coordinates = (0..count).flat_map(|i| triangle(i).map(|p| p.to_array()).concat());
-    let unit = coordinates.map(|x| decode(x).1).min().unwrap_or(0);
+    let mut unit = i32::MAX;
+    for p in (0..count).flat_map(triangle) {
+        unit = unit.min(decode(p.x).1).min(decode(p.y).1);
+    }
     let integer = |x: f64| {
         let (mantissa, exponent) = decode(x);
         Unbounded::new(mantissa, if mantissa == 0 { 0 } else { (exponent - unit) as u32 })

@@ -6,7 +6,7 @@ use crate::engine::{Answer, Census, EdgeCounts, Engine};
 use crate::mesh::embedded::Embedded;
 use crate::mesh::half_edge::{self, CREASE, FLAGS, LOCKED, prev, unflagged};
 use crate::mesh::star::Fans;
-use crate::mesh::winding::Winding;
+use crate::mesh::winding::{Outline, Winding};
 use crate::phases::{
     Around, Diamond, Geometry, Selected, Thresholds, Topology, Verdict, flag_creases, flip,
     keep_non_delaunay, key, makes_duplicate, move_anchors, verdict, verdict_of_shape, yields,
@@ -72,6 +72,8 @@ pub(crate) struct Cpu {
     thresholds: Thresholds,
     winding: Winding,
     embedded: Embedded,
+    /// Filled in if the winding depends on the components.
+    outline: Option<Outline>,
     counts: EdgeCounts,
     pub(crate) triangles: Vec<u32>,
     pub(crate) twins: Vec<u32>,
@@ -98,7 +100,9 @@ impl Cpu {
 
     fn prepared(mesh: Arc<Mesh>, thresholds: Thresholds, threads: Threads) -> Self {
         let adjacency = Adjacency::of_triangles(mesh.vertex_count(), mesh.triangles(), &threads);
-        let (winding, embedded) = Embedded::with_winding(&mesh, &adjacency.twins, &threads);
+        let mut outline = None;
+        let (winding, embedded) =
+            Embedded::with_new_winding(&mesh, &adjacency.twins, None, &mut outline, &threads);
         let counts = EdgeCounts::from(&adjacency);
         let mut triangles = Vec::new();
         threads.append(&mut triangles, mesh.triangles());
@@ -111,6 +115,7 @@ impl Cpu {
             thresholds,
             winding,
             embedded,
+            outline,
             counts,
             fans,
             parts: Vec::new(),
@@ -415,15 +420,11 @@ impl Engine for Cpu {
     }
 
     fn set_positions(&mut self, mesh: Arc<Mesh>) -> Answer<'_, ()> {
-        (self.winding, self.embedded) = Embedded::with_winding(&mesh, &self.twins, &self.threads);
+        let Self { thresholds, winding, embedded, outline, triangles, twins, threads, .. } = self;
+        let guess = Some(std::mem::take(winding));
+        (*winding, *embedded) = Embedded::with_new_winding(&mesh, twins, guess, outline, threads);
         if mesh.dimension() == Dimension::Three {
-            flag_creases(
-                mesh.positions(),
-                &self.triangles,
-                &mut self.twins,
-                self.thresholds.cos,
-                &self.threads,
-            );
+            flag_creases(mesh.positions(), triangles, twins, thresholds.cos, threads);
         }
         self.parts.clear();
         self.is_known = false;

@@ -18,7 +18,7 @@ use crate::engine::{EdgeCounts, Engine};
 use crate::mesh::Mesh;
 use crate::mesh::half_edge;
 use crate::mesh::star::Fans;
-use crate::mesh::winding::Winding;
+use crate::mesh::winding::Outline;
 use std::sync::Arc;
 use web_time::Instant;
 use wgpu::BufferUsages;
@@ -178,9 +178,7 @@ impl WebGpu {
     /// rare: they have components of both windings, or triangles of both signs in one component.
     async fn add_windings(&mut self, mesh: &Mesh) -> Result<(), Error> {
         let twins = self.gpu.read(&self.buffers.twins, mesh.triangles().len()).await?;
-        let mut clockwise = Winding::of_components(mesh, &twins).clockwise;
-        // `clockwise` is empty if no component is clockwise.
-        clockwise.resize(mesh.triangle_count().div_ceil(32), 0);
+        let clockwise = Outline::new(mesh.triangles(), &twins).winding(mesh).clockwise;
         self.dispatches += Kernel::preparation(self.form.dimension).len() as u64;
         self.params.knows_winding = 1;
         let calls = || {
