@@ -20,7 +20,7 @@ export function hintOf(
 ): string | undefined {
   const hints: string[] = [];
   const inner = edges - boundaryEdges - nonManifoldEdges;
-  if (seams === undefined && inner === 0 && indices.length > 3) {
+  if (seams === undefined && inner === 0 && edges > 3) {
     hints.push(
       'No two triangles share an edge, so no edge can flip. If vertices at the same position are stored once for each triangle, pass the option weld.',
     );

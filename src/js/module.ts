@@ -77,19 +77,31 @@ export function initOf<Name extends Exclude<keyof Sources, 'base'>>(
   const names = Object.keys(loads) as Name[];
   return async (sources) => {
     const named = read('the sources', () => {
-      if (sources === undefined) return [];
-      if (isSource(sources))
-        throw new EdgeflipError('invalid-input', `name the module of a source: init({ ${first}: … })`);
-      const given = optionsOf(sources, ['base', ...names], 'the sources') as Sources;
-      const folder = given.base;
-      const named = names.map((name) => [name, given[name]] as const).filter(([, source]) => source !== undefined);
-      if (folder !== undefined) base = folderOf(folder);
-      // Sources are read before the first wait.
-      return named.map(([name, source]) => [name, attempt(() => sourceOf(source!))] as const);
+      const { base: folder, ...given } = sourcesOf(sources, first, names);
+      if (folder !== undefined) base = folder;
+      return Object.entries(given) as [Name, ModuleSource][];
     });
     if (named.length === 0) return loads[first]();
     await Promise.all(named.map(([name, source]) => loads[name](source)));
   };
+}
+
+/**
+ * Checks and copies sources.
+ *
+ * @throws {@link EdgeflipError} `invalid-input`, `invalid-option`, `load-failed`.
+ */
+export function sourcesOf(
+  sources: unknown,
+  first: string,
+  names: readonly string[],
+): Partial<Record<string, ModuleSource>> & { base?: string } {
+  if (sources === undefined) return {};
+  if (isSource(sources)) throw new EdgeflipError('invalid-input', `name the module of a source: init({ ${first}: … })`);
+  const { base: folder, ...given } = optionsOf(sources, ['base', ...names], 'the sources') as Sources;
+  const named = Object.entries(given).filter(([, source]) => source !== undefined);
+  const read = named.map(([name, source]) => [name, attempt(() => sourceOf(source as ModuleSource))] as const);
+  return { ...Object.fromEntries(read), ...(folder !== undefined && { base: folderOf(folder) }) };
 }
 
 /** Returns the result of `work`. An exception becomes `load-failed`. */

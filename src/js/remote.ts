@@ -46,7 +46,10 @@ export function startThread(
   // Bun and Deno have both kinds, but their web workers keep the process alive.
   if (node && (typeof window === 'undefined' || typeof Worker === 'undefined')) {
     const worker = new node.Worker(url());
-    worker.on('message', onAnswer).on('error', ({ message }) => onError(message));
+    worker.on('message', onAnswer);
+    worker.on('error', ({ message, code }: NodeJS.ErrnoException) =>
+      onError(/MODULE_NOT_FOUND$/.test(code ?? '') ? undefined : message),
+    );
     worker.on('messageerror', ({ message }) => onError(message));
     worker.unref();
     return {

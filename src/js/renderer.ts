@@ -2,14 +2,22 @@
 
 import type { BufferAttribute } from 'three';
 import { EdgeflipError } from './error.js';
-import { objectOf } from './given.js';
+import { copyOf, messageOf, objectOf } from './given.js';
+import { readMesh } from './mesh.js';
 import { createWatched, type FlipSession, runWatched } from './session.js';
-import { MAKE_OPTIONS, watchOf } from './settings.js';
+import { MAKE_OPTIONS, settingsOf, watchOf } from './settings.js';
 import type { GpuBuffer, GpuDevice, MakeDelaunayOptions, Mesh, Result } from './types.js';
 
-/** A renderer of three.js: a `WebGPURenderer`, or one that cannot share a device. */
+/** A renderer of three.js: a `WebGPURenderer`, or one that has no device to share. */
 export interface Renderer {
-  /** Prepares the renderer; the `WebGPURenderer` has it. */
+  render(...args: never[]): unknown;
+}
+
+/** The part of a WebGPURenderer that is used here. */
+interface WebGpuRenderer extends Renderer {
+  readonly backend?: Backend;
+  /** Whether `init` was called and is done. */
+  readonly _initialized?: boolean;
   init?(): Promise<unknown>;
 }
 
@@ -39,26 +47,43 @@ export interface OnGpu {
 export function rendererOf(given: unknown): Renderer | undefined {
   if (given === undefined) return undefined;
   const renderer = objectOf(given, 'option renderer');
-  if (typeof renderer['render'] === 'function') return renderer as Renderer;
+  if (typeof renderer['render'] === 'function') return renderer as unknown as Renderer;
   throw new EdgeflipError('invalid-option', 'option renderer: it is not a renderer of three.js');
 }
 
-/** Flips on the device of the renderer, if it has one. The triangles stay there. There must be no option `weld`. */
+/** The backend of a renderer that draws with WebGPU. */
+async function backendOf(renderer: WebGpuRenderer): Promise<Backend | undefined> {
+  try {
+    // Older releases of three.js refuse a second call.
+    if (!renderer._initialized) await renderer.init?.();
+  } catch (cause) {
+    const message = `option renderer: its init failed: ${messageOf(cause)}`;
+    throw new EdgeflipError('backend-unavailable', message, { cause });
+  }
+  const { backend } = renderer;
+  return backend?.isWebGPUBackend && backend.device ? backend : undefined;
+}
+
+/**
+ * Flips on the device of the renderer, if it has one. The triangles stay there. There must be no option `weld`. Copies
+ * the arrays before it returns its promise.
+ */
 export async function flipShared(
   renderer: Renderer,
   mesh: Mesh<Uint32Array>,
   options: MakeDelaunayOptions,
 ): Promise<Run> {
   const watch = watchOf(options, MAKE_OPTIONS);
-  await renderer.init?.();
-  const { backend } = renderer as { backend?: Backend };
-  const device = backend?.isWebGPUBackend ? backend.device : undefined;
-  const session = await createWatched(mesh, { ...options, device });
+  const [copy] = readMesh(mesh, copyOf);
+  const settings = settingsOf(options, MAKE_OPTIONS);
+  const backend = await backendOf(renderer);
+  const device = backend?.device ?? settings.device;
+  const session = await createWatched(copy, { ...settings, device });
   let onGpu: OnGpu | undefined;
   try {
     const result = await runWatched(session, watch, true);
-    const gpu = device && (await session.gpu());
-    if (!backend || !gpu) return { result: await session.result() };
+    const gpu = backend && (await session.gpu());
+    if (!gpu) return { result: await session.result() };
     // three.js makes no buffer for an attribute that has one.
     const adopt = (index: BufferAttribute) => void (backend.get(index).buffer = gpu.indices);
     onGpu = { session, adopt };

@@ -18,7 +18,8 @@ import { Session } from './wasm/edgeflip.js';
  * const { indices } = makeDelaunaySync({ positions, indices: old, dimension: 2 });
  * ```
  *
- * @throws {@link EdgeflipError} about the mesh or the options; `load-failed` without `init`.
+ * @throws {@link EdgeflipError} about the mesh or the options; `load-failed` without `init`; `internal` if memory runs
+ * out during the run.
  */
 export function makeDelaunaySync<I extends IndexArray>(mesh: Mesh<I>, options: SyncOptions = {}): Result<I> {
   if (!isLoaded())

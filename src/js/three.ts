@@ -35,11 +35,13 @@ export interface GeometryOptions extends MakeDelaunayOptions {
   copy?: boolean | undefined;
   /**
    * The `WebGPURenderer` that draws the geometry. The run uses its device, and the renderer then draws from the buffer
-   * that the flips wrote: the triangles do not travel to the CPU. `geometry.index` becomes a new attribute, whose array
-   * still has the triangles before the run. The default of `weld` is then `false`.
+   * that the flips wrote; the triangles do not travel to the CPU, unless some edges are non-manifold or inconsistent.
+   * `geometry.index` becomes a new attribute with a Uint32Array, which still has the triangles before the run. Raycasts,
+   * wireframes, other renderers and the next call use that array.
    *
-   * Without WebGPU, where `'auto'` takes the CPU, with `weld`, for a geometry without an index, and for a part of a
-   * geometry in `drawRange`, the index is written on the CPU as without this option.
+   * `weld` is then `false` by default. With `weld`, for a geometry without an index, and for a part of one in
+   * `drawRange`, the option has no effect. Where the renderer has no WebGPU, and where `'auto'` takes the CPU, the index
+   * is written on the CPU.
    */
   renderer?: Renderer | undefined;
 }
@@ -50,7 +52,7 @@ export interface GeometryResult<G extends BufferGeometry = BufferGeometry> exten
   geometry: G;
   /**
    * The session with the buffer that the `renderer` draws from, if the triangles are on its device. It is freed when
-   * the geometry is disposed of. `await session.triangles()` reads them.
+   * the geometry is disposed of, or gets another session. `await session.triangles()` reads them.
    */
   session: FlipSession | undefined;
 }
@@ -86,21 +88,40 @@ export async function delaunayGeometry<G extends BufferGeometry>(
     throw new EdgeflipError('invalid-input', 'the index of the geometry changed during the run');
   }
   if (onGpu) draw(target, onGpu);
-  else if (result.flips + result.turnedTriangles > 0) write(target, indices, range, surface.vertices);
+  else {
+    release(target);
+    if (result.flips + result.turnedTriangles > 0) write(target, indices, range, surface.vertices);
+  }
   return { geometry: target, session: onGpu?.session, ...result };
 }
 
+/** The sessions whose buffers are drawn, by geometry. */
+const drawn = new WeakMap<BufferGeometry, FlipSession>();
+
+/** `StaticDrawUsage` of three.js. With any other usage, it would upload the old triangles again. */
+const STATIC_DRAW = 35044;
+
+/** Gives the geometry an index of its own on the CPU again, and frees the session whose buffer it was drawn from. */
+function release(geometry: BufferGeometry): void {
+  geometry.removeEventListener('dispose', onDispose);
+  if (!drawn.has(geometry)) return;
+  geometry.setIndex(geometry.index!.clone());
+  drawn.get(geometry)?.free();
+  drawn.delete(geometry);
+}
+
+const onDispose = ({ target }: { target: BufferGeometry }) => release(target);
+
 /** Gives the geometry an index that is drawn from the buffer of the session. */
 function draw(geometry: BufferGeometry, { session, adopt }: OnGpu): void {
+  release(geometry);
   const index = geometry.index!.clone();
   // The renderer takes the size of an index from this array.
-  index.array = Uint32Array.from(index.array);
+  if (!(index.array instanceof Uint32Array)) index.array = new Uint32Array(index.array);
+  index.setUsage(STATIC_DRAW);
   adopt(index);
   geometry.setIndex(index);
-  const onDispose = () => {
-    geometry.removeEventListener('dispose', onDispose);
-    session.free();
-  };
+  drawn.set(geometry, session);
   geometry.addEventListener('dispose', onDispose);
 }
 
@@ -119,7 +140,7 @@ function opened<G extends BufferGeometry>(geometry: G, options: GeometryOptions)
   }
   const target = copy ? (geometry.clone() as G) : geometry;
   const { index, drawRange } = target;
-  const isWhole = drawRange.start === 0 && drawRange.count >= (index?.count ?? Infinity);
+  const isWhole = index !== null && drawRange.start === 0 && drawRange.count >= index.count;
   const isShared = renderer !== undefined && isWhole && !given.weld;
   const isCompared = given.weld === undefined && !isShared;
   const { vertices, positions, attributes } = verticesOf(target, isCompared);

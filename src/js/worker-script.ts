@@ -1,6 +1,6 @@
 /** The worker of `edgeflip/worker`: holds its sessions and answers calls. */
 
-import { FlipSession, init, makeDelaunay } from './index.js';
+import { EdgeflipError, FlipSession, init, makeDelaunay } from './index.js';
 import type { IndexedMesh } from './mesh.js';
 import type { Sources } from './module.js';
 import { answerCalls, type Emit } from './remote.js';
@@ -80,4 +80,5 @@ const functions = {
 
 export type Functions = typeof functions;
 
-answerCalls(functions);
+// After a trap the module may be corrupt, so the page starts another worker.
+answerCalls(functions, (thrown) => thrown instanceof EdgeflipError && thrown.cause instanceof WebAssembly.RuntimeError);

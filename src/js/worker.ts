@@ -1,6 +1,6 @@
 /**
- * The entry `edgeflip` in a worker, so that no run blocks the page. Same names, same results. The worker starts with
- * the first call, and all calls share it.
+ * The entry `edgeflip` in a worker, so that no run blocks the page: all names but `makeDelaunaySync`, and the same
+ * results. The worker starts with the first call, and all calls share it.
  *
  * ```ts
  * import { makeDelaunay } from 'edgeflip/worker';
@@ -16,9 +16,10 @@
 
 import { buffersOf } from './buffers.js';
 import { EdgeflipError, fromModule } from './error.js';
-import { copyOf, read } from './given.js';
+import { copyOf, messageOf, read } from './given.js';
 import { floatsOf, type Layout, readMesh } from './mesh.js';
-import type { Sources } from './module.js';
+import { type ModuleSource, type Sources, sourcesOf } from './module.js';
+import { namesOf } from './names.js';
 import { Remote } from './remote.js';
 import { settingsOf, type Watch, WORKER_MAKE_OPTIONS, WORKER_OPTIONS, watchOf } from './settings.js';
 import type {
@@ -52,23 +53,37 @@ export type WorkerMakeOptions = Omit<MakeDelaunayOptions, 'device'>;
 let remote: Remote<Functions> | undefined;
 let numbers = 0;
 
+/** The sources that `init` was given; a new worker gets them too. */
+const given: Record<string, ModuleSource> = {};
+
+/** @throws {@link EdgeflipError} `load-failed`. */
+function notStarted(why: string): EdgeflipError {
+  const remedy = "serve dist/worker-script.js from the origin of the page, and allow it in a policy: worker-src 'self'";
+  return new EdgeflipError('load-failed', `worker-script.js could not be started as a worker: ${why}; ${remedy}`);
+}
+
 /** The worker. If it ends by an error, the next call starts another. */
 function worker(): Remote<Functions> {
-  const started = (remote ??= new Remote<Functions>(
-    {
-      worker: () => new Worker(new URL('./worker-script.js', import.meta.url), { type: 'module' }),
-      url: () => new URL('./worker-script.js', import.meta.url),
-    },
-    (message) => {
+  if (remote) return remote;
+  const script = {
+    worker: () => new Worker(new URL('./worker-script.js', import.meta.url), { type: 'module' }),
+    url: () => new URL('./worker-script.js', import.meta.url),
+  };
+  try {
+    const started: Remote<Functions> = new Remote<Functions>(script, (message) => {
       if (remote === started) remote = undefined;
-      const error =
+      started.end(
         message === undefined
-          ? new EdgeflipError('load-failed', 'worker-script.js of edgeflip/worker could not be loaded as a worker')
-          : fromModule(new Error(`the worker has crashed: ${message}`));
-      started.end(error);
-    },
-  ));
-  return started;
+          ? notStarted('it could not be loaded')
+          : fromModule(new Error(`the worker has crashed: ${message}`)),
+      );
+    });
+    remote = started;
+  } catch (thrown) {
+    throw notStarted(messageOf(thrown));
+  }
+  if (Object.keys(given).length > 0) void remote.call('init', [given]).catch(() => undefined);
+  return remote;
 }
 
 /** Runs in the worker. The signal stops the run, and events become calls of the callbacks. */
@@ -80,7 +95,7 @@ async function watched<T>(
 ): Promise<T> {
   const stop = () => void to.call('stop', [run]).catch(() => undefined);
   let thrown: { error: unknown } | undefined;
-  const running = start(({ progress, iteration }) => {
+  const onEvent = ({ progress, iteration }: { progress?: Progress; iteration?: Iteration }): void => {
     try {
       if (thrown) return;
       if (progress) onProgress?.(progress);
@@ -89,10 +104,10 @@ async function watched<T>(
       thrown = { error };
       stop();
     }
-  });
-  signal?.addEventListener('abort', stop);
+  };
+  read('the signal', () => signal?.addEventListener('abort', stop));
   try {
-    const value = await running;
+    const value = await start(onEvent);
     if (thrown) throw thrown.error;
     return value;
   } finally {
@@ -100,17 +115,26 @@ async function watched<T>(
   }
 }
 
-/** As `init` of `edgeflip`, for the modules of the worker. Relative URLs count from the page. */
-export async function init(sources: Sources = {}): Promise<void> {
-  const given = read('the sources', () =>
-    Object.fromEntries(
-      Object.entries(sources).map(([name, source]) => [
-        name,
-        typeof source === 'string' || source instanceof URL ? new URL(source, globalThis.location?.href).href : source,
-      ]),
-    ),
-  );
-  await worker().call('init', [given]);
+/**
+ * As `init` of `edgeflip`, for the modules of the worker. Relative URLs count from the page.
+ *
+ * @throws {@link EdgeflipError} `load-failed`; `invalid-input` and `invalid-option` about `sources`.
+ */
+export async function init(sources?: Sources): Promise<void> {
+  const checked = read('the sources', () => Object.entries(sourcesOf(sources, 'core', MODULES)));
+  const sent = await Promise.all(checked.map(async ([name, source]) => [name, await sendable(source!)] as const));
+  await worker().call('init', [Object.fromEntries(sent)]);
+  Object.assign(given, Object.fromEntries(sent));
+}
+
+const MODULES = namesOf<Omit<Sources, 'base'>>({ core: true, webgl2: true, threads: true, audit: true, files: true });
+
+/** A source that a message can hold. URLs become absolute texts. */
+async function sendable(source: ModuleSource): Promise<ModuleSource> {
+  if (source instanceof Response) return source.arrayBuffer();
+  if (typeof source !== 'string' && !(source instanceof URL)) return source;
+  const page = globalThis.document?.baseURI ?? globalThis.location?.href;
+  return read('the sources', () => new URL(source || '.', page).href);
 }
 
 /**

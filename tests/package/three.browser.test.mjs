@@ -143,6 +143,8 @@ test('a GLB becomes Delaunay on the device of the renderer, which draws the resu
   };
   const run = (options) => page.evaluate((options) => window.run(options), options);
   assert.deepEqual(await run({ backend: 'webgpu', maxNormalAngle: 30 }), shared);
+  // Again, from the old triangles, which the index on the CPU still has.
+  assert.deepEqual(await run({ backend: 'webgpu', maxNormalAngle: 30 }), { ...shared, isChanged: false });
   // The index on the CPU has the old triangles, so the CPU engine writes the result into it.
   const written = { ...shared, backend: 'cpu', isDrawn: false, isOld: false, isChanged: false };
   assert.deepEqual(await run({ backend: 'cpu', maxNormalAngle: 30 }), written);
