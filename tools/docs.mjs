@@ -24,7 +24,7 @@ mkdirSync(folder, { recursive: true });
 run(process.execPath, [
   'node_modules/typedoc/bin/typedoc',
   ...['--name', name, '--out', `${folder}/javascript`, '--tsconfig', 'src/js/tsconfig.json'],
-  ...['index', 'inline', 'files', 'three', 'gltf-transform'].flatMap((entry) => [
+  ...['index', 'inline', 'worker', 'files', 'three', 'gltf-transform'].flatMap((entry) => [
     '--entryPoints',
     `src/js/${entry}.ts`,
   ]),

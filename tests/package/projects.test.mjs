@@ -107,7 +107,7 @@ async function textOf(address, selector = 'body') {
 }
 
 test('webpack', async () => {
-  documented('webpack 5', '`edgeflip`');
+  documented('webpack 5', '`experiments: { outputModule: true }`, `output: { module: true }`');
   const root = pageProject('webpack', {}, './main.mjs');
   const webpack = require('webpack');
   const config = {
@@ -130,7 +130,11 @@ test('Parcel', async () => {
   documented('Parcel 2', setting);
   const root = pageProject('parcel', JSON.parse(`{ ${setting} }`));
   const parcel = join(peers, 'node_modules/parcel/lib/bin.js');
-  run(process.execPath, [parcel, 'build', 'index.html', '--dist-dir', 'out', '--no-cache', '--public-url', './'], root);
+  run(
+    process.execPath,
+    [parcel, 'build', 'index.html', '--dist-dir', 'out', '--no-cache', '--cache-dir', 'cache', '--public-url', './'],
+    root,
+  );
   assert.equal(await textOf(await serve(join(root, 'out'), ISOLATED)), WRITTEN);
 });
 
@@ -162,7 +166,7 @@ test('Vite for servers, with the package in the bundle', async () => {
   assert.equal(run(process.execPath, [join(root, 'dist/main.js')], root), '3,1,2,0,1,3\n');
 });
 
-test('Next, in the browser and in a server component', async (t) => {
+test('Next, in the browser and in a server component', { timeout: 180_000 }, async (t) => {
   const setting = "serverExternalPackages: ['edgeflip']";
   documented('Next', `\`${setting}\``);
   const root = projects.project('next');
