@@ -22,14 +22,9 @@ pub(crate) struct Embedded {
 }
 
 impl Embedded {
-    /// The winding of a mesh with these twins, and its embedded stars.
-    pub(crate) fn with_winding(mesh: &Mesh, twins: &[u32], threads: &Threads) -> (Winding, Self) {
-        Self::with_new_winding(mesh, twins, None, &mut None, threads)
-    }
-
-    /// As [`Self::with_winding`]. A right guess, such as the winding of earlier positions, saves time. Fills in the
-    /// outline if it is needed.
-    pub(crate) fn with_new_winding(
+    /// The winding of a mesh with these twins, and its embedded stars. A right guess, such as the winding of earlier
+    /// positions, saves time. Fills in the outline if it is needed.
+    pub(crate) fn with_winding(
         mesh: &Mesh,
         twins: &[u32],
         mut guess: Option<Winding>,
@@ -155,7 +150,7 @@ mod tests {
             for threads in 1..=4 {
                 let threads = Threads::new(NonZeroUsize::new(threads), usize::MAX).unwrap();
                 let twins = crate::Adjacency::new(&mesh).twins;
-                let (_, embedded) = Embedded::with_winding(&mesh, &twins, &threads);
+                let (_, embedded) = Embedded::with_winding(&mesh, &twins, None, &mut None, &threads);
                 assert_eq!(embedded.at(0), is_embedded);
                 assert!((1..17).all(|v| !embedded.at(v)));
             }

@@ -20,14 +20,15 @@ use crate::engine::SharedObjects;
 use crate::engine::{Answer, Engine};
 use crate::mesh::embedded::Embedded;
 use crate::mesh::star::Fans;
+use crate::mesh::winding::{Outline, Winding};
 use crate::phases::frozen;
 use crate::phases::{Geometry, Thresholds, Topology};
 use crate::session::edge_states::edge_states;
 use crate::system::memory;
 use crate::system::threads::Threads;
 use crate::{
-    Backend, EdgeState, Edges, EngineKind, Error, Iteration, Mesh, Options, Order, Outcome, Positions,
-    Reason, Status, Timings,
+    Backend, Dimension, EdgeState, Edges, EngineKind, Error, Iteration, Mesh, Options, Order, Outcome,
+    Positions, Reason, Status, Timings,
 };
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 pub(crate) use choice::why_cpu;
@@ -288,8 +289,10 @@ impl Session {
         self.check_memory(memory_bounds::EDGES)?;
         let triangles = self.triangles().await?;
         let twins = self.ask(|engine| engine.twins()).await?;
-        // Flips change neither the components nor their areas, so the winding is the one that the engine found.
-        let (winding, _) = Embedded::with_winding(&self.mesh, &twins, &Threads::default());
+        let winding = match self.mesh.dimension() {
+            Dimension::Two => Outline::new(&triangles, &twins).winding(&self.mesh),
+            Dimension::Three => Winding::default(),
+        };
         let geometry = Geometry {
             dimension: self.mesh.dimension(),
             positions: self.mesh.positions(),

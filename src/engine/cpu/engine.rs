@@ -102,7 +102,7 @@ impl Cpu {
         let adjacency = Adjacency::of_triangles(mesh.vertex_count(), mesh.triangles(), &threads);
         let mut outline = None;
         let (winding, embedded) =
-            Embedded::with_new_winding(&mesh, &adjacency.twins, None, &mut outline, &threads);
+            Embedded::with_winding(&mesh, &adjacency.twins, None, &mut outline, &threads);
         let counts = EdgeCounts::from(&adjacency);
         let mut triangles = Vec::new();
         threads.append(&mut triangles, mesh.triangles());
@@ -422,7 +422,7 @@ impl Engine for Cpu {
     fn set_positions(&mut self, mesh: Arc<Mesh>) -> Answer<'_, ()> {
         let Self { thresholds, winding, embedded, outline, triangles, twins, threads, .. } = self;
         let guess = Some(std::mem::take(winding));
-        (*winding, *embedded) = Embedded::with_new_winding(&mesh, twins, guess, outline, threads);
+        (*winding, *embedded) = Embedded::with_winding(&mesh, twins, guess, outline, threads);
         if mesh.dimension() == Dimension::Three {
             flag_creases(mesh.positions(), triangles, twins, thresholds.cos, threads);
         }

@@ -65,7 +65,8 @@ impl WebGl {
         context.compile(&[deciders(form), common, more].concat()).await?;
 
         let adjacency = Adjacency::new(mesh);
-        let (winding, _) = Embedded::with_winding(mesh, &adjacency.twins, &Threads::default());
+        let (winding, _) =
+            Embedded::with_winding(mesh, &adjacency.twins, None, &mut None, &Threads::default());
         let fans = Fans::new(mesh.vertex_count(), mesh.triangles(), &adjacency.twins);
         if context.ends_loops_early {
             refuse_large_star(&context, mesh)?;
