@@ -172,7 +172,6 @@ export async function compile(source: ModuleSource): Promise<WebAssembly.Module>
  */
 function readFile(source: ModuleSource): BufferSource | undefined {
   if (!(source instanceof URL) || source.protocol !== 'file:') return undefined;
-  if (typeof process === 'undefined') return undefined;
-  const bytes = process.getBuiltinModule?.('node:fs').readFileSync(source);
+  const bytes = globalThis.process?.getBuiltinModule?.('node:fs').readFileSync(source);
   return bytes && new Uint8Array(bytes);
 }

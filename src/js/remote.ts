@@ -34,8 +34,8 @@ export interface Thread {
   wait(isWaiting: boolean): void;
 }
 
-/** The workers of Node. */
-export const node = typeof process === 'undefined' ? undefined : process.getBuiltinModule?.('node:worker_threads');
+/** The workers of Node. A bundler would replace `process` without `globalThis` by a package. */
+export const node = globalThis.process?.getBuiltinModule?.('node:worker_threads');
 
 /** Starts a worker. `onError` gets no message if the worker could not be loaded. */
 export function startThread(

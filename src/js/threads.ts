@@ -36,7 +36,8 @@ export function threadCount(triangles: number, { threads }: Settings): number {
 
 function coreCount(): number {
   return (
-    globalThis.navigator?.hardwareConcurrency ?? (node ? process.getBuiltinModule('node:os').availableParallelism() : 1)
+    globalThis.navigator?.hardwareConcurrency ??
+    (node ? globalThis.process.getBuiltinModule('node:os').availableParallelism() : 1)
   );
 }
 
