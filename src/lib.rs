@@ -30,6 +30,8 @@ mod system;
 #[cfg(all(target_arch = "wasm32", feature = "js-values"))]
 pub mod wasm;
 
+#[cfg(all(not(target_arch = "wasm32"), feature = "gpu"))]
+pub use engine::{GpuBuffers, GpuDevice};
 pub use engine_kind::EngineKind;
 pub use error::Error;
 pub use mesh::adjacency::Adjacency;
@@ -43,11 +45,14 @@ pub use predicates::cos_degrees;
 pub use prepare::reorient::reoriented;
 pub use prepare::wedges::Wedges;
 pub use prepare::weld::{Welded, welded};
-pub use session::Session;
 pub use session::edge_states::EdgeState;
 pub use session::options::{Backend, MOST_THREADS, Options, Order};
 pub use session::outcome::{Iteration, Outcome, Status, Timings};
+pub use session::{Counters, Session};
 #[cfg(not(target_arch = "wasm32"))]
 pub use session::{EarlyGpu, close_gpu, make_delaunay};
 #[cfg(all(target_arch = "wasm32", feature = "js-session"))]
 pub use wasm::session as js;
+/// The version of wgpu that [`GpuDevice`] and [`GpuBuffers`] are of.
+#[cfg(all(not(target_arch = "wasm32"), feature = "gpu"))]
+pub use wgpu;

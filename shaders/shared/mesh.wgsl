@@ -23,6 +23,9 @@ const REASON_FOLD: u32 = 1u;
 const REASON_DUPLICATE: u32 = 2u;
 const REASON_LOCKED: u32 = 3u;
 const REASON_DEVIATION: u32 = 4u;
+// Verdicts on edges that are left alone while the mesh moves, see moving.wgsl. The host does not count them by reason.
+const LEFT_AS_INFINITE: u32 = BLOCKED_BY + 5u;
+const LEFT_AS_WIDE: u32 = BLOCKED_BY + 6u;
 
 fn next(h: u32) -> u32 {
     return select(h + 1u, h - 2u, h % 3u == 2u);

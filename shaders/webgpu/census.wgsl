@@ -49,7 +49,7 @@ fn count_edges(t: u32, verdicts: vec3u) {
         let entry = twin_entry(h);
         var verdict = verdict_at(verdicts, k);
         if counts(h, entry, true) && verdict != DELAUNAY {
-            if (entry & FLAGS) != 0u {
+            if (entry & FLAGS) != 0u && verdict < LEFT_AS_INFINITE {
                 verdict = BLOCKED_BY + select(REASON_ANGLE, REASON_LOCKED, (entry & LOCKED) != 0u);
             }
             verdict = guarded(verdict, h, unflagged(entry));

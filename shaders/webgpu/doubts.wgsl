@@ -51,18 +51,18 @@ fn waiting_index(t: u32) -> u32 {
     return t + select(0u, params.triangles, step_.task == CENSUS);
 }
 
-// Verdicts packed into one word, three bits each. A choice of Select has the index of a side, 0 to 2, in the two
+// Verdicts packed into one word, four bits each. A choice of Select has the index of a side, 0 to 2, in the two
 // highest bits. So no choice equals such a word, whose highest bits are 3.
 const PACKED: u32 = 0xc0000000u;
 
 fn packed(verdicts: vec3u) -> u32 {
-    return PACKED | verdicts.x | (verdicts.y << 3u) | (verdicts.z << 6u);
+    return PACKED | verdicts.x | (verdicts.y << 4u) | (verdicts.z << 8u);
 }
 
 fn is_packed(word: u32) -> bool {
-    return word >= PACKED && word < PACKED + 512u;
+    return word >= PACKED && word < PACKED + 4096u;
 }
 
 fn unpacked(word: u32) -> vec3u {
-    return vec3u(word & 7u, (word >> 3u) & 7u, (word >> 6u) & 7u);
+    return vec3u(word & 15u, (word >> 4u) & 15u, (word >> 8u) & 15u);
 }

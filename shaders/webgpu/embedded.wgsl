@@ -7,42 +7,64 @@
 #import mesh
 #import plane
 #import points
+#import spans
 #import state
 
 // Marks a star that is not embedded.
 const NOT_EMBEDDED: u32 = 0x10000u;
 
 var<workgroup> signs: atomic<u32>;
+var<workgroup> not_positive: atomic<u32>;
 
-// Stores the sign of each triangle plus 1 as its choice; DOUBTFUL if exact arithmetic has to decide.
+// Stores the sign of each triangle plus 1 as its choice; DOUBTFUL if exact arithmetic has to decide. A triangle that is
+// left alone counts as flat.
 @compute @workgroup_size(WORKGROUP_SIZE)
-fn prepare_all(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
+fn prepare_all(
+    @builtin(global_invocation_id) id: vec3u,
+    @builtin(local_invocation_index) local: u32,
+    @builtin(num_workgroups) groups: vec3u,
+) {
+    var all = vec2u();
     for (var t = id.x; t < params.triangles; t += groups.x * WORKGROUP_SIZE) {
-        let sign = filtered_sign_of(position(vertex(3u * t)), position(vertex(3u * t + 1u)), position(vertex(3u * t + 2u)));
-        let choice = wait_for(t, sign == 0);
-        choices[t] = select(choice, u32(sign + 1), sign != 0);
+        let a = position(vertex(3u * t));
+        let b = position(vertex(3u * t + 1u));
+        let c = position(vertex(3u * t + 2u));
+        let span = max(span_of(a), max(span_of(b), span_of(c)));
+        all = max(all, span);
+        let sign = filtered_sign_of(a, b, c);
+        if params.update > 0u && is_too_wide(span) {
+            choices[t] = 1u;
+        } else {
+            let choice = wait_for(t, sign == 0);
+            choices[t] = select(choice, u32(sign + 1), sign != 0);
+        }
     }
+    add_span(all, local);
 }
 
 // Counts, in the memory of the lists, how often the triangles at each vertex cross the direction of the x axis. Also
 // collects the signs of the triangles: bits 0 to 2 for negative, flat, positive. If the winding is not known, each
-// triangle has the winding of its own sign: the counts are right if all triangles have the same sign.
+// triangle has the winding of its own sign: the counts are right if all triangles have the same sign. If it is known,
+// the signs are relative to it.
 @compute @workgroup_size(WORKGROUP_SIZE)
 fn count_turns(
     @builtin(global_invocation_id) id: vec3u,
     @builtin(local_invocation_index) local: u32,
     @builtin(num_workgroups) groups: vec3u,
 ) {
+    let is_known = params.winding != WINDING_UNKNOWN;
     var seen = 0u;
+    var others = 0u;
     for (var t = id.x; t < params.triangles; t += groups.x * WORKGROUP_SIZE) {
         let sign = i32(choices[t]) - 1;
         choices[t] = NONE;
         var a = position(vertex(3u * t));
         var b = position(vertex(3u * t + 1u));
         var c = position(vertex(3u * t + 2u));
-        let winding = select(sign, select(1, -1, is_clockwise(t)), params.knows_winding == 1u);
+        let winding = select(sign, select(1, -1, is_clockwise(t)), is_known);
         let is_positive = sign * winding > 0;
-        seen |= 1u << u32(sign + 1);
+        seen |= 1u << u32(select(sign, sign * winding, is_known) + 1);
+        others += select(1u, 0u, is_positive);
         for (var h = 3u * t; h < 3u * t + 3u; h++) {
             let is_inner = twin_entry(h) != NONE && twin_entry(prev(h)) != NONE;
             let first = order(b, a);
@@ -64,9 +86,16 @@ fn count_turns(
         }
     }
     atomicOr(&signs, seen);
+    if others > 0u {
+        atomicAdd(&not_positive, others);
+    }
     workgroupBarrier();
     if local == 0u {
         atomicOr(&history[COUNTED], atomicLoad(&signs));
+        let count = atomicLoad(&not_positive);
+        if count > 0u {
+            atomicAdd(&history[NOT_POSITIVE], count);
+        }
     }
 }
 
@@ -74,7 +103,8 @@ fn count_turns(
 @compute @workgroup_size(WORKGROUP_SIZE)
 fn mark_embedded(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
     if id.x == 0u {
-        begin_history(are_both(history_word(COUNTED)));
+        let are_both = (history_word(COUNTED) & (NEGATIVE | POSITIVE)) == (NEGATIVE | POSITIVE);
+        begin_history(are_both && params.winding == WINDING_UNKNOWN);
     }
     for (var word = id.x; word < (params.vertices + 31u) / 32u; word += groups.x * WORKGROUP_SIZE) {
         var bits = 0u;

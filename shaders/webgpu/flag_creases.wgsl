@@ -1,8 +1,10 @@
 // Flags the creases, and no other edges, from each of their half-edges.
 #import creases
 #import mesh
+#import moving if floats
 #import points
 #import state
+#import still if fixed
 #import verdicts
 
 // Whether each edge of a triangle is a crease, by a filter.
@@ -14,7 +16,14 @@ fn filtered_creases(t: u32) -> vec3u {
         if g != NONE {
             let a = position(vertex(h));
             let b = position(vertex(g));
-            verdict = filtered_crease(a, b, position(vertex(prev(h))), position(vertex(prev(g))));
+            let c = position(vertex(prev(h)));
+            let d = position(vertex(prev(g)));
+            if params.update > 0u {
+                verdict = left_alone(a, b, c, d);
+            }
+            if verdict == DELAUNAY {
+                verdict = filtered_crease(a, b, c, d);
+            }
         }
         verdicts = vec3u(verdicts.yz, verdict);
     }

@@ -37,6 +37,10 @@ fn flip_triangle(t: u32, index: u32, iteration: u32, builds: bool) -> u32 {
         stamp(there, iteration);
     }
     flip_edge(flip.x, flip.y, outer_h, outer_g);
+    if params.changes > 0u {
+        topology[params.changes + t] = params.update;
+        topology[params.changes + flip.y / 3u] = params.update;
+    }
     return 1u;
 }
 

@@ -50,6 +50,17 @@ fn flip_all(
         let total = atomicLoad(&flips);
         if total > 0u {
             atomicAdd(&history[entry(index + 1u, FLIPS)], total);
+            add_flips(total);
+        }
+    }
+}
+
+// Adds to the flips of all updates.
+fn add_flips(count: u32) {
+    if params.update > 0u {
+        let before = atomicAdd(&history[FLIPPED], count);
+        if before + count < before {
+            atomicAdd(&history[FLIPPED + 1u], 1u);
         }
     }
 }
@@ -120,6 +131,7 @@ fn tail(@builtin(local_invocation_index) local: u32) {
         }
         if flipped > 0u {
             atomicAdd(&history[entry(index + 1u, FLIPS)], flipped);
+            add_flips(flipped);
         }
         if local == 0u {
             atomicStore(&history[entry(index + 1u, BUILT)], 1u);

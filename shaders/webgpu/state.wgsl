@@ -6,9 +6,12 @@
 const WORKGROUP_SIZE: u32 = 256u;
 
 struct Params {
-    // The signs that occur among the triangles, in 2D: a bit for each sign. The device writes this word before the
-    // first iteration.
+    // The signs that occur among the triangles, in 2D: a bit for each sign. If the winding is known, the signs are
+    // relative to it. The device writes this word and the next two before the first iteration.
     signs: u32,
+    // The span of all points while the mesh moves, see moving.wgsl.
+    highest: u32,
+    depth: u32,
     vertices: u32,
     triangles: u32,
     // The index of the batch's first iteration.
@@ -30,10 +33,14 @@ struct Params {
     list_below: u32,
     // The offset of the bits of the vertices in `topology`, in 2D.
     embedded: u32,
-    // 1 if the winding bits are known before the preparation.
-    knows_winding: u32,
+    // What the host knows of the winding of the components: one of the constants below.
+    winding: u32,
     // 1 if an invocation of decide.wgsl decides one triangle per dispatch.
     decides_one: u32,
+    // The number of the update while the mesh moves, from 1 on; else 0.
+    update: u32,
+    // The offset in `topology` of the updates in which the triangles last changed; 0 if nobody asks for them.
+    changes: u32,
     // |cos β| is exactly mantissa / power: eight digits each, as in numbers.wgsl.
     cos_digits: array<vec4i, 4>,
     // The limit for the deviation: the words of a coordinate, and rounded to f32 for the filter.
@@ -43,6 +50,15 @@ struct Params {
 // Bits of signs. The bit between them is for flat triangles.
 const NEGATIVE: u32 = 1u;
 const POSITIVE: u32 = 4u;
+
+// The host knows nothing of the winding: then all triangles have the same, which `signs` tells.
+const WINDING_UNKNOWN: u32 = 0u;
+// The winding bits are valid.
+const WINDING_BITS: u32 = 1u;
+// All components are clockwise.
+const WINDING_CLOCKWISE: u32 = 2u;
+// None is.
+const WINDING_COUNTER_CLOCKWISE: u32 = 3u;
 
 struct Step {
     // The iteration's index in the batch.
@@ -63,17 +79,23 @@ struct Step {
 // due; one more stamp, for neighbours that are NONE; a bit for each chunk of triangles, see `doubt`.
 @group(0) @binding(6) var<storage, read_write> frontier: array<atomic<u32>>;
 // Binding 7 is the history, see history_read.wgsl and history_write.wgsl.
-// Winding bits, which are valid only if triangles have both signs, then the bits of the embedded stars, then the table
-// of the fans.
+// Winding bits, then the bits of the embedded stars, then the updates in which the triangles last changed, if somebody
+// asks for them, then the table of the fans.
 @group(0) @binding(8) var<storage, read_write> topology: array<u32>;
 
 // Words of the history: the counts; 1 plus the index of the iteration in which the tail has paused, or 0; how many
-// vertices have several fans; the entries. An entry is about the iteration before the one that reads it.
+// vertices have several fans; the flips of all updates, as a low and a high word; the entries. An entry is about the
+// iteration before the one that reads it.
 const COUNTED: u32 = 0u;
-const COUNTS: u32 = 6u;
-const PAUSED: u32 = 6u;
-const SEVERAL_FANS: u32 = 7u;
-const ENTRIES: u32 = 8u;
+const COUNTS: u32 = 8u;
+const PAUSED: u32 = 8u;
+const SEVERAL_FANS: u32 = 9u;
+const FLIPPED: u32 = 10u;
+const ENTRIES: u32 = 12u;
+// In the preparation: the signs, the span of all points, and how many triangles are not positive.
+const HIGHEST: u32 = 1u;
+const DEPTH: u32 = 2u;
+const NOT_POSITIVE: u32 = 3u;
 const ENTRY_WORDS: u32 = 4u;
 const FLIPS: u32 = 0u;
 // The length of the list of due triangles, if it was built.
@@ -130,13 +152,11 @@ fn coordinates(i: u32) -> vec3u {
 }
 
 fn is_clockwise(t: u32) -> bool {
-    let has_both = are_both(params.signs);
-    return (params.signs & NEGATIVE) != 0u && (!has_both || ((topology[t / 32u] >> (t % 32u)) & 1u) == 1u);
-}
-
-// Whether triangles have both signs. Then each component has its winding, which the host finds.
-fn are_both(signs: u32) -> bool {
-    return (signs & (NEGATIVE | POSITIVE)) == (NEGATIVE | POSITIVE);
+    var clockwise = params.winding == WINDING_CLOCKWISE;
+    if params.winding == WINDING_BITS {
+        clockwise = ((topology[t / 32u] >> (t % 32u)) & 1u) == 1u;
+    }
+    return clockwise || (params.winding == WINDING_UNKNOWN && (params.signs & NEGATIVE) != 0u);
 }
 
 // Whether the star of a vertex is known to be embedded, see embedded.wgsl.
@@ -144,9 +164,9 @@ fn is_embedded(v: u32) -> bool {
     return DIMENSION == 2u && ((topology[params.embedded + v / 32u] >> (v % 32u)) & 1u) == 1u;
 }
 
-// Whether all triangles are positive, or all are negative: then no edge that is not Delaunay can fold.
+// Whether all triangles have the strict sign of the winding: then no edge that is not Delaunay can fold.
 fn is_strict() -> bool {
-    return params.signs == NEGATIVE || params.signs == POSITIVE;
+    return params.signs == POSITIVE || (params.winding == WINDING_UNKNOWN && params.signs == NEGATIVE);
 }
 
 fn has_fans() -> bool {

@@ -1,14 +1,17 @@
 // Finds the verdicts on the three edges of a triangle, by filters.
 #import mesh
+#import moving if floats
 #import plane if plane
 #import points
 #import space if space
 #import state
+#import still if fixed
 
 // The verdicts by the fast or the slower filter; UNDECIDED if exact arithmetic has to decide. A census tests every edge
 // from its lower half-edge; an iteration tests the edges that may flip. The other edges get DELAUNAY.
 fn verdicts_on(t: u32, is_census: bool, is_close: bool) -> vec3u {
     let winding = select(1, -1, is_clockwise(t));
+    let leaves = leaves_some();
     var a = position(vertex(3u * t));
     var b = position(vertex(3u * t + 1u));
     var c = position(vertex(3u * t + 2u));
@@ -18,9 +21,12 @@ fn verdicts_on(t: u32, is_census: bool, is_close: bool) -> vec3u {
         var verdict = DELAUNAY;
         if counts(h, entry, is_census) {
             let d = position(vertex(prev(unflagged(entry))));
-            if is_close {
+            if leaves {
+                verdict = left_alone(a, b, c, d);
+            }
+            if verdict == DELAUNAY && is_close {
                 verdict = close_verdict_on(a, b, c, d, winding);
-            } else {
+            } else if verdict == DELAUNAY {
                 verdict = filtered_verdict_on(a, b, c, d, winding);
             }
         }

@@ -2,7 +2,7 @@
 
 #[cfg(feature = "gpu")]
 use crate::Reason;
-use crate::{Adjacency, EngineKind, Error, Mesh, Reasons};
+use crate::{Adjacency, EngineKind, Error, Mesh, Positions, Reasons};
 use std::pin::Pin;
 use std::sync::Arc;
 
@@ -30,6 +30,20 @@ impl Census {
     }
 }
 
+/// The state of a mesh that moves, after an update.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Moved {
+    pub(crate) census: Census,
+    /// Edges left alone, because a number is not finite.
+    pub(crate) infinite: u32,
+    /// Edges left alone, because their points span more bits than the engine decides.
+    pub(crate) wide: u32,
+    /// Flips of all updates.
+    pub(crate) flips: u64,
+    /// In the plane: triangles without the strict sign of their component.
+    pub(crate) not_positive: u32,
+}
+
 /// The numbers of edges of each kind. Flips do not change them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct EdgeCounts {
@@ -50,6 +64,11 @@ impl From<&Adjacency> for EdgeCounts {
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 pub(super) fn array(triangles: Answer<'_, Vec<u32>>) -> Answer<'_, js_sys::Uint32Array> {
     Box::pin(async { Ok(triangles.await?.as_slice().into()) })
+}
+
+fn no_updates(backend: EngineKind) -> Error {
+    let message = "it has no updates: set the positions and run".to_owned();
+    Error::BackendLimit { backend, message }
 }
 
 /// One mesh on one engine, between two iterations.
@@ -85,6 +104,28 @@ pub(crate) trait Engine {
     /// triangles of the engine. After [`Error::BackendLimit`] the engine is unchanged.
     fn set_positions(&mut self, mesh: Arc<Mesh>) -> Answer<'_, ()>;
 
+    /// Waits until the engine has started, so that [`Engine::update`] may follow.
+    fn settle(&mut self) -> Answer<'_, ()> {
+        Box::pin(std::future::ready(Ok(())))
+    }
+
+    /// The vertices have moved, to `positions` or, on a GPU, to those that the caller has written. Tests all edges, and
+    /// runs up to `iterations` iterations. A GPU only submits them. The iterations count on from the updates before;
+    /// the winding stays.
+    fn update(&mut self, _positions: Option<Positions>, _iterations: u32) -> Result<(), Error> {
+        Err(no_updates(self.backend()))
+    }
+
+    /// Counts after all updates so far. Later updates do not change the answer.
+    fn moved(&mut self) -> Answer<'static, Moved> {
+        Box::pin(std::future::ready(Err(no_updates(self.backend()))))
+    }
+
+    /// The present positions, after updates.
+    fn positions(&mut self) -> Answer<'_, Positions> {
+        Box::pin(std::future::ready(Err(no_updates(self.backend()))))
+    }
+
     /// The numbers of edges of each kind.
     fn edge_counts(&self) -> EdgeCounts;
 
@@ -114,6 +155,12 @@ pub(crate) trait Engine {
     /// Whether the triangles stay on the device until somebody asks for them. Else an engine may read them early.
     #[cfg(all(target_arch = "wasm32", feature = "js"))]
     fn set_stays(&mut self, _stays: bool) {}
+
+    /// The buffers that a program can draw from, if the engine runs on WebGPU.
+    #[cfg(all(not(target_arch = "wasm32"), feature = "gpu"))]
+    fn gpu_buffers(&self) -> Option<super::GpuBuffers> {
+        None
+    }
 
     /// The buffers that a page can draw from, if the engine runs on the browser's WebGPU.
     #[cfg(all(target_arch = "wasm32", feature = "js"))]

@@ -19,7 +19,7 @@ pub(crate) use cpu::{Cpu, Lawson};
 pub(crate) use gpu::{Form, Upload, self_test};
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 pub(crate) use interface::SharedObjects;
-pub(crate) use interface::{Answer, Census, EdgeCounts, Engine};
+pub(crate) use interface::{Answer, Census, EdgeCounts, Engine, Moved};
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 pub use webgl2::WebGl2Module;
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
@@ -30,3 +30,5 @@ pub(crate) use webgl2::{WebGl, set_shader_loader};
 pub use webgpu::GpuDevice;
 #[cfg(feature = "gpu")]
 pub(crate) use webgpu::{Device, GivenDevice, Handle as DeviceHandle, WebGpu};
+#[cfg(all(not(target_arch = "wasm32"), feature = "gpu"))]
+pub use webgpu::{GpuBuffers, GpuDevice};

@@ -8,7 +8,7 @@ use crate::mesh::star::Fans;
 use crate::mesh::winding::{Outline, Signs, Winding};
 use crate::predicates::area_sign;
 use crate::system::threads::Threads;
-use crate::{Dimension, Mesh, NONE};
+use crate::{Dimension, Mesh, NONE, Positions};
 use glam::DVec2;
 use std::cmp::Ordering;
 use std::ops::Range;
@@ -36,7 +36,9 @@ impl Embedded {
         }
         let triangles = mesh.triangle_count();
         loop {
-            let (signs, embedded) = Self::of_triangles(mesh, twins, guess.as_ref(), threads);
+            let shape = Shape { positions: mesh.positions(), triangles: mesh.triangles(), twins };
+            let (signs, embedded) =
+                Self::of_triangles(shape, mesh.vertex_count(), guess.as_ref(), false, threads);
             let by_signs = signs.winding(triangles);
             // Without a guess, each triangle counted by its own sign.
             let is_alike = guess.is_none() && by_signs.is_some();
@@ -50,14 +52,17 @@ impl Embedded {
         }
     }
 
-    /// Without a `winding`, each triangle counts as counter-clockwise or clockwise by its own sign.
-    fn of_triangles(
-        mesh: &Mesh,
-        twins: &[u32],
+    /// The signs of the triangles, and the embedded stars. Without a `winding`, each triangle counts as
+    /// counter-clockwise or clockwise by its own sign. A triangle with a number that is not finite counts as flat;
+    /// `has_infinite`: whether there may be one.
+    pub(crate) fn of_triangles(
+        shape: Shape,
+        vertices: usize,
         winding: Option<&Winding>,
+        has_infinite: bool,
         threads: &Threads,
     ) -> (Signs, Self) {
-        let mut turns = vec![0u8; mesh.vertex_count()];
+        let mut turns = vec![0u8; vertices];
         let words: &mut [AtomicU8] = zerocopy::transmute_mut!(turns.as_mut_slice());
         let is_alone = threads.is_one();
         let turn = |v: u32, by: u8| {
@@ -70,7 +75,8 @@ impl Embedded {
                 word.store(2, Relaxed);
             }
         };
-        let pieces = threads.map(mesh.triangle_count(), |piece| add_turns(mesh, twins, winding, piece, turn));
+        let add = |piece| add_turns(shape, winding, has_infinite, piece, turn);
+        let pieces = threads.map(shape.triangles.len() / 3, add);
         (pieces.into_iter().fold(Signs::default(), Signs::and), Self { turns })
     }
 
@@ -87,11 +93,19 @@ impl Embedded {
     }
 }
 
+/// A mesh in the plane, between two iterations.
+#[derive(Clone, Copy)]
+pub(crate) struct Shape<'a> {
+    pub(crate) positions: &'a Positions,
+    pub(crate) triangles: &'a [u32],
+    pub(crate) twins: &'a [u32],
+}
+
 /// The signs of a piece of the triangles. Calls `turn` with each vertex and the turns that a triangle adds to it.
 fn add_turns(
-    mesh: &Mesh,
-    twins: &[u32],
+    Shape { positions, triangles, twins }: Shape,
     winding: Option<&Winding>,
+    has_infinite: bool,
     piece: Range<usize>,
     turn: impl Fn(u32, u8),
 ) -> Signs {
@@ -99,7 +113,7 @@ fn add_turns(
     // Whether v is below the horizontal line through u, or on this line to the right of u. Of an edge and its reverse,
     // exactly one goes down.
     let goes_down = |u: DVec2, v: DVec2| (v.y < u.y) | ((v.y == u.y) & (v.x > u.x));
-    let (triangles, _) = mesh.triangles().as_chunks();
+    let (triangles, _) = triangles.as_chunks();
     let (sides, _) = twins.as_chunks::<3>();
     for t in piece {
         let [a, b, c] = triangles[t];
@@ -108,11 +122,13 @@ fn add_turns(
                 ends.into_iter().for_each(|v| turn(v, 2));
             }
         }
-        let [p, q, r] = mesh.positions().points2([a, b, c]);
-        let sign = area_sign(p, q, r);
-        signs.add(sign);
+        let [p, q, r] = positions.points2([a, b, c]);
+        let is_finite = !has_infinite || [p, q, r].iter().all(|point| point.is_finite());
+        let sign = if is_finite { area_sign(p, q, r) } else { Ordering::Equal };
         let is_clockwise = winding.map_or(sign.is_lt(), |winding| winding.is_clockwise(t as u32));
-        if sign != if is_clockwise { Ordering::Less } else { Ordering::Greater } {
+        let is_positive = sign == if is_clockwise { Ordering::Less } else { Ordering::Greater };
+        signs.add(sign, is_positive);
+        if !is_positive {
             for v in [a, b, c] {
                 turn(v, 2);
             }

@@ -80,9 +80,9 @@ impl Positions {
         }
     }
 
-    /// Refuses coordinates that are NaN or infinite, with [`Error::NonFinite`] for the first.
-    pub(crate) fn refuse_non_finite(&self, dimension: Dimension, threads: &Threads) -> Result<(), Error> {
-        let are_finite = match self {
+    /// Whether no coordinate is NaN or infinite.
+    pub(crate) fn are_finite(&self, threads: &Threads) -> bool {
+        match self {
             Self::F32(numbers) => {
                 let words: &[u32] = zerocopy::transmute_ref!(numbers.as_slice());
                 Extremes::of(words, MAGNITUDE, threads).largest < f32::INFINITY.to_bits()
@@ -92,8 +92,12 @@ impl Positions {
                     |piece: Range<usize>| numbers[piece].iter().fold(true, |all, x| all & x.is_finite());
                 !threads.map(numbers.len(), are_finite).contains(&false)
             }
-        };
-        let found = if are_finite { None } else { self.iter().position(|x| !x.is_finite()) };
+        }
+    }
+
+    /// Refuses coordinates that are NaN or infinite, with [`Error::NonFinite`] for the first.
+    pub(crate) fn refuse_non_finite(&self, dimension: Dimension, threads: &Threads) -> Result<(), Error> {
+        let found = if self.are_finite(threads) { None } else { self.iter().position(|x| !x.is_finite()) };
         let stride = dimension.stride();
         found.map_or(Ok(()), |i| {
             let axis = ['x', 'y', 'z'][i % stride];

@@ -16,24 +16,29 @@ pub(crate) struct Winding {
     pub(crate) is_strict: bool,
 }
 
-/// The signs that occur among areas of triangles: one bit each for negative, zero and positive.
+/// The signs that occur among areas of triangles: one bit each for negative, zero and positive. Also the number of
+/// triangles without the strict sign of their winding.
 #[derive(Clone, Copy, Default)]
-pub(crate) struct Signs(u32);
+pub(crate) struct Signs {
+    bits: u32,
+    pub(crate) not_positive: u32,
+}
 
 impl Signs {
     #[inline(always)]
-    pub(crate) fn add(&mut self, sign: Ordering) {
-        self.0 |= 1 << (sign as i8 + 1);
+    pub(crate) fn add(&mut self, sign: Ordering, is_positive: bool) {
+        self.bits |= 1 << (sign as i8 + 1);
+        self.not_positive += u32::from(!is_positive);
     }
 
     /// The signs of both sets of triangles.
     pub(crate) fn and(self, other: Self) -> Self {
-        Self(self.0 | other.0)
+        Self { bits: self.bits | other.bits, not_positive: self.not_positive + other.not_positive }
     }
 
     /// The winding of a mesh whose triangles have these signs; `None` if both signs occur: then the components decide.
     pub(crate) fn winding(self, triangles: usize) -> Option<Winding> {
-        let [negative, zero, positive] = [1, 2, 4].map(|bit| self.0 & bit != 0);
+        let [negative, zero, positive] = [1, 2, 4].map(|bit| self.bits & bit != 0);
         // If all triangles are flat, no edge flips, whatever the winding.
         let words = if negative { triangles.div_ceil(32) } else { 0 };
         (!(negative & positive)).then(|| Winding { clockwise: vec![u32::MAX; words], is_strict: !zero })

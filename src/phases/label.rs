@@ -131,6 +131,11 @@ pub(crate) fn verdict(geometry: &Geometry, mesh: Topology, h: u32) -> Verdict {
 
 /// Moves the edges that are not Delaunay to the front, in their order. Returns their number.
 pub(crate) fn keep_non_delaunay(geometry: &Geometry, diamonds: &mut [Diamond]) -> usize {
+    let mut finite = diamonds.len();
+    if geometry.has_infinite {
+        finite = keep(0, diamonds, 0, |diamond| is_finite(geometry, diamond.vertices));
+    }
+    let diamonds = &mut diamonds[..finite];
     match (geometry.dimension, geometry.positions) {
         (Dimension::Two, Positions::F32(numbers)) => {
             let fours = diamonds.len() / 4;
@@ -143,6 +148,14 @@ pub(crate) fn keep_non_delaunay(geometry: &Geometry, diamonds: &mut [Diamond]) -
         (Dimension::Three, positions) => {
             keep(0, diamonds, 0, |diamond| quad(positions, diamond).is_non_delaunay())
         }
+    }
+}
+
+/// Whether all coordinates of these vertices are finite.
+pub(crate) fn is_finite(geometry: &Geometry, vertices: [u32; 4]) -> bool {
+    match geometry.dimension {
+        Dimension::Two => geometry.positions.points2(vertices).iter().all(|point| point.is_finite()),
+        Dimension::Three => geometry.positions.points3(vertices).iter().all(|point| point.is_finite()),
     }
 }
 

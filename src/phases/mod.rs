@@ -22,7 +22,7 @@ pub(crate) mod state;
 pub(crate) use crease::flag_creases;
 pub(crate) use flip::{Around, Selected, flip, move_anchors};
 pub(crate) use label::{
-    Diamond, Verdict, keep_non_delaunay, label, makes_duplicate, verdict, verdict_of_shape,
+    Diamond, Verdict, is_finite, keep_non_delaunay, label, makes_duplicate, verdict, verdict_of_shape,
 };
 pub(crate) use select::{select, yields};
 pub(crate) use state::{Geometry, Thresholds, Topology, key};

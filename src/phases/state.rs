@@ -32,6 +32,8 @@ pub(crate) struct Geometry<'a> {
     pub(crate) thresholds: Thresholds,
     pub(crate) winding: &'a Winding,
     pub(crate) embedded: &'a Embedded,
+    /// Whether there may be numbers that are not finite. Edges with such a number are left alone.
+    pub(crate) has_infinite: bool,
 }
 
 /// The triangles and twins before a phase: of the whole mesh, or of a range of its triangles.

@@ -205,8 +205,9 @@ impl Session {
     /// The audit of the present triangles.
     ///
     /// # Errors
-    /// [`Error::Device`].
+    /// [`Error::Device`]; after updates, those of [`Session::set_positions`].
     pub async fn verify(&mut self) -> Result<Audit, Error> {
+        self.come_to_rest().await?;
         let triangles = self.triangles().await?;
         let (mesh, options) = self.input();
         Ok(audit(mesh, &triangles, options))

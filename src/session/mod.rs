@@ -8,6 +8,7 @@ pub(crate) mod edge_states;
 mod fallback;
 pub(crate) mod locks;
 mod memory_bounds;
+mod moving;
 #[cfg_attr(not(feature = "gpu"), path = "no_gpu.rs")]
 mod open_gpu;
 pub(crate) mod options;
@@ -39,6 +40,7 @@ pub(crate) use cost::Job;
 pub use early::{EarlyGpu, close_gpu};
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 use js_sys::Uint32Array;
+pub use moving::Counters;
 use std::borrow::Cow;
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -55,6 +57,8 @@ pub struct Session {
     may_change: bool,
     flips_per_iteration: Vec<u32>,
     has_ended: bool,
+    /// Updates since the last other change of the positions.
+    updates: u64,
     timings: Timings,
     /// Whether the triangles stay on the device until somebody asks for them.
     #[cfg(all(target_arch = "wasm32", feature = "js"))]
@@ -85,6 +89,7 @@ impl Session {
             may_change,
             flips_per_iteration: Vec::new(),
             has_ended: false,
+            updates: 0,
             timings: Timings { upload: set_up - adjacency, adjacency, ..Timings::default() },
             #[cfg(all(target_arch = "wasm32", feature = "js"))]
             stays: false,
@@ -97,6 +102,7 @@ impl Session {
     /// # Errors
     /// [`Error::Device`], [`Error::BackendLimit`], [`Error::OutOfMemory`].
     pub async fn step(&mut self) -> Result<Option<Iteration>, Error> {
+        self.come_to_rest().await?;
         if !self.may_continue() {
             return Ok(None);
         }
@@ -135,6 +141,7 @@ impl Session {
     /// # Errors
     /// Those of [`Session::run`].
     pub async fn advance(&mut self) -> Result<bool, Error> {
+        self.come_to_rest().await?;
         #[cfg(all(target_arch = "wasm32", feature = "js"))]
         self.engine.set_stays(self.stays);
         if self.may_continue() {
@@ -158,10 +165,7 @@ impl Session {
         let start = Instant::now();
         self.check_memory(memory_bounds::POSITIONS)?;
         let positions = positions.into();
-        let (length, expected) = (positions.len(), self.mesh.positions().len());
-        if length != expected {
-            return Err(Error::PositionCount { length, expected });
-        }
+        self.check_length(&positions)?;
         positions.refuse_non_finite(self.mesh.dimension(), &Threads::one())?;
         let triangles = self.triangles().await?;
         let mesh = Arc::new(Mesh::new(self.mesh.dimension(), positions, triangles)?);
@@ -186,6 +190,7 @@ impl Session {
         self.mesh = mesh;
         self.flips_per_iteration.clear();
         self.has_ended = false;
+        self.updates = 0;
         self.timings = Timings { adjacency: ms_since(start), ..Timings::default() };
         Ok(())
     }
@@ -205,6 +210,7 @@ impl Session {
     /// [`Error::Device`], [`Error::OutOfMemory`].
     pub async fn outcome(&mut self) -> Result<Outcome, Error> {
         let start = Instant::now();
+        self.come_to_rest().await?;
         let triangles = self.triangles().await?;
         let outcome = self.summary(start, &|| Cow::Borrowed(&triangles)).await?;
         Ok(Outcome { triangles, ..outcome })
@@ -215,6 +221,7 @@ impl Session {
     #[cfg(all(target_arch = "wasm32", feature = "js"))]
     pub(crate) async fn outcome_array(&mut self) -> Result<(Outcome, Uint32Array), Error> {
         let start = Instant::now();
+        self.come_to_rest().await?;
         let counts = self.engine.edge_counts();
         let array = if self.stays && counts.non_manifold + counts.inconsistent == 0 {
             Uint32Array::default()
@@ -286,6 +293,7 @@ impl Session {
     /// # Errors
     /// [`Error::Device`], [`Error::OutOfMemory`].
     pub async fn edge_states(&mut self) -> Result<Vec<EdgeState>, Error> {
+        self.come_to_rest().await?;
         self.check_memory(memory_bounds::EDGES)?;
         let triangles = self.triangles().await?;
         let twins = self.ask(|engine| engine.twins()).await?;
@@ -299,6 +307,7 @@ impl Session {
             thresholds: Thresholds::from(&self.options),
             winding: &winding,
             embedded: &Embedded::default(),
+            has_infinite: false,
         };
         let vertices = self.mesh.vertex_count();
         let fans = &Fans::new(vertices, &triangles, &twins);
@@ -329,7 +338,7 @@ impl Session {
         self.engine.backend()
     }
 
-    /// What the audit compares with: the mesh given to `new` or made by the last `set_positions`, and the options.
+    /// What the audit compares with: the mesh given to `new`, or made when positions changed last, and the options.
     pub(crate) fn input(&self) -> (&Mesh, &Options) {
         (&self.mesh, &self.options)
     }

@@ -66,7 +66,10 @@ pub struct Options {
     pub threads: Option<NonZeroUsize>,
     /// The device for the WebGPU engine, instead of a device of its own. The engine never destroys it, changes none of
     /// its settings, and ignores errors of calls that are not its own. If it is a software GPU, `Auto` takes the CPU.
-    #[cfg(all(target_arch = "wasm32", feature = "js"))]
+    #[cfg(any(
+        all(target_arch = "wasm32", feature = "js"),
+        all(not(target_arch = "wasm32"), feature = "gpu")
+    ))]
     pub device: Option<crate::engine::GpuDevice>,
     /// If set, `Auto` fails where it would choose the CPU. Another WebAssembly module then runs the CPU engine, on this
     /// number of threads.
@@ -115,9 +118,9 @@ pub(crate) fn threads(count: usize) -> Result<NonZeroUsize, Error> {
 impl Options {
     /// The device that the caller gives, if any.
     pub(crate) fn given_device(&self) -> Option<&crate::engine::GivenDevice> {
-        #[cfg(all(target_arch = "wasm32", feature = "js"))]
+        #[cfg(any(not(target_arch = "wasm32"), feature = "js"))]
         return self.device.as_ref();
-        #[cfg(not(all(target_arch = "wasm32", feature = "js")))]
+        #[cfg(all(target_arch = "wasm32", not(feature = "js")))]
         None
     }
 }
@@ -145,7 +148,10 @@ impl Default for Options {
             groups: Vec::new(),
             order: Order::Reproducible,
             threads: None,
-            #[cfg(all(target_arch = "wasm32", feature = "js"))]
+            #[cfg(any(
+                all(target_arch = "wasm32", feature = "js"),
+                all(not(target_arch = "wasm32"), feature = "gpu")
+            ))]
             device: None,
             #[cfg(all(target_arch = "wasm32", feature = "js"))]
             leaves_cpu: None,

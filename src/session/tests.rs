@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "what fails here is a failed test")]
 
 use super::*;
-use crate::engine::{Census, Cpu, EdgeCounts};
+use crate::engine::{Census, Cpu, EdgeCounts, Moved};
 use pollster::block_on;
 
 /// An engine that fails after `questions_left` questions: its device is lost, or it refuses the mesh.
@@ -47,6 +47,15 @@ impl Engine for Failing {
     }
     fn set_positions(&mut self, mesh: Arc<Mesh>) -> Answer<'_, ()> {
         self.answer(|cpu| cpu.set_positions(mesh))
+    }
+    fn update(&mut self, positions: Option<Positions>, iterations: u32) -> Result<(), Error> {
+        self.cpu.update(positions, iterations)
+    }
+    fn moved(&mut self) -> Answer<'static, Moved> {
+        self.cpu.moved()
+    }
+    fn positions(&mut self) -> Answer<'_, Positions> {
+        self.answer(|cpu| cpu.positions())
     }
     fn edge_counts(&self) -> EdgeCounts {
         self.cpu.edge_counts()

@@ -169,6 +169,7 @@ impl JsSession {
     #[wasm_bindgen(js_name = auditInput, unchecked_return_type = "Promise<Parameters<typeof import('./edgeflip_audit.js').audit>>")]
     pub fn audit_input(&self) -> Promise {
         let input = async |session: &mut Session| {
+            session.come_to_rest().await?;
             let triangles = session.triangles().await?;
             let (mesh, options) = session.input();
             let array = |words: &[u32]| JsValue::from(Uint32Array::from(words));

@@ -2,17 +2,17 @@
 //! tested again only if one of its triangles has flipped.
 
 use super::region::TopologyMut;
-use crate::engine::{Answer, Census, EdgeCounts, Engine};
-use crate::mesh::embedded::Embedded;
+use crate::engine::{Answer, Census, EdgeCounts, Engine, Moved};
+use crate::mesh::embedded::{Embedded, Shape};
 use crate::mesh::half_edge::{self, CREASE, FLAGS, LOCKED, prev, unflagged};
 use crate::mesh::star::Fans;
 use crate::mesh::winding::{Outline, Winding};
 use crate::phases::{
-    Around, Diamond, Geometry, Selected, Thresholds, Topology, Verdict, flag_creases, flip,
+    Around, Diamond, Geometry, Selected, Thresholds, Topology, Verdict, flag_creases, flip, is_finite,
     keep_non_delaunay, key, makes_duplicate, move_anchors, verdict, verdict_of_shape, yields,
 };
 use crate::system::threads::{Threads, Word, shared};
-use crate::{Adjacency, Dimension, EngineKind, Mesh, NONE};
+use crate::{Adjacency, Dimension, EngineKind, Error, Mesh, NONE, Positions};
 use std::hint::black_box;
 use std::ops::Range;
 use std::sync::Arc;
@@ -56,15 +56,6 @@ fn touch(words: impl Iterator<Item = u32>) {
     black_box(words.fold(0, |all, word| all ^ word));
 }
 
-fn geometry_of<'a>(
-    mesh: &'a Mesh,
-    winding: &'a Winding,
-    embedded: &'a Embedded,
-    thresholds: Thresholds,
-) -> Geometry<'a> {
-    Geometry { dimension: mesh.dimension(), positions: mesh.positions(), thresholds, winding, embedded }
-}
-
 /// The state of a mesh between two iterations.
 pub(crate) struct Cpu {
     pub(super) threads: Threads,
@@ -89,6 +80,21 @@ pub(crate) struct Cpu {
     /// removed an edge at this vertex. `label` makes it when it tests all edges.
     changed: Vec<AtomicU32>,
     iteration: u32,
+    /// What the updates have made of the mesh.
+    moving: Moving,
+}
+
+/// The state of updates.
+#[derive(Default)]
+struct Moving {
+    /// The present positions, if they are not those of the mesh.
+    positions: Option<Positions>,
+    /// Whether there may be numbers that are not finite.
+    has_infinite: bool,
+    /// The first iteration of the next update.
+    next: u32,
+    /// Flips of all updates.
+    flips: u64,
 }
 
 impl Cpu {
@@ -109,7 +115,7 @@ impl Cpu {
         let fans = embedded.fans(&mesh, &adjacency.twins, &threads);
         let mut twins = adjacency.twins;
         if mesh.dimension() == Dimension::Three {
-            flag_creases(mesh.positions(), &triangles, &mut twins, thresholds.cos, &threads);
+            flag_creases(mesh.positions(), &triangles, &mut twins, thresholds.cos, false, &threads);
         }
         Self {
             thresholds,
@@ -124,6 +130,7 @@ impl Cpu {
             selected: Selected::default(),
             changed: Vec::new(),
             iteration: 0,
+            moving: Moving::default(),
             triangles,
             twins,
             mesh,
@@ -132,8 +139,16 @@ impl Cpu {
     }
 
     pub(in crate::engine) fn geometry(&self) -> Geometry<'_> {
-        let Self { mesh, winding, embedded, thresholds, .. } = self;
-        geometry_of(mesh, winding, embedded, *thresholds)
+        let &Self { ref mesh, ref winding, ref embedded, thresholds, .. } = self;
+        let Moving { positions, has_infinite, .. } = &self.moving;
+        Geometry {
+            dimension: mesh.dimension(),
+            positions: positions.as_ref().unwrap_or(mesh.positions()),
+            thresholds,
+            winding,
+            embedded,
+            has_infinite: *has_infinite,
+        }
     }
 
     pub(in crate::engine) fn topology(&self) -> Topology<'_> {
@@ -340,6 +355,20 @@ impl Cpu {
         parts.iter().map(|part| part.flipped.len() as u32).sum()
     }
 
+    /// Runs up to `count` iterations, and returns the flips of each.
+    fn run(&mut self, count: u32) -> Vec<u32> {
+        let mut flips = Vec::new();
+        while (flips.len() as u32) < count {
+            self.label();
+            self.select();
+            match self.flip() {
+                0 => break,
+                flipped => flips.push(flipped),
+            }
+        }
+        flips
+    }
+
     /// Counts the edges that are not Delaunay, by testing the edges in the lists again.
     pub(crate) fn count(&mut self) -> Census {
         self.label();
@@ -366,11 +395,72 @@ impl Cpu {
     }
 }
 
+/// Updates.
+impl Cpu {
+    /// Takes over new positions: tests the stars and the creases again, and forgets the lists.
+    pub(super) fn move_to(&mut self, positions: Option<Positions>) {
+        let Self { mesh, thresholds, winding, embedded, triangles, twins, threads, moving, .. } = self;
+        if positions.is_some() {
+            moving.positions = positions;
+        }
+        let positions = moving.positions.as_ref().unwrap_or(mesh.positions());
+        moving.has_infinite = !positions.are_finite(threads);
+        if mesh.dimension() == Dimension::Two {
+            let shape = Shape { positions, triangles, twins };
+            let (signs, found) = Embedded::of_triangles(
+                shape,
+                mesh.vertex_count(),
+                Some(winding),
+                moving.has_infinite,
+                threads,
+            );
+            winding.is_strict = signs.not_positive == 0;
+            *embedded = found;
+        } else {
+            flag_creases(positions, triangles, twins, thresholds.cos, moving.has_infinite, threads);
+        }
+        self.parts.clear();
+        self.is_known = false;
+    }
+
+    pub(super) fn add_flips(&mut self, flips: u64) {
+        self.moving.flips += flips;
+    }
+
+    fn count_moved(&mut self) -> Moved {
+        let census = self.count();
+        let Self { mesh, winding, triangles, twins, threads, moving, .. } = &*self;
+        let geometry = self.geometry();
+        let mut infinite = 0;
+        if moving.has_infinite {
+            let lower = |&h: &u32| h < unflagged(twins[h as usize]) && twins[h as usize] != NONE;
+            let edges = (0..twins.len() as u32).filter(lower);
+            let is_left = |&h: &u32| !is_finite(&geometry, Diamond::new(self.topology(), h).vertices);
+            infinite = edges.filter(is_left).count() as u32;
+        }
+        let mut not_positive = 0;
+        if mesh.dimension() == Dimension::Two {
+            let shape = Shape { positions: geometry.positions, triangles, twins };
+            let (vertices, is_left) = (mesh.vertex_count(), moving.has_infinite);
+            let (signs, _) = Embedded::of_triangles(shape, vertices, Some(winding), is_left, threads);
+            not_positive = signs.not_positive;
+        }
+        Moved { census, infinite, wide: 0, flips: moving.flips, not_positive }
+    }
+}
+
 /// What Lawson's algorithm needs.
 impl Cpu {
     pub(super) fn parts(&mut self) -> (Geometry<'_>, TopologyMut<'_>) {
-        let Self { mesh, winding, embedded, thresholds, triangles, twins, fans, .. } = self;
-        let geometry = geometry_of(mesh, winding, embedded, *thresholds);
+        let Self { mesh, winding, embedded, thresholds, triangles, twins, fans, moving, .. } = self;
+        let geometry = Geometry {
+            dimension: mesh.dimension(),
+            positions: moving.positions.as_ref().unwrap_or(mesh.positions()),
+            thresholds: *thresholds,
+            winding,
+            embedded,
+            has_infinite: moving.has_infinite,
+        };
         (geometry, TopologyMut { first: 0, triangles, twins, fans: Some(fans) })
     }
 
@@ -391,17 +481,7 @@ impl Engine for Cpu {
 
     fn iterate(&mut self, count: u32) -> Answer<'_, Vec<u32>> {
         let threads = self.threads.clone();
-        let mut flips = Vec::new();
-        threads.enter(|| {
-            while (flips.len() as u32) < count {
-                self.label();
-                self.select();
-                match self.flip() {
-                    0 => break,
-                    flipped => flips.push(flipped),
-                }
-            }
-        });
+        let flips = threads.enter(|| self.run(count));
         Box::pin(std::future::ready(Ok(flips)))
     }
 
@@ -424,13 +504,34 @@ impl Engine for Cpu {
         let guess = Some(std::mem::take(winding));
         (*winding, *embedded) = Embedded::with_winding(&mesh, twins, guess, outline, threads);
         if mesh.dimension() == Dimension::Three {
-            flag_creases(mesh.positions(), triangles, twins, thresholds.cos, threads);
+            flag_creases(mesh.positions(), triangles, twins, thresholds.cos, false, threads);
         }
         self.parts.clear();
         self.is_known = false;
         self.iteration = 0;
+        self.moving = Moving::default();
         self.mesh = mesh;
         Box::pin(std::future::ready(Ok(())))
+    }
+
+    fn update(&mut self, positions: Option<Positions>, iterations: u32) -> Result<(), Error> {
+        let threads = self.threads.clone();
+        let flips = threads.enter(|| {
+            self.move_to(positions);
+            self.iteration = self.moving.next;
+            self.moving.next = self.moving.next.wrapping_add(iterations);
+            self.run(iterations)
+        });
+        self.add_flips(flips.into_iter().map(u64::from).sum());
+        Ok(())
+    }
+
+    fn moved(&mut self) -> Answer<'static, Moved> {
+        Box::pin(std::future::ready(Ok(self.count_moved())))
+    }
+
+    fn positions(&mut self) -> Answer<'_, Positions> {
+        Box::pin(std::future::ready(Ok(self.geometry().positions.clone())))
     }
 
     fn batch(&self) -> u32 {

@@ -7,8 +7,8 @@
 
 use super::engine::Cpu;
 use super::region::{Region, Work};
-use crate::engine::{Answer, Census, EdgeCounts, Engine};
-use crate::{EngineKind, Mesh};
+use crate::engine::{Answer, Census, EdgeCounts, Engine, Moved};
+use crate::{EngineKind, Error, Mesh, Positions};
 use std::sync::Arc;
 
 /// The most regions: several per thread on most machines, so that no thread waits long for another.
@@ -85,6 +85,28 @@ impl Engine for Lawson {
     fn set_positions(&mut self, mesh: Arc<Mesh>) -> Answer<'_, ()> {
         self.has_ended = false;
         self.cpu.set_positions(mesh)
+    }
+
+    /// Flips to the end, because there are no iterations to count; with none, it only takes over the positions.
+    fn update(&mut self, positions: Option<Positions>, iterations: u32) -> Result<(), Error> {
+        let threads = self.cpu.threads.clone();
+        threads.enter(|| {
+            self.cpu.move_to(positions);
+            self.has_ended = false;
+            if iterations > 0 {
+                let flips = self.flip_all();
+                self.cpu.add_flips(flips.into());
+            }
+        });
+        Ok(())
+    }
+
+    fn moved(&mut self) -> Answer<'static, Moved> {
+        self.cpu.moved()
+    }
+
+    fn positions(&mut self) -> Answer<'_, Positions> {
+        self.cpu.positions()
     }
 
     fn edge_counts(&self) -> EdgeCounts {

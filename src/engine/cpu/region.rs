@@ -356,8 +356,14 @@ mod tests {
             let (winding, embedded) = (Winding::default(), Embedded::default());
             let thresholds = Thresholds::from(&Options::default());
             let (dimension, positions) = (mesh.dimension(), mesh.positions());
-            let geometry =
-                Geometry { dimension, positions, thresholds, winding: &winding, embedded: &embedded };
+            let geometry = Geometry {
+                dimension,
+                positions,
+                thresholds,
+                winding: &winding,
+                embedded: &embedded,
+                has_infinite: false,
+            };
             let fans = Fans::default();
             let whole = Topology { first: 0, triangles, twins: &twins, fans: &fans };
             let count = triangles.len();

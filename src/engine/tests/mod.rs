@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "what fails here is a failed test")]
 
 mod ahead;
+mod moving;
 
 use super::webgpu::{Device, Kernel, WebGpu};
 use super::{Census, Cpu, EdgeCounts, Engine, Upload};

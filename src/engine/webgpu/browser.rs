@@ -55,6 +55,11 @@ pub(super) fn has_webgpu() -> bool {
 }
 
 impl GpuDevice {
+    /// Whether it is the browser's device behind a device of wgpu.
+    pub(super) fn is_of(&self, device: &wgpu::Device) -> bool {
+        Self::of(device).as_ref() == Some(self)
+    }
+
     /// The browser's device behind a device of wgpu.
     pub(super) fn of(device: &wgpu::Device) -> Option<Self> {
         Some(JsValue::from(device.as_webgpu()?.clone()).unchecked_into())

@@ -6,6 +6,8 @@ use super::buffer::{Buffer, Kept};
 use super::compile;
 use super::faults::{Fault, refuse, unavailable, watch};
 use super::kernels::{Kernels, Plan, WORKGROUP_SIZE};
+#[cfg(not(target_arch = "wasm32"))]
+use super::own_device;
 use super::programs;
 use crate::Error;
 use crate::engine::gpu::self_test::Tested;
@@ -169,18 +171,14 @@ impl Device {
         let (device, queue) =
             adapter.request_device(&descriptor).await.map_err(|error| unavailable(error.to_string()))?;
         #[cfg(not(target_arch = "wasm32"))]
-        let name = {
-            let info = adapter.get_info();
-            let driver = [info.driver, info.driver_info].join(" ");
-            let driver = driver.trim();
-            if driver.is_empty() { info.name } else { format!("{}, {driver}", info.name) }
-        };
+        let name = own_device::name_of(&adapter.get_info());
         #[cfg(target_arch = "wasm32")]
         let name = browser::GpuDevice::of(&device).map_or_else(String::new, |raw| raw.adapter_name());
-        Self::compile(device, queue, name, is_software, form, on_loss).await
+        Self::compile(device, queue, name, is_software, form, Some(on_loss)).await
     }
 
-    /// Compiles the kernels that every mesh needs and those of `form`.
+    /// Compiles the kernels that every mesh needs and those of `form`. Without `on_loss`, the handlers of the device
+    /// belong to the caller.
     ///
     /// # Errors
     /// Those of [`Device::shared`].
@@ -190,22 +188,24 @@ impl Device {
         adapter: String,
         is_software: bool,
         form: Option<Form>,
-        on_loss: fn(),
+        on_loss: Option<fn()>,
     ) -> Result<Self, Error> {
         let failure = Failure::default();
-        // In a browser this handler belongs to the page. Natively nobody else uses the device.
+        // In a browser this handler belongs to the page.
         #[cfg(not(target_arch = "wasm32"))]
-        {
+        if on_loss.is_some() {
             let uncaptured = failure.clone();
             device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
                 report(&uncaptured, error.to_string());
             }));
         }
-        let lost = failure.clone();
-        device.set_device_lost_callback(move |reason, message| {
-            report(&lost, format!("device lost ({reason:?}): {message}"));
-            on_loss();
-        });
+        if let Some(on_loss) = on_loss {
+            let lost = failure.clone();
+            device.set_device_lost_callback(move |reason, message| {
+                report(&lost, format!("device lost ({reason:?}): {message}"));
+                on_loss();
+            });
+        }
         let limits = device.limits();
         let largest = limits.max_compute_invocations_per_workgroup.min(limits.max_compute_workgroup_size_x);
         let (most_workgroups, tail_size) =

@@ -27,6 +27,9 @@ mod known;
 mod limits;
 #[cfg(target_arch = "wasm32")]
 mod mapped;
+mod moving;
+#[cfg(not(target_arch = "wasm32"))]
+mod own_device;
 mod params;
 mod probe;
 mod programs;
@@ -44,18 +47,18 @@ pub use browser::GpuDevice;
 pub(crate) use device::Device;
 #[cfg(test)]
 pub(crate) use kernels::Kernel;
+#[cfg(not(target_arch = "wasm32"))]
+pub use own_device::{GpuBuffers, GpuDevice};
 pub(crate) use shared::{GivenDevice, Handle};
 
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 use super::SharedObjects;
-use super::{Answer, Census, EdgeCounts, Engine};
-#[cfg(test)]
-use crate::Error;
+use super::{Answer, Census, EdgeCounts, Engine, Moved};
 use crate::engine::gpu::Form;
 #[cfg(test)]
 use crate::mesh::half_edge::unflagged;
 use crate::phases::Thresholds;
-use crate::{EngineKind, Mesh};
+use crate::{EngineKind, Error, Mesh, Positions};
 use buffer::Buffer;
 use buffers::Buffers;
 use faults::Caught;
@@ -76,6 +79,12 @@ pub(crate) struct WebGpu {
     params: Params,
     counts: EdgeCounts,
     bindings: wgpu::BindGroup,
+    /// The length of the topology.
+    topology_words: u32,
+    /// The winding, once the host knows it.
+    winding: u32,
+    /// The faults of the last update, until the host has checked them.
+    faults: Option<Caught>,
     buffers: Buffers,
     /// The counters of the adjacency, then the signs of the triangles.
     counters: Buffer,
@@ -145,6 +154,22 @@ impl Engine for WebGpu {
         Box::pin(self.move_vertices(mesh))
     }
 
+    fn settle(&mut self) -> Answer<'_, ()> {
+        Box::pin(Self::settle(self))
+    }
+
+    fn update(&mut self, positions: Option<Positions>, iterations: u32) -> Result<(), Error> {
+        self.submit_update(positions, iterations)
+    }
+
+    fn moved(&mut self) -> Answer<'static, Moved> {
+        self.count_moved()
+    }
+
+    fn positions(&mut self) -> Answer<'_, Positions> {
+        Box::pin(self.read_positions())
+    }
+
     fn edge_counts(&self) -> EdgeCounts {
         self.counts
     }
@@ -167,6 +192,16 @@ impl Engine for WebGpu {
 
     fn adjacency_ms(&self) -> Option<f64> {
         Some(self.adjacency_ms)
+    }
+
+    #[cfg(not(target_arch = "wasm32"))]
+    fn gpu_buffers(&self) -> Option<GpuBuffers> {
+        Some(GpuBuffers {
+            device: self.gpu.device.clone(),
+            queue: self.gpu.queue.clone(),
+            positions: self.buffers.floats.as_ref().unwrap_or(&self.buffers.positions).0.clone(),
+            triangles: self.buffers.triangles.0.clone(),
+        })
     }
 
     #[cfg(all(target_arch = "wasm32", feature = "js"))]

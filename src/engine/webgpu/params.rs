@@ -28,6 +28,15 @@ impl TopologyOffsets {
     }
 }
 
+/// Words at the start of the parameters that the device writes.
+pub(super) const DEVICE_WORDS: usize = 3;
+
+// What is known of the winding, as in `state.wgsl`.
+pub(super) const WINDING_UNKNOWN: u32 = 0;
+pub(super) const WINDING_BITS: u32 = 1;
+pub(super) const WINDING_CLOCKWISE: u32 = 2;
+pub(super) const WINDING_COUNTER_CLOCKWISE: u32 = 3;
+
 /// Bits of the signs of triangles, as in `state.wgsl`.
 pub(super) const NEGATIVE: u32 = 1;
 pub(super) const POSITIVE: u32 = 4;
@@ -36,8 +45,10 @@ pub(super) const POSITIVE: u32 = 4;
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 pub(super) struct Params {
-    /// Written by the device, after the preparation.
+    /// Written by the device, after the preparation, as the next two.
     pub(super) signs: u32,
+    pub(super) highest: u32,
+    pub(super) depth: u32,
     pub(super) vertices: u32,
     pub(super) triangles: u32,
     pub(super) first: u32,
@@ -51,8 +62,10 @@ pub(super) struct Params {
     pub(super) tail_length: u32,
     pub(super) list_below: u32,
     pub(super) embedded: u32,
-    pub(super) knows_winding: u32,
+    pub(super) winding: u32,
     pub(super) decides_one: u32,
+    pub(super) update: u32,
+    pub(super) changes: u32,
     pub(super) cos_digits: [[i32; 8]; 2],
     pub(super) deviation: [u32; 4],
 }
@@ -64,6 +77,8 @@ impl Params {
         let count = mesh.triangle_count();
         Self {
             signs: 0,
+            highest: 0,
+            depth: 0,
             vertices: mesh.vertex_count() as u32,
             triangles: count as u32,
             first: 0,
@@ -78,8 +93,10 @@ impl Params {
             // A flip appends at most six triangles to a list. For a small mesh, a sweep is never faster.
             list_below: if count <= SMALL_MESH { u32::MAX } else { count as u32 / 256 },
             embedded: topology.embedded,
-            knows_winding: 0,
+            winding: WINDING_UNKNOWN,
             decides_one: u32::from(ends_loops_early),
+            update: 0,
+            changes: 0,
             cos_digits: [cosine.mantissa, cosine.power],
             deviation: upload.deviation,
         }
@@ -87,7 +104,6 @@ impl Params {
 
     /// The byte offset and the bytes of the part that the host writes.
     pub(super) fn of_host(&self) -> (u64, &[u8]) {
-        let first = size_of_val(&self.signs);
-        (first as u64, &bytemuck::bytes_of(self)[first..])
+        (4 * DEVICE_WORDS as u64, &bytemuck::bytes_of(self)[4 * DEVICE_WORDS..])
     }
 }

@@ -164,7 +164,11 @@ impl WebGpu {
         encoder
     }
 
-    fn encode_pass(&self, encoder: &mut wgpu::CommandEncoder, record: &dyn Fn(&mut wgpu::ComputePass)) {
+    pub(super) fn encode_pass(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        record: &dyn Fn(&mut wgpu::ComputePass),
+    ) {
         let mut pass = encoder.begin_compute_pass(&Default::default());
         pass.set_bind_group(0, &self.bindings, &[0]);
         record(&mut pass);
@@ -195,7 +199,7 @@ impl WebGpu {
         }
     }
 
-    fn record_iterations(
+    pub(super) fn record_iterations(
         &self,
         pass: &mut wgpu::ComputePass,
         batch: u32,
@@ -221,7 +225,7 @@ impl WebGpu {
         }
     }
 
-    fn record_census(&self, pass: &mut wgpu::ComputePass) {
+    pub(super) fn record_census(&self, pass: &mut wgpu::ComputePass) {
         for (step, kernel) in
             [(Step::Census, Kernel::Census), (Step::Census, Kernel::Decide), (Step::Resume, Kernel::Census)]
         {

@@ -12,12 +12,14 @@ use wasm_bindgen::JsValue;
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 use wasm_bindgen_futures::JsFuture;
 
-/// A device that the page has made.
+/// A device that the page or the program has made.
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 pub(crate) use super::browser::GpuDevice as GivenDevice;
+#[cfg(not(target_arch = "wasm32"))]
+pub(crate) use super::own_device::GpuDevice as GivenDevice;
 
-/// Natively nobody can give a device.
-#[cfg(not(all(target_arch = "wasm32", feature = "js")))]
+/// Without the JavaScript interface nobody can give a device in a browser.
+#[cfg(all(target_arch = "wasm32", not(feature = "js")))]
 pub(crate) type GivenDevice = std::convert::Infallible;
 
 /// The devices that sessions share.
@@ -32,8 +34,8 @@ struct Shared {
     /// Why the last preparation failed.
     #[cfg(all(target_arch = "wasm32", feature = "js"))]
     refusal: Option<String>,
-    /// Devices of the page: those in use, and the last one also when it is idle, to keep its kernels.
-    #[cfg(all(target_arch = "wasm32", feature = "js"))]
+    /// Devices of the caller: those in use, and the last one also when it is idle, to keep its kernels.
+    #[cfg(any(not(target_arch = "wasm32"), feature = "js"))]
     adopted: Vec<Handle>,
 }
 
@@ -46,12 +48,12 @@ impl Shared {
             is_preparing: false,
             #[cfg(all(target_arch = "wasm32", feature = "js"))]
             refusal: None,
-            #[cfg(all(target_arch = "wasm32", feature = "js"))]
+            #[cfg(any(not(target_arch = "wasm32"), feature = "js"))]
             adopted: Vec::new(),
         }
     }
 
-    #[cfg(all(target_arch = "wasm32", feature = "js"))]
+    #[cfg(any(not(target_arch = "wasm32"), feature = "js"))]
     fn drop_idle(&mut self) {
         self.adopted.retain(|device| Handle::strong_count(device) > 1);
     }
@@ -106,26 +108,26 @@ impl Device {
         takes_software: bool,
         form: Form,
     ) -> Result<Handle, Error> {
-        #[cfg(all(target_arch = "wasm32", feature = "js"))]
+        #[cfg(any(not(target_arch = "wasm32"), feature = "js"))]
         if let Some(given) = given {
             return Self::adopted(given, takes_software, form).await;
         }
-        #[cfg(not(all(target_arch = "wasm32", feature = "js")))]
+        #[cfg(not(any(not(target_arch = "wasm32"), feature = "js")))]
         let _ = given;
         Self::shared(takes_software, Some(form)).await
     }
 
     /// The device for a session, if it is open and has not failed.
     pub(crate) fn known(given: Option<&GivenDevice>) -> Option<Handle> {
-        #[cfg(all(target_arch = "wasm32", feature = "js"))]
+        #[cfg(any(not(target_arch = "wasm32"), feature = "js"))]
         if let Some(given) = given {
             return with_shared(|shared| {
-                let is_given = |device: &&Handle| GivenDevice::of(&device.device).as_ref() == Some(given);
+                let is_given = |device: &&Handle| given.is_of(&device.device);
                 let mut devices = shared.adopted.iter().chain(&shared.opened).filter(is_given);
                 devices.find(|device| device.check().is_ok()).cloned()
             });
         }
-        #[cfg(not(all(target_arch = "wasm32", feature = "js")))]
+        #[cfg(not(any(not(target_arch = "wasm32"), feature = "js")))]
         let _ = given;
         with_shared(|shared| shared.opened.clone()).filter(|device| device.check().is_ok())
     }
@@ -183,11 +185,11 @@ impl Device {
         with_shared(|shared| shared.opened.take())
     }
 
-    /// The device that the page has made. This code never destroys it and changes none of its settings.
+    /// The device that the caller has made. This code never destroys it and changes none of its settings.
     ///
     /// # Errors
     /// As [`Device::for_session`].
-    #[cfg(all(target_arch = "wasm32", feature = "js"))]
+    #[cfg(any(not(target_arch = "wasm32"), feature = "js"))]
     async fn adopted(given: &GivenDevice, takes_software: bool, form: Form) -> Result<Handle, Error> {
         if let Some(why) = given.loss().await {
             return Err(Error::Device { message: format!("the device given is lost: {why}") });
@@ -200,6 +202,8 @@ impl Device {
             return Ok(device);
         }
         let (device, queue) = given.adopt().await.map_err(unavailable)?;
+        // In a browser, the handler is that of a device of wgpu, which nobody else has.
+        let on_loss = cfg!(target_arch = "wasm32").then_some(on_loss as fn());
         let device = Handle::new(
             Self::compile(device, queue, given.adapter_name(), is_software, Some(form), on_loss).await?,
         );

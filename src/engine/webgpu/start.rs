@@ -4,11 +4,14 @@ use super::WebGpu;
 use super::adjacency::{self, COUNTERS, Found, Scratch};
 use super::buffers::Buffers;
 use super::faults::{refuse, watch};
-use super::history::{Entry, SEVERAL_FANS};
+use super::history::{ENTRIES, Entry, FLIPPED, SEVERAL_FANS};
 use super::kernels::Kernel;
 use super::known::Known;
 use super::limits::{refuse_large_buffer, refuse_large_mesh};
-use super::params::{NEGATIVE, POSITIVE, Params, TopologyOffsets};
+use super::params::{
+    DEVICE_WORDS, NEGATIVE, POSITIVE, Params, TopologyOffsets, WINDING_BITS, WINDING_CLOCKWISE,
+    WINDING_COUNTER_CLOCKWISE, WINDING_UNKNOWN,
+};
 use super::shared::Handle;
 use super::steps::Step;
 use crate::Error;
@@ -54,6 +57,9 @@ impl WebGpu {
             adjacency::record(&gpu, mesh, &buffers, &scratch, &mut encoder);
             let result = Self {
                 bindings: buffers.bind(&gpu, &kernels.layout),
+                topology_words: params.fans,
+                winding: WINDING_UNKNOWN,
+                faults: None,
                 kernels,
                 thresholds: upload.thresholds,
                 form: upload.form(),
@@ -101,11 +107,13 @@ impl WebGpu {
 
     /// Records the kernels that depend on the positions: in 2D the turns of the stars and the signs of the triangles,
     /// in 3D the creases. They also begin the history, unless the host has to help first.
-    fn record_preparation(&self, encoder: &mut wgpu::CommandEncoder) {
+    pub(super) fn record_preparation(&self, encoder: &mut wgpu::CommandEncoder) {
         let Buffers { uniform, history, frontier, .. } = &self.buffers;
         self.write_params();
-        encoder.clear_buffer(history, 0, None);
         let bytes = |words: usize| 4 * words as u64;
+        // All but the flips of all updates.
+        encoder.clear_buffer(history, 0, Some(bytes(FLIPPED)));
+        encoder.clear_buffer(history, bytes(ENTRIES), None);
         let fans = bytes(adjacency::SEVERAL_FANS);
         encoder.copy_buffer_to_buffer(&self.counters, fans, history, bytes(SEVERAL_FANS), bytes(1));
         // The kernels count the turns of stars in the buffer of the frontier.
@@ -119,7 +127,7 @@ impl WebGpu {
         // The phases would take these counts for stamps.
         encoder.clear_buffer(frontier, 0, None);
         // The signs, for the kernels and for the host.
-        encoder.copy_buffer_to_buffer(history, 0, uniform, 0, bytes(1));
+        encoder.copy_buffer_to_buffer(history, 0, uniform, 0, bytes(DEVICE_WORDS));
         encoder.copy_buffer_to_buffer(history, 0, &self.counters, bytes(COUNTERS), bytes(1));
     }
 
@@ -169,6 +177,9 @@ impl WebGpu {
         let needs_windings = signs & NEGATIVE != 0 && signs & POSITIVE != 0;
         if needs_windings {
             self.add_windings(mesh).await?;
+        } else {
+            let is_clockwise = signs & NEGATIVE != 0;
+            self.winding = if is_clockwise { WINDING_CLOCKWISE } else { WINDING_COUNTER_CLOCKWISE };
         }
         self.unsettled = None;
         Ok(needs_fans || needs_windings)
@@ -180,36 +191,41 @@ impl WebGpu {
         let twins = self.gpu.read(&self.buffers.twins, mesh.triangles().len()).await?;
         let clockwise = Outline::new(mesh.triangles(), &twins).winding(mesh).clockwise;
         self.dispatches += Kernel::preparation(self.form.dimension).len() as u64;
-        self.params.knows_winding = 1;
+        (self.winding, self.params.winding) = (WINDING_BITS, WINDING_BITS);
         let calls = || {
             self.gpu.write(&self.buffers.topology, &clockwise);
             self.prepare();
         };
-        let answer = self.gpu.checked(calls).await;
-        self.params.knows_winding = 0;
-        answer
+        self.gpu.checked(calls).await
     }
 
     /// Appends the table of fans, found by the host, to the topology. Vertices with several fans are rare.
     async fn add_fans(&mut self, mesh: &Mesh) -> Result<(), Error> {
         let twins = self.gpu.read(&self.buffers.twins, mesh.triangles().len()).await?;
         let table = Fans::new(mesh.vertex_count(), mesh.triangles(), &twins).table;
-        let before = self.params.fans as usize;
-        refuse_large_buffer(&self.gpu, before + table.len())?;
-        let gpu = &self.gpu;
-        let longer = || gpu.buffer("topology", before + table.len(), BufferUsages::STORAGE);
+        // Set last, after everything that can fail.
+        self.params.fans = self.append_to_topology(&table).await?;
+        self.params.fans_length = table.len() as u32;
+        Ok(())
+    }
+
+    /// Appends words to the topology, in a longer buffer. Returns their offset.
+    pub(super) async fn append_to_topology(&mut self, words: &[u32]) -> Result<u32, Error> {
+        let (gpu, before) = (&self.gpu, self.topology_words as usize);
+        let length = before + words.len();
+        refuse_large_buffer(gpu, length)?;
+        let longer = || gpu.buffer("topology", length, BufferUsages::STORAGE);
         let topology = std::mem::replace(&mut self.buffers.topology, gpu.allocated(longer).await?);
         let copy = || {
-            gpu.queue.write_buffer(&self.buffers.topology, 4 * before as u64, bytemuck::cast_slice(&table));
+            gpu.queue.write_buffer(&self.buffers.topology, 4 * before as u64, bytemuck::cast_slice(words));
             let mut encoder = gpu.device.create_command_encoder(&Default::default());
             encoder.copy_buffer_to_buffer(&topology, 0, &self.buffers.topology, 0, 4 * before as u64);
             gpu.submit(encoder);
             self.buffers.bind(gpu, &self.kernels.layout)
         };
         self.bindings = gpu.checked(copy).await?;
-        // Set last, after everything that can fail.
-        self.params.fans_length = table.len() as u32;
-        Ok(())
+        self.topology_words = length as u32;
+        Ok(before as u32)
     }
 
     /// Flags locked edges on the host: reads the twins, and writes them back.
@@ -224,6 +240,7 @@ impl WebGpu {
         let upload = Upload::new(self.backend(), mesh, self.thresholds)?;
         if upload.form() == self.form {
             self.params.deviation = upload.deviation;
+            (self.params.winding, self.params.update) = (WINDING_UNKNOWN, 0);
             let calls = || {
                 self.buffers.write(&self.gpu, &upload, &[]);
                 self.prepare();

@@ -1,6 +1,7 @@
 //! The steps of a submission: a uniform tells each dispatch which iteration or task it is for.
 
-use super::history::BATCH;
+/// The most iterations of an update. A batch of a run has fewer.
+pub(super) const MOST_ITERATIONS: u32 = 64;
 
 /// Words per step: an alignment of dynamic offsets that every device supports.
 const WORDS: u32 = 64;
@@ -8,7 +9,7 @@ const WORDS: u32 = 64;
 /// The same numbers as in `doubts.wgsl`.
 #[derive(Clone, Copy)]
 pub(super) enum Step {
-    /// The iteration of this index in the batch.
+    /// The iteration of this index in the submission.
     Iterate(u32),
     /// The iteration in which the tail has paused, or the census after exact arithmetic.
     Resume,
@@ -19,7 +20,7 @@ pub(super) enum Step {
 impl Step {
     /// All steps, each at its offset.
     pub(super) fn words() -> Vec<u32> {
-        let all = (0..BATCH).map(Self::Iterate).chain([Self::Resume, Self::Census, Self::Prepare]);
+        let all = (0..MOST_ITERATIONS).map(Self::Iterate).chain([Self::Resume, Self::Census, Self::Prepare]);
         all.flat_map(|step| {
             let mut words = [0; WORDS as usize];
             words[..2].copy_from_slice(&step.index_and_task());
@@ -41,7 +42,7 @@ impl Step {
     pub(super) fn offset(self) -> u32 {
         let slot = match self {
             Self::Iterate(index) => index,
-            other => BATCH - 1 + other.index_and_task()[1],
+            other => MOST_ITERATIONS - 1 + other.index_and_task()[1],
         };
         4 * WORDS * slot
     }

@@ -1,0 +1,184 @@
+//! Measures meshes that move: in every frame a compute pass moves the vertices, and an update flips edges, up to 4
+//! iterations; nothing is read back. `cargo bench --bench frames -- [--runs FRAMES] [FAMILY SPEED…]`; with
+//! `EDGEFLIP_CHECK=1` it reads the positions of every frame, gives them to the CPU engine, and compares and audits
+//! every 60th frame.
+//!
+//! GPU time is between timestamps before the motion and after the flips, wall time from the first frame to the last.
+
+use edgeflip::{Backend, Dimension, Mesh, Options, Session, families, make_delaunay, quality, wgpu};
+use pollster::block_on;
+use std::{env, error::Error, ops::ControlFlow, sync::Arc, time::Instant};
+
+#[path = "arguments/mod.rs"]
+mod arguments;
+use arguments::{Arguments, median};
+#[path = "motion/mod.rs"]
+mod motion;
+use motion::{Moving, Wave, read};
+
+const ITERATIONS: u32 = 4;
+
+/// Each mesh, and radians of the wave per frame.
+const MOTIONS: [&str; 8] = [
+    "random 71:0.02",
+    "random 224:0.02",
+    "random 708:0.0002",
+    "random 708:0.02",
+    "random 708:0.1",
+    "random 708:1.0",
+    "random 2237:0.02",
+    "uvsphere 700:0.02",
+];
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let Arguments { runs, specs } = Arguments::read(600, &MOTIONS)?;
+    let frames = u32::try_from(runs)?;
+    let checks = env::var_os("EDGEFLIP_CHECK").is_some();
+    let gpu = motion::open()?;
+    println!("adapter: {}, {} {}", gpu.adapter.name, gpu.adapter.driver, gpu.adapter.driver_info);
+    println!("{frames} frames, {ITERATIONS} iterations each{}", if checks { ", checked" } else { "" });
+    println!();
+    println!(
+        "| mesh | speed | triangles | flips a frame | % of edges | GPU ms a frame, median | mean | wall ms a frame | \
+         left at the end | a whole job from arrays, ms | checked |"
+    );
+    println!("|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---|");
+    for spec in &specs {
+        let (name, speed) = spec.split_once(':').ok_or("write FAMILY:SPEED")?;
+        let mesh = Arc::new(families::by_name(name)?);
+        let (number, height) = match mesh.dimension() {
+            Dimension::Two => (0.05, 8.0),
+            Dimension::Three => (6.0, 0.1),
+        };
+        let wave = Wave { speed: speed.parse()?, number, height };
+        let mut moving = Moving::new(&gpu, &mesh, wave)?;
+        let row = if checks { check(&mut moving, &mesh, frames)? } else { measure(&mut moving, frames)? };
+        let counters = block_on(moving.session.counters())?;
+        let edges = 1.5 * mesh.triangle_count() as f64;
+        let flips = counters.flips as f64 / counters.updates as f64;
+        println!(
+            "| {name} | {speed} | {} | {flips:.0} | {:.3} | {} | {} | {} | {} | {:.2} | {} |",
+            mesh.triangle_count(),
+            100.0 * flips / edges,
+            row.gpu_median,
+            row.gpu_mean,
+            row.wall,
+            counters.remaining.total(),
+            whole_job(&moving, &mesh)?,
+            row.checked,
+        );
+    }
+    Ok(())
+}
+
+struct Row {
+    gpu_median: String,
+    gpu_mean: String,
+    wall: String,
+    checked: String,
+}
+
+fn measure(moving: &mut Moving, frames: u32) -> Result<Row, Box<dyn Error>> {
+    // The clock of the GPU rises, and the mesh is in motion.
+    for frame in 0..60 {
+        moving.frame(frame, ITERATIONS, |_| (), |_| ())?;
+    }
+    moving.wait()?;
+    let (device, queue) = (moving.gpu.device.clone(), moving.gpu.queue.clone());
+    let inside = wgpu::Features::TIMESTAMP_QUERY_INSIDE_ENCODERS;
+    let queries = device.features().contains(inside).then(|| {
+        let count = 2 * frames;
+        let ty = wgpu::QueryType::Timestamp;
+        device.create_query_set(&wgpu::QuerySetDescriptor { label: None, ty, count })
+    });
+    let start = Instant::now();
+    for frame in 0..frames {
+        let stamp = |index| {
+            let queries = queries.as_ref();
+            move |encoder: &mut wgpu::CommandEncoder| {
+                if let Some(queries) = queries {
+                    encoder.write_timestamp(queries, index);
+                }
+            }
+        };
+        moving.frame(60 + frame, ITERATIONS, stamp(2 * frame), stamp(2 * frame + 1))?;
+    }
+    moving.wait()?;
+    let wall = start.elapsed().as_secs_f64() * 1e3 / f64::from(frames);
+    let mut times = Vec::new();
+    if let Some(queries) = &queries {
+        let size = 16 * u64::from(frames);
+        let usage = wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC;
+        let descriptor = wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false };
+        let buffer = device.create_buffer(&descriptor);
+        let mut encoder = device.create_command_encoder(&Default::default());
+        encoder.resolve_query_set(queries, 0..2 * frames, &buffer, 0);
+        queue.submit([encoder.finish()]);
+        let words = read(&moving.gpu, &buffer)?;
+        let ticks: Vec<u64> =
+            words.chunks_exact(2).map(|pair| u64::from(pair[0]) | u64::from(pair[1]) << 32).collect();
+        let period = f64::from(queue.get_timestamp_period()) / 1e6;
+        times = ticks.chunks_exact(2).map(|pair| (pair[1] - pair[0]) as f64 * period).collect();
+    }
+    let mean = times.iter().sum::<f64>() / times.len() as f64;
+    Ok(Row {
+        gpu_median: format!("{:.3}", median(times)),
+        gpu_mean: format!("{mean:.3}"),
+        wall: format!("{wall:.3}"),
+        checked: "–".to_owned(),
+    })
+}
+
+/// Gives the positions of each frame to the CPU engine.
+fn check(moving: &mut Moving, mesh: &Arc<Mesh>, frames: u32) -> Result<Row, Box<dyn Error>> {
+    let options = Options { backend: Backend::Cpu, ..Options::default() };
+    let mut cpu = block_on(Session::new(mesh.clone(), options.clone()))?;
+    block_on(cpu.run(|_, _| ControlFlow::Continue(())))?;
+    let mut compared = 0;
+    for frame in 0..=frames {
+        let last = if frame % 60 == 0 { read(&moving.gpu, &moving.gpu.triangles)? } else { Vec::new() };
+        moving.frame(frame, ITERATIONS, |_| (), |_| ())?;
+        let words = read(&moving.gpu, &moving.gpu.positions)?;
+        let positions: Vec<f32> =
+            words.into_iter().take(mesh.positions().len()).map(f32::from_bits).collect();
+        cpu.update(Some(positions.clone().into()), ITERATIONS)?;
+        if frame % 60 > 0 {
+            continue;
+        }
+        let triangles = read(&moving.gpu, &moving.gpu.triangles)?;
+        if triangles != block_on(cpu.triangles())? {
+            return Err(format!("frame {frame}: the GPU differs from the CPU").into());
+        }
+        let (found, expected) = (block_on(moving.session.counters())?, block_on(cpu.counters())?);
+        if found != expected {
+            return Err(format!("frame {frame}: the GPU counts {found:?}, the CPU {expected:?}").into());
+        }
+        let before = Mesh::new(mesh.dimension(), positions, last)?;
+        let audit = quality::audit(&before, &triangles, &options);
+        if !audit.is_clean() {
+            return Err(format!("frame {frame}: {:?}", audit.violations.first()).into());
+        }
+        if audit.remaining.total() != found.remaining.total() {
+            return Err(format!("frame {frame}: the audit finds {:?}, not {found:?}", audit.remaining).into());
+        }
+        compared += 1;
+    }
+    let none = || "–".to_owned();
+    let checked = format!("{compared} frames clean, as the CPU");
+    Ok(Row { gpu_median: none(), gpu_mean: none(), wall: none(), checked })
+}
+
+/// The time of a new session for the present positions and triangles, from arrays to arrays; the faster of two.
+fn whole_job(moving: &Moving, mesh: &Mesh) -> Result<f64, Box<dyn Error>> {
+    let words = read(&moving.gpu, &moving.gpu.positions)?;
+    let positions: Vec<f32> = words.into_iter().take(mesh.positions().len()).map(f32::from_bits).collect();
+    let mesh = Arc::new(Mesh::new(mesh.dimension(), positions, read(&moving.gpu, &moving.gpu.triangles)?)?);
+    let options = Options { backend: Backend::Gpu, ..Options::default() };
+    let mut best = f64::INFINITY;
+    for _ in 0..2 {
+        let start = Instant::now();
+        make_delaunay(mesh.clone(), &options, |_, _| ControlFlow::Continue(()))?;
+        best = best.min(start.elapsed().as_secs_f64() * 1e3);
+    }
+    Ok(best)
+}

@@ -1,0 +1,127 @@
+//! Updates: the vertices move, and the device flips again, in one submission that nobody waits for.
+
+use super::WebGpu;
+use super::faults::{refuse, watch};
+use super::history::{COUNTS, ENTRIES, FLIPPED, NOT_POSITIVE};
+use super::kernels::Kernel;
+use super::steps::{MOST_ITERATIONS, Step};
+use crate::engine::{Answer, Census, Moved};
+use crate::{Dimension, Error, Positions};
+use futures_channel::oneshot;
+use std::ops::Range;
+use wgpu::BufferUsages;
+
+/// Words of the counts: those of the census and the flips, then the triangles that are not positive.
+const WORDS: usize = ENTRIES + 1;
+
+impl WebGpu {
+    /// Submits the preparation for the present positions, and iterations after it. `positions` replaces them first.
+    ///
+    /// # Errors
+    /// [`Error::BackendLimit`] if the shaders read fixed-point numbers, or for 64-bit floats; [`Error::Device`].
+    pub(super) fn submit_update(
+        &mut self,
+        positions: Option<Positions>,
+        iterations: u32,
+    ) -> Result<(), Error> {
+        self.gpu.check()?;
+        let numbers = match (&positions, self.form.is_fixed) {
+            (None, false) => None,
+            (Some(Positions::F32(numbers)), false) => Some(numbers),
+            _ => return refuse("an update takes 32-bit floats that span few bits".to_owned()),
+        };
+        if self.unsettled.is_some() {
+            return refuse("an update begins only after the start of the session has ended".to_owned());
+        }
+        self.known = super::Known::default();
+        if self.params.update == 0 {
+            self.params.first = 0;
+        }
+        self.params.update = self.params.update.wrapping_add(1).max(1);
+        self.params.winding = self.winding;
+        self.params.deviation[0] = self.thresholds.deviation.min(f32::MAX).to_bits();
+        self.params.deviation[3] = self.params.deviation[0];
+        let gpu = self.gpu.clone();
+        let ((), faults) = watch(&gpu.device, || {
+            if let Some(numbers) = numbers {
+                gpu.queue.write_buffer(&self.buffers.positions, 0, bytemuck::cast_slice(numbers));
+            }
+            let mut encoder = gpu.device.create_command_encoder(&Default::default());
+            self.record_preparation(&mut encoder);
+            self.encode_pass(&mut encoder, &|pass| {
+                self.record_iterations(pass, iterations.min(MOST_ITERATIONS), None);
+            });
+            gpu.submit(encoder);
+        });
+        self.faults = Some(faults);
+        self.params.first = self.params.first.wrapping_add(iterations);
+        self.dispatches += (Kernel::preparation(self.form.dimension).len() + 4 * iterations as usize) as u64;
+        Ok(())
+    }
+
+    /// Counts on the device, after all updates so far. The counts are copied at once, so updates may follow before the
+    /// answer is there.
+    pub(super) fn count_moved(&mut self) -> Answer<'static, Moved> {
+        self.params.winding = self.winding;
+        let gpu = self.gpu.clone();
+        let bytes = |words: Range<usize>| (4 * words.start as u64, 4 * words.len() as u64);
+        let (sender, receiver) = oneshot::channel();
+        let (staging, caught) = watch(&gpu.device, || {
+            let staging = gpu.staging(4 * WORDS as u64, BufferUsages::MAP_READ | BufferUsages::COPY_DST);
+            let history = &self.buffers.history;
+            self.write_params();
+            let mut encoder = gpu.device.create_command_encoder(&Default::default());
+            encoder.clear_buffer(history, 0, Some(4 * COUNTS as u64));
+            self.encode_pass(&mut encoder, &|pass| self.record_census(pass));
+            encoder.copy_buffer_to_buffer(history, 0, &staging, 0, bytes(0..ENTRIES).1);
+            if self.form.dimension == Dimension::Two {
+                encoder.clear_buffer(history, 0, Some(4 * COUNTS as u64));
+                encoder.clear_buffer(&self.buffers.frontier, 0, None);
+                self.encode_pass(&mut encoder, &|pass| {
+                    self.at_step(pass, Step::Prepare);
+                    for kernel in [Kernel::Prepare, Kernel::Decide, Kernel::Turn] {
+                        self.dispatch(pass, kernel, self.params.triangles);
+                    }
+                });
+                let (from, size) = bytes(NOT_POSITIVE..NOT_POSITIVE + 1);
+                encoder.copy_buffer_to_buffer(history, from, &staging, bytes(ENTRIES..WORDS).0, size);
+                encoder.clear_buffer(&self.buffers.frontier, 0, None);
+            }
+            gpu.submit(encoder);
+            staging.map_async(wgpu::MapMode::Read, .., move |result| {
+                // The receiver is gone only if the caller has stopped waiting.
+                let _ = sender.send(result);
+            });
+            staging
+        });
+        let faults = self.faults.take();
+        Box::pin(async move {
+            if let Some(faults) = faults {
+                gpu.judge(faults.await)?;
+            }
+            gpu.judge(caught.await)?;
+            #[cfg(not(target_arch = "wasm32"))]
+            gpu.wait().map_err(|_| gpu.not_mapped())?;
+            if !matches!(receiver.await, Ok(Ok(()))) {
+                return Err(gpu.not_mapped());
+            }
+            gpu.check()?;
+            let view = staging.get_mapped_range(..).map_err(|_| gpu.not_mapped())?;
+            let words: Vec<u32> = bytemuck::pod_collect_to_vec(&view);
+            Ok(Moved {
+                census: Census::of_counts(&words[..COUNTS - 2]),
+                infinite: words[COUNTS - 2],
+                wide: words[COUNTS - 1],
+                flips: u64::from(words[FLIPPED]) | u64::from(words[FLIPPED + 1]) << 32,
+                not_positive: words[ENTRIES],
+            })
+        })
+    }
+
+    pub(super) async fn read_positions(&mut self) -> Result<Positions, Error> {
+        let count = self.params.vertices as usize * self.form.dimension.stride();
+        let words =
+            self.gpu.read(self.buffers.floats.as_ref().unwrap_or(&self.buffers.positions), count).await?;
+        Ok(words.into_iter().map(f32::from_bits).collect::<Vec<_>>().into())
+    }
+}

@@ -1,0 +1,111 @@
+//! Updates: meshes that move.
+
+use super::Session;
+use crate::{Error, Positions, Reason, Reasons};
+
+/// The most iterations of one update.
+const MOST_ITERATIONS: u32 = 64;
+
+/// What the updates of a session have done, and what is left. See [`Session::counters`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counters {
+    /// The number of updates that the counts are of: all before the call.
+    pub updates: u64,
+    /// Flips of these updates.
+    pub flips: u64,
+    /// Edges that are not Delaunay after the last of them, by reason. [`Reason::Stopped`] counts those that the next
+    /// update may flip. Frozen edges are not counted.
+    pub remaining: Reasons,
+    /// Triangles that are not strictly positive, in the plane: flat or turned over. A triangle is positive if it has the
+    /// orientation that its component had at the start of the session.
+    pub inverted: u32,
+    /// Edges left alone because a coordinate of their triangles is not finite.
+    pub non_finite: u32,
+    /// Edges left alone because the coordinates of their triangles span more bits than the GPU decides exactly. The CPU
+    /// decides them all.
+    pub too_wide: u32,
+}
+
+impl Session {
+    /// Takes over vertices that have moved, and flips for up to `iterations` iterations, at most 64. What is left goes
+    /// on in the next update. `positions` are the new positions; with `None` they are those that the caller has written
+    /// to the buffer on the GPU, or the present ones.
+    ///
+    /// A GPU only submits the work: commands that the caller submits after this call see its result. The update tests
+    /// every edge on the new positions, flags the creases again, and keeps adjacency, buffers and winding. Edges with a
+    /// coordinate that is not finite stay as they are until it is finite. Iterations are numbered on from one update to
+    /// the next, so all engines give the same triangles for the same positions and numbers of iterations.
+    ///
+    /// Any other call but [`Session::counters`], [`Session::triangles`] and [`Session::edges`] ends the motion: it acts
+    /// as if [`Session::set_positions`] had been called with the present positions.
+    ///
+    /// # Errors
+    /// [`Error::Option`], [`Error::PositionCount`]; [`Error::BackendLimit`] for 64-bit floats on a GPU, and on WebGL2;
+    /// [`Error::Device`].
+    pub fn update(&mut self, positions: Option<Positions>, iterations: u32) -> Result<(), Error> {
+        if iterations > MOST_ITERATIONS {
+            let message =
+                format!("{iterations} iterations are too many for one update: give 0 to {MOST_ITERATIONS}");
+            return Err(Error::Option { option: "iterations", message });
+        }
+        if let Some(positions) = &positions {
+            self.check_length(positions)?;
+        }
+        self.engine.update(positions, iterations)?;
+        self.flips_per_iteration.clear();
+        self.has_ended = false;
+        self.updates = self.updates.saturating_add(1);
+        Ok(())
+    }
+
+    /// The device and the buffers on the GPU, to write positions for the next [`Session::update`] and to draw without a
+    /// copy; `None` on the CPU. The buffers stay the same until [`Session::set_positions`].
+    #[cfg(all(not(target_arch = "wasm32"), feature = "gpu"))]
+    pub fn gpu(&self) -> Option<crate::GpuBuffers> {
+        self.engine.gpu_buffers()
+    }
+
+    /// Waits until the engine has started. After that, [`Session::update`] never waits.
+    ///
+    /// # Errors
+    /// [`Error::Device`], [`Error::BackendLimit`].
+    pub async fn settle(&mut self) -> Result<(), Error> {
+        self.ask(|engine| engine.settle()).await
+    }
+
+    /// What the updates so far have done. The counts are taken at once; later updates do not change the answer, and
+    /// need not wait for it.
+    ///
+    /// # Errors
+    /// [`Error::Device`].
+    pub fn counters(&mut self) -> impl Future<Output = Result<Counters, Error>> + use<> {
+        let (updates, moved) = (self.updates, self.engine.moved());
+        async move {
+            let moved = moved.await?;
+            let mut remaining = moved.census.blocked;
+            remaining[Reason::Stopped] = moved.census.labelled.into();
+            Ok(Counters {
+                updates,
+                flips: moved.flips,
+                remaining,
+                inverted: moved.not_positive,
+                non_finite: moved.infinite,
+                too_wide: moved.wide,
+            })
+        }
+    }
+
+    /// Ends the motion, if there were updates.
+    pub(crate) async fn come_to_rest(&mut self) -> Result<(), Error> {
+        if self.updates == 0 {
+            return Ok(());
+        }
+        let positions = self.ask(|engine| engine.positions()).await?;
+        self.set_positions(positions).await
+    }
+
+    pub(super) fn check_length(&self, positions: &Positions) -> Result<(), Error> {
+        let (length, expected) = (positions.len(), self.mesh.positions().len());
+        if length == expected { Ok(()) } else { Err(Error::PositionCount { length, expected }) }
+    }
+}
