@@ -28,9 +28,13 @@ interface Places {
   offset: number;
 }
 
-/** What a session keeps of a mesh, without its arrays. */
-export interface Layout<I extends IndexArray> extends Places {
+/** Where all positions of a mesh are. */
+export interface AllPlaces extends Places {
   vertices: number;
+}
+
+/** What a session keeps of a mesh, without its arrays. */
+export interface Layout<I extends IndexArray> extends AllPlaces {
   /** Converts indices to the type of the given indices. */
   give: (indices: Uint32Array) => Indices<I>;
 }

@@ -17,14 +17,15 @@ export interface Opened {
 
 /**
  * Opens a session on the engine that the settings choose. The CPU engine uses threads if the mesh is large enough and
- * they can be started. The arrays of the mesh are read before this returns its promise, and not afterwards.
+ * they can be started. The arrays of the mesh are read before this returns its promise, and not afterwards. `settles`:
+ * whether updates may follow at once.
  */
-export async function open(mesh: IndexedMesh, settings: Settings): Promise<Opened> {
+export async function open(mesh: IndexedMesh, settings: Settings, settles: boolean): Promise<Opened> {
   const count = threadCount(mesh.indices.length / 3, settings);
   const { backend = 'auto', order } = settings;
   if (count === 1 || (backend !== 'auto' && backend !== 'cpu')) {
     const alone = whyOneThread(mesh.indices.length / 3, settings);
-    return { session: await openAlone(mesh, settings), alone };
+    return { session: await openAlone(mesh, settings, settles), alone };
   }
   if (backend === 'cpu' || order === 'any') return openOnThreads(copied(mesh), settings, count);
   let given = mesh;
@@ -38,7 +39,7 @@ export async function open(mesh: IndexedMesh, settings: Settings): Promise<Opene
     return openOnThreads(given === mesh ? copied(mesh) : given, settings, count, why);
   }
   try {
-    return { session: await openAlone(given, { ...settings, leavesCpu: count }) };
+    return { session: await openAlone(given, { ...settings, leavesCpu: count }, settles) };
   } catch (thrown) {
     const { code, message } = fromModule(thrown);
     if (code !== 'backend-unavailable') throw thrown;
@@ -50,7 +51,11 @@ export async function open(mesh: IndexedMesh, settings: Settings): Promise<Opene
  * Opens a session in the module of the engines. With `leavesCpu`, `'auto'` fails if it chooses the CPU engine, which
  * then runs in another module on `leavesCpu` threads.
  */
-async function openAlone(mesh: IndexedMesh, settings: Settings & { leavesCpu?: number }): Promise<ModuleSession> {
+async function openAlone(
+  mesh: IndexedMesh,
+  settings: Settings & { leavesCpu?: number },
+  settles = false,
+): Promise<ModuleSession> {
   const ours = isLoaded() ? undefined : copied(mesh);
   if (ours) await loadCore();
   let [given, error]: [IndexedMesh | undefined, unknown] = [ours ?? mesh, undefined];
@@ -58,7 +63,7 @@ async function openAlone(mesh: IndexedMesh, settings: Settings & { leavesCpu?: n
     if (!given) throw error;
     let opening: Promise<ModuleSession> | undefined;
     try {
-      opening = Session.create(given.positions, given.indices, given.dimension, settings);
+      opening = Session.create(given.positions, given.indices, given.dimension, settings, settles);
       return await opening;
     } catch (thrown) {
       // Another try needs the arrays. The caller's arrays must not be read after a wait, so they are copied.

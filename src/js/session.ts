@@ -6,15 +6,17 @@ import type { EDGE_STATES } from './edge-states.js';
 import { EdgeflipError, fromModule } from './error.js';
 import type { Welded } from './files.js';
 import { loadAudit } from './load.js';
+import { gather } from './gather.js';
 import { copyOf, itselfOf } from './given.js';
 import { copied, floatsOf, type Layout, readMesh } from './mesh.js';
 import { open, type Opened } from './open.js';
 import { resultOf } from './result.js';
-import { MAKE_OPTIONS, settingsOf, type Watch, watchOf } from './settings.js';
+import { MAKE_OPTIONS, settingsOf, type Update, updateOf, type Watch, watchOf } from './settings.js';
 import type { ModuleSession } from './threads.js';
 import { Turns } from './turn.js';
 import type {
   Audit,
+  Counters,
   Edges,
   Engine,
   GpuBuffer,
@@ -27,6 +29,7 @@ import type {
   Options,
   Result,
   RunOptions,
+  UpdateOptions,
   VertexArray,
 } from './types.js';
 
@@ -63,6 +66,10 @@ export let runWatched: <I extends IndexArray>(
 export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIterable<Iteration>, Disposable {
   readonly #session: ModuleSession;
   #last: Promise<unknown> = Promise.resolve();
+  /** Calls that have not ended. */
+  #waiting = 0;
+  /** The error of an update that had to wait. */
+  #fault: EdgeflipError | undefined;
   #isFreed = false;
 
   readonly #layout: Layout<I>;
@@ -85,7 +92,7 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
    * @throws {@link EdgeflipError} about the mesh, the options or the backend.
    */
   static create<I extends IndexArray>(mesh: Mesh<I>, options: Options = {}): Promise<FlipSession<I>> {
-    return FlipSession.#create(mesh, options);
+    return FlipSession.#create(mesh, options, undefined, true);
   }
 
   static {
@@ -97,16 +104,17 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
     mesh: Mesh<I>,
     options: Options,
     known?: readonly string[],
+    settles = false,
   ): Promise<FlipSession<I>> {
     const [views, layout] = readMesh(mesh, itselfOf);
     const chosen = settingsOf(options, known);
     try {
       // Without these two options, the module of `edgeflip/files` is not loaded.
-      if (!chosen.reorient && !chosen.weld) return new FlipSession(await open(views, chosen), layout);
+      if (!chosen.reorient && !chosen.weld) return new FlipSession(await open(views, chosen, settles), layout);
       const copy = copied(views);
       const { prepare } = await import('./prepare.js');
       const { indices, turned, welded, settings } = await prepare(copy, chosen);
-      return new FlipSession(await open({ ...copy, indices }, settings), layout, turned, welded);
+      return new FlipSession(await open({ ...copy, indices }, settings, settles), layout, turned, welded);
     } catch (thrown) {
       throw fromModule(thrown);
     }
@@ -173,6 +181,87 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
   async setPositions(positions: VertexArray): Promise<void> {
     const moved = floatsOf(positions, this.#layout, copyOf);
     return this.#call((session) => session.setPositions(moved));
+  }
+
+  /**
+   * Takes over vertices that have moved, and flips for up to `iterations` iterations; what is left goes on in the next
+   * update. On WebGPU the call only submits the work and returns: what the page submits after it, such as the drawing of
+   * the frame, sees the result, and nothing travels to the CPU. On the CPU the call does the work.
+   *
+   * ```ts
+   * const { device, positions, indices } = (await session.gpu())!;
+   * function frame() {
+   *   device.queue.submit([moveVertices(positions)]); // your compute pass writes the positions
+   *   session.update();
+   *   draw(positions, indices);
+   *   requestAnimationFrame(frame);
+   * }
+   * ```
+   *
+   * An update tests every edge on the new positions and flags the creases again. Adjacency, buffers and winding stay.
+   * Edges with a coordinate that is not finite stay as they are until it is finite again. Iterations are numbered on
+   * from update to update, so every engine gives the same triangles for the same positions and numbers of iterations.
+   *
+   * If another call of the session has not ended, or the CPU engine runs in workers, the update waits for its turn, and
+   * the next update or {@link counters} throws its error. Calls other than `update`, `counters`, `triangles`, `edges`
+   * and `gpu` end the motion: they act as if `setPositions` had been called with the present positions.
+   *
+   * @throws {@link EdgeflipError} `invalid-option`, `invalid-input`, `position-count`, `ragged-array`; `backend-limit`
+   * for 64-bit floats on WebGPU, and always on WebGL2; `device-failed`, `freed`.
+   */
+  update(options: UpdateOptions = {}): void {
+    const isLate = this.#waiting > 0 || this.#session.isAway;
+    const update = updateOf(options, this.#layout, isLate ? copyOf : itselfOf);
+    this.#check();
+    if (isLate) {
+      void this.#call(async (session) => this.#update(session, update)).catch((thrown) => (this.#fault ??= thrown));
+      return;
+    }
+    try {
+      void this.#update(this.#session, update);
+    } catch (thrown) {
+      throw fromModule(thrown);
+    }
+  }
+
+  #update(session: ModuleSession, { positions, buffer, iterations }: Update): void | Promise<void> {
+    if (buffer) {
+      const { device, positionBuffer } = session;
+      if (!device || !positionBuffer) {
+        const message = `option buffer: the session is on ${session.backend}, not on a device that has buffers`;
+        throw new EdgeflipError('invalid-option', message);
+      }
+      gather(device, buffer, positionBuffer, this.#layout);
+    }
+    return session.update(positions, iterations);
+  }
+
+  /**
+   * What the updates so far have done. The counts are of the updates before the call. Later updates need not wait for
+   * the answer.
+   *
+   * @throws {@link EdgeflipError} `device-failed`, `freed`; the error of an update that had to wait.
+   */
+  async counters(): Promise<Counters> {
+    this.#check();
+    if (this.#waiting > 0 || this.#session.isAway) {
+      return this.#call((session) => {
+        this.#check();
+        return session.counters();
+      });
+    }
+    try {
+      return await this.#session.counters();
+    } catch (thrown) {
+      throw fromModule(thrown);
+    }
+  }
+
+  #check(): void {
+    if (this.#isFreed) throw new EdgeflipError('freed', 'the session has been freed');
+    const fault = this.#fault;
+    this.#fault = undefined;
+    if (fault) throw fault;
   }
 
   /** The result so far. */
@@ -259,12 +348,15 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
 
   /** Calls the module after all earlier calls. */
   #call<T>(work: (session: ModuleSession) => Promise<T>): Promise<T> {
+    this.#waiting++;
     const call = this.#last.then(async () => {
-      if (this.#isFreed) throw new EdgeflipError('freed', 'the session has been freed');
       try {
+        if (this.#isFreed) throw new EdgeflipError('freed', 'the session has been freed');
         return await work(this.#session);
       } catch (thrown) {
         throw fromModule(thrown);
+      } finally {
+        this.#waiting--;
       }
     });
     this.#last = call.catch(() => undefined);

@@ -27,7 +27,7 @@ export function makeDelaunaySync<I extends IndexArray>(mesh: Mesh<I>, options: S
   const [{ positions, indices, dimension }, layout] = readMesh(mesh, itselfOf);
   const settings: Settings = { ...settingsOf(options, SYNC_OPTIONS), backend: 'cpu' };
   try {
-    const session = now(Session.create(positions, indices, dimension, settings));
+    const session = now(Session.create(positions, indices, dimension, settings, false));
     try {
       while (now(session.advance()));
       return resultOf(now(session.outcome()), layout, {});

@@ -9,12 +9,14 @@ import { Indices, initSync, Session, startThreads, work } from './wasm/edgeflip_
 export type Question =
   | 'advance'
   | 'auditInput'
+  | 'counters'
   | 'edgeStates'
   | 'edges'
   | 'outcome'
   | 'setPositions'
   | 'step'
-  | 'triangles';
+  | 'triangles'
+  | 'update';
 
 /** The answer of a session, and its progress. */
 export interface Reply {
@@ -50,7 +52,7 @@ const calls = {
   /** Opens the session. If memory runs out, the call can be repeated. */
   async open(session: number): Promise<void> {
     const { mesh, settings } = begun.get(session)!;
-    sessions.set(session, await Session.create(mesh.positions, mesh.indices, mesh.dimension, settings));
+    sessions.set(session, await Session.create(mesh.positions, mesh.indices, mesh.dimension, settings, false));
     begun.delete(session);
   },
   async ask(session: number, question: Question, args: unknown[]): Promise<Reply> {

@@ -10,7 +10,9 @@ import type { Calls, Question } from './thread.js';
 import type { Session } from './wasm/edgeflip.js';
 
 /** The methods of a session, in any module. */
-export interface ModuleSession extends Omit<Session, typeof Symbol.dispose> {
+export interface ModuleSession extends Omit<Session, typeof Symbol.dispose | 'update'> {
+  /** In a worker, it returns a promise. */
+  update(...args: Parameters<Session['update']>): void | Promise<void>;
   /** Whether the session is in a worker, so that it does not block the page. */
   readonly isAway?: boolean;
   /** The number of its threads, if they are several. */
@@ -213,6 +215,8 @@ export class ThreadsSession implements ModuleSession {
   edges = () => this.#ask('edges');
   edgeStates = () => this.#ask('edgeStates');
   auditInput = () => this.#ask('auditInput');
+  counters = () => this.#ask('counters');
+  update = (...args: Parameters<Session['update']>) => this.#ask('update', ...args);
   setPositions = (positions: Float32Array | Float64Array) => this.#ask('setPositions', positions);
 
   async outcome(): ReturnType<Session['outcome']> {

@@ -206,6 +206,52 @@ export interface RunOptions {
   onProgress?: ((progress: Progress) => void) | undefined;
 }
 
+/** The options of an update. */
+export interface UpdateOptions {
+  /** New positions of all vertices, with the stride and the offset of the mesh. The array is copied at once. */
+  positions?: VertexArray | undefined;
+  /**
+   * New positions in a buffer of 32-bit floats on the device of the session, which copies them there. Its usage has to
+   * include STORAGE, or COPY_SRC if there are no gaps. Without `positions` and `buffer`, the update takes the positions
+   * in the buffer of `gpu()`: those that the page has written there, or the present ones.
+   */
+  buffer?: GpuBuffer | undefined;
+  /** The count of numbers in `buffer` before the first vertex. Default: 0. */
+  offset?: number | undefined;
+  /** The count of numbers in `buffer` from a vertex to the next. Default: the dimension of the mesh. */
+  stride?: number | undefined;
+  /**
+   * The most iterations, 0 to 64. Default: 4. It is a budget: what is left goes on in the next update. With the order
+   * `'any'`, every number but 0 flips to the end.
+   */
+  iterations?: number | undefined;
+}
+
+/** What the updates of a session have done, and what is left. */
+export interface Counters {
+  /** The number of updates that the counts are of: all before the call. */
+  updates: number;
+  /** Flips of these updates. */
+  flips: number;
+  /**
+   * Edges that are not Delaunay after the last of them. `stopped` counts those that the next update may flip. Frozen
+   * edges (`non-manifold`, `inconsistent`) are not counted.
+   */
+  remaining: Reasons;
+  /**
+   * Triangles that are not strictly positive, in the plane: flat or turned over, compared with the orientation of their
+   * component at the start of the session.
+   */
+  inverted: number;
+  /** Edges left alone, because a coordinate of their triangles is not finite. */
+  nonFinite: number;
+  /**
+   * Edges left alone, because the coordinates of their triangles span more bits than WebGPU decides exactly. The CPU
+   * decides them all.
+   */
+  tooWide: number;
+}
+
 /** The options of {@link makeDelaunay}. */
 export interface MakeDelaunayOptions extends Options, RunOptions {
   /** Called after every iteration. Watching costs time, because each iteration is then counted and awaited. */

@@ -8,7 +8,17 @@ import type { Settings } from './settings.js';
 import type { RunOptions } from './types.js';
 
 /** The methods of a session that a message calls by name. */
-export type Question = 'backend' | 'edgeStates' | 'edges' | 'result' | 'setPositions' | 'step' | 'triangles' | 'verify';
+export type Question =
+  | 'backend'
+  | 'counters'
+  | 'edgeStates'
+  | 'edges'
+  | 'result'
+  | 'setPositions'
+  | 'step'
+  | 'triangles'
+  | 'update'
+  | 'verify';
 
 /** Which callbacks the caller has, and whether its signal has stopped the run already. */
 export interface Watched {
@@ -64,7 +74,7 @@ const functions = {
   },
   ask(session: number, question: Question, args: never[]): Promise<unknown> {
     const asked = sessions.get(session)!;
-    return (asked[question] as (...args: never[]) => Promise<unknown>).apply(asked, args);
+    return (asked[question] as (...args: never[]) => unknown).apply(asked, args) as Promise<unknown>;
   },
   run(session: number, run: number, watched: Watched, ...[emit]: [emit?: Emit]) {
     return stoppable(run, watched, (signal) => sessions.get(session)!.run({ signal, ...callbacks(watched, emit!) }));

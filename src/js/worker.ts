@@ -21,9 +21,19 @@ import { floatsOf, type Layout, readMesh } from './mesh.js';
 import { type ModuleSource, type Sources, sourcesOf } from './module.js';
 import { namesOf } from './names.js';
 import { Remote } from './remote.js';
-import { settingsOf, type Watch, WORKER_MAKE_OPTIONS, WORKER_OPTIONS, watchOf } from './settings.js';
+import {
+  settingsOf,
+  updateOf,
+  type Watch,
+  WORKER_MAKE_OPTIONS,
+  WORKER_OPTIONS,
+  WORKER_UPDATE_OPTIONS,
+  type WorkerUpdateOptions,
+  watchOf,
+} from './settings.js';
 import type {
   Audit,
+  Counters,
   Edges,
   Engine,
   IndexArray,
@@ -46,6 +56,8 @@ export type * from './types.js';
 
 /** The options of a session in the worker. */
 export type WorkerOptions = Omit<Options, 'device'>;
+
+export type { WorkerUpdateOptions };
 
 /** The options of {@link makeDelaunay} in the worker. */
 export type WorkerMakeOptions = Omit<MakeDelaunayOptions, 'device'>;
@@ -174,6 +186,8 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
   readonly #session: number;
   readonly #layout: Layout<I>;
   readonly #free: () => void;
+  /** The error of an update. */
+  #fault: unknown;
   #isFreed = false;
 
   private constructor(to: Remote<Functions>, session: number, layout: Layout<I>) {
@@ -230,6 +244,27 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
     await this.#ask('setPositions', floatsOf(positions, this.#layout, copyOf));
   }
 
+  /**
+   * As `update` of the session of `edgeflip`, in the worker: {@link counters} or the next update throws its error.
+   *
+   * @throws {@link EdgeflipError} `invalid-option`, `invalid-input`, `ragged-array`, `freed`.
+   */
+  update(options: WorkerUpdateOptions = {}): void {
+    const { positions, iterations } = updateOf(options, this.#layout, copyOf, WORKER_UPDATE_OPTIONS);
+    void this.#ask('update', { positions, iterations }).catch((thrown) => (this.#fault ??= thrown));
+  }
+
+  /**
+   * What the updates so far have done.
+   *
+   * @throws {@link EdgeflipError} `device-failed`; the error of an update.
+   */
+  async counters(): Promise<Counters> {
+    const counters = await this.#ask<Counters>('counters');
+    this.#check();
+    return counters;
+  }
+
   /** The result so far. */
   async result(): Promise<Result<I>> {
     const result = await this.#ask<Result>('result');
@@ -284,5 +319,8 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
 
   #check(): void {
     if (this.#isFreed) throw new EdgeflipError('freed', 'the session has been freed');
+    const fault = this.#fault;
+    this.#fault = undefined;
+    if (fault) throw fault;
   }
 }

@@ -129,7 +129,7 @@ impl Positions {
         }
     }
 
-    fn at(&self, i: usize) -> f64 {
+    pub(crate) fn at(&self, i: usize) -> f64 {
         match self {
             Self::F32(numbers) => f64::from(numbers[i]),
             Self::F64(numbers) => numbers[i],

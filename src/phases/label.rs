@@ -153,10 +153,9 @@ pub(crate) fn keep_non_delaunay(geometry: &Geometry, diamonds: &mut [Diamond]) -
 
 /// Whether all coordinates of these vertices are finite.
 pub(crate) fn is_finite(geometry: &Geometry, vertices: [u32; 4]) -> bool {
-    match geometry.dimension {
-        Dimension::Two => geometry.positions.points2(vertices).iter().all(|point| point.is_finite()),
-        Dimension::Three => geometry.positions.points3(vertices).iter().all(|point| point.is_finite()),
-    }
+    let stride = geometry.dimension.stride();
+    let mut numbers = vertices.iter().flat_map(|&v| stride * v as usize..stride * (v as usize + 1));
+    numbers.all(|i| geometry.positions.at(i).is_finite())
 }
 
 /// Moves the kept edges from index `first` on to the indices from `count` on. Returns the new count. A branch on

@@ -322,3 +322,27 @@ fn cosines_are_right_to_the_last_places() {
         before = cosine;
     }
 }
+
+/// On a small grid, every quad: if both new triangles are positive and an old one is not, the edge is not Delaunay. So a
+/// flip that mends a fold is a flip of an edge that is not Delaunay, and needs no rule of its own.
+#[test]
+fn an_edge_that_a_fold_leaves_is_not_delaunay() {
+    let points: Vec<DVec2> = (0..25).map(|i| DVec2::new(f64::from(i % 5), f64::from(i / 5))).collect();
+    let [mut turned, mut flat] = [0, 0];
+    for &a in &points {
+        for &b in &points {
+            for &c in &points {
+                for &d in &points {
+                    let old = [area_sign(a, b, c), area_sign(b, a, d)];
+                    let new = [area_sign(a, d, c), area_sign(b, c, d)];
+                    if new.iter().all(|sign| sign.is_gt()) && old.iter().any(|sign| sign.is_le()) {
+                        assert_eq!(in_circle_sign(a, b, c, d), Ordering::Less, "{a} {b} {c} {d}");
+                        turned += u32::from(old.iter().any(|sign| sign.is_lt()));
+                        flat += u32::from(old.iter().any(|sign| sign.is_eq()));
+                    }
+                }
+            }
+        }
+    }
+    assert!(turned > 1000 && flat > 1000, "{turned} {flat}");
+}

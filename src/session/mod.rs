@@ -162,9 +162,17 @@ impl Session {
     /// the GPU cannot decide the new positions exactly; [`Error::Device`]. After an error the session is unchanged.
     /// With `Auto` the CPU takes over from a GPU that refuses or fails.
     pub async fn set_positions(&mut self, positions: impl Into<Positions>) -> Result<(), Error> {
-        let start = Instant::now();
         self.check_memory(memory_bounds::POSITIONS)?;
-        let positions = positions.into();
+        self.replace_positions(positions.into()).await
+    }
+
+    /// Boxed, so that this code is compiled only once.
+    fn replace_positions(&mut self, positions: Positions) -> Answer<'_, ()> {
+        Box::pin(self.replace(positions))
+    }
+
+    async fn replace(&mut self, positions: Positions) -> Result<(), Error> {
+        let start = Instant::now();
         self.check_length(&positions)?;
         positions.refuse_non_finite(self.mesh.dimension(), &Threads::one())?;
         let triangles = self.triangles().await?;
@@ -190,9 +198,9 @@ impl Session {
         self.mesh = mesh;
         self.flips_per_iteration.clear();
         self.has_ended = false;
-        self.updates = 0;
         self.timings = Timings { adjacency: ms_since(start), ..Timings::default() };
-        Ok(())
+        // An update cannot wait.
+        if std::mem::take(&mut self.updates) > 0 { self.settle().await } else { Ok(()) }
     }
 
     /// The present triangles: 3 vertex indices per triangle.

@@ -101,7 +101,7 @@ impl Session {
             return Ok(());
         }
         let positions = self.ask(|engine| engine.positions()).await?;
-        self.set_positions(positions).await
+        self.replace_positions(positions).await
     }
 
     pub(super) fn check_length(&self, positions: &Positions) -> Result<(), Error> {

@@ -48,6 +48,14 @@ impl JsSession {
         })
     }
 
+    /// Asks the session, which answers before this returns.
+    fn at_once<T>(&self, question: impl FnOnce(&mut Session) -> T) -> Result<T, JsValue> {
+        let mut session = self.0.take().ok_or_else(|| coded("freed", ENDED))?;
+        let answer = question(&mut session);
+        self.0.replace(Some(session));
+        Ok(answer)
+    }
+
     pub(super) fn get<T: Default>(&self, value: impl FnOnce(&Session) -> T) -> T {
         self.0.borrow().as_ref().map(value).unwrap_or_default()
     }
@@ -55,7 +63,7 @@ impl JsSession {
 
 #[wasm_bindgen(js_class = Session)]
 impl JsSession {
-    /// As [`Session::new`]. Copies the arrays before it returns.
+    /// As [`Session::new`]. Copies the arrays before it returns. `settles`: whether updates may follow at once.
     ///
     /// # Errors Those of [`Mesh::new`](crate::Mesh::new) and [`Session::new`]; `backend-unavailable` if the options
     /// exclude the CPU engine and no other engine is available. If another engine or a second attempt may succeed, the
@@ -66,6 +74,7 @@ impl JsSession {
         indices: &Uint32Array,
         dimension: f64,
         options: JsOptions,
+        settles: bool,
     ) -> Result<Promise, JsValue> {
         let open = || {
             let mesh = mesh_of(positions, indices, dimension, &Threads::default())?;
@@ -76,7 +85,14 @@ impl JsSession {
         #[cfg(feature = "js")]
         let leaves_cpu = chosen.leaves_cpu.is_some();
         Ok(promise(async move {
-            match Session::new(mesh.clone(), chosen).await {
+            let opened = async {
+                let mut session = Session::new(mesh.clone(), chosen).await?;
+                if settles {
+                    session.settle().await?;
+                }
+                Ok(session)
+            };
+            match opened.await {
                 Ok(session) => Ok(Self(Rc::new(RefCell::new(Some(session)))).into()),
                 #[cfg(feature = "js")]
                 Err(error) => Err(refused(error, &mesh, leaves_cpu)),
@@ -117,6 +133,37 @@ impl JsSession {
             session.set_positions(positions).await
         };
         self.ask(set, |()| JsValue::UNDEFINED)
+    }
+
+    /// As [`Session::update`]. Copies the array before it returns.
+    ///
+    /// # Errors
+    /// Those of [`Session::update`].
+    pub fn update(&self, positions: Option<JsPositions>, iterations: u32) -> Result<(), JsValue> {
+        self.at_once(|session| {
+            if let Some(positions) = &positions {
+                memory::check(positions.byte_length() as u64)?;
+            }
+            session.update(positions.map(Into::into), iterations)
+        })
+        .and_then(|done| done.map_err(thrown))
+    }
+
+    /// As [`Session::counters`]. Asks the engine before it returns.
+    #[wasm_bindgen(unchecked_return_type = "Promise<import('../types.js').Counters>")]
+    pub fn counters(&self) -> Promise {
+        let asked = self.at_once(Session::counters);
+        promise(async move {
+            let counters = asked?.await.map_err(thrown)?;
+            Ok(object([
+                ("updates", (counters.updates as f64).into()),
+                ("flips", (counters.flips as f64).into()),
+                ("remaining", reasons_object(&counters.remaining)),
+                ("inverted", counters.inverted.into()),
+                ("nonFinite", counters.non_finite.into()),
+                ("tooWide", counters.too_wide.into()),
+            ]))
+        })
     }
 
     /// As [`Session::triangles`].

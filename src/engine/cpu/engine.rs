@@ -24,6 +24,9 @@ const EDGES: usize = 256;
 /// The fewest candidates of a part. With fewer, one thread finishes before another starts.
 const FEWEST: usize = if cfg!(debug_assertions) { 4 } else { 512 };
 
+/// An update that flips less than one edge for so many triangles flips few.
+const FEW: usize = 16;
+
 /// An edge by its half-edges, the lower one first.
 type Edge = [u32; 2];
 
@@ -95,6 +98,8 @@ struct Moving {
     next: u32,
     /// Flips of all updates.
     flips: u64,
+    /// Flips of the last update.
+    last_flips: usize,
 }
 
 impl Cpu {
@@ -406,16 +411,18 @@ impl Cpu {
         let positions = moving.positions.as_ref().unwrap_or(mesh.positions());
         moving.has_infinite = !positions.are_finite(threads);
         if mesh.dimension() == Dimension::Two {
-            let shape = Shape { positions, triangles, twins };
-            let (signs, found) = Embedded::of_triangles(
-                shape,
-                mesh.vertex_count(),
-                Some(winding),
-                moving.has_infinite,
-                threads,
-            );
-            winding.is_strict = signs.not_positive == 0;
-            *embedded = found;
+            // If few edges flip, searching their stars for duplicates is faster than finding the embedded stars.
+            if moving.last_flips > triangles.len() / 3 / FEW {
+                let shape = Shape { positions, triangles, twins };
+                let (vertices, may_be_left) = (mesh.vertex_count(), moving.has_infinite);
+                let (signs, found) =
+                    Embedded::of_triangles(shape, vertices, Some(winding), may_be_left, threads);
+                winding.is_strict = signs.not_positive == 0;
+                *embedded = found;
+            } else {
+                winding.is_strict = false;
+                *embedded = Embedded::default();
+            }
         } else {
             flag_creases(positions, triangles, twins, thresholds.cos, moving.has_infinite, threads);
         }
@@ -423,8 +430,9 @@ impl Cpu {
         self.is_known = false;
     }
 
-    pub(super) fn add_flips(&mut self, flips: u64) {
-        self.moving.flips += flips;
+    pub(super) fn add_flips(&mut self, flips: usize) {
+        self.moving.flips += flips as u64;
+        self.moving.last_flips = flips;
     }
 
     fn count_moved(&mut self) -> Moved {
@@ -522,7 +530,7 @@ impl Engine for Cpu {
             self.moving.next = self.moving.next.wrapping_add(iterations);
             self.run(iterations)
         });
-        self.add_flips(flips.into_iter().map(u64::from).sum());
+        self.add_flips(flips.into_iter().map(|count| count as usize).sum());
         Ok(())
     }
 

@@ -95,7 +95,7 @@ impl Engine for Lawson {
             self.has_ended = false;
             if iterations > 0 {
                 let flips = self.flip_all();
-                self.cpu.add_flips(flips.into());
+                self.cpu.add_flips(flips as usize);
             }
         });
         Ok(())

@@ -204,7 +204,7 @@ impl Device {
     }
 
     #[cfg(not(target_arch = "wasm32"))]
-    pub(super) fn wait(&self) -> Result<wgpu::PollStatus, wgpu::PollError> {
+    fn wait(&self) -> Result<wgpu::PollStatus, wgpu::PollError> {
         self.device.poll(wgpu::PollType::wait_indefinitely())
     }
 

@@ -1,18 +1,21 @@
 //! Updates: the vertices move, and the device flips again, in one submission that nobody waits for.
 
 use super::WebGpu;
+use super::buffers::Buffers;
 use super::faults::{refuse, watch};
 use super::history::{COUNTS, ENTRIES, FLIPPED, NOT_POSITIVE};
 use super::kernels::Kernel;
 use super::steps::{MOST_ITERATIONS, Step};
 use crate::engine::{Answer, Census, Moved};
 use crate::{Dimension, Error, Positions};
-use futures_channel::oneshot;
-use std::ops::Range;
 use wgpu::BufferUsages;
 
 /// Words of the counts: those of the census and the flips, then the triangles that are not positive.
 const WORDS: usize = ENTRIES + 1;
+
+fn bytes(words: usize) -> u64 {
+    4 * words as u64
+}
 
 impl WebGpu {
     /// Submits the preparation for the present positions, and iterations after it. `positions` replaces them first.
@@ -64,50 +67,41 @@ impl WebGpu {
     pub(super) fn count_moved(&mut self) -> Answer<'static, Moved> {
         self.params.winding = self.winding;
         let gpu = self.gpu.clone();
-        let bytes = |words: Range<usize>| (4 * words.start as u64, 4 * words.len() as u64);
-        let (sender, receiver) = oneshot::channel();
-        let (staging, caught) = watch(&gpu.device, || {
-            let staging = gpu.staging(4 * WORDS as u64, BufferUsages::MAP_READ | BufferUsages::COPY_DST);
-            let history = &self.buffers.history;
+        let (snapshot, caught) = watch(&gpu.device, || {
+            let snapshot = gpu.buffer("counters", WORDS, BufferUsages::empty());
+            let Buffers { history, frontier, .. } = &self.buffers;
             self.write_params();
             let mut encoder = gpu.device.create_command_encoder(&Default::default());
-            encoder.clear_buffer(history, 0, Some(4 * COUNTS as u64));
+            encoder.clear_buffer(history, 0, Some(bytes(COUNTS)));
             self.encode_pass(&mut encoder, &|pass| self.record_census(pass));
-            encoder.copy_buffer_to_buffer(history, 0, &staging, 0, bytes(0..ENTRIES).1);
+            encoder.copy_buffer_to_buffer(history, 0, &snapshot, 0, bytes(ENTRIES));
             if self.form.dimension == Dimension::Two {
-                encoder.clear_buffer(history, 0, Some(4 * COUNTS as u64));
-                encoder.clear_buffer(&self.buffers.frontier, 0, None);
+                encoder.clear_buffer(history, 0, Some(bytes(COUNTS)));
+                encoder.clear_buffer(frontier, 0, None);
                 self.encode_pass(&mut encoder, &|pass| {
                     self.at_step(pass, Step::Prepare);
                     for kernel in [Kernel::Prepare, Kernel::Decide, Kernel::Turn] {
                         self.dispatch(pass, kernel, self.params.triangles);
                     }
                 });
-                let (from, size) = bytes(NOT_POSITIVE..NOT_POSITIVE + 1);
-                encoder.copy_buffer_to_buffer(history, from, &staging, bytes(ENTRIES..WORDS).0, size);
-                encoder.clear_buffer(&self.buffers.frontier, 0, None);
+                encoder.copy_buffer_to_buffer(
+                    history,
+                    bytes(NOT_POSITIVE),
+                    &snapshot,
+                    bytes(ENTRIES),
+                    bytes(1),
+                );
+                encoder.clear_buffer(frontier, 0, None);
             }
             gpu.submit(encoder);
-            staging.map_async(wgpu::MapMode::Read, .., move |result| {
-                // The receiver is gone only if the caller has stopped waiting.
-                let _ = sender.send(result);
-            });
-            staging
+            snapshot
         });
-        let faults = self.faults.take();
+        let faults = self.faults.replace(caught);
         Box::pin(async move {
             if let Some(faults) = faults {
                 gpu.judge(faults.await)?;
             }
-            gpu.judge(caught.await)?;
-            #[cfg(not(target_arch = "wasm32"))]
-            gpu.wait().map_err(|_| gpu.not_mapped())?;
-            if !matches!(receiver.await, Ok(Ok(()))) {
-                return Err(gpu.not_mapped());
-            }
-            gpu.check()?;
-            let view = staging.get_mapped_range(..).map_err(|_| gpu.not_mapped())?;
-            let words: Vec<u32> = bytemuck::pod_collect_to_vec(&view);
+            let words = gpu.read(&snapshot, WORDS).await?;
             Ok(Moved {
                 census: Census::of_counts(&words[..COUNTS - 2]),
                 infinite: words[COUNTS - 2],

@@ -107,6 +107,7 @@ impl WebGpu {
 
     /// Records the kernels that depend on the positions: in 2D the turns of the stars and the signs of the triangles,
     /// in 3D the creases. They also begin the history, unless the host has to help first.
+    #[inline(never)]
     pub(super) fn record_preparation(&self, encoder: &mut wgpu::CommandEncoder) {
         let Buffers { uniform, history, frontier, .. } = &self.buffers;
         self.write_params();

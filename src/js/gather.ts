@@ -1,0 +1,99 @@
+/** Copies positions from a buffer of the page to that of a session, on their device. */
+
+import { EdgeflipError } from './error.js';
+import { isWhole, shown } from './given.js';
+import type { AllPlaces } from './mesh.js';
+import type { GpuBuffer, GpuDevice, UpdateOptions } from './types.js';
+
+/** Where the positions of all vertices are. */
+export interface Source {
+  buffer: GpuBuffer;
+  /** The count of numbers before the first vertex. */
+  offset: number;
+  /** The count of numbers from a vertex to the next. */
+  stride: number;
+}
+
+/** Copies number by number, for positions with gaps. */
+const SHADER = `
+  struct Places { offset: u32, stride: u32, dimension: u32, numbers: u32 }
+  @group(0) @binding(0) var<uniform> places: Places;
+  @group(0) @binding(1) var<storage, read> source: array<u32>;
+  @group(0) @binding(2) var<storage, read_write> positions: array<u32>;
+  @compute @workgroup_size(256)
+  fn gather(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
+    for (var i = id.x; i < places.numbers; i += groups.x * 256u) {
+      positions[i] = source[places.offset + i / places.dimension * places.stride + i % places.dimension];
+    }
+  }`;
+
+const MOST_WORKGROUPS = 65_535;
+
+/** The pipeline of each device. */
+const pipelines = new WeakMap<object, GPUComputePipeline>();
+
+/**
+ * Reads where the positions are.
+ *
+ * @throws {@link EdgeflipError} `invalid-option`, `position-count`.
+ */
+export function sourceOf(options: UpdateOptions, { dimension, vertices }: AllPlaces): Source {
+  const { buffer, offset = 0, stride = dimension } = options;
+  const wrong = (name: string, value: unknown, what: string) =>
+    new EdgeflipError('invalid-option', `option ${name}: ${shown(value)} is not ${what}`);
+  if (!isWhole(offset)) throw wrong('offset', offset, 'a whole number of 32 bits');
+  if (!isWhole(stride) || stride < dimension) throw wrong('stride', stride, `a whole number of at least ${dimension}`);
+  const size = sizeOf(buffer);
+  if (size === undefined) throw wrong('buffer', buffer, 'a GPUBuffer of this page');
+  const needed = vertices === 0 ? 0 : 4 * (offset + (vertices - 1) * stride + dimension);
+  if (size < needed) {
+    const message = `option buffer: it has ${size} bytes; ${vertices} vertices end at byte ${needed}`;
+    throw new EdgeflipError('position-count', message);
+  }
+  return { buffer: buffer!, offset, stride };
+}
+
+/** The size of a buffer of this window or worker: the getter of its `GPUBuffer` throws for other objects. */
+function sizeOf(buffer: unknown): number | undefined {
+  try {
+    return Object.getOwnPropertyDescriptor(GPUBuffer.prototype, 'size')!.get!.call(buffer) as number;
+  } catch {
+    return undefined;
+  }
+}
+
+/** Submits the copy. Errors are those of the device: a buffer of another device, or without the usage. */
+export function gather(
+  device: GpuDevice,
+  { buffer, offset, stride }: Source,
+  positions: GpuBuffer,
+  { dimension, vertices }: AllPlaces,
+): void {
+  const numbers = vertices * dimension;
+  if (numbers === 0) return;
+  const { queue } = device;
+  const encoder = device.createCommandEncoder();
+  if (stride === dimension) {
+    encoder.copyBufferToBuffer(buffer, 4 * offset, positions, 0, 4 * numbers);
+    queue.submit([encoder.finish()]);
+    return;
+  }
+  let pipeline = pipelines.get(device);
+  if (!pipeline) {
+    const module = device.createShaderModule({ label: 'edgeflip gather', code: SHADER });
+    pipeline = device.createComputePipeline({ layout: 'auto', compute: { module } });
+    pipelines.set(device, pipeline);
+  }
+  const usage = GPUBufferUsage.UNIFORM | GPUBufferUsage.COPY_DST;
+  const places = device.createBuffer({ label: 'edgeflip gather', size: 16, usage });
+  queue.writeBuffer(places, 0, new Uint32Array([offset, stride, dimension, numbers]));
+  const entries = [places, buffer, positions].map((buffer, binding) => ({ binding, resource: { buffer } }));
+  const layout = pipeline.getBindGroupLayout(0);
+  const pass = encoder.beginComputePass();
+  pass.setPipeline(pipeline);
+  pass.setBindGroup(0, device.createBindGroup({ layout, entries }));
+  pass.dispatchWorkgroups(Math.min(Math.ceil(numbers / 256), MOST_WORKGROUPS));
+  pass.end();
+  queue.submit([encoder.finish()]);
+  places.destroy();
+}

@@ -1,0 +1,168 @@
+// Tests updates, for meshes that move, on the CPU engine in Node.
+
+import assert from 'node:assert/strict';
+import { test } from 'node:test';
+import { FlipSession } from 'edgeflip';
+import { generate } from 'edgeflip/files';
+import * as away from 'edgeflip/worker';
+
+/** The positions of a mesh in the plane, sheared along waves. */
+function sheared({ positions }, time) {
+  const moved = positions.slice();
+  for (let i = 0; i < moved.length; i += 2) {
+    moved[i] += 2 * Math.sin(0.4 * positions[i + 1] + time);
+    moved[i + 1] += 2 * Math.sin(0.4 * positions[i] - time);
+  }
+  return moved;
+}
+
+const mesh = await generate('random 30');
+const onCpu = { backend: 'cpu' };
+
+test('an update flips what it has a budget for, and the next one goes on', async () => {
+  const session = await FlipSession.create(mesh, onCpu);
+  assert.deepEqual(await session.counters(), {
+    updates: 0,
+    flips: 0,
+    remaining: (await session.counters()).remaining,
+    inverted: 0,
+    nonFinite: 0,
+    tooWide: 0,
+  });
+  let before = (await session.counters()).remaining.stopped;
+  for (let updates = 1; before > 0; updates++) {
+    session.update({ iterations: 1 });
+    const counters = await session.counters();
+    assert.equal(counters.updates, updates);
+    assert.ok(counters.flips > 0);
+    before = counters.remaining.stopped ?? 0;
+  }
+  const { clean, remaining } = await session.verify();
+  assert.ok(clean);
+  assert.deepEqual(remaining, {});
+});
+
+test('the mesh is Delaunay again in every frame', async () => {
+  for (const order of ['reproducible', 'any']) {
+    const session = await FlipSession.create(mesh, { ...onCpu, order });
+    session.update({ iterations: 64 });
+    const first = (await session.counters()).flips;
+    for (let frame = 0; frame < 20; frame++) {
+      session.update({ positions: sheared(mesh, 0.1 * frame), iterations: 64 });
+      const { remaining, inverted, updates } = await session.counters();
+      assert.deepEqual([remaining, inverted, updates], [{}, 0, frame + 2]);
+    }
+    assert.ok((await session.counters()).flips > 2 * first);
+    const positions = sheared(mesh, 1.9);
+    const fresh = await FlipSession.create({ ...mesh, positions, indices: await session.triangles() }, onCpu);
+    assert.equal((await fresh.run()).flips, 0);
+    // A run ends the motion: it begins where the updates ended.
+    const { flips, iterations, status } = await session.run();
+    assert.deepEqual([flips, iterations, status], [0, 0, 'done']);
+    assert.equal((await session.counters()).updates, 0);
+  }
+});
+
+test('a folded sheet is mended where flips can mend it', async () => {
+  const square = { positions: new Float32Array([0, 0, 4, 0, 4, 4, 0, 4, 2, 2]), dimension: 2 };
+  square.indices = new Uint32Array([0, 1, 4, 1, 2, 4, 2, 3, 4, 3, 0, 4]);
+  const session = await FlipSession.create(square, onCpu);
+  // The middle vertex crosses an edge of the boundary, then comes back.
+  for (const [x, inverted] of [
+    [2, 0],
+    [-1, 1],
+    [1, 0],
+  ]) {
+    const positions = square.positions.slice();
+    positions[8] = x;
+    session.update({ positions });
+    assert.equal((await session.counters()).inverted, inverted);
+  }
+});
+
+test('a number that is not finite freezes its triangles for one frame', async () => {
+  const session = await FlipSession.create(mesh, onCpu);
+  const positions = sheared(mesh, 0);
+  positions[200] = NaN;
+  session.update({ positions, iterations: 64 });
+  const { nonFinite, remaining } = await session.counters();
+  assert.ok(nonFinite > 4 && !remaining.stopped);
+  await assert.rejects(session.run(), { code: 'non-finite' });
+  session.update({ positions: sheared(mesh, 0), iterations: 64 });
+  assert.equal((await session.counters()).nonFinite, 0);
+  assert.equal((await session.run()).flips, 0);
+});
+
+test('wrong options of an update are refused and change nothing', async () => {
+  const session = await FlipSession.create(mesh, onCpu);
+  const before = await session.triangles();
+  const { positions } = mesh;
+  for (const [options, code, message] of [
+    [{ iterations: 65 }, 'invalid-option', /65 iterations are too many for one update: give 0 to 64/],
+    [{ iterations: -1 }, 'invalid-option', /option iterations: -1 is not a whole number/],
+    [{ iteration: 1 }, 'invalid-option', /did you mean iterations\?/],
+    [{ positions: positions.subarray(2) }, 'position-count', /1798/],
+    [{ positions: [1, 2] }, 'invalid-input', /not a typed array/],
+    [{ buffer: {} }, 'invalid-option', /option buffer: an object is not a GPUBuffer of this page/],
+    [{ buffer: {}, positions }, 'invalid-option', /give only one of them/],
+    [{ buffer: {}, stride: 1 }, 'invalid-option', /option stride: 1 is not a whole number of at least 2/],
+    [{ buffer: {}, offset: 0.5 }, 'invalid-option', /option offset: 0.5/],
+    [null, 'invalid-input', /options: null is not an object/],
+  ]) {
+    assert.throws(() => session.update(options), { name: 'EdgeflipError', code, message });
+  }
+  assert.equal((await session.counters()).updates, 0);
+  assert.deepEqual(await session.triangles(), before);
+  session.free();
+  assert.throws(() => session.update(), { code: 'freed' });
+  await assert.rejects(session.counters(), { code: 'freed' });
+});
+
+test('an update waits for an earlier call, and has copied its positions', async () => {
+  const session = await FlipSession.create(mesh, onCpu);
+  const [positions, run] = [sheared(mesh, 1), session.run()];
+  session.update({ positions, iterations: 64 });
+  positions.fill(NaN);
+  const counters = await session.counters();
+  assert.deepEqual([counters.updates, counters.nonFinite, counters.remaining], [1, 0, {}]);
+  assert.equal((await run).status, 'done');
+  // The error of an update that had to wait comes with the next call.
+  const running = session.run();
+  session.update({ iterations: 100 });
+  await running;
+  await assert.rejects(session.counters(), { code: 'invalid-option' });
+  await session.counters();
+});
+
+test('several threads and a worker give the same', async () => {
+  const large = await generate('random 190');
+  const one = await FlipSession.create(large, { ...onCpu, threads: 1 });
+  const two = await FlipSession.create(large, { ...onCpu, threads: 2 });
+  const worker = await away.FlipSession.create(large, { ...onCpu, threads: 1 });
+  for (let frame = 0; frame < 4; frame++) {
+    const positions = sheared(large, 0.2 * frame);
+    const counted = [];
+    for (const session of [one, two, worker]) {
+      session.update({ positions, iterations: 2 });
+      counted.push([await session.counters(), await session.triangles()]);
+    }
+    assert.deepEqual(counted[1], counted[0]);
+    assert.deepEqual(counted[2], counted[0]);
+  }
+  for (const session of [two, worker]) {
+    session.update({ iterations: 65 });
+    await assert.rejects(session.counters(), { code: 'invalid-option' });
+    assert.equal((await session.counters()).updates, 4);
+  }
+});
+
+test('updates leave nothing behind', async () => {
+  const session = await FlipSession.create(mesh, onCpu);
+  const { memory } = await (await import('../../dist/wasm/edgeflip.js')).default();
+  const frames = (count) => {
+    for (let frame = 0; frame < count; frame++) session.update({ positions: sheared(mesh, 0.1 * frame) });
+    return memory.buffer.byteLength;
+  };
+  const before = frames(10);
+  assert.equal(frames(Number(process.env.EDGEFLIP_UPDATES ?? 1000)), before);
+});
