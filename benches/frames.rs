@@ -5,16 +5,18 @@
 //!
 //! GPU time is between timestamps before the motion and after the flips, wall time from the first frame to the last.
 
-use edgeflip::{Backend, Dimension, Mesh, Options, Session, families, make_delaunay, quality, wgpu};
+use edgeflip::{
+    Backend, Dimension, GpuBuffers, Mesh, Options, Session, families, make_delaunay, quality, wgpu,
+};
 use pollster::block_on;
 use std::{env, error::Error, ops::ControlFlow, sync::Arc, time::Instant};
 
 #[path = "arguments/mod.rs"]
 mod arguments;
 use arguments::{Arguments, median};
-#[path = "motion/mod.rs"]
+#[path = "../examples/motion/mod.rs"]
 mod motion;
-use motion::{Moving, Wave, read};
+use motion::{Moving, Wave};
 
 const ITERATIONS: u32 = 4;
 
@@ -47,7 +49,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let (name, speed) = spec.split_once(':').ok_or("write FAMILY:SPEED")?;
         let mesh = Arc::new(families::by_name(name)?);
         let (number, height) = match mesh.dimension() {
-            Dimension::Two => (0.05, 8.0),
+            Dimension::Two => (30.0, 0.0133),
             Dimension::Three => (6.0, 0.1),
         };
         let wave = Wave { speed: speed.parse()?, number, height };
@@ -181,4 +183,24 @@ fn whole_job(moving: &Moving, mesh: &Mesh) -> Result<f64, Box<dyn Error>> {
         best = best.min(start.elapsed().as_secs_f64() * 1e3);
     }
     Ok(best)
+}
+
+/// The words of a buffer.
+fn read(gpu: &GpuBuffers, buffer: &wgpu::Buffer) -> Result<Vec<u32>, Box<dyn Error>> {
+    let staging = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: None,
+        size: buffer.size(),
+        usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    });
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    encoder.copy_buffer_to_buffer(buffer, 0, &staging, 0, buffer.size());
+    gpu.queue.submit([encoder.finish()]);
+    staging.map_async(wgpu::MapMode::Read, .., |_| ());
+    gpu.device.poll(wgpu::PollType::wait_indefinitely())?;
+    let view = staging.get_mapped_range(..)?;
+    Ok(view
+        .chunks_exact(4)
+        .map(|bytes| u32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]))
+        .collect())
 }

@@ -45,10 +45,10 @@ pub use predicates::cos_degrees;
 pub use prepare::reorient::reoriented;
 pub use prepare::wedges::Wedges;
 pub use prepare::weld::{Welded, welded};
+pub use session::Session;
 pub use session::edge_states::EdgeState;
 pub use session::options::{Backend, MOST_THREADS, Options, Order};
-pub use session::outcome::{Iteration, Outcome, Status, Timings};
-pub use session::{Counters, Session};
+pub use session::outcome::{Counters, Iteration, Outcome, Status, Timings};
 #[cfg(not(target_arch = "wasm32"))]
 pub use session::{EarlyGpu, close_gpu, make_delaunay};
 #[cfg(all(target_arch = "wasm32", feature = "js-session"))]

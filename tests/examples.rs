@@ -5,6 +5,10 @@
 #[path = "../examples/file.rs"]
 #[allow(dead_code, reason = "its main reads the arguments of a command")]
 mod file;
+#[cfg(feature = "gpu")]
+#[path = "../examples/moving.rs"]
+#[allow(dead_code, reason = "its main reads the arguments of a command")]
+mod moving;
 #[path = "../examples/one_call.rs"]
 mod one_call;
 #[path = "../examples/step_by_step.rs"]
@@ -24,6 +28,13 @@ fn one_call() -> Result<(), Error> {
 #[test]
 fn step_by_step() -> Result<(), Error> {
     step_by_step::main()
+}
+
+#[test]
+#[cfg(feature = "gpu")]
+fn moving() {
+    let line = moving::run(20, 10).unwrap();
+    assert!(line.contains("722 triangles") && line.contains("0 edges left"), "{line}");
 }
 
 #[test]

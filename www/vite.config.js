@@ -9,8 +9,11 @@ const at = (path) => fileURLToPath(new URL(path, import.meta.url));
 // The page's policy, for the header: workers take their policy only from a header.
 const [, policy] = readFileSync(at('index.html'), 'utf8').match(/content="(default-src [^"]*)"/);
 
-// The development server inserts imported styles into the page.
-const whileWorking = (text) => text.replace("style-src 'self'", "style-src 'self' 'unsafe-inline'");
+// The development server inserts imported styles into the page, and serves the examples, whose icons are empty.
+const whileWorking = (text) =>
+  text
+    .replace("style-src 'self'", "style-src 'self' 'unsafe-inline'")
+    .replace("img-src 'self'", "img-src 'self' data:");
 
 // Cross-origin isolated, so that the threads of the CPU engine can share memory.
 const headersWith = (policy) => ({
@@ -19,17 +22,30 @@ const headersWith = (policy) => ({
   'Cross-Origin-Embedder-Policy': 'require-corp',
 });
 
+/** Serves the folder examples/ beside the page. */
+function serveExamples({ middlewares }) {
+  middlewares.use((request, _, next) => {
+    if (request.url.startsWith('/examples/')) request.url = `/@fs${at('..')}${request.url.slice(1)}`;
+    next();
+  });
+}
+
 export default defineConfig({
   root: at('.'),
   base: './',
   resolve: {
     alias: [
       { find: /^edgeflip$/, replacement: at('../dist/index.js') },
-      { find: /^edgeflip\/files$/, replacement: at('../dist/files.js') },
+      { find: /^edgeflip\/(.*)$/, replacement: at('../dist/$1.js') },
     ],
   },
   worker: { format: 'es' },
-  plugins: [{ name: 'policy-while-working', apply: 'serve', transformIndexHtml: whileWorking }],
+  // Found late, these would be bundled apart, each with a copy of three.js.
+  optimizeDeps: { include: ['three', 'three/webgpu', 'three/tsl', 'three/addons/controls/OrbitControls.js'] },
+  plugins: [
+    { name: 'policy-while-working', apply: 'serve', transformIndexHtml: whileWorking },
+    { name: 'examples', apply: 'serve', configureServer: serveExamples },
+  ],
   server: { headers: headersWith(whileWorking(policy)), fs: { allow: [at('..')] } },
   preview: { headers: headersWith(policy) },
   build: {

@@ -158,7 +158,7 @@ pub(crate) trait Engine {
 
     /// The buffers that a program can draw from, if the engine runs on WebGPU.
     #[cfg(all(not(target_arch = "wasm32"), feature = "gpu"))]
-    fn gpu_buffers(&self) -> Option<super::GpuBuffers> {
+    fn gpu_buffers(&self) -> Option<GpuBuffers> {
         None
     }
 
@@ -178,4 +178,19 @@ pub(crate) struct SharedObjects {
     pub(crate) positions: wasm_bindgen::JsValue,
     /// GPUBuffer: u32, 3 per triangle.
     pub(crate) triangles: wasm_bindgen::JsValue,
+}
+
+/// What a program needs to write the positions on the GPU, and to draw from the buffers. See
+/// [`Session::gpu`](crate::Session::gpu).
+#[cfg(all(not(target_arch = "wasm32"), feature = "gpu"))]
+#[derive(Clone, Debug, PartialEq)]
+pub struct GpuBuffers {
+    /// The device of the session.
+    pub device: wgpu::Device,
+    /// Its queue.
+    pub queue: wgpu::Queue,
+    /// f32, 2 or 3 per vertex, without gaps. Its usage includes `STORAGE`, `VERTEX`, `COPY_SRC` and `COPY_DST`.
+    pub positions: wgpu::Buffer,
+    /// u32, 3 per triangle. Its usage includes `STORAGE`, `INDEX`, `COPY_SRC` and `COPY_DST`. Only read it.
+    pub triangles: wgpu::Buffer,
 }

@@ -17,6 +17,8 @@ mod webgpu;
 pub(crate) use cpu::{Cpu, Lawson};
 #[cfg(feature = "gpu")]
 pub(crate) use gpu::{Form, Upload, self_test};
+#[cfg(all(not(target_arch = "wasm32"), feature = "gpu"))]
+pub use interface::GpuBuffers;
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 pub(crate) use interface::SharedObjects;
 pub(crate) use interface::{Answer, Census, EdgeCounts, Engine, Moved};
@@ -28,7 +30,7 @@ pub(crate) use webgl2::{Proxy, set_webgl2};
 pub(crate) use webgl2::{WebGl, set_shader_loader};
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 pub use webgpu::GpuDevice;
+#[cfg(all(not(target_arch = "wasm32"), feature = "gpu"))]
+pub use webgpu::GpuDevice;
 #[cfg(feature = "gpu")]
 pub(crate) use webgpu::{Device, GivenDevice, Handle as DeviceHandle, WebGpu};
-#[cfg(all(not(target_arch = "wasm32"), feature = "gpu"))]
-pub use webgpu::{GpuBuffers, GpuDevice};

@@ -11,7 +11,7 @@ import { copyOf, itselfOf } from './given.js';
 import { copied, floatsOf, type Layout, readMesh } from './mesh.js';
 import { open, type Opened } from './open.js';
 import { resultOf } from './result.js';
-import { MAKE_OPTIONS, settingsOf, type Update, updateOf, type Watch, watchOf } from './settings.js';
+import { MAKE_OPTIONS, settingsOf, type Watch, watchOf } from './settings.js';
 import type { ModuleSession } from './threads.js';
 import { Turns } from './turn.js';
 import type {
@@ -32,6 +32,7 @@ import type {
   UpdateOptions,
   VertexArray,
 } from './types.js';
+import { type Update, updateOf } from './update.js';
 
 /** Not every browser has `Symbol.dispose` yet. */
 const dispose: typeof Symbol.dispose = Symbol.dispose ?? Symbol.for('Symbol.dispose');

@@ -2,8 +2,6 @@
 
 import { EdgeflipError } from './error.js';
 import { copyOf, functionOf, isWhole, NUMBERS, objectOf, read, shown, viewOf, wordsOf } from './given.js';
-import { type Source, sourceOf } from './gather.js';
-import { type AllPlaces, floatsOf } from './mesh.js';
 import { namesOf, optionsOf } from './names.js';
 import {
   type Attributes,
@@ -16,7 +14,6 @@ import {
   type Original,
   type RunOptions,
   type SyncOptions,
-  type UpdateOptions,
   type VertexArray,
 } from './types.js';
 
@@ -140,55 +137,6 @@ export function watchOf(options: MakeDelaunayOptions, known = RUN_OPTIONS): Watc
       onProgress: functionOf(onProgress, 'onProgress'),
       onIteration: functionOf(onIteration, 'onIteration'),
       isStopped: () => read('the signal', () => Boolean(watched?.aborted)),
-    };
-  });
-}
-
-/** The options of an update in a worker, which no buffer can enter. */
-export type WorkerUpdateOptions = Pick<UpdateOptions, 'positions' | 'iterations'>;
-
-/** The options of an update, read. */
-export interface Update {
-  positions: Float32Array | Float64Array | undefined;
-  buffer: Source | undefined;
-  iterations: number;
-}
-
-const UPDATE_OPTIONS = namesOf<UpdateOptions>({
-  positions: true,
-  buffer: true,
-  offset: true,
-  stride: true,
-  iterations: true,
-});
-
-export const WORKER_UPDATE_OPTIONS = namesOf<WorkerUpdateOptions>({ positions: true, iterations: true });
-
-/** Iterations of an update, if the caller gives no number. */
-const ITERATIONS = 4;
-
-/**
- * The options of an update.
- *
- * @throws {@link EdgeflipError} `invalid-option`, `invalid-input`, `ragged-array`, `position-count`.
- */
-export function updateOf(
-  options: UpdateOptions,
-  layout: AllPlaces,
-  hold: Hold,
-  known: readonly string[] = UPDATE_OPTIONS,
-): Update {
-  return read('the options', () => {
-    const given = optionsOf(options, known) as UpdateOptions;
-    const { positions, buffer, iterations = ITERATIONS } = given;
-    if (!isWhole(iterations)) throw wrong('iterations', iterations, 'a whole number');
-    if (positions !== undefined && buffer !== undefined) {
-      throw new EdgeflipError('invalid-option', 'options positions and buffer: give only one of them');
-    }
-    return {
-      positions: positions === undefined ? undefined : floatsOf(positions, layout, hold),
-      buffer: buffer === undefined ? undefined : sourceOf(given, layout),
-      iterations,
     };
   });
 }

@@ -21,16 +21,7 @@ import { floatsOf, type Layout, readMesh } from './mesh.js';
 import { type ModuleSource, type Sources, sourcesOf } from './module.js';
 import { namesOf } from './names.js';
 import { Remote } from './remote.js';
-import {
-  settingsOf,
-  updateOf,
-  type Watch,
-  WORKER_MAKE_OPTIONS,
-  WORKER_OPTIONS,
-  WORKER_UPDATE_OPTIONS,
-  type WorkerUpdateOptions,
-  watchOf,
-} from './settings.js';
+import { settingsOf, type Watch, WORKER_MAKE_OPTIONS, WORKER_OPTIONS, watchOf } from './settings.js';
 import type {
   Audit,
   Counters,
@@ -47,6 +38,7 @@ import type {
   RunOptions,
   VertexArray,
 } from './types.js';
+import { updateOf, WORKER_UPDATE_OPTIONS, type WorkerUpdateOptions } from './update.js';
 import type { Functions, Question, Watched } from './worker-script.js';
 
 export { EDGE_STATES, type EdgeState } from './edge-states.js';

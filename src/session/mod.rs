@@ -26,7 +26,6 @@ use crate::phases::frozen;
 use crate::phases::{Geometry, Thresholds, Topology};
 use crate::session::edge_states::edge_states;
 use crate::system::memory;
-use crate::system::threads::Threads;
 use crate::{
     Backend, Dimension, EdgeState, Edges, EngineKind, Error, Iteration, Mesh, Options, Order, Outcome,
     Positions, Reason, Status, Timings,
@@ -40,7 +39,6 @@ pub(crate) use cost::Job;
 pub use early::{EarlyGpu, close_gpu};
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 use js_sys::Uint32Array;
-pub use moving::Counters;
 use std::borrow::Cow;
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -164,43 +162,6 @@ impl Session {
     pub async fn set_positions(&mut self, positions: impl Into<Positions>) -> Result<(), Error> {
         self.check_memory(memory_bounds::POSITIONS)?;
         self.replace_positions(positions.into()).await
-    }
-
-    /// Boxed, so that this code is compiled only once.
-    fn replace_positions(&mut self, positions: Positions) -> Answer<'_, ()> {
-        Box::pin(self.replace(positions))
-    }
-
-    async fn replace(&mut self, positions: Positions) -> Result<(), Error> {
-        let start = Instant::now();
-        self.check_length(&positions)?;
-        positions.refuse_non_finite(self.mesh.dimension(), &Threads::one())?;
-        let triangles = self.triangles().await?;
-        let mesh = Arc::new(Mesh::new(self.mesh.dimension(), positions, triangles)?);
-        if self.may_change && choice::changes_to_gpu(&mesh, &self.options, (0.0, 0.0)) {
-            let choice = engine_for(&mesh, &self.options).await?;
-            self.take(choice);
-        } else {
-            match self.engine.set_positions(mesh.clone()).await {
-                Err(error @ (Error::BackendLimit { .. } | Error::Device { .. }))
-                    if self.options.backend == Backend::Auto =>
-                {
-                    let why = format!("after the vertices moved: {error}");
-                    let choice = cpu_after(why, &mesh, &self.options).await?;
-                    self.take(choice);
-                }
-                answer => answer?,
-            }
-            if self.engine.backend() == EngineKind::Gpu {
-                self.fallback = None;
-            }
-        }
-        self.mesh = mesh;
-        self.flips_per_iteration.clear();
-        self.has_ended = false;
-        self.timings = Timings { adjacency: ms_since(start), ..Timings::default() };
-        // An update cannot wait.
-        if std::mem::take(&mut self.updates) > 0 { self.settle().await } else { Ok(()) }
     }
 
     /// The present triangles: 3 vertex indices per triangle.

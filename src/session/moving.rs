@@ -1,30 +1,15 @@
 //! Updates: meshes that move.
 
-use super::Session;
-use crate::{Error, Positions, Reason, Reasons};
+use super::choice::{self, cpu_after, engine_for};
+use super::{Session, ms_since};
+use crate::engine::Answer;
+use crate::system::threads::Threads;
+use crate::{Backend, Counters, EngineKind, Error, Mesh, Positions, Reason, Timings};
+use std::sync::Arc;
+use web_time::Instant;
 
 /// The most iterations of one update.
 const MOST_ITERATIONS: u32 = 64;
-
-/// What the updates of a session have done, and what is left. See [`Session::counters`].
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Counters {
-    /// The number of updates that the counts are of: all before the call.
-    pub updates: u64,
-    /// Flips of these updates.
-    pub flips: u64,
-    /// Edges that are not Delaunay after the last of them, by reason. [`Reason::Stopped`] counts those that the next
-    /// update may flip. Frozen edges are not counted.
-    pub remaining: Reasons,
-    /// Triangles that are not strictly positive, in the plane: flat or turned over. A triangle is positive if it has the
-    /// orientation that its component had at the start of the session.
-    pub inverted: u32,
-    /// Edges left alone because a coordinate of their triangles is not finite.
-    pub non_finite: u32,
-    /// Edges left alone because the coordinates of their triangles span more bits than the GPU decides exactly. The CPU
-    /// decides them all.
-    pub too_wide: u32,
-}
 
 impl Session {
     /// Takes over vertices that have moved, and flips for up to `iterations` iterations, at most 64. What is left goes
@@ -107,5 +92,42 @@ impl Session {
     pub(super) fn check_length(&self, positions: &Positions) -> Result<(), Error> {
         let (length, expected) = (positions.len(), self.mesh.positions().len());
         if length == expected { Ok(()) } else { Err(Error::PositionCount { length, expected }) }
+    }
+
+    /// Boxed, so that this code is compiled only once.
+    pub(super) fn replace_positions(&mut self, positions: Positions) -> Answer<'_, ()> {
+        Box::pin(self.replace(positions))
+    }
+
+    async fn replace(&mut self, positions: Positions) -> Result<(), Error> {
+        let start = Instant::now();
+        self.check_length(&positions)?;
+        positions.refuse_non_finite(self.mesh.dimension(), &Threads::one())?;
+        let triangles = self.triangles().await?;
+        let mesh = Arc::new(Mesh::new(self.mesh.dimension(), positions, triangles)?);
+        if self.may_change && choice::changes_to_gpu(&mesh, &self.options, (0.0, 0.0)) {
+            let choice = engine_for(&mesh, &self.options).await?;
+            self.take(choice);
+        } else {
+            match self.engine.set_positions(mesh.clone()).await {
+                Err(error @ (Error::BackendLimit { .. } | Error::Device { .. }))
+                    if self.options.backend == Backend::Auto =>
+                {
+                    let why = format!("after the vertices moved: {error}");
+                    let choice = cpu_after(why, &mesh, &self.options).await?;
+                    self.take(choice);
+                }
+                answer => answer?,
+            }
+            if self.engine.backend() == EngineKind::Gpu {
+                self.fallback = None;
+            }
+        }
+        self.mesh = mesh;
+        self.flips_per_iteration.clear();
+        self.has_ended = false;
+        self.timings = Timings { adjacency: ms_since(start), ..Timings::default() };
+        // An update cannot wait.
+        if std::mem::take(&mut self.updates) > 0 { self.settle().await } else { Ok(()) }
     }
 }

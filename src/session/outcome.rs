@@ -18,6 +18,26 @@ pub struct Iteration {
     pub ms: f64,
 }
 
+/// What the updates of a session have done, and what is left. See [`Session::counters`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counters {
+    /// The number of updates that the counts are of: all before the call.
+    pub updates: u64,
+    /// Flips of these updates.
+    pub flips: u64,
+    /// Edges that are not Delaunay after the last of them, by reason. [`Reason::Stopped`] counts those that the next
+    /// update may flip. Frozen edges are not counted.
+    pub remaining: Reasons,
+    /// Triangles that are not strictly positive, in the plane: flat or turned over. A triangle is positive if it has the
+    /// orientation that its component had at the start of the session.
+    pub inverted: u32,
+    /// Edges left alone because a coordinate of their triangles is not finite.
+    pub non_finite: u32,
+    /// Edges left alone because the coordinates of their triangles span more bits than the GPU decides exactly. The CPU
+    /// decides them all.
+    pub too_wide: u32,
+}
+
 /// How a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Status {

@@ -4,6 +4,7 @@
 
 use super::*;
 use crate::engine::{Census, Cpu, EdgeCounts, Moved};
+use crate::system::threads::Threads;
 use pollster::block_on;
 
 /// An engine that fails after `questions_left` questions: its device is lost, or it refuses the mesh.

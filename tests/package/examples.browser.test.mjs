@@ -4,8 +4,11 @@ import assert from 'node:assert/strict';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { createServer } from 'vite';
-import { closeAll, openPage, startChromium } from '../browsers.mjs';
+import { closeAll, openPage, startChromium, startFirefox } from '../browsers.mjs';
 import { repository } from './project.mjs';
+
+/** Frames of each moving example. */
+const frames = Number(process.env.EDGEFLIP_FRAMES ?? 12);
 
 let server;
 let chromium;
@@ -60,6 +63,77 @@ test('three.js draws a geometry that became Delaunay', async () => {
   await page.click('#flip');
   assert.match(await stateOf(page, ' flips on '), /^\d{3,} flips on (cpu|webgpu)$/);
   assert.notDeepEqual(await pictureAfter(before), before);
+  assert.deepEqual(problems, []);
+  await page.close();
+});
+
+/**
+ * Runs in the page: draws a frame, gives its positions to a session on the CPU, which must give the same, and audits the
+ * triangles. Returns the flips so far.
+ */
+async function checkedFrame(frame) {
+  const { session, mesh, frame: draw } = globalThis.example;
+  const FlipSession = session.constructor;
+  const options = { backend: 'cpu', maxNormalAngle: mesh.dimension === 3 ? 30 : 10 };
+  if (!globalThis.cpu) {
+    globalThis.cpu = await FlipSession.create(mesh, options);
+    await cpu.run();
+  }
+  draw(frame / 30);
+  const counters = await session.counters();
+  const { device, positions } = await session.gpu();
+  const size = mesh.positions.byteLength;
+  const staging = device.createBuffer({ size, usage: GPUBufferUsage.MAP_READ | GPUBufferUsage.COPY_DST });
+  const encoder = device.createCommandEncoder();
+  encoder.copyBufferToBuffer(positions, 0, staging, 0, size);
+  device.queue.submit([encoder.finish()]);
+  await staging.mapAsync(GPUMapMode.READ);
+  const moved = new Float32Array(staging.getMappedRange().slice(0));
+  staging.destroy();
+  cpu.update({ positions: moved });
+  const [triangles, expected] = [await session.triangles(), await cpu.triangles()];
+  if (triangles.some((vertex, i) => vertex !== expected[i])) throw new Error(`frame ${frame}: other triangles`);
+  const counted = [counters, await cpu.counters()].map((counters) => JSON.stringify(counters));
+  if (counted[0] !== counted[1]) throw new Error(`frame ${frame}: ${counted}`);
+  const check = await FlipSession.create({ ...mesh, positions: moved, indices: triangles }, options);
+  const { clean } = await check.verify();
+  check.free();
+  if (!clean) throw new Error(`frame ${frame}: the audit finds a violation`);
+  return counters.flips;
+}
+
+/** Draws frames of an example, and checks each. */
+async function checkFrames(page, count) {
+  await page.waitForFunction(() => globalThis.example);
+  let flips = 0;
+  for (let frame = 0; frame < count; frame++) flips = await page.evaluate(checkedFrame, frame);
+  return flips;
+}
+
+for (const [name, size] of [
+  ['sheet', 101],
+  ['waves', 100],
+  ['relax', 101],
+]) {
+  test(`${name}: the mesh moves and is checked in every frame`, async () => {
+    const { page, problems } = await open(`${name}.html?paused&size=${size}`);
+    assert.ok((await checkFrames(page, frames)) > 100);
+    assert.deepEqual(problems, []);
+    await page.close();
+  });
+}
+
+test('the sheet moves in Firefox', async () => {
+  const firefox = await startFirefox();
+  const { page, problems } = await openPage(firefox, `${server.resolvedUrls.local[0]}sheet.html?paused&size=101`);
+  assert.ok((await checkFrames(page, frames)) > 100);
+  assert.deepEqual(problems, []);
+  await page.close();
+});
+
+test('an example plays by itself', async () => {
+  const { page, problems } = await open('sheet.html?size=20');
+  assert.match(await stateOf(page, ' frames a second'), /^\d+ frames a second, \d+ flips a frame, \d+ edges left$/);
   assert.deepEqual(problems, []);
   await page.close();
 });

@@ -2,17 +2,17 @@
 //! tested again only if one of its triangles has flipped.
 
 use super::region::TopologyMut;
-use crate::engine::{Answer, Census, EdgeCounts, Engine, Moved};
-use crate::mesh::embedded::{Embedded, Shape};
-use crate::mesh::half_edge::{self, CREASE, FLAGS, LOCKED, prev, unflagged};
+use crate::engine::{Census, EdgeCounts};
+use crate::mesh::embedded::Embedded;
+use crate::mesh::half_edge::{CREASE, FLAGS, LOCKED, prev, unflagged};
 use crate::mesh::star::Fans;
 use crate::mesh::winding::{Outline, Winding};
 use crate::phases::{
-    Around, Diamond, Geometry, Selected, Thresholds, Topology, Verdict, flag_creases, flip, is_finite,
+    Around, Diamond, Geometry, Selected, Thresholds, Topology, Verdict, flag_creases, flip,
     keep_non_delaunay, key, makes_duplicate, move_anchors, verdict, verdict_of_shape, yields,
 };
 use crate::system::threads::{Threads, Word, shared};
-use crate::{Adjacency, Dimension, EngineKind, Error, Mesh, NONE, Positions};
+use crate::{Adjacency, Dimension, Mesh, NONE, Positions};
 use std::hint::black_box;
 use std::ops::Range;
 use std::sync::Arc;
@@ -23,9 +23,6 @@ const EDGES: usize = 256;
 
 /// The fewest candidates of a part. With fewer, one thread finishes before another starts.
 const FEWEST: usize = if cfg!(debug_assertions) { 4 } else { 512 };
-
-/// An update that flips less than one edge for so many triangles flips few.
-const FEW: usize = 16;
 
 /// An edge by its half-edges, the lower one first.
 type Edge = [u32; 2];
@@ -62,13 +59,13 @@ fn touch(words: impl Iterator<Item = u32>) {
 /// The state of a mesh between two iterations.
 pub(crate) struct Cpu {
     pub(super) threads: Threads,
-    mesh: Arc<Mesh>,
-    thresholds: Thresholds,
-    winding: Winding,
-    embedded: Embedded,
+    pub(super) mesh: Arc<Mesh>,
+    pub(super) thresholds: Thresholds,
+    pub(super) winding: Winding,
+    pub(super) embedded: Embedded,
     /// Filled in if the winding depends on the components.
-    outline: Option<Outline>,
-    counts: EdgeCounts,
+    pub(super) outline: Option<Outline>,
+    pub(super) counts: EdgeCounts,
     pub(crate) triangles: Vec<u32>,
     pub(crate) twins: Vec<u32>,
     pub(crate) fans: Fans,
@@ -82,24 +79,24 @@ pub(crate) struct Cpu {
     /// For each vertex whose star is not known to be embedded: one plus the index of the last iteration that added or
     /// removed an edge at this vertex. `label` makes it when it tests all edges.
     changed: Vec<AtomicU32>,
-    iteration: u32,
+    pub(super) iteration: u32,
     /// What the updates have made of the mesh.
-    moving: Moving,
+    pub(super) moving: Moving,
 }
 
 /// The state of updates.
 #[derive(Default)]
-struct Moving {
+pub(super) struct Moving {
     /// The present positions, if they are not those of the mesh.
-    positions: Option<Positions>,
+    pub(super) positions: Option<Positions>,
     /// Whether there may be numbers that are not finite.
-    has_infinite: bool,
+    pub(super) has_infinite: bool,
     /// The first iteration of the next update.
-    next: u32,
+    pub(super) next: u32,
     /// Flips of all updates.
-    flips: u64,
+    pub(super) flips: u64,
     /// Flips of the last update.
-    last_flips: usize,
+    pub(super) last_flips: usize,
 }
 
 impl Cpu {
@@ -361,7 +358,7 @@ impl Cpu {
     }
 
     /// Runs up to `count` iterations, and returns the flips of each.
-    fn run(&mut self, count: u32) -> Vec<u32> {
+    pub(super) fn run(&mut self, count: u32) -> Vec<u32> {
         let mut flips = Vec::new();
         while (flips.len() as u32) < count {
             self.label();
@@ -400,63 +397,6 @@ impl Cpu {
     }
 }
 
-/// Updates.
-impl Cpu {
-    /// Takes over new positions: tests the stars and the creases again, and forgets the lists.
-    pub(super) fn move_to(&mut self, positions: Option<Positions>) {
-        let Self { mesh, thresholds, winding, embedded, triangles, twins, threads, moving, .. } = self;
-        if positions.is_some() {
-            moving.positions = positions;
-        }
-        let positions = moving.positions.as_ref().unwrap_or(mesh.positions());
-        moving.has_infinite = !positions.are_finite(threads);
-        if mesh.dimension() == Dimension::Two {
-            // If few edges flip, searching their stars for duplicates is faster than finding the embedded stars.
-            if moving.last_flips > triangles.len() / 3 / FEW {
-                let shape = Shape { positions, triangles, twins };
-                let (vertices, may_be_left) = (mesh.vertex_count(), moving.has_infinite);
-                let (signs, found) =
-                    Embedded::of_triangles(shape, vertices, Some(winding), may_be_left, threads);
-                winding.is_strict = signs.not_positive == 0;
-                *embedded = found;
-            } else {
-                winding.is_strict = false;
-                *embedded = Embedded::default();
-            }
-        } else {
-            flag_creases(positions, triangles, twins, thresholds.cos, moving.has_infinite, threads);
-        }
-        self.parts.clear();
-        self.is_known = false;
-    }
-
-    pub(super) fn add_flips(&mut self, flips: usize) {
-        self.moving.flips += flips as u64;
-        self.moving.last_flips = flips;
-    }
-
-    fn count_moved(&mut self) -> Moved {
-        let census = self.count();
-        let Self { mesh, winding, triangles, twins, threads, moving, .. } = &*self;
-        let geometry = self.geometry();
-        let mut infinite = 0;
-        if moving.has_infinite {
-            let lower = |&h: &u32| h < unflagged(twins[h as usize]) && twins[h as usize] != NONE;
-            let edges = (0..twins.len() as u32).filter(lower);
-            let is_left = |&h: &u32| !is_finite(&geometry, Diamond::new(self.topology(), h).vertices);
-            infinite = edges.filter(is_left).count() as u32;
-        }
-        let mut not_positive = 0;
-        if mesh.dimension() == Dimension::Two {
-            let shape = Shape { positions: geometry.positions, triangles, twins };
-            let (vertices, is_left) = (mesh.vertex_count(), moving.has_infinite);
-            let (signs, _) = Embedded::of_triangles(shape, vertices, Some(winding), is_left, threads);
-            not_positive = signs.not_positive;
-        }
-        Moved { census, infinite, wide: 0, flips: moving.flips, not_positive }
-    }
-}
-
 /// What Lawson's algorithm needs.
 impl Cpu {
     pub(super) fn parts(&mut self) -> (Geometry<'_>, TopologyMut<'_>) {
@@ -478,79 +418,5 @@ impl Cpu {
         self.parts.clear();
         self.blocked = vec![blocked];
         self.is_known = is_known;
-    }
-}
-
-impl Engine for Cpu {
-    fn lock(&mut self, half_edges: Vec<u32>) -> Answer<'_, ()> {
-        half_edge::lock(&mut self.twins, &half_edges);
-        Box::pin(std::future::ready(Ok(())))
-    }
-
-    fn iterate(&mut self, count: u32) -> Answer<'_, Vec<u32>> {
-        let threads = self.threads.clone();
-        let flips = threads.enter(|| self.run(count));
-        Box::pin(std::future::ready(Ok(flips)))
-    }
-
-    fn census(&mut self) -> Answer<'_, Census> {
-        Box::pin(std::future::ready(Ok(self.count())))
-    }
-
-    fn triangles(&mut self) -> Answer<'_, Vec<u32>> {
-        let mut triangles = Vec::new();
-        self.threads.append(&mut triangles, &self.triangles);
-        Box::pin(std::future::ready(Ok(triangles)))
-    }
-
-    fn twins(&mut self) -> Answer<'_, Vec<u32>> {
-        Box::pin(std::future::ready(Ok(self.twins.clone())))
-    }
-
-    fn set_positions(&mut self, mesh: Arc<Mesh>) -> Answer<'_, ()> {
-        let Self { thresholds, winding, embedded, outline, triangles, twins, threads, .. } = self;
-        let guess = Some(std::mem::take(winding));
-        (*winding, *embedded) = Embedded::with_winding(&mesh, twins, guess, outline, threads);
-        if mesh.dimension() == Dimension::Three {
-            flag_creases(mesh.positions(), triangles, twins, thresholds.cos, false, threads);
-        }
-        self.parts.clear();
-        self.is_known = false;
-        self.iteration = 0;
-        self.moving = Moving::default();
-        self.mesh = mesh;
-        Box::pin(std::future::ready(Ok(())))
-    }
-
-    fn update(&mut self, positions: Option<Positions>, iterations: u32) -> Result<(), Error> {
-        let threads = self.threads.clone();
-        let flips = threads.enter(|| {
-            self.move_to(positions);
-            self.iteration = self.moving.next;
-            self.moving.next = self.moving.next.wrapping_add(iterations);
-            self.run(iterations)
-        });
-        self.add_flips(flips.into_iter().map(|count| count as usize).sum());
-        Ok(())
-    }
-
-    fn moved(&mut self) -> Answer<'static, Moved> {
-        Box::pin(std::future::ready(Ok(self.count_moved())))
-    }
-
-    fn positions(&mut self) -> Answer<'_, Positions> {
-        Box::pin(std::future::ready(Ok(self.geometry().positions.clone())))
-    }
-
-    fn batch(&self) -> u32 {
-        1
-    }
-
-    fn edge_counts(&self) -> EdgeCounts {
-        self.counts
-    }
-
-    fn backend(&self) -> EngineKind {
-        EngineKind::Cpu
     }
 }

@@ -1,7 +1,9 @@
 //! The CPU engine: the fast form of the phases, and Lawson's algorithm, which flips one edge after another.
 
+mod answers;
 mod engine;
 mod lawson;
+mod moving;
 mod region;
 
 pub(crate) use engine::Cpu;

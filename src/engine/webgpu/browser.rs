@@ -56,6 +56,7 @@ pub(super) fn has_webgpu() -> bool {
 
 impl GpuDevice {
     /// Whether it is the browser's device behind a device of wgpu.
+    #[cfg(feature = "js")]
     pub(super) fn is_of(&self, device: &wgpu::Device) -> bool {
         Self::of(device).as_ref() == Some(self)
     }

@@ -48,9 +48,11 @@ pub(crate) use device::Device;
 #[cfg(test)]
 pub(crate) use kernels::Kernel;
 #[cfg(not(target_arch = "wasm32"))]
-pub use own_device::{GpuBuffers, GpuDevice};
+pub use own_device::GpuDevice;
 pub(crate) use shared::{GivenDevice, Handle};
 
+#[cfg(not(target_arch = "wasm32"))]
+use super::GpuBuffers;
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 use super::SharedObjects;
 use super::{Answer, Census, EdgeCounts, Engine, Moved};

@@ -35,20 +35,6 @@ impl GpuDevice {
     }
 }
 
-/// What a program needs to write the positions on the GPU, and to draw from the buffers. See
-/// [`Session::gpu`](crate::Session::gpu).
-#[derive(Clone, Debug, PartialEq)]
-pub struct GpuBuffers {
-    /// The device of the session.
-    pub device: wgpu::Device,
-    /// Its queue.
-    pub queue: wgpu::Queue,
-    /// f32, 2 or 3 per vertex, without gaps. Its usage includes `STORAGE`, `VERTEX`, `COPY_SRC` and `COPY_DST`.
-    pub positions: wgpu::Buffer,
-    /// u32, 3 per triangle. Its usage includes `STORAGE`, `INDEX`, `COPY_SRC` and `COPY_DST`. Only read it.
-    pub triangles: wgpu::Buffer,
-}
-
 /// The name of an adapter, and its driver.
 pub(super) fn name_of(info: &wgpu::AdapterInfo) -> String {
     let driver = [info.driver.as_str(), &info.driver_info].join(" ");

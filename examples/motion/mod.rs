@@ -132,23 +132,3 @@ impl Moving {
         self.gpu.device.poll(wgpu::PollType::wait_indefinitely()).map(drop)
     }
 }
-
-/// The words of a buffer.
-pub fn read(gpu: &GpuBuffers, buffer: &wgpu::Buffer) -> Result<Vec<u32>, Box<dyn Error>> {
-    let staging = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-        label: None,
-        size: buffer.size(),
-        usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
-        mapped_at_creation: false,
-    });
-    let mut encoder = gpu.device.create_command_encoder(&Default::default());
-    encoder.copy_buffer_to_buffer(buffer, 0, &staging, 0, buffer.size());
-    gpu.queue.submit([encoder.finish()]);
-    staging.map_async(wgpu::MapMode::Read, .., |_| ());
-    gpu.device.poll(wgpu::PollType::wait_indefinitely())?;
-    let view = staging.get_mapped_range(..)?;
-    Ok(view
-        .chunks_exact(4)
-        .map(|bytes| u32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]))
-        .collect())
-}

@@ -1,0 +1,82 @@
+//! What a session asks of the CPU engine.
+
+use super::engine::{Cpu, Moving};
+use crate::engine::{Answer, Census, EdgeCounts, Engine, Moved};
+use crate::mesh::embedded::Embedded;
+use crate::mesh::half_edge;
+use crate::phases::flag_creases;
+use crate::{Dimension, EngineKind, Error, Mesh, Positions};
+use std::sync::Arc;
+
+impl Engine for Cpu {
+    fn lock(&mut self, half_edges: Vec<u32>) -> Answer<'_, ()> {
+        half_edge::lock(&mut self.twins, &half_edges);
+        Box::pin(std::future::ready(Ok(())))
+    }
+
+    fn iterate(&mut self, count: u32) -> Answer<'_, Vec<u32>> {
+        let threads = self.threads.clone();
+        let flips = threads.enter(|| self.run(count));
+        Box::pin(std::future::ready(Ok(flips)))
+    }
+
+    fn census(&mut self) -> Answer<'_, Census> {
+        Box::pin(std::future::ready(Ok(self.count())))
+    }
+
+    fn triangles(&mut self) -> Answer<'_, Vec<u32>> {
+        let mut triangles = Vec::new();
+        self.threads.append(&mut triangles, &self.triangles);
+        Box::pin(std::future::ready(Ok(triangles)))
+    }
+
+    fn twins(&mut self) -> Answer<'_, Vec<u32>> {
+        Box::pin(std::future::ready(Ok(self.twins.clone())))
+    }
+
+    fn set_positions(&mut self, mesh: Arc<Mesh>) -> Answer<'_, ()> {
+        let Self { thresholds, winding, embedded, outline, triangles, twins, threads, .. } = self;
+        let guess = Some(std::mem::take(winding));
+        (*winding, *embedded) = Embedded::with_winding(&mesh, twins, guess, outline, threads);
+        if mesh.dimension() == Dimension::Three {
+            flag_creases(mesh.positions(), triangles, twins, thresholds.cos, false, threads);
+        }
+        self.settle(Vec::new(), false);
+        self.iteration = 0;
+        self.moving = Moving::default();
+        self.mesh = mesh;
+        Box::pin(std::future::ready(Ok(())))
+    }
+
+    fn update(&mut self, positions: Option<Positions>, iterations: u32) -> Result<(), Error> {
+        let threads = self.threads.clone();
+        let flips = threads.enter(|| {
+            self.move_to(positions);
+            self.iteration = self.moving.next;
+            self.moving.next = self.moving.next.wrapping_add(iterations);
+            self.run(iterations)
+        });
+        self.add_flips(flips.into_iter().map(|count| count as usize).sum());
+        Ok(())
+    }
+
+    fn moved(&mut self) -> Answer<'static, Moved> {
+        Box::pin(std::future::ready(Ok(self.count_moved())))
+    }
+
+    fn positions(&mut self) -> Answer<'_, Positions> {
+        Box::pin(std::future::ready(Ok(self.geometry().positions.clone())))
+    }
+
+    fn batch(&self) -> u32 {
+        1
+    }
+
+    fn edge_counts(&self) -> EdgeCounts {
+        self.counts
+    }
+
+    fn backend(&self) -> EngineKind {
+        EngineKind::Cpu
+    }
+}

@@ -1,0 +1,60 @@
+/** Reads the options of an update once: checks their types and copies them. */
+
+import { EdgeflipError } from './error.js';
+import { type Source, sourceOf } from './gather.js';
+import { isWhole, read, shown } from './given.js';
+import { type AllPlaces, floatsOf } from './mesh.js';
+import { namesOf, optionsOf } from './names.js';
+import type { Hold } from './settings.js';
+import type { UpdateOptions } from './types.js';
+
+/** The options of an update in a worker, which no buffer can enter. */
+export type WorkerUpdateOptions = Pick<UpdateOptions, 'positions' | 'iterations'>;
+
+/** The options of an update, read. */
+export interface Update {
+  positions: Float32Array | Float64Array | undefined;
+  buffer: Source | undefined;
+  iterations: number;
+}
+
+const UPDATE_OPTIONS = namesOf<UpdateOptions>({
+  positions: true,
+  buffer: true,
+  offset: true,
+  stride: true,
+  iterations: true,
+});
+
+export const WORKER_UPDATE_OPTIONS = namesOf<WorkerUpdateOptions>({ positions: true, iterations: true });
+
+/** Iterations of an update, if the caller gives no number. */
+const ITERATIONS = 4;
+
+/**
+ * The options of an update.
+ *
+ * @throws {@link EdgeflipError} `invalid-option`, `invalid-input`, `ragged-array`, `position-count`.
+ */
+export function updateOf(
+  options: UpdateOptions,
+  layout: AllPlaces,
+  hold: Hold,
+  known: readonly string[] = UPDATE_OPTIONS,
+): Update {
+  return read('the options', () => {
+    const given = optionsOf(options, known) as UpdateOptions;
+    const { positions, buffer, iterations = ITERATIONS } = given;
+    if (!isWhole(iterations)) {
+      throw new EdgeflipError('invalid-option', `option iterations: ${shown(iterations)} is not a whole number`);
+    }
+    if (positions !== undefined && buffer !== undefined) {
+      throw new EdgeflipError('invalid-option', 'options positions and buffer: give only one of them');
+    }
+    return {
+      positions: positions === undefined ? undefined : floatsOf(positions, layout, hold),
+      buffer: buffer === undefined ? undefined : sourceOf(given, layout),
+      iterations,
+    };
+  });
+}
