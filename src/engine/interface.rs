@@ -121,6 +121,17 @@ pub(crate) trait Engine {
         Box::pin(std::future::ready(Err(no_updates(self.backend()))))
     }
 
+    /// Begins to keep the update in which each triangle last changed, for [`Engine::changes`].
+    fn track_changes(&mut self) -> Answer<'_, ()> {
+        Box::pin(std::future::ready(Err(no_updates(self.backend()))))
+    }
+
+    /// For each triangle the number of the update in which it last changed, from 1 on; 0 if none has changed it. Empty
+    /// if they are not tracked.
+    fn changes(&mut self) -> Answer<'_, Vec<u32>> {
+        Box::pin(std::future::ready(Err(no_updates(self.backend()))))
+    }
+
     /// The present positions, after updates.
     fn positions(&mut self) -> Answer<'_, Positions> {
         Box::pin(std::future::ready(Err(no_updates(self.backend()))))
@@ -178,6 +189,8 @@ pub(crate) struct SharedObjects {
     pub(crate) positions: wasm_bindgen::JsValue,
     /// GPUBuffer: u32, 3 per triangle.
     pub(crate) triangles: wasm_bindgen::JsValue,
+    /// GPUBuffer with the changes, and their offset in bytes, if they are tracked.
+    pub(crate) changes: Option<(wasm_bindgen::JsValue, u32)>,
 }
 
 /// What a program needs to write the positions on the GPU, and to draw from the buffers. See
@@ -193,4 +206,8 @@ pub struct GpuBuffers {
     pub positions: wgpu::Buffer,
     /// u32, 3 per triangle. Its usage includes `STORAGE`, `INDEX`, `COPY_SRC` and `COPY_DST`. Only read it.
     pub triangles: wgpu::Buffer,
+    /// With [`Options::track_changes`](crate::Options::track_changes): a buffer, and the offset in bytes at which it has
+    /// the words of [`Session::changes`](crate::Session::changes), one per triangle. Its usage includes `STORAGE` and
+    /// `COPY_SRC`. Only read it.
+    pub changes: Option<(wgpu::Buffer, u64)>,
 }

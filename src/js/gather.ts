@@ -1,5 +1,6 @@
 /** Copies positions from a buffer of the page to that of a session, on their device. */
 
+import { sizeOf } from './device-mesh.js';
 import { EdgeflipError } from './error.js';
 import { isWhole, shown } from './given.js';
 import type { AllPlaces } from './mesh.js';
@@ -51,15 +52,6 @@ export function sourceOf(options: UpdateOptions, { dimension, vertices }: AllPla
     throw new EdgeflipError('position-count', message);
   }
   return { buffer: buffer!, offset, stride };
-}
-
-/** The size of a buffer of this window or worker: the getter of its `GPUBuffer` throws for other objects. */
-function sizeOf(buffer: unknown): number | undefined {
-  try {
-    return Object.getOwnPropertyDescriptor(GPUBuffer.prototype, 'size')!.get!.call(buffer) as number;
-  } catch {
-    return undefined;
-  }
 }
 
 /** Submits the copy. Errors are those of the device: a buffer of another device, or without the usage. */

@@ -6,6 +6,7 @@ import type { EDGE_STATES } from './edge-states.js';
 import { EdgeflipError, fromModule } from './error.js';
 import type { Welded } from './files.js';
 import { loadAudit } from './load.js';
+import { readDeviceMesh } from './device-mesh.js';
 import { gather } from './gather.js';
 import { copyOf, itselfOf } from './given.js';
 import { copied, floatsOf, type Layout, readMesh } from './mesh.js';
@@ -17,9 +18,9 @@ import { Turns } from './turn.js';
 import type {
   Audit,
   Counters,
+  DeviceMesh,
   Edges,
   Engine,
-  GpuBuffer,
   GpuDevice,
   IndexArray,
   Indices,
@@ -29,6 +30,7 @@ import type {
   Options,
   Result,
   RunOptions,
+  SessionBuffers,
   UpdateOptions,
   VertexArray,
 } from './types.js';
@@ -94,6 +96,18 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
    */
   static create<I extends IndexArray>(mesh: Mesh<I>, options: Options = {}): Promise<FlipSession<I>> {
     return FlipSession.#create(mesh, options, undefined, true);
+  }
+
+  /**
+   * As {@link create}, for a mesh in buffers of the option `device`. It reads them once: the engine checks the mesh. The
+   * session has buffers of its own, see {@link gpu}; `update` takes later positions from a buffer of yours.
+   *
+   * @throws {@link EdgeflipError} as {@link create}; `device-failed`.
+   */
+  static async fromBuffers(mesh: DeviceMesh, options: Options & { device: GpuDevice }): Promise<FlipSession> {
+    const { device } = settingsOf(options);
+    if (!device) throw new EdgeflipError('invalid-option', 'option device: give the device of the buffers');
+    return FlipSession.#create(await readDeviceMesh(mesh, device), options, undefined, true);
   }
 
   static {
@@ -258,6 +272,14 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
     }
   }
 
+  /**
+   * The number of the update that changed each triangle last, from 1 on; 0 if no update has changed it. Empty without
+   * the option `trackChanges`. {@link gpu} has the same numbers on the device.
+   */
+  changes(): Promise<Uint32Array> {
+    return this.#call((session) => session.changes());
+  }
+
   #check(): void {
     if (this.#isFreed) throw new EdgeflipError('freed', 'the session has been freed');
     const fault = this.#fault;
@@ -325,12 +347,19 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
    * INDEX, COPY_SRC and COPY_DST. Only read the buffers, and only until `free`; {@link setPositions} says when it keeps
    * them. With `'auto'`, call this again after each call of the session: if the GPU fails or cannot accept new
    * positions, the session continues on the CPU. The device is the `device` of the options, else one that all sessions
-   * share.
+   * share. With the option `trackChanges`, `changes` has a u32 per triangle as {@link changes}, from a byte of a buffer
+   * on; its usage includes STORAGE and COPY_SRC.
    */
-  gpu(): Promise<{ device: GpuDevice; positions: GpuBuffer; indices: GpuBuffer } | undefined> {
-    return this.#call(async ({ device, positionBuffer, indexBuffer }) =>
-      device && positionBuffer && indexBuffer ? { device, positions: positionBuffer, indices: indexBuffer } : undefined,
-    );
+  gpu(): Promise<SessionBuffers | undefined> {
+    return this.#call(async ({ device, positionBuffer: positions, indexBuffer: indices, changeBuffer }) => {
+      if (!device || !positions || !indices) return undefined;
+      return {
+        device,
+        positions,
+        indices,
+        ...(changeBuffer && { changes: { buffer: changeBuffer[0], offset: changeBuffer[1] } }),
+      };
+    });
   }
 
   /** Frees memory and buffers after the present call. Waiting calls fail with `freed`. */

@@ -9,6 +9,7 @@ import { Indices, initSync, Session, startThreads, work } from './wasm/edgeflip_
 export type Question =
   | 'advance'
   | 'auditInput'
+  | 'changes'
   | 'counters'
   | 'edgeStates'
   | 'edges'

@@ -154,6 +154,7 @@ export class ThreadsSession implements ModuleSession {
   stays = false;
   readonly device = undefined;
   readonly positionBuffer = undefined;
+  readonly changeBuffer = undefined;
   readonly indexBuffer = undefined;
   readonly #pool: Pool;
   readonly #memory: WebAssembly.Memory;
@@ -215,6 +216,7 @@ export class ThreadsSession implements ModuleSession {
   edges = () => this.#ask('edges');
   edgeStates = () => this.#ask('edgeStates');
   auditInput = () => this.#ask('auditInput');
+  changes = () => this.#ask('changes');
   counters = () => this.#ask('counters');
   update = (...args: Parameters<Session['update']>) => this.#ask('update', ...args);
   setPositions = (positions: Float32Array | Float64Array) => this.#ask('setPositions', positions);

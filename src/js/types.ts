@@ -55,6 +55,24 @@ export interface Mesh<I extends IndexArray = IndexArray> {
   offset?: number | undefined;
 }
 
+/** A triangle mesh in buffers of a device. Their usage includes COPY_SRC. */
+export interface DeviceMesh {
+  /** f32: 2 or 3 coordinates per vertex. */
+  positions: GpuBuffer;
+  /** u32: vertex indices, 3 per triangle. */
+  indices: GpuBuffer;
+  /** 2 for a mesh in the plane, 3 for a surface in space. */
+  dimension: 2 | 3;
+  /** As {@link Mesh.stride}. */
+  stride?: number | undefined;
+  /** As {@link Mesh.offset}. */
+  offset?: number | undefined;
+  /** The number of vertices, if `positions` has more. Default: all that it has. */
+  vertices?: number | undefined;
+  /** The number of triangles, if `indices` has more. Default: all that it has. */
+  triangles?: number | undefined;
+}
+
 /** The bytes of files by name, such as `{ 'scene.bin': bytes }`. */
 export type Files = Readonly<Record<string, Uint8Array>>;
 
@@ -145,6 +163,11 @@ export interface Options {
    */
   order?: 'reproducible' | 'any' | undefined;
   /**
+   * Keeps the number of the update that changed each triangle last, for `changes` of a session: 4 bytes per triangle.
+   * Not with the order `'any'`, and not on WebGL2. Default: false.
+   */
+  trackChanges?: boolean | undefined;
+  /**
    * The largest number of threads of the CPU engine, 1 to 256. Default: one per core. A mesh of fewer than 65,536
    * triangles runs on one thread, a larger one on at most one thread per 4,096 triangles. Several threads need shared
    * memory: Node has it, and so does a cross-origin isolated page. The result is the same for any number.
@@ -184,6 +207,7 @@ export const OPTION_KINDS = {
   reorient: 'flag',
   weld: 'attributes',
   order: ['reproducible', 'any'],
+  trackChanges: 'flag',
   threads: 'whole',
   device: 'device',
 } as const satisfies { [Name in keyof Options]-?: KindOf<NonNullable<Options[Name]>> };
@@ -227,6 +251,17 @@ export interface UpdateOptions {
   iterations?: number | undefined;
 }
 
+/** The device of a session, and its buffers there. */
+export interface SessionBuffers {
+  device: GpuDevice;
+  /** 2 or 3 f32 per vertex. */
+  positions: GpuBuffer;
+  /** 3 u32 per triangle. */
+  indices: GpuBuffer;
+  /** A u32 per triangle from byte `offset` on, a multiple of 256. Absent without the option `trackChanges`. */
+  changes?: { buffer: GpuBuffer; offset: number };
+}
+
 /** What the updates of a session have done, and what is left. */
 export interface Counters {
   /** The number of updates that the counts are of: all before the call. */
@@ -259,7 +294,7 @@ export interface MakeDelaunayOptions extends Options, RunOptions {
 }
 
 /** The options of {@link makeDelaunaySync}: those that need no GPU, no worker and no other module. */
-export type SyncOptions = Omit<Options, 'backend' | 'device' | 'threads' | 'weld' | 'reorient'>;
+export type SyncOptions = Omit<Options, 'backend' | 'device' | 'threads' | 'trackChanges' | 'weld' | 'reorient'>;
 
 /**
  * Why an edge is still not Delaunay.

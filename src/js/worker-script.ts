@@ -10,6 +10,7 @@ import type { RunOptions } from './types.js';
 /** The methods of a session that a message calls by name. */
 export type Question =
   | 'backend'
+  | 'changes'
   | 'counters'
   | 'edgeStates'
   | 'edges'

@@ -257,6 +257,11 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
     return counters;
   }
 
+  /** The number of the update that changed each triangle last; 0 for none. Empty without the option `trackChanges`. */
+  changes(): Promise<Uint32Array> {
+    return this.#ask('changes');
+  }
+
   /** The result so far. */
   async result(): Promise<Result<I>> {
     const result = await this.#ask<Result>('result');

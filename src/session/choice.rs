@@ -154,6 +154,9 @@ fn open<'a>(backend: Backend, mesh: &'a Arc<Mesh>, options: &'a Options) -> Answ
         if !options.locked_edges.is_empty() {
             engine.lock(locks::half_edges(mesh, &options.locked_edges)?).await?;
         }
+        if options.track_changes {
+            engine.track_changes().await?;
+        }
         Ok(engine)
     })
 }

@@ -1,7 +1,7 @@
 //! Updates: meshes that move.
 
 use super::choice::{self, cpu_after, engine_for};
-use super::{Session, ms_since};
+use super::{Session, memory_bounds, ms_since};
 use crate::engine::Answer;
 use crate::system::threads::Threads;
 use crate::{Backend, Counters, EngineKind, Error, Mesh, Positions, Reason, Timings};
@@ -78,6 +78,17 @@ impl Session {
                 too_wide: moved.wide,
             })
         }
+    }
+
+    /// For each triangle the number of the update in which it last changed, from 1 on; 0 if no update has changed it.
+    /// Empty without [`Options::track_changes`](crate::Options::track_changes). [`Session::gpu`] has the same numbers on
+    /// the device.
+    ///
+    /// # Errors
+    /// [`Error::Device`], [`Error::OutOfMemory`].
+    pub async fn changes(&mut self) -> Result<Vec<u32>, Error> {
+        self.check_memory(memory_bounds::COPY)?;
+        self.ask(|engine| engine.changes()).await
     }
 
     /// Ends the motion, if there were updates.

@@ -59,6 +59,9 @@ pub struct Options {
     pub groups: Vec<u32>,
     /// The order of the flips.
     pub order: Order,
+    /// Whether a session keeps, for each triangle, the update that changed it last:
+    /// [`Session::changes`](crate::Session::changes).
+    pub track_changes: bool,
     /// Threads of the CPU engine, at most [`MOST_THREADS`]; `None`: one per core. The engine starts at most one thread
     /// per 4,096 triangles, and runs meshes of fewer than 65,536 triangles on one thread. The result does not depend on
     /// the number. Lawson's algorithm flips on several threads only if every vertex has one fan. Without the feature
@@ -93,6 +96,10 @@ impl Options {
         if self.max_deviation.is_nan() || self.max_deviation < 0.0 {
             let message = format!("{} is not a distance: give 0 or more", number(self.max_deviation));
             return Err(Error::Option { option: "max_deviation", message });
+        }
+        if self.track_changes && self.order == Order::Any {
+            let message = "the order `any` has no changes to track".to_owned();
+            return Err(Error::Option { option: "track_changes", message });
         }
         self.threads.map_or(Ok(()), |count| threads(count.get()).map(drop))
     }
@@ -147,6 +154,7 @@ impl Default for Options {
             locked_triangles: Vec::new(),
             groups: Vec::new(),
             order: Order::Reproducible,
+            track_changes: false,
             threads: None,
             #[cfg(any(
                 all(target_arch = "wasm32", feature = "js"),

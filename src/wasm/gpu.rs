@@ -53,6 +53,17 @@ impl JsSession {
     }
 }
 
+#[wasm_bindgen(js_class = Session)]
+impl JsSession {
+    /// The GPUBuffer with the changes and their offset in bytes, if they are tracked.
+    #[wasm_bindgen(getter, js_name = changeBuffer, unchecked_return_type = "[import('../types.js').GpuBuffer, number] | undefined")]
+    pub fn change_buffer(&self) -> JsValue {
+        let changes = self.shared_objects().and_then(|objects| objects.changes);
+        changes
+            .map_or(JsValue::UNDEFINED, |(buffer, offset)| js_sys::Array::of2(&buffer, &offset.into()).into())
+    }
+}
+
 impl JsSession {
     fn shared_objects(&self) -> Option<SharedObjects> {
         self.get(Session::shared_objects)

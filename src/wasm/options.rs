@@ -67,6 +67,7 @@ pub(crate) fn without_lists(given: &JsOptions) -> Result<Options, Error> {
         max_deviation: number("maxDeviation").unwrap_or(default.max_deviation),
         max_iterations: number("maxIterations").map(|count| count as u32),
         order: if text("order").as_deref() == Some("any") { Order::Any } else { Order::Reproducible },
+        track_changes: given.get("trackChanges").is_truthy(),
         threads: number("threads").map(|count| threads(count as usize)).transpose()?,
         #[cfg(feature = "js")]
         device: Some(given.get("device")).filter(JsValue::is_truthy).map(JsCast::unchecked_into::<GpuDevice>),

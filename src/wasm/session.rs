@@ -4,6 +4,7 @@
 use super::objects::outcome_object;
 use super::options;
 pub use super::options::JsOptions;
+use crate::engine::Answer;
 use crate::system::memory;
 use crate::system::promise::promise;
 use crate::system::threads::Threads;
@@ -32,6 +33,9 @@ const ENDED: &str = "the session ended when a call of it crashed or ran out of m
 #[wasm_bindgen(js_name = Session)]
 pub struct JsSession(Rc<RefCell<Option<Session>>>);
 
+/// A question to a session, whose answer JavaScript gets.
+type Question = Box<dyn for<'a> FnOnce(&'a mut Session) -> Answer<'a, JsValue>>;
+
 impl JsSession {
     /// Asks the session, and returns a promise of what `give` makes of the answer.
     fn ask<T>(
@@ -39,12 +43,19 @@ impl JsSession {
         question: impl AsyncFnOnce(&mut Session) -> Result<T, Error> + 'static,
         give: impl FnOnce(T) -> JsValue + 'static,
     ) -> Promise {
+        self.promise(Box::new(|session: &mut Session| {
+            Box::pin(async move { question(session).await.map(give) })
+        }))
+    }
+
+    /// Boxed, so that this code is compiled only once.
+    fn promise(&self, question: Question) -> Promise {
         let shared = self.0.clone();
         promise(async move {
             let mut session = shared.take().ok_or_else(|| coded("freed", ENDED))?;
             let answer = question(&mut session).await;
             shared.replace(Some(session));
-            answer.map(give).map_err(thrown)
+            answer.map_err(thrown)
         })
     }
 
@@ -187,6 +198,12 @@ impl JsSession {
             let triangles = std::mem::take(&mut outcome.triangles);
             outcome_object(outcome, indices(triangles).into())
         })
+    }
+
+    /// As [`Session::changes`].
+    #[wasm_bindgen(unchecked_return_type = "Promise<Uint32Array>")]
+    pub fn changes(&self) -> Promise {
+        self.ask(Session::changes, |changes| Uint32Array::from(changes.as_slice()).into())
     }
 
     /// As [`Session::edges`].

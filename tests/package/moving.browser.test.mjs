@@ -56,7 +56,9 @@ async function prepare() {
   /** Whether two sessions have the same triangles and counts. */
   window.equal = async (sessions) => {
     const [found, expected] = await Promise.all(
-      sessions.map(async (session) => JSON.stringify([await session.counters(), [...(await session.triangles())]])),
+      sessions.map(async (session) =>
+        JSON.stringify([await session.counters(), [...(await session.triangles())], [...(await session.changes())]]),
+      ),
     );
     if (found !== expected) throw new Error(`${found.slice(0, 300)}\nis not\n${expected.slice(0, 300)}`);
     return (await sessions[0].counters()).flips;
@@ -68,7 +70,7 @@ test('arrays: WebGPU gives what the CPU gives, after every update', async () => 
     let flips = 0;
     for (const spec of ['random 20', 'uvsphere 14', 'regular 12']) {
       const mesh = await generate(spec);
-      const sessions = await pair(mesh, { maxNormalAngle: 40 });
+      const sessions = await pair(mesh, { maxNormalAngle: 40, trackChanges: true });
       for (let frame = 0; frame < 12; frame++) {
         const positions = moved(mesh, 0.3 * frame);
         if (frame === 5) positions[30] = NaN;
@@ -143,6 +145,62 @@ test('buffers: without gaps, with an offset and a stride, and written by the pag
     assert.match(result[5], /^position-count: option buffer: it has 64 bytes; \d+ vertices end at byte \d+$/);
     assert.match(result[6], /^invalid-option: option buffer: the session is on cpu/);
     assert.match(result[7], /^backend-limit: .*32-bit floats/);
+  }
+});
+
+test('a mesh in buffers of the device', async () => {
+  const results = await page.evaluate(async () => {
+    const mesh = await generate('random 12');
+    const device = await (await navigator.gpu.requestAdapter()).requestDevice();
+    const buffer = (array, usage) => {
+      const buffer = device.createBuffer({ size: array.byteLength + 64, usage: usage | GPUBufferUsage.COPY_DST });
+      device.queue.writeBuffer(buffer, 0, array);
+      return buffer;
+    };
+    const spread = new Float32Array(3 + (mesh.positions.length / 2) * 4);
+    for (let i = 0; i < mesh.positions.length; i++) {
+      spread[3 + Math.floor(i / 2) * 4 + (i % 2)] = mesh.positions[i];
+    }
+    const positions = buffer(spread, GPUBufferUsage.COPY_SRC | GPUBufferUsage.STORAGE);
+    const indices = buffer(mesh.indices, GPUBufferUsage.COPY_SRC);
+    const [vertices, triangles] = [mesh.positions.length / 2, mesh.indices.length / 3];
+    const given = { positions, indices, dimension: 2, stride: 4, offset: 3, vertices, triangles };
+    const options = { backend: 'webgpu', device };
+    const session = await FlipSession.fromBuffers(given, options);
+    const cpu = await FlipSession.create(mesh, { backend: 'cpu' });
+    session.update({ buffer: positions, stride: 4, offset: 3 });
+    cpu.update();
+    const results = [await equal([session, cpu])];
+    session.free();
+    const fails = async (mesh, options) => {
+      try {
+        await FlipSession.fromBuffers(mesh, options);
+        return 'no error';
+      } catch ({ code, message }) {
+        return `${code}: ${message}`;
+      }
+    };
+    results.push(
+      await fails(given, {}),
+      await fails({ ...given, positions: mesh.positions }, options),
+      await fails({ ...given, vertices: vertices + 10 }, options),
+      await fails({ ...given, triangles: -1 }, options),
+      await fails({ ...given, indices: buffer(mesh.indices, GPUBufferUsage.INDEX) }, options),
+      await fails({ ...given, triangles: undefined, indices: positions }, options),
+    );
+    device.destroy();
+    return results;
+  });
+  assert.ok(results[0] > 10);
+  for (const [i, pattern] of [
+    /^invalid-option: option device: give the device of the buffers$/,
+    /^invalid-input: positions: an object is not a GPUBuffer of this page$/,
+    /^invalid-input: positions: the buffer has \d+ bytes, and the mesh needs \d+$/,
+    /^invalid-input: indices: -1 is not a number of them$/,
+    /^invalid-input: the buffers of the mesh cannot be read: /,
+    /^(index-out-of-range|ragged-array): /,
+  ].entries()) {
+    assert.match(results[i + 1], pattern);
   }
 });
 

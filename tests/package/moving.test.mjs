@@ -93,6 +93,24 @@ test('a number that is not finite freezes its triangles for one frame', async ()
   assert.equal((await session.run()).flips, 0);
 });
 
+test('the changes name the update of each triangle', async () => {
+  const session = await FlipSession.create(mesh, { ...onCpu, trackChanges: true });
+  session.update({ iterations: 1 });
+  session.update({ iterations: 1 });
+  const changes = await session.changes();
+  assert.deepEqual([...new Set(changes)].sort(), [0, 1, 2]);
+  assert.equal(changes.length, mesh.indices.length / 3);
+  const { flips } = await session.counters();
+  assert.ok(changes.filter((update) => update > 0).length <= 2 * flips);
+  await session.run();
+  assert.deepEqual([...new Set(await session.changes())], [0]);
+  assert.deepEqual(await (await FlipSession.create(mesh, onCpu)).changes(), new Uint32Array());
+  await assert.rejects(FlipSession.create(mesh, { ...onCpu, trackChanges: true, order: 'any' }), {
+    code: 'invalid-option',
+    message: /^option trackChanges: the order `any` has no changes to track$/,
+  });
+});
+
 test('wrong options of an update are refused and change nothing', async () => {
   const session = await FlipSession.create(mesh, onCpu);
   const before = await session.triangles();

@@ -43,7 +43,8 @@ impl Engine for Cpu {
         }
         self.settle(Vec::new(), false);
         self.iteration = 0;
-        self.moving = Moving::default();
+        let changes = vec![0; self.moving.changes.len()];
+        self.moving = Moving { changes, ..Moving::default() };
         self.mesh = mesh;
         Box::pin(std::future::ready(Ok(())))
     }
@@ -52,6 +53,7 @@ impl Engine for Cpu {
         let threads = self.threads.clone();
         let flips = threads.enter(|| {
             self.move_to(positions);
+            self.moving.updates = self.moving.updates.wrapping_add(1).max(1);
             self.iteration = self.moving.next;
             self.moving.next = self.moving.next.wrapping_add(iterations);
             self.run(iterations)
@@ -62,6 +64,15 @@ impl Engine for Cpu {
 
     fn moved(&mut self) -> Answer<'static, Moved> {
         Box::pin(std::future::ready(Ok(self.count_moved())))
+    }
+
+    fn track_changes(&mut self) -> Answer<'_, ()> {
+        self.moving.changes = vec![0; self.triangles.len() / 3];
+        Box::pin(std::future::ready(Ok(())))
+    }
+
+    fn changes(&mut self) -> Answer<'_, Vec<u32>> {
+        Box::pin(std::future::ready(Ok(self.moving.changes.clone())))
     }
 
     fn positions(&mut self) -> Answer<'_, Positions> {

@@ -93,6 +93,10 @@ pub(super) struct Moving {
     pub(super) has_infinite: bool,
     /// The first iteration of the next update.
     pub(super) next: u32,
+    /// The number of updates.
+    pub(super) updates: u32,
+    /// The update in which each triangle last changed; empty if nobody asks for it.
+    pub(super) changes: Vec<u32>,
     /// Flips of all updates.
     pub(super) flips: u64,
     /// Flips of the last update.
@@ -330,8 +334,8 @@ impl Cpu {
 
     /// Flip and update. Returns the number of flips.
     fn flip(&mut self) -> u32 {
-        let Self { threads, triangles, twins, fans, selected, changed, embedded, iteration, parts, .. } =
-            self;
+        let Self { threads, triangles, twins, fans, selected, changed, embedded, .. } = self;
+        let Self { iteration, parts, moving, .. } = self;
         *iteration += 1;
         for part in &*parts {
             move_anchors(fans, triangles, selected, &part.flipped);
@@ -354,6 +358,12 @@ impl Cpu {
                 }));
             }
         });
+        let Moving { changes, updates, .. } = moving;
+        if !changes.is_empty() {
+            for half_edge in parts.iter().flat_map(|part| part.flipped.as_flattened()) {
+                changes[unflagged(*half_edge) as usize / 3] = *updates;
+            }
+        }
         parts.iter().map(|part| part.flipped.len() as u32).sum()
     }
 

@@ -105,6 +105,10 @@ impl Engine for Lawson {
         self.cpu.moved()
     }
 
+    fn changes(&mut self) -> Answer<'_, Vec<u32>> {
+        self.cpu.changes()
+    }
+
     fn positions(&mut self) -> Answer<'_, Positions> {
         self.cpu.positions()
     }

@@ -15,6 +15,7 @@ fn update(what: &str, (cpu, gpu): (&mut Cpu, &mut WebGpu), positions: &[f32], it
     cpu.update(moved(), iterations).unwrap();
     gpu.update(moved(), iterations).unwrap();
     let found = block_on(gpu.moved()).unwrap();
+    assert_same(what, &block_on(cpu.changes()).unwrap(), &block_on(gpu.changes()).unwrap());
     assert_same(what, &cpu.triangles, &block_on(Engine::triangles(gpu)).unwrap());
     assert_same(what, &cpu.twins, &block_on(Engine::twins(gpu)).unwrap());
     assert_eq!(block_on(cpu.moved()).unwrap(), found, "{what}");
@@ -24,6 +25,8 @@ fn update(what: &str, (cpu, gpu): (&mut Cpu, &mut WebGpu), positions: &[f32], it
 /// Moves a mesh in frames with these positions.
 fn compare(what: &str, mesh: Mesh, thresholds: Thresholds, frames: &[(Vec<f32>, u32)]) -> Vec<Moved> {
     let (mut cpu, mut gpu) = engines(&Arc::new(mesh), thresholds);
+    block_on(cpu.track_changes()).unwrap();
+    block_on(gpu.track_changes()).unwrap();
     let frames = frames.iter().enumerate();
     let compare = |(frame, (positions, iterations)): (usize, &(Vec<f32>, u32))| {
         update(&format!("{what}, frame {frame}"), (&mut cpu, &mut gpu), positions, *iterations)
@@ -130,6 +133,28 @@ fn points_that_span_too_many_bits_are_left_alone() {
     gpu.update(Some(positions.into()), 64).unwrap();
     let moved = block_on(gpu.moved()).unwrap();
     assert!(moved.wide == 0 && moved.census.labelled == 0, "{moved:?}");
+}
+
+/// A triangle has changed in an update if its vertices have.
+#[test]
+fn changes_are_those_of_the_triangles() {
+    let mesh = Arc::new(families::by_name("random 15").unwrap());
+    let (mut cpu, _) = engines(&mesh, any_deviation(10.0));
+    block_on(cpu.track_changes()).unwrap();
+    block_on(cpu.iterate(1)).unwrap();
+    for number in 1..5 {
+        let before = cpu.triangles.clone();
+        cpu.update(Some(mapped(&mesh, |p| vec![p[0] + number as f32 * p[1], p[1]]).into()), 1).unwrap();
+        let changes = block_on(cpu.changes()).unwrap();
+        let has_changed = |t: usize| before[3 * t..3 * t + 3] != cpu.triangles[3 * t..3 * t + 3];
+        let expected: Vec<bool> = (0..changes.len()).map(has_changed).collect();
+        let found: Vec<bool> = changes.iter().map(|&update| update == number).collect();
+        assert_eq!(found, expected);
+        assert!(expected.contains(&true) && expected.contains(&false));
+    }
+    let again = Mesh::new(Dimension::Two, mesh.positions().clone(), cpu.triangles.clone()).unwrap();
+    block_on(cpu.set_positions(Arc::new(again))).unwrap();
+    assert!(block_on(cpu.changes()).unwrap().iter().all(|&update| update == 0));
 }
 
 /// Counts that nobody has waited for do not stop later updates, and are those of their own update.

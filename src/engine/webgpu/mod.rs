@@ -168,6 +168,14 @@ impl Engine for WebGpu {
         self.count_moved()
     }
 
+    fn track_changes(&mut self) -> Answer<'_, ()> {
+        Box::pin(self.begin_changes())
+    }
+
+    fn changes(&mut self) -> Answer<'_, Vec<u32>> {
+        Box::pin(self.read_changes())
+    }
+
     fn positions(&mut self) -> Answer<'_, Positions> {
         Box::pin(self.read_positions())
     }
@@ -203,6 +211,7 @@ impl Engine for WebGpu {
             queue: self.gpu.queue.clone(),
             positions: self.buffers.floats.as_ref().unwrap_or(&self.buffers.positions).0.clone(),
             triangles: self.buffers.triangles.0.clone(),
+            changes: self.changes_offset().map(|offset| (self.buffers.topology.0.clone(), offset)),
         })
     }
 
@@ -212,6 +221,9 @@ impl Engine for WebGpu {
             device: self.gpu.device.as_webgpu()?.into(),
             positions: self.buffers.floats.as_ref().unwrap_or(&self.buffers.positions).as_webgpu()?.into(),
             triangles: self.buffers.triangles.as_webgpu()?.into(),
+            changes: self
+                .changes_offset()
+                .and_then(|offset| Some((self.buffers.topology.as_webgpu()?.into(), offset as u32))),
         })
     }
 }

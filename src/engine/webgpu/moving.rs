@@ -10,6 +10,9 @@ use crate::engine::{Answer, Census, Moved};
 use crate::{Dimension, Error, Positions};
 use wgpu::BufferUsages;
 
+/// A multiple of this number of words is an offset that every device accepts for a binding.
+const OFFSET_WORDS: u32 = 64;
+
 /// Words of the counts: those of the census and the flips, then the triangles that are not positive.
 const WORDS: usize = ENTRIES + 1;
 
@@ -110,6 +113,34 @@ impl WebGpu {
                 not_positive: words[ENTRIES],
             })
         })
+    }
+
+    /// The changes begin at an offset that every device accepts for a binding.
+    pub(super) async fn begin_changes(&mut self) -> Result<(), Error> {
+        // The table of the fans, if there is one, comes first.
+        self.settle().await?;
+        // Never 0, which stands for no changes.
+        let first = (self.topology_words + 1).next_multiple_of(OFFSET_WORDS);
+        let length = first - self.topology_words + self.params.triangles;
+        self.append_to_topology(&vec![0; length as usize]).await?;
+        self.params.changes = first;
+        Ok(())
+    }
+
+    /// The offset of the changes in the topology, in bytes, if they are tracked.
+    pub(super) fn changes_offset(&self) -> Option<u64> {
+        let offset = u64::from(self.params.changes);
+        (offset > 0).then_some(4 * offset)
+    }
+
+    pub(super) async fn read_changes(&mut self) -> Result<Vec<u32>, Error> {
+        if self.params.changes == 0 {
+            return Ok(Vec::new());
+        }
+        let mut words = self.gpu.read(&self.buffers.topology, self.topology_words as usize).await?;
+        let mut changes = words.split_off(self.params.changes as usize);
+        changes.truncate(self.params.triangles as usize);
+        Ok(changes)
     }
 
     pub(super) async fn read_positions(&mut self) -> Result<Positions, Error> {

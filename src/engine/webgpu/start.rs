@@ -117,6 +117,10 @@ impl WebGpu {
         encoder.clear_buffer(history, bytes(ENTRIES), None);
         let fans = bytes(adjacency::SEVERAL_FANS);
         encoder.copy_buffer_to_buffer(&self.counters, fans, history, bytes(SEVERAL_FANS), bytes(1));
+        // Updates count from 1 again.
+        if let Some(offset) = self.changes_offset().filter(|_| self.params.update == 0) {
+            encoder.clear_buffer(&self.buffers.topology, offset, Some(bytes(self.params.triangles as usize)));
+        }
         // The kernels count the turns of stars in the buffer of the frontier.
         encoder.clear_buffer(frontier, 0, None);
         let mut pass = encoder.begin_compute_pass(&Default::default());
@@ -254,6 +258,9 @@ impl WebGpu {
         let locked = half_edge::locked(&self.twins().await?);
         if !locked.is_empty() {
             moved.flag_locked(locked).await?;
+        }
+        if self.changes_offset().is_some() {
+            moved.begin_changes().await?;
         }
         *self = moved;
         Ok(())
