@@ -85,6 +85,18 @@ export const cases = {
     check(joinedVertices === indices.length - mesh.positions.length / 3, `${joinedVertices} vertices were joined`);
     check(flips > 0 && plain.flips > 0, 'nothing flips');
   },
+  trackChanges: async ({ FlipSession, mesh, base }) => {
+    // WebGL2 has no updates.
+    if (base.backend === 'webgl2') {
+      const { code } = await FlipSession.create(mesh, { ...base, trackChanges: true }).catch((error) => error);
+      return check(code === 'backend-limit', `trackChanges is not refused: ${code}`);
+    }
+    const session = await FlipSession.create(mesh, { ...base, trackChanges: true });
+    session.update({ iterations: 1 });
+    const changes = await session.changes();
+    session.free();
+    check(changes.includes(0) && changes.includes(1), `trackChanges has no effect: ${changes.slice(0, 9)}`);
+  },
   order: async ({ makeDelaunay, mesh, base }) => {
     if (base.backend !== 'cpu') return isRefused({ makeDelaunay, mesh, base }, 'order', 'any');
     const { iterations, flips } = await makeDelaunay(mesh, { ...base, order: 'any' });
