@@ -26,8 +26,8 @@ async function runs() {
   };
   count(GPUBuffer.prototype, 'mapAsync', (mode) => (mode === GPUMapMode.READ ? 'waits' : 'kept'));
   count(GPUQueue.prototype, 'submit', () => 'submissions');
-  // The parameters and the state of a run are smaller.
-  const FEW = 8192;
+  // The parameters, the steps and the state of a run are smaller.
+  const FEW = 32_768;
   count(GPUQueue.prototype, 'writeBuffer', (buffer, place, data, first, size = data.byteLength) =>
     size > FEW ? 'arrays' : undefined,
   );
