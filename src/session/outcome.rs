@@ -18,14 +18,14 @@ pub struct Iteration {
     pub ms: f64,
 }
 
-/// What the updates of a session have done, and what is left. See [`Session::counters`].
+/// What the updates of a session have done, and what is left. See [`Session::counters`](crate::Session::counters).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counters {
     /// The number of updates that the counts are of: all before the call.
     pub updates: u64,
     /// Flips of these updates.
     pub flips: u64,
-    /// Edges that are not Delaunay after the last of them, by reason. [`Reason::Stopped`] counts those that the next
+    /// Edges that are not Delaunay after the last of them, by reason. [`Reason::Stopped`](crate::Reason::Stopped) counts those that the next
     /// update may flip. Frozen edges are not counted.
     pub remaining: Reasons,
     /// Triangles that are not strictly positive, in the plane: flat or turned over. A triangle is positive if it has the

@@ -116,7 +116,7 @@ pub fn class_of(value: &JsValue) -> String {
 pub async fn session_of(mesh: &Mesh, options: &[(&str, JsValue)]) -> Result<JsSession, JsValue> {
     let (positions, indices) = (positions_array(mesh), Uint32Array::from(mesh.triangles()));
     let dimension = mesh.dimension().stride() as f64;
-    let session = JsSession::create(positions, &indices, dimension, options_object(options))?.await?;
+    let session = JsSession::create(positions, &indices, dimension, options_object(options), false)?.await?;
     JsSession::try_from_js_value(session)
 }
 
