@@ -104,6 +104,12 @@ pub(crate) trait Engine {
     /// triangles of the engine. After [`Error::BackendLimit`] the engine is unchanged.
     fn set_positions(&mut self, mesh: Arc<Mesh>) -> Answer<'_, ()>;
 
+    /// Whether the engine has started, so that [`Engine::update`] may follow.
+    #[cfg(all(target_arch = "wasm32", feature = "js-session"))]
+    fn is_settled(&self) -> bool {
+        true
+    }
+
     /// Waits until the engine has started, so that [`Engine::update`] may follow.
     fn settle(&mut self) -> Answer<'_, ()> {
         Box::pin(std::future::ready(Ok(())))

@@ -217,19 +217,24 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
    * Edges with a coordinate that is not finite stay as they are until it is finite again. Iterations are numbered on
    * from update to update, so every engine gives the same triangles for the same positions and numbers of iterations.
    *
-   * If another call of the session has not ended, or the CPU engine runs in workers, the update waits for its turn, and
-   * the next update or {@link counters} throws its error. Calls other than `update`, `counters`, `triangles`, `edges`
-   * and `gpu` end the motion: they act as if `setPositions` had been called with the present positions.
+   * The update waits for its turn if another call of the session has not ended, after `setPositions` on WebGPU, and if
+   * the CPU engine runs in workers. The next update or {@link counters} then throws its error. Calls other than `update`,
+   * `counters`, `changes`, `triangles`, `edges` and `gpu` end the motion: they act as if `setPositions` had been called
+   * with the present positions.
    *
    * @throws {@link EdgeflipError} `invalid-option`, `invalid-input`, `position-count`, `ragged-array`; `backend-limit`
    * for 64-bit floats on WebGPU, and always on WebGL2; `device-failed`, `freed`.
    */
   update(options: UpdateOptions = {}): void {
-    const isLate = this.#waiting > 0 || this.#session.isAway;
+    const isLate = this.#waiting > 0 || this.#session.isAway || !this.#session.isSettled;
     const update = updateOf(options, this.#layout, isLate ? copyOf : itselfOf);
     this.#check();
     if (isLate) {
-      void this.#call(async (session) => this.#update(session, update)).catch((thrown) => (this.#fault ??= thrown));
+      const call = this.#call(async (session) => {
+        await session.settle();
+        return this.#update(session, update);
+      });
+      void call.catch((thrown) => (this.#fault ??= thrown));
       return;
     }
     try {

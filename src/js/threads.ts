@@ -151,6 +151,7 @@ export class ThreadsSession implements ModuleSession {
   flips = 0;
   readonly backend = 'cpu';
   readonly isAway = true;
+  readonly isSettled = true;
   stays = false;
   readonly device = undefined;
   readonly positionBuffer = undefined;
@@ -216,6 +217,7 @@ export class ThreadsSession implements ModuleSession {
   edges = () => this.#ask('edges');
   edgeStates = () => this.#ask('edgeStates');
   auditInput = () => this.#ask('auditInput');
+  settle = () => Promise.resolve();
   changes = () => this.#ask('changes');
   counters = () => this.#ask('counters');
   update = (...args: Parameters<Session['update']>) => this.#ask('update', ...args);

@@ -50,6 +50,12 @@ impl Session {
         self.engine.gpu_buffers()
     }
 
+    /// Whether [`Session::update`] may follow.
+    #[cfg(all(target_arch = "wasm32", feature = "js-session"))]
+    pub(crate) fn is_settled(&self) -> bool {
+        self.engine.is_settled()
+    }
+
     /// Waits until the engine has started. After that, [`Session::update`] never waits.
     ///
     /// # Errors
@@ -138,7 +144,7 @@ impl Session {
         self.flips_per_iteration.clear();
         self.has_ended = false;
         self.timings = Timings { adjacency: ms_since(start), ..Timings::default() };
-        // An update cannot wait.
-        if std::mem::take(&mut self.updates) > 0 { self.settle().await } else { Ok(()) }
+        self.updates = 0;
+        Ok(())
     }
 }

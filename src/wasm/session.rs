@@ -177,6 +177,18 @@ impl JsSession {
         })
     }
 
+    /// Whether updates may follow at once.
+    #[wasm_bindgen(getter, js_name = isSettled)]
+    pub fn is_settled(&self) -> bool {
+        self.get(Session::is_settled)
+    }
+
+    /// As [`Session::settle`].
+    #[wasm_bindgen(unchecked_return_type = "Promise<void>")]
+    pub fn settle(&self) -> Promise {
+        self.ask(Session::settle, |()| JsValue::UNDEFINED)
+    }
+
     /// As [`Session::triangles`].
     #[wasm_bindgen(unchecked_return_type = "Promise<Uint32Array>")]
     pub fn triangles(&self) -> Promise {

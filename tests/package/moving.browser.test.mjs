@@ -77,6 +77,12 @@ test('arrays: WebGPU gives what the CPU gives, after every update', async () => 
         for (const session of sessions) session.update({ positions, iterations: frame % 4 });
         flips += await equal(sessions);
       }
+      // So they do after new positions, at once.
+      for (const session of sessions) {
+        await session.setPositions(moved(mesh, 4));
+        session.update({ positions: moved(mesh, 4.5), iterations: 3 });
+      }
+      flips += await equal(sessions);
       // After a run, which ends the motion, updates begin again.
       for (const session of sessions) {
         await session.run();

@@ -156,6 +156,11 @@ impl Engine for WebGpu {
         Box::pin(self.move_vertices(mesh))
     }
 
+    #[cfg(all(target_arch = "wasm32", feature = "js-session"))]
+    fn is_settled(&self) -> bool {
+        self.unsettled.is_none()
+    }
+
     fn settle(&mut self) -> Answer<'_, ()> {
         Box::pin(Self::settle(self))
     }

@@ -112,8 +112,9 @@ impl WebGpu {
         let Buffers { uniform, history, frontier, .. } = &self.buffers;
         self.write_params();
         let bytes = |words: usize| 4 * words as u64;
-        // All but the flips of all updates.
-        encoder.clear_buffer(history, 0, Some(bytes(FLIPPED)));
+        // Later updates add to the flips of the earlier ones.
+        let first = if self.params.update > 1 { FLIPPED } else { ENTRIES };
+        encoder.clear_buffer(history, 0, Some(bytes(first)));
         encoder.clear_buffer(history, bytes(ENTRIES), None);
         let fans = bytes(adjacency::SEVERAL_FANS);
         encoder.copy_buffer_to_buffer(&self.counters, fans, history, bytes(SEVERAL_FANS), bytes(1));
