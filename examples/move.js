@@ -55,12 +55,15 @@ export function play(session, output, frame) {
       [frames, last] = [0, now];
       if (!shown) {
         shown = true;
-        void session.counters().then(({ flips, updates, remaining }) => {
-          shown = false;
-          const left = remaining.stopped ?? 0;
-          const each = Math.round(flips / updates);
-          output.value = `${rate.toFixed(0)} frames a second, ${each} flips a frame, ${left} edges left`;
-        });
+        void session.counters().then(
+          ({ flips, updates, remaining }) => {
+            shown = false;
+            const left = remaining.stopped ?? 0;
+            const each = Math.round(flips / updates);
+            output.value = `${rate.toFixed(0)} frames a second, ${each} flips a frame, ${left} edges left`;
+          },
+          (error) => (output.value = error.message),
+        );
       }
     }
     requestAnimationFrame(next);

@@ -1,7 +1,7 @@
 //! A sheet that moves on the GPU, without a window: a compute pass of the program moves the vertices, an update of the
 //! session flips the edges, and nothing is read back. `cargo run --release --example moving [SIDE] [FRAMES]`
 
-use edgeflip::families;
+use edgeflip::{Reason, families};
 use pollster::block_on;
 use std::{env, error::Error, sync::Arc, time::Instant};
 
@@ -31,6 +31,6 @@ pub fn run(side: u32, frames: u32) -> Result<String, Box<dyn Error>> {
         gpu.adapter.name,
         mesh.triangle_count(),
         counters.flips / u64::from(frames.max(1)),
-        counters.remaining.total()
+        counters.remaining[Reason::Stopped]
     ))
 }

@@ -79,8 +79,8 @@ struct Step {
 // due; one more stamp, for neighbours that are NONE; a bit for each chunk of triangles, see `doubt`.
 @group(0) @binding(6) var<storage, read_write> frontier: array<atomic<u32>>;
 // Binding 7 is the history, see history_read.wgsl and history_write.wgsl.
-// Winding bits, then the bits of the embedded stars, then the updates in which the triangles last changed, if somebody
-// asks for them, then the table of the fans.
+// Winding bits, then the bits of the embedded stars, then the table of the fans, then the updates in which the triangles
+// last changed, if somebody asks for them.
 @group(0) @binding(8) var<storage, read_write> topology: array<u32>;
 
 // Words of the history: the counts; 1 plus the index of the iteration in which the tail has paused, or 0; how many

@@ -30,6 +30,9 @@ impl Census {
     }
 }
 
+/// The most iterations of an update.
+pub(crate) const MOST_ITERATIONS: u32 = 64;
+
 /// The state of a mesh that moves, after an update.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Moved {

@@ -21,7 +21,7 @@ pub(crate) use gpu::{Form, Upload, self_test};
 pub use interface::GpuBuffers;
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 pub(crate) use interface::SharedObjects;
-pub(crate) use interface::{Answer, Census, EdgeCounts, Engine, Moved};
+pub(crate) use interface::{Answer, Census, EdgeCounts, Engine, MOST_ITERATIONS, Moved};
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 pub use webgl2::WebGl2Module;
 #[cfg(all(target_arch = "wasm32", feature = "js"))]

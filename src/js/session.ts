@@ -105,9 +105,9 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
    * @throws {@link EdgeflipError} as {@link create}; `device-failed`.
    */
   static async fromBuffers(mesh: DeviceMesh, options: Options & { device: GpuDevice }): Promise<FlipSession> {
-    const { device } = settingsOf(options);
-    if (!device) throw new EdgeflipError('invalid-option', 'option device: give the device of the buffers');
-    return FlipSession.#create(await readDeviceMesh(mesh, device), options, undefined, true);
+    const settings = settingsOf(options);
+    if (!settings.device) throw new EdgeflipError('invalid-option', 'option device: give the device of the buffers');
+    return FlipSession.#create(await readDeviceMesh(mesh, settings.device), settings, undefined, true);
   }
 
   static {
@@ -264,8 +264,9 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
    */
   async counters(): Promise<Counters> {
     this.#check();
-    if (this.#waiting > 0 || this.#session.isAway) {
-      return this.#call((session) => {
+    if (this.#waiting > 0 || this.#session.isAway || !this.#session.isSettled) {
+      return this.#call(async (session) => {
+        await session.settle();
         this.#check();
         return session.counters();
       });
@@ -349,8 +350,8 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
   /**
    * The device and the buffers on the GPU, to draw without a copy; `undefined` on the CPU. `positions` has 2 or 3 f32
    * per vertex (doubles are rounded), `indices` 3 u32 per triangle. The usage of both includes STORAGE, VERTEX or
-   * INDEX, COPY_SRC and COPY_DST. Only read the buffers, and only until `free`; {@link setPositions} says when it keeps
-   * them. With `'auto'`, call this again after each call of the session: if the GPU fails or cannot accept new
+   * INDEX, COPY_SRC and COPY_DST. Write only `positions`, for
+   * {@link update}, and use the buffers only until `free`; {@link setPositions} says when it keeps them. With `'auto'`, call this again after each call of the session: if the GPU fails or cannot accept new
    * positions, the session continues on the CPU. The device is the `device` of the options, else one that all sessions
    * share. With the option `trackChanges`, `changes` has a u32 per triangle as {@link changes}, from a byte of a buffer
    * on; its usage includes STORAGE and COPY_SRC.

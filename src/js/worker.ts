@@ -243,7 +243,10 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
    */
   update(options: WorkerUpdateOptions = {}): void {
     const { positions, iterations } = updateOf(options, this.#layout, copyOf, WORKER_UPDATE_OPTIONS);
-    void this.#ask('update', { positions, iterations }).catch((thrown) => (this.#fault ??= thrown));
+    this.#check();
+    const args = [{ positions, iterations }] as never[];
+    const call = this.#to.call('ask', [this.#session, 'update', args], { transfer: buffersOf(args) });
+    void call.catch((thrown) => (this.#fault ??= thrown));
   }
 
   /**

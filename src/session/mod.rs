@@ -372,6 +372,8 @@ impl Session {
             let before = self.fallback.as_deref().map_or(String::new(), |before| format!("{before}; "));
             let choice = cpu_after(before + &why, &self.mesh, &self.options).await?;
             self.take(choice);
+            // Updates are not repeated.
+            self.updates = 0;
             self.engine.iterate(self.iterations()).await.map(drop)
         })
     }

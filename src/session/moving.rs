@@ -2,14 +2,11 @@
 
 use super::choice::{self, cpu_after, engine_for};
 use super::{Session, memory_bounds, ms_since};
-use crate::engine::Answer;
+use crate::engine::{Answer, MOST_ITERATIONS};
 use crate::system::threads::Threads;
 use crate::{Backend, Counters, EngineKind, Error, Mesh, Positions, Reason, Timings};
 use std::sync::Arc;
 use web_time::Instant;
-
-/// The most iterations of one update.
-const MOST_ITERATIONS: u32 = 64;
 
 impl Session {
     /// Takes over vertices that have moved, and flips for up to `iterations` iterations, at most 64. What is left goes
@@ -21,8 +18,8 @@ impl Session {
     /// coordinate that is not finite stay as they are until it is finite. Iterations are numbered on from one update to
     /// the next, so all engines give the same triangles for the same positions and numbers of iterations.
     ///
-    /// Any other call but [`Session::counters`], [`Session::triangles`] and [`Session::edges`] ends the motion: it acts
-    /// as if [`Session::set_positions`] had been called with the present positions.
+    /// [`Session::run`], [`Session::advance`], [`Session::step`], [`Session::outcome`], [`Session::edge_states`] and
+    /// [`Session::verify`] end the motion: they act as if [`Session::set_positions`] had been called with the present positions.
     ///
     /// # Errors
     /// [`Error::Option`], [`Error::PositionCount`]; [`Error::BackendLimit`] for 64-bit floats on a GPU, and on WebGL2;
@@ -44,7 +41,8 @@ impl Session {
     }
 
     /// The device and the buffers on the GPU, to write positions for the next [`Session::update`] and to draw without a
-    /// copy; `None` on the CPU. The buffers stay the same until [`Session::set_positions`].
+    /// copy; `None` on the CPU. The buffers stay the same until the session is dropped, unless it takes another engine:
+    /// with `Auto`, or for positions that change between 32-bit and 64-bit floats.
     #[cfg(all(not(target_arch = "wasm32"), feature = "gpu"))]
     pub fn gpu(&self) -> Option<crate::GpuBuffers> {
         self.engine.gpu_buffers()

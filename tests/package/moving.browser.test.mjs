@@ -90,6 +90,22 @@ test('arrays: WebGPU gives what the CPU gives, after every update', async () => 
       }
       flips += await equal(sessions);
       for (const session of sessions) session.free();
+      // Counts disturb no run, and know positions that are new.
+      const others = await pair(mesh, { maxNormalAngle: 40 });
+      for (const session of others) {
+        await session.step();
+        await session.counters();
+        await session.step();
+        await session.run();
+      }
+      flips += await equal(others);
+      for (const session of others) {
+        await session.setPositions(mesh.positions.map((x, i) => (i % mesh.dimension ? x : -x)));
+        await session.counters();
+        await session.run();
+      }
+      await equal(others);
+      for (const session of others) session.free();
     }
     return flips;
   });

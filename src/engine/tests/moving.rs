@@ -42,11 +42,11 @@ fn mapped(mesh: &Mesh, map: impl Fn(&[f32]) -> Vec<f32>) -> Vec<f32> {
 #[test]
 fn a_twisted_sheet_folds_and_unfolds_alike() {
     let mesh = families::by_name("random 30").unwrap();
-    let middle = 14.5;
+    let middle = 0.5;
     let twist = |degrees: f32| {
         mapped(&mesh, |p| {
             let (x, y) = (p[0] - middle, p[1] - middle);
-            let angle = degrees.to_radians() * (1.0 - x.hypot(y) / 20.0).max(0.0);
+            let angle = degrees.to_radians() * (1.0 - x.hypot(y) / 0.7).max(0.0);
             let (sin, cos) = angle.sin_cos();
             vec![x * cos - y * sin, x * sin + y * cos]
         })
@@ -165,6 +165,9 @@ fn counts_are_of_the_update_before_them() {
     let mut waiting = Vec::new();
     // After a run, updates count their iterations from 0.
     assert_eq!(block_on(cpu.iterate(3)).unwrap(), block_on(gpu.iterate(3)).unwrap());
+    // A count disturbs no run.
+    assert_eq!(block_on(cpu.moved()).unwrap(), block_on(gpu.moved()).unwrap());
+    assert_eq!(block_on(cpu.iterate(2)).unwrap(), block_on(gpu.iterate(2)).unwrap());
     for iterations in [1, 0, 2, 3, 64] {
         cpu.update(None, iterations).unwrap();
         gpu.update(None, iterations).unwrap();

@@ -5,8 +5,8 @@ use super::buffers::Buffers;
 use super::faults::{refuse, watch};
 use super::history::{COUNTS, ENTRIES, FLIPPED, NOT_POSITIVE};
 use super::kernels::Kernel;
-use super::steps::{MOST_ITERATIONS, Step};
-use crate::engine::{Answer, Census, Moved};
+use super::steps::Step;
+use crate::engine::{Answer, Census, MOST_ITERATIONS, Moved};
 use crate::{Dimension, Error, Positions};
 use wgpu::BufferUsages;
 
@@ -68,7 +68,7 @@ impl WebGpu {
     /// Counts on the device, after all updates so far. The counts are copied at once, so updates may follow before the
     /// answer is there.
     pub(super) fn count_moved(&mut self) -> Answer<'static, Moved> {
-        self.params.winding = self.winding;
+        let winding = std::mem::replace(&mut self.params.winding, self.winding);
         let gpu = self.gpu.clone();
         let (snapshot, caught) = watch(&gpu.device, || {
             let snapshot = gpu.buffer("counters", WORDS, BufferUsages::empty());
@@ -99,6 +99,11 @@ impl WebGpu {
             gpu.submit(encoder);
             snapshot
         });
+        // A run finds the winding itself, and its next iteration has to visit all triangles: the count has used its lists.
+        self.params.winding = winding;
+        if self.state[0] > 0 {
+            self.state = self.first_state();
+        }
         let faults = self.faults.replace(caught);
         Box::pin(async move {
             if let Some(faults) = faults {

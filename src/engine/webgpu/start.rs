@@ -143,13 +143,17 @@ impl WebGpu {
         self.gpu.submit(encoder);
     }
 
+    /// The entry that the device writes if it needs no help of the host: as if an iteration before the first had flipped
+    /// edges and built no list.
+    pub(super) fn first_state(&self) -> Entry {
+        [self.params.triangles, 0, 0, 1]
+    }
+
     /// Begins the iterations. The device already has the triangles and the commands that prepare them.
     async fn begin(&mut self, mesh: Arc<Mesh>) -> Result<(), Error> {
         self.dispatches += Kernel::preparation(self.form.dimension).len() as u64;
         self.params.first = 0;
-        // The same entry as the device writes if it needs no help of the host: as if an iteration before the first had
-        // flipped edges and built no list.
-        self.state = [self.params.triangles, 0, 0, 1];
+        self.state = self.first_state();
         self.known = Known::default();
         self.unsettled = Some(mesh);
         if self.waits { self.settle().await } else { Ok(()) }

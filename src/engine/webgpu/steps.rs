@@ -1,7 +1,6 @@
 //! The steps of a submission: a uniform tells each dispatch which iteration or task it is for.
 
-/// The most iterations of an update. A batch of a run has fewer.
-pub(super) const MOST_ITERATIONS: u32 = 64;
+use crate::engine::MOST_ITERATIONS;
 
 /// Words per step: an alignment of dynamic offsets that every device supports.
 const WORDS: u32 = 64;
