@@ -103,6 +103,20 @@ pub(super) struct Moving {
     pub(super) last_flips: usize,
 }
 
+impl Moving {
+    fn geometry<'a>(
+        &'a self,
+        mesh: &'a Mesh,
+        winding: &'a Winding,
+        embedded: &'a Embedded,
+        thresholds: Thresholds,
+    ) -> Geometry<'a> {
+        let positions = self.positions.as_ref().unwrap_or(mesh.positions());
+        let (dimension, has_infinite) = (mesh.dimension(), self.has_infinite);
+        Geometry { dimension, positions, thresholds, winding, embedded, has_infinite }
+    }
+}
+
 impl Cpu {
     /// Builds the adjacency.
     pub(crate) fn new(mesh: Arc<Mesh>, thresholds: Thresholds, threads: Threads) -> Self {
@@ -146,15 +160,7 @@ impl Cpu {
 
     pub(in crate::engine) fn geometry(&self) -> Geometry<'_> {
         let &Self { ref mesh, ref winding, ref embedded, thresholds, .. } = self;
-        let Moving { positions, has_infinite, .. } = &self.moving;
-        Geometry {
-            dimension: mesh.dimension(),
-            positions: positions.as_ref().unwrap_or(mesh.positions()),
-            thresholds,
-            winding,
-            embedded,
-            has_infinite: *has_infinite,
-        }
+        self.moving.geometry(mesh, winding, embedded, thresholds)
     }
 
     pub(in crate::engine) fn topology(&self) -> Topology<'_> {
@@ -411,14 +417,7 @@ impl Cpu {
 impl Cpu {
     pub(super) fn parts(&mut self) -> (Geometry<'_>, TopologyMut<'_>) {
         let Self { mesh, winding, embedded, thresholds, triangles, twins, fans, moving, .. } = self;
-        let geometry = Geometry {
-            dimension: mesh.dimension(),
-            positions: moving.positions.as_ref().unwrap_or(mesh.positions()),
-            thresholds: *thresholds,
-            winding,
-            embedded,
-            has_infinite: moving.has_infinite,
-        };
+        let geometry = moving.geometry(mesh, winding, embedded, *thresholds);
         (geometry, TopologyMut { first: 0, triangles, twins, fans: Some(fans) })
     }
 
