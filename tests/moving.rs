@@ -128,14 +128,33 @@ fn wrong_updates_change_nothing() {
     assert!(matches!(pair.sessions[1].update(doubles(), 1), Err(Error::BackendLimit { .. })));
 }
 
-/// A device of the program, and what a session gives it.
-#[test]
-fn a_program_shares_its_device() {
+fn own_device() -> edgeflip::GpuDevice {
     let instance =
         edgeflip::wgpu::Instance::new(edgeflip::wgpu::InstanceDescriptor::new_without_display_handle());
     let adapter = block_on(instance.request_adapter(&Default::default())).unwrap();
     let (device, queue) = block_on(adapter.request_device(&Default::default())).unwrap();
-    let given = edgeflip::GpuDevice { device, queue, adapter: adapter.get_info() };
+    edgeflip::GpuDevice { device, queue, adapter: adapter.get_info() }
+}
+
+#[test]
+fn a_device_that_is_lost_fails_updates() {
+    let given = own_device();
+    let options = Options { backend: Backend::Gpu, device: Some(given.clone()), ..Options::default() };
+    let mut session = block_on(Session::new(families::by_name("random 10").unwrap(), options)).unwrap();
+    session.update(None, 1).unwrap();
+    block_on(session.counters()).unwrap();
+    given.device.destroy();
+    // The first update may not know it yet.
+    let _ = session.update(None, 1);
+    assert!(matches!(block_on(session.counters()), Err(Error::Device { .. })));
+    assert!(matches!(session.update(None, 1), Err(Error::Device { .. })));
+    assert!(matches!(block_on(session.triangles()), Err(Error::Device { .. })));
+}
+
+/// A device of the program, and what a session gives it.
+#[test]
+fn a_program_shares_its_device() {
+    let given = own_device();
     let mesh = families::by_name("random 10").unwrap();
     let options = Options {
         backend: Backend::Gpu,

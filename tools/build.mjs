@@ -131,11 +131,15 @@ async function optimize({ name, options }) {
   const wasm = `${glue}/${name}_bg.wasm`;
   cutPanics(wasm);
   // --low-memory-unused: no pointer of Rust is below 1024, because the stack is first in memory and grows down from 1
-  // MiB. -Oz twice, because the first pass makes further savings possible.
+  // MiB. The first -Oz makes further savings possible. --flatten and --rereloop then make the control flow anew, and
+  // the last two shrink it.
   const features = options ? [...wasmFeatures, 'threads'] : wasmFeatures;
   await run(
     process.execPath,
     'node_modules/binaryen/bin/wasm-opt',
+    '-Oz',
+    '--flatten',
+    '--rereloop',
     '-Oz',
     '-Oz',
     '--low-memory-unused',

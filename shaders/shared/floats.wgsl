@@ -36,13 +36,16 @@ fn unit_exponent(v: Point) -> i32 {
     return min(min(lowest_exponent(v.x), lowest_exponent(v.y)), lowest_exponent(v.z));
 }
 
-// Exponent of the lowest set bit of an f32, 1000 for zero.
+// Larger than the exponent of the lowest set bit of any number.
+const ABOVE_EXPONENTS: i32 = 1000;
+
+// Exponent of the lowest set bit of an f32; ABOVE_EXPONENTS for zero.
 fn lowest_exponent(bits: u32) -> i32 {
     let field = (bits >> 23u) & 0xffu;
     let magnitude = magnitude_of(bits);
     // The f32 of a power of two is exact. GLSL ES 3.00 cannot count zeros.
     let lowest = f32(magnitude & (~magnitude + 1u));
-    return select(i32(max(field, 1u)) - 277 + i32(bitcast<u32>(lowest) >> 23u), 1000, magnitude == 0u);
+    return select(i32(max(field, 1u)) - 277 + i32(bitcast<u32>(lowest) >> 23u), ABOVE_EXPONENTS, magnitude == 0u);
 }
 
 // The 24-bit mantissa of an f32.
@@ -60,8 +63,11 @@ fn deviation_grid() -> i32 {
     return lowest_exponent(deviation().x);
 }
 
+// No two points are farther apart than 2^(SPAN + 2), so a larger limit is cut down to that.
 fn deviation_on(grid: i32) -> vec4u {
-    return on_grid(deviation().x, grid);
+    let most = deviation().x;
+    let is_beyond = i32(most >> 23u) - 127 - grid >= i32(SPAN) + 2;
+    return select(on_grid(most, grid), vec4u(0u, 0u, 1u << (SPAN - 62u), 0u), is_beyond);
 }
 
 // The f32 in units of 2^grid, as magnitude and sign.

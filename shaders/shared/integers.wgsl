@@ -1,5 +1,9 @@
 // Subtracts exact 96-bit integers, and reads their parts.
 
+// The most bits of a coordinate, or of its distance from the centre of the bounding box, on the grid of its mesh. The
+// engine checks this at upload.
+const SPAN: u32 = 84u;
+
 // Functions have one return each: with several, compilers that inline everything take very long.
 fn magnitude_is_less(x: vec4u, y: vec4u) -> bool {
     return select(select(x.x < y.x, x.y < y.y, x.y != y.y), x.z < y.z, x.z != y.z);

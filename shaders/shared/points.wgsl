@@ -7,10 +7,6 @@
 // The magnitude in 96 bits and a sign, for each axis.
 alias Differences = array<vec4u, 3>;
 
-// The most bits of a coordinate, or of its distance from the centre of the bounding box, on the grid of its mesh. The
-// engine checks this at upload.
-const SPAN: u32 = 84u;
-
 // A device may flush subnormals to zero. So the differences are scaled until the largest lies in [1, 2). If the largest
 // is below 2^-67 before that, no filter decides. Flushing then changes the value of a filter by less than its bound.
 const SMALLEST_FIELD: u32 = 60u;

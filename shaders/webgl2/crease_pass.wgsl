@@ -1,10 +1,12 @@
-// The passes that flag creases, before the first iteration in space.
+// The passes that flag creases, in space, before the first iteration on new positions.
 #import creases
+#import left_alone if floats
 #import mesh
 #import points
 #import space
 #import space_digits
 #import state
+#import still if fixed
 
 // 1 if a half-edge is the lower one of a crease, else 0.
 @fragment
@@ -25,7 +27,13 @@ fn is_crease(h: u32, g: u32) -> bool {
     let b = position(vertex(g));
     let c = position(vertex(prev(h)));
     let d = position(vertex(prev(g)));
-    var verdict = filtered_crease(a, b, c, d);
+    var verdict = DELAUNAY;
+    if leaves_some() {
+        verdict = left_alone(a, b, c, d);
+    }
+    if verdict == DELAUNAY {
+        verdict = filtered_crease(a, b, c, d);
+    }
     if verdict == UNDECIDED {
         // Only the angle before the flip is undecided.
         verdict = verdict_of(exact_signs(a, b, c, d, Signs(-1, 0, 1, 1)));
@@ -33,7 +41,7 @@ fn is_crease(h: u32, g: u32) -> bool {
     return verdict == BLOCKED_BY + REASON_ANGLE;
 }
 
-// Sets the flag in the twins of creases, and clears it in all others.
+// Sets the flag in the twins of creases, and clears it in all others. Locked edges keep their own flag.
 @fragment
 fn flag_pass(@builtin(position) fragment: vec4f) -> @location(0) vec4u {
     let t = index_at(fragment);
@@ -45,7 +53,7 @@ fn flag_pass(@builtin(position) fragment: vec4f) -> @location(0) vec4u {
 }
 
 fn flagged(h: u32) -> u32 {
-    let g = twin(h);
-    let is_over = textureLoad(verdicts, texel_at(min(h, g)), 0).x == 1u;
-    return select(g, g | CREASE, is_over && g != NONE);
+    let entry = twin_entry(h);
+    let is_over = textureLoad(verdicts, texel_at(min(h, unflagged(entry))), 0).x == 1u;
+    return select(select(entry & ~CREASE, entry | CREASE, is_over), NONE, entry == NONE);
 }

@@ -28,7 +28,7 @@ fn verdict_pass(@builtin(position) fragment: vec4f) -> @location(0) u32 {
     if h < 3u * params[0].x {
         let g = twin(h);
         verdict = textureLoad(verdicts, texel_at(h), 0).x;
-        if g != NONE && h < g && (params[0].z == 0u || selected(h / 3u) != NONE || selected(g / 3u) != NONE) {
+        if g != NONE && h < g && (is_first_iteration() || selected(h / 3u) != NONE || selected(g / 3u) != NONE) {
             verdict = geometric_verdict(h, g);
         }
     }
@@ -128,7 +128,8 @@ fn census_pass(@builtin(position) fragment: vec4f) -> @location(0) vec4u {
     return result;
 }
 
-// The rest of the census: how many interior edges are blocked by a lock, and how many by the deviation.
+// The rest of the census: how many interior edges are blocked by a lock, how many by the deviation, and how many are
+// left alone while the mesh moves, for either reason.
 @fragment
 fn more_pass(@builtin(position) fragment: vec4f) -> @location(0) vec4u {
     let t = index_at(fragment);
@@ -137,9 +138,9 @@ fn more_pass(@builtin(position) fragment: vec4f) -> @location(0) vec4u {
     for (var h = 3u * t; h < end; h++) {
         let g = twin(h);
         if g != NONE && h < g {
-            let verdict = textureLoad(verdicts, texel_at(h), 0).x;
-            result.x += u32(verdict == BLOCKED_BY + REASON_LOCKED);
-            result.y += u32(verdict == BLOCKED_BY + REASON_DEVIATION);
+            let verdict = vec4u(textureLoad(verdicts, texel_at(h), 0).x);
+            let reasons = vec4u(REASON_LOCKED, REASON_DEVIATION, LEFT_AS_INFINITE - BLOCKED_BY, LEFT_AS_WIDE - BLOCKED_BY);
+            result += vec4u(verdict == BLOCKED_BY + reasons);
         }
     }
     return result;

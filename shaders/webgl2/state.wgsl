@@ -17,11 +17,14 @@
 @group(0) @binding(6) var verdicts: texture_2d<u32>;
 // Four counts per texel.
 @group(0) @binding(7) var counts: texture_2d<u32>;
+// One texel: the flips of all updates, as a low and a high word.
+@group(0) @binding(9) var totals: texture_2d<u32>;
 
 // (triangles, vertices, the iteration, bits of the column in an index), (words in the table of the fans, whether β is
 // 180°, the sign of cos β, cos β rounded to f32), then the digits of its mantissa and power, as in digits.wgsl, then
-// the limit for the deviation: the words of a coordinate, and rounded to f32 for the filter.
-@group(0) @binding(8) var<uniform> params: array<vec4u, 7>;
+// the limit for the deviation: the words of a coordinate, and rounded to f32 for the filter; then (the first iteration
+// on the present positions, the number of the update while the mesh moves, whether some edge may have to be left alone).
+@group(0) @binding(8) var<uniform> params: array<vec4u, 8>;
 
 fn texel_at(i: u32) -> vec2u {
     let bits = params[0].w;
@@ -122,4 +125,12 @@ fn cos_power() -> Small {
 
 fn deviation() -> vec4u {
     return params[6];
+}
+
+fn is_first_iteration() -> bool {
+    return params[0].z == params[7].x;
+}
+
+fn leaves_some() -> bool {
+    return params[7].z == 1u;
 }

@@ -1,10 +1,9 @@
 // Flags the creases, and no other edges, from each of their half-edges.
 #import creases
 #import mesh
-#import moving if floats
+#import moving
 #import points
 #import state
-#import still if fixed
 #import verdicts
 
 // Whether each edge of a triangle is a crease, by a filter.

@@ -1,31 +1,8 @@
-// While a mesh moves, the host does not see its positions. So the device finds out which edges its arithmetic cannot
-// decide, and leaves them alone: an edge with a number that is not finite, and an edge whose four points span too many
-// bits. The same limits as in src/engine/gpu/upload.rs.
-#import deviation_span if deviation
-#import mesh
-#import no_deviation_span if any_deviation
-#import points
-#import span
+// While a mesh moves, the host does not see its positions. The device finds out whether some edge has to be left alone.
+#import left_alone if floats
 #import state
+#import still if fixed
 
-// From this exponent field on, differences may overflow; 255 stands for numbers that are not finite.
-const LARGEST_FLOAT_FIELD: u32 = 253u;
-const INFINITE_FIELD: u32 = 255u;
-
-// Whether points of this span are too far apart for exact arithmetic.
-fn is_too_wide(span: vec2u) -> bool {
-    let bits = i32(span.x) - 127 - (ABOVE_EXPONENTS - i32(span.y));
-    return span.x >= LARGEST_FLOAT_FIELD || bits >= i32(SPAN);
-}
-
-// Whether some edge may have to be left alone.
 fn leaves_some() -> bool {
     return params.update > 0u && is_too_wide(vec2u(params.highest, params.depth));
-}
-
-// DELAUNAY, or why an edge of these points is left alone.
-fn left_alone(a: Point, b: Point, c: Point, d: Point) -> u32 {
-    let span = max(max(max(span_of(a), span_of(b)), max(span_of(c), span_of(d))), deviation_span());
-    let verdict = select(DELAUNAY, LEFT_AS_WIDE, is_too_wide(span));
-    return select(verdict, LEFT_AS_INFINITE, span.x == INFINITE_FIELD);
 }

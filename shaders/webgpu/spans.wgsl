@@ -1,8 +1,7 @@
 // Collects the span of all points while a mesh moves.
 #import history_write
-#import moving if floats
+#import moving
 #import state
-#import still if fixed
 
 var<workgroup> highest: atomic<u32>;
 var<workgroup> depth: atomic<u32>;

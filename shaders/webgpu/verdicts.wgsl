@@ -1,11 +1,10 @@
 // Finds the verdicts on the three edges of a triangle, by filters.
 #import mesh
-#import moving if floats
+#import moving
 #import plane if plane
 #import points
 #import space if space
 #import state
-#import still if fixed
 
 // The verdicts by the fast or the slower filter; UNDECIDED if exact arithmetic has to decide. A census tests every edge
 // from its lower half-edge; an iteration tests the edges that may flip. The other edges get DELAUNAY.

@@ -47,6 +47,22 @@ pub(crate) struct Moved {
     pub(crate) not_positive: u32,
 }
 
+#[cfg(feature = "gpu")]
+impl Moved {
+    /// From the counts of the shaders: those of the census, the edges left alone for either reason, the triangles that
+    /// are not positive, the low and the high word of the flips.
+    pub(super) fn of_counts(counts: &[u32]) -> Self {
+        let (census, rest) = counts.split_at(counts.len() - 5);
+        Self {
+            census: Census::of_counts(census),
+            infinite: rest[0],
+            wide: rest[1],
+            flips: u64::from(rest[3]) | u64::from(rest[4]) << 32,
+            not_positive: rest[2],
+        }
+    }
+}
+
 /// The numbers of edges of each kind. Flips do not change them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct EdgeCounts {
@@ -63,15 +79,16 @@ impl From<&Adjacency> for EdgeCounts {
     }
 }
 
+/// Positions from the bits of 32-bit floats.
+#[cfg(feature = "gpu")]
+pub(super) fn positions_of(words: Vec<u32>) -> Positions {
+    words.into_iter().map(f32::from_bits).collect::<Vec<_>>().into()
+}
+
 /// Triangles in a JavaScript array.
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 pub(super) fn array(triangles: Answer<'_, Vec<u32>>) -> Answer<'_, js_sys::Uint32Array> {
     Box::pin(async { Ok(triangles.await?.as_slice().into()) })
-}
-
-fn no_updates(backend: EngineKind) -> Error {
-    let message = "it has no updates: set the positions and run".to_owned();
-    Error::BackendLimit { backend, message }
 }
 
 /// One mesh on one engine, between two iterations.
@@ -121,30 +138,20 @@ pub(crate) trait Engine {
     /// The vertices have moved, to `positions` or, on a GPU, to those that the caller has written. Tests all edges, and
     /// runs up to `iterations` iterations. A GPU only submits them. The iterations count on from the updates before;
     /// the winding stays.
-    fn update(&mut self, _positions: Option<Positions>, _iterations: u32) -> Result<(), Error> {
-        Err(no_updates(self.backend()))
-    }
+    fn update(&mut self, positions: Option<Positions>, iterations: u32) -> Result<(), Error>;
 
     /// Counts after all updates so far. Later updates do not change the answer.
-    fn moved(&mut self) -> Answer<'static, Moved> {
-        Box::pin(std::future::ready(Err(no_updates(self.backend()))))
-    }
+    fn moved(&mut self) -> Answer<'static, Moved>;
 
     /// Begins to keep the update in which each triangle last changed, for [`Engine::changes`].
-    fn track_changes(&mut self) -> Answer<'_, ()> {
-        Box::pin(std::future::ready(Err(no_updates(self.backend()))))
-    }
+    fn track_changes(&mut self) -> Answer<'_, ()>;
 
     /// For each triangle the number of the update in which it last changed, from 1 on; 0 if none has changed it. Empty
     /// if they are not tracked.
-    fn changes(&mut self) -> Answer<'_, Vec<u32>> {
-        Box::pin(std::future::ready(Err(no_updates(self.backend()))))
-    }
+    fn changes(&mut self) -> Answer<'_, Vec<u32>>;
 
     /// The present positions, after updates.
-    fn positions(&mut self) -> Answer<'_, Positions> {
-        Box::pin(std::future::ready(Err(no_updates(self.backend()))))
-    }
+    fn positions(&mut self) -> Answer<'_, Positions>;
 
     /// The numbers of edges of each kind.
     fn edge_counts(&self) -> EdgeCounts;

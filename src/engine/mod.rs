@@ -21,13 +21,15 @@ pub(crate) use gpu::{Form, Upload, self_test};
 pub use interface::GpuBuffers;
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 pub(crate) use interface::SharedObjects;
+#[cfg(feature = "gpu")]
+use interface::positions_of;
 pub(crate) use interface::{Answer, Census, EdgeCounts, Engine, MOST_ITERATIONS, Moved};
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 pub use webgl2::WebGl2Module;
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 pub(crate) use webgl2::{Proxy, set_webgl2};
 #[cfg(all(target_arch = "wasm32", feature = "js-webgl2"))]
-pub(crate) use webgl2::{WebGl, set_shader_loader};
+pub(crate) use webgl2::{Question, WebGl, set_shader_loader};
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 pub use webgpu::GpuDevice;
 #[cfg(all(not(target_arch = "wasm32"), feature = "gpu"))]

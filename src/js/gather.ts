@@ -30,6 +30,9 @@ const SHADER = `
 
 const MOST_WORKGROUPS = 65_535;
 
+/** At a multiple of this count of numbers, a binding may begin on every device. */
+const ALIGNMENT = 64;
+
 /** The pipeline of each device. */
 const pipelines = new WeakMap<object, GPUComputePipeline>();
 
@@ -78,8 +81,12 @@ export function gather(
   }
   const usage = GPUBufferUsage.UNIFORM | GPUBufferUsage.COPY_DST;
   const places = device.createBuffer({ label: 'edgeflip gather', size: 16, usage });
-  queue.writeBuffer(places, 0, new Uint32Array([offset, stride, dimension, numbers]));
-  const entries = [places, buffer, positions].map((buffer, binding) => ({ binding, resource: { buffer } }));
+  // Binds only what the positions span: a binding has a limit, and a buffer may be larger.
+  const first = offset - (offset % ALIGNMENT);
+  const size = 4 * (offset - first + (vertices - 1) * stride + dimension);
+  queue.writeBuffer(places, 0, new Uint32Array([offset - first, stride, dimension, numbers]));
+  const resources = [{ buffer: places }, { buffer, offset: 4 * first, size }, { buffer: positions }];
+  const entries = resources.map((resource, binding) => ({ binding, resource }));
   const layout = pipeline.getBindGroupLayout(0);
   const pass = encoder.beginComputePass();
   pass.setPipeline(pipeline);

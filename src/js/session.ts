@@ -217,13 +217,13 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
    * Edges with a coordinate that is not finite stay as they are until it is finite again. Iterations are numbered on
    * from update to update, so every engine gives the same triangles for the same positions and numbers of iterations.
    *
-   * The update waits for its turn if another call of the session has not ended, after `setPositions` on WebGPU, and if
-   * the CPU engine runs in workers. The next update or {@link counters} then throws its error. Calls other than `update`,
-   * `counters`, `changes`, `triangles`, `edges` and `gpu` end the motion: they act as if `setPositions` had been called
-   * with the present positions.
+   * The update waits for its turn if another call of the session has not ended, after `setPositions` on WebGPU, if it
+   * is the first one on WebGL2, also after `setPositions`, and if the CPU engine runs in workers. The next update or
+   * {@link counters} then throws its error. Calls other than `update`, `counters`, `changes`, `triangles`, `edges` and
+   * `gpu` end the motion: they act as if `setPositions` had been called with the present positions.
    *
    * @throws {@link EdgeflipError} `invalid-option`, `invalid-input`, `position-count`, `ragged-array`; `backend-limit`
-   * for 64-bit floats on WebGPU, and always on WebGL2; `device-failed`, `freed`.
+   * for 64-bit floats on WebGPU and WebGL2; `device-failed`, `freed`.
    */
   update(options: UpdateOptions = {}): void {
     const isLate = this.#waiting > 0 || this.#session.isAway || !this.#session.isSettled;

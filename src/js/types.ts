@@ -275,14 +275,15 @@ export interface Counters {
   remaining: Reasons;
   /**
    * Triangles that are not strictly positive, in the plane: flat or turned over, compared with the orientation of their
-   * component at the start of the session.
+   * component at the start of the session. Triangles with a coordinate that is not finite, or that a GPU cannot decide,
+   * count too.
    */
   inverted: number;
   /** Edges left alone, because a coordinate of their triangles is not finite. */
   nonFinite: number;
   /**
-   * Edges left alone, because the coordinates of their triangles span more bits than WebGPU decides exactly. The CPU
-   * decides them all.
+   * Edges left alone, because the coordinates of their triangles span more bits than WebGPU and WebGL2 decide exactly,
+   * or reach 2^126. The CPU decides them all.
    */
   tooWide: number;
 }

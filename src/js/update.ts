@@ -31,6 +31,9 @@ export const WORKER_UPDATE_OPTIONS = namesOf<WorkerUpdateOptions>({ positions: t
 /** Iterations of an update, if the caller gives no number. */
 const ITERATIONS = 4;
 
+/** The same in src/engine/interface.rs. */
+const MOST_ITERATIONS = 64;
+
 /**
  * The options of an update.
  *
@@ -45,8 +48,9 @@ export function updateOf(
   return read('the options', () => {
     const given = optionsOf(options, known) as UpdateOptions;
     const { positions, buffer, iterations = ITERATIONS } = given;
-    if (!isWhole(iterations)) {
-      throw new EdgeflipError('invalid-option', `option iterations: ${shown(iterations)} is not a whole number`);
+    if (!isWhole(iterations) || iterations > MOST_ITERATIONS) {
+      const message = `option iterations: ${shown(iterations)} is not a whole number from 0 to ${MOST_ITERATIONS}`;
+      throw new EdgeflipError('invalid-option', message);
     }
     if (positions !== undefined && buffer !== undefined) {
       throw new EdgeflipError('invalid-option', 'options positions and buffer: give only one of them');

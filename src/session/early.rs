@@ -35,13 +35,14 @@ impl EarlyGpu {
     }
 }
 
-/// Closes the shared GPU on a background thread, once no session holds it. A later session opens it again. Without this
-/// call the process closes the GPU when it ends, and ends later.
+/// Closes the shared GPU on a background thread, once no session holds it, and lets go of devices that the program has
+/// given. A later session opens it again. Without this call the process closes the GPU when it ends, and ends later.
 pub fn close_gpu() {
     #[cfg(feature = "gpu")]
-    if let Some(device) = Device::taken() {
-        // If no thread starts, this thread closes it.
-        let _ = thread::Builder::new().spawn(move || drop(device));
+    {
+        let devices = Device::taken();
+        // If no thread starts, this thread closes them.
+        let _ = thread::Builder::new().spawn(move || drop(devices));
     }
 }
 

@@ -32,7 +32,8 @@ pub(super) fn bytes(mesh: &Mesh, options: &Options) -> u64 {
         (Order::Any, Dimension::Two) => 72,
         (Order::Any, Dimension::Three) => 84,
     };
-    triangle * mesh.triangle_count() as u64
+    let changes = if options.track_changes { 4 } else { 0 };
+    (triangle + changes) * mesh.triangle_count() as u64
         + VERTEX * mesh.vertex_count() as u64
         + LOCKED * options.locked_edges.len() as u64
 }

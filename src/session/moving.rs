@@ -22,7 +22,7 @@ impl Session {
     /// [`Session::verify`] end the motion: they act as if [`Session::set_positions`] had been called with the present positions.
     ///
     /// # Errors
-    /// [`Error::Option`], [`Error::PositionCount`]; [`Error::BackendLimit`] for 64-bit floats on a GPU, and on WebGL2;
+    /// [`Error::Option`], [`Error::PositionCount`]; [`Error::BackendLimit`] for 64-bit floats on a GPU;
     /// [`Error::Device`].
     pub fn update(&mut self, positions: Option<Positions>, iterations: u32) -> Result<(), Error> {
         if iterations > MOST_ITERATIONS {
@@ -100,6 +100,7 @@ impl Session {
         if self.updates == 0 {
             return Ok(());
         }
+        self.check_memory(memory_bounds::POSITIONS)?;
         let positions = self.ask(|engine| engine.positions()).await?;
         self.replace_positions(positions).await
     }

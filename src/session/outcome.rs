@@ -29,12 +29,13 @@ pub struct Counters {
     /// update may flip. Frozen edges are not counted.
     pub remaining: Reasons,
     /// Triangles that are not strictly positive, in the plane: flat or turned over. A triangle is positive if it has the
-    /// orientation that its component had at the start of the session.
+    /// orientation that its component had at the start of the session. Triangles with a coordinate that is not finite,
+    /// or that a GPU cannot decide, count too.
     pub inverted: u32,
     /// Edges left alone because a coordinate of their triangles is not finite.
     pub non_finite: u32,
-    /// Edges left alone because the coordinates of their triangles span more bits than the GPU decides exactly. The CPU
-    /// decides them all.
+    /// Edges left alone because the coordinates of their triangles span more bits than the GPU decides exactly, or
+    /// reach 2^126. The CPU decides them all.
     pub too_wide: u32,
 }
 

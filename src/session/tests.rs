@@ -55,6 +55,12 @@ impl Engine for Failing {
     fn moved(&mut self) -> Answer<'static, Moved> {
         self.cpu.moved()
     }
+    fn track_changes(&mut self) -> Answer<'_, ()> {
+        self.cpu.track_changes()
+    }
+    fn changes(&mut self) -> Answer<'_, Vec<u32>> {
+        self.answer(|cpu| cpu.changes())
+    }
     fn positions(&mut self) -> Answer<'_, Positions> {
         self.answer(|cpu| cpu.positions())
     }

@@ -2,7 +2,7 @@
 //! through `engine::webgl2::module_proxy`.
 
 use crate::Error;
-use crate::engine::{self, Engine, WebGl};
+use crate::engine::{self, Engine, Question, WebGl};
 use crate::phases::Thresholds;
 use crate::system::promise::promise;
 use crate::system::threads::Threads;
@@ -30,21 +30,26 @@ pub struct JsWebGl2 {
 }
 
 impl JsWebGl2 {
-    /// Asks the engine, and returns a promise of the answer, which `give` converts to a JavaScript value.
-    fn ask<T>(
+    /// Calls the engine, and returns a promise of the answer, which `give` converts to a JavaScript value.
+    fn call<T>(
         &self,
         question: impl AsyncFnOnce(&mut WebGl) -> Result<T, Error> + 'static,
         give: impl FnOnce(T) -> JsValue + 'static,
     ) -> Promise {
         let shared = self.engine.clone();
         promise(async move {
-            let mut engine = shared
-                .take()
-                .ok_or_else(|| coded("device-failed", "the engine ended when a call of it crashed"))?;
+            let mut engine = shared.take().ok_or_else(ended)?;
             let answer = question(&mut engine).await;
             shared.replace(Some(engine));
             answer.map(give).map_err(bare)
         })
+    }
+
+    /// Does not hold the engine until the answer is there.
+    fn count_moved(&self) -> Promise {
+        let mut engine = self.engine.borrow_mut();
+        let counted = engine.as_mut().ok_or_else(ended).and_then(|engine| engine.count_moved().map_err(bare));
+        promise(async move { counted?.await.map(array).map_err(bare) })
     }
 
     fn get<T: Default>(&self, value: impl FnOnce(&WebGl) -> T) -> T {
@@ -73,34 +78,14 @@ impl JsWebGl2 {
         promise(async { create.await.map(JsValue::from).map_err(bare) })
     }
 
-    /// As `Engine::lock`. Like all methods below, it rejects if the context is lost.
-    #[wasm_bindgen(unchecked_return_type = "Promise<void>")]
-    pub fn lock(&self, half_edges: Uint32Array) -> Promise {
-        self.ask(async move |engine| engine.lock(half_edges.to_vec()).await, done)
-    }
-
-    /// As `Engine::iterate`.
+    /// Asks the engine a `Question`, with its words, and returns words. `Question::Moved` asks before it returns. Like
+    /// all methods below, it rejects if the context is lost.
     #[wasm_bindgen(unchecked_return_type = "Promise<Uint32Array>")]
-    pub fn iterate(&self, count: u32) -> Promise {
-        self.ask(async move |engine| engine.iterate(count).await, array)
-    }
-
-    /// The counts of the shaders, as `Census::of_counts` takes them.
-    #[wasm_bindgen(unchecked_return_type = "Promise<Uint32Array>")]
-    pub fn census(&self) -> Promise {
-        self.ask(async |engine| engine.census_counts().await, array)
-    }
-
-    /// As `Engine::triangles`.
-    #[wasm_bindgen(unchecked_return_type = "Promise<Uint32Array>")]
-    pub fn triangles(&self) -> Promise {
-        self.ask(async |engine| engine.triangles().await, array)
-    }
-
-    /// As `Engine::twins`.
-    #[wasm_bindgen(unchecked_return_type = "Promise<Uint32Array>")]
-    pub fn twins(&self) -> Promise {
-        self.ask(async |engine| engine.twins().await, array)
+    pub fn ask(&self, question: u32, words: Uint32Array) -> Promise {
+        match Question::of_number(question) {
+            Some(Question::Moved) => self.count_moved(),
+            question => self.call(async move |engine| answer(engine, question, &words).await, array),
+        }
     }
 
     /// As `Engine::set_positions`; `indices` are the present triangles. Also rejects if the engine cannot accept the
@@ -112,7 +97,17 @@ impl JsWebGl2 {
             let mesh = mesh_of(positions, &indices, dimension, &Threads::one())?;
             engine.set_positions(Arc::new(mesh)).await
         };
-        self.ask(set, done)
+        self.call(set, |()| JsValue::UNDEFINED)
+    }
+
+    /// As `Engine::update`. Copies the positions before it returns.
+    ///
+    /// # Errors
+    /// Those of `Engine::update`.
+    pub fn update(&self, positions: Option<JsPositions>, iterations: u32) -> Result<(), JsValue> {
+        let mut engine = self.engine.borrow_mut();
+        let engine = engine.as_mut().ok_or_else(ended)?;
+        engine.update(positions.map(Into::into), iterations).map_err(bare)
     }
 
     /// As `Engine::batch`.
@@ -141,8 +136,28 @@ impl JsWebGl2 {
     }
 }
 
-fn done((): ()) -> JsValue {
-    JsValue::UNDEFINED
+fn ended() -> JsValue {
+    coded("device-failed", "the engine ended when a call of it crashed")
+}
+
+/// The answer to a question. An unknown question, of another version, has none.
+async fn answer(
+    engine: &mut WebGl,
+    question: Option<Question>,
+    words: &Uint32Array,
+) -> Result<Vec<u32>, Error> {
+    match question {
+        Some(Question::Lock) => engine.lock(words.to_vec()).await.map(|()| Vec::new()),
+        Some(Question::Iterate) => engine.iterate(words.get_index(0)).await,
+        Some(Question::Census) => engine.census_counts().await,
+        Some(Question::Triangles) => engine.triangles().await,
+        Some(Question::Twins) => engine.twins().await,
+        Some(Question::Settle) => engine.settle().await.map(|()| Vec::new()),
+        Some(Question::TrackChanges) => engine.track_changes().await.map(|()| Vec::new()),
+        Some(Question::Changes) => engine.changes().await,
+        Some(Question::Positions) => engine.read_positions().await,
+        Some(Question::Moved) | None => Ok(Vec::new()),
+    }
 }
 
 fn array(words: Vec<u32>) -> JsValue {

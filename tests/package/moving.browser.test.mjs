@@ -1,4 +1,5 @@
-// Tests updates on WebGPU in Chromium: the same triangles as the CPU in every frame, without a call that waits.
+// Tests updates on WebGPU and WebGL2 in Chromium: the same triangles as the CPU in every frame, and on WebGPU without a
+// call that waits.
 
 import assert from 'node:assert/strict';
 import { after, test } from 'node:test';
@@ -50,27 +51,30 @@ async function prepare() {
     }
     return moved;
   };
-  /** Two sessions on the mesh: on WebGPU, and on the CPU. */
-  window.pair = (mesh, options) =>
-    Promise.all(['webgpu', 'cpu'].map((backend) => FlipSession.create(mesh, { ...options, backend })));
-  /** Whether two sessions have the same triangles and counts. */
+  /** Sessions on the mesh, one for each engine. */
+  window.sessionsOn = (mesh, options, backends = ['webgpu', 'cpu', 'webgl2']) =>
+    Promise.all(backends.map((backend) => FlipSession.create(mesh, { ...options, backend })));
+  /** Fails unless all sessions have the same triangles, counts and changes. Returns their flips. */
   window.equal = async (sessions) => {
-    const [found, expected] = await Promise.all(
+    const [first, ...others] = await Promise.all(
       sessions.map(async (session) =>
         JSON.stringify([await session.counters(), [...(await session.triangles())], [...(await session.changes())]]),
       ),
     );
-    if (found !== expected) throw new Error(`${found.slice(0, 300)}\nis not\n${expected.slice(0, 300)}`);
+    for (const other of others) {
+      if (other !== first) throw new Error(`${first.slice(0, 300)}\nis not\n${other.slice(0, 300)}`);
+    }
     return (await sessions[0].counters()).flips;
   };
 }
 
-test('arrays: WebGPU gives what the CPU gives, after every update', async () => {
+test('arrays: all engines give the same after every update', async () => {
   const flips = await page.evaluate(async () => {
     let flips = 0;
     for (const spec of ['random 20', 'uvsphere 14', 'regular 12']) {
       const mesh = await generate(spec);
-      const sessions = await pair(mesh, { maxNormalAngle: 40, trackChanges: true });
+      const lockedEdges = mesh.indices.subarray(0, 2);
+      const sessions = await sessionsOn(mesh, { maxNormalAngle: 40, lockedEdges, trackChanges: true });
       for (let frame = 0; frame < 12; frame++) {
         const positions = moved(mesh, 0.3 * frame);
         if (frame === 5) positions[30] = NaN;
@@ -91,7 +95,7 @@ test('arrays: WebGPU gives what the CPU gives, after every update', async () => 
       flips += await equal(sessions);
       for (const session of sessions) session.free();
       // Counts disturb no run, and know positions that are new.
-      const others = await pair(mesh, { maxNormalAngle: 40 });
+      const others = await sessionsOn(mesh, { maxNormalAngle: 40 });
       for (const session of others) {
         await session.step();
         await session.counters();
@@ -112,13 +116,117 @@ test('arrays: WebGPU gives what the CPU gives, after every update', async () => 
   assert.ok(flips > 1000, `${flips} flips`);
 });
 
+test('random motions of dirty meshes', async () => {
+  const flips = await page.evaluate(async () => {
+    let seed = 20261125;
+    /** A whole number below `end`, from a linear congruential generator. */
+    const below = (end) => {
+      seed = (Math.imul(seed, 1664525) + 1013904223) >>> 0;
+      return Math.floor((seed / 2 ** 32) * end);
+    };
+    const positions = (dimension) => Float32Array.from({ length: 16 * dimension }, () => below(7) - 3);
+    const sheet = await generate('random 4');
+    let flips = 0;
+    for (let mesh = 0; mesh < 24; mesh++) {
+      const dimension = 2 + (mesh % 2);
+      // A sheet, and triangles that make edges non-manifold.
+      const indices = [...sheet.indices];
+      while (indices.length < sheet.indices.length + 3 * (mesh % 8)) {
+        const [a, b, c] = [below(16), below(16), below(16)];
+        if (a !== b && b !== c && c !== a) indices.push(a, b, c);
+      }
+      const maxDeviation = mesh % 4 === 3 ? 0.75 : Infinity;
+      const options = { maxNormalAngle: 120, maxDeviation, trackChanges: true };
+      const sessions = await sessionsOn({ positions: positions(dimension), indices, dimension }, options);
+      for (let frame = 0; frame < 5; frame++) {
+        const moved = positions(dimension);
+        if (frame === 2) moved[below(32)] = NaN;
+        const iterations = below(5);
+        for (const session of sessions) session.update({ positions: moved, iterations });
+        flips += await equal(sessions);
+      }
+      for (const session of sessions) session.free();
+    }
+    return flips;
+  });
+  assert.ok(flips > 200, `${flips} flips`);
+});
+
+test('edges that span too many bits are left alone, by the same rule on both GPU engines', async () => {
+  const counts = await page.evaluate(async () => {
+    const counts = [];
+    for (const [spec, maxDeviation] of [
+      ['random 12', Infinity],
+      ['uvsphere 12', 0.5],
+      // A limit that no edge reaches costs no bits.
+      ['uvsphere 12', 1e18],
+    ]) {
+      const mesh = await generate(spec);
+      const sessions = await sessionsOn(mesh, { maxDeviation, trackChanges: true }, ['webgpu', 'webgl2']);
+      const positions = moved(mesh, 1);
+      for (const number of [1e-30, 3e38, 0.25]) {
+        positions[40] = number;
+        for (const session of sessions) session.update({ positions, iterations: 64 });
+        await equal(sessions);
+        counts.push((await sessions[1].counters()).tooWide);
+      }
+      // The last positions span few bits: the CPU agrees.
+      const [cpu] = await sessionsOn({ ...mesh, indices: await sessions[0].triangles() }, { maxDeviation }, ['cpu']);
+      cpu.update({ positions, iterations: 0 });
+      counts.push(
+        JSON.stringify((await cpu.counters()).remaining) === JSON.stringify((await sessions[1].counters()).remaining),
+      );
+      for (const session of [...sessions, cpu]) session.free();
+    }
+    return counts;
+  });
+  for (let i = 0; i < counts.length; i += 4) {
+    assert.ok(counts[i] > 2 && counts[i] < 40 && counts[i + 1] > 2 && counts[i + 1] < 40, `${counts}`);
+    assert.deepEqual(counts.slice(i + 2, i + 4), [0, true]);
+  }
+});
+
+test('the error of an update that had to wait comes with the next call', async () => {
+  const results = await page.evaluate(async () => {
+    const away = await import('/dist/worker.js');
+    const mesh = await generate('random 12');
+    const doubles = Float64Array.from(mesh.positions, (x) => x / 3);
+    const results = [];
+    for (const of of [FlipSession, away.FlipSession]) {
+      for (const backend of ['webgpu', 'webgl2']) {
+        const session = await of.create(mesh, { backend });
+        const running = session.run();
+        session.update({ positions: doubles });
+        await running;
+        results.push(await session.counters().catch(({ code }) => code), (await session.counters()).updates);
+        // The next update may throw the error instead, and the one after it goes on.
+        const again = session.run();
+        session.update({ positions: doubles });
+        await again;
+        try {
+          session.update();
+        } catch ({ code }) {
+          results.push(code);
+        }
+        await session.counters().catch(({ code }) => results.push(code));
+        session.update();
+        results.push((await session.counters()).updates > 0);
+        session.free();
+      }
+    }
+    return results;
+  });
+  const each = ['backend-limit', 0, 'backend-limit', true];
+  assert.deepEqual(results, [...each, ...each, ...each, ...each]);
+});
+
 test('buffers: without gaps, with an offset and a stride, and written by the page', async () => {
   const results = await page.evaluate(async () => {
     const results = [];
     for (const spec of ['random 20', 'uvsphere 14']) {
       const mesh = await generate(spec);
       const { dimension } = mesh;
-      const sessions = await pair(mesh, {});
+      const sessions = await sessionsOn(mesh, {}, ['webgpu', 'cpu']);
       const { device, positions } = await sessions[0].gpu();
       const usage = GPUBufferUsage.STORAGE | GPUBufferUsage.COPY_SRC | GPUBufferUsage.COPY_DST;
       for (const [offset, stride, time] of [

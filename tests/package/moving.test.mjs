@@ -116,8 +116,8 @@ test('wrong options of an update are refused and change nothing', async () => {
   const before = await session.triangles();
   const { positions } = mesh;
   for (const [options, code, message] of [
-    [{ iterations: 65 }, 'invalid-option', /65 iterations are too many for one update: give 0 to 64/],
-    [{ iterations: -1 }, 'invalid-option', /option iterations: -1 is not a whole number/],
+    [{ iterations: 65 }, 'invalid-option', /option iterations: 65 is not a whole number from 0 to 64/],
+    [{ iterations: -1 }, 'invalid-option', /option iterations: -1 is not a whole number from 0 to 64/],
     [{ iteration: 1 }, 'invalid-option', /did you mean iterations\?/],
     [{ positions: positions.subarray(2) }, 'position-count', /1798/],
     [{ positions: [1, 2] }, 'invalid-input', /not a typed array/],
@@ -144,12 +144,6 @@ test('an update waits for an earlier call, and has copied its positions', async 
   const counters = await session.counters();
   assert.deepEqual([counters.updates, counters.nonFinite, counters.remaining], [1, 0, {}]);
   assert.equal((await run).status, 'done');
-  // The error of an update that had to wait comes with the next call.
-  const running = session.run();
-  session.update({ iterations: 100 });
-  await running;
-  await assert.rejects(session.counters(), { code: 'invalid-option' });
-  await session.counters();
 });
 
 test('several threads and a worker give the same', async () => {
@@ -166,21 +160,6 @@ test('several threads and a worker give the same', async () => {
     }
     assert.deepEqual(counted[1], counted[0]);
     assert.deepEqual(counted[2], counted[0]);
-  }
-  for (const session of [two, worker]) {
-    session.update({ iterations: 65 });
-    await assert.rejects(session.counters(), { code: 'invalid-option' });
-    assert.equal((await session.counters()).updates, 4);
-    // The next update may throw the error instead, and the one after it goes on.
-    session.update({ iterations: 65 });
-    await session.triangles().catch(() => undefined);
-    try {
-      session.update();
-    } catch ({ code }) {
-      assert.equal(code, 'invalid-option');
-    }
-    session.update();
-    assert.ok((await session.counters()).updates >= 5);
   }
 });
 

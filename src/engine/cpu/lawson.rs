@@ -105,6 +105,10 @@ impl Engine for Lawson {
         self.cpu.moved()
     }
 
+    fn track_changes(&mut self) -> Answer<'_, ()> {
+        self.cpu.track_changes()
+    }
+
     fn changes(&mut self) -> Answer<'_, Vec<u32>> {
         self.cpu.changes()
     }

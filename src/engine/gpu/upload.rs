@@ -7,7 +7,7 @@ use crate::{Dimension, EngineKind, Error, Mesh, Positions};
 use std::sync::Arc;
 
 /// The most bits of a coordinate without its sign, relative to the centre of the bounding box, in units of the grid.
-/// The unit of the grid is the largest power of two that divides all coordinates. The same limit is in `points.wgsl`.
+/// The unit of the grid is the largest power of two that divides all coordinates. The same limit is in `integers.wgsl`.
 pub(in crate::engine) const SPAN: u32 = 84;
 /// Below this power of two, no difference of two floats overflows. WGSL guarantees nothing for infinities.
 const LARGEST_EXPONENT: i32 = 126;
@@ -68,15 +68,8 @@ impl Upload {
             Dimension::Two => 0.0,
             Dimension::Three => f64::from(thresholds.deviation).min(libm::scalbn(1.0, highest + 3)),
         };
-        let with = |(lowest, highest): (i32, i32)| {
-            let (magnitude, unit) = parts(deviation(highest));
-            (
-                if magnitude == 0 { lowest } else { lowest.min(unit + magnitude.trailing_zeros() as i32) },
-                highest,
-            )
-        };
+        let with = |(lowest, highest): (i32, i32)| (lowest.min(lowest_bit(deviation(highest))), highest);
         if let Positions::F32(floats) = mesh.positions() {
-            let fit = |(lowest, highest)| highest - lowest < SPAN as i32 && highest < LARGEST_EXPONENT;
             let quick = with(most_exponents(floats));
             let ends = if fit(quick) { quick } else { with(exponents(floats.iter().map(|&x| x.into()))) };
             if fit(ends) {
@@ -105,6 +98,26 @@ impl Upload {
             (None, Positions::F64(_)) => &[],
         }
     }
+}
+
+/// Whether the span of all points, or of the limit for the deviation, allows exact arithmetic.
+fn fit((lowest, highest): (i32, i32)) -> bool {
+    highest - lowest < SPAN as i32 && highest < LARGEST_EXPONENT
+}
+
+/// The exponent of the lowest set bit; that of 0 is beyond all others.
+fn lowest_bit(x: f64) -> i32 {
+    let (magnitude, unit) = parts(x);
+    if magnitude == 0 { i32::MAX } else { unit + magnitude.trailing_zeros() as i32 }
+}
+
+#[cfg(all(target_arch = "wasm32", feature = "js-webgl2"))]
+/// Whether an update to these positions may have to leave edges alone (`left_alone.wgsl`). `deviation` is the limit, or
+/// infinite.
+pub(in crate::engine) fn may_leave_edges(positions: &[f32], deviation: f32) -> bool {
+    let (lowest, highest) = most_exponents(positions);
+    let limit = if deviation.is_finite() { lowest_bit(deviation.into()) } else { i32::MAX };
+    !fit((lowest.min(limit), highest))
 }
 
 /// The coordinates and the limit for the deviation, as integers in units of the grid. The coordinates are relative to

@@ -3,10 +3,11 @@
 use super::errors::{lost, unavailable};
 use super::texture::{Pair, Texture};
 use crate::Error;
+use crate::engine::Answer;
 use crate::engine::gpu::probe::ends_loops_early;
 use crate::engine::gpu::self_test::Tested;
 use js_sys::{Function, Object, Promise, Reflect, Uint32Array};
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::rc::Rc;
 use wasm_bindgen::prelude::*;
 use wasm_bindgen_futures::JsFuture;
@@ -14,6 +15,8 @@ use web_sys::{HtmlCanvasElement, OffscreenCanvas, WebGl2RenderingContext as Gl, 
 
 /// The most bits of the width of a texture. Wider rows have no advantage.
 const MOST_WIDTH_BITS: u32 = 12;
+/// Texture units, as in `shaders/webgl2/state.wgsl`; one number stands for the parameters.
+const UNITS: i32 = 10;
 /// Milliseconds between two polls of the context.
 const PAUSE: i32 = 1;
 /// `COMPLETION_STATUS_KHR`.
@@ -48,7 +51,7 @@ pub(super) struct Context {
     /// The largest side of a texture.
     pub(super) largest_side: u32,
     /// See `shaders/shared/rounds.wgsl`.
-    pub(super) ends_loops_early: bool,
+    pub(super) ends_loops_early: Cell<bool>,
     pub(super) tested: Tested,
     pub(super) params: WebGlBuffer,
     sources: JsValue,
@@ -70,17 +73,17 @@ impl Context {
         if let Some(context) = Self::known() {
             return Ok(context);
         }
-        let context = Rc::new(Self::open(create()?).await?);
+        let context = Self::open(create()?).await?;
         SHARED.set(Some(context.clone()));
         Ok(context)
     }
 
-    async fn open(gl: Gl) -> Result<Self, Error> {
+    async fn open(gl: Gl) -> Result<Rc<Self>, Error> {
         let largest_side = gl.get_parameter(Gl::MAX_TEXTURE_SIZE).ok().and_then(|side| side.as_f64());
-        let mut context = Self {
+        let context = Self {
             adapter: renderer(&gl),
             largest_side: largest_side.map_or(0, |side| side as u32),
-            ends_loops_early: false,
+            ends_loops_early: Cell::new(false),
             tested: Tested::default(),
             params: gl.create_buffer().ok_or_else(|| lost(&gl))?,
             sources: load_sources().await?,
@@ -88,11 +91,12 @@ impl Context {
             compiles_beside: matches!(gl.get_extension("KHR_parallel_shader_compile"), Ok(Some(_))),
             gl,
         };
+        let context = Rc::new(context);
         context.compile(&["probe"]).await?;
         let target = context.texture((1, 1), 4)?;
         context.pass("probe", &[], &target, None)?;
-        let found = context.read(&target, 1).await?;
-        context.ends_loops_early = ends_loops_early(found[0]);
+        let found = context.copy(&target, 1)?.await?;
+        context.ends_loops_early.set(ends_loops_early(found[0]));
         drop(target);
         Ok(context)
     }
@@ -142,7 +146,7 @@ impl Context {
                 return Err(unavailable(format!("it refuses the program {name}: {log}")));
             }
             self.gl.use_program(Some(&program));
-            for unit in 0..8 {
+            for unit in 0..UNITS {
                 let sampler = self.gl.get_uniform_location(&program, &format!("_group_0_binding_{unit}_fs"));
                 self.gl.uniform1i(sampler.as_ref(), unit);
             }
@@ -194,11 +198,16 @@ impl Context {
         if gl.is_context_lost() { Err(lost(gl)) } else { Ok(()) }
     }
 
-    /// Reads at least the first `count` texels, row by row: four words per texel, even if the texture has one.
+    /// Copies at least the first `count` texels of four words, row by row. The copy is made at once; the answer
+    /// waits for it.
     ///
     /// # Errors
     /// [`Error::Device`].
-    pub(super) async fn read(&self, texture: &Texture, count: usize) -> Result<Vec<u32>, Error> {
+    pub(super) fn copy(
+        self: &Rc<Self>,
+        texture: &Texture,
+        count: usize,
+    ) -> Result<Answer<'static, Vec<u32>>, Error> {
         let gl = &self.gl;
         let width = texture.size.0;
         let rows = (count as u32).div_ceil(width);
@@ -218,14 +227,24 @@ impl Context {
             0.0,
         );
         gl.bind_buffer(Gl::PIXEL_PACK_BUFFER, None);
+        if copied.is_err() {
+            gl.delete_buffer(Some(&buffer));
+            return Err(lost(gl));
+        }
+        let context = self.clone();
+        Ok(Box::pin(async move { context.fetch(&buffer, words).await }))
+    }
+
+    async fn fetch(&self, buffer: &WebGlBuffer, words: u32) -> Result<Vec<u32>, Error> {
+        let gl = &self.gl;
         let result = Uint32Array::new_with_length(words);
-        let ended = if copied.is_ok() { self.finish().await } else { Err(lost(gl)) };
+        let ended = self.finish().await;
         if ended.is_ok() {
-            gl.bind_buffer(Gl::PIXEL_PACK_BUFFER, Some(&buffer));
+            gl.bind_buffer(Gl::PIXEL_PACK_BUFFER, Some(buffer));
             gl.get_buffer_sub_data_with_i32_and_array_buffer_view(Gl::PIXEL_PACK_BUFFER, 0, &result);
             gl.bind_buffer(Gl::PIXEL_PACK_BUFFER, None);
         }
-        gl.delete_buffer(Some(&buffer));
+        gl.delete_buffer(Some(buffer));
         ended?;
         match gl.get_error() {
             Gl::NO_ERROR if !gl.is_context_lost() => Ok(result.to_vec()),

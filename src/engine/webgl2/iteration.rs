@@ -6,10 +6,10 @@
 use super::context::Context;
 use super::texture::{Pair, Texture};
 use crate::engine::gpu::upload::Form;
-use crate::engine::{Answer, Census, EdgeCounts, Engine};
+use crate::engine::{Answer, Census, EdgeCounts, Engine, Moved, positions_of};
 use crate::mesh::half_edge;
 use crate::phases::Thresholds;
-use crate::{Dimension, EngineKind, Error, Mesh, NONE};
+use crate::{Dimension, EngineKind, Error, Mesh, NONE, Positions};
 use std::rc::Rc;
 use std::sync::Arc;
 use web_sys::WebGl2RenderingContext as Gl;
@@ -17,17 +17,17 @@ use web_sys::WebGl2RenderingContext as Gl;
 /// Iterations of one batch. Those after the end of a run flip nothing and only cost time.
 pub(super) const BATCH: u32 = 16;
 /// Words of the parameters.
-pub(super) const PARAMS: usize = 28;
+pub(super) const PARAMS: usize = 32;
 
 // Texture units, as in `shaders/webgl2/state.wgsl`.
 const POSITIONS: u32 = 0;
 const TRIANGLES: u32 = 1;
 pub(super) const TWINS: u32 = 2;
 const BESTS: u32 = 3;
-const SELECTIONS: u32 = 4;
-const FANS: u32 = 5;
+pub(super) const SELECTIONS: u32 = 4;
+pub(super) const FANS: u32 = 5;
 pub(super) const VERDICTS: u32 = 6;
-const COUNTS: u32 = 7;
+pub(super) const COUNTS: u32 = 7;
 
 /// A mesh in textures.
 pub(crate) struct WebGl {
@@ -46,10 +46,29 @@ pub(crate) struct WebGl {
     pub(super) fans: Pair,
     /// Sums of counts. Each texture is an eighth as wide and as high as the one before. The last one is one block.
     pub(super) sums: Vec<Texture>,
-    /// For each iteration of a batch, twice its flips, because both triangles of a flip count it; or a census.
+    /// For each iteration of a batch or an update, twice its flips, because both triangles of a flip count it; or a
+    /// census.
     pub(super) history: Texture,
     pub(super) has_locks: bool,
+    pub(super) moving: Moving,
     pub(super) passes: u64,
+}
+
+/// What updates need, and nothing else.
+pub(super) struct Moving {
+    /// One texel: the flips of all updates.
+    pub(super) totals: Pair,
+    /// For each triangle the update in which it last changed, if somebody asks for it. Of four words per texel, because
+    /// browsers read others slowly.
+    pub(super) changes: Option<Texture>,
+    /// Whether the programs of the updates are compiled.
+    pub(super) is_settled: bool,
+}
+
+impl Moving {
+    pub(super) fn new(totals: Pair) -> Self {
+        Self { totals, changes: None, is_settled: false }
+    }
 }
 
 impl WebGl {
@@ -59,7 +78,7 @@ impl WebGl {
     }
 
     /// Computes the verdicts on all present edges, without the test for duplicates.
-    fn judge(&mut self) -> Result<(), Error> {
+    pub(super) fn judge(&mut self) -> Result<(), Error> {
         self.write_params();
         let before = [(SELECTIONS, &self.selections), (VERDICTS, &self.verdicts.front)];
         self.context.pass(
@@ -81,7 +100,7 @@ impl WebGl {
     }
 
     /// Encodes the passes of one iteration. Twice its flips goes to a column of the history.
-    fn encode_iteration(&mut self, column: u32) -> Result<(), Error> {
+    pub(super) fn encode_iteration(&mut self, column: u32) -> Result<(), Error> {
         self.judge()?;
         let (context, mesh) = (&self.context, self.mesh());
         let with = |more: &[(u32, &Texture)], program, target: &Texture| {
@@ -108,7 +127,7 @@ impl WebGl {
     }
 
     /// Sums the counts in `sums[0]` into a column of the history.
-    fn sum_up(&mut self, column: u32) -> Result<(), Error> {
+    pub(super) fn sum_up(&mut self, column: u32) -> Result<(), Error> {
         for pair in self.sums.windows(2) {
             self.context.pass("sum", &[(COUNTS, &pair[0])], &pair[1], None)?;
         }
@@ -126,7 +145,7 @@ impl WebGl {
                 self.params[2] = first + column;
                 self.encode_iteration(column)?;
             }
-            let history = self.context.read(&self.history, batch as usize).await?;
+            let history = self.context.copy(&self.history, batch as usize)?.await?;
             let ran = history.chunks_exact(4).map(|texel| texel[0] / 2).take_while(|&n| n > 0);
             let before = flips.len();
             flips.extend(ran);
@@ -153,7 +172,7 @@ impl WebGl {
             self.passes += 2;
             self.sum_up(column)?;
         }
-        self.context.read(&self.history, programs.len()).await
+        self.context.copy(&self.history, programs.len())?.await
     }
 
     pub(super) async fn flag_locked(&mut self, half_edges: Vec<u32>) -> Result<(), Error> {
@@ -166,7 +185,7 @@ impl WebGl {
 
     /// Reads the first three words of each triangle's texel.
     pub(super) async fn read_threes(&self, texture: &Texture) -> Result<Vec<u32>, Error> {
-        let words = self.context.read(texture, self.count).await?;
+        let words = self.context.copy(texture, self.count)?.await?;
         Ok(words.chunks_exact(4).take(self.count).flat_map(|texel| [texel[0], texel[1], texel[2]]).collect())
     }
 }
@@ -217,6 +236,31 @@ impl Engine for WebGl {
 
     fn set_positions(&mut self, mesh: Arc<Mesh>) -> Answer<'_, ()> {
         Box::pin(self.move_vertices(mesh))
+    }
+
+    fn settle(&mut self) -> Answer<'_, ()> {
+        Box::pin(self.settle_updates())
+    }
+
+    fn update(&mut self, positions: Option<Positions>, iterations: u32) -> Result<(), Error> {
+        self.submit_update(positions.as_ref(), iterations)
+    }
+
+    fn moved(&mut self) -> Answer<'static, Moved> {
+        let counted = self.count_moved();
+        Box::pin(async { Ok(Moved::of_counts(&counted?.await?)) })
+    }
+
+    fn track_changes(&mut self) -> Answer<'_, ()> {
+        Box::pin(std::future::ready(self.begin_changes()))
+    }
+
+    fn changes(&mut self) -> Answer<'_, Vec<u32>> {
+        Box::pin(self.read_changes())
+    }
+
+    fn positions(&mut self) -> Answer<'_, Positions> {
+        Box::pin(async { Ok(positions_of(self.read_positions().await?)) })
     }
 
     fn edge_counts(&self) -> EdgeCounts {

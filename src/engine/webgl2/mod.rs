@@ -10,6 +10,9 @@ mod iteration;
 #[cfg(feature = "js")]
 mod module_proxy;
 #[cfg(feature = "js-webgl2")]
+mod moving;
+mod question;
+#[cfg(feature = "js-webgl2")]
 mod start;
 #[cfg(feature = "js-webgl2")]
 mod texture;
@@ -22,3 +25,5 @@ pub(crate) use iteration::WebGl;
 pub use module_proxy::WebGl2Module;
 #[cfg(feature = "js")]
 pub(crate) use module_proxy::{Proxy, set_webgl2};
+#[cfg(feature = "js-webgl2")]
+pub(crate) use question::Question;

@@ -1,7 +1,8 @@
 //! A proxy of the WebGL2 engine, in the module of the other engines. It calls the exports of `src/wasm/webgl2.rs`.
 
-use crate::engine::{Answer, Census, EdgeCounts, Engine};
-use crate::{EngineKind, Error, Mesh};
+use super::question::Question;
+use crate::engine::{Answer, Census, EdgeCounts, Engine, Moved, positions_of};
+use crate::{EngineKind, Error, Mesh, Positions};
 use js_sys::{Object, Promise, Reflect, Uint32Array};
 use std::cell::RefCell;
 use std::sync::Arc;
@@ -26,17 +27,11 @@ extern "C" {
     /// `JsWebGl2`.
     type Remote;
     #[wasm_bindgen(method, catch)]
-    fn lock(this: &Remote, half_edges: Uint32Array) -> Result<Promise, JsValue>;
-    #[wasm_bindgen(method, catch)]
-    fn iterate(this: &Remote, count: u32) -> Result<Promise, JsValue>;
-    #[wasm_bindgen(method, catch)]
-    fn census(this: &Remote) -> Result<Promise, JsValue>;
-    #[wasm_bindgen(method, catch)]
-    fn triangles(this: &Remote) -> Result<Promise, JsValue>;
-    #[wasm_bindgen(method, catch)]
-    fn twins(this: &Remote) -> Result<Promise, JsValue>;
+    fn ask(this: &Remote, question: u32, words: Uint32Array) -> Result<Promise, JsValue>;
     #[wasm_bindgen(method, catch, js_name = setPositions)]
     fn set_positions(this: &Remote, positions: JsValue, indices: Uint32Array) -> Result<Promise, JsValue>;
+    #[wasm_bindgen(method, catch)]
+    fn update(this: &Remote, positions: JsValue, iterations: u32) -> Result<(), JsValue>;
     #[wasm_bindgen(method, getter)]
     fn batch(this: &Remote) -> u32;
     #[wasm_bindgen(method, getter, js_name = edgeCounts)]
@@ -62,6 +57,7 @@ pub(crate) fn set_webgl2(module: WebGl2Module) {
 pub(crate) struct Proxy {
     remote: Remote,
     counts: EdgeCounts,
+    is_settled: bool,
 }
 
 impl Proxy {
@@ -85,7 +81,19 @@ impl Proxy {
             non_manifold: counts[2],
             inconsistent: counts[3],
         };
-        Ok(Self { remote, counts })
+        Ok(Self { remote, counts, is_settled: false })
+    }
+}
+
+impl Proxy {
+    fn ask(&self, question: Question, words: &[u32]) -> Answer<'static, Vec<u32>> {
+        let asked = self.remote.ask(question as u32, words.into());
+        Box::pin(async { Ok(Uint32Array::new(&answer(asked).await?).to_vec()) })
+    }
+
+    fn tell(&self, question: Question, words: &[u32]) -> Answer<'static, ()> {
+        let asked = self.ask(question, words);
+        Box::pin(async { asked.await.map(drop) })
     }
 }
 
@@ -98,27 +106,21 @@ impl Drop for Proxy {
 
 async fn answer(asked: Result<Promise, JsValue>) -> Result<JsValue, Error> {
     let answer = async { JsFuture::from(asked?).await };
-    answer.await.map_err(|thrown| {
-        let text = |name: &str| Reflect::get(&thrown, &name.into()).ok().and_then(|text| text.as_string());
-        let message = text("message").unwrap_or_default();
-        match text("code").as_deref() {
-            Some("backend-limit") => Error::BackendLimit { backend: EngineKind::WebGl, message },
-            Some("backend-unavailable" | "load-failed") => unavailable(message),
-            _ => Error::Device { message },
-        }
-    })
+    answer.await.map_err(error_of)
+}
+
+fn error_of(thrown: JsValue) -> Error {
+    let text = |name: &str| Reflect::get(&thrown, &name.into()).ok().and_then(|text| text.as_string());
+    let message = text("message").unwrap_or_default();
+    match text("code").as_deref() {
+        Some("backend-limit") => Error::BackendLimit { backend: EngineKind::WebGl, message },
+        Some("backend-unavailable" | "load-failed") => unavailable(message),
+        _ => Error::Device { message },
+    }
 }
 
 fn unavailable(message: String) -> Error {
     Error::BackendUnavailable { backend: EngineKind::WebGl, message }
-}
-
-fn words(asked: Result<Promise, JsValue>) -> Answer<'static, Vec<u32>> {
-    Box::pin(async { Ok(Uint32Array::new(&answer(asked).await?).to_vec()) })
-}
-
-fn done(asked: Result<Promise, JsValue>) -> Answer<'static, ()> {
-    Box::pin(async { answer(asked).await.map(drop) })
 }
 
 impl Engine for Proxy {
@@ -127,28 +129,68 @@ impl Engine for Proxy {
     }
 
     fn lock(&mut self, half_edges: Vec<u32>) -> Answer<'_, ()> {
-        done(self.remote.lock(half_edges.as_slice().into()))
+        self.tell(Question::Lock, &half_edges)
     }
 
     fn iterate(&mut self, count: u32) -> Answer<'_, Vec<u32>> {
-        words(self.remote.iterate(count))
+        self.ask(Question::Iterate, &[count])
     }
 
     fn census(&mut self) -> Answer<'_, Census> {
-        let counts = words(self.remote.census());
+        let counts = self.ask(Question::Census, &[]);
         Box::pin(async { Ok(Census::of_counts(&counts.await?)) })
     }
 
     fn triangles(&mut self) -> Answer<'_, Vec<u32>> {
-        words(self.remote.triangles())
+        self.ask(Question::Triangles, &[])
     }
 
     fn twins(&mut self) -> Answer<'_, Vec<u32>> {
-        words(self.remote.twins())
+        self.ask(Question::Twins, &[])
     }
 
     fn set_positions(&mut self, mesh: Arc<Mesh>) -> Answer<'_, ()> {
-        done(self.remote.set_positions(mesh.positions().to_typed_array(), mesh.triangles().into()))
+        Box::pin(async move {
+            let (positions, triangles) = (mesh.positions().to_typed_array(), mesh.triangles().into());
+            answer(self.remote.set_positions(positions, triangles)).await?;
+            self.is_settled = false;
+            Ok(())
+        })
+    }
+
+    fn is_settled(&self) -> bool {
+        self.is_settled
+    }
+
+    fn settle(&mut self) -> Answer<'_, ()> {
+        Box::pin(async {
+            self.tell(Question::Settle, &[]).await?;
+            self.is_settled = true;
+            Ok(())
+        })
+    }
+
+    fn update(&mut self, positions: Option<Positions>, iterations: u32) -> Result<(), Error> {
+        let array = positions.as_ref().map_or(JsValue::UNDEFINED, Positions::to_typed_array);
+        self.remote.update(array, iterations).map_err(error_of)
+    }
+
+    fn moved(&mut self) -> Answer<'static, Moved> {
+        let counts = self.ask(Question::Moved, &[]);
+        Box::pin(async { Ok(Moved::of_counts(&counts.await?)) })
+    }
+
+    fn track_changes(&mut self) -> Answer<'_, ()> {
+        self.tell(Question::TrackChanges, &[])
+    }
+
+    fn changes(&mut self) -> Answer<'_, Vec<u32>> {
+        self.ask(Question::Changes, &[])
+    }
+
+    fn positions(&mut self) -> Answer<'_, Positions> {
+        let bits = self.ask(Question::Positions, &[]);
+        Box::pin(async { Ok(positions_of(bits.await?)) })
     }
 
     fn edge_counts(&self) -> EdgeCounts {

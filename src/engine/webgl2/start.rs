@@ -2,11 +2,12 @@
 
 use super::context::Context;
 use super::errors::refuse;
-use super::iteration::{BATCH, PARAMS, TWINS, VERDICTS, WebGl, deciders, in_fours};
+use super::iteration::{BATCH, Moving, PARAMS, TWINS, VERDICTS, WebGl, deciders, in_fours};
+use super::moving::in_texels;
 use crate::engine::gpu::cosine::Cosine;
 use crate::engine::gpu::probe::SHORT_STAR;
 use crate::engine::gpu::upload::Upload;
-use crate::engine::{Answer, EdgeCounts, Engine, self_test};
+use crate::engine::{Answer, EdgeCounts, Engine, MOST_ITERATIONS, self_test};
 use crate::mesh::embedded::Embedded;
 use crate::mesh::half_edge;
 use crate::mesh::star::Fans;
@@ -68,7 +69,7 @@ impl WebGl {
         let (winding, _) =
             Embedded::with_winding(mesh, &adjacency.twins, None, &mut None, &Threads::default());
         let fans = Fans::new(mesh.vertex_count(), mesh.triangles(), &adjacency.twins);
-        if context.ends_loops_early {
+        if context.ends_loops_early.get() {
             refuse_large_star(&context, mesh)?;
         }
         let count = mesh.triangle_count();
@@ -96,8 +97,9 @@ impl WebGl {
             selections: context.texture(whole, 1)?,
             fans: pair(size(fans.table.len())?, 1)?,
             sums,
-            history: context.texture((BATCH, 1), 4)?,
+            history: context.texture((MOST_ITERATIONS.max(BATCH), 1), 4)?,
             has_locks: false,
+            moving: Moving::new(context.pair((1, 1), 4)?),
             passes: 0,
             context,
         };
@@ -107,19 +109,18 @@ impl WebGl {
     }
 
     fn write(&mut self, upload: &Upload, twins: &[u32], winding: &Winding, fans: Fans) -> Result<(), Error> {
-        let stride = self.form.dimension.stride();
-        let point = |p: &[u32]| [p[0], p[1], if stride == 3 { p[2] } else { 0 }, 0];
-        self.positions.write(upload.words().chunks_exact(stride).flat_map(point).collect())?;
+        self.positions.write(in_texels(upload.words(), self.form.dimension))?;
         let is_clockwise = |t: usize| u32::from(winding.is_clockwise(t as u32));
         self.triangles.front.write(in_fours(upload.mesh.triangles(), is_clockwise))?;
         self.twins.front.write(in_fours(twins, |_| NONE))?;
         self.fans.front.write(fans.table)?;
         // With these values, the first iteration tests every triangle.
-        self.bests.front.write(vec![BLOCKED; self.count])?;
-        self.selections.write(vec![NONE; self.count])
+        self.bests.front.fill(BLOCKED);
+        self.selections.fill(NONE);
+        Ok(())
     }
 
-    fn flag_creases(&mut self) -> Result<(), Error> {
+    pub(super) fn flag_creases(&mut self) -> Result<(), Error> {
         if let [_, crease, flag] = deciders(self.form) {
             self.write_params();
             self.context.pass(crease, &self.mesh(), &self.verdicts.back, None)?;
@@ -137,6 +138,9 @@ impl WebGl {
         if self.has_locks {
             let twins = self.read_threes(&self.twins.front).await?;
             moved.flag_locked(half_edge::locked(&twins)).await?;
+        }
+        if self.moving.changes.is_some() {
+            moved.begin_changes()?;
         }
         moved.passes += self.passes;
         *self = moved;
@@ -189,6 +193,6 @@ fn params(upload: &Upload, bits: u32, fans: usize) -> [u32; PARAMS] {
     for (word, digit) in params[8..].iter_mut().zip(cosine.mantissa.into_iter().chain(cosine.power)) {
         *word = digit as u32;
     }
-    params[24..].copy_from_slice(&upload.deviation);
+    params[24..28].copy_from_slice(&upload.deviation);
     params
 }

@@ -38,11 +38,21 @@ impl Texture {
         let (target, point) = (Gl::TEXTURE_2D, Gl::COLOR_ATTACHMENT0);
         gl.framebuffer_texture_2d(Gl::FRAMEBUFFER, point, target, Some(&result.texture), 0);
         match gl.get_error() {
-            Gl::NO_ERROR => Ok(result),
+            Gl::NO_ERROR => {
+                // ANGLE on SwiftShader may give a new texture the texels of a deleted one.
+                result.fill(0);
+                Ok(result)
+            }
             Gl::OUT_OF_MEMORY => refuse(format!("{adapter} has no memory left for the mesh")),
             Gl::CONTEXT_LOST_WEBGL => Err(lost(gl)),
             code => Err(Error::Device { message: format!("WebGL2 reports the error {code:#06x}") }),
         }
+    }
+
+    /// Fills all texels with one word.
+    pub(super) fn fill(&self, word: u32) {
+        self.gl.bind_framebuffer(Gl::FRAMEBUFFER, Some(&self.framebuffer));
+        self.gl.clear_bufferuiv_with_u32_array(Gl::COLOR, 0, &[word; 4]);
     }
 
     /// Writes texels from the first on, row by row, and fills the last row with zeros.

@@ -142,10 +142,10 @@ impl Device {
         Ok(result)
     }
 
-    /// Why a buffer is not mapped: the first error of the device, if there is one.
+    /// Why a buffer is not mapped: the first error of the device. A device of the caller, which is lost, tells of that
+    /// in no other way.
     pub(super) fn not_mapped(&self) -> Error {
-        let message = || "the driver did not map a staging buffer".to_owned();
-        self.check().err().unwrap_or_else(|| Error::Device { message: message() })
+        self.report("the driver did not map a staging buffer".to_owned())
     }
 
     /// Submits commands.

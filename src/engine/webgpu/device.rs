@@ -4,7 +4,7 @@
 use super::browser;
 use super::buffer::{Buffer, Kept};
 use super::compile;
-use super::faults::{Fault, refuse, unavailable, watch};
+use super::faults::{Caught, Fault, refuse, unavailable, watch};
 use super::kernels::{Kernels, Plan, WORKGROUP_SIZE};
 #[cfg(not(target_arch = "wasm32"))]
 use super::own_device;
@@ -17,6 +17,8 @@ use std::rc::Rc;
 #[cfg(test)]
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 use std::sync::{Arc, Mutex};
+#[cfg(not(target_arch = "wasm32"))]
+use std::task::{Context, Poll, Waker};
 use wgpu::BufferUsages;
 
 /// Workgroups that WebGPU allows in one dimension.
@@ -287,12 +289,34 @@ impl Device {
         failure.clone().map_or(Ok(()), |message| Err(Error::Device { message }))
     }
 
+    /// Records an error. Returns the first one of the device.
+    pub(super) fn report(&self, message: String) -> Error {
+        let mut failure = self.failure.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+        Error::Device { message: failure.get_or_insert(message).clone() }
+    }
+
     /// Records a fault, and checks the device.
     pub(super) fn judge(&self, fault: Option<Fault>) -> Result<(), Error> {
         if let Some(fault) = fault {
             report(&self.failure, fault.to_string());
         }
         self.check()
+    }
+
+    /// Records a fault when the device tells it, for calls that nobody waits for.
+    pub(super) fn keep_watch(&self, mut caught: Caught) {
+        let failure = self.failure.clone();
+        #[cfg(target_arch = "wasm32")]
+        wasm_bindgen_futures::spawn_local(async move {
+            if let Some(fault) = caught.as_mut().await {
+                report(&failure, fault.to_string());
+            }
+        });
+        // A native device tells at once.
+        #[cfg(not(target_arch = "wasm32"))]
+        if let Poll::Ready(Some(fault)) = caught.as_mut().poll(&mut Context::from_waker(Waker::noop())) {
+            report(&failure, fault.to_string());
+        }
     }
 
     /// Makes calls to the device, and waits for their faults.

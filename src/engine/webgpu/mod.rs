@@ -85,8 +85,6 @@ pub(crate) struct WebGpu {
     topology_words: u32,
     /// The winding, once the host knows it.
     winding: u32,
-    /// The faults of the last update, until the host has checked them.
-    faults: Option<Caught>,
     buffers: Buffers,
     /// The counters of the adjacency, then the signs of the triangles.
     counters: Buffer,

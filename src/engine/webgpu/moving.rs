@@ -6,7 +6,7 @@ use super::faults::{refuse, watch};
 use super::history::{COUNTS, ENTRIES, FLIPPED, NOT_POSITIVE};
 use super::kernels::Kernel;
 use super::steps::Step;
-use crate::engine::{Answer, Census, MOST_ITERATIONS, Moved};
+use crate::engine::{Answer, Moved, positions_of};
 use crate::{Dimension, Error, Positions};
 use wgpu::BufferUsages;
 
@@ -55,11 +55,11 @@ impl WebGpu {
             let mut encoder = gpu.device.create_command_encoder(&Default::default());
             self.record_preparation(&mut encoder);
             self.encode_pass(&mut encoder, &|pass| {
-                self.record_iterations(pass, iterations.min(MOST_ITERATIONS), None);
+                self.record_iterations(pass, iterations, None);
             });
             gpu.submit(encoder);
         });
-        self.faults = Some(faults);
+        gpu.keep_watch(faults);
         self.params.first = self.params.first.wrapping_add(iterations);
         self.dispatches += (Kernel::preparation(self.form.dimension).len() + 4 * iterations as usize) as u64;
         Ok(())
@@ -104,19 +104,12 @@ impl WebGpu {
         if self.state[0] > 0 {
             self.state = self.first_state();
         }
-        let faults = self.faults.replace(caught);
         Box::pin(async move {
-            if let Some(faults) = faults {
-                gpu.judge(faults.await)?;
-            }
+            // The device has told the faults of earlier updates by then.
+            gpu.judge(caught.await)?;
             let words = gpu.read(&snapshot, WORDS).await?;
-            Ok(Moved {
-                census: Census::of_counts(&words[..COUNTS - 2]),
-                infinite: words[COUNTS - 2],
-                wide: words[COUNTS - 1],
-                flips: u64::from(words[FLIPPED]) | u64::from(words[FLIPPED + 1]) << 32,
-                not_positive: words[ENTRIES],
-            })
+            let (counts, flips) = (&words[..COUNTS], &words[FLIPPED..ENTRIES]);
+            Ok(Moved::of_counts(&[counts, &words[ENTRIES..], flips].concat()))
         })
     }
 
@@ -152,6 +145,6 @@ impl WebGpu {
         let count = self.params.vertices as usize * self.form.dimension.stride();
         let words =
             self.gpu.read(self.buffers.floats.as_ref().unwrap_or(&self.buffers.positions), count).await?;
-        Ok(words.into_iter().map(f32::from_bits).collect::<Vec<_>>().into())
+        Ok(positions_of(words))
     }
 }

@@ -179,10 +179,14 @@ impl Device {
         with_shared(|shared| shared.refusal.clone()).map_or(Ok(()), Err)
     }
 
-    /// Takes the shared device away from later sessions. It closes when its last handle goes.
+    /// Takes the shared device, and devices of the caller that no session holds, away from later sessions. A device
+    /// closes when its last handle goes.
     #[cfg(not(target_arch = "wasm32"))]
-    pub(crate) fn taken() -> Option<Handle> {
-        with_shared(|shared| shared.opened.take())
+    pub(crate) fn taken() -> Vec<Handle> {
+        with_shared(|shared| {
+            let idle = shared.adopted.extract_if(.., |device| Handle::strong_count(device) == 1);
+            idle.chain(shared.opened.take()).collect()
+        })
     }
 
     /// The device that the caller has made. This code never destroys it and changes none of its settings.

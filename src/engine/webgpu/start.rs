@@ -59,7 +59,6 @@ impl WebGpu {
                 bindings: buffers.bind(&gpu, &kernels.layout),
                 topology_words: params.fans,
                 winding: WINDING_UNKNOWN,
-                faults: None,
                 kernels,
                 thresholds: upload.thresholds,
                 form: upload.form(),

@@ -1,6 +1,6 @@
 //! Writes the shaders of the WebGL2 engine as a JavaScript module: `cargo run -p glsl -- FILE`. naga translates the
-//! WGSL in `shaders/` to GLSL ES 3.00. There is a program for each entry point of `passes.wgsl` and `crease_pass.wgsl`;
-//! a pass that decides has a program for each form of meshes. Refuses code that old drivers miscompile.
+//! WGSL in `shaders/` to GLSL ES 3.00. There is a program for each entry point of the files with passes; a pass that
+//! decides has a program for each form of meshes. Refuses code that old drivers miscompile.
 
 #[path = "../../../shaders/compose.rs"]
 mod compose;
@@ -16,8 +16,8 @@ use std::error::Error;
 /// A program: its name, the file of its entry point, and the entry point.
 type Program = (&'static str, &'static str, &'static str);
 
-/// Programs for meshes in the plane with coordinates as floats. All except `verdict2` serve every mesh.
-const PLANE: [Program; 12] = [
+/// Programs for meshes in the plane with coordinates as floats. All except `verdict2` and `turned` serve every mesh.
+const PLANE: [Program; 15] = [
     ("cover", "passes", "cover"),
     ("verdict2", "passes", "verdict_pass"),
     ("label", "passes", "label_pass"),
@@ -30,6 +30,9 @@ const PLANE: [Program; 12] = [
     ("flips", "passes", "flips_pass"),
     ("sum", "passes", "sum_pass"),
     ("probe", "passes", "probe_pass"),
+    ("change", "moving_passes", "change_pass"),
+    ("total", "moving_passes", "total_pass"),
+    ("turned", "moving_passes", "turned_pass"),
 ];
 
 /// Programs for surfaces. `flag` serves all surfaces.
@@ -40,7 +43,8 @@ const SPACE: [Program; 3] = [
 ];
 
 /// Programs for coordinates as fixed-point numbers.
-const FIXED_PLANE: [Program; 1] = [("verdict2_fixed", "passes", "verdict_pass")];
+const FIXED_PLANE: [Program; 2] =
+    [("verdict2_fixed", "passes", "verdict_pass"), ("turned_fixed", "moving_passes", "turned_pass")];
 const FIXED_SPACE: [Program; 2] =
     [("verdict3_fixed", "passes", "verdict_pass"), ("crease_fixed", "crease_pass", "crease_pass")];
 

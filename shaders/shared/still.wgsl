@@ -14,10 +14,6 @@ fn is_too_wide(span: vec2u) -> bool {
     return false;
 }
 
-fn leaves_some() -> bool {
-    return false;
-}
-
 fn left_alone(a: Point, b: Point, c: Point, d: Point) -> u32 {
     return DELAUNAY;
 }
