@@ -69,7 +69,7 @@ const states = {
 /** Random points in the middle of their run, light and wide. */
 async function takePicture(browser, address) {
   const page = await browser.newPage({ colorScheme: 'light', viewport: { width: 1280, height: 800 } });
-  await page.goto(address);
+  await page.goto(`${address}#watch`);
   await measured(page);
   await sample(page, 'random 24');
   for (let i = 1; i <= 2; i++) {
@@ -91,14 +91,14 @@ async function takeAll(browser, address) {
       await page.waitForTimeout(300); // until it is drawn
       await page.screenshot({ path: `${folder}/${look}-${name}.png`, fullPage: true });
     };
-    await page.goto(address);
+    await page.goto(`${address}#watch`);
     for (const [name, reach] of Object.entries(states)) {
       await reach(page);
       await shoot(name);
     }
     // Without the WebAssembly modules, the page has no mesh to show.
     await context.route('**/*.wasm', (route) => route.abort());
-    await page.goto(address);
+    await page.goto(`${address}#watch`);
     await page.waitForSelector('#error:not([hidden])');
     await shoot('empty');
     await context.close();

@@ -1,10 +1,26 @@
 // Serves the page during development, and builds it into target/www: static files that any server can serve.
 
-import { readFileSync } from 'node:fs';
+import { existsSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { createRequire } from 'node:module';
 import { fileURLToPath } from 'node:url';
+import subsetFont from 'subset-font';
 import { defineConfig } from 'vite';
+import { writeModels } from './models/models.js';
 
 const at = (path) => fileURLToPath(new URL(path, import.meta.url));
+
+// Inter with the characters and the weights of the page.
+const font = at('../target/fonts/inter.woff2');
+if (!existsSync(font)) {
+  const whole = readFileSync(createRequire(import.meta.url).resolve('inter-ui/variable/InterVariable.woff2'));
+  const latin = Array.from({ length: 0x7f - 0x20 }, (_, i) => String.fromCharCode(0x20 + i)).join('');
+  const variationAxes = { wght: { min: 400, max: 650 }, opsz: { min: 14, max: 32 } };
+  const subset = await subsetFont(whole, `${latin} °²×–—‘’“”…→←↑↓αβγλτπ·≤≥✕`, { targetFormat: 'woff2', variationAxes });
+  mkdirSync(at('../target/fonts'), { recursive: true });
+  writeFileSync(font, subset);
+}
+
+await writeModels(at('../target/public/models'));
 
 // The page's policy, for the header: workers take their policy only from a header.
 const [, policy] = readFileSync(at('index.html'), 'utf8').match(/content="(default-src [^"]*)"/);
@@ -33,6 +49,7 @@ function serveExamples({ middlewares }) {
 export default defineConfig({
   root: at('.'),
   base: './',
+  publicDir: at('../target/public'),
   resolve: {
     alias: [
       { find: /^edgeflip$/, replacement: at('../dist/index.js') },
@@ -52,6 +69,8 @@ export default defineConfig({
     outDir: at('../target/www'),
     emptyOutDir: true,
     target: 'es2022',
+    // The first browsers with `light-dark()`.
+    cssTarget: ['chrome123', 'firefox120', 'safari17.5'],
     assetsInlineLimit: 0,
     chunkSizeWarningLimit: 1500,
   },

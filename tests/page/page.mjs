@@ -98,7 +98,7 @@ export async function openEdgeflip(browser, ...scripts) {
     if (!/^(data|blob):/.test(request.url()) && !request.url().startsWith(address))
       problems.push(`asked for ${request.url()}`);
   });
-  await page.goto(address);
+  await page.goto(`${address}#watch`);
   const edgeflip = new EdgeflipPage(page, problems);
   await edgeflip.rest();
   return edgeflip;

@@ -1,11 +1,24 @@
-/** The generated meshes that the page offers. `spec` names a family of the crate. */
+/** The meshes that the page offers. `spec` names a family of the crate, or a file of `www/models/`. */
 
 export interface Sample {
   spec: string;
   name: string;
+  /** The β that suits it, if it is not that of most meshes. */
+  beta?: number;
 }
 
+/** The folder of the files. */
+export const BROUGHT = 'models/';
+
 export const SAMPLES: readonly { group: string; samples: readonly Sample[] }[] = [
+  {
+    group: 'Real meshes',
+    samples: [
+      // A scan has no sharp edges to keep.
+      { spec: 'models/bunny.ply', name: 'Stanford bunny with random flips', beta: 30 },
+      { spec: 'models/flange.ply', name: 'Flange, cut from solids' },
+    ],
+  },
   {
     group: 'Surfaces',
     samples: [
@@ -32,4 +45,9 @@ export const SAMPLES: readonly { group: string; samples: readonly Sample[] }[] =
 ];
 
 /** The sample that is shown when the page opens. */
-export const FIRST = 'uvsphere 28 0.1';
+export const FIRST = 'models/bunny.ply';
+
+export function sampleOf(spec: string): Sample {
+  const found = SAMPLES.flatMap(({ samples }) => samples).find((sample) => sample.spec === spec);
+  return found ?? { spec, name: spec };
+}

@@ -4,12 +4,18 @@ import { proxy } from 'comlink';
 import { FORMATS, type FileMesh, type IndexedMesh } from 'edgeflip/files';
 import { fromEvent } from 'file-selector';
 import type { Office } from './engines.ts';
+import { BROUGHT, type Sample } from './samples.ts';
 import { folderOf, GLTF, plain, type Kept, type Located, type Report } from './files.ts';
+
+/** The β of most meshes. */
+const BETA = 10;
 
 /** A mesh that can be read. */
 export interface Source {
   /** The name to show while the mesh is read. */
   readonly name: string;
+  /** The β that suits it. */
+  readonly beta: number;
   read(office: Office, report: Report): Promise<Read>;
 }
 
@@ -32,19 +38,27 @@ export function splitName(name: string): [stem: string, extension: string] {
   return [stem, extension];
 }
 
-export function sample(spec: string): Source {
-  const read = async (office: Office) => {
+/** A mesh of the page: of a family, or a file that the page brings. */
+export function sample({ spec, beta = BETA }: Sample): Source {
+  const generate = async (office: Office) => {
     const mesh = await office.ask((desk) => desk.generate(spec));
     return { name: spec, mesh, kept: undefined, others: 0 };
   };
-  return { name: spec, read };
+  const fetched = async (office: Office, report: Report) => {
+    const name = spec.slice(BROUGHT.length);
+    const answer = await fetch(new URL(spec, document.baseURI));
+    if (!answer.ok)
+      throw new Error(`${name} could not be loaded (${answer.status}). Check the connection, and try again.`);
+    return readFirst([{ path: name, file: new File([await answer.blob()], name) }], office, report);
+  };
+  return { name: spec, beta, read: spec.startsWith(BROUGHT) ? fetched : generate };
 }
 
 /** The first mesh of the files; `undefined` if there are no files. */
 export function chosen(files: readonly File[]): Source | undefined {
   const [first] = files;
   const located = files.map((file) => ({ path: file.name, file }));
-  return first && { name: first.name, read: (office, report) => readFirst(located, office, report) };
+  return first && { name: first.name, beta: BETA, read: (office, report) => readFirst(located, office, report) };
 }
 
 /**
@@ -68,7 +82,7 @@ export function dropped(event: DragEvent): Source | undefined {
     }
     return readFirst(files, office, report);
   };
-  return { name, read };
+  return { name, beta: BETA, read };
 }
 
 /** The dropped files, and the files in the dropped folders. */

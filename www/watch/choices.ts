@@ -13,6 +13,8 @@ export class Choices {
   #settings: Settings;
   /** The text of β's control at the last entry. */
   #beta: string;
+  /** Whether the user has chosen β. Else it follows the mesh. */
+  #isOwn = false;
 
   /** Takes the values of the controls, because some browsers restore them when a page is reloaded. */
   constructor() {
@@ -36,8 +38,15 @@ export class Choices {
       controls.beta.value = this.#beta;
       throw new Error('β is an angle from 0 to 180 degrees.');
     }
+    this.#isOwn ||= controls.beta.value !== this.#beta;
     this.#settings = settingsNow();
     this.#beta = controls.beta.value;
+  }
+
+  /** Takes the β that suits a mesh, unless the user has chosen one or is typing it. */
+  suggest(beta: number): void {
+    if (this.#isOwn || controls.beta.value !== this.#beta) return;
+    this.set({ ...this.#settings, maxNormalAngle: beta });
   }
 
   /** Changes the settings and shows them, but does not overwrite a β that the user is typing. */

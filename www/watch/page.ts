@@ -11,11 +11,12 @@ import { Handover } from './handover.ts';
 import { Jobs, showError, showProgress } from './jobs.ts';
 import { fingerprintOf, measure } from './measure.ts';
 import { Opening, type Opened } from './opening.ts';
+import { onTheme } from '../shell/theme.ts';
 import { palette } from './palette.ts';
 import { Panel } from './panel.ts';
 import { Player } from './player.ts';
 import type { OpenMesh, Run, Summary } from './run.ts';
-import { sample, splitName, type Source } from './sources.ts';
+import { splitName, type Source } from './sources.ts';
 import { showTransport, statusOf } from './transport.ts';
 import { unitPositions } from './unit.ts';
 
@@ -57,12 +58,12 @@ export class Page {
   /** The mesh whose run has lost a GPU before. */
   #lost: Opened | undefined;
 
-  async start(spec: string): Promise<void> {
+  async start(source: Source): Promise<void> {
     this.#panel.setPalette(palette());
     this.#panel.clear();
-    matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => this.#recolour());
+    onTheme(() => this.#recolour());
     this.#graphics.open();
-    const opening = this.open(sample(spec));
+    const opening = this.open(source);
     startWorker();
     await opening;
   }
@@ -73,6 +74,7 @@ export class Page {
     const opening = new Opening(source, showProgress);
     this.#opening = opening;
     this.#source = source;
+    this.#choices.suggest(source.beta);
     await this.#jobs.attempt(`Opening ${source.name}…`, async (signal) => {
       const opened = await opening.read;
       signal.throwIfAborted();

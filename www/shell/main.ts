@@ -1,0 +1,67 @@
+/** Starts the page: the first view at once, everything else when it is asked for. */
+
+import { onTheme, toggleTheme } from './theme.ts';
+
+const part = <T extends HTMLElement>(selector: string): T => {
+  const found = document.querySelector<T>(selector);
+  if (!found) throw new Error(`the page has no ${selector}`);
+  return found;
+};
+
+const number = new Intl.NumberFormat('en');
+const [live, liveText, playAnyway] = [part('#live'), part('#live-text'), part('#play-anyway')];
+const stillness = matchMedia('(prefers-reduced-motion: reduce)');
+
+/** The first view, once its code is loaded. */
+const hero = import('../hero/hero.ts').then(({ Hero }) => {
+  const hero = new Hero(part('#first canvas'), ({ triangles, flips }) => {
+    live.hidden = false;
+    liveText.textContent = stillness.matches
+      ? `${number.format(triangles)} triangles. Motion is off, as your system asks.`
+      : `Live: ${number.format(triangles)} triangles, ${number.format(flips)} flips in this frame`;
+  });
+  onTheme(() => hero.repaint());
+  return hero;
+});
+
+let moves = !stillness.matches;
+
+/** The tool, once it has been asked for. */
+let tool: Promise<void> | undefined;
+
+/** Shows the first view or the tool, whichever the address names. */
+async function show(): Promise<void> {
+  const watches = location.hash === '#watch';
+  const isFirst = !watches && document.body.dataset.view !== 'watch';
+  const view = watches ? 'watch' : location.hash === '#first' || isFirst ? 'first' : 'watch';
+  document.body.dataset.view = view;
+  for (const link of document.querySelectorAll('.top nav a')) {
+    link.toggleAttribute('aria-current', link.getAttribute('href') === location.hash);
+  }
+  if (view === 'watch') {
+    void hero.then((hero) => hero.stop());
+    tool ??= import('../watch/main.ts').then(({ start }) => start());
+    await tool;
+  } else {
+    await (await hero).start(moves);
+    playAnyway.hidden = moves;
+  }
+}
+
+part('#theme').addEventListener('click', toggleTheme);
+playAnyway.addEventListener('click', () => {
+  moves = true;
+  void show();
+});
+addEventListener('hashchange', () => void show());
+const watch = () => (location.hash = '#watch');
+part('#file').addEventListener('change', watch);
+document.addEventListener('dragenter', watch);
+let width = innerWidth;
+addEventListener('resize', () => {
+  // The bars of a phone's browser change only the height.
+  if (document.body.dataset.view === 'first' && innerWidth !== width) void show();
+  width = innerWidth;
+});
+
+void show();
