@@ -1,0 +1,30 @@
+/** The section "How a mesh becomes Delaunay": words, and six figures that run the engine. */
+
+import './explain.css';
+import './drawings.css';
+import { circle } from './circle.ts';
+import { ends } from './ends.ts';
+import { mountFigure } from './figure.ts';
+import { flip } from './flip.ts';
+import { label } from './label.ts';
+import { select } from './select.ts';
+import { update } from './update.ts';
+
+const TITLE = 'How a mesh becomes Delaunay';
+const LEDE =
+  'A mesh is points joined into triangles. The same points can be joined in many ways, and some of them give long, thin triangles that shade, simulate and interpolate badly. One way is best. Here is how the edges find it, all at once. Each figure runs the real engine on a tiny mesh.';
+
+/** Puts the section into `host`. */
+export function mountExplanation(host: HTMLElement): void {
+  const head = document.createElement('header');
+  head.className = 'explain-head';
+  const title = document.createElement('h2');
+  title.textContent = TITLE;
+  const lede = document.createElement('p');
+  lede.textContent = LEDE;
+  head.append(title, lede);
+  const figures = document.createElement('div');
+  figures.className = 'explain-figures';
+  figures.append(...[circle, label, select, flip, update, ends].map((figure, i) => mountFigure(figure, i + 1)));
+  host.append(head, figures);
+}
