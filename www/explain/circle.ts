@@ -43,7 +43,7 @@ async function start({ svg, say }: Stage): Promise<void> {
     const edges = edgesOf(frame).map(
       ({ ends: [from, to], state }): Shape => ({
         d: polyline([points[from]!, points[to]!]),
-        kind: `explain-edge explain-${state}`,
+        kind: `explain-quiet explain-${state}`,
       }),
     );
     drawShapes(shapes, [

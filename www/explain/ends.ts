@@ -1,6 +1,6 @@
 /** Figure 6: on a bowl, a flip lets the surface sink. */
 
-import { between, drawDots, drawLabels, drawShapes, layer, polygon, polyline } from './draw.ts';
+import { arrow, between, drawDots, drawLabels, drawShapes, layer, polygon, polyline } from './draw.ts';
 import type { Figure, Stage } from './figure.ts';
 import { loop } from './loop.ts';
 import { type Frame, flipping, type Point, record } from './mesh.ts';
@@ -17,7 +17,7 @@ const RIM = 1.12;
 const height = ([x, y]: Point) => x * x + y * y;
 
 /** Where a point is drawn that lies `lift` above the plane. */
-const seen = ([x, y]: Point, lift: number): Point => [190 + 132 * x + 24 * y, 208 - 42 * y - 120 * lift];
+const seen = ([x, y]: Point, lift: number): Point => [190 + 132 * x + 24 * y, 206 - 42 * y - 112 * lift];
 
 const lifted = (point: Point) => seen(point, height(point));
 
@@ -53,6 +53,8 @@ async function start(stage: Stage): Promise<void> {
   const top = between([0, height(ridge[0])], [0, height(ridge[1])], along)[1];
   const bottom = between([0, height(valley[0])], [0, height(valley[1])], across)[1];
 
+  const low = seen(middle, bottom);
+
   drawShapes(layer(stage.svg, ''), bowl());
   const shapes = layer(stage.svg, '');
   drawDots(layer(stage.svg, 'explain-dots'), POINTS.map(lifted), 4.5);
@@ -74,15 +76,15 @@ async function start(stage: Stage): Promise<void> {
         d: polygon([from!, to!, fold]),
         kind: `explain-sheet explain-${heat}`,
       })),
+      { d: polygon([a, d, b, c]), kind: 'explain-border' },
       { d: polyline([c, d]), kind: sunk < 1 ? 'explain-other' : 'explain-edge explain-bold explain-fresh' },
-      {
-        d: sunk < 1 ? polyline([a, fold, b]) : polyline([a, b]),
-        kind: sunk < 1 ? 'explain-edge explain-bold explain-flips' : 'explain-other',
-      },
+      { d: polyline([a, b]), kind: sunk > 0 ? 'explain-other' : 'explain-edge explain-bold explain-flips' },
+      { d: sunk > 0 && sunk < 1 ? polyline([a, fold, b]) + polyline([c, fold, d]) : '', kind: 'explain-trail' },
+      { d: sunk > 0 ? '' : arrow(between(fold, low, 0.2), between(fold, low, 0.85)), kind: 'explain-sinks' },
     ]);
     drawLabels(labels, [
-      { text: 'ridge', at: [a[0] * 0.25 + b[0] * 0.75, a[1] - 10], kind: 'explain-hot' },
-      { text: 'valley', at: [c[0] + 30, c[1] + 30] },
+      { text: 'ridge', at: [a[0] * 0.25 + b[0] * 0.75, a[1] - 10], kind: sunk < 1 ? 'explain-hot' : '' },
+      { text: 'valley', at: [c[0] + 34, c[1] + 34] },
     ]);
     stage.say(sunk < 1 ? 'A ridge: this edge is not Delaunay' : 'A valley: the surface has sunk', sunk < 1);
   });

@@ -3,23 +3,16 @@
 import { type D3DragEvent, drag } from 'd3-drag';
 import { drawDots, drawLabels, drawShapes, layer, polygon, polyline, turned } from './draw.ts';
 import type { Figure, Stage } from './figure.ts';
+import { addKnob } from './handles.ts';
 import { glide } from './loop.ts';
 import { corners, type Frame, flipping, type Point, record } from './mesh.ts';
 
-const POINTS: Point[] = [
-  [58, 134],
-  [326, 112],
-  [176, 28],
-  [214, 216],
-];
+// biome-ignore format: left, right, top, bottom
+const POINTS: Point[] = [[58, 132], [326, 110], [176, 38], [214, 206]];
 const TRIANGLES = [0, 1, 2, 1, 0, 3];
-const NAMES = ['a', 'b', 'c', 'd'];
-const NAMES_AT: Point[] = [
-  [38, 139],
-  [346, 117],
-  [176, 16],
-  [214, 237],
-];
+const NAMES = ['p', 'q', 'r', 's'];
+// biome-ignore format: beside the points
+const NAMES_AT: Point[] = [[36, 137], [348, 115], [176, 24], [214, 230]];
 const KEYS: Record<string, number> = { ArrowLeft: 0, ArrowDown: 0, Home: 0, ArrowRight: 1, ArrowUp: 1, End: 1 };
 
 /** The triangles as the engine holds them. */
@@ -56,15 +49,7 @@ async function start({ svg, say }: Stage): Promise<void> {
   const line = handle.append('path').attr('class', 'explain-turning');
   const reach = handle.append('path').attr('class', 'explain-reach');
   const knobs = [0, 1].map(() => handle.append('g'));
-  for (const knob of knobs) {
-    for (const [kind, radius] of [
-      ['reach', 24],
-      ['ring', 12],
-      ['knob', 7],
-    ] as const) {
-      knob.append('circle').attr('class', `explain-${kind}`).attr('r', radius);
-    }
-  }
+  for (const knob of knobs) addKnob(knob);
 
   let at = 0;
   let stop = () => {};
@@ -75,9 +60,9 @@ async function start({ svg, say }: Stage): Promise<void> {
     const swept = Array.from({ length: 10 }, (_, i) => i / 10).filter((t) => t < at);
     drawShapes(shapes, [
       { d: polygon([starts[0], goals[0], starts[1], goals[1]]), kind: 'explain-outline' },
-      ...corners(frame).map((triangle) => ({
-        d: polygon(triangle.map((corner) => POINTS[corner]!)),
-        kind: at === 0 || at === 1 ? 'explain-face' : '',
+      ...corners(frame).map((triangle, slot) => ({
+        d: at > 0 && at < 1 ? '' : polygon(triangle.map((corner) => POINTS[corner]!)),
+        kind: `explain-slot-${slot}`,
       })),
       { d: polyline(starts), kind: 'explain-other' },
       { d: polyline(goals), kind: 'explain-other' },
@@ -87,7 +72,9 @@ async function start({ svg, say }: Stage): Promise<void> {
     line.classed('explain-done', at === 1);
     knobs.forEach((knob, end) => void knob.attr('transform', `translate(${ends[end]})`));
     const words =
-      at > 0 && at < 1 ? 'The edge turns; no point moves' : `${at === 0 ? 'Before' : 'After'}: ${named(frame)}`;
+      at > 0 && at < 1
+        ? 'The edge turns; no point moves'
+        : `${at === 0 ? 'Before' : 'After'}: triangles ${named(frame)}`;
     handle.attr('aria-valuenow', Math.round(100 * at)).attr('aria-valuetext', words);
     say(words, at === 0);
   };

@@ -1,6 +1,7 @@
 /** Points that the pointer and the arrow keys move. */
 
 import { type D3DragEvent, drag } from 'd3-drag';
+import type { BaseType, Selection } from 'd3-selection';
 import type { Svg } from './draw.ts';
 import type { Point } from './mesh.ts';
 
@@ -15,6 +16,14 @@ export interface Handle {
 const ARROWS: Record<string, Point> = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
 
 const within = (value: number, [least, most]: [number, number]) => Math.min(most, Math.max(least, value));
+
+/** What a handle looks like, with its ring when it has the focus, and a reach that fingers hit. */
+export function addKnob<Datum, Parent extends BaseType>(groups: Selection<SVGGElement, Datum, Parent, unknown>): void {
+  const parts = { reach: 24, ring: 12, knob: 7 };
+  for (const [kind, radius] of Object.entries(parts)) {
+    groups.append('circle').attr('class', `explain-${kind}`).attr('r', radius);
+  }
+}
 
 /** Adds handles to a drawing. They change `points`, then call `moved`. Returns what draws them. */
 export function addHandles(svg: Svg, points: Point[], handles: readonly Handle[], moved: () => void): () => void {
@@ -47,12 +56,6 @@ export function addHandles(svg: Svg, points: Point[], handles: readonly Handle[]
       const [x, y] = points[handle.point]!;
       move(handle, [x + step * arrow[0], y + step * arrow[1]]);
     });
-  for (const [kind, radius] of [
-    ['reach', 24],
-    ['ring', 12],
-    ['knob', 7],
-  ] as const) {
-    groups.append('circle').attr('class', `explain-${kind}`).attr('r', radius);
-  }
+  addKnob(groups);
   return () => groups.attr('transform', ({ point }) => `translate(${points[point]!.join()})`);
 }

@@ -12,7 +12,7 @@ import { update } from './update.ts';
 
 const TITLE = 'How a mesh becomes Delaunay';
 const LEDE =
-  'A mesh is points joined into triangles. The same points can be joined in many ways, and some of them give long, thin triangles that shade, simulate and interpolate badly. One way is best. Here is how the edges find it, all at once. Each figure runs the real engine on a tiny mesh.';
+  'A mesh is points joined into triangles. The same points can be joined in many ways, and some of them give long, thin triangles that shade, simulate and interpolate badly. One way is best. Here is how the edges find it, all at once. Each figure runs the real engine.';
 
 /** Puts the section into `host`. */
 export function mountExplanation(host: HTMLElement): void {

@@ -1,34 +1,21 @@
 /** Figure 3: which edges flip in a round, and which wait. */
 
-import { drawDots, drawShapes, layer, middle, polyline, type Shape, towards, turned } from './draw.ts';
+import { arrow, drawDots, drawShapes, layer, middle, polygon, polyline, type Shape, towards, turned } from './draw.ts';
 import type { Figure, Stage } from './figure.ts';
 import { loop } from './loop.ts';
 import { corners, type Edge, edgesOf, type Frame, flipping, type Point, record } from './mesh.ts';
 
+// biome-ignore format: the points on the outline, and those inside
 const POINTS: Point[] = [
-  [35, 90],
-  [66, 141],
-  [120, 48],
-  [139, 200],
-  [196, 71],
-  [187, 176],
-  [226, 36],
-  [273, 176],
-  [297, 80],
-  [348, 148],
+  [316, 187], [220, 221], [75, 192], [28, 118], [122, 31], [270, 34], [341, 80],
+  [189, 78], [162, 177], [287, 115],
 ];
-/** A strip: each triangle shares two points with the next. */
-const TRIANGLES = POINTS.slice(2).flatMap((_, t) => (t % 2 ? [t, t + 2, t + 1] : [t, t + 1, t + 2]));
+// biome-ignore format: three corners each
+const TRIANGLES = [
+  4, 2, 7, 3, 2, 4, 2, 8, 7, 2, 1, 8, 8, 0, 7, 1, 0, 8, 7, 5, 4, 9, 5, 7, 0, 9, 7, 9, 6, 5, 0, 6, 9,
+];
 
 const across = ({ ends }: Edge, points: readonly Point[]) => ends.map((end) => points[end]!) as [Point, Point];
-
-/** An arrow from the middle of a triangle to an edge. */
-function arrow(from: Point, edge: Point): string {
-  const tip = towards(edge, from, 8);
-  const back = towards(tip, from, 8);
-  const [x, y] = [(tip[1] - back[1]) * 0.6, (back[0] - tip[0]) * 0.6];
-  return `${polyline([from, tip])}${polyline([[back[0] + x, back[1] + y], tip, [back[0] - x, back[1] - y]])}`;
-}
 
 /** From each triangle that has a choice the engine tells: to the edge that flips, else to the only one that waits. */
 function arrows(frame: Frame): string[] {
@@ -37,7 +24,7 @@ function arrows(frame: Frame): string[] {
     const mine = candidates.filter(({ ends }) => ends.every((end) => triangle.includes(end)));
     const best = mine.find(({ state }) => state === 'flips') ?? (mine.length === 1 ? mine[0] : undefined);
     const centre = middle(...triangle.map((corner) => POINTS[corner]!));
-    return best ? [arrow(centre, middle(...across(best, POINTS)))] : [];
+    return best ? [arrow(centre, towards(middle(...across(best, POINTS)), centre, 6))] : [];
   });
 }
 
@@ -61,15 +48,18 @@ async function start(stage: Stage): Promise<void> {
     const frame = frames[round]!;
     // Drawn last, on top: the edges that flip.
     const order = edgesOf(frame).sort((a, b) => Number(a.state === 'flips') - Number(b.state === 'flips'));
-    drawShapes(
-      edges,
-      order.map(
+    drawShapes(edges, [
+      ...flipping(frame).map(({ ends: [from, to], facing: [left, right] }) => ({
+        d: polygon([from, right!, to, left!].map((corner) => POINTS[corner]!)),
+        kind: 'explain-warm',
+      })),
+      ...order.map(
         (edge): Shape => ({
           d: polyline(edge.state === 'flips' ? turned(edge, POINTS, turn) : across(edge, POINTS)),
           kind: `explain-edge explain-bold explain-${edge.state}`,
         }),
       ),
-    );
+    ]);
     drawShapes(choices, turn === 0 ? arrows(frame).map((d) => ({ d, kind: '' })) : []);
     stage.say(said(frame, round));
   });
@@ -79,6 +69,7 @@ export const select: Figure = {
   title: 'Select: one flip a triangle',
   words:
     'A flip redraws both triangles beside its edge, so two flips must not share a triangle. Each triangle points to one of its candidates: the one with the smallest number, and the numbers are shuffled anew in each round. Where both triangles point to the same edge, it flips now. The others, dashed, wait. All this is read from one still picture of the mesh, so nobody has to be first, and every engine picks the same edges.',
-  label: 'A strip of triangles. In each round some edges flip, and others, which share a triangle with them, wait.',
+  label:
+    'A mesh of eleven triangles. In each round some edges flip, and others, which share a triangle with them, wait.',
   start,
 };

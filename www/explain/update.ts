@@ -1,6 +1,6 @@
 /** Figure 5: which neighbours learn of a flip. */
 
-import { between, drawDots, drawLabels, drawShapes, layer, middle, polygon, polyline, turned } from './draw.ts';
+import { arrow, between, drawDots, drawLabels, drawShapes, layer, middle, polygon, polyline, turned } from './draw.ts';
 import type { Figure, Stage } from './figure.ts';
 import { loop } from './loop.ts';
 import { corners, type Frame, flipping, type Point, record } from './mesh.ts';
@@ -30,6 +30,7 @@ async function start(stage: Stage): Promise<void> {
   const [before, after] = (await record(POINTS, TRIANGLES)) as [Frame, Frame];
   const edge = flipping(before)[0]!;
   const changes = NEIGHBOURS.filter((neighbour) => partner(before, neighbour) !== partner(after, neighbour));
+  const numbers = changes.map((neighbour) => neighbour - 1).join(' and ');
   const shapes = layer(stage.svg, '');
   const links = layer(stage.svg, 'explain-links');
   const labels = layer(stage.svg, 'explain-labels explain-centred');
@@ -62,25 +63,20 @@ async function start(stage: Stage): Promise<void> {
       NEIGHBOURS.map((neighbour) => {
         const [old, now] = [home[partner(before, neighbour)]!, home[partner(after, neighbour)]!];
         const isHot = changes.includes(neighbour) && beat > 0;
-        return {
-          d: polyline([from(neighbour), between(from(neighbour), between(old, now, follows), 0.72)]),
-          kind: isHot ? 'explain-hot' : '',
-        };
+        const to = between(from(neighbour), between(old, now, follows), 0.7);
+        return { d: arrow(from(neighbour), to), kind: isHot ? 'explain-hot' : '' };
       }),
     );
     drawLabels(labels, [
       ...home.map((at, slot) => ({ text: 'AB'[slot]!, at, kind: 'explain-slot' })),
-      ...NEIGHBOURS.map((neighbour, i) => ({ text: `${i + 1}`, at: between(from(neighbour), [192, 122], -0.2) })),
+      ...NEIGHBOURS.map((neighbour, i) => ({ text: `${i + 1}`, at: between(from(neighbour), [192, 116], -0.22) })),
     ]);
-    const numbers = changes.map((neighbour) => neighbour - 1).join(' and ');
-    stage.say(
-      beat === 0
-        ? 'Each neighbour knows A or B'
-        : beat === 1
-          ? `${numbers} still point to the old partner`
-          : `${numbers} have changed partners`,
-      beat === 1,
-    );
+    const captions = [
+      'Each neighbour knows A or B',
+      `${numbers} still point to the old partner`,
+      `${numbers} have changed partners`,
+    ];
+    stage.say(captions[beat]!, beat === 1);
   });
 }
 
