@@ -13,18 +13,24 @@ import { update } from './update.ts';
 const TITLE = 'How a mesh becomes Delaunay';
 const LEDE =
   'A mesh is points joined into triangles. The same points can be joined in many ways, and some of them give long, thin triangles that shade, simulate and interpolate badly. One way is best. Here is how the edges find it, all at once. Each figure runs the real engine.';
+const END =
+  'Label, select, flip, update: that is one round. The engine runs round after round until no edge can flip. The border, the creases of a surface and the edges that you lock are kept, so a few edges may stay that are not Delaunay. They are counted, with the reason for each.';
+
+function text(name: 'h2' | 'p', words: string): HTMLElement {
+  const element = document.createElement(name);
+  element.textContent = words;
+  return element;
+}
 
 /** Puts the section into `host`. */
 export function mountExplanation(host: HTMLElement): void {
   const head = document.createElement('header');
   head.className = 'explain-head';
-  const title = document.createElement('h2');
-  title.textContent = TITLE;
-  const lede = document.createElement('p');
-  lede.textContent = LEDE;
-  head.append(title, lede);
+  head.append(text('h2', TITLE), text('p', LEDE));
   const figures = document.createElement('div');
   figures.className = 'explain-figures';
   figures.append(...[circle, label, select, flip, update, ends].map((figure, i) => mountFigure(figure, i + 1)));
-  host.append(head, figures);
+  const end = text('p', END);
+  end.className = 'explain-end';
+  host.append(head, figures, end);
 }

@@ -1,0 +1,130 @@
+// Tests the figures of the section "How a mesh becomes Delaunay" in Chromium. Serves the existing target/www.
+
+import assert from 'node:assert/strict';
+import { after, before, test } from 'node:test';
+import { fileURLToPath } from 'node:url';
+import { EDGE_STATES, FlipSession } from 'edgeflip';
+import site from '../../www/vite.config.js';
+import { closeAll, openPage, serve, startChromium } from '../browsers.mjs';
+
+let browser;
+let address;
+before(async () => {
+  browser = await startChromium();
+  address = await serve(fileURLToPath(new URL('../../target/www', import.meta.url)), site.preview.headers);
+});
+after(closeAll);
+
+/** Opens the section. `figure(n)` has what is in figure `n`, from 1. */
+async function openSection() {
+  const { page, problems } = await openPage(browser, 'about:blank');
+  await page.emulateMedia({ reducedMotion: 'reduce' });
+  await page.goto(`${address}#explain`);
+  await page.locator('.explain-handle').nth(5).waitFor();
+  const figure = (number) => {
+    const element = page.locator('.explain-figure').nth(number - 1);
+    return {
+      handle: (index) => element.locator('.explain-handle').nth(index),
+      button: element.locator('.explain-play'),
+      caption: () => element.locator('.explain-caption').textContent(),
+      /** Waits for a caption. */
+      says: (text) => element.locator('.explain-caption', { hasText: text }).waitFor(),
+      texts: () => element.locator('svg text').allTextContents(),
+      count: (state) => element.locator(`.explain-bold.explain-${state}`).count(),
+      /** The places of the handles, in the units of the drawing. */
+      places: async () => {
+        const moves = await element.locator('.explain-handle').evaluateAll((all) => all.map((one) => one.outerHTML));
+        return moves.map((html) => /translate\(([^)]*)/.exec(html)[1].split(',').map(Number));
+      },
+    };
+  };
+  const close = async () => {
+    assert.deepEqual(problems, []);
+    await page.close();
+  };
+  return { page, figure, close };
+}
+
+/** The angle at a corner in degrees, to one decimal. */
+function angle(corner, ...others) {
+  const [one, other] = others.map(([x, y]) => Math.atan2(y - corner[1], x - corner[0]));
+  const apart = Math.abs(one - other);
+  return Math.round((1800 / Math.PI) * Math.min(apart, 2 * Math.PI - apart)) / 10;
+}
+
+/** Drags a handle by pixels. */
+async function dragBy(page, handle, x, y) {
+  await handle.scrollIntoViewIfNeeded();
+  const box = await handle.locator('.explain-knob').last().boundingBox();
+  const [fromX, fromY] = [box.x + box.width / 2, box.y + box.height / 2];
+  await page.mouse.move(fromX, fromY);
+  await page.mouse.down();
+  await page.mouse.move(fromX + x, fromY + y, { steps: 5 });
+  await page.mouse.up();
+}
+
+test('a point that is dragged into the circle makes the triangle not Delaunay', async () => {
+  const { page, figure, close } = await openSection();
+  const { handle, says } = figure(1);
+  await says('The circle is empty');
+  await dragBy(page, handle(0), -80, 0);
+  await says('A point is inside');
+  await dragBy(page, handle(0), 80, 0);
+  await says('The circle is empty');
+  await close();
+});
+
+test('the two angles are right, and the engine decides', async () => {
+  const { page, figure, close } = await openSection();
+  const { handle, places, says, caption, texts } = figure(2);
+  const check = async () => {
+    const points = await places();
+    const [upper, lower] = [points[2], points[3]].map((corner) => angle(corner, points[0], points[1]));
+    assert.deepEqual(
+      await texts(),
+      [upper, lower, upper + lower].map((degrees) => `${degrees.toFixed(1)}°`),
+    );
+    const mesh = { positions: Float64Array.from(points.flat()), indices: [0, 1, 2, 1, 0, 3], dimension: 2 };
+    const session = await FlipSession.create(mesh, { backend: 'cpu' });
+    const state = EDGE_STATES[(await session.edgeStates())[0]];
+    session.free();
+    assert.match(await caption(), state === 'flips' ? /flips$/ : /stays$/);
+  };
+  await says('the edge flips');
+  await check();
+  await dragBy(page, handle(0), 80, 0);
+  await dragBy(page, handle(1), -80, 0);
+  await says('the edge stays');
+  await check();
+  await close();
+});
+
+test('the arrow keys move handles, and turn the edge', async () => {
+  const { page, figure, close } = await openSection();
+  const { handle, places } = figure(1);
+  const [[x, y]] = await places();
+  await handle(0).focus();
+  await page.keyboard.press('ArrowLeft');
+  await page.keyboard.press('Shift+ArrowDown');
+  assert.deepEqual(await places(), [[x - 6, y + 1]]);
+  const turning = figure(4);
+  await turning.handle(0).focus();
+  await page.keyboard.press('ArrowRight');
+  await turning.says('After: triangles');
+  await dragBy(page, turning.handle(0), 80, -70);
+  await turning.says('Before: triangles');
+  await close();
+});
+
+test('figures that loop stand still with reduced motion, and play when asked', async () => {
+  const { figure, close } = await openSection();
+  const { button, caption, says, count } = figure(3);
+  assert.equal(await caption(), 'Round 1: 2 edges flip, 2 wait');
+  assert.deepEqual([await count('flips'), await count('waits')], [2, 2]);
+  await button.click();
+  await says('Round 2: 2 edges flip');
+  assert.deepEqual([await count('flips'), await count('waits')], [2, 0]);
+  await says('After 3 rounds: every edge is Delaunay');
+  assert.deepEqual([await count('flips'), await count('waits')], [0, 0]);
+  await close();
+});
