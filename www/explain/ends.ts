@@ -84,7 +84,7 @@ async function start(stage: Stage): Promise<void> {
     ]);
     drawLabels(labels, [
       { text: 'ridge', at: [a[0] * 0.25 + b[0] * 0.75, a[1] - 10], kind: sunk < 1 ? 'explain-hot' : '' },
-      { text: 'valley', at: [c[0] + 34, c[1] + 34] },
+      { text: 'valley', at: [c[0] + 28, c[1] + 32] },
     ]);
     stage.say(sunk < 1 ? 'A ridge: this edge is not Delaunay' : 'A valley: the surface has sunk', sunk < 1);
   });

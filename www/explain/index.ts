@@ -14,7 +14,7 @@ const TITLE = 'How a mesh becomes Delaunay';
 const LEDE =
   'A mesh is points joined into triangles. The same points can be joined in many ways, and some of them give long, thin triangles that shade, simulate and interpolate badly. One way is best. Here is how the edges find it, all at once. Each figure runs the real engine.';
 const END =
-  'Label, select, flip, update: that is one round. The engine runs round after round until no edge can flip. The border, the creases of a surface and the edges that you lock are kept, so a few edges may stay that are not Delaunay. They are counted, with the reason for each.';
+  'Label, select, flip, update: that is one round. The engine runs round after round until no edge can flip. The creases of a surface and the edges that you lock are kept, so a few edges may stay that are not Delaunay. They are counted, with the reason for each.';
 
 function text(name: 'h2' | 'p', words: string): HTMLElement {
   const element = document.createElement(name);

@@ -59,7 +59,7 @@ async function start({ svg, say }: Stage): Promise<void> {
       { d: polygon([a, d, b, c]), kind: 'explain-outline' },
       { d: wedge(c, a, b, 30), kind: 'explain-angle-one' },
       { d: wedge(d, a, b, 30), kind: 'explain-angle-two' },
-      { d: polyline([a, b]), kind: `explain-edge explain-bold explain-${states[0]}` },
+      { d: polyline([a, b]), kind: `explain-edge explain-bold explain-${flips ? 'flips' : 'fresh'}` },
       { d: wedge(DIAL, onDial(0), onDial(upper!), DIAL_RADIUS), kind: 'explain-angle-one' },
       { d: wedge(DIAL, onDial(upper!), onDial(sum), DIAL_RADIUS), kind: 'explain-angle-two' },
       { d: flips ? wedge(DIAL, onDial(180), onDial(sum), DIAL_RADIUS) : '', kind: 'explain-excess' },

@@ -1,6 +1,18 @@
 /** Figure 5: which neighbours learn of a flip. */
 
-import { arrow, between, drawDots, drawLabels, drawShapes, layer, middle, polygon, polyline, turned } from './draw.ts';
+import {
+  arrow,
+  between,
+  drawDots,
+  drawLabels,
+  drawShapes,
+  layer,
+  middle,
+  polygon,
+  polyline,
+  towards,
+  turned,
+} from './draw.ts';
 import type { Figure, Stage } from './figure.ts';
 import { loop } from './loop.ts';
 import { corners, type Frame, flipping, type Point, record } from './mesh.ts';
@@ -63,7 +75,7 @@ async function start(stage: Stage): Promise<void> {
       NEIGHBOURS.map((neighbour) => {
         const [old, now] = [home[partner(before, neighbour)]!, home[partner(after, neighbour)]!];
         const isHot = changes.includes(neighbour) && beat > 0;
-        const to = between(from(neighbour), between(old, now, follows), 0.7);
+        const to = towards(between(old, now, follows), from(neighbour), 18);
         return { d: arrow(from(neighbour), to), kind: isHot ? 'explain-hot' : '' };
       }),
     );
