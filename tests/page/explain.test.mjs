@@ -17,9 +17,8 @@ after(closeAll);
 
 /** Opens the section. `figure(n)` has what is in figure `n`, from 1. */
 async function openSection() {
-  const { page, problems } = await openPage(browser, 'about:blank');
+  const { page, problems } = await openPage(browser, `${address}#explain`);
   await page.emulateMedia({ reducedMotion: 'reduce' });
-  await page.goto(`${address}#explain`);
   await page.locator('.explain-handle').nth(5).waitFor();
   const figure = (number) => {
     const element = page.locator('.explain-figure').nth(number - 1);
@@ -27,15 +26,12 @@ async function openSection() {
       handle: (index) => element.locator('.explain-handle').nth(index),
       button: element.locator('.explain-play'),
       caption: () => element.locator('.explain-caption').textContent(),
-      /** Waits for a caption. */
       says: (text) => element.locator('.explain-caption', { hasText: text }).waitFor(),
       texts: () => element.locator('svg text').allTextContents(),
       count: (state) => element.locator(`.explain-bold.explain-${state}`).count(),
       /** The places of the handles, in the units of the drawing. */
-      places: async () => {
-        const moves = await element.locator('.explain-handle').evaluateAll((all) => all.map((one) => one.outerHTML));
-        return moves.map((html) => /translate\(([^)]*)/.exec(html)[1].split(',').map(Number));
-      },
+      places: async () =>
+        [...(await element.innerHTML()).matchAll(/translate\(([^)]*)/g)].map(([, at]) => at.split(',').map(Number)),
     };
   };
   const close = async () => {
@@ -46,27 +42,23 @@ async function openSection() {
 }
 
 /** The angle at a corner in degrees, to one decimal. */
-function angle(corner, ...others) {
-  const [one, other] = others.map(([x, y]) => Math.atan2(y - corner[1], x - corner[0]));
-  const apart = Math.abs(one - other);
-  return Math.round((1800 / Math.PI) * Math.min(apart, 2 * Math.PI - apart)) / 10;
+function angle([x, y], [ax, ay], [bx, by]) {
+  const cosine = ((ax - x) * (bx - x) + (ay - y) * (by - y)) / Math.hypot(ax - x, ay - y) / Math.hypot(bx - x, by - y);
+  return Math.round((1800 / Math.PI) * Math.acos(cosine)) / 10;
 }
 
 /** Drags a handle by pixels. */
 async function dragBy(page, handle, x, y) {
-  await handle.scrollIntoViewIfNeeded();
-  const box = await handle.locator('.explain-knob').last().boundingBox();
-  const [fromX, fromY] = [box.x + box.width / 2, box.y + box.height / 2];
-  await page.mouse.move(fromX, fromY);
+  await handle.locator('.explain-knob').last().hover();
+  const { x: left, y: top, width } = await handle.locator('.explain-knob').last().boundingBox();
   await page.mouse.down();
-  await page.mouse.move(fromX + x, fromY + y, { steps: 5 });
+  await page.mouse.move(left + width / 2 + x, top + width / 2 + y, { steps: 5 });
   await page.mouse.up();
 }
 
 test('a point that is dragged into the circle makes the triangle not Delaunay', async () => {
   const { page, figure, close } = await openSection();
   const { handle, says } = figure(1);
-  await says('The circle is empty');
   await dragBy(page, handle(0), -80, 0);
   await says('A point is inside');
   await dragBy(page, handle(0), 80, 0);
@@ -80,10 +72,8 @@ test('the two angles are right, and the engine decides', async () => {
   const check = async () => {
     const points = await places();
     const [upper, lower] = [points[2], points[3]].map((corner) => angle(corner, points[0], points[1]));
-    assert.deepEqual(
-      await texts(),
-      [upper, lower, upper + lower].map((degrees) => `${degrees.toFixed(1)}°`),
-    );
+    const shown = [upper, lower, upper + lower].map((degrees) => `${degrees.toFixed(1)}°`);
+    assert.deepEqual(await texts(), shown);
     const mesh = { positions: Float64Array.from(points.flat()), indices: [0, 1, 2, 1, 0, 3], dimension: 2 };
     const session = await FlipSession.create(mesh, { backend: 'cpu' });
     const state = EDGE_STATES[(await session.edgeStates())[0]];
@@ -103,13 +93,11 @@ test('the arrow keys move handles, and turn the edge', async () => {
   const { page, figure, close } = await openSection();
   const { handle, places } = figure(1);
   const [[x, y]] = await places();
-  await handle(0).focus();
-  await page.keyboard.press('ArrowLeft');
-  await page.keyboard.press('Shift+ArrowDown');
+  await handle(0).press('ArrowLeft');
+  await handle(0).press('Shift+ArrowDown');
   assert.deepEqual(await places(), [[x - 6, y + 1]]);
   const turning = figure(4);
-  await turning.handle(0).focus();
-  await page.keyboard.press('ArrowRight');
+  await turning.handle(0).press('ArrowRight');
   await turning.says('After: triangles');
   await dragBy(page, turning.handle(0), 80, -70);
   await turning.says('Before: triangles');

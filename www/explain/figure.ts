@@ -3,10 +3,6 @@
 import { create } from 'd3-selection';
 import type { Svg } from './draw.ts';
 
-/** The size of every drawing, in its own units. */
-export const WIDTH = 384;
-export const HEIGHT = 244;
-
 /** What a figure draws on. */
 export interface Stage {
   svg: Svg;
@@ -38,7 +34,7 @@ export function mountFigure(figure: Figure, number: number): HTMLElement {
   const { title, words, hint, label } = figure;
   const svg: Svg = create('svg')
     .attr('class', 'explain-drawing')
-    .attr('viewBox', `0 0 ${WIDTH} ${HEIGHT}`)
+    .attr('viewBox', '0 0 384 244')
     .attr('role', hint ? 'group' : 'img')
     .attr('aria-label', label);
   const caption = tag('p', 'explain-caption');

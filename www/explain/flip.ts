@@ -57,7 +57,7 @@ async function start({ svg, say }: Stage): Promise<void> {
     at = now;
     const ends = turned(edge, POINTS, at);
     const frame = at === 0 ? before : after;
-    const swept = Array.from({ length: 10 }, (_, i) => i / 10).filter((t) => t < at);
+    const swept = Array.from({ length: 10 }, (_, i) => i / 10).filter((t) => t < at && at < 1);
     drawShapes(shapes, [
       { d: polygon([starts[0], goals[0], starts[1], goals[1]]), kind: 'explain-outline' },
       ...corners(frame).map((triangle, slot) => ({
@@ -110,7 +110,7 @@ async function start({ svg, say }: Stage): Promise<void> {
 export const flip: Figure = {
   title: 'Flip: turn the diagonal',
   words:
-    'The edge lets go of its two corners and takes the other two. No point moves and none is added, so colours, normals and everything else stored at the points stay right. The two new triangles take the place of the two old ones in memory. Nothing has to be copied or sorted, and thousands of edges turn in the same instant.',
+    'The edge lets go of its two corners and takes the other two. No point moves and none is added, so colours, normals and everything else stored at the points stay right. The two new triangles take the place of the two old ones in memory, so the mesh neither grows nor shrinks. Thousands of edges turn in the same instant.',
   hint: 'Drag the edge round.',
   label: 'Four points, two triangles, and the edge between them, which turns',
   start,

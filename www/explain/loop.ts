@@ -19,7 +19,7 @@ export function glide(from: number, to: number, draw: (at: number) => void): () 
   let request = 0;
   const tick = (now: number) => {
     const t = takes > 0 ? Math.min(1, Math.max(0, (now - start) / takes)) : 1;
-    draw(from + (to - from) * ease(t));
+    draw(t < 1 ? from + (to - from) * ease(t) : to);
     if (t < 1) request = requestAnimationFrame(tick);
   };
   tick(start);

@@ -17,7 +17,7 @@ const TRIANGLES = [
 
 const across = ({ ends }: Edge, points: readonly Point[]) => ends.map((end) => points[end]!) as [Point, Point];
 
-/** From each triangle that has a choice the engine tells: to the edge that flips, else to the only one that waits. */
+/** Where triangles point: to their edge that flips, else to the only one that waits. The engine tells no more. */
 function arrows(frame: Frame): string[] {
   const candidates = edgesOf(frame).filter(({ state }) => state === 'flips' || state === 'waits');
   return corners(frame).flatMap((triangle) => {
