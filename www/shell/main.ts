@@ -48,6 +48,16 @@ async function show(): Promise<void> {
   }
 }
 
+// The explanation is loaded when the visitor comes near it.
+new IntersectionObserver(
+  ([entry], observer) => {
+    if (!entry?.isIntersecting) return;
+    observer.disconnect();
+    void import('../explain/index.ts').then(({ mountExplanation }) => mountExplanation(part('#explain .wrap')));
+  },
+  { rootMargin: '300px' },
+).observe(part('#explain'));
+
 part('#theme').addEventListener('click', toggleTheme);
 playAnyway.addEventListener('click', () => {
   moves = true;
