@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { startChromium } from '../browsers.mjs';
-import { expected, meshFile, openEdgeflip, tidyUp } from './page.mjs';
+import { expected, first, meshFile, openEdgeflip, tidyUp } from './page.mjs';
 
 let browser;
 let strips;
@@ -78,8 +78,7 @@ const onWebGpu = (page) =>
   page.until('WebGPU', ({ facts, measured, at }) => facts.Engine === 'WebGPU' && measured === at);
 
 test('the first mesh is drawn before any kernel is requested, plays on the CPU, and moves to WebGPU after the compilation', async (t) => {
-  const sphere = await meshFile('uvsphere 28 0.1', 'sphere.off');
-  const { rows, facts, fingerprints } = await expected(sphere);
+  const { rows, facts, fingerprints } = await expected(first.path, first.maxNormalAngle);
   const page = await openEdgeflip(browser, holdKernels);
   const opened = await page.look();
   assert.deepEqual([opened.backend, opened.facts.Engine, opened.note], ['auto', UNTIL_READY, '']);

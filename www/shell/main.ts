@@ -1,5 +1,6 @@
 /** Starts the page: the first view at once, everything else when it is asked for. */
 
+import type { Hero } from '../hero/hero.ts';
 import { onTheme, toggleTheme } from './theme.ts';
 
 const part = <T extends HTMLElement>(selector: string): T => {
@@ -12,8 +13,11 @@ const number = new Intl.NumberFormat('en');
 const [live, liveText, playAnyway] = [part('#live'), part('#live-text'), part('#play-anyway')];
 const stillness = matchMedia('(prefers-reduced-motion: reduce)');
 
-/** The first view, once its code is loaded. */
-const hero = import('../hero/hero.ts').then(({ Hero }) => {
+/** The first view, once it has been shown. */
+let hero: Promise<Hero> | undefined;
+
+async function makeHero(): Promise<Hero> {
+  const { Hero } = await import('../hero/hero.ts');
   const hero = new Hero(part('#first canvas'), ({ triangles, flips }) => {
     live.hidden = false;
     liveText.textContent = stillness.matches
@@ -22,7 +26,7 @@ const hero = import('../hero/hero.ts').then(({ Hero }) => {
   });
   onTheme(() => hero.repaint());
   return hero;
-});
+}
 
 let moves = !stillness.matches;
 
@@ -39,12 +43,18 @@ async function show(): Promise<void> {
     link.toggleAttribute('aria-current', link.getAttribute('href') === location.hash);
   }
   if (view === 'watch') {
-    void hero.then((hero) => hero.stop());
+    void hero?.then((hero) => hero.stop());
     tool ??= import('../watch/main.ts').then(({ start }) => start());
     await tool;
   } else {
-    await (await hero).start(moves);
-    playAnyway.hidden = moves;
+    try {
+      hero ??= makeHero();
+      await (await hero).start(moves);
+      playAnyway.hidden = moves;
+    } catch {
+      // A browser without WebGL2 shows the words alone.
+      live.hidden = true;
+    }
   }
 }
 
