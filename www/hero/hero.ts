@@ -59,10 +59,10 @@ export class Hero {
       { ...mesh, dimension: 2 },
       { backend: 'cpu', threads: 1, trackChanges: true },
     );
+    await evenOut(session, mesh, spacing);
     if (start !== this.#starts) return session.free();
     this.#session?.free();
     this.#session = session;
-    await evenOut(session, mesh, spacing);
     this.#motion = new Motion(mesh, [width, height], spacing);
     this.#flashes = new Flashes(mesh.positions.length / 2);
     this.#indices = (await session.triangles()) as Uint32Array<ArrayBuffer>;

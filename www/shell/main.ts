@@ -33,16 +33,20 @@ let moves = !stillness.matches;
 /** The tool, once it has been asked for. */
 let tool: Promise<void> | undefined;
 
-/** Shows the first view or the tool, whichever the address names. */
-async function show(): Promise<void> {
-  const watches = location.hash === '#watch';
-  const isFirst = !watches && document.body.dataset.view !== 'watch';
-  const view = watches ? 'watch' : location.hash === '#first' || isFirst ? 'first' : 'watch';
-  document.body.dataset.view = view;
+/** Shows the first view or the tool, if the address names one of them. A link to a section only scrolls. */
+function follow(): void {
   for (const link of document.querySelectorAll('.top nav a')) {
     link.toggleAttribute('aria-current', link.getAttribute('href') === location.hash);
   }
-  if (view === 'watch') {
+  const { view } = document.body.dataset;
+  const next = { '#first': 'first', '#watch': 'watch' }[location.hash] ?? view;
+  if (next === view) return;
+  document.body.dataset.view = next;
+  void show();
+}
+
+async function show(): Promise<void> {
+  if (document.body.dataset.view === 'watch') {
     void hero?.then((hero) => hero.stop());
     tool ??= import('../watch/main.ts').then(({ start }) => start());
     await tool;
@@ -73,7 +77,7 @@ playAnyway.addEventListener('click', () => {
   moves = true;
   void show();
 });
-addEventListener('hashchange', () => void show());
+addEventListener('hashchange', follow);
 const watch = () => (location.hash = '#watch');
 part('#file').addEventListener('change', watch);
 document.addEventListener('dragenter', watch);
@@ -84,4 +88,5 @@ addEventListener('resize', () => {
   width = innerWidth;
 });
 
-void show();
+follow();
+if (document.body.dataset.view === 'first') void show();

@@ -83,9 +83,7 @@ impl Proxy {
         };
         Ok(Self { remote, counts, is_settled: false })
     }
-}
 
-impl Proxy {
     fn ask(&self, question: Question, words: &[u32]) -> Answer<'static, Vec<u32>> {
         let asked = self.remote.ask(question as u32, words.into());
         Box::pin(async { Ok(Uint32Array::new(&answer(asked).await?).to_vec()) })
