@@ -1,11 +1,11 @@
 // Serves the page during development, and builds it into target/www: static files that any server can serve.
 
-import { existsSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { createHash } from 'node:crypto';
+import { existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import { fileURLToPath } from 'node:url';
 import subsetFont from 'subset-font';
 import { defineConfig } from 'vite';
-import { writeModels } from './models/models.js';
 
 const at = (path) => fileURLToPath(new URL(path, import.meta.url));
 
@@ -20,7 +20,16 @@ if (!existsSync(font)) {
   writeFileSync(font, subset);
 }
 
-await writeModels(at('../target/public/models'));
+// They take seconds, so they are made again only after a change of what makes them.
+const sources = ['models.js', 'samples.js', 'scramble.js', 'wireframe.js'].map((name) => at(`models/${name}`));
+const made = createHash('sha256');
+for (const path of [...sources, at('../package-lock.json')]) made.update(readFileSync(path));
+const [stamp, mark] = [made.digest('hex'), at('../target/public.stamp')];
+if (!existsSync(mark) || readFileSync(mark, 'utf8') !== stamp) {
+  rmSync(at('../target/public'), { recursive: true, force: true });
+  await (await import('./models/models.js')).writeModels(at('../target/public'));
+  writeFileSync(mark, stamp);
+}
 
 // The page's policy, for the header: workers take their policy only from a header.
 const [, policy] = readFileSync(at('index.html'), 'utf8').match(/content="(default-src [^"]*)"/);

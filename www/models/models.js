@@ -1,16 +1,24 @@
 // Writes the meshes that the page offers and that no family generates, from packages with free licences.
 
-import { existsSync, mkdirSync, writeFileSync } from 'node:fs';
+import { mkdirSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
+import { NodeIO } from '@gltf-transform/core';
+import { ALL_EXTENSIONS } from '@gltf-transform/extensions';
+import suzi from '@pmndrs/assets/models/suzi.glb.js';
 import bunny from 'bunny';
+import draco from 'draco3dgltf';
 import initManifold from 'manifold-3d';
-import { writeMesh } from '../../dist/files.js';
+import { MeshoptSimplifier } from 'meshoptimizer';
+import { createNoise2D } from 'simplex-noise';
+import { generate, readMesh, writeMesh } from '../../dist/files.js';
+import { SAMPLES } from './samples.js';
 import { scrambled } from './scramble.js';
+import { wireframe } from './wireframe.js';
 
 /** The scan of a rabbit: package `bunny`, public domain, from the Stanford 3D Scanning Repository. */
 function rabbit() {
   const mesh = { positions: Float32Array.from(bunny.positions.flat()), indices: bunny.cells.flat(), dimension: 3 };
-  return { ...mesh, indices: scrambled(mesh, 2500, 25) };
+  return writeMesh({ ...mesh, indices: scrambled(mesh, 2500, 25, 3) }, 'bunny.ply');
 }
 
 /** A part made by cutting solids: package `manifold-3d`, Apache-2.0. */
@@ -29,16 +37,80 @@ async function flange() {
     (solid, hole) => solid.subtract(hole),
     body,
   );
-  const { vertProperties, triVerts, numProp } = part.getMesh();
+  // The axis points up.
+  const { vertProperties, triVerts, numProp } = part.rotate([-90, 0, 0]).getMesh();
   const positions = vertProperties.filter((_, i) => i % numProp < 3);
-  return { positions, indices: triVerts, dimension: 3 };
+  return writeMesh({ positions, indices: triVerts, dimension: 3 }, 'flange.ply');
 }
 
-/** Writes the files that are missing. */
-export async function writeModels(folder) {
-  mkdirSync(folder, { recursive: true });
-  for (const [name, make] of Object.entries({ 'bunny.ply': rabbit, 'flange.ply': flange })) {
-    const path = join(folder, name);
-    if (!existsSync(path)) writeFileSync(path, await writeMesh(await make(), name));
+/** Numbers from 0 to 1 that are the same in each build. */
+function dice(seed) {
+  let state = seed;
+  return () => (state = (Math.imul(state, 1664525) + 1013904223) >>> 0) / 2 ** 32;
+}
+
+/** Mountains on a grid, each cell cut along the same diagonal: noise of the package `simplex-noise`, MIT. */
+function terrain() {
+  const noise = createNoise2D(dice(7));
+  const side = 64;
+  const positions = [];
+  for (let j = 0; j <= side; j++) {
+    for (let i = 0; i <= side; i++) {
+      const [x, z] = [(2 * i) / side - 1, (2 * j) / side - 1];
+      let [y, height, width] = [0, 0.2, 0.75];
+      for (let octave = 0; octave < 5; octave++, height *= 0.42, width *= 2.1) {
+        y += height * (1 - 2 * Math.abs(noise(x * width, z * width)));
+      }
+      positions.push(x, y, z);
+    }
   }
+  const indices = [];
+  for (let j = 0; j < side; j++) {
+    for (let i = 0; i < side; i++) {
+      const [a, c] = [j * (side + 1) + i, (j + 1) * (side + 1) + i];
+      indices.push(a, c, c + 1, a, c + 1, a + 1);
+    }
+  }
+  return writeMesh({ positions: Float32Array.from(positions), indices, dimension: 3 }, 'terrain.ply');
+}
+
+/** A head by the Blender project, subdivided: package `@pmndrs/assets`, CC0. Without compression, as edgeflip reads it. */
+async function head() {
+  const io = new NodeIO()
+    .registerExtensions(ALL_EXTENSIONS)
+    .registerDependencies({ 'draco3d.decoder': await draco.createDecoderModule() });
+  const file = await io.readBinary(Buffer.from(suzi.split(',')[1], 'base64'));
+  for (const extension of file.getRoot().listExtensionsUsed()) extension.dispose();
+  const [primitive] = file.getRoot().listMeshes()[0].listPrimitives();
+  const [positions, indices] = [primitive.getAttribute('POSITION').getArray(), primitive.getIndices().getArray()];
+  primitive.getIndices().setArray(scrambled({ positions, indices }, 6000, 12, 5));
+  return io.writeBinary(file);
+}
+
+/** The most triangles of a surface in a thumbnail. */
+const DRAWN = 1200;
+
+const FILES = { 'bunny.ply': rabbit, 'flange.ply': flange, 'terrain.ply': terrain, 'suzi.glb': head };
+
+/** Writes the files into `models/` and the thumbnails of all samples into `thumbs/`. */
+export async function writeModels(folder) {
+  for (const name of ['models', 'thumbs']) mkdirSync(join(folder, name), { recursive: true });
+  const meshes = new Map();
+  for (const [name, make] of Object.entries(FILES)) {
+    const bytes = await make();
+    writeFileSync(join(folder, 'models', name), bytes);
+    meshes.set(`models/${name}`, await readMesh(bytes, name));
+  }
+  for (const { spec, thumb, drawn = spec } of SAMPLES.flatMap(({ samples }) => samples)) {
+    const mesh = meshes.get(drawn) ?? (await generate(drawn));
+    writeFileSync(join(folder, thumb), wireframe(await coarse(mesh)));
+  }
+}
+
+/** The mesh with few enough triangles for a thumbnail. */
+async function coarse(mesh) {
+  if (mesh.dimension === 2 || mesh.indices.length <= 3 * DRAWN) return mesh;
+  await MeshoptSimplifier.ready;
+  const [indices] = MeshoptSimplifier.simplify(mesh.indices, Float32Array.from(mesh.positions), 3, 3 * DRAWN, 1);
+  return { ...mesh, indices };
 }
