@@ -111,10 +111,7 @@ test('the error of a broken file names the line, and the previous mesh stays', a
 test('a β that is not an angle is refused, and a valid β changes the result', async () => {
   const page = await openEdgeflip(browser);
   await page.open(await meshFile('uvsphere 28 0.1', 'sphere.off'));
-  const setBeta = async (text) => {
-    await page.page.fill('#beta', text);
-    await page.page.press('#beta', 'Tab');
-  };
+  const setBeta = (text) => page.setBeta(text);
   for (const wrong of ['181', '-1', '']) {
     await setBeta(wrong);
     const { error } = await page.until('a message', ({ error, state }) => error !== '' && state !== 'busy');
@@ -138,6 +135,7 @@ test('a β that is being typed stays while the page works, and takes effect when
   await page.open(await meshFile('uvsphere 28 0.1', 'sphere.off'));
   await page.choose('speed', '1000');
   await page.page.click('#play');
+  await page.showLimits();
   await page.page.focus('#beta');
   await page.page.keyboard.press('ControlOrMeta+A');
   await page.page.keyboard.type('4');

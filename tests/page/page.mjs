@@ -134,12 +134,13 @@ export class EdgeflipPage {
         state: document.body.dataset.state,
         measured: document.body.dataset.measured,
         at: document.getElementById('slider').value,
-        newest: document.getElementById('slider').max,
+        newest: document.body.dataset.newest,
         backend: document.getElementById('backend').value,
         error: text('error'),
         note: text('note'),
         status: text('status'),
-        caption: text('caption'),
+        /** The name of its file or sample. */
+        caption: document.body.dataset.mesh,
         facts: Object.fromEntries(
           [...document.querySelectorAll('dd[data-fact]')].map((dd) => [dd.dataset.fact, dd.textContent]),
         ),
@@ -205,8 +206,10 @@ export class EdgeflipPage {
     await session.detach();
   }
 
-  /** Chooses from a list: an engine, a speed, a sample. */
+  /** Chooses an engine, a speed or a sample. */
   async choose(id, value) {
+    if (id === 'sample') return this.page.click(`#gallery [data-spec="${value}"]`);
+    if (id === 'backend') await this.page.evaluate(() => (document.getElementById('details').open = true));
     await (this.page.selectOption ?? this.page.select).call(this.page, `#${id}`, value);
   }
 
@@ -214,6 +217,19 @@ export class EdgeflipPage {
     if ((await this.look()).backend === backend) return;
     await this.choose('backend', backend);
     await this.rest();
+  }
+
+  /** Shows the limits, which hide when another part of the page is clicked. */
+  showLimits() {
+    return this.page.evaluate(() => document.getElementById('limits').showPopover());
+  }
+
+  /** Enters a β. */
+  async setBeta(text) {
+    await this.showLimits();
+    await this.page.fill('#beta', text);
+    await this.page.press('#beta', 'Tab');
+    await this.page.evaluate(() => document.getElementById('limits').hidePopover());
   }
 
   /** Plays to the end, as fast as possible. */
@@ -231,18 +247,26 @@ export class EdgeflipPage {
     return this.rest();
   }
 
-  /** A picture of the canvas. */
+  /** A picture of the canvas, without what lies on it. */
   async picture() {
-    await this.page.evaluate(
-      () => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done()))),
-    );
+    const show = (visibility) =>
+      this.page.evaluate((how) => {
+        for (const part of document.querySelectorAll('.top, #watch > :not(#stage), #thread'))
+          part.style.visibility = how;
+        return new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done())));
+      }, visibility);
+    await show('hidden');
     const canvas = await this.page.$('#view canvas');
-    return new Picture(await canvas.screenshot());
+    const picture = new Picture(await canvas.screenshot());
+    await show('');
+    return picture;
   }
 
   /** The mesh in the file that the page writes. */
   async download() {
+    await this.page.click('#take');
     const [download] = await Promise.all([this.page.waitForEvent('download'), this.page.click('#download')]);
+    await this.page.keyboard.press('Escape');
     const bytes = readFileSync(await download.path());
     return { ...(await readMesh(bytes, download.suggestedFilename())), name: download.suggestedFilename(), bytes };
   }

@@ -36,12 +36,15 @@ let tool: Promise<void> | undefined;
 /** Shows the first view or the tool, if the address names one of them. A link to a section only scrolls. */
 function follow(): void {
   for (const link of document.querySelectorAll('.top nav a')) {
-    link.toggleAttribute('aria-current', link.getAttribute('href') === location.hash);
+    link.toggleAttribute('aria-current', link.getAttribute('href') === location.hash.replace(/\?.*/, ''));
   }
   const { view } = document.body.dataset;
-  const next = { '#first': 'first', '#watch': 'watch' }[location.hash] ?? view;
+  // A link to the tool may say more after a question mark.
+  const next = { '#first': 'first', '#watch': 'watch' }[location.hash.replace(/\?.*/, '')] ?? view;
   if (next === view) return;
   document.body.dataset.view = next;
+  // The browser may be on its way to where the view was before.
+  scrollTo({ top: 0, behavior: 'instant' });
   void show();
 }
 

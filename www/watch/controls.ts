@@ -6,16 +6,38 @@ export function element<T extends HTMLElement = HTMLElement>(id: string): T {
   return found as T;
 }
 
+const input = (id: string) => element<HTMLInputElement>(id);
+const button = (id: string) => element<HTMLButtonElement>(id);
+
 export const controls = {
-  file: element<HTMLInputElement>('file'),
-  sample: element<HTMLSelectElement>('sample'),
+  file: input('file'),
   backend: element<HTMLSelectElement>('backend'),
-  beta: element<HTMLInputElement>('beta'),
-  reset: element<HTMLButtonElement>('reset'),
-  play: element<HTMLButtonElement>('play'),
-  step: element<HTMLButtonElement>('step'),
-  slider: element<HTMLInputElement>('slider'),
   speed: element<HTMLSelectElement>('speed'),
-  wireframe: element<HTMLInputElement>('wireframe'),
-  download: element<HTMLButtonElement>('download'),
+  slider: input('slider'),
+  reset: button('reset'),
+  back: button('back'),
+  play: button('play'),
+  step: button('step'),
+  compare: button('compare'),
+  cut: input('cut'),
+  scramble: button('scramble'),
+  take: button('take'),
+  picture: button('picture'),
+  beta: input('beta'),
+  betaRange: input('beta-range'),
+  deviation: input('deviation'),
+  feature: input('feature'),
+  groups: input('groups'),
 };
+
+/** An element with this class and these contents. */
+export function made<K extends keyof HTMLElementTagNameMap>(
+  name: K,
+  className: string,
+  ...contents: (Node | string)[]
+): HTMLElementTagNameMap[K] {
+  const element = document.createElement(name);
+  element.className = className;
+  element.append(...contents);
+  return element;
+}

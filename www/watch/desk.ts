@@ -1,7 +1,7 @@
 /** The worker: reads, generates and measures meshes, or runs an engine, so that the page never blocks. */
 
 import { expose, transfer } from 'comlink';
-import { init, type FlipSession, type Options } from 'edgeflip';
+import { init, type FlipSession, type Iteration, type Options } from 'edgeflip';
 import {
   angles,
   change,
@@ -17,6 +17,8 @@ import {
 } from 'edgeflip/files';
 import { naming } from './crash.ts';
 import { changeOf, type Change } from './change.ts';
+import { scrambled } from '../models/scramble.js';
+import { featuresOf } from './features.ts';
 import { contentOf, contentOfKept, keep, type Kept, type Located, type Report } from './files.ts';
 import { sessionOf, statesOf, summaryOf, type OpenMesh, type Step, type Summary } from './run.ts';
 
@@ -25,11 +27,20 @@ import { sessionOf, statesOf, summaryOf, type OpenMesh, type Step, type Summary 
  */
 const COMPARED = 50_000;
 
+/** The flips at random, for each triangle. */
+const SCRAMBLED = 0.7;
+
 /** The measures of a mesh. */
 export interface Quality {
   angles: Angles;
   measures: Measures;
 }
+
+/** The flips of an iteration, and the edges that could flip before it. */
+export type Flips = Pick<Iteration, 'flips' | 'labelled'>;
+
+/** The longest time in milliseconds in which all iterations are run ahead. */
+const LOOK_AHEAD = 4000;
 
 class Desk {
   #session: FlipSession | undefined;
@@ -72,6 +83,35 @@ class Desk {
     if (mesh.dimension === 3 && after.length > 3 * COMPARED) return undefined;
     const { moved, distance } = await naming(change(mesh, after));
     return { moved: moved.length, distance };
+  }
+
+  /**
+   * The flips of all iterations of a run; `undefined` if it takes long. Every engine has the same, so they hold for the
+   * run on any engine.
+   */
+  async lookAhead(mesh: OpenMesh, options: Options): Promise<Flips[] | undefined> {
+    const end = performance.now() + LOOK_AHEAD;
+    const session = await naming(sessionOf(mesh, { ...options, backend: 'cpu' }));
+    try {
+      const all: Flips[] = [];
+      for await (const { flips, labelled } of session) {
+        if (performance.now() > end) return undefined;
+        all.push({ flips, labelled });
+      }
+      return all;
+    } finally {
+      session.free();
+    }
+  }
+
+  /** The edges at which the surface bends by more than an angle in degrees: two vertices each. */
+  features(mesh: IndexedMesh, degrees: number): Promise<Uint32Array> {
+    return naming(featuresOf(mesh, degrees));
+  }
+
+  /** The triangles after flips at random that bend the surface little. Edges that are locked stay. */
+  async scramble(mesh: OpenMesh, degrees: number, seed: number): Promise<Uint32Array> {
+    return scrambled(mesh, Math.round(SCRAMBLED * (mesh.indices.length / 3)), degrees, seed);
   }
 
   /** Loads the engine, so that a run starts sooner. */

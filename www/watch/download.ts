@@ -1,4 +1,4 @@
-/** A mesh as a file for the user. */
+/** Files for the user. */
 
 import { Office } from './engines.ts';
 import type { Kept } from './files.ts';
@@ -15,8 +15,13 @@ export async function download(
   const office = new Office();
   signal.addEventListener('abort', () => office.close());
   const bytes = await office.ask((desk) => desk.write(mesh, name, kept)).finally(() => office.close());
+  save(new Blob([bytes]), name);
+}
+
+/** Gives the user a file. */
+export function save(content: Blob, name: string): void {
   const link = document.createElement('a');
-  link.href = URL.createObjectURL(new Blob([bytes]));
+  link.href = URL.createObjectURL(content);
   link.download = name;
   link.click();
   setTimeout(() => URL.revokeObjectURL(link.href), 10_000);

@@ -2,59 +2,105 @@
 
 import './style.css';
 import './panel.css';
+import './overlays.css';
 import { FORMATS } from 'edgeflip/files';
-import { controls, element } from './controls.ts';
-import { Page } from './page.ts';
-import { FIRST, SAMPLES, sampleOf } from './samples.ts';
+import { toggleTheme } from '../shell/theme.ts';
+import { copyCode, copyLink, saveMesh, savePicture, scramble } from './actions.ts';
+import { controls, element, made } from './controls.ts';
+import { makeGallery } from './gallery.ts';
+import { listen } from './keys.ts';
+import { placeIn, type Place } from './link.ts';
+import { Page, type EdgeLook } from './page.ts';
+import { FIRST, SAMPLES } from '../models/samples.js';
 import { chosen, dropped, sample, type Source } from './sources.ts';
+
+/** The formats that a mesh is saved in besides its own. */
+const SAVED = ['.ply', '.obj', '.glb', '.stl', '.off'];
+const LOOKS: readonly EdgeLook[] = ['coloured', 'plain', 'none'];
 
 /** Call it once. */
 export function start(): void {
   const page = new Page();
-
-  for (const { group, samples } of SAMPLES) {
-    const options = document.createElement('optgroup');
-    options.label = group;
-    options.append(...samples.map(({ spec, name }) => new Option(name, spec, spec === FIRST, spec === FIRST)));
-    controls.sample.append(options);
-  }
-  controls.sample.append(Object.assign(new Option('(a file)', ''), { hidden: true }));
+  const open = (source: Source | undefined) => {
+    if (source) void page.open(source);
+  };
+  const openSample = (spec: string) => open(sample(spec));
+  makeGallery(openSample);
   // A glTF file may have its buffers in `.bin` files.
   controls.file.accept = [...FORMATS, '.gz', '.bin'].join(',');
-
-  function open(source: Source | undefined): void {
-    if (source) void page.open(source);
-  }
-
-  controls.sample.addEventListener('change', () => open(sample(sampleOf(controls.sample.value))));
   controls.file.addEventListener('change', () => {
     open(chosen([...(controls.file.files ?? [])]));
     controls.file.value = '';
   });
-  for (const control of [controls.backend, controls.beta]) control.addEventListener('change', () => void page.begin());
-  controls.reset.addEventListener('click', () => page.seek(0));
+  connectRun(page);
+  connectLimits(page);
+  const say = (words: string) => (element('away-says').textContent = words);
+  connectTakeAway(page, say);
+  connectDrop(open);
+  connectKeys(page, openSample, say);
+  void begin(page);
+}
+
+/** Opens the mesh of the address, or a file that was chosen before this code was loaded, or the first sample. */
+async function begin(page: Page): Promise<void> {
+  const file = chosen([...(controls.file.files ?? [])]);
+  const place = file ? undefined : placeIn(location.hash);
+  if (place) page.prefer(place);
+  await page.start(file ?? sample(place?.mesh ?? FIRST));
+  if (place) await goTo(page, place);
+  addEventListener('hashchange', () => {
+    const next = placeIn(location.hash);
+    if (!next) return;
+    page.prefer(next);
+    void page.open(sample(next.mesh)).then(() => goTo(page, next));
+  });
+}
+
+async function goTo(page: Page, { at, pose }: Place): Promise<void> {
+  if (at > 0) await page.seek(at);
+  if (pose && page.scene) page.scene.eye.pose = pose;
+}
+
+function connectRun(page: Page): void {
+  controls.backend.addEventListener('change', () => void page.begin());
+  controls.reset.addEventListener('click', () => void page.seek(0));
+  controls.back.addEventListener('click', () => void page.seekBy(-1));
   controls.play.addEventListener('click', () => void page.play());
   controls.step.addEventListener('click', () => void page.step());
-  controls.slider.addEventListener('input', () => page.seek(controls.slider.valueAsNumber));
-  controls.wireframe.addEventListener('change', () => void page.redraw());
-  controls.download.addEventListener('click', () => void page.download());
+  controls.slider.addEventListener('input', () => void page.seek(controls.slider.valueAsNumber));
+  controls.compare.addEventListener('click', () => page.compare());
+  controls.scramble.addEventListener('click', () => void scramble(page));
   element('cancel').addEventListener('click', () => page.cancel());
   element('dismiss').addEventListener('click', () => (element('error').hidden = true));
+}
 
-  // A focused element keeps the keys that it uses itself. A disabled button ignores the click.
-  const keys: Record<string, { keptBy: string; act: () => void }> = {
-    ' ': { keptBy: 'button, summary, a, input, select', act: () => controls.play.click() },
-    ArrowRight: { keptBy: 'input, select', act: () => controls.step.click() },
-    ArrowLeft: { keptBy: 'input, select', act: () => page.seekBy(-1) },
-  };
-  document.addEventListener('keydown', (event) => {
-    const key = keys[event.key];
-    if (!key || document.body.dataset.view !== 'watch' || event.ctrlKey || event.metaKey || event.altKey) return;
-    if (event.target instanceof Element && event.target.closest(key.keptBy)) return;
-    event.preventDefault();
-    key.act();
+function connectLimits(page: Page): void {
+  for (const control of [controls.beta, controls.deviation, controls.feature, controls.groups]) {
+    control.addEventListener('change', () => void page.begin());
+  }
+  controls.betaRange.addEventListener('input', () => {
+    controls.beta.value = controls.betaRange.value;
+    void page.begin();
   });
+}
 
+function connectTakeAway(page: Page, say: (words: string) => void): void {
+  const own = made('button', '', 'As it came');
+  own.id = 'download';
+  own.addEventListener('click', () => void saveMesh(page));
+  const others = SAVED.map((extension) => {
+    const button = made('button', '', extension.slice(1).toUpperCase());
+    button.addEventListener('click', () => void saveMesh(page, extension));
+    return button;
+  });
+  element('formats').append(own, ...others);
+  controls.picture.addEventListener('click', () => void savePicture(page));
+  element('link').addEventListener('click', () => void copyLink(page).then(say));
+  element('code').addEventListener('click', () => void copyCode(page).then(say));
+  element('away').addEventListener('toggle', () => say(''));
+}
+
+function connectDrop(open: (source: Source | undefined) => void): void {
   const dropHere = element('drop-here');
   document.addEventListener('dragover', (event) => {
     event.preventDefault();
@@ -68,7 +114,60 @@ export function start(): void {
     dropHere.hidden = true;
     open(dropped(event));
   });
+}
 
-  // A file may have been chosen before this code was loaded.
-  void page.start(chosen([...(controls.file.files ?? [])]) ?? sample(sampleOf(FIRST)));
+function connectKeys(page: Page, openSample: (spec: string) => void, say: (words: string) => void): void {
+  const specs = SAMPLES.flatMap(({ samples }) => samples.map(({ spec }) => spec));
+  const keys = element<HTMLDialogElement>('keys');
+  element('help').addEventListener('click', () => keys.showModal());
+  const toggle = (id: string) => element(id).togglePopover();
+  const slides = 'input, select';
+  listen([
+    {
+      ...{ keys: [' '], label: 'Space', says: 'play or pause', keptBy: 'button, summary, a, input, select' },
+      act: () => controls.play.click(),
+    },
+    {
+      keys: ['ArrowLeft'],
+      label: '← →',
+      says: 'one iteration back, on',
+      keptBy: slides,
+      act: () => void page.seekBy(-1),
+    },
+    { keys: ['ArrowRight'], keptBy: slides, act: () => controls.step.click() },
+    {
+      keys: ['Home'],
+      label: 'Home End',
+      says: 'the input, the last state',
+      keptBy: slides,
+      act: () => void page.seek(0),
+    },
+    { keys: ['End'], keptBy: slides, act: () => void page.seek(Number(controls.slider.max)) },
+    {
+      ...{ keys: ['1', '2', '3', '4', '5', '6', '7', '8', '9'], label: '1 – 9', says: 'sample 1 to 9' },
+      act: (key) => {
+        const spec = specs[Number(key) - 1];
+        if (spec) openSample(spec);
+      },
+    },
+    { keys: ['c'], label: 'C', says: 'before and now', act: () => page.compare() },
+    {
+      ...{ keys: ['n'], label: 'N, Shift N', says: 'next, previous edge that is not Delaunay' },
+      act: (key) => page.inspectNext(key.startsWith('Shift') ? -1 : 1),
+    },
+    {
+      ...{ keys: ['e'], label: 'E', says: 'edges: coloured, plain, none' },
+      act: () => (page.edges = LOOKS[(LOOKS.indexOf(page.edges) + 1) % LOOKS.length]!),
+    },
+    { keys: ['l'], label: 'L', says: 'limits', act: () => toggle('limits') },
+    { keys: ['x'], label: 'X', says: 'scramble', act: () => controls.scramble.click() },
+    { keys: ['o'], label: 'O', says: 'open a mesh', act: () => controls.file.click() },
+    { keys: ['s'], label: 'S', says: 'save the mesh', act: () => toggle('away') },
+    { keys: ['p'], label: 'P', says: 'save a picture', act: () => void savePicture(page) },
+    { keys: ['k'], label: 'K', says: 'copy a link to this view', act: () => void copyLink(page).then(say) },
+    { keys: ['f'], label: 'F', says: 'fit the mesh to the view', act: () => page.scene?.eye.fit() },
+    { keys: ['t'], label: 'T', says: 'light or dark', act: toggleTheme },
+    { keys: ['?'], label: '?', says: 'these keys', act: () => keys.showModal() },
+    { keys: ['Escape'], label: 'Esc', says: 'close what is open', act: () => page.closeAll() },
+  ]);
 }

@@ -4,7 +4,7 @@ import type { FileMesh, IndexedMesh } from 'edgeflip/files';
 import type { Quality } from './desk.ts';
 import { Office } from './engines.ts';
 import type { Kept } from './files.ts';
-import { number } from './panel.ts';
+import { number } from './numbers.ts';
 import type { Read, Source } from './sources.ts';
 
 /** Bins of the histogram of angles: 5° each. */
@@ -14,6 +14,11 @@ export const BINS = 36;
 export interface Opened {
   mesh: IndexedMesh;
   name: string;
+  /** Its name for people, and what it is, if it is a sample. */
+  title: string;
+  what: string | undefined;
+  /** The sample that it is, as it was given. */
+  spec: string | undefined;
   /** The worker that measures it. */
   office: Office;
   /** The files that it was read from. */
@@ -22,6 +27,8 @@ export interface Opened {
   remark: string;
   /** The measures of the mesh, computed at the first call, because drawing does not need them. */
   before: () => Promise<Quality>;
+  /** The sharp edges by angle, as far as they were needed. */
+  features: Map<number, Promise<Uint32Array>>;
 }
 
 /** Called with the present step, and its completed share from 0 to 1, if it is known. */
@@ -60,8 +67,27 @@ export class Opening {
     this.#office = office;
     let measured: Promise<Quality> | undefined;
     const before = () => (measured ??= office.ask((desk) => desk.measure(mesh, BINS)));
-    return (this.opened = { mesh, name, office, kept, remark: remarkOn(read), before });
+    const title = source.title ?? name;
+    const remark = remarkOn(read);
+    return (this.opened = {
+      mesh,
+      name,
+      title,
+      what: source.what,
+      spec: source.spec,
+      office,
+      kept,
+      remark,
+      before,
+      features: new Map(),
+    });
   }
+}
+
+/** The mesh with other triangles. */
+export function again({ mesh, name, title, what, kept }: Opened, beta: number, indices: Uint32Array): Source {
+  const read = async () => ({ name, mesh: { ...mesh, indices }, kept, others: 0 });
+  return { name, title, ...(what ? { what } : {}), beta, read };
 }
 
 function remarkOn({ mesh, others }: Read): string {

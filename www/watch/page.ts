@@ -4,42 +4,83 @@ import { EdgeflipError } from 'edgeflip';
 import { Choices, type Settings } from './choices.ts';
 import { controls, element } from './controls.ts';
 import { LOST } from './crash.ts';
-import { download } from './download.ts';
-import { beginBehind, beginRun, Cancelled, forAuto, startWorker, waitsForGpu } from './engines.ts';
+import type { Flips } from './desk.ts';
+import { beginRun, Cancelled, startWorker, waitsForGpu } from './engines.ts';
+import { markSample } from './gallery.ts';
 import { Graphics } from './graphics.ts';
-import { Handover } from './handover.ts';
+import { Halves } from './halves.ts';
+import type { Successor } from './handover.ts';
 import { Jobs, showError, showProgress } from './jobs.ts';
+import { showLegend } from './legend.ts';
+import type { Place } from './link.ts';
+import { Looking } from './looking.ts';
 import { fingerprintOf, measure } from './measure.ts';
 import { Opening, type Opened } from './opening.ts';
+import { optionsFor } from './options.ts';
 import { onTheme } from '../shell/theme.ts';
 import { palette } from './palette.ts';
 import { Panel } from './panel.ts';
 import { Player } from './player.ts';
-import type { OpenMesh, Run, Summary } from './run.ts';
-import { splitName, type Source } from './sources.ts';
-import { showTransport, statusOf } from './transport.ts';
+import { Recovery } from './recovery.ts';
+import type { Run, Summary } from './run.ts';
+import type { Scene } from './scene.ts';
+import { statusOf } from './sentences.ts';
+import type { Shown } from './shown.ts';
+import type { Source } from './sources.ts';
+import { Succession } from './succession.ts';
+import { Timeline } from './timeline.ts';
+import { showTransport } from './transport.ts';
 import { unitPositions } from './unit.ts';
 
 /** The most triangles of a mesh that is first shown with its edges. */
 const EDGES_SEEN = 50_000;
+/** The most triangles of a mesh whose iterations are counted before they are shown. */
+const AHEAD = 200_000;
 /** Milliseconds without a change after which a state is measured. */
 const QUIET = 150;
 
+/** How the edges are drawn: in colours, plain, or not at all. */
+export type EdgeLook = 'coloured' | 'plain' | 'none';
+
 export class Page {
-  readonly #panel = new Panel((at) => this.seek(at));
+  readonly #panel = new Panel((at) => void this.seek(at));
+  readonly #timeline = new Timeline();
   readonly #player = new Player(
-    (run) => this.#forward(run),
+    (run, isShown) => this.#forward(run, isShown),
     () => {
       this.#showTransport();
       void this.#rest();
     },
   );
-  readonly #graphics = new Graphics((reason) => void this.#recover(reason, true));
+  readonly #graphics: Graphics = new Graphics(
+    (reason) => void this.#recovery.recover(reason, true),
+    () => this.#looking.draw(),
+  );
+  readonly #halves = new Halves(() => this.#graphics.scene);
+  readonly #looking = new Looking(() => this.#graphics.scene);
   readonly #jobs = new Jobs(
     () => this.#showTransport(),
     () => this.#endOfJob(),
   );
   readonly #choices = new Choices();
+  readonly #recovery = new Recovery({
+    graphics: this.#graphics,
+    jobs: this.#jobs,
+    choices: this.#choices,
+    at: () => ({ opening: this.#opening, opened: this.#opened, run: this.#run, source: this.#source }),
+    begin: (opened, signal) => this.#begin(opened, signal),
+    open: (source) => this.open(source),
+    redraw: () => this.redraw(),
+    fail: (error) => this.#showFailure(error),
+    pause: () => this.#player.pause(),
+  });
+  readonly #succession = new Succession({
+    run: () => this.#run,
+    isIdle: () =>
+      !this.#jobs.isBusy && this.#player.isAtRest && document.body.dataset['measured'] === `${this.#run?.at}`,
+    succeed: (next) => this.#succeed(next),
+    tell: () => void (this.#player.isPlaying || this.#rest()),
+  });
   /** The source of the last mesh that the user chose. */
   #source: Source | undefined;
   /** The mesh that is being opened, until its run starts or fails or is cancelled. */
@@ -48,15 +89,14 @@ export class Page {
   #opened: Opened | undefined;
   #run: Run | undefined;
   #settings: Settings | undefined;
-  /** Moves the run to the GPU, if it waits for the GPU. */
-  #handover: Handover | undefined;
   /** The summary of the run when it last paused. */
   #summary: Summary | undefined;
+  /** The flips of all its iterations, once they have been counted. */
+  #ahead: Flips[] | undefined;
+  #look: EdgeLook = 'coloured';
   /** The numbers of calls of `redraw` and of `#rest` so far. A call stops when a later call begins. */
   #draws = 0;
   #rests = 0;
-  /** The mesh whose run has lost a GPU before. */
-  #lost: Opened | undefined;
 
   async start(source: Source): Promise<void> {
     this.#panel.setPalette(palette());
@@ -68,6 +108,11 @@ export class Page {
     await opening;
   }
 
+  /** Takes the engine and the limits of a link for the next mesh. */
+  prefer({ engine, beta, deviation, features }: Place): void {
+    this.#choices.prefer({ backend: engine, maxNormalAngle: beta, maxDeviation: deviation, features });
+  }
+
   /** Opens a mesh, which replaces the open mesh, or the mesh that is being opened. */
   async open(source: Source): Promise<void> {
     this.#opening?.close();
@@ -75,7 +120,7 @@ export class Page {
     this.#opening = opening;
     this.#source = source;
     this.#choices.suggest(source.beta);
-    await this.#jobs.attempt(`Opening ${source.name}…`, async (signal) => {
+    await this.#jobs.attempt(`Opening ${source.title ?? source.name}…`, async (signal) => {
       const opened = await opening.read;
       signal.throwIfAborted();
       showProgress('Preparing the mesh…');
@@ -83,7 +128,7 @@ export class Page {
     });
   }
 
-  /** Starts a run with the chosen engine and β: of the mesh that is being opened, else of the open mesh. */
+  /** Starts a run with the chosen engine and limits: of the mesh that is being opened, else of the open mesh. */
   async begin(): Promise<void> {
     try {
       this.#choices.enter();
@@ -112,27 +157,62 @@ export class Page {
     if (this.#run) await this.#player.step(this.#run);
   }
 
-  seek(at: number): void {
-    if (this.#jobs.isBusy || !this.#run) return;
-    this.#run.seek(Math.max(0, Math.min(at, this.#run.iterations.length)));
+  /** Shows the state after `at` iterations, and first runs those that are missing. */
+  async seek(at: number): Promise<void> {
+    const run = this.#run;
+    if (this.#jobs.isBusy || !run) return;
+    const newest = run.iterations.length;
+    run.seek(Math.max(0, Math.min(at, newest)));
+    if (at > newest && !run.hasEnded) {
+      const reaching = this.#player.reach(run, at);
+      this.#showTransport();
+      return reaching;
+    }
     this.#player.pause();
+    await this.redraw();
+  }
+
+  async seekBy(iterations: number): Promise<void> {
+    if (this.#run) await this.seek(this.#run.at + iterations);
+  }
+
+  compare(): void {
+    this.#looking.close();
+    this.#halves.show(!this.#halves.isShown);
+  }
+
+  inspectNext(by: 1 | -1): void {
+    this.#looking.next(by);
+  }
+
+  /** Closes the inspector, and shows one mesh only. */
+  closeAll(): void {
+    this.#looking.close();
+    this.#halves.show(false);
+  }
+
+  set edges(look: EdgeLook) {
+    this.#look = look;
     void this.redraw();
   }
 
-  seekBy(iterations: number): void {
-    if (this.#run) this.seek(this.#run.at + iterations);
+  get edges(): EdgeLook {
+    return this.#look;
   }
 
-  async download(): Promise<void> {
-    const [run, opened] = [this.#run, this.#opened];
-    if (!run || !opened) return;
-    const [stem, extension] = splitName(opened.name);
-    const name = `${stem.replaceAll(' ', '-')}-after-${run.at}${extension}`;
-    await this.#jobs.attempt('Writing the file…', async (signal) => {
-      const mesh = { ...opened.mesh, indices: await run.triangles() };
-      signal.throwIfAborted();
-      await download(mesh, name, opened.kept, signal);
-    });
+  /** What is shown; `undefined` before the first mesh. */
+  get shown(): Shown | undefined {
+    const [opened, run, settings] = [this.#opened, this.#run, this.#settings];
+    return opened && run && settings && { opened, run, settings };
+  }
+
+  get scene(): Scene | undefined {
+    return this.#graphics.scene;
+  }
+
+  /** Runs a long job that can be cancelled, and shows its error. */
+  attempt(text: string, work: (signal: AbortSignal) => Promise<void>): Promise<void> {
+    return this.#jobs.attempt(text, work);
   }
 
   /** Draws the shown iteration of the run. */
@@ -140,25 +220,43 @@ export class Page {
     const [run, opened, scene] = [this.#run, this.#opened, this.#graphics.scene];
     if (!run || !opened) return;
     const draw = ++this.#draws;
-    this.#panel.showIterations(run.iterations, run.at);
-    this.#panel.showFacts(opened.mesh, run, this.#summary, this.#settings?.maxNormalAngle, undefined);
-    this.#panel.showLegend(run.states, this.#summary);
-    this.#showTransport();
+    this.#looking.forget();
+    this.#showNumbers(undefined);
     if (!this.#player.isPlaying) void this.#rest();
     if (!scene) return;
     const states = this.#showTriangles(run, opened);
     try {
       const indices = states && (await run.triangles());
-      if (draw === this.#draws) scene.showEdges(indices, states);
+      if (draw !== this.#draws) return;
+      scene.showEdges(indices, states);
+      if (indices) this.#lookInto(indices);
     } catch (error) {
       if (draw === this.#draws) this.#showFailure(error);
     }
   }
 
+  /** Lets the user inspect the edges of these triangles. */
+  #lookInto(indices: Uint32Array): void {
+    const [run, opened, settings] = [this.#run, this.#opened, this.#settings];
+    if (run && opened && settings) {
+      this.#looking.show({ mesh: opened.mesh, indices, states: run.states, limits: settings });
+    }
+  }
+
+  /** `fingerprint` belongs to the shown triangles, once it is known. */
+  #showNumbers(fingerprint: string | undefined): void {
+    const [run, opened] = [this.#run, this.#opened];
+    if (!run || !opened) return;
+    this.#panel.showIterations(run.iterations, run.at);
+    this.#panel.showFacts(opened.mesh, run, this.#summary, this.#settings?.maxNormalAngle, fingerprint);
+    showLegend(run.states, opened.mesh.indices.length / 3, this.#summary?.nonManifoldEdges);
+    this.#showTransport();
+  }
+
   /** Draws the triangles. If edges are coloured, returns their states; else draws the outlines of the triangles. */
   #showTriangles(run: Run, { mesh }: Opened): Uint8Array | undefined {
-    const states = controls.wireframe.checked ? run.states : undefined;
-    const lines = controls.wireframe.checked && !states ? run.lines() : undefined;
+    const states = this.#look === 'coloured' ? run.states : undefined;
+    const lines = this.#look !== 'none' && !states ? run.lines() : undefined;
     this.#graphics.scene?.show(run.drawn, mesh.indices.length, lines);
     return states;
   }
@@ -167,6 +265,7 @@ export class Page {
   async #begin(opened: Opened, signal: AbortSignal): Promise<void> {
     const { settings } = this.#choices;
     const { mesh } = opened;
+    const options = await optionsFor(opened, settings);
     if (waitsForGpu(mesh, settings.backend)) await this.#graphics.ready;
     signal.throwIfAborted();
     const compiles =
@@ -174,7 +273,7 @@ export class Page {
       typeof this.#graphics.gpu === 'object' &&
       !this.#graphics.gpu.kernels.areReadyFor(mesh);
     if (compiles) showProgress('Compiling the kernels for the GPU…');
-    const run = await beginRun(mesh, settings, this.#graphics.gpu, signal);
+    const run = await beginRun(mesh, options, this.#graphics.gpu, signal);
     // The scene opens together with the GPU.
     await this.#graphics.ready;
     if (signal.aborted) {
@@ -182,6 +281,7 @@ export class Page {
       throw signal.reason;
     }
     const isNew = this.#opened !== opened;
+    const isOther = this.#opened?.name !== opened.name;
     this.#graphics.scene?.clear();
     this.#run?.free();
     this.#run = run;
@@ -190,67 +290,41 @@ export class Page {
     if (this.#opening?.opened === opened) this.#opening = undefined;
     this.#settings = settings;
     this.#summary = undefined;
+    this.#ahead = undefined;
+    this.#looking.close();
     this.#graphics.scene?.setMesh(unitPositions(mesh), mesh.dimension);
-    if (isNew || !this.#graphics.scene?.isLooking) this.#graphics.scene?.lookAtAll();
-    if (isNew) controls.wireframe.checked = mesh.indices.length <= 3 * EDGES_SEEN;
+    if (isOther || !this.#graphics.scene?.eye.isLooking) this.#graphics.scene?.lookAtAll();
+    if (isOther) this.#look = mesh.indices.length <= 3 * EDGES_SEEN ? 'coloured' : 'none';
+    this.#halves.begin(mesh.indices);
     element('no-mesh').hidden = this.#graphics.scene !== undefined;
-    element('beta-label').hidden = mesh.dimension === 2;
+    for (const id of ['beta-label', 'beta-range', 'beta-says', 'deviation-label', 'feature-label']) {
+      element(id).hidden = mesh.dimension === 2;
+    }
+    element('groups-label').hidden = !('groups' in mesh && mesh.groups);
     this.#panel.clear();
-    this.#expectGpu(run, mesh, settings);
+    this.#succession.expect(run, opened, options, this.#graphics.gpu);
+    void this.#countAhead(run, opened, options);
     await this.redraw();
     this.#player.pause();
   }
 
-  /** Prepares the GPU during a run that `auto` has started on the CPU, or sets the reason why the run stays there. */
-  #expectGpu(run: Run, mesh: OpenMesh, settings: Settings): void {
-    this.#handover?.close();
-    this.#handover = undefined;
-    if (
-      settings.backend !== 'auto' ||
-      !run.isInWorker ||
-      run.fallback !== undefined ||
-      this.#graphics.gpu === undefined
-    )
-      return;
-    const gpu = forAuto(this.#graphics.gpu);
-    if (typeof gpu === 'string') {
-      run.fallback = gpu;
-      return;
-    }
-    run.awaitsGpu = true;
-    const begin = () => beginBehind(mesh, settings, gpu);
-    this.#handover = new Handover(
-      begin,
-      () => void this.#handOver(),
-      (error) => this.#stayOnCpu(run, error),
-    );
+  /** Counts the flips of all iterations of a small mesh. */
+  async #countAhead(run: Run, { mesh, office }: Opened, options: Parameters<typeof beginRun>[1]): Promise<void> {
+    if (mesh.indices.length > 3 * AHEAD) return;
+    const ahead = await office.ask((desk) => desk.lookAhead(mesh, options)).catch(() => undefined);
+    if (run !== this.#run || !ahead) return;
+    this.#ahead = ahead;
+    this.#showTransport();
   }
 
-  /** Moves the run to the GPU when the GPU is ready and the page is idle. The picture stays the same. */
-  async #handOver(): Promise<void> {
-    const [run, opened, handover] = [this.#run, this.#opened, this.#handover];
-    if (!run || !opened || !handover) return;
-    const isMeasured = () => document.body.dataset['measured'] === `${run.at}`;
-    const isAtRest = () => run === this.#run && !this.#jobs.isBusy && this.#player.isAtRest && isMeasured();
-    try {
-      const next = await handover.follow(run, isAtRest);
-      if (!next) return;
-      [this.#run, this.#summary, this.#handover] = [next.run, next.summary, undefined];
-      this.#showTriangles(next.run, opened);
-      run.free();
-      this.#panel.showTimes(next.run.iterations);
-      void this.#rest('Now on WebGPU.');
-    } catch (error) {
-      if (handover === this.#handover) this.#stayOnCpu(run, error);
-    }
-  }
-
-  #stayOnCpu(run: Run, error: unknown): void {
-    this.#handover?.close();
-    this.#handover = undefined;
-    run.awaitsGpu = false;
-    run.fallback = error instanceof Error ? error.message : String(error);
-    if (!this.#player.isPlaying) void this.#rest();
+  /** Replaces the run by the same run on the GPU. */
+  #succeed({ run, summary }: Successor): void {
+    const [before, opened] = [this.#run, this.#opened];
+    [this.#run, this.#summary] = [run, summary];
+    if (opened) this.#showTriangles(run, opened);
+    before?.free();
+    this.#panel.showTimes(run.iterations);
+    void this.#rest('Now on WebGPU.');
   }
 
   #endOfJob(): void {
@@ -262,11 +336,13 @@ export class Page {
     if (!this.#player.isPlaying) void this.#rest();
   }
 
-  /** Moves forward by one iteration and draws it. Returns whether there was one. */
-  async #forward(run: Run): Promise<boolean> {
+  /** Moves forward by one iteration and draws it if `isShown`. Returns whether there was one. */
+  async #forward(run: Run, isShown = true): Promise<boolean> {
     try {
       const went = await run.forward();
-      if (run === this.#run) await this.redraw();
+      // The engine learns only from another call that this was the last iteration.
+      if (run === this.#run && this.#ahead?.length === run.iterations.length && !run.hasEnded) await run.forward();
+      if (run === this.#run && (isShown || !went)) await this.redraw();
       return went && run === this.#run;
     } catch (error) {
       if (run === this.#run) this.#showFailure(error);
@@ -278,7 +354,7 @@ export class Page {
   #showFailure(error: unknown): void {
     if (error instanceof Error && error.name === LOST) {
       // A present job may be the recovery. If not, the measurement after it calls the worker again, and fails again.
-      if (!this.#jobs.isBusy) void this.#recover(error.message, false);
+      if (!this.#jobs.isBusy) void this.#recovery.recover(error.message, false);
       return;
     }
     const isLost = error instanceof EdgeflipError && error.code === 'device-failed';
@@ -286,17 +362,16 @@ export class Page {
   }
 
   #showTransport(): void {
-    const [run, opened, summary] = [this.#run, this.#opened, this.#summary];
-    showTransport({ run, opened, summary, isBusy: this.#jobs.isBusy, isPlaying: this.#player.isPlaying });
+    const [run, opened, summary, ahead] = [this.#run, this.#opened, this.#summary, this.#ahead];
+    const [isBusy, isPlaying] = [this.#jobs.isBusy, this.#player.isPlaying];
+    showTransport(this.#timeline, { run, opened, summary, ahead, isBusy, isPlaying });
   }
 
   /** Shows the mesh and the settings of the run again, after another choice has failed. */
   #showChoices(): void {
     const [opened, settings] = [this.#opened, this.#settings];
     if (!opened || !settings) return;
-    // The empty value stands for a file.
-    const names = Array.from(controls.sample.options, ({ value }) => value);
-    controls.sample.value = names.find((name) => name === opened.name) ?? '';
+    markSample(opened.spec ?? '');
     this.#choices.set(settings);
   }
 
@@ -321,68 +396,17 @@ export class Page {
       const indices = await run.triangles();
       const fingerprint = await fingerprintOf(indices);
       if (isOutdated()) return;
-      this.#panel.showFacts(opened.mesh, run, this.#summary, this.#settings?.maxNormalAngle, fingerprint);
-      this.#panel.showLegend(run.states, this.#summary);
-      this.#showTransport();
+      this.#showNumbers(fingerprint);
+      if (!run.states || this.#look !== 'coloured') this.#lookInto(indices);
       if (news === undefined) await measure(this.#panel, opened, run, indices, isOutdated);
       if (isOutdated()) return;
-      element('announcement').textContent = news ?? `${statusOf(run)}. ${element('note').textContent}`;
+      const status = statusOf(run, this.#summary, this.#ahead).join(' ').trim();
+      element('announcement').textContent = news ?? `${status} ${element('note').textContent}`;
       document.body.dataset['measured'] = `${run.at}`;
-      void this.#handOver();
+      void this.#succession.handOver();
     } catch (error) {
       if (!isOutdated()) this.#showFailure(error);
     }
-  }
-
-  /**
-   * Repeats the run after a loss: of the page's device with the pictures on it, or of the worker's context. The
-   * triangles are the same, bit for bit.
-   */
-  async #recover(reason: string, isOfPage: boolean): Promise<void> {
-    const [run, opening] = [this.#run, this.#opening];
-    let hasRecovered = false;
-    await this.#jobs.attempt('The GPU was lost; starting again…', async (signal) => {
-      if (isOfPage) {
-        this.#graphics.open();
-        await this.#graphics.ready;
-      }
-      const opened = (await opening?.read) ?? this.#opened;
-      signal.throwIfAborted();
-      if (!opened) return;
-      const { settings } = this.#choices;
-      const isAgain = this.#lost === opened;
-      this.#lost = opened;
-      // A mesh that lost the GPU twice would probably lose it again. `auto` does not repeat a run on the GPU that it
-      // lost.
-      const [isAuto, isOnGpu] = [settings.backend === 'auto', !opening && !run?.isInWorker];
-      const isHopeless = isAgain ? opening || isOnGpu || isAuto : isOnGpu && isAuto;
-      if (!isOfPage || isHopeless) this.#choices.set({ ...settings, backend: 'cpu' });
-      await this.#begin(opened, signal);
-      if (!opening && run) await this.#goThere(run, signal);
-      hasRecovered = true;
-    });
-    // The user has started another job meanwhile.
-    if (this.#jobs.isBusy) return;
-    const lost = `The GPU was lost (${reason}).`;
-    if (hasRecovered) {
-      this.#player.pause();
-      const andNow = opening ? 'The mesh was opened nevertheless' : 'The run was repeated, with the same triangles';
-      showError(new Error(`${lost} ${andNow}.`));
-    } else if (!this.#opened && this.#source) {
-      await this.open(this.#source);
-    } else if (element('error').hidden) {
-      showError(new Error(`${lost} Choose an engine to continue.`));
-    }
-  }
-
-  /** Repeats the iterations of the previous run. */
-  async #goThere(before: Run, signal: AbortSignal): Promise<void> {
-    try {
-      await this.#run?.follow(before, signal);
-    } catch (error) {
-      this.#showFailure(error);
-    }
-    await this.redraw();
   }
 
   #recolour(): void {

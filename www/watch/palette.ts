@@ -1,17 +1,20 @@
 /** The colours of the page, for the canvas and the charts, which style sheets cannot reach. */
 
-import type { EdgeState } from 'edgeflip';
+import { EDGE_STATES, type EdgeState } from 'edgeflip';
 import { colourReader } from '../shell/theme.ts';
+import { LOOKS } from './states.ts';
 
 export interface Palette {
-  /** Behind the mesh. */
   ground: string;
-  surface: string;
+  /** A surface where the light falls on it, and where it does not. */
+  lit: string;
+  shaded: string;
+  /** A mesh in the plane. */
+  plane: string;
   /** Plain edges. */
   line: string;
   text: string;
-  grid: string;
-  accent: string;
+  hair: string;
   muted: string;
   states: Record<EdgeState, string>;
 }
@@ -21,24 +24,13 @@ export function palette(): Palette {
   const colour = colourReader();
   return {
     ground: colour('ground'),
-    surface: colour('surface'),
+    lit: colour('s0'),
+    shaded: colour('s1'),
+    plane: colour('card'),
     line: colour('edge'),
     text: colour('text'),
-    grid: colour('hair'),
-    accent: colour('spark'),
+    hair: colour('hair'),
     muted: colour('muted'),
-    states: {
-      delaunay: colour('edge'),
-      flips: colour('flips'),
-      waits: colour('waits'),
-      angle: colour('crease'),
-      fold: colour('fold'),
-      duplicate: colour('duplicate'),
-      locked: colour('locked'),
-      deviation: colour('deviation'),
-      'non-manifold': colour('non-manifold'),
-      inconsistent: colour('inconsistent'),
-      boundary: colour('rim'),
-    },
+    states: Object.fromEntries(EDGE_STATES.map((state) => [state, colour(LOOKS[state].colour)])) as Palette['states'],
   };
 }

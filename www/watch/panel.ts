@@ -1,40 +1,20 @@
-/** The numbers beside the mesh: facts, legend, charts and the table of iterations. */
+/** The numbers beside the mesh: the angles, the facts and the table of iterations. */
 
-import { EDGE_STATES, type Engine, type Iteration, type Reasons } from 'edgeflip';
+import type { Engine, Iteration, Reasons } from 'edgeflip';
 import type { IndexedMesh, Measures } from 'edgeflip/files';
-import { AnglesChart, FlipsChart } from './charts.ts';
+import { AnglesChart } from './charts.ts';
 import { element } from './controls.ts';
 import type { Quality } from './desk.ts';
+import { degrees, digits, ms, number } from './numbers.ts';
 import type { Palette } from './palette.ts';
-import { countStates, type Run, type Summary } from './run.ts';
+import type { Run, Summary } from './run.ts';
 
-/** The most rows of the table; the chart shows all iterations. */
+/** The most rows of the table; the timeline shows all iterations. */
 const MOST_ROWS = 2000;
-
-export const number = new Intl.NumberFormat('en');
-const ms = new Intl.NumberFormat('en', { maximumFractionDigits: 1, minimumFractionDigits: 1 });
-const digits = new Intl.NumberFormat('en', { maximumSignificantDigits: 6 });
-const degrees = new Intl.NumberFormat('en', { maximumFractionDigits: 2, minimumFractionDigits: 2 });
 
 export const ENGINES: Record<Engine, string> = { webgpu: 'WebGPU', webgl2: 'WebGL2', cpu: 'CPU' };
 
-/** The text of the legend for each state. */
-const MEANINGS: Record<(typeof EDGE_STATES)[number], string> = {
-  delaunay: 'Delaunay',
-  flips: 'flips next',
-  waits: 'can flip, waits for a neighbour',
-  angle: 'blocked: sharper than β',
-  fold: 'blocked: would fold over',
-  duplicate: 'blocked: the new edge exists already',
-  locked: 'blocked: locked',
-  deviation: 'blocked: would move the surface too far',
-  'non-manifold': 'stays: three or more triangles',
-  inconsistent: 'stays: its triangles have opposite orientations',
-  boundary: 'boundary',
-};
-
 export class Panel {
-  readonly #flips = new FlipsChart(element('flips-chart'));
   readonly #angles = new AnglesChart(element('angles-chart'));
   readonly #rows = element('rows');
   readonly #seek: (at: number) => void;
@@ -45,25 +25,18 @@ export class Panel {
   }
 
   setPalette(palette: Palette): void {
-    this.#flips.setPalette(palette);
     this.#angles.setPalette(palette);
   }
 
   /** Removes all numbers, for a new run. */
   clear(): void {
     this.#rows.replaceChildren();
-    this.#flips.show([], 0);
-    this.showLegend(undefined);
     this.showQuality(undefined);
     element('facts').replaceChildren();
   }
 
   /** Shows the iterations so far, and marks iteration `at`. */
   showIterations(iterations: readonly Iteration[], at: number): void {
-    this.#flips.show(
-      iterations.map(({ flips }) => flips),
-      at,
-    );
     for (const iteration of iterations.slice(this.#rows.childElementCount, MOST_ROWS)) this.#addRow(iteration);
     this.#rows.querySelector('[aria-current]')?.removeAttribute('aria-current');
     const row = this.#rows.children[at - 1];
@@ -81,24 +54,6 @@ export class Panel {
       const [, , , , time] = this.#rows.children[i]?.children ?? [];
       if (time) time.textContent = ms.format(iteration.ms);
     });
-  }
-
-  /** Shows the legend, with the number of edges in each state. */
-  showLegend(states: Uint8Array | undefined, summary?: Summary): void {
-    element('legend-section').hidden = !states;
-    if (!states) return;
-    const counts = countStates(states, summary?.nonManifoldEdges);
-    const items = counts.flatMap((count, state) => {
-      if (count === 0) return [];
-      const name = EDGE_STATES[state]!;
-      const item = document.createElement('li');
-      item.dataset['state'] = name;
-      const value = document.createElement('b');
-      value.textContent = number.format(count);
-      item.append(document.createElement('i'), MEANINGS[name], value);
-      return [item];
-    });
-    element('legend').replaceChildren(...items);
   }
 
   /** `fingerprint` belongs to the shown triangles. Without it, facts that take time to compute are shown as `…`. */
@@ -142,8 +97,11 @@ export class Panel {
   /** Shows the measures of the input and of the shown triangles, and in `change` how far they differ, when known. */
   showQuality(before: Quality | undefined, now?: Quality, change?: { moved: number; distance: number }): void {
     this.#angles.show(before?.angles, now?.angles);
-    element('surface-section').hidden = !before;
-    if (!before) return element('angles-facts').replaceChildren();
+    element('angles-typical').textContent = before ? typical(before, now) : '';
+    if (!before) {
+      for (const id of ['angles-facts', 'surface-facts']) element(id).replaceChildren();
+      return;
+    }
     const both = (key: 'min' | 'meanMin') =>
       `${degrees.format(before.angles[key])}° → ${now ? `${degrees.format(now.angles[key])}°` : '…'}`;
     facts('angles-facts', { Smallest: both('min'), 'Mean smallest': both('meanMin') });
@@ -180,6 +138,9 @@ export class Panel {
     this.#rows.append(row);
   }
 }
+
+const typical = (before: Quality, now: Quality | undefined) =>
+  `typical smallest ${Math.round(before.angles.meanMin)}°${now ? ` → ${Math.round(now.angles.meanMin)}°` : ''}`;
 
 /** A text with the number of edges by reason. */
 export function reasons(by: Reasons): string {

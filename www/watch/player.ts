@@ -3,15 +3,15 @@
 import type { Run } from './run.ts';
 
 export class Player {
-  /** Runs one iteration, draws it, and returns whether there was one. */
-  readonly #forward: (run: Run) => Promise<boolean>;
+  /** Runs one iteration, draws it if `isShown`, and returns whether there was one. */
+  readonly #forward: (run: Run, isShown?: boolean) => Promise<boolean>;
   /** Called when the run pauses. */
   readonly #rest: () => void;
   /** The present loop. A loop that is not the present one stops. */
   #loop: object | undefined;
   #isStepping = false;
 
-  constructor(forward: (run: Run) => Promise<boolean>, rest: () => void) {
+  constructor(forward: (run: Run, isShown?: boolean) => Promise<boolean>, rest: () => void) {
     this.#forward = forward;
     this.#rest = rest;
   }
@@ -36,6 +36,15 @@ export class Player {
       await nextFrame();
       await pause(interval() - (performance.now() - start));
     }
+    if (this.#loop === loop) this.pause();
+  }
+
+  /** Runs iterations up to `at` without drawing them, and then draws that state. */
+  async reach(run: Run, at: number): Promise<void> {
+    const loop = {};
+    this.#loop = loop;
+    run.seek(run.iterations.length);
+    while (this.#loop === loop && run.at < at && (await this.#forward(run, run.at === at - 1)));
     if (this.#loop === loop) this.pause();
   }
 

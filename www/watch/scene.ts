@@ -1,30 +1,10 @@
 /** Draws the mesh with three.js. With WebGPU, it draws from the buffer that the flips write. */
 
-import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
-import {
-  Box3,
-  BufferAttribute,
-  BufferGeometry,
-  Color,
-  DirectionalLight,
-  DoubleSide,
-  HemisphereLight,
-  LineBasicNodeMaterial,
-  LineSegments,
-  Mesh,
-  MeshBasicNodeMaterial,
-  MeshStandardNodeMaterial,
-  MOUSE,
-  OrthographicCamera,
-  PerspectiveCamera,
-  Scene as ThreeScene,
-  Sphere,
-  TOUCH,
-  Vector3,
-  WebGPURenderer,
-} from 'three/webgpu';
+import { BufferAttribute, Scene as ThreeScene, Vector3, WebGPURenderer } from 'three/webgpu';
+import { writeLines } from './change.ts';
+import { Eye, type Insets } from './eye.ts';
+import { Layer, Paint } from './layer.ts';
 import type { Drawn } from './run.ts';
-import { EdgeLines } from './edge-lines.ts';
 import type { Palette } from './palette.ts';
 
 /** The part of three's backend that holds the GPU buffers of attributes. */
@@ -33,44 +13,55 @@ interface Backend {
   get(attribute: BufferAttribute): { buffer?: GPUBuffer };
 }
 
+const next = (h: number) => (h % 3 === 2 ? h - 2 : h + 1);
+
 export class Scene {
   readonly #renderer: WebGPURenderer;
   readonly #scene = new ThreeScene();
-  readonly #surface = new Mesh<BufferGeometry, MeshBasicNodeMaterial | MeshStandardNodeMaterial>();
-  readonly #wire = new LineSegments(
-    new BufferGeometry(),
-    new LineBasicNodeMaterial({ transparent: true, opacity: 0.55 }),
-  );
-  readonly #edges: EdgeLines;
-  readonly #light = new DirectionalLight(0xffffff, 2.2);
+  readonly #paint = new Paint();
+  readonly #now = new Layer(this.#paint);
+  /** The input, at the left of the cut. */
+  readonly #before = new Layer(this.#paint);
   readonly #attributes = new WeakMap<Drawn, BufferAttribute>();
   /** Attributes whose buffers three must not destroy. */
   readonly #shared = new WeakSet<BufferAttribute>();
   readonly #observer: ResizeObserver;
-  #camera: PerspectiveCamera | OrthographicCamera = new PerspectiveCamera();
-  #controls: OrbitControls | undefined;
+  readonly #drawn: () => void;
+  readonly eye: Eye;
   #palette: Palette;
   #positions = new BufferAttribute(new Float32Array(), 3);
   #dimension: 2 | 3 = 3;
-  /** Half of each side of the box around the mesh. */
-  readonly #extent = new Vector3(1, 1, 1);
+  /** The share of the picture's width that shows the input; `undefined` if only one mesh is shown. */
+  #cut: number | undefined;
   #frame = 0;
 
-  private constructor(renderer: WebGPURenderer, palette: Palette) {
+  private constructor(renderer: WebGPURenderer, palette: Palette, insets: () => Insets, drawn: () => void) {
     this.#renderer = renderer;
     this.#palette = palette;
-    this.#edges = new EdgeLines();
-    this.#scene.add(new HemisphereLight(0xffffff, 0x8090a0, 1.6), this.#surface, this.#wire, this.#edges.group);
-    for (const object of [this.#surface, this.#wire]) Object.assign(object, { frustumCulled: false, visible: false });
+    this.#drawn = drawn;
+    this.eye = new Eye(renderer.domElement, insets, () => this.redraw());
+    this.#scene.add(this.#before.group, this.#now.group);
+    this.#before.group.visible = false;
     this.#observer = new ResizeObserver(() => this.#resize());
   }
 
-  /** Draws into `view`: with WebGPU if `device` is given, else with WebGL2. */
-  static async create(view: HTMLElement, device: GPUDevice | undefined, palette: Palette): Promise<Scene> {
-    const renderer = new WebGPURenderer({ antialias: true, ...(device ? { device } : { forceWebGL: true }) });
+  /**
+   * Draws into `view`: with WebGPU if `device` is given, else with WebGL2. `insets` are the parts that are covered;
+   * `drawn` is called after each picture.
+   */
+  static async create(
+    view: HTMLElement,
+    device: GPUDevice | undefined,
+    palette: Palette,
+    insets: () => Insets,
+    drawn: () => void,
+  ): Promise<Scene> {
+    const options = { antialias: true, alpha: true };
+    const renderer = new WebGPURenderer({ ...options, ...(device ? { device } : { forceWebGL: true }) });
     renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+    renderer.setClearColor(0, 0);
     await renderer.init();
-    const scene = new Scene(renderer, palette);
+    const scene = new Scene(renderer, palette, insets, drawn);
     view.append(renderer.domElement);
     renderer.domElement.role = 'img';
     renderer.domElement.setAttribute('aria-label', 'The mesh; drag to turn or move it, scroll to zoom');
@@ -79,72 +70,64 @@ export class Scene {
     return scene;
   }
 
+  get canvas(): HTMLCanvasElement {
+    return this.#renderer.domElement;
+  }
+
   /** Whether it draws with WebGPU, on the given device. */
   get isOnWebGpu(): boolean {
     return this.#backend.isWebGPUBackend === true;
-  }
-
-  /** Whether the camera has been set. */
-  get isLooking(): boolean {
-    return this.#controls !== undefined;
   }
 
   /** Sets the positions of a mesh: 3 numbers per vertex, inside the unit ball. */
   setMesh(positions: Float32Array, dimension: 2 | 3): void {
     this.clear();
     this.#positions = new BufferAttribute(positions, 3);
-    new Box3().setFromBufferAttribute(this.#positions).getSize(this.#extent).divideScalar(2);
     this.#dimension = dimension;
-    this.#surface.geometry = this.#geometry();
-    this.#wire.geometry = this.#geometry();
-    this.setPalette(this.#palette);
+    this.#now.setPositions(this.#positions, dimension);
+    this.#before.setPositions(this.#positions, dimension);
+  }
+
+  lookAtAll(): void {
+    this.eye.lookAt(this.#positions.array as Float32Array, this.#dimension);
   }
 
   /** Draws these triangles, and the lines if there are any. */
   show(triangles: Drawn, count: number, lines: Drawn | undefined): void {
-    this.#surface.geometry.setIndex(this.#index(triangles, count));
-    this.#surface.visible = true;
-    this.#wire.visible = lines !== undefined;
-    if (lines) this.#wire.geometry.setIndex(this.#index(lines, 2 * count));
+    this.#now.show(this.#index(triangles, count), lines && this.#index(lines, 2 * count));
     this.redraw();
   }
 
   /** Draws the edges of a small mesh in colours; without arguments, none. */
   showEdges(indices: Uint32Array | undefined, states: Uint8Array | undefined): void {
-    this.#edges.clear();
-    if (indices && states) this.#edges.show(this.#positions.array as Float32Array, indices, states, this.#palette);
+    this.#now.edges.clear();
+    if (indices && states) this.#now.edges.show(this.#positions.array as Float32Array, indices, states, this.#palette);
+    this.redraw();
+  }
+
+  /** Shows the input at the left of the cut. */
+  compareWith(input: Uint32Array): void {
+    const lines = new Uint32Array(2 * input.length);
+    writeLines(lines, input);
+    this.#before.show(new BufferAttribute(input, 1), new BufferAttribute(lines, 1));
+  }
+
+  /** Moves the cut; `undefined` shows one mesh only. */
+  set cut(share: number | undefined) {
+    this.#cut = share;
     this.redraw();
   }
 
   /** Releases all buffers of the run, which may then be destroyed. */
   clear(): void {
-    this.#edges.clear();
-    for (const object of [this.#surface, this.#wire]) {
-      object.visible = false;
-      const { index } = object.geometry;
-      if (index && this.#shared.has(index)) object.geometry.index = null;
-      object.geometry.dispose();
-      object.geometry = new BufferGeometry();
-    }
+    for (const layer of [this.#now, this.#before]) layer.clear((index) => this.#shared.has(index));
+    this.#cut = undefined;
     this.redraw();
   }
 
   setPalette(palette: Palette): void {
     this.#palette = palette;
-    this.#scene.background = new Color(palette.ground);
-    this.#surface.material.dispose();
-    const common = {
-      color: palette.surface,
-      side: DoubleSide,
-      polygonOffset: true,
-      polygonOffsetFactor: 1,
-      polygonOffsetUnits: 1,
-    };
-    this.#surface.material =
-      this.#dimension === 2
-        ? new MeshBasicNodeMaterial(common)
-        : new MeshStandardNodeMaterial({ ...common, flatShading: true, roughness: 0.85 });
-    this.#wire.material.color.set(palette.line);
+    this.#paint.setPalette(palette);
     this.redraw();
   }
 
@@ -152,9 +135,53 @@ export class Scene {
   redraw(): void {
     this.#frame ||= requestAnimationFrame(() => {
       this.#frame = 0;
-      this.#light.position.copy(this.#camera.position);
-      this.#renderer.render(this.#scene, this.#camera);
+      this.#draw();
+      this.#drawn();
     });
+  }
+
+  /** A picture of what is shown, on the page's ground. */
+  async picture(ground: string): Promise<Blob> {
+    const { width, height } = this.canvas;
+    const canvas = new OffscreenCanvas(width, height);
+    const context = canvas.getContext('2d')!;
+    context.fillStyle = ground;
+    context.fillRect(0, 0, width, height);
+    // A canvas can be read only until the browser has shown it.
+    this.#draw();
+    context.drawImage(this.canvas, 0, 0);
+    return canvas.convertToBlob();
+  }
+
+  /** The half-edge nearest to a point of the picture, in pixels; `undefined` beside the mesh. */
+  pick(x: number, y: number, indices: Uint32Array): number | undefined {
+    const ray = this.eye.rayAt(x, y);
+    const corners = [new Vector3(), new Vector3(), new Vector3()] as const;
+    const load = (t: number) =>
+      corners.forEach((corner, k) => corner.fromBufferAttribute(this.#positions, indices[t + k]!));
+    const hit = new Vector3();
+    let [nearest, found] = [Infinity, -1];
+    for (let t = 0; t < indices.length; t += 3) {
+      load(t);
+      if (!ray.intersectTriangle(corners[0], corners[1], corners[2], false, hit)) continue;
+      const distance = hit.distanceToSquared(ray.origin);
+      if (distance < nearest) [nearest, found] = [distance, t];
+    }
+    if (found < 0) return undefined;
+    const ends = [found, found + 1, found + 2].map((h) => this.positionOf(indices[h]!));
+    const distances = [0, 1, 2].map((k) => distanceTo([x, y], ends[k]!, ends[(k + 1) % 3]!));
+    return found + distances.indexOf(Math.min(...distances));
+  }
+
+  /** Where a vertex is in the picture, in pixels. */
+  positionOf(vertex: number): [x: number, y: number] {
+    return this.eye.project(new Vector3().fromBufferAttribute(this.#positions, vertex));
+  }
+
+  /** The vertices of the quad around a half-edge, in the picture. */
+  outline(indices: Uint32Array, half: number, opposite: readonly number[]): [number, number][] {
+    const [a, b] = [indices[half]!, indices[next(half)]!];
+    return [a, b, ...opposite].map((v) => this.positionOf(v));
   }
 
   /** Removes the canvas. The buffers of the run stay. */
@@ -162,16 +189,35 @@ export class Scene {
     cancelAnimationFrame(this.#frame);
     this.#frame = -1;
     this.#observer.disconnect();
-    this.#controls?.dispose();
+    this.eye.dispose();
     this.#renderer.domElement.remove();
     this.#renderer.dispose();
   }
 
-  #geometry(): BufferGeometry {
-    const geometry = new BufferGeometry();
-    geometry.setAttribute('position', this.#positions);
-    geometry.boundingSphere = new Sphere(new Vector3(), 1);
-    return geometry;
+  #draw(): void {
+    const renderer = this.#renderer;
+    this.#now.edges.setPixel(this.eye.pixel);
+    if (this.#cut === undefined) {
+      renderer.render(this.#scene, this.eye.camera);
+      return;
+    }
+    const { clientWidth: width, clientHeight: height } = this.canvas;
+    const x = Math.round(this.#cut * width);
+    renderer.setScissorTest(true);
+    for (const [layer, left, right] of [
+      [this.#before, 0, x],
+      [this.#now, x, width],
+    ] as const) {
+      this.#before.group.visible = layer === this.#before;
+      this.#now.group.visible = layer === this.#now;
+      renderer.setScissor(left, 0, right - left, height);
+      if (right > left) renderer.render(this.#scene, this.eye.camera);
+      renderer.autoClear = false;
+    }
+    renderer.autoClear = true;
+    renderer.setScissorTest(false);
+    this.#before.group.visible = false;
+    this.#now.group.visible = true;
   }
 
   /** The attribute for these indices. It uses a buffer directly, and copies an array to the GPU at each call. */
@@ -196,47 +242,18 @@ export class Scene {
     return this.#renderer.backend as unknown as Backend;
   }
 
-  /** Sets a new camera that shows the whole mesh: it orbits a surface, and pans over the plane. */
-  lookAtAll(): void {
-    const flat = this.#dimension === 2;
-    this.#controls?.dispose();
-    this.#scene.remove(this.#light);
-    if (flat) {
-      this.#camera = new OrthographicCamera(-1, 1, 1, -1, 0.1, 10);
-      this.#camera.position.set(0, 0, 3);
-    } else {
-      this.#camera = new PerspectiveCamera(35, 1, 0.01, 20);
-      this.#camera.position.set(1.4, 1.1, 3.1);
-      this.#scene.add(this.#light);
-    }
-    const controls = new OrbitControls(this.#camera, this.#renderer.domElement);
-    controls.enableRotate = !flat;
-    controls.zoomToCursor = true;
-    if (flat) {
-      controls.mouseButtons = { LEFT: MOUSE.PAN, MIDDLE: MOUSE.DOLLY, RIGHT: MOUSE.PAN };
-      controls.touches = { ONE: TOUCH.PAN, TWO: TOUCH.DOLLY_PAN };
-    }
-    controls.addEventListener('change', () => this.redraw());
-    this.#controls = controls;
-    this.#resize();
-  }
-
   #resize(): void {
     const { clientWidth: width, clientHeight: height } = this.#renderer.domElement.parentElement ?? document.body;
     if (width === 0 || height === 0) return;
     this.#renderer.setSize(width, height, false);
-    const aspect = width / height;
-    if (this.#camera instanceof PerspectiveCamera) {
-      this.#camera.aspect = aspect;
-      // The mesh fits the narrower side.
-      this.#camera.fov = aspect >= 1 ? 35 : (2 * Math.atan(Math.tan((35 * Math.PI) / 360) / aspect) * 180) / Math.PI;
-    } else {
-      // The box around the mesh fits both sides.
-      const { x, y } = this.#extent;
-      const half = 1.08 * Math.max(y, x / aspect);
-      Object.assign(this.#camera, { left: -half * aspect, right: half * aspect, top: half, bottom: -half });
-    }
-    this.#camera.updateProjectionMatrix();
+    this.eye.resize();
     this.redraw();
   }
+}
+
+/** The distance of a point from a line segment. */
+function distanceTo([x, y]: [number, number], [ax, ay]: [number, number], [bx, by]: [number, number]): number {
+  const [dx, dy] = [bx - ax, by - ay];
+  const t = Math.max(0, Math.min(1, ((x - ax) * dx + (y - ay) * dy) / (dx * dx + dy * dy || 1)));
+  return Math.hypot(x - ax - t * dx, y - ay - t * dy);
 }

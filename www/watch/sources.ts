@@ -4,7 +4,7 @@ import { proxy } from 'comlink';
 import { FORMATS, type FileMesh, type IndexedMesh } from 'edgeflip/files';
 import { fromEvent } from 'file-selector';
 import type { Office } from './engines.ts';
-import { BROUGHT, type Sample } from './samples.ts';
+import { BROUGHT, sampleOf } from '../models/samples.js';
 import { folderOf, GLTF, plain, type Kept, type Located, type Report } from './files.ts';
 
 /** The β of most meshes. */
@@ -16,6 +16,11 @@ export interface Source {
   readonly name: string;
   /** The β that suits it. */
   readonly beta: number;
+  /** What people call it, and what it is, for a sample. */
+  readonly title?: string;
+  readonly what?: string;
+  /** The sample. */
+  readonly spec?: string;
   read(office: Office, report: Report): Promise<Read>;
 }
 
@@ -39,7 +44,8 @@ export function splitName(name: string): [stem: string, extension: string] {
 }
 
 /** A mesh of the page: of a family, or a file that the page brings. */
-export function sample({ spec, beta = BETA }: Sample): Source {
+export function sample(spec: string): Source {
+  const { name: title, what, beta = BETA } = sampleOf(spec);
   const generate = async (office: Office) => {
     const mesh = await office.ask((desk) => desk.generate(spec));
     return { name: spec, mesh, kept: undefined, others: 0 };
@@ -51,7 +57,14 @@ export function sample({ spec, beta = BETA }: Sample): Source {
       throw new Error(`${name} could not be loaded (${answer.status}). Check the connection, and try again.`);
     return readFirst([{ path: name, file: new File([await answer.blob()], name) }], office, report);
   };
-  return { name: spec, beta, read: spec.startsWith(BROUGHT) ? fetched : generate };
+  return {
+    name: spec,
+    spec,
+    title,
+    ...(what ? { what } : {}),
+    beta,
+    read: spec.startsWith(BROUGHT) ? fetched : generate,
+  };
 }
 
 /** The first mesh of the files; `undefined` if there are no files. */

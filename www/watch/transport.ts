@@ -1,51 +1,56 @@
-/** Updates the controls below the mesh and the sentences next to it. */
+/** Updates the controls below the mesh, and the words on the page about the mesh and its run. */
 
 import type { Reasons } from 'edgeflip';
-import { controls, element } from './controls.ts';
+import { controls, element, made } from './controls.ts';
+import type { Flips } from './desk.ts';
+import { counted } from './numbers.ts';
 import type { Opened } from './opening.ts';
-import { ENGINES, number, reasons } from './panel.ts';
+import { ENGINES, reasons } from './panel.ts';
 import type { Run, Summary } from './run.ts';
+import { statusOf } from './sentences.ts';
+import { showPosition, type Timeline } from './timeline.ts';
 
 export interface Standing {
   run: Run | undefined;
   opened: Opened | undefined;
   /** The summary of the run when it last paused. */
   summary: Summary | undefined;
+  /** The flips of all iterations, if they are known before they are run. */
+  ahead: Flips[] | undefined;
   /** Whether a job is running. */
   isBusy: boolean;
   isPlaying: boolean;
 }
 
-export function showTransport({ run, opened, summary, isBusy, isPlaying }: Standing): void {
-  const [at, newest] = [run?.at ?? 0, run?.iterations.length ?? 0];
+export function showTransport(timeline: Timeline, standing: Standing): void {
+  const { run, opened, summary, ahead, isBusy, isPlaying } = standing;
+  const at = run?.at ?? 0;
   const isIdle = run !== undefined && !isBusy;
-  controls.play.textContent = isPlaying ? 'Pause' : 'Play';
+  controls.play.ariaLabel = isPlaying ? 'Pause' : 'Play';
   controls.play.disabled = !isIdle;
   controls.step.disabled = !isIdle || run.isOver;
-  controls.reset.disabled = !isIdle || at === 0;
-  controls.slider.disabled = !isIdle || newest === 0;
-  controls.slider.max = `${newest}`;
-  controls.slider.value = `${at}`;
-  controls.download.disabled = !isIdle;
-  const position = run ? `${number.format(at)} / ${number.format(newest)}${run.hasEnded ? '' : '…'}` : '';
-  element('position').textContent = position;
-  element('status').textContent = run ? statusOf(run) : '';
-  const isFinal = run?.isOver && summary?.iterations === newest;
-  const remains = isFinal ? left(summary.remaining) : '';
-  const note = [remains, opened?.remark, run ? whyThere(run, summary) : ''].filter(Boolean).join(' ');
-  element('note').hidden = note === '';
-  element('note').textContent = note;
-  element('caption').textContent = opened?.name ?? '';
+  for (const control of [controls.back, controls.reset]) control.disabled = !isIdle || at === 0;
+  for (const control of [controls.compare, controls.scramble, controls.take]) control.disabled = !isIdle;
+  const flips = ahead ?? run?.iterations ?? [];
+  showPosition(at, flips.length, isIdle);
+  timeline.show([...flips], at, ahead !== undefined || run?.hasEnded === true);
+  const [bold, rest] = run ? statusOf(run, summary, ahead) : ['', ''];
+  element('status').replaceChildren(...(bold ? [made('b', '', bold), ' '] : []), rest);
+  element('note').textContent = noteOn(standing);
+  element('note').hidden = element('note').textContent === '';
+  element('caption').textContent = opened?.title ?? '';
+  element('about').textContent = opened
+    ? [opened.what, counted(opened.mesh.indices.length / 3, 'triangle'), opened.remark].filter(Boolean).join(', ')
+    : '';
   const state = isBusy ? 'busy' : !run ? 'empty' : isPlaying ? 'playing' : run.isOver ? 'done' : 'ready';
-  document.body.dataset['state'] = state;
+  Object.assign(document.body.dataset, { state, mesh: opened?.name ?? '', newest: `${run?.iterations.length ?? 0}` });
 }
 
-/** The flips and iterations up to the shown state, as a text. */
-export function statusOf({ at, isOver, iterations }: Run): string {
-  if (at === 0) return isOver ? 'No edge of the input can flip' : 'The input';
-  const flips = iterations.slice(0, at).reduce((sum, iteration) => sum + iteration.flips, 0);
-  const progress = `${number.format(flips)} ${flips === 1 ? 'flip' : 'flips'} in ${number.format(at)} ${at === 1 ? 'iteration' : 'iterations'}`;
-  return isOver ? `Done: ${progress}` : progress;
+/** What is left and why, what reading changed, and why the engine is where it is. */
+function noteOn({ run, opened, summary }: Standing): string {
+  const isFinal = run?.isOver && summary?.iterations === run.iterations.length;
+  const remains = isFinal ? left(summary.remaining) : '';
+  return [remains, opened?.remark, run ? whyThere(run, summary) : ''].filter(Boolean).join(' ');
 }
 
 /** Why `auto` runs on its engine. */
@@ -55,7 +60,6 @@ function whyThere({ fallback }: Run, summary: Summary | undefined): string {
   return `On ${engine}: ${[fallback, summary.fallback].filter(Boolean).join('; ')}.`;
 }
 
-/** A sentence about the remaining edges. */
 function left(remaining: Reasons): string {
   const what = reasons(remaining);
   return what === 'none' ? 'Every edge is Delaunay.' : `Not Delaunay, and cannot flip: ${what}.`;

@@ -1,0 +1,71 @@
+/** What the user does with the shown mesh besides running it: scramble, save, link, and take the code. */
+
+import { codeFor } from './code.ts';
+import { download, save } from './download.ts';
+import { linkTo } from './link.ts';
+import { again } from './opening.ts';
+import type { Page } from './page.ts';
+import { palette } from './palette.ts';
+import { splitName } from './sources.ts';
+
+/** The most triangles of a mesh whose edges are flipped at random: a larger one would take seconds. */
+const SCRAMBLED = 200_000;
+
+/** Flips edges at random where the shape stays, and opens the mesh again with these triangles. */
+export async function scramble(page: Page): Promise<void> {
+  const shown = page.shown;
+  if (!shown) return;
+  const { opened, run, settings } = shown;
+  let indices: Uint32Array | undefined;
+  await page.attempt('Flipping edges at random…', async () => {
+    if (opened.mesh.indices.length > 3 * SCRAMBLED) {
+      throw new Error(`Scramble takes meshes of up to ${SCRAMBLED} triangles. This one has more.`);
+    }
+    const mesh = { ...opened.mesh, indices: await run.triangles() };
+    const seed = Math.floor(performance.now());
+    indices = await opened.office.ask((desk) => desk.scramble(mesh, settings.maxNormalAngle, seed));
+  });
+  if (indices) await page.open(again(opened, settings.maxNormalAngle, indices));
+}
+
+/** Writes the shown triangles into a file, in the format of `extension`, or of the file that was opened. */
+export async function saveMesh(page: Page, extension?: string): Promise<void> {
+  const shown = page.shown;
+  if (!shown) return;
+  const { opened, run } = shown;
+  const [stem, own] = splitName(opened.name);
+  const format = extension ?? own;
+  // Only a file of the same format keeps what else was in the original.
+  const kept = format === own ? opened.kept : undefined;
+  await page.attempt('Writing the file…', async (signal) => {
+    const mesh = { ...opened.mesh, indices: await run.triangles() };
+    signal.throwIfAborted();
+    await download(mesh, `${stem.replaceAll(' ', '-')}-after-${run.at}${format}`, kept, signal);
+  });
+}
+
+/** Saves a picture of the mesh as it is shown. */
+export async function savePicture(page: Page): Promise<void> {
+  const [shown, scene] = [page.shown, page.scene];
+  if (!shown || !scene) return;
+  const [stem] = splitName(shown.opened.name);
+  save(await scene.picture(palette().ground), `${stem.replaceAll(' ', '-')}-after-${shown.run.at}.png`);
+}
+
+/** Copies a link to what is shown. Returns what to say. */
+export async function copyLink(page: Page): Promise<string> {
+  const shown = page.shown;
+  if (!shown) return '';
+  const link = linkTo(shown, page.scene?.eye.pose);
+  if (!link) return 'A link opens samples only: your mesh is on this computer alone.';
+  await navigator.clipboard.writeText(link);
+  return 'Link copied. It opens this mesh, iteration, limit and view.';
+}
+
+/** Copies the lines of JavaScript that do what is on screen. Returns what to say. */
+export async function copyCode(page: Page): Promise<string> {
+  const shown = page.shown;
+  if (!shown) return '';
+  await navigator.clipboard.writeText(codeFor(shown));
+  return 'Code copied.';
+}

@@ -1,0 +1,34 @@
+/** The gallery: a picture and a word for each sample. */
+
+import { element, made } from './controls.ts';
+import { FIRST, SAMPLES } from '../models/samples.js';
+
+/** Fills the gallery. `open` is called with the spec of the sample that is chosen. */
+export function makeGallery(open: (spec: string) => void): void {
+  const gallery = element('gallery');
+  for (const sample of SAMPLES.flatMap(({ samples }) => samples)) {
+    const picture = made('span', 'thumb');
+    picture.style.setProperty('--thumb', `url(${new URL(sample.thumb, document.baseURI)})`);
+    const button = made('button', '', picture, sample.short);
+    button.type = 'button';
+    button.title = [sample.name, sample.credit, sample.licence].filter(Boolean).join(', ');
+    button.dataset['spec'] = sample.spec;
+    button.addEventListener('click', ({ detail }) => {
+      open(sample.spec);
+      element('choose').ariaExpanded = 'false';
+      // After a click with the pointer, the keys are for the run.
+      if (detail > 0) button.blur();
+    });
+    gallery.append(button);
+  }
+  markSample(FIRST);
+  const choose = element('choose');
+  choose.addEventListener('click', () => (choose.ariaExpanded = `${choose.ariaExpanded !== 'true'}`));
+}
+
+/** Marks the sample of this name; none for a file. */
+export function markSample(spec: string): void {
+  for (const button of element('gallery').querySelectorAll('button')) {
+    button.ariaPressed = `${button.dataset['spec'] === spec}`;
+  }
+}

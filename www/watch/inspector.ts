@@ -1,0 +1,52 @@
+/** The inspector: an edge with its two triangles laid flat, its opposite angles beside each other, and a sentence. */
+
+import type { IndexedMesh } from 'edgeflip/files';
+import { element, made } from './controls.ts';
+import { angleFan, lens } from './lens.ts';
+import type { Quad } from './quad.ts';
+import { sentenceOf } from './sentences.ts';
+import { LOOKS, swatch } from './states.ts';
+
+export interface Limits {
+  maxNormalAngle: number;
+  maxDeviation: number | undefined;
+}
+
+/** Shows an edge, as the picture shows it: `turn` is its angle on screen. */
+export function showEdge(quad: Quad, mesh: IndexedMesh, limits: Limits, turn: number): void {
+  const { state, a, b, angles, opposite } = quad;
+  const rounded = angles.map((angle) => `${Math.round(angle)}°`);
+  const sum = Math.round(angles.reduce((total, angle) => total + angle, 0));
+  const name = state ? LOOKS[state].word : sum > 180 ? 'Not Delaunay' : 'Delaunay';
+  const colour = state ? LOOKS[state].colour : 'edge';
+  const parts: Node[] = [
+    made('header', '', swatch(state ?? 'delaunay'), name, made('small', '', `edge ${a}–${b}`)),
+    lens(quad, mesh, colour, turn),
+  ];
+  const numbers = made('div', 'sum');
+  if (opposite.length === 2) {
+    numbers.append(angleFan(angles, colour), made('strong', '', `${sum}°`), made('span', '', rounded.join(' + ')));
+  } else if (opposite.length === 1) {
+    numbers.append(made('strong', '', rounded[0]!), made('span', '', 'one angle'));
+  }
+  parts.push(numbers, made('p', '', sentenceOf(quad, limits.maxNormalAngle, limits.maxDeviation)));
+  const box = element('inspect');
+  box.replaceChildren(...parts);
+  box.dataset['edge'] = `${a} ${b}`;
+  box.hidden = false;
+}
+
+export function hideEdge(): void {
+  element('inspect').hidden = true;
+  drawThread(undefined);
+}
+
+/** A line from the inspector to the edge at `point` of the picture, where the inspector is beside it. */
+export function drawThread(point: readonly [x: number, y: number] | undefined): void {
+  const path = element('thread').querySelector('path');
+  const [stage, box] = [element('stage').getBoundingClientRect(), element('inspect').getBoundingClientRect()];
+  const isBeside = box.left > stage.width / 2 && box.width > 0;
+  if (!point || !isBeside) return path?.setAttribute('d', '');
+  const [x, y] = [box.left - stage.left - 10, box.top - stage.top + 26];
+  path?.setAttribute('d', `M${x} ${y}h-20L${point[0]} ${point[1]}`);
+}

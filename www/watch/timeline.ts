@@ -1,0 +1,102 @@
+/** The timeline: its stops are the states, the bars between them the flips. A range control lies over it. */
+
+import { select } from 'd3-selection';
+import type { Flips } from './desk.ts';
+import { controls, element } from './controls.ts';
+import { number } from './numbers.ts';
+
+/** Half of the knob of the range control, in pixels. */
+const EDGE = 9;
+/** The most stops that have a dot and a label. */
+const FEW = 16;
+const WIDEST = 44;
+
+export class Timeline {
+  readonly #svg = select(element('bars')).select<SVGSVGElement>('svg');
+  #last: [Flips[], number, boolean] = [[], 0, false];
+
+  constructor() {
+    new ResizeObserver(() => this.show(...this.#last)).observe(element('bars'));
+  }
+
+  /** Shows all iterations that are known, and the position `at`. `isWhole`: whether no more are coming. */
+  show(flips: Flips[], at: number, isWhole: boolean): void {
+    this.#last = [flips, at, isWhole];
+    const { clientWidth: width, clientHeight: height } = element('bars');
+    const [count, line] = [flips.length, height - 33];
+    const x = (stop: number) => EDGE + (count === 0 ? 0 : (stop / count) * (width - 2 * EDGE));
+    const most = Math.sqrt(Math.max(1, ...flips.map((each) => each.flips)));
+    const tall = (each: Flips) => Math.max(2, (Math.sqrt(each.flips) / most) * (line - 26));
+    const each = count > 0 ? (width - 2 * EDGE) / count : 0;
+    const wide = Math.max(1, Math.min(WIDEST, each * 0.6));
+    this.#svg.selectAll('*').remove();
+    const track = (from: number, to: number, colour: string) =>
+      this.#svg
+        .append('path')
+        .attr('d', `M${x(from)} ${line}H${x(to)}`)
+        .attr('stroke', `var(--${colour})`)
+        .attr('stroke-width', 2);
+    if (count === 0)
+      this.#svg
+        .append('path')
+        .attr('d', `M${EDGE} ${line}H${width - EDGE}`)
+        .attr('stroke', 'var(--hair)')
+        .attr('stroke-width', 2);
+    track(0, count, 'hair');
+    track(0, at, 'text');
+    this.#svg
+      .selectAll('rect')
+      .data(flips)
+      .join('rect')
+      .attr('x', (_, i) => x(i + 0.5) - wide / 2)
+      .attr('y', (bar) => line - 5 - tall(bar))
+      .attr('width', wide)
+      .attr('height', tall)
+      .attr('rx', Math.min(3, wide / 2))
+      .attr('fill', (_, i) => (i === at ? 'var(--spark)' : 'var(--text)'))
+      .attr('opacity', (_, i) => (i === at ? 1 : i < at ? 0.5 : 0.2));
+    const next = flips[at];
+    if (next) this.#text(x(at + 0.5), line - tall(next) - 11, number.format(next.flips), 'here');
+    const isFew = count <= FEW;
+    if (isFew) this.#dots(count, at, x, line);
+    const labels = isFew ? Array.from({ length: count + 1 }, (_, i) => i) : [0, at, count];
+    for (const stop of new Set(labels)) {
+      const isEnd = stop === 0 || stop === count;
+      // A label beside another one would overlap it.
+      if (!isFew && !isEnd && Math.min(x(stop) - x(0), x(count) - x(stop)) < 60) continue;
+      const words = stop === 0 ? 'Input' : stop === count && isWhole ? 'Result' : number.format(stop);
+      this.#text(x(stop), line + 24, words, stop === at ? 'here' : '', stop === 0 ? 'start' : isEnd ? 'end' : 'middle');
+    }
+  }
+
+  #dots(count: number, at: number, x: (stop: number) => number, line: number): void {
+    this.#svg
+      .selectAll('circle')
+      .data(Array.from({ length: count + 1 }, (_, i) => i))
+      .join('circle')
+      .attr('cx', x)
+      .attr('cy', line)
+      .attr('r', 2.5)
+      .attr('fill', (stop) => (stop <= at ? 'var(--text)' : 'var(--muted)'));
+  }
+
+  #text(x: number, y: number, words: string, className: string, anchor = 'middle'): void {
+    const shift = anchor === 'start' ? -EDGE : anchor === 'end' ? EDGE : 0;
+    this.#svg
+      .append('text')
+      .attr('x', x + shift)
+      .attr('y', y)
+      .attr('text-anchor', anchor)
+      .attr('class', className)
+      .text(words);
+  }
+}
+
+/** Sets the range of the control to the stops that are known. */
+export function showPosition(at: number, stops: number, isEnabled: boolean): void {
+  const { slider } = controls;
+  slider.max = `${stops}`;
+  slider.value = `${at}`;
+  slider.disabled = !isEnabled || stops === 0;
+  slider.setAttribute('aria-valuetext', at === 0 ? 'the input' : `after iteration ${at} of ${stops}`);
+}
