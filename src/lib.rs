@@ -32,6 +32,8 @@ pub mod wasm;
 
 #[cfg(all(not(target_arch = "wasm32"), feature = "gpu"))]
 pub use engine::{GpuBuffers, GpuDevice};
+#[cfg(feature = "baseline")]
+pub use engine::select_on_cpu;
 pub use engine_kind::EngineKind;
 pub use error::Error;
 pub use mesh::adjacency::Adjacency;

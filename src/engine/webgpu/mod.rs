@@ -11,6 +11,8 @@
 mod adjacency;
 #[cfg(target_arch = "wasm32")]
 mod ahead;
+#[cfg(feature = "baseline")]
+mod baseline;
 #[cfg(target_arch = "wasm32")]
 mod browser;
 mod buffer;
@@ -44,6 +46,8 @@ mod tests;
 
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 pub use browser::GpuDevice;
+#[cfg(feature = "baseline")]
+pub use baseline::select_on_cpu;
 pub(crate) use device::Device;
 #[cfg(test)]
 pub(crate) use kernels::Kernel;
