@@ -30,10 +30,10 @@ mod system;
 #[cfg(all(target_arch = "wasm32", feature = "js-values"))]
 pub mod wasm;
 
-#[cfg(all(not(target_arch = "wasm32"), feature = "gpu"))]
-pub use engine::{GpuBuffers, GpuDevice};
 #[cfg(feature = "baseline")]
 pub use engine::select_on_cpu;
+#[cfg(all(not(target_arch = "wasm32"), feature = "gpu"))]
+pub use engine::{GpuBuffers, GpuDevice};
 pub use engine_kind::EngineKind;
 pub use error::Error;
 pub use mesh::adjacency::Adjacency;

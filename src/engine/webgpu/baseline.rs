@@ -2,8 +2,8 @@
 //! GPU. In each iteration the labels go to the host and the selection goes back.
 //!
 //! A label is the best edge of a triangle, as Label finds it. The host takes the edges one after another, each if both
-//! of its triangles are free. There is no guard against two flips that make the same edge, as the paper has none: audit
-//! the result.
+//! of its triangles are free. As in the paper, there is no guard against two flips that make the same edge: on a coarse
+//! mesh the result may be not manifold.
 
 use super::WebGpu;
 use super::compile::compile;

@@ -44,10 +44,10 @@ mod steps;
 #[cfg(test)]
 mod tests;
 
-#[cfg(all(target_arch = "wasm32", feature = "js"))]
-pub use browser::GpuDevice;
 #[cfg(feature = "baseline")]
 pub use baseline::select_on_cpu;
+#[cfg(all(target_arch = "wasm32", feature = "js"))]
+pub use browser::GpuDevice;
 pub(crate) use device::Device;
 #[cfg(test)]
 pub(crate) use kernels::Kernel;
