@@ -35,6 +35,6 @@ pub use webgpu::GpuDevice;
 #[cfg(all(not(target_arch = "wasm32"), feature = "gpu"))]
 pub use webgpu::GpuDevice;
 #[cfg(feature = "baseline")]
-pub use webgpu::select_on_cpu;
+pub use webgpu::baseline::select_on_cpu;
 #[cfg(feature = "gpu")]
 pub(crate) use webgpu::{Device, GivenDevice, Handle as DeviceHandle, WebGpu};

@@ -12,7 +12,7 @@ mod adjacency;
 #[cfg(target_arch = "wasm32")]
 mod ahead;
 #[cfg(feature = "baseline")]
-mod baseline;
+pub(super) mod baseline;
 #[cfg(target_arch = "wasm32")]
 mod browser;
 mod buffer;
@@ -44,8 +44,6 @@ mod steps;
 #[cfg(test)]
 mod tests;
 
-#[cfg(feature = "baseline")]
-pub use baseline::select_on_cpu;
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 pub use browser::GpuDevice;
 pub(crate) use device::Device;
