@@ -27,7 +27,7 @@ const rows = ['random', 'uvsphere', 'delaunay'].flatMap((family) =>
 );
 const strips = (nodes, flips) => ({ name: `strips ${nodes}`, flips });
 const data = {
-  ...{ commit: 'abc', date: '2026-01-02', runs: 5 },
+  ...{ commit: 'abc', date: '2026-01-02', runs: 5, enough_s: 10 },
   machine: { cpu: 'a CPU', threads: 16, adapter: 'NVIDIA H200, NVIDIA 580', software: false },
   meshes: [...MESHES.map(mesh), { ...mesh(MESHES[4]), id: '', name: 'uvsphere 4083' }],
   strips: [strips(8, [1, 2, 3, 2, 1]), strips(12, [1, 2, 1]), strips(16, [1, 2, 1]), strips(1000, Array(200).fill(1))],

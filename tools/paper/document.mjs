@@ -162,7 +162,7 @@ The paper is *A Quasi-Parallel GPU-Based Algorithm for Delaunay Edge-Flips* by N
 - The paper's machine: AMD Phenom x4 850; Nvidia GeForce 9800GTX+.
 - Commit ${data.commit}, ${data.date}. The measurements are in [${file.split('/').at(-1)}](../${file}).
 - Command: \`npm run paper\`. On a machine with a GPU but without npm, run \`${BENCH} > paper.json\` there, and \`node tools/paper.mjs --from paper.json\` here.
-- Times are medians of up to ${data.runs} runs after one uncounted run. They are from the arrays of the caller to the arrays of the result; the device was open and its kernels were compiled. *Flips alone* are the iterations without copies and adjacency.
+- Times are medians of up to ${data.runs} runs after one uncounted run; a first run of more than ${data.enough_s} s counts and is the only one. They are from the arrays of the caller to the arrays of the result; the device was open and its kernels were compiled. *Flips alone* are the iterations without copies and adjacency.
 - T_CPU is the CPU engine on one thread, with the same result as the GPU, bit for bit. *Lawson* is Lawson's algorithm on one thread (\`--order any\`). The paper compares with a sequential algorithm of this kind.
 
 ## Table 2: the meshes
