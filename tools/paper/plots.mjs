@@ -124,7 +124,7 @@ export function figure11(data) {
     marginLeft: 8,
     marginRight: 8,
     marginBottom: 8,
-    fx: { label: null, domain: [...new Set(rows.map(({ state }) => state))] },
+    fx: { axis: 'top', label: null, domain: [...new Set(rows.map(({ state }) => state))] },
     x: { axis: null },
     y: { axis: null },
     marks: [
@@ -137,8 +137,13 @@ export function figure11(data) {
   });
 }
 
-/** A logarithmic scale that marks only powers of ten. */
-const LOG = { type: 'log', grid: true, nice: true, ticks: Array.from({ length: 16 }, (_, i) => 10 ** (i - 6)) };
+/** A logarithmic scale from a power of ten to another, for `values`; it marks only powers of ten. */
+function logarithmic(label, values, tickFormat) {
+  const first = Math.floor(Math.log10(Math.min(...values)));
+  const last = Math.ceil(Math.log10(Math.max(...values)));
+  const ticks = Array.from({ length: last - first + 1 }, (_, i) => 10 ** (first + i));
+  return { type: 'log', grid: true, label, ticks, domain: [ticks[0], ticks.at(-1)], tickFormat };
+}
 
 /** Times over the size: ours, and the paper's in grey. */
 export function times(data) {
@@ -163,10 +168,15 @@ export function times(data) {
       Plot.text(rows.slice(-1), { x: 'edges', y: 'seconds', text: () => name, fill: GREY, dx: 8, textAnchor: 'start' }),
     ];
   };
+  const inSeconds = data.meshes.map(({ cpu, gpu }) => ({ cpu: cpu.total / 1000, gpu: gpu.total / 1000 }));
   return svg('Seconds over edges', {
     marginRight: 90,
-    x: { ...LOG, label: 'edges', tickFormat: '~s' },
-    y: { ...LOG, label: 'seconds', tickFormat: '~g' },
+    x: logarithmic('edges', [...MESHES.map(edgesOf), ...data.meshes.map(({ edges }) => edges)], '~s'),
+    y: logarithmic(
+      'seconds',
+      [...MESHES, ...inSeconds].flatMap(({ cpu, gpu }) => [cpu, gpu]),
+      '~g',
+    ),
     marks: [
       ...theirs('cpu', 'CPU, paper'),
       ...theirs('gpu', 'GPU, paper'),
@@ -182,12 +192,21 @@ export function crossover(data) {
   const colours = { random: BLUE, uvsphere: ORANGE, delaunay: 'currentColor' };
   const last = rows.filter((row, i) => rows[i + 1]?.family !== row.family).sort((a, b) => b.ratio - a.ratio);
   const theirs = MESHES.map((mesh) => ({ edges: edgesOf(mesh), ratio: mesh.speedUp }));
+  const all = [...theirs, ...rows];
   const at = { x: 'edges', y: 'ratio' };
   const label = { ...at, dx: 8, textAnchor: 'start' };
   return svg('Speed-up of the GPU over edges', {
     marginRight: 100,
-    x: { ...LOG, label: 'edges', tickFormat: '~s' },
-    y: { ...LOG, label: 'T_CPU : T_GPU', tickFormat: '~g' },
+    x: logarithmic(
+      'edges',
+      all.map(({ edges }) => edges),
+      '~s',
+    ),
+    y: logarithmic(
+      'T_CPU : T_GPU',
+      all.map(({ ratio }) => ratio),
+      '~g',
+    ),
     marks: [
       Plot.ruleY([1], { stroke: 'currentColor' }),
       Plot.line(theirs, { ...at, stroke: GREY, marker: 'dot' }),
