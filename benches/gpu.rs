@@ -6,7 +6,7 @@
 //! git.
 
 use edgeflip::{Backend, Mesh, Options, Outcome, Reasons, families, make_delaunay, quality};
-use std::{error::Error, ops::ControlFlow, process::Command, sync::Arc};
+use std::{error::Error, ops::ControlFlow, sync::Arc};
 
 #[path = "arguments/mod.rs"]
 mod arguments;
@@ -14,6 +14,9 @@ use arguments::{Arguments, median};
 #[path = "clock/mod.rs"]
 mod clock;
 use clock::Clock;
+#[path = "commit/mod.rs"]
+mod commit;
+use commit::commit;
 #[path = "warm_up/mod.rs"]
 mod warm_up;
 use warm_up::WarmUp;
@@ -121,14 +124,4 @@ fn run(mesh: &Arc<Mesh>, backend: Backend, mut watch: impl FnMut()) -> Result<Ou
         watch();
         ControlFlow::Continue(())
     })
-}
-
-/// The commit that this program was built from, if it is known.
-fn commit() -> String {
-    let named = std::env::var("EDGEFLIP_COMMIT").ok().or(option_env!("EDGEFLIP_COMMIT").map(str::to_owned));
-    let asked = || {
-        let git = Command::new("git").args(["describe", "--always", "--dirty"]).output().ok()?;
-        git.status.success().then(|| String::from_utf8_lossy(&git.stdout).trim().to_owned())
-    };
-    named.or_else(asked).unwrap_or_else(|| "unknown".to_owned())
 }

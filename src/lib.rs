@@ -30,6 +30,8 @@ mod system;
 #[cfg(all(target_arch = "wasm32", feature = "js-values"))]
 pub mod wasm;
 
+#[cfg(feature = "baseline")]
+pub use engine::select_on_cpu;
 #[cfg(all(not(target_arch = "wasm32"), feature = "gpu"))]
 pub use engine::{GpuBuffers, GpuDevice};
 pub use engine_kind::EngineKind;

@@ -34,5 +34,7 @@ pub(crate) use webgl2::{Question, WebGl, set_shader_loader};
 pub use webgpu::GpuDevice;
 #[cfg(all(not(target_arch = "wasm32"), feature = "gpu"))]
 pub use webgpu::GpuDevice;
+#[cfg(feature = "baseline")]
+pub use webgpu::baseline::select_on_cpu;
 #[cfg(feature = "gpu")]
 pub(crate) use webgpu::{Device, GivenDevice, Handle as DeviceHandle, WebGpu};

@@ -226,8 +226,13 @@ impl Device {
 
     /// Writes words to the start of `buffer`, before the next submission.
     pub(super) fn write(&self, buffer: &Buffer, words: &[u32]) {
+        self.write_at(buffer, 0, words);
+    }
+
+    /// Writes words to `buffer` from word `first` on, before the next submission.
+    pub(super) fn write_at(&self, buffer: &Buffer, first: usize, words: &[u32]) {
         for (i, chunk) in words.chunks(CHUNK).enumerate() {
-            let offset = 4 * (i * CHUNK) as u64;
+            let offset = 4 * (first + i * CHUNK) as u64;
             self.stage(buffer, offset, chunk);
             if chunk.len() == CHUNK {
                 self.finish_copies();

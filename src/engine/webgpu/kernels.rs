@@ -85,11 +85,20 @@ pub(super) struct Kernels {
     pub(super) pipelines: Vec<wgpu::ComputePipeline>,
     /// Only for the kernels of the phases: the tail, once it is compiled.
     pub(super) tail: OnceLock<wgpu::ComputePipeline>,
+    /// The kernel of the baseline, once it is compiled.
+    #[cfg(feature = "baseline")]
+    pub(super) take_selection: OnceLock<wgpu::ComputePipeline>,
 }
 
 impl Kernels {
     pub(super) fn new(layout: wgpu::BindGroupLayout, pipelines: Vec<wgpu::ComputePipeline>) -> Self {
-        Self { layout, pipelines, tail: OnceLock::new() }
+        Self {
+            layout,
+            pipelines,
+            tail: OnceLock::new(),
+            #[cfg(feature = "baseline")]
+            take_selection: OnceLock::new(),
+        }
     }
 }
 
@@ -129,6 +138,16 @@ impl Plan {
             bindings: vec![storage(false)],
             sources: vec![sources::probe()],
             entries: vec![(0, "probe", None)],
+        }
+    }
+
+    /// Takes the selection of the CPU.
+    #[cfg(feature = "baseline")]
+    pub(super) fn baseline(form: Form) -> Self {
+        Self {
+            bindings: phases_bindings(),
+            sources: vec![sources::baseline(form)],
+            entries: vec![(0, "take_selection", None)],
         }
     }
 

@@ -11,6 +11,8 @@
 mod adjacency;
 #[cfg(target_arch = "wasm32")]
 mod ahead;
+#[cfg(feature = "baseline")]
+pub(super) mod baseline;
 #[cfg(target_arch = "wasm32")]
 mod browser;
 mod buffer;

@@ -22,6 +22,10 @@ const CENSUS_DISPATCHES: u64 = 3;
 
 impl WebGpu {
     pub(super) async fn run(&mut self, count: u32) -> Result<Vec<u32>, Error> {
+        #[cfg(feature = "baseline")]
+        if super::baseline::is_on() {
+            return self.run_selecting_on_cpu(count).await;
+        }
         let mut flips = Vec::new();
         // The first word of the state: the flips of the last iteration.
         while self.state[0] > 0 && (flips.len() as u32) < count {
@@ -125,14 +129,14 @@ impl WebGpu {
     }
 
     /// Writes the state as the first entry of the history, and zeros after it.
-    fn begin_history(&self) {
+    pub(super) fn begin_history(&self) {
         let mut history = [0u32; HISTORY_WORDS];
         history[ENTRIES..ENTRIES + ENTRY_WORDS].copy_from_slice(&self.state);
         self.gpu.queue.write_buffer(&self.buffers.history, 0, bytemuck::cast_slice(&history));
     }
 
     /// Submits commands that continue the history, and reads it.
-    #[cfg(test)]
+    #[cfg(any(test, feature = "baseline"))]
     pub(super) async fn read_history(
         &self,
         record: &dyn Fn(&mut wgpu::ComputePass),
@@ -157,7 +161,7 @@ impl WebGpu {
     }
 
     /// Encodes one compute pass, with the present parameters and the first step bound.
-    fn encode(&self, record: &dyn Fn(&mut wgpu::ComputePass)) -> wgpu::CommandEncoder {
+    pub(super) fn encode(&self, record: &dyn Fn(&mut wgpu::ComputePass)) -> wgpu::CommandEncoder {
         self.write_params();
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
         self.encode_pass(&mut encoder, record);

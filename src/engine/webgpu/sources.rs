@@ -36,6 +36,12 @@ pub(super) fn tiers(form: Form) -> String {
     phase("tiers", form, WRITES)
 }
 
+/// The shader of the baseline.
+#[cfg(feature = "baseline")]
+pub(super) fn baseline(form: Form) -> String {
+    phase("baseline", form, WRITES)
+}
+
 const READS: [&str; 2] = ["reads", "sweep"];
 const WRITES: [&str; 2] = ["writes", "tail"];
 
@@ -54,6 +60,10 @@ fn text_of(path: &str) -> Option<&'static str> {
     #[cfg(test)]
     if path == "webgpu/tiers.wgsl" {
         return Some(include_str!("tiers.wgsl"));
+    }
+    #[cfg(feature = "baseline")]
+    if path == "webgpu/baseline.wgsl" {
+        return Some(include_str!("baseline.wgsl"));
     }
     FILES.iter().find(|(name, _)| *name == path).map(|&(_, text)| text)
 }
