@@ -12,51 +12,93 @@ const picture = 'docs/page.png';
 
 const looks = [];
 for (const colorScheme of ['light', 'dark']) {
-  looks.push({ look: `wide-${colorScheme}`, colorScheme, viewport: { width: 1280, height: 800 } });
-  looks.push({ look: `narrow-${colorScheme}`, colorScheme, viewport: { width: 390, height: 844 } });
+  for (const [width, height] of [
+    [390, 844],
+    [1440, 900],
+    [2560, 1300],
+  ]) {
+    looks.push({ look: `${width}-${colorScheme}`, colorScheme, viewport: { width, height } });
+  }
 }
 
 const state = (page, ...states) =>
   page.waitForFunction((states) => states.includes(document.body.dataset.state), states);
 const measured = (page) => page.waitForFunction(() => document.body.dataset.measured !== undefined);
 const sample = async (page, spec) => {
-  await page.selectOption('#sample', spec);
-  await page.waitForFunction((spec) => document.querySelector('#caption').textContent === spec, spec);
+  // On a narrow screen, the gallery is behind the name.
+  const choose = page.locator('#choose');
+  if (await choose.isVisible()) await choose.click();
+  await page.click(`#gallery [data-spec="${spec}"]`);
+  await named(page, spec);
   await measured(page);
+};
+const named = (page, spec) =>
+  page.waitForFunction((name) => document.body.dataset.mesh === name, spec.replace('models/', ''));
+const chooseEngine = async (page, backend) => {
+  await page.evaluate(() => (document.getElementById('details').open = true));
+  await page.selectOption('#backend', backend);
+};
+const press = async (page, key) => {
+  await page.evaluate(() => document.activeElement.blur());
+  await page.keyboard.press(key);
 };
 
 /** The actions that reach each state, in this order on one page. */
 const states = {
-  ready: (page) => measured(page),
-  running: async (page) => {
-    await page.selectOption('#speed', '250');
-    await page.click('#play');
-    await page.waitForFunction(() => Number(document.querySelector('#slider').max) > 1);
+  input: (page) => measured(page),
+  inspected: (page) => press(page, 'n'),
+  middle: async (page) => {
+    await press(page, 'Escape');
+    await press(page, 'ArrowRight');
+    await page.waitForFunction(() => document.body.dataset.measured === '1');
   },
   done: async (page) => {
+    await press(page, 'End');
     await state(page, 'done');
     await measured(page);
   },
-  'worst-case': async (page) => {
-    await sample(page, 'strips 16');
-    for (let i = 1; i <= 3; i++) {
-      await page.click('#step');
-      await page.waitForFunction((at) => document.body.dataset.measured === at, `${i}`);
-    }
+  'before-now': (page) => press(page, 'c'),
+  limits: async (page) => {
+    await press(page, 'c');
+    await press(page, 'l');
   },
-  webgpu: async (page) => {
-    await page.selectOption('#backend', 'webgpu');
-    await page.waitForSelector('dd[data-fact=Adapter]');
-    await page.click('#step');
+  away: async (page) => {
+    await press(page, 'Escape');
+    await press(page, 's');
+  },
+  keys: async (page) => {
+    await press(page, 'Escape');
+    await press(page, '?');
+  },
+  details: async (page) => {
+    await page.keyboard.press('Escape');
+    await page.evaluate(() => (document.getElementById('details').open = true));
+  },
+  plane: async (page) => {
+    await page.evaluate(() => (document.getElementById('details').open = false));
+    await sample(page, 'random 24');
+    await press(page, 'n');
+  },
+  'worst-case': async (page) => {
+    await sample(page, 'strips 200');
+    await press(page, 'ArrowRight');
     await page.waitForFunction(() => document.body.dataset.measured === '1');
   },
-  loading: async (page) => {
-    await page.selectOption('#backend', 'auto');
+  webgpu: async (page) => {
+    await sample(page, 'models/terrain.ply');
+    await chooseEngine(page, 'webgpu');
+    await page.waitForSelector('dd[data-fact=Adapter]', { state: 'attached' });
     await measured(page);
-    await page.selectOption('#sample', 'uvsphere 600');
+  },
+  loading: async (page) => {
+    await chooseEngine(page, 'auto');
+    await measured(page);
+    await page.evaluate(() => (document.getElementById('details').open = false));
+    await page.evaluate(() => document.querySelector('[data-spec="uvsphere 600"]').click());
+    await page.waitForSelector('#busy:not([hidden])');
   },
   large: async (page) => {
-    await page.waitForFunction(() => document.querySelector('#caption').textContent === 'uvsphere 600');
+    await named(page, 'uvsphere 600');
     await measured(page);
   },
   error: async (page) => {
@@ -66,16 +108,14 @@ const states = {
   },
 };
 
-/** Random points in the middle of their run, light and wide. */
+/** The first sample in the middle of its run, light and wide. */
 async function takePicture(browser, address) {
-  const page = await browser.newPage({ colorScheme: 'light', viewport: { width: 1280, height: 800 } });
+  const page = await browser.newPage({ colorScheme: 'light', viewport: { width: 1440, height: 900 } });
   await page.goto(`${address}#watch`);
   await measured(page);
-  await sample(page, 'random 24');
-  for (let i = 1; i <= 2; i++) {
-    await page.click('#step');
-    await page.waitForFunction((at) => document.body.dataset.measured === at, `${i}`);
-  }
+  await press(page, 'ArrowRight');
+  await page.waitForFunction(() => document.body.dataset.measured === '1');
+  await press(page, 'n');
   await page.waitForTimeout(300); // until it is drawn
   await page.screenshot({ path: picture });
   console.log(picture);
@@ -89,8 +129,16 @@ async function takeAll(browser, address) {
     const page = await context.newPage();
     const shoot = async (name) => {
       await page.waitForTimeout(300); // until it is drawn
-      await page.screenshot({ path: `${folder}/${look}-${name}.png`, fullPage: true });
+      await page.screenshot({ path: `${folder}/${look}-${name}.png` });
     };
+    await page.goto(address);
+    await page.waitForSelector('#live:not([hidden])');
+    await shoot('first');
+    for (const section of ['explain', 'engines', 'package']) {
+      await page.goto(`${address}#${section}`);
+      await page.waitForTimeout(1500); // until its figures are there
+      await shoot(section);
+    }
     await page.goto(`${address}#watch`);
     for (const [name, reach] of Object.entries(states)) {
       await reach(page);

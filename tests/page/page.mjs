@@ -249,13 +249,12 @@ export class EdgeflipPage {
 
   /** A picture of the canvas, without what lies on it. */
   async picture() {
-    const show = (visibility) =>
+    const show = (opacity) =>
       this.page.evaluate((how) => {
-        for (const part of document.querySelectorAll('.top, #watch > :not(#stage), #thread'))
-          part.style.visibility = how;
+        for (const part of document.querySelectorAll('.top, #watch > :not(#stage), #thread')) part.style.opacity = how;
         return new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done())));
-      }, visibility);
-    await show('hidden');
+      }, opacity);
+    await show('0');
     const canvas = await this.page.$('#view canvas');
     const picture = new Picture(await canvas.screenshot());
     await show('');

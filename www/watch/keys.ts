@@ -29,7 +29,8 @@ export function listen(keys: readonly Key[]): void {
     const key = keys.find(({ keys }) => keys.includes(name));
     if (!key) return;
     if (event.target instanceof Element && event.target.closest(key.keptBy ?? TEXT)) return;
-    event.preventDefault();
+    // The browser closes sheets on Escape too.
+    if (name !== 'Escape') event.preventDefault();
     key.act(event.shiftKey ? `Shift ${name}` : name);
   });
 }

@@ -25,7 +25,7 @@ export function linkTo({ opened, run, settings }: Shown, pose: readonly number[]
   if (opened.mesh.dimension === 3) parts.set('beta', `${maxNormalAngle}`);
   if (maxDeviation !== undefined) parts.set('deviation', `${maxDeviation}`);
   if (features !== undefined) parts.set('features', `${features}`);
-  if (pose) parts.set('view', pose.map((x) => Number(x.toFixed(4))).join('_'));
+  if (pose) parts.set('view', pose.map((x) => Number(x.toFixed(6))).join('_'));
   const url = new URL(location.href);
   url.hash = `watch?${parts}`;
   return url.href;

@@ -211,7 +211,9 @@ export class Scene {
       this.#before.group.visible = layer === this.#before;
       this.#now.group.visible = layer === this.#now;
       renderer.setScissor(left, 0, right - left, height);
-      if (right > left) renderer.render(this.#scene, this.eye.camera);
+      if (right <= left) continue;
+      renderer.render(this.#scene, this.eye.camera);
+      // The second half is drawn beside the first.
       renderer.autoClear = false;
     }
     renderer.autoClear = true;
