@@ -65,15 +65,20 @@ async function show(): Promise<void> {
   }
 }
 
-// The explanation is loaded when the visitor comes near it.
-new IntersectionObserver(
-  ([entry], observer) => {
-    if (!entry?.isIntersecting) return;
-    observer.disconnect();
-    void import('../explain/index.ts').then(({ mountExplanation }) => mountExplanation(part('#explain .wrap')));
-  },
-  { rootMargin: '300px' },
-).observe(part('#explain'));
+/** Loads a section when the visitor comes near it. */
+function whenNear(section: string, mount: (host: HTMLElement) => Promise<void>): void {
+  new IntersectionObserver(
+    ([entry], observer) => {
+      if (!entry?.isIntersecting) return;
+      observer.disconnect();
+      void mount(part(`${section} .wrap`));
+    },
+    { rootMargin: '300px' },
+  ).observe(part(section));
+}
+
+whenNear('#explain', async (host) => (await import('../explain/index.ts')).mountExplanation(host));
+whenNear('#engines', async (host) => (await import('../engines/index.ts')).mountEngines(host, () => undefined));
 
 part('#theme').addEventListener('click', toggleTheme);
 playAnyway.addEventListener('click', () => {

@@ -1,0 +1,17 @@
+/** What `auto` does, as src/session/cost.rs and docs/engines.md have it. */
+
+import { tag } from './words.ts';
+
+/** The sizes from which on a GPU that is ready saves more than 2.5 ms, by the estimates of the package. */
+const RULES = [
+  'Up to about 28,000 triangles in space, or 34,000 in the plane: the CPU.',
+  'Above that: WebGPU, on a hardware GPU that is ready and has flipped a test mesh correctly.',
+  'Until the browser has prepared that GPU: the CPU, on all cores where the page may share memory. A mesh of many million triangles waits for the GPU.',
+  'Never WebGL2, and never a software GPU: the CPU is faster.',
+];
+const NOTE = 'These sizes are fixed estimates of the package. “auto” does not know what you measure here.';
+
+export function autoRules(): HTMLElement[] {
+  const rules = tag('ol', 'engines-rules', ...RULES.map((rule) => tag('li', '', rule)));
+  return [tag('h3', 'engines-title', 'Which one does “auto” take?'), rules, tag('p', 'engines-note', NOTE)];
+}

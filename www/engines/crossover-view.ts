@@ -1,0 +1,106 @@
+/** The crossover: from which size of the mesh on a GPU is first on this computer. */
+
+import { plot } from './plot.ts';
+import { sentenceOf } from './runner.ts';
+import { emptySeries, leadOf, measureSizes, type Lead, type Series } from './sizes.ts';
+import type { Turn } from './turn.ts';
+import { about, count, tag, timeText } from './words.ts';
+
+const QUESTION = 'When is the GPU first?';
+const BEFORE = 'Random points in the plane, 200 to 500,000 triangles. An engine stops after a run of more than 1 s.';
+
+export class CrossoverView {
+  readonly #title = tag('h3', 'engines-title', QUESTION);
+  readonly #chart = tag('div', 'engines-chart');
+  readonly #button = tag('button', 'engines-button', 'Measure this computer');
+  readonly #note = tag('p', 'engines-note', BEFORE);
+  readonly #progress = tag('progress', 'engines-progress');
+  readonly #notes = tag('ul', 'engines-notes');
+  readonly #table = tag('table', '');
+  readonly #details = tag('details', 'engines-details', tag('summary', '', 'The numbers'));
+  #series: Series[] = emptySeries();
+  #lead: Lead | undefined;
+
+  constructor(host: HTMLElement, turn: Turn) {
+    this.#button.type = 'button';
+    this.#title.setAttribute('role', 'status');
+    this.#progress.setAttribute('aria-label', 'Sizes measured');
+    this.#progress.hidden = true;
+    this.#details.append(tag('div', 'engines-scroll', this.#table));
+    this.#details.hidden = true;
+    const row = tag('div', 'engines-row', this.#button, tag('div', 'engines-state', this.#note, this.#progress));
+    host.append(this.#title, row, this.#chart, this.#notes, this.#details);
+    new ResizeObserver(() => this.#draw()).observe(this.#chart);
+    turn.offer(this.#button, 'Measure again', (signal) => this.#measure(signal));
+  }
+
+  async #measure(signal: AbortSignal): Promise<void> {
+    this.#series = emptySeries();
+    this.#lead = undefined;
+    this.#title.textContent = QUESTION;
+    this.#notes.replaceChildren();
+    this.#progress.hidden = false;
+    this.#progress.value = 0;
+    try {
+      await measureSizes(this.#series, signal, (share, what) => {
+        this.#progress.value = share;
+        this.#note.textContent = what;
+        this.#draw();
+      });
+      this.#lead = leadOf(this.#series);
+      this.#title.textContent = headline(this.#lead);
+      this.#note.textContent = BEFORE;
+    } catch (error) {
+      this.#note.textContent = signal.aborted ? 'Stopped. These sizes were measured.' : sentenceOf(error);
+    }
+    this.#progress.hidden = true;
+    this.#notes.append(...notesOf(this.#series).map((note) => tag('li', '', note)));
+    this.#draw();
+    this.#tabulate();
+  }
+
+  #draw(): void {
+    plot(this.#chart, this.#series, this.#lead && 'from' in this.#lead ? this.#lead.from : undefined);
+  }
+
+  #tabulate(): void {
+    const sizes = [...new Set(this.#series.flatMap(({ points }) => points.map(({ triangles }) => triangles)))];
+    const measured = this.#series.filter(({ points }) => points.length > 0);
+    const cell = (words: string) => tag('td', '', words);
+    const head = (words: string, scope: 'col' | 'row') => {
+      const th = tag('th', '', words);
+      th.scope = scope;
+      return th;
+    };
+    const names = measured.map(({ contender }) => head(contender.name, 'col'));
+    const rows = sizes
+      .sort((a, b) => a - b)
+      .map((size) => {
+        const times = measured.map(({ points }) => points.find(({ triangles }) => triangles === size)?.ms);
+        return tag(
+          'tr',
+          '',
+          head(count(size), 'row'),
+          ...times.map((ms) => cell(ms === undefined ? '–' : timeText(ms))),
+        );
+      });
+    this.#table.replaceChildren(tag('tr', '', head('Triangles', 'col'), ...names), ...rows);
+    this.#details.hidden = sizes.length === 0;
+  }
+}
+
+function headline(lead: Lead): string {
+  if ('from' in lead) return `From ${about(lead.from.triangles)} triangles on, the GPU is first on this computer`;
+  if (lead.first === 'gpu') return 'On this computer the GPU is first at every size measured';
+  if (lead.first === 'cpu') return 'On this computer the CPU is first at every size measured';
+  return lead.first === 'only the cpu' ? 'Only the CPU engine runs in this browser' : 'Only the GPU ran';
+}
+
+/** What a reader of the chart has to know. */
+function notesOf(series: readonly Series[]): string[] {
+  const missing = series.filter(({ whyNot }) => whyNot).map(({ contender, whyNot }) => `${contender.name}: ${whyNot}`);
+  const emulated = series.filter(({ isSoftware }) => isSoftware).map(({ contender }) => contender.name);
+  if (emulated.length === 0) return missing;
+  const names = new Intl.ListFormat('en').format(emulated);
+  return [...missing, `${names} ran on a software GPU: the browser emulates the GPU on the CPU.`];
+}

@@ -1,0 +1,22 @@
+/** The section "Three engines, one answer": a race of the engines, and the size from which on a GPU is first. */
+
+import './engines.css';
+import './race.css';
+import './crossover.css';
+import { autoRules } from './auto.ts';
+import { CrossoverView } from './crossover-view.ts';
+import type { NamedMesh } from './lineup.ts';
+import { RaceView } from './race-view.ts';
+import { Turn } from './turn.ts';
+import { tag } from './words.ts';
+
+export type { NamedMesh } from './lineup.ts';
+
+/** Puts the section into `host`. The race runs on the mesh that is open then, or on a sample if there is none. */
+export function mountEngines(host: HTMLElement, openMesh: () => NamedMesh | undefined): void {
+  const turn = new Turn();
+  new RaceView(host, turn, openMesh);
+  const crossover = tag('div', 'engines-crossover');
+  new CrossoverView(crossover, turn);
+  host.append(tag('div', 'engines-below', crossover, tag('div', 'engines-auto', ...autoRules())));
+}

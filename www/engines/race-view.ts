@@ -1,0 +1,114 @@
+/** The race: a button, a lane for each engine, and whether all results are equal. */
+
+import { Lane, type Ran } from './lane.ts';
+import { ALL, ONE_THREAD, type Contender, type NamedMesh } from './lineup.ts';
+import { runOn, sampleMesh } from './race.ts';
+import { sentenceOf } from './runner.ts';
+import type { Turn } from './turn.ts';
+import { count, tag } from './words.ts';
+
+const BEFORE =
+  'Each engine runs the mesh that is open above, or else the paper’s mesh 3, from arrays to arrays. They take different ways through different hardware. See which one is first here, and whether the results are equal.';
+const PROMISE = 'Nothing runs until you press the button.';
+
+/** Milliseconds that the slowest engine takes in the replay. */
+const REPLAY = 2400;
+
+const stillness = matchMedia('(prefers-reduced-motion: reduce)');
+const names = new Intl.ListFormat('en');
+
+export class RaceView {
+  readonly #lede = tag('p', 'engines-lede', BEFORE);
+  readonly #button = tag('button', 'engines-button engines-main', 'Race');
+  readonly #note = tag('p', 'engines-note', PROMISE);
+  readonly #verdict = tag('p', 'engines-verdict');
+  readonly #lanes = new Map(ALL.map((contender) => [contender, new Lane(contender)]));
+  readonly #openMesh: () => NamedMesh | undefined;
+
+  constructor(host: HTMLElement, turn: Turn, openMesh: () => NamedMesh | undefined) {
+    this.#openMesh = openMesh;
+    this.#button.type = 'button';
+    for (const live of [this.#note, this.#verdict]) live.setAttribute('role', 'status');
+    const titles = ['Engine', '', 'Time', 'Speed-up', 'Fingerprint of the result'];
+    const heads = tag('div', 'engines-heads', ...titles.map((title) => tag('span', '', title)));
+    heads.setAttribute('aria-hidden', 'true');
+    const lanes = tag('ul', 'engines-lanes', ...[...this.#lanes.values()].map(({ element }) => element));
+    // Safari takes lists without markers for no lists.
+    lanes.setAttribute('role', 'list');
+    const head = tag('header', 'engines-head', tag('h2', '', 'Three engines, one answer.'), this.#lede);
+    head.append(tag('div', 'engines-row', this.#button, this.#note));
+    host.append(head, heads, lanes, this.#verdict);
+    turn.offer(this.#button, 'Race again', (signal) => this.#race(signal));
+  }
+
+  async #race(signal: AbortSignal): Promise<void> {
+    for (const lane of this.#lanes.values()) lane.reset();
+    this.#lede.textContent = BEFORE;
+    this.#verdict.textContent = '';
+    this.#verdict.classList.remove('engines-wrong');
+    try {
+      this.#note.textContent = 'The mesh is made ready.';
+      const mesh = this.#openMesh() ?? (await sampleMesh(signal));
+      const ran = new Map<Contender, Ran>();
+      for (const [contender, lane] of this.#lanes) {
+        this.#note.textContent = `${contender.name} runs.`;
+        lane.start();
+        const outcome = await runOn(contender, mesh, signal);
+        lane.finish(outcome);
+        if ('timing' in outcome) ran.set(contender, outcome);
+      }
+      this.#show(mesh, ran);
+    } catch (error) {
+      for (const lane of this.#lanes.values()) lane.reset();
+      this.#note.textContent = signal.aborted ? 'Stopped.' : sentenceOf(error);
+    }
+  }
+
+  #show(mesh: NamedMesh, ran: Map<Contender, Ran>): void {
+    const oneThread = ran.get(ONE_THREAD);
+    const [fastest] = [...ran.values()].sort((a, b) => a.timing.median - b.timing.median);
+    if (!fastest) {
+      this.#note.textContent = 'No engine could run this mesh. Each lane says why.';
+      return;
+    }
+    const { fingerprint } = oneThread ?? fastest;
+    const slowest = Math.max(...[...ran.values()].map(({ timing }) => timing.median));
+    const [slowness, replays] = replayOf(slowest);
+    for (const [contender, one] of ran) {
+      const lane = this.#lanes.get(contender)!;
+      lane.compare(one, slowest, oneThread, fingerprint, one === fastest);
+      if (!stillness.matches) lane.replay(slowness * one.timing.median);
+    }
+    const runs = Math.min(...[...ran.values()].map(({ timing }) => timing.runs));
+    const medians = runs === 5 ? 'Medians of 5 runs.' : 'Medians of 5 runs, or of fewer where a run takes over 2 s.';
+    this.#note.textContent = stillness.matches ? medians : `${replays} ${medians}`;
+    const others = [...ran].filter(([, one]) => one.fingerprint !== fingerprint).map(([{ name }]) => name);
+    this.#judge(ran.size, others);
+    const [triangles, { flips }] = [mesh.indices.length / 3, fastest.timing.result];
+    const numbers = `, from arrays to arrays: ${count(triangles)} triangles, ${count(flips)} flips.`;
+    const equal = others.length === 0 && ran.size > 1 ? ' The results are equal to the last bit.' : '';
+    this.#lede.replaceChildren('Each engine here ran ', tag('b', '', mesh.name), numbers, equal);
+  }
+
+  #judge(ran: number, others: string[]): void {
+    const drawing = 'The squares draw the fingerprint: 64 bits, 64 edges.';
+    this.#verdict.classList.toggle('engines-wrong', others.length > 0);
+    if (others.length > 0) {
+      this.#verdict.textContent = `Not equal: ${names.format(others)}. This is a fault of the engine or of its driver. The edges that differ are orange.`;
+    } else if (ran === 1) {
+      this.#verdict.textContent = `Only one engine ran, so there is nothing to compare. ${drawing}`;
+    } else {
+      const all = ran === 2 ? 'Both' : ran === 3 ? 'All three' : 'All four';
+      this.#verdict.textContent = `✓ ${all} are equal, bit for bit. ${drawing}`;
+    }
+  }
+}
+
+/** How much slower the replay is than the run, in a round number, and the sentence for it. */
+function replayOf(slowest: number): [number, string] {
+  const exact = REPLAY / slowest;
+  const round = (value: number) => Number(value.toPrecision(1));
+  if (round(exact) > 1) return [round(exact), `Replayed ${count(round(exact))} times slower.`];
+  if (round(1 / exact) > 1) return [1 / round(1 / exact), `Replayed ${count(round(1 / exact))} times faster.`];
+  return [1, 'Replayed as fast as it ran.'];
+}

@@ -1,0 +1,45 @@
+/** Runs each engine on one mesh, one engine after the other. */
+
+import { fingerprintOf } from './fingerprint.ts';
+import { whyOneThreadRan, type Contender, type NamedMesh } from './lineup.ts';
+import { Runner, sentenceOf } from './runner.ts';
+import type { Timing } from './timing.ts';
+
+/** Milliseconds. A run that takes longer is the last of its engine. */
+const LONG = 2000;
+
+/** The mesh of the race, if none is open. */
+const SAMPLE = { spec: 'uvsphere 100', name: 'the paper’s mesh 3' };
+
+/** How an engine ran, or why it did not. */
+export type Outcome = { timing: Timing; fingerprint: string } | { whyNot: string };
+
+export async function sampleMesh(signal: AbortSignal): Promise<NamedMesh> {
+  const runner = new Runner(signal);
+  try {
+    const mesh = await runner.ask((timer) => timer.generate(SAMPLE.spec));
+    return { ...mesh, name: SAMPLE.name };
+  } finally {
+    runner.close();
+  }
+}
+
+/** Times one engine. Throws only if the signal is aborted. */
+export async function runOn({ options, whyNot }: Contender, mesh: NamedMesh, signal: AbortSignal): Promise<Outcome> {
+  if (whyNot !== undefined) return { whyNot };
+  const { positions, indices, dimension } = mesh;
+  const runner = new Runner(signal);
+  try {
+    const plain = { positions, indices, dimension };
+    const timing = await runner.ask((timer) => timer.time(plain, { ...mesh.options, ...options }, LONG));
+    const { threads, hint } = timing.result;
+    const isAlone = options.backend === 'cpu' && options.threads !== 1 && threads === 1;
+    if (isAlone) return { whyNot: whyOneThreadRan(indices.length / 3, hint) };
+    return { timing, fingerprint: await fingerprintOf(timing.result.indices) };
+  } catch (error) {
+    signal.throwIfAborted();
+    return { whyNot: sentenceOf(error) };
+  } finally {
+    runner.close();
+  }
+}

@@ -1,0 +1,68 @@
+/** The worker: runs one engine on a mesh several times and times it, so that the page never blocks. */
+
+import { expose, transfer } from 'comlink';
+import { makeDelaunay, type Options, type Result } from 'edgeflip';
+import { generate } from 'edgeflip/files';
+import type { PlainMesh } from './lineup.ts';
+
+const RUNS = 5;
+
+/** Milliseconds. Shorter runs are timed several at once, because clocks of browsers are coarse. */
+const SHORT = 5;
+const MOST_AT_ONCE = 50;
+
+/** The times are in milliseconds, from arrays to arrays. */
+export interface Timing {
+  /** The median of the runs after the first. */
+  median: number;
+  /** How many runs, or groups of short runs, the median is of. */
+  runs: number;
+  /** The first run, which also loads the engine and compiles its kernels. */
+  first: number;
+  result: Pick<Result, 'indices' | 'flips' | 'threads' | 'adapter' | 'hint'>;
+  isSoftware: boolean;
+}
+
+class Timer {
+  async generate(spec: string): Promise<PlainMesh> {
+    const { positions, indices, dimension } = await generate(spec);
+    return transfer({ positions, indices, dimension }, [positions.buffer, indices.buffer]);
+  }
+
+  /** A run that takes more than `most` milliseconds is the last. */
+  async time(mesh: PlainMesh, options: Options, most: number): Promise<Timing> {
+    const start = performance.now();
+    const { indices, flips, threads, adapter, hint } = await makeDelaunay(mesh, options);
+    const first = performance.now() - start;
+    const second = await timeOf(mesh, options, 1);
+    const atOnce = Math.min(MOST_AT_ONCE, Math.ceil(SHORT / Math.max(second, 1e-3)));
+    const times = atOnce === 1 ? [second] : [];
+    while (times.length < RUNS && !(times.at(-1)! > most)) times.push(await timeOf(mesh, options, atOnce));
+    const sorted = times.sort((a, b) => a - b);
+    const median = (sorted[(sorted.length - 1) >> 1]! + sorted[sorted.length >> 1]!) / 2;
+    const isSoftware = adapter !== undefined && (isSoftwareName(adapter) || (await isFallback(options)));
+    const result = { indices, flips, threads, adapter, hint };
+    return transfer({ median, runs: times.length, first, result, isSoftware }, [indices.buffer]);
+  }
+}
+
+/** The mean time of `count` runs, one after the other. */
+async function timeOf(mesh: PlainMesh, options: Options, count: number): Promise<number> {
+  const start = performance.now();
+  for (let i = 0; i < count; i++) await makeDelaunay(mesh, options);
+  return (performance.now() - start) / count;
+}
+
+/** WebGL2 says only by the name that the browser emulates the GPU. */
+const isSoftwareName = (adapter: string) => /swiftshader|llvmpipe|softpipe|basic render/i.test(adapter);
+
+/** Older browsers have `isFallbackAdapter` on the adapter, newer ones on its `info`. */
+async function isFallback({ backend }: Options): Promise<boolean> {
+  if (backend !== 'webgpu') return false;
+  const adapter: (GPUAdapter & { isFallbackAdapter?: boolean }) | null = await navigator.gpu.requestAdapter();
+  const info: { isFallbackAdapter?: boolean } | undefined = adapter?.info;
+  return info?.isFallbackAdapter ?? adapter?.isFallbackAdapter ?? false;
+}
+
+export type { Timer };
+expose(new Timer());
