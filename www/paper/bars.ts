@@ -16,7 +16,10 @@ export function bars(flips: readonly number[]): SVGSVGElement {
     .attr('viewBox', `0 0 ${WIDTH} ${HEIGHT}`)
     .attr('role', 'img')
     .attr('aria-label', `Flips in each of ${flips.length} iterations, at most ${number.format(most)}`);
-  svg.append('path').attr('d', `M0 ${HEIGHT - BOTTOM}H${WIDTH}`).attr('stroke', 'var(--hair)');
+  svg
+    .append('path')
+    .attr('d', `M0 ${HEIGHT - BOTTOM}H${WIDTH}`)
+    .attr('stroke', 'var(--hair)');
   svg
     .selectAll('rect')
     .data(flips)
@@ -32,7 +35,12 @@ export function bars(flips: readonly number[]): SVGSVGElement {
   for (const i of labels) {
     const anchor = isFew || (i > 0 && i < flips.length - 1) ? 'middle' : i === 0 ? 'start' : 'end';
     const text = (y: number, words: string) =>
-      svg.append('text').attr('x', (i + 0.5) * step).attr('y', y).attr('text-anchor', anchor).text(words);
+      svg
+        .append('text')
+        .attr('x', (i + 0.5) * step)
+        .attr('y', y)
+        .attr('text-anchor', anchor)
+        .text(words);
     text(HEIGHT - 8, number.format(i + 1));
     if (isFew) text(HEIGHT - BOTTOM - tall(flips[i]!) - 6, number.format(flips[i]!)).attr('class', 'count');
   }

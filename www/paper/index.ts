@@ -109,7 +109,11 @@ function tableOf(measured: Measured): HTMLElement {
     }
     body.append(row);
   }
-  const caption = made('caption', '', `Ours: ${measured.machine.adapter.split(',')[0]}, one thread of its host’s CPU, ${measured.date}.`);
+  const caption = made(
+    'caption',
+    '',
+    `Ours: ${measured.machine.adapter.split(',')[0]}, one thread of its host’s CPU, ${measured.date}.`,
+  );
   const box = made('div', 'paper-table', made('table', '', caption, made('thead', '', head), body));
   Object.assign(box, { tabIndex: 0, role: 'region', ariaLabel: 'Table 3: iterations and times' });
   return box;
@@ -120,11 +124,22 @@ function openQuestions(measured: Measured): HTMLElement {
   const [many, none] = (['random', 'delaunay'] as const).map((family) => crossoverOf(measured, family, 'cpu'));
   const largest = measured.meshes.at(-1)!;
   const ratio = largest.baseline.flips / largest.gpu.flips;
-  const size = (edges: number | undefined) => (edges === undefined ? 'no size measured' : `${number.format(edges)} edges`);
+  const size = (edges: number | undefined) =>
+    edges === undefined ? 'no size measured' : `${number.format(edges)} edges`;
   return made(
     'ul',
     'paper-open',
-    made('li', '', made('b', '', 'From which size does the GPU pay?'), ` From ${size(many)} where many flip, from ${size(none)} where none does.`),
-    made('li', '', made('b', '', 'Selection on the GPU or on the CPU?'), ` The paper selects on the CPU. On ${number.format(largest.edges)} edges its way takes ${significant.format(ratio)} times as long for the flips.`),
+    made(
+      'li',
+      '',
+      made('b', '', 'From which size does the GPU pay?'),
+      ` From ${size(many)} where many flip, from ${size(none)} where none does.`,
+    ),
+    made(
+      'li',
+      '',
+      made('b', '', 'Selection on the GPU or on the CPU?'),
+      ` The paper selects on the CPU. On ${number.format(largest.edges)} edges its way takes ${significant.format(ratio)} times as long for the flips.`,
+    ),
   );
 }

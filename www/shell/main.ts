@@ -1,5 +1,6 @@
 /** Starts the page: the first view at once, everything else when it is asked for. */
 
+import type { NamedMesh } from '../engines/index.ts';
 import type { Hero } from '../hero/hero.ts';
 import { onTheme, toggleTheme } from './theme.ts';
 
@@ -30,8 +31,9 @@ async function makeHero(): Promise<Hero> {
 
 let moves = !stillness.matches;
 
-/** The tool, once it has been asked for. */
-let tool: Promise<void> | undefined;
+/** The tool, once it has been asked for, and the mesh that is open in it. */
+let tool: Promise<() => NamedMesh | undefined> | undefined;
+let openMesh = (): NamedMesh | undefined => undefined;
 
 /** Shows the first view or the tool, if the address names one of them. A link to a section only scrolls. */
 function follow(): void {
@@ -52,7 +54,7 @@ async function show(): Promise<void> {
   if (document.body.dataset.view === 'watch') {
     void hero?.then((hero) => hero.stop());
     tool ??= import('../watch/main.ts').then(({ start }) => start());
-    await tool;
+    openMesh = await tool;
   } else {
     try {
       hero ??= makeHero();
@@ -78,7 +80,8 @@ function whenNear(section: string, mount: (host: HTMLElement) => Promise<void>):
 }
 
 whenNear('#explain', async (host) => (await import('../explain/index.ts')).mountExplanation(host));
-whenNear('#engines', async (host) => (await import('../engines/index.ts')).mountEngines(host, () => undefined));
+whenNear('#engines', async (host) => (await import('../engines/index.ts')).mountEngines(host, () => openMesh()));
+whenNear('#paper', async (host) => (await import('../paper/index.ts')).mountPaper(host));
 
 part('#theme').addEventListener('click', toggleTheme);
 playAnyway.addEventListener('click', () => {

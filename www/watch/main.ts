@@ -4,6 +4,7 @@ import './style.css';
 import './panel.css';
 import './overlays.css';
 import { FORMATS } from 'edgeflip/files';
+import type { NamedMesh } from '../engines/index.ts';
 import { toggleTheme } from '../shell/theme.ts';
 import { copyCode, copyLink, saveMesh, savePicture, scramble } from './actions.ts';
 import { controls, element, made } from './controls.ts';
@@ -12,14 +13,15 @@ import { listen } from './keys.ts';
 import { placeIn, type Place } from './link.ts';
 import { Page, type EdgeLook } from './page.ts';
 import { FIRST, SAMPLES } from '../models/samples.js';
+import type { OpenMesh } from './run.ts';
 import { chosen, dropped, sample, type Source } from './sources.ts';
 
 /** The formats that a mesh is saved in besides its own. */
 const SAVED = ['.ply', '.obj', '.glb', '.stl', '.off'];
 const LOOKS: readonly EdgeLook[] = ['coloured', 'plain', 'none'];
 
-/** Call it once. */
-export function start(): void {
+/** Starts the tool; call it once. Returns a function that returns the open mesh, as its run began. */
+export function start(): () => NamedMesh | undefined {
   const page = new Page();
   const open = (source: Source | undefined) => {
     if (source) void page.open(source);
@@ -39,6 +41,16 @@ export function start(): void {
   connectDrop(open);
   connectKeys(page, openSample, say);
   void begin(page);
+  return () => {
+    const shown = page.shown;
+    if (!shown) return undefined;
+    const { mesh, title: name } = shown.opened;
+    const { positions, indices, dimension, groups, lockedEdges, lockedTriangles }: OpenMesh = mesh;
+    const { maxNormalAngle, maxDeviation, keepsGroups } = shown.settings;
+    const locks = { lockedEdges, lockedTriangles, groups: keepsGroups ? groups : undefined };
+    const limits = dimension === 3 ? { maxNormalAngle, maxDeviation } : {};
+    return { name, positions, indices, dimension, options: { ...locks, ...limits } };
+  };
 }
 
 /** Opens the mesh of the address, or a file that was chosen before this code was loaded, or the first sample. */

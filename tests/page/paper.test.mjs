@@ -1,0 +1,79 @@
+// Tests the section "The paper, run again": its numbers are those that were measured, and its plots those of the package.
+
+import assert from 'node:assert/strict';
+import { readdirSync, readFileSync } from 'node:fs';
+import { after, before, test } from 'node:test';
+import { FlipSession } from 'edgeflip';
+import { generate } from 'edgeflip/files';
+import { MESHES } from '../../tools/paper/theirs.mjs';
+import { startChromium } from '../browsers.mjs';
+import { openEdgeflip, tidyUp } from './page.mjs';
+
+const results = new URL('../../benches/results/', import.meta.url);
+let browser;
+before(async () => {
+  browser = await startChromium();
+});
+after(tidyUp);
+
+/** The flips of each iteration. */
+async function flipsOf(spec) {
+  const session = await FlipSession.create(await generate(spec), { backend: 'cpu' });
+  const flips = [];
+  for await (const iteration of session) flips.push(iteration.flips);
+  session.free();
+  return flips;
+}
+
+test('the table has the numbers of the paper and of the newest measurements on a GPU', async () => {
+  const name = readdirSync(results)
+    .filter((file) => /-paper-\w+\.json$/.test(file) && !file.includes('cores'))
+    .sort()
+    .at(-1);
+  const { meshes } = JSON.parse(readFileSync(new URL(name, results)));
+  const { page, ...edgeflip } = await openEdgeflip(browser);
+  await page.evaluate(() => document.getElementById('paper').scrollIntoView());
+  await page.waitForSelector('#paper tbody tr');
+  const rows = await page.evaluate(() =>
+    [...document.querySelectorAll('#paper tbody tr')].map((row) =>
+      [...row.cells].map(({ textContent }) => textContent),
+    ),
+  );
+  assert.equal(rows.length, meshes.length);
+  const digits = (x) => x.toLocaleString('en', { maximumSignificantDigits: 3 });
+  meshes.forEach(({ id, triangles, iterations, gpu, cpu }, i) => {
+    const theirs = MESHES.find((mesh) => mesh.id === id);
+    assert.equal(rows[i][1], triangles.toLocaleString('en'));
+    assert.deepEqual([rows[i][3], rows[i][5], rows[i][7]], [`${iterations}`, digits(gpu.total), digits(cpu.total)]);
+    assert.equal(rows[i][2], theirs ? `${theirs.iterations}` : '–');
+    assert.equal(rows[i][8], theirs ? digits(theirs.speedUp) : '–');
+  });
+  assert.deepEqual(edgeflip.problems, []);
+  await page.close();
+});
+
+test('the plots have the flips of the package', async () => {
+  const { page, ...edgeflip } = await openEdgeflip(browser);
+  await page.evaluate(() => document.getElementById('paper').scrollIntoView());
+  await page.waitForSelector('#paper .paper-pair');
+  await page.evaluate(() => document.querySelector('.paper-pair').scrollIntoView());
+  const figure = (spec) => page.locator(`#paper figure[data-spec="${spec}"]`);
+  for (const [spec, nodes] of [
+    ['uvsphere 600', 0],
+    ['strips 16', 0],
+    ['strips 8', 8],
+  ]) {
+    if (nodes) await page.click(`#paper [data-nodes="${nodes}"]`);
+    const flips = await flipsOf(spec);
+    const sum = flips.reduce((total, count) => total + count, 0).toLocaleString('en');
+    await figure(spec).getByText(`${sum} flips in ${flips.length} iterations`).waitFor({ timeout: 60_000 });
+    const drawn = await figure(spec).locator('.count').allTextContents();
+    assert.deepEqual(
+      drawn,
+      flips.map((count) => count.toLocaleString('en')),
+      spec,
+    );
+  }
+  assert.deepEqual(edgeflip.problems, []);
+  await page.close();
+});
