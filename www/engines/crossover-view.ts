@@ -1,8 +1,9 @@
 /** The crossover: from which size of the mesh on a GPU is first on this computer. */
 
+import { leadOf, type Lead } from './lead.ts';
 import { plot } from './plot.ts';
 import { sentenceOf } from './runner.ts';
-import { emptySeries, leadOf, measureSizes, type Lead, type Series } from './sizes.ts';
+import { emptySeries, measureSizes, type Series } from './sizes.ts';
 import type { Turn } from './turn.ts';
 import { about, count, tag, timeText } from './words.ts';
 
@@ -93,14 +94,10 @@ function headline(lead: Lead): string {
   if ('from' in lead) return `From ${about(lead.from.triangles)} triangles on, the GPU is first on this computer`;
   if (lead.first === 'gpu') return 'On this computer the GPU is first at every size measured';
   if (lead.first === 'cpu') return 'On this computer the CPU is first at every size measured';
-  return lead.first === 'only the cpu' ? 'Only the CPU engine runs in this browser' : 'Only the GPU ran';
+  return `Only the ${lead.first === 'only the cpu' ? 'CPU' : 'GPU'} was measured on this computer`;
 }
 
-/** What a reader of the chart has to know. */
+/** Why engines are missing in the chart, or end early. */
 function notesOf(series: readonly Series[]): string[] {
-  const missing = series.filter(({ whyNot }) => whyNot).map(({ contender, whyNot }) => `${contender.name}: ${whyNot}`);
-  const emulated = series.filter(({ isSoftware }) => isSoftware).map(({ contender }) => contender.name);
-  if (emulated.length === 0) return missing;
-  const names = new Intl.ListFormat('en').format(emulated);
-  return [...missing, `${names} ran on a software GPU: the browser emulates the GPU on the CPU.`];
+  return series.filter(({ whyNot }) => whyNot).map(({ contender, whyNot }) => `${contender.name}: ${whyNot}`);
 }

@@ -3,7 +3,7 @@
 import { draw, shown } from './fingerprint.ts';
 import type { Contender } from './lineup.ts';
 import type { Outcome } from './race.ts';
-import { tag, timeOf, timeText } from './words.ts';
+import { about, tag, timeOf, timeText } from './words.ts';
 
 export type Ran = Extract<Outcome, { timing: unknown }>;
 
@@ -64,7 +64,7 @@ export class Lane {
     this.element.classList.toggle('engines-first', isFirst);
     if (oneThread) {
       const factor = oneThread.timing.median / median;
-      this.#speed.textContent = ran === oneThread ? '1×' : `${factor.toFixed(factor < 0.1 ? 2 : 1)}×`;
+      this.#speed.textContent = ran === oneThread ? '1×' : `${factor < 1 ? about(factor) : factor.toFixed(1)}×`;
     }
     const digits = shown(ran.fingerprint);
     const code = tag('code', '', digits.slice(0, 8), tag('wbr', ''), digits.slice(8));

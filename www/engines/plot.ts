@@ -47,7 +47,7 @@ export function plot(host: HTMLElement, series: readonly Series[], crossing: Poi
   text('triangles', [(left + width - right) / 2, height - 8], 'middle');
 
   const drawn = series.filter(({ points }) => points.length > 0);
-  if (drawn.length === 0) text('Not measured yet', [(left + width - right) / 2, (top + height - bottom) / 2], 'middle');
+  if (drawn.length === 0) text('Not measured yet', [(left + width - right) / 2, y(30)], 'middle');
   if (crossing) {
     line(`M${x(crossing.triangles)} ${top}V${height - bottom}`, 'crossing');
     const isLate = crossing.triangles > 20_000;

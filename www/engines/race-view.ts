@@ -8,7 +8,7 @@ import type { Turn } from './turn.ts';
 import { count, tag } from './words.ts';
 
 const BEFORE =
-  'Each engine runs the mesh that is open above, or else the paper’s mesh 3, from arrays to arrays. They take different ways through different hardware. See which one is first here, and whether the results are equal.';
+  'Each engine runs the mesh that is open above, or else the paper’s mesh 3, from arrays to arrays. See which one is first here.';
 const PROMISE = 'Nothing runs until you press the button.';
 
 /** Milliseconds that the slowest engine takes in the replay. */

@@ -19,7 +19,7 @@ export interface Timing {
   runs: number;
   /** The first run, which also loads the engine and compiles its kernels. */
   first: number;
-  result: Pick<Result, 'indices' | 'flips' | 'threads' | 'adapter' | 'hint'>;
+  result: Pick<Result, 'indices' | 'flips' | 'threads' | 'hint'>;
   isSoftware: boolean;
 }
 
@@ -29,10 +29,16 @@ class Timer {
     return transfer({ positions, indices, dimension }, [positions.buffer, indices.buffer]);
   }
 
+  /** Whether the engine would run on a GPU that the browser emulates on the CPU. */
+  async isSoftware({ backend }: Options): Promise<boolean> {
+    if (backend === 'webgpu') return isFallback();
+    return backend === 'webgl2' && /swiftshader|llvmpipe|softpipe|basic render/i.test(rendererName());
+  }
+
   /** A run that takes more than `most` milliseconds is the last. */
   async time(mesh: PlainMesh, options: Options, most: number): Promise<Timing> {
     const start = performance.now();
-    const { indices, flips, threads, adapter, hint } = await makeDelaunay(mesh, options);
+    const { indices, flips, threads, hint } = await makeDelaunay(mesh, options);
     const first = performance.now() - start;
     const second = await timeOf(mesh, options, 1);
     const atOnce = Math.min(MOST_AT_ONCE, Math.ceil(SHORT / Math.max(second, 1e-3)));
@@ -40,8 +46,8 @@ class Timer {
     while (times.length < RUNS && !(times.at(-1)! > most)) times.push(await timeOf(mesh, options, atOnce));
     const sorted = times.sort((a, b) => a - b);
     const median = (sorted[(sorted.length - 1) >> 1]! + sorted[sorted.length >> 1]!) / 2;
-    const isSoftware = adapter !== undefined && (isSoftwareName(adapter) || (await isFallback(options)));
-    const result = { indices, flips, threads, adapter, hint };
+    const result = { indices, flips, threads, hint };
+    const isSoftware = await this.isSoftware(options);
     return transfer({ median, runs: times.length, first, result, isSoftware }, [indices.buffer]);
   }
 }
@@ -53,15 +59,23 @@ async function timeOf(mesh: PlainMesh, options: Options, count: number): Promise
   return (performance.now() - start) / count;
 }
 
-/** WebGL2 says only by the name that the browser emulates the GPU. */
-const isSoftwareName = (adapter: string) => /swiftshader|llvmpipe|softpipe|basic render/i.test(adapter);
-
 /** Older browsers have `isFallbackAdapter` on the adapter, newer ones on its `info`. */
-async function isFallback({ backend }: Options): Promise<boolean> {
-  if (backend !== 'webgpu') return false;
-  const adapter: (GPUAdapter & { isFallbackAdapter?: boolean }) | null = await navigator.gpu.requestAdapter();
+async function isFallback(): Promise<boolean> {
+  const adapter: (GPUAdapter & { isFallbackAdapter?: boolean }) | null | undefined =
+    await navigator.gpu?.requestAdapter();
   const info: { isFallbackAdapter?: boolean } | undefined = adapter?.info;
   return info?.isFallbackAdapter ?? adapter?.isFallbackAdapter ?? false;
+}
+
+/** The renderer of WebGL2. Chromium and Safari tell it only through an extension, about which Firefox warns. */
+function rendererName(): string {
+  const gl = new OffscreenCanvas(1, 1).getContext('webgl2');
+  if (!gl) return '';
+  const name: string = gl.getParameter(gl.RENDERER);
+  const extension = name.startsWith('WebKit') ? gl.getExtension('WEBGL_debug_renderer_info') : null;
+  const renderer: string = extension ? gl.getParameter(extension.UNMASKED_RENDERER_WEBGL) : name;
+  gl.getExtension('WEBGL_lose_context')?.loseContext();
+  return renderer;
 }
 
 export type { Timer };

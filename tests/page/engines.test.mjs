@@ -1,0 +1,237 @@
+// Tests the section "Three engines, one answer" in Chromium. Serves the existing target/www.
+
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { after, before, test } from 'node:test';
+import { fileURLToPath } from 'node:url';
+import { makeDelaunay } from 'edgeflip';
+import { generate } from 'edgeflip/files';
+import { build } from 'esbuild';
+import site from '../../www/vite.config.js';
+import { closeAll, openPage, serve, startChromium } from '../browsers.mjs';
+import { fingerprintOf } from './page.mjs';
+
+const at = (path) => fileURLToPath(new URL(path, import.meta.url));
+
+let browser;
+let address;
+before(async () => {
+  browser = await startChromium();
+  address = await serve(at('../../target/www'), site.preview.headers);
+});
+after(closeAll);
+
+/** Opens the section. `worker` is the source of a script in place of the worker that times the engines. */
+async function openSection({ worker, script } = {}) {
+  const { page, problems } = await openPage(browser, 'about:blank');
+  await page.emulateMedia({ reducedMotion: 'reduce' });
+  if (script) await page.addInitScript(script);
+  if (worker) {
+    await page.route('**/assets/timing-*.js', (route) =>
+      route.fulfill({ contentType: 'text/javascript', headers: site.preview.headers, body: worker }),
+    );
+  }
+  await page.goto(`${address}#engines`);
+  const [race, measure] = [page.locator('.engines-main'), page.locator('.engines-crossover .engines-button')];
+  await race.waitFor();
+  const close = async () => {
+    assert.deepEqual(problems, []);
+    await page.close();
+  };
+  return { page, race, measure, close };
+}
+
+/** A worker that says these times, in milliseconds by engine and triangles, and gives the mesh as the result. */
+async function workerThatSays(ms, isSoftware = '() => false') {
+  const contents = `
+    import { expose } from 'comlink';
+    const ms = ${ms};
+    expose({
+      generate(spec) {
+        const triangles = 2 * (spec.split(' ')[1] - 1) ** 2;
+        return { positions: new Float32Array(6), indices: new Uint32Array(3 * triangles), dimension: 2 };
+      },
+      isSoftware: ${isSoftware},
+      time({ indices }, { backend, threads }, most) {
+        const median = ms({ backend, threads, triangles: indices.length / 3 });
+        if (typeof median === 'string') throw new Error(median);
+        const result = { indices, flips: 7, threads: backend === 'cpu' ? threads ?? 2 : 0 };
+        return { median, runs: median > most ? 1 : 5, first: 2 * median, result, isSoftware: false };
+      },
+    });`;
+  const bundle = { stdin: { contents, resolveDir: at('.') }, bundle: true, format: 'esm', write: false };
+  return (await build(bundle)).outputFiles[0].text;
+}
+
+/** What a lane shows. */
+const lanesOf = (page) =>
+  page.locator('.engines-lane').evaluateAll((lanes) =>
+    lanes.map((lane) => {
+      const text = (kind) => lane.querySelector(`.engines-${kind}`).textContent;
+      const drawn = (kind) => lane.querySelector(`.engines-${kind}`)?.getAttribute('d') ?? '';
+      return {
+        name: lane.querySelector('h3').textContent,
+        time: text('time'),
+        speed: text('speed'),
+        why: text('why'),
+        digits: text('print'),
+        same: drawn('same'),
+        other: drawn('other'),
+        isFirst: lane.classList.contains('engines-first'),
+      };
+    }),
+  );
+
+const squares = (path) => path.split('M').length - 1;
+
+/** The digits that a drawing shows: `M0 0l…` goes down from the left, a 1; else it starts at the right, a 0. */
+function digitsOf(path) {
+  const bits = Array(64).fill(0);
+  for (const [, x, y, dx] of path.matchAll(/M([\d.]+) ([\d.]+)l(-?[\d.]+)/g)) {
+    const column = (Number(x) + Math.min(0, Number(dx))) / 7.5;
+    bits[(8 * Number(y)) / 7.5 + column] = Number(dx) > 0 ? 1 : 0;
+  }
+  return bits.join('').replace(/.{4}/g, (four) => Number.parseInt(four, 2).toString(16));
+}
+
+test('every engine here gives the triangles of the package in Node', { timeout: 400_000 }, async () => {
+  const { page, race, close } = await openSection();
+  const { indices, flips } = await makeDelaunay(await generate('uvsphere 100'), { backend: 'cpu' });
+  await race.click();
+  await page.locator('.engines-main', { hasText: 'Race again' }).waitFor({ timeout: 400_000 });
+  const lanes = await lanesOf(page);
+  assert.deepEqual(
+    lanes.map(({ name }) => name.replace(/\d+ threads/, 'threads')),
+    ['WebGPU', 'WebGL2', 'CPU, threads', 'CPU, 1 thread'],
+  );
+  const ran = lanes.filter(({ why }) => why === '');
+  for (const { name, time, digits, same, other } of ran) {
+    assert.equal(digits, fingerprintOf(indices), name);
+    assert.deepEqual([digitsOf(same), squares(other)], [digits, 0], name);
+    assert.match(time, /^[\d.,]+ m?s$/);
+  }
+  assert.equal(ran.length, 3);
+  assert.match(lanes[2].why, /A mesh this small runs on one thread/);
+  assert.match(await page.locator('.engines-verdict').textContent(), /All three are equal, bit for bit/);
+  assert.match(await page.locator('.engines-lane').first().textContent(), /Software GPU/);
+  assert.match(
+    await page.locator('.engines-lede').textContent(),
+    new RegExp(`20,000 triangles, ${flips.toLocaleString('en')} flips`),
+  );
+  await close();
+});
+
+test('a result that differs stands out, and an engine that fails says why', async () => {
+  const worker = await workerThatSays(`({ backend, threads }) =>
+    backend === 'webgl2' ? 'the context was lost' : backend === 'webgpu' ? 4 : threads === 1 ? 80 : 20`);
+  // The first fingerprint, that of WebGPU, is wrong in its first bits.
+  const script = () => {
+    const digest = crypto.subtle.digest.bind(crypto.subtle);
+    let calls = 0;
+    crypto.subtle.digest = async (...args) => {
+      const bytes = new Uint8Array(await digest(...args));
+      if (calls++ === 0) bytes[0] ^= 0b10100000;
+      return bytes.buffer;
+    };
+  };
+  const { page, race, close } = await openSection({ worker, script });
+  await race.click();
+  await page.locator('.engines-main', { hasText: 'Race again' }).waitFor();
+  const [webgpu, webgl2, threads, one] = await lanesOf(page);
+  assert.deepEqual(
+    [webgpu, threads, one].map(({ time, speed }) => [time, speed]),
+    [
+      ['4.00 ms', '20.0×'],
+      ['20.0 ms', '4.0×'],
+      ['80.0 ms', '1×'],
+    ],
+  );
+  assert.equal(webgl2.why, 'The context was lost.');
+  assert.deepEqual(
+    [webgpu, threads, one].map(({ other }) => squares(other)),
+    [2, 0, 0],
+  );
+  assert.equal(digitsOf(webgpu.same + webgpu.other), webgpu.digits);
+  assert.deepEqual([webgpu.isFirst, threads.isFirst, one.isFirst], [true, false, false]);
+  assert.match(await page.locator('.engines-verdict').textContent(), /^Not equal: WebGPU\./);
+  await close();
+});
+
+test('the headline and the table have what was measured', async () => {
+  // The lines cross at 10,000 triangles.
+  const worker = await workerThatSays(`({ backend, triangles }) =>
+    backend === 'webgpu' ? 5 : backend === 'webgl2' ? triangles / 100 : triangles / 2000`);
+  const { page, measure, close } = await openSection({ worker });
+  await measure.click();
+  await page.locator('.engines-crossover .engines-button', { hasText: 'again' }).waitFor();
+  const title = page.locator('.engines-crossover .engines-title');
+  assert.equal(await title.textContent(), 'From 10,000 triangles on, the GPU is first on this computer');
+  const rows = await page
+    .locator('.engines-details tr')
+    .evaluateAll((all) => all.map((row) => [...row.cells].map((cell) => cell.textContent)));
+  assert.deepEqual(
+    rows.slice(1).map(([triangles, ...times]) => [triangles, ...times]),
+    [
+      ['200', '5.00 ms', '2.00 ms', '0.10 ms'],
+      ['722', '5.00 ms', '7.22 ms', '0.36 ms'],
+      ['2,738', '5.00 ms', '27.4 ms', '1.37 ms'],
+      ['10,368', '5.00 ms', '104 ms', '5.18 ms'],
+      ['38,642', '5.00 ms', '386 ms', '19.3 ms'],
+      ['143,648', '5.00 ms', '1,436 ms', '71.8 ms'],
+      // A run on WebGL2 took more than 1 s before.
+      ['500,000', '5.00 ms', '–', '250 ms'],
+    ],
+  );
+  assert.equal(await page.locator('.engines-dot').count(), 20);
+  assert.equal(await page.locator('.engines-at').textContent(), '10,000 triangles');
+  await close();
+});
+
+test('without a GPU that is faster, the CPU is first', async () => {
+  const slow = await workerThatSays(`({ backend, triangles }) => (backend === 'cpu' ? 0.01 : 0.02) * triangles`);
+  const emulated = await workerThatSays('() => 1', "({ backend }) => backend !== 'cpu'");
+  for (const [worker, headline] of [
+    [slow, 'On this computer the CPU is first at every size measured'],
+    [emulated, 'Only the CPU was measured on this computer'],
+  ]) {
+    const { page, measure, close } = await openSection({ worker });
+    await measure.click();
+    await page.locator('.engines-crossover .engines-button', { hasText: 'again' }).waitFor();
+    assert.equal(await page.locator('.engines-crossover .engines-title').textContent(), headline);
+    assert.equal(await page.locator('.engines-notes li').count(), worker === slow ? 0 : 2);
+    await close();
+  }
+});
+
+test('a measurement stops when asked, and another can begin', async () => {
+  const worker = await workerThatSays('() => new Promise(() => {})');
+  const { page, race, measure, close } = await openSection({ worker });
+  await race.click();
+  assert.equal(await race.textContent(), 'Stop');
+  assert.ok(await measure.isDisabled());
+  await race.click();
+  await page.locator('.engines-note', { hasText: 'Stopped.' }).waitFor();
+  assert.ok(await measure.isEnabled());
+  assert.equal(await page.locator('.engines-running').count(), 0);
+  await close();
+});
+
+test('the section says from which size on `auto` takes the GPU', async () => {
+  const rates = readFileSync(at('../../src/session/cost.rs'), 'utf8').split('#[cfg(target_arch = "wasm32")]')[1];
+  const value = (name) => Number(rates.match(new RegExp(`\\b${name}: ([\\d.]+)`))[1]);
+  const [plane, space] = rates
+    .match(/cpu: \[([\d., ]+)\]/)[1]
+    .split(',')
+    .map(Number);
+  const margin = 2.5;
+  // On one thread, the CPU is as fast as the GPU and its margin.
+  const limit = (cpu) => (1e6 * (value('gpu') + margin)) / (cpu - value('gpu_triangle'));
+  const thousands = (cpu) => `${Math.round(limit(cpu) / 1000)},000`;
+  const { page, close } = await openSection();
+  const [rule] = await page.locator('.engines-rules li').allTextContents();
+  assert.equal(
+    rule,
+    `Up to about ${thousands(space)} triangles in space, or ${thousands(plane)} in the plane: the CPU.`,
+  );
+  await close();
+});
