@@ -24,7 +24,7 @@ export class CrossoverView {
 
   constructor(host: HTMLElement, turn: Turn) {
     this.#button.type = 'button';
-    this.#title.setAttribute('role', 'status');
+    this.#title.ariaLive = 'polite';
     this.#progress.setAttribute('aria-label', 'Sizes measured');
     this.#progress.hidden = true;
     this.#details.append(tag('div', 'engines-scroll', this.#table));

@@ -1,0 +1,82 @@
+// Tests that axe-core finds nothing on the page: each view and section, light and dark, wide and narrow; and that
+// nothing moves while the page opens.
+
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { createRequire } from 'node:module';
+import { after, before, test } from 'node:test';
+import { startChromium } from '../browsers.mjs';
+import { openEdgeflip, tidyUp } from './page.mjs';
+
+const axe = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
+let browser;
+before(async () => {
+  browser = await startChromium();
+});
+after(tidyUp);
+
+/** What axe-core finds on the page as it is now. */
+async function findings({ page }) {
+  // The page's policy forbids scripts from elsewhere, so the test evaluates it.
+  await page.evaluate(axe);
+  const { violations } = await page.evaluate(() => window.axe.run(document, { resultTypes: ['violations'] }));
+  return violations.map(({ id, nodes }) => `${id}: ${nodes.map(({ target }) => target.join(' ')).join(', ')}`);
+}
+
+for (const [colorScheme, width, height] of [
+  ['light', 1440, 900],
+  ['dark', 390, 844],
+]) {
+  test(`axe-core finds nothing in ${colorScheme}, ${width} wide`, async () => {
+    const page = await openEdgeflip(browser);
+    await page.page.emulateMedia({ colorScheme });
+    await page.page.setViewportSize({ width, height });
+    await page.rest();
+    const found = {};
+    const look = async (what) => (found[what] = await findings(page));
+    await look('the tool');
+    const press = (key) => page.page.keyboard.press(key);
+    await press('n');
+    await look('an edge');
+    await press('c');
+    await look('before and now');
+    await press('c');
+    for (const [key, what] of [
+      ['l', 'limits'],
+      ['s', 'take away'],
+      ['?', 'keys'],
+    ]) {
+      await press(key);
+      await look(what);
+      await press('Escape');
+    }
+    await page.page.evaluate(() => (document.getElementById('details').open = true));
+    await look('details');
+    for (const section of ['explain', 'engines', 'paper', 'package']) {
+      await page.page.evaluate((id) => document.getElementById(id).scrollIntoView(), section);
+      await page.page.waitForSelector(`#${section} h2`);
+      await look(section);
+    }
+    await page.page.evaluate(() => (location.hash = '#first'));
+    await page.page.waitForSelector('#live:not([hidden])');
+    await look('the first view');
+    const wrong = Object.entries(found).filter(([, violations]) => violations.length > 0);
+    assert.deepEqual(Object.fromEntries(wrong), {});
+    await page.close();
+  });
+}
+
+test('nothing moves while the tool opens and plays', async () => {
+  const page = await openEdgeflip(browser, () => {
+    window.shifts = [];
+    const nameOf = ({ node }) => node?.id || node?.className || node?.nodeName;
+    new PerformanceObserver((list) => {
+      for (const { value, hadRecentInput, sources } of list.getEntries())
+        if (!hadRecentInput) window.shifts.push({ value, of: sources.map(nameOf) });
+    }).observe({ type: 'layout-shift', buffered: true });
+  });
+  await page.playToEnd();
+  const shifts = await page.page.evaluate(() => window.shifts);
+  assert.ok(shifts.reduce((sum, { value }) => sum + value, 0) < 0.001, JSON.stringify(shifts));
+  await page.close();
+});
