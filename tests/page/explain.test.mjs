@@ -26,7 +26,8 @@ async function openSection() {
       handle: (index) => element.locator('.explain-handle').nth(index),
       button: element.locator('.explain-play'),
       caption: () => element.locator('.explain-caption').textContent(),
-      says: (text) => element.locator('.explain-caption', { hasText: text }).waitFor(),
+      // Three rounds last longer than 30 s where frames are slow: a frame moves the figure by at most 100 ms.
+      says: (text) => element.locator('.explain-caption', { hasText: text }).waitFor({ timeout: 90_000 }),
       texts: () => element.locator('svg text').allTextContents(),
       count: (state) => element.locator(`.explain-bold.explain-${state}`).count(),
       /** The places of the handles, in the units of the drawing. */
