@@ -187,7 +187,11 @@ const levels = [
     what: 'the demo page opens files, plays, scrubs and downloads on every engine, draws from the buffer that the flips write, and recovers',
     // Two files at a time: a page mostly compiles kernels for the software GPU, on one thread. `handover` runs alone,
     // because it depends on timing.
-    checks: [...builtPage, pageTests(['files', 'opening', 'buffer', 'controls', 'watch', 'explain', 'engines', 'paper', 'accessible'], 2), pageTests(['handover'])],
+    checks: [
+      ...builtPage,
+      pageTests(['files', 'opening', 'buffer', 'controls', 'watch', 'explain', 'engines', 'paper', 'accessible'], 2),
+      pageTests(['handover']),
+    ],
     counts: true,
   },
   {
