@@ -97,7 +97,7 @@ function connectLimits(page: Page): void {
 }
 
 function connectTakeAway(page: Page, say: (words: string) => void): void {
-  const own = made('button', '', 'As it came');
+  const own = made('button', '', 'Same format');
   own.id = 'download';
   own.addEventListener('click', () => void saveMesh(page));
   const others = SAVED.map((extension) => {

@@ -281,7 +281,8 @@ export class Page {
       throw signal.reason;
     }
     const isNew = this.#opened !== opened;
-    const isOther = this.#opened?.name !== opened.name;
+    // Scrambled triangles have the same vertices, and the camera stays.
+    const isOther = this.#opened?.mesh.positions !== mesh.positions;
     this.#graphics.scene?.clear();
     this.#run?.free();
     this.#run = run;
