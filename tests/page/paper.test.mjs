@@ -41,10 +41,15 @@ test('the table has the numbers of the paper and of the newest measurements on a
   );
   assert.equal(rows.length, meshes.length);
   const digits = (x) => x.toLocaleString('en', { maximumSignificantDigits: 3 });
-  meshes.forEach(({ id, triangles, iterations, gpu, cpu }, i) => {
+  meshes.forEach(({ id, triangles, iterations, gpu, lawson }, i) => {
     const theirs = MESHES.find((mesh) => mesh.id === id);
     assert.equal(rows[i][1], triangles.toLocaleString('en'));
-    assert.deepEqual([rows[i][3], rows[i][5], rows[i][7]], [`${iterations}`, digits(gpu.total), digits(cpu.total)]);
+    const ours = [`${iterations}`, digits(gpu.total), digits(lawson.total), digits(lawson.total / gpu.total)];
+    assert.deepEqual([rows[i][3], rows[i][5], rows[i][7], rows[i][9]], ours);
+    assert.deepEqual(
+      [rows[i][4], rows[i][6]],
+      theirs ? [digits(1000 * theirs.gpu), digits(1000 * theirs.cpu)] : ['–', '–'],
+    );
     assert.equal(rows[i][2], theirs ? `${theirs.iterations}` : '–');
     assert.equal(rows[i][8], theirs ? digits(theirs.speedUp) : '–');
   });
@@ -62,6 +67,7 @@ test('the plots have the flips of the package', async () => {
     ['uvsphere 600', 0],
     ['strips 16', 0],
     ['strips 8', 8],
+    ['strips 12', 12],
   ]) {
     if (nodes) await page.click(`#paper [data-nodes="${nodes}"]`);
     const flips = await flipsOf(spec);

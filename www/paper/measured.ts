@@ -18,8 +18,10 @@ interface Measured {
     triangles: number;
     iterations: number;
     gpu: Times;
-    cpu: Times;
-    baseline: Times;
+    /** Lawson's algorithm on one thread, a sequential algorithm as the paper's. */
+    lawson: Times;
+    /** Selection on the CPU, as in the paper. */
+    baseline: Times & { fault: string | null };
   }[];
   crossover: { family: string; edges: number; gpu: number; cpu: number; cores: number }[];
 }
