@@ -5,21 +5,17 @@ import { Choices, type Settings } from './choices.ts';
 import { controls, element } from './controls.ts';
 import { LOST } from './crash.ts';
 import type { Flips } from './desk.ts';
+import { Display, type EdgeLook } from './display.ts';
 import { beginRun, Cancelled, startWorker, waitsForGpu } from './engines.ts';
 import { markSample } from './gallery.ts';
 import { Graphics } from './graphics.ts';
-import { Halves } from './halves.ts';
 import type { Successor } from './handover.ts';
 import { Jobs, showError, showProgress } from './jobs.ts';
-import { showLegend } from './legend.ts';
 import type { Place } from './link.ts';
-import { Looking } from './looking.ts';
 import { fingerprintOf, measure } from './measure.ts';
 import { Opening, type Opened } from './opening.ts';
 import { optionsFor } from './options.ts';
 import { onTheme } from '../shell/theme.ts';
-import { palette } from './palette.ts';
-import { Panel } from './panel.ts';
 import { Player } from './player.ts';
 import { Recovery } from './recovery.ts';
 import type { Run, Summary } from './run.ts';
@@ -28,23 +24,14 @@ import { statusOf } from './sentences.ts';
 import type { Shown } from './shown.ts';
 import type { Source } from './sources.ts';
 import { Succession } from './succession.ts';
-import { Timeline } from './timeline.ts';
-import { showTransport } from './transport.ts';
-import { unitPositions } from './unit.ts';
+import type { Standing } from './transport.ts';
 
-/** The most triangles of a mesh that is first shown with its edges. */
-const EDGES_SEEN = 50_000;
 /** The most triangles of a mesh whose iterations are counted before they are shown. */
 const AHEAD = 200_000;
 /** Milliseconds without a change after which a state is measured. */
 const QUIET = 150;
 
-/** How the edges are drawn: in colours, plain, or not at all. */
-export type EdgeLook = 'coloured' | 'plain' | 'none';
-
 export class Page {
-  readonly #panel = new Panel((at) => void this.seek(at));
-  readonly #timeline = new Timeline();
   readonly #player = new Player(
     (run, isShown) => this.#forward(run, isShown),
     () => {
@@ -54,10 +41,9 @@ export class Page {
   );
   readonly #graphics: Graphics = new Graphics(
     (reason) => void this.#recovery.recover(reason, true),
-    () => this.#looking.draw(),
+    () => this.#display.looking.draw(),
   );
-  readonly #halves = new Halves(() => this.#graphics.scene);
-  readonly #looking = new Looking(() => this.#graphics.scene);
+  readonly #display: Display = new Display(this.#graphics, (at) => void this.seek(at));
   readonly #jobs = new Jobs(
     () => this.#showTransport(),
     () => this.#endOfJob(),
@@ -93,15 +79,16 @@ export class Page {
   #summary: Summary | undefined;
   /** The flips of all its iterations, once they have been counted. */
   #ahead: Flips[] | undefined;
-  #look: EdgeLook = 'coloured';
-  /** The numbers of calls of `redraw` and of `#rest` so far. A call stops when a later call begins. */
-  #draws = 0;
+  /** The number of calls of `#rest` so far. A call stops when a later call begins. */
   #rests = 0;
 
   async start(source: Source): Promise<void> {
-    this.#panel.setPalette(palette());
-    this.#panel.clear();
-    onTheme(() => this.#recolour());
+    this.#display.recolour();
+    this.#display.panel.clear();
+    onTheme(() => {
+      this.#display.recolour();
+      void this.redraw();
+    });
     this.#graphics.open();
     const opening = this.open(source);
     startWorker();
@@ -177,27 +164,27 @@ export class Page {
   }
 
   compare(): void {
-    this.#looking.close();
-    this.#halves.show(!this.#halves.isShown);
+    this.#display.looking.close();
+    this.#display.halves.show(!this.#display.halves.isShown);
   }
 
   inspectNext(by: 1 | -1): void {
-    this.#looking.next(by);
+    this.#display.looking.next(by);
   }
 
   /** Closes the inspector, and shows one mesh only. */
   closeAll(): void {
-    this.#looking.close();
-    this.#halves.show(false);
+    this.#display.looking.close();
+    this.#display.halves.show(false);
   }
 
   set edges(look: EdgeLook) {
-    this.#look = look;
+    this.#display.look = look;
     void this.redraw();
   }
 
   get edges(): EdgeLook {
-    return this.#look;
+    return this.#display.look;
   }
 
   /** What is shown; `undefined` before the first mesh. */
@@ -217,48 +204,16 @@ export class Page {
 
   /** Draws the shown iteration of the run. */
   async redraw(): Promise<void> {
-    const [run, opened, scene] = [this.#run, this.#opened, this.#graphics.scene];
-    if (!run || !opened) return;
-    const draw = ++this.#draws;
-    this.#looking.forget();
-    this.#showNumbers(undefined);
+    const shown = this.shown;
+    if (!shown) return;
+    this.#display.looking.forget();
+    this.#display.showNumbers(shown, this.#standing);
     if (!this.#player.isPlaying) void this.#rest();
-    if (!scene) return;
-    const states = this.#showTriangles(run, opened);
     try {
-      const indices = states && (await run.triangles());
-      if (draw !== this.#draws) return;
-      scene.showEdges(indices, states);
-      if (indices) this.#lookInto(indices);
+      await this.#display.draw(shown);
     } catch (error) {
-      if (draw === this.#draws) this.#showFailure(error);
+      this.#showFailure(error);
     }
-  }
-
-  /** Lets the user inspect the edges of these triangles. */
-  #lookInto(indices: Uint32Array): void {
-    const [run, opened, settings] = [this.#run, this.#opened, this.#settings];
-    if (run && opened && settings) {
-      this.#looking.show({ mesh: opened.mesh, indices, states: run.states, limits: settings });
-    }
-  }
-
-  /** `fingerprint` belongs to the shown triangles, once it is known. */
-  #showNumbers(fingerprint: string | undefined): void {
-    const [run, opened] = [this.#run, this.#opened];
-    if (!run || !opened) return;
-    this.#panel.showIterations(run.iterations, run.at);
-    this.#panel.showFacts(opened.mesh, run, this.#summary, this.#settings?.maxNormalAngle, fingerprint);
-    showLegend(run.states, opened.mesh.indices.length / 3, this.#summary?.nonManifoldEdges);
-    this.#showTransport();
-  }
-
-  /** Draws the triangles. If edges are coloured, returns their states; else draws the outlines of the triangles. */
-  #showTriangles(run: Run, { mesh }: Opened): Uint8Array | undefined {
-    const states = this.#look === 'coloured' ? run.states : undefined;
-    const lines = this.#look !== 'none' && !states ? run.lines() : undefined;
-    this.#graphics.scene?.show(run.drawn, mesh.indices.length, lines);
-    return states;
   }
 
   /** Starts a run. If this fails, the previous run stays. */
@@ -292,17 +247,7 @@ export class Page {
     this.#settings = settings;
     this.#summary = undefined;
     this.#ahead = undefined;
-    this.#looking.close();
-    this.#graphics.scene?.setMesh(unitPositions(mesh), mesh.dimension);
-    if (isOther || !this.#graphics.scene?.eye.isLooking) this.#graphics.scene?.lookAtAll();
-    if (isOther) this.#look = mesh.indices.length <= 3 * EDGES_SEEN ? 'coloured' : 'none';
-    this.#halves.begin(mesh.indices);
-    element('no-mesh').hidden = this.#graphics.scene !== undefined;
-    for (const id of ['beta-label', 'beta-range', 'beta-says', 'deviation-label', 'feature-label']) {
-      element(id).hidden = mesh.dimension === 2;
-    }
-    element('groups-label').hidden = !('groups' in mesh && mesh.groups);
-    this.#panel.clear();
+    this.#display.begin(opened, isOther);
     this.#succession.expect(run, opened, options, this.#graphics.gpu);
     void this.#countAhead(run, opened, options);
     await this.redraw();
@@ -319,12 +264,11 @@ export class Page {
   }
 
   /** Replaces the run by the same run on the GPU. */
-  #succeed({ run, summary }: Successor): void {
-    const [before, opened] = [this.#run, this.#opened];
-    [this.#run, this.#summary] = [run, summary];
-    if (opened) this.#showTriangles(run, opened);
+  #succeed(next: Successor): void {
+    const before = this.#run;
+    [this.#run, this.#summary] = [next.run, next.summary];
+    if (this.shown) this.#display.succeed(this.shown, next);
     before?.free();
-    this.#panel.showTimes(run.iterations);
     void this.#rest('Now on WebGPU.');
   }
 
@@ -362,10 +306,13 @@ export class Page {
     if (!isLost && !(error instanceof Cancelled) && !(error instanceof DOMException)) showError(error);
   }
 
-  #showTransport(): void {
+  get #standing(): Standing {
     const [run, opened, summary, ahead] = [this.#run, this.#opened, this.#summary, this.#ahead];
-    const [isBusy, isPlaying] = [this.#jobs.isBusy, this.#player.isPlaying];
-    showTransport(this.#timeline, { run, opened, summary, ahead, isBusy, isPlaying });
+    return { run, opened, summary, ahead, isBusy: this.#jobs.isBusy, isPlaying: this.#player.isPlaying };
+  }
+
+  #showTransport(): void {
+    this.#display.showTransport(this.#standing);
   }
 
   /** Shows the mesh and the settings of the run again, after another choice has failed. */
@@ -381,8 +328,9 @@ export class Page {
    * measure the triangles.
    */
   async #rest(news?: string): Promise<void> {
-    const [run, opened] = [this.#run, this.#opened];
-    if (!run || !opened) return;
+    const shown = this.shown;
+    if (!shown) return;
+    const { run, opened } = shown;
     const rest = ++this.#rests;
     const isOutdated = () => rest !== this.#rests || this.#player.isPlaying || run !== this.#run;
     delete document.body.dataset['measured'];
@@ -397,9 +345,9 @@ export class Page {
       const indices = await run.triangles();
       const fingerprint = await fingerprintOf(indices);
       if (isOutdated()) return;
-      this.#showNumbers(fingerprint);
-      if (!run.states || this.#look !== 'coloured') this.#lookInto(indices);
-      if (news === undefined) await measure(this.#panel, opened, run, indices, isOutdated);
+      this.#display.showNumbers(shown, this.#standing, fingerprint);
+      if (!run.states || this.edges !== 'coloured') this.#display.lookInto(shown, indices);
+      if (news === undefined) await measure(this.#display.panel, opened, run, indices, isOutdated);
       if (isOutdated()) return;
       const status = statusOf(run, this.#summary, this.#ahead).join(' ').trim();
       element('announcement').textContent = news ?? `${status} ${element('note').textContent}`;
@@ -408,12 +356,5 @@ export class Page {
     } catch (error) {
       if (!isOutdated()) this.#showFailure(error);
     }
-  }
-
-  #recolour(): void {
-    const colours = palette();
-    this.#graphics.scene?.setPalette(colours);
-    this.#panel.setPalette(colours);
-    void this.redraw();
   }
 }

@@ -1,0 +1,112 @@
+/** What the tool shows of a run: the picture, the numbers beside it, the timeline and the inspector. */
+
+import { element } from './controls.ts';
+import type { Graphics } from './graphics.ts';
+import { Halves } from './halves.ts';
+import type { Successor } from './handover.ts';
+import { showLegend } from './legend.ts';
+import { Looking } from './looking.ts';
+import type { Opened } from './opening.ts';
+import { palette } from './palette.ts';
+import { Panel } from './panel.ts';
+import type { Shown } from './shown.ts';
+import { Timeline } from './timeline.ts';
+import { showTransport, type Standing } from './transport.ts';
+import { unitPositions } from './unit.ts';
+
+/** The most triangles of a mesh that is first shown with its edges. */
+const EDGES_SEEN = 50_000;
+
+/** How the edges are drawn: in colours, plain, or not at all. */
+export type EdgeLook = 'coloured' | 'plain' | 'none';
+
+export class Display {
+  readonly panel: Panel;
+  readonly looking: Looking;
+  readonly halves: Halves;
+  readonly #timeline = new Timeline();
+  readonly #graphics: Graphics;
+  look: EdgeLook = 'coloured';
+  /** The number of pictures so far. A picture is dropped when a later one begins. */
+  #pictures = 0;
+
+  /** `seek` is called with the iteration that the user clicks in the table. */
+  constructor(graphics: Graphics, seek: (at: number) => void) {
+    this.#graphics = graphics;
+    this.panel = new Panel(seek);
+    this.looking = new Looking(() => graphics.scene);
+    this.halves = new Halves(() => graphics.scene);
+  }
+
+  /** Takes the colours of the page. */
+  recolour(): void {
+    const colours = palette();
+    this.#graphics.scene?.setPalette(colours);
+    this.panel.setPalette(colours);
+  }
+
+  /** Shows the mesh of another run. `isOther`: whether its vertices are others than before. */
+  begin({ mesh }: Opened, isOther: boolean): void {
+    const { scene } = this.#graphics;
+    this.looking.close();
+    scene?.setMesh(unitPositions(mesh), mesh.dimension);
+    if (isOther || !scene?.eye.isLooking) scene?.lookAtAll();
+    if (isOther) this.look = mesh.indices.length <= 3 * EDGES_SEEN ? 'coloured' : 'none';
+    this.halves.begin(mesh.indices);
+    element('no-mesh').hidden = scene !== undefined;
+    for (const id of ['beta-label', 'beta-range', 'beta-says', 'deviation-label', 'feature-label']) {
+      element(id).hidden = mesh.dimension === 2;
+    }
+    element('groups-label').hidden = !('groups' in mesh && mesh.groups);
+    this.panel.clear();
+  }
+
+  /** Draws the shown iteration. Returns whether no later picture has begun meanwhile. */
+  async draw(shown: Shown): Promise<boolean> {
+    const picture = ++this.#pictures;
+    const { scene } = this.#graphics;
+    if (!scene) return true;
+    const states = this.showTriangles(shown);
+    try {
+      const indices = states && (await shown.run.triangles());
+      if (picture !== this.#pictures) return false;
+      scene.showEdges(indices, states);
+      if (indices) this.lookInto(shown, indices);
+      return true;
+    } catch (error) {
+      if (picture === this.#pictures) throw error;
+      return false;
+    }
+  }
+
+  /** Draws the triangles. If edges are coloured, returns their states; else draws the outlines of the triangles. */
+  showTriangles({ run, opened }: Shown): Uint8Array | undefined {
+    const states = this.look === 'coloured' ? run.states : undefined;
+    const lines = this.look !== 'none' && !states ? run.lines() : undefined;
+    this.#graphics.scene?.show(run.drawn, opened.mesh.indices.length, lines);
+    return states;
+  }
+
+  /** Lets the user inspect the edges of these triangles. */
+  lookInto({ run, opened, settings }: Shown, indices: Uint32Array): void {
+    this.looking.show({ mesh: opened.mesh, indices, states: run.states, limits: settings });
+  }
+
+  /** `fingerprint` belongs to the shown triangles, once it is known. */
+  showNumbers({ run, opened, settings }: Shown, standing: Standing, fingerprint?: string): void {
+    this.panel.showIterations(run.iterations, run.at);
+    this.panel.showFacts(opened.mesh, run, standing.summary, settings.maxNormalAngle, fingerprint);
+    showLegend(run.states, opened.mesh.indices.length / 3, standing.summary?.nonManifoldEdges);
+    this.showTransport(standing);
+  }
+
+  showTransport(standing: Standing): void {
+    showTransport(this.#timeline, standing);
+  }
+
+  /** Shows the same run on another engine. */
+  succeed(shown: Shown, { run }: Successor): void {
+    this.showTriangles({ ...shown, run });
+    this.panel.showTimes(run.iterations);
+  }
+}
