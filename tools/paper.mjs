@@ -39,7 +39,7 @@ function measured() {
 function kept() {
   const folder = 'benches/results';
   const { threads, software, adapter } = data.machine;
-  const machine = software ? `${threads}cores` : (/\S*\d\S*/.exec(adapter)?.[0] ?? 'gpu').toLowerCase();
+  const machine = software ? `${threads}cores` : (/\w*\d\w*/.exec(adapter)?.[0] ?? 'gpu').toLowerCase();
   mkdirSync(join(values.to, folder), { recursive: true });
   for (const name of readdirSync(join(values.to, folder)))
     if (name.includes(`-${machine}-paper-`)) rmSync(join(values.to, folder, name));
