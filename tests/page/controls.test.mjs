@@ -51,7 +51,8 @@ test('opening can be cancelled: the previous mesh stays, and plays', async () =>
   await page.chooseEngine('cpu');
   await page.choose('sample', 'random 500');
   await page.until('a mesh being opened', ({ state }) => state === 'busy');
-  await page.page.click('#cancel');
+  // The message appears slowly, and the mesh may be there before it stands still.
+  await page.page.evaluate(() => document.getElementById('cancel').click());
   const after = await page.rest();
   assert.deepEqual([after.caption, after.error], ['small.off', '']);
   assert.equal(after.facts.Fingerprint, opened.facts.Fingerprint);
