@@ -52,8 +52,8 @@ async function workerThatSays(ms, isSoftware = '() => false') {
         return { positions: new Float32Array(6), indices: new Uint32Array(3 * triangles), dimension: 2 };
       },
       isSoftware: ${isSoftware},
-      time({ indices }, { backend, threads }, most) {
-        const median = ms({ backend, threads, triangles: indices.length / 3 });
+      async time({ indices }, { backend, threads }, most) {
+        const median = await ms({ backend, threads, triangles: indices.length / 3 });
         if (typeof median === 'string') throw new Error(median);
         const result = { indices, flips: 7, threads: backend === 'cpu' ? threads ?? 2 : 0 };
         return { median, runs: median > most ? 1 : 5, first: 2 * median, result, isSoftware: false };

@@ -8,7 +8,8 @@ import type { Turn } from './turn.ts';
 import { about, count, tag, timeText } from './words.ts';
 
 const QUESTION = 'When is the GPU first?';
-const BEFORE = 'Random points in the plane, 200 to 500,000 triangles. An engine stops after a run of more than 1 s.';
+const BEFORE =
+  'Random points in the plane, 200 to 500,000 triangles. An engine stops after a run of more than 1\u00a0s.';
 
 export class CrossoverView {
   readonly #title = tag('h3', 'engines-title', QUESTION);

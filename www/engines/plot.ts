@@ -17,7 +17,7 @@ export function plot(host: HTMLElement, series: readonly Series[], crossing: Poi
   const width = Math.max(280, host.clientWidth);
   const isSlim = width < 520;
   const height = isSlim ? 320 : 400;
-  const [left, right, top, bottom] = [58, isSlim ? 84 : 132, 20, 60];
+  const [left, right, top, bottom] = [68, isSlim ? 84 : 132, 20, 60];
   const [low, high] = decades(series);
   const scale = (value: number, from: number, to: number) => Math.log10(value / from) / Math.log10(to / from);
   const x = (triangles: number) => left + scale(triangles, LEAST, MOST) * (width - left - right);

@@ -14,13 +14,13 @@ export class Runner {
     this.#failed = new Promise((_, reject) => {
       this.#worker.onerror = ({ message }) =>
         reject(new Error(message || 'the worker of the page could not be loaded'));
-      const end = () => {
+      const stop = () => {
         this.#worker.terminate();
         reject(signal.reason);
       };
       // A signal that is aborted already tells nobody.
-      if (signal.aborted) end();
-      else signal.addEventListener('abort', end);
+      if (signal.aborted) stop();
+      else signal.addEventListener('abort', stop);
     });
     this.#failed.catch(() => {});
   }
