@@ -16,6 +16,7 @@ let isOpen = false;
 export function showLegend(states: Uint8Array | undefined, triangles: number, nonManifold: number | undefined): void {
   const uncoloured = element('uncoloured');
   uncoloured.hidden = states !== undefined || triangles <= COLOURED;
+  element('legend').hidden = !uncoloured.hidden;
   uncoloured.textContent = `${number.format(triangles)} triangles: too many to colour their edges. The page colours up to ${number.format(COLOURED)}.`;
   if (!states) return element('legend').replaceChildren();
   const counts = new Map(countStates(states, nonManifold).map((count, state) => [EDGE_STATES[state]!, count] as const));
