@@ -1,6 +1,6 @@
 /** What `auto` does, as src/session/cost.rs and docs/engines.md have it. */
 
-import { tag } from './words.ts';
+import { made } from '../shell/elements.ts';
 
 /** The sizes from which on a GPU that is ready saves more than 2.5 ms, by the estimates of the package. */
 const RULES = [
@@ -12,6 +12,6 @@ const RULES = [
 const NOTE = 'These sizes are fixed estimates of the package. “auto” does not know what you measure here.';
 
 export function autoRules(): HTMLElement[] {
-  const rules = tag('ol', 'engines-rules', ...RULES.map((rule) => tag('li', '', rule)));
-  return [tag('h3', 'engines-title', 'Which one does “auto” take?'), rules, tag('p', 'engines-note', NOTE)];
+  const rules = made('ol', 'engines-rules', ...RULES.map((rule) => made('li', '', rule)));
+  return [made('h3', 'engines-title', 'Which one does “auto” take?'), rules, made('p', 'engines-note', NOTE)];
 }

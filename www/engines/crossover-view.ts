@@ -1,25 +1,26 @@
 /** The crossover: from which size of the mesh on a GPU is first on this computer. */
 
+import { made } from '../shell/elements.ts';
 import { leadOf, type Lead } from './lead.ts';
 import { plot } from './plot.ts';
 import { sentenceOf } from './runner.ts';
 import { emptySeries, measureSizes, type Series } from './sizes.ts';
 import type { Turn } from './turn.ts';
-import { about, count, tag, timeText } from './words.ts';
+import { about, count, timeText } from './words.ts';
 
 const QUESTION = 'When is the GPU first?';
 const BEFORE =
   'Random points in the plane, 200 to 500,000 triangles. An engine stops after a run of more than 1\u00a0s.';
 
 export class CrossoverView {
-  readonly #title = tag('h3', 'engines-title', QUESTION);
-  readonly #chart = tag('div', 'engines-chart');
-  readonly #button = tag('button', 'engines-button', 'Measure this computer');
-  readonly #note = tag('p', 'engines-note', BEFORE);
-  readonly #progress = tag('progress', 'engines-progress');
-  readonly #notes = tag('ul', 'engines-notes');
-  readonly #table = tag('table', '');
-  readonly #details = tag('details', 'engines-details', tag('summary', '', 'The numbers'));
+  readonly #title = made('h3', 'engines-title', QUESTION);
+  readonly #chart = made('div', 'engines-chart');
+  readonly #button = made('button', 'engines-button', 'Measure this computer');
+  readonly #note = made('p', 'engines-note', BEFORE);
+  readonly #progress = made('progress', 'engines-progress');
+  readonly #notes = made('ul', 'engines-notes');
+  readonly #table = made('table', '');
+  readonly #details = made('details', 'engines-details', made('summary', '', 'The numbers'));
   #series: Series[] = emptySeries();
   #lead: Lead | undefined;
 
@@ -28,9 +29,9 @@ export class CrossoverView {
     this.#title.ariaLive = 'polite';
     this.#progress.setAttribute('aria-label', 'Sizes measured');
     this.#progress.hidden = true;
-    this.#details.append(tag('div', 'engines-scroll', this.#table));
+    this.#details.append(made('div', 'engines-scroll', this.#table));
     this.#details.hidden = true;
-    const row = tag('div', 'engines-row', this.#button, tag('div', 'engines-state', this.#note, this.#progress));
+    const row = made('div', 'engines-row', this.#button, made('div', 'engines-state', this.#note, this.#progress));
     host.append(this.#title, row, this.#chart, this.#notes, this.#details);
     new ResizeObserver(() => this.#draw()).observe(this.#chart);
     turn.offer(this.#button, 'Measure again', (signal) => this.#measure(signal));
@@ -56,7 +57,7 @@ export class CrossoverView {
       this.#note.textContent = signal.aborted ? 'Stopped. These sizes were measured.' : sentenceOf(error);
     }
     this.#progress.hidden = true;
-    this.#notes.append(...notesOf(this.#series).map((note) => tag('li', '', note)));
+    this.#notes.append(...notesOf(this.#series).map((note) => made('li', '', note)));
     this.#draw();
     this.#tabulate();
   }
@@ -68,9 +69,9 @@ export class CrossoverView {
   #tabulate(): void {
     const sizes = [...new Set(this.#series.flatMap(({ points }) => points.map(({ triangles }) => triangles)))];
     const measured = this.#series.filter(({ points }) => points.length > 0);
-    const cell = (words: string) => tag('td', '', words);
+    const cell = (words: string) => made('td', '', words);
     const head = (words: string, scope: 'col' | 'row') => {
-      const th = tag('th', '', words);
+      const th = made('th', '', words);
       th.scope = scope;
       return th;
     };
@@ -79,14 +80,14 @@ export class CrossoverView {
       .sort((a, b) => a - b)
       .map((size) => {
         const times = measured.map(({ points }) => points.find(({ triangles }) => triangles === size)?.ms);
-        return tag(
+        return made(
           'tr',
           '',
           head(count(size), 'row'),
           ...times.map((ms) => cell(ms === undefined ? '–' : timeText(ms))),
         );
       });
-    this.#table.replaceChildren(tag('tr', '', head('Triangles', 'col'), ...names), ...rows);
+    this.#table.replaceChildren(made('tr', '', head('Triangles', 'col'), ...names), ...rows);
     this.#details.hidden = sizes.length === 0;
   }
 }

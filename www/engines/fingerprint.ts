@@ -1,30 +1,22 @@
-/** The fingerprint of a result, and its drawing. */
+/** The drawing of a fingerprint. */
 
 import { create } from 'd3-selection';
+import { fingerprintOf } from '../shell/digest.ts';
 
 /** Edges in a row of the drawing. */
 const ROW = 8;
 const CELL = 7.5;
 
-/** The SHA-256 of the triangles, as 32-bit little-endian words. */
-export async function fingerprintOf(indices: Uint32Array): Promise<string> {
-  const digest = await crypto.subtle.digest('SHA-256', indices as Uint32Array<ArrayBuffer>);
-  return Array.from(new Uint8Array(digest), (byte) => byte.toString(16).padStart(2, '0')).join('');
-}
-
-/** The first 64 bits: 16 digits. */
-export const shown = (fingerprint: string) => fingerprint.slice(0, 16);
-
-const bitsOf = (fingerprint: string) =>
-  [...shown(fingerprint)].flatMap((digit) => [8, 4, 2, 1].map((bit) => (Number.parseInt(digit, 16) & bit) !== 0));
+const bitsOf = (digest: string) =>
+  [...fingerprintOf(digest)].flatMap((digit) => [8, 4, 2, 1].map((bit) => (Number.parseInt(digit, 16) & bit) !== 0));
 
 /**
- * Draws the first 64 bits as the edges of a mesh of 8 × 8 squares: a bit chooses one of the diagonals of its square.
+ * Draws the first 64 bits of a digest as the edges of a mesh of 8 × 8 squares: a bit chooses one of the diagonals of its square.
  * The edges that differ from those of `expected` stand out.
  */
-export function draw(fingerprint: string, expected: string): SVGSVGElement {
+export function draw(digest: string, expected: string): SVGSVGElement {
   const wanted = bitsOf(expected);
-  const edges = bitsOf(fingerprint).map((bit, i) => {
+  const edges = bitsOf(digest).map((bit, i) => {
     const [x, y] = [(i % ROW) * CELL, Math.floor(i / ROW) * CELL];
     return { isEqual: bit === wanted[i], d: bit ? `M${x} ${y}l${CELL} ${CELL}` : `M${x + CELL} ${y}l${-CELL} ${CELL}` };
   });

@@ -1,5 +1,6 @@
 /** The section "Three engines, one answer": a race of the engines, and the size from which on a GPU is first. */
 
+import { made } from '../shell/elements.ts';
 import './engines.css';
 import './race.css';
 import './crossover.css';
@@ -8,7 +9,6 @@ import { CrossoverView } from './crossover-view.ts';
 import type { NamedMesh } from './lineup.ts';
 import { RaceView } from './race-view.ts';
 import { Turn } from './turn.ts';
-import { tag } from './words.ts';
 
 export type { NamedMesh } from './lineup.ts';
 
@@ -16,7 +16,7 @@ export type { NamedMesh } from './lineup.ts';
 export function mountEngines(host: HTMLElement, openMesh: () => NamedMesh | undefined): void {
   const turn = new Turn();
   new RaceView(host, turn, openMesh);
-  const crossover = tag('div', 'engines-crossover');
+  const crossover = made('div', 'engines-crossover');
   new CrossoverView(crossover, turn);
-  host.append(tag('div', 'engines-below', crossover, tag('div', 'engines-auto', ...autoRules())));
+  host.append(made('div', 'engines-below', crossover, made('div', 'engines-auto', ...autoRules())));
 }

@@ -1,28 +1,30 @@
 /** The lane of an engine: its name, its bar, its time, its speed-up and the fingerprint of its result. */
 
-import { draw, shown } from './fingerprint.ts';
+import { made } from '../shell/elements.ts';
+import { fingerprintOf } from '../shell/digest.ts';
+import { draw } from './fingerprint.ts';
 import type { Contender } from './lineup.ts';
 import type { Outcome } from './race.ts';
-import { about, tag, timeOf, timeText } from './words.ts';
+import { about, timeOf, timeText } from './words.ts';
 
 export type Ran = Extract<Outcome, { timing: unknown }>;
 
 export class Lane {
   readonly element: HTMLElement;
   readonly #contender: Contender;
-  readonly #where = tag('p', 'engines-where');
-  readonly #bar = tag('i', '');
-  readonly #track = tag('div', 'engines-track', this.#bar);
-  readonly #why = tag('p', 'engines-why');
-  readonly #time = tag('strong', 'engines-time');
-  readonly #speed = tag('span', 'engines-speed');
-  readonly #print = tag('div', 'engines-print');
+  readonly #where = made('p', 'engines-where');
+  readonly #bar = made('i', '');
+  readonly #track = made('div', 'engines-track', this.#bar);
+  readonly #why = made('p', 'engines-why');
+  readonly #time = made('strong', 'engines-time');
+  readonly #speed = made('span', 'engines-speed');
+  readonly #print = made('div', 'engines-print');
 
   constructor(contender: Contender) {
     this.#contender = contender;
-    const name = tag('div', 'engines-name', tag('h3', '', contender.name), this.#where);
-    const middle = tag('div', 'engines-middle', this.#track, this.#why);
-    this.element = tag('li', 'engines-lane', name, middle, this.#time, this.#speed, this.#print);
+    const name = made('div', 'engines-name', made('h3', '', contender.name), this.#where);
+    const middle = made('div', 'engines-middle', this.#track, this.#why);
+    this.element = made('li', 'engines-lane', name, middle, this.#time, this.#speed, this.#print);
     this.reset();
   }
 
@@ -50,10 +52,10 @@ export class Lane {
     }
     const { median, first, isSoftware } = outcome.timing;
     const [time, unit] = timeOf(median);
-    this.#time.replaceChildren(time, tag('small', '', ` ${unit}`));
+    this.#time.replaceChildren(time, made('small', '', ` ${unit}`));
     const { where } = this.#contender;
     const place = isSoftware ? where.replace('Your GPU', 'Software GPU') : where;
-    this.#where.replaceChildren(place, tag('br', ''), `First run: ${timeText(first)}`);
+    this.#where.replaceChildren(place, made('br', ''), `First run: ${timeText(first)}`);
   }
 
   /** Compares with the slowest engine, with one thread, and with the expected result. */
@@ -66,9 +68,9 @@ export class Lane {
       const factor = oneThread.timing.median / median;
       this.#speed.textContent = ran === oneThread ? '1×' : `${factor < 1 ? about(factor) : factor.toFixed(1)}×`;
     }
-    const digits = shown(ran.fingerprint);
-    const code = tag('code', '', digits.slice(0, 8), tag('wbr', ''), digits.slice(8));
-    this.#print.replaceChildren(code, draw(ran.fingerprint, expected));
+    const digits = fingerprintOf(ran.digest);
+    const code = made('code', '', digits.slice(0, 8), made('wbr', ''), digits.slice(8));
+    this.#print.replaceChildren(code, draw(ran.digest, expected));
   }
 
   /** Lets the bar grow for so many milliseconds. */

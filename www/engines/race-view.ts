@@ -1,11 +1,12 @@
 /** The race: a button, a lane for each engine, and whether all results are equal. */
 
+import { made } from '../shell/elements.ts';
 import { Lane, type Ran } from './lane.ts';
 import { ALL, ONE_THREAD, type Contender, type NamedMesh } from './lineup.ts';
 import { runOn, sampleMesh } from './race.ts';
 import { sentenceOf } from './runner.ts';
 import type { Turn } from './turn.ts';
-import { count, tag } from './words.ts';
+import { count } from './words.ts';
 
 const BEFORE =
   'Each engine runs the mesh that is open above, or else the paper’s mesh 3, from arrays to arrays. See which one is first here.';
@@ -18,10 +19,10 @@ const stillness = matchMedia('(prefers-reduced-motion: reduce)');
 const names = new Intl.ListFormat('en');
 
 export class RaceView {
-  readonly #lede = tag('p', 'engines-lede', BEFORE);
-  readonly #button = tag('button', 'engines-button engines-main', 'Race');
-  readonly #note = tag('p', 'engines-note', PROMISE);
-  readonly #verdict = tag('p', 'engines-verdict');
+  readonly #lede = made('p', 'engines-lede', BEFORE);
+  readonly #button = made('button', 'engines-button engines-main', 'Race');
+  readonly #note = made('p', 'engines-note', PROMISE);
+  readonly #verdict = made('p', 'engines-verdict');
   readonly #lanes = new Map(ALL.map((contender) => [contender, new Lane(contender)]));
   readonly #openMesh: () => NamedMesh | undefined;
 
@@ -30,13 +31,13 @@ export class RaceView {
     this.#button.type = 'button';
     for (const live of [this.#note, this.#verdict]) live.setAttribute('role', 'status');
     const titles = ['Engine', '', 'Time', 'Speed-up', 'Fingerprint of the result'];
-    const heads = tag('div', 'engines-heads', ...titles.map((title) => tag('span', '', title)));
+    const heads = made('div', 'engines-heads', ...titles.map((title) => made('span', '', title)));
     heads.setAttribute('aria-hidden', 'true');
-    const lanes = tag('ul', 'engines-lanes', ...[...this.#lanes.values()].map(({ element }) => element));
+    const lanes = made('ul', 'engines-lanes', ...[...this.#lanes.values()].map(({ element }) => element));
     // Safari takes lists without markers for no lists.
     lanes.setAttribute('role', 'list');
-    const head = tag('header', 'engines-head', tag('h2', '', 'Three engines, one answer.'), this.#lede);
-    head.append(tag('div', 'engines-row', this.#button, this.#note));
+    const head = made('header', 'engines-head', made('h2', '', 'Three engines, one answer.'), this.#lede);
+    head.append(made('div', 'engines-row', this.#button, this.#note));
     host.append(head, heads, lanes, this.#verdict);
     turn.offer(this.#button, 'Race again', (signal) => this.#race(signal));
   }
@@ -71,23 +72,23 @@ export class RaceView {
       this.#note.textContent = 'No engine could run this mesh. Each lane says why.';
       return;
     }
-    const { fingerprint } = oneThread ?? fastest;
+    const { digest } = oneThread ?? fastest;
     const slowest = Math.max(...[...ran.values()].map(({ timing }) => timing.median));
     const [slowness, replays] = replayOf(slowest);
     for (const [contender, one] of ran) {
       const lane = this.#lanes.get(contender)!;
-      lane.compare(one, slowest, oneThread, fingerprint, one === fastest);
+      lane.compare(one, slowest, oneThread, digest, one === fastest);
       if (!stillness.matches) lane.replay(slowness * one.timing.median);
     }
     const runs = Math.min(...[...ran.values()].map(({ timing }) => timing.runs));
     const medians = runs === 5 ? 'Medians of 5 runs.' : 'Medians of 5 runs, or of fewer where a run takes over 2 s.';
     this.#note.textContent = stillness.matches ? medians : `${replays} ${medians}`;
-    const others = [...ran].filter(([, one]) => one.fingerprint !== fingerprint).map(([{ name }]) => name);
+    const others = [...ran].filter(([, one]) => one.digest !== digest).map(([{ name }]) => name);
     this.#judge(ran.size, others);
     const [triangles, { flips }] = [mesh.indices.length / 3, fastest.timing.result];
     const numbers = `, from arrays to arrays: ${count(triangles)} triangles, ${count(flips)} flips.`;
     const equal = others.length === 0 && ran.size > 1 ? ' The results are equal to the last bit.' : '';
-    this.#lede.replaceChildren('Each engine here ran ', tag('b', '', mesh.name), numbers, equal);
+    this.#lede.replaceChildren('Each engine here ran ', made('b', '', mesh.name), numbers, equal);
   }
 
   #judge(ran: number, others: string[]): void {

@@ -1,6 +1,6 @@
 /** Runs each engine on one mesh, one engine after the other. */
 
-import { fingerprintOf } from './fingerprint.ts';
+import { digestOf } from '../shell/digest.ts';
 import { whyOneThreadRan, type Contender, type NamedMesh } from './lineup.ts';
 import { Runner, sentenceOf } from './runner.ts';
 import type { Timing } from './timing.ts';
@@ -12,7 +12,7 @@ const LONG = 2000;
 const SAMPLE = { spec: 'uvsphere 100', name: 'the paper’s mesh 3' };
 
 /** How an engine ran, or why it did not. */
-export type Outcome = { timing: Timing; fingerprint: string } | { whyNot: string };
+export type Outcome = { timing: Timing; digest: string } | { whyNot: string };
 
 export async function sampleMesh(signal: AbortSignal): Promise<NamedMesh> {
   const runner = new Runner(signal);
@@ -35,7 +35,7 @@ export async function runOn({ options, whyNot }: Contender, mesh: NamedMesh, sig
     const { threads, hint } = timing.result;
     const isAlone = options.backend === 'cpu' && options.threads !== 1 && threads === 1;
     if (isAlone) return { whyNot: whyOneThreadRan(indices.length / 3, hint) };
-    return { timing, fingerprint: await fingerprintOf(timing.result.indices) };
+    return { timing, digest: await digestOf(timing.result.indices) };
   } catch (error) {
     signal.throwIfAborted();
     return { whyNot: sentenceOf(error) };

@@ -2,6 +2,7 @@
 
 import { ONE_THREAD, THREADS, WEBGL2, WEBGPU, type Contender } from './lineup.ts';
 import { Runner, sentenceOf } from './runner.ts';
+import { count } from './words.ts';
 
 /** The meshes: `random N` in the plane, with 2(N − 1)² triangles. */
 const SIDES = [11, 20, 38, 73, 140, 269, 501];
@@ -49,7 +50,7 @@ export async function measureSizes(
       const triangles = mesh.indices.length / 3;
       for (const [one, runner] of running) {
         const { name, options } = one.contender;
-        report(done / SIDES.length, `${triangles.toLocaleString('en')} triangles, ${name}`);
+        report(done / SIDES.length, `${count(triangles)} triangles, ${name}`);
         try {
           if (side === SIDES[0] && (await runner.ask((timer) => timer.isSoftware(options)))) throw new Error(EMULATED);
           const { median } = await runner.ask((timer) => timer.time(mesh, options, SLOW));

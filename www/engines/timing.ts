@@ -3,6 +3,7 @@
 import { expose, transfer } from 'comlink';
 import { makeDelaunay, type Options, type Result } from 'edgeflip';
 import { generate } from 'edgeflip/files';
+import { isSoftware } from '../shell/adapter.ts';
 import type { PlainMesh } from './lineup.ts';
 
 const RUNS = 5;
@@ -31,7 +32,10 @@ class Timer {
 
   /** Whether the engine would run on a GPU that the browser emulates on the CPU. */
   async isSoftware({ backend }: Options): Promise<boolean> {
-    if (backend === 'webgpu') return isFallback();
+    if (backend === 'webgpu') {
+      const adapter = await navigator.gpu?.requestAdapter();
+      return adapter ? isSoftware(adapter) : false;
+    }
     return backend === 'webgl2' && /swiftshader|llvmpipe|softpipe|basic render/i.test(rendererName());
   }
 
@@ -57,14 +61,6 @@ async function timeOf(mesh: PlainMesh, options: Options, count: number): Promise
   const start = performance.now();
   for (let i = 0; i < count; i++) await makeDelaunay(mesh, options);
   return (performance.now() - start) / count;
-}
-
-/** Older browsers have `isFallbackAdapter` on the adapter, newer ones on its `info`. */
-async function isFallback(): Promise<boolean> {
-  const adapter: (GPUAdapter & { isFallbackAdapter?: boolean }) | null | undefined =
-    await navigator.gpu?.requestAdapter();
-  const info: { isFallbackAdapter?: boolean } | undefined = adapter?.info;
-  return info?.isFallbackAdapter ?? adapter?.isFallbackAdapter ?? false;
 }
 
 /** The renderer of WebGL2. Chromium and Safari tell it only through an extension, about which Firefox warns. */

@@ -1,20 +1,10 @@
-/** Elements and numbers of the section. */
+/** How the section writes numbers and times. */
 
-export function tag<K extends keyof HTMLElementTagNameMap>(
-  name: K,
-  kind: string,
-  ...inside: (Node | string)[]
-): HTMLElementTagNameMap[K] {
-  const element = document.createElement(name);
-  element.className = kind;
-  element.append(...inside);
-  return element;
-}
+import { number } from '../shell/numbers.ts';
 
-const whole = new Intl.NumberFormat('en');
 const rounded = new Intl.NumberFormat('en', { maximumSignificantDigits: 2 });
 
-export const count = (value: number) => whole.format(value);
+export const count = (value: number) => number.format(value);
 export const about = (value: number) => rounded.format(value);
 
 /** A time in milliseconds or seconds, with about three digits: the number and its unit. */

@@ -2,6 +2,7 @@
 
 import './explain.css';
 import './drawings.css';
+import { made } from '../shell/elements.ts';
 import { circle } from './circle.ts';
 import { ends } from './ends.ts';
 import { mountFigure } from './figure.ts';
@@ -16,21 +17,15 @@ const LEDE =
 const END =
   'Label, select, flip, update: that is one round. The engine runs round after round until no edge can flip. The creases of a surface and the edges that you lock are kept, so a few edges may stay that are not Delaunay. They are counted, with the reason for each.';
 
-function text(name: 'h2' | 'p', words: string): HTMLElement {
-  const element = document.createElement(name);
-  element.textContent = words;
-  return element;
-}
-
 /** Puts the section into `host`. */
 export function mountExplanation(host: HTMLElement): void {
   const head = document.createElement('header');
   head.className = 'explain-head';
-  head.append(text('h2', TITLE), text('p', LEDE));
+  head.append(made('h2', '', TITLE), made('p', '', LEDE));
   const figures = document.createElement('div');
   figures.className = 'explain-figures';
   figures.append(...[circle, label, select, flip, update, ends].map((figure, i) => mountFigure(figure, i + 1)));
-  const end = text('p', END);
+  const end = made('p', '', END);
   end.className = 'explain-end';
   host.append(head, figures, end);
 }

@@ -101,7 +101,7 @@ export async function writeModels(folder) {
     writeFileSync(join(folder, 'models', name), bytes);
     meshes.set(`models/${name}`, await readMesh(bytes, name));
   }
-  for (const { spec, thumb, drawn = spec } of SAMPLES.flatMap(({ samples }) => samples)) {
+  for (const { spec, thumb, drawn = spec } of SAMPLES) {
     const mesh = meshes.get(drawn) ?? (await generate(drawn));
     writeFileSync(join(folder, thumb), wireframe(await coarse(mesh)));
   }

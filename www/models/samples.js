@@ -12,91 +12,98 @@ export const BROUGHT = 'models/';
 
 const thumb = (name) => `thumbs/${name}.svg`;
 
-/** @type {readonly { group: string, samples: readonly Sample[] }[]} */
+/** @type {readonly Sample[]} */
 export const SAMPLES = [
   {
-    group: 'Real meshes',
-    samples: [
-      {
-        spec: 'models/bunny.ply',
-        ...{ name: 'Stanford bunny', short: 'Bunny', what: 'A scan, edges scrambled', thumb: thumb('bunny') },
-        // A scan has no sharp edges to keep.
-        ...{ beta: 30, credit: 'Stanford 3D Scanning Repository', licence: 'public domain' },
-      },
-      {
-        spec: 'models/flange.ply',
-        ...{ name: 'Flange', short: 'Flange', what: 'A part cut from solids', thumb: thumb('flange') },
-        ...{ credit: 'made with manifold-3d', licence: 'Apache-2.0' },
-      },
-      {
-        spec: 'models/terrain.ply',
-        ...{
-          name: 'Terrain',
-          short: 'Terrain',
-          what: 'Each cell cut along the same diagonal',
-          thumb: thumb('terrain'),
-        },
-        ...{ beta: 60, credit: 'noise of simplex-noise', licence: 'MIT' },
-      },
-      {
-        spec: 'models/suzi.glb',
-        ...{ name: 'Suzanne', short: 'Suzanne', what: 'A glTF model, edges scrambled', thumb: thumb('suzanne') },
-        ...{ beta: 30, credit: '@pmndrs/assets', licence: 'CC0' },
-      },
-    ],
+    spec: 'models/bunny.ply',
+    name: 'Stanford bunny',
+    short: 'Bunny',
+    what: 'A scan, edges scrambled',
+    thumb: thumb('bunny'),
+    // A scan has no sharp edges to keep.
+    beta: 30,
+    credit: 'Stanford 3D Scanning Repository',
+    licence: 'public domain',
   },
   {
-    group: 'Surfaces',
-    samples: [
-      { spec: 'uvsphere 28 0.1', name: 'Lumpy sphere', short: 'Sphere', thumb: thumb('sphere') },
-      { spec: 'roof 16', name: 'Roof with a sharp ridge', short: 'Roof', thumb: thumb('roof') },
-      { spec: 'pole 60', name: 'Two poles', short: 'Poles', thumb: thumb('poles'), drawn: 'pole 24' },
-    ],
+    spec: 'models/flange.ply',
+    name: 'Flange',
+    short: 'Flange',
+    what: 'A part cut from solids',
+    thumb: thumb('flange'),
+    credit: 'made with manifold-3d',
+    licence: 'Apache-2.0',
   },
   {
-    group: 'Plane',
-    samples: [
-      { spec: 'random 24', name: 'Random points', short: 'Points', thumb: thumb('points'), drawn: 'random 9' },
-      { spec: 'shear 16', name: 'Sheared lattice', short: 'Sheared', thumb: thumb('sheared'), drawn: 'shear 8' },
-      { spec: 'sweep 300', name: 'Slivers of a sweep', short: 'Slivers', thumb: thumb('slivers'), drawn: 'sweep 40' },
-      {
-        spec: 'regular 16',
-        ...{ name: 'Regular lattice', short: 'Ties', what: 'All ties: no edge flips', thumb: thumb('ties') },
-        drawn: 'regular 8',
-      },
-    ],
+    spec: 'models/terrain.ply',
+    name: 'Terrain',
+    short: 'Terrain',
+    what: 'Each cell cut along the same diagonal',
+    thumb: thumb('terrain'),
+    beta: 60,
+    credit: 'noise of simplex-noise',
+    licence: 'MIT',
   },
   {
-    group: 'The paper’s',
-    samples: [
-      { spec: 'strips 16', name: 'The paper’s worst case, 16 nodes', short: 'Worst case', thumb: thumb('worst') },
-      {
-        spec: 'strips 200',
-        ...{ name: 'Worst case, 200 nodes', short: '200 nodes', thumb: thumb('worst-200'), drawn: 'strips 40' },
-      },
-      {
-        spec: 'strips 1000',
-        ...{ name: 'Worst case, 1,000 nodes', short: '1,000 nodes', thumb: thumb('worst-1000'), drawn: 'strips 64' },
-      },
-      {
-        spec: 'uvsphere 100',
-        ...{ name: 'The paper’s mesh 3', short: 'Mesh 3', thumb: thumb('mesh-3'), drawn: 'uvsphere 16' },
-      },
-      {
-        spec: 'uvsphere 600',
-        ...{ name: 'The paper’s mesh 5', short: 'Mesh 5', thumb: thumb('mesh-5'), drawn: 'uvsphere 24' },
-      },
-    ],
+    spec: 'models/suzi.glb',
+    name: 'Suzanne',
+    short: 'Suzanne',
+    what: 'A glTF model, edges scrambled',
+    thumb: thumb('suzanne'),
+    beta: 30,
+    credit: '@pmndrs/assets',
+    licence: 'CC0',
+  },
+  { spec: 'uvsphere 28 0.1', name: 'Lumpy sphere', short: 'Sphere', thumb: thumb('sphere') },
+  { spec: 'roof 16', name: 'Roof with a sharp ridge', short: 'Roof', thumb: thumb('roof') },
+  { spec: 'pole 60', name: 'Two poles', short: 'Poles', thumb: thumb('poles'), drawn: 'pole 24' },
+  { spec: 'random 24', name: 'Random points', short: 'Points', thumb: thumb('points'), drawn: 'random 9' },
+  { spec: 'shear 16', name: 'Sheared lattice', short: 'Sheared', thumb: thumb('sheared'), drawn: 'shear 8' },
+  { spec: 'sweep 300', name: 'Slivers of a sweep', short: 'Slivers', thumb: thumb('slivers'), drawn: 'sweep 40' },
+  {
+    spec: 'regular 16',
+    name: 'Regular lattice',
+    short: 'Ties',
+    what: 'All ties: no edge flips',
+    thumb: thumb('ties'),
+    drawn: 'regular 8',
+  },
+  { spec: 'strips 16', name: 'The paper’s worst case, 16 nodes', short: 'Worst case', thumb: thumb('worst') },
+  {
+    spec: 'strips 200',
+    name: 'Worst case, 200 nodes',
+    short: '200 nodes',
+    thumb: thumb('worst-200'),
+    drawn: 'strips 40',
   },
   {
-    group: 'Large',
-    samples: [
-      {
-        spec: 'random 500',
-        ...{ name: 'Half a million triangles', short: 'Large', what: 'Random points', thumb: thumb('large') },
-        drawn: 'random 20',
-      },
-    ],
+    spec: 'strips 1000',
+    name: 'Worst case, 1,000 nodes',
+    short: '1,000 nodes',
+    thumb: thumb('worst-1000'),
+    drawn: 'strips 64',
+  },
+  {
+    spec: 'uvsphere 100',
+    name: 'The paper’s mesh 3',
+    short: 'Mesh 3',
+    thumb: thumb('mesh-3'),
+    drawn: 'uvsphere 16',
+  },
+  {
+    spec: 'uvsphere 600',
+    name: 'The paper’s mesh 5',
+    short: 'Mesh 5',
+    thumb: thumb('mesh-5'),
+    drawn: 'uvsphere 24',
+  },
+  {
+    spec: 'random 500',
+    name: 'Half a million triangles',
+    short: 'Large',
+    what: 'Random points',
+    thumb: thumb('large'),
+    drawn: 'random 20',
   },
 ];
 
@@ -108,6 +115,5 @@ export const FIRST = 'models/bunny.ply';
  * @returns {Sample}
  */
 export function sampleOf(spec) {
-  const found = SAMPLES.flatMap(({ samples }) => samples).find((sample) => sample.spec === spec);
-  return found ?? { spec, name: spec, short: spec, thumb: '' };
+  return SAMPLES.find((sample) => sample.spec === spec) ?? { spec, name: spec, short: spec, thumb: '' };
 }

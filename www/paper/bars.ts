@@ -1,7 +1,7 @@
 /** A plot of the flips in each iteration. */
 
 import { create } from 'd3-selection';
-import { number } from '../watch/numbers.ts';
+import { number } from '../shell/numbers.ts';
 
 const [WIDTH, HEIGHT, BOTTOM, TOP] = [560, 260, 28, 22];
 /** The most bars that have their numbers. */

@@ -2,8 +2,8 @@
 
 import './paper.css';
 import { Office } from '../watch/engines.ts';
-import { made } from '../watch/controls.ts';
-import { number } from '../watch/numbers.ts';
+import { made } from '../shell/elements.ts';
+import { number } from '../shell/numbers.ts';
 import { bars } from './bars.ts';
 import { crossoverOf, ours, rowsOf } from './measured.ts';
 

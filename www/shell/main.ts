@@ -2,6 +2,7 @@
 
 import type { NamedMesh } from '../engines/index.ts';
 import type { Hero } from '../hero/hero.ts';
+import { number } from './numbers.ts';
 import { onTheme, toggleTheme } from './theme.ts';
 
 const part = <T extends HTMLElement>(selector: string): T => {
@@ -10,7 +11,6 @@ const part = <T extends HTMLElement>(selector: string): T => {
   return found;
 };
 
-const number = new Intl.NumberFormat('en');
 const [live, liveText, playAnyway] = [part('#live'), part('#live-text'), part('#play-anyway')];
 const stillness = matchMedia('(prefers-reduced-motion: reduce)');
 

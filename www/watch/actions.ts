@@ -6,6 +6,7 @@ import { linkTo } from './link.ts';
 import { again } from './opening.ts';
 import type { Page } from './page.ts';
 import { palette } from './palette.ts';
+import type { Shown } from './shown.ts';
 import { splitName } from './sources.ts';
 
 /** The most triangles of a mesh whose edges are flipped at random: a larger one would take seconds. */
@@ -33,23 +34,28 @@ export async function saveMesh(page: Page, extension?: string): Promise<void> {
   const shown = page.shown;
   if (!shown) return;
   const { opened, run } = shown;
-  const [stem, own] = splitName(opened.name);
+  const [, own] = splitName(opened.name);
   const format = extension ?? own;
   // Only a file of the same format keeps what else was in the original.
   const kept = format === own ? opened.kept : undefined;
   await page.attempt('Writing the file…', async (signal) => {
     const mesh = { ...opened.mesh, indices: await run.triangles() };
     signal.throwIfAborted();
-    await download(mesh, `${stem.replaceAll(' ', '-')}-after-${run.at}${format}`, kept, signal);
+    await download(mesh, nameFor(shown, format), kept, signal);
   });
+}
+
+/** The name of a file of what is shown. */
+function nameFor({ opened, run }: Shown, extension: string): string {
+  const [stem] = splitName(opened.name);
+  return `${stem.replaceAll(' ', '-')}-after-${run.at}${extension}`;
 }
 
 /** Saves a picture of the mesh as it is shown. */
 export async function savePicture(page: Page): Promise<void> {
   const [shown, scene] = [page.shown, page.scene];
   if (!shown || !scene) return;
-  const [stem] = splitName(shown.opened.name);
-  save(await scene.picture(palette().ground), `${stem.replaceAll(' ', '-')}-after-${shown.run.at}.png`);
+  save(await scene.picture(palette().ground), nameFor(shown, '.png'));
 }
 
 /** Copies a link to what is shown. Returns what to say. */

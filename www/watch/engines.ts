@@ -2,6 +2,7 @@
 
 import { wrap, type Remote } from 'comlink';
 import { EdgeflipError, type Options } from 'edgeflip';
+import { isSoftware } from '../shell/adapter.ts';
 import { ArrayTrack } from './array-track.ts';
 import { CRASHED } from './crash.ts';
 import type { Desk } from './desk.ts';
@@ -32,12 +33,6 @@ export async function openGpu(): Promise<Gpu | string> {
   } catch (error) {
     return `WebGPU could not be used (${error instanceof Error ? error.message : String(error)})`;
   }
-}
-
-/** Older browsers have `isFallbackAdapter` on the adapter, newer ones on its `info`. */
-function isSoftware(adapter: GPUAdapter & { isFallbackAdapter?: boolean }): boolean {
-  const { isFallbackAdapter }: { isFallbackAdapter?: boolean } = adapter.info;
-  return isFallbackAdapter ?? adapter.isFallbackAdapter ?? false;
 }
 
 /** The GPU that `auto` uses, or why it uses none. */

@@ -1,12 +1,13 @@
 /** The gallery: a picture and a word for each sample. */
 
-import { element, made } from './controls.ts';
+import { element } from './controls.ts';
+import { made } from '../shell/elements.ts';
 import { FIRST, SAMPLES } from '../models/samples.js';
 
 /** Fills the gallery. `open` is called with the spec of the sample that is chosen. */
 export function makeGallery(open: (spec: string) => void): void {
   const gallery = element('gallery');
-  for (const sample of SAMPLES.flatMap(({ samples }) => samples)) {
+  for (const sample of SAMPLES) {
     const picture = made('span', 'thumb');
     picture.style.setProperty('--thumb', `url(${new URL(sample.thumb, document.baseURI)})`);
     const button = made('button', '', picture, sample.short);

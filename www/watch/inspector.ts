@@ -1,7 +1,8 @@
 /** The inspector: an edge with its two triangles laid flat, its opposite angles beside each other, and a sentence. */
 
 import type { IndexedMesh } from 'edgeflip/files';
-import { element, made } from './controls.ts';
+import { element } from './controls.ts';
+import { made } from '../shell/elements.ts';
 import { angleFan, lens } from './lens.ts';
 import type { Quad } from './quad.ts';
 import { sentenceOf } from './sentences.ts';

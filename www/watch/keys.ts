@@ -1,6 +1,7 @@
 /** The keys of the tool, and the list of them. */
 
-import { element, made } from './controls.ts';
+import { element } from './controls.ts';
+import { made } from '../shell/elements.ts';
 
 /** A key, as the browser names it and as the list writes it, and what it does. */
 export interface Key {

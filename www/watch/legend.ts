@@ -1,8 +1,9 @@
 /** The legend: how many edges are in each state. The reasons of edges that stay unfold. */
 
 import { EDGE_STATES, type EdgeState } from 'edgeflip';
-import { element, made } from './controls.ts';
-import { number } from './numbers.ts';
+import { element } from './controls.ts';
+import { made } from '../shell/elements.ts';
+import { number } from '../shell/numbers.ts';
 import { countStates, COLOURED } from './run.ts';
 import { isKept, LOOKS, swatch } from './states.ts';
 

@@ -5,7 +5,7 @@ import type { IndexedMesh } from 'edgeflip/files';
 import { select } from 'd3-selection';
 import { element } from './controls.ts';
 import { drawThread, hideEdge, showEdge, type Limits } from './inspector.ts';
-import { nextIn, quadAt, type Quad } from './quad.ts';
+import { next, nextIn, quadAt, type Quad } from './quad.ts';
 import { COLOURED } from './run.ts';
 import type { Scene } from './scene.ts';
 
@@ -51,7 +51,7 @@ export class Looking {
     this.#shown = shown;
     if (!held) return this.close();
     const { indices } = shown;
-    const half = indices.findIndex((from, h) => from === held.a && indices[h % 3 === 2 ? h - 2 : h + 1] === held.b);
+    const half = indices.findIndex((from, h) => from === held.a && indices[next(h)] === held.b);
     if (half >= 0) this.#inspect(half);
     else this.close();
   }
@@ -87,9 +87,9 @@ export class Looking {
       marks.remove();
       return drawThread(undefined);
     }
-    const [a, b, ...opposite] = scene.outline(shown.indices, quad.half, quad.opposite) as [Corner, Corner, ...Corner[]];
-    const middle: Corner = [(a[0] + b[0]) / 2, (a[1] + b[1]) / 2];
-    const around = opposite.map((c) => `M${a}L${c}L${b}`).join('');
+    const [a, b] = [scene.positionOf(quad.a), scene.positionOf(quad.b)];
+    const middle: [x: number, y: number] = [(a[0] + b[0]) / 2, (a[1] + b[1]) / 2];
+    const around = quad.opposite.map((c) => `M${a}L${scene.positionOf(c)}L${b}`).join('');
     const [x, y] = middle;
     const ring = `M${x - 22} ${y}a22 22 0 1 0 44 0a22 22 0 1 0 -44 0`;
     marks
@@ -122,10 +122,8 @@ export class Looking {
     const { mesh, indices, states, limits } = shown;
     const quad = quadAt(mesh, indices, states, half);
     this.#quad = quad;
-    const [[ax, ay], [bx, by]] = scene.outline(indices, half, []) as [Corner, Corner];
+    const [[ax, ay], [bx, by]] = [scene.positionOf(quad.a), scene.positionOf(quad.b)];
     showEdge(quad, mesh, limits, Math.atan2(ay - by, bx - ax));
     this.draw();
   }
 }
-
-type Corner = [x: number, y: number];

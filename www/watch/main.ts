@@ -7,7 +7,8 @@ import { FORMATS } from 'edgeflip/files';
 import type { NamedMesh } from '../engines/index.ts';
 import { toggleTheme } from '../shell/theme.ts';
 import { copyCode, copyLink, saveMesh, savePicture, scramble } from './actions.ts';
-import { controls, element, made } from './controls.ts';
+import { controls, element } from './controls.ts';
+import { made } from '../shell/elements.ts';
 import type { EdgeLook } from './display.ts';
 import { makeGallery } from './gallery.ts';
 import { listen } from './keys.ts';
@@ -130,14 +131,17 @@ function connectDrop(open: (source: Source | undefined) => void): void {
 }
 
 function connectKeys(page: Page, openSample: (spec: string) => void, say: (words: string) => void): void {
-  const specs = SAMPLES.flatMap(({ samples }) => samples.map(({ spec }) => spec));
+  const specs = SAMPLES.map(({ spec }) => spec);
   const keys = element<HTMLDialogElement>('keys');
   element('help').addEventListener('click', () => keys.showModal());
   const toggle = (id: string) => element(id).togglePopover();
   const slides = 'input, select';
   listen([
     {
-      ...{ keys: [' '], label: 'Space', says: 'play or pause', keptBy: 'button, summary, a, input, select' },
+      keys: [' '],
+      label: 'Space',
+      says: 'play or pause',
+      keptBy: 'button, summary, a, input, select',
       act: () => controls.play.click(),
     },
     {
@@ -157,7 +161,9 @@ function connectKeys(page: Page, openSample: (spec: string) => void, say: (words
     },
     { keys: ['End'], keptBy: slides, act: () => void page.seek(Number(controls.slider.max)) },
     {
-      ...{ keys: ['1', '2', '3', '4', '5', '6', '7', '8', '9'], label: '1 – 9', says: 'sample 1 to 9' },
+      keys: ['1', '2', '3', '4', '5', '6', '7', '8', '9'],
+      label: '1 – 9',
+      says: 'sample 1 to 9',
       act: (key) => {
         const spec = specs[Number(key) - 1];
         if (spec) openSample(spec);
@@ -165,11 +171,15 @@ function connectKeys(page: Page, openSample: (spec: string) => void, say: (words
     },
     { keys: ['c'], label: 'C', says: 'before and now', act: () => page.compare() },
     {
-      ...{ keys: ['n'], label: 'N, Shift N', says: 'next, previous edge that is not Delaunay' },
+      keys: ['n'],
+      label: 'N, Shift N',
+      says: 'next, previous edge that is not Delaunay',
       act: (key) => page.inspectNext(key.startsWith('Shift') ? -1 : 1),
     },
     {
-      ...{ keys: ['e'], label: 'E', says: 'edges: coloured, plain, none' },
+      keys: ['e'],
+      label: 'E',
+      says: 'edges: coloured, plain, none',
       act: () => (page.edges = LOOKS[(LOOKS.indexOf(page.edges) + 1) % LOOKS.length]!),
     },
     { keys: ['l'], label: 'L', says: 'limits', act: () => toggle('limits') },

@@ -20,9 +20,3 @@ export async function measure(
   const change = await office.ask((desk) => desk.compare(mesh, indices));
   if (!isOutdated()) panel.showQuality(before, now, change);
 }
-
-/** The first 64 bits of the SHA-256 of the triangles, as 32-bit little-endian words. */
-export async function fingerprintOf(indices: Uint32Array): Promise<string> {
-  const digest = await crypto.subtle.digest('SHA-256', indices as Uint32Array<ArrayBuffer>);
-  return Array.from(new Uint8Array(digest, 0, 8), (byte) => byte.toString(16).padStart(2, '0')).join('');
-}

@@ -4,7 +4,7 @@ import type { FileMesh, IndexedMesh } from 'edgeflip/files';
 import type { Quality } from './desk.ts';
 import { Office } from './engines.ts';
 import type { Kept } from './files.ts';
-import { number } from './numbers.ts';
+import { number } from '../shell/numbers.ts';
 import type { Read, Source } from './sources.ts';
 
 /** Bins of the histogram of angles: 5° each. */

@@ -12,9 +12,10 @@ import { Graphics } from './graphics.ts';
 import type { Successor } from './handover.ts';
 import { Jobs, showError, showProgress } from './jobs.ts';
 import type { Place } from './link.ts';
-import { fingerprintOf, measure } from './measure.ts';
+import { measure } from './measure.ts';
 import { Opening, type Opened } from './opening.ts';
 import { optionsFor } from './options.ts';
+import { digestOf, fingerprintOf } from '../shell/digest.ts';
 import { onTheme } from '../shell/theme.ts';
 import { Player } from './player.ts';
 import { Recovery } from './recovery.ts';
@@ -317,10 +318,10 @@ export class Page {
 
   /** Shows the mesh and the settings of the run again, after another choice has failed. */
   #showChoices(): void {
-    const [opened, settings] = [this.#opened, this.#settings];
-    if (!opened || !settings) return;
-    markSample(opened.spec ?? '');
-    this.#choices.set(settings);
+    const shown = this.shown;
+    if (!shown) return;
+    markSample(shown.opened.spec ?? '');
+    this.#choices.set(shown.settings);
   }
 
   /**
@@ -343,7 +344,7 @@ export class Page {
       }
       if (isOutdated()) return;
       const indices = await run.triangles();
-      const fingerprint = await fingerprintOf(indices);
+      const fingerprint = fingerprintOf(await digestOf(indices));
       if (isOutdated()) return;
       this.#display.showNumbers(shown, this.#standing, fingerprint);
       if (!run.states || this.edges !== 'coloured') this.#display.lookInto(shown, indices);

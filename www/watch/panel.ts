@@ -5,7 +5,7 @@ import type { IndexedMesh, Measures } from 'edgeflip/files';
 import { AnglesChart } from './charts.ts';
 import { element } from './controls.ts';
 import type { Quality } from './desk.ts';
-import { degrees, digits, ms, number } from './numbers.ts';
+import { degrees, digits, ms, number } from '../shell/numbers.ts';
 import type { Palette } from './palette.ts';
 import type { Run, Summary } from './run.ts';
 

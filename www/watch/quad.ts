@@ -22,7 +22,8 @@ export interface Quad {
   state: EdgeState | undefined;
 }
 
-const next = (h: number) => (h % 3 === 2 ? h - 2 : h + 1);
+/** The next half-edge of the same triangle. */
+export const next = (h: number) => (h % 3 === 2 ? h - 2 : h + 1);
 const subtract = (u: Point, v: Point): Point => [u[0] - v[0], u[1] - v[1], u[2] - v[2]];
 const dot = (u: Point, v: Point) => u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
 const cross = ([a, b, c]: Point, [x, y, z]: Point): Point => [b * z - c * y, c * x - a * z, a * y - b * x];
@@ -60,7 +61,12 @@ export function quadAt(mesh: IndexedMesh, indices: Uint32Array, states: Uint8Arr
   const normal = (x: Point, y: Point, z: Point) => cross(subtract(y, x), subtract(z, x));
   const state = states && EDGE_STATES[states[half]!];
   return {
-    ...{ half, a, b, opposite, angles, state },
+    half,
+    a,
+    b,
+    opposite,
+    angles,
+    state,
     bend: c && d ? between(normal(p, q, c), normal(q, p, d)) : 0,
     bendAfter: c && d ? between(normal(c, p, d), normal(d, q, c)) : 0,
   };

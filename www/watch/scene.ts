@@ -13,8 +13,6 @@ interface Backend {
   get(attribute: BufferAttribute): { buffer?: GPUBuffer };
 }
 
-const next = (h: number) => (h % 3 === 2 ? h - 2 : h + 1);
-
 export class Scene {
   readonly #renderer: WebGPURenderer;
   readonly #scene = new ThreeScene();
@@ -176,12 +174,6 @@ export class Scene {
   /** Where a vertex is in the picture, in pixels. */
   positionOf(vertex: number): [x: number, y: number] {
     return this.eye.project(new Vector3().fromBufferAttribute(this.#positions, vertex));
-  }
-
-  /** The vertices of the quad around a half-edge, in the picture. */
-  outline(indices: Uint32Array, half: number, opposite: readonly number[]): [number, number][] {
-    const [a, b] = [indices[half]!, indices[next(half)]!];
-    return [a, b, ...opposite].map((v) => this.positionOf(v));
   }
 
   /** Removes the canvas. The buffers of the run stay. */

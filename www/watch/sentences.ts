@@ -1,7 +1,7 @@
 /** What the page says of an edge and of a run. */
 
 import type { EdgeState, Reasons } from 'edgeflip';
-import { counted, number } from './numbers.ts';
+import { counted, number } from '../shell/numbers.ts';
 import type { Quad } from './quad.ts';
 import type { Run, Summary } from './run.ts';
 import type { Flips } from './desk.ts';

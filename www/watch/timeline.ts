@@ -3,7 +3,7 @@
 import { select } from 'd3-selection';
 import type { Flips } from './desk.ts';
 import { controls, element } from './controls.ts';
-import { number } from './numbers.ts';
+import { number } from '../shell/numbers.ts';
 
 /** Half of the knob of the range control, in pixels. */
 const EDGE = 9;
@@ -13,14 +13,14 @@ const WIDEST = 44;
 
 export class Timeline {
   readonly #svg = select(element('bars')).select<SVGSVGElement>('svg');
-  #last: [Flips[], number, boolean] = [[], 0, false];
+  #last: [readonly Flips[], number, boolean] = [[], 0, false];
 
   constructor() {
     new ResizeObserver(() => this.show(...this.#last)).observe(element('bars'));
   }
 
   /** Shows all iterations that are known, and the position `at`. `isWhole`: whether no more are coming. */
-  show(flips: Flips[], at: number, isWhole: boolean): void {
+  show(flips: readonly Flips[], at: number, isWhole: boolean): void {
     this.#last = [flips, at, isWhole];
     const { clientWidth: width, clientHeight: height } = element('bars');
     const [count, line] = [flips.length, height - 33];
@@ -30,20 +30,14 @@ export class Timeline {
     const each = count > 0 ? (width - 2 * EDGE) / count : 0;
     const wide = Math.max(1, Math.min(WIDEST, each * 0.6));
     this.#svg.selectAll('*').remove();
-    const track = (from: number, to: number, colour: string) =>
+    const track = (to: number, colour: string) =>
       this.#svg
         .append('path')
-        .attr('d', `M${x(from)} ${line}H${x(to)}`)
+        .attr('d', `M${EDGE} ${line}H${to}`)
         .attr('stroke', `var(--${colour})`)
         .attr('stroke-width', 2);
-    if (count === 0)
-      this.#svg
-        .append('path')
-        .attr('d', `M${EDGE} ${line}H${width - EDGE}`)
-        .attr('stroke', 'var(--hair)')
-        .attr('stroke-width', 2);
-    track(0, count, 'hair');
-    track(0, at, 'text');
+    track(width - EDGE, 'hair');
+    track(x(at), 'text');
     this.#svg
       .selectAll('rect')
       .data(flips)

@@ -1,9 +1,10 @@
 /** Updates the controls below the mesh, and the words on the page about the mesh and its run. */
 
 import type { Reasons } from 'edgeflip';
-import { controls, element, made } from './controls.ts';
+import { controls, element } from './controls.ts';
+import { made } from '../shell/elements.ts';
 import type { Flips } from './desk.ts';
-import { counted } from './numbers.ts';
+import { counted } from '../shell/numbers.ts';
 import type { Opened } from './opening.ts';
 import { ENGINES, reasons } from './panel.ts';
 import type { Run, Summary } from './run.ts';
@@ -33,7 +34,7 @@ export function showTransport(timeline: Timeline, standing: Standing): void {
   for (const control of [controls.compare, controls.scramble, controls.take]) control.disabled = !isIdle;
   const flips = ahead ?? run?.iterations ?? [];
   showPosition(at, flips.length, isIdle);
-  timeline.show([...flips], at, ahead !== undefined || run?.hasEnded === true);
+  timeline.show(flips, at, ahead !== undefined || run?.hasEnded === true);
   const [bold, rest] = run ? statusOf(run, summary, ahead) : ['', ''];
   element('status').replaceChildren(...(bold ? [made('b', '', bold), ' '] : []), rest);
   element('note').textContent = noteOn(standing);
