@@ -4,8 +4,9 @@
 const DRAWING = new Set(['FireAnimationFrame', 'Paint', 'PrePaint', 'Layerize', 'Commit', 'UpdateLayerTree']);
 
 /**
- * Starts a trace. `end` returns the tasks of the page's main thread since then: the duration and the CPU time of each
- * in milliseconds, whether it drew, whether it belongs to the page, and its five longest events.
+ * Starts a trace. `end` returns the tasks of the page's main thread since then: the end of each on the page's clock, its
+ * duration and its CPU time in milliseconds, whether it drew, whether it belongs to the page, and its five longest
+ * events.
  *
  * @param {import('playwright-core').Page} page
  */
@@ -23,7 +24,10 @@ export async function tasksOf(page) {
   });
   // This mark identifies the thread of the page.
   const mark = `the main thread of ${Math.random()}`;
-  await page.evaluate((name) => console.timeStamp(name), mark);
+  const markedAt = await page.evaluate((name) => {
+    console.timeStamp(name);
+    return performance.now();
+  }, mark);
   return {
     async end() {
       const complete = new Promise((resolve) => session.once('Tracing.tracingComplete', resolve));
@@ -52,7 +56,8 @@ export async function tasksOf(page) {
           name: [name, functionName, url?.split('/').at(-1)].filter(Boolean).join(' '),
         });
       }
-      return tasks.map(({ ms, busy, draws, parts }) => ({
+      return tasks.map(({ end, ms, busy, draws, parts }) => ({
+        end: markedAt + (end - marked.ts) / 1000,
         ms,
         busy,
         draws,
