@@ -90,10 +90,10 @@ fn no_temporary_file_stays() {
     let folder = Folder::new();
     let (input, output) = (folder.path("in.ply"), folder.file("out.glb", "old"));
     io::write(&input, &grid(400)).unwrap();
-    // The limit may take effect too late, so there are several tries.
-    let has_run_out = (0..20).any(|_| {
-        let mut command = command(&input, &output, &["--quiet", "--max-iterations", "0"]);
-        let mut child = command.stderr(Stdio::null()).spawn().unwrap();
+    // The limit may take effect too late, so there are many tries.
+    let has_run_out = (0..200).any(|_| {
+        let mut command = command(&input, &output, &["--backend", "cpu", "--quiet", "--max-iterations", "0"]);
+        let mut child = command.stderr(Stdio::piped()).spawn().unwrap();
         while !folder.names().iter().any(|name| name.starts_with(".edgeflip-")) {
             if child.try_wait().unwrap().is_some() {
                 return false;
@@ -102,8 +102,8 @@ fn no_temporary_file_stays() {
         // The program may have ended already.
         let none = Rlimit { current: Some(1), maximum: Some(1) };
         let _ = prlimit(Some(Pid::from_child(&child)), Resource::As, none);
-        let status = child.wait().unwrap();
-        assert!(matches!(status.code(), Some(0 | 1)), "{status}");
+        let Output { status, stderr, .. } = child.wait_with_output().unwrap();
+        assert!(matches!(status.code(), Some(0 | 1)), "{status}: {}", text(&stderr));
         assert_eq!(folder.names(), ["in.ply", "out.glb"]);
         status.code() == Some(1)
     });

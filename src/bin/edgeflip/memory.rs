@@ -7,7 +7,9 @@
 use crate::errors;
 use edgeflip::io::remove_temporary_files;
 use std::alloc::{GlobalAlloc, Layout, System};
+use std::fmt::Arguments;
 use std::io::{Cursor, Write};
+use std::panic;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
@@ -50,7 +52,7 @@ unsafe impl GlobalAlloc for Allocator {
 
 fn checked(pointer: *mut u8, bytes: usize) -> *mut u8 {
     if pointer.is_null() {
-        ran_out(bytes);
+        ran_out(format_args!("{bytes} more bytes are not available"));
     }
     if bytes >= LARGE {
         in_large_pages(pointer, bytes);
@@ -76,6 +78,14 @@ fn in_large_pages(_: *mut u8, _: usize) {}
 /// Sets the start of the line, which names the input file. Call it before any thread starts.
 pub fn prepare(input: &str) {
     let _ = START.set(format!("edgeflip: {input}: "));
+    // Rust panics, and then ends the process, if a new thread gets no memory for its signal handlers.
+    let hook = panic::take_hook();
+    panic::set_hook(Box::new(move |info| {
+        if info.location().is_some_and(|location| location.file().ends_with("stack_overflow.rs")) {
+            ran_out(format_args!("a new thread got no stack"));
+        }
+        hook(info);
+    }));
     #[cfg(all(target_os = "linux", target_env = "gnu"))]
     if limit().is_some() {
         // Each thread would reserve 64 MiB of addresses.
@@ -86,7 +96,7 @@ pub fn prepare(input: &str) {
 
 /// Ends the process, without an allocation and without destructors.
 #[cold]
-fn ran_out(bytes: usize) -> ! {
+fn ran_out(what: Arguments) -> ! {
     static IS_ENDING: AtomicBool = AtomicBool::new(false);
     if IS_ENDING.swap(true, Ordering::Relaxed) {
         // The process is ending already, mostly in another thread. If this thread has come here twice, it waits in vain
@@ -96,7 +106,7 @@ fn ran_out(bytes: usize) -> ! {
     }
     remove_temporary_files();
     let mut line = Cursor::new([0; 128]);
-    let _ = writeln!(line, "memory ran out: {bytes} more bytes are not available");
+    let _ = writeln!(line, "memory ran out: {what}");
     let length = line.position() as usize;
     errors::say(START.get().map_or(b"edgeflip: ", |start| start.as_bytes()));
     errors::say(&line.get_ref()[..length]);
