@@ -189,7 +189,10 @@ const levels = [
     // because it depends on timing.
     checks: [
       ...builtPage,
-      pageTests(['files', 'opening', 'buffer', 'controls', 'watch', 'explain', 'engines', 'paper', 'accessible'], 2),
+      pageTests(
+        ['files', 'opening', 'buffer', 'controls', 'watch', 'move', 'explain', 'engines', 'paper', 'accessible'],
+        2,
+      ),
       pageTests(['handover']),
     ],
     counts: true,

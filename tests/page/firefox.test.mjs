@@ -37,3 +37,20 @@ for (const { backend, engine, spec, name } of [
     await page.close();
   });
 }
+
+for (const backend of ['webgpu', 'cpu']) {
+  test(`a sheet moves on ${backend} in Firefox, and is Delaunay when it pauses`, async () => {
+    const page = await openEdgeflip(browser);
+    await page.chooseEngine(backend);
+    await page.page.evaluate(() => (document.getElementById('many').value = '2000'));
+    // In a narrow window, the gallery is behind the name.
+    await page.page.evaluate(() => document.querySelector('[data-spec="moving sheet"]').click());
+    await page.until(
+      'flips in the frames',
+      ({ state, facts }) => state === 'moving' && Number(facts['Flips a frame']) > 0,
+    );
+    await page.page.click('#play');
+    await page.until('no edge left', ({ status }) => /^Every edge is Delaunay/.test(status));
+    await page.close();
+  });
+}

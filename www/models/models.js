@@ -11,7 +11,7 @@ import initManifold from 'manifold-3d';
 import { MeshoptSimplifier } from 'meshoptimizer';
 import { createNoise2D } from 'simplex-noise';
 import { generate, readMesh, writeMesh } from '../../dist/files.js';
-import { SAMPLES } from './samples.js';
+import { MOVING, SAMPLES } from './samples.js';
 import { scrambled } from './scramble.js';
 import { wireframe } from './wireframe.js';
 
@@ -105,6 +105,16 @@ export async function writeModels(folder) {
     const mesh = meshes.get(drawn) ?? (await generate(drawn));
     writeFileSync(join(folder, thumb), wireframe(await coarse(mesh)));
   }
+  for (const { thumb, drawn, warp } of MOVING) {
+    writeFileSync(join(folder, thumb), wireframe(warped(await generate(drawn), warp)));
+  }
+}
+
+function warped({ positions, indices, dimension }, warp) {
+  const vertices = Array.from({ length: positions.length / dimension }, (_, v) =>
+    warp([...positions.slice(dimension * v, dimension * (v + 1))]),
+  );
+  return { positions: vertices.flat(), indices, dimension };
 }
 
 /** The mesh with few enough triangles for a thumbnail. */

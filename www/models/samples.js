@@ -107,6 +107,50 @@ export const SAMPLES = [
   },
 ];
 
+/**
+ * Meshes that move; `kind` is the motion. The thumbnail is of the family `drawn`, with each vertex moved by `warp`.
+ * @typedef {{ kind: 'sheet' | 'waves' | 'relax', spec: string, name: string, short: string, thumb: string,
+ *   drawn: string, warp: (vertex: number[]) => number[] }} MovingSample
+ */
+
+/** @type {readonly MovingSample[]} */
+export const MOVING = [
+  {
+    kind: 'sheet',
+    spec: 'moving sheet',
+    name: 'A sheet that twists',
+    short: 'Twisting',
+    thumb: thumb('sheet'),
+    drawn: 'random 9',
+    warp: ([x, y]) => {
+      const [u, v] = [x - 0.5, y - 0.5];
+      const angle = 1.4 * Math.exp(-8 * (u * u + v * v));
+      return [Math.cos(angle) * u - Math.sin(angle) * v, Math.sin(angle) * u + Math.cos(angle) * v];
+    },
+  },
+  {
+    kind: 'waves',
+    spec: 'moving waves',
+    name: 'A sphere with waves',
+    short: 'Waving',
+    thumb: thumb('waves'),
+    drawn: 'uvsphere 14',
+    warp: ([x, y, z]) => {
+      const wide = 1 + 0.3 * Math.sin(6 * z) * (1 - z * z);
+      return [wide * y, z, wide * x];
+    },
+  },
+  {
+    kind: 'relax',
+    spec: 'moving relax',
+    name: 'Points that even out',
+    short: 'Relaxing',
+    thumb: thumb('relax'),
+    drawn: 'random 10',
+    warp: (vertex) => vertex.map((at) => (2 * at - 1) * (0.25 + 0.75 * Math.abs(2 * at - 1))),
+  },
+];
+
 /** The sample that is shown when the page opens. */
 export const FIRST = 'models/bunny.ply';
 

@@ -74,6 +74,11 @@ export class Eye {
     this.fit();
   }
 
+  /** Whether the pointer turns or moves the camera. */
+  set isFree(isFree: boolean) {
+    if (this.#controls) this.#controls.enabled = isFree;
+  }
+
   /** Looks at the whole mesh, in the present direction. */
   fit(): void {
     const { width, height, free } = this.#frame();

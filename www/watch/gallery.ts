@@ -2,17 +2,19 @@
 
 import { element } from './controls.ts';
 import { made } from '../shell/elements.ts';
-import { FIRST, SAMPLES } from '../models/samples.js';
+import { BROUGHT, FIRST, MOVING, SAMPLES } from '../models/samples.js';
 
 /** Fills the gallery. `open` is called with the spec of the sample that is chosen. */
 export function makeGallery(open: (spec: string) => void): void {
   const gallery = element('gallery');
-  for (const sample of SAMPLES) {
+  const real = SAMPLES.filter(({ spec }) => spec.startsWith(BROUGHT));
+  for (const sample of [...real, ...MOVING, ...SAMPLES.slice(real.length)]) {
     const picture = made('span', 'thumb');
     picture.style.setProperty('--thumb', `url(${new URL(sample.thumb, document.baseURI)})`);
     const button = made('button', '', picture, sample.short);
     button.type = 'button';
-    button.title = [sample.name, sample.credit, sample.licence].filter(Boolean).join(', ');
+    const { credit, licence } = 'credit' in sample ? sample : {};
+    button.title = [sample.name, credit, licence].filter(Boolean).join(', ');
     button.dataset['spec'] = sample.spec;
     button.addEventListener('click', ({ detail }) => {
       open(sample.spec);

@@ -52,14 +52,14 @@ export class Graphics {
 /** What lies on the picture, and covers its sides. */
 function coveredBy(): Insets {
   const box = (id: string) => element(id).getBoundingClientRect();
-  const [stage, bars] = [box('stage'), box('bars')];
-  const isWide = bars.top < stage.bottom;
+  const [stage, status] = [box('stage'), box('status')];
+  const isWide = status.top < stage.bottom;
   const title = box('about').bottom - stage.top + 12;
   if (!isWide) {
     const top = box('choose').bottom - stage.top + 8;
     return { left: 16, right: 16, top, bottom: 16, title: top };
   }
-  const right = stage.right - box('legend-section').left + 24;
+  const right = stage.right - box('details').left + 24;
   const left = box('gallery').right - stage.left + 16;
-  return { left, right, top: 72, bottom: stage.bottom - bars.top + 48, title };
+  return { left, right, top: 72, bottom: stage.bottom - status.bottom + 48, title };
 }

@@ -3,6 +3,7 @@
 import './style.css';
 import './panel.css';
 import './overlays.css';
+import '../move/move.css';
 import { FORMATS } from 'edgeflip/files';
 import type { NamedMesh } from '../engines/index.ts';
 import { toggleTheme } from '../shell/theme.ts';
@@ -14,7 +15,8 @@ import { makeGallery } from './gallery.ts';
 import { listen } from './keys.ts';
 import { placeIn, type Place } from './link.ts';
 import { Page } from './page.ts';
-import { FIRST, SAMPLES } from '../models/samples.js';
+import { Moves } from '../move/moves.ts';
+import { FIRST, MOVING, SAMPLES } from '../models/samples.js';
 import type { OpenMesh } from './run.ts';
 import { chosen, dropped, sample, type Source } from './sources.ts';
 
@@ -25,10 +27,17 @@ const LOOKS: readonly EdgeLook[] = ['coloured', 'plain', 'none'];
 /** Starts the tool; call it once. Returns a function that returns the open mesh, as its run began. */
 export function start(): () => NamedMesh | undefined {
   const page = new Page();
+  const moves = new Moves(page);
   const open = (source: Source | undefined) => {
-    if (source) void page.open(source);
+    if (!source) return;
+    moves.leave();
+    void page.open(source);
   };
-  const openSample = (spec: string) => open(sample(spec));
+  const openSample = (spec: string) => {
+    const moving = movingOf(spec);
+    if (moving) void moves.show(moving);
+    else open(sample(spec));
+  };
   makeGallery(openSample);
   // A glTF file may have its buffers in `.bin` files.
   controls.file.accept = [...FORMATS, '.gz', '.bin'].join(',');
@@ -36,13 +45,20 @@ export function start(): () => NamedMesh | undefined {
     open(chosen([...(controls.file.files ?? [])]));
     controls.file.value = '';
   });
-  connectRun(page);
+  connectRun(page, moves);
   connectLimits(page);
   const say = (words: string) => (element('away-says').textContent = words);
-  connectTakeAway(page, say);
+  const ofRun = takingFrom(page);
+  const taking = () => (moves.isShown ? moves : ofRun);
+  connectTakeAway(taking, say);
   connectDrop(open);
-  connectKeys(page, openSample, say);
-  void begin(page);
+  connectKeys(
+    page,
+    openSample,
+    () => void taking().picture(),
+    () => void taking().link().then(say),
+  );
+  void begin(page, moves);
   return () => {
     const shown = page.shown;
     if (!shown) return undefined;
@@ -55,17 +71,24 @@ export function start(): () => NamedMesh | undefined {
   };
 }
 
+const movingOf = (spec: string | undefined) => MOVING.find((sample) => sample.spec === spec);
+
 /** Opens the mesh of the address, or a file that was chosen before this code was loaded, or the first sample. */
-async function begin(page: Page): Promise<void> {
+async function begin(page: Page, moves: Moves): Promise<void> {
   const file = chosen([...(controls.file.files ?? [])]);
   const place = file ? undefined : placeIn(location.hash);
   if (place) page.prefer(place);
-  await page.start(file ?? sample(place?.mesh ?? FIRST));
-  if (place) await goTo(page, place);
+  const moving = movingOf(place?.mesh);
+  await page.start(moving ? undefined : (file ?? sample(place?.mesh ?? FIRST)));
+  if (moving) await moves.show(moving);
+  else if (place) await goTo(page, place);
   addEventListener('hashchange', () => {
     const next = placeIn(location.hash);
     if (!next) return;
     page.prefer(next);
+    const moving = movingOf(next.mesh);
+    if (moving) return void moves.show(moving);
+    moves.leave();
     void page.open(sample(next.mesh)).then(() => goTo(page, next));
   });
 }
@@ -75,11 +98,14 @@ async function goTo(page: Page, { at, pose }: Place): Promise<void> {
   if (pose && page.scene) page.scene.eye.pose = pose;
 }
 
-function connectRun(page: Page): void {
-  controls.backend.addEventListener('change', () => void page.begin());
+function connectRun(page: Page, moves: Moves): void {
+  controls.backend.addEventListener('change', () => {
+    void page.begin();
+    void moves.restart();
+  });
   controls.reset.addEventListener('click', () => void page.seek(0));
   controls.back.addEventListener('click', () => void page.seekBy(-1));
-  controls.play.addEventListener('click', () => void page.play());
+  controls.play.addEventListener('click', () => void (moves.isShown ? moves.toggle() : page.play()));
   controls.step.addEventListener('click', () => void page.step());
   controls.slider.addEventListener('input', () => void page.seek(controls.slider.valueAsNumber));
   controls.compare.addEventListener('click', () => page.compare());
@@ -98,19 +124,36 @@ function connectLimits(page: Page): void {
   });
 }
 
-function connectTakeAway(page: Page, say: (words: string) => void): void {
+/** What can be taken away, of a run or of a mesh that moves. Links and code return what to say. */
+interface Taking {
+  save(extension?: string): Promise<void>;
+  picture(): Promise<void>;
+  link(): Promise<string>;
+  code(): Promise<string>;
+}
+
+function takingFrom(page: Page): Taking {
+  return {
+    save: (extension) => saveMesh(page, extension),
+    picture: () => savePicture(page),
+    link: () => copyLink(page),
+    code: () => copyCode(page),
+  };
+}
+
+function connectTakeAway(taking: () => Taking, say: (words: string) => void): void {
   const own = made('button', '', 'Same format');
   own.id = 'download';
-  own.addEventListener('click', () => void saveMesh(page));
+  own.addEventListener('click', () => void taking().save());
   const others = SAVED.map((extension) => {
     const button = made('button', '', extension.slice(1).toUpperCase());
-    button.addEventListener('click', () => void saveMesh(page, extension));
+    button.addEventListener('click', () => void taking().save(extension));
     return button;
   });
   element('formats').append(own, ...others);
-  controls.picture.addEventListener('click', () => void savePicture(page));
-  element('link').addEventListener('click', () => void copyLink(page).then(say));
-  element('code').addEventListener('click', () => void copyCode(page).then(say));
+  controls.picture.addEventListener('click', () => void taking().picture());
+  element('link').addEventListener('click', () => void taking().link().then(say));
+  element('code').addEventListener('click', () => void taking().code().then(say));
   element('away').addEventListener('toggle', () => say(''));
 }
 
@@ -130,11 +173,16 @@ function connectDrop(open: (source: Source | undefined) => void): void {
   });
 }
 
-function connectKeys(page: Page, openSample: (spec: string) => void, say: (words: string) => void): void {
+function connectKeys(
+  page: Page,
+  openSample: (spec: string) => void,
+  savePicture: () => void,
+  copyLink: () => void,
+): void {
   const specs = SAMPLES.map(({ spec }) => spec);
   const keys = element<HTMLDialogElement>('keys');
   element('help').addEventListener('click', () => keys.showModal());
-  const toggle = (id: string) => element(id).togglePopover();
+  const toggle = (id: string, opener: HTMLButtonElement) => opener.offsetParent && element(id).togglePopover();
   const slides = 'input, select';
   listen([
     {
@@ -182,12 +230,12 @@ function connectKeys(page: Page, openSample: (spec: string) => void, say: (words
       says: 'edges: coloured, plain, none',
       act: () => (page.edges = LOOKS[(LOOKS.indexOf(page.edges) + 1) % LOOKS.length]!),
     },
-    { keys: ['l'], label: 'L', says: 'limits', act: () => toggle('limits') },
+    { keys: ['l'], label: 'L', says: 'limits', act: () => toggle('limits', controls.limit) },
     { keys: ['x'], label: 'X', says: 'scramble', act: () => controls.scramble.click() },
     { keys: ['o'], label: 'O', says: 'open a mesh', act: () => controls.file.click() },
-    { keys: ['s'], label: 'S', says: 'save the mesh', act: () => toggle('away') },
-    { keys: ['p'], label: 'P', says: 'save a picture', act: () => void savePicture(page) },
-    { keys: ['k'], label: 'K', says: 'copy a link to this view', act: () => void copyLink(page).then(say) },
+    { keys: ['s'], label: 'S', says: 'save the mesh', act: () => toggle('away', controls.take) },
+    { keys: ['p'], label: 'P', says: 'save a picture', act: savePicture },
+    { keys: ['k'], label: 'K', says: 'copy a link to this view', act: copyLink },
     { keys: ['f'], label: 'F', says: 'fit the mesh to the view', act: () => page.scene?.eye.fit() },
     { keys: ['t'], label: 'T', says: 'light or dark', act: toggleTheme },
     { keys: ['?'], label: '?', says: 'these keys', act: () => keys.showModal() },

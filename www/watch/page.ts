@@ -6,7 +6,7 @@ import { controls, element } from './controls.ts';
 import { LOST } from './crash.ts';
 import type { Flips } from './desk.ts';
 import { Display, type EdgeLook } from './display.ts';
-import { beginRun, Cancelled, startWorker, waitsForGpu } from './engines.ts';
+import { beginRun, Cancelled, startWorker, waitsForGpu, type Gpu } from './engines.ts';
 import { markSample } from './gallery.ts';
 import { Graphics } from './graphics.ts';
 import type { Successor } from './handover.ts';
@@ -60,6 +60,7 @@ export class Page {
     redraw: () => this.redraw(),
     fail: (error) => this.#showFailure(error),
     pause: () => this.#player.pause(),
+    guest: () => this.#guest,
   });
   readonly #succession = new Succession({
     run: () => this.#run,
@@ -80,10 +81,13 @@ export class Page {
   #summary: Summary | undefined;
   /** The flips of all its iterations, once they have been counted. */
   #ahead: Flips[] | undefined;
+  /** Called with the reason when the GPU is lost while something else is shown in place of a run. */
+  #guest: ((reason: string) => void) | undefined;
   /** The number of calls of `#rest` so far. A call stops when a later call begins. */
   #rests = 0;
 
-  async start(source: Source): Promise<void> {
+  /** Starts the page, with a mesh unless something else is shown in place of a run. */
+  async start(source: Source | undefined): Promise<void> {
     this.#display.recolour();
     this.#display.panel.clear();
     onTheme(() => {
@@ -91,9 +95,24 @@ export class Page {
       void this.redraw();
     });
     this.#graphics.open();
-    const opening = this.open(source);
+    const opening = source && this.open(source);
     startWorker();
     await opening;
+  }
+
+  /** Ends the run, and shows nothing. `lost` is called with the reason when the GPU is lost meanwhile. */
+  leave(lost: (reason: string) => void): void {
+    this.#guest = lost;
+    this.#player.pause();
+    this.closeAll();
+    this.#display.looking.forget();
+    this.#graphics.scene?.clear();
+    this.#display.panel.clear();
+    this.#run?.free();
+    this.#opened?.office.close();
+    this.#run = this.#opened = this.#settings = this.#summary = this.#ahead = this.#source = undefined;
+    this.#jobs.cancel();
+    delete document.body.dataset['measured'];
   }
 
   /** Takes the engine and the limits of a link for the next mesh. */
@@ -104,6 +123,7 @@ export class Page {
   /** Opens a mesh, which replaces the open mesh, or the mesh that is being opened. */
   async open(source: Source): Promise<void> {
     this.#opening?.close();
+    this.#guest = undefined;
     const opening = new Opening(source, showProgress);
     this.#opening = opening;
     this.#source = source;
@@ -165,6 +185,7 @@ export class Page {
   }
 
   compare(): void {
+    if (!this.#run) return;
     this.#display.looking.close();
     this.#display.halves.show(!this.#display.halves.isShown);
   }
@@ -196,6 +217,15 @@ export class Page {
 
   get scene(): Scene | undefined {
     return this.#graphics.scene;
+  }
+
+  get gpu(): Gpu | string | undefined {
+    return this.#graphics.gpu;
+  }
+
+  /** Settles when `scene` and `gpu` have their final values. */
+  get ready(): Promise<void> {
+    return this.#graphics.ready;
   }
 
   /** Runs a long job that can be cancelled, and shows its error. */
@@ -313,6 +343,7 @@ export class Page {
   }
 
   #showTransport(): void {
+    if (this.#guest) return;
     this.#display.showTransport(this.#standing);
   }
 

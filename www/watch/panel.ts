@@ -161,7 +161,7 @@ function frozen(name: string, count: number): Record<string, string> {
 }
 
 /** Fills a description list; each value has its term as `data-fact`. */
-function facts(id: string, entries: Record<string, string>): void {
+export function facts(id: string, entries: Record<string, string>): void {
   const items = Object.entries(entries).map(([term, value]) => {
     const item = document.createElement('div');
     const [name, text] = [document.createElement('dt'), document.createElement('dd')];

@@ -20,6 +20,8 @@ export interface Patient {
   redraw(): Promise<void>;
   fail(error: unknown): void;
   pause(): void;
+  /** Who is shown in place of a run, and begins again by itself. */
+  guest(): ((reason: string) => void) | undefined;
 }
 
 export class Recovery {
@@ -34,6 +36,11 @@ export class Recovery {
   /** Repeats the present run. The triangles are the same, bit for bit. */
   async recover(reason: string, isOfPage: boolean): Promise<void> {
     const { graphics, jobs } = this.#patient;
+    const guest = this.#patient.guest();
+    if (guest) {
+      graphics.open();
+      return guest(reason);
+    }
     const { run, opening } = this.#patient.at();
     let hasRecovered = false;
     await jobs.attempt('The GPU was lost; starting again…', async (signal) => {

@@ -1,6 +1,6 @@
 /** Draws the mesh with three.js. With WebGPU, it draws from the buffer that the flips write. */
 
-import { BufferAttribute, Scene as ThreeScene, Vector3, WebGPURenderer } from 'three/webgpu';
+import { BufferAttribute, Scene as ThreeScene, Vector3, WebGPURenderer, type Object3D } from 'three/webgpu';
 import { writeLines } from './change.ts';
 import { Eye, type Insets } from './eye.ts';
 import { Layer, Paint } from './layer.ts';
@@ -32,6 +32,7 @@ export class Scene {
   /** The share of the picture's width that shows the input; `undefined` if only one mesh is shown. */
   #cut: number | undefined;
   #frame = 0;
+  #moving: Object3D | undefined;
 
   private constructor(renderer: WebGPURenderer, palette: Palette, insets: () => Insets, drawn: () => void) {
     this.#renderer = renderer;
@@ -86,6 +87,14 @@ export class Scene {
     this.#before.setPositions(this.#positions, dimension);
   }
 
+  /** Shows an object alone, which changes from frame to frame; `bounds` are points, 3 numbers each, that fit around it. */
+  showMoving(object: Object3D, bounds: Float32Array, dimension: 2 | 3): void {
+    this.setMesh(bounds, dimension);
+    this.#moving = object;
+    this.#scene.add(object);
+    this.lookAtAll();
+  }
+
   lookAtAll(): void {
     this.eye.lookAt(this.#positions.array as Float32Array, this.#dimension);
   }
@@ -119,6 +128,8 @@ export class Scene {
   /** Releases all buffers of the run, which may then be destroyed. */
   clear(): void {
     for (const layer of [this.#now, this.#before]) layer.clear((index) => this.#shared.has(index));
+    if (this.#moving) this.#scene.remove(this.#moving);
+    this.#moving = undefined;
     this.#cut = undefined;
     this.redraw();
   }
@@ -129,12 +140,17 @@ export class Scene {
     this.redraw();
   }
 
+  /** Draws now, in a frame of the page. */
+  draw(): void {
+    this.#draw();
+    this.#drawn();
+  }
+
   /** Draws again in the next frame of the page. */
   redraw(): void {
     this.#frame ||= requestAnimationFrame(() => {
       this.#frame = 0;
-      this.#draw();
-      this.#drawn();
+      this.draw();
     });
   }
 
@@ -214,6 +230,13 @@ export class Scene {
     this.#now.group.visible = true;
   }
 
+  /** Lets an attribute use a buffer directly. */
+  share<A extends BufferAttribute>(attribute: A, buffer: GPUBuffer, count: number): A {
+    this.#backend.get(attribute).buffer = buffer;
+    this.#shared.add(attribute);
+    return Object.assign(attribute, { count });
+  }
+
   /** The attribute for these indices. It uses a buffer directly, and copies an array to the GPU at each call. */
   #index(drawn: Drawn, count: number): BufferAttribute {
     let attribute = this.#attributes.get(drawn);
@@ -221,9 +244,7 @@ export class Scene {
       if (drawn instanceof Uint32Array) {
         attribute = new BufferAttribute(drawn, 1);
       } else {
-        attribute = Object.assign(new BufferAttribute(new Uint32Array(), 1), { count });
-        this.#backend.get(attribute).buffer = drawn;
-        this.#shared.add(attribute);
+        attribute = this.share(new BufferAttribute(new Uint32Array(), 1), drawn, count);
       }
       this.#attributes.set(drawn, attribute);
     } else if (!this.#shared.has(attribute)) {

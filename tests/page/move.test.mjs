@@ -1,0 +1,165 @@
+// Tests the meshes that move on the page in Chromium, on every engine: what is saved is Delaunay, points can be dragged,
+// and a run takes their place again.
+
+import assert from 'node:assert/strict';
+import { after, before, test } from 'node:test';
+import { FlipSession } from 'edgeflip';
+import { MOVING } from '../../www/models/samples.js';
+import { startChromium } from '../browsers.mjs';
+import { assertSameMesh, expected, first, openEdgeflip, tidyUp } from './page.mjs';
+
+let browser;
+before(async () => (browser = await startChromium()));
+after(tidyUp);
+
+const ENGINES = { webgpu: 'WebGPU', webgl2: 'WebGL2, in a worker', cpu: 'CPU, in a worker' };
+const BETAS = { sheet: 10, waves: 30, relax: 10 };
+
+const moving = (page) => page.until('a mesh that moves', ({ state }) => state === 'moving');
+
+/** Shows a mesh of about 2,000 triangles that moves. */
+async function show(page, kind, backend) {
+  await page.chooseEngine(backend);
+  await page.page.evaluate(() => (document.getElementById('many').value = '2000'));
+  await page.choose('sample', `moving ${kind}`);
+  return moving(page);
+}
+
+/** Pauses, and returns what is shown then. */
+async function pauseAll(page) {
+  await page.page.click('#play');
+  return page.until('no edge left', ({ state, status }) => state === 'paused' && /^(Every|Paused)/.test(status));
+}
+
+/** The number of edges of a saved mesh that can flip, and that are kept. */
+async function left({ positions, indices, dimension }, kind) {
+  const mesh = { positions, indices, dimension };
+  const session = await FlipSession.create(mesh, { backend: 'cpu', maxNormalAngle: BETAS[kind] });
+  const { flips, remaining } = await session.run();
+  session.free();
+  return { flips, kept: Object.values(remaining).reduce((sum, count) => sum + count, 0) };
+}
+
+for (const [backend, engine] of Object.entries(ENGINES)) {
+  test(`each mesh moves on ${backend}, and is Delaunay when it pauses`, async () => {
+    const page = await openEdgeflip(browser);
+    for (const { kind, name } of MOVING) {
+      await show(page, kind, backend);
+      assert.equal(await page.page.textContent('#caption'), name);
+      const { facts } = await page.until(
+        'flips in the frames',
+        ({ facts, status }) => Number(facts['Flips a frame']) > 0 && /flips a frame, \d+ frames? a second/.test(status),
+      );
+      assert.equal(facts.Engine, engine);
+      const one = await page.picture();
+      await page.until(
+        'another frame',
+        ({ facts: next }) => next['From frame to frame'] !== facts['From frame to frame'],
+      );
+      assert.ok(one.differsFrom(await page.picture()) > 0.01, `${kind}: the picture stays`);
+      const seen = await pauseAll(page);
+      const mesh = await page.download();
+      assert.equal(mesh.indices.length / 3, Number(facts.Triangles.replaceAll(',', '')));
+      const { flips, kept } = await left(mesh, kind);
+      assert.deepEqual([flips, `${kept}`], [0, seen.facts['Not Delaunay, and cannot flip']], kind);
+      assert.equal(seen.facts['Left for the next frame'], '0');
+      // A second picture of the same moment.
+      assert.equal((await page.picture()).differsFrom(await page.picture()), 0, `${kind}: the picture moves`);
+    }
+    await page.close();
+  });
+
+  test(`a point is dragged on ${backend}, and the mesh stays Delaunay`, async () => {
+    const page = await openEdgeflip(browser);
+    await show(page, 'relax', backend);
+    await pauseAll(page);
+    const before = await page.download();
+    const box = await (await page.page.$('#view')).boundingBox();
+    const middle = await page.page.evaluate(() => {
+      const side = document.querySelector('.side').getBoundingClientRect().left - 24;
+      const gallery = document.getElementById('gallery').getBoundingClientRect().right + 16;
+      return (side + gallery) / 2;
+    });
+    const y = box.y + box.height * 0.45;
+    await page.page.mouse.move(middle, y);
+    await page.page.mouse.down();
+    for (let i = 1; i <= 10; i++) {
+      await page.page.mouse.move(middle + 6 * i, y);
+      await page.page.waitForTimeout(100);
+    }
+    await page.page.mouse.up();
+    await page.until('no edge left', ({ facts }) => facts['Left for the next frame'] === '0');
+    await page.page.waitForTimeout(500);
+    const after = await page.download();
+    const ways = Array.from({ length: before.positions.length / 2 }, (_, v) =>
+      [0, 1].map((k) => after.positions[2 * v + k] - before.positions[2 * v + k]),
+    );
+    // The longest way leads to the right.
+    const [longest] = ways.sort(([ax, ay], [bx, by]) => Math.hypot(bx, by) - Math.hypot(ax, ay));
+    assert.ok(longest[0] > 0.05, `the longest way is ${longest}`);
+    assert.equal((await left(after, 'relax')).flips, 0);
+    await page.close();
+  });
+}
+
+test('a link opens a mesh that moves, and a run takes its place', async () => {
+  const page = await openEdgeflip(browser);
+  await page.page.context().grantPermissions(['clipboard-read', 'clipboard-write']);
+  const clipboard = () => page.page.evaluate(() => navigator.clipboard.readText());
+  await show(page, 'waves', 'cpu');
+  await page.page.click('#take');
+  await page.page.click('#link');
+  await page.page.locator('#away-says', { hasText: 'Link copied' }).waitFor();
+  const link = await clipboard();
+  await page.page.click('#code');
+  await page.page.locator('#away-says', { hasText: 'Code copied' }).waitFor();
+  const code = (await clipboard()).replace(/^import.*$/gm, '');
+  const { generate } = await import('edgeflip/files');
+  const run = new Function('FlipSession', 'generate', `return (async () => { ${code} return triangles; })()`);
+  assert.equal((await run(FlipSession, generate)).length, 3 * 2048);
+  await page.page.keyboard.press('Escape');
+
+  await page.choose('sample', 'models/bunny.ply');
+  const seen = await page.rest();
+  const want = await expected(first.path, first.maxNormalAngle);
+  assert.equal(seen.facts.Fingerprint, want.fingerprints[0]);
+  assert.equal(await page.page.isVisible('#bars'), true);
+  assertSameMesh(await page.download(), want.mesh, 'of the bunny');
+
+  await page.page.goto('about:blank');
+  await page.page.goto(link);
+  await moving(page);
+  assert.equal(await page.page.textContent('#caption'), 'A sphere with waves');
+  assert.equal(await page.page.isVisible('#bars'), false);
+  await page.close();
+});
+
+test('with reduced motion, a mesh moves only when it is played', async () => {
+  const page = await openEdgeflip(browser);
+  await page.page.emulateMedia({ reducedMotion: 'reduce' });
+  await page.choose('sample', 'moving sheet');
+  await page.until('a still', ({ state, facts }) => state === 'paused' && facts.Triangles === '19,602');
+  await page.page.evaluate(() => document.activeElement.blur());
+  await page.page.keyboard.press('Space');
+  await moving(page);
+  await page.close();
+});
+
+test('a mesh that moves begins again after the GPU was lost', async () => {
+  const page = await openEdgeflip(browser, () => {
+    const { requestDevice } = GPUAdapter.prototype;
+    window.devices = [];
+    GPUAdapter.prototype.requestDevice = async function (...args) {
+      const device = await requestDevice.apply(this, args);
+      window.devices.push(device);
+      return device;
+    };
+  });
+  await show(page, 'sheet', 'webgpu');
+  await page.page.evaluate(() => window.devices.at(-1).destroy());
+  const { error } = await page.until('a message', ({ error, state }) => error !== '' && state === 'moving');
+  assert.match(error, /The GPU was lost \(.*\)\. The mesh began again\./);
+  const { facts } = await page.until('frames', ({ facts }) => Number(facts['Flips a frame']) > 0);
+  assert.equal(facts.Engine, 'WebGPU');
+  await page.close();
+});

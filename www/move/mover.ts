@@ -1,0 +1,25 @@
+/** What moves a mesh, with either engine. */
+
+import type { Counters } from 'edgeflip';
+import type { IndexedMesh } from 'edgeflip/files';
+import type { Step } from './motions.ts';
+import type { Skin } from './skin.ts';
+
+export interface Mover {
+  /** The engine and the adapter, for people. */
+  readonly engine: string;
+  readonly skin: Skin;
+  /** Moves the vertices by a frame, flips edges, and updates what is drawn. */
+  frame(step: Step): Promise<void>;
+  /** Resolves when the device has done all frames. */
+  settled(): Promise<void>;
+  /** Flips what the budgets of the frames have left. */
+  finish(): Promise<void>;
+  counters(): Promise<Counters>;
+  /** The present mesh. */
+  mesh(): Promise<IndexedMesh>;
+  free(): void;
+}
+
+/** Seconds before the start: no edge has flipped since. */
+export const LONG_AGO = -1000;
