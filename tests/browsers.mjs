@@ -88,7 +88,11 @@ export async function startFirefox() {
     headless: false,
     protocolTimeout: 0, // tests have their own time limits
     env: needsDisplay ? { ...process.env, DISPLAY: await display() } : process.env,
-    extraPrefsFirefox: { 'dom.webgpu.enabled': true, 'gfx.webgpu.ignore-blocklist': true },
+    extraPrefsFirefox: {
+      'dom.webgpu.enabled': true,
+      'gfx.webgpu.ignore-blocklist': true,
+      'dom.serviceWorkers.enabled': false,
+    },
   });
   closers.push(() => browser.close());
   return browser;
@@ -149,7 +153,8 @@ export async function serve(folder, headers = {}) {
  * @returns {Promise<{ page: Awaited<ReturnType<B['newPage']>>, problems: string[] }>}
  */
 export async function openPage(browser, address) {
-  const page = await browser.newPage();
+  // Each page would load all files again for visits without a network.
+  const page = await browser.newPage({ serviceWorkers: 'block' });
   const problems = [];
   page.on('console', (message) => {
     if (['error', 'warn', 'warning'].includes(message.type())) problems.push(`${message.type()}: ${message.text()}`);

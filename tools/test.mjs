@@ -190,7 +190,19 @@ const levels = [
     checks: [
       ...builtPage,
       pageTests(
-        ['files', 'opening', 'buffer', 'controls', 'watch', 'move', 'explain', 'engines', 'paper', 'accessible'],
+        [
+          'files',
+          'opening',
+          'buffer',
+          'controls',
+          'watch',
+          'move',
+          'offline',
+          'explain',
+          'engines',
+          'paper',
+          'accessible',
+        ],
         2,
       ),
       pageTests(['handover']),

@@ -1,11 +1,12 @@
 // Serves the page during development, and builds it into target/www: static files that any server can serve.
 
 import { createHash } from 'node:crypto';
-import { existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { existsSync, mkdirSync, readdirSync, readFileSync, rmSync, statSync, writeFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
+import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import subsetFont from 'subset-font';
-import { defineConfig } from 'vite';
+import { build, defineConfig } from 'vite';
 
 const at = (path) => fileURLToPath(new URL(path, import.meta.url));
 
@@ -20,11 +21,15 @@ if (!existsSync(font)) {
   writeFileSync(font, subset);
 }
 
+const hashOf = (...paths) => {
+  const hash = createHash('sha256');
+  for (const path of paths) hash.update(readFileSync(path));
+  return hash.digest('hex');
+};
+
 // They take seconds, so they are made again only after a change of what makes them.
 const sources = ['models.js', 'samples.js', 'scramble.js', 'wireframe.js'].map((name) => at(`models/${name}`));
-const made = createHash('sha256');
-for (const path of [...sources, at('../package-lock.json')]) made.update(readFileSync(path));
-const [stamp, mark] = [made.digest('hex'), at('../target/public.stamp')];
+const [stamp, mark] = [hashOf(...sources, at('../package-lock.json')), at('../target/public.stamp')];
 if (!existsSync(mark) || readFileSync(mark, 'utf8') !== stamp) {
   rmSync(at('../target/public'), { recursive: true, force: true });
   await (await import('./models/models.js')).writeModels(at('../target/public'));
@@ -55,6 +60,26 @@ function serveExamples({ middlewares }) {
   });
 }
 
+const out = at('../target/www');
+
+/** Builds the service worker, with the list of all files of the page. */
+async function writeServiceWorker() {
+  const paths = readdirSync(out, { recursive: true }).filter((path) => statSync(join(out, path)).isFile());
+  const files = paths.map((path) => ({
+    url: path.replaceAll('\\', '/'),
+    // The names of the other files change with their content.
+    revision: path.startsWith('assets') ? null : hashOf(join(out, path)),
+  }));
+  const lib = { entry: at('shell/offline.ts'), formats: ['iife'], name: 'offline', fileName: () => 'offline.js' };
+  await build({
+    configFile: false,
+    publicDir: false,
+    logLevel: 'warn',
+    define: { FILES: JSON.stringify(files), 'process.env.NODE_ENV': '"production"' },
+    build: { outDir: out, emptyOutDir: false, lib },
+  });
+}
+
 export default defineConfig({
   root: at('.'),
   base: './',
@@ -71,11 +96,12 @@ export default defineConfig({
   plugins: [
     { name: 'policy-while-working', apply: 'serve', transformIndexHtml: whileWorking },
     { name: 'examples', apply: 'serve', configureServer: serveExamples },
+    { name: 'offline', apply: 'build', closeBundle: writeServiceWorker },
   ],
   server: { headers: headersWith(whileWorking(policy)), fs: { allow: [at('..')] } },
   preview: { headers: headersWith(policy) },
   build: {
-    outDir: at('../target/www'),
+    outDir: out,
     emptyOutDir: true,
     target: 'es2022',
     // The first browsers with `light-dark()`.

@@ -12,6 +12,8 @@ const part = <T extends HTMLElement>(selector: string): T => {
 };
 
 const [live, liveText, playAnyway] = [part('#live'), part('#live-text'), part('#play-anyway')];
+/** Milliseconds from the start of the tool until the rest of the page is loaded. */
+const PATIENCE = 5000;
 const stillness = matchMedia('(prefers-reduced-motion: reduce)');
 
 /** The first view, once it has been shown. */
@@ -50,11 +52,17 @@ function follow(): void {
   void show();
 }
 
+/** Loads all files of the page, for visits without a network. Browsers allow it over HTTPS and on this computer. */
+function keepOffline(): void {
+  navigator.serviceWorker?.register(new URL('offline.js', document.baseURI)).catch(() => {});
+}
+
 async function show(): Promise<void> {
   if (document.body.dataset.view === 'watch') {
     void hero?.then((hero) => hero.stop());
     tool ??= import('../watch/main.ts').then(({ start }) => start());
     openMesh = await tool;
+    if (import.meta.env.PROD) setTimeout(keepOffline, PATIENCE);
   } else {
     try {
       hero ??= makeHero();

@@ -1,0 +1,64 @@
+// Tests the page in Chromium on a server that sends no headers, in a folder of it: at the second visit it is
+// cross-origin isolated, and it needs no network.
+
+import assert from 'node:assert/strict';
+import { cpSync } from 'node:fs';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { fileURLToPath } from 'node:url';
+import { generate } from 'edgeflip/files';
+import { openPage, serve, startChromium } from '../browsers.mjs';
+import { EdgeflipPage, expected, fingerprintOf, first, folder, meshFile, tidyUp } from './page.mjs';
+
+let browser;
+before(async () => (browser = await startChromium()));
+after(tidyUp);
+
+test('after a visit to the tool, the page needs no network and no headers', async () => {
+  cpSync(fileURLToPath(new URL('../../target/www', import.meta.url)), join(folder, 'some/where'), { recursive: true });
+  const address = `${await serve(folder)}some/where/`;
+  // A context of its own: other pages have no service worker.
+  const context = await browser.newContext();
+  const { page, problems } = await openPage(context, `${address}#watch`);
+  const edgeflip = new EdgeflipPage(page, problems);
+  await edgeflip.rest();
+  assert.equal(await page.evaluate(() => crossOriginIsolated), false);
+  const scope = await page.evaluate(async () => (await navigator.serviceWorker.ready).scope);
+  assert.equal(scope, address);
+
+  await context.setOffline(true);
+  await page.reload();
+  await edgeflip.rest();
+  assert.equal(await page.evaluate(() => crossOriginIsolated), true);
+  const want = await expected(first.path, first.maxNormalAngle);
+  assert.equal((await edgeflip.playToEnd()).facts.Fingerprint, want.facts.Fingerprint);
+
+  for (const [backend, engine] of [
+    ['webgpu', 'WebGPU'],
+    ['webgl2', 'WebGL2, in a worker'],
+  ]) {
+    const path = await meshFile('random 24', `${backend}.off`);
+    const { facts } = await expected(path);
+    await edgeflip.open(path);
+    await edgeflip.chooseEngine(backend);
+    const end = await edgeflip.playToEnd();
+    assert.deepEqual([end.facts.Engine, end.facts.Fingerprint], [engine, facts.Fingerprint]);
+  }
+  await edgeflip.chooseEngine('cpu');
+  await edgeflip.choose('sample', 'shear 16');
+  await edgeflip.until('the sample', ({ caption }) => caption === 'shear 16');
+  const seen = await edgeflip.rest();
+  assert.equal(seen.facts.Fingerprint, fingerprintOf((await generate('shear 16')).indices));
+  await edgeflip.choose('sample', 'models/suzi.glb');
+  await edgeflip.until('a model', ({ caption }) => caption === 'suzi.glb');
+  await edgeflip.rest();
+  for (const [section, part] of [
+    ['explain', '.explain-handle'],
+    ['engines', '#engines canvas, #engines svg'],
+    ['paper', '#paper tbody tr'],
+  ]) {
+    await page.evaluate((id) => document.getElementById(id).scrollIntoView(), section);
+    await page.locator(part).first().waitFor({ state: 'attached' });
+  }
+  await edgeflip.close();
+});
