@@ -150,11 +150,14 @@ export async function serve(folder, headers = {}) {
  * @template {import('playwright-core').Browser | import('puppeteer-core').Browser} B
  * @param {B} browser
  * @param {string} address
+ * @param {boolean} isKept - Whether the page may keep its files for visits without a network. Each page would load all
+ *   of them again.
  * @returns {Promise<{ page: Awaited<ReturnType<B['newPage']>>, problems: string[] }>}
  */
-export async function openPage(browser, address) {
-  // Each page would load all files again for visits without a network.
-  const page = await browser.newPage({ serviceWorkers: 'block' });
+export async function openPage(browser, address, isKept = false) {
+  const page = await browser.newPage();
+  // Firefox has a setting for this.
+  if (!isKept) await page.addInitScript?.(() => delete Navigator.prototype.serviceWorker);
   const problems = [];
   page.on('console', (message) => {
     if (['error', 'warn', 'warning'].includes(message.type())) problems.push(`${message.type()}: ${message.text()}`);

@@ -17,16 +17,14 @@ after(tidyUp);
 test('after a visit to the tool, the page needs no network and no headers', async () => {
   cpSync(fileURLToPath(new URL('../../target/www', import.meta.url)), join(folder, 'some/where'), { recursive: true });
   const address = `${await serve(folder)}some/where/`;
-  // A context of its own: other pages have no service worker.
-  const context = await browser.newContext();
-  const { page, problems } = await openPage(context, `${address}#watch`);
+  const { page, problems } = await openPage(browser, `${address}#watch`, true);
   const edgeflip = new EdgeflipPage(page, problems);
   await edgeflip.rest();
   assert.equal(await page.evaluate(() => crossOriginIsolated), false);
   const scope = await page.evaluate(async () => (await navigator.serviceWorker.ready).scope);
   assert.equal(scope, address);
 
-  await context.setOffline(true);
+  await page.context().setOffline(true);
   await page.reload();
   await edgeflip.rest();
   assert.equal(await page.evaluate(() => crossOriginIsolated), true);

@@ -1,6 +1,8 @@
 /** The tool: connects its controls and opens its first mesh. */
 
 import './style.css';
+import './transport.css';
+import './gallery.css';
 import './panel.css';
 import './overlays.css';
 import '../move/move.css';
@@ -94,7 +96,7 @@ async function begin(page: Page, moves: Moves): Promise<void> {
 }
 
 async function goTo(page: Page, { at, pose }: Place): Promise<void> {
-  if (at > 0) await page.seek(at);
+  if (at > 0) await page.player.seek(at);
   if (pose && page.scene) page.scene.eye.pose = pose;
 }
 
@@ -103,11 +105,11 @@ function connectRun(page: Page, moves: Moves): void {
     void page.begin();
     void moves.restart();
   });
-  controls.reset.addEventListener('click', () => void page.seek(0));
-  controls.back.addEventListener('click', () => void page.seekBy(-1));
-  controls.play.addEventListener('click', () => void (moves.isShown ? moves.toggle() : page.play()));
-  controls.step.addEventListener('click', () => void page.step());
-  controls.slider.addEventListener('input', () => void page.seek(controls.slider.valueAsNumber));
+  controls.reset.addEventListener('click', () => void page.player.seek(0));
+  controls.back.addEventListener('click', () => void page.player.seekBy(-1));
+  controls.play.addEventListener('click', () => void (moves.isShown ? moves.toggle() : page.player.toggle()));
+  controls.step.addEventListener('click', () => void page.player.step());
+  controls.slider.addEventListener('input', () => void page.player.seek(controls.slider.valueAsNumber));
   controls.compare.addEventListener('click', () => page.compare());
   controls.scramble.addEventListener('click', () => void scramble(page));
   element('cancel').addEventListener('click', () => page.cancel());
@@ -197,7 +199,7 @@ function connectKeys(
       label: '← →',
       says: 'one iteration back, on',
       keptBy: slides,
-      act: () => void page.seekBy(-1),
+      act: () => void page.player.seekBy(-1),
     },
     { keys: ['ArrowRight'], keptBy: slides, act: () => controls.step.click() },
     {
@@ -205,9 +207,9 @@ function connectKeys(
       label: 'Home End',
       says: 'the input, the last state',
       keptBy: slides,
-      act: () => void page.seek(0),
+      act: () => void page.player.seek(0),
     },
-    { keys: ['End'], keptBy: slides, act: () => void page.seek(Number(controls.slider.max)) },
+    { keys: ['End'], keptBy: slides, act: () => void page.player.seek(Number(controls.slider.max)) },
     {
       keys: ['1', '2', '3', '4', '5', '6', '7', '8', '9'],
       label: '1 – 9',

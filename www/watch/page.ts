@@ -2,49 +2,46 @@
 
 import { EdgeflipError } from 'edgeflip';
 import { Choices, type Settings } from './choices.ts';
-import { controls, element } from './controls.ts';
 import { LOST } from './crash.ts';
 import type { Flips } from './desk.ts';
 import { Display, type EdgeLook } from './display.ts';
-import { beginRun, Cancelled, startWorker, waitsForGpu, type Gpu } from './engines.ts';
+import { Cancelled, startWorker, type Gpu } from './engines.ts';
 import { markSample } from './gallery.ts';
 import { Graphics } from './graphics.ts';
 import type { Successor } from './handover.ts';
 import { Jobs, showError, showProgress } from './jobs.ts';
 import type { Place } from './link.ts';
-import { measure } from './measure.ts';
 import { Opening, type Opened } from './opening.ts';
-import { optionsFor } from './options.ts';
-import { digestOf, fingerprintOf } from '../shell/digest.ts';
 import { onTheme } from '../shell/theme.ts';
 import { Player } from './player.ts';
 import { Recovery } from './recovery.ts';
+import { Rest } from './rest.ts';
 import type { Run, Summary } from './run.ts';
 import type { Scene } from './scene.ts';
-import { statusOf } from './sentences.ts';
 import type { Shown } from './shown.ts';
 import type { Source } from './sources.ts';
+import { flipsAhead, startRun } from './starting.ts';
 import { Succession } from './succession.ts';
 import type { Standing } from './transport.ts';
 
-/** The most triangles of a mesh whose iterations are counted before they are shown. */
-const AHEAD = 200_000;
-/** Milliseconds without a change after which a state is measured. */
-const QUIET = 150;
-
 export class Page {
-  readonly #player = new Player(
-    (run, isShown) => this.#forward(run, isShown),
-    () => {
+  readonly player: Player = new Player({
+    run: () => this.#run,
+    ahead: () => this.#ahead,
+    isBusy: () => this.#jobs.isBusy,
+    redraw: () => this.redraw(),
+    began: () => this.#showTransport(),
+    paused: () => {
       this.#showTransport();
-      void this.#rest();
+      void this.#rest.begin();
     },
-  );
+    fail: (error) => this.#showFailure(error),
+  });
   readonly #graphics: Graphics = new Graphics(
     (reason) => void this.#recovery.recover(reason, true),
     () => this.#display.looking.draw(),
   );
-  readonly #display: Display = new Display(this.#graphics, (at) => void this.seek(at));
+  readonly #display: Display = new Display(this.#graphics, (at) => void this.player.seek(at));
   readonly #jobs = new Jobs(
     () => this.#showTransport(),
     () => this.#endOfJob(),
@@ -59,15 +56,24 @@ export class Page {
     open: (source) => this.open(source),
     redraw: () => this.redraw(),
     fail: (error) => this.#showFailure(error),
-    pause: () => this.#player.pause(),
+    pause: () => this.player.pause(),
     guest: () => this.#guest,
   });
   readonly #succession = new Succession({
     run: () => this.#run,
     isIdle: () =>
-      !this.#jobs.isBusy && this.#player.isAtRest && document.body.dataset['measured'] === `${this.#run?.at}`,
+      !this.#jobs.isBusy && this.player.isAtRest && document.body.dataset['measured'] === `${this.#run?.at}`,
     succeed: (next) => this.#succeed(next),
-    tell: () => void (this.#player.isPlaying || this.#rest()),
+    tell: () => void (this.player.isPlaying || this.#rest.begin()),
+  });
+  readonly #rest: Rest = new Rest({
+    display: this.#display,
+    standing: () => this.#standing,
+    shown: () => this.shown,
+    sum: (summary) => (this.#summary = summary),
+    isPlain: () => this.edges !== 'coloured',
+    handOver: () => void this.#succession.handOver(),
+    fail: (error) => this.#showFailure(error),
   });
   /** The source of the last mesh that the user chose. */
   #source: Source | undefined;
@@ -83,8 +89,6 @@ export class Page {
   #ahead: Flips[] | undefined;
   /** Called with the reason when the GPU is lost while something else is shown in place of a run. */
   #guest: ((reason: string) => void) | undefined;
-  /** The number of calls of `#rest` so far. A call stops when a later call begins. */
-  #rests = 0;
 
   /** Starts the page, with a mesh unless something else is shown in place of a run. */
   async start(source: Source | undefined): Promise<void> {
@@ -103,7 +107,7 @@ export class Page {
   /** Ends the run, and shows nothing. `lost` is called with the reason when the GPU is lost meanwhile. */
   leave(lost: (reason: string) => void): void {
     this.#guest = lost;
-    this.#player.pause();
+    this.player.pause();
     this.closeAll();
     this.#display.looking.forget();
     this.#graphics.scene?.clear();
@@ -151,37 +155,6 @@ export class Page {
 
   cancel(): void {
     this.#jobs.cancel();
-  }
-
-  async play(): Promise<void> {
-    if (this.#player.isPlaying) return this.#player.pause();
-    if (!this.#run) return;
-    const playing = this.#player.play(this.#run, () => Number(controls.speed.value));
-    this.#showTransport();
-    await playing;
-  }
-
-  async step(): Promise<void> {
-    if (this.#run) await this.#player.step(this.#run);
-  }
-
-  /** Shows the state after `at` iterations, and first runs those that are missing. */
-  async seek(at: number): Promise<void> {
-    const run = this.#run;
-    if (this.#jobs.isBusy || !run) return;
-    const newest = run.iterations.length;
-    run.seek(Math.max(0, Math.min(at, newest)));
-    if (at > newest && !run.hasEnded) {
-      const reaching = this.#player.reach(run, at);
-      this.#showTransport();
-      return reaching;
-    }
-    this.#player.pause();
-    await this.redraw();
-  }
-
-  async seekBy(iterations: number): Promise<void> {
-    if (this.#run) await this.seek(this.#run.at + iterations);
   }
 
   compare(): void {
@@ -239,7 +212,7 @@ export class Page {
     if (!shown) return;
     this.#display.looking.forget();
     this.#display.showNumbers(shown, this.#standing);
-    if (!this.#player.isPlaying) void this.#rest();
+    if (!this.player.isPlaying) void this.#rest.begin();
     try {
       await this.#display.draw(shown);
     } catch (error) {
@@ -250,25 +223,10 @@ export class Page {
   /** Starts a run. If this fails, the previous run stays. */
   async #begin(opened: Opened, signal: AbortSignal): Promise<void> {
     const { settings } = this.#choices;
-    const { mesh } = opened;
-    const options = await optionsFor(opened, settings);
-    if (waitsForGpu(mesh, settings.backend)) await this.#graphics.ready;
-    signal.throwIfAborted();
-    const compiles =
-      settings.backend === 'webgpu' &&
-      typeof this.#graphics.gpu === 'object' &&
-      !this.#graphics.gpu.kernels.areReadyFor(mesh);
-    if (compiles) showProgress('Compiling the kernels for the GPU…');
-    const run = await beginRun(mesh, options, this.#graphics.gpu, signal);
-    // The scene opens together with the GPU.
-    await this.#graphics.ready;
-    if (signal.aborted) {
-      run.free();
-      throw signal.reason;
-    }
+    const { run, options } = await startRun(opened, settings, this.#graphics, signal);
     const isNew = this.#opened !== opened;
     // Scrambled triangles have the same vertices, and the camera stays.
-    const isOther = this.#opened?.mesh.positions !== mesh.positions;
+    const isOther = this.#opened?.mesh.positions !== opened.mesh.positions;
     this.#graphics.scene?.clear();
     this.#run?.free();
     this.#run = run;
@@ -280,18 +238,13 @@ export class Page {
     this.#ahead = undefined;
     this.#display.begin(opened, isOther);
     this.#succession.expect(run, opened, options, this.#graphics.gpu);
-    void this.#countAhead(run, opened, options);
+    void flipsAhead(opened, options).then((ahead) => {
+      if (run !== this.#run || !ahead) return;
+      this.#ahead = ahead;
+      this.#showTransport();
+    });
     await this.redraw();
-    this.#player.pause();
-  }
-
-  /** Counts the flips of all iterations of a small mesh. */
-  async #countAhead(run: Run, { mesh, office }: Opened, options: Parameters<typeof beginRun>[1]): Promise<void> {
-    if (mesh.indices.length > 3 * AHEAD) return;
-    const ahead = await office.ask((desk) => desk.lookAhead(mesh, options)).catch(() => undefined);
-    if (run !== this.#run || !ahead) return;
-    this.#ahead = ahead;
-    this.#showTransport();
+    this.player.pause();
   }
 
   /** Replaces the run by the same run on the GPU. */
@@ -300,7 +253,7 @@ export class Page {
     [this.#run, this.#summary] = [next.run, next.summary];
     if (this.shown) this.#display.succeed(this.shown, next);
     before?.free();
-    void this.#rest('Now on WebGPU.');
+    void this.#rest.begin('Now on WebGPU.');
   }
 
   #endOfJob(): void {
@@ -309,21 +262,7 @@ export class Page {
     this.#showChoices();
     this.#showTransport();
     // The job may have cancelled a measurement, so measure again.
-    if (!this.#player.isPlaying) void this.#rest();
-  }
-
-  /** Moves forward by one iteration and draws it if `isShown`. Returns whether there was one. */
-  async #forward(run: Run, isShown = true): Promise<boolean> {
-    try {
-      const went = await run.forward();
-      // The engine learns only from another call that this was the last iteration.
-      if (run === this.#run && this.#ahead?.length === run.iterations.length && !run.hasEnded) await run.forward();
-      if (run === this.#run && (isShown || !went)) await this.redraw();
-      return went && run === this.#run;
-    } catch (error) {
-      if (run === this.#run) this.#showFailure(error);
-      return false;
-    }
+    if (!this.player.isPlaying) void this.#rest.begin();
   }
 
   /** Shows an error, unless the page's device was lost: `Graphics` reports that, and the page recovers. */
@@ -339,7 +278,7 @@ export class Page {
 
   get #standing(): Standing {
     const [run, opened, summary, ahead] = [this.#run, this.#opened, this.#summary, this.#ahead];
-    return { run, opened, summary, ahead, isBusy: this.#jobs.isBusy, isPlaying: this.#player.isPlaying };
+    return { run, opened, summary, ahead, isBusy: this.#jobs.isBusy, isPlaying: this.player.isPlaying };
   }
 
   #showTransport(): void {
@@ -353,40 +292,5 @@ export class Page {
     if (!shown) return;
     markSample(shown.opened.spec ?? '');
     this.#choices.set(shown.settings);
-  }
-
-  /**
-   * Measures the run and the shown triangles, if nothing changes for a while. With `news`, announces it and does not
-   * measure the triangles.
-   */
-  async #rest(news?: string): Promise<void> {
-    const shown = this.shown;
-    if (!shown) return;
-    const { run, opened } = shown;
-    const rest = ++this.#rests;
-    const isOutdated = () => rest !== this.#rests || this.#player.isPlaying || run !== this.#run;
-    delete document.body.dataset['measured'];
-    await new Promise((resolve) => setTimeout(resolve, QUIET));
-    if (isOutdated()) return;
-    try {
-      if (this.#summary?.iterations !== run.iterations.length) {
-        const summary = await run.result();
-        if (run === this.#run) this.#summary = summary;
-      }
-      if (isOutdated()) return;
-      const indices = await run.triangles();
-      const fingerprint = fingerprintOf(await digestOf(indices));
-      if (isOutdated()) return;
-      this.#display.showNumbers(shown, this.#standing, fingerprint);
-      if (!run.states || this.edges !== 'coloured') this.#display.lookInto(shown, indices);
-      if (news === undefined) await measure(this.#display.panel, opened, run, indices, isOutdated);
-      if (isOutdated()) return;
-      const status = statusOf(run, this.#summary, this.#ahead).join(' ').trim();
-      element('announcement').textContent = news ?? `${status} ${element('note').textContent}`;
-      document.body.dataset['measured'] = `${run.at}`;
-      void this.#succession.handOver();
-    } catch (error) {
-      if (!isOutdated()) this.#showFailure(error);
-    }
   }
 }

@@ -1,19 +1,29 @@
 /** Plays a run in one loop at a time. A pause, a step or the slider ends the loop. */
 
+import { controls } from './controls.ts';
 import type { Run } from './run.ts';
 
+/** What it needs of the page. */
+export interface Playing {
+  run(): Run | undefined;
+  /** The flips of all iterations, if they are known before they are run. */
+  ahead(): readonly unknown[] | undefined;
+  isBusy(): boolean;
+  redraw(): Promise<void>;
+  /** A loop has begun, or the run has paused. */
+  began(): void;
+  paused(): void;
+  fail(error: unknown): void;
+}
+
 export class Player {
-  /** Runs one iteration, draws it if `isShown`, and returns whether there was one. */
-  readonly #forward: (run: Run, isShown?: boolean) => Promise<boolean>;
-  /** Called when the run pauses. */
-  readonly #rest: () => void;
+  readonly #page: Playing;
   /** The present loop. A loop that is not the present one stops. */
   #loop: object | undefined;
   #isStepping = false;
 
-  constructor(forward: (run: Run, isShown?: boolean) => Promise<boolean>, rest: () => void) {
-    this.#forward = forward;
-    this.#rest = rest;
+  constructor(page: Playing) {
+    this.#page = page;
   }
 
   get isPlaying(): boolean {
@@ -25,45 +35,80 @@ export class Player {
     return !this.isPlaying && !this.#isStepping;
   }
 
-  /** Plays to the end. `interval` returns the milliseconds from one iteration to the next. */
-  async play(run: Run, interval: () => number): Promise<void> {
-    const loop = {};
-    this.#loop = loop;
+  /** Plays to the end, or pauses. */
+  async toggle(): Promise<void> {
+    if (this.isPlaying) return this.pause();
+    const run = this.#page.run();
+    if (!run) return;
     if (run.isOver) run.seek(0);
+    const loop = this.#begin();
     while (this.#loop === loop) {
       const start = performance.now();
       if (!(await this.#forward(run))) break;
       await nextFrame();
-      await pause(interval() - (performance.now() - start));
+      await pause(Number(controls.speed.value) - (performance.now() - start));
     }
     if (this.#loop === loop) this.pause();
   }
 
-  /** Runs iterations up to `at` without drawing them, and then draws that state. */
-  async reach(run: Run, at: number): Promise<void> {
-    const loop = {};
-    this.#loop = loop;
-    run.seek(run.iterations.length);
-    while (this.#loop === loop && run.at < at && (await this.#forward(run, run.at === at - 1)));
-    if (this.#loop === loop) this.pause();
-  }
-
   /** Runs one iteration, unless one is running. */
-  async step(run: Run): Promise<void> {
+  async step(): Promise<void> {
+    const run = this.#page.run();
     this.#loop = undefined;
-    if (this.#isStepping) return;
+    if (this.#isStepping || !run) return;
     this.#isStepping = true;
     try {
       await this.#forward(run);
     } finally {
       this.#isStepping = false;
     }
-    if (!this.isPlaying) this.#rest();
+    if (!this.isPlaying) this.#page.paused();
+  }
+
+  /** Shows the state after `at` iterations, and first runs those that are missing, without drawing them. */
+  async seek(at: number): Promise<void> {
+    const run = this.#page.run();
+    if (this.#page.isBusy() || !run) return;
+    const newest = run.iterations.length;
+    run.seek(Math.max(0, Math.min(at, newest)));
+    if (at <= newest || run.hasEnded) {
+      this.pause();
+      return this.#page.redraw();
+    }
+    const loop = this.#begin();
+    while (this.#loop === loop && run.at < at && (await this.#forward(run, run.at === at - 1)));
+    if (this.#loop === loop) this.pause();
+  }
+
+  async seekBy(iterations: number): Promise<void> {
+    const run = this.#page.run();
+    if (run) await this.seek(run.at + iterations);
   }
 
   pause(): void {
     this.#loop = undefined;
-    this.#rest();
+    this.#page.paused();
+  }
+
+  #begin(): object {
+    this.#loop = {};
+    this.#page.began();
+    return this.#loop;
+  }
+
+  /** Moves forward by one iteration and draws it if `isShown`. Returns whether there was one. */
+  async #forward(run: Run, isShown = true): Promise<boolean> {
+    const page = this.#page;
+    try {
+      const went = await run.forward();
+      // The engine learns only from another call that this was the last iteration.
+      if (run === page.run() && page.ahead()?.length === run.iterations.length && !run.hasEnded) await run.forward();
+      if (run === page.run() && (isShown || !went)) await page.redraw();
+      return went && run === page.run();
+    } catch (error) {
+      if (run === page.run()) page.fail(error);
+      return false;
+    }
   }
 }
 
