@@ -24,13 +24,21 @@ for (const colorScheme of ['light', 'dark']) {
 const state = (page, ...states) =>
   page.waitForFunction((states) => states.includes(document.body.dataset.state), states);
 const measured = (page) => page.waitForFunction(() => document.body.dataset.measured !== undefined);
-const sample = async (page, spec) => {
+const pick = async (page, spec) => {
   // On a narrow screen, the gallery is behind the name.
   const choose = page.locator('#choose');
   if (await choose.isVisible()) await choose.click();
   await page.click(`#gallery [data-spec="${spec}"]`);
+};
+const sample = async (page, spec) => {
+  await pick(page, spec);
   await named(page, spec);
   await measured(page);
+};
+const moving = async (page, kind) => {
+  await pick(page, `moving ${kind}`);
+  await state(page, 'moving');
+  await page.waitForTimeout(2000); // until edges have flipped
 };
 const named = (page, spec) =>
   page.waitForFunction((name) => document.body.dataset.mesh === name, spec.replace('models/', ''));
@@ -101,6 +109,9 @@ const states = {
     await named(page, 'uvsphere 600');
     await measured(page);
   },
+  twisting: (page) => moving(page, 'sheet'),
+  waving: (page) => moving(page, 'waves'),
+  relaxing: (page) => moving(page, 'relax'),
   error: async (page) => {
     const buffer = Buffer.from('OFF\n3 1 0\n0 0 0\n1 0 0\n0 x 0\n3 0 1 2\n');
     await page.setInputFiles('#file', { name: 'broken.off', mimeType: 'text/plain', buffer });
@@ -125,7 +136,7 @@ async function takePicture(browser, address) {
 async function takeAll(browser, address) {
   mkdirSync(folder, { recursive: true });
   for (const { look, ...options } of looks) {
-    const context = await browser.newContext(options);
+    const context = await browser.newContext({ ...options, serviceWorkers: 'block' });
     const page = await context.newPage();
     const shoot = async (name) => {
       await page.waitForTimeout(300); // until it is drawn
@@ -134,7 +145,7 @@ async function takeAll(browser, address) {
     await page.goto(address);
     await page.waitForSelector('#live:not([hidden])');
     await shoot('first');
-    for (const section of ['explain', 'engines', 'package']) {
+    for (const section of ['explain', 'engines', 'paper', 'package']) {
       await page.goto(`${address}#${section}`);
       await page.waitForTimeout(1500); // until its figures are there
       await shoot(section);

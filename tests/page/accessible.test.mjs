@@ -52,6 +52,9 @@ for (const [colorScheme, width, height] of [
     }
     await page.page.evaluate(() => (document.getElementById('details').open = true));
     await look('details');
+    await page.page.evaluate(() => document.querySelector('[data-spec="moving waves"]').click());
+    await page.until('a mesh that moves', ({ state }) => state === 'moving');
+    await look('a mesh that moves');
     for (const section of ['explain', 'engines', 'paper', 'package']) {
       await page.page.evaluate((id) => document.getElementById(id).scrollIntoView(), section);
       await page.page.waitForSelector(`#${section} h2`);

@@ -109,6 +109,40 @@ test('the timeline has all iterations before they are run, and goes to any of th
   await page.close();
 });
 
+test('edges that flip are hot, and cool', async (t) => {
+  const page = await openEdgeflip(browser, () => {
+    // A clock that the test slows down: a software GPU takes longer for a picture than edges are hot.
+    const now = performance.now.bind(performance);
+    let [last, shown] = [now(), now()];
+    window.pace = 1;
+    performance.now = () => {
+      const time = now();
+      shown += window.pace * (time - last);
+      last = time;
+      return shown;
+    };
+  });
+  await page.choose('sample', 'random 24');
+  await page.until('the sample', ({ caption }) => caption === 'random 24');
+  await page.rest();
+  /** The pixels in the colour of flips, or close to it. */
+  const hot = async () => {
+    const { middle } = await page.picture();
+    return middle.filter((colour) => ((colour >> 16) & 255) > 200 && ((colour >> 8) & 255) < 140).length;
+  };
+  const pace = (factor) => page.page.evaluate((to) => (window.pace = to), factor);
+  await pace(0.01);
+  await press(page, 'ArrowRight');
+  await page.until('an iteration', ({ newest }) => newest === '1');
+  const soon = await hot();
+  await pace(1);
+  await page.page.waitForTimeout(3000);
+  const later = await hot();
+  t.diagnostic(`${soon} pixels are hot, then ${later}`);
+  assert.ok(soon > 1.1 * later && later > 0);
+  await page.close();
+});
+
 test('an edge under the pointer is inspected: its state and its angles are those of the package', async () => {
   const page = await openEdgeflip(browser);
   const mesh = await readMesh(readFileSync(first.path), first.path);

@@ -146,13 +146,16 @@ export class Move {
   }
 
   async #ask(): Promise<void> {
+    const start = this.#starts;
     const { flips, updates, remaining, inverted } = await this.mover.counters();
     const frames = Math.max(1, updates - this.#counted.updates);
     const inFrame = (flips - this.#counted.flips) / frames;
     this.#counted = { flips, updates };
     const { stopped: left = 0, ...others } = remaining;
     const kept = Object.values(others).reduce((sum, count) => sum + count, 0);
-    this.#told({ flips: inFrame, left, kept, inverted, each: this.#each, work: this.#work });
+    // Counts of frames before a pause come too late.
+    if (start === this.#starts)
+      this.#told({ flips: inFrame, left, kept, inverted, each: this.#each, work: this.#work });
   }
 
   /** Whether the mesh is on the screen. */

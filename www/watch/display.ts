@@ -1,6 +1,6 @@
 /** What the tool shows of a run: the picture, the numbers beside it, the timeline and the inspector. */
 
-import { element } from './controls.ts';
+import { controls, element } from './controls.ts';
 import type { Graphics } from './graphics.ts';
 import { Halves } from './halves.ts';
 import type { Successor } from './handover.ts';
@@ -9,13 +9,19 @@ import { Looking } from './looking.ts';
 import type { Opened } from './opening.ts';
 import { palette } from './palette.ts';
 import { Panel } from './panel.ts';
+import type { Run } from './run.ts';
 import type { Shown } from './shown.ts';
 import { Timeline } from './timeline.ts';
 import { showTransport, type Standing } from './transport.ts';
+import { flipsBetween } from './turning.ts';
 import { unitPositions } from './unit.ts';
 
 /** The most triangles of a mesh that is first shown with its edges. */
 const EDGES_SEEN = 50_000;
+
+/** Flips slide if there are at least so many milliseconds from one iteration to the next. */
+const SLOW = 250;
+const STILLNESS = matchMedia('(prefers-reduced-motion: reduce)');
 
 /** How the edges are drawn: in colours, plain, or not at all. */
 export type EdgeLook = 'coloured' | 'plain' | 'none';
@@ -29,6 +35,8 @@ export class Display {
   look: EdgeLook = 'coloured';
   /** The number of pictures so far. A picture is dropped when a later one begins. */
   #pictures = 0;
+  /** What the last picture showed in colours. */
+  #last: { run: Run; at: number; indices: Uint32Array } | undefined;
 
   /** `seek` is called with the iteration that the user clicks in the table. */
   constructor(graphics: Graphics, seek: (at: number) => void) {
@@ -48,6 +56,7 @@ export class Display {
   /** Shows the mesh of another run. `isOther`: whether its vertices are others than before. */
   begin({ mesh }: Opened, isOther: boolean): void {
     const { scene } = this.#graphics;
+    this.#last = undefined;
     this.looking.close();
     scene?.setMesh(unitPositions(mesh), mesh.dimension);
     if (isOther || !scene?.eye.isLooking) scene?.lookAtAll();
@@ -71,12 +80,27 @@ export class Display {
       const indices = states && (await shown.run.triangles());
       if (picture !== this.#pictures) return false;
       scene.showEdges(indices, states);
+      this.#turn(shown.run, indices);
       if (indices) this.lookInto(shown, indices);
       return true;
     } catch (error) {
       if (picture === this.#pictures) throw error;
       return false;
     }
+  }
+
+  /** Shows how the edges flip from the last picture to this one, if there is one iteration between them. */
+  #turn(run: Run, indices: Uint32Array | undefined): void {
+    const last = this.#last;
+    const { at } = run;
+    this.#last = indices && { run, at, indices };
+    if (last?.run === run && last.at === at) return;
+    const isStep = indices && last?.run === run && Math.abs(last.at - at) === 1 && !STILLNESS.matches;
+    if (!isStep) return this.#graphics.scene?.turn(new Uint32Array(), 'not');
+    const isBack = at < last.at;
+    const flips = isBack ? flipsBetween(indices, last.indices) : flipsBetween(last.indices, indices);
+    const slides = Number(controls.speed.value) >= SLOW;
+    this.#graphics.scene?.turn(flips, slides ? (isBack ? 'back' : 'on') : 'not');
   }
 
   /** Draws the triangles. If edges are coloured, returns their states; else draws the outlines of the triangles. */

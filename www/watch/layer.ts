@@ -16,6 +16,7 @@ import {
 import { mix, normalFlat, uniform, vec3 } from 'three/tsl';
 import { EdgeLines } from './edge-lines.ts';
 import type { Palette } from './palette.ts';
+import { Turning } from './turning.ts';
 
 /** Towards the light, as seen from the camera. */
 const LIGHT = new Vector3(-0.35, 0.62, 0.7).normalize();
@@ -61,6 +62,7 @@ export class Paint {
 export class Layer {
   readonly group = new Group();
   readonly edges = new EdgeLines();
+  readonly turning = new Turning();
   readonly #surface: Mesh<BufferGeometry, MeshBasicNodeMaterial>;
   readonly #wire: LineSegments<BufferGeometry, LineBasicNodeMaterial>;
   readonly #paint: Paint;
@@ -69,7 +71,7 @@ export class Layer {
     this.#paint = paint;
     this.#surface = new Mesh(new BufferGeometry(), paint.surfaces[3]);
     this.#wire = new LineSegments(new BufferGeometry(), paint.line);
-    this.group.add(this.#surface, this.#wire, this.edges.group);
+    this.group.add(this.#surface, this.#wire, this.edges.group, this.turning.lines);
     for (const object of [this.#surface, this.#wire]) Object.assign(object, { frustumCulled: false, visible: false });
   }
 
@@ -91,6 +93,7 @@ export class Layer {
   /** Shows nothing. Buffers of attributes for which `isShared` holds are not destroyed. */
   clear(isShared: (index: BufferAttribute) => boolean): void {
     this.edges.clear();
+    this.turning.clear();
     for (const object of [this.#surface, this.#wire]) {
       object.visible = false;
       const { index } = object.geometry;

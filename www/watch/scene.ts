@@ -6,6 +6,7 @@ import { Eye, type Insets } from './eye.ts';
 import { Layer, Paint } from './layer.ts';
 import type { Drawn } from './run.ts';
 import type { Palette } from './palette.ts';
+import type { Way } from './turning.ts';
 
 /** The part of three's backend that holds the GPU buffers of attributes. */
 interface Backend {
@@ -112,6 +113,13 @@ export class Scene {
     this.redraw();
   }
 
+  /** Shows how edges have flipped, see `flipsBetween`; with an empty list, nothing. */
+  turn(flips: Uint32Array, way: Way): void {
+    const positions = this.#positions.array as Float32Array;
+    this.#now.turning.show(positions, flips, this.#palette.states.flips, way);
+    this.redraw();
+  }
+
   /** Shows the input at the left of the cut. */
   compareWith(input: Uint32Array): void {
     const lines = new Uint32Array(2 * input.length);
@@ -205,6 +213,7 @@ export class Scene {
   #draw(): void {
     const renderer = this.#renderer;
     this.#now.edges.setPixel(this.eye.pixel);
+    if (this.#now.turning.advance()) this.redraw();
     if (this.#cut === undefined) {
       renderer.render(this.#scene, this.eye.camera);
       return;
