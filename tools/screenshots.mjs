@@ -80,7 +80,11 @@ const states = {
   },
   details: async (page) => {
     await page.keyboard.press('Escape');
-    await page.evaluate(() => (document.getElementById('details').open = true));
+    await page.evaluate(() => {
+      const details = document.getElementById('details');
+      details.open = true;
+      details.scrollIntoView({ block: 'nearest' });
+    });
   },
   plane: async (page) => {
     await page.evaluate(() => (document.getElementById('details').open = false));
@@ -157,7 +161,7 @@ async function takeAll(browser, address) {
     }
     // Without the WebAssembly modules, the page has no mesh to show.
     await context.route('**/*.wasm', (route) => route.abort());
-    await page.goto(`${address}#watch`);
+    await page.reload();
     await page.waitForSelector('#error:not([hidden])');
     await shoot('empty');
     await context.close();

@@ -83,7 +83,7 @@ export class Board {
     const bars = this.#flips.slice(-Math.max(1, Math.floor(width / PITCH)));
     const most = Math.sqrt(Math.max(1, ...bars));
     const lines = bars.map((flips, i) => {
-      const x = width - PITCH * (bars.length - i) + PITCH / 2;
+      const x = PITCH * (i + 0.5);
       return `M${x} ${height}v${-Math.max(2, ((height - 8) * Math.sqrt(flips)) / most)}`;
     });
     const [past, present] = box.querySelectorAll('path');

@@ -12,6 +12,8 @@ export interface Motion {
   beta: number;
   /** The family and the size of a mesh with about so many triangles. */
   spec(triangles: number): string;
+  /** The half sides of a box around the moving mesh. */
+  box: Point;
   /** Where a vertex of the family begins. */
   start(vertex: Point): Point;
   /**
@@ -31,6 +33,7 @@ export const MOTIONS: Record<Kind, Motion> = {
     dimension: 2,
     beta: 10,
     spec: (triangles) => `random ${half(triangles)}`,
+    box: [1.3 * HALF, HALF, 0],
     start: square,
     pose([x, y], seconds) {
       const angle = 2.5 * Math.sin(0.7 * seconds) * Math.exp(-8 * (x * x + y * y));
@@ -47,6 +50,7 @@ export const MOTIONS: Record<Kind, Motion> = {
     dimension: 3,
     beta: 30,
     spec: (triangles) => `uvsphere ${half(triangles)}`,
+    box: [1.2 * HALF, 1.1 * HALF, 1.2 * HALF],
     // The poles are above and below.
     start: ([x, y, z]) => [HALF * y, HALF * z, HALF * x],
     pose([x, y, z], seconds) {
@@ -63,6 +67,7 @@ export const MOTIONS: Record<Kind, Motion> = {
     dimension: 2,
     beta: 10,
     spec: (triangles) => `random ${half(triangles)}`,
+    box: [HALF, HALF, 0],
     // Most points are near the middle.
     start(vertex) {
       const [x, y] = square(vertex).map((at) => at * (0.25 + (0.75 * Math.abs(at)) / HALF)) as Point;

@@ -2,7 +2,7 @@
 
 import type { Scene } from '../watch/scene.ts';
 import { Grip } from './grip.ts';
-import { HALF, type Motion } from './motions.ts';
+import type { Motion, Point } from './motions.ts';
 import type { Mover } from './mover.ts';
 
 /** The longest step of the motion, in seconds: after a pause the mesh does not jump. */
@@ -11,12 +11,6 @@ const LONGEST = 1 / 30;
 const AHEAD = 2;
 /** How much a frame counts in the mean times. */
 const SHARE = 0.05;
-/** Points around a mesh, which the camera fits. */
-const BOUNDS = {
-  2: new Float32Array([-HALF, -HALF, 0, HALF, HALF, 0]),
-  3: new Float32Array([0, -1.1, 0, 0, 1.1, 0, -1.2, 0, 0, 1.2, 0, 0, 0, 0, -1.2, 0, 0, 1.2].map((x) => HALF * x)),
-};
-
 /** Numbers of the last frames. */
 export interface Numbers {
   /** Flips in a frame. */
@@ -48,7 +42,7 @@ export class Move {
   /** `told` is called with new numbers, and `failed` with the error that ends the motion. */
   constructor(
     mover: Mover,
-    { dimension }: Motion,
+    { dimension, box }: Motion,
     scene: Scene,
     view: HTMLElement,
     told: (numbers: Numbers) => void,
@@ -59,7 +53,7 @@ export class Move {
     this.#told = told;
     this.#failed = failed;
     this.#grip = new Grip(view, scene, dimension, (isHeld) => void (this.#isPlaying || this.#drag(isHeld)));
-    scene.showMoving(mover.skin.object, BOUNDS[dimension], dimension);
+    scene.showMoving(mover.skin.object, endsOf(box), dimension);
   }
 
   get isPlaying(): boolean {
@@ -167,4 +161,10 @@ export class Move {
 
 function mean(before: number, now: number): number {
   return before === 0 ? now : before + SHARE * (now - before);
+}
+
+/** The middles of the sides of a box, 3 numbers each: the camera fits them. */
+function endsOf(box: Point): Float32Array {
+  const ends = box.flatMap((half, k) => [half, -half].map((at) => [0, 1, 2].map((axis) => (axis === k ? at : 0))));
+  return new Float32Array(ends.flat());
 }

@@ -61,8 +61,11 @@ export class Moves {
 
   /** Ends the motion, for a mesh that does not move. */
   leave(): void {
+    if (!this.#sample) return;
     this.#end();
     this.#sample = this.#board = undefined;
+    markSample('');
+    element('no-mesh').hidden = false;
     delete document.body.dataset['moving'];
   }
 
@@ -137,6 +140,7 @@ export class Moves {
       (error) => move === this.#move && this.#fail(error),
     );
     this.#move = move;
+    element('no-mesh').hidden = true;
     await move.still();
     const moves = !matchMedia('(prefers-reduced-motion: reduce)').matches;
     board.state = moves ? 'moving' : 'paused';

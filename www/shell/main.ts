@@ -97,6 +97,8 @@ playAnyway.addEventListener('click', () => {
   void show();
 });
 addEventListener('hashchange', follow);
+// The bar needs a ground where it lies on what is read.
+addEventListener('scroll', () => document.body.toggleAttribute('data-scrolled', scrollY > 8), { passive: true });
 const watch = () => (location.hash = '#watch');
 part('#file').addEventListener('change', watch);
 document.addEventListener('dragenter', watch);

@@ -70,6 +70,16 @@ export class Display {
     this.panel.clear();
   }
 
+  /** Shows no mesh. */
+  clear(): void {
+    this.#last = undefined;
+    this.looking.forget();
+    this.#graphics.scene?.clear();
+    this.panel.clear();
+    showLegend(undefined, 0, undefined);
+    element('no-mesh').hidden = false;
+  }
+
   /** Draws the shown iteration. Returns whether no later picture has begun meanwhile. */
   async draw(shown: Shown): Promise<boolean> {
     const picture = ++this.#pictures;

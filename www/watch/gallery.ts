@@ -31,7 +31,11 @@ export function makeGallery(open: (spec: string) => void): void {
 
 /** Marks the sample of this name; none for a file. */
 export function markSample(spec: string): void {
-  for (const button of element('gallery').querySelectorAll('button')) {
-    button.ariaPressed = `${button.dataset['spec'] === spec}`;
+  const gallery = element('gallery');
+  for (const button of gallery.querySelectorAll('button')) {
+    const isShown = button.dataset['spec'] === spec;
+    button.ariaPressed = `${isShown}`;
+    // `scrollIntoView` would scroll the page too.
+    if (isShown) gallery.scrollTo({ top: button.offsetTop - gallery.clientHeight / 2 });
   }
 }

@@ -107,7 +107,7 @@ function drawAngle(svg: Svg, c: Flat, a: Flat, b: Flat, angle: number, colour: s
 /** The two angles beside each other on a straight line; what is more than 180° is below it, in the colour. */
 export function angleFan([first = 0, second = 0]: readonly number[], colour: string): SVGSVGElement {
   const [centre, radius] = [60, 54];
-  const svg = create('svg').attr('viewBox', '0 0 120 100').attr('width', 118).attr('aria-hidden', 'true');
+  const svg = create('svg').attr('viewBox', '0 0 120 116').attr('width', 118).attr('aria-hidden', 'true');
   const at = (angle: number): Flat => [
     centre - radius * Math.cos(angle * RADIANS),
     centre - radius * Math.sin(angle * RADIANS),

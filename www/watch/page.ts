@@ -109,9 +109,7 @@ export class Page {
     this.#guest = lost;
     this.player.pause();
     this.closeAll();
-    this.#display.looking.forget();
-    this.#graphics.scene?.clear();
-    this.#display.panel.clear();
+    this.#display.clear();
     this.#run?.free();
     this.#opened?.office.close();
     this.#run = this.#opened = this.#settings = this.#summary = this.#ahead = this.#source = undefined;

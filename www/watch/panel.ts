@@ -140,7 +140,7 @@ export class Panel {
 }
 
 const typical = (before: Quality, now: Quality | undefined) =>
-  `typical smallest ${Math.round(before.angles.meanMin)}°${now ? ` → ${Math.round(now.angles.meanMin)}°` : ''}`;
+  `typical smallest ${Math.round(before.angles.meanMin)}°${now && now !== before ? ` → ${Math.round(now.angles.meanMin)}°` : ''}`;
 
 /** A text with the number of edges by reason. */
 export function reasons(by: Reasons): string {
