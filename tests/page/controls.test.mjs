@@ -167,6 +167,7 @@ test('an engine that is chosen while a run is being prepared is the engine of th
 test('without WebGPU the page says so, plays on the CPU and draws with WebGL2', async () => {
   const page = await openEdgeflip(browser, () => {
     delete Navigator.prototype.gpu;
+    for (const name of Object.getOwnPropertyNames(window)) if (/^GPU[A-Z]/.test(name)) delete window[name];
     // The kind of the canvas.
     const { getContext } = HTMLCanvasElement.prototype;
     HTMLCanvasElement.prototype.getContext = function (kind, ...more) {

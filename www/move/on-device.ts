@@ -9,7 +9,6 @@ import { Skin, type Sharing } from './skin.ts';
 
 /** Workgroups of 256 threads. Each thread loops over further items. */
 const MOST_WORKGROUPS = 4096;
-const { STORAGE, UNIFORM, COPY_DST, MAP_READ } = GPUBufferUsage;
 
 export async function moveOnDevice(
   mesh: IndexedMesh,
@@ -17,6 +16,7 @@ export async function moveOnDevice(
   device: GPUDevice,
   sharing: Sharing,
 ): Promise<Mover> {
+  const { STORAGE, UNIFORM, COPY_DST } = GPUBufferUsage;
   const { dimension, indices } = mesh;
   const vertices = mesh.positions.length / dimension;
   const session = await FlipSession.create(mesh, { backend: 'webgpu', device, maxNormalAngle: motion.beta });
@@ -144,7 +144,7 @@ async function kernelsFor(device: GPUDevice, buffers: GPUBuffer[], motion: Motio
 }
 
 async function read(device: GPUDevice, buffer: GPUBuffer, size: number): Promise<Float32Array<ArrayBuffer>> {
-  const staging = device.createBuffer({ size, usage: MAP_READ | COPY_DST });
+  const staging = device.createBuffer({ size, usage: GPUBufferUsage.MAP_READ | GPUBufferUsage.COPY_DST });
   const encoder = device.createCommandEncoder();
   encoder.copyBufferToBuffer(buffer, 0, staging, 0, size);
   device.queue.submit([encoder.finish()]);
