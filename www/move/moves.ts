@@ -1,9 +1,7 @@
-/** The meshes that move, in place of a run: chooses the engine, and starts and ends the motion. */
+/** The meshes that move, in place of a run: starts and ends the motion, as the controls say. */
 
-import type { IndexedMesh } from 'edgeflip/files';
 import { controls, element } from '../watch/controls.ts';
 import { download, save } from '../watch/download.ts';
-import { forAuto, Office, type Gpu } from '../watch/engines.ts';
 import { markSample } from '../watch/gallery.ts';
 import { showError } from '../watch/jobs.ts';
 import type { Page } from '../watch/page.ts';
@@ -13,11 +11,9 @@ import type { MovingSample } from '../models/samples.js';
 import { onTheme } from '../shell/theme.ts';
 import { Board } from './board.ts';
 import { codeFor } from './code.ts';
-import { MOTIONS, type Motion, type Point } from './motions.ts';
+import { MOTIONS } from './motions.ts';
 import { Move } from './move.ts';
-import type { Mover } from './mover.ts';
-import { moveInArrays } from './on-arrays.ts';
-import { moveOnDevice } from './on-device.ts';
+import { startMover } from './starting.ts';
 
 const many = element<HTMLSelectElement>('many');
 
@@ -108,29 +104,20 @@ export class Moves {
 
   async #begin(sample: MovingSample, board: Board, signal: AbortSignal): Promise<void> {
     const motion = MOTIONS[sample.kind];
-    const office = new Office();
-    signal.addEventListener('abort', () => office.close());
-    const mesh = await office
-      .ask((desk) => desk.generate(motion.spec(Number(many.value))))
-      .then((mesh) => begun(mesh, motion))
-      .finally(() => office.close());
     await this.#page.ready;
     const { scene, gpu } = this.#page;
     if (!scene) throw new Error('This browser cannot draw the mesh: it has no WebGPU and no WebGL2.');
     const backend = controls.backend.value as Backend;
-    const [engine, remark] = engineFor(backend, gpu);
-    const mover: Mover =
-      typeof engine === 'string'
-        ? await moveInArrays(mesh, motion, engine)
-        : await moveOnDevice(mesh, motion, engine.device, (attribute, buffer, count) =>
-            scene.share(attribute, buffer, count),
-          );
-    if (signal.aborted) {
-      mover.free();
-      throw signal.reason;
-    }
+    const { mover, triangles, vertices, remark } = await startMover(
+      motion,
+      Number(many.value),
+      backend,
+      gpu,
+      (attribute, buffer, count) => scene.share(attribute, buffer, count),
+      signal,
+    );
     mover.skin.setPalette(palette());
-    board.begin(mesh.indices.length / 3, mesh.positions.length / mesh.dimension, mover.engine, remark);
+    board.begin(triangles, vertices, mover.engine, remark);
     const move: Move = new Move(
       mover,
       motion,
@@ -163,23 +150,4 @@ export class Moves {
     this.#move?.free();
     this.#move = undefined;
   }
-}
-
-/** The GPU, or an engine on arrays; and why the GPU is not used. */
-function engineFor(backend: Backend, gpu: Gpu | string | undefined): [engine: Gpu | 'cpu' | 'webgl2', remark: string] {
-  if (backend === 'cpu' || backend === 'webgl2') return [backend, ''];
-  const usable = backend === 'auto' && gpu ? forAuto(gpu) : (gpu ?? 'WebGPU is not ready');
-  if (typeof usable !== 'string') return [usable, ''];
-  if (backend === 'webgpu') throw new Error(`The WebGPU engine is not available: ${usable}.`);
-  return ['cpu', `On the CPU: ${usable}.`];
-}
-
-/** The mesh of a family, where the motion begins, in 32-bit floats as GPUs take them. */
-function begun({ positions, indices, dimension }: IndexedMesh, motion: Motion): IndexedMesh {
-  const start = new Float32Array(positions.length);
-  for (let i = 0; i < positions.length; i += dimension) {
-    const vertex = [0, 1, 2].map((k) => (k < dimension ? positions[i + k]! : 0)) as Point;
-    start.set(motion.start(vertex).slice(0, dimension), i);
-  }
-  return { positions: start, indices, dimension };
 }

@@ -47,6 +47,12 @@ export class Eye {
     this.#changed = changed;
   }
 
+  /** The middle of the part of the picture that is free, in pixels. */
+  get middle(): [x: number, y: number] {
+    const { free } = this.#frame();
+    return [free.x, free.y];
+  }
+
   /** Whether the camera has been set. */
   get isLooking(): boolean {
     return this.#controls !== undefined;
@@ -168,12 +174,14 @@ export class Eye {
     return (2 * TANGENT * distance) / height;
   }
 
-  /** Where a point of the scene is in the picture, in pixels. */
-  project(point: Vector3): [x: number, y: number] {
+  /** Returns a function that says where a point of the scene is in the picture, in pixels. It changes the point. */
+  projector(): (point: Vector3) => [x: number, y: number] {
     const { width, height } = this.#frame();
     this.camera.updateMatrixWorld();
-    const { x, y } = point.project(this.camera);
-    return [((x + 1) / 2) * width, ((1 - y) / 2) * height];
+    return (point) => {
+      const { x, y } = point.project(this.camera);
+      return [((x + 1) / 2) * width, ((1 - y) / 2) * height];
+    };
   }
 
   dispose(): void {

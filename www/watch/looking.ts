@@ -1,6 +1,6 @@
 /** Which edge is inspected: the one under the pointer, the one that was tapped, or the next one of a state. */
 
-import type { EdgeState } from 'edgeflip';
+import { EDGE_STATES, type EdgeState } from 'edgeflip';
 import type { IndexedMesh } from 'edgeflip/files';
 import { select } from 'd3-selection';
 import { element } from './controls.ts';
@@ -8,6 +8,7 @@ import { drawThread, hideEdge, showEdge, type Limits } from './inspector.ts';
 import { next, nextIn, quadAt, type Quad } from './quad.ts';
 import { COLOURED } from './run.ts';
 import type { Scene } from './scene.ts';
+import { LOOKS } from './states.ts';
 
 /** The triangles that are shown, once they are in main memory. */
 export interface Triangles {
@@ -73,10 +74,31 @@ export class Looking {
     const { states } = this.#shown ?? {};
     if (!states) return;
     const isWanted = (state: EdgeState) => state !== 'delaunay' && state !== 'boundary';
-    const half = nextIn(states, isWanted, this.#quad?.half ?? 0, by);
+    const half = this.#quad ? nextIn(states, isWanted, this.#quad.half, by) : this.#nearest(isWanted);
     if (half < 0) return;
     this.#isHeld = true;
     this.#inspect(half);
+  }
+
+  /** The half-edge in a wanted state that faces the camera nearest to the middle of the picture; -1 if there is none. */
+  #nearest(isWanted: (state: EdgeState) => boolean): number {
+    const [shown, scene] = [this.#shown, this.#scene()];
+    if (!shown?.states || !scene) return -1;
+    const { indices, states } = shown;
+    const at = scene.projector();
+    const [x, y] = scene.eye.middle;
+    let [nearest, found, behind] = [Infinity, -1, -1];
+    states.forEach((state, h) => {
+      if (!isWanted(EDGE_STATES[state]!)) return;
+      behind = h;
+      const [a, b, c] = [h, next(h), next(next(h))].map((corner) => at(indices[corner]!));
+      const [[ax, ay], [bx, by], [cx, cy]] = [a!, b!, c!];
+      // The picture's y points down, so a triangle that faces the camera is clockwise.
+      if ((bx - ax) * (cy - ay) - (by - ay) * (cx - ax) >= 0) return;
+      const distance = Math.hypot((ax + bx) / 2 - x, (ay + by) / 2 - y);
+      if (distance < nearest) [nearest, found] = [distance, h];
+    });
+    return found < 0 ? behind : found;
   }
 
   /** Draws the quad of the edge over the picture, where the camera sees it now. */
@@ -87,9 +109,10 @@ export class Looking {
       marks.remove();
       return drawThread(undefined);
     }
-    const [a, b] = [scene.positionOf(quad.a), scene.positionOf(quad.b)];
+    const at = scene.projector();
+    const [a, b] = [at(quad.a), at(quad.b)];
     const middle: [x: number, y: number] = [(a[0] + b[0]) / 2, (a[1] + b[1]) / 2];
-    const around = quad.opposite.map((c) => `M${a}L${scene.positionOf(c)}L${b}`).join('');
+    const around = quad.opposite.map((c) => `M${a}L${at(c)}L${b}`).join('');
     const [x, y] = middle;
     const ring = `M${x - 22} ${y}a22 22 0 1 0 44 0a22 22 0 1 0 -44 0`;
     marks
@@ -100,7 +123,8 @@ export class Looking {
       ])
       .join('path')
       .attr('class', ([name]) => `mark ${name}`)
-      .attr('d', ([, d]) => d);
+      .attr('d', ([, d]) => d)
+      .style('stroke', ([name]) => (name === 'edge' && quad.state ? `var(--${LOOKS[quad.state].colour})` : null));
     drawThread(middle);
   }
 
@@ -122,7 +146,8 @@ export class Looking {
     const { mesh, indices, states, limits } = shown;
     const quad = quadAt(mesh, indices, states, half);
     this.#quad = quad;
-    const [[ax, ay], [bx, by]] = [scene.positionOf(quad.a), scene.positionOf(quad.b)];
+    const at = scene.projector();
+    const [[ax, ay], [bx, by]] = [at(quad.a), at(quad.b)];
     showEdge(quad, mesh, limits, Math.atan2(ay - by, bx - ax));
     this.draw();
   }

@@ -239,6 +239,7 @@ function connectKeys(
     { keys: ['p'], label: 'P', says: 'save a picture', act: savePicture },
     { keys: ['k'], label: 'K', says: 'copy a link to this view', act: copyLink },
     { keys: ['f'], label: 'F', says: 'fit the mesh to the view', act: () => page.scene?.eye.fit() },
+    { keys: ['g'], label: 'G', says: 'the engines', act: () => (location.hash = '#engines') },
     { keys: ['t'], label: 'T', says: 'light or dark', act: toggleTheme },
     { keys: ['?'], label: '?', says: 'these keys', act: () => keys.showModal() },
     { keys: ['Escape'], label: 'Esc', says: 'close what is open', act: () => page.closeAll() },

@@ -61,8 +61,7 @@ export class Page {
   });
   readonly #succession = new Succession({
     run: () => this.#run,
-    isIdle: () =>
-      !this.#jobs.isBusy && this.player.isAtRest && document.body.dataset['measured'] === `${this.#run?.at}`,
+    isIdle: () => !this.#jobs.isBusy && this.player.isAtRest && this.#rest.isMeasured(this.#run),
     succeed: (next) => this.#succeed(next),
     tell: () => void (this.player.isPlaying || this.#rest.begin()),
   });
@@ -114,7 +113,7 @@ export class Page {
     this.#opened?.office.close();
     this.#run = this.#opened = this.#settings = this.#summary = this.#ahead = this.#source = undefined;
     this.#jobs.cancel();
-    delete document.body.dataset['measured'];
+    this.#rest.forget();
   }
 
   /** Takes the engine and the limits of a link for the next mesh. */

@@ -4,7 +4,7 @@ import { digestOf, fingerprintOf } from '../shell/digest.ts';
 import { element } from './controls.ts';
 import type { Display } from './display.ts';
 import { measure } from './measure.ts';
-import type { Summary } from './run.ts';
+import type { Run, Summary } from './run.ts';
 import { statusOf } from './sentences.ts';
 import type { Shown } from './shown.ts';
 import type { Standing } from './transport.ts';
@@ -33,6 +33,17 @@ export class Rest {
 
   constructor(page: Resting) {
     this.#page = page;
+  }
+
+  /** Whether the shown state of the run is measured. */
+  isMeasured(run: Run | undefined): boolean {
+    return document.body.dataset['measured'] === `${run?.at}`;
+  }
+
+  /** Nothing is measured. */
+  forget(): void {
+    this.#calls++;
+    delete document.body.dataset['measured'];
   }
 
   /**

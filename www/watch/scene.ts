@@ -190,14 +190,15 @@ export class Scene {
       if (distance < nearest) [nearest, found] = [distance, t];
     }
     if (found < 0) return undefined;
-    const ends = [found, found + 1, found + 2].map((h) => this.positionOf(indices[h]!));
+    const ends = [found, found + 1, found + 2].map((h) => indices[h]!).map(this.projector());
     const distances = [0, 1, 2].map((k) => distanceTo([x, y], ends[k]!, ends[(k + 1) % 3]!));
     return found + distances.indexOf(Math.min(...distances));
   }
 
-  /** Where a vertex is in the picture, in pixels. */
-  positionOf(vertex: number): [x: number, y: number] {
-    return this.eye.project(new Vector3().fromBufferAttribute(this.#positions, vertex));
+  /** Returns a function that says where a vertex is in the picture, in pixels. */
+  projector(): (vertex: number) => [x: number, y: number] {
+    const project = this.eye.projector();
+    return (vertex) => project(new Vector3().fromBufferAttribute(this.#positions, vertex));
   }
 
   /** Removes the canvas. The buffers of the run stay. */

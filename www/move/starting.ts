@@ -1,0 +1,59 @@
+/** Generates a mesh that moves, and starts the engine that moves it. */
+
+import type { IndexedMesh } from 'edgeflip/files';
+import { forAuto, Office, type Gpu } from '../watch/engines.ts';
+import type { Backend } from '../watch/run.ts';
+import type { Motion, Point } from './motions.ts';
+import type { Mover } from './mover.ts';
+import { moveInArrays } from './on-arrays.ts';
+import { moveOnDevice } from './on-device.ts';
+import type { Sharing } from './skin.ts';
+
+/** Starts a mesh with about so many triangles. `remark` says why the GPU is not used. */
+export async function startMover(
+  motion: Motion,
+  many: number,
+  backend: Backend,
+  gpu: Gpu | string | undefined,
+  share: Sharing,
+  signal: AbortSignal,
+): Promise<{ mover: Mover; triangles: number; vertices: number; remark: string }> {
+  const [engine, remark] = engineFor(backend, gpu);
+  const mesh = begun(await generated(motion.spec(many), signal), motion);
+  signal.throwIfAborted();
+  const mover =
+    typeof engine === 'string'
+      ? await moveInArrays(mesh, motion, engine)
+      : await moveOnDevice(mesh, motion, engine.device, share);
+  if (signal.aborted) {
+    mover.free();
+    throw signal.reason;
+  }
+  return { mover, triangles: mesh.indices.length / 3, vertices: mesh.positions.length / mesh.dimension, remark };
+}
+
+/** A mesh of a family, made in a worker. */
+function generated(spec: string, signal: AbortSignal): Promise<IndexedMesh> {
+  const office = new Office();
+  signal.addEventListener('abort', () => office.close());
+  return office.ask((desk) => desk.generate(spec)).finally(() => office.close());
+}
+
+/** The GPU, or an engine on arrays; and why the GPU is not used. */
+function engineFor(backend: Backend, gpu: Gpu | string | undefined): [engine: Gpu | 'cpu' | 'webgl2', remark: string] {
+  if (backend === 'cpu' || backend === 'webgl2') return [backend, ''];
+  const usable = backend === 'auto' && gpu ? forAuto(gpu) : (gpu ?? 'WebGPU is not ready');
+  if (typeof usable !== 'string') return [usable, ''];
+  if (backend === 'webgpu') throw new Error(`The WebGPU engine is not available: ${usable}.`);
+  return ['cpu', `On the CPU: ${usable}.`];
+}
+
+/** The mesh of a family, where the motion begins, in 32-bit floats as GPUs take them. */
+function begun({ positions, indices, dimension }: IndexedMesh, motion: Motion): IndexedMesh {
+  const start = new Float32Array(positions.length);
+  for (let i = 0; i < positions.length; i += dimension) {
+    const vertex = [0, 1, 2].map((k) => (k < dimension ? positions[i + k]! : 0)) as Point;
+    start.set(motion.start(vertex).slice(0, dimension), i);
+  }
+  return { positions: start, indices, dimension };
+}
