@@ -60,6 +60,13 @@ for (const [colorScheme, width, height] of [
       await page.page.waitForSelector(`#${section} h2`);
       await look(section);
     }
+    // On a narrow screen, the sections are in a menu.
+    if (await page.page.isVisible('#menu')) {
+      await page.page.click('#menu');
+      await look('the menu');
+    }
+    await page.page.click('nav a[href="#watch"]');
+    assert.equal(await page.page.isVisible('nav a'), width > 860);
     await page.page.evaluate(() => (location.hash = '#first'));
     await page.page.waitForSelector('#live:not([hidden])');
     await look('the first view');

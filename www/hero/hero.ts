@@ -10,8 +10,8 @@ import { scatter, type Scatter, type Spacing } from './points.ts';
 const NARROW = 861;
 /** Rounds in which the points even out before they are shown. */
 const ROUNDS = 12;
-/** The moment of the still picture, in seconds. */
-const STILL = 4.1;
+/** The moment of the still picture, in seconds of motion. */
+const STILL = 2.9;
 /** The longest step of the motion, in seconds: after a pause the mesh does not jump. */
 const LONGEST = 0.04;
 

@@ -32,7 +32,8 @@ export class Motion {
   readonly #finest: number;
   #rings: Ring[] = [];
   #beats = 0;
-  #time = 0;
+  /** The first ring is on its way already, so that edges flip in the first frame. */
+  #time = 1.2;
   #pointer = { x: 0, y: 0, strength: 0 };
 
   constructor({ positions, fixed }: Scatter, size: readonly [number, number], spacing: Spacing) {

@@ -42,6 +42,7 @@ function follow(): void {
   for (const link of document.querySelectorAll('.top nav a')) {
     link.toggleAttribute('aria-current', link.getAttribute('href') === location.hash.replace(/\?.*/, ''));
   }
+  part('#sections').hidePopover();
   const { view } = document.body.dataset;
   // A link to the tool may say more after a question mark.
   const next = { '#first': 'first', '#watch': 'watch' }[location.hash.replace(/\?.*/, '')] ?? view;
