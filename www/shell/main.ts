@@ -42,7 +42,6 @@ function follow(): void {
   for (const link of document.querySelectorAll('.top nav a')) {
     link.toggleAttribute('aria-current', link.getAttribute('href') === location.hash.replace(/\?.*/, ''));
   }
-  part('#sections').hidePopover();
   const { view } = document.body.dataset;
   // A link to the tool may say more after a question mark.
   const next = { '#first': 'first', '#watch': 'watch' }[location.hash.replace(/\?.*/, '')] ?? view;
@@ -92,6 +91,8 @@ whenNear('#explain', async (host) => (await import('../explain/index.ts')).mount
 whenNear('#engines', async (host) => (await import('../engines/index.ts')).mountEngines(host, () => openMesh()));
 whenNear('#paper', async (host) => (await import('../paper/index.ts')).mountPaper(host));
 
+const sections = part('#sections');
+sections.addEventListener('click', () => sections.hidePopover());
 part('#theme').addEventListener('click', toggleTheme);
 playAnyway.addEventListener('click', () => {
   moves = true;
