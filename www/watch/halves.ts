@@ -24,14 +24,16 @@ export class Halves {
   }
 
   show(isShown: boolean): void {
-    if (isShown && this.#input) this.#scene()?.compareWith(this.#input);
+    const scene = this.#scene();
+    if (isShown && this.#input && scene) {
+      scene.compareWith(this.#input);
+      // Through the middle of the mesh, which is not that of the picture.
+      controls.cut.valueAsNumber = (1000 * scene.eye.middle[0]) / scene.canvas.clientWidth;
+    }
     element('halves').hidden = !isShown;
     controls.compare.ariaPressed = `${isShown}`;
     if (isShown) this.#cut();
-    else {
-      const scene = this.#scene();
-      if (scene) scene.cut = undefined;
-    }
+    else if (scene) scene.cut = undefined;
   }
 
   #cut(): void {
