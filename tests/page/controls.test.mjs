@@ -5,7 +5,7 @@ import { writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { startChromium } from '../browsers.mjs';
-import { expected, folder, meshFile, openEdgeflip, tidyUp } from './page.mjs';
+import { expected, folder, keepDevices, meshFile, openEdgeflip, tidyUp } from './page.mjs';
 
 let browser;
 let small;
@@ -206,15 +206,7 @@ test('auto does not use a software GPU, and says why', async () => {
 });
 
 test('a GPU that is lost during a run is replaced, and the result is the same', async () => {
-  const page = await openEdgeflip(browser, () => {
-    const { requestDevice } = GPUAdapter.prototype;
-    window.devices = [];
-    GPUAdapter.prototype.requestDevice = async function (...args) {
-      const device = await requestDevice.apply(this, args);
-      window.devices.push(device);
-      return device;
-    };
-  });
+  const page = await openEdgeflip(browser, keepDevices);
   const path = await meshFile('strips 40', 'strips.off');
   const { facts, rows } = await expected(path);
   await page.open(path);

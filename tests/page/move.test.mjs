@@ -6,7 +6,7 @@ import { after, before, test } from 'node:test';
 import { FlipSession } from 'edgeflip';
 import { MOVING } from '../../www/models/samples.js';
 import { startChromium } from '../browsers.mjs';
-import { assertSameMesh, expected, first, openEdgeflip, tidyUp } from './page.mjs';
+import { assertSameMesh, expected, first, keepDevices, openEdgeflip, tidyUp } from './page.mjs';
 
 let browser;
 before(async () => (browser = await startChromium()));
@@ -146,15 +146,7 @@ test('with reduced motion, a mesh moves only when it is played', async () => {
 });
 
 test('a mesh that moves begins again after the GPU was lost', async () => {
-  const page = await openEdgeflip(browser, () => {
-    const { requestDevice } = GPUAdapter.prototype;
-    window.devices = [];
-    GPUAdapter.prototype.requestDevice = async function (...args) {
-      const device = await requestDevice.apply(this, args);
-      window.devices.push(device);
-      return device;
-    };
-  });
+  const page = await openEdgeflip(browser, keepDevices);
   await show(page, 'sheet', 'webgpu');
   await page.page.evaluate(() => window.devices.at(-1).destroy());
   const { error } = await page.until('a message', ({ error, state }) => error !== '' && state === 'moving');

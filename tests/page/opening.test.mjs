@@ -8,7 +8,7 @@ import { makeDelaunay } from '../../dist/index.js';
 import { readMesh, writeMesh } from '../../dist/files.js';
 import { riggedGlb } from '../package/gltf.mjs';
 import { startChromium } from '../browsers.mjs';
-import { assertSameMesh, expected, folder, meshFile, openEdgeflip, tidyUp } from './page.mjs';
+import { assertSameMesh, expected, folder, keepDevices, meshFile, openEdgeflip, tidyUp } from './page.mjs';
 
 let browser;
 let sphere;
@@ -189,15 +189,7 @@ test('a file that is chosen before the GPU is open replaces the sample', async (
 });
 
 test('after a GPU is lost while a file is read, the file opens', async () => {
-  const page = await openEdgeflip(browser, holdWorkers, () => {
-    const { requestDevice } = GPUAdapter.prototype;
-    window.devices = [];
-    GPUAdapter.prototype.requestDevice = async function (...args) {
-      const device = await requestDevice.apply(this, args);
-      window.devices.push(device);
-      return device;
-    };
-  });
+  const page = await openEdgeflip(browser, holdWorkers, keepDevices);
   // SwiftShader takes long to compile the kernels for surfaces.
   const strips = await meshFile('strips 16', 'strips.off');
   await page.open(strips);

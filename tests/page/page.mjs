@@ -110,6 +110,17 @@ export async function openEdgeflip(browser, ...scripts) {
   return edgeflip;
 }
 
+/** For `openEdgeflip`: keeps the GPU devices of the page in `window.devices`, so that a test can lose them. */
+export function keepDevices() {
+  const { requestDevice } = GPUAdapter.prototype;
+  window.devices = [];
+  GPUAdapter.prototype.requestDevice = async function (...args) {
+    const device = await requestDevice.apply(this, args);
+    window.devices.push(device);
+    return device;
+  };
+}
+
 export class EdgeflipPage {
   constructor(page, problems) {
     this.page = page;

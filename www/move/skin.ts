@@ -21,7 +21,6 @@ import {
   fwidth,
   max,
   mix,
-  normalFlat,
   smoothstep,
   storage,
   uniform,
@@ -29,13 +28,12 @@ import {
   vec3,
   vertexIndex,
 } from 'three/tsl';
+import { light } from '../watch/light.ts';
 import type { Palette } from '../watch/palette.ts';
 
 /** Lets an attribute use a buffer directly. */
 export type Sharing = <A extends BufferAttribute>(attribute: A, buffer: GPUBuffer, count: number) => A;
 
-/** Towards the light, as seen from the camera. */
-const LIGHT = new Vector3(-0.35, 0.62, 0.7).normalize();
 /** Seconds in which the heat of an edge falls to a third. */
 const COOLING = 0.38;
 
@@ -143,13 +141,7 @@ export class Skin {
       const pixels = distances.div(heights);
       // Where triangles have few pixels, their faces show what their lines cannot.
       const clear = smoothstep(0.15, 0.6, max(heights.x, max(heights.y, heights.z))).oneMinus();
-      const normal = normalFlat.mul(normalFlat.z.sign());
-      const light = normal
-        .dot(vec3(LIGHT.x, LIGHT.y, LIGHT.z))
-        .mul(0.9)
-        .add(0.08)
-        .clamp(0, 1);
-      const face = mix(shaded, lit, light);
+      const face = mix(shaded, lit, light());
       const hottest = max(heats.x, max(heats.y, heats.z));
       const warm = mix(face, spark, hottest.mul(mix(float(0.8), float(0.14), clear)));
       const cover = (half: Node<'vec3'>) => half.sub(pixels).add(0.5).clamp(0, 1);

@@ -13,13 +13,11 @@ import {
   Sphere,
   Vector3,
 } from 'three/webgpu';
-import { mix, normalFlat, uniform, vec3 } from 'three/tsl';
+import { mix, uniform } from 'three/tsl';
 import { EdgeLines } from './edge-lines.ts';
+import { light } from './light.ts';
 import type { Palette } from './palette.ts';
 import { Turning } from './turning.ts';
-
-/** Towards the light, as seen from the camera. */
-const LIGHT = new Vector3(-0.35, 0.62, 0.7).normalize();
 
 /** The colours of surfaces. All layers share them. */
 export class Paint {
@@ -40,14 +38,7 @@ export class Paint {
       });
     const [flat, solid] = [make(), make()];
     flat.colorNode = this.#plane;
-    // Towards the camera, whichever way the triangle faces.
-    const normal = normalFlat.mul(normalFlat.z.sign());
-    const light = normal
-      .dot(vec3(LIGHT.x, LIGHT.y, LIGHT.z))
-      .mul(0.9)
-      .add(0.08)
-      .clamp(0, 1);
-    solid.colorNode = mix(this.#shaded, this.#lit, light);
+    solid.colorNode = mix(this.#shaded, this.#lit, light());
     this.surfaces = { 2: flat, 3: solid };
   }
 
