@@ -414,10 +414,10 @@ test('the keys are listed, and Escape closes what is open', async () => {
     assert.equal(await isShown(id), false, id);
   }
   await press(page, '2');
-  await page.until('the second sample', ({ caption, state }) => caption === 'flange.ply' && state !== 'busy');
+  await page.until('the second sample', ({ caption, state }) => caption === 'flange.obj' && state !== 'busy');
   assertSameMesh(
     await page.download(),
-    await readMesh(readFileSync(first.path.replace('bunny', 'flange')), 'flange.ply'),
+    await readMesh(readFileSync(first.path.replace('bunny.ply', 'flange.obj')), 'flange.glb'),
     'of sample 2',
   );
   await page.close();

@@ -5,17 +5,17 @@ import { Lane, type Ran } from './lane.ts';
 import { ALL, ONE_THREAD, type Contender, type NamedMesh } from './lineup.ts';
 import { runOn, sampleMesh } from './race.ts';
 import { sentenceOf } from './runner.ts';
+import { stillness } from '../shell/stillness.ts';
 import type { Turn } from './turn.ts';
 import { count } from './words.ts';
 
 const BEFORE =
-  'Each engine runs the mesh that is open above, or else the paper’s mesh 3, from arrays to arrays. See which one is first here.';
+  'Each engine runs the mesh that is open above, or else the paper’s mesh 3, from your arrays to the result. See which one is first here.';
 const PROMISE = 'Nothing runs until you press the button.';
 
 /** Milliseconds that the slowest engine takes in the replay. */
 const REPLAY = 2400;
 
-const stillness = matchMedia('(prefers-reduced-motion: reduce)');
 const names = new Intl.ListFormat('en');
 
 export class RaceView {
@@ -86,7 +86,7 @@ export class RaceView {
     const others = [...ran].filter(([, one]) => one.digest !== digest).map(([{ name }]) => name);
     this.#judge(ran.size, others);
     const [triangles, { flips }] = [mesh.indices.length / 3, fastest.timing.result];
-    const numbers = `, from arrays to arrays: ${count(triangles)} triangles, ${count(flips)} flips.`;
+    const numbers = `, from your arrays to the result: ${count(triangles)} triangles, ${count(flips)} flips.`;
     const equal = others.length === 0 && ran.size > 1 ? ' The results are equal to the last bit.' : '';
     this.#lede.replaceChildren('Each engine here ran ', made('b', '', mesh.name), numbers, equal);
   }

@@ -1,5 +1,6 @@
 /** Figures that move by themselves while they are in view. */
 
+import { stillness } from '../shell/stillness.ts';
 import type { Stage } from './figure.ts';
 
 /** Draws beat `beat`, `turn` of the way to the next one: from 0, while it stands, to 1. */
@@ -10,12 +11,10 @@ const TURNS = 700;
 
 const ease = (t: number) => (t < 0.5 ? 2 * t * t : 1 - 2 * (1 - t) ** 2);
 
-const reducesMotion = () => matchMedia('(prefers-reduced-motion: reduce)');
-
 /** Draws the way from one number to another; at once with reduced motion. Returns what stops it. */
 export function glide(from: number, to: number, draw: (at: number) => void): () => void {
   const start = performance.now();
-  const takes = reducesMotion().matches ? 0 : 260;
+  const takes = stillness.matches ? 0 : 260;
   let request = 0;
   const tick = (now: number) => {
     const t = takes > 0 ? Math.min(1, Math.max(0, (now - start) / takes)) : 1;
@@ -36,8 +35,7 @@ export function loop({ svg, bar }: Stage, beats: number, still: [beat: number, t
   button.className = 'explain-play';
   bar.append(button);
 
-  const reduced = reducesMotion();
-  let isPlaying = !reduced.matches;
+  let isPlaying = !stillness.matches;
   let isInView = false;
   let time = 0;
   let last: number | undefined;
@@ -70,9 +68,9 @@ export function loop({ svg, bar }: Stage, beats: number, still: [beat: number, t
     change();
   };
   button.addEventListener('click', () => play(!isPlaying));
-  reduced.addEventListener('change', () => {
-    play(!reduced.matches);
-    if (reduced.matches) show(...still);
+  stillness.addEventListener('change', () => {
+    play(!stillness.matches);
+    if (stillness.matches) show(...still);
   });
   new IntersectionObserver(
     (entries) => {

@@ -21,26 +21,40 @@ function rabbit() {
   return writeMesh({ ...mesh, indices: scrambled(mesh, 2500, 25, 3) }, 'bunny.ply');
 }
 
-/** A part made by cutting solids: package `manifold-3d`, Apache-2.0. */
+/** A part made by cutting solids, with a material for each: package `manifold-3d`, Apache-2.0. */
 async function flange() {
   const manifold = await initManifold();
   manifold.setup();
   const { Manifold } = manifold;
-  const rod = (height, radius, sides = 48) => Manifold.cylinder(height, radius, radius, sides, true);
-  const around = (count, radius, solid) =>
-    Array.from({ length: count }, (_, i) => {
-      const angle = (2 * Math.PI * (i + 0.5)) / count;
-      return solid.translate([radius * Math.cos(angle), radius * Math.sin(angle), 0]);
-    });
-  const body = rod(0.24, 1, 72).add(rod(0.9, 0.52, 64).translate([0, 0, 0.4]));
-  const part = [rod(3, 0.36, 56), ...around(8, 0.77, rod(1, 0.11, 24))].reduce(
-    (solid, hole) => solid.subtract(hole),
-    body,
-  );
+  const rod = (height, radius, sides) => Manifold.cylinder(height, radius, radius, sides, true);
+  const solids = { disc: rod(0.24, 1, 72), neck: rod(0.9, 0.52, 64), bore: rod(3, 0.36, 56), bolt: rod(1, 0.11, 24) };
+  const bolts = Array.from({ length: 8 }, (_, i) => {
+    const angle = (2 * Math.PI * (i + 0.5)) / 8;
+    return solids.bolt.translate([0.77 * Math.cos(angle), 0.77 * Math.sin(angle), 0]);
+  });
+  const body = solids.disc.add(solids.neck.translate([0, 0, 0.4]));
+  const part = [solids.bore, ...bolts].reduce((solid, hole) => solid.subtract(hole), body);
   // The axis points up.
-  const { vertProperties, triVerts, numProp } = part.rotate([-90, 0, 0]).getMesh();
-  const positions = vertProperties.filter((_, i) => i % numProp < 3);
-  return writeMesh({ positions, indices: triVerts, dimension: 3 }, 'flange.ply');
+  const { vertProperties, triVerts, numProp, runIndex, runOriginalID } = part.rotate([-90, 0, 0]).getMesh();
+  const lines = [];
+  for (let at = 0; at < vertProperties.length; at += numProp) {
+    lines.push(`v ${vertProperties.slice(at, at + 3).join(' ')}`);
+  }
+  for (const [name, solid] of Object.entries(solids)) {
+    lines.push(`usemtl ${name}`);
+    for (const run of runOriginalID.keys()) {
+      if (runOriginalID[run] !== solid.originalID()) continue;
+      for (let at = runIndex[run]; at < runIndex[run + 1]; at += 3) {
+        lines.push(
+          `f ${triVerts
+            .slice(at, at + 3)
+            .map((v) => v + 1)
+            .join(' ')}`,
+        );
+      }
+    }
+  }
+  return Buffer.from(`${lines.join('\n')}\n`);
 }
 
 /** Numbers from 0 to 1 that are the same in each build. */
@@ -90,7 +104,7 @@ async function head() {
 /** The most triangles of a surface in a thumbnail. */
 const DRAWN = 1200;
 
-const FILES = { 'bunny.ply': rabbit, 'flange.ply': flange, 'terrain.ply': terrain, 'suzi.glb': head };
+const FILES = { 'bunny.ply': rabbit, 'flange.obj': flange, 'terrain.ply': terrain, 'suzi.glb': head };
 
 /** Writes the files into `models/` and the thumbnails of all samples into `thumbs/`. */
 export async function writeModels(folder) {

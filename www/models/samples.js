@@ -26,10 +26,10 @@ export const SAMPLES = [
     licence: 'public domain',
   },
   {
-    spec: 'models/flange.ply',
+    spec: 'models/flange.obj',
     name: 'Flange',
     short: 'Flange',
-    what: 'A part cut from solids',
+    what: 'A part cut from solids, in four materials',
     thumb: thumb('flange'),
     credit: 'made with manifold-3d',
     licence: 'Apache-2.0',

@@ -8,6 +8,7 @@ import type { Page } from '../watch/page.ts';
 import { palette } from '../watch/palette.ts';
 import type { Backend } from '../watch/run.ts';
 import type { MovingSample } from '../models/samples.js';
+import { stillness } from '../shell/stillness.ts';
 import { onTheme } from '../shell/theme.ts';
 import { Board } from './board.ts';
 import { codeFor } from './code.ts';
@@ -129,9 +130,8 @@ export class Moves {
     this.#move = move;
     element('no-mesh').hidden = true;
     await move.still();
-    const moves = !matchMedia('(prefers-reduced-motion: reduce)').matches;
-    board.state = moves ? 'moving' : 'paused';
-    if (moves) move.play();
+    board.state = stillness.matches ? 'paused' : 'moving';
+    if (!stillness.matches) move.play();
   }
 
   #fail(error: unknown): void {

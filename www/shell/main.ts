@@ -3,6 +3,7 @@
 import type { NamedMesh } from '../engines/index.ts';
 import type { Hero } from '../hero/hero.ts';
 import { number } from './numbers.ts';
+import { stillness } from './stillness.ts';
 import { onTheme, toggleTheme } from './theme.ts';
 
 const part = <T extends HTMLElement>(selector: string): T => {
@@ -14,7 +15,6 @@ const part = <T extends HTMLElement>(selector: string): T => {
 const [live, liveText, playAnyway] = [part('#live'), part('#live-text'), part('#play-anyway')];
 /** Milliseconds from the start of the tool until the rest of the page is loaded. */
 const PATIENCE = 5000;
-const stillness = matchMedia('(prefers-reduced-motion: reduce)');
 
 /** The first view, once it has been shown. */
 let hero: Promise<Hero> | undefined;

@@ -12,6 +12,7 @@ import { Panel } from './panel.ts';
 import type { Run } from './run.ts';
 import type { Shown } from './shown.ts';
 import { Timeline } from './timeline.ts';
+import { stillness } from '../shell/stillness.ts';
 import { showTransport, type Standing } from './transport.ts';
 import { flipsBetween } from './turning.ts';
 import { unitPositions } from './unit.ts';
@@ -21,7 +22,6 @@ const EDGES_SEEN = 50_000;
 
 /** Flips slide if there are at least so many milliseconds from one iteration to the next. */
 const SLOW = 250;
-const STILLNESS = matchMedia('(prefers-reduced-motion: reduce)');
 
 /** How the edges are drawn: in colours, plain, or not at all. */
 export type EdgeLook = 'coloured' | 'plain' | 'none';
@@ -105,7 +105,7 @@ export class Display {
     const { at } = run;
     this.#last = indices && { run, at, indices };
     if (last?.run === run && last.at === at) return;
-    const isStep = indices && last?.run === run && Math.abs(last.at - at) === 1 && !STILLNESS.matches;
+    const isStep = indices && last?.run === run && Math.abs(last.at - at) === 1 && !stillness.matches;
     if (!isStep) return this.#graphics.scene?.turn(new Uint32Array(), 'not');
     const isBack = at < last.at;
     const flips = isBack ? flipsBetween(indices, last.indices) : flipsBetween(last.indices, indices);

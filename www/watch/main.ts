@@ -4,6 +4,7 @@ import './style.css';
 import './transport.css';
 import './gallery.css';
 import './panel.css';
+import './table.css';
 import './overlays.css';
 import '../move/move.css';
 import { FORMATS } from 'edgeflip/files';

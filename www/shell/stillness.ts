@@ -1,0 +1,2 @@
+/** Whether the system asks for less motion. */
+export const stillness = matchMedia('(prefers-reduced-motion: reduce)');
