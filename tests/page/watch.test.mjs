@@ -417,7 +417,7 @@ test('the keys are listed, and Escape closes what is open', async () => {
   await page.until('the second sample', ({ caption, state }) => caption === 'flange.obj' && state !== 'busy');
   assertSameMesh(
     await page.download(),
-    await readMesh(readFileSync(first.path.replace('bunny.ply', 'flange.obj')), 'flange.glb'),
+    await readMesh(readFileSync(first.path.replace('bunny.ply', 'flange.obj')), 'flange.obj'),
     'of sample 2',
   );
   await page.close();
