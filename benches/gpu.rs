@@ -21,8 +21,9 @@ use commit::commit;
 mod warm_up;
 use warm_up::WarmUp;
 
-/// Mesh 5 of the paper; meshes far from Delaunay; large meshes; long runs; ties; nearly collinear points.
-const MESHES: [&str; 10] = [
+/// Mesh 5 of the paper; meshes far from Delaunay; large meshes; long runs; ties; nearly collinear points; the same mesh
+/// in order and in random order.
+const MESHES: [&str; 13] = [
     "uvsphere 600",
     "random 1000",
     "shear 1000",
@@ -33,6 +34,9 @@ const MESHES: [&str; 10] = [
     "regular 2000",
     "fan2 1000",
     "strips 1000",
+    "random 2000",
+    "shuffled random 2000",
+    "shuffled uvsphere 600",
 ];
 
 fn main() -> Result<(), Box<dyn Error>> {

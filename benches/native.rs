@@ -1,5 +1,5 @@
-//! Measures the phases and Lawson's algorithm on the CPU, on one thread and on all cores. If the points are a grid in
-//! the plane, it also measures crates that triangulate the same points from scratch on one thread. `cargo bench --bench
+//! Measures the phases and Lawson's algorithm on the CPU, on one thread and on all cores. In the plane, it also measures
+//! crates that triangulate the same points from scratch on one thread. `cargo bench --bench
 //! native -- [--runs N] [FAMILY…]`, for example `-- "random 300" "uvsphere 1000"`; a family is an argument of
 //! `edgeflip::families::by_name`.
 //!
@@ -23,8 +23,16 @@ use arguments::{Arguments, median};
 static ALLOCATOR: PeakMemAlloc<System> = PeakMemAlloc::system();
 
 /// From 2,000 to 2,000,000 triangles, and twice as many flips.
-const MESHES: [&str; 7] =
-    ["random 33", "random 76", "random 179", "random 423", "random 1001", "shear 1000", "uvsphere 1000"];
+const MESHES: [&str; 8] = [
+    "random 33",
+    "random 76",
+    "random 179",
+    "random 423",
+    "random 1001",
+    "shuffled random 1001",
+    "shear 1000",
+    "uvsphere 1000",
+];
 
 /// A whole job. Returns the times of its parts, which are 0 for other crates.
 type Job<'a> = dyn Fn() -> Result<Timings, Box<dyn Error>> + 'a;
@@ -46,7 +54,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         "On one thread unless the column says otherwise, from arrays to arrays, medians of {runs} interleaved runs."
     );
     println!(
-        "Other crates triangulate the points from scratch; i_triangle gets the inner points and the four corners."
+        "Other crates triangulate the points from scratch; i_triangle gets the inner points and the corners of a grid."
     );
     println!(
         "Ratios are the time of the first divided by that of the second: above 1, the second is faster. Memory is the peak"
@@ -73,7 +81,8 @@ fn table(spec: &str, runs: usize) -> Result<[String; 3], Box<dyn Error>> {
     let points: Vec<Point> = pairs.iter().map(|&[x, y]| Point { x, y }).collect();
     let vertices: Vec<Point2<f64>> = pairs.iter().map(|&[x, y]| Point2::new(x, y)).collect();
     let n = mesh.vertex_count().isqrt();
-    let is_grid = mesh.dimension() == Dimension::Two && n * n == mesh.vertex_count();
+    let is_plane = mesh.dimension() == Dimension::Two;
+    let is_grid = is_plane && n * n == mesh.vertex_count() && !spec.starts_with("shuffled");
     let corners = [0, n - 1, n * n - 1, n * n - n].map(|i| pairs[i]);
     let is_inside = |i: usize| [i % n, i / n].iter().all(|k| (1..n - 1).contains(k));
     let inside: Vec<[f64; 2]> = (0..n * n).filter(|&i| is_inside(i)).map(|i| pairs[i]).collect();
@@ -86,7 +95,7 @@ fn table(spec: &str, runs: usize) -> Result<[String; 3], Box<dyn Error>> {
         contender(&format!("phases on {cores} threads"), || Ok(flip(&mesh, Order::Reproducible, None)?.1)),
         contender(&format!("Lawson on {cores} threads"), || Ok(flip(&mesh, Order::Any, None)?.1)),
     ];
-    if is_grid {
+    if is_plane {
         contenders.push(contender("delaunator", || {
             black_box(delaunator::triangulate(black_box(&points)));
             Ok(Timings::default())
@@ -95,6 +104,8 @@ fn table(spec: &str, runs: usize) -> Result<[String; 3], Box<dyn Error>> {
             black_box(DelaunayTriangulation::<_>::bulk_load(vertices.clone())?.num_vertices());
             Ok(Timings::default())
         }));
+    }
+    if is_grid {
         contenders.push(contender("i_triangle", || {
             let delaunay = corners.triangulate_with_steiner_points(&inside).into_delaunay();
             black_box(delaunay.to_triangulation::<u32>());

@@ -7,7 +7,9 @@ mod simulation;
 use edgeflip::families::by_name;
 use edgeflip::quality::audit;
 use edgeflip::{Backend, Mesh, Options, Reason};
-use simulation::{Expected, Simulation, digests_path, expected, remaining_edges, simulate, simulate_with};
+use simulation::{
+    Digest, Expected, Simulation, digests_path, expected, remaining_edges, simulate, simulate_with,
+};
 
 fn at(max_normal_angle: f64) -> Options {
     Options { max_normal_angle, ..Options::default() }
@@ -95,6 +97,15 @@ fn strips_flip_as_in_the_paper() {
     let run = simulate(&strips, 10.0, None);
     let flips: Vec<_> = run.iterations.iter().map(|record| record.flips).collect();
     assert_eq!(flips, [1, 2, 3, 2, 1]);
+}
+
+/// `tests/package/threads.test.mjs` has the same digest.
+#[test]
+fn a_large_mesh_in_random_order() {
+    let run = simulate(&by_name("shuffled random 260").unwrap(), 10.0, None);
+    let mut end = Digest::default();
+    end.feed(&run.triangles);
+    assert_eq!(end.to_string(), "b84ed3d4281f2ddc");
 }
 
 #[test]

@@ -63,6 +63,7 @@ fn sessions_take_what_they_ask_for() {
     let mut most = 0.0f64;
     for spec in [
         "random 120",
+        "shuffled random 120",
         "shear 120",
         "shear 120 30",
         "regular 120",
@@ -70,6 +71,7 @@ fn sessions_take_what_they_ask_for() {
         "fan2 6000",
         "sweep 6000",
         "uvsphere 100",
+        "shuffled uvsphere 100",
         "uvsphere 100 0.5",
         "roof 100",
         "pillow 6000",

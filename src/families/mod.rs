@@ -7,9 +7,11 @@
 
 mod lattice;
 mod plane;
+mod shuffled;
 mod space;
 
 pub use plane::{fan2, grid, random, regular, shear, strips, sweep};
+pub use shuffled::shuffled;
 pub use space::{pillow, pole, roof, uvsphere};
 
 use crate::{Error, Mesh};
@@ -21,7 +23,7 @@ pub const NAMES: [&str; 11] =
 /// What [`by_name`] accepts, for messages and `--help`.
 pub const USAGE: &str = "grid N, random N [K=2], shear N [S=3], regular N [OFFSET=0], strips N, fan2 N, \
     sweep N, uvsphere N [AMPLITUDE=0.05], roof N, pillow N [H=0.1] or pole N, each with an optional \
-    seed=SEED at the end";
+    seed=SEED at the end; with `shuffled` before it, vertices and triangles are in random order";
 
 /// The seed that [`by_name`] takes when the specification names none.
 pub const DEFAULT_SEED: u64 = 1;
@@ -33,6 +35,10 @@ pub const DEFAULT_SEED: u64 = 1;
 /// [`Error::Option`] when the specification is not understood, [`Error::TooLarge`] when 32 bits cannot
 /// index the mesh.
 pub fn by_name(spec: &str) -> Result<Mesh, Error> {
+    if let Some(spec) = spec.strip_prefix("shuffled ") {
+        let seed = parse(spec).ok_or_else(|| wrong(spec))?.3;
+        return Ok(shuffled(&by_name(spec)?, seed));
+    }
     let (name, n, parameter, seed) = parse(spec).ok_or_else(|| wrong(spec))?;
     let number = |default: f64| parameter.unwrap_or(default);
     match name {

@@ -1,6 +1,7 @@
 //! `Mesh`: positions and triangles. The constructor checks them, so that no later code can fail on them.
 
 pub(crate) mod adjacency;
+pub(crate) mod arrangement;
 pub(crate) mod buckets;
 pub(crate) mod dimension;
 pub(crate) mod edges;
@@ -85,6 +86,11 @@ impl Mesh {
             return Err(Error::IndexOutOfRange { triangle: i / 3, index: triangles[i], vertices });
         }
         Ok(Self { dimension, positions, triangles })
+    }
+
+    /// The same vertices and triangles in another order.
+    pub(crate) fn reordered(&self, positions: Positions, triangles: Vec<u32>) -> Self {
+        Self { dimension: self.dimension, positions, triangles }
     }
 
     /// Plane or space.

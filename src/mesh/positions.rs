@@ -48,6 +48,17 @@ impl Positions {
         matches!(self, Self::F64(_))
     }
 
+    /// Their words: one for each 32-bit float, two for each 64-bit float.
+    pub(crate) fn words_mut(&mut self) -> &mut [u32] {
+        match self {
+            Self::F32(numbers) => zerocopy::transmute_mut!(numbers.as_mut_slice()),
+            Self::F64(numbers) => {
+                let pairs: &mut [[u32; 2]] = zerocopy::transmute_mut!(numbers.as_mut_slice());
+                pairs.as_flattened_mut()
+            }
+        }
+    }
+
     /// The coordinates in their order; f32 to f64 is exact.
     pub fn iter(&self) -> impl DoubleEndedIterator<Item = f64> + ExactSizeIterator {
         (0..self.len()).map(|i| self.at(i))

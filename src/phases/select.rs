@@ -8,8 +8,9 @@ use crate::mesh::star::{Star, any_in_either};
 /// For each triangle, the twin of its half-edge that flips, or [`NONE`]. `best` is the result of
 /// [`label`](super::label()).
 pub(crate) fn select(mesh: Topology, iteration: u32, best: &[u32]) -> Vec<u32> {
+    let key = |[h, g]: [u32; 2]| key(h.min(g), iteration);
     let selected = |t: u32| match mutual(best, t) {
-        Some((h, g)) if !yields(mesh, iteration, h, g, |t| mutual(best, t)) => g,
+        Some((h, g)) if !yields(mesh, key, [h, g], |t| mutual(best, t)) => g,
         _ => NONE,
     };
     (0..best.len() as u32).map(selected).collect()
@@ -31,17 +32,16 @@ fn mutual(best: &[u32], t: u32) -> Option<(u32, u32)> {
 /// the half-edge of a triangle whose edge is the best of both triangles of the edge, and the twin of this half-edge.
 pub(crate) fn yields(
     mesh: Topology,
-    iteration: u32,
-    h: u32,
-    g: u32,
+    key: impl Fn([u32; 2]) -> u32,
+    [h, g]: [u32; 2],
     mutual: impl Fn(u32) -> Option<(u32, u32)>,
 ) -> bool {
     let [c, d] = [h, g].map(|x| mesh.triangles[prev(x) as usize]);
-    let mine = key(h.min(g), iteration);
+    let mine = key([h, g]);
     let star = |corner| Star::new(mesh.triangles, mesh.twins, mesh.fans, corner);
     let wins = |corner: u32, far: u32| {
         mutual(corner / 3).is_some_and(|(x, y)| {
-            x == next(corner) && mesh.triangles[prev(y) as usize] == far && key(x.min(y), iteration) < mine
+            x == next(corner) && mesh.triangles[prev(y) as usize] == far && key([x, y]) < mine
         })
     };
     any_in_either((star(prev(h)), |corner| wins(corner, d)), (star(prev(g)), |corner| wins(corner, c)))

@@ -143,7 +143,7 @@ fn open<'a>(backend: Backend, mesh: &'a Arc<Mesh>, options: &'a Options) -> Answ
         let cpu = || {
             memory::check(memory_bounds::bytes(mesh, options))?;
             let threads = Threads::new(options.threads, mesh.triangle_count())?;
-            Ok::<_, Error>(Cpu::new(mesh.clone(), thresholds, threads))
+            Ok::<_, Error>(Cpu::arranged(mesh.clone(), thresholds, threads))
         };
         let mut engine = match (backend, options.order) {
             (Backend::Gpu, _) => open_gpu::engine(mesh, options).await?,

@@ -1,6 +1,7 @@
 //! How much memory a session takes on the CPU. `tests/memory_bounds.rs` measures each family of meshes against these
 //! bounds.
 
+use crate::mesh::arrangement::Arrangement;
 use crate::{Dimension, Mesh, Options, Order};
 
 /// Bytes per triangle to make the list of edges, or of their states.
@@ -33,7 +34,9 @@ pub(super) fn bytes(mesh: &Mesh, options: &Options) -> u64 {
         (Order::Any, Dimension::Three) => 84,
     };
     let changes = if options.track_changes { 4 } else { 0 };
+    let arrangement = if Arrangement::is_needed(mesh) { Arrangement::bytes(mesh) } else { 0 };
     (triangle + changes) * mesh.triangle_count() as u64
         + VERTEX * mesh.vertex_count() as u64
         + LOCKED * options.locked_edges.len() as u64
+        + arrangement
 }

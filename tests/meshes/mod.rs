@@ -51,10 +51,13 @@ pub fn all() -> Vec<Case> {
         "fan2 300",
         "sweep 300",
         "sweep 1000",
+        "shuffled random 25",
     ] {
         cases.push(case(&spec.replace(' ', "-"), by_name(spec).unwrap(), 10.0));
     }
-    for spec in ["uvsphere 20", "roof 10", "pole 100", "pillow 3", "pillow 3 0.9", "pillow 8"] {
+    for spec in
+        ["uvsphere 20", "shuffled uvsphere 20", "roof 10", "pole 100", "pillow 3", "pillow 3 0.9", "pillow 8"]
+    {
         for beta in [0.0, 10.0, 60.0, 90.0, 180.0] {
             cases.push(case(&spec.replace(' ', "-"), by_name(spec).unwrap(), beta));
         }

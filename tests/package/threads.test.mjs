@@ -8,6 +8,7 @@ import { fileURLToPath } from 'node:url';
 import workers from 'node:worker_threads';
 import { FlipSession, init, makeDelaunay } from 'edgeflip';
 import { generate } from 'edgeflip/files';
+import { Digest } from '../parity/digest.js';
 
 /** The started workers. Without them a test would not notice that a session runs on one thread. */
 const started = [];
@@ -18,7 +19,7 @@ workers.Worker = class extends workers.Worker {
   }
 };
 
-const meshes = await Promise.all(['random 190', 'shear 190', 'uvsphere 190'].map(generate));
+const meshes = await Promise.all(['random 190', 'shear 190', 'uvsphere 190', 'shuffled random 260'].map(generate));
 
 test('the module of the threads can be loaded from bytes', async () => {
   await init({ threads: readFileSync(new URL('../../dist/wasm/edgeflip_threads_bg.wasm', import.meta.url)) });
@@ -37,6 +38,11 @@ test('the result is the same for any number of threads, in both orders', async (
     }
   }
   assert.equal(started.length, 2 + 3);
+});
+
+test('a large mesh in random order flips as tests/digests.rs says', async () => {
+  const { indices } = await makeDelaunay(meshes[3], { backend: 'cpu', threads: 2 });
+  assert.equal(new Digest(indices).toString(), 'b84ed3d4281f2ddc');
 });
 
 test('doubles, locked edges, a limit of iterations and moved vertices give the same as on one thread', async () => {

@@ -1,6 +1,7 @@
 //! What a session asks of the CPU engine.
 
-use super::engine::{Cpu, Moving};
+use super::engine::Cpu;
+use super::motion::Motion;
 use crate::engine::{Answer, Census, EdgeCounts, Engine, Moved};
 use crate::mesh::embedded::Embedded;
 use crate::mesh::half_edge;
@@ -10,7 +11,7 @@ use std::sync::Arc;
 
 impl Engine for Cpu {
     fn lock(&mut self, half_edges: Vec<u32>) -> Answer<'_, ()> {
-        half_edge::lock(&mut self.twins, &half_edges);
+        half_edge::lock(&mut self.twins, &self.arrangement.half_edges(half_edges));
         Box::pin(std::future::ready(Ok(())))
     }
 
@@ -25,16 +26,16 @@ impl Engine for Cpu {
     }
 
     fn triangles(&mut self) -> Answer<'_, Vec<u32>> {
-        let mut triangles = Vec::new();
-        self.threads.append(&mut triangles, &self.triangles);
+        let triangles = self.arrangement.named_triangles(&self.triangles, &self.threads);
         Box::pin(std::future::ready(Ok(triangles)))
     }
 
     fn twins(&mut self) -> Answer<'_, Vec<u32>> {
-        Box::pin(std::future::ready(Ok(self.twins.clone())))
+        Box::pin(std::future::ready(Ok(self.arrangement.named_twins(&self.twins, &self.threads))))
     }
 
     fn set_positions(&mut self, mesh: Arc<Mesh>) -> Answer<'_, ()> {
+        let mesh = self.arrangement.mesh(mesh, &self.triangles, &self.threads);
         let Self { thresholds, winding, embedded, outline, triangles, twins, threads, .. } = self;
         let guess = Some(std::mem::take(winding));
         (*winding, *embedded) = Embedded::with_winding(&mesh, twins, guess, outline, threads);
@@ -44,7 +45,7 @@ impl Engine for Cpu {
         self.settle(Vec::new(), false);
         self.iteration = 0;
         let changes = vec![0; self.moving.changes.len()];
-        self.moving = Moving { changes, ..Moving::default() };
+        self.moving = Motion { changes, ..Motion::default() };
         self.mesh = mesh;
         Box::pin(std::future::ready(Ok(())))
     }
@@ -72,11 +73,13 @@ impl Engine for Cpu {
     }
 
     fn changes(&mut self) -> Answer<'_, Vec<u32>> {
-        Box::pin(std::future::ready(Ok(self.moving.changes.clone())))
+        Box::pin(std::future::ready(Ok(self.arrangement.named_words(&self.moving.changes))))
     }
 
     fn positions(&mut self) -> Answer<'_, Positions> {
-        Box::pin(std::future::ready(Ok(self.geometry().positions.clone())))
+        Box::pin(std::future::ready(Ok(self
+            .arrangement
+            .named_positions(self.geometry().positions, &self.threads))))
     }
 
     fn batch(&self) -> u32 {

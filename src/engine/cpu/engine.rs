@@ -1,8 +1,10 @@
 //! The phases on the CPU, edge by edge, on several threads. Lists hold the edges that are not Delaunay. An edge is
 //! tested again only if one of its triangles has flipped.
 
+use super::motion::Motion;
 use super::region::TopologyMut;
 use crate::engine::{Census, EdgeCounts};
+use crate::mesh::arrangement::Arrangement;
 use crate::mesh::embedded::Embedded;
 use crate::mesh::half_edge::{CREASE, FLAGS, LOCKED, prev, unflagged};
 use crate::mesh::star::Fans;
@@ -12,7 +14,7 @@ use crate::phases::{
     keep_non_delaunay, key, makes_duplicate, move_anchors, verdict, verdict_of_shape, yields,
 };
 use crate::system::threads::{Threads, Word, shared};
-use crate::{Adjacency, Dimension, Mesh, NONE, Positions};
+use crate::{Adjacency, Dimension, Mesh, NONE};
 use std::hint::black_box;
 use std::ops::Range;
 use std::sync::Arc;
@@ -24,7 +26,7 @@ const EDGES: usize = 256;
 /// The fewest candidates of a part. With fewer, one thread finishes before another starts.
 const FEWEST: usize = if cfg!(debug_assertions) { 4 } else { 512 };
 
-/// An edge by its half-edges, the lower one first.
+/// An edge by its half-edges, first the one with the lower name, see [`Arrangement::name`].
 type Edge = [u32; 2];
 
 /// Flag in the second half-edge of a candidate: its flip would make an edge that exists.
@@ -59,7 +61,9 @@ fn touch(words: impl Iterator<Item = u32>) {
 /// The state of a mesh between two iterations.
 pub(crate) struct Cpu {
     pub(super) threads: Threads,
+    /// The mesh in the order of `arrangement`, as everything below.
     pub(super) mesh: Arc<Mesh>,
+    pub(super) arrangement: Arrangement,
     pub(super) thresholds: Thresholds,
     pub(super) winding: Winding,
     pub(super) embedded: Embedded,
@@ -81,50 +85,35 @@ pub(crate) struct Cpu {
     changed: Vec<AtomicU32>,
     pub(super) iteration: u32,
     /// What the updates have made of the mesh.
-    pub(super) moving: Moving,
-}
-
-/// The state of updates.
-#[derive(Default)]
-pub(super) struct Moving {
-    /// The present positions, if they are not those of the mesh.
-    pub(super) positions: Option<Positions>,
-    /// Whether there may be numbers that are not finite.
-    pub(super) has_infinite: bool,
-    /// The first iteration of the next update.
-    pub(super) next: u32,
-    /// The number of updates.
-    pub(super) updates: u32,
-    /// The update in which each triangle last changed; empty if nobody asks for it.
-    pub(super) changes: Vec<u32>,
-    /// Flips of all updates.
-    pub(super) flips: u64,
-    /// Flips of the last update.
-    pub(super) last_flips: usize,
-}
-
-impl Moving {
-    fn geometry<'a>(
-        &'a self,
-        mesh: &'a Mesh,
-        winding: &'a Winding,
-        embedded: &'a Embedded,
-        thresholds: Thresholds,
-    ) -> Geometry<'a> {
-        let positions = self.positions.as_ref().unwrap_or(mesh.positions());
-        let (dimension, has_infinite) = (mesh.dimension(), self.has_infinite);
-        Geometry { dimension, positions, thresholds, winding, embedded, has_infinite }
-    }
+    pub(super) moving: Motion,
 }
 
 impl Cpu {
     /// Builds the adjacency.
     pub(crate) fn new(mesh: Arc<Mesh>, thresholds: Thresholds, threads: Threads) -> Self {
-        let threads = threads.for_triangles(mesh.triangle_count());
-        threads.clone().enter(|| Self::prepared(mesh, thresholds, threads))
+        Self::with(Arrangement::default(), mesh, thresholds, threads)
     }
 
-    fn prepared(mesh: Arc<Mesh>, thresholds: Thresholds, threads: Threads) -> Self {
+    /// The same, after arranging a mesh whose neighbours are far from each other in memory.
+    pub(crate) fn arranged(mesh: Arc<Mesh>, thresholds: Thresholds, threads: Threads) -> Self {
+        let threads = threads.for_triangles(mesh.triangle_count());
+        threads.clone().enter(|| match Arrangement::of(&mesh, &threads) {
+            Some((arrangement, mesh)) => Self::with(arrangement, Arc::new(mesh), thresholds, threads),
+            None => Self::with(Arrangement::default(), mesh, thresholds, threads),
+        })
+    }
+
+    pub(super) fn with(
+        arrangement: Arrangement,
+        mesh: Arc<Mesh>,
+        thresholds: Thresholds,
+        threads: Threads,
+    ) -> Self {
+        let threads = threads.for_triangles(mesh.triangle_count());
+        threads.clone().enter(|| Self::prepared(arrangement, mesh, thresholds, threads))
+    }
+
+    fn prepared(arrangement: Arrangement, mesh: Arc<Mesh>, thresholds: Thresholds, threads: Threads) -> Self {
         let adjacency = Adjacency::of_triangles(mesh.vertex_count(), mesh.triangles(), &threads);
         let mut outline = None;
         let (winding, embedded) =
@@ -150,10 +139,11 @@ impl Cpu {
             selected: Selected::default(),
             changed: Vec::new(),
             iteration: 0,
-            moving: Moving::default(),
+            moving: Motion::default(),
             triangles,
             twins,
             mesh,
+            arrangement,
             threads,
         }
     }
@@ -238,7 +228,7 @@ impl Cpu {
         let count = keep_non_delaunay(&geometry, diamonds);
         for diamond in &diamonds[..count] {
             let (h, g, [_, _, c, d]) = (diamond.h, unflagged(diamond.twin), diamond.vertices);
-            let edge = [h.min(g), h.max(g)];
+            let edge = if self.arrangement.name(h) < self.arrangement.name(g) { [h, g] } else { [g, h] };
             match verdict_of_shape(&geometry, diamond) {
                 Verdict::Labelled if self.embedded.at(c) | self.embedded.at(d) => candidates.push(edge),
                 Verdict::Labelled => candidates.push(self.guarded(edge)),
@@ -282,11 +272,12 @@ impl Cpu {
     /// Select: an edge flips if it has the smallest key in both its triangles and does not yield.
     fn select(&mut self) {
         let mut parts = std::mem::take(&mut self.parts);
-        let Self { threads, selected, iteration, .. } = &*self;
+        let Self { threads, selected, arrangement, iteration, .. } = &*self;
+        let key = |h: u32| key(arrangement.name(h), *iteration);
         threads.each(&mut parts, |part| {
             for &[h, twin] in &part.candidates {
                 if twin & DUPLICATE == 0 {
-                    selected.bid([h, unflagged(twin)], key(h, *iteration));
+                    selected.bid([h, unflagged(twin)], key(h));
                 }
             }
         });
@@ -297,7 +288,7 @@ impl Cpu {
                 for &[h, twin] in candidates {
                     let g = unflagged(twin);
                     let may = twin & DUPLICATE == 0;
-                    let [has_h, has_g] = [h, g].map(|x| may & selected.has_won(x, key(h, *iteration)));
+                    let [has_h, has_g] = [h, g].map(|x| may & selected.has_won(x, key(h)));
                     wins[counts[0]] = [h, twin];
                     counts[0] += usize::from(has_h & has_g);
                     halves[counts[1]] = if has_h { h } else { g };
@@ -316,7 +307,8 @@ impl Cpu {
             let mut is_yielding = false;
             for [h, twin] in part.flipped.iter_mut().filter(|[_, twin]| twin & GUARDED != 0) {
                 *twin = unflagged(*twin);
-                if yields(self.topology(), *iteration, *h, *twin, |t| selected.pair(t)) {
+                let key = |[h, g]: Edge| key(if arrangement.name(h) < arrangement.name(g) { h } else { g });
+                if yields(self.topology(), key, [*h, *twin], |t| selected.pair(t)) {
                     *twin |= DUPLICATE;
                     is_yielding = true;
                 }
@@ -364,7 +356,7 @@ impl Cpu {
                 }));
             }
         });
-        let Moving { changes, updates, .. } = moving;
+        let Motion { changes, updates, .. } = moving;
         if !changes.is_empty() {
             for half_edge in parts.iter().flat_map(|part| part.flipped.as_flattened()) {
                 changes[unflagged(*half_edge) as usize / 3] = *updates;

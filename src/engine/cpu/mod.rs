@@ -3,8 +3,11 @@
 mod answers;
 mod engine;
 mod lawson;
+mod motion;
 mod moving;
 mod region;
+#[cfg(test)]
+mod tests;
 
 pub(crate) use engine::Cpu;
 pub(crate) use lawson::Lawson;

@@ -6,6 +6,7 @@ use crate::mesh::embedded::{Embedded, Shape};
 use crate::mesh::half_edge::unflagged;
 use crate::phases::{Diamond, flag_creases, is_finite};
 use crate::{Dimension, NONE, Positions};
+use std::borrow::Cow;
 
 /// An update that flips less than one edge for so many triangles flips few.
 const FEW: usize = 16;
@@ -13,9 +14,10 @@ const FEW: usize = 16;
 impl Cpu {
     /// Takes over new positions: tests the stars and the creases again, and forgets the lists.
     pub(super) fn move_to(&mut self, positions: Option<Positions>) {
-        let Self { mesh, thresholds, winding, embedded, triangles, twins, threads, moving, .. } = self;
-        if positions.is_some() {
-            moving.positions = positions;
+        let Self { mesh, arrangement, thresholds, winding, embedded, .. } = self;
+        let Self { triangles, twins, threads, moving, .. } = self;
+        if let Some(positions) = positions {
+            moving.positions = Some(arrangement.arranged(Cow::Owned(positions), threads));
         }
         let positions = moving.positions.as_ref().unwrap_or(mesh.positions());
         moving.has_infinite = !positions.are_finite(threads);
