@@ -3,9 +3,12 @@
 import { EDGE_STATES, type EdgeState } from 'edgeflip';
 import { LineSegmentsGeometry } from 'three/addons/lines/LineSegmentsGeometry.js';
 import { LineSegments2 } from 'three/addons/lines/webgpu/LineSegments2.js';
-import { Group, Line2NodeMaterial } from 'three/webgpu';
+import { Group, Line2NodeMaterial, Triangle, Vector3 } from 'three/webgpu';
 import type { Palette } from './palette.ts';
 import { LOOKS } from './states.ts';
+
+/** The most of the picture that Delaunay edges may cover before they fade, and the least opacity. */
+const [COVERED, FAINTEST] = [0.4, 0.4];
 
 /** Widths in pixels: of Delaunay edges, of boundary edges, and of all others. */
 function widthsFor(triangles: number): { plain: number; boundary: number; coloured: number } {
@@ -16,6 +19,8 @@ function widthsFor(triangles: number): { plain: number; boundary: number; colour
 
 export class EdgeLines {
   readonly group = new Group();
+  /** The material of the Delaunay edges, and the share of the surface that they cover if a pixel has the size 1. */
+  #plain: { material: Line2NodeMaterial; density: number } | undefined;
 
   /** `positions` has 3 numbers per vertex, `states` one entry per half-edge. */
   show(positions: Float32Array, indices: Uint32Array, states: Uint8Array, palette: Palette): void {
@@ -40,9 +45,12 @@ export class EdgeLines {
       const geometry = new LineSegmentsGeometry();
       geometry.setPositions(new Float32Array(ends));
       const { dash } = LOOKS[name];
-      const material = new Line2NodeMaterial({ color: palette.states[name], dashed: dash !== undefined });
+      const color = palette.states[name];
+      const material = new Line2NodeMaterial({ color, dashed: dash !== undefined, transparent: true });
       material.linewidth = name === 'delaunay' ? widths.plain : name === 'boundary' ? widths.boundary : widths.coloured;
       if (dash) Object.assign(material, { dashSize: dash[0], gapSize: dash[1] });
+      if (name === 'delaunay')
+        this.#plain = { material, density: (widths.plain * lengthOf(ends)) / areaOf(positions, indices) };
       const lines = new LineSegments2(geometry, material);
       if (dash) lines.computeLineDistances();
       lines.frustumCulled = false;
@@ -52,20 +60,48 @@ export class EdgeLines {
     });
   }
 
-  /** Sets the size of a pixel in the scene, so that dashes have their lengths in pixels. */
+  /**
+   * Sets the size of a pixel in the scene, so that dashes have their lengths in pixels, and so that dense edges are
+   * faint.
+   */
   setPixel(size: number): void {
+    if (this.#plain) {
+      const opacity = COVERED / (size * this.#plain.density);
+      this.#plain.material.opacity = Math.min(1, Math.max(FAINTEST, opacity));
+    }
     for (const { material } of this.group.children as LineSegments2[]) {
       (material as Line2NodeMaterial & { scale: number }).scale = 1 / size;
     }
   }
 
   clear(): void {
+    this.#plain = undefined;
     for (const lines of [...this.group.children] as LineSegments2[]) {
       lines.geometry.dispose();
       lines.material.dispose();
       this.group.remove(lines);
     }
   }
+}
+
+/** The length of all pieces of line; `ends` has 6 numbers for each. */
+function lengthOf(ends: readonly number[]): number {
+  let length = 0;
+  for (let i = 0; i < ends.length; i += 6) {
+    length += Math.hypot(ends[i + 3]! - ends[i]!, ends[i + 4]! - ends[i + 1]!, ends[i + 5]! - ends[i + 2]!);
+  }
+  return length;
+}
+
+function areaOf(positions: Float32Array, indices: Uint32Array): number {
+  const corners = [new Vector3(), new Vector3(), new Vector3()] as const;
+  const triangle = new Triangle(...corners);
+  let area = 0;
+  for (let h = 0; h < indices.length; h += 3) {
+    corners.forEach((corner, k) => corner.fromArray(positions, 3 * indices[h + k]!));
+    area += triangle.getArea();
+  }
+  return area;
 }
 
 /** Whether a half-edge in this state has no twin. */
