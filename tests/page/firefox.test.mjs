@@ -1,9 +1,11 @@
-// Tests the demo page in Firefox: plays, scrubs and draws a file on every engine, bit for bit as in Node.
+// Tests the demo page in Firefox: plays, scrubs and draws a file on every engine, bit for bit as in Node; moves a mesh;
+// and what a visitor does besides.
 
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
+import { readMesh } from 'edgeflip/files';
 import { startFirefox } from '../browsers.mjs';
-import { assertPlays, expected, meshFile, openEdgeflip, tidyUp } from './page.mjs';
+import { assertPlays, expected, first, meshFile, openEdgeflip, tidyUp } from './page.mjs';
 
 let browser;
 before(async () => (browser = await startFirefox()));
@@ -54,3 +56,59 @@ for (const backend of ['webgpu', 'cpu']) {
     await page.close();
   });
 }
+
+test('β, an inspected edge, before and now, a saved file and a link in Firefox', async () => {
+  const page = await openEdgeflip(browser);
+  await page.page.evaluate(() => {
+    const make = URL.createObjectURL;
+    URL.createObjectURL = (blob) => {
+      window.saved = blob;
+      return make.call(URL, blob);
+    };
+    const beta = document.getElementById('beta');
+    beta.value = '60';
+    beta.dispatchEvent(new Event('change', { bubbles: true }));
+  });
+  await page.until('a new run', ({ facts, state }) => facts['β'] === '60°' && state === 'ready');
+  const { indices, facts, fingerprints } = await expected(first.path, 60);
+  assert.equal((await page.playToEnd()).facts.Fingerprint, facts.Fingerprint);
+  const result = await page.picture();
+  assert.equal((await page.scrub('Home')).facts.Fingerprint, fingerprints[0]);
+
+  const press = async (key) => {
+    await page.page.evaluate(() => document.activeElement.blur());
+    await page.page.keyboard.press(key);
+  };
+  const text = (id) => page.page.evaluate((name) => document.getElementById(name).textContent, id);
+  await press('n');
+  assert.match(await text('inspect'), /Flips now.*\d+°.*more than 180°/s);
+  await press('Escape');
+
+  const input = await page.picture();
+  await page.scrub('End');
+  await press('c');
+  await page.page.evaluate(() => {
+    const cut = document.getElementById('cut');
+    cut.value = '1000';
+    cut.dispatchEvent(new Event('input', { bubbles: true }));
+    document.getElementById('halves').style.opacity = '0';
+  });
+  const left = await page.picture();
+  assert.ok(left.differsFrom(input) < left.differsFrom(result), 'left of the cut is the input');
+  await press('c');
+
+  await page.page.click('#take');
+  await page.page.click('#download');
+  await page.page.waitForFunction(() => window.saved);
+  const saved = await page.page.evaluate(async () => [...new Uint8Array(await window.saved.arrayBuffer())]);
+  assert.deepEqual((await readMesh(Uint8Array.from(saved), first.path)).indices, indices);
+
+  const link = new URL(page.page.url());
+  link.hash = 'watch?mesh=uvsphere+28+0.1&at=1&engine=cpu&beta=60';
+  await page.page.goto('about:blank');
+  await page.page.goto(link.href);
+  const sphere = await expected(await meshFile(surface.spec, 'linked.ply'), 60);
+  const opened = await page.until('its iteration', ({ at, measured }) => at === '1' && measured === '1');
+  assert.deepEqual([opened.caption, opened.facts.Fingerprint], [surface.spec, sphere.fingerprints[1]]);
+  await page.close();
+});
