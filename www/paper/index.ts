@@ -146,7 +146,7 @@ function openQuestions(measured: Measured): HTMLElement {
       'li',
       '',
       made('b', '', 'Selection on the GPU or on the CPU?'),
-      ` The paper selects on the CPU. On ${number.format(largest.edges)} edges its way takes ${significant.format(flips)} times as long for the flips, and ${significant.format(all)} times as long from arrays to arrays.${fault}`,
+      ` The paper selects on the CPU. On ${number.format(largest.edges)} edges its way takes ${significant.format(flips)} times as long for the flips, and ${significant.format(all)} times as long from input to result.${fault}`,
     ),
   );
 }

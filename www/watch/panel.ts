@@ -142,12 +142,22 @@ export class Panel {
 const typical = (before: Quality, now: Quality | undefined) =>
   `typical smallest ${Math.round(before.angles.meanMin)}°${now && now !== before ? ` → ${Math.round(now.angles.meanMin)}°` : ''}`;
 
+/** What is said of edges that are not Delaunay, by the reason. */
+const LEFT: Record<string, string> = {
+  angle: 'at a crease',
+  fold: 'would fold',
+  duplicate: 'exist already',
+  locked: 'locked',
+  deviation: 'too far',
+  stopped: 'can flip',
+};
+
 /** A text with the number of edges by reason. */
 export function reasons(by: Reasons): string {
   const parts = Object.entries(by).filter(([, count]) => count > 0);
-  if (parts.length === 0) return 'none';
   const sum = parts.reduce((total, [, count]) => total + count, 0);
-  return `${number.format(sum)} (${parts.map(([reason, count]) => `${reason === 'stopped' ? 'can flip' : reason} ${number.format(count)}`).join(', ')})`;
+  const texts = parts.map(([reason, count]) => `${number.format(count)} ${LEFT[reason] ?? reason}`);
+  return texts.length > 1 ? `${number.format(sum)}: ${texts.join(', ')}` : (texts[0] ?? 'none');
 }
 
 /** The edges of the shown state that are not Delaunay, as the next iteration counted them. */

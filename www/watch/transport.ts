@@ -40,11 +40,14 @@ export function showTransport(timeline: Timeline, standing: Standing): void {
   element('note').textContent = noteOn(standing);
   element('note').hidden = element('note').textContent === '';
   element('caption').textContent = opened?.title ?? '';
-  element('about').textContent = opened
-    ? [opened.what, counted(opened.mesh.indices.length / 3, 'triangle'), opened.remark].filter(Boolean).join(', ')
-    : '';
+  element('about').textContent = opened ? about(opened) : '';
   const state = isBusy ? 'busy' : !run ? 'empty' : isPlaying ? 'playing' : run.isOver ? 'done' : 'ready';
   Object.assign(document.body.dataset, { state, mesh: opened?.name ?? '', newest: `${run?.iterations.length ?? 0}` });
+}
+
+function about({ what, mesh, remark }: Opened): string {
+  const mostly = [what, counted(mesh.indices.length / 3, 'triangle')].filter(Boolean).join(', ');
+  return remark ? `${mostly}. ${remark}` : mostly;
 }
 
 /** What is left and why, what reading changed, and why the engine is where it is. */
