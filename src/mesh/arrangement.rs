@@ -78,7 +78,7 @@ impl Arrangement {
         (arrangement, mesh)
     }
 
-    fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         self.triangles.is_empty()
     }
 

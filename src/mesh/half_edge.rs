@@ -57,7 +57,6 @@ pub(crate) fn lock(twins: &mut [u32], half_edges: &[u32]) {
 }
 
 /// The half-edges whose entries have [`LOCKED`].
-#[cfg(feature = "gpu")]
 pub(crate) fn locked(twins: &[u32]) -> Vec<u32> {
     let is_locked = |entry: u32| entry != NONE && entry & LOCKED != 0;
     (0..).zip(twins).filter(|&(_, &entry)| is_locked(entry)).map(|(h, _)| h).collect()

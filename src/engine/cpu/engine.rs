@@ -6,7 +6,7 @@ use super::region::TopologyMut;
 use crate::engine::{Census, EdgeCounts};
 use crate::mesh::arrangement::Arrangement;
 use crate::mesh::embedded::Embedded;
-use crate::mesh::half_edge::{CREASE, FLAGS, LOCKED, prev, unflagged};
+use crate::mesh::half_edge::{self, CREASE, FLAGS, LOCKED, prev, unflagged};
 use crate::mesh::star::Fans;
 use crate::mesh::winding::{Outline, Winding};
 use crate::phases::{
@@ -90,6 +90,7 @@ pub(crate) struct Cpu {
 
 impl Cpu {
     /// Builds the adjacency.
+    #[cfg(any(test, feature = "gpu"))]
     pub(crate) fn new(mesh: Arc<Mesh>, thresholds: Thresholds, threads: Threads) -> Self {
         Self::with(Arrangement::default(), mesh, thresholds, threads)
     }
@@ -101,6 +102,18 @@ impl Cpu {
             Some((arrangement, mesh)) => Self::with(arrangement, Arc::new(mesh), thresholds, threads),
             None => Self::with(Arrangement::default(), mesh, thresholds, threads),
         })
+    }
+
+    /// Becomes a new engine with the same locks, arranged for `mesh`, which has the present triangles.
+    pub(super) fn begin_again(&mut self, mesh: Arc<Mesh>) {
+        let locked = half_edge::locked(&self.arrangement.named_twins(&self.twins, &self.threads));
+        // Frees the memory that the new engine needs.
+        (self.triangles, self.twins, self.blocked) = (Vec::new(), Vec::new(), Vec::new());
+        self.arrangement = Arrangement::default();
+        let changes = vec![0; self.moving.changes.len()];
+        *self = Self::arranged(mesh, self.thresholds, self.threads.clone());
+        half_edge::lock(&mut self.twins, &self.arrangement.half_edges(locked));
+        self.moving.changes = changes;
     }
 
     pub(super) fn with(

@@ -8,6 +8,7 @@
 use super::engine::Cpu;
 use super::region::{Region, Work};
 use crate::engine::{Answer, Census, EdgeCounts, Engine, Moved};
+use crate::mesh::arrangement::Arrangement;
 use crate::{EngineKind, Error, Mesh, Positions};
 use std::sync::Arc;
 
@@ -84,7 +85,12 @@ impl Engine for Lawson {
 
     fn set_positions(&mut self, mesh: Arc<Mesh>) -> Answer<'_, ()> {
         self.has_ended = false;
-        self.cpu.set_positions(mesh)
+        // The order of the flips depends on the arrangement.
+        if self.cpu.arrangement.is_empty() && !Arrangement::is_needed(&mesh) {
+            return self.cpu.set_positions(mesh);
+        }
+        self.cpu.begin_again(mesh);
+        Box::pin(std::future::ready(Ok(())))
     }
 
     /// Flips to the end, because there are no iterations to count; with none, it only takes over the positions.
