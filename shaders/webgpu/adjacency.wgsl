@@ -1,42 +1,44 @@
-// Finds the twins from the triangles, as src/mesh/adjacency.rs, by buckets: counts the half-edges of each bucket,
-// allocates, scatters, matches. Then finds out whether vertices have several fans. The order within a bucket depends on
-// the device; no result depends on it.
+// Finds the twins from the triangles, as src/mesh/adjacency.rs, with a hash table of edges. Then finds out whether
+// vertices have several fans. Where an edge is in the table depends on the device; no result depends on it.
 #import mesh
 
 const WORKGROUP_SIZE: u32 = 256u;
-// Buckets that one invocation of `allocate` sums.
-const BUCKETS_EACH: u32 = 8u;
 
 // Words of `counters`.
-const ALLOCATED: u32 = 0u;
-const EDGES: u32 = 1u;
-const BOUNDARY: u32 = 2u;
-const NON_MANIFOLD: u32 = 3u;
-const INCONSISTENT: u32 = 4u;
-const SEVERAL_FANS: u32 = 5u;
-const MOST_CORNERS: u32 = 6u;
+const EDGES: u32 = 0u;
+const BOUNDARY: u32 = 1u;
+const NON_MANIFOLD: u32 = 2u;
+const INCONSISTENT: u32 = 3u;
+// Corners that are in another fan of their vertex than the one that was walked.
+const UNWALKED: u32 = 4u;
+const COUNTERS: u32 = 5u;
 
 struct Params {
     half_edges: u32,
     vertices: u32,
-    // A multiple of 256, at least the number of vertices.
-    buckets: u32,
+    // Words of the table: more than there are edges.
+    slots: u32,
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
 @group(0) @binding(1) var<storage, read> triangles: array<u32>;
 @group(0) @binding(2) var<storage, read_write> twins: array<u32>;
-// Half-edges by bucket.
-@group(0) @binding(3) var<storage, read_write> sorted: array<u32>;
-// The number of half-edges of each bucket, then the index for its next half-edge. For the fans: the number of corners
-// of each vertex, then one of them.
-@group(0) @binding(4) var<storage, read_write> buckets: array<atomic<u32>>;
+// For each vertex 1 plus one of the half-edges that start at it, the last that the device writes; 0 if there is none.
+@group(0) @binding(3) var<storage, read_write> corners: array<atomic<u32>>;
+// For each edge 1 plus its first half-edge, in the order of the device, and its state in the two highest bits. An empty
+// slot is 0.
+@group(0) @binding(4) var<storage, read_write> table: array<atomic<u32>>;
 @group(0) @binding(5) var<storage, read_write> counters: array<atomic<u32>>;
 
-var<workgroup> sums: array<u32, WORKGROUP_SIZE>;
-var<workgroup> base: u32;
-var<workgroup> kinds: array<atomic<u32>, 6>;
-var<workgroup> most_corners: atomic<u32>;
+// States of an edge.
+const SINGLE: u32 = 0u;
+const PAIRED: u32 = 1u;
+const SAME_DIRECTION: u32 = 2u;
+// Three half-edges or more, or two in one triangle.
+const MANY: u32 = 3u;
+const STATE_BIT: u32 = 30u;
+
+var<workgroup> sums: array<atomic<u32>, COUNTERS>;
 
 fn ends(h: u32) -> vec2u {
     let u = triangles[h];
@@ -44,138 +46,138 @@ fn ends(h: u32) -> vec2u {
     return vec2u(min(u, v), max(u, v));
 }
 
-// By the smaller vertex. Its half-edges are spread over 256 buckets, so that a vertex with many triangles does not fill
-// a single one.
-fn bucket_of(ends: vec2u) -> u32 {
-    let hash = (ends.y * 0x9e3779b9u) >> 24u;
-    return (ends.x & ~255u) | ((ends.x + hash) & 255u);
+// Whether the triangle of `h` has another half-edge between the same vertices.
+fn is_folded(h: u32) -> bool {
+    let apex = triangles[prev(h)];
+    return apex == triangles[h] || apex == triangles[next(h)];
+}
+
+// Slots that follow each other are tried first, so many; then others.
+const NEAR: u32 = 8u;
+
+// The slot of an edge at a try. The first slot is in the part of the table that belongs to the smaller vertex, so that
+// neighbours are near each other. A vertex with many triangles fills its part; its other edges are all over the table.
+fn slot_of(ends: vec2u, count: u32) -> u32 {
+    let hash = ends.y * 0x9e3779b9u;
+    let part = params.slots / params.vertices;
+    var slot = part * ends.x + (((hash >> 16u) * min(part, 0xffffu)) >> 16u) + count;
+    if count >= NEAR || part == 0u {
+        var x = (ends.x * 0x85ebca6bu) ^ hash ^ (count * 0xc2b2ae35u);
+        x = (x ^ (x >> 16u)) * 0x7feb352du;
+        slot = x ^ (x >> 15u);
+    }
+    return slot % params.slots;
+}
+
+fn half_edge_in(word: u32) -> u32 {
+    return (word & ~(MANY << STATE_BIT)) - 1u;
 }
 
 @compute @workgroup_size(WORKGROUP_SIZE)
-fn count(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
+fn clear(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
     for (var h = id.x; h < params.half_edges; h += groups.x * WORKGROUP_SIZE) {
-        atomicAdd(&buckets[bucket_of(ends(h))], 1u);
+        twins[h] = NONE;
     }
 }
 
-// Gives each bucket its range in `sorted`. A workgroup allocates the ranges of all its buckets with one atomic
-// addition.
-@compute @workgroup_size(WORKGROUP_SIZE)
-fn allocate(
-    @builtin(workgroup_id) group: vec3u,
-    @builtin(local_invocation_index) local: u32,
-    @builtin(num_workgroups) groups: vec3u,
-) {
-    let each = WORKGROUP_SIZE * BUCKETS_EACH;
-    for (var start = group.x * each; start < params.buckets; start += groups.x * each) {
-        let first = start + local * BUCKETS_EACH;
-        var sum = 0u;
-        for (var b = first; b < min(first + BUCKETS_EACH, params.buckets); b++) {
-            sum += atomicLoad(&buckets[b]);
-        }
-        sums[local] = sum;
-        workgroupBarrier();
-        for (var reach = 1u; reach < WORKGROUP_SIZE; reach *= 2u) {
-            let before = select(0u, sums[max(local, reach) - reach], local >= reach);
-            workgroupBarrier();
-            sums[local] += before;
-            workgroupBarrier();
-        }
-        if local == WORKGROUP_SIZE - 1u {
-            base = atomicAdd(&counters[ALLOCATED], sums[local]);
-        }
-        workgroupBarrier();
-        var at = base + sums[local] - sum;
-        for (var b = first; b < min(first + BUCKETS_EACH, params.buckets); b++) {
-            atomicStore(&buckets[params.buckets + b], at);
-            at += atomicLoad(&buckets[b]);
-        }
-        workgroupBarrier();
-    }
-}
-
-@compute @workgroup_size(WORKGROUP_SIZE)
-fn scatter(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
-    for (var h = id.x; h < params.half_edges; h += groups.x * WORKGROUP_SIZE) {
-        sorted[atomicAdd(&buckets[params.buckets + bucket_of(ends(h))], 1u)] = h;
-    }
-}
-
+// Brings each half-edge into the table. The second half-edge of an edge writes the twins of both.
 @compute @workgroup_size(WORKGROUP_SIZE)
 fn match_twins(
     @builtin(global_invocation_id) id: vec3u,
     @builtin(local_invocation_index) local: u32,
     @builtin(num_workgroups) groups: vec3u,
 ) {
-    // In the order of the buckets, so that the half-edges of a bucket are read together.
-    for (var index = id.x; index < params.half_edges; index += groups.x * WORKGROUP_SIZE) {
-        let h = sorted[index];
-        let mine = ends(h);
-        let bucket = bucket_of(mine);
-        // The scatter has moved this index to the end of the bucket.
-        let end = atomicLoad(&buckets[params.buckets + bucket]);
-        var others = 0u;
-        var other = NONE;
-        var is_first = true;
-        for (var i = end - atomicLoad(&buckets[bucket]); i < end; i++) {
-            let x = sorted[i];
-            if x != h && all(ends(x) == mine) {
-                others++;
-                other = x;
-                is_first = is_first && h < x;
-            }
-        }
-        var kind = BOUNDARY;
-        var twin = NONE;
-        if others == 1u && other / 3u != h / 3u {
-            if triangles[other] == triangles[h] {
-                kind = INCONSISTENT;
-            } else {
-                kind = EDGES;
-                twin = other;
-            }
-        } else if others > 0u {
-            kind = NON_MANIFOLD;
-        }
-        twins[h] = twin;
-        if is_first {
-            atomicAdd(&kinds[EDGES], 1u);
-            if kind != EDGES {
-                atomicAdd(&kinds[kind], 1u);
-            }
-        }
-    }
-    add_kinds(local);
-}
-
-// Counts the corners of each vertex, and stores one of them, the last that the device writes. `buckets` must be zero.
-@compute @workgroup_size(WORKGROUP_SIZE)
-fn count_corners(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
+    // Edges, then those in each state.
+    var found = array<u32, 5>();
     for (var h = id.x; h < params.half_edges; h += groups.x * WORKGROUP_SIZE) {
-        let v = triangles[h];
-        atomicAdd(&buckets[v], 1u);
-        atomicStore(&buckets[params.buckets + v], h);
+        atomicStore(&corners[triangles[h]], h + 1u);
+        let mine = ends(h);
+        let folded = is_folded(h);
+        var count = 0u;
+        var slot = slot_of(mine, count);
+        var word = atomicLoad(&table[slot]);
+        loop {
+            let state = word >> STATE_BIT;
+            let other = half_edge_in(word);
+            var next_state = select(SINGLE, MANY, folded);
+            var next_word = h + 1u;
+            if word != 0u {
+                if any(ends(other) != mine) {
+                    count++;
+                    slot = slot_of(mine, count);
+                    word = atomicLoad(&table[slot]);
+                    continue;
+                }
+                if state == MANY {
+                    break;
+                }
+                let pair = select(PAIRED, SAME_DIRECTION, triangles[other] == triangles[h]);
+                next_state = select(pair, MANY, folded || state != SINGLE);
+                next_word = other + 1u;
+            }
+            let exchange = atomicCompareExchangeWeak(&table[slot], word, next_word | (next_state << STATE_BIT));
+            if exchange.exchanged {
+                if word == 0u {
+                    found[0]++;
+                } else {
+                    found[1u + state]--;
+                }
+                found[1u + next_state]++;
+                if next_state == PAIRED {
+                    twins[h] = other;
+                    twins[other] = h;
+                }
+                break;
+            }
+            word = exchange.old_value;
+        }
+    }
+    atomicAdd(&sums[EDGES], found[0]);
+    atomicAdd(&sums[BOUNDARY], found[1u + SINGLE]);
+    atomicAdd(&sums[NON_MANIFOLD], found[1u + MANY]);
+    atomicAdd(&sums[INCONSISTENT], found[1u + SAME_DIRECTION]);
+    add_sums(local);
+}
+
+// Takes back the twins of edges that got a third half-edge.
+@compute @workgroup_size(WORKGROUP_SIZE)
+fn part_many(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
+    if atomicLoad(&counters[NON_MANIFOLD]) > 0u {
+        for (var h = id.x; h < params.half_edges; h += groups.x * WORKGROUP_SIZE) {
+            if twins[h] != NONE && state_of(ends(h)) == MANY {
+                twins[h] = NONE;
+            }
+        }
     }
 }
 
-// Counts the vertices that have several fans, and finds the most corners at one vertex.
+// The state of an edge that is in the table.
+fn state_of(mine: vec2u) -> u32 {
+    var count = 0u;
+    var word = atomicLoad(&table[slot_of(mine, count)]);
+    while any(ends(half_edge_in(word)) != mine) {
+        count++;
+        word = atomicLoad(&table[slot_of(mine, count)]);
+    }
+    return word >> STATE_BIT;
+}
+
+// Walks one fan of each vertex.
 @compute @workgroup_size(WORKGROUP_SIZE)
-fn count_fans(
+fn walk_fans(
     @builtin(global_invocation_id) id: vec3u,
     @builtin(local_invocation_index) local: u32,
     @builtin(num_workgroups) groups: vec3u,
 ) {
+    var unwalked = select(0u, params.half_edges, id.x == 0u);
     for (var v = id.x; v < params.vertices; v += groups.x * WORKGROUP_SIZE) {
-        let corners = atomicLoad(&buckets[v]);
-        atomicMax(&most_corners, corners);
-        if corners > 1u && fan_length(atomicLoad(&buckets[params.buckets + v])) < corners {
-            atomicAdd(&kinds[SEVERAL_FANS], 1u);
+        let corner = atomicLoad(&corners[v]);
+        if corner > 0u {
+            unwalked -= fan_length(corner - 1u);
         }
     }
-    add_kinds(local);
-    if local == 0u {
-        atomicMax(&counters[MOST_CORNERS], atomicLoad(&most_corners));
-    }
+    atomicAdd(&sums[UNWALKED], unwalked);
+    add_sums(local);
 }
 
 // Corners of the fan that `start` belongs to.
@@ -197,12 +199,12 @@ fn fan_length(start: u32) -> u32 {
     return corners;
 }
 
-fn add_kinds(local: u32) {
+fn add_sums(local: u32) {
     workgroupBarrier();
-    if local < 6u {
-        let count = atomicLoad(&kinds[local]);
-        if count > 0u {
-            atomicAdd(&counters[local], count);
+    if local < COUNTERS {
+        let sum = atomicLoad(&sums[local]);
+        if sum > 0u {
+            atomicAdd(&counters[local], sum);
         }
     }
 }

@@ -14,6 +14,9 @@ const RESUME: u32 = 1u;
 const CENSUS: u32 = 2u;
 const PREPARE: u32 = 3u;
 
+// Triangles of a word of bits.
+const CHUNK_WORD: u32 = 32u * WORKGROUP_SIZE;
+
 // The offset of the bits.
 fn doubts() -> u32 {
     return 3u * params.triangles + 1u;
@@ -33,7 +36,8 @@ fn doubtful_chunks(first: u32, count: u32) -> u32 {
 }
 
 fn clear_doubts(first: u32, stride: u32) {
-    for (var i = doubts() + first; i < arrayLength(&frontier); i += stride) {
+    let end = doubts() + (params.triangles + CHUNK_WORD - 1u) / CHUNK_WORD;
+    for (var i = doubts() + first; i < end; i += stride) {
         atomicStore(&frontier[i], 0u);
     }
 }

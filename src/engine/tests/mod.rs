@@ -204,3 +204,18 @@ fn tiers_of_the_gpu() {
         }
     }
 }
+
+/// No two triangles share a vertex, so the table of edges is as full as it can be.
+#[test]
+fn a_soup_has_the_edges_of_its_triangles() {
+    let mut corners: Vec<u32> = (0..300_000).collect();
+    let mut random = oorandom::Rand64::new(1);
+    for i in (1..corners.len()).rev() {
+        corners.swap(i, random.rand_range(0..i as u64 + 1) as usize);
+    }
+    let positions: Vec<f32> = (0..3 * corners.len()).map(|_| random.rand_float() as f32).collect();
+    let mesh = Arc::new(Mesh::new(crate::Dimension::Three, positions, corners).unwrap());
+    let (cpu, mut gpu) = engines(&mesh, any_deviation(10.0));
+    assert_eq!(cpu.edge_counts(), gpu.edge_counts());
+    assert_same("twins", &cpu.twins, &block_on(gpu.twins()).unwrap());
+}

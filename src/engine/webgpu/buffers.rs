@@ -3,16 +3,16 @@
 use super::buffer::Buffer;
 use super::device::Device;
 use super::history::HISTORY_WORDS;
-use super::kernels::WORKGROUP_SIZE;
 use super::params::{Params, TopologyOffsets};
 use super::steps::Step;
 use crate::engine::gpu::upload::Upload;
 use wgpu::BufferUsages;
 
 /// Words of the frontier for `triangles` triangles. It is longer than every other buffer whose length depends on the
-/// triangles; `state.wgsl` has its layout.
+/// triangles; `state.wgsl` has its layout. The table of edges is in it before the first iteration. A twelfth more words
+/// than edges keep the search in the table short.
 pub(super) fn frontier_words(triangles: usize) -> usize {
-    3 * triangles + 1 + triangles.div_ceil(WORKGROUP_SIZE as usize).div_ceil(32)
+    3 * triangles + triangles / 4 + 64
 }
 
 pub(super) struct Buffers {

@@ -113,7 +113,7 @@ impl Plan {
     /// The kernels of the adjacency, in the order in which `adjacency::record` dispatches them.
     pub(super) fn adjacency() -> Self {
         let (read, write) = (storage(true), storage(false));
-        let names = ["count", "allocate", "scatter", "match_twins", "count_corners", "count_fans"];
+        let names = ["clear", "match_twins", "part_many", "walk_fans"];
         Self {
             bindings: vec![uniform(false), read, write, write, write, write],
             sources: vec![sources::adjacency()],

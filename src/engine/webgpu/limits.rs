@@ -9,8 +9,7 @@ use crate::engine::gpu::upload::Upload;
 /// Refuses a mesh that the device cannot hold.
 pub(super) fn refuse_large_mesh(gpu: &Device, upload: &Upload) -> Result<(), Error> {
     let mesh = &upload.mesh;
-    let buckets = 2 * mesh.vertex_count().next_multiple_of(256);
-    refuse_large_buffer(gpu, upload.words().len().max(frontier_words(mesh.triangle_count())).max(buckets))
+    refuse_large_buffer(gpu, upload.words().len().max(frontier_words(mesh.triangle_count())))
 }
 
 pub(super) fn refuse_large_buffer(gpu: &Device, words: usize) -> Result<(), Error> {

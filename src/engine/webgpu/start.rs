@@ -115,7 +115,7 @@ impl WebGpu {
         let first = if self.params.update > 1 { FLIPPED } else { ENTRIES };
         encoder.clear_buffer(history, 0, Some(bytes(first)));
         encoder.clear_buffer(history, bytes(ENTRIES), None);
-        let fans = bytes(adjacency::SEVERAL_FANS);
+        let fans = bytes(adjacency::UNWALKED);
         encoder.copy_buffer_to_buffer(&self.counters, fans, history, bytes(SEVERAL_FANS), bytes(1));
         // Updates count from 1 again.
         if let Some(offset) = self.changes_offset().filter(|_| self.params.update == 0) {
@@ -172,11 +172,13 @@ impl WebGpu {
     /// them; returns whether it did. In that case no iteration has run.
     pub(super) async fn settle_by(&mut self, mesh: &Mesh, counters: &[u32]) -> Result<bool, Error> {
         let (found, signs) = (Found::of(counters), counters[COUNTERS]);
-        if self.gpu.ends_loops_early && found.most_corners > SHORT_STAR {
-            let (corners, adapter) = (found.most_corners, &self.gpu.adapter);
-            return refuse(format!(
-                "a vertex has {corners} triangles; {adapter} allows {SHORT_STAR}, as it ends loops early"
-            ));
+        if self.gpu.ends_loops_early {
+            let (corners, adapter) = (most_corners(mesh), &self.gpu.adapter);
+            if corners > SHORT_STAR {
+                return refuse(format!(
+                    "a vertex has {corners} triangles; {adapter} allows {SHORT_STAR}, as it ends loops early"
+                ));
+            }
         }
         self.counts = found.counts;
         let needs_fans = found.has_several_fans && self.params.fans_length == 0;
@@ -269,4 +271,13 @@ impl WebGpu {
         *self = moved;
         Ok(())
     }
+}
+
+/// The most corners at one vertex.
+fn most_corners(mesh: &Mesh) -> u32 {
+    let mut corners = vec![0; mesh.vertex_count()];
+    for &v in mesh.triangles() {
+        corners[v as usize] += 1;
+    }
+    corners.into_iter().max().unwrap_or(0)
 }
