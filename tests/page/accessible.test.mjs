@@ -1,11 +1,12 @@
-// Tests that axe-core finds nothing on the page: each view and section, light and dark, wide and narrow; and that
-// nothing moves while the page opens.
+// Tests that axe-core finds nothing on the page: each view and section, light and dark, wide and narrow; that nothing
+// moves while the page opens; and that the first view is there soon.
 
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import { after, before, test } from 'node:test';
-import { startChromium } from '../browsers.mjs';
+import { gzipSync } from 'node:zlib';
+import { openPage, startChromium } from '../browsers.mjs';
 import { openEdgeflip, tidyUp } from './page.mjs';
 
 const axe = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
@@ -88,5 +89,34 @@ test('nothing moves while the tool opens and plays', async () => {
   await page.playToEnd();
   const shifts = await page.page.evaluate(() => window.shifts);
   assert.ok(shifts.reduce((sum, { value }) => sum + value, 0) < 0.001, JSON.stringify(shifts));
+  await page.close();
+});
+
+test('the first view is there soon, and loads little', async (t) => {
+  const { page: tool } = await openEdgeflip(browser);
+  const [address] = tool.url().split('#');
+  await tool.close();
+  const { page, problems } = await openPage(browser, 'about:blank');
+  await page.addInitScript(() => {
+    const look = () => {
+      if (document.getElementById('live')?.hidden === false) window.hasMoved = performance.now();
+      else requestAnimationFrame(look);
+    };
+    look();
+  });
+  const bodies = [];
+  page.on('response', (response) => bodies.push(response.body()));
+  await page.goto(address);
+  await page.waitForFunction(() => window.hasMoved);
+  const { paint, moving } = await page.evaluate(() => ({
+    paint: performance.getEntriesByName('first-contentful-paint')[0].startTime,
+    moving: window.hasMoved,
+  }));
+  const bytes = (await Promise.all(bodies)).reduce((sum, body) => sum + gzipSync(body).length, 0);
+  t.diagnostic(`first content after ${paint.toFixed(0)} ms, moving after ${moving.toFixed(0)} ms, ${bytes} bytes`);
+  // Several times what they take on two cores, for a busy machine.
+  assert.ok(paint < 3000 && moving < 6000);
+  assert.ok(bytes < 600 * 1024, `${bytes} bytes`);
+  assert.deepEqual(problems, []);
   await page.close();
 });
