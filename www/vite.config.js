@@ -10,6 +10,9 @@ import { build, defineConfig } from 'vite';
 
 const at = (path) => fileURLToPath(new URL(path, import.meta.url));
 
+/** The address under which the style sheet asks for the font while the server of `npm start` runs. */
+const withFont = (html) => html.replace('../target/fonts/inter.woff2', `/@fs${font}`);
+
 // Inter with the characters and the weights of the page.
 const font = at('../target/fonts/inter.woff2');
 if (!existsSync(font)) {
@@ -95,6 +98,7 @@ export default defineConfig({
   optimizeDeps: { include: ['three', 'three/webgpu', 'three/tsl', 'three/addons/controls/OrbitControls.js'] },
   plugins: [
     { name: 'policy-while-working', apply: 'serve', transformIndexHtml: whileWorking },
+    { name: 'font-while-working', apply: 'serve', transformIndexHtml: { order: 'pre', handler: withFont } },
     { name: 'examples', apply: 'serve', configureServer: serveExamples },
     { name: 'offline', apply: 'build', closeBundle: writeServiceWorker },
   ],
