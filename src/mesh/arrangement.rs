@@ -92,6 +92,12 @@ impl Arrangement {
         3 * self.triangles[t as usize] + (h - 3 * t)
     }
 
+    /// The half-edges of an edge, first the one with the lower name.
+    #[inline(always)]
+    pub(crate) fn ordered(&self, [h, g]: [u32; 2]) -> [u32; 2] {
+        if self.name(h) < self.name(g) { [h, g] } else { [g, h] }
+    }
+
     /// The half-edges with these names.
     pub(crate) fn half_edges(&self, names: Vec<u32>) -> Vec<u32> {
         if self.is_empty() {

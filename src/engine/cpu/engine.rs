@@ -26,7 +26,7 @@ const EDGES: usize = 256;
 /// The fewest candidates of a part. With fewer, one thread finishes before another starts.
 const FEWEST: usize = if cfg!(debug_assertions) { 4 } else { 512 };
 
-/// An edge by its half-edges, first the one with the lower name, see [`Arrangement::name`].
+/// An edge by its half-edges, as [`Arrangement::ordered`] has them.
 type Edge = [u32; 2];
 
 /// Flag in the second half-edge of a candidate: its flip would make an edge that exists.
@@ -241,7 +241,7 @@ impl Cpu {
         let count = keep_non_delaunay(&geometry, diamonds);
         for diamond in &diamonds[..count] {
             let (h, g, [_, _, c, d]) = (diamond.h, unflagged(diamond.twin), diamond.vertices);
-            let edge = if self.arrangement.name(h) < self.arrangement.name(g) { [h, g] } else { [g, h] };
+            let edge = self.arrangement.ordered([h, g]);
             match verdict_of_shape(&geometry, diamond) {
                 Verdict::Labelled if self.embedded.at(c) | self.embedded.at(d) => candidates.push(edge),
                 Verdict::Labelled => candidates.push(self.guarded(edge)),
@@ -320,7 +320,7 @@ impl Cpu {
             let mut is_yielding = false;
             for [h, twin] in part.flipped.iter_mut().filter(|[_, twin]| twin & GUARDED != 0) {
                 *twin = unflagged(*twin);
-                let key = |[h, g]: Edge| key(if arrangement.name(h) < arrangement.name(g) { h } else { g });
+                let key = |edge: Edge| key(arrangement.ordered(edge)[0]);
                 if yields(self.topology(), key, [*h, *twin], |t| selected.pair(t)) {
                     *twin |= DUPLICATE;
                     is_yielding = true;
