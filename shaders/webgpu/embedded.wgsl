@@ -16,8 +16,11 @@ const NOT_EMBEDDED: u32 = 0x10000u;
 var<workgroup> signs: atomic<u32>;
 var<workgroup> not_positive: atomic<u32>;
 
-// Stores the sign of each triangle plus 1 as its choice; DOUBTFUL if exact arithmetic has to decide. A triangle that is
-// left alone counts as flat.
+// Counts, in the memory of the lists, how often the triangles at each vertex cross the direction of the x axis. Also
+// collects the signs of the triangles: bits 0 to 2 for negative, flat, positive. If the winding is not known, each
+// triangle has the winding of its own sign: the counts are right if all triangles have the same sign. If it is known,
+// the signs are relative to it. A triangle that is left alone counts as flat. The choice of a triangle is DOUBTFUL if
+// exact arithmetic has to find its sign, else NONE.
 @compute @workgroup_size(WORKGROUP_SIZE)
 fn prepare_all(
     @builtin(global_invocation_id) id: vec3u,
@@ -25,69 +28,83 @@ fn prepare_all(
     @builtin(num_workgroups) groups: vec3u,
 ) {
     var all = vec2u();
+    var tally = vec2u();
     for (var t = id.x; t < params.triangles; t += groups.x * WORKGROUP_SIZE) {
         let a = position(vertex(3u * t));
         let b = position(vertex(3u * t + 1u));
         let c = position(vertex(3u * t + 2u));
         let span = max(span_of(a), max(span_of(b), span_of(c)));
         all = max(all, span);
-        let sign = filtered_sign_of(a, b, c);
-        if params.update > 0u && is_too_wide(span) {
-            choices[t] = 1u;
-        } else {
-            let choice = wait_for(t, sign == 0);
-            choices[t] = select(choice, u32(sign + 1), sign != 0);
+        let is_left_alone = params.update > 0u && is_too_wide(span);
+        let sign = select(filtered_sign_of(a, b, c), 0, is_left_alone);
+        let is_doubtful = sign == 0 && !is_left_alone;
+        choices[t] = wait_for(t, is_doubtful);
+        if !is_doubtful {
+            tally = counted(t, sign, array(a, b, c), tally);
         }
     }
     add_span(all, local);
+    add_tally(tally, local);
 }
 
-// Counts, in the memory of the lists, how often the triangles at each vertex cross the direction of the x axis. Also
-// collects the signs of the triangles: bits 0 to 2 for negative, flat, positive. If the winding is not known, each
-// triangle has the winding of its own sign: the counts are right if all triangles have the same sign. If it is known,
-// the signs are relative to it.
+// Counts the triangles whose sign exact arithmetic has found: it is 1 less than their choice.
 @compute @workgroup_size(WORKGROUP_SIZE)
 fn count_turns(
     @builtin(global_invocation_id) id: vec3u,
     @builtin(local_invocation_index) local: u32,
     @builtin(num_workgroups) groups: vec3u,
 ) {
-    let is_known = params.winding != WINDING_UNKNOWN;
-    var seen = 0u;
-    var others = 0u;
+    var tally = vec2u();
     for (var t = id.x; t < params.triangles; t += groups.x * WORKGROUP_SIZE) {
-        let sign = i32(choices[t]) - 1;
-        choices[t] = NONE;
-        var a = position(vertex(3u * t));
-        var b = position(vertex(3u * t + 1u));
-        var c = position(vertex(3u * t + 2u));
-        let winding = select(sign, select(1, -1, is_clockwise(t)), is_known);
-        let is_positive = sign * winding > 0;
-        seen |= 1u << u32(select(sign, sign * winding, is_known) + 1);
-        others += select(1u, 0u, is_positive);
-        for (var h = 3u * t; h < 3u * t + 3u; h++) {
-            let is_inner = twin_entry(h) != NONE && twin_entry(prev(h)) != NONE;
-            let first = order(b, a);
-            let last = order(c, a);
-            // From below the axis, or on it, to above it; in a clockwise mesh the other way round.
-            let from_below = select(last, first, winding > 0);
-            let to_above = select(first, last, winding > 0);
-            let is_below = from_below.y < 0 || (from_below.y == 0 && from_below.x > 0);
-            let is_above = to_above.y > 0 || (to_above.y == 0 && to_above.x < 0);
-            let turns = select(NOT_EMBEDDED, select(0u, 1u, is_below && is_above), is_positive && is_inner);
-            // With many unreferenced vertices, there may be more vertices than words before the bits of the chunks.
-            if turns > 0u && vertex(h) < doubts() {
-                atomicAdd(&frontier[vertex(h)], turns);
-            }
-            let corner = a;
-            a = b;
-            b = c;
-            c = corner;
+        let choice = choices[t];
+        if choice != NONE {
+            choices[t] = NONE;
+            let a = position(vertex(3u * t));
+            let b = position(vertex(3u * t + 1u));
+            let c = position(vertex(3u * t + 2u));
+            tally = counted(t, i32(choice) - 1, array(a, b, c), tally);
         }
     }
-    atomicOr(&signs, seen);
-    if others > 0u {
-        atomicAdd(&not_positive, others);
+    add_tally(tally, local);
+}
+
+// Counts the turns of a triangle around its vertices. Returns `tally` with the bit of its sign and, if it is not
+// positive, one more of these.
+fn counted(t: u32, sign: i32, points: array<Point, 3>, tally: vec2u) -> vec2u {
+    let is_known = params.winding != WINDING_UNKNOWN;
+    let winding = select(sign, select(1, -1, is_clockwise(t)), is_known);
+    let is_positive = sign * winding > 0;
+    var a = points[0];
+    var b = points[1];
+    var c = points[2];
+    for (var h = 3u * t; h < 3u * t + 3u; h++) {
+        let is_inner = twin_entry(h) != NONE && twin_entry(prev(h)) != NONE;
+        let first = order(b, a);
+        let last = order(c, a);
+        // From below the axis, or on it, to above it; in a clockwise mesh the other way round.
+        let from_below = select(last, first, winding > 0);
+        let to_above = select(first, last, winding > 0);
+        let is_below = from_below.y < 0 || (from_below.y == 0 && from_below.x > 0);
+        let is_above = to_above.y > 0 || (to_above.y == 0 && to_above.x < 0);
+        let turns = select(NOT_EMBEDDED, select(0u, 1u, is_below && is_above), is_positive && is_inner);
+        // With many unreferenced vertices, there may be more vertices than words before the bits of the chunks.
+        if turns > 0u && vertex(h) < doubts() {
+            atomicAdd(&frontier[vertex(h)], turns);
+        }
+        let corner = a;
+        a = b;
+        b = c;
+        c = corner;
+    }
+    let bit = 1u << u32(select(sign, sign * winding, is_known) + 1);
+    return vec2u(tally.x | bit, tally.y + select(1u, 0u, is_positive));
+}
+
+// Adds what the invocations of a workgroup have counted.
+fn add_tally(tally: vec2u, local: u32) {
+    atomicOr(&signs, tally.x);
+    if tally.y > 0u {
+        atomicAdd(&not_positive, tally.y);
     }
     workgroupBarrier();
     if local == 0u {
