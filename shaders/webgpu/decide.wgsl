@@ -32,7 +32,7 @@ fn decide_all(
     let index = index_of_task();
     let work = work_of_task(index);
     if local == 0u {
-        limit = work.count;
+        limit = select(0u, work.count, has_doubts());
         // In a list, most chunks may be doubtful, so a workgroup takes one at a time, and all workgroups share them.
         together = select(CHUNKS, 1u, work.is_listed || decides_one());
     }

@@ -1,6 +1,6 @@
 // Keeps track of the triangles that wait for exact arithmetic: their choice is DOUBTFUL. A chunk has as many triangles
-// as a workgroup has invocations; each chunk has a bit, set if one of its triangles waits. Mostly few triangles wait,
-// and visiting every triangle would take longer than deciding those few.
+// as a workgroup has invocations; each chunk has a bit, set if one of its triangles waits. Mostly few triangles wait, or
+// none, and visiting every triangle would take longer than deciding those few. A word after the bits is 1 if one is set.
 #import mesh
 #import state
 
@@ -22,12 +22,22 @@ fn doubts() -> u32 {
     return 3u * params.triangles + 1u;
 }
 
+// The offset after them.
+fn end_of_doubts() -> u32 {
+    return doubts() + (params.triangles + CHUNK_WORD - 1u) / CHUNK_WORD;
+}
+
 fn doubt(chunk: u32) {
     let bit = 1u << (chunk % 32u);
     let index = doubts() + chunk / 32u;
     if (atomicLoad(&frontier[index]) & bit) == 0u {
         atomicOr(&frontier[index], bit);
+        atomicStore(&frontier[end_of_doubts()], 1u);
     }
+}
+
+fn has_doubts() -> bool {
+    return atomicLoad(&frontier[end_of_doubts()]) == 1u;
 }
 
 // A bit for each of `count` chunks from `first` on. `first` is a multiple of `count`.
@@ -36,8 +46,7 @@ fn doubtful_chunks(first: u32, count: u32) -> u32 {
 }
 
 fn clear_doubts(first: u32, stride: u32) {
-    let end = doubts() + (params.triangles + CHUNK_WORD - 1u) / CHUNK_WORD;
-    for (var i = doubts() + first; i < end; i += stride) {
+    for (var i = doubts() + first; i <= end_of_doubts(); i += stride) {
         atomicStore(&frontier[i], 0u);
     }
 }

@@ -11,6 +11,8 @@
 #import verdicts
 
 var<workgroup> flips: atomic<u32>;
+// The work of Flip: how many triangles, the offset of their list or NONE, and whether it builds a list.
+var<workgroup> known: vec3u;
 var<workgroup> tail_first: u32;
 var<workgroup> tail_count: u32;
 var<workgroup> doubtful: atomic<u32>;
@@ -23,9 +25,15 @@ fn flip_all(
     @builtin(num_workgroups) groups: vec3u,
 ) {
     let index = step_.index;
-    let work = active_at(index);
+    // Atomic reads of the same words by all invocations are slow.
+    if local == 0u {
+        let now = active_at(index);
+        known = vec3u(now.count, select(NONE, now.first, now.is_listed), u32(builds_list(index)));
+    }
+    let got = workgroupUniformLoad(&known);
+    let work = Work(got.x, got.y != NONE, false, got.y);
+    let builds = got.z == 1u;
     if work.count > 0u {
-        let builds = builds_list(index);
         var flipped = 0u;
         for (var i = id.x; i < work.count; i += groups.x * WORKGROUP_SIZE) {
             let t = active_triangle(work, i);
@@ -78,6 +86,7 @@ fn tail(@builtin(local_invocation_index) local: u32) {
             // If the tail has not paused, this is NONE, and no iteration follows.
             tail_first = atomicExchange(&history[PAUSED], 0u) - 1u;
             atomicStore(&frontier[doubts()], 0u);
+            atomicStore(&frontier[end_of_doubts()], 0u);
         }
     }
     let first = workgroupUniformLoad(&tail_first);
