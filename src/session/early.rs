@@ -36,7 +36,8 @@ impl EarlyGpu {
 }
 
 /// Closes the shared GPU on a background thread, once no session holds it, and lets go of devices that the program has
-/// given. A later session opens it again. Without this call the process closes the GPU when it ends, and ends later.
+/// given. A later session opens it again. Without this call the process closes the GPU when it ends, and ends later. It
+/// also keeps up to 1 GiB of the memory of earlier sessions on the GPU, for later ones with a mesh of the same size.
 pub fn close_gpu() {
     #[cfg(feature = "gpu")]
     {

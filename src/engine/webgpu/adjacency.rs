@@ -57,6 +57,8 @@ pub(super) fn record(
     gpu.queue.write_buffer(params, 0, bytemuck::cast_slice(&words));
     let whole = [params, &buffers.triangles, &buffers.twins, corners, &buffers.frontier, counters];
     let bindings = gpu.bind(&gpu.adjacency.layout, &whole.map(|buffer| (buffer, None)));
+    encoder.clear_buffer(corners, 0, None);
+    encoder.clear_buffer(counters, 0, None);
     let mut pass = encoder.begin_compute_pass(&Default::default());
     pass.set_bind_group(0, &bindings, &[]);
     for (pipeline, items) in

@@ -1,23 +1,66 @@
 //! Buffers on a device, and a staging buffer that is kept for the next copy.
 
+#[cfg(not(target_arch = "wasm32"))]
+use super::pool::Pool;
+#[cfg(not(target_arch = "wasm32"))]
+use std::sync::Arc;
 use std::sync::Mutex;
 
 /// The largest buffer that is kept, in bytes.
 pub(super) const MOST_KEPT: u64 = 1 << 26;
 
-/// A buffer that is destroyed on drop. In a browser, the garbage collector would free it much later.
-pub(super) struct Buffer(pub(super) wgpu::Buffer);
+/// A buffer that is destroyed on drop, or kept for the next session. In a browser, the garbage collector would free it
+/// much later.
+pub(super) struct Buffer {
+    raw: wgpu::Buffer,
+    /// Where it is kept.
+    #[cfg(not(target_arch = "wasm32"))]
+    pool: Mutex<Option<Arc<Pool>>>,
+}
+
+impl Buffer {
+    /// A buffer that is destroyed on drop.
+    pub(super) fn new(raw: wgpu::Buffer) -> Self {
+        Self {
+            raw,
+            #[cfg(not(target_arch = "wasm32"))]
+            pool: Mutex::default(),
+        }
+    }
+
+    /// Keeps it on drop.
+    #[cfg(not(target_arch = "wasm32"))]
+    pub(super) fn pooled(raw: wgpu::Buffer, pool: Arc<Pool>) -> Self {
+        Self { raw, pool: Mutex::new(Some(pool)) }
+    }
+
+    #[cfg(not(target_arch = "wasm32"))]
+    fn take_pool(&self) -> Option<Arc<Pool>> {
+        self.pool.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).take()
+    }
+
+    /// The buffer, for code that may use it at any time: it is not kept on drop.
+    #[cfg(not(target_arch = "wasm32"))]
+    pub(super) fn given(&self) -> wgpu::Buffer {
+        self.take_pool();
+        self.raw.clone()
+    }
+}
 
 impl std::ops::Deref for Buffer {
     type Target = wgpu::Buffer;
     fn deref(&self) -> &wgpu::Buffer {
-        &self.0
+        &self.raw
     }
 }
 
 impl Drop for Buffer {
     fn drop(&mut self) {
-        self.0.destroy();
+        #[cfg(not(target_arch = "wasm32"))]
+        if let Some(pool) = self.take_pool() {
+            return pool.put(self.raw.clone());
+        }
+        self.raw.destroy();
     }
 }
 

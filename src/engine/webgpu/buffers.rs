@@ -3,7 +3,7 @@
 use super::buffer::Buffer;
 use super::device::Device;
 use super::history::HISTORY_WORDS;
-use super::params::{Params, TopologyOffsets};
+use super::params::{DEVICE_WORDS, Params, TopologyOffsets};
 use super::steps::Step;
 use crate::engine::gpu::upload::Upload;
 use wgpu::BufferUsages;
@@ -54,8 +54,16 @@ impl Buffers {
                 .then(|| drawn("floats", mesh.positions().len(), BufferUsages::VERTEX)),
         };
         gpu.write(&buffers.steps, &step_words);
+        gpu.write(&buffers.uniform, &[0; DEVICE_WORDS]);
         buffers.write(gpu, upload, mesh.triangles());
         buffers
+    }
+
+    /// Records the zeros that the work begins with.
+    pub(super) fn clear(&self, encoder: &mut wgpu::CommandEncoder) {
+        for buffer in [&self.twins, &self.choices, &self.frontier, &self.history, &self.topology] {
+            encoder.clear_buffer(buffer, 0, None);
+        }
     }
 
     /// Their size on the device.

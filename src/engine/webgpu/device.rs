@@ -8,6 +8,8 @@ use super::faults::{Caught, Fault, refuse, unavailable, watch};
 use super::kernels::{Kernels, Plan, WORKGROUP_SIZE};
 #[cfg(not(target_arch = "wasm32"))]
 use super::own_device;
+#[cfg(not(target_arch = "wasm32"))]
+use super::pool::Pool;
 use super::programs;
 use crate::Error;
 use crate::engine::gpu::self_test::Tested;
@@ -48,6 +50,9 @@ pub(crate) struct Device {
     phases: Mutex<Phases>,
     /// The staging buffer for the next read.
     pub(super) kept_for_reads: Kept,
+    /// The buffers of sessions that have ended.
+    #[cfg(not(target_arch = "wasm32"))]
+    pool: Arc<Pool>,
     /// The staging buffer for the next write, mapped.
     #[cfg(target_arch = "wasm32")]
     pub(super) kept_for_writes: Rc<Kept>,
@@ -74,18 +79,19 @@ fn report(failure: &Failure, message: String) {
     failure.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).get_or_insert(message);
 }
 
-fn new_buffer(device: &wgpu::Device, label: &str, words: usize, usage: BufferUsages) -> Buffer {
-    Buffer(device.create_buffer(&wgpu::BufferDescriptor {
+fn descriptor(label: &str, words: usize, usage: BufferUsages) -> wgpu::BufferDescriptor<'_> {
+    wgpu::BufferDescriptor {
         label: Some(label),
         size: 4 * words.max(4) as u64,
         usage: usage | BufferUsages::COPY_DST | BufferUsages::COPY_SRC,
         mapped_at_creation: false,
-    }))
+    }
 }
 
 /// The buffer of exact arithmetic, with the programs written to it.
 fn numbers(device: &wgpu::Device, queue: &wgpu::Queue) -> Buffer {
-    let buffer = new_buffer(device, "numbers", programs::WORDS, BufferUsages::STORAGE);
+    let descriptor = descriptor("numbers", programs::WORDS, BufferUsages::STORAGE);
+    let buffer = Buffer::new(device.create_buffer(&descriptor));
     queue.write_buffer(&buffer, 0, bytemuck::cast_slice(&programs::words()));
     buffer
 }
@@ -101,7 +107,7 @@ fn wake(device: &wgpu::Device, queue: &wgpu::Queue) -> std::io::Result<std::thre
                 [BufferUsages::COPY_SRC, BufferUsages::COPY_DST | BufferUsages::MAP_READ].map(|usage| {
                     let (label, size) = (Some("wake"), 16);
                     let descriptor = wgpu::BufferDescriptor { label, size, usage, mapped_at_creation: false };
-                    Buffer(device.create_buffer(&descriptor))
+                    Buffer::new(device.create_buffer(&descriptor))
                 });
             let mut encoder = device.create_command_encoder(&Default::default());
             encoder.copy_buffer_to_buffer(&from, 0, &to, 0, 16);
@@ -248,6 +254,8 @@ impl Device {
             adjacency,
             phases: Mutex::new(phases),
             kept_for_reads: Kept::default(),
+            #[cfg(not(target_arch = "wasm32"))]
+            pool: Arc::default(),
             #[cfg(target_arch = "wasm32")]
             kept_for_writes: Rc::default(),
             #[cfg(test)]
@@ -339,7 +347,11 @@ impl Device {
 
     pub(super) fn judge_allocation(&self, fault: Option<Fault>) -> Result<(), Error> {
         match fault {
-            Some(Fault::OutOfMemory) => refuse(format!("{} has no memory left for the mesh", self.adapter)),
+            Some(Fault::OutOfMemory) => {
+                #[cfg(not(target_arch = "wasm32"))]
+                self.pool.close();
+                refuse(format!("{} has no memory left for the mesh", self.adapter))
+            }
             fault => self.judge(fault),
         }
     }
@@ -350,10 +362,18 @@ impl Device {
         limits.max_storage_buffer_binding_size.min(limits.max_buffer_size)
     }
 
-    /// A buffer of at least `words` words, all zero. It can be copied from and to. It is never empty: a binding cannot
-    /// be.
+    /// A buffer of at least `words` words, which may hold anything. It can be copied from and to. It is never empty: a
+    /// binding cannot be.
     pub(super) fn buffer(&self, label: &str, words: usize, usage: BufferUsages) -> Buffer {
-        new_buffer(&self.device, label, words, usage)
+        let descriptor = descriptor(label, words, usage);
+        #[cfg(not(target_arch = "wasm32"))]
+        {
+            let kept = self.pool.take(descriptor.size, descriptor.usage);
+            let raw = kept.unwrap_or_else(|| self.device.create_buffer(&descriptor));
+            Buffer::pooled(raw, self.pool.clone())
+        }
+        #[cfg(target_arch = "wasm32")]
+        Buffer::new(self.device.create_buffer(&descriptor))
     }
 
     /// Binds buffers in the order of the layout. A size binds only so many bytes; `None` binds the whole buffer.

@@ -109,7 +109,7 @@ impl Device {
 
     /// Maps a staging buffer, and keeps it for the next writes once the device has finished its copies.
     fn make_ready(&self, staging: Buffer) {
-        let (buffer, kept) = (staging.0.clone(), self.kept_for_writes.clone());
+        let (buffer, kept) = ((*staging).clone(), self.kept_for_writes.clone());
         buffer.map_async(wgpu::MapMode::Write, .., move |result| {
             if result.is_ok() {
                 kept.put(staging);

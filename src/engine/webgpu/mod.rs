@@ -33,6 +33,8 @@ mod moving;
 #[cfg(not(target_arch = "wasm32"))]
 mod own_device;
 mod params;
+#[cfg(not(target_arch = "wasm32"))]
+mod pool;
 mod probe;
 mod programs;
 mod run;
@@ -214,9 +216,9 @@ impl Engine for WebGpu {
         Some(GpuBuffers {
             device: self.gpu.device.clone(),
             queue: self.gpu.queue.clone(),
-            positions: self.buffers.floats.as_ref().unwrap_or(&self.buffers.positions).0.clone(),
-            triangles: self.buffers.triangles.0.clone(),
-            changes: self.changes_offset().map(|offset| (self.buffers.topology.0.clone(), offset)),
+            positions: self.buffers.floats.as_ref().unwrap_or(&self.buffers.positions).given(),
+            triangles: self.buffers.triangles.given(),
+            changes: self.changes_offset().map(|offset| (self.buffers.topology.given(), offset)),
         })
     }
 

@@ -77,6 +77,7 @@ impl WebGpu {
             let mut encoder = gpu.device.create_command_encoder(&Default::default());
             encoder.clear_buffer(history, 0, Some(bytes(COUNTS)));
             self.encode_pass(&mut encoder, &|pass| self.record_census(pass));
+            encoder.clear_buffer(&snapshot, 0, None);
             encoder.copy_buffer_to_buffer(history, 0, &snapshot, 0, bytes(ENTRIES));
             if self.form.dimension == Dimension::Two {
                 encoder.clear_buffer(history, 0, Some(bytes(COUNTS)));

@@ -14,7 +14,7 @@ impl Device {
         let step = bytes.next_power_of_two() / 8;
         let size =
             if bytes > MOST_KEPT { bytes } else { bytes.next_multiple_of(step.max(FEWEST)).max(FEWEST) };
-        Buffer(self.device.create_buffer(&wgpu::BufferDescriptor {
+        Buffer::new(self.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("staging"),
             size,
             usage,

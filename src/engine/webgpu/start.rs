@@ -54,6 +54,7 @@ impl WebGpu {
             let params = Params::new(&upload, &TopologyOffsets::new(mesh), gpu.ends_loops_early);
             let bytes = buffers.bytes() + scratch.bytes();
             let mut encoder = gpu.device.create_command_encoder(&Default::default());
+            buffers.clear(&mut encoder);
             adjacency::record(&gpu, mesh, &buffers, &scratch, &mut encoder);
             let result = Self {
                 bindings: buffers.bind(&gpu, &kernels.layout),
