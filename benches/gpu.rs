@@ -17,6 +17,9 @@ use clock::Clock;
 #[path = "commit/mod.rs"]
 mod commit;
 use commit::commit;
+#[path = "bandwidth/mod.rs"]
+mod bandwidth;
+use bandwidth::{Fewest, with_rate, with_share};
 #[path = "warm_up/mod.rs"]
 mod warm_up;
 use warm_up::WarmUp;
@@ -44,6 +47,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     let opened = run(&Arc::new(families::by_name("random 10")?), Backend::Gpu, || ())?;
     println!("adapter and driver: {}", opened.adapter.as_deref().unwrap_or("unknown"));
     println!("commit: {}", commit());
+    let bandwidth = bandwidth::of_device()?;
+    println!("bandwidth of a kernel that copies: {:.0} GB/s", bandwidth / 1e9);
+    println!(
+        "in brackets: the fewest bytes that the work moves, and their share of this bandwidth or their rate"
+    );
     println!(
         "medians of {runs} runs; other runs raise the clock rate before each; times as the caller sees them"
     );
@@ -56,8 +64,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let clock = Clock::watch();
     let mut wrong = 0;
     for spec in &specs {
-        let (row, is_right) =
-            row(spec, runs, &clock).unwrap_or_else(|error| (format!("| {spec} | {error} |"), false));
+        let (row, is_right) = row(spec, runs, &clock, bandwidth)
+            .unwrap_or_else(|error| (format!("| {spec} | {error} |"), false));
         println!("{row}");
         wrong += usize::from(!is_right);
     }
@@ -65,7 +73,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 }
 
 /// The mesh's line of the table, and whether all its results are correct.
-fn row(spec: &str, runs: usize, clock: &Clock) -> Result<(String, bool), edgeflip::Error> {
+fn row(spec: &str, runs: usize, clock: &Clock, bandwidth: f64) -> Result<(String, bool), edgeflip::Error> {
     let mesh = Arc::new(families::by_name(spec)?);
     let cpu = run(&mesh, Backend::Cpu, || ())?;
     let first = run(&mesh, Backend::Gpu, || ())?;
@@ -96,15 +104,16 @@ fn row(spec: &str, runs: usize, clock: &Clock) -> Result<(String, bool), edgefli
         None => format!("counts as remaining: {}", by_reason(audit.remaining)),
     };
     let clock = median(clocks);
+    let fewest = Fewest::of(&mesh, &first);
     let line = format!(
-        "| {spec} | {} | {} | {} | {:.2} | {:.2} | {:.2} | {:.2} | {:.1} | {} | {} | {} | {} | {verdict} |",
+        "| {spec} | {} | {} | {} | {} | {} | {} | {} | {:.1} | {} | {} | {} | {} | {verdict} |",
         first.edges,
         first.iterations,
         first.flips,
-        median(upload),
-        median(adjacency),
-        median(flip),
-        median(total),
+        with_rate(median(upload), fewest.upload),
+        with_share(median(adjacency), fewest.adjacency, bandwidth),
+        with_share(median(flip), fewest.flips, bandwidth),
+        with_rate(median(total), fewest.total),
         first.device_bytes as f64 / mesh.triangle_count() as f64,
         first.dispatches,
         if clock > 0.0 { clock.to_string() } else { "–".to_owned() },
