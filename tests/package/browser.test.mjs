@@ -125,7 +125,7 @@ async function check(browser, address, isIsolated) {
     const { page, problems } = await openPage(browser, `${address}${name}.html`);
     let text = '';
     // Compiling shaders for a software GPU takes seconds.
-    for (const start = performance.now(); !text && problems.length === 0 && performance.now() - start < 60_000; ) {
+    for (const start = performance.now(); !text && problems.length === 0 && performance.now() - start < 180_000; ) {
       await pause(50);
       text = await page.evaluate(() => document.body?.textContent.trim() ?? '');
     }
