@@ -1,6 +1,13 @@
 /** Draws the mesh with three.js. With WebGPU, it draws from the buffer that the flips write. */
 
-import { BufferAttribute, Scene as ThreeScene, Vector3, WebGPURenderer, type Object3D } from 'three/webgpu';
+import {
+  BufferAttribute,
+  ColorManagement,
+  Scene as ThreeScene,
+  Vector3,
+  WebGPURenderer,
+  type Object3D,
+} from 'three/webgpu';
 import { writeLines } from './change.ts';
 import { Eye, type Insets } from './eye.ts';
 import { Layer, Paint } from './layer.ts';
@@ -14,8 +21,12 @@ interface Backend {
   get(attribute: BufferAttribute): { buffer?: GPUBuffer };
 }
 
+// Colours stay as style sheets give them. To convert them, three would draw each picture twice.
+ColorManagement.enabled = false;
+
 export class Scene {
   readonly #renderer: WebGPURenderer;
+  readonly #device: GPUDevice | undefined;
   readonly #scene = new ThreeScene();
   readonly #paint = new Paint();
   readonly #now = new Layer(this.#paint);
@@ -35,8 +46,15 @@ export class Scene {
   #frame = 0;
   #moving: Object3D | undefined;
 
-  private constructor(renderer: WebGPURenderer, palette: Palette, insets: () => Insets, drawn: () => void) {
+  private constructor(
+    renderer: WebGPURenderer,
+    device: GPUDevice | undefined,
+    palette: Palette,
+    insets: () => Insets,
+    drawn: () => void,
+  ) {
     this.#renderer = renderer;
+    this.#device = device;
     this.#palette = palette;
     this.#drawn = drawn;
     this.eye = new Eye(renderer.domElement, insets, () => this.redraw());
@@ -60,8 +78,9 @@ export class Scene {
     const renderer = new WebGPURenderer({ ...options, ...(device ? { device } : { forceWebGL: true }) });
     renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
     renderer.setClearColor(0, 0);
+    renderer.outputColorSpace = ColorManagement.workingColorSpace;
     await renderer.init();
-    const scene = new Scene(renderer, palette, insets, drawn);
+    const scene = new Scene(renderer, device, palette, insets, drawn);
     view.append(renderer.domElement);
     renderer.domElement.role = 'img';
     renderer.domElement.setAttribute('aria-label', 'The mesh; drag to turn or move it, scroll to zoom');
@@ -150,7 +169,10 @@ export class Scene {
 
   /** Draws now, in a frame of the page. */
   draw(): void {
+    const isHot = this.#now.turning.advance();
     this.#draw();
+    // The next picture waits until this one is done. On a slow GPU, flips would wait behind several pictures.
+    if (isHot) void this.#finished().then(() => this.redraw());
     this.#drawn();
   }
 
@@ -160,6 +182,11 @@ export class Scene {
       this.#frame = 0;
       this.draw();
     });
+  }
+
+  /** Waits until the GPU has done everything. */
+  async #finished(): Promise<void> {
+    await this.#device?.queue.onSubmittedWorkDone().catch(() => {});
   }
 
   /** A picture of what is shown, on the page's ground. */
@@ -214,7 +241,6 @@ export class Scene {
   #draw(): void {
     const renderer = this.#renderer;
     this.#now.edges.setPixel(this.eye.pixel);
-    if (this.#now.turning.advance()) this.redraw();
     if (this.#cut === undefined) {
       renderer.render(this.#scene, this.eye.camera);
       return;
