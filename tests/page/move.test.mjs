@@ -88,16 +88,19 @@ for (const [backend, engine] of Object.entries(ENGINES)) {
       await page.page.waitForTimeout(100);
     }
     await page.page.mouse.up();
-    await page.until('no edge left', ({ facts }) => facts['Left for the next frame'] === '0');
-    await page.page.waitForTimeout(500);
-    const after = await page.download();
-    const ways = Array.from({ length: before.positions.length / 2 }, (_, v) =>
-      [0, 1].map((k) => after.positions[2 * v + k] - before.positions[2 * v + k]),
-    );
-    // The longest way leads to the right.
-    const [longest] = ways.sort(([ax, ay], [bx, by]) => Math.hypot(bx, by) - Math.hypot(ax, ay));
-    assert.ok(longest[0] > 0.05, `the longest way is ${longest}`);
-    assert.equal((await left(after, 'relax')).flips, 0);
+    // The page follows the pointer as fast as it can draw. Then the longest way leads to the right.
+    const end = performance.now() + 60_000;
+    for (;;) {
+      const after = await page.download();
+      const ways = Array.from({ length: before.positions.length / 2 }, (_, v) =>
+        [0, 1].map((k) => after.positions[2 * v + k] - before.positions[2 * v + k]),
+      );
+      const [longest] = ways.sort(([ax, ay], [bx, by]) => Math.hypot(bx, by) - Math.hypot(ax, ay));
+      const { flips } = await left(after, 'relax');
+      if (longest[0] > 0.05 && flips === 0) break;
+      assert.ok(performance.now() < end, `after 60 s the longest way is ${longest}, and ${flips} edges can flip`);
+      await page.page.waitForTimeout(200);
+    }
     await page.close();
   });
 }

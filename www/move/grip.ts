@@ -1,6 +1,6 @@
 /** Drags points of the mesh with the pointer. Beside the mesh, the pointer moves the camera. */
 
-import { Vector3, type Ray } from 'three/webgpu';
+import { Ray, Vector3 } from 'three/webgpu';
 import type { Scene } from '../watch/scene.ts';
 import { HALF, type Drag, type Point } from './motions.ts';
 
@@ -19,7 +19,7 @@ export class Grip {
   /** Where along the line of sight the pointer holds the mesh, and how far along it reaches. */
   #along = 0;
   #depth = 0;
-  /** The line of sight in the last frame, and now. */
+  /** The line of sight in the last frame, and now. They stay after the pointer has let go, until the mesh is there. */
   #last: Ray | undefined;
   #now: Ray | undefined;
 
@@ -42,12 +42,19 @@ export class Grip {
     return this.#pointer !== undefined;
   }
 
-  /** What the pointer has done since the last call. */
+  /** Whether the mesh is not yet where the pointer has dragged it. */
+  get isBehind(): boolean {
+    return this.#last !== this.#now;
+  }
+
+  /** What the pointer has done since the last call. What is too much for a frame is left for the next one. */
   take(): Drag | undefined {
     const [last, now] = [this.#last, this.#now];
     if (!last || !now || last === now) return undefined;
-    this.#last = now;
-    const by = now.at(this.#along, new Vector3()).sub(last.at(this.#along, new Vector3())).clampLength(0, LONGEST);
+    const by = now.at(this.#along, new Vector3()).sub(last.at(this.#along, new Vector3()));
+    const share = LONGEST / by.length();
+    this.#last = share < 1 ? between(last, now, share) : now;
+    by.clampLength(0, LONGEST);
     return {
       origin: last.origin.toArray() as Point,
       way: last.direction.toArray() as Point,
@@ -58,7 +65,7 @@ export class Grip {
 
   dispose(): void {
     this.#listening.abort();
-    this.#release();
+    this.#scene.eye.isFree = true;
   }
 
   #press(event: PointerEvent): void {
@@ -77,13 +84,9 @@ export class Grip {
   }
 
   #letGo(): void {
-    this.#release();
-    this.#changed(false);
-  }
-
-  #release(): void {
-    this.#pointer = this.#last = this.#now = undefined;
+    this.#pointer = undefined;
     this.#scene.eye.isFree = true;
+    this.#changed(false);
   }
 
   #rayOf({ clientX, clientY }: PointerEvent): Ray {
@@ -103,4 +106,10 @@ export class Grip {
     [this.#along, this.#depth] = [nearest - Math.sqrt(square), nearest];
     return true;
   }
+}
+
+/** The line of sight a share of the way from one to the other. */
+function between(from: Ray, to: Ray, share: number): Ray {
+  const direction = from.direction.clone().lerp(to.direction, share).normalize();
+  return new Ray(from.origin.clone().lerp(to.origin, share), direction);
 }

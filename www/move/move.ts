@@ -93,7 +93,17 @@ export class Move {
   /** While the mesh is paused, time stands still, but points can be dragged. */
   #drag(isHeld: boolean): void {
     if (isHeld) this.#run(0);
-    else this.pause().catch(this.#failed);
+    else this.#letGo().catch(this.#failed);
+  }
+
+  /** Drags the mesh to where the pointer has left it, and pauses again. */
+  async #letGo(): Promise<void> {
+    const start = ++this.#starts;
+    while (this.#grip.isBehind) {
+      await this.#frame(0);
+      if (start !== this.#starts) return;
+    }
+    await this.pause();
   }
 
   /** Plays at this speed. */
