@@ -1,4 +1,4 @@
-//! Buffers on a device, and a staging buffer that is kept for the next copy.
+//! Buffers on a device, and staging buffers that are kept for the next copies.
 
 #[cfg(not(target_arch = "wasm32"))]
 use super::pool::Pool;
@@ -64,26 +64,34 @@ impl Drop for Buffer {
     }
 }
 
-/// A staging buffer for the next copy. While it is in use, the slot is empty and a second copy makes its own buffer.
+/// The most staging buffers that are kept: the device fills one while the host reads the other.
+const MOST_STAGING: usize = 2;
+
+/// Staging buffers for the next copies. While all are in use, a further copy makes its own buffer.
 #[derive(Default)]
-pub(super) struct Kept(Mutex<Option<Buffer>>);
+pub(super) struct Kept(Mutex<Vec<Buffer>>);
 
 impl Kept {
-    fn with<T>(&self, f: impl FnOnce(&mut Option<Buffer>) -> T) -> T {
+    fn with<T>(&self, f: impl FnOnce(&mut Vec<Buffer>) -> T) -> T {
         f(&mut self.0.lock().unwrap_or_else(|poisoned| poisoned.into_inner()))
     }
 
-    /// Takes the buffer, if it has at least `bytes` bytes; drops it if it is smaller.
+    /// Takes a buffer of at least `bytes` bytes. If there is none, drops one: it is too small.
     pub(super) fn take(&self, bytes: u64) -> Option<Buffer> {
-        self.with(Option::take).filter(|buffer| buffer.size() >= bytes)
+        self.with(|kept| match kept.iter().position(|buffer| buffer.size() >= bytes) {
+            Some(i) => Some(kept.swap_remove(i)),
+            None => {
+                kept.pop();
+                None
+            }
+        })
     }
 
-    /// Keeps `buffer`, unless it is larger than [`MOST_KEPT`] or not larger than the one already kept.
+    /// Keeps `buffer`, unless it is larger than [`MOST_KEPT`] or enough are kept.
     pub(super) fn put(&self, buffer: Buffer) {
         self.with(|kept| {
-            let size = kept.as_ref().map_or(0, |kept| kept.size());
-            if size < buffer.size() && buffer.size() <= MOST_KEPT {
-                *kept = Some(buffer);
+            if kept.len() < MOST_STAGING && buffer.size() <= MOST_KEPT {
+                kept.push(buffer);
             }
         });
     }

@@ -30,10 +30,13 @@ pub(super) const PIECE: usize = 1 << 16;
 #[cfg(not(target_arch = "wasm32"))]
 pub(super) type Words = Vec<u32>;
 
-/// Memory for `words` words.
+/// Memory for `words` words. The system allocates each page at its first write, which takes longer than a copy. So this
+/// call writes to each page, while the GPU works.
 #[cfg(not(target_arch = "wasm32"))]
 pub(super) fn reserve(words: usize) -> Option<Words> {
-    Some(Vec::with_capacity(words))
+    let mut reserved = Threads::default().collect(words, |_| 0);
+    reserved.clear();
+    Some(reserved)
 }
 
 /// What to read: `words` words of `buffer`, from word `first` on.
@@ -129,15 +132,30 @@ impl Device {
     /// # Errors
     /// [`Error::Device`].
     pub(super) async fn read(&self, buffer: &Buffer, words: usize) -> Result<Vec<u32>, Error> {
-        let mut result = Vec::new();
+        self.read_into(buffer, words, Vec::new()).await
+    }
+
+    /// The same, into the memory of an empty list.
+    pub(super) async fn read_into(
+        &self,
+        buffer: &Buffer,
+        words: usize,
+        mut result: Vec<u32>,
+    ) -> Result<Vec<u32>, Error> {
         if words > CHUNK {
             result.reserve_exact(words);
         }
-        while result.len() < words {
-            let first = result.len();
+        let nothing = || self.device.create_command_encoder(&Default::default());
+        let mut reads = (0..words).step_by(CHUNK).map(|first| {
             let source = Source { buffer, first, words: (words - first).min(CHUNK) };
-            let nothing = || self.device.create_command_encoder(&Default::default());
-            self.submit_and_read(&nothing, &[source]).await?.append(0, &mut result)?;
+            self.submit_and_map(&nothing, &[source])
+        });
+        let mut next = reads.next();
+        while let Some(pending) = next {
+            let copy = pending.finished().await?;
+            // The device copies the next words while the host takes these.
+            next = reads.next();
+            copy.append(0, &mut result)?;
         }
         Ok(result)
     }

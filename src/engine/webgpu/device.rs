@@ -48,12 +48,12 @@ pub(crate) struct Device {
     pub(super) adjacency: Kernels,
     /// The kernels of the phases that a mesh has needed.
     phases: Mutex<Phases>,
-    /// The staging buffer for the next read.
+    /// Staging buffers for the next reads.
     pub(super) kept_for_reads: Kept,
     /// The buffers of sessions that have ended.
     #[cfg(not(target_arch = "wasm32"))]
     pool: Arc<Pool>,
-    /// The staging buffer for the next write, mapped.
+    /// Staging buffers for the next writes, mapped.
     #[cfg(target_arch = "wasm32")]
     pub(super) kept_for_writes: Rc<Kept>,
     #[cfg(test)]

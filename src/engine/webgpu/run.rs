@@ -83,6 +83,10 @@ impl WebGpu {
         let gpu = self.gpu.clone();
         let pending = gpu.submit_and_map(&record, &sources);
         let reserved = if has_triangles { reserve(triangles) } else { None };
+        #[cfg(not(target_arch = "wasm32"))]
+        if is_run && !self.waits && !has_triangles {
+            self.reserved = reserve(triangles).unwrap_or_default();
+        }
         self.check_allocation().await?;
         let read = pending.finished().await?;
         let history = read.words(0)?;
@@ -103,7 +107,8 @@ impl WebGpu {
     pub(super) fn read(&mut self, of: fn(&Buffers) -> &Buffer) -> Answer<'_, Vec<u32>> {
         Box::pin(async move {
             self.check_allocation().await?;
-            self.gpu.read(of(&self.buffers), 3 * self.params.triangles as usize).await
+            let reserved = std::mem::take(&mut self.reserved);
+            self.gpu.read_into(of(&self.buffers), 3 * self.params.triangles as usize, reserved).await
         })
     }
 

@@ -1,11 +1,11 @@
-//! Staging buffers. One is kept from each copy to the next, since allocating takes longer than copying.
+//! Staging buffers. Two are kept from copy to copy, since allocating takes longer than copying.
 
 use super::buffer::{Buffer, MOST_KEPT};
 use super::device::Device;
 use wgpu::BufferUsages;
 
 /// The smallest staging buffer, in bytes.
-const FEWEST: u64 = 1 << 16;
+pub(super) const FEWEST: u64 = 1 << 16;
 
 impl Device {
     /// A buffer of at least `bytes` bytes. The size of a buffer that may be kept is rounded up, so that slightly longer

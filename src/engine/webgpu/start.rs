@@ -73,6 +73,7 @@ impl WebGpu {
                 waits,
                 stays: false,
                 known: Known::default(),
+                reserved: Vec::new(),
                 state: Entry::default(),
                 dispatches: adjacency::DISPATCHES,
                 adjacency_ms: 0.0,
