@@ -131,20 +131,23 @@ impl Device {
     ///
     /// # Errors
     /// [`Error::Device`].
+    #[cfg(not(target_arch = "wasm32"))]
     pub(super) async fn read(&self, buffer: &Buffer, words: usize) -> Result<Vec<u32>, Error> {
         self.read_into(buffer, words, Vec::new()).await
     }
 
-    /// The same, into the memory of an empty list.
+    /// The same, into the memory of an empty list. The device copies the next words while the host takes these.
+    ///
+    /// # Errors
+    /// [`Error::Device`].
+    #[cfg(not(target_arch = "wasm32"))]
     pub(super) async fn read_into(
         &self,
         buffer: &Buffer,
         words: usize,
         mut result: Vec<u32>,
     ) -> Result<Vec<u32>, Error> {
-        if words > CHUNK {
-            result.reserve_exact(words);
-        }
+        result.reserve_exact(words);
         let nothing = || self.device.create_command_encoder(&Default::default());
         let mut reads = (0..words).step_by(CHUNK).map(|first| {
             let source = Source { buffer, first, words: (words - first).min(CHUNK) };
@@ -153,9 +156,24 @@ impl Device {
         let mut next = reads.next();
         while let Some(pending) = next {
             let copy = pending.finished().await?;
-            // The device copies the next words while the host takes these.
             next = reads.next();
             copy.append(0, &mut result)?;
+        }
+        Ok(result)
+    }
+
+    /// Reads `words` words from the start of `buffer`.
+    ///
+    /// # Errors
+    /// [`Error::Device`].
+    #[cfg(target_arch = "wasm32")]
+    pub(super) async fn read(&self, buffer: &Buffer, words: usize) -> Result<Vec<u32>, Error> {
+        let mut result = Vec::new();
+        while result.len() < words {
+            let first = result.len();
+            let source = Source { buffer, first, words: (words - first).min(CHUNK) };
+            let nothing = || self.device.create_command_encoder(&Default::default());
+            self.submit_and_read(&nothing, &[source]).await?.append(0, &mut result)?;
         }
         Ok(result)
     }

@@ -102,7 +102,8 @@ pub(crate) struct WebGpu {
     stays: bool,
     /// Results that the host has read in advance.
     known: Known,
-    /// Empty; natively it has memory for the triangles of a large mesh, once the device works.
+    /// Empty; it has memory for the triangles of a large mesh, once the device works.
+    #[cfg(not(target_arch = "wasm32"))]
     reserved: Vec<u32>,
     state: Entry,
     dispatches: u64,

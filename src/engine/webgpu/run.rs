@@ -107,8 +107,11 @@ impl WebGpu {
     pub(super) fn read(&mut self, of: fn(&Buffers) -> &Buffer) -> Answer<'_, Vec<u32>> {
         Box::pin(async move {
             self.check_allocation().await?;
-            let reserved = std::mem::take(&mut self.reserved);
-            self.gpu.read_into(of(&self.buffers), 3 * self.params.triangles as usize, reserved).await
+            let (buffer, words) = (of(&self.buffers), 3 * self.params.triangles as usize);
+            #[cfg(not(target_arch = "wasm32"))]
+            return self.gpu.read_into(buffer, words, std::mem::take(&mut self.reserved)).await;
+            #[cfg(target_arch = "wasm32")]
+            self.gpu.read(buffer, words).await
         })
     }
 

@@ -73,6 +73,7 @@ impl WebGpu {
                 waits,
                 stays: false,
                 known: Known::default(),
+                #[cfg(not(target_arch = "wasm32"))]
                 reserved: Vec::new(),
                 state: Entry::default(),
                 dispatches: adjacency::DISPATCHES,
