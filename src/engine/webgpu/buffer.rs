@@ -64,8 +64,8 @@ impl Drop for Buffer {
     }
 }
 
-/// The most staging buffers that are kept: the device fills one while the host reads the other.
-const MOST_STAGING: usize = 2;
+/// The most staging buffers that are kept. Natively, the device fills one while the host reads the other.
+const MOST_STAGING: usize = if cfg!(target_arch = "wasm32") { 1 } else { 2 };
 
 /// Staging buffers for the next copies. While all are in use, a further copy makes its own buffer.
 #[derive(Default)]

@@ -1,4 +1,4 @@
-//! Staging buffers. Two are kept from copy to copy, since allocating takes longer than copying.
+//! Staging buffers. They are kept from copy to copy, since allocating takes longer than copying.
 
 use super::buffer::{Buffer, MOST_KEPT};
 use super::device::Device;
