@@ -30,13 +30,10 @@ pub(super) const PIECE: usize = 1 << 16;
 #[cfg(not(target_arch = "wasm32"))]
 pub(super) type Words = Vec<u32>;
 
-/// Memory for `words` words. The system allocates each page at its first write, which takes longer than a copy. So this
-/// call writes to each page, while the GPU works.
+/// Memory for `words` words.
 #[cfg(not(target_arch = "wasm32"))]
 pub(super) fn reserve(words: usize) -> Option<Words> {
-    let mut reserved = Threads::default().collect(words, |_| 0);
-    reserved.clear();
-    Some(reserved)
+    Some(Vec::with_capacity(words))
 }
 
 /// What to read: `words` words of `buffer`, from word `first` on.
@@ -127,27 +124,13 @@ impl ReadBack<'_> {
 }
 
 impl Device {
-    /// Reads `words` words from the start of `buffer`.
+    /// Reads `words` words from the start of `buffer`. The device copies the next words while the host takes these.
     ///
     /// # Errors
     /// [`Error::Device`].
     #[cfg(not(target_arch = "wasm32"))]
     pub(super) async fn read(&self, buffer: &Buffer, words: usize) -> Result<Vec<u32>, Error> {
-        self.read_into(buffer, words, Vec::new()).await
-    }
-
-    /// The same, into the memory of an empty list. The device copies the next words while the host takes these.
-    ///
-    /// # Errors
-    /// [`Error::Device`].
-    #[cfg(not(target_arch = "wasm32"))]
-    pub(super) async fn read_into(
-        &self,
-        buffer: &Buffer,
-        words: usize,
-        mut result: Vec<u32>,
-    ) -> Result<Vec<u32>, Error> {
-        result.reserve_exact(words);
+        let mut result = Vec::with_capacity(words);
         let nothing = || self.device.create_command_encoder(&Default::default());
         let mut reads = (0..words).step_by(CHUNK).map(|first| {
             let source = Source { buffer, first, words: (words - first).min(CHUNK) };

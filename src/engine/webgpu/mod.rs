@@ -102,9 +102,6 @@ pub(crate) struct WebGpu {
     stays: bool,
     /// Results that the host has read in advance.
     known: Known,
-    /// Empty; it has memory for the triangles of a large mesh, once the device works.
-    #[cfg(not(target_arch = "wasm32"))]
-    reserved: Vec<u32>,
     state: Entry,
     dispatches: u64,
     adjacency_ms: f64,

@@ -83,10 +83,6 @@ impl WebGpu {
         let gpu = self.gpu.clone();
         let pending = gpu.submit_and_map(&record, &sources);
         let reserved = if has_triangles { reserve(triangles) } else { None };
-        #[cfg(not(target_arch = "wasm32"))]
-        if is_run && !self.waits && !has_triangles {
-            self.reserved = reserve(triangles).unwrap_or_default();
-        }
         self.check_allocation().await?;
         let read = pending.finished().await?;
         let history = read.words(0)?;
@@ -107,11 +103,7 @@ impl WebGpu {
     pub(super) fn read(&mut self, of: fn(&Buffers) -> &Buffer) -> Answer<'_, Vec<u32>> {
         Box::pin(async move {
             self.check_allocation().await?;
-            let (buffer, words) = (of(&self.buffers), 3 * self.params.triangles as usize);
-            #[cfg(not(target_arch = "wasm32"))]
-            return self.gpu.read_into(buffer, words, std::mem::take(&mut self.reserved)).await;
-            #[cfg(target_arch = "wasm32")]
-            self.gpu.read(buffer, words).await
+            self.gpu.read(of(&self.buffers), 3 * self.params.triangles as usize).await
         })
     }
 

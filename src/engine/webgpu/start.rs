@@ -73,8 +73,6 @@ impl WebGpu {
                 waits,
                 stays: false,
                 known: Known::default(),
-                #[cfg(not(target_arch = "wasm32"))]
-                reserved: Vec::new(),
                 state: Entry::default(),
                 dispatches: adjacency::DISPATCHES,
                 adjacency_ms: 0.0,
