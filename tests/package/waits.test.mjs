@@ -85,6 +85,28 @@ test('a run waits once, and copies through buffers that are reused', async () =>
   for (const run of [2, 4, 5]) assert.deepEqual(told[run], { waits: 1, kept: 1, submissions: 3 }, `run ${run}`);
 });
 
+/** Runs in the page: sends arrays that go in several pieces, and reads them back. Collects wrong results. */
+async function pieces() {
+  const { FlipSession } = await import('/dist/index.js');
+  const { generate } = await import('/dist/files.js');
+  const wrong = [];
+  // 26 MB of triangles; a piece has 16 MB.
+  for (const spec of ['random 1050', 'random 1040', 'random 1060']) {
+    const mesh = await generate(spec);
+    const session = await FlipSession.create(mesh, { backend: 'webgpu' });
+    const triangles = await session.triangles();
+    if (triangles.length !== mesh.indices.length || triangles.some((vertex, i) => vertex !== mesh.indices[i]))
+      wrong.push(spec);
+    session.free();
+  }
+  return wrong;
+}
+
+test('arrays of several pieces come back as they were sent', async () => {
+  const { page } = await openPage(await startChromium(), `${await serve(repository)}tests/engines.html`);
+  assert.deepEqual(await page.evaluate(pieces), []);
+});
+
 /** Runs in the page: begins sessions at the same time on an engine, and counts the programs that the page compiles. */
 async function compiled({ backend, sessions }) {
   const { makeDelaunay } = await import('/dist/index.js');

@@ -1,6 +1,6 @@
 //! The browser's WebGPU objects: how to find them, and calls that wgpu does not offer.
 
-use js_sys::{Object, Promise, Reflect};
+use js_sys::{Array, JsString, Object, Promise, Reflect};
 use wasm_bindgen::prelude::*;
 use wasm_bindgen_futures::JsFuture;
 
@@ -22,11 +22,11 @@ extern "C" {
     #[wasm_bindgen(js_name = GPUAdapterInfo)]
     pub(super) type GpuAdapterInfo;
     #[wasm_bindgen(method, getter)]
-    fn vendor(this: &GpuAdapterInfo) -> String;
+    fn vendor(this: &GpuAdapterInfo) -> JsString;
     #[wasm_bindgen(method, getter)]
-    fn architecture(this: &GpuAdapterInfo) -> String;
+    fn architecture(this: &GpuAdapterInfo) -> JsString;
     #[wasm_bindgen(method, getter)]
-    fn description(this: &GpuAdapterInfo) -> String;
+    fn description(this: &GpuAdapterInfo) -> JsString;
     #[wasm_bindgen(method, getter, js_name = isFallbackAdapter)]
     pub(super) fn is_fallback_adapter(this: &GpuAdapterInfo) -> Option<bool>;
 
@@ -80,7 +80,7 @@ impl GpuDevice {
     /// Vendor, architecture and description, such as `nvidia ampere`. Empty where the browser does not tell them.
     pub(super) fn adapter_name(&self) -> String {
         let info = self.adapter_info();
-        let words = info.map(|info| [info.vendor(), info.architecture(), info.description()]);
-        words.map_or_else(String::new, |words| words.join(" ").trim().to_owned())
+        let words = info.map(|info| Array::of3(&info.vendor(), &info.architecture(), &info.description()));
+        words.map_or_else(String::new, |words| words.join(" ").trim().into())
     }
 }

@@ -6,8 +6,8 @@ use super::pool::Pool;
 use std::sync::Arc;
 use std::sync::Mutex;
 
-/// The largest buffer that is kept, in bytes.
-pub(super) const MOST_KEPT: u64 = 1 << 26;
+/// The most bytes of staging buffers that are kept.
+const MOST_KEPT: u64 = 1 << 27;
 
 /// A buffer that is destroyed on drop, or kept for the next session. In a browser, the garbage collector would free it
 /// much later.
@@ -64,9 +64,6 @@ impl Drop for Buffer {
     }
 }
 
-/// The most staging buffers that are kept. Natively, the device fills one while the host reads the other.
-const MOST_STAGING: usize = if cfg!(target_arch = "wasm32") { 1 } else { 2 };
-
 /// Staging buffers for the next copies. While all are in use, a further copy makes its own buffer.
 #[derive(Default)]
 pub(super) struct Kept(Mutex<Vec<Buffer>>);
@@ -76,21 +73,22 @@ impl Kept {
         f(&mut self.0.lock().unwrap_or_else(|poisoned| poisoned.into_inner()))
     }
 
-    /// Takes a buffer of at least `bytes` bytes. If there is none, drops one: it is too small.
+    /// Takes the smallest buffer of at least `bytes` bytes. If there is none, drops one: it is too small.
     pub(super) fn take(&self, bytes: u64) -> Option<Buffer> {
-        self.with(|kept| match kept.iter().position(|buffer| buffer.size() >= bytes) {
-            Some(i) => Some(kept.swap_remove(i)),
-            None => {
-                kept.pop();
-                None
+        self.with(|kept| {
+            let fits = (0..kept.len()).filter(|&i| kept[i].size() >= bytes);
+            if let Some(i) = fits.min_by_key(|&i| kept[i].size()) {
+                return Some(kept.swap_remove(i));
             }
+            kept.pop();
+            None
         })
     }
 
-    /// Keeps `buffer`, unless it is larger than [`MOST_KEPT`] or enough are kept.
+    /// Keeps `buffer`, unless that would be more than [`MOST_KEPT`] bytes.
     pub(super) fn put(&self, buffer: Buffer) {
         self.with(|kept| {
-            if kept.len() < MOST_STAGING && buffer.size() <= MOST_KEPT {
+            if kept.iter().map(|kept| kept.size()).sum::<u64>() + buffer.size() <= MOST_KEPT {
                 kept.push(buffer);
             }
         });

@@ -86,10 +86,10 @@ impl Buffers {
 
     /// Writes the positions and the triangles. An empty slice leaves the triangles as they are.
     pub(super) fn write(&self, gpu: &Device, upload: &Upload, triangles: &[u32]) {
-        let numbers = self.floats.as_ref().map(|floats| (floats, upload.mesh.positions().to_f32()));
-        let mut writes = vec![(&self.triangles, triangles), (&self.positions, upload.words())];
-        writes.extend(numbers.iter().map(|(floats, numbers)| (*floats, bytemuck::cast_slice(numbers))));
-        gpu.write_all(&writes);
+        gpu.write_all(&[(&self.triangles, triangles), (&self.positions, upload.words())]);
+        if let Some(floats) = &self.floats {
+            gpu.write(floats, bytemuck::cast_slice(&upload.mesh.positions().to_f32()));
+        }
     }
 
     /// The bind group for the phases.

@@ -1,11 +1,11 @@
 //! Copies to a device, and back.
 
 use super::buffer::Buffer;
-#[cfg(target_arch = "wasm32")]
-use super::buffer::MOST_KEPT;
 use super::device::Device;
 use super::faults::{Caught, watch};
+use super::words::{Words, reserve, vector};
 use crate::Error;
+use crate::engine::Answer;
 #[cfg(not(target_arch = "wasm32"))]
 use crate::system::threads::Threads;
 use futures_channel::oneshot;
@@ -16,29 +16,18 @@ use wgpu::BufferUsages;
 
 /// The most words of one copy to the device, or from it. Longer arrays go in several copies through the same staging
 /// memory, which is far faster than new memory.
-#[cfg(not(target_arch = "wasm32"))]
 pub(super) const CHUNK: usize = 1 << 22;
-/// In a browser the host waits for each copy, so a copy may be as long as the largest staging buffer that is kept.
-#[cfg(target_arch = "wasm32")]
-pub(super) const CHUNK: usize = MOST_KEPT as usize / 4;
+
+/// Copies that the device makes while the host takes one. A browser needs several: each goes through two processes.
+const AHEAD: usize = if cfg!(target_arch = "wasm32") { 3 } else { 1 };
 
 /// Words that one thread copies without a break.
 #[cfg(not(target_arch = "wasm32"))]
 pub(super) const PIECE: usize = 1 << 16;
 
-/// The array that a result is read into.
-#[cfg(not(target_arch = "wasm32"))]
-pub(super) type Words = Vec<u32>;
-
-/// Memory for `words` words.
-#[cfg(not(target_arch = "wasm32"))]
-pub(super) fn reserve(words: usize) -> Option<Words> {
-    Some(Vec::with_capacity(words))
-}
-
 /// What to read: `words` words of `buffer`, from word `first` on.
 pub(super) struct Source<'a> {
-    pub(super) buffer: &'a Buffer,
+    pub(super) buffer: &'a wgpu::Buffer,
     pub(super) first: usize,
     pub(super) words: usize,
 }
@@ -99,18 +88,19 @@ impl ReadBack<'_> {
     ///
     /// # Errors
     /// [`Error::Device`].
+    #[cfg(not(target_arch = "wasm32"))]
     pub(super) fn words(&self, source: usize) -> Result<Vec<u32>, Error> {
         let mut words = Vec::new();
         self.append(source, &mut words).map(|()| words)
     }
 
-    /// Copies the words of a source into memory from [`reserve`].
+    /// Copies the words of a source behind the first `_taken` words, which `result` has.
     ///
     /// # Errors
     /// [`Error::Device`].
     #[cfg(not(target_arch = "wasm32"))]
-    pub(super) fn fill(&self, source: usize, mut reserved: Words) -> Result<Words, Error> {
-        self.append(source, &mut reserved).map(|()| reserved)
+    pub(super) fn fill(&self, source: usize, result: &mut Words, _taken: usize) -> Result<(), Error> {
+        self.append(source, result)
     }
 
     #[cfg(not(target_arch = "wasm32"))]
@@ -123,42 +113,70 @@ impl ReadBack<'_> {
     }
 }
 
-impl Device {
-    /// Reads `words` words from the start of `buffer`. The device copies the next words while the host takes these.
+/// A read of a long array, in pieces. The device copies the next pieces while the host takes one.
+pub(super) struct LongRead<'a> {
+    gpu: &'a Device,
+    buffer: wgpu::Buffer,
+    rest: Range<usize>,
+    /// At most [`AHEAD`], in the order of the words.
+    pending: Vec<PendingRead<'a>>,
+}
+
+impl LongRead<'_> {
+    /// Submits the next pieces.
+    fn advance(&mut self) {
+        while self.pending.len() < AHEAD && !self.rest.is_empty() {
+            let words = self.rest.len().min(CHUNK);
+            let source = Source { buffer: &self.buffer, first: self.rest.start, words };
+            let nothing = || self.gpu.device.create_command_encoder(&Default::default());
+            self.pending.push(self.gpu.submit_and_map(&nothing, &[source]));
+            self.rest.start += words;
+        }
+    }
+
+    /// Waits, and copies the words behind the first `taken` words, which `result` has.
     ///
     /// # Errors
     /// [`Error::Device`].
-    #[cfg(not(target_arch = "wasm32"))]
-    pub(super) async fn read(&self, buffer: &Buffer, words: usize) -> Result<Vec<u32>, Error> {
-        let mut result = Vec::with_capacity(words);
-        let nothing = || self.device.create_command_encoder(&Default::default());
-        let mut reads = (0..words).step_by(CHUNK).map(|first| {
-            let source = Source { buffer, first, words: (words - first).min(CHUNK) };
-            self.submit_and_map(&nothing, &[source])
-        });
-        let mut next = reads.next();
-        while let Some(pending) = next {
-            let copy = pending.finished().await?;
-            next = reads.next();
-            copy.append(0, &mut result)?;
+    pub(super) async fn fill(mut self, result: &mut Words, mut taken: usize) -> Result<(), Error> {
+        while !self.pending.is_empty() {
+            let piece = self.pending.remove(0).finished().await?;
+            self.advance();
+            piece.fill(0, result, taken)?;
+            taken += CHUNK;
         }
-        Ok(result)
+        Ok(())
     }
+}
 
+impl Device {
     /// Reads `words` words from the start of `buffer`.
     ///
     /// # Errors
-    /// [`Error::Device`].
-    #[cfg(target_arch = "wasm32")]
-    pub(super) async fn read(&self, buffer: &Buffer, words: usize) -> Result<Vec<u32>, Error> {
-        let mut result = Vec::new();
-        while result.len() < words {
-            let first = result.len();
-            let source = Source { buffer, first, words: (words - first).min(CHUNK) };
-            let nothing = || self.device.create_command_encoder(&Default::default());
-            self.submit_and_read(&nothing, &[source]).await?.append(0, &mut result)?;
-        }
-        Ok(result)
+    /// [`Error::Device`]; [`Error::OutOfMemory`].
+    pub(super) fn read(&self, buffer: &wgpu::Buffer, words: usize) -> Answer<'_, Vec<u32>> {
+        let read = self.read_array(buffer, words);
+        Box::pin(async { read.await.map(vector) })
+    }
+
+    /// The same, into an array of the host.
+    ///
+    /// # Errors
+    /// [`Error::Device`]; [`Error::OutOfMemory`].
+    pub(super) fn read_array(&self, buffer: &wgpu::Buffer, words: usize) -> Answer<'_, Words> {
+        let read = self.begin_read(buffer, 0..words);
+        let bytes = 4 * words as u64;
+        Box::pin(async move {
+            let mut result = reserve(words).ok_or(Error::OutOfMemory { bytes, limit: None })?;
+            read.fill(&mut result, 0).await.map(|()| result)
+        })
+    }
+
+    /// Begins to read some words of `buffer`.
+    pub(super) fn begin_read(&self, buffer: &wgpu::Buffer, words: Range<usize>) -> LongRead<'_> {
+        let mut read = LongRead { gpu: self, buffer: buffer.clone(), rest: words, pending: Vec::new() };
+        read.advance();
+        read
     }
 
     /// Why a buffer is not mapped: the first error of the device. A device of the caller, which is lost, tells of that
@@ -237,18 +255,19 @@ impl Device {
         }
     }
 
+    /// Writes words to the start of `buffer`, before the next submission.
+    pub(super) fn write(&self, buffer: &Buffer, words: &[u32]) {
+        self.write_all(&[(buffer, words)]);
+    }
+
     /// Writes words to the starts of buffers, before the next submission.
     #[cfg(not(target_arch = "wasm32"))]
     pub(super) fn write_all(&self, writes: &[(&Buffer, &[u32])]) {
-        writes.iter().for_each(|(buffer, words)| self.write(buffer, words));
-    }
-
-    /// Writes words to the start of `buffer`, before the next submission.
-    pub(super) fn write(&self, buffer: &Buffer, words: &[u32]) {
-        self.write_at(buffer, 0, words);
+        writes.iter().for_each(|(buffer, words)| self.write_at(buffer, 0, words));
     }
 
     /// Writes words to `buffer` from word `first` on, before the next submission.
+    #[cfg(not(target_arch = "wasm32"))]
     pub(super) fn write_at(&self, buffer: &Buffer, first: usize, words: &[u32]) {
         for (i, chunk) in words.chunks(CHUNK).enumerate() {
             let offset = 4 * (first + i * CHUNK) as u64;

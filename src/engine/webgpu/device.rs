@@ -119,6 +119,17 @@ fn wake(device: &wgpu::Device, queue: &wgpu::Queue) -> std::io::Result<std::thre
     })
 }
 
+#[cfg(not(target_arch = "wasm32"))]
+fn no_adapter(error: wgpu::RequestAdapterError) -> Error {
+    unavailable(format!("no adapter was found ({error})"))
+}
+
+/// A browser does not say why.
+#[cfg(target_arch = "wasm32")]
+fn no_adapter(_: wgpu::RequestAdapterError) -> Error {
+    unavailable("no adapter was found".to_owned())
+}
+
 fn refused_kernels(fault: Fault) -> Error {
     unavailable(format!("it refuses the kernels: {fault}"))
 }
@@ -151,10 +162,7 @@ impl Device {
             power_preference: wgpu::PowerPreference::HighPerformance,
             ..Default::default()
         };
-        let adapter = instance
-            .request_adapter(&options)
-            .await
-            .map_err(|error| unavailable(format!("no adapter was found ({error})")))?;
+        let adapter = instance.request_adapter(&options).await.map_err(no_adapter)?;
         let is_software = adapter.get_info().device_type == wgpu::DeviceType::Cpu;
         Ok((adapter, is_software))
     }

@@ -48,8 +48,10 @@ impl GpuDevice {
             Ok(own) => Reflect::define_property(&navigator, &"gpu".into(), &own),
             Err(_) => Reflect::delete_property(&navigator, &"gpu".into()),
         };
-        let adapter =
-            instance.request_adapter(&Default::default()).await.map_err(|error| error.to_string())?;
+        let adapter = instance
+            .request_adapter(&Default::default())
+            .await
+            .map_err(|_| "wgpu does not take the device")?;
         adapter.request_device(&Default::default()).await.map_err(|error| error.to_string())
     }
 }

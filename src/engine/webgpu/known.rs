@@ -1,9 +1,6 @@
 //! Results that the host reads before the session asks for them.
 
-#[cfg(not(target_arch = "wasm32"))]
-use super::copies::Words;
-#[cfg(target_arch = "wasm32")]
-use super::mapped::Words;
+use super::words::Words;
 use crate::engine::Census;
 
 /// Results read in the submission of the last iteration.

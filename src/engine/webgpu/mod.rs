@@ -45,6 +45,7 @@ mod start;
 mod steps;
 #[cfg(test)]
 mod tests;
+mod words;
 
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 pub use browser::GpuDevice;
@@ -75,6 +76,7 @@ use kernels::Plan;
 use known::Known;
 use params::Params;
 use std::sync::Arc;
+use words::vector;
 
 /// A mesh on the device.
 pub(crate) struct WebGpu {
@@ -127,14 +129,8 @@ impl Engine for WebGpu {
     }
 
     fn triangles(&mut self) -> Answer<'_, Vec<u32>> {
-        #[cfg(not(target_arch = "wasm32"))]
-        let known = self.known.triangles.take();
-        #[cfg(target_arch = "wasm32")]
-        let known = self.known.triangles.take().map(|array| array.to_vec());
-        match known {
-            Some(triangles) => Box::pin(std::future::ready(Ok(triangles))),
-            None => self.read(|buffers| &buffers.triangles),
-        }
+        let triangles = self.known_triangles();
+        Box::pin(async { triangles.await.map(vector) })
     }
 
     #[cfg(all(target_arch = "wasm32", feature = "js"))]
@@ -144,14 +140,12 @@ impl Engine for WebGpu {
 
     #[cfg(all(target_arch = "wasm32", feature = "js"))]
     fn triangles_array(&mut self) -> Answer<'_, js_sys::Uint32Array> {
-        match self.known.triangles.take() {
-            Some(triangles) => Box::pin(std::future::ready(Ok(triangles))),
-            None => crate::engine::interface::array(self.triangles()),
-        }
+        self.known_triangles()
     }
 
     fn twins(&mut self) -> Answer<'_, Vec<u32>> {
-        self.read(|buffers| &buffers.twins)
+        let twins = self.read(|buffers| &buffers.twins);
+        Box::pin(async { twins.await.map(vector) })
     }
 
     fn set_positions(&mut self, mesh: Arc<Mesh>) -> Answer<'_, ()> {

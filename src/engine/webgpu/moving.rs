@@ -50,7 +50,7 @@ impl WebGpu {
         let gpu = self.gpu.clone();
         let ((), faults) = watch(&gpu.device, || {
             if let Some(numbers) = numbers {
-                gpu.queue.write_buffer(&self.buffers.positions, 0, bytemuck::cast_slice(numbers));
+                gpu.write(&self.buffers.positions, bytemuck::cast_slice(numbers));
             }
             let mut encoder = gpu.device.create_command_encoder(&Default::default());
             self.record_preparation(&mut encoder);

@@ -2,18 +2,15 @@
 
 use super::WebGpu;
 use super::adjacency::COUNTERS;
-use super::buffer::{Buffer, MOST_KEPT};
+use super::buffer::Buffer;
 use super::buffers::Buffers;
-use super::copies::Source;
-#[cfg(not(target_arch = "wasm32"))]
-use super::copies::reserve;
+use super::copies::{CHUNK, Source};
 use super::history::{BATCH, COUNTS, ENTRIES, ENTRY_WORDS, HISTORY_WORDS, PAUSES, SHORT_TAIL, TAIL};
 use super::kernels::{Kernel, WORKGROUP_SIZE};
 use super::known::Known;
-#[cfg(target_arch = "wasm32")]
-use super::mapped::reserve;
 use super::programs::{DECIDERS, LANE_COUNT};
 use super::steps::Step;
+use super::words::{Words, reserve};
 use crate::Error;
 use crate::engine::{Answer, Census};
 
@@ -76,12 +73,15 @@ impl WebGpu {
         ];
         // Most runs end in their first submission, so the triangles are read with it, unless they stay.
         let is_run = self.params.first == 0 && count > 1 && !self.stays;
-        let has_triangles = !self.waits && is_run && (4 * triangles as u64) < MOST_KEPT;
+        let has_triangles = !self.waits && is_run;
+        let first = triangles.min(CHUNK);
         if has_triangles {
-            sources.push(Source::new(&self.buffers.triangles, triangles));
+            sources.push(Source::new(&self.buffers.triangles, first));
         }
         let gpu = self.gpu.clone();
         let pending = gpu.submit_and_map(&record, &sources);
+        let rest = if has_triangles { first..triangles } else { 0..0 };
+        let rest = gpu.begin_read(&self.buffers.triangles, rest);
         let reserved = if has_triangles { reserve(triangles) } else { None };
         self.check_allocation().await?;
         let read = pending.finished().await?;
@@ -95,16 +95,28 @@ impl WebGpu {
         if !self.waits {
             self.known.census = Some(Census::of_counts(&history[..COUNTS]));
         }
-        self.known.triangles = reserved.map(|reserved| read.fill(2, reserved)).transpose()?;
+        if let Some(mut triangles) = reserved {
+            read.fill(2, &mut triangles, 0)?;
+            rest.fill(&mut triangles, first).await?;
+            self.known.triangles = Some(triangles);
+        }
         Ok(self.take_over(&history))
     }
 
     /// Reads a buffer that has one word per half-edge.
-    pub(super) fn read(&mut self, of: fn(&Buffers) -> &Buffer) -> Answer<'_, Vec<u32>> {
+    pub(super) fn read(&mut self, of: fn(&Buffers) -> &Buffer) -> Answer<'_, Words> {
         Box::pin(async move {
             self.check_allocation().await?;
-            self.gpu.read(of(&self.buffers), 3 * self.params.triangles as usize).await
+            self.gpu.read_array(of(&self.buffers), 3 * self.params.triangles as usize).await
         })
+    }
+
+    /// The triangles, unless the last submission has read them.
+    pub(super) fn known_triangles(&mut self) -> Answer<'_, Words> {
+        match self.known.triangles.take() {
+            Some(triangles) => Box::pin(std::future::ready(Ok(triangles))),
+            None => self.read(|buffers| &buffers.triangles),
+        }
     }
 
     /// Counts the edges, unless the last submission has done so.

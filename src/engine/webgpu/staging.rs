@@ -1,6 +1,6 @@
 //! Staging buffers. They are kept from copy to copy, since allocating takes longer than copying.
 
-use super::buffer::{Buffer, MOST_KEPT};
+use super::buffer::Buffer;
 use super::device::Device;
 use wgpu::BufferUsages;
 
@@ -8,12 +8,11 @@ use wgpu::BufferUsages;
 pub(super) const FEWEST: u64 = 1 << 16;
 
 impl Device {
-    /// A buffer of at least `bytes` bytes. The size of a buffer that may be kept is rounded up, so that slightly longer
-    /// copies fit too. It is rounded up only a little, since a browser copies all bytes of a mapped range.
+    /// A buffer of at least `bytes` bytes. Its size is rounded up, so that slightly longer copies fit too. It is rounded
+    /// up only a little, since a browser copies all bytes of a mapped range.
     pub(super) fn staging(&self, bytes: u64, usage: BufferUsages) -> Buffer {
         let step = bytes.next_power_of_two() / 8;
-        let size =
-            if bytes > MOST_KEPT { bytes } else { bytes.next_multiple_of(step.max(FEWEST)).max(FEWEST) };
+        let size = bytes.next_multiple_of(step.max(FEWEST)).max(FEWEST);
         Buffer::new(self.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("staging"),
             size,

@@ -183,25 +183,26 @@ impl WebGpu {
         }
         self.counts = found.counts;
         let needs_fans = found.has_several_fans && self.params.fans_length == 0;
+        let is_clockwise = signs & NEGATIVE != 0;
+        let needs_windings = is_clockwise && signs & POSITIVE != 0;
+        let needs_help = needs_fans || needs_windings;
+        let twins = if needs_help { self.twins().await? } else { Vec::new() };
         if needs_fans {
-            self.add_fans(mesh).await?;
+            self.add_fans(mesh, &twins).await?;
         }
-        let needs_windings = signs & NEGATIVE != 0 && signs & POSITIVE != 0;
         if needs_windings {
-            self.add_windings(mesh).await?;
+            self.add_windings(mesh, &twins).await?;
         } else {
-            let is_clockwise = signs & NEGATIVE != 0;
             self.winding = if is_clockwise { WINDING_CLOCKWISE } else { WINDING_COUNTER_CLOCKWISE };
         }
         self.unsettled = None;
-        Ok(needs_fans || needs_windings)
+        Ok(needs_help)
     }
 
     /// Adds the windings of the components, found by the host, and prepares the stars again. Meshes that need them are
     /// rare: they have components of both windings, or triangles of both signs in one component.
-    async fn add_windings(&mut self, mesh: &Mesh) -> Result<(), Error> {
-        let twins = self.gpu.read(&self.buffers.twins, mesh.triangles().len()).await?;
-        let clockwise = Outline::new(mesh.triangles(), &twins).winding(mesh).clockwise;
+    async fn add_windings(&mut self, mesh: &Mesh, twins: &[u32]) -> Result<(), Error> {
+        let clockwise = Outline::new(mesh.triangles(), twins).winding(mesh).clockwise;
         self.dispatches += Kernel::preparation(self.form.dimension).len() as u64;
         (self.winding, self.params.winding) = (WINDING_BITS, WINDING_BITS);
         let calls = || {
@@ -212,9 +213,8 @@ impl WebGpu {
     }
 
     /// Appends the table of fans, found by the host, to the topology. Vertices with several fans are rare.
-    async fn add_fans(&mut self, mesh: &Mesh) -> Result<(), Error> {
-        let twins = self.gpu.read(&self.buffers.twins, mesh.triangles().len()).await?;
-        let table = Fans::new(mesh.vertex_count(), mesh.triangles(), &twins).table;
+    async fn add_fans(&mut self, mesh: &Mesh, twins: &[u32]) -> Result<(), Error> {
+        let table = Fans::new(mesh.vertex_count(), mesh.triangles(), twins).table;
         // Set last, after everything that can fail.
         self.params.fans = self.append_to_topology(&table).await?;
         self.params.fans_length = table.len() as u32;

@@ -325,7 +325,7 @@ fn threads_share_the_kept_buffers() {
         }
     });
     let kept: Vec<_> = std::iter::from_fn(|| device.kept_for_reads.take(0)).collect();
-    assert!((1..=2).contains(&kept.len()));
+    assert!((1..=4).contains(&kept.len()));
     assert!(come_back(&device, 1, 7) && device.kept_for_reads.take(0).unwrap().size() == FEWEST);
     assert!(device.kept_for_reads.take(0).is_none());
 }
