@@ -273,6 +273,18 @@ export class EdgeflipPage {
     return picture;
   }
 
+  /** The picture of the canvas once it stands still: edges that have flipped are cool by then. */
+  async stillPicture() {
+    let before = await this.picture();
+    for (const end = performance.now() + 60_000; performance.now() < end; ) {
+      await pause(100);
+      const now = await this.picture();
+      if (now.differsFrom(before) === 0) return now;
+      before = now;
+    }
+    return assert.fail('the picture does not stand still for 60 s');
+  }
+
   /** The mesh in the file that the page writes. */
   async download() {
     await this.page.click('#take');

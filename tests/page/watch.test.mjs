@@ -352,7 +352,7 @@ test('a link opens the same mesh, engine, limit, iteration and view', async () =
   await page.page.mouse.move(700, 420, { steps: 5 });
   await page.page.mouse.up();
   await press(page, 'Escape');
-  const picture = await page.picture();
+  const picture = await page.stillPicture();
   const before = await page.rest();
   await press(page, 'k');
   await page.page.waitForFunction(() => document.getElementById('away-says').textContent.startsWith('Link copied'));
@@ -369,7 +369,7 @@ test('a link opens the same mesh, engine, limit, iteration and view', async () =
     [after.facts.Fingerprint, after.facts['β'], after.backend],
     [before.facts.Fingerprint, '45°', 'cpu'],
   );
-  const differs = (await page.picture()).differsFrom(picture);
+  const differs = (await page.stillPicture()).differsFrom(picture);
   assert.ok(differs < 0.005, `another view: ${differs}`);
 
   await page.open(await meshFile('roof 16', 'own.ply'));
