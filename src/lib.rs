@@ -44,6 +44,7 @@ pub use mesh::positions::Positions;
 pub use mesh::{MAX_TRIANGLES, Mesh};
 pub use phases::reason::{Reason, Reasons};
 pub use predicates::cos_degrees;
+pub use prepare::constraints::{Constrained, constrained};
 pub use prepare::reorient::reoriented;
 pub use prepare::wedges::Wedges;
 pub use prepare::weld::{Welded, welded};

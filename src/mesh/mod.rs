@@ -8,6 +8,7 @@ pub(crate) mod edges;
 pub(crate) mod embedded;
 pub(crate) mod extremes;
 pub(crate) mod half_edge;
+pub(crate) mod named_edges;
 pub(crate) mod positions;
 pub(crate) mod star;
 pub(crate) mod winding;

@@ -6,8 +6,8 @@ use super::{memory_bounds, open_gpu};
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 use crate::engine::Proxy;
 use crate::engine::{Answer, Cpu, Engine, Lawson};
+use crate::mesh::named_edges;
 use crate::phases::Thresholds;
-use crate::session::locks;
 use crate::system::memory;
 use crate::system::threads::Threads;
 use crate::{Backend, Error, Mesh, Options, Order};
@@ -152,7 +152,7 @@ fn open<'a>(backend: Backend, mesh: &'a Arc<Mesh>, options: &'a Options) -> Answ
             (_, Order::Any) => Box::new(Lawson::new(cpu()?)),
         };
         if !options.locked_edges.is_empty() {
-            engine.lock(locks::half_edges(mesh, &options.locked_edges)?).await?;
+            engine.lock(named_edges::half_edges(mesh, &options.locked_edges)?).await?;
         }
         if options.track_changes {
             engine.track_changes().await?;

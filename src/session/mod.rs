@@ -20,6 +20,7 @@ mod tests;
 use crate::engine::SharedObjects;
 use crate::engine::{Answer, Engine};
 use crate::mesh::embedded::Embedded;
+use crate::mesh::named_edges;
 use crate::mesh::star::Fans;
 use crate::mesh::winding::{Outline, Winding};
 use crate::phases::frozen;
@@ -75,7 +76,7 @@ impl Session {
         let (start, mesh) = (Instant::now(), mesh.into());
         options.locked_edges = locks::edges(&mesh, &options)?;
         // Checked here, because `auto` would answer this error of a GPU engine by trying the CPU engine.
-        locks::half_edges(&mesh, &options.locked_edges)?;
+        named_edges::half_edges(&mesh, &options.locked_edges)?;
         let Choice { engine, fallback, may_change } = engine_for(&mesh, &options).await?;
         let set_up = ms_since(start);
         let adjacency = engine.adjacency_ms().unwrap_or(set_up);

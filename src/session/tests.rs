@@ -79,7 +79,8 @@ fn session(backend: Backend, questions_left: u32) -> Session {
     let options = Options { backend: Backend::Cpu, locked_edges, ..Options::default() };
     let mut session = block_on(Session::new(mesh, options)).unwrap();
     let mut cpu = Cpu::new(session.mesh.clone(), Thresholds::from(&session.options), Threads::default());
-    block_on(cpu.lock(locks::half_edges(&session.mesh, &session.options.locked_edges).unwrap())).unwrap();
+    block_on(cpu.lock(named_edges::half_edges(&session.mesh, &session.options.locked_edges).unwrap()))
+        .unwrap();
     session.engine = Box::new(Failing { cpu, questions_left, refuses: false });
     session.options.backend = backend;
     session

@@ -3,8 +3,8 @@
 
 use super::{Cpu, Device, Engine, Mesh, Upload, WebGpu, any_deviation, assert_same, families};
 use crate::engine::EdgeCounts;
+use crate::mesh::named_edges;
 use crate::phases::Thresholds;
-use crate::session::locks;
 use crate::system::threads::Threads;
 use crate::{Dimension, EngineKind, Error};
 use pollster::block_on;
@@ -146,7 +146,7 @@ fn vertices_move_alike() {
             let (mut cpu, mut gpu) = engines(&mesh, any_deviation(10.0));
             if has_locks {
                 let edges: Vec<[u32; 2]> = mesh.triangles().chunks(15).map(|t| [t[0], t[1]]).collect();
-                let half_edges = locks::half_edges(&mesh, &edges).unwrap();
+                let half_edges = named_edges::half_edges(&mesh, &edges).unwrap();
                 block_on(cpu.lock(half_edges.clone())).unwrap();
                 block_on(gpu.lock(half_edges)).unwrap();
             }

@@ -1,0 +1,260 @@
+#![allow(clippy::unwrap_used, reason = "what fails here is a failed test")]
+
+use super::*;
+use crate::families;
+use crate::mesh::half_edge::next;
+use proptest::prelude::*;
+use robust::{Coord, orient2d};
+use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
+use std::collections::{BTreeMap, BTreeSet};
+
+type Pair = [u32; 2];
+
+fn ordered([u, v]: Pair) -> Pair {
+    [u.min(v), u.max(v)]
+}
+
+fn edges(mesh: &Mesh) -> BTreeSet<Pair> {
+    let triangles = mesh.triangles();
+    (0..triangles.len() as u32).map(|h| ordered([h, next(h)].map(|x| triangles[x as usize]))).collect()
+}
+
+fn point(mesh: &Mesh, v: u32) -> Coord<f64> {
+    let [x, y] = mesh.point2(v).to_array();
+    Coord { x, y }
+}
+
+/// The sign of the area of three vertices, by the crate `robust`.
+fn turn(mesh: &Mesh, [a, b, c]: [u32; 3]) -> i32 {
+    let [a, b, c] = [a, b, c].map(|v| point(mesh, v));
+    let area = orient2d(a, b, c);
+    i32::from(area > 0.0) - i32::from(area < 0.0)
+}
+
+/// Whether two segments cross in the inside of both, and not at a vertex.
+fn cross(mesh: &Mesh, [a, b]: Pair, [c, d]: Pair) -> bool {
+    let is_on_both = |&v: &u32| turn(mesh, [a, b, v]) == 0 && turn(mesh, [c, d, v]) == 0;
+    turn(mesh, [a, b, c]) * turn(mesh, [a, b, d]) < 0
+        && turn(mesh, [c, d, a]) * turn(mesh, [c, d, b]) < 0
+        && !(0..mesh.vertex_count() as u32).any(|v| is_on_both(&v))
+}
+
+/// The edges with one triangle. No edge may have more than two.
+fn border(mesh: &Mesh) -> BTreeSet<Pair> {
+    let mut count = BTreeMap::new();
+    for h in 0..mesh.triangles().len() as u32 {
+        *count.entry(ordered([h, next(h)].map(|x| mesh.triangles()[x as usize]))).or_insert(0) += 1;
+    }
+    assert!(count.values().all(|&n| n <= 2));
+    count.into_iter().filter(|&(_, n)| n == 1).map(|(edge, _)| edge).collect()
+}
+
+/// Checks that both meshes have the same vertices and cover the same region, and that all triangles are positive.
+fn assert_valid(before: &Mesh, after: &Mesh) {
+    assert_eq!(before.positions(), after.positions());
+    assert_eq!(before.triangle_count(), after.triangle_count());
+    let (corners, _) = after.triangles().as_chunks::<3>();
+    assert!(corners.iter().all(|&corners| turn(after, corners) > 0), "a triangle is not positive");
+    let used = |mesh: &Mesh| mesh.triangles().iter().copied().collect::<BTreeSet<_>>();
+    assert_eq!(used(before), used(after));
+    // Positive triangles within the same border cover the same region.
+    assert_eq!(border(before), border(after));
+}
+
+/// Brings constraints in, with each that cannot be left out. Checks everything that the result claims.
+fn check(mesh: &Mesh, constraints: &[Pair]) -> Constrained {
+    let result = constrained(mesh, constraints, &[], true).unwrap();
+    assert_valid(mesh, &result.mesh);
+    let all = edges(&result.mesh);
+    assert!(result.locked_edges.iter().all(|&edge| all.contains(&ordered(edge))));
+    let mut left_out = result.left_out.iter().peekable();
+    let mut taken: Vec<usize> = Vec::new();
+    for (i, &ends) in constraints.iter().enumerate() {
+        if let Some((_, message)) = left_out.next_if(|(index, _)| *index == i) {
+            if let Some(rest) = message.split("crosses constraint ").nth(1) {
+                let other: usize = rest.split(' ').next().unwrap().parse().unwrap();
+                assert!(taken.contains(&other));
+                assert!(cross(mesh, ends, constraints[other]), "{message}");
+            }
+            continue;
+        }
+        assert!(taken.iter().all(|&other| !cross(mesh, ends, constraints[other])));
+        taken.push(i);
+    }
+    assert!(left_out.next().is_none());
+    // The parts of each constraint lead from its first end to its second.
+    let mut parts = result.locked_edges.iter();
+    for &i in &taken {
+        let [from, to] = constraints[i];
+        let mut at = from;
+        while at != to {
+            let &[start, end] = parts.next().unwrap();
+            assert_eq!(start, at);
+            assert_eq!(turn(mesh, [from, to, end]), 0);
+            at = end;
+        }
+    }
+    assert!(parts.next().is_none());
+    result
+}
+
+/// Flips a mesh to the end with these edges locked.
+fn flipped(mesh: &Mesh, locked: &[Pair]) -> Mesh {
+    let options =
+        crate::Options { backend: crate::Backend::Cpu, locked_edges: locked.to_vec(), ..Default::default() };
+    let outcome = crate::make_delaunay(mesh, &options, |_, _| std::ops::ControlFlow::Continue(())).unwrap();
+    let locked_only = outcome.remaining[crate::Reason::Locked];
+    assert_eq!(outcome.remaining.total(), locked_only);
+    mesh.with_triangles(outcome.triangles).unwrap()
+}
+
+/// The edges of a constrained Delaunay triangulation by the crate `spade`.
+fn by_spade(mesh: &Mesh, locked: &[Pair]) -> BTreeSet<Pair> {
+    let points = (0..mesh.vertex_count() as u32).map(|v| {
+        let Coord { x, y } = point(mesh, v);
+        Point2::new(x, y)
+    });
+    let pairs = locked.iter().map(|pair| pair.map(|v| v as usize)).collect();
+    let cdt =
+        ConstrainedDelaunayTriangulation::<Point2<f64>>::bulk_load_cdt(points.collect(), pairs).unwrap();
+    let edge = |edge: spade::handles::UndirectedEdgeHandle<'_, _, _, _, _>| {
+        ordered(edge.vertices().map(|vertex| vertex.index() as u32))
+    };
+    cdt.undirected_edges().map(edge).collect()
+}
+
+fn pairs(vertices: usize, count: usize) -> impl Strategy<Value = Vec<Pair>> {
+    let vertex = 0..vertices as u32;
+    proptest::collection::vec([vertex.clone(), vertex], 0..count)
+        .prop_map(|pairs| pairs.into_iter().filter(|[u, v]| u != v).collect())
+}
+
+proptest! {
+    /// Random points, thin triangles, and lattices, where most constraints meet vertices.
+    #[test]
+    fn constraints_become_edges(
+        family in prop::sample::select(vec!["random 9", "shear 9", "regular 9", "grid 9", "sweep 60", "strips 30"]),
+        seed in 0u64..1000,
+        constraints in pairs(61, 30),
+    ) {
+        let seeded = format!("{family} seed={seed}");
+        let mesh = families::by_name(&seeded).or_else(|_| families::by_name(family)).unwrap();
+        let count = mesh.vertex_count() as u32;
+        let constraints: Vec<Pair> = constraints.into_iter().map(|pair| pair.map(|v| v % count)).filter(|[u, v]| u != v).collect();
+        let result = check(&mesh, &constraints);
+        let after = flipped(&result.mesh, &result.locked_edges);
+        assert_valid(&mesh, &after);
+        // No four of these points are on a circle. spade also fills the convex hull.
+        if family == "random 9" {
+            let locked: Vec<Pair> = border(&mesh).into_iter().chain(result.locked_edges).collect();
+            let (ours, theirs) = (edges(&after), by_spade(&mesh, &locked));
+            prop_assert!(ours.is_subset(&theirs), "{:?}", ours.difference(&theirs).collect::<Vec<_>>());
+        }
+    }
+}
+
+/// Two chains that bend towards the constraint, and a zigzag between them: no flip leaves one crossed edge less.
+#[test]
+fn a_constraint_between_inward_chains_comes_in() {
+    let left = [[2.0, 0.2], [4.0, 0.8], [6.0, 1.8], [8.0, 3.2]];
+    for mirrored in [false, true] {
+        let mut points = vec![[0.0, 0.0], [10.0, 0.0]];
+        points.extend(left);
+        points.extend(left.iter().rev().map(|[x, y]| [10.0 - x, -y]));
+        if mirrored {
+            points.iter_mut().for_each(|point| point[1] = -point[1]);
+        }
+        // u = 0, v = 1; the left chain is 2 to 5, the right one 6 to 9.
+        let triangles =
+            [[0, 6, 2], [6, 3, 2], [6, 4, 3], [6, 5, 4], [6, 7, 5], [7, 8, 5], [8, 9, 5], [9, 1, 5]];
+        let mut mesh = Mesh::new(Dimension::Two, points.concat(), triangles.concat()).unwrap();
+        if mirrored {
+            let turned = triangles.map(|[a, b, c]| [b, a, c]);
+            mesh = mesh.with_triangles(turned.concat()).unwrap();
+        }
+        for ends in [[0, 1], [1, 0]] {
+            let result = check(&mesh, &[ends]);
+            assert_eq!(result.locked_edges, [ends]);
+            assert!(result.flips > 7, "seven edges are crossed; {} flips", result.flips);
+        }
+    }
+}
+
+/// A square of 4 × 4 vertices with two triangles in each cell but the middle one; the vertex 16 is in no triangle.
+fn ring() -> Mesh {
+    let mut positions: Vec<f64> = (0..16).flat_map(|v| [f64::from(v % 4), f64::from(v / 4)]).collect();
+    positions.extend([9.0, 9.0]);
+    let cell = |v: u32| [[v, v + 1, v + 5], [v, v + 5, v + 4]];
+    let cells = [0, 1, 2, 4, 6, 8, 9, 10];
+    Mesh::new(Dimension::Two, positions, cells.map(cell).as_flattened().concat()).unwrap()
+}
+
+#[track_caller]
+fn assert_refused(mesh: &Mesh, constraints: &[Pair], locked: &[Pair], message: &str) {
+    let error = constrained(mesh, constraints, locked, false).unwrap_err().to_string();
+    assert!(error.ends_with(message), "{error}");
+    if constraints.len() == 1 && message.contains(" between ") {
+        let result = constrained(mesh, constraints, locked, true).unwrap();
+        assert_eq!((result.flips, result.left_out.len()), (0, 1));
+        assert_eq!((&result.mesh, &result.locked_edges[..]), (mesh, locked));
+    }
+}
+
+#[test]
+fn errors_name_the_constraint_and_what_it_meets() {
+    let mesh = ring();
+    let border = "crosses the edge between 6 and 5, which does not have two triangles";
+    assert_refused(&mesh, &[[1, 14]], &[], &format!("constraint 0 between 1 and 14 {border}"));
+    assert_refused(&mesh, &[[5, 10]], &[], "constraint 0 between 5 and 10 leaves the mesh at vertex 5");
+    assert_refused(
+        &mesh,
+        &[[3, 16]],
+        &[],
+        "constraint 0 between 3 and 16 ends at vertex 16, which no triangle has",
+    );
+    assert_refused(
+        &mesh,
+        &[[16, 3]],
+        &[],
+        "constraint 0 between 16 and 3 ends at vertex 16, which no triangle has",
+    );
+    assert_refused(&mesh, &[[0, 17]], &[], "constraint 0 joins 0 and 17; the mesh has 17 vertices");
+    assert_refused(
+        &mesh,
+        &[[1, 4]],
+        &[[0, 5]],
+        "constraint 0 between 1 and 4 crosses the locked edge between 5 and 0",
+    );
+    let other = "constraint 1 between 4 and 1 crosses constraint 0 between 5 and 0";
+    assert_refused(&mesh, &[[5, 0], [4, 1]], &[], other);
+    let result = constrained(&mesh, &[[5, 0], [4, 1], [2, 7]], &[], true).unwrap();
+    assert_eq!(result.left_out, [(1, other.to_owned())]);
+    assert_eq!(result.locked_edges, [[5, 0], [2, 7]]);
+
+    let folded = mesh.with_triangles(vec![0, 1, 5, 0, 5, 2, 4, 9, 8]).unwrap();
+    let what = "constraint 0 between 1 and 4 crosses triangle 1, which is flat or turned over";
+    assert_refused(&folded, &[[1, 4]], &[], what);
+    let surface = Mesh::new(Dimension::Three, vec![0.0; 9], vec![0, 1, 2]).unwrap();
+    assert!(constrained(&surface, &[[0, 1]], &[], true).is_err());
+    let twice =
+        Mesh::new(Dimension::Two, vec![0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0], vec![0, 1, 2, 3, 1, 2])
+            .unwrap();
+    let same = "constraint 0 between 0 and 3 joins two vertices at the same point; weld them first";
+    assert_refused(&twice, &[[0, 3]], &[], same);
+}
+
+/// Clockwise triangles give the mirrored result.
+#[test]
+fn clockwise_meshes_take_constraints() {
+    let mesh = families::by_name("random 9").unwrap();
+    let turned = |mesh: &Mesh| {
+        let triangles = mesh.triangles().as_chunks::<3>().0.iter().map(|&[a, b, c]| [b, a, c]);
+        mesh.with_triangles(triangles.collect::<Vec<_>>().concat()).unwrap()
+    };
+    let constraints = [[0, 80], [72, 44], [3, 60]];
+    let [ours, theirs] =
+        [&mesh, &turned(&mesh)].map(|mesh| constrained(mesh, &constraints, &[], true).unwrap());
+    assert_eq!(edges(&ours.mesh).len(), edges(&theirs.mesh).len());
+    assert_valid(&mesh, &turned(&theirs.mesh));
+    assert_eq!(ours.locked_edges, theirs.locked_edges);
+}
