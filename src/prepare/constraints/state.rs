@@ -11,7 +11,7 @@ pub(super) struct State<'a> {
     mesh: &'a Mesh,
     pub(super) triangles: Vec<u32>,
     /// With the flags of locked edges.
-    pub(super) twins: Vec<u32>,
+    twins: Vec<u32>,
     fans: Fans,
     /// A half-edge that starts at each vertex; [`NONE`] if no triangle has the vertex.
     corners: Vec<u32>,

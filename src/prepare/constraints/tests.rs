@@ -10,10 +10,6 @@ use std::collections::{BTreeMap, BTreeSet};
 
 type Pair = [u32; 2];
 
-fn ordered([u, v]: Pair) -> Pair {
-    [u.min(v), u.max(v)]
-}
-
 fn edges(mesh: &Mesh) -> BTreeSet<Pair> {
     let triangles = mesh.triangles();
     (0..triangles.len() as u32).map(|h| ordered([h, next(h)].map(|x| triangles[x as usize]))).collect()
@@ -61,7 +57,7 @@ fn assert_valid(before: &Mesh, after: &Mesh) {
     assert_eq!(border(before), border(after));
 }
 
-/// Brings constraints in, with each that cannot be left out. Checks everything that the result claims.
+/// Brings constraints in, and leaves out those that cannot come in. Checks everything that the result claims.
 fn check(mesh: &Mesh, constraints: &[Pair]) -> Constrained {
     let result = constrained(mesh, constraints, &[], true).unwrap();
     assert_valid(mesh, &result.mesh);
