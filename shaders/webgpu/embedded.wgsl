@@ -1,6 +1,4 @@
-// Finds the embedded stars in the plane: their triangles are positive and go round the vertex once. The old edge of a
-// flip crosses the new edge c-d. If the star of c or d is embedded, it has one triangle in each direction: so it has no
-// other edge c-d, and no other flip makes one. Flips of strictly convex quads keep stars embedded.
+// Finds the embedded stars in the plane by counting, as src/mesh/embedded.rs. Flips there need no guard.
 #import begin
 #import doubts
 #import history_write
@@ -10,17 +8,17 @@
 #import spans
 #import state
 
-// Marks a star that is not embedded.
-const NOT_EMBEDDED: u32 = 0x10000u;
+// What a triangle that is not positive adds to its vertices: more than 1, and no sum overflows.
+const NOT_EMBEDDED: u32 = 2u;
 
 var<workgroup> signs: atomic<u32>;
 var<workgroup> not_positive: atomic<u32>;
 
-// Counts, in the memory of the lists, how often the triangles at each vertex cross the direction of the x axis. Also
-// collects the signs of the triangles: bits 0 to 2 for negative, flat, positive. If the winding is not known, each
-// triangle has the winding of its own sign: the counts are right if all triangles have the same sign. If it is known,
-// the signs are relative to it. A triangle that is left alone counts as flat. The choice of a triangle is DOUBTFUL if
-// exact arithmetic has to find its sign, else NONE.
+// Counts, in the memory of the lists, the crossings and boundary half-edges of each vertex. Also collects the signs of
+// the triangles: bits 0 to 2 for negative, flat, positive. If the winding is not known, each triangle has the winding of
+// its own sign: the counts are right if all triangles have the same sign. If it is known, the signs are relative to it.
+// A triangle that is left alone counts as flat. The choice of a triangle is DOUBTFUL if exact arithmetic has to find its
+// sign, else NONE.
 @compute @workgroup_size(WORKGROUP_SIZE)
 fn prepare_all(
     @builtin(global_invocation_id) id: vec3u,
@@ -68,8 +66,8 @@ fn count_turns(
     add_tally(tally, local);
 }
 
-// Counts the turns of a triangle around its vertices. Returns `tally` with the bit of its sign and, if it is not
-// positive, one more of these.
+// Counts what a triangle adds to its vertices. Returns `tally` with the bit of its sign and, if it is not positive, one
+// more of these.
 fn counted(t: u32, sign: i32, points: array<Point, 3>, tally: vec2u) -> vec2u {
     let is_known = params.winding != WINDING_UNKNOWN;
     let winding = select(sign, select(1, -1, is_clockwise(t)), is_known);
@@ -78,7 +76,6 @@ fn counted(t: u32, sign: i32, points: array<Point, 3>, tally: vec2u) -> vec2u {
     var b = points[1];
     var c = points[2];
     for (var h = 3u * t; h < 3u * t + 3u; h++) {
-        let is_inner = twin_entry(h) != NONE && twin_entry(prev(h)) != NONE;
         let first = order(b, a);
         let last = order(c, a);
         // From below the axis, or on it, to above it; in a clockwise mesh the other way round.
@@ -86,10 +83,11 @@ fn counted(t: u32, sign: i32, points: array<Point, 3>, tally: vec2u) -> vec2u {
         let to_above = select(first, last, winding > 0);
         let is_below = from_below.y < 0 || (from_below.y == 0 && from_below.x > 0);
         let is_above = to_above.y > 0 || (to_above.y == 0 && to_above.x < 0);
-        let turns = select(NOT_EMBEDDED, select(0u, 1u, is_below && is_above), is_positive && is_inner);
+        let crossings = select(NOT_EMBEDDED, select(0u, 1u, is_below && is_above), is_positive);
+        let count = crossings + select(0u, 1u, twin_entry(h) == NONE);
         // With many unreferenced vertices, there may be more vertices than words before the bits of the chunks.
-        if turns > 0u && vertex(h) < doubts() {
-            atomicAdd(&frontier[vertex(h)], turns);
+        if count > 0u && vertex(h) < doubts() {
+            atomicAdd(&frontier[vertex(h)], count);
         }
         let corner = a;
         a = b;

@@ -1,8 +1,12 @@
-//! Embedded stars in the plane: the triangles at a vertex are positive and go round it once.
+//! Embedded stars in the plane: the triangles at a vertex are positive and do not overlap.
 //!
-//! The old edge of a flip crosses the new edge c-d. An embedded star has one triangle in each direction. So if the star
-//! of c or d is embedded, it has no other edge c-d, and no other flip of the iteration makes one. Flips of strictly
-//! convex quads keep stars embedded.
+//! The old edge of a flip crosses the new edge c-d. An embedded star has at most one triangle in each direction. So if
+//! the star of c or d is embedded, it has no other edge c-d, and no other flip of the iteration makes one. Flips of
+//! strictly convex quads keep stars embedded.
+//!
+//! Counting proves it. The triangles of a closed fan cross the direction of the x axis once for each time that they go
+//! round. An open fan that does not cross it goes less than once round, and one boundary half-edge starts at its vertex.
+//! So a star of positive triangles is embedded if these crossings and half-edges are one: it is one fan of either kind.
 
 use crate::mesh::star::Fans;
 use crate::mesh::winding::{Outline, Signs, Winding};
@@ -14,11 +18,11 @@ use std::cmp::Ordering;
 use std::ops::Range;
 use std::sync::atomic::{AtomicU8, Ordering::Relaxed};
 
-/// How often the triangles at each vertex cross the direction of the x axis, capped at 2. An open star, and a star with
-/// a triangle that is not positive, also has 2. Empty in 3D.
+/// The crossings and boundary half-edges of each vertex, capped at 2. A star with a triangle that is not positive also
+/// has 2. Empty in 3D.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Embedded {
-    turns: Vec<u8>,
+    counts: Vec<u8>,
 }
 
 impl Embedded {
@@ -62,22 +66,22 @@ impl Embedded {
         has_infinite: bool,
         threads: &Threads,
     ) -> (Signs, Self) {
-        let mut turns = vec![0u8; vertices];
-        let words: &mut [AtomicU8] = zerocopy::transmute_mut!(turns.as_mut_slice());
+        let mut counts = vec![0u8; vertices];
+        let words: &mut [AtomicU8] = zerocopy::transmute_mut!(counts.as_mut_slice());
         let is_alone = threads.is_one();
-        let turn = |v: u32, by: u8| {
+        let count = |v: u32, by: u8| {
             let word = &words[v as usize];
             if is_alone {
                 word.store((word.load(Relaxed) + by).min(2), Relaxed);
             } else if by == 2 || by == 1 && word.swap(1, Relaxed) != 0 {
-                // Each thread whose swap finds an earlier turn writes 2 after it. So the last write is a 2, whatever
+                // Each thread whose swap finds an earlier count writes 2 after it. So the last write is a 2, whatever
                 // other threads swap.
                 word.store(2, Relaxed);
             }
         };
-        let add = |piece| add_turns(shape, winding, has_infinite, piece, turn);
+        let add = |piece| add_counts(shape, winding, has_infinite, piece, count);
         let pieces = threads.map(shape.triangles.len() / 3, add);
-        (pieces.into_iter().fold(Signs::default(), Signs::and), Self { turns })
+        (pieces.into_iter().fold(Signs::default(), Signs::and), Self { counts })
     }
 
     /// The fans of the mesh. `twins` are its twins.
@@ -89,7 +93,7 @@ impl Embedded {
     /// Whether the star of vertex `v` is known to be embedded.
     #[inline]
     pub(crate) fn at(&self, v: u32) -> bool {
-        self.turns.get(v as usize) == Some(&1)
+        self.counts.get(v as usize) == Some(&1)
     }
 }
 
@@ -101,13 +105,13 @@ pub(crate) struct Shape<'a> {
     pub(crate) twins: &'a [u32],
 }
 
-/// The signs of a piece of the triangles. Calls `turn` with each vertex and the turns that a triangle adds to it.
-fn add_turns(
+/// The signs of a piece of the triangles. Calls `count` with each vertex and what a triangle adds to it.
+fn add_counts(
     Shape { positions, triangles, twins }: Shape,
     winding: Option<&Winding>,
     has_infinite: bool,
     piece: Range<usize>,
-    turn: impl Fn(u32, u8),
+    count: impl Fn(u32, u8),
 ) -> Signs {
     let mut signs = Signs::default();
     // Whether v is below the horizontal line through u, or on this line to the right of u. Of an edge and its reverse,
@@ -117,9 +121,9 @@ fn add_turns(
     let (sides, _) = twins.as_chunks::<3>();
     for t in piece {
         let [a, b, c] = triangles[t];
-        for (twin, ends) in sides[t].iter().zip([[a, b], [b, c], [c, a]]) {
+        for (twin, v) in sides[t].iter().zip([a, b, c]) {
             if *twin == NONE {
-                ends.into_iter().for_each(|v| turn(v, 2));
+                count(v, 1);
             }
         }
         let [p, q, r] = positions.points2([a, b, c]);
@@ -130,7 +134,7 @@ fn add_turns(
         signs.add(sign, is_positive);
         if !is_positive {
             for v in [a, b, c] {
-                turn(v, 2);
+                count(v, 2);
             }
             continue;
         }
@@ -144,7 +148,7 @@ fn add_turns(
         } else {
             a
         };
-        turn(corner, u8::from(first & second | second & third | third & first));
+        count(corner, u8::from(first & second | second & third | third & first));
     }
     signs
 }
@@ -154,22 +158,49 @@ mod tests {
     use super::*;
     use std::num::NonZeroUsize;
 
-    /// Sixteen triangles around the first vertex. The other vertices are on the boundary.
+    /// Triangles around the first vertex, an eighth of a round each: `count` from direction `first` on. The last one
+    /// meets the first if the fan is closed.
+    fn round_one_vertex(first: u32, count: u32, is_closed: bool, is_clockwise: bool) -> Mesh {
+        let directions = [[1, 0], [1, 1], [0, 1], [-1, 1], [-1, 0], [-1, -1], [0, -1], [1, -1]];
+        let ends = if is_closed { count } else { count + 1 };
+        let points = (0..ends).map(|i| directions[((first + i) % 8) as usize]);
+        let points = points.map(|[x, y]| if is_clockwise { [x, -y] } else { [x, y] });
+        let positions: Vec<f64> =
+            [[0, 0]].into_iter().chain(points).flatten().map(|x| f64::from(x as i32)).collect();
+        let triangle = |i: u32| [0, 1 + i, 1 + (i + 1) % ends];
+        Mesh::new(Dimension::Two, positions, (0..count).flat_map(triangle).collect()).unwrap()
+    }
+
+    fn embedded(mesh: &Mesh, threads: usize) -> Embedded {
+        let threads = Threads::new(NonZeroUsize::new(threads), usize::MAX).unwrap();
+        Embedded::with_winding(mesh, &crate::Adjacency::new(mesh).twins, None, &mut None, &threads).1
+    }
+
     #[test]
-    fn a_star_that_goes_round_twice_is_not_embedded() {
-        for (rounds, is_embedded) in [(1, true), (2, false), (4, false)] {
-            let at = |i: u32| f64::from(i * rounds) * std::f64::consts::TAU / 16.0;
-            let positions: Vec<f64> =
-                [0.0; 2].into_iter().chain((0..16).flat_map(|i| [at(i).cos(), at(i).sin()])).collect();
-            let triangles: Vec<u32> = (0..16).flat_map(|i| [0, i + 1, (i + 1) % 16 + 1]).collect();
-            let mesh = Mesh::new(Dimension::Two, positions, triangles).unwrap();
+    fn a_star_is_embedded_if_it_goes_round_once_at_most() {
+        for (first, is_clockwise) in (0..8).flat_map(|first| [(first, false), (first, true)]) {
             for threads in 1..=4 {
-                let threads = Threads::new(NonZeroUsize::new(threads), usize::MAX).unwrap();
-                let twins = crate::Adjacency::new(&mesh).twins;
-                let (_, embedded) = Embedded::with_winding(&mesh, &twins, None, &mut None, &threads);
-                assert_eq!(embedded.at(0), is_embedded);
-                assert!((1..17).all(|v| !embedded.at(v)));
+                for rounds in 1..4 {
+                    let mesh = round_one_vertex(first, 8 * rounds, true, is_clockwise);
+                    assert_eq!(embedded(&mesh, threads).at(0), rounds == 1);
+                }
+                let at =
+                    |count| embedded(&round_one_vertex(first, count, false, is_clockwise), threads).at(0);
+                assert!((8..25).all(|count| !at(count)), "an open fan that overlaps itself");
+                // It is not found if the open fan crosses the direction of the x axis.
+                let most = (1..8).filter(|&count| at(count)).count() as u32;
+                assert!(most + 1 >= (8 - first) % 8 && most <= 7, "{first} {most}");
             }
         }
+    }
+
+    #[test]
+    fn a_star_of_two_fans_is_not_embedded() {
+        let directions = [[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]];
+        let positions = [[0.0; 2]].into_iter().chain(directions).flatten().collect::<Vec<f64>>();
+        let mesh = Mesh::new(Dimension::Two, positions, vec![0, 1, 2, 0, 3, 4]).unwrap();
+        let embedded = embedded(&mesh, 1);
+        // An edge at vertex 3 has the direction of the axis.
+        assert_eq!([0, 1, 2, 3, 4].map(|v| embedded.at(v)), [false, true, true, false, true]);
     }
 }
