@@ -4,6 +4,8 @@
 #![allow(clippy::unwrap_used)]
 
 mod command;
+#[path = "cli/constraints.rs"]
+mod constraints;
 #[path = "cli/files.rs"]
 mod files;
 #[path = "cli/joins.rs"]
@@ -19,7 +21,7 @@ use std::fs;
 use std::time::Instant;
 
 /// The keys of the object that `--json` prints, in their order.
-const KEYS: [&str; 28] = [
+const KEYS: [&str; 30] = [
     "input",
     "vertices",
     "triangles",
@@ -34,6 +36,8 @@ const KEYS: [&str; 28] = [
     "status",
     "iterations",
     "flips",
+    "constraint_flips",
+    "left_out",
     "flips_per_iteration",
     "dispatches",
     "device_bytes",

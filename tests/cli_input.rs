@@ -26,7 +26,7 @@ fn a_fifo_that_nobody_writes_into_is_not_waited_for_for_ever() {
     let output = folder.path("out.off");
     let line = format!("{}: {LATE}", fifo.display());
     failed(&run(&fifo, &output, &[]), 1, &line);
-    for option in ["--lock-edges", "--lock-triangles", "--groups"] {
+    for option in ["--lock-edges", "--lock-triangles", "--groups", "--constraints"] {
         failed(&run(&square, &output, &[option, fifo.to_str().unwrap()]), 1, &line);
     }
     assert_eq!(folder.names(), ["fifo.off", "in.off"]);

@@ -20,12 +20,12 @@ import { checkDimension, type IndexedMesh, type Mesh32, moduleMesh } from './mes
 import { initOf } from './module.js';
 import { namesOf, optionsOf } from './names.js';
 import { attributesOf, bytesOf, filesOf, maxBytesOf, originalOf, textOf } from './settings.js';
-import type { Attributes, Bytes, Files, IndexArray, Mesh, Original, VertexArray } from './types.js';
+import type { Attributes, Bytes, Files, IndexArray, LeftOut, Mesh, Original, VertexArray } from './types.js';
 
 export { EdgeflipError, type ErrorCode } from './error.js';
 export type { IndexedMesh, Mesh32 } from './mesh.js';
 export type { ModuleSource, Sources } from './module.js';
-export type { Attributes, Bytes, Files, IndexArray, Mesh, Original, VertexArray } from './types.js';
+export type { Attributes, Bytes, Files, IndexArray, LeftOut, Mesh, Original, VertexArray } from './types.js';
 
 /**
  * The extensions of the formats that are read and written, in upper or lower case. If `.gz` follows, as in
@@ -104,6 +104,28 @@ export interface Reoriented {
   turned: number;
 }
 
+/** Edges that must not flip, as the options of the same names. */
+export interface Locks {
+  lockedEdges?: IndexArray | undefined;
+  lockedTriangles?: IndexArray | undefined;
+  groups?: IndexArray | undefined;
+}
+
+/** The result of {@link constrain}. */
+export interface Constrained {
+  /** Vertex indices, 3 per triangle. */
+  indices: Uint32Array;
+  /**
+   * The edges that must not flip, two vertices per edge, for the option `lockedEdges`: all locks, then the constraints. A
+   * constraint through vertices is several edges.
+   */
+  lockedEdges: Uint32Array;
+  /** The flips that brought them in. */
+  flips: number;
+  /** The constraints that were left out. */
+  leftOut: LeftOut[];
+}
+
 /** The result of {@link weld}: a mesh whose vertices at the same position are joined. */
 export interface Welded {
   /** Vertex indices, 3 per triangle: the first vertex at each position. */
@@ -170,6 +192,8 @@ export interface Change {
 export const init = initOf('files', { files: loadFiles });
 
 const READ_OPTIONS = namesOf<ReadOptions>({ dimension: true, maxBytes: true, files: true });
+const LOCKS = namesOf<Locks>({ lockedEdges: true, lockedTriangles: true, groups: true });
+const NONE = new Uint32Array();
 const WRITE_OPTIONS = namesOf<WriteOptions>({ original: true });
 
 /** The array itself if the module is loaded; else a copy, because the caller may change the array during the wait. */
@@ -276,6 +300,35 @@ export async function weld(mesh: Mesh, attributes: Attributes = [], turns = fals
     );
   });
   return call(() => welded(wasm.Weld.of(positions, indices, dimension, arrays, Boolean(turns))));
+}
+
+/**
+ * Brings edges into a mesh in the plane: the edges that they cross flip away, by exact tests. No vertex moves, and none
+ * is added. The option `constraints` does so before a run.
+ *
+ * @param constraints - Pairs of vertices, as the option `constraints`.
+ * @param locks - Edges that must not flip.
+ * @param skips - Whether constraints that cannot be brought in are left out. Otherwise they are errors.
+ * @throws {@link EdgeflipError} about the mesh; `invalid-option` for a mesh in space, for a constraint that cannot be
+ * brought in, and for locks that the mesh does not have; `invalid-input`.
+ */
+export async function constrain(
+  mesh: Mesh,
+  constraints: IndexArray,
+  locks: Locks = {},
+  skips = false,
+): Promise<Constrained> {
+  const { positions, indices, dimension } = moduleMesh(mesh, held);
+  const list = (given: IndexArray, what: string) => held(wordsOf(given, what), what);
+  const pairs = list(constraints, 'constraints');
+  const given = read('the locks', () => {
+    const names = Object.entries(optionsOf(locks, LOCKS) as Locks).map(([name, value]) => [
+      name,
+      list(value ?? [], name),
+    ]);
+    return { lockedEdges: NONE, lockedTriangles: NONE, groups: NONE, ...Object.fromEntries(names) };
+  });
+  return call(() => wasm.constrain(positions, indices, dimension, pairs, given, Boolean(skips)));
 }
 
 /**

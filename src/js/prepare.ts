@@ -1,38 +1,74 @@
-/** Welds and reorients a mesh before the run, in the module of `edgeflip/files`. */
+/** Changes a mesh as the options ask before the run, in the module of `edgeflip/files`. */
 
-import { reorient, weld, type Welded } from './files.js';
+import { type Constrained, constrain, reorient, weld, type Welded } from './files.js';
 import type { IndexedMesh } from './mesh.js';
 import type { Settings } from './settings.js';
 
-/** The mesh and the settings that a session starts with. */
-export interface Prepared {
-  indices: Uint32Array;
+/** What was done before the run. */
+export interface Preparation {
+  /** The number of triangles that `reorient` reversed. */
   turned?: number;
+  /** What `weld` joined. */
   welded?: Welded;
+  /** What `constraints` brought in. */
+  constrained?: Constrained;
+}
+
+/** The indices and the settings that a session starts with. */
+export interface Prepared extends Preparation {
+  indices: Uint32Array;
   settings: Settings;
 }
 
-/** Applies the options `weld` and `reorient`. The result has the other settings. */
+/** Applies the options `weld`, `reorient` and `constraints`. The result has the other settings. */
 export async function prepare(
   mesh: IndexedMesh,
-  { weld: attributes, reorient: turns, ...settings }: Settings,
+  { weld: attributes, reorient: turns, constraints, skipConstraints, ...settings }: Settings,
 ): Promise<Prepared> {
-  if (!attributes) return { ...(await reorient(mesh)), settings };
-  const welded = await weld(mesh, attributes, turns);
-  const { indices, turned } = welded;
-  return { indices, turned, welded, settings: { ...settings, ...locks(welded, settings) } };
-}
-
-/** The locks of the options, and the locks that keep the attributes. */
-function locks({ places, ...keep }: Welded, { lockedEdges, lockedTriangles }: Settings): Settings {
-  const edges = (lockedEdges ?? new Uint32Array()).map((vertex) => places[vertex] ?? vertex);
+  const prepared = await joined(mesh, settings, attributes, turns);
+  if (!constraints) return prepared;
+  const { lockedEdges, lockedTriangles, groups, ...others } = prepared.settings;
+  const { indices, welded } = prepared;
+  const ends = welded ? placed(constraints, welded) : constraints;
+  const locks = { lockedEdges, lockedTriangles, groups };
+  const constrained = await constrain({ ...mesh, indices }, ends, locks, skipConstraints);
   return {
-    lockedEdges: joined(edges, keep.lockedEdges),
-    lockedTriangles: joined(lockedTriangles ?? new Uint32Array(), keep.lockedTriangles),
+    ...prepared,
+    constrained,
+    indices: constrained.indices,
+    settings: { ...others, lockedEdges: constrained.lockedEdges },
   };
 }
 
-function joined(first: Uint32Array, second: Uint32Array): Uint32Array {
+async function joined(
+  mesh: IndexedMesh,
+  settings: Settings,
+  attributes: Settings['weld'],
+  turns = false,
+): Promise<Prepared> {
+  if (attributes) {
+    const welded = await weld(mesh, attributes, turns);
+    const { indices, turned } = welded;
+    return { indices, turned, welded, settings: { ...settings, ...locks(welded, settings) } };
+  }
+  return turns ? { ...(await reorient(mesh)), settings } : { indices: mesh.indices, settings };
+}
+
+/** The locks of the options, and the locks that keep the attributes. */
+function locks(welded: Welded, { lockedEdges, lockedTriangles }: Settings): Settings {
+  const edges = placed(lockedEdges ?? new Uint32Array(), welded);
+  return {
+    lockedEdges: both(edges, welded.lockedEdges),
+    lockedTriangles: both(lockedTriangles ?? new Uint32Array(), welded.lockedTriangles),
+  };
+}
+
+/** Vertices of the mesh as those of the welded mesh. */
+function placed(vertices: Uint32Array, { places }: Welded): Uint32Array {
+  return vertices.map((vertex) => places[vertex] ?? vertex);
+}
+
+function both(first: Uint32Array, second: Uint32Array): Uint32Array {
   const all = new Uint32Array(first.length + second.length);
   all.set(first);
   all.set(second, first.length);

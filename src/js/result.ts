@@ -1,28 +1,24 @@
 /** Completes the outcome of a module to the result that callers get. */
 
-import type { Welded } from './files.js';
 import { hintOf } from './hint.js';
 import type { Layout } from './mesh.js';
+import type { Preparation } from './prepare.js';
 import type { IndexArray, Result } from './types.js';
 import type { Session } from './wasm/edgeflip.js';
 
 /** How the package prepared the mesh and ran the CPU engine. */
-export interface Context {
+export interface Context extends Preparation {
   /** The number of threads, if they are several. */
   threads?: number | undefined;
   /** Why the CPU engine has one thread, if it could use more. */
   alone?: string | undefined;
-  /** The number of triangles that `reorient` reversed. */
-  turned?: number;
-  /** What `weld` joined. */
-  welded?: Welded | undefined;
 }
 
 /** The result of a session: the same object with more fields, because a copy takes longer than a small mesh. */
 export function resultOf<I extends IndexArray>(
   outcome: Awaited<ReturnType<Session['outcome']>>,
   layout: Layout<I>,
-  { threads = 1, alone, turned = 0, welded }: Context,
+  { threads = 1, alone, turned = 0, welded, constrained }: Context,
 ): Result<I> {
   const seamEdges = (welded?.lockedEdges.length ?? 0) / 2;
   const isOnCpu = outcome.backend === 'cpu';
@@ -33,5 +29,7 @@ export function resultOf<I extends IndexArray>(
     turnedTriangles: turned,
     joinedVertices: welded?.joined ?? 0,
     seamEdges,
+    constraintFlips: constrained?.flips ?? 0,
+    leftOut: constrained?.leftOut ?? [],
   });
 }

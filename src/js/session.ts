@@ -4,7 +4,7 @@
 
 import type { EDGE_STATES } from './edge-states.js';
 import { EdgeflipError, fromModule } from './error.js';
-import type { Welded } from './files.js';
+import type { Preparation } from './prepare.js';
 import { loadAudit } from './load.js';
 import { readDeviceMesh } from './device-mesh.js';
 import { gather } from './gather.js';
@@ -77,15 +77,13 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
 
   readonly #layout: Layout<I>;
   readonly #alone: string | undefined;
-  readonly #turned: number;
-  readonly #welded: Welded | undefined;
+  readonly #prepared: Preparation;
 
-  private constructor({ session, alone }: Opened, layout: Layout<I>, turned = 0, welded?: Welded) {
+  private constructor({ session, alone }: Opened, layout: Layout<I>, prepared: Preparation = {}) {
     this.#session = session;
     this.#alone = alone;
     this.#layout = layout;
-    this.#turned = turned;
-    this.#welded = welded;
+    this.#prepared = prepared;
   }
 
   /**
@@ -124,12 +122,13 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
     const [views, layout] = readMesh(mesh, itselfOf);
     const chosen = settingsOf(options, known);
     try {
-      // Without these two options, the module of `edgeflip/files` is not loaded.
-      if (!chosen.reorient && !chosen.weld) return new FlipSession(await open(views, chosen, settles), layout);
+      // Without these options, the module of `edgeflip/files` is not loaded.
+      const isPrepared = chosen.reorient || chosen.weld || chosen.constraints;
+      if (!isPrepared) return new FlipSession(await open(views, chosen, settles), layout);
       const copy = copied(views);
       const { prepare } = await import('./prepare.js');
-      const { indices, turned, welded, settings } = await prepare(copy, chosen);
-      return new FlipSession(await open({ ...copy, indices }, settings, settles), layout, turned, welded);
+      const { indices, settings, ...prepared } = await prepare(copy, chosen);
+      return new FlipSession(await open({ ...copy, indices }, settings, settles), layout, prepared);
     } catch (thrown) {
       throw fromModule(thrown);
     }
@@ -300,7 +299,7 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
 
   #result(stay: boolean): Promise<Result<I>> {
     return this.#call(async (session) => {
-      const context = { alone: this.#alone, turned: this.#turned, welded: this.#welded, threads: session.threads };
+      const context = { ...this.#prepared, alone: this.#alone, threads: session.threads };
       session.stays = stay;
       return resultOf(await session.outcome(), this.#layout, context);
     });
@@ -310,7 +309,7 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
   triangles(): Promise<Indices<I>> {
     return this.#call(async (session) => {
       const indices = await session.triangles();
-      return this.#layout.give(this.#welded?.split(indices) ?? indices);
+      return this.#layout.give(this.#prepared.welded?.split(indices) ?? indices);
     });
   }
 
@@ -372,7 +371,7 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
   free(): void {
     if (this.#isFreed) return;
     this.#isFreed = true;
-    void this.#last.then(() => this.#welded?.free());
+    void this.#last.then(() => this.#prepared.welded?.free());
     // After a crash, the session may still be borrowed by the call, and cannot be freed.
     void this.#last.then(() => this.#session.free()).catch(() => undefined);
   }

@@ -144,6 +144,16 @@ export interface Options {
    */
   groups?: IndexArray | undefined;
   /**
+   * Edges to bring in before the run, as pairs of vertices, one pair after the other, for a mesh in the plane. The edges
+   * that they cross flip away; then they are locked. A vertex on such an edge splits it. An edge that crosses another
+   * one, a locked edge or the boundary is an error that names both. Loads the module of `edgeflip/files`.
+   */
+  constraints?: IndexArray | undefined;
+  /**
+   * Leaves out the constraints that cannot be brought in; the result lists them as `leftOut`. Default: they are errors.
+   */
+  skipConstraints?: boolean | undefined;
+  /**
    * First reverses the minority of inconsistently oriented triangles in each orientable component. Without it, edges
    * between inconsistently oriented triangles never flip. Loads the module of `edgeflip/files`.
    */
@@ -204,6 +214,8 @@ export const OPTION_KINDS = {
   lockedEdges: 'list',
   lockedTriangles: 'list',
   groups: 'list',
+  constraints: 'list',
+  skipConstraints: 'flag',
   reorient: 'flag',
   weld: 'attributes',
   order: ['reproducible', 'any'],
@@ -295,7 +307,10 @@ export interface MakeDelaunayOptions extends Options, RunOptions {
 }
 
 /** The options of {@link makeDelaunaySync}: those that need no GPU, no worker and no other module. */
-export type SyncOptions = Omit<Options, 'backend' | 'device' | 'threads' | 'trackChanges' | 'weld' | 'reorient'>;
+export type SyncOptions = Omit<
+  Options,
+  'backend' | 'device' | 'threads' | 'trackChanges' | 'weld' | 'reorient' | 'constraints' | 'skipConstraints'
+>;
 
 /**
  * Why an edge is still not Delaunay.
@@ -338,6 +353,14 @@ export interface Iteration {
   ms: number;
 }
 
+/** A constraint that was left out. */
+export interface LeftOut {
+  /** Which pair of `constraints` it is, from 0. */
+  index: number;
+  /** A sentence that says why, with the vertices and what it crosses. */
+  reason: string;
+}
+
 /** The result of a run. */
 export interface Result<I extends IndexArray = Uint32Array> {
   /** Vertex indices, 3 per triangle, in an array of the type of the mesh. The vertices are those of the input. */
@@ -378,6 +401,10 @@ export interface Result<I extends IndexArray = Uint32Array> {
   joinedVertices: number;
   /** Edges that `weld` locked, because attributes differ across them. */
   seamEdges: number;
+  /** Flips that brought `constraints` in. `flips` does not count them. */
+  constraintFlips: number;
+  /** The constraints that `skipConstraints` left out. */
+  leftOut: LeftOut[];
   /** Edges that are still not Delaunay. */
   remaining: Reasons;
   /**

@@ -3,6 +3,7 @@
 
 use super::audit_exact;
 use super::edges::{Class, Edge};
+use super::paths::Paths;
 use super::surface::{Limits, RemainingEdge, Surface};
 use crate::{Dimension, Error, Mesh, Options, Reason, Reasons, Session, cos_degrees};
 use std::cmp::Ordering;
@@ -102,6 +103,14 @@ pub enum Violation {
         /// Larger end.
         v: u32,
     },
+    /// A constraint is no path of edges along its line.
+    #[error("constraint {u}-{v} is missing")]
+    Constraint {
+        /// Its first vertex.
+        u: u32,
+        /// Its second vertex.
+        v: u32,
+    },
     /// The signed areas of the components, sorted, are not exactly the same (2D).
     #[error("the signed area of a component changed")]
     Area,
@@ -157,7 +166,8 @@ impl Audit {
 }
 
 /// Checks `triangles` as a result of flipping edges of `input` with these options, exactly. It has its own edge table,
-/// components and arithmetic. Locks of edges that `input` does not have are ignored.
+/// components and arithmetic. Locks of edges that `input` does not have are ignored. Constraints may be missing if the
+/// options skip them.
 pub fn audit(input: &Mesh, triangles: &[u32], options: &Options) -> Audit {
     let mut audit = Audit::default();
     audit.compare(input.triangles().len(), triangles.len(), |before, after| Violation::Length {
@@ -192,9 +202,21 @@ pub fn audit(input: &Mesh, triangles: &[u32], options: &Options) -> Audit {
             audit.report(Violation::Inverted { before, after });
         }
     }
-    let locked = locked(&before, options);
+    let mut locked = locked(&before, options);
     for &(u, v) in locked.iter().filter(|&&(u, v)| !after.table.contains(u, v)) {
         audit.report(Violation::Locked { u, v });
+    }
+    if !options.constraints.is_empty() {
+        let paths = Paths::new(&after);
+        for &[u, v] in &options.constraints {
+            match paths.along(u, v) {
+                Some(path) => locked.extend(path),
+                None if options.skips_constraints => {}
+                None => audit.report(Violation::Constraint { u, v }),
+            }
+        }
+        locked.sort_unstable();
+        locked.dedup();
     }
     audit.remaining_edges = after.remaining(limits, &creases, &locked);
     audit.remaining = audit.remaining_edges.iter().map(|edge| edge.reason).collect();

@@ -5,6 +5,7 @@ mod audit;
 mod audit_exact;
 mod edges;
 mod measures;
+mod paths;
 mod surface;
 
 pub use angles::{AngleHistogram, Angles, angles};

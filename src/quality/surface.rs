@@ -84,7 +84,7 @@ impl<'a> Surface<'a> {
         (0..self.triangles.len() / 3).filter(|&t| !positive(t)).count()
     }
 
-    fn coord(&self, v: u32) -> robust::Coord<f64> {
+    pub fn coord(&self, v: u32) -> robust::Coord<f64> {
         let p = self.mesh.point2(v);
         robust::Coord { x: p.x, y: p.y }
     }

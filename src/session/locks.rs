@@ -1,9 +1,12 @@
-//! Locked edges never flip. The user names them one by one, by their triangles, or by groups of triangles.
+//! Locked edges never flip. The user names them one by one, by their triangles, by groups of triangles, or as
+//! constraints, which come in first.
 
 use crate::mesh::Mesh;
 use crate::mesh::buckets::for_each_edge;
 use crate::mesh::half_edge::next;
-use crate::{Error, Options, Welded};
+use crate::{Constrained, Error, Options, Welded, constrained};
+use std::mem;
+use std::sync::Arc;
 
 /// The edges that `options` lock, each by its two vertices: `locked_edges` first, then the edges of `locked_triangles`
 /// and those between `groups`. [`half_edges`](crate::mesh::named_edges::half_edges) finds them in the mesh.
@@ -36,12 +39,36 @@ pub(crate) fn edges(mesh: &Mesh, options: &Options) -> Result<Vec<[u32; 2]>, Err
     Ok(edges)
 }
 
+/// Brings the constraints of `options` in. `options.locked_edges` are all locks; the parts of the constraints join them.
+/// Returns the mesh, the flips, and the constraints that were left out.
+///
+/// # Errors
+/// Those of [`constrained`].
+pub(crate) fn bring_in(
+    mesh: Arc<Mesh>,
+    options: &mut Options,
+) -> Result<(Arc<Mesh>, u64, Vec<(usize, String)>), Error> {
+    let constraints = mem::take(&mut options.constraints);
+    // In the npm package, the module of `edgeflip/files` has brought them in.
+    if cfg!(all(target_arch = "wasm32", feature = "js-session")) || constraints.is_empty() {
+        return Ok((mesh, 0, Vec::new()));
+    }
+    let Constrained { mesh, locked_edges, flips, left_out } =
+        constrained(&mesh, &constraints, &options.locked_edges, options.skips_constraints)?;
+    // The flips have moved triangles, and their locks are edges by now.
+    *options =
+        Options { locked_edges, locked_triangles: Vec::new(), groups: Vec::new(), ..mem::take(options) };
+    Ok((Arc::new(mesh), flips, left_out))
+}
+
 impl Welded {
-    /// Adds to the locks of `options` the edges and triangles that have to stay. On entry, `options.locked_edges` name
-    /// vertices of the mesh before the weld; this call renumbers these vertices.
+    /// Adds to the locks of `options` the edges and triangles that have to stay. On entry, the locked edges and
+    /// the constraints of `options` name vertices of the mesh before the weld; this call renumbers these vertices.
     pub fn constrain(&self, options: &mut Options) {
-        for vertex in options.locked_edges.as_flattened_mut() {
-            *vertex = self.places.get(*vertex as usize).copied().unwrap_or(*vertex);
+        for edges in [&mut options.locked_edges, &mut options.constraints] {
+            for vertex in edges.as_flattened_mut() {
+                *vertex = self.places.get(*vertex as usize).copied().unwrap_or(*vertex);
+            }
         }
         options.locked_edges.extend_from_slice(self.wedges.locked_edges());
         options.locked_triangles.extend_from_slice(self.wedges.locked_triangles());

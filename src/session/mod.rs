@@ -58,6 +58,8 @@ pub struct Session {
     has_ended: bool,
     /// Updates since the last other change of the positions.
     updates: u64,
+    constraint_flips: u64,
+    left_out: Vec<(usize, String)>,
     timings: Timings,
     /// Whether the triangles stay on the device until somebody asks for them.
     #[cfg(all(target_arch = "wasm32", feature = "js"))]
@@ -75,6 +77,7 @@ impl Session {
         options.check()?;
         let (start, mesh) = (Instant::now(), mesh.into());
         options.locked_edges = locks::edges(&mesh, &options)?;
+        let (mesh, constraint_flips, left_out) = locks::bring_in(mesh, &mut options)?;
         // Checked here, because `auto` would answer this error of a GPU engine by trying the CPU engine.
         named_edges::half_edges(&mesh, &options.locked_edges)?;
         let Choice { engine, fallback, may_change } = engine_for(&mesh, &options).await?;
@@ -89,6 +92,8 @@ impl Session {
             flips_per_iteration: Vec::new(),
             has_ended: false,
             updates: 0,
+            constraint_flips,
+            left_out,
             timings: Timings { upload: set_up - adjacency, adjacency, ..Timings::default() },
             #[cfg(all(target_arch = "wasm32", feature = "js"))]
             stays: false,
@@ -234,6 +239,8 @@ impl Session {
             fallback: self.fallback.clone(),
             iterations: self.flips_per_iteration.len() as u32,
             flips: self.flips(),
+            constraint_flips: self.constraint_flips,
+            left_out: self.left_out.clone(),
             flips_per_iteration: self.flips_per_iteration.clone(),
             dispatches: self.engine.dispatches(),
             device_bytes: self.engine.device_bytes(),

@@ -57,6 +57,12 @@ pub struct Options {
     /// A number for each triangle, or empty. Edges between triangles of different numbers are locked, so every group
     /// keeps its border, and every triangle stays in its group.
     pub groups: Vec<u32>,
+    /// Edges to bring in before the run, by flips, each by its two vertices (2D only). They are locked. A vertex on one
+    /// splits it. See [`constrained`](crate::constrained). In the npm package, another module brings them in.
+    pub constraints: Vec<[u32; 2]>,
+    /// Whether constraints that cannot be brought in are left out, and listed in
+    /// [`Outcome::left_out`](crate::Outcome::left_out). Otherwise they are errors.
+    pub skips_constraints: bool,
     /// The order of the flips.
     pub order: Order,
     /// Whether a session keeps, for each triangle, the update that changed it last:
@@ -153,6 +159,8 @@ impl Default for Options {
             locked_edges: Vec::new(),
             locked_triangles: Vec::new(),
             groups: Vec::new(),
+            constraints: Vec::new(),
+            skips_constraints: false,
             order: Order::Reproducible,
             track_changes: false,
             threads: None,

@@ -79,8 +79,12 @@ pub struct Outcome {
     pub fallback: Option<String>,
     /// Iterations with at least one flip.
     pub iterations: u32,
-    /// Flips in all.
+    /// Flips in all, without those that brought constraints in.
     pub flips: u64,
+    /// Flips that brought constraints in.
+    pub constraint_flips: u64,
+    /// The constraints that were left out, by their indices in ascending order, each with the reason.
+    pub left_out: Vec<(usize, String)>,
     /// Flips of each iteration; a whole run of Lawson's algorithm counts as one iteration.
     pub flips_per_iteration: Vec<u32>,
     /// Compute dispatches encoded on the GPU.

@@ -38,6 +38,9 @@ async function locksAll({ makeDelaunay, mesh, base }, options) {
   return { flips, remaining };
 }
 
+/** A square with the diagonal 0-2. */
+const SQUARE = { positions: new Float32Array([0, 0, 1, 0, 1, 1, 0, 1]), indices: [0, 1, 2, 0, 2, 3], dimension: 2 };
+
 const corners = ({ indices }) => Array.from({ length: indices.length / 3 }, (_, t) => t);
 
 /**
@@ -70,6 +73,21 @@ export const cases = {
   },
   lockedTriangles: (given) => locksAll(given, { lockedTriangles: corners(given.mesh) }),
   groups: (given) => locksAll(given, { groups: corners(given.mesh) }),
+  constraints: async (given) => {
+    await isRefused(given, 'constraints', [0, 1]);
+    const { constraintFlips, leftOut } = await given.makeDelaunay(SQUARE, { ...given.base, constraints: [1, 3] });
+    check(constraintFlips === 1 && leftOut.length === 0, `${constraintFlips} flips, ${leftOut.length} left out`);
+  },
+  skipConstraints: async (given) => {
+    const options = { ...given.base, constraints: [1, 3, 2, 0] };
+    await isRefused({ ...given, mesh: SQUARE }, 'constraints', options.constraints);
+    const { leftOut } = await given.makeDelaunay(SQUARE, { ...options, skipConstraints: true });
+    const found = leftOut.map(({ index, reason }) => `${index}: ${reason}`);
+    check(
+      found.join() === '1: constraint 1 between 2 and 0 crosses constraint 0 between 1 and 3',
+      `left out: ${found}`,
+    );
+  },
   reorient: async ({ makeDelaunay, mesh, base }) => {
     const indices = mesh.indices.slice();
     [indices[0], indices[1]] = [indices[1], indices[0]];

@@ -38,6 +38,7 @@ Examples:
   edgeflip terrain.off -o terrain-delaunay.off
   edgeflip scan.obj -o scan.obj --max-normal-angle 5 --verify
   edgeflip map.off -o map.off --lock-edges rivers.txt
+  edgeflip terrain.ply -o terrain.ply --constraints ridges.txt
   edgeflip part.off -o part.obj --backend cpu --json --quiet | jq .flips
   edgeflip scan.ply.gz -o - | ssh host 'cat >scan.ply.gz'";
 
@@ -126,6 +127,20 @@ pub struct Args {
     #[arg(long, value_name = "FILE")]
     pub groups: Option<PathBuf>,
 
+    /// Edges to bring in before the run: a text file with the two vertices of an edge in each line
+    ///
+    /// Only in the plane. The edges that they cross flip away; then they are locked. A vertex on such an edge splits it.
+    /// Vertices count as for --lock-edges. An edge that crosses another one of the list, a locked edge or the boundary
+    /// is an error.
+    #[arg(long, value_name = "FILE")]
+    pub constraints: Option<PathBuf>,
+
+    /// Leave out the edges of --constraints that cannot be brought in
+    ///
+    /// The summary counts them, and --json lists them.
+    #[arg(long)]
+    pub skip_constraints: bool,
+
     /// Reverse triangles first, so that neighbours have the same orientation
     ///
     /// In each component that is orientable, the minority is reversed. Without it, edges between triangles of opposite
@@ -138,8 +153,8 @@ pub struct Args {
     /// Then edges flip even if a file repeats the vertices of each triangle, or repeats vertices along lines. In glTF,
     /// only vertices of the same primitive are joined, and edges where their attributes or morph targets differ are
     /// seams, which are locked. A primitive without indices gets indices if one of its edges flips. An edge of
-    /// --lock-edges is the edge between the positions of its two vertices. The summary describes the joined mesh, which
-    /// has the first vertex at each position. Files of other formats than glTF are written as with --drop-attributes.
+    /// --lock-edges or --constraints is that between the positions of its two vertices. The summary describes the joined
+    /// mesh, which has the first vertex at each position. Files of other formats than glTF are written as with --drop-attributes.
     #[arg(long)]
     pub weld: bool,
 
@@ -168,8 +183,8 @@ pub struct Args {
     /// Print one JSON object on standard output instead of the summary
     ///
     /// Keys: input, vertices, triangles, edges, boundary_edges, non_manifold_edges, inconsistent_edges, dimension,
-    /// backend, adapter, fallback, status (done or stopped), iterations, flips, flips_per_iteration, dispatches,
-    /// device_bytes, remaining (by reason), min_angle_before_deg, min_angle_after_deg, before and after (min_angle_deg,
+    /// backend, adapter, fallback, status (done or stopped), iterations, flips, constraint_flips, left_out (for each
+    /// constraint left out, its index in the list and why), flips_per_iteration, dispatches, device_bytes, remaining (by reason), min_angle_before_deg, min_angle_after_deg, before and after (min_angle_deg,
     /// mean_min_angle_deg, mean_aspect, flat_triangles, area, volume), turned_triangles, joined_vertices, seam_edges,
     /// moved_triangles, attribute_edges (locked to keep attributes), ms (wall times in milliseconds, see below), and
     /// with --verify audit (the violations), remaining_edges (by reason, the two vertices of each edge left, counted
@@ -220,6 +235,7 @@ impl Args {
             max_normal_angle: self.max_normal_angle,
             max_deviation: self.max_deviation,
             max_iterations: self.max_iterations,
+            skips_constraints: self.skip_constraints,
             threads: self.threads,
             order: match self.order {
                 OrderArg::Reproducible => Order::Reproducible,

@@ -92,6 +92,7 @@ fn run(args: &Args, mut clock: Clock) -> Result<Done, Failure> {
         locked_edges: list(&args.lock_edges, io::read_edges)?,
         locked_triangles: list(&args.lock_triangles, io::read_numbers)?,
         groups: list(&args.groups, io::read_numbers)?,
+        constraints: list(&args.constraints, io::read_edges)?,
         ..options
     };
     if let Some(welded) = &welded {

@@ -29,6 +29,8 @@ pub struct Report {
     status: &'static str,
     iterations: u32,
     flips: u64,
+    constraint_flips: u64,
+    left_out: Vec<(usize, String)>,
     flips_per_iteration: Vec<u32>,
     dispatches: u64,
     device_bytes: u64,
@@ -187,6 +189,8 @@ impl Report {
             },
             iterations: outcome.iterations,
             flips: outcome.flips,
+            constraint_flips: outcome.constraint_flips,
+            left_out: outcome.left_out,
             flips_per_iteration: outcome.flips_per_iteration,
             dispatches: outcome.dispatches,
             device_bytes: outcome.device_bytes,
@@ -280,6 +284,13 @@ impl Report {
                 "memory",
                 format!("{} on the device, {each:.1} bytes per triangle", HumanBytes(self.device_bytes)),
             );
+        }
+        if self.constraint_flips > 0 {
+            let flips = HumanCount(self.constraint_flips);
+            line("inserted", format!("constraints, by {flips} flips"));
+        }
+        if let Some((_, why)) = self.left_out.first() {
+            line("left out", format!("constraints: {}; {why}", HumanCount(self.left_out.len() as u64)));
         }
         let iterations = match self.iterations {
             0 => String::new(),

@@ -2,6 +2,7 @@
 //! engine. Only `src/js/files.ts` calls it. It has checked the types of all arguments, but not their values. Every
 //! exception is an `Error` with a `code`.
 
+mod constraints;
 mod weld;
 
 use crate::error::number;

@@ -1,0 +1,38 @@
+//! Edges that are brought in.
+
+use crate::command::{Folder, SQUARE, failed, run, text};
+use serde_json::{Value, json};
+use std::fs;
+
+#[test]
+fn constraints_are_brought_in() {
+    let folder = Folder::new();
+    let (input, output) = (folder.file("in.off", SQUARE), folder.path("out.off"));
+    let list = folder.file("list.txt", "# the other diagonal\n3 1\n");
+    let with =
+        |more: &[&str]| run(&input, &output, &[&["--constraints", list.to_str().unwrap()], more].concat());
+    let said = |more: &[&str]| -> Value {
+        let ran = with(&[more, &["--json", "--verify"]].concat());
+        assert_eq!((ran.status.code(), text(&ran.stderr)), (Some(0), ""));
+        serde_json::from_slice(&ran.stdout).unwrap()
+    };
+    let found = said(&[]);
+    assert_eq!((&found["constraint_flips"], &found["flips"]), (&1.into(), &0.into()));
+    assert_eq!(
+        (&found["left_out"], &found["audit"], &found["remaining"]),
+        (&json!([]), &json!([]), &json!({}))
+    );
+    assert!(fs::read_to_string(&output).unwrap().contains("\n3 3 1 2\n"));
+    assert!(text(&with(&[]).stderr).contains("\ninserted   constraints, by 1 flips\n"));
+
+    fs::remove_file(&output).unwrap();
+    fs::write(&list, "1 3\n0 2\n").unwrap();
+    let why = "constraint 1 between 0 and 2 crosses constraint 0 between 1 and 3";
+    failed(&with(&[]), 2, &format!("option constraints: {why}"));
+    assert_eq!(folder.names(), ["in.off", "list.txt"]);
+    assert_eq!(said(&["--skip-constraints"])["left_out"], json!([[1, why]]));
+    let summary = with(&["--skip-constraints"]);
+    assert!(text(&summary.stderr).contains(&format!("\nleft out   constraints: 1; {why}\n")));
+    fs::write(&list, "0 9\n").unwrap();
+    failed(&with(&[]), 2, "option constraints: constraint 0 joins 0 and 9; the mesh has 4 vertices");
+}

@@ -1,0 +1,104 @@
+// Edges that are brought in before a run: on every engine that Node has, with other options, and while the mesh moves.
+// Uses the existing dist/.
+
+import assert from 'node:assert/strict';
+import { test } from 'node:test';
+import { EdgeflipError, FlipSession, makeDelaunay } from 'edgeflip';
+import { constrain, generate } from 'edgeflip/files';
+
+/** The edges of triangles, each as `smaller-larger`. */
+function edgesOf(indices) {
+  const edge = (from, to) => `${Math.min(from, to)}-${Math.max(from, to)}`;
+  return new Set([...indices].map((vertex, i) => edge(vertex, indices[i % 3 === 2 ? i - 2 : i + 1])));
+}
+
+/** The edges of the path that a constraint has become, from the pairs of `lockedEdges`. */
+function pairsOf(lockedEdges) {
+  return Array.from({ length: lockedEdges.length / 2 }, (_, i) => [...lockedEdges.slice(2 * i, 2 * i + 2)]);
+}
+
+const refused = (code, pattern) => (error) => {
+  assert.ok(error instanceof EdgeflipError, String(error));
+  assert.equal(error.code, code, error.message);
+  assert.match(error.message, pattern);
+  return true;
+};
+
+test('a long constraint becomes a path of edges, and the rest is Delaunay', async () => {
+  // The second mesh is large enough for several threads.
+  for (const name of ['random 30', 'random 200', 'regular 9']) {
+    const mesh = await generate(name);
+    const last = mesh.positions.length / 2 - 1;
+    const constraints = [0, last];
+    const { lockedEdges, flips, leftOut } = await constrain(mesh, constraints);
+    const pairs = pairsOf(lockedEdges);
+    assert.deepEqual([pairs[0][0], pairs.at(-1)[1], leftOut], [0, last, []]);
+    let wanted;
+    for (const options of [{ threads: 1 }, { threads: 2 }, { order: 'any' }]) {
+      const session = await FlipSession.create(mesh, { backend: 'cpu', constraints, ...options });
+      const result = await session.run();
+      assert.equal(result.constraintFlips, flips);
+      assert.deepEqual([result.status, result.leftOut], ['done', []]);
+      const edges = edgesOf(result.indices);
+      for (const pair of pairs) assert.ok(edges.has(pair.toSorted((u, v) => u - v).join('-')), `${name}: ${pair}`);
+      const audit = await session.verify();
+      assert.deepEqual([audit.clean, audit.remaining], [true, result.remaining]);
+      assert.deepEqual(
+        Object.keys(result.remaining).filter((reason) => reason !== 'locked'),
+        [],
+      );
+      if (options.threads) assert.deepEqual(result.indices, (wanted ??= result.indices));
+      session.free();
+    }
+  }
+});
+
+test('constraints stay while the mesh moves', async () => {
+  const mesh = await generate('random 30');
+  const constraints = [0, mesh.positions.length / 2 - 1];
+  const { lockedEdges } = await constrain(mesh, constraints);
+  const session = await FlipSession.create(mesh, { backend: 'cpu', constraints });
+  await session.run();
+  for (let frame = 1; frame < 4; frame++) {
+    session.update({ positions: mesh.positions.map((x, i) => (i % 2 ? x : x + 0.2 * frame * mesh.positions[i + 1])) });
+    const edges = edgesOf(await session.triangles());
+    for (const pair of pairsOf(lockedEdges)) assert.ok(edges.has(pair.toSorted((u, v) => u - v).join('-')));
+  }
+  assert.ok((await session.verify()).clean);
+  session.free();
+});
+
+test('a constraint joins positions if vertices are welded, and respects locks', async () => {
+  // A square whose two triangles share no vertex.
+  const positions = new Float32Array([0, 0, 1, 0, 1, 1, 0, 0, 1, 1, 0, 1]);
+  const apart = { positions, indices: [0, 1, 2, 3, 4, 5], dimension: 2 };
+  const { constraintFlips, joinedVertices } = await makeDelaunay(apart, { weld: true, constraints: [1, 5] });
+  assert.deepEqual([constraintFlips, joinedVertices], [1, 2]);
+  const given = { positions: new Float64Array([0, 0, 1, 0, 1, 1, 0, 1]), indices: [0, 1, 2, 0, 2, 3], dimension: 2 };
+  const crosses = /^option constraints: constraint 0 between 1 and 3 crosses the locked edge between \d and \d$/;
+  for (const locks of [{ lockedEdges: [0, 2] }, { lockedTriangles: [0] }, { groups: [0, 1] }]) {
+    await assert.rejects(makeDelaunay(given, { constraints: [1, 3], ...locks }), refused('invalid-option', crosses));
+    await assert.rejects(constrain(given, [1, 3], locks), refused('invalid-option', crosses));
+    const { leftOut, lockedEdges } = await constrain(given, [1, 3], locks, true);
+    assert.match(`option constraints: ${leftOut[0].reason}`, crosses);
+    assert.ok(lockedEdges.length >= 2);
+  }
+});
+
+test('wrong constraints are refused', async () => {
+  const mesh = await generate('random 9');
+  for (const [constraints, code, pattern] of [
+    [[0], 'ragged-array', /constraints has 1 number/],
+    [[0, 1e9], 'invalid-option', /constraint 0 joins 0 and 1000000000; the mesh has 81 vertices/],
+    ['0 1', 'invalid-option', /constraints: '0 1' is neither/],
+  ]) {
+    await assert.rejects(makeDelaunay(mesh, { constraints }), refused(code, pattern));
+  }
+  await assert.rejects(
+    makeDelaunay(await generate('uvsphere 9'), { constraints: [0, 1] }),
+    refused('invalid-option', /plane/),
+  );
+  await assert.rejects(constrain(mesh, [0]), refused('ragged-array', /constraints/));
+  await assert.rejects(constrain(mesh, '0 1'), refused('invalid-input', /constraints/));
+  await assert.rejects(constrain(mesh, [0, 1], { locked: [] }), refused('invalid-option', /locked/));
+});
