@@ -45,7 +45,7 @@ fn every_engine_goes_on_from_the_constraints() {
             let any = unwatched(&mesh, &any).unwrap();
             assert_eq!((any.constraint_flips, &any.left_out), (inserted.flips, &inserted.left_out));
             // Without those left out, no constraint may be missing.
-            let is_in = |i: &usize| inserted.left_out.iter().all(|(out, _)| out != i);
+            let is_in = |i: &usize| inserted.left_out.iter().all(|left| left.index != *i);
             let kept: Vec<_> = (0..constraints.len()).filter(is_in).map(|i| constraints[i]).collect();
             let options = Options { skips_constraints: false, ..with(Backend::Cpu, &kept) };
             for (triangles, remaining) in [(&want.triangles, want.remaining), (&any.triangles, any.remaining)]

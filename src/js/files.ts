@@ -126,6 +126,16 @@ export interface Constrained {
   leftOut: LeftOut[];
 }
 
+/** The result of {@link regions}. */
+export interface Regions {
+  /** How many regions there are. */
+  count: number;
+  /** The region of each triangle. Regions are numbered in the order of their first triangles, from 0. */
+  ofTriangles: Uint32Array;
+  /** 1 for each triangle that is inside, else 0. */
+  inside: Uint8Array;
+}
+
 /** The result of {@link weld}: a mesh whose vertices at the same position are joined. */
 export interface Welded {
   /** Vertex indices, 3 per triangle: the first vertex at each position. */
@@ -329,6 +339,23 @@ export async function constrain(
     return { lockedEdges: NONE, lockedTriangles: NONE, groups: NONE, ...Object.fromEntries(names) };
   });
   return call(() => wasm.constrain(positions, indices, dimension, pairs, given, Boolean(skips)));
+}
+
+/**
+ * Cuts a mesh into regions along edges, such as {@link Constrained.lockedEdges}, and tells which triangles are inside.
+ * Two triangles are in one region if a path from one to the other crosses none of these edges. A triangle is inside if a
+ * path to it from outside the mesh crosses the edges an odd number of times. An edge that is given twice counts twice,
+ * so two polygons with a common side are both inside. If the edges are not closed polygons, the path with the fewest
+ * crossings counts. In a component without boundary, the region of the first triangle is not inside.
+ *
+ * @param edges - Pairs of vertices, one pair after the other.
+ * @throws {@link EdgeflipError} about the mesh; `invalid-option` for a pair that is no edge of the mesh;
+ * `invalid-input`.
+ */
+export async function regions(mesh: Mesh, edges: IndexArray): Promise<Regions> {
+  const { positions, indices, dimension } = moduleMesh(mesh, held);
+  const pairs = held(wordsOf(edges, 'edges'), 'edges');
+  return call(() => wasm.regions(positions, indices, dimension, pairs));
 }
 
 /**

@@ -165,8 +165,7 @@ mod tests {
         let ends = if is_closed { count } else { count + 1 };
         let points = (0..ends).map(|i| directions[((first + i) % 8) as usize]);
         let points = points.map(|[x, y]| if is_clockwise { [x, -y] } else { [x, y] });
-        let positions: Vec<f64> =
-            [[0, 0]].into_iter().chain(points).flatten().map(|x| f64::from(x as i32)).collect();
+        let positions: Vec<f64> = [[0, 0]].into_iter().chain(points).flatten().map(f64::from).collect();
         let triangle = |i: u32| [0, 1 + i, 1 + (i + 1) % ends];
         Mesh::new(Dimension::Two, positions, (0..count).flat_map(triangle).collect()).unwrap()
     }

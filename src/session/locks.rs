@@ -6,7 +6,6 @@ use crate::mesh::buckets::for_each_edge;
 use crate::mesh::half_edge::next;
 use crate::{Constrained, Error, Options, Welded, constrained};
 use std::mem;
-use std::sync::Arc;
 
 /// The edges that `options` lock, each by its two vertices: `locked_edges` first, then the edges of `locked_triangles`
 /// and those between `groups`. [`half_edges`](crate::mesh::named_edges::half_edges) finds them in the mesh.
@@ -40,25 +39,22 @@ pub(crate) fn edges(mesh: &Mesh, options: &Options) -> Result<Vec<[u32; 2]>, Err
 }
 
 /// Brings the constraints of `options` in. `options.locked_edges` are all locks; the parts of the constraints join them.
-/// Returns the mesh, the flips, and the constraints that were left out.
+/// Returns what has changed, or `None` without constraints.
 ///
 /// # Errors
 /// Those of [`constrained`].
-pub(crate) fn bring_in(
-    mesh: Arc<Mesh>,
-    options: &mut Options,
-) -> Result<(Arc<Mesh>, u64, Vec<(usize, String)>), Error> {
+pub(crate) fn bring_in(mesh: &Mesh, options: &mut Options) -> Result<Option<Constrained>, Error> {
     let constraints = mem::take(&mut options.constraints);
     // In the npm package, the module of `edgeflip/files` has brought them in.
     if cfg!(all(target_arch = "wasm32", feature = "js-session")) || constraints.is_empty() {
-        return Ok((mesh, 0, Vec::new()));
+        return Ok(None);
     }
-    let Constrained { mesh, locked_edges, flips, left_out } =
-        constrained(&mesh, &constraints, &options.locked_edges, options.skips_constraints)?;
+    let mut result = constrained(mesh, &constraints, &options.locked_edges, options.skips_constraints)?;
+    let locked_edges = mem::take(&mut result.locked_edges);
     // The flips have moved triangles, and their locks are edges by now.
     *options =
         Options { locked_edges, locked_triangles: Vec::new(), groups: Vec::new(), ..mem::take(options) };
-    Ok((Arc::new(mesh), flips, left_out))
+    Ok(Some(result))
 }
 
 impl Welded {

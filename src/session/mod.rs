@@ -28,8 +28,8 @@ use crate::phases::{Geometry, Thresholds, Topology};
 use crate::session::edge_states::edge_states;
 use crate::system::memory;
 use crate::{
-    Backend, Dimension, EdgeState, Edges, EngineKind, Error, Iteration, Mesh, Options, Order, Outcome,
-    Positions, Reason, Status, Timings,
+    Backend, Constrained, Dimension, EdgeState, Edges, EngineKind, Error, Iteration, LeftOut, Mesh, Options,
+    Order, Outcome, Positions, Reason, Status, Timings,
 };
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 pub(crate) use choice::why_cpu;
@@ -59,7 +59,7 @@ pub struct Session {
     /// Updates since the last other change of the positions.
     updates: u64,
     constraint_flips: u64,
-    left_out: Vec<(usize, String)>,
+    left_out: Vec<LeftOut>,
     timings: Timings,
     /// Whether the triangles stay on the device until somebody asks for them.
     #[cfg(all(target_arch = "wasm32", feature = "js"))]
@@ -77,7 +77,10 @@ impl Session {
         options.check()?;
         let (start, mesh) = (Instant::now(), mesh.into());
         options.locked_edges = locks::edges(&mesh, &options)?;
-        let (mesh, constraint_flips, left_out) = locks::bring_in(mesh, &mut options)?;
+        let (mesh, constraint_flips, left_out) = match locks::bring_in(&mesh, &mut options)? {
+            Some(Constrained { mesh, flips, left_out, .. }) => (Arc::new(mesh), flips, left_out),
+            None => (mesh, 0, Vec::new()),
+        };
         // Checked here, because `auto` would answer this error of a GPU engine by trying the CPU engine.
         named_edges::half_edges(&mesh, &options.locked_edges)?;
         let Choice { engine, fallback, may_change } = engine_for(&mesh, &options).await?;

@@ -1,6 +1,6 @@
 //! The result of a run, and statistics of its iterations.
 
-use crate::{EngineKind, Reasons};
+use crate::{EngineKind, LeftOut, Reasons};
 
 /// Statistics of one iteration of [`Session::step`](crate::Session::step).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -83,8 +83,8 @@ pub struct Outcome {
     pub flips: u64,
     /// Flips that brought constraints in.
     pub constraint_flips: u64,
-    /// The constraints that were left out, by their indices in ascending order, each with the reason.
-    pub left_out: Vec<(usize, String)>,
+    /// The constraints that were left out, in ascending order.
+    pub left_out: Vec<LeftOut>,
     /// Flips of each iteration; a whole run of Lawson's algorithm counts as one iteration.
     pub flips_per_iteration: Vec<u32>,
     /// Compute dispatches encoded on the GPU.

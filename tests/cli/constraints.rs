@@ -30,7 +30,7 @@ fn constraints_are_brought_in() {
     let why = "constraint 1 between 0 and 2 crosses constraint 0 between 1 and 3";
     failed(&with(&[]), 2, &format!("option constraints: {why}"));
     assert_eq!(folder.names(), ["in.off", "list.txt"]);
-    assert_eq!(said(&["--skip-constraints"])["left_out"], json!([[1, why]]));
+    assert_eq!(said(&["--skip-constraints"])["left_out"], json!([{ "index": 1, "reason": why }]));
     let summary = with(&["--skip-constraints"]);
     assert!(text(&summary.stderr).contains(&format!("\nleft out   constraints: 1; {why}\n")));
     fs::write(&list, "0 9\n").unwrap();

@@ -4,7 +4,7 @@ use crate::args::Args;
 use crate::failure::Failure;
 use edgeflip::io::{Format, Loaded};
 use edgeflip::quality::{self, Measures};
-use edgeflip::{Dimension, Error, Mesh, Outcome, Reasons, Status, Timings, Welded};
+use edgeflip::{Dimension, Error, LeftOut, Mesh, Outcome, Reasons, Status, Timings, Welded};
 use indicatif::{HumanBytes, HumanCount};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -30,7 +30,7 @@ pub struct Report {
     iterations: u32,
     flips: u64,
     constraint_flips: u64,
-    left_out: Vec<(usize, String)>,
+    left_out: Vec<LeftOut>,
     flips_per_iteration: Vec<u32>,
     dispatches: u64,
     device_bytes: u64,
@@ -289,8 +289,8 @@ impl Report {
             let flips = HumanCount(self.constraint_flips);
             line("inserted", format!("constraints, by {flips} flips"));
         }
-        if let Some((_, why)) = self.left_out.first() {
-            line("left out", format!("constraints: {}; {why}", HumanCount(self.left_out.len() as u64)));
+        if let Some(LeftOut { reason, .. }) = self.left_out.first() {
+            line("left out", format!("constraints: {}; {reason}", HumanCount(self.left_out.len() as u64)));
         }
         let iterations = match self.iterations {
             0 => String::new(),

@@ -23,8 +23,17 @@ pub struct Constrained {
     pub locked_edges: Vec<[u32; 2]>,
     /// The flips that brought them in.
     pub flips: u64,
-    /// The constraints that were left out, by their indices in ascending order, each with the reason.
-    pub left_out: Vec<(usize, String)>,
+    /// The constraints that were left out, in ascending order.
+    pub left_out: Vec<LeftOut>,
+}
+
+/// A constraint that was left out.
+#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
+pub struct LeftOut {
+    /// Its index in the list of constraints.
+    pub index: usize,
+    /// A sentence that says why, with the vertices and what it crosses.
+    pub reason: String,
 }
 
 /// Brings `constraints` in, one after another, each an edge between two vertices. A vertex on a constraint splits it.
@@ -73,11 +82,11 @@ pub fn constrained(
             Err(obstacle) => {
                 let [u, v] = ends;
                 let what = what(&state, constraints, &origins, obstacle);
-                let message = format!("constraint {index} between {u} and {v} {what}");
+                let reason = format!("constraint {index} between {u} and {v} {what}");
                 if !skips {
-                    return refuse(message);
+                    return refuse(reason);
                 }
-                left_out.push((index, message));
+                left_out.push(LeftOut { index, reason });
             }
         }
     }

@@ -66,7 +66,7 @@ fn check(mesh: &Mesh, constraints: &[Pair]) -> Constrained {
     let mut left_out = result.left_out.iter().peekable();
     let mut taken: Vec<usize> = Vec::new();
     for (i, &ends) in constraints.iter().enumerate() {
-        if let Some((_, message)) = left_out.next_if(|(index, _)| *index == i) {
+        if let Some(LeftOut { reason: message, .. }) = left_out.next_if(|left| left.index == i) {
             if let Some(rest) = message.split("crosses constraint ").nth(1) {
                 let other: usize = rest.split(' ').next().unwrap().parse().unwrap();
                 assert!(taken.contains(&other));
@@ -224,7 +224,7 @@ fn errors_name_the_constraint_and_what_it_meets() {
     let other = "constraint 1 between 4 and 1 crosses constraint 0 between 5 and 0";
     assert_refused(&mesh, &[[5, 0], [4, 1]], &[], other);
     let result = constrained(&mesh, &[[5, 0], [4, 1], [2, 7]], &[], true).unwrap();
-    assert_eq!(result.left_out, [(1, other.to_owned())]);
+    assert_eq!(result.left_out, [LeftOut { index: 1, reason: other.to_owned() }]);
     assert_eq!(result.locked_edges, [[5, 0], [2, 7]]);
 
     let folded = mesh.with_triangles(vec![0, 1, 5, 0, 5, 2, 4, 9, 8]).unwrap();

@@ -1,11 +1,10 @@
-//! Brings constraints in, for `src/js/files.ts`.
+//! Brings constraints in, and finds the regions that they bound, for `src/js/files.ts`.
 
 use super::mesh;
 use crate::session::locks;
 use crate::wasm::values::{JsPositions, object, thrown};
-use crate::{Error, Options};
-use js_sys::{Array, Uint32Array};
-use std::sync::Arc;
+use crate::{Constrained, Error, LeftOut, Options, constrained, regions};
+use js_sys::{Array, Uint8Array, Uint32Array};
 use wasm_bindgen::prelude::*;
 
 #[wasm_bindgen]
@@ -22,7 +21,7 @@ extern "C" {
     fn groups(this: &JsLocks) -> Uint32Array;
 }
 
-/// As [`Session::new`](crate::Session::new) with [`Options::constraints`].
+/// As [`constrained`], with all locks of [`Options`].
 ///
 /// # Errors
 /// Those of [`Mesh::new`](crate::Mesh::new) and [`constrained`](crate::constrained); [`Error::RaggedArray`];
@@ -37,28 +36,46 @@ pub fn constrain(
     skips: bool,
 ) -> Result<JsValue, JsValue> {
     let work = || {
-        let mesh = Arc::new(mesh(positions, indices, dimension)?);
-        let mut options = Options {
-            constraints: pairs("constraints", constraints)?,
-            skips_constraints: skips,
+        let mesh = mesh(positions, indices, dimension)?;
+        let options = Options {
             locked_edges: pairs("lockedEdges", &locks.locked_edges())?,
             locked_triangles: locks.locked_triangles().to_vec(),
             groups: locks.groups().to_vec(),
             ..Options::default()
         };
-        options.locked_edges = locks::edges(&mesh, &options)?;
-        let (mesh, flips, left_out) = locks::bring_in(mesh, &mut options)?;
-        Ok((mesh, options.locked_edges, flips, left_out))
+        let locked_edges = locks::edges(&mesh, &options)?;
+        constrained(&mesh, &pairs("constraints", constraints)?, &locked_edges, skips)
     };
-    let (mesh, locked_edges, flips, left_out) = work().map_err(thrown)?;
-    let left_out = left_out.into_iter().map(|(index, reason)| {
-        JsValue::from(object([("index", (index as f64).into()), ("reason", reason.into())]))
+    let Constrained { mesh, locked_edges, flips, left_out } = work().map_err(thrown)?;
+    let left_out = left_out.into_iter().map(|LeftOut { index, reason }| {
+        object([("index", (index as f64).into()), ("reason", reason.into())])
     });
     Ok(object([
         ("indices", Uint32Array::from(mesh.triangles()).into()),
         ("lockedEdges", Uint32Array::from(locked_edges.as_flattened()).into()),
         ("flips", (flips as f64).into()),
         ("leftOut", left_out.collect::<Array>().into()),
+    ]))
+}
+
+/// As [`regions()`].
+///
+/// # Errors
+/// Those of [`Mesh::new`](crate::Mesh::new) and [`regions()`]; [`Error::RaggedArray`]; [`Error::Option`] for the dimension.
+#[wasm_bindgen(js_name = regions, unchecked_return_type = "import('../files.js').Regions")]
+pub fn regions_of(
+    positions: JsPositions,
+    indices: &Uint32Array,
+    dimension: f64,
+    edges: &Uint32Array,
+) -> Result<JsValue, JsValue> {
+    let work = || regions(&mesh(positions, indices, dimension)?, &pairs("edges", edges)?);
+    let found = work().map_err(thrown)?;
+    let inside: Vec<u8> = found.inside.into_iter().map(u8::from).collect();
+    Ok(object([
+        ("count", found.count.into()),
+        ("ofTriangles", Uint32Array::from(found.of_triangles.as_slice()).into()),
+        ("inside", Uint8Array::from(inside.as_slice()).into()),
     ]))
 }
 

@@ -1,0 +1,161 @@
+// Polygons with holes from points: delaunator, then constraints and regions. The polygons are those of earcut's tests, and
+// the inputs of issues of constrainautor. Uses the existing dist/.
+
+import assert from 'node:assert/strict';
+import { readdirSync, readFileSync } from 'node:fs';
+import { test } from 'node:test';
+import Delaunator from 'delaunator';
+import { FlipSession } from 'edgeflip';
+import { constrain, regions } from 'edgeflip/files';
+import { orient2d } from 'robust-predicates';
+
+const fixtures = new URL('../../node_modules/earcut-fixtures/test/fixtures/', import.meta.url);
+
+/** The fixtures whose sides cross. */
+const CROSSING = ['bad-hole.json', 'water-huge.json', 'water-huge2.json', 'water.json'];
+
+const RUNS = [{ threads: 1 }, { threads: 2 }, { order: 'any' }];
+
+/** The different points of rings, and their sides as pairs of vertices. */
+function pointsAndSides(rings) {
+  const vertices = new Map();
+  const at = ([x, y]) => {
+    const key = `${x} ${y}`;
+    if (!vertices.has(key)) vertices.set(key, vertices.size);
+    return vertices.get(key);
+  };
+  const sides = rings.flatMap((ring) =>
+    ring.map((point, i) => [at(ring[(i || ring.length) - 1]), at(point)]).filter(([u, v]) => u !== v),
+  );
+  const positions = Float64Array.from([...vertices.keys()].flatMap((key) => key.split(' ').map(Number)));
+  return { positions, sides };
+}
+
+/** Whether two segments cross in the inside of both. */
+function cross(positions, [a, b], [c, d]) {
+  const turn = (...vertices) =>
+    Math.sign(orient2d(...vertices.flatMap((vertex) => [positions[2 * vertex], positions[2 * vertex + 1]])));
+  return turn(a, b, c) * turn(a, b, d) < 0 && turn(c, d, a) * turn(c, d, b) < 0;
+}
+
+/** The area of a ring, by its corners. */
+function areaOf(ring) {
+  const twice = ring.reduce((sum, [x, y], i) => {
+    const [p, q] = ring[(i || ring.length) - 1];
+    return sum + p * y - x * q;
+  }, 0);
+  return Math.abs(twice) / 2;
+}
+
+/** Runs with the sides as constraints, and checks the result. Returns the area inside, if no side was left out. */
+async function triangulated({ positions, sides }, options) {
+  const mesh = { positions, indices: new Delaunator(positions).triangles, dimension: 2 };
+  const constraints = sides.flat();
+  const { lockedEdges, leftOut } = await constrain(mesh, constraints, {}, true);
+  const session = await FlipSession.create(mesh, { backend: 'cpu', constraints, skipConstraints: true, ...options });
+  const { indices, remaining, leftOut: alsoLeftOut } = await session.run();
+  assert.deepEqual(alsoLeftOut, leftOut);
+  const audit = await session.verify();
+  session.free();
+  assert.deepEqual([audit.clean, audit.remaining], [true, remaining]);
+  assert.ok(Object.keys(remaining).every((reason) => reason === 'locked'));
+  // Each reason is true: the two constraints cross.
+  for (const { index, reason } of leftOut) {
+    const other = Number(/ crosses constraint (\d+) /.exec(reason)[1]);
+    assert.ok(other < index && cross(positions, sides[index], sides[other]), reason);
+  }
+  const { inside } = await regions({ ...mesh, indices }, lockedEdges);
+  if (leftOut.length > 0) {
+    const reason = { code: 'invalid-option', message: `option constraints: ${leftOut[0].reason}` };
+    await assert.rejects(FlipSession.create(mesh, { backend: 'cpu', constraints }), reason);
+    return undefined;
+  }
+  const corner = (vertex) => [positions[2 * vertex], positions[2 * vertex + 1]];
+  const areas = [...inside].map((is, t) => is * areaOf([...indices.subarray(3 * t, 3 * t + 3)].map(corner)));
+  return areas.reduce((sum, area) => sum + area, 0);
+}
+
+for (const file of readdirSync(fixtures)) {
+  const rings = JSON.parse(readFileSync(new URL(file, fixtures), 'utf8'));
+  // Two files are lists of numbers.
+  if (!Array.isArray(rings[0]?.[0])) continue;
+  test(`the polygons of ${file}`, async () => {
+    const given = pointsAndSides(rings);
+    const [outer, ...holes] = rings.map(areaOf);
+    const wanted = holes.reduce((rest, hole) => rest - hole, outer);
+    for (const options of RUNS) {
+      const area = await triangulated(given, options);
+      if (CROSSING.includes(file)) assert.equal(area, undefined);
+      else assert.ok(Math.abs(area - wanted) <= 1e-12 * wanted, `${area}, not ${wanted}`);
+    }
+  });
+}
+
+/** Inputs of issues of constrainautor: of issue 4, and as that of issue 2. */
+const inputs = {
+  'edges that others have to give way to': {
+    points: [
+      [544, 480],
+      [512, 192],
+      [544, 160],
+      [512, 384],
+      [512, 224],
+      [544, 320],
+      [704, 128],
+      [576, 352],
+      [672, 352],
+      [576, 128],
+      [608, 384],
+      [672, 96],
+      [640, 96],
+      [608, 160],
+      [672, 160],
+      [608, 288],
+    ],
+    sides: [
+      [1, 2],
+      [4, 5],
+      [5, 0],
+      [6, 8],
+      [8, 7],
+      [7, 9],
+    ],
+  },
+  'sides along the points of a lattice, each twice': {
+    points: Array.from({ length: 144 }, (_, i) => [i % 12, Math.floor(i / 12)]),
+    sides: [26, 33, 117, 110].flatMap((corner, i, all) => [
+      [all[(i || 4) - 1], corner],
+      [corner, all[(i || 4) - 1]],
+    ]),
+  },
+};
+for (const [name, { points, sides }] of Object.entries(inputs)) {
+  test(name, async () => {
+    for (const options of RUNS) {
+      const area = await triangulated({ positions: new Float64Array(points.flat()), sides }, options);
+      assert.equal(area, 0, 'no closed polygon, and one that is given twice');
+    }
+  });
+}
+
+// Issue 15 of constrainautor, which does not end. delaunator takes the last point for a second copy of the third.
+test('a point that delaunator leaves out is named', async () => {
+  const points = [
+    [0, 0],
+    [0.05626429153399996, 0],
+    [0.024093852080076722, 4.80267923973791e-18],
+    [0.01379050745122589, 0.1463775332929564],
+    [0.05177587092034522, 0.015468457826306506],
+    [0.024093852080076705, -5.204170427930421e-18],
+  ];
+  const positions = new Float64Array(points.flat());
+  const mesh = { positions, indices: new Delaunator(positions).triangles, dimension: 2 };
+  const { leftOut } = await constrain(mesh, [0, 5, 5, 2, 0, 2], {}, true);
+  assert.deepEqual(
+    leftOut.map(({ reason }) => reason),
+    [
+      'constraint 0 between 0 and 5 ends at vertex 5, which no triangle has',
+      'constraint 1 between 5 and 2 ends at vertex 5, which no triangle has',
+    ],
+  );
+});
