@@ -71,6 +71,11 @@ test('the examples run', () => {
   assert.match(example('delaunator'), /^(frame \d: \d+ flips; edges that are still not Delaunay: \{\}\n){5}$/);
   const [, before, after] = example('simplify').match(/below 20°: (\d+) before, (\d+) after/);
   assert.ok(Number(after) < 0.8 * Number(before));
+  const map = join(folder, 'map.svg');
+  const [, count] = example('map', map).match(
+    /^6818 points; \d+ flips brought the borders in; (\d+) triangles of states/,
+  );
+  assert.equal(readFileSync(map, 'utf8').split('<path').length - 1, Number(count));
   const [input, output] = ['thin.obj', 'delaunay.obj'].map((name) => join(folder, name));
   writeFileSync(input, 'v -3 0 0\nv 0 -1 0\nv 3 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\nf 1 3 4\n');
   assert.equal(example('file', input, output), '1 flips\n');
