@@ -12,7 +12,7 @@ use oorandom::Rand64;
 use pollster::block_on;
 use runs::{options, unwatched, watched};
 
-/// Pairs of vertices that are mostly near each other in the order of the mesh.
+/// Up to twelve random pairs of vertices.
 fn random_pairs(mesh: &Mesh, random: &mut Rand64) -> Vec<[u32; 2]> {
     let count = mesh.vertex_count() as u64;
     let mut pair = || [random.rand_range(0..count) as u32, random.rand_range(0..count) as u32];

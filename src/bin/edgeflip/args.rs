@@ -154,7 +154,8 @@ pub struct Args {
     /// only vertices of the same primitive are joined, and edges where their attributes or morph targets differ are
     /// seams, which are locked. A primitive without indices gets indices if one of its edges flips. An edge of
     /// --lock-edges or --constraints is that between the positions of its two vertices. The summary describes the joined
-    /// mesh, which has the first vertex at each position. Files of other formats than glTF are written as with --drop-attributes.
+    /// mesh, which has the first vertex at each position. Files of other formats than glTF are written as with
+    /// --drop-attributes.
     #[arg(long)]
     pub weld: bool,
 
@@ -184,7 +185,8 @@ pub struct Args {
     ///
     /// Keys: input, vertices, triangles, edges, boundary_edges, non_manifold_edges, inconsistent_edges, dimension,
     /// backend, adapter, fallback, status (done or stopped), iterations, flips, constraint_flips, left_out (for each
-    /// constraint left out, its index in the list and the reason), flips_per_iteration, dispatches, device_bytes, remaining (by reason), min_angle_before_deg, min_angle_after_deg, before and after (min_angle_deg,
+    /// constraint left out, its index in the list and the reason), flips_per_iteration, dispatches,
+    /// device_bytes, remaining (by reason), min_angle_before_deg, min_angle_after_deg, before and after (min_angle_deg,
     /// mean_min_angle_deg, mean_aspect, flat_triangles, area, volume), turned_triangles, joined_vertices, seam_edges,
     /// moved_triangles, attribute_edges (locked to keep attributes), ms (wall times in milliseconds, see below), and
     /// with --verify audit (the violations), remaining_edges (by reason, the two vertices of each edge left, counted
