@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used)]
 #![allow(unsafe_code, reason = "the trait for allocators is unsafe")]
 
-use edgeflip::{Backend, Edges, Mesh, Options, Order, Session, families::by_name};
+use edgeflip::{Backend, Dimension, Edges, Mesh, Options, Order, Session, families::by_name};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::num::NonZeroUsize;
 use std::ops::ControlFlow;
@@ -86,7 +86,10 @@ fn sessions_take_what_they_ask_for() {
             for (order, threads) in
                 [(Order::Reproducible, 1), (Order::Reproducible, 4), (Order::Any, 1), (Order::Any, 4)]
             {
-                for locked_edges in [Vec::new(), all.clone()] {
+                let in_plane = if mesh.dimension() == Dimension::Two { all.clone() } else { Vec::new() };
+                for [locked_edges, constraints] in
+                    [[Vec::new(), Vec::new()], [all.clone(), Vec::new()], [Vec::new(), in_plane]]
+                {
                     let options = Options {
                         backend: Backend::Cpu,
                         order,
@@ -95,14 +98,15 @@ fn sessions_take_what_they_ask_for() {
                         // The worst cases have thousands of iterations of a few flips each.
                         max_iterations: Some(20),
                         locked_edges,
+                        constraints,
                         ..Options::default()
                     };
                     let asked = Session::bytes(&mesh, &options);
-                    let locked = options.locked_edges.len();
+                    let [locked, constraints] = [&options.locked_edges, &options.constraints].map(Vec::len);
                     let taken = bytes_of(&mesh, options, asked);
                     assert!(
                         taken <= asked + SLACK,
-                        "{spec}, {order:?}, {threads} threads, {locked} locked: {taken} bytes taken, {asked} asked for"
+                        "{spec}, {order:?}, {threads} threads, {locked} locked, {constraints} constraints: {taken} bytes taken, {asked} asked for"
                     );
                     most = most.max(taken as f64 / asked as f64);
                 }

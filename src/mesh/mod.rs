@@ -127,6 +127,17 @@ impl Mesh {
         Self::new(self.dimension, self.positions.clone(), triangles)
     }
 
+    /// The same vertices with triangles that flips have made.
+    pub(crate) fn flipped(&self, triangles: Vec<u32>) -> Self {
+        Self { dimension: self.dimension, positions: self.positions.clone(), triangles }
+    }
+
+    /// The bytes of its arrays.
+    pub(crate) fn bytes(&self) -> u64 {
+        let number = if self.positions.is_double() { 8 } else { 4 };
+        4 * self.triangles.len() as u64 + number * self.positions.len() as u64
+    }
+
     /// The vertex's coordinates; only for a 2D mesh.
     pub(crate) fn point2(&self, vertex: u32) -> DVec2 {
         let [point] = self.positions.points2([vertex]);

@@ -12,33 +12,46 @@ pub(crate) fn half_edges(mesh: &Mesh, pairs: &[[u32; 2]]) -> Result<Vec<u32>, Er
     if pairs.is_empty() {
         return Ok(half_edges);
     }
-    let ordered = |[u, v]: [u32; 2]| (u.min(v), u.max(v));
-    let mut edges: Vec<(u32, u32)> = pairs.iter().map(|&pair| ordered(pair)).collect();
+    let tuple = |pair| <(u32, u32)>::from(ordered(pair));
+    let mut edges: Vec<_> = pairs.iter().map(|&pair| tuple(pair)).collect();
     edges.sort_unstable();
     edges.dedup();
     let mut is_found = vec![false; edges.len()];
-    // One lookup rules out most half-edges.
-    let mut is_end = vec![false; mesh.vertex_count()];
+    // The edges with a smaller vertex v are those from starts[v] to starts[v + 1].
+    let mut starts = vec![0u32; mesh.vertex_count() + 1];
     for &(u, _) in &edges {
-        if let Some(is_end) = is_end.get_mut(u as usize) {
-            *is_end = true;
+        if let Some(count) = starts.get_mut(u as usize + 1) {
+            *count += 1;
         }
     }
+    let mut sum = 0;
+    for start in &mut starts {
+        sum += *start;
+        *start = sum;
+    }
     for h in 0..mesh.triangles().len() as u32 {
-        let ends = ordered([h, next(h)].map(|x| mesh.triangles()[x as usize]));
-        if is_end[ends.0 as usize]
-            && let Ok(index) = edges.binary_search(&ends)
+        let ends = tuple([h, next(h)].map(|x| mesh.triangles()[x as usize]));
+        let [start, end] = [0, 1].map(|i| starts[ends.0 as usize + i] as usize);
+        if start < end
+            && let Ok(index) = edges[start..end].binary_search(&ends)
         {
-            is_found[index] = true;
+            is_found[start + index] = true;
             half_edges.push(h);
         }
     }
-    match pairs.iter().find(|&&pair| edges.binary_search(&ordered(pair)).is_ok_and(|index| !is_found[index]))
-    {
+    if is_found.iter().all(|&is_found| is_found) {
+        return Ok(half_edges);
+    }
+    match pairs.iter().find(|&&pair| edges.binary_search(&tuple(pair)).is_ok_and(|index| !is_found[index])) {
         None => Ok(half_edges),
         Some([u, v]) => {
             let message = format!("the mesh has no edge between vertices {u} and {v}");
             Err(Error::Option { option: "locked_edges", message })
         }
     }
+}
+
+/// The two vertices of an edge, the smaller one first.
+pub(crate) fn ordered([u, v]: [u32; 2]) -> [u32; 2] {
+    [u.min(v), u.max(v)]
 }

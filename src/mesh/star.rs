@@ -4,7 +4,7 @@
 use crate::NONE;
 use crate::mesh::half_edge::{next, prev, unflagged};
 use crate::system::threads::{Threads, Word, shared};
-use std::sync::atomic::Ordering::Relaxed;
+use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
 /// The anchors of the vertices that have several fans. An anchor is a half-edge that starts at the vertex, one for each
 /// fan. The table has a word for each vertex: [`NONE`], or the index in the table of its list of anchors, which ends
@@ -109,14 +109,20 @@ impl Fans {
         (list != NONE).then(|| &self.table[list as usize..])
     }
 
-    /// Replaces `from` by `to` in the anchors of `vertex`, if `from` is one of them.
+    /// As [`move_anchor`].
     pub(crate) fn move_anchor(&mut self, vertex: u32, from: u32, to: u32) {
-        let list = self.table.get(vertex as usize).copied().unwrap_or(NONE);
-        if list != NONE {
-            let anchors = self.table[list as usize..].iter_mut().take_while(|anchor| **anchor != NONE);
-            for anchor in anchors.filter(|anchor| **anchor == from) {
-                *anchor = to;
-            }
+        move_anchor(shared(&mut self.table), vertex, from, to);
+    }
+}
+
+/// Replaces `from` by `to` in the anchors of `vertex`, if `from` is one of them. `table` is that of [`Fans`]. Several
+/// threads may move different anchors.
+pub(crate) fn move_anchor(table: &[AtomicU32], vertex: u32, from: u32, to: u32) {
+    let list = table.get(vertex as usize).map_or(NONE, Word::get);
+    if list != NONE {
+        let anchors = table[list as usize..].iter().take_while(|anchor| anchor.get() != NONE);
+        for anchor in anchors.filter(|anchor| anchor.get() == from) {
+            anchor.set(to);
         }
     }
 }
@@ -140,7 +146,7 @@ impl<'a> Star<'a> {
     }
 
     /// The corners of the fan that `corner` belongs to.
-    fn of_fan(twins: &'a [u32], corner: u32) -> Self {
+    pub(crate) fn of_fan(twins: &'a [u32], corner: u32) -> Self {
         Self { twins, start: corner, at: corner, clockwise: false, further: &[NONE] }
     }
 

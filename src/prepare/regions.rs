@@ -1,7 +1,7 @@
 //! Regions: the parts into which edges cut a mesh.
 
 use crate::mesh::half_edge::next;
-use crate::mesh::named_edges::half_edges;
+use crate::mesh::named_edges::{half_edges, ordered};
 use crate::system::threads::Threads;
 use crate::{Adjacency, Error, Mesh, NONE};
 use std::collections::VecDeque;
@@ -32,13 +32,12 @@ pub fn regions(mesh: &Mesh, edges: &[[u32; 2]]) -> Result<Regions, Error> {
     let cuts = half_edges(mesh, edges)?;
     let triangles = mesh.triangle_count();
     let twins = Adjacency::of_triangles(mesh.vertex_count(), mesh.triangles(), &Threads::default()).twins;
-    let mut pairs: Vec<[u32; 2]> = edges.iter().map(|&[u, v]| [u.min(v), u.max(v)]).collect();
+    let mut pairs: Vec<[u32; 2]> = edges.iter().map(|&ends| ordered(ends)).collect();
     pairs.sort_unstable();
     // How often each half-edge is given, modulo 2; NOT_CUT if never.
     let mut crossings = vec![NOT_CUT; 3 * triangles];
     for h in cuts {
-        let [u, v] = [h, next(h)].map(|x| mesh.triangles()[x as usize]);
-        let ends = [u.min(v), u.max(v)];
+        let ends = ordered([h, next(h)].map(|x| mesh.triangles()[x as usize]));
         let times = pairs.partition_point(|pair| *pair <= ends) - pairs.partition_point(|pair| *pair < ends);
         crossings[h as usize] = (times % 2) as u8;
     }
@@ -117,7 +116,7 @@ mod tests {
 
     /// How many regions there are, and the area inside.
     fn found(mesh: &Mesh, edges: &[[u32; 2]]) -> (u32, f64) {
-        let Constrained { mesh, locked_edges, .. } = constrained(mesh, edges, &[], false).unwrap();
+        let Constrained { mesh, locked_edges, .. } = constrained(mesh, edges, &[], false, None).unwrap();
         let Regions { count, of_triangles, inside } = regions(&mesh, &locked_edges).unwrap();
         assert_eq!(of_triangles[0], 0);
         assert!((0..count).all(|region| of_triangles.contains(&region)));
@@ -179,7 +178,7 @@ mod tests {
             let mesh = families::by_name(&format!("random 12 seed={seed}")).unwrap();
             let ring: Vec<u32> = corners;
             let edges: Vec<[u32; 2]> = sides(&[&ring]).into_iter().filter(|[u, v]| u != v).collect();
-            let Ok(Constrained { mesh, locked_edges, .. }) = constrained(&mesh, &edges, &[], false) else {
+            let Ok(Constrained { mesh, locked_edges, .. }) = constrained(&mesh, &edges, &[], false, None) else {
                 return Ok(());
             };
             let found = regions(&mesh, &locked_edges).unwrap();

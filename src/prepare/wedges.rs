@@ -8,6 +8,7 @@
 use crate::mesh::adjacency::{EdgeKind, edge_kind};
 use crate::mesh::buckets::for_each_edge;
 use crate::mesh::half_edge::{next, prev};
+use crate::mesh::named_edges::ordered;
 use crate::{Error, Mesh, NONE};
 
 /// Keeps attributes at the corners of a mesh through flips: the edges and triangles to lock, and the attributes of each
@@ -56,7 +57,7 @@ impl Wedges {
                         (twins[h as usize], twins[g as usize]) = (g, h);
                         return;
                     }
-                    locked_edges.push(sorted(ends(triangles, h)));
+                    locked_edges.push(ordered(ends(triangles, h)));
                 }
                 let starts = half_edges.iter().filter(|&&h| is_mixed(h));
                 barriers.extend(starts.map(|&h| (ends(triangles, h), h)));
@@ -145,7 +146,7 @@ impl Wedges {
                 return;
             }
             if let (EdgeKind::Interior, &[h, g]) = (edge_kind(half_edges, triangles), half_edges)
-                && self.locked_edges.binary_search(&sorted(ends(triangles, h))).is_err()
+                && self.locked_edges.binary_search(&ordered(ends(triangles, h))).is_err()
             {
                 (twins[h as usize], twins[g as usize]) = (g, h);
                 return;
@@ -200,10 +201,6 @@ fn corners(triangles: &[u32]) -> impl Iterator<Item = u32> {
 /// The two vertices of a half-edge, in its direction.
 fn ends(triangles: &[u32], h: u32) -> [u32; 2] {
     [h, next(h)].map(|x| triangles[x as usize])
-}
-
-fn sorted([u, v]: [u32; 2]) -> [u32; 2] {
-    [u.min(v), u.max(v)]
 }
 
 /// Sets the source of a corner and of the following corners of its sector, counter-clockwise, up to one that has a

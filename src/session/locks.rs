@@ -4,6 +4,8 @@
 use crate::mesh::Mesh;
 use crate::mesh::buckets::for_each_edge;
 use crate::mesh::half_edge::next;
+use crate::session::memory_bounds;
+use crate::system::memory;
 use crate::{Constrained, Error, Options, Welded, constrained};
 use std::mem;
 
@@ -38,22 +40,30 @@ pub(crate) fn edges(mesh: &Mesh, options: &Options) -> Result<Vec<[u32; 2]>, Err
     Ok(edges)
 }
 
-/// Brings the constraints of `options` in. `options.locked_edges` are all locks; the parts of the constraints join them.
-/// Returns what has changed, or `None` without constraints.
+/// Brings the constraints of `options` in. Then, or without constraints, `options.locked_edges` are all locks. Returns
+/// what has changed, or `None` without constraints.
 ///
 /// # Errors
-/// Those of [`constrained`].
+/// Those of [`edges`] and [`constrained`].
 pub(crate) fn bring_in(mesh: &Mesh, options: &mut Options) -> Result<Option<Constrained>, Error> {
-    let constraints = mem::take(&mut options.constraints);
     // In the npm package, the module of `edgeflip/files` has brought them in.
-    if cfg!(all(target_arch = "wasm32", feature = "js-session")) || constraints.is_empty() {
+    if cfg!(all(target_arch = "wasm32", feature = "js-session")) || options.constraints.is_empty() {
+        options.locked_edges = edges(mesh, options)?;
         return Ok(None);
     }
-    let mut result = constrained(mesh, &constraints, &options.locked_edges, options.skips_constraints)?;
+    memory::check(memory_bounds::bytes(mesh, options))?;
+    let locks = edges(mesh, options)?;
+    let Options { skips_constraints, threads, .. } = *options;
+    let mut result = constrained(mesh, &options.constraints, &locks, skips_constraints, threads)?;
     let locked_edges = mem::take(&mut result.locked_edges);
     // The flips have moved triangles, and their locks are edges by now.
-    *options =
-        Options { locked_edges, locked_triangles: Vec::new(), groups: Vec::new(), ..mem::take(options) };
+    *options = Options {
+        locked_edges,
+        locked_triangles: Vec::new(),
+        groups: Vec::new(),
+        constraints: Vec::new(),
+        ..mem::take(options)
+    };
     Ok(Some(result))
 }
 

@@ -24,6 +24,9 @@ const VERTEX: u64 = 24;
 /// Bytes per locked edge: its pair in the options, and the search for its half-edges.
 const LOCKED: u64 = 24;
 
+/// Bytes per constraint: its edge, and the search for it.
+const CONSTRAINT: u64 = 100;
+
 /// As [`Session::bytes`](crate::Session::bytes).
 pub(super) fn bytes(mesh: &Mesh, options: &Options) -> u64 {
     // Adjacency, triangles, and the lists of edges of an iteration or of Lawson's regions.
@@ -35,8 +38,14 @@ pub(super) fn bytes(mesh: &Mesh, options: &Options) -> u64 {
     };
     let changes = if options.track_changes { 4 } else { 0 };
     let arrangement = if Arrangement::is_needed(mesh) { Arrangement::bytes(mesh) } else { 0 };
+    // The run takes a mesh that flips have made.
+    let constraints = match options.constraints.len() as u64 {
+        0 => 0,
+        count => CONSTRAINT * count + mesh.bytes(),
+    };
     (triangle + changes) * mesh.triangle_count() as u64
         + VERTEX * mesh.vertex_count() as u64
         + LOCKED * options.locked_edges.len() as u64
         + arrangement
+        + constraints
 }

@@ -76,7 +76,6 @@ impl Session {
     pub async fn new(mesh: impl Into<Arc<Mesh>>, mut options: Options) -> Result<Self, Error> {
         options.check()?;
         let (start, mesh) = (Instant::now(), mesh.into());
-        options.locked_edges = locks::edges(&mesh, &options)?;
         let (mesh, constraint_flips, left_out) = match locks::bring_in(&mesh, &mut options)? {
             Some(Constrained { mesh, flips, left_out, .. }) => (Arc::new(mesh), flips, left_out),
             None => (mesh, 0, Vec::new()),

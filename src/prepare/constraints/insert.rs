@@ -9,7 +9,7 @@
 //! flip takes an edge away from p, or is one of the flips above. With one edge left, p has only such a flip. So every
 //! insertion ends.
 
-use super::state::State;
+use super::flips::Flips;
 use crate::mesh::half_edge::next;
 use crate::predicates::cross_sign;
 use std::cmp::Ordering;
@@ -54,13 +54,13 @@ struct Line {
     sign: Ordering,
 }
 
-impl State<'_> {
-    /// Flips the crossed edges of a part until it is an edge. Returns its half-edge.
-    pub(super) fn bring_in(&mut self, ends: [u32; 2], half_edges: Vec<u32>, sign: Ordering) -> u32 {
+impl Flips<'_> {
+    /// Flips the crossed edges of a part until it is an edge. Returns its half-edge, and the number of flips.
+    pub(super) fn bring_in(&self, ends: [u32; 2], half_edges: Vec<u32>, sign: Ordering) -> (u32, u64) {
         let line = Line { ends, sign };
         let mut ring = Ring::new(half_edges);
         let mut i = ring.after[ring.end()];
-        let mut newest = ring.half_edges[i];
+        let (mut newest, mut flips) = (ring.half_edges[i], 0);
         while !ring.is_empty() {
             if i == ring.end() {
                 i = self.first_at_highest(&line, &ring);
@@ -74,15 +74,16 @@ impl State<'_> {
                 continue;
             }
             newest = self.flip_in(&line, &mut ring, i);
+            flips += 1;
             // The flip may have made the angles of the edge before convex.
             let before = ring.before[i];
             i = if before == ring.end() { ring.after[before] } else { before };
         }
-        newest
+        (newest, flips)
     }
 
     /// Flips a crossed edge, and removes it from the ring if the new edge is not crossed. Returns the new half-edge.
-    fn flip_in(&mut self, line: &Line, ring: &mut Ring, i: usize) -> u32 {
+    fn flip_in(&self, line: &Line, ring: &mut Ring, i: usize) -> u32 {
         let h = ring.half_edges[i];
         let gn = next(self.twin(h));
         let is_crossed = self.still_crosses(line, h);
@@ -123,12 +124,12 @@ impl State<'_> {
 
     /// The first crossed edge of the first of the highest vertices on the left.
     fn first_at_highest(&self, line: &Line, ring: &Ring) -> usize {
-        let [u, v] = line.ends.map(|v| self.mesh().point2(v));
+        let [u, v] = line.ends.map(|v| self.mesh.point2(v));
         let left = |i: usize| self.vertex(next(ring.half_edges[i]));
         let mut highest = ring.after[ring.end()];
         let mut i = ring.after[highest];
         while i != ring.end() {
-            let [p, q] = [highest, i].map(|i| self.mesh().point2(left(i)));
+            let [p, q] = [highest, i].map(|i| self.mesh.point2(left(i)));
             if cross_sign(u, v, p, q) == line.sign {
                 highest = i;
             }

@@ -1,17 +1,22 @@
 //! Brings edges into a mesh in the plane. The crossed edges flip away, by exact tests. No vertex moves, and none is
 //! added.
 
+mod flips;
 mod insert;
+mod rounds;
 mod state;
 #[cfg(test)]
 mod tests;
 mod walk;
 
-use crate::mesh::named_edges::half_edges;
+use crate::mesh::named_edges::{half_edges, ordered};
+use crate::system::threads::Threads;
 use crate::{Dimension, Error, Mesh};
+use rounds::{Done, Rounds};
 use state::State;
 use std::collections::HashMap;
-use walk::{Obstacle, Part, Way};
+use std::num::NonZeroUsize;
+use walk::Obstacle;
 
 /// A mesh with edges brought in.
 #[derive(Clone, Debug, PartialEq)]
@@ -36,21 +41,22 @@ pub struct LeftOut {
     pub reason: String,
 }
 
-/// Brings `constraints` in, one after another, each an edge between two vertices. A vertex on a constraint splits it.
-/// Constraints may repeat, overlap, and be edges already. `locked_edges` are edges that must not flip, as in
-/// [`crate::Options`].
+/// Brings `constraints` in, each an edge between two vertices, with the result of one after another. A vertex on a
+/// constraint splits it. Constraints may repeat, overlap, and be edges already. `locked_edges` are edges that must not
+/// flip. `threads` is as in [`Options`](crate::Options); it does not change the result.
 ///
 /// A constraint is an error, or left out if `skips`, if it crosses an earlier constraint, a locked edge, a boundary edge
 /// or a frozen edge, if it leaves the mesh, or if it crosses triangles that are not positive.
 ///
 /// # Errors
 /// [`Error::Option`] for a mesh in space, for a vertex that does not exist, for a constraint that cannot be brought in,
-/// and for a locked edge that the mesh does not have.
+/// for a locked edge that the mesh does not have, and if the threads cannot be started.
 pub fn constrained(
     mesh: &Mesh,
     constraints: &[[u32; 2]],
     locked_edges: &[[u32; 2]],
     skips: bool,
+    threads: Option<NonZeroUsize>,
 ) -> Result<Constrained, Error> {
     let refuse = |message| Err(Error::Option { option: "constraints", message });
     if mesh.dimension() == Dimension::Three {
@@ -62,69 +68,95 @@ pub fn constrained(
         let message = format!("constraint {index} joins {u} and {v}; the mesh has {vertices} vertices");
         return refuse(message);
     }
-    let mut state = State::new(mesh, &half_edges(mesh, locked_edges)?);
-    let mut edges = locked_edges.to_vec();
-    let mut origins = HashMap::new();
-    let mut left_out = Vec::new();
-    for (index, &ends) in constraints.iter().enumerate() {
-        match state.parts(ends) {
-            Ok(parts) => {
-                for Part { ends, way } in parts {
-                    let h = match way {
-                        Way::Edge(h) => h,
-                        Way::Across { half_edges, sign } => state.bring_in(ends, half_edges, sign),
-                    };
-                    state.lock(h);
-                    edges.push(ends);
-                    origins.entry(ordered(ends)).or_insert(index);
+    let threads = Threads::new(threads, mesh.triangle_count())?;
+    let locked = half_edges(mesh, locked_edges)?;
+    let run = || {
+        let state = State::new(mesh, &locked, &threads);
+        let mut work =
+            Work { state, constraints, origins: HashMap::new(), edges: Vec::new(), left_out: Vec::new() };
+        let flips = work.run(Rounds::new(constraints.len(), threads.clone()), skips);
+        (work.state.triangles, work.edges, work.left_out, flips)
+    };
+    let (triangles, mut edges, mut left_out, flips) = threads.enter(run);
+    left_out.sort_by_key(|left| left.index);
+    if let Some(LeftOut { reason, .. }) = left_out.first().filter(|_| !skips) {
+        return refuse(reason.clone());
+    }
+    edges.sort_by_key(|&(index, _)| index);
+    let edges = edges.into_iter().map(|(_, ends)| ends);
+    let locked_edges = locked_edges.iter().copied().chain(edges).collect();
+    Ok(Constrained { mesh: mesh.flipped(triangles), locked_edges, flips, left_out })
+}
+
+/// Constraints that come in.
+struct Work<'a> {
+    state: State<'a>,
+    constraints: &'a [[u32; 2]],
+    /// The first constraint that each edge is a part of.
+    origins: HashMap<[u32; 2], usize>,
+    /// The edges of the constraints, with their indices.
+    edges: Vec<(usize, [u32; 2])>,
+    left_out: Vec<LeftOut>,
+}
+
+impl Work<'_> {
+    /// Brings all in, or those before the first obstacle. Returns the number of flips.
+    fn run(&mut self, mut rounds: Rounds, skips: bool) -> u64 {
+        let mut all = 0;
+        while let Some(round) = rounds.next(&mut self.state, self.constraints) {
+            for Done { index, edges, flips } in round {
+                all += flips;
+                match edges {
+                    Ok(edges) => self.lock(index, edges),
+                    Err(obstacle) => {
+                        let [u, v] = self.constraints[index];
+                        let reason =
+                            format!("constraint {index} between {u} and {v} {}", self.what(obstacle));
+                        self.left_out.push(LeftOut { index, reason });
+                        if !skips {
+                            rounds.end_at(index);
+                        }
+                    }
                 }
             }
-            Err(obstacle) => {
-                let [u, v] = ends;
-                let what = what(&state, constraints, &origins, obstacle);
-                let reason = format!("constraint {index} between {u} and {v} {what}");
-                if !skips {
-                    return refuse(reason);
-                }
-                left_out.push(LeftOut { index, reason });
-            }
+        }
+        all
+    }
+
+    fn lock(&mut self, index: usize, edges: Vec<([u32; 2], u32)>) {
+        for (ends, h) in edges {
+            self.state.lock(h);
+            self.edges.push((index, ends));
+            let origin = self.origins.entry(ordered(ends)).or_insert(index);
+            *origin = index.min(*origin);
         }
     }
-    let State { triangles, flips, .. } = state;
-    Ok(Constrained { mesh: mesh.with_triangles(triangles)?, locked_edges: edges, flips, left_out })
-}
 
-fn ordered([u, v]: [u32; 2]) -> [u32; 2] {
-    [u.min(v), u.max(v)]
-}
-
-/// What keeps a constraint out. `origins` has the first constraint that each edge is a part of.
-fn what(
-    state: &State,
-    constraints: &[[u32; 2]],
-    origins: &HashMap<[u32; 2], usize>,
-    obstacle: Obstacle,
-) -> String {
-    match obstacle {
-        Obstacle::Unused(vertex) => format!("ends at vertex {vertex}, which no triangle has"),
-        Obstacle::SamePoint => "joins two vertices at the same point; weld them first".to_owned(),
-        Obstacle::Leaves(vertex) => format!("leaves the mesh at vertex {vertex}"),
-        Obstacle::Folded(triangle) => format!("crosses triangle {triangle}, which is flat or turned over"),
-        Obstacle::Covered(vertex) => {
-            format!("passes its end before it meets vertex {vertex}: the mesh overlaps there")
-        }
-        Obstacle::Border(h) => {
-            let [a, b] = state.ends(h);
-            format!("crosses the edge between {a} and {b}, which does not have two triangles")
-        }
-        Obstacle::Locked(h) => {
-            let [a, b] = state.ends(h);
-            match origins.get(&ordered([a, b])) {
-                Some(&other) => {
-                    let [c, d] = constraints[other];
-                    format!("crosses constraint {other} between {c} and {d}")
+    /// What keeps a constraint out.
+    fn what(&self, obstacle: Obstacle) -> String {
+        match obstacle {
+            Obstacle::Unused(vertex) => format!("ends at vertex {vertex}, which no triangle has"),
+            Obstacle::SamePoint => "joins two vertices at the same point; weld them first".to_owned(),
+            Obstacle::Leaves(vertex) => format!("leaves the mesh at vertex {vertex}"),
+            Obstacle::Folded(triangle) => {
+                format!("crosses triangle {triangle}, which is flat or turned over")
+            }
+            Obstacle::Covered(vertex) => {
+                format!("passes its end before it meets vertex {vertex}: the mesh overlaps there")
+            }
+            Obstacle::Border(h) => {
+                let [a, b] = self.state.ends(h);
+                format!("crosses the edge between {a} and {b}, which does not have two triangles")
+            }
+            Obstacle::Locked(h) => {
+                let [a, b] = self.state.ends(h);
+                match self.origins.get(&ordered([a, b])) {
+                    Some(&other) => {
+                        let [c, d] = self.constraints[other];
+                        format!("crosses constraint {other} between {c} and {d}")
+                    }
+                    None => format!("crosses the locked edge between {a} and {b}"),
                 }
-                None => format!("crosses the locked edge between {a} and {b}"),
             }
         }
     }

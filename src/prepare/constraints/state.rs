@@ -1,35 +1,69 @@
-//! A mesh in the plane whose edges flip one by one.
+//! A mesh in the plane whose edges are locked or flipped one by one.
 
-use crate::mesh::half_edge::{FLAGS, LOCKED, lock, next, prev, unflagged};
+use super::flips::Flips;
+use crate::mesh::half_edge::{LOCKED, lock, next, unflagged};
 use crate::mesh::star::{Fans, Star};
 use crate::predicates::area_sign;
-use crate::system::threads::Threads;
+use crate::system::threads::{Threads, shared};
 use crate::{Adjacency, Mesh, NONE};
 use std::cmp::Ordering;
+use std::sync::OnceLock;
 
 pub(super) struct State<'a> {
-    mesh: &'a Mesh,
+    pub(super) mesh: &'a Mesh,
     pub(super) triangles: Vec<u32>,
     /// With the flags of locked edges.
     twins: Vec<u32>,
-    fans: Fans,
-    /// A half-edge that starts at each vertex; [`NONE`] if no triangle has the vertex.
-    corners: Vec<u32>,
-    pub(super) flips: u64,
+    hubs: Vec<Hub>,
+    /// Filled in at the first vertex that turns out to have several fans: most meshes have none.
+    fans: OnceLock<Fans>,
+}
+
+/// What is known of a vertex.
+#[derive(Clone, Default)]
+struct Hub {
+    /// A half-edge that starts there, if the vertex has triangles.
+    corner: u32,
+    /// The number of its triangles.
+    degree: u32,
 }
 
 impl<'a> State<'a> {
     /// `locked`: both half-edges of each edge that may not flip.
-    pub(super) fn new(mesh: &'a Mesh, locked: &[u32]) -> Self {
+    pub(super) fn new(mesh: &'a Mesh, locked: &[u32], threads: &Threads) -> Self {
         let (vertices, triangles) = (mesh.vertex_count(), mesh.triangles().to_vec());
-        let mut twins = Adjacency::of_triangles(vertices, &triangles, &Threads::default()).twins;
-        let fans = Fans::new(vertices, &triangles, &twins);
+        let mut twins = Adjacency::of_triangles(vertices, &triangles, threads).twins;
         lock(&mut twins, locked);
-        let mut corners = vec![NONE; vertices];
-        for (h, &v) in (0..).zip(&triangles) {
-            corners[v as usize] = h;
+        let hubs = vec![Hub::default(); vertices];
+        let mut state = Self { mesh, triangles, twins, hubs, fans: OnceLock::new() };
+        state.enter(0..mesh.triangle_count() as u32);
+        state
+    }
+
+    /// Adds triangles to their vertices.
+    pub(super) fn enter(&mut self, triangles: impl IntoIterator<Item = u32>) {
+        for h in triangles.into_iter().flat_map(|t| 3 * t..3 * t + 3) {
+            let hub = &mut self.hubs[self.triangles[h as usize] as usize];
+            *hub = Hub { corner: h, degree: hub.degree + 1 };
         }
-        Self { mesh, triangles, twins, fans, corners, flips: 0 }
+    }
+
+    /// Removes triangles from their vertices. They may then flip.
+    pub(super) fn leave(&mut self, triangles: impl IntoIterator<Item = u32>) {
+        for h in triangles.into_iter().flat_map(|t| 3 * t..3 * t + 3) {
+            self.hubs[self.triangles[h as usize] as usize].degree -= 1;
+        }
+    }
+
+    /// What flips edges.
+    pub(super) fn flips(&mut self) -> Flips<'_> {
+        let fans = self.fans.get_mut().map(|fans| fans.table.as_mut_slice()).unwrap_or_default();
+        Flips {
+            mesh: self.mesh,
+            triangles: shared(&mut self.triangles),
+            twins: shared(&mut self.twins),
+            fans: shared(fans),
+        }
     }
 
     pub(super) fn vertex(&self, h: u32) -> u32 {
@@ -51,6 +85,11 @@ impl<'a> State<'a> {
         entry != NONE && entry & LOCKED != 0
     }
 
+    /// The triangles beside triangle `t`.
+    pub(super) fn beside(&self, t: u32) -> impl Iterator<Item = u32> {
+        (3 * t..3 * t + 3).map(|h| self.twin(h)).filter(|&twin| twin != NONE).map(|twin| twin / 3)
+    }
+
     /// Locks both half-edges of an edge.
     pub(super) fn lock(&mut self, h: u32) {
         let twin = self.twin(h);
@@ -58,50 +97,24 @@ impl<'a> State<'a> {
         lock(&mut self.twins, if twin == NONE { &both[..1] } else { &both });
     }
 
-    /// The half-edges that start at a vertex.
-    pub(super) fn star(&self, v: u32) -> impl Iterator<Item = u32> {
-        let corner = Some(self.corners[v as usize]).filter(|&corner| corner != NONE);
-        corner.into_iter().flat_map(|corner| Star::new(&self.triangles, &self.twins, &self.fans, corner))
+    pub(super) fn is_used(&self, v: u32) -> bool {
+        self.hubs[v as usize].degree > 0
+    }
+
+    /// The half-edges that start at a vertex that has triangles.
+    pub(super) fn star(&self, v: u32) -> Star<'_> {
+        let Hub { corner, degree } = self.hubs[v as usize];
+        if self.fans.get().is_none() && Star::of_fan(&self.twins, corner).count() == degree as usize {
+            return Star::of_fan(&self.twins, corner);
+        }
+        let fans =
+            self.fans.get_or_init(|| Fans::new(self.mesh.vertex_count(), &self.triangles, &self.twins));
+        Star::new(&self.triangles, &self.twins, fans, corner)
     }
 
     /// The sign of the area of a triangle.
     pub(super) fn sign(&self, corners: [u32; 3]) -> Ordering {
         let [a, b, c] = corners.map(|v| self.mesh.point2(v));
         area_sign(a, b, c)
-    }
-
-    /// The vertices a, b, c, d of the edge of `h`: its ends, and the third corners of its triangle and of the other.
-    pub(super) fn diamond(&self, h: u32) -> [u32; 4] {
-        let g = self.twin(h);
-        [h, g, prev(h), prev(g)].map(|x| self.vertex(x))
-    }
-
-    /// Flips the edge of `h`, which has two triangles (a, b, c) and (b, a, d); they become (a, d, c) and (b, c, d). The
-    /// half-edge after `h` becomes the new edge from d to c. Of the outer half-edges, the one after each of the two old
-    /// ones moves to the index of the other old one.
-    pub(super) fn flip(&mut self, h: u32) {
-        self.flips += 1;
-        let g = self.twin(h);
-        let [a, b, c, d] = self.diamond(h);
-        let [hn, gn] = [h, g].map(next);
-        self.fans.move_anchor(b, hn, g);
-        self.fans.move_anchor(a, gn, h);
-        self.corners[a as usize] = h;
-        self.corners[b as usize] = g;
-        let outer = [gn, hn].map(|x| self.twins[x as usize]);
-        for (inner, outer) in [h, g].into_iter().zip(outer) {
-            self.twins[inner as usize] = outer;
-            if outer != NONE {
-                self.twins[(outer & !FLAGS) as usize] = inner | outer & FLAGS;
-            }
-        }
-        self.triangles[hn as usize] = d;
-        self.triangles[gn as usize] = c;
-        self.twins[hn as usize] = gn;
-        self.twins[gn as usize] = hn;
-    }
-
-    pub(super) fn mesh(&self) -> &Mesh {
-        self.mesh
     }
 }

@@ -3,10 +3,12 @@
 use super::*;
 use crate::families;
 use crate::mesh::half_edge::next;
+use oorandom::Rand64;
 use proptest::prelude::*;
 use robust::{Coord, incircle, orient2d};
 use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
 use std::collections::{BTreeMap, BTreeSet};
+use std::num::NonZeroUsize;
 
 type Pair = [u32; 2];
 
@@ -57,9 +59,24 @@ fn assert_valid(before: &Mesh, after: &Mesh) {
     assert_eq!(border(before), border(after));
 }
 
+/// Brings constraints in. The number of threads must not matter.
+fn brought_in(mesh: &Mesh, constraints: &[Pair], locked: &[Pair], skips: bool) -> Result<Constrained, Error> {
+    let [first, others @ ..] =
+        [1, 2, 5].map(|threads| constrained(mesh, constraints, locked, skips, NonZeroUsize::new(threads)));
+    for other in others {
+        match (&first, other) {
+            (Ok(first), Ok(other)) => assert_eq!(*first, other),
+            (first, other) => {
+                assert_eq!(first.as_ref().unwrap_err().to_string(), other.unwrap_err().to_string())
+            }
+        }
+    }
+    first
+}
+
 /// Brings constraints in, and leaves out those that cannot come in. Checks everything that the result claims.
 fn check(mesh: &Mesh, constraints: &[Pair]) -> Constrained {
-    let result = constrained(mesh, constraints, &[], true).unwrap();
+    let result = brought_in(mesh, constraints, &[], true).unwrap();
     assert_valid(mesh, &result.mesh);
     let all = edges(&result.mesh);
     assert!(result.locked_edges.iter().all(|&edge| all.contains(&ordered(edge))));
@@ -207,10 +224,10 @@ fn ring() -> Mesh {
 
 #[track_caller]
 fn assert_refused(mesh: &Mesh, constraints: &[Pair], locked: &[Pair], message: &str) {
-    let error = constrained(mesh, constraints, locked, false).unwrap_err().to_string();
+    let error = brought_in(mesh, constraints, locked, false).unwrap_err().to_string();
     assert!(error.ends_with(message), "{error}");
     if constraints.len() == 1 && message.contains(" between ") {
-        let result = constrained(mesh, constraints, locked, true).unwrap();
+        let result = brought_in(mesh, constraints, locked, true).unwrap();
         assert_eq!((result.flips, result.left_out.len()), (0, 1));
         assert_eq!((&result.mesh, &result.locked_edges[..]), (mesh, locked));
     }
@@ -243,7 +260,7 @@ fn errors_name_the_constraint_and_what_it_meets() {
     );
     let other = "constraint 1 between 4 and 1 crosses constraint 0 between 5 and 0";
     assert_refused(&mesh, &[[5, 0], [4, 1]], &[], other);
-    let result = constrained(&mesh, &[[5, 0], [4, 1], [2, 7]], &[], true).unwrap();
+    let result = brought_in(&mesh, &[[5, 0], [4, 1], [2, 7]], &[], true).unwrap();
     assert_eq!(result.left_out, [LeftOut { index: 1, reason: other.to_owned() }]);
     assert_eq!(result.locked_edges, [[5, 0], [2, 7]]);
 
@@ -251,7 +268,7 @@ fn errors_name_the_constraint_and_what_it_meets() {
     let what = "constraint 0 between 1 and 4 crosses triangle 1, which is flat or turned over";
     assert_refused(&folded, &[[1, 4]], &[], what);
     let surface = Mesh::new(Dimension::Three, vec![0.0; 9], vec![0, 1, 2]).unwrap();
-    assert!(constrained(&surface, &[[0, 1]], &[], true).is_err());
+    assert!(brought_in(&surface, &[[0, 1]], &[], true).is_err());
     let twice =
         Mesh::new(Dimension::Two, vec![0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0], vec![0, 1, 2, 3, 1, 2])
             .unwrap();
@@ -269,8 +286,36 @@ fn clockwise_meshes_take_constraints() {
     };
     let constraints = [[0, 80], [72, 44], [3, 60]];
     let [ours, theirs] =
-        [&mesh, &turned(&mesh)].map(|mesh| constrained(mesh, &constraints, &[], true).unwrap());
+        [&mesh, &turned(&mesh)].map(|mesh| brought_in(mesh, &constraints, &[], true).unwrap());
     assert_eq!(edges(&ours.mesh).len(), edges(&theirs.mesh).len());
     assert_valid(&mesh, &turned(&theirs.mesh));
     assert_eq!(ours.locked_edges, theirs.locked_edges);
+}
+
+/// Meshes that overlap, fold and have vertices with several fans: the number of threads does not matter there either.
+#[test]
+fn threads_bring_constraints_into_dirty_meshes_alike() {
+    let mut random = Rand64::new(3);
+    let (mut flips, mut left_out) = (0, 0);
+    for round in 0..300 {
+        let mesh = families::by_name(&format!("random 9 seed={round}")).unwrap();
+        let mut below = |n: u32| random.rand_range(0..u64::from(n)) as u32;
+        let mut triangles = mesh.triangles().to_vec();
+        // Every round joins some vertices, drops some triangles, and repeats some elsewhere.
+        for _ in 0..below(4) {
+            let (from, to) = (below(81), below(81));
+            triangles.iter_mut().filter(|v| **v == from).for_each(|v| *v = to);
+        }
+        let (corners, _) = triangles.as_chunks::<3>();
+        let is_whole = |&&[a, b, c]: &&[u32; 3]| a != b && b != c && c != a;
+        let mut kept: Vec<_> = corners.iter().filter(is_whole).copied().collect();
+        kept.retain(|_| below(20) > 0);
+        kept.rotate_left(below(10) as usize);
+        let mesh = mesh.with_triangles(kept.concat()).unwrap();
+        let constraints: Vec<_> = (0..below(40)).map(|_| [below(81), below(81)]).collect();
+        let result = brought_in(&mesh, &constraints, &[], true).unwrap();
+        flips += result.flips;
+        left_out += result.left_out.len();
+    }
+    assert!(flips > 500 && left_out > 500, "{flips}, {left_out}");
 }

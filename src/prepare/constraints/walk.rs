@@ -24,6 +24,15 @@ pub(super) enum Way {
     },
 }
 
+/// A constraint in the present mesh.
+pub(super) struct Walk {
+    pub(super) parts: Result<Vec<Part>, Obstacle>,
+    /// The triangles that it crosses, up to the obstacle.
+    pub(super) crossed: Vec<u32>,
+    /// The triangles around its vertices, up to the obstacle.
+    pub(super) around: Vec<u32>,
+}
+
 /// Why a constraint cannot be brought in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Obstacle {
@@ -44,74 +53,102 @@ pub(super) enum Obstacle {
     Covered(u32),
 }
 
+impl Walk {
+    fn check(&self, most: usize) -> Result<(), Option<Obstacle>> {
+        if self.crossed.len() + self.around.len() > most { Err(None) } else { Ok(()) }
+    }
+}
+
 impl State<'_> {
-    /// The parts of a constraint.
-    pub(super) fn parts(&self, [from, to]: [u32; 2]) -> Result<Vec<Part>, Obstacle> {
-        let mut parts = Vec::new();
+    /// Follows a constraint through the mesh. Whatever the order of the triangles around a vertex, the result is the
+    /// same. `None` if it would meet more than `most` triangles.
+    pub(super) fn walk(&self, [from, to]: [u32; 2], most: usize) -> Option<Walk> {
+        let mut walk = Walk { parts: Ok(Vec::new()), crossed: Vec::new(), around: Vec::new() };
         let mut at = from;
         while at != to {
-            let part = self.first_part(at, to)?;
-            at = part.ends[1];
-            parts.push(part);
-        }
-        Ok(parts)
-    }
-
-    /// The part of the constraint from `at` to `to` that starts at `at`.
-    fn first_part(&self, at: u32, to: u32) -> Result<Part, Obstacle> {
-        if self.mesh().point2(at) == self.mesh().point2(to) {
-            return Err(Obstacle::SamePoint);
-        }
-        let side = |v: u32| self.sign([at, to, v]);
-        let mut is_used = false;
-        let mut start = None;
-        for corner in self.star(at) {
-            is_used = true;
-            let [x, y] = [next(corner), prev(corner)].map(|x| self.vertex(x));
-            for (v, h) in [(x, corner), (y, prev(corner))] {
-                if self.is_passed(v, at, to)? {
-                    return Ok(Part { ends: [at, v], way: Way::Edge(h) });
+            match self.first_part([at, to], &mut walk, most) {
+                Ok(part) => {
+                    at = part.ends[1];
+                    walk.parts.as_mut().ok()?.push(part);
+                }
+                Err(obstacle) => {
+                    walk.parts = Err(obstacle?);
+                    break;
                 }
             }
-            let sign = self.sign([at, x, y]);
-            if sign.is_ne() && side(x) == sign.reverse() && side(y) == sign {
-                start = Some((next(corner), sign));
+        }
+        Some(walk)
+    }
+
+    /// The part that starts at `at` of the constraint from there to `to`. The error is `None` if the walk meets more than
+    /// `most` triangles.
+    fn first_part(&self, [at, to]: [u32; 2], walk: &mut Walk, most: usize) -> Result<Part, Option<Obstacle>> {
+        if self.mesh.point2(at) == self.mesh.point2(to) {
+            return Err(Obstacle::SamePoint.into());
+        }
+        if let Some(unused) = [at, to].into_iter().find(|&v| !self.is_used(v)) {
+            return Err(Obstacle::Unused(unused).into());
+        }
+        let side = |v: u32| self.sign([at, to, v]);
+        // Where several triangles fit, because the mesh overlaps, the lowest index decides.
+        let (mut edge, mut covered, mut start) = (None, None, None);
+        for corner in self.star(at) {
+            walk.around.push(corner / 3);
+            let [x, y] = [next(corner), prev(corner)].map(|x| self.vertex(x));
+            let sides = [x, y].map(side);
+            for (v, side, h) in [(x, sides[0], corner), (y, sides[1], prev(corner))] {
+                match self.is_passed(v, side, [at, to]) {
+                    Ok(false) => {}
+                    Ok(true) => lower(&mut edge, (h, v)),
+                    Err(obstacle) => lower(&mut covered, (h, obstacle)),
+                }
+            }
+            if sides[0].is_ne() && sides[0] == sides[1].reverse() && self.sign([at, x, y]) == sides[1] {
+                lower(&mut start, (next(corner), sides[1]));
             }
         }
-        if !is_used || self.star(to).next().is_none() {
-            return Err(Obstacle::Unused(if is_used { to } else { at }));
+        walk.check(most)?;
+        if let Some((h, v)) = edge {
+            return Ok(Part { ends: [at, v], way: Way::Edge(h) });
         }
-        let (mut h, sign) = start.ok_or(Obstacle::Leaves(at))?;
+        if let Some((_, obstacle)) = covered {
+            return Err(Some(obstacle));
+        }
+        let (mut h, sign) = start.ok_or(Some(Obstacle::Leaves(at)))?;
         let mut half_edges = Vec::new();
+        walk.crossed.push(h / 3);
         loop {
             if self.twin(h) == NONE {
-                return Err(Obstacle::Border(h));
+                return Err(Obstacle::Border(h).into());
             }
             if self.is_locked(h) {
-                return Err(Obstacle::Locked(h));
+                return Err(Obstacle::Locked(h).into());
             }
             half_edges.push(h);
             let g = self.twin(h);
+            walk.crossed.push(g / 3);
+            walk.check(most)?;
             let far = self.vertex(prev(g));
             if self.sign([g, next(g), prev(g)].map(|x| self.vertex(x))) != sign {
-                return Err(Obstacle::Folded(g / 3));
+                return Err(Obstacle::Folded(g / 3).into());
             }
-            if self.is_passed(far, at, to)? {
+            let side = side(far);
+            if self.is_passed(far, side, [at, to])? {
                 return Ok(Part { ends: [at, far], way: Way::Across { half_edges, sign } });
             }
-            h = if side(far) == sign { next(g) } else { prev(g) };
+            h = if side == sign { next(g) } else { prev(g) };
         }
     }
 
-    /// Whether the constraint from `at` to `to` passes or reaches the vertex `v` behind `at`.
-    fn is_passed(&self, v: u32, at: u32, to: u32) -> Result<bool, Obstacle> {
+    /// Whether the constraint from `at` to `to` passes or reaches the vertex `v`, which lies on `side`, behind `at`.
+    fn is_passed(&self, v: u32, side: Ordering, [at, to]: [u32; 2]) -> Result<bool, Obstacle> {
         if v == to {
             return Ok(true);
         }
-        if self.sign([at, to, v]).is_ne() {
+        if side.is_ne() {
             return Ok(false);
         }
-        let [from, end, point] = [at, to, v].map(|v| self.mesh().point2(v).to_array());
+        let [from, end, point] = [at, to, v].map(|v| self.mesh.point2(v).to_array());
         // On one line, one coordinate that differs decides.
         let axis = usize::from(from[0] == end[0]);
         let order = |x: f64, y: f64| x.partial_cmp(&y).unwrap_or(Ordering::Equal);
@@ -120,5 +157,12 @@ impl State<'_> {
             return Ok(false);
         }
         if order(end[axis], point[axis]) == ahead { Ok(true) } else { Err(Obstacle::Covered(v)) }
+    }
+}
+
+/// Keeps the candidate with the lower half-edge.
+fn lower<T>(best: &mut Option<(u32, T)>, candidate: (u32, T)) {
+    if best.as_ref().is_none_or(|(h, _)| candidate.0 < *h) {
+        *best = Some(candidate);
     }
 }

@@ -44,7 +44,7 @@ pub fn constrain(
             ..Options::default()
         };
         let locked_edges = locks::edges(&mesh, &options)?;
-        constrained(&mesh, &pairs("constraints", constraints)?, &locked_edges, skips)
+        constrained(&mesh, &pairs("constraints", constraints)?, &locked_edges, skips, None)
     };
     let Constrained { mesh, locked_edges, flips, left_out } = work().map_err(thrown)?;
     let left_out = left_out.into_iter().map(|LeftOut { index, reason }| {

@@ -1,0 +1,187 @@
+//! Brings constraints in, on several threads, with the result of one after another.
+//!
+//! A round takes the next constraints that wait. All are walked, which changes nothing. Those that are free come in; the
+//! others wait for the next round. A constraint is free if it and an earlier one of the round are apart: neither crosses
+//! a triangle that the other crosses, reads or has beside it. Constraints that are apart come in in any order with the
+//! same result, because flips change only triangles that the constraint crosses, and the neighbours' links to them.
+//!
+//! The triangles that a constraint crosses cover the same region before and after. So an earlier constraint that waits
+//! stays within the triangles that it, or one before it, has claimed. It does not meet the free ones in a later round
+//! either. The first of a round is always free.
+
+use super::state::State;
+use super::walk::{Obstacle, Part, Walk, Way};
+use crate::system::threads::Threads;
+use std::collections::VecDeque;
+use std::mem;
+
+/// The most constraints of a round.
+const MOST: usize = 1 << 10;
+
+/// The fewest triangles that ends the walk of a constraint in a round of several. Small in debug builds, for the tests.
+const FEWEST: usize = if cfg!(debug_assertions) { 8 } else { 64 };
+
+/// The constraints that wait, by their indices, in order.
+pub(super) struct Rounds {
+    waiting: VecDeque<usize>,
+    /// The number of constraints that the next round takes.
+    size: usize,
+    claims: Claims,
+    threads: Threads,
+}
+
+/// A constraint that has had its turn.
+pub(super) struct Done {
+    pub(super) index: usize,
+    /// Its edges, each with its two vertices and a half-edge.
+    pub(super) edges: Result<Vec<([u32; 2], u32)>, Obstacle>,
+    pub(super) flips: u64,
+}
+
+impl Rounds {
+    pub(super) fn new(count: usize, threads: Threads) -> Self {
+        let size = if threads.is_one() { 1 } else { MOST };
+        Self { waiting: (0..count).collect(), size, claims: Claims::default(), threads }
+    }
+
+    /// Makes the constraints from `index` on wait no longer.
+    pub(super) fn end_at(&mut self, index: usize) {
+        self.waiting.retain(|&other| other < index);
+    }
+
+    /// Runs a round. The constraints that came in are not locked yet. `None` if none waits.
+    pub(super) fn next(&mut self, state: &mut State, constraints: &[[u32; 2]]) -> Option<Vec<Done>> {
+        let taken: Vec<usize> = self.waiting.drain(..self.size.min(self.waiting.len())).collect();
+        if taken.is_empty() {
+            return None;
+        }
+        // So the walks of a round take a bounded part of the memory that the mesh takes.
+        let most = match taken.len() {
+            1 => usize::MAX,
+            count => (state.triangles.len() / 6 / count).max(FEWEST),
+        };
+        let walk = |&index: &usize| state.walk(constraints[index], most);
+        let walks = self.threads.map_each(self.threads.pieces(taken.len(), 1), |piece| {
+            taken[piece].iter().map(walk).collect::<Vec<_>>()
+        });
+        let walks: Vec<Option<Walk>> = walks.into_iter().flatten().collect();
+        let is_any_cut = walks.iter().any(Option::is_none);
+        let (free, others) = self.claims.divide(state, taken.into_iter().zip(walks));
+        if !self.threads.is_one() {
+            // Walks of constraints that are not free are lost.
+            let size = if others.is_empty() { 2 * self.size } else { 2 * free.len() };
+            self.size = if is_any_cut { self.size / 2 } else { size }.clamp(1, MOST);
+        }
+        others.into_iter().rev().for_each(|index| self.waiting.push_front(index));
+        Some(self.bring_in(state, free))
+    }
+
+    /// Brings in constraints that are apart.
+    fn bring_in(&self, state: &mut State, mut free: Vec<(usize, Walk)>) -> Vec<Done> {
+        let changed: Vec<_> = free.iter_mut().map(|(_, walk)| mem::take(&mut walk.crossed)).collect();
+        state.leave(changed.iter().flatten().copied());
+        let flips = state.flips();
+        let done = self.threads.map_each(free, |(index, Walk { parts, .. })| {
+            let mut all = 0;
+            let mut edge = |Part { ends, way }| match way {
+                Way::Edge(h) => (ends, h),
+                Way::Across { half_edges, sign } => {
+                    let (h, flips) = flips.bring_in(ends, half_edges, sign);
+                    all += flips;
+                    (ends, h)
+                }
+            };
+            let edges = parts.map(|parts| parts.into_iter().map(&mut edge).collect());
+            Done { index, edges, flips: all }
+        });
+        state.enter(changed.iter().flatten().copied());
+        done
+    }
+}
+
+/// For each triangle, the last round in which a constraint has crossed it, and the last in which one has crossed it, read
+/// it or had it beside it.
+#[derive(Default)]
+struct Claims {
+    round: u32,
+    crossed: Vec<u32>,
+    read: Vec<u32>,
+}
+
+impl Claims {
+    /// Divides the constraints of a round: those that are free, and the others. What the walk after one that was cut
+    /// short would meet is not known, so all from there on wait.
+    fn divide(
+        &mut self,
+        state: &State,
+        walks: impl ExactSizeIterator<Item = (usize, Option<Walk>)>,
+    ) -> (Vec<(usize, Walk)>, Vec<usize>) {
+        let (mut free, mut others) = (Vec::new(), Vec::new());
+        if walks.len() == 1 {
+            free.extend(walks.filter_map(|(index, walk)| Some((index, walk?))));
+            return (free, others);
+        }
+        self.round += 1;
+        for list in [&mut self.crossed, &mut self.read] {
+            list.resize(state.triangles.len() / 3, 0);
+        }
+        let mut is_known = true;
+        for (index, walk) in walks {
+            is_known &= walk.is_some();
+            match walk {
+                Some(walk) if is_known && self.claim(state, &walk) => free.push((index, walk)),
+                _ => others.push(index),
+            }
+        }
+        (free, others)
+    }
+
+    /// Claims the triangles of a constraint. Returns whether it and each one that has claimed are apart.
+    fn claim(&mut self, state: &State, Walk { crossed, around, .. }: &Walk) -> bool {
+        let beside = crossed.iter().flat_map(|&t| state.beside(t));
+        let read: Vec<u32> = around.iter().chain(crossed).copied().chain(beside).collect();
+        let is_in = |list: &[u32], t: u32| list[t as usize] == self.round;
+        let is_free =
+            !read.iter().any(|&t| is_in(&self.crossed, t)) && !crossed.iter().any(|&t| is_in(&self.read, t));
+        for (list, triangles) in [(&mut self.read, &read), (&mut self.crossed, crossed)] {
+            triangles.iter().for_each(|&t| list[t as usize] = self.round);
+        }
+        is_free
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "what fails here is a failed test")]
+
+    use super::*;
+    use crate::families;
+    use oorandom::Rand64;
+
+    /// A race of two threads is too rare for a test, so this one asks for its cause.
+    #[test]
+    fn free_constraints_are_apart() {
+        let mut random = Rand64::new(1);
+        let (mut apart, mut others) = (0, 0);
+        for seed in 0..200 {
+            let mesh = families::by_name(&format!("random 12 seed={seed}")).unwrap();
+            let state = State::new(&mesh, &[], &Threads::one());
+            let mut vertex = || random.rand_range(0..144) as u32;
+            let walks = (0..8).map(|i| (i, state.walk([vertex(), vertex()], usize::MAX)));
+            let (free, waiting) = Claims::default().divide(&state, walks);
+            others += waiting.len();
+            for (i, (_, one)) in free.iter().enumerate() {
+                for (_, other) in &free[..i] {
+                    apart += 1;
+                    for [one, other] in [[one, other], [other, one]] {
+                        for &t in &one.crossed {
+                            assert!(!other.crossed.contains(&t) && !other.around.contains(&t));
+                            assert!(state.beside(t).all(|t| !other.crossed.contains(&t)));
+                        }
+                    }
+                }
+            }
+        }
+        assert!(apart > 100 && others > 500, "{apart}, {others}");
+    }
+}
