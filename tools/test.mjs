@@ -177,6 +177,7 @@ const levels = [
         'tests/package/projects.test.mjs',
         'tests/package/cycles.browser.test.mjs',
         'tests/package/moving.browser.test.mjs',
+        'tests/package/polygons.browser.test.mjs',
       ],
     ],
     counts: true,

@@ -1,50 +1,23 @@
-// Polygons with holes from points: delaunator, then constraints and regions. The polygons are those of earcut's tests, and
-// the inputs of issues of constrainautor. Uses the existing dist/.
+// Polygons with holes from points: delaunator, then constraints and regions. Uses the existing dist/.
 
 import assert from 'node:assert/strict';
-import { readdirSync, readFileSync } from 'node:fs';
 import { test } from 'node:test';
 import Delaunator from 'delaunator';
 import { FlipSession } from 'edgeflip';
 import { constrain, regions } from 'edgeflip/files';
 import { orient2d } from 'robust-predicates';
-
-const fixtures = new URL('../../node_modules/earcut-fixtures/test/fixtures/', import.meta.url);
+import { areaOf, polygons } from './polygons.mjs';
 
 /** The fixtures whose sides cross. */
 const CROSSING = ['bad-hole.json', 'water-huge.json', 'water-huge2.json', 'water.json'];
 
 const RUNS = [{ threads: 1 }, { threads: 2 }, { order: 'any' }];
 
-/** The different points of rings, and their sides as pairs of vertices. */
-function pointsAndSides(rings) {
-  const vertices = new Map();
-  const at = ([x, y]) => {
-    const key = `${x} ${y}`;
-    if (!vertices.has(key)) vertices.set(key, vertices.size);
-    return vertices.get(key);
-  };
-  const sides = rings.flatMap((ring) =>
-    ring.map((point, i) => [at(ring[(i || ring.length) - 1]), at(point)]).filter(([u, v]) => u !== v),
-  );
-  const positions = Float64Array.from([...vertices.keys()].flatMap((key) => key.split(' ').map(Number)));
-  return { positions, sides };
-}
-
 /** Whether two segments cross in the inside of both. */
 function cross(positions, [a, b], [c, d]) {
   const turn = (...vertices) =>
     Math.sign(orient2d(...vertices.flatMap((vertex) => [positions[2 * vertex], positions[2 * vertex + 1]])));
   return turn(a, b, c) * turn(a, b, d) < 0 && turn(c, d, a) * turn(c, d, b) < 0;
-}
-
-/** The area of a ring, by its corners. */
-function areaOf(ring) {
-  const twice = ring.reduce((sum, [x, y], i) => {
-    const [p, q] = ring[(i || ring.length) - 1];
-    return sum + p * y - x * q;
-  }, 0);
-  return Math.abs(twice) / 2;
 }
 
 /** Runs with the sides as constraints, and checks the result. Returns the area inside, if no side was left out. */
@@ -75,65 +48,12 @@ async function triangulated({ positions, sides }, options) {
   return areas.reduce((sum, area) => sum + area, 0);
 }
 
-for (const file of readdirSync(fixtures)) {
-  const rings = JSON.parse(readFileSync(new URL(file, fixtures), 'utf8'));
-  // Two files are lists of numbers.
-  if (!Array.isArray(rings[0]?.[0])) continue;
-  test(`the polygons of ${file}`, async () => {
-    const given = pointsAndSides(rings);
-    const [outer, ...holes] = rings.map(areaOf);
-    const wanted = holes.reduce((rest, hole) => rest - hole, outer);
+for (const { name, area: wanted, ...given } of polygons) {
+  test(`the polygons of ${name}`, async () => {
     for (const options of RUNS) {
       const area = await triangulated(given, options);
-      if (CROSSING.includes(file)) assert.equal(area, undefined);
+      if (CROSSING.includes(name)) assert.equal(area, undefined);
       else assert.ok(Math.abs(area - wanted) <= 1e-12 * wanted, `${area}, not ${wanted}`);
-    }
-  });
-}
-
-/** Inputs of issues of constrainautor: of issue 4, and as that of issue 2. */
-const inputs = {
-  'edges that others have to give way to': {
-    points: [
-      [544, 480],
-      [512, 192],
-      [544, 160],
-      [512, 384],
-      [512, 224],
-      [544, 320],
-      [704, 128],
-      [576, 352],
-      [672, 352],
-      [576, 128],
-      [608, 384],
-      [672, 96],
-      [640, 96],
-      [608, 160],
-      [672, 160],
-      [608, 288],
-    ],
-    sides: [
-      [1, 2],
-      [4, 5],
-      [5, 0],
-      [6, 8],
-      [8, 7],
-      [7, 9],
-    ],
-  },
-  'sides along the points of a lattice, each twice': {
-    points: Array.from({ length: 144 }, (_, i) => [i % 12, Math.floor(i / 12)]),
-    sides: [26, 33, 117, 110].flatMap((corner, i, all) => [
-      [all[(i || 4) - 1], corner],
-      [corner, all[(i || 4) - 1]],
-    ]),
-  },
-};
-for (const [name, { points, sides }] of Object.entries(inputs)) {
-  test(name, async () => {
-    for (const options of RUNS) {
-      const area = await triangulated({ positions: new Float64Array(points.flat()), sides }, options);
-      assert.equal(area, 0, 'no closed polygon, and one that is given twice');
     }
   });
 }
