@@ -51,6 +51,25 @@ const press = async (page, key) => {
   await page.keyboard.press(key);
 };
 
+/** Presses at one place and moves to another, in shares of the mesh's smaller side from its middle. */
+const drag = async (page, ...places) => {
+  const free = await page.evaluate(() => {
+    const [title, side, time] = ['.what', '.side', '.time'].map((name) =>
+      document.querySelector(`#watch ${name}`).getBoundingClientRect(),
+    );
+    const right = side.left > innerWidth / 2 ? side.left : innerWidth;
+    return {
+      x: right / 2,
+      y: (title.bottom + Math.min(time.top, side.left > 0 ? innerHeight : side.top)) / 2,
+      size: 260,
+    };
+  });
+  const [from, to] = places.map(([x, y]) => [free.x + x * free.size, free.y + y * free.size]);
+  await page.mouse.move(...from);
+  await page.mouse.down();
+  await page.mouse.move(...to, { steps: 5 });
+};
+
 /** The actions that reach each state, in this order on one page. */
 const states = {
   input: (page) => measured(page),
@@ -90,6 +109,17 @@ const states = {
     await page.evaluate(() => (document.getElementById('details').open = false));
     await sample(page, 'random 24');
     await press(page, 'n');
+  },
+  drawing: async (page) => {
+    await press(page, 'Escape');
+    await press(page, 'd');
+    await drag(page, [-0.3, -0.2], [0.3, 0.25]);
+  },
+  drawn: async (page) => {
+    await page.mouse.up();
+    await state(page, 'done');
+    await measured(page);
+    await press(page, 'Escape');
   },
   'worst-case': async (page) => {
     await sample(page, 'strips 200');

@@ -1,4 +1,4 @@
-/** What the user does with the shown mesh besides running it: scramble, save, link, and take the code. */
+/** What the user does with the shown mesh besides running it: scramble, draw edges, save, link, and take the code. */
 
 import { codeFor } from './code.ts';
 import { download, save } from './download.ts';
@@ -6,6 +6,7 @@ import { linkTo } from './link.ts';
 import { again } from './opening.ts';
 import type { Page } from './page.ts';
 import { palette } from './palette.ts';
+import type { OpenMesh } from './run.ts';
 import type { Shown } from './shown.ts';
 import { splitName } from './sources.ts';
 
@@ -26,7 +27,25 @@ export async function scramble(page: Page): Promise<void> {
     const seed = Math.floor(performance.now());
     indices = await opened.office.ask((desk) => desk.scramble(mesh, settings.maxNormalAngle, seed));
   });
-  if (indices) await page.open(again(opened, settings.maxNormalAngle, indices));
+  if (indices) await page.open(again(opened, settings.maxNormalAngle, { ...opened.mesh, indices }));
+}
+
+/** Brings an edge into the shown triangles, and plays the run that makes the others Delaunay. */
+export async function drawEdge(page: Page, ends: [from: number, to: number]): Promise<void> {
+  const shown = page.shown;
+  if (!shown) return;
+  const { opened, run, settings } = shown;
+  page.player.pause();
+  let drawn: OpenMesh | undefined;
+  await page.attempt('Bringing the edge in…', async () => {
+    const { groups, ...mesh }: OpenMesh = opened.mesh;
+    const indices = await run.triangles();
+    const given = { ...mesh, indices, ...(settings.keepsGroups && groups ? { groups } : {}) };
+    drawn = { ...given, ...(await opened.office.ask((desk) => desk.drawEdge(given, ends))) };
+  });
+  if (!drawn) return;
+  await page.open(again(opened, settings.maxNormalAngle, drawn, ends));
+  if (page.shown?.opened.mesh.indices === drawn.indices) await page.player.toggle();
 }
 
 /** Writes the shown triangles into a file, in the format of `extension`, or of the file that was opened. */

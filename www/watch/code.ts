@@ -3,7 +3,7 @@
 import type { Shown } from './shown.ts';
 
 export function codeFor({ opened, run, settings }: Shown): string {
-  const { mesh, spec, name } = opened;
+  const { mesh, spec, name, drawn } = opened;
   const { backend, maxNormalAngle, maxDeviation, features, keepsGroups } = settings;
   const isSurface = mesh.dimension === 3;
   const has = (key: string) => key in mesh && mesh[key as keyof typeof mesh] !== undefined;
@@ -13,7 +13,8 @@ export function codeFor({ opened, run, settings }: Shown): string {
     ...(isSurface && maxDeviation !== undefined ? [`maxDeviation: ${maxDeviation}`] : []),
     ...(run.isOver ? [] : [`maxIterations: ${run.at}`]),
     ...(has('groups') && keepsGroups ? ['groups: mesh.groups'] : []),
-    ...(has('lockedEdges') ? ['lockedEdges: mesh.lockedEdges'] : []),
+    ...(drawn.length > 0 ? [`constraints: [${drawn.join(', ')}]`] : []),
+    ...(has('lockedEdges') && drawn.length === 0 ? ['lockedEdges: mesh.lockedEdges'] : []),
   ];
   const isGenerated = spec !== undefined && !spec.includes('/');
   return [

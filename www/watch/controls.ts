@@ -21,6 +21,7 @@ export const controls = {
   compare: button('compare'),
   cut: input('cut'),
   scramble: button('scramble'),
+  draw: button('draw'),
   limit: button('limit'),
   take: button('take'),
   picture: button('picture'),

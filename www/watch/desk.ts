@@ -5,6 +5,7 @@ import { init, type FlipSession, type Iteration, type Options } from 'edgeflip';
 import {
   angles,
   change,
+  constrain,
   EdgeflipError,
   generate,
   measures,
@@ -112,6 +113,20 @@ class Desk {
   /** The triangles after flips at random that bend the surface little. Edges that are locked stay. */
   async scramble(mesh: OpenMesh, degrees: number, seed: number): Promise<Uint32Array> {
     return scrambled(mesh, Math.round(SCRAMBLED * (mesh.indices.length / 3)), degrees, seed);
+  }
+
+  /**
+   * Brings an edge in. Returns the triangles, and all locked edges.
+   *
+   * @throws if the edge cannot come in.
+   */
+  async drawEdge(mesh: OpenMesh, ends: readonly number[]): Promise<Pick<OpenMesh, 'indices' | 'lockedEdges'>> {
+    const { lockedEdges: edges, lockedTriangles, groups } = mesh;
+    const locks = { lockedEdges: edges, lockedTriangles, groups };
+    const { indices, lockedEdges, leftOut } = await naming(constrain(mesh, ends, locks, true));
+    const reason = leftOut[0]?.reason.replace('constraint 0', 'The edge');
+    if (reason) throw new Error(`${reason}.`);
+    return { indices, lockedEdges };
   }
 
   /** Loads the engine, so that a run starts sooner. */

@@ -1,6 +1,7 @@
 /** What the tool shows of a run: the picture, the numbers beside it, the timeline and the inspector. */
 
 import { controls, element } from './controls.ts';
+import { Drawing } from './drawing.ts';
 import type { Graphics } from './graphics.ts';
 import { Halves } from './halves.ts';
 import type { Successor } from './handover.ts';
@@ -30,6 +31,7 @@ export class Display {
   readonly panel: Panel;
   readonly looking: Looking;
   readonly halves: Halves;
+  readonly drawing: Drawing;
   readonly #timeline = new Timeline();
   readonly #graphics: Graphics;
   look: EdgeLook = 'coloured';
@@ -38,12 +40,24 @@ export class Display {
   /** What the last picture showed in colours. */
   #last: { run: Run; at: number; indices: Uint32Array } | undefined;
 
-  /** `seek` is called with the iteration that the user clicks in the table. */
-  constructor(graphics: Graphics, seek: (at: number) => void) {
+  /**
+   * `seek` is called with the iteration that the user clicks in the table, and `draw` with the ends of an edge that the
+   * user draws.
+   */
+  constructor(graphics: Graphics, seek: (at: number) => void, draw: (from: number, to: number) => void) {
     this.#graphics = graphics;
     this.panel = new Panel(seek);
     this.looking = new Looking(() => graphics.scene);
     this.halves = new Halves(() => graphics.scene);
+    this.drawing = new Drawing(
+      () => graphics.scene,
+      draw,
+      () => {
+        this.looking.close();
+        this.halves.show(false);
+      },
+    );
+    this.looking.isPaused = () => this.drawing.isOn;
   }
 
   /** Takes the colours of the page. */
@@ -62,11 +76,14 @@ export class Display {
     if (isOther || !scene?.eye.isLooking) scene?.lookAtAll();
     if (isOther) this.look = mesh.indices.length <= 3 * EDGES_SEEN ? 'coloured' : 'none';
     this.halves.begin(mesh.indices);
+    this.drawing.begin(mesh);
     element('no-mesh').hidden = scene !== undefined;
     for (const id of ['beta-label', 'beta-range', 'beta-says', 'deviation-label', 'feature-label']) {
       element(id).hidden = mesh.dimension === 2;
     }
-    element('groups-label').hidden = !('groups' in mesh && mesh.groups);
+    const hasGroups = 'groups' in mesh && mesh.groups !== undefined;
+    element('groups-label').hidden = !hasGroups;
+    controls.limit.hidden = mesh.dimension === 2 && !hasGroups;
     this.panel.clear();
   }
 

@@ -25,6 +25,8 @@ export class Looking {
   readonly #scene: () => Scene | undefined;
   #shown: Triangles | undefined;
   #quad: Quad | undefined;
+  /** Whether the pointer is for something else. */
+  isPaused = () => false;
   /** Whether the edge stays when the pointer leaves it. */
   #isHeld = false;
 
@@ -35,12 +37,23 @@ export class Looking {
     view.addEventListener('pointerdown', (event) => (pressed = event));
     view.addEventListener('pointermove', (event) => {
       // Searching a large mesh at each move would be slow.
-      if (event.buttons === 0 && !this.#isHeld && this.#shown && this.#shown.indices.length <= 3 * COLOURED) {
+      if (
+        event.buttons === 0 &&
+        !this.#isHeld &&
+        !this.isPaused() &&
+        this.#shown &&
+        this.#shown.indices.length <= 3 * COLOURED
+      ) {
         this.#lookAt(event);
       }
     });
     view.addEventListener('pointerup', (event) => {
-      if (!pressed || Math.hypot(event.clientX - pressed.clientX, event.clientY - pressed.clientY) > STILL) return;
+      if (
+        !pressed ||
+        this.isPaused() ||
+        Math.hypot(event.clientX - pressed.clientX, event.clientY - pressed.clientY) > STILL
+      )
+        return;
       this.#isHeld = this.#lookAt(event);
     });
     view.addEventListener('pointerleave', () => this.#isHeld || this.close());

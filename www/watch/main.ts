@@ -233,6 +233,7 @@ function connectKeys(
       says: 'edges: coloured, plain, none',
       act: () => (page.edges = LOOKS[(LOOKS.indexOf(page.edges) + 1) % LOOKS.length]!),
     },
+    { keys: ['d'], label: 'D', says: 'draw edges, in a plane', act: () => controls.draw.click() },
     { keys: ['l'], label: 'L', says: 'limits', act: () => toggle('limits', controls.limit) },
     { keys: ['x'], label: 'X', says: 'scramble', act: () => controls.scramble.click() },
     { keys: ['o'], label: 'O', says: 'open a mesh', act: () => controls.file.click() },

@@ -21,6 +21,8 @@ export interface Opened {
   spec: string | undefined;
   /** The worker that measures it. */
   office: Office;
+  /** The ends of the edges that the user has drawn. */
+  drawn: readonly number[];
   /** The files that it was read from. */
   kept: Kept | undefined;
   /** Notes about reading: changes to the mesh, and contents that were not read. */
@@ -76,6 +78,7 @@ export class Opening {
       what: source.what,
       spec: source.spec,
       office,
+      drawn: source.drawn ?? [],
       kept,
       remark,
       before,
@@ -84,10 +87,11 @@ export class Opening {
   }
 }
 
-/** The mesh with other triangles. */
-export function again({ mesh, name, title, what, kept }: Opened, beta: number, indices: Uint32Array): Source {
-  const read = async () => ({ name, mesh: { ...mesh, indices }, kept, others: 0 });
-  return { name, title, ...(what ? { what } : {}), beta, read };
+/** The mesh with other triangles, and with an edge that the user has drawn. */
+export function again(opened: Opened, beta: number, mesh: IndexedMesh, ends: readonly number[] = []): Source {
+  const { name, title, what, kept, drawn } = opened;
+  const read = async () => ({ name, mesh, kept, others: 0 });
+  return { name, title, ...(what ? { what } : {}), beta, drawn: [...drawn, ...ends], read };
 }
 
 function remarkOn({ mesh, others }: Read): string {

@@ -1,6 +1,7 @@
 /** The page: opens meshes, starts runs, and draws and measures their iterations. */
 
 import { EdgeflipError } from 'edgeflip';
+import { drawEdge } from './actions.ts';
 import { Choices, type Settings } from './choices.ts';
 import { LOST } from './crash.ts';
 import type { Flips } from './desk.ts';
@@ -41,7 +42,11 @@ export class Page {
     (reason) => void this.#recovery.recover(reason, true),
     () => this.#display.looking.draw(),
   );
-  readonly #display: Display = new Display(this.#graphics, (at) => void this.player.seek(at));
+  readonly #display: Display = new Display(
+    this.#graphics,
+    (at) => void this.player.seek(at),
+    (from, to) => void drawEdge(this, [from, to]),
+  );
   readonly #jobs = new Jobs(
     () => this.#showTransport(),
     () => this.#endOfJob(),
@@ -164,8 +169,9 @@ export class Page {
     this.#display.looking.next(by);
   }
 
-  /** Closes the inspector, and shows one mesh only. */
+  /** Closes the inspector, shows one mesh only, and draws no edges. */
   closeAll(): void {
+    this.#display.drawing.show(false);
     this.#display.looking.close();
     this.#display.halves.show(false);
   }

@@ -21,7 +21,7 @@ export function sentenceOf(quad: Quad, beta: number, deviation: number | undefin
     flips: `${sum}° is more than 180°, so this edge flips in the next iteration.`,
     waits: `${sum}° is more than 180°. A neighbour shares a triangle with it and flips first; it is looked at again after that.`,
     angle: `Not Delaunay, but ${bends}; β allows ${beta}°.`,
-    locked: 'Not Delaunay, but locked: by you, by a sharp feature, or as the border of a material.',
+    locked: 'Not Delaunay, but locked: drawn by you, a sharp feature, or the border of a material.',
     fold: 'Not Delaunay, but flipping would turn a triangle upside down.',
     duplicate: 'Not Delaunay, but the other diagonal is an edge of this mesh already.',
     deviation: `Not Delaunay, but flipping would move the surface further than your limit of ${deviation}.`,
@@ -48,10 +48,9 @@ export function statusOf(
 ): [bold: string, rest: string] {
   const { at, isOver, iterations } = run;
   if (isOver && summary?.iterations === iterations.length) {
-    const kept = sumOf(summary.remaining);
-    if (at === 0)
-      return kept > 0 ? ['', `Nothing can flip. ${keptOf(kept)}`] : ['', 'Already Delaunay. Try “Scramble”.'];
-    return ['Done.', kept > 0 ? `Every edge is Delaunay, but for ${keptOf(kept)}` : 'Every edge is Delaunay.'];
+    const kept = keptOf(summary.remaining);
+    if (at === 0) return kept ? ['', `Nothing can flip. ${kept}`] : ['', 'Already Delaunay. Try “Scramble”.'];
+    return ['Done.', kept ? `Every edge is Delaunay, but for ${kept}` : 'Every edge is Delaunay.'];
   }
   const next = iterations[at] ?? ahead?.[at];
   if (at === 0) return ['', next ? `${counted(next.labelled, 'edge')} can flip. Press play.` : 'Press play.'];
@@ -66,4 +65,10 @@ export function statusOf(
   ];
 }
 
-const keptOf = (count: number) => `${number.format(count)} kept to save the shape.`;
+/** The edges that stay; nothing if there are none. */
+function keptOf(remaining: Reasons): string {
+  const kept = sumOf(remaining);
+  if (kept === 0) return '';
+  if (kept > (remaining.locked ?? 0)) return `${number.format(kept)} kept to save the shape.`;
+  return `${number.format(kept)} kept because ${kept === 1 ? 'it is' : 'they are'} locked.`;
+}

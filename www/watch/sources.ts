@@ -21,6 +21,8 @@ export interface Source {
   readonly what?: string;
   /** The sample. */
   readonly spec?: string;
+  /** The ends of the edges that the user has drawn. */
+  readonly drawn?: readonly number[];
   read(office: Office, report: Report): Promise<Read>;
 }
 

@@ -31,7 +31,7 @@ export function showTransport(timeline: Timeline, standing: Standing): void {
   controls.play.disabled = !isIdle;
   controls.step.disabled = !isIdle || run.isOver;
   for (const control of [controls.back, controls.reset]) control.disabled = !isIdle || at === 0;
-  for (const control of [controls.compare, controls.scramble, controls.take]) control.disabled = !isIdle;
+  for (const control of [controls.compare, controls.scramble, controls.draw, controls.take]) control.disabled = !isIdle;
   const flips = ahead ?? run?.iterations ?? [];
   showPosition(at, flips.length, isIdle);
   timeline.show(flips, at, ahead !== undefined || run?.hasEnded === true);
