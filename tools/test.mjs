@@ -197,6 +197,7 @@ const levels = [
           'buffer',
           'controls',
           'watch',
+          'drawing',
           'move',
           'offline',
           'explain',

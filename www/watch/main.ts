@@ -10,7 +10,7 @@ import '../move/move.css';
 import { FORMATS } from 'edgeflip/files';
 import type { NamedMesh } from '../engines/index.ts';
 import { toggleTheme } from '../shell/theme.ts';
-import { copyCode, copyLink, saveMesh, savePicture, scramble } from './actions.ts';
+import { copyCode, copyLink, drawEdge, saveMesh, savePicture, scramble } from './actions.ts';
 import { controls, element } from './controls.ts';
 import { made } from '../shell/elements.ts';
 import type { EdgeLook } from './display.ts';
@@ -29,7 +29,7 @@ const LOOKS: readonly EdgeLook[] = ['coloured', 'plain', 'none'];
 
 /** Starts the tool; call it once. Returns a function that returns the open mesh, as its run began. */
 export function start(): () => NamedMesh | undefined {
-  const page = new Page();
+  const page: Page = new Page((from, to) => void drawEdge(page, [from, to]));
   const moves = new Moves(page);
   const open = (source: Source | undefined) => {
     if (!source) return;

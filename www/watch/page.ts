@@ -1,7 +1,6 @@
 /** The page: opens meshes, starts runs, and draws and measures their iterations. */
 
 import { EdgeflipError } from 'edgeflip';
-import { drawEdge } from './actions.ts';
 import { Choices, type Settings } from './choices.ts';
 import { LOST } from './crash.ts';
 import type { Flips } from './desk.ts';
@@ -45,8 +44,9 @@ export class Page {
   readonly #display: Display = new Display(
     this.#graphics,
     (at) => void this.player.seek(at),
-    (from, to) => void drawEdge(this, [from, to]),
+    (from, to) => this.#draw(from, to),
   );
+  readonly #draw: (from: number, to: number) => void;
   readonly #jobs = new Jobs(
     () => this.#showTransport(),
     () => this.#endOfJob(),
@@ -93,6 +93,11 @@ export class Page {
   #ahead: Flips[] | undefined;
   /** Called with the reason when the GPU is lost while something else is shown in place of a run. */
   #guest: ((reason: string) => void) | undefined;
+
+  /** `draw` is called with the ends of an edge that the user draws. */
+  constructor(draw: (from: number, to: number) => void) {
+    this.#draw = draw;
+  }
 
   /** Starts the page, with a mesh unless something else is shown in place of a run. */
   async start(source: Source | undefined): Promise<void> {
