@@ -19,7 +19,10 @@ const WIDTH = 1000;
 const SLOW = 10_000;
 const wants = new Set(process.argv.slice(2));
 
-/** The first 100,000 sides of the coasts of Natural Earth, in degrees, and the points of a random mesh around them. */
+/**
+ * The first 100,000 sides of the coasts of Natural Earth, which is in the public domain, in degrees, and the points of a
+ * random mesh around them.
+ */
 async function coasts() {
   const path = createRequire(import.meta.url).resolve('world-atlas/land-10m.json');
   const map = JSON.parse(readFileSync(path, 'utf8'));

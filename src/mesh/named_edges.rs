@@ -20,8 +20,8 @@ pub(crate) fn half_edges(mesh: &Mesh, pairs: &[[u32; 2]]) -> Result<Vec<u32>, Er
     // The edges with a smaller vertex v are those from starts[v] to starts[v + 1].
     let mut starts = vec![0u32; mesh.vertex_count() + 1];
     for &(u, _) in &edges {
-        if let Some(count) = starts.get_mut(u as usize + 1) {
-            *count += 1;
+        if (u as usize) < mesh.vertex_count() {
+            starts[u as usize + 1] += 1;
         }
     }
     let mut sum = 0;

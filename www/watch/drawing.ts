@@ -8,6 +8,9 @@ import type { Scene } from './scene.ts';
 /** How near to a point a line begins and ends, in pixels. A finger hides more than that. */
 const NEAR = 32;
 
+/** The most triangles of a mesh into which edges can be drawn: each move of the pointer looks at all points. */
+const MOST = 200_000;
+
 export class Drawing {
   readonly #scene: () => Scene | undefined;
   /** The mesh, if edges can be drawn into it. */
@@ -47,9 +50,9 @@ export class Drawing {
     return controls.draw.ariaPressed === 'true';
   }
 
-  /** Takes another mesh. Only in the plane can edges be drawn into it. */
+  /** Takes another mesh. Edges can be drawn into it only in the plane. */
   begin(mesh: IndexedMesh): void {
-    this.#mesh = mesh.dimension === 2 ? mesh : undefined;
+    this.#mesh = mesh.dimension === 2 && mesh.indices.length <= 3 * MOST ? mesh : undefined;
     controls.draw.hidden = !this.#mesh;
     if (!this.#mesh) this.show(false);
     this.#drop();

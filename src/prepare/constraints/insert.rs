@@ -3,11 +3,14 @@
 //! Let the new edge go from u to v. The vertices on its left are a chain from u to v, and so are those on its right; each
 //! crossed edge joins both chains. A flip whose new edge joins two vertices of one chain, or ends at u or v, leaves one
 //! crossed edge less. Such flips are made first. They may all be blocked by angles that are not strictly convex. Then let
-//! p be the first of the highest vertices on the left. All neighbours of p among the crossed edges, and its neighbours in
-//! the chain, are below p or as high, and those on the right are below u and v. So a vertex q on the right is a corner
-//! of the convex hull of these neighbours, and the edge between p and q is the diagonal of a strictly convex quad. Its
-//! flip takes an edge away from p, or is one of the flips above. With one edge left, p has only such a flip. So every
-//! insertion ends.
+//! p be the first of the highest vertices on the left: its edges flip too, until none of them is crossed. All neighbours
+//! of p among the crossed edges, and its neighbours in the chain, are below p or as high, and those on the right are below
+//! u and v. So a vertex q on the right is a corner of the convex hull of these neighbours, and the edge between p and q is
+//! the diagonal of a strictly convex quad. Its flip takes an edge away from p, or is one of the flips above. With one edge
+//! left, p has only such a flip. So every insertion ends.
+//!
+//! A flip changes the quads of the edges before and after it only, so the search goes on at the edge before. Each search
+//! through all crossed edges ends with a vertex less, or with one edge less for each of its flips.
 
 use super::flips::Flips;
 use crate::mesh::half_edge::next;
@@ -61,15 +64,15 @@ impl Flips<'_> {
         let mut ring = Ring::new(half_edges);
         let mut i = ring.after[ring.end()];
         let (mut newest, mut flips) = (ring.half_edges[i], 0);
+        let mut highest = None;
         while !ring.is_empty() {
             if i == ring.end() {
                 i = self.first_at_highest(&line, &ring);
-                while !self.is_convex(&line, ring.half_edges[i]) {
-                    i = ring.after[i];
-                }
-            } else if self.still_crosses(&line, ring.half_edges[i])
-                || !self.is_convex(&line, ring.half_edges[i])
-            {
+                highest = Some(self.left(&ring, i));
+            }
+            let is_wanted =
+                highest == Some(self.left(&ring, i)) || !self.still_crosses(&line, ring.half_edges[i]);
+            if !is_wanted || !self.is_convex(&line, ring.half_edges[i]) {
                 i = ring.after[i];
                 continue;
             }
@@ -80,6 +83,11 @@ impl Flips<'_> {
             i = if before == ring.end() { ring.after[before] } else { before };
         }
         (newest, flips)
+    }
+
+    /// The vertex of a crossed edge on the left.
+    fn left(&self, ring: &Ring, i: usize) -> u32 {
+        self.vertex(next(ring.half_edges[i]))
     }
 
     /// Flips a crossed edge, and removes it from the ring if the new edge is not crossed. Returns the new half-edge.
@@ -125,11 +133,10 @@ impl Flips<'_> {
     /// The first crossed edge of the first of the highest vertices on the left.
     fn first_at_highest(&self, line: &Line, ring: &Ring) -> usize {
         let [u, v] = line.ends.map(|v| self.mesh.point2(v));
-        let left = |i: usize| self.vertex(next(ring.half_edges[i]));
         let mut highest = ring.after[ring.end()];
         let mut i = ring.after[highest];
         while i != ring.end() {
-            let [p, q] = [highest, i].map(|i| self.mesh.point2(left(i)));
+            let [p, q] = [highest, i].map(|i| self.mesh.point2(self.left(ring, i)));
             if cross_sign(u, v, p, q) == line.sign {
                 highest = i;
             }

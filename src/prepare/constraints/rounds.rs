@@ -7,7 +7,8 @@
 //!
 //! The triangles that a constraint crosses cover the same region before and after. So an earlier constraint that waits
 //! stays within the triangles that it, or one before it, has claimed. It does not meet the free ones in a later round
-//! either. The first of a round is always free.
+//! either. Where the mesh overlaps, a constraint may have several ways to go, and an earlier one may change which it takes:
+//! while such a constraint waits, so do all after it. The first of a round is always free.
 
 use super::state::State;
 use super::walk::{Obstacle, Part, Walk, Way};
@@ -109,8 +110,8 @@ struct Claims {
 }
 
 impl Claims {
-    /// Divides the constraints of a round: those that are free, and the others. What the walk after one that was cut
-    /// short would meet is not known, so all from there on wait.
+    /// Divides the constraints of a round: those that are free, and the others. What a constraint will meet is not known
+    /// if its walk was cut short, or if it waits and is vague. Then all after it wait too.
     fn divide(
         &mut self,
         state: &State,
@@ -127,10 +128,12 @@ impl Claims {
         }
         let mut is_known = true;
         for (index, walk) in walks {
-            is_known &= walk.is_some();
             match walk {
                 Some(walk) if is_known && self.claim(state, &walk) => free.push((index, walk)),
-                _ => others.push(index),
+                walk => {
+                    is_known &= walk.is_some_and(|walk| !walk.is_vague);
+                    others.push(index);
+                }
             }
         }
         (free, others)

@@ -319,3 +319,48 @@ fn threads_bring_constraints_into_dirty_meshes_alike() {
     }
     assert!(flips > 500 && left_out > 500, "{flips}, {left_out}");
 }
+
+/// Vertex 0 lies on two sheets. The first constraint changes which of them the second takes, and the third lies on the
+/// sheet that it takes then.
+#[test]
+fn a_constraint_that_changes_sheets_comes_in_its_turn() {
+    let mut points = vec![[0, 0], [2, -1], [2, 1], [0, 2], [10, 0], [3, -2], [3, 2], [6, -3], [6, 3]];
+    let mut triangles = vec![[0, 1, 2], [0, 5, 6], [0, 2, 3], [1, 4, 2], [5, 7, 6], [7, 8, 6], [7, 4, 8]];
+    // Enough triangles for several threads.
+    for i in 0..90 {
+        let first = points.len() as u32;
+        points.extend([[20 + i, 0], [21 + i, 0], [20 + i, 1]]);
+        triangles.push([first, first + 1, first + 2]);
+    }
+    let positions: Vec<f64> = points.concat().into_iter().map(f64::from).collect();
+    let mesh = Mesh::new(Dimension::Two, positions, triangles.concat()).unwrap();
+    let constraints = [[1, 3], [0, 4], [7, 6]];
+    let result = brought_in(&mesh, &constraints, &[], true).unwrap();
+    assert_eq!(result.left_out.len(), 1);
+    let error = brought_in(&mesh, &constraints, &[], false).unwrap_err().to_string();
+    assert!(error.contains("constraint 2 between 7 and 6 crosses constraint 1"), "{error}");
+}
+
+/// Long chains that bend towards the constraint, where most flips are those of a highest vertex.
+#[test]
+fn a_constraint_between_long_inward_chains_comes_in() {
+    let count = 400;
+    let curve = |i: u32| {
+        let x = f64::from(i + 1);
+        [x, 1.0 + x * x]
+    };
+    let mut points = vec![[0.0, 0.0], [f64::from(count + 2), 0.0]];
+    points.extend((0..count).map(curve));
+    points.extend((0..count).map(|i| [f64::from(i + 1), -curve(count - 1 - i)[1]]));
+    let (left, right) = (|i: u32| 2 + i, |i: u32| 2 + count + i);
+    let mut triangles = vec![[0, right(0), left(0)]];
+    for i in 1..count {
+        triangles.push([right(i - 1), left(i), left(i - 1)]);
+        triangles.push([right(i - 1), right(i), left(i)]);
+    }
+    triangles.push([right(count - 1), 1, left(count - 1)]);
+    let mesh = Mesh::new(Dimension::Two, points.concat(), triangles.concat()).unwrap();
+    let result = brought_in(&mesh, &[[0, 1]], &[], true).unwrap();
+    assert_eq!((result.flips > 80_000, &result.left_out[..]), (true, &[][..]));
+    assert_valid(&mesh, &result.mesh);
+}

@@ -31,6 +31,8 @@ pub(super) struct Walk {
     pub(super) crossed: Vec<u32>,
     /// The triangles around its vertices, up to the obstacle.
     pub(super) around: Vec<u32>,
+    /// Whether flips of other constraints may send it another way, because the mesh overlaps at one of its vertices.
+    pub(super) is_vague: bool,
 }
 
 /// Why a constraint cannot be brought in.
@@ -63,7 +65,8 @@ impl State<'_> {
     /// Follows a constraint through the mesh. Whatever the order of the triangles around a vertex, the result is the
     /// same. `None` if it would meet more than `most` triangles.
     pub(super) fn walk(&self, [from, to]: [u32; 2], most: usize) -> Option<Walk> {
-        let mut walk = Walk { parts: Ok(Vec::new()), crossed: Vec::new(), around: Vec::new() };
+        let mut walk =
+            Walk { parts: Ok(Vec::new()), crossed: Vec::new(), around: Vec::new(), is_vague: false };
         let mut at = from;
         while at != to {
             match self.first_part([at, to], &mut walk, most) {
@@ -92,6 +95,7 @@ impl State<'_> {
         let side = |v: u32| self.sign([at, to, v]);
         // Where several triangles fit, because the mesh overlaps, the lowest index decides.
         let (mut edge, mut covered, mut start) = (None, None, None);
+        let mut ways = 0;
         for corner in self.star(at) {
             walk.around.push(corner / 3);
             let [x, y] = [next(corner), prev(corner)].map(|x| self.vertex(x));
@@ -99,14 +103,23 @@ impl State<'_> {
             for (v, side, h) in [(x, sides[0], corner), (y, sides[1], prev(corner))] {
                 match self.is_passed(v, side, [at, to]) {
                     Ok(false) => {}
-                    Ok(true) => lower(&mut edge, (h, v)),
-                    Err(obstacle) => lower(&mut covered, (h, obstacle)),
+                    Ok(true) => {
+                        // The two half-edges of an edge are one way.
+                        ways += u32::from(edge.is_none_or(|(other, _)| other != self.twin(h)));
+                        lower(&mut edge, (h, v));
+                    }
+                    Err(obstacle) => {
+                        ways += 2;
+                        lower(&mut covered, (h, obstacle));
+                    }
                 }
             }
             if sides[0].is_ne() && sides[0] == sides[1].reverse() && self.sign([at, x, y]) == sides[1] {
+                ways += 1;
                 lower(&mut start, (next(corner), sides[1]));
             }
         }
+        walk.is_vague |= ways > 1;
         walk.check(most)?;
         if let Some((h, v)) = edge {
             return Ok(Part { ends: [at, v], way: Way::Edge(h) });
@@ -133,7 +146,9 @@ impl State<'_> {
                 return Err(Obstacle::Folded(g / 3).into());
             }
             let side = side(far);
-            if self.is_passed(far, side, [at, to])? {
+            let is_passed = self.is_passed(far, side, [at, to]);
+            walk.is_vague |= is_passed.is_err();
+            if is_passed? {
                 return Ok(Part { ends: [at, far], way: Way::Across { half_edges, sign } });
             }
             h = if side == sign { next(g) } else { prev(g) };
