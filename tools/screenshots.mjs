@@ -51,20 +51,15 @@ const press = async (page, key) => {
   await page.keyboard.press(key);
 };
 
-/** Presses at one place and moves to another, in shares of the mesh's smaller side from its middle. */
+/** Presses at one place and moves to another, in shares of the part of the picture that is free. */
 const drag = async (page, ...places) => {
-  const free = await page.evaluate(() => {
-    const [title, side, time] = ['.what', '.side', '.time'].map((name) =>
+  const [width, height] = await page.evaluate(() => {
+    const [canvas, side] = ['#view canvas', '.side'].map((name) =>
       document.querySelector(`#watch ${name}`).getBoundingClientRect(),
     );
-    const right = side.left > innerWidth / 2 ? side.left : innerWidth;
-    return {
-      x: right / 2,
-      y: (title.bottom + Math.min(time.top, side.left > 0 ? innerHeight : side.top)) / 2,
-      size: 260,
-    };
+    return [side.left > innerWidth / 2 ? side.left : canvas.width, canvas.height];
   });
-  const [from, to] = places.map(([x, y]) => [free.x + x * free.size, free.y + y * free.size]);
+  const [from, to] = places.map(([x, y]) => [x * width, y * height]);
   await page.mouse.move(...from);
   await page.mouse.down();
   await page.mouse.move(...to, { steps: 5 });
@@ -113,7 +108,7 @@ const states = {
   drawing: async (page) => {
     await press(page, 'Escape');
     await press(page, 'd');
-    await drag(page, [-0.3, -0.2], [0.3, 0.25]);
+    await drag(page, [0.4, 0.4], [0.6, 0.6]);
   },
   drawn: async (page) => {
     await page.mouse.up();
