@@ -133,7 +133,7 @@ fn own_device() -> edgeflip::GpuDevice {
         edgeflip::wgpu::Instance::new(edgeflip::wgpu::InstanceDescriptor::new_without_display_handle());
     let adapter = block_on(instance.request_adapter(&Default::default())).unwrap();
     let (device, queue) = block_on(adapter.request_device(&Default::default())).unwrap();
-    edgeflip::GpuDevice { device, queue, adapter: adapter.get_info() }
+    edgeflip::GpuDevice { instance, device, queue, adapter: adapter.get_info() }
 }
 
 #[test]
@@ -149,6 +149,27 @@ fn a_device_that_is_lost_fails_updates() {
     assert!(matches!(block_on(session.counters()), Err(Error::Device { .. })));
     assert!(matches!(session.update(None, 1), Err(Error::Device { .. })));
     assert!(matches!(block_on(session.triangles()), Err(Error::Device { .. })));
+}
+
+/// wgpu gives devices of different instances the same numbers.
+#[test]
+fn devices_of_two_instances_are_told_apart() {
+    let mesh = families::by_name("random 10").unwrap();
+    let session = |device: &edgeflip::GpuDevice| {
+        let options = Options { backend: Backend::Gpu, device: Some(device.clone()), ..Options::default() };
+        block_on(Session::new(&mesh, options)).unwrap()
+    };
+    // The device that sessions share is of an instance of its own.
+    let shared = Options { backend: Backend::Gpu, ..Options::default() };
+    let mut others = vec![block_on(Session::new(&mesh, shared)).unwrap()];
+    let given = [own_device(), own_device()];
+    let mut lost = session(&given[0]);
+    others.push(session(&given[1]));
+    given[0].device.destroy();
+    assert!(matches!(block_on(lost.triangles()), Err(Error::Device { .. })));
+    for session in &mut others {
+        block_on(session.run(|_, _| ControlFlow::Continue(()))).unwrap();
+    }
 }
 
 /// A device of the program, and what a session gives it.

@@ -21,7 +21,7 @@ pub fn open() -> Result<GpuDevice, Box<dyn Error>> {
         ..Default::default()
     };
     let (device, queue) = block_on(adapter.request_device(&descriptor))?;
-    Ok(GpuDevice { device, queue, adapter: adapter.get_info() })
+    Ok(GpuDevice { instance, device, queue, adapter: adapter.get_info() })
 }
 
 /// How the vertices move.

@@ -34,6 +34,9 @@ pub(crate) struct Device {
     pub(super) device: wgpu::Device,
     pub(super) queue: wgpu::Queue,
     pub(super) adapter: String,
+    /// As the caller has given it.
+    #[cfg(not(target_arch = "wasm32"))]
+    pub(super) given: Option<own_device::GpuDevice>,
     pub(super) is_software: bool,
     /// Enough workgroups to keep the device busy. Every kernel loops over the remaining items.
     most_workgroups: u32,
@@ -193,6 +196,12 @@ impl Device {
         Self::compile(device, queue, name, is_software, form, Some(on_loss)).await
     }
 
+    /// The same, as a device that the caller has given.
+    #[cfg(not(target_arch = "wasm32"))]
+    pub(super) fn of_caller(self, given: &own_device::GpuDevice) -> Self {
+        Self { given: Some(given.clone()), ..self }
+    }
+
     /// Compiles the kernels that every mesh needs and those of `form`. Without `on_loss`, the handlers of the device
     /// belong to the caller.
     ///
@@ -252,6 +261,8 @@ impl Device {
             device,
             queue,
             adapter,
+            #[cfg(not(target_arch = "wasm32"))]
+            given: None,
             is_software,
             most_workgroups,
             tail_size,

@@ -1,9 +1,13 @@
 //! A device that a native program has made.
 
-/// A device of the caller, with its queue. Sessions that share it also share its kernels. The session reads no setting of
+use super::device::Device;
+
+/// A device of the caller, with its instance and its queue. Sessions that share it also share its kernels. The session reads no setting of
 /// the device but its limits, and changes none: the handlers of errors and of a lost device stay those of the caller.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GpuDevice {
+    /// The instance that it is of. wgpu tells devices of one instance apart, but not those of two.
+    pub instance: wgpu::Instance,
     /// The device. It needs at least the default limits of WebGPU.
     pub device: wgpu::Device,
     /// Its queue.
@@ -13,8 +17,8 @@ pub struct GpuDevice {
 }
 
 impl GpuDevice {
-    pub(super) fn is_of(&self, device: &wgpu::Device) -> bool {
-        self.device == *device
+    pub(super) fn is_of(&self, device: &Device) -> bool {
+        device.given.as_ref() == Some(self)
     }
 
     pub(super) fn is_software(&self) -> bool {

@@ -122,7 +122,7 @@ impl Device {
         #[cfg(any(not(target_arch = "wasm32"), feature = "js"))]
         if let Some(given) = given {
             return with_shared(|shared| {
-                let is_given = |device: &&Handle| given.is_of(&device.device);
+                let is_given = |device: &&Handle| given.is_of(device);
                 let mut devices = shared.adopted.iter().chain(&shared.opened).filter(is_given);
                 devices.find(|device| device.check().is_ok()).cloned()
             });
@@ -208,9 +208,11 @@ impl Device {
         let (device, queue) = given.adopt().await.map_err(unavailable)?;
         // In a browser, the handler is that of a device of wgpu, which nobody else has.
         let on_loss = cfg!(target_arch = "wasm32").then_some(on_loss as fn());
-        let device = Handle::new(
-            Self::compile(device, queue, given.adapter_name(), is_software, Some(form), on_loss).await?,
-        );
+        let compiling = Self::compile(device, queue, given.adapter_name(), is_software, Some(form), on_loss);
+        let device = compiling.await?;
+        #[cfg(not(target_arch = "wasm32"))]
+        let device = device.of_caller(given);
+        let device = Handle::new(device);
         with_shared(|shared| shared.adopted.push(device.clone()));
         Ok(device)
     }
