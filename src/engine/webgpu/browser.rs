@@ -1,7 +1,5 @@
 //! The browser's WebGPU objects: how to find them, and calls that wgpu does not offer.
 
-#[cfg(feature = "js")]
-use super::device::Device;
 use js_sys::{Array, JsString, Object, Promise, Reflect};
 use wasm_bindgen::prelude::*;
 use wasm_bindgen_futures::JsFuture;
@@ -59,8 +57,8 @@ pub(super) fn has_webgpu() -> bool {
 impl GpuDevice {
     /// Whether it is the browser's device behind a device of wgpu.
     #[cfg(feature = "js")]
-    pub(super) fn is_of(&self, device: &Device) -> bool {
-        Self::of(&device.device).as_ref() == Some(self)
+    pub(super) fn is_of(&self, device: &wgpu::Device) -> bool {
+        Self::of(device).as_ref() == Some(self)
     }
 
     /// The browser's device behind a device of wgpu.

@@ -1,7 +1,5 @@
 //! A device that a native program has made.
 
-use super::device::Device;
-
 /// A device of the caller, with its instance and its queue. Sessions that share it also share its kernels. The session reads no setting of
 /// the device but its limits, and changes none: the handlers of errors and of a lost device stay those of the caller.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,10 +15,6 @@ pub struct GpuDevice {
 }
 
 impl GpuDevice {
-    pub(super) fn is_of(&self, device: &Device) -> bool {
-        device.given.as_ref() == Some(self)
-    }
-
     pub(super) fn is_software(&self) -> bool {
         self.adapter.device_type == wgpu::DeviceType::Cpu
     }

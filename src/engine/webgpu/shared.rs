@@ -91,6 +91,18 @@ fn refuse_software(is_software: bool, takes_software: bool) -> Result<(), Error>
     Ok(())
 }
 
+/// Whether the caller has given this device.
+#[cfg(not(target_arch = "wasm32"))]
+fn is_of(given: &GivenDevice, device: &Device) -> bool {
+    device.given.as_ref() == Some(given)
+}
+
+/// Whether the page has made this device, or has it from a session.
+#[cfg(all(target_arch = "wasm32", feature = "js"))]
+fn is_of(given: &GivenDevice, device: &Device) -> bool {
+    given.is_of(&device.device)
+}
+
 /// Called when a device is lost: frees its memory now, not at the next session.
 fn on_loss() {
     #[cfg(all(target_arch = "wasm32", feature = "js"))]
@@ -122,7 +134,7 @@ impl Device {
         #[cfg(any(not(target_arch = "wasm32"), feature = "js"))]
         if let Some(given) = given {
             return with_shared(|shared| {
-                let is_given = |device: &&Handle| given.is_of(device);
+                let is_given = |device: &&Handle| is_of(given, device);
                 let mut devices = shared.adopted.iter().chain(&shared.opened).filter(is_given);
                 devices.find(|device| device.check().is_ok()).cloned()
             });
