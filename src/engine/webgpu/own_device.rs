@@ -1,7 +1,8 @@
 //! A device that a native program has made.
 
-/// A device of the caller, with its instance and its queue. Sessions that share it also share its kernels. The session reads no setting of
-/// the device but its limits, and changes none: the handlers of errors and of a lost device stay those of the caller.
+/// A device of the caller, with its instance and its queue. Sessions that share it also share its kernels. The session
+/// reads no setting of the device but its limits, and changes none: the handlers of errors and of a lost device stay those
+/// of the caller.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GpuDevice {
     /// The instance that it is of. wgpu tells devices of one instance apart, but not those of two.
