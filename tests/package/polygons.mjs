@@ -66,6 +66,7 @@ const issues = {
     ]),
   },
 };
+
 /**
  * @typedef {{ name: string, positions: Float64Array, sides: number[][], area: number }} Polygons
  *   `area` is that inside, if no sides cross.

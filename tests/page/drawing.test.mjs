@@ -16,6 +16,8 @@ test('edges that are drawn come in, and stay', async () => {
   await page.rest();
   const isShown = (id) => page.page.isVisible(`#${id}`);
   assert.deepEqual([await isShown('draw'), await isShown('limit')], [false, true], 'a surface');
+  await page.page.keyboard.press('d');
+  assert.equal(await page.page.getAttribute('#draw', 'aria-pressed'), 'false', 'the key does nothing there');
   await page.choose('sample', 'random 24');
   await page.rest();
   assert.deepEqual([await isShown('draw'), await isShown('limit')], [true, false], 'a mesh in the plane');

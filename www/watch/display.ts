@@ -91,6 +91,7 @@ export class Display {
   clear(): void {
     this.#last = undefined;
     this.looking.forget();
+    this.drawing.begin(undefined);
     this.#graphics.scene?.clear();
     this.panel.clear();
     showLegend(undefined, 0, undefined);

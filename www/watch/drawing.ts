@@ -21,7 +21,8 @@ export class Drawing {
   constructor(scene: () => Scene | undefined, draw: (from: number, to: number) => void, begun: () => void) {
     this.#scene = scene;
     controls.draw.addEventListener('click', () => {
-      this.show(!this.isOn);
+      // A key may press the button while it is hidden.
+      this.show(!this.isOn && this.#mesh !== undefined);
       if (this.isOn) begun();
     });
     const view = element('view');
@@ -50,9 +51,9 @@ export class Drawing {
     return controls.draw.ariaPressed === 'true';
   }
 
-  /** Takes another mesh. Edges can be drawn into it only in the plane. */
-  begin(mesh: IndexedMesh): void {
-    this.#mesh = mesh.dimension === 2 && mesh.indices.length <= 3 * MOST ? mesh : undefined;
+  /** Takes another mesh, or none. Edges can be drawn into it only in the plane. */
+  begin(mesh: IndexedMesh | undefined): void {
+    this.#mesh = mesh?.dimension === 2 && mesh.indices.length <= 3 * MOST ? mesh : undefined;
     controls.draw.hidden = !this.#mesh;
     if (!this.#mesh) this.show(false);
     this.#drop();

@@ -196,7 +196,7 @@ impl Device {
         Self::compile(device, queue, name, is_software, form, Some(on_loss)).await
     }
 
-    /// The same, as a device that the caller has given.
+    /// Notes that the caller has given the device.
     #[cfg(not(target_arch = "wasm32"))]
     pub(super) fn of_caller(self, given: &own_device::GpuDevice) -> Self {
         Self { given: Some(given.clone()), ..self }
