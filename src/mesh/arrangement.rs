@@ -46,10 +46,7 @@ impl Arrangement {
 
     /// Bytes of the arrangement of a mesh and of the arranged mesh.
     pub(crate) fn bytes(mesh: &Mesh) -> u64 {
-        let number = if mesh.positions().is_double() { 8 } else { 4 };
-        16 * mesh.triangle_count() as u64
-            + 4 * mesh.vertex_count() as u64
-            + number * mesh.positions().len() as u64
+        16 * mesh.triangle_count() as u64 + 4 * mesh.vertex_count() as u64 + mesh.positions().bytes()
     }
 
     /// Sorts the vertices along a Morton curve, and the triangles by their first vertex.

@@ -134,8 +134,7 @@ impl Mesh {
 
     /// The bytes of its arrays.
     pub(crate) fn bytes(&self) -> u64 {
-        let number = if self.positions.is_double() { 8 } else { 4 };
-        4 * self.triangles.len() as u64 + number * self.positions.len() as u64
+        4 * self.triangles.len() as u64 + self.positions.bytes()
     }
 
     /// The vertex's coordinates; only for a 2D mesh.

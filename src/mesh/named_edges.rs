@@ -39,16 +39,15 @@ pub(crate) fn half_edges(mesh: &Mesh, pairs: &[[u32; 2]]) -> Result<Vec<u32>, Er
             half_edges.push(h);
         }
     }
-    if is_found.iter().all(|&is_found| is_found) {
-        return Ok(half_edges);
+    let is_missing =
+        |&&pair: &&[u32; 2]| edges.binary_search(&tuple(pair)).is_ok_and(|index| !is_found[index]);
+    if is_found.contains(&false)
+        && let Some([u, v]) = pairs.iter().find(is_missing)
+    {
+        let message = format!("the mesh has no edge between vertices {u} and {v}");
+        return Err(Error::Option { option: "locked_edges", message });
     }
-    match pairs.iter().find(|&&pair| edges.binary_search(&tuple(pair)).is_ok_and(|index| !is_found[index])) {
-        None => Ok(half_edges),
-        Some([u, v]) => {
-            let message = format!("the mesh has no edge between vertices {u} and {v}");
-            Err(Error::Option { option: "locked_edges", message })
-        }
-    }
+    Ok(half_edges)
 }
 
 /// The two vertices of an edge, the smaller one first.

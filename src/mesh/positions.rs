@@ -48,6 +48,12 @@ impl Positions {
         matches!(self, Self::F64(_))
     }
 
+    /// The bytes of their array.
+    pub(crate) fn bytes(&self) -> u64 {
+        let number = if self.is_double() { 8 } else { 4 };
+        number * self.len() as u64
+    }
+
     /// Their words: one for each 32-bit float, two for each 64-bit float.
     pub(crate) fn words_mut(&mut self) -> &mut [u32] {
         match self {

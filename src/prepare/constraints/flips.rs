@@ -34,10 +34,8 @@ impl Flips<'_> {
         [h, g, prev(h), prev(g)].map(|x| self.vertex(x))
     }
 
-    /// The sign of the area of a triangle.
     pub(super) fn sign(&self, corners: [u32; 3]) -> Ordering {
-        let [a, b, c] = corners.map(|v| self.mesh.point2(v));
-        area_sign(a, b, c)
+        sign(self.mesh, corners)
     }
 
     /// Flips the edge of `h`, which has two triangles (a, b, c) and (b, a, d); they become (a, d, c) and (b, c, d). The
@@ -61,4 +59,10 @@ impl Flips<'_> {
         self.twins[hn as usize].set(gn);
         self.twins[gn as usize].set(hn);
     }
+}
+
+/// The sign of the area of a triangle.
+pub(super) fn sign(mesh: &Mesh, corners: [u32; 3]) -> Ordering {
+    let [a, b, c] = corners.map(|v| mesh.point2(v));
+    area_sign(a, b, c)
 }

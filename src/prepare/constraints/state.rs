@@ -1,9 +1,8 @@
 //! A mesh in the plane whose edges are locked or flipped one by one.
 
-use super::flips::Flips;
+use super::flips::{Flips, sign};
 use crate::mesh::half_edge::{LOCKED, lock, next, unflagged};
 use crate::mesh::star::{Fans, Star};
-use crate::predicates::area_sign;
 use crate::system::threads::{Threads, shared};
 use crate::{Adjacency, Mesh, NONE};
 use std::cmp::Ordering;
@@ -112,9 +111,7 @@ impl<'a> State<'a> {
         Star::new(&self.triangles, &self.twins, fans, corner)
     }
 
-    /// The sign of the area of a triangle.
     pub(super) fn sign(&self, corners: [u32; 3]) -> Ordering {
-        let [a, b, c] = corners.map(|v| self.mesh.point2(v));
-        area_sign(a, b, c)
+        sign(self.mesh, corners)
     }
 }
