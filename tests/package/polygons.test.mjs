@@ -24,7 +24,7 @@ function cross(positions, [a, b], [c, d]) {
 async function triangulated({ positions, sides }, options) {
   const mesh = { positions, indices: new Delaunator(positions).triangles, dimension: 2 };
   const constraints = sides.flat();
-  const { lockedEdges, leftOut } = await constrain(mesh, constraints, {}, true);
+  const { constraintEdges, leftOut } = await constrain(mesh, constraints, {}, true);
   const session = await FlipSession.create(mesh, { backend: 'cpu', constraints, skipConstraints: true, ...options });
   const { indices, remaining, leftOut: alsoLeftOut } = await session.run();
   assert.deepEqual(alsoLeftOut, leftOut);
@@ -37,7 +37,7 @@ async function triangulated({ positions, sides }, options) {
     const other = Number(/ crosses constraint (\d+) /.exec(reason)[1]);
     assert.ok(other < index && cross(positions, sides[index], sides[other]), reason);
   }
-  const { inside } = await regions({ ...mesh, indices }, lockedEdges);
+  const { inside } = await regions({ ...mesh, indices }, constraintEdges);
   if (leftOut.length > 0) {
     const reason = { code: 'invalid-option', message: `option constraints: ${leftOut[0].reason}` };
     await assert.rejects(FlipSession.create(mesh, { backend: 'cpu', constraints }), reason);
@@ -74,8 +74,8 @@ test('a point that delaunator leaves out is named', async () => {
   assert.deepEqual(
     leftOut.map(({ reason }) => reason),
     [
-      'constraint 0 between 0 and 5 ends at vertex 5, which no triangle has',
-      'constraint 1 between 5 and 2 ends at vertex 5, which no triangle has',
+      'constraint 0 between 0 and 5 ends at vertex 5, which no triangle has; weld it if another vertex is there',
+      'constraint 1 between 5 and 2 ends at vertex 5, which no triangle has; weld it if another vertex is there',
     ],
   );
 });

@@ -47,17 +47,37 @@ impl Flips<'_> {
         let [hn, gn] = [h, g].map(next);
         move_anchor(self.fans, b, hn, g);
         move_anchor(self.fans, a, gn, h);
-        let outer = [gn, hn].map(|x| self.twins[x as usize].get());
-        for (inner, outer) in [h, g].into_iter().zip(outer) {
+        self.move_twins([gn, hn], [h, g]);
+        self.triangles[hn as usize].set(d);
+        self.triangles[gn as usize].set(c);
+        self.twins[hn as usize].set(gn);
+        self.twins[gn as usize].set(hn);
+    }
+
+    /// Undoes the last flip, that of the edge of `h`.
+    pub(super) fn undo(&self, h: u32) {
+        let hn = next(h);
+        let gn = self.twin(hn);
+        let g = prev(gn);
+        let [a, b] = [h, g].map(|x| self.vertex(x));
+        move_anchor(self.fans, b, g, hn);
+        move_anchor(self.fans, a, h, gn);
+        self.move_twins([h, g], [gn, hn]);
+        self.triangles[hn as usize].set(b);
+        self.triangles[gn as usize].set(a);
+        self.twins[h as usize].set(g);
+        self.twins[g as usize].set(h);
+    }
+
+    /// Moves the outer sides of two half-edges to two others.
+    fn move_twins(&self, from: [u32; 2], to: [u32; 2]) {
+        let outer = from.map(|x| self.twins[x as usize].get());
+        for (inner, outer) in to.into_iter().zip(outer) {
             self.twins[inner as usize].set(outer);
             if outer != NONE {
                 self.twins[(outer & !FLAGS) as usize].set(inner | outer & FLAGS);
             }
         }
-        self.triangles[hn as usize].set(d);
-        self.triangles[gn as usize].set(c);
-        self.twins[hn as usize].set(gn);
-        self.twins[gn as usize].set(hn);
     }
 }
 

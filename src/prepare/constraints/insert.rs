@@ -11,11 +11,44 @@
 //!
 //! A flip changes the quads of the edges before and after it only, so the search goes on at the edge before. Each search
 //! through all crossed edges ends with a vertex less, or with one edge less for each of its flips.
+//!
+//! Where the mesh overlaps, a flip may also be blocked because the mesh has the new edge already. Then a search may end
+//! without a flip. The constraint does not come in, and its flips are undone.
 
 use super::flips::Flips;
+use super::walk::Obstacle;
 use crate::mesh::half_edge::next;
+use crate::mesh::named_edges::ordered;
 use crate::predicates::cross_sign;
 use std::cmp::Ordering;
+use std::collections::HashSet;
+
+/// Keeps the flips of a constraint from making an edge that the mesh has already.
+pub(super) struct Guard {
+    /// The present edges between vertices whose stars may overlap.
+    edges: HashSet<[u32; 2]>,
+    /// The half-edges of the flips, in their order.
+    pub(super) flips: Vec<u32>,
+    /// The edge of the last flip that was blocked.
+    blocked: [u32; 2],
+}
+
+impl Guard {
+    pub(super) fn new(edges: HashSet<[u32; 2]>) -> Self {
+        Self { edges, flips: Vec::new(), blocked: [0; 2] }
+    }
+
+    /// Notes the flip of the edge of `h` from a-b to c-d. Returns whether it is allowed.
+    fn allows(&mut self, h: u32, [a, b, c, d]: [u32; 4]) -> bool {
+        if !self.edges.insert(ordered([c, d])) {
+            self.blocked = [c, d];
+            return false;
+        }
+        self.edges.remove(&ordered([a, b]));
+        self.flips.push(h);
+        true
+    }
+}
 
 /// The crossed edges in their order, as a ring. The last link is no edge.
 struct Ring {
@@ -58,21 +91,35 @@ struct Line {
 }
 
 impl Flips<'_> {
-    /// Flips the crossed edges of a part until it is an edge. Returns its half-edge, and the number of flips.
-    pub(super) fn bring_in(&self, ends: [u32; 2], half_edges: Vec<u32>, sign: Ordering) -> (u32, u64) {
+    /// Flips the crossed edges of a part until it is an edge. Returns its half-edge, and the number of flips. Without a
+    /// guard, it never fails.
+    pub(super) fn bring_in(
+        &self,
+        ends: [u32; 2],
+        half_edges: Vec<u32>,
+        sign: Ordering,
+        mut guard: Option<&mut Guard>,
+    ) -> Result<(u32, u64), Obstacle> {
         let line = Line { ends, sign };
         let mut ring = Ring::new(half_edges);
         let mut i = ring.after[ring.end()];
         let (mut newest, mut flips) = (ring.half_edges[i], 0);
-        let mut highest = None;
+        let (mut highest, mut flips_before) = (None, 0);
         while !ring.is_empty() {
             if i == ring.end() {
+                if let Some(guard) = &guard
+                    && highest.is_some()
+                    && flips == flips_before
+                {
+                    return Err(Obstacle::Doubled(guard.blocked));
+                }
+                flips_before = flips;
                 i = self.first_at_highest(&line, &ring);
                 highest = Some(self.left(&ring, i));
             }
             let is_wanted =
                 highest == Some(self.left(&ring, i)) || !self.still_crosses(&line, ring.half_edges[i]);
-            if !is_wanted || !self.is_convex(&line, ring.half_edges[i]) {
+            if !is_wanted || !self.may_flip(&line, ring.half_edges[i], &mut guard) {
                 i = ring.after[i];
                 continue;
             }
@@ -82,7 +129,7 @@ impl Flips<'_> {
             let before = ring.before[i];
             i = if before == ring.end() { ring.after[before] } else { before };
         }
-        (newest, flips)
+        Ok((newest, flips))
     }
 
     /// The vertex of a crossed edge on the left.
@@ -124,10 +171,12 @@ impl Flips<'_> {
         c.is_ne() && c == d.reverse()
     }
 
-    /// Whether both new triangles of a flip have the sign of the old ones.
-    fn is_convex(&self, line: &Line, h: u32) -> bool {
+    /// Whether both new triangles of a flip have the sign of the old ones, and the guard allows it.
+    fn may_flip(&self, line: &Line, h: u32, guard: &mut Option<&mut Guard>) -> bool {
         let [a, b, c, d] = self.diamond(h);
-        self.sign([a, d, c]) == line.sign && self.sign([b, c, d]) == line.sign
+        self.sign([a, d, c]) == line.sign
+            && self.sign([b, c, d]) == line.sign
+            && guard.as_mut().is_none_or(|guard| guard.allows(h, [a, b, c, d]))
     }
 
     /// The first crossed edge of the first of the highest vertices on the left.

@@ -26,10 +26,20 @@ pub struct Constrained {
     /// The edges that must not flip, each by its two vertices: first those that were locked before, then the
     /// constraints. A constraint through vertices is several edges.
     pub locked_edges: Vec<[u32; 2]>,
+    /// The number of edges that were locked before. The others are in the order of the constraints.
+    pub locks: usize,
     /// The flips that brought them in.
     pub flips: u64,
     /// The constraints that were left out, in ascending order.
     pub left_out: Vec<LeftOut>,
+}
+
+impl Constrained {
+    /// The edges of the constraints, without those that were locked before: for [`regions`](crate::regions).
+    #[must_use]
+    pub fn constraint_edges(&self) -> &[[u32; 2]] {
+        self.locked_edges.get(self.locks..).unwrap_or_default()
+    }
 }
 
 /// A constraint that was left out.
@@ -60,7 +70,9 @@ pub fn constrained(
 ) -> Result<Constrained, Error> {
     let refuse = |message| Err(Error::Option { option: "constraints", message });
     if mesh.dimension() == Dimension::Three {
-        return refuse("constraints need a mesh in the plane; lock edges of a surface instead".to_owned());
+        return refuse(
+            "constraints need a mesh of dimension 2; edges of a surface can only be locked".to_owned(),
+        );
     }
     let vertices = mesh.vertex_count();
     if let Some(index) = constraints.iter().position(|ends| ends.iter().any(|&v| v as usize >= vertices)) {
@@ -72,8 +84,14 @@ pub fn constrained(
     let locked = half_edges(mesh, locked_edges)?;
     let run = || {
         let state = State::new(mesh, &locked, &threads);
-        let mut work =
-            Work { state, constraints, origins: HashMap::new(), edges: Vec::new(), left_out: Vec::new() };
+        let mut work = Work {
+            directed: directed(&state, constraints),
+            state,
+            constraints,
+            origins: HashMap::new(),
+            edges: Vec::new(),
+            left_out: Vec::new(),
+        };
         let flips = work.run(Rounds::new(constraints.len(), threads.clone()), skips);
         (work.state.triangles, work.edges, work.left_out, flips)
     };
@@ -84,14 +102,26 @@ pub fn constrained(
     }
     edges.sort_by_key(|&(index, _)| index);
     let edges = edges.into_iter().map(|(_, ends)| ends);
+    let locks = locked_edges.len();
     let locked_edges = locked_edges.iter().copied().chain(edges).collect();
-    Ok(Constrained { mesh: mesh.flipped(triangles), locked_edges, flips, left_out })
+    Ok(Constrained { mesh: mesh.flipped(triangles), locked_edges, locks, flips, left_out })
+}
+
+/// Each constraint from the end where fewer triangles and constraints meet: a walk begins with a search among the
+/// triangles of its first vertex.
+fn directed(state: &State, constraints: &[[u32; 2]]) -> Vec<[u32; 2]> {
+    let mut met = state.degrees();
+    constraints.as_flattened().iter().for_each(|&v| met[v as usize] += 1);
+    let direct = |&[u, v]: &[u32; 2]| if met[v as usize] < met[u as usize] { [v, u] } else { [u, v] };
+    constraints.iter().map(direct).collect()
 }
 
 /// Constraints that come in.
 struct Work<'a> {
     state: State<'a>,
     constraints: &'a [[u32; 2]],
+    /// The constraints as they are walked.
+    directed: Vec<[u32; 2]>,
     /// The first constraint that each edge is a part of.
     origins: HashMap<[u32; 2], usize>,
     /// The edges of the constraints, with their indices.
@@ -103,7 +133,7 @@ impl Work<'_> {
     /// Brings all in, or those before the first obstacle. Returns the number of flips.
     fn run(&mut self, mut rounds: Rounds, skips: bool) -> u64 {
         let mut all = 0;
-        while let Some(round) = rounds.next(&mut self.state, self.constraints) {
+        while let Some(round) = rounds.next(&mut self.state, &self.directed) {
             for Done { index, edges, flips } in round {
                 all += flips;
                 match edges {
@@ -123,7 +153,11 @@ impl Work<'_> {
         all
     }
 
-    fn lock(&mut self, index: usize, edges: Vec<([u32; 2], u32)>) {
+    fn lock(&mut self, index: usize, mut edges: Vec<([u32; 2], u32)>) {
+        if self.directed[index] != self.constraints[index] {
+            edges.reverse();
+            edges.iter_mut().for_each(|(ends, _)| ends.reverse());
+        }
         for (ends, h) in edges {
             self.state.lock(h);
             self.edges.push((index, ends));
@@ -135,7 +169,9 @@ impl Work<'_> {
     /// What keeps a constraint out.
     fn what(&self, obstacle: Obstacle) -> String {
         match obstacle {
-            Obstacle::Unused(vertex) => format!("ends at vertex {vertex}, which no triangle has"),
+            Obstacle::Unused(vertex) => {
+                format!("ends at vertex {vertex}, which no triangle has; weld it if another vertex is there")
+            }
             Obstacle::SamePoint => "joins two vertices at the same point; weld them first".to_owned(),
             Obstacle::Leaves(vertex) => format!("leaves the mesh at vertex {vertex}"),
             Obstacle::Folded(triangle) => {
@@ -143,6 +179,9 @@ impl Work<'_> {
             }
             Obstacle::Covered(vertex) => {
                 format!("passes its end before it meets vertex {vertex}: the mesh overlaps there")
+            }
+            Obstacle::Doubled([a, b]) => {
+                format!("needs an edge between {a} and {b}, which the mesh has elsewhere: it overlaps there")
             }
             Obstacle::Border(h) => {
                 let [a, b] = self.state.ends(h);

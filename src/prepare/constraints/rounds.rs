@@ -7,9 +7,13 @@
 //!
 //! The triangles that a constraint crosses cover the same region before and after. So an earlier constraint that waits
 //! stays within the triangles that it, or one before it, has claimed. It does not meet the free ones in a later round
-//! either. Where the mesh overlaps, a constraint may have several ways to go, and an earlier one may change which it takes:
-//! while such a constraint waits, so do all after it. The first of a round is always free.
+//! either.
+//!
+//! Where the mesh overlaps, a constraint may have several ways to go, and the edges of other places may block its flips.
+//! An earlier one may change both, if it or this one meets suspects: vertices whose stars may not be embedded. While such a
+//! constraint waits, so do all after it. The first of a round is always free.
 
+use super::insert::Guard;
 use super::state::State;
 use super::walk::{Obstacle, Part, Walk, Way};
 use crate::system::threads::Threads;
@@ -82,17 +86,21 @@ impl Rounds {
         let changed: Vec<_> = free.iter_mut().map(|(_, walk)| mem::take(&mut walk.crossed)).collect();
         state.leave(changed.iter().flatten().copied());
         let flips = state.flips();
-        let done = self.threads.map_each(free, |(index, Walk { parts, .. })| {
-            let mut all = 0;
+        let done = self.threads.map_each(free, |(index, Walk { parts, known, .. })| {
+            let (mut guard, mut all) = (known.map(Guard::new), 0);
             let mut edge = |Part { ends, way }| match way {
-                Way::Edge(h) => (ends, h),
+                Way::Edge(h) => Ok((ends, h)),
                 Way::Across { half_edges, sign } => {
-                    let (h, flips) = flips.bring_in(ends, half_edges, sign);
+                    let (h, flips) = flips.bring_in(ends, half_edges, sign, guard.as_mut())?;
                     all += flips;
-                    (ends, h)
+                    Ok((ends, h))
                 }
             };
-            let edges = parts.map(|parts| parts.into_iter().map(&mut edge).collect());
+            let edges = parts.and_then(|parts| parts.into_iter().map(&mut edge).collect());
+            if let (Err(_), Some(guard)) = (&edges, guard) {
+                guard.flips.into_iter().rev().for_each(|h| flips.undo(h));
+                all = 0;
+            }
             Done { index, edges, flips: all }
         });
         state.enter(changed.iter().flatten().copied());
@@ -111,7 +119,7 @@ struct Claims {
 
 impl Claims {
     /// Divides the constraints of a round: those that are free, and the others. What a constraint will meet is not known
-    /// if its walk was cut short, or if it waits and is vague. Then all after it wait too.
+    /// if its walk was cut short, or if it waits, and it or an earlier one meets suspects. Then all after it wait too.
     fn divide(
         &mut self,
         state: &State,
@@ -126,12 +134,13 @@ impl Claims {
         for list in [&mut self.crossed, &mut self.read] {
             list.resize(state.triangles.len() / 3, 0);
         }
-        let mut is_known = true;
+        let (mut is_known, mut is_embedded) = (true, true);
         for (index, walk) in walks {
+            is_embedded &= walk.as_ref().is_some_and(|walk| walk.suspects.is_empty());
             match walk {
                 Some(walk) if is_known && self.claim(state, &walk) => free.push((index, walk)),
-                walk => {
-                    is_known &= walk.is_some_and(|walk| !walk.is_vague);
+                _ => {
+                    is_known &= is_embedded;
                     others.push(index);
                 }
             }

@@ -1,6 +1,7 @@
 //! A mesh in the plane whose edges are locked or flipped one by one.
 
 use super::flips::{Flips, sign};
+use crate::mesh::embedded::Embedded;
 use crate::mesh::half_edge::{LOCKED, lock, next, unflagged};
 use crate::mesh::star::{Fans, Star};
 use crate::system::threads::{Threads, shared};
@@ -14,6 +15,8 @@ pub(super) struct State<'a> {
     /// With the flags of locked edges.
     twins: Vec<u32>,
     hubs: Vec<Hub>,
+    /// The embedded stars. Constraints keep them embedded.
+    pub(super) embedded: Embedded,
     /// Filled in at the first vertex that turns out to have several fans: most meshes have none.
     fans: OnceLock<Fans>,
 }
@@ -32,9 +35,10 @@ impl<'a> State<'a> {
     pub(super) fn new(mesh: &'a Mesh, locked: &[u32], threads: &Threads) -> Self {
         let (vertices, triangles) = (mesh.vertex_count(), mesh.triangles().to_vec());
         let mut twins = Adjacency::of_triangles(vertices, &triangles, threads).twins;
+        let (_, embedded) = Embedded::with_winding(mesh, &twins, None, &mut None, threads);
         lock(&mut twins, locked);
         let hubs = vec![Hub::default(); vertices];
-        let mut state = Self { mesh, triangles, twins, hubs, fans: OnceLock::new() };
+        let mut state = Self { mesh, triangles, twins, hubs, embedded, fans: OnceLock::new() };
         state.enter(0..mesh.triangle_count() as u32);
         state
     }
@@ -94,6 +98,11 @@ impl<'a> State<'a> {
         let twin = self.twin(h);
         let both = [h, twin];
         lock(&mut self.twins, if twin == NONE { &both[..1] } else { &both });
+    }
+
+    /// For each vertex, the number of its triangles.
+    pub(super) fn degrees(&self) -> Vec<u32> {
+        self.hubs.iter().map(|hub| hub.degree).collect()
     }
 
     pub(super) fn is_used(&self, v: u32) -> bool {

@@ -3,7 +3,9 @@
 use super::state::State;
 use crate::NONE;
 use crate::mesh::half_edge::{next, prev};
+use crate::mesh::named_edges::ordered;
 use std::cmp::Ordering;
+use std::collections::HashSet;
 
 /// A part of a constraint between two vertices on it, without a vertex between them.
 pub(super) struct Part {
@@ -31,8 +33,11 @@ pub(super) struct Walk {
     pub(super) crossed: Vec<u32>,
     /// The triangles around its vertices, up to the obstacle.
     pub(super) around: Vec<u32>,
-    /// Whether flips of other constraints may send it another way, because the mesh overlaps at one of its vertices.
-    pub(super) is_vague: bool,
+    /// Its ends, and the vertices that it passes or whose edges it crosses, as far as their stars are not known to be
+    /// embedded. Up to the obstacle, perhaps repeated.
+    pub(super) suspects: Vec<u32>,
+    /// If there are several suspects: the edges between them. A flip must not make such an edge again.
+    pub(super) known: Option<HashSet<[u32; 2]>>,
 }
 
 /// Why a constraint cannot be brought in.
@@ -53,6 +58,8 @@ pub(super) enum Obstacle {
     /// An edge of the mesh, or a triangle, covers its second end without having it as a vertex. The number is a vertex
     /// behind the second end.
     Covered(u32),
+    /// The flips that bring it in would make this edge, which the mesh has elsewhere.
+    Doubled([u32; 2]),
 }
 
 impl Walk {
@@ -65,8 +72,13 @@ impl State<'_> {
     /// Follows a constraint through the mesh. Whatever the order of the triangles around a vertex, the result is the
     /// same. `None` if it would meet more than `most` triangles.
     pub(super) fn walk(&self, [from, to]: [u32; 2], most: usize) -> Option<Walk> {
-        let mut walk =
-            Walk { parts: Ok(Vec::new()), crossed: Vec::new(), around: Vec::new(), is_vague: false };
+        let mut walk = Walk {
+            parts: Ok(Vec::new()),
+            crossed: Vec::new(),
+            around: Vec::new(),
+            suspects: Vec::new(),
+            known: None,
+        };
         let mut at = from;
         while at != to {
             match self.first_part([at, to], &mut walk, most) {
@@ -76,11 +88,29 @@ impl State<'_> {
                 }
                 Err(obstacle) => {
                     walk.parts = Err(obstacle?);
-                    break;
+                    return Some(walk);
                 }
             }
         }
-        Some(walk)
+        self.find_known(&mut walk);
+        walk.check(most).is_ok().then_some(walk)
+    }
+
+    fn find_known(&self, walk: &mut Walk) {
+        let Walk { suspects, known, around, .. } = walk;
+        suspects.sort_unstable();
+        suspects.dedup();
+        if let [_, _, ..] = suspects[..] {
+            let known = known.insert(HashSet::new());
+            for &v in &*suspects {
+                for corner in self.star(v) {
+                    around.push(corner / 3);
+                    let others = [next(corner), prev(corner)].map(|h| self.vertex(h));
+                    let others = others.into_iter().filter(|other| suspects.binary_search(other).is_ok());
+                    known.extend(others.map(|other| ordered([v, other])));
+                }
+            }
+        }
     }
 
     /// The part that starts at `at` of the constraint from there to `to`. The error is `None` if the walk meets more than
@@ -93,9 +123,9 @@ impl State<'_> {
             return Err(Obstacle::Unused(unused).into());
         }
         let side = |v: u32| self.sign([at, to, v]);
+        self.suspect(walk, at);
         // Where several triangles fit, because the mesh overlaps, the lowest index decides.
         let (mut edge, mut covered, mut start) = (None, None, None);
-        let mut ways = 0;
         for corner in self.star(at) {
             walk.around.push(corner / 3);
             let [x, y] = [next(corner), prev(corner)].map(|x| self.vertex(x));
@@ -103,25 +133,17 @@ impl State<'_> {
             for (v, side, h) in [(x, sides[0], corner), (y, sides[1], prev(corner))] {
                 match self.is_passed(v, side, [at, to]) {
                     Ok(false) => {}
-                    Ok(true) => {
-                        // The two half-edges of an edge are one way.
-                        ways += u32::from(edge.is_none_or(|(other, _)| other != self.twin(h)));
-                        lower(&mut edge, (h, v));
-                    }
-                    Err(obstacle) => {
-                        ways += 2;
-                        lower(&mut covered, (h, obstacle));
-                    }
+                    Ok(true) => lower(&mut edge, (h, v)),
+                    Err(obstacle) => lower(&mut covered, (h, obstacle)),
                 }
             }
             if sides[0].is_ne() && sides[0] == sides[1].reverse() && self.sign([at, x, y]) == sides[1] {
-                ways += 1;
                 lower(&mut start, (next(corner), sides[1]));
             }
         }
-        walk.is_vague |= ways > 1;
         walk.check(most)?;
         if let Some((h, v)) = edge {
+            self.suspect(walk, v);
             return Ok(Part { ends: [at, v], way: Way::Edge(h) });
         }
         if let Some((_, obstacle)) = covered {
@@ -130,6 +152,7 @@ impl State<'_> {
         let (mut h, sign) = start.ok_or(Some(Obstacle::Leaves(at)))?;
         let mut half_edges = Vec::new();
         walk.crossed.push(h / 3);
+        self.ends(h).into_iter().for_each(|v| self.suspect(walk, v));
         loop {
             if self.twin(h) == NONE {
                 return Err(Obstacle::Border(h).into());
@@ -142,16 +165,21 @@ impl State<'_> {
             walk.crossed.push(g / 3);
             walk.check(most)?;
             let far = self.vertex(prev(g));
+            self.suspect(walk, far);
             if self.sign([g, next(g), prev(g)].map(|x| self.vertex(x))) != sign {
                 return Err(Obstacle::Folded(g / 3).into());
             }
             let side = side(far);
-            let is_passed = self.is_passed(far, side, [at, to]);
-            walk.is_vague |= is_passed.is_err();
-            if is_passed? {
+            if self.is_passed(far, side, [at, to])? {
                 return Ok(Part { ends: [at, far], way: Way::Across { half_edges, sign } });
             }
             h = if side == sign { next(g) } else { prev(g) };
+        }
+    }
+
+    fn suspect(&self, walk: &mut Walk, v: u32) {
+        if !self.embedded.at(v) {
+            walk.suspects.push(v);
         }
     }
 
