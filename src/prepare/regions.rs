@@ -2,8 +2,10 @@
 
 use crate::mesh::half_edge::next;
 use crate::mesh::named_edges::{half_edges, ordered};
+use crate::predicates::area_sign;
 use crate::system::threads::Threads;
-use crate::{Adjacency, Error, Mesh, NONE};
+use crate::{Adjacency, Dimension, Error, Mesh, NONE};
+use glam::DVec2;
 use std::collections::VecDeque;
 
 /// The regions of a mesh.
@@ -15,21 +17,30 @@ pub struct Regions {
     pub of_triangles: Vec<u32>,
     /// Whether each triangle is inside.
     pub inside: Vec<bool>,
+    /// Whether the edges are closed polygons: an even number of them ends at every vertex. If not, `inside` is a guess.
+    pub is_closed: bool,
 }
 
 /// Cuts a mesh into regions along `edges`, each given by its two vertices, such as
-/// [`Constrained::locked_edges`](crate::Constrained::locked_edges). Two triangles are in one region if a path from one
+/// [`Constrained::constraint_edges`](crate::Constrained::constraint_edges). Two triangles are in one region if a path from one
 /// to the other crosses none of these edges. A path crosses only edges that have two triangles.
 ///
-/// A triangle is inside by the even-odd rule: a path to it from outside the mesh crosses the edges an odd number of
-/// times. An edge that is given twice counts twice, so that two polygons with a common side are both inside. If the
-/// edges are not closed polygons, the path with the fewest crossings counts. In a component without boundary, the region
-/// of the first triangle is not inside.
+/// A triangle is inside by the even-odd rule: a path to it from outside crosses the edges an odd number of times. An edge
+/// that is given twice counts twice, so that two polygons with a common side are both inside. In the plane, outside is
+/// what surrounds a component, not a hole in it. In space, it is all that lies beyond the boundary; in a component
+/// without boundary, the region of the first triangle is not inside. If the edges are not closed polygons, the path with
+/// the fewest crossings counts.
 ///
 /// # Errors
 /// [`Error::Option`] for a pair that is no edge of the mesh.
 pub fn regions(mesh: &Mesh, edges: &[[u32; 2]]) -> Result<Regions, Error> {
-    let cuts = half_edges(mesh, edges)?;
+    let cuts = half_edges(mesh, edges).map_err(|error| match error {
+        Error::Option { message, .. } => Error::Option {
+            option: "edges",
+            message: format!("{message}; bring it in first, as a constraint"),
+        },
+        other => other,
+    })?;
     let triangles = mesh.triangle_count();
     let twins = Adjacency::of_triangles(mesh.vertex_count(), mesh.triangles(), &Threads::default()).twins;
     let mut pairs: Vec<[u32; 2]> = edges.iter().map(|&ends| ordered(ends)).collect();
@@ -42,37 +53,20 @@ pub fn regions(mesh: &Mesh, edges: &[[u32; 2]]) -> Result<Regions, Error> {
         crossings[h as usize] = (times % 2) as u8;
     }
     let sides = |t: usize| 3 * t..3 * t + 3;
-
-    let (mut count, mut of_triangles) = (0, vec![NONE; triangles]);
-    let mut stack = Vec::new();
-    for first in 0..triangles {
-        if of_triangles[first] != NONE {
-            continue;
-        }
-        of_triangles[first] = count;
-        stack.push(first);
-        while let Some(t) = stack.pop() {
-            for h in sides(t).filter(|&h| crossings[h] == NOT_CUT && twins[h] != NONE) {
-                let neighbour = twins[h] as usize / 3;
-                if of_triangles[neighbour] == NONE {
-                    of_triangles[neighbour] = count;
-                    stack.push(neighbour);
-                }
-            }
-        }
-        count += 1;
-    }
+    let (count, of_triangles) = parts(&twins, |h| crossings[h] == NOT_CUT);
 
     // The fewest crossings from outside. The front of the queue has one crossing less than the back, at most.
     let mut fewest = vec![u32::MAX; triangles];
     let mut queue = VecDeque::new();
     let times = |h: usize| u32::from(crossings[h] == 1);
-    for most in 0..2 {
-        let is_border = |&h: &usize| twins[h] == NONE && times(h) == most;
-        queue.extend((0..3 * triangles).filter(is_border).map(|h| (h / 3, most)));
-    }
+    let mut borders = match mesh.dimension() {
+        Dimension::Two => outer_borders(mesh, &twins),
+        Dimension::Three => (0..3 * triangles).filter(|&h| twins[h] == NONE).collect(),
+    };
+    borders.sort_by_key(|&h| times(h));
+    queue.extend(borders.into_iter().map(|h| (h / 3, times(h))));
     for first in 0..triangles {
-        // Border triangles come first; then one triangle of each component that they do not reach.
+        // Triangles at the border come first; then one triangle of each component that they do not reach.
         if queue.is_empty() && fewest[first] == u32::MAX {
             queue.push_back((first, 0));
         }
@@ -91,7 +85,70 @@ pub fn regions(mesh: &Mesh, edges: &[[u32; 2]]) -> Result<Regions, Error> {
         }
     }
     let inside = fewest.into_iter().map(|crossed| crossed % 2 == 1).collect();
-    Ok(Regions { count, of_triangles, inside })
+    let mut ends: Vec<u32> = edges.concat();
+    ends.sort_unstable();
+    let is_closed = ends.chunk_by(|u, v| u == v).all(|ends| ends.len() % 2 == 0);
+    Ok(Regions { count, of_triangles, inside, is_closed })
+}
+
+/// The parts of a mesh that are joined by the half-edges that `joins` accepts: how many there are, and the part of each
+/// triangle. They are numbered in the order of their first triangles.
+fn parts(twins: &[u32], joins: impl Fn(usize) -> bool) -> (u32, Vec<u32>) {
+    let (mut count, mut of_triangles) = (0, vec![NONE; twins.len() / 3]);
+    let mut stack = Vec::new();
+    for first in 0..of_triangles.len() {
+        if of_triangles[first] != NONE {
+            continue;
+        }
+        of_triangles[first] = count;
+        stack.push(first);
+        while let Some(t) = stack.pop() {
+            for h in (3 * t..3 * t + 3).filter(|&h| joins(h) && twins[h] != NONE) {
+                let neighbour = twins[h] as usize / 3;
+                if of_triangles[neighbour] == NONE {
+                    of_triangles[neighbour] = count;
+                    stack.push(neighbour);
+                }
+            }
+        }
+        count += 1;
+    }
+    (count, of_triangles)
+}
+
+/// The outer boundary of each component in the plane, in half-edges. It has the highest vertex of the boundary, the first
+/// from the left if there are several, and of the boundary edges there the first from the left.
+fn outer_borders(mesh: &Mesh, twins: &[u32]) -> Vec<usize> {
+    let (count, components) = parts(twins, |_| true);
+    let mut outer: Vec<Option<(DVec2, DVec2, usize)>> = vec![None; count as usize];
+    for h in (0..twins.len()).filter(|&h| twins[h] == NONE) {
+        let [u, v] = [h, next(h as u32) as usize].map(|x| mesh.point2(mesh.triangles()[x]));
+        let best = &mut outer[components[h / 3] as usize];
+        for (top, end) in [(u, v), (v, u)] {
+            let is_better = best.is_none_or(|(other, other_end, _)| {
+                let is_higher = top.y > other.y || top.y == other.y && top.x < other.x;
+                is_higher || top == other && area_sign(top, end, other_end).is_gt()
+            });
+            if is_better {
+                *best = Some((top, end, h));
+            }
+        }
+    }
+    let mut borders = Vec::new();
+    for (.., first) in outer.into_iter().flatten() {
+        let mut h = first;
+        loop {
+            borders.push(h);
+            h = next(h as u32) as usize;
+            while twins[h] != NONE {
+                h = next(twins[h]) as usize;
+            }
+            if h == first {
+                break;
+            }
+        }
+    }
+    borders
 }
 
 /// The mark of a half-edge that cuts nothing.
@@ -102,7 +159,7 @@ mod tests {
     #![allow(clippy::unwrap_used, reason = "what fails here is a failed test")]
 
     use super::*;
-    use crate::{Constrained, Dimension, constrained, families};
+    use crate::{Constrained, constrained, families};
     use proptest::prelude::*;
 
     /// The sides of polygons, each a list of vertices.
@@ -117,8 +174,8 @@ mod tests {
     /// How many regions there are, and the area inside.
     fn found(mesh: &Mesh, edges: &[[u32; 2]]) -> (u32, f64) {
         let Constrained { mesh, locked_edges, .. } = constrained(mesh, edges, &[], false, None).unwrap();
-        let Regions { count, of_triangles, inside } = regions(&mesh, &locked_edges).unwrap();
-        assert_eq!(of_triangles[0], 0);
+        let Regions { count, of_triangles, inside, is_closed } = regions(&mesh, &locked_edges).unwrap();
+        assert_eq!((of_triangles[0], is_closed), (0, edges.len() != 1));
         assert!((0..count).all(|region| of_triangles.contains(&region)));
         let (corners, _) = mesh.triangles().as_chunks::<3>();
         let area = |&[a, b, c]: &[u32; 3]| {
@@ -156,6 +213,36 @@ mod tests {
         assert_eq!(area(&[&[at(0, 2), at(5, 2)]]), (2, 0));
         let line = |from, to| found(&mesh, &[[from, to]]);
         assert_eq!((line(at(0, 2), at(5, 2)), line(at(1, 2), at(4, 2))), ((2, 0.0), (1, 0.0)));
+    }
+
+    /// A ring around a hole of the mesh, around a turned triangle, and around nothing.
+    #[test]
+    fn a_hole_of_the_mesh_is_not_outside() {
+        let square = |from: i32, to: i32| [[from, from], [to, from], [to, to], [from, to]];
+        let points = [square(0, 6), square(1, 5), square(2, 4)].concat().concat();
+        let positions: Vec<f64> = points.into_iter().map(f64::from).collect();
+        let band = |outer: u32, inner: u32| {
+            (0..4).flat_map(move |k| {
+                let n = (k + 1) % 4;
+                [outer + k, outer + n, inner + n, outer + k, inner + n, inner + k]
+            })
+        };
+        let hollow: Vec<u32> = band(0, 4).chain(band(4, 8)).collect();
+        let ring = sides(&[&[4, 5, 6, 7]]);
+        for (more, expected) in [(vec![], 8), (vec![8, 9, 10, 8, 10, 11], 10), (vec![9, 8, 10, 8, 10, 11], 9)]
+        {
+            let triangles = [hollow.clone(), more].concat();
+            let clockwise = triangles.iter().rev().copied().collect();
+            for triangles in [triangles, clockwise] {
+                let mesh = Mesh::new(Dimension::Two, positions.clone(), triangles).unwrap();
+                let found = regions(&mesh, &ring).unwrap();
+                let inside = found.inside.iter().filter(|&&inside| inside).count();
+                assert_eq!((inside, found.is_closed), (expected, true));
+                assert!(regions(&mesh, &[]).unwrap().inside.iter().all(|&inside| !inside));
+                let whole = regions(&mesh, &sides(&[&[0, 1, 2, 3]])).unwrap();
+                assert_eq!(whole.inside.iter().filter(|&&inside| inside).count(), 8 + expected);
+            }
+        }
     }
 
     #[test]

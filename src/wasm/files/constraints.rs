@@ -46,13 +46,16 @@ pub fn constrain(
         let locked_edges = locks::edges(&mesh, &options)?;
         constrained(&mesh, &pairs("constraints", constraints)?, &locked_edges, skips, None)
     };
-    let Constrained { mesh, locked_edges, flips, left_out } = work().map_err(thrown)?;
+    let result = work().map_err(thrown)?;
+    let constraint_edges = Uint32Array::from(result.constraint_edges().as_flattened());
+    let Constrained { mesh, locked_edges, flips, left_out, .. } = result;
     let left_out = left_out.into_iter().map(|LeftOut { index, reason }| {
         object([("index", (index as f64).into()), ("reason", reason.into())])
     });
     Ok(object([
         ("indices", Uint32Array::from(mesh.triangles()).into()),
         ("lockedEdges", Uint32Array::from(locked_edges.as_flattened()).into()),
+        ("constraintEdges", constraint_edges.into()),
         ("flips", (flips as f64).into()),
         ("leftOut", left_out.collect::<Array>().into()),
     ]))
@@ -76,6 +79,7 @@ pub fn regions_of(
         ("count", found.count.into()),
         ("ofTriangles", Uint32Array::from(found.of_triangles.as_slice()).into()),
         ("inside", Uint8Array::from(inside.as_slice()).into()),
+        ("isClosed", found.is_closed.into()),
     ]))
 }
 
