@@ -12,6 +12,8 @@ export interface Preparation {
   welded?: Welded;
   /** What `constraints` brought in. */
   constrained?: Constrained;
+  /** The indices before `constraints` came in, until vertices move. */
+  before?: Uint32Array | undefined;
 }
 
 /** The indices and the settings that a session starts with. */
@@ -35,6 +37,7 @@ export async function prepare(
   return {
     ...prepared,
     constrained,
+    before: indices,
     indices: constrained.indices,
     settings: { ...others, lockedEdges: constrained.lockedEdges },
   };

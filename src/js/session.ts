@@ -148,7 +148,7 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
     }
   }
 
-  /** Runs to the end, or until the signal stops the run. A stopped session can continue. */
+  /** Runs to the end, or until the signal stops the run. A session that a signal stopped can continue. */
   async run(options: RunOptions = {}): Promise<Result<I>> {
     return this.#run(watchOf(options));
   }
@@ -194,7 +194,10 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
    */
   async setPositions(positions: VertexArray): Promise<void> {
     const moved = floatsOf(positions, this.#layout, copyOf);
-    return this.#call((session) => session.setPositions(moved));
+    return this.#call(async (session) => {
+      await session.setPositions(moved);
+      this.#prepared.before = undefined;
+    });
   }
 
   /**
@@ -244,6 +247,7 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
   }
 
   #update(session: ModuleSession, { positions, buffer, iterations }: Update): void | Promise<void> {
+    this.#prepared.before = undefined;
     if (buffer) {
       const { device, positionBuffer } = session;
       if (!device || !positionBuffer) {
@@ -327,17 +331,22 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
   }
 
   /**
-   * Checks the triangles against the input, exactly, and lists the edges that are not Delaunay. The check shares no
-   * code with the engines. It is in a WebAssembly module of its own, which the first call loads.
+   * Checks the triangles against the input, exactly, and lists the edges that are not Delaunay. After `setPositions` and
+   * after updates, the input is the mesh as it was then. The check shares no code with the engines. It is in a
+   * WebAssembly module of its own, which the first call loads.
    *
    * @throws {@link EdgeflipError} `load-failed`; see {@link init}.
    */
   verify(): Promise<Audit> {
     return this.#call(async (session) => {
-      const input = await session.auditInput();
+      const { before, constrained } = this.#prepared;
+      const [positions, indices, dimension, triangles, locks, options, none] = await session.auditInput();
       await loadAudit();
       const { audit } = await import('./wasm/edgeflip_audit.js');
-      return audit(...input);
+      if (!before || !constrained) return audit(positions, indices, dimension, triangles, locks, options, none);
+      const { constraintEdges: edges, lockedEdges } = constrained;
+      const locked = lockedEdges.subarray(0, lockedEdges.length - edges.length);
+      return audit(positions, before, dimension, triangles, locked, options, edges);
     });
   }
 

@@ -8,8 +8,8 @@ use crate::{Options, quality};
 use js_sys::{Array, Uint32Array};
 use wasm_bindgen::prelude::*;
 
-/// As [`quality::audit`]. `locked_edges` has all edges that the options lock, 2 vertices per edge; `options` has no
-/// lists.
+/// As [`quality::audit`]. `locked_edges` has all edges that the options lock, and `constraints` those that were brought in
+/// after `indices`, 2 vertices per edge; `options` has no lists.
 ///
 /// # Errors
 /// Those of [`Mesh::new`](crate::Mesh::new); [`Error::OutOfMemory`](crate::Error::OutOfMemory).
@@ -21,11 +21,13 @@ pub fn audit(
     triangles: &Uint32Array,
     locked_edges: &Uint32Array,
     options: &JsOptions,
+    constraints: &Uint32Array,
 ) -> Result<JsValue, JsValue> {
     let check = || {
         let input = mesh_of(positions, indices, dimension, &Threads::one())?;
-        let locked_edges = locked_edges.to_vec().as_chunks().0.to_vec();
-        let options = Options { locked_edges, ..without_lists(options)? };
+        let [locked_edges, constraints] =
+            [locked_edges, constraints].map(|ends| ends.to_vec().as_chunks().0.to_vec());
+        let options = Options { locked_edges, constraints, ..without_lists(options)? };
         Ok(quality::audit(&input, &triangles.to_vec(), &options))
     };
     let audit = check().map_err(thrown)?;

@@ -241,7 +241,8 @@ impl JsSession {
         })
     }
 
-    /// The arguments of `audit` in `src/wasm/audit.rs`, which checks the same as [`Session::verify`].
+    /// The arguments of `audit` in `src/wasm/audit.rs`, which checks the same as [`Session::verify`], for a session
+    /// without constraints.
     #[wasm_bindgen(js_name = auditInput, unchecked_return_type = "Promise<Parameters<typeof import('./edgeflip_audit.js').audit>>")]
     pub fn audit_input(&self) -> Promise {
         let input = async |session: &mut Session| {
@@ -256,6 +257,7 @@ impl JsSession {
                 array(&triangles),
                 array(options.locked_edges.as_flattened()),
                 options.given.clone().into(),
+                array(&[]),
             ])
         };
         self.ask(input, |arguments| arguments.iter().collect::<Array>().into())
