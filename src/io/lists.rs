@@ -19,7 +19,12 @@ pub fn parse_edges(bytes: &[u8]) -> Result<Vec<[u32; 2]>, Error> {
         match words[..] {
             [] => {}
             [u, v] => edges.push([index(u)?, index(v)?]),
-            _ => return Err(lines.refuse(format!("expected 2 vertex indices, found {}", words.len()))),
+            _ => {
+                return Err(lines.refuse(format!(
+                    "expected 2 vertex indices with a space between, found {}",
+                    words.len()
+                )));
+            }
         }
     }
     Ok(edges)

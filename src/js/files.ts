@@ -50,7 +50,8 @@ export interface FileMesh extends IndexedMesh {
   notes: string[];
   /**
    * The positions in the scene of a glTF file, to draw the mesh: 3 numbers per vertex. `positions` has the coordinates
-   * of the file, each part in its own system, and the flips use those. `undefined` for other formats.
+   * that the flips use: those of the file, each part in its own system, but scaled where a node scales it unevenly.
+   * `undefined` for other formats.
    */
   placed: Float32Array | undefined;
   /**
@@ -67,7 +68,7 @@ export interface FileMesh extends IndexedMesh {
 
 /** The options of {@link readMesh}. */
 export interface ReadOptions {
-  /** Default: 2 if the file has two coordinates per vertex or every z is 0, else 3. */
+  /** Default: 2 if the file has two coordinates per vertex or every z is 0, else 3. For glTF always 3. */
   dimension?: 2 | 3 | undefined;
   /** The most bytes that the file may have, compressed and unpacked. Default: 2^30. */
   maxBytes?: number | undefined;
@@ -116,10 +117,14 @@ export interface Constrained {
   /** Vertex indices, 3 per triangle. */
   indices: Uint32Array;
   /**
-   * The edges that must not flip, two vertices per edge, for the option `lockedEdges`: all locks, then the constraints. A
-   * constraint through vertices is several edges.
+   * The edges that must not flip, two vertices per edge, for the option `lockedEdges`: all locks, then the constraints.
    */
   lockedEdges: Uint32Array;
+  /**
+   * The end of `lockedEdges`, without the locks, for {@link regions}. The edges are in the order of the constraints; a
+   * constraint through vertices is several edges.
+   */
+  constraintEdges: Uint32Array;
   /** The flips that brought them in. */
   flips: number;
   /** The constraints that were left out. */
@@ -134,6 +139,8 @@ export interface Regions {
   ofTriangles: Uint32Array;
   /** 1 for each triangle that is inside, else 0. */
   inside: Uint8Array;
+  /** Whether the edges are closed polygons: an even number of them ends at every vertex. If not, `inside` is a guess. */
+  isClosed: boolean;
 }
 
 /** The result of {@link weld}: a mesh whose vertices at the same position are joined. */
@@ -328,25 +335,30 @@ export async function constrain(
   locks: Locks = {},
   skips = false,
 ): Promise<Constrained> {
+  if (typeof skips !== 'boolean') {
+    throw new EdgeflipError('invalid-input', `skips: ${shown(skips)} is not true or false`);
+  }
   const { positions, indices, dimension } = moduleMesh(mesh, held);
   const list = (given: IndexArray, what: string) => held(wordsOf(given, what), what);
   const pairs = list(constraints, 'constraints');
   const given = read('the locks', () => {
-    const names = Object.entries(optionsOf(locks, LOCKS) as Locks).map(([name, value]) => [
+    const names = Object.entries(optionsOf(locks, LOCKS, 'locks') as Locks).map(([name, value]) => [
       name,
       list(value ?? [], name),
     ]);
     return { lockedEdges: NONE, lockedTriangles: NONE, groups: NONE, ...Object.fromEntries(names) };
   });
-  return call(() => wasm.constrain(positions, indices, dimension, pairs, given, Boolean(skips)));
+  return call(() => wasm.constrain(positions, indices, dimension, pairs, given, skips));
 }
 
 /**
- * Cuts a mesh into regions along edges, such as {@link Constrained.lockedEdges}, and tells which triangles are inside.
- * Two triangles are in one region if a path from one to the other crosses none of these edges. A triangle is inside if a
- * path to it from outside the mesh crosses the edges an odd number of times. An edge that is given twice counts twice,
- * so two polygons with a common side are both inside. If the edges are not closed polygons, the path with the fewest
- * crossings counts. In a component without boundary, the region of the first triangle is not inside.
+ * Cuts a mesh into regions along edges, such as {@link Constrained.constraintEdges}, and tells which triangles are
+ * inside. Two triangles are in one region if a path from one to the other crosses none of these edges.
+ *
+ * A triangle is inside if a path to it from outside crosses the edges an odd number of times. An edge that is given twice
+ * counts twice, so two polygons with a common side are both inside. In the plane, outside is what surrounds a component,
+ * not a hole in it. In space, it is all that lies beyond the boundary; in a component without boundary, the region of the
+ * first triangle is not inside. If the edges are not closed polygons, the path with the fewest crossings counts.
  *
  * @param edges - Pairs of vertices, one pair after the other.
  * @throws {@link EdgeflipError} about the mesh; `invalid-option` for a pair that is no edge of the mesh;

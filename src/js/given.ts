@@ -45,7 +45,15 @@ export function messageOf(thrown: unknown): string {
 export function shown(value: unknown): string {
   if (typeof value === 'string') return `'${value.length > 40 ? `${value.slice(0, 40)}…` : value}'`;
   if (typeof value === 'function') return 'a function';
-  return typeof value === 'object' && value !== null ? 'an object' : String(value);
+  if (typeof value === 'bigint') return `${value}n`;
+  if (typeof value !== 'object' || value === null) return String(value);
+  const name: unknown = nameOf.call(value);
+  if (typeof name === 'string') return `a ${name}`;
+  try {
+    return Array.isArray(value) ? 'a list' : 'an object';
+  } catch {
+    return 'an object';
+  }
 }
 
 /** @throws {@link EdgeflipError} `invalid-input` if the value is not an object. */

@@ -60,8 +60,8 @@ export interface GeometryResult<G extends BufferGeometry = BufferGeometry> exten
 type Attribute = BufferAttribute | InterleavedBufferAttribute | GLBufferAttribute;
 
 /**
- * Flips the edges of a geometry until every edge is Delaunay or cannot flip. Only the content of `geometry.index`
- * changes: its type, the vertices, the attributes, `groups` and the bounding volumes stay. A geometry without an index
+ * Flips the edges of a geometry until every edge is Delaunay or cannot flip. Without `renderer`, only the content of
+ * `geometry.index` changes: its type, the vertices, the attributes, `groups` and the bounding volumes stay. A geometry without an index
  * gets one if an edge flips. Only triangles in `drawRange` change.
  *
  * Edges of a seam, where the attributes of vertices at the same position differ, stay, and so do edges between

@@ -409,7 +409,7 @@ export interface Result<I extends IndexArray = Uint32Array> {
   remaining: Reasons;
   /**
    * Times in milliseconds: `upload` is the preparation of a GPU and the copies to it, `adjacency` the construction of
-   * the twins, `flip` the iterations, `total` all of it. WebGPU in a browser is awaited once, after the first
+   * the twins, `flip` the iterations, `total` all of it, without `weld`, `reorient` and `constraints`. WebGPU in a browser is awaited once, after the first
    * iterations; `flip` then includes the copies and the adjacency.
    */
   timings: { upload: number; adjacency: number; flip: number; total: number };
@@ -417,8 +417,8 @@ export interface Result<I extends IndexArray = Uint32Array> {
 
 /**
  * All edges, with one entry per edge in each array: the Edges array of Navarro, Hitschfeld-Kahler and Scheihing (2011).
- * `ta` and `tb` are half-edges, that is indices into the triangle indices: `indices[ta]` is `v1`, and the edge belongs
- * to triangle `floor(ta / 3)`. Edges are in the order of `ta`, the smaller of the two half-edges.
+ * `ta` and `tb` are half-edges, that is indices into the triangle indices: `indices[ta]` is `v1` (with `weld`, a vertex
+ * at the same position), and the edge belongs to triangle `floor(ta / 3)`. Edges are in the order of `ta`, the smaller of the two half-edges.
  */
 export interface Edges {
   /** First vertex. */

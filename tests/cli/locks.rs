@@ -23,8 +23,8 @@ fn locked_edges_stay() {
     for (text, status, line) in [
         ("0 2\n1 3\n", 2, "option locked_edges: the mesh has no edge between vertices 1 and 3"),
         ("0 9\n", 2, "option locked_edges: the mesh has no edge between vertices 0 and 9"),
-        ("0 1\n2\n", 1, "LIST: line 2: expected 2 vertex indices, found 1"),
-        ("0 1 2\n", 1, "LIST: line 1: expected 2 vertex indices, found 3"),
+        ("0 1\n2\n", 1, "LIST: line 2: expected 2 vertex indices with a space between, found 1"),
+        ("0 1 2\n", 1, "LIST: line 1: expected 2 vertex indices with a space between, found 3"),
         ("0 -1\n", 1, "LIST: line 1: expected a vertex index, found `-1`"),
         ("0 4294967296\n", 1, "LIST: line 1: expected a vertex index, found `4294967296`"),
         ("zero one\n", 1, "LIST: line 1: expected a vertex index, found `zero`"),

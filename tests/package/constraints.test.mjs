@@ -4,7 +4,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { EdgeflipError, FlipSession, makeDelaunay } from 'edgeflip';
-import { constrain, generate } from 'edgeflip/files';
+import { constrain, generate, regions } from 'edgeflip/files';
 
 /** The edges of triangles, each as `smaller-larger`. */
 function edgesOf(indices) {
@@ -96,9 +96,29 @@ test('wrong constraints are refused', async () => {
   }
   await assert.rejects(
     makeDelaunay(await generate('uvsphere 9'), { constraints: [0, 1] }),
-    refused('invalid-option', /plane/),
+    refused('invalid-option', /dimension 2/),
   );
   await assert.rejects(constrain(mesh, [0]), refused('ragged-array', /constraints/));
   await assert.rejects(constrain(mesh, '0 1'), refused('invalid-input', /constraints/));
   await assert.rejects(constrain(mesh, [0, 1], { locked: [] }), refused('invalid-option', /locked/));
+  await assert.rejects(constrain(mesh, [0, 1], [0, 1]), refused('invalid-input', /^locks: a list is not/));
+  await assert.rejects(constrain(mesh, [0, 1], {}, 1), refused('invalid-input', /^skips: 1 is not true or false$/));
+  await assert.rejects(constrain(mesh, [[0, 1]]), refused('invalid-input', /number 0 is a list$/));
+  await assert.rejects(constrain(mesh, [0n, 1n]), refused('invalid-input', /number 0 is 0n$/));
+});
+
+test('regions are cut along the constraints, not along the locks', async () => {
+  // A square of two triangles beside another one.
+  const positions = Float64Array.of(0, 0, 1, 0, 2, 0, 0, 1, 1, 1, 2, 1);
+  const indices = [0, 1, 4, 0, 4, 3, 1, 2, 5, 1, 5, 4];
+  const mesh = { positions, indices, dimension: 2 };
+  const ring = [0, 1, 1, 4, 4, 3, 3, 0];
+  const { constraintEdges, lockedEdges } = await constrain(mesh, ring, { lockedEdges: [2, 5], lockedTriangles: [3] });
+  assert.deepEqual([...constraintEdges], ring);
+  assert.deepEqual([...lockedEdges.slice(-ring.length)], ring);
+  const { inside, isClosed } = await regions(mesh, constraintEdges);
+  assert.deepEqual([[...inside], isClosed], [[1, 1, 0, 0], true]);
+  assert.equal((await regions(mesh, ring.slice(2))).isClosed, false);
+  const missing = /^option edges: the mesh has no edge between vertices 0 and 5; bring it in first/;
+  await assert.rejects(regions(mesh, [0, 5]), refused('invalid-option', missing));
 });

@@ -130,9 +130,13 @@ test('wrong arrays are refused with a message that names them', async () => {
   await refused({ stride: 2 }, 'invalid-input', /^stride: 2 is not a whole number of at least 3$/);
   await refused({ stride: '8' }, 'invalid-input', /^stride: '8' is not/);
   await refused({ offset: -1 }, 'invalid-input', /^offset: -1 is not/);
-  await refused({ positions: [0, 0, 0] }, 'invalid-input', /^positions: an object is not a typed array/);
+  await refused({ positions: [0, 0, 0] }, 'invalid-input', /^positions: a list is not a typed array/);
   await refused({ indices: [0, 1, 1.5] }, 'invalid-input', /^indices: .* number 2 is 1.5$/);
-  await refused({ indices: new Float32Array(3) }, 'invalid-input', /^indices: an object is neither an integer array/);
+  await refused(
+    { indices: new Float32Array(3) },
+    'invalid-input',
+    /^indices: a Float32Array is neither an integer array/,
+  );
   await refused({ indices: Int8Array.of(0, 1, -1) }, 'index-out-of-range', /4294967295/);
   await refused({ stride: 3, offset: 2 ** 32 - 1 }, 'index-out-of-range', /./);
   await refused({ stride: 2 ** 32 - 1 }, 'index-out-of-range', /./);

@@ -38,7 +38,7 @@ Examples:
   edgeflip terrain.off -o terrain-delaunay.off
   edgeflip scan.obj -o scan.obj --max-normal-angle 5 --verify
   edgeflip map.off -o map.off --lock-edges rivers.txt
-  edgeflip terrain.ply -o terrain.ply --constraints ridges.txt
+  edgeflip map.ply -o map.ply --constraints borders.txt
   edgeflip part.off -o part.obj --backend cpu --json --quiet | jq .flips
   edgeflip scan.ply.gz -o - | ssh host 'cat >scan.ply.gz'";
 
@@ -138,13 +138,13 @@ pub struct Args {
     /// Leave out the edges of --constraints that cannot be brought in
     ///
     /// The summary counts them, and --json lists them.
-    #[arg(long)]
+    #[arg(long, requires = "constraints")]
     pub skip_constraints: bool,
 
     /// Reverse triangles first, so that neighbours have the same orientation
     ///
     /// In each component that is orientable, the minority is reversed. Without it, edges between triangles of opposite
-    /// orientation stay, and the summary counts them as `inconsistent`.
+    /// orientation stay; the summary counts those that are not Delaunay as `inconsistent`.
     #[arg(long)]
     pub reorient: bool,
 
