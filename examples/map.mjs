@@ -26,9 +26,9 @@ const sides = rings.flatMap((ring) => ring.slice(1).flatMap((point, i) => [verte
 const positions = Float64Array.from([...vertices.keys()].flatMap((key) => key.split(' ').map(Number)));
 
 const points = { positions, indices: new Delaunator(positions).triangles, dimension: 2 };
-const { indices: start, lockedEdges, flips } = await constrain(points, sides);
+const { indices: start, lockedEdges, constraintEdges, flips } = await constrain(points, sides);
 const { indices } = await makeDelaunay({ ...points, indices: start }, { lockedEdges });
-const { inside, ofTriangles } = await regions({ ...points, indices }, lockedEdges);
+const { inside, ofTriangles } = await regions({ ...points, indices }, constraintEdges);
 
 const corner = (vertex) => `${positions[2 * vertex]} ${positions[2 * vertex + 1]}`;
 const land = Array.from(inside.keys()).filter((t) => inside[t] === 1);
