@@ -204,6 +204,7 @@ const levels = [
           'engines',
           'paper',
           'accessible',
+          'start',
         ],
         2,
       ),
