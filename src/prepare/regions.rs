@@ -59,8 +59,13 @@ pub fn regions(mesh: &Mesh, edges: &[[u32; 2]]) -> Result<Regions, Error> {
     let mut fewest = vec![u32::MAX; triangles];
     let mut queue = VecDeque::new();
     let times = |h: usize| u32::from(crossings[h] == 1);
+    let mut ends: Vec<u32> = edges.concat();
+    ends.sort_unstable();
+    let is_closed = ends.chunk_by(|u, v| u == v).all(|ends| ends.len() % 2 == 0);
     let mut borders = match mesh.dimension() {
-        Dimension::Two => outer_borders(mesh, &twins),
+        // Where the edges are closed, all paths agree, so one edge at the outside suffices.
+        Dimension::Two if is_closed => outer_edges(mesh, &twins),
+        Dimension::Two => outer_edges(mesh, &twins).into_iter().flat_map(|h| border(&twins, h)).collect(),
         Dimension::Three => (0..3 * triangles).filter(|&h| twins[h] == NONE).collect(),
     };
     borders.sort_by_key(|&h| times(h));
@@ -85,9 +90,6 @@ pub fn regions(mesh: &Mesh, edges: &[[u32; 2]]) -> Result<Regions, Error> {
         }
     }
     let inside = fewest.into_iter().map(|crossed| crossed % 2 == 1).collect();
-    let mut ends: Vec<u32> = edges.concat();
-    ends.sort_unstable();
-    let is_closed = ends.chunk_by(|u, v| u == v).all(|ends| ends.len() % 2 == 0);
     Ok(Regions { count, of_triangles, inside, is_closed })
 }
 
@@ -116,9 +118,9 @@ fn parts(twins: &[u32], joins: impl Fn(usize) -> bool) -> (u32, Vec<u32>) {
     (count, of_triangles)
 }
 
-/// The outer boundary of each component in the plane, in half-edges. It has the highest vertex of the boundary, the first
-/// from the left if there are several, and of the boundary edges there the first from the left.
-fn outer_borders(mesh: &Mesh, twins: &[u32]) -> Vec<usize> {
+/// A half-edge at the outside of each component in the plane: of the boundary edges at the highest vertex of the boundary,
+/// or the first from the left of the highest ones, that which is first from the left.
+fn outer_edges(mesh: &Mesh, twins: &[u32]) -> Vec<usize> {
     let (count, components) = parts(twins, |_| true);
     let mut outer: Vec<Option<(DVec2, DVec2, usize)>> = vec![None; count as usize];
     for h in (0..twins.len()).filter(|&h| twins[h] == NONE) {
@@ -134,21 +136,23 @@ fn outer_borders(mesh: &Mesh, twins: &[u32]) -> Vec<usize> {
             }
         }
     }
-    let mut borders = Vec::new();
-    for (.., first) in outer.into_iter().flatten() {
-        let mut h = first;
-        loop {
-            borders.push(h);
-            h = next(h as u32) as usize;
-            while twins[h] != NONE {
-                h = next(twins[h]) as usize;
-            }
-            if h == first {
-                break;
-            }
+    outer.into_iter().flatten().map(|(.., h)| h).collect()
+}
+
+/// The boundary half-edges that a walk along the boundary meets from one of them on.
+fn border(twins: &[u32], first: usize) -> Vec<usize> {
+    let mut border = Vec::new();
+    let mut h = first;
+    loop {
+        border.push(h);
+        h = next(h as u32) as usize;
+        while twins[h] != NONE {
+            h = next(twins[h]) as usize;
+        }
+        if h == first {
+            return border;
         }
     }
-    borders
 }
 
 /// The mark of a half-edge that cuts nothing.
@@ -185,13 +189,17 @@ mod tests {
         (count, corners.iter().zip(inside).filter(|&(_, inside)| inside).map(|(t, _)| area(t)).sum())
     }
 
-    /// On a lattice of 6 by 6 points at distance 1.
-    #[test]
-    fn polygons_with_holes_and_common_sides() {
+    /// A lattice of 6 by 6 points at distance 1.
+    fn lattice() -> Mesh {
         let positions: Vec<f64> = (0..36).flat_map(|v| [f64::from(v % 6), f64::from(v / 6)]).collect();
         let corners = (0..25).map(|i| 6 * (i / 5) + i % 5);
         let triangles = corners.flat_map(|v| [v, v + 1, v + 7, v, v + 7, v + 6]).collect();
-        let mesh = Mesh::new(Dimension::Two, positions, triangles).unwrap();
+        Mesh::new(Dimension::Two, positions, triangles).unwrap()
+    }
+
+    #[test]
+    fn polygons_with_holes_and_common_sides() {
+        let mesh = lattice();
         let at = |x: u32, y: u32| 6 * y + x;
         let square = |from: u32, to: u32| [at(from, from), at(to, from), at(to, to), at(from, to)];
         let [whole, outer, hole] = [square(0, 5), square(1, 4), square(2, 3)];
@@ -242,6 +250,19 @@ mod tests {
                 let whole = regions(&mesh, &sides(&[&[0, 1, 2, 3]])).unwrap();
                 assert_eq!(whole.inside.iter().filter(|&&inside| inside).count(), 8 + expected);
             }
+        }
+    }
+
+    /// A hole that touches the outer boundary in a vertex, on the lattice of 6 by 6 points.
+    #[test]
+    fn a_hole_may_touch_the_boundary() {
+        let mut mesh = lattice();
+        let mut triangles = mesh.triangles().to_vec();
+        let hole = triangles.as_chunks().0.iter().position(|t| *t == [1, 8, 7]).unwrap();
+        triangles.drain(3 * hole..3 * hole + 3);
+        mesh = mesh.with_triangles(triangles).unwrap();
+        for (polygon, area) in [([0, 5, 35, 30], 24.5), ([0, 3, 15, 12], 5.5)] {
+            assert_eq!(found(&mesh, &sides(&[&polygon])).1, area);
         }
     }
 

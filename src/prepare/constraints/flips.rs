@@ -59,9 +59,9 @@ impl Flips<'_> {
         let hn = next(h);
         let gn = self.twin(hn);
         let g = prev(gn);
-        let [a, b] = [h, g].map(|x| self.vertex(x));
-        move_anchor(self.fans, b, g, hn);
-        move_anchor(self.fans, a, h, gn);
+        let [a, b, c, d] = [h, g, gn, hn].map(|x| self.vertex(x));
+        move_anchor(self.fans, d, hn, prev(g));
+        move_anchor(self.fans, c, gn, prev(h));
         self.move_twins([h, g], [gn, hn]);
         self.triangles[hn as usize].set(b);
         self.triangles[gn as usize].set(a);

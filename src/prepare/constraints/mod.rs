@@ -110,7 +110,7 @@ pub fn constrained(
 /// Each constraint from the end where fewer triangles and constraints meet: a walk begins with a search among the
 /// triangles of its first vertex.
 fn directed(state: &State, constraints: &[[u32; 2]]) -> Vec<[u32; 2]> {
-    let mut met = state.degrees();
+    let mut met: Vec<u32> = (0..state.mesh.vertex_count() as u32).map(|v| state.degree(v)).collect();
     constraints.as_flattened().iter().for_each(|&v| met[v as usize] += 1);
     let direct = |&[u, v]: &[u32; 2]| if met[v as usize] < met[u as usize] { [v, u] } else { [u, v] };
     constraints.iter().map(direct).collect()
@@ -178,7 +178,9 @@ impl Work<'_> {
                 format!("crosses triangle {triangle}, which is flat or turned over")
             }
             Obstacle::Covered(vertex) => {
-                format!("passes its end before it meets vertex {vertex}: the mesh overlaps there")
+                format!(
+                    "reaches the point of vertex {vertex}, but in triangles without it: weld vertices at one point; else the mesh overlaps there"
+                )
             }
             Obstacle::Doubled([a, b]) => {
                 format!("needs an edge between {a} and {b}, which the mesh has elsewhere: it overlaps there")

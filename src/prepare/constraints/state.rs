@@ -100,13 +100,13 @@ impl<'a> State<'a> {
         lock(&mut self.twins, if twin == NONE { &both[..1] } else { &both });
     }
 
-    /// For each vertex, the number of its triangles.
-    pub(super) fn degrees(&self) -> Vec<u32> {
-        self.hubs.iter().map(|hub| hub.degree).collect()
+    /// The number of triangles of a vertex.
+    pub(super) fn degree(&self, v: u32) -> u32 {
+        self.hubs[v as usize].degree
     }
 
     pub(super) fn is_used(&self, v: u32) -> bool {
-        self.hubs[v as usize].degree > 0
+        self.degree(v) > 0
     }
 
     /// The half-edges that start at a vertex that has triangles.

@@ -55,8 +55,7 @@ pub(super) enum Obstacle {
     Locked(u32),
     /// It crosses this triangle, which is flat, or of the other winding than the triangle before it.
     Folded(u32),
-    /// An edge of the mesh, or a triangle, covers its second end without having it as a vertex. The number is a vertex
-    /// behind the second end.
+    /// It comes to the point of this vertex, its second end, in triangles that do not have the vertex.
     Covered(u32),
     /// The flips that bring it in would make this edge, which the mesh has elsewhere.
     Doubled([u32; 2]),
@@ -97,12 +96,15 @@ impl State<'_> {
     }
 
     fn find_known(&self, walk: &mut Walk) {
-        let Walk { suspects, known, around, .. } = walk;
+        let Walk { parts, suspects, known, around, .. } = walk;
         suspects.sort_unstable();
         suspects.dedup();
-        if let [_, _, ..] = suspects[..] {
+        let is_across = |part: &Part| matches!(part.way, Way::Across { .. });
+        if suspects.len() > 1 && parts.as_ref().is_ok_and(|parts| parts.iter().any(is_across)) {
             let known = known.insert(HashSet::new());
-            for &v in &*suspects {
+            // Each edge is found at both ends, so the largest star need not be searched.
+            let largest = suspects.iter().copied().max_by_key(|&v| self.degree(v));
+            for &v in suspects.iter().filter(|&&v| Some(v) != largest) {
                 for corner in self.star(v) {
                     around.push(corner / 3);
                     let others = [next(corner), prev(corner)].map(|h| self.vertex(h));
@@ -154,11 +156,17 @@ impl State<'_> {
         walk.crossed.push(h / 3);
         self.ends(h).into_iter().for_each(|v| self.suspect(walk, v));
         loop {
+            // Where the mesh overlaps, the walk may have passed the end.
+            let stopped = |obstacle: Obstacle| {
+                let [x, y] = self.ends(h);
+                let is_ahead = self.sign([x, y, to]) == sign.reverse();
+                Err(Some(if is_ahead { obstacle } else { Obstacle::Covered(to) }))
+            };
             if self.twin(h) == NONE {
-                return Err(Obstacle::Border(h).into());
+                return stopped(Obstacle::Border(h));
             }
             if self.is_locked(h) {
-                return Err(Obstacle::Locked(h).into());
+                return stopped(Obstacle::Locked(h));
             }
             half_edges.push(h);
             let g = self.twin(h);
@@ -167,7 +175,7 @@ impl State<'_> {
             let far = self.vertex(prev(g));
             self.suspect(walk, far);
             if self.sign([g, next(g), prev(g)].map(|x| self.vertex(x))) != sign {
-                return Err(Obstacle::Folded(g / 3).into());
+                return stopped(Obstacle::Folded(g / 3));
             }
             let side = side(far);
             if self.is_passed(far, side, [at, to])? {
@@ -199,7 +207,7 @@ impl State<'_> {
         if order(point[axis], from[axis]) != ahead {
             return Ok(false);
         }
-        if order(end[axis], point[axis]) == ahead { Ok(true) } else { Err(Obstacle::Covered(v)) }
+        if order(end[axis], point[axis]) == ahead { Ok(true) } else { Err(Obstacle::Covered(to)) }
     }
 }
 
