@@ -146,7 +146,8 @@ export interface Options {
   /**
    * Edges to bring in before the run, as pairs of vertices, one pair after the other, for a mesh in the plane. The edges
    * that they cross flip away; then they are locked. A vertex on such an edge splits it. An edge that crosses another
-   * one, a locked edge or the boundary is an error that names both. Loads the module of `edgeflip/files`.
+   * one, a locked edge or the boundary is an error that names both. For a terrain as seen from above, give its `x, y, z`
+   * with the dimension 2 and the stride 3. Loads the module of `edgeflip/files`.
    */
   constraints?: IndexArray | undefined;
   /**

@@ -95,6 +95,7 @@ impl State<'_> {
         walk.check(most).is_ok().then_some(walk)
     }
 
+    /// Finds the edges between suspects, if the constraint needs flips.
     fn find_known(&self, walk: &mut Walk) {
         let Walk { parts, suspects, known, around, .. } = walk;
         suspects.sort_unstable();
