@@ -146,13 +146,11 @@ export interface Options {
   /**
    * Edges to bring in before the run, as pairs of vertices, one pair after the other, for a mesh in the plane. The edges
    * that they cross flip away; then they are locked. A vertex on such an edge splits it. An edge that crosses another
-   * one, a locked edge or the boundary is an error that names both. For a terrain as seen from above, give its `x, y, z`
-   * with the dimension 2 and the stride 3. Loads the module of `edgeflip/files`.
+   * one, a locked edge or the boundary is an error that names both. For a terrain, give `dimension: 2, stride: 3`: the
+   * heights then do not count. Loads the module of `edgeflip/files`.
    */
   constraints?: IndexArray | undefined;
-  /**
-   * Leaves out the constraints that cannot be brought in; the result lists them as `leftOut`. Default: they are errors.
-   */
+  /** Leaves out the constraints that cannot be brought in, and lists them as `leftOut`. Default: they are errors. */
   skipConstraints?: boolean | undefined;
   /**
    * First reverses the minority of inconsistently oriented triangles in each orientable component. Without it, edges
