@@ -358,9 +358,9 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
   /**
    * The device and the buffers on the GPU, to draw without a copy; `undefined` on the CPU. `positions` has 2 or 3 f32
    * per vertex (doubles are rounded), `indices` 3 u32 per triangle. The usage of both includes STORAGE, VERTEX or
-   * INDEX, COPY_SRC and COPY_DST. Write only `positions`, for
-   * {@link update}, and use the buffers only until `free`; {@link setPositions} says when it keeps them. With `'auto'`, call this again after each call of the session: if the GPU fails or cannot accept new
-   * positions, the session continues on the CPU. The device is the `device` of the options, else one that all sessions
+   * INDEX, COPY_SRC and COPY_DST. Write only `positions`, for {@link update}, and use the buffers only until `free`;
+   * {@link setPositions} says when it keeps them. With `'auto'`, call this again after each call of the session: if the
+   * GPU fails or cannot accept new positions, the session continues on the CPU. The device is the `device` of the options, else one that all sessions
    * share. With the option `trackChanges`, `changes` has a u32 per triangle as {@link changes}, from a byte of a buffer
    * on; its usage includes STORAGE and COPY_SRC.
    */

@@ -61,8 +61,8 @@ type Attribute = BufferAttribute | InterleavedBufferAttribute | GLBufferAttribut
 
 /**
  * Flips the edges of a geometry until every edge is Delaunay or cannot flip. Without `renderer`, only the content of
- * `geometry.index` changes: its type, the vertices, the attributes, `groups` and the bounding volumes stay. A geometry without an index
- * gets one if an edge flips. Only triangles in `drawRange` change.
+ * `geometry.index` changes: its type, the vertices, the attributes, `groups` and the bounding volumes stay. A geometry
+ * without an index gets one if an edge flips. Only triangles in `drawRange` change.
  *
  * Edges of a seam, where the attributes of vertices at the same position differ, stay, and so do edges between
  * groups. Positions are those without morph targets and skinning.

@@ -408,16 +408,16 @@ export interface Result<I extends IndexArray = Uint32Array> {
   remaining: Reasons;
   /**
    * Times in milliseconds: `upload` is the preparation of a GPU and the copies to it, `adjacency` the construction of
-   * the twins, `flip` the iterations, `total` all of it, without `weld`, `reorient` and `constraints`. WebGPU in a browser is awaited once, after the first
-   * iterations; `flip` then includes the copies and the adjacency.
+   * the twins, `flip` the iterations, `total` all of it, but not `weld`, `reorient` and `constraints`. WebGPU in a
+   * browser is awaited once, after the first iterations; `flip` then includes the copies and the adjacency.
    */
   timings: { upload: number; adjacency: number; flip: number; total: number };
 }
 
 /**
  * All edges, with one entry per edge in each array: the Edges array of Navarro, Hitschfeld-Kahler and Scheihing (2011).
- * `ta` and `tb` are half-edges, that is indices into the triangle indices: `indices[ta]` is `v1` (with `weld`, a vertex
- * at the same position), and the edge belongs to triangle `floor(ta / 3)`. Edges are in the order of `ta`, the smaller of the two half-edges.
+ * `ta` and `tb` are half-edges, that is indices into the triangle indices: `indices[ta]` is `v1`, or a vertex at its
+ * place with `weld`. The edge belongs to triangle `floor(ta / 3)`. Edges are in the order of `ta`, the smaller of both.
  */
 export interface Edges {
   /** First vertex. */

@@ -22,8 +22,8 @@ pub struct Regions {
 }
 
 /// Cuts a mesh into regions along `edges`, each given by its two vertices, such as
-/// [`Constrained::constraint_edges`](crate::Constrained::constraint_edges). Two triangles are in one region if a path from one
-/// to the other crosses none of these edges. A path crosses only edges that have two triangles.
+/// [`Constrained::constraint_edges`](crate::Constrained::constraint_edges). Two triangles are in one region if a path
+/// from one to the other crosses none of these edges. A path crosses only edges that have two triangles.
 ///
 /// A triangle is inside by the even-odd rule: a path to it from outside crosses the edges an odd number of times. An edge
 /// that is given twice counts twice, so that two polygons with a common side are both inside. In the plane, outside is
@@ -118,8 +118,8 @@ fn parts(twins: &[u32], joins: impl Fn(usize) -> bool) -> (u32, Vec<u32>) {
     (count, of_triangles)
 }
 
-/// A half-edge at the outside of each component in the plane: of the boundary edges at the highest vertex of the boundary,
-/// or the first from the left of the highest ones, that which is first from the left.
+/// A half-edge at the outside of each component in the plane: of the boundary edges at the highest vertex of the
+/// boundary, or the first from the left of the highest ones, that which is first from the left.
 fn outer_edges(mesh: &Mesh, twins: &[u32]) -> Vec<usize> {
     let (count, components) = parts(twins, |_| true);
     let mut outer: Vec<Option<(DVec2, DVec2, usize)>> = vec![None; count as usize];

@@ -179,7 +179,7 @@ impl Work<'_> {
             }
             Obstacle::Covered(vertex) => {
                 format!(
-                    "reaches the point of vertex {vertex}, but in triangles without it: weld vertices at one point; else the mesh overlaps there"
+                    "reaches the point of vertex {vertex} in triangles without it: weld, or the mesh overlaps"
                 )
             }
             Obstacle::Doubled([a, b]) => {

@@ -10,8 +10,8 @@
 //! either.
 //!
 //! Where the mesh overlaps, a constraint may have several ways to go, and the edges of other places may block its flips.
-//! An earlier one may change both, if it or this one meets suspects: vertices whose stars may not be embedded. While such a
-//! constraint waits, so do all after it. The first of a round is always free, unless its walk is cut short.
+//! An earlier one may change both, if it or this one meets suspects: vertices whose stars may not be embedded. While such
+//! a constraint waits, so do all after it. The first of a round is always free, unless its walk is cut short.
 
 use super::insert::Guard;
 use super::state::State;
