@@ -70,6 +70,14 @@ function holdKernels() {
   });
 }
 
+/** Runs in the page, after `holdKernels`. Frames come late until the first picture, as on a busy machine. */
+function delayFrames() {
+  const { requestAnimationFrame } = window;
+  const isLate = () => window.seen.picture === undefined;
+  window.requestAnimationFrame = (callback) =>
+    isLate() ? setTimeout(() => requestAnimationFrame(callback), 500) : requestAnimationFrame(callback);
+}
+
 const seen = (page) => page.page.evaluate(() => ({ ...window.seen, devices: window.seen.devices.length }));
 const announcement = (page) => page.page.textContent('#announcement');
 const focus = (page) => page.page.evaluate(() => document.activeElement.id);
@@ -79,7 +87,7 @@ const onWebGpu = (page) =>
 
 test('the first mesh is drawn before any kernel is requested, plays on the CPU, and moves to WebGPU after the compilation', async (t) => {
   const { rows, facts, fingerprints } = await expected(first.path, first.maxNormalAngle);
-  const page = await openEdgeflip(browser, holdKernels);
+  const page = await openEdgeflip(browser, holdKernels, delayFrames);
   const opened = await page.look();
   assert.deepEqual([opened.backend, opened.facts.Engine, opened.note], ['auto', UNTIL_READY, '']);
   await page.page.waitForFunction(() => window.seen.kernels > 0);

@@ -117,6 +117,11 @@ export class Display {
     }
   }
 
+  /** Waits until the page has drawn what it shows. */
+  async painted(): Promise<void> {
+    await this.#graphics.scene?.painted();
+  }
+
   /** Shows how the edges flip from the last picture to this one, if there is one iteration between them. */
   #turn(run: Run, indices: Uint32Array | undefined): void {
     const last = this.#last;

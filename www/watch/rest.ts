@@ -59,6 +59,8 @@ export class Rest {
     const isOutdated = () => call !== this.#calls || page.standing().isPlaying || run !== page.shown()?.run;
     delete document.body.dataset['measured'];
     await new Promise((resolve) => setTimeout(resolve, QUIET));
+    // The measurement does not hold up the picture.
+    await page.display.painted();
     if (isOutdated()) return;
     try {
       if (page.standing().summary?.iterations !== run.iterations.length) {

@@ -184,6 +184,12 @@ export class Scene {
     });
   }
 
+  /** Waits for the next picture, if one is due. */
+  async painted(): Promise<void> {
+    // It comes in the same frame, before this.
+    if (this.#frame) await new Promise(requestAnimationFrame);
+  }
+
   /** Waits until the GPU has done everything. */
   async #finished(): Promise<void> {
     await this.#device?.queue.onSubmittedWorkDone().catch(() => {});
