@@ -11,9 +11,16 @@ export interface Preparation {
   /** What `weld` joined. */
   welded?: Welded;
   /** What `constraints` brought in. */
-  constrained?: Constrained;
-  /** The indices before `constraints` came in, until vertices move. */
-  before?: Uint32Array | undefined;
+  constrained?: Pick<Constrained, 'flips' | 'leftOut'>;
+  /** What the audit compares with, until vertices move. */
+  before?: Before | undefined;
+}
+
+/** The mesh before `constraints` came in, and the edges that they are now. No array of it belongs to the settings. */
+export interface Before {
+  indices: Uint32Array;
+  lockedEdges: Uint32Array;
+  constraintEdges: Uint32Array;
 }
 
 /** The indices and the settings that a session starts with. */
@@ -33,13 +40,20 @@ export async function prepare(
   const { indices, welded } = prepared;
   const ends = welded ? placed(constraints, welded) : constraints;
   const locks = { lockedEdges, lockedTriangles, groups };
-  const constrained = await constrain({ ...mesh, indices }, ends, locks, skipConstraints);
+  const { constraintEdges, flips, leftOut, ...made } = await constrain(
+    { ...mesh, indices },
+    ends,
+    locks,
+    skipConstraints,
+  );
+  const ofLocks = made.lockedEdges.length - constraintEdges.length;
   return {
     ...prepared,
-    constrained,
-    before: indices,
-    indices: constrained.indices,
-    settings: { ...others, lockedEdges: constrained.lockedEdges },
+    constrained: { flips, leftOut },
+    // The locks are a copy, because a session may transfer its settings.
+    before: { indices, lockedEdges: made.lockedEdges.slice(0, ofLocks), constraintEdges },
+    indices: made.indices,
+    settings: { ...others, lockedEdges: made.lockedEdges },
   };
 }
 

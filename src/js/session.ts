@@ -339,14 +339,13 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
    */
   verify(): Promise<Audit> {
     return this.#call(async (session) => {
-      const { before, constrained } = this.#prepared;
+      const { before } = this.#prepared;
       const [positions, indices, dimension, triangles, locks, options, none] = await session.auditInput();
       await loadAudit();
       const { audit } = await import('./wasm/edgeflip_audit.js');
-      if (!before || !constrained) return audit(positions, indices, dimension, triangles, locks, options, none);
-      const { constraintEdges: edges, lockedEdges } = constrained;
-      const locked = lockedEdges.subarray(0, lockedEdges.length - edges.length);
-      return audit(positions, before, dimension, triangles, locked, options, edges);
+      if (!before) return audit(positions, indices, dimension, triangles, locks, options, none);
+      const { indices: input, lockedEdges, constraintEdges } = before;
+      return audit(positions, input, dimension, triangles, lockedEdges, options, constraintEdges);
     });
   }
 

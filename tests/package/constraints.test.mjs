@@ -30,12 +30,15 @@ test('a long constraint becomes a path of edges, and the rest is Delaunay', asyn
     const mesh = await generate(name);
     const last = mesh.positions.length / 2 - 1;
     const constraints = [0, last];
-    const { lockedEdges, flips, leftOut } = await constrain(mesh, constraints);
-    const pairs = pairsOf(lockedEdges);
+    // Two sides of a triangle at another corner.
+    const t = 3 * Math.floor(mesh.indices.indexOf(Math.sqrt(last + 1) - 1) / 3);
+    const locks = { lockedEdges: [t, t + 1, t + 1, t + 2].map((i) => mesh.indices[i]) };
+    const { constraintEdges, flips, leftOut } = await constrain(mesh, constraints, locks);
+    const pairs = pairsOf(constraintEdges);
     assert.deepEqual([pairs[0][0], pairs.at(-1)[1], leftOut], [0, last, []]);
     let wanted;
     for (const options of [{ threads: 1 }, { threads: 2 }, { order: 'any' }]) {
-      const session = await FlipSession.create(mesh, { backend: 'cpu', constraints, ...options });
+      const session = await FlipSession.create(mesh, { backend: 'cpu', constraints, ...locks, ...options });
       const result = await session.run();
       assert.equal(result.constraintFlips, flips);
       assert.deepEqual([result.status, result.leftOut], ['done', []]);
