@@ -3,7 +3,7 @@
 // that does not run proves nothing.
 
 import { spawn, spawnSync } from 'node:child_process';
-import { readFileSync } from 'node:fs';
+import { readdirSync, readFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
 
 process.chdir(fileURLToPath(new URL('..', import.meta.url)));
@@ -37,10 +37,20 @@ const builtPage = [
   ['node', 'node_modules/typescript/bin/tsc', '-p', 'www'],
   ['node', 'node_modules/vite/bin/vite.js', 'build', '-c', 'www/vite.config.js'],
 ];
-const pageTests = (files, atOnce = 1) => [
-  ...['node', '--test', `--test-concurrency=${atOnce}`, '--test-reporter=tap'],
-  ...files.map((file) => `tests/page/${file}.test.mjs`),
+/** A run of files of tests in a folder, `atOnce` at a time, or as many as Node finds right. */
+const nodeTests = (folder, files, atOnce) => [
+  ...['node', '--test', '--test-reporter=tap', ...(atOnce ? [`--test-concurrency=${atOnce}`] : [])],
+  ...files.map((file) => `tests/${folder}/${file}.test.mjs`),
 ];
+const testsIn = (folder) =>
+  readdirSync(`tests/${folder}`).flatMap((file) => file.match(/^(.*)\.test\.mjs$/)?.[1] ?? []);
+
+// A new file of tests is in a level by its name.
+const isInBrowsers = (file) => file.endsWith('.browser');
+const inBrowsers = testsIn('package').filter(isInBrowsers);
+const inNode = testsIn('package').filter((file) => !isInBrowsers(file));
+const alone = ['handover', 'large', 'firefox'];
+const onPage = testsIn('page').filter((file) => !alone.includes(file));
 
 /** @type {Level[]} */
 const levels = [
@@ -120,31 +130,7 @@ const levels = [
     checks: [
       ['node', 'tools/build.mjs'],
       ['node', 'node_modules/typescript/bin/tsc', '-p', 'tests/package'],
-      [
-        'node',
-        '--test',
-        '--test-concurrency=2',
-        '--test-reporter=tap',
-        'tests/package/node.test.mjs',
-        'tests/package/docs.test.mjs',
-        'tests/package/files.test.mjs',
-        'tests/package/gltf.test.mjs',
-        'tests/package/mesh.test.mjs',
-        'tests/package/weld.test.mjs',
-        'tests/package/three.test.mjs',
-        'tests/package/gltf-transform.test.mjs',
-        'tests/package/threads.test.mjs',
-        'tests/package/memory.test.mjs',
-        'tests/package/limited.test.mjs',
-        'tests/package/hostile.test.mjs',
-        'tests/package/options.test.mjs',
-        'tests/package/sync.test.mjs',
-        'tests/package/worker.test.mjs',
-        'tests/package/release.test.mjs',
-        'tests/package/cycles.test.mjs',
-        'tests/package/moving.test.mjs',
-        'tests/package/paper.test.mjs',
-      ],
+      nodeTests('package', inNode, 2),
     ],
     counts: true,
   },
@@ -162,24 +148,7 @@ const levels = [
   {
     name: 'npm package in browsers',
     what: 'the packed package in fresh projects: plain pages in Chromium and Firefox, every bundler and runtime of docs/package.md, TypeScript, on the CPU and WebGPU',
-    checks: [
-      [
-        'node',
-        '--test',
-        '--test-reporter=tap',
-        'tests/package/browser.test.mjs',
-        'tests/package/bundlers.test.mjs',
-        'tests/package/loss.test.mjs',
-        'tests/package/waits.test.mjs',
-        'tests/package/options.browser.test.mjs',
-        'tests/package/three.browser.test.mjs',
-        'tests/package/examples.browser.test.mjs',
-        'tests/package/projects.test.mjs',
-        'tests/package/cycles.browser.test.mjs',
-        'tests/package/moving.browser.test.mjs',
-        'tests/package/polygons.browser.test.mjs',
-      ],
-    ],
+    checks: [nodeTests('package', inBrowsers)],
     counts: true,
     beside: true,
   },
@@ -188,40 +157,19 @@ const levels = [
     what: 'the demo page opens files, plays, scrubs and downloads on every engine, draws from the buffer that the flips write, and recovers',
     // Two files at a time: a page mostly compiles kernels for the software GPU, on one thread. `handover` runs alone,
     // because it depends on timing.
-    checks: [
-      ...builtPage,
-      pageTests(
-        [
-          'files',
-          'opening',
-          'buffer',
-          'controls',
-          'watch',
-          'drawing',
-          'move',
-          'offline',
-          'explain',
-          'engines',
-          'paper',
-          'accessible',
-          'start',
-        ],
-        2,
-      ),
-      pageTests(['handover']),
-    ],
+    checks: [...builtPage, nodeTests('page', onPage, 2), nodeTests('page', ['handover'], 1)],
     counts: true,
   },
   {
     name: 'page with a large mesh',
     what: 'the demo page plays 720,000 triangles in Chromium as the native program does, without a long task',
-    checks: [[...cargoTest, '--no-run'], ...builtPage, pageTests(['large'])],
+    checks: [[...cargoTest, '--no-run'], ...builtPage, nodeTests('page', ['large'], 1)],
     counts: true,
   },
   {
     name: 'page in Firefox',
     what: 'the demo page opens a file, plays and scrubs on every engine',
-    checks: [...builtPage, pageTests(['firefox'])],
+    checks: [...builtPage, nodeTests('page', ['firefox'], 1)],
     counts: true,
   },
 ];

@@ -117,6 +117,6 @@ export const cases = {
   },
   // `options.test.mjs` counts the workers.
   threads: (given) => isRefused(given, 'threads', 257),
-  // Only a browser has a GPUDevice, and only WebGPU uses it: `loss.test.mjs` tests it.
+  // Only a browser has a GPUDevice, and only WebGPU uses it: `loss.browser.test.mjs` tests it.
   device: (given) => isRefused(given, 'device', {}),
 };
