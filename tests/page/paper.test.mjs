@@ -72,7 +72,9 @@ test('the plots have the flips of the package', async () => {
     if (nodes) await page.click(`#paper [data-nodes="${nodes}"]`);
     const flips = await flipsOf(spec);
     const sum = flips.reduce((total, count) => total + count, 0).toLocaleString('en');
-    await figure(spec).getByText(`${sum} flips in ${flips.length} iterations`).waitFor({ timeout: 60_000 });
+    const caption = figure(spec).locator('figcaption', { hasNotText: 'Running' });
+    const text = await caption.textContent({ timeout: 90_000 });
+    assert.ok(text.startsWith(`${sum} flips in ${flips.length} iterations, `), text);
     const drawn = await figure(spec).locator('.count').allTextContents();
     assert.deepEqual(
       drawn,

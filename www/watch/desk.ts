@@ -40,9 +40,6 @@ export interface Quality {
 /** The flips of an iteration, and the edges that could flip before it. */
 export type Flips = Pick<Iteration, 'flips' | 'labelled'>;
 
-/** The longest time in milliseconds in which all iterations are run ahead. */
-const LOOK_AHEAD = 4000;
-
 class Desk {
   #session: FlipSession | undefined;
   #before: Uint32Array = new Uint32Array();
@@ -87,11 +84,11 @@ class Desk {
   }
 
   /**
-   * The flips of all iterations of a run; `undefined` if it takes long. Every engine has the same, so they hold for the
-   * run on any engine.
+   * The flips of all iterations of a run; `undefined` if it takes more than `longest` milliseconds. Every engine has the
+   * same, so they hold for the run on any engine.
    */
-  async lookAhead(mesh: OpenMesh, options: Options): Promise<Flips[] | undefined> {
-    const end = performance.now() + LOOK_AHEAD;
+  async lookAhead(mesh: OpenMesh, options: Options, longest: number): Promise<Flips[] | undefined> {
+    const end = performance.now() + longest;
     const session = await naming(sessionOf(mesh, { ...options, backend: 'cpu' }));
     try {
       const all: Flips[] = [];

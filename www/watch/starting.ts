@@ -13,6 +13,9 @@ import type { Backend, Run } from './run.ts';
 /** The most triangles of a mesh whose iterations are counted before they are shown. */
 const AHEAD = 200_000;
 
+/** The longest time in milliseconds that they are counted. */
+const LONGEST = 4000;
+
 type Chosen = Options & { backend: Backend };
 
 /** Starts a run with these settings, once the picture can be drawn. */
@@ -40,5 +43,5 @@ export async function startRun(
 /** The flips of all iterations of a small mesh; `undefined` for a large one. */
 export async function flipsAhead({ mesh, office }: Opened, options: Chosen): Promise<Flips[] | undefined> {
   if (mesh.indices.length > 3 * AHEAD) return undefined;
-  return office.ask((desk) => desk.lookAhead(mesh, options)).catch(() => undefined);
+  return office.ask((desk) => desk.lookAhead(mesh, options, LONGEST)).catch(() => undefined);
 }
