@@ -37,6 +37,7 @@ const builtPage = [
   ['node', 'node_modules/typescript/bin/tsc', '-p', 'www'],
   ['node', 'node_modules/vite/bin/vite.js', 'build', '-c', 'www/vite.config.js'],
 ];
+
 /** A run of files of tests in a folder, `atOnce` at a time, or as many as Node finds right. */
 const nodeTests = (folder, files, atOnce) => [
   ...['node', '--test', '--test-reporter=tap', ...(atOnce ? [`--test-concurrency=${atOnce}`] : [])],

@@ -16,8 +16,8 @@ export interface Preparation {
   before?: Before | undefined;
 }
 
-/** The mesh before `constraints` came in, and the edges that they are now. No array of it belongs to the settings. */
-export interface Before {
+/** The mesh before `constraints` came in, and the edges that they became. The settings share none of these arrays. */
+interface Before {
   indices: Uint32Array;
   lockedEdges: Uint32Array;
   constraintEdges: Uint32Array;

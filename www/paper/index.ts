@@ -17,7 +17,7 @@ const significant = new Intl.NumberFormat('en', { maximumSignificantDigits: 3 })
 const MESH_5 = 'uvsphere 600';
 const WORST = [8, 12, 16, 1000];
 
-/** The longest time in milliseconds of a run for a plot. A slow phone takes several seconds. */
+/** The milliseconds after which a run for a plot stops. A slow phone needs time. */
 const LONGEST = 60_000;
 
 /** Puts the section into `host`. The plots run when they are near the view. */

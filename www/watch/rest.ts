@@ -59,7 +59,7 @@ export class Rest {
     const isOutdated = () => call !== this.#calls || page.standing().isPlaying || run !== page.shown()?.run;
     delete document.body.dataset['measured'];
     await new Promise((resolve) => setTimeout(resolve, QUIET));
-    // The measurement does not hold up the picture.
+    // The picture comes first, because a measurement would hold it up.
     await page.display.painted();
     if (isOutdated()) return;
     try {

@@ -13,7 +13,7 @@ import type { Backend, Run } from './run.ts';
 /** The most triangles of a mesh whose iterations are counted before they are shown. */
 const AHEAD = 200_000;
 
-/** The longest time in milliseconds that they are counted. */
+/** The milliseconds after which counting stops. */
 const LONGEST = 4000;
 
 type Chosen = Options & { backend: Backend };
