@@ -1,4 +1,5 @@
-//! A session on the CPU never takes more memory than it checks for before it starts.
+//! A session on the CPU never takes more memory than it checks for before it starts. This is a program of its own,
+//! because its allocator counts the bytes of a whole process.
 // Clippy's exemption for tests does not reach their shared functions.
 #![allow(clippy::unwrap_used)]
 #![allow(unsafe_code, reason = "the trait for allocators is unsafe")]

@@ -16,7 +16,7 @@ use wasm_bindgen_test::{wasm_bindgen_test, wasm_bindgen_test_configure};
 
 wasm_bindgen_test_configure!(run_in_browser);
 
-/// The same check as `edge_states.rs` makes natively.
+/// The same check as `native/edge_states.rs` makes natively.
 #[wasm_bindgen_test]
 async fn states_foretell_the_flips() {
     // SwiftShader, Chromium's software GPU, is slow, above all to compile the kernels for doubles and for deviations.

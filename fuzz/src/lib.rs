@@ -1,7 +1,7 @@
 //! Checks what has to hold for the bytes of any file. The file is read, or refused with an error of one line. A run on
 //! the mesh, and one on the welded mesh, end with a clean audit. The mesh is written in every format, and each written
 //! file is read back as the same mesh. In its own format, a file also keeps everything else. The fuzz targets call
-//! this, and so does `tests/fuzz_seeds.rs`.
+//! this, and so does `tests/native/fuzz_seeds.rs`.
 
 use edgeflip::io::{Format, Loaded, ReadOptions, parse_edges, parse_numbers, parse_with};
 use edgeflip::{Dimension, Error, Mesh, Options, make_delaunay, quality};

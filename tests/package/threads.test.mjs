@@ -40,7 +40,7 @@ test('the result is the same for any number of threads, in both orders', async (
   assert.equal(started.length, 2 + 3);
 });
 
-test('a large mesh in random order flips as tests/digests.rs says', async () => {
+test('a large mesh in random order flips as tests/native/digests.rs says', async () => {
   const { indices } = await makeDelaunay(meshes[3], { backend: 'cpu', threads: 2 });
   assert.equal(new Digest(indices).toString(), 'b84ed3d4281f2ddc');
 });

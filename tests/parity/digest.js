@@ -1,4 +1,4 @@
-/** FNV-1a with 64 bits over the little-endian bytes of the words so far, as in tests/simulation/digest.rs. */
+/** FNV-1a with 64 bits over the little-endian bytes of the words so far, as in tests/native/simulation/digest.rs. */
 export class Digest {
   #high = 0xcbf29ce4;
   #low = 0x84222325;

@@ -1,5 +1,5 @@
 // The browser columns of the parity matrix: compares the engines in browsers with the simulation. Reads
-// target/parity.json, which tests/parity.rs writes, and adds a column for each engine.
+// target/parity.json, which tests/native/parity.rs writes, and adds a column for each engine.
 
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';

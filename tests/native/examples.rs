@@ -1,0 +1,63 @@
+//! The Rust programs in `examples/` and the command lines in README do what they say.
+#![cfg(feature = "cli")]
+
+#[path = "../../examples/file.rs"]
+#[allow(dead_code, reason = "its main reads the arguments of a command")]
+mod file;
+#[cfg(feature = "gpu")]
+#[path = "../../examples/moving.rs"]
+#[allow(dead_code, reason = "its main reads the arguments of a command")]
+mod moving;
+#[path = "../../examples/one_call.rs"]
+mod one_call;
+#[path = "../../examples/step_by_step.rs"]
+mod step_by_step;
+
+use edgeflip::Error;
+use std::fs;
+
+/// A thin diamond, split along its long diagonal, with a material.
+const THIN: &str = "v -3 0 0\nv 0 -1 0\nv 3 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\nf 1 3 4\n";
+
+#[test]
+fn one_call() -> Result<(), Error> {
+    one_call::main()
+}
+
+#[test]
+fn step_by_step() -> Result<(), Error> {
+    step_by_step::main()
+}
+
+#[test]
+#[cfg(feature = "gpu")]
+fn moving() {
+    let line = moving::run(20, 10).unwrap();
+    assert!(line.contains("722 triangles") && line.contains(", 0 edges left"), "{line}");
+}
+
+#[test]
+fn a_file_keeps_its_attributes() {
+    let folder = tempfile::tempdir().unwrap();
+    let [input, output] = ["thin.obj", "delaunay.obj"].map(|name| folder.path().join(name));
+    fs::write(&input, THIN).unwrap();
+    assert_eq!(file::flip_file(&input, &output).unwrap().flips, 1);
+    assert!(fs::read_to_string(&output).unwrap().contains("usemtl red"));
+}
+
+#[test]
+#[cfg(unix)]
+fn the_command_lines_in_readme() {
+    let readme = include_str!("../../README.md");
+    let (_, block) = readme.split_once("```sh\ncargo install --path .").unwrap();
+    let lines: Vec<&str> = block.lines().skip(1).take_while(|line| *line != "```").collect();
+    let [printf, flip] = lines.as_slice() else { unreachable!("{lines:?}") };
+    let script = format!("{printf}\n{}", flip.replacen("edgeflip", "\"$0\"", 1));
+
+    let folder = tempfile::tempdir().unwrap();
+    let mut bash = std::process::Command::new("bash");
+    bash.args(["-euc", &script, env!("CARGO_BIN_EXE_edgeflip")]).current_dir(folder.path());
+    assert!(bash.output().unwrap().status.success());
+    let written = fs::read_to_string(folder.path().join("delaunay.off")).unwrap();
+    assert!(written.ends_with("3 3 1 2\n3 0 1 3\n"), "{written}");
+}
