@@ -120,4 +120,4 @@ for (const [name, make] of Object.entries({ coasts, lines })) {
   writeFileSync(`${file}.txt`, pairs.map((pair) => `${pair.join(' ')}\n`).join(''));
   files.push(file);
 }
-execFileSync('cargo', ['bench', '--bench', 'constraints', '--', ...files], { stdio: 'inherit' });
+execFileSync('cargo', ['bench', '-p', 'benches', '--bench', 'constraints', '--', ...files], { stdio: 'inherit' });

@@ -1,18 +1,18 @@
 //! Measures constraints that come into the triangles of `delaunator`, next to the crate `spade`, which begins with the
-//! points. `cargo bench --bench constraints -- [--runs N] FILE…`, after `node benches/constraints.mjs`, which writes the
-//! files: `target/constraints/lines` stands for `lines.ply` and `lines.txt` in that folder.
+//! points. `cargo bench -p benches --bench constraints -- [--runs N] FILE…`, after `node benches/constraints.mjs`, which
+//! writes the files: `target/constraints/lines` stands for `lines.ply` and `lines.txt` in that folder.
 //!
 //! The runs are interleaved; the figures are medians.
 
+use benches::arguments::{Arguments, median};
 use edgeflip::{Backend, Mesh, Options, Order, constrained, io, make_delaunay};
 use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
 use std::{error::Error, hint::black_box, num::NonZeroUsize, ops::ControlFlow, sync::Arc, time::Instant};
 
-#[path = "arguments/mod.rs"]
-mod arguments;
-use arguments::{Arguments, median};
-
-const FILES: [&str; 2] = ["target/constraints/coasts", "target/constraints/lines"];
+const FILES: [&str; 2] = [
+    concat!(env!("CARGO_MANIFEST_DIR"), "/../target/constraints/coasts"),
+    concat!(env!("CARGO_MANIFEST_DIR"), "/../target/constraints/lines"),
+];
 
 /// What is measured, with its name.
 type Contender<'a> = (&'static str, Box<dyn Fn() -> Result<(), Box<dyn Error>> + 'a>);

@@ -1,23 +1,18 @@
 //! Finds the size from which on the GPU is faster than the CPU, and checks the choice of `auto`:
-//! `cargo bench --bench crossover -- [--runs N] [FAMILY…]`, with the meshes of a family from small to large.
+//! `cargo bench -p benches --bench crossover -- [--runs N] [FAMILY…]`, with the meshes of a family from small to large.
 //! `benches/crossover.html` does the same in a browser.
 //!
-//! The program needs only a GPU driver: build it with `cargo bench --bench crossover --no-run`, copy it to the machine
-//! with the GPU and run it there.
+//! The program needs only a GPU driver: build it with `cargo bench -p benches --bench crossover --no-run`, copy it to the
+//! machine with the GPU and run it there.
 
+use benches::arguments::{Arguments, median};
+use benches::rule::{is_late, verdict};
 use edgeflip::{Backend, Mesh, Options, Outcome, families, make_delaunay};
 use std::{
     error::Error,
     ops::ControlFlow,
     time::{Duration, Instant},
 };
-
-#[path = "arguments/mod.rs"]
-mod arguments;
-use arguments::{Arguments, median};
-#[path = "rule/mod.rs"]
-mod rule;
-use rule::{is_late, verdict};
 
 /// About 200 to 20,000,000 triangles, with the same sizes in the plane and in space.
 const MESHES: [&str; 20] = [

@@ -1,19 +1,17 @@
 //! Measures meshes that move: in every frame a compute pass moves the vertices, and an update flips edges, up to 4
-//! iterations; nothing is read back. `cargo bench --bench frames -- [--runs FRAMES] [FAMILY SPEED…]`; with
+//! iterations; nothing is read back. `cargo bench -p benches --bench frames -- [--runs FRAMES] [FAMILY SPEED…]`; with
 //! `EDGEFLIP_CHECK=1` it reads the positions of every frame, gives them to the CPU engine, and compares and audits
 //! every 60th frame.
 //!
 //! GPU time is between timestamps before the motion and after the flips, wall time from the first frame to the last.
 
+use benches::arguments::{Arguments, median};
 use edgeflip::{
     Backend, Dimension, GpuBuffers, Mesh, Options, Session, families, make_delaunay, quality, wgpu,
 };
 use pollster::block_on;
 use std::{env, error::Error, ops::ControlFlow, sync::Arc, time::Instant};
 
-#[path = "arguments/mod.rs"]
-mod arguments;
-use arguments::{Arguments, median};
 #[path = "../examples/motion/mod.rs"]
 mod motion;
 use motion::{Moving, Wave};

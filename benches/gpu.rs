@@ -1,28 +1,17 @@
 //! Measures the GPU, audits every result, and compares it with the CPU's, triangle by triangle.
-//! `cargo bench --bench gpu -- [--runs N] [FAMILY…]`, for example `-- "uvsphere 600" "random 1000"`.
+//! `cargo bench -p benches --bench gpu -- [--runs N] [FAMILY…]`, for example `-- "uvsphere 600" "random 1000"`.
 //!
-//! The program needs only a GPU driver: build it with `cargo bench --bench gpu --no-run`, copy it to the machine with
-//! the GPU and run it there. Set `EDGEFLIP_COMMIT` to the commit when you build or run it; otherwise the program asks
-//! git.
+//! The program needs only a GPU driver: build it with `cargo bench -p benches --bench gpu --no-run`, copy it to the
+//! machine with the GPU and run it there. Set `EDGEFLIP_COMMIT` to the commit when you build or run it; otherwise the
+//! program asks git.
 
+use benches::arguments::{Arguments, median};
+use benches::bandwidth::{self, Fewest, with_rate, with_share};
+use benches::clock::Clock;
+use benches::commit::commit;
+use benches::warm_up::WarmUp;
 use edgeflip::{Backend, Mesh, Options, Outcome, Reasons, families, make_delaunay, quality};
 use std::{error::Error, ops::ControlFlow, sync::Arc};
-
-#[path = "arguments/mod.rs"]
-mod arguments;
-use arguments::{Arguments, median};
-#[path = "clock/mod.rs"]
-mod clock;
-use clock::Clock;
-#[path = "commit/mod.rs"]
-mod commit;
-use commit::commit;
-#[path = "bandwidth/mod.rs"]
-mod bandwidth;
-use bandwidth::{Fewest, with_rate, with_share};
-#[path = "warm_up/mod.rs"]
-mod warm_up;
-use warm_up::WarmUp;
 
 /// Mesh 5 of the paper; meshes far from Delaunay; large meshes; long runs; ties; nearly collinear points; the same mesh
 /// in order and in random order.

@@ -1,10 +1,10 @@
 //! Measures the phases and Lawson's algorithm on the CPU, on one thread and on all cores. In the plane, it also measures
-//! crates that triangulate the same points from scratch on one thread. `cargo bench --bench
-//! native -- [--runs N] [FAMILY…]`, for example `-- "random 300" "uvsphere 1000"`; a family is an argument of
-//! `edgeflip::families::by_name`.
+//! crates that triangulate the same points from scratch on one thread. `cargo bench -p benches -- [--runs N] [FAMILY…]`,
+//! for example `-- "random 300" "uvsphere 1000"`; a family is an argument of `edgeflip::families::by_name`.
 //!
 //! The runs are interleaved, so that a busy machine disturbs all of them equally; the figures are medians.
 
+use benches::arguments::{Arguments, median};
 use delaunator::Point;
 use edgeflip::{Backend, Dimension, Mesh, Options, Order, Timings, families, make_delaunay};
 use i_triangle::float::triangulatable::Triangulatable;
@@ -14,10 +14,6 @@ use std::{
     alloc::System, error::Error, hint::black_box, num::NonZeroUsize, ops::ControlFlow, sync::Arc, thread,
     time::Instant,
 };
-
-#[path = "arguments/mod.rs"]
-mod arguments;
-use arguments::{Arguments, median};
 
 #[global_allocator]
 static ALLOCATOR: PeakMemAlloc<System> = PeakMemAlloc::system();

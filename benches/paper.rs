@@ -1,9 +1,13 @@
-//! Measures what the paper measures, for `npm run paper`, and prints one JSON document. `cargo bench --features baseline
+//! Measures what the paper measures, for `npm run paper`, and prints one JSON document. `cargo bench -p benches
 //! --bench paper -- [--runs N] [SIZE…]`, where a size is `small`, `large` or both; without one it is `small`, and on a
 //! hardware GPU both. `large`: meshes of up to 50 million edges.
 //!
 //! The program needs only a GPU driver: build it with `--no-run`, copy it to the machine with the GPU and run it there.
 
+use benches::arguments::{Arguments, median};
+use benches::commit::commit;
+use benches::surfaces;
+use benches::warm_up::WarmUp;
 use edgeflip::{
     Backend, Error as MeshError, Mesh, Options, Order, Outcome, families, make_delaunay, quality,
 };
@@ -18,17 +22,6 @@ use std::{
     thread,
     time::{Duration, Instant},
 };
-
-#[path = "arguments/mod.rs"]
-mod arguments;
-use arguments::{Arguments, median};
-#[path = "commit/mod.rs"]
-mod commit;
-#[path = "surfaces/mod.rs"]
-mod surfaces;
-#[path = "warm_up/mod.rs"]
-mod warm_up;
-use warm_up::WarmUp;
 
 /// The meshes of the paper's Table 2: the number, what it is, and β in degrees. With β of 10° no edge of so coarse a
 /// mesh as the first two would flip.
@@ -111,7 +104,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let sides = if is_software { &SIDES[..FEW_SIDES] } else { &SIDES };
     let crossover = bench.crossover(sides)?;
     let document = json!({
-        "commit": commit::commit(),
+        "commit": commit(),
         "machine": {
             "cpu": cpu_name(),
             "threads": thread::available_parallelism().map_or(1, NonZeroUsize::get),

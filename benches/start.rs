@@ -1,21 +1,16 @@
 //! Measures the time of each engine from the first call of a process to its result: cold, without compiled kernels in
-//! the driver's cache, and warm, with them. `cargo bench --bench start -- [--runs N] [FAMILY…]`.
+//! the driver's cache, and warm, with them. `cargo bench -p benches --bench start -- [--runs N] [FAMILY…]`.
 //!
 //! Environment variables switch off the cache of NVIDIA's and Mesa's drivers; another driver may be warm in both
 //! columns. `cargo test --release --lib one_by_one -- --nocapture` prints the time of each kernel.
 
+use benches::arguments::{Arguments, median};
+use benches::rule::{is_late, verdict};
 use edgeflip::{Backend, Options, families, make_delaunay};
 use std::process::Command;
 use std::sync::Arc;
 use std::time::Instant;
 use std::{env, error::Error, ops::ControlFlow};
-
-#[path = "arguments/mod.rs"]
-mod arguments;
-use arguments::{Arguments, median};
-#[path = "rule/mod.rs"]
-mod rule;
-use rule::{is_late, verdict};
 
 /// If this environment variable is set, the program runs only the job that the variable names. The program starts
 /// itself in this way.

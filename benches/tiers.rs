@@ -1,16 +1,12 @@
 //! Measures the tiers of the predicates: one sweep over Delaunay meshes, which tests every edge and flips none.
-//! `cargo bench --bench tiers -- [--runs N] [SIZE]`, with about SIZE x SIZE points per mesh.
+//! `cargo bench -p benches --bench tiers -- [--runs N] [SIZE]`, with about SIZE x SIZE points per mesh.
 //!
 //! `cargo test --lib tiers -- --nocapture` counts the edges that each tier decides.
 
-use edgeflip::{Backend, Dimension, Error, Mesh, Options, Outcome, families, make_delaunay};
+use benches::arguments::{Arguments, median};
+use benches::kinds::kinds;
+use edgeflip::{Backend, Error, Mesh, Options, Outcome, families, make_delaunay};
 use std::ops::ControlFlow;
-
-#[path = "arguments/mod.rs"]
-mod arguments;
-#[path = "kinds/mod.rs"]
-mod kinds;
-use arguments::{Arguments, median};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let Arguments { runs, specs } = Arguments::read(5, &["300"])?;
@@ -21,7 +17,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!();
     println!("| mesh | edges | CPU | GPU |");
     println!("|---|---:|---:|---:|");
-    for (name, mesh) in kinds::kinds(size.parse()?)? {
+    for (name, mesh) in kinds(size.parse()?)? {
         let (mut cpu, mut gpu) = (Vec::new(), Vec::new());
         let mut edges = 0;
         for round in 0..=runs {

@@ -1,15 +1,10 @@
 //! Measures meshes with many iterations or many flips. The time must grow with the flips, not with iterations times the
-//! size of the mesh. `cargo bench --bench worst_cases -- [--runs N] [FAMILY…]`
+//! size of the mesh. `cargo bench -p benches --bench worst_cases -- [--runs N] [FAMILY…]`
 
+use benches::arguments::{Arguments, median};
+use benches::warm_up::WarmUp;
 use edgeflip::{Backend, Mesh, Options, Outcome, families, make_delaunay};
 use std::{error::Error, num::NonZeroUsize, ops::ControlFlow, sync::Arc};
-
-#[path = "arguments/mod.rs"]
-mod arguments;
-use arguments::{Arguments, median};
-#[path = "warm_up/mod.rs"]
-mod warm_up;
-use warm_up::WarmUp;
 
 /// Strips take n²/4 flips in n iterations. Sweep triangulations of random points take about ten flips per point.
 const MESHES: [&str; 4] = ["strips 1000", "strips 4000", "sweep 100000", "sweep 1000000"];

@@ -27,7 +27,7 @@ write('docs/paper.md', document(data, file));
 for (const [name, plot] of Object.entries(PLOTS)) write(`docs/paper/${name}.svg`, plot(data));
 
 function measured() {
-  const arguments_ = ['bench', '--quiet', '--features', 'baseline', '--bench', 'paper'];
+  const arguments_ = ['bench', '--quiet', '-p', 'benches', '--bench', 'paper'];
   return execFileSync('cargo', arguments_, {
     encoding: 'utf8',
     maxBuffer: 2 ** 28,

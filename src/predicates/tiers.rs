@@ -1,12 +1,12 @@
 //! Counts the edges that each tier decides: `cargo test --lib tiers -- --nocapture`. `src/engine/tests/mod.rs` does the
-//! same on a GPU, and `cargo bench --bench tiers` measures the times.
+//! same on a GPU, and `cargo bench -p benches --bench tiers` measures the times.
 
 use super::exact::WIDEST;
 use super::{Quad, in_circle_sign, plane, space};
 use crate::mesh::half_edge::prev;
 use crate::{Adjacency, Backend, Dimension, Error, Mesh, NONE, Options, families, make_delaunay};
 
-#[path = "../../benches/kinds/mod.rs"]
+#[path = "../../benches/src/kinds.rs"]
 pub(crate) mod kinds;
 
 /// The numbers of interior edges by the tier that decides them: the filter, narrow, wide or unbounded integers. In

@@ -1,8 +1,8 @@
 //! Estimates how long a whole job takes on each engine, from the caller's arrays to the result. `auto` compares them.
 //!
 //! The constants fit the tables of `npm run crossover` on an NVIDIA H200 with 16 cores; `Rates::start` fits the table
-//! of `cargo bench --bench start`. On another machine, the times of all engines change by about the same factor;
-//! `npm run crossover` shows whether the choice is right there.
+//! of `cargo bench -p benches --bench start`. On another machine, the times of all engines change by about the same
+//! factor; `npm run crossover` shows whether the choice is right there.
 
 use crate::Dimension;
 

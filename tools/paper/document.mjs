@@ -2,7 +2,7 @@
 
 import { euler, judged, MESHES, speedUpFits } from './theirs.mjs';
 
-const BENCH = 'cargo bench --features baseline --bench paper';
+const BENCH = 'cargo bench -p benches --bench paper';
 const number = (n) => n.toLocaleString('en');
 const seconds = (ms) => (ms === undefined ? '–' : String(Number((ms / 1000).toPrecision(3))));
 const ms = (n) => String(Number(n.toPrecision(3)));

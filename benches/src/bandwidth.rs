@@ -77,6 +77,7 @@ pub struct Fewest {
 }
 
 impl Fewest {
+    /// For the work on a mesh that ended with this outcome.
     pub fn of(mesh: &Mesh, outcome: &Outcome) -> Self {
         let axes = match mesh.dimension() {
             Dimension::Two => 2.0,
