@@ -79,7 +79,7 @@ mod tests {
         let kinds = Form::ALL.into_iter().flat_map(|form| [(form, READS), (form, WRITES)]);
         let mut faults = kinds.map(|(form, kind)| {
             let source = phase(file, form, kind);
-            naga::front::wgsl::parse_str(&source).err().map(|error| error.emit_to_string(&source))
+            wgpu::naga::front::wgsl::parse_str(&source).err().map(|error| error.emit_to_string(&source))
         });
         let first = faults.next().unwrap();
         if faults.any(|fault| fault.is_none()) { None } else { first }

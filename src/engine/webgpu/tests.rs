@@ -20,6 +20,7 @@ use pollster::block_on;
 use std::collections::HashMap;
 use std::mem::offset_of;
 use std::time::Instant;
+use wgpu::naga;
 
 /// Every shader.
 fn all_sources() -> Vec<String> {
