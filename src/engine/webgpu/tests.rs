@@ -2,7 +2,6 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "what fails here is a failed test")]
 
-use super::adjacency;
 use super::copies::{CHUNK, PIECE};
 use super::device::Device;
 use super::faults::Fault;
@@ -10,7 +9,7 @@ use super::history::{COUNTS, ENTRIES, ENTRY_WORDS, SEVERAL_FANS};
 use super::kernels::{Plan, WORKGROUP_SIZE};
 use super::params::{NEGATIVE, POSITIVE, Params};
 use super::staging::FEWEST;
-use super::{compile, programs, sources};
+use super::{adjacency, compile, programs, sources};
 use crate::engine::gpu::cosine::DIGIT_BITS;
 use crate::engine::gpu::upload::{Form, SPAN};
 use crate::mesh::half_edge::{CREASE, FLAGS, LOCKED};
