@@ -35,13 +35,13 @@ const engine = ['-C', 'llvm-args=-inline-threshold=10 -unroll-runtime=0'];
 // The panic code is removed below, so the modules need no source locations.
 const all = ['-C', 'no-vectorize-loops', '-C', 'no-vectorize-slp', '-Z', 'location-detail=none'];
 // One module for each entry of the package, and one each for the WebGL2 engine, the threads of the CPU engine and the
-// audit.
+// audit. wasm-opt takes longest over the files, so they come early.
 const modules = [
   { name: 'edgeflip', features: 'gpu,js', flags: engine },
+  { name: 'edgeflip_files', features: 'js-files', flags: [] },
   { name: 'edgeflip_webgl2', features: 'js-webgl2', flags: engine },
   { name: 'edgeflip_threads', features: 'js-threads', flags: engine, options: ['--threads'] },
   { name: 'edgeflip_audit', features: 'js-audit', flags: [] },
-  { name: 'edgeflip_files', features: 'js-files', flags: [] },
 ];
 // The features that rustc enables for wasm32, and SIMD. All browsers have had them since 2023, and so has every browser
 // with WebGPU.
@@ -67,7 +67,8 @@ const tools = [
 ];
 
 // Runs in parallel with the modules. Not optimized: it compiles in a third of the time, and runs once.
-const glsl = run('cargo', 'build', '--package', 'glsl', '--profile', 'tool');
+const shaders = (...verb) => ['cargo', ...verb, '--package', 'glsl', '--profile', 'tool'];
+const glsl = run(...shaders('build'));
 
 mkdirSync(glue, { recursive: true });
 const finishing = [];
@@ -180,7 +181,7 @@ function cutPanics(file) {
 }
 
 await Promise.all([
-  glsl.then(() => run('target/tool/glsl', 'dist/glsl.js')),
+  glsl.then(() => run(...shaders('run', '--quiet'), '--', 'dist/glsl.js')),
   // --skipLibCheck: checking the types of Node and WebGPU would double the time.
   run(process.execPath, 'node_modules/typescript/bin/tsc', '-p', 'src/js', '--skipLibCheck'),
 ]);

@@ -1,26 +1,29 @@
 #!/usr/bin/env bash
 # Checks for everything that `npm test` needs, and installs missing parts if it can.
-# `setup.sh build` checks only for the parts that `npm start` and `npm run build` need: the lines with a star.
+# `setup.sh PART…` checks only for these parts, and `setup.sh build` for those that `npm start` and `npm run build` need:
+# rust, wasm, packages and bindgen.
 #
-# * Rust >= 1.88; with rustfmt and clippy  from rustup; not installed, the script says how
-# * a C linker                             apt on Debian and Ubuntu
-#   a Vulkan driver for the GPU tests      apt on Debian and Ubuntu (Mesa's software driver, lavapipe)
-# * the wasm32-unknown-unknown target      rustup; on Debian 12 without rustup's server, Debian's compiler
-#   and the source of std
-# * wasm-bindgen, of Cargo.lock's version  cargo install, into target/setup
-# * the packages of package-lock.json      npm ci
-#   the packages of tests/peers            npm ci
-#   Chromium and chromedriver              apt on Debian; elsewhere the script says how
-#   Firefox                                apt on Debian; elsewhere the script says how
-#   Xvfb, if there is no display           apt on Debian and Ubuntu
+# rust      Rust >= 1.88                           from rustup; not installed, the script says how
+#           a C linker                             apt on Debian and Ubuntu
+# lints     rustfmt and clippy                     rustup
+# vulkan    a Vulkan driver for the GPU tests      apt on Debian and Ubuntu (Mesa's software driver, lavapipe)
+# wasm      the wasm32-unknown-unknown target      rustup; on Debian 12 without rustup's server, Debian's compiler
+#           and the source of std
+# packages  the packages of package-lock.json      npm ci
+# peers     the packages of tests/peers            npm ci
+# bindgen   wasm-bindgen, of Cargo.lock's version  cargo install, into target/setup
+# chromium  Chromium and chromedriver              apt on Debian; elsewhere the script says how
+# firefox   Firefox                                apt on Debian; elsewhere the script says how
+#           Xvfb, if there is no display           apt on Debian and Ubuntu
 #
 # It installs only missing parts, so a second run changes nothing.
 # On macOS and Windows it installs only what rustup, cargo and npm can; the GPU tests use Metal or Direct3D 12 there.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-for_tests=true
-[ "${1:-}" != build ] || for_tests=false
+parts=" $* "
+[ "$*" != build ] || parts=" rust wasm packages bindgen "
+is_wanted() { [ "$parts" = "  " ] || [[ $parts == *" $1 "* ]]; } # PART
 
 say() { echo "setup: $*"; }
 stop() { # WHAT IS MISSING, WHAT TO DO…
@@ -79,7 +82,7 @@ IFS=. read -r major minor _ <<<"$version"
 [ "$major" -gt 1 ] || [ "$minor" -ge 88 ] ||
   stop "rustc is $version; edgeflip needs 1.88 or newer." "Run: rustup update stable"
 for tool in fmt clippy; do
-  $for_tests || break
+  is_wanted lints || break
   cargo "$tool" --version >/dev/null 2>&1 && continue
   component=${tool/#fmt/rustfmt}
   has rustup && within 180 rustup component add "$component" ||
@@ -88,7 +91,7 @@ done
 
 # --- C linker ---------------------------------------------------------------------------------------------
 # rustc links through cc; on Windows the linker comes with the Visual Studio build tools that rustup asks for.
-case $system in
+is_wanted rust && case $system in
   Linux) has cc || apt_install "a C linker" gcc libc6-dev ;;
   Darwin) has cc || stop "cc, the C linker, is missing." "Run: xcode-select --install" ;;
 esac
@@ -107,7 +110,7 @@ any_file() {
   return 1
 }
 case $system in
-  Linux) ! $for_tests || has_vulkan || apt_install "a Vulkan driver" mesa-vulkan-drivers libvulkan1 ;;
+  Linux) ! is_wanted vulkan || has_vulkan || apt_install "a Vulkan driver" mesa-vulkan-drivers libvulkan1 ;;
 esac
 
 # --- wasm32 target ----------------------------------------------------------------------------------------
@@ -139,7 +142,7 @@ build_debian_std() {
   rm -rf "$scratch" target/wasm target/wasm-threads # files built against another std do not fit
 }
 by_hand="Run: rustup target add wasm32-unknown-unknown && rustup component add rust-src"
-if ! tools/wasm-cargo.sh --which >/dev/null 2>&1; then
+if is_wanted wasm && ! tools/wasm-cargo.sh --which >/dev/null 2>&1; then
   if has rustup && RUSTUP_MAX_RETRIES=0 within 180 rustup target add wasm32-unknown-unknown &&
     RUSTUP_MAX_RETRIES=0 within 180 rustup component add rust-src; then
     say "added the wasm32 target and the source of std to rustup's toolchain"
@@ -166,15 +169,15 @@ install_packages() { # FOLDER ARGUMENT…
 }
 # Beside the build of wasm-bindgen. The install scripts of tests/peers would fetch what is already there.
 {
-  install_packages .
-  ! $for_tests || install_packages tests/peers --ignore-scripts
+  ! is_wanted packages || install_packages .
+  ! is_wanted peers || install_packages tests/peers --ignore-scripts
 } &
 packages=$!
 
 # --- wasm-bindgen -----------------------------------------------------------------------------------------
 # The program must have the version of the crate. The install includes the runner of the browser tests.
 wanted=$(sed -n '/^name = "wasm-bindgen"$/{n;s/^version = "\(.*\)"$/\1/p;}' Cargo.lock)
-if [ "$(target/setup/bin/wasm-bindgen --version 2>/dev/null)" != "wasm-bindgen $wanted" ]; then
+if is_wanted bindgen && [ "$(target/setup/bin/wasm-bindgen --version 2>/dev/null)" != "wasm-bindgen $wanted" ]; then
   say "building wasm-bindgen $wanted, once (about a minute)"
   mkdir -p target/setup
   # Unoptimised, wasm-bindgen builds in half the time, and still needs only half a second per module.
@@ -188,11 +191,8 @@ fi
 
 wait "$packages"
 
-ready() { say "ready: $(rustc --version); wasm32 with $(tools/wasm-cargo.sh --which)"; }
-$for_tests || { ready; exit; }
-
 # --- Chromium ---------------------------------------------------------------------------------------------
-if [ -z "${CHROMEDRIVER:-}" ] && ! has chromedriver; then
+if is_wanted chromium && [ -z "${CHROMEDRIVER:-}" ] && ! has chromedriver; then
   if [ "$system" = Linux ] && [ -e /etc/debian_version ]; then
     apt_install "Chromium and its driver" chromium chromium-driver
   else
@@ -205,7 +205,7 @@ has_chromium() {
   [ -n "${CHROMIUM:-}" ] || has chromium || has chromium-browser || has google-chrome ||
     [ -e "/Applications/Google Chrome.app" ]
 }
-if ! has_chromium; then
+if is_wanted chromium && ! has_chromium; then
   if [ "$system" = Linux ] && [ -e /etc/debian_version ]; then
     apt_install "Chromium" chromium
   else
@@ -224,7 +224,7 @@ has_firefox() {
   done
   return 1
 }
-if [ -z "${FIREFOX:-}" ] && ! has_firefox; then
+if is_wanted firefox && [ -z "${FIREFOX:-}" ] && ! has_firefox; then
   if [ "$system" = Linux ] && [ -e /etc/debian_version ]; then
     apt_install "Firefox 153 or newer" firefox-esr
     if ! has_firefox; then
@@ -237,8 +237,8 @@ if [ -z "${FIREFOX:-}" ] && ! has_firefox; then
   fi
 fi
 # The window of Firefox needs a display. Xvfb provides one in memory.
-if [ "$system" = Linux ] && [ -z "${DISPLAY:-}${WAYLAND_DISPLAY:-}" ] && ! has Xvfb; then
+if is_wanted firefox && [ "$system" = Linux ] && [ -z "${DISPLAY:-}${WAYLAND_DISPLAY:-}" ] && ! has Xvfb; then
   apt_install "a display for Firefox" xvfb
 fi
 
-ready
+say "ready: ${*:-$(rustc --version); wasm32 with $(tools/wasm-cargo.sh --which)}"

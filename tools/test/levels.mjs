@@ -1,0 +1,362 @@
+// The levels of tests and the builds that they need: `npm test` runs all of them, `npm run test:full` with more cases.
+
+import { readdirSync, readFileSync } from 'node:fs';
+
+/**
+ * A level, or a build: `checks` are its command lines. A command that begins with `@` is a program that the build
+ * `native programs` has compiled. If `counts` is set, the commands run the test harness of Rust or Node, and each of
+ * its tests counts; otherwise each command counts as one test, and the commands of a build as none.
+ * @typedef {object} Level
+ * @property {string} name
+ * @property {string} what
+ * @property {string[][]} checks
+ * @property {Record<string, string>} [env]
+ * @property {boolean} [counts]
+ * @property {string[]} tools - What it runs; also the parts of tools/setup.sh that it needs.
+ * @property {string[]} reads - The files and folders of the repository that it reads; `!PATH` leaves out a path.
+ * @property {string[]} [after] - The builds and levels that have to pass first.
+ * @property {string[]} [uses] - What these have written, of what it reads.
+ * @property {string[]} [writes] - What it writes for others; only a build, or a level that others come after.
+ * @property {string[]} [holds] - What only one level may use at a time: the folders that cargo locks.
+ * @property {boolean} [isAlone] - It measures time, so nothing may run beside it.
+ * @property {RegExp} [refuses] - What its output may not contain.
+ * @property {boolean} [isBuild]
+ */
+
+export const isFull = process.argv.includes('--full');
+// tests/full.mjs reads it, and the tests in Rust.
+if (isFull) Object.assign(process.env, { EDGEFLIP_FULL: '1', EDGEFLIP_QUADS: '1000000' });
+
+// What is compiled natively. The rooms for browsers are for wasm32 only.
+const crate = ['src', '!src/js', '!src/wasm', '!src/engine/webgl2', 'shaders', '!shaders/webgl2', 'build.rs'];
+const locks = ['Cargo.toml', 'Cargo.lock'];
+/** The rooms above those of a run: a test that names neither files nor the command cannot reach them. */
+const filesAndCommand = ['!src/io', '!src/bin'];
+const scripts = ['package.json', 'package-lock.json'];
+
+// Formats and lints JavaScript and TypeScript, as biome.json says.
+const biome = ['node', 'node_modules/@biomejs/biome/bin/biome', 'ci'];
+const wasmCargo = ['bash', 'tools/wasm-cargo.sh'];
+const wasmWith = (features) => ['--target', 'wasm32-unknown-unknown', '--no-default-features', '--features', features];
+
+const files = (folder, names) => names.map((name) => `tests/${folder}/${name}.test.mjs`);
+/** Files of tests in a folder, each in a process of its own. */
+const apart = (folder, names) => [
+  ...['node', '--test', '--test-reporter=tap', '--test-concurrency=1'],
+  ...files(folder, names),
+];
+/** Files of tests in a folder that share a browser and its pages. */
+const together = (folder, names) => ['node', '--test-reporter=tap', 'tests/together.mjs', ...files(folder, names)];
+const testsIn = (folder) =>
+  readdirSync(`tests/${folder}`).flatMap((file) => file.match(/^(.*)\.test\.mjs$/)?.[1] ?? []);
+
+// A new file of tests is in a level by its name.
+const inBrowsers = testsIn('package').filter((file) => file.endsWith('.browser'));
+const inFull = testsIn('package').filter((file) => file.endsWith('.full'));
+const inNode = testsIn('package').filter((file) => !file.includes('.'));
+const alone = ['handover', 'large', 'firefox'];
+const onPage = testsIn('page').filter((file) => !alone.includes(file));
+
+/** What the tests in browsers share. */
+const shared = ['browsers.mjs', 'engine-page.mjs', 'engines.html', 'full.mjs', 'together.mjs'].map((file) => `tests/${file}`);
+
+/** @type {Level[]} */
+const builds = [
+  {
+    name: 'native programs',
+    what: 'the tests in Rust compile, and the command line',
+    checks: [['node', 'tools/test/programs.mjs']],
+    tools: ['rust'],
+    reads: [...crate, ...locks, 'tools/glsl', 'shaders/webgl2', 'tests', 'examples', 'fuzz', '!tests/package', '!tests/page', '!tests/peers'],
+    writes: ['target/test/programs.json'],
+    holds: ['target'],
+  },
+  {
+    name: 'package',
+    what: 'the npm package builds without a warning, and is within its sizes',
+    checks: [['node', 'tools/build.mjs']],
+    // What rustc says of every build with threads is no lint.
+    refuses: /^warning: (?!unstable feature specified|`edgeflip` \(lib\) generated 1 warning$).*/m,
+    tools: ['rust', 'wasm', 'bindgen', 'packages'],
+    reads: ['src', '!src/bin', 'shaders', 'build.rs', 'tools/build.mjs', 'tools/sizes.mjs', 'tools/wasm-cargo.sh', 'tools/glsl', ...locks, ...scripts],
+    writes: ['dist'],
+    holds: ['target/wasm', 'target/wasm-threads'],
+  },
+  {
+    name: 'page',
+    what: 'the types of the page are right, and it builds',
+    checks: [
+      ['node', 'node_modules/typescript/bin/tsc', '-p', 'www'],
+      ['node', 'node_modules/vite/bin/vite.js', 'build', '-c', 'www/vite.config.js'],
+    ],
+    tools: ['packages'],
+    reads: ['www', 'shaders', 'docs', 'src/js', ...scripts],
+    after: ['package'],
+    uses: ['dist'],
+    writes: ['target/www', 'target/public'],
+  },
+];
+for (const build of builds) build.isBuild = true;
+
+/** @type {Level[]} */
+const levels = [
+  {
+    name: 'formatting',
+    what: 'rustfmt and Biome would change nothing',
+    checks: [
+      ['cargo', 'fmt', '--all', '--check'],
+      [...biome, '--linter-enabled=false'],
+    ],
+    tools: ['rust', 'lints', 'packages'],
+    reads: ['.'],
+  },
+  {
+    name: 'layout',
+    what: 'imports run down the rooms of docs/architecture.md, no files import each other in a circle, no file is too long',
+    checks: [['node', 'tools/layout.mjs']],
+    tools: [],
+    reads: ['.'],
+  },
+  {
+    name: 'lints',
+    what: 'Biome gives no warning',
+    checks: [[...biome, '--formatter-enabled=false', '--error-on-warnings']],
+    tools: ['packages'],
+    reads: ['.', '!src/bin', '!src/engine', '!src/io'],
+  },
+  ...nativeLevels(),
+  {
+    name: 'clippy',
+    what: 'clippy gives no warning; Cargo.lock fits Cargo.toml',
+    checks: [['cargo', 'clippy', '--locked', '--workspace', '--all-targets', '--', '-D', 'warnings']],
+    tools: ['rust', 'lints'],
+    reads: [...crate, ...locks, 'clippy.toml', 'tools/glsl', 'tests', 'examples', 'benches', 'fuzz', '!tests/package', '!tests/page', '!tests/peers'],
+    holds: ['target'],
+  },
+  {
+    name: 'docs',
+    what: 'the API reference of both languages builds without a warning or a dead link',
+    checks: [['node', 'tools/docs.mjs']],
+    tools: ['rust', 'packages'],
+    reads: [...crate, 'src/js', ...locks, ...scripts, 'tools/docs.mjs'],
+    holds: ['target'],
+  },
+  {
+    name: 'wasm in Chromium',
+    what: firstSentence(readFileSync('tests/wasm.rs', 'utf8')),
+    checks: [[...wasmCargo, 'test', '--test', 'wasm', '--test', 'worker', ...wasmWith('gpu,js')]],
+    counts: true,
+    env: {
+      CHROMEDRIVER: process.env.CHROMEDRIVER ?? 'chromedriver',
+      CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUNNER: `${process.cwd()}/target/setup/bin/wasm-bindgen-test-runner`,
+      WASM_BINDGEN_TEST_TIMEOUT: '600',
+    },
+    tools: ['rust', 'wasm', 'bindgen', 'chromium'],
+    reads: ['src', '!src/js', '!src/bin', '!src/io', 'shaders', 'build.rs', ...locks, 'tests/wasm.rs', 'tests/worker.rs', 'tests/wasm', 'tests/native/meshes', 'tools/wasm-cargo.sh', 'webdriver.json'],
+    holds: ['target/wasm'],
+  },
+  {
+    name: 'npm package',
+    what: 'the types pass strict TypeScript; the tests of the package, and the code in README and docs/, run in Node on the CPU engine',
+    checks: [
+      ['node', 'node_modules/typescript/bin/tsc', '-p', 'tests/package'],
+      apart('package', inNode),
+    ],
+    counts: true,
+    tools: ['packages'],
+    reads: ['tests/package', 'tests/browsers.mjs', 'README.md', 'docs', 'examples', 'src/js', 'CHANGELOG.md', 'tools', ...scripts],
+    after: ['package'],
+    uses: ['dist'],
+  },
+];
+levels.push(
+  {
+    name: 'engines in browsers',
+    what: 'the parity matrix, quads and locks on each engine of the package in Chromium and Firefox',
+    checks: [['node', '--test-reporter=tap', 'tests/engines.test.mjs']],
+    counts: true,
+    tools: ['packages', 'vulkan', 'chromium', 'firefox'],
+    reads: ['tests/engines.test.mjs', ...shared, 'tests/parity', 'tests/quads', 'tests/package/locks.mjs', ...scripts],
+    after: ['package', 'parity', 'quads'],
+    uses: ['dist', 'target/parity.json', 'target/quads'],
+  },
+  {
+    name: 'npm package in browsers',
+    what: 'the packed package in fresh projects: plain pages in Chromium and Firefox, Vite, TypeScript, on the CPU and WebGPU',
+    checks: [together('package', inBrowsers)],
+    counts: true,
+    tools: ['packages', 'vulkan', 'chromium', 'firefox'],
+    reads: ['tests/package', ...shared, 'README.md', 'docs', 'examples', ...scripts],
+    after: ['package'],
+    uses: ['dist'],
+  },
+  ...fullLevels(),
+  ...pageLevels(),
+);
+
+function pageLevels() {
+  const page = {
+    counts: true,
+    reads: ['tests/page', ...shared, 'www', ...scripts],
+    after: ['page'],
+    uses: ['dist', 'target/www', 'target/public'],
+  };
+  return [
+    {
+      ...page,
+      name: 'page in Chromium',
+      what: 'the demo page opens files, plays, scrubs and downloads on every engine, draws from the buffer that the flips write, and recovers',
+      checks: [together('page', onPage)],
+      tools: ['packages', 'chromium'],
+    },
+    {
+      ...page,
+      name: 'page in Firefox',
+      what: 'the demo page opens a file, plays and scrubs on every engine',
+      checks: [together('page', ['firefox'])],
+      tools: ['packages', 'vulkan', 'firefox'],
+    },
+    {
+      ...page,
+      name: 'page with a large mesh',
+      what: 'the demo page plays 720,000 triangles in Chromium as the package in Node does, without a long task',
+      checks: [together('page', ['large'])],
+      after: ['page', 'native programs'],
+      tools: ['packages', 'chromium'],
+      isAlone: true,
+    },
+    {
+      ...page,
+      name: 'handover of the page',
+      what: 'the demo page hands a run over to the GPU when its kernels are ready',
+      checks: [together('page', ['handover'])],
+      tools: ['packages', 'chromium'],
+      isAlone: true,
+    },
+  ];
+}
+
+/** The levels that only the full run has. */
+function fullLevels() {
+  if (!isFull) return [];
+  const wasm32 = [
+    ['gpu'],
+    ['js-webgl2'],
+    ['js-threads', '--threads'],
+    ['js-audit'],
+    ['js-files'],
+    ['gpu,js', '--test', 'wasm', '--test', 'worker'],
+  ];
+  return [
+    {
+      name: 'wasm32',
+      what: 'clippy gives no warning for the library in a browser: without exports for JavaScript, and as each module of the package',
+      checks: wasm32.map(([features, ...options]) => {
+        const [threads, tests] = [options.filter((option) => option === '--threads'), options.filter((option) => option !== '--threads')];
+        return [...wasmCargo, ...threads, 'clippy', '--lib', ...tests, ...wasmWith(features), '--', '-D', 'warnings'];
+      }),
+      tools: ['rust', 'lints', 'wasm'],
+      reads: [],
+      holds: ['target/wasm', 'target/wasm-threads'],
+    },
+    {
+      name: 'npm package in projects',
+      what: 'the packed package in projects of every bundler and runtime of docs/package.md',
+      checks: [apart('package', inFull)],
+      counts: true,
+      tools: ['packages', 'peers', 'chromium'],
+      reads: [],
+      after: ['package'],
+    },
+  ];
+}
+
+/**
+ * The levels in Rust: the unit tests, each module with tests of tests/native/main.rs, and the programs beside it. The
+ * first sentence of the file's `//!` lines describes the level.
+ */
+function nativeLevels() {
+  const native = { counts: true, tools: ['rust'], after: ['native programs'] };
+  const [, list] = readFileSync('tests/native/main.rs', 'utf8').split('// The levels.');
+  const modules = [...list.matchAll(/^mod (\w+);$/gm)].map(([, name]) => name);
+  /** What some of them do besides, and read besides. */
+  const more = {
+    examples: { reads: ['README.md', 'examples'] },
+    families: { reads: ['tests/package/generated.txt'] },
+    fuzz_seeds: { reads: ['fuzz'] },
+    parity: { env: { EDGEFLIP_PARITY: 'target/parity.json' }, writes: ['target/parity.json'] },
+    quads: {
+      checks: [
+        ['@native', 'quads::', '--skip', 'batches_for_browsers', '--nocapture', '--test-threads=1'],
+        ['@native', 'quads::batches_for_browsers'],
+      ],
+      writes: ['target/quads'],
+    },
+  };
+  return [
+    {
+      ...native,
+      name: 'unit',
+      what: 'the unit tests in src/ and tools/glsl',
+      checks: [['@lib edgeflip'], ['@bin glsl']],
+      tools: ['rust', 'vulkan'],
+      reads: [...crate, 'shaders/webgl2', 'src/js/edge-states.ts', 'tools/glsl', 'proptest-regressions', ...locks],
+    },
+    ...modules.map((name) => {
+      const source = readFileSync(`tests/native/${name}.rs`, 'utf8');
+      const [features = ''] = source.match(/^#!\[cfg\(.*$/m) ?? [];
+      const others = modules.filter((other) => other !== name);
+      return {
+        ...native,
+        name,
+        what: firstSentence(source),
+        checks: [['@native', `${name}::`]],
+        tools: ['rust', ...(features.includes('gpu') ? ['vulkan'] : [])],
+        isLight: !/gpu|cli/.test(features),
+        ...more[name],
+        reads: [
+          ...crate,
+          ...(/\b(io|command)\b/.test(source) ? [] : filesAndCommand),
+          ...['tests/native', 'tests/meshes', 'tests/digests.txt'],
+          ...others.flatMap((other) => [`!tests/native/${other}.rs`, `!tests/native/${other}`]),
+          ...(more[name]?.reads ?? []),
+          ...locks,
+        ],
+      };
+    }),
+    {
+      ...native,
+      name: 'memory_bounds',
+      what: firstSentence(readFileSync('tests/memory_bounds.rs', 'utf8')),
+      checks: [['@memory_bounds']],
+      reads: [...crate, ...filesAndCommand, 'tests/memory_bounds.rs', ...locks],
+    },
+    {
+      ...native,
+      name: 'doc',
+      what: 'the examples in the documentation run',
+      checks: [['cargo', 'test', '--doc']],
+      reads: [...crate, ...locks],
+      holds: ['target'],
+    },
+  ];
+}
+
+function firstSentence(source) {
+  const [block] = source.match(/^(\/\/!.*\n)+/m) ?? [];
+  return block
+    ?.replace(/^\/\/! ?/gm, '')
+    .replace(/\s+/g, ' ')
+    .trim()
+    .split(/(?<=\.) /)[0]
+    .replace(/\.$/, '');
+}
+
+/** The builds, and the levels of this run. */
+export const jobs = [...builds, ...levels];
+
+/** What replaces `native programs` where no level needs a GPU or the command line. */
+export const lightPrograms = {
+  checks: [['node', 'tools/test/programs.mjs', 'light']],
+  writes: ['target/test/light.json'],
+};
