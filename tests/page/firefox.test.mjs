@@ -2,14 +2,10 @@
 // and what a visitor does besides.
 
 import assert from 'node:assert/strict';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { readMesh } from 'edgeflip/files';
 import { startFirefox } from '../browsers.mjs';
-import { assertPlays, expected, first, meshFile, openEdgeflip, tidyUp } from './page.mjs';
-
-let browser;
-before(async () => (browser = await startFirefox()));
-after(tidyUp);
+import { assertPlays, expected, first, meshFile, openEdgeflip, pageInFirefox } from './page.mjs';
 
 /** Firefox's software renderer takes long to compile the WebGL2 shaders for surfaces. */
 const plane = { spec: 'random 24', name: 'plane.off' };
@@ -24,7 +20,7 @@ for (const { backend, engine, spec, name } of [
     const path = await meshFile(spec, name);
     const want = await expected(path);
     const { facts, fingerprints } = want;
-    const page = await openEdgeflip(browser);
+    const page = await pageInFirefox();
     await page.open(path);
     const start = performance.now();
     await page.chooseEngine(backend);
@@ -42,7 +38,7 @@ for (const { backend, engine, spec, name } of [
 
 for (const backend of ['webgpu', 'cpu']) {
   test(`a sheet moves on ${backend} in Firefox, and is Delaunay when it pauses`, async () => {
-    const page = await openEdgeflip(browser);
+    const page = await pageInFirefox();
     await page.chooseEngine(backend);
     await page.page.evaluate(() => (document.getElementById('many').value = '2000'));
     // In a narrow window, the gallery is behind the name.
@@ -58,7 +54,7 @@ for (const backend of ['webgpu', 'cpu']) {
 }
 
 test('β, an inspected edge, before and now, a saved file and a link in Firefox', async () => {
-  const page = await openEdgeflip(browser);
+  const page = await openEdgeflip(await startFirefox());
   await page.page.evaluate(() => {
     const make = URL.createObjectURL;
     URL.createObjectURL = (blob) => {

@@ -4,11 +4,11 @@ import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { after, before, test } from 'node:test';
+import { before, test } from 'node:test';
 import { fileURLToPath } from 'node:url';
 import { readMesh } from 'edgeflip/files';
 import { startChromium } from '../browsers.mjs';
-import { fingerprintOf, folder, meshFile, openEdgeflip, tidyUp } from './page.mjs';
+import { fingerprintOf, folder, meshFile, openEdgeflip } from './page.mjs';
 import { tasksOf } from './tasks.mjs';
 
 const SPEC = 'uvsphere 600';
@@ -18,20 +18,16 @@ const LONGEST = 200;
 /** The native program, which cargo builds with its tests. */
 const program = fileURLToPath(new URL('../../target/debug/edgeflip', import.meta.url));
 
-let browser;
 /** The result of the native program on the CPU engine. */
 let native;
 
 before(async () => {
-  browser = await startChromium();
   const [input, output] = [await meshFile(SPEC, 'input.off'), join(folder, 'output.off')];
   const { status, stderr, error } = spawnSync(program, [input, '-o', output, '--backend', 'cpu'], { encoding: 'utf8' });
   assert.equal(status, 0, `${program}: ${error ?? ''}${stderr}`);
   const fingerprint = async (path) => fingerprintOf((await readMesh(readFileSync(path), path)).indices);
   native = { input: await fingerprint(input), result: await fingerprint(output) };
 });
-after(tidyUp);
-
 /**
  * Runs in the page: stores long tasks (of at least 50 ms), and the longest delay of a timer of 5 ms. The browser may
  * tell of a task long after its end.
@@ -52,7 +48,7 @@ function watchLongTasks() {
 
 for (const backend of ['cpu', 'webgpu']) {
   test(`720,000 triangles play to the end on ${backend} as in the native program, and no task besides drawing takes ${LONGEST} ms`, async (t) => {
-    const page = await openEdgeflip(browser, watchLongTasks);
+    const page = await openEdgeflip(await startChromium(), watchLongTasks);
     const trace = await tasksOf(page.page);
     const opening = await page.page.evaluate(() => performance.now());
     await page.chooseEngine(backend);
