@@ -6,7 +6,8 @@ import assert from 'node:assert/strict';
 import { existsSync } from 'node:fs';
 import { after, describe, test } from 'node:test';
 import { fileURLToPath } from 'node:url';
-import { closeAll, openPage, serve, startChromium, startFirefox } from './browsers.mjs';
+import { closeAll, openPage, serve, startFirefox } from './browsers.mjs';
+import { enginePage } from './engine-page.mjs';
 
 const repository = fileURLToPath(new URL('..', import.meta.url));
 for (const [file, command] of [
@@ -20,11 +21,11 @@ const { fill, matrix } = await import('./parity/matrix.mjs');
 const { check } = await import('./quads/browsers.mjs');
 const { holdLocks } = await import('./package/locks.mjs');
 
-/** @type {{ name: string, start: () => unknown, engines: { backend: string, watched: number }[] }[]} */
+/** @type {{ name: string, open: () => ReturnType<typeof enginePage>, engines: { backend: string, watched: number }[] }[]} */
 const browsers = [
   {
     name: 'Chromium',
-    start: startChromium,
+    open: enginePage,
     engines: [
       { backend: 'cpu', watched: 1000 },
       { backend: 'webgpu', watched: 200 },
@@ -33,7 +34,7 @@ const browsers = [
   },
   {
     name: 'Firefox',
-    start: startFirefox,
+    open: async () => openPage(await startFirefox(), `${await serve(repository)}tests/engines.html`),
     engines: [
       { backend: 'webgpu', watched: 150 },
       { backend: 'webgl2', watched: 150 },
@@ -47,10 +48,12 @@ process.on('exit', () => console.log(`\n${matrix()}`));
 
 // In parallel: Firefox mostly waits.
 describe('engines', { concurrency: true }, () => {
-  for (const { name, start, engines } of browsers) {
+  for (const { name, open, engines } of browsers) {
     test(`in ${name}`, { timeout: 900_000 }, async (t) => {
-      const { page, problems } = await openPage(await start(), `${await serve(repository)}tests/engines.html`);
-      await page.waitForFunction(() => 'runAll' in window && 'iterate' in window);
+      const { page, problems } = await open();
+      await page.evaluate(async () => {
+        for (const part of ['parity', 'quads']) await import(`/tests/${part}/page.js`);
+      });
       for (const engine of engines.map((engine) => ({ ...engine, title: `${titles[engine.backend]} ${name}` }))) {
         await t.test(`${engine.title} gives the results of the simulation`, () => fill(page, engine));
         if (engine.backend === 'cpu') continue;

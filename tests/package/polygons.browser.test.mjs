@@ -2,16 +2,19 @@
 // while the mesh moves. Uses the existing dist/.
 
 import assert from 'node:assert/strict';
-import { after, test } from 'node:test';
+import { after, before, test } from 'node:test';
 import Delaunator from 'delaunator';
-import { closeAll, openPage, serve, startChromium } from '../browsers.mjs';
+import { closeAll } from '../browsers.mjs';
+import { enginePage } from '../engine-page.mjs';
 import { polygons } from './polygons.mjs';
-import { repository } from './project.mjs';
 
 after(closeAll);
 
-const { page } = await openPage(await startChromium(), `${await serve(repository)}package.json`);
-await page.evaluate(prepare);
+let page;
+before(async () => {
+  ({ page } = await enginePage());
+  await page.evaluate(prepare);
+});
 
 /** Runs in the page: defines what the tests call. */
 async function prepare() {

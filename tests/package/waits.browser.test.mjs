@@ -6,6 +6,8 @@ import assert from 'node:assert/strict';
 import { after, test } from 'node:test';
 import { fileURLToPath } from 'node:url';
 import { closeAll, openPage, serve, startChromium } from '../browsers.mjs';
+import { enginePage } from '../engine-page.mjs';
+import { full } from '../full.mjs';
 
 const repository = fileURLToPath(new URL('../..', import.meta.url));
 
@@ -76,8 +78,7 @@ async function runs() {
 }
 
 test('a run waits once, and copies through buffers that are reused', async () => {
-  const browser = await startChromium();
-  const { page } = await openPage(browser, `${await serve(repository)}tests/engines.html`);
+  const { page } = await enginePage();
   const { told, wrong } = await page.evaluate(runs);
   console.log(JSON.stringify(told));
   assert.deepEqual(wrong, []);
@@ -86,12 +87,11 @@ test('a run waits once, and copies through buffers that are reused', async () =>
 });
 
 /** Runs in the page: sends arrays that go in several pieces, and reads them back. Collects wrong results. */
-async function pieces() {
+async function pieces(specs) {
   const { FlipSession } = await import('/dist/index.js');
   const { generate } = await import('/dist/files.js');
   const wrong = [];
-  // 26 MB of triangles; a piece has 16 MB.
-  for (const spec of ['random 1050', 'random 1040', 'random 1060']) {
+  for (const spec of specs) {
     const mesh = await generate(spec);
     const session = await FlipSession.create(mesh, { backend: 'webgpu' });
     const triangles = await session.triangles();
@@ -103,8 +103,10 @@ async function pieces() {
 }
 
 test('arrays of several pieces come back as they were sent', async () => {
-  const { page } = await openPage(await startChromium(), `${await serve(repository)}tests/engines.html`);
-  assert.deepEqual(await page.evaluate(pieces), []);
+  const { page } = await enginePage();
+  // 26 MB of triangles; a piece has 16 MB.
+  const specs = full ? ['random 1050', 'random 1040', 'random 1060'] : ['random 1050'];
+  assert.deepEqual(await page.evaluate(pieces, specs), []);
 });
 
 /** Runs in the page: begins sessions at the same time on an engine, and counts the programs that the page compiles. */

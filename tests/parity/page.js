@@ -6,7 +6,7 @@ import { Digest } from './digest.js';
 /** The number of sessions that wait for the GPU together: in Firefox, each wait takes at least 100 ms. */
 const SESSIONS = 32;
 
-const response = await fetch('../target/parity.json');
+const response = await fetch(new URL('../../target/parity.json', import.meta.url));
 const { cases } = await response.json();
 
 /** Runs a mesh, and returns its result and, if `isWatched`, every iteration. */
