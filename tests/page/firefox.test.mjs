@@ -39,14 +39,15 @@ for (const { backend, engine, spec, name } of [
 for (const backend of ['webgpu', 'cpu']) {
   test(`a sheet moves on ${backend} in Firefox, and is Delaunay when it pauses`, async () => {
     const page = await pageInFirefox();
-    await page.chooseEngine(backend);
     await page.page.evaluate(() => (document.getElementById('many').value = '2000'));
     // In a narrow window, the gallery is behind the name.
     await page.page.evaluate(() => document.querySelector('[data-spec="moving sheet"]').click());
-    await page.until(
+    await page.choose('backend', backend);
+    const { facts } = await page.until(
       'flips in the frames',
       ({ state, facts }) => state === 'moving' && Number(facts['Flips a frame']) > 0,
     );
+    assert.equal(facts.Engine, backend === 'cpu' ? 'CPU, in a worker' : 'WebGPU');
     await page.page.click('#play');
     await page.until('no edge left', ({ status }) => /^Every edge is Delaunay/.test(status));
     await page.close();
