@@ -6,6 +6,7 @@ import { after, before, test } from 'node:test';
 import Delaunator from 'delaunator';
 import { closeAll } from '../browsers.mjs';
 import { enginePage } from '../engine-page.mjs';
+import { full } from '../full.mjs';
 import { polygons } from './polygons.mjs';
 
 after(closeAll);
@@ -52,7 +53,8 @@ async function prepare() {
 
 test('every engine brings polygons in alike, and keeps them', async () => {
   let [runs, constrained, frames] = [0, 0, 0];
-  for (const { name, positions, sides } of polygons) {
+  // The two largest have two thirds of all points, and take a software GPU most of the time.
+  for (const { name, positions, sides } of full ? polygons : polygons.filter(({ sides }) => sides.length < 4000)) {
     const { triangles } = new Delaunator(positions);
     const mesh = { positions: [...positions], indices: [...triangles], constraints: sides.flat() };
     const run = (backend) => page.evaluate(([backend, mesh]) => runOn(backend, mesh), [backend, mesh]);
@@ -63,5 +65,6 @@ test('every engine brings polygons in alike, and keeps them', async () => {
     constrained += cpu.constraintFlips;
     frames += cpu.frames;
   }
-  assert.ok(runs > 200 && constrained > 2000 && frames > 10, `${runs}, ${constrained}, ${frames}`);
+  const [fewest, fewestConstrained] = full ? [200, 2000] : [50, 500];
+  assert.ok(runs > fewest && constrained > fewestConstrained && frames > 10, `${runs}, ${constrained}, ${frames}`);
 });

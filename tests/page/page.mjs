@@ -108,6 +108,8 @@ async function expect(path, maxNormalAngle) {
 async function openAt(hash, browser, scripts) {
   const address = await serve(fileURLToPath(new URL('../../target/www', import.meta.url)), site.preview.headers);
   const { page, problems } = await openPage(browser, 'about:blank');
+  if (process.env.VIEW)
+    await page.setViewportSize({ width: +process.env.VIEW.split('x')[0], height: +process.env.VIEW.split('x')[1] });
   for (const script of scripts) await page.addInitScript(script);
   // Requests to other servers; `data:` and `blob:` are the page's own.
   page.on('request', (request) => {
@@ -367,7 +369,7 @@ export class EdgeflipPage {
     return this.rest();
   }
 
-  /** A picture of the canvas, without what lies on it. */
+  /** A picture of the middle of the canvas, without what lies on it. */
   async picture() {
     const show = (opacity) =>
       this.page.evaluate((how) => {
@@ -375,8 +377,10 @@ export class EdgeflipPage {
         return new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done())));
       }, opacity);
     await show('0');
-    const canvas = await this.page.$('#view canvas');
-    const picture = new Picture(await canvas.screenshot());
+    const { x, y, width, height } = await (await this.page.$('#view canvas')).boundingBox();
+    const [left, top] = [x + width / 4, y + height / 4].map(Math.round);
+    const clip = { x: left, y: top, width: Math.round(width / 2), height: Math.round(height / 2) };
+    const picture = new Picture(await this.page.screenshot({ clip }));
     await show('');
     return picture;
   }

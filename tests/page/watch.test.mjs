@@ -120,8 +120,8 @@ test('edges that flip are hot, and cool', async (t) => {
   });
   /** The pixels in the colour of flips, or close to it. */
   const hot = async () => {
-    const { middle } = await page.picture();
-    return middle.filter((colour) => ((colour >> 16) & 255) > 200 && ((colour >> 8) & 255) < 140).length;
+    const { pixels } = await page.picture();
+    return pixels.filter((colour) => ((colour >> 16) & 255) > 200 && ((colour >> 8) & 255) < 140).length;
   };
   const pace = (factor) => page.page.evaluate((to) => (window.pace = to), factor);
   await pace(0.01);
@@ -392,7 +392,7 @@ test('the code that is copied gives the triangles that are shown', async () => {
 });
 
 test('the keys are listed, and Escape closes what is open', async () => {
-  const page = await sharedPage();
+  const page = await sharedPage(BUNNY);
   await press(page, '?');
   const listed = await page.page.locator('#keys kbd').allTextContents();
   for (const key of ['Space', 'C', 'N, Shift N', 'K', 'Esc']) assert.ok(listed.includes(key), `${key}: ${listed}`);
