@@ -108,8 +108,6 @@ async function expect(path, maxNormalAngle) {
 async function openAt(hash, browser, scripts) {
   const address = await serve(fileURLToPath(new URL('../../target/www', import.meta.url)), site.preview.headers);
   const { page, problems } = await openPage(browser, 'about:blank');
-  if (process.env.VIEW)
-    await page.setViewportSize({ width: +process.env.VIEW.split('x')[0], height: +process.env.VIEW.split('x')[1] });
   for (const script of scripts) await page.addInitScript(script);
   // Requests to other servers; `data:` and `blob:` are the page's own.
   page.on('request', (request) => {
