@@ -1,5 +1,6 @@
 // Starts the two real browsers that tests use, each with WebGPU on a software GPU, and a static server for their pages.
-// `closeAll` ends everything that was started here: a test file calls `after(closeAll)`.
+// A process has one of each browser, and one server for each folder. `closeAll` ends everything that was started here: a
+// test file calls `after(closeAll)`.
 
 import { spawn } from 'node:child_process';
 import { accessSync, constants } from 'node:fs';
@@ -10,9 +11,18 @@ import { preview } from 'vite';
 
 /** @type {(() => unknown)[]} */
 const closers = [];
+/** What was started, by its name. */
+const started = new Map();
+
+/** Starts something at the first call with this name, and returns it at each call. */
+function once(name, start) {
+  if (!started.has(name)) started.set(name, start());
+  return started.get(name);
+}
 
 /** Ends every browser, server and display that was started here, in reverse order. Continues if one of them fails. */
 export async function closeAll() {
+  started.clear();
   const errors = [];
   for (let close = closers.pop(); close; close = closers.pop()) {
     try {
@@ -45,7 +55,9 @@ function program(what, candidates) {
  *
  * @returns {Promise<import('playwright-core').Browser>}
  */
-export async function startChromium() {
+export const startChromium = () => once('Chromium', chromiumOnSoftware);
+
+async function chromiumOnSoftware() {
   const browser = await chromium.launch({
     executablePath:
       process.env.CHROMIUM ??
@@ -78,7 +90,9 @@ export async function startChromium() {
  *
  * @returns {Promise<import('puppeteer-core').Browser>}
  */
-export async function startFirefox() {
+export const startFirefox = () => once('Firefox', firefoxOnSoftware);
+
+async function firefoxOnSoftware() {
   const needsDisplay = process.platform === 'linux' && !process.env.DISPLAY && !process.env.WAYLAND_DISPLAY;
   const browser = await puppeteer.launch({
     browser: 'firefox',
@@ -131,7 +145,10 @@ export const ISOLATED = { 'Cross-Origin-Opener-Policy': 'same-origin', 'Cross-Or
  * @param {Record<string, string>} [headers] - Sent with every answer.
  * @returns {Promise<string>} The URL of the folder, with a slash at its end.
  */
-export async function serve(folder, headers = {}) {
+export const serve = (folder, headers = {}) =>
+  once(`${folder} ${JSON.stringify(headers)}`, () => serverOf(folder, headers));
+
+async function serverOf(folder, headers) {
   const server = await preview({
     root: folder,
     configFile: false,
@@ -150,12 +167,14 @@ export async function serve(folder, headers = {}) {
  * @template {import('playwright-core').Browser | import('puppeteer-core').Browser} B
  * @param {B} browser
  * @param {string} address
- * @param {boolean} isKept - Whether the page may keep its files for visits without a network. Each page would load all
- *   of them again.
+ * @param {{ isAlone?: boolean, isKept?: boolean }} how - `isAlone`: it shares no cache with other pages. `isKept`: it may
+ *   keep its files for visits without a network. Each page would load all of them again.
  * @returns {Promise<{ page: Awaited<ReturnType<B['newPage']>>, problems: string[] }>}
  */
-export async function openPage(browser, address, isKept = false) {
-  const page = await browser.newPage();
+export async function openPage(browser, address, { isAlone = false, isKept = false } = {}) {
+  // Each page of Chromium has a cache of its own, unless a context joins them.
+  const home = isAlone || !browser.newContext ? browser : await once('context', () => browser.newContext());
+  const page = await home.newPage();
   // Firefox has a setting for this.
   if (!isKept) await page.addInitScript?.(() => delete Navigator.prototype.serviceWorker);
   const problems = [];

@@ -6,7 +6,9 @@ import assert from 'node:assert/strict';
 import { existsSync } from 'node:fs';
 import { after, describe, test } from 'node:test';
 import { fileURLToPath } from 'node:url';
-import { closeAll, openPage, serve, startChromium, startFirefox } from './browsers.mjs';
+import { closeAll, openPage, serve, startFirefox } from './browsers.mjs';
+import { enginePage } from './engine-page.mjs';
+import { full } from './full.mjs';
 
 const repository = fileURLToPath(new URL('..', import.meta.url));
 for (const [file, command] of [
@@ -20,11 +22,26 @@ const { fill, matrix } = await import('./parity/matrix.mjs');
 const { check } = await import('./quads/browsers.mjs');
 const { holdLocks } = await import('./package/locks.mjs');
 
-/** @type {{ name: string, start: () => unknown, engines: { backend: string, watched: number }[] }[]} */
+// In the short run, a software GPU leaves out what takes it longest, and the table says `full` there.
+const all = () => true;
+/** Long runs and large meshes. */
+const isSmall = ({ indices, iterations }) => (indices.length / 3) * (1 + iterations.length) < 50_000;
+/** The kernels for doubles and for deviations. */
+const isPlain = ({ isWide, deviation }) => !isWide && deviation === null;
+
+/**
+ * `meshes` and `quads`: which of them the GPU engines run. `watched`: the most iterations of a run that is compared after
+ * each.
+ *
+ * @type {{ name: string, open: () => ReturnType<typeof enginePage>, meshes: (mesh: any) => boolean,
+ *   quads: (batch: any) => boolean, engines: { backend: string, watched: number }[] }[]}
+ */
 const browsers = [
   {
     name: 'Chromium',
-    start: startChromium,
+    open: enginePage,
+    meshes: full ? all : isSmall,
+    quads: all,
     engines: [
       { backend: 'cpu', watched: 1000 },
       { backend: 'webgpu', watched: 200 },
@@ -33,7 +50,9 @@ const browsers = [
   },
   {
     name: 'Firefox',
-    start: startFirefox,
+    open: async () => openPage(await startFirefox(), `${await serve(repository)}tests/engines.html`),
+    meshes: full ? all : (mesh) => isSmall(mesh) && isPlain(mesh),
+    quads: full ? all : isPlain,
     engines: [
       { backend: 'webgpu', watched: 150 },
       { backend: 'webgl2', watched: 150 },
@@ -47,14 +66,17 @@ process.on('exit', () => console.log(`\n${matrix()}`));
 
 // In parallel: Firefox mostly waits.
 describe('engines', { concurrency: true }, () => {
-  for (const { name, start, engines } of browsers) {
+  for (const { name, open, meshes, quads, engines } of browsers) {
     test(`in ${name}`, { timeout: 900_000 }, async (t) => {
-      const { page, problems } = await openPage(await start(), `${await serve(repository)}tests/engines.html`);
-      await page.waitForFunction(() => 'runAll' in window && 'iterate' in window);
+      const { page, problems } = await open();
+      await page.evaluate(async () => {
+        for (const part of ['parity', 'quads']) await import(`/tests/${part}/page.js`);
+      });
       for (const engine of engines.map((engine) => ({ ...engine, title: `${titles[engine.backend]} ${name}` }))) {
-        await t.test(`${engine.title} gives the results of the simulation`, () => fill(page, engine));
+        const takes = engine.backend === 'cpu' ? all : meshes;
+        await t.test(`${engine.title} gives the results of the simulation`, () => fill(page, engine, takes));
         if (engine.backend === 'cpu') continue;
-        await t.test(`${engine.title} decides quads as big integers do`, () => check(page, engine));
+        await t.test(`${engine.title} decides quads as big integers do`, () => check(page, engine, quads));
         // In Firefox, each wait for the GPU takes 100 ms.
         if (name === 'Firefox') continue;
         await t.test(`${engine.title} holds locks and limits when the vertices move`, () => holdLocks(page, engine));

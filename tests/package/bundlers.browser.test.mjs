@@ -4,7 +4,7 @@
 import assert from 'node:assert/strict';
 import { mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { after, before, test } from 'node:test';
+import { after, test } from 'node:test';
 import { fileURLToPath, pathToFileURL } from 'node:url';
 import { gzipSync } from 'node:zlib';
 import { nodeResolve } from '@rollup/plugin-node-resolve';
@@ -49,10 +49,6 @@ const bundles = {
   },
 };
 
-let chromium;
-before(async () => {
-  chromium = await startChromium();
-});
 after(async () => {
   await closeAll();
   rmSync(folder, { recursive: true, force: true });
@@ -71,7 +67,7 @@ for (const [name, bundle] of Object.entries(bundles)) {
       `<!doctype html><meta charset="utf-8"><title>edgeflip</title><link rel="icon" href="data:,">
       <script type="module" src="./all.js"></script>`,
     );
-    const { page, problems } = await openPage(chromium, `${await serve(root)}index.html`);
+    const { page, problems } = await openPage(await startChromium(), `${await serve(root)}index.html`);
     await page.waitForFunction(() => document.body?.textContent.trim());
     assert.equal(await page.evaluate(() => document.body.textContent.trim()), WRITTEN);
     assert.deepEqual(problems, []);

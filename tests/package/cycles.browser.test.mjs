@@ -4,10 +4,11 @@
 import assert from 'node:assert/strict';
 import { after, test } from 'node:test';
 import { closeAll, openPage, serve, startChromium } from '../browsers.mjs';
+import { full } from '../full.mjs';
 import { repository } from './project.mjs';
 
 after(closeAll);
-const count = Number(process.env.EDGEFLIP_CYCLES ?? 100);
+const count = Number(process.env.EDGEFLIP_CYCLES ?? (full ? 100 : 20));
 
 /** Runs in the page: keeps count of the bytes of GPU buffers, and defines `cycle`. */
 async function prepare() {

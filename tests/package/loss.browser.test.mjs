@@ -6,10 +6,14 @@ import assert from 'node:assert/strict';
 import { after, test } from 'node:test';
 import { fileURLToPath } from 'node:url';
 import { closeAll, serve, startChromium } from '../browsers.mjs';
+import { full } from '../full.mjs';
 
 const repository = fileURLToPath(new URL('../..', import.meta.url));
 
 after(closeAll);
+
+/** A mesh that `auto` gives to a GPU. */
+const SPEC = full ? 'random 200' : 'random 150';
 
 /** Runs in the page before its scripts. */
 function passForReal() {
@@ -25,10 +29,10 @@ async function openPage() {
 }
 
 /** Runs in the page: returns every iteration of the run, and the differences from the CPU. */
-async function runAndLose() {
+async function runAndLose(spec) {
   const { FlipSession, makeDelaunay } = await import('/dist/index.js');
   const { generate } = await import('/dist/files.js');
-  const mesh = await generate('random 200');
+  const mesh = await generate(spec);
   // Locks an edge of every seventh triangle.
   const options = { maxIterations: 4, lockedEdges: mesh.indices.filter((_, i) => i % 21 < 2) };
   const first = await makeDelaunay(mesh, options);
@@ -63,7 +67,7 @@ async function runAndLose() {
 
 test('auto does not wait for the GPU, moves to it when it is ready, and a lost GPU changes no result', async () => {
   const page = await openPage();
-  const { begun, isSame, engines, fallback, status, remaining, counted, again } = await page.evaluate(runAndLose);
+  const { begun, isSame, engines, fallback, status, remaining, counted, again } = await page.evaluate(runAndLose, SPEC);
   assert.deepEqual(begun, [
     { backend: 'cpu', fallback: 'the gpu is made ready behind this run' },
     { backend: 'webgpu', fallback: undefined },
@@ -79,10 +83,10 @@ test('auto does not wait for the GPU, moves to it when it is ready, and a lost G
  * Runs in the page: runs that begin before the GPU is ready. The first iteration decides whether a run changes to the
  * GPU. If the machine is busy just then, the run seems to be nearly done and stays on the CPU; the next one may change.
  */
-async function runAndChange() {
+async function runAndChange(spec) {
   const { FlipSession, makeDelaunay } = await import('/dist/index.js');
   const { generate } = await import('/dist/files.js');
-  const mesh = await generate('random 300');
+  const mesh = await generate(spec);
   const sessions = [];
   for (let i = 0; i < 6; i++) sessions.push(await FlipSession.create(mesh));
   const begun = await Promise.all(sessions.map((session) => session.backend()));
@@ -105,7 +109,7 @@ async function runAndChange() {
 }
 
 test('a run that starts on the CPU continues on the GPU when it is ready', async () => {
-  const found = await (await openPage()).evaluate(runAndChange);
+  const found = await (await openPage()).evaluate(runAndChange, full ? 'random 300' : 'random 200');
   const fallback = 'the cpu began, until the gpu was ready';
   assert.deepEqual(found, { begun: 'cpu', backend: 'webgpu', fallback, first: 1, isSorted: true, isSame: true });
 });

@@ -2,18 +2,20 @@
 // call that waits.
 
 import assert from 'node:assert/strict';
-import { after, test } from 'node:test';
-import { closeAll, openPage, serve, startChromium } from '../browsers.mjs';
-import { repository } from './project.mjs';
+import { after, before, test } from 'node:test';
+import { closeAll } from '../browsers.mjs';
+import { enginePage } from '../engine-page.mjs';
+import { full } from '../full.mjs';
 
 after(closeAll);
-const updates = Number(process.env.EDGEFLIP_UPDATES ?? 300);
+const updates = Number(process.env.EDGEFLIP_UPDATES ?? (full ? 300 : 70));
 
-const chromium = await startChromium();
-const { page, problems } = await openPage(chromium, `${await serve(repository)}package.json`);
-await page.evaluate(prepare);
-// The document has no icon.
-problems.length = 0;
+let page;
+let problems;
+before(async () => {
+  ({ page, problems } = await enginePage());
+  await page.evaluate(prepare);
+});
 
 /** Runs in the page: defines what the tests call. */
 async function prepare() {

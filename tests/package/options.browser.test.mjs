@@ -1,18 +1,16 @@
 // Each option of src/js/types.ts has the same effect on the WebGL2 engine as on the CPU. The module of the WebGL2
-// engine gets the options from the module of the engines. `init` names the folder of the modules. Runs in Chromium;
-// uses the existing dist/.
+// engine gets the options from the module of the engines. Runs in Chromium; uses the existing dist/.
 
 import assert from 'node:assert/strict';
 import { after, test } from 'node:test';
-import { fileURLToPath } from 'node:url';
-import { closeAll, serve, startChromium } from '../browsers.mjs';
+import { closeAll } from '../browsers.mjs';
+import { enginePage } from '../engine-page.mjs';
 
 after(closeAll);
 
 /** Runs in the page: returns the result of each case, or its exception. */
 async function askAll(backend) {
-  const { FlipSession, init, makeDelaunay } = await import('/dist/index.js');
-  await init({ base: '../dist/wasm' });
+  const { FlipSession, makeDelaunay } = await import('/dist/index.js');
   const { generate } = await import('/dist/files.js');
   const { cases } = await import('/tests/package/options.mjs');
   const [mesh, base] = [await generate('uvsphere 24'), { backend }];
@@ -28,8 +26,7 @@ async function askAll(backend) {
 }
 
 test('every option takes effect on WebGL2', async () => {
-  const page = await (await startChromium()).newPage();
-  await page.goto(`${await serve(fileURLToPath(new URL('../..', import.meta.url)))}tests/engines.html`);
+  const { page } = await enginePage();
   const [webgl2, cpu] = [await page.evaluate(askAll, 'webgl2'), await page.evaluate(askAll, 'cpu')];
   assert.deepEqual(webgl2, cpu);
   for (const [option, value] of Object.entries(webgl2)) assert.doesNotMatch(value, /Error/, option);

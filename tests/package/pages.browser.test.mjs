@@ -11,6 +11,7 @@ import { setTimeout as pause } from 'node:timers/promises';
 import { pathToFileURL } from 'node:url';
 import { build, createServer } from 'vite';
 import { closeAll, ISOLATED, openPage, serve, startChromium, startFirefox } from '../browsers.mjs';
+import { full } from '../full.mjs';
 import { Projects, repository, run } from './project.mjs';
 
 const projects = new Projects(join(tmpdir(), 'edgeflip-package-'));
@@ -42,6 +43,14 @@ const withThreads = `
   const [{ backend, flips, indices }, any] = await Promise.all(runs);
   const sum = (words) => words.reduce((sum, word) => (Math.imul(sum, 31) + word) | 0, 0);
   document.body.append(\`\${flips} and \${any.flips} flips on \${backend}: \${sum(indices)}, \${sum(any.indices)}\`);
+`;
+
+const withWorker = `
+  import { makeDelaunay } from './node_modules/edgeflip/dist/worker.js';
+  const positions = new Float32Array([-3, 0, 0, -1, 3, 0, 0, 1]);
+  const indices = new Uint32Array([0, 1, 2, 0, 2, 3]);
+  const result = await makeDelaunay({ positions, indices, dimension: 2 }, { backend: 'auto' });
+  document.body.append(\`\${result.flips} flip on \${result.backend}: \${result.indices}\`);
 `;
 
 /** Lines with values that are not a GPUDevice of this window. The package refuses them before they reach the module. */
@@ -79,8 +88,9 @@ function on(backend, lines) {
 /** The same lines, which import the package by its name. */
 function byName(lines) {
   const named = lines.replace('./node_modules/edgeflip/dist/index.js', 'edgeflip');
-  assert.notEqual(named, lines);
-  return named.replace('./node_modules/edgeflip/dist/files.js', 'edgeflip/files');
+  const all = named.replaceAll(/\.\/node_modules\/edgeflip\/dist\/(\w+)\.js/g, 'edgeflip/$1');
+  assert.notEqual(all, lines);
+  return all;
 }
 
 // `writes`: the output of the same lines in Node, on the CPU.
@@ -92,6 +102,7 @@ const pages = [
   { name: 'files', lines: on('cpu', withFiles), writes: '' },
   { name: 'audit', lines: on('cpu', withAudit), writes: '' },
   { name: 'threads', lines: on('cpu', withThreads), writes: '' },
+  { name: 'worker', lines: on('cpu', withWorker), writes: '' },
   { name: 'fakes', lines: withFakes, writes: '' },
 ];
 
@@ -119,9 +130,12 @@ after(async () => {
   projects.remove();
 });
 
-/** Opens every page and compares its output. If memory can be shared, threads have workers. */
-async function check(browser, address, isIsolated) {
-  for (const { name, lines, writes } of pages) {
+/**
+ * Opens pages and compares their output: all, or in the short run those that are named. If memory can be shared, threads
+ * have workers.
+ */
+async function check(browser, address, isIsolated, names) {
+  for (const { name, lines, writes } of pages.filter((page) => full || !names || names.includes(page.name))) {
     const { page, problems } = await openPage(browser, `${address}${name}.html`);
     let text = '';
     // Compiling shaders for a software GPU takes seconds.
@@ -129,7 +143,7 @@ async function check(browser, address, isIsolated) {
       await pause(50);
       text = await page.evaluate(() => document.body?.textContent.trim() ?? '');
     }
-    const wanted = isIsolated && name === 'threads' ? 3 : 0;
+    const wanted = { threads: isIsolated ? 3 : 0, worker: 1 }[name] ?? 0;
     // When the first worker has finished, the other workers may not have loaded yet.
     for (let i = 0; i < 100 && page.workers().length < wanted; i++) await pause(50);
     const workers = page.workers().length;
@@ -185,7 +199,19 @@ test('the package contains the files that its entries need, and no source', () =
   assert.deepEqual(others.sort(), ['LICENSE-APACHE', 'LICENSE-MIT', 'dist/cjs/package.json', 'package.json']);
 });
 
-for (const version of ['5.4', '', '6', '7']) {
+test('CommonJS in Node finds the package', () => {
+  const root = projects.project('common');
+  writeFileSync(
+    join(root, 'common.cjs'),
+    `const { makeDelaunay } = require('edgeflip');
+    const { generate } = require('edgeflip/files');
+    generate('random 8').then(makeDelaunay).then(({ flips }) => console.log(flips));`,
+  );
+  assert.equal(run(process.execPath, ['common.cjs'], root), '47\n');
+});
+
+// The oldest version knows the fewest ways to write a type.
+for (const version of full ? ['5.4', '', '6', '7'] : ['5.4']) {
   const name = `typescript${version && `-${version}`}`;
   test(`a strict project finds the types with ${name}, with a bundler and in old and new Node, and checks all declarations`, () => {
     const root = projects.project(name);
@@ -218,6 +244,9 @@ for (const version of ['5.4', '', '6', '7']) {
   });
 }
 
+/** Pages that load every module of the package. */
+const BUNDLED = ['cpu', 'webgl2', 'files', 'audit', 'threads', 'worker'];
+
 // More of them at once share the processor cores until a page takes longer than it may.
 describe('in a browser', { concurrency: 2 }, () => {
   let chromium;
@@ -228,16 +257,18 @@ describe('in a browser', { concurrency: 2 }, () => {
   test('plain pages in Chromium', async () => check(chromium, await serve(plainPages('plain'), ISOLATED), true));
 
   test('plain pages that are not isolated, in Chromium', async () =>
-    check(chromium, await serve(plainPages('plain-alone')), false));
+    check(chromium, await serve(plainPages('plain-alone')), false, ['index', 'threads']));
 
   test('plain pages in Firefox', async () =>
-    check(await startFirefox(), await serve(plainPages('plain-firefox'), ISOLATED), true));
+    check(await startFirefox(), await serve(plainPages('plain-firefox'), ISOLATED), true, [
+      ...['index', 'webgpu', 'webgl2', 'threads'],
+    ]));
 
   test('a Vite project, built, in Chromium', async () => {
     const root = viteProject('vite-build');
     const input = pages.map(({ name }) => join(root, `${name}.html`));
     await build({ root, configFile: false, logLevel: 'warn', build: { rolldownOptions: { input } } });
-    await check(chromium, await serve(join(root, 'dist'), ISOLATED), true);
+    await check(chromium, await serve(join(root, 'dist'), ISOLATED), true, BUNDLED);
   });
 
   test('a Vite project on the development server, in Chromium', async (t) => {
@@ -250,6 +281,6 @@ describe('in a browser', { concurrency: 2 }, () => {
     });
     t.after(() => server.close());
     await server.listen();
-    await check(chromium, server.resolvedUrls.local[0], true);
+    await check(chromium, server.resolvedUrls.local[0], true, BUNDLED);
   });
 });

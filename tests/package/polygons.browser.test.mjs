@@ -2,16 +2,20 @@
 // while the mesh moves. Uses the existing dist/.
 
 import assert from 'node:assert/strict';
-import { after, test } from 'node:test';
+import { after, before, test } from 'node:test';
 import Delaunator from 'delaunator';
-import { closeAll, openPage, serve, startChromium } from '../browsers.mjs';
+import { closeAll } from '../browsers.mjs';
+import { enginePage } from '../engine-page.mjs';
+import { full } from '../full.mjs';
 import { polygons } from './polygons.mjs';
-import { repository } from './project.mjs';
 
 after(closeAll);
 
-const { page } = await openPage(await startChromium(), `${await serve(repository)}package.json`);
-await page.evaluate(prepare);
+let page;
+before(async () => {
+  ({ page } = await enginePage());
+  await page.evaluate(prepare);
+});
 
 /** Runs in the page: defines what the tests call. */
 async function prepare() {
@@ -49,7 +53,8 @@ async function prepare() {
 
 test('every engine brings polygons in alike, and keeps them', async () => {
   let [runs, constrained, frames] = [0, 0, 0];
-  for (const { name, positions, sides } of polygons) {
+  // The two largest have two thirds of all points, and take a software GPU most of the time.
+  for (const { name, positions, sides } of full ? polygons : polygons.filter(({ sides }) => sides.length < 4000)) {
     const { triangles } = new Delaunator(positions);
     const mesh = { positions: [...positions], indices: [...triangles], constraints: sides.flat() };
     const run = (backend) => page.evaluate(([backend, mesh]) => runOn(backend, mesh), [backend, mesh]);
@@ -60,5 +65,6 @@ test('every engine brings polygons in alike, and keeps them', async () => {
     constrained += cpu.constraintFlips;
     frames += cpu.frames;
   }
-  assert.ok(runs > 200 && constrained > 2000 && frames > 10, `${runs}, ${constrained}, ${frames}`);
+  const [fewest, fewestConstrained] = full ? [200, 2000] : [50, 500];
+  assert.ok(runs > fewest && constrained > fewestConstrained && frames > 10, `${runs}, ${constrained}, ${frames}`);
 });

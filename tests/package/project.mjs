@@ -1,8 +1,8 @@
-// Packs the package once and installs it into fresh projects.
+// Packs the package and installs it into fresh projects.
 
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
-import { existsSync, mkdirSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import { cpSync, existsSync, mkdirSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 
@@ -25,6 +25,8 @@ export function run(program, args, cwd, env = {}) {
 export class Projects {
   /** @type {{ filename: string, files: { path: string }[] }} */
   packed;
+  /** The folder into which npm has installed the package. */
+  #installed;
 
   constructor(prefix) {
     assert.ok(existsSync(join(repository, 'dist/index.js')), 'dist/ is not built: npm run build');
@@ -45,7 +47,14 @@ export class Projects {
     const dependencies = { edgeflip: `file:${this.tarball}` };
     const fields = { name, private: true, type: 'module', dependencies, ...more };
     writeFileSync(join(root, 'package.json'), JSON.stringify(fields));
-    run('npm', ['install', '--offline', '--install-links', '--ignore-scripts', '--no-audit', '--no-fund'], root);
+    if (this.#installed) {
+      // What npm would write again.
+      for (const part of ['node_modules', 'package-lock.json'])
+        cpSync(join(this.#installed, part), join(root, part), { recursive: true });
+    } else {
+      run('npm', ['install', '--offline', '--install-links', '--ignore-scripts', '--no-audit', '--no-fund'], root);
+      this.#installed = root;
+    }
     return root;
   }
 

@@ -6,13 +6,15 @@ import assert from 'node:assert/strict';
 import { after, test } from 'node:test';
 import { fileURLToPath } from 'node:url';
 import { closeAll, openPage, serve, startChromium } from '../browsers.mjs';
+import { enginePage } from '../engine-page.mjs';
+import { full } from '../full.mjs';
 
 const repository = fileURLToPath(new URL('../..', import.meta.url));
 
 after(closeAll);
 
 /** Runs in the page: counts the calls of WebGPU in each run, and collects wrong results. */
-async function runs() {
+async function runs([plane, space]) {
   const { FlipSession, makeDelaunay } = await import('/dist/index.js');
   const { generate } = await import('/dist/files.js');
   let asked = {};
@@ -31,7 +33,7 @@ async function runs() {
   count(GPUQueue.prototype, 'writeBuffer', (buffer, place, data, first, size = data.byteLength) =>
     size > FEW ? 'arrays' : undefined,
   );
-  const [mesh, surface] = [await generate('random 150'), await generate('uvsphere 140')];
+  const [mesh, surface] = [await generate(plane), await generate(space)];
   const wanted = new Map();
   for (const one of [mesh, surface]) wanted.set(one, await makeDelaunay(one, { backend: 'cpu' }));
   const wrong = [];
@@ -76,9 +78,11 @@ async function runs() {
 }
 
 test('a run waits once, and copies through buffers that are reused', async () => {
-  const browser = await startChromium();
-  const { page } = await openPage(browser, `${await serve(repository)}tests/engines.html`);
-  const { told, wrong } = await page.evaluate(runs);
+  const { page } = await enginePage();
+  const { told, wrong } = await page.evaluate(
+    runs,
+    full ? ['random 150', 'uvsphere 140'] : ['random 70', 'uvsphere 70'],
+  );
   console.log(JSON.stringify(told));
   assert.deepEqual(wrong, []);
   // The first run opens the device. The first run of each size creates the buffers for the next.
@@ -86,12 +90,11 @@ test('a run waits once, and copies through buffers that are reused', async () =>
 });
 
 /** Runs in the page: sends arrays that go in several pieces, and reads them back. Collects wrong results. */
-async function pieces() {
+async function pieces(specs) {
   const { FlipSession } = await import('/dist/index.js');
   const { generate } = await import('/dist/files.js');
   const wrong = [];
-  // 26 MB of triangles; a piece has 16 MB.
-  for (const spec of ['random 1050', 'random 1040', 'random 1060']) {
+  for (const spec of specs) {
     const mesh = await generate(spec);
     const session = await FlipSession.create(mesh, { backend: 'webgpu' });
     const triangles = await session.triangles();
@@ -103,8 +106,10 @@ async function pieces() {
 }
 
 test('arrays of several pieces come back as they were sent', async () => {
-  const { page } = await openPage(await startChromium(), `${await serve(repository)}tests/engines.html`);
-  assert.deepEqual(await page.evaluate(pieces), []);
+  const { page } = await enginePage();
+  // 26 MB of triangles; a piece has 16 MB.
+  const specs = full ? ['random 1050', 'random 1040', 'random 1060'] : ['random 1050'];
+  assert.deepEqual(await page.evaluate(pieces, specs), []);
 });
 
 /** Runs in the page: begins sessions at the same time on an engine, and counts the programs that the page compiles. */

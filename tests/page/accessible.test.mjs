@@ -4,17 +4,12 @@
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { gzipSync } from 'node:zlib';
 import { openPage, startChromium } from '../browsers.mjs';
-import { openEdgeflip, tidyUp } from './page.mjs';
+import { openEdgeflip, sharedPage } from './page.mjs';
 
 const axe = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
-let browser;
-before(async () => {
-  browser = await startChromium();
-});
-after(tidyUp);
 
 /** What axe-core finds on the page as it is now. */
 async function findings({ page }) {
@@ -29,7 +24,7 @@ for (const [colorScheme, width, height] of [
   ['dark', 390, 844],
 ]) {
   test(`axe-core finds nothing in ${colorScheme}, ${width} wide`, async () => {
-    const page = await openEdgeflip(browser);
+    const page = await sharedPage('models/bunny.ply');
     await page.page.emulateMedia({ colorScheme });
     await page.page.setViewportSize({ width, height });
     await page.rest();
@@ -71,6 +66,8 @@ for (const [colorScheme, width, height] of [
     await page.page.evaluate(() => (location.hash = '#first'));
     await page.page.waitForSelector('#live:not([hidden])');
     await look('the first view');
+    await page.page.emulateMedia({ colorScheme: null });
+    await page.page.setViewportSize({ width: 1280, height: 720 });
     const wrong = Object.entries(found).filter(([, violations]) => violations.length > 0);
     assert.deepEqual(Object.fromEntries(wrong), {});
     await page.close();
@@ -78,7 +75,7 @@ for (const [colorScheme, width, height] of [
 }
 
 test('nothing moves while the tool opens and plays', async () => {
-  const page = await openEdgeflip(browser, () => {
+  const page = await openEdgeflip(await startChromium(), () => {
     window.shifts = [];
     const nameOf = ({ node }) => node?.id || node?.className || node?.nodeName;
     new PerformanceObserver((list) => {
@@ -94,7 +91,7 @@ test('nothing moves while the tool opens and plays', async () => {
 
 /** Loads the first view with an empty cache: the milliseconds to its first content and to its motion, and its bytes. */
 async function load(address) {
-  const { page, problems } = await openPage(browser, 'about:blank');
+  const { page, problems } = await openPage(await startChromium(), 'about:blank', { isAlone: true });
   await page.addInitScript(() => {
     const look = () => {
       if (document.getElementById('live')?.hidden === false) window.hasMoved = performance.now();
@@ -117,8 +114,8 @@ async function load(address) {
 }
 
 test('the first view is there soon, and loads little', async (t) => {
-  const { page: tool } = await openEdgeflip(browser);
-  const [address] = tool.url().split('#');
+  const tool = await sharedPage();
+  const [address] = tool.page.url().split('#');
   await tool.close();
   // The best of up to five loads, because the machine may be busy. The limits are several times what two cores take.
   let isSoon = false;

@@ -1,15 +1,10 @@
 // The demo page draws from the buffer that the flips write. The test records the calls of WebGPU in Chromium.
 
 import assert from 'node:assert/strict';
-import { after, before, test } from 'node:test';
-import { startChromium } from '../browsers.mjs';
-import { expected, meshFile, openEdgeflip, tidyUp } from './page.mjs';
+import { test } from 'node:test';
+import { expected, meshFile, sharedPage } from './page.mjs';
 
-let browser;
-before(async () => (browser = await startChromium()));
-after(tidyUp);
-
-/** Runs in the page: records the calls on its buffers. Each object has its own number. */
+/** Runs in the page: records the calls on its buffers until `unwatch` is called. Each object has its own number. */
 function watchBuffers() {
   const numbers = new Map();
   const idOf = (object) => {
@@ -18,10 +13,13 @@ function watchBuffers() {
   };
   const seen = { events: [], buffers: {}, devices: new Set() };
   window.seen = () => ({ ...seen, devices: seen.devices.size });
+  const undo = [];
+  window.unwatch = () => undo.forEach((restore) => restore());
   const note = (what, more) => seen.events.push({ what, state: document.body.dataset.state, ...more });
   /** Calls `look` with the result of a method, its object and its arguments. */
   const watch = ({ prototype }, method, look) => {
     const original = prototype[method];
+    undo.unshift(() => (prototype[method] = original));
     prototype[method] = function (...args) {
       const result = original.apply(this, args);
       look(result, this, args);
@@ -76,7 +74,8 @@ test('while it plays on WebGPU, the page draws from the session’s own buffer, 
   const { mesh, rows, facts } = await expected(path);
   const bytes = 4 * mesh.indices.length;
   assert.ok(mesh.indices.length > 3 * 20_000, 'large enough that no edge is coloured');
-  const page = await openEdgeflip(browser, watchBuffers);
+  const page = await sharedPage();
+  await page.page.evaluate(watchBuffers);
   await page.open(path);
   await page.chooseEngine('webgpu');
   const end = await page.playToEnd(120);
@@ -86,7 +85,10 @@ test('while it plays on WebGPU, the page draws from the session’s own buffer, 
   );
   assert.equal(end.facts.Fingerprint, facts.Fingerprint);
 
-  const { events, buffers, devices } = await page.page.evaluate(() => window.seen());
+  const { events, buffers, devices } = await page.page.evaluate(() => {
+    window.unwatch();
+    return window.seen();
+  });
   const { MAP_READ, COPY_DST, INDEX, STORAGE } = await page.page.evaluate(() => {
     const { MAP_READ, COPY_DST, INDEX, STORAGE } = GPUBufferUsage;
     return { MAP_READ, COPY_DST, INDEX, STORAGE };

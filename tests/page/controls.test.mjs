@@ -1,25 +1,12 @@
 // Tests the controls and the errors of the demo page in Chromium: cancelling, broken input, no GPU, a lost GPU, keys.
 
 import assert from 'node:assert/strict';
-import { writeFileSync } from 'node:fs';
-import { join } from 'node:path';
-import { after, before, test } from 'node:test';
+import { before, test } from 'node:test';
 import { startChromium } from '../browsers.mjs';
-import { expected, folder, keepDevices, meshFile, openEdgeflip, tidyUp } from './page.mjs';
+import { expected, file, loseDevice, meshFile, openEdgeflip, pageForBeta, sharedPage } from './page.mjs';
 
-let browser;
 let small;
-before(async () => {
-  browser = await startChromium();
-  small = await meshFile('strips 16', 'small.off');
-});
-after(tidyUp);
-
-function file(name, text) {
-  const path = join(folder, name);
-  writeFileSync(path, text);
-  return path;
-}
+before(async () => (small = await meshFile('strips 16', 'small.off')));
 
 /** Opens a file that is refused, and returns the texts of the page. */
 async function openRefused(page, path) {
@@ -46,7 +33,7 @@ async function playAndCompare(page, path) {
 }
 
 test('opening can be cancelled: the previous mesh stays, and plays', async () => {
-  const page = await openEdgeflip(browser);
+  const page = await sharedPage();
   const opened = await page.open(small);
   await page.chooseEngine('cpu');
   await page.choose('sample', 'random 500');
@@ -61,7 +48,7 @@ test('opening can be cancelled: the previous mesh stays, and plays', async () =>
 });
 
 test('a mesh that is chosen while another is being opened replaces it', async () => {
-  const page = await openEdgeflip(browser);
+  const page = await sharedPage();
   await page.choose('sample', 'random 500');
   await page.until('a mesh being opened', ({ state }) => state === 'busy');
   const seen = await page.open(small);
@@ -71,7 +58,7 @@ test('a mesh that is chosen while another is being opened replaces it', async ()
 });
 
 test('a run on the CPU pauses at its iteration, and continues', async () => {
-  const page = await openEdgeflip(browser);
+  const page = await sharedPage();
   const path = await meshFile('strips 80', 'long.off');
   const { fingerprints, facts } = await expected(path);
   await page.open(path);
@@ -90,7 +77,7 @@ test('a run on the CPU pauses at its iteration, and continues', async () => {
 });
 
 test('the error of a broken file names the line, and the previous mesh stays', async () => {
-  const page = await openEdgeflip(browser);
+  const page = await sharedPage();
   const opened = await page.open(small);
   for (const [name, text, message] of [
     ['broken.off', 'OFF\n3 1 0\n0 0 0\n1 0 0\n0 one 0\n3 0 1 2\n', /^\s*broken\.off: line 5: /],
@@ -110,7 +97,7 @@ test('the error of a broken file names the line, and the previous mesh stays', a
 });
 
 test('a β that is not an angle is refused, and a valid β changes the result', async () => {
-  const page = await openEdgeflip(browser);
+  const page = await pageForBeta();
   await page.open(await meshFile('uvsphere 28 0.1', 'sphere.off'));
   const setBeta = (text) => page.setBeta(text);
   for (const wrong of ['181', '-1', '']) {
@@ -132,7 +119,7 @@ test('a β that is not an angle is refused, and a valid β changes the result', 
 });
 
 test('a β that is being typed stays while the page works, and takes effect when it is entered', async () => {
-  const page = await openEdgeflip(browser);
+  const page = await pageForBeta();
   await page.open(await meshFile('uvsphere 28 0.1', 'sphere.off'));
   await page.choose('speed', '1000');
   await page.page.click('#play');
@@ -151,7 +138,7 @@ test('a β that is being typed stays while the page works, and takes effect when
 });
 
 test('an engine that is chosen while a run is being prepared is the engine of the run', async () => {
-  const page = await openEdgeflip(browser);
+  const page = await sharedPage();
   await page.page.evaluate(() => {
     for (const backend of ['webgpu', 'cpu']) {
       const choice = document.getElementById('backend');
@@ -165,7 +152,7 @@ test('an engine that is chosen while a run is being prepared is the engine of th
 });
 
 test('without WebGPU the page says so, plays on the CPU and draws with WebGL2', async () => {
-  const page = await openEdgeflip(browser, () => {
+  const page = await openEdgeflip(await startChromium(), () => {
     delete Navigator.prototype.gpu;
     for (const name of Object.getOwnPropertyNames(window)) if (/^GPU[A-Z]/.test(name)) delete window[name];
     // The kind of the canvas.
@@ -198,7 +185,7 @@ test('without WebGPU the page says so, plays on the CPU and draws with WebGL2', 
 });
 
 test('auto does not use a software GPU, and says why', async () => {
-  const page = await openEdgeflip(browser);
+  const page = await sharedPage();
   const seen = await page.open(small);
   assert.deepEqual([seen.backend, seen.facts.Engine], ['auto', 'CPU, in a worker']);
   assert.match(seen.note, /On the CPU: no hardware GPU found/);
@@ -206,7 +193,7 @@ test('auto does not use a software GPU, and says why', async () => {
 });
 
 test('a GPU that is lost during a run is replaced, and the result is the same', async () => {
-  const page = await openEdgeflip(browser, keepDevices);
+  const page = await sharedPage();
   const path = await meshFile('strips 40', 'strips.off');
   const { facts, rows } = await expected(path);
   await page.open(path);
@@ -214,12 +201,12 @@ test('a GPU that is lost during a run is replaced, and the result is the same', 
   await page.choose('speed', '50');
   await page.page.click('#play');
   await page.until('a few iterations', ({ state, at }) => state === 'playing' && Number(at) > 2);
-  await page.page.evaluate(() => window.devices.at(-1).destroy());
+  const devices = await loseDevice(page);
   const { error } = await page.until('a message', ({ error, state }) => error !== '' && state !== 'busy');
   assert.match(error, /The GPU was lost/);
   const recovered = await page.rest();
   assert.ok(Number(recovered.at) > 2, `at ${recovered.at}`);
-  assert.equal(await page.page.evaluate(() => window.devices.length), 2);
+  assert.equal(await page.page.evaluate(() => window.devices.length), devices + 1);
   const end = await page.playToEnd();
   assert.deepEqual(
     end.rows.map((row) => row.slice(0, 4)),
@@ -242,12 +229,14 @@ function watchContexts() {
   };
 }
 
-/** Watches all workers that start later. */
-function watchWorkers({ page }) {
-  return page.route('**/desk-*.js', async (route) => {
+/** Watches all workers that start later, until the returned function is called. */
+async function watchWorkers({ page }) {
+  const scripts = '**/desk-*.js';
+  await page.route(scripts, async (route) => {
     const response = await route.fetch();
     await route.fulfill({ response, body: `(${watchContexts})();${await response.text()}` });
   });
+  return () => page.unroute(scripts);
 }
 
 /** Plays a few iterations on WebGL2; then loses the context. */
@@ -268,8 +257,8 @@ async function loseContext(page) {
 }
 
 test('after a WebGL2 context is lost during a run, the CPU repeats the run, and the result is the same', async () => {
-  const page = await openEdgeflip(browser);
-  await watchWorkers(page);
+  const page = await sharedPage();
+  const unwatch = await watchWorkers(page);
   const path = await meshFile('strips 40', 'strips.off');
   const { facts, rows } = await expected(path);
   await page.open(path);
@@ -286,11 +275,12 @@ test('after a WebGL2 context is lost during a run, the CPU repeats the run, and 
     rows,
   );
   assert.equal(end.facts.Fingerprint, facts.Fingerprint);
+  await unwatch();
   await page.close();
 });
 
 test('without WebGPU, auto uses the CPU and says why', async () => {
-  const page = await openEdgeflip(browser, () => delete Navigator.prototype.gpu);
+  const page = await openEdgeflip(await startChromium(), () => delete Navigator.prototype.gpu);
   const path = await meshFile('random 110', 'random.off');
   const { facts, fingerprints, rows } = await expected(path);
   const opened = await page.open(path);
@@ -308,7 +298,7 @@ test('without WebGPU, auto uses the CPU and says why', async () => {
 
 for (const backend of ['webgpu', 'cpu']) {
   test(`keys play, pause and step on ${backend}, also in fast succession`, async () => {
-    const page = await openEdgeflip(browser);
+    const page = await sharedPage();
     const { fingerprints, rows } = await expected(small);
     await page.open(small);
     await page.chooseEngine(backend);
@@ -352,7 +342,7 @@ for (const backend of ['webgpu', 'cpu']) {
   });
 
   test(`a slider that is moved during play on ${backend} stays at its new position`, async () => {
-    const page = await openEdgeflip(browser);
+    const page = await sharedPage();
     const path = await meshFile('strips 40', 'strips.off');
     const { fingerprints, facts } = await expected(path);
     await page.open(path);
@@ -365,8 +355,9 @@ for (const backend of ['webgpu', 'cpu']) {
       slider.value = '2';
       slider.dispatchEvent(new Event('input', { bubbles: true }));
     });
-    // Waits for the iteration that was running, because the page keeps it.
-    const [seen] = [await page.rest(), await new Promise((done) => setTimeout(done, 1500))];
+    // The page keeps the iteration that was running, so look again after it.
+    const seen = await page.rest();
+    await page.page.waitForTimeout(500);
     const later = await page.rest();
     for (const { at, state, facts } of [seen, later]) {
       assert.deepEqual([at, state, facts.Fingerprint], ['2', 'ready', fingerprints[2]]);
@@ -378,7 +369,7 @@ for (const backend of ['webgpu', 'cpu']) {
 }
 
 test('the page makes no request to other servers, and its policy forbids them', async () => {
-  const page = await openEdgeflip(browser);
+  const page = await sharedPage();
   const refused = await page.page.evaluate(() => {
     const violation = new Promise((done) =>
       document.addEventListener('securitypolicyviolation', (event) => done(event.effectiveDirective), { once: true }),
@@ -393,6 +384,6 @@ test('the page makes no request to other servers, and its policy forbids them', 
     page.problems.filter((problem) => !/example\.com/.test(problem)),
   ];
   assert.ok(tried.length > 0);
-  assert.deepEqual(rest, []);
-  await page.page.close();
+  page.problems.splice(0, Infinity, ...rest);
+  await page.close();
 });

@@ -1,16 +1,13 @@
 // Tests edges that are drawn into the mesh of the page, in Chromium.
 
 import assert from 'node:assert/strict';
-import { after, test } from 'node:test';
+import { test } from 'node:test';
 import { makeDelaunay } from 'edgeflip';
 import { generate } from 'edgeflip/files';
-import { startChromium } from '../browsers.mjs';
-import { openEdgeflip, tidyUp } from './page.mjs';
-
-after(tidyUp);
+import { sharedPage } from './page.mjs';
 
 test('edges that are drawn come in, and stay', async () => {
-  const page = await openEdgeflip(await startChromium());
+  const page = await sharedPage();
   await page.page.context().grantPermissions(['clipboard-read', 'clipboard-write']);
   await page.choose('sample', 'models/terrain.ply');
   await page.rest();

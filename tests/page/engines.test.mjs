@@ -2,28 +2,22 @@
 
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { fileURLToPath } from 'node:url';
 import { makeDelaunay } from 'edgeflip';
 import { generate } from 'edgeflip/files';
 import { build } from 'esbuild';
 import site from '../../www/vite.config.js';
-import { closeAll, openPage, serve, startChromium } from '../browsers.mjs';
-import { fingerprintOf } from './page.mjs';
+import { openPage, serve, startChromium } from '../browsers.mjs';
+import { full } from '../full.mjs';
+import { fingerprintOf, sharedPage } from './page.mjs';
 
 const at = (path) => fileURLToPath(new URL(path, import.meta.url));
 
-let browser;
-let address;
-before(async () => {
-  browser = await startChromium();
-  address = await serve(at('../../target/www'), site.preview.headers);
-});
-after(closeAll);
-
 /** Opens the section. `worker` is the source of a script in place of the worker that times the engines. */
 async function openSection({ worker, script } = {}) {
-  const { page, problems } = await openPage(browser, 'about:blank');
+  const address = await serve(at('../../target/www'), site.preview.headers);
+  const { page, problems } = await openPage(await startChromium(), 'about:blank');
   await page.emulateMedia({ reducedMotion: 'reduce' });
   if (script) await page.addInitScript(script);
   if (worker) {
@@ -94,10 +88,10 @@ function digitsOf(path) {
   return bits.join('').replace(/.{4}/g, (four) => Number.parseInt(four, 2).toString(16));
 }
 
-test('every engine here gives the triangles of the package in Node', { timeout: 400_000 }, async () => {
-  const { page, race, close } = await openSection();
-  const { indices, flips } = await makeDelaunay(await generate('uvsphere 100'), { backend: 'cpu' });
-  await race.click();
+/** Races on every engine, and compares with the package in Node. */
+async function raceAndCompare(page, spec) {
+  const { indices, flips } = await makeDelaunay(await generate(spec), { backend: 'cpu' });
+  await page.locator('.engines-main').click();
   await page.locator('.engines-main', { hasText: 'Race again' }).waitFor({ timeout: 400_000 });
   const lanes = await lanesOf(page);
   assert.deepEqual(
@@ -114,12 +108,24 @@ test('every engine here gives the triangles of the package in Node', { timeout: 
   assert.match(lanes[2].why, /A mesh this small runs on one thread/);
   assert.match(await page.locator('.engines-verdict').textContent(), /All three are equal, bit for bit/);
   assert.match(await page.locator('.engines-lane').first().textContent(), /Software GPU/);
-  assert.match(
-    await page.locator('.engines-lede').textContent(),
-    new RegExp(`20,000 triangles, ${flips.toLocaleString('en')} flips`),
-  );
-  await close();
+  const numbers = `${(indices.length / 3).toLocaleString('en')} triangles, ${flips.toLocaleString('en')} flips`;
+  assert.match(await page.locator('.engines-lede').textContent(), new RegExp(numbers));
+}
+
+test('the open mesh races: every engine here gives the triangles of the package in Node', async () => {
+  const edgeflip = await sharedPage('random 24');
+  await edgeflip.page.evaluate(() => document.getElementById('engines').scrollIntoView());
+  await raceAndCompare(edgeflip.page, 'random 24');
+  await edgeflip.close();
 });
+
+if (full) {
+  test('without an open mesh, the paper’s mesh 3 races', { timeout: 400_000 }, async () => {
+    const { page, close } = await openSection();
+    await raceAndCompare(page, 'uvsphere 100');
+    await close();
+  });
+}
 
 test('a result that differs stands out, and an engine that fails says why', async () => {
   const worker = await workerThatSays(`({ backend, threads }) =>

@@ -1,25 +1,31 @@
 // Tests the figures of the section "How a mesh becomes Delaunay" in Chromium. Serves the existing target/www.
 
 import assert from 'node:assert/strict';
-import { after, before, test } from 'node:test';
+import { after, test } from 'node:test';
 import { fileURLToPath } from 'node:url';
 import { EDGE_STATES, FlipSession } from 'edgeflip';
 import site from '../../www/vite.config.js';
 import { closeAll, openPage, serve, startChromium } from '../browsers.mjs';
 
-let browser;
-let address;
-before(async () => {
-  browser = await startChromium();
-  address = await serve(fileURLToPath(new URL('../../target/www', import.meta.url)), site.preview.headers);
-});
 after(closeAll);
+
+let shared;
+
+/** The page with the section, which all tests share. Each uses figures of its own, or the places where it finds them. */
+async function openPageOnce() {
+  const address = await serve(fileURLToPath(new URL('../../target/www', import.meta.url)), site.preview.headers);
+  const { page, problems } = await openPage(await startChromium(), 'about:blank');
+  // The first view, above the section, stands still too.
+  await page.emulateMedia({ reducedMotion: 'reduce' });
+  await page.goto(`${address}#explain`);
+  await page.locator('.explain-handle').nth(5).waitFor();
+  return { page, problems };
+}
 
 /** Opens the section. `figure(n)` has what is in figure `n`, from 1. */
 async function openSection() {
-  const { page, problems } = await openPage(browser, `${address}#explain`);
-  await page.emulateMedia({ reducedMotion: 'reduce' });
-  await page.locator('.explain-handle').nth(5).waitFor();
+  shared ??= openPageOnce();
+  const { page, problems } = await shared;
   const figure = (number) => {
     const element = page.locator('.explain-figure').nth(number - 1);
     return {
@@ -35,11 +41,7 @@ async function openSection() {
         [...(await element.innerHTML()).matchAll(/translate\(([^)]*)/g)].map(([, at]) => at.split(',').map(Number)),
     };
   };
-  const close = async () => {
-    assert.deepEqual(problems, []);
-    await page.close();
-  };
-  return { page, figure, close };
+  return { page, figure, problems };
 }
 
 /** The angle at a corner in degrees, to one decimal. */
@@ -58,17 +60,17 @@ async function dragBy(page, handle, x, y) {
 }
 
 test('a point that is dragged into the circle makes the triangle not Delaunay', async () => {
-  const { page, figure, close } = await openSection();
+  const { page, figure, problems } = await openSection();
   const { handle, says } = figure(1);
   await dragBy(page, handle(0), -80, 0);
   await says('A point is inside');
   await dragBy(page, handle(0), 80, 0);
   await says('The circle is empty');
-  await close();
+  assert.deepEqual(problems, []);
 });
 
 test('the two angles are right, and the engine decides', async () => {
-  const { page, figure, close } = await openSection();
+  const { page, figure, problems } = await openSection();
   const { handle, places, says, caption, texts } = figure(2);
   const check = async () => {
     const points = await places();
@@ -87,11 +89,11 @@ test('the two angles are right, and the engine decides', async () => {
   await dragBy(page, handle(1), -80, 0);
   await says('the edge stays');
   await check();
-  await close();
+  assert.deepEqual(problems, []);
 });
 
 test('the arrow keys move handles, and turn the edge', async () => {
-  const { page, figure, close } = await openSection();
+  const { page, figure, problems } = await openSection();
   const { handle, places } = figure(1);
   const [[x, y]] = await places();
   await handle(0).press('ArrowLeft');
@@ -102,11 +104,11 @@ test('the arrow keys move handles, and turn the edge', async () => {
   await turning.says('After: triangles');
   await dragBy(page, turning.handle(0), 80, -70);
   await turning.says('Before: triangles');
-  await close();
+  assert.deepEqual(problems, []);
 });
 
 test('figures that loop stand still with reduced motion, and play when asked', async () => {
-  const { figure, close } = await openSection();
+  const { figure, problems } = await openSection();
   const { button, caption, says, count } = figure(3);
   assert.equal(await caption(), 'Round 1: 2 edges flip, 2 wait');
   assert.deepEqual([await count('flips'), await count('waits')], [2, 2]);
@@ -115,5 +117,5 @@ test('figures that loop stand still with reduced motion, and play when asked', a
   assert.deepEqual([await count('flips'), await count('waits')], [2, 0]);
   await says('After 3 rounds: every edge is Delaunay');
   assert.deepEqual([await count('flips'), await count('waits')], [0, 0]);
-  await close();
+  assert.deepEqual(problems, []);
 });

@@ -2,18 +2,13 @@
 // Node.
 
 import assert from 'node:assert/strict';
-import { truncateSync, writeFileSync } from 'node:fs';
+import { truncateSync } from 'node:fs';
 import { join } from 'node:path';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { makeDelaunay } from '../../dist/index.js';
 import { readMesh, writeMesh } from '../../dist/files.js';
 import { riggedGlb } from '../package/gltf.mjs';
-import { startChromium } from '../browsers.mjs';
-import { assertPlays, assertSameMesh, expected, folder, meshFile, openEdgeflip, tidyUp } from './page.mjs';
-
-let browser;
-before(async () => (browser = await startChromium()));
-after(tidyUp);
+import { assertPlays, assertSameMesh, expected, file, folder, meshFile, sharedPage } from './page.mjs';
 
 const sources = [
   { how: 'chosen', name: 'sphere.ply.gz', spec: 'uvsphere 28 0.1', load: (page, path) => page.open(path) },
@@ -32,7 +27,7 @@ for (const { how, name, spec, load } of sources) {
       const want = await expected(path);
       const { mesh, indices, rows, facts, fingerprints } = want;
       assert.ok(rows.length >= 3, 'the mesh has something to show');
-      const page = await openEdgeflip(browser);
+      const page = await sharedPage();
       const opened = await load(page, path, name);
       assert.equal(opened.caption, name);
       await page.chooseEngine(backend);
@@ -58,19 +53,23 @@ for (const { how, name, spec, load } of sources) {
 }
 
 test('the page shows the progress of reading a file, and does not read a file that is too large', async () => {
-  const page = await openEdgeflip(browser);
+  const page = await sharedPage();
   await page.page.evaluate(() => {
     window.seen = [];
     const look = () =>
       window.seen.push([document.querySelector('#busy-text').textContent, document.querySelector('#progress').value]);
-    new MutationObserver(look).observe(document.querySelector('#busy'), {
+    window.observer = new MutationObserver(look);
+    window.observer.observe(document.querySelector('#busy'), {
       subtree: true,
       childList: true,
       attributes: true,
     });
   });
   await page.open(await meshFile('random 400', 'large.off'));
-  const seen = await page.page.evaluate(() => window.seen);
+  const seen = await page.page.evaluate(() => {
+    window.observer.disconnect();
+    return window.seen;
+  });
   const shares = seen.filter(([text]) => text === 'Reading large.off…').map(([, share]) => share);
   assert.ok(
     shares.some((share) => share > 0 && share < 1),
@@ -78,8 +77,7 @@ test('the page shows the progress of reading a file, and does not read a file th
   );
   assert.ok(seen.some(([text]) => text === 'Parsing large.off…'));
 
-  const path = join(folder, 'huge.off');
-  writeFileSync(path, '');
+  const path = file('huge.off', '');
   truncateSync(path, 2 ** 30 + 1);
   await (await page.page.$('#file')).setInputFiles(path);
   await page.page
@@ -96,9 +94,9 @@ test('a glTF file with its buffer in another file plays, and its download differ
   const json = JSON.parse(Buffer.from(await writeMesh(mesh, 'rigged.gltf', { original })).toString());
   const [, base64] = json.buffers[0].uri.split(',');
   json.buffers[0].uri = 'a%20b.bin';
-  writeFileSync(join(folder, 'rigged.gltf'), JSON.stringify(json));
-  writeFileSync(join(folder, 'a b.bin'), Buffer.from(base64, 'base64'));
-  const page = await openEdgeflip(browser);
+  file('rigged.gltf', JSON.stringify(json));
+  file('a b.bin', Buffer.from(base64, 'base64'));
+  const page = await sharedPage();
   const alone = page.page.locator('#error-text');
   await (await page.page.$('#file')).setInputFiles(join(folder, 'rigged.gltf'));
   await alone.getByText('it is in the file `a b.bin`').waitFor();

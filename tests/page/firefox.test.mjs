@@ -2,14 +2,10 @@
 // and what a visitor does besides.
 
 import assert from 'node:assert/strict';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { readMesh } from 'edgeflip/files';
 import { startFirefox } from '../browsers.mjs';
-import { assertPlays, expected, first, meshFile, openEdgeflip, tidyUp } from './page.mjs';
-
-let browser;
-before(async () => (browser = await startFirefox()));
-after(tidyUp);
+import { assertPlays, expected, first, meshFile, openEdgeflip, pageInFirefox } from './page.mjs';
 
 /** Firefox's software renderer takes long to compile the WebGL2 shaders for surfaces. */
 const plane = { spec: 'random 24', name: 'plane.off' };
@@ -24,7 +20,7 @@ for (const { backend, engine, spec, name } of [
     const path = await meshFile(spec, name);
     const want = await expected(path);
     const { facts, fingerprints } = want;
-    const page = await openEdgeflip(browser);
+    const page = await pageInFirefox();
     await page.open(path);
     const start = performance.now();
     await page.chooseEngine(backend);
@@ -42,15 +38,16 @@ for (const { backend, engine, spec, name } of [
 
 for (const backend of ['webgpu', 'cpu']) {
   test(`a sheet moves on ${backend} in Firefox, and is Delaunay when it pauses`, async () => {
-    const page = await openEdgeflip(browser);
-    await page.chooseEngine(backend);
+    const page = await pageInFirefox();
     await page.page.evaluate(() => (document.getElementById('many').value = '2000'));
     // In a narrow window, the gallery is behind the name.
     await page.page.evaluate(() => document.querySelector('[data-spec="moving sheet"]').click());
-    await page.until(
+    await page.choose('backend', backend);
+    const { facts } = await page.until(
       'flips in the frames',
       ({ state, facts }) => state === 'moving' && Number(facts['Flips a frame']) > 0,
     );
+    assert.equal(facts.Engine, backend === 'cpu' ? 'CPU, in a worker' : 'WebGPU');
     await page.page.click('#play');
     await page.until('no edge left', ({ status }) => /^Every edge is Delaunay/.test(status));
     await page.close();
@@ -58,7 +55,7 @@ for (const backend of ['webgpu', 'cpu']) {
 }
 
 test('β, an inspected edge, before and now, a saved file and a link in Firefox', async () => {
-  const page = await openEdgeflip(browser);
+  const page = await openEdgeflip(await startFirefox());
   await page.page.evaluate(() => {
     const make = URL.createObjectURL;
     URL.createObjectURL = (blob) => {

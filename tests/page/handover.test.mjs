@@ -1,17 +1,12 @@
 // Tests the demo page in Chromium while its GPU compiles: a run starts on the CPU, and moves to WebGPU when it pauses.
 
 import assert from 'node:assert/strict';
-import { after, before, test } from 'node:test';
+import { before, test } from 'node:test';
 import { startChromium } from '../browsers.mjs';
-import { expected, first, meshFile, openEdgeflip, tidyUp } from './page.mjs';
+import { expected, first, meshFile, openEdgeflip } from './page.mjs';
 
-let browser;
 let strips;
-before(async () => {
-  browser = await startChromium();
-  strips = await meshFile('strips 80', 'strips.off');
-});
-after(tidyUp);
+before(async () => (strips = await meshFile('strips 80', 'strips.off')));
 
 const UNTIL_READY = 'CPU, until WebGPU is ready';
 
@@ -87,7 +82,7 @@ const onWebGpu = (page) =>
 
 test('the first mesh is drawn before any kernel is requested, plays on the CPU, and moves to WebGPU after the compilation', async (t) => {
   const { rows, facts, fingerprints } = await expected(first.path, first.maxNormalAngle);
-  const page = await openEdgeflip(browser, holdKernels, delayFrames);
+  const page = await openEdgeflip(await startChromium(), holdKernels, delayFrames);
   const opened = await page.look();
   assert.deepEqual([opened.backend, opened.facts.Engine, opened.note], ['auto', UNTIL_READY, '']);
   await page.page.waitForFunction(() => window.seen.kernels > 0);
@@ -143,7 +138,7 @@ test('the first mesh is drawn before any kernel is requested, plays on the CPU, 
 
 test('a run that plays while the kernels become ready moves to the GPU when it is paused, at the same iteration', async () => {
   const { rows, facts, fingerprints } = await expected(strips);
-  const page = await openEdgeflip(browser, holdKernels);
+  const page = await openEdgeflip(await startChromium(), holdKernels);
   await page.open(strips);
   await page.choose('speed', '250');
   await page.page.click('#play');
@@ -169,7 +164,7 @@ test('a run that plays while the kernels become ready moves to the GPU when it i
 
 test('if the GPU refuses the kernels, the run stays on the CPU and says why', async () => {
   const { rows, facts } = await expected(strips);
-  const page = await openEdgeflip(browser, holdKernels);
+  const page = await openEdgeflip(await startChromium(), holdKernels);
   await page.open(strips);
   await page.page.click('#step');
   const before = await page.until('an iteration', ({ at, measured }) => at === '1' && measured === '1');
@@ -190,7 +185,7 @@ test('if the GPU refuses the kernels, the run stays on the CPU and says why', as
 
 test('a GPU that is lost while it compiles is replaced, and the run on the CPU is at the same iteration', async () => {
   const { fingerprints } = await expected(strips);
-  const page = await openEdgeflip(browser, holdKernels);
+  const page = await openEdgeflip(await startChromium(), holdKernels);
   await page.open(strips);
   for (const at of ['1', '2', '3']) {
     await page.page.click('#step');

@@ -2,26 +2,24 @@
 // and a run takes their place again.
 
 import assert from 'node:assert/strict';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { FlipSession } from 'edgeflip';
 import { MOVING } from '../../www/models/samples.js';
 import { startChromium } from '../browsers.mjs';
-import { assertSameMesh, expected, first, keepDevices, openEdgeflip, tidyUp } from './page.mjs';
-
-let browser;
-before(async () => (browser = await startChromium()));
-after(tidyUp);
+import { assertSameMesh, expected, first, loseDevice, openEdgeflip, sharedPage } from './page.mjs';
 
 const ENGINES = { webgpu: 'WebGPU', webgl2: 'WebGL2, in a worker', cpu: 'CPU, in a worker' };
 const BETAS = { sheet: 10, waves: 30, relax: 10 };
 
 const moving = (page) => page.until('a mesh that moves', ({ state }) => state === 'moving');
 
-/** Shows a mesh of about 2,000 triangles that moves. */
+/** Shows a mesh of about 2,000 triangles that moves. Then chooses the engine, which no other mesh has to wait for. */
 async function show(page, kind, backend) {
-  await page.chooseEngine(backend);
   await page.page.evaluate(() => (document.getElementById('many').value = '2000'));
   await page.choose('sample', `moving ${kind}`);
+  const shown = await moving(page);
+  if (shown.backend === backend) return shown;
+  await page.choose('backend', backend);
   return moving(page);
 }
 
@@ -42,7 +40,7 @@ async function left({ positions, indices, dimension }, kind) {
 
 for (const [backend, engine] of Object.entries(ENGINES)) {
   test(`each mesh moves on ${backend}, and is Delaunay when it pauses`, async () => {
-    const page = await openEdgeflip(browser);
+    const page = await sharedPage();
     for (const { kind, name } of MOVING) {
       await show(page, kind, backend);
       assert.equal(await page.page.textContent('#caption'), name);
@@ -70,7 +68,7 @@ for (const [backend, engine] of Object.entries(ENGINES)) {
   });
 
   test(`a point is dragged on ${backend}, and the mesh stays Delaunay`, async () => {
-    const page = await openEdgeflip(browser);
+    const page = await sharedPage();
     await show(page, 'relax', backend);
     await pauseAll(page);
     const before = await page.download();
@@ -106,7 +104,7 @@ for (const [backend, engine] of Object.entries(ENGINES)) {
 }
 
 test('a link opens a mesh that moves, and a run takes its place', async () => {
-  const page = await openEdgeflip(browser);
+  const page = await openEdgeflip(await startChromium());
   await page.page.context().grantPermissions(['clipboard-read', 'clipboard-write']);
   const clipboard = () => page.page.evaluate(() => navigator.clipboard.readText());
   await show(page, 'waves', 'cpu');
@@ -138,20 +136,21 @@ test('a link opens a mesh that moves, and a run takes its place', async () => {
 });
 
 test('with reduced motion, a mesh moves only when it is played', async () => {
-  const page = await openEdgeflip(browser);
+  const page = await sharedPage();
   await page.page.emulateMedia({ reducedMotion: 'reduce' });
   await page.choose('sample', 'moving sheet');
   await page.until('a still', ({ state, facts }) => state === 'paused' && facts.Triangles === '19,602');
   await page.page.evaluate(() => document.activeElement.blur());
   await page.page.keyboard.press('Space');
   await moving(page);
+  await page.page.emulateMedia({ reducedMotion: null });
   await page.close();
 });
 
 test('a mesh that moves begins again after the GPU was lost', async () => {
-  const page = await openEdgeflip(browser, keepDevices);
+  const page = await sharedPage();
   await show(page, 'sheet', 'webgpu');
-  await page.page.evaluate(() => window.devices.at(-1).destroy());
+  await loseDevice(page);
   const { error } = await page.until('a message', ({ error, state }) => error !== '' && state === 'moving');
   assert.match(error, /The GPU was lost \(.*\)\. The mesh began again\./);
   const { facts } = await page.until('frames', ({ facts }) => Number(facts['Flips a frame']) > 0);

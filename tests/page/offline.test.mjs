@@ -4,20 +4,17 @@
 import assert from 'node:assert/strict';
 import { cpSync } from 'node:fs';
 import { join } from 'node:path';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { fileURLToPath } from 'node:url';
 import { generate } from 'edgeflip/files';
 import { openPage, serve, startChromium } from '../browsers.mjs';
-import { EdgeflipPage, expected, fingerprintOf, first, folder, meshFile, tidyUp } from './page.mjs';
-
-let browser;
-before(async () => (browser = await startChromium()));
-after(tidyUp);
+import { EdgeflipPage, expected, fingerprintOf, first, folder, meshFile } from './page.mjs';
 
 test('after a visit to the tool, the page needs no network and no headers', async () => {
   cpSync(fileURLToPath(new URL('../../target/www', import.meta.url)), join(folder, 'some/where'), { recursive: true });
   const address = `${await serve(folder)}some/where/`;
-  const { page, problems } = await openPage(browser, `${address}#watch`, true);
+  const how = { isAlone: true, isKept: true };
+  const { page, problems } = await openPage(await startChromium(), `${address}#watch`, how);
   const edgeflip = new EdgeflipPage(page, problems);
   await edgeflip.rest();
   assert.equal(await page.evaluate(() => crossOriginIsolated), false);

@@ -2,54 +2,35 @@
 
 import assert from 'node:assert/strict';
 import { mkdirSync, rmSync, writeFileSync } from 'node:fs';
-import { dirname, join } from 'node:path';
-import { after, before, test } from 'node:test';
+import { join } from 'node:path';
+import { before, test } from 'node:test';
 import { makeDelaunay } from '../../dist/index.js';
 import { readMesh, writeMesh } from '../../dist/files.js';
 import { riggedGlb } from '../package/gltf.mjs';
 import { startChromium } from '../browsers.mjs';
-import { assertSameMesh, expected, folder, keepDevices, meshFile, openEdgeflip, tidyUp } from './page.mjs';
+import {
+  assertSameMesh,
+  expected,
+  file,
+  folder,
+  loseDevice,
+  meshFile,
+  openEdgeflip,
+  pageForBeta,
+  sharedPage,
+} from './page.mjs';
 
-let browser;
 let sphere;
 let roof;
 before(async () => {
-  browser = await startChromium();
   sphere = await meshFile('uvsphere 28 0.1', 'sphere.off');
   roof = await meshFile('roof 16', 'roof.ply');
 });
-after(tidyUp);
 
 const BROKEN = 'OFF\n3 1 0\n0 0 0\n1 0 0\n0 one 0\n3 0 1 2\n';
 
-/** Writes a file, and creates its folders. */
-function file(name, text) {
-  const path = join(folder, name);
-  mkdirSync(dirname(path), { recursive: true });
-  writeFileSync(path, text);
-  return path;
-}
-
 async function choose(page, ...paths) {
   await (await page.page.$('#file')).setInputFiles(paths);
-}
-
-/** Runs in the page: holds back its messages to workers, by the name of the method, until they are released. */
-function holdWorkers() {
-  const { postMessage } = Worker.prototype;
-  const held = new Set();
-  const waiting = [];
-  window.hold = (method) => held.add(method);
-  window.waiting = () => waiting.length;
-  window.letGo = () => {
-    held.clear();
-    for (const send of waiting.splice(0)) send();
-  };
-  Worker.prototype.postMessage = function (message, ...more) {
-    const send = () => postMessage.call(this, message, ...more);
-    if (held.has(message.path?.at(-1))) waiting.push(send);
-    else send();
-  };
 }
 
 /** Waits until this number of messages is held back. */
@@ -72,7 +53,7 @@ for (const [method, when] of [
   ['open', 'its run is prepared'],
 ]) {
   test(`an engine and β that are chosen while ${when} take effect`, async () => {
-    const page = await openEdgeflip(browser, holdWorkers);
+    const page = await pageForBeta();
     await page.open(roof);
     await held(page, method, () => choose(page, sphere));
     for (const engine of ['webgl2', 'auto', 'cpu']) await page.choose('backend', engine);
@@ -93,7 +74,7 @@ for (const [method, when] of [
   });
 
   test(`cancelling while ${when} also discards the choices made meanwhile`, async () => {
-    const page = await openEdgeflip(browser, holdWorkers);
+    const page = await pageForBeta();
     await page.open(roof);
     await page.chooseEngine('cpu');
     const opened = await page.rest();
@@ -110,7 +91,7 @@ for (const [method, when] of [
 }
 
 test('after a broken file, the previous mesh stays with its settings', async () => {
-  const page = await openEdgeflip(browser, holdWorkers);
+  const page = await pageForBeta();
   const opened = await page.open(roof);
   await held(page, 'read', () => choose(page, file('broken.off', BROKEN)));
   await page.choose('backend', 'cpu');
@@ -124,7 +105,7 @@ test('after a broken file, the previous mesh stays with its settings', async () 
 });
 
 test('a β that is not an angle is refused while a file is read, and the file opens', async () => {
-  const page = await openEdgeflip(browser, holdWorkers);
+  const page = await pageForBeta();
   await held(page, 'read', () => choose(page, sphere));
   await setBeta(page, '181');
   assert.match((await page.look()).error, /β is an angle from 0 to 180/);
@@ -135,7 +116,7 @@ test('a β that is not an angle is refused while a file is read, and the file op
 });
 
 test('of several meshes chosen while others are read, the last opens, and no worker is left', async () => {
-  const page = await openEdgeflip(browser, holdWorkers);
+  const page = await sharedPage();
   const workers = page.page.workers().length;
   const wanted = [
     ['roof.ply', () => choose(page, roof)],
@@ -160,12 +141,14 @@ test('of several meshes chosen while others are read, the last opens, and no wor
     const marked = await page.page.evaluate(() => document.querySelector('#gallery [aria-pressed=true]')?.dataset.spec);
     assert.equal(marked, caption === 'random 24' ? caption : undefined);
   }
+  // A worker ends a moment after it was told to.
+  for (let i = 0; i < 100 && page.page.workers().length > workers; i++) await page.page.waitForTimeout(50);
   assert.equal(page.page.workers().length, workers);
   await page.close();
 });
 
 test('a file that is chosen before the GPU is open replaces the sample', async () => {
-  const page = await openEdgeflip(browser, () => {
+  const page = await openEdgeflip(await startChromium(), () => {
     const { requestAdapter } = GPU.prototype;
     const isChosen = new Promise((resolve) => {
       addEventListener('DOMContentLoaded', () => {
@@ -189,15 +172,15 @@ test('a file that is chosen before the GPU is open replaces the sample', async (
 });
 
 test('after a GPU is lost while a file is read, the file opens', async () => {
-  const page = await openEdgeflip(browser, holdWorkers, keepDevices);
+  const page = await sharedPage();
   // SwiftShader takes long to compile the kernels for surfaces.
   const strips = await meshFile('strips 16', 'strips.off');
   await page.open(strips);
   await page.chooseEngine('webgpu');
   await held(page, 'read', async () => choose(page, await meshFile('strips 16', 'meanwhile.off')));
-  await page.page.evaluate(() => window.devices.at(-1).destroy());
+  const devices = await loseDevice(page);
   await page.page.locator('#busy-text').getByText('The GPU was lost').waitFor();
-  await page.page.waitForFunction(() => window.devices.length === 2);
+  await page.page.waitForFunction((many) => window.devices.length === many, devices + 1);
   await letGo(page);
   const { caption, error, facts } = await page.rest();
   assert.deepEqual([caption, facts.Engine], ['meanwhile.off', 'WebGPU']);
@@ -214,7 +197,7 @@ for (const [how, load] of [
   test(`a file that was ${how} and has changed or vanished since is downloaded as it was read`, async () => {
     const { mesh, indices } = await expected(sphere);
     const path = await meshFile('uvsphere 28 0.1', `${how}.off`);
-    const page = await openEdgeflip(browser);
+    const page = await sharedPage();
     await load(page, [path]);
     await page.until('the file', ({ caption }) => caption === `${how}.off`);
     await page.rest();
@@ -230,7 +213,7 @@ for (const [how, load] of [
 
   test(`the error of a file that was ${how} and cannot be read names it and says what to do; the previous mesh stays`, async () => {
     const path = file(`gone-${how}.off`, BROKEN);
-    const page = await openEdgeflip(browser, holdWorkers);
+    const page = await sharedPage();
     const opened = await page.open(roof);
     await held(page, 'read', () => load(page, [path]));
     rmSync(path);
@@ -256,7 +239,7 @@ async function gltfFolder(name, uri, path) {
 }
 
 test('a glTF file with its buffer in a folder below plays, and can be downloaded after the folder has vanished', async () => {
-  const page = await openEdgeflip(browser);
+  const page = await sharedPage();
   for (const [name, uri, path] of [
     ['scene', 'data/a%20b.bin', 'data/a b.bin'],
     ['dots', './a.bin', 'a.bin'],
@@ -291,7 +274,7 @@ test('of many meshes the first opens, and the page says how many others were not
   file('many/a/first.off', bytes);
   file('many/._mesh 1.off', 'of macOS');
   file('many/notes.txt', 'no mesh');
-  const page = await openEdgeflip(browser);
+  const page = await sharedPage();
   for (const [ask, name, note] of [
     [() => choose(page, ...paths), 'mesh 1.off', '49 other mesh files were not opened.'],
     [() => page.dropPaths(paths.slice(3, 5)), 'mesh 4.off', '1 other mesh file was not opened.'],
@@ -320,7 +303,7 @@ test('of many meshes the first opens, and the page says how many others were not
 });
 
 test('the page says that a folder has no mesh', async () => {
-  const page = await openEdgeflip(browser);
+  const page = await sharedPage();
   const opened = await page.open(roof);
   mkdirSync(join(folder, 'empty'));
   file('texts/a.txt', 'no mesh');
@@ -340,7 +323,7 @@ test('the page says that a folder has no mesh', async () => {
 });
 
 test('the name of a file is shown unchanged', async () => {
-  const page = await openEdgeflip(browser);
+  const page = await sharedPage();
   for (const name of ['a.txt', 'äpfel.off', 'ßeta.off', 'Upper.off']) {
     await choose(page, file(name, BROKEN));
     const { error } = await page.until('a message', (seen) => seen.error !== '' && seen.state !== 'busy');
@@ -351,7 +334,8 @@ test('the name of a file is shown unchanged', async () => {
 });
 
 test('the memory of workers is freed when other meshes are opened', async () => {
-  const page = await openEdgeflip(browser, () => {
+  const page = await sharedPage();
+  await page.page.evaluate(() => {
     window.workers = [];
     window.Worker = class extends Worker {
       constructor(...args) {
@@ -372,5 +356,7 @@ test('the memory of workers is freed when other meshes are opened', async () => 
   let [made, kept] = await counts();
   while (kept > 2 && performance.now() < end) [made, kept] = await counts();
   assert.ok(made > 10 && kept <= 2, `${kept} of ${made} workers are held`);
+  await session.detach();
+  await page.page.evaluate(() => (window.Worker = Object.getPrototypeOf(Worker)));
   await page.close();
 });

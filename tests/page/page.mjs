@@ -1,33 +1,41 @@
 // Uses the demo page in a real browser like a user, and computes the expected results with the package in Node.
-// Serves the existing target/www.
+// Serves the existing target/www. Tests share a page where they can, because a software GPU takes longer to compile the
+// kernels of a page than to run them.
 
 import assert from 'node:assert/strict';
 import { createHash } from 'node:crypto';
-import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
-import { join } from 'node:path';
+import { dirname, join } from 'node:path';
+import { after } from 'node:test';
 import { setTimeout as pause } from 'node:timers/promises';
 import { fileURLToPath } from 'node:url';
 import { FlipSession } from 'edgeflip';
 import { angles, change, generate, measures, readMesh, writeMesh } from 'edgeflip/files';
+import { SAMPLES } from '../../www/models/samples.js';
 import site from '../../www/vite.config.js';
-import { closeAll, openPage, serve } from '../browsers.mjs';
+import { closeAll, openPage, serve, startChromium, startFirefox } from '../browsers.mjs';
 import { Picture } from './picture.mjs';
 
-/** The folder for the meshes of a test file. */
+/** The folder for the meshes of the tests. */
 export const folder = mkdtempSync(join(tmpdir(), 'edgeflip-page-'));
 
-/** For `after`: ends the browsers and removes the meshes. */
-export async function tidyUp() {
+after(async () => {
   await closeAll();
   rmSync(folder, { recursive: true });
+});
+
+/** Writes a file, and creates its folders. */
+export function file(name, contents) {
+  const path = join(folder, name);
+  mkdirSync(dirname(path), { recursive: true });
+  writeFileSync(path, contents);
+  return path;
 }
 
-/** Writes a generated mesh to a file. */
+/** Writes a generated mesh to a file, in a folder for its family. */
 export async function meshFile(spec, name) {
-  const path = join(folder, name);
-  writeFileSync(path, await writeMesh(await generate(spec), name));
-  return path;
+  return file(join(spec.replace(/\W+/g, '-'), name), await writeMesh(await generate(spec), name));
 }
 
 const number = new Intl.NumberFormat('en');
@@ -46,8 +54,16 @@ export const first = {
   maxNormalAngle: 30,
 };
 
-/** The expected facts for the mesh in this file, from the package on the CPU engine. */
-export async function expected(path, maxNormalAngle = 10) {
+const results = new Map();
+
+/** The expected facts for the mesh in this file, from the package on the CPU engine. They are computed once. */
+export function expected(path, maxNormalAngle = 10) {
+  const key = `${path}, ${maxNormalAngle}`;
+  if (!results.has(key)) results.set(key, expect(path, maxNormalAngle));
+  return results.get(key);
+}
+
+async function expect(path, maxNormalAngle) {
   const mesh = await readMesh(readFileSync(path), path);
   const session = await FlipSession.create(mesh, { backend: 'cpu', maxNormalAngle });
   const rows = [];
@@ -88,16 +104,9 @@ export async function expected(path, maxNormalAngle = 10) {
   };
 }
 
-let address;
-
-/**
- * Opens the page and waits for its first mesh.
- *
- * @param browser - Chromium of playwright-core or Firefox of puppeteer-core.
- * @param {(() => void)[]} scripts - Functions that run in the page before its own scripts (Chromium).
- */
-export async function openEdgeflip(browser, ...scripts) {
-  address ??= await serve(fileURLToPath(new URL('../../target/www', import.meta.url)), site.preview.headers);
+/** Opens a page of Chromium or Firefox at a part of the tool, and waits for its mesh. */
+async function openAt(hash, browser, scripts) {
+  const address = await serve(fileURLToPath(new URL('../../target/www', import.meta.url)), site.preview.headers);
   const { page, problems } = await openPage(browser, 'about:blank');
   for (const script of scripts) await page.addInitScript(script);
   // Requests to other servers; `data:` and `blob:` are the page's own.
@@ -105,11 +114,58 @@ export async function openEdgeflip(browser, ...scripts) {
     if (!/^(data|blob):/.test(request.url()) && !request.url().startsWith(address))
       problems.push(`asked for ${request.url()}`);
   });
-  await page.goto(`${address}#watch`);
+  await page.goto(`${address}${hash}`);
   const edgeflip = new EdgeflipPage(page, problems);
   await edgeflip.rest();
   return edgeflip;
 }
+
+/**
+ * Opens a new page and waits for its first mesh.
+ *
+ * @param browser - Chromium of playwright-core or Firefox of puppeteer-core.
+ * @param {(() => void)[]} scripts - Functions that run in the page before its own scripts (Chromium).
+ */
+export const openEdgeflip = (browser, ...scripts) => openAt('#watch', browser, scripts);
+
+/** A page that tests share. */
+class Shared {
+  #open;
+  #page;
+
+  constructor(open) {
+    this.#open = open;
+  }
+
+  /** The page as a link to a sample opens it, with the engine `auto` and the β that suits the sample. */
+  async show(mesh = 'random 24') {
+    // A test that failed may have left the page in any state.
+    if (this.#page?.isInUse) {
+      await this.#page.page.close();
+      this.#page = undefined;
+    }
+    const beta = SAMPLES.find(({ spec }) => spec === mesh)?.beta ?? 10;
+    const link = `#watch?${new URLSearchParams({ mesh, engine: 'auto', beta: `${beta}` })}`;
+    if (this.#page) await this.#page.follow(link);
+    else this.#page = await this.#open(link);
+    this.#page.isInUse = true;
+    return this.#page;
+  }
+}
+
+const inChromium = new Shared(async (link) => openAt(link, await startChromium(), [keepDevices, holdWorkers]));
+/** After a β was entered, a page keeps it for all meshes. */
+const withOwnBeta = new Shared(async (link) => openAt(link, await startChromium(), [holdWorkers]));
+const inFirefox = new Shared(async (link) => openAt(link, await startFirefox(), []));
+
+/** The page of Chromium that tests share, at a sample. Its GPU devices are in `window.devices`. */
+export const sharedPage = (mesh) => inChromium.show(mesh);
+
+/** The page of Chromium that tests share if they enter a β. */
+export const pageForBeta = (mesh) => withOwnBeta.show(mesh);
+
+/** The page of Firefox that tests share. */
+export const pageInFirefox = (mesh) => inFirefox.show(mesh);
 
 /** For `openEdgeflip`: keeps the GPU devices of the page in `window.devices`, so that a test can lose them. */
 export function keepDevices() {
@@ -122,17 +178,69 @@ export function keepDevices() {
   };
 }
 
+/** Loses the device of a page that has `keepDevices`. Returns the number of its devices so far. */
+export function loseDevice({ page }) {
+  return page.evaluate(() => {
+    window.devices.at(-1).destroy();
+    return window.devices.length;
+  });
+}
+
+/** For `openEdgeflip`: holds back the messages to workers, by the name of the method, until they are released. */
+export function holdWorkers() {
+  const { postMessage } = Worker.prototype;
+  const held = new Set();
+  const waiting = [];
+  window.hold = (method) => held.add(method);
+  window.waiting = () => waiting.length;
+  window.letGo = () => {
+    held.clear();
+    for (const send of waiting.splice(0)) send();
+  };
+  Worker.prototype.postMessage = function (message, ...more) {
+    const send = () => postMessage.call(this, message, ...more);
+    if (held.has(message.path?.at(-1))) waiting.push(send);
+    else send();
+  };
+}
+
 export class EdgeflipPage {
   constructor(page, problems) {
     this.page = page;
     /** Messages of the console, exceptions and failed requests. */
     this.problems = problems;
+    /** Whether a test has the page, if tests share it. */
+    this.isInUse = undefined;
   }
 
-  /** Closes the page, and fails if it had a problem. */
+  /** Closes the page, or leaves it to the next test. Fails if it had a problem. */
   async close() {
     assert.deepEqual(this.problems, []);
-    await this.page.close();
+    if (this.isInUse) this.isInUse = false;
+    else await this.page.close();
+  }
+
+  /** Closes what is open on the page, and follows a link. The engine, the limits and the speed become those of a new page. */
+  async follow(link) {
+    await this.page.evaluate(async (to) => {
+      for (const open of document.querySelectorAll(':popover-open')) open.hidePopover();
+      document.getElementById('keys').close();
+      document.getElementById('details').open = false;
+      for (const id of ['speed', 'many']) {
+        const choice = document.getElementById(id);
+        choice.value = (choice.querySelector('[selected]') ?? choice.options[0]).value;
+      }
+      document.activeElement.blur();
+      document.dispatchEvent(new KeyboardEvent('keydown', { key: 'Escape', bubbles: true }));
+      scrollTo({ top: 0, behavior: 'instant' });
+      // The address has to change, also if the same link was followed before.
+      history.replaceState(null, '', '#watch');
+      await new Promise((resolve) => {
+        addEventListener('hashchange', resolve, { once: true });
+        location.hash = to;
+      });
+    }, link);
+    return this.rest();
   }
 
   /** The texts and the state of the page. */
@@ -259,7 +367,7 @@ export class EdgeflipPage {
     return this.rest();
   }
 
-  /** A picture of the canvas, without what lies on it. */
+  /** A picture of the middle of the canvas, without what lies on it. */
   async picture() {
     const show = (opacity) =>
       this.page.evaluate((how) => {
@@ -267,8 +375,10 @@ export class EdgeflipPage {
         return new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done())));
       }, opacity);
     await show('0');
-    const canvas = await this.page.$('#view canvas');
-    const picture = new Picture(await canvas.screenshot());
+    const { x, y, width, height } = await (await this.page.$('#view canvas')).boundingBox();
+    const [left, top] = [x + width / 4, y + height / 4].map(Math.round);
+    const clip = { x: left, y: top, width: Math.round(width / 2), height: Math.round(height / 2) };
+    const picture = new Picture(await this.page.screenshot({ clip }));
     await show('');
     return picture;
   }

@@ -23,7 +23,12 @@ export class Picture {
       }
       if (type === 'IDAT') parts.push(data);
     }
-    this.pixels = this.#unfilter(inflateSync(Buffer.concat(parts)));
+    const channels = this.#unfilter(inflateSync(Buffer.concat(parts)));
+    /** The colours of the pixels, one number each. */
+    this.pixels = Uint32Array.from({ length: this.width * this.height }, (_, i) => {
+      const at = this.channels * i;
+      return (channels[at] << 16) | (channels[at + 1] << 8) | channels[at + 2];
+    });
   }
 
   /**
@@ -46,29 +51,15 @@ export class Picture {
     return pixels;
   }
 
-  /** The middle of the picture, which no text covers: one number per pixel. */
-  get middle() {
-    const { width, height, channels, pixels } = this;
-    const middle = [];
-    for (let y = height >> 2; y < (3 * height) >> 2; y++) {
-      for (let x = width >> 2; x < (3 * width) >> 2; x++) {
-        const at = (y * width + x) * channels;
-        middle.push((pixels[at] << 16) | (pixels[at + 1] << 8) | pixels[at + 2]);
-      }
-    }
-    return middle;
-  }
-
-  /** The number of colours in the middle. */
+  /** The number of colours. */
   get colours() {
-    return new Set(this.middle).size;
+    return new Set(this.pixels).size;
   }
 
-  /** The share of pixels in the middle that differ from another picture. */
-  differsFrom(other) {
-    const [mine, others] = [this.middle, other.middle];
-    assert.equal(mine.length, others.length);
-    return mine.filter((colour, i) => colour !== others[i]).length / mine.length;
+  /** The share of pixels that differ from another picture. */
+  differsFrom({ pixels }) {
+    assert.equal(pixels.length, this.pixels.length);
+    return this.pixels.reduce((count, colour, i) => count + Number(colour !== pixels[i]), 0) / pixels.length;
   }
 }
 

@@ -3,18 +3,13 @@
 
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { EDGE_STATES, FlipSession, makeDelaunay } from 'edgeflip';
 import { angles, generate, readMesh } from 'edgeflip/files';
 import { SAMPLES } from '../../www/models/samples.js';
-import { startChromium } from '../browsers.mjs';
-import { assertSameMesh, expected, first, fingerprintOf, meshFile, openEdgeflip, tidyUp } from './page.mjs';
+import { assertSameMesh, expected, first, fingerprintOf, meshFile, pageForBeta, sharedPage } from './page.mjs';
 
-let browser;
-before(async () => {
-  browser = await startChromium();
-});
-after(tidyUp);
+const BUNNY = 'models/bunny.ply';
 
 /** Makes the clipboard readable, and returns a function that reads it. */
 async function clipboardOf({ page }) {
@@ -59,7 +54,7 @@ async function angleAt(mesh, a, b, c) {
 }
 
 test('each sample opens from the gallery, by its name and with the triangles of the package', async () => {
-  const page = await openEdgeflip(browser);
+  const page = await sharedPage();
   for (const { spec, name, beta = 10 } of SAMPLES) {
     if (/^(uvsphere 600|random 500)$/.test(spec)) continue;
     await page.choose('sample', spec);
@@ -84,7 +79,7 @@ test('each sample opens from the gallery, by its name and with the triangles of 
 });
 
 test('the timeline has all iterations before they are run, and goes to any of them', async () => {
-  const page = await openEdgeflip(browser);
+  const page = await sharedPage(BUNNY);
   const { fingerprints, rows } = await expected(first.path, first.maxNormalAngle);
   const stops = () => page.page.evaluate(() => Number(document.getElementById('slider').max));
   await page.page.waitForFunction((count) => document.getElementById('slider').max === `${count}`, rows.length);
@@ -110,7 +105,8 @@ test('the timeline has all iterations before they are run, and goes to any of th
 });
 
 test('edges that flip are hot, and cool', async (t) => {
-  const page = await openEdgeflip(browser, () => {
+  const page = await sharedPage();
+  await page.page.evaluate(() => {
     // A clock that the test slows down: a software GPU takes longer for a picture than edges are hot.
     const now = performance.now.bind(performance);
     let [last, shown] = [now(), now()];
@@ -122,13 +118,10 @@ test('edges that flip are hot, and cool', async (t) => {
       return shown;
     };
   });
-  await page.choose('sample', 'random 24');
-  await page.until('the sample', ({ caption }) => caption === 'random 24');
-  await page.rest();
   /** The pixels in the colour of flips, or close to it. */
   const hot = async () => {
-    const { middle } = await page.picture();
-    return middle.filter((colour) => ((colour >> 16) & 255) > 200 && ((colour >> 8) & 255) < 140).length;
+    const { pixels } = await page.picture();
+    return pixels.filter((colour) => ((colour >> 16) & 255) > 200 && ((colour >> 8) & 255) < 140).length;
   };
   const pace = (factor) => page.page.evaluate((to) => (window.pace = to), factor);
   await pace(0.01);
@@ -136,15 +129,16 @@ test('edges that flip are hot, and cool', async (t) => {
   await page.until('an iteration', ({ newest }) => newest === '1');
   const soon = await hot();
   await pace(1);
-  await page.page.waitForTimeout(3000);
-  const later = await hot();
+  let later = await hot();
+  for (const end = performance.now() + 30_000; soon <= 1.1 * later && performance.now() < end; ) later = await hot();
   t.diagnostic(`${soon} pixels are hot, then ${later}`);
   assert.ok(soon > 1.1 * later && later > 0);
+  await page.page.evaluate(() => delete performance.now);
   await page.close();
 });
 
 test('an edge under the pointer is inspected: its state and its angles are those of the package', async () => {
-  const page = await openEdgeflip(browser);
+  const page = await sharedPage(BUNNY);
   const mesh = await readMesh(readFileSync(first.path), first.path);
   const session = await FlipSession.create(mesh, { backend: 'cpu', maxNormalAngle: first.maxNormalAngle });
   const states = await session.edgeStates();
@@ -201,7 +195,7 @@ test('an edge under the pointer is inspected: its state and its angles are those
 });
 
 test('before and now: the left of the cut is the input, the right is the shown state', async () => {
-  const page = await openEdgeflip(browser);
+  const page = await sharedPage(BUNNY);
   await press(page, 'e');
   await page.rest();
   const input = await page.picture();
@@ -226,11 +220,12 @@ test('before and now: the left of the cut is the input, the right is the shown s
   assert.ok(both.differsFrom(input) > 0.001 && both.differsFrom(result) > 0.001, 'one half of each');
   await press(page, 'c');
   assert.ok((await page.picture()).differsFrom(result) < 0.001);
+  await page.page.evaluate(() => (document.getElementById('halves').style.opacity = ''));
   await page.close();
 });
 
 test('limits: β, deviation, features and borders change the run as the options of the package do', async () => {
-  const page = await openEdgeflip(browser);
+  const page = await sharedPage(BUNNY);
   const mesh = await readMesh(readFileSync(first.path), first.path);
   const enter = async (id, text) => {
     await page.showLimits();
@@ -284,7 +279,7 @@ test('limits: β, deviation, features and borders change the run as the options 
 });
 
 test('scramble keeps the points and the number of triangles, and the mesh heals', async () => {
-  const page = await openEdgeflip(browser);
+  const page = await sharedPage();
   await page.choose('sample', 'regular 16');
   const before = await page.rest();
   assert.match(before.status, /Press play|Already Delaunay/);
@@ -307,7 +302,7 @@ test('scramble keeps the points and the number of triangles, and the mesh heals'
 });
 
 test('a mesh is saved in every format, and opens again with the same triangles', async () => {
-  const page = await openEdgeflip(browser);
+  const page = await sharedPage();
   await page.open(await meshFile('roof 16', 'roof.ply'));
   const end = await page.playToEnd();
   let again;
@@ -337,7 +332,7 @@ test('a mesh is saved in every format, and opens again with the same triangles',
 });
 
 test('a link opens the same mesh, engine, limit, iteration and view', async () => {
-  const page = await openEdgeflip(browser);
+  const page = await pageForBeta();
   const clipboard = await clipboardOf(page);
   await page.choose('sample', 'uvsphere 28 0.1');
   await page.rest();
@@ -379,7 +374,7 @@ test('a link opens the same mesh, engine, limit, iteration and view', async () =
 });
 
 test('the code that is copied gives the triangles that are shown', async () => {
-  const page = await openEdgeflip(browser);
+  const page = await sharedPage();
   const clipboard = await clipboardOf(page);
   await page.choose('sample', 'uvsphere 28 0.1');
   await page.rest();
@@ -397,7 +392,7 @@ test('the code that is copied gives the triangles that are shown', async () => {
 });
 
 test('the keys are listed, and Escape closes what is open', async () => {
-  const page = await openEdgeflip(browser);
+  const page = await sharedPage(BUNNY);
   await press(page, '?');
   const listed = await page.page.locator('#keys kbd').allTextContents();
   for (const key of ['Space', 'C', 'N, Shift N', 'K', 'Esc']) assert.ok(listed.includes(key), `${key}: ${listed}`);

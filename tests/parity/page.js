@@ -6,7 +6,7 @@ import { Digest } from './digest.js';
 /** The number of sessions that wait for the GPU together: in Firefox, each wait takes at least 100 ms. */
 const SESSIONS = 32;
 
-const response = await fetch('../target/parity.json');
+const response = await fetch(new URL('../../target/parity.json', import.meta.url));
 const { cases } = await response.json();
 
 /** Runs a mesh, and returns its result and, if `isWatched`, every iteration. */
@@ -40,10 +40,10 @@ async function run({ positions, isWide, indices, dimension, beta, deviation, loc
 }
 
 /**
- * Runs all meshes, and returns their results in order; for a mesh that was refused or failed, the error. Meshes that
- * need at most `watched` iterations are watched.
+ * Runs meshes, which are given by their indices, and returns their results at these indices; for a mesh that was refused
+ * or failed, the error. Meshes that need at most `watched` iterations are watched.
  */
-window.runAll = async ({ backend, watched }) => {
+window.runAll = async ({ backend, watched, meshes }) => {
   const start = performance.now();
   const runs = [];
   const take = async (index) => {
@@ -54,12 +54,10 @@ window.runAll = async ({ backend, watched }) => {
     }));
   };
   // The first run opens the device for all. Then the longest runs start first.
-  await take(0);
+  const [first, ...others] = meshes;
+  await take(first);
   const length = (index) => cases[index].iterations.length;
-  const queue = cases
-    .map((_, index) => index)
-    .slice(1)
-    .sort((a, b) => length(b) - length(a));
+  const queue = others.sort((a, b) => length(b) - length(a));
   const next = async () => {
     for (let index = queue.shift(); index !== undefined; index = queue.shift()) await take(index);
   };

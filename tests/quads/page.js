@@ -2,7 +2,7 @@
 
 import { FlipSession } from '../../dist/index.js';
 
-const read = async (file) => (await fetch(`../target/quads/${file}`)).arrayBuffer();
+const read = async (file) => (await fetch(new URL(`../../target/quads/${file}`, import.meta.url))).arrayBuffer();
 
 /** As `Verdict` in batch.rs. */
 const LABELLED = 1;

@@ -1,5 +1,6 @@
-// The packed package in fresh projects of the bundlers and runtimes of docs/package.md, each with the settings of its
-// line in the tables there and no others; and beside the functions of glTF-Transform. Uses the existing dist/, and the programs that tests/peers installs.
+// In the full run: the packed package in fresh projects of the bundlers and runtimes of docs/package.md, each with the
+// settings of its line in the tables there and no others; and beside the functions of glTF-Transform. Uses the existing
+// dist/, and the programs that tests/peers installs.
 
 import assert from 'node:assert/strict';
 import { spawn } from 'node:child_process';
