@@ -129,8 +129,9 @@ impl Session {
     /// Runs to the end. It calls `watch` after every batch of iterations with the numbers of iterations and flips so
     /// far; [`ControlFlow::Break`] stops the run after a complete iteration.
     ///
-    /// # Errors [`Error::OutOfMemory`]; [`Error::Device`] and [`Error::BackendLimit`], unless the backend is `Auto`:
-    /// then the CPU takes over.
+    /// # Errors
+    /// [`Error::OutOfMemory`]; [`Error::Device`] and [`Error::BackendLimit`], unless the backend is `Auto`: then the
+    /// CPU takes over.
     pub async fn run(&mut self, mut watch: impl FnMut(u32, u64) -> ControlFlow<()>) -> Result<(), Error> {
         while self.may_continue() {
             self.advance().await?;
@@ -164,9 +165,10 @@ impl Session {
     /// 0, flags the creases again, and the audit compares with this state. Adjacency, device and buffers stay. The call
     /// reads the triangles back once.
     ///
-    /// # Errors [`Error::PositionCount`], [`Error::NonFinite`], [`Error::OutOfMemory`]; [`Error::BackendLimit`] where
-    /// the GPU cannot decide the new positions exactly; [`Error::Device`]. After an error the session is unchanged.
-    /// With `Auto` the CPU takes over from a GPU that refuses or fails.
+    /// # Errors
+    /// [`Error::PositionCount`], [`Error::NonFinite`], [`Error::OutOfMemory`]; [`Error::BackendLimit`] where the GPU
+    /// cannot decide the new positions exactly; [`Error::Device`]. After an error the session is unchanged. With `Auto`
+    /// the CPU takes over from a GPU that refuses or fails.
     pub async fn set_positions(&mut self, positions: impl Into<Positions>) -> Result<(), Error> {
         self.check_memory(memory_bounds::POSITIONS)?;
         self.replace_positions(positions.into()).await

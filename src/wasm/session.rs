@@ -76,9 +76,10 @@ impl JsSession {
 impl JsSession {
     /// As [`Session::new`]. Copies the arrays before it returns. `settles`: whether updates may follow at once.
     ///
-    /// # Errors Those of [`Mesh::new`](crate::Mesh::new) and [`Session::new`]; `backend-unavailable` if the options
-    /// exclude the CPU engine and no other engine is available. If another engine or a second attempt may succeed, the
-    /// error has the mesh, as the first arguments of the next call: `error.mesh`.
+    /// # Errors
+    /// Those of [`Mesh::new`](crate::Mesh::new) and [`Session::new`]; `backend-unavailable` if the options exclude the
+    /// CPU engine and no other engine is available. If another engine or a second attempt may succeed, the error has
+    /// the mesh, as the first arguments of the next call: `error.mesh`.
     #[wasm_bindgen(unchecked_return_type = "Promise<Session>")]
     pub fn create(
         positions: JsPositions,
