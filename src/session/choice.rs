@@ -45,7 +45,7 @@ pub(super) fn asks_gpu(options: &Options, job: Job) -> bool {
 /// a browser starts to prepare it for later runs. `is_double`: whether the coordinates are 64-bit.
 pub(crate) fn why_cpu(job: Job, is_double: bool, options: &Options) -> Option<String> {
     if !job.is_for_gpu() {
-        return Some(format!("{} triangles are done first on the cpu", job.triangles));
+        return Some(format!("the cpu finishes {} triangles sooner", job.triangles));
     }
     if job.waits_for_gpu() || open_gpu::is_ready(job, is_double, options) {
         return None;

@@ -27,14 +27,16 @@ pub(super) fn why_not_ready(job: Job, is_double: bool, options: &Options) -> Str
     let form = form_of(job.dimension, is_double, options);
     let (given, is_given) = (options.device.clone(), options.device.is_some());
     let ahead = Device::ahead(is_given, async move { tested(given.as_ref(), false, form).await.map(drop) });
-    ahead.map_or_else(super::fallback::without_gpu, |()| "the gpu is made ready behind this run".to_owned())
+    ahead.map_or_else(super::fallback::without_gpu, |()| {
+        "the gpu was not ready; it starts up during this run".to_owned()
+    })
 }
 
 /// Natively nothing prepares the GPU: the process may end at any time, and drivers do not expect that while they
 /// compile.
 #[cfg(not(all(target_arch = "wasm32", feature = "js")))]
 pub(super) fn why_not_ready(job: Job, _: bool, _: &Options) -> String {
-    format!("{} triangles are done on the cpu before the gpu is ready", job.triangles)
+    format!("the cpu finishes {} triangles before the gpu is ready", job.triangles)
 }
 
 /// An engine on the GPU, which has passed the self-test.

@@ -234,7 +234,7 @@ fn parse_max_bytes(bytes: f64) -> Result<u64, Error> {
     if bytes >= 0.0 {
         return Ok(bytes as u64);
     }
-    Err(Error::Option { option: "maxBytes", message: format!("{} is no number of bytes", number(bytes)) })
+    Err(Error::Option { option: "maxBytes", message: format!("{} is not a size in bytes", number(bytes)) })
 }
 
 fn parse_bins(bins: f64) -> Result<usize, Error> {
