@@ -37,7 +37,7 @@ const MOST_ATTRIBUTES = 1024;
 
 /** The names of the options of a session, of a run, and of the functions of the entries. */
 const SESSION_OPTIONS: readonly string[] = Object.keys(OPTION_KINDS);
-const RUN_OPTIONS = namesOf<RunOptions>({ signal: true, onProgress: true });
+export const RUN_OPTIONS = namesOf<RunOptions>({ signal: true, onProgress: true });
 export const MAKE_OPTIONS = [
   ...SESSION_OPTIONS,
   ...namesOf<Omit<MakeDelaunayOptions, keyof Options>>({ signal: true, onProgress: true, onIteration: true }),
@@ -123,12 +123,12 @@ export interface Watch extends RunOptions {
 /**
  * The options of a run.
  *
- * @param known - The names of the options that are allowed.
+ * @param known - The names of the options that are allowed, unless `settingsOf` checks them.
  * @throws {@link EdgeflipError} `invalid-input`, `invalid-option`.
  */
-export function watchOf(options: MakeDelaunayOptions, known = RUN_OPTIONS): Watch {
+export function watchOf(options: MakeDelaunayOptions, known?: readonly string[]): Watch {
   return read('the options', () => {
-    const given = optionsOf(options, known);
+    const given = known ? optionsOf(options, known) : objectOf(options, 'options');
     const { signal, onProgress, onIteration } = given as MakeDelaunayOptions;
     const watched = signal ?? undefined;
     if (watched) objectOf(watched, 'signal');
