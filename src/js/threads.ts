@@ -1,6 +1,5 @@
 /** Sessions on the threads of the CPU engine: workers, each with an instance of one module. They share the memory. */
 
-import { collecting } from './collect.js';
 import { buffersOf } from './buffers.js';
 import { fromModule } from './error.js';
 import type { IndexedMesh } from './mesh.js';
@@ -78,7 +77,7 @@ class Pool {
   }
 
   call<M extends keyof Calls>(method: M, ...args: Parameters<Calls[M]>): Promise<Awaited<ReturnType<Calls[M]>>> {
-    return this.#first.call(method, args, { transfer: method === 'begin' ? buffersOf(args) : [] });
+    return this.#first.call(method, args, { transfer: method === 'open' ? buffersOf(args) : [] });
   }
 
   #add(module: WebAssembly.Module, memory: WebAssembly.Memory): void {
@@ -197,17 +196,9 @@ export class ThreadsSession implements ModuleSession {
   ): Promise<ThreadsSession> {
     const [pool] = threads;
     const [session, { length }] = [sessions++, indices];
-    void pool
-      .call('begin', session, { positions, indices, dimension }, { ...settings, backend: 'cpu' })
-      .catch(() => undefined);
-    const opened = collecting(() => pool.call('open', session));
+    const opened = pool.call('open', session, { positions, indices, dimension }, { ...settings, backend: 'cpu' });
     const spare = reserve(length);
-    try {
-      await opened;
-    } catch (thrown) {
-      void pool.call('free', session).catch(() => undefined);
-      throw thrown;
-    }
+    await opened;
     return new ThreadsSession(threads, count, session, spare, fallback);
   }
 

@@ -20,7 +20,6 @@ mod tests;
 use crate::engine::SharedObjects;
 use crate::engine::{Answer, Engine};
 use crate::mesh::embedded::Embedded;
-use crate::mesh::named_edges;
 use crate::mesh::star::Fans;
 use crate::mesh::winding::{Outline, Winding};
 use crate::phases::frozen;
@@ -80,8 +79,6 @@ impl Session {
             Some(Constrained { mesh, flips, left_out, .. }) => (Arc::new(mesh), flips, left_out),
             None => (mesh, 0, Vec::new()),
         };
-        // Checked here, because `auto` would answer this error of a GPU engine by trying the CPU engine.
-        named_edges::half_edges(&mesh, &options.locked_edges)?;
         let Choice { engine, fallback, may_change } = engine_for(&mesh, &options).await?;
         let set_up = ms_since(start);
         let adjacency = engine.adjacency_ms().unwrap_or(set_up);

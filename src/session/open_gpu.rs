@@ -11,7 +11,7 @@ use {crate::system::in_turn::in_turn, js_sys::Promise, std::cell::RefCell};
 /// The form of a mesh: the set of shaders that it needs. At upload, a mesh of 32-bit floats that span too many bits
 /// gets the fixed-point form instead.
 fn form_of(dimension: Dimension, is_double: bool, options: &Options) -> Form {
-    Form::new(dimension, is_double, Thresholds::from(options))
+    Form::new(dimension, is_double, options.max_deviation)
 }
 
 /// Whether a job can start on the GPU at once.
@@ -43,12 +43,16 @@ pub(super) fn why_not_ready(job: Job, _: bool, _: &Options) -> String {
 ///
 /// # Errors
 /// [`Error::BackendUnavailable`], [`Error::BackendLimit`], [`Error::Device`].
-pub(super) async fn engine(mesh: &Arc<Mesh>, options: &Options) -> Result<Box<dyn Engine>, Error> {
+pub(super) async fn engine(
+    mesh: &Arc<Mesh>,
+    options: &Options,
+    thresholds: Thresholds,
+) -> Result<Box<dyn Engine>, Error> {
     // `Auto` never takes a software GPU.
     let takes_software = options.backend == Backend::Gpu;
     let form = form_of(mesh.dimension(), mesh.positions().is_double(), options);
     let mut device = tested(options.given_device(), takes_software, form).await?;
-    let upload = Upload::new(EngineKind::Gpu, mesh.clone(), Thresholds::from(options))?;
+    let upload = Upload::new(EngineKind::Gpu, mesh.clone(), thresholds)?;
     if upload.form() != form {
         device = tested(options.given_device(), takes_software, upload.form()).await?;
     }

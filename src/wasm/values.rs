@@ -100,15 +100,11 @@ pub(crate) fn thrown(error: Error) -> JsValue {
     }
 }
 
-/// The exception for a session that could not begin. If another engine or a second attempt may succeed, it has the
+/// The exception for a mesh that the module leaves to the CPU engine of another: it has the arguments that made the
 /// mesh.
 #[cfg(feature = "js")]
-pub(super) fn refused(error: Error, mesh: &Mesh, leaves_cpu: bool) -> JsValue {
-    let error = match error {
-        Error::Device { message } if leaves_cpu => coded("backend-unavailable", &message),
-        error @ (Error::Device { .. } | Error::OutOfMemory { .. }) => thrown(error),
-        error => return thrown(error),
-    };
+pub(super) fn left_to_cpu(why: &str, mesh: &Mesh) -> JsValue {
+    let error = coded("backend-unavailable", why);
     let arrays: Array = [
         mesh.positions().to_typed_array(),
         Uint32Array::from(mesh.triangles()).into(),

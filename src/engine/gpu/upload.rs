@@ -34,8 +34,9 @@ impl Form {
         Self { dimension: Dimension::Three, is_fixed: true, has_deviation: false },
         Self { dimension: Dimension::Three, is_fixed: true, has_deviation: true },
     ];
-    pub(crate) fn new(dimension: Dimension, is_fixed: bool, thresholds: Thresholds) -> Self {
-        let has_deviation = dimension == Dimension::Three && thresholds.deviation.is_finite();
+    /// `deviation` is the limit, or infinite.
+    pub(crate) fn new(dimension: Dimension, is_fixed: bool, deviation: f64) -> Self {
+        let has_deviation = dimension == Dimension::Three && deviation.is_finite();
         Self { dimension, is_fixed, has_deviation }
     }
 
@@ -87,7 +88,7 @@ impl Upload {
     }
 
     pub(crate) fn form(&self) -> Form {
-        Form::new(self.mesh.dimension(), self.fixed.is_some(), self.thresholds)
+        Form::new(self.mesh.dimension(), self.fixed.is_some(), self.thresholds.deviation.into())
     }
 
     /// The coordinates as the shaders of its form read them: words, axis after axis.
