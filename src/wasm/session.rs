@@ -84,7 +84,7 @@ impl JsSession {
     pub fn create(
         positions: JsPositions,
         indices: &Uint32Array,
-        dimension: f64,
+        dimension: u32,
         options: JsOptions,
         settles: bool,
     ) -> Result<Promise, JsValue> {
