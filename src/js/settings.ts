@@ -29,8 +29,15 @@ export type Settings = { [Name in keyof Omit<Options, 'weld'>]?: Read<NonNullabl
 /** The type of an option after reading: a list becomes a Uint32Array. */
 type Read<T> = [T] extends [IndexArray] ? Uint32Array : T;
 
-/** The most threads. Each thread is a worker. */
+/**
+ * The limits that are checked before a module is loaded: the most iterations of an update, the most threads, and the
+ * fewest triangles of a mesh on several threads, and of each thread. A test in `src/system/threads.rs` compares them
+ * with the limits of the modules.
+ */
+export const MOST_ITERATIONS = 64;
 export const MOST_THREADS = 256;
+export const FEWEST_TRIANGLES = 65_536;
+export const FEWEST_EACH = 4096;
 
 /** The most attributes of vertices: more than any file has. */
 const MOST_ATTRIBUTES = 1024;

@@ -4,7 +4,7 @@ import { buffersOf } from './buffers.js';
 import { fromModule } from './error.js';
 import type { IndexedMesh } from './mesh.js';
 import { node, Remote, type Script, startThread, type Thread } from './remote.js';
-import { MOST_THREADS, type Settings } from './settings.js';
+import { FEWEST_EACH, FEWEST_TRIANGLES, MOST_THREADS, type Settings } from './settings.js';
 import type { Calls, Question } from './thread.js';
 import type { Session } from './wasm/edgeflip.js';
 
@@ -17,14 +17,6 @@ export interface ModuleSession extends Omit<Session, typeof Symbol.dispose | 'up
   /** The number of its threads, if they are several. */
   readonly threads?: number;
 }
-
-/**
- * The fewest triangles of a mesh on several threads, as in `src/system/threads.rs`: one thread finishes fewer sooner.
- */
-const FEWEST_TRIANGLES = 65_536;
-
-/** The fewest triangles per thread: with fewer, some threads would have no work. */
-const FEWEST_EACH = 4096;
 
 /** Whether workers can share memory. */
 const isShared = typeof SharedArrayBuffer !== 'undefined' && (globalThis.crossOriginIsolated ?? node !== undefined);
