@@ -1,5 +1,6 @@
-// Checks the layout: imports run down the rooms of docs/architecture.md, no files import each other in a circle, and no
-// file is longer than 450 lines. `node tools/layout.mjs`; with -v it prints every import.
+// Checks the layout: imports run down the rooms of docs/architecture.md, no files import each other in a circle, no file
+// is longer than 450 lines, and each heading in a comment of rustdoc is alone on its line. `node tools/layout.mjs`; with
+// -v it prints every import.
 
 import { readdirSync, readFileSync } from 'node:fs';
 import { posix } from 'node:path';
@@ -24,6 +25,11 @@ const errors = [];
 for (const [file, content] of text) {
   const lines = content.split('\n').length - 1;
   if (lines > MOST_LINES) errors.push(`${file}: ${lines} lines; at most ${MOST_LINES} are allowed`);
+  if (!file.endsWith('.rs')) continue;
+  content.split('\n').forEach((line, i) => {
+    const [, heading] = line.match(/^\s*\/\/[/!] (#+ (?:Errors|Examples?|Panics|Safety)) /) ?? [];
+    if (heading) errors.push(`${file}:${i + 1}: text follows the heading \`${heading}\`; begin a new line`);
+  });
 }
 
 // Rust: what each file imports, by the path of its module, such as `engine::cpu::engine`.

@@ -16,20 +16,47 @@ pub use space::{pillow, pole, roof, uvsphere};
 
 use crate::{Error, Mesh};
 
-/// The names that [`by_name`] knows.
-pub const NAMES: [&str; 11] =
-    ["grid", "random", "shear", "regular", "strips", "fan2", "sweep", "uvsphere", "roof", "pillow", "pole"];
+/// A family, as specifications name it.
+pub struct Family {
+    /// Its name.
+    pub name: &'static str,
+    /// The name and the default of its parameter, if it has one.
+    pub parameter: Option<(&'static str, f64)>,
+    /// Takes n, the parameter and the seed.
+    make: fn(usize, f64, u64) -> Result<Mesh, Error>,
+}
+
+/// All families.
+pub static FAMILIES: [Family; 11] = [
+    Family { name: "grid", parameter: None, make: |n, _, seed| grid(n, seed) },
+    Family { name: "random", parameter: Some(("K", 2.0)), make: random },
+    Family { name: "shear", parameter: Some(("S", 3.0)), make: shear },
+    Family { name: "regular", parameter: Some(("OFFSET", 0.0)), make: regular },
+    Family { name: "strips", parameter: None, make: |n, _, _| strips(n) },
+    Family { name: "fan2", parameter: None, make: |n, _, _| fan2(n) },
+    Family { name: "sweep", parameter: None, make: |n, _, seed| sweep(n, seed) },
+    Family { name: "uvsphere", parameter: Some(("AMPLITUDE", 0.05)), make: uvsphere },
+    Family { name: "roof", parameter: None, make: |n, _, seed| roof(n, seed) },
+    Family { name: "pillow", parameter: Some(("H", 0.1)), make: |n, h, _| pillow(n, h) },
+    Family { name: "pole", parameter: None, make: |n, _, seed| pole(n, seed) },
+];
 
 /// What [`by_name`] accepts, for messages and `--help`.
-pub const USAGE: &str = "grid N, random N [K=2], shear N [S=3], regular N [OFFSET=0], strips N, fan2 N, \
-    sweep N, uvsphere N [AMPLITUDE=0.05], roof N, pillow N [H=0.1] or pole N, each with an optional \
-    seed=SEED at the end; with `shuffled` before it, vertices and triangles are in random order";
+pub fn usage() -> String {
+    let of_family = |Family { name, parameter, .. }: &Family| match parameter {
+        Some((letter, default)) => format!("{name} N [{letter}={default}]"),
+        None => format!("{name} N"),
+    };
+    FAMILIES.each_ref().map(of_family).join(", ")
+        + "; each with an optional seed=SEED at the end; with `shuffled` before it, vertices and triangles are in \
+           random order"
+}
 
 /// The seed that [`by_name`] takes when the specification names none.
 pub const DEFAULT_SEED: u64 = 1;
 
 /// The mesh that a specification such as `uvsphere 600`, `shear 300 30` or `random 100 seed=7` describes;
-/// [`USAGE`] lists them all.
+/// [`usage`] lists them all.
 ///
 /// # Errors
 /// [`Error::Option`] when the specification is not understood, [`Error::TooLarge`] when 32 bits cannot
@@ -39,23 +66,14 @@ pub fn by_name(spec: &str) -> Result<Mesh, Error> {
         let seed = parse(spec).ok_or_else(|| wrong(spec))?.3;
         return Ok(shuffled(&by_name(spec)?, seed));
     }
-    let (name, n, parameter, seed) = parse(spec).ok_or_else(|| wrong(spec))?;
-    let number = |default: f64| parameter.unwrap_or(default);
-    match name {
-        "grid" | "strips" | "fan2" | "sweep" | "roof" | "pole" if parameter.is_some() => Err(wrong(spec)),
-        "grid" => grid(n, seed),
-        "random" => random(n, number(2.0), seed),
-        "shear" => shear(n, number(3.0), seed),
-        "regular" => regular(n, number(0.0), seed),
-        "strips" => strips(n),
-        "fan2" => fan2(n),
-        "sweep" => sweep(n, seed),
-        "uvsphere" => uvsphere(n, number(0.05), seed),
-        "roof" => roof(n, seed),
-        "pillow" => pillow(n, number(0.1)),
-        "pole" => pole(n, seed),
-        _ => Err(wrong(spec)),
-    }
+    let (name, n, given, seed) = parse(spec).ok_or_else(|| wrong(spec))?;
+    let Some(family) = FAMILIES.iter().find(|family| family.name == name) else { return Err(wrong(spec)) };
+    let parameter = match (family.parameter, given) {
+        (Some((_, default)), given) => given.unwrap_or(default),
+        (None, None) => 0.0,
+        (None, Some(_)) => return Err(wrong(spec)),
+    };
+    (family.make)(n, parameter, seed)
 }
 
 /// The name, n, the parameter and the seed of a specification.
@@ -75,5 +93,5 @@ fn parse(spec: &str) -> Option<(&str, usize, Option<f64>, u64)> {
 }
 
 fn wrong(spec: &str) -> Error {
-    Error::Option { option: "family", message: format!("{spec:?} is not one of: {USAGE}") }
+    Error::Option { option: "family", message: format!("{spec:?} is not one of: {}", usage()) }
 }

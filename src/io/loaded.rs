@@ -75,7 +75,8 @@ impl Loaded {
     /// the attributes of its vertex there. A glTF file gets other indices, as `.gltf` or `.glb`. In other formats, the
     /// parts of a glTF file have their positions in the scene.
     ///
-    /// # Errors [`Error::UnknownFormat`]; [`Error::TriangleCount`] and those of [`Mesh::new`] for the triangles;
+    /// # Errors
+    /// [`Error::UnknownFormat`]; [`Error::TriangleCount`] and those of [`Mesh::new`] for the triangles;
     /// [`Error::Option`] for triangles from flips across seams; [`Error::FileTooLarge`] if cut polygons repeat too many
     /// attributes; [`Error::Io`] as in [`write_to`](super::write_to); [`Error::TooLarge`] for a `.glb` file of 4 GiB or
     /// more.

@@ -41,8 +41,9 @@ impl Output {
     /// format; `.gz` after it means gzip. If `path` is a device, a FIFO or a name of the standard output, and has no
     /// known extension, the name `like` decides the format.
     ///
-    /// # Errors [`Error::UnknownFormat`]; [`Error::Io`] for a folder, for a cycle of links, and if the folder of a new
-    /// file does not exist.
+    /// # Errors
+    /// [`Error::UnknownFormat`]; [`Error::Io`] for a folder, for a cycle of links, and if the folder of a new file does
+    /// not exist.
     pub fn of(path: impl AsRef<Path>, like: impl AsRef<Path>) -> Result<Self, Error> {
         let path = path.as_ref();
         let target = Target::of(path);

@@ -11,7 +11,7 @@
  */
 
 import { createWatched, runWatched } from './session.js';
-import { MAKE_OPTIONS, watchOf } from './settings.js';
+import { watchOf } from './settings.js';
 import type { IndexArray, MakeDelaunayOptions, Mesh, Result } from './types.js';
 
 export { EDGE_STATES, type EdgeState } from './edge-states.js';
@@ -32,7 +32,7 @@ export async function makeDelaunay<I extends IndexArray>(
   mesh: Mesh<I>,
   options: MakeDelaunayOptions = {},
 ): Promise<Result<I>> {
-  const watch = watchOf(options, MAKE_OPTIONS);
+  const watch = watchOf(options);
   const session = await createWatched(mesh, options);
   try {
     return await runWatched(session, watch);

@@ -1,7 +1,5 @@
 /** Opens a session in the module of its engine. */
 
-import { collecting } from './collect.js';
-import { fromModule } from './error.js';
 import { messageOf } from './given.js';
 import { isLoaded, loadCore, moduleOfThreads } from './load.js';
 import { copied, type IndexedMesh } from './mesh.js';
@@ -28,57 +26,43 @@ export async function open(mesh: IndexedMesh, settings: Settings, settles: boole
     return { session: await openAlone(mesh, settings, settles), alone };
   }
   if (backend === 'cpu' || order === 'any') return openOnThreads(copied(mesh), settings, count);
-  let given = mesh;
-  if (!isLoaded()) {
-    given = copied(mesh);
-    await loadCore();
-  }
+  const given = isLoaded() ? mesh : await whileLoading(mesh);
   const { positions, indices, dimension } = given;
   const why = whyCpu(indices.length / 3, dimension, positions instanceof Float64Array, count, settings);
   if (why !== undefined) {
     return openOnThreads(given === mesh ? copied(mesh) : given, settings, count, why);
   }
   try {
-    return { session: await openAlone(given, { ...settings, leavesCpu: count }, settles) };
+    return { session: await openAlone(given, { ...settings, leavesCpu: true }, settles) };
   } catch (thrown) {
-    const { code, message } = fromModule(thrown);
-    if (code !== 'backend-unavailable') throw thrown;
-    return openOnThreads(refused(thrown) ?? given, settings, count, message);
+    const { mesh: left, message } = Object(thrown) as { mesh?: Arrays; message: string };
+    if (!left) throw thrown;
+    const [positions, indices, dimension] = left;
+    return openOnThreads({ positions, indices, dimension }, settings, count, message);
   }
 }
 
+/** The arguments of `Session.create` that make the mesh. */
+type Arrays = [IndexedMesh['positions'], Uint32Array, IndexedMesh['dimension']];
+
 /**
- * Opens a session in the module of the engines. With `leavesCpu`, `'auto'` fails if it chooses the CPU engine, which
- * then runs in another module on `leavesCpu` threads.
+ * Opens a session in the module of the engines. With `leavesCpu`, the settings are those of a mesh for which `'auto'`
+ * takes a GPU. If there is none, the exception has the mesh for another module, which has the CPU engine on threads.
  */
 async function openAlone(
   mesh: IndexedMesh,
-  settings: Settings & { leavesCpu?: number },
+  settings: Settings & { leavesCpu?: boolean },
   settles = false,
 ): Promise<ModuleSession> {
-  const ours = isLoaded() ? undefined : copied(mesh);
-  if (ours) await loadCore();
-  let [given, error]: [IndexedMesh | undefined, unknown] = [ours ?? mesh, undefined];
-  return collecting(async () => {
-    if (!given) throw error;
-    let opening: Promise<ModuleSession> | undefined;
-    try {
-      opening = Session.create(given.positions, given.indices, given.dimension, settings, settles);
-      return await opening;
-    } catch (thrown) {
-      // Another try needs the arrays. The caller's arrays must not be read after a wait, so they are copied.
-      const last = given;
-      [given, error] = [undefined, thrown];
-      given = opening ? (refused(thrown) ?? ours) : copied(last);
-      throw thrown;
-    }
-  });
+  const { positions, indices, dimension } = isLoaded() ? mesh : await whileLoading(mesh);
+  return Session.create(positions, indices, dimension, settings, settles);
 }
 
-/** The mesh in an exception of the module, which has it if another engine or another try may succeed. */
-function refused(thrown: unknown): IndexedMesh | undefined {
-  const { mesh } = thrown as { mesh?: [IndexedMesh['positions'], Uint32Array, IndexedMesh['dimension']] };
-  return mesh && { positions: mesh[0], indices: mesh[1], dimension: mesh[2] };
+/** A copy of the mesh, once the module is loaded: the caller's arrays must not be read after a wait. */
+async function whileLoading(mesh: IndexedMesh): Promise<IndexedMesh> {
+  const copy = copied(mesh);
+  await loadCore();
+  return copy;
 }
 
 /** Transfers the arrays of the mesh. If the threads cannot be started, one thread gives the same result. */

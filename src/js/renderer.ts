@@ -73,7 +73,7 @@ export async function flipShared(
   mesh: Mesh<Uint32Array>,
   options: MakeDelaunayOptions,
 ): Promise<Run> {
-  const watch = watchOf(options, MAKE_OPTIONS);
+  const watch = watchOf(options);
   const [copy] = readMesh(mesh, copyOf);
   const settings = settingsOf(options, MAKE_OPTIONS);
   const backend = await backendOf(renderer);

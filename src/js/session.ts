@@ -12,7 +12,7 @@ import { copyOf, itselfOf } from './given.js';
 import { copied, floatsOf, type Layout, readMesh } from './mesh.js';
 import { open, type Opened } from './open.js';
 import { resultOf } from './result.js';
-import { MAKE_OPTIONS, settingsOf, type Watch, watchOf } from './settings.js';
+import { MAKE_OPTIONS, RUN_OPTIONS, settingsOf, type Watch, watchOf } from './settings.js';
 import type { ModuleSession } from './threads.js';
 import { Turns } from './turn.js';
 import type {
@@ -150,7 +150,7 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
 
   /** Runs to the end, or until the signal stops the run. A session that a signal stopped can continue. */
   async run(options: RunOptions = {}): Promise<Result<I>> {
-    return this.#run(watchOf(options));
+    return this.#run(watchOf(options, RUN_OPTIONS));
   }
 
   async #run(watch: Watch, stay = false): Promise<Result<I>> {

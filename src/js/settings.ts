@@ -29,15 +29,22 @@ export type Settings = { [Name in keyof Omit<Options, 'weld'>]?: Read<NonNullabl
 /** The type of an option after reading: a list becomes a Uint32Array. */
 type Read<T> = [T] extends [IndexArray] ? Uint32Array : T;
 
-/** The most threads. Each thread is a worker. */
+/**
+ * The limits that are checked before a module is loaded: the most iterations of an update, the most threads, and the
+ * fewest triangles of a mesh on several threads, and of each thread. A test in `src/system/threads.rs` compares them
+ * with the limits of the modules.
+ */
+export const MOST_ITERATIONS = 64;
 export const MOST_THREADS = 256;
+export const FEWEST_TRIANGLES = 65_536;
+export const FEWEST_EACH = 4096;
 
 /** The most attributes of vertices: more than any file has. */
 const MOST_ATTRIBUTES = 1024;
 
 /** The names of the options of a session, of a run, and of the functions of the entries. */
 const SESSION_OPTIONS: readonly string[] = Object.keys(OPTION_KINDS);
-const RUN_OPTIONS = namesOf<RunOptions>({ signal: true, onProgress: true });
+export const RUN_OPTIONS = namesOf<RunOptions>({ signal: true, onProgress: true });
 export const MAKE_OPTIONS = [
   ...SESSION_OPTIONS,
   ...namesOf<Omit<MakeDelaunayOptions, keyof Options>>({ signal: true, onProgress: true, onIteration: true }),
@@ -123,12 +130,12 @@ export interface Watch extends RunOptions {
 /**
  * The options of a run.
  *
- * @param known - The names of the options that are allowed.
+ * @param known - The names of the options that are allowed, unless `settingsOf` checks them.
  * @throws {@link EdgeflipError} `invalid-input`, `invalid-option`.
  */
-export function watchOf(options: MakeDelaunayOptions, known = RUN_OPTIONS): Watch {
+export function watchOf(options: MakeDelaunayOptions, known?: readonly string[]): Watch {
   return read('the options', () => {
-    const given = optionsOf(options, known);
+    const given = known ? optionsOf(options, known) : objectOf(options, 'options');
     const { signal, onProgress, onIteration } = given as MakeDelaunayOptions;
     const watched = signal ?? undefined;
     if (watched) objectOf(watched, 'signal');

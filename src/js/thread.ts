@@ -29,8 +29,6 @@ export interface Reply {
 /** Milliseconds of iterations per message to a run: two frames. A message takes as long as many small iterations. */
 const SLICE = 32;
 
-/** Meshes whose sessions are not open yet. */
-const begun = new Map<number, { mesh: IndexedMesh; settings: Settings }>();
 const sessions = new Map<number, Session>();
 /** Indices that the client has not copied yet, by session. */
 const lent = new Map<number, Indices>();
@@ -46,15 +44,8 @@ const calls = {
     initSync({ module, memory });
     work();
   },
-  /** Stores the mesh of a session that is not open yet. */
-  begin(session: number, mesh: IndexedMesh, settings: Settings): void {
-    begun.set(session, { mesh, settings });
-  },
-  /** Opens the session. If memory runs out, the call can be repeated. */
-  async open(session: number): Promise<void> {
-    const { mesh, settings } = begun.get(session)!;
-    sessions.set(session, await Session.create(mesh.positions, mesh.indices, mesh.dimension, settings, false));
-    begun.delete(session);
+  async open(session: number, { positions, indices, dimension }: IndexedMesh, settings: Settings): Promise<void> {
+    sessions.set(session, await Session.create(positions, indices, dimension, settings, false));
   },
   async ask(session: number, question: Question, args: unknown[]): Promise<Reply> {
     const asked = sessions.get(session)!;
@@ -71,7 +62,6 @@ const calls = {
   },
   free(session: number): void {
     calls.release(session);
-    begun.delete(session);
     sessions.get(session)?.free();
     sessions.delete(session);
   },

@@ -1,11 +1,10 @@
 /** Sessions on the threads of the CPU engine: workers, each with an instance of one module. They share the memory. */
 
-import { collecting } from './collect.js';
 import { buffersOf } from './buffers.js';
 import { fromModule } from './error.js';
 import type { IndexedMesh } from './mesh.js';
 import { node, Remote, type Script, startThread, type Thread } from './remote.js';
-import { MOST_THREADS, type Settings } from './settings.js';
+import { FEWEST_EACH, FEWEST_TRIANGLES, MOST_THREADS, type Settings } from './settings.js';
 import type { Calls, Question } from './thread.js';
 import type { Session } from './wasm/edgeflip.js';
 
@@ -18,14 +17,6 @@ export interface ModuleSession extends Omit<Session, typeof Symbol.dispose | 'up
   /** The number of its threads, if they are several. */
   readonly threads?: number;
 }
-
-/**
- * The fewest triangles of a mesh on several threads, as in `src/system/threads.rs`: one thread finishes fewer sooner.
- */
-const FEWEST_TRIANGLES = 65_536;
-
-/** The fewest triangles per thread: with fewer, some threads would have no work. */
-const FEWEST_EACH = 4096;
 
 /** Whether workers can share memory. */
 const isShared = typeof SharedArrayBuffer !== 'undefined' && (globalThis.crossOriginIsolated ?? node !== undefined);
@@ -78,7 +69,7 @@ class Pool {
   }
 
   call<M extends keyof Calls>(method: M, ...args: Parameters<Calls[M]>): Promise<Awaited<ReturnType<Calls[M]>>> {
-    return this.#first.call(method, args, { transfer: method === 'begin' ? buffersOf(args) : [] });
+    return this.#first.call(method, args, { transfer: method === 'open' ? buffersOf(args) : [] });
   }
 
   #add(module: WebAssembly.Module, memory: WebAssembly.Memory): void {
@@ -197,17 +188,9 @@ export class ThreadsSession implements ModuleSession {
   ): Promise<ThreadsSession> {
     const [pool] = threads;
     const [session, { length }] = [sessions++, indices];
-    void pool
-      .call('begin', session, { positions, indices, dimension }, { ...settings, backend: 'cpu' })
-      .catch(() => undefined);
-    const opened = collecting(() => pool.call('open', session));
+    const opened = pool.call('open', session, { positions, indices, dimension }, { ...settings, backend: 'cpu' });
     const spare = reserve(length);
-    try {
-      await opened;
-    } catch (thrown) {
-      void pool.call('free', session).catch(() => undefined);
-      throw thrown;
-    }
+    await opened;
     return new ThreadsSession(threads, count, session, spare, fallback);
   }
 

@@ -16,7 +16,7 @@ export class Turns {
 }
 
 /** Resolves after the tasks that are already queued. A message is a task, and is not throttled as a timer is. */
-export function turn(): Promise<void> {
+function turn(): Promise<void> {
   return new Promise((resolve) => {
     const { port1, port2 } = new MessageChannel();
     port1.onmessage = () => {

@@ -5,7 +5,7 @@ import { type Source, sourceOf } from './gather.js';
 import { isWhole, read, shown } from './given.js';
 import { type AllPlaces, floatsOf } from './mesh.js';
 import { namesOf, optionsOf } from './names.js';
-import type { Hold } from './settings.js';
+import { type Hold, MOST_ITERATIONS } from './settings.js';
 import type { UpdateOptions } from './types.js';
 
 /** The options of an update in a worker, which no buffer can enter. */
@@ -30,9 +30,6 @@ export const WORKER_UPDATE_OPTIONS = namesOf<WorkerUpdateOptions>({ positions: t
 
 /** Iterations of an update, if the caller gives no number. */
 const ITERATIONS = 4;
-
-/** The same in src/engine/interface.rs. */
-const MOST_ITERATIONS = 64;
 
 /**
  * The options of an update.

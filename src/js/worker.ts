@@ -21,7 +21,7 @@ import { floatsOf, type Layout, readMesh } from './mesh.js';
 import { type ModuleSource, type Sources, sourcesOf } from './module.js';
 import { namesOf } from './names.js';
 import { Remote } from './remote.js';
-import { settingsOf, type Watch, WORKER_MAKE_OPTIONS, WORKER_OPTIONS, watchOf } from './settings.js';
+import { RUN_OPTIONS, settingsOf, type Watch, WORKER_MAKE_OPTIONS, WORKER_OPTIONS, watchOf } from './settings.js';
 import type {
   Audit,
   Counters,
@@ -151,7 +151,7 @@ export async function makeDelaunay<I extends IndexArray>(
   mesh: Mesh<I>,
   options: WorkerMakeOptions = {},
 ): Promise<Result<I>> {
-  const watch = watchOf(options, WORKER_MAKE_OPTIONS);
+  const watch = watchOf(options);
   const [views, layout] = readMesh(mesh, copyOf);
   const settings = settingsOf(options, WORKER_MAKE_OPTIONS);
   const [to, run] = [worker(), numbers++];
@@ -216,7 +216,7 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
 
   /** Runs to the end, or until the signal stops the run. A stopped session can continue. */
   async run(options: RunOptions = {}): Promise<Result<I>> {
-    const watch = watchOf(options);
+    const watch = watchOf(options, RUN_OPTIONS);
     this.#check();
     const run = numbers++;
     const result = await watched(watch, this.#to, run, (onEvent) =>

@@ -45,8 +45,9 @@ impl Mesh {
     /// Checks and takes `positions` (2 or 3 numbers per vertex, `Vec<f32>` or `Vec<f64>`) and `triangles` (3 vertex
     /// indices per triangle). If all 64-bit floats are exactly 32-bit floats, the mesh stores 32-bit floats.
     ///
-    /// # Errors [`Error::RaggedArray`], [`Error::TooLarge`], [`Error::NonFinite`] or [`Error::IndexOutOfRange`] for the
-    /// first vertex or triangle that is wrong.
+    /// # Errors
+    /// [`Error::RaggedArray`], [`Error::TooLarge`], [`Error::NonFinite`] or [`Error::IndexOutOfRange`] for the first
+    /// vertex or triangle that is wrong.
     pub fn new(
         dimension: Dimension,
         positions: impl Into<Positions>,

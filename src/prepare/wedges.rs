@@ -103,8 +103,9 @@ impl Wedges {
 
     /// The number of each corner of a result: the triangles after flips with these edges and triangles locked.
     ///
-    /// # Errors [`Error::TriangleCount`], [`Error::IndexOutOfRange`]; [`Error::Option`] for triangles that are not such
-    /// a result, if that is noticed.
+    /// # Errors
+    /// [`Error::TriangleCount`], [`Error::IndexOutOfRange`]; [`Error::Option`] for triangles that are not such a
+    /// result, if that is noticed.
     pub fn carried(&self, triangles: &[u32]) -> Result<Vec<u32>, Error> {
         let mut sources = self.sources(triangles)?;
         sources.iter_mut().for_each(|corner| *corner = self.classes[*corner as usize]);

@@ -24,11 +24,7 @@ pub(super) struct Choice {
 /// The job that `Auto` estimates for a mesh.
 pub(super) fn job_of(mesh: &Mesh, options: &Options) -> Job {
     let triangles = mesh.triangle_count();
-    let threads = Threads::count_for(options.threads, triangles);
-    // With `leaves_cpu`, another WebAssembly module runs the CPU engine, on that number of threads.
-    #[cfg(all(target_arch = "wasm32", feature = "js"))]
-    let threads = options.leaves_cpu.unwrap_or(threads);
-    Job { triangles, dimension: mesh.dimension(), threads }
+    Job { triangles, dimension: mesh.dimension(), threads: Threads::count_for(options.threads, triangles) }
 }
 
 /// Whether a session with these options tries a GPU first for this job.
@@ -45,7 +41,7 @@ pub(super) fn asks_gpu(options: &Options, job: Job) -> bool {
 /// a browser starts to prepare it for later runs. `is_double`: whether the coordinates are 64-bit.
 pub(crate) fn why_cpu(job: Job, is_double: bool, options: &Options) -> Option<String> {
     if !job.is_for_gpu() {
-        return Some(format!("{} triangles are done first on the cpu", job.triangles));
+        return Some(format!("the cpu finishes {} triangles sooner", job.triangles));
     }
     if job.waits_for_gpu() || open_gpu::is_ready(job, is_double, options) {
         return None;
@@ -62,7 +58,8 @@ pub(super) fn changes_to_gpu(mesh: &Mesh, options: &Options, (set_up, flip): (f6
 /// The engine for the options. Boxed, as [`open`].
 ///
 /// # Errors
-/// Those of the requested engine; for `Auto`, only [`Error::OutOfMemory`].
+/// Those of the requested engine; for `Auto`, only [`Error::OutOfMemory`]; [`Error::Option`] for an edge to lock that
+/// the mesh does not have.
 pub(super) fn engine_for<'a>(mesh: &'a Arc<Mesh>, options: &'a Options) -> Answer<'a, Choice> {
     Box::pin(async move {
         match (options.order, options.backend) {
@@ -70,11 +67,13 @@ pub(super) fn engine_for<'a>(mesh: &'a Arc<Mesh>, options: &'a Options) -> Answe
                 let message = "`any` runs on the cpu only".to_owned();
                 Err(Error::Option { option: "order", message })
             }
+            #[cfg(all(target_arch = "wasm32", feature = "js"))]
+            (Order::Reproducible, Backend::Auto) if options.leaves_cpu => auto(mesh, options).await,
             (Order::Reproducible, Backend::Auto) => {
                 let is_double = mesh.positions().is_double();
                 match why_cpu(job_of(mesh, options), is_double, options) {
                     None => auto(mesh, options).await,
-                    Some(why) => Ok(Choice { may_change: true, ..cpu_for(why, mesh, options).await? }),
+                    Some(why) => Ok(Choice { may_change: true, ..cpu_after(why, mesh, options).await? }),
                 }
             }
             (Order::Any, _) => alone(Backend::Cpu, mesh, options, None).await,
@@ -83,23 +82,16 @@ pub(super) fn engine_for<'a>(mesh: &'a Arc<Mesh>, options: &'a Options) -> Answe
     })
 }
 
-/// The GPU, or the CPU where the GPU does not take the mesh.
+/// The GPU, or the CPU where the GPU does not take the mesh. With `leaves_cpu`, [`Error::Device`] with the reason.
 async fn auto(mesh: &Arc<Mesh>, options: &Options) -> Result<Choice, Error> {
     match open(Backend::Gpu, mesh, options).await {
         Ok(engine) => Ok(Choice { engine, fallback: None, may_change: false }),
-        // The CPU would need the same memory.
-        Err(error @ Error::OutOfMemory { .. }) => Err(error),
-        Err(error) => cpu_for(without_gpu(error.to_string()), mesh, options).await,
+        // The CPU would need the same memory, and the same edges to lock.
+        Err(error @ (Error::OutOfMemory { .. } | Error::Option { .. })) => Err(error),
+        #[cfg(all(target_arch = "wasm32", feature = "js"))]
+        Err(error) if options.leaves_cpu => Err(Error::Device { message: without_gpu(error.to_string()) }),
+        Err(error) => cpu_after(without_gpu(error.to_string()), mesh, options).await,
     }
-}
-
-/// The CPU, or [`Error::Device`] with the reason where the option `leaves_cpu` is set.
-fn cpu_for<'a>(why: String, mesh: &'a Arc<Mesh>, options: &'a Options) -> Answer<'a, Choice> {
-    #[cfg(all(target_arch = "wasm32", feature = "js"))]
-    if options.leaves_cpu.is_some() {
-        return Box::pin(std::future::ready(Err(Error::Device { message: why })));
-    }
-    cpu_after(why, mesh, options)
 }
 
 /// The CPU, which takes every mesh. `why` says why no other engine runs.
@@ -139,20 +131,21 @@ async fn alone(
 /// Boxed, so that the code that starts an engine is compiled only once.
 fn open<'a>(backend: Backend, mesh: &'a Arc<Mesh>, options: &'a Options) -> Answer<'a, Box<dyn Engine>> {
     Box::pin(async move {
-        let thresholds = Thresholds::from(options);
+        let (thresholds, locked) =
+            (Thresholds::from(options), named_edges::half_edges(mesh, &options.locked_edges)?);
         let cpu = || {
             memory::check(memory_bounds::bytes(mesh, options))?;
             let threads = Threads::new(options.threads, mesh.triangle_count())?;
             Ok::<_, Error>(Cpu::arranged(mesh.clone(), thresholds, threads))
         };
         let mut engine = match (backend, options.order) {
-            (Backend::Gpu, _) => open_gpu::engine(mesh, options).await?,
+            (Backend::Gpu, _) => open_gpu::engine(mesh, options, thresholds).await?,
             (Backend::WebGl, _) => webgl(mesh, options).await?,
             (_, Order::Reproducible) => Box::new(cpu()?),
             (_, Order::Any) => Box::new(Lawson::new(cpu()?)),
         };
-        if !options.locked_edges.is_empty() {
-            engine.lock(named_edges::half_edges(mesh, &options.locked_edges)?).await?;
+        if !locked.is_empty() {
+            engine.lock(locked).await?;
         }
         if options.track_changes {
             engine.track_changes().await?;

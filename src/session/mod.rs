@@ -20,7 +20,6 @@ mod tests;
 use crate::engine::SharedObjects;
 use crate::engine::{Answer, Engine};
 use crate::mesh::embedded::Embedded;
-use crate::mesh::named_edges;
 use crate::mesh::star::Fans;
 use crate::mesh::winding::{Outline, Winding};
 use crate::phases::frozen;
@@ -80,8 +79,6 @@ impl Session {
             Some(Constrained { mesh, flips, left_out, .. }) => (Arc::new(mesh), flips, left_out),
             None => (mesh, 0, Vec::new()),
         };
-        // Checked here, because `auto` would answer this error of a GPU engine by trying the CPU engine.
-        named_edges::half_edges(&mesh, &options.locked_edges)?;
         let Choice { engine, fallback, may_change } = engine_for(&mesh, &options).await?;
         let set_up = ms_since(start);
         let adjacency = engine.adjacency_ms().unwrap_or(set_up);
@@ -129,8 +126,9 @@ impl Session {
     /// Runs to the end. It calls `watch` after every batch of iterations with the numbers of iterations and flips so
     /// far; [`ControlFlow::Break`] stops the run after a complete iteration.
     ///
-    /// # Errors [`Error::OutOfMemory`]; [`Error::Device`] and [`Error::BackendLimit`], unless the backend is `Auto`:
-    /// then the CPU takes over.
+    /// # Errors
+    /// [`Error::OutOfMemory`]; [`Error::Device`] and [`Error::BackendLimit`], unless the backend is `Auto`: then the
+    /// CPU takes over.
     pub async fn run(&mut self, mut watch: impl FnMut(u32, u64) -> ControlFlow<()>) -> Result<(), Error> {
         while self.may_continue() {
             self.advance().await?;
@@ -164,9 +162,10 @@ impl Session {
     /// 0, flags the creases again, and the audit compares with this state. Adjacency, device and buffers stay. The call
     /// reads the triangles back once.
     ///
-    /// # Errors [`Error::PositionCount`], [`Error::NonFinite`], [`Error::OutOfMemory`]; [`Error::BackendLimit`] where
-    /// the GPU cannot decide the new positions exactly; [`Error::Device`]. After an error the session is unchanged.
-    /// With `Auto` the CPU takes over from a GPU that refuses or fails.
+    /// # Errors
+    /// [`Error::PositionCount`], [`Error::NonFinite`], [`Error::OutOfMemory`]; [`Error::BackendLimit`] where the GPU
+    /// cannot decide the new positions exactly; [`Error::Device`]. After an error the session is unchanged. With `Auto`
+    /// the CPU takes over from a GPU that refuses or fails.
     pub async fn set_positions(&mut self, positions: impl Into<Positions>) -> Result<(), Error> {
         self.check_memory(memory_bounds::POSITIONS)?;
         self.replace_positions(positions.into()).await

@@ -2,6 +2,7 @@
 
 use super::cost::Job;
 use crate::engine::Engine;
+use crate::phases::Thresholds;
 use crate::{EngineKind, Error, Mesh, Options};
 use std::sync::Arc;
 
@@ -14,7 +15,7 @@ pub(super) fn why_not_ready(_: Job, _: bool, _: &Options) -> String {
     String::new()
 }
 
-pub(super) async fn engine(_: &Arc<Mesh>, _: &Options) -> Result<Box<dyn Engine>, Error> {
+pub(super) async fn engine(_: &Arc<Mesh>, _: &Options, _: Thresholds) -> Result<Box<dyn Engine>, Error> {
     let message = "this build has no GPU engine (feature `gpu`)".to_owned();
     Err(Error::BackendUnavailable { backend: EngineKind::Gpu, message })
 }

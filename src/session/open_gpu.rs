@@ -11,7 +11,7 @@ use {crate::system::in_turn::in_turn, js_sys::Promise, std::cell::RefCell};
 /// The form of a mesh: the set of shaders that it needs. At upload, a mesh of 32-bit floats that span too many bits
 /// gets the fixed-point form instead.
 fn form_of(dimension: Dimension, is_double: bool, options: &Options) -> Form {
-    Form::new(dimension, is_double, Thresholds::from(options))
+    Form::new(dimension, is_double, options.max_deviation)
 }
 
 /// Whether a job can start on the GPU at once.
@@ -27,26 +27,32 @@ pub(super) fn why_not_ready(job: Job, is_double: bool, options: &Options) -> Str
     let form = form_of(job.dimension, is_double, options);
     let (given, is_given) = (options.device.clone(), options.device.is_some());
     let ahead = Device::ahead(is_given, async move { tested(given.as_ref(), false, form).await.map(drop) });
-    ahead.map_or_else(super::fallback::without_gpu, |()| "the gpu is made ready behind this run".to_owned())
+    ahead.map_or_else(super::fallback::without_gpu, |()| {
+        "the gpu was not ready; it starts up during this run".to_owned()
+    })
 }
 
 /// Natively nothing prepares the GPU: the process may end at any time, and drivers do not expect that while they
 /// compile.
 #[cfg(not(all(target_arch = "wasm32", feature = "js")))]
 pub(super) fn why_not_ready(job: Job, _: bool, _: &Options) -> String {
-    format!("{} triangles are done on the cpu before the gpu is ready", job.triangles)
+    format!("the cpu finishes {} triangles before the gpu is ready", job.triangles)
 }
 
 /// An engine on the GPU, which has passed the self-test.
 ///
 /// # Errors
 /// [`Error::BackendUnavailable`], [`Error::BackendLimit`], [`Error::Device`].
-pub(super) async fn engine(mesh: &Arc<Mesh>, options: &Options) -> Result<Box<dyn Engine>, Error> {
+pub(super) async fn engine(
+    mesh: &Arc<Mesh>,
+    options: &Options,
+    thresholds: Thresholds,
+) -> Result<Box<dyn Engine>, Error> {
     // `Auto` never takes a software GPU.
     let takes_software = options.backend == Backend::Gpu;
     let form = form_of(mesh.dimension(), mesh.positions().is_double(), options);
     let mut device = tested(options.given_device(), takes_software, form).await?;
-    let upload = Upload::new(EngineKind::Gpu, mesh.clone(), Thresholds::from(options))?;
+    let upload = Upload::new(EngineKind::Gpu, mesh.clone(), thresholds)?;
     if upload.form() != form {
         device = tested(options.given_device(), takes_software, upload.form()).await?;
     }

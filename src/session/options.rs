@@ -80,10 +80,10 @@ pub struct Options {
         all(not(target_arch = "wasm32"), feature = "gpu")
     ))]
     pub device: Option<crate::engine::GpuDevice>,
-    /// If set, `Auto` fails where it would choose the CPU. Another WebAssembly module then runs the CPU engine, on this
-    /// number of threads.
+    /// Whether `Auto`, which JavaScript has asked already, takes the GPU or fails: another WebAssembly module then runs
+    /// the CPU engine, on threads.
     #[cfg(all(target_arch = "wasm32", feature = "js"))]
-    pub leaves_cpu: Option<usize>,
+    pub leaves_cpu: bool,
     /// The object of JavaScript that these options were read from, without its lists. Other modules read it again.
     #[cfg(all(target_arch = "wasm32", feature = "js-session"))]
     pub given: js_sys::Object,
@@ -170,7 +170,7 @@ impl Default for Options {
             ))]
             device: None,
             #[cfg(all(target_arch = "wasm32", feature = "js"))]
-            leaves_cpu: None,
+            leaves_cpu: false,
             #[cfg(all(target_arch = "wasm32", feature = "js-session"))]
             given: js_sys::Object::new(),
         }

@@ -4,6 +4,7 @@
 
 use super::*;
 use crate::engine::{Census, Cpu, EdgeCounts, Moved};
+use crate::mesh::named_edges;
 use crate::system::threads::Threads;
 use pollster::block_on;
 

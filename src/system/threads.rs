@@ -14,7 +14,8 @@ use std::sync::atomic::Ordering::Relaxed;
 
 /// The fewest items of a piece. With fewer, one thread finishes before another starts. In debug builds it is small, so
 /// that small meshes test the threads.
-pub(crate) const FEWEST: usize = if cfg!(debug_assertions) { 4 } else { 4096 };
+pub(crate) const FEWEST: usize = if cfg!(debug_assertions) { 4 } else { RELEASED };
+const RELEASED: usize = 4096;
 
 /// The fewest triangles of a mesh on several threads, for the same reason.
 #[cfg(feature = "threads")]
@@ -294,6 +295,21 @@ mod tests {
             assert_eq!(threads.pool.is_some(), want > 1);
         }
         assert_eq!(Threads::new(None, FEWEST_TRIANGLES - 1).unwrap().count(), 1);
+    }
+
+    /// JavaScript checks them before it has loaded a module.
+    #[test]
+    fn limits_are_those_of_the_npm_package() {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/src/js/settings.ts");
+        let text = std::fs::read_to_string(path).unwrap().replace('_', "");
+        for line in [
+            format!("MOSTITERATIONS = {};", crate::engine::MOST_ITERATIONS),
+            format!("MOSTTHREADS = {};", crate::MOST_THREADS),
+            format!("FEWESTTRIANGLES = {};", FEWEST_TRIANGLES / FEWEST * RELEASED),
+            format!("FEWESTEACH = {RELEASED};"),
+        ] {
+            assert!(text.contains(&line), "{path} has no {line}");
+        }
     }
 
     #[test]

@@ -17,7 +17,7 @@ use wasm_bindgen::prelude::*;
 pub fn audit(
     positions: JsPositions,
     indices: &Uint32Array,
-    dimension: f64,
+    dimension: u32,
     triangles: &Uint32Array,
     locked_edges: &Uint32Array,
     options: &JsOptions,

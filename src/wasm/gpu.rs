@@ -2,7 +2,7 @@
 
 use super::options::{self, JsOptions};
 use super::session::JsSession;
-use super::values::{parse_dimension, thrown};
+use super::values::{dimension_of, thrown};
 use crate::Session;
 use crate::engine::{self, SharedObjects};
 pub use crate::engine::{GpuDevice, WebGl2Module};
@@ -18,18 +18,18 @@ pub fn set_webgl2(module: WebGl2Module) {
 /// Why `'auto'` takes the CPU engine on `threads` threads for a mesh, if that is known without asking for a GPU.
 ///
 /// # Errors
-/// [`Error::Option`](crate::Error::Option) for the dimension, and for an option.
+/// [`Error::Option`](crate::Error::Option).
 #[wasm_bindgen(js_name = whyCpu)]
 pub fn why_cpu(
     triangles: usize,
-    dimension: f64,
+    dimension: u32,
     is_double: bool,
     threads: usize,
     options: &JsOptions,
 ) -> Result<Option<String>, JsValue> {
-    let job = parse_dimension(dimension).map(|dimension| Job { triangles, dimension, threads });
-    let why = || Ok(session::why_cpu(job?, is_double, &options::without_lists(options)?));
-    why().map_err(thrown)
+    let job = Job { triangles, dimension: dimension_of(dimension), threads };
+    let options = options::without_lists(options).map_err(thrown)?;
+    Ok(session::why_cpu(job, is_double, &options))
 }
 
 #[wasm_bindgen(js_class = Session)]

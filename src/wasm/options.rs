@@ -29,7 +29,7 @@ extern "C" {
 /// [`Error::RaggedArray`]; [`Error::Option`] for a value that its Rust type cannot hold.
 #[cfg(feature = "js-session")]
 pub(crate) fn read(given: &JsOptions) -> Result<Options, Error> {
-    // A copy, because another try reads the options again. The session keeps the copy, without its lists.
+    // The session keeps the copy, without its lists.
     let kept: JsOptions = Object::assign(&Object::new(), given.unchecked_ref()).unchecked_into();
     let list = |name| {
         let list = kept.get(name);
@@ -72,7 +72,7 @@ pub(crate) fn without_lists(given: &JsOptions) -> Result<Options, Error> {
         #[cfg(feature = "js")]
         device: Some(given.get("device")).filter(JsValue::is_truthy).map(JsCast::unchecked_into::<GpuDevice>),
         #[cfg(feature = "js")]
-        leaves_cpu: number("leavesCpu").map(|threads| threads as usize),
+        leaves_cpu: given.get("leavesCpu").is_truthy(),
         #[cfg(feature = "js-session")]
         given: given.clone().unchecked_into(),
         ..default

@@ -12,7 +12,7 @@ use crate::system::threads::Threads;
 use crate::wasm::threads::Indices;
 pub use crate::wasm::values::JsPositions;
 #[cfg(feature = "js")]
-use crate::wasm::values::refused;
+use crate::wasm::values::left_to_cpu;
 use crate::wasm::values::{coded, mesh_of, object, reasons_object, thrown};
 use crate::{Error, Session};
 use js_sys::{Array, Promise, Uint8Array, Uint32Array};
@@ -76,14 +76,15 @@ impl JsSession {
 impl JsSession {
     /// As [`Session::new`]. Copies the arrays before it returns. `settles`: whether updates may follow at once.
     ///
-    /// # Errors Those of [`Mesh::new`](crate::Mesh::new) and [`Session::new`]; `backend-unavailable` if the options
-    /// exclude the CPU engine and no other engine is available. If another engine or a second attempt may succeed, the
-    /// error has the mesh, as the first arguments of the next call: `error.mesh`.
+    /// # Errors
+    /// Those of [`Mesh::new`](crate::Mesh::new) and [`Session::new`]; `backend-unavailable` if the options exclude the
+    /// CPU engine and no other engine is available. With `leavesCpu`, the latter has the mesh, as the first arguments of
+    /// this function: `error.mesh`.
     #[wasm_bindgen(unchecked_return_type = "Promise<Session>")]
     pub fn create(
         positions: JsPositions,
         indices: &Uint32Array,
-        dimension: f64,
+        dimension: u32,
         options: JsOptions,
         settles: bool,
     ) -> Result<Promise, JsValue> {
@@ -94,7 +95,7 @@ impl JsSession {
         let (mesh, chosen) = open().map_err(thrown)?;
         let mesh = Arc::new(mesh);
         #[cfg(feature = "js")]
-        let leaves_cpu = chosen.leaves_cpu.is_some();
+        let leaves_cpu = chosen.leaves_cpu;
         Ok(promise(async move {
             let opened = async {
                 let mut session = Session::new(mesh.clone(), chosen).await?;
@@ -106,8 +107,7 @@ impl JsSession {
             match opened.await {
                 Ok(session) => Ok(Self(Rc::new(RefCell::new(Some(session)))).into()),
                 #[cfg(feature = "js")]
-                Err(error) => Err(refused(error, &mesh, leaves_cpu)),
-                #[cfg(not(feature = "js"))]
+                Err(Error::Device { message }) if leaves_cpu => Err(left_to_cpu(&message, &mesh)),
                 Err(error) => Err(thrown(error)),
             }
         }))

@@ -3,7 +3,6 @@
 
 #[cfg(any(feature = "js-session", feature = "js-audit"))]
 use crate::Reasons;
-use crate::error::number;
 use crate::system::memory;
 use crate::system::threads::Threads;
 use crate::{Dimension, Error, Mesh, Positions};
@@ -34,17 +33,16 @@ impl From<JsPositions> for Positions {
 /// The mesh of arrays of JavaScript. Copies them after a check that there is enough memory.
 ///
 /// # Errors
-/// Those of [`Mesh::new`]; [`Error::OutOfMemory`]; [`Error::Option`] for the dimension.
+/// Those of [`Mesh::new`]; [`Error::OutOfMemory`].
 pub(crate) fn mesh_of(
     positions: JsPositions,
     indices: &Uint32Array,
-    dimension: f64,
+    dimension: u32,
     threads: &Threads,
 ) -> Result<Mesh, Error> {
-    let dimension = parse_dimension(dimension)?;
     let bytes = positions.byte_length() + f64::from(indices.byte_length());
     memory::check(bytes as u64)?;
-    Mesh::checked(dimension, positions, indices.to_vec(), threads)
+    Mesh::checked(dimension_of(dimension), positions, indices.to_vec(), threads)
 }
 
 /// Runs once, when a module is loaded.
@@ -75,18 +73,9 @@ pub(crate) fn reasons_object(reasons: &Reasons) -> JsValue {
     object(reasons.iter().map(|(reason, edges)| (reason.name(), (edges as f64).into())))
 }
 
-/// 2 or 3.
-pub(crate) fn parse_dimension(dimension: f64) -> Result<Dimension, Error> {
-    if dimension == 2.0 {
-        Ok(Dimension::Two)
-    } else if dimension == 3.0 {
-        Ok(Dimension::Three)
-    } else {
-        Err(Error::Option {
-            option: "dimension",
-            message: format!("{} is neither 2 nor 3", number(dimension)),
-        })
-    }
+/// The dimension of a mesh with 2 or 3 numbers per vertex, as `checkDimension` in `src/js/mesh.ts` has made sure.
+pub(crate) fn dimension_of(stride: u32) -> Dimension {
+    if stride == 2 { Dimension::Two } else { Dimension::Three }
 }
 
 /// The exception for an error: an `Error` with a `code`.
@@ -100,15 +89,11 @@ pub(crate) fn thrown(error: Error) -> JsValue {
     }
 }
 
-/// The exception for a session that could not begin. If another engine or a second attempt may succeed, it has the
+/// The exception for a mesh that the module leaves to the CPU engine of another: it has the arguments that made the
 /// mesh.
 #[cfg(feature = "js")]
-pub(super) fn refused(error: Error, mesh: &Mesh, leaves_cpu: bool) -> JsValue {
-    let error = match error {
-        Error::Device { message } if leaves_cpu => coded("backend-unavailable", &message),
-        error @ (Error::Device { .. } | Error::OutOfMemory { .. }) => thrown(error),
-        error => return thrown(error),
-    };
+pub(super) fn left_to_cpu(why: &str, mesh: &Mesh) -> JsValue {
+    let error = coded("backend-unavailable", why);
     let arrays: Array = [
         mesh.positions().to_typed_array(),
         Uint32Array::from(mesh.triangles()).into(),

@@ -26,7 +26,7 @@ pub fn set_shader_loader(
 #[wasm_bindgen(js_name = WebGl2)]
 pub struct JsWebGl2 {
     engine: Rc<RefCell<Option<WebGl>>>,
-    dimension: f64,
+    dimension: u32,
 }
 
 impl JsWebGl2 {
@@ -66,7 +66,7 @@ impl JsWebGl2 {
     pub fn create(
         positions: JsPositions,
         indices: &Uint32Array,
-        dimension: f64,
+        dimension: u32,
         options: &JsOptions,
     ) -> Promise {
         let mesh = mesh_of(positions, indices, dimension, &Threads::one());

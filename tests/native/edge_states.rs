@@ -6,7 +6,7 @@ use edgeflip::{Adjacency, Backend, EdgeState, Error, Mesh, NONE, Options, Order,
 use pollster::block_on;
 
 /// The number of edges in each state. Both half-edges of an interior edge must agree.
-fn edges(session: &mut Session, mesh: &Mesh) -> [u64; EdgeState::ALL.len()] {
+fn edges(session: &mut Session, mesh: &Mesh) -> Seen {
     let states = block_on(session.edge_states()).unwrap();
     let triangles = block_on(session.triangles()).unwrap();
     assert_eq!(states.len(), triangles.len());
@@ -26,9 +26,12 @@ fn edges(session: &mut Session, mesh: &Mesh) -> [u64; EdgeState::ALL.len()] {
     edges
 }
 
+/// The number of edges seen in each state.
+type Seen = [u64; EdgeState::ALL.len()];
+
 /// Steps to the end, and compares each step with the states before it. Returns the number of iterations, or `None` if
 /// the backend refuses the mesh.
-fn compare_steps(name: &str, mesh: &Mesh, options: Options) -> Option<u32> {
+fn compare_steps(name: &str, mesh: &Mesh, options: Options, seen: &mut Seen) -> Option<u32> {
     let backend = options.backend;
     let mut session = match block_on(Session::new(mesh.clone(), options)) {
         Err(Error::BackendLimit { .. }) if backend == Backend::Gpu => return None,
@@ -36,6 +39,7 @@ fn compare_steps(name: &str, mesh: &Mesh, options: Options) -> Option<u32> {
     };
     loop {
         let now = edges(&mut session, mesh);
+        seen.iter_mut().zip(now).for_each(|(seen, now)| *seen += now);
         let count = |state: EdgeState| now[state as usize];
         let name = format!("{name}, {backend:?}, iteration {}", session.iterations());
         let step = block_on(session.step()).unwrap();
@@ -56,6 +60,7 @@ fn compare_steps(name: &str, mesh: &Mesh, options: Options) -> Option<u32> {
             (Reason::Fold, EdgeState::Fold),
             (Reason::Duplicate, EdgeState::Duplicate),
             (Reason::Locked, EdgeState::Locked),
+            (Reason::Deviation, EdgeState::Deviation),
         ] {
             assert_eq!(blocked[reason], count(state), "{name}: {state:?}");
         }
@@ -67,17 +72,19 @@ fn compare_steps(name: &str, mesh: &Mesh, options: Options) -> Option<u32> {
 
 #[test]
 fn states_foretell_every_step() {
-    let (mut on_cpu, mut on_gpu) = (0, 0);
+    let (mut on_cpu, mut on_gpu, mut seen) = (0, 0, Seen::default());
     for case in matrix::cases().iter().filter(|case| case.mesh.triangle_count() <= 2000) {
         let options = case.options(Backend::Cpu);
-        let iterations = compare_steps(&case.name, &case.mesh, options.clone()).unwrap();
+        let iterations = compare_steps(&case.name, &case.mesh, options.clone(), &mut seen).unwrap();
         on_cpu += 1;
         if iterations <= 12 && case.mesh.triangle_count() <= 800 {
-            let gpu = compare_steps(&case.name, &case.mesh, Options { backend: Backend::Gpu, ..options });
+            let options = Options { backend: Backend::Gpu, ..options };
+            let gpu = compare_steps(&case.name, &case.mesh, options, &mut seen);
             on_gpu += usize::from(gpu == Some(iterations));
         }
     }
     assert!(on_cpu > 100 && on_gpu > 50, "{on_cpu} on the CPU, {on_gpu} on the GPU");
+    assert!(!seen.contains(&0), "some state has no edge: {seen:?}");
 }
 
 /// Three triangles at the edge 0-1, two of them with the same orientation. A fourth triangle has the opposite

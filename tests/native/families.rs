@@ -1,6 +1,6 @@
 //! The generated families: counts, orientation, manifoldness, repeatability.
 
-use edgeflip::families::{self, NAMES, by_name};
+use edgeflip::families::{self, FAMILIES, by_name};
 use edgeflip::io::{Format, to_bytes};
 use edgeflip::{Dimension, Error, Mesh};
 use std::collections::HashMap;
@@ -32,6 +32,60 @@ fn boundary_edges(mesh: &Mesh) -> usize {
     directed.keys().filter(|&&(u, v)| !directed.contains_key(&(v, u))).count()
 }
 
+/// What a mesh covers.
+#[derive(Clone, Copy, PartialEq)]
+enum Shape {
+    Disc,
+    Sphere,
+}
+use Shape::{Disc, Sphere};
+
+/// Specifications of every family, with the shape, the vertices and the triangles of their meshes. The file of digests
+/// has the same specifications, in the same order.
+static WRITTEN: [(&str, Shape, usize, usize); 13] = [
+    ("grid 9", Disc, 81, 128),
+    ("random 12", Disc, 144, 242),
+    ("random 9 5 seed=7", Disc, 81, 128),
+    ("shear 9 30", Disc, 81, 128),
+    ("regular 8 100000", Disc, 64, 98),
+    ("strips 12", Disc, 12, 10),
+    ("fan2 40", Disc, 40, 38),
+    ("sweep 50", Disc, 50, 88),
+    ("uvsphere 12", Sphere, 146, 288),
+    ("uvsphere 9 0.9", Sphere, 83, 162),
+    ("roof 5", Disc, 66, 100),
+    ("pillow 5 0.01", Sphere, 7, 10),
+    ("pole 30", Disc, 31, 30),
+];
+
+/// The specifications of one shape.
+fn written(shape: Shape) -> impl Iterator<Item = &'static str> {
+    WRITTEN.iter().filter(move |case| case.1 == shape).map(|case| case.0)
+}
+
+#[test]
+fn every_family_is_tested_and_has_the_counts_it_promises() {
+    for (spec, _, vertices, triangles) in WRITTEN {
+        assert_eq!((mesh(spec).vertex_count(), mesh(spec).triangle_count()), (vertices, triangles), "{spec}");
+    }
+    for family in &FAMILIES {
+        let name = family.name;
+        let has_parameter = |spec: &str| spec.split(' ').nth(2).is_some_and(|word| !word.starts_with("seed"));
+        let mut own = WRITTEN.iter().filter(|case| case.0.split(' ').next() == Some(name));
+        assert!(
+            own.any(|case| has_parameter(case.0) == family.parameter.is_some()),
+            "{name} is not in `WRITTEN`"
+        );
+        match family.parameter {
+            Some((_, default)) => {
+                assert_eq!(mesh(&format!("{name} 12 {default}")), mesh(&format!("{name} 12")))
+            }
+            None => assert!(matches!(by_name(&format!("{name} 12 99")), Err(Error::Option { .. })), "{name}"),
+        }
+        assert!(families::usage().contains(&format!("{name} N")), "{name}");
+    }
+}
+
 #[test]
 fn counts_of_the_paper() {
     let sphere = mesh("uvsphere 600");
@@ -61,7 +115,10 @@ fn plane_triangles_are_positive_and_manifold() {
         "sweep 3000",
         "roof 9",
         "pole 500",
-    ] {
+    ]
+    .into_iter()
+    .chain(written(Disc))
+    {
         let mesh = mesh(spec);
         assert!(mesh.triangles().chunks(3).all(|t| turn(&mesh, t) > 0.0), "{spec}");
         let edges = (3 * mesh.triangle_count() + boundary_edges(&mesh)) / 2;
@@ -72,7 +129,8 @@ fn plane_triangles_are_positive_and_manifold() {
 
 #[test]
 fn closed_surfaces_are_spheres_seen_from_outside() {
-    for spec in ["uvsphere 3", "uvsphere 40", "uvsphere 20 0.9", "pillow 3", "pillow 9 0.01"] {
+    let more = ["uvsphere 3", "uvsphere 40", "uvsphere 20 0.9", "pillow 3", "pillow 9 0.01"];
+    for spec in more.into_iter().chain(written(Sphere)) {
         let mesh = mesh(spec);
         assert_eq!(boundary_edges(&mesh), 0, "{spec}");
         assert_eq!(2 * mesh.vertex_count(), mesh.triangle_count() + 4, "{spec}");
@@ -111,7 +169,7 @@ fn sweep_covers_the_hull() {
 
 #[test]
 fn same_seed_same_bits() {
-    for name in NAMES {
+    for name in FAMILIES.iter().map(|family| family.name) {
         assert_eq!(mesh(&format!("{name} 12")), mesh(&format!("{name} 12 seed=1")), "{name}");
     }
     assert_ne!(mesh("random 12"), mesh("random 12 seed=2"));
@@ -140,23 +198,6 @@ fn wrong_specifications_are_refused() {
     assert!(matches!(by_name("grid 100000"), Err(Error::TooLarge { .. })));
 }
 
-/// The specifications whose files `tests/package/files.test.mjs` compares with the same digests.
-const WRITTEN: [&str; 13] = [
-    "grid 9",
-    "random 12",
-    "random 9 5 seed=7",
-    "shear 9 30",
-    "regular 8 100000",
-    "strips 12",
-    "fan2 40",
-    "sweep 50",
-    "uvsphere 12",
-    "uvsphere 9 0.9",
-    "roof 5",
-    "pillow 5 0.01",
-    "pole 30",
-];
-
 /// FNV-1a, 64 bits.
 fn digest(bytes: &[u8]) -> u64 {
     bytes
@@ -164,12 +205,13 @@ fn digest(bytes: &[u8]) -> u64 {
         .fold(0xcbf2_9ce4_8422_2325, |hash, &byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
 }
 
-/// `EDGEFLIP_BLESS=1 cargo test --test native -- families::` writes the file of digests.
+/// `tests/package/files.test.mjs` compares with the same digests. `EDGEFLIP_BLESS=1 cargo test --test native -- families::`
+/// writes them.
 #[test]
 fn files_are_those_of_the_npm_package() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/package/generated.txt");
     let mut text = String::from("# FNV-1a of the OFF file, of the OBJ file, specification\n");
-    for spec in WRITTEN {
+    for (spec, ..) in WRITTEN {
         let [off, obj] =
             [Format::Off, Format::Obj].map(|format| digest(&to_bytes(format, &mesh(spec)).unwrap()));
         writeln!(text, "{off:016x} {obj:016x} {spec}").unwrap();

@@ -138,7 +138,7 @@ test('gzip is recognized by its bytes, and the limit applies to the unpacked fil
   );
   await assert.rejects(
     readMesh(thin, 'a.off', { maxBytes: -1 }),
-    refused('invalid-option', /maxBytes: -1 is no number of bytes/),
+    refused('invalid-option', /maxBytes: -1 is not a size in bytes/),
   );
   await assert.rejects(readMesh(thin, 'a.off', { maxBytes: '9' }), refused('invalid-input', /maxBytes/));
 });

@@ -69,7 +69,7 @@ test('auto does not wait for the GPU, moves to it when it is ready, and a lost G
   const page = await openPage();
   const { begun, isSame, engines, fallback, status, remaining, counted, again } = await page.evaluate(runAndLose, SPEC);
   assert.deepEqual(begun, [
-    { backend: 'cpu', fallback: 'the gpu is made ready behind this run' },
+    { backend: 'cpu', fallback: 'the gpu was not ready; it starts up during this run' },
     { backend: 'webgpu', fallback: undefined },
   ]);
   assert.ok(isSame);

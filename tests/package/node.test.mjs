@@ -49,7 +49,7 @@ test('makeDelaunay flips the long diagonal', async () => {
   assert.deepEqual([...result.indices], [3, 1, 2, 0, 1, 3]);
   assert.equal(result.status, 'done');
   assert.equal(result.backend, 'cpu');
-  assert.equal(result.fallback, '2 triangles are done first on the cpu');
+  assert.equal(result.fallback, 'the cpu finishes 2 triangles sooner');
   assert.equal(result.adapter, undefined);
   assert.deepEqual([result.iterations, result.flips, result.edges, result.boundaryEdges], [1, 1, 5, 4]);
   assert.deepEqual([...result.flipsPerIteration], [1]);

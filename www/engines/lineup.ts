@@ -22,9 +22,6 @@ export interface Contender {
   whyNot?: string | undefined;
 }
 
-/** The CPU engine takes more than one thread from this number of triangles on. */
-const FEWEST_FOR_THREADS = 65_536;
-
 /** The contender that the speed-up is relative to. */
 export const ONE_THREAD: Contender = {
   name: 'CPU, 1 thread',
@@ -59,8 +56,8 @@ function whyOneThread(): string | undefined {
   return crossOriginIsolated ? undefined : 'This page may not share memory, so it has one thread.';
 }
 
-/** Why several threads were asked for, and one ran. */
-export function whyOneThreadRan(triangles: number, hint: string | undefined): string {
-  if (triangles < FEWEST_FOR_THREADS) return 'A mesh this small runs on one thread: more would not be faster.';
-  return hint ?? 'The other threads could not be started.';
+/** Why several threads were asked for, and one ran: a part of the hint, unless the mesh is small. */
+export function whyOneThreadRan(hint: string | undefined): string {
+  const [why] = hint?.match(/The CPU engine ran on one thread.*/) ?? [];
+  return why ?? 'A mesh this small runs on one thread: more would not be faster.';
 }

@@ -34,7 +34,7 @@ export async function runOn({ options, whyNot }: Contender, mesh: NamedMesh, sig
     const timing = await runner.ask((timer) => timer.time(plain, { ...mesh.options, ...options }, LONG));
     const { threads, hint } = timing.result;
     const isAlone = options.backend === 'cpu' && options.threads !== 1 && threads === 1;
-    if (isAlone) return { whyNot: whyOneThreadRan(indices.length / 3, hint) };
+    if (isAlone) return { whyNot: whyOneThreadRan(hint) };
     return { timing, digest: await digestOf(timing.result.indices) };
   } catch (error) {
     signal.throwIfAborted();

@@ -34,8 +34,9 @@ impl Form {
         Self { dimension: Dimension::Three, is_fixed: true, has_deviation: false },
         Self { dimension: Dimension::Three, is_fixed: true, has_deviation: true },
     ];
-    pub(crate) fn new(dimension: Dimension, is_fixed: bool, thresholds: Thresholds) -> Self {
-        let has_deviation = dimension == Dimension::Three && thresholds.deviation.is_finite();
+    /// `deviation` is the limit, or infinite.
+    pub(crate) fn new(dimension: Dimension, is_fixed: bool, deviation: f64) -> Self {
+        let has_deviation = dimension == Dimension::Three && deviation.is_finite();
         Self { dimension, is_fixed, has_deviation }
     }
 
@@ -73,20 +74,21 @@ impl Upload {
             let quick = with(most_exponents(floats));
             let ends = if fit(quick) { quick } else { with(exponents(floats.iter().map(|&x| x.into()))) };
             if fit(ends) {
-                let most = (deviation(ends.1) as f32).min(f32::MAX).to_bits();
-                return Ok(Self { mesh, thresholds, fixed: None, deviation: [most, 0, 0, most] });
+                let deviation = deviation_words(deviation(ends.1), None);
+                return Ok(Self { mesh, thresholds, fixed: None, deviation });
             }
         }
         let ends = with(exponents(mesh.positions().iter()));
-        let (fixed, most) = fixed_point(&mesh, ends, deviation(ends.1)).map_err(|span| {
+        let fixed = fixed_point(&mesh, ends).map_err(|span| {
             let message = format!("the coordinates span {span} bits; it decides at most {SPAN} bits exactly");
             Error::BackendLimit { backend, message }
         })?;
-        Ok(Self { mesh, thresholds, fixed: Some(fixed), deviation: most })
+        let deviation = deviation_words(deviation(ends.1), Some(ends.0));
+        Ok(Self { mesh, thresholds, fixed: Some(fixed), deviation })
     }
 
     pub(crate) fn form(&self) -> Form {
-        Form::new(self.mesh.dimension(), self.fixed.is_some(), self.thresholds)
+        Form::new(self.mesh.dimension(), self.fixed.is_some(), self.thresholds.deviation.into())
     }
 
     /// The coordinates as the shaders of its form read them: words, axis after axis.
@@ -120,14 +122,22 @@ pub(in crate::engine) fn may_leave_edges(positions: &[f32], deviation: f32) -> b
     !fit((lowest.min(limit), highest))
 }
 
-/// The coordinates and the limit for the deviation, as integers in units of the grid. The coordinates are relative to
-/// the lowest corner of the bounding box. The error is the number of bits that a coordinate would take. `lowest` and
-/// `highest` are the exponents of the lowest and the highest bit set.
-fn fixed_point(
-    mesh: &Mesh,
-    (lowest, highest): (i32, i32),
-    deviation: f64,
-) -> Result<(Vec<u32>, [u32; 4]), u32> {
+/// The limit for the deviation in the layout of `state.wgsl`: the words of a coordinate, in units of 2^`grid` or else a
+/// float, and rounded to f32.
+pub(in crate::engine) fn deviation_words(limit: f64, grid: Option<i32>) -> [u32; 4] {
+    let Some(grid) = grid else {
+        let most = (limit as f32).min(f32::MAX).to_bits();
+        return [most, 0, 0, most];
+    };
+    // No two points of a box of coordinates are this far apart.
+    let most = on_grid(limit, grid).min(1 << (SPAN + 2));
+    [most as u32, (most >> 32) as u32, (most >> 64) as u32, (most as f32).to_bits()]
+}
+
+/// The coordinates as integers in units of the grid, relative to the lowest corner of the bounding box. The error is the
+/// number of bits that a coordinate would take. `lowest` and `highest` are the exponents of the lowest and the highest
+/// bit set.
+fn fixed_point(mesh: &Mesh, (lowest, highest): (i32, i32)) -> Result<Vec<u32>, u32> {
     let (positions, stride) = (mesh.positions(), mesh.dimension().stride());
     let span = (highest - lowest + 1) as u32;
     // The difference of two such integers is an i128.
@@ -154,10 +164,7 @@ fn fixed_point(
             words.extend(point.iter().zip(&corner).map(word_of));
         }
     }
-    // No two points of such a box are this far apart.
-    let most = on_grid(deviation, lowest).min(1 << (SPAN + 2));
-    let rounded = (most as f32).to_bits();
-    Ok((words, [most as u32, (most >> 32) as u32, (most >> 64) as u32, rounded]))
+    Ok(words)
 }
 
 /// `x` in units of 2^`grid`, of which it is a multiple.

@@ -2,7 +2,7 @@
 
 use super::iteration::{COUNTS, FANS, SELECTIONS, VERDICTS, WebGl, in_fours};
 use super::texture::Pair;
-use crate::engine::gpu::upload::may_leave_edges;
+use crate::engine::gpu::upload::{deviation_words, may_leave_edges};
 use crate::engine::{Answer, Engine};
 use crate::phases::state::BLOCKED;
 use crate::{Dimension, Error, NONE, Positions};
@@ -82,8 +82,8 @@ impl WebGl {
         let first = self.params[ITERATION];
         self.params[FIRST] = first;
         self.params[UPDATE] = self.params[UPDATE].wrapping_add(1).max(1);
-        let deviation = self.thresholds.deviation.min(f32::MAX).to_bits();
-        (self.params[DEVIATION], self.params[DEVIATION + 3]) = (deviation, deviation);
+        let deviation = deviation_words(self.thresholds.deviation.into(), None);
+        self.params[DEVIATION..DEVIATION + 4].copy_from_slice(&deviation);
         // As after the start, the first iteration tests every triangle.
         self.bests.front.fill(BLOCKED);
         self.selections.fill(NONE);

@@ -6,6 +6,7 @@ use super::faults::{refuse, watch};
 use super::history::{COUNTS, ENTRIES, FLIPPED, NOT_POSITIVE};
 use super::kernels::Kernel;
 use super::steps::Step;
+use crate::engine::gpu::upload::deviation_words;
 use crate::engine::{Answer, Moved, positions_of};
 use crate::{Dimension, Error, Positions};
 use wgpu::BufferUsages;
@@ -45,8 +46,7 @@ impl WebGpu {
         }
         self.params.update = self.params.update.wrapping_add(1).max(1);
         self.params.winding = self.winding;
-        self.params.deviation[0] = self.thresholds.deviation.min(f32::MAX).to_bits();
-        self.params.deviation[3] = self.params.deviation[0];
+        self.params.deviation = deviation_words(self.thresholds.deviation.into(), None);
         let gpu = self.gpu.clone();
         let ((), faults) = watch(&gpu.device, || {
             if let Some(numbers) = numbers {

@@ -25,12 +25,12 @@ extern "C" {
 ///
 /// # Errors
 /// Those of [`Mesh::new`](crate::Mesh::new) and [`constrained`](crate::constrained); [`Error::RaggedArray`];
-/// [`Error::Option`] for the dimension and for locks that the mesh does not have.
+/// [`Error::Option`] for locks that the mesh does not have.
 #[wasm_bindgen(unchecked_return_type = "import('../files.js').Constrained")]
 pub fn constrain(
     positions: JsPositions,
     indices: &Uint32Array,
-    dimension: f64,
+    dimension: u32,
     constraints: &Uint32Array,
     locks: &JsLocks,
     skips: bool,
@@ -64,12 +64,12 @@ pub fn constrain(
 /// As [`regions()`].
 ///
 /// # Errors
-/// Those of [`Mesh::new`](crate::Mesh::new) and [`regions()`]; [`Error::RaggedArray`]; [`Error::Option`] for the dimension.
+/// Those of [`Mesh::new`](crate::Mesh::new) and [`regions()`]; [`Error::RaggedArray`].
 #[wasm_bindgen(js_name = regions, unchecked_return_type = "import('../files.js').Regions")]
 pub fn regions_of(
     positions: JsPositions,
     indices: &Uint32Array,
-    dimension: f64,
+    dimension: u32,
     edges: &Uint32Array,
 ) -> Result<JsValue, JsValue> {
     let work = || regions(&mesh(positions, indices, dimension)?, &pairs("edges", edges)?);

@@ -9,7 +9,7 @@ use crate::error::number;
 use crate::io::{self, Format, Loaded, ReadOptions};
 use crate::system::memory;
 use crate::system::threads::Threads;
-use crate::wasm::values::{JsPositions, mesh_of, object, parse_dimension, thrown};
+use crate::wasm::values::{JsPositions, dimension_of, mesh_of, object, thrown};
 use crate::{Error, Mesh, Options, Positions, families, quality, reoriented};
 use js_sys::{Array, Float32Array, Float64Array, Reflect, Uint8Array, Uint32Array};
 use std::path::Path;
@@ -37,9 +37,9 @@ extern "C" {
 /// Reads the mesh of a file; `dimension` is as in [`ReadOptions`].
 ///
 /// # Errors
-/// Those of [`Format::of`] and [`io::parse_with`]; [`Error::Option`] for the dimension and `maxBytes`.
+/// Those of [`Format::of`] and [`io::parse_with`]; [`Error::Option`] for `maxBytes`.
 #[wasm_bindgen(js_name = readMesh, unchecked_return_type = "import('../files.js').FileMesh")]
-pub fn read_mesh(file: &JsFile, dimension: Option<f64>) -> Result<JsValue, JsValue> {
+pub fn read_mesh(file: &JsFile, dimension: Option<u32>) -> Result<JsValue, JsValue> {
     let loaded = load(file, dimension).map_err(thrown)?;
     let mut constraints = Options::default();
     loaded.constrain(&mut constraints).map_err(thrown)?;
@@ -74,7 +74,7 @@ pub fn rewrite_mesh(
     file: &JsFile,
     positions: JsPositions,
     indices: &Uint32Array,
-    dimension: f64,
+    dimension: u32,
     target: &str,
 ) -> Result<Uint8Array, JsValue> {
     let rewrite = || {
@@ -88,10 +88,10 @@ pub fn rewrite_mesh(
     rewrite().map(|bytes| Uint8Array::from(bytes.as_slice())).map_err(thrown)
 }
 
-fn load(file: &JsFile, dimension: Option<f64>) -> Result<Loaded, Error> {
+fn load(file: &JsFile, dimension: Option<u32>) -> Result<Loaded, Error> {
     let (format, bytes, files) = (Format::of(Path::new(&file.name()))?, file.bytes(), file.files());
     let mut options = ReadOptions::default();
-    options.dimension = dimension.map(parse_dimension).transpose()?;
+    options.dimension = dimension.map(dimension_of);
     options.max_bytes = file.max_bytes().map_or(Ok(options.max_bytes), parse_max_bytes)?;
     options.check(bytes.length().into())?;
     // The bytes, and a mesh of the same size, twice while its arrays grow. If memory ran out during the call, the
@@ -107,12 +107,12 @@ fn load(file: &JsFile, dimension: Option<f64>) -> Result<Loaded, Error> {
 /// The bytes of a file that holds the mesh.
 ///
 /// # Errors
-/// Those of [`Mesh::new`] and [`io::to_file_bytes`]; [`Error::Option`] for the dimension.
+/// Those of [`Mesh::new`] and [`io::to_file_bytes`].
 #[wasm_bindgen(js_name = writeMesh, unchecked_return_type = "Uint8Array<ArrayBuffer>")]
 pub fn write_mesh(
     positions: JsPositions,
     indices: &Uint32Array,
-    dimension: f64,
+    dimension: u32,
     name: &str,
 ) -> Result<Uint8Array, JsValue> {
     let write = || {
@@ -135,9 +135,9 @@ pub fn generate(spec: &str) -> Result<JsValue, JsValue> {
 /// As [`reoriented`].
 ///
 /// # Errors
-/// Those of [`Mesh::new`]; [`Error::Option`] for the dimension.
+/// Those of [`Mesh::new`].
 #[wasm_bindgen(unchecked_return_type = "import('../files.js').Reoriented")]
-pub fn reorient(positions: JsPositions, indices: &Uint32Array, dimension: f64) -> Result<JsValue, JsValue> {
+pub fn reorient(positions: JsPositions, indices: &Uint32Array, dimension: u32) -> Result<JsValue, JsValue> {
     let turn = || reoriented(&mesh(positions, indices, dimension)?);
     let (mesh, turned) = turn().map_err(thrown)?;
     Ok(object([("indices", Uint32Array::from(mesh.triangles()).into()), ("turned", turned.into())]))
@@ -146,9 +146,9 @@ pub fn reorient(positions: JsPositions, indices: &Uint32Array, dimension: f64) -
 /// As [`quality::measures`].
 ///
 /// # Errors
-/// Those of [`Mesh::new`]; [`Error::Option`] for the dimension.
+/// Those of [`Mesh::new`].
 #[wasm_bindgen(unchecked_return_type = "import('../files.js').Measures")]
-pub fn measures(positions: JsPositions, indices: &Uint32Array, dimension: f64) -> Result<JsValue, JsValue> {
+pub fn measures(positions: JsPositions, indices: &Uint32Array, dimension: u32) -> Result<JsValue, JsValue> {
     let measure = || Ok(quality::measures(&mesh(positions, indices, dimension)?));
     let measures = measure().map_err(thrown)?;
     Ok(object([
@@ -164,12 +164,12 @@ pub fn measures(positions: JsPositions, indices: &Uint32Array, dimension: f64) -
 /// As [`quality::moved`] and [`quality::distance`].
 ///
 /// # Errors
-/// Those of [`Mesh::new`]; [`Error::TriangleCount`]; [`Error::Option`] for the dimension.
+/// Those of [`Mesh::new`]; [`Error::TriangleCount`].
 #[wasm_bindgen(unchecked_return_type = "import('../files.js').Change")]
 pub fn change(
     positions: JsPositions,
     indices: &Uint32Array,
-    dimension: f64,
+    dimension: u32,
     after: &Uint32Array,
 ) -> Result<JsValue, JsValue> {
     let measure = || {
@@ -189,12 +189,12 @@ pub fn change(
 /// As [`quality::angles`], with 1 to [`MAX_BINS`] bins.
 ///
 /// # Errors
-/// Those of [`Mesh::new`]; [`Error::Option`] for the dimension and the bins.
+/// Those of [`Mesh::new`]; [`Error::Option`] for the bins.
 #[wasm_bindgen(unchecked_return_type = "import('../files.js').Angles")]
 pub fn angles(
     positions: JsPositions,
     indices: &Uint32Array,
-    dimension: f64,
+    dimension: u32,
     bins: f64,
 ) -> Result<JsValue, JsValue> {
     let measure = || {
@@ -212,7 +212,7 @@ pub fn angles(
     ]))
 }
 
-fn mesh(positions: JsPositions, indices: &Uint32Array, dimension: f64) -> Result<Mesh, Error> {
+fn mesh(positions: JsPositions, indices: &Uint32Array, dimension: u32) -> Result<Mesh, Error> {
     mesh_of(positions, indices, dimension, &Threads::one())
 }
 
@@ -234,7 +234,7 @@ fn parse_max_bytes(bytes: f64) -> Result<u64, Error> {
     if bytes >= 0.0 {
         return Ok(bytes as u64);
     }
-    Err(Error::Option { option: "maxBytes", message: format!("{} is no number of bytes", number(bytes)) })
+    Err(Error::Option { option: "maxBytes", message: format!("{} is not a size in bytes", number(bytes)) })
 }
 
 fn parse_bins(bins: f64) -> Result<usize, Error> {

@@ -21,11 +21,11 @@ impl JsWeld {
     /// all these bytes are.
     ///
     /// # Errors
-    /// Those of [`Mesh::new`] and [`welded`]; [`Error::Option`] for the dimension.
+    /// Those of [`Mesh::new`] and [`welded`].
     pub fn of(
         positions: JsPositions,
         indices: &Uint32Array,
-        dimension: f64,
+        dimension: u32,
         attributes: Vec<Uint8Array>,
         reorient: bool,
     ) -> Result<JsWeld, JsValue> {
@@ -51,7 +51,7 @@ impl JsWeld {
     pub fn of_file(
         file: &JsFile,
         indices: &Uint32Array,
-        dimension: f64,
+        dimension: u32,
         reorient: bool,
     ) -> Result<JsWeld, JsValue> {
         let weld = || {
