@@ -244,7 +244,7 @@ function watchContexts() {
 
 /** Watches all workers that start later. */
 function watchWorkers({ page }) {
-  return page.route('**/desk-*.js', async (route) => {
+  return page.route('**/mesh-worker-*.js', async (route) => {
     const response = await route.fetch();
     await route.fulfill({ response, body: `(${watchContexts})();${await response.text()}` });
   });

@@ -3,7 +3,7 @@
 import { made } from '../shell/elements.ts';
 import { leadOf, type Lead } from './lead.ts';
 import { plot } from './plot.ts';
-import { sentenceOf } from './runner.ts';
+import { sentenceOf } from './timer.ts';
 import { emptySeries, measureSizes, type Series } from './sizes.ts';
 import type { Turn } from './turn.ts';
 import { about, count, timeText } from './words.ts';

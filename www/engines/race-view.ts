@@ -4,7 +4,7 @@ import { made } from '../shell/elements.ts';
 import { Lane, type Ran } from './lane.ts';
 import { ALL, ONE_THREAD, type Contender, type NamedMesh } from './lineup.ts';
 import { runOn, sampleMesh } from './race.ts';
-import { sentenceOf } from './runner.ts';
+import { sentenceOf } from './timer.ts';
 import { stillness } from '../shell/stillness.ts';
 import type { Turn } from './turn.ts';
 import { count } from './words.ts';

@@ -1,8 +1,9 @@
 /** Generates a mesh that moves, and starts the engine that moves it. */
 
 import type { IndexedMesh } from 'edgeflip/files';
-import { forAuto, Office, type Gpu } from '../watch/engines.ts';
+import { forAuto, type Gpu } from '../watch/engines.ts';
 import type { Backend } from '../watch/run.ts';
+import { WorkerClient } from '../watch/worker-client.ts';
 import type { Motion, Point } from './motions.ts';
 import type { Mover } from './mover.ts';
 import { moveInArrays } from './on-arrays.ts';
@@ -34,9 +35,8 @@ export async function startMover(
 
 /** A mesh of a family, made in a worker. */
 function generated(spec: string, signal: AbortSignal): Promise<IndexedMesh> {
-  const office = new Office();
-  signal.addEventListener('abort', () => office.close());
-  return office.ask((desk) => desk.generate(spec)).finally(() => office.close());
+  const client = new WorkerClient().closeOn(signal);
+  return client.call((worker) => worker.generate(spec)).finally(() => client.close());
 }
 
 /** The GPU, or an engine on arrays; and why the GPU is not used. */

@@ -7,16 +7,16 @@ import type { Run } from './run.ts';
 /** Measures `indices`, the shown triangles of `run`, and shows the numbers unless they are outdated by then. */
 export async function measure(
   panel: Panel,
-  { mesh, office, before: measureInput }: Opened,
+  { mesh, client, before: measureInput }: Opened,
   run: Run,
   indices: Uint32Array,
   isOutdated: () => boolean,
 ): Promise<void> {
   const before = await measureInput();
-  const now = run.at === 0 ? before : await office.ask((desk) => desk.measure({ ...mesh, indices }, BINS));
+  const now = run.at === 0 ? before : await client.call((worker) => worker.measure({ ...mesh, indices }, BINS));
   if (isOutdated()) return;
   panel.showQuality(before, now);
   if (!run.isOver) return;
-  const change = await office.ask((desk) => desk.compare(mesh, indices));
+  const change = await client.call((worker) => worker.compare(mesh, indices));
   if (!isOutdated()) panel.showQuality(before, now, change);
 }

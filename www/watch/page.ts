@@ -3,9 +3,9 @@
 import { EdgeflipError } from 'edgeflip';
 import { Choices, type Settings } from './choices.ts';
 import { LOST } from './crash.ts';
-import type { Flips } from './desk.ts';
+import type { Flips } from './mesh-worker.ts';
 import { Display, type EdgeLook } from './display.ts';
-import { Cancelled, startWorker, type Gpu } from './engines.ts';
+import { startWorker, type Gpu } from './engines.ts';
 import { markSample } from './gallery.ts';
 import { Graphics } from './graphics.ts';
 import type { Successor } from './handover.ts';
@@ -23,6 +23,7 @@ import type { Source } from './sources.ts';
 import { flipsAhead, startRun } from './starting.ts';
 import { Succession } from './succession.ts';
 import type { Standing } from './transport.ts';
+import { Cancelled } from './worker-client.ts';
 
 export class Page {
   readonly player: Player = new Player({
@@ -120,7 +121,7 @@ export class Page {
     this.closeAll();
     this.#display.clear();
     this.#run?.free();
-    this.#opened?.office.close();
+    this.#opened?.client.close();
     this.#run = this.#opened = this.#settings = this.#summary = this.#ahead = this.#source = undefined;
     this.#jobs.cancel();
     this.#rest.forget();
@@ -238,7 +239,7 @@ export class Page {
     this.#graphics.scene?.clear();
     this.#run?.free();
     this.#run = run;
-    if (isNew) this.#opened?.office.close();
+    if (isNew) this.#opened?.client.close();
     this.#opened = opened;
     if (this.#opening?.opened === opened) this.#opening = undefined;
     this.#settings = settings;

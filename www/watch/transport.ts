@@ -3,7 +3,7 @@
 import type { Reasons } from 'edgeflip';
 import { controls, element } from './controls.ts';
 import { made } from '../shell/elements.ts';
-import type { Flips } from './desk.ts';
+import type { Flips } from './mesh-worker.ts';
 import { counted } from '../shell/numbers.ts';
 import type { Opened } from './opening.ts';
 import { ENGINES, reasons } from './panel.ts';
