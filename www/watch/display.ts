@@ -4,7 +4,7 @@ import { controls, element } from './controls.ts';
 import { Drawing } from './drawing.ts';
 import type { Graphics } from './graphics.ts';
 import { Halves } from './halves.ts';
-import type { Successor } from './handover.ts';
+import type { Replacement } from './handover.ts';
 import { showLegend } from './legend.ts';
 import { Looking } from './looking.ts';
 import type { Opened } from './opening.ts';
@@ -14,7 +14,7 @@ import type { Run } from './run.ts';
 import type { Shown } from './shown.ts';
 import { Timeline } from './timeline.ts';
 import { stillness } from '../shell/stillness.ts';
-import { showTransport, type Standing } from './transport.ts';
+import { showTransport, type RunStatus } from './transport.ts';
 import { flipsBetween } from './turning.ts';
 import { unitPositions } from './unit.ts';
 
@@ -150,19 +150,19 @@ export class Display {
   }
 
   /** `fingerprint` belongs to the shown triangles, once it is known. */
-  showNumbers({ run, opened, settings }: Shown, standing: Standing, fingerprint?: string): void {
+  showNumbers({ run, opened, settings }: Shown, status: RunStatus, fingerprint?: string): void {
     this.panel.showIterations(run.iterations, run.at);
-    this.panel.showFacts(opened.mesh, run, standing.summary, settings.maxNormalAngle, fingerprint);
-    showLegend(run.states, opened.mesh.indices.length / 3, standing.summary?.nonManifoldEdges);
-    this.showTransport(standing);
+    this.panel.showFacts(opened.mesh, run, status.summary, settings.maxNormalAngle, fingerprint);
+    showLegend(run.states, opened.mesh.indices.length / 3, status.summary?.nonManifoldEdges);
+    this.showTransport(status);
   }
 
-  showTransport(standing: Standing): void {
-    showTransport(this.#timeline, standing);
+  showTransport(status: RunStatus): void {
+    showTransport(this.#timeline, status);
   }
 
   /** Shows the same run on another engine. */
-  succeed(shown: Shown, { run }: Successor): void {
+  replaceRun(shown: Shown, { run }: Replacement): void {
     this.showTriangles({ ...shown, run });
     this.panel.showTimes(run.iterations);
   }
