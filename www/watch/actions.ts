@@ -81,7 +81,7 @@ export async function savePicture(page: Page): Promise<void> {
 export async function copyLink(page: Page): Promise<string> {
   const shown = page.shown;
   if (!shown) return '';
-  const link = linkTo(shown, page.scene?.eye.pose);
+  const link = linkTo(shown, page.scene?.camera.pose);
   if (!link) return 'A link opens samples only: your mesh is on this computer alone.';
   await navigator.clipboard.writeText(link);
   return 'Link copied. It opens this mesh, iteration, limit and view.';

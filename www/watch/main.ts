@@ -98,7 +98,7 @@ async function begin(page: Page, moves: Moves): Promise<void> {
 
 async function goTo(page: Page, { at, pose }: Place): Promise<void> {
   if (at > 0) await page.player.seek(at);
-  if (pose && page.scene) page.scene.eye.pose = pose;
+  if (pose && page.scene) page.scene.camera.pose = pose;
 }
 
 function connectRun(page: Page, moves: Moves): void {
@@ -240,7 +240,7 @@ function connectKeys(
     { keys: ['s'], label: 'S', says: 'save the mesh', act: () => toggle('away', controls.take) },
     { keys: ['p'], label: 'P', says: 'save a picture', act: savePicture },
     { keys: ['k'], label: 'K', says: 'copy a link to this view', act: copyLink },
-    { keys: ['f'], label: 'F', says: 'fit the mesh to the view', act: () => page.scene?.eye.fit() },
+    { keys: ['f'], label: 'F', says: 'fit the mesh to the view', act: () => page.scene?.camera.fit() },
     { keys: ['g'], label: 'G', says: 'the engines', act: () => (location.hash = '#engines') },
     { keys: ['t'], label: 'T', says: 'light or dark', act: toggleTheme },
     { keys: ['?'], label: '?', says: 'these keys', act: () => keys.showModal() },

@@ -40,7 +40,7 @@ export class Page {
   });
   readonly #graphics: Graphics = new Graphics(
     (reason) => void this.#recovery.recover(reason, true),
-    () => this.#display.looking.draw(),
+    () => this.#display.inspection.draw(),
   );
   readonly #display: Display = new Display(
     this.#graphics,
@@ -167,19 +167,19 @@ export class Page {
 
   compare(): void {
     if (!this.#run) return;
-    this.#display.looking.close();
-    this.#display.halves.show(!this.#display.halves.isShown);
+    this.#display.inspection.close();
+    this.#display.comparison.show(!this.#display.comparison.isShown);
   }
 
   inspectNext(by: 1 | -1): void {
-    this.#display.looking.next(by);
+    this.#display.inspection.next(by);
   }
 
   /** Closes the inspector, shows one mesh only, and draws no edges. */
   closeAll(): void {
-    this.#display.drawing.show(false);
-    this.#display.looking.close();
-    this.#display.halves.show(false);
+    this.#display.edgeDrawing.show(false);
+    this.#display.inspection.close();
+    this.#display.comparison.show(false);
   }
 
   set edges(look: EdgeLook) {
@@ -219,7 +219,7 @@ export class Page {
   async redraw(): Promise<void> {
     const shown = this.shown;
     if (!shown) return;
-    this.#display.looking.forget();
+    this.#display.inspection.forget();
     this.#display.showNumbers(shown, this.#status);
     if (!this.player.isPlaying) void this.#measuring.begin();
     try {
