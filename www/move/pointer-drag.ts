@@ -9,7 +9,7 @@ const LONGEST = 0.06;
 /** The mesh is in a square with this half side, or in a ball with this radius. */
 const REACH = 1.15 * HALF;
 
-export class Grip {
+export class PointerDrag {
   readonly #view: HTMLElement;
   readonly #scene: Scene;
   readonly #dimension: 2 | 3;
