@@ -1,7 +1,7 @@
 /** Runs each engine on one mesh, one engine after the other. */
 
 import { digestOf } from '../shell/digest.ts';
-import { whyOneThreadRan, type Contender, type NamedMesh } from './lineup.ts';
+import { whyOneThreadRan, type Contender, type NamedMesh } from './contenders.ts';
 import { startTimer, sentenceOf } from './timer.ts';
 import type { Timing } from './timing.ts';
 

@@ -1,6 +1,6 @@
 /** Times the engines on meshes of growing size. */
 
-import { ONE_THREAD, THREADS, WEBGL2, WEBGPU, type Contender } from './lineup.ts';
+import { ONE_THREAD, THREADS, WEBGL2, WEBGPU, type Contender } from './contenders.ts';
 import { startTimer, sentenceOf } from './timer.ts';
 import { count } from './words.ts';
 
