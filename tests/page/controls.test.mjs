@@ -231,7 +231,7 @@ function watchContexts() {
 
 /** Watches all workers that start later, until the returned function is called. */
 async function watchWorkers({ page }) {
-  const scripts = '**/desk-*.js';
+  const scripts = '**/mesh-worker-*.js';
   await page.route(scripts, async (route) => {
     const response = await route.fetch();
     await route.fulfill({ response, body: `(${watchContexts})();${await response.text()}` });

@@ -57,21 +57,21 @@ async function workerThatSays(ms, isSoftware = '() => false') {
   return (await build(bundle)).outputFiles[0].text;
 }
 
-/** What a lane shows. */
-const lanesOf = (page) =>
-  page.locator('.engines-lane').evaluateAll((lanes) =>
-    lanes.map((lane) => {
-      const text = (kind) => lane.querySelector(`.engines-${kind}`).textContent;
-      const drawn = (kind) => lane.querySelector(`.engines-${kind}`)?.getAttribute('d') ?? '';
+/** What a row shows. */
+const resultsOf = (page) =>
+  page.locator('.engines-result').evaluateAll((rows) =>
+    rows.map((row) => {
+      const text = (kind) => row.querySelector(`.engines-${kind}`).textContent;
+      const drawn = (kind) => row.querySelector(`.engines-${kind}`)?.getAttribute('d') ?? '';
       return {
-        name: lane.querySelector('h3').textContent,
+        name: row.querySelector('h3').textContent,
         time: text('time'),
         speed: text('speed'),
         why: text('why'),
         digits: text('print'),
         same: drawn('same'),
         other: drawn('other'),
-        isFirst: lane.classList.contains('engines-first'),
+        isFirst: row.classList.contains('engines-first'),
       };
     }),
   );
@@ -93,21 +93,21 @@ async function raceAndCompare(page, spec) {
   const { indices, flips } = await makeDelaunay(await generate(spec), { backend: 'cpu' });
   await page.locator('.engines-main').click();
   await page.locator('.engines-main', { hasText: 'Race again' }).waitFor({ timeout: 400_000 });
-  const lanes = await lanesOf(page);
+  const rows = await resultsOf(page);
   assert.deepEqual(
-    lanes.map(({ name }) => name.replace(/\d+ threads/, 'threads')),
+    rows.map(({ name }) => name.replace(/\d+ threads/, 'threads')),
     ['WebGPU', 'WebGL2', 'CPU, threads', 'CPU, 1 thread'],
   );
-  const ran = lanes.filter(({ why }) => why === '');
+  const ran = rows.filter(({ why }) => why === '');
   for (const { name, time, digits, same, other } of ran) {
     assert.equal(digits, fingerprintOf(indices), name);
     assert.deepEqual([digitsOf(same), squares(other)], [digits, 0], name);
     assert.match(time, /^[\d.,]+ m?s$/);
   }
   assert.equal(ran.length, 3);
-  assert.match(lanes[2].why, /A mesh this small runs on one thread/);
+  assert.match(rows[2].why, /A mesh this small runs on one thread/);
   assert.match(await page.locator('.engines-verdict').textContent(), /All three are equal, bit for bit/);
-  assert.match(await page.locator('.engines-lane').first().textContent(), /Software GPU/);
+  assert.match(await page.locator('.engines-result').first().textContent(), /Software GPU/);
   const numbers = `${(indices.length / 3).toLocaleString('en')} triangles, ${flips.toLocaleString('en')} flips`;
   assert.match(await page.locator('.engines-lede').textContent(), new RegExp(numbers));
 }
@@ -143,7 +143,7 @@ test('a result that differs stands out, and an engine that fails says why', asyn
   const { page, race, close } = await openSection({ worker, script });
   await race.click();
   await page.locator('.engines-main', { hasText: 'Race again' }).waitFor();
-  const [webgpu, webgl2, threads, one] = await lanesOf(page);
+  const [webgpu, webgl2, threads, one] = await resultsOf(page);
   assert.deepEqual(
     [webgpu, threads, one].map(({ time, speed }) => [time, speed]),
     [

@@ -1,11 +1,11 @@
 /** The crossover: from which size of the mesh on a GPU is first on this computer. */
 
 import { made } from '../shell/elements.ts';
-import { leadOf, type Lead } from './lead.ts';
+import { crossoverOf, type Crossover } from './crossover.ts';
 import { plot } from './plot.ts';
-import { sentenceOf } from './runner.ts';
+import { sentenceOf } from './timer.ts';
 import { emptySeries, measureSizes, type Series } from './sizes.ts';
-import type { Turn } from './turn.ts';
+import type { OneAtATime } from './one-at-a-time.ts';
 import { about, count, timeText } from './words.ts';
 
 const QUESTION = 'When is the GPU first?';
@@ -22,9 +22,9 @@ export class CrossoverView {
   readonly #table = made('table', '');
   readonly #details = made('details', 'engines-details', made('summary', '', 'The numbers'));
   #series: Series[] = emptySeries();
-  #lead: Lead | undefined;
+  #crossover: Crossover | undefined;
 
-  constructor(host: HTMLElement, turn: Turn) {
+  constructor(host: HTMLElement, oneAtATime: OneAtATime) {
     this.#button.type = 'button';
     this.#title.ariaLive = 'polite';
     this.#progress.setAttribute('aria-label', 'Sizes measured');
@@ -34,12 +34,12 @@ export class CrossoverView {
     const row = made('div', 'engines-row', this.#button, made('div', 'engines-state', this.#note, this.#progress));
     host.append(this.#title, row, this.#chart, this.#notes, this.#details);
     new ResizeObserver(() => this.#draw()).observe(this.#chart);
-    turn.offer(this.#button, 'Measure again', (signal) => this.#measure(signal));
+    oneAtATime.offer(this.#button, 'Measure again', (signal) => this.#measure(signal));
   }
 
   async #measure(signal: AbortSignal): Promise<void> {
     this.#series = emptySeries();
-    this.#lead = undefined;
+    this.#crossover = undefined;
     this.#title.textContent = QUESTION;
     this.#notes.replaceChildren();
     this.#progress.hidden = false;
@@ -50,8 +50,8 @@ export class CrossoverView {
         this.#note.textContent = what;
         this.#draw();
       });
-      this.#lead = leadOf(this.#series);
-      this.#title.textContent = headline(this.#lead);
+      this.#crossover = crossoverOf(this.#series);
+      this.#title.textContent = headline(this.#crossover);
       this.#note.textContent = BEFORE;
     } catch (error) {
       this.#note.textContent = signal.aborted ? 'Stopped. These sizes were measured.' : sentenceOf(error);
@@ -63,7 +63,7 @@ export class CrossoverView {
   }
 
   #draw(): void {
-    plot(this.#chart, this.#series, this.#lead && 'from' in this.#lead ? this.#lead.from : undefined);
+    plot(this.#chart, this.#series, this.#crossover && 'from' in this.#crossover ? this.#crossover.from : undefined);
   }
 
   #tabulate(): void {
@@ -92,11 +92,12 @@ export class CrossoverView {
   }
 }
 
-function headline(lead: Lead): string {
-  if ('from' in lead) return `From ${about(lead.from.triangles)} triangles on, the GPU is first on this computer`;
-  if (lead.first === 'gpu') return 'On this computer the GPU is first at every size measured';
-  if (lead.first === 'cpu') return 'On this computer the CPU is first at every size measured';
-  return `Only the ${lead.first === 'only the cpu' ? 'CPU' : 'GPU'} was measured on this computer`;
+function headline(crossover: Crossover): string {
+  if ('from' in crossover)
+    return `From ${about(crossover.from.triangles)} triangles on, the GPU is first on this computer`;
+  if (crossover.first === 'gpu') return 'On this computer the GPU is first at every size measured';
+  if (crossover.first === 'cpu') return 'On this computer the CPU is first at every size measured';
+  return `Only the ${crossover.first === 'only the cpu' ? 'CPU' : 'GPU'} was measured on this computer`;
 }
 
 /** Why engines are missing in the chart, or end early. */

@@ -1,12 +1,12 @@
-/** The race: a button, a lane for each engine, and whether all results are equal. */
+/** The race: a button, a row for each engine, and whether all results are equal. */
 
 import { made } from '../shell/elements.ts';
-import { Lane, type Ran } from './lane.ts';
-import { ALL, ONE_THREAD, type Contender, type NamedMesh } from './lineup.ts';
+import { ResultRow, type Ran } from './result-row.ts';
+import { ALL, ONE_THREAD, type Contender, type NamedMesh } from './contenders.ts';
 import { runOn, sampleMesh } from './race.ts';
-import { sentenceOf } from './runner.ts';
+import { sentenceOf } from './timer.ts';
 import { stillness } from '../shell/stillness.ts';
-import type { Turn } from './turn.ts';
+import type { OneAtATime } from './one-at-a-time.ts';
 import { count } from './words.ts';
 
 const BEFORE =
@@ -23,27 +23,27 @@ export class RaceView {
   readonly #button = made('button', 'engines-button engines-main', 'Race');
   readonly #note = made('p', 'engines-note', PROMISE);
   readonly #verdict = made('p', 'engines-verdict');
-  readonly #lanes = new Map(ALL.map((contender) => [contender, new Lane(contender)]));
+  readonly #rows = new Map(ALL.map((contender) => [contender, new ResultRow(contender)]));
   readonly #openMesh: () => NamedMesh | undefined;
 
-  constructor(host: HTMLElement, turn: Turn, openMesh: () => NamedMesh | undefined) {
+  constructor(host: HTMLElement, oneAtATime: OneAtATime, openMesh: () => NamedMesh | undefined) {
     this.#openMesh = openMesh;
     this.#button.type = 'button';
     for (const live of [this.#note, this.#verdict]) live.setAttribute('role', 'status');
     const titles = ['Engine', '', 'Time', 'Speed-up', 'Fingerprint of the result'];
     const heads = made('div', 'engines-heads', ...titles.map((title) => made('span', '', title)));
     heads.setAttribute('aria-hidden', 'true');
-    const lanes = made('ul', 'engines-lanes', ...[...this.#lanes.values()].map(({ element }) => element));
+    const rows = made('ul', 'engines-results', ...[...this.#rows.values()].map(({ element }) => element));
     // Safari takes lists without markers for no lists.
-    lanes.setAttribute('role', 'list');
+    rows.setAttribute('role', 'list');
     const head = made('header', 'engines-head', made('h2', '', 'Three engines, one answer.'), this.#lede);
     head.append(made('div', 'engines-row', this.#button, this.#note));
-    host.append(head, heads, lanes, this.#verdict);
-    turn.offer(this.#button, 'Race again', (signal) => this.#race(signal));
+    host.append(head, heads, rows, this.#verdict);
+    oneAtATime.offer(this.#button, 'Race again', (signal) => this.#race(signal));
   }
 
   async #race(signal: AbortSignal): Promise<void> {
-    for (const lane of this.#lanes.values()) lane.reset();
+    for (const row of this.#rows.values()) row.reset();
     this.#lede.textContent = BEFORE;
     this.#verdict.textContent = '';
     this.#verdict.classList.remove('engines-wrong');
@@ -51,16 +51,16 @@ export class RaceView {
       this.#note.textContent = 'The mesh is made ready.';
       const mesh = this.#openMesh() ?? (await sampleMesh(signal));
       const ran = new Map<Contender, Ran>();
-      for (const [contender, lane] of this.#lanes) {
+      for (const [contender, row] of this.#rows) {
         this.#note.textContent = `${contender.name} runs.`;
-        lane.start();
+        row.start();
         const outcome = await runOn(contender, mesh, signal);
-        lane.finish(outcome);
+        row.finish(outcome);
         if ('timing' in outcome) ran.set(contender, outcome);
       }
       this.#show(mesh, ran);
     } catch (error) {
-      for (const lane of this.#lanes.values()) lane.reset();
+      for (const row of this.#rows.values()) row.reset();
       this.#note.textContent = signal.aborted ? 'Stopped.' : sentenceOf(error);
     }
   }
@@ -69,16 +69,16 @@ export class RaceView {
     const oneThread = ran.get(ONE_THREAD);
     const [fastest] = [...ran.values()].sort((a, b) => a.timing.median - b.timing.median);
     if (!fastest) {
-      this.#note.textContent = 'No engine could run this mesh. Each lane says why.';
+      this.#note.textContent = 'No engine could run this mesh. Each row says why.';
       return;
     }
     const { digest } = oneThread ?? fastest;
     const slowest = Math.max(...[...ran.values()].map(({ timing }) => timing.median));
     const [slowness, replays] = replayOf(slowest);
     for (const [contender, one] of ran) {
-      const lane = this.#lanes.get(contender)!;
-      lane.compare(one, slowest, oneThread, digest, one === fastest);
-      if (!stillness.matches) lane.replay(slowness * one.timing.median);
+      const row = this.#rows.get(contender)!;
+      row.compare(one, slowest, oneThread, digest, one === fastest);
+      if (!stillness.matches) row.replay(slowness * one.timing.median);
     }
     const runs = Math.min(...[...ran.values()].map(({ timing }) => timing.runs));
     const medians = runs === 5 ? 'Medians of 5 runs.' : 'Medians of 5 runs, or of fewer where a run takes over 2 s.';

@@ -1,8 +1,8 @@
 /** Runs each engine on one mesh, one engine after the other. */
 
 import { digestOf } from '../shell/digest.ts';
-import { whyOneThreadRan, type Contender, type NamedMesh } from './lineup.ts';
-import { Runner, sentenceOf } from './runner.ts';
+import { whyOneThreadRan, type Contender, type NamedMesh } from './contenders.ts';
+import { startTimer, sentenceOf } from './timer.ts';
 import type { Timing } from './timing.ts';
 
 /** Milliseconds. A run that takes longer is the last of its engine. */
@@ -15,12 +15,12 @@ const SAMPLE = { spec: 'uvsphere 100', name: 'the paper’s mesh 3' };
 export type Outcome = { timing: Timing; digest: string } | { whyNot: string };
 
 export async function sampleMesh(signal: AbortSignal): Promise<NamedMesh> {
-  const runner = new Runner(signal);
+  const timer = startTimer(signal);
   try {
-    const mesh = await runner.ask((timer) => timer.generate(SAMPLE.spec));
+    const mesh = await timer.call((worker) => worker.generate(SAMPLE.spec));
     return { ...mesh, name: SAMPLE.name };
   } finally {
-    runner.close();
+    timer.close();
   }
 }
 
@@ -28,10 +28,10 @@ export async function sampleMesh(signal: AbortSignal): Promise<NamedMesh> {
 export async function runOn({ options, whyNot }: Contender, mesh: NamedMesh, signal: AbortSignal): Promise<Outcome> {
   if (whyNot !== undefined) return { whyNot };
   const { positions, indices, dimension } = mesh;
-  const runner = new Runner(signal);
+  const timer = startTimer(signal);
   try {
     const plain = { positions, indices, dimension };
-    const timing = await runner.ask((timer) => timer.time(plain, { ...mesh.options, ...options }, LONG));
+    const timing = await timer.call((worker) => worker.time(plain, { ...mesh.options, ...options }, LONG));
     const { threads, hint } = timing.result;
     const isAlone = options.backend === 'cpu' && options.threads !== 1 && threads === 1;
     if (isAlone) return { whyNot: whyOneThreadRan(hint) };
@@ -40,6 +40,6 @@ export async function runOn({ options, whyNot }: Contender, mesh: NamedMesh, sig
     signal.throwIfAborted();
     return { whyNot: sentenceOf(error) };
   } finally {
-    runner.close();
+    timer.close();
   }
 }

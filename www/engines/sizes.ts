@@ -1,7 +1,7 @@
 /** Times the engines on meshes of growing size. */
 
-import { ONE_THREAD, THREADS, WEBGL2, WEBGPU, type Contender } from './lineup.ts';
-import { Runner, sentenceOf } from './runner.ts';
+import { ONE_THREAD, THREADS, WEBGL2, WEBGPU, type Contender } from './contenders.ts';
+import { startTimer, sentenceOf } from './timer.ts';
 import { count } from './words.ts';
 
 /** The meshes: `random N` in the plane, with 2(N − 1)² triangles. */
@@ -42,29 +42,30 @@ export async function measureSizes(
   signal: AbortSignal,
   report: (share: number, what: string) => void,
 ): Promise<void> {
-  const source = new Runner(signal);
-  const running = new Map(series.filter(({ whyNot }) => !whyNot).map((one) => [one, new Runner(signal)]));
+  const source = startTimer(signal);
+  const running = new Map(series.filter(({ whyNot }) => !whyNot).map((one) => [one, startTimer(signal)]));
   try {
     for (const [done, side] of SIDES.entries()) {
-      const mesh = await source.ask((timer) => timer.generate(`random ${side}`));
+      const mesh = await source.call((worker) => worker.generate(`random ${side}`));
       const triangles = mesh.indices.length / 3;
-      for (const [one, runner] of running) {
+      for (const [one, timer] of running) {
         const { name, options } = one.contender;
         report(done / SIDES.length, `${count(triangles)} triangles, ${name}`);
         try {
-          if (side === SIDES[0] && (await runner.ask((timer) => timer.isSoftware(options)))) throw new Error(EMULATED);
-          const { median } = await runner.ask((timer) => timer.time(mesh, options, SLOW));
+          if (side === SIDES[0] && (await timer.call((worker) => worker.isSoftware(options))))
+            throw new Error(EMULATED);
+          const { median } = await timer.call((worker) => worker.time(mesh, options, SLOW));
           one.points.push({ triangles, ms: median });
           if (median <= SLOW) continue;
         } catch (error) {
           signal.throwIfAborted();
           one.whyNot = sentenceOf(error);
         }
-        runner.close();
+        timer.close();
         running.delete(one);
       }
     }
   } finally {
-    for (const runner of [source, ...running.values()]) runner.close();
+    for (const timer of [source, ...running.values()]) timer.close();
   }
 }

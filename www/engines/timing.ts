@@ -4,7 +4,7 @@ import { expose, transfer } from 'comlink';
 import { makeDelaunay, type Options, type Result } from 'edgeflip';
 import { generate } from 'edgeflip/files';
 import { isSoftware } from '../shell/adapter.ts';
-import type { PlainMesh } from './lineup.ts';
+import type { PlainMesh } from './contenders.ts';
 
 const RUNS = 5;
 

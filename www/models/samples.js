@@ -56,7 +56,7 @@ export const SAMPLES = [
   },
   { spec: 'uvsphere 28 0.1', name: 'Lumpy sphere', short: 'Sphere', thumb: thumb('sphere') },
   { spec: 'roof 16', name: 'Roof with a sharp ridge', short: 'Roof', thumb: thumb('roof') },
-  { spec: 'pole 60', name: 'Two poles', short: 'Poles', thumb: thumb('poles'), drawn: 'pole 24' },
+  { spec: 'pole 60', name: 'A vertex with 60 triangles', short: 'Pole', thumb: thumb('pole'), drawn: 'pole 24' },
   { spec: 'random 24', name: 'Random points', short: 'Points', thumb: thumb('points'), drawn: 'random 9' },
   { spec: 'shear 16', name: 'Sheared lattice', short: 'Sheared', thumb: thumb('sheared'), drawn: 'shear 8' },
   { spec: 'sweep 300', name: 'Slivers of a sweep', short: 'Slivers', thumb: thumb('slivers'), drawn: 'sweep 40' },

@@ -17,19 +17,19 @@ import {
   type Point,
   type Step,
 } from './motions.ts';
-import { LONG_AGO, type Mover } from './mover.ts';
-import { Skin } from './skin.ts';
+import { LONG_AGO, type MovingMesh } from './moving-mesh.ts';
+import { MovingSurface } from './moving-surface.ts';
 
 const ENGINES = { cpu: 'CPU, in a worker', webgl2: 'WebGL2, in a worker', webgpu: 'WebGPU, in a worker' } as const;
 
-export async function moveInArrays(mesh: IndexedMesh, motion: Motion, backend: Backend): Promise<Mover> {
+export async function moveInArrays(mesh: IndexedMesh, motion: Motion, backend: Backend): Promise<MovingMesh> {
   const { dimension } = mesh;
   const positions = Float32Array.from(mesh.positions);
   const session = await FlipSession.create(mesh, { backend, maxNormalAngle: motion.beta });
   try {
     await session.run();
     let indices = await session.triangles();
-    const skin = Skin.onArrays(mesh);
+    const surface = MovingSurface.onArrays(mesh);
     const flashed = new Float32Array(indices.length).fill(LONG_AGO);
     const move = motion.pose
       ? poser(positions, motion.pose, dimension)
@@ -40,12 +40,12 @@ export async function moveInArrays(mesh: IndexedMesh, motion: Motion, backend: B
       // A flip gives each of its two triangles one new corner, at which the new edge begins.
       for (let i = 0; i < now.length; i++) if (now[i] !== indices[i]) flashed[i] = time;
       indices = now;
-      skin.fill(positions, indices, flashed);
-      skin.time = time;
+      surface.fill(positions, indices, flashed);
+      surface.time = time;
     };
     return {
       engine: ENGINES[await session.backend()],
-      skin,
+      surface,
       async frame(step) {
         time = step.time;
         move(step, indices);
@@ -60,7 +60,7 @@ export async function moveInArrays(mesh: IndexedMesh, motion: Motion, backend: B
       counters: () => session.counters(),
       mesh: async () => ({ positions: positions.slice(), indices, dimension }),
       free() {
-        skin.dispose();
+        surface.dispose();
         session.free();
       },
     };

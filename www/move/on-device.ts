@@ -4,8 +4,8 @@ import { FlipSession } from 'edgeflip';
 import type { IndexedMesh } from 'edgeflip/files';
 import source from './kernels.wgsl?raw';
 import { bubble, HALF, kept, lengthOf, LONGEST, PUSH, rimOf, SHARPNESS, type Motion, type Step } from './motions.ts';
-import { LONG_AGO, type Mover } from './mover.ts';
-import { Skin, type Sharing } from './skin.ts';
+import { LONG_AGO, type MovingMesh } from './moving-mesh.ts';
+import { MovingSurface, type Sharing } from './moving-surface.ts';
 
 /** Workgroups of 256 threads. Each thread loops over further items. */
 const MOST_WORKGROUPS = 4096;
@@ -15,7 +15,7 @@ export async function moveOnDevice(
   motion: Motion,
   device: GPUDevice,
   sharing: Sharing,
-): Promise<Mover> {
+): Promise<MovingMesh> {
   const { STORAGE, UNIFORM, COPY_DST } = GPUBufferUsage;
   const { dimension, indices } = mesh;
   const vertices = mesh.positions.length / dimension;
@@ -54,18 +54,24 @@ export async function moveOnDevice(
       device.queue.submit([encoder.finish()]);
     };
     const triangles = indices.length / 3;
-    const skin = Skin.onBuffers(sharing, shared.positions as GPUBuffer, shared.indices as GPUBuffer, flashed, mesh);
+    const surface = MovingSurface.onBuffers(
+      sharing,
+      shared.positions as GPUBuffer,
+      shared.indices as GPUBuffer,
+      flashed,
+      mesh,
+    );
     const { pose, add, relax, flash } = pipeline;
     return {
       engine: 'WebGPU',
-      skin,
+      surface,
       async frame(step) {
         device.queue.writeBuffer(uniform, 0, numbersFor(step));
         if (motion.pose) submit([pose, vertices]);
         else submit([add, triangles], [relax, vertices]);
         session.update();
         submit([flash, 3 * triangles]);
-        skin.time = step.time;
+        surface.time = step.time;
       },
       settled: () => device.queue.onSubmittedWorkDone(),
       async finish() {
@@ -78,7 +84,7 @@ export async function moveOnDevice(
         return { positions, indices: await session.triangles(), dimension };
       },
       free() {
-        skin.dispose();
+        surface.dispose();
         session.free();
         for (const buffer of own) buffer.destroy();
       },

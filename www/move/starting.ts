@@ -1,42 +1,42 @@
 /** Generates a mesh that moves, and starts the engine that moves it. */
 
 import type { IndexedMesh } from 'edgeflip/files';
-import { forAuto, Office, type Gpu } from '../watch/engines.ts';
+import { forAuto, type Gpu } from '../watch/engines.ts';
 import type { Backend } from '../watch/run.ts';
+import { WorkerClient } from '../watch/worker-client.ts';
 import type { Motion, Point } from './motions.ts';
-import type { Mover } from './mover.ts';
+import type { MovingMesh } from './moving-mesh.ts';
 import { moveInArrays } from './on-arrays.ts';
 import { moveOnDevice } from './on-device.ts';
-import type { Sharing } from './skin.ts';
+import type { Sharing } from './moving-surface.ts';
 
 /** Starts a mesh with about so many triangles. `remark` says why the GPU is not used. */
-export async function startMover(
+export async function startMovingMesh(
   motion: Motion,
   many: number,
   backend: Backend,
   gpu: Gpu | string | undefined,
   share: Sharing,
   signal: AbortSignal,
-): Promise<{ mover: Mover; triangles: number; vertices: number; remark: string }> {
+): Promise<{ moving: MovingMesh; triangles: number; vertices: number; remark: string }> {
   const [engine, remark] = engineFor(backend, gpu);
   const mesh = begun(await generated(motion.spec(many), signal), motion);
   signal.throwIfAborted();
-  const mover =
+  const moving =
     typeof engine === 'string'
       ? await moveInArrays(mesh, motion, engine)
       : await moveOnDevice(mesh, motion, engine.device, share);
   if (signal.aborted) {
-    mover.free();
+    moving.free();
     throw signal.reason;
   }
-  return { mover, triangles: mesh.indices.length / 3, vertices: mesh.positions.length / mesh.dimension, remark };
+  return { moving, triangles: mesh.indices.length / 3, vertices: mesh.positions.length / mesh.dimension, remark };
 }
 
 /** A mesh of a family, made in a worker. */
 function generated(spec: string, signal: AbortSignal): Promise<IndexedMesh> {
-  const office = new Office();
-  signal.addEventListener('abort', () => office.close());
-  return office.ask((desk) => desk.generate(spec)).finally(() => office.close());
+  const client = new WorkerClient().closeOn(signal);
+  return client.call((worker) => worker.generate(spec)).finally(() => client.close());
 }
 
 /** The GPU, or an engine on arrays; and why the GPU is not used. */

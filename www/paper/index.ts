@@ -1,7 +1,7 @@
 /** The section "The paper, run again": our numbers beside the paper's, and its two plots, run here. */
 
 import './paper.css';
-import { Office } from '../watch/engines.ts';
+import { WorkerClient } from '../watch/worker-client.ts';
 import { made } from '../shell/elements.ts';
 import { number } from '../shell/numbers.ts';
 import { bars } from './bars.ts';
@@ -55,11 +55,11 @@ async function run(figure: HTMLElement, spec: string): Promise<void> {
   const caption = figure.querySelector('figcaption') ?? figure.appendChild(made('figcaption', ''));
   caption.textContent = 'Running on this computer…';
   figure.dataset['spec'] = spec;
-  const office = new Office();
+  const client = new WorkerClient();
   try {
-    const mesh = await office.ask((desk) => desk.generate(spec));
+    const mesh = await client.call((worker) => worker.generate(spec));
     const start = performance.now();
-    const flips = await office.ask((desk) => desk.lookAhead(mesh, { backend: 'cpu' }, LONGEST));
+    const flips = await client.call((worker) => worker.lookAhead(mesh, { backend: 'cpu' }, LONGEST));
     // Another choice came first.
     if (figure.dataset['spec'] !== spec) return;
     if (!flips) throw new Error('it takes more than a minute here');
@@ -71,7 +71,7 @@ async function run(figure: HTMLElement, spec: string): Promise<void> {
   } catch (error) {
     caption.textContent = `It could not be run here: ${error instanceof Error ? error.message : String(error)}.`;
   } finally {
-    office.close();
+    client.close();
   }
 }
 

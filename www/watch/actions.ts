@@ -25,7 +25,7 @@ export async function scramble(page: Page): Promise<void> {
     }
     const mesh = { ...opened.mesh, indices: await run.triangles() };
     const seed = Math.floor(performance.now());
-    indices = await opened.office.ask((desk) => desk.scramble(mesh, settings.maxNormalAngle, seed));
+    indices = await opened.client.call((worker) => worker.scramble(mesh, settings.maxNormalAngle, seed));
   });
   if (indices) await page.open(again(opened, settings.maxNormalAngle, { ...opened.mesh, indices }));
 }
@@ -41,7 +41,7 @@ export async function drawEdge(page: Page, ends: [from: number, to: number]): Pr
     const { groups, ...mesh }: OpenMesh = opened.mesh;
     const indices = await run.triangles();
     const given = { ...mesh, indices, ...(settings.keepsGroups && groups ? { groups } : {}) };
-    drawn = { ...given, ...(await opened.office.ask((desk) => desk.drawEdge(given, ends))) };
+    drawn = { ...given, ...(await opened.client.call((worker) => worker.drawEdge(given, ends))) };
   });
   if (!drawn) return;
   await page.open(again(opened, settings.maxNormalAngle, drawn, ends));
@@ -81,7 +81,7 @@ export async function savePicture(page: Page): Promise<void> {
 export async function copyLink(page: Page): Promise<string> {
   const shown = page.shown;
   if (!shown) return '';
-  const link = linkTo(shown, page.scene?.eye.pose);
+  const link = linkTo(shown, page.scene?.camera.pose);
   if (!link) return 'A link opens samples only: your mesh is on this computer alone.';
   await navigator.clipboard.writeText(link);
   return 'Link copied. It opens this mesh, iteration, limit and view.';

@@ -1,12 +1,12 @@
 /** What the tool shows of a run: the picture, the numbers beside it, the timeline and the inspector. */
 
 import { controls, element } from './controls.ts';
-import { Drawing } from './drawing.ts';
+import { EdgeDrawing } from './edge-drawing.ts';
 import type { Graphics } from './graphics.ts';
-import { Halves } from './halves.ts';
-import type { Successor } from './handover.ts';
+import { Comparison } from './comparison.ts';
+import type { Replacement } from './handover.ts';
 import { showLegend } from './legend.ts';
-import { Looking } from './looking.ts';
+import { Inspection } from './inspection.ts';
 import type { Opened } from './opening.ts';
 import { palette } from './palette.ts';
 import { Panel } from './panel.ts';
@@ -14,8 +14,8 @@ import type { Run } from './run.ts';
 import type { Shown } from './shown.ts';
 import { Timeline } from './timeline.ts';
 import { stillness } from '../shell/stillness.ts';
-import { showTransport, type Standing } from './transport.ts';
-import { flipsBetween } from './turning.ts';
+import { showTransport, type RunStatus } from './transport.ts';
+import { flipsBetween } from './flip-animation.ts';
 import { unitPositions } from './unit.ts';
 
 /** The most triangles of a mesh that is first shown with its edges. */
@@ -29,9 +29,9 @@ export type EdgeLook = 'coloured' | 'plain' | 'none';
 
 export class Display {
   readonly panel: Panel;
-  readonly looking: Looking;
-  readonly halves: Halves;
-  readonly drawing: Drawing;
+  readonly inspection: Inspection;
+  readonly comparison: Comparison;
+  readonly edgeDrawing: EdgeDrawing;
   readonly #timeline = new Timeline();
   readonly #graphics: Graphics;
   look: EdgeLook = 'coloured';
@@ -47,17 +47,17 @@ export class Display {
   constructor(graphics: Graphics, seek: (at: number) => void, draw: (from: number, to: number) => void) {
     this.#graphics = graphics;
     this.panel = new Panel(seek);
-    this.looking = new Looking(() => graphics.scene);
-    this.halves = new Halves(() => graphics.scene);
-    this.drawing = new Drawing(
+    this.inspection = new Inspection(() => graphics.scene);
+    this.comparison = new Comparison(() => graphics.scene);
+    this.edgeDrawing = new EdgeDrawing(
       () => graphics.scene,
       draw,
       () => {
-        this.looking.close();
-        this.halves.show(false);
+        this.inspection.close();
+        this.comparison.show(false);
       },
     );
-    this.looking.isPaused = () => this.drawing.isOn;
+    this.inspection.isPaused = () => this.edgeDrawing.isOn;
   }
 
   /** Takes the colours of the page. */
@@ -71,12 +71,12 @@ export class Display {
   begin({ mesh }: Opened, isOther: boolean): void {
     const { scene } = this.#graphics;
     this.#last = undefined;
-    this.looking.close();
+    this.inspection.close();
     scene?.setMesh(unitPositions(mesh), mesh.dimension);
-    if (isOther || !scene?.eye.isLooking) scene?.lookAtAll();
+    if (isOther || !scene?.camera.isLooking) scene?.lookAtAll();
     if (isOther) this.look = mesh.indices.length <= 3 * EDGES_SEEN ? 'coloured' : 'none';
-    this.halves.begin(mesh.indices);
-    this.drawing.begin(mesh);
+    this.comparison.begin(mesh.indices);
+    this.edgeDrawing.begin(mesh);
     element('no-mesh').hidden = scene !== undefined;
     for (const id of ['beta-label', 'beta-range', 'beta-says', 'deviation-label', 'feature-label']) {
       element(id).hidden = mesh.dimension === 2;
@@ -90,8 +90,8 @@ export class Display {
   /** Shows no mesh. */
   clear(): void {
     this.#last = undefined;
-    this.looking.forget();
-    this.drawing.begin(undefined);
+    this.inspection.forget();
+    this.edgeDrawing.begin(undefined);
     this.#graphics.scene?.clear();
     this.panel.clear();
     showLegend(undefined, 0, undefined);
@@ -129,11 +129,11 @@ export class Display {
     this.#last = indices && { run, at, indices };
     if (last?.run === run && last.at === at) return;
     const isStep = indices && last?.run === run && Math.abs(last.at - at) === 1 && !stillness.matches;
-    if (!isStep) return this.#graphics.scene?.turn(new Uint32Array(), 'not');
+    if (!isStep) return this.#graphics.scene?.animateFlips(new Uint32Array(), 'not');
     const isBack = at < last.at;
     const flips = isBack ? flipsBetween(indices, last.indices) : flipsBetween(last.indices, indices);
     const slides = Number(controls.speed.value) >= SLOW;
-    this.#graphics.scene?.turn(flips, slides ? (isBack ? 'back' : 'on') : 'not');
+    this.#graphics.scene?.animateFlips(flips, slides ? (isBack ? 'back' : 'on') : 'not');
   }
 
   /** Draws the triangles. If edges are coloured, returns their states; else draws the outlines of the triangles. */
@@ -146,23 +146,23 @@ export class Display {
 
   /** Lets the user inspect the edges of these triangles. */
   lookInto({ run, opened, settings }: Shown, indices: Uint32Array): void {
-    this.looking.show({ mesh: opened.mesh, indices, states: run.states, limits: settings });
+    this.inspection.show({ mesh: opened.mesh, indices, states: run.states, limits: settings });
   }
 
   /** `fingerprint` belongs to the shown triangles, once it is known. */
-  showNumbers({ run, opened, settings }: Shown, standing: Standing, fingerprint?: string): void {
+  showNumbers({ run, opened, settings }: Shown, status: RunStatus, fingerprint?: string): void {
     this.panel.showIterations(run.iterations, run.at);
-    this.panel.showFacts(opened.mesh, run, standing.summary, settings.maxNormalAngle, fingerprint);
-    showLegend(run.states, opened.mesh.indices.length / 3, standing.summary?.nonManifoldEdges);
-    this.showTransport(standing);
+    this.panel.showFacts(opened.mesh, run, status.summary, settings.maxNormalAngle, fingerprint);
+    showLegend(run.states, opened.mesh.indices.length / 3, status.summary?.nonManifoldEdges);
+    this.showTransport(status);
   }
 
-  showTransport(standing: Standing): void {
-    showTransport(this.#timeline, standing);
+  showTransport(status: RunStatus): void {
+    showTransport(this.#timeline, status);
   }
 
   /** Shows the same run on another engine. */
-  succeed(shown: Shown, { run }: Successor): void {
+  replaceRun(shown: Shown, { run }: Replacement): void {
     this.showTriangles({ ...shown, run });
     this.panel.showTimes(run.iterations);
   }

@@ -1,6 +1,6 @@
 /** Files for the user. */
 
-import { Office } from './engines.ts';
+import { WorkerClient } from './worker-client.ts';
 import type { Kept } from './files.ts';
 import type { OpenMesh } from './run.ts';
 
@@ -12,9 +12,8 @@ export async function download(
   signal: AbortSignal,
 ): Promise<void> {
   // Writing has its own worker. Closing the worker frees the memory and can cancel the job.
-  const office = new Office();
-  signal.addEventListener('abort', () => office.close());
-  const bytes = await office.ask((desk) => desk.write(mesh, name, kept)).finally(() => office.close());
+  const client = new WorkerClient().closeOn(signal);
+  const bytes = await client.call((worker) => worker.write(mesh, name, kept)).finally(() => client.close());
   save(new Blob([bytes]), name);
 }
 

@@ -1,14 +1,12 @@
 /** Starts runs: on the GPU that the page draws with, or in a worker, on WebGL2 or the CPU. */
 
-import { wrap, type Remote } from 'comlink';
 import { EdgeflipError, type Options } from 'edgeflip';
 import { isSoftware } from '../shell/adapter.ts';
 import { ArrayTrack } from './array-track.ts';
-import { CRASHED } from './crash.ts';
-import type { Desk } from './desk.ts';
 import { GpuTrack } from './gpu-track.ts';
 import { Kernels } from './kernels.ts';
 import { Run, sessionOf, statesOf, summaryOf, type Backend, type OpenMesh } from './run.ts';
+import { WorkerClient } from './worker-client.ts';
 
 /** The most triangles with which `auto` starts on the CPU while the GPU compiles its kernels. */
 const MOST_ON_CPU = 1_000_000;
@@ -41,52 +39,14 @@ export function forAuto(gpu: Gpu | string): Gpu | string {
   return 'no hardware GPU found; the browser emulates one in software, which is slower';
 }
 
-/** A worker, and the proxy of its {@link Desk}. */
-export class Office {
-  readonly #worker = new Worker(new URL('./desk.ts', import.meta.url), { type: 'module' });
-  readonly #desk: Remote<Desk> = wrap<Desk>(this.#worker);
-  readonly #failed: Promise<never>;
-  #fail: (error: Error) => void = () => {};
-
-  constructor() {
-    this.#failed = new Promise((_, reject) => (this.#fail = reject));
-    this.#failed.catch(() => {});
-    this.#worker.onerror = ({ message }) =>
-      this.#fail(new Error(`The page’s worker failed: ${message || 'it could not be loaded'}`));
-  }
-
-  /** Calls the desk. If the office is closed, the call fails. */
-  async ask<T>(question: (desk: Remote<Desk>) => Promise<T>): Promise<T> {
-    try {
-      return await Promise.race([question(this.#desk), this.#failed]);
-    } catch (error) {
-      // A WebAssembly module cannot be used after a crash, so all later calls fail.
-      if (error instanceof Error && error.name === CRASHED) this.#fail(error);
-      throw error;
-    }
-  }
-
-  /** Ends the worker and everything that runs in it. */
-  close(): void {
-    this.#worker.terminate();
-    // Comlink keeps the worker until its proxies are collected. Through this handler, the worker would keep the
-    // proxies.
-    this.#worker.onerror = null;
-    this.#fail(new Cancelled());
-  }
-}
-
-/** The error of a call whose worker was closed. */
-export class Cancelled extends Error {}
-
 /** The worker of the first run. */
-let first: Office | undefined;
+let first: WorkerClient | undefined;
 
 /** Starts the worker of the first run and loads its engine, while the mesh is not ready yet. */
 export function startWorker(): void {
-  first = new Office();
+  first = new WorkerClient();
   // The run loads the engine again and reports the error.
-  first.ask((desk) => desk.load()).catch(() => {});
+  first.call((worker) => worker.load()).catch(() => {});
 }
 
 /** Whether a run waits until the GPU is open and has compiled its kernels. */
@@ -163,16 +123,16 @@ async function inWorker(
   signal: AbortSignal,
   fallback: string | undefined,
 ): Promise<Run> {
-  const office = first ?? new Office();
+  const client = first ?? new WorkerClient();
   first = undefined;
-  const close = () => office.close();
+  const close = () => client.close();
   signal.addEventListener('abort', close);
   try {
     signal.throwIfAborted();
-    const states = await office.ask((desk) => desk.open(mesh, options));
+    const states = await client.call((worker) => worker.open(mesh, options));
     const stepper = {
-      step: () => office.ask((desk) => desk.step()),
-      result: () => office.ask((desk) => desk.result()),
+      step: () => client.call((worker) => worker.step()),
+      result: () => client.call((worker) => worker.result()),
       free: close,
     };
     return new Run(true, fallback, stepper, new ArrayTrack(mesh.indices), states);

@@ -2,7 +2,7 @@
 
 import { element } from './controls.ts';
 import { openGpu, type Gpu } from './engines.ts';
-import type { Insets } from './eye.ts';
+import type { Insets } from './camera.ts';
 import { palette } from './palette.ts';
 import { Scene } from './scene.ts';
 

@@ -3,7 +3,7 @@
 import type { Run, Summary } from './run.ts';
 
 /** The run on the GPU, at the same iteration as the run on the CPU, and its summary there. */
-export interface Successor {
+export interface Replacement {
   run: Run;
   summary: Summary;
 }
@@ -35,7 +35,7 @@ export class Handover {
    *
    * @throws the error of the GPU.
    */
-  async follow(run: Run, isAtRest: () => boolean): Promise<Successor | undefined> {
+  async follow(run: Run, isAtRest: () => boolean): Promise<Replacement | undefined> {
     if (!this.#isReady || this.#isFollowing) return undefined;
     this.#isFollowing = true;
     try {

@@ -1,7 +1,7 @@
 /** Runs one long job at a time. Shows its progress, a button to cancel it, and its error. */
 
 import { element } from './controls.ts';
-import { Cancelled } from './engines.ts';
+import { Cancelled } from './worker-client.ts';
 
 export class Jobs {
   #job: AbortController | undefined;

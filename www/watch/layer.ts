@@ -17,10 +17,10 @@ import { mix, uniform } from 'three/tsl';
 import { EdgeLines } from './edge-lines.ts';
 import { light } from './light.ts';
 import type { Palette } from './palette.ts';
-import { Turning } from './turning.ts';
+import { FlipAnimation } from './flip-animation.ts';
 
 /** The colours of surfaces. All layers share them. */
-export class Paint {
+export class Materials {
   readonly #lit = uniform(new Color());
   readonly #shaded = uniform(new Color());
   readonly #plane = uniform(new Color());
@@ -53,16 +53,16 @@ export class Paint {
 export class Layer {
   readonly group = new Group();
   readonly edges = new EdgeLines();
-  readonly turning = new Turning();
+  readonly flipAnimation = new FlipAnimation();
   readonly #surface: Mesh<BufferGeometry, MeshBasicNodeMaterial>;
   readonly #wire: LineSegments<BufferGeometry, LineBasicNodeMaterial>;
-  readonly #paint: Paint;
+  readonly #materials: Materials;
 
-  constructor(paint: Paint) {
-    this.#paint = paint;
-    this.#surface = new Mesh(new BufferGeometry(), paint.surfaces[3]);
-    this.#wire = new LineSegments(new BufferGeometry(), paint.line);
-    this.group.add(this.#surface, this.#wire, this.edges.group, this.turning.lines);
+  constructor(materials: Materials) {
+    this.#materials = materials;
+    this.#surface = new Mesh(new BufferGeometry(), materials.surfaces[3]);
+    this.#wire = new LineSegments(new BufferGeometry(), materials.line);
+    this.group.add(this.#surface, this.#wire, this.edges.group, this.flipAnimation.lines);
     for (const object of [this.#surface, this.#wire]) Object.assign(object, { frustumCulled: false, visible: false });
   }
 
@@ -71,7 +71,7 @@ export class Layer {
       object.geometry.setAttribute('position', positions);
       object.geometry.boundingSphere = new Sphere(new Vector3(), 1);
     }
-    this.#surface.material = this.#paint.surfaces[dimension];
+    this.#surface.material = this.#materials.surfaces[dimension];
   }
 
   show(triangles: BufferAttribute, lines: BufferAttribute | undefined): void {
@@ -84,7 +84,7 @@ export class Layer {
   /** Shows nothing. Buffers of attributes for which `isShared` holds are not destroyed. */
   clear(isShared: (index: BufferAttribute) => boolean): void {
     this.edges.clear();
-    this.turning.clear();
+    this.flipAnimation.clear();
     for (const object of [this.#surface, this.#wire]) {
       object.visible = false;
       const { index } = object.geometry;

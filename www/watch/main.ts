@@ -18,7 +18,7 @@ import { makeGallery } from './gallery.ts';
 import { listen } from './keys.ts';
 import { placeIn, type Place } from './link.ts';
 import { Page } from './page.ts';
-import { Moves } from '../move/moves.ts';
+import { MovingSamples } from '../move/moving-samples.ts';
 import { FIRST, MOVING, SAMPLES } from '../models/samples.js';
 import type { OpenMesh } from './run.ts';
 import { chosen, dropped, sample, type Source } from './sources.ts';
@@ -30,15 +30,15 @@ const LOOKS: readonly EdgeLook[] = ['coloured', 'plain', 'none'];
 /** Starts the tool; call it once. Returns a function that returns the open mesh, as its run began. */
 export function start(): () => NamedMesh | undefined {
   const page: Page = new Page((from, to) => void drawEdge(page, [from, to]));
-  const moves = new Moves(page);
+  const movingSamples = new MovingSamples(page);
   const open = (source: Source | undefined) => {
     if (!source) return;
-    moves.leave();
+    movingSamples.leave();
     void page.open(source);
   };
   const openSample = (spec: string) => {
     const moving = movingOf(spec);
-    if (moving) void moves.show(moving);
+    if (moving) void movingSamples.show(moving);
     else open(sample(spec));
   };
   makeGallery(openSample);
@@ -48,11 +48,11 @@ export function start(): () => NamedMesh | undefined {
     open(chosen([...(controls.file.files ?? [])]));
     controls.file.value = '';
   });
-  connectRun(page, moves);
+  connectRun(page, movingSamples);
   connectLimits(page);
   const say = (words: string) => (element('away-says').textContent = words);
   const ofRun = takingFrom(page);
-  const taking = () => (moves.isShown ? moves : ofRun);
+  const taking = () => (movingSamples.isShown ? movingSamples : ofRun);
   connectTakeAway(taking, say);
   connectDrop(open);
   connectKeys(
@@ -61,7 +61,7 @@ export function start(): () => NamedMesh | undefined {
     () => void taking().picture(),
     () => void taking().link().then(say),
   );
-  void begin(page, moves);
+  void begin(page, movingSamples);
   return () => {
     const shown = page.shown;
     if (!shown) return undefined;
@@ -77,38 +77,41 @@ export function start(): () => NamedMesh | undefined {
 const movingOf = (spec: string | undefined) => MOVING.find((sample) => sample.spec === spec);
 
 /** Opens the mesh of the address, or a file that was chosen before this code was loaded, or the first sample. */
-async function begin(page: Page, moves: Moves): Promise<void> {
+async function begin(page: Page, movingSamples: MovingSamples): Promise<void> {
   const file = chosen([...(controls.file.files ?? [])]);
   const place = file ? undefined : placeIn(location.hash);
   if (place) page.prefer(place);
   const moving = movingOf(place?.mesh);
   await page.start(moving ? undefined : (file ?? sample(place?.mesh ?? FIRST)));
-  if (moving) await moves.show(moving);
+  if (moving) await movingSamples.show(moving);
   else if (place) await goTo(page, place);
   addEventListener('hashchange', () => {
     const next = placeIn(location.hash);
     if (!next) return;
     page.prefer(next);
     const moving = movingOf(next.mesh);
-    if (moving) return void moves.show(moving);
-    moves.leave();
+    if (moving) return void movingSamples.show(moving);
+    movingSamples.leave();
     void page.open(sample(next.mesh)).then(() => goTo(page, next));
   });
 }
 
 async function goTo(page: Page, { at, pose }: Place): Promise<void> {
   if (at > 0) await page.player.seek(at);
-  if (pose && page.scene) page.scene.eye.pose = pose;
+  if (pose && page.scene) page.scene.camera.pose = pose;
 }
 
-function connectRun(page: Page, moves: Moves): void {
+function connectRun(page: Page, movingSamples: MovingSamples): void {
   controls.backend.addEventListener('change', () => {
     void page.begin();
-    void moves.restart();
+    void movingSamples.restart();
   });
   controls.reset.addEventListener('click', () => void page.player.seek(0));
   controls.back.addEventListener('click', () => void page.player.seekBy(-1));
-  controls.play.addEventListener('click', () => void (moves.isShown ? moves.toggle() : page.player.toggle()));
+  controls.play.addEventListener(
+    'click',
+    () => void (movingSamples.isShown ? movingSamples.toggle() : page.player.toggle()),
+  );
   controls.step.addEventListener('click', () => void page.player.step());
   controls.slider.addEventListener('input', () => void page.player.seek(controls.slider.valueAsNumber));
   controls.compare.addEventListener('click', () => page.compare());
@@ -240,7 +243,7 @@ function connectKeys(
     { keys: ['s'], label: 'S', says: 'save the mesh', act: () => toggle('away', controls.take) },
     { keys: ['p'], label: 'P', says: 'save a picture', act: savePicture },
     { keys: ['k'], label: 'K', says: 'copy a link to this view', act: copyLink },
-    { keys: ['f'], label: 'F', says: 'fit the mesh to the view', act: () => page.scene?.eye.fit() },
+    { keys: ['f'], label: 'F', says: 'fit the mesh to the view', act: () => page.scene?.camera.fit() },
     { keys: ['g'], label: 'G', says: 'the engines', act: () => (location.hash = '#engines') },
     { keys: ['t'], label: 'T', says: 'light or dark', act: toggleTheme },
     { keys: ['?'], label: '?', says: 'these keys', act: () => keys.showModal() },

@@ -1,8 +1,8 @@
 /** Opens a mesh: reads it once, in a worker. The page may start its run several times. */
 
 import type { FileMesh, IndexedMesh } from 'edgeflip/files';
-import type { Quality } from './desk.ts';
-import { Office } from './engines.ts';
+import type { Quality } from './mesh-worker.ts';
+import { WorkerClient } from './worker-client.ts';
 import type { Kept } from './files.ts';
 import { number } from '../shell/numbers.ts';
 import type { Read, Source } from './sources.ts';
@@ -20,7 +20,7 @@ export interface Opened {
   /** The sample that it is, as it was given. */
   spec: string | undefined;
   /** The worker that measures it. */
-  office: Office;
+  client: WorkerClient;
   /** The ends of the edges that the user has drawn. */
   drawn: readonly number[];
   /** The files that it was read from. */
@@ -40,7 +40,7 @@ export class Opening {
   /** The mesh, after it has been read. Changes of the settings then start its run again. */
   opened: Opened | undefined;
   readonly read: Promise<Opened>;
-  #office = new Office();
+  #client = new WorkerClient();
   readonly #progress: Progress;
   #isClosed = false;
 
@@ -54,21 +54,21 @@ export class Opening {
   /** Stops reading, and ends the worker. */
   close(): void {
     this.#isClosed = true;
-    this.#office.close();
+    this.#client.close();
   }
 
   async #read(source: Source): Promise<Opened> {
-    const read = await source.read(this.#office, (path, share) => {
+    const read = await source.read(this.#client, (path, share) => {
       if (!this.#isClosed) this.#progress(share < 1 ? `Reading ${path}…` : `Parsing ${path}…`, share);
     });
     const { mesh, name, kept } = read;
     if (mesh.indices.length === 0) throw new Error(`There are no triangles in ${name}.`);
     // The memory of a WebAssembly module never shrinks, so closing the worker frees the memory that reading used.
-    this.#office.close();
-    const office = new Office();
-    this.#office = office;
+    this.#client.close();
+    const client = new WorkerClient();
+    this.#client = client;
     let measured: Promise<Quality> | undefined;
-    const before = () => (measured ??= office.ask((desk) => desk.measure(mesh, BINS)));
+    const before = () => (measured ??= client.call((worker) => worker.measure(mesh, BINS)));
     const title = source.title ?? name;
     const remark = remarkOn(read);
     return (this.opened = {
@@ -77,7 +77,7 @@ export class Opening {
       title,
       what: source.what,
       spec: source.spec,
-      office,
+      client,
       drawn: source.drawn ?? [],
       kept,
       remark,

@@ -20,8 +20,8 @@ export async function optionsFor(opened: Opened, settings: Settings): Promise<Op
 }
 
 /** The sharp edges of the input, computed once for each angle. */
-function featuresOf({ mesh, office, features }: Opened, degrees: number): Promise<Uint32Array> {
+function featuresOf({ mesh, client, features }: Opened, degrees: number): Promise<Uint32Array> {
   let found = features.get(degrees);
-  if (!found) features.set(degrees, (found = office.ask((desk) => desk.features(mesh, degrees))));
+  if (!found) features.set(degrees, (found = client.call((worker) => worker.features(mesh, degrees))));
   return found;
 }

@@ -3,26 +3,27 @@
 import { EdgeflipError } from 'edgeflip';
 import { Choices, type Settings } from './choices.ts';
 import { LOST } from './crash.ts';
-import type { Flips } from './desk.ts';
+import type { Flips } from './mesh-worker.ts';
 import { Display, type EdgeLook } from './display.ts';
-import { Cancelled, startWorker, type Gpu } from './engines.ts';
+import { startWorker, type Gpu } from './engines.ts';
 import { markSample } from './gallery.ts';
 import { Graphics } from './graphics.ts';
-import type { Successor } from './handover.ts';
+import type { Replacement } from './handover.ts';
 import { Jobs, showError, showProgress } from './jobs.ts';
 import type { Place } from './link.ts';
 import { Opening, type Opened } from './opening.ts';
 import { onTheme } from '../shell/theme.ts';
 import { Player } from './player.ts';
 import { Recovery } from './recovery.ts';
-import { Rest } from './rest.ts';
+import { Measuring } from './measuring.ts';
 import type { Run, Summary } from './run.ts';
 import type { Scene } from './scene.ts';
 import type { Shown } from './shown.ts';
 import type { Source } from './sources.ts';
 import { flipsAhead, startRun } from './starting.ts';
-import { Succession } from './succession.ts';
-import type { Standing } from './transport.ts';
+import { AutoHandover } from './auto-handover.ts';
+import type { RunStatus } from './transport.ts';
+import { Cancelled } from './worker-client.ts';
 
 export class Page {
   readonly player: Player = new Player({
@@ -33,13 +34,13 @@ export class Page {
     began: () => this.#showTransport(),
     paused: () => {
       this.#showTransport();
-      void this.#rest.begin();
+      void this.#measuring.begin();
     },
     fail: (error) => this.#showFailure(error),
   });
   readonly #graphics: Graphics = new Graphics(
     (reason) => void this.#recovery.recover(reason, true),
-    () => this.#display.looking.draw(),
+    () => this.#display.inspection.draw(),
   );
   readonly #display: Display = new Display(
     this.#graphics,
@@ -56,27 +57,27 @@ export class Page {
     graphics: this.#graphics,
     jobs: this.#jobs,
     choices: this.#choices,
-    at: () => ({ opening: this.#opening, opened: this.#opened, run: this.#run, source: this.#source }),
+    state: () => ({ opening: this.#opening, opened: this.#opened, run: this.#run, source: this.#source }),
     begin: (opened, signal) => this.#begin(opened, signal),
     open: (source) => this.open(source),
     redraw: () => this.redraw(),
     fail: (error) => this.#showFailure(error),
     pause: () => this.player.pause(),
-    guest: () => this.#guest,
+    onGpuLost: () => this.#onGpuLost,
   });
-  readonly #succession = new Succession({
+  readonly #handover = new AutoHandover({
     run: () => this.#run,
-    isIdle: () => !this.#jobs.isBusy && this.player.isAtRest && this.#rest.isMeasured(this.#run),
-    succeed: (next) => this.#succeed(next),
-    tell: () => void (this.player.isPlaying || this.#rest.begin()),
+    isIdle: () => !this.#jobs.isBusy && this.player.isAtRest && this.#measuring.isMeasured(this.#run),
+    replaceRun: (next) => this.#replaceRun(next),
+    showRun: () => void (this.player.isPlaying || this.#measuring.begin()),
   });
-  readonly #rest: Rest = new Rest({
+  readonly #measuring: Measuring = new Measuring({
     display: this.#display,
-    standing: () => this.#standing,
+    status: () => this.#status,
     shown: () => this.shown,
-    sum: (summary) => (this.#summary = summary),
+    setSummary: (summary) => (this.#summary = summary),
     isPlain: () => this.edges !== 'coloured',
-    handOver: () => void this.#succession.handOver(),
+    handOver: () => void this.#handover.handOver(),
     fail: (error) => this.#showFailure(error),
   });
   /** The source of the last mesh that the user chose. */
@@ -92,7 +93,7 @@ export class Page {
   /** The flips of all its iterations, once they have been counted. */
   #ahead: Flips[] | undefined;
   /** Called with the reason when the GPU is lost while something else is shown in place of a run. */
-  #guest: ((reason: string) => void) | undefined;
+  #onGpuLost: ((reason: string) => void) | undefined;
 
   /** `draw` is called with the ends of an edge that the user draws. */
   constructor(draw: (from: number, to: number) => void) {
@@ -115,15 +116,15 @@ export class Page {
 
   /** Ends the run, and shows nothing. `lost` is called with the reason when the GPU is lost meanwhile. */
   leave(lost: (reason: string) => void): void {
-    this.#guest = lost;
+    this.#onGpuLost = lost;
     this.player.pause();
     this.closeAll();
     this.#display.clear();
     this.#run?.free();
-    this.#opened?.office.close();
+    this.#opened?.client.close();
     this.#run = this.#opened = this.#settings = this.#summary = this.#ahead = this.#source = undefined;
     this.#jobs.cancel();
-    this.#rest.forget();
+    this.#measuring.forget();
   }
 
   /** Takes the engine and the limits of a link for the next mesh. */
@@ -134,7 +135,7 @@ export class Page {
   /** Opens a mesh, which replaces the open mesh, or the mesh that is being opened. */
   async open(source: Source): Promise<void> {
     this.#opening?.close();
-    this.#guest = undefined;
+    this.#onGpuLost = undefined;
     const opening = new Opening(source, showProgress);
     this.#opening = opening;
     this.#source = source;
@@ -166,19 +167,19 @@ export class Page {
 
   compare(): void {
     if (!this.#run) return;
-    this.#display.looking.close();
-    this.#display.halves.show(!this.#display.halves.isShown);
+    this.#display.inspection.close();
+    this.#display.comparison.show(!this.#display.comparison.isShown);
   }
 
   inspectNext(by: 1 | -1): void {
-    this.#display.looking.next(by);
+    this.#display.inspection.next(by);
   }
 
   /** Closes the inspector, shows one mesh only, and draws no edges. */
   closeAll(): void {
-    this.#display.drawing.show(false);
-    this.#display.looking.close();
-    this.#display.halves.show(false);
+    this.#display.edgeDrawing.show(false);
+    this.#display.inspection.close();
+    this.#display.comparison.show(false);
   }
 
   set edges(look: EdgeLook) {
@@ -218,9 +219,9 @@ export class Page {
   async redraw(): Promise<void> {
     const shown = this.shown;
     if (!shown) return;
-    this.#display.looking.forget();
-    this.#display.showNumbers(shown, this.#standing);
-    if (!this.player.isPlaying) void this.#rest.begin();
+    this.#display.inspection.forget();
+    this.#display.showNumbers(shown, this.#status);
+    if (!this.player.isPlaying) void this.#measuring.begin();
     try {
       await this.#display.draw(shown);
     } catch (error) {
@@ -238,14 +239,14 @@ export class Page {
     this.#graphics.scene?.clear();
     this.#run?.free();
     this.#run = run;
-    if (isNew) this.#opened?.office.close();
+    if (isNew) this.#opened?.client.close();
     this.#opened = opened;
     if (this.#opening?.opened === opened) this.#opening = undefined;
     this.#settings = settings;
     this.#summary = undefined;
     this.#ahead = undefined;
     this.#display.begin(opened, isOther);
-    this.#succession.expect(run, opened, options, this.#graphics.gpu);
+    this.#handover.prepare(run, opened, options, this.#graphics.gpu);
     void flipsAhead(opened, options).then((ahead) => {
       if (run !== this.#run || !ahead) return;
       this.#ahead = ahead;
@@ -256,12 +257,12 @@ export class Page {
   }
 
   /** Replaces the run by the same run on the GPU. */
-  #succeed(next: Successor): void {
+  #replaceRun(next: Replacement): void {
     const before = this.#run;
     [this.#run, this.#summary] = [next.run, next.summary];
-    if (this.shown) this.#display.succeed(this.shown, next);
+    if (this.shown) this.#display.replaceRun(this.shown, next);
     before?.free();
-    void this.#rest.begin('Now on WebGPU.');
+    void this.#measuring.begin('Now on WebGPU.');
   }
 
   #endOfJob(): void {
@@ -270,7 +271,7 @@ export class Page {
     this.#showChoices();
     this.#showTransport();
     // The job may have cancelled a measurement, so measure again.
-    if (!this.player.isPlaying) void this.#rest.begin();
+    if (!this.player.isPlaying) void this.#measuring.begin();
   }
 
   /** Shows an error, unless the page's device was lost: `Graphics` reports that, and the page recovers. */
@@ -284,14 +285,14 @@ export class Page {
     if (!isLost && !(error instanceof Cancelled) && !(error instanceof DOMException)) showError(error);
   }
 
-  get #standing(): Standing {
+  get #status(): RunStatus {
     const [run, opened, summary, ahead] = [this.#run, this.#opened, this.#summary, this.#ahead];
     return { run, opened, summary, ahead, isBusy: this.#jobs.isBusy, isPlaying: this.player.isPlaying };
   }
 
   #showTransport(): void {
-    if (this.#guest) return;
-    this.#display.showTransport(this.#standing);
+    if (this.#onGpuLost) return;
+    this.#display.showTransport(this.#status);
   }
 
   /** Shows the mesh and the settings of the run again, after another choice has failed. */

@@ -4,7 +4,7 @@ import type { Engine, Iteration, Reasons } from 'edgeflip';
 import type { IndexedMesh, Measures } from 'edgeflip/files';
 import { AnglesChart } from './charts.ts';
 import { element } from './controls.ts';
-import type { Quality } from './desk.ts';
+import type { Quality } from './mesh-worker.ts';
 import { degrees, digits, ms, number } from '../shell/numbers.ts';
 import type { Palette } from './palette.ts';
 import type { Run, Summary } from './run.ts';

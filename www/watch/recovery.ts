@@ -9,56 +9,61 @@ import type { Run } from './run.ts';
 import type { Source } from './sources.ts';
 
 /** What the recovery needs of the page. */
-export interface Patient {
+export interface RecoveryHost {
   readonly graphics: Graphics;
   readonly jobs: Jobs;
   readonly choices: Choices;
   /** The mesh that is being opened, the open mesh and its run, and the last source. */
-  at(): { opening: Opening | undefined; opened: Opened | undefined; run: Run | undefined; source: Source | undefined };
+  state(): {
+    opening: Opening | undefined;
+    opened: Opened | undefined;
+    run: Run | undefined;
+    source: Source | undefined;
+  };
   begin(opened: Opened, signal: AbortSignal): Promise<void>;
   open(source: Source): Promise<void>;
   redraw(): Promise<void>;
   fail(error: unknown): void;
   pause(): void;
-  /** Who is shown in place of a run, and begins again by itself. */
-  guest(): ((reason: string) => void) | undefined;
+  /** Begins again what is shown in place of a run; `undefined` for a run. */
+  onGpuLost(): ((reason: string) => void) | undefined;
 }
 
 export class Recovery {
-  readonly #patient: Patient;
+  readonly #host: RecoveryHost;
   /** The mesh whose run has lost a GPU before. */
   #lost: Opened | undefined;
 
-  constructor(patient: Patient) {
-    this.#patient = patient;
+  constructor(host: RecoveryHost) {
+    this.#host = host;
   }
 
   /** Repeats the present run. The triangles are the same, bit for bit. */
   async recover(reason: string, isOfPage: boolean): Promise<void> {
-    const { graphics, jobs } = this.#patient;
-    const guest = this.#patient.guest();
-    if (guest) {
+    const { graphics, jobs } = this.#host;
+    const onGpuLost = this.#host.onGpuLost();
+    if (onGpuLost) {
       graphics.open();
-      return guest(reason);
+      return onGpuLost(reason);
     }
-    const { run, opening } = this.#patient.at();
+    const { run, opening } = this.#host.state();
     let hasRecovered = false;
     await jobs.attempt('The GPU was lost; starting again…', async (signal) => {
       if (isOfPage) {
         graphics.open();
         await graphics.ready;
       }
-      const opened = (await opening?.read) ?? this.#patient.at().opened;
+      const opened = (await opening?.read) ?? this.#host.state().opened;
       signal.throwIfAborted();
       if (!opened) return;
       this.#chooseEngine(opened, isOfPage, opening === undefined ? run : undefined);
-      await this.#patient.begin(opened, signal);
-      if (!opening && run) await this.#goThere(run, signal);
+      await this.#host.begin(opened, signal);
+      if (!opening && run) await this.#repeat(run, signal);
       hasRecovered = true;
     });
     // The user has started another job meanwhile.
     if (jobs.isBusy) return;
-    await this.#tell(reason, hasRecovered, opening !== undefined);
+    await this.#report(reason, hasRecovered, opening !== undefined);
   }
 
   /**
@@ -66,35 +71,35 @@ export class Recovery {
    * `run` is the run that was lost; `undefined` if its mesh was being opened.
    */
   #chooseEngine(opened: Opened, isOfPage: boolean, run: Run | undefined): void {
-    const { choices } = this.#patient;
+    const { choices } = this.#host;
     const { settings } = choices;
     const isAgain = this.#lost === opened;
     this.#lost = opened;
-    const isOpening = this.#patient.at().opening !== undefined;
+    const isOpening = this.#host.state().opening !== undefined;
     const [isAuto, isOnGpu] = [settings.backend === 'auto', !isOpening && !run?.isInWorker];
     const isHopeless = isAgain ? isOpening || isOnGpu || isAuto : isOnGpu && isAuto;
     if (!isOfPage || isHopeless) choices.set({ ...settings, backend: 'cpu' });
   }
 
   /** Repeats the iterations of the previous run. */
-  async #goThere(before: Run, signal: AbortSignal): Promise<void> {
+  async #repeat(before: Run, signal: AbortSignal): Promise<void> {
     try {
-      await this.#patient.at().run?.follow(before, signal);
+      await this.#host.state().run?.follow(before, signal);
     } catch (error) {
-      this.#patient.fail(error);
+      this.#host.fail(error);
     }
-    await this.#patient.redraw();
+    await this.#host.redraw();
   }
 
-  async #tell(reason: string, hasRecovered: boolean, wasOpening: boolean): Promise<void> {
-    const { opened, source } = this.#patient.at();
+  async #report(reason: string, hasRecovered: boolean, wasOpening: boolean): Promise<void> {
+    const { opened, source } = this.#host.state();
     const lost = `The GPU was lost (${reason}).`;
     if (hasRecovered) {
-      this.#patient.pause();
+      this.#host.pause();
       const andNow = wasOpening ? 'The mesh was opened nevertheless' : 'The run was repeated, with the same triangles';
       showError(new Error(`${lost} ${andNow}.`));
     } else if (!opened && source) {
-      await this.#patient.open(source);
+      await this.#host.open(source);
     } else if (element('error').hidden) {
       showError(new Error(`${lost} Choose an engine to continue.`));
     }

@@ -9,11 +9,11 @@ import {
   type Object3D,
 } from 'three/webgpu';
 import { writeLines } from './change.ts';
-import { Eye, type Insets } from './eye.ts';
-import { Layer, Paint } from './layer.ts';
+import { Camera, type Insets } from './camera.ts';
+import { Layer, Materials } from './layer.ts';
 import type { Drawn } from './run.ts';
 import type { Palette } from './palette.ts';
-import type { Way } from './turning.ts';
+import type { SlideDirection } from './flip-animation.ts';
 
 /** The part of three's backend that holds the GPU buffers of attributes. */
 interface Backend {
@@ -28,16 +28,16 @@ export class Scene {
   readonly #renderer: WebGPURenderer;
   readonly #device: GPUDevice | undefined;
   readonly #scene = new ThreeScene();
-  readonly #paint = new Paint();
-  readonly #now = new Layer(this.#paint);
+  readonly #materials = new Materials();
+  readonly #now = new Layer(this.#materials);
   /** The input, at the left of the cut. */
-  readonly #before = new Layer(this.#paint);
+  readonly #before = new Layer(this.#materials);
   readonly #attributes = new WeakMap<Drawn, BufferAttribute>();
   /** Attributes whose buffers three must not destroy. */
   readonly #shared = new WeakSet<BufferAttribute>();
   readonly #observer: ResizeObserver;
   readonly #drawn: () => void;
-  readonly eye: Eye;
+  readonly camera: Camera;
   #palette: Palette;
   #positions = new BufferAttribute(new Float32Array(), 3);
   #dimension: 2 | 3 = 3;
@@ -57,7 +57,7 @@ export class Scene {
     this.#device = device;
     this.#palette = palette;
     this.#drawn = drawn;
-    this.eye = new Eye(renderer.domElement, insets, () => this.redraw());
+    this.camera = new Camera(renderer.domElement, insets, () => this.redraw());
     this.#scene.add(this.#before.group, this.#now.group);
     this.#before.group.visible = false;
     this.#observer = new ResizeObserver(() => this.#resize());
@@ -116,7 +116,7 @@ export class Scene {
   }
 
   lookAtAll(): void {
-    this.eye.lookAt(this.#positions.array as Float32Array, this.#dimension);
+    this.camera.lookAt(this.#positions.array as Float32Array, this.#dimension);
   }
 
   /** Draws these triangles, and the lines if there are any. */
@@ -133,9 +133,9 @@ export class Scene {
   }
 
   /** Shows how edges have flipped, see `flipsBetween`; with an empty list, nothing. */
-  turn(flips: Uint32Array, way: Way): void {
+  animateFlips(flips: Uint32Array, way: SlideDirection): void {
     const positions = this.#positions.array as Float32Array;
-    this.#now.turning.show(positions, flips, this.#palette.states.flips, way);
+    this.#now.flipAnimation.show(positions, flips, this.#palette.states.flips, way);
     this.redraw();
   }
 
@@ -163,13 +163,13 @@ export class Scene {
 
   setPalette(palette: Palette): void {
     this.#palette = palette;
-    this.#paint.setPalette(palette);
+    this.#materials.setPalette(palette);
     this.redraw();
   }
 
   /** Draws now, in a frame of the page. */
   draw(): void {
-    const isHot = this.#now.turning.advance();
+    const isHot = this.#now.flipAnimation.advance();
     this.#draw();
     // The next picture waits until this one is done. On a slow GPU, flips would wait behind several pictures.
     if (isHot) void this.#finished().then(() => this.redraw());
@@ -210,7 +210,7 @@ export class Scene {
 
   /** The half-edge nearest to a point of the picture, in pixels; `undefined` beside the mesh. */
   pick(x: number, y: number, indices: Uint32Array): number | undefined {
-    const ray = this.eye.rayAt(x, y);
+    const ray = this.camera.rayAt(x, y);
     const corners = [new Vector3(), new Vector3(), new Vector3()] as const;
     const load = (t: number) =>
       corners.forEach((corner, k) => corner.fromBufferAttribute(this.#positions, indices[t + k]!));
@@ -230,7 +230,7 @@ export class Scene {
 
   /** Returns a function that says where a vertex is in the picture, in pixels. */
   projector(): (vertex: number) => [x: number, y: number] {
-    const project = this.eye.projector();
+    const project = this.camera.projector();
     return (vertex) => project(new Vector3().fromBufferAttribute(this.#positions, vertex));
   }
 
@@ -239,16 +239,16 @@ export class Scene {
     cancelAnimationFrame(this.#frame);
     this.#frame = -1;
     this.#observer.disconnect();
-    this.eye.dispose();
+    this.camera.dispose();
     this.#renderer.domElement.remove();
     this.#renderer.dispose();
   }
 
   #draw(): void {
     const renderer = this.#renderer;
-    this.#now.edges.setPixel(this.eye.pixel);
+    this.#now.edges.setPixel(this.camera.pixel);
     if (this.#cut === undefined) {
-      renderer.render(this.#scene, this.eye.camera);
+      renderer.render(this.#scene, this.camera.three);
       return;
     }
     const { clientWidth: width, clientHeight: height } = this.canvas;
@@ -262,7 +262,7 @@ export class Scene {
       this.#now.group.visible = layer === this.#now;
       renderer.setScissor(left, 0, right - left, height);
       if (right <= left) continue;
-      renderer.render(this.#scene, this.eye.camera);
+      renderer.render(this.#scene, this.camera.three);
       // The second half is drawn beside the first.
       renderer.autoClear = false;
     }
@@ -303,7 +303,7 @@ export class Scene {
     const { clientWidth: width, clientHeight: height } = this.#renderer.domElement.parentElement ?? document.body;
     if (width === 0 || height === 0) return;
     this.#renderer.setSize(width, height, false);
-    this.eye.resize();
+    this.camera.resize();
     this.redraw();
   }
 }

@@ -4,7 +4,7 @@ import type { EdgeState, Reasons } from 'edgeflip';
 import { counted, number } from '../shell/numbers.ts';
 import type { Quad } from './quad.ts';
 import type { Run, Summary } from './run.ts';
-import type { Flips } from './desk.ts';
+import type { Flips } from './mesh-worker.ts';
 
 /** What an edge does next, and why. `beta` is in degrees, `deviation` in the mesh's units. */
 export function sentenceOf(quad: Quad, beta: number, deviation: number | undefined): string {

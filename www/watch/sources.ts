@@ -3,7 +3,7 @@
 import { proxy } from 'comlink';
 import { FORMATS, type FileMesh, type IndexedMesh } from 'edgeflip/files';
 import { fromEvent } from 'file-selector';
-import type { Office } from './engines.ts';
+import type { WorkerClient } from './worker-client.ts';
 import { BROUGHT, sampleOf } from '../models/samples.js';
 import { folderOf, GLTF, plain, type Kept, type Located, type Report } from './files.ts';
 
@@ -23,7 +23,7 @@ export interface Source {
   readonly spec?: string;
   /** The ends of the edges that the user has drawn. */
   readonly drawn?: readonly number[];
-  read(office: Office, report: Report): Promise<Read>;
+  read(client: WorkerClient, report: Report): Promise<Read>;
 }
 
 /** A mesh that was read. */
@@ -48,16 +48,16 @@ export function splitName(name: string): [stem: string, extension: string] {
 /** A mesh of the page: of a family, or a file that the page brings. */
 export function sample(spec: string): Source {
   const { name: title, what, beta = BETA } = sampleOf(spec);
-  const generate = async (office: Office) => {
-    const mesh = await office.ask((desk) => desk.generate(spec));
+  const generate = async (client: WorkerClient) => {
+    const mesh = await client.call((worker) => worker.generate(spec));
     return { name: spec, mesh, kept: undefined, others: 0 };
   };
-  const fetched = async (office: Office, report: Report) => {
+  const fetched = async (client: WorkerClient, report: Report) => {
     const name = spec.slice(BROUGHT.length);
     const answer = await fetch(new URL(spec, document.baseURI));
     if (!answer.ok)
       throw new Error(`${name} could not be loaded (${answer.status}). Check the connection, and try again.`);
-    return readFirst([{ path: name, file: new File([await answer.blob()], name) }], office, report);
+    return readFirst([{ path: name, file: new File([await answer.blob()], name) }], client, report);
   };
   return {
     name: spec,
@@ -73,7 +73,7 @@ export function sample(spec: string): Source {
 export function chosen(files: readonly File[]): Source | undefined {
   const [first] = files;
   const located = files.map((file) => ({ path: file.name, file }));
-  return first && { name: first.name, beta: BETA, read: (office, report) => readFirst(located, office, report) };
+  return first && { name: first.name, beta: BETA, read: (client, report) => readFirst(located, client, report) };
 }
 
 /**
@@ -88,14 +88,14 @@ export function dropped(event: DragEvent): Source | undefined {
   const gathering = gather(event, folders);
   // `read` reports the error.
   gathering.catch(() => {});
-  const read = async (office: Office, report: Report) => {
+  const read = async (client: WorkerClient, report: Report) => {
     const files = await gathering;
     if (folders.length > 0 && !files.some(isMesh)) {
       const names = new Intl.ListFormat('en').format(folders);
       const are = folders.length === 1 ? 'is a folder' : 'are folders';
       throw new Error(`${names} ${are} without a mesh file. Files that can be opened end in ${FORMATS.join(', ')}.`);
     }
-    return readFirst(files, office, report);
+    return readFirst(files, client, report);
   };
   return { name, beta: BETA, read };
 }
@@ -115,7 +115,7 @@ async function gather(event: DragEvent, folders: readonly string[]): Promise<Loc
   return files.sort((a, b) => depth(a) - depth(b) || compare(a.path, b.path));
 }
 
-async function readFirst(files: readonly Located[], office: Office, report: Report): Promise<Read> {
+async function readFirst(files: readonly Located[], client: WorkerClient, report: Report): Promise<Read> {
   const meshes = files.filter(isMesh);
   const main = meshes[0] ?? files[0];
   if (!main) throw new Error('No file was given.');
@@ -123,7 +123,7 @@ async function readFirst(files: readonly Located[], office: Office, report: Repo
   const beside = GLTF.test(main.file.name)
     ? files.filter(({ path }) => path !== main.path && path.startsWith(folder))
     : [];
-  const { mesh, kept } = await office.ask((desk) => desk.read(main, beside, proxy(report)));
+  const { mesh, kept } = await client.call((worker) => worker.read(main, beside, proxy(report)));
   const used = new Set(Array.from(kept.beside.keys(), (name) => plain(folder + name)));
   const others = meshes.filter((file) => file !== main && !used.has(file.path)).length;
   return { name: main.file.name, mesh, kept, others };

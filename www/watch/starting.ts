@@ -2,7 +2,7 @@
 
 import type { Options } from 'edgeflip';
 import type { Settings } from './choices.ts';
-import type { Flips } from './desk.ts';
+import type { Flips } from './mesh-worker.ts';
 import { beginRun, waitsForGpu } from './engines.ts';
 import type { Graphics } from './graphics.ts';
 import { showProgress } from './jobs.ts';
@@ -41,7 +41,7 @@ export async function startRun(
 }
 
 /** The flips of all iterations of a small mesh; `undefined` for a large one. */
-export async function flipsAhead({ mesh, office }: Opened, options: Chosen): Promise<Flips[] | undefined> {
+export async function flipsAhead({ mesh, client }: Opened, options: Chosen): Promise<Flips[] | undefined> {
   if (mesh.indices.length > 3 * AHEAD) return undefined;
-  return office.ask((desk) => desk.lookAhead(mesh, options, LONGEST)).catch(() => undefined);
+  return client.call((worker) => worker.lookAhead(mesh, options, LONGEST)).catch(() => undefined);
 }

@@ -1,7 +1,7 @@
 /** The timeline: its stops are the states, the bars between them the flips. A range control lies over it. */
 
 import { select } from 'd3-selection';
-import type { Flips } from './desk.ts';
+import type { Flips } from './mesh-worker.ts';
 import { controls, element } from './controls.ts';
 import { number } from '../shell/numbers.ts';
 

@@ -3,7 +3,7 @@
 import type { Reasons } from 'edgeflip';
 import { controls, element } from './controls.ts';
 import { made } from '../shell/elements.ts';
-import type { Flips } from './desk.ts';
+import type { Flips } from './mesh-worker.ts';
 import { counted } from '../shell/numbers.ts';
 import type { Opened } from './opening.ts';
 import { ENGINES, reasons } from './panel.ts';
@@ -11,7 +11,7 @@ import type { Run, Summary } from './run.ts';
 import { statusOf } from './sentences.ts';
 import { showPosition, type Timeline } from './timeline.ts';
 
-export interface Standing {
+export interface RunStatus {
   run: Run | undefined;
   opened: Opened | undefined;
   /** The summary of the run when it last paused. */
@@ -23,8 +23,8 @@ export interface Standing {
   isPlaying: boolean;
 }
 
-export function showTransport(timeline: Timeline, standing: Standing): void {
-  const { run, opened, summary, ahead, isBusy, isPlaying } = standing;
+export function showTransport(timeline: Timeline, status: RunStatus): void {
+  const { run, opened, summary, ahead, isBusy, isPlaying } = status;
   const at = run?.at ?? 0;
   const isIdle = run !== undefined && !isBusy;
   controls.play.ariaLabel = isPlaying ? 'Pause' : 'Play';
@@ -37,7 +37,7 @@ export function showTransport(timeline: Timeline, standing: Standing): void {
   timeline.show(flips, at, ahead !== undefined || run?.hasEnded === true);
   const [bold, rest] = run ? statusOf(run, summary, ahead) : ['', ''];
   element('status').replaceChildren(...(bold ? [made('b', '', bold), ' '] : []), rest);
-  element('note').textContent = noteOn(standing);
+  element('note').textContent = noteOn(status);
   element('note').hidden = element('note').textContent === '';
   element('caption').textContent = opened?.title ?? '';
   element('about').textContent = opened ? about(opened) : '';
@@ -51,7 +51,7 @@ function about({ what, mesh, remark }: Opened): string {
 }
 
 /** What is left and why, what reading changed, and why the engine is where it is. */
-function noteOn({ run, opened, summary }: Standing): string {
+function noteOn({ run, opened, summary }: RunStatus): string {
   const isFinal = run?.isOver && summary?.iterations === run.iterations.length;
   const remains = isFinal ? left(summary.remaining) : '';
   return [remains, opened?.remark, run ? whyThere(run, summary) : ''].filter(Boolean).join(' ');

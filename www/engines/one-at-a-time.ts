@@ -1,6 +1,6 @@
 /** Lets one measurement run at a time. Two at once would slow each other down. */
 
-export class Turn {
+export class OneAtATime {
   readonly #buttons: HTMLButtonElement[] = [];
   #running: AbortController | undefined;
 

@@ -1,9 +1,9 @@
 /** Plays a mesh that moves: in each frame its vertices move, edges flip, and it is drawn. */
 
 import type { Scene } from '../watch/scene.ts';
-import { Grip } from './grip.ts';
+import { PointerDrag } from './pointer-drag.ts';
 import type { Motion, Point } from './motions.ts';
-import type { Mover } from './mover.ts';
+import type { MovingMesh } from './moving-mesh.ts';
 
 /** The longest step of the motion, in seconds: after a pause the mesh does not jump. */
 const LONGEST = 1 / 30;
@@ -24,10 +24,10 @@ export interface Numbers {
   work: number;
 }
 
-export class Move {
-  readonly mover: Mover;
+export class FrameLoop {
+  readonly moving: MovingMesh;
   readonly #scene: Scene;
-  readonly #grip: Grip;
+  readonly #pointer: PointerDrag;
   readonly #told: (numbers: Numbers) => void;
   readonly #failed: (error: unknown) => void;
   #time = 0;
@@ -41,19 +41,19 @@ export class Move {
 
   /** `told` is called with new numbers, and `failed` with the error that ends the motion. */
   constructor(
-    mover: Mover,
+    moving: MovingMesh,
     { dimension, box }: Motion,
     scene: Scene,
     view: HTMLElement,
     told: (numbers: Numbers) => void,
     failed: (error: unknown) => void,
   ) {
-    this.mover = mover;
+    this.moving = moving;
     this.#scene = scene;
     this.#told = told;
     this.#failed = failed;
-    this.#grip = new Grip(view, scene, dimension, (isHeld) => void (this.#isPlaying || this.#drag(isHeld)));
-    scene.showMoving(mover.skin.object, endsOf(box), dimension);
+    this.#pointer = new PointerDrag(view, scene, dimension, (isHeld) => void (this.#isPlaying || this.#drag(isHeld)));
+    scene.showMoving(moving.surface.object, endsOf(box), dimension);
   }
 
   get isPlaying(): boolean {
@@ -69,7 +69,7 @@ export class Move {
   async pause(): Promise<void> {
     this.#starts++;
     this.#isPlaying = false;
-    await this.mover.finish();
+    await this.moving.finish();
     this.#scene.redraw();
     await this.#counting?.catch(() => {});
     await this.#count();
@@ -85,9 +85,9 @@ export class Move {
   free(): void {
     this.#starts++;
     this.#isPlaying = false;
-    this.#grip.dispose();
+    this.#pointer.dispose();
     this.#scene.clear();
-    this.mover.free();
+    this.moving.free();
   }
 
   /** While the mesh is paused, time stands still, but points can be dragged. */
@@ -99,7 +99,7 @@ export class Move {
   /** Drags the mesh to where the pointer has left it, and pauses again. */
   async #letGo(): Promise<void> {
     const start = ++this.#starts;
-    while (this.#grip.isBehind) {
+    while (this.#pointer.isBehind) {
       await this.#frame(0);
       if (start !== this.#starts) return;
     }
@@ -130,7 +130,7 @@ export class Move {
       await this.#frame(speed * Math.min(LONGEST, between / 1000));
       if (start !== this.#starts) return;
       this.#scene.draw();
-      const done = this.mover.settled().then(() => void (this.#work = mean(this.#work, performance.now() - begin)));
+      const done = this.moving.settled().then(() => void (this.#work = mean(this.#work, performance.now() - begin)));
       done.catch(() => {});
       flying.push(done);
       if (flying.length > AHEAD) await flying.shift();
@@ -141,7 +141,7 @@ export class Move {
 
   #frame(seconds: number): Promise<void> {
     this.#time += seconds;
-    return this.mover.frame({ time: this.#time, seconds, drag: this.#grip.take(), isHeld: this.#grip.isHeld });
+    return this.moving.frame({ time: this.#time, seconds, drag: this.#pointer.take(), isHeld: this.#pointer.isHeld });
   }
 
   /** Counts, unless the last count is still on its way. */
@@ -151,7 +151,7 @@ export class Move {
 
   async #ask(): Promise<void> {
     const start = this.#starts;
-    const { flips, updates, remaining, inverted } = await this.mover.counters();
+    const { flips, updates, remaining, inverted } = await this.moving.counters();
     const frames = Math.max(1, updates - this.#counted.updates);
     const inFrame = (flips - this.#counted.flips) / frames;
     this.#counted = { flips, updates };

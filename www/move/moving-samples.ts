@@ -10,24 +10,24 @@ import type { Backend } from '../watch/run.ts';
 import type { MovingSample } from '../models/samples.js';
 import { stillness } from '../shell/stillness.ts';
 import { onTheme } from '../shell/theme.ts';
-import { Board } from './board.ts';
+import { MotionPanel } from './motion-panel.ts';
 import { codeFor } from './code.ts';
 import { MOTIONS } from './motions.ts';
-import { Move } from './move.ts';
-import { startMover } from './starting.ts';
+import { FrameLoop } from './frame-loop.ts';
+import { startMovingMesh } from './starting.ts';
 
 const many = element<HTMLSelectElement>('many');
 
-export class Moves {
+export class MovingSamples {
   readonly #page: Page;
   #sample: MovingSample | undefined;
-  #board: Board | undefined;
-  #move: Move | undefined;
+  #panel: MotionPanel | undefined;
+  #loop: FrameLoop | undefined;
 
   constructor(page: Page) {
     this.#page = page;
     onTheme(() => {
-      this.#move?.mover.skin.setPalette(palette());
+      this.#loop?.moving.surface.setPalette(palette());
       page.scene?.redraw();
     });
     many.addEventListener('change', () => void this.restart());
@@ -44,11 +44,11 @@ export class Moves {
     document.body.dataset['moving'] = sample.kind;
     this.#page.leave((reason) => this.#resume(reason));
     markSample(sample.spec);
-    const board = new Board(sample.name);
-    this.#board = board;
-    board.state = 'busy';
-    await this.#page.attempt('Preparing the mesh…', (signal) => this.#begin(sample, board, signal));
-    if (board === this.#board && !this.#move) board.state = 'paused';
+    const panel = new MotionPanel(sample.name);
+    this.#panel = panel;
+    panel.state = 'busy';
+    await this.#page.attempt('Preparing the mesh…', (signal) => this.#begin(sample, panel, signal));
+    if (panel === this.#panel && !this.#loop) panel.state = 'paused';
   }
 
   /** Begins again, with the engine and the size that are chosen now. */
@@ -60,28 +60,28 @@ export class Moves {
   leave(): void {
     if (!this.#sample) return;
     this.#end();
-    this.#sample = this.#board = undefined;
+    this.#sample = this.#panel = undefined;
     markSample('');
     element('no-mesh').hidden = false;
     delete document.body.dataset['moving'];
   }
 
   async toggle(): Promise<void> {
-    const [move, board] = [this.#move, this.#board];
-    if (!move || !board) return this.restart();
-    board.state = move.isPlaying ? 'paused' : 'moving';
-    if (!move.isPlaying) return move.play();
-    await move.pause().catch((error: unknown) => move === this.#move && this.#fail(error));
+    const [loop, panel] = [this.#loop, this.#panel];
+    if (!loop || !panel) return this.restart();
+    panel.state = loop.isPlaying ? 'paused' : 'moving';
+    if (!loop.isPlaying) return loop.play();
+    await loop.pause().catch((error: unknown) => loop === this.#loop && this.#fail(error));
   }
 
   /** Writes the present mesh into a file. */
   async save(extension = '.ply'): Promise<void> {
-    const [move, sample] = [this.#move, this.#sample];
-    if (!move || !sample) return;
+    const [loop, sample] = [this.#loop, this.#sample];
+    if (!loop || !sample) return;
     await this.#page.attempt('Writing the file…', async (signal) => {
-      await download(await move.mover.mesh(), `${sample.kind}${extension}`, undefined, signal);
+      await download(await loop.moving.mesh(), `${sample.kind}${extension}`, undefined, signal);
     });
-    if (this.#board) this.#board.state = move.isPlaying ? 'moving' : 'paused';
+    if (this.#panel) this.#panel.state = loop.isPlaying ? 'moving' : 'paused';
   }
 
   async picture(): Promise<void> {
@@ -103,13 +103,13 @@ export class Moves {
     return 'Code copied.';
   }
 
-  async #begin(sample: MovingSample, board: Board, signal: AbortSignal): Promise<void> {
+  async #begin(sample: MovingSample, panel: MotionPanel, signal: AbortSignal): Promise<void> {
     const motion = MOTIONS[sample.kind];
     await this.#page.ready;
     const { scene, gpu } = this.#page;
     if (!scene) throw new Error('This browser cannot draw the mesh: it has no WebGPU and no WebGL2.');
     const backend = controls.backend.value as Backend;
-    const { mover, triangles, vertices, remark } = await startMover(
+    const { moving, triangles, vertices, remark } = await startMovingMesh(
       motion,
       Number(many.value),
       backend,
@@ -117,26 +117,26 @@ export class Moves {
       (attribute, buffer, count) => scene.share(attribute, buffer, count),
       signal,
     );
-    mover.skin.setPalette(palette());
-    board.begin(triangles, vertices, mover.engine, remark);
-    const move: Move = new Move(
-      mover,
+    moving.surface.setPalette(palette());
+    panel.begin(triangles, vertices, moving.engine, remark);
+    const loop: FrameLoop = new FrameLoop(
+      moving,
       motion,
       scene,
       element('view'),
-      (numbers) => move === this.#move && board.show(numbers, move.isPlaying),
-      (error) => move === this.#move && this.#fail(error),
+      (numbers) => loop === this.#loop && panel.show(numbers, loop.isPlaying),
+      (error) => loop === this.#loop && this.#fail(error),
     );
-    this.#move = move;
+    this.#loop = loop;
     element('no-mesh').hidden = true;
-    await move.still();
-    board.state = stillness.matches ? 'paused' : 'moving';
-    if (!stillness.matches) move.play();
+    await loop.still();
+    panel.state = stillness.matches ? 'paused' : 'moving';
+    if (!stillness.matches) loop.play();
   }
 
   #fail(error: unknown): void {
     this.#end();
-    if (this.#board) this.#board.state = 'paused';
+    if (this.#panel) this.#panel.state = 'paused';
     showError(error);
   }
 
@@ -147,7 +147,7 @@ export class Moves {
   }
 
   #end(): void {
-    this.#move?.free();
-    this.#move = undefined;
+    this.#loop?.free();
+    this.#loop = undefined;
   }
 }

@@ -11,7 +11,7 @@ const NEAR = 32;
 /** The most triangles of a mesh into which edges can be drawn: each move of the pointer looks at all points. */
 const MOST = 200_000;
 
-export class Drawing {
+export class EdgeDrawing {
   readonly #scene: () => Scene | undefined;
   /** The mesh, if edges can be drawn into it. */
   #mesh: IndexedMesh | undefined;
@@ -31,7 +31,7 @@ export class Drawing {
       if (!this.isOn || event.button !== 0) return;
       this.#from = this.#nearest(event);
       const scene = this.#scene();
-      if (this.#from !== undefined && scene) scene.eye.isFree = false;
+      if (this.#from !== undefined && scene) scene.camera.isFree = false;
       this.#show(event);
     };
     const end = (event: PointerEvent) => {
@@ -68,7 +68,7 @@ export class Drawing {
   #drop(): void {
     this.#from = undefined;
     const scene = this.#scene();
-    if (scene) scene.eye.isFree = true;
+    if (scene) scene.camera.isFree = true;
     this.#mark([]);
   }
 

@@ -4,14 +4,14 @@ import { controls, element } from '../watch/controls.ts';
 import { facts } from '../watch/panel.ts';
 import { made } from '../shell/elements.ts';
 import { counted, ms, number } from '../shell/numbers.ts';
-import type { Numbers } from './move.ts';
+import type { Numbers } from './frame-loop.ts';
 
 /** The most bars, and the pixels from one to the next. */
 const [MOST, PITCH] = [240, 5];
 /** Milliseconds from one change of the words to the next. */
 const CALM = 250;
 
-export class Board {
+export class MotionPanel {
   readonly #name: string;
   #triangles = 0;
   #vertices = 0;

@@ -3,22 +3,22 @@
 import { digestOf, fingerprintOf } from '../shell/digest.ts';
 import { element } from './controls.ts';
 import type { Display } from './display.ts';
-import { measure } from './measure.ts';
+import { BINS, type Opened } from './opening.ts';
 import type { Run, Summary } from './run.ts';
 import { statusOf } from './sentences.ts';
 import type { Shown } from './shown.ts';
-import type { Standing } from './transport.ts';
+import type { RunStatus } from './transport.ts';
 
 /** Milliseconds without a change after which a state is measured. */
 const QUIET = 150;
 
 /** What it needs of the page. */
-export interface Resting {
+export interface MeasuringHost {
   readonly display: Display;
-  standing(): Standing;
+  status(): RunStatus;
   shown(): Shown | undefined;
   /** Takes the summary of the run. */
-  sum(summary: Summary): void;
+  setSummary(summary: Summary): void;
   /** Whether the edges have no colours. */
   isPlain(): boolean;
   /** Everything is measured. */
@@ -26,13 +26,13 @@ export interface Resting {
   fail(error: unknown): void;
 }
 
-export class Rest {
-  readonly #page: Resting;
+export class Measuring {
+  readonly #host: MeasuringHost;
   /** The number of calls so far. A call stops when a later call begins. */
   #calls = 0;
 
-  constructor(page: Resting) {
-    this.#page = page;
+  constructor(host: MeasuringHost) {
+    this.#host = host;
   }
 
   /** Whether the shown state of the run is measured. */
@@ -51,37 +51,54 @@ export class Rest {
    * the triangles.
    */
   async begin(news?: string): Promise<void> {
-    const page = this.#page;
-    const shown = page.shown();
+    const host = this.#host;
+    const shown = host.shown();
     if (!shown) return;
     const { run, opened } = shown;
     const call = ++this.#calls;
-    const isOutdated = () => call !== this.#calls || page.standing().isPlaying || run !== page.shown()?.run;
+    const isOutdated = () => call !== this.#calls || host.status().isPlaying || run !== host.shown()?.run;
     delete document.body.dataset['measured'];
     await new Promise((resolve) => setTimeout(resolve, QUIET));
     // The picture comes first, because a measurement would hold it up.
-    await page.display.painted();
+    await host.display.painted();
     if (isOutdated()) return;
     try {
-      if (page.standing().summary?.iterations !== run.iterations.length) {
+      if (host.status().summary?.iterations !== run.iterations.length) {
         const summary = await run.result();
-        if (run === page.shown()?.run) page.sum(summary);
+        if (run === host.shown()?.run) host.setSummary(summary);
       }
       if (isOutdated()) return;
       const indices = await run.triangles();
       const fingerprint = fingerprintOf(await digestOf(indices));
       if (isOutdated()) return;
-      page.display.showNumbers(shown, page.standing(), fingerprint);
-      if (!run.states || page.isPlain()) page.display.lookInto(shown, indices);
-      if (news === undefined) await measure(page.display.panel, opened, run, indices, isOutdated);
+      host.display.showNumbers(shown, host.status(), fingerprint);
+      if (!run.states || host.isPlain()) host.display.lookInto(shown, indices);
+      if (news === undefined) await this.#measure(opened, run, indices, isOutdated);
       if (isOutdated()) return;
-      const { summary, ahead } = page.standing();
+      const { summary, ahead } = host.status();
       const status = statusOf(run, summary, ahead).join(' ').trim();
       element('announcement').textContent = news ?? `${status} ${element('note').textContent}`;
       document.body.dataset['measured'] = `${run.at}`;
-      page.handOver();
+      host.handOver();
     } catch (error) {
-      if (!isOutdated()) page.fail(error);
+      if (!isOutdated()) host.fail(error);
     }
+  }
+
+  /** Measures `indices`, the shown triangles of `run`, and shows the numbers unless they are outdated by then. */
+  async #measure(
+    { mesh, client, before: measureInput }: Opened,
+    run: Run,
+    indices: Uint32Array,
+    isOutdated: () => boolean,
+  ): Promise<void> {
+    const { panel } = this.#host.display;
+    const before = await measureInput();
+    const now = run.at === 0 ? before : await client.call((worker) => worker.measure({ ...mesh, indices }, BINS));
+    if (isOutdated()) return;
+    panel.showQuality(before, now);
+    if (!run.isOver) return;
+    const change = await client.call((worker) => worker.compare(mesh, indices));
+    if (!isOutdated()) panel.showQuality(before, now, change);
   }
 }

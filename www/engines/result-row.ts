@@ -1,15 +1,15 @@
-/** The lane of an engine: its name, its bar, its time, its speed-up and the fingerprint of its result. */
+/** The row of an engine: its name, its bar, its time, its speed-up and the fingerprint of its result. */
 
 import { made } from '../shell/elements.ts';
 import { fingerprintOf } from '../shell/digest.ts';
 import { draw } from './fingerprint.ts';
-import type { Contender } from './lineup.ts';
+import type { Contender } from './contenders.ts';
 import type { Outcome } from './race.ts';
 import { about, timeOf, timeText } from './words.ts';
 
 export type Ran = Extract<Outcome, { timing: unknown }>;
 
-export class Lane {
+export class ResultRow {
   readonly element: HTMLElement;
   readonly #contender: Contender;
   readonly #where = made('p', 'engines-where');
@@ -24,11 +24,11 @@ export class Lane {
     this.#contender = contender;
     const name = made('div', 'engines-name', made('h3', '', contender.name), this.#where);
     const middle = made('div', 'engines-middle', this.#track, this.#why);
-    this.element = made('li', 'engines-lane', name, middle, this.#time, this.#speed, this.#print);
+    this.element = made('li', 'engines-result', name, middle, this.#time, this.#speed, this.#print);
     this.reset();
   }
 
-  /** Empties the lane. An engine that cannot be here says why at once. */
+  /** Empties the row. An engine that cannot be here says why at once. */
   reset(): void {
     this.element.classList.remove('engines-first', 'engines-running');
     this.#bar.hidden = true;

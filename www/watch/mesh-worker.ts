@@ -40,7 +40,7 @@ export interface Quality {
 /** The flips of an iteration, and the edges that could flip before it. */
 export type Flips = Pick<Iteration, 'flips' | 'labelled'>;
 
-class Desk {
+class MeshWorker {
   #session: FlipSession | undefined;
   #before: Uint32Array = new Uint32Array();
 
@@ -168,5 +168,5 @@ function buffersOf(mesh: IndexedMesh & { placed?: Float32Array | undefined }): T
   return [mesh.positions.buffer, mesh.indices.buffer, ...(mesh.placed ? [mesh.placed.buffer] : [])];
 }
 
-export type { Desk };
-expose(new Desk());
+export type { MeshWorker };
+expose(new MeshWorker());

@@ -1,14 +1,14 @@
-/** What moves a mesh, with either engine. */
+/** A mesh that moves, on either engine. */
 
 import type { Counters } from 'edgeflip';
 import type { IndexedMesh } from 'edgeflip/files';
 import type { Step } from './motions.ts';
-import type { Skin } from './skin.ts';
+import type { MovingSurface } from './moving-surface.ts';
 
-export interface Mover {
+export interface MovingMesh {
   /** The engine and the adapter, for people. */
   readonly engine: string;
-  readonly skin: Skin;
+  readonly surface: MovingSurface;
   /** Moves the vertices by a frame, flips edges, and updates what is drawn. */
   frame(step: Step): Promise<void>;
   /** Resolves when the device has done all frames. */

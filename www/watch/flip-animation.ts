@@ -25,9 +25,9 @@ export function flipsBetween(before: Uint32Array, now: Uint32Array): Uint32Array
 }
 
 /** Which way edges slide: from the old edge to the new one, back, or not at all. */
-export type Way = 'on' | 'back' | 'not';
+export type SlideDirection = 'on' | 'back' | 'not';
 
-export class Turning {
+export class FlipAnimation {
   readonly lines = new LineSegments2(
     new LineSegmentsGeometry(),
     new Line2NodeMaterial({ linewidth: 2.4, transparent: true }),
@@ -44,7 +44,7 @@ export class Turning {
   }
 
   /** Begins with flips, see {@link flipsBetween}. */
-  show(positions: Float32Array, flips: Uint32Array, colour: string, way: Way): void {
+  show(positions: Float32Array, flips: Uint32Array, colour: string, way: SlideDirection): void {
     this.clear();
     if (flips.length === 0) return;
     [this.#positions, this.#flips] = [positions as Float32Array<ArrayBuffer>, flips as Uint32Array<ArrayBuffer>];

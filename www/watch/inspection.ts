@@ -21,7 +21,7 @@ export interface Triangles {
 /** A pointer that moves further than this between press and release, in pixels, turns the mesh. */
 const STILL = 6;
 
-export class Looking {
+export class Inspection {
   readonly #scene: () => Scene | undefined;
   #shown: Triangles | undefined;
   #quad: Quad | undefined;
@@ -99,7 +99,7 @@ export class Looking {
     if (!shown?.states || !scene) return -1;
     const { indices, states } = shown;
     const at = scene.projector();
-    const [x, y] = scene.eye.middle;
+    const [x, y] = scene.camera.middle;
     let [nearest, found, behind] = [Infinity, -1, -1];
     states.forEach((state, h) => {
       if (!isWanted(EDGE_STATES[state]!)) return;

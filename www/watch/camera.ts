@@ -29,7 +29,7 @@ const TANGENT = Math.tan((FIELD * Math.PI) / 360);
 const ROOM = 1.05;
 const FROM = new Vector3(1.4, 0.9, 3.1).normalize();
 
-export class Eye {
+export class Camera {
   readonly #canvas: HTMLCanvasElement;
   readonly #insets: () => Insets;
   readonly #changed: () => void;
@@ -38,7 +38,7 @@ export class Eye {
   #isFlat = false;
   /** Whether the camera is where `fit` has put it. */
   #isFitted = false;
-  camera: PerspectiveCamera | OrthographicCamera = new PerspectiveCamera();
+  three: PerspectiveCamera | OrthographicCamera = new PerspectiveCamera();
 
   /** `changed` is called when the camera has moved. */
   constructor(canvas: HTMLCanvasElement, insets: () => Insets, changed: () => void) {
@@ -63,11 +63,11 @@ export class Eye {
     this.#positions = positions as Float32Array<ArrayBuffer>;
     this.#isFlat = dimension === 2;
     this.#controls?.dispose();
-    this.camera = this.#isFlat
+    this.three = this.#isFlat
       ? new OrthographicCamera(-1, 1, 1, -1, 0.1, 10)
       : new PerspectiveCamera(FIELD, 1, 0.01, 20);
-    this.camera.position.copy(this.#isFlat ? new Vector3(0, 0, 3) : FROM);
-    const controls = new OrbitControls(this.camera, this.#canvas);
+    this.three.position.copy(this.#isFlat ? new Vector3(0, 0, 3) : FROM);
+    const controls = new OrbitControls(this.three, this.#canvas);
     controls.enableRotate = !this.#isFlat;
     controls.zoomToCursor = true;
     if (this.#isFlat) {
@@ -89,7 +89,7 @@ export class Eye {
   fit(): void {
     const { width, height, free } = this.#frame();
     if (!this.#controls || width === 0 || height === 0) return;
-    const back = this.camera.position.clone().sub(this.#controls.target).normalize();
+    const back = this.three.position.clone().sub(this.#controls.target).normalize();
     const right = new Vector3(0, 1, 0).cross(back).normalize();
     const up = back.clone().cross(right);
     const low = new Vector3(Infinity, Infinity, Infinity);
@@ -107,16 +107,16 @@ export class Eye {
     });
     const [mx, my] = [(low.x + high.x) / 2, (low.y + high.y) / 2];
     const target = right.clone().multiplyScalar(mx).addScaledVector(up, my);
-    if (this.camera instanceof OrthographicCamera) {
+    if (this.three instanceof OrthographicCamera) {
       const unit = ROOM * Math.max((high.x - low.x) / free.width, (high.y - low.y) / free.height, 1e-6);
       const [x, y] = [(unit * width) / 2, (unit * height) / 2];
-      Object.assign(this.camera, { left: -x, right: x, top: y, bottom: -y, zoom: 1 });
-      this.camera.position.copy(target).setZ(3);
+      Object.assign(this.three, { left: -x, right: x, top: y, bottom: -y, zoom: 1 });
+      this.three.position.copy(target).setZ(3);
     } else {
       const [tx, ty] = [(TANGENT * free.width) / height, (TANGENT * free.height) / height];
       let far = 0.1;
       seen((x, y, z) => (far = Math.max(far, z + (ROOM * Math.abs(x - mx)) / tx, z + (ROOM * Math.abs(y - my)) / ty)));
-      this.camera.position.copy(target).addScaledVector(back, far);
+      this.three.position.copy(target).addScaledVector(back, far);
     }
     this.#controls.target.copy(target);
     this.resize(false);
@@ -130,28 +130,28 @@ export class Eye {
     const { width, height, free } = this.#frame();
     if (width === 0 || height === 0) return;
     if (mayFit && this.#isFitted) return this.fit();
-    if (this.camera instanceof PerspectiveCamera) this.camera.aspect = width / height;
+    if (this.three instanceof PerspectiveCamera) this.three.aspect = width / height;
     else {
-      const half = (this.camera.top * width) / height;
-      Object.assign(this.camera, { left: -half, right: half });
+      const half = (this.three.top * width) / height;
+      Object.assign(this.three, { left: -half, right: half });
     }
-    this.camera.setViewOffset(width, height, width / 2 - free.x, height / 2 - free.y, width, height);
-    this.camera.updateProjectionMatrix();
+    this.three.setViewOffset(width, height, width / 2 - free.x, height / 2 - free.y, width, height);
+    this.three.updateProjectionMatrix();
     this.#changed();
   }
 
   /** Where the camera is and what it looks at, for a link. */
   get pose(): number[] | undefined {
     if (!this.#controls || this.#isFitted) return undefined;
-    return [...this.camera.position.toArray(), ...this.#controls.target.toArray(), this.camera.zoom];
+    return [...this.three.position.toArray(), ...this.#controls.target.toArray(), this.three.zoom];
   }
 
   set pose(numbers: readonly number[]) {
     if (!this.#controls || numbers.length !== 7 || !numbers.every(Number.isFinite)) return;
-    this.camera.position.fromArray(numbers, 0);
+    this.three.position.fromArray(numbers, 0);
     this.#controls.target.fromArray(numbers, 3);
-    this.camera.zoom = numbers[6]!;
-    this.camera.updateProjectionMatrix();
+    this.three.zoom = numbers[6]!;
+    this.three.updateProjectionMatrix();
     this.#controls.update();
     this.#isFitted = false;
   }
@@ -160,15 +160,15 @@ export class Eye {
   rayAt(x: number, y: number): Ray {
     const { width, height } = this.#frame();
     const caster = new Raycaster();
-    this.camera.updateMatrixWorld();
-    caster.setFromCamera(new Vector2((2 * x) / width - 1, 1 - (2 * y) / height), this.camera);
+    this.three.updateMatrixWorld();
+    caster.setFromCamera(new Vector2((2 * x) / width - 1, 1 - (2 * y) / height), this.three);
     return caster.ray;
   }
 
   /** The size of a pixel in the scene, at the distance that the camera looks at. */
   get pixel(): number {
     const { height } = this.#frame();
-    const { camera } = this;
+    const { three: camera } = this;
     if (camera instanceof OrthographicCamera) return (camera.top - camera.bottom) / camera.zoom / height;
     const distance = camera.position.distanceTo(this.#controls?.target ?? new Vector3());
     return (2 * TANGENT * distance) / height;
@@ -177,9 +177,9 @@ export class Eye {
   /** Returns a function that says where a point of the scene is in the picture, in pixels. It changes the point. */
   projector(): (point: Vector3) => [x: number, y: number] {
     const { width, height } = this.#frame();
-    this.camera.updateMatrixWorld();
+    this.three.updateMatrixWorld();
     return (point) => {
-      const { x, y } = point.project(this.camera);
+      const { x, y } = point.project(this.three);
       return [((x + 1) / 2) * width, ((1 - y) / 2) * height];
     };
   }

@@ -3,10 +3,10 @@
 import type { Point, Series } from './sizes.ts';
 
 /** Who is first, and from which size on a GPU is, if it is not from the start. */
-export type Lead = { first: 'cpu' | 'gpu' | 'only the cpu' | 'only a gpu' } | { from: Point };
+export type Crossover = { first: 'cpu' | 'gpu' | 'only the cpu' | 'only a gpu' } | { from: Point };
 
 /** Compares the best GPU engine with the CPU at each size that either has. */
-export function leadOf(series: readonly Series[]): Lead {
+export function crossoverOf(series: readonly Series[]): Crossover {
   const best = (isGpu: boolean) => {
     const times = new Map<number, number>();
     for (const { contender, points } of series) {

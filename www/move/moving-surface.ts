@@ -37,7 +37,7 @@ export type Sharing = <A extends BufferAttribute>(attribute: A, buffer: GPUBuffe
 /** Seconds in which the heat of an edge falls to a third. */
 const COOLING = 0.38;
 
-export class Skin {
+export class MovingSurface {
   readonly object: Mesh<BufferGeometry, MeshBasicNodeMaterial>;
   readonly #time = uniform(0);
   readonly #dimension: 2 | 3;
@@ -65,7 +65,7 @@ export class Skin {
     triangles: GPUBuffer,
     flashed: GPUBuffer,
     { positions: { length }, indices, dimension }: IndexedMesh,
-  ): Skin {
+  ): MovingSurface {
     const floats = () => new StorageBufferAttribute(new Float32Array(), 1);
     const numbers = storage(share(floats(), positions, length), 'float', length).toReadOnly();
     const words = new StorageBufferAttribute(new Uint32Array(), 1);
@@ -82,17 +82,17 @@ export class Skin {
     const geometry = new BufferGeometry();
     // Four bytes for each corner, which tell three.js only how many there are.
     geometry.setAttribute('position', new BufferAttribute(new Uint8Array(4 * indices.length), 4, true));
-    return new Skin(geometry, sides, dimension, position);
+    return new MovingSurface(geometry, sides, dimension, position);
   }
 
   /** From arrays, see {@link fill}. */
-  static onArrays({ indices, dimension }: IndexedMesh): Skin {
+  static onArrays({ indices, dimension }: IndexedMesh): MovingSurface {
     const geometry = new BufferGeometry();
     for (const name of ['position', 'flashed']) {
       const array = new BufferAttribute(new Float32Array(3 * indices.length), 3);
       geometry.setAttribute(name, array.setUsage(DynamicDrawUsage));
     }
-    return new Skin(geometry, attribute<'vec3'>('flashed', 'vec3'), dimension);
+    return new MovingSurface(geometry, attribute<'vec3'>('flashed', 'vec3'), dimension);
   }
 
   fill(positions: Float32Array, indices: Uint32Array, flashed: Float32Array): void {

@@ -3,7 +3,7 @@
 import { controls, element } from './controls.ts';
 import type { Scene } from './scene.ts';
 
-export class Halves {
+export class Comparison {
   readonly #scene: () => Scene | undefined;
   /** The input of the open mesh. */
   #input: Uint32Array | undefined;
@@ -28,7 +28,7 @@ export class Halves {
     if (isShown && this.#input && scene) {
       scene.compareWith(this.#input);
       // Through the middle of the mesh, which is not that of the picture.
-      controls.cut.valueAsNumber = (1000 * scene.eye.middle[0]) / scene.canvas.clientWidth;
+      controls.cut.valueAsNumber = (1000 * scene.camera.middle[0]) / scene.canvas.clientWidth;
     }
     element('halves').hidden = !isShown;
     controls.compare.ariaPressed = `${isShown}`;

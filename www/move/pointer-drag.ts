@@ -9,7 +9,7 @@ const LONGEST = 0.06;
 /** The mesh is in a square with this half side, or in a ball with this radius. */
 const REACH = 1.15 * HALF;
 
-export class Grip {
+export class PointerDrag {
   readonly #view: HTMLElement;
   readonly #scene: Scene;
   readonly #dimension: 2 | 3;
@@ -65,14 +65,14 @@ export class Grip {
 
   dispose(): void {
     this.#listening.abort();
-    this.#scene.eye.isFree = true;
+    this.#scene.camera.isFree = true;
   }
 
   #press(event: PointerEvent): void {
     if (this.isHeld || event.button !== 0) return;
     const ray = this.#rayOf(event);
     if (!this.#hits(ray)) return;
-    this.#scene.eye.isFree = false;
+    this.#scene.camera.isFree = false;
     this.#pointer = event.pointerId;
     this.#last = this.#now = ray;
     this.#scene.canvas.setPointerCapture(event.pointerId);
@@ -85,13 +85,13 @@ export class Grip {
 
   #letGo(): void {
     this.#pointer = undefined;
-    this.#scene.eye.isFree = true;
+    this.#scene.camera.isFree = true;
     this.#changed(false);
   }
 
   #rayOf({ clientX, clientY }: PointerEvent): Ray {
     const { left, top } = this.#view.getBoundingClientRect();
-    return this.#scene.eye.rayAt(clientX - left, clientY - top).clone();
+    return this.#scene.camera.rayAt(clientX - left, clientY - top).clone();
   }
 
   /** Whether the line of sight meets the mesh. */
