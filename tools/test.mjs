@@ -18,7 +18,9 @@ const started = performance.now();
 const words = process.argv.slice(2).filter((word) => !word.startsWith('--'));
 const takesAll = isFull || process.argv.includes('--all') || Boolean(process.env.CI);
 const byName = new Map(levels.map((level) => [level.name, level]));
-const named = levels.filter(({ isBuild, name }) => !isBuild && (words.length === 0 || words.some((word) => name.includes(word))));
+const named = levels.filter(
+  ({ isBuild, name }) => !isBuild && (words.length === 0 || words.some((word) => name.includes(word))),
+);
 if (named.length === 0) {
   const names = levels.filter(({ isBuild }) => !isBuild).map(({ name }) => name);
   console.error(`test: no level has ${words.join(' or ')} in its name; the levels are ${names.join(', ')}`);
@@ -34,7 +36,6 @@ function choose(level) {
   chosen.add(level);
 }
 named.forEach(choose);
-
 
 /** How each level and build ended. @type {Map<Level, { passed: number, failed: number, why: string, seconds: number, isUnchanged?: boolean }>} */
 const results = new Map();
@@ -56,7 +57,13 @@ function skip(level) {
 function end(level, result) {
   results.set(level, result);
   const { passed, failed, why, seconds, isUnchanged } = result;
-  const how = isUnchanged ? 'unchanged since it passed' : failed > 0 ? `FAILED: ${why}` : level.isBuild ? 'built' : `${passed} passed`;
+  const how = isUnchanged
+    ? 'unchanged since it passed'
+    : failed > 0
+      ? `FAILED: ${why}`
+      : level.isBuild
+        ? 'built'
+        : `${passed} passed`;
   console.log(`${clock()} ${level.name}: ${how}${isUnchanged ? '' : ` in ${seconds.toFixed(1)} s`}`);
 }
 
@@ -69,7 +76,11 @@ function clock() {
 function run([program, ...args], { env = {}, cwd = '.' }) {
   let output = `$ ${[program, ...args].join(' ')}\n`;
   return new Promise((resolve) => {
-    const child = spawn(program, args, { cwd, env: { ...process.env, ...env }, stdio: ['ignore', 'pipe', 'pipe'] });
+    const child = spawn(program, args, {
+      cwd,
+      env: { ...process.env, NO_COLOR: '1', ...env },
+      stdio: ['ignore', 'pipe', 'pipe'],
+    });
     for (const from of [child.stdout, child.stderr]) {
       from.setEncoding('utf8');
       from.on('data', (text) => {
@@ -121,7 +132,9 @@ async function runLevel(level) {
     const { program: path, cwd } = program.startsWith('@') ? compiled(program.slice(1)) : { program };
     const { ok, output } = await run([path, ...args], { env: level.env, cwd });
     log += output;
-    const counted = level.counts ? count(output) : { passed: Number(ok && !level.isBuild), failed: Number(!ok), ignored: 0 };
+    const counted = level.counts
+      ? count(output)
+      : { passed: Number(ok && !level.isBuild), failed: Number(!ok), ignored: 0 };
     for (const key of Object.keys(sums)) sums[key] += counted[key];
     if (!ok && counted.failed === 0) {
       // A compile error or a crash: the harness has counted no failure.
@@ -198,11 +211,16 @@ await runAll(
 console.log('\n| level | what it checks | tests | result | seconds |\n|---|---|---:|---|---:|');
 for (const level of chosen) {
   const { passed, failed, why, seconds, isUnchanged } = results.get(level);
-  const result = failed > 0 ? `FAILED: ${why}` : isUnchanged ? 'unchanged since it passed' : level.isBuild ? 'built' : 'passed';
-  console.log(`| ${level.name} | ${level.what} | ${level.isBuild ? '' : passed + failed} | ${result} | ${seconds.toFixed(1)} |`);
+  const result =
+    failed > 0 ? `FAILED: ${why}` : isUnchanged ? 'unchanged since it passed' : level.isBuild ? 'built' : 'passed';
+  console.log(
+    `| ${level.name} | ${level.what} | ${level.isBuild ? '' : passed + failed} | ${result} | ${seconds.toFixed(1)} |`,
+  );
 }
 const all = [...results.values()];
 const sum = (key) => all.reduce((total, result) => total + result[key], 0);
-console.log(`\n${clock()} ${all.filter(({ isUnchanged }) => isUnchanged).length} of ${all.length} levels and builds unchanged`);
+console.log(
+  `\n${clock()} ${all.filter(({ isUnchanged }) => isUnchanged).length} of ${all.length} levels and builds unchanged`,
+);
 console.log(`\n${sum('passed')} passed, ${sum('failed')} failed`);
 process.exitCode = sum('failed') === 0 ? 0 : 1;

@@ -58,7 +58,9 @@ const alone = ['handover', 'large', 'firefox'];
 const onPage = testsIn('page').filter((file) => !alone.includes(file));
 
 /** What the tests in browsers share. */
-const shared = ['browsers.mjs', 'engine-page.mjs', 'engines.html', 'full.mjs', 'together.mjs'].map((file) => `tests/${file}`);
+const shared = ['browsers.mjs', 'engine-page.mjs', 'engines.html', 'full.mjs', 'together.mjs'].map(
+  (file) => `tests/${file}`,
+);
 
 /** @type {Level[]} */
 const builds = [
@@ -67,7 +69,18 @@ const builds = [
     what: 'the tests in Rust compile, and the command line',
     checks: [['node', 'tools/test/programs.mjs']],
     tools: ['rust'],
-    reads: [...crate, ...locks, 'tools/glsl', 'shaders/webgl2', 'tests', 'examples', 'fuzz', '!tests/package', '!tests/page', '!tests/peers'],
+    reads: [
+      ...crate,
+      ...locks,
+      'tools/glsl',
+      'shaders/webgl2',
+      'tests',
+      'examples',
+      'fuzz',
+      '!tests/package',
+      '!tests/page',
+      '!tests/peers',
+    ],
     writes: ['target/test/programs.json'],
     holds: ['target'],
   },
@@ -78,7 +91,18 @@ const builds = [
     // What rustc says of every build with threads is no lint.
     refuses: /^warning: (?!unstable feature specified|`edgeflip` \(lib\) generated 1 warning$).*/m,
     tools: ['rust', 'wasm', 'bindgen', 'packages'],
-    reads: ['src', '!src/bin', 'shaders', 'build.rs', 'tools/build.mjs', 'tools/sizes.mjs', 'tools/wasm-cargo.sh', 'tools/glsl', ...locks, ...scripts],
+    reads: [
+      'src',
+      '!src/bin',
+      'shaders',
+      'build.rs',
+      'tools/build.mjs',
+      'tools/sizes.mjs',
+      'tools/wasm-cargo.sh',
+      'tools/glsl',
+      ...locks,
+      ...scripts,
+    ],
     writes: ['dist'],
     holds: ['target/wasm', 'target/wasm-threads'],
   },
@@ -130,7 +154,19 @@ const levels = [
     what: 'clippy gives no warning; Cargo.lock fits Cargo.toml',
     checks: [['cargo', 'clippy', '--locked', '--workspace', '--all-targets', '--', '-D', 'warnings']],
     tools: ['rust', 'lints'],
-    reads: [...crate, ...locks, 'clippy.toml', 'tools/glsl', 'tests', 'examples', 'benches', 'fuzz', '!tests/package', '!tests/page', '!tests/peers'],
+    reads: [
+      ...crate,
+      ...locks,
+      'clippy.toml',
+      'tools/glsl',
+      'tests',
+      'examples',
+      'benches',
+      'fuzz',
+      '!tests/package',
+      '!tests/page',
+      '!tests/peers',
+    ],
     holds: ['target'],
   },
   {
@@ -152,19 +188,40 @@ const levels = [
       WASM_BINDGEN_TEST_TIMEOUT: '600',
     },
     tools: ['rust', 'wasm', 'bindgen', 'chromium'],
-    reads: ['src', '!src/js', '!src/bin', '!src/io', 'shaders', 'build.rs', ...locks, 'tests/wasm.rs', 'tests/worker.rs', 'tests/wasm', 'tests/native/meshes', 'tools/wasm-cargo.sh', 'webdriver.json'],
+    reads: [
+      'src',
+      '!src/js',
+      '!src/bin',
+      '!src/io',
+      'shaders',
+      'build.rs',
+      ...locks,
+      'tests/wasm.rs',
+      'tests/worker.rs',
+      'tests/wasm',
+      'tests/native/meshes',
+      'tools/wasm-cargo.sh',
+      'webdriver.json',
+    ],
     holds: ['target/wasm'],
   },
   {
     name: 'npm package',
     what: 'the types pass strict TypeScript; the tests of the package, and the code in README and docs/, run in Node on the CPU engine',
-    checks: [
-      ['node', 'node_modules/typescript/bin/tsc', '-p', 'tests/package'],
-      apart('package', inNode),
-    ],
+    checks: [['node', 'node_modules/typescript/bin/tsc', '-p', 'tests/package'], apart('package', inNode)],
     counts: true,
     tools: ['packages'],
-    reads: ['tests/package', 'tests/browsers.mjs', 'README.md', 'docs', 'examples', 'src/js', 'CHANGELOG.md', 'tools', ...scripts],
+    reads: [
+      'tests/package',
+      'tests/browsers.mjs',
+      'README.md',
+      'docs',
+      'examples',
+      'src/js',
+      'CHANGELOG.md',
+      'tools',
+      ...scripts,
+    ],
     after: ['package'],
     uses: ['dist'],
   },
@@ -252,7 +309,10 @@ function fullLevels() {
       name: 'wasm32',
       what: 'clippy gives no warning for the library in a browser: without exports for JavaScript, and as each module of the package',
       checks: wasm32.map(([features, ...options]) => {
-        const [threads, tests] = [options.filter((option) => option === '--threads'), options.filter((option) => option !== '--threads')];
+        const [threads, tests] = [
+          options.filter((option) => option === '--threads'),
+          options.filter((option) => option !== '--threads'),
+        ];
         return [...wasmCargo, ...threads, 'clippy', '--lib', ...tests, ...wasmWith(features), '--', '-D', 'warnings'];
       }),
       tools: ['rust', 'lints', 'wasm'],

@@ -9,7 +9,8 @@ import { join, posix } from 'node:path';
 
 const FILE = 'target/test/stamps.json';
 /** Folders that no level reads as a whole: what is installed or built there comes from lock files and other levels. */
-const LEFT_OUT = /^(\.git|target|dist|node_modules|fuzz\/target|tests\/peers\/(node_modules|projects-.*|\.parcel-cache))$/;
+const LEFT_OUT =
+  /^(\.git|target|dist|node_modules|fuzz\/target|tests\/peers\/(node_modules|projects-.*|\.parcel-cache))$/;
 /** Variables that may change the result of a level. */
 const VARIABLES = /^(EDGEFLIP|RUST|CARGO|VK|MESA|LIBGL|GALLIUM|LP|WGPU|CHROM|FIREFOX|MOZ|NODE|PROPTEST|CI$)/;
 
@@ -69,7 +70,12 @@ const first = (variable, ...names) => {
 /** The drivers: the files that name them, and the libraries that these name, by size and time. */
 function drivers() {
   const folders = ['/usr/share/vulkan/icd.d', '/usr/local/share/vulkan/icd.d', '/etc/vulkan/icd.d'];
-  const libraries = ['/usr/lib', '/usr/lib64', '/usr/local/lib', `/usr/lib/${process.arch === 'arm64' ? 'aarch64' : 'x86_64'}-linux-gnu`];
+  const libraries = [
+    '/usr/lib',
+    '/usr/lib64',
+    '/usr/local/lib',
+    `/usr/lib/${process.arch === 'arm64' ? 'aarch64' : 'x86_64'}-linux-gnu`,
+  ];
   const found = folders.flatMap((folder) => {
     try {
       return readdirSync(folder).map((file) => readFileSync(join(folder, file), 'utf8'));
@@ -98,11 +104,18 @@ const tools = {
   wasm: () => said('bash', 'tools/wasm-cargo.sh', '--which'),
   bindgen: () => said('target/setup/bin/wasm-bindgen', '--version'),
   packages: () => `${process.version} ${outputAt('package-lock.json')} ${outputAt('node_modules/.package-lock.json')}`,
-  peers: () => `${outputAt('tests/peers/package-lock.json')} ${outputAt('tests/peers/node_modules/.package-lock.json')}`,
+  peers: () =>
+    `${outputAt('tests/peers/package-lock.json')} ${outputAt('tests/peers/node_modules/.package-lock.json')}`,
   vulkan: drivers,
   chromium: () =>
     [
-      first('CHROMIUM', 'chromium', 'chromium-browser', 'google-chrome', '/Applications/Google Chrome.app/Contents/MacOS/Google Chrome'),
+      first(
+        'CHROMIUM',
+        'chromium',
+        'chromium-browser',
+        'google-chrome',
+        '/Applications/Google Chrome.app/Contents/MacOS/Google Chrome',
+      ),
       first('CHROMEDRIVER', 'chromedriver'),
     ].join('\n'),
   firefox: () => first('FIREFOX', 'firefox-esr', 'firefox', '/Applications/Firefox.app/Contents/MacOS/firefox'),
