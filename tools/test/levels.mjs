@@ -228,7 +228,7 @@ const levels = [
 ];
 levels.push(
   {
-    name: 'engines in browsers',
+    name: 'parity in browsers',
     what: 'the parity matrix, quads and locks on each engine of the package in Chromium and Firefox',
     checks: [['node', '--test-reporter=tap', 'tests/engines.test.mjs']],
     counts: true,
