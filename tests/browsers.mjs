@@ -167,14 +167,12 @@ async function serverOf(folder, headers) {
  * @template {import('playwright-core').Browser | import('puppeteer-core').Browser} B
  * @param {B} browser
  * @param {string} address
- * @param {{ isAlone?: boolean, isKept?: boolean }} how - `isAlone`: it shares no cache with other pages. `isKept`: it may
- *   keep its files for visits without a network. Each page would load all of them again.
+ * @param {boolean} isKept - Whether the page may keep its files for visits without a network. Each page would load all
+ *   of them again.
  * @returns {Promise<{ page: Awaited<ReturnType<B['newPage']>>, problems: string[] }>}
  */
-export async function openPage(browser, address, { isAlone = false, isKept = false } = {}) {
-  // Each page of Chromium has a cache of its own, unless a context joins them.
-  const home = isAlone || !browser.newContext ? browser : await once('context', () => browser.newContext());
-  const page = await home.newPage();
+export async function openPage(browser, address, isKept = false) {
+  const page = await browser.newPage();
   // Firefox has a setting for this.
   if (!isKept) await page.addInitScript?.(() => delete Navigator.prototype.serviceWorker);
   const problems = [];

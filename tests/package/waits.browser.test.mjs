@@ -14,7 +14,7 @@ const repository = fileURLToPath(new URL('../..', import.meta.url));
 after(closeAll);
 
 /** Runs in the page: counts the calls of WebGPU in each run, and collects wrong results. */
-async function runs([plane, space]) {
+async function runs() {
   const { FlipSession, makeDelaunay } = await import('/dist/index.js');
   const { generate } = await import('/dist/files.js');
   let asked = {};
@@ -33,7 +33,7 @@ async function runs([plane, space]) {
   count(GPUQueue.prototype, 'writeBuffer', (buffer, place, data, first, size = data.byteLength) =>
     size > FEW ? 'arrays' : undefined,
   );
-  const [mesh, surface] = [await generate(plane), await generate(space)];
+  const [mesh, surface] = [await generate('random 150'), await generate('uvsphere 140')];
   const wanted = new Map();
   for (const one of [mesh, surface]) wanted.set(one, await makeDelaunay(one, { backend: 'cpu' }));
   const wrong = [];
@@ -79,10 +79,7 @@ async function runs([plane, space]) {
 
 test('a run waits once, and copies through buffers that are reused', async () => {
   const { page } = await enginePage();
-  const { told, wrong } = await page.evaluate(
-    runs,
-    full ? ['random 150', 'uvsphere 140'] : ['random 70', 'uvsphere 70'],
-  );
+  const { told, wrong } = await page.evaluate(runs);
   console.log(JSON.stringify(told));
   assert.deepEqual(wrong, []);
   // The first run opens the device. The first run of each size creates the buffers for the next.

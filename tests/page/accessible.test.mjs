@@ -91,7 +91,7 @@ test('nothing moves while the tool opens and plays', async () => {
 
 /** Loads the first view with an empty cache: the milliseconds to its first content and to its motion, and its bytes. */
 async function load(address) {
-  const { page, problems } = await openPage(await startChromium(), 'about:blank', { isAlone: true });
+  const { page, problems } = await openPage(await startChromium(), 'about:blank');
   await page.addInitScript(() => {
     const look = () => {
       if (document.getElementById('live')?.hidden === false) window.hasMoved = performance.now();

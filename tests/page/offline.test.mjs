@@ -13,8 +13,7 @@ import { EdgeflipPage, expected, fingerprintOf, first, folder, meshFile } from '
 test('after a visit to the tool, the page needs no network and no headers', async () => {
   cpSync(fileURLToPath(new URL('../../target/www', import.meta.url)), join(folder, 'some/where'), { recursive: true });
   const address = `${await serve(folder)}some/where/`;
-  const how = { isAlone: true, isKept: true };
-  const { page, problems } = await openPage(await startChromium(), `${address}#watch`, how);
+  const { page, problems } = await openPage(await startChromium(), `${address}#watch`, true);
   const edgeflip = new EdgeflipPage(page, problems);
   await edgeflip.rest();
   assert.equal(await page.evaluate(() => crossOriginIsolated), false);

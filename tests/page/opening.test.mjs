@@ -334,8 +334,7 @@ test('the name of a file is shown unchanged', async () => {
 });
 
 test('the memory of workers is freed when other meshes are opened', async () => {
-  const page = await sharedPage();
-  await page.page.evaluate(() => {
+  const page = await openEdgeflip(await startChromium(), () => {
     window.workers = [];
     window.Worker = class extends Worker {
       constructor(...args) {
@@ -356,7 +355,5 @@ test('the memory of workers is freed when other meshes are opened', async () => 
   let [made, kept] = await counts();
   while (kept > 2 && performance.now() < end) [made, kept] = await counts();
   assert.ok(made > 10 && kept <= 2, `${kept} of ${made} workers are held`);
-  await session.detach();
-  await page.page.evaluate(() => (window.Worker = Object.getPrototypeOf(Worker)));
   await page.close();
 });

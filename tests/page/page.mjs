@@ -138,7 +138,7 @@ class Shared {
   }
 
   /** The page as a link to a sample opens it, with the engine `auto` and the β that suits the sample. */
-  async show(mesh = 'random 24') {
+  async show(mesh) {
     // A test that failed may have left the page in any state.
     if (this.#page?.isInUse) {
       await this.#page.page.close();
@@ -159,13 +159,13 @@ const withOwnBeta = new Shared(async (link) => openAt(link, await startChromium(
 const inFirefox = new Shared(async (link) => openAt(link, await startFirefox(), []));
 
 /** The page of Chromium that tests share, at a sample. Its GPU devices are in `window.devices`. */
-export const sharedPage = (mesh) => inChromium.show(mesh);
+export const sharedPage = (mesh = 'random 24') => inChromium.show(mesh);
 
-/** The page of Chromium that tests share if they enter a β. */
-export const pageForBeta = (mesh) => withOwnBeta.show(mesh);
+/** The page of Chromium that tests share if they enter a β. It shows a surface, which has one. */
+export const pageForBeta = () => withOwnBeta.show('roof 16');
 
 /** The page of Firefox that tests share. */
-export const pageInFirefox = (mesh) => inFirefox.show(mesh);
+export const pageInFirefox = () => inFirefox.show('random 24');
 
 /** For `openEdgeflip`: keeps the GPU devices of the page in `window.devices`, so that a test can lose them. */
 export function keepDevices() {
