@@ -66,14 +66,20 @@ export interface FileMesh extends IndexedMesh {
   lockedTriangles: Uint32Array | undefined;
 }
 
+/** Returns the bytes of the file with this name, or `undefined` if there is none. */
+export type FindFile = (name: string) => Uint8Array | undefined;
+
 /** The options of {@link readMesh}. */
 export interface ReadOptions {
   /** Default: 2 if the file has two coordinates per vertex or every z is 0, else 3. For glTF always 3. */
   dimension?: 2 | 3 | undefined;
   /** The most bytes that the file may have, compressed and unpacked. Default: 2^30. */
   maxBytes?: number | undefined;
-  /** The other files that hold the buffers of a `.gltf` file. Nothing is fetched. */
-  files?: Files | undefined;
+  /**
+   * The other files that hold the buffers of a `.gltf` file, or a function that is called with the name of each
+   * when the file is read. If the function throws, {@link readMesh} throws the same error. Nothing is fetched.
+   */
+  files?: Files | FindFile | undefined;
 }
 
 /** The options of {@link writeMesh}. */
@@ -218,6 +224,19 @@ function held<A extends VertexArray>(view: A, what: string): A {
   return areFilesLoaded() ? view : copyOf(view, what);
 }
 
+/** The files that a function finds. The module looks them up by name and ignores errors, so they go to `failures`. */
+function foundBy(find: FindFile, failures: unknown[]): Files {
+  const get = (_: Files, name: string | symbol) => {
+    try {
+      return find(String(name));
+    } catch (error) {
+      failures.push(error);
+      return undefined;
+    }
+  };
+  return new Proxy({}, { get });
+}
+
 /**
  * Reads a mesh from the bytes of a file, which may be compressed with gzip.
  *
@@ -227,15 +246,21 @@ function held<A extends VertexArray>(view: A, what: string): A {
  */
 export async function readMesh(bytes: Uint8Array, name: string, options: ReadOptions = {}): Promise<FileMesh> {
   const [view, file] = [bytesOf(bytes, 'bytes'), textOf(name, 'name')];
+  const failures: unknown[] = [];
   const { dimension, maxBytes, files } = read('the options', () => {
     const { dimension, maxBytes, files } = optionsOf(options, READ_OPTIONS) as ReadOptions;
     if (dimension !== undefined) checkDimension(dimension);
-    return { dimension, maxBytes: maxBytesOf(maxBytes), files: filesOf(files, held) };
+    const found = typeof files === 'function' ? foundBy(files, failures) : filesOf(files, held);
+    return { dimension, maxBytes: maxBytesOf(maxBytes), files: found };
   });
   // The module counts bytes with 32 bits.
   if (view.length >= 2 ** 32) throw new EdgeflipError('file-too-large', 'the file has more than 4294967295 bytes');
   const content = held(view, 'bytes');
-  return call(() => wasm.readMesh({ bytes: content, name: file, files, maxBytes }, dimension));
+  try {
+    return await call(() => wasm.readMesh({ bytes: content, name: file, files, maxBytes }, dimension));
+  } catch (error) {
+    throw failures.length > 0 ? failures[0] : error;
+  }
 }
 
 /**

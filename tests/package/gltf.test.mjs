@@ -47,6 +47,18 @@ test('a rigged GLB becomes a valid glTF, and a strip a valid list', async () => 
     message: /buffer 0: .*`a b.bin`: it is not among the `files` given/,
   });
   const { mesh, after: again } = await flipped(strip, 'strip.gltf', files);
+  // A function finds the file too, and its error comes through.
+  const asked = [];
+  const find = (name) => {
+    asked.push(name);
+    return files[name];
+  };
+  assert.deepEqual((await readMesh(strip, 'strip.gltf', { files: find })).indices, mesh.indices);
+  assert.deepEqual(asked, ['a b.bin']);
+  const fails = () => {
+    throw new RangeError('no room');
+  };
+  await assert.rejects(readMesh(strip, 'strip.gltf', { files: fails }), RangeError('no room'));
   // The same triangle from another corner.
   const indices = mesh.indices.slice();
   [indices[0], indices[1], indices[2]] = [indices[1], indices[2], indices[0]];

@@ -1,5 +1,8 @@
 /** The bytes of a mesh's files. They are read once and kept, so that later changes of the files have no effect. */
 
+/** Of workers only, so the types of the page do not have it. */
+declare const FileReaderSync: new () => { readAsArrayBuffer(file: Blob): ArrayBuffer };
+
 /** A file, and its path relative to the chosen or dropped files. */
 export interface Located {
   path: string;
@@ -43,24 +46,30 @@ export function plain(path: string): string {
 }
 
 /**
- * Reads a file, and the files in `beside` that it names.
+ * Calls `read` with the bytes of a file, and with a function that reads a file in `beside` when `read` asks for it.
  *
  * @throws if a file cannot be read, or if the files together are too large.
  */
-export async function contentOf(main: Located, beside: readonly Located[], report: Report): Promise<Content> {
+export async function readWith<T>(
+  main: Located,
+  beside: readonly Located[],
+  report: Report,
+  read: (bytes: Content['bytes'], files: (name: string) => Uint8Array | undefined) => Promise<T>,
+): Promise<{ result: T; content: Content }> {
   checkSize(`${main.path} has`, main.file.size);
-  const bytes = await bytesOf(main, report);
+  const content: Content = { bytes: await bytesOf(main, report), beside: new Map() };
+  report(main.path, 1);
   const folder = folderOf(main.path);
-  const named = new Map<string, Located>();
-  for (const name of beside.length > 0 ? await buffersOf(bytes) : []) {
+  let size = main.file.size;
+  const result = await read(content.bytes, (name) => {
     const found = beside.find(({ path }) => path === plain(folder + name));
-    if (found) named.set(name, found);
-  }
-  const size = [main, ...named.values()].reduce((sum, { file }) => sum + file.size, 0);
-  checkSize(`${main.path} and its buffers have`, size);
-  const others: Content['beside'] = new Map();
-  for (const [name, file] of named) others.set(name, await bytesOf(file, report));
-  return { bytes, beside: others };
+    if (!found || content.beside.has(name)) return content.beside.get(name);
+    checkSize(`${main.path} and its buffers have`, (size += found.file.size));
+    const bytes = bytesNow(found);
+    content.beside.set(name, bytes);
+    return bytes;
+  });
+  return { result, content };
 }
 
 /** Stores the bytes in Blobs, which the browser may move to the disk. */
@@ -100,60 +109,27 @@ async function bytesOf({ path, file }: Located, report: Report): Promise<Uint8Ar
     }
     if (at < bytes.length) throw new Error('the file has become shorter');
   } catch {
-    // The message of the browser is only `network error`.
-    const why = 'it was moved, changed or removed after it was chosen, or you may not read it';
-    throw new Error(`${path} could not be read: ${why}. Choose it again.`);
+    throw unreadable(path);
   }
   return bytes;
+}
+
+/** Reads a file while `readMesh` waits, which a worker may do. */
+function bytesNow({ path, file }: Located): Uint8Array<ArrayBuffer> {
+  try {
+    return new Uint8Array(new FileReaderSync().readAsArrayBuffer(file));
+  } catch {
+    throw unreadable(path);
+  }
+}
+
+/** The message of the browser is only `network error`. */
+function unreadable(path: string): Error {
+  const why = 'it was moved, changed or removed after it was chosen, or you may not read it';
+  return new Error(`${path} could not be read: ${why}. Choose it again.`);
 }
 
 function checkSize(what: string, bytes: number): void {
   if (bytes <= MOST_BYTES) return;
   throw new Error(`${what} ${bytes} bytes, more than the ${MOST_BYTES} that a page can take; use the command line`);
-}
-
-/**
- * The names of the files that hold the buffers of a glTF file, relative to it. Empty if the glTF file is invalid; the
- * parser reports that later.
- */
-async function buffersOf(bytes: Uint8Array<ArrayBuffer>): Promise<string[]> {
-  try {
-    const json: unknown = JSON.parse(new TextDecoder().decode(jsonOf(await unpacked(bytes))));
-    const { buffers } = json as { buffers: { uri?: unknown }[] };
-    const uris = buffers.flatMap(({ uri }) => (typeof uri === 'string' && !/^data:/i.test(uri) ? [uri] : []));
-    return uris.flatMap(decoded);
-  } catch {
-    return [];
-  }
-}
-
-/** The name in a URI; empty if the URI is malformed. */
-function decoded(uri: string): string[] {
-  try {
-    return [decodeURIComponent(uri)];
-  } catch {
-    return [];
-  }
-}
-
-/** The JSON of a glTF file: in a binary one it is the first chunk (glTF 2.0, section 4.4). */
-function jsonOf(bytes: Uint8Array): Uint8Array {
-  const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
-  const isBinary = view.getUint32(0, true) === 0x46546c67;
-  return isBinary ? bytes.subarray(20, 20 + view.getUint32(12, true)) : bytes;
-}
-
-/** The bytes, unpacked if they are compressed with gzip. */
-async function unpacked(bytes: Uint8Array<ArrayBuffer>): Promise<Uint8Array> {
-  if (bytes[0] !== 0x1f || bytes[1] !== 0x8b) return bytes;
-  const parts: Uint8Array<ArrayBuffer>[] = [];
-  const reader = new Blob([bytes]).stream().pipeThrough(new DecompressionStream('gzip')).getReader();
-  for (let size = 0; size <= MOST_BYTES; ) {
-    const { done, value } = await reader.read();
-    if (done) return new Uint8Array(await new Blob(parts).arrayBuffer());
-    parts.push(value);
-    size += value.length;
-  }
-  await reader.cancel();
-  throw new Error('it is too large');
 }

@@ -20,7 +20,7 @@ import { naming } from './crash.ts';
 import { changeOf, type Change } from './change.ts';
 import { scrambled } from '../models/scramble.js';
 import { featuresOf } from './features.ts';
-import { contentOf, contentOfKept, keep, type Kept, type Located, type Report } from './files.ts';
+import { contentOfKept, keep, type Kept, readWith, type Located, type Report } from './files.ts';
 import { sessionOf, statesOf, summaryOf, type OpenMesh, type Step, type Summary } from './run.ts';
 
 /**
@@ -51,16 +51,13 @@ class MeshWorker {
 
   /** `beside` has files that `main` may name. */
   async read(main: Located, beside: Located[], report: Report): Promise<{ mesh: FileMesh; kept: Kept }> {
-    const content = await contentOf(main, beside, report);
-    report(main.path, 1);
     const { name } = main.file;
-    const reading = readMesh(content.bytes, name, { files: Object.fromEntries(content.beside) }).catch(
-      (error: unknown) => {
-        const isOfFile = error instanceof EdgeflipError && error.code === 'parse';
-        throw isOfFile ? new EdgeflipError('parse', `${name}: ${error.message}`) : error;
-      },
-    );
-    const mesh = await naming(reading);
+    const reading = readWith(main, beside, report, (bytes, files) => readMesh(bytes, name, { files }));
+    const named = reading.catch((error: unknown) => {
+      const isOfFile = error instanceof EdgeflipError && error.code === 'parse';
+      throw isOfFile ? new EdgeflipError('parse', `${name}: ${error.message}`) : error;
+    });
+    const { result: mesh, content } = await naming(named);
     return transfer({ mesh, kept: keep(name, content) }, buffersOf(mesh));
   }
 
