@@ -191,6 +191,22 @@ export function bytesOf(given: Uint8Array, what: string): Uint8Array {
   throw new EdgeflipError('invalid-input', `${what}: ${shown(given)} is not a Uint8Array`);
 }
 
+/** Returns the bytes of the file with this name, or `undefined` if there is none. */
+export type FindFile = (name: string) => Uint8Array | undefined;
+
+/** The files that a function finds. The module looks them up by name and ignores errors, so they go to `failures`. */
+export function foundBy(find: FindFile, failures: unknown[]): Files {
+  const get = (_: Files, name: string | symbol) => {
+    try {
+      return find(String(name));
+    } catch (error) {
+      failures.push(error);
+      return undefined;
+    }
+  };
+  return new Proxy({}, { get });
+}
+
 /** @throws {@link EdgeflipError} `invalid-input`. */
 export function filesOf(given: Files | undefined, hold: Hold): Files {
   if (given === undefined) return {};
