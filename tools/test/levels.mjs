@@ -28,7 +28,10 @@ export const isFull = process.argv.includes('--full');
 if (isFull) Object.assign(process.env, { EDGEFLIP_FULL: '1', EDGEFLIP_QUADS: '1000000' });
 
 // What is compiled natively. The rooms for browsers are for wasm32 only.
-const crate = ['src', '!src/js', '!src/wasm', '!src/engine/webgl2', 'shaders', '!shaders/webgl2', 'build.rs'];
+const crate = [
+  ...['src', '!src/js', '!src/wasm', '!src/engine/webgl2', 'shaders', '!shaders/webgl2', 'build.rs'],
+  'benches/src/kinds.rs', // src/predicates/tiers.rs includes it
+];
 const locks = ['Cargo.toml', 'Cargo.lock'];
 /** The rooms above those of a run: a test that names neither files nor the command cannot reach them. */
 const filesAndCommand = ['!src/io', '!src/bin'];
@@ -152,7 +155,20 @@ const levels = [
   {
     name: 'clippy',
     what: 'clippy gives no warning; Cargo.lock fits Cargo.toml',
-    checks: [['cargo', 'clippy', '--locked', '--workspace', '--all-targets', '--', '-D', 'warnings']],
+    checks: [
+      [
+        'cargo',
+        'clippy',
+        '--locked',
+        '--workspace',
+        ...['--lib', '--bins', '--tests', '--examples'],
+        '--bench',
+        '*',
+        '--',
+        '-D',
+        'warnings',
+      ],
+    ],
     tools: ['rust', 'lints'],
     reads: [
       ...crate,
@@ -395,7 +411,8 @@ function nativeLevels() {
       ...native,
       name: 'doc',
       what: 'the examples in the documentation run',
-      checks: [['cargo', 'test', '--doc']],
+      // Both, as when the programs were compiled.
+      checks: [['cargo', 'test', '--package', 'edgeflip', '--package', 'glsl', '--doc']],
       reads: [...crate, ...locks],
       holds: ['target'],
     },

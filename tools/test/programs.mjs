@@ -10,7 +10,7 @@ import { createInterface } from 'node:readline';
 const isLight = process.argv[2] === 'light';
 const light = ['--no-default-features', '--features', 'threads', '--test', 'native'];
 // glsl, so that both find naga with the same features.
-const both = ['--package', 'edgeflip', '--package', 'glsl'];
+const both = ['--package', 'edgeflip', '--package', 'glsl', '--lib', '--bins', '--tests'];
 const args = ['test', '--no-run', '--message-format=json-render-diagnostics', ...(isLight ? light : both)];
 console.log(`$ cargo ${args.join(' ')}`);
 const cargo = spawn('cargo', args, { stdio: ['ignore', 'pipe', 'inherit'] });
