@@ -58,7 +58,9 @@ const inBrowsers = testsIn('package').filter((file) => file.endsWith('.browser')
 const inFull = testsIn('package').filter((file) => file.endsWith('.full'));
 const inNode = testsIn('package').filter((file) => !file.includes('.'));
 const alone = ['handover', 'large', 'firefox'];
-const onPage = testsIn('page').filter((file) => !alone.includes(file));
+/** Last, because they lose the GPU of the page that they share, and its kernels. */
+const onPage = testsIn('page').filter((file) => ![...alone, 'controls', 'opening'].includes(file));
+onPage.push('controls', 'opening');
 
 /** What the tests in browsers share. */
 const shared = ['browsers.mjs', 'engine-page.mjs', 'engines.html', 'full.mjs', 'together.mjs'].map(
@@ -250,7 +252,7 @@ levels.push(
     counts: true,
     tools: ['packages', 'vulkan', 'chromium', 'firefox'],
     reads: ['tests/engines.test.mjs', ...shared, 'tests/parity', 'tests/quads', 'tests/package/locks.mjs', ...scripts],
-    after: ['package', 'parity', 'quads'],
+    after: ['package', 'parity'],
     uses: ['dist', 'target/parity.json', 'target/quads'],
   },
   {
@@ -360,14 +362,17 @@ function nativeLevels() {
     examples: { reads: ['README.md', 'examples'] },
     families: { reads: ['tests/package/generated.txt'] },
     fuzz_seeds: { reads: ['fuzz'] },
-    parity: { env: { EDGEFLIP_PARITY: 'target/parity.json' }, writes: ['target/parity.json'] },
-    quads: {
+    parity: {
+      modules: ['quads'],
       checks: [
-        ['@native', 'quads::', '--skip', 'batches_for_browsers', '--nocapture', '--test-threads=1'],
+        ['@native', 'parity::'],
         ['@native', 'quads::batches_for_browsers'],
       ],
-      writes: ['target/quads'],
+      // In browsers a software GPU takes 5 times as long for a quad.
+      env: { EDGEFLIP_PARITY: 'target/parity.json', EDGEFLIP_QUADS: isFull ? '1000000' : '20000' },
+      writes: ['target/parity.json', 'target/quads'],
     },
+    quads: { checks: [['@native', 'quads::', '--skip', 'batches_for_browsers', '--nocapture', '--test-threads=1']] },
   };
   return [
     {
@@ -381,7 +386,7 @@ function nativeLevels() {
     ...modules.map((name) => {
       const source = readFileSync(`tests/native/${name}.rs`, 'utf8');
       const [features = ''] = source.match(/^#!\[cfg\(.*$/m) ?? [];
-      const others = modules.filter((other) => other !== name);
+      const others = modules.filter((other) => other !== name && !more[name]?.modules?.includes(other));
       return {
         ...native,
         name,
