@@ -29,13 +29,10 @@ if (named.length === 0) {
 if (named.every(({ after = [], isLight }) => isLight || !after.includes('native programs')))
   Object.assign(byName.get('native programs'), lightPrograms);
 
-/** @type {Set<Level>} */
-const chosen = new Set();
-function choose(level) {
-  for (const name of level.after ?? []) choose(byName.get(name));
-  chosen.add(level);
-}
-named.forEach(choose);
+/** The chosen levels with the builds and levels that they come after. */
+const needed = new Set(named);
+for (const level of needed) for (const name of level.after ?? []) needed.add(byName.get(name));
+const chosen = levels.filter((level) => needed.has(level));
 
 /** How each level and build ended. @type {Map<Level, { passed: number, failed: number, why: string, seconds: number, isUnchanged?: boolean }>} */
 const results = new Map();
