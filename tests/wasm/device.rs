@@ -115,7 +115,7 @@ pub fn class_of(value: &JsValue) -> String {
 /// Opens a session as the npm package does.
 pub async fn session_of(mesh: &Mesh, options: &[(&str, JsValue)]) -> Result<JsSession, JsValue> {
     let (positions, indices) = (positions_array(mesh), Uint32Array::from(mesh.triangles()));
-    let dimension = mesh.dimension().stride() as f64;
+    let dimension = mesh.dimension().stride() as u32;
     let session = JsSession::create(positions, &indices, dimension, options_object(options), false)?.await?;
     JsSession::try_from_js_value(session)
 }
