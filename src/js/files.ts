@@ -19,12 +19,13 @@ import { areFilesLoaded, loadFiles } from './load-files.js';
 import { checkDimension, type IndexedMesh, type Mesh32, moduleMesh } from './mesh.js';
 import { initOf } from './module.js';
 import { namesOf, optionsOf } from './names.js';
-import { attributesOf, bytesOf, filesOf, maxBytesOf, originalOf, textOf } from './settings.js';
+import { attributesOf, bytesOf, type FindFile, filesOf, foundBy, maxBytesOf, originalOf, textOf } from './settings.js';
 import type { Attributes, Bytes, Files, IndexArray, LeftOut, Mesh, Original, VertexArray } from './types.js';
 
 export { EdgeflipError, type ErrorCode } from './error.js';
 export type { IndexedMesh, Mesh32 } from './mesh.js';
 export type { ModuleSource, Sources } from './module.js';
+export type { FindFile } from './settings.js';
 export type { Attributes, Bytes, Files, IndexArray, LeftOut, Mesh, Original, VertexArray } from './types.js';
 
 /**
@@ -65,9 +66,6 @@ export interface FileMesh extends IndexedMesh {
   lockedEdges: Uint32Array | undefined;
   lockedTriangles: Uint32Array | undefined;
 }
-
-/** Returns the bytes of the file with this name, or `undefined` if there is none. */
-export type FindFile = (name: string) => Uint8Array | undefined;
 
 /** The options of {@link readMesh}. */
 export interface ReadOptions {
@@ -222,19 +220,6 @@ const WRITE_OPTIONS = namesOf<WriteOptions>({ original: true });
 /** The array itself if the module is loaded; else a copy, because the caller may change the array during the wait. */
 function held<A extends VertexArray>(view: A, what: string): A {
   return areFilesLoaded() ? view : copyOf(view, what);
-}
-
-/** The files that a function finds. The module looks them up by name and ignores errors, so they go to `failures`. */
-function foundBy(find: FindFile, failures: unknown[]): Files {
-  const get = (_: Files, name: string | symbol) => {
-    try {
-      return find(String(name));
-    } catch (error) {
-      failures.push(error);
-      return undefined;
-    }
-  };
-  return new Proxy({}, { get });
 }
 
 /**
