@@ -218,22 +218,6 @@ export function filesOf(given: Files | undefined, hold: Hold): Files {
   });
 }
 
-/** Returns the bytes of the file with this name, or `undefined` if there is none. */
-export type FindFile = (name: string) => Uint8Array | undefined;
-
-/** The files that a function finds. The module looks them up by name and ignores errors, so they go to `failures`. */
-export function foundBy(find: FindFile, failures: unknown[]): Files {
-  const get = (_: Files, name: string | symbol) => {
-    try {
-      return find(String(name));
-    } catch (error) {
-      failures.push(error);
-      return undefined;
-    }
-  };
-  return new Proxy({}, { get });
-}
-
 /** @throws {@link EdgeflipError} `invalid-input`. */
 export function maxBytesOf(given: number | undefined): number | undefined {
   if (given === undefined || typeof given === 'number') return given;
