@@ -26,7 +26,7 @@ if (named.length === 0) {
   console.error(`test: no level has ${words.join(' or ')} in its name; the levels are ${names.join(', ')}`);
   process.exit(2);
 }
-if (named.every(({ after = [], isLight }) => isLight || !after.includes('native programs')))
+if (named.every(({ after = [], isPlain }) => isPlain || !after.includes('native programs')))
   Object.assign(byName.get('native programs'), lightPrograms);
 
 /** The chosen levels with the builds and levels that they come after. */

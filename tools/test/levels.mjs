@@ -18,6 +18,7 @@ import { readdirSync, readFileSync } from 'node:fs';
  * @property {string[]} [uses] - What these have written, of what it reads.
  * @property {string[]} [writes] - What it writes for others; only a build, or a level that others come after.
  * @property {string[]} [holds] - What only one level may use at a time: the folders that cargo locks.
+ * @property {boolean} [isPlain] - It needs neither a GPU nor the command line.
  * @property {boolean} [isAlone] - It measures time, so nothing may run beside it.
  * @property {RegExp} [refuses] - What its output may not contain.
  * @property {boolean} [isBuild]
@@ -393,7 +394,7 @@ function nativeLevels() {
         what: firstSentence(source),
         checks: [['@native', `${name}::`]],
         tools: ['rust', ...(features.includes('gpu') ? ['vulkan'] : [])],
-        isLight: !/gpu|cli/.test(features),
+        isPlain: !/gpu|cli/.test(features),
         ...more[name],
         reads: [
           ...crate,
