@@ -5,7 +5,7 @@
 
 use benches::arguments::{Arguments, median};
 use benches::kinds::kinds;
-use edgeflip::{Backend, Error, Mesh, Options, Outcome, families, make_delaunay};
+use edgeflip::{Backend, Error, Mesh, Options, Outcome, make_delaunay};
 use std::ops::ControlFlow;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
