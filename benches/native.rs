@@ -84,7 +84,7 @@ fn table(spec: &str, runs: usize) -> Result<[String; 3], Box<dyn Error>> {
     let inside: Vec<[f64; 2]> = (0..n * n).filter(|&i| is_inside(i)).map(|i| pairs[i]).collect();
     let one = NonZeroUsize::new(1);
     let edges = flip(&mesh, Order::Reproducible, one)?.0;
-    let cores = if cfg!(feature = "threads") { thread::available_parallelism()?.get() } else { 1 };
+    let cores = thread::available_parallelism()?.get();
     let mut contenders = vec![
         contender("phases", || Ok(flip(&mesh, Order::Reproducible, one)?.1)),
         contender("Lawson", || Ok(flip(&mesh, Order::Any, one)?.1)),
