@@ -4,7 +4,7 @@
 // ignores one: a test that does not run proves nothing.
 
 import { spawn } from 'node:child_process';
-import { mkdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { appendFileSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
 
 process.chdir(fileURLToPath(new URL('..', import.meta.url)));
@@ -69,9 +69,14 @@ function clock() {
   return `[${Math.floor(seconds / 60)}:${`${seconds % 60}`.padStart(2, '0')}]`;
 }
 
-/** Runs a command. Resolves to its success and its output. */
-function run([program, ...args], { env = {}, cwd = '.' }) {
-  let output = `$ ${[program, ...args].join(' ')}\n`;
+/** Runs a command, and calls `tell` with its output as it comes. Resolves to its success and its output. */
+function run([program, ...args], { env = {}, cwd = '.', tell = (_) => {} } = {}) {
+  let output = '';
+  const add = (text) => {
+    output += text;
+    tell(text);
+  };
+  add(`$ ${[program, ...args].join(' ')}\n`);
   return new Promise((resolve) => {
     const child = spawn(program, args, {
       cwd,
@@ -80,12 +85,9 @@ function run([program, ...args], { env = {}, cwd = '.' }) {
     });
     for (const from of [child.stdout, child.stderr]) {
       from.setEncoding('utf8');
-      from.on('data', (text) => {
-        if (isWatched) process.stdout.write(text);
-        output += text;
-      });
+      from.on('data', add);
     }
-    child.on('error', (error) => resolve({ ok: false, output: `${output}${program}: ${error.message}\n` }));
+    child.on('error', (error) => add(`${program}: ${error.message}\n`));
     child.on('close', (status) => resolve({ ok: status === 0, output }));
   });
 }
@@ -124,11 +126,15 @@ async function runLevel(level) {
   const start = performance.now();
   const sums = { passed: 0, failed: 0, ignored: 0 };
   const reasons = [];
-  let log = '';
+  const log = `target/test/${level.name.replaceAll(' ', '-')}.log`;
+  writeFileSync(log, '');
+  const tell = (text) => {
+    appendFileSync(log, text);
+    if (isWatched) process.stdout.write(text);
+  };
   for (const [program, ...args] of level.checks) {
     const { program: path, cwd } = program.startsWith('@') ? compiled(program.slice(1)) : { program };
-    const { ok, output } = await run([path, ...args], { env: level.env, cwd });
-    log += output;
+    const { ok, output } = await run([path, ...args], { env: level.env, cwd, tell });
     const counted = level.counts
       ? count(output)
       : { passed: Number(ok && !level.isBuild), failed: Number(!ok), ignored: 0 };
@@ -156,9 +162,7 @@ async function runLevel(level) {
     sums.failed += 1;
   }
   const { passed, failed } = sums;
-  const file = `target/test/${level.name.replaceAll(' ', '-')}.log`;
-  writeFileSync(file, log);
-  if (failed > 0 && !isWatched) console.log(log);
+  if (failed > 0 && !isWatched) console.log(readFileSync(log, 'utf8'));
   end(level, { passed, failed, why: reasons.join(', '), seconds: (performance.now() - start) / 1000 });
   const wrote = Object.fromEntries((level.writes ?? []).map((path) => [path, stamps.outputAt(path)]));
   if (!isFull) stamps.keep(level.name, failed === 0 ? { key, passed, wrote } : undefined);
@@ -184,7 +188,7 @@ const setUp = parts.map((part) => ({
   holds: byApt.includes(part) ? ['apt'] : [],
   isLight: part !== 'bindgen',
   run: async () => {
-    const { ok, output } = await run(['bash', 'tools/setup.sh', part], {});
+    const { ok, output } = await run(['bash', 'tools/setup.sh', part]);
     stamps.forget();
     if (ok && output.split('\n').length > 3) console.log(`${clock()} set-up of ${part}: done`);
     if (!ok) console.log(output);
