@@ -354,6 +354,8 @@ test('a link opens the same mesh, engine, limit, iteration and view', async () =
   const link = await clipboard();
   assert.match(link, /#watch\?mesh=uvsphere\+28\+0\.1&at=1&engine=cpu&beta=45&view=/);
 
+  // A worker whose script is still on its way would count as a failed request.
+  await page.page.waitForLoadState('networkidle');
   await page.page.goto('about:blank');
   await page.page.goto(link);
   const after = await page.until(

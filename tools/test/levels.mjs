@@ -58,7 +58,7 @@ const testsIn = (folder) =>
 const inBrowsers = testsIn('package').filter((file) => file.endsWith('.browser'));
 const inFull = testsIn('package').filter((file) => file.endsWith('.full'));
 const inNode = testsIn('package').filter((file) => !file.includes('.'));
-const alone = ['handover', 'large', 'firefox'];
+const alone = ['firefox', 'handover', 'large', 'offline'];
 /** Last, because they lose the GPU of the page that they share, and its kernels. */
 const onPage = testsIn('page').filter((file) => ![...alone, 'controls', 'opening'].includes(file));
 onPage.push('controls', 'opening');
@@ -291,6 +291,13 @@ function pageLevels() {
       what: 'the demo page opens a file, plays and scrubs on every engine',
       checks: [together('page', ['firefox'])],
       tools: ['packages', 'vulkan', 'firefox'],
+    },
+    {
+      ...page,
+      name: 'page without a network',
+      what: 'the demo page needs no network and no headers after the first visit, in Chromium',
+      checks: [together('page', ['offline'])],
+      tools: ['packages', 'chromium'],
     },
     {
       ...page,
