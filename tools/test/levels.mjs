@@ -389,7 +389,15 @@ function nativeLevels() {
       what: 'the unit tests in src/ and tools/glsl',
       checks: [['@lib edgeflip'], ['@bin glsl']],
       tools: ['rust', 'vulkan'],
-      reads: [...crate, 'shaders/webgl2', 'src/js/edge-states.ts', 'tools/glsl', 'proptest-regressions', ...locks],
+      reads: [
+        ...crate,
+        'shaders/webgl2',
+        'src/js/edge-states.ts',
+        'src/js/settings.ts',
+        'tools/glsl',
+        'proptest-regressions',
+        ...locks,
+      ],
     },
     ...modules.map((name) => {
       const source = readFileSync(`tests/native/${name}.rs`, 'utf8');
