@@ -1,6 +1,7 @@
 // The levels of tests and the builds that they need: `npm test` runs all of them, `npm run test:full` with more cases.
 
 import { readdirSync, readFileSync } from 'node:fs';
+import { crate, firstSentence, locks, nativeLevels } from './native-levels.mjs';
 
 /**
  * A level, or a build: `checks` are its command lines. A command that begins with `@` is a program that the build
@@ -28,14 +29,6 @@ export const isFull = process.argv.includes('--full');
 // tests/full.mjs reads it, and the tests in Rust.
 if (isFull) Object.assign(process.env, { EDGEFLIP_FULL: '1', EDGEFLIP_QUADS: '1000000' });
 
-// What is compiled natively. The rooms for browsers are for wasm32 only.
-const crate = [
-  ...['src', '!src/js', '!src/wasm', '!src/engine/webgl2', 'shaders', '!shaders/webgl2', 'build.rs'],
-  'benches/src/kinds.rs', // src/predicates/tiers.rs includes it
-];
-const locks = ['Cargo.toml', 'Cargo.lock'];
-/** The rooms above those of a run: a test that names neither files nor the command cannot reach them. */
-const filesAndCommand = ['!src/io', '!src/bin'];
 const scripts = ['package.json', 'package-lock.json'];
 
 // Formats and lints JavaScript and TypeScript, as biome.json says.
@@ -154,7 +147,7 @@ const levels = [
     tools: ['packages'],
     reads: ['.', '!src/bin', '!src/engine', '!src/io'],
   },
-  ...nativeLevels(),
+  ...nativeLevels(isFull),
   {
     name: 'clippy',
     what: 'clippy gives no warning; Cargo.lock fits Cargo.toml',
@@ -355,99 +348,6 @@ function fullLevels() {
       after: ['package'],
     },
   ];
-}
-
-/**
- * The levels in Rust: the unit tests, each module with tests of tests/native/main.rs, and the programs beside it. The
- * first sentence of the file's `//!` lines describes the level.
- */
-function nativeLevels() {
-  const native = { counts: true, tools: ['rust'], after: ['native programs'] };
-  const [, list] = readFileSync('tests/native/main.rs', 'utf8').split('// The levels.');
-  const modules = [...list.matchAll(/^mod (\w+);$/gm)].map(([, name]) => name);
-  /** What some of them do besides, and read besides. */
-  const more = {
-    examples: { reads: ['README.md', 'examples'] },
-    families: { reads: ['tests/package/generated.txt'] },
-    fuzz_seeds: { reads: ['fuzz'] },
-    parity: {
-      modules: ['quads'],
-      checks: [
-        ['@native', 'parity::'],
-        ['@native', 'quads::batches_for_browsers'],
-      ],
-      // In browsers a software GPU takes 5 times as long for a quad.
-      env: { EDGEFLIP_PARITY: 'target/parity.json', EDGEFLIP_QUADS: isFull ? '1000000' : '20000' },
-      writes: ['target/parity.json', 'target/quads'],
-    },
-    quads: { checks: [['@native', 'quads::', '--skip', 'batches_for_browsers', '--nocapture', '--test-threads=1']] },
-  };
-  return [
-    {
-      ...native,
-      name: 'unit',
-      what: 'the unit tests in src/ and tools/glsl',
-      checks: [['@lib edgeflip'], ['@bin glsl']],
-      tools: ['rust', 'vulkan'],
-      reads: [
-        ...crate,
-        'shaders/webgl2',
-        'src/js/edge-states.ts',
-        'src/js/settings.ts',
-        'tools/glsl',
-        'proptest-regressions',
-        ...locks,
-      ],
-    },
-    ...modules.map((name) => {
-      const source = readFileSync(`tests/native/${name}.rs`, 'utf8');
-      const [features = ''] = source.match(/^#!\[cfg\(.*$/m) ?? [];
-      const others = modules.filter((other) => other !== name && !more[name]?.modules?.includes(other));
-      return {
-        ...native,
-        name,
-        what: firstSentence(source),
-        checks: [['@native', `${name}::`]],
-        tools: ['rust', ...(features.includes('gpu') ? ['vulkan'] : [])],
-        isPlain: !/gpu|cli/.test(features),
-        ...more[name],
-        reads: [
-          ...crate,
-          ...(/\b(io|command)\b/.test(source) ? [] : filesAndCommand),
-          ...['tests/native', 'tests/meshes', 'tests/digests.txt'],
-          ...others.flatMap((other) => [`!tests/native/${other}.rs`, `!tests/native/${other}`]),
-          ...(more[name]?.reads ?? []),
-          ...locks,
-        ],
-      };
-    }),
-    {
-      ...native,
-      name: 'memory_bounds',
-      what: firstSentence(readFileSync('tests/memory_bounds.rs', 'utf8')),
-      checks: [['@memory_bounds']],
-      reads: [...crate, ...filesAndCommand, 'tests/memory_bounds.rs', ...locks],
-    },
-    {
-      ...native,
-      name: 'doc',
-      what: 'the examples in the documentation run',
-      // Both, as when the programs were compiled.
-      checks: [['cargo', 'test', '--package', 'edgeflip', '--package', 'glsl', '--doc']],
-      reads: [...crate, ...locks],
-      holds: ['target'],
-    },
-  ];
-}
-
-function firstSentence(source) {
-  const [block] = source.match(/^(\/\/!.*\n)+/m) ?? [];
-  return block
-    ?.replace(/^\/\/! ?/gm, '')
-    .replace(/\s+/g, ' ')
-    .trim()
-    .split(/(?<=\.) /)[0]
-    .replace(/\.$/, '');
 }
 
 /** The builds, and the levels of this run. */
