@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use std::num::NonZeroUsize;
 use std::ops::Range;
 #[cfg(feature = "threads")]
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 use std::sync::atomic::AtomicU32;
 #[cfg(not(all(target_arch = "wasm32", target_feature = "atomics")))]
 use std::sync::atomic::Ordering::Relaxed;
@@ -120,6 +120,12 @@ impl Threads {
         }
     }
 
+    /// Calls `work` with each of `0..count`. Not generic: rayon is most of what a loop takes to compile.
+    #[cfg(feature = "threads")]
+    fn run(&self, count: usize, work: &(dyn Fn(usize) + Sync)) {
+        self.install(|| (0..count).into_par_iter().with_max_len(1).for_each(work));
+    }
+
     /// The results of `work` for each piece of a loop over `0..len`, in order.
     pub(crate) fn map<T: Send>(&self, len: usize, work: impl Fn(Range<usize>) -> T + Sync) -> Vec<T> {
         if len < 2 * FEWEST || self.count() == 1 {
@@ -139,7 +145,14 @@ impl Threads {
     pub(crate) fn map_each<I: Send, T: Send>(&self, items: Vec<I>, work: impl Fn(I) -> T + Sync) -> Vec<T> {
         #[cfg(feature = "threads")]
         if items.len() > 1 && self.count() > 1 {
-            return self.install(|| items.into_par_iter().with_max_len(1).map(&work).collect());
+            let cells = Vec::from_iter(items.into_iter().map(|item| Mutex::new((Some(item), None))));
+            self.run(cells.len(), &|i| {
+                // Nobody else locks it.
+                if let Ok(mut cell) = cells[i].lock() {
+                    cell.1 = cell.0.take().map(&work);
+                }
+            });
+            return cells.into_iter().filter_map(|cell| cell.into_inner().ok()?.1).collect();
         }
         items.into_iter().map(work).collect()
     }
