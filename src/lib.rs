@@ -19,6 +19,7 @@ mod engine;
 mod engine_kind;
 mod error;
 pub mod families;
+#[cfg(feature = "files")]
 pub mod io;
 mod mesh;
 mod phases;

@@ -35,10 +35,10 @@ const engine = ['-C', 'llvm-args=-inline-threshold=10 -unroll-runtime=0'];
 // The panic code is removed below, so the modules need no source locations.
 const all = ['-C', 'no-vectorize-loops', '-C', 'no-vectorize-slp', '-Z', 'location-detail=none'];
 // One module for each entry of the package, and one each for the WebGL2 engine, the threads of the CPU engine and the
-// audit. wasm-opt takes longest over the files, so they come early.
+// audit. wasm-opt takes longest over the files, so they come first.
 const modules = [
-  { name: 'edgeflip', features: 'gpu,js', flags: engine },
   { name: 'edgeflip_files', features: 'js-files', flags: [] },
+  { name: 'edgeflip', features: 'gpu,js', flags: engine },
   { name: 'edgeflip_webgl2', features: 'js-webgl2', flags: engine },
   { name: 'edgeflip_threads', features: 'js-threads', flags: engine, options: ['--threads'] },
   { name: 'edgeflip_audit', features: 'js-audit', flags: [] },
@@ -67,8 +67,7 @@ const tools = [
 ];
 
 // Runs in parallel with the modules. Not optimized: it compiles in a third of the time, and runs once.
-const shaders = (...verb) => ['cargo', ...verb, '--package', 'glsl', '--profile', 'tool'];
-const glsl = run(...shaders('build'));
+const shaders = run('cargo', 'run', '--package', 'glsl', '--profile', 'tool', '--', 'target/js/glsl.js');
 
 mkdirSync(glue, { recursive: true });
 const finishing = [];
@@ -110,11 +109,12 @@ async function compileAll(chosen) {
   for (const module of chosen) await compile(module);
 }
 
-// The threads have a target directory of their own (tools/wasm-cargo.sh), so that cargo can compile their dependencies
-// while it links the other modules, on one core. The engines come first, because they compile most dependencies.
-const [engines, ...others] = modules.filter(({ options }) => !options);
-await compile(engines);
-await Promise.all([compileAll(others), compileAll(modules.filter(({ options }) => options))]);
+// The threads have a target directory of their own (tools/wasm-cargo.sh), so that cargo can compile them beside the
+// other modules, each of which it links on one core.
+await Promise.all([
+  compileAll(modules.filter(({ options }) => !options)),
+  compileAll(modules.filter(({ options }) => options)),
+]);
 await Promise.all(finishing);
 
 rmSync('dist', { recursive: true, force: true });
@@ -181,7 +181,7 @@ function cutPanics(file) {
 }
 
 await Promise.all([
-  glsl.then(() => run(...shaders('run', '--quiet'), '--', 'dist/glsl.js')),
+  shaders.then(() => cpSync('target/js/glsl.js', 'dist/glsl.js')),
   // --skipLibCheck: checking the types of Node and WebGPU would double the time.
   run(process.execPath, 'node_modules/typescript/bin/tsc', '-p', 'src/js', '--skipLibCheck'),
 ]);

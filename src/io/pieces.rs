@@ -69,7 +69,8 @@ pub(super) fn joined<T: Copy + Send + Sync>(mut lists: Vec<Vec<T>>, threads: &Th
         return lists.pop().unwrap_or_default();
     }
     let mut all = Vec::new();
-    threads.append_all(&mut all, lists);
+    all.reserve_exact(lists.iter().map(Vec::len).sum());
+    lists.into_iter().for_each(|list| threads.append(&mut all, &list));
     all
 }
 

@@ -6,11 +6,11 @@ use crate::Error;
 use rayon::prelude::*;
 use std::num::NonZeroUsize;
 use std::ops::Range;
-#[cfg(feature = "threads")]
-use std::sync::{Arc, Mutex};
 use std::sync::atomic::AtomicU32;
 #[cfg(not(all(target_arch = "wasm32", target_feature = "atomics")))]
 use std::sync::atomic::Ordering::Relaxed;
+#[cfg(feature = "threads")]
+use std::sync::{Arc, Mutex};
 
 /// The fewest items of a piece. With fewer, one thread finishes before another starts. In debug builds it is small, so
 /// that small meshes test the threads.
@@ -188,12 +188,6 @@ impl Threads {
             return self.install(|| all.par_extend(items.par_iter().with_min_len(FEWEST)));
         }
         all.extend_from_slice(items);
-    }
-
-    /// Appends lists to `all`, in order.
-    pub(crate) fn append_all<T: Copy + Send + Sync>(&self, all: &mut Vec<T>, lists: Vec<Vec<T>>) {
-        all.reserve_exact(lists.iter().map(Vec::len).sum());
-        lists.into_iter().for_each(|list| self.append(all, &list));
     }
 }
 

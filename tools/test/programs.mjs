@@ -8,7 +8,7 @@ import { dirname } from 'node:path';
 import { createInterface } from 'node:readline';
 
 const isLight = process.argv[2] === 'light';
-const light = ['--no-default-features', '--features', 'threads', '--test', 'native'];
+const light = ['--no-default-features', '--features', 'files,threads', '--test', 'native'];
 // glsl, so that both find naga with the same features.
 const both = ['--package', 'edgeflip', '--package', 'glsl', '--lib', '--bins', '--tests'];
 const args = ['test', '--no-run', '--message-format=json-render-diagnostics', ...(isLight ? light : both)];

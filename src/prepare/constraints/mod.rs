@@ -43,7 +43,8 @@ impl Constrained {
 }
 
 /// A constraint that was left out.
-#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "cli", derive(serde::Serialize))]
 pub struct LeftOut {
     /// Its index in the list of constraints.
     pub index: usize,
