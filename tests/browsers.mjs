@@ -8,6 +8,7 @@ import { delimiter, isAbsolute, join } from 'node:path';
 import { chromium } from 'playwright-core';
 import puppeteer from 'puppeteer-core';
 import { preview } from 'vite';
+import { full } from './full.mjs';
 
 /** @type {(() => unknown)[]} */
 const closers = [];
@@ -73,6 +74,8 @@ async function chromiumOnSoftware() {
       '--enable-features=Vulkan',
       '--use-vulkan=swiftshader',
       '--use-angle=swiftshader',
+      // A software GPU takes longer for the text of a page than the CPU.
+      '--disable-gpu-rasterization',
       '--disable-quic',
       '--no-first-run',
       '--disable-background-networking',
@@ -172,7 +175,9 @@ async function serverOf(folder, headers) {
  * @returns {Promise<{ page: Awaited<ReturnType<B['newPage']>>, problems: string[] }>}
  */
 export async function openPage(browser, address, isKept = false) {
-  const page = await browser.newPage();
+  // In the short run a software GPU draws a quarter of the pixels, and fewer frames. Firefox takes no options.
+  const page = await browser.newPage(full ? undefined : { deviceScaleFactor: 0.5 });
+  if (!full) await page.addInitScript?.(fewerFrames);
   // Firefox has a setting for this.
   if (!isKept) await page.addInitScript?.(() => delete Navigator.prototype.serviceWorker);
   const problems = [];
@@ -186,6 +191,34 @@ export async function openPage(browser, address, isKept = false) {
   page.on('requestfailed', (request) => problems.push(`failed: ${request.url()}: ${failure(request)}`));
   await page.goto(address);
   return { page, problems };
+}
+
+/** Runs in the page: it gets at most 16 frames a second. */
+function fewerFrames() {
+  const { requestAnimationFrame, cancelAnimationFrame } = window;
+  const timers = new Map();
+  let last = 0;
+  window.requestAnimationFrame = (callback) => {
+    const frame = requestAnimationFrame((now) => {
+      timers.set(
+        frame,
+        setTimeout(
+          () => {
+            timers.delete(frame);
+            last = performance.now();
+            callback(last);
+          },
+          Math.max(0, last + 60 - now),
+        ),
+      );
+    });
+    return frame;
+  };
+  window.cancelAnimationFrame = (frame) => {
+    clearTimeout(timers.get(frame));
+    timers.delete(frame);
+    cancelAnimationFrame(frame);
+  };
 }
 
 const failure = (request) => request.failure()?.errorText ?? 'no reason given';

@@ -6,9 +6,12 @@ import { test } from 'node:test';
 import { FlipSession } from 'edgeflip';
 import { MOVING } from '../../www/models/samples.js';
 import { startChromium } from '../browsers.mjs';
+import { full } from '../full.mjs';
 import { assertSameMesh, expected, first, loseDevice, openEdgeflip, sharedPage } from './page.mjs';
 
 const ENGINES = { webgpu: 'WebGPU', webgl2: 'WebGL2, in a worker', cpu: 'CPU, in a worker' };
+/** What each engine moves in the short run; in the full run, each moves everything. */
+const SHORT = { webgpu: 'sheet', webgl2: 'relax', cpu: 'waves' };
 const BETAS = { sheet: 10, waves: 30, relax: 10 };
 
 const moving = (page) => page.until('a mesh that moves', ({ state }) => state === 'moving');
@@ -39,9 +42,9 @@ async function left({ positions, indices, dimension }, kind) {
 }
 
 for (const [backend, engine] of Object.entries(ENGINES)) {
-  test(`each mesh moves on ${backend}, and is Delaunay when it pauses`, async () => {
+  test(`meshes move on ${backend}, and are Delaunay when they pause`, async () => {
     const page = await sharedPage();
-    for (const { kind, name } of MOVING) {
+    for (const { kind, name } of MOVING.filter(({ kind }) => full || kind === SHORT[backend])) {
       await show(page, kind, backend);
       assert.equal(await page.page.textContent('#caption'), name);
       const { facts } = await page.until(
@@ -50,11 +53,10 @@ for (const [backend, engine] of Object.entries(ENGINES)) {
       );
       assert.equal(facts.Engine, engine);
       const one = await page.picture();
-      await page.until(
-        'another frame',
-        ({ facts: next }) => next['From frame to frame'] !== facts['From frame to frame'],
-      );
-      assert.ok(one.differsFrom(await page.picture()) > 0.01, `${kind}: the picture stays`);
+      // A slow machine draws few frames, between which little moves.
+      const end = performance.now() + 60_000;
+      while (one.differsFrom(await page.picture()) <= 0.01)
+        assert.ok(performance.now() < end, `${kind}: the picture stays for 60 s`);
       const seen = await pauseAll(page);
       const mesh = await page.download();
       assert.equal(mesh.indices.length / 3, Number(facts.Triangles.replaceAll(',', '')));

@@ -226,6 +226,7 @@ const levels = [
     reads: [
       'tests/package',
       'tests/browsers.mjs',
+      'tests/full.mjs',
       'README.md',
       'docs',
       'examples',
@@ -307,7 +308,6 @@ function pageLevels() {
       what: 'the demo page hands a run over to the GPU when its kernels are ready',
       checks: [together('page', ['handover'])],
       tools: ['packages', 'chromium'],
-      isAlone: true,
     },
   ];
 }
