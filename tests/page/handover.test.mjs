@@ -170,7 +170,7 @@ test('a run that plays while the kernels become ready moves to the GPU when it i
 });
 
 test('if the GPU refuses the kernels, the run stays on the CPU and says why', async () => {
-  const path = await meshFile('strips 16', 'short.off');
+  const path = await meshFile(full ? 'strips 80' : 'strips 16', 'refused.off');
   const { rows, facts } = await expected(path);
   const page = await openEdgeflip(await startChromium(), holdKernels);
   await page.open(path);

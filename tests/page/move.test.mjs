@@ -53,6 +53,10 @@ for (const [backend, engine] of Object.entries(ENGINES)) {
       );
       assert.equal(facts.Engine, engine);
       const one = await page.picture();
+      await page.until(
+        'another frame',
+        ({ facts: next }) => next['From frame to frame'] !== facts['From frame to frame'],
+      );
       // A slow machine draws few frames, between which little moves.
       const end = performance.now() + 60_000;
       while (one.differsFrom(await page.picture()) <= 0.01)
