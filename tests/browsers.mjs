@@ -199,19 +199,12 @@ function fewerFrames() {
   const timers = new Map();
   let last = 0;
   window.requestAnimationFrame = (callback) => {
-    const frame = requestAnimationFrame((now) => {
-      timers.set(
-        frame,
-        setTimeout(
-          () => {
-            timers.delete(frame);
-            last = performance.now();
-            callback(last);
-          },
-          Math.max(0, last + 60 - now),
-        ),
-      );
-    });
+    const draw = () => {
+      timers.delete(frame);
+      last = performance.now();
+      callback(last);
+    };
+    const frame = requestAnimationFrame((now) => timers.set(frame, setTimeout(draw, last + 60 - now)));
     return frame;
   };
   window.cancelAnimationFrame = (frame) => {

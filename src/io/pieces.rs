@@ -68,8 +68,7 @@ pub(super) fn joined<T: Copy + Send + Sync>(mut lists: Vec<Vec<T>>, threads: &Th
     if lists.len() == 1 {
         return lists.pop().unwrap_or_default();
     }
-    let mut all = Vec::new();
-    all.reserve_exact(lists.iter().map(Vec::len).sum());
+    let mut all = Vec::with_capacity(lists.iter().map(Vec::len).sum());
     lists.into_iter().for_each(|list| threads.append(&mut all, &list));
     all
 }
