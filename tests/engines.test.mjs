@@ -25,7 +25,7 @@ const { holdLocks } = await import('./package/locks.mjs');
 // In the short run, a software GPU leaves out what takes it longest, and the table says `full` there.
 const all = () => true;
 /** Long runs and large meshes. */
-const isSmall = ({ indices, iterations }) => (indices.length / 3) * (1 + iterations.length) < 20_000;
+const isSmall = ({ indices, iterations }) => (indices.length / 3) * (1 + iterations.length) < 3_000;
 /** The kernels for doubles and for deviations. */
 const isPlain = ({ isWide, deviation }) => !isWide && deviation === null;
 

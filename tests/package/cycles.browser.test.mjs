@@ -8,7 +8,7 @@ import { full } from '../full.mjs';
 import { repository } from './project.mjs';
 
 after(closeAll);
-const count = Number(process.env.EDGEFLIP_CYCLES ?? (full ? 100 : 20));
+const count = Number(process.env.EDGEFLIP_CYCLES ?? (full ? 100 : 10));
 
 /** Runs in the page: keeps count of the bytes of GPU buffers, and defines `cycle`. */
 async function prepare() {

@@ -8,7 +8,7 @@ import { enginePage } from '../engine-page.mjs';
 import { full } from '../full.mjs';
 
 after(closeAll);
-const updates = Number(process.env.EDGEFLIP_UPDATES ?? (full ? 300 : 70));
+const updates = Number(process.env.EDGEFLIP_UPDATES ?? (full ? 300 : 40));
 
 let page;
 let problems;
@@ -71,9 +71,10 @@ async function prepare() {
 }
 
 test('arrays: all engines give the same after every update', async () => {
-  const flips = await page.evaluate(async () => {
+  const specs = full ? ['random 20', 'uvsphere 14', 'regular 12'] : ['random 12', 'uvsphere 10'];
+  const flips = await page.evaluate(async (specs) => {
     let flips = 0;
-    for (const spec of ['random 20', 'uvsphere 14', 'regular 12']) {
+    for (const spec of specs) {
       const mesh = await generate(spec);
       const lockedEdges = mesh.indices.subarray(0, 2);
       const sessions = await sessionsOn(mesh, { maxNormalAngle: 40, lockedEdges, trackChanges: true });
@@ -114,8 +115,8 @@ test('arrays: all engines give the same after every update', async () => {
       for (const session of others) session.free();
     }
     return flips;
-  });
-  assert.ok(flips > 1000, `${flips} flips`);
+  }, specs);
+  assert.ok(flips > 300, `${flips} flips`);
 });
 
 test('random motions of dirty meshes', async () => {

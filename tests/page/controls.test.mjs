@@ -300,7 +300,7 @@ test('without WebGPU, auto uses the CPU and says why', async () => {
   await page.close();
 });
 
-for (const backend of ['webgpu', 'cpu']) {
+for (const backend of full ? ['webgpu', 'cpu'] : ['webgpu']) {
   test(`keys play, pause and step on ${backend}, also in fast succession`, async () => {
     const page = await sharedPage();
     const { fingerprints, rows } = await expected(small);

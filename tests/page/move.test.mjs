@@ -72,7 +72,9 @@ for (const [backend, engine] of Object.entries(ENGINES)) {
     }
     await page.close();
   });
+}
 
+for (const backend of full ? Object.keys(ENGINES) : ['webgpu']) {
   test(`a point is dragged on ${backend}, and the mesh stays Delaunay`, async () => {
     const page = await sharedPage();
     await show(page, 'relax', backend);

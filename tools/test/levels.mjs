@@ -42,8 +42,8 @@ const apart = (folder, names) => [
   ...['node', '--test', '--test-reporter=tap', '--test-concurrency=1'],
   ...files(folder, names),
 ];
-/** Files of tests in a folder that share a browser and its pages. */
-const together = (folder, names) => ['node', '--test-reporter=tap', 'tests/together.mjs', ...files(folder, names)];
+/** Files of tests that share a browser and its pages. */
+const together = (...paths) => ['node', '--test-reporter=tap', 'tests/together.mjs', ...paths];
 const testsIn = (folder) =>
   readdirSync(`tests/${folder}`).flatMap((file) => file.match(/^(.*)\.test\.mjs$/)?.[1] ?? []);
 
@@ -241,29 +241,23 @@ const levels = [
 ];
 levels.push(
   {
-    name: 'parity in browsers',
-    what: 'the parity matrix, quads and locks on each engine of the package in Chromium and Firefox',
-    checks: [['node', '--test-reporter=tap', 'tests/engines.test.mjs']],
+    name: 'npm package in browsers',
+    what: 'the parity matrix, quads and locks on each engine in Chromium and Firefox; the packed package in fresh projects: plain pages, Vite, TypeScript',
+    checks: [together('tests/engines.test.mjs', ...files('package', inBrowsers))],
     counts: true,
     tools: ['packages', 'vulkan', 'chromium', 'firefox'],
-    reads: ['tests/engines.test.mjs', ...shared, 'tests/parity', 'tests/quads', 'tests/package/locks.mjs', ...scripts],
+    reads: [
+      ...['tests/package', 'tests/engines.test.mjs', 'tests/parity', 'tests/quads', ...shared],
+      ...['README.md', 'docs', 'examples', ...scripts],
+    ],
     after: ['package', 'parity'],
     uses: ['dist', 'target/parity.json', 'target/quads'],
-  },
-  {
-    name: 'npm package in browsers',
-    what: 'the packed package in fresh projects: plain pages in Chromium and Firefox, Vite, TypeScript, on the CPU and WebGPU',
-    checks: [together('package', inBrowsers)],
-    counts: true,
-    tools: ['packages', 'vulkan', 'chromium', 'firefox'],
-    reads: ['tests/package', ...shared, 'README.md', 'docs', 'examples', ...scripts],
-    after: ['package'],
-    uses: ['dist'],
   },
   ...fullLevels(),
   ...pageLevels(),
 );
 
+/** The levels of the demo page. */
 function pageLevels() {
   const page = {
     counts: true,
@@ -276,28 +270,32 @@ function pageLevels() {
       ...page,
       name: 'page in Chromium',
       what: 'the demo page opens files, plays, scrubs and downloads on every engine, draws from the buffer that the flips write, and recovers',
-      checks: [together('page', onPage)],
+      checks: [together(...files('page', onPage))],
       tools: ['packages', 'chromium'],
     },
-    {
-      ...page,
-      name: 'page in Firefox',
-      what: 'the demo page opens a file, plays and scrubs on every engine',
-      checks: [together('page', ['firefox'])],
-      tools: ['packages', 'vulkan', 'firefox'],
-    },
+    ...(isFull
+      ? [
+          {
+            ...page,
+            name: 'page in Firefox',
+            what: 'the demo page opens a file, plays and scrubs on every engine',
+            checks: [together('tests/page/firefox.test.mjs')],
+            tools: ['packages', 'vulkan', 'firefox'],
+          },
+        ]
+      : []),
     {
       ...page,
       name: 'page without a network',
       what: 'the demo page needs no network and no headers after the first visit, in Chromium',
-      checks: [together('page', ['offline'])],
+      checks: [together('tests/page/offline.test.mjs')],
       tools: ['packages', 'chromium'],
     },
     {
       ...page,
       name: 'page with a large mesh',
       what: 'the demo page plays 720,000 triangles in Chromium as the package in Node does, without a long task',
-      checks: [together('page', ['large'])],
+      checks: [together('tests/page/large.test.mjs')],
       after: ['page', 'native programs'],
       tools: ['packages', 'chromium'],
       isAlone: true,
@@ -306,7 +304,7 @@ function pageLevels() {
       ...page,
       name: 'handover of the page',
       what: 'the demo page hands a run over to the GPU when its kernels are ready',
-      checks: [together('page', ['handover'])],
+      checks: [together('tests/page/handover.test.mjs')],
       tools: ['packages', 'chromium'],
     },
   ];
