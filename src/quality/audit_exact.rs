@@ -302,6 +302,11 @@ mod tests {
         assert!(!normals_differ(first, second(1., 0.), -1.0));
         assert!(!normals_differ(first, second(0., 0.), 1.0));
         assert!(normals_oppose(first, second(1e-30, 1.)) && !normals_oppose(first, second(0., 1.)));
+        // 60 degrees, and their neighbours.
+        let (first, second) =
+            ([p(0., 0., 1.), p(1., -1., 0.), DVec3::ZERO], [p(1., 0., 0.), p(0., 1., -1.), DVec3::ZERO]);
+        let differ = [0.5_f64.next_down(), 0.5, 0.5_f64.next_up()].map(|c| normals_differ(first, second, c));
+        assert_eq!(differ, [false, false, true]);
     }
 
     #[test]
