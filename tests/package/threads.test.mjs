@@ -4,6 +4,7 @@ import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { readFileSync } from 'node:fs';
 import { test } from 'node:test';
+import { setTimeout } from 'node:timers/promises';
 import { fileURLToPath } from 'node:url';
 import workers from 'node:worker_threads';
 import { FlipSession, init, makeDelaunay } from 'edgeflip';
@@ -12,9 +13,16 @@ import { Digest } from '../parity/digest.js';
 
 /** The started workers. Without them a test would not notice that a session runs on one thread. */
 const started = [];
+/** The script and the data of workers that run another script first. */
+let first;
 workers.Worker = class extends workers.Worker {
-  constructor(...args) {
-    super(...args);
+  constructor(url) {
+    if (first) {
+      const both = `${first.script}\nawait import(${JSON.stringify(String(url))});`;
+      super(new URL(`data:text/javascript,${encodeURIComponent(both)}`), { workerData: first.data });
+    } else {
+      super(url);
+    }
     started.push(this);
   }
 };
@@ -141,6 +149,41 @@ test('a thread that crashes ends its session, and new sessions work', async () =
   await assert.rejects(session.triangles(), { code: 'internal' });
   session.free();
   assert.equal((await makeDelaunay(meshes[0], options)).status, 'done');
+});
+
+test('a thread fetches the size of the memory that it receives, before it writes', async () => {
+  // V8 gives about 1 thread of 3,000 the size before another thread grew the memory.
+  const script = `
+    import { workerData } from 'node:worker_threads';
+    const known = new WeakSet();
+    const { grow } = WebAssembly.Memory.prototype;
+    WebAssembly.Memory.prototype.grow = function (pages) {
+      known.add(this);
+      return grow.call(this, pages);
+    };
+    WebAssembly.Memory = new Proxy(WebAssembly.Memory, {
+      construct(Memory, args) {
+        const memory = new Memory(...args);
+        known.add(memory);
+        return memory;
+      },
+    });
+    WebAssembly.Instance = new Proxy(WebAssembly.Instance, {
+      construct(Instance, [module, imports]) {
+        const all = Object.values(imports).flatMap(Object.values);
+        const [memory] = all.filter((value) => value instanceof WebAssembly.Memory);
+        Atomics.add(workerData, known.has(memory) ? 1 : 0, 1);
+        return new Instance(module, imports);
+      },
+    });
+  `;
+  const counts = new Int32Array(new SharedArrayBuffer(8));
+  first = { script, data: counts };
+  assert.equal((await makeDelaunay(meshes[0], { backend: 'cpu', threads: 6 })).status, 'done');
+  first = undefined;
+  // The run may end before all threads have started.
+  while (counts[0] + counts[1] < 6) await setTimeout(10);
+  assert.deepEqual([...counts], [0, 6]);
 });
 
 test('a mesh that does not fit into the memory is refused, and other sessions continue', async () => {
