@@ -26,12 +26,11 @@ if (named.length === 0) {
   console.error(`test: no level has ${words.join(' or ')} in its name; the levels are ${names.join(', ')}`);
   process.exit(2);
 }
-if (named.every(({ after = [], isPlain }) => isPlain || !after.includes('native programs')))
-  Object.assign(byName.get('native programs'), lightPrograms);
-
 /** The chosen levels with the builds and levels that they come after. */
 const needed = new Set(named);
 for (const level of needed) for (const name of level.after ?? []) needed.add(byName.get(name));
+if ([...needed].every(({ after = [], isPlain }) => isPlain || !after.includes('native programs')))
+  Object.assign(byName.get('native programs'), lightPrograms);
 const chosen = levels.filter((level) => needed.has(level));
 
 /** How each level and build ended. @type {Map<Level, { passed: number, failed: number, why: string, seconds: number, isUnchanged?: boolean }>} */
