@@ -183,4 +183,18 @@ mod tests {
             assert_eq!(wide.clone().narrowed(), wide);
         }
     }
+
+    #[test]
+    fn a_coordinate_that_is_not_finite_is_named() {
+        for x in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+            let narrow = vec![0.0, f32::MAX, f32::MIN, x];
+            let wide: Vec<f64> = narrow.iter().map(|&x| x.into()).collect();
+            for positions in [Positions::F32(narrow), Positions::F64(wide)] {
+                let refused = positions.refuse_non_finite(Dimension::Two, &Threads::one());
+                assert!(matches!(refused, Err(Error::NonFinite { vertex: 1, axis: 'y', .. })), "{refused:?}");
+            }
+        }
+        let all = Positions::F32(vec![f32::MAX, f32::MIN]);
+        assert!(all.refuse_non_finite(Dimension::Two, &Threads::one()).is_ok());
+    }
 }
