@@ -198,6 +198,15 @@ mod tests {
         }
     }
 
+    /// A cone of many triangles around vertex 1, and a triangle from vertex 0 to one of its border.
+    #[test]
+    fn a_pole_and_the_vertex_before_it_keep_their_edges() {
+        let cone = (2..100).flat_map(|i| [i, if i == 99 { 2 } else { i + 1 }, 1]).collect::<Vec<u32>>();
+        for border in 2..100 {
+            compare(101, &[cone.as_slice(), &[0, border, 100]].concat());
+        }
+    }
+
     fn matched(vertices: usize, triangles: &[u32]) -> Adjacency {
         Adjacency::of_triangles(vertices, triangles, &Threads::default())
     }

@@ -249,6 +249,23 @@ proptest! {
         prop_assert_eq!(Quad::new(p, q, r, s).deviates(most.into()), height > most);
         compare_in_space(points, 10.0, most);
     }
+
+    /// As above, but the box is turned and larger, so that products round.
+    #[test]
+    fn distances_of_turned_boxes_are_decided(
+        [w, d, h] in [1u32..1 << 20, 1u32..1 << 20, 0u32..1 << 20], e in -100i32..60, ulps in -1i32..=1
+    ) {
+        let points = [[0, 0, 0], [w, d, 0], [w, 0, h], [0, d, h]].map(|p| {
+            let [x, y, z] = p.map(|x| libm::scalbn(f64::from(x), e));
+            // A rotation, 3 times as large.
+            DVec3::new(2.0 * x - y + 2.0 * z, 2.0 * x + 2.0 * y - z, -x + 2.0 * y + 2.0 * z)
+        });
+        let height = libm::scalbnf(3.0 * h as f32, e);
+        let most = f32::from_bits(height.to_bits().saturating_add_signed(ulps));
+        let [p, q, r, s] = points;
+        prop_assert_eq!(Quad::new(p, q, r, s).deviates(most.into()), height > most);
+        compare_in_space(points, 10.0, most);
+    }
 }
 
 #[test]
