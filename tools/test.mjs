@@ -26,6 +26,7 @@ if (named.length === 0) {
   console.error(`test: no level has ${words.join(' or ')} in its name; the levels are ${names.join(', ')}`);
   process.exit(2);
 }
+
 /** The chosen levels with the builds and levels that they come after. */
 const needed = new Set(named);
 for (const level of needed) for (const name of level.after ?? []) needed.add(byName.get(name));

@@ -203,6 +203,14 @@ fn compare_in_space([a, b, c, d]: [DVec3; 4], degrees: f64, most: f32) {
     assert_eq!(corner(a, b, c), expected);
 }
 
+/// The distance of the two diagonals of a box is its height. It is compared with a float near it, or with itself.
+fn compare_box(points: [DVec3; 4], height: f32, ulps: i32) {
+    let most = f32::from_bits(height.to_bits().saturating_add_signed(ulps));
+    let [p, q, r, s] = points;
+    assert_eq!(Quad::new(p, q, r, s).deviates(most.into()), height > most);
+    compare_in_space(points, 10.0, most);
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(20_000))]
 
@@ -233,7 +241,6 @@ proptest! {
         compare_in_space(quad, degrees, most.abs());
     }
 
-    /// The distance of the two diagonals of a box is its height.
     #[test]
     fn distances_of_whole_numbers_are_decided(
         [w, d, h] in [1u16..100, 1u16..100, 0u16..100], e in -120i32..100, turn in 0usize..3, ulps in -1i32..=1
@@ -244,13 +251,10 @@ proptest! {
             DVec3::from(p)
         });
         let height = libm::scalbnf(f32::from(h), e);
-        let most = f32::from_bits(height.to_bits().saturating_add_signed(ulps));
-        let [p, q, r, s] = points;
-        prop_assert_eq!(Quad::new(p, q, r, s).deviates(most.into()), height > most);
-        compare_in_space(points, 10.0, most);
+        compare_box(points, height, ulps);
     }
 
-    /// As above, but the box is turned and larger, so that products round.
+    /// The boxes are turned and larger, so that products round.
     #[test]
     fn distances_of_turned_boxes_are_decided(
         [w, d, h] in [1u32..1 << 20, 1u32..1 << 20, 0u32..1 << 20], e in -100i32..60, ulps in -1i32..=1
@@ -261,10 +265,7 @@ proptest! {
             DVec3::new(2.0 * x - y + 2.0 * z, 2.0 * x + 2.0 * y - z, -x + 2.0 * y + 2.0 * z)
         });
         let height = libm::scalbnf(3.0 * h as f32, e);
-        let most = f32::from_bits(height.to_bits().saturating_add_signed(ulps));
-        let [p, q, r, s] = points;
-        prop_assert_eq!(Quad::new(p, q, r, s).deviates(most.into()), height > most);
-        compare_in_space(points, 10.0, most);
+        compare_box(points, height, ulps);
     }
 }
 
