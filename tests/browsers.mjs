@@ -10,6 +10,9 @@ import puppeteer from 'puppeteer-core';
 import { preview } from 'vite';
 import { full } from './full.mjs';
 
+/** Milliseconds that a browser may take to start. On a busy machine, Firefox takes more than the usual 30 s. */
+const START = 180_000;
+
 /** @type {(() => unknown)[]} */
 const closers = [];
 /** What was started, by its name. */
@@ -60,6 +63,7 @@ export const startChromium = () => once('Chromium', chromiumOnSoftware);
 
 async function chromiumOnSoftware() {
   const browser = await chromium.launch({
+    timeout: START,
     executablePath:
       process.env.CHROMIUM ??
       program('Chromium', [
@@ -103,6 +107,7 @@ async function firefoxOnSoftware() {
       process.env.FIREFOX ??
       program('Firefox', ['firefox-esr', 'firefox', '/Applications/Firefox.app/Contents/MacOS/firefox']),
     headless: false,
+    timeout: START,
     protocolTimeout: 0, // tests have their own time limits
     env: needsDisplay ? { ...process.env, DISPLAY: await display() } : process.env,
     extraPrefsFirefox: {
