@@ -1,6 +1,7 @@
 //! The faces of a held file, which can be written again with other triangles. Each format provides the byte ranges of
 //! its faces, the attributes of faces and corners, and a function that writes a triangle.
 
+use super::parsed::Others;
 use crate::system::threads::Threads;
 use crate::{Adjacency, Error, Mesh, NONE, Wedges, reoriented};
 use memchr::memchr2;
@@ -165,6 +166,29 @@ pub(super) fn numbered<T: Copy + PartialEq, K: Eq + Hash>(
         number
     });
     (numbers.collect(), known)
+}
+
+/// The corners of the triangles that the faces are cut into, face by face.
+pub(super) struct Corners<'a> {
+    others: std::iter::Peekable<std::slice::Iter<'a, (u32, Vec<[usize; 3]>)>>,
+    /// The number of triangles so far.
+    triangles: usize,
+}
+
+impl<'a> Corners<'a> {
+    pub(super) fn new(others: &'a Others) -> Self {
+        Self { others: others.iter().peekable(), triangles: 0 }
+    }
+
+    /// The corners of each of the triangles of the next face.
+    pub(super) fn of_next(&mut self, triangles: usize) -> impl Iterator<Item = usize> + use<'a> {
+        let first = self.triangles;
+        self.triangles += triangles;
+        let other = self.others.next_if(|(at, _)| *at as usize == first);
+        let other = other.map(|(_, triangles)| triangles.as_flattened());
+        let fan = if other.is_some() { 1..1 } else { 1..triangles + 1 };
+        other.unwrap_or_default().iter().copied().chain(fan.flat_map(|i| [0, i, i + 1]))
+    }
 }
 
 /// The byte range of `part` in `file`. `part` must be a slice of `file`.

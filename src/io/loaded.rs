@@ -15,8 +15,12 @@ use std::path::Path;
 pub struct Loaded {
     /// All vertices of the file, in its order, and its faces as triangles.
     pub mesh: Mesh,
-    /// Faces with more than three corners; each was cut into a fan of triangles around its first corner.
+    /// Faces with more than three corners. Each was cut into triangles: two less than it has corners, and the fan around
+    /// its first corner if that does not leave the polygon.
     pub polygons: usize,
+    /// Polygons whose outline crosses or touches itself, seen along their normal: their numbers among the faces of the
+    /// file, from 0. Each was cut into the fan around its first corner.
+    pub crossing: Vec<u32>,
     /// What the file has that a [`Mesh`] cannot hold, such as `normals`. [`Loaded::dropped_in`] says what a file of a
     /// given format loses.
     pub dropped: Vec<String>,

@@ -8,6 +8,7 @@
 //! text, -0 and 0 for different positions, and NaN for a number. The tests compare with `ply-rs-bw` and `stl_io`. The
 //! crate `flate2` handles gzip, and `gltf` the JSON of glTF.
 
+mod coordinates;
 #[cfg(not(target_arch = "wasm32"))]
 mod file;
 mod format;
@@ -26,6 +27,7 @@ mod parse;
 mod parsed;
 mod pieces;
 mod ply;
+mod polygon;
 mod rounded;
 mod stl;
 #[cfg(not(target_arch = "wasm32"))]
@@ -42,7 +44,7 @@ pub use file::{load, read, read_edges, read_numbers};
 pub use format::Format;
 pub use lists::{parse_edges, parse_numbers};
 pub use loaded::Loaded;
-pub use options::{ReadFile, ReadOptions};
+pub use options::{Coordinates, ReadFile, ReadOptions};
 #[cfg(not(target_arch = "wasm32"))]
 pub use output::{Output, Staged, rewrite, write};
 pub use parse::{parse, parse_with};

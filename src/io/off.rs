@@ -1,24 +1,42 @@
 //! OFF, Geomview's object file format: `[ST][C][N][n]OFF`, counts, one line per vertex, one line per face.
-//! Source: the Geomview manual, "OFF Files". Text only, read line by line.
+//! A line that ends too early continues in the next one. Source: the Geomview manual, "OFF Files". Text only.
 
+use super::coordinates::{self, Float, Reading};
 use super::held::{Face, Faces, Numbers, line_end, range_in};
+use super::options::Coordinates;
 use super::parsed::{CutFaces, Dropped, Parsed};
 use super::pieces::{self, Piece};
-use super::text::{Digits, Lines, Tokens, coordinate, float, integer, quoted, without_comment};
-use crate::{Error, Mesh};
+use super::text::{Digits, Lines, Tokens, float, integer, quoted, without_comment};
+use crate::{Error, Mesh, Positions};
 use std::io::{self, Write};
 
 const ATTRIBUTES: &str = "numbers after a vertex's coordinates (normals, colours, texture coordinates)";
 const COLOURS: &str = "face colours";
 
 /// Reads a file's bytes.
-pub(super) fn parse(bytes: &[u8]) -> Result<Parsed, Error> {
+pub(super) fn parse(bytes: &[u8], option: Option<Coordinates>) -> Result<Parsed, Error> {
+    coordinates::read(option, |asks| read::<f32>(bytes, asks), || read::<f64>(bytes, false))
+}
+
+fn read<T: Float>(bytes: &[u8], asks: bool) -> Result<Parsed, Error>
+where
+    Positions: From<Vec<T>>,
+{
     let mut lines = Lines::new(bytes);
     let header = Header::parse(&mut lines)?;
     let threads = pieces::threads(lines.bytes_left());
     let pieces = pieces::cut(&lines, is_content, &threads);
-    let parts = threads.map_each(pieces, |piece| Part::read(piece, &header));
+    let mut parts = threads.map_each(pieces, |piece| Part::<T>::read(piece, &header, asks, false));
+    if parts.iter().flatten().any(|part| part.is_short) {
+        parts = vec![Part::read(Piece::whole(&lines), &header, asks, true)];
+    }
     let (mut positions, mut faces, mut dropped) = (Vec::new(), Vec::new(), Dropped::default());
+    let Header { stride, vertices, faces: announced, .. } = header;
+    // Before all errors, so that the result does not depend on the number of threads.
+    if parts.iter().flatten().any(|part| part.reading.loses) {
+        let positions = Vec::<T>::new().into();
+        return Ok(Parsed { stride, positions, faces: CutFaces::default(), dropped, loses: true });
+    }
     let (mut found, mut end) = (0, lines);
     for part in parts {
         let part = part?;
@@ -27,13 +45,13 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Parsed, Error> {
         part.dropped.0.iter().for_each(|what| dropped.note(what));
         (found, end) = (part.found, part.end);
     }
-    let Header { stride, vertices, faces: announced, .. } = header;
     let message = match found.checked_sub(vertices) {
         None => format!("the file ends after {found} of {vertices} vertices"),
         Some(found) if found < announced => format!("the file ends after {found} of {announced} faces"),
         Some(_) => {
             let positions = pieces::joined(positions, &threads).into();
-            return Ok(Parsed { stride, positions, faces: CutFaces::joined(faces, &threads), dropped });
+            let faces = CutFaces::joined(faces, &threads);
+            return Ok(Parsed { stride, positions, faces, dropped, loses: false });
         }
     };
     Err(end.refuse(message))
@@ -46,20 +64,28 @@ pub(super) fn held_faces(bytes: &[u8]) -> Result<Faces<'_>, Error> {
     let counts = header.growing.iter().map(|count| range_in(bytes, count)).collect();
     let threads = pieces::threads(lines.bytes_left());
     let pieces = pieces::cut(&lines, is_content, &threads);
-    let parts = threads.map_each(pieces, |Piece { mut lines, items }| {
-        let vertices = usize::try_from(header.vertices.saturating_sub(items.start)).unwrap_or(usize::MAX);
-        let (mut list, mut colours) = (Vec::new(), Numbers::default());
-        for line in std::iter::from_fn(|| content(&mut lines)).skip(vertices) {
-            let line = line.0.trim_ascii();
-            let mut rest = Tokens(line);
-            let corners = rest.next().and_then(integer).and_then(|corners| usize::try_from(corners).ok());
-            let corners = rest.by_ref().take(corners.unwrap_or_default()).count();
-            let colour = rest.0.trim_ascii_start();
-            let group = colours.of(&colour);
-            list.push(Face { bytes: range_in(bytes, line), triangles: corners.saturating_sub(2), group });
+    let read = |piece, continues| {
+        let Piece { mut lines, items } = piece;
+        let (mut list, mut colours, mut item) = (Vec::new(), Numbers::default(), items.start);
+        while let Some(mut tokens) = content(&mut lines) {
+            let start = range_in(bytes, tokens.0.trim_ascii_start()).start;
+            let is_face = item >= header.vertices;
+            let corners = if is_face { tokens.next().and_then(integer).unwrap_or_default() } else { 0 };
+            let numbers = if is_face { corners.unsigned_abs() } else { header.stride as u64 };
+            for _ in 0..numbers {
+                token(&mut tokens, &mut lines, continues)?;
+            }
+            item += 1;
+            if is_face {
+                let end = range_in(bytes, tokens.0.trim_ascii_end()).end;
+                let group = colours.of(&tokens.0.trim_ascii());
+                list.push(Face { bytes: start..end, triangles: (numbers as usize).saturating_sub(2), group });
+            }
         }
-        (list, colours.into_known())
-    });
+        Some((list, colours.into_known()))
+    };
+    let parts: Option<Vec<_>> = threads.map_each(pieces, |piece| read(piece, false)).into_iter().collect();
+    let parts = parts.unwrap_or_else(|| read(Piece::whole(&lines), true).into_iter().collect());
     let (mut lists, mut colours) = (Vec::new(), Numbers::default());
     for (mut list, known) in parts {
         // Replaces the group numbers of the piece by those of the file.
@@ -120,6 +146,16 @@ fn content<'a>(lines: &mut Lines<'a>) -> Option<Tokens<'a>> {
 
 fn is_content(line: &[u8]) -> bool {
     without_comment(line).iter().any(|b| !b.is_ascii_whitespace())
+}
+
+/// The next word of the line or, if the item continues there, of the lines after it.
+fn token<'a>(tokens: &mut Tokens<'a>, lines: &mut Lines<'a>, continues: bool) -> Option<&'a [u8]> {
+    loop {
+        if let Some(token) = tokens.next() {
+            return Some(token);
+        }
+        *tokens = continues.then(|| content(lines)).flatten()?;
+    }
 }
 
 /// The keyword and the counts.
@@ -231,27 +267,41 @@ fn capacity(lines: &Lines, count: u64, numbers: usize) -> usize {
 }
 
 /// The content of a piece of the file.
-struct Part<'a> {
-    positions: Vec<f32>,
+struct Part<'a, T> {
+    positions: Vec<T>,
+    reading: Reading,
     faces: CutFaces,
     dropped: Dropped,
+    /// Whether an item continues in the next line if its line ends too early.
+    continues: bool,
+    /// Whether a line ends too early, and no item continues.
+    is_short: bool,
     /// The number of vertices and faces up to its end.
     found: u64,
     end: Lines<'a>,
 }
 
-impl<'a> Part<'a> {
-    fn read(Piece { lines, items }: Piece<'a>, header: &Header) -> Result<Self, Error> {
+impl<'a, T: Float> Part<'a, T> {
+    /// Stops after the first vertex that loses digits, and after the first line that ends too early.
+    fn read(
+        Piece { lines, items }: Piece<'a>,
+        header: &Header,
+        asks: bool,
+        continues: bool,
+    ) -> Result<Self, Error> {
         let &Header { stride, vertices, faces, .. } = header;
         let count = |first: u64, end: u64| end.min(items.end).saturating_sub(first.max(items.start));
         let positions = stride * capacity(&lines, count(0, vertices), stride);
         let triangles = 3 * capacity(&lines, count(vertices, vertices + faces), 4);
-        let fans = CutFaces { triangles: Vec::with_capacity(triangles), polygons: 0 };
+        let fans = CutFaces::of(Vec::with_capacity(triangles));
         let dropped = Dropped::default();
         let mut part = Self {
             positions: Vec::with_capacity(positions),
+            reading: Reading { asks, loses: false },
             faces: fans,
             dropped,
+            continues,
+            is_short: false,
             found: items.start,
             end: lines,
         };
@@ -267,39 +317,55 @@ impl<'a> Part<'a> {
                 }
             }
             part.found += 1;
+            if part.reading.loses || part.is_short {
+                break;
+            }
         }
         Ok(part)
     }
 
-    fn vertex(&mut self, mut tokens: Tokens, stride: usize) -> Result<(), Error> {
+    /// The next word of an item. `None` if the line or, if items continue, the file ends.
+    fn token(&mut self, tokens: &mut Tokens<'a>) -> Option<&'a [u8]> {
+        let token = token(tokens, &mut self.end, self.continues);
+        self.is_short |= token.is_none() && !self.continues;
+        token
+    }
+
+    fn vertex(&mut self, mut tokens: Tokens<'a>, stride: usize) -> Result<(), Error> {
         for found in 0..stride {
-            let Some(token) = tokens.next() else {
-                return Err(self.end.refuse(format!("expected {stride} coordinates, found {found}")));
+            let Some(token) = self.token(&mut tokens) else {
+                return self.ended(format!("expected {stride} coordinates, found {found}"));
             };
-            self.positions.push(coordinate(token).map_err(|message| self.end.refuse(message))?);
+            let x = self.reading.coordinate(token).map_err(|message| self.end.refuse(message))?;
+            self.positions.push(x);
         }
         drop_numbers(&self.end, tokens, ATTRIBUTES, &mut self.dropped)
     }
 
-    fn face(&mut self, mut tokens: Tokens, vertices: u64, corners: &mut Vec<u32>) -> Result<(), Error> {
-        let lines = &self.end;
+    fn face(&mut self, mut tokens: Tokens<'a>, vertices: u64, corners: &mut Vec<u32>) -> Result<(), Error> {
         let first = tokens.next().unwrap_or_default();
         let Some(size) = integer(first) else {
             let message = format!("expected a face's number of corners, found {}", quoted(first));
-            return Err(lines.refuse(message));
+            return Err(self.end.refuse(message));
         };
         if size < 3 {
-            return Err(lines.refuse(format!("a face with {size} corners, but a face needs at least 3")));
+            let message = format!("a face with {size} corners, but a face needs at least 3");
+            return Err(self.end.refuse(message));
         }
         corners.clear();
         for found in 0..size {
-            let Some(token) = tokens.next() else {
-                return Err(lines.refuse(format!("expected {size} vertex indices, found {found}")));
+            let Some(token) = self.token(&mut tokens) else {
+                return self.ended(format!("expected {size} vertex indices, found {found}"));
             };
-            corners.push(index(token, vertices).map_err(|message| lines.refuse(message))?);
+            corners.push(index(token, vertices).map_err(|message| self.end.refuse(message))?);
         }
         self.faces.push(corners);
-        drop_numbers(lines, tokens, COLOURS, &mut self.dropped)
+        drop_numbers(&self.end, tokens, COLOURS, &mut self.dropped)
+    }
+
+    /// The file, or only the line, ends within an item.
+    fn ended(&self, message: String) -> Result<(), Error> {
+        if self.is_short { Ok(()) } else { Err(self.end.refuse(message)) }
     }
 }
 

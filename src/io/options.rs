@@ -2,12 +2,25 @@
 
 use crate::{Dimension, Error};
 
+/// The floats that coordinates are read as.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Coordinates {
+    /// 32-bit floats.
+    F32,
+    /// 64-bit floats.
+    F64,
+}
+
 /// The options for reading a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ReadOptions {
     /// Whether the mesh is in the plane. `None`: it is in the plane if the file has two coordinates per vertex or every
     /// z is 0; a glTF file is always in space.
     pub dimension: Option<Dimension>,
+    /// The floats of the coordinates. `None`: those of a binary file; in text 32-bit floats, if each of them, rounded to
+    /// as many digits as its number in the file has, is that number, else 64-bit floats. Then the coordinates are those
+    /// that the file shows. A [`Mesh`](crate::Mesh) has 32-bit floats wherever they are the same.
+    pub coordinates: Option<Coordinates>,
     /// The most bytes of a file, packed and unpacked. By default 4 GiB, in WebAssembly 1 GiB.
     pub max_bytes: u64,
     /// Whether [`load`](super::load) may read the buffers of a glTF file from other files, in its folder and folders
@@ -22,6 +35,7 @@ impl Default for ReadOptions {
     fn default() -> Self {
         Self {
             dimension: None,
+            coordinates: None,
             external_files: false,
             keep: true,
             max_bytes: if cfg!(target_arch = "wasm32") { 1 << 30 } else { 1 << 32 },

@@ -2,6 +2,7 @@
 
 use super::format::Format;
 use super::held::{Face, Faces, Numbers};
+use super::parsed::Others;
 use super::{obj, off, pieces, ply, stl, text};
 use crate::session::locks;
 use crate::{Error, Mesh, Options};
@@ -18,6 +19,7 @@ pub(super) struct Original {
     pub(super) max_bytes: u64,
     /// The number of its triangles, if neither its faces nor their corners have attributes.
     pub(super) plain: Option<usize>,
+    pub(super) others: Others,
 }
 
 /// Bytes that a thread writes between two checks of the total.
@@ -95,8 +97,8 @@ impl Original {
         let bytes = &self.bytes;
         let faces = match self.format {
             Format::Off => off::held_faces(bytes),
-            Format::Obj => Ok(obj::held_faces(bytes, mesh)),
-            Format::Ply => ply::held_faces(bytes, mesh),
+            Format::Obj => Ok(obj::held_faces(bytes, mesh, &self.others)),
+            Format::Ply => ply::held_faces(bytes, mesh, &self.others),
             _ => Ok(stl::held_faces(bytes, mesh)),
         }?;
         let expected = 3 * faces.triangles(&pieces::threads(bytes.len())).iter().sum::<usize>();

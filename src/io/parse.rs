@@ -2,13 +2,13 @@
 
 use super::format::Format;
 use super::loaded::Loaded;
-use super::options::{ReadFile, ReadOptions};
+use super::options::{Coordinates, ReadFile, ReadOptions};
 use super::original::Original;
-use super::parsed::Parsed;
+use super::parsed::{Others, Parsed, Polygons};
 use super::text::Digits;
 use super::{gltf, gzip, obj, off, ply, stl};
 use crate::system::threads::Threads;
-use crate::{Dimension, Error, Mesh, Positions};
+use crate::{Dimension, Error, MAX_TRIANGLES, Mesh, Positions};
 use std::borrow::Cow;
 
 /// Parses the bytes of a file, which may be gzip'd. Copies borrowed bytes if the file is held ([`ReadOptions::keep`]).
@@ -47,21 +47,23 @@ pub fn parse_with<'a>(
     {
         bytes = text.into();
     }
+    let coordinates = options.coordinates;
     let (parsed, can_be_held) = match format {
-        Format::Off => (off::parse(&bytes)?, true),
-        Format::Obj => (obj::parse(&bytes)?, true),
-        Format::Ply => (ply::parse(&bytes)?, ply::is_held(&bytes)),
-        Format::Stl => (stl::parse(&bytes)?, stl::is_held(&bytes)),
+        Format::Off => (off::parse(&bytes, coordinates)?, true),
+        Format::Obj => (obj::parse(&bytes, coordinates)?, true),
+        Format::Ply => (ply::parse(&bytes, coordinates)?, ply::is_held(&bytes)),
+        Format::Stl => (stl::parse(&bytes, coordinates)?, stl::is_held(&bytes)),
         Format::Gltf | Format::Glb => {
             let gltf::Content { parsed, document, notes } =
                 gltf::read(bytes.into_owned(), read, options.max_bytes)?;
-            let loaded = finish(parsed, Some(options.dimension.unwrap_or(Dimension::Three)))?;
+            let dimension = options.dimension.or(Some(Dimension::Three));
+            let (loaded, _) = finish(parsed, &ReadOptions { dimension, ..*options })?;
             return Ok(Loaded { notes, document: Some(document), ..loaded });
         }
     };
     // The corners of an OBJ file may have references even if nothing was dropped.
     let is_plain = parsed.dropped.0.is_empty() && format != Format::Obj;
-    let loaded = finish(parsed, options.dimension)?;
+    let (loaded, others) = finish(parsed, options)?;
     let max_bytes = options.max_bytes;
     let plain = is_plain.then_some(loaded.mesh.triangle_count());
     let original = (options.keep && can_be_held).then(|| Original {
@@ -69,6 +71,7 @@ pub fn parse_with<'a>(
         bytes: bytes.into_owned(),
         max_bytes,
         plain,
+        others,
     });
     Ok(Loaded { original, ..loaded })
 }
@@ -86,15 +89,18 @@ fn utf8(bytes: &[u8]) -> Option<Vec<u8>> {
     }
 }
 
-/// Decides the dimension and makes the mesh.
-fn finish(parsed: Parsed, dimension: Option<Dimension>) -> Result<Loaded, Error> {
-    let Parsed { stride, positions, faces, dropped } = parsed;
+/// Decides the dimension, cuts the polygons and makes the mesh.
+fn finish(parsed: Parsed, options: &ReadOptions) -> Result<(Loaded, Others), Error> {
+    let Parsed { stride, mut positions, mut faces, dropped, .. } = parsed;
+    if options.coordinates == Some(Coordinates::F32) {
+        positions = positions.to_f32().into();
+    }
     let raised = match (&positions, stride) {
         (Positions::F32(numbers), 3) => first_raised(numbers),
         (Positions::F64(numbers), 3) => first_raised(numbers),
         _ => None,
     };
-    let dimension = match (dimension, raised) {
+    let dimension = match (options.dimension, raised) {
         (Some(Dimension::Two), Some(vertex)) => {
             let mut z = Vec::new();
             Digits::default().coordinate(&mut z, &positions, 3 * vertex + 2);
@@ -114,16 +120,20 @@ fn finish(parsed: Parsed, dimension: Option<Dimension>) -> Result<Loaded, Error>
         Positions::F32(numbers) => with_stride(numbers, stride, dimension.stride()).into(),
         Positions::F64(numbers) => with_stride(numbers, stride, dimension.stride()).into(),
     };
-    let threads = Threads::default().for_triangles(faces.triangles.len() / 3);
-    let mesh = Mesh::checked(dimension, positions, faces.triangles, &threads)?;
-    Ok(Loaded {
+    let count = faces.triangles.len() / 3;
+    let polygons = if count > MAX_TRIANGLES { Polygons::default() } else { faces.cut(&positions, dimension) };
+    let mesh =
+        Mesh::checked(dimension, positions, faces.triangles, &Threads::default().for_triangles(count))?;
+    let loaded = Loaded {
         mesh,
-        polygons: faces.polygons,
+        polygons: polygons.count,
+        crossing: polygons.crossing,
         dropped: dropped.0,
         notes: Vec::new(),
         document: None,
         original: None,
-    })
+    };
+    Ok((loaded, polygons.others))
 }
 
 /// The first vertex whose z is not 0.

@@ -23,6 +23,13 @@ pub(super) struct Piece<'a> {
     pub(super) items: Range<u64>,
 }
 
+impl<'a> Piece<'a> {
+    /// The rest of a text.
+    pub(super) fn whole(lines: &Lines<'a>) -> Self {
+        Self { lines: lines.clone(), items: 0..u64::MAX }
+    }
+}
+
 /// The threads for a file of so many bytes.
 pub(super) fn threads(bytes: usize) -> Threads {
     Threads::default().for_triangles(bytes / TRIANGLE)
@@ -36,7 +43,7 @@ pub(super) fn cut<'a>(
 ) -> Vec<Piece<'a>> {
     let cuts = threads.pieces(lines.bytes_left(), FEWEST);
     if cuts.len() == 1 {
-        return vec![Piece { lines: lines.clone(), items: 0..u64::MAX }];
+        return vec![Piece::whole(lines)];
     }
     let mut rest = lines.rest;
     let mut texts: Vec<&[u8]> = Vec::new();

@@ -2,11 +2,13 @@
 //! same position become one vertex. Vertices are numbered in the order of their first corners. Source: 3D Systems,
 //! "StereoLithography Interface Specification", 1988.
 
+use super::coordinates::{self, Float, Reading};
 use super::held::{Face, Faces};
+use super::options::Coordinates;
 use super::parsed::{CutFaces, Dropped, Parsed};
 use super::rounded::rounded;
-use super::text::{Lines, Tokens, coordinate, float, quoted};
-use crate::{Dimension, Error, MAX_TRIANGLES, Mesh};
+use super::text::{Lines, Tokens, float, quoted};
+use crate::{Dimension, Error, MAX_TRIANGLES, Mesh, Positions};
 use glam::{DVec3, Vec3};
 use std::io::{self, Write};
 
@@ -18,8 +20,11 @@ const FACET: usize = 50;
 const ATTRIBUTE: usize = 48;
 
 /// Reads a file's bytes.
-pub(super) fn parse(bytes: &[u8]) -> Result<Parsed, Error> {
-    if is_held(bytes) { binary(bytes) } else { text(bytes) }
+pub(super) fn parse(bytes: &[u8], option: Option<Coordinates>) -> Result<Parsed, Error> {
+    if is_held(bytes) {
+        return binary(bytes);
+    }
+    coordinates::read(option, |asks| text::<f32>(bytes, asks), || text::<f64>(bytes, false))
 }
 
 /// Whether the file can be written again with other triangles: it is binary.
@@ -131,14 +136,19 @@ fn binary(bytes: &[u8]) -> Result<Parsed, Error> {
             dropped.note("attributes of facets");
         }
     }
-    Ok(merged(corners, CutFaces { triangles: (0..3 * count as u32).collect(), polygons: 0 }, dropped))
+    let faces = CutFaces::of((0..3 * count as u32).collect());
+    Ok(merged(corners, faces, dropped))
 }
 
 /// Parses blocks `solid … endsolid` with facets in them.
-fn text(bytes: &[u8]) -> Result<Parsed, Error> {
+fn text<T: Corner>(bytes: &[u8], asks: bool) -> Result<Parsed, Error>
+where
+    Positions: From<Vec<T>>,
+{
+    let mut reading = Reading { asks, loses: false };
     let mut words = Words { lines: Lines::new(bytes), line: Tokens(b"") };
-    let (mut corners, mut faces) = (Vec::new(), CutFaces::default());
-    while let Some(word) = words.next() {
+    let (mut corners, mut faces) = (Vec::<[T; 3]>::new(), CutFaces::default());
+    'file: while let Some(word) = words.next() {
         words.is(word, "solid")?;
         words.line = Tokens(b""); // skips the name
         loop {
@@ -150,14 +160,22 @@ fn text(bytes: &[u8]) -> Result<Parsed, Error> {
             if !word.eq_ignore_ascii_case(b"facet") {
                 return Err(words.expected("facet or endsolid", word));
             }
-            facet(&mut words, &mut corners, &mut faces)?;
+            facet(&mut words, &mut reading, &mut corners, &mut faces)?;
+            if reading.loses {
+                break 'file;
+            }
         }
     }
-    Ok(merged(corners, faces, Dropped::default()))
+    Ok(Parsed { loses: reading.loses, ..merged(corners, faces, Dropped::default()) })
 }
 
 /// Reads a facet after its first word. It may have more than three corners.
-fn facet(words: &mut Words, corners: &mut Vec<[f32; 3]>, faces: &mut CutFaces) -> Result<(), Error> {
+fn facet<T: Float>(
+    words: &mut Words,
+    reading: &mut Reading,
+    corners: &mut Vec<[T; 3]>,
+    faces: &mut CutFaces,
+) -> Result<(), Error> {
     words.keyword("normal")?;
     for _ in 0..3 {
         let word = words.after("a number")?;
@@ -173,9 +191,11 @@ fn facet(words: &mut Words, corners: &mut Vec<[f32; 3]>, faces: &mut CutFaces) -
             break;
         }
         words.is(word, "vertex")?;
-        let mut point = [0.0; 3];
+        let mut point = [T::default(); 3];
         for x in &mut point {
-            *x = coordinate(words.after("a number")?).map_err(|message| words.lines.refuse(message))?;
+            *x = reading
+                .coordinate(words.after("a number")?)
+                .map_err(|message| words.lines.refuse(message))?;
         }
         corners.push(point);
         refuse_too_many(corners.len() / 3)?;
@@ -227,21 +247,46 @@ fn refuse_too_many(count: usize) -> Result<(), Error> {
     Ok(())
 }
 
+/// A coordinate of a corner.
+trait Corner: Float {
+    /// A position, with -0 as 0.
+    type Place: Copy + Ord;
+
+    fn place(corner: [Self; 3]) -> Self::Place;
+}
+
+impl Corner for f32 {
+    type Place = (u64, u32);
+
+    fn place(corner: [Self; 3]) -> (u64, u32) {
+        let [x, y, z] = corner.map(|x| (x + 0.0).to_bits());
+        (u64::from(x) << 32 | u64::from(y), z)
+    }
+}
+
+impl Corner for f64 {
+    type Place = (u128, u64);
+
+    fn place(corner: [Self; 3]) -> (u128, u64) {
+        let [x, y, z] = corner.map(|x| (x + 0.0).to_bits());
+        (u128::from(x) << 64 | u128::from(y), z)
+    }
+}
+
 /// The mesh of `faces` over `corners`. Corners at the same position become one vertex. It sorts the corners, because no
 /// file can make sorting slow, as it can with hashing.
-fn merged(corners: Vec<[f32; 3]>, mut faces: CutFaces, dropped: Dropped) -> Parsed {
-    let key = |(i, corner): (usize, &[f32; 3])| {
-        // -0 + 0 is 0.
-        let [x, y, z] = corner.map(|x| u128::from((x + 0.0).to_bits()));
-        x << 96 | y << 64 | z << 32 | i as u128
-    };
-    let mut sorted: Vec<u128> = corners.iter().enumerate().map(key).collect();
+fn merged<T: Corner>(corners: Vec<[T; 3]>, mut faces: CutFaces, dropped: Dropped) -> Parsed
+where
+    Positions: From<Vec<T>>,
+{
+    let mut sorted: Vec<(T::Place, u32)> =
+        corners.iter().zip(0..).map(|(&corner, i)| (T::place(corner), i)).collect();
     sorted.sort_unstable();
     // For each corner, first the first corner at its position, later its vertex.
     let mut vertices = vec![0; corners.len()];
-    for group in sorted.chunk_by(|a, b| a >> 32 == b >> 32) {
-        for corner in group {
-            vertices[*corner as u32 as usize] = group[0] as u32;
+    for group in sorted.chunk_by(|a, b| a.0 == b.0) {
+        for &(_, corner) in group {
+            vertices[corner as usize] = group[0].1;
         }
     }
     let mut positions = Vec::new();
@@ -255,5 +300,5 @@ fn merged(corners: Vec<[f32; 3]>, mut faces: CutFaces, dropped: Dropped) -> Pars
     for v in &mut faces.triangles {
         *v = vertices[*v as usize];
     }
-    Parsed { stride: Dimension::Three.stride(), positions: positions.into(), faces, dropped }
+    Parsed { stride: Dimension::Three.stride(), positions: positions.into(), faces, dropped, loses: false }
 }

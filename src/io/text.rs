@@ -89,15 +89,6 @@ pub(super) fn float(token: &[u8]) -> Option<f32> {
     std::str::from_utf8(token).ok()?.parse().ok()
 }
 
-/// A finite coordinate, or what is wrong with it.
-pub(super) fn coordinate(token: &[u8]) -> Result<f32, String> {
-    match float(token) {
-        Some(x) if x.is_finite() => Ok(x),
-        Some(_) => Err(format!("{} is not a finite 32-bit number", quoted(token))),
-        None => Err(format!("expected a number, found {}", quoted(token))),
-    }
-}
-
 /// A decimal integer, clamped to 64 bits; `None` if the token is not an integer.
 pub(super) fn integer(token: &[u8]) -> Option<i64> {
     let (negative, digits) = match token {

@@ -14,15 +14,17 @@
 
 import * as wasm from './wasm/edgeflip_files.js';
 import { EdgeflipError, fromModule } from './error.js';
+import type { FileMesh, ReadOptions, WriteOptions } from './file-mesh.js';
 import { copyOf, read, shown, viewOf, wordsOf } from './given.js';
 import { areFilesLoaded, loadFiles } from './load-files.js';
-import { checkDimension, type IndexedMesh, type Mesh32, moduleMesh } from './mesh.js';
+import { checkDimension, type Mesh32, moduleMesh } from './mesh.js';
 import { initOf } from './module.js';
 import { namesOf, optionsOf } from './names.js';
-import { attributesOf, bytesOf, type FindFile, filesOf, foundBy, maxBytesOf, originalOf, textOf } from './settings.js';
-import type { Attributes, Bytes, Files, IndexArray, LeftOut, Mesh, Original, VertexArray } from './types.js';
+import { attributesOf, bytesOf, coordinatesOf, filesOf, foundBy, maxBytesOf, originalOf, textOf } from './settings.js';
+import type { Attributes, Bytes, IndexArray, LeftOut, Mesh, Original, VertexArray } from './types.js';
 
 export { EdgeflipError, type ErrorCode } from './error.js';
+export type { FileMesh, ReadOptions, WriteOptions } from './file-mesh.js';
 export type { IndexedMesh, Mesh32 } from './mesh.js';
 export type { ModuleSource, Sources } from './module.js';
 export type { FindFile } from './settings.js';
@@ -33,63 +35,6 @@ export type { Attributes, Bytes, Files, IndexArray, LeftOut, Mesh, Original, Ver
  * `bunny.ply.gz`, the written file is compressed with gzip.
  */
 export const FORMATS = ['.off', '.obj', '.ply', '.stl', '.gltf', '.glb'] as const;
-
-/**
- * A mesh that was read: all vertices of the file, in its order, and its faces as triangles. The positions are a
- * Float64Array if a PLY file has doubles that are not 32-bit floats. An STL file has only corners of triangles: corners
- * at the same position become one vertex, in the order of the file. In a glTF file every primitive has its own
- * vertices.
- */
-export interface FileMesh extends IndexedMesh {
-  /** Faces with more than three corners; each was cut into a fan of triangles around its first corner. */
-  polygons: number;
-  /** The contents of the file that a mesh cannot hold, such as `normals`. */
-  dropped: string[];
-  /** Whether {@link writeMesh} with `original` keeps them in a file of the same format. Not for PLY with strips. */
-  keeps: boolean;
-  /** Other notes about the file, a sentence each. */
-  notes: string[];
-  /**
-   * The positions in the scene of a glTF file, to draw the mesh: 3 numbers per vertex. `positions` has the coordinates
-   * that the flips use: those of the file, each part in its own system, but scaled where a node scales it unevenly.
-   * `undefined` for other formats.
-   */
-  placed: Float32Array | undefined;
-  /**
-   * Pass these three as options of the same names to a run, so that {@link writeMesh} can keep the attributes of faces
-   * and corners. `groups` has a number for each triangle, such as the index of its material. `lockedEdges` has the
-   * seams, where corners of a vertex differ in texture coordinates or normals. `lockedTriangles` has triangles whose
-   * corners the seams do not protect. Each is `undefined` if it is empty, as for glTF, whose attributes belong to
-   * vertices.
-   */
-  groups: Uint32Array | undefined;
-  lockedEdges: Uint32Array | undefined;
-  lockedTriangles: Uint32Array | undefined;
-}
-
-/** The options of {@link readMesh}. */
-export interface ReadOptions {
-  /** Default: 2 if the file has two coordinates per vertex or every z is 0, else 3. For glTF always 3. */
-  dimension?: 2 | 3 | undefined;
-  /** The most bytes that the file may have, compressed and unpacked. Default: 2^30. */
-  maxBytes?: number | undefined;
-  /**
-   * The other files that hold the buffers of a `.gltf` file, or a function that is called with the name of each
-   * when the file is read. If the function throws, {@link readMesh} throws the same error. Nothing is fetched.
-   */
-  files?: Files | FindFile | undefined;
-}
-
-/** The options of {@link writeMesh}. */
-export interface WriteOptions {
-  /**
-   * The file that the mesh was read from; the positions must be those of the file. In the same format, the result is
-   * this file with other triangles. A glTF file gets other indices, as `.gltf` or `.glb`. In OFF, OBJ, PLY and binary
-   * STL, only faces that contain a changed triangle are rewritten, as triangles with the attributes of their face. The
-   * run needs {@link FileMesh.groups}, {@link FileMesh.lockedEdges} and {@link FileMesh.lockedTriangles} as options.
-   */
-  original?: Original | undefined;
-}
 
 /** Statistics of the angles of a mesh. A degenerate triangle counts as one with an angle of 0°. */
 export interface Angles {
@@ -212,7 +157,7 @@ export interface Change {
  */
 export const init = initOf('files', { files: loadFiles });
 
-const READ_OPTIONS = namesOf<ReadOptions>({ dimension: true, maxBytes: true, files: true });
+const READ_OPTIONS = namesOf<ReadOptions>({ dimension: true, coordinates: true, maxBytes: true, files: true });
 const LOCKS = namesOf<Locks>({ lockedEdges: true, lockedTriangles: true, groups: true });
 const NONE = new Uint32Array();
 const WRITE_OPTIONS = namesOf<WriteOptions>({ original: true });
@@ -232,17 +177,17 @@ function held<A extends VertexArray>(view: A, what: string): A {
 export async function readMesh(bytes: Uint8Array, name: string, options: ReadOptions = {}): Promise<FileMesh> {
   const [view, file] = [bytesOf(bytes, 'bytes'), textOf(name, 'name')];
   const failures: unknown[] = [];
-  const { dimension, maxBytes, files } = read('the options', () => {
-    const { dimension, maxBytes, files } = optionsOf(options, READ_OPTIONS) as ReadOptions;
+  const { dimension, files, ...more } = read('the options', () => {
+    const { dimension, coordinates, maxBytes, files } = optionsOf(options, READ_OPTIONS) as ReadOptions;
     if (dimension !== undefined) checkDimension(dimension);
     const found = typeof files === 'function' ? foundBy(files, failures) : filesOf(files, held);
-    return { dimension, maxBytes: maxBytesOf(maxBytes), files: found };
+    return { dimension, files: found, maxBytes: maxBytesOf(maxBytes), coordinates: coordinatesOf(coordinates) };
   });
   // The module counts bytes with 32 bits.
   if (view.length >= 2 ** 32) throw new EdgeflipError('file-too-large', 'the file has more than 4294967295 bytes');
   const content = held(view, 'bytes');
   try {
-    return await call(() => wasm.readMesh({ bytes: content, name: file, files, maxBytes }, dimension));
+    return await call(() => wasm.readMesh({ bytes: content, name: file, files, ...more }, dimension));
   } catch (error) {
     throw failures.length > 0 ? failures[0] : error;
   }
@@ -250,7 +195,7 @@ export async function readMesh(bytes: Uint8Array, name: string, options: ReadOpt
 
 /**
  * The bytes of a file that holds the mesh. If the mesh is in the plane, every z is 0. In OFF and OBJ each number has
- * the fewest digits that read back to the same 32 or 64 bits; {@link readMesh} reads them as 32-bit floats. PLY is
+ * the fewest digits that {@link readMesh} reads back to the same 32 or 64 bits. PLY is
  * binary and keeps all bits. STL is binary, and its positions are rounded to 32-bit floats, as in glTF.
  *
  * @param name - The file's name, such as `bunny.obj` or `bunny.ply.gz`: the extension names the format.

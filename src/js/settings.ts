@@ -174,12 +174,13 @@ export function attributesOf(attributes: Attributes, hold: Hold): readonly Verte
 /** @throws {@link EdgeflipError} `invalid-input`. */
 export function originalOf(original: Original, hold: Hold): Required<Original> {
   return read('the original', () => {
-    const { bytes, name, files, maxBytes } = objectOf(original, 'original') as unknown as Original;
+    const { bytes, name, files, maxBytes, coordinates } = objectOf(original, 'original') as unknown as Original;
     return {
       bytes: hold(bytesOf(bytes, 'original.bytes'), 'original.bytes'),
       name: textOf(name, 'original.name'),
       files: filesOf(files, hold),
       maxBytes: maxBytesOf(maxBytes),
+      coordinates: coordinatesOf(coordinates),
     };
   });
 }
@@ -222,6 +223,12 @@ export function filesOf(given: Files | undefined, hold: Hold): Files {
 export function maxBytesOf(given: number | undefined): number | undefined {
   if (given === undefined || typeof given === 'number') return given;
   throw new EdgeflipError('invalid-input', `maxBytes: ${shown(given)} is not a number`);
+}
+
+/** @throws {@link EdgeflipError} `invalid-input`. */
+export function coordinatesOf(given: 32 | 64 | undefined): 32 | 64 | undefined {
+  if (given === undefined || given === 32 || given === 64) return given;
+  throw new EdgeflipError('invalid-input', `coordinates: ${shown(given)} is not 32 or 64`);
 }
 
 /** @throws {@link EdgeflipError} `invalid-input`. */

@@ -82,6 +82,7 @@ export interface Original {
   name: string;
   files?: Files | undefined;
   maxBytes?: number | undefined;
+  coordinates?: 32 | 64 | undefined;
 }
 
 /** An attribute of the vertices: the same count of numbers for each vertex, such as 2 texture coordinates. */

@@ -6,6 +6,7 @@ mod constraint_options;
 mod files;
 mod joins;
 mod lock_options;
+mod shown;
 mod usage;
 
 use crate::command::{Folder, SQUARE, grid, run, text};
@@ -14,7 +15,7 @@ use std::fs;
 use std::time::Instant;
 
 /// The keys of the object that `--json` prints, in their order.
-const KEYS: [&str; 30] = [
+const KEYS: [&str; 32] = [
     "input",
     "vertices",
     "triangles",
@@ -23,6 +24,8 @@ const KEYS: [&str; 30] = [
     "non_manifold_edges",
     "inconsistent_edges",
     "dimension",
+    "coordinates",
+    "crossing_polygons",
     "backend",
     "adapter",
     "fallback",

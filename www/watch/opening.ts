@@ -102,8 +102,11 @@ function remarkOn({ mesh, others }: Read): string {
 
 function remarkOnFile(mesh: FileMesh): string {
   const cut = mesh.polygons > 0 ? `${number.format(mesh.polygons)} faces were cut into triangles.` : '';
+  const crossing = mesh.crossing
+    ? `The outline of ${number.format(mesh.crossing.length)} of them crosses or touches itself: face ${mesh.crossing[0]}.`
+    : '';
   const dropped = mesh.dropped.length > 0 && !mesh.keeps ? `Not kept: ${mesh.dropped.join(', ')}.` : '';
   const isDivided = mesh.groups ?? mesh.lockedEdges ?? mesh.lockedTriangles;
   const locked = isDivided ? 'Edges between groups of faces or along seams are locked.' : '';
-  return [cut, dropped, locked, ...mesh.notes.map((note) => `${note}.`)].filter(Boolean).join(' ');
+  return [cut, crossing, dropped, locked, ...mesh.notes.map((note) => `${note}.`)].filter(Boolean).join(' ');
 }

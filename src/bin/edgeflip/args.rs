@@ -1,7 +1,7 @@
 //! The command line: its options, what they mean, and how they become the library's.
 
 use clap::{Parser, ValueEnum};
-use edgeflip::io::{Format, ReadOptions};
+use edgeflip::io::{Coordinates, Format, ReadOptions};
 use edgeflip::{Backend, Dimension, Options, Order};
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
@@ -10,7 +10,7 @@ const AFTER: &str = "\
 Formats, by extension:
   .off   Geomview OFF, text (also COFF, NOFF, STOFF, and nOFF with 2 or 3 dimensions)
   .obj   Wavefront OBJ; all groups and objects are read as one mesh
-  .ply   PLY, text or binary; new files are binary; the only format that is read with 64-bit floats
+  .ply   PLY, text or binary; new files are binary
   .stl   STL, text or binary, written in binary with 32-bit floats; corners at the same position are
          read as one vertex
   .gltf  glTF 2.0, .glb in one binary file. Each primitive is a part of the mesh, and the borders
@@ -74,6 +74,10 @@ pub struct Args {
     /// Whether the mesh lies in the plane or in space
     #[arg(long, value_enum, default_value_t, value_name = "DIM")]
     pub dimension: DimensionArg,
+
+    /// The bits of the floats that coordinates are read as
+    #[arg(long, value_enum, default_value_t, value_name = "BITS")]
+    pub coordinates: CoordinatesArg,
 
     /// The most bytes of IN, packed and unpacked
     #[arg(long, value_name = "N", default_value_t = ReadOptions::default().max_bytes, allow_negative_numbers = true)]
@@ -184,7 +188,8 @@ pub struct Args {
     /// Print one JSON object on standard output instead of the summary
     ///
     /// Keys: input, vertices, triangles, edges, boundary_edges, non_manifold_edges, inconsistent_edges, dimension,
-    /// backend, adapter, fallback, status (done or stopped), iterations, flips, constraint_flips, left_out (for each
+    /// coordinates (32 or 64, the bits of the floats that decide), crossing_polygons (the numbers of faces, see the
+    /// notes), backend, adapter, fallback, status (done or stopped), iterations, flips, constraint_flips, left_out (for each
     /// constraint left out, its index in the list and the reason), flips_per_iteration, dispatches,
     /// device_bytes, remaining (by reason), min_angle_before_deg, min_angle_after_deg, before and after (min_angle_deg,
     /// mean_min_angle_deg, mean_aspect, flat_triangles, area, volume), turned_triangles, joined_vertices, seam_edges,
@@ -217,9 +222,19 @@ impl Args {
             DimensionArg::Two => Some(Dimension::Two),
             DimensionArg::Three => Some(Dimension::Three),
         };
+        let coordinates = match self.coordinates {
+            // OUT shows what decides.
+            CoordinatesArg::Auto if matches!(output, Format::Stl | Format::Gltf | Format::Glb) => {
+                Some(Coordinates::F32)
+            }
+            CoordinatesArg::Auto => None,
+            CoordinatesArg::F32 => Some(Coordinates::F32),
+            CoordinatesArg::F64 => Some(Coordinates::F64),
+        };
         let is_same = Format::of(&self.input).is_ok_and(|input| input == output);
         ReadOptions {
             dimension,
+            coordinates,
             max_bytes: self.max_bytes,
             external_files: self.external_files,
             keep: is_same && !self.drop_attributes && !self.weld,
@@ -246,6 +261,21 @@ impl Args {
             ..Options::default()
         }
     }
+}
+
+/// `--coordinates`.
+#[derive(Clone, Copy, Debug, Default, ValueEnum)]
+pub enum CoordinatesArg {
+    /// 32 if OUT is STL or glTF, which hold no others; else those of a binary file; in text 32, if each float, rounded
+    /// to as many digits as its number in IN has, is that number, else 64
+    #[default]
+    Auto,
+    /// 32-bit floats
+    #[value(name = "32")]
+    F32,
+    /// 64-bit floats
+    #[value(name = "64")]
+    F64,
 }
 
 /// `--backend`.

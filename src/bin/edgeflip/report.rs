@@ -4,7 +4,7 @@ use crate::args::Args;
 use crate::failure::Failure;
 use edgeflip::io::{Format, Loaded};
 use edgeflip::quality::{self, Measures};
-use edgeflip::{Dimension, Error, LeftOut, Mesh, Outcome, Reasons, Status, Timings, Welded};
+use edgeflip::{Dimension, Error, LeftOut, Mesh, Outcome, Positions, Reasons, Status, Timings, Welded};
 use indicatif::{HumanBytes, HumanCount};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -23,6 +23,8 @@ pub struct Report {
     non_manifold_edges: u64,
     inconsistent_edges: u64,
     dimension: usize,
+    coordinates: u32,
+    crossing_polygons: Vec<u32>,
     backend: &'static str,
     adapter: Option<String>,
     fallback: Option<String>,
@@ -180,6 +182,8 @@ impl Report {
             non_manifold_edges: outcome.non_manifold_edges,
             inconsistent_edges: outcome.inconsistent_edges,
             dimension: mesh.dimension().stride(),
+            coordinates: if matches!(mesh.positions(), Positions::F64(_)) { 64 } else { 32 },
+            crossing_polygons: Vec::new(),
             backend: outcome.backend.name(),
             adapter: outcome.adapter,
             fallback: outcome.fallback,
@@ -230,6 +234,13 @@ impl Report {
             let changed = if loaded.keeps(format) { ", where an edge of theirs flips" } else { "" };
             self.notes.push(format!("polygons cut into triangles{changed}: {polygons}"));
         }
+        if !loaded.crossing.is_empty() {
+            let faces = listed(&loaded.crossing, u32::to_string);
+            self.notes.push(format!(
+                "polygons cut into fans although their outline crosses or touches itself, the first face is 0: {faces}"
+            ));
+        }
+        self.crossing_polygons.clone_from(&loaded.crossing);
         let dropped = loaded.dropped_in(format);
         if !dropped.is_empty() {
             self.notes.push(format!("not kept: {}", dropped.join("; ")));
@@ -255,9 +266,10 @@ impl Report {
             let _ = writeln!(text, "{name:<10} {value}");
         };
         let [vertices, triangles] = [self.vertices, self.triangles].map(|n| HumanCount(n as u64));
+        let bits = if self.coordinates == 64 { ", 64-bit coordinates" } else { "" };
         line(
             "read",
-            format!("{}: {vertices} vertices, {triangles} triangles, {}D", self.input, self.dimension),
+            format!("{}: {vertices} vertices, {triangles} triangles, {}D{bits}", self.input, self.dimension),
         );
         let frozen: Vec<String> =
             [(self.non_manifold_edges, "non-manifold"), (self.inconsistent_edges, "inconsistent")]
@@ -362,19 +374,21 @@ fn change(before: f64, after: f64) -> String {
 
 /// The first edges left for each reason, named by their vertices.
 fn first_edges(remaining: &BTreeMap<&str, Vec<[u32; 2]>>) -> String {
-    const LISTED: usize = 5;
-    let parts: Vec<String> = remaining
+    let parts = remaining
         .iter()
-        .map(|(reason, edges)| {
-            let first: Vec<String> = edges.iter().take(LISTED).map(|[u, v]| format!("{u}-{v}")).collect();
-            let more = match edges.len().saturating_sub(LISTED) {
-                0 => String::new(),
-                n => format!(" and {} more", HumanCount(n as u64)),
-            };
-            format!("{reason} {}{more}", first.join(", "))
-        })
-        .collect();
-    parts.join("; ")
+        .map(|(reason, edges)| format!("{reason} {}", listed(edges, |[u, v]| format!("{u}-{v}"))));
+    parts.collect::<Vec<_>>().join("; ")
+}
+
+/// The first items, and how many more there are.
+fn listed<T>(items: &[T], text: impl Fn(&T) -> String) -> String {
+    const LISTED: usize = 5;
+    let first: Vec<String> = items.iter().take(LISTED).map(text).collect();
+    let more = match items.len().saturating_sub(LISTED) {
+        0 => String::new(),
+        n => format!(" and {} more", HumanCount(n as u64)),
+    };
+    first.join(", ") + &more
 }
 
 /// The numbers of edges left by reason, as text.

@@ -86,8 +86,8 @@ pub(in crate::io) fn read(bytes: Vec<u8>, read: ReadFile<'_>, max_bytes: u64) ->
         }
     }
     let dropped = Dropped(dropped(&root).into_iter().map(String::from).collect());
-    let faces = CutFaces { triangles, polygons: 0 };
-    let parsed = Parsed { stride: 3, positions: positions.into(), faces, dropped };
+    let faces = CutFaces::of(triangles);
+    let parsed = Parsed { stride: 3, positions: positions.into(), faces, dropped, loses: false };
     let document = Document { bytes, files: files.into_inner(), parts };
     Ok(Content { parsed, document, notes })
 }

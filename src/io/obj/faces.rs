@@ -2,7 +2,8 @@
 
 use super::lines::continued;
 use crate::Mesh;
-use crate::io::held::{Face, Faces, Numbers, line_end, numbered, range_in};
+use crate::io::held::{Corners, Face, Faces, Numbers, line_end, numbered, range_in};
+use crate::io::parsed::Others;
 use crate::io::text::{Digits, Lines, Tokens, integer, without_comment};
 
 /// Keywords of lines that apply to all faces after them.
@@ -15,13 +16,13 @@ type References = [u32; 2];
 type Texts<'a> = Vec<(&'a [u8], Option<u32>)>;
 
 /// The faces of a file that has been read.
-pub(in crate::io) fn held_faces<'a>(bytes: &'a [u8], mesh: &Mesh) -> Faces<'a> {
+pub(in crate::io) fn held_faces<'a>(bytes: &'a [u8], mesh: &Mesh, others: &Others) -> Faces<'a> {
     let mut list = Vec::new();
     let mut texts: [Texts; 2] = Default::default();
     let mut references: Vec<References> = Vec::new();
     let (mut states, mut names) = ([None; STATES.len()], Numbers::default());
     let (mut groups, mut group) = (Numbers::default(), None);
-    let mut corners: Vec<References> = Vec::new();
+    let (mut corners, mut cut) = (Vec::<References>::new(), Corners::new(others));
     let mut lines = Lines::new(bytes);
     while let Some(line) = lines.next() {
         let (joined, last) = continued(without_comment(line), &mut lines);
@@ -34,11 +35,10 @@ pub(in crate::io) fn held_faces<'a>(bytes: &'a [u8], mesh: &Mesh) -> Faces<'a> {
             Some(b"f" | b"fo") => {
                 corners.clear();
                 corners.extend(tokens.map(|corner| resolved(corner, &texts)));
-                let Some((&first, rest)) = corners.split_first() else { continue };
-                let pairs = rest.windows(2);
+                let triangles = corners.len().saturating_sub(2);
                 let group = *group.get_or_insert_with(|| groups.of(&states));
-                list.push(Face { bytes: start..end, triangles: pairs.len(), group });
-                references.extend(pairs.flat_map(|pair| [first, pair[0], pair[1]]));
+                list.push(Face { bytes: start..end, triangles, group });
+                references.extend(cut.of_next(triangles).map(|corner| corners[corner]));
             }
             Some(b"vt") => texts[0].push((text, None)),
             Some(b"vn") => texts[1].push((text, None)),

@@ -6,26 +6,35 @@ mod lines;
 
 pub(super) use faces::held_faces;
 
+use super::coordinates::{self, Float, Reading};
+use super::options::Coordinates;
 use super::parsed::{CutFaces, Dropped, Parsed};
 use super::pieces;
-use super::text::{Lines, Tokens, coordinate, float, integer, quoted, without_comment};
-use crate::{Error, Mesh};
+use super::text::{Lines, Tokens, float, integer, quoted, without_comment};
+use crate::{Error, Mesh, Positions};
 use lines::continued;
 use std::io::{self, Write};
 
 /// Reads a file's bytes.
-pub(super) fn parse(bytes: &[u8]) -> Result<Parsed, Error> {
-    let mut reader = Reader::default();
+pub(super) fn parse(bytes: &[u8], option: Option<Coordinates>) -> Result<Parsed, Error> {
+    coordinates::read(option, |asks| read::<f32>(bytes, asks), || read::<f64>(bytes, false))
+}
+
+fn read<T: Float>(bytes: &[u8], asks: bool) -> Result<Parsed, Error>
+where
+    Positions: From<Vec<T>>,
+{
+    let mut reader = Reader::<T>::new(asks);
     reader.read(Lines::new(bytes), None)?;
     let vertices = reader.vertices();
     // A face may name a later vertex, so only the end of the file shows whether an index is out of range. A second
     // pass, which knows the number of vertices, finds the line.
-    if reader.largest >= vertices {
-        reader = Reader::default();
+    if reader.largest >= vertices && !reader.reading.loses {
+        reader = Reader::new(asks);
         reader.read(Lines::new(bytes), Some(vertices))?;
     }
-    let Reader { positions, faces, dropped, .. } = reader;
-    Ok(Parsed { stride: 3, positions: positions.into(), faces, dropped })
+    let Reader { positions, reading: Reading { loses, .. }, faces, dropped, .. } = reader;
+    Ok(Parsed { stride: 3, positions: positions.into(), faces, dropped, loses })
 }
 
 /// Writes `mesh`; z is 0 in a 2D mesh.
@@ -51,8 +60,9 @@ pub(super) fn write(mesh: &Mesh, out: &mut impl Write) -> io::Result<()> {
 }
 
 /// The mesh read so far.
-struct Reader {
-    positions: Vec<f32>,
+struct Reader<T> {
+    positions: Vec<T>,
+    reading: Reading,
     faces: CutFaces,
     dropped: Dropped,
     /// The largest vertex index so far, from 0; -1 before the first.
@@ -60,31 +70,34 @@ struct Reader {
     corners: Vec<u32>,
 }
 
-impl Default for Reader {
-    fn default() -> Self {
+impl<T: Float> Reader<T> {
+    fn new(asks: bool) -> Self {
         Self {
             positions: Vec::new(),
+            reading: Reading { asks, loses: false },
             faces: CutFaces::default(),
             dropped: Dropped::default(),
             largest: -1,
             corners: Vec::new(),
         }
     }
-}
 
-impl Reader {
     /// The number of vertices so far. It fits, since a slice is never longer than `isize::MAX` bytes.
     fn vertices(&self) -> i64 {
         (self.positions.len() / 3) as i64
     }
 
-    /// Reads all lines. `known` is the number of vertices of the whole file, if it is known.
+    /// Reads all lines, or those up to the first coordinate that loses digits. `known` is the number of vertices of the
+    /// whole file, if it is known.
     fn read(&mut self, mut lines: Lines, known: Option<i64>) -> Result<(), Error> {
         while let Some(line) = lines.next() {
             let number = lines.number();
             let (line, _) = continued(without_comment(line), &mut lines);
             self.line(&line, known)
                 .map_err(|message| Error::Parse { place: format!("line {number}"), message })?;
+            if self.reading.loses {
+                return Ok(());
+            }
         }
         if self.positions.is_empty() {
             return Err(lines.refuse("the file ends without a vertex (v) line"));
@@ -121,7 +134,7 @@ impl Reader {
     fn vertex(&mut self, mut tokens: Tokens) -> Result<(), String> {
         for found in 0..3 {
             let token = tokens.next().ok_or_else(|| format!("expected 3 coordinates, found {found}"))?;
-            self.positions.push(coordinate(token)?);
+            self.positions.push(self.reading.coordinate(token)?);
         }
         for token in tokens {
             if float(token).is_none() {

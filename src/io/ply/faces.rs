@@ -2,7 +2,8 @@
 
 use super::header::{Element, Encoding, Header, Property, Role, Scalar, role};
 use super::source::{Ascii, Source, binary};
-use crate::io::held::{Face, Faces, Numbers, line_end, numbered, range_in};
+use crate::io::held::{Corners, Face, Faces, Numbers, line_end, numbered, range_in};
+use crate::io::parsed::Others;
 use crate::io::text::{Digits, Lines, Tokens, quoted};
 use crate::{Error, Mesh};
 
@@ -16,12 +17,17 @@ pub(in crate::io) fn is_held(bytes: &[u8]) -> bool {
 }
 
 /// The faces of a file that has been read.
-pub(in crate::io) fn held_faces<'a>(bytes: &'a [u8], mesh: &Mesh) -> Result<Faces<'a>, Error> {
+pub(in crate::io) fn held_faces<'a>(
+    bytes: &'a [u8],
+    mesh: &Mesh,
+    others: &Others,
+) -> Result<Faces<'a>, Error> {
     let mut lines = Lines::new(bytes);
     let Header { encoding, elements } = Header::parse(&mut lines)?;
+    let cut = Corners::new(others);
     match encoding {
-        Encoding::Ascii => of(bytes, Ascii { lines, words: Tokens(b"") }, &elements, encoding, mesh),
-        _ => of(bytes, binary(bytes, &lines, encoding), &elements, encoding, mesh),
+        Encoding::Ascii => of(bytes, Ascii::new(lines, false), &elements, encoding, mesh, cut),
+        _ => of(bytes, binary(bytes, &lines, encoding), &elements, encoding, mesh, cut),
     }
 }
 
@@ -41,6 +47,7 @@ fn of<'a>(
     elements: &[Element<'a>],
     encoding: Encoding,
     mesh: &Mesh,
+    mut cut: Corners,
 ) -> Result<Faces<'a>, Error> {
     let (mut list, mut corners, mut counts) = (Vec::new(), Vec::new(), Vec::new());
     let mut form = Form { encoding, properties: Vec::new(), vertices: 0, texture: None };
@@ -67,7 +74,7 @@ fn of<'a>(
                 continue;
             }
             let piece = |corner: usize| pieces.get(corner).copied().unwrap_or_default();
-            corners.extend((1..=triangles).flat_map(|i| [0, i, i + 1]).map(piece));
+            corners.extend(cut.of_next(triangles).map(piece));
         }
     }
     let groups = groups.into_known();

@@ -8,8 +8,10 @@ mod source;
 
 pub(super) use faces::{held_faces, is_held};
 
+use super::coordinates;
+use super::options::Coordinates;
 use super::parsed::{CutFaces, Dropped, Parsed};
-use super::text::{Lines, Tokens, quoted};
+use super::text::{Lines, quoted};
 use crate::error::number;
 use crate::{Error, Mesh, Positions};
 use header::{Element, Encoding, Header, Property, Role, Scalar, role};
@@ -20,13 +22,18 @@ use std::io::{self, Write};
 const LISTED: usize = 12;
 
 /// Reads a file's bytes.
-pub(super) fn parse(bytes: &[u8]) -> Result<Parsed, Error> {
+pub(super) fn parse(bytes: &[u8], option: Option<Coordinates>) -> Result<Parsed, Error> {
     let mut lines = Lines::new(bytes);
     let Header { encoding, elements } = Header::parse(&mut lines)?;
-    match encoding {
-        Encoding::Ascii => Body::read(Ascii { lines, words: Tokens(b"") }, &elements),
-        _ => Body::read(binary(bytes, &lines, encoding), &elements),
+    if encoding != Encoding::Ascii {
+        return Body::read(binary(bytes, &lines, encoding), &elements, false);
     }
+    let text = |asks| Ascii::new(lines.clone(), asks);
+    coordinates::read(
+        option,
+        |asks| Body::read(text(asks), &elements, false),
+        || Body::read(text(false), &elements, true),
+    )
 }
 
 /// Writes `mesh` in binary, least significant byte first, with 32-bit or 64-bit floats as in the mesh. z is 0 in a 2D
@@ -79,15 +86,24 @@ struct Body<S> {
     vertices: u64,
     stride: usize,
     positions: Positions,
+    wide: bool,
     faces: CutFaces,
     corners: Vec<u32>,
 }
 
 impl<'a, S: Source<'a>> Body<S> {
-    fn read(source: S, elements: &[Element]) -> Result<Parsed, Error> {
-        let (vertices, stride, positions) = announced(elements)?;
-        let mut body =
-            Self { source, vertices, stride, positions, faces: CutFaces::default(), corners: Vec::new() };
+    /// Stops after the first vertex that loses digits. `wide`: coordinates are read as 64-bit floats.
+    fn read(source: S, elements: &[Element], wide: bool) -> Result<Parsed, Error> {
+        let (vertices, stride, positions) = announced(elements, wide)?;
+        let mut body = Self {
+            source,
+            vertices,
+            stride,
+            positions,
+            wide,
+            faces: CutFaces::default(),
+            corners: Vec::new(),
+        };
         let mut dropped = Dropped::default();
         let mut skipped = Vec::new();
         for element in elements.iter().filter(|element| element.count > 0) {
@@ -105,13 +121,17 @@ impl<'a, S: Source<'a>> Body<S> {
                 name => skipped.push(name),
             }
             body.element(element, &properties)?;
+            if body.source.loses() {
+                let Self { stride, positions, faces, .. } = body;
+                return Ok(Parsed { stride, positions, faces, dropped, loses: true });
+            }
         }
         if !skipped.is_empty() {
             dropped.note(&format!("elements {}", listed(&skipped)));
         }
         body.source.finish()?;
         let Self { stride, positions, faces, .. } = body;
-        Ok(Parsed { stride, positions, faces, dropped })
+        Ok(Parsed { stride, positions, faces, dropped, loses: false })
     }
 
     /// Reads all records of an element.
@@ -142,6 +162,9 @@ impl<'a, S: Source<'a>> Body<S> {
                     Positions::F32(numbers) => numbers.extend(point[..self.stride].iter().map(|&x| x as f32)),
                     Positions::F64(numbers) => numbers.extend(&point[..self.stride]),
                 }
+                if self.source.loses() {
+                    return Ok(());
+                }
             }
         }
         Ok(())
@@ -169,8 +192,8 @@ impl<'a, S: Source<'a>> Body<S> {
     }
 
     fn coordinate(&mut self, axis: usize, scalar: Scalar) -> Result<f64, Error> {
-        let x = self.source.number(scalar)?;
-        if !x.is_finite() {
+        let x = self.source.number(if self.wide && scalar == Scalar::F32 { Scalar::F64 } else { scalar })?;
+        if !x.is_finite() && !self.source.loses() {
             let (axis, value) = (['x', 'y', 'z'][axis], number(x));
             return Err(self.source.refuse(format!("coordinate {axis} is {value}, not a finite number")));
         }
@@ -229,7 +252,7 @@ impl<'a, S: Source<'a>> Body<S> {
 
 /// The number of vertices, the coordinates per vertex, and empty positions of the right type. Refuses a header without
 /// a mesh.
-fn announced(elements: &[Element]) -> Result<(u64, usize, Positions), Error> {
+fn announced(elements: &[Element], wide: bool) -> Result<(u64, usize, Positions), Error> {
     let refuse = |message: String| Error::Parse { place: "header".into(), message };
     let named = |name: &'static [u8]| {
         let mut found = elements.iter().filter(move |element| element.name == name);
@@ -260,7 +283,7 @@ fn announced(elements: &[Element]) -> Result<(u64, usize, Positions), Error> {
     let [Some(_), Some(_), z] = types else {
         return Err(refuse("element `vertex` needs the properties x and y".into()));
     };
-    let is_narrow = types.iter().flatten().all(|scalar| scalar.fits_f32());
+    let is_narrow = !wide && types.iter().flatten().all(|scalar| scalar.fits_f32());
     let positions = if is_narrow { Positions::F32(Vec::new()) } else { Positions::F64(Vec::new()) };
     Ok((vertex.count, if z.is_some() { 3 } else { 2 }, positions))
 }

@@ -2,7 +2,8 @@
 
 use super::header::{Encoding, Property, Scalar};
 use crate::Error;
-use crate::io::text::{Lines, Tokens, float, integer, quoted};
+use crate::io::coordinates::Reading;
+use crate::io::text::{Lines, Tokens, integer, quoted};
 
 /// A source of records of numbers.
 pub(super) trait Source<'a> {
@@ -26,12 +27,24 @@ pub(super) trait Source<'a> {
     fn bytes_left(&self) -> usize;
     /// The fewest bytes of a number.
     fn least(&self, scalar: Scalar) -> usize;
+    /// Whether a 32-bit float was read that does not show the digits of the file.
+    fn loses(&self) -> bool {
+        false
+    }
 }
 
 /// Text, one line per record.
 pub(super) struct Ascii<'a> {
-    pub(super) lines: Lines<'a>,
-    pub(super) words: Tokens<'a>,
+    lines: Lines<'a>,
+    words: Tokens<'a>,
+    reading: Reading,
+}
+
+impl<'a> Ascii<'a> {
+    /// The lines after a header. `asks`: whether to ask if 32-bit floats show the digits of the file.
+    pub(super) fn new(lines: Lines<'a>, asks: bool) -> Self {
+        Self { lines, words: Tokens(b""), reading: Reading { asks, loses: false } }
+    }
 }
 
 impl<'a> Source<'a> for Ascii<'a> {
@@ -47,7 +60,7 @@ impl<'a> Source<'a> for Ascii<'a> {
             .next()
             .ok_or_else(|| self.refuse("expected another number, found the end of the line"))?;
         let number = match scalar {
-            Scalar::F32 => float(word).map(f64::from),
+            Scalar::F32 => self.reading.nearest::<f32>(word).map(f64::from),
             Scalar::F64 => std::str::from_utf8(word).ok().and_then(|word| word.parse().ok()),
             _ => integer(word)
                 .filter(|i| (i64::from(i32::MIN)..=i64::from(u32::MAX)).contains(i))
@@ -98,6 +111,10 @@ impl<'a> Source<'a> for Ascii<'a> {
 
     fn least(&self, _: Scalar) -> usize {
         2 // a digit and a separator
+    }
+
+    fn loses(&self) -> bool {
+        self.reading.loses
     }
 }
 

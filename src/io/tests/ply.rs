@@ -226,7 +226,7 @@ fn text_refused_with_its_line() {
         ("1 0 0\n", "1 0 0 0\n", "line 11: expected the end of the line, found `0`"),
         ("1 0 0\n", "1 o 0\n", "line 11: expected a number, found `o`"),
         ("1 0 0\n", "1 nan 0\n", "line 11: coordinate y is NaN, not a finite number"),
-        ("1 0 0\n", "1 0 1e39\n", "line 11: coordinate z is inf, not a finite number"),
+        ("1 0 0\n", "1 0 1e399\n", "line 11: coordinate z is inf, not a finite number"),
         ("3 0 1 2", "2 0 1", "line 13: a face with 2 corners, but a face needs at least 3"),
         ("3 0 1 2", "-1", "line 13: a face with -1 corners, but a face needs at least 3"),
         ("3 0 1 2", "x 0 1 2", "line 13: expected an integer of at most 32 bits, found `x`"),

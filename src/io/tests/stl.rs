@@ -83,7 +83,7 @@ fn errors_name_their_location() {
         ("outer loop", "outer", "line 11: expected loop, found `vertex`"),
         ("vertex 5 5 5\n", "", "line 13: expected vertex, found `endloop`"),
         ("vertex 5 5 5", "vertex 5 5", "line 14: expected a number, found `endloop`"),
-        ("vertex 5 5 5", "vertex 5 5 inf", "line 13: `inf` is not a finite 32-bit number"),
+        ("vertex 5 5 5", "vertex 5 5 inf", "line 13: `inf` is not a finite number"),
         ("vertex 5 5 5", "vertex 5 5 5 5", "line 13: expected vertex, found `5`"),
         ("  endfacet\n", "", "line 15: expected endfacet, found `endsolid`"),
         ("endsolid a", "end solid a", "line 16: expected facet or endsolid, found `end`"),

@@ -6,7 +6,7 @@ mod constraints;
 mod weld;
 
 use crate::error::number;
-use crate::io::{self, Format, Loaded, ReadOptions};
+use crate::io::{self, Coordinates, Format, Loaded, ReadOptions};
 use crate::system::memory;
 use crate::system::threads::Threads;
 use crate::wasm::values::{JsPositions, dimension_of, mesh_of, object, thrown};
@@ -20,7 +20,8 @@ const MAX_BINS: u32 = 1 << 16;
 
 #[wasm_bindgen]
 extern "C" {
-    /// A file. `files` is an object with the bytes of other files by their names; `maxBytes` is as in [`ReadOptions`].
+    /// A file. `files` is an object with the bytes of other files by their names; `maxBytes` and `coordinates`, 32 or
+    /// 64, are as in [`ReadOptions`].
     #[wasm_bindgen(typescript_type = "Required<import('../types.js').Original>")]
     pub type JsFile;
 
@@ -32,6 +33,8 @@ extern "C" {
     fn files(this: &JsFile) -> JsValue;
     #[wasm_bindgen(method, getter, js_name = maxBytes)]
     fn max_bytes(this: &JsFile) -> Option<f64>;
+    #[wasm_bindgen(method, getter)]
+    fn coordinates(this: &JsFile) -> Option<u32>;
 }
 
 /// Reads the mesh of a file; `dimension` is as in [`ReadOptions`].
@@ -55,6 +58,7 @@ pub fn read_mesh(file: &JsFile, dimension: Option<u32>) -> Result<JsValue, JsVal
         indices,
         dimension,
         ("polygons", (loaded.polygons as f64).into()),
+        ("crossing", numbers(&loaded.crossing)),
         ("dropped", texts(&loaded.dropped)),
         ("keeps", Format::of(Path::new(&file.name())).is_ok_and(|format| loaded.keeps(format)).into()),
         ("notes", texts(&loaded.notes)),
@@ -92,6 +96,8 @@ fn load(file: &JsFile, dimension: Option<u32>) -> Result<Loaded, Error> {
     let (format, bytes, files) = (Format::of(Path::new(&file.name()))?, file.bytes(), file.files());
     let mut options = ReadOptions::default();
     options.dimension = dimension.map(dimension_of);
+    options.coordinates =
+        file.coordinates().map(|bits| if bits == 32 { Coordinates::F32 } else { Coordinates::F64 });
     options.max_bytes = file.max_bytes().map_or(Ok(options.max_bytes), parse_max_bytes)?;
     options.check(bytes.length().into())?;
     // The bytes, and a mesh of the same size, twice while its arrays grow. If memory ran out during the call, the

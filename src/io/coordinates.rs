@@ -1,0 +1,179 @@
+//! Coordinates from text: 32-bit floats if these show the digits of the file, else 64-bit floats.
+
+use super::options::Coordinates;
+use super::parsed::Parsed;
+use super::text::{integer, quoted};
+use crate::Error;
+use std::fmt::Write;
+
+/// The most significant digits of a decimal number that every 32-bit float shows.
+const SHOWN: usize = 6;
+/// With more digits, half of the last one is less than what rounds a 64-bit float.
+const MOST: usize = 17;
+/// The powers of 10 that are 64-bit floats.
+const POWERS: [f64; 23] = [
+    1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18,
+    1e19, 1e20, 1e21, 1e22,
+];
+
+/// Reads a file with 32-bit coordinates, and again with 64-bit ones if those lose digits; or with those that `option`
+/// says. `narrow` is told whether to ask for digits.
+pub(super) fn read(
+    option: Option<Coordinates>,
+    narrow: impl FnOnce(bool) -> Result<Parsed, Error>,
+    wide: impl FnOnce() -> Result<Parsed, Error>,
+) -> Result<Parsed, Error> {
+    if option != Some(Coordinates::F64) {
+        let parsed = narrow(option.is_none())?;
+        if !parsed.loses {
+            return Ok(parsed);
+        }
+    }
+    wide()
+}
+
+/// How the coordinates of a file are read.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Reading {
+    /// Whether to ask if the floats show the digits of the file.
+    pub(super) asks: bool,
+    /// Whether a float does not show its digits.
+    pub(super) loses: bool,
+}
+
+/// A float.
+pub(super) trait Float: Copy + Default + Send + Sync {
+    const BITS: u32;
+
+    /// The float nearest to a decimal number, and whether it loses digits of it. `None` if the token is not a number.
+    fn nearest(token: &str, asks: bool) -> Option<(Self, bool)>;
+
+    fn is_finite(self) -> bool;
+}
+
+impl Float for f32 {
+    const BITS: u32 = 32;
+
+    #[inline]
+    fn nearest(token: &str, asks: bool) -> Option<(Self, bool)> {
+        if !asks {
+            return Some((token.parse().ok()?, false));
+        }
+        let wide: f64 = token.parse().ok()?;
+        let mut x = wide as f32;
+        if f64::from(x) == wide || wide.is_nan() {
+            return Some((x, false));
+        }
+        // A tie may have become one by rounding to 64 bits.
+        let is_tie = wide.to_bits() & 0x1fff_ffff == 0x1000_0000;
+        if is_tie || !x.is_normal() {
+            x = token.parse().ok()?;
+        }
+        Some((x, !shows(x, token, wide)))
+    }
+
+    fn is_finite(self) -> bool {
+        self.is_finite()
+    }
+}
+
+impl Float for f64 {
+    const BITS: u32 = 64;
+
+    #[inline]
+    fn nearest(token: &str, _: bool) -> Option<(Self, bool)> {
+        Some((token.parse().ok()?, false))
+    }
+
+    fn is_finite(self) -> bool {
+        self.is_finite()
+    }
+}
+
+impl Reading {
+    /// The float nearest to a decimal number; `None` if the token is not a number. Accepts NaN and infinities.
+    #[inline]
+    pub(super) fn nearest<T: Float>(&mut self, token: &[u8]) -> Option<T> {
+        let (x, loses) = T::nearest(std::str::from_utf8(token).ok()?, self.asks)?;
+        self.loses |= loses;
+        Some(x)
+    }
+
+    /// A finite coordinate, or what is wrong with it.
+    #[inline]
+    pub(super) fn coordinate<T: Float>(&mut self, token: &[u8]) -> Result<T, String> {
+        match self.nearest::<T>(token) {
+            Some(x) if x.is_finite() || self.loses => Ok(x),
+            Some(_) if T::BITS == 32 && !self.asks => {
+                Err(format!("{} is not a finite 32-bit number", quoted(token)))
+            }
+            Some(_) => Err(format!("{} is not a finite number", quoted(token))),
+            None => Err(format!("expected a number, found {}", quoted(token))),
+        }
+    }
+}
+
+/// Whether a float, rounded to as many digits as the token has without zeros at its end, is the token. `wide` is the
+/// 64-bit float nearest to the token.
+fn shows(x: f32, token: &str, wide: f64) -> bool {
+    let (digits, last) = digits_of(token.as_bytes(), |_| ());
+    if !x.is_normal() || digits > MOST {
+        return x.is_finite() && digits <= MOST && shows_exactly(x, token, digits);
+    }
+    if digits <= SHOWN {
+        return true;
+    }
+    let power = usize::try_from(last.unsigned_abs()).ok().and_then(|last| POWERS.get(last));
+    if let Some(&power) = power {
+        let half = if last < 0 { 0.5 / power } else { 0.5 * power };
+        // Rounding to 64 bits has moved both by less than this.
+        let noise = f64::EPSILON * (wide.abs() + half);
+        let distance = (f64::from(x) - wide).abs();
+        if distance + noise < half || distance - noise > half {
+            return distance < half;
+        }
+    }
+    shows_exactly(x, token, digits)
+}
+
+fn shows_exactly(x: f32, token: &str, digits: usize) -> bool {
+    let mut rounded = String::new();
+    // Writing to a String cannot fail.
+    let _ = write!(rounded, "{:.*e}", digits.saturating_sub(1), x.abs());
+    let decimal = |text: &str| {
+        let mut digits = Vec::new();
+        let (count, last) = digits_of(text.as_bytes(), |digit| digits.push(digit));
+        digits.truncate(count);
+        (digits, last)
+    };
+    decimal(&rounded) == decimal(token)
+}
+
+/// The number of digits from the first to the last that is not 0, and the power of 10 of the last. `each` gets all
+/// digits from the first that is not 0.
+fn digits_of(token: &[u8], mut each: impl FnMut(u8)) -> (usize, i64) {
+    let (mut digits, mut zeros, mut decimals, mut is_after_point, mut exponent) = (0, 0, 0, false, 0);
+    for (i, &b) in token.iter().enumerate() {
+        match b {
+            b'.' => is_after_point = true,
+            b'e' | b'E' => {
+                exponent = integer(&token[i + 1..]).unwrap_or_default();
+                break;
+            }
+            b'0'..=b'9' => {
+                decimals += i64::from(is_after_point);
+                if b != b'0' {
+                    digits += zeros + 1;
+                    zeros = 0;
+                } else if digits > 0 {
+                    zeros += 1;
+                }
+                if digits > 0 {
+                    each(b);
+                }
+            }
+            _ => {}
+        }
+    }
+    (digits, exponent.saturating_sub(decimals).saturating_add(zeros as i64))
+}

@@ -1,0 +1,204 @@
+//! Cuts a polygon into triangles. The fan around its first corner stays if it does not leave the polygon. Otherwise the
+//! crate `spade` triangulates the corners, seen along the normal of the polygon; its predicates are exact.
+
+use glam::{DVec2, DVec3};
+use robust::{Coord, orient2d};
+use spade::handles::{DirectedEdgeHandle, FixedVertexHandle};
+use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation, mitigate_underflow};
+use std::collections::HashMap;
+
+/// How a polygon is cut.
+#[derive(Debug, PartialEq)]
+pub(super) enum Cut {
+    /// Into the fan around its first corner.
+    Fan,
+    /// Into these triangles of corners: two less than corners, in the orientation of the polygon.
+    Others(Vec<[usize; 3]>),
+    /// Its outline crosses or touches itself, seen along its normal.
+    Crossing,
+}
+
+/// Cuts a polygon of at least 3 corners.
+pub(super) fn cut(corners: &[DVec3]) -> Cut {
+    if let &[a, b, c, d] = corners
+        && is_far_from_concave([a, b, c, d])
+    {
+        return Cut::Fan;
+    }
+    let points = seen(corners);
+    if fan_stays_inside(&points) {
+        return Cut::Fan;
+    }
+    triangulated(&points).map_or(Cut::Crossing, Cut::Others)
+}
+
+/// Whether rounding cannot turn a triangle of a quadrilateral's fan against the other. Most files have no other.
+fn is_far_from_concave([a, b, c, d]: [DVec3; 4]) -> bool {
+    let [ab, ac, ad] = [b - a, c - a, d - a];
+    let product = ab.cross(ac).dot(ac.cross(ad));
+    let size = ab.length_squared() * ac.length_squared() * ac.length_squared() * ad.length_squared();
+    product > 0.0 && product * product > 1e-24 * size
+}
+
+/// The corners seen along the normal of the best-fitting plane (Newell's), so that the area is positive.
+fn seen(corners: &[DVec3]) -> Vec<DVec2> {
+    let largest = corners.iter().fold(0.0, |largest: f64, corner| largest.max(corner.abs().max_element()));
+    // A power of two: nothing overflows, and nothing is rounded.
+    let scale = if largest > 0.0 { libm::ldexp(1.0, -libm::ilogb(largest).min(1022)) } else { 1.0 };
+    let first = corners[0] * scale;
+    let spans: Vec<DVec3> = corners.iter().map(|&corner| corner * scale - first).collect();
+    let areas = || spans.windows(2).map(|pair| pair[0].cross(pair[1]));
+    let mut normal: DVec3 = areas().sum();
+    if normal == DVec3::ZERO {
+        // The areas cancel each other, or all corners are on a line.
+        normal = areas().max_by(|a, b| a.length_squared().total_cmp(&b.length_squared())).unwrap_or_default();
+    }
+    let axis = (0..3).find(|&axis| normal[(axis + 1) % 3] == 0.0 && normal[(axis + 2) % 3] == 0.0);
+    if let Some(axis) = axis {
+        let [mut u, mut v] = [(axis + 1) % 3, (axis + 2) % 3];
+        if normal[axis] < 0.0 {
+            (u, v) = (v, u);
+        }
+        return corners.iter().map(|&corner| DVec2::new(corner[u], corner[v]) * scale).collect();
+    }
+    let (u, v) = (normal / normal.abs().max_element()).normalize().any_orthonormal_pair();
+    spans.iter().map(|span| DVec2::new(span.dot(u), span.dot(v))).collect()
+}
+
+/// The sign of the area of a triangle, exactly.
+fn area(a: DVec2, b: DVec2, c: DVec2) -> f64 {
+    let [a, b, c] = [a, b, c].map(|p| Coord { x: p.x, y: p.y });
+    orient2d(a, b, c)
+}
+
+/// Whether no triangle of the fan is turned over, and the fan does not go around its first corner more than once.
+fn fan_stays_inside(points: &[DVec2]) -> bool {
+    let first = points[0];
+    let Some(&start) = points.iter().find(|&&point| point != first) else { return true };
+    if points.iter().skip(2).rev().skip(1).any(|&point| point == first) {
+        return false;
+    }
+    let is_opposite = |a: DVec2, b: DVec2| (a - first).dot(b - first) < 0.0;
+    let mut is_past_half = false;
+    points[1..].windows(2).all(|pair| {
+        let turn = area(first, pair[0], pair[1]);
+        let side = area(first, start, pair[1]);
+        let was_past_half = is_past_half;
+        is_past_half = side < 0.0 || side == 0.0 && is_opposite(start, pair[1]);
+        let turns_back = turn < 0.0 || turn == 0.0 && is_opposite(pair[0], pair[1]);
+        !turns_back && (is_past_half || !was_past_half)
+    })
+}
+
+/// The triangles inside the outline of a polygon with positive area; `None` if the outline crosses or touches itself.
+fn triangulated(points: &[DVec2]) -> Option<Vec<[usize; 3]>> {
+    let count = points.len();
+    // -0 + 0 is 0.
+    let points = Vec::from_iter(points.iter().map(|p| mitigate_underflow(Point2::new(p.x + 0.0, p.y + 0.0))));
+    let (outline, mut triangles) = without_repeated(&points);
+    let (mut numbers, mut places) = (HashMap::new(), Vec::new());
+    let place = |&corner: &usize| {
+        let point: Point2<f64> = points[corner];
+        *numbers.entry([point.x.to_bits(), point.y.to_bits()]).or_insert_with(|| {
+            places.push(point);
+            places.len() - 1
+        })
+    };
+    let places_of_outline: Vec<usize> = outline.iter().map(place).collect();
+    // The corner where each directed edge begins, and the edges without direction: a bridge is in the outline twice.
+    let (mut starts, mut edges) = (HashMap::new(), Vec::new());
+    for (i, &corner) in outline.iter().enumerate() {
+        let [from, to] = [i, (i + 1) % outline.len()].map(|i| places_of_outline[i]);
+        if !starts.contains_key(&[to, from]) {
+            edges.push([from, to]);
+        }
+        if starts.insert([from, to], corner).is_some() {
+            return None;
+        }
+    }
+    let mut crosses = false;
+    let cut =
+        ConstrainedDelaunayTriangulation::<Point2<f64>>::try_bulk_load_cdt(places, edges.clone(), |_| {
+            crosses = true;
+        });
+    let cut = cut.ok().filter(|_| !crosses)?;
+    // An edge with a corner on it is in pieces.
+    let is_there = |&edge: &[usize; 2]| {
+        let [from, to] = edge.map(FixedVertexHandle::from_index);
+        cut.exists_constraint(from, to)
+    };
+    if !edges.iter().all(is_there) {
+        return None;
+    }
+    let start = |edge: Edge| starts.get(&[edge.from().index(), edge.to().index()]).copied();
+    let is_inside = inside(&cut, start)?;
+    for face in cut.inner_faces().filter(|face| is_inside[face.index()]) {
+        triangles.push(face.adjacent_edges().map(|edge| {
+            // Corners at the same place are told apart by the edge of the outline that comes next, clockwise.
+            let mut edge = edge;
+            loop {
+                match start(edge) {
+                    Some(corner) => return corner,
+                    None => edge = edge.cw(),
+                }
+            }
+        }));
+    }
+    if triangles.len() != count - 2 {
+        return None;
+    }
+    for triangle in &mut triangles {
+        let least = triangle.iter().zip(0..).min().map_or(0, |(_, i)| i);
+        triangle.rotate_left(least);
+    }
+    triangles.sort_unstable();
+    Some(triangles)
+}
+
+type Edge<'a> = DirectedEdgeHandle<'a, Point2<f64>, (), spade::CdtEdge<()>, ()>;
+
+/// The corners without those at the place of the corner before, and triangles without area for these.
+fn without_repeated(points: &[Point2<f64>]) -> (Vec<usize>, Vec<[usize; 3]>) {
+    let after = |corner: usize| (corner + 1) % points.len();
+    let is_new = |&corner: &usize| points[corner] != points[(corner + points.len() - 1) % points.len()];
+    let outline: Vec<usize> = (0..points.len()).filter(is_new).collect();
+    let mut triangles = Vec::new();
+    for (i, &corner) in outline.iter().enumerate() {
+        let next = outline[(i + 1) % outline.len()];
+        let mut last = corner;
+        while after(last) != next {
+            triangles.push([last, after(last), next]);
+            last = after(last);
+        }
+    }
+    (outline, triangles)
+}
+
+/// Whether each face is inside the outline, whose directed edges have a `start`. `None` if the outline goes around a
+/// face twice, or clockwise.
+fn inside(
+    cut: &ConstrainedDelaunayTriangulation<Point2<f64>>,
+    start: impl Fn(Edge) -> Option<usize>,
+) -> Option<Vec<bool>> {
+    // How often the outline goes around a face: once more to the left of its edges than to the right.
+    let mut turns = vec![None; cut.num_all_faces()];
+    turns[cut.outer_face().index()] = Some(0);
+    let mut pending: Vec<Edge> = cut.convex_hull().collect();
+    while let Some(edge) = pending.pop() {
+        let [left, right] = [edge.face(), edge.rev().face()];
+        if turns[right.index()].is_some() {
+            continue;
+        }
+        let step = i32::from(start(edge.rev()).is_some()) - i32::from(start(edge).is_some());
+        turns[right.index()] = turns[left.index()].map(|turns| turns + step);
+        pending.extend(right.as_inner().into_iter().flat_map(|face| face.adjacent_edges()));
+    }
+    turns
+        .into_iter()
+        .map(|turns| match turns {
+            Some(0) => Some(false),
+            Some(1) => Some(true),
+            _ => None,
+        })
+        .collect()
+}
