@@ -30,14 +30,12 @@ pub fn load(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Loaded, Err
     let bytes = content(path, options)?;
     parse_with(format, bytes, options, &|name| {
         if !options.external_files {
-            return Err(
-                "reading other files is not allowed; external_files (--external-files) allows it".into()
-            );
+            return Err("reading other files is not allowed; external_files allows it".into());
         }
         beside(&folder(path), name, options).map_err(|error| match error {
             Error::Io { source, .. } => source.to_string(),
             Error::FileTooLarge { limit, .. } => {
-                format!("it has more than {limit} bytes; max_bytes (--max-bytes) sets the limit")
+                format!("it has more than {limit} bytes; max_bytes sets the limit")
             }
             error => error.to_string(),
         })
@@ -83,34 +81,20 @@ fn open_to_read(path: &Path) -> io::Result<(Vec<u8>, fs::File)> {
     Ok((Vec::new(), fs::File::open(path)?))
 }
 
-/// Reads a list of edges from a file with any extension. See [`parse_edges`].
+/// Reads a list of edges from a file with any extension and at most `max_bytes` bytes. See [`parse_edges`].
 ///
 /// # Errors
-/// [`Error::Io`], and those of [`parse_edges`].
-pub fn read_edges(path: impl AsRef<Path>) -> Result<Vec<[u32; 2]>, Error> {
-    let path = path.as_ref();
-    let bytes = all(path)?;
-    parse_edges(&bytes)
+/// [`Error::FileTooLarge`], [`Error::Io`], and those of [`parse_edges`].
+pub fn read_edges(path: impl AsRef<Path>, max_bytes: u64) -> Result<Vec<[u32; 2]>, Error> {
+    parse_edges(&content(path.as_ref(), &ReadOptions { max_bytes, ..ReadOptions::default() })?)
 }
 
-/// Reads a list of numbers from a file with any extension. See [`parse_numbers`].
+/// Reads a list of numbers from a file with any extension and at most `max_bytes` bytes. See [`parse_numbers`].
 ///
 /// # Errors
-/// [`Error::Io`], and those of [`parse_numbers`].
-pub fn read_numbers(path: impl AsRef<Path>) -> Result<Vec<u32>, Error> {
-    let path = path.as_ref();
-    let bytes = all(path)?;
-    parse_numbers(&bytes)
-}
-
-/// The bytes of a list.
-fn all(path: &Path) -> Result<Vec<u8>, Error> {
-    let read = || {
-        let (mut bytes, mut file) = open_to_read(path)?;
-        file.read_to_end(&mut bytes)?;
-        Ok(bytes)
-    };
-    read().map_err(|source| at(path, source))
+/// [`Error::FileTooLarge`], [`Error::Io`], and those of [`parse_numbers`].
+pub fn read_numbers(path: impl AsRef<Path>, max_bytes: u64) -> Result<Vec<u32>, Error> {
+    parse_numbers(&content(path.as_ref(), &ReadOptions { max_bytes, ..ReadOptions::default() })?)
 }
 
 pub(super) fn at(path: &Path, source: io::Error) -> Error {

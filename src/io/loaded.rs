@@ -3,6 +3,7 @@
 use super::format::Format;
 use super::gltf;
 use super::gzip;
+use super::obj;
 use super::original::Original;
 use super::write::{collected, write_to};
 use crate::{Dimension, Error, Mesh, Options, Welded, welded};
@@ -60,6 +61,19 @@ impl Loaded {
     pub fn keeps(&self, format: Format) -> bool {
         let is_same = self.original.as_ref().is_some_and(|original| original.format == format);
         is_same || format.is_gltf() && self.document.is_some()
+    }
+
+    /// Prepares the file to be written in another folder: a glTF file gets the buffers that are in other files. Returns
+    /// the names of the files that it still refers to, with materials (OBJ) or images (glTF).
+    pub fn leave_folder(&mut self) -> Vec<String> {
+        match (&mut self.document, &self.original) {
+            (Some(document), _) => {
+                document.embeds = true;
+                document.images.clone()
+            }
+            (_, Some(original)) if original.format == Format::Obj => obj::libraries(&original.bytes),
+            _ => Vec::new(),
+        }
     }
 
     /// Adds locks to the options of a run, so that faces and corners keep their attributes in a file of the same

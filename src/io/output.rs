@@ -72,6 +72,13 @@ impl Output {
         self.format
     }
 
+    /// Whether it is a file in the folder of the file at `path`.
+    pub fn is_beside(&self, path: impl AsRef<Path>) -> bool {
+        let Target::File(target) = &self.target else { return false };
+        let folders = [target, path.as_ref()].map(|path| fs::canonicalize(folder(path)).ok());
+        folders[0].is_some() && folders[0] == folders[1]
+    }
+
     /// Whether it is the standard output.
     pub fn is_standard(&self) -> bool {
         matches!(self.target, Target::Standard)

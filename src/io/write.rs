@@ -6,8 +6,8 @@ use crate::{Error, Mesh};
 use std::io::{self, Write};
 use std::path::Path;
 
-/// Writes `mesh`. In text formats, each number has the fewest digits that read back to the same 32 or 64 bits;
-/// [`parse`](super::parse) reads 32-bit floats from OFF and OBJ. `out` should be buffered.
+/// Writes `mesh`. In text formats, each number has the fewest digits that read back to the same 32 or 64 bits; 64 need
+/// [`Coordinates::F64`](super::Coordinates::F64) if 32-bit floats show all digits. `out` should be buffered.
 ///
 /// # Errors
 /// Those of `out`; [`io::ErrorKind::InvalidInput`] for coordinates that STL and glTF cannot hold.

@@ -195,8 +195,9 @@ export async function readMesh(bytes: Uint8Array, name: string, options: ReadOpt
 
 /**
  * The bytes of a file that holds the mesh. If the mesh is in the plane, every z is 0. In OFF and OBJ each number has
- * the fewest digits that {@link readMesh} reads back to the same 32 or 64 bits. PLY is
- * binary and keeps all bits. STL is binary, and its positions are rounded to 32-bit floats, as in glTF.
+ * the fewest digits from which its 32 or 64 bits follow; {@link readMesh} needs `coordinates: 64` to read the same 64
+ * bits, if 32-bit floats show all digits. PLY is binary and keeps all bits. STL is binary, and its positions are
+ * rounded to 32-bit floats, as in glTF.
  *
  * @param name - The file's name, such as `bunny.obj` or `bunny.ply.gz`: the extension names the format.
  * @throws {@link EdgeflipError} about the mesh; `unknown-format`; `io` for coordinates that STL and glTF cannot hold;

@@ -133,7 +133,7 @@ fn a_file_beside_another_is_as_large_as_it_may_be() {
     fs::create_dir(folder.path("a")).unwrap();
     folder.file("a/large.bin", vec![0; 5000]);
     let input = gltf(&folder, "large.bin");
-    let why = "it has more than 1000 bytes; max_bytes (--max-bytes) sets the limit";
+    let why = "it has more than 1000 bytes; --max-bytes sets the limit";
     let line = format!("{}: buffer 0: it is in the file `large.bin`: {why}", input.display());
     let arguments = &["--external-files", "--max-bytes", "1000"];
     failed(&run(&input, &folder.path("out.off"), arguments), 1, &line);

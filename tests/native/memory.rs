@@ -128,7 +128,7 @@ fn without_further_threads_one_thread_does_the_work() {
         shell(&(script.to_owned() + arguments), &[&input, &output]).output().unwrap()
     };
     silent(&ran("--quiet"));
-    let line = "option threads: cannot start 2 threads: Resource temporarily unavailable (os error 11)";
+    let line = "option --threads: cannot start 2 threads: Resource temporarily unavailable (os error 11)";
     failed(&ran("--threads 2"), 1, line);
 }
 

@@ -64,7 +64,7 @@ test('a module that cannot be loaded is an error, and the next call tries again'
 
 /** The fields of a file without notes. */
 const FREE = { groups: undefined, lockedEdges: undefined, lockedTriangles: undefined };
-const PLAIN = { polygons: 0, dropped: [], keeps: true, notes: [], placed: undefined, ...FREE };
+const PLAIN = { polygons: 0, crossing: undefined, dropped: [], keeps: true, notes: [], placed: undefined, ...FREE };
 
 test('every format keeps every bit, in both dimensions', async () => {
   const flat = awkward();
@@ -157,7 +157,7 @@ test('a mesh from a file can be flipped, and arguments stay unchanged', async ()
   assert.equal(text(await writeMesh(mesh, 'same.off')), thin);
 });
 
-test('polygons of an OBJ file become fans, and `dropped` names lost contents', async () => {
+test('polygons of an OBJ file become triangles, and `dropped` names lost contents', async () => {
   const file = bytes(
     'o house\nv 0 0 0\nv 2 0 0\nv 2 2 0\nv 1 3 1\nv 0 2 0\nvn 0 0 1\nf 1//1 2//1 3//1 4//1 5//1\nf -1 -2 -3\n',
   );
@@ -166,6 +166,31 @@ test('polygons of an OBJ file become fans, and `dropped` names lost contents', a
   assert.deepEqual([...mesh.indices], [0, 1, 2, 0, 2, 3, 0, 3, 4, 4, 3, 2]);
   assert.equal(mesh.polygons, 1);
   assert.deepEqual(mesh.dropped, ['groups, objects and materials', 'normals']);
+  // An L, whose fan around its first corner leaves it, and a bow tie.
+  const dent = await readMesh(
+    bytes('v 6 0 0\nv 6 1 0\nv 1 1 0\nv 1 6 0\nv 0 6 0\nv 0 0 0\nf 1 2 3 4 5 6\nf 1 2 6 3\n'),
+    'dent.obj',
+  );
+  const area = dent.indices.slice(0, 12).reduce((sum, v, i, all) => {
+    const w = all[i % 3 === 2 ? i - 2 : i + 1];
+    return (
+      sum + (dent.positions[2 * v] * dent.positions[2 * w + 1] - dent.positions[2 * v + 1] * dent.positions[2 * w]) / 2
+    );
+  }, 0);
+  assert.deepEqual([area, dent.polygons, dent.crossing], [11, 2, Uint32Array.of(1)]);
+});
+
+test('the digits of a text decide between 32 and 64 bits, or `coordinates` does', async () => {
+  const file = (x) => bytes(`v 0 0 0\nv ${x} 0 0\nv 0 1 0\nf 1 2 3\n`);
+  const read = async (x, options) => (await readMesh(file(x), 'a.obj', options)).positions;
+  assert.deepEqual(await read('0.1'), Float32Array.of(0, 0, 0.1, 0, 0, 1));
+  assert.deepEqual(await read('4649776.51'), Float64Array.of(0, 0, 4649776.51, 0, 0, 1));
+  assert.deepEqual(await read('4649776.51', { coordinates: 32 }), Float32Array.of(0, 0, 4649776.51, 0, 0, 1));
+  assert.deepEqual(await read('0.1', { coordinates: 64 }), Float64Array.of(0, 0, 0.1, 0, 0, 1));
+  await assert.rejects(read('1', { coordinates: 16 }), refused('invalid-input', /^coordinates: 16 is not 32 or 64$/));
+  const original = { bytes: file('0.1'), name: 'a.obj', coordinates: 64 };
+  const mesh = await readMesh(original.bytes, 'a.obj', { coordinates: 64 });
+  assert.deepEqual(await writeMesh(mesh, 'b.obj', { original }), original.bytes);
 });
 
 test('with `original`, a file is written with other triangles and is otherwise unchanged', async () => {
@@ -188,7 +213,7 @@ test('with `original`, a file is written with other triangles and is otherwise u
   assert.deepEqual(new Uint8Array(gunzipSync(await writeMesh(mesh, 'b.obj.gz', { original }))), original.bytes);
   // Another format, and the same format without the original, have only positions and triangles.
   assert.match(text(await writeMesh({ ...mesh, indices }, 'b.off', { original })), /^OFF\n5 3 0\n0 0\b/);
-  assert.match(text(await writeMesh({ ...mesh, indices }, 'b.obj')), /^v 0 0 0\nv 0.9 0.2 0\n/);
+  assert.match(text(await writeMesh({ ...mesh, indices }, 'b.obj')), /^v 0 0 0\nv 0.90000000001 0.2 0\n/);
   const turned = { ...mesh, indices: Uint32Array.of(0, 2, 1, 0, 3, 2, 1, 0, 4) };
   await assert.rejects(
     writeMesh(turned, 'b.obj', { original }),

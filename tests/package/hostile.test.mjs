@@ -60,6 +60,7 @@ const originalPaths = (at) => [
   [...at, 'files'],
   [...at, 'files', 'b.bin'],
   [...at, 'maxBytes'],
+  [...at, 'coordinates'],
 ];
 /** Options of a run, and options for work before the run. */
 const plain = (threads) => ({ backend: 'cpu', threads });
@@ -133,8 +134,22 @@ const fileEntries = [
   {
     name: 'readMesh',
     call: files.readMesh,
-    args: () => [obj.slice(), 'a.obj', { dimension: 2, maxBytes: 1e6, files: { 'b.bin': new Uint8Array(4) } }],
-    paths: [[0], [1], [2], [2, 'dimension'], [2, 'maxBytes'], [2, 'files'], [2, 'files', 'b.bin'], [2, 'unknown']],
+    args: () => [
+      obj.slice(),
+      'a.obj',
+      { dimension: 2, coordinates: 64, maxBytes: 1e6, files: { 'b.bin': new Uint8Array(4) } },
+    ],
+    paths: [
+      [0],
+      [1],
+      [2],
+      [2, 'dimension'],
+      [2, 'coordinates'],
+      [2, 'maxBytes'],
+      [2, 'files'],
+      [2, 'files', 'b.bin'],
+      [2, 'unknown'],
+    ],
   },
   {
     name: 'writeMesh',

@@ -4,7 +4,7 @@ use clap::{Parser, ValueEnum};
 use edgeflip::io::{Coordinates, Format, ReadOptions};
 use edgeflip::{Backend, Dimension, Options, Order};
 use std::num::NonZeroUsize;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 const AFTER: &str = "\
 Formats, by extension:
@@ -27,7 +27,7 @@ triangle strips.
 
 Exit status:
   0   done; also when stopped by --max-iterations
-  1   a file could not be read or written, the mesh was refused, --verify found a violation, or
+  1   a file could not be read or written, the mesh or a list was refused, --verify found a violation, or
       memory ran out
   2   wrong usage
   3   the requested backend is not available, cannot take this mesh, or failed
@@ -53,7 +53,8 @@ Examples:
 pub struct Args {
     /// The mesh to read: .off, .obj, .ply, .stl, .gltf or .glb, also gzip'd
     ///
-    /// If it is a FIFO, another process has to open it for writing within 10 s. The same holds for the lists below.
+    /// If it is a FIFO, another process has to open it for writing within 10 s. The same holds for the lists below. A
+    /// list may have 1 MiB, and 256 bytes for each triangle.
     #[arg(value_name = "IN")]
     pub input: PathBuf,
 
@@ -213,6 +214,18 @@ impl Args {
     /// Whether the run reports measures.
     pub fn is_reported(&self) -> bool {
         self.json || !self.quiet
+    }
+
+    /// The list in a file that an option of the library is read from.
+    pub fn list(&self, option: &str) -> Option<&Path> {
+        let list = match option {
+            "locked_edges" => &self.lock_edges,
+            "locked_triangles" => &self.lock_triangles,
+            "groups" => &self.groups,
+            "constraints" => &self.constraints,
+            _ => &None,
+        };
+        list.as_deref()
     }
 
     /// The options for reading IN, if OUT has this format.

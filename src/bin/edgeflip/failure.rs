@@ -1,5 +1,6 @@
 //! Failures: the exit status and the message of a program that ends without a result.
 
+use crate::args::Args;
 use edgeflip::Error;
 use std::path::Path;
 
@@ -9,7 +10,24 @@ pub struct Failure {
     pub line: String,
 }
 
+/// What messages about files end with, and the same with a flag.
+const ENDS: [[&str; 2]; 2] = [
+    ["external_files allows it", "--external-files allows it"],
+    ["max_bytes sets the limit", "--max-bytes sets the limit"],
+];
+
 impl Failure {
+    /// The failure for an error of a run with these options.
+    pub fn of_run(args: &Args, error: &Error) -> Self {
+        let Error::Option { option, message } = error else { return Self::of(&args.input, error) };
+        if let Some(list) = args.list(option) {
+            return Self { status: 1, line: format!("{}: {message}", list.display()) };
+        }
+        // The number of threads was checked, so the system could not start them.
+        let status = if *option == "threads" { 1 } else { 2 };
+        Self { status, line: format!("option --{}: {message}", option.replace('_', "-")) }
+    }
+
     /// The failure for an error with `path`. An error that has its own path, or none, is not prefixed with `path`.
     pub fn of(path: &Path, error: &Error) -> Self {
         let line = match error {
@@ -17,17 +35,20 @@ impl Failure {
                 let error = Error::FileTooLarge { limit, option: "--max-bytes" };
                 format!("{}: {error}", path.display())
             }
+            Error::Parse { message, .. } => {
+                let end = ENDS.iter().find_map(|[end, flag]| Some((message.strip_suffix(end)?, flag)));
+                let line = end.map_or(error.to_string(), |(start, flag)| {
+                    error.to_string().replace(message, &format!("{start}{flag}"))
+                });
+                format!("{}: {line}", path.display())
+            }
             Error::Io { .. }
             | Error::UnknownFormat { .. }
-            | Error::Option { .. }
             | Error::BackendUnavailable { .. }
             | Error::Device { .. } => error.to_string(),
             _ => format!("{}: {error}", path.display()),
         };
         let status = match error {
-            // The range was checked, so the system could not start the threads.
-            Error::Option { option: "threads", .. } => 1,
-            Error::Option { .. } => 2,
             Error::BackendUnavailable { .. } | Error::BackendLimit { .. } | Error::Device { .. } => 3,
             _ => 1,
         };

@@ -75,24 +75,29 @@ struct Done {
 
 /// The whole run except printing. It writes the output last, and only if nothing has failed.
 fn run(args: &Args, mut clock: Clock) -> Result<Done, Failure> {
-    let refused = |error| Failure::of(&args.input, &error);
+    let refused = |error| Failure::of_run(args, &error);
     let output = output(args)?;
     let bar = &progress(args, &output);
     bar.set_message(format!("reading {}", args.input.display()));
     let mut options = args.options();
     let gpu = memory::limit().is_none().then(|| EarlyGpu::open(&options, most_triangles(args)));
     let mut ms = Milliseconds { start: clock.lap(), ..Milliseconds::default() };
-    let loaded = io::load(&args.input, &args.read_options(output.format())).map_err(refused)?;
+    let mut loaded = io::load(&args.input, &args.read_options(output.format())).map_err(refused)?;
     ms.load = clock.lap();
+    let left_behind = match output.is_beside(&args.input) || !loaded.keeps(output.format()) {
+        true => Vec::new(),
+        false => loaded.leave_folder(),
+    };
     let welded = args.weld.then(|| loaded.welded()).transpose().map_err(refused)?;
     let (alone, welded, turned) = turn(args, &loaded.mesh, welded).map_err(refused)?;
     let joined = welded.as_ref().map(|welded| &welded.mesh);
     let mesh = alone.as_ref().or(joined).unwrap_or(&loaded.mesh);
+    let triangles = mesh.triangle_count();
     options = Options {
-        locked_edges: list(&args.lock_edges, io::read_edges)?,
-        locked_triangles: list(&args.lock_triangles, io::read_numbers)?,
-        groups: list(&args.groups, io::read_numbers)?,
-        constraints: list(&args.constraints, io::read_edges)?,
+        locked_edges: list(&args.lock_edges, triangles, io::read_edges)?,
+        locked_triangles: list(&args.lock_triangles, triangles, io::read_numbers)?,
+        groups: list(&args.groups, triangles, io::read_numbers)?,
+        constraints: list(&args.constraints, triangles, io::read_edges)?,
         ..options
     };
     if let Some(welded) = &welded {
@@ -139,6 +144,7 @@ fn run(args: &Args, mut clock: Clock) -> Result<Done, Failure> {
         Report::new(args, mesh, outcome, changes, turned, check, ms)
             .with_joined(welded.as_ref())
             .with_attributes(&loaded, output.format(), attribute_edges)
+            .with_left_behind(&left_behind)
     });
     Ok(Done { report, violation, staged, clock })
 }
@@ -198,13 +204,25 @@ fn without_gpu(options: &mut Options, mesh: &Mesh, gpu: Option<EarlyGpu>) -> Res
     }
 }
 
-/// The list in a file, if there is one.
+/// The list in a file, if there is one, for a mesh of so many triangles.
 fn list<'a, T>(
     path: &'a Option<PathBuf>,
-    read: impl FnOnce(&'a PathBuf) -> Result<Vec<T>, Error>,
+    triangles: usize,
+    read: impl FnOnce(&'a PathBuf, u64) -> Result<Vec<T>, Error>,
 ) -> Result<Vec<T>, Failure> {
-    let read = |path: &'a PathBuf| read(path).map_err(|error| Failure::of(path, &error));
-    path.as_ref().map_or(Ok(Vec::new()), read)
+    let Some(path) = path else { return Ok(Vec::new()) };
+    // A line with two indices has at most 22 bytes, and a triangle three edges.
+    let limit = (1 << 20) + 256 * triangles as u64;
+    read(path, limit).map_err(|error| match error {
+        Error::FileTooLarge { .. } => {
+            let line = format!(
+                "{}: the list has more than {limit} bytes, too many for {triangles} triangles; remove repeated lines and comments",
+                path.display()
+            );
+            Failure { status: 1, line }
+        }
+        error => Failure::of(path, &error),
+    })
 }
 
 /// With `--reorient`, reverses triangles of the welded mesh, or of the mesh itself. Returns how many.

@@ -248,6 +248,15 @@ impl Report {
         self
     }
 
+    /// Adds a note about the files beside IN that OUT, in another folder, refers to.
+    pub fn with_left_behind(mut self, files: &[String]) -> Self {
+        if !files.is_empty() {
+            let files = listed(files, String::clone);
+            self.notes.push(format!("OUT refers to files that are not copied to its folder: {files}"));
+        }
+        self
+    }
+
     /// Adds notes about the replaced file.
     pub fn add_notes(&mut self, notes: Vec<String>) {
         self.notes.extend(notes);

@@ -135,13 +135,7 @@ impl<'a> Accessors<'a> {
             (None, _) => vec![0.0; 3 * self.count_of_zeros(accessor, location)?],
         };
         for (vertex, value) in self.sparse(accessor, 3 * component.size(), location)? {
-            let Some(position) = positions.as_chunks_mut().0.get_mut(vertex) else {
-                return Err(refuse(
-                    location(),
-                    format!("it has no element {vertex}, which its sparse part changes"),
-                ));
-            };
-            *position = read(value);
+            *replaced(positions.as_chunks_mut().0, vertex, location)? = read(value);
         }
         Ok(positions)
     }
@@ -221,13 +215,23 @@ impl<'a> Accessors<'a> {
         if accessor.type_ != Checked::Valid(Type::Scalar) || !is_unsigned(component) {
             return Err(refuse(location(), "indices are not unsigned integers of type SCALAR"));
         }
-        match self.elements(index)? {
-            Some(elements) if accessor.sparse.is_none() => {
-                Ok(elements.iter(self.buffers).map(|element| integer(element, component)).collect())
+        let mut indices: Vec<u32> = match self.elements(index)? {
+            Some(elements) => {
+                elements.iter(self.buffers).map(|element| integer(element, component)).collect()
             }
-            _ => Err(refuse(location(), "sparse indices are not supported")),
+            None => vec![0; self.count_of_zeros(accessor, location)?],
+        };
+        for (corner, value) in self.sparse(accessor, component.size(), location)? {
+            *replaced(&mut indices, corner, location)? = integer(value, component);
         }
+        Ok(indices)
     }
+}
+
+/// The element that a sparse part replaces.
+fn replaced<T>(elements: &mut [T], index: usize, location: impl Fn() -> String) -> Result<&mut T, Error> {
+    let missing = || refuse(location(), format!("it has no element {index}, which its sparse part changes"));
+    elements.get_mut(index).ok_or_else(missing)
 }
 
 pub(super) fn component(accessor: &Accessor, location: impl Fn() -> String) -> Result<ComponentType, Error> {

@@ -37,11 +37,11 @@ impl<'a> Buffers<'a> {
             buffers.push(match (&buffer.uri, binary) {
                 (None, Some(binary)) if index == 0 => Buffer::Present(binary.into()),
                 (None, _) => Buffer::Absent("it has no URI".into()),
-                (Some(uri), _) => match uri.split_once(',') {
-                    Some((head, data)) if is_data(head) => {
+                (Some(uri), _) => match data_of(uri) {
+                    Some((head, data)) => {
                         Buffer::Present(decode(head, data).map_err(|message| at(index, message))?.into())
                     }
-                    _ => Self::from_file(index, uri, read)?,
+                    None => Self::from_file(index, uri, read)?,
                 },
             });
         }
@@ -58,7 +58,7 @@ impl<'a> Buffers<'a> {
     }
 
     fn from_file(index: usize, uri: &str, read: ReadFile<'_>) -> Result<Buffer<'a>, Error> {
-        let name = percent_decode_str(uri).decode_utf8_lossy();
+        let name = name_of(uri);
         // A path out of the folder, or to another machine, is never followed.
         let is_beside = !name.starts_with('/')
             && !name.contains(['\\', ':', '\0'])
@@ -106,9 +106,20 @@ fn at(buffer: usize, message: impl Into<String>) -> Error {
     refuse(format!("buffer {buffer}"), message)
 }
 
-/// Whether a URI that begins with `head` is a data URI. Schemes may be in upper or lower case (RFC 3986, section 3.1).
-fn is_data(head: &str) -> bool {
-    head.get(..5).is_some_and(|scheme| scheme.eq_ignore_ascii_case("data:"))
+/// Whether a URI names another file.
+pub(super) fn is_in_other_file(uri: &str) -> bool {
+    data_of(uri).is_none()
+}
+
+/// The name of the file of a URI.
+pub(super) fn name_of(uri: &str) -> String {
+    percent_decode_str(uri).decode_utf8_lossy().into_owned()
+}
+
+/// The parts of a data URI before and after its comma. Schemes may be in upper or lower case (RFC 3986, section 3.1).
+fn data_of(uri: &str) -> Option<(&str, &str)> {
+    let is_data = |head: &str| head.get(..5).is_some_and(|scheme| scheme.eq_ignore_ascii_case("data:"));
+    uri.split_once(',').filter(|(head, _)| is_data(head))
 }
 
 /// The bytes of a data URI. `head` is the part before its comma, `data` the part after it.

@@ -14,6 +14,10 @@ pub(in crate::io) struct Document {
     pub(super) bytes: Vec<u8>,
     /// The other files that it refers to.
     pub(super) files: BTreeMap<String, Vec<u8>>,
+    /// The names of the files of its images.
+    pub(in crate::io) images: Vec<String>,
+    /// Whether it is written with the buffers that are in other files.
+    pub(in crate::io) embeds: bool,
     pub(super) parts: Vec<Part>,
 }
 

@@ -1,7 +1,7 @@
 //! Reads the triangles of a glTF file.
 
 use super::accessors::Accessors;
-use super::buffers::Buffers;
+use super::buffers::{Buffers, is_in_other_file, name_of};
 use super::container::Container;
 use super::document::{Document, Part};
 use super::errors::refuse;
@@ -88,7 +88,9 @@ pub(in crate::io) fn read(bytes: Vec<u8>, read: ReadFile<'_>, max_bytes: u64) ->
     let dropped = Dropped(dropped(&root).into_iter().map(String::from).collect());
     let faces = CutFaces::of(triangles);
     let parsed = Parsed { stride: 3, positions: positions.into(), faces, dropped, loses: false };
-    let document = Document { bytes, files: files.into_inner(), parts };
+    let images = root.images.iter().filter_map(|image| image.uri.as_str());
+    let images = images.filter(|uri| is_in_other_file(uri)).map(name_of).collect();
+    let document = Document { bytes, files: files.into_inner(), images, embeds: false, parts };
     Ok(Content { parsed, document, notes })
 }
 
@@ -158,15 +160,17 @@ impl Reader<'_> {
             self.parts[part].users.push(user);
             return Ok(());
         }
-        let count = self.accessors.get(position)?.count.0;
+        let accessor = self.accessors.get(position)?;
+        let (count, is_sparse) = (accessor.count.0, accessor.sparse.is_some());
+        let has_elements = is_sparse || self.accessors.elements(position)?.is_some();
         // If several primitives use the accessor, each may use a different range of it. A part then takes only the
         // elements that it uses.
-        let is_shared = self.uses[position] > 1 && self.accessors.get(position)?.sparse.is_none();
+        let is_shared = self.uses[position] > 1 && !is_sparse;
         self.limit(if is_shared { 0 } else { count }, 0, location)?;
         let mut corners = match index {
             Some(index) => self.accessors.indices(index)?,
             // A primitive without indices has one element per corner.
-            None if self.accessors.elements(position)?.is_some() => (0..count as u32).collect(),
+            None if has_elements => (0..count as u32).collect(),
             None => Vec::new(),
         };
         if let Some(corner) = corners.iter().find(|&&corner| u64::from(corner) >= count) {

@@ -36,6 +36,7 @@ pub(super) struct Scene {
 #[serde(default, rename_all = "camelCase")]
 pub(super) struct Image {
     pub(super) buffer_view: Option<Index<View>>,
+    pub(super) uri: Value,
 }
 
 /// The part that is read first: another version may have another structure.

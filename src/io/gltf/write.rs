@@ -4,7 +4,7 @@
 //! primitive gets a new accessor.
 
 use super::accessors::{Accessors, component};
-use super::buffers::{Buffers, data_uri};
+use super::buffers::{Buffers, data_uri, is_in_other_file};
 use super::container::{Container, glb};
 use super::document::{Document, Part};
 use super::errors::refuse;
@@ -50,6 +50,11 @@ impl Document {
                     }
                     _ => file.appended.push((part, indices)),
                 }
+            }
+        }
+        for (index, buffer) in root.buffers.iter().enumerate() {
+            if self.embeds && buffer.uri.as_deref().is_some_and(is_in_other_file) {
+                file.changed.entry(index).or_insert_with(|| buffers[index].to_vec());
             }
         }
         let is_in_chunk = |buffer: usize| buffer == 0 && root.buffers[0].uri.is_none();
@@ -101,7 +106,8 @@ fn alone(accessors: &Accessors, parts: &[Part]) -> Vec<bool> {
     let mut is_alone = vec![false; root.accessors.len()];
     for part in parts {
         if let Some(accessor) = part.indices {
-            is_alone[accessor] = uses[accessor] == part.users.len();
+            is_alone[accessor] =
+                uses[accessor] == part.users.len() && root.accessors[accessor].sparse.is_none();
         }
     }
     // What overlaps lies in one run.

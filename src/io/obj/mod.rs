@@ -37,6 +37,13 @@ where
     Ok(Parsed { stride: 3, positions: positions.into(), faces, dropped, loses })
 }
 
+/// The names of the files with materials.
+pub(super) fn libraries(bytes: &[u8]) -> Vec<String> {
+    let names = Lines::new(bytes).filter_map(|line| line.trim_ascii().strip_prefix(b"mtllib"));
+    // A name may have spaces.
+    names.map(|name| String::from_utf8_lossy(name.trim_ascii()).into_owned()).collect()
+}
+
 /// Writes `mesh`; z is 0 in a 2D mesh.
 pub(super) fn write(mesh: &Mesh, out: &mut impl Write) -> io::Result<()> {
     let stride = mesh.dimension().stride();

@@ -254,6 +254,25 @@ fn random_polygons_keep_their_area() {
         }
         fans += usize::from(triangles.chunks(3).all(|triangle| triangle[0] == corners[0] as u32));
         assert_eq!(loaded.file_bytes("a.obj", triangles.to_vec()).unwrap(), text.as_bytes());
+        // The other readers.
+        let vertices = text
+            .lines()
+            .filter_map(|line| line.strip_prefix("v "))
+            .fold(String::new(), |all, v| all + v + "\n");
+        let face: String = corners.iter().map(|corner| format!(" {corner}")).collect();
+        let (vertex_count, face) = (points.len(), format!("{count}{face}\n"));
+        let head = format!(
+            "ply\nformat ascii 1.0\nelement vertex {vertex_count}\nproperty float x\nproperty float y\n\
+             property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+        );
+        for (format, name, head) in
+            [(Format::Ply, "a.ply", head), (Format::Off, "a.off", format!("OFF {vertex_count} 1 0\n"))]
+        {
+            let text = format!("{head}{vertices}{face}");
+            let loaded = parsed(format, &text).unwrap();
+            assert_eq!(loaded.mesh.triangles(), triangles, "{n}");
+            assert_eq!(loaded.file_bytes(name, triangles.to_vec()).unwrap(), text.as_bytes());
+        }
     }
     assert!((500..5_000).contains(&fans), "{fans}");
 }

@@ -28,11 +28,12 @@ fn constraints_are_brought_in() {
     fs::remove_file(&output).unwrap();
     fs::write(&list, "1 3\n0 2\n").unwrap();
     let why = "constraint 1 between 0 and 2 crosses constraint 0 between 1 and 3";
-    failed(&with(&[]), 2, &format!("option constraints: {why}"));
+    failed(&with(&[]), 1, &format!("{}: {why}", list.display()));
     assert_eq!(folder.names(), ["in.off", "list.txt"]);
     assert_eq!(said(&["--skip-constraints"])["left_out"], json!([{ "index": 1, "reason": why }]));
     let summary = with(&["--skip-constraints"]);
     assert!(text(&summary.stderr).contains(&format!("\nleft out   constraints: 1; {why}\n")));
     fs::write(&list, "0 9\n").unwrap();
-    failed(&with(&[]), 2, "option constraints: constraint 0 joins 0 and 9; the mesh has 4 vertices");
+    let line = format!("{}: constraint 0 joins 0 and 9; the mesh has 4 vertices", list.display());
+    failed(&with(&[]), 1, &line);
 }

@@ -32,7 +32,7 @@ fn gltf_comes_out_with_other_indices() {
     });
     let input = folder.file("in.gltf", json.to_string());
     let line = format!(
-        "{}: buffer 0: it is in the file `data/a b.bin`: reading other files is not allowed; external_files (--external-files) allows it",
+        "{}: buffer 0: it is in the file `data/a b.bin`: reading other files is not allowed; --external-files allows it",
         input.display()
     );
     failed(&run(&input, &folder.path("out.glb"), &[]), 1, &line);
@@ -50,6 +50,45 @@ fn gltf_comes_out_with_other_indices() {
     let ran = run(&glb, &obj, &[]);
     assert!(text(&ran.stderr).contains("note       not kept: attributes of vertices besides positions\n"));
     assert!(fs::read_to_string(obj).unwrap().starts_with("v 0 0 5\nv 1.8 0.4 5\nv 2 2 5\nv 0 2 5\nf "));
+}
+
+/// A file in another folder does not refer to what is not there, or a note says so.
+#[test]
+fn what_stays_in_the_folder_is_named() {
+    let folder = Folder::new();
+    fs::create_dir(folder.path("other")).unwrap();
+    let positions = [[0.0f32, 0.0], [1.0, 0.0], [0.0, 1.0]].map(|[x, y]| [x, y, 0.0]);
+    let buffer: Vec<u8> = positions.as_flattened().iter().flat_map(|x| x.to_le_bytes()).collect();
+    folder.file("a b.bin", &buffer);
+    let json = json!({
+        "asset": { "version": "2.0" },
+        "meshes": [{ "primitives": [{ "attributes": { "POSITION": 0 } }] }],
+        "accessors": [{ "bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3" }],
+        "bufferViews": [{ "buffer": 0, "byteLength": 36 }],
+        "buffers": [{ "uri": "a%20b.bin", "byteLength": 36 }],
+        "images": [{ "uri": "a%20b.png" }, { "uri": "data:image/png;base64,AA==" }],
+    });
+    let gltf = folder.file("in.gltf", json.to_string());
+    let obj = folder.file("in.obj", "mtllib my colours.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    let note =
+        |files: &str| format!("note       OUT refers to files that are not copied to its folder: {files}\n");
+    for (input, name, files) in [(&gltf, "out.gltf", "a b.png"), (&obj, "out.obj", "my colours.mtl")] {
+        let here = folder.path(name);
+        let said = text(&run(input, &here, &["--external-files"]).stderr).to_owned();
+        assert!(!said.contains("refers"), "{said}");
+        assert_eq!(fs::read(&here).unwrap(), fs::read(input).unwrap());
+        let there = folder.path(&format!("other/{name}"));
+        let said = text(&run(input, &there, &["--external-files"]).stderr).to_owned();
+        assert!(said.starts_with(&note(files)), "{said}");
+    }
+    let written: Value = serde_json::from_slice(&fs::read(folder.path("other/out.gltf")).unwrap()).unwrap();
+    let uri = written["buffers"][0]["uri"].as_str().unwrap();
+    assert!(uri.starts_with("data:application/octet-stream;base64,"), "{uri}");
+    let read = edgeflip::io::read(folder.path("other/out.gltf"), &Default::default()).unwrap();
+    assert_eq!(read.triangle_count(), 1);
+    // Another format refers to nothing.
+    let said = text(&run(&obj, &folder.path("other/out.off"), &[]).stderr).to_owned();
+    assert!(!said.contains("refers"), "{said}");
 }
 
 #[test]

@@ -21,8 +21,8 @@ fn locked_edges_stay() {
     assert_eq!(found["audit"], json!([]));
     fs::remove_file(&output).unwrap();
     for (text, status, line) in [
-        ("0 2\n1 3\n", 2, "option locked_edges: the mesh has no edge between vertices 1 and 3"),
-        ("0 9\n", 2, "option locked_edges: the mesh has no edge between vertices 0 and 9"),
+        ("0 2\n1 3\n", 1, "LIST: the mesh has no edge between vertices 1 and 3"),
+        ("0 9\n", 1, "LIST: the mesh has no edge between vertices 0 and 9"),
         ("0 1\n2\n", 1, "LIST: line 2: expected 2 vertex indices with a space between, found 1"),
         ("0 1 2\n", 1, "LIST: line 1: expected 2 vertex indices with a space between, found 3"),
         ("0 -1\n", 1, "LIST: line 1: expected a vertex index, found `-1`"),
@@ -32,6 +32,11 @@ fn locked_edges_stay() {
         fs::write(&list, text).unwrap();
         failed(&locking(&[]), status, &line.replace("LIST", list.to_str().unwrap()));
     }
+    // A list has a limit, which depends on the mesh.
+    fs::write(&list, "# 4567\n".repeat(150_000)).unwrap();
+    let why =
+        "the list has more than 1049088 bytes, too many for 2 triangles; remove repeated lines and comments";
+    failed(&locking(&[]), 1, &format!("{}: {why}", list.display()));
     assert_eq!(folder.names(), ["in.off", "list.txt"]);
 }
 
@@ -114,8 +119,8 @@ fn triangles_and_the_borders_of_groups_stay() {
         assert_eq!((&found["remaining"], &found["attribute_edges"]), (&remaining, &0.into()));
     }
     for (option, numbers, status, line) in [
-        ("--lock-triangles", "2", 2, "option locked_triangles: there is no triangle 2; the mesh has 2"),
-        ("--groups", "1 2 3", 2, "option groups: it has 3 numbers, the mesh has 2 triangles"),
+        ("--lock-triangles", "2", 1, "LIST: there is no triangle 2; the mesh has 2"),
+        ("--groups", "1 2 3", 1, "LIST: it has 3 numbers, the mesh has 2 triangles"),
         ("--groups", "1\n-2", 1, "LIST: line 2: expected a number from 0, found `-2`"),
         ("--lock-triangles", "4294967296", 1, "LIST: line 1: expected a number from 0, found `4294967296`"),
     ] {

@@ -67,7 +67,7 @@ impl Written {
         let (digits, scale) =
             (random.rand_range(3..18) as usize, [1.0, 1.0, 1e-3][random.rand_range(0..3) as usize]);
         let is_scientific = random.rand_float() < 0.5;
-        let mut token = |x: f64, random: &mut Rand64| {
+        let token = |x: f64, random: &mut Rand64| {
             let x = scale * (offset + x + 0.35 * random.rand_float());
             let x = match singles {
                 0 => f64::from(x as f32),
@@ -117,21 +117,15 @@ impl Written {
     }
 }
 
-/// The coordinates of a written text file, in order.
-fn coordinates(written: &str, extension: &str) -> Vec<String> {
-    let lines = written.lines();
-    let lines: Vec<&str> = match extension {
-        "off" => lines
-            .skip(1)
-            .skip_while(|line| {
-                line.split(' ').count() == 3 && line.ends_with(" 0") && line.starts_with("25 ")
-            })
-            .take(25)
-            .collect(),
-        "ply" => lines.skip_while(|line| *line != "end_header").skip(1).take(25).collect(),
-        _ => lines.filter_map(|line| line.strip_prefix("v ")).collect(),
+/// The coordinates of the vertices of a written text file.
+fn coordinates(written: &str, extension: &str, vertices: usize) -> Vec<String> {
+    let lines = match extension {
+        "obj" => written.lines().filter_map(|line| line.strip_prefix("v ")).collect::<Vec<_>>().join(" "),
+        "ply" => written.split_once("end_header").unwrap().1.to_owned(),
+        // The keyword, and three numbers.
+        _ => written.split_whitespace().skip(4).collect::<Vec<_>>().join(" "),
     };
-    lines.into_iter().flat_map(|line| line.split(' ').map(str::to_owned)).collect()
+    lines.split_whitespace().take(3 * vertices).map(str::to_owned).collect()
 }
 
 /// The written file, read with the bits that `--json` names, has the edges left that the run reported; and where these
@@ -167,7 +161,7 @@ fn written_text_shows_what_was_decided() {
         if is_double || to == "stl" || (to == "ply" && extension != "ply") {
             continue;
         }
-        let shown = coordinates(&fs::read_to_string(&output).unwrap(), to);
+        let shown = coordinates(&fs::read_to_string(&output).unwrap(), to, mesh.vertex_count());
         assert_eq!(shown.len(), 3 * mesh.vertex_count());
         for token in shown {
             let (value, single): (f64, f32) = (token.parse().unwrap(), token.parse().unwrap());

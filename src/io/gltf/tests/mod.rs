@@ -245,6 +245,44 @@ fn positions_may_be_sparse_and_integers() {
 }
 
 #[test]
+fn indices_may_be_sparse() {
+    // The sparse part sets corner 2 to 3, and corner 3 to 1: the bytes of these indices are 3 of the first and 1.
+    let sparse = json!({
+        "count": 2,
+        "indices": { "bufferView": 2, "componentType": 5121 },
+        "values": { "bufferView": 2, "byteOffset": 2, "componentType": 5123 },
+    });
+    let (mut json, mut buffer) = square();
+    buffer.extend([2, 3, 3, 0, 1, 0]);
+    json["buffers"][0]["byteLength"] = 66.into();
+    json["bufferViews"]
+        .as_array_mut()
+        .unwrap()
+        .push(json!({ "buffer": 0, "byteOffset": 60, "byteLength": 6 }));
+    json["accessors"][1]["sparse"] = sparse;
+    let scene = read(&glb(&json, &buffer)).unwrap();
+    assert_eq!(scene.triangles, FLIPPED);
+    // The indices that are written are new, since the sparse part would change them.
+    let after = scene.document.with_triangles(&FLIPPED, &INDICES, true).unwrap();
+    assert_eq!(read(&after).unwrap().triangles, INDICES);
+    // Without a buffer view, the other indices are 0.
+    json["accessors"][1].as_object_mut().unwrap().remove("bufferView");
+    assert_eq!(read(&glb(&json, &buffer)).unwrap().triangles, [0, 0, 3, 1, 0, 0]);
+    buffer[60] = 6;
+    refused(&glb(&json, &buffer), "accessor 1: it has no element 6, which its sparse part changes");
+    // Positions that have only a sparse part, of a primitive without indices.
+    let (mut json, buffer) = square();
+    json["accessors"][0] = json!({ "componentType": 5126, "count": 3, "type": "VEC3", "sparse": {
+        "count": 3,
+        "indices": { "bufferView": 1, "componentType": 5123 },
+        "values": { "bufferView": 0 },
+    } });
+    json["meshes"][0]["primitives"][0].as_object_mut().unwrap().remove("indices");
+    let scene = read(&glb(&json, &buffer)).unwrap();
+    assert_eq!((numbers(&scene), scene.triangles), (SQUARE[..3].concat(), vec![0, 1, 2]));
+}
+
+#[test]
 fn indices_where_something_else_lies_are_not_overwritten() {
     let (mut json, buffer) = square();
     // An image uses the bytes of the indices.
