@@ -16,11 +16,14 @@ export interface Preparation {
   before?: Before | undefined;
 }
 
-/** The mesh before `constraints` came in, and the edges that they became. The settings share none of these arrays. */
-interface Before {
+/** The mesh before `constraints` came in, and what they became. The settings share none of these arrays. */
+export interface Before {
   indices: Uint32Array;
   lockedEdges: Uint32Array;
+  constraints: Uint32Array;
   constraintEdges: Uint32Array;
+  /** The indices of the constraints that were left out. */
+  leftOut: Uint32Array;
 }
 
 /** The indices and the settings that a session starts with. */
@@ -50,8 +53,14 @@ export async function prepare(
   return {
     ...prepared,
     constrained: { flips, leftOut },
-    // The locks are a copy, because a session may transfer its settings.
-    before: { indices, lockedEdges: made.lockedEdges.slice(0, ofLocks), constraintEdges },
+    before: {
+      indices,
+      // A copy, because a session may transfer its settings.
+      lockedEdges: made.lockedEdges.slice(0, ofLocks),
+      constraints: ends,
+      constraintEdges,
+      leftOut: Uint32Array.from(leftOut, ({ index }) => index),
+    },
     indices: made.indices,
     settings: { ...others, lockedEdges: made.lockedEdges },
   };

@@ -340,12 +340,11 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
   verify(): Promise<Audit> {
     return this.#call(async (session) => {
       const { before } = this.#prepared;
-      const [positions, indices, dimension, triangles, locks, options, none] = await session.auditInput();
+      const [positions, present, dimension, triangles, locks, options] = await session.auditInput();
       await loadAudit();
       const { audit } = await import('./wasm/edgeflip_audit.js');
-      if (!before) return audit(positions, indices, dimension, triangles, locks, options, none);
-      const { indices: input, lockedEdges, constraintEdges } = before;
-      return audit(positions, input, dimension, triangles, lockedEdges, options, constraintEdges);
+      const { indices, lockedEdges } = before ?? { indices: present, lockedEdges: locks };
+      return audit(positions, indices, dimension, triangles, lockedEdges, options, before);
     });
   }
 

@@ -176,6 +176,8 @@ pub(super) fn decode(x: f64) -> (i64, i32) {
 thread_local! {
     /// The largest `bits` of [`Differences`] since the test set it to 0.
     pub(super) static WIDEST: std::cell::Cell<u32> = const { std::cell::Cell::new(0) };
+    /// How many [`Differences`] there were: how often a filter did not decide.
+    pub(super) static COUNT: std::cell::Cell<usize> = const { std::cell::Cell::new(0) };
 }
 
 /// Differences of numbers, as integers times one power of two. No sign depends on that unit.
@@ -202,7 +204,10 @@ impl<const K: usize> Differences<K> {
             |&(m, e): &(i64, i32)| if m == 0 { 0 } else { m.unsigned_abs().ilog2() + 1 + (e - unit) as u32 };
         let bits = numbers().map(width).max().unwrap_or(0) + u32::from(!exact);
         #[cfg(test)]
-        WIDEST.set(WIDEST.get().max(bits));
+        {
+            WIDEST.set(WIDEST.get().max(bits));
+            COUNT.set(COUNT.get() + 1);
+        }
         Self { minuends, subtrahends, unit, bits }
     }
 

@@ -34,6 +34,9 @@ const UNDERFLOW: f64 = f64::from_bits((1023 - 530) << 52);
 /// 2^-106).
 pub(super) const BITS: u32 = 132;
 
+/// With differences up to this width, a dot product and the components of a normal fit 4 limbs, 256 bits.
+const CORNER_BITS: u32 = 126;
+
 /// The two triangles (a, b, c) and (b, a, d) at an edge (a, b).
 pub(crate) struct Quad {
     points: [DVec3; 4],
@@ -166,9 +169,27 @@ impl Quad {
     }
 }
 
-/// Whether the triangle (a, b, c) has an obtuse angle at c, and whether its area is zero.
-pub(crate) fn corner(a: DVec3, b: DVec3, c: DVec3) -> (bool, bool) {
-    exactly!(Quad::new(a, b, c, c), obtuse_and_flat)
+/// If the triangle (a, b, c) has an obtuse angle at c: whether its area is zero.
+pub(crate) fn obtuse(a: DVec3, b: DVec3, c: DVec3) -> Option<bool> {
+    let (p, q) = (a - c, b - c);
+    let bound = bound(size(p) * size(q), size(p) + size(q));
+    let dot = p.dot(q);
+    if dot > bound {
+        return None;
+    }
+    if dot < -bound && p.cross(q).abs().max_element() > bound {
+        return Some(false);
+    }
+    out_of_line(|| {
+        let [a, b, c] = [a, b, c].map(|point| point.to_array());
+        let differences =
+            Differences::new(std::array::from_fn(|i| (if i < 3 { a } else { b }[i % 3], c[i % 3])));
+        if differences.bits <= CORNER_BITS {
+            obtuse_and_flat::<Bounded<4>>(&differences.integers())
+        } else {
+            obtuse_and_flat::<Unbounded>(&differences.integers())
+        }
+    })
 }
 
 /// The error bound of a filter, from the product of the sizes of its four vectors and the sum of all sizes. The fourth
@@ -271,8 +292,10 @@ fn turned_over<R: Ring>(v: &[R; COUNT]) -> bool {
     old.iter().any(|n| new.iter().any(|m| dot(n, m).sign().is_lt()))
 }
 
-fn obtuse_and_flat<R: Ring>(v: &[R; COUNT]) -> (bool, bool) {
-    let [p, q, _, _] = vectors(v);
-    let normal = cross(p, q);
-    (dot(p, q).sign().is_lt(), dot(&normal, &normal).sign().is_eq())
+/// The same as [`obtuse`], from the components of p and q.
+fn obtuse_and_flat<R: Ring>(v: &[R; 6]) -> Option<bool> {
+    let (vectors, _) = v.as_chunks();
+    let (p, q): (&Vector<R>, &Vector<R>) = (&vectors[0], &vectors[1]);
+    let is_flat = || cross(p, q).iter().all(|component| component.sign().is_eq());
+    dot(p, q).sign().is_lt().then(is_flat)
 }

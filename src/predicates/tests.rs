@@ -199,8 +199,8 @@ fn compare_in_space([a, b, c, d]: [DVec3; 4], degrees: f64, most: f32) {
     let (volume, most_big) = (dot(&across, &minus(a, c)), big(most.into()));
     let deviates = &volume * &volume > &most_big * &most_big * dot(&across, &across);
     assert_eq!(quad.deviates(most.into()), deviates);
-    let expected = (dot(&p, &q).sign() == Sign::Minus, dot(&n1, &n1).sign() == Sign::NoSign);
-    assert_eq!(corner(a, b, c), expected);
+    let is_flat = dot(&n1, &n1).sign() == Sign::NoSign;
+    assert_eq!(obtuse(a, b, c), (dot(&p, &q).sign() == Sign::Minus).then_some(is_flat));
 }
 
 /// The distance of the two diagonals of a box is its height. It is compared with a float near it, or with itself.

@@ -1,13 +1,20 @@
 //! Counts the edges that each tier decides: `cargo test --lib tiers -- --nocapture`. `src/engine/tests/mod.rs` does the
 //! same on a GPU, and `cargo bench -p benches --bench tiers` measures the times.
 
-use super::exact::WIDEST;
+use super::exact::{COUNT, WIDEST};
 use super::{Quad, in_circle_sign, plane, space};
 use crate::mesh::half_edge::prev;
 use crate::{Adjacency, Backend, Dimension, Error, Mesh, NONE, Options, families, make_delaunay};
 
 #[path = "../../benches/src/kinds.rs"]
 pub(crate) mod kinds;
+
+/// How many decisions of `work` need integers.
+pub(crate) fn exact_decisions(work: impl FnOnce()) -> usize {
+    let before = COUNT.get();
+    work();
+    COUNT.get() - before
+}
 
 /// The numbers of interior edges by the tier that decides them: the filter, narrow, wide or unbounded integers. In
 /// space there is no wide tier.

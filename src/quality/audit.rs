@@ -3,9 +3,9 @@
 
 use super::audit_exact;
 use super::edges::{Class, Edge};
-use super::paths::Paths;
+use super::paths::{Named, Paths, take_path};
 use super::surface::{Limits, RemainingEdge, Surface};
-use crate::{Dimension, Error, Mesh, Options, Reason, Reasons, Session, cos_degrees};
+use crate::{Dimension, Error, Mesh, Options, Outcome, Reason, Reasons, Session, cos_degrees};
 use std::cmp::Ordering;
 
 /// The most violations that an [`Audit`] lists. It only counts the others.
@@ -103,7 +103,7 @@ pub enum Violation {
         /// Larger end.
         v: u32,
     },
-    /// A constraint is no path of edges along its line.
+    /// A constraint is no path of edges along its line, or an edge of its path is missing.
     #[error("constraint {u}-{v} is missing")]
     Constraint {
         /// Its first vertex.
@@ -166,9 +166,25 @@ impl Audit {
 }
 
 /// Checks `triangles` as a result of flipping edges of `input` with these options, exactly. It has its own edge table,
-/// components and arithmetic. Locks of edges that `input` does not have are ignored. Constraints may be missing if the
-/// options skip them.
+/// components and arithmetic. Locks of edges that `input` does not have are ignored.
+///
+/// It searches for the paths of edges that the constraints have become. Constraints may be missing if the options skip
+/// them, and where a mesh overlaps, a constraint may have several paths, of which the run has locked one.
+/// [`audit_outcome`] knows more.
 pub fn audit(input: &Mesh, triangles: &[u32], options: &Options) -> Audit {
+    audit_named(input, triangles, options, None)
+}
+
+/// As [`audit`], for the result of a run on `input`. The outcome names the edges of each constraint, which are checked:
+/// they have to be a path along its line, and none may be missing. Only a constraint that the outcome lists as left out
+/// may be missing.
+pub fn audit_outcome(input: &Mesh, outcome: &Outcome, options: &Options) -> Audit {
+    let left_out = outcome.left_out.iter().map(|left| left.index).collect();
+    let named = Named { edges: &outcome.constraint_edges, left_out };
+    audit_named(input, &outcome.triangles, options, Some(named))
+}
+
+pub(crate) fn audit_named(input: &Mesh, triangles: &[u32], options: &Options, named: Option<Named>) -> Audit {
     let mut audit = Audit::default();
     audit.compare(input.triangles().len(), triangles.len(), |before, after| Violation::Length {
         before,
@@ -206,18 +222,7 @@ pub fn audit(input: &Mesh, triangles: &[u32], options: &Options) -> Audit {
     for &(u, v) in locked.iter().filter(|&&(u, v)| !after.table.contains(u, v)) {
         audit.report(Violation::Locked { u, v });
     }
-    if !options.constraints.is_empty() {
-        let paths = Paths::new(&after);
-        for &[u, v] in &options.constraints {
-            match paths.along(u, v) {
-                Some(path) => locked.extend(path),
-                None if options.skips_constraints => {}
-                None => audit.report(Violation::Constraint { u, v }),
-            }
-        }
-        locked.sort_unstable();
-        locked.dedup();
-    }
+    add_constraints(&mut audit, &mut locked, &after, options, named);
     audit.remaining_edges = after.remaining(limits, &creases, &locked);
     audit.remaining = audit.remaining_edges.iter().map(|edge| edge.reason).collect();
     audit
@@ -232,7 +237,9 @@ impl Session {
         self.come_to_rest().await?;
         let triangles = self.triangles().await?;
         let (mesh, options) = self.input();
-        Ok(audit(mesh, &triangles, options))
+        let left_out = self.left_out().iter().map(|left| left.index).collect();
+        let named = Named { edges: self.constraint_edges(), left_out };
+        Ok(audit_named(mesh, &triangles, options, Some(named)))
     }
 }
 
@@ -261,6 +268,39 @@ fn locked(before: &Surface, options: &Options) -> Vec<(u32, u32)> {
             || half_edges.any(|h| is_locked[h as usize / 3] || group(h) != first)
     };
     before.table.edges().filter(is_locked).map(|edge| (edge.u, edge.v)).collect()
+}
+
+/// Adds the edges of the constraints to `locked`, and reports the constraints that are missing.
+fn add_constraints(
+    audit: &mut Audit,
+    locked: &mut Vec<(u32, u32)>,
+    after: &Surface,
+    options: &Options,
+    named: Option<Named>,
+) {
+    let constraints = options.constraints.iter().enumerate();
+    let mut add = |path: &[[u32; 2]]| locked.extend(path.iter().map(|&[u, v]| (u.min(v), u.max(v))));
+    if let Some(Named { mut edges, left_out }) = named {
+        let is_left_out = |i| options.skips_constraints && left_out.binary_search(&i).is_ok();
+        for (_, &[u, v]) in constraints.filter(|&(i, _)| !is_left_out(i)) {
+            let path = take_path(after, &mut edges, [u, v]).unwrap_or_default();
+            add(path);
+            if path.is_empty() || path.iter().any(|&[u, v]| !after.table.contains(u, v)) {
+                audit.report(Violation::Constraint { u, v });
+            }
+        }
+    } else if !options.constraints.is_empty() {
+        let mut paths = Paths::new(after);
+        for (_, &[u, v]) in constraints {
+            match paths.along([u, v]) {
+                Some(path) => add(&path),
+                None if options.skips_constraints => {}
+                None => audit.report(Violation::Constraint { u, v }),
+            }
+        }
+    }
+    locked.sort_unstable();
+    locked.dedup();
 }
 
 /// Compares both tables in step. Only edges between two consistent triangles may appear and disappear, and creases may

@@ -9,6 +9,10 @@ mod paths;
 mod surface;
 
 pub use angles::{AngleHistogram, Angles, angles};
-pub use audit::{Audit, MAX_LISTED, Violation, audit};
+#[cfg(all(target_arch = "wasm32", feature = "js-audit"))]
+pub(crate) use audit::audit_named;
+pub use audit::{Audit, MAX_LISTED, Violation, audit, audit_outcome};
 pub use measures::{Measures, distance, measures, moved};
+#[cfg(all(target_arch = "wasm32", feature = "js-audit"))]
+pub(crate) use paths::Named;
 pub use surface::RemainingEdge;

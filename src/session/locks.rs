@@ -6,8 +6,9 @@ use crate::mesh::buckets::for_each_edge;
 use crate::mesh::half_edge::next;
 use crate::session::memory_bounds;
 use crate::system::memory;
-use crate::{Constrained, Error, Options, Welded, constrained};
+use crate::{Error, LeftOut, Options, Welded, constrained};
 use std::mem;
+use std::sync::Arc;
 
 /// The edges that `options` lock, each by its two vertices: `locked_edges` first, then the edges of `locked_triangles`
 /// and those between `groups`. [`half_edges`](crate::mesh::named_edges::half_edges) finds them in the mesh.
@@ -40,31 +41,41 @@ pub(crate) fn edges(mesh: &Mesh, options: &Options) -> Result<Vec<[u32; 2]>, Err
     Ok(edges)
 }
 
-/// Brings the constraints of `options` in. Then, or without constraints, `options.locked_edges` are all locks. Returns
-/// what has changed, or `None` without constraints.
+/// What constraints have changed before a run.
+#[derive(Default)]
+pub(crate) struct BroughtIn {
+    /// The mesh before, and the options with the constraints: what the audit compares with, until vertices move.
+    pub(crate) before: Option<(Arc<Mesh>, Options)>,
+    /// How many of the locked edges are locks; the others are edges of constraints.
+    pub(crate) locks: usize,
+    pub(crate) flips: u64,
+    pub(crate) left_out: Vec<LeftOut>,
+}
+
+/// Brings the constraints of `options` into the mesh. Then, or without constraints, `options.locked_edges` are all locks.
 ///
 /// # Errors
 /// Those of [`edges`] and [`constrained`].
-pub(crate) fn bring_in(mesh: &Mesh, options: &mut Options) -> Result<Option<Constrained>, Error> {
+pub(crate) fn bring_in(mesh: &mut Arc<Mesh>, options: &mut Options) -> Result<BroughtIn, Error> {
     // In the npm package, the module of `edgeflip/files` has brought them in.
     if cfg!(all(target_arch = "wasm32", feature = "js-session")) || options.constraints.is_empty() {
         options.locked_edges = edges(mesh, options)?;
-        return Ok(None);
+        return Ok(BroughtIn { locks: options.locked_edges.len(), ..BroughtIn::default() });
     }
     memory::check(memory_bounds::bytes(mesh, options))?;
     let locks = edges(mesh, options)?;
     let Options { skips_constraints, threads, .. } = *options;
-    let mut result = constrained(mesh, &options.constraints, &locks, skips_constraints, threads)?;
-    let locked_edges = mem::take(&mut result.locked_edges);
+    let made = constrained(mesh, &options.constraints, &locks, skips_constraints, threads)?;
+    let before = (mem::replace(mesh, Arc::new(made.mesh)), mem::take(options));
     // The flips have moved triangles, and their locks are edges by now.
     *options = Options {
-        locked_edges,
+        locked_edges: made.locked_edges,
         locked_triangles: Vec::new(),
         groups: Vec::new(),
         constraints: Vec::new(),
-        ..mem::take(options)
+        ..before.1.clone()
     };
-    Ok(Some(result))
+    Ok(BroughtIn { before: Some(before), locks: made.locks, flips: made.flips, left_out: made.left_out })
 }
 
 impl Welded {

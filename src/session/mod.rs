@@ -25,10 +25,11 @@ use crate::mesh::winding::{Outline, Winding};
 use crate::phases::frozen;
 use crate::phases::{Geometry, Thresholds, Topology};
 use crate::session::edge_states::edge_states;
+use crate::session::locks::BroughtIn;
 use crate::system::memory;
 use crate::{
-    Backend, Constrained, Dimension, EdgeState, Edges, EngineKind, Error, Iteration, LeftOut, Mesh, Options,
-    Order, Outcome, Positions, Reason, Status, Timings,
+    Backend, Dimension, EdgeState, Edges, EngineKind, Error, Iteration, LeftOut, Mesh, Options, Order,
+    Outcome, Positions, Reason, Status, Timings,
 };
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 pub(crate) use choice::why_cpu;
@@ -57,8 +58,7 @@ pub struct Session {
     has_ended: bool,
     /// Updates since the last other change of the positions.
     updates: u64,
-    constraint_flips: u64,
-    left_out: Vec<LeftOut>,
+    constraints: BroughtIn,
     timings: Timings,
     /// Whether the triangles stay on the device until somebody asks for them.
     #[cfg(all(target_arch = "wasm32", feature = "js"))]
@@ -74,11 +74,8 @@ impl Session {
     /// `Auto` the CPU takes over instead.
     pub async fn new(mesh: impl Into<Arc<Mesh>>, mut options: Options) -> Result<Self, Error> {
         options.check()?;
-        let (start, mesh) = (Instant::now(), mesh.into());
-        let (mesh, constraint_flips, left_out) = match locks::bring_in(&mesh, &mut options)? {
-            Some(Constrained { mesh, flips, left_out, .. }) => (Arc::new(mesh), flips, left_out),
-            None => (mesh, 0, Vec::new()),
-        };
+        let (start, mut mesh) = (Instant::now(), mesh.into());
+        let constraints = locks::bring_in(&mut mesh, &mut options)?;
         let Choice { engine, fallback, may_change } = engine_for(&mesh, &options).await?;
         let set_up = ms_since(start);
         let adjacency = engine.adjacency_ms().unwrap_or(set_up);
@@ -91,8 +88,7 @@ impl Session {
             flips_per_iteration: Vec::new(),
             has_ended: false,
             updates: 0,
-            constraint_flips,
-            left_out,
+            constraints,
             timings: Timings { upload: set_up - adjacency, adjacency, ..Timings::default() },
             #[cfg(all(target_arch = "wasm32", feature = "js"))]
             stays: false,
@@ -240,8 +236,9 @@ impl Session {
             fallback: self.fallback.clone(),
             iterations: self.flips_per_iteration.len() as u32,
             flips: self.flips(),
-            constraint_flips: self.constraint_flips,
-            left_out: self.left_out.clone(),
+            constraint_flips: self.constraints.flips,
+            constraint_edges: self.constraint_edges().to_vec(),
+            left_out: self.constraints.left_out.clone(),
             flips_per_iteration: self.flips_per_iteration.clone(),
             dispatches: self.engine.dispatches(),
             device_bytes: self.engine.device_bytes(),
@@ -316,9 +313,21 @@ impl Session {
         self.engine.backend()
     }
 
-    /// What the audit compares with: the mesh given to `new`, or made when positions changed last, and the options.
+    /// What the audit compares with: the mesh given to `new`, or made when positions changed last, and its options.
     pub(crate) fn input(&self) -> (&Mesh, &Options) {
-        (&self.mesh, &self.options)
+        self.constraints
+            .before
+            .as_ref()
+            .map_or((&self.mesh, &self.options), |(mesh, options)| (mesh, options))
+    }
+
+    /// As [`Outcome::constraint_edges`].
+    pub(crate) fn constraint_edges(&self) -> &[[u32; 2]] {
+        self.options.locked_edges.get(self.constraints.locks..).unwrap_or_default()
+    }
+
+    pub(crate) fn left_out(&self) -> &[LeftOut] {
+        &self.constraints.left_out
     }
 
     /// The buffers that a page can draw from.

@@ -140,6 +140,7 @@ impl Session {
             }
         }
         self.mesh = mesh;
+        self.constraints.before = None;
         self.flips_per_iteration.clear();
         self.has_ended = false;
         self.timings = Timings { adjacency: ms_since(start), ..Timings::default() };

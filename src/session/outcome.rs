@@ -83,6 +83,9 @@ pub struct Outcome {
     pub flips: u64,
     /// Flips that brought constraints in.
     pub constraint_flips: u64,
+    /// The edges that the constraints have become, each by its two vertices, for [`regions`](crate::regions). The
+    /// constraints are in their order; the edges of one lead from its first vertex to its second.
+    pub constraint_edges: Vec<[u32; 2]>,
     /// The constraints that were left out, in ascending order.
     pub left_out: Vec<LeftOut>,
     /// Flips of each iteration; a whole run of Lawson's algorithm counts as one iteration.

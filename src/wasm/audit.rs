@@ -1,15 +1,30 @@
 //! The audit of a session for the npm package, in a module of its own: most pages never load it. Its only caller is
 //! `FlipSession.verify` in `src/js/session.ts`.
 
+use crate::Options;
+use crate::quality::{self, Named, audit_named};
 use crate::system::threads::Threads;
 use crate::wasm::options::{JsOptions, without_lists};
 use crate::wasm::values::{JsPositions, mesh_of, object, reasons_object, thrown};
-use crate::{Options, quality};
 use js_sys::{Array, Uint32Array};
 use wasm_bindgen::prelude::*;
 
-/// As [`quality::audit`]. `locked_edges` has all edges that the options lock, and `constraints` those that were brought in
-/// after `indices`, 2 vertices per edge; `options` has no lists.
+#[wasm_bindgen]
+extern "C" {
+    /// Constraints that came in before the run, and what they have become.
+    #[wasm_bindgen(typescript_type = "import('../prepare.js').Before")]
+    pub type JsBefore;
+
+    #[wasm_bindgen(method, getter)]
+    fn constraints(this: &JsBefore) -> Uint32Array;
+    #[wasm_bindgen(method, getter, js_name = constraintEdges)]
+    fn constraint_edges(this: &JsBefore) -> Uint32Array;
+    #[wasm_bindgen(method, getter, js_name = leftOut)]
+    fn left_out(this: &JsBefore) -> Uint32Array;
+}
+
+/// As [`quality::audit_outcome`]. `locked_edges` has all edges that the options lock, 2 vertices per edge; `options` has no
+/// lists. `before`: what came in after `indices`, if there were constraints.
 ///
 /// # Errors
 /// Those of [`Mesh::new`](crate::Mesh::new); [`Error::OutOfMemory`](crate::Error::OutOfMemory).
@@ -21,14 +36,19 @@ pub fn audit(
     triangles: &Uint32Array,
     locked_edges: &Uint32Array,
     options: &JsOptions,
-    constraints: &Uint32Array,
+    before: Option<JsBefore>,
 ) -> Result<JsValue, JsValue> {
     let check = || {
         let input = mesh_of(positions, indices, dimension, &Threads::one())?;
-        let [locked_edges, constraints] =
-            [locked_edges, constraints].map(|ends| ends.to_vec().as_chunks().0.to_vec());
-        let options = Options { locked_edges, constraints, ..without_lists(options)? };
-        Ok(quality::audit(&input, &triangles.to_vec(), &options))
+        let pairs = |ends: &Uint32Array| ends.to_vec().as_chunks().0.to_vec();
+        let (locked_edges, triangles) = (pairs(locked_edges), triangles.to_vec());
+        let options = Options { locked_edges, ..without_lists(options)? };
+        let Some(before) = before else { return Ok(quality::audit(&input, &triangles, &options)) };
+        let left_out: Vec<usize> = before.left_out().to_vec().into_iter().map(|i| i as usize).collect();
+        let skips_constraints = !left_out.is_empty();
+        let options = Options { constraints: pairs(&before.constraints()), skips_constraints, ..options };
+        let named = Named { edges: &pairs(&before.constraint_edges()), left_out };
+        Ok(audit_named(&input, &triangles, &options, Some(named)))
     };
     let audit = check().map_err(thrown)?;
     let violations: Array =

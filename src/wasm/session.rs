@@ -257,7 +257,6 @@ impl JsSession {
                 array(&triangles),
                 array(options.locked_edges.as_flattened()),
                 options.given.clone().into(),
-                array(&[]),
             ])
         };
         self.ask(input, |arguments| arguments.iter().collect::<Array>().into())

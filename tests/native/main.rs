@@ -22,6 +22,7 @@ mod cli_input;
 mod cli_output;
 mod cli_quiet;
 mod cli_signals;
+mod constraint_paths;
 mod constraints;
 mod delaunator;
 mod digests;

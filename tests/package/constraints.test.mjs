@@ -56,6 +56,24 @@ test('a long constraint becomes a path of edges, and the rest is Delaunay', asyn
   }
 });
 
+test('the audit knows which path a constraint has taken, and which constraints were left out', async () => {
+  // An edge leads from 0 to 1 on the line to 2, and none goes on from there.
+  const mesh = { positions: Float32Array.of(0, 0, 1, 0, 2, 0, 0, 2, 0, -1), indices: [0, 2, 3, 0, 4, 1], dimension: 2 };
+  for (const [constraints, skipConstraints, left] of [
+    [[0, 2], false, []],
+    [[4, 2, 0, 2, 3, 3], true, [0, 2]],
+  ]) {
+    const session = await FlipSession.create(mesh, { backend: 'cpu', constraints, skipConstraints });
+    const { leftOut } = await session.run();
+    assert.deepEqual(
+      leftOut.map(({ index }) => index),
+      left,
+    );
+    assert.deepEqual((await session.verify()).violations, []);
+    session.free();
+  }
+});
+
 test('constraints stay while the mesh moves', async () => {
   const mesh = await generate('random 30');
   const constraints = [0, mesh.positions.length / 2 - 1];
@@ -92,6 +110,7 @@ test('wrong constraints are refused', async () => {
   const mesh = await generate('random 9');
   for (const [constraints, code, pattern] of [
     [[0], 'ragged-array', /constraints has 1 number/],
+    [[4, 4], 'invalid-option', /constraint 0 between 4 and 4 joins a vertex to itself; remove it from the list/],
     [[0, 1e9], 'invalid-option', /constraint 0 joins 0 and 1000000000; the mesh has 81 vertices/],
     ['0 1', 'invalid-option', /constraints: '0 1' is neither/],
   ]) {

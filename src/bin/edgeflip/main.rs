@@ -246,7 +246,7 @@ fn turn(
 
 /// Runs the independent check. A different count of the edges left is also a violation.
 fn check(options: &Options, mesh: &Mesh, outcome: &Outcome) -> Check {
-    let audit = quality::audit(mesh, &outcome.triangles, options);
+    let audit = quality::audit_outcome(mesh, outcome, options);
     let mut violations: Vec<String> = audit.violations.iter().map(ToString::to_string).collect();
     if audit.remaining != outcome.remaining {
         let [said, counted] = [&outcome.remaining, &audit.remaining].map(report::reasons);

@@ -57,7 +57,8 @@ pub struct LeftOut {
 /// flip. `threads` is as in [`Options`](crate::Options); it does not change the result.
 ///
 /// A constraint is an error, or left out if `skips`, if it crosses an earlier constraint, a locked edge, a boundary edge
-/// or a frozen edge, if it leaves the mesh, or if it crosses triangles that are not positive.
+/// or a frozen edge, if it leaves the mesh, if it crosses triangles that are not positive, or if its ends are at the same
+/// point.
 ///
 /// # Errors
 /// [`Error::Option`] for a mesh in space, for a vertex that does not exist, for a constraint that cannot be brought in,
@@ -173,6 +174,7 @@ impl Work<'_> {
             Obstacle::Unused(vertex) => {
                 format!("ends at vertex {vertex}, which no triangle has; weld it if another vertex is there")
             }
+            Obstacle::SameVertex => "joins a vertex to itself; remove it from the list".to_owned(),
             Obstacle::SamePoint => "joins two vertices at the same point; weld them first".to_owned(),
             Obstacle::Leaves(vertex) => format!("leaves the mesh at vertex {vertex}"),
             Obstacle::Folded(triangle) => {

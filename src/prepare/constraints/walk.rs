@@ -45,6 +45,8 @@ pub(super) struct Walk {
 pub(super) enum Obstacle {
     /// No triangle has this vertex.
     Unused(u32),
+    /// Both ends are the same vertex.
+    SameVertex,
     /// Both ends are at the same point.
     SamePoint,
     /// It leaves the mesh at this vertex.
@@ -72,7 +74,7 @@ impl State<'_> {
     /// same. `None` if it would meet more than `most` triangles.
     pub(super) fn walk(&self, [from, to]: [u32; 2], most: usize) -> Option<Walk> {
         let mut walk = Walk {
-            parts: Ok(Vec::new()),
+            parts: if from == to { Err(Obstacle::SameVertex) } else { Ok(Vec::new()) },
             crossed: Vec::new(),
             around: Vec::new(),
             suspects: Vec::new(),

@@ -37,3 +37,15 @@ fn constraints_are_brought_in() {
     let line = format!("{}: constraint 0 joins 0 and 9; the mesh has 4 vertices", list.display());
     failed(&with(&[]), 1, &line);
 }
+
+/// Vertex 1 is on the constraint between 0 and 2, and an edge goes there, but none goes on from it.
+#[test]
+fn a_constraint_beside_a_dead_end_passes_the_audit() {
+    let folder = Folder::new();
+    let points = "0 0 0\n1 0 0\n2 0 0\n0 2 0\n0 -1 0\n";
+    let input = folder.file("in.off", format!("OFF\n5 2 0\n{points}3 0 2 3\n3 0 4 1\n"));
+    let (list, output) = (folder.file("list.txt", "0 2\n"), folder.path("out.off"));
+    let ran = run(&input, &output, &["--constraints", list.to_str().unwrap(), "--verify", "--quiet"]);
+    assert_eq!((ran.status.code(), text(&ran.stderr)), (Some(0), ""));
+    assert!(output.exists());
+}

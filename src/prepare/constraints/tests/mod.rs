@@ -281,6 +281,8 @@ fn errors_name_the_constraint_and_what_it_meets() {
     assert_refused(&apart, &[[0, 3]], &[], place);
     let same = "constraint 0 between 0 and 3 joins two vertices at the same point; weld them first";
     assert_refused(&twice, &[[0, 3]], &[], same);
+    let itself = "constraint 0 between 1 and 1 joins a vertex to itself; remove it from the list";
+    assert_refused(&twice, &[[1, 1]], &[], itself);
 }
 
 /// Clockwise triangles give the mirrored result.
