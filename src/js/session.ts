@@ -227,6 +227,7 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
    * @throws {@link EdgeflipError} `invalid-option`, `invalid-input`, `position-count`, `ragged-array`; `backend-limit`
    * for 64-bit floats on WebGPU and WebGL2; `device-failed`, `freed`.
    */
+    this.#checkFreed();
   update(options: UpdateOptions = {}): void {
     const isLate = this.#waiting > 0 || this.#session.isAway || !this.#session.isSettled;
     const update = updateOf(options, this.#layout, isLate ? copyOf : itselfOf);
@@ -289,7 +290,11 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
     return this.#call((session) => session.changes());
   }
 
+  #checkFreed(): void {
+  }
+
   #check(): void {
+    this.#checkFreed();
     if (this.#isFreed) throw new EdgeflipError('freed', 'the session has been freed');
     const fault = this.#fault;
     this.#fault = undefined;
@@ -393,7 +398,7 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
     this.#waiting++;
     const call = this.#last.then(async () => {
       try {
-        if (this.#isFreed) throw new EdgeflipError('freed', 'the session has been freed');
+        this.#checkFreed();
         return await work(this.#session);
       } catch (thrown) {
         throw fromModule(thrown);

@@ -217,7 +217,7 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
   /** Runs to the end, or until the signal stops the run. A stopped session can continue. */
   async run(options: RunOptions = {}): Promise<Result<I>> {
     const watch = watchOf(options, RUN_OPTIONS);
-    this.#check();
+    this.#checkFreed();
     const run = numbers++;
     const result = await watched(watch, this.#to, run, (onEvent) =>
       this.#to.call('run', [this.#session, run, named(watch)], { onEvent }),
@@ -247,6 +247,7 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
     const args = [{ positions, iterations }] as never[];
     const call = this.#to.call('ask', [this.#session, 'update', args], { transfer: buffersOf(args) });
     void call.catch((thrown) => (this.#fault ??= thrown));
+    this.#checkFreed();
   }
 
   /**
@@ -313,14 +314,19 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
   }
 
   async #ask<T>(question: Question, ...args: unknown[]): Promise<T> {
-    this.#check();
+    this.#checkFreed();
     return (await this.#to.call('ask', [this.#session, question, args as never[]], { transfer: buffersOf(args) })) as T;
   }
 
-  #check(): void {
+  #checkFreed(): void {
     if (this.#isFreed) throw new EdgeflipError('freed', 'the session has been freed');
     const fault = this.#fault;
     this.#fault = undefined;
     if (fault) throw fault;
   }
 }
+  }
+
+  /** Throws the error of an update, in the next update and in {@link counters}. */
+  #check(): void {
+    this.#checkFreed();

@@ -2,9 +2,11 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { FlipSession } from 'edgeflip';
+import * as here from 'edgeflip';
 import { generate } from 'edgeflip/files';
 import * as away from 'edgeflip/worker';
+
+const { FlipSession } = here;
 
 /** The positions of a mesh in the plane, sheared along waves. */
 function sheared({ positions }, time) {
@@ -132,8 +134,37 @@ test('wrong options of an update are refused and change nothing', async () => {
   assert.equal((await session.counters()).updates, 0);
   assert.deepEqual(await session.triangles(), before);
   session.free();
-  assert.throws(() => session.update(), { code: 'freed' });
-  await assert.rejects(session.counters(), { code: 'freed' });
+  for (let turn = 0; turn < 3; turn++) {
+    assert.throws(() => session.update(), { name: 'EdgeflipError', code: 'freed' });
+    await assert.rejects(session.counters(), { code: 'freed' });
+    // By now, the module has freed the session.
+    await new Promise((resolve) => setTimeout(resolve));
+  }
+});
+
+test('the error of an update goes to the next update or to `counters`, and to no other call', async () => {
+  for (const entry of [here, away]) {
+    const session = await entry.FlipSession.create(mesh, onCpu);
+    /** An update that waits for an earlier call, and then fails. */
+    const fail = async () => {
+      const call = session.triangles();
+      session.update({ positions: mesh.positions.subarray(2) });
+      await call;
+      await session.backend();
+    };
+    await fail();
+    assert.ok((await session.edges()).v1.length > 0);
+    assert.equal((await session.run()).status, 'done');
+    assert.ok((await session.verify()).clean);
+    await session.setPositions(mesh.positions);
+    await assert.rejects(session.counters(), { code: 'position-count' });
+    assert.equal((await session.counters()).updates, 0);
+    await fail();
+    assert.throws(() => session.update(), { code: 'position-count' });
+    session.update();
+    assert.equal((await session.counters()).updates, 1);
+    session.free();
+  }
 });
 
 test('an update waits for an earlier call, and has copied its positions', async () => {
