@@ -152,19 +152,44 @@ export function itselfOf<A extends VertexArray>(view: A, what: string): A {
 export function wordsOf(given: IndexArray, what: string, code: ErrorCode = 'invalid-input'): Uint32Array {
   const view = viewOf(given, INTEGERS, what);
   if (view) return view instanceof Uint32Array ? view : new Uint32Array(view);
-  const wrong = (why: string) => new EdgeflipError(code, `${what}: ${why}`);
   const kinds = 'neither an integer array, such as a Uint32Array, nor an array of whole numbers of 32 bits';
+  return new Uint32Array(listOf(given, what, isWhole, kinds, code));
+}
+
+/**
+ * The numbers of an array as 32-bit floats, or as 64-bit floats if one of them is not a 32-bit float.
+ *
+ * @throws {@link EdgeflipError} `invalid-input`, `too-large`.
+ */
+export function floatsOfList(given: unknown, what: string): Float32Array | Float64Array {
+  const isNumber = (value: unknown): value is number => typeof value === 'number';
+  const numbers = listOf(given, what, isNumber, 'neither a typed array nor an array of numbers');
+  return read(what, () => {
+    const singles = new Float32Array(numbers);
+    return numbers.every((number, i) => Object.is(singles[i], number)) ? singles : new Float64Array(numbers);
+  });
+}
+
+/** A copy of an array of numbers that are `wanted`. */
+function listOf(
+  given: unknown,
+  what: string,
+  wanted: (value: unknown) => value is number,
+  kinds: string,
+  code: ErrorCode = 'invalid-input',
+): number[] {
+  const wrong = (why: string) => new EdgeflipError(code, `${what}: ${why}`);
   return read(what, () => {
     if (!Array.isArray(given)) throw wrong(`${shown(given)} is ${kinds}`);
     const { length } = given;
-    if (length > MOST_NUMBERS) throw wrong(`an array has at most ${MOST_NUMBERS} numbers; pass a Uint32Array`);
+    if (length > MOST_NUMBERS) throw wrong(`an array has at most ${MOST_NUMBERS} numbers; pass a typed array`);
     const numbers: number[] = [];
     for (let i = 0; i < length; i++) {
       const number: unknown = given[i];
-      if (!isWhole(number)) throw wrong(`it is ${kinds}; number ${i} is ${shown(number)}`);
+      if (!wanted(number)) throw wrong(`it is ${kinds}; number ${i} is ${shown(number)}`);
       numbers.push(number);
     }
-    return new Uint32Array(numbers);
+    return numbers;
   });
 }
 

@@ -1,9 +1,24 @@
 /** Reads a mesh: checks the types of its arrays, and converts them to those of the modules, which check the values. */
 
 import { EdgeflipError } from './error.js';
-import { copyOf, INTEGERS, isWhole, itselfOf, NUMBERS, objectOf, read, shown, viewOf, wordsOf } from './given.js';
+import {
+  copyOf,
+  floatsOfList,
+  INTEGERS,
+  isWhole,
+  itselfOf,
+  NUMBERS,
+  objectOf,
+  read,
+  shown,
+  viewOf,
+  wordsOf,
+} from './given.js';
+import { checkSpelling, namesOf } from './names.js';
 import type { Hold } from './settings.js';
-import type { IndexArray, Indices, Mesh, VertexArray } from './types.js';
+import type { IndexArray, Indices, Mesh } from './types.js';
+
+const MESH = namesOf<Mesh>({ positions: true, indices: true, dimension: true, stride: true, offset: true });
 
 /** A mesh with 32-bit indices whose positions are floats without gaps, as the modules take and return it. */
 export interface IndexedMesh extends Mesh<Uint32Array> {
@@ -87,12 +102,11 @@ export function checkDimension(dimension: number): void {
  * @throws {@link EdgeflipError} `invalid-input`, `ragged-array`, `too-large`.
  */
 export function floatsOf(
-  given: VertexArray,
+  given: Mesh['positions'],
   { dimension, stride, offset }: Places,
   hold: Hold,
 ): Float32Array | Float64Array {
-  const view = viewOf(given, NUMBERS, 'positions');
-  if (!view) throw new EdgeflipError('invalid-input', `positions: ${shown(given)} is not a typed array of numbers`);
+  const view = viewOf(given, NUMBERS, 'positions') ?? floatsOfList(given, 'positions');
   const isFloat = view instanceof Float32Array || view instanceof Float64Array;
   if (isFloat && stride === dimension && offset === 0) return hold(view, 'positions');
   itselfOf(view, 'positions');

@@ -32,7 +32,6 @@ import type {
   RunOptions,
   SessionBuffers,
   UpdateOptions,
-  VertexArray,
 } from './types.js';
 import { type Update, updateOf } from './update.js';
 
@@ -192,7 +191,7 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
    * @throws {@link EdgeflipError} `invalid-input`, `too-large`, `ragged-array`, `position-count`, `non-finite`,
    * `backend-limit`.
    */
-  async setPositions(positions: VertexArray): Promise<void> {
+  async setPositions(positions: Mesh['positions']): Promise<void> {
     const moved = floatsOf(positions, this.#layout, copyOf);
     return this.#call(async (session) => {
       await session.setPositions(moved);
@@ -227,8 +226,8 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
    * @throws {@link EdgeflipError} `invalid-option`, `invalid-input`, `position-count`, `ragged-array`; `backend-limit`
    * for 64-bit floats on WebGPU and WebGL2; `device-failed`, `freed`.
    */
-    this.#checkFreed();
   update(options: UpdateOptions = {}): void {
+    this.#checkFreed();
     const isLate = this.#waiting > 0 || this.#session.isAway || !this.#session.isSettled;
     const update = updateOf(options, this.#layout, isLate ? copyOf : itselfOf);
     this.#check();
@@ -291,11 +290,11 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
   }
 
   #checkFreed(): void {
+    if (this.#isFreed) throw new EdgeflipError('freed', 'the session has been freed');
   }
 
   #check(): void {
     this.#checkFreed();
-    if (this.#isFreed) throw new EdgeflipError('freed', 'the session has been freed');
     const fault = this.#fault;
     this.#fault = undefined;
     if (fault) throw fault;

@@ -41,10 +41,11 @@ export type Indices<I extends IndexArray> = I extends Uint32Array
 export interface Mesh<I extends IndexArray = IndexArray> {
   /**
    * 2 or 3 coordinates per vertex. Integers, as in quantized meshes, count as these numbers. Decisions are exact for
-   * the numbers in the array. The CPU accepts all finite numbers. WebGPU and WebGL2 accept multiples of a power of two,
-   * at most 84 bits and a sign relative to the centre of the bounding box.
+   * the numbers in the array. The numbers of a plain array count as 32-bit floats if all of them are such, else as
+   * 64-bit floats. The CPU accepts all finite numbers. WebGPU and WebGL2 accept multiples of a power of two, at most 84
+   * bits and a sign relative to the centre of the bounding box.
    */
-  positions: VertexArray;
+  positions: VertexArray | readonly number[];
   /** Vertex indices, 3 per triangle. Results have indices of the same type. */
   indices: I;
   /** 2 for a mesh in the plane, 3 for a surface in space. */
@@ -245,7 +246,7 @@ export interface RunOptions {
 /** The options of an update. */
 export interface UpdateOptions {
   /** New positions of all vertices, with the stride and the offset of the mesh. The array is copied at once. */
-  positions?: VertexArray | undefined;
+  positions?: VertexArray | readonly number[] | undefined;
   /**
    * New positions in a buffer of 32-bit floats on the device of the session, which copies them there. Its usage has to
    * include STORAGE, or COPY_SRC if there are no gaps. Without `positions` and `buffer`, the update takes the positions

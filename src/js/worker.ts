@@ -36,7 +36,6 @@ import type {
   Progress,
   Result,
   RunOptions,
-  VertexArray,
 } from './types.js';
 import { updateOf, WORKER_UPDATE_OPTIONS, type WorkerUpdateOptions } from './update.js';
 import type { Functions, Question, Watched } from './worker-script.js';
@@ -232,7 +231,7 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
    * @throws {@link EdgeflipError} `invalid-input`, `too-large`, `ragged-array`, `position-count`, `non-finite`,
    * `backend-limit`.
    */
-  async setPositions(positions: VertexArray): Promise<void> {
+  async setPositions(positions: Mesh['positions']): Promise<void> {
     await this.#ask('setPositions', floatsOf(positions, this.#layout, copyOf));
   }
 

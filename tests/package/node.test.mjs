@@ -160,7 +160,7 @@ test('errors have codes', async () => {
     bad({ positions: Float64Array.of(0, 0, 1, 0, 0.1, NaN) }),
     refused('non-finite', /vertex 2: coordinate y/),
   );
-  await assert.rejects(bad({ positions: [0, 0] }), refused('invalid-input', /positions/));
+  await assert.rejects(bad({ positions: [0, '0'] }), refused('invalid-input', /positions/));
   await assert.rejects(bad({ indices: [0, 1, -2] }), refused('invalid-input', /indices: .* number 2 is -2/));
   await assert.rejects(bad({ dimension: 4 }), refused('invalid-input', /dimension: 4 is not 2 or 3/));
   await assert.rejects(bad({ indices: Uint32Array.of(0, 1, 7) }), refused('index-out-of-range', /triangle 0.* 7 /));
@@ -316,7 +316,7 @@ test('after the vertices move, the session continues like a new session', async 
   assert.ok((await session.verify()).clean);
   await assert.rejects(session.setPositions(new Float32Array(3)), refused('position-count', /has 3 numbers/));
   await assert.rejects(session.setPositions(new Float32Array(24).fill(NaN)), refused('non-finite', /vertex 0/));
-  await assert.rejects(session.setPositions([0, 0]), refused('invalid-input', /positions/));
+  await assert.rejects(session.setPositions([0, '0']), refused('invalid-input', /positions/));
   session.free();
   await assert.rejects(session.setPositions(mesh.positions), refused('freed', /freed/));
 });

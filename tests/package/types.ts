@@ -84,7 +84,8 @@ export async function copy(file: File): Promise<Blob> {
 /** Indices have the type that came in. */
 export async function types(mesh: Mesh): Promise<number[]> {
   const short: Uint16Array = (await makeDelaunay({ ...mesh, indices: new Uint16Array(3) })).indices;
-  const list: number[] = (await makeDelaunay({ ...mesh, indices: [0, 1, 2] })).indices;
+  const frozen: readonly number[] = [0, 0.5, 1];
+  const list: number[] = (await makeDelaunay({ ...mesh, positions: frozen, indices: [0, 1, 2] })).indices;
   const session: FlipSession<Uint8Array> = await FlipSession.create({ ...mesh, indices: new Uint8Array(3) });
   const bytes: Uint8Array = await session.triangles();
   const quantized: Mesh = { positions: new Int16Array(24), stride: 4, offset: 1, indices: short, dimension: 3 };
@@ -133,7 +134,7 @@ void initFiles({ core: 'https://example.org/edgeflip.wasm' });
 void makeDelaunay({ positions: new Float32Array(), indices: new Uint16Array(), dimension: 2 }, { maxNormalAngel: 10 });
 // @ts-expect-error: a string is not bytes
 void readMesh('OFF', 'a.off');
-// @ts-expect-error: an array is not a typed array
-void makeDelaunay({ positions: [0, 0], indices: new Uint16Array(), dimension: 2 });
+// @ts-expect-error: texts are not numbers
+void makeDelaunay({ positions: ['0', '0'], indices: new Uint16Array(), dimension: 2 });
 // @ts-expect-error: attributes are typed arrays, whose bits are compared
 void makeDelaunay({ positions: new Float32Array(), indices: new Uint16Array(), dimension: 2 }, { weld: [[0.5, 1]] });
