@@ -3,17 +3,22 @@
 import type { Layout } from './mesh.js';
 import type { IndexArray, Result } from './types.js';
 
+/** The longest stride that advice is given about. */
+const MOST_STRIDE = 32;
+
 /** The fields of a result that advice is based on. */
-type Outcome = Pick<Result, 'indices' | 'flips' | 'edges' | 'boundaryEdges' | 'nonManifoldEdges'>;
+type Outcome = Pick<Result, 'edges' | 'boundaryEdges' | 'nonManifoldEdges'>;
 
 /**
  * Advice, as sentences, or `undefined`.
  *
+ * @param indices - The triangles, with the vertices of the mesh.
  * @param seams - The number of edges that `weld` locked; `undefined` without `weld`.
  * @param alone - Why the CPU engine has one thread, if it could use more.
  */
 export function hintOf(
-  { indices, flips, edges, boundaryEdges, nonManifoldEdges }: Outcome,
+  { edges, boundaryEdges, nonManifoldEdges }: Outcome,
+  indices: Uint32Array,
   layout: Layout<IndexArray>,
   seams: number | undefined,
   alone: string | undefined,
@@ -30,17 +35,35 @@ export function hintOf(
       'Every inner edge is a seam, so no edge can flip: the attributes differ at all vertices that weld could join. Leave out normals of flat triangles, or pass weld: true.',
     );
   }
-  if (flips === 0 && areTriples(indices, layout)) {
+  const stride = forgottenStride(indices, layout);
+  if (stride === 3) {
     hints.push(
       'No triangle uses the last third of the vertices. If positions have three coordinates per vertex, pass dimension: 3, or stride: 3 for a mesh in the plane.',
+    );
+  } else if (stride !== undefined) {
+    hints.push(
+      `The triangles use only the first ${layout.dimension}/${stride} of the vertices. If positions have ${stride} numbers per vertex, pass stride: ${stride}.`,
     );
   }
   if (alone !== undefined) hints.push(`The CPU engine ran on one thread: ${alone}.`);
   return hints.length > 0 ? hints.join(' ') : undefined;
 }
 
-/** Whether the positions of a mesh in the plane could have three coordinates per vertex. */
-function areTriples(indices: Uint32Array, { dimension, stride, vertices }: Layout<IndexArray>): boolean {
-  if (dimension !== 2 || stride !== 2 || vertices % 3 !== 0) return false;
-  return indices.length > 0 && indices.every((vertex) => 3 * vertex < 2 * vertices);
+/**
+ * The count of numbers from a vertex to the next, if the positions could have gaps that the mesh does not name: the
+ * triangles then use only the first vertices.
+ */
+function forgottenStride(indices: Uint32Array, layout: Layout<IndexArray>): number | undefined {
+  const { dimension, vertices, hasStride, stride, offset } = layout;
+  if (hasStride || stride !== dimension || offset > 0 || indices.length === 0) return undefined;
+  const numbers = dimension * vertices;
+  let used = 0;
+  // The last triangles of most meshes use the last vertices.
+  for (let i = indices.length; i-- > 0; ) {
+    used = Math.max(used, indices[i]! + 1);
+    if (used * (dimension + 1) > numbers) return undefined;
+  }
+  if (numbers % used === 0 && numbers <= MOST_STRIDE * used) return numbers / used;
+  // Vertices at the end may belong to no triangle.
+  return dimension === 2 && vertices % 3 === 0 ? 3 : undefined;
 }

@@ -50,6 +50,8 @@ export interface AllPlaces extends Places {
 
 /** What a session keeps of a mesh, without its arrays. */
 export interface Layout<I extends IndexArray> extends AllPlaces {
+  /** Whether the mesh says what its stride is. */
+  hasStride: boolean;
   /** Converts indices to the type of the given indices. */
   give: (indices: Uint32Array) => Indices<I>;
 }
@@ -67,7 +69,8 @@ export function readMesh<I extends IndexArray>(given: Mesh<I>, hold: Hold = copy
     const points = floatsOf(positions, places, hold);
     const view = viewOf(indices, ['Uint32Array'], 'indices');
     const words = view ? hold(view, 'indices') : wordsOf(indices, 'indices');
-    const layout = { ...places, vertices: Math.floor(points.length / dimension), give: giverOf(indices) };
+    const vertices = Math.floor(points.length / dimension);
+    const layout = { ...places, vertices, hasStride: stride !== undefined, give: giverOf(indices) };
     return [{ positions: points, indices: words, dimension }, layout];
   });
 }

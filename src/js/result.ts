@@ -22,10 +22,11 @@ export function resultOf<I extends IndexArray>(
 ): Result<I> {
   const seamEdges = (welded?.lockedEdges.length ?? 0) / 2;
   const isOnCpu = outcome.backend === 'cpu';
+  const indices = welded?.split(outcome.indices) ?? outcome.indices;
   return Object.assign(outcome, {
-    indices: layout.give(welded?.split(outcome.indices) ?? outcome.indices),
+    indices: layout.give(indices),
     threads: isOnCpu ? threads : 0,
-    hint: hintOf(outcome, layout, welded && seamEdges, isOnCpu ? alone : undefined),
+    hint: hintOf(outcome, indices, layout, welded && seamEdges, isOnCpu ? alone : undefined),
     turnedTriangles: turned,
     joinedVertices: welded?.joined ?? 0,
     seamEdges,

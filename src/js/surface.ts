@@ -37,7 +37,8 @@ export function meshOf(surface: Surface, options: MakeDelaunayOptions): [Mesh<Ui
   const { vertices, positions, attributes } = surface;
   const { weld = attributes.map((columns) => comparable(columns, vertices)), maxDeviation } = options;
   const units = typeof maxDeviation === 'number' ? { maxDeviation: maxDeviation * unitOf(positions) } : {};
-  const mesh = { positions: pointsOf(positions, vertices), indices: cornersOf(surface), dimension: 3 as const };
+  const points = pointsOf(positions, vertices);
+  const mesh = { positions: points, indices: cornersOf(surface), dimension: 3 as const, stride: 3 };
   return [mesh, { ...options, ...units, weld }];
 }
 

@@ -1,11 +1,10 @@
 /** The worker of `edgeflip/worker`: holds its sessions and answers calls. */
 
 import { EdgeflipError, FlipSession, init, makeDelaunay } from './index.js';
-import type { IndexedMesh } from './mesh.js';
 import type { Sources } from './module.js';
 import { answerCalls, type Emit } from './remote.js';
 import type { Settings } from './settings.js';
-import type { RunOptions } from './types.js';
+import type { Mesh, RunOptions } from './types.js';
 
 /** The methods of a session that a message calls by name. */
 export type Question =
@@ -65,12 +64,12 @@ const functions = {
     ]);
     return init(Object.fromEntries(entries) as Sources);
   },
-  make(run: number, mesh: IndexedMesh, settings: Settings, watched: Watched, ...[emit]: [emit?: Emit]) {
+  make(run: number, mesh: Mesh<Uint32Array>, settings: Settings, watched: Watched, ...[emit]: [emit?: Emit]) {
     return stoppable(run, watched, (signal) =>
       makeDelaunay(mesh, { ...settings, signal, ...callbacks(watched, emit!) }),
     );
   },
-  async create(session: number, mesh: IndexedMesh, settings: Settings): Promise<void> {
+  async create(session: number, mesh: Mesh<Uint32Array>, settings: Settings): Promise<void> {
     sessions.set(session, await FlipSession.create(mesh, settings));
   },
   ask(session: number, question: Question, args: never[]): Promise<unknown> {

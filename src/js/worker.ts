@@ -151,13 +151,19 @@ export async function makeDelaunay<I extends IndexArray>(
   options: WorkerMakeOptions = {},
 ): Promise<Result<I>> {
   const watch = watchOf(options);
-  const [views, layout] = readMesh(mesh, copyOf);
+  const [views, layout] = messageOfMesh(mesh);
   const settings = settingsOf(options, WORKER_MAKE_OPTIONS);
   const [to, run] = [worker(), numbers++];
   const result = await watched(watch, to, run, (onEvent) =>
     to.call('make', [run, views, settings, named(watch)], { transfer: buffersOf([views, settings]), onEvent }),
   );
   return { ...result, indices: layout.give(result.indices) };
+}
+
+/** A copy of the mesh. It has a stride if the mesh has one, because the worker gives advice about a forgotten one. */
+function messageOfMesh<I extends IndexArray>(mesh: Mesh<I>): [Mesh<Uint32Array>, Layout<I>] {
+  const [views, layout] = readMesh(mesh, copyOf);
+  return [layout.hasStride ? { ...views, stride: layout.dimension } : views, layout];
 }
 
 /** What the worker needs to know of the callbacks and the signal. */
@@ -196,7 +202,7 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
    * @throws {@link EdgeflipError} about the mesh, the options or the backend.
    */
   static async create<I extends IndexArray>(mesh: Mesh<I>, options: WorkerOptions = {}): Promise<FlipSession<I>> {
-    const [views, layout] = readMesh(mesh, copyOf);
+    const [views, layout] = messageOfMesh(mesh);
     const settings = settingsOf(options, WORKER_OPTIONS);
     const [to, session] = [worker(), numbers++];
     await to.call('create', [session, views, settings], { transfer: buffersOf([views, settings]) });
@@ -241,12 +247,12 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
    * @throws {@link EdgeflipError} `invalid-option`, `invalid-input`, `ragged-array`, `freed`.
    */
   update(options: WorkerUpdateOptions = {}): void {
+    this.#checkFreed();
     const { positions, iterations } = updateOf(options, this.#layout, copyOf, WORKER_UPDATE_OPTIONS);
     this.#check();
     const args = [{ positions, iterations }] as never[];
     const call = this.#to.call('ask', [this.#session, 'update', args], { transfer: buffersOf(args) });
     void call.catch((thrown) => (this.#fault ??= thrown));
-    this.#checkFreed();
   }
 
   /**
@@ -319,13 +325,13 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
 
   #checkFreed(): void {
     if (this.#isFreed) throw new EdgeflipError('freed', 'the session has been freed');
-    const fault = this.#fault;
-    this.#fault = undefined;
-    if (fault) throw fault;
-  }
-}
   }
 
   /** Throws the error of an update, in the next update and in {@link counters}. */
   #check(): void {
     this.#checkFreed();
+    const fault = this.#fault;
+    this.#fault = undefined;
+    if (fault) throw fault;
+  }
+}
