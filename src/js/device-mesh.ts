@@ -3,7 +3,18 @@
 import { EdgeflipError } from './error.js';
 import { isWhole, objectOf, read, shown } from './given.js';
 import { checkDimension } from './mesh.js';
+import { checkSpelling, namesOf } from './names.js';
 import type { DeviceMesh, GpuBuffer, GpuDevice, Mesh } from './types.js';
+
+const DEVICE_MESH = namesOf<DeviceMesh>({
+  positions: true,
+  indices: true,
+  dimension: true,
+  stride: true,
+  offset: true,
+  vertices: true,
+  triangles: true,
+});
 
 /** A part of a buffer, in bytes. */
 interface Part {
@@ -46,6 +57,7 @@ function partsOf(given: DeviceMesh): { parts: [Part, Part]; rest: Pick<Mesh, 'di
       given,
       'mesh',
     ) as unknown as DeviceMesh;
+    checkSpelling(given, DEVICE_MESH, 'mesh');
     checkDimension(dimension);
     const step = stride ?? dimension;
     const numbers =

@@ -64,6 +64,7 @@ export interface Layout<I extends IndexArray> extends AllPlaces {
 export function readMesh<I extends IndexArray>(given: Mesh<I>, hold: Hold = copyOf): [IndexedMesh, Layout<I>] {
   return read('the mesh', () => {
     const { positions, indices, dimension, stride, offset } = objectOf(given, 'mesh') as unknown as Mesh<I>;
+    checkSpelling(given, MESH, 'mesh');
     checkDimension(dimension);
     const places = placesOf(dimension, stride, offset);
     const points = floatsOf(positions, places, hold);

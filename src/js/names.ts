@@ -1,4 +1,4 @@
-/** Checks the names of options. An unknown name is an error, so that a misspelt option is not ignored. */
+/** Checks the names of options and of the fields of a mesh, so that a misspelt name is not ignored. */
 
 import { EdgeflipError } from './error.js';
 import { objectOf, shown } from './given.js';
@@ -26,12 +26,37 @@ export function optionsOf(given: unknown, known: readonly string[], what = 'opti
   return options;
 }
 
+/**
+ * Refuses a number or a list whose name is almost one of the `known` names that the object lacks. It may have other
+ * names, because a program may pass an object that is more than a mesh.
+ *
+ * @throws {@link EdgeflipError} `invalid-input`, with the known name.
+ */
+export function checkSpelling(object: object, known: readonly string[], what: string): void {
+  if (Array.isArray(object) || ArrayBuffer.isView(object)) return;
+  const given = object as Record<string, unknown>;
+  const missing = known.filter((name) => given[name] === undefined);
+  for (const name of Object.keys(object)) {
+    const value = known.includes(name) ? undefined : given[name];
+    if (typeof value !== 'number' && !Array.isArray(value) && !ArrayBuffer.isView(value)) continue;
+    const nearest = nearestOf(name, missing);
+    if (nearest === undefined) continue;
+    throw new EdgeflipError('invalid-input', `${what}: ${shownName(name)} is not known; did you mean ${nearest}?`);
+  }
+}
+
 function advice(name: string, known: readonly string[]): string {
+  const nearest = nearestOf(name, known);
+  if (nearest !== undefined) return `did you mean ${nearest}?`;
+  return known.length > 0 ? `there are ${known.join(', ')}` : 'there are none';
+}
+
+/** The known name that the name is almost. */
+function nearestOf(name: string, known: readonly string[]): string | undefined {
   const distances = known.map((other) => distance(plain(name), plain(other)));
   const least = Math.min(...distances);
   const nearest = known[distances.indexOf(least)];
-  if (nearest !== undefined && 2 * least < nearest.length) return `did you mean ${nearest}?`;
-  return known.length > 0 ? `there are ${known.join(', ')}` : 'there are none';
+  return nearest !== undefined && 2 * least < nearest.length ? nearest : undefined;
 }
 
 /** A short name unchanged, any other name quoted. */

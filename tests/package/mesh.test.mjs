@@ -3,8 +3,11 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { FlipSession, makeDelaunay } from 'edgeflip';
-import { change, generate, measures } from 'edgeflip/files';
+import * as here from 'edgeflip';
+import { change, generate, measures, readMesh, writeMesh } from 'edgeflip/files';
+import * as away from 'edgeflip/worker';
+
+const { FlipSession, makeDelaunay } = here;
 
 const options = { backend: 'cpu' };
 const surface = await generate('uvsphere 12');
@@ -82,6 +85,57 @@ test('quantized positions are exact numbers', async () => {
   }
 });
 
+test('positions may be a plain array of numbers', async () => {
+  for (const list of [Array.from(surface.positions), Object.freeze(Array.from(surface.positions))]) {
+    assert.deepEqual((await makeDelaunay({ ...surface, positions: list }, options)).indices, plain.indices);
+    assert.deepEqual((await away.makeDelaunay({ ...surface, positions: list }, options)).indices, plain.indices);
+    assert.equal((await measures({ ...surface, positions: list })).area, (await measures(surface)).area);
+  }
+  const spread = Array.from(interleaved(surface, 5, 2));
+  const wide = await makeDelaunay({ ...surface, positions: spread, stride: 5, offset: 2 }, options);
+  assert.deepEqual(wide.indices, plain.indices);
+  // Four points on a circle, and one step of a 64-bit float beside it.
+  const flips = async (x) => {
+    const positions = [7, -24, 25, 0, 7, 24, x, 0];
+    return (await makeDelaunay({ positions, indices: [0, 1, 2, 0, 2, 3], dimension: 2 }, options)).flips;
+  };
+  assert.deepEqual([await flips(-25), await flips(-25 + 2 ** -48), await flips(-25 - 2 ** -48)], [0, 1, 0]);
+  for (const { FlipSession } of [here, away]) {
+    const session = await FlipSession.create(surface, options);
+    await session.setPositions(Array.from(surface.positions));
+    session.update({ positions: Array.from(surface.positions), iterations: 64 });
+    assert.equal((await session.counters()).nonFinite, 0);
+    assert.equal((await session.run()).status, 'done');
+    assert.throws(() => session.update({ positions: [0, undefined] }), {
+      code: 'invalid-input',
+      message: /number 1 is/,
+    });
+    session.free();
+  }
+});
+
+test('a misspelt name is refused, and other names are allowed', async () => {
+  for (const [more, message] of [
+    [{ strid: 3 }, /^mesh: strid is not known; did you mean stride\?$/],
+    [{ Stride: 3 }, /did you mean stride\?$/],
+    [{ offsett: 0 }, /did you mean offset\?$/],
+    [{ dimension: undefined, dimensions: 3 }, /did you mean dimension\?$/],
+    [{ positions: undefined, position: surface.positions }, /did you mean positions\?$/],
+    [{ indices: undefined, indizes: surface.indices }, /did you mean indices\?$/],
+  ]) {
+    for (const { makeDelaunay, FlipSession } of [here, away]) {
+      const refused = { name: 'EdgeflipError', code: 'invalid-input', message };
+      await assert.rejects(makeDelaunay({ ...surface, ...more }, options), refused);
+      await assert.rejects(FlipSession.create({ ...surface, ...more }, options), refused);
+    }
+    await assert.rejects(measures({ ...surface, ...more }), { message });
+  }
+  const more = { name: 'ball', position: [1, 2, 3], strip: true, side: undefined, strid: undefined, uvs: [], size: 3 };
+  assert.deepEqual((await makeDelaunay({ ...surface, ...more }, options)).indices, plain.indices);
+  const read = await readMesh(await writeMesh(surface, 'a.ply'), 'a.ply');
+  assert.equal((await makeDelaunay(read, options)).flips, plain.flips);
+});
+
 test('a result has indices of the type that came in', async () => {
   for (const Type of [
     Int8Array,
@@ -130,7 +184,11 @@ test('wrong arrays are refused with a message that names them', async () => {
   await refused({ stride: 2 }, 'invalid-input', /^stride: 2 is not a whole number of at least 3$/);
   await refused({ stride: '8' }, 'invalid-input', /^stride: '8' is not/);
   await refused({ offset: -1 }, 'invalid-input', /^offset: -1 is not/);
-  await refused({ positions: [0, 0, 0] }, 'invalid-input', /^positions: a list is not a typed array/);
+  await refused({ positions: '0, 0' }, 'invalid-input', /^positions: '0, 0' is neither a typed array nor an array/);
+  await refused({ positions: [0, 0, '0'] }, 'invalid-input', /^positions: .* number 2 is '0'$/);
+  await refused({ positions: [0, 0] }, 'ragged-array', /./);
+  await refused({ positions: [0, 0, 0] }, 'index-out-of-range', /./);
+  await refused({ positions: [NaN, 0, 0] }, 'non-finite', /vertex 0/);
   await refused({ indices: [0, 1, 1.5] }, 'invalid-input', /^indices: .* number 2 is 1.5$/);
   await refused(
     { indices: new Float32Array(3) },
@@ -153,6 +211,13 @@ test('hints say what a developer may have missed', async () => {
   );
   assert.match((await makeDelaunay(soup, options)).hint, /^No two triangles share an edge.*pass the option weld\.$/);
   assert.equal((await makeDelaunay(soup, { ...options, weld: true })).hint, undefined);
+  // The vertices that stay after welding are the first quarter.
+  const joined = {
+    ...soup,
+    positions: Float32Array.from([...surface.positions, ...soup.positions, ...soup.positions]),
+  };
+  joined.indices = surface.indices.map((v, i) => (i < 3000 ? v : surface.positions.length / 3 + i));
+  assert.equal((await makeDelaunay(joined, { ...options, weld: true })).hint, undefined);
   // Flat shading: each triangle has its own normal.
   const normals = Float32Array.from({ length: soup.positions.length }, (_, i) => Math.floor(i / 9));
   assert.match((await makeDelaunay(soup, { ...options, weld: [normals] })).hint, /^Every inner edge is a seam/);
@@ -160,6 +225,16 @@ test('hints say what a developer may have missed', async () => {
   const triples = interleaved(flat, 3, 0);
   const silent = await makeDelaunay({ ...flat, positions: triples }, { ...options, maxIterations: 0 });
   assert.match(silent.hint, /dimension: 3, or stride: 3/);
+  for (const { makeDelaunay } of [here, away]) {
+    // Edges flip, although every number stands for something else.
+    const flipping = await makeDelaunay({ ...flat, positions: triples }, options);
+    assert.ok(flipping.flips > 0);
+    assert.match(flipping.hint, /dimension: 3, or stride: 3/);
+    const spread = interleaved(surface, 6, 0);
+    assert.match((await makeDelaunay({ ...surface, positions: spread }, options)).hint, /3\/6 .*pass stride: 6\.$/);
+    const named = { ...surface, positions: spread, stride: 3 };
+    assert.equal((await makeDelaunay(named, options)).hint, undefined);
+  }
   assert.equal(plain.hint, undefined);
 });
 
