@@ -12,6 +12,7 @@
  */
 
 import type { BufferAttribute, BufferGeometry, GLBufferAttribute, InterleavedBufferAttribute } from 'three';
+import { inRange, type Range, rangeOf } from './draw-range.js';
 import { EdgeflipError } from './error.js';
 import { objectOf, read, shown } from './given.js';
 import { makeDelaunay } from './index.js';
@@ -24,7 +25,8 @@ export { EdgeflipError, type ErrorCode } from './error.js';
 export type { Renderer } from './renderer.js';
 
 /**
- * The options of {@link delaunayGeometry}. `lockedTriangles` and `groups` count all triangles of the geometry.
+ * The options of {@link delaunayGeometry}. `lockedTriangles` and `groups` count all triangles of the geometry, and
+ * `lockedEdges` are edges of it, also where a `drawRange` hides them.
  * `maxDeviation` is in the units of the positions; for normalized positions, the largest integer stands for 1.
  *
  * Two options have other defaults. `weld` joins vertices at the same position and compares all their attributes, also
@@ -33,6 +35,12 @@ export type { Renderer } from './renderer.js';
 export interface GeometryOptions extends Omit<MakeDelaunayOptions, 'constraints' | 'skipConstraints'> {
   /** Whether to leave the geometry as it is and change a clone of it. Default: `false`. */
   copy?: boolean | undefined;
+  /**
+   * Whether `geometry.index` keeps its attribute and its array, and gets a new version. Other geometries with the same
+   * attribute change too: GLTFLoader makes one for primitives that share an accessor. Default: `false`, the geometry
+   * gets a new attribute for its index if an edge flips.
+   */
+  inPlace?: boolean | undefined;
   /**
    * The `WebGPURenderer` that draws the geometry. The run uses its device, and the renderer then draws from the buffer
    * that the flips wrote; the triangles do not travel to the CPU, unless some edges are non-manifold or inconsistent.
@@ -60,9 +68,9 @@ export interface GeometryResult<G extends BufferGeometry = BufferGeometry> exten
 type Attribute = BufferAttribute | InterleavedBufferAttribute | GLBufferAttribute;
 
 /**
- * Flips the edges of a geometry until every edge is Delaunay or cannot flip. Without `renderer`, only the content of
- * `geometry.index` changes: its type, the vertices, the attributes, `groups` and the bounding volumes stay. A geometry
- * without an index gets one if an edge flips. Only triangles in `drawRange` change.
+ * Flips the edges of a geometry until every edge is Delaunay or cannot flip. If an edge flips, the geometry gets a new
+ * index. Its type, the vertices, the attributes, `groups` and the bounding volumes stay. Only triangles in `drawRange`
+ * change.
  *
  * Edges of a seam, where the attributes of vertices at the same position differ, stay, and so do edges between
  * groups. Positions are those without morph targets and skinning.
@@ -76,7 +84,9 @@ export async function delaunayGeometry<G extends BufferGeometry>(
   geometry: G,
   options: GeometryOptions = {},
 ): Promise<GeometryResult<G>> {
-  const { target, surface, range, settings, renderer } = read('the geometry', () => opened(geometry, options));
+  const { target, surface, range, settings, isInPlace, renderer } = read('the geometry', () =>
+    opened(geometry, options),
+  );
   const { index } = target;
   const version = index?.version;
   const given = meshOf(surface, settings);
@@ -90,7 +100,7 @@ export async function delaunayGeometry<G extends BufferGeometry>(
   if (onGpu) draw(target, onGpu);
   else {
     release(target);
-    if (result.flips + result.turnedTriangles > 0) write(target, indices, range, surface.vertices);
+    if (result.flips + result.turnedTriangles > 0) write(target, indices, range, surface.vertices, isInPlace);
   }
   return { geometry: target, session: onGpu?.session, ...result };
 }
@@ -125,22 +135,25 @@ function draw(geometry: BufferGeometry, { session, adopt }: OnGpu): void {
   geometry.addEventListener('dispose', onDispose);
 }
 
-/** The first index of the triangles that may change, and the end. */
-type Range = readonly [number, number];
-
 /** Reads a geometry and the options before the first wait. */
 function opened<G extends BufferGeometry>(geometry: G, options: GeometryOptions) {
-  const { copy = false, renderer: drawing, ...given } = objectOf(options, 'options') as GeometryOptions;
+  const {
+    copy = false,
+    inPlace = false,
+    renderer: drawing,
+    ...given
+  } = objectOf(options, 'options') as GeometryOptions;
   const renderer = rendererOf(drawing);
-  if (typeof copy !== 'boolean') {
-    throw new EdgeflipError('invalid-option', `option copy: ${shown(copy)} is not true or false`);
+  for (const [name, flag] of Object.entries({ copy, inPlace })) {
+    if (typeof flag === 'boolean') continue;
+    throw new EdgeflipError('invalid-option', `option ${name}: ${shown(flag)} is not true or false`);
   }
   if (objectOf(geometry, 'geometry')['isBufferGeometry'] !== true) {
     throw invalid('geometry: it is not a BufferGeometry of three.js');
   }
   const target = copy ? (geometry.clone() as G) : geometry;
   const { index, drawRange } = target;
-  const isWhole = index !== null && drawRange.start === 0 && drawRange.count >= index.count;
+  const isWhole = index !== null && drawRange.start <= 0 && drawRange.start + drawRange.count >= index.count;
   const isShared = renderer !== undefined && isWhole && !given.weld;
   const isCompared = given.weld === undefined && !isShared;
   const { vertices, positions, attributes } = verticesOf(target, isCompared);
@@ -149,11 +162,11 @@ function opened<G extends BufferGeometry>(geometry: G, options: GeometryOptions)
     throw invalid(`the geometry has ${corners} ${index ? 'indices' : 'vertices and no index'}, not a multiple of 3`);
   }
   const range = rangeOf('drawRange', drawRange, corners);
-  const indices = (index?.array as Uint32Array | undefined)?.subarray(...range) ?? sequence(...range);
-  const surface: Surface = { vertices, positions, attributes, indices };
+  const whole: Surface = { vertices, positions, attributes, indices: index?.array ?? sequence(0, corners) };
+  const surface = { ...whole, indices: whole.indices.subarray(...range) };
   const groups = given.groups ?? groupsOf(target, corners);
-  const settings = inRange({ ...given, groups, ...(isShared && { weld: false }) }, range, corners);
-  return { target, surface, range, settings, renderer: isShared ? renderer : undefined };
+  const settings = inRange({ ...given, groups, ...(isShared && { weld: false }) }, range, whole);
+  return { target, surface, range, settings, isInPlace: inPlace || copy, renderer: isShared ? renderer : undefined };
 }
 
 /** The columns of the positions and, if they are compared, of the other attributes. */
@@ -203,13 +216,6 @@ function columnsOf(name: string, attribute: Attribute): Columns | undefined {
   return { array: floats, width: 3, stride: 3, offset: 0, isNormalized: false };
 }
 
-/** The indices of the whole triangles in a range that three.js draws. */
-function rangeOf(name: string, { start, count }: { start: number; count: number }, corners: number): Range {
-  if (start % 3 !== 0) throw invalid(`${name}: it starts at ${start}, inside a triangle`);
-  const end = Math.min(corners, start + count);
-  return [Math.min(start, corners), Math.max(Math.min(start, corners), end - (end % 3))];
-}
-
 /** A number for each triangle. Triangles have the same number if the same groups have them. */
 function groupsOf({ groups }: BufferGeometry, corners: number): Uint32Array | undefined {
   if (groups.length === 0) return undefined;
@@ -227,23 +233,25 @@ function groupsOf({ groups }: BufferGeometry, corners: number): Uint32Array | un
   return numbers;
 }
 
-/** The options for the triangles in the range. */
-function inRange(options: MakeDelaunayOptions, [start, end]: Range, corners: number): MakeDelaunayOptions {
-  const [first, last] = [start / 3, end / 3];
-  if (end - start === corners) return options;
-  const { groups, lockedTriangles } = options;
-  const kept = (lockedTriangles as Uint32Array | undefined)?.filter((t) => first <= t && t < last);
-  const sliced = (groups as Uint32Array | undefined)?.slice(first, last);
-  return { ...options, groups: sliced, lockedTriangles: kept?.map((t) => t - first) };
-}
-
-/** Writes the triangles of the range. */
-function write(geometry: BufferGeometry, indices: Uint32Array, [start]: Range, vertices: number): void {
+/** Writes the triangles of the range. Unless this is done in place, other geometries with the same index keep it. */
+function write(
+  geometry: BufferGeometry,
+  indices: Uint32Array,
+  [start]: Range,
+  vertices: number,
+  isInPlace: boolean,
+): void {
   const { index } = geometry;
-  if (index) {
+  if (index && isInPlace) {
     index.array.set(indices, start);
     index.clearUpdateRanges();
     index.needsUpdate = true;
+  } else if (index) {
+    const own = index.clone();
+    own.array.set(indices, start);
+    // three.js makes wireframes again if the version of the index is another one.
+    own.version = index.version + 1;
+    geometry.setIndex(own);
   } else {
     // three.js makes an attribute with 16 or 32 bits of it.
     const all = sequence(0, vertices);
