@@ -3,6 +3,7 @@
 #import integers
 #import mesh
 #import points
+#import products
 #import state
 
 // A filter of degree 4 in f32. WGSL and GLSL ES leave the direction of rounding open: each operation errs by at most
@@ -100,18 +101,6 @@ fn verdict_in_narrow_plane(p: Differences, q: Differences, r: Differences, s: Di
         verdict = select(LABELLED, BLOCKED_BY + REASON_FOLD, is_fold);
     }
     return verdict;
-}
-
-// The 64-bit product of two words: low, high.
-fn multiply_words(x: u32, y: u32) -> vec2u {
-    let x_low = x & 0xffffu;
-    let x_high = x >> 16u;
-    let y_low = y & 0xffffu;
-    let y_high = y >> 16u;
-    let low = x_low * y_low;
-    let first = x_high * y_low + (low >> 16u);
-    let second = x_low * y_high + (first & 0xffffu);
-    return vec2u((second << 16u) | (low & 0xffffu), x_high * y_high + (first >> 16u) + (second >> 16u));
 }
 
 // x·u + y·v or x·u - y·v of differences below 2^30: magnitude below 2^61 in xy, sign in z.

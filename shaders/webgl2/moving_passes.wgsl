@@ -1,11 +1,7 @@
-// The passes that count what updates do, and that keep which triangles they change.
-#import left_alone if floats
+// The passes that count the areas and what updates do, and that keep which triangles updates change.
+#import areas
 #import mesh
-#import plane if plane
-#import plane_digits if plane
-#import points
 #import state
-#import still if fixed
 
 // The number of the update, in each triangle that the last iteration has flipped.
 @fragment
@@ -30,18 +26,13 @@ fn total_pass() -> @location(0) vec4u {
     return vec4u(low, before.y + select(0u, 1u, low < flips), 0u, 0u);
 }
 
-// 1 if a triangle in the plane is not positive: it does not have the strict sign of its component, or it is left alone.
+// Whether a triangle is inverted, flat or undecided: 1 in the component of that.
 @fragment
-fn turned_pass(@builtin(position) fragment: vec4f) -> @location(0) vec4u {
+fn areas_pass(@builtin(position) fragment: vec4f) -> @location(0) vec4u {
     let t = index_at(fragment);
-    var is_positive = true;
+    var area = POSITIVE_AREA;
     if t < params[0].x {
-        let a = position(vertex(3u * t));
-        let b = position(vertex(3u * t + 1u));
-        let c = position(vertex(3u * t + 2u));
-        let winding = select(1, -1, is_clockwise(t));
-        let is_left = leaves_some() && is_too_wide(max(span_of(a), max(span_of(b), span_of(c))));
-        is_positive = !is_left && winding * sign_of_triangle(a, b, c) > 0;
+        area = area_of(t, leaves_some());
     }
-    return vec4u(select(1u, 0u, is_positive), 0u, 0u, 0u);
+    return vec4u(vec4u(area) == vec4u(INVERTED, FLAT, UNDECIDED_AREA, NONE));
 }

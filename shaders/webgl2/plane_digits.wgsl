@@ -12,26 +12,6 @@ fn exact_verdict_on(a: Point, b: Point, c: Point, d: Point, winding: i32) -> u32
     return verdict;
 }
 
-// The sign of the area of a triangle.
-fn sign_of_triangle(a: Point, b: Point, c: Point) -> i32 {
-    var result = filtered_sign_of(a, b, c);
-    if result == 0 {
-        result = exact_sign_of(a, b, c);
-    }
-    return result;
-}
-
-fn exact_sign_of(a: Point, b: Point, c: Point) -> i32 {
-    let grid = grid_of(a, b, c, c);
-    let u = exact_differences(b, a, grid);
-    let v = exact_differences(c, a, grid);
-    let count = digits_in_use(u[0] | u[1] | v[0] | v[1]);
-    let zero = Small();
-    let minus = negated_small(digits_of(v[0]));
-    let area = sum_of_products(digits_of(u[0]), digits_of(v[1]), digits_of(u[1]), minus, zero, zero, count);
-    return medium_sign(area);
-}
-
 fn wide_verdict_on(a: Point, b: Point, c: Point, d: Point, winding: i32) -> u32 {
     let grid = grid_of(a, b, c, d);
     let p = exact_differences(a, c, grid);

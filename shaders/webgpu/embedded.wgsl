@@ -12,7 +12,6 @@
 const NOT_EMBEDDED: u32 = 2u;
 
 var<workgroup> signs: atomic<u32>;
-var<workgroup> not_positive: atomic<u32>;
 
 // Counts, in the memory of the lists, the crossings and boundary half-edges of each vertex. Also collects the signs of
 // the triangles: bits 0 to 2 for negative, flat, positive. If the winding is not known, each triangle has the winding of
@@ -26,7 +25,7 @@ fn prepare_all(
     @builtin(num_workgroups) groups: vec3u,
 ) {
     var all = vec2u();
-    var tally = vec2u();
+    var found = 0u;
     for (var t = id.x; t < params.triangles; t += groups.x * WORKGROUP_SIZE) {
         let a = position(vertex(3u * t));
         let b = position(vertex(3u * t + 1u));
@@ -38,11 +37,11 @@ fn prepare_all(
         let is_doubtful = sign == 0 && !is_left_alone;
         choices[t] = wait_for(t, is_doubtful);
         if !is_doubtful {
-            tally = counted(t, sign, array(a, b, c), tally);
+            found |= counted(t, sign, array(a, b, c));
         }
     }
     add_span(all, local);
-    add_tally(tally, local);
+    add_signs(found, local);
 }
 
 // Counts the triangles whose sign exact arithmetic has found: it is 1 less than their choice.
@@ -52,7 +51,7 @@ fn count_turns(
     @builtin(local_invocation_index) local: u32,
     @builtin(num_workgroups) groups: vec3u,
 ) {
-    var tally = vec2u();
+    var found = 0u;
     for (var t = id.x; t < params.triangles; t += groups.x * WORKGROUP_SIZE) {
         let choice = choices[t];
         if choice != NONE {
@@ -60,15 +59,14 @@ fn count_turns(
             let a = position(vertex(3u * t));
             let b = position(vertex(3u * t + 1u));
             let c = position(vertex(3u * t + 2u));
-            tally = counted(t, i32(choice) - 1, array(a, b, c), tally);
+            found |= counted(t, i32(choice) - 1, array(a, b, c));
         }
     }
-    add_tally(tally, local);
+    add_signs(found, local);
 }
 
-// Counts what a triangle adds to its vertices. Returns `tally` with the bit of its sign and, if it is not positive, one
-// more of these.
-fn counted(t: u32, sign: i32, points: array<Point, 3>, tally: vec2u) -> vec2u {
+// Counts what a triangle adds to its vertices. Returns the bit of its sign.
+fn counted(t: u32, sign: i32, points: array<Point, 3>) -> u32 {
     let is_known = params.winding != WINDING_UNKNOWN;
     let winding = select(sign, select(1, -1, is_clockwise(t)), is_known);
     let is_positive = sign * winding > 0;
@@ -94,23 +92,15 @@ fn counted(t: u32, sign: i32, points: array<Point, 3>, tally: vec2u) -> vec2u {
         b = c;
         c = corner;
     }
-    let bit = 1u << u32(select(sign, sign * winding, is_known) + 1);
-    return vec2u(tally.x | bit, tally.y + select(1u, 0u, is_positive));
+    return 1u << u32(select(sign, sign * winding, is_known) + 1);
 }
 
-// Adds what the invocations of a workgroup have counted.
-fn add_tally(tally: vec2u, local: u32) {
-    atomicOr(&signs, tally.x);
-    if tally.y > 0u {
-        atomicAdd(&not_positive, tally.y);
-    }
+// Adds the signs that the invocations of a workgroup have found.
+fn add_signs(found: u32, local: u32) {
+    atomicOr(&signs, found);
     workgroupBarrier();
     if local == 0u {
         atomicOr(&history[COUNTED], atomicLoad(&signs));
-        let count = atomicLoad(&not_positive);
-        if count > 0u {
-            atomicAdd(&history[NOT_POSITIVE], count);
-        }
     }
 }
 

@@ -87,15 +87,14 @@ struct Step {
 // vertices have several fans; the flips of all updates, as a low and a high word; the entries. An entry is about the
 // iteration before the one that reads it.
 const COUNTED: u32 = 0u;
-const COUNTS: u32 = 8u;
-const PAUSED: u32 = 8u;
-const SEVERAL_FANS: u32 = 9u;
-const FLIPPED: u32 = 10u;
-const ENTRIES: u32 = 12u;
-// In the preparation: the signs, the span of all points, and how many triangles are not positive.
+const COUNTS: u32 = 11u;
+const PAUSED: u32 = 11u;
+const SEVERAL_FANS: u32 = 12u;
+const FLIPPED: u32 = 13u;
+const ENTRIES: u32 = 15u;
+// In the preparation: the signs, and the span of all points.
 const HIGHEST: u32 = 1u;
 const DEPTH: u32 = 2u;
-const NOT_POSITIVE: u32 = 3u;
 const ENTRY_WORDS: u32 = 4u;
 const FLIPS: u32 = 0u;
 // The length of the list of due triangles, if it was built.

@@ -2,6 +2,7 @@
 
 #[cfg(feature = "gpu")]
 use crate::Reason;
+use crate::mesh::areas::Areas;
 use crate::{Adjacency, EngineKind, Error, Mesh, Positions, Reasons};
 use std::pin::Pin;
 use std::sync::Arc;
@@ -20,10 +21,13 @@ pub(crate) struct Census {
 
 #[cfg(feature = "gpu")]
 impl Census {
+    /// The reasons that the shaders count: those up to `Deviation`.
+    const REASONS: usize = Reason::Deviation as usize + 1;
+
     /// From the counts of the shaders: the labelled edges, then the edges blocked by each reason.
     pub(super) fn of_counts(counts: &[u32]) -> Self {
         let mut census = Self { labelled: counts[0], ..Self::default() };
-        for (reason, count) in Reason::ALL.into_iter().zip(&counts[1..]) {
+        for (reason, count) in Reason::ALL.into_iter().take(Self::REASONS).zip(&counts[1..]) {
             census.blocked[reason] = u64::from(*count);
         }
         census
@@ -43,22 +47,21 @@ pub(crate) struct Moved {
     pub(crate) wide: u32,
     /// Flips of all updates.
     pub(crate) flips: u64,
-    /// In the plane: triangles without the strict sign of their component.
-    pub(crate) not_positive: u32,
+    pub(crate) areas: Areas,
 }
 
 #[cfg(feature = "gpu")]
 impl Moved {
-    /// From the counts of the shaders: those of the census, the edges left alone for either reason, the triangles that
-    /// are not positive, the low and the high word of the flips.
+    /// From the counts of the shaders: those of the census, the edges left alone for either reason, the areas, the low
+    /// and the high word of the flips.
     pub(super) fn of_counts(counts: &[u32]) -> Self {
-        let (census, rest) = counts.split_at(counts.len() - 5);
+        let (census, rest) = counts.split_at(1 + Census::REASONS);
         Self {
             census: Census::of_counts(census),
             infinite: rest[0],
             wide: rest[1],
-            flips: u64::from(rest[3]) | u64::from(rest[4]) << 32,
-            not_positive: rest[2],
+            areas: Areas::of_counts(&rest[2..5]),
+            flips: u64::from(rest[5]) | u64::from(rest[6]) << 32,
         }
     }
 }
@@ -106,6 +109,9 @@ pub(crate) trait Engine {
 
     /// Counts the non-Delaunay interior edges of the whole mesh.
     fn census(&mut self) -> Answer<'_, Census>;
+
+    /// Counts the triangles whose area is not positive.
+    fn areas(&mut self) -> Answer<'_, Areas>;
 
     /// The present triangles.
     fn triangles(&mut self) -> Answer<'_, Vec<u32>>;

@@ -1,6 +1,7 @@
 //! `Mesh`: positions and triangles. The constructor checks them, so that no later code can fail on them.
 
 pub(crate) mod adjacency;
+pub(crate) mod areas;
 pub(crate) mod arrangement;
 pub(crate) mod buckets;
 pub(crate) mod dimension;

@@ -116,6 +116,12 @@ impl Winding {
         if self.is_clockwise(t) { Ordering::Less } else { Ordering::Greater }
     }
 
+    /// The sign of triangle `t`, reversed if its component is clockwise.
+    #[inline]
+    pub(crate) fn relative(&self, t: u32, sign: Ordering) -> Ordering {
+        if self.is_clockwise(t) { sign.reverse() } else { sign }
+    }
+
     /// The bits of four triangles.
     #[inline]
     pub(crate) fn bits(&self, triangles: [u32; 4]) -> u32 {

@@ -180,6 +180,20 @@ pub(crate) fn obtuse(a: DVec3, b: DVec3, c: DVec3) -> Option<bool> {
     if dot < -bound && p.cross(q).abs().max_element() > bound {
         return Some(false);
     }
+    let (is_obtuse, is_flat) = corner(a, b, c);
+    is_obtuse.then_some(is_flat)
+}
+
+/// Whether the triangle (a, b, c) has an area: its points are not on one line.
+#[inline]
+pub(crate) fn has_area(a: DVec3, b: DVec3, c: DVec3) -> bool {
+    let (p, q) = (a - c, b - c);
+    // Each component of the normal is off by at most 4.01ε of the product of the sizes, plus 3.1η.
+    p.cross(q).abs().max_element() > BOUND * (size(p) * size(q)) + f64::MIN_POSITIVE || !corner(a, b, c).1
+}
+
+/// Whether the triangle (a, b, c) has an obtuse angle at c, and whether its area is zero, by integers.
+fn corner(a: DVec3, b: DVec3, c: DVec3) -> (bool, bool) {
     out_of_line(|| {
         let [a, b, c] = [a, b, c].map(|point| point.to_array());
         let differences =
@@ -292,10 +306,9 @@ fn turned_over<R: Ring>(v: &[R; COUNT]) -> bool {
     old.iter().any(|n| new.iter().any(|m| dot(n, m).sign().is_lt()))
 }
 
-/// The same as [`obtuse`], from the components of p and q.
-fn obtuse_and_flat<R: Ring>(v: &[R; 6]) -> Option<bool> {
+/// The same as [`corner`], from the components of p and q.
+fn obtuse_and_flat<R: Ring>(v: &[R; 6]) -> (bool, bool) {
     let (vectors, _) = v.as_chunks();
     let (p, q): (&Vector<R>, &Vector<R>) = (&vectors[0], &vectors[1]);
-    let is_flat = || cross(p, q).iter().all(|component| component.sign().is_eq());
-    dot(p, q).sign().is_lt().then(is_flat)
+    (dot(p, q).sign().is_lt(), cross(p, q).iter().all(|component| component.sign().is_eq()))
 }

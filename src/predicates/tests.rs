@@ -1,6 +1,8 @@
 //! Compares the predicates with independent arithmetic: the crate `robust` in 2D, and big integers.
 
-use super::{Quad, area_sign, corner, cos_degrees, in_circle_filter, in_circle_sign, total_area_sign};
+use super::{
+    Quad, area_sign, cos_degrees, has_area, in_circle_filter, in_circle_sign, obtuse, total_area_sign,
+};
 use glam::{DVec2, DVec3, Vec2};
 use num_bigint::{BigInt, Sign};
 use proptest::prelude::*;
@@ -201,6 +203,7 @@ fn compare_in_space([a, b, c, d]: [DVec3; 4], degrees: f64, most: f32) {
     assert_eq!(quad.deviates(most.into()), deviates);
     let is_flat = dot(&n1, &n1).sign() == Sign::NoSign;
     assert_eq!(obtuse(a, b, c), (dot(&p, &q).sign() == Sign::Minus).then_some(is_flat));
+    assert_eq!(has_area(a, b, c), !is_flat);
 }
 
 /// The distance of the two diagonals of a box is its height. It is compared with a float near it, or with itself.

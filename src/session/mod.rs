@@ -19,6 +19,7 @@ mod tests;
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 use crate::engine::SharedObjects;
 use crate::engine::{Answer, Engine};
+use crate::mesh::areas::Areas;
 use crate::mesh::embedded::Embedded;
 use crate::mesh::star::Fans;
 use crate::mesh::winding::{Outline, Winding};
@@ -218,6 +219,7 @@ impl Session {
         triangles: &dyn Fn() -> Cow<'a, [u32]>,
     ) -> Result<Outcome, Error> {
         let census = self.ask(|engine| engine.census()).await?;
+        let Areas { inverted, flat, .. } = self.ask(|engine| engine.areas()).await?;
         let counts = self.engine.edge_counts();
         let mut remaining = census.blocked;
         remaining[Reason::Stopped] = u64::from(census.labelled);
@@ -247,6 +249,8 @@ impl Session {
             non_manifold_edges: u64::from(counts.non_manifold),
             inconsistent_edges: u64::from(counts.inconsistent),
             remaining,
+            inverted,
+            flat,
             timings: Timings { total: upload + adjacency + flip + ms_since(start), ..self.timings },
         })
     }

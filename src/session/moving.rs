@@ -77,7 +77,9 @@ impl Session {
                 updates,
                 flips: moved.flips,
                 remaining,
-                inverted: moved.not_positive,
+                inverted: moved.areas.inverted,
+                flat: moved.areas.flat,
+                undecided: moved.areas.undecided,
                 non_finite: moved.infinite,
                 too_wide: moved.wide,
             })

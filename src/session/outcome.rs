@@ -28,10 +28,14 @@ pub struct Counters {
     /// Edges that are not Delaunay after the last of them, by reason. [`Reason::Stopped`](crate::Reason::Stopped) counts those that the next
     /// update may flip. Frozen edges are not counted.
     pub remaining: Reasons,
-    /// Triangles that are not strictly positive, in the plane: flat or turned over. A triangle is positive if it has the
-    /// orientation that its component had at the start of the session. Triangles with a coordinate that is not finite,
-    /// or that a GPU cannot decide, count too.
+    /// Triangles that are turned over, in the plane; 0 in space. They are those of [`Outcome::inverted`], compared with
+    /// the orientation that their component had at the start of the session.
     pub inverted: u32,
+    /// Triangles of no area, as [`Outcome::flat`].
+    pub flat: u32,
+    /// Triangles that are neither of them nor known to be right: a coordinate is not finite, or the coordinates span more
+    /// bits than the GPU decides exactly, or reach 2^126. The CPU decides all finite ones.
+    pub undecided: u32,
     /// Edges left alone because a coordinate of their triangles is not finite.
     pub non_finite: u32,
     /// Edges left alone because the coordinates of their triangles span more bits than the GPU decides exactly, or
@@ -104,6 +108,12 @@ pub struct Outcome {
     pub inconsistent_edges: u64,
     /// Non-Delaunay edges left, by reason.
     pub remaining: Reasons,
+    /// Triangles that are turned over, in the plane: their orientation is not that of their component, which is
+    /// connected over edges between two triangles of one orientation. A component has the orientation of its total
+    /// area, which no flip changes; without an area it counts as counter-clockwise. 0 in space.
+    pub inverted: u32,
+    /// Triangles of no area: their corners are on one line, exactly.
+    pub flat: u32,
     /// Wall times.
     pub timings: Timings,
 }

@@ -4,6 +4,7 @@
 
 use super::*;
 use crate::engine::{Census, Cpu, EdgeCounts, Moved};
+use crate::mesh::areas::Areas;
 use crate::mesh::named_edges;
 use crate::system::threads::Threads;
 use pollster::block_on;
@@ -40,6 +41,9 @@ impl Engine for Failing {
     }
     fn census(&mut self) -> Answer<'_, Census> {
         self.answer(|cpu| cpu.census())
+    }
+    fn areas(&mut self) -> Answer<'_, Areas> {
+        self.answer(|cpu| cpu.areas())
     }
     fn triangles(&mut self) -> Answer<'_, Vec<u32>> {
         self.answer(|cpu| Engine::triangles(cpu))

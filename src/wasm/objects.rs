@@ -41,6 +41,10 @@ extern "C" {
     #[wasm_bindgen(method, setter)]
     fn set_remaining(this: &Fields, value: JsValue);
     #[wasm_bindgen(method, setter)]
+    fn set_inverted(this: &Fields, value: u32);
+    #[wasm_bindgen(method, setter)]
+    fn set_flat(this: &Fields, value: u32);
+    #[wasm_bindgen(method, setter)]
     fn set_timings(this: &Fields, value: Fields);
     #[wasm_bindgen(method, setter)]
     fn set_upload(this: &Fields, value: f64);
@@ -82,6 +86,8 @@ pub(super) fn outcome_object(outcome: Outcome, indices: JsValue) -> JsValue {
     object.set_non_manifold_edges(outcome.non_manifold_edges as f64);
     object.set_inconsistent_edges(outcome.inconsistent_edges as f64);
     object.set_remaining(reasons_object(&outcome.remaining));
+    object.set_inverted(outcome.inverted);
+    object.set_flat(outcome.flat);
     object.set_timings(timings);
     object.into()
 }

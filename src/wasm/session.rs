@@ -171,6 +171,8 @@ impl JsSession {
                 ("flips", (counters.flips as f64).into()),
                 ("remaining", reasons_object(&counters.remaining)),
                 ("inverted", counters.inverted.into()),
+                ("flat", counters.flat.into()),
+                ("undecided", counters.undecided.into()),
                 ("nonFinite", counters.non_finite.into()),
                 ("tooWide", counters.too_wide.into()),
             ]))

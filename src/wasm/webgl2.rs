@@ -150,6 +150,7 @@ async fn answer(
         Some(Question::Lock) => engine.lock(words.to_vec()).await.map(|()| Vec::new()),
         Some(Question::Iterate) => engine.iterate(words.get_index(0)).await,
         Some(Question::Census) => engine.census_counts().await,
+        Some(Question::Areas) => engine.count_areas().await,
         Some(Question::Triangles) => engine.triangles().await,
         Some(Question::Twins) => engine.twins().await,
         Some(Question::Settle) => engine.settle().await.map(|()| Vec::new()),

@@ -3,6 +3,7 @@
 use super::engine::Cpu;
 use super::motion::Motion;
 use crate::engine::{Answer, Census, EdgeCounts, Engine, Moved};
+use crate::mesh::areas::Areas;
 use crate::mesh::embedded::Embedded;
 use crate::mesh::half_edge;
 use crate::phases::flag_creases;
@@ -23,6 +24,10 @@ impl Engine for Cpu {
 
     fn census(&mut self) -> Answer<'_, Census> {
         Box::pin(std::future::ready(Ok(self.count())))
+    }
+
+    fn areas(&mut self) -> Answer<'_, Areas> {
+        Box::pin(std::future::ready(Ok(self.count_areas())))
     }
 
     fn triangles(&mut self) -> Answer<'_, Vec<u32>> {

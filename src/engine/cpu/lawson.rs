@@ -8,6 +8,7 @@
 use super::engine::Cpu;
 use super::region::{Region, Work};
 use crate::engine::{Answer, Census, EdgeCounts, Engine, Moved};
+use crate::mesh::areas::Areas;
 use crate::mesh::arrangement::Arrangement;
 use crate::{EngineKind, Error, Mesh, Positions};
 use std::sync::Arc;
@@ -73,6 +74,10 @@ impl Engine for Lawson {
 
     fn census(&mut self) -> Answer<'_, Census> {
         self.cpu.census()
+    }
+
+    fn areas(&mut self) -> Answer<'_, Areas> {
+        self.cpu.areas()
     }
 
     fn triangles(&mut self) -> Answer<'_, Vec<u32>> {

@@ -2,6 +2,7 @@
 
 use super::engine::Cpu;
 use crate::engine::Moved;
+use crate::mesh::areas::Areas;
 use crate::mesh::embedded::{Embedded, Shape};
 use crate::mesh::half_edge::unflagged;
 use crate::phases::{Diamond, flag_creases, is_finite};
@@ -45,9 +46,15 @@ impl Cpu {
         self.moving.last_flips = flips;
     }
 
+    pub(super) fn count_areas(&self) -> Areas {
+        let Self { mesh, winding, triangles, threads, moving, .. } = self;
+        let shape = (mesh.dimension(), self.geometry().positions, &triangles[..]);
+        Areas::of(shape, winding, moving.has_infinite, threads)
+    }
+
     pub(super) fn count_moved(&mut self) -> Moved {
         let census = self.count();
-        let Self { mesh, winding, triangles, twins, threads, moving, .. } = &*self;
+        let Self { twins, moving, .. } = &*self;
         let geometry = self.geometry();
         let mut infinite = 0;
         if moving.has_infinite {
@@ -56,13 +63,6 @@ impl Cpu {
             let is_left = |&h: &u32| !is_finite(&geometry, Diamond::new(self.topology(), h).vertices);
             infinite = edges.filter(is_left).count() as u32;
         }
-        let mut not_positive = 0;
-        if mesh.dimension() == Dimension::Two {
-            let shape = Shape { positions: geometry.positions, triangles, twins };
-            let (vertices, is_left) = (mesh.vertex_count(), moving.has_infinite);
-            let (signs, _) = Embedded::of_triangles(shape, vertices, Some(winding), is_left, threads);
-            not_positive = signs.not_positive;
-        }
-        Moved { census, infinite, wide: 0, flips: moving.flips, not_positive }
+        Moved { census, infinite, wide: 0, flips: moving.flips, areas: self.count_areas() }
     }
 }

@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "what fails here is a failed test")]
 
 mod ahead;
+mod areas;
 mod moving;
 
 use super::webgpu::{Device, Kernel, WebGpu};
@@ -46,6 +47,8 @@ fn compare_mesh(name: &str, mesh: Mesh, thresholds: Thresholds) -> Census {
         let what = |array: &str| format!("{name}, {thresholds:?}, iteration {iteration}: {array}");
         let census = cpu.count();
         assert_eq!(census, block_on(gpu.census()).unwrap(), "{}", what("census"));
+        let areas = [block_on(cpu.areas()), block_on(gpu.areas())].map(Result::unwrap);
+        assert_eq!(areas[0], areas[1], "{}", what("areas"));
         let best = label(&cpu.geometry(), cpu.topology(), iteration);
         block_on(gpu.run_phase(Kernel::Label)).unwrap();
         block_on(gpu.run_phase(Kernel::Decide)).unwrap();

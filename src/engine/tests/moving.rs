@@ -3,6 +3,7 @@
 use super::{any_deviation, assert_same, engines};
 use crate::engine::{Cpu, Engine, Moved, WebGpu};
 use crate::mesh::Mesh;
+use crate::mesh::areas::Areas;
 use crate::phases::Thresholds;
 use crate::{Dimension, Positions, cos_degrees, families};
 use pollster::block_on;
@@ -53,7 +54,7 @@ fn a_twisted_sheet_folds_and_unfolds_alike() {
     };
     let frames: Vec<_> = (0..40u8).map(|frame| (twist(f32::from(frame) * 40.0), 3)).collect();
     let counts = compare("twist", mesh.clone(), any_deviation(10.0), &frames);
-    assert!(counts.iter().any(|moved| moved.not_positive > 0), "no triangle turned over");
+    assert!(counts.iter().any(|moved| moved.areas.inverted > 0), "no triangle turned over");
     assert!(counts.last().unwrap().flips > 1000);
 }
 
@@ -73,8 +74,8 @@ fn clockwise_sheets_and_sheets_of_both_windings_move_alike() {
             .map(|shear: f32| (mapped(&mesh, |p| vec![p[0] * (2.0 - shear) - shear, p[1] + shear * p[0]]), 5))
             .into();
         let counts = compare(what, mesh, any_deviation(10.0), &frames);
-        assert_eq!(counts[0].not_positive, 0, "{what}");
-        assert!(counts[5].not_positive as usize > 0, "{what}");
+        assert_eq!(counts[0].areas, Areas::default(), "{what}");
+        assert!(counts[5].areas.inverted > 0, "{what}");
     }
 }
 

@@ -7,6 +7,7 @@ use super::context::Context;
 use super::texture::{Pair, Texture};
 use crate::engine::gpu::upload::Form;
 use crate::engine::{Answer, Census, EdgeCounts, Engine, Moved, positions_of};
+use crate::mesh::areas::Areas;
 use crate::mesh::half_edge;
 use crate::phases::Thresholds;
 use crate::{Dimension, EngineKind, Error, Mesh, NONE, Positions};
@@ -50,6 +51,8 @@ pub(crate) struct WebGl {
     /// census.
     pub(super) history: Texture,
     pub(super) has_locks: bool,
+    /// As [`Winding::is_strict`](crate::mesh::winding::Winding), before the first update.
+    pub(super) is_strict: bool,
     pub(super) moving: Moving,
     pub(super) passes: u64,
 }
@@ -165,12 +168,7 @@ impl WebGl {
         let has_more = self.has_locks || self.form.has_deviation;
         let programs = &["census", "more"][..1 + usize::from(has_more)];
         for (column, program) in (0..).zip(programs) {
-            let more = [(VERDICTS, &self.verdicts.front), (FANS, &self.fans.front)];
-            // The back texture is free between two iterations.
-            self.context.pass(program, &[&self.mesh()[..], &more].concat(), &self.triangles.back, None)?;
-            self.context.pass("sum", &[(COUNTS, &self.triangles.back)], &self.sums[0], None)?;
-            self.passes += 2;
-            self.sum_up(column)?;
+            self.count_by(program, column)?;
         }
         self.context.copy(&self.history, programs.len())?.await
     }
@@ -224,6 +222,10 @@ impl Engine for WebGl {
 
     fn census(&mut self) -> Answer<'_, Census> {
         Box::pin(async { Ok(Census::of_counts(&self.census_counts().await?)) })
+    }
+
+    fn areas(&mut self) -> Answer<'_, Areas> {
+        Box::pin(async { Ok(Areas::of_counts(&self.count_areas().await?)) })
     }
 
     fn triangles(&mut self) -> Answer<'_, Vec<u32>> {

@@ -2,6 +2,7 @@
 
 use super::question::Question;
 use crate::engine::{Answer, Census, EdgeCounts, Engine, Moved, positions_of};
+use crate::mesh::areas::Areas;
 use crate::{EngineKind, Error, Mesh, Positions};
 use js_sys::{Object, Promise, Reflect, Uint32Array};
 use std::cell::RefCell;
@@ -137,6 +138,11 @@ impl Engine for Proxy {
     fn census(&mut self) -> Answer<'_, Census> {
         let counts = self.ask(Question::Census, &[]);
         Box::pin(async { Ok(Census::of_counts(&counts.await?)) })
+    }
+
+    fn areas(&mut self) -> Answer<'_, Areas> {
+        let counts = self.ask(Question::Areas, &[]);
+        Box::pin(async { Ok(Areas::of_counts(&counts.await?)) })
     }
 
     fn triangles(&mut self) -> Answer<'_, Vec<u32>> {

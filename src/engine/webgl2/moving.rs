@@ -19,16 +19,42 @@ const LEAVES: usize = 30;
 // Columns of the history after a count.
 const CENSUS: u32 = 0;
 const MORE: u32 = 1;
-const TURNED: u32 = 2;
+const AREAS: u32 = 2;
 
 impl WebGl {
-    /// The program that finds the triangles that are not positive; none in space.
-    fn turned(&self) -> Option<&'static str> {
+    /// The program that finds the triangles whose area is not positive.
+    fn areas_program(&self) -> &'static str {
         match (self.form.dimension, self.form.is_fixed) {
-            (Dimension::Three, _) => None,
-            (Dimension::Two, false) => Some("turned"),
-            (Dimension::Two, true) => Some("turned_fixed"),
+            (Dimension::Two, false) => "areas2",
+            (Dimension::Two, true) => "areas2_fixed",
+            (Dimension::Three, false) => "areas3",
+            (Dimension::Three, true) => "areas3_fixed",
         }
+    }
+
+    /// Counts for [`Areas::of_counts`](crate::mesh::areas::Areas::of_counts), between two updates and after a run.
+    ///
+    /// # Errors
+    /// [`Error::BackendUnavailable`], [`Error::Device`].
+    pub(crate) async fn count_areas(&mut self) -> Result<Vec<u32>, Error> {
+        if self.is_strict {
+            return Ok(vec![0; 3]);
+        }
+        self.context.compile(&[self.areas_program()]).await?;
+        self.write_params();
+        self.count_by(self.areas_program(), 0)?;
+        self.context.copy(&self.history, 1)?.await
+    }
+
+    /// Counts by a program, which gives four counts for each triangle, into a column of the history.
+    pub(super) fn count_by(&mut self, program: &'static str, column: u32) -> Result<(), Error> {
+        let more = [(VERDICTS, &self.verdicts.front), (FANS, &self.fans.front)];
+        let inputs = [&self.mesh()[..], &more].concat();
+        // The back texture is free between two iterations.
+        self.context.pass(program, &inputs, &self.triangles.back, None)?;
+        self.context.pass("sum", &[(COUNTS, &self.triangles.back)], &self.sums[0], None)?;
+        self.passes += 2;
+        self.sum_up(column)
     }
 
     /// Compiles the programs of the updates.
@@ -37,8 +63,7 @@ impl WebGl {
     /// [`Error::BackendUnavailable`], [`Error::Device`].
     pub(super) async fn settle_updates(&mut self) -> Result<(), Error> {
         if !self.moving.is_settled {
-            self.context.compile(&["more", "change", "total"]).await?;
-            self.context.compile(self.turned().as_slice()).await?;
+            self.context.compile(&["more", "change", "total", self.areas_program()]).await?;
             self.moving.is_settled = true;
         }
         Ok(())
@@ -112,23 +137,15 @@ impl WebGl {
     /// [`Error::Device`].
     pub(crate) fn count_moved(&mut self) -> Result<Answer<'static, Vec<u32>>, Error> {
         self.judge()?;
-        let programs = [(CENSUS, Some("census")), (MORE, Some("more")), (TURNED, self.turned())];
-        self.history.fill(0);
+        let programs = [(CENSUS, "census"), (MORE, "more"), (AREAS, self.areas_program())];
         for (column, program) in programs {
-            let Some(program) = program else { continue };
-            let more = [(VERDICTS, &self.verdicts.front), (FANS, &self.fans.front)];
-            let inputs = [&self.mesh()[..], &more].concat();
-            // The back texture is free between two iterations.
-            self.context.pass(program, &inputs, &self.triangles.back, None)?;
-            self.context.pass("sum", &[(COUNTS, &self.triangles.back)], &self.sums[0], None)?;
-            self.sum_up(column)?;
+            self.count_by(program, column)?;
         }
-        self.passes += 2 * programs.len() as u64;
         let counts = self.context.copy(&self.history, programs.len())?;
         let totals = self.context.copy(&self.moving.totals.front, 1)?;
         Ok(Box::pin(async move {
             let mut words = counts.await?;
-            words.truncate(4 * TURNED as usize + 1);
+            words.truncate(4 * AREAS as usize + 3);
             words.extend_from_slice(&totals.await?[..2]);
             Ok(words)
         }))

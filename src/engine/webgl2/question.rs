@@ -10,6 +10,8 @@ pub(crate) enum Question {
     Iterate,
     /// The counts of the shaders, as `Census::of_counts` takes them.
     Census,
+    /// The counts of the shaders, as `Areas::of_counts` takes them.
+    Areas,
     /// As `Engine::triangles`.
     Triangles,
     /// As `Engine::twins`.
@@ -28,10 +30,11 @@ pub(crate) enum Question {
 
 #[cfg(feature = "js-webgl2")]
 impl Question {
-    const ALL: [Self; 10] = [
+    const ALL: [Self; 11] = [
         Self::Lock,
         Self::Iterate,
         Self::Census,
+        Self::Areas,
         Self::Triangles,
         Self::Twins,
         Self::Settle,

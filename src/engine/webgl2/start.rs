@@ -99,6 +99,7 @@ impl WebGl {
             sums,
             history: context.texture((MOST_ITERATIONS.max(BATCH), 1), 4)?,
             has_locks: false,
+            is_strict: winding.is_strict,
             moving: Moving::new(context.pair((1, 1), 4)?),
             passes: 0,
             context,

@@ -10,11 +10,11 @@ pub(super) const SHORT_TAIL: u32 = 4;
 pub(super) const PAUSES: u32 = 8;
 
 // The layout of the history in words, as in `state.wgsl`.
-pub(super) const COUNTS: usize = 8;
-pub(super) const NOT_POSITIVE: usize = 3;
-pub(super) const SEVERAL_FANS: usize = 9;
-pub(super) const FLIPPED: usize = 10;
-pub(super) const ENTRIES: usize = 12;
+pub(super) const COUNTS: usize = 11;
+pub(super) const AREAS: usize = 8;
+pub(super) const SEVERAL_FANS: usize = 12;
+pub(super) const FLIPPED: usize = 13;
+pub(super) const ENTRIES: usize = 15;
 pub(super) const ENTRY_WORDS: usize = 4;
 pub(super) const HISTORY_WORDS: usize = ENTRIES + ENTRY_WORDS * (1 + BATCH as usize + TAIL as usize);
 

@@ -17,6 +17,8 @@ pub(crate) enum Kernel {
     Select,
     Flip,
     Census,
+    /// Counts the triangles whose area is not positive.
+    Areas,
     /// Before the first iteration: the signs of the triangles in 2D, the creases in 3D.
     Prepare,
     /// Counts the turns of the stars, in 2D.
@@ -26,12 +28,13 @@ pub(crate) enum Kernel {
 }
 
 impl Kernel {
-    const ALL: [Self; 8] = [
+    const ALL: [Self; 9] = [
         Self::Label,
         Self::Decide,
         Self::Select,
         Self::Flip,
         Self::Census,
+        Self::Areas,
         Self::Prepare,
         Self::Turn,
         Self::Mark,
@@ -64,6 +67,7 @@ impl Kernel {
             Self::Select => (READS, "select_all", None),
             Self::Flip => (WRITES, "flip_all", None),
             Self::Census => (WRITES, "census", None),
+            Self::Areas => (WRITES, "count_areas", None),
             Self::Prepare => (WRITES, "prepare_all", None),
             Self::Turn => (WRITES, "count_turns", None),
             Self::Mark => (WRITES, "mark_embedded", None),

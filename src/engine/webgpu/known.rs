@@ -1,12 +1,13 @@
-//! Results that the host reads before the session asks for them.
+//! Results that the host has read before the session asks for them.
 
 use super::words::Words;
 use crate::engine::Census;
+use crate::mesh::areas::Areas;
 
-/// Results read in the submission of the last iteration.
+/// Results of the present state: read in the submission of the last iteration, or after it.
 #[derive(Default)]
 pub(super) struct Known {
-    pub(super) census: Option<Census>,
+    pub(super) counts: Option<(Census, Areas)>,
     /// Handed out once.
     pub(super) triangles: Option<Words>,
 }

@@ -62,6 +62,7 @@ use super::GpuBuffers;
 use super::SharedObjects;
 use super::{Answer, Census, EdgeCounts, Engine, Moved};
 use crate::engine::gpu::Form;
+use crate::mesh::areas::Areas;
 #[cfg(test)]
 use crate::mesh::half_edge::unflagged;
 use crate::phases::Thresholds;
@@ -125,7 +126,11 @@ impl Engine for WebGpu {
     }
 
     fn census(&mut self) -> Answer<'_, Census> {
-        Box::pin(self.count())
+        Box::pin(async { Ok(self.count().await?.0) })
+    }
+
+    fn areas(&mut self) -> Answer<'_, Areas> {
+        Box::pin(async { Ok(self.count().await?.1) })
     }
 
     fn triangles(&mut self) -> Answer<'_, Vec<u32>> {
@@ -234,6 +239,7 @@ impl Engine for WebGpu {
 impl WebGpu {
     /// Runs one phase of the next iteration. Returns the number of flips after the flip phase.
     pub(crate) async fn run_phase(&mut self, kernel: Kernel) -> Result<u32, Error> {
+        self.forget();
         let history = self.read_history(&|pass| self.dispatch(pass, kernel, self.params.triangles)).await?;
         Ok(self.take_over(&history).last().copied().unwrap_or(0))
     }

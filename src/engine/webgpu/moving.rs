@@ -1,21 +1,16 @@
 //! Updates: the vertices move, and the device flips again, in one submission that nobody waits for.
 
 use super::WebGpu;
-use super::buffers::Buffers;
 use super::faults::{refuse, watch};
-use super::history::{COUNTS, ENTRIES, FLIPPED, NOT_POSITIVE};
+use super::history::{COUNTS, ENTRIES, FLIPPED};
 use super::kernels::Kernel;
-use super::steps::Step;
 use crate::engine::gpu::upload::deviation_words;
 use crate::engine::{Answer, Moved, positions_of};
-use crate::{Dimension, Error, Positions};
+use crate::{Error, Positions};
 use wgpu::BufferUsages;
 
 /// A multiple of this number of words is an offset that every device accepts for a binding.
 const OFFSET_WORDS: u32 = 64;
-
-/// Words of the counts: those of the census and the flips, then the triangles that are not positive.
-const WORDS: usize = ENTRIES + 1;
 
 fn bytes(words: usize) -> u64 {
     4 * words as u64
@@ -68,49 +63,23 @@ impl WebGpu {
     /// Counts on the device, after all updates so far. The counts are copied at once, so updates may follow before the
     /// answer is there.
     pub(super) fn count_moved(&mut self) -> Answer<'static, Moved> {
-        let winding = std::mem::replace(&mut self.params.winding, self.winding);
         let gpu = self.gpu.clone();
         let (snapshot, caught) = watch(&gpu.device, || {
-            let snapshot = gpu.buffer("counters", WORDS, BufferUsages::empty());
-            let Buffers { history, frontier, .. } = &self.buffers;
+            let snapshot = gpu.buffer("counters", ENTRIES, BufferUsages::empty());
+            let history = &self.buffers.history;
             self.write_params();
             let mut encoder = gpu.device.create_command_encoder(&Default::default());
             encoder.clear_buffer(history, 0, Some(bytes(COUNTS)));
-            self.encode_pass(&mut encoder, &|pass| self.record_census(pass));
-            encoder.clear_buffer(&snapshot, 0, None);
+            self.encode_pass(&mut encoder, &|pass| self.record_counts(pass));
             encoder.copy_buffer_to_buffer(history, 0, &snapshot, 0, bytes(ENTRIES));
-            if self.form.dimension == Dimension::Two {
-                encoder.clear_buffer(history, 0, Some(bytes(COUNTS)));
-                encoder.clear_buffer(frontier, 0, None);
-                self.encode_pass(&mut encoder, &|pass| {
-                    self.at_step(pass, Step::Prepare);
-                    for kernel in [Kernel::Prepare, Kernel::Decide, Kernel::Turn] {
-                        self.dispatch(pass, kernel, self.params.triangles);
-                    }
-                });
-                encoder.copy_buffer_to_buffer(
-                    history,
-                    bytes(NOT_POSITIVE),
-                    &snapshot,
-                    bytes(ENTRIES),
-                    bytes(1),
-                );
-                encoder.clear_buffer(frontier, 0, None);
-            }
             gpu.submit(encoder);
             snapshot
         });
-        // A run finds the winding itself, and its next iteration has to visit all triangles: the count has used its lists.
-        self.params.winding = winding;
-        if self.state[0] > 0 {
-            self.state = self.first_state();
-        }
         Box::pin(async move {
             // The device has told the faults of earlier updates by then.
             gpu.judge(caught.await)?;
-            let words = gpu.read(&snapshot, WORDS).await?;
-            let (counts, flips) = (&words[..COUNTS], &words[FLIPPED..ENTRIES]);
-            Ok(Moved::of_counts(&[counts, &words[ENTRIES..], flips].concat()))
+            let words = gpu.read(&snapshot, ENTRIES).await?;
+            Ok(Moved::of_counts(&[&words[..COUNTS], &words[FLIPPED..]].concat()))
         })
     }
 

@@ -5,7 +5,7 @@ use super::adjacency::COUNTERS;
 use super::buffer::Buffer;
 use super::buffers::Buffers;
 use super::copies::{CHUNK, Source};
-use super::history::{BATCH, COUNTS, ENTRIES, ENTRY_WORDS, HISTORY_WORDS, PAUSES, SHORT_TAIL, TAIL};
+use super::history::{AREAS, BATCH, COUNTS, ENTRIES, ENTRY_WORDS, HISTORY_WORDS, PAUSES, SHORT_TAIL, TAIL};
 use super::kernels::{Kernel, WORKGROUP_SIZE};
 use super::known::Known;
 use super::programs::{DECIDERS, LANE_COUNT};
@@ -13,9 +13,10 @@ use super::steps::Step;
 use super::words::{Words, reserve};
 use crate::Error;
 use crate::engine::{Answer, Census};
+use crate::mesh::areas::Areas;
 
-/// Dispatches of a census.
-const CENSUS_DISPATCHES: u64 = 3;
+/// Dispatches of the counts.
+const COUNT_DISPATCHES: u64 = 4;
 
 impl WebGpu {
     pub(super) async fn run(&mut self, count: u32) -> Result<Vec<u32>, Error> {
@@ -52,7 +53,7 @@ impl WebGpu {
         self.params.tail_iterations = if tail.is_some() { (count - batch).min(longest) } else { 0 };
         self.dispatches += u64::from(4 * batch + self.params.tail_iterations.min(1) * (1 + 2 * PAUSES));
         if !self.waits {
-            self.dispatches += CENSUS_DISPATCHES;
+            self.dispatches += COUNT_DISPATCHES;
         }
         let iterate = |pass: &mut wgpu::ComputePass| self.record_iterations(pass, batch, tail);
         let record = || {
@@ -62,7 +63,7 @@ impl WebGpu {
             let mut encoder = self.encode(&iterate);
             if !self.waits {
                 encoder.clear_buffer(&self.buffers.history, 0, Some(4 * COUNTS as u64));
-                self.encode_pass(&mut encoder, &|pass| self.record_census(pass));
+                self.encode_pass(&mut encoder, &|pass| self.record_counts(pass));
             }
             encoder
         };
@@ -93,7 +94,7 @@ impl WebGpu {
             }
         }
         if !self.waits {
-            self.known.census = Some(Census::of_counts(&history[..COUNTS]));
+            self.known.counts = Some(counts_of(&history));
         }
         if let Some(mut triangles) = reserved {
             read.fill(2, &mut triangles, 0)?;
@@ -119,15 +120,16 @@ impl WebGpu {
         }
     }
 
-    /// Counts the edges, unless the last submission has done so.
-    pub(super) async fn count(&mut self) -> Result<Census, Error> {
+    /// Counts the edges and the areas, unless that was done.
+    pub(super) async fn count(&mut self) -> Result<(Census, Areas), Error> {
         self.settle().await?;
-        if let Some(census) = self.known.census {
-            return Ok(census);
+        if let Some(counts) = self.known.counts {
+            return Ok(counts);
         }
-        self.dispatches += CENSUS_DISPATCHES;
-        let counts = self.count_by(&|pass| self.record_census(pass)).await?;
-        Ok(Census::of_counts(&counts))
+        self.dispatches += COUNT_DISPATCHES;
+        let counts = counts_of(&self.count_by(&|pass| self.record_counts(pass)).await?);
+        self.known.counts = Some(counts);
+        Ok(counts)
     }
 
     /// Runs kernels that count, and reads their counts.
@@ -241,12 +243,17 @@ impl WebGpu {
         }
     }
 
-    pub(super) fn record_census(&self, pass: &mut wgpu::ComputePass) {
+    pub(super) fn record_counts(&self, pass: &mut wgpu::ComputePass) {
         for (step, kernel) in
             [(Step::Census, Kernel::Census), (Step::Census, Kernel::Decide), (Step::Resume, Kernel::Census)]
         {
             self.at_step(pass, step);
             self.dispatch(pass, kernel, self.params.triangles);
         }
+        self.dispatch(pass, Kernel::Areas, self.params.triangles);
     }
+}
+
+fn counts_of(history: &[u32]) -> (Census, Areas) {
+    (Census::of_counts(history), Areas::of_counts(&history[AREAS..]))
 }

@@ -5,7 +5,7 @@
 use super::copies::{CHUNK, PIECE};
 use super::device::Device;
 use super::faults::Fault;
-use super::history::{COUNTS, ENTRIES, ENTRY_WORDS, SEVERAL_FANS};
+use super::history::{AREAS, COUNTS, ENTRIES, ENTRY_WORDS, SEVERAL_FANS};
 use super::kernels::{Plan, WORKGROUP_SIZE};
 use super::params::{NEGATIVE, POSITIVE, Params};
 use super::staging::FEWEST;
@@ -90,6 +90,7 @@ fn constants_of_the_phases_agree() {
         ("LENGTH", 1),
         ("BUILT", 2),
         ("RAN", 3),
+        ("AREAS", AREAS as u64),
         ("SEVERAL_FANS", SEVERAL_FANS as u64),
         ("NEGATIVE", u64::from(NEGATIVE)),
         ("POSITIVE", u64::from(POSITIVE)),

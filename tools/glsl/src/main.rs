@@ -16,7 +16,7 @@ use std::error::Error;
 /// A program: its name, the file of its entry point, and the entry point.
 type Program = (&'static str, &'static str, &'static str);
 
-/// Programs for meshes in the plane with coordinates as floats. All except `verdict2` and `turned` serve every mesh.
+/// Programs for meshes in the plane with coordinates as floats. All except `verdict2` and `areas2` serve every mesh.
 const PLANE: [Program; 15] = [
     ("cover", "passes", "cover"),
     ("verdict2", "passes", "verdict_pass"),
@@ -32,21 +32,25 @@ const PLANE: [Program; 15] = [
     ("probe", "passes", "probe_pass"),
     ("change", "moving_passes", "change_pass"),
     ("total", "moving_passes", "total_pass"),
-    ("turned", "moving_passes", "turned_pass"),
+    ("areas2", "moving_passes", "areas_pass"),
 ];
 
 /// Programs for surfaces. `flag` serves all surfaces.
-const SPACE: [Program; 3] = [
+const SPACE: [Program; 4] = [
     ("verdict3", "passes", "verdict_pass"),
     ("crease", "crease_pass", "crease_pass"),
     ("flag", "crease_pass", "flag_pass"),
+    ("areas3", "moving_passes", "areas_pass"),
 ];
 
 /// Programs for coordinates as fixed-point numbers.
 const FIXED_PLANE: [Program; 2] =
-    [("verdict2_fixed", "passes", "verdict_pass"), ("turned_fixed", "moving_passes", "turned_pass")];
-const FIXED_SPACE: [Program; 2] =
-    [("verdict3_fixed", "passes", "verdict_pass"), ("crease_fixed", "crease_pass", "crease_pass")];
+    [("verdict2_fixed", "passes", "verdict_pass"), ("areas2_fixed", "moving_passes", "areas_pass")];
+const FIXED_SPACE: [Program; 3] = [
+    ("verdict3_fixed", "passes", "verdict_pass"),
+    ("crease_fixed", "crease_pass", "crease_pass"),
+    ("areas3_fixed", "moving_passes", "areas_pass"),
+];
 
 /// Programs for surfaces with a limit on the deviation.
 const DEVIATION: [Program; 1] = [("verdict3_deviation", "passes", "verdict_pass")];
