@@ -102,7 +102,10 @@ fn row(file: &Path) -> Row {
     };
     let (mut only_cpu, mut faults) = (None, Vec::new());
     match run(Backend::Gpu) {
-        Ok(gpu) if gpu.triangles == outcome.triangles && gpu.remaining == outcome.remaining => {}
+        Ok(gpu)
+            if gpu.triangles == outcome.triangles
+                && gpu.remaining == outcome.remaining
+                && [gpu.inverted, gpu.flat] == [outcome.inverted, outcome.flat] => {}
         Ok(_) => faults.push("the GPU's result differs".to_owned()),
         Err(Error::BackendLimit { message, .. }) => only_cpu = Some(message),
         Err(error) => faults.push(error.to_string()),
@@ -111,6 +114,10 @@ fn row(file: &Path) -> Row {
     faults.extend(audit.violations.iter().map(ToString::to_string));
     if audit.remaining != outcome.remaining {
         faults.push(format!("the audit counts {:?}", audit.remaining));
+    }
+    let areas = [audit.inverted.len(), audit.flat.len()];
+    if areas != [outcome.inverted, outcome.flat].map(|count| count as usize) {
+        faults.push(format!("the audit counts {areas:?} inverted and flat triangles"));
     }
     Row::Done { cells: cells(&mesh, &outcome), only_cpu, faults }
 }

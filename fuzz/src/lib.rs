@@ -93,8 +93,12 @@ fn flipped(mesh: &Mesh, options: &Options) -> Vec<u32> {
     }
     let outcome = make_delaunay(mesh, options, |_, _| ControlFlow::Continue(())).unwrap();
     let audit = quality::audit(mesh, &outcome.triangles, options);
-    assert!(audit.is_clean(), "{:?}", audit.violations);
+    assert!(audit.violations.is_empty(), "{:?}", audit.violations);
     assert_eq!(audit.remaining, outcome.remaining);
+    assert_eq!(
+        [audit.inverted.len(), audit.flat.len()],
+        [outcome.inverted, outcome.flat].map(|n| n as usize)
+    );
     outcome.triangles
 }
 

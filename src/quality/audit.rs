@@ -137,12 +137,20 @@ pub struct Audit {
     pub remaining_edges: Vec<RemainingEdge>,
     /// The number of these edges, by reason.
     pub remaining: Reasons,
+    /// The triangles of the result that are turned over, as [`Outcome::inverted`](crate::Outcome::inverted) counts
+    /// them, in ascending order. Empty in space, and if the indices are wrong.
+    pub inverted: Vec<u32>,
+    /// The triangles of no area, in ascending order. Empty if the indices are wrong.
+    pub flat: Vec<u32>,
 }
 
 impl Audit {
-    /// Whether there are no violations. Remaining edges are not violations.
+    /// Whether there are no violations, and no triangle is turned over. Remaining edges and flat triangles do not count.
+    ///
+    /// A triangle that is turned over is no violation: it was so before the run, or no flip could turn it back. A result
+    /// without violations is right for its input.
     pub fn is_clean(&self) -> bool {
-        self.violations.is_empty()
+        self.violations.is_empty() && self.inverted.is_empty()
     }
 
     /// The ends of the edges that remain for `reason`, in ascending order.
@@ -211,9 +219,11 @@ pub(crate) fn audit_named(input: &Mesh, triangles: &[u32], options: &Options, na
         before,
         after,
     });
+    [audit.inverted, audit.flat] = after.inverted_and_flat();
     if input.dimension() == Dimension::Two {
         audit.compare(before.sorted_areas(), after.sorted_areas(), |_, _| Violation::Area);
-        let (before, after) = (before.inverted(), after.inverted());
+        let before = before.inverted_and_flat().map(|list| list.len()).iter().sum();
+        let after = audit.inverted.len() + audit.flat.len();
         if after > before {
             audit.report(Violation::Inverted { before, after });
         }

@@ -77,11 +77,19 @@ impl<'a> Surface<'a> {
         if negative { sign.reverse() } else { sign }
     }
 
-    /// The number of triangles that are flat or have the opposite sign of their component (2D).
-    pub fn inverted(&self) -> usize {
-        let turn = |t: usize| audit_exact::turn([0, 1, 2].map(|k| self.coord(self.triangles[3 * t + k])));
-        let positive = |t: usize| self.oriented(t, turn(t)).is_gt();
-        (0..self.triangles.len() / 3).filter(|&t| !positive(t)).count()
+    /// The triangles that have the opposite sign of their component (2D), and the flat ones.
+    pub fn inverted_and_flat(&self) -> [Vec<u32>; 2] {
+        let sign = |t: u32| match self.mesh.dimension() {
+            Dimension::Two => {
+                let corners = [0, 1, 2].map(|k| self.triangles[3 * t as usize + k]);
+                self.oriented(t as usize, audit_exact::turn(corners.map(|v| self.coord(v))))
+            }
+            Dimension::Three if audit_exact::flat(self.triangle_of(3 * t)).is_some() => Ordering::Equal,
+            Dimension::Three => Ordering::Greater,
+        };
+        let signs: Vec<_> = (0..self.triangle_count() as u32).map(sign).collect();
+        let those = |wanted| (0..).zip(&signs).filter(|&(_, &sign)| sign == wanted).map(|(t, _)| t).collect();
+        [Ordering::Less, Ordering::Equal].map(those)
     }
 
     pub fn coord(&self, v: u32) -> robust::Coord<f64> {

@@ -28,7 +28,7 @@ extern "C" {
 ///
 /// # Errors
 /// Those of [`Mesh::new`](crate::Mesh::new); [`Error::OutOfMemory`](crate::Error::OutOfMemory).
-#[wasm_bindgen(unchecked_return_type = "import('../types.js').Audit")]
+#[wasm_bindgen(unchecked_return_type = "import('../audit.js').Audit")]
 pub fn audit(
     positions: JsPositions,
     indices: &Uint32Array,
@@ -63,5 +63,7 @@ pub fn audit(
         ("unlisted", (audit.unlisted as f64).into()),
         ("remaining", reasons_object(&audit.remaining)),
         ("remainingEdges", object(ends)),
+        ("invertedTriangles", Uint32Array::from(audit.inverted.as_slice()).into()),
+        ("flatTriangles", Uint32Array::from(audit.flat.as_slice()).into()),
     ]))
 }

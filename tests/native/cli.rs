@@ -2,6 +2,7 @@
 #![cfg(feature = "cli")]
 
 // These names end as no other module of the tests does, because a part of a name chooses tests.
+mod areas;
 mod constraint_options;
 mod files;
 mod joins;
@@ -38,6 +39,8 @@ const KEYS: [&str; 32] = [
     "dispatches",
     "device_bytes",
     "remaining",
+    "inverted",
+    "flat",
     "min_angle_before_deg",
     "min_angle_after_deg",
     "before",

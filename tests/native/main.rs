@@ -16,6 +16,7 @@ mod runs;
 mod simulation;
 
 // The levels.
+mod areas;
 mod audit;
 mod cli;
 mod cli_input;

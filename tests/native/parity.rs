@@ -9,6 +9,7 @@ use crate::matrix;
 use crate::meshes::Case;
 use crate::runs::{options, unwatched, watched};
 use crate::simulation::{Digest, Expected, Simulation, expected};
+use edgeflip::quality::audit;
 use edgeflip::{Backend, Error, Outcome, Positions, Reasons, Status};
 use serde_json::{Value, json};
 use std::time::Instant;
@@ -77,10 +78,21 @@ fn cell(backend: Backend, case: &Case, want: &Simulation) -> Result<&'static str
         return Err("the triangles before the first iteration or the remaining edges are wrong".to_owned());
     }
     let whole = unwatched(&case.mesh, &options).map_err(|error| error.to_string())?;
-    compare_end(backend, &whole, want).map(|()| "=")
+    compare_end(backend, &whole, want, areas(case, want)).map(|()| "=")
 }
 
-fn compare_end(backend: Backend, outcome: &Outcome, want: &Simulation) -> Result<(), String> {
+/// The inverted and the flat triangles of the end, as the audit counts them.
+fn areas(case: &Case, want: &Simulation) -> [u32; 2] {
+    let audit = audit(&case.mesh, &want.triangles, &case.options(Backend::Cpu));
+    [audit.inverted, audit.flat].map(|list| list.len() as u32)
+}
+
+fn compare_end(
+    backend: Backend,
+    outcome: &Outcome,
+    want: &Simulation,
+    areas: [u32; 2],
+) -> Result<(), String> {
     let flips: Vec<u32> = want.iterations.iter().map(|record| record.flips).collect();
     let on_gpu = outcome.adapter.is_some() && outcome.dispatches > 0;
     let as_wanted = [
@@ -89,6 +101,7 @@ fn compare_end(backend: Backend, outcome: &Outcome, want: &Simulation) -> Result
         ("flips of an iteration", outcome.flips_per_iteration == flips),
         ("triangles", outcome.triangles == want.triangles),
         ("remaining edges", outcome.remaining == want.remaining),
+        ("inverted and flat triangles", [outcome.inverted, outcome.flat] == areas),
     ];
     as_wanted.iter().try_for_each(|(what, is)| {
         if *is { Ok(()) } else { Err(format!("the whole run has the wrong {what}")) }
@@ -113,6 +126,7 @@ fn table(cases: &[Simulated], columns: &[Column]) -> Vec<String> {
 /// A mesh and its expected results, as JSON. Positions are the 32-bit words of f32 or f64.
 fn exported(&(case, want): &Simulated) -> Value {
     let reasons = |reasons: &Reasons| -> Value { reasons.iter().map(|(r, n)| (r.name(), n)).collect() };
+    let [inverted, flat] = areas(case, want);
     let mut end = Digest::default();
     end.feed(&want.triangles);
     let words = |x: f64| [x.to_bits() as u32, (x.to_bits() >> 32) as u32];
@@ -141,6 +155,8 @@ fn exported(&(case, want): &Simulated) -> Value {
         "iterations": iterations.collect::<Vec<_>>(),
         "end": end.to_string(),
         "remaining": reasons(&want.remaining),
+        "inverted": inverted,
+        "flat": flat,
     })
 }
 

@@ -35,16 +35,22 @@ fn every_mesh_of_the_matrix_flips_in_any_order_as_on_one() {
                 ..case.options(Backend::Cpu)
             };
             let outcome = unwatched(&case.mesh, &options).unwrap();
-            (outcome.triangles, outcome.flips, outcome.remaining)
+            (outcome.triangles, outcome.flips, outcome.remaining, [outcome.inverted, outcome.flat])
         };
         let want = run(1);
         for threads in &COUNTS[1..] {
             assert!(run(*threads) == want, "{}, {threads} threads", case.name);
         }
-        let (triangles, _, remaining) = want;
+        let (triangles, _, remaining, areas) = want;
         let audit = audit(&case.mesh, &triangles, &case.options(Backend::Cpu));
-        assert!(audit.is_clean(), "{}: {:?}", case.name, audit.violations);
+        assert!(audit.violations.is_empty(), "{}: {:?}", case.name, audit.violations);
         assert_eq!(audit.remaining, remaining, "{}", case.name);
+        assert_eq!(
+            [audit.inverted.len(), audit.flat.len()],
+            areas.map(|count| count as usize),
+            "{}",
+            case.name
+        );
         assert_eq!(remaining[Reason::Stopped], 0, "{}", case.name);
         if simulated.remaining.total() == 0 && case.mesh.dimension() == Dimension::Two {
             assert_eq!(remaining.total(), 0, "{}", case.name);

@@ -179,9 +179,10 @@ pub struct Args {
 
     /// Check the result independently; if the check fails, write nothing and end with status 1
     ///
-    /// Checks that vertices, boundary, components and orientation are unchanged, and that the run has counted the edges
-    /// left correctly. The summary names the first edges left for each reason by their two vertices, counted from 0;
-    /// --json lists all. It also measures how far the surface has moved: the largest distance between the old and the
+    /// Checks that vertices, boundary, components and orientation are unchanged, and that the run has counted correctly
+    /// the edges left and the triangles that are inverted or flat. The summary names the first edges left for each
+    /// reason by their two vertices, and the first of these triangles, all counted from 0; --json lists all. A result
+    /// with inverted triangles is not clean, but it is written: no flip could turn them back. It also measures how far the surface has moved: the largest distance between the old and the
     /// new surface, at points of the edges that only one of them has.
     #[arg(long)]
     pub verify: bool,
@@ -192,10 +193,12 @@ pub struct Args {
     /// coordinates (32 or 64, the bits of the floats that decide), crossing_polygons (the numbers of faces, see the
     /// notes), backend, adapter, fallback, status (done or stopped), iterations, flips, constraint_flips, left_out (for each
     /// constraint left out, its index in the list and the reason), flips_per_iteration, dispatches,
-    /// device_bytes, remaining (by reason), min_angle_before_deg, min_angle_after_deg, before and after (min_angle_deg,
+    /// device_bytes, remaining (by reason), inverted (triangles that are turned over, in the plane: they have not the
+    /// orientation of the total area of their component), flat (triangles of no area), min_angle_before_deg, min_angle_after_deg, before and after (min_angle_deg,
     /// mean_min_angle_deg, mean_aspect, flat_triangles, area, volume), turned_triangles, joined_vertices, seam_edges,
     /// moved_triangles, attribute_edges (locked to keep attributes), ms (wall times in milliseconds, see below), and
-    /// with --verify audit (the violations), remaining_edges (by reason, the two vertices of each edge left, counted
+    /// with --verify audit (the violations), clean (no violation, and no inverted triangle), inverted_triangles and
+    /// flat_triangles (counted from 0), remaining_edges (by reason, the two vertices of each edge left, counted
     /// from 0) and distance (between the surfaces before and after).
     ///
     /// The parts of ms add up to its total: start; load (IN is read); prepare (lists are read, vertices joined,

@@ -244,7 +244,8 @@ fn turn(
     })
 }
 
-/// Runs the independent check. A different count of the edges left is also a violation.
+/// Runs the independent check. A different count of the edges left, or of the triangles that are turned over or flat, is
+/// also a violation.
 fn check(options: &Options, mesh: &Mesh, outcome: &Outcome) -> Check {
     let audit = quality::audit_outcome(mesh, outcome, options);
     let mut violations: Vec<String> = audit.violations.iter().map(ToString::to_string).collect();
@@ -252,9 +253,23 @@ fn check(options: &Options, mesh: &Mesh, outcome: &Outcome) -> Check {
         let [said, counted] = [&outcome.remaining, &audit.remaining].map(report::reasons);
         violations.push(format!("edges left: the run says {said}, the audit counts {counted}"));
     }
+    let said = [outcome.inverted, outcome.flat].map(|count| count as usize);
+    let counted = [audit.inverted.len(), audit.flat.len()];
+    if said != counted {
+        let [said, counted] =
+            [said, counted].map(|[inverted, flat]| format!("inverted {inverted}, flat {flat}"));
+        violations.push(format!("triangles: the run says {said}, the audit counts {counted}"));
+    }
     let ends = |reason| audit.remaining_for(reason).collect();
     let remaining_edges = audit.remaining.iter().map(|(reason, _)| (reason.name(), ends(reason))).collect();
-    Check { violations, remaining_edges, distance: quality::distance(mesh, &outcome.triangles) }
+    Check {
+        clean: audit.is_clean() && violations.is_empty(),
+        violations,
+        remaining_edges,
+        inverted_triangles: audit.inverted,
+        flat_triangles: audit.flat,
+        distance: quality::distance(mesh, &outcome.triangles),
+    }
 }
 
 /// Wall time since the start of the program, with laps.

@@ -37,6 +37,8 @@ pub struct Report {
     dispatches: u64,
     device_bytes: u64,
     remaining: BTreeMap<&'static str, u64>,
+    inverted: u32,
+    flat: u32,
     /// `null` if there is no angle.
     min_angle_before_deg: f64,
     min_angle_after_deg: f64,
@@ -86,8 +88,12 @@ impl From<Measures> for Shape {
 pub struct Check {
     #[serde(rename = "audit")]
     pub violations: Vec<String>,
+    /// Whether there are no violations, and no triangle is turned over.
+    pub clean: bool,
     /// The ends of the edges that are not Delaunay, by reason.
     pub remaining_edges: BTreeMap<&'static str, Vec<[u32; 2]>>,
+    pub inverted_triangles: Vec<u32>,
+    pub flat_triangles: Vec<u32>,
     /// How far the surface has moved.
     pub distance: f64,
 }
@@ -199,6 +205,8 @@ impl Report {
             dispatches: outcome.dispatches,
             device_bytes: outcome.device_bytes,
             remaining: outcome.remaining.iter().map(|(reason, n)| (reason.name(), n)).collect(),
+            inverted: outcome.inverted,
+            flat: outcome.flat,
             min_angle_before_deg: before.min_angle,
             min_angle_after_deg: after.min_angle,
             before: before.into(),
@@ -235,7 +243,7 @@ impl Report {
             self.notes.push(format!("polygons cut into triangles{changed}: {polygons}"));
         }
         if !loaded.crossing.is_empty() {
-            let faces = listed(&loaded.crossing, u32::to_string);
+            let faces = first(&loaded.crossing);
             self.notes.push(format!(
                 "polygons cut into fans although their outline crosses or touches itself, the first face is 0: {faces}"
             ));
@@ -251,7 +259,7 @@ impl Report {
     /// Adds a note about the files beside IN that OUT, in another folder, refers to.
     pub fn with_left_behind(mut self, files: &[String]) -> Self {
         if !files.is_empty() {
-            let files = listed(files, String::clone);
+            let files = first(files);
             self.notes.push(format!("OUT refers to files that are not copied to its folder: {files}"));
         }
         self
@@ -325,6 +333,18 @@ impl Report {
         {
             line("edges left", first_edges(remaining_edges));
         }
+        let [inverted, flat] = match &self.check {
+            Some(check) => [&check.inverted_triangles[..], &check.flat_triangles],
+            None => [&[][..], &[]],
+        };
+        for (name, count, what, those) in
+            [("inverted", self.inverted, INVERTED, inverted), ("flat", self.flat, FLAT, flat)]
+        {
+            if count > 0 {
+                let those = if those.is_empty() { String::new() } else { format!(" ({})", first(those)) };
+                line(name, format!("triangles: {}{those}; {what}", HumanCount(count.into())));
+            }
+        }
         let Self { before, after, .. } = self;
         line("min angle", format!("{:.3}° → {:.3}°", before.min_angle_deg, after.min_angle_deg));
         line("mean min", format!("{:.3}° → {:.3}°", before.mean_min_angle_deg, after.mean_min_angle_deg));
@@ -348,9 +368,10 @@ impl Report {
             line("area", change(before.area, after.area));
             line("volume", change(before.volume, after.volume));
         }
-        if let Some(Check { violations, .. }) = &self.check {
+        if let Some(Check { violations, clean, .. }) = &self.check {
             let found = match violations.len() {
-                0 => "clean".into(),
+                0 if *clean => "clean".into(),
+                0 => "no violations, but not clean: triangles are inverted".into(),
                 n => format!("violations: {}", HumanCount(n as u64)),
             };
             line("audit", found);
@@ -381,18 +402,24 @@ fn change(before: f64, after: f64) -> String {
     format!("{} → {} ({:+.4} %)", short(before), short(after), 100.0 * part)
 }
 
+/// What to do about triangles that are turned over, and about flat ones.
+const INVERTED: &str = "they overlap their neighbours, and no flip could turn them back: move their vertices back, or \
+                        triangulate the points again";
+const FLAT: &str =
+    "their corners are on one line, and no flip removed them: move a corner of each, or leave it out";
+
 /// The first edges left for each reason, named by their vertices.
 fn first_edges(remaining: &BTreeMap<&str, Vec<[u32; 2]>>) -> String {
-    let parts = remaining
-        .iter()
-        .map(|(reason, edges)| format!("{reason} {}", listed(edges, |[u, v]| format!("{u}-{v}"))));
-    parts.collect::<Vec<_>>().join("; ")
+    let names = |edges: &[[u32; 2]]| edges.iter().map(|[u, v]| format!("{u}-{v}")).collect::<Vec<_>>();
+    let parts: Vec<String> =
+        remaining.iter().map(|(reason, edges)| format!("{reason} {}", first(&names(edges)))).collect();
+    parts.join("; ")
 }
 
-/// The first items, and how many more there are.
-fn listed<T>(items: &[T], text: impl Fn(&T) -> String) -> String {
+/// The first items of a list, as text.
+fn first(items: &[impl ToString]) -> String {
     const LISTED: usize = 5;
-    let first: Vec<String> = items.iter().take(LISTED).map(text).collect();
+    let first: Vec<String> = items.iter().take(LISTED).map(ToString::to_string).collect();
     let more = match items.len().saturating_sub(LISTED) {
         0 => String::new(),
         n => format!(" and {} more", HumanCount(n as u64)),
