@@ -79,7 +79,7 @@ const NAME = 'delaunay';
 
 async function transformed(document: Document, options: DelaunayOptions): Promise<void> {
   const logger = document.getLogger();
-  let [flips, changed, done] = [0, 0, 0];
+  let [flips, changed, done, flat] = [0, 0, 0, 0];
   const remaining: Reasons = {};
   const alike = surfacesOf(document, logger);
   for (const { name, primitives, stretch } of alike) {
@@ -90,6 +90,7 @@ async function transformed(document: Document, options: DelaunayOptions): Promis
       throw new EdgeflipError(cause.code, `${name}: ${cause.message}`, { cause });
     });
     flips += result.flips;
+    flat += result.flat;
     for (const [reason, count] of Object.entries(result.remaining)) {
       remaining[reason as Reason] = (remaining[reason as Reason] ?? 0) + count;
     }
@@ -100,8 +101,9 @@ async function transformed(document: Document, options: DelaunayOptions): Promis
   const reasons = Object.entries(remaining).map(([reason, count]) => `${reason} ${count}`);
   const rest =
     reasons.length > 0 ? `edges that are still not Delaunay: ${reasons.join(', ')}` : 'every edge is Delaunay';
+  const areas = flat > 0 ? `; triangles of no area: ${flat}` : '';
   const stopped = done < alike.length ? `; stopped after ${done}` : '';
-  logger.info(`${NAME}: ${flips} flips in ${changed} of ${alike.length} primitives${stopped}; ${rest}`);
+  logger.info(`${NAME}: ${flips} flips in ${changed} of ${alike.length} primitives${stopped}; ${rest}${areas}`);
 }
 
 async function flipped(primitive: Primitive, stretch: Matrix | undefined, options: DelaunayOptions): Promise<Result> {

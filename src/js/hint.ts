@@ -7,7 +7,7 @@ import type { IndexArray, Result } from './types.js';
 const MOST_STRIDE = 32;
 
 /** The fields of a result that advice is based on. */
-type Outcome = Pick<Result, 'edges' | 'boundaryEdges' | 'nonManifoldEdges'>;
+type Outcome = Pick<Result, 'edges' | 'boundaryEdges' | 'nonManifoldEdges' | 'inverted' | 'flat'>;
 
 /**
  * Advice, as sentences, or `undefined`.
@@ -17,7 +17,7 @@ type Outcome = Pick<Result, 'edges' | 'boundaryEdges' | 'nonManifoldEdges'>;
  * @param alone - Why the CPU engine has one thread, if it could use more.
  */
 export function hintOf(
-  { edges, boundaryEdges, nonManifoldEdges }: Outcome,
+  { edges, boundaryEdges, nonManifoldEdges, inverted, flat }: Outcome,
   indices: Uint32Array,
   layout: Layout<IndexArray>,
   seams: number | undefined,
@@ -43,6 +43,16 @@ export function hintOf(
   } else if (stride !== undefined) {
     hints.push(
       `The triangles use only the first ${layout.dimension}/${stride} of the vertices. If positions have ${stride} numbers per vertex, pass stride: ${stride}.`,
+    );
+  }
+  if (inverted > 0) {
+    hints.push(
+      `Triangles that are turned over: ${inverted}. They overlap their neighbours, and no flip could turn them back. Move their vertices back, or triangulate the points again; verify lists these triangles.`,
+    );
+  }
+  if (flat > 0) {
+    hints.push(
+      `Triangles of no area: ${flat}. Their corners are on one line, and no flip removed them. Move a corner of each, or leave it out; verify lists these triangles.`,
     );
   }
   if (alone !== undefined) hints.push(`The CPU engine ran on one thread: ${alone}.`);

@@ -2,6 +2,7 @@
 
 /// <reference lib="esnext.disposable" preserve="true" />
 
+import type { Audit } from './audit.js';
 import type { EDGE_STATES } from './edge-states.js';
 import { EdgeflipError, fromModule } from './error.js';
 import type { Preparation } from './prepare.js';
@@ -16,7 +17,6 @@ import { MAKE_OPTIONS, RUN_OPTIONS, settingsOf, type Watch, watchOf } from './se
 import type { ModuleSession } from './threads.js';
 import { Turns } from './turn.js';
 import type {
-  Audit,
   Counters,
   DeviceMesh,
   Edges,

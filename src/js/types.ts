@@ -287,11 +287,17 @@ export interface Counters {
    */
   remaining: Reasons;
   /**
-   * Triangles that are not strictly positive, in the plane: flat or turned over, compared with the orientation of their
-   * component at the start of the session. Triangles with a coordinate that is not finite, or that a GPU cannot decide,
-   * count too.
+   * Triangles that are turned over, as {@link Result.inverted} counts them, compared with the orientation of their
+   * component at the start of the session.
    */
   inverted: number;
+  /** Triangles of no area. */
+  flat: number;
+  /**
+   * Triangles that are not decided: a coordinate is not finite, or the coordinates span more bits than WebGPU and WebGL2
+   * decide exactly, or reach 2^126.
+   */
+  undecided: number;
   /** Edges left alone, because a coordinate of their triangles is not finite. */
   nonFinite: number;
   /**
@@ -409,6 +415,14 @@ export interface Result<I extends IndexArray = Uint32Array> {
   /** Edges that are still not Delaunay. */
   remaining: Reasons;
   /**
+   * Triangles that are turned over, in the plane: they have not the orientation of their component. A component is
+   * connected over edges between two triangles of one orientation, and has the orientation of its total area; without
+   * an area it counts as counter-clockwise. 0 for a surface in space.
+   */
+  inverted: number;
+  /** Triangles of no area: their corners are on one line, exactly. */
+  flat: number;
+  /**
    * Times in milliseconds: `upload` is the preparation of a GPU and the copies to it, `adjacency` the construction of
    * the twins, `flip` the iterations, `total` all of it, but not `weld`, `reorient` and `constraints`. WebGPU in a
    * browser is awaited once, after the first iterations; `flip` then includes the copies and the adjacency.
@@ -430,22 +444,4 @@ export interface Edges {
   ta: Uint32Array;
   /** The half-edge in the second triangle, from `v2` to `v1`; 0xffffffff on the boundary and on frozen edges. */
   tb: Uint32Array;
-}
-
-/** The result of an independent check of the triangles against the input. */
-export interface Audit {
-  /** Whether there is no violation. Edges that are not Delaunay are no violation. */
-  clean: boolean;
-  /** The violations: at most 100 sentences. */
-  violations: string[];
-  /** How many more violations there are. */
-  unlisted: number;
-  /** The number of edges that are not Delaunay, by the reason why they cannot flip; `stopped` if they can. */
-  remaining: Reasons;
-  /**
-   * These edges, by reason, as pairs of vertices, one pair after the other. An array therefore serves as the index
-   * buffer of line segments. Each pair has the smaller vertex first, and the pairs are in ascending order. A reason
-   * without edges is absent.
-   */
-  remainingEdges: Partial<Record<Reason, Uint32Array>>;
 }

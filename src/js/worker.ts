@@ -14,6 +14,7 @@
 
 /// <reference lib="esnext.disposable" preserve="true" />
 
+import type { Audit } from './audit.js';
 import { buffersOf } from './buffers.js';
 import { EdgeflipError, fromModule } from './error.js';
 import { copyOf, messageOf, read } from './given.js';
@@ -23,7 +24,6 @@ import { namesOf } from './names.js';
 import { Remote } from './remote.js';
 import { RUN_OPTIONS, settingsOf, type Watch, WORKER_MAKE_OPTIONS, WORKER_OPTIONS, watchOf } from './settings.js';
 import type {
-  Audit,
   Counters,
   Edges,
   Engine,
@@ -40,6 +40,7 @@ import type {
 import { updateOf, WORKER_UPDATE_OPTIONS, type WorkerUpdateOptions } from './update.js';
 import type { Functions, Question, Watched } from './worker-script.js';
 
+export type { Audit } from './audit.js';
 export { EDGE_STATES, type EdgeState } from './edge-states.js';
 export { EdgeflipError, type ErrorCode } from './error.js';
 export type { ModuleSource, Sources } from './module.js';

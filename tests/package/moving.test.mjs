@@ -28,6 +28,8 @@ test('an update flips what it has a budget for, and the next one goes on', async
     flips: 0,
     remaining: (await session.counters()).remaining,
     inverted: 0,
+    flat: 0,
+    undecided: 0,
     nonFinite: 0,
     tooWide: 0,
   });
@@ -51,8 +53,8 @@ test('the mesh is Delaunay again in every frame', async () => {
     const first = (await session.counters()).flips;
     for (let frame = 0; frame < 20; frame++) {
       session.update({ positions: sheared(mesh, 0.1 * frame), iterations: 64 });
-      const { remaining, inverted, updates } = await session.counters();
-      assert.deepEqual([remaining, inverted, updates], [{}, 0, frame + 2]);
+      const { remaining, inverted, flat, updates } = await session.counters();
+      assert.deepEqual([remaining, inverted, flat, updates], [{}, 0, 0, frame + 2]);
     }
     assert.ok((await session.counters()).flips > 2 * first);
     const positions = sheared(mesh, 1.9);
@@ -69,16 +71,18 @@ test('a folded sheet is mended where flips can mend it', async () => {
   const square = { positions: new Float32Array([0, 0, 4, 0, 4, 4, 0, 4, 2, 2]), dimension: 2 };
   square.indices = new Uint32Array([0, 1, 4, 1, 2, 4, 2, 3, 4, 3, 0, 4]);
   const session = await FlipSession.create(square, onCpu);
-  // The middle vertex crosses an edge of the boundary, then comes back.
-  for (const [x, inverted] of [
-    [2, 0],
-    [-1, 1],
-    [1, 0],
+  // The middle vertex comes to an edge of the boundary, crosses it, then comes back.
+  for (const [x, inverted, flat] of [
+    [2, 0, 0],
+    [0, 0, 1],
+    [-1, 1, 0],
+    [1, 0, 0],
   ]) {
     const positions = square.positions.slice();
     positions[8] = x;
     session.update({ positions });
-    assert.equal((await session.counters()).inverted, inverted);
+    const counters = await session.counters();
+    assert.deepEqual([counters.inverted, counters.flat, counters.undecided], [inverted, flat, 0]);
   }
 });
 
@@ -87,11 +91,12 @@ test('a number that is not finite freezes its triangles for one frame', async ()
   const positions = sheared(mesh, 0);
   positions[200] = NaN;
   session.update({ positions, iterations: 64 });
-  const { nonFinite, remaining } = await session.counters();
-  assert.ok(nonFinite > 4 && !remaining.stopped);
+  const { nonFinite, undecided, inverted, flat, remaining } = await session.counters();
+  assert.ok(nonFinite > 4 && undecided > 2 && inverted + flat === 0 && !remaining.stopped);
   await assert.rejects(session.run(), { code: 'non-finite' });
   session.update({ positions: sheared(mesh, 0), iterations: 64 });
-  assert.equal((await session.counters()).nonFinite, 0);
+  const { nonFinite: left, undecided: open } = await session.counters();
+  assert.deepEqual([left, open], [0, 0]);
   assert.equal((await session.run()).flips, 0);
 });
 

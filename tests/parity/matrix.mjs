@@ -26,7 +26,8 @@ function compare(run, mesh, { backend, watched }) {
     assert.equal(run.iterations.length, mesh.iterations.length, 'iterations');
   }
   const flips = mesh.iterations.map((iteration) => iteration.flips);
-  assert.deepEqual(run.end, { digest: mesh.end, flips, status: 'done', remaining: mesh.remaining, backend }, 'the end');
+  const { end: digest, remaining, inverted, flat } = mesh;
+  assert.deepEqual(run.end, { digest, flips, status: 'done', remaining, inverted, flat, backend }, 'the end');
   return isWatched ? '=' : 'end';
 }
 

@@ -31,8 +31,9 @@ async function run({ positions, isWide, indices, dimension, beta, deviation, loc
         iterations.push({ labelled, flips, blocked, digest: `${digest}` });
       }
     }
-    const { indices, flipsPerIteration, status, remaining, backend } = await session.run();
-    const end = { digest: `${new Digest(indices)}`, flips: [...flipsPerIteration], status, remaining, backend };
+    const { indices, flipsPerIteration, status, remaining, inverted, flat, backend } = await session.run();
+    const [digest, flips] = [`${new Digest(indices)}`, [...flipsPerIteration]];
+    const end = { digest, flips, status, remaining, inverted, flat, backend };
     return { iterations, end };
   } finally {
     session.free();

@@ -1,0 +1,28 @@
+/** The type of the answer of `verify`. */
+
+import type { Reason, Reasons, Result } from './types.js';
+
+/** The result of an independent check of the triangles against the input. */
+export interface Audit {
+  /**
+   * Whether there is no violation, and no triangle is turned over. Edges that are not Delaunay and flat triangles do not
+   * count. A triangle that is turned over is no violation: it was so before, or no flip could turn it back.
+   */
+  clean: boolean;
+  /** The violations: at most 100 sentences. */
+  violations: string[];
+  /** How many more violations there are. */
+  unlisted: number;
+  /** The number of edges that are not Delaunay, by the reason why they cannot flip; `stopped` if they can. */
+  remaining: Reasons;
+  /**
+   * These edges, by reason, as pairs of vertices, one pair after the other. An array therefore serves as the index
+   * buffer of line segments. Each pair has the smaller vertex first, and the pairs are in ascending order. A reason
+   * without edges is absent.
+   */
+  remainingEdges: Partial<Record<Reason, Uint32Array>>;
+  /** The triangles that are turned over, as {@link Result.inverted} counts them, in ascending order. */
+  invertedTriangles: Uint32Array;
+  /** The triangles of no area, in ascending order. */
+  flatTriangles: Uint32Array;
+}
