@@ -118,3 +118,21 @@ test('a glTF file with its buffer in another file plays, and its download differ
   assert.deepEqual({ ...written, buffers: json.buffers }, json);
   await page.close();
 });
+
+test('triangles that are turned over or flat are in the numbers, and the sentence names those turned over', async () => {
+  // A square whose middle vertex lies below its lower side, a quad whose edge flips, and three points on a line
+  const points = ['0 0', '4 0', '4 4', '0 4', '2 -1', '10 0', '10.9 0.2', '11 1', '10 1', '20 0', '21 0', '22 0'];
+  const triangles = ['0 1 4', '1 2 4', '2 3 4', '3 0 4', '5 6 7', '5 7 8', '9 10 11'];
+  const lines = [...points.map((point) => `${point} 0`), ...triangles.map((triangle) => `3 ${triangle}`)];
+  const page = await sharedPage();
+  await page.open(file('dragged.off', `OFF\n${points.length} ${triangles.length} 0\n${lines.join('\n')}\n`));
+  const { facts } = await page.playToEnd();
+  assert.deepEqual([facts.Flips, facts['Turned over'], facts['No area']], ['1', '1 triangle', '1 triangle']);
+  assert.match(await page.page.$eval('#status', ({ textContent }) => textContent), / 1 triangle is turned over\.$/);
+  await page.scrub('Home');
+  await page.close();
+  const whole = await sharedPage();
+  const { facts: others } = await whole.playToEnd();
+  assert.deepEqual([others['Turned over'], others['No area']], [undefined, undefined]);
+  await whole.close();
+});

@@ -15,10 +15,12 @@ const SHARE = 0.05;
 export interface Numbers {
   /** Flips in a frame. */
   flips: number;
-  /** Edges that the next frames flip, edges that no flip makes Delaunay, and triangles that are turned over. */
+  /** Edges that the next frames flip, and edges that no flip makes Delaunay. */
   left: number;
   kept: number;
+  /** Triangles that are turned over, and triangles of no area. */
   inverted: number;
+  flat: number;
   /** Milliseconds from a frame to the next, and until the work of a frame is done. */
   each: number;
   work: number;
@@ -151,7 +153,7 @@ export class FrameLoop {
 
   async #ask(): Promise<void> {
     const start = this.#starts;
-    const { flips, updates, remaining, inverted } = await this.moving.counters();
+    const { flips, updates, remaining, inverted, flat } = await this.moving.counters();
     const frames = Math.max(1, updates - this.#counted.updates);
     const inFrame = (flips - this.#counted.flips) / frames;
     this.#counted = { flips, updates };
@@ -159,7 +161,7 @@ export class FrameLoop {
     const kept = Object.values(others).reduce((sum, count) => sum + count, 0);
     // Counts of frames before a pause come too late.
     if (start === this.#starts)
-      this.#told({ flips: inFrame, left, kept, inverted, each: this.#each, work: this.#work });
+      this.#told({ flips: inFrame, left, kept, inverted, flat, each: this.#each, work: this.#work });
   }
 
   /** Whether the mesh is on the screen. */

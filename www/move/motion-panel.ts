@@ -47,7 +47,7 @@ export class MotionPanel {
   }
 
   show(numbers: Numbers, isPlaying: boolean): void {
-    const { flips, left, kept, inverted, each, work } = numbers;
+    const { flips, left, kept, inverted, flat, each, work } = numbers;
     if (isPlaying) this.#flips.push(flips);
     if (this.#flips.length > MOST) this.#flips.shift();
     this.#draw();
@@ -68,6 +68,7 @@ export class MotionPanel {
       'Left for the next frame': number.format(left),
       'Not Delaunay, and cannot flip': number.format(kept),
       'Turned over': number.format(inverted),
+      'No area': number.format(flat),
     });
   }
 

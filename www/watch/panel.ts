@@ -5,7 +5,7 @@ import type { IndexedMesh, Measures } from 'edgeflip/files';
 import { AnglesChart } from './charts.ts';
 import { element } from './controls.ts';
 import type { Quality } from './mesh-worker.ts';
-import { degrees, digits, ms, number } from '../shell/numbers.ts';
+import { counted, degrees, digits, ms, number } from '../shell/numbers.ts';
 import type { Palette } from './palette.ts';
 import type { Run, Summary } from './run.ts';
 
@@ -88,6 +88,7 @@ export class Panel {
       Iterations: number.format(run.iterations.length),
       Flips: number.format(flips),
       'Not Delaunay': run.isNewest ? measured(reasons(summary.remaining)) : reasons(notDelaunayAt(run)),
+      ...(run.isNewest ? { ...areas('Turned over', summary.inverted), ...areas('No area', summary.flat) } : {}),
       'Set-up': `${ms.format(timings.upload + timings.adjacency)} ms`,
       'Flips and counts': `${ms.format(watched)} ms`,
       Fingerprint: fingerprint ?? '…',
@@ -168,6 +169,11 @@ function notDelaunayAt({ at, iterations }: Run): Reasons {
 
 function frozen(name: string, count: number): Record<string, string> {
   return count > 0 ? { [name]: `${number.format(count)} edges, left as they are` } : {};
+}
+
+/** Triangles whose area is not positive. */
+function areas(name: string, count: number): Record<string, string> {
+  return count > 0 ? { [name]: counted(count, 'triangle') } : {};
 }
 
 /** Fills a description list; each value has its term as `data-fact`. */

@@ -48,9 +48,9 @@ export function statusOf(
 ): [bold: string, rest: string] {
   const { at, isOver, iterations } = run;
   if (isOver && summary?.iterations === iterations.length) {
-    const kept = keptOf(summary.remaining);
-    if (at === 0) return kept ? ['', `Nothing can flip. ${kept}`] : ['', 'Already Delaunay. Try “Scramble”.'];
-    return ['Done.', kept ? `Every edge is Delaunay, but for ${kept}` : 'Every edge is Delaunay.'];
+    const [kept, turned] = [keptOf(summary.remaining), turnedOf(summary.inverted)];
+    if (at === 0) return ['', (kept ? `Nothing can flip. ${kept}` : 'Already Delaunay. Try “Scramble”.') + turned];
+    return ['Done.', (kept ? `Every edge is Delaunay, but for ${kept}` : 'Every edge is Delaunay.') + turned];
   }
   const next = iterations[at] ?? ahead?.[at];
   if (at === 0) return ['', next ? `${counted(next.labelled, 'edge')} can flip. Press play.` : 'Press play.'];
@@ -63,6 +63,11 @@ export function statusOf(
     `Iteration ${number.format(at + 1)}${of}.`,
     `${counted(next.flips, 'edge')} ${next.flips === 1 ? 'flips' : 'flip'} at once${rest}`,
   ];
+}
+
+/** A sentence about triangles that are turned over, after another one; nothing if there are none. */
+function turnedOf(inverted: number): string {
+  return inverted > 0 ? ` ${counted(inverted, 'triangle')} ${inverted === 1 ? 'is' : 'are'} turned over.` : '';
 }
 
 /** The edges that stay; nothing if there are none. */
