@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 /// # Errors
 /// [`Error::UnknownFormat`], [`Error::Io`], and those of [`parse`](super::parse).
 pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Mesh, Error> {
-    load(path, &ReadOptions { keep: false, ..*options }).map(|loaded| loaded.mesh)
+    load(path, &ReadOptions { keep: false, ..options.clone() }).map(|loaded| loaded.mesh)
 }
 
 /// As [`read`], and returns what else the file holds and how it was read.

@@ -3,7 +3,7 @@
 
 use super::parsed::Others;
 use crate::system::threads::Threads;
-use crate::{Adjacency, Error, Mesh, NONE, Wedges, reoriented};
+use crate::{Error, Mesh, NONE};
 use memchr::memchr2;
 use std::borrow::Borrow;
 use std::collections::HashMap;
@@ -17,18 +17,23 @@ const FACES: usize = 1 << 14;
 pub(super) struct Faces<'a> {
     /// Consecutive lists.
     pub(super) lists: Vec<Vec<Face>>,
-    /// A number for each corner of their triangles. Two corners of a vertex have the same number if they have the same
-    /// attributes. Empty if no corner has attributes.
-    pub(super) corners: Vec<u32>,
+    /// The names of the attributes of faces.
+    pub(super) names: Vec<String>,
+    /// The values of these attributes in each group of faces, by its number; empty for none.
+    pub(super) groups: Vec<Vec<&'a [u8]>>,
+    /// The attributes of corners.
+    pub(super) corners: Vec<CornerAttribute>,
     /// Byte ranges of the numbers in the header that grow with the number of faces.
     pub(super) counts: Vec<Range<usize>>,
     /// The bytes between two faces.
     pub(super) separator: &'a [u8],
-    /// Writes a triangle: its group, its vertices, and the numbers of its corners, 0 if `corners` is empty.
+    /// Writes a triangle.
     pub(super) write: Write<'a>,
 }
 
-type Write<'a> = Box<dyn Fn(&mut Vec<u8>, u32, [u32; 3], [u32; 3]) -> Result<(), Error> + Sync + 'a>;
+/// Writes a triangle: the values of its group, its vertices, and for each of [`Faces::corners`] the numbers of its three
+/// corners.
+type Write<'a> = Box<dyn Fn(&mut Vec<u8>, &[&[u8]], [u32; 3], &[[u32; 3]]) -> Result<(), Error> + Sync + 'a>;
 
 /// A face that makes triangles.
 pub(super) struct Face {
@@ -36,8 +41,20 @@ pub(super) struct Face {
     pub(super) bytes: Range<usize>,
     /// The number of triangles that it is cut into.
     pub(super) triangles: usize,
-    /// A number, equal for faces with the same attributes.
+    /// The number of its group: faces with the same attributes.
     pub(super) group: u32,
+}
+
+/// An attribute of the corners of triangles.
+pub(super) struct CornerAttribute {
+    pub(super) name: String,
+    /// Whether edges may flip where it differs.
+    pub(super) is_ignored: bool,
+    /// A number for each corner of the triangles. Two corners of a vertex have the same number if they have the same
+    /// value; if the attribute is ignored, all corners with the same value.
+    pub(super) numbers: Vec<u32>,
+    /// The number of corners without a value, if there are such corners.
+    pub(super) absent: Option<u32>,
 }
 
 impl Faces<'_> {
@@ -49,53 +66,6 @@ impl Faces<'_> {
     /// The number of triangles of each list.
     pub(super) fn triangles(&self, threads: &Threads) -> Vec<usize> {
         threads.map_each(self.lists(), |list| list.iter().map(|face| face.triangles).sum())
-    }
-
-    /// The group of each triangle; empty if there is only one group.
-    pub(super) fn groups(&self) -> Vec<u32> {
-        let mut faces = self.lists.iter().flatten();
-        let Some(first) = faces.next() else { return Vec::new() };
-        if faces.all(|face| face.group == first.group) {
-            return Vec::new();
-        }
-        let faces = self.lists.iter().flatten();
-        faces.flat_map(|face| std::iter::repeat_n(face.group, face.triangles)).collect()
-    }
-
-    /// The wedges of the mesh and, if its orientation is inconsistent, those of the [`reoriented`] mesh.
-    pub(super) fn wedges(&self, mesh: &Mesh) -> Result<Vec<Wedges>, Error> {
-        if self.corners.is_empty() {
-            return Ok(Vec::new());
-        }
-        let mut all = vec![Wedges::new(mesh, self.corners.clone())?];
-        if Adjacency::new(mesh).inconsistent > 0 {
-            let (turned, count) = reoriented(mesh)?;
-            if count > 0 {
-                let mut corners = self.corners.clone();
-                let triangles = [mesh, &turned].map(|mesh| mesh.triangles().as_chunks::<3>().0);
-                for (t, corners) in corners.as_chunks_mut::<3>().0.iter_mut().enumerate() {
-                    if triangles[0][t] != triangles[1][t] {
-                        corners.swap(1, 2);
-                    }
-                }
-                all.push(Wedges::new(&turned, corners)?);
-            }
-        }
-        Ok(all)
-    }
-
-    /// The number of each corner of the triangles `after`.
-    pub(super) fn carried(&self, mesh: &Mesh, after: &Mesh) -> Result<Vec<u32>, Error> {
-        let mut wedges = self.wedges(mesh)?;
-        let Some(mut last) = wedges.pop() else { return Ok(Vec::new()) };
-        // Flips do not change the number of inconsistent edges. If it is unchanged, no triangle was reversed.
-        if let Some(first) = wedges.pop() {
-            let inconsistent = |mesh: &Mesh| Adjacency::new(mesh).inconsistent;
-            if inconsistent(mesh) == inconsistent(after) {
-                last = first;
-            }
-        }
-        last.carried(after.triangles())
     }
 }
 
@@ -137,20 +107,26 @@ impl<K: Clone + Eq + Hash> Numbers<K> {
     }
 }
 
-/// Numbers the attributes of the corners of a mesh, from 0, and returns the attributes of each number. Corners of a
-/// vertex with equal keys have the same number.
-pub(super) fn numbered<T: Copy + PartialEq, K: Eq + Hash>(
+/// An attribute with a value for each corner of a mesh, and the values by their numbers. Values with the same key count
+/// as the same. `T::default()` means that there is no value. `None` if no corner has a value.
+pub(super) fn of_corners<T: Copy + Default + PartialEq, K: Eq + Hash>(
     mesh: &Mesh,
-    corners: &[T],
+    name: &str,
+    values: &[T],
+    ignored: &[String],
     mut key: impl FnMut(T) -> K,
-) -> (Vec<u32>, Vec<T>) {
+) -> Option<(CornerAttribute, Vec<T>)> {
+    if values.iter().all(|value| *value == T::default()) {
+        return None;
+    }
+    let is_ignored = ignored.iter().any(|ignored| ignored == name);
     let mut known: Vec<T> = Vec::new();
     // Most vertices have one number for all their corners.
     let mut first = vec![NONE; mesh.vertex_count()];
     let mut further = HashMap::new();
-    let numbers = mesh.triangles().iter().zip(corners).map(|(&vertex, &corner)| {
-        let first = &mut first[vertex as usize];
-        if known.get(*first as usize).is_some_and(|&first| first == corner || key(first) == key(corner)) {
+    let numbers = mesh.triangles().iter().zip(values).map(|(&vertex, &value)| {
+        let first = &mut first[if is_ignored { 0 } else { vertex as usize }];
+        if known.get(*first as usize).is_some_and(|&first| first == value || key(first) == key(value)) {
             return *first;
         }
         let next = known.len() as u32;
@@ -158,14 +134,16 @@ pub(super) fn numbered<T: Copy + PartialEq, K: Eq + Hash>(
             *first = next;
             next
         } else {
-            *further.entry((vertex, key(corner))).or_insert(next)
+            *further.entry((if is_ignored { 0 } else { vertex }, key(value))).or_insert(next)
         };
         if number == next {
-            known.push(corner);
+            known.push(value);
         }
         number
     });
-    (numbers.collect(), known)
+    let numbers = numbers.collect();
+    let absent = known.iter().position(|value| *value == T::default()).map(|number| number as u32);
+    Some((CornerAttribute { name: name.to_owned(), is_ignored, numbers, absent }, known))
 }
 
 /// The corners of the triangles that the faces are cut into, face by face.

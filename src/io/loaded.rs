@@ -1,5 +1,6 @@
 //! A mesh together with its file, to write the file again with other triangles.
 
+use super::attributes::AttributeEdges;
 use super::format::Format;
 use super::gltf;
 use super::gzip;
@@ -77,20 +78,23 @@ impl Loaded {
     }
 
     /// Adds locks to the options of a run, so that faces and corners keep their attributes in a file of the same
-    /// format. Returns the number of locked edges. They are the borders of groups of triangles with the same material
-    /// or colour, and seams, where corners of a vertex differ in texture coordinates or normals. A glTF file needs no
-    /// locks, since its attributes belong to vertices.
+    /// format. Returns the locked edges. They are the borders of groups of triangles with the same material or colour,
+    /// and seams, where corners of a vertex differ in texture coordinates or normals; but not those of attributes that
+    /// [`ReadOptions::ignore_attributes`](super::ReadOptions) names. A glTF file needs no locks, since its attributes
+    /// belong to vertices.
     ///
     /// # Errors
     /// [`Error::TriangleCount`] if [`Loaded::mesh`] is not the mesh of the file.
-    pub fn constrain(&self, options: &mut Options) -> Result<usize, Error> {
-        self.original.as_ref().map_or(Ok(0), |original| original.constrain(&self.mesh, options))
+    pub fn constrain(&self, options: &mut Options) -> Result<AttributeEdges, Error> {
+        let original = self.original.as_ref();
+        original.map_or(Ok(AttributeEdges::default()), |original| original.constrain(&self.mesh, options))
     }
 
     /// The bytes of a file with this name that holds the mesh with other triangles, gzip'd if the name ends in `.gz`.
     /// In the same format it is the same file, and only faces that contain a changed triangle are rewritten. If the run
     /// was [constrained](Loaded::constrain), each triangle keeps the attributes of its face, and each new corner has
-    /// the attributes of its vertex there. A glTF file gets other indices, as `.gltf` or `.glb`. In other formats, the
+    /// the attributes of its vertex there. An ignored attribute of corners that is the same in a whole triangle stays
+    /// the same there; else each new corner has that of a corner of an old triangle beside it. A glTF file gets other indices, as `.gltf` or `.glb`. In other formats, the
     /// parts of a glTF file have their positions in the scene.
     ///
     /// # Errors

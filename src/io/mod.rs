@@ -8,6 +8,7 @@
 //! text, -0 and 0 for different positions, and NaN for a number. The tests compare with `ply-rs-bw` and `stl_io`. The
 //! crate `flate2` handles gzip, and `gltf` the JSON of glTF.
 
+mod attributes;
 mod coordinates;
 #[cfg(not(target_arch = "wasm32"))]
 mod file;
@@ -39,6 +40,7 @@ mod text;
 mod wait;
 mod write;
 
+pub use attributes::AttributeEdges;
 #[cfg(not(target_arch = "wasm32"))]
 pub use file::{load, read, read_edges, read_numbers};
 pub use format::Format;

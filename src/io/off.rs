@@ -66,7 +66,7 @@ pub(super) fn held_faces(bytes: &[u8]) -> Result<Faces<'_>, Error> {
     let pieces = pieces::cut(&lines, is_content, &threads);
     let read = |piece, continues| {
         let Piece { mut lines, items } = piece;
-        let (mut list, mut colours, mut item) = (Vec::new(), Numbers::default(), items.start);
+        let (mut list, mut colours, mut item) = (Vec::new(), Numbers::<Vec<&[u8]>>::default(), items.start);
         while let Some(mut tokens) = content(&mut lines) {
             let start = range_in(bytes, tokens.0.trim_ascii_start()).start;
             let is_face = item >= header.vertices;
@@ -78,7 +78,7 @@ pub(super) fn held_faces(bytes: &[u8]) -> Result<Faces<'_>, Error> {
             item += 1;
             if is_face {
                 let end = range_in(bytes, tokens.0.trim_ascii_end()).end;
-                let group = colours.of(&tokens.0.trim_ascii());
+                let group = colours.of([tokens.0.trim_ascii()].as_slice());
                 list.push(Face { bytes: start..end, triangles: (numbers as usize).saturating_sub(2), group });
             }
         }
@@ -86,31 +86,37 @@ pub(super) fn held_faces(bytes: &[u8]) -> Result<Faces<'_>, Error> {
     };
     let parts: Option<Vec<_>> = threads.map_each(pieces, |piece| read(piece, false)).into_iter().collect();
     let parts = parts.unwrap_or_else(|| read(Piece::whole(&lines), true).into_iter().collect());
-    let (mut lists, mut colours) = (Vec::new(), Numbers::default());
+    let (mut lists, mut colours) = (Vec::new(), Numbers::<Vec<&[u8]>>::default());
     for (mut list, known) in parts {
         // Replaces the group numbers of the piece by those of the file.
-        let groups: Vec<u32> = known.iter().map(|colour| colours.of(colour)).collect();
+        let groups: Vec<u32> = known.iter().map(|colour| colours.of(colour.as_slice())).collect();
         if groups.iter().zip(0..).any(|(&group, own)| group != own) {
             list.iter_mut().for_each(|face| face.group = groups[face.group as usize]);
         }
         lists.push(list);
     }
-    let colours = colours.into_known();
-    let write = move |out: &mut Vec<u8>, group: u32, triangle: [u32; 3], _: [u32; 3]| {
+    let write = |out: &mut Vec<u8>, colour: &[&[u8]], triangle: [u32; 3], _: &[[u32; 3]]| {
         let mut digits = Digits::default();
         out.push(b'3');
         for vertex in triangle {
             out.push(b' ');
             digits.integer(out, vertex.into());
         }
-        let colour = colours[group as usize];
-        if !colour.is_empty() {
+        for colour in colour.iter().filter(|colour| !colour.is_empty()) {
             out.push(b' ');
             out.extend_from_slice(colour);
         }
         Ok(())
     };
-    Ok(Faces { lists, corners: Vec::new(), counts, separator: line_end(bytes), write: Box::new(write) })
+    Ok(Faces {
+        lists,
+        names: vec!["colour".to_owned()],
+        groups: colours.into_known(),
+        corners: Vec::new(),
+        counts,
+        separator: line_end(bytes),
+        write: Box::new(write),
+    })
 }
 
 /// Writes `mesh`; z is 0 in a 2D mesh.

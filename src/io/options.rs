@@ -12,7 +12,7 @@ pub enum Coordinates {
 }
 
 /// The options for reading a file.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ReadOptions {
     /// Whether the mesh is in the plane. `None`: it is in the plane if the file has two coordinates per vertex or every
     /// z is 0; a glTF file is always in space.
@@ -29,6 +29,11 @@ pub struct ReadOptions {
     /// Whether to hold an OFF, OBJ, PLY or binary STL file in memory together with the mesh, so that it can be written
     /// again with its attributes. True by default. A glTF file is always held.
     pub keep: bool,
+    /// The names of attributes of faces and corners that lock no edges in [`Loaded::constrain`](super::Loaded): in PLY
+    /// the names of the properties of faces, in OBJ the keywords `vt`, `vn`, `usemtl`, `g`, `o`, `s`, `mg` and `usemap`,
+    /// in OFF `colour`, in binary STL `attribute`. Each new triangle keeps those of the face that it replaces. A name
+    /// that the file does not have is an error.
+    pub ignore_attributes: Vec<String>,
 }
 
 impl Default for ReadOptions {
@@ -38,6 +43,7 @@ impl Default for ReadOptions {
             coordinates: None,
             external_files: false,
             keep: true,
+            ignore_attributes: Vec::new(),
             max_bytes: if cfg!(target_arch = "wasm32") { 1 << 30 } else { 1 << 32 },
         }
     }

@@ -1,10 +1,10 @@
 //! A held OFF, OBJ, PLY or STL file: written again with other triangles, and with everything else unchanged.
 
+use super::attributes::AttributeEdges;
 use super::format::Format;
-use super::held::{Face, Faces, Numbers};
+use super::held::{Face, Faces};
 use super::parsed::Others;
 use super::{obj, off, pieces, ply, stl, text};
-use crate::session::locks;
 use crate::{Error, Mesh, Options};
 use std::borrow::Cow;
 use std::sync::atomic::AtomicU64;
@@ -20,39 +20,25 @@ pub(super) struct Original {
     /// The number of its triangles, if neither its faces nor their corners have attributes.
     pub(super) plain: Option<usize>,
     pub(super) others: Others,
+    /// The names of the attributes of faces and corners that lock no edges.
+    pub(super) ignored: Vec<String>,
 }
 
 /// Bytes that a thread writes between two checks of the total.
 const COUNTED: usize = 1 << 16;
 
 impl Original {
-    /// Adds the locks that keep the attributes to `options`, and returns the number of locked edges.
-    pub(super) fn constrain(&self, mesh: &Mesh, options: &mut Options) -> Result<usize, Error> {
+    /// Adds the locks that keep the attributes to `options`, and returns the locked edges.
+    pub(super) fn constrain(&self, mesh: &Mesh, options: &mut Options) -> Result<AttributeEdges, Error> {
         if self.plain == Some(mesh.triangle_count()) {
-            return Ok(0);
+            return Ok(AttributeEdges::default());
         }
-        let faces = self.faces(mesh)?;
-        let mut own = Options { groups: faces.groups(), ..Options::default() };
-        for wedges in faces.wedges(mesh)? {
-            own.locked_edges.extend_from_slice(wedges.locked_edges());
-            own.locked_triangles.extend_from_slice(wedges.locked_triangles());
-        }
-        let mut locked = locks::edges(mesh, &own)?;
-        locked.iter_mut().for_each(|ends| ends.sort_unstable());
-        locked.sort_unstable();
-        locked.dedup();
-        options.locked_edges.append(&mut own.locked_edges);
-        options.locked_triangles.append(&mut own.locked_triangles);
-        if options.groups.is_empty() {
-            options.groups = own.groups;
-        } else {
-            // Two triangles are in one group if both divisions have them in one group.
-            let mut numbers = Numbers::default();
-            for (group, own) in options.groups.iter_mut().zip(own.groups) {
-                *group = numbers.of(&(*group, own));
-            }
-        }
-        Ok(locked.len())
+        self.faces(mesh)?.lock(mesh, &self.ignored, options)
+    }
+
+    /// Refuses ignored attributes that the file does not have.
+    pub(super) fn check_ignored(&self, mesh: &Mesh) -> Result<(), Error> {
+        if self.ignored.is_empty() { Ok(()) } else { self.faces(mesh)?.check(&self.ignored) }
     }
 
     /// The bytes of the file with the triangles of `after`, in parts. Faces without a changed triangle stay; other
@@ -72,7 +58,8 @@ impl Original {
         let rewriting = Rewriting {
             original: self,
             faces,
-            triangles: [mesh.triangles(), after.triangles(), &corners].map(|numbers| numbers.as_chunks().0),
+            triangles: [mesh, after].map(|mesh| mesh.triangles().as_chunks().0),
+            corners: corners.iter().map(|numbers| numbers.as_chunks().0).collect(),
             length: AtomicU64::new(start as u64),
         };
         let parts = threads.map_each(pieces.collect(), |piece| rewriting.piece(&piece));
@@ -97,8 +84,8 @@ impl Original {
         let bytes = &self.bytes;
         let faces = match self.format {
             Format::Off => off::held_faces(bytes),
-            Format::Obj => Ok(obj::held_faces(bytes, mesh, &self.others)),
-            Format::Ply => ply::held_faces(bytes, mesh, &self.others),
+            Format::Obj => Ok(obj::held_faces(bytes, mesh, &self.others, &self.ignored)),
+            Format::Ply => ply::held_faces(bytes, mesh, &self.others, &self.ignored),
             _ => Ok(stl::held_faces(bytes, mesh)),
         }?;
         let expected = 3 * faces.triangles(&pieces::threads(bytes.len())).iter().sum::<usize>();
@@ -120,8 +107,10 @@ struct Piece<'a> {
 struct Rewriting<'a> {
     original: &'a Original,
     faces: &'a Faces<'a>,
-    /// The triangles before and after, and the numbers of the corners.
-    triangles: [&'a [[u32; 3]]; 3],
+    /// The triangles before and after.
+    triangles: [&'a [[u32; 3]]; 2],
+    /// The numbers of the corners for each of [`Faces::corners`].
+    corners: Vec<&'a [[u32; 3]]>,
     /// Bytes that all threads have written. It only grows, so the result of the check does not depend on their order.
     length: AtomicU64,
 }
@@ -129,10 +118,11 @@ struct Rewriting<'a> {
 impl Rewriting<'_> {
     /// The bytes of a piece, and how many faces it has in addition.
     fn piece(&self, piece: &Piece) -> Result<(Vec<u8>, u64), Error> {
-        let (bytes, [before, after, corners]) = (&self.original.bytes, self.triangles);
+        let (bytes, [before, after]) = (&self.original.bytes, self.triangles);
         let mut copied = piece.list[0].bytes.start;
         let mut out = Vec::with_capacity(piece.end - copied);
         let (mut counted, mut more, mut next) = (0, 0, piece.first);
+        let mut corners = Vec::new();
         for face in piece.list {
             let triangles = next..next + face.triangles;
             next = triangles.end;
@@ -142,13 +132,14 @@ impl Rewriting<'_> {
             out.extend_from_slice(&bytes[copied..face.bytes.start]);
             copied = face.bytes.end;
             more += face.triangles as u64 - 1;
-            let start = triangles.start;
+            let (start, values) = (triangles.start, &self.faces.groups[face.group as usize]);
             for triangle in triangles {
                 if triangle > start {
                     out.extend_from_slice(self.faces.separator);
                 }
-                let corners = corners.get(triangle).copied().unwrap_or_default();
-                (self.faces.write)(&mut out, face.group, after[triangle], corners)?;
+                corners.clear();
+                corners.extend(self.corners.iter().map(|numbers| numbers[triangle]));
+                (self.faces.write)(&mut out, values, after[triangle], &corners)?;
                 // Each triangle repeats the attributes of its polygon.
                 if out.len() >= counted + COUNTED {
                     self.length.fetch_add((out.len() - counted) as u64, Relaxed);

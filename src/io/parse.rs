@@ -1,5 +1,6 @@
 //! Parses the bytes of a file of any format.
 
+use super::attributes::refuse_unknown;
 use super::format::Format;
 use super::loaded::Loaded;
 use super::options::{Coordinates, ReadFile, ReadOptions};
@@ -15,7 +16,7 @@ use std::borrow::Cow;
 ///
 /// # Errors
 /// [`Error::Parse`], which names the line, the byte, or the vertex whose z is not 0 in a 2D mesh; [`Error::TooLarge`];
-/// [`Error::FileTooLarge`].
+/// [`Error::FileTooLarge`]; [`Error::Option`] for a name in `ignore_attributes` that the file does not have.
 pub fn parse<'a>(
     format: Format,
     bytes: impl Into<Cow<'a, [u8]>>,
@@ -56,8 +57,9 @@ pub fn parse_with<'a>(
         Format::Gltf | Format::Glb => {
             let gltf::Content { parsed, document, notes } =
                 gltf::read(bytes.into_owned(), read, options.max_bytes)?;
+            refuse_unknown(&options.ignore_attributes, &[])?;
             let dimension = options.dimension.or(Some(Dimension::Three));
-            let (loaded, _) = finish(parsed, &ReadOptions { dimension, ..*options })?;
+            let (loaded, _) = finish(parsed, &ReadOptions { dimension, ..options.clone() })?;
             return Ok(Loaded { notes, document: Some(document), ..loaded });
         }
     };
@@ -66,14 +68,21 @@ pub fn parse_with<'a>(
     let (loaded, others) = finish(parsed, options)?;
     let max_bytes = options.max_bytes;
     let plain = is_plain.then_some(loaded.mesh.triangle_count());
-    let original = (options.keep && can_be_held).then(|| Original {
+    let ignored = options.ignore_attributes.clone();
+    let is_needed = options.keep || !ignored.is_empty();
+    let original = (is_needed && can_be_held).then(|| Original {
         format,
         bytes: bytes.into_owned(),
         max_bytes,
         plain,
         others,
+        ignored,
     });
-    Ok(Loaded { original, ..loaded })
+    match &original {
+        Some(original) => original.check_ignored(&loaded.mesh)?,
+        None => refuse_unknown(&options.ignore_attributes, &[])?,
+    }
+    Ok(Loaded { original: original.filter(|_| options.keep), ..loaded })
 }
 
 /// Text with a UTF-16 byte order mark, converted to UTF-8; `None` for other text.

@@ -3,7 +3,7 @@
 //! "StereoLithography Interface Specification", 1988.
 
 use super::coordinates::{self, Float, Reading};
-use super::held::{Face, Faces};
+use super::held::{Face, Faces, Numbers};
 use super::options::Coordinates;
 use super::parsed::{CutFaces, Dropped, Parsed};
 use super::rounded::rounded;
@@ -64,19 +64,23 @@ fn bytes_of(corners: [Vec3; 3], attribute: [u8; 2]) -> [u8; FACET] {
 /// The facets of a binary file that has been read. The attribute of a facet, a colour in some dialects, is its group.
 pub(super) fn held_faces<'a>(bytes: &'a [u8], mesh: &'a Mesh) -> Faces<'a> {
     let (facets, _) = bytes.get(HEADER..).unwrap_or_default().as_chunks::<FACET>();
-    let face = |(f, facet): (usize, &[u8; FACET])| {
+    let mut groups = Numbers::<Vec<&[u8]>>::default();
+    let face = |(f, facet): (usize, &'a [u8; FACET])| {
         let start = HEADER + FACET * f;
-        let group = u16::from_le_bytes([facet[ATTRIBUTE], facet[ATTRIBUTE + 1]]);
-        Face { bytes: start..start + FACET, triangles: 1, group: group.into() }
+        let group = groups.of([&facet[ATTRIBUTE..]].as_slice());
+        Face { bytes: start..start + FACET, triangles: 1, group }
     };
     let list = facets.iter().enumerate().map(face).collect();
-    let write = move |out: &mut Vec<u8>, group: u32, triangle: [u32; 3], _: [u32; 3]| {
+    let write = move |out: &mut Vec<u8>, attribute: &[&[u8]], triangle: [u32; 3], _: &[[u32; 3]]| {
         let corners = triangle.map(|v| mesh.point3(v).as_vec3());
-        out.extend_from_slice(&bytes_of(corners, (group as u16).to_le_bytes()));
+        let attribute = attribute.first().and_then(|attribute| attribute.first_chunk());
+        out.extend_from_slice(&bytes_of(corners, attribute.copied().unwrap_or_default()));
         Ok(())
     };
     Faces {
         lists: vec![list],
+        names: vec!["attribute".to_owned()],
+        groups: groups.into_known(),
         corners: Vec::new(),
         counts: Vec::new(),
         separator: b"",

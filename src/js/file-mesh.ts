@@ -34,6 +34,12 @@ export interface FileMesh extends IndexedMesh {
    */
   placed: Float32Array | undefined;
   /**
+   * The attributes of faces and corners that lock edges, and how many edges each locks: the largest number first.
+   * Several attributes may lock the same edge. An edge may flip if {@link ReadOptions.ignoreAttributes} names all that
+   * lock it.
+   */
+  attributeEdges: { name: string; edges: number }[];
+  /**
    * Pass these three as options of the same names to a run, so that `writeMesh` can keep the attributes of faces
    * and corners. `groups` has a number for each triangle, such as the index of its material. `lockedEdges` has the
    * seams, where corners of a vertex differ in texture coordinates or normals. `lockedTriangles` has triangles whose
@@ -62,6 +68,13 @@ export interface ReadOptions {
    * when the file is read. If the function throws, `readMesh` throws the same error. Nothing is fetched.
    */
   files?: Files | FindFile | undefined;
+  /**
+   * The names of attributes of faces and corners that lock no edges: in PLY the names of the properties of faces, in OBJ
+   * the keywords `vt`, `vn`, `usemtl`, `g`, `o`, `s`, `mg` and `usemap`, in OFF `colour`, in binary STL `attribute`. A
+   * name that the file does not have is an error. Give `original` the same names: then each new triangle keeps what the
+   * triangle that it replaces has.
+   */
+  ignoreAttributes?: readonly string[] | undefined;
 }
 
 /** The options of `writeMesh`. */
@@ -70,7 +83,8 @@ export interface WriteOptions {
    * The file that the mesh was read from; the positions must be those of the file. In the same format, the result is
    * this file with other triangles. A glTF file gets other indices, as `.gltf` or `.glb`. In OFF, OBJ, PLY and binary
    * STL, only faces that contain a changed triangle are rewritten, as triangles with the attributes of their face. The
-   * run needs {@link FileMesh.groups}, {@link FileMesh.lockedEdges} and {@link FileMesh.lockedTriangles} as options.
+   * run needs {@link FileMesh.groups}, {@link FileMesh.lockedEdges} and {@link FileMesh.lockedTriangles} as options, and
+   * `original` the `ignoreAttributes` that the file was read with.
    */
   original?: Original | undefined;
 }

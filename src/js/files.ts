@@ -20,7 +20,17 @@ import { areFilesLoaded, loadFiles } from './load-files.js';
 import { checkDimension, type Mesh32, moduleMesh } from './mesh.js';
 import { initOf } from './module.js';
 import { namesOf, optionsOf } from './names.js';
-import { attributesOf, bytesOf, coordinatesOf, filesOf, foundBy, maxBytesOf, originalOf, textOf } from './settings.js';
+import {
+  attributeNamesOf,
+  attributesOf,
+  bytesOf,
+  coordinatesOf,
+  filesOf,
+  foundBy,
+  maxBytesOf,
+  originalOf,
+  textOf,
+} from './settings.js';
 import type { Attributes, Bytes, IndexArray, LeftOut, Mesh, Original, VertexArray } from './types.js';
 
 export { EdgeflipError, type ErrorCode } from './error.js';
@@ -157,7 +167,13 @@ export interface Change {
  */
 export const init = initOf('files', { files: loadFiles });
 
-const READ_OPTIONS = namesOf<ReadOptions>({ dimension: true, coordinates: true, maxBytes: true, files: true });
+const READ_OPTIONS = namesOf<ReadOptions>({
+  dimension: true,
+  coordinates: true,
+  maxBytes: true,
+  files: true,
+  ignoreAttributes: true,
+});
 const LOCKS = namesOf<Locks>({ lockedEdges: true, lockedTriangles: true, groups: true });
 const NONE = new Uint32Array();
 const WRITE_OPTIONS = namesOf<WriteOptions>({ original: true });
@@ -178,10 +194,17 @@ export async function readMesh(bytes: Uint8Array, name: string, options: ReadOpt
   const [view, file] = [bytesOf(bytes, 'bytes'), textOf(name, 'name')];
   const failures: unknown[] = [];
   const { dimension, files, ...more } = read('the options', () => {
-    const { dimension, coordinates, maxBytes, files } = optionsOf(options, READ_OPTIONS) as ReadOptions;
+    const given = optionsOf(options, READ_OPTIONS) as ReadOptions;
+    const { dimension, coordinates, maxBytes, files, ignoreAttributes } = given;
     if (dimension !== undefined) checkDimension(dimension);
     const found = typeof files === 'function' ? foundBy(files, failures) : filesOf(files, held);
-    return { dimension, files: found, maxBytes: maxBytesOf(maxBytes), coordinates: coordinatesOf(coordinates) };
+    return {
+      dimension,
+      files: found,
+      maxBytes: maxBytesOf(maxBytes),
+      coordinates: coordinatesOf(coordinates),
+      ignoreAttributes: attributeNamesOf(ignoreAttributes),
+    };
   });
   // The module counts bytes with 32 bits.
   if (view.length >= 2 ** 32) throw new EdgeflipError('file-too-large', 'the file has more than 4294967295 bytes');

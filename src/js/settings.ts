@@ -174,13 +174,15 @@ export function attributesOf(attributes: Attributes, hold: Hold): readonly Verte
 /** @throws {@link EdgeflipError} `invalid-input`. */
 export function originalOf(original: Original, hold: Hold): Required<Original> {
   return read('the original', () => {
-    const { bytes, name, files, maxBytes, coordinates } = objectOf(original, 'original') as unknown as Original;
+    const given = objectOf(original, 'original') as unknown as Original;
+    const { bytes, name, files, maxBytes, coordinates, ignoreAttributes } = given;
     return {
       bytes: hold(bytesOf(bytes, 'original.bytes'), 'original.bytes'),
       name: textOf(name, 'original.name'),
       files: filesOf(files, hold),
       maxBytes: maxBytesOf(maxBytes),
       coordinates: coordinatesOf(coordinates),
+      ignoreAttributes: attributeNamesOf(ignoreAttributes),
     };
   });
 }
@@ -229,6 +231,17 @@ export function maxBytesOf(given: number | undefined): number | undefined {
 export function coordinatesOf(given: 32 | 64 | undefined): 32 | 64 | undefined {
   if (given === undefined || given === 32 || given === 64) return given;
   throw new EdgeflipError('invalid-input', `coordinates: ${shown(given)} is not 32 or 64`);
+}
+
+/** @throws {@link EdgeflipError} `invalid-input`. */
+export function attributeNamesOf(given: readonly string[] | undefined): string[] {
+  if (given === undefined) return [];
+  const length = Array.isArray(given) ? given.length : Infinity;
+  if (length > MOST_ATTRIBUTES) {
+    const most = `a list of at most ${MOST_ATTRIBUTES} names`;
+    throw new EdgeflipError('invalid-input', `ignoreAttributes: ${shown(given)} is not ${most}`);
+  }
+  return Array.from({ length }, (_, i) => textOf(given[i]!, `ignoreAttributes: name ${i}`));
 }
 
 /** @throws {@link EdgeflipError} `invalid-input`. */

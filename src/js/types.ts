@@ -1,5 +1,9 @@
 /** The types of the input, the options and the results. */
 
+import type { Original } from './original.js';
+
+export type { Files, Original } from './original.js';
+
 /** A `GPUDevice`, where the types of WebGPU are known. */
 export type GpuDevice = typeof globalThis extends { GPUDevice: { prototype: infer T } } ? T : unknown;
 
@@ -72,18 +76,6 @@ export interface DeviceMesh {
   vertices?: number | undefined;
   /** The number of triangles, if `indices` has more. Default: all that it has. */
   triangles?: number | undefined;
-}
-
-/** The bytes of files by name, such as `{ 'scene.bin': bytes }`. */
-export type Files = Readonly<Record<string, Uint8Array>>;
-
-/** The file that a mesh was read from, and the options that it was read with. */
-export interface Original {
-  bytes: Uint8Array;
-  name: string;
-  files?: Files | undefined;
-  maxBytes?: number | undefined;
-  coordinates?: 32 | 64 | undefined;
 }
 
 /** An attribute of the vertices: the same count of numbers for each vertex, such as 2 texture coordinates. */

@@ -5,6 +5,7 @@
 mod areas;
 mod constraint_options;
 mod files;
+mod ignore_options;
 mod joins;
 mod lock_options;
 mod shown;
@@ -16,7 +17,7 @@ use std::fs;
 use std::time::Instant;
 
 /// The keys of the object that `--json` prints, in their order.
-const KEYS: [&str; 32] = [
+const KEYS: [&str; 33] = [
     "input",
     "vertices",
     "triangles",
@@ -50,6 +51,7 @@ const KEYS: [&str; 32] = [
     "seam_edges",
     "moved_triangles",
     "attribute_edges",
+    "attribute_edges_by_name",
     "ms",
 ];
 

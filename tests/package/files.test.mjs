@@ -63,7 +63,7 @@ test('a module that cannot be loaded is an error, and the next call tries again'
 });
 
 /** The fields of a file without notes. */
-const FREE = { groups: undefined, lockedEdges: undefined, lockedTriangles: undefined };
+const FREE = { attributeEdges: [], groups: undefined, lockedEdges: undefined, lockedTriangles: undefined };
 const PLAIN = { polygons: 0, crossing: undefined, dropped: [], keeps: true, notes: [], placed: undefined, ...FREE };
 
 test('every format keeps every bit, in both dimensions', async () => {
@@ -222,6 +222,43 @@ test('with `original`, a file is written with other triangles and is otherwise u
   const strips =
     'ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nelement tristrips 1\nproperty list int int vertex_index\nend_header\n0 0\n1 0\n0 1\n3 0 1 2\n';
   assert.equal((await readMesh(bytes(strips), 'a.ply')).keeps, false);
+});
+
+test('ignored attributes lock no edges, and stay in the file', async () => {
+  const points = 'v -3 0 0\nv 0 -1 0\nv 3 0 0\nv 0 1 0\n';
+  const ply =
+    'ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nelement face 2\nproperty list uchar int vertex_indices\nproperty int id\nend_header\n-3 0\n0 -1\n3 0\n0 1\n';
+  const normals = `${points}vn 0 0 1\nvn 0 0.0001 1\n`;
+  for (const [name, attribute, before, faces, after] of [
+    ['a.ply', 'id', ply, '3 0 1 2 7\n3 0 2 3 8\n', '3 3 1 2 7\n3 0 1 3 8\n'],
+    ['a.obj', 'vn', normals, 'f 1//1 2//1 3//1\nf 1//2 3//2 4//2\n', 'f 4//1 2//1 3//1\nf 1//2 2//2 4//2\n'],
+  ]) {
+    const file = bytes(before + faces);
+    const flipped = async (options) => {
+      const mesh = await readMesh(file, name, options);
+      const { groups, lockedEdges, lockedTriangles } = mesh;
+      const { indices } = await makeDelaunay(mesh, { groups, lockedEdges, lockedTriangles });
+      const original = { bytes: file, name, ...options };
+      return { mesh, written: text(await writeMesh({ ...mesh, indices }, name, { original })) };
+    };
+    const kept = await flipped({});
+    assert.deepEqual([kept.mesh.attributeEdges, kept.written], [[{ name: attribute, edges: 1 }], before + faces]);
+    const ignored = await flipped({ ignoreAttributes: [attribute] });
+    assert.deepEqual([ignored.mesh.attributeEdges, ignored.written], [[], before + after]);
+    const unknown = refused(
+      'invalid-option',
+      new RegExp(`^option ignoreAttributes: no attribute .* named \`red\`; the file has: \`${attribute}\`$`),
+    );
+    await assert.rejects(readMesh(file, name, { ignoreAttributes: [attribute, 'red'] }), unknown);
+    const original = { bytes: file, name, ignoreAttributes: ['red'] };
+    await assert.rejects(writeMesh(kept.mesh, name, { original }), unknown);
+  }
+  for (const wrong of ['vn', [1], [undefined], new Array(2000), new Set(['vn']), null]) {
+    await assert.rejects(
+      readMesh(bytes(points), 'a.obj', { ignoreAttributes: wrong }),
+      refused('invalid-input', /^ignoreAttributes: .* is not a (string|list of at most 1024 names)$/),
+    );
+  }
 });
 
 test('the dimension is that of the file, or that of the option', async () => {

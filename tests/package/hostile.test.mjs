@@ -61,6 +61,7 @@ const originalPaths = (at) => [
   [...at, 'files', 'b.bin'],
   [...at, 'maxBytes'],
   [...at, 'coordinates'],
+  [...at, 'ignoreAttributes'],
 ];
 /** Options of a run, and options for work before the run. */
 const plain = (threads) => ({ backend: 'cpu', threads });

@@ -106,7 +106,9 @@ function remarkOnFile(mesh: FileMesh): string {
     ? `The outline of ${number.format(mesh.crossing.length)} of them crosses or touches itself: face ${mesh.crossing[0]}.`
     : '';
   const dropped = mesh.dropped.length > 0 && !mesh.keeps ? `Not kept: ${mesh.dropped.join(', ')}.` : '';
-  const isDivided = mesh.groups ?? mesh.lockedEdges ?? mesh.lockedTriangles;
-  const locked = isDivided ? 'Edges between groups of faces or along seams are locked.' : '';
+  const [most, ...others] = mesh.attributeEdges;
+  const locked = most
+    ? `${number.format(most.edges)} edges are locked to keep the attribute “${most.name}”${others.length > 0 ? ', more to keep others' : ''}.`
+    : '';
   return [cut, crossing, dropped, locked, ...mesh.notes.map((note) => `${note}.`)].filter(Boolean).join(' ');
 }

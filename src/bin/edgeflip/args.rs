@@ -21,9 +21,9 @@ Vertices keep their number and order. Polygons are cut into triangles.
 If OUT has the format of IN, it is IN with other triangles: normals, colours, texture coordinates,
 groups, materials and comments stay, and so does a polygon whose edges stay. Faces and corners keep
 their attributes: edges between groups of faces that differ (OBJ: usemtl, g, o, s; OFF, PLY, STL: other
-attributes of faces) and edges along seams never flip, unless --drop-attributes is given. If OUT has
-another format, only positions and triangles are written. The same holds for text STL, and for PLY with
-triangle strips.
+attributes of faces) and edges along seams never flip, unless --ignore-attribute or --drop-attributes is
+given. If OUT has another format, only positions and triangles are written. The same holds for text STL,
+and for PLY with triangle strips.
 
 Exit status:
   0   done; also when stopped by --max-iterations
@@ -90,6 +90,15 @@ pub struct Args {
     /// glTF, whose parts share no vertices.
     #[arg(long)]
     pub drop_attributes: bool,
+
+    /// Let edges flip where this attribute of faces or corners differs; may be given several times
+    ///
+    /// NAME is a property of faces in PLY; vt, vn, usemtl, g, o, s, mg or usemap in OBJ; colour in OFF; attribute in
+    /// binary STL. OUT keeps the attribute: a new triangle has that of the triangle that it replaces. If it differs
+    /// within that triangle, each corner has that of a corner of a triangle beside it. A name that IN does not have is
+    /// an error. The summary and --json name the attributes that lock edges.
+    #[arg(long, value_name = "NAME")]
+    pub ignore_attribute: Vec<String>,
 
     /// Read the buffers of a glTF file from other files, in its folder and folders below
     ///
@@ -196,7 +205,8 @@ pub struct Args {
     /// device_bytes, remaining (by reason), inverted (triangles that are turned over, in the plane: they have not the
     /// orientation of the total area of their component), flat (triangles of no area), min_angle_before_deg, min_angle_after_deg, before and after (min_angle_deg,
     /// mean_min_angle_deg, mean_aspect, flat_triangles, area, volume), turned_triangles, joined_vertices, seam_edges,
-    /// moved_triangles, attribute_edges (locked to keep attributes), ms (wall times in milliseconds, see below), and
+    /// moved_triangles, attribute_edges (locked to keep attributes), attribute_edges_by_name (how many each attribute
+    /// locks; several may lock the same edge), ms (wall times in milliseconds, see below), and
     /// with --verify audit (the violations), clean (no violation, and no inverted triangle), inverted_triangles and
     /// flat_triangles (counted from 0), remaining_edges (by reason, the two vertices of each edge left, counted
     /// from 0) and distance (between the surfaces before and after).
@@ -254,6 +264,7 @@ impl Args {
             max_bytes: self.max_bytes,
             external_files: self.external_files,
             keep: is_same && !self.drop_attributes && !self.weld,
+            ignore_attributes: self.ignore_attribute.clone(),
         }
     }
 

@@ -2,11 +2,11 @@
 
 use crate::args::Args;
 use crate::failure::Failure;
-use edgeflip::io::{Format, Loaded};
+use edgeflip::io::{AttributeEdges, Format, Loaded};
 use edgeflip::quality::{self, Measures};
 use edgeflip::{Dimension, Error, LeftOut, Mesh, Outcome, Positions, Reasons, Status, Timings, Welded};
 use indicatif::{HumanBytes, HumanCount};
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::mem;
@@ -49,6 +49,8 @@ pub struct Report {
     seam_edges: usize,
     moved_triangles: usize,
     attribute_edges: usize,
+    #[serde(serialize_with = "as_object")]
+    attribute_edges_by_name: Vec<(String, usize)>,
     pub ms: Milliseconds,
     #[serde(flatten)]
     check: Option<Check>,
@@ -216,6 +218,7 @@ impl Report {
             seam_edges: 0,
             moved_triangles: moved,
             attribute_edges: 0,
+            attribute_edges_by_name: Vec::new(),
             ms,
             check,
             left: outcome.remaining,
@@ -232,10 +235,11 @@ impl Report {
         self
     }
 
-    /// Adds notes about the file that was read and about what a file of this format loses, and the number of edges
-    /// locked to keep attributes.
-    pub fn with_attributes(mut self, loaded: &Loaded, format: Format, locked: usize) -> Self {
-        self.attribute_edges = locked;
+    /// Adds notes about the file that was read and about what a file of this format loses, and the edges locked to keep
+    /// attributes.
+    pub fn with_attributes(mut self, loaded: &Loaded, format: Format, locked: AttributeEdges) -> Self {
+        self.attribute_edges = locked.count;
+        self.attribute_edges_by_name = locked.by_name;
         self.notes.clone_from(&loaded.notes);
         if loaded.polygons > 0 {
             let polygons = HumanCount(loaded.polygons as u64);
@@ -299,8 +303,7 @@ impl Report {
         }
         if self.attribute_edges > 0 {
             let edges = HumanCount(self.attribute_edges as u64);
-            let what = "edges between groups or along seams stay; --drop-attributes lets them flip";
-            line("locked", format!("{edges} {what}"));
+            line("locked", format!("{edges} edges stay to keep {}", kept(&self.attribute_edges_by_name)));
         }
         let adapter = self.adapter.as_ref().map(|name| format!(" ({name})")).unwrap_or_default();
         line("backend", format!("{}{adapter}", self.backend));
@@ -385,6 +388,29 @@ impl Report {
         }
         text
     }
+}
+
+/// The attributes that edges stay for, and what lets them flip.
+fn kept(by_name: &[(String, usize)]) -> String {
+    // On one line, printable, short.
+    let short = |name: &str| name.chars().take(40).flat_map(char::escape_debug).collect::<String>();
+    let of_each =
+        |(name, count): &(String, usize)| format!("{} `{}`", HumanCount(*count as u64), short(name));
+    match by_name {
+        [(name, _)] => {
+            let name = short(name);
+            format!("the attribute `{name}`; --ignore-attribute {name} lets them flip")
+        }
+        _ => format!(
+            "attributes: {}; an edge may flip if --ignore-attribute names all that it stays for",
+            listed(by_name, of_each)
+        ),
+    }
+}
+
+/// Pairs as an object with their names.
+fn as_object<S: Serializer>(pairs: &[(String, usize)], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_map(pairs.iter().map(|(name, count)| (name, count)))
 }
 
 /// Formats a number of any size.

@@ -2,12 +2,15 @@
 
 use super::lines::continued;
 use crate::Mesh;
-use crate::io::held::{Corners, Face, Faces, Numbers, line_end, numbered, range_in};
+use crate::io::held::{Corners, Face, Faces, Numbers, line_end, of_corners, range_in};
 use crate::io::parsed::Others;
 use crate::io::text::{Digits, Lines, Tokens, integer, without_comment};
 
 /// Keywords of lines that apply to all faces after them.
-const STATES: [&[u8]; 6] = [b"usemtl", b"g", b"o", b"s", b"mg", b"usemap"];
+const STATES: [&str; 6] = ["usemtl", "g", "o", "s", "mg", "usemap"];
+
+/// Keywords of the lines that corners refer to.
+const REFERRED: [&str; 2] = ["vt", "vn"];
 
 /// The texture vertex and the normal of a corner, counted from 1; 0 for none.
 type References = [u32; 2];
@@ -16,12 +19,17 @@ type References = [u32; 2];
 type Texts<'a> = Vec<(&'a [u8], Option<u32>)>;
 
 /// The faces of a file that has been read.
-pub(in crate::io) fn held_faces<'a>(bytes: &'a [u8], mesh: &Mesh, others: &Others) -> Faces<'a> {
+pub(in crate::io) fn held_faces<'a>(
+    bytes: &'a [u8],
+    mesh: &Mesh,
+    others: &Others,
+    ignored: &[String],
+) -> Faces<'a> {
     let mut list = Vec::new();
     let mut texts: [Texts; 2] = Default::default();
-    let mut references: Vec<References> = Vec::new();
-    let (mut states, mut names) = ([None; STATES.len()], Numbers::default());
-    let (mut groups, mut group) = (Numbers::default(), None);
+    let mut references: [Vec<u32>; 2] = Default::default();
+    let mut states = [b"".as_slice(); STATES.len()];
+    let (mut groups, mut group) = (Numbers::<Vec<&[u8]>>::default(), None);
     let (mut corners, mut cut) = (Vec::<References>::new(), Corners::new(others));
     let mut lines = Lines::new(bytes);
     while let Some(line) = lines.next() {
@@ -36,42 +44,47 @@ pub(in crate::io) fn held_faces<'a>(bytes: &'a [u8], mesh: &Mesh, others: &Other
                 corners.clear();
                 corners.extend(tokens.map(|corner| resolved(corner, &texts)));
                 let triangles = corners.len().saturating_sub(2);
-                let group = *group.get_or_insert_with(|| groups.of(&states));
+                let group = *group.get_or_insert_with(|| groups.of(states.as_slice()));
                 list.push(Face { bytes: start..end, triangles, group });
-                references.extend(cut.of_next(triangles).map(|corner| corners[corner]));
+                for corner in cut.of_next(triangles) {
+                    (0..2).for_each(|kind| references[kind].push(corners[corner][kind]));
+                }
             }
             Some(b"vt") => texts[0].push((text, None)),
             Some(b"vn") => texts[1].push((text, None)),
             Some(keyword) => {
-                if let Some(state) = STATES.iter().position(|&state| state == keyword) {
+                if let Some(state) = STATES.iter().position(|state| state.as_bytes() == keyword) {
                     // A name may contain #, so this takes the whole line.
                     let end = bytes.len() - lines.bytes_left();
-                    states[state] = Some(names.of(&after_keyword(&bytes[start..end])));
+                    states[state] = after_keyword(&bytes[start..end]);
                     group = None;
                 }
             }
         }
     }
-    let mut numbers = Numbers::default();
-    let value = |references: References| {
-        [0, 1].map(|kind| {
-            let index = (references[kind] as usize).wrapping_sub(1);
+    let (mut attributes, mut known) = (Vec::new(), Vec::new());
+    for (kind, name) in REFERRED.into_iter().enumerate() {
+        let (texts, mut numbers) = (&mut texts[kind], Numbers::default());
+        let key = |reference: u32| {
             // A reference to a line that does not exist is compared by its index.
-            let found = texts[kind].get_mut(index).ok_or(references[kind]);
-            found.map(|(text, number)| *number.get_or_insert_with(|| numbers.of(text)))
-        })
-    };
-    if references.iter().all(|corner| *corner == [0, 0]) {
-        references.clear();
+            let found = texts.get_mut((reference as usize).wrapping_sub(1)).ok_or(reference);
+            found.map(|(text, number)| *number.get_or_insert_with(|| numbers.of(*text)))
+        };
+        if let Some((attribute, references)) = of_corners(mesh, name, &references[kind], ignored, key) {
+            attributes.push(attribute);
+            known.push((kind, references));
+        }
     }
-    let (corners, known) = numbered(mesh, &references, value);
-    let write = move |out: &mut Vec<u8>, _: u32, triangle: [u32; 3], corners: [u32; 3]| {
+    let write = move |out: &mut Vec<u8>, _: &[&[u8]], triangle: [u32; 3], corners: &[[u32; 3]]| {
         let mut digits = Digits::default();
         out.push(b'f');
-        for (vertex, corner) in triangle.into_iter().zip(corners) {
+        for (k, vertex) in triangle.into_iter().enumerate() {
             out.push(b' ');
             digits.integer(out, u64::from(vertex) + 1);
-            let references = known.get(corner as usize).copied().unwrap_or_default();
+            let mut references = References::default();
+            for ((kind, known), numbers) in known.iter().zip(corners) {
+                references[*kind] = known[numbers[k] as usize];
+            }
             let parts = references.iter().rposition(|&reference| reference > 0).map_or(0, |last| last + 1);
             for &reference in &references[..parts] {
                 out.push(b'/');
@@ -84,7 +97,9 @@ pub(in crate::io) fn held_faces<'a>(bytes: &'a [u8], mesh: &Mesh, others: &Other
     };
     Faces {
         lists: vec![list],
-        corners,
+        names: STATES.map(str::to_owned).to_vec(),
+        groups: groups.into_known(),
+        corners: attributes,
         counts: Vec::new(),
         separator: line_end(bytes),
         write: Box::new(write),

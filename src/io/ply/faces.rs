@@ -2,13 +2,13 @@
 
 use super::header::{Element, Encoding, Header, Property, Role, Scalar, role};
 use super::source::{Ascii, Source, binary};
-use crate::io::held::{Corners, Face, Faces, Numbers, line_end, numbered, range_in};
+use crate::io::held::{Corners, Face, Faces, Numbers, line_end, of_corners, range_in};
 use crate::io::parsed::Others;
 use crate::io::text::{Digits, Lines, Tokens, quoted};
 use crate::{Error, Mesh};
 
 /// The property with two numbers for each corner of a face.
-const TEXTURE: &[u8] = b"texcoord";
+const TEXTURE: &str = "texcoord";
 
 /// Whether a file that has been read can be written again with other triangles: it has no triangle strips.
 pub(in crate::io) fn is_held(bytes: &[u8]) -> bool {
@@ -21,13 +21,14 @@ pub(in crate::io) fn held_faces<'a>(
     bytes: &'a [u8],
     mesh: &Mesh,
     others: &Others,
+    ignored: &[String],
 ) -> Result<Faces<'a>, Error> {
     let mut lines = Lines::new(bytes);
     let Header { encoding, elements } = Header::parse(&mut lines)?;
     let cut = Corners::new(others);
     match encoding {
-        Encoding::Ascii => of(bytes, Ascii::new(lines, false), &elements, encoding, mesh, cut),
-        _ => of(bytes, binary(bytes, &lines, encoding), &elements, encoding, mesh, cut),
+        Encoding::Ascii => of(bytes, Ascii::new(lines, false), &elements, encoding, mesh, cut, ignored),
+        _ => of(bytes, binary(bytes, &lines, encoding), &elements, encoding, mesh, cut, ignored),
     }
 }
 
@@ -48,6 +49,7 @@ fn of<'a>(
     encoding: Encoding,
     mesh: &Mesh,
     mut cut: Corners,
+    ignored: &[String],
 ) -> Result<Faces<'a>, Error> {
     let (mut list, mut corners, mut counts) = (Vec::new(), Vec::new(), Vec::new());
     let mut form = Form { encoding, properties: Vec::new(), vertices: 0, texture: None };
@@ -61,7 +63,7 @@ fn of<'a>(
         let at = |test: &dyn Fn(&Property) -> bool| element.properties.iter().position(test);
         form.properties.clone_from(&element.properties);
         form.vertices = at(&|property| role(b"face", property) == Role::Polygon).unwrap_or_default();
-        form.texture = at(&|property| property.name == TEXTURE && property.length.is_some());
+        form.texture = at(&|property| property.name == TEXTURE.as_bytes() && property.length.is_some());
         let (mut values, mut pieces) = (Vec::new(), Vec::new());
         for _ in 0..element.count {
             source.begin();
@@ -77,19 +79,32 @@ fn of<'a>(
             corners.extend(cut.of_next(triangles).map(piece));
         }
     }
-    let groups = groups.into_known();
-    let (corners, coordinates) = numbered(mesh, &corners, |piece: &[u8]| piece);
+    let name = |(_, property): (usize, &Property)| String::from_utf8_lossy(property.name).into_owned();
+    let others = form.properties.iter().enumerate().filter(|&(i, _)| i != form.vertices);
+    let names = others.map(name).collect();
+    let texture = of_corners(mesh, TEXTURE, &corners, ignored, |piece: &[u8]| piece);
+    let (corners, coordinates) = texture.unzip();
     let separator = if encoding == Encoding::Ascii { line_end(bytes) } else { b"" };
-    let write = move |out: &mut Vec<u8>, group: u32, triangle: [u32; 3], corners: [u32; 3]| {
+    let write = move |out: &mut Vec<u8>, values: &[&[u8]], triangle: [u32; 3], corners: &[[u32; 3]]| {
+        let coordinates = coordinates.as_deref().unwrap_or_default();
+        let corners = corners.first().copied().unwrap_or_default();
         let corners = corners.map(|corner| coordinates.get(corner as usize).copied().unwrap_or_default());
-        form.write(out, &groups[group as usize], triangle, corners)
+        form.write(out, values, triangle, corners)
     };
-    Ok(Faces { lists: vec![list], corners, counts, separator, write: Box::new(write) })
+    Ok(Faces {
+        lists: vec![list],
+        names,
+        groups: groups.into_known(),
+        corners: corners.into_iter().collect(),
+        counts,
+        separator,
+        write: Box::new(write),
+    })
 }
 
 impl<'a> Form<'a> {
-    /// Reads a face, and returns its number of triangles. Fills `pieces` with the texture coordinates of each corner,
-    /// and `values` with the other properties except the vertices.
+    /// Reads a face, and returns its number of triangles. Fills `values` with all properties except the vertices, and
+    /// `pieces` with the texture coordinates of each corner; then their list in `values` is empty.
     fn read(
         &self,
         source: &mut impl Source<'a>,
@@ -115,7 +130,7 @@ impl<'a> Form<'a> {
         if let (Some((index, count)), Some(texture)) = (texture, self.texture)
             && count == 2 * corners
         {
-            self.divide(values.remove(index), &self.properties[texture], pieces);
+            self.divide(std::mem::take(&mut values[index]), &self.properties[texture], pieces);
         }
         Ok((corners as usize).saturating_sub(2))
     }
@@ -138,7 +153,7 @@ impl<'a> Form<'a> {
         if self.encoding == Encoding::Ascii { bytes.trim_ascii() } else { bytes }
     }
 
-    /// Writes a triangle with these values and the texture coordinates of its corners.
+    /// Writes a triangle with these values. If the texture coordinates are empty there, it takes those of the corners.
     fn write(
         &self,
         out: &mut Vec<u8>,
@@ -148,9 +163,9 @@ impl<'a> Form<'a> {
     ) -> Result<(), Error> {
         let start = out.len();
         let mut values = values.iter();
-        let has_pieces = values.len() + 2 == self.properties.len();
         for (i, property) in self.properties.iter().enumerate() {
             let length = property.length.unwrap_or(property.scalar);
+            let value = if i == self.vertices { None } else { values.next() };
             if i == self.vertices {
                 if let Some(vertex) = triangle.iter().find(|&&vertex| vertex > property.scalar.most()) {
                     let message =
@@ -159,7 +174,7 @@ impl<'a> Form<'a> {
                 }
                 self.put(out, start, length, 3);
                 triangle.iter().for_each(|&vertex| self.put(out, start, property.scalar, vertex));
-            } else if has_pieces && Some(i) == self.texture {
+            } else if Some(i) == self.texture && value.is_some_and(|value| value.is_empty()) {
                 if let Some(i) = corners.iter().position(|corner| corner.is_empty()) {
                     let (vertex, name) = (triangle[i], quoted(property.name));
                     let message =
@@ -168,7 +183,7 @@ impl<'a> Form<'a> {
                 }
                 self.put(out, start, length, 6);
                 corners.iter().for_each(|corner| self.put_bytes(out, start, corner));
-            } else if let Some(value) = values.next() {
+            } else if let Some(value) = value {
                 self.put_bytes(out, start, value);
             }
         }

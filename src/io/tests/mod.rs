@@ -2,6 +2,7 @@
 
 mod coordinates;
 mod gzip;
+mod ignored;
 mod original;
 #[cfg(feature = "threads")]
 mod pieces;

@@ -14,16 +14,16 @@ use std::ops::ControlFlow;
 ///   | /  1
 ///   0 -'
 /// ```
-const SQUARE: [&str; 4] = ["0 0 0", "0.9000000001 0.2 0", "1 1 0", "0 1 0"];
+pub(super) const SQUARE: [&str; 4] = ["0 0 0", "0.9000000001 0.2 0", "1 1 0", "0 1 0"];
 /// The triangles after the flip of 0-2 in 0 1 2, 0 2 3, as the engines write them.
-const FLIPPED: [u32; 6] = [3, 1, 2, 0, 1, 3];
+pub(super) const FLIPPED: [u32; 6] = [3, 1, 2, 0, 1, 3];
 
 /// Makes the mesh of a file Delaunay, with locks for its attributes. Returns the number of locked edges, and the file
 /// written in the same format.
 fn run(format: Format, bytes: impl AsRef<[u8]>) -> (usize, Vec<u32>, Vec<u8>) {
     let loaded = parsed(format, bytes).unwrap();
     let mut options = Options { backend: crate::Backend::Cpu, ..Options::default() };
-    let locked = loaded.constrain(&mut options).unwrap();
+    let locked = loaded.constrain(&mut options).unwrap().count;
     let outcome = make_delaunay(&loaded.mesh, &options, |_, _| ControlFlow::Continue(())).unwrap();
     let written = loaded.file_bytes(named(format), outcome.triangles.clone()).unwrap();
     let back = in_dimension(format, &written, loaded.mesh.dimension()).unwrap();
@@ -42,17 +42,17 @@ fn named(format: Format) -> &'static str {
     }
 }
 
-fn text(bytes: Vec<u8>) -> String {
+pub(super) fn text(bytes: Vec<u8>) -> String {
     String::from_utf8(bytes).unwrap()
 }
 
 /// An OBJ file of [`SQUARE`], followed by these lines.
-fn square_obj(rest: &str) -> String {
+pub(super) fn square_obj(rest: &str) -> String {
     SQUARE.map(|point| format!("v {point}\n")).concat() + rest
 }
 
 /// A PLY file as text: vertices with a colour, and faces with these additional properties.
-fn square_ply(properties: &str, faces: &str) -> String {
+pub(super) fn square_ply(properties: &str, faces: &str) -> String {
     let points = SQUARE.map(|point| format!("{point} 7\n")).concat();
     let count = faces.lines().count();
     format!(
@@ -151,7 +151,7 @@ fn groups_of_obj_faces_keep_their_border() {
 fn groups_of_the_options_are_divided_further() {
     let loaded = obj(square_obj("f 1 2 3\nusemtl n\nf 1 3 4\nf 4 3 1\n")).unwrap();
     let mut options = Options { groups: vec![9, 9, 5], ..Options::default() };
-    assert_eq!(loaded.constrain(&mut options).unwrap(), 1);
+    assert_eq!(loaded.constrain(&mut options).unwrap().count, 1);
     assert_eq!(options.groups, [0, 1, 2]);
 }
 
@@ -208,7 +208,7 @@ fn triangles_may_have_been_reversed_first() {
     );
     let loaded = obj(&file).unwrap();
     let mut options = Options::default();
-    assert_eq!(loaded.constrain(&mut options).unwrap(), 1);
+    assert_eq!(loaded.constrain(&mut options).unwrap().count, 1);
     options.locked_edges.dedup();
     assert_eq!(options.locked_edges, [[0, 1]]);
     let (turned, count) = reoriented(&loaded.mesh).unwrap();

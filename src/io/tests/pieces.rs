@@ -47,7 +47,7 @@ fn off_is_the_same_in_pieces() {
         assert_eq!((loaded.mesh.vertex_count(), loaded.polygons), (80, 13));
         let groups = same(|| {
             let mut options = Options::default();
-            (loaded.constrain(&mut options).unwrap(), options.groups)
+            (loaded.constrain(&mut options).unwrap().count, options.groups)
         });
         assert!(groups.1.contains(&1));
         let turned: Vec<u32> = loaded.mesh.triangles().iter().rev().copied().collect();

@@ -20,9 +20,9 @@ const MAX_BINS: u32 = 1 << 16;
 
 #[wasm_bindgen]
 extern "C" {
-    /// A file. `files` is an object with the bytes of other files by their names; `maxBytes` and `coordinates`, 32 or
-    /// 64, are as in [`ReadOptions`].
-    #[wasm_bindgen(typescript_type = "Required<import('../types.js').Original>")]
+    /// A file. `files` is an object with the bytes of other files by their names; `maxBytes`, `coordinates`, 32 or 64,
+    /// and `ignoreAttributes` are as in [`ReadOptions`].
+    #[wasm_bindgen(typescript_type = "Required<import('../original.js').Original>")]
     pub type JsFile;
 
     #[wasm_bindgen(method, getter)]
@@ -35,17 +35,23 @@ extern "C" {
     fn max_bytes(this: &JsFile) -> Option<f64>;
     #[wasm_bindgen(method, getter)]
     fn coordinates(this: &JsFile) -> Option<u32>;
+    #[wasm_bindgen(method, getter, js_name = ignoreAttributes)]
+    fn ignore_attributes(this: &JsFile) -> Vec<String>;
 }
 
 /// Reads the mesh of a file; `dimension` is as in [`ReadOptions`].
 ///
 /// # Errors
-/// Those of [`Format::of`] and [`io::parse_with`]; [`Error::Option`] for `maxBytes`.
+/// Those of [`Format::of`] and [`io::parse_with`]; [`Error::Option`] for `maxBytes` and `ignoreAttributes`.
 #[wasm_bindgen(js_name = readMesh, unchecked_return_type = "import('../files.js').FileMesh")]
 pub fn read_mesh(file: &JsFile, dimension: Option<u32>) -> Result<JsValue, JsValue> {
     let loaded = load(file, dimension).map_err(thrown)?;
     let mut constraints = Options::default();
-    loaded.constrain(&mut constraints).map_err(thrown)?;
+    let locked = loaded.constrain(&mut constraints).map_err(thrown)?;
+    let attribute_edges = locked
+        .by_name
+        .into_iter()
+        .map(|(name, edges)| object([("name", name.into()), ("edges", (edges as f64).into())]));
     let numbers = |numbers: &[u32]| {
         if numbers.is_empty() { JsValue::UNDEFINED } else { Uint32Array::from(numbers).into() }
     };
@@ -63,6 +69,7 @@ pub fn read_mesh(file: &JsFile, dimension: Option<u32>) -> Result<JsValue, JsVal
         ("keeps", Format::of(Path::new(&file.name())).is_ok_and(|format| loaded.keeps(format)).into()),
         ("notes", texts(&loaded.notes)),
         ("placed", placed),
+        ("attributeEdges", attribute_edges.collect::<Array>().into()),
         ("groups", numbers(&constraints.groups)),
         ("lockedEdges", numbers(constraints.locked_edges.as_flattened())),
         ("lockedTriangles", numbers(&constraints.locked_triangles)),
@@ -98,6 +105,7 @@ fn load(file: &JsFile, dimension: Option<u32>) -> Result<Loaded, Error> {
     options.dimension = dimension.map(dimension_of);
     options.coordinates =
         file.coordinates().map(|bits| if bits == 32 { Coordinates::F32 } else { Coordinates::F64 });
+    options.ignore_attributes = file.ignore_attributes();
     options.max_bytes = file.max_bytes().map_or(Ok(options.max_bytes), parse_max_bytes)?;
     options.check(bytes.length().into())?;
     // The bytes, and a mesh of the same size, twice while its arrays grow. If memory ran out during the call, the

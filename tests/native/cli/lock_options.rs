@@ -68,8 +68,7 @@ fn attributes_stay_unless_they_are_dropped() {
         assert_eq!(ran.status.code(), Some(0), "{}", text(&ran.stderr));
         (text(&ran.stderr).to_owned(), fs::read_to_string(&output).unwrap())
     };
-    let locked =
-        "\nlocked     1 edges between groups or along seams stay; --drop-attributes lets them flip\n";
+    let locked = "\nlocked     1 edges stay to keep the attribute `usemtl`; --ignore-attribute usemtl lets them flip\n";
 
     let (summary, written) = said(&whole, &[]);
     assert!(!summary.contains("locked") && !summary.contains("not kept"), "{summary}");
@@ -80,6 +79,7 @@ fn attributes_stay_unless_they_are_dropped() {
     let ran = run(&parted_path, &output, &["--json"]);
     let report: Value = serde_json::from_slice(&ran.stdout).unwrap();
     assert_eq!((&report["attribute_edges"], &report["flips"]), (&1.into(), &0.into()));
+    assert_eq!(report["attribute_edges_by_name"], json!({ "usemtl": 1 }));
     // Nothing hinders what is dropped anyway.
     let (summary, written) = said(&parted_path, &["--drop-attributes"]);
     assert!(!summary.contains("locked") && summary.contains("\nflips      1 in 1"), "{summary}");
