@@ -27,13 +27,11 @@ impl Faces<'_> {
     pub(super) fn check(&self, ignored: &[String]) -> Result<(), Error> {
         let has = |i: usize| self.groups.iter().any(|values| !values[i].is_empty());
         let of_faces = self.names.iter().enumerate().filter(|&(i, _)| has(i)).map(|(_, name)| name);
-        let mut names: Vec<&String> = Vec::new();
+        let mut names = Numbers::<String>::default();
         for name in self.corners.iter().map(|corner| &corner.name).chain(of_faces) {
-            if !names.contains(&name) {
-                names.push(name);
-            }
+            names.of(name.as_str());
         }
-        refuse_unknown(ignored, &names)
+        refuse_unknown(ignored, &names.into_known())
     }
 
     /// Adds the locks of all attributes that are not ignored to `options`, and returns the edges that they lock.
@@ -64,8 +62,9 @@ impl Faces<'_> {
         all.extend_from_slice(&borders.edges);
         let mut by_name: Vec<_> =
             by_name.into_iter().map(|(name, edges)| (name.to_owned(), edges.len())).collect();
+        let seams = by_name.len();
         for (name, count) in borders.by_name {
-            match by_name.iter_mut().find(|(known, _)| *known == name) {
+            match by_name[..seams].iter_mut().find(|(known, _)| *known == name) {
                 Some((_, known)) => *known += count,
                 None => by_name.push((name, count)),
             }
@@ -178,7 +177,7 @@ struct Borders {
 ///
 /// # Errors
 /// [`Error::Option`].
-pub(super) fn refuse_unknown(ignored: &[String], names: &[&String]) -> Result<(), Error> {
+pub(super) fn refuse_unknown(ignored: &[String], names: &[String]) -> Result<(), Error> {
     let Some(unknown) = ignored.iter().find(|name| !names.contains(name)) else { return Ok(()) };
     let listed: Vec<_> = names.iter().map(|name| quoted(name.as_bytes())).collect();
     let listed = if names.is_empty() { "none".to_owned() } else { listed.join(", ") };
