@@ -25,7 +25,11 @@ impl Failure {
         }
         // The number of threads was checked, so the system could not start them.
         let status = if *option == "threads" { 1 } else { 2 };
-        Self { status, line: format!("option --{}: {message}", option.replace('_', "-")) }
+        let flag = match *option {
+            "ignore_attributes" => "ignore-attribute".to_owned(),
+            option => option.replace('_', "-"),
+        };
+        Self { status, line: format!("option --{flag}: {message}") }
     }
 
     /// The failure for an error with `path`. An error that has its own path, or none, is not prefixed with `path`.

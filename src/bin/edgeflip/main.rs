@@ -8,6 +8,7 @@ mod report;
 #[cfg(unix)]
 mod signals;
 mod threads;
+mod words;
 
 use args::Args;
 use clap::Parser;
@@ -250,7 +251,7 @@ fn check(options: &Options, mesh: &Mesh, outcome: &Outcome) -> Check {
     let audit = quality::audit_outcome(mesh, outcome, options);
     let mut violations: Vec<String> = audit.violations.iter().map(ToString::to_string).collect();
     if audit.remaining != outcome.remaining {
-        let [said, counted] = [&outcome.remaining, &audit.remaining].map(report::reasons);
+        let [said, counted] = [&outcome.remaining, &audit.remaining].map(words::reasons);
         violations.push(format!("edges left: the run says {said}, the audit counts {counted}"));
     }
     let said = [outcome.inverted, outcome.flat].map(|count| count as usize);

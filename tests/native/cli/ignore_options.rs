@@ -72,7 +72,7 @@ fn a_name_that_the_file_does_not_have_is_refused() {
     let message = "no attribute of faces or corners is named `face_id`; the file has: `id`";
     for name in ["out.ply", "out.off"] {
         let ran = run(&input, &folder.path(name), &["--ignore-attribute", "face_id"]);
-        failed(&ran, 2, &format!("option ignore_attributes: {message}"));
+        failed(&ran, 2, &format!("option --ignore-attribute: {message}"));
     }
     assert_eq!(folder.names(), ["in.ply"]);
 }
