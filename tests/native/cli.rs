@@ -17,7 +17,7 @@ use std::fs;
 use std::time::Instant;
 
 /// The keys of the object that `--json` prints, in their order.
-const KEYS: [&str; 33] = [
+const KEYS: [&str; 35] = [
     "input",
     "vertices",
     "triangles",

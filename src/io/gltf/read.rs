@@ -162,7 +162,6 @@ impl Reader<'_> {
         }
         let accessor = self.accessors.get(position)?;
         let (count, is_sparse) = (accessor.count.0, accessor.sparse.is_some());
-        let has_elements = is_sparse || self.accessors.elements(position)?.is_some();
         // If several primitives use the accessor, each may use a different range of it. A part then takes only the
         // elements that it uses.
         let is_shared = self.uses[position] > 1 && !is_sparse;
@@ -170,7 +169,7 @@ impl Reader<'_> {
         let mut corners = match index {
             Some(index) => self.accessors.indices(index)?,
             // A primitive without indices has one element per corner.
-            None if has_elements => (0..count as u32).collect(),
+            None if is_sparse || self.accessors.elements(position)?.is_some() => (0..count as u32).collect(),
             None => Vec::new(),
         };
         if let Some(corner) = corners.iter().find(|&&corner| u64::from(corner) >= count) {
