@@ -1,6 +1,7 @@
 //! Measures of the shape of a mesh. They are computed in f64, for reports only: no flip depends on them.
 
 use super::angles::triangle_angles;
+use crate::predicates::has_area;
 use crate::system::threads::Threads;
 use crate::{Dimension, Mesh};
 use glam::DVec3;
@@ -13,10 +14,10 @@ pub struct Measures {
     pub min_angle: f64,
     /// Mean of the smallest angles of the triangles, in degrees; 60 for a mesh without triangles.
     pub mean_min_angle: f64,
-    /// Mean aspect ratio of the triangles that are not flat: the longest edge divided by the diameter of the incircle,
-    /// scaled to 1 for an equilateral triangle; 1 if all triangles are flat.
+    /// Mean aspect ratio of the triangles that are not flat, and whose area is not 0 in f64: the longest edge divided by
+    /// the diameter of the incircle, scaled to 1 for an equilateral triangle; 1 if there are none.
     pub mean_aspect: f64,
-    /// The number of flat triangles: their area is 0 in f64.
+    /// The number of flat triangles: their corners are on one line, exactly.
     pub flat: usize,
     /// The sum of the unsigned areas of the triangles.
     pub area: f64,
@@ -43,7 +44,7 @@ pub fn measures(mesh: &Mesh) -> Measures {
     Measures {
         min_angle: sums.min_angle,
         mean_min_angle: mean(sums.min_angles, count, 60.0),
-        mean_aspect: mean(sums.aspects, count - sums.flat, 1.0),
+        mean_aspect: mean(sums.aspects, sums.with_aspect, 1.0),
         flat: sums.flat,
         area: sums.area,
         volume: if mesh.dimension() == Dimension::Two { 0.0 } else { sums.volume },
@@ -62,6 +63,7 @@ struct Sums {
     min_angle: f64,
     min_angles: f64,
     aspects: f64,
+    with_aspect: usize,
     flat: usize,
     area: f64,
     volume: f64,
@@ -74,17 +76,19 @@ impl Sums {
             let angle = smallest_angle(corners);
             sums.min_angle = sums.min_angle.min(angle);
             sums.min_angles += angle;
+            let [a, b, c] = corners;
+            let is_flat = !has_area(a, b, c);
+            sums.flat += usize::from(is_flat);
             let [a, b, c] = corners.map(|corner| corner - origin);
             let doubled = (b - a).cross(c - a).length();
             sums.area += doubled / 2.0;
             sums.volume += a.dot(b.cross(c)) / 6.0;
             let edges = [a - b, b - c, c - a].map(DVec3::length);
-            if doubled > 0.0 {
+            if doubled > 0.0 && !is_flat {
                 let [longest, around] = [edges.into_iter().fold(0.0, f64::max), edges.iter().sum::<f64>()];
                 // The radius of the incircle is twice the area divided by the perimeter.
                 sums.aspects += longest * around / (2.0 * 3f64.sqrt() * doubled);
-            } else {
-                sums.flat += 1;
+                sums.with_aspect += 1;
             }
         }
         sums
@@ -95,6 +99,7 @@ impl Sums {
             min_angle: self.min_angle.min(other.min_angle),
             min_angles: self.min_angles + other.min_angles,
             aspects: self.aspects + other.aspects,
+            with_aspect: self.with_aspect + other.with_aspect,
             flat: self.flat + other.flat,
             area: self.area + other.area,
             volume: self.volume + other.volume,
@@ -260,6 +265,10 @@ mod tests {
         let found = measures(&mesh(&CORNER, &[0, 0, 1, 1, 2, 3]));
         assert_eq!((found.flat, found.min_angle), (1, 0.0));
         assert!((found.mean_aspect - 1.0).abs() < 1e-9);
+        // Areas that f64 rounds to 0.
+        let tiny = CORNER.map(|x| x % 1e6 * 1e-170);
+        let found = measures(&mesh(&tiny, &TETRAHEDRON));
+        assert_eq!((found.flat, found.area, found.mean_aspect), (0, 0.0, 1.0));
         let none = measures(&mesh(&[], &[]));
         assert_eq!(
             (none.min_angle, none.mean_min_angle, none.mean_aspect, none.area),

@@ -127,12 +127,12 @@ test('triangles that are turned over or flat are in the numbers, and the sentenc
   const page = await sharedPage();
   await page.open(file('dragged.off', `OFF\n${points.length} ${triangles.length} 0\n${lines.join('\n')}\n`));
   const { facts } = await page.playToEnd();
-  assert.deepEqual([facts.Flips, facts['Turned over'], facts['No area']], ['1', '1 triangle', '1 triangle']);
+  assert.deepEqual([facts.Flips, facts['Turned over'], facts['Flat triangles']], ['1', '1 triangle', '1 → 1']);
   assert.match(await page.page.$eval('#status', ({ textContent }) => textContent), / 1 triangle is turned over\.$/);
   await page.scrub('Home');
   await page.close();
   const whole = await sharedPage();
   const { facts: others } = await whole.playToEnd();
-  assert.deepEqual([others['Turned over'], others['No area']], [undefined, undefined]);
+  assert.deepEqual([others['Turned over'], others['Flat triangles']], [undefined, undefined]);
   await whole.close();
 });

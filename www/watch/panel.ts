@@ -88,7 +88,7 @@ export class Panel {
       Iterations: number.format(run.iterations.length),
       Flips: number.format(flips),
       'Not Delaunay': run.isNewest ? measured(reasons(summary.remaining)) : reasons(notDelaunayAt(run)),
-      ...(run.isNewest ? { ...areas('Turned over', summary.inverted), ...areas('No area', summary.flat) } : {}),
+      ...(run.isNewest && summary.inverted > 0 ? { 'Turned over': counted(summary.inverted, 'triangle') } : {}),
       'Set-up': `${ms.format(timings.upload + timings.adjacency)} ms`,
       'Flips and counts': `${ms.format(watched)} ms`,
       Fingerprint: fingerprint ?? '…',
@@ -169,11 +169,6 @@ function notDelaunayAt({ at, iterations }: Run): Reasons {
 
 function frozen(name: string, count: number): Record<string, string> {
   return count > 0 ? { [name]: `${number.format(count)} edges, left as they are` } : {};
-}
-
-/** Triangles whose area is not positive. */
-function areas(name: string, count: number): Record<string, string> {
-  return count > 0 ? { [name]: counted(count, 'triangle') } : {};
 }
 
 /** Fills a description list; each value has its term as `data-fact`. */

@@ -191,8 +191,10 @@ pub struct Args {
     /// Checks that vertices, boundary, components and orientation are unchanged, and that the run has counted correctly
     /// the edges left and the triangles that are inverted or flat. The summary names the first edges left for each
     /// reason by their two vertices, and the first of these triangles, all counted from 0; --json lists all. A result
-    /// with inverted triangles is not clean, but it is written: no flip could turn them back. It also measures how far the surface has moved: the largest distance between the old and the
-    /// new surface, at points of the edges that only one of them has.
+    /// with inverted triangles is not clean, but it is written: no flip could turn them back.
+    ///
+    /// It also measures how far the surface has moved: the largest distance between the old and the new surface, at
+    /// points of the edges that only one of them has.
     #[arg(long)]
     pub verify: bool,
 
@@ -200,16 +202,16 @@ pub struct Args {
     ///
     /// Keys: input, vertices, triangles, edges, boundary_edges, non_manifold_edges, inconsistent_edges, dimension,
     /// coordinates (32 or 64, the bits of the floats that decide), crossing_polygons (the numbers of faces, see the
-    /// notes), backend, adapter, fallback, status (done or stopped), iterations, flips, constraint_flips, left_out (for each
-    /// constraint left out, its index in the list and the reason), flips_per_iteration, dispatches,
-    /// device_bytes, remaining (by reason), inverted (triangles that are turned over, in the plane: they have not the
-    /// orientation of the total area of their component), flat (triangles of no area), min_angle_before_deg, min_angle_after_deg, before and after (min_angle_deg,
-    /// mean_min_angle_deg, mean_aspect, flat_triangles, area, volume), turned_triangles, joined_vertices, seam_edges,
-    /// moved_triangles, attribute_edges (locked to keep attributes), attribute_edges_by_name (how many each attribute
-    /// locks; several may lock the same edge), ms (wall times in milliseconds, see below), and
-    /// with --verify audit (the violations), clean (no violation, and no inverted triangle), inverted_triangles and
-    /// flat_triangles (counted from 0), remaining_edges (by reason, the two vertices of each edge left, counted
-    /// from 0) and distance (between the surfaces before and after).
+    /// notes), backend, adapter, fallback, status (done or stopped), iterations, flips, constraint_flips, left_out (for
+    /// each constraint left out, its index in the list and the reason), flips_per_iteration, dispatches, device_bytes,
+    /// remaining (by reason), inverted (triangles that are turned over, in the plane: they have not the orientation of
+    /// the total area of their component), flat (triangles of no area), min_angle_before_deg, min_angle_after_deg,
+    /// before and after (min_angle_deg, mean_min_angle_deg, mean_aspect, flat_triangles, area, volume), turned_triangles
+    /// (by --reorient), joined_vertices, seam_edges, moved_triangles, attribute_edges (locked to keep attributes),
+    /// attribute_edges_by_name (how many each attribute locks; several may lock the same edge), ms (wall times in
+    /// milliseconds, see below), and with --verify audit (the violations), clean (no violation, and no inverted
+    /// triangle), remaining_edges (by reason, the two vertices of each edge left, counted from 0), inverted_triangles
+    /// and flat_triangles (counted from 0), and distance (between the surfaces before and after).
     ///
     /// The parts of ms add up to its total: start; load (IN is read); prepare (lists are read, vertices joined,
     /// triangles reversed, edges locked); device (the wait for the GPU, which opens while IN is read); upload;

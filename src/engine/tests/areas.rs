@@ -10,7 +10,7 @@ use pollster::block_on;
 use std::sync::Arc;
 
 /// Quads of a mesh. No two share a vertex.
-const QUADS: usize = 8000;
+const QUADS: usize = 1000;
 
 /// The four points of a quad of one kind, which are often on one line, exactly or nearly. `is_double`: in 64-bit floats.
 fn quad(kind: usize, stride: usize, is_double: bool, random: &mut Rand32) -> Vec<f64> {
@@ -70,8 +70,8 @@ fn near_flat_triangles_are_counted_alike() {
                 let Areas { inverted, flat, undecided } =
                     counted(&what, Mesh::new(dimension, positions, triangles).unwrap());
                 assert_eq!(undecided, 0, "{what}");
-                assert_eq!(inverted > 1000, dimension == Dimension::Two, "{what}: {inverted}");
-                assert_eq!(flat > 200, kind < 2, "{what}: {flat}");
+                assert_eq!(inverted > 100, dimension == Dimension::Two, "{what}: {inverted}");
+                assert_eq!(flat > 20, kind < 2, "{what}: {flat}");
             }
         }
     }
