@@ -12,6 +12,7 @@
 import type { Accessor, Document, ILogger, Primitive, Transform } from '@gltf-transform/core';
 import { EdgeflipError } from './error.js';
 import { makeDelaunay } from './index.js';
+import { type Limited, limitsOf, runWithin, type ShiftOptions, type ShiftResult } from './limited.js';
 import { namesOf, optionsOf } from './names.js';
 import { type Matrix, stretched, stretches } from './placement.js';
 import { type Columns, meshOf, pointsOf, sequence, type Surface, unitOf } from './surface.js';
@@ -22,17 +23,18 @@ export { EdgeflipError, type ErrorCode } from './error.js';
 /** The options of {@link delaunay}. `maxDeviation` is in the units of each mesh. */
 export interface DelaunayOptions
   extends Pick<
-    MakeDelaunayOptions,
-    | 'backend'
-    | 'maxNormalAngle'
-    | 'maxDeviation'
-    | 'maxIterations'
-    | 'reorient'
-    | 'order'
-    | 'threads'
-    | 'device'
-    | 'signal'
-  > {
+      MakeDelaunayOptions,
+      | 'backend'
+      | 'maxNormalAngle'
+      | 'maxDeviation'
+      | 'maxIterations'
+      | 'reorient'
+      | 'order'
+      | 'threads'
+      | 'device'
+      | 'signal'
+    >,
+    ShiftOptions {
   /**
    * By default, vertices at the same position are joined for the run, and all their attributes are compared, also those
    * of morph targets. `true` ignores attributes, `false` joins no vertices.
@@ -51,6 +53,7 @@ const OPTIONS = namesOf<DelaunayOptions>({
   device: true,
   signal: true,
   weld: true,
+  maxAttributeShift: true,
 });
 
 /** Modes of primitives. */
@@ -79,18 +82,24 @@ const NAME = 'delaunay';
 
 async function transformed(document: Document, options: DelaunayOptions): Promise<void> {
   const logger = document.getLogger();
-  let [flips, changed, done, flat] = [0, 0, 0, 0];
+  let [flips, changed, done, flat, shiftEdges] = [0, 0, 0, 0, 0];
+  const largest = new Map<string, number>();
   const remaining: Reasons = {};
   const alike = surfacesOf(document, logger);
+  const limits = limitsIn(alike, options);
   for (const { name, primitives, stretch } of alike) {
     if (options.signal?.aborted) break;
     done += 1;
-    const { indices, ...result } = await flipped(primitives[0]!, stretch, options).catch((cause: unknown) => {
+    const { indices, ...result } = await flipped(primitives[0]!, stretch, limits, options).catch((cause: unknown) => {
       if (!(cause instanceof EdgeflipError)) throw cause;
       throw new EdgeflipError(cause.code, `${name}: ${cause.message}`, { cause });
     });
     flips += result.flips;
     flat += result.flat;
+    shiftEdges += result.shiftEdges;
+    for (const [name, shift] of Object.entries(result.largestShifts ?? {})) {
+      largest.set(name, Math.max(largest.get(name) ?? 0, shift));
+    }
     for (const [reason, count] of Object.entries(result.remaining)) {
       remaining[reason as Reason] = (remaining[reason as Reason] ?? 0) + count;
     }
@@ -103,11 +112,45 @@ async function transformed(document: Document, options: DelaunayOptions): Promis
     reasons.length > 0 ? `edges that are still not Delaunay: ${reasons.join(', ')}` : 'every edge is Delaunay';
   const areas = flat > 0 ? `; triangles of no area: ${flat}` : '';
   const stopped = done < alike.length ? `; stopped after ${done}` : '';
-  logger.info(`${NAME}: ${flips} flips in ${changed} of ${alike.length} primitives${stopped}; ${rest}${areas}`);
+  const shifts = [...largest].map(([name, shift]) => `${name} ${Number(shift.toPrecision(3))}`).join(', ');
+  const shifted = shiftEdges > 0 ? `; maxAttributeShift locked ${shiftEdges} edges; largest shifts: ${shifts}` : '';
+  logger.info(
+    `${NAME}: ${flips} flips in ${changed} of ${alike.length} primitives${stopped}; ${rest}${areas}${shifted}`,
+  );
 }
 
-async function flipped(primitive: Primitive, stretch: Matrix | undefined, options: DelaunayOptions): Promise<Result> {
-  return makeDelaunay(...meshOf(surfaceOf(primitive, stretch), options));
+async function flipped(
+  primitive: Primitive,
+  stretch: Matrix | undefined,
+  most: ReadonlyMap<string, number>,
+  { maxAttributeShift: _, ...options }: DelaunayOptions,
+): Promise<Result & ShiftResult> {
+  const limits = [...most].flatMap(([name, most]) => {
+    const attribute = primitive.getAttribute(name);
+    return attribute ? { name, ...numbersOf(attribute), most } : [];
+  });
+  const joining = options.weld === false ? 'none' : options.weld ? 'all' : 'equal';
+  const given = meshOf(surfaceOf(primitive, stretch), options);
+  const limited: Limited = { limits, joining };
+  const { result, ...shifts } = await runWithin(limited, ...given, async (mesh, options) => ({
+    result: await makeDelaunay(mesh, options),
+  }));
+  return { ...result, ...shifts };
+}
+
+/** The largest shifts that are allowed, for the attributes of all primitives. */
+function limitsIn(alike: readonly Alike[], { maxAttributeShift, weld }: DelaunayOptions): Map<string, number> {
+  const semantics = alike.flatMap(({ primitives }) => primitives[0]!.listSemantics());
+  const names = [...new Set(semantics)].filter((name) => name !== 'POSITION');
+  return limitsOf(maxAttributeShift, names, (name) => name.startsWith('TEXCOORD_'), weld);
+}
+
+/** The numbers of an accessor that the shaders get. */
+function numbersOf(accessor: Accessor): { values: Float64Array; width: number } {
+  const [count, width] = [accessor.getCount(), accessor.getElementSize()];
+  const [values, element] = [new Float64Array(count * width), new Array<number>(width)];
+  for (let i = 0; i < count; i++) values.set(accessor.getElement(i, element), width * i);
+  return { values, width };
 }
 
 /** Primitives with the same vertices, triangles and placement. */

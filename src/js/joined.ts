@@ -78,6 +78,14 @@ export class Edges {
     }
   }
 
+  /** Takes the triangles of some edges apart. The edges stay. */
+  cut(isCut: (h: number, twin: number) => boolean): void {
+    this.twins.forEach((twin, h) => {
+      if (twin === NONE || twin < h || !isCut(h, twin)) return;
+      [this.twins[h], this.twins[twin]] = [NONE, NONE];
+    });
+  }
+
   /** Whether two vertices have an edge. */
   has(u: number, v: number): boolean {
     const { starts, halfEdges } = this.#lists;

@@ -16,8 +16,10 @@ import { inRange, type Range, rangeOf } from './draw-range.js';
 import { EdgeflipError } from './error.js';
 import { objectOf, read, shown } from './given.js';
 import { makeDelaunay } from './index.js';
+import { type Limited, limitsOf, runWithin, type ShiftOptions, type ShiftResult } from './limited.js';
 import { flipShared, type OnGpu, type Renderer, rendererOf, type Run } from './renderer.js';
 import type { FlipSession } from './session.js';
+import type { Limit } from './shift.js';
 import { type Columns, meshOf, sequence, type Surface } from './surface.js';
 import type { MakeDelaunayOptions, Result } from './types.js';
 
@@ -32,7 +34,7 @@ export type { Renderer } from './renderer.js';
  * Two options have other defaults. `weld` joins vertices at the same position and compares all their attributes, also
  * those of morph targets; `false` joins no vertices. `groups` are the groups of the geometry.
  */
-export interface GeometryOptions extends Omit<MakeDelaunayOptions, 'constraints' | 'skipConstraints'> {
+export interface GeometryOptions extends Omit<MakeDelaunayOptions, 'constraints' | 'skipConstraints'>, ShiftOptions {
   /** Whether to leave the geometry as it is and change a clone of it. Default: `false`. */
   copy?: boolean | undefined;
   /**
@@ -55,7 +57,9 @@ export interface GeometryOptions extends Omit<MakeDelaunayOptions, 'constraints'
 }
 
 /** The result of {@link delaunayGeometry}. Its indices are in the geometry. */
-export interface GeometryResult<G extends BufferGeometry = BufferGeometry> extends Omit<Result, 'indices'> {
+export interface GeometryResult<G extends BufferGeometry = BufferGeometry>
+  extends Omit<Result, 'indices'>,
+    ShiftResult {
   /** The geometry that was changed: the given one, or its clone. */
   geometry: G;
   /**
@@ -84,15 +88,22 @@ export async function delaunayGeometry<G extends BufferGeometry>(
   geometry: G,
   options: GeometryOptions = {},
 ): Promise<GeometryResult<G>> {
-  const { target, surface, range, settings, isInPlace, renderer } = read('the geometry', () =>
+  const { target, surface, range, settings, limited, isInPlace, renderer } = read('the geometry', () =>
     opened(geometry, options),
   );
   const { index } = target;
   const version = index?.version;
-  const given = meshOf(surface, settings);
-  const run: Run = renderer ? await flipShared(renderer, ...given) : { result: await makeDelaunay(...given) };
-  const { onGpu } = run;
-  const { indices, ...result } = run.result;
+  const {
+    result: made,
+    onGpu,
+    ...shifts
+  } = await runWithin(
+    limited,
+    ...meshOf(surface, settings),
+    async (mesh, options): Promise<Run> =>
+      renderer ? flipShared(renderer, mesh, options) : { result: await makeDelaunay(mesh, options) },
+  );
+  const { indices, ...result } = made;
   if (target.index !== index || index?.version !== version) {
     onGpu?.session.free();
     throw new EdgeflipError('invalid-input', 'the index of the geometry changed during the run');
@@ -102,7 +113,7 @@ export async function delaunayGeometry<G extends BufferGeometry>(
     release(target);
     if (result.flips + result.turnedTriangles > 0) write(target, indices, range, surface.vertices, isInPlace);
   }
-  return { geometry: target, session: onGpu?.session, ...result };
+  return { geometry: target, session: onGpu?.session, ...result, ...shifts };
 }
 
 /** The sessions whose buffers are drawn, by geometry. */
@@ -141,6 +152,7 @@ function opened<G extends BufferGeometry>(geometry: G, options: GeometryOptions)
     copy = false,
     inPlace = false,
     renderer: drawing,
+    maxAttributeShift,
     ...given
   } = objectOf(options, 'options') as GeometryOptions;
   const renderer = rendererOf(drawing);
@@ -166,7 +178,46 @@ function opened<G extends BufferGeometry>(geometry: G, options: GeometryOptions)
   const surface = { ...whole, indices: whole.indices.subarray(...range) };
   const groups = given.groups ?? groupsOf(target, corners);
   const settings = inRange({ ...given, groups, ...(isShared && { weld: false }) }, range, whole);
-  return { target, surface, range, settings, isInPlace: inPlace || copy, renderer: isShared ? renderer : undefined };
+  const limited: Limited = {
+    limits: shiftLimits(target, maxAttributeShift, given.weld),
+    joining: settings.weld === false ? 'none' : isCompared ? 'equal' : 'all',
+  };
+  return {
+    target,
+    surface,
+    range,
+    settings,
+    limited,
+    isInPlace: inPlace || copy,
+    renderer: isShared ? renderer : undefined,
+  };
+}
+
+/** Texture coordinates of three.js. */
+const TEXTURE = /^uv\d?$/;
+
+/** The attributes whose shift is limited. */
+function shiftLimits({ attributes }: BufferGeometry, given: unknown, weld: unknown): Limit[] {
+  const all = Object.entries(attributes as Record<string, Attribute>).filter(
+    ([name, attribute]) =>
+      name !== 'position' && !('isGLBufferAttribute' in attribute) && columnsOf(name, attribute) !== undefined,
+  );
+  const names = all.map(([name]) => name);
+  const most = limitsOf(given, names, (name) => TEXTURE.test(name), weld);
+  return all.flatMap(([name, attribute]) =>
+    most.has(name) ? { name, ...numbersOf(attribute as BufferAttribute), most: most.get(name)! } : [],
+  );
+}
+
+/** The numbers of an attribute that the shaders get: integers and 16-bit floats stand for others. */
+function numbersOf(attribute: BufferAttribute | InterleavedBufferAttribute): Pick<Limit, 'values' | 'width'> {
+  const { count, itemSize: width } = attribute;
+  const getters = (['getX', 'getY', 'getZ', 'getW'] as const).slice(0, width);
+  const values = new Float64Array(count * getters.length);
+  for (let i = 0, to = 0; i < count; i++) {
+    for (const get of getters) values[to++] = attribute[get](i);
+  }
+  return { values, width: getters.length };
 }
 
 /** The columns of the positions and, if they are compared, of the other attributes. */

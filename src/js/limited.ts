@@ -1,0 +1,101 @@
+/** Runs that shift no texture too far, for `three.ts` and `gltf-transform.ts`. */
+
+import { EdgeflipError } from './error.js';
+import { copyOf, objectOf, shown } from './given.js';
+import { readMesh } from './mesh.js';
+import type { Run } from './renderer.js';
+import { MAKE_OPTIONS, settingsOf, watchOf } from './settings.js';
+import { Attributes, type Joining, type Limit } from './shift.js';
+import type { MakeDelaunayOptions, Mesh } from './types.js';
+
+/** The option that limits how far flips shift textures. */
+export interface ShiftOptions {
+  /**
+   * How far flips may shift a texture, a colour or another attribute of the vertices, in the units of the attribute: a
+   * number for all texture coordinates, or one for each attribute by its name. An edge stays if its flip would shift an
+   * attribute further, measured where the two diagonals cross. If many flips together shift an attribute further than
+   * that, the edges that they crossed stay too, and the run starts again. `Infinity` sets no limit. Default: 1/1024 for
+   * texture coordinates, one texel of a texture with 1,024 texels in a row, and `Infinity` for other attributes; with
+   * `weld: true`, which ignores attributes, `Infinity` for all.
+   */
+  maxAttributeShift?: number | Readonly<Record<string, number>> | undefined;
+}
+
+/** What `maxAttributeShift` did. */
+export interface ShiftResult {
+  /** The edges that `maxAttributeShift` locked. */
+  shiftEdges: number;
+  /**
+   * The largest shift of each attribute that `maxAttributeShift` limits, by name: at the crossings of edges of the result
+   * with edges of the input. `undefined` if the triangles are on the device of a renderer.
+   */
+  largestShifts: Record<string, number> | undefined;
+}
+
+/** The attributes whose shift is limited, and how the vertices of the surface are joined. */
+export interface Limited {
+  limits: readonly Limit[];
+  joining: Joining;
+}
+
+/** The default: one texel of a texture with 1,024 texels in a row. */
+const TEXEL = 1 / 1024;
+
+/**
+ * The largest shifts that are allowed, by the names of the attributes that have a limit.
+ *
+ * @param names - All attributes that can have one.
+ * @param isTexture - Whether an attribute of this name has texture coordinates.
+ * @param weld - The option `weld`.
+ * @throws {@link EdgeflipError} `invalid-option`.
+ */
+export function limitsOf(
+  given: unknown,
+  names: readonly string[],
+  isTexture: (name: string) => boolean,
+  weld: unknown,
+): Map<string, number> {
+  const wrong = (why: string) => new EdgeflipError('invalid-option', `option maxAttributeShift: ${why}`);
+  const checked = (value: unknown) => {
+    if (typeof value === 'number' && value >= 0) return value;
+    throw wrong(`${shown(value)} is not a number of at least 0`);
+  };
+  const isList = typeof given === 'object' && given !== null;
+  const ofTextures = given === undefined || isList ? (weld === true ? Infinity : TEXEL) : checked(given);
+  const limits = new Map(names.filter(isTexture).map((name) => [name, ofTextures]));
+  for (const [name, value] of Object.entries(isList ? objectOf(given, 'maxAttributeShift') : {})) {
+    if (value === undefined) continue;
+    if (!names.includes(name)) throw wrong(`there is no attribute ${shown(name)}; there are ${names.join(', ')}`);
+    limits.set(name, checked(value));
+  }
+  return new Map([...limits].filter(([, most]) => most < Infinity));
+}
+
+/**
+ * Runs, and locks the edges whose flips would shift an attribute too far. Reads its arguments before it returns its
+ * promise.
+ */
+export async function runWithin(
+  { limits, joining }: Limited,
+  mesh: Mesh<Uint32Array>,
+  options: MakeDelaunayOptions,
+  run: (mesh: Mesh<Uint32Array>, options: MakeDelaunayOptions) => Promise<Run>,
+): Promise<Run & ShiftResult> {
+  if (limits.length === 0) return { ...(await run(mesh, options)), shiftEdges: 0, largestShifts: {} };
+  const { isStopped: _, ...watch } = watchOf(options);
+  const settings = settingsOf(options, MAKE_OPTIONS);
+  const [copy] = readMesh(mesh, copyOf);
+  const attributes = new Attributes(copy, limits, joining);
+  const locked = new Map(attributes.edgesBeyond().map((edge) => [edge.join(), edge]));
+  for (;;) {
+    const lockedEdges = Uint32Array.from([...(settings.lockedEdges ?? []), ...[...locked.values()].flat()]);
+    const made = await run({ ...copy, stride: 3 }, { ...watch, ...settings, lockedEdges });
+    const { size } = locked;
+    if (made.onGpu) return { ...made, shiftEdges: size, largestShifts: undefined };
+    const { largest, crossed } = attributes.compare(made.result.indices);
+    for (const edge of crossed) locked.set(edge.join(), edge);
+    if (locked.size > size) continue;
+    const largestShifts = Object.fromEntries(limits.map(({ name }, i) => [name, largest[i]!]));
+    return { ...made, shiftEdges: size, largestShifts };
+  }
+}
