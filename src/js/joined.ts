@@ -22,7 +22,7 @@ export function placesOf(points: Float32Array | Float64Array): Uint32Array {
     for (let axis = 0; axis < 3; axis++) point[axis] = points[3 * v + axis]! + 0;
     places[v] = v;
     // The run refuses these, and they equal nothing.
-    if (point.some(Number.isNaN)) continue;
+    if (Number.isNaN(point[0]! + point[1]! + point[2]!)) continue;
     let hash = 0;
     for (const word of words) hash = Math.imul(hash ^ (hash >>> 15) ^ word, 0x9e3779b1);
     let slot = (hash ^ (hash >>> 16)) & (size - 1);
@@ -61,7 +61,7 @@ export class Edges {
 
   constructor(indices: Uint32Array, vertices: number) {
     this.#indices = indices;
-    const all = Uint32Array.from(indices, (_, h) => h);
+    const all = indices.map((_, h) => h);
     // Sorted by the smaller vertex, and then by the larger one.
     this.#lists = listsOf(listsOf(all, (h) => this.#larger(h), vertices).halfEdges, (h) => this.#smaller(h), vertices);
     this.twins = new Uint32Array(indices.length).fill(NONE);

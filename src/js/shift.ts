@@ -46,7 +46,7 @@ export class Attributes {
   /** The arrays must not change afterwards. */
   constructor({ positions, indices }: IndexedMesh, limits: readonly Limit[], joining: Joining) {
     const vertices = positions.length / 3;
-    const all = Uint32Array.from(indices, (_, h) => h);
+    const all = indices.map((_, h) => h);
     this.#points = positions;
     this.#indices = indices;
     this.#limits = limits;
@@ -54,9 +54,7 @@ export class Attributes {
     this.#corners = indices.map((v) => this.#places[v]!);
     this.#edges = new Edges(this.#corners, vertices);
     this.#stars = listsOf(all, (h) => this.#corners[h]!, vertices);
-    this.#slopes = limits.map((limit) =>
-      Float64Array.from({ length: indices.length / 3 }, (_, t) => this.#slope(limit, t)),
-    );
+    this.#slopes = limits.map((limit) => new Float64Array(indices.length / 3).map((_, t) => this.#slope(limit, t)));
     // Seams stay, and the attributes beyond them are others.
     if (joining === 'equal') this.#edges.cut((h, twin) => limits.some((limit) => this.#jump(limit, h, twin) > 0));
   }
@@ -86,26 +84,23 @@ export class Attributes {
   #jump(limit: Limit, h: number, twin: number): number {
     const [indices, corners] = [this.#indices, this.#corners];
     const [from, to] = corners[twin] === corners[h] ? [twin, next(twin)] : [next(twin), twin];
-    const jumps = [
-      [h, from],
-      [next(h), to],
-    ].map(([here, there]) => {
-      const [u, v] = [indices[here!]!, indices[there!]!];
-      return u === v ? 0 : differenceOf(limit, [u, u, 0], [v, v, 0]);
-    });
-    return Math.max(...jumps);
+    const jump = (u: number, v: number) => (u === v ? 0 : differenceOf(limit, [u, u, 0], [v, v, 0]));
+    return Math.max(jump(indices[h]!, indices[from]!), jump(indices[next(h)]!, indices[to]!));
   }
 
   /** How steep an attribute is on a triangle at most: its change for each unit of length. */
   #slope(limit: Limit, triangle: number): number {
-    const [a, b, c] = [0, 1, 2].map((k) => this.#indices[3 * triangle + k]!) as Vector;
+    const [i, indices] = [3 * triangle, this.#indices];
+    const [a, b, c] = [indices[i]!, indices[i + 1]!, indices[i + 2]!];
     const [u, v] = [this.#between(a, b), this.#between(a, c)];
     const [uu, uv, vv] = [dot(u, u), dot(u, v), dot(v, v)];
     const { values, width } = limit;
     let [ff, fg, gg] = [0, 0, 0];
     for (let k = 0; k < width; k++) {
-      const [f, g] = [b, c].map((vertex) => values[width * vertex + k]! - values[width * a + k]!) as Edge;
-      [ff, fg, gg] = [ff + f * f, fg + f * g, gg + g * g];
+      const [f, g] = [values[width * b + k]! - values[width * a + k]!, values[width * c + k]! - values[width * a + k]!];
+      ff += f * f;
+      fg += f * g;
+      gg += g * g;
     }
     const area = uu * vv - uv * uv;
     const half = (ff * vv - 2 * fg * uv + gg * uu) / area / 2;
