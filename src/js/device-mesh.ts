@@ -2,19 +2,11 @@
 
 import { EdgeflipError } from './error.js';
 import { isWhole, objectOf, read, shown } from './given.js';
-import { checkDimension } from './mesh.js';
+import { checkDimension, MESH } from './mesh.js';
 import { checkSpelling, namesOf } from './names.js';
 import type { DeviceMesh, GpuBuffer, GpuDevice, Mesh } from './types.js';
 
-const DEVICE_MESH = namesOf<DeviceMesh>({
-  positions: true,
-  indices: true,
-  dimension: true,
-  stride: true,
-  offset: true,
-  vertices: true,
-  triangles: true,
-});
+const DEVICE_MESH = [...MESH, ...namesOf<Omit<DeviceMesh, keyof Mesh>>({ vertices: true, triangles: true })];
 
 /** A part of a buffer, in bytes. */
 interface Part {

@@ -19,6 +19,7 @@ import { type Columns, meshOf, pointsOf, sequence, type Surface, unitOf } from '
 import type { MakeDelaunayOptions, Reason, Reasons, Result } from './types.js';
 
 export { EdgeflipError, type ErrorCode } from './error.js';
+export type { ShiftOptions } from './limited.js';
 
 /** The options of {@link delaunay}. `maxDeviation` is in the units of each mesh. */
 export interface DelaunayOptions
@@ -67,7 +68,10 @@ const [TRIANGLES, TRIANGLE_STRIP, TRIANGLE_FAN] = [4, 5, 6];
  * Positions count as the numbers in the document, also if they are quantized. If a node scales a mesh unevenly, the
  * scaled positions count; if several nodes scale it differently, the first one does.
  *
- * The logger of the document gets a line with the number of flips and of edges that are still not Delaunay.
+ * An edge stays if its flip would shift a texture too far.
+ *
+ * The logger of the document gets a line with the number of flips, of edges that are still not Delaunay, and of edges
+ * that stay for the texture.
  *
  * @throws {@link EdgeflipError} `invalid-option`. The transform throws errors about a mesh, the options or the backend;
  * primitives before that mesh have changed then.

@@ -36,13 +36,11 @@ export function hintOf(
     );
   }
   const stride = forgottenStride(indices, layout);
-  if (stride === 3) {
+  if (stride !== undefined) {
+    const isSpace = layout.dimension === 2 && stride === 3;
+    const pass = isSpace ? 'dimension: 3, or stride: 3 for a mesh in the plane' : `stride: ${stride}`;
     hints.push(
-      'No triangle uses the last third of the vertices. If positions have three coordinates per vertex, pass dimension: 3, or stride: 3 for a mesh in the plane.',
-    );
-  } else if (stride !== undefined) {
-    hints.push(
-      `The triangles use only the first ${layout.dimension}/${stride} of the vertices. If positions have ${stride} numbers per vertex, pass stride: ${stride}.`,
+      `The triangles use only the first ${layout.dimension}/${stride} of the vertices. If positions have ${stride} numbers per vertex, pass ${pass}.`,
     );
   }
   if (inverted > 0) {

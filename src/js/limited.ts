@@ -5,7 +5,7 @@ import { copyOf, objectOf, shown } from './given.js';
 import { readMesh } from './mesh.js';
 import type { Run } from './renderer.js';
 import { MAKE_OPTIONS, settingsOf, watchOf } from './settings.js';
-import { Attributes, type Joining, type Limit } from './shift.js';
+import type { Joining, Limit } from './shift.js';
 import type { MakeDelaunayOptions, Mesh } from './types.js';
 
 /** The option that limits how far flips shift textures. */
@@ -85,6 +85,8 @@ export async function runWithin(
   const { isStopped: _, ...watch } = watchOf(options);
   const settings = settingsOf(options, MAKE_OPTIONS);
   const [copy] = readMesh(mesh, copyOf);
+  // Without textures, this code is not loaded.
+  const { Attributes } = await import('./shift.js');
   const attributes = new Attributes(copy, limits, joining);
   const locked = new Map(attributes.edgesBeyond().map((edge) => [edge.join(), edge]));
   for (;;) {

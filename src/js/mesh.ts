@@ -18,7 +18,8 @@ import { checkSpelling, namesOf } from './names.js';
 import type { Hold } from './settings.js';
 import type { IndexArray, Indices, Mesh } from './types.js';
 
-const MESH = namesOf<Mesh>({ positions: true, indices: true, dimension: true, stride: true, offset: true });
+/** The names of the fields of a mesh. */
+export const MESH = namesOf<Mesh>({ positions: true, indices: true, dimension: true, stride: true, offset: true });
 
 /** A mesh with 32-bit indices whose positions are floats without gaps, as the modules take and return it. */
 export interface IndexedMesh extends Mesh<Uint32Array> {

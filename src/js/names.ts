@@ -16,7 +16,7 @@ export function namesOf<O>(names: Record<keyof O, true>): readonly string[] {
 export function optionsOf(given: unknown, known: readonly string[], what = 'options'): Record<string, unknown> {
   const options = objectOf(given, what);
   // `Object.keys` of a large list could run out of memory.
-  if (Array.isArray(options) || ArrayBuffer.isView(options)) {
+  if (isList(options)) {
     throw new EdgeflipError('invalid-input', `${what}: a list is not an object with options`);
   }
   for (const name of Object.keys(options)) {
@@ -33,21 +33,21 @@ export function optionsOf(given: unknown, known: readonly string[], what = 'opti
  * @throws {@link EdgeflipError} `invalid-input`, with the known name.
  */
 export function checkSpelling(object: object, known: readonly string[], what: string): void {
-  if (Array.isArray(object) || ArrayBuffer.isView(object)) return;
-  const given = object as Record<string, unknown>;
-  const missing = known.filter((name) => given[name] === undefined);
-  for (const name of Object.keys(object)) {
-    const value = known.includes(name) ? undefined : given[name];
-    if (typeof value !== 'number' && !Array.isArray(value) && !ArrayBuffer.isView(value)) continue;
+  if (isList(object)) return;
+  const missing = known.filter((name) => (object as Record<string, unknown>)[name] === undefined);
+  for (const [name, value] of Object.entries(object)) {
+    if (known.includes(name) || (typeof value !== 'number' && !isList(value))) continue;
     const nearest = nearestOf(name, missing);
-    if (nearest === undefined) continue;
-    throw new EdgeflipError('invalid-input', `${what}: ${shownName(name)} is not known; did you mean ${nearest}?`);
+    if (nearest)
+      throw new EdgeflipError('invalid-input', `${what}: ${shownName(name)} is not known; did you mean ${nearest}?`);
   }
 }
 
+const isList = (value: unknown): boolean => Array.isArray(value) || ArrayBuffer.isView(value);
+
 function advice(name: string, known: readonly string[]): string {
   const nearest = nearestOf(name, known);
-  if (nearest !== undefined) return `did you mean ${nearest}?`;
+  if (nearest) return `did you mean ${nearest}?`;
   return known.length > 0 ? `there are ${known.join(', ')}` : 'there are none';
 }
 

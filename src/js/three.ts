@@ -24,6 +24,7 @@ import { type Columns, meshOf, sequence, type Surface } from './surface.js';
 import type { MakeDelaunayOptions, Result } from './types.js';
 
 export { EdgeflipError, type ErrorCode } from './error.js';
+export type { ShiftOptions, ShiftResult } from './limited.js';
 export type { Renderer } from './renderer.js';
 
 /**
@@ -76,8 +77,8 @@ type Attribute = BufferAttribute | InterleavedBufferAttribute | GLBufferAttribut
  * index. Its type, the vertices, the attributes, `groups` and the bounding volumes stay. Only triangles in `drawRange`
  * change.
  *
- * Edges of a seam, where the attributes of vertices at the same position differ, stay, and so do edges between
- * groups. Positions are those without morph targets and skinning.
+ * Edges of a seam, where the attributes of vertices at the same position differ, stay. So do edges between groups, and
+ * those whose flip would shift a texture too far. Positions are those without morph targets and skinning.
  *
  * Do not change the index during the run. After the run, update what you have derived from the triangles: for
  * three-mesh-bvh, call `geometry.boundsTree.refit()`.
