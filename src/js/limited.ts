@@ -1,7 +1,7 @@
 /** Runs that shift no texture too far, for `three.ts` and `gltf-transform.ts`. */
 
 import { EdgeflipError } from './error.js';
-import { copyOf, objectOf, shown } from './given.js';
+import { copyOf, read, shown } from './given.js';
 import { readMesh } from './mesh.js';
 import type { Run } from './renderer.js';
 import { MAKE_OPTIONS, settingsOf, watchOf } from './settings.js';
@@ -60,15 +60,17 @@ export function limitsOf(
     if (typeof value === 'number' && value >= 0) return value;
     throw wrong(`${shown(value)} is not a number of at least 0`);
   };
-  const isList = typeof given === 'object' && given !== null;
-  const ofTextures = given === undefined || isList ? (weld === true ? Infinity : TEXEL) : checked(given);
-  const limits = new Map(names.filter(isTexture).map((name) => [name, ofTextures]));
-  for (const [name, value] of Object.entries(isList ? objectOf(given, 'maxAttributeShift') : {})) {
-    if (value === undefined) continue;
-    if (!names.includes(name)) throw wrong(`there is no attribute ${shown(name)}; there are ${names.join(', ')}`);
-    limits.set(name, checked(value));
-  }
-  return new Map([...limits].filter(([, most]) => most < Infinity));
+  return read('the options', () => {
+    const isList = typeof given === 'object' && given !== null;
+    const ofTextures = given === undefined || isList ? (weld === true ? Infinity : TEXEL) : checked(given);
+    const limits = new Map(names.filter(isTexture).map((name) => [name, ofTextures]));
+    for (const [name, value] of Object.entries(isList ? given : {})) {
+      if (value === undefined) continue;
+      if (!names.includes(name)) throw wrong(`there is no attribute ${shown(name)}; there are ${names.join(', ')}`);
+      limits.set(name, checked(value));
+    }
+    return new Map([...limits].filter(([, most]) => most < Infinity));
+  });
 }
 
 /**

@@ -88,6 +88,10 @@ test('joined vertices, seams, and the option weld', async () => {
   assert.equal((await run(soup(), { weld: true })).flips, 1);
   assert.equal((await run(soup(), { weld: true, maxAttributeShift: TEXEL })).flips, 0);
   assert.equal((await run(mirror(), { weld: false })).flips, 0);
+  // A renderer without a device of WebGPU.
+  const renderer = { render: () => {} };
+  assert.deepEqual(await run(mirror(), { renderer }), { flips: 0, shiftEdges: 1, largestShifts: { uv: 0 } });
+  assert.equal((await run(mirror(), { renderer, maxAttributeShift: Infinity })).flips, 1);
   // A seam is locked by weld, and counted there.
   const seam = soup();
   seam.attributes.uv.setXY(0, 0.3, 0.3);
@@ -207,6 +211,8 @@ test('wrong limits are refused, and a broken geometry is an error of the geometr
   await refused('1', /'1' is not a number/);
   await refused(null, /null is not a number/);
   await refused({ uv: -1 }, /-1 is not a number of at least 0/);
+  const thrown = new Proxy({}, { ownKeys: () => assert.fail('a trap') });
+  await refused(thrown, /cannot be read: a trap/, 'invalid-input');
   await refused({ uvs: 1 }, /there is no attribute 'uvs'; there are uv/);
   assert.equal((await run(mirror(), { maxAttributeShift: { uv: undefined } })).flips, 0);
   assert.equal((await run(mirror(MIRROR.map(() => NaN)))).shiftEdges, 0);
