@@ -21,14 +21,14 @@ pub(super) fn take_path<'e>(
     if u.max(v) as usize >= surface.mesh.vertex_count() {
         return None;
     }
-    let mut at = u;
-    for (i, &[from, to]) in edges.iter().enumerate() {
+    let (all, mut at) = (*edges, u);
+    for (i, &[from, to]) in all.iter().enumerate() {
         if from != at || !is_between(surface, [at, to, v]) {
             return None;
         }
         at = to;
         if at == v {
-            let (path, others) = edges.split_at(i + 1);
+            let (path, others) = all.split_at(i + 1);
             *edges = others;
             return Some(path);
         }
