@@ -177,7 +177,7 @@ export class Attributes {
       const r = sx / (sx - sy);
       const t = shareOf(x) + r * (shareOf(y) - shareOf(x));
       const twin = this.#edges.twins[edge]!;
-      if (twin === NONE || !(t > 0 && t < 1)) break;
+      if (twin === NONE || !(t >= 0 && t <= 1)) break;
       // Edges of the result cross only edges that have flipped. Where the surface is bent, it may look otherwise.
       if (result.has(this.#places[x]!, this.#places[y]!)) break;
       this.#limits.forEach((limit, i) => {
@@ -199,13 +199,14 @@ export class Attributes {
   #firstOf(c: number, normal: Vector, sideOf: (v: number) => number, shareOf: (v: number) => number): number {
     const { starts, halfEdges } = this.#stars;
     const place = this.#places[c]!;
-    let [edge, best] = [NONE, 0];
+    let [edge, best] = [NONE, -1];
     for (let i = starts[place]!; i < starts[place + 1]!; i++) {
       const h = halfEdges[i]!;
       const [x, y] = [this.#indices[next(h)]!, this.#indices[next(next(h))]!];
       const [sx, sy] = [sideOf(x), sideOf(y)];
-      if (sx < 0 === sy < 0 || (shareOf(x) * sy - shareOf(y) * sx) / (sy - sx) <= 0) continue;
-      const facing = Math.abs(dot(normal, unit(cross(this.#between(c, x), this.#between(c, y)))));
+      if (sx < 0 === sy < 0 || (shareOf(x) * sy - shareOf(y) * sx) / (sy - sx) < 0) continue;
+      // A flat triangle faces nowhere.
+      const facing = Math.abs(dot(normal, unit(cross(this.#between(c, x), this.#between(c, y))))) || 0;
       if (facing > best && this.#isAlike(this.#indices[h]!, c)) [edge, best] = [next(h), facing];
     }
     return edge;

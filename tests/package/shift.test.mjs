@@ -99,6 +99,26 @@ test('joined vertices, seams, and the option weld', async () => {
   assert.deepEqual([shiftEdges, seamEdges], [0, 1]);
 });
 
+test('a vertex on an edge of a flat triangle', async () => {
+  //   3      vertex 2 lies on the edge 0-1 of the flat triangle 0-1-2
+  //  /|\
+  // 0-2-1
+  //  \|/
+  //   4
+  const points = [0, 0, 0, 2, 0, 0, 1, 0, 0, 1, 1.5, 0, 1, -1.5, 0];
+  const indices = [0, 2, 3, 2, 1, 3, 0, 1, 2, 0, 4, 1];
+  const at = (shift) => [0, 0, 1, 0, 0.5 + shift, 0, 0.5, 0.75, 0.5, -0.75];
+  for (const [shift, expected] of [
+    [0, 1],
+    [0.5 * TEXEL, 1],
+    [2 * TEXEL, 0],
+  ]) {
+    const { flips, shiftEdges, largestShifts } = await run(geometryOf(points, indices, { uv: [at(shift), 2] }));
+    assert.deepEqual([flips, shiftEdges > 0], [expected, !expected], `${shift}`);
+    if (expected) assert.ok(Math.abs(largestShifts.uv - shift) < 1e-6, `${largestShifts.uv}`);
+  }
+});
+
 /** The value of an attribute of a mesh in the plane at a point. */
 function valueAt({ points, indices, values }, [x, y]) {
   for (let i = 0; i < indices.length; i += 3) {
