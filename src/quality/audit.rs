@@ -288,11 +288,11 @@ fn add_constraints(
     options: &Options,
     named: Option<Named>,
 ) {
-    let constraints = options.constraints.iter().enumerate();
+    let constraints = options.constraints.iter();
     let mut add = |path: &[[u32; 2]]| locked.extend(path.iter().map(|&[u, v]| (u.min(v), u.max(v))));
     if let Some(Named { mut edges, left_out }) = named {
         let is_left_out = |i| options.skips_constraints && left_out.binary_search(&i).is_ok();
-        for (_, &[u, v]) in constraints.filter(|&(i, _)| !is_left_out(i)) {
+        for (_, &[u, v]) in constraints.enumerate().filter(|&(i, _)| !is_left_out(i)) {
             let path = take_path(after, &mut edges, [u, v]).unwrap_or_default();
             add(path);
             if path.is_empty() || path.iter().any(|&[u, v]| !after.table.contains(u, v)) {
@@ -301,7 +301,7 @@ fn add_constraints(
         }
     } else if !options.constraints.is_empty() {
         let mut paths = Paths::new(after);
-        for (_, &[u, v]) in constraints {
+        for &[u, v] in constraints {
             match paths.along([u, v]) {
                 Some(path) => add(&path),
                 None if options.skips_constraints => {}
