@@ -22,7 +22,11 @@ const vertexAt = ([x, y]) => {
   if (!vertices.has(key)) vertices.set(key, vertices.size);
   return vertices.get(key);
 };
-const sides = rings.flatMap((ring) => ring.slice(1).flatMap((point, i) => [vertexAt(ring[i]), vertexAt(point)]));
+// The coordinates are rounded, so a point may come twice in a row.
+const sides = rings.flatMap((ring) => {
+  const corners = ring.map(vertexAt).filter((vertex, i, all) => vertex !== all[i - 1]);
+  return corners.slice(1).flatMap((vertex, i) => [corners[i], vertex]);
+});
 const positions = Float64Array.from([...vertices.keys()].flatMap((key) => key.split(' ').map(Number)));
 
 const points = { positions, indices: new Delaunator(positions).triangles, dimension: 2 };
