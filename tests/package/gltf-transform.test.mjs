@@ -148,7 +148,10 @@ test('quantized positions', async () => {
       geometry.setAttribute('position', new THREE.BufferAttribute(integers, 3, isNormalized));
       const { primitive } = add(document, geometry);
       // Rows of 3 integers are padded to 4 bytes by the writer.
-      const line = await transformed(document, {}, { isFlat: Integers.BYTES_PER_ELEMENT > 1 });
+      const isFine = Integers.BYTES_PER_ELEMENT > 1;
+      // With positions of 8 bits, the texture is bent by several texels at every vertex.
+      const options = isFine ? {} : { maxAttributeShift: Infinity };
+      const line = await transformed(document, options, { isFlat: isFine });
       assert.ok(flipsIn(line) > 20, line);
       assert.equal(badEdges(surfaceOf(primitive)), 0);
       assert.deepEqual(await errorsOf(document), []);
@@ -174,7 +177,8 @@ test('coordinates that a node scales unevenly', async () => {
   const run = async (place, options) => {
     const document = empty();
     place(add(document, square()), document);
-    return flipsIn(await transformed(document, options));
+    // The texture of the square is that of another one.
+    return flipsIn(await transformed(document, { maxAttributeShift: Infinity, ...options }));
   };
   assert.equal(await run(() => {}), 1);
   assert.equal(await run(({ node }) => node.setScale([3, 3, 3]).setRotation([0, 0.6, 0, 0.8])), 1);
