@@ -16,7 +16,7 @@ fn multiply_words(x: u32, y: u32) -> vec2u {
 // The sum of two 128-bit integers, which is below 2^128.
 fn sum_of_words(x: vec4u, y: vec4u) -> vec4u {
     let sum = x + y;
-    let carries = select(vec4u(), vec4u(1u), sum < x);
+    let carries = vec4u(sum < x);
     let second = sum.y + carries.x;
     let carry2 = carries.y + select(0u, 1u, second < sum.y);
     let third = sum.z + carry2;

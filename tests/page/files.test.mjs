@@ -127,7 +127,7 @@ test('triangles that are turned over or flat are in the numbers, and the sentenc
   const page = await sharedPage();
   await page.open(file('dragged.off', `OFF\n${points.length} ${triangles.length} 0\n${lines.join('\n')}\n`));
   const { facts } = await page.playToEnd();
-  assert.deepEqual([facts.Flips, facts['Turned over'], facts['Flat triangles']], ['1', '1 triangle', '1 → 1']);
+  assert.deepEqual([facts.Flips, facts['Turned over'], facts['Flat triangles']], ['2', '1 triangle', '1 → 1']);
   assert.match(await page.page.$eval('#status', ({ textContent }) => textContent), / 1 triangle is turned over\.$/);
   await page.scrub('Home');
   await page.close();
