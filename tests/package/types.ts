@@ -30,8 +30,6 @@ import {
   writeMesh,
 } from 'edgeflip/files';
 import { FlipSession as AwaySession, makeDelaunay as makeAway, type WorkerOptions } from 'edgeflip/worker';
-import { delaunayGeometry, type GeometryOptions } from 'edgeflip/three';
-import type { BufferGeometry } from 'three';
 
 export async function use(mesh: Mesh<Uint32Array>, signal: AbortSignal, device?: GpuDevice): Promise<Uint32Array> {
   await init({ base: new URL('https://example.org/wasm') });
@@ -116,12 +114,6 @@ export async function joined(mesh: Mesh<Uint32Array>, original: Original): Promi
   const welded: Welded = await weld(mesh);
   console.log(seamEdges + joinedVertices, (await makeDelaunay(mesh, { weld: true })).flips);
   return welded.split(welded.indices);
-}
-
-export async function textured(geometry: BufferGeometry): Promise<number> {
-  const options: GeometryOptions = { inPlace: true, maxAttributeShift: { uv: 0.01, color: Infinity } };
-  const { shiftEdges, largestShifts } = await delaunayGeometry(geometry, options);
-  return shiftEdges + (largestShifts?.['uv'] ?? 0);
 }
 
 export function codeOf(error: unknown): ErrorCode | undefined {
