@@ -39,12 +39,10 @@ impl Failure {
                 let error = Error::FileTooLarge { limit, option: "--max-bytes" };
                 format!("{}: {error}", path.display())
             }
-            Error::Parse { message, .. } => {
-                let end = ENDS.iter().find_map(|[end, flag]| Some((message.strip_suffix(end)?, flag)));
-                let line = end.map_or(error.to_string(), |(start, flag)| {
-                    error.to_string().replace(message, &format!("{start}{flag}"))
-                });
-                format!("{}: {line}", path.display())
+            Error::Parse { place, message } => {
+                let end = ENDS.iter().find_map(|[end, flag]| Some((message.strip_suffix(end)?, *flag)));
+                let (start, end) = end.unwrap_or((message, ""));
+                format!("{}: {place}: {start}{end}", path.display())
             }
             Error::Io { .. }
             | Error::UnknownFormat { .. }

@@ -85,10 +85,8 @@ fn run(args: &Args, mut clock: Clock) -> Result<Done, Failure> {
     let mut ms = Milliseconds { start: clock.lap(), ..Milliseconds::default() };
     let mut loaded = io::load(&args.input, &args.read_options(output.format())).map_err(refused)?;
     ms.load = clock.lap();
-    let left_behind = match output.is_beside(&args.input) || !loaded.keeps(output.format()) {
-        true => Vec::new(),
-        false => loaded.leave_folder(),
-    };
+    let leaves = loaded.keeps(output.format()) && !output.is_beside(&args.input);
+    let left_behind = if leaves { loaded.leave_folder() } else { Vec::new() };
     let welded = args.weld.then(|| loaded.welded()).transpose().map_err(refused)?;
     let (alone, welded, turned) = turn(args, &loaded.mesh, welded).map_err(refused)?;
     let joined = welded.as_ref().map(|welded| &welded.mesh);
