@@ -6,21 +6,9 @@ import { test } from 'node:test';
 import { EdgeflipError } from 'edgeflip';
 import { delaunayGeometry } from 'edgeflip/three';
 import * as THREE from 'three';
+import { flips, sheared, square } from './geometries.mjs';
 
 const { BufferGeometry } = THREE;
-
-const sheared = (geometry) => geometry.applyMatrix4(new THREE.Matrix4().makeShear(0.9, 0.3, 0, 0.8, 0.2, 0.7));
-
-/** A square in two triangles, split along the wrong diagonal 0-2. Without an index, each triangle has its vertices. */
-function square(isIndexed = true) {
-  const points = [0, 0, 0, 0.9, 0.2, 0, 1, 1, 0, 0, 1, 0];
-  const geometry = new BufferGeometry();
-  geometry.setAttribute('position', new THREE.Float32BufferAttribute(points, 3));
-  geometry.setIndex([0, 1, 2, 0, 2, 3]);
-  return isIndexed ? geometry : geometry.toNonIndexed();
-}
-
-const flips = async (geometry, options) => (await delaunayGeometry(geometry, options)).flips;
 
 const refused = (code, pattern) => (error) => {
   assert.ok(error instanceof EdgeflipError, String(error));

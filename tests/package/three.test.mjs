@@ -5,6 +5,7 @@ import { test } from 'node:test';
 import { EdgeflipError, FlipSession, makeDelaunay } from 'edgeflip';
 import { delaunayGeometry } from 'edgeflip/three';
 import * as THREE from 'three';
+import { flips, sheared, square } from './geometries.mjs';
 import { badEdges, same, sameTexture } from './surfaces.mjs';
 
 const { BufferAttribute, BufferGeometry } = THREE;
@@ -35,9 +36,7 @@ function surfaceOf(geometry) {
   };
 }
 
-const shear = new THREE.Matrix4().makeShear(0.9, 0.3, 0, 0.8, 0.2, 0.7);
 const inPlane = new THREE.Matrix4().makeShear(0, 0, 0.9, 0, 0, 0);
-const sheared = (geometry) => geometry.applyMatrix4(shear);
 
 function interleaved(geometry) {
   const { position, normal, uv } = geometry.attributes;
@@ -156,17 +155,6 @@ for (const [name, [make, isFlat, fewest]] of Object.entries(GEOMETRIES)) {
     assert.equal(again.flips, 0);
   });
 }
-
-/** A square in two triangles, split along the wrong diagonal 0-2. Without an index, each triangle has its vertices. */
-function square(isIndexed = true) {
-  const points = [0, 0, 0, 0.9, 0.2, 0, 1, 1, 0, 0, 1, 0];
-  const geometry = new BufferGeometry();
-  geometry.setAttribute('position', new THREE.Float32BufferAttribute(points, 3));
-  geometry.setIndex([0, 1, 2, 0, 2, 3]);
-  return isIndexed ? geometry : geometry.toNonIndexed();
-}
-
-const flips = async (geometry, options) => (await delaunayGeometry(geometry, options)).flips;
 
 test('attributes, morph targets and groups decide which edges flip', async () => {
   assert.equal(await flips(square()), 1);

@@ -1,6 +1,6 @@
 //! Attributes that lock no edges, and the attributes that lock the most.
 
-use super::original::{FLIPPED, SQUARE, square_obj, square_ply, text};
+use super::original::{FLIPPED, SQUARE, facet, named, square_obj, square_ply, text};
 use super::*;
 use crate::make_delaunay;
 use oorandom::Rand64;
@@ -20,13 +20,7 @@ fn run(format: Format, bytes: impl AsRef<[u8]>, ignored: &[&str]) -> (AttributeE
     let mut options = Options { backend: crate::Backend::Cpu, ..Options::default() };
     let locked = loaded.constrain(&mut options).unwrap();
     let outcome = make_delaunay(&loaded.mesh, &options, |_, _| ControlFlow::Continue(())).unwrap();
-    let name = match format {
-        Format::Off => "a.off",
-        Format::Obj => "a.obj",
-        Format::Ply => "a.ply",
-        _ => "a.stl",
-    };
-    (locked, outcome.triangles.clone(), loaded.file_bytes(name, outcome.triangles).unwrap())
+    (locked, outcome.triangles.clone(), loaded.file_bytes(named(format), outcome.triangles).unwrap())
 }
 
 /// What locks the only inner edge of a file of [`SQUARE`].
@@ -71,13 +65,6 @@ fn a_property_of_each_face_stays_with_its_triangle() {
 
 #[test]
 fn the_attribute_of_a_facet_stays_with_its_triangle() {
-    let points = [[0.0f32, 0.0, 0.0], [0.9, 0.2, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
-    let facet = |triangle: [usize; 3], attribute: [u8; 2]| {
-        let mut bytes = [0.0f32; 3].iter().flat_map(|x| x.to_le_bytes()).collect::<Vec<u8>>();
-        bytes.extend(triangle.iter().flat_map(|&v| points[v]).flat_map(f32::to_le_bytes));
-        bytes.extend(attribute);
-        bytes
-    };
     let header = [[b'.'; 80].as_slice(), &2u32.to_le_bytes()].concat();
     let file = [header, facet([0, 1, 2], [1, 0]), facet([0, 2, 3], [2, 0])].concat();
     let (locked, _, written) = run(Format::Stl, &file, &[]);

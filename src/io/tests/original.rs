@@ -33,7 +33,7 @@ fn run(format: Format, bytes: impl AsRef<[u8]>) -> (usize, Vec<u32>, Vec<u8>) {
     (locked, outcome.triangles, written)
 }
 
-fn named(format: Format) -> &'static str {
+pub(super) fn named(format: Format) -> &'static str {
     match format {
         Format::Off => "a.off",
         Format::Obj => "a.obj",
@@ -348,15 +348,17 @@ fn a_file_with_strips_is_not_held() {
     assert_eq!(loaded.dropped, ["vertex properties `red`"]);
 }
 
+/// A facet of the square in binary STL, with the normal 0.
+pub(super) fn facet(triangle: [usize; 3], attribute: [u8; 2]) -> Vec<u8> {
+    let points = [[0.0f32, 0.0, 0.0], [0.9, 0.2, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+    let mut bytes = [0.0f32; 3].iter().flat_map(|x| x.to_le_bytes()).collect::<Vec<u8>>();
+    bytes.extend(triangle.iter().flat_map(|&v| points[v]).flat_map(f32::to_le_bytes));
+    bytes.extend(attribute);
+    bytes
+}
+
 #[test]
 fn binary_stl_keeps_its_header_and_attributes() {
-    let points = [[0.0f32, 0.0, 0.0], [0.9, 0.2, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
-    let facet = |triangle: [usize; 3], attribute: [u8; 2]| {
-        let mut bytes = [0.0f32; 3].iter().flat_map(|x| x.to_le_bytes()).collect::<Vec<u8>>();
-        bytes.extend(triangle.iter().flat_map(|&v| points[v]).flat_map(f32::to_le_bytes));
-        bytes.extend(attribute);
-        bytes
-    };
     let mut header = b"COLOR=abcd".to_vec();
     header.resize(80, b'.');
     header.extend(2u32.to_le_bytes());
