@@ -5,11 +5,14 @@ use super::parsed::Parsed;
 use super::text::{integer, quoted};
 use crate::Error;
 use std::fmt::Write;
+use std::str::FromStr;
 
 /// The most significant digits of a decimal number that every 32-bit float shows.
 const SHOWN: usize = 6;
 /// With more digits, half of the last one is less than what rounds a 64-bit float.
 const MOST: usize = 17;
+/// The most digits of an integer that is always a 64-bit float.
+const EXACT: usize = 15;
 /// The powers of 10 that are 64-bit floats.
 const POWERS: [f64; 23] = [
     1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18,
@@ -46,7 +49,7 @@ pub(super) trait Float: Copy + Default + Send + Sync {
     const BITS: u32;
 
     /// The float nearest to a decimal number, and whether it loses digits of it. `None` if the token is not a number.
-    fn nearest(token: &str, asks: bool) -> Option<(Self, bool)>;
+    fn nearest(token: &[u8], asks: bool) -> Option<(Self, bool)>;
 
     fn is_finite(self) -> bool;
 }
@@ -55,19 +58,20 @@ impl Float for f32 {
     const BITS: u32 = 32;
 
     #[inline]
-    fn nearest(token: &str, asks: bool) -> Option<(Self, bool)> {
+    fn nearest(token: &[u8], asks: bool) -> Option<(Self, bool)> {
         if !asks {
-            return Some((token.parse().ok()?, false));
+            return Some((parsed(token)?, false));
         }
-        let wide: f64 = token.parse().ok()?;
+        if let Some(x) = shown(token) {
+            return Some((x, false));
+        }
+        let wide: f64 = parsed(token)?;
         let mut x = wide as f32;
         if f64::from(x) == wide || wide.is_nan() {
             return Some((x, false));
         }
-        // A tie may have become one by rounding to 64 bits.
-        let is_tie = wide.to_bits() & 0x1fff_ffff == 0x1000_0000;
-        if is_tie || !x.is_normal() {
-            x = token.parse().ok()?;
+        if is_tie(wide) || !x.is_normal() {
+            x = parsed(token)?;
         }
         Some((x, !shows(x, token, wide)))
     }
@@ -81,8 +85,8 @@ impl Float for f64 {
     const BITS: u32 = 64;
 
     #[inline]
-    fn nearest(token: &str, _: bool) -> Option<(Self, bool)> {
-        Some((token.parse().ok()?, false))
+    fn nearest(token: &[u8], _: bool) -> Option<(Self, bool)> {
+        Some((parsed(token)?, false))
     }
 
     fn is_finite(self) -> bool {
@@ -94,7 +98,7 @@ impl Reading {
     /// The float nearest to a decimal number; `None` if the token is not a number. Accepts NaN and infinities.
     #[inline]
     pub(super) fn nearest<T: Float>(&mut self, token: &[u8]) -> Option<T> {
-        let (x, loses) = T::nearest(std::str::from_utf8(token).ok()?, self.asks)?;
+        let (x, loses) = T::nearest(token, self.asks)?;
         self.loses |= loses;
         Some(x)
     }
@@ -113,10 +117,67 @@ impl Reading {
     }
 }
 
+fn parsed<T: FromStr>(token: &[u8]) -> Option<T> {
+    std::str::from_utf8(token).ok()?.parse().ok()
+}
+
+/// Whether a number is halfway between two 32-bit floats. It may have become so by rounding to 64 bits.
+fn is_tie(wide: f64) -> bool {
+    wide.to_bits() & 0x1fff_ffff == 0x1000_0000
+}
+
+/// The float nearest to a decimal number of few digits that it shows; `None` also if that takes a closer look.
+#[inline]
+fn shown(token: &[u8]) -> Option<f32> {
+    let (is_negative, token) = match token {
+        [b'-', token @ ..] => (true, token),
+        [b'+', token @ ..] => (false, token),
+        token => (false, token),
+    };
+    let (mut digits, mut point, mut end, mut exponent) = (0_u64, None, token.len(), 0);
+    for (i, &b) in token.iter().enumerate() {
+        let digit = b.wrapping_sub(b'0');
+        if digit < 10 {
+            digits = digits.wrapping_mul(10).wrapping_add(u64::from(digit));
+        } else if b == b'.' && point.is_none() {
+            point = Some(i);
+        } else if matches!(b, b'e' | b'E') {
+            (end, exponent) = (i, integer(&token[i + 1..])?);
+            break;
+        } else {
+            return None;
+        }
+    }
+    let count = end - usize::from(point.is_some());
+    let last = exponent.checked_sub(point.map_or(0, |point| (end - point - 1) as i64))?;
+    if !(1..=EXACT).contains(&count) {
+        return None;
+    }
+    let power = *POWERS.get(usize::try_from(last.unsigned_abs()).ok()?)?;
+    // Both are 64-bit floats, so this is rounded once.
+    let number = digits as f64;
+    let wide = if last < 0 { number / power } else { number * power };
+    let x = wide as f32;
+    if f64::from(x) != wide {
+        if is_tie(wide) || !x.is_normal() {
+            return None;
+        }
+        if digits >= 10_u64.pow(SHOWN as u32) {
+            // In units of the last digit.
+            let distance = (f64::from(x) - wide).abs();
+            let distance = if last < 0 { distance * power } else { distance / power };
+            if distance + f64::EPSILON * (number + 1.0) >= 0.5 {
+                return None;
+            }
+        }
+    }
+    Some(if is_negative { -x } else { x })
+}
+
 /// Whether a float, rounded to as many digits as the token has without zeros at its end, is the token. `wide` is the
 /// 64-bit float nearest to the token.
-fn shows(x: f32, token: &str, wide: f64) -> bool {
-    let (digits, last) = digits_of(token.as_bytes(), |_| ());
+fn shows(x: f32, token: &[u8], wide: f64) -> bool {
+    let (digits, last) = digits_of(token, |_| ());
     if !x.is_normal() || digits > MOST {
         return x.is_finite() && digits <= MOST && shows_exactly(x, token, digits);
     }
@@ -136,17 +197,17 @@ fn shows(x: f32, token: &str, wide: f64) -> bool {
     shows_exactly(x, token, digits)
 }
 
-fn shows_exactly(x: f32, token: &str, digits: usize) -> bool {
+fn shows_exactly(x: f32, token: &[u8], digits: usize) -> bool {
     let mut rounded = String::new();
     // Writing to a String cannot fail.
     let _ = write!(rounded, "{:.*e}", digits.saturating_sub(1), x.abs());
-    let decimal = |text: &str| {
+    let decimal = |text: &[u8]| {
         let mut digits = Vec::new();
-        let (count, last) = digits_of(text.as_bytes(), |digit| digits.push(digit));
+        let (count, last) = digits_of(text, |digit| digits.push(digit));
         digits.truncate(count);
         (digits, last)
     };
-    decimal(&rounded) == decimal(token)
+    decimal(rounded.as_bytes()) == decimal(token)
 }
 
 /// The number of digits from the first to the last that is not 0, and the power of 10 of the last. `each` gets all

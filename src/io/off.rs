@@ -9,6 +9,7 @@ use super::pieces::{self, Piece};
 use super::text::{Digits, Lines, Tokens, float, integer, quoted, without_comment};
 use crate::{Error, Mesh, Positions};
 use std::io::{self, Write};
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 const ATTRIBUTES: &str = "numbers after a vertex's coordinates (normals, colours, texture coordinates)";
 const COLOURS: &str = "face colours";
@@ -26,9 +27,12 @@ where
     let header = Header::parse(&mut lines)?;
     let threads = pieces::threads(lines.bytes_left());
     let pieces = pieces::cut(&lines, is_content, &threads);
-    let mut parts = threads.map_each(pieces, |piece| Part::<T>::read(piece, &header, asks, false));
+    // Only saves work: a piece that ends for it is not used.
+    let ends = AtomicBool::new(false);
+    let mut parts = threads.map_each(pieces, |piece| Part::<T>::read(piece, &header, asks, false, &ends));
     if parts.iter().flatten().any(|part| part.is_short) {
-        parts = vec![Part::read(Piece::whole(&lines), &header, asks, true)];
+        ends.store(false, Relaxed);
+        parts = vec![Part::read(Piece::whole(&lines), &header, asks, true, &ends)];
     }
     let (mut positions, mut faces, mut dropped) = (Vec::new(), Vec::new(), Dropped::default());
     let Header { stride, vertices, faces: announced, .. } = header;
@@ -288,12 +292,14 @@ struct Part<'a, T> {
 }
 
 impl<'a, T: Float> Part<'a, T> {
-    /// Stops after the first vertex that loses digits, and after the first line that ends too early.
+    /// Stops after the first vertex that loses digits, and after the first line that ends too early, and where another
+    /// piece has stopped: `ends`.
     fn read(
         Piece { lines, items }: Piece<'a>,
         header: &Header,
         asks: bool,
         continues: bool,
+        ends: &AtomicBool,
     ) -> Result<Self, Error> {
         let &Header { stride, vertices, faces, .. } = header;
         let count = |first: u64, end: u64| end.min(items.end).saturating_sub(first.max(items.start));
@@ -324,6 +330,9 @@ impl<'a, T: Float> Part<'a, T> {
             }
             part.found += 1;
             if part.reading.loses || part.is_short {
+                ends.store(true, Relaxed);
+            }
+            if ends.load(Relaxed) {
                 break;
             }
         }

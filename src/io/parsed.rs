@@ -89,6 +89,11 @@ impl CutFaces {
         let cuts = threads.map_each(self.polygons.chunks(POLYGONS).collect(), |piece: &[Polygon]| {
             let mut corners = Vec::new();
             let cut = |polygon: &Polygon| {
+                if let Some(corners) = polygon.quadrilateral(&self.triangles)
+                    && polygon::is_far_from_concave(corners.map(point))
+                {
+                    return None;
+                }
                 corners.clear();
                 corners.extend(polygon.vertices(&self.triangles).map(point));
                 Some((*polygon, polygon::cut(&corners))).filter(|(_, cut)| *cut != Cut::Fan)
@@ -114,6 +119,14 @@ impl CutFaces {
 }
 
 impl Polygon {
+    /// Its four corners, if it has four.
+    fn quadrilateral(self, triangles: &[u32]) -> Option<[u32; 4]> {
+        match &triangles[3 * self.first as usize..] {
+            &[a, b, c, _, _, d, ..] if self.corners == 4 => Some([a, b, c, d]),
+            _ => None,
+        }
+    }
+
     /// The vertices of its corners, from its fan.
     fn vertices(self, triangles: &[u32]) -> impl Iterator<Item = u32> {
         let first = 3 * self.first as usize;

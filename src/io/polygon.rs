@@ -20,11 +20,6 @@ pub(super) enum Cut {
 
 /// Cuts a polygon of at least 3 corners.
 pub(super) fn cut(corners: &[DVec3]) -> Cut {
-    if let &[a, b, c, d] = corners
-        && is_far_from_concave([a, b, c, d])
-    {
-        return Cut::Fan;
-    }
     let points = seen(corners);
     if fan_stays_inside(&points) {
         return Cut::Fan;
@@ -33,7 +28,7 @@ pub(super) fn cut(corners: &[DVec3]) -> Cut {
 }
 
 /// Whether rounding cannot turn a triangle of a quadrilateral's fan against the other. Most files have no other.
-fn is_far_from_concave([a, b, c, d]: [DVec3; 4]) -> bool {
+pub(super) fn is_far_from_concave([a, b, c, d]: [DVec3; 4]) -> bool {
     let [ab, ac, ad] = [b - a, c - a, d - a];
     let product = ab.cross(ac).dot(ac.cross(ad));
     let size = ab.length_squared() * ac.length_squared() * ac.length_squared() * ad.length_squared();
