@@ -68,6 +68,8 @@ test('each sample opens from the gallery, by its name and with the triangles of 
     assert.equal(seen.facts.Fingerprint, fingerprintOf(mesh.indices), spec);
     assert.equal(await page.page.textContent('#caption'), name);
     assert.equal(await page.page.inputValue('#beta'), `${beta}`, spec);
+    // With the row of the edges that flip, if there are states.
+    assert.equal(await page.page.locator('#legend [data-state=flips]').count(), 1, spec);
     const thumb = await page.page.evaluate(
       (of) => getComputedStyle(document.querySelector(`[data-spec="${of}"] .thumb`)).maskImage,
       spec,
