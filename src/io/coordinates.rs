@@ -4,11 +4,11 @@ use super::options::Coordinates;
 use super::parsed::Parsed;
 use super::text::{integer, quoted};
 use crate::Error;
-use std::fmt::Write;
+use num_bigint::BigInt;
 use std::str::FromStr;
 
-/// The most significant digits of a decimal number that every 32-bit float shows.
-const SHOWN: usize = 6;
+/// The most digits of a decimal number that a 32-bit float always shows.
+const SHOWN: u32 = 6;
 /// With more digits, half of the last one is less than what rounds a 64-bit float.
 const MOST: usize = 17;
 /// The most digits of an integer that is always a 64-bit float.
@@ -20,17 +20,20 @@ const POWERS: [f64; 23] = [
 ];
 
 /// Reads a file with 32-bit coordinates, and again with 64-bit ones if those lose digits; or with those that `option`
-/// says. `narrow` is told whether to ask for digits.
+/// says. `narrow` is told whether to ask for digits, and then ends where one is lost.
 pub(super) fn read(
     option: Option<Coordinates>,
-    narrow: impl FnOnce(bool) -> Result<Parsed, Error>,
+    narrow: impl Fn(bool) -> Result<Parsed, Error>,
     wide: impl FnOnce() -> Result<Parsed, Error>,
 ) -> Result<Parsed, Error> {
     if option != Some(Coordinates::F64) {
-        let parsed = narrow(option.is_none())?;
+        let parsed = narrow(true)?;
         if !parsed.loses {
             return Ok(parsed);
         }
+    }
+    if option == Some(Coordinates::F32) {
+        return Ok(Parsed { loses: true, ..narrow(false)? });
     }
     wide()
 }
@@ -73,7 +76,7 @@ impl Float for f32 {
         if is_tie(wide) || !x.is_normal() {
             x = parsed(token)?;
         }
-        Some((x, !shows(x, token, wide)))
+        Some((x, !shows(x, token)))
     }
 
     fn is_finite(self) -> bool {
@@ -153,67 +156,49 @@ fn shown(token: &[u8]) -> Option<f32> {
     if !(1..=EXACT).contains(&count) {
         return None;
     }
-    let power = *POWERS.get(usize::try_from(last.unsigned_abs()).ok()?)?;
+    let power = *POWERS.get(usize::try_from(last.checked_neg()?).ok()?)?;
     // Both are 64-bit floats, so this is rounded once.
     let number = digits as f64;
-    let wide = if last < 0 { number / power } else { number * power };
+    let wide = number / power;
     let x = wide as f32;
     if f64::from(x) != wide {
         if is_tie(wide) || !x.is_normal() {
             return None;
         }
-        if digits >= 10_u64.pow(SHOWN as u32) {
-            // In units of the last digit.
-            let distance = (f64::from(x) - wide).abs();
-            let distance = if last < 0 { distance * power } else { distance / power };
-            if distance + f64::EPSILON * (number + 1.0) >= 0.5 {
-                return None;
-            }
+        // With powers up to 10^12, the product has at most 52 bits.
+        let is_near = || last >= -12 && (f64::from(x) * power - number).abs() <= 0.5;
+        if digits >= 10_u64.pow(SHOWN) && !is_near() {
+            return None;
         }
     }
     Some(if is_negative { -x } else { x })
 }
 
-/// Whether a float, rounded to as many digits as the token has without zeros at its end, is the token. `wide` is the
-/// 64-bit float nearest to the token.
-fn shows(x: f32, token: &[u8], wide: f64) -> bool {
-    let (digits, last) = digits_of(token, |_| ());
-    if !x.is_normal() || digits > MOST {
-        return x.is_finite() && digits <= MOST && shows_exactly(x, token, digits);
+/// Whether a float is at most half a unit of the last digit away from the token: rounded to as many digits, it is the
+/// token.
+fn shows(x: f32, token: &[u8]) -> bool {
+    let (digits, count, last) = digits_of(token);
+    if !x.is_finite() || count > MOST {
+        return false;
     }
-    if digits <= SHOWN {
-        return true;
-    }
-    let power = usize::try_from(last.unsigned_abs()).ok().and_then(|last| POWERS.get(last));
-    if let Some(&power) = power {
-        let half = if last < 0 { 0.5 / power } else { 0.5 * power };
-        // Rounding to 64 bits has moved both by less than this.
-        let noise = f64::EPSILON * (wide.abs() + half);
-        let distance = (f64::from(x) - wide).abs();
-        if distance + noise < half || distance - noise > half {
-            return distance < half;
-        }
-    }
-    shows_exactly(x, token, digits)
-}
-
-fn shows_exactly(x: f32, token: &[u8], digits: usize) -> bool {
-    let mut rounded = String::new();
-    // Writing to a String cannot fail.
-    let _ = write!(rounded, "{:.*e}", digits.saturating_sub(1), x.abs());
-    let decimal = |text: &[u8]| {
-        let mut digits = Vec::new();
-        let (count, last) = digits_of(text, |digit| digits.push(digit));
-        digits.truncate(count);
-        (digits, last)
+    let bits = x.abs().to_bits();
+    let (mantissa, exponent) = if x.is_normal() {
+        (bits & 0x7f_ffff | 0x80_0000, i64::from(bits >> 23) - 150)
+    } else {
+        (bits, -149)
     };
-    decimal(rounded.as_bytes()) == decimal(token)
+    let power = |base: u32, exponent: i64| BigInt::from(base).pow(exponent.max(0) as u32);
+    // All multiplied by the powers that make them integers.
+    let unit = power(10, last) * power(2, -exponent);
+    let distance = power(10, -last) * power(2, exponent) * mantissa - &unit * digits;
+    2 * BigInt::from(distance.into_parts().1) <= unit
 }
 
-/// The number of digits from the first to the last that is not 0, and the power of 10 of the last. `each` gets all
-/// digits from the first that is not 0.
-fn digits_of(token: &[u8], mut each: impl FnMut(u8)) -> (usize, i64) {
-    let (mut digits, mut zeros, mut decimals, mut is_after_point, mut exponent) = (0, 0, 0, false, 0);
+/// The digits from the first to the last that is not 0, their number and the power of 10 of the last. With more than 19,
+/// the digits are any.
+fn digits_of(token: &[u8]) -> (u64, usize, i64) {
+    let (mut digits, mut count, mut zeros, mut decimals, mut is_after_point, mut exponent) =
+        (0_u64, 0, 0_u32, 0, false, 0);
     for (i, &b) in token.iter().enumerate() {
         match b {
             b'.' => is_after_point = true,
@@ -224,17 +209,16 @@ fn digits_of(token: &[u8], mut each: impl FnMut(u8)) -> (usize, i64) {
             b'0'..=b'9' => {
                 decimals += i64::from(is_after_point);
                 if b != b'0' {
-                    digits += zeros + 1;
+                    digits =
+                        digits.wrapping_mul(10_u64.wrapping_pow(zeros + 1)).wrapping_add(u64::from(b - b'0'));
+                    count += zeros as usize + 1;
                     zeros = 0;
-                } else if digits > 0 {
+                } else if count > 0 {
                     zeros += 1;
-                }
-                if digits > 0 {
-                    each(b);
                 }
             }
             _ => {}
         }
     }
-    (digits, exponent.saturating_sub(decimals).saturating_add(zeros as i64))
+    (digits, count, exponent.saturating_sub(decimals).saturating_add(i64::from(zeros)))
 }

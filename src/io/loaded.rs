@@ -72,7 +72,11 @@ impl Loaded {
                 document.embeds = true;
                 document.images.clone()
             }
-            (_, Some(original)) if original.format == Format::Obj => obj::libraries(&original.bytes),
+            (_, Some(original)) if original.format == Format::Obj => {
+                let mut names = obj::libraries(&original.bytes);
+                names.retain(|name| !Path::new(name).is_absolute());
+                names
+            }
             _ => Vec::new(),
         }
     }
@@ -94,8 +98,8 @@ impl Loaded {
     /// In the same format it is the same file, and only faces that contain a changed triangle are rewritten. If the run
     /// was [constrained](Loaded::constrain), each triangle keeps the attributes of its face, and each new corner has
     /// the attributes of its vertex there. An ignored attribute of corners that is the same in a whole triangle stays
-    /// the same there; else each new corner has that of a corner of an old triangle beside it. A glTF file gets other indices, as `.gltf` or `.glb`. In other formats, the
-    /// parts of a glTF file have their positions in the scene.
+    /// the same there; else each new corner has that of a corner of an old triangle beside it. A glTF file gets other
+    /// indices, as `.gltf` or `.glb`. In other formats, the parts of a glTF file have their positions in the scene.
     ///
     /// # Errors
     /// [`Error::UnknownFormat`]; [`Error::TriangleCount`] and those of [`Mesh::new`] for the triangles;

@@ -100,10 +100,15 @@ fn utf8(bytes: &[u8]) -> Option<Vec<u8>> {
 
 /// Decides the dimension, cuts the polygons and makes the mesh.
 fn finish(parsed: Parsed, options: &ReadOptions) -> Result<(Loaded, Others), Error> {
-    let Parsed { stride, mut positions, mut faces, dropped, .. } = parsed;
-    if options.coordinates == Some(Coordinates::F32) {
+    let Parsed { stride, mut positions, mut faces, dropped, mut loses } = parsed;
+    if options.coordinates == Some(Coordinates::F32)
+        && let Positions::F64(numbers) = &positions
+    {
+        loses = numbers.iter().any(|&x| f64::from(x as f32) != x);
         positions = positions.to_f32().into();
     }
+    let notes =
+        if loses { vec!["the coordinates were rounded to 32-bit floats".to_owned()] } else { Vec::new() };
     let raised = match (&positions, stride) {
         (Positions::F32(numbers), 3) => first_raised(numbers),
         (Positions::F64(numbers), 3) => first_raised(numbers),
@@ -138,7 +143,7 @@ fn finish(parsed: Parsed, options: &ReadOptions) -> Result<(Loaded, Others), Err
         polygons: polygons.count,
         crossing: polygons.crossing,
         dropped: dropped.0,
-        notes: Vec::new(),
+        notes,
         document: None,
         original: None,
     };

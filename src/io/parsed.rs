@@ -158,6 +158,6 @@ pub(super) struct Parsed {
     pub(super) faces: CutFaces,
     /// What was dropped.
     pub(super) dropped: Dropped,
-    /// Whether the positions lose digits of the file. Then the rest was not read.
+    /// Whether the positions lose digits of the file. If the parser was asked to notice, the rest was not read.
     pub(super) loses: bool,
 }

@@ -39,7 +39,7 @@ pub(super) fn is_far_from_concave([a, b, c, d]: [DVec3; 4]) -> bool {
 fn seen(corners: &[DVec3]) -> Vec<DVec2> {
     let largest = corners.iter().fold(0.0, |largest: f64, corner| largest.max(corner.abs().max_element()));
     // A power of two: nothing overflows, and nothing is rounded.
-    let scale = if largest > 0.0 { libm::ldexp(1.0, -libm::ilogb(largest).min(1022)) } else { 1.0 };
+    let scale = if largest > 0.0 { libm::ldexp(1.0, (-libm::ilogb(largest)).min(1022)) } else { 1.0 };
     let first = corners[0] * scale;
     let spans: Vec<DVec3> = corners.iter().map(|&corner| corner * scale - first).collect();
     let areas = || spans.windows(2).map(|pair| pair[0].cross(pair[1]));
@@ -126,18 +126,23 @@ fn triangulated(points: &[DVec2]) -> Option<Vec<[usize; 3]>> {
         return None;
     }
     let start = |edge: Edge| starts.get(&[edge.from().index(), edge.to().index()]).copied();
-    let is_inside = inside(&cut, start)?;
-    for face in cut.inner_faces().filter(|face| is_inside[face.index()]) {
-        triangles.push(face.adjacent_edges().map(|edge| {
-            // Corners at the same place are told apart by the edge of the outline that comes next, clockwise.
-            let mut edge = edge;
-            loop {
-                match start(edge) {
-                    Some(corner) => return corner,
-                    None => edge = edge.cw(),
-                }
+    let begins: Vec<Option<usize>> = cut.directed_edges().map(start).collect();
+    let is_inside = inside(&cut, &begins)?;
+    // Corners at the same place are told apart by the edge of the outline that comes before, counterclockwise.
+    let mut corners = vec![0; begins.len()];
+    for (first, corner) in cut.directed_edges().zip(&begins) {
+        let Some(corner) = *corner else { continue };
+        let mut edge = first;
+        loop {
+            corners[edge.index()] = corner;
+            edge = edge.ccw();
+            if begins[edge.index()].is_some() {
+                break;
             }
-        }));
+        }
+    }
+    for face in cut.inner_faces().filter(|face| is_inside[face.index()]) {
+        triangles.push(face.adjacent_edges().map(|edge| corners[edge.index()]));
     }
     if triangles.len() != count - 2 {
         return None;
@@ -169,11 +174,11 @@ fn without_repeated(points: &[Point2<f64>]) -> (Vec<usize>, Vec<[usize; 3]>) {
     (outline, triangles)
 }
 
-/// Whether each face is inside the outline, whose directed edges have a `start`. `None` if the outline goes around a
+/// Whether each face is inside the outline; a corner begins each of its directed edges. `None` if the outline goes around a
 /// face twice, or clockwise.
 fn inside(
     cut: &ConstrainedDelaunayTriangulation<Point2<f64>>,
-    start: impl Fn(Edge) -> Option<usize>,
+    begins: &[Option<usize>],
 ) -> Option<Vec<bool>> {
     // How often the outline goes around a face: once more to the left of its edges than to the right.
     let mut turns = vec![None; cut.num_all_faces()];
@@ -184,7 +189,8 @@ fn inside(
         if turns[right.index()].is_some() {
             continue;
         }
-        let step = i32::from(start(edge.rev()).is_some()) - i32::from(start(edge).is_some());
+        let [here, back] = [edge, edge.rev()].map(|edge| begins[edge.index()].is_some());
+        let step = i32::from(back) - i32::from(here);
         turns[right.index()] = turns[left.index()].map(|turns| turns + step);
         pending.extend(right.as_inner().into_iter().flat_map(|face| face.adjacent_edges()));
     }

@@ -141,13 +141,15 @@ impl Wedges {
         }
         let is_mixed = |h: u32| self.first[triangles[h as usize] as usize] == NONE;
         let mut twins = vec![NONE; triangles.len()];
-        let mut starts = Vec::new();
+        let (mut starts, mut seams) = (Vec::new(), 0);
         for_each_edge(vertices, triangles, |half_edges| {
             if !is_mixed(half_edges[0]) && !is_mixed(next(half_edges[0])) {
                 return;
             }
+            let is_seam = self.locked_edges.binary_search(&ordered(ends(triangles, half_edges[0]))).is_ok();
+            seams += usize::from(is_seam);
             if let (EdgeKind::Interior, &[h, g]) = (edge_kind(half_edges, triangles), half_edges)
-                && self.locked_edges.binary_search(&ordered(ends(triangles, h))).is_err()
+                && !is_seam
             {
                 (twins[h as usize], twins[g as usize]) = (g, h);
                 return;
@@ -168,14 +170,14 @@ impl Wedges {
                 spread(&mut sources, &twins, h, self.barriers[index].1);
             }
         }
-        match sources.iter().position(|&source| source == NONE) {
-            None => Ok(sources),
+        let message = match sources.iter().position(|&source| source == NONE) {
+            None if seams == self.locked_edges.len() => return Ok(sources),
+            None => "an edge along a seam has flipped".to_owned(),
             Some(corner) => {
-                let message =
-                    format!("triangle {} cannot result from flips while seams are locked", corner / 3);
-                Err(Error::Option { option: "triangles", message })
+                format!("triangle {} cannot result from flips while seams are locked", corner / 3)
             }
-        }
+        };
+        Err(Error::Option { option: "triangles", message })
     }
 }
 

@@ -256,6 +256,8 @@ fn triangles_that_are_no_result_are_refused() {
         refused(&[0, 3, 1, 1, 3, 2]),
         "option triangles: triangle 0 cannot result from flips while seams are locked"
     );
+    // Each corner has a source, but the seam is not there.
+    assert_eq!(refused(&[0, 1, 3, 1, 2, 3]), "option triangles: an edge along a seam has flipped");
 }
 
 /// The mesh with one vertex for each sector, and no other vertices.

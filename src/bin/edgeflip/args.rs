@@ -11,28 +11,28 @@ Formats, by extension:
   .off   Geomview OFF, text (also COFF, NOFF, STOFF, and nOFF with 2 or 3 dimensions)
   .obj   Wavefront OBJ; all groups and objects are read as one mesh
   .ply   PLY, text or binary; new files are binary
-  .stl   STL, text or binary, written in binary with 32-bit floats; corners at the same position are
-         read as one vertex
+  .stl   STL, text or binary, written in binary with 32-bit floats; corners at the same position
+         are read as one vertex
   .gltf  glTF 2.0, .glb in one binary file. Each primitive is a part of the mesh, and the borders
          between parts stay. --weld joins the vertices of a primitive that are at the same position
 Each format may be gzip'd: IN under any name, OUT if .gz follows the extension, as in bunny.ply.gz.
 Vertices keep their number and order. Polygons are cut into triangles.
 
-If OUT has the format of IN, it is IN with other triangles: normals, colours, texture coordinates,
-groups, materials and comments stay, and so does a polygon whose edges stay. Faces and corners keep
-their attributes: edges between groups of faces that differ (OBJ: usemtl, g, o, s; OFF, PLY, STL: other
-attributes of faces) and edges along seams never flip, unless --ignore-attribute or --drop-attributes is
-given. If OUT has another format, only positions and triangles are written. The same holds for text STL,
-and for PLY with triangle strips.
+If OUT has the format of IN, it is IN with other triangles: normals, colours, texture
+coordinates, groups, materials and comments stay, and so does a polygon whose edges stay. Faces
+and corners keep their attributes: edges between groups of faces that differ (OBJ: usemtl, g, o,
+s; OFF, PLY, STL: other attributes of faces) and edges along seams never flip, unless
+--ignore-attribute or --drop-attributes is given. If OUT has another format, only positions and
+triangles are written. The same holds for text STL, and for PLY with triangle strips.
 
 Exit status:
   0   done; also when stopped by --max-iterations
-  1   a file could not be read or written, the mesh or a list was refused, --verify found a violation, or
-      memory ran out
+  1   a file could not be read or written, the mesh or a list was refused, --verify found a
+      violation, or memory ran out
   2   wrong usage
   3   the requested backend is not available, cannot take this mesh, or failed
-When a run fails, OUT is not written or changed, and one line on standard error says why. Only a device or
-a pipe keeps what was written into it before the failure.
+When a run fails, OUT is not written or changed, and one line on standard error says why. Only a
+device or a pipe keeps what was written into it before the failure.
 
 Examples:
   edgeflip terrain.off -o terrain-delaunay.off

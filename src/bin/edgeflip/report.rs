@@ -254,6 +254,11 @@ impl Report {
             ));
         }
         self.crossing_polygons.clone_from(&loaded.crossing);
+        if self.coordinates == 64 && matches!(format, Format::Stl | Format::Gltf | Format::Glb) {
+            let decided =
+                "OUT has 32-bit floats: its coordinates are rounded, the result is that of the 64-bit ones";
+            self.notes.push(decided.to_owned());
+        }
         let dropped = loaded.dropped_in(format);
         if !dropped.is_empty() {
             self.notes.push(format!("not kept: {}", dropped.join("; ")));

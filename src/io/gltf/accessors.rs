@@ -12,6 +12,9 @@ use std::ops::Range;
 /// Extensions that compress the bytes of a buffer view.
 const PACKED: [&str; 2] = ["EXT_meshopt_compression", "KHR_meshopt_compression"];
 
+/// The largest element, a matrix of 4 × 4 numbers of 4 bytes, of an accessor without a buffer view.
+const ZEROS: [u8; 64] = [0; 64];
+
 /// Elements of one size in a buffer.
 pub(super) struct Elements {
     pub(super) buffer: usize,
@@ -178,7 +181,7 @@ impl<'a> Accessors<'a> {
         let numbers = elements.iter().map(|&element| element as usize);
         let mut bytes: Vec<&[u8]> = match self.elements(index)? {
             Some(all) => all.these(self.buffers, numbers).collect(),
-            None => vec![&[]; elements.len()],
+            None => vec![&ZEROS[..size]; elements.len()],
         };
         for (element, value) in self.sparse(accessor, size, location)? {
             if let Ok(rank) = elements.binary_search(&(element as u32)) {

@@ -7,6 +7,7 @@ use oorandom::Rand64;
 use std::collections::HashMap;
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
+use std::time::Instant;
 
 /// A prism of two L-shaped hexagons and six quadrilaterals: area 46, volume 11.
 const PRISM: &str = "v 6 0 0\nv 6 1 0\nv 1 1 0\nv 1 6 0\nv 0 6 0\nv 0 0 0\n\
@@ -52,6 +53,42 @@ fn dents_stay() {
             assert_eq!(area(&loaded.mesh, loaded.mesh.triangles()), want);
             assert!(loaded.crossing.is_empty());
         }
+    }
+}
+
+#[test]
+fn dents_stay_in_subnormal_numbers() {
+    let small: String = COMB
+        .lines()
+        .map(|line| match line.strip_prefix("v ") {
+            Some(point) => {
+                let numbers: Vec<String> = point.split(' ').map(|x| format!("{x}e-320")).collect();
+                format!("v {}\n", numbers.join(" "))
+            }
+            None => format!("{line}\n"),
+        })
+        .collect();
+    assert_eq!(obj(small).unwrap().mesh.triangles(), obj(COMB).unwrap().mesh.triangles());
+}
+
+#[test]
+fn polygons_of_many_corners_take_no_square_of_time() {
+    const COUNT: usize = 30_000;
+    let arc = (0..COUNT).rev().map(|i| format!("{i} {}", 10.0 * (i as f64 / COUNT as f64 - 0.5).powi(2)));
+    let fan: Vec<String> = arc.chain([format!("{} -100000", COUNT / 2)]).collect();
+    let tooth = |i: usize| [(4 * i + 4, 10), (4 * i + 3, 10), (4 * i + 3, 1), (4 * i + 1, 1)];
+    let teeth = (0..COUNT / 4).rev().flat_map(tooth).map(|(x, y)| format!("{x} {y}"));
+    let comb: Vec<String> = ["0 0".to_owned(), format!("{COUNT} 0")].into_iter().chain(teeth).collect();
+    for points in [fan, comb] {
+        let count = points.len();
+        let face: String = (0..count).map(|corner| format!(" {corner}")).collect();
+        let text = format!("2OFF {count} 1 0\n{}\n{count}{face}\n", points.join("\n"));
+        let start = Instant::now();
+        let loaded = off(text).unwrap();
+        // It would take minutes.
+        assert!(start.elapsed().as_secs() < 20, "{:?}", start.elapsed());
+        assert!(loaded.crossing.is_empty());
+        assert_eq!(loaded.mesh.triangle_count(), count - 2);
     }
 }
 

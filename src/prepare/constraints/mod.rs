@@ -182,7 +182,8 @@ impl Work<'_> {
             }
             Obstacle::Covered(vertex) => {
                 format!(
-                    "reaches the point of vertex {vertex} in triangles without it: weld, or the mesh overlaps"
+                    "reaches the point of vertex {vertex} in triangles without it; triangles overlap there, or \
+                     another vertex has that point"
                 )
             }
             Obstacle::Doubled([a, b]) => {

@@ -69,7 +69,8 @@ fn what_stays_in_the_folder_is_named() {
         "images": [{ "uri": "a%20b.png" }, { "uri": "data:image/png;base64,AA==" }],
     });
     let gltf = folder.file("in.gltf", json.to_string());
-    let obj = folder.file("in.obj", "mtllib my colours.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    let obj =
+        folder.file("in.obj", "mtllib my colours.mtl\nmtllib /all.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     let note =
         |files: &str| format!("note       OUT refers to files that are not copied to its folder: {files}\n");
     for (input, name, files) in [(&gltf, "out.gltf", "a b.png"), (&obj, "out.obj", "my colours.mtl")] {
