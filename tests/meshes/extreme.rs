@@ -31,6 +31,7 @@ pub fn all() -> Vec<Case> {
     both("lattice-offset", &by_name("regular 12 100000").unwrap());
     both("polygon-cos-noise", &polygon());
     both("magnitudes", &magnitudes());
+    both("wide-side", &wide_side());
     let mut generator = Rand64::new(19);
     let mantissas = moved(&by_name("random 10").unwrap(), |[x, y, _]| {
         [x * 2f32.powi(generator.rand_range(0..40) as i32 - 20), y + 1e-6 * signed(&mut generator), 0.0]
@@ -38,6 +39,23 @@ pub fn all() -> Vec<Case> {
     both("mixed-exponents", &mantissas);
     cases.extend(doubles());
     cases
+}
+
+/// Kites, almost on a circle, in which one side is twice as long as the others and as the distances between the other
+/// corners: of the four differences of the test of an edge, one alone has bits above 2^39.
+fn wide_side() -> edgeflip::Mesh {
+    const UNIT: f32 = 8_388_608.0;
+    let (mut points, mut triangles) = (Vec::new(), Vec::new());
+    for (kite, by) in [-1.0, 1.0, -1.0, 1.0].into_iter().enumerate() {
+        points.extend([[0., 0.], [0., 62_166.], [-1., 31_083.], [7., -56_833.]].map(|p| p.map(|x| x * UNIT)));
+        points[4 * kite + 2][0] += by;
+        let mut pair = [[0, 1, 2], [1, 0, 3]].map(|triangle| triangle.map(|corner| 4 * kite as u32 + corner));
+        if kite > 1 {
+            pair.reverse();
+        }
+        triangles.extend(pair);
+    }
+    plane(&points, &triangles)
 }
 
 /// Coordinates that 32-bit floats cannot hold.
