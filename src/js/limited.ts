@@ -13,8 +13,9 @@ export interface ShiftOptions {
   /**
    * How far flips may shift a texture, a colour or another attribute of the vertices, in the units of the attribute: a
    * number for all texture coordinates, or one for each attribute by its name. An edge stays if its flip would shift an
-   * attribute further, measured where the two diagonals cross. If many flips together shift an attribute further than
-   * that, the edges that they crossed stay too, and the run starts again. `Infinity` sets no limit. Default: 1/1024 for
+   * attribute further, measured where the two diagonals cross, as a camera 27° beside the normal sees it. If many flips
+   * together shift an attribute further than that, the edges that they crossed stay too, and the run starts again. More
+   * oblique cameras are not measured, nor are silhouettes and light. `Infinity` sets no limit. Default: 1/1024 for
    * texture coordinates, one texel of a texture with 1,024 texels in a row, and `Infinity` for other attributes; with
    * `weld: true`, which ignores attributes, `Infinity` for all.
    */

@@ -16,6 +16,9 @@ export interface Limit {
 /** How vertices at the same position are joined: not at all, those with equal attributes, or all. */
 export type Joining = 'none' | 'equal' | 'all';
 
+/** The tangent of the angle from the normal to the camera: 27 degrees. */
+const BESIDE = 1 / 2;
+
 /** What flips have shifted. */
 export interface Comparison {
   /** The largest shift of each limited attribute. */
@@ -27,8 +30,9 @@ export interface Comparison {
 /**
  * The attributes of a surface before a run. An attribute is linear on each triangle. A flip changes it inside the two
  * triangles, most of all where the two diagonals cross. Where the triangles are bent, one diagonal is above the other
- * there. The shift is then that of the picture, seen from at most 45 degrees beside the normal: the difference of the
- * attribute, and the distance times the slope of the attribute.
+ * there. The shift is then that of the picture from a camera beside the normal: the difference of the attribute,
+ * and the distance times {@link BESIDE} times the slope of the attribute. Not measured are more oblique cameras, and how
+ * a flip changes the silhouette and the light.
  */
 export class Attributes {
   readonly #points: IndexedMesh['positions'];
@@ -120,7 +124,7 @@ export class Attributes {
       square += ((1 - s) * at(a) + s * at(b) - (1 - t) * at(c) - t * at(d)) ** 2;
     }
     const slopes = this.#slopes[i]!;
-    return Math.sqrt(square) * Math.max(slopes[Math.floor(g / 3)]!, slopes[Math.floor(h / 3)]!);
+    return BESIDE * Math.sqrt(square) * Math.max(slopes[Math.floor(g / 3)]!, slopes[Math.floor(h / 3)]!);
   }
 
   /**

@@ -55,6 +55,37 @@ test('a mirrored texture stays, and one that is not bent allows the flip', async
   assert.deepEqual([measured.flips, measured.largestShifts], [1, { uv: 1 }]);
 });
 
+test('where triangles are bent, the shift is the one from 27 degrees beside the normal', async () => {
+  // u is x / 6, and the new diagonal is above the old one by `height`.
+  const bent = (height) => {
+    const points = POINTS.map((x, i) => (i === 5 || i === 11 ? height : x));
+    return geometryOf(points, [0, 1, 2, 0, 2, 3], {
+      uv: [POINTS.flatMap((x, i) => (i % 3 === 0 ? [x / 6, 0] : [])), 2],
+    });
+  };
+  for (const [shift, expected] of [
+    [0.9, 1],
+    [1.1, 0],
+  ]) {
+    const { flips, largestShifts } = await run(bent(12 * shift * TEXEL));
+    assert.equal(flips, expected, `${shift} texels`);
+    if (expected) assert.ok(Math.abs(largestShifts.uv - shift * TEXEL) < 1e-7, `${largestShifts.uv}`);
+  }
+});
+
+test('the flips that coarse shapes of three.js keep', async () => {
+  const { TorusKnotGeometry, TorusGeometry, CylinderGeometry } = THREE;
+  for (const [make, kept, all] of [
+    [() => new TorusKnotGeometry(1, 0.3, 100, 12), 250, 738],
+    [() => new TorusGeometry(1, 0.4, 12, 48), 96, 288],
+    [() => new CylinderGeometry(1, 2, 3, 32, 8), 0, 128],
+  ]) {
+    assert.equal((await run(make(), { maxNormalAngle: 30, maxAttributeShift: Infinity })).flips, all);
+    const { flips } = await run(make(), { maxNormalAngle: 30 });
+    assert.ok(flips >= kept && flips < all, `${flips} of ${all} flips`);
+  }
+});
+
 test('each attribute may have a limit of its own', async () => {
   const colours = [0, 0, 0, 1, 1, 1, 0, 0, 0, 1, 1, 1];
   const coloured = () => mirror(colours, 'color', 3);
