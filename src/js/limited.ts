@@ -96,11 +96,20 @@ export async function runWithin(
     const lockedEdges = Uint32Array.from([...(settings.lockedEdges ?? []), ...[...locked.values()].flat()]);
     const made = await run({ ...copy, stride: 3 }, { ...watch, ...settings, lockedEdges });
     const { size } = locked;
-    if (made.onGpu) return { ...made, shiftEdges: size, largestShifts: undefined };
+    if (made.onGpu) return { ...hinted(made, size), shiftEdges: size, largestShifts: undefined };
     const { largest, crossed } = attributes.compare(made.result.indices);
     for (const edge of crossed) locked.set(edge.join(), edge);
     if (locked.size > size) continue;
     const largestShifts = Object.fromEntries(limits.map(({ name }, i) => [name, largest[i]!]));
-    return { ...made, shiftEdges: size, largestShifts };
+    return { ...hinted(made, size), shiftEdges: size, largestShifts };
   }
+}
+
+/** The run, with advice if `maxAttributeShift` keeps more edges from their flips than flip. */
+function hinted({ result, ...made }: Run, shiftEdges: number): Run {
+  const { flips, remaining, hint } = result;
+  const locked = remaining.locked ?? 0;
+  if (Math.min(locked, shiftEdges) <= flips) return { result, ...made };
+  const advice = `Locked edges that are not Delaunay: ${locked}. To save the texture, maxAttributeShift locks ${shiftEdges} edges, also Delaunay ones; pass a larger limit, or Infinity for none.`;
+  return { result: { ...result, hint: hint === undefined ? advice : `${hint} ${advice}` }, ...made };
 }

@@ -86,6 +86,23 @@ test('the flips that coarse shapes of three.js keep', async () => {
   }
 });
 
+test('a hint says that the limit keeps most edges from their flips', async () => {
+  const { hint } = await delaunayGeometry(mirror());
+  const edges =
+    /^Locked edges that are not Delaunay: 1\. To save the texture, maxAttributeShift locks 1 edges, .*Infinity/;
+  assert.match(hint, edges);
+  assert.equal((await delaunayGeometry(mirror(), { maxAttributeShift: Infinity })).hint, undefined);
+  const torus = await delaunayGeometry(new THREE.TorusGeometry(1, 0.4, 12, 48));
+  assert.match(torus.hint, /are not Delaunay: 192\./);
+  // Most edges flip.
+  const knot = await delaunayGeometry(new THREE.TorusKnotGeometry(1, 0.3, 400, 24));
+  assert.ok(knot.remaining.locked > 100);
+  assert.equal(knot.hint, undefined);
+  // Other locks are not the texture's.
+  const plain = mirror([0, 0.5, 0.5, 0, 1, 0.5, 0.5, 1]);
+  assert.equal((await delaunayGeometry(plain, { lockedEdges: [0, 2] })).hint, undefined);
+});
+
 test('each attribute may have a limit of its own', async () => {
   const colours = [0, 0, 0, 1, 1, 1, 0, 0, 0, 1, 1, 1];
   const coloured = () => mirror(colours, 'color', 3);
