@@ -88,8 +88,7 @@ export class Attributes {
   #jump(limit: Limit, h: number, twin: number): number {
     const [indices, corners] = [this.#indices, this.#corners];
     const [from, to] = corners[twin] === corners[h] ? [twin, next(twin)] : [next(twin), twin];
-    const jump = (u: number, v: number) => (u === v ? 0 : differenceOf(limit, [u, u, 0], [v, v, 0]));
-    return Math.max(jump(indices[h]!, indices[from]!), jump(indices[next(h)]!, indices[to]!));
+    return Math.max(jumpOf(limit, indices[h]!, indices[from]!), jumpOf(limit, indices[next(h)]!, indices[to]!));
   }
 
   /** How steep an attribute is on a triangle at most: its change for each unit of length. */
@@ -218,7 +217,7 @@ export class Attributes {
 
   /** Whether two vertices have the same limited attributes. */
   #isAlike(u: number, v: number): boolean {
-    return u === v || this.#limits.every((limit) => differenceOf(limit, [u, u, 0], [v, v, 0]) === 0);
+    return u === v || this.#limits.every((limit) => jumpOf(limit, u, v) === 0);
   }
 
   /** From one vertex to another. */
@@ -234,6 +233,19 @@ export type Edge = [number, number];
 const edgeOf = (u: number, v: number): Edge => (u < v ? [u, v] : [v, u]);
 
 type Vector = [number, number, number];
+/** How far the values of two vertices are apart: those that are not numbers are equal, as `weld` compares them. */
+function jumpOf({ values, width }: Limit, u: number, v: number): number {
+  let square = 0;
+  for (let k = 0; k < width; k++) {
+    const [x, y] = [values[width * u + k]!, values[width * v + k]!];
+    if (!Object.is(x, y)) square += (x - y) ** 2;
+  }
+  return distanceOf(square);
+}
+
+/** The root; a value that is not finite shifts infinitely far. */
+const distanceOf = (square: number): number => (Number.isNaN(square) ? Infinity : Math.sqrt(square));
+
 /** How far a value between two vertices is from one between two others; the third number is the share. */
 function differenceOf({ values, width }: Limit, [a, b, s]: Vector, [c, d, t]: Vector): number {
   let square = 0;
@@ -241,7 +253,7 @@ function differenceOf({ values, width }: Limit, [a, b, s]: Vector, [c, d, t]: Ve
     const at = (vertex: number) => values[width * vertex + k]!;
     square += ((1 - s) * at(a) + s * at(b) - (1 - t) * at(c) - t * at(d)) ** 2;
   }
-  return Math.sqrt(square);
+  return distanceOf(square);
 }
 
 const sum = (a: Vector, b: Vector): Vector => [a[0] + b[0], a[1] + b[1], a[2] + b[2]];

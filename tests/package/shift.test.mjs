@@ -283,11 +283,42 @@ test('wrong limits are refused, and a broken geometry is an error of the geometr
   await refused(thrown, /cannot be read: a trap/, 'invalid-input');
   await refused({ uvs: 1 }, /there is no attribute 'uvs'; there are uv/);
   assert.equal((await run(mirror(), { maxAttributeShift: { uv: undefined } })).flips, 0);
-  assert.equal((await run(mirror(MIRROR.map(() => NaN)))).shiftEdges, 0);
   const many = 200_000;
   const broken = geometryOf(new Array(3 * many).fill(NaN), [0, 1, 2], { uv: [new Array(2 * many).fill(0), 2] });
   await assert.rejects(delaunayGeometry(broken), { code: 'non-finite' });
   await assert.rejects(delaunayGeometry(mirror().setIndex([0, 1, 99])), { code: 'index-out-of-range' });
+});
+
+test('values that are not finite keep their edges, and missing ones are an error', async () => {
+  const stays = { flips: 0, shiftEdges: 1, largestShifts: { uv: 0 } };
+  const plain = [0, 0.5, 0.5, 0, 1, 0.5, 0.5, 1];
+  for (const value of [NaN, Infinity, -Infinity]) {
+    for (const i of plain.keys()) {
+      assert.deepEqual(await run(mirror(plain.with(i, value))), stays, `${value} at ${i}`);
+      assert.deepEqual(await run(mirror(plain.with(i, value)).toNonIndexed()), stays, `${value} at ${i}, joined`);
+    }
+    const all = plain.map(() => value);
+    for (const options of [{}, { weld: false }, { weld: true, maxAttributeShift: TEXEL }]) {
+      assert.deepEqual(await run(mirror(all), options), stays);
+    }
+    assert.deepEqual(await run(mirror(all).toNonIndexed()), stays);
+    assert.equal((await run(mirror(all), { maxAttributeShift: Infinity })).flips, 1);
+  }
+  // Beside such a vertex, other edges flip.
+  const plane = new THREE.PlaneGeometry(4, 1, 8, 8);
+  plane.applyMatrix4(new THREE.Matrix4().makeShear(0, 0, 0.9, 0, 0, 0));
+  const { flips } = await run(plane.clone());
+  plane.attributes.uv.setX(40, NaN);
+  const found = await run(plane);
+  assert.ok(found.flips > flips / 2 && found.flips < flips, `${found.flips} of ${flips}`);
+  assert.ok(found.largestShifts.uv < TEXEL);
+  for (const options of [{}, { weld: false }, { weld: false, maxAttributeShift: { uv1: 1 } }]) {
+    const short = mirror().setAttribute('uv1', new THREE.Float32BufferAttribute([0, 0, 1, 1], 2));
+    await assert.rejects(run(short, options), {
+      code: 'invalid-input',
+      message: 'attribute uv1: it has 2 vertices, and position has 4',
+    });
+  }
 });
 
 test('a vertex with very many triangles takes no longer than others', async () => {
@@ -334,6 +365,7 @@ test('the transform of glTF-Transform has the same limit, and its line counts th
   assert.match(line, /locked 1; maxAttributeShift locked 1 edges; largest shifts: TEXCOORD_0 0$/);
   assert.deepEqual((await transformed({ maxAttributeShift: Infinity }, MIRROR))[0], true);
   assert.deepEqual((await transformed({ weld: true }, MIRROR))[0], true);
+  assert.deepEqual((await transformed({}, MIRROR.with(2, NaN)))[0], false);
   assert.deepEqual((await transformed({}, MIRROR, 'VEC2', 'TEXCOORD_1'))[0], false);
   const colours = [0, 0, 0, 1, 1, 1, 0, 0, 0, 1, 1, 1];
   assert.equal((await transformed({}, colours, 'VEC3', 'COLOR_0'))[0], true);
