@@ -1,5 +1,7 @@
 /** The edges of a surface whose vertices at the same position are joined, as the option `weld` joins them. */
 
+import { sequence } from './surface.js';
+
 /** No half-edge. */
 export const NONE = 0xffffffff;
 
@@ -42,70 +44,74 @@ export interface Lists {
   halfEdges: Uint32Array;
 }
 
-/** Sorts half-edges by a vertex of each. Those of one vertex keep their order. */
-export function listsOf(halfEdges: Uint32Array, vertexOf: (h: number) => number, vertices: number): Lists {
+/** Sorts half-edges by the vertex of each. Those of one vertex keep their order. */
+export function listsOf(halfEdges: Uint32Array, vertexOf: Uint32Array, vertices: number): Lists {
   const starts = new Uint32Array(vertices + 1);
-  for (const h of halfEdges) starts[vertexOf(h) + 1]! += 1;
+  for (let h = 0; h < vertexOf.length; h++) starts[vertexOf[h]! + 1]! += 1;
   for (let v = 0; v < vertices; v++) starts[v + 1]! += starts[v]!;
   const [ends, sorted] = [starts.slice(), new Uint32Array(halfEdges.length)];
-  for (const h of halfEdges) sorted[ends[vertexOf(h)]!++] = h;
+  for (let i = 0; i < halfEdges.length; i++) {
+    const h = halfEdges[i]!;
+    sorted[ends[vertexOf[h]!]!++] = h;
+  }
   return { starts, halfEdges: sorted };
 }
 
 /** The edges of triangles. */
 export class Edges {
-  readonly #indices: Uint32Array;
-  readonly #lists: Lists;
+  /** Where the edges of each vertex to vertices with larger numbers start. */
+  readonly #starts: Uint32Array;
+  /** These larger vertices, sorted for each vertex. */
+  readonly #larger: Uint32Array;
   /** For each half-edge, the other one of its edge; {@link NONE} if the edge does not have two triangles. */
   readonly twins: Uint32Array;
 
   constructor(indices: Uint32Array, vertices: number) {
-    this.#indices = indices;
-    const all = indices.map((_, h) => h);
-    // Sorted by the smaller vertex, and then by the larger one.
-    this.#lists = listsOf(listsOf(all, (h) => this.#larger(h), vertices).halfEdges, (h) => this.#smaller(h), vertices);
-    this.twins = new Uint32Array(indices.length).fill(NONE);
-    const { halfEdges } = this.#lists;
-    const isSame = (i: number, j: number) => {
-      const [g, h] = [halfEdges[i]!, halfEdges[j]!];
-      return this.#smaller(g) === this.#smaller(h) && this.#larger(g) === this.#larger(h);
-    };
-    for (let first = 0, end = 0; first < halfEdges.length; first = end) {
-      for (end = first + 1; end < halfEdges.length && isSame(first, end); ) end += 1;
-      if (end - first !== 2) continue;
-      const [g, h] = [halfEdges[first]!, halfEdges[first + 1]!];
-      [this.twins[g], this.twins[h]] = [h, g];
+    const { length } = indices;
+    const [smaller, larger] = [new Uint32Array(length), new Uint32Array(length)];
+    for (let h = 0; h < length; h++) {
+      const u = indices[h]!;
+      const v = indices[next(h)]!;
+      smaller[h] = Math.min(u, v);
+      larger[h] = Math.max(u, v);
     }
+    const byLarger = listsOf(sequence(0, length), larger, vertices).halfEdges;
+    const { starts, halfEdges } = listsOf(byLarger, smaller, vertices);
+    const [sorted, twins] = [new Uint32Array(length), new Uint32Array(length).fill(NONE)];
+    for (let i = 0; i < length; i++) sorted[i] = larger[halfEdges[i]!]!;
+    for (let v = 0; v < vertices; v++) {
+      const last = starts[v + 1]!;
+      for (let first = starts[v]!, end = first; first < last; first = end) {
+        while (end < last && sorted[end] === sorted[first]) end += 1;
+        if (end - first !== 2) continue;
+        const g = halfEdges[first]!;
+        const h = halfEdges[first + 1]!;
+        twins[g] = h;
+        twins[h] = g;
+      }
+    }
+    this.#starts = starts;
+    this.#larger = sorted;
+    this.twins = twins;
   }
 
-  /** Takes the triangles of some edges apart. The edges stay. */
-  cut(isCut: (h: number, twin: number) => boolean): void {
-    this.twins.forEach((twin, h) => {
-      if (twin === NONE || twin < h || !isCut(h, twin)) return;
-      [this.twins[h], this.twins[twin]] = [NONE, NONE];
-    });
+  /** Takes the two triangles of an edge apart. The edge stays. */
+  cut(h: number): void {
+    this.twins[this.twins[h]!] = NONE;
+    this.twins[h] = NONE;
   }
 
   /** Whether two vertices have an edge. */
   has(u: number, v: number): boolean {
-    const { starts, halfEdges } = this.#lists;
     const [smaller, larger] = [Math.min(u, v), Math.max(u, v)];
-    let [low, high] = [starts[smaller]!, starts[smaller + 1]!];
+    let [low, high] = [this.#starts[smaller]!, this.#starts[smaller + 1]!];
     while (low < high) {
       const middle = (low + high) >>> 1;
-      const found = this.#larger(halfEdges[middle]!);
+      const found = this.#larger[middle]!;
       if (found === larger) return true;
       if (found < larger) low = middle + 1;
       else high = middle;
     }
     return false;
-  }
-
-  #smaller(h: number): number {
-    return Math.min(this.#indices[h]!, this.#indices[next(h)]!);
-  }
-
-  #larger(h: number): number {
-    return Math.max(this.#indices[h]!, this.#indices[next(h)]!);
   }
 }

@@ -91,17 +91,19 @@ export async function runWithin(
   // Without textures, this code is not loaded.
   const { Attributes } = await import('./shift.js');
   const attributes = new Attributes(copy, limits, joining);
-  const locked = new Map(attributes.edgesBeyond().map((edge) => [edge.join(), edge]));
+  const given = settings.lockedEdges ?? new Uint32Array();
   for (;;) {
-    const lockedEdges = Uint32Array.from([...(settings.lockedEdges ?? []), ...[...locked.values()].flat()]);
+    const own = attributes.lockedEdges;
+    const lockedEdges = new Uint32Array(given.length + own.length);
+    lockedEdges.set(given);
+    lockedEdges.set(own, given.length);
     const made = await run({ ...copy, stride: 3 }, { ...watch, ...settings, lockedEdges });
-    const { size } = locked;
-    if (made.onGpu) return { ...hinted(made, size), shiftEdges: size, largestShifts: undefined };
-    const { largest, crossed } = attributes.compare(made.result.indices);
-    for (const edge of crossed) locked.set(edge.join(), edge);
-    if (locked.size > size) continue;
+    const shiftEdges = own.length / 2;
+    if (made.onGpu) return { ...hinted(made, shiftEdges), shiftEdges, largestShifts: undefined };
+    const largest = attributes.compare(made.result.indices);
+    if (attributes.lockedEdges.length > own.length) continue;
     const largestShifts = Object.fromEntries(limits.map(({ name }, i) => [name, largest[i]!]));
-    return { ...hinted(made, size), shiftEdges: size, largestShifts };
+    return { ...hinted(made, shiftEdges), shiftEdges, largestShifts };
   }
 }
 
