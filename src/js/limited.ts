@@ -67,7 +67,10 @@ export function limitsOf(
     const limits = new Map(names.filter(isTexture).map((name) => [name, ofTextures]));
     for (const [name, value] of Object.entries(isList ? given : {})) {
       if (value === undefined) continue;
-      if (!names.includes(name)) throw wrong(`there is no attribute ${shown(name)}; there are ${names.join(', ')}`);
+      if (!names.includes(name)) {
+        const known = names.length > 0 ? `there are ${names.join(', ')}` : 'the geometry has only positions';
+        throw wrong(`there is no attribute ${shown(name)}; ${known}`);
+      }
       limits.set(name, checked(value));
     }
     return new Map([...limits].filter(([, most]) => most < Infinity));

@@ -282,6 +282,9 @@ test('wrong limits are refused, and a broken geometry is an error of the geometr
   const thrown = new Proxy({}, { ownKeys: () => assert.fail('a trap') });
   await refused(thrown, /cannot be read: a trap/, 'invalid-input');
   await refused({ uvs: 1 }, /there is no attribute 'uvs'; there are uv/);
+  const bare = mirror().deleteAttribute('uv');
+  const only = /there is no attribute 'uv'; the geometry has only positions$/;
+  await assert.rejects(run(bare, { maxAttributeShift: { uv: 1 } }), { code: 'invalid-option', message: only });
   assert.equal((await run(mirror(), { maxAttributeShift: { uv: undefined } })).flips, 0);
   const many = 200_000;
   const broken = geometryOf(new Array(3 * many).fill(NaN), [0, 1, 2], { uv: [new Array(2 * many).fill(0), 2] });
