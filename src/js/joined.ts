@@ -1,7 +1,5 @@
 /** The edges of a surface whose vertices at the same position are joined, as the option `weld` joins them. */
 
-import { sequence } from './surface.js';
-
 /** No half-edge. */
 export const NONE = 0xffffffff;
 
@@ -38,61 +36,57 @@ export function placesOf(points: Float32Array | Float64Array): Uint32Array {
   return places;
 }
 
-/** Lists of half-edges, one for each vertex: those of vertex `v` are `starts[v]` to `starts[v + 1]` in `halfEdges`. */
-export interface Lists {
-  starts: Uint32Array;
-  halfEdges: Uint32Array;
-}
-
-/** Sorts half-edges by the vertex of each. Those of one vertex keep their order. */
-export function listsOf(halfEdges: Uint32Array, vertexOf: Uint32Array, vertices: number): Lists {
-  const starts = new Uint32Array(vertices + 1);
-  for (let h = 0; h < vertexOf.length; h++) starts[vertexOf[h]! + 1]! += 1;
-  for (let v = 0; v < vertices; v++) starts[v + 1]! += starts[v]!;
-  const [ends, sorted] = [starts.slice(), new Uint32Array(halfEdges.length)];
-  for (let i = 0; i < halfEdges.length; i++) {
-    const h = halfEdges[i]!;
-    sorted[ends[vertexOf[h]!]!++] = h;
-  }
-  return { starts, halfEdges: sorted };
-}
-
 /** The edges of triangles. */
 export class Edges {
-  /** Where the edges of each vertex to vertices with larger numbers start. */
-  readonly #starts: Uint32Array;
-  /** These larger vertices, sorted for each vertex. */
-  readonly #larger: Uint32Array;
+  readonly #indices: Uint32Array;
+  /** The half-edges that start at vertex `v` are `starts[v]` to `starts[v + 1]` in `halfEdges`. */
+  readonly starts: Uint32Array;
+  readonly halfEdges: Uint32Array;
   /** For each half-edge, the other one of its edge; {@link NONE} if the edge does not have two triangles. */
   readonly twins: Uint32Array;
 
   constructor(indices: Uint32Array, vertices: number) {
     const { length } = indices;
-    const [smaller, larger] = [new Uint32Array(length), new Uint32Array(length)];
-    for (let h = 0; h < length; h++) {
-      const u = indices[h]!;
-      const v = indices[next(h)]!;
-      smaller[h] = Math.min(u, v);
-      larger[h] = Math.max(u, v);
-    }
-    const byLarger = listsOf(sequence(0, length), larger, vertices).halfEdges;
-    const { starts, halfEdges } = listsOf(byLarger, smaller, vertices);
-    const [sorted, twins] = [new Uint32Array(length), new Uint32Array(length).fill(NONE)];
-    for (let i = 0; i < length; i++) sorted[i] = larger[halfEdges[i]!]!;
-    for (let v = 0; v < vertices; v++) {
-      const last = starts[v + 1]!;
-      for (let first = starts[v]!, end = first; first < last; first = end) {
-        while (end < last && sorted[end] === sorted[first]) end += 1;
-        if (end - first !== 2) continue;
-        const g = halfEdges[first]!;
-        const h = halfEdges[first + 1]!;
-        twins[g] = h;
-        twins[h] = g;
+    const starts = new Uint32Array(vertices + 1);
+    for (let h = 0; h < length; h++) starts[indices[h]! + 1]! += 1;
+    for (let v = 0; v < vertices; v++) starts[v + 1]! += starts[v]!;
+    const [ends, halfEdges] = [starts.slice(), new Uint32Array(length)];
+    for (let h = 0; h < length; h++) halfEdges[ends[indices[h]!]!++] = h;
+    this.#indices = indices;
+    this.starts = starts;
+    this.halfEdges = halfEdges;
+    this.twins = this.#pairs(vertices);
+  }
+
+  /** The twins: the half-edges of each vertex to and from one with a larger number, if they are two. */
+  #pairs(vertices: number): Uint32Array {
+    const [indices, starts, halfEdges] = [this.#indices, this.starts, this.halfEdges];
+    const twins = new Uint32Array(indices.length).fill(NONE);
+    // For each other vertex, the last vertex that has an edge to it, and the first half-edge of that.
+    const [lasts, firsts] = [new Uint32Array(vertices).fill(NONE), new Uint32Array(vertices)];
+    for (let u = 0; u < vertices; u++) {
+      // Each triangle of the vertex has a half-edge that starts there, and one that ends there.
+      for (let i = 2 * starts[u]!; i < 2 * starts[u + 1]!; i++) {
+        const out = halfEdges[i >>> 1]!;
+        const end = next(out);
+        const h = i % 2 === 0 ? out : next(end);
+        const v = indices[i % 2 === 0 ? end : h]!;
+        if (v <= u) continue;
+        const first = firsts[v]!;
+        if (lasts[v] !== u) {
+          lasts[v] = u;
+          firsts[v] = h;
+        } else if (first !== NONE && twins[first] === NONE) {
+          twins[first] = h;
+          twins[h] = first;
+        } else if (first !== NONE) {
+          twins[twins[first]!] = NONE;
+          twins[first] = NONE;
+          firsts[v] = NONE;
+        }
       }
     }
-    this.#starts = starts;
-    this.#larger = sorted;
-    this.twins = twins;
+    return twins;
   }
 
   /** Takes the two triangles of an edge apart. The edge stays. */
@@ -103,14 +97,14 @@ export class Edges {
 
   /** Whether two vertices have an edge. */
   has(u: number, v: number): boolean {
-    const [smaller, larger] = [Math.min(u, v), Math.max(u, v)];
-    let [low, high] = [this.#starts[smaller]!, this.#starts[smaller + 1]!];
-    while (low < high) {
-      const middle = (low + high) >>> 1;
-      const found = this.#larger[middle]!;
-      if (found === larger) return true;
-      if (found < larger) low = middle + 1;
-      else high = middle;
+    const [indices, starts] = [this.#indices, this.starts];
+    // The vertex with fewer half-edges, and the other one.
+    const isFirst = starts[u + 1]! - starts[u]! <= starts[v + 1]! - starts[v]!;
+    const from = isFirst ? u : v;
+    const to = isFirst ? v : u;
+    for (let i = starts[from]!; i < starts[from + 1]!; i++) {
+      const end = next(this.halfEdges[i]!);
+      if (indices[end] === to || indices[next(end)] === to) return true;
     }
     return false;
   }

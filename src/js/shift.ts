@@ -1,7 +1,7 @@
 /** Measures how far flips shift the attributes of a surface, such as texture coordinates. */
 
 import type { IndexedMesh } from './mesh.js';
-import { Edges, type Lists, listsOf, next, NONE, placesOf } from './joined.js';
+import { Edges, next, NONE, placesOf } from './joined.js';
 import { sequence } from './surface.js';
 
 /** An attribute whose shift is limited. */
@@ -36,8 +36,6 @@ export class Attributes {
   /** The triangles with places instead of vertices. */
   readonly #corners: Uint32Array;
   readonly #edges: Edges;
-  /** The half-edges that start at each place. */
-  readonly #stars: Lists;
   /** For each limited attribute, its slope on each triangle. */
   readonly #slopes: Float64Array[];
   /** The edges that stay: the smaller half-edge of each. */
@@ -52,7 +50,6 @@ export class Attributes {
     this.#places = joining === 'none' ? sequence(0, vertices) : placesOf(positions);
     this.#corners = this.#placed(indices);
     this.#edges = new Edges(this.#corners, vertices);
-    this.#stars = listsOf(sequence(0, indices.length), this.#corners, vertices);
     this.#slopes = limits.map((limit) => this.#slopesOf(limit));
     const { twins } = this.#edges;
     for (let h = 0; h < twins.length; h++) {
@@ -216,7 +213,7 @@ export class Attributes {
 
   /** The half-edge of the input that a line crosses first. */
   #firstOf(line: Line): number {
-    const { starts, halfEdges } = this.#stars;
+    const { starts, halfEdges } = this.#edges;
     const [indices, { values }, c] = [this.#indices, this.#points, line.from];
     const place = this.#places[c]!;
     let [edge, best] = [NONE, -1];
