@@ -3,8 +3,8 @@
 /** No half-edge. */
 export const NONE = 0xffffffff;
 
-/** The next half-edge of the triangle. */
-export const next = (h: number): number => (h % 3 < 2 ? h + 1 : h - 2);
+/** The next half-edge of the triangle. `>>> 0` says that it is an integer: numbers of 32 bits divide slowly without. */
+export const next = (h: number): number => ((h >>> 0) % 3 < 2 ? h + 1 : h - 2);
 
 /**
  * For each vertex, the first vertex at its position. -0 equals 0.
