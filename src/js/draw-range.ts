@@ -10,7 +10,8 @@ import type { IndexArray, MakeDelaunayOptions } from './types.js';
 export type Range = readonly [number, number];
 
 /**
- * The indices of the whole triangles in a range that three.js draws. A range may begin before the first index.
+ * The indices of the whole triangles in a range that three.js draws. A range may begin before the first index or be
+ * empty.
  *
  * @throws {@link EdgeflipError} `invalid-input`.
  */
@@ -20,9 +21,10 @@ export function rangeOf(name: string, { start, count }: { start: number; count: 
     throw wrong(`its start ${shown(start)} and its count ${shown(count)} are not a range`);
   }
   const first = Math.max(0, start);
-  if (first % 3 !== 0) throw wrong(`it starts at ${start}, inside a triangle`);
   const end = Math.min(corners, start + count);
-  return [Math.min(first, corners), Math.max(Math.min(first, corners), end - (end % 3))];
+  if (first >= end) return [0, 0];
+  if (first % 3 !== 0) throw wrong(`it starts at ${start}, inside a triangle`);
+  return [first, end - (end % 3)];
 }
 
 /**

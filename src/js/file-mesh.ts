@@ -84,7 +84,8 @@ export interface WriteOptions {
    * this file with other triangles. A glTF file gets other indices, as `.gltf` or `.glb`. In OFF, OBJ, PLY and binary
    * STL, only faces that contain a changed triangle are rewritten, as triangles with the attributes of their face. The
    * run needs {@link FileMesh.groups}, {@link FileMesh.lockedEdges} and {@link FileMesh.lockedTriangles} as options, and
-   * `original` the `ignoreAttributes` that the file was read with.
+   * `original` the `ignoreAttributes` and the `coordinates` that the file was read with: with other `coordinates`, the
+   * positions differ from those of the mesh.
    */
   original?: Original | undefined;
 }

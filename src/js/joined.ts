@@ -3,8 +3,8 @@
 /** No half-edge. */
 export const NONE = 0xffffffff;
 
-/** The next half-edge of the triangle. */
-export const next = (h: number): number => (h % 3 < 2 ? h + 1 : h - 2);
+/** The next half-edge of the triangle. `>>> 0` says that it is an integer: numbers of 32 bits divide slowly without. */
+export const next = (h: number): number => ((h >>> 0) % 3 < 2 ? h + 1 : h - 2);
 
 /**
  * For each vertex, the first vertex at its position. -0 equals 0.
@@ -36,76 +36,76 @@ export function placesOf(points: Float32Array | Float64Array): Uint32Array {
   return places;
 }
 
-/** Lists of half-edges, one for each vertex: those of vertex `v` are `starts[v]` to `starts[v + 1]` in `halfEdges`. */
-export interface Lists {
-  starts: Uint32Array;
-  halfEdges: Uint32Array;
-}
-
-/** Sorts half-edges by a vertex of each. Those of one vertex keep their order. */
-export function listsOf(halfEdges: Uint32Array, vertexOf: (h: number) => number, vertices: number): Lists {
-  const starts = new Uint32Array(vertices + 1);
-  for (const h of halfEdges) starts[vertexOf(h) + 1]! += 1;
-  for (let v = 0; v < vertices; v++) starts[v + 1]! += starts[v]!;
-  const [ends, sorted] = [starts.slice(), new Uint32Array(halfEdges.length)];
-  for (const h of halfEdges) sorted[ends[vertexOf(h)]!++] = h;
-  return { starts, halfEdges: sorted };
-}
-
 /** The edges of triangles. */
 export class Edges {
   readonly #indices: Uint32Array;
-  readonly #lists: Lists;
+  /** The half-edges that start at vertex `v` are `starts[v]` to `starts[v + 1]` in `halfEdges`. */
+  readonly starts: Uint32Array;
+  readonly halfEdges: Uint32Array;
   /** For each half-edge, the other one of its edge; {@link NONE} if the edge does not have two triangles. */
   readonly twins: Uint32Array;
 
   constructor(indices: Uint32Array, vertices: number) {
+    const { length } = indices;
+    const starts = new Uint32Array(vertices + 1);
+    for (let h = 0; h < length; h++) starts[indices[h]! + 1]! += 1;
+    for (let v = 0; v < vertices; v++) starts[v + 1]! += starts[v]!;
+    const [ends, halfEdges] = [starts.slice(), new Uint32Array(length)];
+    for (let h = 0; h < length; h++) halfEdges[ends[indices[h]!]!++] = h;
     this.#indices = indices;
-    const all = indices.map((_, h) => h);
-    // Sorted by the smaller vertex, and then by the larger one.
-    this.#lists = listsOf(listsOf(all, (h) => this.#larger(h), vertices).halfEdges, (h) => this.#smaller(h), vertices);
-    this.twins = new Uint32Array(indices.length).fill(NONE);
-    const { halfEdges } = this.#lists;
-    const isSame = (i: number, j: number) => {
-      const [g, h] = [halfEdges[i]!, halfEdges[j]!];
-      return this.#smaller(g) === this.#smaller(h) && this.#larger(g) === this.#larger(h);
-    };
-    for (let first = 0, end = 0; first < halfEdges.length; first = end) {
-      for (end = first + 1; end < halfEdges.length && isSame(first, end); ) end += 1;
-      if (end - first !== 2) continue;
-      const [g, h] = [halfEdges[first]!, halfEdges[first + 1]!];
-      [this.twins[g], this.twins[h]] = [h, g];
-    }
+    this.starts = starts;
+    this.halfEdges = halfEdges;
+    this.twins = this.#pairs(vertices);
   }
 
-  /** Takes the triangles of some edges apart. The edges stay. */
-  cut(isCut: (h: number, twin: number) => boolean): void {
-    this.twins.forEach((twin, h) => {
-      if (twin === NONE || twin < h || !isCut(h, twin)) return;
-      [this.twins[h], this.twins[twin]] = [NONE, NONE];
-    });
+  /** The twins: the half-edges of each vertex to and from one with a larger number, if they are two. */
+  #pairs(vertices: number): Uint32Array {
+    const [indices, starts, halfEdges] = [this.#indices, this.starts, this.halfEdges];
+    const twins = new Uint32Array(indices.length).fill(NONE);
+    // For each other vertex, the last vertex that has an edge to it, and the first half-edge of that.
+    const [lasts, firsts] = [new Uint32Array(vertices).fill(NONE), new Uint32Array(vertices)];
+    for (let u = 0; u < vertices; u++) {
+      // Each triangle of the vertex has a half-edge that starts there, and one that ends there.
+      for (let i = 2 * starts[u]!; i < 2 * starts[u + 1]!; i++) {
+        const out = halfEdges[i >>> 1]!;
+        const end = next(out);
+        const h = i % 2 === 0 ? out : next(end);
+        const v = indices[i % 2 === 0 ? end : h]!;
+        if (v <= u) continue;
+        const first = firsts[v]!;
+        if (lasts[v] !== u) {
+          lasts[v] = u;
+          firsts[v] = h;
+        } else if (first !== NONE && twins[first] === NONE) {
+          twins[first] = h;
+          twins[h] = first;
+        } else if (first !== NONE) {
+          twins[twins[first]!] = NONE;
+          twins[first] = NONE;
+          firsts[v] = NONE;
+        }
+      }
+    }
+    return twins;
+  }
+
+  /** Takes the two triangles of an edge apart. The edge stays. */
+  cut(h: number): void {
+    this.twins[this.twins[h]!] = NONE;
+    this.twins[h] = NONE;
   }
 
   /** Whether two vertices have an edge. */
   has(u: number, v: number): boolean {
-    const { starts, halfEdges } = this.#lists;
-    const [smaller, larger] = [Math.min(u, v), Math.max(u, v)];
-    let [low, high] = [starts[smaller]!, starts[smaller + 1]!];
-    while (low < high) {
-      const middle = (low + high) >>> 1;
-      const found = this.#larger(halfEdges[middle]!);
-      if (found === larger) return true;
-      if (found < larger) low = middle + 1;
-      else high = middle;
+    const [indices, starts] = [this.#indices, this.starts];
+    // The vertex with fewer half-edges, and the other one.
+    const isFirst = starts[u + 1]! - starts[u]! <= starts[v + 1]! - starts[v]!;
+    const from = isFirst ? u : v;
+    const to = isFirst ? v : u;
+    for (let i = starts[from]!; i < starts[from + 1]!; i++) {
+      const end = next(this.halfEdges[i]!);
+      if (indices[end] === to || indices[next(end)] === to) return true;
     }
     return false;
-  }
-
-  #smaller(h: number): number {
-    return Math.min(this.#indices[h]!, this.#indices[next(h)]!);
-  }
-
-  #larger(h: number): number {
-    return Math.max(this.#indices[h]!, this.#indices[next(h)]!);
   }
 }

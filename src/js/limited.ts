@@ -13,8 +13,9 @@ export interface ShiftOptions {
   /**
    * How far flips may shift a texture, a colour or another attribute of the vertices, in the units of the attribute: a
    * number for all texture coordinates, or one for each attribute by its name. An edge stays if its flip would shift an
-   * attribute further, measured where the two diagonals cross. If many flips together shift an attribute further than
-   * that, the edges that they crossed stay too, and the run starts again. `Infinity` sets no limit. Default: 1/1024 for
+   * attribute further, measured where the two diagonals cross, as a camera 27° beside the normal sees it. If many flips
+   * together shift an attribute further than that, the edges that they crossed stay too, and the run starts again. More
+   * oblique cameras are not measured, nor are silhouettes and light. `Infinity` sets no limit. Default: 1/1024 for
    * texture coordinates, one texel of a texture with 1,024 texels in a row, and `Infinity` for other attributes; with
    * `weld: true`, which ignores attributes, `Infinity` for all.
    */
@@ -66,7 +67,10 @@ export function limitsOf(
     const limits = new Map(names.filter(isTexture).map((name) => [name, ofTextures]));
     for (const [name, value] of Object.entries(isList ? given : {})) {
       if (value === undefined) continue;
-      if (!names.includes(name)) throw wrong(`there is no attribute ${shown(name)}; there are ${names.join(', ')}`);
+      if (!names.includes(name)) {
+        const known = names.length > 0 ? `there are ${names.join(', ')}` : 'the geometry has only positions';
+        throw wrong(`there is no attribute ${shown(name)}; ${known}`);
+      }
       limits.set(name, checked(value));
     }
     return new Map([...limits].filter(([, most]) => most < Infinity));
@@ -90,16 +94,27 @@ export async function runWithin(
   // Without textures, this code is not loaded.
   const { Attributes } = await import('./shift.js');
   const attributes = new Attributes(copy, limits, joining);
-  const locked = new Map(attributes.edgesBeyond().map((edge) => [edge.join(), edge]));
+  const given = settings.lockedEdges ?? new Uint32Array();
   for (;;) {
-    const lockedEdges = Uint32Array.from([...(settings.lockedEdges ?? []), ...[...locked.values()].flat()]);
+    const own = attributes.lockedEdges;
+    const lockedEdges = new Uint32Array(given.length + own.length);
+    lockedEdges.set(given);
+    lockedEdges.set(own, given.length);
     const made = await run({ ...copy, stride: 3 }, { ...watch, ...settings, lockedEdges });
-    const { size } = locked;
-    if (made.onGpu) return { ...made, shiftEdges: size, largestShifts: undefined };
-    const { largest, crossed } = attributes.compare(made.result.indices);
-    for (const edge of crossed) locked.set(edge.join(), edge);
-    if (locked.size > size) continue;
+    const shiftEdges = own.length / 2;
+    if (made.onGpu) return { ...hinted(made, shiftEdges), shiftEdges, largestShifts: undefined };
+    const largest = attributes.compare(made.result.indices);
+    if (attributes.lockedEdges.length > own.length) continue;
     const largestShifts = Object.fromEntries(limits.map(({ name }, i) => [name, largest[i]!]));
-    return { ...made, shiftEdges: size, largestShifts };
+    return { ...hinted(made, shiftEdges), shiftEdges, largestShifts };
   }
+}
+
+/** The run, with advice if `maxAttributeShift` keeps more edges from their flips than flip. */
+function hinted({ result, ...made }: Run, shiftEdges: number): Run {
+  const { flips, remaining, hint } = result;
+  const locked = remaining.locked ?? 0;
+  if (Math.min(locked, shiftEdges) <= flips) return { result, ...made };
+  const advice = `Locked edges that are not Delaunay: ${locked}. To save the texture, maxAttributeShift locks ${shiftEdges} edges, also Delaunay ones; pass a larger limit, or Infinity for none.`;
+  return { result: { ...result, hint: hint === undefined ? advice : `${hint} ${advice}` }, ...made };
 }

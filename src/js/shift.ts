@@ -1,7 +1,8 @@
 /** Measures how far flips shift the attributes of a surface, such as texture coordinates. */
 
 import type { IndexedMesh } from './mesh.js';
-import { Edges, type Lists, listsOf, next, NONE, placesOf } from './joined.js';
+import { Edges, next, NONE, placesOf } from './joined.js';
+import { sequence } from './surface.js';
 
 /** An attribute whose shift is limited. */
 export interface Limit {
@@ -16,228 +17,351 @@ export interface Limit {
 /** How vertices at the same position are joined: not at all, those with equal attributes, or all. */
 export type Joining = 'none' | 'equal' | 'all';
 
-/** What flips have shifted. */
-export interface Comparison {
-  /** The largest shift of each limited attribute. */
-  largest: number[];
-  /** For each edge of the result that shifts an attribute too far, the edge of the input that it crosses there. */
-  crossed: Edge[];
-}
+/** The tangent of the angle from the normal to the camera: 27 degrees. */
+const BESIDE = 1 / 2;
 
 /**
  * The attributes of a surface before a run. An attribute is linear on each triangle. A flip changes it inside the two
  * triangles, most of all where the two diagonals cross. Where the triangles are bent, one diagonal is above the other
- * there. The shift is then that of the picture, seen from at most 45 degrees beside the normal: the difference of the
- * attribute, and the distance times the slope of the attribute.
+ * there. The shift is then that of the picture from a camera beside the normal: the difference of the attribute,
+ * and the distance times {@link BESIDE} times the slope of the attribute. Not measured are more oblique cameras, and how
+ * a flip changes the silhouette and the light.
  */
 export class Attributes {
-  readonly #points: IndexedMesh['positions'];
+  /** The coordinates, as an attribute. */
+  readonly #points: Values;
   readonly #indices: Uint32Array;
   readonly #limits: readonly Limit[];
   readonly #places: Uint32Array;
   /** The triangles with places instead of vertices. */
   readonly #corners: Uint32Array;
   readonly #edges: Edges;
-  /** The half-edges that start at each place. */
-  readonly #stars: Lists;
   /** For each limited attribute, its slope on each triangle. */
   readonly #slopes: Float64Array[];
+  /** The edges that stay: the smaller half-edge of each. */
+  readonly #locked = new Set<number>();
 
-  /** The arrays must not change afterwards. */
+  /** Locks the edges whose flip would shift an attribute too far. The arrays must not change afterwards. */
   constructor({ positions, indices }: IndexedMesh, limits: readonly Limit[], joining: Joining) {
     const vertices = positions.length / 3;
-    const all = indices.map((_, h) => h);
-    this.#points = positions;
+    this.#points = { values: new Float64Array(positions), width: 3 };
     this.#indices = indices;
     this.#limits = limits;
-    this.#places = joining === 'none' ? Uint32Array.from({ length: vertices }, (_, v) => v) : placesOf(positions);
-    this.#corners = indices.map((v) => this.#places[v]!);
+    this.#places = joining === 'none' ? sequence(0, vertices) : placesOf(positions);
+    this.#corners = this.#placed(indices);
     this.#edges = new Edges(this.#corners, vertices);
-    this.#stars = listsOf(all, (h) => this.#corners[h]!, vertices);
-    this.#slopes = limits.map((limit) => new Float64Array(indices.length / 3).map((_, t) => this.#slope(limit, t)));
-    // Seams stay, and the attributes beyond them are others.
-    if (joining === 'equal') this.#edges.cut((h, twin) => limits.some((limit) => this.#jump(limit, h, twin) > 0));
+    this.#slopes = limits.map((limit) => this.#slopesOf(limit));
+    const { twins } = this.#edges;
+    for (let h = 0; h < twins.length; h++) {
+      const twin = twins[h]!;
+      if (twin === NONE || twin < h) continue;
+      // Seams stay, and the attributes beyond them are others.
+      if (joining === 'equal' && !this.#isJoined(h, twin)) this.#edges.cut(h);
+      else if (this.#isBeyond(h, twin)) this.#locked.add(h);
+    }
   }
 
-  /** The edges whose flip would shift an attribute too far, with vertices of one triangle. */
-  edgesBeyond(): Edge[] {
+  /** Two vertices for each edge that stays. */
+  get lockedEdges(): Uint32Array {
+    const edges = new Uint32Array(2 * this.#locked.size);
+    let i = 0;
+    for (const h of this.#locked) {
+      edges[i++] = this.#indices[h]!;
+      edges[i++] = this.#indices[next(h)]!;
+    }
+    return edges;
+  }
+
+  /** The places of vertices. */
+  #placed(vertices: Uint32Array): Uint32Array {
+    const places = new Uint32Array(vertices.length);
+    for (let i = 0; i < vertices.length; i++) places[i] = this.#places[vertices[i]!]!;
+    return places;
+  }
+
+  /** Whether the flip of an edge would shift an attribute too far. */
+  #isBeyond(h: number, twin: number): boolean {
     const indices = this.#indices;
-    const found: Edge[] = [];
-    this.#edges.twins.forEach((twin, h) => {
-      if (twin === NONE || twin < h) return;
-      const [a, b] = [indices[h]!, indices[next(h)]!];
-      const [c, d] = [indices[next(next(h))]!, indices[next(next(twin))]!];
-      const crossing = this.#crossingOf(a, b, c, d);
-      const isBeyond = this.#limits.some((limit, i) => {
-        if (this.#jump(limit, h, twin) > limit.most) return true;
-        if (!crossing) return false;
-        const { s, t, scale } = crossing;
-        const shift = differenceOf(limit, [a, b, s], [c, d, t]);
-        return shift + this.#parallax(i, [a, b, s], [c, d, t], [h, twin]) > limit.most * scale;
-      });
-      if (isBeyond) found.push(edgeOf(a, b));
-    });
-    return found;
+    const a = indices[h]!;
+    const b = indices[next(h)]!;
+    const c = indices[next(next(h))]!;
+    const d = indices[next(next(twin))]!;
+    const crossing = crossingOf(this.#points.values, a, b, c, d);
+    for (let i = 0; i < this.#limits.length; i++) {
+      const { most } = this.#limits[i]!;
+      if (this.#jump(this.#limits[i]!, h, twin) > most) return true;
+      if (crossing && this.#shift(i, a, b, crossing.s, c, d, crossing.t, h, twin) > most * crossing.scale) return true;
+    }
+    return false;
+  }
+
+  /** Whether no limited attribute jumps from one triangle of an edge to the other. */
+  #isJoined(h: number, twin: number): boolean {
+    for (const limit of this.#limits) {
+      if (this.#jump(limit, h, twin) > 0) return false;
+    }
+    return true;
   }
 
   /** How far an attribute jumps from one triangle of an edge to the other. */
   #jump(limit: Limit, h: number, twin: number): number {
     const [indices, corners] = [this.#indices, this.#corners];
-    const [from, to] = corners[twin] === corners[h] ? [twin, next(twin)] : [next(twin), twin];
-    const jump = (u: number, v: number) => (u === v ? 0 : differenceOf(limit, [u, u, 0], [v, v, 0]));
-    return Math.max(jump(indices[h]!, indices[from]!), jump(indices[next(h)]!, indices[to]!));
+    // Most triangles share their vertices.
+    if (indices[h] === indices[next(twin)] && indices[next(h)] === indices[twin]) return 0;
+    const isAlong = corners[twin] === corners[h];
+    const from = isAlong ? twin : next(twin);
+    const to = isAlong ? next(twin) : twin;
+    return Math.max(jumpOf(limit, indices[h]!, indices[from]!), jumpOf(limit, indices[next(h)]!, indices[to]!));
   }
 
-  /** How steep an attribute is on a triangle at most: its change for each unit of length. */
-  #slope(limit: Limit, triangle: number): number {
-    const [i, indices] = [3 * triangle, this.#indices];
-    const [a, b, c] = [indices[i]!, indices[i + 1]!, indices[i + 2]!];
-    const [u, v] = [this.#between(a, b), this.#between(a, c)];
-    const [uu, uv, vv] = [dot(u, u), dot(u, v), dot(v, v)];
-    const { values, width } = limit;
-    let [ff, fg, gg] = [0, 0, 0];
-    for (let k = 0; k < width; k++) {
-      const [f, g] = [values[width * b + k]! - values[width * a + k]!, values[width * c + k]! - values[width * a + k]!];
-      ff += f * f;
-      fg += f * g;
-      gg += g * g;
+  /** How steep an attribute is on each triangle at most: its change for each unit of length. */
+  #slopesOf(limit: Limit): Float64Array {
+    const [indices, points] = [this.#indices, this.#points];
+    const slopes = new Float64Array(indices.length / 3);
+    for (let t = 0; t < slopes.length; t++) {
+      const a = indices[3 * t]!;
+      const b = indices[3 * t + 1]!;
+      const c = indices[3 * t + 2]!;
+      const uu = productOf(points, a, b, a, b);
+      const uv = productOf(points, a, b, a, c);
+      const vv = productOf(points, a, c, a, c);
+      const ff = productOf(limit, a, b, a, b);
+      const fg = productOf(limit, a, b, a, c);
+      const gg = productOf(limit, a, c, a, c);
+      const area = uu * vv - uv * uv;
+      const half = (ff * vv - 2 * fg * uv + gg * uu) / area / 2;
+      const slope = Math.sqrt(half + Math.sqrt(Math.max(0, half * half - (ff * gg - fg * fg) / area)));
+      slopes[t] = Number.isFinite(slope) ? slope : 0;
     }
-    const area = uu * vv - uv * uv;
-    const half = (ff * vv - 2 * fg * uv + gg * uu) / area / 2;
-    const slope = Math.sqrt(half + Math.sqrt(Math.max(0, half * half - (ff * gg - fg * fg) / area)));
-    return Number.isFinite(slope) ? slope : 0;
+    return slopes;
   }
 
   /**
-   * How far a picture shifts attribute `i` because a point between two vertices is above one between two others, with
-   * the slopes of two triangles, named by half-edges.
+   * How far a picture shifts attribute `i` where a point between `a` and `b`, at the share `s`, and one between `c` and
+   * `d`, at `t`, are seen as one, with the slopes of two triangles, named by half-edges.
    */
-  #parallax(i: number, [a, b, s]: Vector, [c, d, t]: Vector, [g, h]: Edge): number {
-    const points = this.#points;
-    let square = 0;
-    for (let axis = 0; axis < 3; axis++) {
-      const at = (vertex: number) => points[3 * vertex + axis]!;
-      square += ((1 - s) * at(a) + s * at(b) - (1 - t) * at(c) - t * at(d)) ** 2;
-    }
+  #shift(i: number, a: number, b: number, s: number, c: number, d: number, t: number, g: number, h: number): number {
     const slopes = this.#slopes[i]!;
-    return Math.sqrt(square) * Math.max(slopes[Math.floor(g / 3)]!, slopes[Math.floor(h / 3)]!);
+    const slope = Math.max(slopes[Math.floor(g / 3)]!, slopes[Math.floor(h / 3)]!);
+    const distance = differenceOf(this.#points, a, b, s, c, d, t);
+    return differenceOf(this.#limits[i]!, a, b, s, c, d, t) + BESIDE * distance * slope;
   }
 
   /**
-   * Where the lines `ab` and `cd` come closest: the shares of `ab` and `cd`; and the largest of the weights of the four
-   * points, which exceeds 1 if the diagonals do not cross. `undefined` for parallel lines.
+   * Compares the attributes at the crossings of each new edge with edges of the input. If the edge shifts an attribute
+   * too far, the edge that it crosses there is locked.
+   *
+   * @returns The largest shift of each limited attribute.
    */
-  #crossingOf(a: number, b: number, c: number, d: number): { s: number; t: number; scale: number } | undefined {
-    const [u, v, w] = [this.#between(a, b), this.#between(c, d), this.#between(c, a)];
-    const [uu, uv, vv, uw, vw] = [dot(u, u), dot(u, v), dot(v, v), dot(u, w), dot(v, w)];
-    const size = uu * vv - uv * uv;
-    const [s, t] = [(uv * vw - vv * uw) / size, (uu * vw - uv * uw) / size];
-    const scale = Math.max(1, Math.abs(s), Math.abs(1 - s), Math.abs(t), Math.abs(1 - t));
-    return size > 0 && Number.isFinite(scale) ? { s, t, scale } : undefined;
-  }
-
-  /** Compares the attributes at the crossings of each new edge with edges of the input. */
-  compare(indices: Uint32Array): Comparison {
-    const comparison: Comparison = { largest: this.#limits.map(() => 0), crossed: [] };
+  compare(indices: Uint32Array): number[] {
+    const largest = this.#limits.map(() => 0);
     const old = this.#indices;
-    const corners = indices.map((v) => this.#places[v]!);
+    const corners = this.#placed(indices);
     const result = new Edges(corners, this.#places.length);
-    result.twins.forEach((twin, h) => {
-      const [g, f] = [next(h), next(next(h))];
-      if (indices[h] === old[h] && indices[g] === old[g] && indices[f] === old[f]) return;
+    const { twins } = result;
+    for (let h = 0; h < twins.length; h++) {
+      const twin = twins[h]!;
+      const g = next(h);
+      const f = next(g);
+      if (indices[h] === old[h] && indices[g] === old[g] && indices[f] === old[f]) continue;
       // A new edge has two half-edges.
-      if (twin < h || twin === NONE || this.#edges.has(corners[h]!, corners[g]!)) return;
-      const [normal, other] = [h, twin].map((half) => this.#normal(indices, half - (half % 3))) as [Vector, Vector];
-      this.#walk(indices[h]!, indices[g]!, sum(normal, other), result, comparison);
-    });
-    return comparison;
+      if (twin < h || twin === NONE || this.#edges.has(corners[h]!, corners[g]!)) continue;
+      const normal = sum(this.#normal(indices, h), this.#normal(indices, twin));
+      this.#walk(new Line(this.#points.values, indices[h]!, indices[g]!, normal), result, largest);
+    }
+    return largest;
   }
 
-  /** The normal of the triangle whose first corner is `i`; its length is twice the area. */
-  #normal(indices: Uint32Array, i: number): Vector {
+  /** The normal of the triangle of a half-edge; its length is twice the area. */
+  #normal(indices: Uint32Array, h: number): Vector {
+    const i = h - (h % 3);
+    const { values } = this.#points;
     const a = indices[i]!;
-    return cross(this.#between(a, indices[i + 1]!), this.#between(a, indices[i + 2]!));
+    return cross(between(values, a, indices[i + 1]!), between(values, a, indices[i + 2]!));
   }
 
-  /** Goes along the new edge `cd` through the triangles of the input, as seen along `normal`. */
-  #walk(c: number, d: number, normal: Vector, result: Edges, comparison: Comparison): void {
-    const along = this.#between(c, d);
-    const across = cross(normal, along);
-    const length = dot(along, along);
-    const [points, i] = [this.#points, 3 * c];
-    const towards = ([x, y, z]: Vector, j: number) =>
-      x * (points[j]! - points[i]!) + y * (points[j + 1]! - points[i + 1]!) + z * (points[j + 2]! - points[i + 2]!);
-    const sideOf = (vertex: number) => towards(across, 3 * vertex);
-    const shareOf = (vertex: number) => towards(along, 3 * vertex) / length;
-    let edge = this.#firstOf(c, normal, sideOf, shareOf);
+  /** Goes along a new edge through the triangles of the input. */
+  #walk(line: Line, result: Edges, largest: number[]): void {
+    const [indices, { twins }] = [this.#indices, this.#edges];
+    const { from, to } = line;
+    let edge = this.#firstOf(line);
     let [worst, crossed] = [1, NONE];
-    for (let steps = 0; edge !== NONE && steps < this.#indices.length; steps++) {
-      const [x, y] = [this.#indices[edge]!, this.#indices[next(edge)]!];
-      const [sx, sy] = [sideOf(x), sideOf(y)];
-      const r = sx / (sx - sy);
-      const t = shareOf(x) + r * (shareOf(y) - shareOf(x));
-      const twin = this.#edges.twins[edge]!;
+    for (let steps = 0; edge !== NONE && steps < indices.length; steps++) {
+      const x = indices[edge]!;
+      const y = indices[next(edge)]!;
+      const sx = line.side(x);
+      const r = sx / (sx - line.side(y));
+      const t = line.share(x) + r * (line.share(y) - line.share(x));
+      const twin = twins[edge]!;
       if (twin === NONE || !(t >= 0 && t <= 1)) break;
       // Edges of the result cross only edges that have flipped. Where the surface is bent, it may look otherwise.
       if (result.has(this.#places[x]!, this.#places[y]!)) break;
-      this.#limits.forEach((limit, i) => {
-        const shift = differenceOf(limit, [x, y, r], [c, d, t]) + this.#parallax(i, [x, y, r], [c, d, t], [edge, twin]);
-        comparison.largest[i] = Math.max(comparison.largest[i]!, shift);
-        if (shift > worst * limit.most) [worst, crossed] = [shift / limit.most, Math.min(edge, twin)];
-      });
+      for (let i = 0; i < largest.length; i++) {
+        const { most } = this.#limits[i]!;
+        const shift = this.#shift(i, x, y, r, from, to, t, edge, twin);
+        largest[i] = Math.max(largest[i]!, shift);
+        if (shift > worst * most) [worst, crossed] = [shift / most, Math.min(edge, twin)];
+      }
       const tip = next(next(twin));
-      if (this.#corners[tip] === this.#places[d]) break;
-      // The edge from the tip to the end on the other side of `cd`.
-      const isTwins = sideOf(this.#indices[tip]!) < 0 === sideOf(this.#indices[twin]!) < 0;
+      if (this.#corners[tip] === this.#places[to]) break;
+      // The edge from the tip to the end on the other side of the line.
+      const isTwins = line.side(indices[tip]!) < 0 === line.side(indices[twin]!) < 0;
       edge = isTwins ? next(twin) : tip;
     }
-    if (crossed === NONE) return;
-    comparison.crossed.push(edgeOf(this.#indices[crossed]!, this.#indices[next(crossed)]!));
+    if (crossed !== NONE) this.#locked.add(crossed);
   }
 
-  /** The half-edge of the input that a line from a vertex crosses first, as seen along `normal`. */
-  #firstOf(c: number, normal: Vector, sideOf: (v: number) => number, shareOf: (v: number) => number): number {
-    const { starts, halfEdges } = this.#stars;
+  /** The half-edge of the input that a line crosses first. */
+  #firstOf(line: Line): number {
+    const { starts, halfEdges } = this.#edges;
+    const [indices, { values }, c] = [this.#indices, this.#points, line.from];
     const place = this.#places[c]!;
     let [edge, best] = [NONE, -1];
     for (let i = starts[place]!; i < starts[place + 1]!; i++) {
       const h = halfEdges[i]!;
-      const [x, y] = [this.#indices[next(h)]!, this.#indices[next(next(h))]!];
-      const [sx, sy] = [sideOf(x), sideOf(y)];
-      if (sx < 0 === sy < 0 || (shareOf(x) * sy - shareOf(y) * sx) / (sy - sx) < 0) continue;
+      const x = indices[next(h)]!;
+      const y = indices[next(next(h))]!;
+      const sx = line.side(x);
+      const sy = line.side(y);
+      if (sx < 0 === sy < 0 || (line.share(x) * sy - line.share(y) * sx) / (sy - sx) < 0) continue;
       // A flat triangle faces nowhere.
-      const facing = Math.abs(dot(normal, unit(cross(this.#between(c, x), this.#between(c, y))))) || 0;
-      if (facing > best && this.#isAlike(this.#indices[h]!, c)) [edge, best] = [next(h), facing];
+      const facing = Math.abs(dot(line.normal, unit(cross(between(values, c, x), between(values, c, y))))) || 0;
+      if (facing > best && this.#isAlike(indices[h]!, c)) [edge, best] = [next(h), facing];
     }
     return edge;
   }
 
   /** Whether two vertices have the same limited attributes. */
   #isAlike(u: number, v: number): boolean {
-    return u === v || this.#limits.every((limit) => differenceOf(limit, [u, u, 0], [v, v, 0]) === 0);
-  }
-
-  /** From one vertex to another. */
-  #between(from: number, to: number): Vector {
-    const [points, i, j] = [this.#points, 3 * from, 3 * to];
-    return [points[j]! - points[i]!, points[j + 1]! - points[i + 1]!, points[j + 2]! - points[i + 2]!];
+    return u === v || this.#limits.every((limit) => jumpOf(limit, u, v) === 0);
   }
 }
 
-/** Two vertices, the smaller one first. */
-export type Edge = [number, number];
-
-const edgeOf = (u: number, v: number): Edge => (u < v ? [u, v] : [v, u]);
-
 type Vector = [number, number, number];
-/** How far a value between two vertices is from one between two others; the third number is the share. */
-function differenceOf({ values, width }: Limit, [a, b, s]: Vector, [c, d, t]: Vector): number {
+
+type Values = Pick<Limit, 'values' | 'width'>;
+
+/** A line from one vertex to another, as seen along a normal. */
+class Line {
+  readonly #points: Float64Array;
+  readonly #start: Vector;
+  readonly #along: Vector;
+  readonly #across: Vector;
+  readonly #length: number;
+
+  constructor(
+    points: Float64Array,
+    readonly from: number,
+    readonly to: number,
+    readonly normal: Vector,
+  ) {
+    this.#points = points;
+    this.#start = [points[3 * from]!, points[3 * from + 1]!, points[3 * from + 2]!];
+    this.#along = between(points, from, to);
+    this.#across = cross(normal, this.#along);
+    this.#length = dot(this.#along, this.#along);
+  }
+
+  /** The sign says on which side a vertex is. */
+  side(vertex: number): number {
+    return this.#towards(this.#across, vertex);
+  }
+
+  /** Where a vertex is beside the line: 0 at its start, 1 at its end. */
+  share(vertex: number): number {
+    return this.#towards(this.#along, vertex) / this.#length;
+  }
+
+  #towards(direction: Vector, vertex: number): number {
+    const [points, start, i] = [this.#points, this.#start, 3 * vertex];
+    return (
+      direction[0] * (points[i]! - start[0]) +
+      direction[1] * (points[i + 1]! - start[1]) +
+      direction[2] * (points[i + 2]! - start[2])
+    );
+  }
+}
+
+/**
+ * Where the lines `ab` and `cd` come closest: the shares of `ab` and `cd`; and the largest of the weights of the four
+ * points, which exceeds 1 if the diagonals do not cross. `undefined` for parallel lines.
+ */
+function crossingOf(
+  points: Float64Array,
+  a: number,
+  b: number,
+  c: number,
+  d: number,
+): { s: number; t: number; scale: number } | undefined {
+  const [i, j, k, l] = [3 * a, 3 * b, 3 * c, 3 * d];
+  const ux = points[j]! - points[i]!;
+  const uy = points[j + 1]! - points[i + 1]!;
+  const uz = points[j + 2]! - points[i + 2]!;
+  const vx = points[l]! - points[k]!;
+  const vy = points[l + 1]! - points[k + 1]!;
+  const vz = points[l + 2]! - points[k + 2]!;
+  const wx = points[i]! - points[k]!;
+  const wy = points[i + 1]! - points[k + 1]!;
+  const wz = points[i + 2]! - points[k + 2]!;
+  const uu = ux * ux + uy * uy + uz * uz;
+  const uv = ux * vx + uy * vy + uz * vz;
+  const vv = vx * vx + vy * vy + vz * vz;
+  const uw = ux * wx + uy * wy + uz * wz;
+  const vw = vx * wx + vy * wy + vz * wz;
+  const size = uu * vv - uv * uv;
+  const s = (uv * vw - vv * uw) / size;
+  const t = (uu * vw - uv * uw) / size;
+  const scale = Math.max(1, Math.abs(s), Math.abs(1 - s), Math.abs(t), Math.abs(1 - t));
+  return size > 0 && Number.isFinite(scale) ? { s, t, scale } : undefined;
+}
+
+/** The scalar product of the difference from `a` to `b` and that from `c` to `d`. */
+function productOf({ values, width }: Values, a: number, b: number, c: number, d: number): number {
+  let sum = 0;
+  for (let k = 0; k < width; k++) {
+    sum += (values[width * b + k]! - values[width * a + k]!) * (values[width * d + k]! - values[width * c + k]!);
+  }
+  return sum;
+}
+
+/** How far the values of two vertices are apart: those that are not numbers are equal, as `weld` compares them. */
+function jumpOf({ values, width }: Values, u: number, v: number): number {
+  if (u === v) return 0;
   let square = 0;
   for (let k = 0; k < width; k++) {
-    const at = (vertex: number) => values[width * vertex + k]!;
-    square += ((1 - s) * at(a) + s * at(b) - (1 - t) * at(c) - t * at(d)) ** 2;
+    const x = values[width * u + k]!;
+    const y = values[width * v + k]!;
+    if (!Object.is(x, y)) square += (x - y) ** 2;
   }
-  return Math.sqrt(square);
+  return distanceOf(square);
+}
+
+/** The root; a value that is not finite shifts infinitely far. */
+const distanceOf = (square: number): number => (Number.isNaN(square) ? Infinity : Math.sqrt(square));
+
+/** How far a value between `a` and `b`, at the share `s`, is from one between `c` and `d`, at `t`. */
+function differenceOf(
+  { values, width }: Values,
+  a: number,
+  b: number,
+  s: number,
+  c: number,
+  d: number,
+  t: number,
+): number {
+  let square = 0;
+  for (let k = 0; k < width; k++) {
+    const first = (1 - s) * values[width * a + k]! + s * values[width * b + k]!;
+    const difference = first - (1 - t) * values[width * c + k]! - t * values[width * d + k]!;
+    square += difference * difference;
+  }
+  return distanceOf(square);
+}
+
+/** From one vertex to another. */
+function between(points: Float64Array, from: number, to: number): Vector {
+  const [i, j] = [3 * from, 3 * to];
+  return [points[j]! - points[i]!, points[j + 1]! - points[i + 1]!, points[j + 2]! - points[i + 2]!];
 }
 
 const sum = (a: Vector, b: Vector): Vector => [a[0] + b[0], a[1] + b[1], a[2] + b[2]];

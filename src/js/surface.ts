@@ -44,7 +44,9 @@ export function meshOf(surface: Surface, options: MakeDelaunayOptions): [Mesh<Ui
 
 /** The whole numbers from `first` up to `end`, which is excluded: the indices of vertices that make triangles in order. */
 export function sequence(first: number, end: number): Uint32Array {
-  return Uint32Array.from({ length: end - first }, (_, i) => first + i);
+  const numbers = new Uint32Array(end - first);
+  for (let i = 0; i < numbers.length; i++) numbers[i] = first + i;
+  return numbers;
 }
 
 /** The positions as floats without gaps. Each conversion is exact. */

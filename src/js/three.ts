@@ -205,9 +205,11 @@ function shiftLimits({ attributes }: BufferGeometry, given: unknown, weld: unkno
   );
   const names = all.map(([name]) => name);
   const most = limitsOf(given, names, (name) => TEXTURE.test(name), weld);
-  return all.flatMap(([name, attribute]) =>
-    most.has(name) ? { name, ...numbersOf(attribute as BufferAttribute), most: most.get(name)! } : [],
-  );
+  return all.flatMap(([name, attribute]) => {
+    if (!most.has(name)) return [];
+    checkCount(name, attribute, attributes['position']!);
+    return { name, ...numbersOf(attribute as BufferAttribute), most: most.get(name)! };
+  });
 }
 
 /** The numbers of an attribute that the shaders get: integers and 16-bit floats stand for others. */
@@ -235,12 +237,16 @@ function verticesOf({ attributes, morphAttributes }: BufferGeometry, isCompared:
   ];
   const columns = (isCompared ? compared : []).flatMap(([name, attribute]) => {
     const columns = columnsOf(name, attribute);
-    if (columns && attribute.count < position.count) {
-      throw invalid(`attribute ${name}: it has ${attribute.count} vertices, and position has ${position.count}`);
-    }
+    if (columns) checkCount(name, attribute, position);
     return columns ?? [];
   });
   return { vertices: position.count, positions: { ...positions, width: 3 }, attributes: columns };
+}
+
+/** @throws {@link EdgeflipError} `invalid-input` if an attribute has fewer vertices than the position. */
+function checkCount(name: string, { count }: Attribute, position: Attribute): void {
+  if (count >= position.count) return;
+  throw invalid(`attribute ${name}: it has ${count} vertices, and position has ${position.count}`);
 }
 
 function invalid(message: string): EdgeflipError {

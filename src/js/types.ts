@@ -245,9 +245,12 @@ export interface UpdateOptions {
    * in the buffer of `gpu()`: those that the page has written there, or the present ones.
    */
   buffer?: GpuBuffer | undefined;
-  /** The count of numbers in `buffer` before the first vertex. Default: 0. */
+  /** The count of numbers in `buffer` before the first vertex. Default: 0. `positions` have the offset of the mesh. */
   offset?: number | undefined;
-  /** The count of numbers in `buffer` from a vertex to the next. Default: the dimension of the mesh. */
+  /**
+   * The count of numbers in `buffer` from a vertex to the next. Default: the dimension of the mesh. `positions` have the
+   * stride of the mesh.
+   */
   stride?: number | undefined;
   /**
    * The most iterations, 0 to 64. Default: 4. It is a budget: what is left goes on in the next update. With the order

@@ -8,7 +8,7 @@ import { namesOf, optionsOf } from './names.js';
 import { type Hold, MOST_ITERATIONS } from './settings.js';
 import type { UpdateOptions } from './types.js';
 
-/** The options of an update in a worker, which no buffer can enter. */
+/** The options of an update without a buffer: in a worker, which none can enter, all. */
 export type WorkerUpdateOptions = Pick<UpdateOptions, 'positions' | 'iterations'>;
 
 /** The options of an update, read. */
@@ -45,6 +45,8 @@ export function updateOf(
   return read('the options', () => {
     const given = optionsOf(options, known) as UpdateOptions;
     const { positions, buffer, iterations = ITERATIONS } = given;
+    // Positions have the stride and the offset of the mesh.
+    if (buffer === undefined) optionsOf(given, WORKER_UPDATE_OPTIONS);
     if (!isWhole(iterations) || iterations > MOST_ITERATIONS) {
       const message = `option iterations: ${shown(iterations)} is not a whole number from 0 to ${MOST_ITERATIONS}`;
       throw new EdgeflipError('invalid-option', message);

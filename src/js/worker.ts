@@ -243,14 +243,20 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
   }
 
   /**
-   * As `update` of the session of `edgeflip`, in the worker: {@link counters} or the next update throws its error.
+   * As `update` of the session of `edgeflip`, in the worker: {@link counters} or the next update throws the errors of
+   * the engine. Wrong options and numbers of positions are errors at once.
    *
-   * @throws {@link EdgeflipError} `invalid-option`, `invalid-input`, `ragged-array`, `freed`.
+   * @throws {@link EdgeflipError} `invalid-option`, `invalid-input`, `ragged-array`, `position-count`, `freed`.
    */
   update(options: WorkerUpdateOptions = {}): void {
     this.#checkFreed();
     const { positions, iterations } = updateOf(options, this.#layout, copyOf, WORKER_UPDATE_OPTIONS);
     this.#check();
+    const expected = this.#layout.vertices * this.#layout.dimension;
+    if (positions && positions.length !== expected) {
+      const message = `positions has ${positions.length} numbers, but the vertices of the mesh take ${expected}`;
+      throw new EdgeflipError('position-count', message);
+    }
     const args = [{ positions, iterations }] as never[];
     const call = this.#to.call('ask', [this.#session, 'update', args], { transfer: buffersOf(args) });
     void call.catch((thrown) => (this.#fault ??= thrown));

@@ -2,6 +2,7 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
+import { Worker } from 'node:worker_threads';
 import * as here from 'edgeflip';
 import { generate } from 'edgeflip/files';
 import * as away from 'edgeflip/worker';
@@ -127,6 +128,7 @@ test('wrong options of an update are refused and change nothing', async () => {
     [{ iterations: -1 }, 'invalid-option', /option iterations: -1 is not a whole number from 0 to 64/],
     [{ iteration: 1 }, 'invalid-option', /did you mean iterations\?/],
     [{ positions: positions.subarray(2) }, 'position-count', /1798/],
+    [{ positions, stride: 2 }, 'invalid-option', /stride is not an option; there are positions, iterations/],
     [{ positions: { 0: 1 } }, 'invalid-input', /neither a typed array nor an array of numbers/],
     [{ positions: [1, 2] }, 'position-count', /has 2 numbers/],
     [{ buffer: {} }, 'invalid-option', /option buffer: an object is not a GPUBuffer of this page/],
@@ -148,13 +150,29 @@ test('wrong options of an update are refused and change nothing', async () => {
   }
 });
 
+/** Sends messages to workers without the first vertex. */
+function losing(send) {
+  const { postMessage } = Worker.prototype;
+  Worker.prototype.postMessage = function (call, transfer) {
+    const [update] = call.args[2];
+    update.positions = update.positions.subarray(2);
+    return postMessage.call(this, call, transfer);
+  };
+  try {
+    send();
+  } finally {
+    Worker.prototype.postMessage = postMessage;
+  }
+}
+
 test('the error of an update goes to the next update or to `counters`, and to no other call', async () => {
   for (const entry of [here, away]) {
     const session = await entry.FlipSession.create(mesh, onCpu);
-    /** An update that waits for an earlier call, and then fails. */
+    /** An update that waits for an earlier call, and then fails; the one in the worker loses a vertex on its way. */
     const fail = async () => {
       const call = session.triangles();
-      session.update({ positions: mesh.positions.subarray(2) });
+      if (entry === here) session.update({ positions: mesh.positions.subarray(2) });
+      else losing(() => session.update({ positions: mesh.positions }));
       await call;
       await session.backend();
     };

@@ -55,6 +55,54 @@ test('a mirrored texture stays, and one that is not bent allows the flip', async
   assert.deepEqual([measured.flips, measured.largestShifts], [1, { uv: 1 }]);
 });
 
+test('where triangles are bent, the shift is the one from 27 degrees beside the normal', async () => {
+  // u is x / 6, and the new diagonal is above the old one by `height`.
+  const bent = (height) => {
+    const points = POINTS.map((x, i) => (i === 5 || i === 11 ? height : x));
+    return geometryOf(points, [0, 1, 2, 0, 2, 3], {
+      uv: [POINTS.flatMap((x, i) => (i % 3 === 0 ? [x / 6, 0] : [])), 2],
+    });
+  };
+  for (const [shift, expected] of [
+    [0.9, 1],
+    [1.1, 0],
+  ]) {
+    const { flips, largestShifts } = await run(bent(12 * shift * TEXEL));
+    assert.equal(flips, expected, `${shift} texels`);
+    if (expected) assert.ok(Math.abs(largestShifts.uv - shift * TEXEL) < 1e-7, `${largestShifts.uv}`);
+  }
+});
+
+test('the flips that coarse shapes of three.js keep', async () => {
+  const { TorusKnotGeometry, TorusGeometry, CylinderGeometry } = THREE;
+  for (const [make, kept, all] of [
+    [() => new TorusKnotGeometry(1, 0.3, 100, 12), 250, 738],
+    [() => new TorusGeometry(1, 0.4, 12, 48), 96, 288],
+    [() => new CylinderGeometry(1, 2, 3, 32, 8), 0, 128],
+  ]) {
+    assert.equal((await run(make(), { maxNormalAngle: 30, maxAttributeShift: Infinity })).flips, all);
+    const { flips } = await run(make(), { maxNormalAngle: 30 });
+    assert.ok(flips >= kept && flips < all, `${flips} of ${all} flips`);
+  }
+});
+
+test('a hint says that the limit keeps most edges from their flips', async () => {
+  const { hint } = await delaunayGeometry(mirror());
+  const edges =
+    /^Locked edges that are not Delaunay: 1\. To save the texture, maxAttributeShift locks 1 edges, .*Infinity/;
+  assert.match(hint, edges);
+  assert.equal((await delaunayGeometry(mirror(), { maxAttributeShift: Infinity })).hint, undefined);
+  const torus = await delaunayGeometry(new THREE.TorusGeometry(1, 0.4, 12, 48));
+  assert.match(torus.hint, /are not Delaunay: 192\./);
+  // Most edges flip.
+  const knot = await delaunayGeometry(new THREE.TorusKnotGeometry(1, 0.3, 400, 24));
+  assert.ok(knot.remaining.locked > 100);
+  assert.equal(knot.hint, undefined);
+  // Other locks are not the texture's.
+  const plain = mirror([0, 0.5, 0.5, 0, 1, 0.5, 0.5, 1]);
+  assert.equal((await delaunayGeometry(plain, { lockedEdges: [0, 2] })).hint, undefined);
+});
+
 test('each attribute may have a limit of its own', async () => {
   const colours = [0, 0, 0, 1, 1, 1, 0, 0, 0, 1, 1, 1];
   const coloured = () => mirror(colours, 'color', 3);
@@ -234,12 +282,46 @@ test('wrong limits are refused, and a broken geometry is an error of the geometr
   const thrown = new Proxy({}, { ownKeys: () => assert.fail('a trap') });
   await refused(thrown, /cannot be read: a trap/, 'invalid-input');
   await refused({ uvs: 1 }, /there is no attribute 'uvs'; there are uv/);
+  const bare = mirror().deleteAttribute('uv');
+  const only = /there is no attribute 'uv'; the geometry has only positions$/;
+  await assert.rejects(run(bare, { maxAttributeShift: { uv: 1 } }), { code: 'invalid-option', message: only });
   assert.equal((await run(mirror(), { maxAttributeShift: { uv: undefined } })).flips, 0);
-  assert.equal((await run(mirror(MIRROR.map(() => NaN)))).shiftEdges, 0);
   const many = 200_000;
   const broken = geometryOf(new Array(3 * many).fill(NaN), [0, 1, 2], { uv: [new Array(2 * many).fill(0), 2] });
   await assert.rejects(delaunayGeometry(broken), { code: 'non-finite' });
   await assert.rejects(delaunayGeometry(mirror().setIndex([0, 1, 99])), { code: 'index-out-of-range' });
+});
+
+test('values that are not finite keep their edges, and missing ones are an error', async () => {
+  const stays = { flips: 0, shiftEdges: 1, largestShifts: { uv: 0 } };
+  const plain = [0, 0.5, 0.5, 0, 1, 0.5, 0.5, 1];
+  for (const value of [NaN, Infinity, -Infinity]) {
+    for (const i of plain.keys()) {
+      assert.deepEqual(await run(mirror(plain.with(i, value))), stays, `${value} at ${i}`);
+      assert.deepEqual(await run(mirror(plain.with(i, value)).toNonIndexed()), stays, `${value} at ${i}, joined`);
+    }
+    const all = plain.map(() => value);
+    for (const options of [{}, { weld: false }, { weld: true, maxAttributeShift: TEXEL }]) {
+      assert.deepEqual(await run(mirror(all), options), stays);
+    }
+    assert.deepEqual(await run(mirror(all).toNonIndexed()), stays);
+    assert.equal((await run(mirror(all), { maxAttributeShift: Infinity })).flips, 1);
+  }
+  // Beside such a vertex, other edges flip.
+  const plane = new THREE.PlaneGeometry(4, 1, 8, 8);
+  plane.applyMatrix4(new THREE.Matrix4().makeShear(0, 0, 0.9, 0, 0, 0));
+  const { flips } = await run(plane.clone());
+  plane.attributes.uv.setX(40, NaN);
+  const found = await run(plane);
+  assert.ok(found.flips > flips / 2 && found.flips < flips, `${found.flips} of ${flips}`);
+  assert.ok(found.largestShifts.uv < TEXEL);
+  for (const options of [{}, { weld: false }, { weld: false, maxAttributeShift: { uv1: 1 } }]) {
+    const short = mirror().setAttribute('uv1', new THREE.Float32BufferAttribute([0, 0, 1, 1], 2));
+    await assert.rejects(run(short, options), {
+      code: 'invalid-input',
+      message: 'attribute uv1: it has 2 vertices, and position has 4',
+    });
+  }
 });
 
 test('a vertex with very many triangles takes no longer than others', async () => {
@@ -286,6 +368,7 @@ test('the transform of glTF-Transform has the same limit, and its line counts th
   assert.match(line, /locked 1; maxAttributeShift locked 1 edges; largest shifts: TEXCOORD_0 0$/);
   assert.deepEqual((await transformed({ maxAttributeShift: Infinity }, MIRROR))[0], true);
   assert.deepEqual((await transformed({ weld: true }, MIRROR))[0], true);
+  assert.deepEqual((await transformed({}, MIRROR.with(2, NaN)))[0], false);
   assert.deepEqual((await transformed({}, MIRROR, 'VEC2', 'TEXCOORD_1'))[0], false);
   const colours = [0, 0, 0, 1, 1, 1, 0, 0, 0, 1, 1, 1];
   assert.equal((await transformed({}, colours, 'VEC3', 'COLOR_0'))[0], true);

@@ -69,6 +69,12 @@ test('a draw range may begin before the first triangle, as three.js draws it', a
   assert.deepEqual(await drawn(-6, 6), [false, false]);
   assert.deepEqual(await drawn(-3, -9), [false, false]);
   assert.deepEqual(await drawn(6, Infinity), [false, true]);
+  // three.js draws nothing.
+  assert.deepEqual(await drawn(100, 6), [false, false]);
+  assert.deepEqual(await drawn(12, 6), [false, false]);
+  assert.deepEqual(await drawn(1, 0), [false, false]);
+  assert.deepEqual(await drawn(7, -3), [false, false]);
+  await assert.rejects(drawn(10, 6), refused('invalid-input', /drawRange: it starts at 10, inside a triangle/));
   const grouped = square();
   grouped.addGroup(-3, 6, 0);
   grouped.addGroup(3, 3, 1);

@@ -103,6 +103,38 @@ test('errors are those of `edgeflip`', async () => {
   assert.equal((await away.makeDelaunay(mesh, cpu)).status, 'done');
 });
 
+test('wrong options of an update are the same errors at once', async () => {
+  const mesh = await generate('random 6');
+  const { positions } = mesh;
+  const { dimension } = mesh;
+  const gaps = { ...mesh, positions: new Float64Array((positions.length / dimension) * 4), stride: 4 };
+  for (let i = 0; i < gaps.positions.length; i++) {
+    if (i % 4 < dimension) gaps.positions[i] = positions[dimension * Math.floor(i / 4) + (i % 4)];
+  }
+  for (const [given, options, code] of [
+    [mesh, { positions, stride: 2 }, 'invalid-option'],
+    [mesh, { offset: 1 }, 'invalid-option'],
+    [mesh, { iterations: 65 }, 'invalid-option'],
+    [mesh, { iteration: 1 }, 'invalid-option'],
+    [mesh, { positions: 7 }, 'invalid-input'],
+    [mesh, { positions: positions.subarray(2) }, 'position-count'],
+    [mesh, { positions: [...positions, 1] }, 'position-count'],
+    [gaps, { positions: gaps.positions.subarray(4) }, 'position-count'],
+    [gaps, { positions: gaps.positions.subarray(0, -3) }, 'ragged-array'],
+    [gaps, { positions: gaps.positions }, undefined],
+  ]) {
+    const thrown = [];
+    for (const { FlipSession } of [here, away]) {
+      const session = await FlipSession.create(given, { ...cpu, threads: 1 });
+      thrown.push(await outcome(() => session.update(options)));
+      assert.equal((await session.counters()).updates, Number(!code));
+      session.free();
+    }
+    assert.equal(thrown[0]?.code, code);
+    assert.deepEqual(thrown[0], thrown[1]);
+  }
+});
+
 test('arrays may change or move after the call', async () => {
   const mesh = await generate('random 20');
   const { indices } = await here.makeDelaunay(mesh, cpu);
