@@ -172,10 +172,13 @@ impl<T: Float> Reader<T> {
     /// The vertex index of a corner, from 0. In the file, positive indices count from 1, and negative ones count back
     /// from the last vertex so far.
     fn corner(&self, token: &[u8], known: Option<i64>) -> Result<i64, String> {
-        let mut parts = token.splitn(3, |&b| b == b'/');
-        let vertex = parts.next().and_then(integer);
-        let references = parts.all(|part| part.is_empty() || integer(part).is_some());
-        let (Some(i), true) = (vertex, references) else {
+        let split = || {
+            let mut parts = token.splitn(3, |&b| b == b'/');
+            let vertex = parts.next().and_then(integer);
+            vertex.filter(|_| parts.all(|part| part.is_empty() || integer(part).is_some()))
+        };
+        // Most files have no references.
+        let Some(i) = integer(token).or_else(split) else {
             return Err(format!("expected a corner such as 1, 1/2, 1//3 or 1/2/3, found {}", quoted(token)));
         };
         let so_far = self.vertices();
