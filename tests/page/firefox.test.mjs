@@ -42,6 +42,8 @@ for (const backend of ['webgpu', 'cpu']) {
     await page.page.evaluate(() => (document.getElementById('many').value = '2000'));
     // In a narrow window, the gallery is behind the name.
     await page.page.evaluate(() => document.querySelector('[data-spec="moving sheet"]').click());
+    // Another engine in the meantime would end the worker, and with it a request for the module of files.
+    await page.until('a mesh that moves', ({ state }) => state === 'moving');
     await page.choose('backend', backend);
     const { facts } = await page.until(
       'flips in the frames',
