@@ -198,7 +198,7 @@ fn shows(x: f32, token: &[u8]) -> bool {
 /// the digits are any.
 fn digits_of(token: &[u8]) -> (u64, usize, i64) {
     let (mut digits, mut count, mut zeros, mut decimals, mut is_after_point, mut exponent) =
-        (0_u64, 0, 0_u32, 0, false, 0);
+        (0_u64, 0, 0, 0, false, 0);
     for (i, &b) in token.iter().enumerate() {
         match b {
             b'.' => is_after_point = true,
@@ -209,9 +209,10 @@ fn digits_of(token: &[u8]) -> (u64, usize, i64) {
             b'0'..=b'9' => {
                 decimals += i64::from(is_after_point);
                 if b != b'0' {
-                    digits =
-                        digits.wrapping_mul(10_u64.wrapping_pow(zeros + 1)).wrapping_add(u64::from(b - b'0'));
-                    count += zeros as usize + 1;
+                    zeros += 1;
+                    digits = digits.wrapping_mul(10_u64.wrapping_pow(zeros as u32));
+                    digits = digits.wrapping_add(u64::from(b - b'0'));
+                    count += zeros;
                     zeros = 0;
                 } else if count > 0 {
                     zeros += 1;
@@ -220,5 +221,5 @@ fn digits_of(token: &[u8]) -> (u64, usize, i64) {
             _ => {}
         }
     }
-    (digits, count, exponent.saturating_sub(decimals).saturating_add(i64::from(zeros)))
+    (digits, count, exponent.saturating_sub(decimals).saturating_add(zeros as i64))
 }

@@ -44,6 +44,11 @@ impl Format {
         }
     }
 
+    /// Whether a file of this format can have 64-bit coordinates. Other formats have 32-bit ones when they are written.
+    pub fn has_doubles(self) -> bool {
+        matches!(self, Self::Off | Self::Obj | Self::Ply)
+    }
+
     pub(super) fn is_gltf(self) -> bool {
         matches!(self, Self::Gltf | Self::Glb)
     }

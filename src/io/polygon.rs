@@ -174,8 +174,8 @@ fn without_repeated(points: &[Point2<f64>]) -> (Vec<usize>, Vec<[usize; 3]>) {
     (outline, triangles)
 }
 
-/// Whether each face is inside the outline; a corner begins each of its directed edges. `None` if the outline goes around a
-/// face twice, or clockwise.
+/// Whether each face is inside the outline. `begins` has a corner for each directed edge of the outline. `None` if the
+/// outline goes around a face twice, or clockwise.
 fn inside(
     cut: &ConstrainedDelaunayTriangulation<Point2<f64>>,
     begins: &[Option<usize>],

@@ -252,9 +252,7 @@ impl Args {
         };
         let coordinates = match self.coordinates {
             // OUT shows what decides.
-            CoordinatesArg::Auto if matches!(output, Format::Stl | Format::Gltf | Format::Glb) => {
-                Some(Coordinates::F32)
-            }
+            CoordinatesArg::Auto if !output.has_doubles() => Some(Coordinates::F32),
             CoordinatesArg::Auto => None,
             CoordinatesArg::F32 => Some(Coordinates::F32),
             CoordinatesArg::F64 => Some(Coordinates::F64),

@@ -254,7 +254,7 @@ impl Report {
             ));
         }
         self.crossing_polygons.clone_from(&loaded.crossing);
-        if self.coordinates == 64 && matches!(format, Format::Stl | Format::Gltf | Format::Glb) {
+        if self.coordinates == 64 && !format.has_doubles() {
             let decided =
                 "OUT has 32-bit floats: its coordinates are rounded, the result is that of the 64-bit ones";
             self.notes.push(decided.to_owned());
