@@ -5,7 +5,7 @@ use glam::{DVec2, DVec3};
 use robust::{Coord, orient2d};
 use spade::handles::{DirectedEdgeHandle, FixedVertexHandle};
 use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation, mitigate_underflow};
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// How a polygon is cut.
 #[derive(Debug, PartialEq)]
@@ -20,11 +20,12 @@ pub(super) enum Cut {
 
 /// Cuts a polygon of at least 3 corners.
 pub(super) fn cut(corners: &[DVec3]) -> Cut {
-    let points = seen(corners);
-    if fan_stays_inside(&points) {
+    let [along_normal, along_axis] = seen(corners);
+    if fan_stays_inside(&along_normal) {
         return Cut::Fan;
     }
-    triangulated(&points).map_or(Cut::Crossing, Cut::Others)
+    let triangles = triangulated(&along_normal).or_else(|| triangulated(&along_axis));
+    triangles.map_or(Cut::Crossing, Cut::Others)
 }
 
 /// Whether rounding cannot turn a triangle of a quadrilateral's fan against the other. Most files have no other.
@@ -35,8 +36,9 @@ pub(super) fn is_far_from_concave([a, b, c, d]: [DVec3; 4]) -> bool {
     product > 0.0 && product * product > 1e-24 * size
 }
 
-/// The corners seen along the normal of the best-fitting plane (Newell's), so that the area is positive.
-fn seen(corners: &[DVec3]) -> Vec<DVec2> {
+/// The corners seen along the normal of the best-fitting plane (Newell's), and along the axis that is closest to it, which
+/// rounds nothing: corners on a line stay there. The area is positive.
+fn seen(corners: &[DVec3]) -> [Vec<DVec2>; 2] {
     let largest = corners.iter().fold(0.0, |largest: f64, corner| largest.max(corner.abs().max_element()));
     // A power of two: nothing overflows, and nothing is rounded.
     let scale = if largest > 0.0 { libm::ldexp(1.0, (-libm::ilogb(largest)).min(1022)) } else { 1.0 };
@@ -48,16 +50,18 @@ fn seen(corners: &[DVec3]) -> Vec<DVec2> {
         // The areas cancel each other, or all corners are on a line.
         normal = areas().max_by(|a, b| a.length_squared().total_cmp(&b.length_squared())).unwrap_or_default();
     }
-    let axis = (0..3).find(|&axis| normal[(axis + 1) % 3] == 0.0 && normal[(axis + 2) % 3] == 0.0);
-    if let Some(axis) = axis {
-        let [mut u, mut v] = [(axis + 1) % 3, (axis + 2) % 3];
-        if normal[axis] < 0.0 {
-            (u, v) = (v, u);
-        }
-        return corners.iter().map(|&corner| DVec2::new(corner[u], corner[v]) * scale).collect();
+    let axis = normal.abs().max_position();
+    let [mut u, mut v] = [(axis + 1) % 3, (axis + 2) % 3];
+    let is_along_axis = normal[u] == 0.0 && normal[v] == 0.0;
+    if normal[axis] < 0.0 {
+        (u, v) = (v, u);
     }
-    let (u, v) = (normal / normal.abs().max_element()).normalize().any_orthonormal_pair();
-    spans.iter().map(|span| DVec2::new(span.dot(u), span.dot(v))).collect()
+    let along_axis: Vec<_> = corners.iter().map(|&corner| DVec2::new(corner[u], corner[v]) * scale).collect();
+    if is_along_axis {
+        return [along_axis.clone(), along_axis];
+    }
+    let (u, v) = (normal / normal[axis].abs()).normalize().any_orthonormal_pair();
+    [spans.iter().map(|span| DVec2::new(span.dot(u), span.dot(v))).collect(), along_axis]
 }
 
 /// The sign of the area of a triangle, exactly.
@@ -89,7 +93,8 @@ fn fan_stays_inside(points: &[DVec2]) -> bool {
 fn triangulated(points: &[DVec2]) -> Option<Vec<[usize; 3]>> {
     let count = points.len();
     // -0 + 0 is 0.
-    let points = Vec::from_iter(points.iter().map(|p| mitigate_underflow(Point2::new(p.x + 0.0, p.y + 0.0))));
+    let mut points =
+        Vec::from_iter(points.iter().map(|p| mitigate_underflow(Point2::new(p.x + 0.0, p.y + 0.0))));
     let (outline, mut triangles) = without_repeated(&points);
     let (mut numbers, mut places) = (HashMap::new(), Vec::new());
     let place = |&corner: &usize| {
@@ -100,30 +105,37 @@ fn triangulated(points: &[DVec2]) -> Option<Vec<[usize; 3]>> {
         })
     };
     let places_of_outline: Vec<usize> = outline.iter().map(place).collect();
-    // The corner where each directed edge begins, and the edges without direction: a bridge is in the outline twice.
-    let (mut starts, mut edges) = (HashMap::new(), Vec::new());
-    for (i, &corner) in outline.iter().enumerate() {
-        let [from, to] = [i, (i + 1) % outline.len()].map(|i| places_of_outline[i]);
-        if !starts.contains_key(&[to, from]) {
-            edges.push([from, to]);
-        }
-        if starts.insert([from, to], corner).is_some() {
-            return None;
-        }
-    }
+    let ends = |i: usize| [i, (i + 1) % outline.len()].map(|i| places_of_outline[i]);
+    // A bridge is in the outline twice.
+    let mut seen = HashSet::new();
+    let edges = (0..outline.len()).map(ends).filter(|&[a, b]| seen.insert([a.min(b), a.max(b)]));
     let mut crosses = false;
     let cut =
-        ConstrainedDelaunayTriangulation::<Point2<f64>>::try_bulk_load_cdt(places, edges.clone(), |_| {
+        ConstrainedDelaunayTriangulation::<Point2<f64>>::try_bulk_load_cdt(places, edges.collect(), |_| {
             crosses = true;
         });
     let cut = cut.ok().filter(|_| !crosses)?;
-    // An edge with a corner on it is in pieces.
-    let is_there = |&edge: &[usize; 2]| {
-        let [from, to] = edge.map(FixedVertexHandle::from_index);
-        cut.exists_constraint(from, to)
-    };
-    if !edges.iter().all(is_there) {
-        return None;
+    // The corner where each directed edge begins. An edge of the outline with corners on it is in pieces: there it gets
+    // corners of its own, which go again in the end.
+    let (mut starts, mut corner_after) = (HashMap::new(), Vec::new());
+    for (i, &corner) in outline.iter().enumerate() {
+        let [mut from, to] = ends(i).map(FixedVertexHandle::from_index);
+        let mut start = corner;
+        while from != to {
+            let next = next_on(&cut, from, to)?;
+            if starts.insert([from.index(), next.index()], start).is_some() {
+                return None;
+            }
+            if next != to {
+                points.push(cut.vertex(next).position());
+                start = points.len() - 1;
+                corner_after.push(start + 1);
+            }
+            from = next;
+        }
+        if start >= count {
+            corner_after[start - count] = outline[(i + 1) % outline.len()];
+        }
     }
     let start = |edge: Edge| starts.get(&[edge.from().index(), edge.to().index()]).copied();
     let begins: Vec<Option<usize>> = cut.directed_edges().map(start).collect();
@@ -144,8 +156,11 @@ fn triangulated(points: &[DVec2]) -> Option<Vec<[usize; 3]>> {
     for face in cut.inner_faces().filter(|face| is_inside[face.index()]) {
         triangles.push(face.adjacent_edges().map(|edge| corners[edge.index()]));
     }
-    if triangles.len() != count - 2 {
+    if triangles.len() != points.len() - 2 {
         return None;
+    }
+    if !corner_after.is_empty() {
+        triangles = without_last(&points, triangles, &corner_after)?;
     }
     for triangle in &mut triangles {
         let least = triangle.iter().zip(0..).min().map_or(0, |(_, i)| i);
@@ -172,6 +187,64 @@ fn without_repeated(points: &[Point2<f64>]) -> (Vec<usize>, Vec<[usize; 3]>) {
         }
     }
     (outline, triangles)
+}
+
+/// The vertex after `from` on the way to `to`, along constraints.
+fn next_on(
+    cut: &ConstrainedDelaunayTriangulation<Point2<f64>>,
+    from: FixedVertexHandle,
+    to: FixedVertexHandle,
+) -> Option<FixedVertexHandle> {
+    if cut.exists_constraint(from, to) {
+        return Some(to);
+    }
+    let [start, end] = [from, to].map(|vertex| at(cut.vertex(vertex).position()));
+    let is_on = |edge: &Edge| {
+        let place = at(edge.to().position());
+        edge.is_constraint_edge() && area(start, end, place) == 0.0 && (place - start).dot(end - start) > 0.0
+    };
+    cut.vertex(from).out_edges().find(is_on).map(|edge| edge.to().fix())
+}
+
+/// The triangles without the last corners, each of which is on a straight line between its neighbours in the outline,
+/// with one triangle less for each. `after` has the next corner of the outline for each of them.
+fn without_last(
+    points: &[Point2<f64>],
+    triangles: Vec<[usize; 3]>,
+    after: &[usize],
+) -> Option<Vec<[usize; 3]>> {
+    // The third corner for each directed edge of a triangle.
+    let mut thirds = HashMap::new();
+    for [a, b, c] in triangles {
+        thirds.extend([([a, b], c), ([b, c], a), ([c, a], b)]);
+    }
+    for (corner, &next) in (points.len() - after.len()..).zip(after) {
+        // The corners around it, without those that are ears.
+        let mut chain = vec![next];
+        let mut last = next;
+        while let Some(third) = thirds.remove(&[corner, last]) {
+            thirds.remove(&[last, third]);
+            thirds.remove(&[third, corner]);
+            while let [.., a, b] = chain[..] {
+                if area(at(points[a]), at(points[b]), at(points[third])) <= 0.0 {
+                    break;
+                }
+                thirds.extend([([a, b], third), ([b, third], a), ([third, a], b)]);
+                chain.pop();
+            }
+            chain.push(third);
+            last = third;
+        }
+        if chain.len() != 2 {
+            return None;
+        }
+    }
+    let is_first = |&([a, b], c): &([usize; 2], usize)| a < b && a < c;
+    Some(thirds.into_iter().filter(is_first).map(|([a, b], c)| [a, b, c]).collect())
+}
+
+fn at(point: Point2<f64>) -> DVec2 {
+    DVec2::new(point.x, point.y)
 }
 
 /// Whether each face is inside the outline. `begins` has a corner for each directed edge of the outline. `None` if the

@@ -45,7 +45,7 @@ export class Graphics {
       element('no-mesh').hidden = false;
     }
     this.gpu = device && !this.scene?.isOnWebGpu ? 'the page could not draw with WebGPU' : gpu;
-    void device?.lost.then(({ message }) => this.#lost(message || 'no reason given'));
+    void device?.lost.then(({ message }) => this.#lost(message.replace(/\.$/, '') || 'no reason given'));
   }
 }
 

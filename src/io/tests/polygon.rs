@@ -313,3 +313,53 @@ fn random_polygons_keep_their_area() {
     }
     assert!((500..5_000).contains(&fans), "{fans}");
 }
+
+/// A square with a chain of square holes. A bridge leads to each, whose sides have corners of their own.
+fn chain_of_holes(random: &mut Rand64) -> Vec<[i32; 2]> {
+    let holes = 1 + below(random, 4) as i32;
+    let end = 8 * holes + 4;
+    let mut some = |from: i32| Vec::from_iter((from + 1..from + 4).filter(|_| random.rand_float() < 0.3));
+    let diagonal = |places: Vec<i32>| places.into_iter().map(|x| [x, x]);
+    let (mut there, mut back) = (vec![[0, 0]], vec![[0, end], [end, end], [end, 0], [0, 0]]);
+    for low in (0..holes).map(|hole| 8 * hole) {
+        let [first, second] = [low + 4, low + 8];
+        there.extend(diagonal(some(low)));
+        there.extend([[first, first], [first, second], [second, second]]);
+        back.extend(diagonal(some(low)));
+        back.extend([[first, first], [second, first], [second, second]]);
+    }
+    // At the end of the chain it turns back.
+    back.pop();
+    there.into_iter().chain(back.into_iter().rev()).collect()
+}
+
+#[test]
+fn the_sides_of_a_bridge_may_have_other_corners() {
+    let mut random = Rand64::new(50);
+    for n in 0..2_000 {
+        let mut outline = chain_of_holes(&mut random);
+        let start = below(&mut random, outline.len());
+        outline.rotate_left(start);
+        let mut axis = || DVec3::from_array([0; 3].map(|_| below(&mut random, 7) as f64 - 3.0));
+        let [u, v, offset] = [axis(), axis(), axis()];
+        if u.cross(v) == DVec3::ZERO {
+            continue;
+        }
+        let points: Vec<DVec3> =
+            outline.iter().map(|&[x, y]| f64::from(x) * u + f64::from(y) * v + offset).collect();
+        let text: String = points.iter().map(|p| format!("v {} {} {}\n", p.x, p.y, p.z)).collect();
+        let face: String = (1..=points.len()).map(|corner| format!(" {corner}")).collect();
+        let loaded = obj(format!("{text}f{face}\n")).unwrap();
+        assert_eq!(loaded.crossing, [0; 0], "{n}\n{text}f{face}");
+        let triangles = loaded.mesh.triangles();
+        assert_eq!(triangles.len(), 3 * (points.len() - 2), "{n}");
+        let normal: DVec3 = points.windows(2).map(|pair| pair[0].cross(pair[1])).sum::<DVec3>()
+            + points[points.len() - 1].cross(points[0]);
+        let areas = triangles.chunks(3).map(|t| {
+            let [a, b, c] = [0, 1, 2].map(|k| points[t[k] as usize]);
+            (b - a).cross(c - a)
+        });
+        assert!(areas.clone().all(|area| area.dot(normal) > 0.0), "{n}: {triangles:?}\n{text}");
+        assert_eq!(areas.sum::<DVec3>(), normal, "{n}");
+    }
+}
