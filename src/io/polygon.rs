@@ -20,11 +20,11 @@ pub(super) enum Cut {
 
 /// Cuts a polygon of at least 3 corners.
 pub(super) fn cut(corners: &[DVec3]) -> Cut {
-    let [along_normal, along_axis] = seen(corners);
-    if fan_stays_inside(&along_normal) {
+    let points = seen(corners, Along::Normal);
+    if fan_stays_inside(&points) {
         return Cut::Fan;
     }
-    let triangles = triangulated(&along_normal).or_else(|| triangulated(&along_axis));
+    let triangles = triangulated(&points).or_else(|| triangulated(&seen(corners, Along::Axis)));
     triangles.map_or(Cut::Crossing, Cut::Others)
 }
 
@@ -36,9 +36,17 @@ pub(super) fn is_far_from_concave([a, b, c, d]: [DVec3; 4]) -> bool {
     product > 0.0 && product * product > 1e-24 * size
 }
 
-/// The corners seen along the normal of the best-fitting plane (Newell's), and along the axis that is closest to it, which
-/// rounds nothing: corners on a line stay there. The area is positive.
-fn seen(corners: &[DVec3]) -> [Vec<DVec2>; 2] {
+/// The direction in which a polygon is seen.
+#[derive(PartialEq)]
+enum Along {
+    /// The normal of the best-fitting plane (Newell's).
+    Normal,
+    /// The axis that is closest to it. This rounds nothing: corners on a line stay there.
+    Axis,
+}
+
+/// The corners seen in a direction, so that the area is positive.
+fn seen(corners: &[DVec3], along: Along) -> Vec<DVec2> {
     let largest = corners.iter().fold(0.0, |largest: f64, corner| largest.max(corner.abs().max_element()));
     // A power of two: nothing overflows, and nothing is rounded.
     let scale = if largest > 0.0 { libm::ldexp(1.0, (-libm::ilogb(largest)).min(1022)) } else { 1.0 };
@@ -52,16 +60,14 @@ fn seen(corners: &[DVec3]) -> [Vec<DVec2>; 2] {
     }
     let axis = normal.abs().max_position();
     let [mut u, mut v] = [(axis + 1) % 3, (axis + 2) % 3];
-    let is_along_axis = normal[u] == 0.0 && normal[v] == 0.0;
-    if normal[axis] < 0.0 {
-        (u, v) = (v, u);
-    }
-    let along_axis: Vec<_> = corners.iter().map(|&corner| DVec2::new(corner[u], corner[v]) * scale).collect();
-    if is_along_axis {
-        return [along_axis.clone(), along_axis];
+    if along == Along::Axis || normal[u] == 0.0 && normal[v] == 0.0 {
+        if normal[axis] < 0.0 {
+            (u, v) = (v, u);
+        }
+        return corners.iter().map(|&corner| DVec2::new(corner[u], corner[v]) * scale).collect();
     }
     let (u, v) = (normal / normal[axis].abs()).normalize().any_orthonormal_pair();
-    [spans.iter().map(|span| DVec2::new(span.dot(u), span.dot(v))).collect(), along_axis]
+    spans.iter().map(|span| DVec2::new(span.dot(u), span.dot(v))).collect()
 }
 
 /// The sign of the area of a triangle, exactly.
