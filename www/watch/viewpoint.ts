@@ -6,7 +6,7 @@ import { Vector3 } from 'three/webgpu';
 export const FROM = new Vector3(1.4, 0.9, 3.1).normalize();
 
 /** The most triangles that are looked at. */
-const MOST = 20_000;
+const MOST = 2_000;
 /** The least share of the area of a height field that faces up. */
 const FACING = 0.98;
 /** The sum of the normals of a closed surface is 0. That of a height field is at least this share of its area. */
@@ -27,25 +27,28 @@ export function viewpointOf(positions: Float32Array, indices: Uint32Array): Vect
 /** The direction to which almost all triangles face, or the opposite one if that is nearer to the camera. */
 function upOf(positions: Float32Array, indices: Uint32Array): Vector3 | undefined {
   const normals = normalsOf(positions, indices);
-  const sum = normals.reduce((total, normal) => total.add(normal), new Vector3());
-  const area = normals.reduce((total, normal) => total + normal.length(), 0);
+  const sum = new Vector3();
+  let [area, facing] = [0, 0];
+  for (const normal of normals) {
+    sum.add(normal);
+    area += normal.length();
+  }
   if (!(sum.length() > OPEN * area)) return undefined;
   const up = sum.normalize();
-  const facing = normals.reduce((total, normal) => total + (normal.dot(up) > 0 ? normal.length() : 0), 0);
+  for (const normal of normals) if (normal.dot(up) > 0) facing += normal.length();
   if (facing < FACING * area) return undefined;
   return up.dot(FROM) < 0 ? up.negate() : up;
 }
 
 /** The normals of triangles that are spread over the mesh, as long as twice their areas. */
 function normalsOf(positions: Float32Array, indices: Uint32Array): Vector3[] {
-  const count = indices.length / 3;
-  const step = Math.max(1, Math.floor(count / MOST));
+  const step = 3 * Math.max(1, Math.floor(indices.length / 3 / MOST));
   const normals: Vector3[] = [];
-  const corner = (h: number) => new Vector3().fromArray(positions, 3 * indices[h]!);
-  for (let t = 0; t < count; t += step) {
-    const [a, b, c] = [corner(3 * t), corner(3 * t + 1), corner(3 * t + 2)];
+  const [a, b, c] = [new Vector3(), new Vector3(), new Vector3()];
+  for (let h = 0; h < indices.length; h += step) {
+    [a, b, c].forEach((corner, k) => corner.fromArray(positions, 3 * indices[h + k]!));
     const normal = b.sub(a).cross(c.sub(a));
-    if (Number.isFinite(normal.x + normal.y + normal.z)) normals.push(normal);
+    if (Number.isFinite(normal.x + normal.y + normal.z)) normals.push(normal.clone());
   }
   return normals;
 }
