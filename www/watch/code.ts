@@ -47,7 +47,9 @@ function linesOfReading(opened: Opened): string[] {
   const ofPage = isScrambled || !origin?.startsWith(BROUGHT) ? undefined : new URL(origin, document.baseURI).href;
   const name = isScrambled ? `${stem.replaceAll(' ', '-')}-after-0${extension}` : opened.name;
   const beside = isScrambled ? [] : [...(kept?.beside.keys() ?? [])];
-  const files = beside.map((other) => `${quoted(other)}: await load(${quoted(encodeURI(other))})`);
+  const files = beside.map(
+    (other) => `${quoted(other)}: await load(${quoted(other.split('/').map(encodeURIComponent).join('/'))})`,
+  );
   return [
     'const load = async (url) => new Uint8Array(await (await fetch(url)).arrayBuffer());',
     ...(isScrambled
