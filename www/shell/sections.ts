@@ -18,5 +18,7 @@ export function markSections(): void {
   };
   const soon = () => (frame ||= requestAnimationFrame(mark));
   addEventListener('scroll', soon, { passive: true });
+  // Another view may be as high as the last one.
+  addEventListener('hashchange', soon);
   new ResizeObserver(soon).observe(document.body);
 }
