@@ -2,6 +2,8 @@
 
 import assert from 'node:assert/strict';
 import { before, test } from 'node:test';
+import { gzipSync } from 'node:zlib';
+import { generate, writeMesh } from 'edgeflip/files';
 import { startChromium } from '../browsers.mjs';
 import { full } from '../full.mjs';
 import { expected, file, loseDevice, meshFile, openEdgeflip, pageForBeta, sharedPage } from './page.mjs';
@@ -87,7 +89,7 @@ test('the error of a broken file names the line, and the previous mesh stays', a
     ['broken.off', 'OFF\n3 1 0\n0 0 0\n1 0 0\n0 one 0\n3 0 1 2\n', /^\s*broken\.off: line 5: /],
     ['broken.obj', 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n', /^\s*broken\.obj: line 4: /],
     ['mesh.ply', 'ply\n', /^\s*mesh\.ply: line 1: .* end_header/],
-    ['mesh.txt', 'OFF\n', /use one of: \.off/],
+    ['mesh.txt', 'a text\n', /use one of: \.off/],
     ['empty.off', 'OFF\n3 0 0\n0 0 0\n1 0 0\n0 1 0\n', /There are no triangles in empty\.off/],
   ]) {
     const seen = await openRefused(page, file(name, text));
@@ -97,6 +99,42 @@ test('the error of a broken file names the line, and the previous mesh stays', a
     assert.equal((await page.look()).error, '');
   }
   await playAndCompare(page, small);
+  await page.close();
+});
+
+test('a file whose name says another kind than it is: the message says what it seems to be, and what to do', async () => {
+  const page = await sharedPage();
+  const mesh = await generate('roof 4');
+  const [glb, ply, stl, obj, off] = await Promise.all(
+    ['a.glb', 'a.ply', 'a.stl', 'a.obj', 'a.off'].map((name) => writeMesh(mesh, name)),
+  );
+  const zeros = new Uint8Array(200);
+  for (const [name, bytes, message] of [
+    ['a.off', glb, /^\s*a\.off seems to be a glTF file\. Rename it to a\.glb, and open it again\./],
+    ['b.obj', ply, /^\s*b\.obj seems to be a PLY file\. Rename it to b\.ply/],
+    ['c.ply', stl, /^\s*c\.ply seems to be an STL file\. Rename it to c\.stl/],
+    ['d.stl', obj, /^\s*d\.stl seems to be an OBJ file\. Rename it to d\.obj/],
+    ['e.txt', off, /^\s*e\.txt seems to be an OFF file\. Rename it to e\.off/],
+    ['f.off.gz', gzipSync(ply), /^\s*f\.off\.gz seems to be a PLY file\. Rename it to f\.ply\.gz/],
+    [
+      'g.obj',
+      Uint8Array.of(0x89, 0x50, 0x4e, 0x47, 13, 10, 26, 10),
+      /^\s*g\.obj seems to be a PNG image, and no mesh\./,
+    ],
+    [
+      'h.glb',
+      '<!doctype html><title>Not found</title>',
+      /^\s*h\.glb seems to be a web page, and no mesh\. Open .*\.off/,
+    ],
+    ['i.ply', zeros, /^\s*i\.ply seems to be a binary file, and no mesh\./],
+    // Of its kind, but broken.
+    ['j.stl', stl.subarray(0, 300), /^\s*j\.stl: byte /],
+  ]) {
+    const { error } = await openRefused(page, file(name, bytes));
+    assert.match(error, message);
+    assert.doesNotMatch(error, /\\x/);
+    await page.page.click('#dismiss');
+  }
   await page.close();
 });
 

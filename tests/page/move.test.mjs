@@ -74,6 +74,30 @@ for (const [backend, engine] of Object.entries(ENGINES)) {
   });
 }
 
+/** Runs in the page: the frames of a mesh that moves flip no edges, so that a pause has something to flip. */
+function withoutFlips() {
+  const { postMessage } = Worker.prototype;
+  const halt = (part) => {
+    if (part === null || typeof part !== 'object' || ArrayBuffer.isView(part)) return;
+    if (part.positions && 'iterations' in part) part.iterations = 0;
+    else Object.values(part).forEach(halt);
+  };
+  Worker.prototype.postMessage = function (message, ...more) {
+    halt(message);
+    return postMessage.call(this, message, ...more);
+  };
+}
+
+test('a pause flips what the frames have left', async () => {
+  const page = await openEdgeflip(await startChromium(), withoutFlips);
+  await show(page, 'sheet', 'cpu');
+  await page.until('edges that are left', ({ facts }) => Number(facts['Left for the next frame']) > 0);
+  const seen = await pauseAll(page);
+  assert.equal(seen.facts['Left for the next frame'], '0');
+  assert.equal((await left(await page.download(), 'sheet')).flips, 0);
+  await page.close();
+});
+
 for (const backend of full ? Object.keys(ENGINES) : ['webgpu']) {
   test(`a point is dragged on ${backend}, and the mesh stays Delaunay`, async () => {
     const page = await sharedPage();

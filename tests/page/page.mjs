@@ -231,7 +231,9 @@ export class EdgeflipPage {
         choice.value = (choice.querySelector('[selected]') ?? choice.options[0]).value;
       }
       document.activeElement.blur();
-      document.dispatchEvent(new KeyboardEvent('keydown', { key: 'Escape', bubbles: true }));
+      // A message, the inspector, and what lies under it.
+      for (let i = 0; i < 3; i++)
+        document.dispatchEvent(new KeyboardEvent('keydown', { key: 'Escape', bubbles: true }));
       scrollTo({ top: 0, behavior: 'instant' });
       // The address has to change, also if the same link was followed before.
       history.replaceState(null, '', '#watch');

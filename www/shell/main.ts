@@ -3,6 +3,7 @@
 import type { NamedMesh } from '../engines/index.ts';
 import type { Hero } from '../hero/hero.ts';
 import { number } from './numbers.ts';
+import { markSections } from './sections.ts';
 import { stillness } from './stillness.ts';
 import { onTheme, toggleTheme } from './theme.ts';
 
@@ -39,9 +40,6 @@ let openMesh = (): NamedMesh | undefined => undefined;
 
 /** Shows the first view or the tool, if the address names one of them. A link to a section only scrolls. */
 function follow(): void {
-  for (const link of document.querySelectorAll('.top nav a')) {
-    link.toggleAttribute('aria-current', link.getAttribute('href') === location.hash.replace(/\?.*/, ''));
-  }
   const { view } = document.body.dataset;
   // A link to the tool may say more after a question mark.
   const next = { '#first': 'first', '#watch': 'watch' }[location.hash.replace(/\?.*/, '')] ?? view;
@@ -112,4 +110,5 @@ addEventListener('resize', () => {
 });
 
 follow();
+markSections();
 if (document.body.dataset.view === 'first') void show();

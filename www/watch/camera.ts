@@ -1,6 +1,7 @@
 /** The camera: it orbits a surface, and pans over the plane. The mesh fits into the part of the picture that is free. */
 
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
+import { FROM } from './viewpoint.ts';
 import {
   MOUSE,
   OrthographicCamera,
@@ -27,7 +28,6 @@ const FIELD = 35;
 const TANGENT = Math.tan((FIELD * Math.PI) / 360);
 /** Room around the mesh. */
 const ROOM = 1.05;
-const FROM = new Vector3(1.4, 0.9, 3.1).normalize();
 
 export class Camera {
   readonly #canvas: HTMLCanvasElement;
@@ -77,6 +77,13 @@ export class Camera {
     controls.addEventListener('start', () => (this.#isFitted = false));
     controls.addEventListener('change', this.#changed);
     this.#controls = controls;
+    this.fit();
+  }
+
+  /** Looks at the whole mesh from another direction. */
+  lookFrom(direction: Vector3): void {
+    if (!this.#controls || this.#isFlat) return;
+    this.three.position.copy(this.#controls.target).add(direction);
     this.fit();
   }
 

@@ -3,6 +3,9 @@
 import { controls, element } from './controls.ts';
 import type { Scene } from './scene.ts';
 
+/** Half of the grip, in pixels. The line ends so far from the sides, so that the whole grip is on the page. */
+const HALF = 22;
+
 export class Comparison {
   readonly #scene: () => Scene | undefined;
   /** The input of the open mesh. */
@@ -11,6 +14,7 @@ export class Comparison {
   constructor(scene: () => Scene | undefined) {
     this.#scene = scene;
     controls.cut.addEventListener('input', () => this.#cut());
+    new ResizeObserver(() => this.isShown && this.#cut()).observe(element('halves'));
   }
 
   get isShown(): boolean {
@@ -28,7 +32,7 @@ export class Comparison {
     if (isShown && this.#input && scene) {
       scene.compareWith(this.#input);
       // Through the middle of the mesh, which is not that of the picture.
-      controls.cut.valueAsNumber = (1000 * scene.camera.middle[0]) / scene.canvas.clientWidth;
+      controls.cut.valueAsNumber = (1000 * (scene.camera.middle[0] - HALF)) / (scene.canvas.clientWidth - 2 * HALF);
     }
     element('halves').hidden = !isShown;
     controls.compare.ariaPressed = `${isShown}`;
@@ -37,9 +41,11 @@ export class Comparison {
   }
 
   #cut(): void {
-    const share = controls.cut.valueAsNumber / 1000;
-    element('halves').style.setProperty('--cut', `${100 * share}%`);
     const scene = this.#scene();
-    if (scene) scene.cut = share;
+    if (!scene) return;
+    const { clientWidth: width } = scene.canvas;
+    const x = HALF + (controls.cut.valueAsNumber / 1000) * (width - 2 * HALF);
+    element('halves').style.setProperty('--cut', `${x}px`);
+    scene.cut = x / width;
   }
 }

@@ -1,5 +1,8 @@
 /** The elements of the page that the code uses. */
 
+/** A screen on which the parts of the tool are below each other, as in the style sheets. */
+export const NARROW = '(max-width: 860px)';
+
 export function element<T extends HTMLElement = HTMLElement>(id: string): T {
   const found = document.getElementById(id);
   if (!found) throw new Error(`the page has no #${id}`);

@@ -17,6 +17,7 @@ import { stillness } from '../shell/stillness.ts';
 import { showTransport, type RunStatus } from './transport.ts';
 import { flipsBetween } from './flip-animation.ts';
 import { unitPositions } from './unit.ts';
+import { viewpointOf } from './viewpoint.ts';
 
 /** The most triangles of a mesh that is first shown with its edges. */
 const EDGES_SEEN = 50_000;
@@ -72,8 +73,12 @@ export class Display {
     const { scene } = this.#graphics;
     this.#last = undefined;
     this.inspection.close();
-    scene?.setMesh(unitPositions(mesh), mesh.dimension);
-    if (isOther || !scene?.camera.isLooking) scene?.lookAtAll();
+    const positions = unitPositions(mesh);
+    scene?.setMesh(positions, mesh.dimension);
+    if (isOther || !scene?.camera.isLooking) {
+      scene?.lookAtAll();
+      scene?.camera.lookFrom(viewpointOf(positions, mesh.indices));
+    }
     if (isOther) this.look = mesh.indices.length <= 3 * EDGES_SEEN ? 'coloured' : 'none';
     this.comparison.begin(mesh.indices);
     this.edgeDrawing.begin(mesh);

@@ -1,6 +1,6 @@
 /** The gallery: a picture and a word for each sample. */
 
-import { element } from './controls.ts';
+import { element, NARROW } from './controls.ts';
 import { made } from '../shell/elements.ts';
 import { BROUGHT, FIRST, MOVING, SAMPLES } from '../models/samples.js';
 
@@ -18,15 +18,17 @@ export function makeGallery(open: (spec: string) => void): void {
     button.dataset['spec'] = sample.spec;
     button.addEventListener('click', ({ detail }) => {
       open(sample.spec);
-      element('choose').ariaExpanded = 'false';
+      gallery.hidePopover();
       // After a click with the pointer, the keys are for the run.
       if (detail > 0) button.blur();
     });
     gallery.append(button);
   }
   markSample(FIRST);
-  const choose = element('choose');
-  choose.addEventListener('click', () => (choose.ariaExpanded = `${choose.ariaExpanded !== 'true'}`));
+  // On a narrow screen, it is a sheet behind the name.
+  const close = () => gallery.hidePopover();
+  matchMedia(NARROW).addEventListener('change', close);
+  element('file').addEventListener('change', close);
 }
 
 /** Marks the sample of this name; none for a file. */

@@ -1,6 +1,6 @@
 /** The page's GPU device and the scene that is drawn on it. */
 
-import { element } from './controls.ts';
+import { element, NARROW } from './controls.ts';
 import { openGpu, type Gpu } from './engines.ts';
 import type { Insets } from './camera.ts';
 import { palette } from './palette.ts';
@@ -53,9 +53,8 @@ export class Graphics {
 function coveredBy(): Insets {
   const box = (id: string) => element(id).getBoundingClientRect();
   const [stage, status] = [box('stage'), box('status')];
-  const isWide = status.top < stage.bottom;
   const title = box('about').bottom - stage.top + 12;
-  if (!isWide) {
+  if (matchMedia(NARROW).matches) {
     const top = box('choose').bottom - stage.top + 8;
     return { left: 16, right: 16, top, bottom: 16, title: top };
   }

@@ -3,7 +3,7 @@
 import { EDGE_STATES, type EdgeState } from 'edgeflip';
 import type { IndexedMesh } from 'edgeflip/files';
 import { select } from 'd3-selection';
-import { element } from './controls.ts';
+import { element, NARROW } from './controls.ts';
 import { drawThread, hideEdge, showEdge, type Limits } from './inspector.ts';
 import { next, nextIn, quadAt, type Quad } from './quad.ts';
 import { COLOURED } from './run.ts';
@@ -35,10 +35,13 @@ export class Inspection {
     const view = element('view');
     let pressed: PointerEvent | undefined;
     view.addEventListener('pointerdown', (event) => (pressed = event));
+    const narrow = matchMedia(NARROW);
     view.addEventListener('pointermove', (event) => {
-      // Searching a large mesh at each move would be slow.
+      // Searching a large mesh at each move would be slow. On a narrow screen the mesh gives way to the inspector, and
+      // would move under the pointer.
       if (
         event.buttons === 0 &&
+        !narrow.matches &&
         !this.#isHeld &&
         !this.isPaused() &&
         this.#shown &&
@@ -57,6 +60,14 @@ export class Inspection {
       this.#isHeld = this.#lookAt(event);
     });
     view.addEventListener('pointerleave', () => this.#isHeld || this.close());
+    element('inspect').addEventListener('click', ({ target }) => {
+      if (target instanceof Element && target.closest('.close')) this.close();
+    });
+  }
+
+  /** Whether the edge stays until it is closed. */
+  get isHeld(): boolean {
+    return this.#isHeld;
   }
 
   /** Takes the triangles of another state. An edge that is held stays, if the mesh still has it. */

@@ -21,7 +21,7 @@ export function showEdge(quad: Quad, mesh: IndexedMesh, limits: Limits, turn: nu
   const name = state ? LOOKS[state].word : sum > 180 ? 'Not Delaunay' : 'Delaunay';
   const colour = state ? LOOKS[state].colour : 'edge';
   const parts: Node[] = [
-    made('header', '', swatch(state ?? 'delaunay'), name, made('small', '', `edge ${a}–${b}`)),
+    made('header', '', swatch(state ?? 'delaunay'), name, made('small', '', `edge ${a}–${b}`), closer()),
     lens(quad, mesh, colour, turn),
   ];
   const numbers = made('div', 'sum');
@@ -35,6 +35,14 @@ export function showEdge(quad: Quad, mesh: IndexedMesh, limits: Limits, turn: nu
   box.replaceChildren(...parts);
   box.dataset['edge'] = `${a} ${b}`;
   box.hidden = false;
+}
+
+/** The button that closes the card; where the inspector is a part of the side, there is none. */
+function closer(): HTMLButtonElement {
+  const button = made('button', 'icon close', '✕');
+  button.type = 'button';
+  button.ariaLabel = 'Close';
+  return button;
 }
 
 export function hideEdge(): void {

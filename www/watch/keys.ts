@@ -26,12 +26,13 @@ export function listen(keys: readonly Key[]): void {
   document.addEventListener('keydown', (event) => {
     if (document.body.dataset['view'] !== 'watch' || event.ctrlKey || event.metaKey || event.altKey) return;
     if (list.open) return;
+    // The browser closes the sheet, and only the sheet.
+    if (event.key === 'Escape' && document.querySelector(':popover-open')) return;
     const name = event.key.length === 1 ? event.key.toLowerCase() : event.key;
     const key = keys.find(({ keys }) => keys.includes(name));
     if (!key) return;
     if (event.target instanceof Element && event.target.closest(key.keptBy ?? TEXT)) return;
-    // The browser closes sheets on Escape too.
-    if (name !== 'Escape') event.preventDefault();
+    event.preventDefault();
     key.act(event.shiftKey ? `Shift ${name}` : name);
   });
 }

@@ -16,6 +16,7 @@ import { made } from '../shell/elements.ts';
 import type { EdgeLook } from './display.ts';
 import { makeGallery } from './gallery.ts';
 import { listen } from './keys.ts';
+import { tell } from './notice.ts';
 import { placeIn, type Place } from './link.ts';
 import { Page } from './page.ts';
 import { MovingSamples } from '../move/moving-samples.ts';
@@ -50,16 +51,15 @@ export function start(): () => NamedMesh | undefined {
   });
   connectRun(page, movingSamples);
   connectLimits(page);
-  const say = (words: string) => (element('away-says').textContent = words);
   const ofRun = takingFrom(page);
   const taking = () => (movingSamples.isShown ? movingSamples : ofRun);
-  connectTakeAway(taking, say);
+  connectTakeAway(taking);
   connectDrop(open);
   connectKeys(
     page,
     openSample,
     () => void taking().picture(),
-    () => void taking().link().then(say),
+    () => void tell(taking().link()),
   );
   void begin(page, movingSamples);
   return () => {
@@ -147,7 +147,7 @@ function takingFrom(page: Page): Taking {
   };
 }
 
-function connectTakeAway(taking: () => Taking, say: (words: string) => void): void {
+function connectTakeAway(taking: () => Taking): void {
   const own = made('button', '', 'Same format');
   own.id = 'download';
   own.addEventListener('click', () => void taking().save());
@@ -158,9 +158,9 @@ function connectTakeAway(taking: () => Taking, say: (words: string) => void): vo
   });
   element('formats').append(own, ...others);
   controls.picture.addEventListener('click', () => void taking().picture());
-  element('link').addEventListener('click', () => void taking().link().then(say));
-  element('code').addEventListener('click', () => void taking().code().then(say));
-  element('away').addEventListener('toggle', () => say(''));
+  element('link').addEventListener('click', () => void tell(taking().link()));
+  element('code').addEventListener('click', () => void tell(taking().code()));
+  element('away').addEventListener('toggle', () => (element('away-says').textContent = ''));
 }
 
 function connectDrop(open: (source: Source | undefined) => void): void {
@@ -247,6 +247,6 @@ function connectKeys(
     { keys: ['g'], label: 'G', says: 'the engines', act: () => (location.hash = '#engines') },
     { keys: ['t'], label: 'T', says: 'light or dark', act: toggleTheme },
     { keys: ['?'], label: '?', says: 'these keys', act: () => keys.showModal() },
-    { keys: ['Escape'], label: 'Esc', says: 'close what is open', act: () => page.closeAll() },
+    { keys: ['Escape'], label: 'Esc', says: 'close what is open', act: () => page.closeTopmost() },
   ]);
 }

@@ -66,6 +66,8 @@ export class Measuring {
       if (host.status().summary?.iterations !== run.iterations.length) {
         const summary = await run.result();
         if (run === host.shown()?.run) host.setSummary(summary);
+        // The engine learns only from another call that no edge can flip.
+        if (run.isNewest && !run.hasEnded && !summary.remaining.stopped && !isOutdated()) await run.forward();
       }
       if (isOutdated()) return;
       const indices = await run.triangles();

@@ -6,7 +6,6 @@ import {
   angles,
   change,
   constrain,
-  EdgeflipError,
   generate,
   measures,
   readMesh,
@@ -20,6 +19,7 @@ import { naming } from './crash.ts';
 import { changeOf, type Change } from './change.ts';
 import { scrambled } from '../models/scramble.js';
 import { featuresOf } from './features.ts';
+import { errorOf } from './kinds.ts';
 import { contentOfKept, keep, type Kept, readWith, type Located, type Report } from './files.ts';
 import { sessionOf, statesOf, summaryOf, type OpenMesh, type Step, type Summary } from './run.ts';
 
@@ -52,12 +52,12 @@ class MeshWorker {
   /** `beside` has files that `main` may name. */
   async read(main: Located, beside: Located[], report: Report): Promise<{ mesh: FileMesh; kept: Kept }> {
     const { name } = main.file;
-    const reading = readWith(main, beside, report, (bytes, files) => readMesh(bytes, name, { files }));
-    const named = reading.catch((error: unknown) => {
-      const isOfFile = error instanceof EdgeflipError && error.code === 'parse';
-      throw isOfFile ? new EdgeflipError('parse', `${name}: ${error.message}`) : error;
-    });
-    const { result: mesh, content } = await naming(named);
+    const reading = readWith(main, beside, report, (bytes, files) =>
+      readMesh(bytes, name, { files }).catch(async (error: unknown) => {
+        throw await errorOf(error, name, bytes);
+      }),
+    );
+    const { result: mesh, content } = await naming(reading);
     return transfer({ mesh, kept: keep(name, content) }, buffersOf(mesh));
   }
 

@@ -19,6 +19,9 @@ export interface Opened {
   what: string | undefined;
   /** The sample that it is, as it was given. */
   spec: string | undefined;
+  /** The sample that it was before the page changed its triangles, and whether the page has scrambled them. */
+  origin: string | undefined;
+  isScrambled: boolean;
   /** The worker that measures it. */
   client: WorkerClient;
   /** The ends of the edges that the user has drawn. */
@@ -77,6 +80,8 @@ export class Opening {
       title,
       what: source.what,
       spec: source.spec,
+      origin: source.origin ?? source.spec,
+      isScrambled: source.isScrambled ?? false,
       client,
       drawn: source.drawn ?? [],
       kept,
@@ -87,11 +92,13 @@ export class Opening {
   }
 }
 
-/** The mesh with other triangles, and with an edge that the user has drawn. */
+/** The mesh with other triangles: with an edge that the user has drawn, or scrambled. */
 export function again(opened: Opened, beta: number, mesh: IndexedMesh, ends: readonly number[] = []): Source {
-  const { name, title, what, kept, drawn } = opened;
+  const { name, title, what, kept, drawn, origin } = opened;
   const read = async () => ({ name, mesh, kept, others: 0 });
-  return { name, title, ...(what ? { what } : {}), beta, drawn: [...drawn, ...ends], read };
+  const isScrambled = opened.isScrambled || ends.length === 0;
+  const known = { ...(what ? { what } : {}), ...(origin ? { origin } : {}) };
+  return { name, title, ...known, isScrambled, beta, drawn: [...drawn, ...ends], read };
 }
 
 function remarkOn({ mesh, others }: Read): string {

@@ -4,6 +4,7 @@ import { EdgeflipError } from 'edgeflip';
 import { Choices, type Settings } from './choices.ts';
 import { LOST } from './crash.ts';
 import type { Flips } from './mesh-worker.ts';
+import { element } from './controls.ts';
 import { Display, type EdgeLook } from './display.ts';
 import { startWorker, type Gpu } from './engines.ts';
 import { markSample } from './gallery.ts';
@@ -173,6 +174,15 @@ export class Page {
 
   inspectNext(by: 1 | -1): void {
     this.#display.inspection.next(by);
+  }
+
+  /** Closes what lies on top: a message, the inspector, before and now, or the drawing of edges. */
+  closeTopmost(): void {
+    const { inspection, comparison, edgeDrawing } = this.#display;
+    if (!element('error').hidden) element('error').hidden = true;
+    else if (comparison.isShown && !inspection.isHeld) comparison.show(false);
+    else if (edgeDrawing.isOn && !inspection.isHeld) edgeDrawing.show(false);
+    else inspection.close();
   }
 
   /** Closes the inspector, shows one mesh only, and draws no edges. */

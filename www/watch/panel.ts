@@ -22,6 +22,12 @@ export class Panel {
   /** `seek` is called with the iteration whose row the user clicks. */
   constructor(seek: (at: number) => void) {
     this.#seek = seek;
+    const details = element<HTMLDetailsElement>('details');
+    details.addEventListener('toggle', () => {
+      // They open below what fits beside the mesh.
+      const side = details.parentElement;
+      if (side && details.open) side.scrollTop = details.offsetTop - side.offsetTop;
+    });
   }
 
   setPalette(palette: Palette): void {

@@ -21,6 +21,9 @@ export interface Source {
   readonly what?: string;
   /** The sample. */
   readonly spec?: string;
+  /** The sample that it was before the page changed its triangles, and whether the page has scrambled them. */
+  readonly origin?: string;
+  readonly isScrambled?: boolean;
   /** The ends of the edges that the user has drawn. */
   readonly drawn?: readonly number[];
   read(client: WorkerClient, report: Report): Promise<Read>;
