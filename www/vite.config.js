@@ -13,22 +13,28 @@ const at = (path) => fileURLToPath(new URL(path, import.meta.url));
 /** The address under which the style sheet asks for the font while the server of `npm start` runs. */
 const withFont = (html) => html.replace('../target/fonts/inter.woff2', `/@fs${font}`);
 
-// Inter with the characters and the weights of the page.
-const font = at('../target/fonts/inter.woff2');
-if (!existsSync(font)) {
-  const whole = readFileSync(createRequire(import.meta.url).resolve('inter-ui/variable/InterVariable.woff2'));
-  const latin = Array.from({ length: 0x7f - 0x20 }, (_, i) => String.fromCharCode(0x20 + i)).join('');
-  const variationAxes = { wght: { min: 400, max: 650 }, opsz: { min: 14, max: 32 } };
-  const subset = await subsetFont(whole, `${latin} °²×–—‘’“”…→←↑↓αβγλτπ·≤≥✕`, { targetFormat: 'woff2', variationAxes });
-  mkdirSync(at('../target/fonts'), { recursive: true });
-  writeFileSync(font, subset);
-}
-
 const hashOf = (...paths) => {
   const hash = createHash('sha256');
   for (const path of paths) hash.update(readFileSync(path));
   return hash.digest('hex');
 };
+
+// Inter with the characters and the weights of the page.
+const [font, fontMark] = [at('../target/fonts/inter.woff2'), at('../target/fonts/inter.stamp')];
+const fontStamp = hashOf(at('vite.config.js'), at('../package-lock.json'));
+if (!existsSync(font) || !existsSync(fontMark) || readFileSync(fontMark, 'utf8') !== fontStamp) {
+  const whole = readFileSync(createRequire(import.meta.url).resolve('inter-ui/variable/InterVariable.woff2'));
+  const latin = Array.from({ length: 0x7f - 0x20 }, (_, i) => String.fromCharCode(0x20 + i)).join('');
+  const subset = await subsetFont(whole, `${latin} °²×–—‘’“”…→←↑↓αβγλτπ·≤≥✕`, {
+    targetFormat: 'woff2',
+    variationAxes: { wght: { min: 400, max: 650 }, opsz: { min: 14, max: 32 } },
+    // Kerning, digits of one width, and what browsers turn on by themselves; not the other shapes of letters.
+    keepFeatures: ['kern', 'tnum', 'calt', 'ccmp', 'locl', 'mark', 'mkmk', 'liga'],
+  });
+  mkdirSync(at('../target/fonts'), { recursive: true });
+  writeFileSync(font, subset);
+  writeFileSync(fontMark, fontStamp);
+}
 
 // They take seconds, so they are made again only after a change of what makes them.
 const sources = ['models.js', 'samples.js', 'scramble.js', 'wireframe.js'].map((name) => at(`models/${name}`));
@@ -112,5 +118,7 @@ export default defineConfig({
     cssTarget: ['chrome123', 'firefox120', 'safari17.5'],
     assetsInlineLimit: 0,
     chunkSizeWarningLimit: 1500,
+    // All browsers with `light-dark()` have it.
+    modulePreload: { polyfill: false },
   },
 });

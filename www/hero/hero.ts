@@ -1,6 +1,6 @@
 /** The first view: a mesh that moves. The engine keeps it Delaunay in every frame, and edges flash as they flip. */
 
-import { FlipSession } from 'edgeflip';
+import { FlipSession, init } from 'edgeflip';
 import { Flashes } from './flashes.ts';
 import { Motion } from './motion.ts';
 import { Painter } from './paint.ts';
@@ -33,13 +33,17 @@ export class Hero {
   #finest = 1;
   /** Pixels of the canvas in a CSS pixel. */
   #scale = 1;
+  /** The size of the picture, in pixels of the canvas. */
+  #size: readonly [number, number] = [0, 0];
   #updates = 0;
   #flips = 0;
   /** The number of the last start. A loop of an earlier one ends. */
   #starts = 0;
 
-  /** `told` is called after each frame. */
+  /** `told` is called after each picture. */
   constructor(canvas: HTMLCanvasElement, told: (frame: Frame) => void) {
+    // The engine loads while the points are scattered. The session loads it again and reports the error.
+    init().catch(() => {});
     this.#canvas = canvas;
     this.#told = told;
     this.#painter = new Painter(canvas);
@@ -71,14 +75,12 @@ export class Hero {
     );
     this.#updates = (await session.counters()).updates;
     this.#scale = Math.min(2, devicePixelRatio);
-    Object.assign(this.#canvas, { width: this.#scale * width, height: this.#scale * height });
-    if (moves) {
-      await this.#frame(session, this.#motion, 1 / 60);
-      void this.#loop(start);
-    } else {
-      for (let time = 0; time < STILL; time += 1 / 30) await this.#frame(session, this.#motion, 1 / 30);
-    }
+    this.#size = [Math.floor(this.#scale * width), Math.floor(this.#scale * height)];
+    const [step, until] = moves ? [1 / 60, 0] : [1 / 30, STILL];
+    for (let time = 0; time <= until; time += step) await this.#frame(session, this.#motion, step);
+    if (start !== this.#starts) return;
     this.#paint();
+    if (moves) void this.#loop(start);
   }
 
   /** Ends the motion. The picture stays. */
@@ -97,6 +99,8 @@ export class Hero {
     while (this.#session && this.#motion) {
       const now = await new Promise(requestAnimationFrame);
       if (start !== this.#starts) return;
+      // On a slow GPU, pictures would queue up, and hold up everything else that uses it.
+      if (!this.#painter.isDone) continue;
       await this.#frame(this.#session, this.#motion, Math.min(LONGEST, Math.max(0.008, (now - last) / 1000)));
       last = now;
       this.#paint();
@@ -113,14 +117,19 @@ export class Hero {
     this.#indices = now as Uint32Array<ArrayBuffer>;
     const changed = changes.reduce((count, update) => count + Number(update === this.#updates), 0);
     this.#flips += 0.08 * (changed / 2 - this.#flips);
-    this.#told({ triangles: now.length / 3, flips: Math.round(this.#flips) });
   }
 
   #paint(): void {
     if (!this.#motion) return;
     const { positions, heights } = this.#motion;
     const [indices, flashes, finest] = [this.#indices, this.#flashes, this.#finest];
+    // A canvas is black when its size has been set, and until then it keeps the picture before.
+    const [width, height] = this.#size;
+    if (this.#canvas.width !== width || this.#canvas.height !== height) Object.assign(this.#canvas, { width, height });
     this.#painter.paint({ positions, heights, indices, flashes, finest }, this.#scale);
+    // The style sheet hides an empty canvas.
+    this.#canvas.dataset['painted'] = '';
+    this.#told({ triangles: indices.length / 3, flips: Math.round(this.#flips) });
   }
 }
 

@@ -78,6 +78,8 @@ export class Painter {
   #buffers: BufferInfo | undefined;
   #arrays = arraysFor(0);
   #ink = presentInk();
+  /** Tells when the GPU has done the last picture. */
+  #fence: WebGLSync | null = null;
 
   constructor(canvas: HTMLCanvasElement) {
     const gl = canvas.getContext('webgl2', { alpha: false, antialias: false, powerPreference: 'low-power' });
@@ -105,13 +107,20 @@ export class Painter {
       glow: this.#ink.isDark ? 0.5 : 0.3,
     });
     drawBufferInfo(this.#gl, buffers, this.#gl.TRIANGLES, 3, 0, picture.indices.length / 3);
+    this.#gl.deleteSync(this.#fence);
+    this.#fence = this.#gl.fenceSync(this.#gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+  }
+
+  /** Whether the GPU has done the last picture. */
+  get isDone(): boolean {
+    return !this.#fence || this.#gl.getSyncParameter(this.#fence, this.#gl.SYNC_STATUS) === this.#gl.SIGNALED;
   }
 
   /** One entry for each triangle in each array. */
   #fill({ positions, heights, indices, flashes, finest }: Picture, isDark: boolean): void {
     const count = indices.length / 3;
+    if (this.#arrays.light.length !== count) this.#allocate(count);
     const arrays = this.#arrays;
-    if (arrays.light.length !== count) this.#allocate(count);
     const strengths = isDark ? [0.4, 0.3, 0.2] : [0.62, 0.5, 0.36];
     for (let t = 0; t < count; t++) {
       const corners = [indices[3 * t]!, indices[3 * t + 1]!, indices[3 * t + 2]!] as const;

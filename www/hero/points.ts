@@ -20,6 +20,8 @@ const RIM = 60;
 const PATIENCE = 1500;
 /** The part of the wanted distance that is kept free around each point. */
 const FREE = 0.78;
+/** The size of the cells of the table of spacings, in pixels. */
+const STEP = 8;
 
 /** Numbers from 0 to 1 that are the same in every visit. */
 function generator(seed: number): () => number {
@@ -46,38 +48,47 @@ export function scatter(width: number, height: number, spacing: Spacing): Scatte
   side([left, bottom], [left, top]);
   const fixed = points.length;
 
-  // A grid of buckets finds the points around a place.
+  // A grid finds the points around a place: of each cell the last point, and of each point the one before it there.
   const cell = 24;
-  const columns = Math.ceil((right - left) / cell) + 1;
-  const buckets = new Map<number, [number, number][]>();
-  const bucketOf = (x: number, y: number) => Math.floor((x - left) / cell) + columns * Math.floor((y - top) / cell);
-  const keep = (point: [number, number]) => {
-    const at = bucketOf(...point);
-    buckets.set(at, [...(buckets.get(at) ?? []), point]);
+  const column = (x: number) => Math.floor((x - left) / cell);
+  const row = (y: number) => Math.floor((y - top) / cell);
+  const [columns, rows] = [column(right) + 1, row(bottom) + 1];
+  const last = new Int32Array(columns * rows).fill(-1);
+  const before: number[] = [];
+  const keep = (index: number) => {
+    const [x, y] = points[index]!;
+    const at = column(x) + columns * row(y);
+    before[index] = last[at]!;
+    last[at] = index;
   };
-  points.forEach(keep);
+  points.forEach((_, index) => keep(index));
   const isFree = (x: number, y: number, radius: number) => {
-    const reach = Math.ceil(radius / cell) * cell;
-    for (let v = y - reach; v <= y + reach; v += cell) {
-      for (let u = x - reach; u <= x + reach; u += cell) {
-        if (u < left || u > right + cell) continue;
-        for (const [px, py] of buckets.get(bucketOf(u, v)) ?? []) {
-          if ((px - x) ** 2 + (py - y) ** 2 < radius * radius) return false;
+    const [from, to] = [Math.max(0, column(x - radius)), Math.min(columns - 1, column(x + radius))];
+    const end = Math.min(rows - 1, row(y + radius));
+    for (let v = Math.max(0, row(y - radius)); v <= end; v++) {
+      for (let u = from; u <= to; u++) {
+        for (let index = last[u + columns * v]!; index >= 0; index = before[index]!) {
+          const point = points[index]!;
+          if ((point[0] - x) ** 2 + (point[1] - y) ** 2 < radius * radius) return false;
         }
       }
     }
     return true;
   };
+  // Hundreds of thousands of places are tried, so the spacing comes from a table.
+  const wantedIn = new Float64Array(Math.ceil((right - left) / STEP) * Math.ceil((bottom - top) / STEP));
+  const across = Math.ceil((right - left) / STEP);
+  for (let i = 0; i < wantedIn.length; i++) {
+    wantedIn[i] = spacing(left + (0.5 + (i % across)) * STEP, top + (0.5 + Math.floor(i / across)) * STEP);
+  }
   // Where points lie close together, more of them are tried.
-  let least = Infinity;
-  for (let i = 0; i < 400; i++) least = Math.min(least, spacing(random() * width, random() * height));
+  const least = wantedIn.reduce((a, b) => Math.min(a, b));
   for (let failures = 0; failures < PATIENCE; ) {
     const [x, y] = [left + 8 + random() * (right - left - 16), top + 8 + random() * (bottom - top - 16)];
-    const wanted = spacing(x, y);
+    const wanted = wantedIn[Math.floor((x - left) / STEP) + across * Math.floor((y - top) / STEP)]!;
     if (random() > 1.6 * (least / wanted) ** 2) continue;
     if (isFree(x, y, FREE * wanted)) {
-      keep([x, y]);
-      points.push([x, y]);
+      keep(points.push([x, y]) - 1);
       failures = 0;
     } else {
       failures++;

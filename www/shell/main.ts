@@ -1,11 +1,11 @@
-/** Starts the page: the first view at once, everything else when it is asked for. */
+/** Starts the page: the first view at once, then the tool, and the sections when the visitor comes near them. */
 
-import type { NamedMesh } from '../engines/index.ts';
 import type { Hero } from '../hero/hero.ts';
 import { number } from './numbers.ts';
 import { markSections } from './sections.ts';
 import { stillness } from './stillness.ts';
 import { onTheme, toggleTheme } from './theme.ts';
+import { loadTool, loadToolAhead, loadToolWhenIdle, startedTool } from './tool.ts';
 
 const part = <T extends HTMLElement>(selector: string): T => {
   const found = document.querySelector<T>(selector);
@@ -17,8 +17,12 @@ const [live, liveText, playAnyway] = [part('#live'), part('#live-text'), part('#
 /** Milliseconds from the start of the tool until the rest of the page is loaded. */
 const PATIENCE = 5000;
 
-/** The first view, once it has been shown. */
+/** The mesh of the first view, once it has been shown. */
 let hero: Promise<Hero> | undefined;
+/** Whether the page has begun with the view that its address names. */
+let hasBegun = false;
+/** Settles when the words of the page are on the screen. They come before the mesh. */
+const words = new Promise<void>((done) => requestAnimationFrame(() => setTimeout(done)));
 
 async function makeHero(): Promise<Hero> {
   const { Hero } = await import('../hero/hero.ts');
@@ -34,10 +38,6 @@ async function makeHero(): Promise<Hero> {
 
 let moves = !stillness.matches;
 
-/** The tool, once it has been asked for, and the mesh that is open in it. */
-let tool: Promise<() => NamedMesh | undefined> | undefined;
-let openMesh = (): NamedMesh | undefined => undefined;
-
 /** Shows the first view or the tool, if the address names one of them. A link to a section only scrolls. */
 function follow(): void {
   const { view } = document.body.dataset;
@@ -45,6 +45,8 @@ function follow(): void {
   const next = { '#first': 'first', '#watch': 'watch' }[location.hash.replace(/\?.*/, '')] ?? view;
   if (next === view) return;
   document.body.dataset.view = next;
+  // The first view lies over the tool until this has drawn its mesh. A link to the tool does not show it.
+  document.body.toggleAttribute('data-opening', next === 'watch' && hasBegun);
   // The browser may be on its way to where the view was before.
   scrollTo({ top: 0, behavior: 'instant' });
   void show();
@@ -55,13 +57,30 @@ function keepOffline(): void {
   navigator.serviceWorker?.register(new URL('offline.js', document.baseURI)).catch(() => {});
 }
 
+/** Shows the tool, once it has drawn its mesh. A sign says that it is on its way. */
+async function showTool(): Promise<void> {
+  const [busy, progress] = [part('#busy'), part('#progress')];
+  busy.hidden = progress.hidden = false;
+  try {
+    const tool = await loadTool();
+    if (import.meta.env.PROD) setTimeout(keepOffline, PATIENCE);
+    await tool.drawn();
+    busy.hidden = true;
+    document.body.removeAttribute('data-opening');
+    loadSections();
+  } catch {
+    progress.hidden = true;
+    part('#busy-text').textContent = 'The tool could not be loaded. Check the connection, and load the page again.';
+  }
+}
+
 async function show(): Promise<void> {
   if (document.body.dataset.view === 'watch') {
     void hero?.then((hero) => hero.stop());
-    tool ??= import('../watch/main.ts').then(({ start }) => start());
-    openMesh = await tool;
-    if (import.meta.env.PROD) setTimeout(keepOffline, PATIENCE);
+    await showTool();
   } else {
+    await words;
+    if (document.body.dataset.view !== 'first') return;
     try {
       hero ??= makeHero();
       await (await hero).start(moves);
@@ -85,9 +104,18 @@ function whenNear(section: string, mount: (host: HTMLElement) => Promise<void>):
   ).observe(part(section));
 }
 
-whenNear('#explain', async (host) => (await import('../explain/index.ts')).mountExplanation(host));
-whenNear('#engines', async (host) => (await import('../engines/index.ts')).mountEngines(host, () => openMesh()));
-whenNear('#paper', async (host) => (await import('../paper/index.ts')).mountPaper(host));
+let hasSections = false;
+
+/** Loads the sections when the visitor comes near them. */
+function loadSections(): void {
+  if (hasSections) return;
+  hasSections = true;
+  whenNear('#explain', async (host) => (await import('../explain/index.ts')).mountExplanation(host));
+  whenNear('#engines', async (host) => {
+    (await import('../engines/index.ts')).mountEngines(host, () => startedTool()?.mesh());
+  });
+  whenNear('#paper', async (host) => (await import('../paper/index.ts')).mountPaper(host));
+}
 
 const sections = part('#sections');
 sections.addEventListener('click', () => sections.hidePopover());
@@ -99,9 +127,25 @@ playAnyway.addEventListener('click', () => {
 addEventListener('hashchange', follow);
 // The bar needs a ground where it lies on what is read.
 addEventListener('scroll', () => document.body.toggleAttribute('data-scrolled', scrollY > 8), { passive: true });
+addEventListener('scroll', loadSections, { passive: true, once: true });
+
+const way = part('.way.first');
+for (const type of ['pointerenter', 'focus', 'touchstart']) {
+  way.addEventListener(type, loadToolAhead, { passive: true });
+}
 const watch = () => (location.hash = '#watch');
-part('#file').addEventListener('change', watch);
-document.addEventListener('dragenter', watch);
+const file = part<HTMLInputElement>('#file');
+file.addEventListener('change', watch);
+const hasFiles = ({ dataTransfer }: DragEvent) => dataTransfer?.types.includes('Files') === true;
+document.addEventListener('dragenter', (event) => hasFiles(event) && loadToolAhead());
+document.addEventListener('dragover', (event) => event.preventDefault());
+document.addEventListener('drop', (event) => {
+  event.preventDefault();
+  if (!hasFiles(event)) return;
+  // The tool takes dropped files itself, and when it starts, the files of the input.
+  if (!startedTool() && event.dataTransfer) file.files = event.dataTransfer.files;
+  watch();
+});
 let width = innerWidth;
 addEventListener('resize', () => {
   // The bars of a phone's browser change only the height.
@@ -111,4 +155,7 @@ addEventListener('resize', () => {
 
 follow();
 markSections();
-if (document.body.dataset.view === 'first') void show();
+hasBegun = true;
+if (document.body.dataset.view === 'first') {
+  void show().then(loadToolWhenIdle).finally(loadSections);
+}

@@ -77,6 +77,8 @@ export class Camera {
     controls.addEventListener('start', () => (this.#isFitted = false));
     controls.addEventListener('change', this.#changed);
     this.#controls = controls;
+    // While the tool is hidden it has no size, and fits the mesh once it has one.
+    this.#isFitted = true;
     this.fit();
   }
 

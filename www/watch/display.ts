@@ -124,7 +124,7 @@ export class Display {
 
   /** Waits until the page has drawn what it shows. */
   async painted(): Promise<void> {
-    await this.#graphics.scene?.painted();
+    await this.#graphics.scene?.shown();
   }
 
   /** Shows how the edges flip from the last picture to this one, if there is one iteration between them. */

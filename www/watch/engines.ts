@@ -2,11 +2,11 @@
 
 import { EdgeflipError, type Options } from 'edgeflip';
 import { isSoftware } from '../shell/adapter.ts';
+import { takeGpu, takeRunner } from './ahead.ts';
 import { ArrayTrack } from './array-track.ts';
 import { GpuTrack } from './gpu-track.ts';
 import { Kernels } from './kernels.ts';
 import { Run, sessionOf, statesOf, summaryOf, type Backend, type OpenMesh } from './run.ts';
-import { WorkerClient } from './worker-client.ts';
 
 /** The most triangles with which `auto` starts on the CPU while the GPU compiles its kernels. */
 const MOST_ON_CPU = 1_000_000;
@@ -23,10 +23,9 @@ export interface Gpu {
 export async function openGpu(): Promise<Gpu | string> {
   if (!navigator.gpu) return 'this browser has no WebGPU';
   try {
-    const adapter = await navigator.gpu.requestAdapter({ powerPreference: 'high-performance' });
-    if (!adapter) return 'WebGPU found no GPU';
-    const { maxBufferSize, maxStorageBufferBindingSize } = adapter.limits;
-    const device = await adapter.requestDevice({ requiredLimits: { maxBufferSize, maxStorageBufferBindingSize } });
+    const found = await takeGpu();
+    if (!found) return 'WebGPU found no GPU';
+    const { adapter, device } = found;
     return { device, kernels: new Kernels(device), isSoftware: isSoftware(adapter) };
   } catch (error) {
     return `WebGPU could not be used (${error instanceof Error ? error.message : String(error)})`;
@@ -37,16 +36,6 @@ export async function openGpu(): Promise<Gpu | string> {
 export function forAuto(gpu: Gpu | string): Gpu | string {
   if (typeof gpu === 'string' || !gpu.isSoftware) return gpu;
   return 'no hardware GPU found; the browser emulates one in software, which is slower';
-}
-
-/** The worker of the first run. */
-let first: WorkerClient | undefined;
-
-/** Starts the worker of the first run and loads its engine, while the mesh is not ready yet. */
-export function startWorker(): void {
-  first = new WorkerClient();
-  // The run loads the engine again and reports the error.
-  first.call((worker) => worker.load()).catch(() => {});
 }
 
 /** Whether a run waits until the GPU is open and has compiled its kernels. */
@@ -123,8 +112,7 @@ async function inWorker(
   signal: AbortSignal,
   fallback: string | undefined,
 ): Promise<Run> {
-  const client = first ?? new WorkerClient();
-  first = undefined;
+  const client = takeRunner();
   const close = () => client.close();
   signal.addEventListener('abort', close);
   try {

@@ -5,6 +5,8 @@ import { Cancelled } from './worker-client.ts';
 
 export class Jobs {
   #job: AbortController | undefined;
+  /** Called when no job runs any more. */
+  #waiting: (() => void)[] = [];
   readonly #begun: () => void;
   readonly #ended: () => void;
 
@@ -16,6 +18,11 @@ export class Jobs {
 
   get isBusy(): boolean {
     return this.#job !== undefined;
+  }
+
+  /** Settles when no job runs. */
+  idle(): Promise<void> {
+    return new Promise((done) => (this.isBusy ? this.#waiting.push(done) : done()));
   }
 
   /** Runs `work` and shows `text` meanwhile. Cancels the job before it. */
@@ -47,6 +54,7 @@ export class Jobs {
     this.#job = undefined;
     element('busy').hidden = true;
     this.#ended();
+    for (const done of this.#waiting.splice(0)) done();
   }
 }
 

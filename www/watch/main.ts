@@ -28,8 +28,16 @@ import { chosen, dropped, sample, type Source } from './sources.ts';
 const SAVED = ['.ply', '.obj', '.glb', '.stl', '.off'];
 const LOOKS: readonly EdgeLook[] = ['coloured', 'plain', 'none'];
 
-/** Starts the tool; call it once. Returns a function that returns the open mesh, as its run began. */
-export function start(): () => NamedMesh | undefined {
+/** The tool, once it has been started. */
+export interface Tool {
+  /** The open mesh, as its run began. */
+  mesh(): NamedMesh | undefined;
+  /** Settles when the screen shows the mesh that was opened last. */
+  drawn(): Promise<void>;
+}
+
+/** Starts the tool, also while the first view is shown; call it once. */
+export function start(): Tool {
   const page: Page = new Page((from, to) => void drawEdge(page, [from, to]));
   const movingSamples = new MovingSamples(page);
   const open = (source: Source | undefined) => {
@@ -62,7 +70,7 @@ export function start(): () => NamedMesh | undefined {
     () => void tell(taking().link()),
   );
   void begin(page, movingSamples);
-  return () => {
+  const mesh = () => {
     const shown = page.shown;
     if (!shown) return undefined;
     const { mesh, title: name } = shown.opened;
@@ -72,6 +80,7 @@ export function start(): () => NamedMesh | undefined {
     const limits = dimension === 3 ? { maxNormalAngle, maxDeviation } : {};
     return { name, positions, indices, dimension, options: { ...locks, ...limits } };
   };
+  return { mesh, drawn: () => page.drawn() };
 }
 
 const movingOf = (spec: string | undefined) => MOVING.find((sample) => sample.spec === spec);
@@ -80,11 +89,6 @@ const movingOf = (spec: string | undefined) => MOVING.find((sample) => sample.sp
 async function begin(page: Page, movingSamples: MovingSamples): Promise<void> {
   const file = chosen([...(controls.file.files ?? [])]);
   const place = file ? undefined : placeIn(location.hash);
-  if (place) page.prefer(place);
-  const moving = movingOf(place?.mesh);
-  await page.start(moving ? undefined : (file ?? sample(place?.mesh ?? FIRST)));
-  if (moving) await movingSamples.show(moving);
-  else if (place) await goTo(page, place);
   addEventListener('hashchange', () => {
     const next = placeIn(location.hash);
     if (!next) return;
@@ -94,6 +98,11 @@ async function begin(page: Page, movingSamples: MovingSamples): Promise<void> {
     movingSamples.leave();
     void page.open(sample(next.mesh)).then(() => goTo(page, next));
   });
+  if (place) page.prefer(place);
+  const moving = movingOf(place?.mesh);
+  await page.start(moving ? undefined : (file ?? sample(place?.mesh ?? FIRST)));
+  if (moving) await movingSamples.show(moving);
+  else if (place) await goTo(page, place);
 }
 
 async function goTo(page: Page, { at, pose }: Place): Promise<void> {
@@ -116,7 +125,9 @@ function connectRun(page: Page, movingSamples: MovingSamples): void {
   controls.slider.addEventListener('input', () => void page.player.seek(controls.slider.valueAsNumber));
   controls.compare.addEventListener('click', () => page.compare());
   controls.scramble.addEventListener('click', () => void scramble(page));
-  element('cancel').addEventListener('click', () => page.cancel());
+  const cancel = element('cancel');
+  cancel.hidden = false;
+  cancel.addEventListener('click', () => page.cancel());
   element('dismiss').addEventListener('click', () => (element('error').hidden = true));
 }
 

@@ -7,6 +7,7 @@ import {
   change,
   constrain,
   generate,
+  init as initFiles,
   measures,
   readMesh,
   writeMesh,
@@ -121,6 +122,11 @@ class MeshWorker {
     const reason = leftOut[0]?.reason.replace('constraint 0', 'The edge');
     if (reason) throw new Error(`${reason}.`);
     return { indices, lockedEdges };
+  }
+
+  /** Loads what reads files, so that the first mesh is read sooner. */
+  async loadFiles(): Promise<void> {
+    await initFiles();
   }
 
   /** Loads the engine, so that a run starts sooner. */

@@ -2,6 +2,7 @@
 
 import type { FileMesh, IndexedMesh } from 'edgeflip/files';
 import type { Quality } from './mesh-worker.ts';
+import { takeReader } from './ahead.ts';
 import { WorkerClient } from './worker-client.ts';
 import type { Kept } from './files.ts';
 import { number } from '../shell/numbers.ts';
@@ -43,7 +44,7 @@ export class Opening {
   /** The mesh, after it has been read. Changes of the settings then start its run again. */
   opened: Opened | undefined;
   readonly read: Promise<Opened>;
-  #client = new WorkerClient();
+  #client = takeReader();
   readonly #progress: Progress;
   #isClosed = false;
 

@@ -6,7 +6,7 @@ import { LOST } from './crash.ts';
 import type { Flips } from './mesh-worker.ts';
 import { element } from './controls.ts';
 import { Display, type EdgeLook } from './display.ts';
-import { startWorker, type Gpu } from './engines.ts';
+import type { Gpu } from './engines.ts';
 import { markSample } from './gallery.ts';
 import { Graphics } from './graphics.ts';
 import type { Replacement } from './handover.ts';
@@ -110,9 +110,7 @@ export class Page {
       void this.redraw();
     });
     this.#graphics.open();
-    const opening = source && this.open(source);
-    startWorker();
-    await opening;
+    if (source) await this.open(source);
   }
 
   /** Ends the run, and shows nothing. `lost` is called with the reason when the GPU is lost meanwhile. */
@@ -220,6 +218,15 @@ export class Page {
     return this.#graphics.ready;
   }
 
+  /** Settles when no job runs, and the screen shows what the jobs have led to. */
+  async drawn(): Promise<void> {
+    do {
+      await this.#jobs.idle();
+      await this.#graphics.ready;
+      await this.scene?.shown();
+    } while (this.#jobs.isBusy);
+  }
+
   /** Runs a long job that can be cancelled, and shows its error. */
   attempt(text: string, work: (signal: AbortSignal) => Promise<void>): Promise<void> {
     return this.#jobs.attempt(text, work);
@@ -257,13 +264,18 @@ export class Page {
     this.#ahead = undefined;
     this.#display.begin(opened, isOther);
     this.#handover.prepare(run, opened, options, this.#graphics.gpu);
-    void flipsAhead(opened, options).then((ahead) => {
-      if (run !== this.#run || !ahead) return;
-      this.#ahead = ahead;
-      this.#showTransport();
-    });
     await this.redraw();
     this.player.pause();
+    void this.#lookAhead(run, opened, options);
+  }
+
+  /** Counts the flips of all iterations, after the first picture: counting would hold it up. */
+  async #lookAhead(run: Run, ...settings: Parameters<typeof flipsAhead>): Promise<void> {
+    await this.scene?.shown();
+    const ahead = await flipsAhead(...settings);
+    if (run !== this.#run || !ahead) return;
+    this.#ahead = ahead;
+    this.#showTransport();
   }
 
   /** Replaces the run by the same run on the GPU. */

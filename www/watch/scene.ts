@@ -4,6 +4,7 @@ import {
   BufferAttribute,
   ColorManagement,
   Scene as ThreeScene,
+  Vector2,
   Vector3,
   WebGPURenderer,
   type Object3D,
@@ -190,6 +191,13 @@ export class Scene {
     if (this.#frame) await new Promise(requestAnimationFrame);
   }
 
+  /** Waits until the screen has the present picture, in the present size. */
+  async shown(): Promise<void> {
+    this.#resize();
+    await this.painted();
+    await this.#finished();
+  }
+
   /** Waits until the GPU has done everything. */
   async #finished(): Promise<void> {
     await this.#device?.queue.onSubmittedWorkDone().catch(() => {});
@@ -301,7 +309,8 @@ export class Scene {
 
   #resize(): void {
     const { clientWidth: width, clientHeight: height } = this.#renderer.domElement.parentElement ?? document.body;
-    if (width === 0 || height === 0) return;
+    const size = this.#renderer.getSize(new Vector2());
+    if (width === 0 || height === 0 || (size.x === width && size.y === height)) return;
     this.#renderer.setSize(width, height, false);
     this.camera.resize();
     this.redraw();
