@@ -42,6 +42,8 @@ function follow(): void {
   for (const link of document.querySelectorAll('.top nav a')) {
     link.toggleAttribute('aria-current', link.getAttribute('href') === location.hash.replace(/\?.*/, ''));
   }
+  // Browsers do not find a section whose link says more after a question mark.
+  if (location.hash.startsWith('#explain?')) part('#explain').scrollIntoView();
   const { view } = document.body.dataset;
   // A link to the tool may say more after a question mark.
   const next = { '#first': 'first', '#watch': 'watch' }[location.hash.replace(/\?.*/, '')] ?? view;
