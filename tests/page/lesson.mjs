@@ -43,10 +43,18 @@ export async function drawn(page) {
     const all = (part) => [...document.querySelectorAll(`.playground ${part}`)];
     const text = (part) => all(part).map((element) => element.textContent);
     return {
-      points: all('.explain-handle').map((point) => point.getAttribute('transform').match(/[\d.]+/g).map(Number)),
+      points: all('.explain-handle').map((point) =>
+        point
+          .getAttribute('transform')
+          .match(/[\d.]+/g)
+          .map(Number),
+      ),
       edges: all('.explain-edge').map((edge) => ({
         kind: edge.getAttribute('class').split(' ').at(-1).replace('explain-', ''),
-        ends: edge.getAttribute('d').match(/[\d.]+/g).map(Number),
+        ends: edge
+          .getAttribute('d')
+          .match(/[\d.]+/g)
+          .map(Number),
       })),
       stop: text('[aria-current]'),
       caption: text('.explain-caption').join(),
@@ -90,25 +98,21 @@ export async function enginesRounds({ points, triangles }) {
 /** All edges of a round, whatever their state. */
 export const edgesOf = (kinds) => Object.values(kinds).flat().sort();
 
-/** Eight points with long triangles, in the second round, after Select, with an edge that is explained. */
+/** Eight points with long triangles after two rounds, at Select of the third, with an edge that waits explained. */
+// biome-ignore format: one row for the points, two for the triangles
 export const LESSON = {
-  points: [
-    [60, 240],
-    [580, 210],
-    [320, 60],
-    [300, 420],
-    [200, 250],
-    [430, 228],
-    [330, 300],
-    [250, 170],
+  points: [[50, 360], [350, 340], [520, 90], [190, 360], [140, 80], [380, 50], [450, 230], [100, 260]],
+  triangles: [
+    1, 0, 2, 0, 1, 3, 2, 0, 7, 0, 4, 7,
+    4, 2, 7, 2, 4, 5, 1, 2, 6,
   ],
-  at: '1.select',
+  at: '2.select',
 };
 
-/** Asserts that the page shows the lesson as the engine says it is. */
-export async function assertLesson(page, mesh) {
+/** Asserts that the page shows a mesh at Select, as the engine says, after these rounds. Returns what it shows. */
+export async function assertSelected(page, mesh, rounds) {
   const shown = await drawn(page);
-  const { states } = (await enginesRounds(mesh))[1];
+  const { states } = (await enginesRounds(mesh))[rounds];
   assert.deepEqual(shown.points, mesh.points);
   assert.deepEqual([shown.kinds.flips, shown.kinds.waits], [states.flips, states.waits]);
   assert.deepEqual(edgesOf(shown.kinds), edgesOf(states));

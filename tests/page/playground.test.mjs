@@ -70,7 +70,14 @@ test('a link that joins the points in another way is no triangulation', async ()
   ];
   const { triangles } = planarOf(points);
   assert.ok(isTriangulation({ points, triangles }));
-  for (const wrong of [[], [0, 1, 2], [0, 2, 1, 0, 3, 2], [0, 1, 2, 0, 1, 3], [0, 1, 2, 0, 2, 9], [0, 1, 2, 0, 2, -1]]) {
+  for (const wrong of [
+    [],
+    [0, 1, 2],
+    [0, 2, 1, 0, 3, 2],
+    [0, 1, 2, 0, 1, 3],
+    [0, 1, 2, 0, 2, 9],
+    [0, 1, 2, 0, 2, -1],
+  ]) {
     assert.equal(isTriangulation({ points, triangles: wrong }), false, `${wrong}`);
   }
 });

@@ -82,7 +82,7 @@ export function roundOf(planar: Planar, iteration: number): Round {
 }
 
 /** Update: the sides whose triangle has to learn of another neighbour. */
-export function relinked({ before, after }: Round): Relinked[] {
+export function relinked({ before, after }: Pick<Round, 'before' | 'after'>): Relinked[] {
   const [old, now] = [halvesOf(before), halvesOf(after)];
   return after.flatMap((from, half) => {
     const to = after[next(half)]!;

@@ -15,10 +15,15 @@ import { makeParts } from './playground-parts.ts';
 import { ABOUT, anglesOf, captionOf, whyOf } from './playground-words.ts';
 import { AREA, hashOf, inArea, isFree, MOST, type Place, placeOf, type State, STOPS, stateIn } from './stops.ts';
 
-// biome-ignore format: the points of the beginning
-const FIRST: Point[] = [[70, 90], [560, 60], [590, 400], [90, 420], [330, 46], [210, 300], [430, 330], [330, 190], [140, 230], [500, 210]];
+// biome-ignore format: one row for six points
+const FIRST: Point[] = [
+  [560, 90], [590, 270], [570, 440], [140, 110], [410, 380], [270, 200],
+  [40, 360], [190, 350], [330, 100], [430, 160], [350, 270], [480, 330],
+];
 
 const begin = (): State => ({ planar: planarOf(FIRST), phase: 0, isPlain: true, edge: undefined });
+
+const ANEW = 'A triangle would have turned over, so the point is joined anew.';
 
 /** Milliseconds from a change to the address, which browsers let a page change only so often. */
 const SETTLES = 300;
@@ -73,7 +78,9 @@ export class Playground {
     const { tested, edge } = this.#place;
     const inner = tested.inner.toSorted((one, other) => (one.rank || Infinity) - (other.rank || Infinity));
     const at = inner.findIndex(({ ends }) => edge && ends.every((v) => edge.includes(v)));
-    this.#explain(inner[(at + 1) % inner.length]?.ends);
+    const next = inner[(at + 1) % inner.length];
+    this.#explain(next?.ends);
+    if (!next) this.#parts.says.textContent = 'No edge lies between two triangles.';
   }
 
   #show(state: State, isChange = true): void {
@@ -145,7 +152,9 @@ export class Playground {
     const point = inArea(to);
     if (!isFree(point, this.#place.planar.points, v)) return;
     const { planar, isJoinedAnew } = withMoved(this.#present, v, point);
-    this.#edit(planar, isJoinedAnew ? 'A triangle would have turned over, so the point is joined anew.' : '');
+    const { says } = this.#parts;
+    // It stays to be read while the point moves on.
+    this.#edit(planar, isJoinedAnew || says.textContent === ANEW ? ANEW : '');
   }
 
   #remove(v: number | undefined): void {
@@ -159,9 +168,7 @@ export class Playground {
   }
 
   #explain(edge: [number, number] | undefined): void {
-    const { says } = this.#parts;
     this.#show({ ...this.#place, edge });
-    if (!edge) says.textContent = 'No edge lies between two triangles.';
   }
 
   #focus(v: number): void {
@@ -246,7 +253,11 @@ export class Playground {
     this.#parts.layers.reach
       .selectAll<SVGPathElement, Side>('path')
       .data(sidesOf(this.#place.triangles))
-      .join((enter) => enter.append('path').on('click', (_, { ends }) => this.#explain(ends)))
+      .join((enter) =>
+        enter
+          .append('path')
+          .on('click', (_, { ends }) => this.#explain(ends.join() === this.#place.edge?.join() ? undefined : ends)),
+      )
       .attr('d', ({ ends }) => polyline(ends.map((v) => points[v]!)));
   }
 
@@ -279,7 +290,10 @@ export class Playground {
               const v = far.indexOf(Math.min(...far));
               return { x: all[v]![0], y: all[v]![1], v };
             })
-            .on('start', ({ subject }: { subject: { v: number } }) => this.#focus(subject.v))
+            .on('start', ({ subject }: { subject: { v: number } }) => {
+              this.#parts.says.textContent = '';
+              this.#focus(subject.v);
+            })
             .on('drag', ({ x, y, subject }: D3DragEvent<SVGGElement, Point, { v: number }>) =>
               this.#move(subject.v, [x, y]),
             ),
