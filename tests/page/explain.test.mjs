@@ -212,7 +212,7 @@ test('points are added, moved and removed by keys, and a link with wrong triangl
   const mesh = { points: LESSON.points.slice(0, 4), triangles: [0, 1, 2] };
   const { page, problems, part, press } = await openPlayground(hashOf(mesh));
   const count = async () => (await drawn(page)).points.length;
-  assert.equal(edgesOf((await drawn(page)).kinds).length, 6);
+  assert.equal(edgesOf((await drawn(page)).kinds).length, 5);
   await press('Add a point');
   const handle = (i) => page.locator('.playground .explain-handle').nth(i);
   assert.equal(await handle(4).evaluate((element) => element === document.activeElement), true);

@@ -71,7 +71,11 @@ export function marksOf(place: Place, unit: number, flipped: number): Marks {
         ? [{ d: arrow(from[t]!, towards(middleOf(choice), from[t]!, 5 * unit), 7 * unit), kind: 'explain-choice' }]
         : [],
     );
-    marks.labels = candidates.map((edge) => ({ text: `${edge.rank}`, at: middleOf(edge) }));
+    // Beside the tips of the arrows.
+    marks.labels = candidates.map(({ rank, ends }) => {
+      const [from, to] = at(...ends) as [Point, Point];
+      return { text: `${rank}`, at: between(from, to, 0.3) };
+    });
   } else if (stop === 'flip') {
     for (const { facing } of round.flips) mark(facing, 'explain-bold explain-fresh');
     marks.under = round.flips.flatMap((edge) => [

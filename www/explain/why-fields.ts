@@ -30,14 +30,13 @@ export function height([x, y]: Point): Sample {
   return sum;
 }
 
-const [HOT, COLD]: [Point, Point] = [
-  [-140, 300],
-  [1160, 520],
-];
-const distance = ([x, y]: Point, [u, v]: Point) => Math.hypot(x - u, y - v);
+/** A hot spot: where it is, how wide it is at first and at the end, and the time between. */
+const SPOT: Point = [460, 380];
+const [NARROW, WIDE] = [110, 190];
+export const TIME = (WIDE ** 2 - NARROW ** 2) / 2;
 
-/**
- * The temperature in balance between a hot and a cold point beside the rectangle. It solves Laplace's equation, because
- * the logarithm of a distance does.
- */
-export const temperature = (point: Point) => Math.log(distance(point, COLD) / distance(point, HOT));
+/** The temperature after a time. It solves the heat equation: a bell curve spreads as one. At first its top is 1. */
+export function temperature([x, y]: Point, time: number): number {
+  const width = NARROW ** 2 + 2 * time;
+  return (NARROW ** 2 / width) * Math.exp(-((x - SPOT[0]) ** 2 + (y - SPOT[1]) ** 2) / (2 * width));
+}

@@ -30,7 +30,7 @@ const USES = [
   {
     name: 'Heat that flows',
     words:
-      'Hot at the left (light), cold at the right; edges carry heat by their cotangent weights. The number is the mean error in percent of the range.',
+      'A hot spot spreads, and edges carry the heat by their cotangent weights. The number is the mean error in percent of the hottest point.',
     label: 'Bands of temperature',
   },
   {
@@ -173,17 +173,15 @@ async function start(sides: SideParts[], slider: HTMLInputElement, says: HTMLOut
     const edges = cornersOf(mesh.triangles).map((corners) => `${polyline(corners.map((v) => mesh.points[v]!))}Z`);
     drawShapes(side.lines, [{ d: edges.join(''), kind: 'explain-edge' }]);
     paint(side.canvases[0]!, light, rampOf(colour('shaded'), colour('lit')));
-    const [least, most] = [Math.min(...warm.values), Math.max(...warm.values)];
-    const bands = interpolated(mesh, raster, warm.values).map(
-      (value) => Math.floor((BANDS * (value - least)) / (most - least)) / BANDS,
-    );
+    const most = Math.max(...warm.values);
+    const bands = interpolated(mesh, raster, warm.values).map((value) => Math.floor((BANDS * value) / most) / BANDS);
     paint(side.canvases[1]!, bands, rampOf(colour('shaded'), colour('lit')));
     drawShapes(side.drawn, [{ d: line.pieces.map(polyline).join(''), kind: '' }]);
-    const backwards = warm.backwards === 0 ? '' : ` From cold to hot on ${warm.backwards} edges.`;
+    const backwards = warm.backwards === 0 ? '' : `. On ${warm.backwards} edges it flows from cold to hot.`;
     [
       `Smallest angle on average: ${meanSmallest(mesh).toFixed(0)}°`,
       off(error, '°'),
-      off(warm.error, ' %') + (backwards && '.') + backwards,
+      off(warm.error, ' %') + backwards,
       off(line.error, ' %'),
     ].forEach((text, i) => (side.words[i]!.textContent = text));
   };
