@@ -80,12 +80,11 @@ export function makeParts(number: number) {
   const side = made(
     'div',
     'playground-side',
-    title,
     stop,
     why,
     group('Points', 'playground-tools', Object.values(tools)),
     says,
   );
-  const element = made('figure', 'explain-figure playground', card, side);
+  const element = made('figure', 'explain-figure playground', title, card, side);
   return { element, steps, tools, svg, layers, caption, says, stop, why, dialShapes, whyWords };
 }
