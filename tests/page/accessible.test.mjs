@@ -7,6 +7,7 @@ import { createRequire } from 'node:module';
 import { test } from 'node:test';
 import { gzipSync } from 'node:zlib';
 import { openPage, startChromium } from '../browsers.mjs';
+import { hashOf, LESSON, openAt } from './lesson.mjs';
 import { openEdgeflip, sharedPage } from './page.mjs';
 
 const axe = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
@@ -73,6 +74,26 @@ for (const [colorScheme, width, height] of [
     await page.close();
   });
 }
+
+test('axe-core finds nothing in the playground at any stop, and it is no wider than the page', async () => {
+  const { page, problems } = await openAt(await startChromium(), hashOf({ ...LESSON, at: '0.label', edge: [0, 2] }));
+  const found = [];
+  for (const [colorScheme, width, stops] of [
+    ['light', 1440, ['Select', 'Flip']],
+    ['dark', 390, ['Update', 'Clear']],
+  ]) {
+    await page.emulateMedia({ colorScheme });
+    await page.setViewportSize({ width, height: 844 });
+    for (const stop of stops) {
+      await page.locator('.playground').getByRole('button', { name: stop, exact: true }).click();
+      found.push(...(await findings({ page })).map((finding) => `${colorScheme}, ${stop}: ${finding}`));
+    }
+    assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth));
+  }
+  assert.deepEqual(found, []);
+  assert.deepEqual(problems, []);
+  await page.close();
+});
 
 test('nothing moves while the tool opens and plays', async () => {
   const page = await openEdgeflip(await startChromium(), () => {

@@ -5,6 +5,7 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { readMesh } from 'edgeflip/files';
 import { startFirefox } from '../browsers.mjs';
+import { assertSelected, hashOf, LESSON, openAt } from './lesson.mjs';
 import { assertPlays, expected, first, meshFile, openEdgeflip, pageInFirefox } from './page.mjs';
 
 /** Firefox's software renderer takes long to compile the WebGL2 shaders for surfaces. */
@@ -110,4 +111,12 @@ test('β, an inspected edge, before and now, a saved file and a link in Firefox'
   const opened = await page.until('its iteration', ({ at, measured }) => at === '1' && measured === '1');
   assert.deepEqual([opened.caption, opened.facts.Fingerprint], [surface.spec, sphere.fingerprints[1]]);
   await page.close();
+});
+
+test('the link of a lesson in the playground opens in the same state in Firefox', async () => {
+  const { page, problems } = await openAt(await startFirefox(), hashOf({ ...LESSON, edge: [2, 7] }));
+  const { why } = await assertSelected(page, LESSON, 2);
+  assert.match(why.join(), /^[\d.]+° \+ [\d.]+° is [\d.]+°, more than 180°\. .* So it waits in this round/);
+  await page.close();
+  assert.deepEqual(problems, []);
 });

@@ -39,15 +39,19 @@ export function towards(from: Point, to: Point, distance: number): Point {
   return between(from, to, distance / (Math.hypot(to[0] - from[0], to[1] - from[1]) || 1));
 }
 
-/** An arrow between two points. */
-export function arrow(from: Point, tip: Point): string {
-  const back = towards(tip, from, 8);
+/** An arrow between two points; `size` is the length of its head. */
+export function arrow(from: Point, tip: Point, size = 8): string {
+  const back = towards(tip, from, size);
   const [x, y] = [(tip[1] - back[1]) * 0.6, (back[0] - tip[0]) * 0.6];
   return polyline([from, tip]) + polyline([[back[0] + x, back[1] + y], tip, [back[0] - x, back[1] - y]]);
 }
 
 /** An edge on its way to the other diagonal: its ends slide along two sides of its triangles. */
-export function turned({ ends, facing }: Edge, points: readonly Point[], t: number): [Point, Point] {
+export function turned(
+  { ends, facing }: Pick<Edge, 'ends' | 'facing'>,
+  points: readonly Point[],
+  t: number,
+): [Point, Point] {
   return [between(points[ends[0]]!, points[facing[0]!]!, t), between(points[ends[1]]!, points[facing[1]!]!, t)];
 }
 

@@ -13,7 +13,12 @@ export interface Handle {
   box: { x: [number, number]; y: [number, number] };
 }
 
-const ARROWS: Record<string, Point> = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
+export const ARROWS: Record<string, Point> = {
+  ArrowLeft: [-1, 0],
+  ArrowRight: [1, 0],
+  ArrowUp: [0, -1],
+  ArrowDown: [0, 1],
+};
 
 const within = (value: number, [least, most]: [number, number]) => Math.min(most, Math.max(least, value));
 

@@ -1,4 +1,4 @@
-/** The section "How a mesh becomes Delaunay": words, and six figures that run the engine. */
+/** The section "How a mesh becomes Delaunay": words, five figures, and what steps through the last one. */
 
 import './explain.css';
 import './drawings.css';
@@ -6,16 +6,23 @@ import { made } from '../shell/elements.ts';
 import { circle } from './circle.ts';
 import { ends } from './ends.ts';
 import { mountFigure } from './figure.ts';
-import { flip } from './flip.ts';
 import { label } from './label.ts';
-import { select } from './select.ts';
-import { update } from './update.ts';
+import { Playground } from './playground.ts';
+import { mountWhy } from './why.ts';
 
 const TITLE = 'How a mesh becomes Delaunay';
 const LEDE =
-  'A mesh is points joined into triangles. The same points can be joined in many ways, and some of them give long, thin triangles that shade, simulate and interpolate badly. One way is best. Here is how the edges find it, all at once. Each figure runs the real engine.';
+  'A mesh is points joined into triangles. The same points can be joined in many ways. Long, thin triangles shade, simulate and interpolate badly, and one way avoids them best. Here is how the edges find it, all at once.';
 const END =
-  'Label, select, flip, update: that is one round. The engine runs round after round until no edge can flip. The creases of a surface and the edges that you lock are kept, so a few edges may stay that are not Delaunay. They are counted, with the reason for each.';
+  'Label, select, flip, update: that is one round. The engine runs rounds until no edge can flip. It keeps the creases of a surface and the edges that you lock, so a few edges may stay that are not Delaunay. It counts them, with the reason for each.';
+
+let playground: Playground | undefined;
+
+/** Runs the next phase in the playground, or goes back by one. Returns whether there was one. */
+export const stepPlayground = (by: 1 | -1) => playground?.step(by) ?? false;
+
+/** Explains the next edge in the playground. */
+export const explainInPlayground = () => playground?.explainNext();
 
 /** Puts the section into `host`. */
 export function mountExplanation(host: HTMLElement): void {
@@ -24,8 +31,8 @@ export function mountExplanation(host: HTMLElement): void {
   head.append(made('h2', '', TITLE), made('p', '', LEDE));
   const figures = document.createElement('div');
   figures.className = 'explain-figures';
-  figures.append(...[circle, label, select, flip, update, ends].map((figure, i) => mountFigure(figure, i + 1)));
-  const end = made('p', '', END);
-  end.className = 'explain-end';
-  host.append(head, figures, end);
+  figures.append(...[circle, label, ends].map((figure, i) => mountFigure(figure, i + 2)));
+  playground = new Playground(5);
+  host.append(head, mountWhy(1), figures, playground.element, made('p', 'explain-end', END));
+  if (location.hash.startsWith('#explain?')) playground.element.scrollIntoView();
 }

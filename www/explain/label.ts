@@ -1,6 +1,7 @@
 /** Figure 2: the two angles that face an edge. */
 
-import { drawLabels, drawShapes, layer, polygon, polyline, towards } from './draw.ts';
+import { angle, dial, wedge } from './angles.ts';
+import { drawLabels, drawShapes, layer, polygon, polyline } from './draw.ts';
 import type { Figure, Stage } from './figure.ts';
 import { addHandles, type Handle } from './handles.ts';
 import { flat, open, type Point, statesOf } from './mesh.ts';
@@ -23,25 +24,6 @@ const HANDLES: Handle[] = [
 const DIAL: Point = [336, 206];
 const DIAL_RADIUS = 30;
 
-/** The angle at `corner` in degrees. */
-function angle(corner: Point, one: Point, other: Point): number {
-  const [ux, uy, vx, vy] = [one[0] - corner[0], one[1] - corner[1], other[0] - corner[0], other[1] - corner[1]];
-  return (Math.atan2(Math.abs(ux * vy - uy * vx), ux * vx + uy * vy) * 180) / Math.PI;
-}
-
-/** A sector with its tip at `corner`; its ends are on the way to `one` and to `other`. */
-function wedge(corner: Point, one: Point, other: Point, radius: number): string {
-  const [from, to] = [towards(corner, one, radius), towards(corner, other, radius)];
-  const isClockwise = (from[0] - corner[0]) * (to[1] - corner[1]) > (from[1] - corner[1]) * (to[0] - corner[0]);
-  return `M${corner}L${from}A${radius} ${radius} 0 0 ${isClockwise ? 1 : 0} ${to}Z`;
-}
-
-/** The point of the dial at an angle, from its left end over the top. */
-function onDial(degrees: number): Point {
-  const radians = (degrees * Math.PI) / 180;
-  return [DIAL[0] - DIAL_RADIUS * Math.cos(radians), DIAL[1] - DIAL_RADIUS * Math.sin(radians)];
-}
-
 async function start({ svg, say }: Stage): Promise<void> {
   const points = [...POINTS];
   const session = await open(points, TRIANGLES);
@@ -60,10 +42,7 @@ async function start({ svg, say }: Stage): Promise<void> {
       { d: wedge(c, a, b, 30), kind: 'explain-angle-one' },
       { d: wedge(d, a, b, 30), kind: 'explain-angle-two' },
       { d: polyline([a, b]), kind: `explain-edge explain-bold explain-${flips ? 'flips' : 'fresh'}` },
-      { d: wedge(DIAL, onDial(0), onDial(upper!), DIAL_RADIUS), kind: 'explain-angle-one' },
-      { d: wedge(DIAL, onDial(upper!), onDial(sum), DIAL_RADIUS), kind: 'explain-angle-two' },
-      { d: flips ? wedge(DIAL, onDial(180), onDial(sum), DIAL_RADIUS) : '', kind: 'explain-excess' },
-      { d: polyline([onDial(0), onDial(180)]), kind: 'explain-straight' },
+      ...dial(DIAL, DIAL_RADIUS, [upper!, lower!], flips),
     ]);
     drawLabels(labels, [
       { text: `${upper!.toFixed(1)}°`, at: [c[0] + 15, c[1] - 6] },

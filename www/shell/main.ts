@@ -40,6 +40,8 @@ let moves = !stillness.matches;
 
 /** Shows the first view or the tool, if the address names one of them. A link to a section only scrolls. */
 function follow(): void {
+  // Browsers do not find a section whose link says more after a question mark.
+  if (location.hash.startsWith('#explain?')) part('#explain').scrollIntoView();
   const { view } = document.body.dataset;
   // A link to the tool may say more after a question mark.
   const next = { '#first': 'first', '#watch': 'watch' }[location.hash.replace(/\?.*/, '')] ?? view;

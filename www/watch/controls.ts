@@ -21,6 +21,7 @@ export const controls = {
   back: button('back'),
   play: button('play'),
   step: button('step'),
+  phase: button('phase'),
   compare: button('compare'),
   cut: input('cut'),
   scramble: button('scramble'),

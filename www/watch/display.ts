@@ -8,6 +8,7 @@ import type { Replacement } from './handover.ts';
 import { showLegend } from './legend.ts';
 import { Inspection } from './inspection.ts';
 import type { Opened } from './opening.ts';
+import type { Phases } from './phases.ts';
 import { palette } from './palette.ts';
 import { Panel } from './panel.ts';
 import type { Run } from './run.ts';
@@ -33,6 +34,8 @@ export class Display {
   readonly inspection: Inspection;
   readonly comparison: Comparison;
   readonly edgeDrawing: EdgeDrawing;
+  /** The stops between the phases of an iteration. */
+  phases: Phases | undefined;
   readonly #timeline = new Timeline();
   readonly #graphics: Graphics;
   look: EdgeLook = 'coloured';
@@ -112,7 +115,7 @@ export class Display {
     try {
       const indices = states && (await shown.run.triangles());
       if (picture !== this.#pictures) return false;
-      scene.showEdges(indices, states);
+      scene.showEdges(indices, indices && states && (this.phases?.take(shown.run, indices, states) ?? states));
       this.#turn(shown.run, indices);
       if (indices) this.lookInto(shown, indices);
       return true;
@@ -164,6 +167,7 @@ export class Display {
 
   showTransport(status: RunStatus): void {
     showTransport(this.#timeline, status);
+    this.phases?.say();
   }
 
   /** Shows the same run on another engine. */

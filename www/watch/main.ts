@@ -19,6 +19,7 @@ import { listen } from './keys.ts';
 import { tell } from './notice.ts';
 import { placeIn, type Place } from './link.ts';
 import { Page } from './page.ts';
+import { FEW } from './phases.ts';
 import { MovingSamples } from '../move/moving-samples.ts';
 import { FIRST, MOVING, SAMPLES } from '../models/samples.js';
 import type { OpenMesh } from './run.ts';
@@ -122,6 +123,7 @@ function connectRun(page: Page, movingSamples: MovingSamples): void {
     () => void (movingSamples.isShown ? movingSamples.toggle() : page.player.toggle()),
   );
   controls.step.addEventListener('click', () => void page.player.step());
+  controls.phase.addEventListener('click', () => void page.phases.step(1));
   controls.slider.addEventListener('input', () => void page.player.seek(controls.slider.valueAsNumber));
   controls.compare.addEventListener('click', () => page.compare());
   controls.scramble.addEventListener('click', () => void scramble(page));
@@ -217,6 +219,13 @@ function connectKeys(
       act: () => void page.player.seekBy(-1),
     },
     { keys: ['ArrowRight'], keptBy: slides, act: () => controls.step.click() },
+    {
+      keys: [','],
+      label: ', .',
+      says: `one phase back, on, up to ${FEW} triangles`,
+      act: () => void page.phases.step(-1),
+    },
+    { keys: ['.'], act: () => void page.phases.step(1) },
     {
       keys: ['Home'],
       label: 'Home End',

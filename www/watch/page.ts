@@ -14,6 +14,7 @@ import { Jobs, showError, showProgress } from './jobs.ts';
 import type { Place } from './link.ts';
 import { Opening, type Opened } from './opening.ts';
 import { onTheme } from '../shell/theme.ts';
+import { Phases } from './phases.ts';
 import { Player } from './player.ts';
 import { Recovery } from './recovery.ts';
 import { Measuring } from './measuring.ts';
@@ -41,13 +42,24 @@ export class Page {
   });
   readonly #graphics: Graphics = new Graphics(
     (reason) => void this.#recovery.recover(reason, true),
-    () => this.#display.inspection.draw(),
+    () => {
+      this.#display.inspection.draw();
+      this.phases.draw();
+    },
   );
   readonly #display: Display = new Display(
     this.#graphics,
     (at) => void this.player.seek(at),
     (from, to) => this.#draw(from, to),
   );
+  /** The stops between the phases of an iteration. */
+  readonly phases: Phases = new Phases({
+    scene: () => this.scene,
+    shown: () => this.shown,
+    step: () => this.player.step(),
+    back: () => this.player.seekBy(-1),
+    redraw: () => this.redraw(),
+  });
   readonly #draw: (from: number, to: number) => void;
   readonly #jobs = new Jobs(
     () => this.#showTransport(),
@@ -99,6 +111,7 @@ export class Page {
   /** `draw` is called with the ends of an edge that the user draws. */
   constructor(draw: (from: number, to: number) => void) {
     this.#draw = draw;
+    this.#display.phases = this.phases;
   }
 
   /** Starts the page, with a mesh unless something else is shown in place of a run. */

@@ -9,6 +9,7 @@ import type { Opened } from './opening.ts';
 import { ENGINES, reasons } from './panel.ts';
 import type { Run, Summary } from './run.ts';
 import { statusOf } from './sentences.ts';
+import { FEW } from './phases.ts';
 import { showPosition, type Timeline } from './timeline.ts';
 
 export interface RunStatus {
@@ -30,6 +31,8 @@ export function showTransport(timeline: Timeline, status: RunStatus): void {
   controls.play.ariaLabel = isPlaying ? 'Pause' : 'Play';
   controls.play.disabled = !isIdle;
   controls.step.disabled = !isIdle || run.isOver;
+  controls.phase.disabled = !isIdle;
+  controls.phase.hidden = !opened || opened.mesh.indices.length > 3 * FEW;
   for (const control of [controls.back, controls.reset]) control.disabled = !isIdle || at === 0;
   for (const control of [controls.compare, controls.scramble, controls.draw, controls.take]) control.disabled = !isIdle;
   const flips = ahead ?? run?.iterations ?? [];
