@@ -31,6 +31,7 @@ export class Page {
     ahead: () => this.#ahead,
     isBusy: () => this.#jobs.isBusy,
     redraw: () => this.redraw(),
+    lookAhead: async () => this.shown && this.#display.lookAhead(this.shown),
     began: () => this.#showTransport(),
     paused: () => {
       this.#showTransport();
@@ -40,7 +41,7 @@ export class Page {
   });
   readonly #graphics: Graphics = new Graphics(
     (reason) => void this.#recovery.recover(reason, true),
-    () => this.#display.inspection.draw(),
+    () => this.#display.pictured(),
   );
   readonly #display: Display = new Display(
     this.#graphics,
