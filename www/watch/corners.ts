@@ -34,8 +34,8 @@ export interface Corners {
   setPositions(positions: Float32Array): void;
   /** `count` is the number of indices. An array is copied to the GPU at each call. */
   setTriangles(drawn: Drawn, count: number): void;
-  /** One number for each triangle. An array is copied to the GPU at each call. */
-  setSides(drawn: Drawn): void;
+  /** One number for each triangle, or none. An array is copied to the GPU at each call. */
+  setSides(drawn: Drawn | undefined): void;
   /** Releases all buffers. */
   clear(): void;
 }
@@ -54,7 +54,9 @@ export class BufferCorners implements Corners {
   readonly #share: Sharing;
   readonly #positions = storage(new StorageBufferAttribute(new Float32Array(1), 1), 'float', 1).toReadOnly();
   readonly #triangles = storage(new StorageBufferAttribute(new Uint32Array(1), 1), 'uint', 1).toReadOnly();
-  readonly #sides = storage(new StorageBufferAttribute(new Uint32Array(1), 1), 'uint', 1).toReadOnly();
+  /** In place of a buffer that may be destroyed. */
+  readonly #none = new StorageBufferAttribute(new Uint32Array(1), 1);
+  readonly #sides = storage(this.#none, 'uint', 1).toReadOnly();
   readonly #attributes = new WeakMap<GPUBuffer, StorageBufferAttribute>();
   /** The buffers for arrays. */
   readonly #own = new Map<Float32Array | Uint32Array, GPUBuffer>();
@@ -73,19 +75,21 @@ export class BufferCorners implements Corners {
   }
 
   setPositions(positions: Float32Array): void {
-    this.#positions.value = this.#attribute(this.#copy(positions));
+    this.#positions.value = this.#attribute(this.#copy(positions, 'positions'));
   }
 
   setTriangles(drawn: Drawn, count: number): void {
-    this.#triangles.value = this.#attribute(drawn instanceof Uint32Array ? this.#copy(drawn) : drawn);
+    this.#triangles.value = this.#attribute(drawn instanceof Uint32Array ? this.#copy(drawn, 'triangles') : drawn);
     if (this.geometry.attributes['position']?.count !== count) this.geometry = geometryFor(count);
   }
 
-  setSides(drawn: Drawn): void {
-    this.#sides.value = this.#attribute(drawn instanceof Uint32Array ? this.#copy(drawn) : drawn);
+  setSides(drawn: Drawn | undefined): void {
+    if (!drawn) this.#sides.value = this.#none;
+    else this.#sides.value = this.#attribute(drawn instanceof Uint32Array ? this.#copy(drawn, 'sides') : drawn);
   }
 
   clear(): void {
+    this.setSides(undefined);
     for (const buffer of this.#own.values()) buffer.destroy();
     this.#own.clear();
     this.geometry.dispose();
@@ -93,11 +97,11 @@ export class BufferCorners implements Corners {
   }
 
   /** A buffer with the numbers of an array. */
-  #copy(array: Float32Array | Uint32Array): GPUBuffer {
+  #copy(array: Float32Array | Uint32Array, what: string): GPUBuffer {
     let buffer = this.#own.get(array);
     if (!buffer) {
       const usage = GPUBufferUsage.STORAGE | GPUBufferUsage.COPY_DST;
-      buffer = this.#device.createBuffer({ size: Math.max(4, array.byteLength), usage });
+      buffer = this.#device.createBuffer({ label: `copied ${what}`, size: array.byteLength, usage });
       this.#own.set(array, buffer);
     }
     this.#device.queue.writeBuffer(buffer, 0, array as Uint32Array<ArrayBuffer>);
@@ -158,7 +162,8 @@ export class TextureCorners implements Corners {
     this.#triangles = drawn;
   }
 
-  setSides(drawn: Drawn): void {
+  setSides(drawn: Drawn | undefined): void {
+    if (!drawn) return;
     if (!(drawn instanceof Uint32Array)) throw new Error('WebGL2 cannot draw from a buffer of WebGPU');
     let texture = this.#sides.value as DataTexture;
     if (texture.image.height !== rowsFor(drawn.length)) {

@@ -135,7 +135,7 @@ export class Display {
     const { scene } = this.#graphics;
     if (!this.#isLarge || !scene) return undefined;
     if (this.look === 'none') return 'nothing';
-    return scene.clarity === 1 ? 'edges' : scene.clarity === 0 ? 'tints' : 'both';
+    return ({ all: 'edges', none: 'tints', some: 'both' } as const)[scene.edgesSeen];
   }
 
   /** Waits until the page has drawn what it shows. */

@@ -74,13 +74,17 @@ export function showDraws(draws: Draws | undefined, isColoured: boolean): void {
   says.hidden = draws === undefined;
   says.dataset['draws'] = draws ?? '';
   if (draws === undefined) return;
-  const hot = isColoured ? [made('b', 'hot', 'Orange'), draws === 'edges' ? ': the edge flips. ' : ': an edge of it flips. '] : [];
+  const hot = isColoured ? [made('b', 'hot', 'Orange'), ': an edge flips. '] : [];
   const counted = `States are counted up to ${number.format(COLOURED)} triangles.`;
   const words = {
     nothing: ['The surface alone. Press E for its edges.'],
     edges: [...hot, counted],
-    tints: ['Edges are too short to draw here: each triangle is tinted by its smallest angle. ', ...hot, 'Zoom in for edges.'],
-    both: ['Edges, and below them each triangle tinted by its smallest angle. ', ...hot, 'Zoom in for edges alone.'],
+    tints: [
+      'Edges are too short to draw here: each triangle is tinted by its smallest angle. ',
+      ...hot,
+      'Zoom in for edges.',
+    ],
+    both: ['Edges where they are long enough. Elsewhere each triangle is tinted by its smallest angle. ', ...hot],
   }[draws];
   says.replaceChildren(...words, ...(draws === 'tints' || draws === 'both' ? [scale()] : []));
 }

@@ -10,7 +10,7 @@ import {
 } from 'three/webgpu';
 import { Camera, type Insets } from './camera.ts';
 import { BufferCorners, TextureCorners } from './corners.ts';
-import { EdgeScale } from './edge-scale.ts';
+import { EdgeScale, type Seen } from './edge-scale.ts';
 import { Layer } from './layer.ts';
 import type { Drawn } from './run.ts';
 import type { Palette } from './palette.ts';
@@ -35,6 +35,7 @@ export class Scene {
   /** The input, at the left of the cut. */
   readonly #before: Layer;
   readonly #scale = new EdgeScale();
+  #edgesSeen: Seen = 'all';
   readonly #observer: ResizeObserver;
   readonly #drawn: () => void;
   readonly camera: Camera;
@@ -121,14 +122,14 @@ export class Scene {
     this.camera.lookAt(this.#positions, this.#dimension);
   }
 
-  /** Tells how long the edges are. Without that, they are drawn at any size. */
+  /** Takes the triangles whose edges tell what is seen of edges. */
   measureEdges(indices: Uint32Array): void {
     this.#scale.sample(this.#positions, indices);
   }
 
-  /** How clear edges are in the last picture: 1 where they are drawn, 0 where they are too short and triangles tinted. */
-  get clarity(): number {
-    return this.#paint.clear.value;
+  /** What the last picture shows of edges, if they are drawn. Where they are too short, triangles are tinted. */
+  get edgesSeen(): Seen {
+    return this.#edgesSeen;
   }
 
   /**
@@ -225,8 +226,7 @@ export class Scene {
   pick(x: number, y: number, indices: Uint32Array): number | undefined {
     const ray = this.camera.rayAt(x, y);
     const corners = [new Vector3(), new Vector3(), new Vector3()] as const;
-    const load = (t: number) =>
-      corners.forEach((corner, k) => corner.fromArray(this.#positions, 3 * indices[t + k]!));
+    const load = (t: number) => corners.forEach((corner, k) => corner.fromArray(this.#positions, 3 * indices[t + k]!));
     const hit = new Vector3();
     let [nearest, found] = [Infinity, -1];
     for (let t = 0; t < indices.length; t += 3) {
@@ -261,7 +261,7 @@ export class Scene {
     const renderer = this.#renderer;
     this.#now.edges.setPixel(this.camera.pixel);
     const { clientWidth: width, clientHeight: height } = this.canvas;
-    this.#paint.clear.value = EdgeScale.clarity(this.#scale.median(this.camera.three, width, height));
+    this.#edgesSeen = this.#scale.seen(this.camera.three, width, height);
     this.#paint.ratio.value = renderer.getPixelRatio();
     if (this.#cut === undefined) {
       renderer.render(this.#scene, this.camera.three);

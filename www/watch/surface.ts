@@ -13,6 +13,7 @@ import {
   Fn,
   fract,
   max,
+  min,
   mix,
   positionView,
   select,
@@ -25,6 +26,7 @@ import {
   vertexIndex,
 } from 'three/tsl';
 import type { Corners } from './corners.ts';
+import { CLEAR, GONE } from './edge-scale.ts';
 import { light } from './light.ts';
 import type { Palette } from './palette.ts';
 import type { Drawn } from './run.ts';
@@ -42,15 +44,13 @@ const [HOT, WARM] = [0.88, 0.13];
 const [PLAIN, RIM, COLOURED] = [0.9, 1.6, 2.2];
 const DEGREES = 180 / Math.PI;
 
-/** The colours of surfaces, and how clear the edges are. All surfaces of a scene share them. */
+/** The colours of surfaces. All surfaces of a scene share them. */
 export class Paint {
   readonly lit = uniform(new Color());
   readonly shaded = uniform(new Color());
   readonly plane = uniform(new Color());
   readonly line = uniform(new Color());
   readonly spark = uniform(new Color());
-  /** From 0, where triangles are tinted, to 1, where edges are drawn. */
-  readonly clear = uniform(1);
   /** Pixels of the device for one of the page. */
   readonly ratio = uniform(1);
   readonly #states = EDGE_STATES.map((state) => ({ state, look: new Vector4(), dash: new Vector4() }));
@@ -111,7 +111,7 @@ export class Surface {
   /** `isLined`: whether it shows its edges, or tints. `sides` has the states of the sides of each triangle. */
   show(triangles: Drawn, count: number, isLined: boolean, sides: Drawn | undefined): void {
     this.corners.setTriangles(triangles, count);
-    if (sides) this.corners.setSides(sides);
+    this.corners.setSides(sides);
     this.#known.value = sides ? 0xfff : 0;
     this.#isLined.value = isLined ? 1 : 0;
     this.object.geometry = this.corners.geometry;
@@ -150,15 +150,26 @@ export class Surface {
         vec2(right.x, down.x).length(),
         vec2(right.y, down.y).length(),
       );
+      const longest = max(lengths.x, lengths.y, lengths.z);
+      const shortest = min(lengths.x, lengths.y, lengths.z);
+      const median = lengths.x.add(lengths.y).add(lengths.z).sub(longest).sub(shortest).div(paint.ratio);
+      // From 0, where the triangle is tinted, to 1, where its edges are drawn.
+      const clear = median
+        .sub(GONE)
+        .div(CLEAR - GONE)
+        .clamp(0, 1)
+        .toVar();
       const pixels = shares.zxy.div(slopes).toVar();
       const along = shares.yzx.sub(shares).mul(0.5).mul(lengths).div(paint.ratio).toVar();
 
       const face = mix(paint.plane, mix(paint.shaded, paint.lit, light()), this.#isSolid);
-      const thin = float(1).sub(smallestAngle(right, down).mul(DEGREES / ROUND)).clamp(0, 1);
-      const tint = mix(float(LEAST), float(MOST), thin).mul(paint.clear.oneMinus());
+      const thin = float(1)
+        .sub(smallestAngle(right, down).mul(DEGREES / ROUND))
+        .clamp(0, 1);
+      const tint = mix(float(LEAST), float(MOST), thin).mul(clear.oneMinus());
       const hot = max(...(states.map((state) => select(state.equal(uint(1)), float(1), float(0))) as [Num, Num, Num]));
       const tinted = mix(face, paint.line, tint.mul(this.#isLined));
-      const colour = mix(tinted, paint.spark, hot.mul(mix(float(HOT), float(WARM), paint.clear))).toVar();
+      const colour = mix(tinted, paint.spark, hot.mul(mix(float(HOT), float(WARM), clear))).toVar();
 
       const sides = [0, 1, 2].map((k) => {
         const look = paint.looks.element(states[k]!) as Node<'vec4'>;
@@ -167,14 +178,22 @@ export class Surface {
         const [pixel, at] = [pixels[axis], along[axis]];
         const cover = look.w.mul(paint.ratio).mul(0.5).sub(pixel).add(0.5).clamp(0, 1);
         // Dashes are centred, so that those of both triangles of an edge meet.
-        const isInDash = fract(at.add(dash.x.mul(0.5)).div(dash.y)).mul(dash.y).lessThan(dash.x);
+        const isInDash = fract(at.add(dash.x.mul(0.5)).div(dash.y))
+          .mul(dash.y)
+          .lessThan(dash.x);
         const isPlain = states[k]!.equal(uint(0));
-        return { look, plain: select(isPlain, cover, float(0)), coloured: select(isPlain.not().and(isInDash), cover, float(0)) };
+        return {
+          look,
+          plain: select(isPlain, cover, float(0)),
+          coloured: select(isPlain.not().and(isInDash), cover, float(0)),
+        };
       });
       // How much of the triangle its edges would cover.
       const cover = lengths.x.add(lengths.y).add(lengths.z).mul(turn.abs()).mul(paint.ratio).mul(PLAIN);
-      const opacity = float(COVERED).div(max(cover, float(COVERED))).mul(OPAQUE);
-      const shown = paint.clear.mul(this.#isLined);
+      const opacity = float(COVERED)
+        .div(max(cover, float(COVERED)))
+        .mul(OPAQUE);
+      const shown = clear.mul(this.#isLined);
       const plain = max(...(sides.map((side) => side.plain) as [Num, Num, Num]));
       colour.assign(mix(colour, paint.line, plain.mul(opacity).mul(shown)));
       for (const { look, coloured } of sides) colour.assign(mix(colour, look.xyz, coloured.mul(shown)));
