@@ -35,7 +35,6 @@ export class Scene {
   /** The input, at the left of the cut. */
   readonly #before: Layer;
   readonly #scale = new EdgeScale();
-  #edgesSeen: Seen = 'all';
   readonly #observer: ResizeObserver;
   readonly #drawn: () => void;
   readonly camera: Camera;
@@ -59,7 +58,8 @@ export class Scene {
     this.#palette = palette;
     this.#drawn = drawn;
     const share = this.share.bind(this);
-    const layer = () => new Layer(device ? new BufferCorners(device, share) : new TextureCorners(), this.#paint);
+    const onGpu = this.isOnWebGpu ? device : undefined;
+    const layer = () => new Layer(onGpu ? new BufferCorners(onGpu, share) : new TextureCorners(), this.#paint);
     [this.#now, this.#before] = [layer(), layer()];
     this.camera = new Camera(renderer.domElement, insets, () => this.redraw());
     this.#scene.add(this.#before.group, this.#now.group);
@@ -127,9 +127,10 @@ export class Scene {
     this.#scale.sample(this.#positions, indices);
   }
 
-  /** What the last picture shows of edges, if they are drawn. Where they are too short, triangles are tinted. */
+  /** What is seen of edges now, if they are drawn. Where they are too short, triangles are tinted. */
   get edgesSeen(): Seen {
-    return this.#edgesSeen;
+    const { clientWidth: width, clientHeight: height } = this.canvas;
+    return this.#scale.seen(this.camera.three, width, height);
   }
 
   /**
@@ -260,13 +261,12 @@ export class Scene {
   #draw(): void {
     const renderer = this.#renderer;
     this.#now.edges.setPixel(this.camera.pixel);
-    const { clientWidth: width, clientHeight: height } = this.canvas;
-    this.#edgesSeen = this.#scale.seen(this.camera.three, width, height);
     this.#paint.ratio.value = renderer.getPixelRatio();
     if (this.#cut === undefined) {
       renderer.render(this.#scene, this.camera.three);
       return;
     }
+    const { clientWidth: width, clientHeight: height } = this.canvas;
     const x = Math.round(this.#cut * width);
     renderer.setScissorTest(true);
     for (const [layer, left, right] of [
