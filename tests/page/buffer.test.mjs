@@ -46,12 +46,16 @@ function watchBuffers() {
   watch(GPUDevice, 'createRenderBundleEncoder', (encoder, device) => ofEncoder.set(idOf(encoder), idOf(device)));
   watch(GPUCommandEncoder, 'beginRenderPass', inherit);
   watch(GPUCommandEncoder, 'beginComputePass', inherit);
-  const index = new Map();
+  const groups = new Map();
   for (const encoder of [GPURenderPassEncoder, GPURenderBundleEncoder]) {
-    watch(encoder, 'setIndexBuffer', (_, pass, [buffer]) => index.set(pass, buffer));
-    watch(encoder, 'drawIndexed', (_, pass, [count]) =>
-      note('draw', { buffer: idOf(index.get(pass)), count, device: ofEncoder.get(idOf(pass)) }),
-    );
+    watch(encoder, 'setBindGroup', (_, pass, [index, group]) => {
+      if (!groups.has(pass)) groups.set(pass, []);
+      groups.get(pass)[index] = group;
+    });
+    watch(encoder, 'draw', (_, pass, [count]) => {
+      const buffers = groups.get(pass).flatMap((group) => bound.get(group));
+      note('draw', { buffers, count, device: ofEncoder.get(idOf(pass)) });
+    });
   }
   watch(GPUCommandEncoder, 'copyBufferToBuffer', (_, __, args) => {
     const target = args.find((arg, i) => i > 0 && arg instanceof GPUBuffer);
@@ -106,17 +110,22 @@ test('while it plays on WebGPU, the page draws from the session’s own buffer, 
   assert.ok(passes.length >= rows.length, `${passes.length} compute passes bind the triangles`);
 
   const draws = playing.filter(({ what, count }) => what === 'draw' && count === mesh.indices.length);
-  assert.deepEqual([...new Set(draws.map(({ buffer }) => buffer))], [id], 'buffers that are drawn');
+  // A shader reads the triangles. It also reads positions and states, and no other copy of the triangles.
+  const ofTriangles = ({ label, size }) => size === bytes && label !== 'copied positions';
+  const drawn = draws.flatMap((draw) => draw.buffers).filter((buffer) => ofTriangles(buffers[buffer]));
+  assert.deepEqual([...new Set(drawn)], [id], 'buffers that are drawn');
   assert.deepEqual([...new Set([...draws, ...passes].map(({ device }) => device))], [triangles.device]);
 
-  // The page records the change of each iteration, and draws before it records the next.
-  const kept = playing.flatMap(({ what, buffer }, at) =>
+  // The page records the change of each iteration, and draws before it records the next. It knows the first one before
+  // it plays, so that it can show the edges that flip.
+  const kept = events.flatMap(({ what, buffer }, at) =>
     what === 'create' && /^changes of/.test(buffers[buffer].label) ? [at] : [],
   );
   assert.equal(kept.length, rows.length, 'iterations');
+  assert.equal(events[kept[0]].state, 'ready');
   kept.forEach((from, i) => {
-    const until = kept[i + 1] ?? playing.length;
-    const drawn = playing.slice(from, until).filter((event) => draws.includes(event)).length;
+    const until = kept[i + 1] ?? events.length;
+    const drawn = events.slice(from, until).filter((event) => draws.includes(event)).length;
     assert.ok(drawn >= 1, `${drawn} draws after iteration ${i}`);
   });
 

@@ -28,11 +28,9 @@ import {
   vec3,
   vertexIndex,
 } from 'three/tsl';
+import type { Sharing } from '../watch/corners.ts';
 import { light } from '../watch/light.ts';
 import type { Palette } from '../watch/palette.ts';
-
-/** Lets an attribute use a buffer directly. */
-export type Sharing = <A extends BufferAttribute>(attribute: A, buffer: GPUBuffer, count: number) => A;
 
 /** Seconds in which the heat of an edge falls to a third. */
 const COOLING = 0.38;

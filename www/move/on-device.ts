@@ -2,10 +2,11 @@
 
 import { FlipSession } from 'edgeflip';
 import type { IndexedMesh } from 'edgeflip/files';
+import type { Sharing } from '../watch/corners.ts';
 import source from './kernels.wgsl?raw';
 import { bubble, HALF, kept, lengthOf, LONGEST, PUSH, rimOf, SHARPNESS, type Motion, type Step } from './motions.ts';
 import { LONG_AGO, type MovingMesh } from './moving-mesh.ts';
-import { MovingSurface, type Sharing } from './moving-surface.ts';
+import { MovingSurface } from './moving-surface.ts';
 
 /** Workgroups of 256 threads. Each thread loops over further items. */
 const MOST_WORKGROUPS = 4096;

@@ -8,7 +8,7 @@ import type { Motion, Point } from './motions.ts';
 import type { MovingMesh } from './moving-mesh.ts';
 import { moveInArrays } from './on-arrays.ts';
 import { moveOnDevice } from './on-device.ts';
-import type { Sharing } from './moving-surface.ts';
+import type { Sharing } from '../watch/corners.ts';
 
 /** Starts a mesh with about so many triangles. `remark` says why the GPU is not used. */
 export async function startMovingMesh(

@@ -1,12 +1,12 @@
 /** The triangles of a run whose engine is in a worker: they are in main memory. */
 
-import { applyChange, type Change, writeLines } from './change.ts';
+import { applyChange, writeFlips, type Change, type Moment } from './change.ts';
 import type { Step, Track } from './run.ts';
 
 export class ArrayTrack implements Track {
   readonly #indices: Uint32Array;
   readonly #changes: Change[] = [];
-  #lines: Uint32Array | undefined;
+  #sides: Uint32Array | undefined;
 
   constructor(indices: Uint32Array) {
     this.#indices = indices.slice();
@@ -26,10 +26,10 @@ export class ArrayTrack implements Track {
     return this.#indices;
   }
 
-  lines(): Uint32Array {
-    this.#lines ??= new Uint32Array(2 * this.#indices.length);
-    writeLines(this.#lines, this.#indices);
-    return this.#lines;
+  flipping(index: number, moment: Moment): Uint32Array {
+    this.#sides ??= new Uint32Array(this.#indices.length / 3);
+    writeFlips(this.#sides, this.#changes[index]!, moment);
+    return this.#sides;
   }
 
   async triangles(): Promise<Uint32Array> {

@@ -1,5 +1,7 @@
 /** The change of an iteration, in a form that can be undone and redone. */
 
+import { EDGE_STATES } from 'edgeflip';
+
 /** Offsets into the indices, and the old value xor the new value at each: the same change in both directions. */
 export interface Change {
   at: Uint32Array<ArrayBuffer>;
@@ -26,10 +28,21 @@ export function applyChange(indices: Uint32Array, { at, xor }: Change): void {
   for (let k = 0; k < at.length; k++) indices[at[k]!]! ^= xor[k]!;
 }
 
-/** The outlines of all triangles, as indices of line segments: 6 per triangle. */
-export function writeLines(lines: Uint32Array, indices: Uint32Array): void {
-  for (let h = 0; h < indices.length; h++) {
-    lines[2 * h] = indices[h]!;
-    lines[2 * h + 1] = indices[h % 3 === 2 ? h - 2 : h + 1]!;
-  }
+/** Whether the sides that a change flips are those before it or those after it. */
+export type Moment = 'before' | 'after';
+
+/**
+ * The corner of a triangle at which the side that flips begins, counted from the corner that the flip changes. The old
+ * side ends there, and the new one begins there.
+ */
+export const SIDE_FROM: Record<Moment, number> = { before: 2, after: 0 };
+
+/** The number of the state of an edge that flips. */
+const FLIPS = EDGE_STATES.indexOf('flips');
+
+/** Writes the sides that a change flips, as their states, in the form of `Corners.sides`. */
+export function writeFlips(sides: Uint32Array, { at }: Change, moment: Moment): void {
+  sides.fill(0);
+  const from = SIDE_FROM[moment];
+  for (const h of at) sides[Math.floor(h / 3)] = FLIPS << (4 * ((h + from) % 3));
 }

@@ -5,13 +5,14 @@ import { EdgeDrawing } from './edge-drawing.ts';
 import type { Graphics } from './graphics.ts';
 import { Comparison } from './comparison.ts';
 import type { Replacement } from './handover.ts';
-import { showLegend } from './legend.ts';
+import { showDraws, showLegend, type Draws } from './legend.ts';
 import { Inspection } from './inspection.ts';
 import type { Opened } from './opening.ts';
 import type { Phases } from './phases.ts';
 import { palette } from './palette.ts';
 import { Panel } from './panel.ts';
-import type { Run } from './run.ts';
+import { SLOW } from './player.ts';
+import { COLOURED, type Run } from './run.ts';
 import type { Shown } from './shown.ts';
 import { Timeline } from './timeline.ts';
 import { stillness } from '../shell/stillness.ts';
@@ -19,12 +20,6 @@ import { showTransport, type RunStatus } from './transport.ts';
 import { flipsBetween } from './flip-animation.ts';
 import { unitPositions } from './unit.ts';
 import { viewpointOf } from './viewpoint.ts';
-
-/** The most triangles of a mesh that is first shown with its edges. */
-const EDGES_SEEN = 50_000;
-
-/** Flips slide if there are at least so many milliseconds from one iteration to the next. */
-const SLOW = 250;
 
 /** How the edges are drawn: in colours, plain, or not at all. */
 export type EdgeLook = 'coloured' | 'plain' | 'none';
@@ -39,6 +34,9 @@ export class Display {
   readonly #timeline = new Timeline();
   readonly #graphics: Graphics;
   look: EdgeLook = 'coloured';
+  /** Whether the mesh is too large for its states to be counted, and what the page has said about its picture. */
+  #isLarge = false;
+  #saysDraws = '';
   /** The number of pictures so far. A picture is dropped when a later one begins. */
   #pictures = 0;
   /** What the last picture showed in colours. */
@@ -82,7 +80,9 @@ export class Display {
       scene?.lookAtAll();
       scene?.camera.lookFrom(viewpointOf(positions, mesh.indices));
     }
-    if (isOther) this.look = mesh.indices.length <= 3 * EDGES_SEEN ? 'coloured' : 'none';
+    scene?.measureEdges(mesh.indices);
+    this.#isLarge = mesh.indices.length > 3 * COLOURED;
+    if (isOther) this.look = 'coloured';
     this.comparison.begin(mesh.indices);
     this.edgeDrawing.begin(mesh);
     element('no-mesh').hidden = scene !== undefined;
@@ -102,7 +102,10 @@ export class Display {
     this.edgeDrawing.begin(undefined);
     this.#graphics.scene?.clear();
     this.panel.clear();
-    showLegend(undefined, 0, undefined);
+    this.#isLarge = false;
+    this.#saysDraws = '';
+    showDraws(undefined, false);
+    showLegend(undefined, undefined);
     element('no-mesh').hidden = false;
   }
 
@@ -125,6 +128,24 @@ export class Display {
     }
   }
 
+  /** The scene has drawn a picture. */
+  pictured(): void {
+    this.inspection.draw();
+    const draws = this.#draws;
+    const isColoured = this.look === 'coloured';
+    const says = `${draws} ${isColoured}`;
+    if (says === this.#saysDraws) return;
+    this.#saysDraws = says;
+    showDraws(draws, isColoured);
+  }
+
+  get #draws(): Draws | undefined {
+    const { scene } = this.#graphics;
+    if (!this.#isLarge || !scene) return undefined;
+    if (this.look === 'none') return 'nothing';
+    return ({ all: 'edges', none: 'tints', some: 'both' } as const)[scene.edgesSeen];
+  }
+
   /** Waits until the page has drawn what it shows. */
   async painted(): Promise<void> {
     await this.#graphics.scene?.shown();
@@ -144,12 +165,26 @@ export class Display {
     this.#graphics.scene?.animateFlips(flips, slides ? (isBack ? 'back' : 'on') : 'not');
   }
 
-  /** Draws the triangles. If edges are coloured, returns their states; else draws the outlines of the triangles. */
+  /** Draws the triangles. Returns the states of their edges if these are drawn one by one, as those of a small mesh. */
   showTriangles({ run, opened }: Shown): Uint8Array | undefined {
-    const states = this.look === 'coloured' ? run.states : undefined;
-    const lines = this.look !== 'none' && !states ? run.lines() : undefined;
-    this.#graphics.scene?.show(run.drawn, opened.mesh.indices.length, lines);
+    const isColoured = this.look === 'coloured';
+    const states = isColoured ? run.states : undefined;
+    const sides = isColoured && !states ? run.flipping : undefined;
+    this.#graphics.scene?.show(run.drawn, opened.mesh.indices.length, this.look !== 'none' && !states, sides);
     return states;
+  }
+
+  /** Measures the edges of these triangles on screen from now on. */
+  measureEdges(indices: Uint32Array): void {
+    const { scene } = this.#graphics;
+    scene?.measureEdges(indices);
+    scene?.redraw();
+  }
+
+  /** Looks one iteration ahead in a large mesh, and shows the edges that flip in it. */
+  async lookAhead(shown: Shown): Promise<void> {
+    if (shown.run.states || this.look !== 'coloured') return;
+    if (await shown.run.lookAhead()) this.showTriangles(shown);
   }
 
   /** Lets the user inspect the edges of these triangles. */
@@ -161,7 +196,7 @@ export class Display {
   showNumbers({ run, opened, settings }: Shown, status: RunStatus, fingerprint?: string): void {
     this.panel.showIterations(run.iterations, run.at);
     this.panel.showFacts(opened.mesh, run, status.summary, settings.maxNormalAngle, fingerprint);
-    showLegend(run.states, opened.mesh.indices.length / 3, status.summary?.nonManifoldEdges);
+    showLegend(run.states, status.summary?.nonManifoldEdges);
     this.showTransport(status);
   }
 

@@ -2,12 +2,13 @@
 
 import { EdgeflipError } from 'edgeflip';
 import source from './gpu-track.wgsl?raw';
+import { SIDE_FROM, type Moment } from './change.ts';
 import type { Step, Track } from './run.ts';
 
 /** The most workgroups, of 256 threads each. They keep a GPU busy; each thread loops over further items. */
 const MOST_WORKGROUPS = 4096;
 
-type Kernel = 'record' | 'apply' | 'lines';
+type Kernel = 'record' | 'apply' | 'mark';
 
 export class GpuTrack implements Track {
   readonly #device: GPUDevice;
@@ -18,7 +19,7 @@ export class GpuTrack implements Track {
   readonly #shown: GPUBuffer;
   readonly #count: GPUBuffer;
   readonly #changes: GPUBuffer[] = [];
-  #lines: GPUBuffer | undefined;
+  #sides: GPUBuffer | undefined;
   #isFreed = false;
   readonly #layout: GPUBindGroupLayout;
   readonly #pipelines: Record<Kernel, GPUComputePipeline>;
@@ -40,7 +41,7 @@ export class GpuTrack implements Track {
     const layout = device.createPipelineLayout({ bindGroupLayouts: [this.#layout] });
     const module = device.createShaderModule({ code: source });
     const pipeline = (entryPoint: Kernel) => device.createComputePipeline({ layout, compute: { module, entryPoint } });
-    this.#pipelines = { record: pipeline('record'), apply: pipeline('apply'), lines: pipeline('lines') };
+    this.#pipelines = { record: pipeline('record'), apply: pipeline('apply'), mark: pipeline('mark') };
     const encoder = device.createCommandEncoder();
     encoder.copyBufferToBuffer(newest, 0, this.#shown, 0, newest.size);
     device.queue.submit([encoder.finish()]);
@@ -68,27 +69,31 @@ export class GpuTrack implements Track {
     if (this.#isFreed) return changes.destroy();
     this.#changes.push(changes);
     this.#device.queue.writeBuffer(this.#count, 0, new Uint32Array(1));
-    this.#run('record', changes, this.#newest.size / 4);
+    this.#run('record', changes, this.#shown, this.#newest.size / 4);
   }
 
   apply(index: number): void {
     const changes = this.#changes[index]!;
-    this.#run('apply', changes, changes.size / 8);
+    this.#run('apply', changes, this.#shown, changes.size / 8);
   }
 
   drawn(isNewest: boolean): GPUBuffer {
     return isNewest ? this.#newest : this.#shown;
   }
 
-  lines(): GPUBuffer | undefined {
-    if (2 * this.#shown.size > this.#device.limits.maxStorageBufferBindingSize) return undefined;
-    this.#lines ??= this.#device.createBuffer({
-      label: 'lines',
-      size: 2 * this.#shown.size,
-      usage: GPUBufferUsage.STORAGE | GPUBufferUsage.INDEX,
+  flipping(index: number, moment: Moment): GPUBuffer {
+    this.#sides ??= this.#device.createBuffer({
+      label: 'sides that flip',
+      size: (4 * this.#length) / 3,
+      usage: GPUBufferUsage.STORAGE | GPUBufferUsage.COPY_DST,
     });
-    this.#run('lines', this.#lines, this.#shown.size / 4);
-    return this.#lines;
+    const encoder = this.#device.createCommandEncoder();
+    encoder.clearBuffer(this.#sides);
+    this.#device.queue.submit([encoder.finish()]);
+    this.#device.queue.writeBuffer(this.#count, 0, new Uint32Array([SIDE_FROM[moment]]));
+    const changes = this.#changes[index]!;
+    this.#run('mark', changes, this.#sides, changes.size / 8);
+    return this.#sides;
   }
 
   async triangles(): Promise<Uint32Array> {
@@ -107,11 +112,12 @@ export class GpuTrack implements Track {
 
   free(): void {
     this.#isFreed = true;
-    for (const buffer of [this.#shown, this.#count, this.#lines, ...this.#changes]) buffer?.destroy();
+    for (const buffer of [this.#shown, this.#count, this.#sides, ...this.#changes]) buffer?.destroy();
   }
 
-  #run(kernel: Kernel, changes: GPUBuffer, items: number): void {
-    const buffers = [this.#newest, this.#shown, changes, this.#count];
+  /** Runs a kernel, which writes to `written`. */
+  #run(kernel: Kernel, changes: GPUBuffer, written: GPUBuffer, items: number): void {
+    const buffers = [this.#newest, written, changes, this.#count];
     const bindings = this.#device.createBindGroup({
       layout: this.#layout,
       entries: buffers.map((buffer, binding) => ({ binding, resource: { buffer } })),

@@ -7,6 +7,8 @@
 @group(0) @binding(3) var<storage, read_write> count: atomic<u32>;
 
 const SIZE = 256u;
+// The number of the state in `EDGE_STATES`.
+const FLIPS = 1u;
 
 // Stores the change from `shown` to `newest`. The order of the entries does not matter, because their offsets differ.
 @compute @workgroup_size(SIZE)
@@ -31,10 +33,15 @@ fn apply(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) grou
     }
 }
 
-// Writes the outlines of the triangles of `shown`, as indices of line segments, to the binding of `changes`.
+// Writes the sides that a change flips to the binding of `shown`: an entry for each triangle, with the state of side k
+// from bit 4k. `count` is the corner at which the side begins, counted from the corner that changes.
 @compute @workgroup_size(SIZE)
-fn lines(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
-    for (var h = id.x; h < arrayLength(&shown); h += groups.x * SIZE) {
-        changes[h] = vec2u(shown[h], shown[select(h + 1u, h - 2u, h % 3u == 2u)]);
+fn mark(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
+    let start = atomicLoad(&count);
+    for (var k = id.x; k < arrayLength(&changes); k += groups.x * SIZE) {
+        let change = changes[k];
+        if change.y != 0u {
+            shown[change.x / 3u] = FLIPS << (4u * ((change.x + start) % 3u));
+        }
     }
 }

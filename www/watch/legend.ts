@@ -5,6 +5,7 @@ import { element } from './controls.ts';
 import { made } from '../shell/elements.ts';
 import { number } from '../shell/numbers.ts';
 import { countStates, COLOURED } from './run.ts';
+import { LEAST, MOST, ROUND } from './surface.ts';
 import { isKept, LOOKS, swatch } from './states.ts';
 
 /** Shown even where no edge is in this state, so that the rows do not jump. */
@@ -13,12 +14,9 @@ const ALWAYS: readonly EdgeState[] = ['delaunay', 'flips', 'waits'];
 /** Whether the reasons are unfolded. It holds for all meshes. */
 let isOpen = false;
 
-/** Shows the states of the half-edges. Without them, says why no edge is coloured. `triangles` is the mesh's number. */
-export function showLegend(states: Uint8Array | undefined, triangles: number, nonManifold: number | undefined): void {
-  const uncoloured = element('uncoloured');
-  uncoloured.hidden = states !== undefined || triangles <= COLOURED;
-  element('legend').hidden = !uncoloured.hidden;
-  uncoloured.textContent = `${number.format(triangles)} triangles: too many to colour their edges. The page colours up to ${number.format(COLOURED)}.`;
+/** Shows the states of the half-edges; `undefined` for a mesh whose states are not counted. */
+export function showLegend(states: Uint8Array | undefined, nonManifold: number | undefined): void {
+  element('legend').hidden = !states;
   if (!states) return element('legend').replaceChildren();
   const counts = new Map(countStates(states, nonManifold).map((count, state) => [EDGE_STATES[state]!, count] as const));
   const rows = ALWAYS.map((state) => row(state, counts.get(state) ?? 0));
@@ -65,4 +63,36 @@ function keptRow(kept: readonly (readonly [EdgeState, number])[]): HTMLElement {
   });
   show();
   return made('li', '', button, reasons);
+}
+
+/** What the picture of a large mesh has: nothing but the surface, its edges, tints, or some of both. */
+export type Draws = 'nothing' | 'edges' | 'tints' | 'both';
+
+/** Says what is drawn of a mesh whose states are not counted; `undefined` for another mesh. */
+export function showDraws(draws: Draws | undefined, isColoured: boolean): void {
+  const says = element('uncoloured');
+  says.hidden = draws === undefined;
+  says.dataset['draws'] = draws ?? '';
+  if (draws === undefined) return;
+  const hot = isColoured ? [made('b', 'hot', 'Orange'), ': an edge flips. '] : [];
+  const counted = `States are counted up to ${number.format(COLOURED)} triangles.`;
+  const words = {
+    nothing: ['The surface alone. Press E for its edges.'],
+    edges: [...hot, counted],
+    tints: [
+      'Edges are too short to draw here: each triangle is tinted by its smallest angle. ',
+      ...hot,
+      'Zoom in for edges.',
+    ],
+    both: ['Edges where they are long enough. Elsewhere each triangle is tinted by its smallest angle. ', ...hot],
+  }[draws];
+  says.replaceChildren(...words, ...(draws === 'tints' || draws === 'both' ? [scale()] : []));
+}
+
+/** The scale of the tints. */
+function scale(): HTMLElement {
+  const bar = made('i', 'scale');
+  bar.style.setProperty('--least', `${100 * LEAST}%`);
+  bar.style.setProperty('--most', `${100 * MOST}%`);
+  return made('span', 'tints', '0°', bar, `${ROUND}° and more`);
 }

@@ -70,11 +70,14 @@ export class Measuring {
         if (run.isNewest && !run.hasEnded && !summary.remaining.stopped && !isOutdated()) await run.forward();
       }
       if (isOutdated()) return;
+      await host.display.lookAhead(shown);
+      if (isOutdated()) return;
       const indices = await run.triangles();
       const fingerprint = fingerprintOf(await digestOf(indices));
       if (isOutdated()) return;
       host.display.showNumbers(shown, host.status(), fingerprint);
       if (!run.states || host.isPlain()) host.display.lookInto(shown, indices);
+      host.display.measureEdges(indices);
       if (news === undefined) await this.#measure(opened, run, indices, isOutdated);
       if (isOutdated()) return;
       const { summary, ahead } = host.status();

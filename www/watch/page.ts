@@ -33,6 +33,7 @@ export class Page {
     ahead: () => this.#ahead,
     isBusy: () => this.#jobs.isBusy,
     redraw: () => this.redraw(),
+    lookAhead: async () => this.shown && this.#display.lookAhead(this.shown),
     began: () => this.#showTransport(),
     paused: () => {
       this.#showTransport();
@@ -43,7 +44,7 @@ export class Page {
   readonly #graphics: Graphics = new Graphics(
     (reason) => void this.#recovery.recover(reason, true),
     () => {
-      this.#display.inspection.draw();
+      this.#display.pictured();
       this.phases.draw();
     },
   );

@@ -73,8 +73,9 @@ export class Panel {
     if (!summary) return element('facts').replaceChildren();
     const { timings } = summary;
     const measured = (text: string) => (fingerprint === undefined ? '…' : text);
-    const flips = run.iterations.reduce((sum, iteration) => sum + iteration.flips, 0);
-    const watched = run.iterations.reduce((sum, iteration) => sum + iteration.ms, 0);
+    const done = run.iterations.slice(0, run.at);
+    const flips = done.reduce((sum, iteration) => sum + iteration.flips, 0);
+    const watched = done.reduce((sum, iteration) => sum + iteration.ms, 0);
     facts('facts', {
       Triangles: number.format(mesh.indices.length / 3),
       Vertices: number.format(mesh.positions.length / mesh.dimension),
@@ -91,7 +92,7 @@ export class Panel {
             Dispatches: measured(number.format(summary.dispatches)),
           }
         : {}),
-      Iterations: number.format(run.iterations.length),
+      Iterations: number.format(done.length),
       Flips: number.format(flips),
       'Not Delaunay': run.isNewest ? measured(reasons(summary.remaining)) : reasons(notDelaunayAt(run)),
       ...(run.isNewest && summary.inverted > 0 ? { 'Turned over': counted(summary.inverted, 'triangle') } : {}),

@@ -10,11 +10,16 @@ export interface Playing {
   ahead(): readonly unknown[] | undefined;
   isBusy(): boolean;
   redraw(): Promise<void>;
+  /** Looks one iteration ahead, if that shows more. */
+  lookAhead(): Promise<void>;
   /** A loop has begun, or the run has paused. */
   began(): void;
   paused(): void;
   fail(error: unknown): void;
 }
+
+/** With at least so many milliseconds from one iteration to the next, flips slide, and there is time to look ahead. */
+export const SLOW = 250;
 
 export class Player {
   readonly #page: Playing;
@@ -46,6 +51,7 @@ export class Player {
       const start = performance.now();
       if (!(await this.#forward(run))) break;
       await nextFrame();
+      if (Number(controls.speed.value) >= SLOW) await this.#page.lookAhead();
       await pause(Number(controls.speed.value) - (performance.now() - start));
     }
     if (this.#loop === loop) this.pause();

@@ -2,7 +2,7 @@
 
 import { EDGE_STATES, FlipSession, type Engine, type Iteration, type Options, type Result } from 'edgeflip';
 import type { FileMesh, IndexedMesh } from 'edgeflip/files';
-import type { Change } from './change.ts';
+import type { Change, Moment } from './change.ts';
 
 /** The most triangles of a mesh whose edges are drawn in colours. */
 export const COLOURED = 20_000;
@@ -43,8 +43,8 @@ export interface Track {
   apply(index: number): void;
   /** The triangles to draw. `isNewest`: whether the track is at the newest iteration. */
   drawn(isNewest: boolean): Drawn;
-  /** The outlines of the triangles, as indices; `undefined` if they are too large for a buffer. */
-  lines(): Drawn | undefined;
+  /** The sides that iteration `index` flips, in the form of `Corners.sides`. */
+  flipping(index: number, moment: Moment): Drawn;
   /** A copy of the triangles at the track's position. */
   triangles(): Promise<Uint32Array>;
   free(): void;
@@ -148,6 +148,22 @@ export class Run {
     return call;
   }
 
+  /**
+   * Runs the next iteration and goes back, so that the edges that flip next are known. Returns whether more is known than
+   * before.
+   */
+  lookAhead(): Promise<boolean> {
+    const call = this.#last.then(async () => {
+      if (this.#isFreed || this.#hasEnded || !this.isNewest || this.#isAhead) return false;
+      const from = this.#at;
+      const went = await this.#forward();
+      if (went && this.#at === from + 1) this.seek(from);
+      return went || this.#hasEnded;
+    });
+    this.#last = call.catch(() => undefined);
+    return call;
+  }
+
   async #forward(): Promise<boolean> {
     if (this.#isFreed) return false;
     const from = this.#at;
@@ -210,8 +226,13 @@ export class Run {
     return this.#track.drawn(this.isNewest && !this.#isAhead);
   }
 
-  lines(): Drawn | undefined {
-    return this.#track.lines();
+  /**
+   * The sides of the shown triangles that flip next, in the form of `Corners.sides`. If the next iteration has not been
+   * run, those that have just flipped; `undefined` if there are none.
+   */
+  get flipping(): Drawn | undefined {
+    if (!this.isNewest) return this.#track.flipping(this.#at, 'before');
+    return this.#hasEnded || this.#at === 0 ? undefined : this.#track.flipping(this.#at - 1, 'after');
   }
 
   /** The states of the edges at the shown iteration. */

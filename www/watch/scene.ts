@@ -1,20 +1,22 @@
 /** Draws the mesh with three.js. With WebGPU, it draws from the buffer that the flips write. */
 
 import {
-  BufferAttribute,
   ColorManagement,
   Scene as ThreeScene,
   Vector2,
   Vector3,
   WebGPURenderer,
+  type BufferAttribute,
   type Object3D,
 } from 'three/webgpu';
-import { writeLines } from './change.ts';
 import { Camera, type Insets } from './camera.ts';
-import { Layer, Materials } from './layer.ts';
+import { BufferCorners, TextureCorners } from './corners.ts';
+import { EdgeScale, type Seen } from './edge-scale.ts';
+import { Layer } from './layer.ts';
 import type { Drawn } from './run.ts';
 import type { Palette } from './palette.ts';
 import type { SlideDirection } from './flip-animation.ts';
+import { Paint } from './surface.ts';
 
 /** The part of three's backend that holds the GPU buffers of attributes. */
 interface Backend {
@@ -29,18 +31,16 @@ export class Scene {
   readonly #renderer: WebGPURenderer;
   readonly #device: GPUDevice | undefined;
   readonly #scene = new ThreeScene();
-  readonly #materials = new Materials();
-  readonly #now = new Layer(this.#materials);
+  readonly #paint = new Paint();
+  readonly #now: Layer;
   /** The input, at the left of the cut. */
-  readonly #before = new Layer(this.#materials);
-  readonly #attributes = new WeakMap<Drawn, BufferAttribute>();
-  /** Attributes whose buffers three must not destroy. */
-  readonly #shared = new WeakSet<BufferAttribute>();
+  readonly #before: Layer;
+  readonly #scale = new EdgeScale();
   readonly #observer: ResizeObserver;
   readonly #drawn: () => void;
   readonly camera: Camera;
   #palette: Palette;
-  #positions = new BufferAttribute(new Float32Array(), 3);
+  #positions = new Float32Array();
   #dimension: 2 | 3 = 3;
   /** The share of the picture's width that shows the input; `undefined` if only one mesh is shown. */
   #cut: number | undefined;
@@ -58,6 +58,10 @@ export class Scene {
     this.#device = device;
     this.#palette = palette;
     this.#drawn = drawn;
+    const share = this.share.bind(this);
+    const onGpu = this.isOnWebGpu ? device : undefined;
+    const layer = () => new Layer(onGpu ? new BufferCorners(onGpu, share) : new TextureCorners(), this.#paint);
+    [this.#now, this.#before] = [layer(), layer()];
     this.camera = new Camera(renderer.domElement, insets, () => this.redraw());
     this.#scene.add(this.#before.group, this.#now.group);
     this.#before.group.visible = false;
@@ -102,10 +106,9 @@ export class Scene {
   /** Sets the positions of a mesh: 3 numbers per vertex, inside the unit ball. */
   setMesh(positions: Float32Array, dimension: 2 | 3): void {
     this.clear();
-    this.#positions = new BufferAttribute(positions, 3);
+    this.#positions = positions as Float32Array<ArrayBuffer>;
     this.#dimension = dimension;
-    this.#now.setPositions(this.#positions, dimension);
-    this.#before.setPositions(this.#positions, dimension);
+    this.#now.surface.setPositions(positions, dimension);
   }
 
   /** Shows an object alone, which changes from frame to frame; `bounds` are points, 3 numbers each, that fit around it. */
@@ -117,34 +120,46 @@ export class Scene {
   }
 
   lookAtAll(): void {
-    this.camera.lookAt(this.#positions.array as Float32Array, this.#dimension);
+    this.camera.lookAt(this.#positions, this.#dimension);
   }
 
-  /** Draws these triangles, and the lines if there are any. */
-  show(triangles: Drawn, count: number, lines: Drawn | undefined): void {
-    this.#now.show(this.#index(triangles, count), lines && this.#index(lines, 2 * count));
+  /** Takes the triangles whose edges tell what is seen of edges. */
+  measureEdges(indices: Uint32Array): void {
+    this.#scale.sample(this.#positions, indices);
+  }
+
+  /** What is seen of edges now, if they are drawn. Where they are too short, triangles are tinted. */
+  get edgesSeen(): Seen {
+    const { clientWidth: width, clientHeight: height } = this.canvas;
+    return this.#scale.seen(this.camera.three, width, height);
+  }
+
+  /**
+   * Draws these triangles. `isLined`: whether with their edges, or with tints where edges are too short. `sides` has the
+   * states of their sides, if they are known.
+   */
+  show(triangles: Drawn, count: number, isLined: boolean, sides: Drawn | undefined): void {
+    this.#now.surface.show(triangles, count, isLined, sides);
     this.redraw();
   }
 
   /** Draws the edges of a small mesh in colours; without arguments, none. */
   showEdges(indices: Uint32Array | undefined, states: Uint8Array | undefined): void {
     this.#now.edges.clear();
-    if (indices && states) this.#now.edges.show(this.#positions.array as Float32Array, indices, states, this.#palette);
+    if (indices && states) this.#now.edges.show(this.#positions, indices, states, this.#palette);
     this.redraw();
   }
 
   /** Shows how edges have flipped, see `flipsBetween`; with an empty list, nothing. */
   animateFlips(flips: Uint32Array, way: SlideDirection): void {
-    const positions = this.#positions.array as Float32Array;
-    this.#now.flipAnimation.show(positions, flips, this.#palette.states.flips, way);
+    this.#now.flipAnimation.show(this.#positions, flips, this.#palette.states.flips, way);
     this.redraw();
   }
 
   /** Shows the input at the left of the cut. */
   compareWith(input: Uint32Array): void {
-    const lines = new Uint32Array(2 * input.length);
-    writeLines(lines, input);
-    this.#before.show(new BufferAttribute(input, 1), new BufferAttribute(lines, 1));
+    this.#before.surface.setPositions(this.#positions, this.#dimension);
+    this.#before.surface.show(input, input.length, true, undefined);
   }
 
   /** Moves the cut; `undefined` shows one mesh only. */
@@ -155,7 +170,7 @@ export class Scene {
 
   /** Releases all buffers of the run, which may then be destroyed. */
   clear(): void {
-    for (const layer of [this.#now, this.#before]) layer.clear((index) => this.#shared.has(index));
+    for (const layer of [this.#now, this.#before]) layer.clear();
     if (this.#moving) this.#scene.remove(this.#moving);
     this.#moving = undefined;
     this.#cut = undefined;
@@ -164,7 +179,7 @@ export class Scene {
 
   setPalette(palette: Palette): void {
     this.#palette = palette;
-    this.#materials.setPalette(palette);
+    this.#paint.setPalette(palette);
     this.redraw();
   }
 
@@ -220,8 +235,7 @@ export class Scene {
   pick(x: number, y: number, indices: Uint32Array): number | undefined {
     const ray = this.camera.rayAt(x, y);
     const corners = [new Vector3(), new Vector3(), new Vector3()] as const;
-    const load = (t: number) =>
-      corners.forEach((corner, k) => corner.fromBufferAttribute(this.#positions, indices[t + k]!));
+    const load = (t: number) => corners.forEach((corner, k) => corner.fromArray(this.#positions, 3 * indices[t + k]!));
     const hit = new Vector3();
     let [nearest, found] = [Infinity, -1];
     for (let t = 0; t < indices.length; t += 3) {
@@ -239,7 +253,7 @@ export class Scene {
   /** Returns a function that says where a vertex is in the picture, in pixels. */
   projector(): (vertex: number) => [x: number, y: number] {
     const project = this.camera.projector();
-    return (vertex) => project(new Vector3().fromBufferAttribute(this.#positions, vertex));
+    return (vertex) => project(new Vector3().fromArray(this.#positions, 3 * vertex));
   }
 
   /** Removes the canvas. The buffers of the run stay. */
@@ -255,6 +269,7 @@ export class Scene {
   #draw(): void {
     const renderer = this.#renderer;
     this.#now.edges.setPixel(this.camera.pixel);
+    this.#paint.ratio.value = renderer.getPixelRatio();
     if (this.#cut === undefined) {
       renderer.render(this.#scene, this.camera.three);
       return;
@@ -283,24 +298,7 @@ export class Scene {
   /** Lets an attribute use a buffer directly. */
   share<A extends BufferAttribute>(attribute: A, buffer: GPUBuffer, count: number): A {
     this.#backend.get(attribute).buffer = buffer;
-    this.#shared.add(attribute);
     return Object.assign(attribute, { count });
-  }
-
-  /** The attribute for these indices. It uses a buffer directly, and copies an array to the GPU at each call. */
-  #index(drawn: Drawn, count: number): BufferAttribute {
-    let attribute = this.#attributes.get(drawn);
-    if (!attribute) {
-      if (drawn instanceof Uint32Array) {
-        attribute = new BufferAttribute(drawn, 1);
-      } else {
-        attribute = this.share(new BufferAttribute(new Uint32Array(), 1), drawn, count);
-      }
-      this.#attributes.set(drawn, attribute);
-    } else if (!this.#shared.has(attribute)) {
-      attribute.needsUpdate = true;
-    }
-    return attribute;
   }
 
   get #backend(): Backend {
