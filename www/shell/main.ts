@@ -70,6 +70,7 @@ async function showTool(): Promise<void> {
     busy.hidden = true;
     document.body.removeAttribute('data-opening');
     loadSections();
+    if (hero && location.hash === '#watch') tool.guide();
   } catch {
     progress.hidden = true;
     part('#busy-text').textContent = 'The tool could not be loaded. Check the connection, and load the page again.';

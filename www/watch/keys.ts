@@ -11,6 +11,8 @@ export interface Key {
   says?: string;
   /** Elements that use the key themselves while they have the focus. */
   keptBy?: string;
+  /** Whether the key does something now; else the browser has it. */
+  when?: () => boolean;
   act: (key: string) => void;
 }
 
@@ -29,7 +31,7 @@ export function listen(keys: readonly Key[]): void {
     // The browser closes the sheet, and only the sheet.
     if (event.key === 'Escape' && document.querySelector(':popover-open')) return;
     const name = event.key.length === 1 ? event.key.toLowerCase() : event.key;
-    const key = keys.find(({ keys }) => keys.includes(name));
+    const key = keys.find(({ keys, when }) => keys.includes(name) && (when?.() ?? true));
     if (!key) return;
     if (event.target instanceof Element && event.target.closest(key.keptBy ?? TEXT)) return;
     event.preventDefault();

@@ -6,6 +6,7 @@ import './gallery.css';
 import './panel.css';
 import './table.css';
 import './overlays.css';
+import './lecture.css';
 import '../move/move.css';
 import { FORMATS } from 'edgeflip/files';
 import type { NamedMesh } from '../engines/index.ts';
@@ -15,9 +16,11 @@ import { controls, element } from './controls.ts';
 import { made } from '../shell/elements.ts';
 import type { EdgeLook } from './display.ts';
 import { makeGallery } from './gallery.ts';
+import { Guide } from './guide.ts';
 import { listen } from './keys.ts';
-import { tell } from './notice.ts';
+import { asksForLecture, isLecture, setLecture } from './lecture.ts';
 import { placeIn, type Place } from './link.ts';
+import { tell } from './notice.ts';
 import { Page } from './page.ts';
 import { FEW } from './phases.ts';
 import { MovingSamples } from '../move/moving-samples.ts';
@@ -35,6 +38,8 @@ export interface Tool {
   mesh(): NamedMesh | undefined;
   /** Settles when the screen shows the mesh that was opened last. */
   drawn(): Promise<void>;
+  /** Guides a visitor who comes from the first view. */
+  guide(): void;
 }
 
 /** Starts the tool, also while the first view is shown; call it once. */
@@ -70,6 +75,7 @@ export function start(): Tool {
     () => void taking().picture(),
     () => void tell(taking().link()),
   );
+  element('end-lecture').addEventListener('click', () => lecture(page, false));
   void begin(page, movingSamples);
   const mesh = () => {
     const shown = page.shown;
@@ -81,8 +87,10 @@ export function start(): Tool {
     const limits = dimension === 3 ? { maxNormalAngle, maxDeviation } : {};
     return { name, positions, indices, dimension, options: { ...locks, ...limits } };
   };
-  return { mesh, drawn: () => page.drawn() };
+  return { mesh, drawn: () => page.drawn(), guide: () => void new Guide(page).begin() };
 }
+
+const lecture = (page: Page, isOn: boolean) => setLecture(isOn, () => page.scene?.camera.resize());
 
 const movingOf = (spec: string | undefined) => MOVING.find((sample) => sample.spec === spec);
 
@@ -90,10 +98,12 @@ const movingOf = (spec: string | undefined) => MOVING.find((sample) => sample.sp
 async function begin(page: Page, movingSamples: MovingSamples): Promise<void> {
   const file = chosen([...(controls.file.files ?? [])]);
   const place = file ? undefined : placeIn(location.hash);
+  lecture(page, asksForLecture(location.hash));
   addEventListener('hashchange', () => {
     const next = placeIn(location.hash);
     if (!next) return;
     page.prefer(next);
+    lecture(page, asksForLecture(location.hash));
     const moving = movingOf(next.mesh);
     if (moving) return void movingSamples.show(moving);
     movingSamples.leave();
@@ -125,7 +135,7 @@ function connectRun(page: Page, movingSamples: MovingSamples): void {
   controls.step.addEventListener('click', () => void page.player.step());
   controls.phase.addEventListener('click', () => void page.phases.step(1));
   controls.slider.addEventListener('input', () => void page.player.seek(controls.slider.valueAsNumber));
-  controls.compare.addEventListener('click', () => page.compare());
+  controls.compare.addEventListener('click', () => void page.compare());
   controls.scramble.addEventListener('click', () => void scramble(page));
   const cancel = element('cancel');
   cancel.hidden = false;
@@ -203,6 +213,11 @@ function connectKeys(
   element('help').addEventListener('click', () => keys.showModal());
   const toggle = (id: string, opener: HTMLButtonElement) => opener.offsetParent && element(id).togglePopover();
   const slides = 'input, select';
+  const step = async (by: 1 | -1) => {
+    if (isLecture() && (await page.phases.step(by))) return;
+    if (by > 0) controls.step.click();
+    else await page.player.seekBy(-1);
+  };
   listen([
     {
       keys: [' '],
@@ -216,9 +231,12 @@ function connectKeys(
       label: '← →',
       says: 'one iteration back, on',
       keptBy: slides,
-      act: () => void page.player.seekBy(-1),
+      act: () => void step(-1),
     },
-    { keys: ['ArrowRight'], keptBy: slides, act: () => controls.step.click() },
+    { keys: ['ArrowRight'], keptBy: slides, act: () => void step(1) },
+    // Of clickers.
+    { keys: ['PageUp'], when: isLecture, act: () => void step(-1) },
+    { keys: ['PageDown'], when: isLecture, act: () => void step(1) },
     {
       keys: [','],
       label: ', .',
@@ -243,7 +261,7 @@ function connectKeys(
         if (spec) openSample(spec);
       },
     },
-    { keys: ['c'], label: 'C', says: 'before and now', act: () => page.compare() },
+    { keys: ['c'], label: 'C', says: 'before and now', act: () => void page.compare() },
     {
       keys: ['n'],
       label: 'N, Shift N',
@@ -265,8 +283,21 @@ function connectKeys(
     { keys: ['k'], label: 'K', says: 'copy a link to this view', act: copyLink },
     { keys: ['f'], label: 'F', says: 'fit the mesh to the view', act: () => page.scene?.camera.fit() },
     { keys: ['g'], label: 'G', says: 'the engines', act: () => (location.hash = '#engines') },
+    {
+      keys: ['h'],
+      label: 'H',
+      says: 'lecture: no tools, large type; Page ↑ ↓ step',
+      act: () => lecture(page, !isLecture()),
+    },
     { keys: ['t'], label: 'T', says: 'light or dark', act: toggleTheme },
     { keys: ['?'], label: '?', says: 'these keys', act: () => keys.showModal() },
-    { keys: ['Escape'], label: 'Esc', says: 'close what is open', act: () => page.closeTopmost() },
+    {
+      keys: ['Escape'],
+      label: 'Esc',
+      says: 'close what is open, then end the lecture',
+      act: () => {
+        if (!page.closeTopmost()) lecture(page, false);
+      },
+    },
   ]);
 }

@@ -1,6 +1,6 @@
 /** The page: opens meshes, starts runs, and draws and measures their iterations. */
 
-import { EdgeflipError } from 'edgeflip';
+import { EdgeflipError, type EdgeState } from 'edgeflip';
 import { Choices, type Settings } from './choices.ts';
 import { LOST } from './crash.ts';
 import type { Flips } from './mesh-worker.ts';
@@ -19,8 +19,10 @@ import { Player } from './player.ts';
 import { Recovery } from './recovery.ts';
 import { Measuring } from './measuring.ts';
 import type { Run, Summary } from './run.ts';
+import { captionOf, type Smallest } from './sentences.ts';
 import type { Scene } from './scene.ts';
 import type { Shown } from './shown.ts';
+import { HALF } from './snapshot.ts';
 import type { Source } from './sources.ts';
 import { flipsAhead, startRun } from './starting.ts';
 import { AutoHandover } from './auto-handover.ts';
@@ -90,6 +92,10 @@ export class Page {
     status: () => this.#status,
     shown: () => this.shown,
     setSummary: (summary) => (this.#summary = summary),
+    setSmallest: (smallest) => {
+      this.#smallest = smallest;
+      this.#showTransport();
+    },
     isPlain: () => this.edges !== 'coloured',
     handOver: () => void this.#handover.handOver(),
     fail: (error) => this.#showFailure(error),
@@ -104,6 +110,7 @@ export class Page {
   #settings: Settings | undefined;
   /** The summary of the run when it last paused. */
   #summary: Summary | undefined;
+  #smallest: Smallest | undefined;
   /** The flips of all its iterations, once they have been counted. */
   #ahead: Flips[] | undefined;
   /** Called with the reason when the GPU is lost while something else is shown in place of a run. */
@@ -136,6 +143,7 @@ export class Page {
     this.#run?.free();
     this.#opened?.client.close();
     this.#run = this.#opened = this.#settings = this.#summary = this.#ahead = this.#source = undefined;
+    this.#smallest = undefined;
     this.#jobs.cancel();
     this.#measuring.forget();
   }
@@ -178,23 +186,56 @@ export class Page {
     this.#jobs.cancel();
   }
 
-  compare(): void {
-    if (!this.#run) return;
-    this.#display.inspection.close();
-    this.#display.comparison.show(!this.#display.comparison.isShown);
+  /** Shows the input beside the shown state, or ends that. The input itself is compared with the result. */
+  async compare(): Promise<void> {
+    const { comparison, inspection } = this.#display;
+    const run = this.#run;
+    if (!run || this.isBusy) return;
+    inspection.close();
+    if (comparison.isShown) return comparison.show(false);
+    if (run.at === 0) {
+      this.player.pause();
+      await this.#jobs.attempt('Running to the end…', (signal) => this.#runToEnd(run, signal));
+      await this.redraw();
+    }
+    if (run === this.#run && run.at > 0) comparison.show(true);
+  }
+
+  /** Shows the last state, and first runs what is missing. If that fails or is cancelled, shows the input. */
+  async #runToEnd(run: Run, signal: AbortSignal): Promise<void> {
+    try {
+      run.seek(run.iterations.length);
+      while (!signal.aborted && (await run.forward()));
+    } catch (error) {
+      this.#showFailure(error);
+    }
+    if (!run.hasEnded) run.seek(0);
   }
 
   inspectNext(by: 1 | -1): void {
     this.#display.inspection.next(by);
   }
 
-  /** Closes what lies on top: a message, the inspector, before and now, or the drawing of edges. */
-  closeTopmost(): void {
+  /**
+   * Closes what lies on top: a message, the inspector, before and now, or the drawing of edges. Returns whether there was
+   * something to close.
+   */
+  closeTopmost(): boolean {
     const { inspection, comparison, edgeDrawing } = this.#display;
+    const { isHeld } = inspection;
     if (!element('error').hidden) element('error').hidden = true;
-    else if (comparison.isShown && !inspection.isHeld) comparison.show(false);
-    else if (edgeDrawing.isOn && !inspection.isHeld) edgeDrawing.show(false);
-    else inspection.close();
+    else if (comparison.isShown && !isHeld) comparison.show(false);
+    else if (edgeDrawing.isOn && !isHeld) edgeDrawing.show(false);
+    else {
+      inspection.close();
+      return isHeld;
+    }
+    return true;
+  }
+
+  /** Inspects an edge in this state, near the middle of the picture. */
+  inspectNearest(state: EdgeState): void {
+    this.#display.inspection.nearest(state);
   }
 
   /** Closes the inspector, shows one mesh only, and draws no edges. */
@@ -221,6 +262,27 @@ export class Page {
 
   get scene(): Scene | undefined {
     return this.#graphics.scene;
+  }
+
+  /** Whether a job is running. */
+  get isBusy(): boolean {
+    return this.#jobs.isBusy;
+  }
+
+  /** A picture of iteration `at`, which is shown from then on. */
+  async pictureAt(at: number): Promise<OffscreenCanvas | undefined> {
+    const [shown, scene] = [this.shown, this.scene];
+    if (!shown || !scene) return undefined;
+    shown.run.seek(at);
+    await this.#display.draw(shown);
+    return scene.freePicture(HALF);
+  }
+
+  /** What is written under the picture of the shown state, once that is measured. */
+  async caption(): Promise<string> {
+    if (!this.#measuring.isMeasured(this.#run)) await this.#measuring.begin();
+    const { run, summary, ahead, smallest } = this.#status;
+    return run ? captionOf(run, summary, ahead, smallest) : '';
   }
 
   get gpu(): Gpu | string | undefined {
@@ -275,6 +337,7 @@ export class Page {
     if (this.#opening?.opened === opened) this.#opening = undefined;
     this.#settings = settings;
     this.#summary = undefined;
+    this.#smallest = undefined;
     this.#ahead = undefined;
     this.#display.begin(opened, isOther);
     this.#handover.prepare(run, opened, options, this.#graphics.gpu);
@@ -323,7 +386,8 @@ export class Page {
 
   get #status(): RunStatus {
     const [run, opened, summary, ahead] = [this.#run, this.#opened, this.#summary, this.#ahead];
-    return { run, opened, summary, ahead, isBusy: this.#jobs.isBusy, isPlaying: this.player.isPlaying };
+    const [smallest, isBusy, isPlaying] = [this.#smallest, this.#jobs.isBusy, this.player.isPlaying];
+    return { run, opened, summary, ahead, smallest, isBusy, isPlaying };
   }
 
   #showTransport(): void {
