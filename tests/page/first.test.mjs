@@ -76,6 +76,8 @@ test('the first picture of the first view has the mesh, and nothing black comes 
   const [colours, isBlack] = await first.page.evaluate(() => [window.drawn[0], window.black]);
   assert.ok(colours > 20, `${colours} colours in the first picture`);
   assert.equal(isBlack, false);
+  // The browser warns of what the test does.
+  first.problems = first.problems.filter((problem) => !problem.includes('GPU stall due to ReadPixels'));
   await first.close();
 });
 
