@@ -116,7 +116,8 @@ for (const isLate of [false, true]) {
     assert.equal(await first.page.evaluate(() => document.fonts.check('15px Inter')), !isLate);
     const seen = {};
     for (const width of WIDTHS) {
-      await first.page.setViewportSize({ width, height: 900 });
+      // In a low window the headline is smaller.
+      await first.page.setViewportSize({ width, height: 1300 });
       seen[width] = await first.page.evaluate(layout);
     }
     const want = Object.fromEntries(WIDTHS.map((width) => [width, { out: [], lines: 2, wide: 0 }]));
