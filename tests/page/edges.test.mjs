@@ -3,6 +3,8 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
+import { EDGE_STATES, FlipSession } from 'edgeflip';
+import { generate } from 'edgeflip/files';
 import { startChromium } from '../browsers.mjs';
 import { openEdgeflip } from './page.mjs';
 
@@ -30,6 +32,30 @@ function countsOf({ pixels }) {
   return counts;
 }
 
+/** The number of edges in each state of the legend, once the page knows them. */
+async function legendOf(page) {
+  await page.page.waitForFunction(() => /\d/.test(document.querySelector('#legend [data-state=flips] b')?.textContent));
+  return page.page.evaluate(() =>
+    Object.fromEntries(
+      [...document.querySelectorAll('#legend > [data-state]')].map((row) => [
+        row.dataset.state,
+        Number(row.querySelector('b').textContent.replaceAll(',', '')),
+      ]),
+    ),
+  );
+}
+
+/** The same from the package, for the input or the result. */
+async function expectedLegend(isResult) {
+  const session = await FlipSession.create(await generate(MESH), { backend: 'cpu' });
+  if (isResult) await session.run();
+  const states = await session.edgeStates();
+  session.free();
+  const count = (state) => states.filter((number) => EDGE_STATES[number] === state).length;
+  const halved = ['delaunay', 'flips', 'waits'].map((state) => [state, count(state) / 2]);
+  return Object.fromEntries([...halved, ['boundary', count('boundary')]]);
+}
+
 async function toTheEnd(page) {
   await page.page.evaluate(() => document.activeElement.blur());
   await page.page.keyboard.press('End');
@@ -52,6 +78,7 @@ for (const api of ['WebGPU', 'WebGL2']) {
     t.diagnostic(`far, at the end: ${JSON.stringify(quiet)}`);
     assert.equal(quiet.hot, 0, 'nothing flips any more');
     assert.ok(quiet.grey > 1000, 'tints');
+    assert.deepEqual(await legendOf(page), await expectedLegend(true));
 
     await page.page.keyboard.press('c');
     const cut = await page.page.evaluate(() => {
@@ -78,6 +105,7 @@ for (const api of ['WebGPU', 'WebGL2']) {
     await page.follow(at(NEAR));
     await page.until('edges that flip', ({ newest }) => newest === '1');
     assert.equal(await says(page), 'edges');
+    assert.deepEqual(await legendOf(page), await expectedLegend(false));
     const near = countsOf(await page.picture());
     t.diagnostic(`near: ${JSON.stringify(near)}`);
     assert.ok(near.grey > 0.02 * near.all && near.grey < 0.6 * near.all, 'edges');
