@@ -111,7 +111,7 @@ test('while it plays on WebGPU, the page draws from the session’s own buffer, 
 
   const draws = playing.filter(({ what, count }) => what === 'draw' && count === mesh.indices.length);
   // A shader reads the triangles. It also reads positions and states, and no other copy of the triangles.
-  const ofTriangles = ({ label, size }) => size === bytes && label !== 'copied positions';
+  const ofTriangles = (of) => of?.size === bytes && of.label !== 'copied positions';
   const drawn = draws.flatMap((draw) => draw.buffers).filter((buffer) => ofTriangles(buffers[buffer]));
   assert.deepEqual([...new Set(drawn)], [id], 'buffers that are drawn');
   assert.deepEqual([...new Set([...draws, ...passes].map(({ device }) => device))], [triangles.device]);

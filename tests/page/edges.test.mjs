@@ -3,13 +3,15 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
+import { EDGE_STATES, FlipSession } from 'edgeflip';
+import { generate } from 'edgeflip/files';
 import { startChromium } from '../browsers.mjs';
 import { openEdgeflip } from './page.mjs';
 
 /** 50,562 triangles, in a square. */
 const MESH = 'random 160';
 /** Zooms at which its edges have less than 2 pixels, and more than 15. */
-const [FAR, NEAR] = [0.3, 8];
+const [FAR, NEAR] = [0.6, 12];
 
 const withoutWebGpu = () => Object.defineProperty(navigator, 'gpu', { value: undefined });
 
@@ -18,16 +20,41 @@ const at = (zoom) => `#watch?${new URLSearchParams({ mesh: MESH, view: `0_0_3_0_
 /** What the page says of the picture: whether it has edges or tints. */
 const says = ({ page }) => page.evaluate(() => document.getElementById('uncoloured').dataset.draws);
 
-/** The numbers of pixels in the colour of flips, in that of edges, and as light as a face. */
+/** The numbers of pixels in the colour of flips, in that of edges or darker than a face, and as light as a face. */
 function countsOf({ pixels }) {
-  const counts = { hot: 0, grey: 0, face: 0, all: pixels.length };
+  const counts = { hot: 0, grey: 0, tinted: 0, face: 0, all: pixels.length };
   for (const pixel of pixels) {
     const [r, g, b] = [pixel >> 16, (pixel >> 8) & 255, pixel & 255];
     if (r > g + 60) counts.hot++;
     else if (r < 215) counts.grey++;
+    else if (r < 242) counts.tinted++;
     else if (r > 247 && b > 247) counts.face++;
   }
   return counts;
+}
+
+/** The number of edges in each state of the legend, once the page knows them. */
+async function legendOf(page) {
+  await page.page.waitForFunction(() => /\d/.test(document.querySelector('#legend [data-state=flips] b')?.textContent));
+  return page.page.evaluate(() =>
+    Object.fromEntries(
+      [...document.querySelectorAll('#legend > [data-state]')].map((row) => [
+        row.dataset.state,
+        Number(row.querySelector('b').textContent.replaceAll(',', '')),
+      ]),
+    ),
+  );
+}
+
+/** The same from the package, for the input or the result. */
+async function expectedLegend(isResult) {
+  const session = await FlipSession.create(await generate(MESH), { backend: 'cpu' });
+  if (isResult) await session.run();
+  const states = await session.edgeStates();
+  session.free();
+  const count = (state) => states.filter((number) => EDGE_STATES[number] === state).length;
+  const halved = ['delaunay', 'flips', 'waits'].map((state) => [state, count(state) / 2]);
+  return Object.fromEntries([...halved, ['boundary', count('boundary')]]);
 }
 
 async function toTheEnd(page) {
@@ -45,13 +72,14 @@ for (const api of ['WebGPU', 'WebGL2']) {
     assert.equal(await says(page), 'tints');
     const far = countsOf(await page.picture());
     t.diagnostic(`far: ${JSON.stringify(far)}`);
-    assert.ok(far.hot > 5000, 'a field of orange');
+    assert.ok(far.hot > 4000 && far.hot > 0.4 * (far.hot + far.grey + far.tinted), 'a field of orange');
 
     await toTheEnd(page);
     const quiet = countsOf(await page.picture());
     t.diagnostic(`far, at the end: ${JSON.stringify(quiet)}`);
     assert.equal(quiet.hot, 0, 'nothing flips any more');
-    assert.ok(quiet.grey > 1000, 'tints');
+    assert.ok(quiet.grey + quiet.tinted > 4000, 'tints');
+    assert.deepEqual(await legendOf(page), await expectedLegend(true));
 
     await page.page.keyboard.press('c');
     const cut = await page.page.evaluate(() => {
@@ -78,6 +106,7 @@ for (const api of ['WebGPU', 'WebGL2']) {
     await page.follow(at(NEAR));
     await page.until('edges that flip', ({ newest }) => newest === '1');
     assert.equal(await says(page), 'edges');
+    assert.deepEqual(await legendOf(page), await expectedLegend(false));
     const near = countsOf(await page.picture());
     t.diagnostic(`near: ${JSON.stringify(near)}`);
     assert.ok(near.grey > 0.02 * near.all && near.grey < 0.6 * near.all, 'edges');

@@ -80,7 +80,9 @@ export class BufferCorners implements Corners {
 
   setTriangles(drawn: Drawn, count: number): void {
     this.#triangles.value = this.#attribute(drawn instanceof Uint32Array ? this.#copy(drawn, 'triangles') : drawn);
-    if (this.geometry.attributes['position']?.count !== count) this.geometry = geometryFor(count);
+    if (this.geometry.attributes['position']?.count === count) return;
+    this.geometry.dispose();
+    this.geometry = geometryFor(count);
   }
 
   setSides(drawn: Drawn | undefined): void {

@@ -12,8 +12,10 @@ import type { Phases } from './phases.ts';
 import { palette } from './palette.ts';
 import { Panel } from './panel.ts';
 import { SLOW } from './player.ts';
-import { COLOURED, type Run } from './run.ts';
+import { COLOURED, countStates, type Run } from './run.ts';
+import type { SideStates } from './mesh-worker.ts';
 import type { Shown } from './shown.ts';
+import { SEARCHED, StateSearch } from './state-search.ts';
 import { Timeline } from './timeline.ts';
 import { stillness } from '../shell/stillness.ts';
 import { showTransport, type RunStatus } from './transport.ts';
@@ -34,8 +36,13 @@ export class Display {
   readonly #timeline = new Timeline();
   readonly #graphics: Graphics;
   look: EdgeLook = 'coloured';
-  /** Whether the mesh is too large for its states to be counted, and what the page has said about its picture. */
+  readonly #search = new StateSearch();
+  /** The states of a large mesh that were last found. */
+  #found: { run: Run; at: number; states: SideStates } | undefined;
+  /** Whether the mesh is too large for its states to be known at once, and what the page has said about its picture. */
   #isLarge = false;
+  /** Whether they are looked for. */
+  #isSearched = false;
   #saysDraws = '';
   /** The number of pictures so far. A picture is dropped when a later one begins. */
   #pictures = 0;
@@ -72,7 +79,7 @@ export class Display {
   /** Shows the mesh of another run. `isOther`: whether its vertices are others than before. */
   begin({ mesh }: Opened, isOther: boolean): void {
     const { scene } = this.#graphics;
-    this.#last = undefined;
+    this.#last = this.#found = undefined;
     this.inspection.close();
     const positions = unitPositions(mesh);
     scene?.setMesh(positions, mesh.dimension);
@@ -82,6 +89,7 @@ export class Display {
     }
     scene?.measureEdges(mesh.indices);
     this.#isLarge = mesh.indices.length > 3 * COLOURED;
+    this.#isSearched = this.#isLarge && mesh.indices.length <= 3 * SEARCHED;
     if (isOther) this.look = 'coloured';
     this.comparison.begin(mesh.indices);
     this.edgeDrawing.begin(mesh);
@@ -97,15 +105,15 @@ export class Display {
 
   /** Shows no mesh. */
   clear(): void {
-    this.#last = undefined;
+    this.#last = this.#found = undefined;
     this.inspection.forget();
     this.edgeDrawing.begin(undefined);
     this.#graphics.scene?.clear();
     this.panel.clear();
-    this.#isLarge = false;
+    this.#isLarge = this.#isSearched = false;
     this.#saysDraws = '';
     showDraws(undefined, false);
-    showLegend(undefined, undefined);
+    showLegend(undefined, false);
     element('no-mesh').hidden = false;
   }
 
@@ -169,9 +177,31 @@ export class Display {
   showTriangles({ run, opened }: Shown): Uint8Array | undefined {
     const isColoured = this.look === 'coloured';
     const states = isColoured ? run.states : undefined;
-    const sides = isColoured && !states ? run.flipping : undefined;
+    const sides = isColoured && !states ? (this.#statesOf(run)?.sides ?? run.flipping) : undefined;
     this.#graphics.scene?.show(run.drawn, opened.mesh.indices.length, this.look !== 'none' && !states, sides);
     return states;
+  }
+
+  /** Looks for the states of the edges of a large mesh, and shows them. */
+  async findStates(shown: Shown, isOutdated: () => boolean): Promise<void> {
+    const { run } = shown;
+    if (run.states || this.look !== 'coloured') return;
+    const { at } = run;
+    const states = await this.#search.find(shown, isOutdated);
+    if (!states || isOutdated() || run.at !== at) return;
+    this.#found = { run, at, states };
+    this.showTriangles(shown);
+    this.#showLegend(run, undefined);
+  }
+
+  /** The states at the shown iteration of a large mesh, if they have been found. */
+  #statesOf(run: Run): SideStates | undefined {
+    return this.#found?.run === run && this.#found.at === run.at ? this.#found.states : undefined;
+  }
+
+  #showLegend(run: Run, nonManifold: number | undefined): void {
+    const counts = run.states ? countStates(run.states, nonManifold) : this.#statesOf(run)?.counts;
+    showLegend(counts, this.#isSearched && this.look === 'coloured');
   }
 
   /** Measures the edges of these triangles on screen from now on. */
@@ -196,7 +226,7 @@ export class Display {
   showNumbers({ run, opened, settings }: Shown, status: RunStatus, fingerprint?: string): void {
     this.panel.showIterations(run.iterations, run.at);
     this.panel.showFacts(opened.mesh, run, status.summary, settings.maxNormalAngle, fingerprint);
-    showLegend(run.states, status.summary?.nonManifoldEdges);
+    this.#showLegend(run, status.summary?.nonManifoldEdges);
     this.showTransport(status);
   }
 

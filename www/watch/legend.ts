@@ -4,7 +4,6 @@ import { EDGE_STATES, type EdgeState } from 'edgeflip';
 import { element } from './controls.ts';
 import { made } from '../shell/elements.ts';
 import { number } from '../shell/numbers.ts';
-import { countStates, COLOURED } from './run.ts';
 import { LEAST, MOST, ROUND } from './surface.ts';
 import { isKept, LOOKS, swatch } from './states.ts';
 
@@ -14,42 +13,51 @@ const ALWAYS: readonly EdgeState[] = ['delaunay', 'flips', 'waits'];
 /** Whether the reasons are unfolded. It holds for all meshes. */
 let isOpen = false;
 
-/** Shows the states of the half-edges; `undefined` for a mesh whose states are not counted. */
-export function showLegend(states: Uint8Array | undefined, nonManifold: number | undefined): void {
-  element('legend').hidden = !states;
-  if (!states) return element('legend').replaceChildren();
-  const counts = new Map(countStates(states, nonManifold).map((count, state) => [EDGE_STATES[state]!, count] as const));
-  const rows = ALWAYS.map((state) => row(state, counts.get(state) ?? 0));
-  const kept = [...counts].filter(([state, count]) => count > 0 && isKept(state));
-  const rim = counts.get('boundary') ?? 0;
+/**
+ * Shows the number of edges in each state: `undefined` while they are not known. `isLarge`: whether it has the same rows
+ * always, because the numbers of a large mesh come late; `false` and no numbers hide it.
+ */
+export function showLegend(numbers: readonly number[] | undefined, isLarge: boolean): void {
+  element('legend').hidden = !numbers && !isLarge;
+  const counts = new Map(EDGE_STATES.map((state, k) => [state, numbers?.[k]] as const));
+  const rows = ALWAYS.map((state) => row(state, counts.get(state)));
+  const found = EDGE_STATES.filter((state) => isKept(state) && (counts.get(state) ?? 0) > 0);
+  const kept = (found.length > 0 ? found : isLarge ? (['angle'] as const) : []).map(
+    (state) => [state, counts.get(state)] as const,
+  );
+  const rim = counts.get('boundary');
   element('legend').replaceChildren(
     ...rows,
     ...(kept.length > 0 ? [keptRow(kept)] : []),
-    ...(rim > 0 ? [row('boundary', rim)] : []),
+    ...(isLarge || (rim ?? 0) > 0 ? [row('boundary', rim)] : []),
   );
 }
+
+/** A number, or a sign that it is not known yet. */
+const written = (count: number | undefined) => (count === undefined ? '…' : number.format(count));
 
 function words(word: string, gloss: string): HTMLElement {
   return made('span', '', word, ...(gloss ? [made('em', '', gloss)] : []));
 }
 
-function row(state: EdgeState, count: number): HTMLElement {
+function row(state: EdgeState, count: number | undefined): HTMLElement {
   const { word, gloss } = LOOKS[state];
-  const item = made('li', 'row', swatch(state), words(word, gloss), made('b', '', number.format(count)));
+  const item = made('li', 'row', swatch(state), words(word, gloss), made('b', '', written(count)));
   item.dataset['state'] = state;
   return item;
 }
 
 /** One row for all edges that stay, with a row for each reason below. */
-function keptRow(kept: readonly (readonly [EdgeState, number])[]): HTMLElement {
-  const sum = kept.reduce((total, [, count]) => total + count, 0);
-  const [most] = kept.reduce((a, b) => (b[1] > a[1] ? b : a));
+function keptRow(kept: readonly (readonly [EdgeState, number | undefined])[]): HTMLElement {
+  const isKnown = kept.every(([, count]) => count !== undefined);
+  const sum = kept.reduce((total, [, count]) => total + (count ?? 0), 0);
+  const [most] = kept.reduce((a, b) => ((b[1] ?? 0) > (a[1] ?? 0) ? b : a));
   const button = made(
     'button',
     'row',
     swatch(most),
     words('Kept', kept.every(([state]) => state === 'locked') ? LOOKS.locked.gloss : 'to keep the shape'),
-    made('b', '', number.format(sum)),
+    made('b', '', written(isKnown ? sum : undefined)),
   );
   button.type = 'button';
   const reasons = made('ul', '', ...kept.map(([state, count]) => row(state, count)));
@@ -75,10 +83,9 @@ export function showDraws(draws: Draws | undefined, isColoured: boolean): void {
   says.dataset['draws'] = draws ?? '';
   if (draws === undefined) return;
   const hot = isColoured ? [made('b', 'hot', 'Orange'), ': an edge flips. '] : [];
-  const counted = `States are counted up to ${number.format(COLOURED)} triangles.`;
   const words = {
     nothing: ['The surface alone. Press E for its edges.'],
-    edges: [...hot, counted],
+    edges: ['Edges. ', ...hot],
     tints: [
       'Edges are too short to draw here: each triangle is tinted by its smallest angle. ',
       ...hot,

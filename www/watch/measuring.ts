@@ -87,6 +87,7 @@ export class Measuring {
       announce(news ?? `${status} ${element('note').textContent}`);
       document.body.dataset['measured'] = `${run.at}`;
       host.handOver();
+      await host.display.findStates(shown, isOutdated);
     } catch (error) {
       if (!isOutdated()) host.fail(error);
     }

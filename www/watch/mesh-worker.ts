@@ -1,7 +1,7 @@
 /** The worker: reads, generates and measures meshes, or runs an engine, so that the page never blocks. */
 
 import { expose, transfer } from 'comlink';
-import { init, type FlipSession, type Iteration, type Options } from 'edgeflip';
+import { EDGE_STATES, init, type FlipSession, type Iteration, type Options } from 'edgeflip';
 import {
   angles,
   change,
@@ -22,7 +22,7 @@ import { scrambled } from '../models/scramble.js';
 import { featuresOf } from './features.ts';
 import { errorOf } from './kinds.ts';
 import { contentOfKept, keep, type Kept, readWith, type Located, type Report } from './files.ts';
-import { sessionOf, statesOf, summaryOf, type OpenMesh, type Step, type Summary } from './run.ts';
+import { countStates, sessionOf, statesOf, summaryOf, type OpenMesh, type Step, type Summary } from './run.ts';
 
 /**
  * The most triangles of a surface that is compared with its input: with many more, the comparison would take seconds.
@@ -38,12 +38,20 @@ export interface Quality {
   measures: Measures;
 }
 
+/** The states of the sides of each triangle, in the form of `Corners.sides`, and the number of edges in each state. */
+export interface SideStates {
+  sides: Uint32Array<ArrayBuffer>;
+  counts: number[];
+}
+
 /** The flips of an iteration, and the edges that could flip before it. */
 export type Flips = Pick<Iteration, 'flips' | 'labelled'>;
 
 class MeshWorker {
   #session: FlipSession | undefined;
   #before: Uint32Array = new Uint32Array();
+  /** A run on the CPU whose states are looked at: its mesh, its options, and its session once there is one. */
+  #beside: { mesh: OpenMesh; options: Options; session: FlipSession | undefined; at: number } | undefined;
 
   async generate(spec: string): Promise<IndexedMesh> {
     const mesh = await naming(generate(spec));
@@ -98,6 +106,36 @@ class MeshWorker {
     } finally {
       session.free();
     }
+  }
+
+  /** Takes the mesh and the options of the run whose states are looked at from now on. */
+  async beginStates(mesh: OpenMesh, options: Options): Promise<void> {
+    this.#beside?.session?.free();
+    this.#beside = { mesh, options, session: undefined, at: 0 };
+  }
+
+  /** The states after `at` iterations. Calls must not overlap. */
+  async statesAt(at: number): Promise<SideStates> {
+    const beside = this.#beside;
+    if (!beside) throw new Error('no run was given');
+    if (beside.session && beside.at > at) {
+      beside.session.free();
+      beside.session = undefined;
+    }
+    if (!beside.session) {
+      beside.session = await naming(sessionOf(beside.mesh, { ...beside.options, backend: 'cpu' }));
+      beside.at = 0;
+    }
+    const { session } = beside;
+    while (beside.at < at && (await naming(session.step()))) beside.at++;
+    const states = await naming(session.edgeStates());
+    const isCrowded = states.includes(EDGE_STATES.indexOf('non-manifold'));
+    const counts = countStates(states, isCrowded ? (await naming(session.result())).nonManifoldEdges : 0);
+    const sides = new Uint32Array(states.length / 3);
+    for (let t = 0; t < sides.length; t++) {
+      sides[t] = states[3 * t]! | (states[3 * t + 1]! << 4) | (states[3 * t + 2]! << 8);
+    }
+    return transfer({ sides, counts }, [sides.buffer]);
   }
 
   /** The edges at which the surface bends by more than an angle in degrees: two vertices each. */
