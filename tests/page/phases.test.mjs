@@ -33,6 +33,29 @@ test('a small mesh stops at Label, Select, Flip and Update, with the marks of ea
   await page.until('the next label', ({ status }) => status === `Label. ${rows[1][1]} edges can flip.`);
   for (const name of ['Update.', 'Flip.', 'Select.']) await stop(',', name);
   assert.equal((await page.look()).at, '0');
+  // On a phone, no key lies on another.
+  await page.page.setViewportSize({ width: 390, height: 844 });
+  const overlaps = await page.page.evaluate(() => {
+    const boxes = [...document.querySelectorAll('.keys button, .does :is(button, select)')].map((key) => ({
+      id: key.id,
+      box: key.getBoundingClientRect(),
+    }));
+    const seen = boxes.filter(({ box }) => box.width > 0);
+    return seen.flatMap(({ id, box }, i) =>
+      seen
+        .slice(i + 1)
+        .filter(
+          ({ box: other }) =>
+            box.left < other.right - 0.5 &&
+            other.left < box.right - 0.5 &&
+            box.top < other.bottom - 0.5 &&
+            other.top < box.bottom - 0.5,
+        )
+        .map((other) => `${id} and ${other.id}`),
+    );
+  });
+  assert.deepEqual(overlaps, []);
+  await page.page.setViewportSize({ width: 1280, height: 720 });
   // Whatever else moves the iteration ends the stop.
   await page.scrub('End');
   assert.deepEqual(await marks(), {});
