@@ -90,6 +90,7 @@ function whenNear(section: string, mount: (host: HTMLElement) => Promise<void>):
 whenNear('#explain', async (host) => (await import('../explain/index.ts')).mountExplanation(host));
 whenNear('#engines', async (host) => (await import('../engines/index.ts')).mountEngines(host, () => openMesh()));
 whenNear('#paper', async (host) => (await import('../paper/index.ts')).mountPaper(host));
+whenNear('#package', async (host) => (await import('../package/index.ts')).mountPackage(host));
 
 const sections = part('#sections');
 sections.addEventListener('click', () => sections.hidePopover());
