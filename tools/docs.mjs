@@ -4,6 +4,7 @@
 import { spawnSync } from 'node:child_process';
 import { cpSync, mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
+import { typedocTo } from './typedoc.mjs';
 
 process.chdir(fileURLToPath(new URL('..', import.meta.url)));
 
@@ -21,17 +22,7 @@ function run(program, args, env = {}) {
 rmSync(folder, { recursive: true, force: true });
 mkdirSync(folder, { recursive: true });
 
-run(process.execPath, [
-  'node_modules/typedoc/bin/typedoc',
-  ...['--name', name, '--out', `${folder}/javascript`, '--tsconfig', 'src/js/tsconfig.json'],
-  ...['index', 'inline', 'worker', 'files', 'three', 'gltf-transform'].flatMap((entry) => [
-    '--entryPoints',
-    `src/js/${entry}.ts`,
-  ]),
-  ...['--readme', 'none', '--disableSources', '--excludePrivate', '--treatWarningsAsErrors'],
-  ...['--intentionallyNotExported', 'CODES'],
-  '--skipErrorChecking', // only a build writes the types of the modules
-]);
+run(process.execPath, typedocTo(`${folder}/javascript`));
 
 run('cargo', ['doc', '--no-deps', '--lib'], { RUSTDOCFLAGS: '-D warnings' });
 cpSync(`${process.env.CARGO_TARGET_DIR ?? 'target'}/doc`, `${folder}/rust`, { recursive: true });

@@ -1,9 +1,12 @@
-// Prints the sizes of the package in dist/ and compares them with their budgets: the WebAssembly modules, and the
-// scripts of each entry, bundled and minified as in a program that uses it. Fails if one exceeds its budget.
+// Measures the package in dist/: the WebAssembly modules, and the scripts of each entry, bundled and minified as in a
+// program that uses it. `node tools/sizes.mjs` prints the sizes and fails if one exceeds its budget.
 
 import { readFileSync } from 'node:fs';
+import { fileURLToPath } from 'node:url';
 import { brotliCompressSync, gzipSync } from 'node:zlib';
 import * as esbuild from 'esbuild';
+
+const root = fileURLToPath(new URL('..', import.meta.url));
 
 /** The most bytes after gzip. */
 const BUDGETS = {
@@ -16,57 +19,66 @@ const BUDGETS = {
   'edgeflip/gltf-transform': 6_000,
 };
 
-const { exports } = JSON.parse(readFileSync('package.json', 'utf8'));
-const entries = Object.fromEntries(
-  Object.entries(exports).flatMap(([path, { import: given }]) =>
-    given ? [[`edgeflip${path.slice(1)}`, given.default.replace('./', '')]] : [],
-  ),
-);
-const { outputFiles, metafile } = await esbuild.build({
-  entryPoints: Object.values(entries),
-  bundle: true,
-  splitting: true,
-  minify: true,
-  format: 'esm',
-  outdir: 'target/sizes',
-  metafile: true,
-  write: false,
-});
-const text = new Map(outputFiles.map((file) => [file.path.replaceAll('\\', '/').split('target/sizes/')[1], file]));
+/** The bytes of each module, and of the scripts of each entry. Those of `edgeflip` count only for it and `edgeflip/inline`. */
+export async function measured() {
+  const { exports } = JSON.parse(readFileSync(`${root}package.json`, 'utf8'));
+  const entries = Object.fromEntries(
+    Object.entries(exports).flatMap(([path, { import: given }]) =>
+      given ? [[`edgeflip${path.slice(1)}`, given.default.replace('./', '')]] : [],
+    ),
+  );
+  const { outputFiles, metafile } = await esbuild.build({
+    absWorkingDir: root,
+    entryPoints: Object.values(entries),
+    bundle: true,
+    splitting: true,
+    minify: true,
+    format: 'esm',
+    outdir: 'target/sizes',
+    metafile: true,
+    write: false,
+  });
+  const text = new Map(outputFiles.map((file) => [file.path.replaceAll('\\', '/').split('target/sizes/')[1], file]));
 
-/** The scripts that an entry loads at once. Those of `edgeflip` count only for `edgeflip` and `edgeflip/inline`. */
-function scripts(entry) {
-  const outputs = Object.entries(metafile.outputs);
-  const [first] = outputs.find(([, { entryPoint }]) => entryPoint === entries[entry]);
-  const found = new Set([first]);
-  for (const output of found) {
-    for (const { path, kind, external } of metafile.outputs[output].imports) {
-      if (kind === 'import-statement' && !external) found.add(path);
+  /** The scripts that an entry loads at once. */
+  function scripts(entry) {
+    const outputs = Object.entries(metafile.outputs);
+    const [first] = outputs.find(([, { entryPoint }]) => entryPoint === entries[entry]);
+    const found = new Set([first]);
+    for (const output of found) {
+      for (const { path, kind, external } of metafile.outputs[output].imports) {
+        if (kind === 'import-statement' && !external) found.add(path);
+      }
+    }
+    return found;
+  }
+
+  const core = scripts('edgeflip');
+  const all = (names) => Buffer.concat([...names].map((name) => text.get(name.split('target/sizes/')[1]).contents));
+  return new Map([
+    ...['edgeflip', 'edgeflip_threads', 'edgeflip_webgl2', 'edgeflip_audit', 'edgeflip_files'].map((name) => [
+      `${name}_bg.wasm`,
+      readFileSync(`${root}dist/wasm/${name}_bg.wasm`),
+    ]),
+    ...Object.keys(entries).map((entry) => {
+      const isWhole = ['edgeflip', 'edgeflip/inline'].includes(entry);
+      return [entry, all([...scripts(entry)].filter((name) => isWhole || !core.has(name)))];
+    }),
+  ]);
+}
+
+async function print() {
+  console.log('\n| module, or scripts of an entry beside those of `edgeflip` | bytes | gzip | brotli | budget, gzip |');
+  console.log('|---|---:|---:|---:|---:|');
+  for (const [name, bytes] of await measured()) {
+    const zipped = gzipSync(bytes).length;
+    const most = BUDGETS[name];
+    console.log(`| ${name} | ${bytes.length} | ${zipped} | ${brotliCompressSync(bytes).length} | ${most ?? ''} |`);
+    if (zipped > most) {
+      console.error(`sizes: ${name} has ${zipped} bytes gzipped; its budget is ${most}`);
+      process.exitCode = 1;
     }
   }
-  return found;
 }
 
-const core = scripts('edgeflip');
-const all = (names) => Buffer.concat([...names].map((name) => text.get(name.split('target/sizes/')[1]).contents));
-const rows = [
-  ...['edgeflip', 'edgeflip_threads', 'edgeflip_webgl2', 'edgeflip_audit', 'edgeflip_files'].map((name) => [
-    `${name}_bg.wasm`,
-    readFileSync(`dist/wasm/${name}_bg.wasm`),
-  ]),
-  ...Object.keys(entries).map((entry) => {
-    const isWhole = ['edgeflip', 'edgeflip/inline'].includes(entry);
-    return [entry, all([...scripts(entry)].filter((name) => isWhole || !core.has(name)))];
-  }),
-];
-console.log('\n| module, or scripts of an entry beside those of `edgeflip` | bytes | gzip | brotli | budget, gzip |');
-console.log('|---|---:|---:|---:|---:|');
-for (const [name, bytes] of rows) {
-  const zipped = gzipSync(bytes).length;
-  const most = BUDGETS[name];
-  console.log(`| ${name} | ${bytes.length} | ${zipped} | ${brotliCompressSync(bytes).length} | ${most ?? ''} |`);
-  if (zipped > most) {
-    console.error(`sizes: ${name} has ${zipped} bytes gzipped; its budget is ${most}`);
-    process.exitCode = 1;
-  }
-}
+if (process.argv[1] === fileURLToPath(import.meta.url)) await print();

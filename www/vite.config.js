@@ -1,12 +1,16 @@
 // Serves the page during development, and builds it into target/www: static files that any server can serve.
 
-import { createHash } from 'node:crypto';
 import { existsSync, mkdirSync, readdirSync, readFileSync, rmSync, statSync, writeFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import subsetFont from 'subset-font';
 import { build, defineConfig } from 'vite';
+import { hashOf } from './documents/hash.js';
+import { serveDocuments, writeDocuments } from './documents/plugin.js';
+import { examplePages } from './documents/site.js';
+import { recordedRun } from './engines/read-record.js';
+import { packageFacts } from './package/facts.js';
 
 const at = (path) => fileURLToPath(new URL(path, import.meta.url));
 
@@ -61,21 +65,34 @@ const headersWith = (policy) => ({
   'Cross-Origin-Embedder-Policy': 'require-corp',
 });
 
-/** Serves the folder examples/ beside the page. */
-function serveExamples({ middlewares }) {
-  middlewares.use((request, _, next) => {
-    if (request.url.startsWith('/examples/')) request.url = `/@fs${at('..')}${request.url.slice(1)}`;
-    next();
-  });
-}
+// In a project of one's own, `edgeflip` is in node_modules.
+const alias = [
+  { find: /^edgeflip$/, replacement: at('../dist/index.js') },
+  { find: /^edgeflip\/(.*)$/, replacement: at('../dist/$1.js') },
+];
+
+/** Modules that the build computes. */
+const COMPUTED = { 'virtual:recorded': recordedRun, 'virtual:package': packageFacts };
+const computed = {
+  name: 'computed',
+  resolveId: (id) => (id in COMPUTED ? `\0${id}` : undefined),
+  load: async (id) =>
+    id.slice(1) in COMPUTED ? `export default ${JSON.stringify(await COMPUTED[id.slice(1)]())}` : undefined,
+};
 
 const out = at('../target/www');
 
-/** Builds the service worker, with the list of all files of the page. */
+/** Too large to be loaded for a visit without a network: the API reference, the examples, and README's picture. */
+const large = ['api/', 'examples/assets/', 'docs/page.png', ...examplePages().map((name) => `examples/${name}`)];
+
+/** Builds the service worker, with the list of the files that it keeps. */
 async function writeServiceWorker() {
-  const paths = readdirSync(out, { recursive: true }).filter((path) => statSync(join(out, path)).isFile());
+  const all = readdirSync(out, { recursive: true }).map((path) => path.replaceAll('\\', '/'));
+  const paths = all.filter(
+    (path) => statSync(join(out, path)).isFile() && !large.some((start) => path.startsWith(start)),
+  );
   const files = paths.map((path) => ({
-    url: path.replaceAll('\\', '/'),
+    url: path,
     // The names of the other files change with their content.
     revision: path.startsWith('assets') ? null : hashOf(join(out, path)),
   }));
@@ -89,24 +106,28 @@ async function writeServiceWorker() {
   });
 }
 
+/** What stands beside the page, and then the list of all files. */
+async function writeTheRest() {
+  await writeDocuments(out, policy, alias);
+  await writeServiceWorker();
+}
+
+const serveWhileWorking = (server) => serveDocuments(server, headersWith(whileWorking(policy)), `/@fs${font}`);
+
 export default defineConfig({
   root: at('.'),
   base: './',
   publicDir: at('../target/public'),
-  resolve: {
-    alias: [
-      { find: /^edgeflip$/, replacement: at('../dist/index.js') },
-      { find: /^edgeflip\/(.*)$/, replacement: at('../dist/$1.js') },
-    ],
-  },
+  resolve: { alias },
   worker: { format: 'es' },
   // Found late, these would be bundled apart, each with a copy of three.js.
   optimizeDeps: { include: ['three', 'three/webgpu', 'three/tsl', 'three/addons/controls/OrbitControls.js'] },
   plugins: [
     { name: 'policy-while-working', apply: 'serve', transformIndexHtml: whileWorking },
     { name: 'font-while-working', apply: 'serve', transformIndexHtml: { order: 'pre', handler: withFont } },
-    { name: 'examples', apply: 'serve', configureServer: serveExamples },
-    { name: 'offline', apply: 'build', closeBundle: writeServiceWorker },
+    computed,
+    { name: 'documents-while-working', apply: 'serve', configureServer: serveWhileWorking },
+    { name: 'documents', apply: 'build', closeBundle: writeTheRest },
   ],
   server: { headers: headersWith(whileWorking(policy)), fs: { allow: [at('..')] } },
   preview: { headers: headersWith(policy) },
@@ -120,5 +141,7 @@ export default defineConfig({
     chunkSizeWarningLimit: 1500,
     // All browsers with `light-dark()` have it.
     modulePreload: { polyfill: false },
+    // What stands beside the page takes longer than the page.
+    rolldownOptions: { checks: { pluginTimings: false } },
   },
 });

@@ -46,11 +46,12 @@ async function workerThatSays(ms, isSoftware = '() => false') {
         return { positions: new Float32Array(6), indices: new Uint32Array(3 * triangles), dimension: 2 };
       },
       isSoftware: ${isSoftware},
+      start: async () => 1234,
       async time({ indices }, { backend, threads }, most) {
         const median = await ms({ backend, threads, triangles: indices.length / 3 });
         if (typeof median === 'string') throw new Error(median);
         const result = { indices, flips: 7, threads: backend === 'cpu' ? threads ?? 2 : 0 };
-        return { median, runs: median > most ? 1 : 5, first: 2 * median, result, isSoftware: false };
+        return { median, runs: median > most ? 1 : 5, result, isSoftware: false };
       },
     });`;
   const bundle = { stdin: { contents, resolveDir: at('.') }, bundle: true, format: 'esm', write: false };
@@ -65,6 +66,10 @@ const resultsOf = (page) =>
       const drawn = (kind) => row.querySelector(`.engines-${kind}`)?.getAttribute('d') ?? '';
       return {
         name: row.querySelector('h3').textContent,
+        where: text('where'),
+        recorded: row.querySelector('.engines-recorded:not([hidden])')?.textContent,
+        /** The widths of the recorded bar and of this computer's. */
+        bars: [...row.querySelectorAll('.engines-track i')].map((bar) => (bar.hidden ? '' : bar.style.width)),
         time: text('time'),
         speed: text('speed'),
         why: text('why'),
@@ -88,62 +93,142 @@ function digitsOf(path) {
   return bits.join('').replace(/.{4}/g, (four) => Number.parseInt(four, 2).toString(16));
 }
 
-/** Races on every engine, and compares with the package in Node. */
-async function raceAndCompare(page, spec) {
-  const { indices, flips } = await makeDelaunay(await generate(spec), { backend: 'cpu' });
-  await page.locator('.engines-main').click();
-  await page.locator('.engines-main', { hasText: 'Race again' }).waitFor({ timeout: 400_000 });
+const NAMES = ['CPU, 1 thread', 'CPU, threads', 'WebGPU', 'WebGL2'];
+const namesOf = (rows) => rows.map(({ name }) => name.replace(/\d+ threads/, 'threads'));
+
+test('the open mesh races: every engine here gives the triangles of the package in Node', async () => {
+  const { indices, flips } = await makeDelaunay(await generate('random 24'), { backend: 'cpu' });
+  const edgeflip = await sharedPage('random 24');
+  const { page } = edgeflip;
+  await page.evaluate(() => document.getElementById('engines').scrollIntoView());
+  await page.locator('.engines-open').click();
+  await page.locator('.engines-open', { hasText: 'Race' }).waitFor({ timeout: 400_000 });
   const rows = await resultsOf(page);
-  assert.deepEqual(
-    rows.map(({ name }) => name.replace(/\d+ threads/, 'threads')),
-    ['WebGPU', 'WebGL2', 'CPU, threads', 'CPU, 1 thread'],
-  );
+  assert.deepEqual(namesOf(rows), NAMES);
   const ran = rows.filter(({ why }) => why === '');
-  for (const { name, time, digits, same, other } of ran) {
+  for (const { name, time, digits, same, other, recorded } of ran) {
     assert.equal(digits, fingerprintOf(indices), name);
     assert.deepEqual([digitsOf(same), squares(other)], [digits, 0], name);
     assert.match(time, /^[\d.,]+ m?s$/);
+    assert.equal(recorded, undefined, 'the record is of another mesh');
   }
   assert.equal(ran.length, 3);
-  assert.match(rows[2].why, /A mesh this small runs on one thread/);
+  assert.match(rows[1].why, /A mesh this small runs on one thread/);
   assert.match(await page.locator('.engines-verdict').textContent(), /All three are equal, bit for bit/);
-  assert.match(await page.locator('.engines-result').first().textContent(), /Software GPU/);
+  assert.match(rows[2].where, /Software GPU/);
   const numbers = `${(indices.length / 3).toLocaleString('en')} triangles, ${flips.toLocaleString('en')} flips`;
   assert.match(await page.locator('.engines-lede').textContent(), new RegExp(numbers));
-}
-
-test('the open mesh races: every engine here gives the triangles of the package in Node', async () => {
-  const edgeflip = await sharedPage('random 24');
-  await edgeflip.page.evaluate(() => document.getElementById('engines').scrollIntoView());
-  await raceAndCompare(edgeflip.page, 'random 24');
   await edgeflip.close();
 });
 
 if (full) {
-  test('without an open mesh, the paper’s mesh 3 races', { timeout: 400_000 }, async () => {
-    const { page, close } = await openSection();
-    await raceAndCompare(page, 'uvsphere 100');
+  test('the mesh of the record races: who is ready in 5 s gives the triangles of the package in Node', async () => {
+    const { indices } = await makeDelaunay(await generate('random 269'), { backend: 'cpu' });
+    const { page, race, close } = await openSection();
+    await race.click();
+    await page.locator('.engines-main', { hasText: 'Race again' }).waitFor({ timeout: 120_000 });
+    const ran = (await resultsOf(page)).filter(({ why }) => !/^Stopped after 5\ss\.$/.test(why));
+    assert.ok(ran.length > 0);
+    for (const { name, digits } of ran) assert.equal(digits, fingerprintOf(indices), name);
     await close();
   });
 }
 
+/** The recorded milliseconds of a mesh by engine. */
+function recordOf(mesh) {
+  const text = readFileSync(at('../../benches/results/2026-11-24-h200-auto-6416f23.md'), 'utf8');
+  const [, table] = text.split(/^## Chromium 148, ready.*$/m);
+  const cells = (start) =>
+    table
+      .split('\n')
+      .find((line) => line.startsWith(`| ${start} |`))
+      .split('|');
+  const names = cells('mesh').map((name) => name.trim());
+  const ms = (name) => Number(cells(mesh)[names.indexOf(name)]);
+  return { cpu: ms('cpu ms'), webgpu: ms('webgpu ms'), webgl2: ms('webgl2 ms') };
+}
+
+test('a recorded run is there at once, and this computer’s lanes come over it', async () => {
+  const record = recordOf('random 269');
+  const most = Math.max(...Object.values(record));
+  const worker = await workerThatSays(`({ backend, threads }) => ({ cpu: threads === 1 ? 300 : 100 }[backend] ?? 30)`);
+  const { page, race, close } = await openSection({ worker });
+  const digits = (ms) => (ms < 10 ? ms.toFixed(2) : ms < 100 ? ms.toFixed(1) : ms.toFixed(0));
+  const texts = ['cpu', 'webgpu', 'webgl2'].map((engine) => `Recorded: ${digits(record[engine])} ms`);
+  const before = await resultsOf(page);
+  assert.deepEqual(namesOf(before), NAMES);
+  assert.deepEqual(
+    before.map(({ recorded }) => recorded),
+    [undefined, ...texts],
+  );
+  assert.deepEqual(before[0].bars, ['', '']);
+  const share = (ms, all) => `${Number(((100 * ms) / all).toFixed(3))}%`;
+  const rounded = (width) => width && share(Number.parseFloat(width), 100);
+  assert.deepEqual(before[2].bars.map(rounded), [share(record.webgpu, most), '']);
+  const source = page.locator('.engines-source');
+  assert.match(
+    await source.textContent(),
+    /^Grey: an NVIDIA H200 .* Chromium 148, 24 November 2026, medians of 3 runs\./,
+  );
+  assert.equal(await source.locator('a').getAttribute('href'), 'benches/results/2026-11-24-h200-auto-6416f23.html');
+  // The recorded lines are there too.
+  assert.equal(await page.locator('.engines-chart .engines-old').count(), 3);
+
+  await race.click();
+  await page.locator('.engines-main', { hasText: 'Race again' }).waitFor();
+  const after = await resultsOf(page);
+  assert.deepEqual(after[2].bars.map(rounded), [share(record.webgpu, 300), share(30, 300)]);
+  assert.deepEqual(after[0].bars.map(rounded), ['', '100%']);
+  // The start is no part of the time.
+  assert.equal(after[2].time, '30.0 ms');
+  assert.match(after[2].where, /Start: 1,234 ms$/);
+  await close();
+});
+
+test('the CPU races first, and an engine that takes over 5 s is stopped and says so', async () => {
+  const worker = await workerThatSays('() => new Promise(() => {})');
+  const script = () => {
+    const { setTimeout } = window;
+    // Nobody waits for 5 s here.
+    window.setTimeout = (call, ms, ...args) => setTimeout(call, ms === 5000 ? 300 : ms, ...args);
+    window.notes = [];
+    document.addEventListener('DOMContentLoaded', () =>
+      new MutationObserver(() => {
+        const note = document.querySelector('.engines-note')?.textContent;
+        if (note !== window.notes.at(-1)) window.notes.push(note);
+      }).observe(document.body, { subtree: true, childList: true }),
+    );
+  };
+  const { page, race, close } = await openSection({ worker, script });
+  await race.click();
+  await page.locator('.engines-main', { hasText: 'Race again' }).waitFor();
+  const notes = await page.evaluate(() => window.notes);
+  const order = notes.flatMap((note) => note?.match(/^(.*) runs\.$/)?.[1] ?? []);
+  assert.deepEqual(namesOf(order.map((name) => ({ name }))), NAMES);
+  for (const { name, why, time } of await resultsOf(page)) {
+    assert.match(why, /^Stopped after 5\ss\.$/, name);
+    assert.equal(time, '–', name);
+  }
+  await close();
+});
+
 test('a result that differs stands out, and an engine that fails says why', async () => {
   const worker = await workerThatSays(`({ backend, threads }) =>
     backend === 'webgl2' ? 'the context was lost' : backend === 'webgpu' ? 4 : threads === 1 ? 80 : 20`);
-  // The first fingerprint, that of WebGPU, is wrong in its first bits.
+  // The third fingerprint, that of WebGPU, is wrong in its first bits.
   const script = () => {
     const digest = crypto.subtle.digest.bind(crypto.subtle);
     let calls = 0;
     crypto.subtle.digest = async (...args) => {
       const bytes = new Uint8Array(await digest(...args));
-      if (calls++ === 0) bytes[0] ^= 0b10100000;
+      if (calls++ === 2) bytes[0] ^= 0b10100000;
       return bytes.buffer;
     };
   };
   const { page, race, close } = await openSection({ worker, script });
   await race.click();
   await page.locator('.engines-main', { hasText: 'Race again' }).waitFor();
-  const [webgpu, webgl2, threads, one] = await resultsOf(page);
+  const [one, threads, webgpu, webgl2] = await resultsOf(page);
   assert.deepEqual(
     [webgpu, threads, one].map(({ time, speed }) => [time, speed]),
     [
@@ -178,14 +263,14 @@ test('the headline and the table have what was measured', async () => {
   assert.deepEqual(
     rows.slice(1).map(([triangles, ...times]) => [triangles, ...times]),
     [
-      ['200', '5.00 ms', '2.00 ms', '0.10 ms'],
-      ['722', '5.00 ms', '7.22 ms', '0.36 ms'],
-      ['2,738', '5.00 ms', '27.4 ms', '1.37 ms'],
-      ['10,368', '5.00 ms', '104 ms', '5.18 ms'],
-      ['38,642', '5.00 ms', '386 ms', '19.3 ms'],
-      ['143,648', '5.00 ms', '1,436 ms', '71.8 ms'],
+      ['200', '0.10 ms', '5.00 ms', '2.00 ms'],
+      ['722', '0.36 ms', '5.00 ms', '7.22 ms'],
+      ['2,738', '1.37 ms', '5.00 ms', '27.4 ms'],
+      ['10,368', '5.18 ms', '5.00 ms', '104 ms'],
+      ['38,642', '19.3 ms', '5.00 ms', '386 ms'],
+      ['143,648', '71.8 ms', '5.00 ms', '1,436 ms'],
       // A run on WebGL2 took more than 1 s before.
-      ['500,000', '5.00 ms', '–', '250 ms'],
+      ['500,000', '250 ms', '5.00 ms', '–'],
     ],
   );
   assert.equal(await page.locator('.engines-dot').count(), 20);

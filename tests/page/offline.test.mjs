@@ -54,5 +54,17 @@ test('after a visit to the tool, the page needs no network and no headers', asyn
     await page.evaluate((id) => document.getElementById(id).scrollIntoView(), section);
     await page.locator(part).first().waitFor({ state: 'attached' });
   }
+  // The documents are kept; the API reference and the examples are too large for that.
+  const kept = await page.evaluate(async () => {
+    const [name] = await caches.keys();
+    return (await (await caches.open(name)).keys()).map(({ url }) => url);
+  });
+  assert.ok(kept.some((url) => url.includes('/docs/options.html')));
+  assert.deepEqual(
+    kept.filter((url) => /\/api\/|\/examples\/(assets|\w+\.html)/.test(url) && !url.includes('examples/index.html')),
+    [],
+  );
+  await page.goto(`${address}docs/options.html`);
+  assert.equal(await page.textContent('h1'), 'Options');
   await edgeflip.close();
 });

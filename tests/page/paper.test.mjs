@@ -3,9 +3,13 @@
 import assert from 'node:assert/strict';
 import { readdirSync, readFileSync } from 'node:fs';
 import { test } from 'node:test';
+import { setTimeout as pause } from 'node:timers/promises';
+import { fileURLToPath } from 'node:url';
 import { FlipSession } from 'edgeflip';
 import { generate } from 'edgeflip/files';
 import { MESHES } from '../../tools/paper/theirs.mjs';
+import site from '../../www/vite.config.js';
+import { openPage, serve, startChromium } from '../browsers.mjs';
 import { sharedPage } from './page.mjs';
 
 const results = new URL('../../benches/results/', import.meta.url);
@@ -28,9 +32,9 @@ test('the table has the numbers of the paper and of the newest measurements on a
   const edgeflip = await sharedPage();
   const { page } = edgeflip;
   await page.evaluate(() => document.getElementById('paper').scrollIntoView());
-  await page.waitForSelector('#paper tbody tr');
+  await page.waitForSelector('.paper-table tbody tr');
   const rows = await page.evaluate(() =>
-    [...document.querySelectorAll('#paper tbody tr')].map((row) =>
+    [...document.querySelectorAll('.paper-table tbody tr')].map((row) =>
       [...row.cells].map(({ textContent }) => textContent),
     ),
   );
@@ -49,6 +53,54 @@ test('the table has the numbers of the paper and of the newest measurements on a
     assert.equal(rows[i][8], theirs ? digits(theirs.speedUp) : '–');
   });
   await edgeflip.close();
+});
+
+test('four cells say from which size on the GPU is faster', async () => {
+  const name = readdirSync(results)
+    .filter((file) => /-paper-\w+\.json$/.test(file) && !file.includes('cores'))
+    .sort()
+    .at(-1);
+  const { crossover } = JSON.parse(readFileSync(new URL(name, results)));
+  /** The smallest size from which the GPU is faster at all larger sizes. */
+  const from = (family, against) => {
+    const sizes = crossover.filter((size) => size.family === family);
+    const slower = sizes.filter((size) => size.gpu >= size[against]).map(({ edges }) => edges);
+    const faster = sizes.map(({ edges }) => edges).filter((edges) => edges > Math.max(0, ...slower));
+    return `${Math.min(...faster).toLocaleString('en')} edges`;
+  };
+  const edgeflip = await sharedPage();
+  const { page } = edgeflip;
+  await page.evaluate(() => document.getElementById('paper').scrollIntoView());
+  await page.waitForSelector('.paper-sizes');
+  const rows = await page
+    .locator('.paper-sizes tbody tr')
+    .evaluateAll((all) => all.map((row) => [...row.cells].map(({ textContent }) => textContent)));
+  assert.deepEqual(rows, [
+    ['Many edges flip', from('random', 'cpu'), from('random', 'cores')],
+    ['No edge flips', from('delaunay', 'cpu'), from('delaunay', 'cores')],
+  ]);
+  const reference = await page.locator('.paper-reference li').first().textContent();
+  assert.match(reference, /Navarro.*Hitschfeld-Kahler.*Scheihing.*Edge-Flips\. Manuscript, 28 February 2011/);
+  await edgeflip.close();
+});
+
+test('the time of a small run is not that of the engine’s start', async () => {
+  const address = await serve(fileURLToPath(new URL('../../target/www', import.meta.url)), site.preview.headers);
+  const { page, problems } = await openPage(await startChromium(), 'about:blank');
+  const SLOW = 3000;
+  // The engine comes late.
+  await page.route('**/edgeflip_bg-*.wasm', async (route) => {
+    await pause(SLOW);
+    await route.continue();
+  });
+  await page.goto(`${address}#paper`);
+  await page.waitForSelector('#paper .paper-pair');
+  await page.evaluate(() => document.querySelector('.paper-pair').scrollIntoView());
+  const caption = page.locator('#paper figure[data-spec="strips 16"] figcaption', { hasText: 'iterations' });
+  const [, ms] = (await caption.textContent({ timeout: 60_000 })).match(/ in ([\d.,]+) ms on this computer’s CPU\.$/);
+  assert.ok(Number(ms.replace(',', '')) < SLOW / 2, ms);
+  assert.deepEqual(problems, []);
+  await page.close();
 });
 
 test('the plots have the flips of the package', async () => {

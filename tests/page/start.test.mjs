@@ -1,4 +1,4 @@
-// Tests the server of `npm start`: the page from its sources, and the examples beside it. It reads the existing dist/.
+// Tests the server of `npm start`: the page from its sources, and what it links to beside it. It reads the existing dist/.
 
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
@@ -33,4 +33,22 @@ test('the server of npm start serves the examples', async () => {
     assert.deepEqual(problems, [], name);
     await page.close();
   }
+});
+
+test('the server of npm start serves the documents and the API reference', async () => {
+  const { page, problems } = await openPage(await startChromium(), `${address}README.html`);
+  for (const [path, title] of [
+    ['docs/options.html', 'Options'],
+    ['examples/index.html', 'Examples'],
+    ['examples/gltf.mjs.html', 'examples/gltf.mjs'],
+    ['api/index.html', 'edgeflip'],
+  ]) {
+    await page.goto(`${address}${path}`);
+    assert.equal(await page.textContent('h1'), title);
+    assert.ok(await page.evaluate(() => document.styleSheets.length > 0));
+  }
+  const answer = await fetch(`${address}docs/nothing.html`, { headers: { Accept: 'text/css' } });
+  assert.equal(answer.status, 404);
+  assert.deepEqual(problems, []);
+  await page.close();
 });

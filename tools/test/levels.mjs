@@ -113,7 +113,10 @@ const builds = [
       ['node', 'node_modules/vite/bin/vite.js', 'build', '-c', 'www/vite.config.js'],
     ],
     tools: ['packages'],
-    reads: ['www', 'shaders', 'docs', 'src/js', ...scripts],
+    reads: [
+      ...['www', 'shaders', 'docs', 'src/js', 'examples', 'benches/results', 'tools/sizes.mjs', 'tools/typedoc.mjs'],
+      ...['README.md', 'CHANGELOG.md', 'CONTRIBUTING.md', 'SECURITY.md', 'LICENSE-MIT', 'LICENSE-APACHE', ...scripts],
+    ],
     after: ['package'],
     uses: ['dist'],
     writes: ['target/www', 'target/public'],
@@ -186,7 +189,7 @@ const levels = [
     what: 'the API reference of both languages builds without a warning or a dead link',
     checks: [['node', 'tools/docs.mjs']],
     tools: ['rust', 'packages'],
-    reads: [...crate, 'src/js', ...locks, ...scripts, 'tools/docs.mjs'],
+    reads: [...crate, 'src/js', ...locks, ...scripts, 'tools/docs.mjs', 'tools/typedoc.mjs'],
     holds: ['target'],
   },
   {
@@ -261,7 +264,7 @@ levels.push(
 function pageLevels() {
   const page = {
     counts: true,
-    reads: ['tests/page', ...shared, 'www', ...scripts],
+    reads: ['tests/page', ...shared, 'www', 'README.md', 'docs', 'examples', 'benches/results', 'tools', ...scripts],
     after: ['page'],
     uses: ['dist', 'target/www', 'target/public'],
   };

@@ -5,11 +5,11 @@ import { made } from '../shell/elements.ts';
 /** The sizes from which on a GPU that is ready saves more than 2.5 ms, by the estimates of the package. */
 const RULES = [
   'Up to about 28,000 triangles in space, or 34,000 in the plane: the CPU.',
-  'Above that: WebGPU, on a hardware GPU that is ready and has flipped a test mesh correctly.',
-  'Until the browser has prepared that GPU: the CPU, on all cores where the page may share memory. A mesh of many million triangles waits for the GPU.',
+  'Larger meshes: WebGPU, as soon as the GPU is ready and has flipped a test mesh correctly.',
+  'While the GPU gets ready: the CPU. Only a mesh of many million triangles waits for the GPU.',
   'Never WebGL2, and never a software GPU: the CPU is faster.',
 ];
-const NOTE = 'These sizes are fixed estimates of the package. “auto” does not know what you measure here.';
+const NOTE = 'The package has these sizes as fixed estimates. What you measure here does not change them.';
 
 export function autoRules(): HTMLElement[] {
   const rules = made('ol', 'engines-rules', ...RULES.map((rule) => made('li', '', rule)));

@@ -3,14 +3,14 @@
 import { made } from '../shell/elements.ts';
 import { crossoverOf, type Crossover } from './crossover.ts';
 import { plot } from './plot.ts';
+import { recordedCrossover, SERIES, WHAT } from './recorded.ts';
 import { sentenceOf } from './timer.ts';
 import { emptySeries, measureSizes, type Series } from './sizes.ts';
 import type { OneAtATime } from './one-at-a-time.ts';
 import { about, count, timeText } from './words.ts';
 
 const QUESTION = 'When is the GPU first?';
-const BEFORE =
-  'Random points in the plane, 200 to 500,000 triangles. An engine stops after a run of more than 1\u00a0s.';
+const BEFORE = `Random points in the plane. Grey: ${WHAT}. There the GPU is first from ${recordedCrossover()} triangles on.`;
 
 export class CrossoverView {
   readonly #title = made('h3', 'engines-title', QUESTION);
@@ -63,7 +63,12 @@ export class CrossoverView {
   }
 
   #draw(): void {
-    plot(this.#chart, this.#series, this.#crossover && 'from' in this.#crossover ? this.#crossover.from : undefined);
+    plot(
+      this.#chart,
+      this.#series,
+      SERIES,
+      this.#crossover && 'from' in this.#crossover ? this.#crossover.from : undefined,
+    );
   }
 
   #tabulate(): void {

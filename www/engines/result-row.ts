@@ -13,8 +13,11 @@ export class ResultRow {
   readonly element: HTMLElement;
   readonly #contender: Contender;
   readonly #where = made('p', 'engines-where');
-  readonly #bar = made('i', '');
-  readonly #track = made('div', 'engines-track', this.#bar);
+  /** The recorded time, with this computer's over it. */
+  readonly #record = made('i', 'engines-old');
+  readonly #bar = made('i', 'engines-own');
+  readonly #track = made('div', 'engines-track', this.#record, this.#bar);
+  readonly #recorded = made('p', 'engines-recorded');
   readonly #why = made('p', 'engines-why');
   readonly #time = made('strong', 'engines-time');
   readonly #speed = made('span', 'engines-speed');
@@ -23,7 +26,7 @@ export class ResultRow {
   constructor(contender: Contender) {
     this.#contender = contender;
     const name = made('div', 'engines-name', made('h3', '', contender.name), this.#where);
-    const middle = made('div', 'engines-middle', this.#track, this.#why);
+    const middle = made('div', 'engines-middle', this.#track, this.#recorded, this.#why);
     this.element = made('li', 'engines-result', name, middle, this.#time, this.#speed, this.#print);
     this.reset();
   }
@@ -39,6 +42,14 @@ export class ResultRow {
     this.#say(this.#contender.whyNot);
   }
 
+  /** Shows the recorded milliseconds of this engine, or hides them. The longest bar has `scale` of them. */
+  record(ms: number | undefined, scale: number): void {
+    this.#record.hidden = this.#recorded.hidden = ms === undefined;
+    if (ms === undefined) return;
+    this.#record.style.width = `${(100 * ms) / scale}%`;
+    this.#recorded.textContent = `Recorded: ${timeText(ms)}`;
+  }
+
   start(): void {
     this.element.classList.add('engines-running');
   }
@@ -50,19 +61,19 @@ export class ResultRow {
       this.#say(outcome.whyNot);
       return;
     }
-    const { median, first, isSoftware } = outcome.timing;
+    const { median, isSoftware } = outcome.timing;
     const [time, unit] = timeOf(median);
     this.#time.replaceChildren(time, made('small', '', ` ${unit}`));
     const { where } = this.#contender;
     const place = isSoftware ? where.replace('Your GPU', 'Software GPU') : where;
-    this.#where.replaceChildren(place, made('br', ''), `First run: ${timeText(first)}`);
+    this.#where.replaceChildren(place, made('br', ''), `Start: ${timeText(outcome.start)}`);
   }
 
-  /** Compares with the slowest engine, with one thread, and with the expected result. */
-  compare(ran: Ran, slowest: number, oneThread: Ran | undefined, expected: string, isFirst: boolean): void {
+  /** Compares with one thread, and with the expected result. The longest bar has `scale` milliseconds. */
+  compare(ran: Ran, scale: number, oneThread: Ran | undefined, expected: string, isFirst: boolean): void {
     const { median } = ran.timing;
     this.#bar.hidden = false;
-    this.#bar.style.width = `${(100 * median) / slowest}%`;
+    this.#bar.style.width = `${(100 * median) / scale}%`;
     this.element.classList.toggle('engines-first', isFirst);
     if (oneThread) {
       const factor = oneThread.timing.median / median;
@@ -81,6 +92,5 @@ export class ResultRow {
   #say(why: string | undefined): void {
     this.#why.textContent = why ?? '';
     this.#why.hidden = why === undefined;
-    this.#track.hidden = why !== undefined;
   }
 }

@@ -1,7 +1,7 @@
 /** Times the engines on meshes of growing size. */
 
 import { ONE_THREAD, THREADS, WEBGL2, WEBGPU, type Contender } from './contenders.ts';
-import { startTimer, sentenceOf } from './timer.ts';
+import { sentenceOf, start, startTimer, time } from './timer.ts';
 import { count } from './words.ts';
 
 /** The meshes: `random N` in the plane, with 2(N − 1)² triangles. */
@@ -30,7 +30,7 @@ export interface Series {
 const CPU = THREADS.whyNot === undefined ? THREADS : ONE_THREAD;
 
 export const emptySeries = (): Series[] =>
-  [WEBGPU, WEBGL2, CPU].map((contender) => ({ contender, points: [], whyNot: contender.whyNot }));
+  [CPU, WEBGPU, WEBGL2].map((contender) => ({ contender, points: [], whyNot: contender.whyNot }));
 
 /**
  * Fills the series, the small meshes first. `report` is called before each measurement, with the completed share.
@@ -52,9 +52,11 @@ export async function measureSizes(
         const { name, options } = one.contender;
         report(done / SIDES.length, `${count(triangles)} triangles, ${name}`);
         try {
-          if (side === SIDES[0] && (await timer.call((worker) => worker.isSoftware(options))))
-            throw new Error(EMULATED);
-          const { median } = await timer.call((worker) => worker.time(mesh, options, SLOW));
+          if (side === SIDES[0]) {
+            if (await timer.call((worker) => worker.isSoftware(options))) throw new Error(EMULATED);
+            await start(timer, 2, options);
+          }
+          const { median } = await time(timer, mesh, options);
           one.points.push({ triangles, ms: median });
           if (median <= SLOW) continue;
         } catch (error) {

@@ -118,6 +118,7 @@ function loadSections(): void {
     (await import('../engines/index.ts')).mountEngines(host, () => startedTool()?.mesh());
   });
   whenNear('#paper', async (host) => (await import('../paper/index.ts')).mountPaper(host));
+  whenNear('#package', async (host) => (await import('../package/index.ts')).mountPackage(host));
 }
 
 const sections = part('#sections');
