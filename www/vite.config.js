@@ -17,12 +17,6 @@ const at = (path) => fileURLToPath(new URL(path, import.meta.url));
 /** The address under which the style sheet asks for the font while the server of `npm start` runs. */
 const withFont = (html) => html.replace('../target/fonts/inter.woff2', `/@fs${font}`);
 
-const hashOf = (...paths) => {
-  const hash = createHash('sha256');
-  for (const path of paths) hash.update(readFileSync(path));
-  return hash.digest('hex');
-};
-
 // Inter with the characters and the weights of the page.
 const [font, fontMark] = [at('../target/fonts/inter.woff2'), at('../target/fonts/inter.stamp')];
 const fontStamp = hashOf(at('vite.config.js'), at('../package-lock.json'));
