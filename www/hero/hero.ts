@@ -53,6 +53,8 @@ export class Hero {
   async start(moves: boolean): Promise<void> {
     const start = ++this.#starts;
     const [width, height] = [this.#canvas.clientWidth, this.#canvas.clientHeight];
+    // Hidden: the visitor has gone on already. Points would find no place.
+    if (width === 0 || height === 0) return;
     const spacing = spacingFor(width, height);
     const mesh = scatter(width, height, spacing);
     const session = await FlipSession.create(
