@@ -82,7 +82,7 @@ test('each sample opens from the gallery, by its name and with the triangles of 
 
 test('the timeline has all iterations before they are run, and goes to any of them', async () => {
   const page = await sharedPage(BUNNY);
-  const { fingerprints, rows } = await expected(first.path, first.maxNormalAngle);
+  const { facts, fingerprints, rows } = await expected(first.path, first.maxNormalAngle);
   const stops = () => page.page.evaluate(() => Number(document.getElementById('slider').max));
   await page.page.waitForFunction((count) => document.getElementById('slider').max === `${count}`, rows.length);
   assert.equal((await page.look()).newest, '0');
@@ -100,9 +100,32 @@ test('the timeline has all iterations before they are run, and goes to any of th
     await page.until(`iteration ${at}`, (seen) => seen.at === `${at}` && seen.measured === `${at}`);
     assert.equal((await page.look()).facts.Fingerprint, fingerprints[at], `after iteration ${at}`);
   }
+  const [, labelled, firstFlips] = rows[0];
+  const waits = Number(labelled.replaceAll(',', '')) - flips;
+  assert.equal(
+    (await page.look()).status,
+    `${labelled} edges are wrong: ${firstFlips} flip first, ${waits.toLocaleString('en')} wait. Press play.`,
+  );
+  await page.page.evaluate(() => {
+    const region = document.getElementById('announcement');
+    window.announced = [];
+    new MutationObserver(() => window.announced.push(region.textContent)).observe(region, { childList: true });
+  });
   await press(page, 'End');
   const end = await page.until('the end', ({ state, measured, at }) => state === 'done' && measured === at);
-  assert.match(end.status, /^Done\. Every edge is Delaunay, but for \d+ kept to save the shape\.$/);
+  const [before, after] = facts['Mean smallest'].match(/[\d.]+/g).map((angle) => Math.round(Number(angle)));
+  const time = /\d[\d,.]* ms/.exec(end.status);
+  const [kept] = facts['Not Delaunay'].split(' ');
+  assert.equal(
+    end.status,
+    `${facts.Flips} flips in ${facts.Iterations} iterations, ${time} on the CPU. ` +
+      `Smallest angle on average ${before}° → ${after}°. ${kept} edges stay to keep the shape.`,
+  );
+  // It is said once, also if the state is measured again.
+  await press(page, 't', 't');
+  await page.rest();
+  const announced = await page.page.evaluate(() => window.announced);
+  assert.equal(announced.filter((text) => text.startsWith(end.status)).length, 1, announced.join('\n'));
   await page.close();
 });
 

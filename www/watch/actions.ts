@@ -3,6 +3,7 @@
 import { codeFor } from './code.ts';
 import { download, save } from './download.ts';
 import { linkTo } from './link.ts';
+import { number } from '../shell/numbers.ts';
 import { again } from './opening.ts';
 import type { Page } from './page.ts';
 import { palette } from './palette.ts';
@@ -21,7 +22,7 @@ export async function scramble(page: Page): Promise<void> {
   let indices: Uint32Array | undefined;
   await page.attempt('Flipping edges at random…', async () => {
     if (opened.mesh.indices.length > 3 * SCRAMBLED) {
-      throw new Error(`Scramble takes meshes of up to ${SCRAMBLED} triangles. This one has more.`);
+      throw new Error(`Scramble takes up to ${number.format(SCRAMBLED)} triangles. This mesh has more.`);
     }
     const mesh = { ...opened.mesh, indices: await run.triangles() };
     const seed = Math.floor(performance.now());

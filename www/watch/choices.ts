@@ -25,12 +25,12 @@ const FIELDS = [
   {
     input: controls.deviation,
     isValid: (value: number | undefined) => value === undefined || value >= 0,
-    rule: 'A flip may move the surface by 0 or more, in units of the mesh. Leave it empty for no limit.',
+    rule: 'Enter how far a flip may move the surface: 0 or more, in units of the mesh. Leave it empty for no limit.',
   },
   {
     input: controls.feature,
     isValid: (value: number | undefined) => value === undefined || isAngle(value),
-    rule: 'Features are locked over an angle from 0 to 180 degrees. Leave it empty to lock none.',
+    rule: 'Enter an angle from 0 to 180 degrees, over which an edge is sharp. Leave it empty to lock none.',
   },
 ];
 

@@ -50,7 +50,7 @@ function keptRow(kept: readonly (readonly [EdgeState, number])[]): HTMLElement {
     'button',
     'row',
     swatch(most),
-    words('Kept', kept.every(([state]) => state === 'locked') ? LOOKS.locked.gloss : 'to save the shape'),
+    words('Kept', kept.every(([state]) => state === 'locked') ? LOOKS.locked.gloss : 'to keep the shape'),
     made('b', '', number.format(sum)),
   );
   button.type = 'button';

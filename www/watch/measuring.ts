@@ -5,7 +5,7 @@ import { element } from './controls.ts';
 import type { Display } from './display.ts';
 import { BINS, type Opened } from './opening.ts';
 import type { Run, Summary } from './run.ts';
-import { statusOf } from './sentences.ts';
+import { statusOf, type Smallest } from './sentences.ts';
 import type { Shown } from './shown.ts';
 import type { RunStatus } from './transport.ts';
 
@@ -19,6 +19,8 @@ export interface MeasuringHost {
   shown(): Shown | undefined;
   /** Takes the summary of the run. */
   setSummary(summary: Summary): void;
+  /** Takes the angles of the shown state. */
+  setSmallest(smallest: Smallest): void;
   /** Whether the edges have no colours. */
   isPlain(): boolean;
   /** Everything is measured. */
@@ -75,9 +77,9 @@ export class Measuring {
       if (!run.states || host.isPlain()) host.display.lookInto(shown, indices);
       if (news === undefined) await this.#measure(opened, run, indices, isOutdated);
       if (isOutdated()) return;
-      const { summary, ahead } = host.status();
-      const status = statusOf(run, summary, ahead).join(' ').trim();
-      element('announcement').textContent = news ?? `${status} ${element('note').textContent}`;
+      const { summary, ahead, smallest } = host.status();
+      const status = statusOf(run, summary, ahead, smallest).join(' ').trim();
+      announce(news ?? `${status} ${element('note').textContent}`);
       document.body.dataset['measured'] = `${run.at}`;
       host.handOver();
     } catch (error) {
@@ -97,8 +99,15 @@ export class Measuring {
     const now = run.at === 0 ? before : await client.call((worker) => worker.measure({ ...mesh, indices }, BINS));
     if (isOutdated()) return;
     panel.showQuality(before, now);
+    this.#host.setSmallest({ at: run.at, before: before.angles.meanMin, now: now.angles.meanMin });
     if (!run.isOver) return;
     const change = await client.call((worker) => worker.compare(mesh, indices));
     if (!isOutdated()) panel.showQuality(before, now, change);
   }
+}
+
+/** Has screen readers say something, once: what is measured again is not said again. */
+function announce(words: string): void {
+  const region = element('announcement');
+  if (region.textContent !== words) region.textContent = words;
 }

@@ -4,7 +4,7 @@ import type { FileMesh, IndexedMesh } from 'edgeflip/files';
 import type { Quality } from './mesh-worker.ts';
 import { WorkerClient } from './worker-client.ts';
 import type { Kept } from './files.ts';
-import { number } from '../shell/numbers.ts';
+import { counted, number } from '../shell/numbers.ts';
 import type { Read, Source } from './sources.ts';
 
 /** Bins of the histogram of angles: 5° each. */
@@ -101,9 +101,12 @@ function remarkOn({ mesh, others }: Read): string {
 }
 
 function remarkOnFile(mesh: FileMesh): string {
-  const cut = mesh.polygons > 0 ? `${number.format(mesh.polygons)} faces were cut into triangles.` : '';
+  const cut =
+    mesh.polygons > 0
+      ? `${counted(mesh.polygons, 'face')} ${mesh.polygons === 1 ? 'was' : 'were'} cut into triangles.`
+      : '';
   const crossing = mesh.crossing
-    ? `The outline of ${number.format(mesh.crossing.length)} of them crosses or touches itself: face ${mesh.crossing[0]}.`
+    ? `${number.format(mesh.crossing.length)} of them ${mesh.crossing.length === 1 ? 'has' : 'have'} an outline that crosses or touches itself; the first is face ${mesh.crossing[0]}.`
     : '';
   const dropped = mesh.dropped.length > 0 && !mesh.keeps ? `Not kept: ${mesh.dropped.join(', ')}.` : '';
   const [most, ...others] = mesh.attributeEdges;

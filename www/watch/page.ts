@@ -17,6 +17,7 @@ import { Player } from './player.ts';
 import { Recovery } from './recovery.ts';
 import { Measuring } from './measuring.ts';
 import type { Run, Summary } from './run.ts';
+import type { Smallest } from './sentences.ts';
 import type { Scene } from './scene.ts';
 import type { Shown } from './shown.ts';
 import type { Source } from './sources.ts';
@@ -76,6 +77,10 @@ export class Page {
     status: () => this.#status,
     shown: () => this.shown,
     setSummary: (summary) => (this.#summary = summary),
+    setSmallest: (smallest) => {
+      this.#smallest = smallest;
+      this.#showTransport();
+    },
     isPlain: () => this.edges !== 'coloured',
     handOver: () => void this.#handover.handOver(),
     fail: (error) => this.#showFailure(error),
@@ -90,6 +95,7 @@ export class Page {
   #settings: Settings | undefined;
   /** The summary of the run when it last paused. */
   #summary: Summary | undefined;
+  #smallest: Smallest | undefined;
   /** The flips of all its iterations, once they have been counted. */
   #ahead: Flips[] | undefined;
   /** Called with the reason when the GPU is lost while something else is shown in place of a run. */
@@ -123,6 +129,7 @@ export class Page {
     this.#run?.free();
     this.#opened?.client.close();
     this.#run = this.#opened = this.#settings = this.#summary = this.#ahead = this.#source = undefined;
+    this.#smallest = undefined;
     this.#jobs.cancel();
     this.#measuring.forget();
   }
@@ -244,6 +251,7 @@ export class Page {
     if (this.#opening?.opened === opened) this.#opening = undefined;
     this.#settings = settings;
     this.#summary = undefined;
+    this.#smallest = undefined;
     this.#ahead = undefined;
     this.#display.begin(opened, isOther);
     this.#handover.prepare(run, opened, options, this.#graphics.gpu);
@@ -287,7 +295,8 @@ export class Page {
 
   get #status(): RunStatus {
     const [run, opened, summary, ahead] = [this.#run, this.#opened, this.#summary, this.#ahead];
-    return { run, opened, summary, ahead, isBusy: this.#jobs.isBusy, isPlaying: this.player.isPlaying };
+    const [smallest, isBusy, isPlaying] = [this.#smallest, this.#jobs.isBusy, this.player.isPlaying];
+    return { run, opened, summary, ahead, smallest, isBusy, isPlaying };
   }
 
   #showTransport(): void {

@@ -1,33 +1,37 @@
 /** What the page says of an edge and of a run. */
 
 import type { EdgeState, Reasons } from 'edgeflip';
-import { counted, number } from '../shell/numbers.ts';
+import { counted, degrees, ms as tenths, number } from '../shell/numbers.ts';
+import { ENGINES } from './panel.ts';
 import type { Quad } from './quad.ts';
 import type { Run, Summary } from './run.ts';
 import type { Flips } from './mesh-worker.ts';
+
+const whole = new Intl.NumberFormat('en', { maximumFractionDigits: 0 });
 
 /** What an edge does next, and why. `beta` is in degrees, `deviation` in the mesh's units. */
 export function sentenceOf(quad: Quad, beta: number, deviation: number | undefined): string {
   const sum = Math.round(quad.angles.reduce((total, angle) => total + angle, 0));
   const bends =
     quad.bend > beta
-      ? `the surface bends by ${Math.round(quad.bend)}° here. Flipping would change the shape`
+      ? `the surface bends by ${Math.round(quad.bend)}° here`
       : `after a flip the surface would bend by ${Math.round(quad.bendAfter)}° here`;
+  const stays = 'Not Delaunay, but it stays:';
   const sentences: Record<EdgeState, string> = {
     delaunay:
       sum === 180
-        ? '180°, to the nearest degree. It is not more, so this edge is Delaunay and stays.'
+        ? 'The sum is 180°, rounded. Exactly, it is not more than 180°, so this edge is Delaunay and stays.'
         : `${sum}° is not more than 180°, so this edge is Delaunay and stays.`,
     flips: `${sum}° is more than 180°, so this edge flips in the next iteration.`,
-    waits: `${sum}° is more than 180°. A neighbour shares a triangle with it and flips first; it is looked at again after that.`,
-    angle: `Not Delaunay, but ${bends}; β allows ${beta}°.`,
-    locked: 'Not Delaunay, but locked: drawn by you, a sharp feature, or the border of a material.',
-    fold: 'Not Delaunay, but flipping would turn a triangle upside down.',
-    duplicate: 'Not Delaunay, but the other diagonal is an edge of this mesh already.',
-    deviation: `Not Delaunay, but flipping would move the surface further than your limit of ${deviation}.`,
-    'non-manifold': `${counted(quad.opposite.length, 'triangle')} meet at this edge. It is unclear which two to turn, so it stays.`,
-    inconsistent: 'Its two triangles face opposite ways, so it stays.',
-    boundary: 'The rim of the mesh. With a triangle on one side only, there is nothing to flip.',
+    waits: `${sum}° is more than 180°, but another edge of its triangles flips first. This one is checked again after that.`,
+    angle: `${stays} ${bends}, more than the limit of ${beta}°.`,
+    locked: `${stays} it is locked. You drew it, or it is sharp, or it lies between two materials.`,
+    fold: `${stays} a flip would turn a triangle upside down.`,
+    duplicate: `${stays} a flip would give an edge that the mesh has already.`,
+    deviation: `${stays} a flip would move the surface by more than your limit of ${deviation}.`,
+    'non-manifold': `${counted(quad.opposite.length, 'triangle')} meet at this edge. A flip needs exactly two, so it stays.`,
+    inconsistent: 'Its two triangles face opposite ways. A flip needs two that face the same way, so it stays.',
+    boundary: 'This is the rim of the mesh. A flip needs two triangles, and there is only one.',
   };
   if (quad.state) return sentences[quad.state];
   if (quad.opposite.length === 1) return sentences.boundary;
@@ -37,43 +41,94 @@ export function sentenceOf(quad: Quad, beta: number, deviation: number | undefin
 
 const sumOf = (reasons: Reasons) => Object.values(reasons).reduce((sum, count) => sum + count, 0);
 
+/** The mean smallest angle of the input and of the state after `at` iterations, in degrees. */
+export interface Smallest {
+  at: number;
+  before: number;
+  now: number;
+}
+
 /**
  * A bold beginning and the rest: what the shown iteration is. `ahead` has the flips of all iterations, where they are
- * known before they are run.
+ * known before they are run, and `smallest` the angles of the shown state, once they are measured.
  */
 export function statusOf(
   run: Run,
   summary: Summary | undefined,
   ahead: Flips[] | undefined,
+  smallest: Smallest | undefined,
 ): [bold: string, rest: string] {
   const { at, isOver, iterations } = run;
   if (isOver && summary?.iterations === iterations.length) {
-    const [kept, turned] = [keptOf(summary.remaining), turnedOf(summary.inverted)];
-    if (at === 0) return ['', (kept ? `Nothing can flip. ${kept}` : 'Already Delaunay. Try “Scramble”.') + turned];
-    return ['Done.', (kept ? `Every edge is Delaunay, but for ${kept}` : 'Every edge is Delaunay.') + turned];
+    return at > 0 ? resultOf(run, summary, smallest) : ['', `${nothingOf(summary)} Try “Scramble”.`];
   }
   const next = iterations[at] ?? ahead?.[at];
-  if (at === 0) return ['', next ? `${counted(next.labelled, 'edge')} can flip. Press play.` : 'Press play.'];
-  const flips = iterations.slice(0, at).reduce((sum, iteration) => sum + iteration.flips, 0);
-  if (!next) return [`After iteration ${number.format(at)}.`, `${counted(flips, 'flip')} so far.`];
+  if (at === 0) return ['', next ? `${wrongOf(next)} Press play.` : 'Press play.'];
+  if (!next) return [`After iteration ${number.format(at)}.`, `${counted(flipsOf(run), 'flip')} so far.`];
   const of = ahead ? ` of ${number.format(ahead.length)}` : '';
   const waits = next.labelled - next.flips;
-  const rest = waits > 0 ? `, ${number.format(waits)} ${waits === 1 ? 'waits' : 'wait'} for a neighbour.` : '.';
   return [
     `Iteration ${number.format(at + 1)}${of}.`,
-    `${counted(next.flips, 'edge')} ${next.flips === 1 ? 'flips' : 'flip'} at once${rest}`,
+    `${counted(next.flips, 'edge')} ${next.flips === 1 ? 'flips' : 'flip'}${waits > 0 ? `, ${waitOf(waits)}` : ''}.`,
   ];
 }
+
+/** What is said of a mesh without an edge that can flip. */
+function nothingOf({ remaining, inverted }: Summary): string {
+  return `${sumOf(remaining) > 0 ? 'Nothing can flip.' : 'Already Delaunay.'}${keptOf(remaining)}${turnedOf(inverted)}`;
+}
+
+/** What the iterations up to the shown one have done, and after the last one what stays. */
+function resultOf(run: Run, summary: Summary, smallest: Smallest | undefined): [bold: string, rest: string] {
+  const { at, isOver, iterations } = run;
+  const time = iterations.slice(0, at).reduce((sum, iteration) => sum + iteration.ms, 0);
+  const engine = summary.backend === 'cpu' ? 'the CPU' : ENGINES[summary.backend];
+  const angles = smallest?.at === at ? ` Smallest angle on average ${changeOf(smallest)}.` : '';
+  const stays = isOver ? keptOf(summary.remaining) + turnedOf(summary.inverted) : '';
+  return [
+    counted(flipsOf(run), 'flip'),
+    `in ${counted(at, 'iteration')}, ${timeOf(time)} on ${engine}.${angles}${stays}`,
+  ];
+}
+
+const flipsOf = ({ at, iterations }: Run) =>
+  iterations.slice(0, at).reduce((sum, iteration) => sum + iteration.flips, 0);
+
+/** Two angles, with as many digits as they need to differ. */
+function changeOf({ before, now }: Smallest): string {
+  for (const format of [whole, tenths, degrees]) {
+    const [from, to] = [format.format(before), format.format(now)];
+    if (from !== to) return `${from}° → ${to}°`;
+  }
+  return `${degrees.format(now)}°, as before`;
+}
+
+function timeOf(time: number): string {
+  if (time >= 10_000) return `${tenths.format(time / 1000)} s`;
+  if (time >= 10) return `${whole.format(time)} ms`;
+  return time < 0.1 ? 'less than 0.1 ms' : `${tenths.format(time)} ms`;
+}
+
+/** The edges that the next iteration looks at. */
+function wrongOf({ labelled, flips }: Flips): string {
+  const wrong = `${counted(labelled, 'edge')} ${labelled === 1 ? 'is' : 'are'} wrong`;
+  if (labelled === 1) return `${wrong}.`;
+  if (labelled === flips) return `${wrong}, and all flip at once.`;
+  return `${wrong}: ${number.format(flips)} ${flips === 1 ? 'flips' : 'flip'} first, ${waitOf(labelled - flips)}.`;
+}
+
+const waitOf = (count: number) => `${number.format(count)} ${count === 1 ? 'waits' : 'wait'}`;
 
 /** A sentence about triangles that are turned over, after another one; nothing if there are none. */
 function turnedOf(inverted: number): string {
   return inverted > 0 ? ` ${counted(inverted, 'triangle')} ${inverted === 1 ? 'is' : 'are'} turned over.` : '';
 }
 
-/** The edges that stay; nothing if there are none. */
+/** A sentence about the edges that stay, after another one; nothing if there are none. */
 function keptOf(remaining: Reasons): string {
   const kept = sumOf(remaining);
   if (kept === 0) return '';
-  if (kept > (remaining.locked ?? 0)) return `${number.format(kept)} kept to save the shape.`;
-  return `${number.format(kept)} kept because ${kept === 1 ? 'it is' : 'they are'} locked.`;
+  const edges = `${counted(kept, 'edge')} ${kept === 1 ? 'stays' : 'stay'}`;
+  if (kept > (remaining.locked ?? 0)) return ` ${edges} to keep the shape.`;
+  return ` ${edges}, because ${kept === 1 ? 'it is' : 'they are'} locked.`;
 }

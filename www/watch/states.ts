@@ -16,14 +16,14 @@ interface Look {
 export const LOOKS: Record<EdgeState, Look> = {
   delaunay: { word: 'Delaunay', gloss: 'nothing to do', colour: 'edge' },
   flips: { word: 'Flips now', gloss: '', colour: 'flips' },
-  waits: { word: 'Waits', gloss: 'a neighbour goes first', colour: 'waits', dash: [6, 3] },
-  angle: { word: 'Kept: crease', gloss: 'a flip would bend the shape', colour: 'crease', dash: [2, 4] },
+  waits: { word: 'Waits', gloss: 'a neighbour flips first', colour: 'waits', dash: [6, 3] },
+  angle: { word: 'Kept: crease', gloss: 'the surface bends here', colour: 'crease', dash: [2, 4] },
   locked: { word: 'Kept: locked', gloss: 'as you asked, or a border', colour: 'locked', dash: [11, 3] },
   fold: { word: 'Kept: fold', gloss: 'a triangle would turn over', colour: 'fold', dash: [4, 3] },
-  duplicate: { word: 'Kept: double', gloss: 'that edge exists already', colour: 'duplicate', dash: [2, 2] },
-  deviation: { word: 'Kept: too far', gloss: 'would move the surface', colour: 'deviation', dash: [3, 6] },
-  'non-manifold': { word: 'Kept: crowded', gloss: 'over two triangles', colour: 'non-manifold', dash: [9, 2] },
-  inconsistent: { word: 'Kept: turned', gloss: 'its sides face apart', colour: 'inconsistent', dash: [2, 5] },
+  duplicate: { word: 'Kept: double', gloss: 'the new edge exists already', colour: 'duplicate', dash: [2, 2] },
+  deviation: { word: 'Kept: too far', gloss: 'a flip moves the surface', colour: 'deviation', dash: [3, 6] },
+  'non-manifold': { word: 'Kept: crowded', gloss: 'more than two triangles', colour: 'non-manifold', dash: [9, 2] },
+  inconsistent: { word: 'Kept: turned', gloss: 'its triangles face apart', colour: 'inconsistent', dash: [2, 5] },
   boundary: { word: 'Rim', gloss: 'one triangle only', colour: 'rim' },
 };
 

@@ -8,7 +8,7 @@ import { counted } from '../shell/numbers.ts';
 import type { Opened } from './opening.ts';
 import { ENGINES, reasons } from './panel.ts';
 import type { Run, Summary } from './run.ts';
-import { statusOf } from './sentences.ts';
+import { statusOf, type Smallest } from './sentences.ts';
 import { showPosition, type Timeline } from './timeline.ts';
 
 export interface RunStatus {
@@ -18,13 +18,15 @@ export interface RunStatus {
   summary: Summary | undefined;
   /** The flips of all iterations, if they are known before they are run. */
   ahead: Flips[] | undefined;
+  /** The angles that were measured last. */
+  smallest: Smallest | undefined;
   /** Whether a job is running. */
   isBusy: boolean;
   isPlaying: boolean;
 }
 
 export function showTransport(timeline: Timeline, status: RunStatus): void {
-  const { run, opened, summary, ahead, isBusy, isPlaying } = status;
+  const { run, opened, summary, ahead, smallest, isBusy, isPlaying } = status;
   const at = run?.at ?? 0;
   const isIdle = run !== undefined && !isBusy;
   controls.play.ariaLabel = isPlaying ? 'Pause' : 'Play';
@@ -35,7 +37,7 @@ export function showTransport(timeline: Timeline, status: RunStatus): void {
   const flips = ahead ?? run?.iterations ?? [];
   showPosition(at, flips.length, isIdle);
   timeline.show(flips, at, ahead !== undefined || run?.hasEnded === true);
-  const [bold, rest] = run ? statusOf(run, summary, ahead) : ['', ''];
+  const [bold, rest] = run ? statusOf(run, summary, ahead, smallest) : ['', ''];
   element('status').replaceChildren(...(bold ? [made('b', '', bold), ' '] : []), rest);
   element('note').textContent = noteOn(status);
   element('note').hidden = element('note').textContent === '';
@@ -66,5 +68,5 @@ function whyThere({ fallback }: Run, summary: Summary | undefined): string {
 
 function left(remaining: Reasons): string {
   const what = reasons(remaining);
-  return what === 'none' ? 'Every edge is Delaunay.' : `Not Delaunay, and cannot flip: ${what}.`;
+  return what === 'none' ? 'Every edge is Delaunay.' : `Not Delaunay, but they stay: ${what}.`;
 }
