@@ -3,12 +3,13 @@
 import { codeFor } from './code.ts';
 import { download, save } from './download.ts';
 import { linkTo } from './link.ts';
-import { number } from '../shell/numbers.ts';
+import { counted, number } from '../shell/numbers.ts';
 import { again } from './opening.ts';
 import type { Page } from './page.ts';
 import { palette } from './palette.ts';
 import type { OpenMesh } from './run.ts';
 import type { Shown } from './shown.ts';
+import { snapshot } from './snapshot.ts';
 import { splitName } from './sources.ts';
 
 /** The most triangles of a mesh whose edges are flipped at random: a larger one would take seconds. */
@@ -71,11 +72,32 @@ function nameFor({ opened, run }: Shown, extension: string): string {
   return `${stem.replaceAll(' ', '-')}-after-${run.at}${extension}`;
 }
 
-/** Saves a picture of the mesh as it is shown. */
+/** Saves a picture: of the input and the shown state beside each other with the result under them, or of the input. */
 export async function savePicture(page: Page): Promise<void> {
-  const [shown, scene] = [page.shown, page.scene];
-  if (!shown || !scene) return;
-  save(await scene.picture(palette().ground), nameFor(shown, '.png'));
+  const { shown } = page;
+  if (!shown || !page.scene || page.isBusy) return;
+  const { run, opened } = shown;
+  const { at } = run;
+  if (page.player.isPlaying) page.player.pause();
+  await page.attempt('Drawing the picture…', async (signal) => {
+    const words = await page.caption();
+    const pictures: OffscreenCanvas[] = [];
+    try {
+      for (const state of at > 0 ? [0, at] : [0]) {
+        const picture = await page.pictureAt(state);
+        signal.throwIfAborted();
+        if (picture) pictures.push(picture);
+      }
+    } finally {
+      if (run.at !== at) {
+        run.seek(at);
+        void page.redraw();
+      }
+    }
+    const { title, mesh } = opened;
+    const line = at > 0 ? words : `${title}, ${counted(mesh.indices.length / 3, 'triangle')}. ${words}`;
+    save(await snapshot(pictures, line, palette()), nameFor(shown, '.png'));
+  });
 }
 
 /** Copies a link to what is shown. Returns what to say. */

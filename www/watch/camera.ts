@@ -53,6 +53,11 @@ export class Camera {
     return [free.x, free.y];
   }
 
+  /** The part of the picture that is free, in pixels: its middle and its size. */
+  get free(): { x: number; y: number; width: number; height: number } {
+    return this.#frame().free;
+  }
+
   /** Whether the camera has been set. */
   get isLooking(): boolean {
     return this.#controls !== undefined;

@@ -114,7 +114,7 @@ function connectRun(page: Page, movingSamples: MovingSamples): void {
   );
   controls.step.addEventListener('click', () => void page.player.step());
   controls.slider.addEventListener('input', () => void page.player.seek(controls.slider.valueAsNumber));
-  controls.compare.addEventListener('click', () => page.compare());
+  controls.compare.addEventListener('click', () => void page.compare());
   controls.scramble.addEventListener('click', () => void scramble(page));
   element('cancel').addEventListener('click', () => page.cancel());
   element('dismiss').addEventListener('click', () => (element('error').hidden = true));
@@ -223,7 +223,7 @@ function connectKeys(
         if (spec) openSample(spec);
       },
     },
-    { keys: ['c'], label: 'C', says: 'before and now', act: () => page.compare() },
+    { keys: ['c'], label: 'C', says: 'before and now', act: () => void page.compare() },
     {
       keys: ['n'],
       label: 'N, Shift N',

@@ -17,9 +17,10 @@ import { Player } from './player.ts';
 import { Recovery } from './recovery.ts';
 import { Measuring } from './measuring.ts';
 import type { Run, Summary } from './run.ts';
-import type { Smallest } from './sentences.ts';
+import { captionOf, type Smallest } from './sentences.ts';
 import type { Scene } from './scene.ts';
 import type { Shown } from './shown.ts';
+import { HALF } from './snapshot.ts';
 import type { Source } from './sources.ts';
 import { flipsAhead, startRun } from './starting.ts';
 import { AutoHandover } from './auto-handover.ts';
@@ -172,10 +173,30 @@ export class Page {
     this.#jobs.cancel();
   }
 
-  compare(): void {
-    if (!this.#run) return;
-    this.#display.inspection.close();
-    this.#display.comparison.show(!this.#display.comparison.isShown);
+  /** Shows the input beside the shown state, or ends that. The input itself is compared with the result. */
+  async compare(): Promise<void> {
+    const { comparison, inspection } = this.#display;
+    const run = this.#run;
+    if (!run || this.isBusy) return;
+    inspection.close();
+    if (comparison.isShown) return comparison.show(false);
+    if (run.at === 0) {
+      this.player.pause();
+      await this.#jobs.attempt('Running to the end…', (signal) => this.#runToEnd(run, signal));
+      await this.redraw();
+    }
+    if (run === this.#run && run.at > 0) comparison.show(true);
+  }
+
+  /** Shows the last state, and first runs what is missing. If that fails or is cancelled, shows the input. */
+  async #runToEnd(run: Run, signal: AbortSignal): Promise<void> {
+    try {
+      run.seek(run.iterations.length);
+      while (!signal.aborted && (await run.forward()));
+    } catch (error) {
+      this.#showFailure(error);
+    }
+    if (!run.hasEnded) run.seek(0);
   }
 
   inspectNext(by: 1 | -1): void {
@@ -206,6 +227,27 @@ export class Page {
 
   get scene(): Scene | undefined {
     return this.#graphics.scene;
+  }
+
+  /** Whether a job is running. */
+  get isBusy(): boolean {
+    return this.#jobs.isBusy;
+  }
+
+  /** A picture of iteration `at`, which is shown from then on. */
+  async pictureAt(at: number): Promise<OffscreenCanvas | undefined> {
+    const [shown, scene] = [this.shown, this.scene];
+    if (!shown || !scene) return undefined;
+    shown.run.seek(at);
+    await this.#display.draw(shown);
+    return scene.freePicture(HALF);
+  }
+
+  /** What is written under the picture of the shown state, once that is measured. */
+  async caption(): Promise<string> {
+    if (!this.#measuring.isMeasured(this.#run)) await this.#measuring.begin();
+    const { run, summary, ahead, smallest } = this.#status;
+    return run ? captionOf(run, summary, ahead, smallest) : '';
   }
 
   get gpu(): Gpu | string | undefined {

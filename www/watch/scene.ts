@@ -21,6 +21,9 @@ interface Backend {
   get(attribute: BufferAttribute): { buffer?: GPUBuffer };
 }
 
+/** The most pixels of a saved picture for a pixel of the style sheets. */
+const MOST_SHARP = 3;
+
 // Colours stay as style sheets give them. To convert them, three would draw each picture twice.
 ColorManagement.enabled = false;
 
@@ -206,6 +209,24 @@ export class Scene {
     this.#draw();
     context.drawImage(this.canvas, 0, 0);
     return canvas.convertToBlob();
+  }
+
+  /** The part of the picture that nothing covers, at rest and without a cut, at least `least` pixels wide. */
+  freePicture(least: number): OffscreenCanvas {
+    const { x, y, width, height } = this.camera.free;
+    const [before, cut] = [this.#renderer.getPixelRatio(), this.#cut];
+    const ratio = Math.min(MOST_SHARP, Math.max(before, least / width));
+    this.#cut = undefined;
+    this.animateFlips(new Uint32Array(), 'not');
+    this.#renderer.setPixelRatio(ratio);
+    const canvas = new OffscreenCanvas(Math.round(ratio * width), Math.round(ratio * height));
+    // A canvas can be read only until the browser has shown it.
+    this.#draw();
+    canvas.getContext('2d')?.drawImage(this.canvas, -ratio * (x - width / 2), -ratio * (y - height / 2));
+    this.#renderer.setPixelRatio(before);
+    this.#cut = cut;
+    this.redraw();
+    return canvas;
   }
 
   /** The half-edge nearest to a point of the picture, in pixels; `undefined` beside the mesh. */

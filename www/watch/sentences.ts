@@ -73,6 +73,19 @@ export function statusOf(
   ];
 }
 
+/** What is written under a saved picture: before any iteration what is wrong, else what the iterations have done. */
+export function captionOf(
+  run: Run,
+  summary: Summary | undefined,
+  ahead: Flips[] | undefined,
+  smallest: Smallest | undefined,
+): string {
+  const next = run.iterations[0] ?? ahead?.[0];
+  if (run.at === 0 && next) return wrongOf(next);
+  if (!summary) return '';
+  return run.at === 0 ? nothingOf(summary) : resultOf(run, summary, smallest).join(' ');
+}
+
 /** What is said of a mesh without an edge that can flip. */
 function nothingOf({ remaining, inverted }: Summary): string {
   return `${sumOf(remaining) > 0 ? 'Nothing can flip.' : 'Already Delaunay.'}${keptOf(remaining)}${turnedOf(inverted)}`;
