@@ -46,6 +46,11 @@ for (const [colorScheme, width, height] of [
       await look(what);
       await press('Escape');
     }
+    await press('h');
+    await look('a lecture');
+    await press('n');
+    await look('an edge in a lecture');
+    await press('Escape');
     await page.page.evaluate(() => (document.getElementById('details').open = true));
     await look('details');
     await page.page.evaluate(() => document.querySelector('[data-spec="moving waves"]').click());
@@ -73,6 +78,23 @@ for (const [colorScheme, width, height] of [
     await page.close();
   });
 }
+
+test('axe-core finds nothing while the guide is shown', async () => {
+  const tool = await sharedPage();
+  const [address] = tool.page.url().split('#');
+  await tool.close();
+  for (const colorScheme of ['light', 'dark']) {
+    const { page, problems } = await openPage(await startChromium(), 'about:blank');
+    // Else it would play meanwhile.
+    await page.emulateMedia({ colorScheme, reducedMotion: 'reduce' });
+    await page.goto(address);
+    await page.click('.way.first');
+    await page.waitForSelector('#guide:not(:empty)');
+    assert.deepEqual(await findings({ page }), [], colorScheme);
+    assert.deepEqual(problems, []);
+    await page.close();
+  }
+});
 
 test('nothing moves while the tool opens and plays', async () => {
   const page = await openEdgeflip(await startChromium(), () => {

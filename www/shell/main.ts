@@ -60,7 +60,7 @@ function keepOffline(): void {
 async function show(): Promise<void> {
   if (document.body.dataset.view === 'watch') {
     void hero?.then((hero) => hero.stop());
-    tool ??= import('../watch/main.ts').then(({ start }) => start());
+    tool ??= import('../watch/main.ts').then(({ start }) => start(hero !== undefined));
     openMesh = await tool;
     if (import.meta.env.PROD) setTimeout(keepOffline, PATIENCE);
   } else {

@@ -82,13 +82,23 @@ export class Inspection {
     this.draw();
   }
 
-  /** Inspects the next edge that is not Delaunay, or the previous one. */
+  /** Inspects the next edge that is not Delaunay, or the previous one; if all are, one near the middle of the picture. */
   next(by: 1 | -1): void {
     const { states } = this.#shown ?? {};
     if (!states) return;
     const isWanted = (state: EdgeState) => state !== 'delaunay' && state !== 'boundary';
     const half = this.#quad ? nextIn(states, isWanted, this.#quad.half, by) : this.#nearest(isWanted);
-    if (half < 0) return;
+    if (half >= 0) this.#hold(half);
+    else this.nearest('delaunay');
+  }
+
+  /** Inspects an edge in this state, near the middle of the picture, if there is one. */
+  nearest(state: EdgeState): void {
+    const half = this.#nearest((name) => name === state);
+    if (half >= 0) this.#hold(half);
+  }
+
+  #hold(half: number): void {
     this.#isHeld = true;
     this.#inspect(half);
   }

@@ -15,6 +15,7 @@ import { controls, element } from './controls.ts';
 import { made } from '../shell/elements.ts';
 import type { EdgeLook } from './display.ts';
 import { makeGallery } from './gallery.ts';
+import { Guide } from './guide.ts';
 import { listen } from './keys.ts';
 import { placeIn, type Place } from './link.ts';
 import { Page } from './page.ts';
@@ -27,8 +28,11 @@ import { chosen, dropped, sample, type Source } from './sources.ts';
 const SAVED = ['.ply', '.obj', '.glb', '.stl', '.off'];
 const LOOKS: readonly EdgeLook[] = ['coloured', 'plain', 'none'];
 
-/** Starts the tool; call it once. Returns a function that returns the open mesh, as its run began. */
-export function start(): () => NamedMesh | undefined {
+/**
+ * Starts the tool; call it once, when it is to be seen. `isFromFirst`: whether the visitor comes from the first view.
+ * Returns a function that returns the open mesh, as its run began.
+ */
+export function start(isFromFirst: boolean): () => NamedMesh | undefined {
   const page: Page = new Page((from, to) => void drawEdge(page, [from, to]));
   const movingSamples = new MovingSamples(page);
   const open = (source: Source | undefined) => {
@@ -61,7 +65,8 @@ export function start(): () => NamedMesh | undefined {
     () => void taking().picture(),
     () => void taking().link().then(say),
   );
-  void begin(page, movingSamples);
+  const guide = isFromFirst && !location.hash.includes('?') ? new Guide(page) : undefined;
+  void begin(page, movingSamples).then(() => guide?.begin());
   return () => {
     const shown = page.shown;
     if (!shown) return undefined;

@@ -1,6 +1,6 @@
 /** The page: opens meshes, starts runs, and draws and measures their iterations. */
 
-import { EdgeflipError } from 'edgeflip';
+import { EdgeflipError, type EdgeState } from 'edgeflip';
 import { Choices, type Settings } from './choices.ts';
 import { LOST } from './crash.ts';
 import type { Flips } from './mesh-worker.ts';
@@ -201,6 +201,11 @@ export class Page {
 
   inspectNext(by: 1 | -1): void {
     this.#display.inspection.next(by);
+  }
+
+  /** Inspects an edge in this state, near the middle of the picture. */
+  inspectNearest(state: EdgeState): void {
+    this.#display.inspection.nearest(state);
   }
 
   /** Closes the inspector, shows one mesh only, and draws no edges. */

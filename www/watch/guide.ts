@@ -1,0 +1,53 @@
+/** The guide of a first visit: asks an edge why it flips, plays the run once, and says that a click asks any edge. */
+
+import { FIRST } from '../models/samples.js';
+import { stillness } from '../shell/stillness.ts';
+import { element } from './controls.ts';
+import type { Page } from './page.ts';
+
+/** The name of what the browser keeps for the visit. */
+const SEEN = 'edgeflip-guide';
+/** Milliseconds in which the first edge is read. */
+const READING = 3500;
+/** What the visitor does that ends the guide. */
+const ENDING = ['pointerdown', 'keydown', 'dragenter', 'hashchange'];
+
+export class Guide {
+  readonly #page: Page;
+  #hasEnded = false;
+
+  constructor(page: Page) {
+    this.#page = page;
+    for (const kind of ENDING) addEventListener(kind, this.#end, { capture: true });
+  }
+
+  /** Begins once the first mesh is shown, unless this visit has had the guide, or the visitor does something already. */
+  async begin(): Promise<void> {
+    const shown = this.#page.shown;
+    if (this.#hasEnded) return;
+    if (shown?.opened.spec !== FIRST || !isFirst()) return this.#end();
+    this.#page.inspectNearest('flips');
+    const touches = matchMedia('(hover: none)').matches;
+    element('guide').textContent = `${touches ? 'Tap' : 'Click'} any edge to ask why.`;
+    if (stillness.matches) return;
+    await new Promise((resolve) => setTimeout(resolve, READING));
+    if (!this.#hasEnded && this.#page.shown?.run === shown.run && shown.run.at === 0) await this.#page.player.toggle();
+  }
+
+  readonly #end = (): void => {
+    this.#hasEnded = true;
+    element('guide').textContent = '';
+    for (const kind of ENDING) removeEventListener(kind, this.#end, { capture: true });
+  };
+}
+
+/** Whether this visit has not had the guide yet. From then on it has. */
+function isFirst(): boolean {
+  try {
+    if (sessionStorage.getItem(SEEN) !== null) return false;
+    sessionStorage.setItem(SEEN, 'seen');
+  } catch {
+    // The browser keeps nothing. The tool starts once a visit at most, unless the page is loaded again.
+  }
+  return true;
+}
