@@ -3,6 +3,7 @@
 import { controls, element } from '../watch/controls.ts';
 import { download, save } from '../watch/download.ts';
 import { markSample } from '../watch/gallery.ts';
+import { withLecture } from '../watch/lecture.ts';
 import { showError } from '../watch/jobs.ts';
 import type { Page } from '../watch/page.ts';
 import { palette } from '../watch/palette.ts';
@@ -93,7 +94,7 @@ export class MovingSamples {
   async link(): Promise<string> {
     const url = new URL(location.href);
     url.hash = `watch?${new URLSearchParams({ mesh: this.#sample?.spec ?? '' })}`;
-    await navigator.clipboard.writeText(url.href);
+    await navigator.clipboard.writeText(withLecture(url.href));
     return 'Link copied. It opens this mesh.';
   }
 

@@ -2,6 +2,7 @@
 
 import { codeFor } from './code.ts';
 import { download, save } from './download.ts';
+import { withLecture } from './lecture.ts';
 import { linkTo } from './link.ts';
 import { counted, number } from '../shell/numbers.ts';
 import { again } from './opening.ts';
@@ -106,7 +107,7 @@ export async function copyLink(page: Page): Promise<string> {
   if (!shown) return '';
   const link = linkTo(shown, page.scene?.camera.pose);
   if (!link) return 'A link opens samples only: your mesh is on this computer alone.';
-  await navigator.clipboard.writeText(link);
+  await navigator.clipboard.writeText(withLecture(link));
   return 'Link copied. It opens this mesh, iteration, limit and view.';
 }
 

@@ -1,6 +1,7 @@
 /** The page's GPU device and the scene that is drawn on it. */
 
 import { element } from './controls.ts';
+import { isLecture } from './lecture.ts';
 import { openGpu, type Gpu } from './engines.ts';
 import type { Insets } from './camera.ts';
 import { palette } from './palette.ts';
@@ -59,7 +60,7 @@ function coveredBy(): Insets {
     const top = box('choose').bottom - stage.top + 8;
     return { left: 16, right: 16, top, bottom: 16, title: top };
   }
-  const right = stage.right - box('details').left + 24;
+  const right = stage.right - (document.querySelector('#watch .side')?.getBoundingClientRect().left ?? stage.right);
   const left = box('gallery').right - stage.left + 16;
-  return { left, right, top: 72, bottom: stage.bottom - status.bottom + 48, title };
+  return { left, right, top: isLecture() ? title : 72, bottom: stage.bottom - status.bottom + 48, title };
 }

@@ -11,6 +11,8 @@ export interface Key {
   says?: string;
   /** Elements that use the key themselves while they have the focus. */
   keptBy?: string;
+  /** Whether the key does something now; else the browser has it. */
+  when?: () => boolean;
   act: (key: string) => void;
 }
 
@@ -27,7 +29,7 @@ export function listen(keys: readonly Key[]): void {
     if (document.body.dataset['view'] !== 'watch' || event.ctrlKey || event.metaKey || event.altKey) return;
     if (list.open) return;
     const name = event.key.length === 1 ? event.key.toLowerCase() : event.key;
-    const key = keys.find(({ keys }) => keys.includes(name));
+    const key = keys.find(({ keys, when }) => keys.includes(name) && (when?.() ?? true));
     if (!key) return;
     if (event.target instanceof Element && event.target.closest(key.keptBy ?? TEXT)) return;
     // The browser closes sheets on Escape too.

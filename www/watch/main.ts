@@ -6,6 +6,7 @@ import './gallery.css';
 import './panel.css';
 import './table.css';
 import './overlays.css';
+import './lecture.css';
 import '../move/move.css';
 import { FORMATS } from 'edgeflip/files';
 import type { NamedMesh } from '../engines/index.ts';
@@ -17,6 +18,7 @@ import type { EdgeLook } from './display.ts';
 import { makeGallery } from './gallery.ts';
 import { Guide } from './guide.ts';
 import { listen } from './keys.ts';
+import { asksForLecture, isLecture, setLecture } from './lecture.ts';
 import { placeIn, type Place } from './link.ts';
 import { Page } from './page.ts';
 import { MovingSamples } from '../move/moving-samples.ts';
@@ -65,6 +67,7 @@ export function start(isFromFirst: boolean): () => NamedMesh | undefined {
     () => void taking().picture(),
     () => void taking().link().then(say),
   );
+  element('end-lecture').addEventListener('click', () => lecture(page, false));
   const guide = isFromFirst && !location.hash.includes('?') ? new Guide(page) : undefined;
   void begin(page, movingSamples).then(() => guide?.begin());
   return () => {
@@ -79,6 +82,8 @@ export function start(isFromFirst: boolean): () => NamedMesh | undefined {
   };
 }
 
+const lecture = (page: Page, isOn: boolean) => setLecture(isOn, () => page.scene?.camera.resize());
+
 const movingOf = (spec: string | undefined) => MOVING.find((sample) => sample.spec === spec);
 
 /** Opens the mesh of the address, or a file that was chosen before this code was loaded, or the first sample. */
@@ -86,6 +91,7 @@ async function begin(page: Page, movingSamples: MovingSamples): Promise<void> {
   const file = chosen([...(controls.file.files ?? [])]);
   const place = file ? undefined : placeIn(location.hash);
   if (place) page.prefer(place);
+  lecture(page, asksForLecture(location.hash));
   const moving = movingOf(place?.mesh);
   await page.start(moving ? undefined : (file ?? sample(place?.mesh ?? FIRST)));
   if (moving) await movingSamples.show(moving);
@@ -94,6 +100,7 @@ async function begin(page: Page, movingSamples: MovingSamples): Promise<void> {
     const next = placeIn(location.hash);
     if (!next) return;
     page.prefer(next);
+    lecture(page, asksForLecture(location.hash));
     const moving = movingOf(next.mesh);
     if (moving) return void movingSamples.show(moving);
     movingSamples.leave();
@@ -195,6 +202,7 @@ function connectKeys(
   element('help').addEventListener('click', () => keys.showModal());
   const toggle = (id: string, opener: HTMLButtonElement) => opener.offsetParent && element(id).togglePopover();
   const slides = 'input, select';
+  const step = (by: 1 | -1) => (by > 0 ? controls.step.click() : void page.player.seekBy(-1));
   listen([
     {
       keys: [' '],
@@ -208,9 +216,12 @@ function connectKeys(
       label: '← →',
       says: 'one iteration back, on',
       keptBy: slides,
-      act: () => void page.player.seekBy(-1),
+      act: () => step(-1),
     },
-    { keys: ['ArrowRight'], keptBy: slides, act: () => controls.step.click() },
+    { keys: ['ArrowRight'], keptBy: slides, act: () => step(1) },
+    // Of clickers.
+    { keys: ['PageUp'], when: isLecture, act: () => step(-1) },
+    { keys: ['PageDown'], when: isLecture, act: () => step(1) },
     {
       keys: ['Home'],
       label: 'Home End',
@@ -250,8 +261,22 @@ function connectKeys(
     { keys: ['k'], label: 'K', says: 'copy a link to this view', act: copyLink },
     { keys: ['f'], label: 'F', says: 'fit the mesh to the view', act: () => page.scene?.camera.fit() },
     { keys: ['g'], label: 'G', says: 'the engines', act: () => (location.hash = '#engines') },
+    {
+      keys: ['h'],
+      label: 'H',
+      says: 'lecture: no tools, large type; Page ↑ ↓ step',
+      act: () => lecture(page, !isLecture()),
+    },
     { keys: ['t'], label: 'T', says: 'light or dark', act: toggleTheme },
     { keys: ['?'], label: '?', says: 'these keys', act: () => keys.showModal() },
-    { keys: ['Escape'], label: 'Esc', says: 'close what is open', act: () => page.closeAll() },
+    {
+      keys: ['Escape'],
+      label: 'Esc',
+      says: 'close what is open, end the lecture',
+      act: () => {
+        page.closeAll();
+        lecture(page, false);
+      },
+    },
   ]);
 }
