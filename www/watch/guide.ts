@@ -31,7 +31,9 @@ export class Guide {
     element('guide').textContent = `${touches ? 'Tap' : 'Click'} any edge to ask why.`;
     if (stillness.matches) return;
     await new Promise((resolve) => setTimeout(resolve, READING));
-    if (!this.#hasEnded && this.#page.shown?.run === shown.run && shown.run.at === 0) await this.#page.player.toggle();
+    // The run may have moved to the GPU meanwhile.
+    const now = this.#page.shown;
+    if (!this.#hasEnded && now?.opened === shown.opened && now.run.at === 0) await this.#page.player.toggle();
   }
 
   readonly #end = (): void => {

@@ -185,7 +185,8 @@ export class Page {
       await this.#jobs.attempt('Running to the end…', (signal) => this.#runToEnd(run, signal));
       await this.redraw();
     }
-    if (run === this.#run && run.at > 0) comparison.show(true);
+    // The run may have moved to the GPU meanwhile, or another mesh is being opened.
+    if (this.#run && this.#run.at > 0 && !this.isBusy) comparison.show(true);
   }
 
   /** Shows the last state, and first runs what is missing. If that fails or is cancelled, shows the input. */
