@@ -35,6 +35,7 @@ for (const [colorScheme, width, height] of [
     await press('n');
     await look('an edge');
     await press('c');
+    await page.page.waitForSelector('#halves:not([hidden])');
     await look('before and now');
     await press('c');
     for (const [key, what] of [
