@@ -115,7 +115,7 @@ export class RaceView {
     const numbers = `: ${count(triangles)} triangles, ${count(flips)} flips. The time is from your arrays to the result.`;
     const equal = others.length === 0 && ran.size > 1 ? ' All results are equal, bit for bit.' : '';
     const name = isRecorded ? 'random points' : mesh.name;
-    this.#lede.replaceChildren('Every engine flipped ', made('b', '', name), numbers, equal);
+    this.#lede.replaceChildren('This computer flipped ', made('b', '', name), numbers, equal);
   }
 
   #judge(ran: number, others: string[]): void {

@@ -16,11 +16,11 @@ export function startTimer(signal: AbortSignal): WorkerClient<Timer> {
 export const LONGEST = 5000;
 
 /** Milliseconds that an engine may take to start: a driver may compile its kernels. */
-const START = 20_000;
+const START = 30_000;
 
 /** Starts an engine. Returns the milliseconds that it took. */
 export const start = (timer: WorkerClient<Timer>, dimension: 2 | 3, options: Options): Promise<number> =>
-  within(timer, START, 'it did not start within 20\u00a0s', (worker) => worker.start(dimension, options));
+  within(timer, START, 'it did not start within 30\u00a0s', (worker) => worker.start(dimension, options));
 
 /** Times an engine that has started. Its runs begin in the first half of the time, so that they end in time. */
 export const time = (timer: WorkerClient<Timer>, mesh: PlainMesh, options: Options): Promise<Timing> =>
