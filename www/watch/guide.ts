@@ -23,9 +23,11 @@ export class Guide {
 
   /** Begins once the first mesh is shown, unless this visit has had the guide, or the visitor does something already. */
   async begin(): Promise<void> {
+    // The picture has its size then.
+    for (let frame = 0; frame < 2; frame++) await new Promise(requestAnimationFrame);
     const shown = this.#page.shown;
     if (this.#hasEnded) return;
-    if (shown?.opened.spec !== FIRST || !isFirst()) return this.#end();
+    if (shown?.opened.spec !== FIRST || shown.run.at > 0 || !isFirst()) return this.#end();
     this.#page.inspectNearest('flips');
     const touches = matchMedia('(hover: none)').matches;
     element('guide').textContent = `${touches ? 'Tap' : 'Click'} any edge to ask why.`;
