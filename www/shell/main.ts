@@ -60,7 +60,7 @@ function keepOffline(): void {
 async function show(): Promise<void> {
   if (document.body.dataset.view === 'watch') {
     void hero?.then((hero) => hero.stop());
-    tool ??= import('../watch/main.ts').then(({ start }) => start(hero !== undefined));
+    tool ??= import('../watch/main.ts').then(({ start }) => start());
     openMesh = await tool;
     if (import.meta.env.PROD) setTimeout(keepOffline, PATIENCE);
   } else {
@@ -98,6 +98,8 @@ playAnyway.addEventListener('click', () => {
   moves = true;
   void show();
 });
+// The guide of the tool begins only on this way.
+part('.way.first').addEventListener('click', () => document.body.toggleAttribute('data-guided', true));
 addEventListener('hashchange', follow);
 // The bar needs a ground where it lies on what is read.
 addEventListener('scroll', () => document.body.toggleAttribute('data-scrolled', scrollY > 8), { passive: true });

@@ -10,22 +10,34 @@ const SEEN = 'edgeflip-guide';
 /** Milliseconds in which the first edge is read. */
 const READING = 3500;
 /** What the visitor does that ends the guide. */
-const ENDING = ['pointerdown', 'keydown', 'dragenter', 'hashchange'];
+const ENDING = ['pointerdown', 'keydown', 'dragenter'];
 
 export class Guide {
   readonly #page: Page;
+  readonly #opened: Promise<void>;
   #hasEnded = false;
 
-  constructor(page: Page) {
-    this.#page = page;
-    for (const kind of ENDING) addEventListener(kind, this.#end, { capture: true });
+  /**
+   * Begins when the visitor follows "Watch it work", or has done so before the tool was loaded. `opened` settles when
+   * the first mesh is shown.
+   */
+  constructor(page: Page, opened: Promise<void>) {
+    [this.#page, this.#opened] = [page, opened];
+    const way = document.querySelector('.way.first');
+    if (document.body.hasAttribute('data-guided')) void this.#begin();
+    else way?.addEventListener('click', () => void this.#begin(), { once: true });
   }
 
-  /** Begins once the first mesh is shown, unless this visit has had the guide, or the visitor does something already. */
-  async begin(): Promise<void> {
+  /** Says something, unless this visit has had the guide, or the visitor does something already. */
+  async #begin(): Promise<void> {
+    for (const kind of ENDING) addEventListener(kind, this.#end, { capture: true });
+    await this.#opened;
+    // The picture has its size now, and the visitor has arrived.
+    for (let frame = 0; frame < 2; frame++) await new Promise(requestAnimationFrame);
     const shown = this.#page.shown;
     if (this.#hasEnded) return;
-    if (shown?.opened.spec !== FIRST || !isFirst()) return this.#end();
+    if (shown?.opened.spec !== FIRST || shown.run.at > 0 || !isFirst()) return this.#end();
+    addEventListener('hashchange', this.#end, { once: true });
     this.#page.inspectNearest('flips');
     const touches = matchMedia('(hover: none)').matches;
     element('guide').textContent = `${touches ? 'Tap' : 'Click'} any edge to ask why.`;
@@ -40,6 +52,7 @@ export class Guide {
     this.#hasEnded = true;
     element('guide').textContent = '';
     for (const kind of ENDING) removeEventListener(kind, this.#end, { capture: true });
+    removeEventListener('hashchange', this.#end);
   };
 }
 

@@ -30,11 +30,8 @@ import { chosen, dropped, sample, type Source } from './sources.ts';
 const SAVED = ['.ply', '.obj', '.glb', '.stl', '.off'];
 const LOOKS: readonly EdgeLook[] = ['coloured', 'plain', 'none'];
 
-/**
- * Starts the tool; call it once, when it is to be seen. `isFromFirst`: whether the visitor comes from the first view.
- * Returns a function that returns the open mesh, as its run began.
- */
-export function start(isFromFirst: boolean): () => NamedMesh | undefined {
+/** Starts the tool; call it once. Returns a function that returns the open mesh, as its run began. */
+export function start(): () => NamedMesh | undefined {
   const page: Page = new Page((from, to) => void drawEdge(page, [from, to]));
   const movingSamples = new MovingSamples(page);
   const open = (source: Source | undefined) => {
@@ -68,8 +65,7 @@ export function start(isFromFirst: boolean): () => NamedMesh | undefined {
     () => void taking().link().then(say),
   );
   element('end-lecture').addEventListener('click', () => lecture(page, false));
-  const guide = isFromFirst && !location.hash.includes('?') ? new Guide(page) : undefined;
-  void begin(page, movingSamples).then(() => guide?.begin());
+  new Guide(page, begin(page, movingSamples));
   return () => {
     const shown = page.shown;
     if (!shown) return undefined;
