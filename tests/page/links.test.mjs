@@ -120,6 +120,8 @@ test('the API reference and the examples keep the policy of the page', async () 
   await page.goto(`${await address()}api/functions/index.makeDelaunay.html`);
   await page.waitForSelector('h1');
   assert.equal(await page.getAttribute('#tsd-toolbar-links a', 'href'), '../../index.html#package');
+  await page.setViewportSize({ width: 390, height: 844 });
+  assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), 390);
   await page.goto(`${await address()}examples/worker.html?size=30`);
   await page.click('#run:enabled');
   await page.waitForFunction(() => document.querySelector('output').value.startsWith('done'));
