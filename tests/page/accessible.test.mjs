@@ -52,6 +52,8 @@ for (const [colorScheme, width, height] of [
     await look('a lecture');
     await press('n');
     await look('an edge in a lecture');
+    // Closes the inspector, then ends the lecture.
+    await press('Escape');
     await press('Escape');
     await page.page.evaluate(() => (document.getElementById('details').open = true));
     await look('details');
