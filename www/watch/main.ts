@@ -137,8 +137,8 @@ function connectRun(page: Page, movingSamples: MovingSamples): void {
   controls.slider.addEventListener('input', () => void page.player.seek(controls.slider.valueAsNumber));
   controls.compare.addEventListener('click', () => void page.compare());
   controls.scramble.addEventListener('click', () => void scramble(page));
-  const cancel = element('cancel');
-  cancel.hidden = false;
+  const cancel = element<HTMLButtonElement>('cancel');
+  cancel.disabled = false;
   cancel.addEventListener('click', () => page.cancel());
   element('dismiss').addEventListener('click', () => (element('error').hidden = true));
 }
