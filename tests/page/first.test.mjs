@@ -153,12 +153,12 @@ function widths() {
 /** Runs in the page: notes in `window.bare` each frame in which neither the first view nor a drawn mesh is there. */
 function watchFrames() {
   const { submit } = GPUQueue.prototype;
-  const { drawIndexed } = GPURenderPassEncoder.prototype;
+  const { draw } = GPURenderPassEncoder.prototype;
   let hasMesh = false;
   window.seen = { bare: 0, covered: 0, signs: new Set(), first: undefined };
-  GPURenderPassEncoder.prototype.drawIndexed = function (count, ...more) {
+  GPURenderPassEncoder.prototype.draw = function (count, ...more) {
     hasMesh ||= count >= 6;
-    return drawIndexed.call(this, count, ...more);
+    return draw.call(this, count, ...more);
   };
   GPUQueue.prototype.submit = function (...args) {
     submit.apply(this, args);

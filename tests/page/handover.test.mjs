@@ -49,10 +49,10 @@ function holdKernels() {
     return device;
   };
   for (const { prototype } of [GPURenderPassEncoder, GPURenderBundleEncoder]) {
-    const { drawIndexed } = prototype;
-    prototype.drawIndexed = function (...args) {
+    const { draw } = prototype;
+    prototype.draw = function (...args) {
       first('picture');
-      return drawIndexed.apply(this, args);
+      return draw.apply(this, args);
     };
   }
   const { postMessage } = Worker.prototype;

@@ -85,7 +85,9 @@ test('in a lecture, arrows and a clicker step, a key explains an edge, and Escap
   assert.equal(await page.page.isVisible('#legend-section'), false, 'the edge takes the place of the legend');
   assert.match(await page.page.textContent('#inspect p'), /°|stays/);
   await press(page, 'Escape');
-  assert.deepEqual([await isLecture(page), await page.page.isVisible('#inspect')], [false, false]);
+  assert.deepEqual([await isLecture(page), await page.page.isVisible('#inspect')], [true, false]);
+  await press(page, 'Escape');
+  assert.equal(await isLecture(page), false);
   await press(page, '?');
   assert.ok((await page.page.locator('#keys kbd').allTextContents()).includes('H'));
   await page.page.keyboard.press('Escape');
@@ -97,7 +99,7 @@ test('a link opens lecture mode, and the copied link of a lecture does so too', 
   await page.page.context().grantPermissions(['clipboard-read', 'clipboard-write']);
   const copied = async () => {
     await press(page, 'k');
-    await page.page.waitForFunction(() => document.getElementById('away-says').textContent.startsWith('Link copied'));
+    await page.page.waitForFunction(() => document.getElementById('notice').textContent.startsWith('Link copied'));
     return page.page.evaluate(() => navigator.clipboard.readText());
   };
   assert.doesNotMatch(await copied(), /lecture/);
