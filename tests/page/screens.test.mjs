@@ -178,7 +178,9 @@ test('a sheet closes the gallery, and Escape closes only what is on top', async 
     await isShown(page, 'inspect'),
     await isShown(page, 'halves'),
   ];
-  await press(page, 'c', 'n', 'l');
+  await press(page, 'c');
+  await page.page.waitForSelector('#halves:not([hidden])');
+  await press(page, 'n', 'l');
   assert.deepEqual(await layers(), [false, true, true, true]);
   await press(page, 'Escape');
   assert.deepEqual(await layers(), [false, false, true, true]);

@@ -69,8 +69,11 @@ test('the section on the screen is marked in the navigation', async () => {
     );
   await until('#watch');
   for (const id of ['explain', 'engines', 'paper']) {
-    await page.page.evaluate((name) => document.getElementById(name).scrollIntoView(), id);
-    await until(`#${id}`);
+    // What is above it may come in meanwhile.
+    await page.page.waitForFunction((name) => {
+      document.getElementById(name).scrollIntoView();
+      return document.querySelector('.top nav [aria-current=location]')?.hash === `#${name}`;
+    }, id);
   }
   // The last one is shorter than the screen.
   await page.page.setViewportSize({ width: 1280, height: 1400 });
