@@ -43,6 +43,8 @@ test('the server of npm start serves the documents and the API reference', async
     ['examples/gltf.mjs.html', 'examples/gltf.mjs'],
     ['api/index.html', 'edgeflip'],
   ]) {
+    // Else going on would break off the request for the icon, which counts as a problem.
+    await page.waitForLoadState('networkidle');
     await page.goto(`${address}${path}`);
     assert.equal(await page.textContent('h1'), title);
     assert.ok(await page.evaluate(() => document.styleSheets.length > 0));
