@@ -49,7 +49,7 @@ export const THREADS: Contender = {
   whyNot: whyOneThread(),
 };
 
-/** In the order in which they race: the slow ones last. */
+/** In the order in which they race: the CPU first. */
 export const ALL = [ONE_THREAD, THREADS, WEBGPU, WEBGL2];
 
 function whyOneThread(): string | undefined {

@@ -93,7 +93,7 @@ async function start(stage: Stage): Promise<void> {
 export const ends: Figure = {
   title: 'Why it ends',
   words:
-    'Lift the points onto a bowl. An edge that is not Delaunay is then a ridge, and the other diagonal is a valley below it. Each flip takes out the wedge between the two, so the surface only sinks. There are only so many ways to join the points, and none comes back, so the rounds come to an end. On a surface in space, its area plays that part.',
+    'Lift the points onto a bowl. An edge that is not Delaunay is then a ridge, and the other diagonal is a valley below it. Each flip takes out the wedge between the two, so the surface only sinks. There are only so many ways to join the points, and none comes back, so the iterations come to an end. On a surface in space, its area plays that part.',
   label: 'Four points on a bowl. Before the flip the edge is a ridge; after it, the other diagonal is a valley below.',
   start,
 };

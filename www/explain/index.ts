@@ -1,4 +1,4 @@
-/** The section "How a mesh becomes Delaunay": words, five figures, and what steps through the last one. */
+/** The section "How a mesh becomes Delaunay": words and five figures. */
 
 import './explain.css';
 import './drawings.css';
@@ -14,15 +14,7 @@ const TITLE = 'How a mesh becomes Delaunay';
 const LEDE =
   'A mesh is points joined into triangles. The same points can be joined in many ways. Long, thin triangles shade, simulate and interpolate badly, and one way avoids them best. Here is how the edges find it, all at once.';
 const END =
-  'Label, select, flip, update: that is one round. The engine runs rounds until no edge can flip. It keeps the creases of a surface and the edges that you lock, so a few edges may stay that are not Delaunay. It counts them, with the reason for each.';
-
-let playground: Playground | undefined;
-
-/** Runs the next phase in the playground, or goes back by one. Returns whether there was one. */
-export const stepPlayground = (by: 1 | -1) => playground?.step(by) ?? false;
-
-/** Explains the next edge in the playground. */
-export const explainInPlayground = () => playground?.explainNext();
+  'Label, select, flip, update: that is one iteration. The engine iterates until no edge can flip. It keeps the creases of a surface and the edges that you lock, so a few edges may stay that are not Delaunay. It counts them, with the reason for each.';
 
 /** Puts the section into `host`. */
 export function mountExplanation(host: HTMLElement): void {
@@ -32,7 +24,7 @@ export function mountExplanation(host: HTMLElement): void {
   const figures = document.createElement('div');
   figures.className = 'explain-figures';
   figures.append(...[circle, label, ends].map((figure, i) => mountFigure(figure, i + 2)));
-  playground = new Playground(5);
+  const playground = new Playground(5);
   host.append(head, mountWhy(1), figures, playground.element, made('p', 'explain-end', END));
   if (location.hash.startsWith('#explain?')) playground.element.scrollIntoView();
 }

@@ -64,7 +64,7 @@ async function start({ svg, say }: Stage): Promise<void> {
 export const label: Figure = {
   title: 'Label: add two angles',
   words:
-    'An edge can tell without a circle. It looks at the two angles that face it, one on each side. Laid side by side, they must not go past a straight line, 180°. If they do, the edge is a candidate. Each round begins so: all triangles label their edges at the same time. The answer is exact, because rounding never decides it. A tie stays: both diagonals are equally good.',
+    'An edge can tell without a circle. It looks at the two angles that face it, one on each side. Laid side by side, they must not go past a straight line, 180°. If they do, the edge can flip. Each iteration begins so: all triangles label their edges at the same time. The answer is exact, because rounding never decides it. A tie stays: both diagonals are equally good.',
   hint: 'Drag any corner.',
   label: 'An edge between two triangles, and the two angles that face it',
   start,

@@ -4,7 +4,7 @@ import { stillness } from '../shell/stillness.ts';
 import type { Stage } from './figure.ts';
 
 /** Draws beat `beat`, `turn` of the way to the next one: from 0, while it stands, to 1. */
-export type DrawBeat = (beat: number, turn: number) => void;
+type DrawBeat = (beat: number, turn: number) => void;
 
 const STANDS = 2400;
 const TURNS = 700;

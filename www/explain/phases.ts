@@ -27,7 +27,7 @@ export interface Round {
 }
 
 /** A side whose triangle has another neighbour than before. */
-export interface Relinked {
+interface Relinked {
   triangle: number;
   neighbour: number;
   ends: [number, number];
@@ -63,7 +63,7 @@ function label({ points, triangles }: Planar, iteration: number): Inner[] {
 }
 
 /** Runs an iteration. */
-export function roundOf(planar: Planar, iteration: number): Round {
+function roundOf(planar: Planar, iteration: number): Round {
   const { triangles } = planar;
   const inner = label(planar, iteration);
   const candidates = inner.filter(({ rank }) => rank > 0);

@@ -14,11 +14,11 @@ export const ABOUT: Record<Place['stop'], [name: string, words: string]> = {
   ],
   label: [
     'Label',
-    'Each edge adds the two angles that face it. More than 180° means that it is not Delaunay: a candidate.',
+    'Each edge adds the two angles that face it. More than 180° means that it is not Delaunay and can flip.',
   ],
   select: [
     'Select',
-    'A flip changes both triangles of its edge, so a triangle takes part in one flip only. The candidates have numbers, shuffled in each round. Each triangle points to its candidate with the smallest number. If both triangles of an edge point to it, it flips. The others wait.',
+    'A flip changes both triangles of its edge, so a triangle takes part in one flip only. The edges that can flip have numbers, shuffled in each iteration. Each triangle points to the one of its edges with the smallest number. If both triangles of an edge point to it, it flips. The others wait.',
   ],
   flip: [
     'Flip',
@@ -89,5 +89,5 @@ export function whyOf(place: Place, inner: Inner | undefined): string {
   }
   const ranks = inner.halves.map((half) => choices[Math.floor(half / 3)]!.rank);
   const ahead = Math.min(...ranks.filter((rank) => rank < inner.rank));
-  return `${sum}, more than 180°. But one of its triangles points to the candidate with number ${ahead}, and this one has ${inner.rank}. So it waits in ${when} and is tested again after it.`;
+  return `${sum}, more than 180°. But one of its triangles points to the edge with number ${ahead}, and this one has ${inner.rank}. So it waits in ${when} and is tested again after it.`;
 }

@@ -57,7 +57,10 @@ export class Playground {
       this.#show(state, false);
       return true;
     };
-    addEventListener('hashchange', () => open() && element.scrollIntoView());
+    addEventListener('hashchange', () => {
+      clearTimeout(this.#settling);
+      if (open()) element.scrollIntoView();
+    });
     if (!open()) this.#show(begin(), false);
   }
 
@@ -195,6 +198,7 @@ export class Playground {
       const copied = 'Link copied. It opens these points, triangles and marks.';
       const refused = 'The browser does not let the page copy. The address of the page is the link.';
       const say = (words: string) => () => void (says.textContent = words);
+      history.replaceState(history.state, '', this.link);
       navigator.clipboard.writeText(this.link).then(say(copied), say(refused));
     });
   }

@@ -6,7 +6,7 @@ import { halvesOf, isTriangulation, type Planar, planarOf } from './planar.ts';
 
 /** The drawing's size, in the units of the points. Points keep a distance from its border. */
 export const AREA: Point = [640, 480];
-export const BORDER = 14;
+const BORDER = 14;
 export const MOST = 40;
 /** The least distance between two points. */
 const APART = 8;

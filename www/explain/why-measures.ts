@@ -11,7 +11,7 @@ export interface Joined {
 }
 
 /** A picture of the triangles: for each pixel, in rows, its triangle and how near it is to each corner. */
-export interface Raster {
+interface Raster {
   width: number;
   height: number;
   triangle: Int32Array;
@@ -201,7 +201,7 @@ export function heat(mesh: Joined): { values: number[]; error: number; backwards
 }
 
 /** A piece of a contour line in a triangle. */
-export type Piece = [Point, Point];
+type Piece = [Point, Point];
 
 /** The contour lines of the land at these levels, and how far they are off on average, in percent of the width. */
 export function contours(mesh: Joined, levels: readonly number[]): { pieces: Piece[]; error: number } {

@@ -190,24 +190,28 @@ async function start(sides: SideParts[], slider: HTMLInputElement, says: HTMLOut
   const update = async (): Promise<void> => {
     if (isBusy) return;
     isBusy = true;
-    while (shown !== slider.valueAsNumber) {
-      const flips = slider.valueAsNumber;
-      const mesh = thinned(best, flips);
-      const made = await healed(mesh);
-      show(sides[0]!, mesh);
-      show(sides[1]!, made);
-      const text = `${number.format(flips)} flips at random, healed by ${number.format(made.flips)} flips in ${made.iterations} iterations`;
-      says.textContent = text;
-      slider.setAttribute('aria-valuetext', `${number.format(flips)} flips at random`);
-      shown = flips;
-      await new Promise(requestAnimationFrame);
+    try {
+      while (shown !== slider.valueAsNumber) {
+        const flips = slider.valueAsNumber;
+        shown = flips;
+        const mesh = thinned(best, flips);
+        const made = await healed(mesh);
+        show(sides[0]!, mesh);
+        show(sides[1]!, made);
+        const text = `${number.format(flips)} flips at random, healed by ${number.format(made.flips)} flips in ${made.iterations} iterations`;
+        says.textContent = text;
+        slider.setAttribute('aria-valuetext', `${number.format(flips)} flips at random`);
+        await new Promise(requestAnimationFrame);
+      }
+    } finally {
+      isBusy = false;
     }
-    isBusy = false;
   };
-  slider.addEventListener('input', () => void update());
+  const fail = (error: unknown) => console.error(error);
+  slider.addEventListener('input', () => update().catch(fail));
   onTheme(() => {
     shown = -1;
-    void update();
+    update().catch(fail);
   });
   await update();
 }

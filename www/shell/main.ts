@@ -1,6 +1,7 @@
 /** Starts the page: the first view at once, then the tool, and the sections when the visitor comes near them. */
 
 import type { Hero } from '../hero/hero.ts';
+import type { Tool } from '../watch/main.ts';
 import { number } from './numbers.ts';
 import { markSections } from './sections.ts';
 import { stillness } from './stillness.ts';
@@ -63,23 +64,29 @@ function keepOffline(): void {
 async function showTool(): Promise<void> {
   const [busy, progress] = [part('#busy'), part('#progress')];
   busy.hidden = progress.hidden = false;
+  if (!startedTool()) part('#busy-text').textContent = 'Loading the tool…';
+  let tool: Tool;
   try {
-    const tool = await loadTool();
-    if (import.meta.env.PROD) setTimeout(keepOffline, PATIENCE);
+    tool = await loadTool();
     await tool.drawn();
-    busy.hidden = true;
-    document.body.removeAttribute('data-opening');
-    loadSections();
-    if (hero && location.hash === '#watch') tool.guide();
   } catch {
     progress.hidden = true;
     part('#busy-text').textContent = 'The tool could not be loaded. Check the connection, and load the page again.';
+    return;
   }
+  busy.hidden = true;
+  document.body.removeAttribute('data-opening');
+  loadSections();
+  if (import.meta.env.PROD) setTimeout(keepOffline, PATIENCE);
+  if (hero && location.hash === '#watch') tool.guide();
 }
 
 async function show(): Promise<void> {
   if (document.body.dataset.view === 'watch') {
-    void hero?.then((hero) => hero.stop());
+    hero?.then(
+      (hero) => hero.stop(),
+      () => {},
+    );
     await showTool();
   } else {
     await words;

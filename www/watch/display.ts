@@ -127,6 +127,7 @@ export class Display {
       const indices = states && (await shown.run.triangles());
       if (picture !== this.#pictures) return false;
       scene.showEdges(indices, indices && states && (this.phases?.take(shown.run, indices, states) ?? states));
+      this.phases?.say();
       this.#turn(shown.run, indices);
       if (indices) this.lookInto(shown, indices);
       return true;
@@ -189,6 +190,12 @@ export class Display {
     const { at } = run;
     const states = await this.#search.find(shown, isOutdated);
     if (!states || isOutdated() || run.at !== at) return;
+    // Each array has a buffer of its own on the GPU.
+    const kept = this.#found?.run === run ? this.#found.states.sides : undefined;
+    if (kept) {
+      kept.set(states.sides);
+      states.sides = kept;
+    }
     this.#found = { run, at, states };
     this.showTriangles(shown);
     this.#showLegend(run, undefined);

@@ -16,7 +16,7 @@ export function withLecture(link: string): string {
 export function setLecture(isOn: boolean, resize: () => void): void {
   if (isOn === isLecture()) return;
   document.body.toggleAttribute('data-lecture', isOn);
-  element('choose').ariaExpanded = 'false';
+  element('gallery').hidePopover();
   for (const sheet of document.querySelectorAll<HTMLElement>('#watch .sheet')) sheet.hidePopover();
   element('announcement').textContent = isOn ? 'Lecture mode. Escape ends it.' : 'Lecture mode has ended.';
   scrollTo({ top: 0, behavior: 'instant' });

@@ -76,7 +76,7 @@ function keptRow(kept: readonly (readonly [EdgeState, number | undefined])[]): H
 /** What the picture of a large mesh has: nothing but the surface, its edges, tints, or some of both. */
 export type Draws = 'nothing' | 'edges' | 'tints' | 'both';
 
-/** Says what is drawn of a mesh whose states are not counted; `undefined` for another mesh. */
+/** Says what is drawn of a large mesh; `undefined` for another mesh. */
 export function showDraws(draws: Draws | undefined, isColoured: boolean): void {
   const says = element('uncoloured');
   says.hidden = draws === undefined;

@@ -101,7 +101,11 @@ async function begin(page: Page, movingSamples: MovingSamples): Promise<void> {
   lecture(page, asksForLecture(location.hash));
   addEventListener('hashchange', () => {
     const next = placeIn(location.hash);
-    if (!next) return;
+    if (!next) {
+      // The sections are not in a lecture.
+      if (!/^#(?:watch|first)\b/.test(location.hash)) lecture(page, false);
+      return;
+    }
     page.prefer(next);
     lecture(page, asksForLecture(location.hash));
     const moving = movingOf(next.mesh);

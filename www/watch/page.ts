@@ -59,9 +59,10 @@ export class Page {
   readonly phases: Phases = new Phases({
     scene: () => this.scene,
     shown: () => this.shown,
-    step: () => this.player.step(),
+    step: async () => (this.isBusy ? undefined : this.player.step()),
     back: () => this.player.seekBy(-1),
     redraw: () => this.redraw(),
+    colour: () => void (this.#display.look = 'coloured'),
   });
   readonly #draw: (from: number, to: number) => void;
   readonly #jobs = new Jobs(

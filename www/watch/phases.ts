@@ -7,11 +7,12 @@ import type { Point } from '../explain/mesh.ts';
 import { keyOf, relinked } from '../explain/phases.ts';
 import { cornersOf, halvesOf, next } from '../explain/planar.ts';
 import { made } from '../shell/elements.ts';
-import { counted } from '../shell/numbers.ts';
+import { counted, number } from '../shell/numbers.ts';
 import { element } from './controls.ts';
 import { flipsBetween } from './flip-animation.ts';
 import type { Run } from './run.ts';
 import type { Scene } from './scene.ts';
+import { waitOf } from './sentences.ts';
 import type { Shown } from './shown.ts';
 
 /** The most triangles of a mesh that stops between phases. */
@@ -34,6 +35,8 @@ export interface PhasesHost {
   step(): Promise<void>;
   back(): Promise<void>;
   redraw(): Promise<void>;
+  /** Draws edges in the colours of their states. */
+  colour(): void;
 }
 
 /** An edge that can flip: its lower half-edge and the other one. */
@@ -48,15 +51,23 @@ export class Phases {
   #now: readonly number[] = [];
   /** The triangles of each iteration that was shown. */
   #seen = new Map<number, readonly number[]>();
+  #last: Promise<unknown> = Promise.resolve();
 
   constructor(host: PhasesHost) {
     this.#host = host;
   }
 
-  /** Goes on by a phase, or back by one. Returns whether the mesh has phases to stop at. */
-  async step(by: 1 | -1): Promise<boolean> {
+  /** Goes on by a phase, or back by one, after the step before. Returns whether the mesh has phases to stop at. */
+  step(by: 1 | -1): Promise<boolean> {
+    const call = this.#last.then(() => this.#step(by));
+    this.#last = call.catch(() => undefined);
+    return call;
+  }
+
+  async #step(by: 1 | -1): Promise<boolean> {
     const shown = this.#host.shown();
     if (!shown?.run.states || shown.opened.mesh.indices.length > 3 * FEW) return false;
+    this.#host.colour();
     const { run } = shown;
     const index = this.#phase ? PHASES.indexOf(this.#phase) : -1;
     if (by > 0) {
@@ -106,11 +117,16 @@ export class Phases {
     if (!phase || this.#host.shown()?.run.at !== this.#at) return;
     const candidates = this.#candidates();
     const flips = candidates.filter((edge) => edge.flips).length;
+    const waits = candidates.length - flips;
     const sentences: Record<Phase, () => string> = {
       label: () => `${counted(candidates.length, 'edge')} can flip.`,
-      select: () => `Each triangle points to one of its edges: ${flips} flip, ${candidates.length - flips} wait.`,
+      select: () =>
+        `Each triangle points to one of its edges that can flip: ${number.format(flips)} ${flips === 1 ? 'flips' : 'flip'}${waits > 0 ? `, ${waitOf(waits)}` : ''}.`,
       flip: () => `${counted(this.#flips().length / 4, 'edge')} flipped at once.`,
-      update: () => `${counted(this.#changed().length, 'side')} of triangles learn of a new neighbour.`,
+      update: () => {
+        const sides = this.#changed().length;
+        return `${sides === 1 ? '1 side of a triangle has' : `${number.format(sides)} sides of triangles have`} a new neighbour.`;
+      },
     };
     const name = `${phase[0]!.toUpperCase()}${phase.slice(1)}.`;
     element('status').replaceChildren(made('b', '', name), ` ${sentences[phase]()}`);
@@ -119,7 +135,7 @@ export class Phases {
   /** Draws the marks over the picture, where the camera sees the mesh now. */
   draw(): void {
     const scene = this.#host.scene();
-    const isOn = this.#phase && scene && this.#host.shown()?.run.at === this.#at;
+    const isOn = this.#phase && scene && element('halves').hidden && this.#host.shown()?.run.at === this.#at;
     select(element('thread'))
       .selectAll<SVGPathElement, [string, string]>('path.phase')
       .data(isOn ? this.#marks(scene.projector()) : [])

@@ -2,6 +2,7 @@
 
 import type { EdgeState, Reasons } from 'edgeflip';
 import { counted, degrees, ms as tenths, number } from '../shell/numbers.ts';
+import { isLecture } from './lecture.ts';
 import { ENGINES } from './panel.ts';
 import type { Quad } from './quad.ts';
 import type { Run, Summary } from './run.ts';
@@ -60,7 +61,9 @@ export function statusOf(
 ): [bold: string, rest: string] {
   const { at, isOver, iterations } = run;
   if (isOver && summary?.iterations === iterations.length) {
-    return at > 0 ? resultOf(run, summary, smallest) : ['', `${nothingOf(summary)} Try “Scramble”.`];
+    return at > 0
+      ? resultOf(run, summary, smallest)
+      : ['', isLecture() ? nothingOf(summary) : `${nothingOf(summary)} Try “Scramble”.`];
   }
   const next = iterations[at] ?? ahead?.[at];
   if (at === 0) return ['', next ? `${wrongOf(next)} Press play.` : 'Press play.'];
@@ -130,7 +133,7 @@ function wrongOf({ labelled, flips }: Flips): string {
   return `${wrong}: ${number.format(flips)} ${flips === 1 ? 'flips' : 'flip'} first, ${waitOf(labelled - flips)}.`;
 }
 
-const waitOf = (count: number) => `${number.format(count)} ${count === 1 ? 'waits' : 'wait'}`;
+export const waitOf = (count: number) => `${number.format(count)} ${count === 1 ? 'waits' : 'wait'}`;
 
 /** A sentence about triangles that are turned over, after another one; nothing if there are none. */
 function turnedOf(inverted: number): string {
