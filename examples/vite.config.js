@@ -7,6 +7,7 @@ const at = (path) => fileURLToPath(new URL(path, import.meta.url));
 
 export default defineConfig({
   root: at('.'),
+  cacheDir: at('../target/vite/examples'),
   // In a project of your own, `edgeflip` is in node_modules, and these lines are not needed.
   resolve: {
     alias: [

@@ -114,6 +114,8 @@ export default defineConfig({
   publicDir: at('../target/public'),
   resolve: { alias },
   worker: { format: 'es' },
+  // The server of the examples, which has another, may run at the same time.
+  cacheDir: at('../target/vite/page'),
   // Found late, these would be bundled apart, each with a copy of three.js.
   optimizeDeps: { include: ['three', 'three/webgpu', 'three/tsl', 'three/addons/controls/OrbitControls.js'] },
   plugins: [
