@@ -201,9 +201,6 @@ fn next_on(
     from: FixedVertexHandle,
     to: FixedVertexHandle,
 ) -> Option<FixedVertexHandle> {
-    if cut.exists_constraint(from, to) {
-        return Some(to);
-    }
     let [start, end] = [from, to].map(|vertex| at(cut.vertex(vertex).position()));
     let is_on = |edge: &Edge| {
         let place = at(edge.to().position());
