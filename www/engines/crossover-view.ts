@@ -15,7 +15,7 @@ const BEFORE = `Random points in the plane. Grey: ${WHAT}. There the GPU is firs
 export class CrossoverView {
   readonly #title = made('h3', 'engines-title', QUESTION);
   readonly #chart = made('div', 'engines-chart');
-  readonly #button = made('button', 'engines-button', 'Measure this computer');
+  readonly #button = made('button', 'read-button engines-button', 'Measure this computer');
   readonly #note = made('p', 'engines-note', BEFORE);
   readonly #progress = made('progress', 'engines-progress');
   readonly #notes = made('ul', 'engines-notes');

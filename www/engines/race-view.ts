@@ -21,8 +21,8 @@ const names = new Intl.ListFormat('en');
 
 export class RaceView {
   readonly #lede = made('p', 'engines-lede', BEFORE);
-  readonly #button = made('button', 'engines-button engines-main', 'Race');
-  readonly #own = made('button', 'engines-button engines-open', 'Race on the open mesh');
+  readonly #button = made('button', 'read-button engines-button engines-main', 'Race');
+  readonly #own = made('button', 'read-button engines-button engines-open', 'Race on the open mesh');
   readonly #source = made('p', 'engines-note engines-source');
   readonly #note = made('p', 'engines-note', PROMISE);
   readonly #verdict = made('p', 'engines-verdict');

@@ -7,7 +7,7 @@ import { AREA, STOPS } from './stops.ts';
 import { ABOUT } from './playground-words.ts';
 
 function button(text: string, kind: string, title: string): HTMLButtonElement {
-  const element = made('button', `playground-button ${kind}`, text);
+  const element = made('button', `read-button playground-button ${kind}`, text);
   element.type = 'button';
   element.title = title;
   return element;

@@ -68,7 +68,7 @@ export function tabs(snippets: readonly Snippet[]): HTMLElement {
 }
 
 function panelOf({ install, code, source, page }: Snippet, i: number): HTMLElement {
-  const copy = made('button', '', 'Copy');
+  const copy = made('button', 'read-button', 'Copy');
   copy.type = 'button';
   copy.addEventListener('click', async () => {
     try {
