@@ -1,12 +1,13 @@
 // Tests the first view: the words and the mesh beside them, and the way from there to the tool. It reads target/www.
 
 import assert from 'node:assert/strict';
+import { join } from 'node:path';
 import { test } from 'node:test';
 import { setTimeout as pause } from 'node:timers/promises';
 import { fileURLToPath } from 'node:url';
 import site from '../../www/vite.config.js';
 import { openPage, serve, startChromium } from '../browsers.mjs';
-import { EdgeflipPage, meshFile } from './page.mjs';
+import { EdgeflipPage, file, folder, meshFile } from './page.mjs';
 import { Picture } from './picture.mjs';
 
 /** The address of the page. */
@@ -192,16 +193,10 @@ for (const [what, act] of [
     async ({ page }) => (await page.$('#file')).setInputFiles(await meshFile('random 24', 'mine.off')),
   ],
   [
-    'a drop',
-    async ({ page }) => {
-      await page.evaluate(() => {
-        const dataTransfer = new DataTransfer();
-        dataTransfer.items.add(new File(['OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3\n'], 'square.off'));
-        for (const type of ['dragenter', 'dragover', 'drop'])
-          document
-            .querySelector('.pitch')
-            .dispatchEvent(new DragEvent(type, { dataTransfer, bubbles: true, cancelable: true }));
-      });
+    'a drop of a folder',
+    async (first) => {
+      file('early/square.off', 'OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3\n');
+      await first.dropPaths([join(folder, 'early')], '.pitch');
     },
   ],
 ]) {
@@ -221,7 +216,7 @@ for (const [what, act] of [
     assert.equal(await first.page.isVisible('#first'), false);
     assert.equal(
       shown.caption,
-      { 'Watch it work': 'bunny.ply', 'opening a file': 'mine.off', 'a drop': 'square.off' }[what],
+      { 'Watch it work': 'bunny.ply', 'opening a file': 'mine.off', 'a drop of a folder': 'square.off' }[what],
     );
     await first.close();
   });

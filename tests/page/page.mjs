@@ -319,9 +319,9 @@ export class EdgeflipPage {
   }
 
   /** Drops files and folders from the disk onto the page, as a file manager does (Chromium). */
-  async dropPaths(paths) {
+  async dropPaths(paths, onto = '#view') {
     const session = await this.page.context().newCDPSession(this.page);
-    const { x, y, width, height } = await (await this.page.$('#view')).boundingBox();
+    const { x, y, width, height } = await (await this.page.$(onto)).boundingBox();
     const drag = { x: x + width / 2, y: y + height / 2, data: { items: [], files: paths, dragOperationsMask: 1 } };
     for (const type of ['dragEnter', 'dragOver', 'drop'])
       await session.send('Input.dispatchDragEvent', { type, ...drag });

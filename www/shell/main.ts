@@ -2,6 +2,7 @@
 
 import type { Hero } from '../hero/hero.ts';
 import type { Tool } from '../watch/main.ts';
+import { keptDrop } from './early-drop.ts';
 import { number } from './numbers.ts';
 import { markSections } from './sections.ts';
 import { stillness } from './stillness.ts';
@@ -153,8 +154,14 @@ document.addEventListener('dragover', (event) => event.preventDefault());
 document.addEventListener('drop', (event) => {
   event.preventDefault();
   if (!hasFiles(event)) return;
-  // The tool takes dropped files itself, and when it starts, the files of the input.
-  if (!startedTool() && event.dataTransfer) file.files = event.dataTransfer.files;
+  // The tool takes what is dropped itself, once it has started.
+  if (!startedTool()) {
+    const drop = keptDrop(event);
+    loadTool().then(
+      (tool) => tool.open(drop),
+      () => {},
+    );
+  }
   watch();
 });
 let width = innerWidth;

@@ -8,13 +8,10 @@ import { counted, number } from '../shell/numbers.ts';
 import { again } from './opening.ts';
 import type { Page } from './page.ts';
 import { palette } from './palette.ts';
-import type { OpenMesh } from './run.ts';
+import { canScramble, SCRAMBLED, type OpenMesh } from './run.ts';
 import type { Shown } from './shown.ts';
 import { snapshot } from './snapshot.ts';
 import { splitName } from './sources.ts';
-
-/** The most triangles of a mesh whose edges are flipped at random: a larger one would take seconds. */
-const SCRAMBLED = 200_000;
 
 /** Flips edges at random where the shape stays, and opens the mesh again with these triangles. */
 export async function scramble(page: Page): Promise<void> {
@@ -23,7 +20,7 @@ export async function scramble(page: Page): Promise<void> {
   const { opened, run, settings } = shown;
   let indices: Uint32Array | undefined;
   await page.attempt('Flipping edges at random…', async () => {
-    if (opened.mesh.indices.length > 3 * SCRAMBLED) {
+    if (!canScramble(opened.mesh)) {
       throw new Error(`Scramble takes up to ${number.format(SCRAMBLED)} triangles. This mesh has more.`);
     }
     const mesh = { ...opened.mesh, indices: await run.triangles() };

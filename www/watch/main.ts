@@ -10,6 +10,7 @@ import './lecture.css';
 import '../move/move.css';
 import { FORMATS } from 'edgeflip/files';
 import type { NamedMesh } from '../engines/index.ts';
+import type { Drop } from '../shell/early-drop.ts';
 import { toggleTheme } from '../shell/theme.ts';
 import { copyCode, copyLink, drawEdge, saveMesh, savePicture, scramble } from './actions.ts';
 import { controls, element } from './controls.ts';
@@ -38,6 +39,8 @@ export interface Tool {
   mesh(): NamedMesh | undefined;
   /** Settles when the screen shows the mesh that was opened last. */
   drawn(): Promise<void>;
+  /** Opens what was dropped before the tool was loaded. */
+  open(drop: Drop): void;
   /** Guides a visitor who comes from the first view. */
   guide(): void;
 }
@@ -87,7 +90,12 @@ export function start(): Tool {
     const limits = dimension === 3 ? { maxNormalAngle, maxDeviation } : {};
     return { name, positions, indices, dimension, options: { ...locks, ...limits } };
   };
-  return { mesh, drawn: () => page.drawn(), guide: () => void new Guide(page).begin() };
+  return {
+    mesh,
+    open: (drop) => open(dropped(drop)),
+    drawn: () => page.drawn(),
+    guide: () => void new Guide(page).begin(),
+  };
 }
 
 const lecture = (page: Page, isOn: boolean) => setLecture(isOn, () => page.scene?.camera.resize());

@@ -4,7 +4,7 @@ import { digestOf, fingerprintOf } from '../shell/digest.ts';
 import { element } from './controls.ts';
 import type { Display } from './display.ts';
 import { BINS, type Opened } from './opening.ts';
-import type { Run, Summary } from './run.ts';
+import { canScramble, type Run, type Summary } from './run.ts';
 import { statusOf, type Smallest } from './sentences.ts';
 import type { Shown } from './shown.ts';
 import type { RunStatus } from './transport.ts';
@@ -83,7 +83,7 @@ export class Measuring {
       if (news === undefined) await this.#measure(opened, run, indices, isOutdated);
       if (isOutdated()) return;
       const { summary, ahead, smallest } = host.status();
-      const status = statusOf(run, summary, ahead, smallest).join(' ').trim();
+      const status = statusOf(run, summary, ahead, smallest, canScramble(opened.mesh)).join(' ').trim();
       announce(news ?? `${status} ${element('note').textContent}`);
       document.body.dataset['measured'] = `${run.at}`;
       host.handOver();

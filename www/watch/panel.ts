@@ -142,7 +142,7 @@ export class Panel {
     button.ariaLabel = `Show iteration ${button.textContent}`;
     button.addEventListener('click', () => this.#seek(index + 1));
     row.cells[0]?.replaceChildren(button);
-    row.title = stopped > 0 ? `Blocked: ${reasons(blocked)}` : '';
+    row.title = stopped > 0 ? `Kept: ${reasons(blocked)}` : '';
     this.#rows.append(row);
   }
 }

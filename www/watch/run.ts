@@ -7,6 +7,11 @@ import type { Change, Moment } from './change.ts';
 /** The most triangles of a mesh whose edges are drawn in colours. */
 export const COLOURED = 20_000;
 
+/** The most triangles of a mesh whose edges are flipped at random: a larger one would take many seconds. */
+export const SCRAMBLED = 200_000;
+
+export const canScramble = ({ indices }: IndexedMesh) => indices.length <= 3 * SCRAMBLED;
+
 /** The engine that the user chose. */
 export type Backend = 'auto' | Engine;
 

@@ -51,19 +51,21 @@ export interface Smallest {
 
 /**
  * A bold beginning and the rest: what the shown iteration is. `ahead` has the flips of all iterations, where they are
- * known before they are run, and `smallest` the angles of the shown state, once they are measured.
+ * known before they are run, and `smallest` the angles of the shown state, once they are measured. `canScramble`: whether
+ * the mesh is small enough to scramble.
  */
 export function statusOf(
   run: Run,
   summary: Summary | undefined,
   ahead: Flips[] | undefined,
   smallest: Smallest | undefined,
+  canScramble: boolean,
 ): [bold: string, rest: string] {
   const { at, isOver, iterations } = run;
   if (isOver && summary?.iterations === iterations.length) {
     return at > 0
       ? resultOf(run, summary, smallest)
-      : ['', isLecture() ? nothingOf(summary) : `${nothingOf(summary)} Try “Scramble”.`];
+      : ['', isLecture() || !canScramble ? nothingOf(summary) : `${nothingOf(summary)} Try “Scramble”.`];
   }
   const next = iterations[at] ?? ahead?.[at];
   if (at === 0) return ['', next ? `${wrongOf(next)} Press play.` : 'Press play.'];

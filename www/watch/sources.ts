@@ -4,6 +4,7 @@ import { proxy } from 'comlink';
 import { FORMATS, type FileMesh, type IndexedMesh } from 'edgeflip/files';
 import { fromEvent } from 'file-selector';
 import type { WorkerClient } from './worker-client.ts';
+import type { Drop } from '../shell/early-drop.ts';
 import { BROUGHT, sampleOf } from '../models/samples.js';
 import { folderOf, GLTF, plain, type Kept, type Located, type Report } from './files.ts';
 
@@ -81,9 +82,9 @@ export function chosen(files: readonly File[]): Source | undefined {
 
 /**
  * The first mesh of the dropped files; `undefined` if no file was dropped. In a folder, the mesh nearest to the top
- * comes first. Call this in the event handler: the browser releases the files afterwards.
+ * comes first. Call this in the handler of a `drop` event: the browser releases the files afterwards.
  */
-export function dropped(event: DragEvent): Source | undefined {
+export function dropped(event: Drop): Source | undefined {
   const entries = Array.from(event.dataTransfer?.items ?? [], (item) => item.webkitGetAsEntry());
   const folders = entries.flatMap((entry) => (entry?.isDirectory ? [entry.name] : []));
   const name = folders[0] ?? event.dataTransfer?.files[0]?.name;
@@ -104,7 +105,7 @@ export function dropped(event: DragEvent): Source | undefined {
 }
 
 /** The dropped files, and the files in the dropped folders. */
-async function gather(event: DragEvent, folders: readonly string[]): Promise<Located[]> {
+async function gather(event: Drop, folders: readonly string[]): Promise<Located[]> {
   const gathered = fromEvent(event).catch((error: unknown) => {
     const where = folders.length > 0 ? `all of ${new Intl.ListFormat('en').format(folders)}` : 'the dropped files';
     const why = error instanceof Error ? error.message : String(error);

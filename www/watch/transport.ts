@@ -7,7 +7,7 @@ import type { Flips } from './mesh-worker.ts';
 import { counted } from '../shell/numbers.ts';
 import type { Opened } from './opening.ts';
 import { ENGINES, reasons } from './panel.ts';
-import type { Run, Summary } from './run.ts';
+import { canScramble, type Run, type Summary } from './run.ts';
 import { statusOf, type Smallest } from './sentences.ts';
 import { FEW } from './phases.ts';
 import { showPosition, type Timeline } from './timeline.ts';
@@ -40,7 +40,9 @@ export function showTransport(timeline: Timeline, status: RunStatus): void {
   const flips = ahead ?? run?.iterations ?? [];
   showPosition(at, flips.length, isIdle);
   timeline.show(flips, at, ahead !== undefined || run?.hasEnded === true);
-  const [bold, rest] = run ? statusOf(run, summary, ahead, smallest) : ['', ''];
+  const [bold, rest] = run
+    ? statusOf(run, summary, ahead, smallest, opened !== undefined && canScramble(opened.mesh))
+    : ['', ''];
   element('status').replaceChildren(...(bold ? [made('b', '', bold), ' '] : []), rest);
   element('note').textContent = noteOn(status);
   element('note').hidden = element('note').textContent === '';
