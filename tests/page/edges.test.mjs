@@ -107,6 +107,9 @@ for (const api of ['WebGPU', 'WebGL2']) {
     await page.until('edges that flip', ({ newest }) => newest === '1');
     assert.equal(await says(page), 'edges');
     assert.deepEqual(await legendOf(page), await expectedLegend(false));
+    await page.page.keyboard.press('n');
+    assert.match(await page.page.textContent('#inspect'), /(?:Flips now|Waits).*more than 180°/s);
+    await page.page.keyboard.press('Escape');
     const near = countsOf(await page.picture());
     t.diagnostic(`near: ${JSON.stringify(near)}`);
     assert.ok(near.grey > 0.02 * near.all && near.grey < 0.6 * near.all, 'edges');

@@ -197,6 +197,7 @@ export class Display {
       states.sides = kept;
     }
     this.#found = { run, at, states };
+    this.inspection.know(states.states);
     this.showTriangles(shown);
     this.#showLegend(run, undefined);
   }
@@ -226,7 +227,12 @@ export class Display {
 
   /** Lets the user inspect the edges of these triangles. */
   lookInto({ run, opened, settings }: Shown, indices: Uint32Array): void {
-    this.inspection.show({ mesh: opened.mesh, indices, states: run.states, limits: settings });
+    this.inspection.show({
+      mesh: opened.mesh,
+      indices,
+      states: run.states ?? this.#statesOf(run)?.states,
+      limits: settings,
+    });
   }
 
   /** `fingerprint` belongs to the shown triangles, once it is known. */

@@ -14,6 +14,7 @@ import { LOOKS } from './states.ts';
 export interface Triangles {
   mesh: IndexedMesh;
   indices: Uint32Array;
+  /** The states of the half-edges, once they are known. */
   states: Uint8Array | undefined;
   limits: Limits;
 }
@@ -79,6 +80,13 @@ export class Inspection {
     const half = indices.findIndex((from, h) => from === held.a && indices[next(h)] === held.b);
     if (half >= 0) this.#inspect(half);
     else this.close();
+  }
+
+  /** Takes the states of the shown triangles, which those of a large mesh get later. */
+  know(states: Uint8Array): void {
+    if (!this.#shown) return;
+    this.#shown = { ...this.#shown, states };
+    if (this.#quad) this.#inspect(this.#quad.half);
   }
 
   /** Forgets the triangles, which are about to change. */

@@ -40,6 +40,8 @@ export interface Quality {
 
 /** The states of the sides of each triangle, in the form of `Corners.sides`, and the number of edges in each state. */
 export interface SideStates {
+  /** The states of the half-edges. */
+  states: Uint8Array;
   sides: Uint32Array<ArrayBuffer>;
   counts: number[];
 }
@@ -135,7 +137,7 @@ class MeshWorker {
     for (let t = 0; t < sides.length; t++) {
       sides[t] = states[3 * t]! | (states[3 * t + 1]! << 4) | (states[3 * t + 2]! << 8);
     }
-    return transfer({ sides, counts }, [sides.buffer]);
+    return transfer({ states, sides, counts }, [states.buffer, sides.buffer]);
   }
 
   /** The edges at which the surface bends by more than an angle in degrees: two vertices each. */

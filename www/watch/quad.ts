@@ -18,7 +18,7 @@ export interface Quad {
   /** How far the normals of its two triangles differ, and of those after a flip, in degrees; 0 in the plane. */
   bend: number;
   bendAfter: number;
-  /** `undefined` in a large mesh, whose states the page does not ask for. */
+  /** `undefined` as long as it is not known. */
   state: EdgeState | undefined;
 }
 

@@ -8,7 +8,7 @@ import type { SideStates } from './mesh-worker.ts';
 import type { Shown } from './shown.ts';
 
 /** The most triangles of a mesh whose states are looked for: the run on the CPU would take many seconds. */
-export const SEARCHED = 1_000_000;
+export const SEARCHED = 4_000_000;
 
 export class StateSearch {
   #of: Pick<Shown, 'opened' | 'settings'> | undefined;
