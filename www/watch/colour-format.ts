@@ -11,8 +11,11 @@ export interface Layers {
 /** The numbers of a vertex in {@link FileColours.vertices}. */
 export const NUMBERS = 4;
 
-/** Where the bits of the ways to repeat a texture begin, and how many each way has. */
-export const [WRAPS, BITS] = [8, 2];
+/**
+ * Where the bits of the ways to repeat a texture begin, how many each way has, and the bit of a texture whose pixels have
+ * sharp borders.
+ */
+export const [WRAPS, BITS, SHARP] = [8, 2, 12];
 
 /** What happens beyond the border of a texture. */
 export const REPEAT = { repeat: 0, clamp: 1, mirror: 2 } as const;
@@ -20,7 +23,8 @@ export const REPEAT = { repeat: 0, clamp: 1, mirror: 2 } as const;
 export interface FileColours {
   /**
    * For each vertex: two texture coordinates; a colour, in sRGB with 8 bits for each of red, green and blue; and the
-   * layer of its texture, from 1, or 0, and from bit {@link WRAPS} how the texture repeats to the right and downwards.
+   * layer of its texture, from 1, or 0, from bit {@link WRAPS} how the texture repeats to the right and downwards, and the
+   * bit {@link SHARP}.
    */
   vertices: Float32Array<ArrayBuffer>;
   layers: Layers | undefined;

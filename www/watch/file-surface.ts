@@ -10,7 +10,7 @@ import {
 } from 'three/webgpu';
 import { dFdx, dFdy, float, floor, select, sRGBTransferEOTF, sRGBTransferOETF, texture, uint } from 'three/tsl';
 import { varying, vec2, vec3 } from 'three/tsl';
-import { BITS, REPEAT, WRAPS, type FileColours } from './colour-format.ts';
+import { BITS, REPEAT, SHARP, WRAPS, type FileColours } from './colour-format.ts';
 import type { Corners } from './corners.ts';
 
 export class FileSurface {
@@ -60,9 +60,12 @@ export class FileSurface {
     const way = (from: number) => bits.shiftRight(uint(from)).bitAnd(uint((1 << BITS) - 1));
     // Where the coordinates jump, the size of a texel does not.
     const inside = vec2(this.#within(at.x, way(WRAPS)), this.#within(at.y, way(WRAPS + BITS)));
+    // The middle of a pixel.
+    const sharp = floor(inside.mul(this.#size)).add(0.5).div(this.#size);
+    const point = select(bits.shiftRight(uint(SHARP)).equal(uint(0)), inside, sharp);
     const isNone = layer.equal(uint(0));
     const place = select(isNone, uint(0), layer.sub(uint(1))).toInt();
-    const found = texture(layers, inside).depth(place).grad(dFdx(at), dFdy(at));
+    const found = texture(layers, point).depth(place).grad(dFdx(at), dFdy(at));
     return select(isNone, vec3(1), found.xyz) as Node<'vec3'>;
   }
 

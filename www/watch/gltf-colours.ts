@@ -1,7 +1,7 @@
 /** The colours of a glTF file: the textures and colours of its materials, and the colours of its vertices. */
 
 import type { Accessor, GLTF } from '@gltf-transform/core';
-import { NUMBERS, packed, REPEAT, WRAPS, BITS, type FoundColours, type Sizes } from './colour-format.ts';
+import { BITS, NUMBERS, packed, REPEAT, SHARP, WRAPS, type FoundColours, type Sizes } from './colour-format.ts';
 import { nameOf, isData, type GltfFile, type Part } from './gltf-file.ts';
 import { layersOf, type Image } from './layers.ts';
 
@@ -30,7 +30,8 @@ interface Look {
   coordinates: Accessor | undefined;
   transform: Transform;
   image: Image | undefined;
-  wraps: number;
+  /** Those of its texture besides the layer. */
+  bits: number;
 }
 
 export async function gltfColours(file: GltfFile, { vertices, triangles }: Sizes): Promise<FoundColours> {
@@ -60,9 +61,10 @@ function lookOf(file: GltfFile, part: Part, images: Map<string, Image>): Look {
   const set = transform.texCoord ?? baseColorTexture?.texCoord ?? 0;
   const coordinates = texture && file.attribute(part.primitive, `TEXCOORD_${set}`);
   const sampler = samplers[texture?.sampler ?? -1];
+  const isSharp = sampler?.magFilter === NEAREST;
   const wraps = (WRAP.get(sampler?.wrapS) ?? 0) | ((WRAP.get(sampler?.wrapT) ?? 0) << BITS);
-  const image = coordinates && imageOf(file, texture, sampler?.magFilter === NEAREST, images);
-  return { part, factor, colours, coordinates, transform, image, wraps };
+  const image = coordinates && imageOf(file, texture, isSharp, images);
+  return { part, factor, colours, coordinates, transform, image, bits: (wraps << WRAPS) | (Number(isSharp) << SHARP) };
 }
 
 /** The image of a texture, the same for all textures that have it. */
@@ -88,7 +90,7 @@ function imageOf(
 
 /** Writes the numbers of the vertices of a part; `layer` counts from 1, and 0 is none. */
 function write(numbers: Float32Array, look: Look, layer: number): void {
-  const { part, factor, colours, coordinates, transform, wraps } = look;
+  const { part, factor, colours, coordinates, transform, bits } = look;
   const { offset = [0, 0], scale = [1, 1], rotation = 0 } = transform;
   const [sin, cos] = [Math.sin(rotation), Math.cos(rotation)];
   const [point, colour]: number[][] = [[], []];
@@ -104,7 +106,7 @@ function write(numbers: Float32Array, look: Look, layer: number): void {
     colours?.getElement(element, colour!);
     const [red, green, blue] = factor.map((x, k) => encoded(x * (colours ? colour![k]! : 1)));
     numbers[at + 2] = packed(red!, green!, blue!);
-    numbers[at + 3] = layer > 0 ? layer | (wraps << WRAPS) : 0;
+    numbers[at + 3] = layer > 0 ? layer | bits : 0;
   }
 }
 
