@@ -3,80 +3,10 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { crc32, deflateSync } from 'node:zlib';
 import { startChromium } from '../browsers.mjs';
-import { Content, glbOf } from '../package/gltf.mjs';
+import { Content } from '../package/gltf.mjs';
 import { file, keepDevices, loseDevice, openEdgeflip, sharedPage } from './page.mjs';
-
-const [RED, GREEN, BLUE] = [
-  [255, 0, 0],
-  [0, 255, 0],
-  [0, 0, 255],
-];
-const NEAREST = { magFilter: 9728, minFilter: 9728, wrapS: 33071, wrapT: 33071 };
-
-/** A PNG with one row of pixels. */
-function png(row) {
-  const chunk = (type, data) => {
-    const body = Buffer.concat([Buffer.from(type), data]);
-    const [length, sum] = [Buffer.alloc(4), Buffer.alloc(4)];
-    length.writeUInt32BE(data.length);
-    sum.writeUInt32BE(crc32(body));
-    return Buffer.concat([length, body, sum]);
-  };
-  const head = Buffer.from([0, 0, 0, row.length, 0, 0, 0, 1, 8, 2, 0, 0, 0]);
-  const pixels = deflateSync(Buffer.from([0, ...row.flat()]));
-  const signature = Buffer.from('89504e470d0a1a0a', 'hex');
-  return Buffer.concat([signature, chunk('IHDR', head), chunk('IDAT', pixels), chunk('IEND', Buffer.alloc(0))]);
-}
-
-/** A kite around x, as high as `height`, with its long diagonal as the edge; it flips to the short one. */
-const kite = (x, height = 0.8) => ({
-  positions: [x - 1, 0, 0, x, -height, 0, x + 1, 0, 0, x, height, 0],
-  indices: [0, 1, 2, 0, 2, 3],
-});
-
-/** The primitive of a mesh, with more attributes: the numbers of each with their width. */
-function primitiveOf(content, { positions, indices }, attributes, more = {}) {
-  const others = Object.entries(attributes).map(([name, [numbers, width]]) => [
-    name,
-    content.accessor(numbers, width, 34962),
-  ]);
-  const place = content.accessor(Float32Array.from(positions), 3, 34962, true);
-  return {
-    attributes: { POSITION: place, ...Object.fromEntries(others) },
-    ...(indices ? { indices: content.accessor(Uint16Array.from(indices), 1, 34963) } : {}),
-    ...more,
-  };
-}
-
-const perVertex = (values, count) => Array.from({ length: count }, () => values).flat();
-
-/**
- * Two kites: the left one has a texture whose left half is red and whose right half is green, the right one has vertices
- * that are blue. `image` replaces the image, and `more` adds to the file.
- */
-function kitesGlb(image = png([RED, GREEN]), more = {}) {
-  const content = new Content();
-  const [left, right] = [kite(-1), kite(1)];
-  const coordinates = [0, 0.5, 0.5, 0, 1, 0.5, 0.5, 1];
-  const primitives = [
-    primitiveOf(content, left, { TEXCOORD_0: [Float32Array.from(coordinates), 2] }, { material: 0 }),
-    primitiveOf(content, right, { COLOR_0: [Float32Array.from(perVertex([0, 0, 1], 4)), 3] }),
-  ];
-  const json = {
-    asset: { version: '2.0' },
-    nodes: [{ mesh: 0 }],
-    scenes: [{ nodes: [0] }],
-    meshes: [{ primitives }],
-    materials: [{ pbrMetallicRoughness: { baseColorTexture: { index: 0 } } }],
-    textures: [{ source: 0, sampler: 0 }],
-    samplers: [NEAREST],
-    images: [typeof image === 'string' ? { uri: image } : { bufferView: content.view(image), mimeType: 'image/png' }],
-    ...more,
-  };
-  return glbOf(json, content).bytes;
-}
+import { GREEN, kite, kitesGlb, meshGlb, perVertex, png, primitiveOf, RED } from './textured.mjs';
 
 /** For each of three colours, the share of the pixels that have it, and how far right they are in the mean, from 0 to 1. */
 function coloursIn({ pixels, width }) {
@@ -157,3 +87,227 @@ for (const engine of ['cpu', 'webgpu']) {
     await page.close();
   });
 }
+
+/** In each format, two kites, green and blue: the numbers of their vertices are followed by a colour. */
+const COLOURED = {
+  ply: (points, triangles) =>
+    `ply\nformat ascii 1.0\nelement vertex 8\nproperty float x\nproperty float y\nproperty float z\nproperty uchar red\n` +
+    `property uchar green\nproperty uchar blue\nelement face 4\nproperty list uchar int vertex_indices\nend_header\n` +
+    `${points.map(([p, colour]) => [...p, ...colour].join(' ')).join('\n')}\n` +
+    `${triangles.map((triangle) => `3 ${triangle.join(' ')}`).join('\n')}\n`,
+  off: (points, triangles) =>
+    `COFF\n8 4 0\n${points.map(([p, colour]) => [...p, ...colour, 255].join(' ')).join('\n')}\n` +
+    `${triangles.map((triangle) => `3 ${triangle.join(' ')}`).join('\n')}\n`,
+  obj: (points, triangles) =>
+    `${points.map(([p, colour]) => `v ${p.join(' ')} ${colour.map((x) => x / 255).join(' ')}`).join('\n')}\n` +
+    `${triangles.map((triangle) => `f ${triangle.map((v) => v + 1).join(' ')}`).join('\n')}\n`,
+};
+
+test('colours of vertices of PLY, OFF and OBJ files are drawn', async () => {
+  const page = await sharedPage();
+  await page.chooseEngine('cpu');
+  const kites = [kite(-1), kite(1)].map(({ positions, indices }, k) => {
+    const points = [0, 3, 6, 9].map((at) => [positions.slice(at, at + 3), k === 0 ? [0, 255, 0] : [0, 0, 255]]);
+    return { points, triangles: [indices.slice(0, 3), indices.slice(3)].map((t) => t.map((v) => v + 4 * k)) };
+  });
+  const [points, triangles] = ['points', 'triangles'].map((part) => kites.flatMap((one) => one[part]));
+  for (const [extension, textOf] of Object.entries(COLOURED)) {
+    await openColoured(page, file(`coloured.${extension}`, textOf(points, triangles)));
+    const { red, green, blue } = coloursIn(await page.picture(1));
+    const said = `${extension}: ${JSON.stringify({ red, green, blue })}`;
+    assert.ok(red.share === 0 && green.share > 0.01 && blue.share > 0.01 && green.at < blue.at, said);
+  }
+  await page.close();
+});
+
+test('parts that share vertices have the colours of their own materials', async () => {
+  const content = new Content();
+  const [left, right] = [kite(-1), kite(1)];
+  const whole = { positions: [...left.positions, ...right.positions] };
+  // Both primitives use the same positions, each another half of them, and the last one is a copy of the first.
+  const all = primitiveOf(content, whole, { COLOR_0: [Float32Array.from(perVertex([1, 1, 1], 8)), 3] });
+  const part = (indices, material) => ({
+    ...all,
+    indices: content.accessor(Uint16Array.from(indices), 1, 34963),
+    material,
+  });
+  const first = part(
+    right.indices.map((v) => v + 4),
+    0,
+  );
+  const primitives = [first, part(left.indices, 1), { ...first, material: 1 }];
+  const materials = [
+    [0, 0, 1, 1],
+    [0, 1, 0, 1],
+  ].map((baseColorFactor) => ({ pbrMetallicRoughness: { baseColorFactor } }));
+  const page = await sharedPage();
+  await page.chooseEngine('cpu');
+  await openColoured(page, file('shared.glb', meshGlb(content, primitives, { materials })));
+  const { red, green, blue } = coloursIn(await page.picture(1));
+  const said = JSON.stringify({ red, green, blue });
+  assert.ok(red.share === 0 && green.share > 0.01 && blue.share > 0.01 && green.at < blue.at, said);
+  await page.close();
+});
+
+test('a mesh opens although its textures cannot be drawn, and the note names them', async () => {
+  const page = await sharedPage();
+  await page.chooseEngine('cpu');
+  const images = (one) => ({ images: [{ name: 'wood', ...one }] });
+  const data = (bytes) => `data:image/png;base64,${Buffer.from(bytes).toString('base64')}`;
+  for (const [what, image, more, why] of [
+    ['broken', data('no picture'), images({ uri: data('no picture') }), 'the browser cannot read it'],
+    ['missing', 'far%20away.png', {}, 'its file was not opened together with the mesh'],
+    [
+      'basis',
+      data('KTX 20'),
+      {
+        ...images({ uri: data('KTX 20'), mimeType: 'image/ktx2' }),
+        textures: [{ extensions: { KHR_texture_basisu: { source: 0 } } }],
+        extensionsUsed: ['KHR_texture_basisu'],
+        extensionsRequired: ['KHR_texture_basisu'],
+      },
+      'the page does not read KTX2',
+    ],
+  ]) {
+    await page.open(file(`${what}.glb`, kitesGlb(image, more)));
+    const name = what === 'missing' ? 'far away.png' : 'wood';
+    const { note, error } = await page.until('the note', (seen) => seen.note.includes(why));
+    assert.ok(note.includes(`The texture “${name}” is not drawn: ${why}.`), note);
+    assert.equal(error, '');
+    // The blue vertices are drawn nevertheless.
+    await surfaceIs(page, 'file');
+    assert.equal(flipsOf(await page.playToEnd()), '2', what);
+  }
+  await page.close();
+});
+
+test('a texture in a file beside the mesh is drawn', async () => {
+  const page = await sharedPage();
+  await page.chooseEngine('cpu');
+  const picture = file('red green.png', png([RED, GREEN]));
+  await openColoured(page, [file('beside.glb', kitesGlb('red%20green.png')), picture]);
+  await assertDrawn(page, 'beside');
+  await page.close();
+});
+
+test('nothing is said about the surface of a file without colours', async () => {
+  const page = await sharedPage();
+  await page.chooseEngine('cpu');
+  const content = new Content();
+  const normals = { NORMAL: [Float32Array.from(perVertex([0, 0, 1], 4)), 3] };
+  const { note } = await page.open(file('bare.glb', meshGlb(content, [primitiveOf(content, kite(0), normals)])));
+  assert.ok(!note.includes('drawn'), note);
+  assert.equal(await page.page.isVisible('#surface-label'), false);
+  await page.close();
+});
+
+const inspected = ({ page }) =>
+  page.evaluate(() => {
+    const box = document.getElementById('inspect');
+    return box.hidden
+      ? {}
+      : { title: box.querySelector('header').textContent, says: box.querySelector('p').textContent };
+  });
+
+/** Waits until the inspector says something. */
+async function untilSaid(page, pattern) {
+  await page.page.waitForFunction(
+    (source) => new RegExp(source).test(document.querySelector('#inspect:not([hidden]) p')?.textContent ?? ''),
+    pattern.source,
+  );
+  return inspected(page);
+}
+
+test('the inspector names the seams of an OBJ file, and counts their edges', async () => {
+  const page = await sharedPage();
+  await page.chooseEngine('cpu');
+  const vertices = [kite(-1), kite(1), kite(3)].flatMap(({ positions }) =>
+    [0, 3, 6, 9].map((at) => `v ${positions.slice(at, at + 3).join(' ')}`),
+  );
+  const faces = [
+    'f 1/1 2/1 3/1',
+    'f 1/2 3/2 4/2',
+    'usemtl a',
+    'f 5 6 7',
+    'usemtl b',
+    'f 5 7 8',
+    'f 9 10 11',
+    'f 9 11 12',
+  ];
+  await page.open(file('seams.obj', [...vertices, 'vt 0 0', 'vt 1 1', ...faces].join('\n')));
+  await page.page.evaluate(() => document.activeElement.blur());
+  await page.page.keyboard.press('n');
+  const seen = new Set();
+  // Each edge is found twice, once in each of its triangles.
+  for (let i = 0; i < 6; i++) {
+    seen.add((await untilSaid(page, /it is locked\. It is|flips in the next/)).says);
+    await page.page.keyboard.press('n');
+  }
+  const stays = 'Not Delaunay, but it stays: it is locked.';
+  assert.deepEqual([...seen].sort(), [
+    '205° is more than 180°, so this edge flips in the next iteration.',
+    `${stays} It is a border of the attribute “usemtl” (materials): 1 edge stays to keep it.`,
+    `${stays} It is a seam of the attribute “vt” (texture coordinates): 1 edge stays to keep it.`,
+  ]);
+  await page.close();
+});
+
+test('the inspector names the seams of a GLB file, where the two sides have vertices of their own', async () => {
+  const page = await sharedPage();
+  await page.chooseEngine('cpu');
+  const content = new Content();
+  // Five squares above each other; each has a left and a right half, which meet in the middle.
+  const [positions, indices, colours] = [[], [], []];
+  for (let y = 0; y < 5; y++) {
+    for (const [x, right, colour] of [
+      [-1, 0, 0],
+      [0, 1, 1],
+    ]) {
+      const first = positions.length / 3;
+      positions.push(x, y, 0, right, y, 0, right, y + 1, 0, x, y + 1, 0);
+      indices.push(...[0, 1, 2, 0, 2, 3].map((v) => v + first));
+      colours.push(...perVertex([colour, colour, 1], 4));
+    }
+  }
+  const primitive = primitiveOf(content, { positions, indices }, { COLOR_0: [Float32Array.from(colours), 3] });
+  await page.open(file('halves.glb', meshGlb(content, [primitive])));
+  const { x, y, width, height } = await (await page.page.$('#view canvas')).boundingBox();
+  let seen = {};
+  for (let at = 0.2; at < 0.7 && !/COLOR/.test(seen.says); at += 0.01) {
+    await page.page.mouse.move(x + at * width, y + height / 2);
+    if (!(await inspected(page)).title) continue;
+    seen = await untilSaid(page, /is not more than|is a seam|is the rim/);
+  }
+  assert.match(seen.title, /^Seam/);
+  assert.equal(
+    seen.says,
+    'This is a seam, not the end of the surface: each side has vertices of its own, so the edge stays. ' +
+      'They differ in the attribute “COLOR_0” (colours): 5 edges stay to keep it.',
+  );
+  await page.page.mouse.move(x + 2, y + height / 2);
+  await page.close();
+});
+
+test('the colours of a file are drawn again after the GPU was lost', async () => {
+  const page = await openEdgeflip(await startChromium(), keepDevices);
+  await page.chooseEngine('cpu');
+  await openColoured(page, file('lost.glb', kitesGlb()));
+  await loseDevice(page);
+  await page.until('a message', ({ error, state }) => /GPU was lost/.test(error) && state !== 'busy');
+  await page.rest();
+  await surfaceIs(page, 'file');
+  await assertDrawn(page, 'on the next GPU');
+  await page.close();
+});
+
+test('the colours of a file are drawn with WebGL2', async () => {
+  const page = await openEdgeflip(await startChromium(), () =>
+    Object.defineProperty(navigator, 'gpu', { value: undefined }),
+  );
+  await page.chooseEngine('cpu');
+  await openColoured(page, file('webgl.glb', kitesGlb()));
+  await assertDrawn(page, 'the input');
+  await page.playToEnd();
+  await assertDrawn(page, 'the result');
+  await page.close();
+});

@@ -58,8 +58,8 @@ async function channelsOfPly(bytes: Uint8Array<ArrayBuffer>): Promise<Channels |
   if (!type || !CHANNELS.every((channel) => named(channel).test(vertex))) return undefined;
   let renamed = vertex.replace(/(property[ \t]+\w+[ \t]+)([xyz])(?=\s)/g, '$1place_$2');
   CHANNELS.forEach((channel, k) => (renamed = renamed.replace(named(channel), `property $1 ${'xyz'[k]}`)));
-  // Without faces, none has to be cut into triangles.
-  const changed = header.replace(vertex, renamed).replace(/(property[ \t]+list.*[ \t])(vertex_ind)/g, '$1no_$2');
+  // Without faces, none has to be cut into triangles. This element is skipped.
+  const changed = header.replace(vertex, renamed).replace(/(element[ \t]+)(?=face[ \t])/, '$1former_');
   const head = Uint8Array.from(changed, (character) => character.charCodeAt(0));
   const whole = new Uint8Array(head.length + bytes.length - header.length);
   whole.set(head);
