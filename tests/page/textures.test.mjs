@@ -187,6 +187,9 @@ test('a texture in a file beside the mesh is drawn', async () => {
   const picture = file('red green.png', png([RED, GREEN]));
   await openColoured(page, [file('beside.glb', kitesGlb('red%20green.png')), picture]);
   await assertDrawn(page, 'beside');
+  // The saved file names the same picture.
+  const { bytes } = await page.download();
+  assert.ok(Buffer.from(bytes).includes('red%20green.png'));
   await page.close();
 });
 
@@ -246,8 +249,8 @@ test('the inspector names the seams of an OBJ file, and counts their edges', asy
   const stays = 'Not Delaunay, but it stays: it is locked.';
   assert.deepEqual([...seen].sort(), [
     '205° is more than 180°, so this edge flips in the next iteration.',
-    `${stays} It is a border of the attribute “usemtl” (materials): 1 edge stays to keep it.`,
-    `${stays} It is a seam of the attribute “vt” (texture coordinates): 1 edge stays to keep it.`,
+    `${stays} It is a border of the attribute “usemtl” (materials): 1 edge is locked to keep it.`,
+    `${stays} It is a seam of the attribute “vt” (texture coordinates): 1 edge is locked to keep it.`,
   ]);
   await page.close();
 });
@@ -256,17 +259,17 @@ test('the inspector names the seams of a GLB file, where the two sides have vert
   const page = await sharedPage();
   await page.chooseEngine('cpu');
   const content = new Content();
-  // Five squares above each other; each has a left and a right half, which meet in the middle.
+  // Two columns of five squares each, which meet in the middle.
   const [positions, indices, colours] = [[], [], []];
-  for (let y = 0; y < 5; y++) {
-    for (const [x, right, colour] of [
-      [-1, 0, 0],
-      [0, 1, 1],
-    ]) {
-      const first = positions.length / 3;
-      positions.push(x, y, 0, right, y, 0, right, y + 1, 0, x, y + 1, 0);
-      indices.push(...[0, 1, 2, 0, 2, 3].map((v) => v + first));
-      colours.push(...perVertex([colour, colour, 1], 4));
+  for (const [side, colour] of [
+    [-1, 0],
+    [0, 1],
+  ]) {
+    const first = positions.length / 3;
+    for (let y = 0; y <= 5; y++) {
+      positions.push(side, y, 0, side + 1, y, 0);
+      colours.push(...perVertex([colour, colour, 1], 2));
+      if (y < 5) indices.push(...[0, 1, 3, 0, 3, 2].map((v) => first + 2 * y + v));
     }
   }
   const primitive = primitiveOf(content, { positions, indices }, { COLOR_0: [Float32Array.from(colours), 3] });

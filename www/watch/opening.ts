@@ -7,6 +7,7 @@ import { FileExtras } from './file-extras.ts';
 import { WorkerClient } from './worker-client.ts';
 import type { Kept } from './files.ts';
 import { counted, number } from '../shell/numbers.ts';
+import { locked } from './seam.ts';
 import type { Read, Source } from './sources.ts';
 
 /** Bins of the histogram of angles: 5° each. */
@@ -123,8 +124,8 @@ function remarkOnFile(mesh: FileMesh): string {
     : '';
   const dropped = mesh.dropped.length > 0 && !mesh.keeps ? `Not kept: ${mesh.dropped.join(', ')}.` : '';
   const [most, ...others] = mesh.attributeEdges;
-  const locked = most
-    ? `${number.format(most.edges)} edges are locked to keep the attribute “${most.name}”${others.length > 0 ? ', more to keep others' : ''}.`
+  const keeps = most
+    ? `${locked(most.edges)} to keep the attribute “${most.name}”${others.length > 0 ? ', more to keep others' : ''}.`
     : '';
-  return [cut, crossing, dropped, locked, ...mesh.notes.map((note) => `${note}.`)].filter(Boolean).join(' ');
+  return [cut, crossing, dropped, keeps, ...mesh.notes.map((note) => `${note}.`)].filter(Boolean).join(' ');
 }

@@ -72,7 +72,6 @@ export function sayingOf(seams: readonly Seam[]): string {
 function sentence({ name, edges, kind }: Seam): string {
   const meaning = MEANINGS.find(([pattern]) => pattern.test(name))?.[1];
   const named = `“${name}”${meaning ? ` (${meaning})` : ''}`;
-  const stay = `${counted(edges, 'edge')} ${edges === 1 ? 'stays' : 'stay'}`;
   switch (kind) {
     case 'equal':
       return `Their attributes are equal: the option “weld” joins such vertices, and frees ${counted(edges, 'edge')}.`;
@@ -80,9 +79,12 @@ function sentence({ name, edges, kind }: Seam): string {
       return `${counted(edges, 'edge')} ${edges === 1 ? 'is a seam' : 'are seams'} of this kind.`;
     case 'meeting':
       return `It lies between two ${name === 'material' ? 'materials' : 'primitives'}, as ${counted(edges, 'edge')} ${edges === 1 ? 'does' : 'do'}.`;
-    case 'border':
-      return `It is a border of the attribute ${named}: ${stay} to keep it.`;
+    case 'split':
+      return `They differ in the attribute ${named}: ${counted(edges, 'edge')} ${edges === 1 ? 'stays' : 'stay'} to keep it.`;
     default:
-      return `${kind === 'seam' ? 'It is a seam of' : 'They differ in'} the attribute ${named}: ${stay} to keep it.`;
+      return `It is a ${kind} of the attribute ${named}: ${locked(edges)} to keep it.`;
   }
 }
+
+/** `1 edge is locked`, `2 edges are locked`. */
+export const locked = (edges: number) => `${counted(edges, 'edge')} ${edges === 1 ? 'is' : 'are'} locked`;
