@@ -1,4 +1,4 @@
-// Makes GLB files with textures and colours of vertices, for tests of the page.
+// Makes GLB files with textures and colours of vertices, for tests of the page, and finds the colours in its pictures.
 
 import { crc32, deflateSync } from 'node:zlib';
 import { Content, glbOf } from '../package/gltf.mjs';
@@ -75,4 +75,19 @@ export function kitesGlb(image = png([RED, GREEN]), more = {}) {
     images: [typeof image === 'string' ? { uri: image } : { bufferView: content.view(image), mimeType: 'image/png' }],
     ...more,
   });
+}
+
+/** For each of three colours, the share of the pixels that have it, and how far right they are in the mean, from 0 to 1. */
+export function coloursIn({ pixels, width }) {
+  return Object.fromEntries(
+    ['red', 'green', 'blue'].map((name, channel) => {
+      const found = [];
+      pixels.forEach((pixel, i) => {
+        const parts = [pixel >> 16, (pixel >> 8) & 255, pixel & 255];
+        const [own] = parts.splice(channel, 1);
+        if (own > 60 && own > 3 * Math.max(...parts)) found.push((i % width) / width);
+      });
+      return [name, { share: found.length / pixels.length, at: found.reduce((sum, x) => sum + x, 0) / found.length }];
+    }),
+  );
 }

@@ -6,22 +6,7 @@ import { test } from 'node:test';
 import { startChromium } from '../browsers.mjs';
 import { Content } from '../package/gltf.mjs';
 import { file, keepDevices, loseDevice, openEdgeflip, sharedPage } from './page.mjs';
-import { GREEN, kite, kitesGlb, meshGlb, perVertex, png, primitiveOf, RED } from './textured.mjs';
-
-/** For each of three colours, the share of the pixels that have it, and how far right they are in the mean, from 0 to 1. */
-function coloursIn({ pixels, width }) {
-  return Object.fromEntries(
-    ['red', 'green', 'blue'].map((name, channel) => {
-      const found = [];
-      pixels.forEach((pixel, i) => {
-        const parts = [pixel >> 16, (pixel >> 8) & 255, pixel & 255];
-        const [own] = parts.splice(channel, 1);
-        if (own > 60 && own > 3 * Math.max(...parts)) found.push((i % width) / width);
-      });
-      return [name, { share: found.length / pixels.length, at: found.reduce((sum, x) => sum + x, 0) / found.length }];
-    }),
-  );
-}
+import { coloursIn, GREEN, kite, kitesGlb, meshGlb, perVertex, png, primitiveOf, RED } from './textured.mjs';
 
 /** Waits until the surface is as in the file, or plain. */
 const surfaceIs = ({ page }, look) => page.waitForFunction((is) => document.body.dataset.surface === is, look);

@@ -30,7 +30,6 @@ export class FileSurface {
       magFilter: LinearFilter,
       minFilter: LinearMipmapLinearFilter,
       generateMipmaps: true,
-      anisotropy: 4,
       colorSpace: SRGBColorSpace,
       needsUpdate: true,
     });
