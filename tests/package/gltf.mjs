@@ -29,7 +29,7 @@ const COMPONENTS = new Map([
 ]);
 
 /** A growing buffer, and the buffer views and accessors that refer to it. */
-class Content {
+export class Content {
   bytes = Buffer.alloc(0);
   bufferViews = [];
   accessors = [];
@@ -55,6 +55,18 @@ class Content {
     });
     return this.accessors.length - 1;
   }
+}
+
+/** The bytes of a GLB file with this JSON and this content, and where its buffer starts. */
+export function glbOf(parts, { accessors, bufferViews, bytes: buffer }) {
+  const json = { ...parts, accessors, bufferViews, buffers: [{ byteLength: buffer.length }] };
+  const text = Buffer.from(JSON.stringify(json));
+  const padded = Buffer.concat([text, Buffer.alloc(-text.length & 3, ' ')]);
+  const word = (number) => Buffer.from(Uint32Array.of(number).buffer);
+  const start = 12 + 8 + padded.length + 8;
+  const chunks = [word(padded.length), Buffer.from('JSON'), padded, word(buffer.length), Buffer.from('BIN\0'), buffer];
+  const bytes = Buffer.concat([Buffer.from('glTF'), word(2), word(start + buffer.length), ...chunks]);
+  return { bytes: new Uint8Array(bytes), start };
 }
 
 /** A strip of thin cells along the x axis, each split along its long diagonal and slightly bent out of the plane. */
@@ -121,31 +133,13 @@ export function riggedGlb({ isIndexed = true } = {}) {
     materials: [{ pbrMetallicRoughness: { baseColorTexture: { index: 0 } } }],
     textures: [{ source: 0 }],
     images: [{ bufferView: image, mimeType: 'image/png' }],
-    accessors: content.accessors,
-    bufferViews: content.bufferViews,
-    buffers: [{ byteLength: content.bytes.length }],
   };
-  const text = Buffer.from(JSON.stringify(json));
-  const padded = Buffer.concat([text, Buffer.alloc(-text.length & 3, ' ')]);
-  const word = (number) => Buffer.from(Uint32Array.of(number).buffer);
-  const length = 12 + 8 + padded.length + 8 + content.bytes.length;
-  const start = 12 + 8 + padded.length + 8;
-  const bytes = Buffer.concat([
-    Buffer.from('glTF'),
-    word(2),
-    word(length),
-    word(padded.length),
-    Buffer.from('JSON'),
-    padded,
-    word(content.bytes.length),
-    Buffer.from('BIN\0'),
-    content.bytes,
-  ]);
+  const { bytes, start } = glbOf(json, content);
   const ranges = primitives
     .filter(() => isIndexed)
     .map(({ indices }) => {
       const { byteOffset, byteLength } = content.bufferViews[content.accessors[indices].bufferView];
       return [start + byteOffset, start + byteOffset + byteLength];
     });
-  return { bytes: new Uint8Array(bytes), ranges };
+  return { bytes, ranges };
 }

@@ -8,7 +8,8 @@ import { test } from 'node:test';
 import { gzipSync } from 'node:zlib';
 import { openPage, startChromium } from '../browsers.mjs';
 import { hashOf, LESSON, openAt } from './lesson.mjs';
-import { openEdgeflip, sharedPage } from './page.mjs';
+import { file, openEdgeflip, sharedPage } from './page.mjs';
+import { kitesGlb } from './textured.mjs';
 
 const axe = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
 
@@ -57,6 +58,9 @@ for (const [colorScheme, width, height] of [
     await press('Escape');
     await page.page.evaluate(() => (document.getElementById('details').open = true));
     await look('details');
+    await page.open(file('kites.glb', kitesGlb()));
+    await page.page.waitForFunction(() => document.body.dataset.surface === 'file');
+    await look('the colours of a file');
     await page.page.evaluate(() => document.querySelector('[data-spec="moving waves"]').click());
     await page.until('a mesh that moves', ({ state }) => state === 'moving');
     await look('a mesh that moves');

@@ -6,7 +6,8 @@ import { test } from 'node:test';
 import { readMesh } from 'edgeflip/files';
 import { startFirefox } from '../browsers.mjs';
 import { assertSelected, hashOf, LESSON, openAt } from './lesson.mjs';
-import { assertPlays, expected, first, meshFile, openEdgeflip, pageInFirefox } from './page.mjs';
+import { assertPlays, expected, file, first, meshFile, openEdgeflip, pageInFirefox } from './page.mjs';
+import { coloursIn, kitesGlb } from './textured.mjs';
 
 /** Firefox's software renderer takes long to compile the WebGL2 shaders for surfaces. */
 const plane = { spec: 'random 24', name: 'plane.off' };
@@ -36,6 +37,17 @@ for (const { backend, engine, spec, name } of [
     await page.close();
   });
 }
+
+test('textures and colours of vertices are drawn in Firefox', async () => {
+  const page = await pageInFirefox();
+  await page.open(file('kites.glb', kitesGlb()));
+  await page.page.waitForSelector('[data-surface=file]');
+  const { red, green, blue } = coloursIn(await page.stillPicture(1));
+  const said = JSON.stringify({ red, green, blue });
+  assert.ok(red.share > 0.005 && green.share > 0.005 && blue.share > 0.005, said);
+  assert.ok(red.at < green.at && green.at < blue.at, said);
+  await page.close();
+});
 
 for (const backend of ['webgpu', 'cpu']) {
   test(`a sheet moves on ${backend} in Firefox, and is Delaunay when it pauses`, async () => {

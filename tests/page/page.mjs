@@ -369,8 +369,8 @@ export class EdgeflipPage {
     return this.rest();
   }
 
-  /** A picture of the middle of the canvas, without what lies on it. */
-  async picture() {
+  /** A picture of the middle of the canvas, a share of its width and height, without what lies on it. */
+  async picture(share = 0.5) {
     const show = (opacity) =>
       this.page.evaluate((how) => {
         for (const part of document.querySelectorAll('.top, #watch > :not(#stage), #thread')) part.style.opacity = how;
@@ -378,19 +378,19 @@ export class EdgeflipPage {
       }, opacity);
     await show('0');
     const { x, y, width, height } = await (await this.page.$('#view canvas')).boundingBox();
-    const [left, top] = [x + width / 4, y + height / 4].map(Math.round);
-    const clip = { x: left, y: top, width: Math.round(width / 2), height: Math.round(height / 2) };
+    const [left, top] = [x + ((1 - share) / 2) * width, y + ((1 - share) / 2) * height].map(Math.round);
+    const clip = { x: left, y: top, width: Math.round(share * width), height: Math.round(share * height) };
     const picture = new Picture(await this.page.screenshot({ clip }));
     await show('');
     return picture;
   }
 
   /** The picture of the canvas once it stands still: edges that have flipped are cool by then. */
-  async stillPicture() {
-    let before = await this.picture();
+  async stillPicture(share) {
+    let before = await this.picture(share);
     for (const end = performance.now() + 60_000; performance.now() < end; ) {
       await pause(100);
-      const now = await this.picture();
+      const now = await this.picture(share);
       if (now.differsFrom(before) === 0) return now;
       before = now;
     }

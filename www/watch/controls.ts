@@ -24,6 +24,7 @@ export const controls = {
   phase: button('phase'),
   compare: button('compare'),
   cut: input('cut'),
+  surface: element<HTMLSelectElement>('surface'),
   scramble: button('scramble'),
   draw: button('draw'),
   limit: button('limit'),

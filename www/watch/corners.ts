@@ -28,10 +28,14 @@ export interface Corners {
   readonly geometry: BufferGeometry;
   /** The position of the corner. */
   readonly position: Node<'vec3'>;
+  /** The numbers of the vertex in the colours of its file. */
+  readonly colours: Node<'vec4'>;
   /** The states of the sides of its triangle: 4 bits each, that of side k from bit 4k. */
   readonly sides: Node<'uint'>;
   /** 3 numbers for each vertex. */
   setPositions(positions: Float32Array): void;
+  /** 4 numbers for each vertex, or none. They are copied to the GPU. */
+  setColours(colours: Float32Array | undefined): void;
   /** `count` is the number of indices. An array is copied to the GPU at each call. */
   setTriangles(drawn: Drawn, count: number): void;
   /** One number for each triangle, or none. An array is copied to the GPU at each call. */
@@ -57,11 +61,14 @@ export class BufferCorners implements Corners {
   /** In place of a buffer that may be destroyed. */
   readonly #none = new StorageBufferAttribute(new Uint32Array(1), 1);
   readonly #sides = storage(this.#none, 'uint', 1).toReadOnly();
+  readonly #noColours = new StorageBufferAttribute(new Float32Array(4), 4);
+  readonly #colours = storage(this.#noColours, 'vec4', 1).toReadOnly();
   readonly #attributes = new WeakMap<GPUBuffer, StorageBufferAttribute>();
   /** The buffers for arrays. */
   readonly #own = new Map<Float32Array | Uint32Array, GPUBuffer>();
   geometry = geometryFor(0);
   readonly position: Node<'vec3'>;
+  readonly colours: Node<'vec4'>;
   readonly sides: Node<'uint'>;
 
   constructor(device: GPUDevice, share: Sharing) {
@@ -71,11 +78,16 @@ export class BufferCorners implements Corners {
     const [x, y, z] = [at, at.add(1), at.add(2)] as const;
     const numbers = this.#positions;
     this.position = vec3(numbers.element(x), numbers.element(y), numbers.element(z));
+    this.colours = this.#colours.element(this.#triangles.element(vertexIndex));
     this.sides = this.#sides.element(vertexIndex.div(3));
   }
 
   setPositions(positions: Float32Array): void {
     this.#positions.value = this.#attribute(this.#copy(positions, 'positions'));
+  }
+
+  setColours(colours: Float32Array | undefined): void {
+    this.#colours.value = colours ? this.#attribute(this.#copy(colours, 'colours')) : this.#noColours;
   }
 
   setTriangles(drawn: Drawn, count: number): void {
@@ -92,6 +104,7 @@ export class BufferCorners implements Corners {
 
   clear(): void {
     this.setSides(undefined);
+    this.setColours(undefined);
     for (const buffer of this.#own.values()) buffer.destroy();
     this.#own.clear();
     this.geometry.dispose();
@@ -126,17 +139,22 @@ const ROW = 2048;
 /** Reads from textures and a vertex buffer, for WebGL2, whose shaders cannot read from other buffers. */
 export class TextureCorners implements Corners {
   readonly #positions: ReturnType<typeof textureLoad>;
+  readonly #colours: ReturnType<typeof textureLoad>;
   readonly #sides: ReturnType<typeof textureLoad>;
   #triangles: Uint32Array | undefined;
   geometry = geometryFor(0);
   readonly position: Node<'vec3'>;
+  readonly colours: Node<'vec4'>;
   readonly sides: Node<'uint'>;
 
   constructor() {
     const place = (at: Node<'uint'>) => ivec2(at.mod(uint(ROW)).toInt(), at.div(uint(ROW)).toInt());
-    this.#positions = textureLoad(floatsFor(0), place(attribute<'uint'>('corner', 'uint')));
+    const vertex = place(attribute<'uint'>('corner', 'uint'));
+    this.#positions = textureLoad(floatsFor(0), vertex);
+    this.#colours = textureLoad(floatsFor(0), vertex);
     this.#sides = textureLoad(wordsFor(0), place(vertexIndex.div(uint(3)) as Node<'uint'>));
     this.position = this.#positions.xyz;
+    this.colours = this.#colours as unknown as Node<'vec4'>;
     this.sides = this.#sides.x.toUint();
   }
 
@@ -150,6 +168,13 @@ export class TextureCorners implements Corners {
     }
     this.#positions.value.dispose();
     this.#positions.value = texture;
+  }
+
+  setColours(colours: Float32Array | undefined): void {
+    const texture = floatsFor((colours?.length ?? 0) / 4);
+    if (colours) (texture.image.data as Float32Array).set(colours);
+    this.#colours.value.dispose();
+    this.#colours.value = texture;
   }
 
   setTriangles(drawn: Drawn, count: number): void {
@@ -183,6 +208,7 @@ export class TextureCorners implements Corners {
     this.#triangles = undefined;
     for (const texture of [this.#positions, this.#sides]) texture.value.dispose();
     this.#positions.value = floatsFor(0);
+    this.setColours(undefined);
     this.#sides.value = wordsFor(0);
   }
 }

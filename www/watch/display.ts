@@ -17,6 +17,7 @@ import type { SideStates } from './mesh-worker.ts';
 import type { Shown } from './shown.ts';
 import { SEARCHED, StateSearch } from './state-search.ts';
 import { Timeline } from './timeline.ts';
+import { SurfaceChoice } from './surface-choice.ts';
 import { stillness } from '../shell/stillness.ts';
 import { showTransport, type RunStatus } from './transport.ts';
 import { flipsBetween } from './flip-animation.ts';
@@ -30,6 +31,7 @@ export class Display {
   readonly panel: Panel;
   readonly inspection: Inspection;
   readonly comparison: Comparison;
+  readonly surface: SurfaceChoice;
   readonly edgeDrawing: EdgeDrawing;
   /** The stops between the phases of an iteration. */
   phases: Phases | undefined;
@@ -58,6 +60,7 @@ export class Display {
     this.panel = new Panel(seek);
     this.inspection = new Inspection(() => graphics.scene);
     this.comparison = new Comparison(() => graphics.scene);
+    this.surface = new SurfaceChoice(() => graphics.scene);
     this.edgeDrawing = new EdgeDrawing(
       () => graphics.scene,
       draw,
@@ -77,12 +80,14 @@ export class Display {
   }
 
   /** Shows the mesh of another run. `isOther`: whether its vertices are others than before. */
-  begin({ mesh }: Opened, isOther: boolean): void {
+  begin(opened: Opened, isOther: boolean): void {
+    const { mesh } = opened;
     const { scene } = this.#graphics;
     this.#last = this.#found = undefined;
     this.inspection.close();
     const positions = unitPositions(mesh);
     scene?.setMesh(positions, mesh.dimension);
+    this.surface.begin(opened, isOther);
     if (isOther || !scene?.camera.isLooking) {
       scene?.lookAtAll();
       scene?.camera.lookFrom(viewpointOf(positions, mesh.indices));
@@ -109,10 +114,11 @@ export class Display {
     this.inspection.forget();
     this.edgeDrawing.begin(undefined);
     this.#graphics.scene?.clear();
+    this.surface.begin(undefined, true);
     this.panel.clear();
     this.#isLarge = this.#isSearched = false;
     this.#saysDraws = '';
-    showDraws(undefined, false);
+    showDraws(undefined, false, false);
     showLegend(undefined, false);
     element('no-mesh').hidden = false;
   }
@@ -142,10 +148,11 @@ export class Display {
     this.inspection.draw();
     const draws = this.#draws;
     const isColoured = this.look === 'coloured';
-    const says = `${draws} ${isColoured}`;
+    const { isAsInFile } = this.surface;
+    const says = `${draws} ${isColoured} ${isAsInFile}`;
     if (says === this.#saysDraws) return;
     this.#saysDraws = says;
-    showDraws(draws, isColoured);
+    showDraws(draws, isColoured, isAsInFile);
   }
 
   get #draws(): Draws | undefined {
@@ -227,12 +234,9 @@ export class Display {
 
   /** Lets the user inspect the edges of these triangles. */
   lookInto({ run, opened, settings }: Shown, indices: Uint32Array): void {
-    this.inspection.show({
-      mesh: opened.mesh,
-      indices,
-      states: run.states ?? this.#statesOf(run)?.states,
-      limits: settings,
-    });
+    const { mesh, extras } = opened;
+    const states = run.states ?? this.#statesOf(run)?.states;
+    this.inspection.show({ mesh, extras, indices, states, limits: settings });
   }
 
   /** `fingerprint` belongs to the shown triangles, once it is known. */

@@ -95,6 +95,13 @@ export async function contentOfKept({ name, bytes, beside }: Kept): Promise<Cont
   }
 }
 
+/** The content, with the first file unpacked if it is compressed with gzip. */
+export async function unpacked({ bytes, beside }: Content): Promise<Content> {
+  if (bytes[0] !== 0x1f || bytes[1] !== 0x8b) return { bytes, beside };
+  const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream('gzip'));
+  return { bytes: new Uint8Array(await new Response(stream).arrayBuffer()), beside };
+}
+
 async function bytesOf({ path, file }: Located, report: Report): Promise<Uint8Array<ArrayBuffer>> {
   const bytes = new Uint8Array(file.size);
   let [at, told] = [0, 0];
@@ -115,7 +122,7 @@ async function bytesOf({ path, file }: Located, report: Report): Promise<Uint8Ar
 }
 
 /** Reads a file while `readMesh` waits, which a worker may do. */
-function bytesNow({ path, file }: Located): Uint8Array<ArrayBuffer> {
+export function bytesNow({ path, file }: Located): Uint8Array<ArrayBuffer> {
   try {
     return new Uint8Array(new FileReaderSync().readAsArrayBuffer(file));
   } catch {

@@ -4,15 +4,18 @@ import { EDGE_STATES, type EdgeState } from 'edgeflip';
 import type { IndexedMesh } from 'edgeflip/files';
 import { select } from 'd3-selection';
 import { element, NARROW } from './controls.ts';
+import type { FileExtras } from './file-extras.ts';
 import { drawThread, hideEdge, showEdge, type Limits } from './inspector.ts';
 import { next, nextIn, quadAt, type Quad } from './quad.ts';
 import { COLOURED } from './run.ts';
 import type { Scene } from './scene.ts';
+import { seamsAt, type Seams } from './seam.ts';
 import { LOOKS } from './states.ts';
 
 /** The triangles that are shown, once they are in main memory. */
 export interface Triangles {
   mesh: IndexedMesh;
+  extras: FileExtras | undefined;
   indices: Uint32Array;
   /** The states of the half-edges, once they are known. */
   states: Uint8Array | undefined;
@@ -26,6 +29,8 @@ export class Inspection {
   readonly #scene: () => Scene | undefined;
   #shown: Triangles | undefined;
   #quad: Quad | undefined;
+  /** The seams of the file that was asked last. */
+  #seams: { extras: FileExtras; found: Seams | undefined } | undefined;
   /** Whether the pointer is for something else. */
   isPaused = () => false;
   /** Whether the edge stays when the pointer leaves it. */
@@ -185,12 +190,23 @@ export class Inspection {
   #inspect(half: number): void {
     const [shown, scene] = [this.#shown, this.#scene()];
     if (!shown || !scene) return;
-    const { mesh, indices, states, limits } = shown;
+    const { mesh, extras, indices, states, limits } = shown;
     const quad = quadAt(mesh, indices, states, half);
     this.#quad = quad;
     const at = scene.projector();
     const [[ax, ay], [bx, by]] = [at(quad.a), at(quad.b)];
-    showEdge(quad, mesh, limits, Math.atan2(ay - by, bx - ax));
+    const found = this.#seams?.extras === extras ? this.#seams?.found : undefined;
+    const along = found ? seamsAt(found, quad.a, quad.b, limits.keepsGroups) : extras ? undefined : [];
+    showEdge(quad, mesh, limits, Math.atan2(ay - by, bx - ax), along);
     this.draw();
+    if (extras && extras !== this.#seams?.extras) void this.#findSeams(extras);
+  }
+
+  /** Finds the seams of a file, and shows the inspected edge again. A file whose seams cannot be found has none. */
+  async #findSeams(extras: FileExtras): Promise<void> {
+    const seams: { extras: FileExtras; found: Seams | undefined } = { extras, found: undefined };
+    this.#seams = seams;
+    seams.found = await extras.seams().catch(() => undefined);
+    if (this.#seams === seams && this.#quad && this.#shown?.extras === extras) this.#inspect(this.#quad.half);
   }
 }

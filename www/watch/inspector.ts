@@ -5,20 +5,30 @@ import { element } from './controls.ts';
 import { made } from '../shell/elements.ts';
 import { angleFan, lens } from './lens.ts';
 import type { Quad } from './quad.ts';
+import { isOpen, sayingOf, type Seam } from './seam.ts';
 import { sentenceOf } from './sentences.ts';
 import { LOOKS, swatch } from './states.ts';
 
 export interface Limits {
   maxNormalAngle: number;
   maxDeviation: number | undefined;
+  /** Whether borders between groups of triangles keep edges. */
+  keepsGroups: boolean;
 }
 
-/** Shows an edge, as the picture shows it: `turn` is its angle on screen. */
-export function showEdge(quad: Quad, mesh: IndexedMesh, limits: Limits, turn: number): void {
+/** Shows an edge, as the picture shows it: `turn` is its angle on screen. `seams` lie along it, once they are known. */
+export function showEdge(
+  quad: Quad,
+  mesh: IndexedMesh,
+  limits: Limits,
+  turn: number,
+  seams: readonly Seam[] | undefined,
+): void {
   const { state, a, b, angles, opposite } = quad;
   const rounded = angles.map((angle) => `${Math.round(angle)}°`);
   const sum = Math.round(angles.reduce((total, angle) => total + angle, 0));
-  const name = state ? LOOKS[state].word : sum > 180 ? 'Not Delaunay' : 'Delaunay';
+  const isSeam = seams?.some(isOpen) === true;
+  const name = isSeam ? 'Seam' : state ? LOOKS[state].word : sum > 180 ? 'Not Delaunay' : 'Delaunay';
   const colour = state ? LOOKS[state].colour : 'edge';
   const parts: Node[] = [
     made('header', '', swatch(state ?? 'delaunay'), name, made('small', '', `edge ${a}–${b}`), closer()),
@@ -30,7 +40,8 @@ export function showEdge(quad: Quad, mesh: IndexedMesh, limits: Limits, turn: nu
   } else if (opposite.length === 1) {
     numbers.append(made('strong', '', rounded[0]!), made('span', '', 'one angle'));
   }
-  parts.push(numbers, made('p', '', sentenceOf(quad, limits.maxNormalAngle, limits.maxDeviation)));
+  const why = isSeam ? '' : sentenceOf(quad, limits.maxNormalAngle, limits.maxDeviation, seams?.length === 0);
+  parts.push(numbers, made('p', '', [why, sayingOf(seams ?? [])].filter(Boolean).join(' ')));
   const box = element('inspect');
   box.replaceChildren(...parts);
   box.dataset['edge'] = `${a} ${b}`;

@@ -76,8 +76,11 @@ function keptRow(kept: readonly (readonly [EdgeState, number | undefined])[]): H
 /** What the picture of a large mesh has: nothing but the surface, its edges, tints, or some of both. */
 export type Draws = 'nothing' | 'edges' | 'tints' | 'both';
 
-/** Says what is drawn of a large mesh; `undefined` for another mesh. */
-export function showDraws(draws: Draws | undefined, isColoured: boolean): void {
+/**
+ * Says what is drawn of a large mesh; `undefined` for another mesh. `isAsInFile`: whether it has the colours of its file,
+ * and so no tints.
+ */
+export function showDraws(draws: Draws | undefined, isColoured: boolean, isAsInFile: boolean): void {
   const says = element('uncoloured');
   says.hidden = draws === undefined;
   says.dataset['draws'] = draws ?? '';
@@ -87,13 +90,16 @@ export function showDraws(draws: Draws | undefined, isColoured: boolean): void {
     nothing: ['The surface alone. Press E for its edges.'],
     edges: ['Edges. ', ...hot],
     tints: [
-      'Edges are too short to draw here: each triangle is tinted by its smallest angle. ',
+      `Edges are too short to draw here${isAsInFile ? '' : ': each triangle is tinted by its smallest angle'}. `,
       ...hot,
       'Zoom in for edges.',
     ],
-    both: ['Edges where they are long enough. Elsewhere each triangle is tinted by its smallest angle. ', ...hot],
+    both: [
+      `Edges where they are long enough. ${isAsInFile ? '' : 'Elsewhere each triangle is tinted by its smallest angle. '}`,
+      ...hot,
+    ],
   }[draws];
-  says.replaceChildren(...words, ...(draws === 'tints' || draws === 'both' ? [scale()] : []));
+  says.replaceChildren(...words, ...(!isAsInFile && (draws === 'tints' || draws === 'both') ? [scale()] : []));
 }
 
 /** The scale of the tints. */

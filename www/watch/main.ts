@@ -60,8 +60,8 @@ export function start(): Tool {
     else open(sample(spec));
   };
   makeGallery(openSample);
-  // A glTF file may have its buffers in `.bin` files.
-  controls.file.accept = [...FORMATS, '.gz', '.bin'].join(',');
+  // A glTF file may have its buffers and textures in other files.
+  controls.file.accept = [...FORMATS, '.gz', '.bin', '.png', '.jpg', '.jpeg', '.webp'].join(',');
   controls.file.addEventListener('change', () => {
     open(chosen([...(controls.file.files ?? [])]));
     controls.file.value = '';
@@ -286,6 +286,7 @@ function connectKeys(
       says: 'edges: coloured, plain, none',
       act: () => (page.edges = LOOKS[(LOOKS.indexOf(page.edges) + 1) % LOOKS.length]!),
     },
+    { keys: ['v'], label: 'V', says: 'surface: as in the file, plain', act: () => page.toggleSurface() },
     { keys: ['d'], label: 'D', says: 'draw edges, in a plane', act: () => controls.draw.click() },
     { keys: ['l'], label: 'L', says: 'limits', act: () => toggle('limits', controls.limit) },
     { keys: ['x'], label: 'X', says: 'scramble', act: () => controls.scramble.click() },

@@ -18,10 +18,12 @@ import {
 } from 'edgeflip/files';
 import { naming } from './crash.ts';
 import { changeOf, type Change } from './change.ts';
+import type { FoundColours, Sizes } from './colour-format.ts';
 import { scrambled } from '../models/scramble.js';
 import { featuresOf } from './features.ts';
 import { errorOf } from './kinds.ts';
 import { contentOfKept, keep, type Kept, readWith, type Located, type Report } from './files.ts';
+import type { Seams } from './seam.ts';
 import { countStates, sessionOf, statesOf, summaryOf, type OpenMesh, type Step, type Summary } from './run.ts';
 
 /**
@@ -69,6 +71,7 @@ class MeshWorker {
       }),
     );
     const { result: mesh, content } = await naming(reading);
+    if (beside.length > 0) await (await import('./pictures.ts')).addPictures(content, main, beside);
     return transfer({ mesh, kept: keep(name, content) }, buffersOf(mesh));
   }
 
@@ -78,6 +81,23 @@ class MeshWorker {
     const original = content && { bytes: content.bytes, name: kept.name, files: Object.fromEntries(content.beside) };
     const bytes = await naming(writeMesh(mesh, name, { original }));
     return transfer(bytes, [bytes.buffer]);
+  }
+
+  /** The colours of the file of a mesh. */
+  async colours(kept: Kept, sizes: Sizes): Promise<FoundColours> {
+    const { coloursOf } = await import('./file-colours.ts');
+    const found = await coloursOf(kept, sizes);
+    const { vertices, layers } = found.colours ?? {};
+    return transfer(
+      found,
+      [vertices, layers?.pixels].flatMap((array) => array?.buffer ?? []),
+    );
+  }
+
+  /** The seams of a mesh as it was read. */
+  async seams(mesh: FileMesh, kept: Kept): Promise<Seams> {
+    const { seamsOf } = await import('./seams.ts');
+    return naming(seamsOf(mesh, kept));
   }
 
   async measure(mesh: IndexedMesh, bins: number): Promise<Quality> {

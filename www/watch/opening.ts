@@ -3,9 +3,11 @@
 import type { FileMesh, IndexedMesh } from 'edgeflip/files';
 import type { Quality } from './mesh-worker.ts';
 import { takeReader } from './ahead.ts';
+import { FileExtras } from './file-extras.ts';
 import { WorkerClient } from './worker-client.ts';
 import type { Kept } from './files.ts';
 import { counted, number } from '../shell/numbers.ts';
+import { locked } from './seam.ts';
 import type { Read, Source } from './sources.ts';
 
 /** Bins of the histogram of angles: 5° each. */
@@ -29,6 +31,8 @@ export interface Opened {
   drawn: readonly number[];
   /** The files that it was read from. */
   kept: Kept | undefined;
+  /** What its file has besides the mesh; `undefined` for a generated mesh. */
+  extras: FileExtras | undefined;
   /** Notes about reading: changes to the mesh, and contents that were not read. */
   remark: string;
   /** The measures of the mesh, computed at the first call, because drawing does not need them. */
@@ -66,6 +70,7 @@ export class Opening {
       if (!this.#isClosed) this.#progress(share < 1 ? `Reading ${path}…` : `Parsing ${path}…`, share);
     });
     const { mesh, name, kept } = read;
+    const extras = read.extras ?? (kept && 'dropped' in mesh ? new FileExtras(mesh, kept) : undefined);
     if (mesh.indices.length === 0) throw new Error(`There are no triangles in ${name}.`);
     // The memory of a WebAssembly module never shrinks, so closing the worker frees the memory that reading used.
     this.#client.close();
@@ -86,6 +91,7 @@ export class Opening {
       client,
       drawn: source.drawn ?? [],
       kept,
+      extras,
       remark,
       before,
       features: new Map(),
@@ -95,8 +101,8 @@ export class Opening {
 
 /** The mesh with other triangles: with an edge that the user has drawn, or scrambled. */
 export function again(opened: Opened, beta: number, mesh: IndexedMesh, ends: readonly number[] = []): Source {
-  const { name, title, what, kept, drawn, origin } = opened;
-  const read = async () => ({ name, mesh, kept, others: 0 });
+  const { name, title, what, kept, extras, drawn, origin } = opened;
+  const read = async () => ({ name, mesh, kept, extras, others: 0 });
   const isScrambled = opened.isScrambled || ends.length === 0;
   const known = { ...(what ? { what } : {}), ...(origin ? { origin } : {}) };
   return { name, title, ...known, isScrambled, beta, drawn: [...drawn, ...ends], read };
@@ -118,8 +124,8 @@ function remarkOnFile(mesh: FileMesh): string {
     : '';
   const dropped = mesh.dropped.length > 0 && !mesh.keeps ? `Not kept: ${mesh.dropped.join(', ')}.` : '';
   const [most, ...others] = mesh.attributeEdges;
-  const locked = most
-    ? `${number.format(most.edges)} edges are locked to keep the attribute “${most.name}”${others.length > 0 ? ', more to keep others' : ''}.`
+  const keeps = most
+    ? `${locked(most.edges)} to keep the attribute “${most.name}”${others.length > 0 ? ', more to keep others' : ''}.`
     : '';
-  return [cut, crossing, dropped, locked, ...mesh.notes.map((note) => `${note}.`)].filter(Boolean).join(' ');
+  return [cut, crossing, dropped, keeps, ...mesh.notes.map((note) => `${note}.`)].filter(Boolean).join(' ');
 }

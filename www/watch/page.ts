@@ -252,6 +252,11 @@ export class Page {
     void this.redraw();
   }
 
+  /** Shows the colours of the file, or a plain surface, if there is a choice. */
+  toggleSurface(): void {
+    this.#display.surface.toggle();
+  }
+
   get edges(): EdgeLook {
     return this.#display.look;
   }
@@ -346,6 +351,15 @@ export class Page {
     await this.redraw();
     this.player.pause();
     void this.#lookAhead(run, opened, options);
+    void this.#findColours(opened);
+  }
+
+  /** Finds the colours of the file after the first picture, and says which are not drawn. */
+  async #findColours(opened: Opened): Promise<void> {
+    await this.scene?.shown();
+    if (opened !== this.#opened) return;
+    await this.#display.surface.find();
+    if (opened === this.#opened) this.#showTransport();
   }
 
   /** Counts the flips of all iterations, after the first picture: counting would hold it up. */

@@ -12,6 +12,7 @@ import {
 import { Camera, type Insets } from './camera.ts';
 import { BufferCorners, TextureCorners } from './corners.ts';
 import { EdgeScale, type Seen } from './edge-scale.ts';
+import type { FileSurface } from './file-surface.ts';
 import { Layer } from './layer.ts';
 import type { Drawn } from './run.ts';
 import type { Palette } from './palette.ts';
@@ -49,6 +50,8 @@ export class Scene {
   #cut: number | undefined;
   #frame = 0;
   #moving: Object3D | undefined;
+  /** The colours of the mesh's file, and whether they are drawn. */
+  #file: [surface: FileSurface | undefined, isShown: boolean] = [undefined, false];
 
   private constructor(
     renderer: WebGPURenderer,
@@ -114,6 +117,14 @@ export class Scene {
     this.#now.surface.setPositions(positions, dimension);
   }
 
+  /** Takes the colours of the file of the mesh, or none, and draws them if `isShown`. */
+  setFile(surface: FileSurface | undefined, isShown: boolean): void {
+    this.#file = [surface, isShown];
+    this.#now.surface.setFile(surface, isShown);
+    if (this.#cut !== undefined) this.#before.surface.setFile(surface, isShown);
+    this.redraw();
+  }
+
   /** Shows an object alone, which changes from frame to frame; `bounds` are points, 3 numbers each, that fit around it. */
   showMoving(object: Object3D, bounds: Float32Array, dimension: 2 | 3): void {
     this.setMesh(bounds, dimension);
@@ -162,6 +173,7 @@ export class Scene {
   /** Shows the input at the left of the cut. */
   compareWith(input: Uint32Array): void {
     this.#before.surface.setPositions(this.#positions, this.#dimension);
+    this.#before.surface.setFile(...this.#file);
     this.#before.surface.show(input, input.length, true, undefined);
   }
 

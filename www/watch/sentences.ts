@@ -10,8 +10,11 @@ import type { Flips } from './mesh-worker.ts';
 
 const whole = new Intl.NumberFormat('en', { maximumFractionDigits: 0 });
 
-/** What an edge does next, and why. `beta` is in degrees, `deviation` in the mesh's units. */
-export function sentenceOf(quad: Quad, beta: number, deviation: number | undefined): string {
+/**
+ * What an edge does next, and why. `beta` is in degrees, `deviation` in the mesh's units. `isNoSeam`: whether it keeps no
+ * attribute of a file.
+ */
+export function sentenceOf(quad: Quad, beta: number, deviation: number | undefined, isNoSeam: boolean): string {
   const sum = Math.round(quad.angles.reduce((total, angle) => total + angle, 0));
   const bends =
     quad.bend > beta
@@ -26,7 +29,7 @@ export function sentenceOf(quad: Quad, beta: number, deviation: number | undefin
     flips: `${sum}° is more than 180°, so this edge flips in the next iteration.`,
     waits: `${sum}° is more than 180°, but another edge of its triangles flips first. This one is checked again after that.`,
     angle: `${stays} ${bends}, more than the limit of ${beta}°.`,
-    locked: `${stays} it is locked. You drew it, or it is sharp, or it lies between two materials.`,
+    locked: `${stays} it is locked.${isNoSeam ? ' You drew it, or it is sharp.' : ''}`,
     fold: `${stays} a flip would turn a triangle upside down.`,
     duplicate: `${stays} a flip would give an edge that the mesh has already.`,
     deviation: `${stays} a flip would move the surface by more than your limit of ${deviation}.`,

@@ -6,6 +6,7 @@ import { fromEvent } from 'file-selector';
 import type { WorkerClient } from './worker-client.ts';
 import type { Drop } from '../shell/early-drop.ts';
 import { BROUGHT, sampleOf } from '../models/samples.js';
+import type { FileExtras } from './file-extras.ts';
 import { folderOf, GLTF, plain, type Kept, type Located, type Report } from './files.ts';
 
 /** The β of most meshes. */
@@ -36,6 +37,8 @@ export interface Read {
   mesh: IndexedMesh | FileMesh;
   /** The files that it was read from; `undefined` for a sample. */
   kept: Kept | undefined;
+  /** What the file has besides the mesh, if that is known from an earlier run. */
+  extras?: FileExtras | undefined;
   /** The number of other mesh files. */
   others: number;
 }

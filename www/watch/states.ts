@@ -18,7 +18,7 @@ export const LOOKS: Record<EdgeState, Look> = {
   flips: { word: 'Flips now', gloss: '', colour: 'flips' },
   waits: { word: 'Waits', gloss: 'a neighbour flips first', colour: 'waits', dash: [6, 3] },
   angle: { word: 'Kept: crease', gloss: 'the surface bends here', colour: 'crease', dash: [2, 4] },
-  locked: { word: 'Kept: locked', gloss: 'as you asked, or a border', colour: 'locked', dash: [11, 3] },
+  locked: { word: 'Kept: locked', gloss: 'seam, border, or as asked', colour: 'locked', dash: [11, 3] },
   fold: { word: 'Kept: fold', gloss: 'a triangle would turn over', colour: 'fold', dash: [4, 3] },
   duplicate: { word: 'Kept: double', gloss: 'the new edge exists already', colour: 'duplicate', dash: [2, 2] },
   deviation: { word: 'Kept: too far', gloss: 'a flip moves the surface', colour: 'deviation', dash: [3, 6] },

@@ -27,6 +27,7 @@ import {
 } from 'three/tsl';
 import type { Corners } from './corners.ts';
 import { CLEAR, GONE } from './edge-scale.ts';
+import type { FileSurface } from './file-surface.ts';
 import { light } from './light.ts';
 import type { Palette } from './palette.ts';
 import type { Drawn } from './run.ts';
@@ -40,6 +41,8 @@ export const [LEAST, MOST] = [0.16, 0.92];
 const [COVERED, OPAQUE] = [0.45, 0.85];
 /** How much of the hot colour a triangle has that an edge of it flips: if it is tinted, and if its edges are drawn. */
 const [HOT, WARM] = [0.88, 0.13];
+/** The same of a triangle that is not tinted, because it has the colours of a file, and how bright these are in shade. */
+const [HOT_IN_FILE, DIM] = [0.6, 0.5];
 /** Widths in pixels: of edges without a colour, of the rim, and of all others. */
 const [PLAIN, RIM, COLOURED] = [0.9, 1.6, 2.2];
 const DEGREES = 180 / Math.PI;
@@ -84,6 +87,11 @@ export class Paint {
 export class Surface {
   readonly object: Mesh<BufferGeometry, MeshBasicNodeMaterial>;
   readonly corners: Corners;
+  readonly #paint: Paint;
+  readonly #plain: MeshBasicNodeMaterial;
+  /** The colours of a file, and the material that draws them. */
+  #file: FileSurface | undefined;
+  #inFile: MeshBasicNodeMaterial | undefined;
   readonly #isSolid = uniform(1);
   readonly #isLined = uniform(0);
   /** All bits set if the states of the sides are known. */
@@ -91,21 +99,26 @@ export class Surface {
 
   constructor(corners: Corners, paint: Paint) {
     this.corners = corners;
-    const material = new MeshBasicNodeMaterial({
-      side: DoubleSide,
-      polygonOffset: true,
-      polygonOffsetFactor: 1,
-      polygonOffsetUnits: 1,
-    });
-    material.positionNode = corners.position;
-    material.colorNode = this.#colour(paint);
-    this.object = new Mesh(corners.geometry, material);
+    this.#paint = paint;
+    this.#plain = this.#material(undefined);
+    this.object = new Mesh(corners.geometry, this.#plain);
     Object.assign(this.object, { frustumCulled: false, visible: false });
   }
 
   setPositions(positions: Float32Array, dimension: 2 | 3): void {
     this.corners.setPositions(positions);
     this.#isSolid.value = dimension === 3 ? 1 : 0;
+  }
+
+  /** Takes the colours of a file for these positions, or none, and draws them if `isShown`. */
+  setFile(file: FileSurface | undefined, isShown: boolean): void {
+    this.corners.setColours(file?.vertices);
+    if (file !== this.#file) {
+      this.#inFile?.dispose();
+      this.#inFile = file && this.#material(file);
+      this.#file = file;
+    }
+    this.object.material = (isShown && this.#inFile) || this.#plain;
   }
 
   /** `isLined`: whether it shows its edges, or tints. `sides` has the states of the sides of each triangle. */
@@ -125,7 +138,20 @@ export class Surface {
     this.object.geometry = this.corners.geometry;
   }
 
-  #colour(paint: Paint): Node<'vec3'> {
+  #material(file: FileSurface | undefined): MeshBasicNodeMaterial {
+    const material = new MeshBasicNodeMaterial({
+      side: DoubleSide,
+      polygonOffset: true,
+      polygonOffsetFactor: 1,
+      polygonOffsetUnits: 1,
+    });
+    material.positionNode = this.corners.position;
+    material.colorNode = this.#colour(this.#paint, file);
+    return material;
+  }
+
+  /** The colour of a surface that is plain, or has the colours of a file. */
+  #colour(paint: Paint, file: FileSurface | undefined): Node<'vec3'> {
     return Fn(() => {
       const corner = vertexIndex.mod(uint(3));
       // The share of each corner. Side k goes from corner k to the next, and faces corner k + 2.
@@ -162,14 +188,17 @@ export class Surface {
       const pixels = shares.zxy.div(slopes).toVar();
       const along = shares.yzx.sub(shares).mul(0.5).mul(lengths).div(paint.ratio).toVar();
 
-      const face = mix(paint.plane, mix(paint.shaded, paint.lit, light()), this.#isSolid);
+      const face = file
+        ? file.colour(this.corners).mul(mix(float(1), mix(float(DIM), float(1), light()), this.#isSolid))
+        : mix(paint.plane, mix(paint.shaded, paint.lit, light()), this.#isSolid);
       const thin = float(1)
         .sub(smallestAngle(right, down).mul(DEGREES / ROUND))
         .clamp(0, 1);
       const tint = mix(float(LEAST), float(MOST), thin).mul(clear.oneMinus());
       const hot = max(...(states.map((state) => select(state.equal(uint(1)), float(1), float(0))) as [Num, Num, Num]));
-      const tinted = mix(face, paint.line, tint.mul(this.#isLined));
-      const colour = mix(tinted, paint.spark, hot.mul(mix(float(HOT), float(WARM), clear))).toVar();
+      const tinted = file ? face : mix(face, paint.line, tint.mul(this.#isLined));
+      const heat = mix(float(file ? HOT_IN_FILE : HOT), float(WARM), clear);
+      const colour = mix(tinted, paint.spark, hot.mul(heat)).toVar();
 
       const sides = [0, 1, 2].map((k) => {
         const look = paint.looks.element(states[k]!) as Node<'vec4'>;

@@ -52,16 +52,21 @@ export function showTransport(timeline: Timeline, status: RunStatus): void {
   Object.assign(document.body.dataset, { state, mesh: opened?.name ?? '', newest: `${run?.iterations.length ?? 0}` });
 }
 
-function about({ what, mesh, remark }: Opened): string {
+function about(opened: Opened): string {
+  const { what, mesh } = opened;
+  const remark = remarkOf(opened);
   const mostly = [what, counted(mesh.indices.length / 3, 'triangle')].filter(Boolean).join(', ');
   return remark ? `${mostly}. ${remark}` : mostly;
 }
+
+/** What reading changed, and what is not drawn. */
+const remarkOf = ({ remark, extras }: Opened) => [remark, ...(extras?.notes ?? [])].filter(Boolean).join(' ');
 
 /** What is left and why, what reading changed, and why the engine is where it is. */
 function noteOn({ run, opened, summary }: RunStatus): string {
   const isFinal = run?.isOver && summary?.iterations === run.iterations.length;
   const remains = isFinal ? left(summary.remaining) : '';
-  return [remains, opened?.remark, run ? whyThere(run, summary) : ''].filter(Boolean).join(' ');
+  return [remains, opened ? remarkOf(opened) : '', run ? whyThere(run, summary) : ''].filter(Boolean).join(' ');
 }
 
 /** Why `auto` runs on its engine. */
