@@ -84,22 +84,18 @@ export class Paint {
 export class Surface {
   readonly object: Mesh<BufferGeometry, MeshBasicNodeMaterial>;
   readonly corners: Corners;
+  readonly #plain: MeshBasicNodeMaterial;
+  readonly #lined: MeshBasicNodeMaterial;
   readonly #isSolid = uniform(1);
-  readonly #isLined = uniform(0);
   /** All bits set if the states of the sides are known. */
   readonly #known = uniform(0, 'uint');
 
   constructor(corners: Corners, paint: Paint) {
     this.corners = corners;
-    const material = new MeshBasicNodeMaterial({
-      side: DoubleSide,
-      polygonOffset: true,
-      polygonOffsetFactor: 1,
-      polygonOffsetUnits: 1,
-    });
-    material.positionNode = corners.position;
-    material.colorNode = this.#colour(paint);
-    this.object = new Mesh(corners.geometry, material);
+    const face = mix(paint.plane, mix(paint.shaded, paint.lit, light()), this.#isSolid);
+    this.#plain = this.#material(face);
+    this.#lined = this.#material(this.#colour(paint, face));
+    this.object = new Mesh(corners.geometry, this.#plain);
     Object.assign(this.object, { frustumCulled: false, visible: false });
   }
 
@@ -113,7 +109,7 @@ export class Surface {
     this.corners.setTriangles(triangles, count);
     this.corners.setSides(sides);
     this.#known.value = sides ? 0xfff : 0;
-    this.#isLined.value = isLined ? 1 : 0;
+    this.object.material = isLined ? this.#lined : this.#plain;
     this.object.geometry = this.corners.geometry;
     this.object.visible = true;
   }
@@ -125,7 +121,20 @@ export class Surface {
     this.object.geometry = this.corners.geometry;
   }
 
-  #colour(paint: Paint): Node<'vec3'> {
+  #material(colour: Node<'vec3'>): MeshBasicNodeMaterial {
+    const material = new MeshBasicNodeMaterial({
+      side: DoubleSide,
+      polygonOffset: true,
+      polygonOffsetFactor: 1,
+      polygonOffsetUnits: 1,
+    });
+    material.positionNode = this.corners.position;
+    material.colorNode = colour;
+    return material;
+  }
+
+  /** The colour of the face with its edges, or with a tint. */
+  #colour(paint: Paint, face: Node<'vec3'>): Node<'vec3'> {
     return Fn(() => {
       const corner = vertexIndex.mod(uint(3));
       // The share of each corner. Side k goes from corner k to the next, and faces corner k + 2.
@@ -162,13 +171,12 @@ export class Surface {
       const pixels = shares.zxy.div(slopes).toVar();
       const along = shares.yzx.sub(shares).mul(0.5).mul(lengths).div(paint.ratio).toVar();
 
-      const face = mix(paint.plane, mix(paint.shaded, paint.lit, light()), this.#isSolid);
       const thin = float(1)
         .sub(smallestAngle(right, down).mul(DEGREES / ROUND))
         .clamp(0, 1);
       const tint = mix(float(LEAST), float(MOST), thin).mul(clear.oneMinus());
       const hot = max(...(states.map((state) => select(state.equal(uint(1)), float(1), float(0))) as [Num, Num, Num]));
-      const tinted = mix(face, paint.line, tint.mul(this.#isLined));
+      const tinted = mix(face, paint.line, tint);
       const colour = mix(tinted, paint.spark, hot.mul(mix(float(HOT), float(WARM), clear))).toVar();
 
       const sides = [0, 1, 2].map((k) => {
@@ -193,10 +201,9 @@ export class Surface {
       const opacity = float(COVERED)
         .div(max(cover, float(COVERED)))
         .mul(OPAQUE);
-      const shown = clear.mul(this.#isLined);
       const plain = max(...(sides.map((side) => side.plain) as [Num, Num, Num]));
-      colour.assign(mix(colour, paint.line, plain.mul(opacity).mul(shown)));
-      for (const { look, coloured } of sides) colour.assign(mix(colour, look.xyz, coloured.mul(shown)));
+      colour.assign(mix(colour, paint.line, plain.mul(opacity).mul(clear)));
+      for (const { look, coloured } of sides) colour.assign(mix(colour, look.xyz, coloured.mul(clear)));
       return colour;
     })() as Node<'vec3'>;
   }
