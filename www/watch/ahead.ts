@@ -11,12 +11,13 @@ let runner: WorkerClient | undefined;
 
 /** Call it before the tool starts. Who takes something later gets its error. */
 export function startAhead(): void {
-  gpu ??= request();
-  gpu.catch(() => {});
   reader ??= new WorkerClient();
   reader.call((worker) => worker.loadFiles()).catch(() => {});
   runner ??= new WorkerClient();
   runner.call((worker) => worker.load()).catch(() => {});
+  // Last, because a browser may take a while before it even returns the promise.
+  gpu ??= request();
+  gpu.catch(() => {});
 }
 
 /**
