@@ -170,5 +170,8 @@ follow();
 markSections();
 hasBegun = true;
 if (document.body.dataset.view === 'first') {
-  void show().then(loadToolWhenIdle).finally(loadSections);
+  void show()
+    .then(loadToolWhenIdle)
+    // The tool comes before the sections.
+    .finally(() => document.body.dataset.view === 'first' && loadSections());
 }

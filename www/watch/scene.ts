@@ -49,6 +49,9 @@ export class Scene {
   #cut: number | undefined;
   #frame = 0;
   #moving: Object3D | undefined;
+  /** Called when the canvas has a size, and so can be seen. */
+  #see = () => {};
+  readonly #seen = new Promise<void>((done) => (this.#see = done));
 
   private constructor(
     renderer: WebGPURenderer,
@@ -216,6 +219,12 @@ export class Scene {
     await this.#finished();
   }
 
+  /** The same, but a canvas that is still hidden has to be shown first. */
+  async seen(): Promise<void> {
+    await this.#seen;
+    await this.shown();
+  }
+
   /** Waits until the GPU has done everything. */
   async #finished(): Promise<void> {
     await this.#device?.queue.onSubmittedWorkDone().catch(() => {});
@@ -333,6 +342,7 @@ export class Scene {
     this.#renderer.setSize(width, height, false);
     this.camera.resize();
     this.redraw();
+    this.#see();
   }
 }
 
