@@ -1,5 +1,6 @@
 /** Draws the mesh with three.js. With WebGPU, it draws from the buffer that the flips write. */
 
+import { EDGE_STATES } from 'edgeflip';
 import {
   ColorManagement,
   Scene as ThreeScene,
@@ -97,7 +98,17 @@ export class Scene {
     renderer.domElement.setAttribute('aria-label', 'The mesh; drag to turn or move it, scroll to zoom');
     scene.setPalette(palette);
     scene.#observer.observe(view);
+    scene.#prepare();
     return scene;
+  }
+
+  /** Draws a triangle that is a point, so that the browser compiles the shaders before the first mesh is there. */
+  #prepare(): void {
+    const corners = Uint32Array.of(0, 1, 2);
+    this.setMesh(new Float32Array(9), 3);
+    this.show(corners, corners.length, false, undefined);
+    // Edges of the second state are dashed.
+    this.showEdges(corners, Uint8Array.of(EDGE_STATES.indexOf('flips'), EDGE_STATES.indexOf('waits'), 0));
   }
 
   get canvas(): HTMLCanvasElement {
