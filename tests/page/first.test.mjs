@@ -50,9 +50,14 @@ function countPictures() {
   };
 }
 
-/** Runs in the page: notes what had been started when the first view made way for the tool. */
+/** Runs in the page: notes the workers when a mesh is drawn, and what is loaded when the first view makes way for it. */
 function watchOpening() {
+  const { draw } = GPURenderPassEncoder.prototype;
   let workers = 0;
+  GPURenderPassEncoder.prototype.draw = function (count, ...more) {
+    if (count > 3000) window.workers ??= workers;
+    return draw.call(this, count, ...more);
+  };
   window.Worker = class extends Worker {
     constructor(...args) {
       super(...args);
@@ -62,7 +67,7 @@ function watchOpening() {
   new MutationObserver(([{ oldValue, target }]) => {
     if (oldValue === null || target.hasAttribute('data-opening')) return;
     const loaded = performance.getEntriesByType('resource').map(({ name }) => name);
-    window.opened ??= { workers, others: loaded.filter((name) => /thumbs|explain/.test(name)) };
+    window.loaded ??= loaded.filter((name) => /thumbs|explain/.test(name));
   }).observe(document, { attributeFilter: ['data-opening'], attributeOldValue: true, subtree: true });
 }
 
@@ -266,7 +271,7 @@ test('the mesh comes before the pictures of the gallery, the sections, and the w
   await first.page.click('.way.first');
   await first.rest();
   // One worker reads the mesh, and one runs it.
-  assert.deepEqual(await first.page.evaluate(() => window.opened), { workers: 2, others: [] });
+  assert.deepEqual(await first.page.evaluate(() => [window.workers, window.loaded]), [2, []]);
   await first.page.waitForFunction(
     () => performance.getEntriesByType('resource').filter(({ name }) => /thumbs/.test(name)).length > 5,
   );
