@@ -41,6 +41,37 @@ function countColours() {
   };
 }
 
+/** Runs in the page: notes how many pictures of the first view there are 400 ms after the first of them. */
+function countPictures() {
+  const { drawArraysInstanced } = WebGL2RenderingContext.prototype;
+  window.pictures = { all: 0, soon: undefined };
+  WebGL2RenderingContext.prototype.drawArraysInstanced = function (...args) {
+    drawArraysInstanced.apply(this, args);
+    if (window.pictures.all++ === 0) setTimeout(() => (window.pictures.soon = window.pictures.all), 400);
+  };
+}
+
+/** Runs in the page: notes the workers when a mesh is drawn, and what is loaded when the first view makes way for it. */
+function watchOpening() {
+  const { draw } = GPURenderPassEncoder.prototype;
+  let workers = 0;
+  GPURenderPassEncoder.prototype.draw = function (count, ...more) {
+    if (count > 3000) window.workers ??= workers;
+    return draw.call(this, count, ...more);
+  };
+  window.Worker = class extends Worker {
+    constructor(...args) {
+      super(...args);
+      workers++;
+    }
+  };
+  new MutationObserver(([{ oldValue, target }]) => {
+    if (oldValue === null || target.hasAttribute('data-opening')) return;
+    const loaded = performance.getEntriesByType('resource').map(({ name }) => name);
+    window.loaded ??= loaded.filter((name) => /thumbs|explain/.test(name));
+  }).observe(document, { attributeFilter: ['data-opening'], attributeOldValue: true, subtree: true });
+}
+
 /** The right half of the first view, where no words are. */
 async function pictureOf({ page }) {
   return new Picture(await page.screenshot({ clip: { x: 800, y: 100, width: 400, height: 400 } }));
@@ -221,6 +252,26 @@ for (const [what, act] of [
     await first.close();
   });
 }
+
+test('the first view stands still while the tool is loaded ahead, and then moves', async () => {
+  const first = await openFirst(slowTool, countPictures);
+  await first.page.waitForFunction(() => window.pictures.all > 2);
+  assert.equal((await first.page.evaluate(() => window.pictures)).soon, 1);
+  await first.close();
+});
+
+test('the mesh comes before the pictures of the gallery, the sections, and the worker that measures', async () => {
+  const first = await openFirst(slowTool, watchOpening);
+  await first.page.waitForSelector('#live:not([hidden])');
+  await first.page.click('.way.first');
+  await first.rest();
+  // One worker reads the mesh, and one runs it.
+  assert.deepEqual(await first.page.evaluate(() => [window.workers, window.loaded]), [2, []]);
+  await first.page.waitForFunction(
+    () => performance.getEntriesByType('resource').filter(({ name }) => /thumbs/.test(name)).length > 5,
+  );
+  await first.close();
+});
 
 test('the tool is loaded when the browser is idle, and the first view stays', async () => {
   const first = await openFirst(() => {});

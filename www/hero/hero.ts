@@ -1,6 +1,8 @@
 /** The first view: a mesh that moves. The engine keeps it Delaunay in every frame, and edges flash as they flip. */
 
 import { FlipSession, init } from 'edgeflip';
+import { number } from '../shell/numbers.ts';
+import { stillness } from '../shell/stillness.ts';
 import { Flashes } from './flashes.ts';
 import { Motion } from './motion.ts';
 import { Painter } from './paint.ts';
@@ -15,17 +17,10 @@ const STILL = 2.9;
 /** The longest step of the motion, in seconds: after a pause the mesh does not jump. */
 const LONGEST = 0.04;
 
-/** What the first view says of a frame. */
-export interface Frame {
-  triangles: number;
-  /** Flips in a frame, averaged over the last few. */
-  flips: number;
-}
-
 export class Hero {
   readonly #canvas: HTMLCanvasElement;
   readonly #painter: Painter;
-  readonly #told: (frame: Frame) => void;
+  readonly #told: (words: string) => void;
   #session: FlipSession | undefined;
   #motion: Motion | undefined;
   #flashes = new Flashes(0);
@@ -36,12 +31,13 @@ export class Hero {
   /** The size of the picture, in pixels of the canvas. */
   #size: readonly [number, number] = [0, 0];
   #updates = 0;
+  /** Flips in a frame, averaged over the last few. */
   #flips = 0;
   /** The number of the last start. A loop of an earlier one ends. */
   #starts = 0;
 
-  /** `told` is called after each picture. */
-  constructor(canvas: HTMLCanvasElement, told: (frame: Frame) => void) {
+  /** `told` is called after each picture, with what to say of it. */
+  constructor(canvas: HTMLCanvasElement, told: (words: string) => void) {
     // The engine loads while the points are scattered. The session loads it again and reports the error.
     init().catch(() => {});
     this.#canvas = canvas;
@@ -53,8 +49,11 @@ export class Hero {
     canvas.addEventListener('pointerdown', ({ offsetX, offsetY }) => this.#motion?.drop(offsetX, offsetY));
   }
 
-  /** Makes the mesh for the size of the canvas, and moves it, or shows a still. */
-  async start(moves: boolean): Promise<void> {
+  /**
+   * Makes the mesh for the size of the canvas and shows it. It moves, or stands still; `before` is called before it moves
+   * and holds it until then.
+   */
+  async start(moves: boolean, before: () => Promise<unknown>): Promise<void> {
     const start = ++this.#starts;
     const [width, height] = [this.#canvas.clientWidth, this.#canvas.clientHeight];
     // Hidden: the visitor has gone on already. Points would find no place.
@@ -82,7 +81,7 @@ export class Hero {
     for (let time = 0; time <= until; time += step) await this.#frame(session, this.#motion, step);
     if (start !== this.#starts) return;
     this.#paint();
-    if (moves) void this.#loop(start);
+    if (moves) void before().then(() => this.#loop(start));
   }
 
   /** Ends the motion. The picture stays. */
@@ -131,7 +130,12 @@ export class Hero {
     this.#painter.paint({ positions, heights, indices, flashes, finest }, this.#scale);
     // The style sheet hides an empty canvas.
     this.#canvas.dataset['painted'] = '';
-    this.#told({ triangles: indices.length / 3, flips: Math.round(this.#flips) });
+    const triangles = `${number.format(indices.length / 3)} triangles`;
+    this.#told(
+      stillness.matches
+        ? `${triangles}. Motion is off, as your system asks.`
+        : `Live: ${triangles}, ${number.format(Math.round(this.#flips))} flips in this frame`,
+    );
   }
 }
 

@@ -3,7 +3,6 @@
 import type { Hero } from '../hero/hero.ts';
 import type { Tool } from '../watch/main.ts';
 import { keptDrop } from './early-drop.ts';
-import { number } from './numbers.ts';
 import { markSections } from './sections.ts';
 import { stillness } from './stillness.ts';
 import { onTheme, toggleTheme } from './theme.ts';
@@ -18,6 +17,8 @@ const part = <T extends HTMLElement>(selector: string): T => {
 const [live, liveText, playAnyway] = [part('#live'), part('#live-text'), part('#play-anyway')];
 /** Milliseconds from the start of the tool until the rest of the page is loaded. */
 const PATIENCE = 5000;
+/** The most milliseconds for which the mesh of the first view stands still. */
+const STILL = 2000;
 
 /** The mesh of the first view, once it has been shown. */
 let hero: Promise<Hero> | undefined;
@@ -28,17 +29,18 @@ const words = new Promise<void>((done) => requestAnimationFrame(() => setTimeout
 
 async function makeHero(): Promise<Hero> {
   const { Hero } = await import('../hero/hero.ts');
-  const hero = new Hero(part('#first canvas'), ({ triangles, flips }) => {
+  const hero = new Hero(part('#first canvas'), (words) => {
     live.hidden = false;
-    liveText.textContent = stillness.matches
-      ? `${number.format(triangles)} triangles. Motion is off, as your system asks.`
-      : `Live: ${number.format(triangles)} triangles, ${number.format(flips)} flips in this frame`;
+    liveText.textContent = words;
   });
   onTheme(() => hero.repaint());
   return hero;
 }
 
 let moves = !stillness.matches;
+
+/** Loads the tool ahead. The mesh stands still meanwhile: its motion would hold the tool up. */
+const toolFirst = () => Promise.race([loadToolWhenIdle(), new Promise((done) => setTimeout(done, STILL))]);
 
 /** Shows the first view or the tool, if the address names one of them. A link to a section only scrolls. */
 function follow(): void {
@@ -94,7 +96,7 @@ async function show(): Promise<void> {
     if (document.body.dataset.view !== 'first') return;
     try {
       hero ??= makeHero();
-      await (await hero).start(moves);
+      await (await hero).start(moves, toolFirst);
       playAnyway.hidden = moves;
     } catch {
       // A browser without WebGL2 shows the words alone.
@@ -175,5 +177,8 @@ follow();
 markSections();
 hasBegun = true;
 if (document.body.dataset.view === 'first') {
-  void show().then(loadToolWhenIdle).finally(loadSections);
+  void show()
+    .then(loadToolWhenIdle)
+    // The tool comes before the sections.
+    .finally(() => document.body.dataset.view === 'first' && loadSections());
 }

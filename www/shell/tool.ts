@@ -22,9 +22,10 @@ export function loadTool(): Promise<Tool> {
 }
 
 async function load(): Promise<Tool> {
-  const { startAhead } = await import('../watch/ahead.ts');
-  startAhead();
-  const { start } = await import('../watch/main.ts');
+  const [{ start }] = await Promise.all([
+    import('../watch/main.ts'),
+    import('../watch/ahead.ts').then(({ startAhead }) => startAhead()),
+  ]);
   return (started = start());
 }
 

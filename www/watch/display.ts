@@ -162,9 +162,9 @@ export class Display {
     return ({ all: 'edges', none: 'tints', some: 'both' } as const)[scene.edgesSeen];
   }
 
-  /** Waits until the page has drawn what it shows. */
+  /** Waits until the visitor sees what the page has drawn. */
   async painted(): Promise<void> {
-    await this.#graphics.scene?.shown();
+    await this.#graphics.scene?.seen();
   }
 
   /** Shows how the edges flip from the last picture to this one, if there is one iteration between them. */
@@ -223,7 +223,8 @@ export class Display {
   measureEdges(indices: Uint32Array): void {
     const { scene } = this.#graphics;
     scene?.measureEdges(indices);
-    scene?.redraw();
+    // Then the page says what is seen of edges.
+    if (this.#isLarge) scene?.redraw();
   }
 
   /** Looks one iteration ahead in a large mesh, and shows the edges that flip in it. */

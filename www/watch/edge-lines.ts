@@ -17,10 +17,15 @@ function widthsFor(triangles: number): { plain: number; boundary: number; colour
   return { plain: 0.8, boundary: 1.6, coloured: 1.8 };
 }
 
+/** The declared type of the material lacks its scale. */
+type Lines = LineSegments2 & { material: Line2NodeMaterial & { scale: number } };
+
 export class EdgeLines {
   readonly group = new Group();
-  /** The material of the Delaunay edges, and the share of the surface that they cover if a pixel has the size 1. */
-  #plain: { material: Line2NodeMaterial; density: number } | undefined;
+  /** For each state: its lines, made when they are first needed. They are kept, and so are their compiled shaders. */
+  readonly #lines = new Map<EdgeState, Lines>();
+  /** The share of the surface that the Delaunay edges cover if a pixel has the size 1. */
+  #density = 0;
 
   /** `positions` has 3 numbers per vertex, `states` one entry per half-edge. */
   show(positions: Float32Array, indices: Uint32Array, states: Uint8Array, palette: Palette): void {
@@ -42,21 +47,15 @@ export class EdgeLines {
     byState.forEach((ends, state) => {
       if (ends.length === 0) return;
       const name = EDGE_STATES[state]!;
-      const geometry = new LineSegmentsGeometry();
-      geometry.setPositions(new Float32Array(ends));
-      const { dash } = LOOKS[name];
-      const color = palette.states[name];
-      const material = new Line2NodeMaterial({ color, dashed: dash !== undefined, transparent: true });
-      material.linewidth = name === 'delaunay' ? widths.plain : name === 'boundary' ? widths.boundary : widths.coloured;
-      if (dash) Object.assign(material, { dashSize: dash[0], gapSize: dash[1] });
-      if (name === 'delaunay')
-        this.#plain = { material, density: (widths.plain * lengthOf(ends)) / areaOf(positions, indices) };
-      const lines = new LineSegments2(geometry, material);
-      if (dash) lines.computeLineDistances();
-      lines.frustumCulled = false;
-      // Coloured edges are drawn over plain edges, and flips over all.
-      lines.renderOrder = name === 'delaunay' ? 1 : name === 'flips' ? 3 : 2;
-      this.group.add(lines);
+      const lines = this.#linesOf(name);
+      lines.geometry = new LineSegmentsGeometry();
+      lines.geometry.setPositions(new Float32Array(ends));
+      if (LOOKS[name].dash) lines.computeLineDistances();
+      lines.material.color.set(palette.states[name]);
+      lines.material.linewidth =
+        name === 'delaunay' ? widths.plain : name === 'boundary' ? widths.boundary : widths.coloured;
+      lines.visible = true;
+      if (name === 'delaunay') this.#density = (widths.plain * lengthOf(ends)) / areaOf(positions, indices);
     });
   }
 
@@ -65,22 +64,33 @@ export class EdgeLines {
    * faint.
    */
   setPixel(size: number): void {
-    if (this.#plain) {
-      const opacity = COVERED / (size * this.#plain.density);
-      this.#plain.material.opacity = Math.min(1, Math.max(FAINTEST, opacity));
-    }
-    for (const { material } of this.group.children as LineSegments2[]) {
-      (material as Line2NodeMaterial & { scale: number }).scale = 1 / size;
+    for (const [name, { material }] of this.#lines) {
+      material.scale = 1 / size;
+      if (name !== 'delaunay') continue;
+      material.opacity = Math.min(1, Math.max(FAINTEST, COVERED / (size * this.#density)));
     }
   }
 
   clear(): void {
-    this.#plain = undefined;
-    for (const lines of [...this.group.children] as LineSegments2[]) {
-      lines.geometry.dispose();
-      lines.material.dispose();
-      this.group.remove(lines);
+    for (const lines of this.#lines.values()) {
+      if (lines.visible) lines.geometry.dispose();
+      lines.visible = false;
     }
+  }
+
+  #linesOf(name: EdgeState): Lines {
+    const known = this.#lines.get(name);
+    if (known) return known;
+    const { dash } = LOOKS[name];
+    const material = new Line2NodeMaterial({ dashed: dash !== undefined, transparent: true });
+    if (dash) Object.assign(material, { dashSize: dash[0], gapSize: dash[1] });
+    const lines = new LineSegments2(new LineSegmentsGeometry(), material) as Lines;
+    lines.frustumCulled = false;
+    // Coloured edges are drawn over plain edges, and flips over all.
+    lines.renderOrder = name === 'delaunay' ? 1 : name === 'flips' ? 3 : 2;
+    this.#lines.set(name, lines);
+    this.group.add(lines);
+    return lines;
   }
 }
 

@@ -2,7 +2,7 @@
 
 import { EdgeflipError, type Options } from 'edgeflip';
 import { isSoftware } from '../shell/adapter.ts';
-import { takeGpu, takeRunner } from './ahead.ts';
+import { takeRunner } from './ahead.ts';
 import { ArrayTrack } from './array-track.ts';
 import { GpuTrack } from './gpu-track.ts';
 import { Kernels } from './kernels.ts';
@@ -23,9 +23,10 @@ export interface Gpu {
 export async function openGpu(): Promise<Gpu | string> {
   if (!navigator.gpu) return 'this browser has no WebGPU';
   try {
-    const found = await takeGpu();
-    if (!found) return 'WebGPU found no GPU';
-    const { adapter, device } = found;
+    const adapter = await navigator.gpu.requestAdapter({ powerPreference: 'high-performance' });
+    if (!adapter) return 'WebGPU found no GPU';
+    const { maxBufferSize, maxStorageBufferBindingSize } = adapter.limits;
+    const device = await adapter.requestDevice({ requiredLimits: { maxBufferSize, maxStorageBufferBindingSize } });
     return { device, kernels: new Kernels(device), isSoftware: isSoftware(adapter) };
   } catch (error) {
     return `WebGPU could not be used (${error instanceof Error ? error.message : String(error)})`;

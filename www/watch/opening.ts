@@ -25,8 +25,8 @@ export interface Opened {
   /** The sample that it was before the page changed its triangles, and whether the page has scrambled them. */
   origin: string | undefined;
   isScrambled: boolean;
-  /** The worker that measures it. */
-  client: WorkerClient;
+  /** The worker that measures it. It starts when it is first asked for, so that it holds up no picture. */
+  readonly client: WorkerClient;
   /** The ends of the edges that the user has drawn. */
   drawn: readonly number[];
   /** The files that it was read from. */
@@ -48,7 +48,7 @@ export class Opening {
   /** The mesh, after it has been read. Changes of the settings then start its run again. */
   opened: Opened | undefined;
   readonly read: Promise<Opened>;
-  #client = takeReader();
+  readonly #reader = takeReader();
   readonly #progress: Progress;
   #isClosed = false;
 
@@ -62,25 +62,23 @@ export class Opening {
   /** Stops reading, and ends the worker. */
   close(): void {
     this.#isClosed = true;
-    this.#client.close();
+    (this.opened?.client ?? this.#reader).close();
   }
 
   async #read(source: Source): Promise<Opened> {
-    const read = await source.read(this.#client, (path, share) => {
+    const read = await source.read(this.#reader, (path, share) => {
       if (!this.#isClosed) this.#progress(share < 1 ? `Reading ${path}…` : `Parsing ${path}…`, share);
     });
     const { mesh, name, kept } = read;
     const extras = read.extras ?? (kept && 'dropped' in mesh ? new FileExtras(mesh, kept) : undefined);
     if (mesh.indices.length === 0) throw new Error(`There are no triangles in ${name}.`);
     // The memory of a WebAssembly module never shrinks, so closing the worker frees the memory that reading used.
-    this.#client.close();
-    const client = new WorkerClient();
-    this.#client = client;
+    this.#reader.close();
+    let client: WorkerClient | undefined;
     let measured: Promise<Quality> | undefined;
-    const before = () => (measured ??= client.call((worker) => worker.measure(mesh, BINS)));
     const title = source.title ?? name;
     const remark = remarkOn(read);
-    return (this.opened = {
+    const opened: Opened = {
       mesh,
       name,
       title,
@@ -88,14 +86,17 @@ export class Opening {
       spec: source.spec,
       origin: source.origin ?? source.spec,
       isScrambled: source.isScrambled ?? false,
-      client,
+      get client() {
+        return (client ??= new WorkerClient());
+      },
       drawn: source.drawn ?? [],
       kept,
       extras,
       remark,
-      before,
+      before: () => (measured ??= opened.client.call((worker) => worker.measure(mesh, BINS))),
       features: new Map(),
-    });
+    };
+    return (this.opened = opened);
   }
 }
 

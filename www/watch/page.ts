@@ -362,9 +362,9 @@ export class Page {
     if (opened === this.#opened) this.#showTransport();
   }
 
-  /** Counts the flips of all iterations, after the first picture: counting would hold it up. */
+  /** Counts the flips of all iterations, after the first picture is seen: counting would hold it up. */
   async #lookAhead(run: Run, ...settings: Parameters<typeof flipsAhead>): Promise<void> {
-    await this.scene?.shown();
+    await this.scene?.seen();
     const ahead = await flipsAhead(...settings);
     if (run !== this.#run || !ahead) return;
     this.#ahead = ahead;

@@ -1,5 +1,6 @@
 /** Draws the mesh with three.js. With WebGPU, it draws from the buffer that the flips write. */
 
+import { EDGE_STATES } from 'edgeflip';
 import {
   ColorManagement,
   Scene as ThreeScene,
@@ -52,6 +53,9 @@ export class Scene {
   #moving: Object3D | undefined;
   /** The colours of the mesh's file, and whether they are drawn. */
   #file: [surface: FileSurface | undefined, isShown: boolean] = [undefined, false];
+  /** Called when the canvas has a size, and so can be seen. */
+  #see = () => {};
+  readonly #seen = new Promise<void>((done) => (this.#see = done));
 
   private constructor(
     renderer: WebGPURenderer,
@@ -97,7 +101,17 @@ export class Scene {
     renderer.domElement.setAttribute('aria-label', 'The mesh; drag to turn or move it, scroll to zoom');
     scene.setPalette(palette);
     scene.#observer.observe(view);
+    scene.#prepare();
     return scene;
+  }
+
+  /** Draws a triangle that is a point, so that the browser compiles the shaders before the first mesh is there. */
+  #prepare(): void {
+    const corners = Uint32Array.of(0, 1, 2);
+    this.setMesh(new Float32Array(9), 3);
+    this.show(corners, corners.length, false, undefined);
+    // Edges of the second state are dashed.
+    this.showEdges(corners, Uint8Array.of(EDGE_STATES.indexOf('flips'), EDGE_STATES.indexOf('waits'), 0));
   }
 
   get canvas(): HTMLCanvasElement {
@@ -228,6 +242,12 @@ export class Scene {
     await this.#finished();
   }
 
+  /** The same, but a canvas that is still hidden has to be shown first. */
+  async seen(): Promise<void> {
+    await this.#seen;
+    await this.shown();
+  }
+
   /** Waits until the GPU has done everything. */
   async #finished(): Promise<void> {
     await this.#device?.queue.onSubmittedWorkDone().catch(() => {});
@@ -345,6 +365,7 @@ export class Scene {
     this.#renderer.setSize(width, height, false);
     this.camera.resize();
     this.redraw();
+    this.#see();
   }
 }
 

@@ -84,24 +84,31 @@ export class Paint {
   }
 }
 
+/** The materials of a surface: of its face alone, and of its face with edges or tints. */
+interface Looks {
+  readonly face: MeshBasicNodeMaterial;
+  readonly lined: MeshBasicNodeMaterial;
+}
+
 export class Surface {
   readonly object: Mesh<BufferGeometry, MeshBasicNodeMaterial>;
   readonly corners: Corners;
   readonly #paint: Paint;
-  readonly #plain: MeshBasicNodeMaterial;
-  /** The colours of a file, and the material that draws them. */
+  readonly #plain: Looks;
+  /** The colours of a file, the materials that draw them, and whether these are shown. */
   #file: FileSurface | undefined;
-  #inFile: MeshBasicNodeMaterial | undefined;
+  #inFile: Looks | undefined;
+  #isFileShown = false;
+  #isLined = false;
   readonly #isSolid = uniform(1);
-  readonly #isLined = uniform(0);
   /** All bits set if the states of the sides are known. */
   readonly #known = uniform(0, 'uint');
 
   constructor(corners: Corners, paint: Paint) {
     this.corners = corners;
     this.#paint = paint;
-    this.#plain = this.#material(undefined);
-    this.object = new Mesh(corners.geometry, this.#plain);
+    this.#plain = this.#looks(undefined);
+    this.object = new Mesh(corners.geometry, this.#plain.face);
     Object.assign(this.object, { frustumCulled: false, visible: false });
   }
 
@@ -114,11 +121,13 @@ export class Surface {
   setFile(file: FileSurface | undefined, isShown: boolean): void {
     this.corners.setColours(file?.vertices);
     if (file !== this.#file) {
-      this.#inFile?.dispose();
-      this.#inFile = file && this.#material(file);
+      this.#inFile?.face.dispose();
+      this.#inFile?.lined.dispose();
+      this.#inFile = file && this.#looks(file);
       this.#file = file;
     }
-    this.object.material = (isShown && this.#inFile) || this.#plain;
+    this.#isFileShown = isShown;
+    this.#wear();
   }
 
   /** `isLined`: whether it shows its edges, or tints. `sides` has the states of the sides of each triangle. */
@@ -126,7 +135,8 @@ export class Surface {
     this.corners.setTriangles(triangles, count);
     this.corners.setSides(sides);
     this.#known.value = sides ? 0xfff : 0;
-    this.#isLined.value = isLined ? 1 : 0;
+    this.#isLined = isLined;
+    this.#wear();
     this.object.geometry = this.corners.geometry;
     this.object.visible = true;
   }
@@ -138,7 +148,20 @@ export class Surface {
     this.object.geometry = this.corners.geometry;
   }
 
-  #material(file: FileSurface | undefined): MeshBasicNodeMaterial {
+  #looks(file: FileSurface | undefined): Looks {
+    const { plane, shaded, lit } = this.#paint;
+    const face = file
+      ? file.colour(this.corners).mul(mix(float(1), mix(float(DIM), float(1), light()), this.#isSolid))
+      : mix(plane, mix(shaded, lit, light()), this.#isSolid);
+    return { face: this.#material(face), lined: this.#material(this.#colour(this.#paint, face, file !== undefined)) };
+  }
+
+  #wear(): void {
+    const { face, lined } = (this.#isFileShown && this.#inFile) || this.#plain;
+    this.object.material = this.#isLined ? lined : face;
+  }
+
+  #material(colour: Node<'vec3'>): MeshBasicNodeMaterial {
     const material = new MeshBasicNodeMaterial({
       side: DoubleSide,
       polygonOffset: true,
@@ -146,12 +169,12 @@ export class Surface {
       polygonOffsetUnits: 1,
     });
     material.positionNode = this.corners.position;
-    material.colorNode = this.#colour(this.#paint, file);
+    material.colorNode = colour;
     return material;
   }
 
-  /** The colour of a surface that is plain, or has the colours of a file. */
-  #colour(paint: Paint, file: FileSurface | undefined): Node<'vec3'> {
+  /** The colour of the face with its edges, or with a tint unless it has the colours of a file. */
+  #colour(paint: Paint, face: Node<'vec3'>, isOfFile: boolean): Node<'vec3'> {
     return Fn(() => {
       const corner = vertexIndex.mod(uint(3));
       // The share of each corner. Side k goes from corner k to the next, and faces corner k + 2.
@@ -188,16 +211,13 @@ export class Surface {
       const pixels = shares.zxy.div(slopes).toVar();
       const along = shares.yzx.sub(shares).mul(0.5).mul(lengths).div(paint.ratio).toVar();
 
-      const face = file
-        ? file.colour(this.corners).mul(mix(float(1), mix(float(DIM), float(1), light()), this.#isSolid))
-        : mix(paint.plane, mix(paint.shaded, paint.lit, light()), this.#isSolid);
       const thin = float(1)
         .sub(smallestAngle(right, down).mul(DEGREES / ROUND))
         .clamp(0, 1);
       const tint = mix(float(LEAST), float(MOST), thin).mul(clear.oneMinus());
       const hot = max(...(states.map((state) => select(state.equal(uint(1)), float(1), float(0))) as [Num, Num, Num]));
-      const tinted = file ? face : mix(face, paint.line, tint.mul(this.#isLined));
-      const heat = mix(float(file ? HOT_IN_FILE : HOT), float(WARM), clear);
+      const tinted = isOfFile ? face : mix(face, paint.line, tint);
+      const heat = mix(float(isOfFile ? HOT_IN_FILE : HOT), float(WARM), clear);
       const colour = mix(tinted, paint.spark, hot.mul(heat)).toVar();
 
       const sides = [0, 1, 2].map((k) => {
@@ -222,10 +242,9 @@ export class Surface {
       const opacity = float(COVERED)
         .div(max(cover, float(COVERED)))
         .mul(OPAQUE);
-      const shown = clear.mul(this.#isLined);
       const plain = max(...(sides.map((side) => side.plain) as [Num, Num, Num]));
-      colour.assign(mix(colour, paint.line, plain.mul(opacity).mul(shown)));
-      for (const { look, coloured } of sides) colour.assign(mix(colour, look.xyz, coloured.mul(shown)));
+      colour.assign(mix(colour, paint.line, plain.mul(opacity).mul(clear)));
+      for (const { look, coloured } of sides) colour.assign(mix(colour, look.xyz, coloured.mul(clear)));
       return colour;
     })() as Node<'vec3'>;
   }
