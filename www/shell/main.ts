@@ -3,6 +3,7 @@
 import type { Hero } from '../hero/hero.ts';
 import type { Tool } from '../watch/main.ts';
 import { keptDrop } from './early-drop.ts';
+import { keepLanding } from './landing.ts';
 import { number } from './numbers.ts';
 import { markSections } from './sections.ts';
 import { stillness } from './stillness.ts';
@@ -172,6 +173,7 @@ addEventListener('resize', () => {
 });
 
 follow();
+keepLanding();
 markSections();
 hasBegun = true;
 if (document.body.dataset.view === 'first') {
