@@ -18,7 +18,7 @@ import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 const [button, state] = ['flip', 'state'].map((id) => document.getElementById(id));
 
 // A sheet that is sheared and bent, so that its triangles are thin.
-const geometry = new PlaneGeometry(2, 2, 100, 100);
+const geometry = new PlaneGeometry(2, 2, 40, 40);
 const { position } = geometry.attributes;
 for (let i = 0; i < position.count; i++) {
   const [x, y] = [position.getX(i), position.getY(i)];

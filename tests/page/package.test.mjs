@@ -177,7 +177,7 @@ test('the crate is added as Cargo.toml has it, and the page names what it takes'
   const field = (name) => cargo.match(new RegExp(`^${name} = "(.*)"$`, 'm'))[1];
   assert.match(install, new RegExp(`^edgeflip = \\{ version = "${field('version')}", path = "`, 'm'));
   assert.ok(note.startsWith(`Rust ${field('rust-version')} or newer.`), note);
-  for (const [, feature, crate] of note.matchAll(/\b(\w+) takes (?:the crate )?(\w+)/g)) {
+  for (const [, feature, crate] of note.matchAll(/“(\w+)” takes (?:the crate )?(\w+)/g)) {
     assert.match(cargo, new RegExp(`^${feature} = .*"dep:${crate}"`, 'm'));
     assert.match(install, new RegExp(`features = .*"${feature}"`));
   }

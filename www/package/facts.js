@@ -20,7 +20,7 @@ const withEntry = (entry) => [...CORE, `${entry}, whole`, 'edgeflip_files_bg.was
 /** What a program in Rust needs, with the features that README names. */
 function rustNote() {
   const [, oldest] = text('Cargo.toml').match(/^rust-version = "(.*)"$/m);
-  return `Rust ${oldest} or newer. The feature gpu takes the crate wgpu, threads takes rayon; a few small crates are for exact numbers and vectors. The reference of the crate: cargo doc --open, in the folder of the source.`;
+  return `Rust ${oldest} or newer. The feature “gpu” takes the crate wgpu, and “threads” takes rayon; a few small crates are for exact numbers and vectors. For the reference of the crate, run “cargo doc --open” in the folder of the source.`;
 }
 
 /**
