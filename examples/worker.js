@@ -19,4 +19,5 @@ run.onclick = async () => {
   // A stopped run can continue.
   [run.disabled, stop.disabled] = [status === 'done', true];
 };
+state.value = 'Ready.';
 run.disabled = false;

@@ -19,7 +19,17 @@ const BUDGETS = {
   'edgeflip/gltf-transform': 6_000,
 };
 
-/** The bytes of each module, and of the scripts of each entry. Those of `edgeflip` count only for it and `edgeflip/inline`. */
+/** What else is measured: scripts that are loaded when a run needs them. */
+const WHOLE = {
+  'edgeflip/three, whole': ['edgeflip/three', 'dist/shift.js', 'dist/prepare.js'],
+  'edgeflip/gltf-transform, whole': ['edgeflip/gltf-transform', 'dist/shift.js', 'dist/prepare.js'],
+  'scripts of WebGL2': ['dist/wasm/edgeflip_webgl2.js', 'dist/glsl.js'],
+};
+
+/**
+ * The bytes of each module, of the scripts of each entry, and of scripts that are loaded later. Those of `edgeflip` count
+ * only for it and `edgeflip/inline`.
+ */
 export async function measured() {
   const { exports } = JSON.parse(readFileSync(`${root}package.json`, 'utf8'));
   const entries = Object.fromEntries(
@@ -40,10 +50,10 @@ export async function measured() {
   });
   const text = new Map(outputFiles.map((file) => [file.path.replaceAll('\\', '/').split('target/sizes/')[1], file]));
 
-  /** The scripts that an entry loads at once. */
+  /** What an entry, or a script that is loaded later, loads at once. */
   function scripts(entry) {
     const outputs = Object.entries(metafile.outputs);
-    const [first] = outputs.find(([, { entryPoint }]) => entryPoint === entries[entry]);
+    const [first] = outputs.find(([, { entryPoint }]) => entryPoint === (entries[entry] ?? entry));
     const found = new Set([first]);
     for (const output of found) {
       for (const { path, kind, external } of metafile.outputs[output].imports) {
@@ -64,7 +74,17 @@ export async function measured() {
       const isWhole = ['edgeflip', 'edgeflip/inline'].includes(entry);
       return [entry, all([...scripts(entry)].filter((name) => isWhole || !core.has(name)))];
     }),
+    ...Object.entries(WHOLE).map(([name, parts]) => {
+      const found = new Set(parts.flatMap((part) => [...scripts(part)]));
+      return [name, all([...found].filter((script) => !core.has(script)))];
+    }),
   ]);
+}
+
+/** Kilobytes after gzip, in whole numbers, so that sums agree wherever they are written. */
+export async function kilobytes() {
+  const names = [...(await measured())].map(([name, bytes]) => [name, Math.round(gzipSync(bytes).length / 1024)]);
+  return Object.fromEntries(names);
 }
 
 async function print() {

@@ -10,6 +10,7 @@ export const typedocTo = (folder, ...more) => [
   ]),
   ...['--readme', 'none', '--disableSources', '--excludePrivate', '--treatWarningsAsErrors'],
   ...['--intentionallyNotExported', 'CODES'],
+  '--useFirstParagraphOfCommentAsSummary',
   '--skipErrorChecking', // only a build writes the types of the modules
   ...more,
 ];

@@ -140,12 +140,16 @@ test('a recorded run is there at once, and this computer’s lanes come over it'
   const worker = await workerThatSays(`({ backend, threads }) => ({ cpu: threads === 1 ? 300 : 100 }[backend] ?? 30)`);
   const { page, race, close } = await openSection({ worker });
   const digits = (ms) => (ms < 10 ? ms.toFixed(2) : ms < 100 ? ms.toFixed(1) : ms.toFixed(0));
-  const texts = ['cpu', 'webgpu', 'webgl2'].map((engine) => `Recorded: ${digits(record[engine])} ms`);
+  // The row has the threads of this computer in its name; the record was on others.
+  const on = { cpu: ' on 16 threads' };
+  const texts = ['cpu', 'webgpu', 'webgl2'].map(
+    (engine) => `Recorded${on[engine] ?? ''}: ${digits(record[engine])} ms`,
+  );
   const before = await resultsOf(page);
   assert.deepEqual(namesOf(before), NAMES);
   assert.deepEqual(
     before.map(({ recorded }) => recorded),
-    [undefined, ...texts],
+    ['Not recorded', ...texts],
   );
   assert.deepEqual(before[0].bars, ['', '']);
   const share = (ms, all) => `${Number(((100 * ms) / all).toFixed(3))}%`;
@@ -156,7 +160,10 @@ test('a recorded run is there at once, and this computer’s lanes come over it'
     await source.textContent(),
     /^Grey: an NVIDIA H200 .* Chromium 148, 24 November 2026, medians of 3 runs\./,
   );
-  assert.equal(await source.locator('a').getAttribute('href'), 'benches/results/2026-11-24-h200-auto-6416f23.html');
+  assert.match(
+    await source.locator('a').getAttribute('href'),
+    /^benches\/results\/2026-11-24-h200-auto-6416f23\.html#chromium-148-ready-/,
+  );
   // The recorded lines are there too.
   assert.equal(await page.locator('.engines-chart .engines-old').count(), 3);
 
@@ -311,5 +318,15 @@ test('the section says from which size on `auto` takes the GPU', async () => {
     rule,
     `Up to about ${thousands(space)} triangles in space, or ${thousands(plane)} in the plane: the CPU.`,
   );
+  // Both sizes of the plane are in one sentence.
+  const [, recorded] = (await page.textContent('.engines-crossover .engines-note')).match(
+    /from ([\d,]+) triangles on\.$/,
+  );
+  const note = await page.textContent('.engines-auto .engines-note');
+  assert.ok(
+    note.startsWith(`In the recorded run, the GPU was first in the plane from ${recorded} triangles on; “auto”`),
+    note,
+  );
+  assert.ok(note.includes(`saves ${margin} ms`), note);
   await close();
 });

@@ -77,6 +77,13 @@ async function pictureOf({ page }) {
   return new Picture(await page.screenshot({ clip: { x: 800, y: 100, width: 400, height: 400 } }));
 }
 
+test('the first view says where the GPU pays, and where the CPU', async () => {
+  const first = await openFirst(() => {}, neverIdle);
+  const words = await first.page.textContent('.pitch p');
+  assert.match(words, /on the GPU; below some tens of thousands of triangles, the CPU is faster/);
+  await first.close();
+});
+
 test('with reduced motion, the first view is a still picture of the mesh', async () => {
   const first = await openFirst((page) => page.emulateMedia({ reducedMotion: 'reduce' }), neverIdle);
   await first.page.waitForSelector('#live:not([hidden])');

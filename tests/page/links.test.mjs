@@ -117,6 +117,10 @@ test('the documents are readable everywhere, and lead back', async () => {
 test('the API reference and the examples keep the policy of the page', async () => {
   const { page, problems } = await openPage(await startChromium(), `${await address()}api/index.html`);
   await page.waitForSelector('.tsd-navigation a');
+  // Each module says what it is for.
+  const modules = await page.locator('dd.tsd-member-summary').allTextContents();
+  assert.equal(modules.length, 6);
+  for (const words of modules) assert.match(words.trim(), /^[A-Z].*\.$/s);
   await page.goto(`${await address()}api/functions/index.makeDelaunay.html`);
   await page.waitForSelector('h1');
   assert.equal(await page.getAttribute('#tsd-toolbar-links a', 'href'), '../../index.html#package');
@@ -127,6 +131,8 @@ test('the API reference and the examples keep the policy of the page', async () 
   await page.waitForFunction(() => document.querySelector('output').value.startsWith('done'));
   await page.goto(`${await address()}examples/three.html`);
   await page.waitForSelector('#flip:enabled');
+  await page.click('#back');
+  assert.equal(await page.textContent('h1'), 'Examples');
   assert.deepEqual(problems, []);
   await page.close();
 });

@@ -16,7 +16,7 @@ markdown.renderer.rules.table_open = (tokens, i) =>
 markdown.renderer.rules.table_close = () => '</table></div>\n';
 
 /** The anchor of a heading, as GitHub makes it. */
-const anchorOf = (heading) =>
+export const anchorOf = (heading) =>
   heading
     .toLowerCase()
     .replace(/[^\w\- ]/g, '')

@@ -18,8 +18,12 @@ const TYPES = {
   '.png': 'image/png',
 };
 
-/** The examples have an empty icon, which the page's policy forbids. */
-const withIcon = (html) => html.replace('href="data:,"', 'href="../icon.svg"');
+/** The examples have an empty icon, which the page's policy forbids, and no link to the site. */
+const onSite = (html) =>
+  html
+    .replace('href="data:,"', 'href="../icon.svg"')
+    .replace('</head>', '  <link rel="stylesheet" href="./back.css">\n  </head>')
+    .replace('</body>', '  <a id="back" href="./index.html">← Examples</a>\n  </body>');
 
 /** Builds the pages in examples/, apart from the page, so that the page's scripts stay as they are. */
 async function buildExamples(out, alias) {
@@ -31,7 +35,7 @@ async function buildExamples(out, alias) {
     logLevel: 'warn',
     resolve: { alias },
     worker: { format: 'es' },
-    plugins: [{ name: 'icon', transformIndexHtml: { order: 'pre', handler: withIcon } }],
+    plugins: [{ name: 'on-site', transformIndexHtml: { order: 'post', handler: onSite } }],
     build: {
       outDir: join(out, 'examples'),
       emptyOutDir: true,
@@ -59,6 +63,7 @@ export async function writeDocuments(out, policy, alias) {
   pages.set('documents.css', () => styleOf(font));
   // The page's own icon has another name, which changes with its content.
   pages.set('icon.svg', () => readFileSync(at('www/icon.svg')));
+  pages.set('examples/back.css', () => readFileSync(at('www/documents/back.css')));
   writeAll(out, pages);
   writeAll(out, await referenceOf(`../../${font}`));
 }

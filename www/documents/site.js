@@ -54,6 +54,12 @@ export function addressesIn({ repository, homepage }) {
 
 export const addresses = () => addressesIn(JSON.parse(text('package.json')));
 
+/** What the site says until package.json names an address. */
+export const notPublicIn = (named) =>
+  Object.keys(named).length === 0
+    ? 'The repository has no public address yet, and the package is in no registry.'
+    : undefined;
+
 /** README, then the documents in the order in which it names them, then the others. */
 function documents() {
   const named = ['README.md', ...targetsOf(text('README.md')).map((target) => target.split('#')[0])];
@@ -115,6 +121,7 @@ function examples() {
 
 /** The page around a document. `list` has the documents, with their titles. */
 function frame(address, title, contents, policy, list) {
+  const note = notPublicIn(addresses());
   const to = (place, words) =>
     `<a href="${between(address, place)}"${place === address ? ' aria-current="page"' : ''}>${escapeHtml(words)}</a>`;
   const items = list.map(([place, words]) => `<li>${to(place, words)}</li>`);
@@ -141,13 +148,14 @@ ${contents}
 <nav class="list" aria-label="Documents"><ul>
 ${items.join('\n')}
 </ul></nav>
-</div>
+</div>${note ? `\n<footer>${escapeHtml(note)}</footer>` : ''}
 </body>
 </html>
 `;
 }
 
-const titleOf = (path) => (path === 'README.md' ? 'Overview' : render(text(path), () => undefined).title);
+/** What the site calls a document. */
+export const titleOf = (path) => (path === 'README.md' ? 'Overview' : render(text(path), () => undefined).title);
 
 /**
  * The pages of the site by their addresses: functions that make them. `policy` is the page's policy.

@@ -4,13 +4,13 @@ import { made } from '../shell/elements.ts';
 import { ResultRow, type Ran } from './result-row.ts';
 import { ALL, ONE_THREAD, type Contender, type NamedMesh } from './contenders.ts';
 import { recordedMesh, runOn } from './race.ts';
-import { RACE, recordedTime, RUNS, SOURCE, WHAT } from './recorded.ts';
+import { RACE, recordedTime, recordedWords, RUNS, SOURCE, WHAT } from './recorded.ts';
 import { sentenceOf } from './timer.ts';
 import { stillness } from '../shell/stillness.ts';
 import type { OneAtATime } from './one-at-a-time.ts';
 import { count } from './words.ts';
 
-const BEFORE = `Every engine flips the same mesh: ${RACE.name}. The time is from your arrays to the result. Press Race to see this computer.`;
+const BEFORE = `Every engine flips the same mesh: ${RACE.name}. The CPU runs twice: on one thread, and on all. The time is from your arrays to the result. Press Race to see this computer.`;
 const PROMISE = 'Nothing runs until you press a button.';
 const OTHER_MESH = 'The record is of another mesh, so it is not shown.';
 
@@ -54,7 +54,9 @@ export class RaceView {
   #record(isShown: boolean, slowest = 0): void {
     const times = ALL.map((contender) => (isShown ? recordedTime(contender) : undefined));
     const scale = Math.max(slowest, ...times.map((ms) => ms ?? 0));
-    for (const [i, contender] of ALL.entries()) this.#rows.get(contender)!.record(times[i], scale);
+    for (const [i, contender] of ALL.entries()) {
+      this.#rows.get(contender)!.record(times[i], scale, isShown ? recordedWords(contender) : '');
+    }
     if (isShown) {
       const source = made('a', '', 'The record');
       source.href = SOURCE;

@@ -1,15 +1,17 @@
 // A recorded run of a hardware GPU in Chromium, from benches/results, for the section of the engines.
 
 import { readFileSync } from 'node:fs';
+import { anchorOf } from '../documents/markdown.js';
 
 const NAME = '2026-11-24-h200-auto-6416f23';
 
-/** The device, the browser, the date, and the milliseconds of each engine by mesh. Its source is a page of the site. */
+/** The device, the browser, the date, and the milliseconds of each engine by mesh. Its source is its part of a page. */
 export function recordedRun() {
   const text = readFileSync(new URL(`../../benches/results/${NAME}.md`, import.meta.url), 'utf8');
   const [, device, cores] = text.match(/^(NVIDIA \w+), .*?(\d+) cores\./m);
   const [section] = text.match(/^## Chromium \d+, ready[^]*?(?=^## )/m);
   const [, browser, runs] = section.match(/^## (Chromium \d+), ready: `benches\/crossover.html` with (\d+) runs/);
+  const heading = section.slice(3, section.indexOf('\n'));
   const lines = section.split('\n').filter((line) => line.startsWith('|'));
   const [names, , ...rows] = lines.map((line) =>
     line
@@ -30,6 +32,6 @@ export function recordedRun() {
     date,
     runs: Number(runs),
     meshes,
-    source: `benches/results/${NAME}.html`,
+    source: `benches/results/${NAME}.html#${anchorOf(heading)}`,
   };
 }

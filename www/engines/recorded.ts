@@ -4,7 +4,7 @@ import record from 'virtual:recorded';
 import { ONE_THREAD, THREADS, WEBGL2, WEBGPU, type Contender } from './contenders.ts';
 import { crossoverOf } from './crossover.ts';
 import type { Series } from './sizes.ts';
-import { about, count } from './words.ts';
+import { about, count, timeText } from './words.ts';
 
 /** The largest mesh of the chart. */
 const MOST = 1e6;
@@ -17,6 +17,13 @@ export const RACE = { spec, name: `${count(triangles)} triangles between random 
 /** The recorded milliseconds of an engine in the race. On one thread, none was recorded. */
 export function recordedTime(contender: Contender): number | undefined {
   return contender === ONE_THREAD ? undefined : ms[contender.options.backend as keyof typeof ms];
+}
+
+/** The words for it. The names of the engines have the threads of this computer, and the record was on others. */
+export function recordedWords(contender: Contender): string {
+  const time = recordedTime(contender);
+  if (time === undefined) return 'Not recorded';
+  return `Recorded${contender === THREADS ? ` on ${record.cores} threads` : ''}: ${timeText(time)}`;
 }
 
 const plane = record.meshes.filter((mesh) => mesh.spec.startsWith('random') && mesh.triangles <= MOST);

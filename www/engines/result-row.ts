@@ -42,12 +42,12 @@ export class ResultRow {
     this.#say(this.#contender.whyNot);
   }
 
-  /** Shows the recorded milliseconds of this engine, or hides them. The longest bar has `scale` of them. */
-  record(ms: number | undefined, scale: number): void {
-    this.#record.hidden = this.#recorded.hidden = ms === undefined;
-    if (ms === undefined) return;
-    this.#record.style.width = `${(100 * ms) / scale}%`;
-    this.#recorded.textContent = `Recorded: ${timeText(ms)}`;
+  /** Shows the recorded milliseconds of this engine and the words for them. The longest bar has `scale` of them. */
+  record(ms: number | undefined, scale: number, words = ''): void {
+    this.#record.hidden = ms === undefined;
+    this.#record.style.width = `${(100 * (ms ?? 0)) / scale}%`;
+    this.#recorded.hidden = words === '';
+    this.#recorded.textContent = words;
   }
 
   start(): void {

@@ -5,7 +5,8 @@ import facts from 'virtual:package';
 import { made } from '../shell/elements.ts';
 import { tabs } from './tabs.ts';
 
-const LEDE = 'Rust compiled to WebAssembly, with shaders for WebGPU and WebGL2. It needs no other package.';
+const LEDE =
+  'Rust compiled to WebAssembly, with shaders for WebGPU and WebGL2. The npm package needs no other package.';
 
 const PROMISES = [
   ['Same points', 'Colours, normals and all other data of the points stay valid.'],
@@ -17,19 +18,23 @@ const PROMISES = [
 const CREDITS =
   'Bunny: Stanford 3D Scanning Repository, from the package bunny, public domain. Flange: made with manifold-3d, Apache-2.0. Terrain: made with simplex-noise, MIT. Suzanne: from the package @pmndrs/assets, CC0. Type: Inter, OFL 1.1.';
 
-const kilobytes = (...names: string[]) =>
-  `${Math.round(names.reduce((sum, name) => sum + facts.kilobytes[name]!, 0))} KB`;
+const kilobytes = (...names: string[]) => `${names.reduce((sum, name) => sum + facts.kilobytes[name]!, 0)} KB`;
+
+/** It reads files, and joins vertices. */
+const FILES = 'edgeflip_files_bg.wasm';
 
 /** What a program loads, and how much that is. */
 const SIZES = [
   ['edgeflip', kilobytes('edgeflip', 'edgeflip_bg.wasm')],
-  ['+ for three.js', kilobytes('edgeflip/three')],
-  ['+ for glTF-Transform', kilobytes('edgeflip/gltf-transform')],
+  ['+ for three.js', kilobytes('edgeflip/three, whole', FILES)],
+  ['+ for glTF-Transform', kilobytes('edgeflip/gltf-transform, whole', FILES)],
   ['+ to run in a worker', kilobytes('edgeflip/worker')],
   ['+ CPU on several threads', kilobytes('edgeflip_threads_bg.wasm')],
-  ['+ WebGL2', kilobytes('edgeflip_webgl2_bg.wasm')],
-  ['+ to read and write files', kilobytes('edgeflip/files', 'edgeflip_files_bg.wasm')],
+  ['+ WebGL2', kilobytes('scripts of WebGL2', 'edgeflip_webgl2_bg.wasm')],
+  ['+ to read and write files', kilobytes('edgeflip/files', FILES)],
 ] as const;
+
+const JOINING = `three.js and glTF-Transform take the part for files too (${kilobytes(FILES)}), because they join vertices at the same position. With “weld: false”, they do not.`;
 
 /** Puts the section into `host`. */
 export function mountPackage(host: HTMLElement): void {
@@ -37,7 +42,8 @@ export function mountPackage(host: HTMLElement): void {
   const columns = made('div', 'package-columns', tabs(facts.snippets), made('ul', 'package-promises', ...promises));
   const below = made('div', 'package-below', sizes(), browsers(), ways());
   const licence = made('p', 'foot', 'edgeflip is free: ', link('LICENSE-MIT.html', 'MIT'), ' or ');
-  licence.append(link('LICENSE-APACHE.html', 'Apache-2.0'), `. ${CREDITS}`);
+  const notPublic = facts.notPublic ? `${facts.notPublic} ` : '';
+  licence.append(link('LICENSE-APACHE.html', 'Apache-2.0'), `. ${notPublic}${CREDITS}`);
   host.append(made('h2', '', 'Use it in your project'), made('p', 'lede', LEDE), columns, below, licence);
 }
 
@@ -57,7 +63,7 @@ function sizes(): HTMLElement {
     head.scope = 'row';
     return made('tr', '', head, made('td', '', size));
   });
-  const note = 'After gzip, measured when this page was built. A part is loaded when it is first used.';
+  const note = `After gzip, measured when this page was built. A part is loaded once, when it is first used. ${JOINING}`;
   return part('What it costs', made('table', '', made('tbody', '', ...rows)), made('p', 'package-note', note));
 }
 
@@ -79,7 +85,7 @@ function ways(): HTMLElement {
   const links = [
     ...(repository ? [link(repository, 'Source code')] : []),
     ...(homepage ? [link(homepage, 'Package')] : []),
-    link('api/index.html', 'API reference'),
+    link('api/index.html', 'JavaScript API'),
     link('README.html', 'Documents'),
     link('docs/options.html', 'All options'),
     link('examples/index.html', 'Examples'),
@@ -87,5 +93,7 @@ function ways(): HTMLElement {
     link('docs/benchmarks.html', 'Benchmarks'),
     link('CHANGELOG.html', 'Changes'),
   ];
-  return part('Read on', made('ul', 'package-ways', ...links.map((a) => made('li', '', a))));
+  const list = made('ul', 'package-ways', ...links.map((a) => made('li', '', a)));
+  const until = 'Until then, the API, the documents and the examples with their sources are here.';
+  return part('Read on', ...(facts.notPublic ? [made('p', 'package-until', `${facts.notPublic} ${until}`)] : []), list);
 }

@@ -4,11 +4,16 @@ import { made } from '../shell/elements.ts';
 
 export interface Snippet {
   name: string;
-  /** The command that installs it. */
+  /** The command that installs it, or the lines that add it. */
   install?: string;
   code: string;
-  /** The file that has the code, and its page on the site. */
+  /** What else to know before. */
+  note?: string;
+  /** The kilobytes that the code loads, after gzip. */
+  loads?: number;
+  /** The file that has the code, its title, and its page on the site. */
   source: string;
+  title: string;
   page: string;
 }
 
@@ -67,7 +72,7 @@ export function tabs(snippets: readonly Snippet[]): HTMLElement {
   return made('div', 'package-code', list, ...panels);
 }
 
-function panelOf({ install, code, source, page }: Snippet, i: number): HTMLElement {
+function panelOf({ install, note, code, loads, title, page }: Snippet, i: number): HTMLElement {
   const copy = made('button', 'read-button', 'Copy');
   copy.type = 'button';
   copy.addEventListener('click', async () => {
@@ -80,14 +85,16 @@ function panelOf({ install, code, source, page }: Snippet, i: number): HTMLEleme
     setTimeout(() => (copy.textContent = 'Copy'), 2000);
   });
   copy.ariaLive = 'polite';
-  const from = made('a', '', source);
+  const from = made('a', '', title);
   from.href = page;
-  const row = made('p', 'package-row', made('span', '', 'Tested with every change: ', from), copy);
+  const size = loads ? `It loads ${loads} KB after gzip.` : '';
+  const row = made('p', 'package-row', made('span', '', 'From ', from, `, tested with every change. ${size}`), copy);
   const panel = made(
     'div',
     'package-panel',
     ...(install ? [codeOf(install, 'package-install')] : []),
     codeOf(code),
+    ...(note ? [made('p', 'package-note', note)] : []),
     row,
   );
   panel.id = `package-panel-${i}`;

@@ -13,6 +13,7 @@ const LEDE =
   'In 2011, Navarro, Hitschfeld-Kahler and Scheihing flipped edges in parallel on a GPU. These are their tests with edgeflip on a newer GPU. Their numbers are grey. They did not publish their meshes, so we built others with as many points, edges and triangles.';
 const MISFITS =
   'Two things in the paper do not fit. For meshes 1 and 2, the columns of edges and triangles are swapped. Mesh 4 has 70,290 edges and 40,648 triangles, so 18,636 of its edges are on the boundary; the mesh that we built has as many. The paper’s machine: GeForce 9800 GTX+ and Phenom X4 850.';
+const NATIVE = 'Run natively, without a browser. The section “Engines” has the sizes in browsers.';
 const significant = new Intl.NumberFormat('en', { maximumSignificantDigits: 3 });
 
 /** The runs of the plots: the mesh of the first, and the worst cases of the second. */
@@ -145,7 +146,7 @@ function openQuestions(measured: Measured): HTMLElement {
   return made(
     'ul',
     'paper-open',
-    made('li', '', made('b', '', 'From which size is the GPU faster?'), sizesTable(measured)),
+    made('li', '', made('b', '', 'From which size is the GPU faster?'), sizesTable(measured), NATIVE),
     made(
       'li',
       '',
@@ -171,7 +172,7 @@ function sizesTable(measured: Measured): HTMLElement {
     ['delaunay', 'No edge flips'],
   ].map(([family, words]) => {
     const sizes = against.map(([cpu]) => crossoverOf(measured, family!, cpu));
-    const cells = sizes.map((edges) => made('td', '', edges === undefined ? '–' : `${number.format(edges)} edges`));
+    const cells = sizes.map((size) => made('td', '', size === undefined ? '–' : `${number.format(size)} triangles`));
     return made('tr', '', cell(words!, 'row'), ...cells);
   });
   const heads = made('tr', '', made('td', ''), ...against.map(([, words]) => cell(words, 'col')));

@@ -42,9 +42,13 @@ export function rowsOf({ meshes }: Measured) {
   return meshes.map((mesh) => ({ mesh, theirs: MESHES.find(({ id }) => id === mesh.id) }));
 }
 
-/** The smallest size measured from which the GPU is faster at all larger sizes, in edges. */
+/** The smallest size measured from which the GPU is faster at all larger sizes, in triangles. */
 export function crossoverOf({ crossover }: Measured, family: string, against: 'cpu' | 'cores'): number | undefined {
   const sizes = crossover.filter((size) => size.family === family).sort((a, b) => a.edges - b.edges);
   const last = sizes.findLastIndex((size) => size.gpu >= size[against]);
-  return sizes[last + 1]?.edges;
+  const edges = sizes[last + 1]?.edges;
+  return edges === undefined ? undefined : trianglesOf(edges);
 }
+
+/** The triangles of a square of n × n cells with so many edges: 3n² + 2n edges, and 2n² triangles. */
+const trianglesOf = (edges: number) => 2 * Math.round((Math.sqrt(1 + 3 * edges) - 1) / 3) ** 2;

@@ -8,7 +8,7 @@ const AUTHORS = 'Cristobal A. Navarro, Nancy Hitschfeld-Kahler, Eliana Scheihing
 const TEXTS = [
   [
     'A Quasi-Parallel GPU-Based Algorithm for Delaunay Edge-Flips',
-    'Manuscript, 28 February 2011; sent to ACM Transactions on Graphics in August 2010. We know of no DOI.',
+    'Sent to ACM Transactions on Graphics in August 2010. We follow the manuscript of 28 February 2011, and know of no DOI.',
   ],
   ['A Parallel GPU-based Algorithm for Delaunay Edge-flips', 'EuroCG 2011, Morschach, 28–30 March 2011.'],
   [

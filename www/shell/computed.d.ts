@@ -11,7 +11,7 @@ declare module 'virtual:recorded' {
     /** How many runs each time is the median of. */
     runs: number;
     meshes: { spec: string; triangles: number; ms: Record<'cpu' | 'webgpu' | 'webgl2', number> }[];
-    /** The page of the site that has the record. */
+    /** The part of a page of the site that has the record. */
     source: string;
   };
   export default recorded;
@@ -19,12 +19,14 @@ declare module 'virtual:recorded' {
 
 declare module 'virtual:package' {
   const facts: {
-    snippets: { name: string; install?: string; code: string; source: string; page: string }[];
-    /** Kilobytes after gzip, by module or entry. */
+    snippets: import('../package/tabs.ts').Snippet[];
+    /** Whole kilobytes after gzip, by module or entry. */
     kilobytes: Record<string, number>;
     /** The oldest browsers. */
     browsers: string;
     addresses: { repository?: string; homepage?: string };
+    /** What to say as long as there are none. */
+    notPublic?: string;
   };
   export default facts;
 }

@@ -3,6 +3,7 @@
 import type { Hero } from '../hero/hero.ts';
 import type { Tool } from '../watch/main.ts';
 import { keptDrop } from './early-drop.ts';
+import { keepLanding } from './landing.ts';
 import { markSections } from './sections.ts';
 import { stillness } from './stillness.ts';
 import { onTheme, toggleTheme } from './theme.ts';
@@ -174,6 +175,7 @@ addEventListener('resize', () => {
 });
 
 follow();
+keepLanding();
 markSections();
 hasBegun = true;
 if (document.body.dataset.view === 'first') {
