@@ -91,6 +91,7 @@ export class Display {
     this.#isLarge = mesh.indices.length > 3 * COLOURED;
     this.#isSearched = this.#isLarge && mesh.indices.length <= 3 * SEARCHED;
     if (isOther) this.look = 'coloured';
+    this.phases?.begin();
     this.comparison.begin(mesh.indices);
     this.edgeDrawing.begin(mesh);
     element('no-mesh').hidden = scene !== undefined;
