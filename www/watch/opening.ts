@@ -95,11 +95,11 @@ export class Opening {
 
 /** The mesh with other triangles: with an edge that the user has drawn, or scrambled. */
 export function again(opened: Opened, beta: number, mesh: IndexedMesh, ends: readonly number[] = []): Source {
-  const { name, title, what, kept, drawn, origin } = opened;
+  const { name, title, kept, drawn, origin } = opened;
   const read = async () => ({ name, mesh, kept, others: 0 });
   const isScrambled = opened.isScrambled || ends.length === 0;
-  const known = { ...(what ? { what } : {}), ...(origin ? { origin } : {}) };
-  return { name, title, ...known, isScrambled, beta, drawn: [...drawn, ...ends], read };
+  const what = isScrambled ? 'Edges scrambled' : 'With edges that you drew';
+  return { name, title, what, ...(origin ? { origin } : {}), isScrambled, beta, drawn: [...drawn, ...ends], read };
 }
 
 function remarkOn({ mesh, others }: Read): string {

@@ -401,7 +401,7 @@ export class Page {
   #showChoices(): void {
     const shown = this.shown;
     if (!shown) return;
-    markSample(shown.opened.spec ?? '');
+    markSample(shown.opened.origin ?? '');
     this.#choices.set(shown.settings);
   }
 }
