@@ -3,6 +3,7 @@
 import type { FileMesh, IndexedMesh } from 'edgeflip/files';
 import type { Quality } from './mesh-worker.ts';
 import { takeReader } from './ahead.ts';
+import { attributeOf } from './attributes.ts';
 import { WorkerClient } from './worker-client.ts';
 import type { Kept } from './files.ts';
 import { counted, number } from '../shell/numbers.ts';
@@ -119,7 +120,7 @@ function remarkOnFile(mesh: FileMesh): string {
   const dropped = mesh.dropped.length > 0 && !mesh.keeps ? `Not kept: ${mesh.dropped.join(', ')}.` : '';
   const [most, ...others] = mesh.attributeEdges;
   const locked = most
-    ? `${number.format(most.edges)} edges are locked to keep the attribute “${most.name}”${others.length > 0 ? ', more to keep others' : ''}.`
+    ? `${counted(most.edges, 'edge')} ${most.edges === 1 ? 'stays' : 'stay'} to keep ${attributeOf(most.name)}${others.length > 0 ? ', more to keep others' : ''}.`
     : '';
   return [cut, crossing, dropped, locked, ...mesh.notes.map((note) => `${note}.`)].filter(Boolean).join(' ');
 }
