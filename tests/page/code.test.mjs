@@ -21,7 +21,7 @@ async function runCopied({ page }, ...files) {
   await page.context().grantPermissions(['clipboard-read', 'clipboard-write']);
   await page.click('#take');
   await page.click('#code');
-  await page.waitForFunction(() => document.getElementById('away-says').textContent === 'Code copied.');
+  await page.waitForFunction(() => document.getElementById('away-says').textContent.startsWith('Code copied.'));
   await page.keyboard.press('Escape');
   const code = await page.evaluate(() => navigator.clipboard.readText());
   const path = join(folder, `${++copies}.mjs`);

@@ -175,7 +175,7 @@ test('a β that is being typed stays while the page works, and takes effect when
   await page.page.keyboard.press('Tab');
   await page.until('a new run', ({ at, state }) => at === '0' && state === 'ready');
   const { facts } = await page.rest();
-  assert.equal(facts['β'], '45°');
+  assert.equal(facts['Crease limit β'], '45°');
   await page.close();
 });
 

@@ -60,6 +60,9 @@ test('edges that are drawn come in, and stay', async () => {
   };
   // Random points have no ties.
   assert.deepEqual(edgesOf(drawn.indices), edgesOf(indices));
+  await page.page.click('#link');
+  await page.page.locator('#away-says').getByText('It opens the sample as it was before you drew edges.').waitFor();
+  assert.match(await page.page.textContent('#about'), /^With edges that you drew, /);
   await page.page.keyboard.press('Escape');
   await page.page.keyboard.press('Escape');
   assert.equal(await page.page.getAttribute('#draw', 'aria-pressed'), 'false');

@@ -236,8 +236,29 @@ test('points are added, moved and removed by keys, and a link with wrong triangl
     assert.ok(rounds < 10);
     await press('Round');
   }
+  const stop = page.locator('.playground-stop');
+  assert.match((await drawn(page)).caption, /^Delaunay: no edge can flip\. After \d rounds: \d+ flips$/);
+  assert.match(await stop.textContent(), /^Delaunay No edge can flip/);
   await press('Label');
-  assert.match((await drawn(page)).caption, /^Every edge is Delaunay/);
+  assert.match((await drawn(page)).caption, /^Delaunay: no edge can flip$/);
+  await press('Clear');
+  assert.equal((await drawn(page)).caption, 'Set three points to make a triangle');
+  assert.match(await stop.textContent(), /^No triangle yet/);
+  await press('Start again');
+  assert.match(await stop.textContent(), /^Points, joined somehow/);
+  await press('Label');
+  const covered = await page.evaluate(() => {
+    const boxes = (part) =>
+      [...document.querySelectorAll(`.playground ${part}`)].map((element) => element.getBoundingClientRect());
+    return boxes('.playground-labels text').map(
+      (text) =>
+        boxes('.explain-handle .explain-knob').filter(
+          (point) =>
+            point.left < text.right && text.left < point.right && point.top < text.bottom && text.top < point.bottom,
+        ).length,
+    );
+  });
+  assert.ok(covered.length > 4 && covered.every((points) => points === 0), `points under labels: ${covered}`);
   await page.close();
   assert.deepEqual(problems, []);
 });

@@ -81,7 +81,7 @@ test('β, an inspected edge, before and now, a saved file and a link in Firefox'
     beta.value = '60';
     beta.dispatchEvent(new Event('change', { bubbles: true }));
   });
-  await page.until('a new run', ({ facts, state }) => facts['β'] === '60°' && state === 'ready');
+  await page.until('a new run', ({ facts, state }) => facts['Crease limit β'] === '60°' && state === 'ready');
   const { indices, facts, fingerprints } = await expected(first.path, 60);
   assert.equal((await page.playToEnd()).facts.Fingerprint, facts.Fingerprint);
   const result = await page.picture();

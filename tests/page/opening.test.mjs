@@ -65,7 +65,7 @@ for (const [method, when] of [
       [opened.caption, opened.error, opened.backend, await betaOf(page)],
       ['sphere.off', '', 'cpu', '45'],
     );
-    assert.deepEqual([opened.facts.Engine, opened.facts['β']], ['CPU, in a worker', '45°']);
+    assert.deepEqual([opened.facts.Engine, opened.facts['Crease limit β']], ['CPU, in a worker', '45°']);
     const mesh = (await expected(sphere)).mesh;
     const { indices } = await makeDelaunay(mesh, { backend: 'cpu', maxNormalAngle: 45 });
     await page.playToEnd();
@@ -111,7 +111,7 @@ test('a β that is not an angle is refused while a file is read, and the file op
   assert.match((await page.look()).error, /β is an angle from 0 to 180/);
   await letGo(page);
   const { caption, facts } = await page.rest();
-  assert.deepEqual([caption, facts['β'], await betaOf(page)], ['sphere.off', '10°', '10']);
+  assert.deepEqual([caption, facts['Crease limit β'], await betaOf(page)], ['sphere.off', '10°', '10']);
   await page.close();
 });
 

@@ -96,7 +96,7 @@ async function expect(path, maxNormalAngle) {
       'Not Delaunay': left.map(([, count]) => `${number.format(count)} at a crease`)[0] ?? 'none',
       Fingerprint: fingerprintOf(result.indices),
       Smallest: `${degrees.format(before.min)}° → ${degrees.format(after.min)}°`,
-      'Mean smallest': `${degrees.format(before.meanMin)}° → ${degrees.format(after.meanMin)}°`,
+      'Smallest on average': `${degrees.format(before.meanMin)}° → ${degrees.format(after.meanMin)}°`,
       'Mean aspect ratio': `${digits.format(input.meanAspect)} → ${digits.format(output.meanAspect)}`,
       Area: `${digits.format(input.area)} → ${digits.format(output.area)}`,
       'Changed triangles': number.format(moved.length),

@@ -234,8 +234,8 @@ test('the inspector names the seams of an OBJ file, and counts their edges', asy
   const stays = 'Not Delaunay, but it stays: it is locked.';
   assert.deepEqual([...seen].sort(), [
     '205° is more than 180°, so this edge flips in the next iteration.',
-    `${stays} It is a border of the attribute “usemtl” (materials): 1 edge is locked to keep it.`,
-    `${stays} It is a seam of the attribute “vt” (texture coordinates): 1 edge is locked to keep it.`,
+    `${stays} It is a border of the attribute “usemtl” (materials): 1 edge stays to keep it.`,
+    `${stays} It is a seam of the attribute “vt” (texture coordinates): 1 edge stays to keep it.`,
   ]);
   await page.close();
 });

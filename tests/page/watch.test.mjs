@@ -113,7 +113,7 @@ test('the timeline has all iterations before they are run, and goes to any of th
   });
   await press(page, 'End');
   const end = await page.until('the end', ({ state, measured, at }) => state === 'done' && measured === at);
-  const [before, after] = facts['Mean smallest'].match(/[\d.]+/g).map((angle) => Math.round(Number(angle)));
+  const [before, after] = facts['Smallest on average'].match(/[\d.]+/g).map((angle) => Math.round(Number(angle)));
   const time = /\d[\d,.]* ms/.exec(end.status);
   const [kept] = facts['Not Delaunay'].split(' ');
   assert.equal(
@@ -365,7 +365,7 @@ test('a link opens the same mesh, engine, limit, iteration and view', async () =
   await page.rest();
   await page.chooseEngine('cpu');
   await page.setBeta('45');
-  await page.until('a new run', ({ facts, state }) => facts['β'] === '45°' && state === 'ready');
+  await page.until('a new run', ({ facts, state }) => facts['Crease limit β'] === '45°' && state === 'ready');
   await page.rest();
   await press(page, 'ArrowRight');
   await page.until('one iteration', ({ at, measured }) => at === '1' && measured === '1');
@@ -391,7 +391,7 @@ test('a link opens the same mesh, engine, limit, iteration and view', async () =
     ({ at, measured, caption }) => at === '1' && measured === '1' && caption === 'uvsphere 28 0.1',
   );
   assert.deepEqual(
-    [after.facts.Fingerprint, after.facts['β'], after.backend],
+    [after.facts.Fingerprint, after.facts['Crease limit β'], after.backend],
     [before.facts.Fingerprint, '45°', 'cpu'],
   );
   const differs = (await page.stillPicture()).differsFrom(picture);

@@ -5,6 +5,7 @@ import { arrow, between, type Label, middle, polygon, polyline, type Shape, towa
 import type { Point } from './mesh.ts';
 import { type Inner, relinked } from './phases.ts';
 import { cornersOf, halvesOf, next, turn } from './planar.ts';
+import { labelsOn } from './playground-labels.ts';
 import { anglesOf, sumOf } from './playground-words.ts';
 import type { Place } from './stops.ts';
 
@@ -59,7 +60,8 @@ export function marksOf(place: Place, unit: number, flipped: number): Marks {
   const mark = (ends: number[], kind: string) => marked.set(ends.toSorted((a, b) => a - b).join(), kind);
   if (stop === 'label') {
     for (const edge of candidates) mark(edge.ends, 'explain-bold explain-candidate');
-    marks.labels = candidates.map((edge) => ({ text: sumOf(edge, anglesOf(edge, points)), at: middleOf(edge) }));
+    const texts = candidates.map((edge) => ({ text: sumOf(edge, anglesOf(edge, points)), ends: edge.ends }));
+    marks.labels = labelsOn(texts, 0.5, points, unit);
   } else if (stop === 'select') {
     for (const edge of candidates) {
       mark(edge.ends, `explain-bold explain-${round.flips.includes(edge) ? 'flips' : 'waits'}`);
@@ -72,10 +74,8 @@ export function marksOf(place: Place, unit: number, flipped: number): Marks {
         : [],
     );
     // Beside the tips of the arrows.
-    marks.labels = candidates.map(({ rank, ends }) => {
-      const [from, to] = at(...ends) as [Point, Point];
-      return { text: `${rank}`, at: between(from, to, 0.3) };
-    });
+    const texts = candidates.map(({ rank, ends }) => ({ text: `${rank}`, ends }));
+    marks.labels = labelsOn(texts, 0.3, points, unit);
   } else if (stop === 'flip') {
     for (const { facing } of round.flips) mark(facing, 'explain-bold explain-fresh');
     marks.under = round.flips.flatMap((edge) => [

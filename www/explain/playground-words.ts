@@ -6,19 +6,17 @@ import type { Point } from './mesh.ts';
 import { type Inner, relinked } from './phases.ts';
 import type { Place } from './stops.ts';
 
-/** What each stop is about: its name, and how it works. */
-export const ABOUT: Record<Place['stop'], [name: string, words: string]> = {
-  start: [
-    'Points, joined somehow',
-    'Click to add a point, drag one to move it. Then run a round phase by phase. All triangles act at the same time.',
-  ],
+type About = [name: string, words: string];
+
+/** What each phase is about: its name, and how it works. */
+export const ABOUT: Record<Exclude<Place['stop'], 'start'>, About> = {
   label: [
     'Label',
     'Each edge adds the two angles that face it. More than 180° means that it is not Delaunay and can flip.',
   ],
   select: [
     'Select',
-    'A flip changes both triangles of its edge, so a triangle takes part in one flip only. The edges that can flip have numbers, shuffled in each iteration. Each triangle points to the one of its edges with the smallest number. If both triangles of an edge point to it, it flips. The others wait.',
+    'A flip changes both triangles of its edge, so a triangle takes part in one flip only. The edges that can flip have numbers, shuffled in each round. Each triangle points to the one of its edges with the smallest number. If both triangles of an edge point to it, it flips. The others wait.',
   ],
   flip: [
     'Flip',
@@ -30,18 +28,43 @@ export const ABOUT: Record<Place['stop'], [name: string, words: string]> = {
   ],
 };
 
+const EMPTY: About = ['No triangle yet', 'Click to set points. Three that are not on one line make a triangle.'];
+
+const BEGIN: About = [
+  'Points, joined somehow',
+  'Click to add a point, drag one to move it. Then run a round, which is one iteration, phase by phase. All triangles act at the same time.',
+];
+
+const BETWEEN: About = [
+  'After a round',
+  'The next round begins with these triangles. If you add or move a point, rounds are counted anew.',
+];
+
+const END: About = [
+  'Delaunay',
+  'No edge can flip: no two angles that face an edge add up to more than 180°. Move a point or add one, and edges can flip again.',
+];
+
+/** What the place is about: its name, and how it works. */
+export function aboutOf({ stop, planar, tested, phase }: Place): About {
+  if (stop !== 'start') return ABOUT[stop];
+  if (planar.triangles.length === 0) return EMPTY;
+  if (tested.flips.length === 0) return END;
+  return phase === 0 ? BEGIN : BETWEEN;
+}
+
 const edges = (count: number, one: string, many: string) => `${counted(count, 'edge')} ${count === 1 ? one : many}`;
 
 /** The caption of a stop. */
 export function captionOf(place: Place): string {
-  const { planar, phase, stop, round, rounds } = place;
+  const { planar, phase, stop, round, rounds, tested } = place;
   const candidates = round.inner.filter(({ rank }) => rank > 0).length;
   const flips = round.flips.length;
   if (planar.triangles.length === 0) {
     return planar.points.length < 3 ? 'Set three points to make a triangle' : 'All points are on one line';
   }
   if (stop === 'label') {
-    if (candidates === 0) return 'Every edge is Delaunay. Nothing is left to flip.';
+    if (candidates === 0) return 'Delaunay: no edge can flip';
     return `${edges(candidates, 'is', 'are')} not Delaunay`;
   }
   if (stop === 'select') {
@@ -53,11 +76,12 @@ export function captionOf(place: Place): string {
     const sides = relinked(round).length;
     return `${counted(sides, 'side')} of triangles ${sides === 1 ? 'has' : 'have'} a new neighbour`;
   }
+  const end = tested.flips.length === 0 ? 'Delaunay: no edge can flip. ' : '';
   const done = rounds.slice(0, phase / 4);
   if (done.length === 0)
-    return `${counted(planar.points.length, 'point')}, ${counted(planar.triangles.length / 3, 'triangle')}`;
+    return `${end}${counted(planar.points.length, 'point')}, ${counted(planar.triangles.length / 3, 'triangle')}`;
   const so = done.reduce((sum, { flips }) => sum + flips.length, 0);
-  return `After ${counted(done.length, 'round')}: ${counted(so, 'flip')}`;
+  return `${end}After ${counted(done.length, 'round')}: ${counted(so, 'flip')}`;
 }
 
 const degrees = (number: number) => `${number.toFixed(1)}°`;
@@ -75,9 +99,9 @@ export function sumOf({ excess }: Inner, [one, other]: [number, number]): string
   return excess === 0 ? 'exactly 180°' : excess > 0 ? 'just over 180°' : 'just under 180°';
 }
 
-/** Why an edge flips, waits or stays; `inner` is nothing for an edge of the outline. */
+/** Why an edge flips, waits or stays; `inner` is nothing for an edge of the boundary. */
 export function whyOf(place: Place, inner: Inner | undefined): string {
-  if (!inner) return 'An edge of the outline has a triangle on one side only. There is nothing to flip, so it stays.';
+  if (!inner) return 'An edge of the boundary has a triangle on one side only. There is nothing to flip, so it stays.';
   const angles = anglesOf(inner, place.planar.points);
   const sum = `${angles.map(degrees).join(' + ')} is ${sumOf(inner, angles)}`;
   if (inner.excess === 0) return `${sum}. Both diagonals are equally good, so the edge stays.`;

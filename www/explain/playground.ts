@@ -12,7 +12,7 @@ import type { Point } from './mesh.ts';
 import { cornersOf, planarOf, turn, withMoved, withoutPoint, withPoint } from './planar.ts';
 import { marksOf, type Side, sidesOf } from './playground-marks.ts';
 import { makeParts } from './playground-parts.ts';
-import { ABOUT, anglesOf, captionOf, whyOf } from './playground-words.ts';
+import { aboutOf, anglesOf, captionOf, whyOf } from './playground-words.ts';
 import { AREA, hashOf, inArea, isFree, MOST, type Place, placeOf, type State, STOPS, stateIn } from './stops.ts';
 
 // biome-ignore format: one row for six points
@@ -247,7 +247,7 @@ export class Playground {
     const text = captionOf(place);
     if (caption.textContent !== text) caption.textContent = text;
     caption.classList.toggle('explain-hot', place.stop === 'label' && place.round.flips.length > 0);
-    const [name, words] = ABOUT[place.stop];
+    const [name, words] = aboutOf(place);
     stop.replaceChildren(made('b', '', name), ` ${words}`);
   }
 

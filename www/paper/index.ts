@@ -10,7 +10,7 @@ import { crossoverOf, ours, rowsOf } from './measured.ts';
 import { reference } from './reference.ts';
 
 const LEDE =
-  'In 2011, Navarro, Hitschfeld-Kahler and Scheihing flipped edges in parallel on a GPU. These are their tests with edgeflip on a newer GPU. Their numbers are grey. They did not publish their meshes, so we built others with as many points, edges and triangles.';
+  'In 2011, Navarro, Hitschfeld-Kahler and Scheihing flipped edges in parallel on a GPU. These are their tests with edgeflip on a newer GPU. Their numbers are grey. They did not publish their meshes, so we built others with as many vertices, edges and triangles.';
 const MISFITS =
   'Two things in the paper do not fit. For meshes 1 and 2, the columns of edges and triangles are swapped. Mesh 4 has 70,290 edges and 40,648 triangles, so 18,636 of its edges are on the boundary; the mesh that we built has as many. The paper’s machine: GeForce 9800 GTX+ and Phenom X4 850.';
 const NATIVE = 'Run natively, without a browser. The section “Engines” has the sizes in browsers.';
@@ -33,7 +33,7 @@ export function mountPaper(host: HTMLElement): void {
   worst.append(choices);
   host.append(made('div', 'paper-pair', five, worst), reference());
   for (const nodes of WORST) {
-    const button = made('button', '', `${number.format(nodes)} points`);
+    const button = made('button', '', `${number.format(nodes)} vertices`);
     button.type = 'button';
     button.addEventListener('click', () => void show(nodes));
     button.dataset['nodes'] = `${nodes}`;

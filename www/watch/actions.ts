@@ -105,7 +105,9 @@ export async function copyLink(page: Page): Promise<string> {
   const link = linkTo(shown, page.scene?.camera.pose);
   if (!link) return 'A link opens samples only: your mesh is on this computer alone.';
   await navigator.clipboard.writeText(withLecture(link));
-  return 'Link copied. It opens this mesh, iteration, limit and view.';
+  const { spec, isScrambled } = shown.opened;
+  if (spec !== undefined) return 'Link copied. It opens this mesh, iteration, limit and view.';
+  return `Link copied. It opens the sample as it was before ${isScrambled ? 'it was scrambled' : 'you drew edges'}.`;
 }
 
 /** Copies the lines of JavaScript that do what is on screen. Returns what to say. */
@@ -113,5 +115,7 @@ export async function copyCode(page: Page): Promise<string> {
   const shown = page.shown;
   if (!shown) return '';
   await navigator.clipboard.writeText(codeFor(shown));
-  return 'Code copied.';
+  return shown.opened.isScrambled
+    ? 'Code copied. Save the scrambled input for it: a comment says how.'
+    : 'Code copied.';
 }

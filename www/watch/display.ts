@@ -7,6 +7,7 @@ import { Comparison } from './comparison.ts';
 import type { Replacement } from './handover.ts';
 import { showDraws, showLegend, type Draws } from './legend.ts';
 import { Inspection } from './inspection.ts';
+import { LockCount } from './lock-count.ts';
 import type { Opened } from './opening.ts';
 import type { Phases } from './phases.ts';
 import { palette } from './palette.ts';
@@ -39,6 +40,7 @@ export class Display {
   readonly #graphics: Graphics;
   look: EdgeLook = 'coloured';
   readonly #search = new StateSearch();
+  readonly #locks = new LockCount();
   /** The states of a large mesh that were last found. */
   #found: { run: Run; at: number; states: SideStates } | undefined;
   /** Whether the mesh is too large for its states to be known at once, and what the page has said about its picture. */
@@ -96,6 +98,7 @@ export class Display {
     this.#isLarge = mesh.indices.length > 3 * COLOURED;
     this.#isSearched = this.#isLarge && mesh.indices.length <= 3 * SEARCHED;
     if (isOther) this.look = 'coloured';
+    this.phases?.begin();
     this.comparison.begin(mesh.indices);
     this.edgeDrawing.begin(mesh);
     element('no-mesh').hidden = scene !== undefined;
@@ -119,7 +122,7 @@ export class Display {
     this.#isLarge = this.#isSearched = false;
     this.#saysDraws = '';
     showDraws(undefined, false, false);
-    showLegend(undefined, false);
+    showLegend(undefined, { isLarge: false, isPlane: false });
     element('no-mesh').hidden = false;
   }
 
@@ -206,7 +209,12 @@ export class Display {
     this.#found = { run, at, states };
     this.inspection.know(states.states);
     this.showTriangles(shown);
-    this.#showLegend(run, undefined);
+    this.#showLegend(shown, undefined);
+  }
+
+  /** Counts the locked edges of the run, for the legend. */
+  async countLocks(shown: Shown): Promise<void> {
+    await this.#locks.count(shown);
   }
 
   /** The states at the shown iteration of a large mesh, if they have been found. */
@@ -214,9 +222,11 @@ export class Display {
     return this.#found?.run === run && this.#found.at === run.at ? this.#found.states : undefined;
   }
 
-  #showLegend(run: Run, nonManifold: number | undefined): void {
+  #showLegend(shown: Shown, nonManifold: number | undefined): void {
+    const { run, opened } = shown;
     const counts = run.states ? countStates(run.states, nonManifold) : this.#statesOf(run)?.counts;
-    showLegend(counts, this.#isSearched && this.look === 'coloured');
+    const isLarge = this.#isSearched && this.look === 'coloured';
+    showLegend(counts, { isLarge, isPlane: opened.mesh.dimension === 2, locks: this.#locks.of(shown) });
   }
 
   /** Measures the edges of these triangles on screen from now on. */
@@ -241,10 +251,11 @@ export class Display {
   }
 
   /** `fingerprint` belongs to the shown triangles, once it is known. */
-  showNumbers({ run, opened, settings }: Shown, status: RunStatus, fingerprint?: string): void {
+  showNumbers(shown: Shown, status: RunStatus, fingerprint?: string): void {
+    const { run, opened, settings } = shown;
     this.panel.showIterations(run.iterations, run.at);
     this.panel.showFacts(opened.mesh, run, status.summary, settings.maxNormalAngle, fingerprint);
-    this.#showLegend(run, status.summary?.nonManifoldEdges);
+    this.#showLegend(shown, status.summary?.nonManifoldEdges);
     this.showTransport(status);
   }
 

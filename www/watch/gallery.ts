@@ -31,7 +31,7 @@ export function makeGallery(open: (spec: string) => void): void {
   element('file').addEventListener('change', close);
 }
 
-/** Marks the sample of this name; none for a file. */
+/** Marks the sample that is shown, or was before its edges were scrambled or drawn; none for a file. */
 export function markSample(spec: string): void {
   const gallery = element('gallery');
   for (const button of gallery.querySelectorAll('button')) {

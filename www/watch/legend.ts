@@ -13,23 +13,31 @@ const ALWAYS: readonly EdgeState[] = ['delaunay', 'flips', 'waits'];
 /** Whether the reasons are unfolded. It holds for all meshes. */
 let isOpen = false;
 
-/**
- * Shows the number of edges in each state: `undefined` while they are not known. `isLarge`: whether it has the same rows
- * always, because the numbers of a large mesh come late; `false` and no numbers hide it.
- */
-export function showLegend(numbers: readonly number[] | undefined, isLarge: boolean): void {
+/** The mesh of a legend. */
+interface Of {
+  /** Whether the legend has the same rows always, because the numbers of a large mesh come late. */
+  isLarge: boolean;
+  /** Whether it lies in the plane, where nothing has to be kept for the shape. */
+  isPlane: boolean;
+  /** The number of locked edges, once it is known. They are in the rows of other states too. */
+  locks?: number | undefined;
+}
+
+/** Shows the number of edges in each state: `undefined` while they are not known, which hides it unless it is large. */
+export function showLegend(numbers: readonly number[] | undefined, { isLarge, isPlane, locks = 0 }: Of): void {
   element('legend').hidden = !numbers && !isLarge;
   const counts = new Map(EDGE_STATES.map((state, k) => [state, numbers?.[k]] as const));
   const rows = ALWAYS.map((state) => row(state, counts.get(state)));
   const found = EDGE_STATES.filter((state) => isKept(state) && (counts.get(state) ?? 0) > 0);
-  const kept = (found.length > 0 ? found : isLarge ? (['angle'] as const) : []).map(
+  const kept = (found.length > 0 ? found : isLarge && !isPlane ? (['angle'] as const) : []).map(
     (state) => [state, counts.get(state)] as const,
   );
-  const rim = counts.get('boundary');
+  const boundary = counts.get('boundary');
   element('legend').replaceChildren(
     ...rows,
     ...(kept.length > 0 ? [keptRow(kept)] : []),
-    ...(isLarge || (rim ?? 0) > 0 ? [row('boundary', rim)] : []),
+    ...(isLarge || (boundary ?? 0) > 0 ? [row('boundary', boundary)] : []),
+    ...(locks > 0 ? [locksRow(locks)] : []),
   );
 }
 
@@ -44,6 +52,19 @@ function row(state: EdgeState, count: number | undefined): HTMLElement {
   const { word, gloss } = LOOKS[state];
   const item = made('li', 'row', swatch(state), words(word, gloss), made('b', '', written(count)));
   item.dataset['state'] = state;
+  return item;
+}
+
+/** The locked edges, which are in other rows too: no line of the picture is theirs alone. */
+function locksRow(count: number): HTMLElement {
+  const item = made(
+    'li',
+    'row locks',
+    made('span', ''),
+    words('Locked', 'kept where they are'),
+    made('b', '', written(count)),
+  );
+  item.title = 'They are counted above too, by their angles.';
   return item;
 }
 

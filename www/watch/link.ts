@@ -16,11 +16,14 @@ export interface Place {
 
 const ENGINES: readonly string[] = ['auto', 'webgpu', 'webgl2', 'cpu'] satisfies Backend[];
 
-/** The link; `undefined` for a mesh that is not a sample, or whose triangles the page has changed. */
+/**
+ * The link; `undefined` for a mesh that is not a sample. If the page has changed the triangles of a sample, the link opens
+ * the sample as it was before that, which has other iterations.
+ */
 export function linkTo({ opened, run, settings }: Shown, pose: readonly number[] | undefined): string | undefined {
-  if (opened.spec === undefined) return undefined;
+  if (opened.origin === undefined) return undefined;
   const { backend, maxNormalAngle, maxDeviation, features } = settings;
-  const parts = new URLSearchParams({ mesh: opened.spec, at: `${run.at}` });
+  const parts = new URLSearchParams({ mesh: opened.origin, at: opened.spec === undefined ? '0' : `${run.at}` });
   if (backend !== 'auto') parts.set('engine', backend);
   if (opened.mesh.dimension === 3) parts.set('beta', `${maxNormalAngle}`);
   if (maxDeviation !== undefined) parts.set('deviation', `${maxDeviation}`);

@@ -22,6 +22,7 @@ import type { FoundColours, Sizes } from './colour-format.ts';
 import { scrambled } from '../models/scramble.js';
 import { featuresOf } from './features.ts';
 import { errorOf } from './kinds.ts';
+import { countLocks } from './locks.ts';
 import { contentOfKept, keep, type Kept, readWith, type Located, type Report } from './files.ts';
 import type { Seams } from './seam.ts';
 import { countStates, sessionOf, statesOf, summaryOf, type OpenMesh, type Step, type Summary } from './run.ts';
@@ -163,6 +164,11 @@ class MeshWorker {
   /** The edges at which the surface bends by more than an angle in degrees: two vertices each. */
   features(mesh: IndexedMesh, degrees: number): Promise<Uint32Array> {
     return naming(featuresOf(mesh, degrees));
+  }
+
+  /** The number of edges that are locked. */
+  async countLocks(...given: Parameters<typeof countLocks>): Promise<number> {
+    return countLocks(...given);
   }
 
   /** The triangles after flips at random that bend the surface little. Edges that are locked stay. */

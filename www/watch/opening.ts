@@ -3,11 +3,11 @@
 import type { FileMesh, IndexedMesh } from 'edgeflip/files';
 import type { Quality } from './mesh-worker.ts';
 import { takeReader } from './ahead.ts';
+import { attributeOf } from './attributes.ts';
 import { FileExtras } from './file-extras.ts';
 import { WorkerClient } from './worker-client.ts';
 import type { Kept } from './files.ts';
 import { counted, number } from '../shell/numbers.ts';
-import { locked } from './seam.ts';
 import type { Read, Source } from './sources.ts';
 
 /** Bins of the histogram of angles: 5° each. */
@@ -102,11 +102,11 @@ export class Opening {
 
 /** The mesh with other triangles: with an edge that the user has drawn, or scrambled. */
 export function again(opened: Opened, beta: number, mesh: IndexedMesh, ends: readonly number[] = []): Source {
-  const { name, title, what, kept, extras, drawn, origin } = opened;
+  const { name, title, kept, extras, drawn, origin } = opened;
   const read = async () => ({ name, mesh, kept, extras, others: 0 });
   const isScrambled = opened.isScrambled || ends.length === 0;
-  const known = { ...(what ? { what } : {}), ...(origin ? { origin } : {}) };
-  return { name, title, ...known, isScrambled, beta, drawn: [...drawn, ...ends], read };
+  const what = isScrambled ? 'Edges scrambled' : 'With edges that you drew';
+  return { name, title, what, ...(origin ? { origin } : {}), isScrambled, beta, drawn: [...drawn, ...ends], read };
 }
 
 function remarkOn({ mesh, others }: Read): string {
@@ -126,7 +126,7 @@ function remarkOnFile(mesh: FileMesh): string {
   const dropped = mesh.dropped.length > 0 && !mesh.keeps ? `Not kept: ${mesh.dropped.join(', ')}.` : '';
   const [most, ...others] = mesh.attributeEdges;
   const keeps = most
-    ? `${locked(most.edges)} to keep the attribute “${most.name}”${others.length > 0 ? ', more to keep others' : ''}.`
+    ? `${counted(most.edges, 'edge')} ${most.edges === 1 ? 'stays' : 'stay'} to keep ${attributeOf(most.name)}${others.length > 0 ? ', more to keep others' : ''}.`
     : '';
   return [cut, crossing, dropped, keeps, ...mesh.notes.map((note) => `${note}.`)].filter(Boolean).join(' ');
 }

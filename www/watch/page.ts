@@ -321,7 +321,8 @@ export class Page {
     if (!shown) return;
     this.#display.inspection.forget();
     this.#display.showNumbers(shown, this.#status);
-    if (!this.player.isPlaying) void this.#measuring.begin();
+    if (!this.#measuring.knowsAngles(shown.run)) this.#display.panel.awaitQuality();
+    void (this.player.isPlaying ? this.#measuring.glance() : this.#measuring.begin());
     try {
       await this.#display.draw(shown);
     } catch (error) {
@@ -415,7 +416,7 @@ export class Page {
   #showChoices(): void {
     const shown = this.shown;
     if (!shown) return;
-    markSample(shown.opened.spec ?? '');
+    markSample(shown.opened.origin ?? '');
     this.#choices.set(shown.settings);
   }
 }

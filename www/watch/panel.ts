@@ -18,6 +18,8 @@ export class Panel {
   readonly #angles = new AnglesChart(element('angles-chart'));
   readonly #rows = element('rows');
   readonly #seek: (at: number) => void;
+  /** The measures of the input, once they are known. */
+  #before: Quality | undefined;
 
   /** `seek` is called with the iteration whose row the user clicks. */
   constructor(seek: (at: number) => void) {
@@ -82,7 +84,7 @@ export class Panel {
       Edges: `${number.format(summary.edges)}, ${number.format(summary.boundaryEdges)} on the boundary`,
       ...frozen('Non-manifold', summary.nonManifoldEdges),
       ...frozen('Inconsistent', summary.inconsistentEdges),
-      ...(mesh.dimension === 3 ? { β: `${beta}°` } : {}),
+      ...(mesh.dimension === 3 ? { 'Crease limit β': `${beta}°` } : {}),
       ...(run.awaitsGpu
         ? { Engine: 'CPU, until WebGPU is ready', Adapter: '…', Dispatches: '…' }
         : { Engine: `${ENGINES[summary.backend]}${run.isInWorker ? ', in a worker' : ''}` }),
@@ -104,15 +106,28 @@ export class Panel {
 
   /** Shows the measures of the input and of the shown triangles, and in `change` how far they differ, when known. */
   showQuality(before: Quality | undefined, now?: Quality, change?: { moved: number; distance: number }): void {
+    this.#before = before;
     this.#angles.show(before?.angles, now?.angles);
-    element('angles-typical').textContent = before ? typical(before, now) : '';
+    element('angles').classList.remove('is-past');
+    this.#writeQuality(before, now, change);
+  }
+
+  /** Another state is shown, which has not been measured: the chart of the state before is pale until then. */
+  awaitQuality(): void {
+    if (!this.#before) return;
+    element('angles').classList.add('is-past');
+    this.#writeQuality(this.#before);
+  }
+
+  #writeQuality(before: Quality | undefined, now?: Quality, change?: { moved: number; distance: number }): void {
+    element('angles-typical').textContent = before ? onAverage(before, now) : '';
     if (!before) {
       for (const id of ['angles-facts', 'surface-facts']) element(id).replaceChildren();
       return;
     }
     const both = (key: 'min' | 'meanMin') =>
       `${degrees.format(before.angles[key])}° → ${now ? `${degrees.format(now.angles[key])}°` : '…'}`;
-    facts('angles-facts', { Smallest: both('min'), 'Mean smallest': both('meanMin') });
+    facts('angles-facts', { Smallest: both('min'), 'Smallest on average': both('meanMin') });
     const measured = (key: keyof Measures) =>
       `${digits.format(before.measures[key])} → ${now ? digits.format(now.measures[key]) : '…'}`;
     facts('surface-facts', {
@@ -147,8 +162,11 @@ export class Panel {
   }
 }
 
-const typical = (before: Quality, now: Quality | undefined) =>
-  `typical smallest ${Math.round(before.angles.meanMin)}°${now && now !== before ? ` → ${Math.round(now.angles.meanMin)}°` : ''}`;
+/** The mean smallest angle of the input and, unless that is shown, of the shown triangles. */
+function onAverage(before: Quality, now: Quality | undefined): string {
+  const whole = ({ angles }: Quality) => `${Math.round(angles.meanMin)}°`;
+  return `smallest on average ${whole(before)}${now === before ? '' : ` → ${now ? whole(now) : '…'}`}`;
+}
 
 /** What is said of edges that are not Delaunay, by the reason. */
 const LEFT: Record<string, string> = {

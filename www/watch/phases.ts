@@ -64,6 +64,12 @@ export class Phases {
     return call;
   }
 
+  /** Another run begins, which has not stopped anywhere. */
+  begin(): void {
+    this.#phase = this.#run = undefined;
+    this.#seen.clear();
+  }
+
   async #step(by: 1 | -1): Promise<boolean> {
     const shown = this.#host.shown();
     if (!shown?.run.states || shown.opened.mesh.indices.length > 3 * FEW) return false;

@@ -49,7 +49,7 @@ export class Player {
     const loop = this.#begin();
     while (this.#loop === loop) {
       const start = performance.now();
-      if (!(await this.#forward(run))) break;
+      if (!(await this.#forward(run)) || run.isOver) break;
       await nextFrame();
       if (Number(controls.speed.value) >= SLOW) await this.#page.lookAhead();
       await pause(Number(controls.speed.value) - (performance.now() - start));

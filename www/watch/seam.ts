@@ -1,6 +1,7 @@
 /** The seams of a mesh by their edges, and what the inspector says of them. */
 
 import { counted } from '../shell/numbers.ts';
+import { wordsFor } from './attributes.ts';
 
 /** An attribute of a file that keeps edges. */
 export interface Seam {
@@ -46,17 +47,6 @@ export function placeOf(x: number, numbers: Float64Array): number {
   return low;
 }
 
-/** What people call an attribute. */
-const MEANINGS: readonly [RegExp, string][] = [
-  [/^(?:vt|texcoord|TEXCOORD_\d+)$/, 'texture coordinates'],
-  [/^(?:vn|NORMAL)$/, 'normals'],
-  [/^(?:colour|COLOR_\d+|red|green|blue)$/, 'colours'],
-  [/^TANGENT$/, 'tangents'],
-  [/^(?:usemtl|material)$/, 'materials'],
-  [/^(?:g|o)$/, 'groups and objects'],
-  [/^s$/, 'smoothing groups'],
-];
-
 /** Whether the edge is a rim of the run, and its other triangle is there nevertheless. */
 export const isOpen = ({ kind }: Seam) => kind !== 'seam' && kind !== 'border';
 
@@ -70,8 +60,8 @@ export function sayingOf(seams: readonly Seam[]): string {
 }
 
 function sentence({ name, edges, kind }: Seam): string {
-  const meaning = MEANINGS.find(([pattern]) => pattern.test(name))?.[1];
-  const named = `“${name}”${meaning ? ` (${meaning})` : ''}`;
+  const words = wordsFor(name);
+  const named = `“${name}”${words ? ` (${words})` : ''}`;
   switch (kind) {
     case 'equal':
       return `Their attributes are equal: the option “weld” joins such vertices, and frees ${counted(edges, 'edge')}.`;
@@ -82,9 +72,6 @@ function sentence({ name, edges, kind }: Seam): string {
     case 'split':
       return `They differ in the attribute ${named}: ${counted(edges, 'edge')} ${edges === 1 ? 'stays' : 'stay'} to keep it.`;
     default:
-      return `It is a ${kind} of the attribute ${named}: ${locked(edges)} to keep it.`;
+      return `It is a ${kind} of the attribute ${named}: ${counted(edges, 'edge')} ${edges === 1 ? 'stays' : 'stay'} to keep it.`;
   }
 }
-
-/** `1 edge is locked`, `2 edges are locked`. */
-export const locked = (edges: number) => `${counted(edges, 'edge')} ${edges === 1 ? 'is' : 'are'} locked`;

@@ -35,7 +35,7 @@ export function sentenceOf(quad: Quad, beta: number, deviation: number | undefin
     deviation: `${stays} a flip would move the surface by more than your limit of ${deviation}.`,
     'non-manifold': `${counted(quad.opposite.length, 'triangle')} meet at this edge. A flip needs exactly two, so it stays.`,
     inconsistent: 'Its two triangles face opposite ways. A flip needs two that face the same way, so it stays.',
-    boundary: 'This is the rim of the mesh. A flip needs two triangles, and there is only one.',
+    boundary: 'This edge is on the boundary of the mesh. A flip needs two triangles, and there is only one.',
   };
   if (quad.state) return sentences[quad.state];
   if (quad.opposite.length === 1) return sentences.boundary;
@@ -72,12 +72,13 @@ export function statusOf(
   }
   const next = iterations[at] ?? ahead?.[at];
   if (at === 0) return ['', next ? `${wrongOf(next)} Press play.` : 'Press play.'];
-  if (!next) return [`After iteration ${number.format(at)}.`, `${counted(flipsOf(run), 'flip')} so far.`];
   const of = ahead ? ` of ${number.format(ahead.length)}` : '';
+  const bold = `After iteration ${number.format(at)}${of}:`;
+  if (!next) return [bold, `${counted(flipsOf(run), 'flip')} so far.`];
   const waits = next.labelled - next.flips;
   return [
-    `Iteration ${number.format(at + 1)}${of}.`,
-    `${counted(next.flips, 'edge')} ${next.flips === 1 ? 'flips' : 'flip'}${waits > 0 ? `, ${waitOf(waits)}` : ''}.`,
+    bold,
+    `${counted(next.flips, 'edge')} ${next.flips === 1 ? 'flips' : 'flip'} next${waits > 0 ? `, ${waitOf(waits)}` : ''}.`,
   ];
 }
 

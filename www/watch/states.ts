@@ -24,7 +24,7 @@ export const LOOKS: Record<EdgeState, Look> = {
   deviation: { word: 'Kept: too far', gloss: 'a flip moves the surface', colour: 'deviation', dash: [3, 6] },
   'non-manifold': { word: 'Kept: crowded', gloss: 'more than two triangles', colour: 'non-manifold', dash: [9, 2] },
   inconsistent: { word: 'Kept: turned', gloss: 'its triangles face apart', colour: 'inconsistent', dash: [2, 5] },
-  boundary: { word: 'Rim', gloss: 'one triangle only', colour: 'rim' },
+  boundary: { word: 'Boundary', gloss: 'one triangle only', colour: 'rim' },
 };
 
 /** Whether an edge in this state is not Delaunay, or cannot be decided, and stays for that reason. */

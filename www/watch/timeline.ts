@@ -10,6 +10,8 @@ const EDGE = 9;
 /** The most stops that have a dot and a label. */
 const FEW = 16;
 const WIDEST = 44;
+/** The least room between two labels, in pixels. */
+const BETWEEN = 6;
 
 export class Timeline {
   readonly #svg = select(element('bars')).select<SVGSVGElement>('svg');
@@ -23,6 +25,8 @@ export class Timeline {
   show(flips: readonly Flips[], at: number, isWhole: boolean): void {
     this.#last = [flips, at, isWhole];
     const { clientWidth: width, clientHeight: height } = element('bars');
+    // Hidden text has no size; it is drawn when it shows.
+    if (width === 0) return;
     const [count, line] = [flips.length, height - 33];
     const x = (stop: number) => EDGE + (count === 0 ? 0 : (stop / count) * (width - 2 * EDGE));
     const most = Math.sqrt(Math.max(1, ...flips.map((each) => each.flips)));
@@ -53,13 +57,16 @@ export class Timeline {
     if (next) this.#text(x(at + 0.5), line - tall(next) - 11, number.format(next.flips), 'here');
     const isFew = count <= FEW;
     if (isFew) this.#dots(count, at, x, line);
-    const labels = isFew ? Array.from({ length: count + 1 }, (_, i) => i) : [0, at, count];
-    for (const stop of new Set(labels)) {
-      const isEnd = stop === 0 || stop === count;
-      // A label beside another one would overlap it.
-      if (!isFew && !isEnd && Math.min(x(stop) - x(0), x(count) - x(stop)) < 60) continue;
+    const others = isFew ? Array.from({ length: count + 1 }, (_, i) => i) : [];
+    const taken: [from: number, to: number][] = [];
+    // A label that would touch one before it is left out.
+    for (const stop of new Set([0, count, at, ...others])) {
       const words = stop === 0 ? 'Input' : stop === count && isWhole ? 'Result' : number.format(stop);
-      this.#text(x(stop), line + 24, words, stop === at ? 'here' : '', stop === 0 ? 'start' : isEnd ? 'end' : 'middle');
+      const anchor = stop === 0 ? 'start' : stop === count ? 'end' : 'middle';
+      const label = this.#text(x(stop), line + 24, words, stop === at ? 'here' : '', anchor);
+      const { x: left, width: size } = label.node()!.getBBox();
+      if (taken.some(([from, to]) => left < to + BETWEEN && from < left + size + BETWEEN)) label.remove();
+      else taken.push([left, left + size]);
     }
   }
 
@@ -74,9 +81,9 @@ export class Timeline {
       .attr('fill', (stop) => (stop <= at ? 'var(--text)' : 'var(--muted)'));
   }
 
-  #text(x: number, y: number, words: string, className: string, anchor = 'middle'): void {
+  #text(x: number, y: number, words: string, className: string, anchor = 'middle') {
     const shift = anchor === 'start' ? -EDGE : anchor === 'end' ? EDGE : 0;
-    this.#svg
+    return this.#svg
       .append('text')
       .attr('x', x + shift)
       .attr('y', y)
