@@ -5,7 +5,7 @@ import type { Quality } from './mesh-worker.ts';
 import { takeReader } from './ahead.ts';
 import { attributeOf } from './attributes.ts';
 import { FileExtras } from './file-extras.ts';
-import { WorkerClient } from './worker-client.ts';
+import { Cancelled, WorkerClient } from './worker-client.ts';
 import type { Kept } from './files.ts';
 import { counted, number } from '../shell/numbers.ts';
 import type { Read, Source } from './sources.ts';
@@ -25,8 +25,14 @@ export interface Opened {
   /** The sample that it was before the page changed its triangles, and whether the page has scrambled them. */
   origin: string | undefined;
   isScrambled: boolean;
-  /** The worker that measures it. It starts when it is first asked for, so that it holds up no picture. */
+  /**
+   * The worker that measures it. It starts when it is first asked for, so that it holds up no picture.
+   *
+   * @throws `Cancelled` after {@link close}.
+   */
   readonly client: WorkerClient;
+  /** Ends the worker. */
+  close(): void;
   /** The ends of the edges that the user has drawn. */
   drawn: readonly number[];
   /** The files that it was read from. */
@@ -62,7 +68,7 @@ export class Opening {
   /** Stops reading, and ends the worker. */
   close(): void {
     this.#isClosed = true;
-    (this.opened?.client ?? this.#reader).close();
+    (this.opened ?? this.#reader).close();
   }
 
   async #read(source: Source): Promise<Opened> {
@@ -74,7 +80,7 @@ export class Opening {
     if (mesh.indices.length === 0) throw new Error(`There are no triangles in ${name}.`);
     // The memory of a WebAssembly module never shrinks, so closing the worker frees the memory that reading used.
     this.#reader.close();
-    let client: WorkerClient | undefined;
+    let [client, isClosed]: [client?: WorkerClient, isClosed?: boolean] = [];
     let measured: Promise<Quality> | undefined;
     const title = source.title ?? name;
     const remark = remarkOn(read);
@@ -87,13 +93,18 @@ export class Opening {
       origin: source.origin ?? source.spec,
       isScrambled: source.isScrambled ?? false,
       get client() {
+        if (isClosed) throw new Cancelled();
         return (client ??= new WorkerClient());
+      },
+      close() {
+        isClosed = true;
+        client?.close();
       },
       drawn: source.drawn ?? [],
       kept,
       extras,
       remark,
-      before: () => (measured ??= opened.client.call((worker) => worker.measure(mesh, BINS))),
+      before: async () => (measured ??= opened.client.call((worker) => worker.measure(mesh, BINS))),
       features: new Map(),
     };
     return (this.opened = opened);

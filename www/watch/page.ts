@@ -142,7 +142,7 @@ export class Page {
     this.closeAll();
     this.#display.clear();
     this.#run?.free();
-    this.#opened?.client.close();
+    this.#opened?.close();
     this.#run = this.#opened = this.#settings = this.#summary = this.#ahead = this.#source = undefined;
     this.#smallest = undefined;
     this.#jobs.cancel();
@@ -340,7 +340,7 @@ export class Page {
     this.#graphics.scene?.clear();
     this.#run?.free();
     this.#run = run;
-    if (isNew) this.#opened?.client.close();
+    if (isNew) this.#opened?.close();
     this.#opened = opened;
     if (this.#opening?.opened === opened) this.#opening = undefined;
     this.#settings = settings;
