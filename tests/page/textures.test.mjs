@@ -84,7 +84,8 @@ const COLOURED = {
     `COFF\n8 4 0\n${points.map(([p, colour]) => [...p, ...colour, 255].join(' ')).join('\n')}\n` +
     `${triangles.map((triangle) => `3 ${triangle.join(' ')}`).join('\n')}\n`,
   obj: (points, triangles) =>
-    `${points.map(([p, colour]) => `v ${p.join(' ')} ${colour.map((x) => x / 255).join(' ')}`).join('\n')}\n` +
+    // A backslash continues a line.
+    `${points.map(([p, colour]) => `v ${p.join(' ')} \\\n ${colour.map((x) => x / 255).join(' ')}`).join('\n')}\n` +
     `${triangles.map((triangle) => `f ${triangle.map((v) => v + 1).join(' ')}`).join('\n')}\n`,
 };
 
@@ -97,7 +98,7 @@ test('colours of vertices of PLY, OFF and OBJ files are drawn', async () => {
   });
   const [points, triangles] = ['points', 'triangles'].map((part) => kites.flatMap((one) => one[part]));
   for (const [extension, textOf] of Object.entries(COLOURED)) {
-    await openColoured(page, file(`coloured.${extension}`, textOf(points, triangles)));
+    await openColoured(page, file(`from.ply.${extension}`, textOf(points, triangles)));
     const { red, green, blue } = coloursIn(await page.picture(1));
     const said = `${extension}: ${JSON.stringify({ red, green, blue })}`;
     assert.ok(red.share === 0 && green.share > 0.01 && blue.share > 0.01 && green.at < blue.at, said);
