@@ -180,6 +180,25 @@ test('a texture in a file beside the mesh is drawn', async () => {
   await page.close();
 });
 
+test('the colours of a texture are drawn where it is transparent', async () => {
+  const page = await sharedPage();
+  await page.chooseEngine('cpu');
+  await openColoured(
+    page,
+    file(
+      'transparent.glb',
+      kitesGlb(
+        png([
+          [...RED, 0],
+          [...GREEN, 0],
+        ]),
+      ),
+    ),
+  );
+  await assertDrawn(page, 'transparent');
+  await page.close();
+});
+
 test('a file opens although the page cannot unpack it for its colours, and the note says so', async () => {
   const page = await sharedPage();
   await page.chooseEngine('cpu');
