@@ -9,7 +9,7 @@ export const [RED, GREEN] = [
 ];
 export const NEAREST = { magFilter: 9728, minFilter: 9728, wrapS: 33071, wrapT: 33071 };
 
-/** A PNG with these rows of pixels. */
+/** A PNG with these rows of pixels: red, green and blue, and perhaps their opacity. */
 export function png(...rows) {
   const chunk = (type, data) => {
     const body = Buffer.concat([Buffer.from(type), data]);
@@ -21,8 +21,8 @@ export function png(...rows) {
   const head = Buffer.alloc(13);
   head.writeUInt32BE(rows[0].length);
   head.writeUInt32BE(rows.length, 4);
-  // 8 bits for each of red, green and blue.
-  head.set([8, 2], 8);
+  // 8 bits for each channel, and the type of colour.
+  head.set([8, rows[0][0].length === 4 ? 6 : 2], 8);
   const pixels = deflateSync(Buffer.from(rows.flatMap((row) => [0, ...row.flat()])));
   const signature = Buffer.from('89504e470d0a1a0a', 'hex');
   return Buffer.concat([signature, chunk('IHDR', head), chunk('IDAT', pixels), chunk('IEND', Buffer.alloc(0))]);

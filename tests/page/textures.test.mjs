@@ -3,6 +3,7 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
+import { gzipSync } from 'node:zlib';
 import { startChromium } from '../browsers.mjs';
 import { Content } from '../package/gltf.mjs';
 import { file, keepDevices, loseDevice, openEdgeflip, sharedPage } from './page.mjs';
@@ -84,7 +85,8 @@ const COLOURED = {
     `COFF\n8 4 0\n${points.map(([p, colour]) => [...p, ...colour, 255].join(' ')).join('\n')}\n` +
     `${triangles.map((triangle) => `3 ${triangle.join(' ')}`).join('\n')}\n`,
   obj: (points, triangles) =>
-    `${points.map(([p, colour]) => `v ${p.join(' ')} ${colour.map((x) => x / 255).join(' ')}`).join('\n')}\n` +
+    // A backslash continues a line.
+    `${points.map(([p, colour]) => `v ${p.join(' ')} \\\n ${colour.map((x) => x / 255).join(' ')}`).join('\n')}\n` +
     `${triangles.map((triangle) => `f ${triangle.map((v) => v + 1).join(' ')}`).join('\n')}\n`,
 };
 
@@ -97,7 +99,7 @@ test('colours of vertices of PLY, OFF and OBJ files are drawn', async () => {
   });
   const [points, triangles] = ['points', 'triangles'].map((part) => kites.flatMap((one) => one[part]));
   for (const [extension, textOf] of Object.entries(COLOURED)) {
-    await openColoured(page, file(`coloured.${extension}`, textOf(points, triangles)));
+    await openColoured(page, file(`from.ply.${extension}`, textOf(points, triangles)));
     const { red, green, blue } = coloursIn(await page.picture(1));
     const said = `${extension}: ${JSON.stringify({ red, green, blue })}`;
     assert.ok(red.share === 0 && green.share > 0.01 && blue.share > 0.01 && green.at < blue.at, said);
@@ -175,6 +177,62 @@ test('a texture in a file beside the mesh is drawn', async () => {
   // The saved file names the same picture.
   const { bytes } = await page.download();
   assert.ok(Buffer.from(bytes).includes('red%20green.png'));
+  await page.close();
+});
+
+test('the colours of a texture are drawn where it is transparent', async () => {
+  const page = await sharedPage();
+  await page.chooseEngine('cpu');
+  await openColoured(
+    page,
+    file(
+      'transparent.glb',
+      kitesGlb(
+        png([
+          [...RED, 0],
+          [...GREEN, 0],
+        ]),
+      ),
+    ),
+  );
+  await assertDrawn(page, 'transparent');
+  await page.close();
+});
+
+test('a file opens although the page cannot unpack it for its colours, and the note says so', async () => {
+  const page = await sharedPage();
+  await page.chooseEngine('cpu');
+  // `readMesh` reads two packed pieces in a row, browsers do not.
+  const bytes = kitesGlb('beside.png');
+  const pieces = [bytes.subarray(0, 100), bytes.subarray(100)].map((piece) => gzipSync(piece));
+  await page.open([file('pieces.glb.gz', Buffer.concat(pieces)), file('beside.png', png([RED, GREEN]))]);
+  const { error } = await page.until('the note', ({ note }) =>
+    /The colours of the file are not drawn \(.+\)\./.test(note),
+  );
+  assert.equal(error, '');
+  assert.equal(flipsOf(await page.playToEnd()), '2');
+  await page.close();
+});
+
+test('another mesh ends the search for colours', async () => {
+  const page = await openEdgeflip(await startChromium(), () => {
+    const { postMessage, terminate } = Worker.prototype;
+    window.searching = new Set();
+    Worker.prototype.postMessage = function (message, ...more) {
+      // The worker gets no request, and so never answers.
+      if (message.path?.at(-1) === 'colours') window.searching.add(this);
+      else postMessage.call(this, message, ...more);
+    };
+    Worker.prototype.terminate = function () {
+      window.searching.delete(this);
+      terminate.call(this);
+    };
+  });
+  await page.open(file('kites.glb', kitesGlb()));
+  await page.page.waitForFunction(() => window.searching.size === 1);
+  await page.choose('sample', 'random 24');
+  await page.page.waitForFunction(() => window.searching.size === 0);
+  await page.rest();
   await page.close();
 });
 

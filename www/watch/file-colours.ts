@@ -12,12 +12,6 @@ import { coloursOfVertices } from './vertex-colours.ts';
 /** The colours of the file of a mesh. */
 export async function coloursOf(kept: Kept, sizes: Sizes): Promise<FoundColours> {
   const content = await unpacked(await contentOfKept(kept));
-  try {
-    if (GLTF.test(kept.name)) return await gltfColours(await GltfFile.of(content), sizes);
-    const colours = await coloursOfVertices(kept.name, content.bytes, sizes);
-    return { colours, notes: [] };
-  } catch (error) {
-    const why = error instanceof Error ? error.message.replace(/\.$/, '') : String(error);
-    return { colours: undefined, notes: [`The colours of the file are not drawn (${why}).`] };
-  }
+  if (GLTF.test(kept.name)) return gltfColours(await GltfFile.of(content), sizes);
+  return { colours: await coloursOfVertices(kept.name, content.bytes, sizes), notes: [] };
 }

@@ -9,6 +9,8 @@ import { WorkerClient } from './worker-client.ts';
 export class FileExtras {
   readonly #mesh: FileMesh;
   readonly #kept: Kept;
+  /** The workers that search. */
+  readonly #clients = new Set<WorkerClient>();
   #finding: Promise<void> | undefined;
   #seams: Promise<Seams> | undefined;
   /** The colours, if the file has any, once they are found. */
@@ -28,7 +30,12 @@ export class FileExtras {
 
   /** The seams of the mesh. */
   seams(): Promise<Seams> {
-    return (this.#seams ??= beside((client) => client.call((worker) => worker.seams(this.#mesh, this.#kept))));
+    return (this.#seams ??= this.#beside((client) => client.call((worker) => worker.seams(this.#mesh, this.#kept))));
+  }
+
+  /** Ends what still searches. */
+  close(): void {
+    for (const client of this.#clients) client.close();
   }
 
   async #find(): Promise<void> {
@@ -36,18 +43,25 @@ export class FileExtras {
     // A file without further content has no colours.
     if (dropped.length === 0) return;
     const sizes = { vertices: positions.length / dimension, triangles: indices.length / 3, dropped };
-    const found = await beside((client) => client.call((worker) => worker.colours(this.#kept, sizes)));
-    this.colours = found.colours;
-    this.notes = found.notes;
+    try {
+      const found = await this.#beside((client) => client.call((worker) => worker.colours(this.#kept, sizes)));
+      this.colours = found.colours;
+      this.notes = found.notes;
+    } catch (error) {
+      const why = error instanceof Error ? error.message.replace(/\.$/, '') : String(error);
+      this.notes = [`The colours of the file are not drawn (${why}).`];
+    }
   }
-}
 
-/** Calls a worker of its own, so that measures need not wait, and its memory is freed afterwards. */
-async function beside<T>(work: (client: WorkerClient) => Promise<T>): Promise<T> {
-  const client = new WorkerClient();
-  try {
-    return await work(client);
-  } finally {
-    client.close();
+  /** Calls a worker of its own, so that measures need not wait, and its memory is freed afterwards. */
+  async #beside<T>(work: (client: WorkerClient) => Promise<T>): Promise<T> {
+    const client = new WorkerClient();
+    this.#clients.add(client);
+    try {
+      return await work(client);
+    } finally {
+      client.close();
+      this.#clients.delete(client);
+    }
   }
 }

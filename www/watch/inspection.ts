@@ -80,6 +80,7 @@ export class Inspection {
   show(shown: Triangles): void {
     const held = this.#isHeld && this.#shown?.mesh === shown.mesh ? this.#quad : undefined;
     this.#shown = shown;
+    if (shown.extras !== this.#seams?.extras) this.#seams = undefined;
     if (!held) return this.close();
     const { indices } = shown;
     const half = indices.findIndex((from, h) => from === held.a && indices[next(h)] === held.b);

@@ -51,11 +51,12 @@ async function decoded({ bytes, type, isBasis }: Image, most: number): Promise<I
   if (!bytes) return 'its file was not opened together with the mesh';
   if (isBasis) return 'the page does not read KTX2';
   try {
-    const whole = await createImageBitmap(new Blob([bytes], { type }), { colorSpaceConversion: 'none' });
+    const asInFile = { colorSpaceConversion: 'none', premultiplyAlpha: 'none' } as const;
+    const whole = await createImageBitmap(new Blob([bytes], { type }), asInFile);
     const { width, height } = whole;
     if (width <= most && height <= most) return whole;
     const size = { resizeWidth: Math.min(width, most), resizeHeight: Math.min(height, most) };
-    const small = await createImageBitmap(whole, { ...size, resizeQuality: 'high' });
+    const small = await createImageBitmap(whole, { ...asInFile, ...size, resizeQuality: 'high' });
     whole.close();
     return small;
   } catch {
@@ -63,18 +64,33 @@ async function decoded({ bytes, type, isBasis }: Image, most: number): Promise<I
   }
 }
 
-/** Draws each image into a layer, and closes it. */
+/** Scales each image to a layer, and closes it. Unlike a 2D canvas, WebGL keeps the colours of transparent pixels. */
 function scaled(bitmaps: readonly { image: Image; bitmap: ImageBitmap }[]): Layers {
   const size = Math.max(...bitmaps.flatMap(({ bitmap: { width, height } }) => [width, height]));
   const pixels = new Uint8Array(4 * size * size * bitmaps.length);
-  const context = new OffscreenCanvas(size, size).getContext('2d', { willReadFrequently: true });
-  if (!context) throw new Error('the browser has no memory left for the textures');
-  bitmaps.forEach(({ image, bitmap }, layer) => {
-    context.clearRect(0, 0, size, size);
-    context.imageSmoothingEnabled = !image.isSharp;
-    context.drawImage(bitmap, 0, 0, size, size);
-    pixels.set(context.getImageData(0, 0, size, size).data, 4 * size * size * layer);
+  const gl = new OffscreenCanvas(1, 1).getContext('webgl2');
+  if (!gl) throw new Error('the browser has no WebGL2 to scale the textures');
+  const [whole, layer] = [gl.createFramebuffer(), gl.createFramebuffer()];
+  const attach = (target: number, framebuffer: WebGLFramebuffer) => {
+    const texture = gl.createTexture();
+    gl.bindTexture(gl.TEXTURE_2D, texture);
+    gl.bindFramebuffer(target, framebuffer);
+    gl.framebufferTexture2D(target, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, texture, 0);
+    return texture;
+  };
+  attach(gl.DRAW_FRAMEBUFFER, layer);
+  gl.texStorage2D(gl.TEXTURE_2D, 1, gl.RGBA8, size, size);
+  bitmaps.forEach(({ image, bitmap }, i) => {
+    const { width, height } = bitmap;
+    const texture = attach(gl.READ_FRAMEBUFFER, whole);
+    gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA8, gl.RGBA, gl.UNSIGNED_BYTE, bitmap);
     bitmap.close();
+    const filter = image.isSharp ? gl.NEAREST : gl.LINEAR;
+    gl.blitFramebuffer(0, 0, width, height, 0, 0, size, size, gl.COLOR_BUFFER_BIT, filter);
+    gl.bindFramebuffer(gl.READ_FRAMEBUFFER, layer);
+    gl.readPixels(0, 0, size, size, gl.RGBA, gl.UNSIGNED_BYTE, pixels, 4 * size * size * i);
+    gl.deleteTexture(texture);
   });
+  if (gl.getError() !== gl.NO_ERROR) throw new Error('the browser has no memory left for the textures');
   return { pixels, size, count: bitmaps.length };
 }

@@ -61,7 +61,7 @@ export function start(): Tool {
   };
   makeGallery(openSample);
   // A glTF file may have its buffers and textures in other files.
-  controls.file.accept = [...FORMATS, '.gz', '.bin', '.png', '.jpg', '.jpeg', '.webp'].join(',');
+  controls.file.accept = [...FORMATS, '.gz', '.bin', '.png', '.jpg', '.jpeg', '.webp', '.avif'].join(',');
   controls.file.addEventListener('change', () => {
     open(chosen([...(controls.file.files ?? [])]));
     controls.file.value = '';

@@ -75,40 +75,42 @@ export class Opening {
     const read = await source.read(this.#reader, (path, share) => {
       if (!this.#isClosed) this.#progress(share < 1 ? `Reading ${path}…` : `Parsing ${path}…`, share);
     });
-    const { mesh, name, kept } = read;
-    const extras = read.extras ?? (kept && 'dropped' in mesh ? new FileExtras(mesh, kept) : undefined);
-    if (mesh.indices.length === 0) throw new Error(`There are no triangles in ${name}.`);
+    if (read.mesh.indices.length === 0) throw new Error(`There are no triangles in ${read.name}.`);
     // The memory of a WebAssembly module never shrinks, so closing the worker frees the memory that reading used.
     this.#reader.close();
-    let [client, isClosed]: [client?: WorkerClient, isClosed?: boolean] = [];
-    let measured: Promise<Quality> | undefined;
-    const title = source.title ?? name;
-    const remark = remarkOn(read);
-    const opened: Opened = {
-      mesh,
-      name,
-      title,
-      what: source.what,
-      spec: source.spec,
-      origin: source.origin ?? source.spec,
-      isScrambled: source.isScrambled ?? false,
-      get client() {
-        if (isClosed) throw new Cancelled();
-        return (client ??= new WorkerClient());
-      },
-      close() {
-        isClosed = true;
-        client?.close();
-      },
-      drawn: source.drawn ?? [],
-      kept,
-      extras,
-      remark,
-      before: async () => (measured ??= opened.client.call((worker) => worker.measure(mesh, BINS))),
-      features: new Map(),
-    };
-    return (this.opened = opened);
+    return (this.opened = openedOf(read, source));
   }
+}
+
+/** The mesh, once it was read. It keeps nothing of its opening, whose worker holds memory. */
+function openedOf(read: Read, source: Source): Opened {
+  const { mesh, name, kept } = read;
+  let [client, isClosed]: [client?: WorkerClient, isClosed?: boolean] = [];
+  let measured: Promise<Quality> | undefined;
+  const opened: Opened = {
+    mesh,
+    name,
+    title: source.title ?? name,
+    what: source.what,
+    spec: source.spec,
+    origin: source.origin ?? source.spec,
+    isScrambled: source.isScrambled ?? false,
+    get client() {
+      if (isClosed) throw new Cancelled();
+      return (client ??= new WorkerClient());
+    },
+    close() {
+      isClosed = true;
+      client?.close();
+    },
+    drawn: source.drawn ?? [],
+    kept,
+    extras: read.extras ?? (kept && 'dropped' in mesh ? new FileExtras(mesh, kept) : undefined),
+    remark: remarkOn(read),
+    before: async () => (measured ??= opened.client.call((worker) => worker.measure(mesh, BINS))),
+    features: new Map(),
+  };
+  return opened;
 }
 
 /** The mesh with other triangles: with an edge that the user has drawn, or scrambled. */

@@ -143,6 +143,7 @@ export class Page {
     this.#display.clear();
     this.#run?.free();
     this.#opened?.close();
+    this.#opened?.extras?.close();
     this.#run = this.#opened = this.#settings = this.#summary = this.#ahead = this.#source = undefined;
     this.#smallest = undefined;
     this.#jobs.cancel();
@@ -341,6 +342,7 @@ export class Page {
     this.#run?.free();
     this.#run = run;
     if (isNew) this.#opened?.close();
+    if (this.#opened?.extras !== opened.extras) this.#opened?.extras?.close();
     this.#opened = opened;
     if (this.#opening?.opened === opened) this.#opening = undefined;
     this.#settings = settings;
@@ -359,7 +361,11 @@ export class Page {
   async #findColours(opened: Opened): Promise<void> {
     await this.scene?.shown();
     if (opened !== this.#opened) return;
-    await this.#display.surface.find();
+    try {
+      await this.#display.surface.find();
+    } catch (error) {
+      this.#showFailure(error);
+    }
     if (opened === this.#opened) this.#showTransport();
   }
 

@@ -135,7 +135,8 @@ export class Scene {
   setFile(surface: FileSurface | undefined, isShown: boolean): void {
     this.#file = [surface, isShown];
     this.#now.surface.setFile(surface, isShown);
-    if (this.#cut !== undefined) this.#before.surface.setFile(surface, isShown);
+    // Without a surface, the one before is released.
+    if (this.#cut !== undefined || !surface) this.#before.surface.setFile(surface, isShown);
     this.redraw();
   }
 

@@ -13,11 +13,11 @@ export async function coloursOfVertices(
 ): Promise<FileColours | undefined> {
   // Without further content, there are no colours.
   if (dropped.length === 0) return undefined;
-  const channels = /\.ply/i.test(name)
+  const channels = /\.ply(\.gz)?$/i.test(name)
     ? await channelsOfPly(bytes)
-    : /\.off/i.test(name)
+    : /\.off(\.gz)?$/i.test(name)
       ? channelsOfOff(textOf(bytes))
-      : /\.obj/i.test(name)
+      : /\.obj(\.gz)?$/i.test(name)
         ? channelsOfObj(textOf(bytes))
         : undefined;
   if (channels?.values.length !== 3 * vertices) return undefined;
@@ -59,7 +59,7 @@ async function channelsOfPly(bytes: Uint8Array<ArrayBuffer>): Promise<Channels |
   let renamed = vertex.replace(/(property[ \t]+\w+[ \t]+)([xyz])(?=\s)/g, '$1place_$2');
   CHANNELS.forEach((channel, k) => (renamed = renamed.replace(named(channel), `property $1 ${'xyz'[k]}`)));
   // Without faces, none has to be cut into triangles. This element is skipped.
-  const changed = header.replace(vertex, renamed).replace(/(element[ \t]+)(?=face[ \t])/, '$1former_');
+  const changed = header.replace(vertex, () => renamed).replace(/(element[ \t]+)(?=face[ \t])/, '$1former_');
   const head = Uint8Array.from(changed, (character) => character.charCodeAt(0));
   const whole = new Uint8Array(head.length + bytes.length - header.length);
   whole.set(head);
@@ -90,7 +90,9 @@ function channelsOfOff(text: string): Channels | undefined {
 /** A colour may follow the three coordinates of a vertex. */
 function channelsOfObj(text: string): Channels | undefined {
   const values: number[] = [];
-  for (const [, line = ''] of text.matchAll(/^[ \t]*v[ \t]+([^#\r\n]*)/gm)) {
+  // A backslash continues a line.
+  const lines = text.replace(/\\\r?\n/g, ' ').matchAll(/^[ \t]*v[ \t]+([^#\r\n]*)/gm);
+  for (const [, line = ''] of lines) {
     const numbers = line.trim().split(/\s+/).map(Number);
     if (numbers.length < 6) return undefined;
     values.push(...numbers.slice(3, 6));
