@@ -64,6 +64,8 @@ export const startChromium = () => once('Chromium', chromiumOnSoftware);
 async function chromiumOnSoftware() {
   const browser = await chromium.launch({
     timeout: START,
+    // Without a locale, Chromium opens no file whose name is not ASCII, and says nothing.
+    env: { LANG: 'C.UTF-8', ...process.env },
     executablePath:
       process.env.CHROMIUM ??
       program('Chromium', [

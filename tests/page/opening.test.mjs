@@ -323,7 +323,7 @@ test('the page says that a folder has no mesh', async () => {
 });
 
 test('the name of a file is shown unchanged', async () => {
-  const page = await openEdgeflip(await startChromium());
+  const page = await sharedPage();
   for (const name of ['a.txt', 'äpfel.off', 'ßeta.off', 'Upper.off']) {
     await choose(page, file(name, BROKEN));
     const { error } = await page.until('a message', (seen) => seen.error !== '' && seen.state !== 'busy');

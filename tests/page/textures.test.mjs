@@ -323,7 +323,7 @@ test('the inspector names the seams of a GLB file, where the two sides have vert
   for (let at = 0.33; at < 0.5 && !/COLOR/.test(seen.says); at += 0.004) {
     await page.page.mouse.move(x + at * width, y + height / 2);
     if (!(await inspected(page)).title) continue;
-    seen = await untilSaid(page, /is not more than|is a seam|is the rim/);
+    seen = await untilSaid(page, /is not more than|is a seam|on the boundary/);
   }
   assert.match(seen.title, /^Seam/);
   assert.equal(

@@ -41,7 +41,12 @@ export async function startRun(
 }
 
 /** The flips of all iterations of a small mesh; `undefined` for a large one. */
-export async function flipsAhead({ mesh, client }: Opened, options: Chosen): Promise<Flips[] | undefined> {
+export async function flipsAhead(opened: Opened, options: Chosen): Promise<Flips[] | undefined> {
+  const { mesh } = opened;
   if (mesh.indices.length > 3 * AHEAD) return undefined;
-  return client.call((worker) => worker.lookAhead(mesh, options, LONGEST)).catch(() => undefined);
+  try {
+    return await opened.client.call((worker) => worker.lookAhead(mesh, options, LONGEST));
+  } catch {
+    return undefined;
+  }
 }
