@@ -7,7 +7,7 @@ import { attributeOf } from './attributes.ts';
 import { FileExtras } from './file-extras.ts';
 import { Cancelled, WorkerClient } from './worker-client.ts';
 import type { Kept } from './files.ts';
-import { counted, number } from '../shell/numbers.ts';
+import { counted, number, staying } from '../shell/numbers.ts';
 import type { Read, Source } from './sources.ts';
 
 /** Bins of the histogram of angles: 5° each. */
@@ -85,7 +85,8 @@ export class Opening {
 /** The mesh, once it was read. It keeps nothing of its opening, whose worker holds memory. */
 function openedOf(read: Read, source: Source): Opened {
   const { mesh, name, kept } = read;
-  let [client, isClosed]: [client?: WorkerClient, isClosed?: boolean] = [];
+  let client: WorkerClient | undefined;
+  let isClosed = false;
   let measured: Promise<Quality> | undefined;
   const opened: Opened = {
     mesh,
@@ -139,7 +140,7 @@ function remarkOnFile(mesh: FileMesh): string {
   const dropped = mesh.dropped.length > 0 && !mesh.keeps ? `Not kept: ${mesh.dropped.join(', ')}.` : '';
   const [most, ...others] = mesh.attributeEdges;
   const keeps = most
-    ? `${counted(most.edges, 'edge')} ${most.edges === 1 ? 'stays' : 'stay'} to keep ${attributeOf(most.name)}${others.length > 0 ? ', more to keep others' : ''}.`
+    ? `${staying(most.edges)} to keep ${attributeOf(most.name)}${others.length > 0 ? ', more to keep others' : ''}.`
     : '';
   return [cut, crossing, dropped, keeps, ...mesh.notes.map((note) => `${note}.`)].filter(Boolean).join(' ');
 }

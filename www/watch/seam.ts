@@ -1,6 +1,6 @@
 /** The seams of a mesh by their edges, and what the inspector says of them. */
 
-import { counted } from '../shell/numbers.ts';
+import { counted, staying } from '../shell/numbers.ts';
 import { wordsFor } from './attributes.ts';
 
 /** An attribute of a file that keeps edges. */
@@ -10,8 +10,8 @@ export interface Seam {
   /** How many edges stay for it. */
   edges: number;
   /**
-   * `seam`: the corners of a vertex differ, and `border`: the faces differ; these edges are locked. The others are rims
-   * that meet, because each side has vertices of its own: `split`, whose attributes differ; `meeting`, of different
+   * `seam`: the corners of a vertex differ, and `border`: the faces differ; these edges are locked. The others are
+   * boundaries that meet, because each side has vertices of its own: `split`, whose attributes differ; `meeting`, of different
    * primitives; `equal`, which differ in nothing; `unknown`, which are not compared.
    */
   kind: 'seam' | 'border' | 'split' | 'meeting' | 'equal' | 'unknown';
@@ -47,10 +47,10 @@ export function placeOf(x: number, numbers: Float64Array): number {
   return low;
 }
 
-/** Whether the edge is a rim of the run, and its other triangle is there nevertheless. */
+/** Whether the edge is on the boundary for the run, and its other triangle is there nevertheless. */
 export const isOpen = ({ kind }: Seam) => kind !== 'seam' && kind !== 'border';
 
-/** A sentence for each seam along an edge, and before them, for a rim, why it is one. */
+/** A sentence for each seam along an edge, and before them, for a boundary, why it is one. */
 export function sayingOf(seams: readonly Seam[]): string {
   if (seams.length === 0) return '';
   const open = seams.some(isOpen)
@@ -70,8 +70,8 @@ function sentence({ name, edges, kind }: Seam): string {
     case 'meeting':
       return `It lies between two ${name === 'material' ? 'materials' : 'primitives'}, as ${counted(edges, 'edge')} ${edges === 1 ? 'does' : 'do'}.`;
     case 'split':
-      return `They differ in the attribute ${named}: ${counted(edges, 'edge')} ${edges === 1 ? 'stays' : 'stay'} to keep it.`;
+      return `They differ in the attribute ${named}: ${staying(edges)} to keep it.`;
     default:
-      return `It is a ${kind} of the attribute ${named}: ${counted(edges, 'edge')} ${edges === 1 ? 'stays' : 'stay'} to keep it.`;
+      return `It is a ${kind} of the attribute ${named}: ${staying(edges)} to keep it.`;
   }
 }

@@ -82,7 +82,7 @@ function addLocks(found: Found, { indices, groups, lockedEdges, lockedTriangles 
   }
 }
 
-/** Adds the edges at which two rims meet: each side has vertices of its own. */
+/** Adds the edges at which two boundaries meet: each side has vertices of its own. */
 async function addRims(found: Found, mesh: FileMesh, file: GltfFile | undefined): Promise<void> {
   const { indices, dimension } = mesh;
   const [from, to]: number[][] = [[], []];

@@ -1,7 +1,7 @@
 /** What the page says of an edge and of a run. */
 
 import type { EdgeState, Reasons } from 'edgeflip';
-import { counted, degrees, ms as tenths, number } from '../shell/numbers.ts';
+import { counted, degrees, ms as tenths, number, staying } from '../shell/numbers.ts';
 import { isLecture } from './lecture.ts';
 import { ENGINES } from './panel.ts';
 import type { Quad } from './quad.ts';
@@ -150,7 +150,6 @@ function turnedOf(inverted: number): string {
 function keptOf(remaining: Reasons): string {
   const kept = sumOf(remaining);
   if (kept === 0) return '';
-  const edges = `${counted(kept, 'edge')} ${kept === 1 ? 'stays' : 'stay'}`;
-  if (kept > (remaining.locked ?? 0)) return ` ${edges} to keep the shape.`;
-  return ` ${edges}, because ${kept === 1 ? 'it is' : 'they are'} locked.`;
+  if (kept > (remaining.locked ?? 0)) return ` ${staying(kept)} to keep the shape.`;
+  return ` ${staying(kept)}, because ${kept === 1 ? 'it is' : 'they are'} locked.`;
 }

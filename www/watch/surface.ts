@@ -43,7 +43,7 @@ const [COVERED, OPAQUE] = [0.45, 0.85];
 const [HOT, WARM] = [0.88, 0.13];
 /** The same of a triangle that is not tinted, because it has the colours of a file, and how bright these are in shade. */
 const [HOT_IN_FILE, DIM] = [0.6, 0.5];
-/** Widths in pixels: of edges without a colour, of the rim, and of all others. */
+/** Widths in pixels: of edges without a colour, of the boundary, and of all others. */
 const [PLAIN, RIM, COLOURED] = [0.9, 1.6, 2.2];
 const DEGREES = 180 / Math.PI;
 
