@@ -131,10 +131,13 @@ export const openEdgeflip = (browser, ...scripts) => openAt('#watch', browser, s
 /** A page that tests share. */
 class Shared {
   #open;
+  #takesBeta;
   #page;
 
-  constructor(open) {
+  /** `takesBeta`: whether its tests may enter a β, which a page then keeps for all meshes. */
+  constructor(open, takesBeta = false) {
     this.#open = open;
+    this.#takesBeta = takesBeta;
   }
 
   /** The page as a link to a sample opens it, with the engine `auto` and the β that suits the sample. */
@@ -149,13 +152,13 @@ class Shared {
     if (this.#page) await this.#page.follow(link);
     else this.#page = await this.#open(link);
     this.#page.isInUse = true;
+    this.#page.takesBeta = this.#takesBeta;
     return this.#page;
   }
 }
 
 const inChromium = new Shared(async (link) => openAt(link, await startChromium(), [keepDevices, holdWorkers]));
-/** After a β was entered, a page keeps it for all meshes. */
-const withOwnBeta = new Shared(async (link) => openAt(link, await startChromium(), [holdWorkers]));
+const withOwnBeta = new Shared(async (link) => openAt(link, await startChromium(), [holdWorkers]), true);
 const inFirefox = new Shared(async (link) => openAt(link, await startFirefox(), []));
 
 /** The page of Chromium that tests share, at a sample. Its GPU devices are in `window.devices`. */
@@ -211,6 +214,8 @@ export class EdgeflipPage {
     this.problems = problems;
     /** Whether a test has the page, if tests share it. */
     this.isInUse = undefined;
+    /** Whether a test may enter a β. */
+    this.takesBeta = true;
   }
 
   /** Closes the page, or leaves it to the next test. Fails if it had a problem. */
@@ -348,6 +353,7 @@ export class EdgeflipPage {
 
   /** Enters a β. */
   async setBeta(text) {
+    assert.ok(this.takesBeta, 'this page is for tests that enter no β; take `pageForBeta`');
     await this.showLimits();
     await this.page.fill('#beta', text);
     await this.page.press('#beta', 'Tab');

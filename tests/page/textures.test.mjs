@@ -6,7 +6,7 @@ import { test } from 'node:test';
 import { gzipSync } from 'node:zlib';
 import { startChromium } from '../browsers.mjs';
 import { Content } from '../package/gltf.mjs';
-import { file, keepDevices, loseDevice, openEdgeflip, sharedPage } from './page.mjs';
+import { file, keepDevices, loseDevice, openEdgeflip, pageForBeta, sharedPage } from './page.mjs';
 import { coloursIn, GREEN, kite, kitesGlb, meshGlb, perVertex, png, primitiveOf, RED } from './textured.mjs';
 
 /** Waits until the surface is as in the file, or plain. */
@@ -41,7 +41,7 @@ const flipsOf = ({ facts }) => facts.Flips;
 
 for (const engine of ['cpu', 'webgpu']) {
   test(`textures and colours of vertices are drawn before and after flips on ${engine}`, async () => {
-    const page = await sharedPage();
+    const page = await pageForBeta();
     await page.chooseEngine(engine);
     await openColoured(page, file('kites.glb', kitesGlb()));
     const before = await assertDrawn(page, 'the input');
