@@ -24,11 +24,14 @@ pub fn kinds(n: usize) -> Result<Vec<(&'static str, Mesh)>, Error> {
     let mixed = Mesh::new(Dimension::Two, mixed.positions().to_f32(), mixed.triangles().to_vec())?;
     let far_apart = lines(-200.0, 200.0)?;
     let [lattice_in_space, far_in_space, noisy_in_space] = [&lattice, &far, &noisy].map(lifted);
+    let turned: Vec<f32> = (0..n * n).flat_map(|v| turned((v % n) as f32, (v / n) as f32)).collect();
+    let turned = Mesh::new(Dimension::Two, turned, lattice.triangles().to_vec())?;
     let kinds = [
         ("random", families::random(n, 2.0, 1)?),
         ("jittered lattice", families::grid(n, 1)?),
         ("lattice of spacing 0.1", lattice),
         ("lattice at (100000, 100000)", far),
+        ("turned lattice", turned),
         ("lattice with one-ulp noise", noisy),
         ("lattice, lines from 1 to 2^60", mixed),
         ("lattice, 64-bit lines from 2^-200 to 2^200", far_apart),
@@ -38,6 +41,11 @@ pub fn kinds(n: usize) -> Result<Vec<(&'static str, Mesh)>, Error> {
         ("lattice with one-ulp noise in space", noisy_in_space?),
     ];
     kinds.into_iter().map(|(name, mesh)| Ok((name, delaunay(&mesh)?))).collect()
+}
+
+/// A point of a lattice whose squares have no side along an axis.
+fn turned(x: f32, y: f32) -> [f32; 2] {
+    [3.0 * x - y, x + 3.0 * y]
 }
 
 /// Maps the points (x, y) to (x, y, y). The corners of the lattice's rectangles stay cocircular.

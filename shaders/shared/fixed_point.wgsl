@@ -18,6 +18,11 @@ fn order(u: Point, v: Point) -> vec3i {
     return select(high, select(middle, low, middle == vec3i()), high == vec3i());
 }
 
+// For each axis, 0 if u and v are the same.
+fn apart(u: Point, v: Point) -> vec3u {
+    return (u[0] ^ v[0]) | (u[1] ^ v[1]) | (u[2] ^ v[2]);
+}
+
 // All points are on the grid of the mesh.
 fn grid_of(a: Point, b: Point, c: Point, d: Point) -> i32 {
     return 0;

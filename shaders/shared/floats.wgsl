@@ -16,6 +16,11 @@ fn order(u: Point, v: Point) -> vec3i {
     return vec3i(x > y) - vec3i(x < y);
 }
 
+// For each axis, 0 if u and v have the same word. Words of equal numbers may differ: 0 and -0.
+fn apart(u: Point, v: Point) -> vec3u {
+    return u ^ v;
+}
+
 // Integers in the same order as the floats.
 fn ordered(bits: Point) -> vec3i {
     let magnitude = vec3i(bits & vec3u(0x7fffffffu));

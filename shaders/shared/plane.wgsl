@@ -16,6 +16,14 @@ const PLANE_FLUSHED: f32 = 1.4210855e-14;
 // The verdict on the geometry of an edge: DELAUNAY, BLOCKED_BY + REASON_FOLD or LABELLED; UNDECIDED if exact arithmetic
 // has to decide. `winding` is -1 in a clockwise component, else 1.
 fn filtered_verdict_on(a: Point, b: Point, c: Point, d: Point, winding: i32) -> u32 {
+    var verdict = DELAUNAY;
+    if !has_right_angles(a, b, c, d) {
+        verdict = rounded_verdict_on(a, b, c, d, winding);
+    }
+    return verdict;
+}
+
+fn rounded_verdict_on(a: Point, b: Point, c: Point, d: Point, winding: i32) -> u32 {
     var p = rounded_difference(a, c).xy;
     var q = rounded_difference(b, c).xy;
     var r = rounded_difference(a, d).xy;

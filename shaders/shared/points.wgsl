@@ -23,6 +23,14 @@ fn filtered_sign(value: f32, bound: f32) -> i32 {
     return select(0, select(1, -1, value < 0.0), abs(value) > bound);
 }
 
+// Whether in (a - c)·(b - c) and in (a - d)·(b - d) the product of each axis has a factor 0. Then both opposite angles
+// are right angles, and the edge a, b is Delaunay. Compares words: a device may flush a difference to zero.
+fn has_right_angles(a: Point, b: Point, c: Point, d: Point) -> bool {
+    let at_c = min(apart(a, c), apart(b, c));
+    let at_d = min(apart(a, d), apart(b, d));
+    return all((at_c | at_d) == vec3u());
+}
+
 // u - v, on a grid of both.
 fn exact_differences(u: Point, v: Point, grid: i32) -> Differences {
     return Differences(

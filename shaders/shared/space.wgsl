@@ -40,6 +40,14 @@ fn verdict_by(a: Point, b: Point, c: Point, d: Point, is_precise: bool) -> u32 {
 
 // If the first sign is 1, the others are 1 too.
 fn filtered_signs(a: Point, b: Point, c: Point, d: Point, is_precise: bool) -> Signs {
+    var signs = Signs(1, 1, 1, 1);
+    if !has_right_angles(a, b, c, d) {
+        signs = rounded_signs(a, b, c, d, is_precise);
+    }
+    return signs;
+}
+
+fn rounded_signs(a: Point, b: Point, c: Point, d: Point, is_precise: bool) -> Signs {
     let quad = quad_of(a, b, c, d);
     let old = old_normals(quad, is_precise);
     var signs = Signs(angle_sum_sign(quad, old), 1, 1, 1);

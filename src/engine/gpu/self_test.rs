@@ -68,15 +68,17 @@ fn thresholds(form: Form) -> Thresholds {
     thresholds
 }
 
-/// A lattice of spacing 0.1, whose nearly cocircular squares need exact arithmetic. Its upper half is sheared, so that
-/// edges there have to flip. In space, the lattice also has a step.
+/// A turned lattice, whose nearly cocircular squares need exact arithmetic: right angles along the axes would not. Its
+/// upper half is sheared, so that edges there have to flip. In space, the lattice also has a step.
 fn test_mesh(form: Form) -> Result<Mesh, Error> {
     let (mut doubles, mut triangles) = (Vec::new(), Vec::new());
     for vertex in 0..SIDE * SIDE {
         let (i, j) = (vertex % SIDE, vertex / SIDE);
         let (x, y) = (f64::from(i), f64::from(j));
         let shear = (y - f64::from(SIDE / 2)).max(0.0);
-        let point = [0.1 * x + 0.37 * shear, 0.1 * y, if i > 5 { 0.02 * x * y } else { 0.0 }];
+        let step = if i > 5 { 0.02 * x * y } else { 0.0 };
+        let along = x + 3.7 * shear;
+        let point = [0.09 * along - 0.04 * y, 0.04 * along + 0.09 * y, step];
         doubles.extend_from_slice(&point[..form.dimension.stride()]);
         if i + 1 < SIDE && j + 1 < SIDE {
             let [p, q, r, s] = [0, 1, SIDE + 1, SIDE].map(|step| u32::from(vertex + step));

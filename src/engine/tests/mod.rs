@@ -199,7 +199,10 @@ fn tiers_of_the_gpu() {
         println!("| {name} | {} | {filter} | {exact} |", filter + exact);
         let EdgeCounts { edges, boundary, .. } = gpu.edge_counts();
         assert_eq!(filter + exact, edges - boundary, "{name}");
-        if name.starts_with("lattice") && !name.contains("noise") {
+        if name.starts_with("lattice of") || name.starts_with("lattice at") {
+            assert_eq!(exact, 0, "{name}: its ties have right angles");
+        }
+        if name == "turned lattice" {
             assert!(exact >= (N - 1) * (N - 1), "{name}: its diagonals are ties");
         }
         if ["random", "uvsphere"].contains(&name) {

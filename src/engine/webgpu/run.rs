@@ -5,7 +5,7 @@ use super::adjacency::COUNTERS;
 use super::buffer::Buffer;
 use super::buffers::Buffers;
 use super::copies::{CHUNK, Source};
-use super::history::{AREAS, BATCH, COUNTS, ENTRIES, ENTRY_WORDS, HISTORY_WORDS, PAUSES, SHORT_TAIL, TAIL};
+use super::history::{AREAS, BATCH, COUNTS, ENTRIES, ENTRY_WORDS, HISTORY_WORDS, SHORT_TAIL, TAIL};
 use super::kernels::{Kernel, WORKGROUP_SIZE};
 use super::known::Known;
 use super::programs::{DECIDERS, LANE_COUNT};
@@ -15,6 +15,8 @@ use crate::Error;
 use crate::engine::{Answer, Census};
 use crate::mesh::areas::Areas;
 
+/// Dispatches of the tail: it may pause once for exact arithmetic.
+const TAIL_DISPATCHES: u32 = 3;
 /// Dispatches of the counts.
 const COUNT_DISPATCHES: u64 = 4;
 
@@ -46,12 +48,12 @@ impl WebGpu {
     /// added them.
     async fn submit_iterations(&mut self, count: u32) -> Result<Vec<u32>, Error> {
         self.known = Known::default();
-        let batch = count.min(BATCH);
+        let batch = count.min(self.longest_batch());
         self.params.tail = batch;
         let longest = if self.gpu.ends_loops_early { SHORT_TAIL } else { TAIL };
         let tail = self.kernels.tail.get();
         self.params.tail_iterations = if tail.is_some() { (count - batch).min(longest) } else { 0 };
-        self.dispatches += u64::from(4 * batch + self.params.tail_iterations.min(1) * (1 + 2 * PAUSES));
+        self.dispatches += u64::from(4 * batch + TAIL_DISPATCHES * self.params.tail_iterations.min(1));
         if !self.waits {
             self.dispatches += COUNT_DISPATCHES;
         }
@@ -101,7 +103,21 @@ impl WebGpu {
             rest.fill(&mut triangles, first).await?;
             self.known.triangles = Some(triangles);
         }
+        #[cfg(not(target_arch = "wasm32"))]
+        if count >= BATCH {
+            self.gpu.batches.learn(self.form, &self.params, &history);
+        }
         Ok(self.take_over(&history))
+    }
+
+    /// The most iterations with a dispatch for each phase in the next submission. A run gets as many as the last one of
+    /// its kind needed, and if it needs more, a second submission. In a browser that would take too long.
+    fn longest_batch(&self) -> u32 {
+        #[cfg(not(target_arch = "wasm32"))]
+        if self.params.first == 0 {
+            return self.gpu.batches.first(self.form, self.params.triangles);
+        }
+        BATCH
     }
 
     /// Reads a buffer that has one word per half-edge.
@@ -236,10 +252,8 @@ impl WebGpu {
             };
             dispatch(pass);
             self.at_step(pass, Step::Resume);
-            for _ in 0..PAUSES {
-                self.dispatch(pass, Kernel::Decide, self.params.tail_length);
-                dispatch(pass);
-            }
+            self.dispatch(pass, Kernel::Decide, self.params.tail_length);
+            dispatch(pass);
         }
     }
 
