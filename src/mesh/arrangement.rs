@@ -170,12 +170,10 @@ impl Arrangement {
 
     /// The words of half-edges in the caller's order, each after `name`.
     fn named(&self, words: &[u32], threads: &Threads, name: impl Fn(u32) -> u32 + Sync) -> Vec<u32> {
-        let mut named = Vec::new();
         if self.is_empty() {
-            threads.append(&mut named, words);
-            return named;
+            return threads.copied(words);
         }
-        named = threads.zeros(words.len());
+        let mut named = threads.zeros(words.len());
         let all = shared(&mut named);
         threads.map(self.triangles.len(), |piece| {
             for t in piece {

@@ -23,13 +23,10 @@ use crate::mesh::areas::Areas;
 use crate::mesh::embedded::Embedded;
 use crate::mesh::star::Fans;
 use crate::mesh::winding::{Outline, Winding};
-use crate::phases::frozen;
-use crate::phases::{Geometry, Thresholds, Topology};
+use crate::phases::{Geometry, Thresholds, Topology, frozen};
 use crate::session::edge_states::edge_states;
 use crate::session::locks::BroughtIn;
-use crate::system::memory;
-#[cfg(not(target_arch = "wasm32"))]
-use crate::system::threads::Threads;
+use crate::system::{memory, threads::Threads};
 use crate::{
     Backend, Dimension, EdgeState, Edges, EngineKind, Error, Iteration, LeftOut, Mesh, Options, Order,
     Outcome, Positions, Reason, Status, Timings,
@@ -176,21 +173,11 @@ impl Session {
     /// [`Error::Device`], [`Error::OutOfMemory`].
     pub async fn triangles(&mut self) -> Result<Vec<u32>, Error> {
         self.check_memory(memory_bounds::COPY)?;
-        #[cfg(not(target_arch = "wasm32"))]
+        // Without a flip, nothing has to be read from a device.
         if self.engine.backend() == EngineKind::Gpu && self.updates == 0 && self.flips() == 0 {
-            return self.first_triangles();
+            return Ok(Threads::default().copied(self.mesh.triangles()));
         }
         self.ask(|engine| engine.triangles()).await
-    }
-
-    /// A copy of the triangles that the run began with: nothing is read from a device.
-    #[cfg(not(target_arch = "wasm32"))]
-    fn first_triangles(&self) -> Result<Vec<u32>, Error> {
-        let (input, mut copy) = (self.mesh.triangles(), Vec::new());
-        let bytes = size_of_val(input) as u64;
-        copy.try_reserve_exact(input.len()).map_err(|_| Error::OutOfMemory { bytes, limit: None })?;
-        Threads::default().append(&mut copy, input);
-        Ok(copy)
     }
 
     /// The result so far: reads the triangles back and counts the edges that are not Delaunay.

@@ -180,6 +180,13 @@ impl Threads {
         if self.is_one() { vec![0; len] } else { self.collect(len, |_| 0) }
     }
 
+    /// A copy of `items`, as [`Threads::append`] makes it.
+    pub(crate) fn copied<T: Copy + Send + Sync>(&self, items: &[T]) -> Vec<T> {
+        let mut copy = Vec::with_capacity(items.len());
+        self.append(&mut copy, items);
+        copy
+    }
+
     /// Appends a copy of `items` to `all`. The threads share the first access to the memory, which takes several times
     /// as long as copying.
     pub(crate) fn append<T: Copy + Send + Sync>(&self, all: &mut Vec<T>, items: &[T]) {

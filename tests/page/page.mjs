@@ -40,7 +40,6 @@ export async function meshFile(spec, name) {
 
 const number = new Intl.NumberFormat('en');
 const degrees = new Intl.NumberFormat('en', { maximumFractionDigits: 2, minimumFractionDigits: 2 });
-
 const digits = new Intl.NumberFormat('en', { maximumSignificantDigits: 6 });
 
 /** The fingerprint, as the page shows it. */
@@ -131,34 +130,31 @@ export const openEdgeflip = (browser, ...scripts) => openAt('#watch', browser, s
 /** A page that tests share. */
 class Shared {
   #open;
-  #takesBeta;
-  #page;
+  page;
 
-  /** `takesBeta`: whether its tests may enter a β, which a page then keeps for all meshes. */
-  constructor(open, takesBeta = false) {
+  constructor(open) {
     this.#open = open;
-    this.#takesBeta = takesBeta;
   }
 
   /** The page as a link to a sample opens it, with the engine `auto` and the β that suits the sample. */
   async show(mesh) {
     // A test that failed may have left the page in any state.
-    if (this.#page?.isInUse) {
-      await this.#page.page.close();
-      this.#page = undefined;
+    if (this.page?.isInUse) {
+      await this.page.page.close();
+      this.page = undefined;
     }
     const beta = SAMPLES.find(({ spec }) => spec === mesh)?.beta ?? 10;
     const link = `#watch?${new URLSearchParams({ mesh, engine: 'auto', beta: `${beta}` })}`;
-    if (this.#page) await this.#page.follow(link);
-    else this.#page = await this.#open(link);
-    this.#page.isInUse = true;
-    this.#page.takesBeta = this.#takesBeta;
-    return this.#page;
+    if (this.page) await this.page.follow(link);
+    else this.page = await this.#open(link);
+    this.page.isInUse = true;
+    return this.page;
   }
 }
 
 const inChromium = new Shared(async (link) => openAt(link, await startChromium(), [keepDevices, holdWorkers]));
-const withOwnBeta = new Shared(async (link) => openAt(link, await startChromium(), [holdWorkers]), true);
+/** After a β was entered, a page keeps it for all meshes. */
+const withOwnBeta = new Shared(async (link) => openAt(link, await startChromium(), [holdWorkers]));
 const inFirefox = new Shared(async (link) => openAt(link, await startFirefox(), []));
 
 /** The page of Chromium that tests share, at a sample. Its GPU devices are in `window.devices`. */
@@ -214,8 +210,6 @@ export class EdgeflipPage {
     this.problems = problems;
     /** Whether a test has the page, if tests share it. */
     this.isInUse = undefined;
-    /** Whether a test may enter a β. */
-    this.takesBeta = true;
   }
 
   /** Closes the page, or leaves it to the next test. Fails if it had a problem. */
@@ -353,7 +347,7 @@ export class EdgeflipPage {
 
   /** Enters a β. */
   async setBeta(text) {
-    assert.ok(this.takesBeta, 'this page is for tests that enter no β; take `pageForBeta`');
+    assert.ok(this !== inChromium.page, 'this page would keep the β for the tests after this one; take `pageForBeta`');
     await this.showLimits();
     await this.page.fill('#beta', text);
     await this.page.press('#beta', 'Tab');

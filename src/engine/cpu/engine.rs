@@ -132,8 +132,7 @@ impl Cpu {
         let (winding, embedded) =
             Embedded::with_winding(&mesh, &adjacency.twins, None, &mut outline, &threads);
         let counts = EdgeCounts::from(&adjacency);
-        let mut triangles = Vec::new();
-        threads.append(&mut triangles, mesh.triangles());
+        let triangles = threads.copied(mesh.triangles());
         let fans = embedded.fans(&mesh, &adjacency.twins, &threads);
         let mut twins = adjacency.twins;
         if mesh.dimension() == Dimension::Three {
