@@ -67,7 +67,7 @@ process.on('exit', () => console.log(`\n${matrix()}`));
 // In parallel: Firefox mostly waits.
 describe('engines', { concurrency: true }, () => {
   for (const { name, open, meshes, quads, engines } of browsers) {
-    test(`in ${name}`, { timeout: 900_000 }, async (t) => {
+    test(`in ${name}`, { timeout: full ? 3_600_000 : 900_000 }, async (t) => {
       const { page, problems } = await open();
       await page.evaluate(async () => {
         for (const part of ['parity', 'quads']) await import(`/tests/${part}/page.js`);
