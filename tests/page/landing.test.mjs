@@ -93,3 +93,21 @@ test('an address with a section leads to its top, and a visitor who scrolls is l
   assert.ok(Math.abs((await topOf(first, 'paper')) - scrolled) < 3, `${scrolled}, ${await topOf(first, 'paper')}`);
   await first.close();
 });
+
+test('the bar lies over the tool when the page is scrolled', async () => {
+  const first = await openFirst([1440, 900], '#watch');
+  await first.rest();
+  const covered = await first.page.evaluate(async () => {
+    const parts = [...document.querySelectorAll('#watch .time, #watch .side, #gallery')];
+    const seen = [];
+    for (const part of parts) {
+      scrollTo({ top: scrollY + part.getBoundingClientRect().bottom - 40, behavior: 'instant' });
+      await new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));
+      for (let x = 8; x < innerWidth; x += 40)
+        if (!document.elementFromPoint(x, 32).closest('.top')) seen.push(`${part.id || part.className} at ${x}`);
+    }
+    return seen;
+  });
+  assert.deepEqual(covered, []);
+  await first.close();
+});

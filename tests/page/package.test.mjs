@@ -195,6 +195,7 @@ test('as long as package.json names no address, the page says so, and the docume
     ['.package-until', '#package .foot'].map((place) => page.locator(place).allTextContents()),
   );
   const document = await (await fetch(new URL('README.html', page.url()))).text();
+  assert.equal(await page.getByText('Not released yet').isVisible(), !isPublic);
   await edgeflip.close();
   for (const words of [until.join(''), foot.join(''), document]) {
     if (isPublic) assert.ok(!words.includes('no public address'), words);

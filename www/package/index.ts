@@ -8,6 +8,9 @@ import { tabs } from './tabs.ts';
 const LEDE =
   'Rust compiled to WebAssembly, with shaders for WebGPU and WebGL2. The npm package needs no other package.';
 
+const UNRELEASED =
+  'Not released yet: you can try it on this page. The lines that install it are for a copy of the source, and later for the release.';
+
 const PROMISES = [
   ['Same points', 'Colours, normals and all other data of the points stay valid.'],
   ['Exact', 'No rounding error can flip an edge. If both diagonals are equally good, the edge stays.'],
@@ -44,7 +47,9 @@ export function mountPackage(host: HTMLElement): void {
   const licence = made('p', 'foot', 'edgeflip is free: ', link('LICENSE-MIT.html', 'MIT'), ' or ');
   const notPublic = facts.notPublic ? `${facts.notPublic} ` : '';
   licence.append(link('LICENSE-APACHE.html', 'Apache-2.0'), `. ${notPublic}${CREDITS}`);
-  host.append(made('h2', '', 'Use it in your project'), made('p', 'lede', LEDE), columns, below, licence);
+  const heading = made('h2', '', 'Use it in your project');
+  const lede = facts.notPublic ? `${LEDE} ${UNRELEASED}` : LEDE;
+  host.append(heading, made('p', 'lede', lede), columns, below, licence);
 }
 
 function link(to: string, words: string): HTMLAnchorElement {
@@ -64,7 +69,8 @@ function sizes(): HTMLElement {
     return made('tr', '', head, made('td', '', size));
   });
   const note = `After gzip, measured when this page was built. A part is loaded once, when it is first used. ${JOINING}`;
-  return part('What it costs', made('table', '', made('tbody', '', ...rows)), made('p', 'package-note', note));
+  const times = made('p', 'package-note', link('#engines', 'Times of a GPU and a CPU, and of your computer'));
+  return part('What it costs', made('table', '', made('tbody', '', ...rows)), made('p', 'package-note', note), times);
 }
 
 function browsers(): HTMLElement {
