@@ -1,6 +1,7 @@
 // Select: an edge flips if it is the best of both its triangles and no better edge would make the same new edge,
 // as src/phases/select.rs.
 #import mesh
+#import mutual
 #import star
 #import state
 #import walk_both if tail
@@ -14,16 +15,6 @@ fn selection(t: u32, iteration: u32) -> u32 {
         choice = select(best(t), NONE, yields(h, best(t), iteration));
     }
     return choice;
-}
-
-// The half-edge of triangle `t` whose edge is the best of both its triangles, or NONE.
-fn mutual(t: u32) -> u32 {
-    let g = best(t);
-    var h = NONE;
-    if g < DOUBTFUL {
-        h = best(g / 3u);
-    }
-    return select(NONE, h, h < DOUBTFUL && h / 3u == t);
 }
 
 // Whether an edge yields: another edge that is the best of both its triangles, and has a smaller key, would make the

@@ -9,7 +9,7 @@ struct Work {
     // 0 if the run has ended: the iteration before flipped nothing.
     count: u32,
     is_listed: bool,
-    // Whether all visited triangles count as due: those of a list, and all triangles after many flips.
+    // Whether all visited triangles are due.
     is_full: bool,
     // The offset of the list.
     first: u32,
@@ -20,14 +20,14 @@ fn entry(index: u32, word: u32) -> u32 {
 }
 
 fn active_at(index: u32) -> Work {
-    let is_listed = history_word(entry(index, BUILT)) == 1u;
+    let due = history_word(entry(index, DUE));
+    let is_listed = due == LISTED;
     var count = params.triangles;
     if is_listed {
         count = history_word(entry(index, LENGTH));
     }
-    let flips = history_word(entry(index, FLIPS));
-    count = select(count, 0u, flips == 0u);
-    return Work(count, is_listed, is_listed || flips > params.triangles / 8u, ((params.first + index) & 1u) * params.triangles);
+    count = select(count, 0u, history_word(entry(index, FLIPS)) == 0u);
+    return Work(count, is_listed, due != STAMPED, ((params.first + index) & 1u) * params.triangles);
 }
 
 fn active_triangle(work: Work, i: u32) -> u32 {

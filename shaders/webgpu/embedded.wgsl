@@ -1,4 +1,5 @@
-// Finds the embedded stars in the plane by counting, as src/mesh/embedded.rs. Flips there need no guard.
+// Finds the embedded stars in the plane by counting, as src/mesh/embedded.rs. Flips there need no guard. An open fan that
+// crosses the axis once is embedded too, if its last direction comes before its first one.
 #import begin
 #import doubts
 #import history_write
@@ -10,6 +11,23 @@
 
 // What a triangle that is not positive adds to its vertices: more than 1, and no sum overflows.
 const NOT_EMBEDDED: u32 = 2u;
+
+// Words of a vertex in the memory of the lists: its crossings; the boundary half-edges that start at it; and the vertices
+// in the first and in the last direction of its open fan, counter-clockwise, if it has one.
+const CROSSINGS: u32 = 0u;
+const STARTS: u32 = 1u;
+const FIRST: u32 = 2u;
+const LAST: u32 = 3u;
+const VERTEX_WORDS: u32 = 4u;
+
+// With many unreferenced vertices, there may be more vertices than memory before the bits of the chunks.
+fn counted_vertices() -> u32 {
+    return min(params.vertices, doubts() / VERTEX_WORDS);
+}
+
+fn word_of(v: u32, word: u32) -> u32 {
+    return VERTEX_WORDS * v + word;
+}
 
 var<workgroup> signs: atomic<u32>;
 
@@ -80,12 +98,13 @@ fn counted(t: u32, sign: i32, points: array<Point, 3>) -> u32 {
         let from_below = select(last, first, winding > 0);
         let to_above = select(first, last, winding > 0);
         let is_below = from_below.y < 0 || (from_below.y == 0 && from_below.x > 0);
-        let is_above = to_above.y > 0 || (to_above.y == 0 && to_above.x < 0);
-        let crossings = select(NOT_EMBEDDED, select(0u, 1u, is_below && is_above), is_positive);
-        let count = crossings + select(0u, 1u, twin_entry(h) == NONE);
-        // With many unreferenced vertices, there may be more vertices than words before the bits of the chunks.
-        if count > 0u && vertex(h) < doubts() {
-            atomicAdd(&frontier[vertex(h)], count);
+        let crossings = select(NOT_EMBEDDED, select(0u, 1u, is_below && is_above(to_above)), is_positive);
+        let v = vertex(h);
+        if crossings > 0u && v < counted_vertices() {
+            atomicAdd(&frontier[word_of(v, CROSSINGS)], crossings);
+        }
+        if twin_entry(h) == NONE {
+            note_boundary(v, vertex(next(h)), winding > 0);
         }
         let corner = a;
         a = b;
@@ -93,6 +112,43 @@ fn counted(t: u32, sign: i32, points: array<Point, 3>) -> u32 {
         c = corner;
     }
     return 1u << u32(select(sign, sign * winding, is_known) + 1);
+}
+
+// Notes the boundary half-edge from u to v.
+fn note_boundary(u: u32, v: u32, is_counter_clockwise: bool) {
+    if u < counted_vertices() {
+        atomicAdd(&frontier[word_of(u, STARTS)], 1u);
+        atomicStore(&frontier[word_of(u, select(LAST, FIRST, is_counter_clockwise))], v);
+    }
+    if v < counted_vertices() {
+        atomicStore(&frontier[word_of(v, select(FIRST, LAST, is_counter_clockwise))], u);
+    }
+}
+
+// Whether the star of a vertex is embedded. A vertex without triangles counts too.
+fn is_star_embedded(v: u32) -> bool {
+    let crossings = atomicLoad(&frontier[word_of(v, CROSSINGS)]);
+    let starts = atomicLoad(&frontier[word_of(v, STARTS)]);
+    var is_embedded = crossings + starts <= 1u;
+    // With several fans, a closed one may have the crossing.
+    if crossings == 1u && starts == 1u && history_word(SEVERAL_FANS) == 0u {
+        let first = position(vertex_in(v, FIRST));
+        let last = position(vertex_in(v, LAST));
+        let is_first_above = is_above(order(first, position(v)));
+        let is_last_above = is_above(order(last, position(v)));
+        let is_before = filtered_sign_of(position(v), last, first) > 0;
+        is_embedded = select(is_last_above, is_before, is_first_above == is_last_above);
+    }
+    return is_embedded;
+}
+
+fn vertex_in(v: u32, word: u32) -> u32 {
+    return atomicLoad(&frontier[word_of(v, word)]);
+}
+
+// Whether a direction points above the axis, or along it to the left.
+fn is_above(direction: vec3i) -> bool {
+    return direction.y > 0 || (direction.y == 0 && direction.x < 0);
 }
 
 // Adds the signs that the invocations of a workgroup have found.
@@ -104,7 +160,8 @@ fn add_signs(found: u32, local: u32) {
     }
 }
 
-// Writes a bit for each vertex. All signs are known now, so the iterations can begin.
+// Writes a bit for each vertex, and notes whether some star is not embedded. All signs are known now, so the iterations
+// can begin.
 @compute @workgroup_size(WORKGROUP_SIZE)
 fn mark_embedded(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
     if id.x == 0u {
@@ -113,10 +170,13 @@ fn mark_embedded(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgrou
     }
     for (var word = id.x; word < (params.vertices + 31u) / 32u; word += groups.x * WORKGROUP_SIZE) {
         var bits = 0u;
-        let end = min(min(32u * word + 32u, params.vertices), doubts());
-        for (var v = 32u * word; v < end; v++) {
-            bits |= select(0u, 1u, atomicLoad(&frontier[v]) == 1u) << (v % 32u);
+        let end = min(32u * word + 32u, params.vertices);
+        for (var v = 32u * word; v < min(end, counted_vertices()); v++) {
+            bits |= u32(is_star_embedded(v)) << (v % 32u);
         }
         topology[params.embedded + word] = bits;
+        if countOneBits(bits) < end - 32u * word {
+            atomicOr(&history[COUNTED], UNEMBEDDED);
+        }
     }
 }

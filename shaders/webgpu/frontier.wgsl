@@ -8,16 +8,17 @@
 #import mesh
 #import state
 
-// Whether an iteration builds the list for the next one.
-fn builds_list(index: u32) -> bool {
-    return history_word(entry(index, FLIPS)) < params.list_below;
+// How the next iteration finds the triangles that are due.
+fn due_after(index: u32) -> u32 {
+    let flips = history_word(entry(index, FLIPS));
+    return select(select(STAMPED, ALL, flips > params.triangles / 8u), LISTED, flips < params.list_below);
 }
 
 // Flips the selected edge of triangle `t`, from its lower half-edge, and marks the triangles that are due. Returns the
 // number of flips.
-fn flip_triangle(t: u32, index: u32, iteration: u32, builds: bool) -> u32 {
+fn flip_triangle(t: u32, index: u32, iteration: u32, next_due: u32) -> u32 {
     let flip = flip_of(t);
-    if builds && flip.x == NONE && best(t) != NONE {
+    if next_due == LISTED && flip.x == NONE && best(t) != NONE {
         append(vec3u(stamped(t, iteration), NONE, NONE), vec3u(NONE), index, iteration);
     }
     if flip.x >= flip.y {
@@ -27,12 +28,12 @@ fn flip_triangle(t: u32, index: u32, iteration: u32, builds: bool) -> u32 {
     let outer_g = vec2u(twin_entry(next(flip.y)), twin_entry(prev(flip.y)));
     let here = vec2u(unflagged(outer_h.x), unflagged(outer_h.y)) / 3u;
     let there = vec2u(unflagged(outer_g.x), unflagged(outer_g.y)) / 3u;
-    if builds {
+    if next_due == LISTED {
         // All exchanges come first, so that none waits for another: an exchange takes long.
         let first = vec3u(stamped(t, iteration), stamped(here.x, iteration), stamped(here.y, iteration));
         let second = vec3u(stamped(flip.y / 3u, iteration), stamped(there.x, iteration), stamped(there.y, iteration));
         append(first, second, index, iteration);
-    } else {
+    } else if next_due == STAMPED {
         stamp(here, iteration);
         stamp(there, iteration);
     }

@@ -11,7 +11,8 @@
 #import verdicts
 
 var<workgroup> flips: atomic<u32>;
-// The work of Flip: how many triangles, the offset of their list or NONE, and whether it builds a list.
+// The work of Flip: how many triangles, the offset of their list or NONE, and how the next
+// iteration finds its own.
 var<workgroup> known: vec3u;
 var<workgroup> tail_first: u32;
 var<workgroup> tail_count: u32;
@@ -28,18 +29,16 @@ fn flip_all(
     // Atomic reads of the same words by all invocations are slow.
     if local == 0u {
         let now = active_at(index);
-        known = vec3u(now.count, select(NONE, now.first, now.is_listed), u32(builds_list(index)));
+        known = vec3u(now.count, select(NONE, now.first, now.is_listed), due_after(index));
     }
     let got = workgroupUniformLoad(&known);
     let work = Work(got.x, got.y != NONE, false, got.y);
-    let builds = got.z == 1u;
+    let next_due = got.z;
     if work.count > 0u {
         var flipped = 0u;
         for (var i = id.x; i < work.count; i += groups.x * WORKGROUP_SIZE) {
             let t = active_triangle(work, i);
-            if best(t) != NONE {
-                flipped += flip_triangle(t, index, params.first + index, builds);
-            }
+            flipped += flip_triangle(t, index, params.first + index, next_due);
         }
         clear_doubts(id.x, groups.x * WORKGROUP_SIZE);
         for (var i = params.vertices + id.x; i < params.fans_length; i += groups.x * WORKGROUP_SIZE) {
@@ -49,7 +48,7 @@ fn flip_all(
             atomicAdd(&flips, flipped);
         }
         if id.x == 0u {
-            atomicStore(&history[entry(index + 1u, BUILT)], select(0u, 1u, builds));
+            atomicStore(&history[entry(index + 1u, DUE)], next_due);
             atomicStore(&history[entry(index + 1u, RAN)], 1u);
         }
     }
@@ -124,7 +123,7 @@ fn tail(@builtin(local_invocation_index) local: u32) {
         if workgroupUniformLoad(&is_paused) == 1u {
             break;
         }
-        for (var i = local; i < count; i += TAIL_SIZE) {
+        for (var i = select(count, local, has_selection()); i < count; i += TAIL_SIZE) {
             let g = selection(active_triangle(work, i), iteration);
             if g != NONE {
                 set_flip(best(g / 3u), g);
@@ -133,7 +132,7 @@ fn tail(@builtin(local_invocation_index) local: u32) {
         storageBarrier();
         var flipped = 0u;
         for (var i = local; i < count; i += TAIL_SIZE) {
-            flipped += flip_triangle(active_triangle(work, i), index, iteration, true);
+            flipped += flip_triangle(active_triangle(work, i), index, iteration, LISTED);
         }
         for (var i = params.vertices + local; i < params.fans_length; i += TAIL_SIZE) {
             move_anchor(i);
@@ -143,7 +142,7 @@ fn tail(@builtin(local_invocation_index) local: u32) {
             add_flips(flipped);
         }
         if local == 0u {
-            atomicStore(&history[entry(index + 1u, BUILT)], 1u);
+            atomicStore(&history[entry(index + 1u, DUE)], LISTED);
             atomicStore(&history[entry(index + 1u, RAN)], 1u);
         }
         storageBarrier();

@@ -1,12 +1,13 @@
 // The state of a mesh in buffers, as src/engine/webgpu binds it for the phases.
 #import mesh
+#import mutual
 #import three_axes if space
 #import two_axes if plane
 
 const WORKGROUP_SIZE: u32 = 256u;
 
 struct Params {
-    // The signs that occur among the triangles, in 2D: a bit for each sign. If the winding is known, the signs are
+    // The signs that occur among the triangles, in 2D: a bit for each sign, and UNEMBEDDED. If the winding is known, the signs are
     // relative to it. The device writes this word and the next two before the first iteration.
     signs: u32,
     // The span of all points while the mesh moves, see moving.wgsl.
@@ -50,6 +51,8 @@ struct Params {
 // Bits of signs. The bit between them is for flat triangles.
 const NEGATIVE: u32 = 1u;
 const POSITIVE: u32 = 4u;
+// Set if some star is not known to be embedded.
+const UNEMBEDDED: u32 = 8u;
 
 // The host knows nothing of the winding: then all triangles have the same, which `signs` tells.
 const WINDING_UNKNOWN: u32 = 0u;
@@ -97,11 +100,17 @@ const HIGHEST: u32 = 1u;
 const DEPTH: u32 = 2u;
 const ENTRY_WORDS: u32 = 4u;
 const FLIPS: u32 = 0u;
-// The length of the list of due triangles, if it was built.
+// The length of the list of due triangles, if there is one.
 const LENGTH: u32 = 1u;
-const BUILT: u32 = 2u;
+// How the iteration finds the triangles that are due: one of the constants below.
+const DUE: u32 = 2u;
 // Whether the iteration ran at all.
 const RAN: u32 = 3u;
+
+// By their stamps; by a list; or all triangles are due, because most of them would be anyway.
+const STAMPED: u32 = 0u;
+const LISTED: u32 = 1u;
+const ALL: u32 = 2u;
 
 fn vertex(h: u32) -> u32 {
     return triangles[h];
@@ -126,10 +135,17 @@ fn best(t: u32) -> u32 {
 
 // The two half-edges of the selected edge of triangle `t`, its own one first; NONE if no edge is selected. The choice
 // of Select has the other half-edge, and in the bits of the flags the index of its own half-edge in the triangle,
-// 0 to 2.
+// 0 to 2. Without Select, the edge is selected that is the best of both its triangles.
 fn flip_of(t: u32) -> vec2u {
-    let entry = choices[params.triangles + t];
-    return select(vec2u(3u * t + (entry >> 30u), entry & ~FLAGS), vec2u(NONE), entry == NONE);
+    var flip = vec2u(NONE);
+    if has_selection() {
+        let entry = choices[params.triangles + t];
+        flip = select(vec2u(3u * t + (entry >> 30u), entry & ~FLAGS), flip, entry == NONE);
+    } else {
+        let h = mutual(t);
+        flip = vec2u(h, select(best(t), NONE, h == NONE));
+    }
+    return flip;
 }
 
 fn set_flip(h: u32, g: u32) {
@@ -160,12 +176,18 @@ fn is_clockwise(t: u32) -> bool {
 
 // Whether the star of a vertex is known to be embedded, see embedded.wgsl.
 fn is_embedded(v: u32) -> bool {
-    return DIMENSION == 2u && ((topology[params.embedded + v / 32u] >> (v % 32u)) & 1u) == 1u;
+    return !has_selection() || (DIMENSION == 2u && ((topology[params.embedded + v / 32u] >> (v % 32u)) & 1u) == 1u);
+}
+
+// Whether Select has to look for flips that make the same edge. If all stars are embedded, there are none.
+fn has_selection() -> bool {
+    return DIMENSION == 3u || (params.signs & UNEMBEDDED) != 0u;
 }
 
 // Whether all triangles have the strict sign of the winding: then no edge that is not Delaunay can fold.
 fn is_strict() -> bool {
-    return params.signs == POSITIVE || (params.winding == WINDING_UNKNOWN && params.signs == NEGATIVE);
+    let signs = params.signs & ~UNEMBEDDED;
+    return signs == POSITIVE || (params.winding == WINDING_UNKNOWN && signs == NEGATIVE);
 }
 
 fn has_fans() -> bool {

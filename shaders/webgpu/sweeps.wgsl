@@ -22,7 +22,7 @@ fn label_all(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) 
         if is_due(work, t, iteration) {
             let choice = label(t, iteration, verdicts_on(t, false, LABELS_CLOSELY));
             choices[t] = choice;
-            if flip_of(t).x != NONE {
+            if has_selection() && flip_of(t).x != NONE {
                 clear_flip(t);
             }
             if choice == DOUBTFUL {
@@ -34,8 +34,11 @@ fn label_all(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) 
 
 @compute @workgroup_size(WORKGROUP_SIZE)
 fn select_all(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
-    let work = active_at(step_.index);
     let iteration = params.first + step_.index;
+    var work = active_at(step_.index);
+    if !has_selection() {
+        work.count = 0u;
+    }
     for (var i = id.x; i < work.count; i += groups.x * WORKGROUP_SIZE) {
         let g = selection(active_triangle(work, i), iteration);
         if g != NONE {

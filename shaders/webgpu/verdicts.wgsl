@@ -10,32 +10,39 @@
 // from its lower half-edge; an iteration tests the edges that may flip. The other edges get DELAUNAY.
 fn verdicts_on(t: u32, is_census: bool, is_close: bool) -> vec3u {
     let winding = select(1, -1, is_clockwise(t));
-    let leaves = leaves_some();
-    var a = position(vertex(3u * t));
-    var b = position(vertex(3u * t + 1u));
-    var c = position(vertex(3u * t + 2u));
-    var verdicts = vec3u();
-    for (var h = 3u * t; h < 3u * t + 3u; h++) {
-        let entry = twin_entry(h);
-        var verdict = DELAUNAY;
-        if counts(h, entry, is_census) {
-            let d = position(vertex(prev(unflagged(entry))));
-            if leaves {
-                verdict = left_alone(a, b, c, d);
-            }
-            if verdict == DELAUNAY && is_close {
-                verdict = close_verdict_on(a, b, c, d, winding);
-            } else if verdict == DELAUNAY {
-                verdict = filtered_verdict_on(a, b, c, d, winding);
-            }
-        }
-        verdicts = vec3u(verdicts.yz, verdict);
-        let first = a;
-        a = b;
-        b = c;
-        c = first;
+    let first = 3u * t;
+    let entries = vec3u(twin_entry(first), twin_entry(first + 1u), twin_entry(first + 2u));
+    let corners = vec3u(vertex(first), vertex(first + 1u), vertex(first + 2u));
+    let own = vec3u(first, first + 1u, first + 2u);
+    let are_counted = select(entries < vec3u(LOCKED), (entries != vec3u(NONE)) & (own < (entries & vec3u(~FLAGS))), vec3<bool>(is_census));
+    // All loads come before the tests. An edge that does not count is tested with its own triangle twice.
+    let others = select(own, entries & vec3u(~FLAGS), are_counted);
+    let far = vec3u(vertex(prev(others.x)), vertex(prev(others.y)), vertex(prev(others.z)));
+    let a = position(corners.x);
+    let b = position(corners.y);
+    let c = position(corners.z);
+    let opposite_c = position(far.x);
+    let opposite_a = position(far.y);
+    let opposite_b = position(far.z);
+    let verdicts = vec3u(
+        verdict_on_points(a, b, c, opposite_c, winding, is_close),
+        verdict_on_points(b, c, a, opposite_a, winding, is_close),
+        verdict_on_points(c, a, b, opposite_b, winding, is_close),
+    );
+    return select(vec3u(DELAUNAY), verdicts, are_counted);
+}
+
+fn verdict_on_points(a: Point, b: Point, c: Point, d: Point, winding: i32, is_close: bool) -> u32 {
+    var verdict = DELAUNAY;
+    if leaves_some() {
+        verdict = left_alone(a, b, c, d);
     }
-    return verdicts;
+    if verdict == DELAUNAY && is_close {
+        verdict = close_verdict_on(a, b, c, d, winding);
+    } else if verdict == DELAUNAY {
+        verdict = filtered_verdict_on(a, b, c, d, winding);
+    }
+    return verdict;
 }
 
 fn counts(h: u32, entry: u32, is_census: bool) -> bool {

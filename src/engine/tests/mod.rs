@@ -179,6 +179,54 @@ fn anchors_move_alike() {
     );
 }
 
+/// A sheet, and beside it triangles around vertex 0, of an eighth of a round each: `count` from direction `first` on.
+fn sheet_and_open_fan(first: usize, count: u32, is_clockwise: bool) -> Mesh {
+    let directions = [[1, 0], [1, 1], [0, 1], [-1, 1], [-1, 0], [-1, -1], [0, -1], [1, -1]];
+    let directions = (0..=count as usize).map(|i| directions[(first + i) % 8]);
+    let fan: Vec<f32> = [[0, 0]].into_iter().chain(directions).flatten().map(|x| x as f32).collect();
+    let sheet = families::by_name("random 20").unwrap();
+    let mut positions = [fan, sheet.positions().to_f32().iter().map(|x| x + 9.0).collect()].concat();
+    if is_clockwise {
+        positions.iter_mut().skip(1).step_by(2).for_each(|y| *y = -*y);
+    }
+    let triangles = (0..count).flat_map(|i| [0, 1 + i, 2 + i]);
+    let triangles = triangles.chain(sheet.triangles().iter().map(|&v| count + 2 + v)).collect();
+    Mesh::new(crate::Dimension::Two, positions, triangles).unwrap()
+}
+
+fn has_selection(mesh: Mesh) -> bool {
+    let (_, gpu) = engines(&Arc::new(mesh), any_deviation(10.0));
+    block_on(gpu.has_selection()).unwrap()
+}
+
+/// Where all stars are embedded, the engine does not run Select.
+#[test]
+fn open_fans_are_embedded_if_they_go_less_than_round() {
+    for (first, is_clockwise) in (0..8).flat_map(|first| [(first, false), (first, true)]) {
+        for count in 1..20 {
+            let found = has_selection(sheet_and_open_fan(first, count, is_clockwise));
+            assert_eq!(found, count >= 8, "{first}, {count}, {is_clockwise}");
+        }
+    }
+    for name in ["random 20", "shear 20", "regular 20", "grid 20"] {
+        assert!(!has_selection(families::by_name(name).unwrap()), "{name}");
+    }
+    // Holes: without one of their triangles, meshes have reflex corners.
+    let mesh = families::by_name("random 20").unwrap();
+    let holed =
+        mesh.triangles().chunks(3).enumerate().filter(|(t, _)| t % 250 != 120).flat_map(|(_, t)| t.to_vec());
+    let holed = Mesh::new(mesh.dimension(), mesh.positions().to_f32(), holed.collect()).unwrap();
+    assert!(!has_selection(holed));
+    // One more open fan at vertex 0 of a fan that is closed: the crossing is not that of the open one.
+    let closed = sheet_and_open_fan(0, 8, false);
+    let last = |&v: &u32| if v == 9 { 1 } else { v };
+    let mut triangles: Vec<u32> = closed.triangles().iter().map(last).collect();
+    let two_fans = |triangles| Mesh::new(closed.dimension(), closed.positions().to_f32(), triangles).unwrap();
+    assert!(!has_selection(two_fans(triangles.clone())));
+    triangles.extend([0, 10, 11]);
+    assert!(has_selection(two_fans(triangles)));
+}
+
 #[test]
 fn an_empty_mesh_is_done() {
     let mesh = Arc::new(Mesh::new(crate::Dimension::Two, Vec::<f32>::new(), Vec::new()).unwrap());

@@ -6,10 +6,12 @@
 //! mesh the result may be not manifold.
 
 use super::WebGpu;
+use super::adjacency::COUNTERS;
 use super::compile::compile;
 use super::copies::Source;
 use super::kernels::{Kernel, Plan};
 use super::known::Known;
+use super::params::UNEMBEDDED;
 use crate::{Error, NONE};
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -32,6 +34,9 @@ impl WebGpu {
         self.known = Known::default();
         self.compile_baseline().await?;
         let (gpu, triangles) = (self.gpu.clone(), self.params.triangles);
+        // With this bit, Flip takes the selection of Select.
+        let signs = [gpu.read(&self.counters, COUNTERS + 1).await?[COUNTERS] | UNEMBEDDED];
+        gpu.queue.write_buffer(&self.buffers.uniform, 0, bytemuck::cast_slice(&signs));
         let mut flips = Vec::new();
         while (flips.len() as u32) < count {
             let label = |pass: &mut wgpu::ComputePass| {

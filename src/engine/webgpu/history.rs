@@ -23,7 +23,11 @@ pub(super) const ENTRIES: usize = 15;
 pub(super) const ENTRY_WORDS: usize = 4;
 pub(super) const HISTORY_WORDS: usize = ENTRIES + ENTRY_WORDS * (1 + BATCH as usize + TAIL as usize);
 
-/// The entry of the history that the next iteration starts from: FLIPS, LENGTH, BUILT, RAN.
+/// How an iteration finds the triangles that are due, as in `state.wgsl`.
+pub(super) const LISTED: u32 = 1;
+pub(super) const ALL: u32 = 2;
+
+/// The entry of the history that the next iteration starts from: FLIPS, LENGTH, DUE, RAN.
 pub(super) type Entry = [u32; ENTRY_WORDS];
 
 /// How many iterations the last run of each form and size needed before the tail could take over. The next run of the
@@ -48,7 +52,8 @@ impl Batches {
 
     /// Takes over the history of a submission with these parameters.
     pub(super) fn learn(&self, form: Form, params: &Params, history: &[u32]) {
-        let is_ready = |entry: &[u32]| entry[0] == 0 || (entry[2] == 1 && entry[1] <= params.tail_length);
+        let is_ready =
+            |entry: &[u32]| entry[0] == 0 || (entry[2] == LISTED && entry[1] <= params.tail_length);
         let entries = history[ENTRIES..].chunks_exact(ENTRY_WORDS).take_while(|entry| entry[3] == 1);
         let needed = params.first + entries.take_while(|entry| !is_ready(entry)).count() as u32;
         self.of(form, params.triangles).store(needed.clamp(1, BATCH), Ordering::Relaxed);

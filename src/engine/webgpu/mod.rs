@@ -61,6 +61,8 @@ use super::GpuBuffers;
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 use super::SharedObjects;
 use super::{Answer, Census, EdgeCounts, Engine, Moved};
+#[cfg(test)]
+use crate::NONE;
 use crate::engine::gpu::Form;
 use crate::mesh::areas::Areas;
 #[cfg(test)]
@@ -273,8 +275,19 @@ impl WebGpu {
     pub(crate) async fn choices(&self) -> Result<(Vec<u32>, Vec<u32>), Error> {
         let count = self.params.triangles as usize;
         let mut best = self.gpu.read(&self.buffers.choices, 2 * count).await?;
-        let selected = best.split_off(count).into_iter().map(unflagged).collect();
+        let mut selected: Vec<u32> = best.split_off(count).into_iter().map(unflagged).collect();
+        if !self.has_selection().await? {
+            let best_of = |h: u32| best.get(h as usize / 3).copied().unwrap_or(NONE);
+            let is_selected = |t: usize| best_of(best[t]) as usize / 3 == t;
+            selected = (0..count).map(|t| if is_selected(t) { best[t] } else { NONE }).collect();
+        }
         Ok((best, selected))
+    }
+
+    /// Whether some star is not known to be embedded, or the mesh is in space.
+    pub(crate) async fn has_selection(&self) -> Result<bool, Error> {
+        let signs = self.gpu.read(&self.buffers.uniform, 1).await?[0];
+        Ok(self.form.dimension == crate::Dimension::Three || signs & params::UNEMBEDDED != 0)
     }
 
     pub(crate) async fn fans(&self) -> Result<Vec<u32>, Error> {

@@ -40,6 +40,9 @@ pub(super) const WINDING_COUNTER_CLOCKWISE: u32 = 3;
 /// Bits of the signs of triangles, as in `state.wgsl`.
 pub(super) const NEGATIVE: u32 = 1;
 pub(super) const POSITIVE: u32 = 4;
+/// Set with them if some star is not known to be embedded.
+#[cfg(any(test, feature = "baseline"))]
+pub(super) const UNEMBEDDED: u32 = 8;
 
 /// The same layout as in `state.wgsl`.
 #[repr(C)]

@@ -4,7 +4,7 @@ use super::WebGpu;
 use super::adjacency::{self, COUNTERS, Found, Scratch};
 use super::buffers::Buffers;
 use super::faults::{refuse, watch};
-use super::history::{ENTRIES, Entry, FLIPPED, SEVERAL_FANS};
+use super::history::{ALL, ENTRIES, Entry, FLIPPED, SEVERAL_FANS};
 use super::kernels::Kernel;
 use super::known::Known;
 use super::limits::{refuse_large_buffer, refuse_large_mesh};
@@ -144,9 +144,9 @@ impl WebGpu {
     }
 
     /// The entry that the device writes if it needs no help of the host: as if an iteration before the first had flipped
-    /// edges and built no list.
+    /// edges, and all triangles are due.
     pub(super) fn first_state(&self) -> Entry {
-        [self.params.triangles, 0, 0, 1]
+        [self.params.triangles, 0, ALL, 1]
     }
 
     /// Begins the iterations. The device already has the triangles and the commands that prepare them.

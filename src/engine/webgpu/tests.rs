@@ -5,9 +5,9 @@
 use super::copies::{CHUNK, PIECE};
 use super::device::Device;
 use super::faults::Fault;
-use super::history::{AREAS, COUNTS, ENTRIES, ENTRY_WORDS, SEVERAL_FANS};
+use super::history::{ALL, AREAS, COUNTS, ENTRIES, ENTRY_WORDS, LISTED, SEVERAL_FANS};
 use super::kernels::{Plan, WORKGROUP_SIZE};
-use super::params::{NEGATIVE, POSITIVE, Params};
+use super::params::{NEGATIVE, POSITIVE, Params, UNEMBEDDED};
 use super::staging::FEWEST;
 use super::{adjacency, compile, programs, sources};
 use crate::engine::gpu::cosine::DIGIT_BITS;
@@ -88,12 +88,15 @@ fn constants_of_the_phases_agree() {
         ("BLOCKED_BY", 2),
         ("FLIPS", 0),
         ("LENGTH", 1),
-        ("BUILT", 2),
+        ("DUE", 2),
         ("RAN", 3),
+        ("LISTED", u64::from(LISTED)),
+        ("ALL", u64::from(ALL)),
         ("AREAS", AREAS as u64),
         ("SEVERAL_FANS", SEVERAL_FANS as u64),
         ("NEGATIVE", u64::from(NEGATIVE)),
         ("POSITIVE", u64::from(POSITIVE)),
+        ("UNEMBEDDED", u64::from(UNEMBEDDED)),
     ];
     for (name, value) in host {
         assert_eq!(shader.get(name), Some(&value), "{name}");
