@@ -1,6 +1,6 @@
 //! The parameters of the kernels of the phases.
 
-use super::programs::FEW;
+use super::programs;
 use crate::engine::gpu::cosine::Cosine;
 use crate::engine::gpu::upload::Upload;
 use crate::{Dimension, Mesh, NONE};
@@ -95,7 +95,7 @@ impl Params {
             list_below: if count <= SMALL_MESH { u32::MAX } else { count as u32 / 256 },
             embedded: topology.embedded,
             winding: WINDING_UNKNOWN,
-            most_decided: if ends_loops_early { FEW } else { NONE },
+            most_decided: if ends_loops_early { programs::few(mesh.dimension()) } else { NONE },
             update: 0,
             changes: 0,
             cos_digits: [cosine.mantissa, cosine.power],

@@ -8,7 +8,6 @@ use super::copies::{CHUNK, Source};
 use super::history::{AREAS, BATCH, COUNTS, ENTRIES, ENTRY_WORDS, HISTORY_WORDS, SHORT_TAIL, TAIL};
 use super::kernels::{Kernel, WORKGROUP_SIZE};
 use super::known::Known;
-use super::programs::FEW;
 use super::steps::Step;
 use super::words::{Words, reserve};
 use crate::Error;
@@ -227,8 +226,11 @@ impl WebGpu {
             return pass.dispatch_workgroups(groups, 1, 1);
         }
         // On drivers that end loops too early, a workgroup decides few triangles per dispatch.
-        let all =
-            if self.gpu.ends_loops_early { groups.div_ceil(MOST_DECIDING) * WORKGROUP_SIZE / FEW } else { 1 };
+        let all = if self.gpu.ends_loops_early {
+            groups.div_ceil(MOST_DECIDING) * WORKGROUP_SIZE.div_ceil(self.params.most_decided)
+        } else {
+            1
+        };
         for _ in 0..all {
             pass.dispatch_workgroups(groups.min(MOST_DECIDING), 1, 1);
         }
