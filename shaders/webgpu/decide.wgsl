@@ -12,29 +12,31 @@
 #import state
 #import verdicts
 
-// Invocations of a workgroup, each with its own lane.
-const DECIDERS: u32 = 64u;
-
 var<workgroup> limit: u32;
 var<workgroup> together: u32;
 // Waiting triangles, in no order.
 var<workgroup> waiting: array<u32, CHUNKS * WORKGROUP_SIZE>;
-var<workgroup> waiting_count: atomic<u32>;
-var<workgroup> found: u32;
+// The half-edges of the edges that are still undecided in as many triangles as there are invocations, in no order.
+var<workgroup> undecided: array<u32, 3u * DECIDERS>;
+// How many entries either list has.
+var<workgroup> counter: atomic<u32>;
+var<workgroup> counted: u32;
 
+// Each invocation tries a triangle of its own: many ties, as those of a lattice, need no long integers. All decide
+// together what is left, edge by edge.
 @compute @workgroup_size(DECIDERS)
 fn decide_all(
     @builtin(workgroup_id) group: vec3u,
     @builtin(local_invocation_index) local: u32,
     @builtin(num_workgroups) groups: vec3u,
 ) {
-    lane = group.x * DECIDERS + local;
+    lane = local;
     let index = index_of_task();
     let work = work_of_task(index);
     if local == 0u {
         limit = select(0u, work.count, has_doubts());
         // In a list, most chunks may be doubtful, so a workgroup takes one at a time, and all workgroups share them.
-        together = select(CHUNKS, 1u, work.is_listed || decides_one());
+        together = select(CHUNKS, 1u, work.is_listed || decides_few());
     }
     let end = workgroupUniformLoad(&limit);
     let step = workgroupUniformLoad(&together);
@@ -42,29 +44,23 @@ fn decide_all(
         let bits = doubtful_chunks(first, step);
         for (var chunk = 0u; chunk < step; chunk++) {
             if ((bits >> chunk) & 1u) == 1u {
-                collect((first + chunk) * WORKGROUP_SIZE, work, local);
+                collect((first + chunk) * WORKGROUP_SIZE, work);
             }
         }
-        workgroupBarrier();
-        if local == 0u {
-            found = atomicExchange(&waiting_count, 0u);
+        let count = min(counted_entries(), params.most_decided);
+        for (var i = 0u; i < count; i += DECIDERS) {
+            decide(i + lane, count, params.first + index);
         }
-        let count = workgroupUniformLoad(&found);
-        let end_of_answers = select(count, min(count, DECIDERS), decides_one());
-        for (var i = local; i < end_of_answers; i += DECIDERS) {
-            answer(waiting[i], params.first + index);
-        }
-        if decides_one() && count > 0u {
+        if decides_few() && count > 0u {
             break;
         }
-        workgroupBarrier();
     }
 }
 
-// Whether each invocation decides one triangle per dispatch, in several dispatches: for drivers that end loops too
-// early, see rounds.wgsl.
-fn decides_one() -> bool {
-    return params.decides_one == 1u;
+// Whether a workgroup decides few triangles per dispatch, in several dispatches: for drivers that end loops too early,
+// see rounds.wgsl.
+fn decides_few() -> bool {
+    return params.most_decided != NONE;
 }
 
 // The iteration; without meaning for other tasks.
@@ -83,48 +79,56 @@ fn work_of_task(index: u32) -> Work {
 }
 
 // Collects the waiting triangles of a chunk.
-fn collect(first: u32, work: Work, local: u32) {
-    for (var i = first + local; i < min(first + WORKGROUP_SIZE, work.count); i += DECIDERS) {
+fn collect(first: u32, work: Work) {
+    for (var i = first + lane; i < min(first + WORKGROUP_SIZE, work.count); i += DECIDERS) {
         let t = active_triangle(work, i);
         if choices[waiting_index(t)] == DOUBTFUL {
-            waiting[atomicAdd(&waiting_count, 1u)] = t;
+            waiting[atomicAdd(&counter, 1u)] = t;
         }
     }
 }
 
-fn answer(t: u32, iteration: u32) {
-    let answers = exact_answers(t, filtered_answers(t, step_.task), step_.task);
-    if step_.task == PREPARE {
-        prepare(t, answers);
-    } else if step_.task == CENSUS {
-        choices[waiting_index(t)] = packed(answers);
-    } else {
-        choices[t] = label(t, iteration, answers);
+// The length of a list that all invocations have appended to. The next list is empty.
+fn counted_entries() -> u32 {
+    workgroupBarrier();
+    if lane == 0u {
+        counted = atomicExchange(&counter, 0u);
     }
+    return workgroupUniformLoad(&counted);
 }
 
-// Uses exact arithmetic for the edges that the filter does not decide: mostly one edge of a triangle. The loop begins
-// with an undecided edge, so that all invocations compute at the same time.
-fn exact_answers(t: u32, filtered: vec3u, task: u32) -> vec3u {
-    let winding = select(1, -1, is_clockwise(t));
-    var answers = filtered;
-    var k = first_undecided(answers);
-    while k < 3u {
-        let h = 3u * t + k;
+// Decides a waiting triangle for each invocation, if there are so many.
+fn decide(i: u32, count: u32, iteration: u32) {
+    var t = NONE;
+    var verdicts = vec3u();
+    if i < count {
+        t = waiting[i];
+        verdicts = verdicts_alone(t);
+        for (var k = 0u; k < 3u; k++) {
+            if verdict_at(verdicts, k) == UNDECIDED {
+                undecided[atomicAdd(&counter, 1u)] = 3u * t + k;
+            }
+        }
+    }
+    let edges = counted_entries();
+    for (var edge = 0u; edge < edges; edge++) {
+        let h = undecided[edge];
+        let g = twin(h);
+        let winding = select(1, -1, is_clockwise(h / 3u));
         let a = position(vertex(h));
         let b = position(vertex(next(h)));
         let c = position(vertex(prev(h)));
-        // In the plane, the preparation needs only the triangle, and this edge may have no twin.
-        let g = twin(h);
-        let d = position(vertex(select(prev(g), h, g == NONE)));
-        answers = with_verdict(answers, k, exact_verdict_on(a, b, c, d, winding, task));
-        k = first_undecided(answers);
+        let d = position(vertex(prev(g)));
+        let verdict = exact_verdict_on(a, b, c, d, winding);
+        if h / 3u == t {
+            verdicts = with_verdict(verdicts, h % 3u, verdict);
+        }
     }
-    return answers;
-}
-
-// The first undecided edge; 3 if all are decided.
-fn first_undecided(verdicts: vec3u) -> u32 {
-    let is_undecided = verdicts == vec3u(UNDECIDED);
-    return select(select(select(3u, 2u, is_undecided.z), 1u, is_undecided.y), 0u, is_undecided.x);
+    if i < count && step_.task == PREPARE {
+        prepare(t, verdicts);
+    } else if i < count && step_.task == CENSUS {
+        choices[waiting_index(t)] = packed(verdicts);
+    } else if i < count {
+        choices[t] = label(t, iteration, verdicts);
+    }
 }

@@ -1,119 +1,140 @@
-// Computes with exact integers in memory. A number is stored as its length, then its digits, the lowest first: it is
-// the sum of digit i times 2^(13·i). Each invocation has its own lane. Programs (src/engine/webgpu/programs.rs) define
-// the computations. The code for the product of two numbers therefore exists only once. Inlined everywhere, it would
-// compile for seconds.
+// Computes with exact integers in workgroup memory. A number is a sum of digit i times 2^(13·i); its digits are at a
+// fixed offset, the lowest first. All invocations of a workgroup compute together, each one column of a sum of
+// products. Programs (src/engine/webgpu/programs.rs) define the sums. The code for the product of two numbers therefore
+// exists only once. Inlined everywhere, it would compile for seconds.
 #import integers
 #import points
-#import three_axes if space
-#import two_axes if plane
-
-// Computed digits are balanced, from -4096 to 4095: the sign of a number is the sign of its highest digit.
 
 const DIGIT_BITS: u32 = 13u;
 const HALF_DIGIT: i32 = 4096;
 const DIGIT_MASK: i32 = 8191;
 
-// The offset of each program, the steps of the programs, then the lanes, interleaved word by word.
-@group(0) @binding(9) var<storage, read_write> numbers: array<i32>;
+// Invocations of a workgroup: at least as many as the columns of the steps that they compute at the same time.
+const DECIDERS: u32 = 128u;
 
-// The offset of the lanes, the words of a step, and the number of lanes.
-const LANES: u32 = 512u;
-const STEP: u32 = 5u;
-const LANE_COUNT: u32 = 8192u;
+// The first step of each program, the end of the last one, then the steps: up to four products of two numbers each. See
+// programs.rs for the bits.
+const TABLE: u32 = 56u;
+@group(0) @binding(9) var<uniform> programs: array<vec4u, TABLE>;
 
-// Digits of an integer of up to 91 bits, words of a number of up to 8 digits, and words of a vector of three.
-const DIGITS: u32 = 7u;
-const GIVEN_WORDS: u32 = 9u;
-const VECTOR: u32 = 27u;
+// Words of all numbers, and of an input number: none has fewer.
+const WORDS: u32 = 562u;
+const GIVEN_WORDS: u32 = 8u;
 
-// The offset of the differences of points in a lane, by vector and axis.
-const DIFFERENCES: u32 = 0u;
+var<workgroup> digits: array<i32, WORDS>;
+// How many digits each number has, by its offset / GIVEN_WORDS. The digits above are not written.
+var<workgroup> lengths: array<atomic<u32>, WORDS / GIVEN_WORDS + 1u>;
+// The carries into each column, for two rounds. Into the first column there is none.
+var<workgroup> carries: array<array<i32, DECIDERS + 1u>, 2>;
 
 var<private> lane: u32;
 
-fn word(offset: u32) -> u32 {
-    return LANES + offset * LANE_COUNT + lane;
+fn length_at(offset: u32) -> u32 {
+    return atomicLoad(&lengths[offset / GIVEN_WORDS]);
 }
 
+// The highest digit has the sign of the number: the digits below it add up to less than one of its units.
 fn sign_at(offset: u32) -> i32 {
-    let length = u32(numbers[word(offset)]);
-    return select(0, sign(numbers[word(offset + length)]), length > 0u);
+    let length = length_at(offset);
+    return select(0, sign(digits[offset + max(length, 1u) - 1u]), length > 0u);
 }
 
-// Writes an integer, from magnitude and sign.
-fn put(offset: u32, x: vec4u) {
-    var length = 0;
-    for (var i = 0u; i < DIGITS; i++) {
-        let bit = DIGIT_BITS * i;
-        let low = component_of(x.xyz, bit / 32u);
-        let high = component_of(vec3u(x.yz, 0u), bit / 32u);
-        let digit = i32(((low >> (bit % 32u)) | ((high << 1u) << (31u - bit % 32u))) & u32(DIGIT_MASK));
-        numbers[word(offset + 1u + i)] = select(digit, -digit, x.w == 1u);
-        length = select(length, i32(i) + 1, digit != 0);
-    }
-    numbers[word(offset)] = length;
-}
-
-// Writes p = a - c, q = b - c, r = a - d and s = b - d.
-fn put_differences(a: Point, b: Point, c: Point, d: Point, grid: i32) {
-    for (var vector = 0u; vector < 4u; vector++) {
-        var u = a;
-        var v = c;
-        if (vector & 1u) == 1u {
-            u = b;
-        }
-        if vector >= 2u {
-            v = d;
-        }
-        put_vector(DIFFERENCES + VECTOR * vector, u, v, grid);
+fn put(offset: u32, column: u32, digit: i32) {
+    digits[offset + column] = digit;
+    if digit != 0 {
+        atomicMax(&lengths[offset / GIVEN_WORDS], column + 1u);
     }
 }
 
-// Writes u - v, axis by axis.
-fn put_vector(offset: u32, u: Point, v: Point, grid: i32) {
-    for (var axis = 0u; axis < DIMENSION; axis++) {
-        put(offset + GIVEN_WORDS * axis, exact_difference(u, v, axis, grid));
+// Writes the input numbers, the first words: each invocation has one digit.
+fn put_given(digit: i32) {
+    atomicStore(&lengths[lane / GIVEN_WORDS], 0u);
+    workgroupBarrier();
+    put(lane - lane % GIVEN_WORDS, lane % GIVEN_WORDS, digit);
+    workgroupBarrier();
+}
+
+// The digit of this invocation, of an integer of up to 91 bits, as magnitude and sign.
+fn given_digit(x: vec4u) -> i32 {
+    let bit = DIGIT_BITS * (lane % GIVEN_WORDS);
+    let low = component_of(x.xyz, bit / 32u);
+    let high = component_of(vec3u(x.yz, 0u), bit / 32u);
+    let digit = i32(((low >> (bit % 32u)) | ((high << 1u) << (31u - bit % 32u))) & u32(DIGIT_MASK));
+    return select(digit, -digit, x.w == 1u);
+}
+
+// The digit of this invocation, of the differences p = a - c, q = b - c, r = a - d and s = b - d, axis by axis.
+fn digit_of_differences(a: Point, b: Point, c: Point, d: Point) -> i32 {
+    let number = lane / GIVEN_WORDS;
+    var u = a;
+    var v = c;
+    if ((number / 3u) & 1u) == 1u {
+        u = b;
     }
+    if number >= 6u {
+        v = d;
+    }
+    return given_digit(exact_difference(u, v, number % 3u, grid_of(a, b, c, d)));
 }
 
 fn run(program: u32) {
-    let end = u32(numbers[program + 1u]);
-    for (var step = u32(numbers[program]); step < end; step += STEP) {
-        run_step(step);
+    let end = programs[program + 1u].x;
+    var at = programs[program].x;
+    while at < end {
+        run_steps(at);
+        at += programs[at].y >> 22u;
     }
 }
 
-// Writes a sum of up to four products of two numbers each.
-fn run_step(step: u32) {
-    let to = u32(numbers[step]) & 1023u;
-    var columns = 0;
-    let end = step + 1u + u32(numbers[step] >> 16u);
-    for (var term = step + 1u; term < end; term++) {
-        let factors = u32(numbers[term]);
-        columns = max(columns, numbers[word(factors & 1023u)] + numbers[word((factors >> 10u) & 1023u)]);
-    }
-    var length = 0;
-    var carry = 0;
-    for (var column = 0; column <= columns; column++) {
-        for (var term = step + 1u; term < end; term++) {
-            let factors = u32(numbers[term]);
-            let part = part_of_column(factors & 1023u, (factors >> 10u) & 1023u, column);
-            carry += select(part, -part, (factors >> 20u) == 1u);
+// Runs steps that do not need each other's results.
+//
+// Digits are from -8191 to 8191 in input numbers, and from -4125 to 4125 in computed ones: no sum of products overflows,
+// so two rounds of carries suffice. After the first, a column is the rest of a division, from -4096 to 4095, and a carry
+// of at most 2^31 / 8192. After the second, it is such a rest and a carry of at most 29 or -29.
+fn run_steps(first: u32) {
+    let count = programs[first].y >> 22u;
+    let width = programs[first].z >> 22u;
+    let index = lane / width;
+    let column = lane % width;
+    var step = programs[first + min(index, count - 1u)];
+    let to = step.x >> 22u;
+    var sum = 0;
+    var end = 0u;
+    for (var i = 0u; i < 4u && index < count; i++) {
+        let sign = i32((step.x >> 20u) & 1u) - i32((step.x >> 21u) & 1u);
+        let x = step.x & 1023u;
+        let y = (step.x >> 10u) & 1023u;
+        if sign != 0 {
+            sum += sign * part_of_column(x, y, column);
+            end = max(end, length_at(x) + length_at(y) + 1u);
         }
-        let digit = ((carry + HALF_DIGIT) & DIGIT_MASK) - HALF_DIGIT;
-        carry = (carry - digit) >> DIGIT_BITS;
-        numbers[word(to + 1u + u32(column))] = digit;
-        length = select(length, column + 1, digit != 0);
+        step = step.yzwx;
     }
-    numbers[word(to)] = length;
+    if column == 0u && index < count {
+        atomicStore(&lengths[to / GIVEN_WORDS], 0u);
+    }
+    let digit = carried(carried(sum, 0u), 1u);
+    if column < end {
+        put(to, column, digit);
+    }
+    workgroupBarrier();
 }
 
 // The sum that the product of two numbers adds to a column: digit i of one times digit column - i of the other.
-fn part_of_column(x: u32, y: u32, column: i32) -> i32 {
+fn part_of_column(x: u32, y: u32, column: u32) -> i32 {
     var sum = 0;
-    let end = min(column + 1, numbers[word(x)]);
-    for (var i = max(0, column + 1 - numbers[word(y)]); i < end; i++) {
-        sum += numbers[word(x + 1u + u32(i))] * numbers[word(y + 1u + u32(column - i))];
+    let end = min(column + 1u, length_at(x));
+    for (var i = max(column + 1u, length_at(y)) - length_at(y); i < end; i++) {
+        sum += digits[x + i] * digits[y + column - i];
     }
     return sum;
+}
+
+// A column with the carry from the one below, and without its own. Columns above a product are 0, so that nothing is
+// carried into the next one.
+fn carried(column: i32, round: u32) -> i32 {
+    let digit = ((column + HALF_DIGIT) & DIGIT_MASK) - HALF_DIGIT;
+    carries[round][lane + 1u] = (column - digit) >> DIGIT_BITS;
+    workgroupBarrier();
+    return digit + carries[round][lane];
 }

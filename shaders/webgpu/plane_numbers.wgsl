@@ -1,50 +1,50 @@
-// Tests edges in the plane by exact integers in memory.
+// Tests edges in the plane by exact integers.
 #import doubts
 #import mesh
 #import numbers
 #import points
+#import products
 #import state
 #import verdicts
 
 const IN_CIRCLE: u32 = 0u;
-const AREAS: u32 = 1u;
 
-// Offsets of the results of these programs: the value of the in-circle test, or the areas of both new triangles.
-const FIRST: u32 = 359u;
-const SECOND: u32 = 396u;
+// The offset of the result of this program.
+const VALUE: u32 = 272u;
 
-// The verdict on any edge. In the preparation, 1 plus the sign of the triangle a, b, c.
-fn exact_verdict_on(a: Point, b: Point, c: Point, d: Point, winding: i32, task: u32) -> u32 {
-    var far = d;
-    if task == PREPARE {
-        far = b;
-    }
-    put_differences(a, b, c, far, grid_of(a, b, c, far));
-    var verdict = UNDECIDED;
-    for (var program = select(IN_CIRCLE, AREAS, task == PREPARE); verdict == UNDECIDED; program++) {
-        run(program);
-        let first = sign_at(FIRST);
-        let second = sign_at(SECOND);
-        if task == PREPARE {
-            verdict = u32(1 + first);
-        } else if program == AREAS {
-            verdict = select(LABELLED, BLOCKED_BY + REASON_FOLD, min(winding * first, winding * second) <= 0);
-        } else if winding * first >= 0 {
-            verdict = DELAUNAY;
-        }
+// The verdict on any edge. All invocations of a workgroup call it for the same one.
+fn exact_verdict_on(a: Point, b: Point, c: Point, d: Point, winding: i32) -> u32 {
+    put_given(digit_of_differences(a, b, c, d));
+    run(IN_CIRCLE);
+    var verdict = DELAUNAY;
+    if winding * sign_at(VALUE) < 0 {
+        let least = min(winding * exact_sign_of(a, d, c), winding * exact_sign_of(b, c, d));
+        verdict = select(LABELLED, BLOCKED_BY + REASON_FOLD, least <= 0);
     }
     return verdict;
 }
 
-// In the preparation, UNDECIDED for the sign of the triangle; else the verdict of the filter on each edge.
-fn filtered_answers(t: u32, task: u32) -> vec3u {
-    var answers = vec3u(UNDECIDED, 0u, 0u);
-    if task != PREPARE {
-        answers = verdicts_on(t, task == CENSUS, false);
-    }
-    return answers;
+// The sign of the area of a triangle.
+fn exact_sign_of(a: Point, b: Point, c: Point) -> i32 {
+    let grid = grid_of(a, b, c, c);
+    let u = exact_differences(b, a, grid);
+    let v = exact_differences(c, a, grid);
+    return sign_of_difference(u[0], v[1], u[1], v[0]);
 }
 
-fn prepare(t: u32, answers: vec3u) {
-    choices[t] = answers.x;
+// The verdict on each edge, UNDECIDED if the invocations have to decide it together. In the preparation, 1 plus the sign
+// of the triangle.
+fn verdicts_alone(t: u32) -> vec3u {
+    var verdicts = vec3u();
+    if step_.task == PREPARE {
+        let sign = exact_sign_of(position(vertex(3u * t)), position(vertex(3u * t + 1u)), position(vertex(3u * t + 2u)));
+        verdicts.x = u32(1 + sign);
+    } else {
+        verdicts = verdicts_on(t, step_.task == CENSUS, true);
+    }
+    return verdicts;
+}
+
+fn prepare(t: u32, verdicts: vec3u) {
+    choices[t] = verdicts.x;
 }

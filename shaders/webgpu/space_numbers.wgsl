@@ -1,6 +1,5 @@
-// Tests edges in space by exact integers in memory.
+// Tests edges in space by exact integers.
 #import any_deviation if any_deviation
-#import deviation if deviation
 #import deviation_numbers if deviation
 #import doubts
 #import flag_creases
@@ -11,75 +10,61 @@
 #import state
 #import verdicts
 
-// Programs, in the order in which they are run. 2: the squares of the old normals. 3: the angle sum, by squares. 4: the
-// dot products that the later programs take, and the product of the old normals. 5: the angle between the old normals.
-// 6: the squares and the product of the new normals. 7: the angle between the new normals. 8: the products of old
+// Programs, in the order in which they are run. 1: the squares of the old normals. 2: the angle sum, by squares. 3: the
+// dot products that the later programs take, and the product of the old normals. 4: the angle between the old normals.
+// 5: the squares and the product of the new normals. 6: the angle between the new normals. 7: the products of old
 // normals and new ones.
-const SQUARES: u32 = 2u;
-const ANGLE_SUM: u32 = 3u;
-const OLD_ANGLE: u32 = 5u;
-const NEW_NORMALS: u32 = 6u;
-const NEW_ANGLE: u32 = 7u;
-const TURNS: u32 = 8u;
+const SQUARES: u32 = 1u;
+const ANGLE_SUM: u32 = 2u;
+const OLD_ANGLE: u32 = 4u;
+const NEW_NORMALS: u32 = 5u;
+const NEW_ANGLE: u32 = 6u;
+const TURNS: u32 = 7u;
 
 // Offsets of the results of these programs: the dot products p·q and r·s, and values.
-const PQ: u32 = 206u;
-const RS: u32 = 325u;
-const N: u32 = 359u;
-const M: u32 = 396u;
-const COSINE: u32 = 433u;
-const LAST: u32 = 581u;
+const PQ: u32 = 128u;
+const RS: u32 = 240u;
+const N: u32 = 272u;
+const M: u32 = 308u;
+const COSINE: u32 = 344u;
+const LAST: u32 = 488u;
 
-// |cos β| is mantissa / power.
-const MANTISSA: u32 = 108u;
-const POWER: u32 = 117u;
+// |cos β| is mantissa / power: numbers after the differences.
+const MANTISSA: u32 = 96u;
+const POWER: u32 = 104u;
 
-// The verdict on any edge: by a filter that is slower and decides more, then by integers. In the preparation, LABELLED
-// stands for an edge that is not a crease.
-fn exact_verdict_on(a: Point, b: Point, c: Point, d: Point, winding: i32, task: u32) -> u32 {
+var<workgroup> known: Signs;
+
+// The verdict on any edge. All invocations of a workgroup call it for the same one. In the preparation, LABELLED stands
+// for an edge that is not a crease.
+fn exact_verdict_on(a: Point, b: Point, c: Point, d: Point, winding: i32) -> u32 {
     var signs = Signs(-1, 0, 1, 1);
-    if task != PREPARE {
+    if step_.task != PREPARE {
         signs = filtered_signs(a, b, c, d, true);
     }
-    if verdict_of(signs) == UNDECIDED {
-        signs = exact_signs(a, b, c, d, signs);
+    signs = agreed(signs);
+    let digit = digit_of_differences(a, b, c, d);
+    put_given(select(digit, cos_digit(lane % 16u), lane >= MANTISSA && lane < POWER + GIVEN_WORDS));
+    for (var program = SQUARES; verdict_of(signs) == UNDECIDED; program++) {
+        let open = select(select(signs.x, signs.y, program == OLD_ANGLE), signs.z, program > OLD_ANGLE);
+        if program == SQUARES || program == OLD_ANGLE - 1u || select(open, signs.w, program == TURNS) == 0 {
+            run(program);
+            signs = agreed(signs_after(program, signs));
+        }
     }
     var verdict = verdict_of(signs);
     if verdict == LABELLED {
-        verdict = filtered_deviation(a, b, c, d);
-    }
-    if verdict == UNDECIDED {
         verdict = exact_deviation(a, b, c, d);
     }
     return verdict;
 }
 
-// The signs. Integers decide the undecided ones that matter.
-fn exact_signs(a: Point, b: Point, c: Point, d: Point, filtered: Signs) -> Signs {
-    put_differences(a, b, c, d, grid_of(a, b, c, d));
-    put_cosine();
-    var signs = filtered;
-    for (var program = SQUARES; verdict_of(signs) == UNDECIDED; program++) {
-        let open = select(select(signs.x, signs.y, program == OLD_ANGLE), signs.z, program > OLD_ANGLE);
-        if program == SQUARES || program == OLD_ANGLE - 1u || select(open, signs.w, program == TURNS) == 0 {
-            run(program);
-            signs = signs_after(program, signs);
-        }
+// The signs that the first invocation knows: loops with barriers need the same value in all.
+fn agreed(signs: Signs) -> Signs {
+    if lane == 0u {
+        known = signs;
     }
-    return signs;
-}
-
-fn put_cosine() {
-    for (var factor = 0u; factor < 2u; factor++) {
-        let offset = select(MANTISSA, POWER, factor == 1u);
-        var length = 0;
-        for (var i = 0u; i < 8u; i++) {
-            let digit = cos_digit(8u * factor + i);
-            numbers[word(offset + 1u + i)] = digit;
-            length = select(length, i32(i) + 1, digit != 0);
-        }
-        numbers[word(offset)] = length;
-    }
+    return workgroupUniformLoad(&known);
 }
 
 // The signs with those that a program has decided.
@@ -105,18 +90,19 @@ fn signs_after(program: u32, before: Signs) -> Signs {
     return signs;
 }
 
-// In the preparation, whether each edge is a crease; else the verdict on the geometry of each.
-fn filtered_answers(t: u32, task: u32) -> vec3u {
-    var answers = vec3u();
-    if task == PREPARE {
-        answers = filtered_creases(t);
+// The verdict on the geometry of each edge, UNDECIDED if the invocations have to decide it together. In the preparation,
+// whether it is a crease.
+fn verdicts_alone(t: u32) -> vec3u {
+    var verdicts = vec3u();
+    if step_.task == PREPARE {
+        verdicts = filtered_creases(t);
     } else {
-        answers = verdicts_on(t, task == CENSUS, false);
+        verdicts = verdicts_on(t, step_.task == CENSUS, true);
     }
-    return answers;
+    return verdicts;
 }
 
-fn prepare(t: u32, answers: vec3u) {
-    flag_creases(t, answers);
+fn prepare(t: u32, verdicts: vec3u) {
+    flag_creases(t, verdicts);
     choices[t] = NONE;
 }

@@ -10,8 +10,8 @@
 #import two_axes if plane
 #import verdicts
 
-// Whether Label uses the slower filter at once: on a lattice in the plane every edge needs it, in space few do.
-const LABELS_CLOSELY: bool = DIMENSION == 2u;
+// Whether Label uses the slower filter at once: it leaves that to Decide.
+const LABELS_CLOSELY: bool = false;
 
 @compute @workgroup_size(WORKGROUP_SIZE)
 fn label_all(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {

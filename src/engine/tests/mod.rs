@@ -4,6 +4,7 @@
 
 mod ahead;
 mod areas;
+mod exact;
 mod moving;
 
 use super::webgpu::{Device, Kernel, WebGpu};

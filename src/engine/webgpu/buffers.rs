@@ -100,7 +100,7 @@ impl Buffers {
         let whole = [positions, triangles, twins, choices, frontier, history, topology];
         let mut buffers = vec![(uniform, None), (steps, Some(8))];
         buffers.extend(whole.map(|buffer| (buffer, None)));
-        buffers.push((&gpu.numbers, None));
+        buffers.push((&gpu.programs, None));
         gpu.bind(layout, &buffers)
     }
 }

@@ -50,8 +50,8 @@ pub(crate) struct Device {
     #[cfg(not(target_arch = "wasm32"))]
     pub(super) batches: Batches,
     failure: Failure,
-    /// Programs and lanes of exact arithmetic. It holds no data of a mesh between submissions.
-    pub(super) numbers: Buffer,
+    /// The programs of exact arithmetic.
+    pub(super) programs: Buffer,
     pub(super) adjacency: Kernels,
     /// The kernels of the phases that a mesh has needed.
     phases: Mutex<Phases>,
@@ -95,11 +95,12 @@ fn descriptor(label: &str, words: usize, usage: BufferUsages) -> wgpu::BufferDes
     }
 }
 
-/// The buffer of exact arithmetic, with the programs written to it.
-fn numbers(device: &wgpu::Device, queue: &wgpu::Queue) -> Buffer {
-    let descriptor = descriptor("numbers", programs::WORDS, BufferUsages::STORAGE);
+/// The buffer with the programs of exact arithmetic.
+fn programs(device: &wgpu::Device, queue: &wgpu::Queue) -> Buffer {
+    let table = programs::table();
+    let descriptor = descriptor("programs", 4 * table.len(), BufferUsages::UNIFORM);
     let buffer = Buffer::new(device.create_buffer(&descriptor));
-    queue.write_buffer(&buffer, 0, bytemuck::cast_slice(&programs::words()));
+    queue.write_buffer(&buffer, 0, bytemuck::cast_slice(&table));
     buffer
 }
 
@@ -257,7 +258,7 @@ impl Device {
             phases[form.index()] = for_form;
         }
         let (probe, adjacency) = (compiled.remove(1), compiled.remove(0));
-        let (numbers, caught) = watch(&device, || numbers(&device, &queue));
+        let (programs, caught) = watch(&device, || programs(&device, &queue));
         if let Some(fault) = caught.await {
             return Err(unavailable(fault.to_string()));
         }
@@ -275,7 +276,7 @@ impl Device {
             #[cfg(not(target_arch = "wasm32"))]
             batches: Batches::default(),
             failure,
-            numbers,
+            programs,
             adjacency,
             phases: Mutex::new(phases),
             kept_for_reads: Kept::default(),

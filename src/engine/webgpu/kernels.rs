@@ -168,7 +168,7 @@ impl Plan {
 
 fn phases_bindings() -> Vec<BindingType> {
     let (read, write) = (storage(true), storage(false));
-    vec![uniform(false), uniform(true), read, write, write, write, write, write, write, write]
+    vec![uniform(false), uniform(true), read, write, write, write, write, write, write, uniform(false)]
 }
 
 fn uniform(has_dynamic_offset: bool) -> BindingType {

@@ -1,8 +1,9 @@
 //! The parameters of the kernels of the phases.
 
+use super::programs;
 use crate::engine::gpu::cosine::Cosine;
 use crate::engine::gpu::upload::Upload;
-use crate::{Dimension, Mesh};
+use crate::{Dimension, Mesh, NONE};
 
 /// The longest list that the tail works on.
 const TAIL_LENGTH: u32 = 2048;
@@ -66,7 +67,7 @@ pub(super) struct Params {
     pub(super) list_below: u32,
     pub(super) embedded: u32,
     pub(super) winding: u32,
-    pub(super) decides_one: u32,
+    pub(super) most_decided: u32,
     pub(super) update: u32,
     pub(super) changes: u32,
     pub(super) cos_digits: [[i32; 8]; 2],
@@ -97,7 +98,7 @@ impl Params {
             list_below: if count <= SMALL_MESH { u32::MAX } else { count as u32 / 256 },
             embedded: topology.embedded,
             winding: WINDING_UNKNOWN,
-            decides_one: u32::from(ends_loops_early),
+            most_decided: if ends_loops_early { programs::few(mesh.dimension()) } else { NONE },
             update: 0,
             changes: 0,
             cos_digits: [cosine.mantissa, cosine.power],

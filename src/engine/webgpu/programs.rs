@@ -1,25 +1,29 @@
 //! The programs of exact arithmetic, which `shaders/webgpu/numbers.wgsl` runs. A step of a program is a sum of products
-//! of two integers. Each invocation has a lane of words; an integer is stored in it at a fixed offset.
+//! of two integers. A workgroup keeps the integers at fixed offsets.
 
-/// The word offset of the lanes, the words of a step, and the number of lanes: the same in `numbers.wgsl`.
-pub(super) const LANES: usize = 512;
-pub(super) const STEP: usize = 5;
-pub(super) const LANE_COUNT: u32 = 8192;
-/// Invocations per workgroup of the kernel, each with its own lane.
-pub(super) const DECIDERS: u32 = 64;
-/// Words of the whole buffer: programs and lanes.
-pub(super) const WORDS: usize = LANES + LANE * LANE_COUNT as usize;
+use crate::Dimension;
 
-/// A word offset in a lane.
+/// Invocations per workgroup of the kernel.
+pub(super) const DECIDERS: u32 = 128;
+
+/// The most triangles that a workgroup decides per dispatch on drivers that end loops too early.
+pub(super) const fn few(dimension: Dimension) -> u32 {
+    match dimension {
+        Dimension::Two => DECIDERS,
+        Dimension::Three => 12,
+    }
+}
+
+/// A word offset in the memory of a workgroup.
 type Offset = u32;
 
 /// Words of an input number, and of a vector of three.
-const GIVEN: u32 = 9;
+pub(super) const GIVEN: u32 = 8;
 const VECTOR: u32 = 3 * GIVEN;
 
 /// The differences of two points, axis by axis: a - c, b - c, a - d, b - d.
-pub(super) const P: Offset = 0;
-pub(super) const Q: Offset = P + VECTOR;
+const P: Offset = 0;
+const Q: Offset = P + VECTOR;
 const R: Offset = Q + VECTOR;
 const S: Offset = R + VECTOR;
 
@@ -27,14 +31,14 @@ const S: Offset = R + VECTOR;
 pub(super) const MANTISSA: Offset = S + VECTOR;
 pub(super) const POWER: Offset = MANTISSA + GIVEN;
 
-/// The diagonals a - b and c - d, and the limit for the deviation.
-pub(super) const E: Offset = POWER + GIVEN;
-const F: Offset = E + VECTOR;
-pub(super) const ALLOWED: Offset = F + VECTOR;
+/// For the deviation, in the place of differences: the diagonals a - b and c - d, and the limit.
+const E: Offset = Q;
+const F: Offset = R;
+const ALLOWED: Offset = S;
 
 /// Integers of degree 2 in the differences.
 const fn medium(i: u32) -> Offset {
-    ALLOWED + GIVEN + 17 * i
+    POWER + GIVEN + 16 * i
 }
 const PP: Offset = medium(0);
 pub(super) const PQ: Offset = medium(1);
@@ -61,7 +65,7 @@ const BEYOND: Offset = medium(5);
 
 /// Integers of degree 4, with room for a product with the mantissa or the power of cos β.
 const fn large(i: u32) -> Offset {
-    medium(10) + 37 * i
+    medium(10) + 36 * i
 }
 /// The squares of two normals, and their product.
 pub(super) const N: Offset = large(0);
@@ -73,29 +77,33 @@ const Z: Offset = large(5);
 /// An integer of degree 8, with room for a product with the square of the mantissa or of the power.
 pub(super) const LAST: Offset = large(6);
 
-/// Words of a lane.
-const LANE: usize = LAST as usize + 75;
+/// Words of all numbers.
+pub(super) const WORDS: u32 = LAST + 74;
 
-/// The offset of the result and the number of terms; then the terms: two offsets, and whether the product is
-/// subtracted.
-type Step = [u32; STEP];
+/// The terms: two offsets in ten bits each, then whether the product is added, and whether it is subtracted. The ten
+/// highest bits of the first three terms are the offset of the result, and, if the step is the first of a group, how many
+/// steps the group has and how many invocations each of them.
+type Step = [u32; 4];
+
+/// Steps that do not need each other's results.
+type Group = &'static [Step];
 
 const fn plus(x: Offset, y: Offset) -> u32 {
-    x | y << 10
+    x | y << 10 | 1 << 20
 }
 
 const fn minus(x: Offset, y: Offset) -> u32 {
-    plus(x, y) | 1 << 20
+    x | y << 10 | 1 << 21
 }
 
 const fn step(to: Offset, terms: &[u32]) -> Step {
-    let mut step = [0; STEP];
-    step[0] = to | (terms.len() as u32) << 16;
+    let mut step = [0; 4];
     let mut i = 0;
     while i < terms.len() {
-        step[i + 1] = terms[i];
+        step[i] = terms[i];
         i += 1;
     }
+    step[0] |= to << 22;
     step
 }
 
@@ -120,82 +128,159 @@ const fn dot(to: Offset, u: Offset, v: Offset) -> Step {
 }
 
 /// (n·m)² against (cos β)² n² m².
-const ANGLE: &[Step] = &[
-    step(X, &[plus(COSINE, POWER)]),
-    step(Y, &[plus(N, MANTISSA)]),
-    step(Z, &[plus(M, MANTISSA)]),
-    difference(LAST, X, X, Y, Z),
+const ANGLE: &[Group] = &[
+    &[step(X, &[plus(COSINE, POWER)]), step(Y, &[plus(N, MANTISSA)]), step(Z, &[plus(M, MANTISSA)])],
+    &[difference(LAST, X, X, Y, Z)],
 ];
 
 /// The programs, in the order of their numbers in the shaders. Dot products of normals use the Binet–Cauchy identity
 /// (u × v)·(x × y) = (u·x)(v·y) - (u·y)(v·x).
-const PROGRAMS: [&[Step]; 10] = [
+const PROGRAMS: [&[Group]; 9] = [
     // The in-circle test in the plane: cross(λ)·dot(γ) + dot(λ)·cross(γ), with the angles λ at c and γ at d.
     &[
-        cross(CROSS1, P, Q),
-        flat_dot(DOT1, P, Q),
-        cross(CROSS2, S, R),
-        flat_dot(DOT2, S, R),
-        step(N, &[plus(CROSS1, DOT2), plus(DOT1, CROSS2)]),
+        &[cross(CROSS1, P, Q), flat_dot(DOT1, P, Q), cross(CROSS2, S, R), flat_dot(DOT2, S, R)],
+        &[step(N, &[plus(CROSS1, DOT2), plus(DOT1, CROSS2)])],
     ],
-    // The areas of the new triangles.
-    &[cross(N, R, P), cross(M, Q, S)],
-    // In space: the squares of the old normals n = p × q and m = s × r.
+    // In space: the squares of the old normals n = p × q and m = s × r, and of (r·s) and (p·q).
     &[
-        dot(PP, P, P),
-        dot(PQ, P, Q),
-        dot(QQ, Q, Q),
-        dot(RR, R, R),
-        dot(RS, R, S),
-        dot(SS, S, S),
-        difference(N, PP, QQ, PQ, PQ),
-        difference(M, SS, RR, RS, RS),
+        &[dot(PP, P, P), dot(PQ, P, Q), dot(QQ, Q, Q), dot(RR, R, R), dot(RS, R, S), dot(SS, S, S)],
+        &[
+            difference(N, PP, QQ, PQ, PQ),
+            difference(M, SS, RR, RS, RS),
+            step(X, &[plus(RS, RS)]),
+            step(Y, &[plus(PQ, PQ)]),
+        ],
     ],
     // n²(r·s)² - m²(p·q)²
-    &[step(X, &[plus(RS, RS)]), step(Y, &[plus(PQ, PQ)]), difference(LAST, N, X, M, Y)],
+    &[&[difference(LAST, N, X, M, Y)]],
     // The product of the old normals.
-    &[dot(PR, P, R), dot(PS, P, S), dot(QR, Q, R), dot(QS, Q, S), difference(COSINE, PS, QR, PR, QS)],
+    &[&[dot(PR, P, R), dot(PS, P, S), dot(QR, Q, R), dot(QS, Q, S)], &[difference(COSINE, PS, QR, PR, QS)]],
     ANGLE,
     // The squares and the product of the new normals n = r × p and m = q × s.
-    &[difference(N, RR, PP, PR, PR), difference(M, QQ, SS, QS, QS), difference(COSINE, QR, PS, RS, PQ)],
+    &[&[difference(N, RR, PP, PR, PR), difference(M, QQ, SS, QS, QS), difference(COSINE, QR, PS, RS, PQ)]],
     ANGLE,
     // The products of the old normals and the new ones.
-    &[
+    &[&[
         difference(N, PR, PQ, PP, QR),
         difference(M, PQ, QS, PS, QQ),
         difference(COSINE, RS, PR, PS, RR),
         difference(LAST, QS, RS, SS, QR),
-    ],
+    ]],
     // The distance of the diagonals, see `deviation_numbers.wgsl`.
     &[
-        dot(EE, E, E),
-        dot(FF, F, F),
-        dot(EF, E, F),
-        dot(FP, F, P),
-        dot(EP, E, P),
-        step(
-            BEYOND,
-            &[
-                plus(P, P),
-                plus(P + GIVEN, P + GIVEN),
-                plus(P + 2 * GIVEN, P + 2 * GIVEN),
-                minus(ALLOWED, ALLOWED),
-            ],
-        ),
-        difference(N, EE, FF, EF, EF),
-        difference(M, FF, BEYOND, FP, FP),
-        difference(COSINE, FF, EP, EF, FP),
-        difference(LAST, N, M, COSINE, COSINE),
+        &[
+            dot(EE, E, E),
+            dot(FF, F, F),
+            dot(EF, E, F),
+            dot(FP, F, P),
+            dot(EP, E, P),
+            step(
+                BEYOND,
+                &[
+                    plus(P, P),
+                    plus(P + GIVEN, P + GIVEN),
+                    plus(P + 2 * GIVEN, P + 2 * GIVEN),
+                    minus(ALLOWED, ALLOWED),
+                ],
+            ),
+        ],
+        &[
+            difference(N, EE, FF, EF, EF),
+            difference(M, FF, BEYOND, FP, FP),
+            difference(COSINE, FF, EP, EF, FP),
+        ],
+        &[difference(LAST, N, M, COSINE, COSINE)],
     ],
 ];
 
-/// The programs as the shaders read them: the offset of each program, the end of the last one, then the steps.
-pub(super) fn words() -> Vec<u32> {
-    let mut words = vec![0; PROGRAMS.len() + 1];
+/// The programs as the shaders read them: the first step of each program, the end of the last one, then the steps.
+pub(super) fn table() -> Vec<[u32; 4]> {
+    let mut table = vec![[0; 4]; PROGRAMS.len() + 1];
     for (i, program) in PROGRAMS.iter().enumerate() {
-        words[i] = words.len() as u32;
-        words.extend_from_slice(program.as_flattened());
+        table[i][0] = table.len() as u32;
+        for group in *program {
+            let first = table.len();
+            table.extend_from_slice(group);
+            let count = group.len() as u32;
+            table[first][1] |= count << 22;
+            table[first][2] |= (DECIDERS / count) << 22;
+        }
     }
-    words[PROGRAMS.len()] = words.len() as u32;
-    words
+    table[PROGRAMS.len()][0] = table.len() as u32;
+    table
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::engine::gpu::cosine::DIGIT_BITS;
+    use crate::engine::gpu::probe::SHORT_STAR;
+    use crate::engine::gpu::upload::SPAN;
+    use std::collections::HashMap;
+
+    /// The rounds of all loops of an invocation that llvmpipe runs.
+    const ROUNDS: u32 = 65_535;
+
+    /// What is known of a number: the largest magnitude, digits, and the largest magnitude of one.
+    #[derive(Clone, Copy)]
+    struct Bound {
+        most: f64,
+        length: u32,
+        digit: i64,
+    }
+
+    /// The numbers that the shader writes before it runs programs.
+    fn given() -> HashMap<Offset, Bound> {
+        // A limit for the deviation has one bit more than a difference.
+        let difference = Bound { most: 2f64.powi(SPAN as i32 + 2), length: 7, digit: 8191 };
+        let mut given: HashMap<_, _> = (0..12).map(|i| (P + GIVEN * i, difference)).collect();
+        given.insert(MANTISSA, Bound { most: 2f64.powi(53), length: 5, digit: 8191 });
+        given.insert(POWER, Bound { most: 2f64.powi(106), length: 8, digit: 1 << 15 });
+        given
+    }
+
+    /// Runs all programs on the bounds of numbers. No sum overflows, and all numbers and steps have room.
+    #[test]
+    fn the_longest_numbers_have_room() {
+        let mut known = given();
+        let mut rounds = [0, 0];
+        let room = |to: Offset| match to {
+            ..N => 16,
+            N..LAST => 36,
+            LAST.. => WORDS - LAST,
+        };
+        for (i, group) in
+            PROGRAMS.iter().enumerate().flat_map(|(i, groups)| groups.iter().map(move |group| (i, group)))
+        {
+            let mut longest = 0;
+            for step in *group {
+                let terms: Vec<[Bound; 2]> = step
+                    .iter()
+                    .filter(|&term| term >> 20 & 3 != 0)
+                    .map(|term| [term & 1023, term >> 10 & 1023].map(|offset| known[&offset]))
+                    .collect();
+                let sum: i64 =
+                    terms.iter().map(|[x, y]| i64::from(x.length.min(y.length)) * x.digit * y.digit).sum();
+                assert!(sum < i64::from(i32::MAX) - 4096, "{step:?}: {sum}");
+                // Two rounds of carries.
+                let first = 4096 + (sum + 4096) / 8192;
+                let digit = 4096 + (first + 4096) / 8192;
+                let columns = terms.iter().map(|[x, y]| x.length + y.length + 1).max().unwrap_or(0);
+                let to = step[0] >> 22;
+                assert!(digit <= 4125 && columns <= room(to), "{step:?}: {digit}, {columns}");
+                assert!(columns <= DECIDERS / group.len() as u32, "{step:?}: {columns} columns");
+                // Digits of up to 4125 below the highest one add up to less than 0.504 of its unit.
+                let most: f64 = terms.iter().map(|[x, y]| x.most * y.most).sum();
+                let length = ((most / 0.496).log2() / f64::from(DIGIT_BITS)) as u32 + 1;
+                known.insert(to, Bound { most, length: length.min(columns), digit });
+                let products = terms.iter().map(|[x, y]| x.length.min(y.length)).sum::<u32>();
+                longest = longest.max(4 + products);
+            }
+            rounds[i.min(1)] += longest + 1;
+        }
+        // All three edges of each triangle, and walks around the vertices across two of them.
+        for (dimension, rounds) in [Dimension::Two, Dimension::Three].into_iter().zip(rounds) {
+            assert!(3 * few(dimension) * rounds + 2 * SHORT_STAR < ROUNDS, "{rounds} rounds");
+        }
+    }
 }

@@ -8,7 +8,6 @@ use super::copies::{CHUNK, Source};
 use super::history::{AREAS, BATCH, COUNTS, ENTRIES, ENTRY_WORDS, HISTORY_WORDS, SHORT_TAIL, TAIL};
 use super::kernels::{Kernel, WORKGROUP_SIZE};
 use super::known::Known;
-use super::programs::{DECIDERS, LANE_COUNT};
 use super::steps::Step;
 use super::words::{Words, reserve};
 use crate::Error;
@@ -17,6 +16,8 @@ use crate::mesh::areas::Areas;
 
 /// Dispatches of the tail: it may pause once for exact arithmetic.
 const TAIL_DISPATCHES: u32 = 3;
+/// The most workgroups of exact arithmetic: a large GPU runs so many at the same time.
+const MOST_DECIDING: u32 = 512;
 /// Dispatches of the counts.
 const COUNT_DISPATCHES: u64 = 4;
 
@@ -224,12 +225,14 @@ impl WebGpu {
         if kernel != Kernel::Decide {
             return pass.dispatch_workgroups(groups, 1, 1);
         }
-        let most = LANE_COUNT / DECIDERS;
-        // On drivers that end loops too early, each invocation decides one triangle per dispatch.
-        let all =
-            if self.gpu.ends_loops_early { groups.div_ceil(most) * WORKGROUP_SIZE / DECIDERS } else { 1 };
+        // On drivers that end loops too early, a workgroup decides few triangles per dispatch.
+        let all = if self.gpu.ends_loops_early {
+            groups.div_ceil(MOST_DECIDING) * WORKGROUP_SIZE.div_ceil(self.params.most_decided)
+        } else {
+            1
+        };
         for _ in 0..all {
-            pass.dispatch_workgroups(groups.min(most), 1, 1);
+            pass.dispatch_workgroups(groups.min(MOST_DECIDING), 1, 1);
         }
     }
 

@@ -111,12 +111,8 @@ fn constants_of_exact_arithmetic_agree() {
     let (space, plane) = (parse(&space), parse(&plane));
     let (space, plane) = (constants(&space), constants(&plane));
     let offsets = [
-        ("DIFFERENCES", programs::P),
-        ("VECTOR", programs::Q - programs::P),
         ("MANTISSA", programs::MANTISSA),
         ("POWER", programs::POWER),
-        ("DIAGONALS", programs::E),
-        ("ALLOWED", programs::ALLOWED),
         ("PQ", programs::PQ),
         ("RS", programs::RS),
         ("N", programs::N),
@@ -127,21 +123,15 @@ fn constants_of_exact_arithmetic_agree() {
     ];
     let sizes = [
         ("DIGIT_BITS", DIGIT_BITS),
-        ("LANES", programs::LANES as u32),
-        ("STEP", programs::STEP as u32),
-        ("LANE_COUNT", programs::LANE_COUNT),
         ("DECIDERS", programs::DECIDERS),
+        ("GIVEN_WORDS", programs::GIVEN),
+        ("WORDS", programs::WORDS),
+        ("TABLE", programs::table().len() as u32),
     ];
     for (name, value) in offsets.into_iter().chain(sizes) {
         assert_eq!(space[name], u64::from(value), "{name}");
     }
-    for (name, offset) in [("FIRST", programs::N), ("SECOND", programs::M)] {
-        assert_eq!(plane[name], u64::from(offset), "{name}");
-    }
-    assert!(programs::words().len() <= programs::LANES);
-    // The digits of the longest numbers have to fit: those of a difference, and those of n·m times the power of cos β.
-    let digits = |bits: u32| (bits + 1).div_ceil(DIGIT_BITS);
-    assert!(digits(SPAN + 1) <= 7 && digits(4 * (SPAN + 1) + 6 + 106) <= 36);
+    assert_eq!(plane["VALUE"], u64::from(programs::N));
 }
 
 #[test]
@@ -184,7 +174,7 @@ fn params_have_one_layout() {
         list_below,
         embedded,
         winding,
-        decides_one,
+        most_decided,
         update,
         changes,
         cos_digits,
