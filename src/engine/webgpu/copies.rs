@@ -248,11 +248,13 @@ impl Device {
     /// Natively, waits for all copies to the device.
     pub(super) fn finish_copies(&self) {
         #[cfg(not(target_arch = "wasm32"))]
-        {
-            self.queue.submit([]);
-            // If this fails, the next call that can return an error reports it.
-            let _ = self.wait();
-        }
+        self.finish(self.queue.submit([]));
+    }
+
+    /// Waits for a submission of copies. If this fails, the next call that can return an error reports it.
+    #[cfg(not(target_arch = "wasm32"))]
+    fn finish(&self, submission: wgpu::SubmissionIndex) {
+        let _ = self.device.poll(wgpu::PollType::Wait { submission_index: Some(submission), timeout: None });
     }
 
     /// Writes words to the start of `buffer`, before the next submission.
@@ -263,17 +265,34 @@ impl Device {
     /// Writes words to the starts of buffers, before the next submission.
     #[cfg(not(target_arch = "wasm32"))]
     pub(super) fn write_all(&self, writes: &[(&Buffer, &[u32])]) {
-        writes.iter().for_each(|(buffer, words)| self.write_at(buffer, 0, words));
+        let mut travelling = None;
+        for (buffer, words) in writes {
+            self.write_behind(&mut travelling, buffer, 0, words);
+        }
     }
 
     /// Writes words to `buffer` from word `first` on, before the next submission.
-    #[cfg(not(target_arch = "wasm32"))]
+    #[cfg(all(not(target_arch = "wasm32"), feature = "baseline"))]
     pub(super) fn write_at(&self, buffer: &Buffer, first: usize, words: &[u32]) {
+        self.write_behind(&mut None, buffer, first, words);
+    }
+
+    /// Writes words in chunks. While the last chunk is `travelling` to the device, the host copies the next one to other
+    /// staging memory.
+    #[cfg(not(target_arch = "wasm32"))]
+    fn write_behind(
+        &self,
+        travelling: &mut Option<wgpu::SubmissionIndex>,
+        buffer: &Buffer,
+        first: usize,
+        words: &[u32],
+    ) {
         for (i, chunk) in words.chunks(CHUNK).enumerate() {
-            let offset = 4 * (first + i * CHUNK) as u64;
-            self.stage(buffer, offset, chunk);
-            if chunk.len() == CHUNK {
-                self.finish_copies();
+            self.stage(buffer, 4 * (first + i * CHUNK) as u64, chunk);
+            if chunk.len() == CHUNK
+                && let Some(before) = travelling.replace(self.queue.submit([]))
+            {
+                self.finish(before);
             }
         }
     }
