@@ -18,6 +18,10 @@ use wgpu::BufferUsages;
 /// memory, which is far faster than new memory.
 pub(super) const CHUNK: usize = 1 << 22;
 
+/// Natively, the fewest words that begin to travel to the device before the host copies the next.
+#[cfg(not(target_arch = "wasm32"))]
+const FEWEST_SUBMITTED: usize = 1 << 18;
+
 /// Copies that the device makes while the host takes one. A browser needs several: each goes through two processes.
 const AHEAD: usize = if cfg!(target_arch = "wasm32") { 3 } else { 1 };
 
@@ -289,7 +293,7 @@ impl Device {
     ) {
         for (i, chunk) in words.chunks(CHUNK).enumerate() {
             self.stage(buffer, 4 * (first + i * CHUNK) as u64, chunk);
-            if chunk.len() == CHUNK
+            if chunk.len() >= FEWEST_SUBMITTED
                 && let Some(before) = travelling.replace(self.queue.submit([]))
             {
                 self.finish(before);
