@@ -1,10 +1,7 @@
 //! The iterations of a submission, and the history that the device writes of them.
 
-#[cfg(not(target_arch = "wasm32"))]
 use super::params::Params;
-#[cfg(not(target_arch = "wasm32"))]
 use crate::engine::gpu::Form;
-#[cfg(not(target_arch = "wasm32"))]
 use std::sync::atomic::{AtomicU32, Ordering};
 
 /// The most iterations with a dispatch for each phase in one submission.
@@ -28,11 +25,10 @@ pub(super) type Entry = [u32; ENTRY_WORDS];
 
 /// How many iterations the last run of each form and size needed before the tail could take over. The next run of the
 /// same kind gets no more dispatches, because each takes time, also if nothing is left to do. Results do not depend on it.
-#[cfg(not(target_arch = "wasm32"))]
+/// In a browser it stays empty.
 #[derive(Default)]
 pub(super) struct Batches([[AtomicU32; 32]; Form::COUNT]);
 
-#[cfg(not(target_arch = "wasm32"))]
 impl Batches {
     fn of(&self, form: Form, triangles: u32) -> &AtomicU32 {
         &self.0[form.index()][(u32::BITS - 1 - triangles.max(1).leading_zeros()) as usize]

@@ -17,6 +17,8 @@ use crate::mesh::areas::Areas;
 
 /// Dispatches of the tail: it may pause once for exact arithmetic.
 const TAIL_DISPATCHES: u32 = 3;
+/// Whether the first batch of a run is as long as the last run needed. In a browser a second submission takes too long.
+const LEARNS: bool = cfg!(not(target_arch = "wasm32"));
 /// Dispatches of the counts.
 const COUNT_DISPATCHES: u64 = 4;
 
@@ -103,21 +105,20 @@ impl WebGpu {
             rest.fill(&mut triangles, first).await?;
             self.known.triangles = Some(triangles);
         }
-        #[cfg(not(target_arch = "wasm32"))]
-        if count >= BATCH {
+        if LEARNS && count >= BATCH {
             self.gpu.batches.learn(self.form, &self.params, &history);
         }
         Ok(self.take_over(&history))
     }
 
     /// The most iterations with a dispatch for each phase in the next submission. A run gets as many as the last one of
-    /// its kind needed, and if it needs more, a second submission. In a browser that would take too long.
+    /// its kind needed, and if it needs more, a second submission.
     fn longest_batch(&self) -> u32 {
-        #[cfg(not(target_arch = "wasm32"))]
-        if self.params.first == 0 {
-            return self.gpu.batches.first(self.form, self.params.triangles);
+        if LEARNS && self.params.first == 0 {
+            self.gpu.batches.first(self.form, self.params.triangles)
+        } else {
+            BATCH
         }
-        BATCH
     }
 
     /// Reads a buffer that has one word per half-edge.
