@@ -193,3 +193,20 @@ fn a_run_waits_once() {
         assert!(asked(mesh)[1] > 1, "{name}");
     }
 }
+
+/// On a device of its own, since the device counts its calls.
+#[test]
+fn a_run_without_flips_reads_no_triangles() {
+    block_on(async {
+        let gpu = Device::own().await?;
+        let mesh = Arc::new(families::by_name("regular 12").unwrap());
+        let upload = Upload::new(EngineKind::Gpu, mesh.clone(), any_deviation(10.0))?;
+        let mut engine = WebGpu::new(gpu.clone(), upload).await?;
+        assert!(engine.iterate(u32::MAX).await?.is_empty());
+        let before = gpu.asked();
+        assert_same("triangles", mesh.triangles(), &engine.triangles().await?);
+        assert_eq!(gpu.asked(), before);
+        Ok::<_, Error>(())
+    })
+    .unwrap();
+}

@@ -183,6 +183,27 @@ impl Device {
         read
     }
 
+    /// As [`Device::check`], also for a device of the caller.
+    ///
+    /// # Errors
+    /// [`Error::Device`].
+    pub(super) async fn check_loss(&self) -> Result<(), Error> {
+        #[cfg(not(target_arch = "wasm32"))]
+        if self.given.is_some() {
+            let descriptor = wgpu::BufferDescriptor {
+                label: Some("check"),
+                size: 4,
+                usage: BufferUsages::MAP_WRITE,
+                mapped_at_creation: true,
+            };
+            let map = || Buffer::new(self.device.create_buffer(&descriptor)).get_mapped_range(..).is_ok();
+            if !self.checked(map).await? {
+                return Err(self.not_mapped());
+            }
+        }
+        self.check()
+    }
+
     /// Why a buffer is not mapped: the first error of the device. A device of the caller, which is lost, tells of that
     /// in no other way.
     pub(super) fn not_mapped(&self) -> Error {

@@ -95,6 +95,8 @@ pub(crate) struct WebGpu {
     buffers: Buffers,
     /// The counters of the adjacency, then the signs of the triangles.
     counters: Buffer,
+    /// The mesh, while its triangles are those on the device: no edge has flipped.
+    input: Option<Arc<Mesh>>,
     /// The mesh, until the host has read the counters.
     unsettled: Option<Arc<Mesh>>,
     /// The faults of allocating the buffers, until the host has checked them.

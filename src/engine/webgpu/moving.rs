@@ -35,7 +35,7 @@ impl WebGpu {
         if self.unsettled.is_some() {
             return refuse("an update begins only after the start of the session has ended".to_owned());
         }
-        self.known = super::Known::default();
+        (self.known, self.input) = (super::Known::default(), None);
         if self.params.update == 0 {
             self.params.first = 0;
         }

@@ -10,7 +10,7 @@ use super::kernels::{Kernel, WORKGROUP_SIZE};
 use super::known::Known;
 use super::programs::{DECIDERS, LANE_COUNT};
 use super::steps::Step;
-use super::words::{Words, reserve};
+use super::words::{Words, copied, reserve};
 use crate::Error;
 use crate::engine::{Answer, Census};
 use crate::mesh::areas::Areas;
@@ -129,12 +129,17 @@ impl WebGpu {
         })
     }
 
-    /// The triangles, unless the last submission has read them.
+    /// The triangles, unless the last submission has read them or no edge has flipped.
     pub(super) fn known_triangles(&mut self) -> Answer<'_, Words> {
-        match self.known.triangles.take() {
-            Some(triangles) => Box::pin(std::future::ready(Ok(triangles))),
-            None => self.read(|buffers| &buffers.triangles),
+        if let Some(triangles) = self.known.triangles.take() {
+            return Box::pin(std::future::ready(Ok(triangles)));
         }
+        let Some(input) = self.input.clone() else { return self.read(|buffers| &buffers.triangles) };
+        Box::pin(async move {
+            self.check_allocation().await?;
+            self.gpu.check_loss().await?;
+            Ok(copied(input.triangles()))
+        })
     }
 
     /// Counts the edges and the areas, unless that was done.
@@ -184,6 +189,9 @@ impl WebGpu {
     pub(super) fn take_over(&mut self, history: &[u32]) -> Vec<u32> {
         let entries = history[ENTRIES..].chunks_exact(ENTRY_WORDS).skip(1);
         let ran: Vec<&[u32]> = entries.take_while(|entry| entry[3] == 1).collect();
+        if ran.iter().any(|entry| entry[0] > 0) {
+            self.input = None;
+        }
         if let Some(last) = ran.last() {
             self.state.copy_from_slice(last);
         }

@@ -68,6 +68,7 @@ impl WebGpu {
                 bytes,
                 buffers,
                 counters: scratch.counters,
+                input: None,
                 unsettled: None,
                 allocation: None,
                 waits,
@@ -155,6 +156,7 @@ impl WebGpu {
         self.params.first = 0;
         self.state = self.first_state();
         self.known = Known::default();
+        self.input = Some(mesh.clone());
         self.unsettled = Some(mesh);
         if self.waits { self.settle().await } else { Ok(()) }
     }

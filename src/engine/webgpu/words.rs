@@ -1,5 +1,7 @@
 //! The array that a result is read into.
 
+#[cfg(not(target_arch = "wasm32"))]
+use crate::system::threads::Threads;
 #[cfg(target_arch = "wasm32")]
 use js_sys::Uint32Array;
 #[cfg(target_arch = "wasm32")]
@@ -21,6 +23,17 @@ pub(super) fn vector(words: Words) -> Vec<u32> {
 #[cfg(target_arch = "wasm32")]
 pub(super) fn vector(words: Words) -> Vec<u32> {
     words.to_vec()
+}
+
+/// A copy of words of the program or of the module.
+#[cfg(not(target_arch = "wasm32"))]
+pub(super) fn copied(words: &[u32]) -> Words {
+    Threads::default().copied(words)
+}
+
+#[cfg(target_arch = "wasm32")]
+pub(super) fn copied(words: &[u32]) -> Words {
+    words.into()
 }
 
 /// Memory for `words` words, if available.
