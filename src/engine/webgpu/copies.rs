@@ -3,7 +3,9 @@
 use super::buffer::Buffer;
 use super::device::Device;
 use super::faults::{Caught, watch};
-use super::words::{Words, reserve, vector};
+#[cfg(not(target_arch = "wasm32"))]
+use super::words::put;
+use super::words::{Reserved, Words, reserve, vector};
 use crate::Error;
 use crate::engine::Answer;
 #[cfg(not(target_arch = "wasm32"))]
@@ -95,24 +97,19 @@ impl ReadBack<'_> {
     #[cfg(not(target_arch = "wasm32"))]
     pub(super) fn words(&self, source: usize) -> Result<Vec<u32>, Error> {
         let mut words = Vec::new();
-        self.append(source, &mut words).map(|()| words)
+        self.fill(source, &mut words, 0).map(|()| words)
     }
 
-    /// Copies the words of a source behind the first `_taken` words, which `result` has.
+    /// Copies the words of a source behind the first `taken` words, which `result` has.
     ///
     /// # Errors
     /// [`Error::Device`].
     #[cfg(not(target_arch = "wasm32"))]
-    pub(super) fn fill(&self, source: usize, result: &mut Words, _taken: usize) -> Result<(), Error> {
-        self.append(source, result)
-    }
-
-    #[cfg(not(target_arch = "wasm32"))]
-    fn append(&self, source: usize, result: &mut Vec<u32>) -> Result<(), Error> {
+    pub(super) fn fill(&self, source: usize, result: &mut Words, taken: usize) -> Result<(), Error> {
         let range = self.ranges[source].clone();
         let Some(staging) = self.staging.as_ref().filter(|_| !range.is_empty()) else { return Ok(()) };
         let view = staging.get_mapped_range(range).map_err(|_| self.gpu.not_mapped())?;
-        Threads::default().append(result, bytemuck::cast_slice(&view));
+        put(result, taken, bytemuck::cast_slice(&view));
         Ok(())
     }
 }
@@ -153,6 +150,15 @@ impl LongRead<'_> {
     }
 }
 
+/// Memory for words: the reserved memory, or other.
+///
+/// # Errors
+/// [`Error::OutOfMemory`].
+pub(super) fn memory_for(words: usize, reserved: Option<Reserved>) -> Result<Words, Error> {
+    let memory = reserved.and_then(Reserved::words).or_else(|| reserve(words));
+    memory.ok_or(Error::OutOfMemory { bytes: 4 * words as u64, limit: None })
+}
+
 impl Device {
     /// Reads `words` words from the start of `buffer`.
     ///
@@ -169,9 +175,8 @@ impl Device {
     /// [`Error::Device`]; [`Error::OutOfMemory`].
     pub(super) fn read_array(&self, buffer: &wgpu::Buffer, words: usize) -> Answer<'_, Words> {
         let read = self.begin_read(buffer, 0..words);
-        let bytes = 4 * words as u64;
         Box::pin(async move {
-            let mut result = reserve(words).ok_or(Error::OutOfMemory { bytes, limit: None })?;
+            let mut result = memory_for(words, None)?;
             read.fill(&mut result, 0).await.map(|()| result)
         })
     }

@@ -77,7 +77,7 @@ use kernels::Plan;
 use known::Known;
 use params::Params;
 use std::sync::Arc;
-use words::vector;
+use words::{Reserved, vector};
 
 /// A mesh on the device.
 pub(crate) struct WebGpu {
@@ -105,6 +105,8 @@ pub(crate) struct WebGpu {
     waits: bool,
     /// Whether the triangles stay on the device until somebody asks for them.
     stays: bool,
+    /// Memory for the triangles, if a run has begun that will be asked for them.
+    reserved: Option<Reserved>,
     /// Results that the host has read in advance.
     known: Known,
     state: Entry,
@@ -151,8 +153,7 @@ impl Engine for WebGpu {
     }
 
     fn twins(&mut self) -> Answer<'_, Vec<u32>> {
-        let twins = self.read(|buffers| &buffers.twins);
-        Box::pin(async { twins.await.map(vector) })
+        Box::pin(self.read_twins())
     }
 
     fn set_positions(&mut self, mesh: Arc<Mesh>) -> Answer<'_, ()> {

@@ -2,15 +2,13 @@
 
 use super::WebGpu;
 use super::adjacency::COUNTERS;
-use super::buffer::Buffer;
-use super::buffers::Buffers;
-use super::copies::{CHUNK, Source};
+use super::copies::{CHUNK, Source, memory_for};
 use super::history::{AREAS, BATCH, COUNTS, ENTRIES, ENTRY_WORDS, HISTORY_WORDS, SHORT_TAIL, TAIL};
 use super::kernels::{Kernel, WORKGROUP_SIZE};
 use super::known::Known;
 use super::programs::{DECIDERS, LANE_COUNT};
 use super::steps::Step;
-use super::words::{Words, copied, reserve};
+use super::words::{Reserved, Words, put};
 use crate::Error;
 use crate::engine::{Answer, Census};
 use crate::mesh::areas::Areas;
@@ -87,7 +85,9 @@ impl WebGpu {
         let pending = gpu.submit_and_map(&record, &sources);
         let rest = if has_triangles { first..triangles } else { 0..0 };
         let rest = gpu.begin_read(&self.buffers.triangles, rest);
-        let reserved = if has_triangles { reserve(triangles) } else { None };
+        if is_run {
+            self.reserved.get_or_insert_with(|| Reserved::begin(triangles));
+        }
         self.check_allocation().await?;
         let read = pending.finished().await?;
         let history = read.words(0)?;
@@ -100,7 +100,7 @@ impl WebGpu {
         if !self.waits {
             self.known.counts = Some(counts_of(&history));
         }
-        if let Some(mut triangles) = reserved {
+        if has_triangles && let Ok(mut triangles) = memory_for(triangles, self.reserved.take()) {
             read.fill(2, &mut triangles, 0)?;
             rest.fill(&mut triangles, first).await?;
             self.known.triangles = Some(triangles);
@@ -121,24 +121,29 @@ impl WebGpu {
         }
     }
 
-    /// Reads a buffer that has one word per half-edge.
-    pub(super) fn read(&mut self, of: fn(&Buffers) -> &Buffer) -> Answer<'_, Words> {
-        Box::pin(async move {
-            self.check_allocation().await?;
-            self.gpu.read_array(of(&self.buffers), 3 * self.params.triangles as usize).await
-        })
+    /// The present twins.
+    pub(super) async fn read_twins(&mut self) -> Result<Vec<u32>, Error> {
+        self.check_allocation().await?;
+        self.gpu.read(&self.buffers.twins, 3 * self.params.triangles as usize).await
     }
 
     /// The triangles, unless the last submission has read them or no edge has flipped.
     pub(super) fn known_triangles(&mut self) -> Answer<'_, Words> {
-        if let Some(triangles) = self.known.triangles.take() {
-            return Box::pin(std::future::ready(Ok(triangles)));
-        }
-        let Some(input) = self.input.clone() else { return self.read(|buffers| &buffers.triangles) };
         Box::pin(async move {
+            if let Some(triangles) = self.known.triangles.take() {
+                return Ok(triangles);
+            }
             self.check_allocation().await?;
-            self.gpu.check_loss().await?;
-            Ok(copied(input.triangles()))
+            let (words, reserved) = (3 * self.params.triangles as usize, self.reserved.take());
+            if let Some(input) = &self.input {
+                self.gpu.check_loss().await?;
+                let mut result = memory_for(words, reserved)?;
+                put(&mut result, 0, input.triangles());
+                return Ok(result);
+            }
+            let read = self.gpu.begin_read(&self.buffers.triangles, 0..words);
+            let mut result = memory_for(words, reserved)?;
+            read.fill(&mut result, 0).await.map(|()| result)
         })
     }
 

@@ -73,6 +73,7 @@ impl WebGpu {
                 allocation: None,
                 waits,
                 stays: false,
+                reserved: None,
                 known: Known::default(),
                 state: Entry::default(),
                 dispatches: adjacency::DISPATCHES,
