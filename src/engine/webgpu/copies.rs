@@ -14,6 +14,8 @@ use futures_channel::oneshot;
 use std::ops::Range;
 #[cfg(test)]
 use std::sync::atomic::Ordering::Relaxed;
+#[cfg(not(target_arch = "wasm32"))]
+use std::time::{Duration, Instant};
 use wgpu::BufferUsages;
 
 /// The most words of one copy to the device, or from it. Longer arrays go in several copies through the same staging
@@ -26,6 +28,10 @@ const FEWEST_SUBMITTED: usize = 1 << 18;
 
 /// Copies that the device makes while the host takes one. A browser needs several: each goes through two processes.
 const AHEAD: usize = if cfg!(target_arch = "wasm32") { 3 } else { 1 };
+
+/// How long the host polls the device before it sleeps. Many submissions end sooner than a thread wakes up.
+#[cfg(not(target_arch = "wasm32"))]
+const AWAKE: Duration = Duration::from_micros(300);
 
 /// Words that one thread copies without a break.
 #[cfg(not(target_arch = "wasm32"))]
@@ -45,12 +51,16 @@ impl<'a> Source<'a> {
     }
 }
 
+/// The answer to a request to map a buffer.
+type Mapped = Result<(), wgpu::BufferAsyncError>;
+
 /// A read that the device has not finished.
 pub(super) struct PendingRead<'a> {
     gpu: &'a Device,
     staging: Buffer,
     caught: Caught,
-    receiver: oneshot::Receiver<Result<(), wgpu::BufferAsyncError>>,
+    receiver: oneshot::Receiver<Mapped>,
+    submission: wgpu::SubmissionIndex,
     ranges: Vec<Range<u64>>,
 }
 
@@ -60,11 +70,9 @@ impl<'a> PendingRead<'a> {
     /// # Errors
     /// [`Error::Device`].
     pub(super) async fn finished(self) -> Result<ReadBack<'a>, Error> {
-        let Self { gpu, staging, caught, receiver, ranges } = self;
+        let Self { gpu, staging, caught, receiver, submission, ranges } = self;
         gpu.judge(caught.await)?;
-        #[cfg(not(target_arch = "wasm32"))]
-        gpu.wait().map_err(|_| gpu.not_mapped())?;
-        if !matches!(receiver.await, Ok(Ok(()))) {
+        if !matches!(gpu.mapped(receiver, submission).await, Some(Ok(()))) {
             return Err(gpu.not_mapped());
         }
         gpu.check()?;
@@ -216,10 +224,10 @@ impl Device {
     }
 
     /// Submits commands.
-    pub(super) fn submit(&self, encoder: wgpu::CommandEncoder) {
-        self.queue.submit([encoder.finish()]);
+    pub(super) fn submit(&self, encoder: wgpu::CommandEncoder) -> wgpu::SubmissionIndex {
         #[cfg(test)]
         self.asked.submissions.fetch_add(1, Relaxed);
+        self.queue.submit([encoder.finish()])
     }
 
     /// Submits the commands from `record` together with reads of the sources after them, and waits.
@@ -257,34 +265,72 @@ impl Device {
                 let size = 4 * *words as u64;
                 encoder.copy_buffer_to_buffer(buffer, 4 * *first as u64, &staging, range.start, size);
             }
-            self.submit(encoder);
+            let submission = self.submit(encoder);
             staging.map_async(wgpu::MapMode::Read, ..end.max(4), move |result| {
                 // The receiver is gone only if the caller has stopped waiting.
                 let _ = sender.send(result);
             });
             #[cfg(test)]
             self.asked.maps.fetch_add(1, Relaxed);
-            staging
+            (staging, submission)
         };
-        let (staging, caught) = watch(&self.device, submit);
-        PendingRead { gpu: self, staging, caught, receiver, ranges }
+        let ((staging, submission), caught) = watch(&self.device, submit);
+        PendingRead { gpu: self, staging, caught, receiver, submission, ranges }
     }
 
+    /// Waits for the answer to a request to map a buffer, made after a submission.
     #[cfg(not(target_arch = "wasm32"))]
-    fn wait(&self) -> Result<wgpu::PollStatus, wgpu::PollError> {
-        self.device.poll(wgpu::PollType::wait_indefinitely())
+    async fn mapped(
+        &self,
+        mut receiver: oneshot::Receiver<Mapped>,
+        submission: wgpu::SubmissionIndex,
+    ) -> Option<Mapped> {
+        let mut mapped = None;
+        let is_done = self.poll_awake(|_| {
+            mapped = receiver.try_recv().ok().flatten();
+            mapped.is_some()
+        });
+        if is_done {
+            return mapped;
+        }
+        self.finish(submission).ok()?;
+        // Another thread that polls the device may be about to answer.
+        receiver.await.ok()
     }
 
-    /// Natively, waits for all copies to the device.
+    #[cfg(target_arch = "wasm32")]
+    async fn mapped(&self, receiver: oneshot::Receiver<Mapped>, _: wgpu::SubmissionIndex) -> Option<Mapped> {
+        receiver.await.ok()
+    }
+
+    /// Polls the device for a short time without sleeping, until `is_done`. Returns whether it is.
+    #[cfg(not(target_arch = "wasm32"))]
+    fn poll_awake(&self, mut is_done: impl FnMut(wgpu::PollStatus) -> bool) -> bool {
+        let begin = Instant::now();
+        while begin.elapsed() < AWAKE {
+            if self.device.poll(wgpu::PollType::Poll).is_ok_and(&mut is_done) {
+                return true;
+            }
+            std::hint::spin_loop();
+        }
+        false
+    }
+
+    /// Waits for a submission.
+    #[cfg(not(target_arch = "wasm32"))]
+    fn finish(&self, submission: wgpu::SubmissionIndex) -> Result<wgpu::PollStatus, wgpu::PollError> {
+        self.device.poll(wgpu::PollType::Wait { submission_index: Some(submission), timeout: None })
+    }
+
+    /// Natively, waits for all copies to the device. If this fails, the next call that can return an error reports it.
     pub(super) fn finish_copies(&self) {
         #[cfg(not(target_arch = "wasm32"))]
-        self.finish(self.queue.submit([]));
-    }
-
-    /// Waits for a submission of copies. If this fails, the next call that can return an error reports it.
-    #[cfg(not(target_arch = "wasm32"))]
-    fn finish(&self, submission: wgpu::SubmissionIndex) {
-        let _ = self.device.poll(wgpu::PollType::Wait { submission_index: Some(submission), timeout: None });
+        {
+            let submission = self.queue.submit([]);
+            if !self.poll_awake(|status| status.is_queue_empty()) {
+                let _ = self.finish(submission);
+            }
+        }
     }
 
     /// Writes words to the start of `buffer`, before the next submission.
@@ -322,7 +368,8 @@ impl Device {
             if chunk.len() >= FEWEST_SUBMITTED
                 && let Some(before) = travelling.replace(self.queue.submit([]))
             {
-                self.finish(before);
+                // If this fails, the next call that can return an error reports it.
+                let _ = self.finish(before);
             }
         }
     }
