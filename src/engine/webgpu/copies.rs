@@ -224,10 +224,10 @@ impl Device {
     }
 
     /// Submits commands.
-    pub(super) fn submit(&self, encoder: wgpu::CommandEncoder) -> wgpu::SubmissionIndex {
+    pub(super) fn submit(&self, commands: wgpu::CommandBuffer) -> wgpu::SubmissionIndex {
         #[cfg(test)]
         self.asked.submissions.fetch_add(1, Relaxed);
-        self.queue.submit([encoder.finish()])
+        self.queue.submit([commands])
     }
 
     /// Submits the commands from `record` together with reads of the sources after them, and waits.
@@ -265,7 +265,7 @@ impl Device {
                 let size = 4 * *words as u64;
                 encoder.copy_buffer_to_buffer(buffer, 4 * *first as u64, &staging, range.start, size);
             }
-            let submission = self.submit(encoder);
+            let submission = self.submit(encoder.finish());
             staging.map_async(wgpu::MapMode::Read, ..end.max(4), move |result| {
                 // The receiver is gone only if the caller has stopped waiting.
                 let _ = sender.send(result);
@@ -322,16 +322,16 @@ impl Device {
         self.device.poll(wgpu::PollType::Wait { submission_index: Some(submission), timeout: None })
     }
 
-    /// Natively, waits for all copies to the device. If this fails, the next call that can return an error reports it.
-    pub(super) fn finish_copies(&self) {
-        #[cfg(not(target_arch = "wasm32"))]
-        {
-            let submission = self.queue.submit([]);
-            if !self.poll_awake(|status| status.is_queue_empty()) {
-                let _ = self.finish(submission);
-            }
+    /// Natively, waits for copies to the device. If this fails, the next call that can return an error reports it.
+    #[cfg(not(target_arch = "wasm32"))]
+    pub(super) fn finish_copies(&self, submission: wgpu::SubmissionIndex) {
+        if !self.poll_awake(|status| status.is_queue_empty()) {
+            let _ = self.finish(submission);
         }
     }
+
+    #[cfg(target_arch = "wasm32")]
+    pub(super) fn finish_copies(&self, _: wgpu::SubmissionIndex) {}
 
     /// Writes words to the start of `buffer`, before the next submission.
     pub(super) fn write(&self, buffer: &Buffer, words: &[u32]) {
@@ -368,7 +368,7 @@ impl Device {
             if chunk.len() >= FEWEST_SUBMITTED
                 && let Some(before) = travelling.replace(self.queue.submit([]))
             {
-                // If this fails, the next call that can return an error reports it.
+                // The next call that can return an error reports a failure.
                 let _ = self.finish(before);
             }
         }

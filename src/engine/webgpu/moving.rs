@@ -52,7 +52,7 @@ impl WebGpu {
             self.encode_pass(&mut encoder, &|pass| {
                 self.record_iterations(pass, iterations, None);
             });
-            gpu.submit(encoder);
+            gpu.submit(encoder.finish());
         });
         gpu.keep_watch(faults);
         self.params.first = self.params.first.wrapping_add(iterations);
@@ -72,7 +72,7 @@ impl WebGpu {
             encoder.clear_buffer(history, 0, Some(bytes(COUNTS)));
             self.encode_pass(&mut encoder, &|pass| self.record_counts(pass));
             encoder.copy_buffer_to_buffer(history, 0, &snapshot, 0, bytes(ENTRIES));
-            gpu.submit(encoder);
+            gpu.submit(encoder.finish());
             snapshot
         });
         Box::pin(async move {

@@ -47,10 +47,8 @@ impl WebGpu {
         let begin = || {
             let mesh = &upload.mesh;
             let (buffers, scratch) = (Buffers::new(&gpu, &upload), Scratch::new(&gpu, mesh));
-            if waits {
-                gpu.finish_copies();
-                start = Instant::now();
-            }
+            // The mesh travels to the device while the host records the work on it.
+            let travelling = waits.then(|| gpu.queue.submit([]));
             let params = Params::new(&upload, &TopologyOffsets::new(mesh), gpu.ends_loops_early);
             let bytes = buffers.bytes() + scratch.bytes();
             let mut encoder = gpu.device.create_command_encoder(&Default::default());
@@ -81,7 +79,12 @@ impl WebGpu {
                 gpu: gpu.clone(),
             };
             result.record_preparation(&mut encoder);
-            gpu.submit(encoder);
+            let commands = encoder.finish();
+            if let Some(travelling) = travelling {
+                gpu.finish_copies(travelling);
+                start = Instant::now();
+            }
+            gpu.submit(commands);
             result
         };
         let (mut result, caught) = watch(&gpu.device, begin);
@@ -142,7 +145,7 @@ impl WebGpu {
     fn prepare(&self) {
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
         self.record_preparation(&mut encoder);
-        self.gpu.submit(encoder);
+        self.gpu.submit(encoder.finish());
     }
 
     /// The entry that the device writes if it needs no help of the host: as if an iteration before the first had flipped
@@ -235,7 +238,7 @@ impl WebGpu {
             gpu.queue.write_buffer(&self.buffers.topology, 4 * before as u64, bytemuck::cast_slice(words));
             let mut encoder = gpu.device.create_command_encoder(&Default::default());
             encoder.copy_buffer_to_buffer(&topology, 0, &self.buffers.topology, 0, 4 * before as u64);
-            gpu.submit(encoder);
+            gpu.submit(encoder.finish());
             self.buffers.bind(gpu, &self.kernels.layout)
         };
         self.bindings = gpu.checked(copy).await?;
