@@ -55,8 +55,7 @@ impl<'a> Source<'a> {
 type Mapped = Result<(), wgpu::BufferAsyncError>;
 
 /// A read that the device has not finished.
-pub(super) struct PendingRead<'a> {
-    gpu: &'a Device,
+pub(super) struct PendingRead {
     staging: Buffer,
     caught: Caught,
     receiver: oneshot::Receiver<Mapped>,
@@ -64,13 +63,13 @@ pub(super) struct PendingRead<'a> {
     ranges: Vec<Range<u64>>,
 }
 
-impl<'a> PendingRead<'a> {
+impl PendingRead {
     /// Waits for the device.
     ///
     /// # Errors
     /// [`Error::Device`].
-    pub(super) async fn finished(self) -> Result<ReadBack<'a>, Error> {
-        let Self { gpu, staging, caught, receiver, submission, ranges } = self;
+    pub(super) async fn finished(self, gpu: &Device) -> Result<ReadBack<'_>, Error> {
+        let Self { staging, caught, receiver, submission, ranges } = self;
         gpu.judge(caught.await)?;
         if !matches!(gpu.mapped(receiver, submission).await, Some(Ok(()))) {
             return Err(gpu.not_mapped());
@@ -128,7 +127,7 @@ pub(super) struct LongRead<'a> {
     buffer: wgpu::Buffer,
     rest: Range<usize>,
     /// At most [`AHEAD`], in the order of the words.
-    pending: Vec<PendingRead<'a>>,
+    pending: Vec<PendingRead>,
 }
 
 impl LongRead<'_> {
@@ -149,7 +148,7 @@ impl LongRead<'_> {
     /// [`Error::Device`].
     pub(super) async fn fill(mut self, result: &mut Words, mut taken: usize) -> Result<(), Error> {
         while !self.pending.is_empty() {
-            let piece = self.pending.remove(0).finished().await?;
+            let piece = self.pending.remove(0).finished(self.gpu).await?;
             self.advance();
             piece.fill(0, result, taken)?;
             taken += CHUNK;
@@ -239,7 +238,7 @@ impl Device {
         record: &dyn Fn() -> wgpu::CommandEncoder,
         sources: &[Source<'_>],
     ) -> Result<ReadBack<'_>, Error> {
-        self.submit_and_map(record, sources).finished().await
+        self.submit_and_map(record, sources).finished(self).await
     }
 
     /// The same, without the wait.
@@ -247,7 +246,7 @@ impl Device {
         &self,
         record: &dyn Fn() -> wgpu::CommandEncoder,
         sources: &[Source<'_>],
-    ) -> PendingRead<'_> {
+    ) -> PendingRead {
         let mut end = 0;
         let range = |source: &Source<'_>| {
             // A view begins at a multiple of eight bytes.
@@ -275,7 +274,7 @@ impl Device {
             (staging, submission)
         };
         let ((staging, submission), caught) = watch(&self.device, submit);
-        PendingRead { gpu: self, staging, caught, receiver, submission, ranges }
+        PendingRead { staging, caught, receiver, submission, ranges }
     }
 
     /// Waits for the answer to a request to map a buffer, made after a submission.

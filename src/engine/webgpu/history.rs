@@ -34,11 +34,16 @@ impl Batches {
         &self.0[form.index()][(u32::BITS - 1 - triangles.max(1).leading_zeros()) as usize]
     }
 
+    /// The iterations that the last run needed; 0 if there was none.
+    pub(super) fn needed(&self, form: Form, triangles: u32) -> u32 {
+        self.of(form, triangles).load(Ordering::Relaxed)
+    }
+
     /// The iterations with dispatches of their own in the first submission of a run.
     pub(super) fn first(&self, form: Form, triangles: u32) -> u32 {
-        match self.of(form, triangles).load(Ordering::Relaxed) {
+        match self.needed(form, triangles) {
             0 => BATCH,
-            needed => needed,
+            needed => needed.min(BATCH),
         }
     }
 
@@ -47,6 +52,6 @@ impl Batches {
         let is_ready = |entry: &[u32]| entry[0] == 0 || (entry[2] == 1 && entry[1] <= params.tail_length);
         let entries = history[ENTRIES..].chunks_exact(ENTRY_WORDS).take_while(|entry| entry[3] == 1);
         let needed = params.first + entries.take_while(|entry| !is_ready(entry)).count() as u32;
-        self.of(form, params.triangles).store(needed.clamp(1, BATCH), Ordering::Relaxed);
+        self.of(form, params.triangles).store(needed.max(1), Ordering::Relaxed);
     }
 }

@@ -69,8 +69,7 @@ impl WebGpu {
             let history = &self.buffers.history;
             self.write_params();
             let mut encoder = gpu.device.create_command_encoder(&Default::default());
-            encoder.clear_buffer(history, 0, Some(bytes(COUNTS)));
-            self.encode_pass(&mut encoder, &|pass| self.record_counts(pass));
+            self.encode_counts(&mut encoder, &|pass| self.record_counts(pass));
             encoder.copy_buffer_to_buffer(history, 0, &snapshot, 0, bytes(ENTRIES));
             gpu.submit(encoder.finish());
             snapshot

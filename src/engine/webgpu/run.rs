@@ -2,7 +2,7 @@
 
 use super::WebGpu;
 use super::adjacency::COUNTERS;
-use super::copies::{CHUNK, Source, memory_for};
+use super::copies::{CHUNK, PendingRead, Source, memory_for};
 use super::history::{AREAS, BATCH, COUNTS, ENTRIES, ENTRY_WORDS, HISTORY_WORDS, SHORT_TAIL, TAIL};
 use super::kernels::{Kernel, WORKGROUP_SIZE};
 use super::known::Known;
@@ -54,7 +54,9 @@ impl WebGpu {
         let tail = self.kernels.tail.get();
         self.params.tail_iterations = if tail.is_some() { (count - batch).min(longest) } else { 0 };
         self.dispatches += u64::from(4 * batch + TAIL_DISPATCHES * self.params.tail_iterations.min(1));
-        if !self.waits {
+        // The counts of a run's end follow at once, so that nobody has to wait for them later.
+        let ends = !self.waits || (LEARNS && count > 1 && self.ends_within(batch));
+        if ends {
             self.dispatches += COUNT_DISPATCHES;
         }
         let iterate = |pass: &mut wgpu::ComputePass| self.record_iterations(pass, batch, tail);
@@ -64,8 +66,7 @@ impl WebGpu {
             }
             let mut encoder = self.encode(&iterate);
             if !self.waits {
-                encoder.clear_buffer(&self.buffers.history, 0, Some(4 * COUNTS as u64));
-                self.encode_pass(&mut encoder, &|pass| self.record_counts(pass));
+                self.encode_counts(&mut encoder, &|pass| self.record_counts(pass));
             }
             encoder
         };
@@ -83,13 +84,14 @@ impl WebGpu {
         }
         let gpu = self.gpu.clone();
         let pending = gpu.submit_and_map(&record, &sources);
+        let counting = (self.waits && ends).then(|| self.begin_counts(&|pass| self.record_counts(pass)));
         let rest = if has_triangles { first..triangles } else { 0..0 };
         let rest = gpu.begin_read(&self.buffers.triangles, rest);
         if is_run {
             self.reserved.get_or_insert_with(|| Reserved::begin(triangles));
         }
         self.check_allocation().await?;
-        let read = pending.finished().await?;
+        let read = pending.finished(&gpu).await?;
         let history = read.words(0)?;
         if let Some(mesh) = self.unsettled.clone() {
             let counters = read.words(1)?;
@@ -97,6 +99,7 @@ impl WebGpu {
                 return Ok(Vec::new());
             }
         }
+        self.known.counting = counting;
         if !self.waits {
             self.known.counts = Some(counts_of(&history));
         }
@@ -119,6 +122,11 @@ impl WebGpu {
         } else {
             BATCH
         }
+    }
+
+    /// Whether the run will probably end in a submission with this batch, as the last run of its kind did.
+    fn ends_within(&self, batch: u32) -> bool {
+        self.gpu.batches.needed(self.form, self.params.triangles) <= self.params.first + batch
     }
 
     /// The present twins.
@@ -153,20 +161,24 @@ impl WebGpu {
         if let Some(counts) = self.known.counts {
             return Ok(counts);
         }
-        self.dispatches += COUNT_DISPATCHES;
-        let counts = counts_of(&self.count_by(&|pass| self.record_counts(pass)).await?);
+        let counting = self.known.counting.take().unwrap_or_else(|| {
+            self.dispatches += COUNT_DISPATCHES;
+            self.begin_counts(&|pass| self.record_counts(pass))
+        });
+        let counts = counts_of(&counting.finished(&self.gpu).await?.words(0)?);
         self.known.counts = Some(counts);
         Ok(counts)
     }
 
-    /// Runs kernels that count, and reads their counts.
-    pub(super) async fn count_by(&self, record: &dyn Fn(&mut wgpu::ComputePass)) -> Result<Vec<u32>, Error> {
+    /// Submits kernels that count.
+    pub(super) fn begin_counts(&self, record: &dyn Fn(&mut wgpu::ComputePass)) -> PendingRead {
         let commands = || {
-            let history = &self.buffers.history;
-            self.gpu.queue.write_buffer(history, 0, bytemuck::cast_slice(&[0u32; ENTRIES]));
-            self.encode(record)
+            self.write_params();
+            let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
+            self.encode_counts(&mut encoder, record);
+            encoder
         };
-        self.gpu.submit_and_read(&commands, &[Source::new(&self.buffers.history, COUNTS)]).await?.words(0)
+        self.gpu.submit_and_map(&commands, &[Source::new(&self.buffers.history, COUNTS)])
     }
 
     /// Writes the state as the first entry of the history, and zeros after it.
@@ -269,6 +281,16 @@ impl WebGpu {
             self.dispatch(pass, Kernel::Decide, self.params.tail_length);
             dispatch(pass);
         }
+    }
+
+    /// Encodes kernels that count, with zeros before them.
+    pub(super) fn encode_counts(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        record: &dyn Fn(&mut wgpu::ComputePass),
+    ) {
+        encoder.clear_buffer(&self.buffers.history, 0, Some(4 * COUNTS as u64));
+        self.encode_pass(encoder, record);
     }
 
     pub(super) fn record_counts(&self, pass: &mut wgpu::ComputePass) {
