@@ -27,7 +27,7 @@ pub(super) const CHUNK: usize = 1 << 22;
 const FEWEST_SUBMITTED: usize = 1 << 18;
 
 /// Copies that the device makes while the host takes one. A browser needs several: each goes through two processes.
-const AHEAD: usize = if cfg!(target_arch = "wasm32") { 3 } else { 1 };
+const AHEAD: usize = if cfg!(target_arch = "wasm32") { 3 } else { 2 };
 
 /// How long the host polls the device before it sleeps. Many submissions end sooner than a thread wakes up.
 #[cfg(not(target_arch = "wasm32"))]
