@@ -15,7 +15,8 @@ use crate::mesh::areas::Areas;
 
 /// Dispatches of the tail: it may pause once for exact arithmetic.
 const TAIL_DISPATCHES: u32 = 3;
-/// Whether the first batch of a run is as long as the last run needed. In a browser a second submission takes too long.
+/// Whether a run learns from the last run of its kind how many iterations it needs. In a browser no batch is shorter,
+/// since a second submission takes too long.
 const LEARNS: bool = cfg!(not(target_arch = "wasm32"));
 /// Dispatches of the counts.
 const COUNT_DISPATCHES: u64 = 4;
