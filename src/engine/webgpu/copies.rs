@@ -68,14 +68,17 @@ impl PendingRead {
     ///
     /// # Errors
     /// [`Error::Device`].
-    pub(super) async fn finished(self, gpu: &Device) -> Result<ReadBack<'_>, Error> {
-        let Self { staging, caught, receiver, submission, ranges } = self;
-        gpu.judge(caught.await)?;
-        if !matches!(gpu.mapped(receiver, submission).await, Some(Ok(()))) {
+    pub(super) async fn finished(mut self, gpu: &Device) -> Result<ReadBack<'_>, Error> {
+        gpu.judge(self.caught.await)?;
+        let mapped = match gpu.wait(self.submission, &mut self.receiver)? {
+            Some(mapped) => Ok(mapped),
+            None => self.receiver.await,
+        };
+        if !matches!(mapped, Ok(Ok(()))) {
             return Err(gpu.not_mapped());
         }
         gpu.check()?;
-        Ok(ReadBack { gpu, staging: Some(staging), ranges })
+        Ok(ReadBack { gpu, staging: Some(self.staging), ranges: self.ranges })
     }
 }
 
@@ -172,18 +175,23 @@ impl Device {
     /// # Errors
     /// [`Error::Device`]; [`Error::OutOfMemory`].
     pub(super) fn read(&self, buffer: &wgpu::Buffer, words: usize) -> Answer<'_, Vec<u32>> {
-        let read = self.read_array(buffer, words);
+        let read = self.read_array(buffer, words, None);
         Box::pin(async { read.await.map(vector) })
     }
 
-    /// The same, into an array of the host.
+    /// The same, into an array of the host, in the reserved memory if there is any.
     ///
     /// # Errors
     /// [`Error::Device`]; [`Error::OutOfMemory`].
-    pub(super) fn read_array(&self, buffer: &wgpu::Buffer, words: usize) -> Answer<'_, Words> {
+    pub(super) fn read_array(
+        &self,
+        buffer: &wgpu::Buffer,
+        words: usize,
+        reserved: Option<Reserved>,
+    ) -> Answer<'_, Words> {
         let read = self.begin_read(buffer, 0..words);
         Box::pin(async move {
-            let mut result = memory_for(words, None)?;
+            let mut result = memory_for(words, reserved)?;
             read.fill(&mut result, 0).await.map(|()| result)
         })
     }
@@ -277,29 +285,35 @@ impl Device {
         PendingRead { staging, caught, receiver, submission, ranges }
     }
 
-    /// Waits for the answer to a request to map a buffer, made after a submission.
+    /// Natively, waits for the answer to a request to map a buffer, made after a submission. If another thread that polls
+    /// the device is about to answer, the result is `None`.
+    ///
+    /// # Errors
+    /// [`Error::Device`].
     #[cfg(not(target_arch = "wasm32"))]
-    async fn mapped(
+    fn wait(
         &self,
-        mut receiver: oneshot::Receiver<Mapped>,
         submission: wgpu::SubmissionIndex,
-    ) -> Option<Mapped> {
+        receiver: &mut oneshot::Receiver<Mapped>,
+    ) -> Result<Option<Mapped>, Error> {
         let mut mapped = None;
-        let is_done = self.poll_awake(|_| {
+        let mut is_done = |_| {
             mapped = receiver.try_recv().ok().flatten();
             mapped.is_some()
-        });
-        if is_done {
-            return mapped;
+        };
+        if !self.poll_awake(&mut is_done) {
+            is_done(self.finish(submission).map_err(|_| self.not_mapped())?);
         }
-        self.finish(submission).ok()?;
-        // Another thread that polls the device may be about to answer.
-        receiver.await.ok()
+        Ok(mapped)
     }
 
     #[cfg(target_arch = "wasm32")]
-    async fn mapped(&self, receiver: oneshot::Receiver<Mapped>, _: wgpu::SubmissionIndex) -> Option<Mapped> {
-        receiver.await.ok()
+    fn wait(
+        &self,
+        _: wgpu::SubmissionIndex,
+        _: &mut oneshot::Receiver<Mapped>,
+    ) -> Result<Option<Mapped>, Error> {
+        Ok(None)
     }
 
     /// Polls the device for a short time without sleeping, until `is_done`. Returns whether it is.
@@ -321,16 +335,13 @@ impl Device {
         self.device.poll(wgpu::PollType::Wait { submission_index: Some(submission), timeout: None })
     }
 
-    /// Natively, waits for copies to the device. If this fails, the next call that can return an error reports it.
+    /// Waits for copies to the device. If this fails, the next call that can return an error reports it.
     #[cfg(not(target_arch = "wasm32"))]
     pub(super) fn finish_copies(&self, submission: wgpu::SubmissionIndex) {
         if !self.poll_awake(|status| status.is_queue_empty()) {
             let _ = self.finish(submission);
         }
     }
-
-    #[cfg(target_arch = "wasm32")]
-    pub(super) fn finish_copies(&self, _: wgpu::SubmissionIndex) {}
 
     /// Writes words to the start of `buffer`, before the next submission.
     pub(super) fn write(&self, buffer: &Buffer, words: &[u32]) {

@@ -154,7 +154,8 @@ impl Engine for WebGpu {
     }
 
     fn twins(&mut self) -> Answer<'_, Vec<u32>> {
-        Box::pin(self.read_twins())
+        let twins = self.read(|buffers| &buffers.twins, None);
+        Box::pin(async { twins.await.map(vector) })
     }
 
     fn set_positions(&mut self, mesh: Arc<Mesh>) -> Answer<'_, ()> {

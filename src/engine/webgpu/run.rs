@@ -2,6 +2,8 @@
 
 use super::WebGpu;
 use super::adjacency::COUNTERS;
+use super::buffer::Buffer;
+use super::buffers::Buffers;
 use super::copies::{CHUNK, PendingRead, Source, memory_for};
 use super::history::{AREAS, BATCH, COUNTS, ENTRIES, ENTRY_WORDS, HISTORY_WORDS, SHORT_TAIL, TAIL};
 use super::kernels::{Kernel, WORKGROUP_SIZE};
@@ -15,9 +17,7 @@ use crate::mesh::areas::Areas;
 
 /// Dispatches of the tail: it may pause once for exact arithmetic.
 const TAIL_DISPATCHES: u32 = 3;
-/// Whether a run learns from the last run of its kind how many iterations it needs. In a browser no batch is shorter,
-/// since a second submission takes too long.
-const LEARNS: bool = cfg!(not(target_arch = "wasm32"));
+const IS_NATIVE: bool = cfg!(not(target_arch = "wasm32"));
 /// Dispatches of the counts.
 const COUNT_DISPATCHES: u64 = 4;
 
@@ -56,7 +56,7 @@ impl WebGpu {
         self.params.tail_iterations = if tail.is_some() { (count - batch).min(longest) } else { 0 };
         self.dispatches += u64::from(4 * batch + TAIL_DISPATCHES * self.params.tail_iterations.min(1));
         // The counts of a run's end follow at once, so that nobody has to wait for them later.
-        let ends = !self.waits || (LEARNS && count > 1 && self.ends_within(batch));
+        let ends = !self.waits || (IS_NATIVE && count > 1 && self.ends_within(batch));
         if ends {
             self.dispatches += COUNT_DISPATCHES;
         }
@@ -109,16 +109,16 @@ impl WebGpu {
             rest.fill(&mut triangles, first).await?;
             self.known.triangles = Some(triangles);
         }
-        if LEARNS && count >= BATCH {
+        if IS_NATIVE && count >= BATCH {
             self.gpu.batches.learn(self.form, &self.params, &history);
         }
         Ok(self.take_over(&history))
     }
 
     /// The most iterations with a dispatch for each phase in the next submission. A run gets as many as the last one of
-    /// its kind needed, and if it needs more, a second submission.
+    /// its kind needed, and if it needs more, a second submission. In a browser that would take too long.
     fn longest_batch(&self) -> u32 {
-        if LEARNS && self.params.first == 0 {
+        if IS_NATIVE && self.params.first == 0 {
             self.gpu.batches.first(self.form, self.params.triangles)
         } else {
             BATCH
@@ -130,30 +130,36 @@ impl WebGpu {
         self.gpu.batches.needed(self.form, self.params.triangles) <= self.params.first + batch
     }
 
-    /// The present twins.
-    pub(super) async fn read_twins(&mut self) -> Result<Vec<u32>, Error> {
-        self.check_allocation().await?;
-        self.gpu.read(&self.buffers.twins, 3 * self.params.triangles as usize).await
+    /// Reads a buffer that has one word per half-edge.
+    pub(super) fn read(
+        &mut self,
+        of: fn(&Buffers) -> &Buffer,
+        reserved: Option<Reserved>,
+    ) -> Answer<'_, Words> {
+        Box::pin(async move {
+            self.check_allocation().await?;
+            let words = 3 * self.params.triangles as usize;
+            self.gpu.read_array(of(&self.buffers), words, reserved).await
+        })
     }
 
-    /// The triangles, unless the last submission has read them or no edge has flipped.
+    /// The triangles, unless the last submission has read them or no edge has flipped. In a browser, a submission without
+    /// flips has read them too.
     pub(super) fn known_triangles(&mut self) -> Answer<'_, Words> {
-        Box::pin(async move {
-            if let Some(triangles) = self.known.triangles.take() {
-                return Ok(triangles);
-            }
-            self.check_allocation().await?;
-            let (words, reserved) = (3 * self.params.triangles as usize, self.reserved.take());
-            if let Some(input) = &self.input {
+        if let Some(triangles) = self.known.triangles.take() {
+            return Box::pin(std::future::ready(Ok(triangles)));
+        }
+        let reserved = self.reserved.take();
+        if IS_NATIVE && let Some(input) = self.input.clone() {
+            return Box::pin(async move {
+                self.check_allocation().await?;
                 self.gpu.check_loss().await?;
-                let mut result = memory_for(words, reserved)?;
+                let mut result = memory_for(input.triangles().len(), reserved)?;
                 put(&mut result, 0, input.triangles());
-                return Ok(result);
-            }
-            let read = self.gpu.begin_read(&self.buffers.triangles, 0..words);
-            let mut result = memory_for(words, reserved)?;
-            read.fill(&mut result, 0).await.map(|()| result)
-        })
+                Ok(result)
+            });
+        }
+        self.read(|buffers| &buffers.triangles, reserved)
     }
 
     /// Counts the edges and the areas, unless that was done.

@@ -48,7 +48,8 @@ impl WebGpu {
             let mesh = &upload.mesh;
             let (buffers, scratch) = (Buffers::new(&gpu, &upload), Scratch::new(&gpu, mesh));
             // The mesh travels to the device while the host records the work on it.
-            let travelling = waits.then(|| gpu.queue.submit([]));
+            #[cfg(not(target_arch = "wasm32"))]
+            let travelling = gpu.queue.submit([]);
             let params = Params::new(&upload, &TopologyOffsets::new(mesh), gpu.ends_loops_early);
             let bytes = buffers.bytes() + scratch.bytes();
             let mut encoder = gpu.device.create_command_encoder(&Default::default());
@@ -80,10 +81,9 @@ impl WebGpu {
             };
             result.record_preparation(&mut encoder);
             let commands = encoder.finish();
-            if let Some(travelling) = travelling {
-                gpu.finish_copies(travelling);
-                start = Instant::now();
-            }
+            #[cfg(not(target_arch = "wasm32"))]
+            gpu.finish_copies(travelling);
+            start = Instant::now();
             gpu.submit(commands);
             result
         };
