@@ -96,7 +96,7 @@ pub(crate) struct WebGpu {
     buffers: Buffers,
     /// The counters of the adjacency, then the signs of the triangles.
     counters: Buffer,
-    /// The mesh, while its triangles are those on the device: no edge has flipped.
+    /// Natively the mesh, while its triangles are those on the device: no edge has flipped.
     input: Option<Arc<Mesh>>,
     /// The mesh, until the host has read the counters.
     unsettled: Option<Arc<Mesh>>,

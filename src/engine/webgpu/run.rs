@@ -17,7 +17,7 @@ use crate::mesh::areas::Areas;
 
 /// Dispatches of the tail: it may pause once for exact arithmetic.
 const TAIL_DISPATCHES: u32 = 3;
-const IS_NATIVE: bool = cfg!(not(target_arch = "wasm32"));
+pub(super) const IS_NATIVE: bool = cfg!(not(target_arch = "wasm32"));
 /// Dispatches of the counts.
 const COUNT_DISPATCHES: u64 = 4;
 
@@ -213,7 +213,7 @@ impl WebGpu {
     pub(super) fn take_over(&mut self, history: &[u32]) -> Vec<u32> {
         let entries = history[ENTRIES..].chunks_exact(ENTRY_WORDS).skip(1);
         let ran: Vec<&[u32]> = entries.take_while(|entry| entry[3] == 1).collect();
-        if ran.iter().any(|entry| entry[0] > 0) {
+        if IS_NATIVE && ran.iter().any(|entry| entry[0] > 0) {
             self.input = None;
         }
         if let Some(last) = ran.last() {

@@ -12,6 +12,7 @@ use super::params::{
     DEVICE_WORDS, NEGATIVE, POSITIVE, Params, TopologyOffsets, WINDING_BITS, WINDING_CLOCKWISE,
     WINDING_COUNTER_CLOCKWISE, WINDING_UNKNOWN,
 };
+use super::run::IS_NATIVE;
 use super::shared::Handle;
 use super::steps::Step;
 use crate::Error;
@@ -160,7 +161,7 @@ impl WebGpu {
         self.params.first = 0;
         self.state = self.first_state();
         self.known = Known::default();
-        self.input = Some(mesh.clone());
+        self.input = IS_NATIVE.then(|| mesh.clone());
         self.unsettled = Some(mesh);
         if self.waits { self.settle().await } else { Ok(()) }
     }
