@@ -26,7 +26,7 @@ use crate::mesh::winding::{Outline, Winding};
 use crate::phases::{Geometry, Thresholds, Topology, frozen};
 use crate::session::edge_states::edge_states;
 use crate::session::locks::BroughtIn;
-use crate::system::{memory, threads::Threads};
+use crate::system::memory;
 use crate::{
     Backend, Dimension, EdgeState, Edges, EngineKind, Error, Iteration, LeftOut, Mesh, Options, Order,
     Outcome, Positions, Reason, Status, Timings,
@@ -173,10 +173,6 @@ impl Session {
     /// [`Error::Device`], [`Error::OutOfMemory`].
     pub async fn triangles(&mut self) -> Result<Vec<u32>, Error> {
         self.check_memory(memory_bounds::COPY)?;
-        // Without a flip, nothing has to be read from a device.
-        if self.engine.backend() == EngineKind::Gpu && self.updates == 0 && self.flips() == 0 {
-            return Ok(Threads::default().copied(self.mesh.triangles()));
-        }
         self.ask(|engine| engine.triangles()).await
     }
 

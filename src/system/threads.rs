@@ -187,6 +187,16 @@ impl Threads {
         copy
     }
 
+    /// Copies `items` to `all` from index `first` on: over what is there, then behind it.
+    #[cfg(all(feature = "gpu", not(target_arch = "wasm32")))]
+    pub(crate) fn put<T: Copy + Send + Sync>(&self, all: &mut Vec<T>, first: usize, items: &[T]) {
+        let (over, behind) = items.split_at(items.len().min(all.len().saturating_sub(first)));
+        let size = over.len().div_ceil(PIECES * self.count()).max(FEWEST);
+        let there = all[first..].chunks_mut(size).zip(over.chunks(size));
+        self.map_each(there.collect(), |(there, over)| there[..over.len()].copy_from_slice(over));
+        self.append(all, behind);
+    }
+
     /// Appends a copy of `items` to `all`. The threads share the first access to the memory, which takes several times
     /// as long as copying.
     pub(crate) fn append<T: Copy + Send + Sync>(&self, all: &mut Vec<T>, items: &[T]) {
@@ -323,6 +333,20 @@ mod tests {
             format!("FEWESTEACH = {RELEASED};"),
         ] {
             assert!(text.contains(&line), "{path} has no {line}");
+        }
+    }
+
+    #[cfg(feature = "gpu")]
+    #[test]
+    fn copies_replace_what_is_there() {
+        for (len, there) in [(0, 0), (0, 3), (7, 3), (7, 9), (1000, 0), (1000, 500), (1000, 2000)] {
+            for count in [1, 2, 3, 8] {
+                let mut all = Vec::from_iter(0..1 + there);
+                Threads::new(NonZeroUsize::new(count), usize::MAX).unwrap().put(&mut all, 1, &vec![7; len]);
+                let (copied, rest) = all[1..].split_at(len);
+                assert!(all[0] == 0 && copied.iter().all(|&item| item == 7));
+                assert!(rest.iter().copied().eq(1 + len..1 + there));
+            }
         }
     }
 

@@ -168,7 +168,7 @@ fn devices_of_two_instances_are_told_apart() {
     let mut lost = session(&given[0]);
     others.push(session(&given[1]));
     given[0].device.destroy();
-    assert!(matches!(block_on(lost.step()), Err(Error::Device { .. })));
+    assert!(matches!(block_on(lost.triangles()), Err(Error::Device { .. })));
     for session in &mut others {
         block_on(session.run(|_, _| ControlFlow::Continue(()))).unwrap();
     }

@@ -87,17 +87,20 @@ fn runs_end_alike() {
     }
 }
 
-/// Stops after 0 to 20 iterations, more than one submission has on llvmpipe, and then runs to the end.
+/// Stops after 0 to 20 iterations, more than one submission has on llvmpipe, and then runs to the end. As in browsers,
+/// and natively.
 #[test]
 fn runs_stop_alike() {
     for (name, mesh) in meshes() {
         let mesh = Arc::new(mesh);
         for count in (0..6).chain([11, 12, 13, 15, 16, 17, 20]) {
-            let (mut cpu, mut gpu) = engines(&mesh, any_deviation(10.0));
-            iterate(name, count, &mut cpu, &mut gpu);
-            assert_same_end(name, &mut cpu, &mut gpu);
-            iterate(name, u32::MAX, &mut cpu, &mut gpu);
-            assert_same_end(name, &mut cpu, &mut gpu);
+            for engines in [engines, super::engines] {
+                let (mut cpu, mut gpu) = engines(&mesh, any_deviation(10.0));
+                iterate(name, count, &mut cpu, &mut gpu);
+                assert_same_end(name, &mut cpu, &mut gpu);
+                iterate(name, u32::MAX, &mut cpu, &mut gpu);
+                assert_same_end(name, &mut cpu, &mut gpu);
+            }
         }
     }
 }
@@ -192,4 +195,36 @@ fn a_run_waits_once() {
     {
         assert!(asked(mesh)[1] > 1, "{name}");
     }
+}
+
+/// A native engine after a run, on a device of its own, since the device counts its calls.
+fn run(mesh: &Arc<Mesh>) -> (Arc<Device>, WebGpu) {
+    block_on(async {
+        let gpu = Device::own().await?;
+        let upload = Upload::new(EngineKind::Gpu, mesh.clone(), any_deviation(10.0))?;
+        let mut engine = WebGpu::new(gpu.clone(), upload).await?;
+        engine.iterate(u32::MAX).await?;
+        Ok::<_, Error>((gpu, engine))
+    })
+    .unwrap()
+}
+
+#[test]
+fn a_run_without_flips_reads_no_triangles() {
+    let mesh = Arc::new(families::by_name("regular 12").unwrap());
+    let (gpu, mut engine) = run(&mesh);
+    let before = gpu.asked();
+    assert_same("triangles", mesh.triangles(), &block_on(engine.triangles()).unwrap());
+    assert_eq!(gpu.asked(), before);
+}
+
+#[test]
+fn counts_follow_a_run() {
+    let (gpu, mut engine) = run(&Arc::new(families::by_name("uvsphere 12").unwrap()));
+    let before = gpu.asked();
+    let census = block_on(engine.census()).unwrap();
+    assert_eq!(gpu.asked(), before);
+    engine.forget();
+    assert_eq!(block_on(engine.census()).unwrap(), census);
+    assert!(census.labelled == 0 && gpu.asked() > before);
 }

@@ -3,7 +3,9 @@
 use super::buffer::Buffer;
 use super::device::Device;
 use super::faults::{Caught, watch};
-use super::words::{Words, reserve, vector};
+#[cfg(not(target_arch = "wasm32"))]
+use super::words::put;
+use super::words::{Reserved, Words, reserve, vector};
 use crate::Error;
 use crate::engine::Answer;
 #[cfg(not(target_arch = "wasm32"))]
@@ -12,14 +14,24 @@ use futures_channel::oneshot;
 use std::ops::Range;
 #[cfg(test)]
 use std::sync::atomic::Ordering::Relaxed;
+#[cfg(not(target_arch = "wasm32"))]
+use std::time::{Duration, Instant};
 use wgpu::BufferUsages;
 
 /// The most words of one copy to the device, or from it. Longer arrays go in several copies through the same staging
 /// memory, which is far faster than new memory.
 pub(super) const CHUNK: usize = 1 << 22;
 
+/// Natively, the fewest words that begin to travel to the device before the host copies the next.
+#[cfg(not(target_arch = "wasm32"))]
+const FEWEST_SUBMITTED: usize = 1 << 18;
+
 /// Copies that the device makes while the host takes one. A browser needs several: each goes through two processes.
-const AHEAD: usize = if cfg!(target_arch = "wasm32") { 3 } else { 1 };
+const AHEAD: usize = if cfg!(target_arch = "wasm32") { 3 } else { 2 };
+
+/// How long the host polls the device before it sleeps. Many submissions end sooner than a thread wakes up.
+#[cfg(not(target_arch = "wasm32"))]
+const AWAKE: Duration = Duration::from_micros(300);
 
 /// Words that one thread copies without a break.
 #[cfg(not(target_arch = "wasm32"))]
@@ -39,30 +51,34 @@ impl<'a> Source<'a> {
     }
 }
 
+/// The answer to a request to map a buffer.
+type Mapped = Result<(), wgpu::BufferAsyncError>;
+
 /// A read that the device has not finished.
-pub(super) struct PendingRead<'a> {
-    gpu: &'a Device,
+pub(super) struct PendingRead {
     staging: Buffer,
     caught: Caught,
-    receiver: oneshot::Receiver<Result<(), wgpu::BufferAsyncError>>,
+    receiver: oneshot::Receiver<Mapped>,
+    submission: wgpu::SubmissionIndex,
     ranges: Vec<Range<u64>>,
 }
 
-impl<'a> PendingRead<'a> {
+impl PendingRead {
     /// Waits for the device.
     ///
     /// # Errors
     /// [`Error::Device`].
-    pub(super) async fn finished(self) -> Result<ReadBack<'a>, Error> {
-        let Self { gpu, staging, caught, receiver, ranges } = self;
-        gpu.judge(caught.await)?;
-        #[cfg(not(target_arch = "wasm32"))]
-        gpu.wait().map_err(|_| gpu.not_mapped())?;
-        if !matches!(receiver.await, Ok(Ok(()))) {
+    pub(super) async fn finished(mut self, gpu: &Device) -> Result<ReadBack<'_>, Error> {
+        gpu.judge(self.caught.await)?;
+        let mapped = match gpu.wait(self.submission, &mut self.receiver)? {
+            Some(mapped) => Ok(mapped),
+            None => self.receiver.await,
+        };
+        if !matches!(mapped, Ok(Ok(()))) {
             return Err(gpu.not_mapped());
         }
         gpu.check()?;
-        Ok(ReadBack { gpu, staging: Some(staging), ranges })
+        Ok(ReadBack { gpu, staging: Some(self.staging), ranges: self.ranges })
     }
 }
 
@@ -91,24 +107,19 @@ impl ReadBack<'_> {
     #[cfg(not(target_arch = "wasm32"))]
     pub(super) fn words(&self, source: usize) -> Result<Vec<u32>, Error> {
         let mut words = Vec::new();
-        self.append(source, &mut words).map(|()| words)
+        self.fill(source, &mut words, 0).map(|()| words)
     }
 
-    /// Copies the words of a source behind the first `_taken` words, which `result` has.
+    /// Copies the words of a source behind the first `taken` words, which `result` has.
     ///
     /// # Errors
     /// [`Error::Device`].
     #[cfg(not(target_arch = "wasm32"))]
-    pub(super) fn fill(&self, source: usize, result: &mut Words, _taken: usize) -> Result<(), Error> {
-        self.append(source, result)
-    }
-
-    #[cfg(not(target_arch = "wasm32"))]
-    fn append(&self, source: usize, result: &mut Vec<u32>) -> Result<(), Error> {
+    pub(super) fn fill(&self, source: usize, result: &mut Words, taken: usize) -> Result<(), Error> {
         let range = self.ranges[source].clone();
         let Some(staging) = self.staging.as_ref().filter(|_| !range.is_empty()) else { return Ok(()) };
         let view = staging.get_mapped_range(range).map_err(|_| self.gpu.not_mapped())?;
-        Threads::default().append(result, bytemuck::cast_slice(&view));
+        put(result, taken, bytemuck::cast_slice(&view));
         Ok(())
     }
 }
@@ -119,7 +130,7 @@ pub(super) struct LongRead<'a> {
     buffer: wgpu::Buffer,
     rest: Range<usize>,
     /// At most [`AHEAD`], in the order of the words.
-    pending: Vec<PendingRead<'a>>,
+    pending: Vec<PendingRead>,
 }
 
 impl LongRead<'_> {
@@ -140,7 +151,7 @@ impl LongRead<'_> {
     /// [`Error::Device`].
     pub(super) async fn fill(mut self, result: &mut Words, mut taken: usize) -> Result<(), Error> {
         while !self.pending.is_empty() {
-            let piece = self.pending.remove(0).finished().await?;
+            let piece = self.pending.remove(0).finished(self.gpu).await?;
             self.advance();
             piece.fill(0, result, taken)?;
             taken += CHUNK;
@@ -149,25 +160,38 @@ impl LongRead<'_> {
     }
 }
 
+/// Memory for words: the reserved memory, or other.
+///
+/// # Errors
+/// [`Error::OutOfMemory`].
+pub(super) fn memory_for(words: usize, reserved: Option<Reserved>) -> Result<Words, Error> {
+    let memory = reserved.and_then(Reserved::words).or_else(|| reserve(words));
+    memory.ok_or(Error::OutOfMemory { bytes: 4 * words as u64, limit: None })
+}
+
 impl Device {
     /// Reads `words` words from the start of `buffer`.
     ///
     /// # Errors
     /// [`Error::Device`]; [`Error::OutOfMemory`].
     pub(super) fn read(&self, buffer: &wgpu::Buffer, words: usize) -> Answer<'_, Vec<u32>> {
-        let read = self.read_array(buffer, words);
+        let read = self.read_array(buffer, words, None);
         Box::pin(async { read.await.map(vector) })
     }
 
-    /// The same, into an array of the host.
+    /// The same, into an array of the host, in the reserved memory if there is any.
     ///
     /// # Errors
     /// [`Error::Device`]; [`Error::OutOfMemory`].
-    pub(super) fn read_array(&self, buffer: &wgpu::Buffer, words: usize) -> Answer<'_, Words> {
+    pub(super) fn read_array(
+        &self,
+        buffer: &wgpu::Buffer,
+        words: usize,
+        reserved: Option<Reserved>,
+    ) -> Answer<'_, Words> {
         let read = self.begin_read(buffer, 0..words);
-        let bytes = 4 * words as u64;
         Box::pin(async move {
-            let mut result = reserve(words).ok_or(Error::OutOfMemory { bytes, limit: None })?;
+            let mut result = memory_for(words, reserved)?;
             read.fill(&mut result, 0).await.map(|()| result)
         })
     }
@@ -179,6 +203,27 @@ impl Device {
         read
     }
 
+    /// As [`Device::check`], also for a device of the caller.
+    ///
+    /// # Errors
+    /// [`Error::Device`].
+    pub(super) async fn check_loss(&self) -> Result<(), Error> {
+        #[cfg(not(target_arch = "wasm32"))]
+        if self.given.is_some() {
+            let descriptor = wgpu::BufferDescriptor {
+                label: Some("check"),
+                size: 4,
+                usage: BufferUsages::MAP_WRITE,
+                mapped_at_creation: true,
+            };
+            let map = || Buffer::new(self.device.create_buffer(&descriptor)).get_mapped_range(..).is_ok();
+            if !self.checked(map).await? {
+                return Err(self.not_mapped());
+            }
+        }
+        self.check()
+    }
+
     /// Why a buffer is not mapped: the first error of the device. A device of the caller, which is lost, tells of that
     /// in no other way.
     pub(super) fn not_mapped(&self) -> Error {
@@ -186,10 +231,10 @@ impl Device {
     }
 
     /// Submits commands.
-    pub(super) fn submit(&self, encoder: wgpu::CommandEncoder) {
-        self.queue.submit([encoder.finish()]);
+    pub(super) fn submit(&self, commands: wgpu::CommandBuffer) -> wgpu::SubmissionIndex {
         #[cfg(test)]
         self.asked.submissions.fetch_add(1, Relaxed);
+        self.queue.submit([commands])
     }
 
     /// Submits the commands from `record` together with reads of the sources after them, and waits.
@@ -201,7 +246,7 @@ impl Device {
         record: &dyn Fn() -> wgpu::CommandEncoder,
         sources: &[Source<'_>],
     ) -> Result<ReadBack<'_>, Error> {
-        self.submit_and_map(record, sources).finished().await
+        self.submit_and_map(record, sources).finished(self).await
     }
 
     /// The same, without the wait.
@@ -209,7 +254,7 @@ impl Device {
         &self,
         record: &dyn Fn() -> wgpu::CommandEncoder,
         sources: &[Source<'_>],
-    ) -> PendingRead<'_> {
+    ) -> PendingRead {
         let mut end = 0;
         let range = |source: &Source<'_>| {
             // A view begins at a multiple of eight bytes.
@@ -227,31 +272,74 @@ impl Device {
                 let size = 4 * *words as u64;
                 encoder.copy_buffer_to_buffer(buffer, 4 * *first as u64, &staging, range.start, size);
             }
-            self.submit(encoder);
+            let submission = self.submit(encoder.finish());
             staging.map_async(wgpu::MapMode::Read, ..end.max(4), move |result| {
                 // The receiver is gone only if the caller has stopped waiting.
                 let _ = sender.send(result);
             });
             #[cfg(test)]
             self.asked.maps.fetch_add(1, Relaxed);
-            staging
+            (staging, submission)
         };
-        let (staging, caught) = watch(&self.device, submit);
-        PendingRead { gpu: self, staging, caught, receiver, ranges }
+        let ((staging, submission), caught) = watch(&self.device, submit);
+        PendingRead { staging, caught, receiver, submission, ranges }
     }
 
+    /// Natively, waits for the answer to a request to map a buffer, made after a submission. If another thread that polls
+    /// the device is about to answer, the result is `None`.
+    ///
+    /// # Errors
+    /// [`Error::Device`].
     #[cfg(not(target_arch = "wasm32"))]
-    fn wait(&self) -> Result<wgpu::PollStatus, wgpu::PollError> {
-        self.device.poll(wgpu::PollType::wait_indefinitely())
+    fn wait(
+        &self,
+        submission: wgpu::SubmissionIndex,
+        receiver: &mut oneshot::Receiver<Mapped>,
+    ) -> Result<Option<Mapped>, Error> {
+        let mut mapped = None;
+        let mut is_done = |_| {
+            mapped = receiver.try_recv().ok().flatten();
+            mapped.is_some()
+        };
+        if !self.poll_awake(&mut is_done) {
+            is_done(self.finish(submission).map_err(|_| self.not_mapped())?);
+        }
+        Ok(mapped)
     }
 
-    /// Natively, waits for all copies to the device.
-    pub(super) fn finish_copies(&self) {
-        #[cfg(not(target_arch = "wasm32"))]
-        {
-            self.queue.submit([]);
-            // If this fails, the next call that can return an error reports it.
-            let _ = self.wait();
+    #[cfg(target_arch = "wasm32")]
+    fn wait(
+        &self,
+        _: wgpu::SubmissionIndex,
+        _: &mut oneshot::Receiver<Mapped>,
+    ) -> Result<Option<Mapped>, Error> {
+        Ok(None)
+    }
+
+    /// Polls the device for a short time without sleeping, until `is_done`. Returns whether it is.
+    #[cfg(not(target_arch = "wasm32"))]
+    fn poll_awake(&self, mut is_done: impl FnMut(wgpu::PollStatus) -> bool) -> bool {
+        let begin = Instant::now();
+        while begin.elapsed() < AWAKE {
+            if self.device.poll(wgpu::PollType::Poll).is_ok_and(&mut is_done) {
+                return true;
+            }
+            std::hint::spin_loop();
+        }
+        false
+    }
+
+    /// Waits for a submission.
+    #[cfg(not(target_arch = "wasm32"))]
+    fn finish(&self, submission: wgpu::SubmissionIndex) -> Result<wgpu::PollStatus, wgpu::PollError> {
+        self.device.poll(wgpu::PollType::Wait { submission_index: Some(submission), timeout: None })
+    }
+
+    /// Waits for copies to the device. If this fails, the next call that can return an error reports it.
+    #[cfg(not(target_arch = "wasm32"))]
+    pub(super) fn finish_copies(&self, submission: wgpu::SubmissionIndex) {
+        if !self.poll_awake(|status| status.is_queue_empty()) {
+            let _ = self.finish(submission);
         }
     }
 
@@ -263,17 +351,35 @@ impl Device {
     /// Writes words to the starts of buffers, before the next submission.
     #[cfg(not(target_arch = "wasm32"))]
     pub(super) fn write_all(&self, writes: &[(&Buffer, &[u32])]) {
-        writes.iter().for_each(|(buffer, words)| self.write_at(buffer, 0, words));
+        let mut travelling = None;
+        for (buffer, words) in writes {
+            self.write_behind(&mut travelling, buffer, 0, words);
+        }
     }
 
     /// Writes words to `buffer` from word `first` on, before the next submission.
-    #[cfg(not(target_arch = "wasm32"))]
+    #[cfg(all(not(target_arch = "wasm32"), feature = "baseline"))]
     pub(super) fn write_at(&self, buffer: &Buffer, first: usize, words: &[u32]) {
+        self.write_behind(&mut None, buffer, first, words);
+    }
+
+    /// Writes words in chunks. While the last chunk is `travelling` to the device, the host copies the next one to other
+    /// staging memory.
+    #[cfg(not(target_arch = "wasm32"))]
+    fn write_behind(
+        &self,
+        travelling: &mut Option<wgpu::SubmissionIndex>,
+        buffer: &Buffer,
+        first: usize,
+        words: &[u32],
+    ) {
         for (i, chunk) in words.chunks(CHUNK).enumerate() {
-            let offset = 4 * (first + i * CHUNK) as u64;
-            self.stage(buffer, offset, chunk);
-            if chunk.len() == CHUNK {
-                self.finish_copies();
+            self.stage(buffer, 4 * (first + i * CHUNK) as u64, chunk);
+            if chunk.len() >= FEWEST_SUBMITTED
+                && let Some(before) = travelling.replace(self.queue.submit([]))
+            {
+                // The next call that can return an error reports a failure.
+                let _ = self.finish(before);
             }
         }
     }

@@ -5,7 +5,6 @@ use super::browser;
 use super::buffer::{Buffer, Kept};
 use super::compile;
 use super::faults::{Caught, Fault, refuse, unavailable, watch};
-#[cfg(not(target_arch = "wasm32"))]
 use super::history::Batches;
 use super::kernels::{Kernels, Plan, WORKGROUP_SIZE};
 #[cfg(not(target_arch = "wasm32"))]
@@ -47,7 +46,6 @@ pub(crate) struct Device {
     /// See `shaders/shared/rounds.wgsl`.
     pub(super) ends_loops_early: bool,
     pub(crate) tested: Tested,
-    #[cfg(not(target_arch = "wasm32"))]
     pub(super) batches: Batches,
     failure: Failure,
     /// The programs of exact arithmetic.
@@ -273,7 +271,6 @@ impl Device {
             tail_size,
             ends_loops_early: false,
             tested: Tested::default(),
-            #[cfg(not(target_arch = "wasm32"))]
             batches: Batches::default(),
             failure,
             programs,

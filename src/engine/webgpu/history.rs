@@ -1,10 +1,7 @@
 //! The iterations of a submission, and the history that the device writes of them.
 
-#[cfg(not(target_arch = "wasm32"))]
 use super::params::Params;
-#[cfg(not(target_arch = "wasm32"))]
 use crate::engine::gpu::Form;
-#[cfg(not(target_arch = "wasm32"))]
 use std::sync::atomic::{AtomicU32, Ordering};
 
 /// The most iterations with a dispatch for each phase in one submission.
@@ -32,21 +29,25 @@ pub(super) type Entry = [u32; ENTRY_WORDS];
 
 /// How many iterations the last run of each form and size needed before the tail could take over. The next run of the
 /// same kind gets no more dispatches, because each takes time, also if nothing is left to do. Results do not depend on it.
-#[cfg(not(target_arch = "wasm32"))]
+/// In a browser it stays empty.
 #[derive(Default)]
 pub(super) struct Batches([[AtomicU32; 32]; Form::COUNT]);
 
-#[cfg(not(target_arch = "wasm32"))]
 impl Batches {
     fn of(&self, form: Form, triangles: u32) -> &AtomicU32 {
         &self.0[form.index()][(u32::BITS - 1 - triangles.max(1).leading_zeros()) as usize]
     }
 
+    /// The iterations that the last run needed; 0 if there was none.
+    pub(super) fn needed(&self, form: Form, triangles: u32) -> u32 {
+        self.of(form, triangles).load(Ordering::Relaxed)
+    }
+
     /// The iterations with dispatches of their own in the first submission of a run.
     pub(super) fn first(&self, form: Form, triangles: u32) -> u32 {
-        match self.of(form, triangles).load(Ordering::Relaxed) {
+        match self.needed(form, triangles) {
             0 => BATCH,
-            needed => needed,
+            needed => needed.min(BATCH),
         }
     }
 
@@ -56,6 +57,6 @@ impl Batches {
             |entry: &[u32]| entry[0] == 0 || (entry[2] == LISTED && entry[1] <= params.tail_length);
         let entries = history[ENTRIES..].chunks_exact(ENTRY_WORDS).take_while(|entry| entry[3] == 1);
         let needed = params.first + entries.take_while(|entry| !is_ready(entry)).count() as u32;
-        self.of(form, params.triangles).store(needed.clamp(1, BATCH), Ordering::Relaxed);
+        self.of(form, params.triangles).store(needed.max(1), Ordering::Relaxed);
     }
 }

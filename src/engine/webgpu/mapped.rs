@@ -86,7 +86,7 @@ impl Device {
                 first = end;
             }
             staging.unmap();
-            self.submit(encoder);
+            self.submit(encoder.finish());
             return self.make_ready(staging);
         }
         for Piece { buffer, offset, words } in pieces {

@@ -6,7 +6,8 @@
 //! history: the flips of each iteration. The host reads the history after each submission.
 //!
 //! In a browser, one wait for the GPU takes longer than most runs. There the host submits the first iterations without
-//! waiting for the preparation. The same submission also copies the results that the session will ask for.
+//! waiting for the preparation. The same submission also copies the results that the session will ask for. Natively the
+//! host waits for each, which separates the timings, and submits the counts behind the iterations.
 
 mod adjacency;
 #[cfg(target_arch = "wasm32")]
@@ -79,7 +80,7 @@ use kernels::Plan;
 use known::Known;
 use params::Params;
 use std::sync::Arc;
-use words::vector;
+use words::{Reserved, vector};
 
 /// A mesh on the device.
 pub(crate) struct WebGpu {
@@ -97,6 +98,8 @@ pub(crate) struct WebGpu {
     buffers: Buffers,
     /// The counters of the adjacency, then the signs of the triangles.
     counters: Buffer,
+    /// Natively the mesh, while its triangles are those on the device: no edge has flipped.
+    input: Option<Arc<Mesh>>,
     /// The mesh, until the host has read the counters.
     unsettled: Option<Arc<Mesh>>,
     /// The faults of allocating the buffers, until the host has checked them.
@@ -105,6 +108,8 @@ pub(crate) struct WebGpu {
     waits: bool,
     /// Whether the triangles stay on the device until somebody asks for them.
     stays: bool,
+    /// Memory for the triangles, if a run has begun that will be asked for them.
+    reserved: Option<Reserved>,
     /// Results that the host has read in advance.
     known: Known,
     state: Entry,
@@ -151,7 +156,7 @@ impl Engine for WebGpu {
     }
 
     fn twins(&mut self) -> Answer<'_, Vec<u32>> {
-        let twins = self.read(|buffers| &buffers.twins);
+        let twins = self.read(|buffers| &buffers.twins, None);
         Box::pin(async { twins.await.map(vector) })
     }
 
@@ -256,7 +261,7 @@ impl WebGpu {
             pass.set_pipeline(&kernels.pipelines[0]);
             pass.dispatch_workgroups(self.gpu.workgroups(self.params.triangles), 1, 1);
         };
-        let counts = self.count_by(&record).await?;
+        let counts = self.begin_counts(&record).finished(&self.gpu).await?.words(0)?;
         Ok([counts[0], counts[1]])
     }
 

@@ -35,7 +35,7 @@ impl WebGpu {
         if self.unsettled.is_some() {
             return refuse("an update begins only after the start of the session has ended".to_owned());
         }
-        self.known = super::Known::default();
+        (self.known, self.input) = (super::Known::default(), None);
         if self.params.update == 0 {
             self.params.first = 0;
         }
@@ -52,7 +52,7 @@ impl WebGpu {
             self.encode_pass(&mut encoder, &|pass| {
                 self.record_iterations(pass, iterations, None);
             });
-            gpu.submit(encoder);
+            gpu.submit(encoder.finish());
         });
         gpu.keep_watch(faults);
         self.params.first = self.params.first.wrapping_add(iterations);
@@ -69,10 +69,9 @@ impl WebGpu {
             let history = &self.buffers.history;
             self.write_params();
             let mut encoder = gpu.device.create_command_encoder(&Default::default());
-            encoder.clear_buffer(history, 0, Some(bytes(COUNTS)));
-            self.encode_pass(&mut encoder, &|pass| self.record_counts(pass));
+            self.encode_counts(&mut encoder, &|pass| self.record_counts(pass));
             encoder.copy_buffer_to_buffer(history, 0, &snapshot, 0, bytes(ENTRIES));
-            gpu.submit(encoder);
+            gpu.submit(encoder.finish());
             snapshot
         });
         Box::pin(async move {

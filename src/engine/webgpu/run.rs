@@ -4,12 +4,12 @@ use super::WebGpu;
 use super::adjacency::COUNTERS;
 use super::buffer::Buffer;
 use super::buffers::Buffers;
-use super::copies::{CHUNK, Source};
+use super::copies::{CHUNK, PendingRead, Source, memory_for};
 use super::history::{AREAS, BATCH, COUNTS, ENTRIES, ENTRY_WORDS, HISTORY_WORDS, SHORT_TAIL, TAIL};
 use super::kernels::{Kernel, WORKGROUP_SIZE};
 use super::known::Known;
 use super::steps::Step;
-use super::words::{Words, reserve};
+use super::words::{Reserved, Words, put};
 use crate::Error;
 use crate::engine::{Answer, Census};
 use crate::mesh::areas::Areas;
@@ -18,6 +18,7 @@ use crate::mesh::areas::Areas;
 const TAIL_DISPATCHES: u32 = 3;
 /// The most workgroups of exact arithmetic: a large GPU runs so many at the same time.
 const MOST_DECIDING: u32 = 512;
+pub(super) const IS_NATIVE: bool = cfg!(not(target_arch = "wasm32"));
 /// Dispatches of the counts.
 const COUNT_DISPATCHES: u64 = 4;
 
@@ -55,7 +56,9 @@ impl WebGpu {
         let tail = self.kernels.tail.get();
         self.params.tail_iterations = if tail.is_some() { (count - batch).min(longest) } else { 0 };
         self.dispatches += u64::from(4 * batch + TAIL_DISPATCHES * self.params.tail_iterations.min(1));
-        if !self.waits {
+        // The counts of a run's end follow at once, so that nobody has to wait for them later.
+        let ends = !self.waits || (IS_NATIVE && count > 1 && self.ends_within(batch));
+        if ends {
             self.dispatches += COUNT_DISPATCHES;
         }
         let iterate = |pass: &mut wgpu::ComputePass| self.record_iterations(pass, batch, tail);
@@ -65,8 +68,7 @@ impl WebGpu {
             }
             let mut encoder = self.encode(&iterate);
             if !self.waits {
-                encoder.clear_buffer(&self.buffers.history, 0, Some(4 * COUNTS as u64));
-                self.encode_pass(&mut encoder, &|pass| self.record_counts(pass));
+                self.encode_counts(&mut encoder, &|pass| self.record_counts(pass));
             }
             encoder
         };
@@ -84,11 +86,14 @@ impl WebGpu {
         }
         let gpu = self.gpu.clone();
         let pending = gpu.submit_and_map(&record, &sources);
+        let counting = (self.waits && ends).then(|| self.begin_counts(&|pass| self.record_counts(pass)));
         let rest = if has_triangles { first..triangles } else { 0..0 };
         let rest = gpu.begin_read(&self.buffers.triangles, rest);
-        let reserved = if has_triangles { reserve(triangles) } else { None };
+        if is_run {
+            self.reserved.get_or_insert_with(|| Reserved::begin(triangles));
+        }
         self.check_allocation().await?;
-        let read = pending.finished().await?;
+        let read = pending.finished(&gpu).await?;
         let history = read.words(0)?;
         if let Some(mesh) = self.unsettled.clone() {
             let counters = read.words(1)?;
@@ -96,16 +101,16 @@ impl WebGpu {
                 return Ok(Vec::new());
             }
         }
+        self.known.counting = counting;
         if !self.waits {
             self.known.counts = Some(counts_of(&history));
         }
-        if let Some(mut triangles) = reserved {
+        if has_triangles && let Ok(mut triangles) = memory_for(triangles, self.reserved.take()) {
             read.fill(2, &mut triangles, 0)?;
             rest.fill(&mut triangles, first).await?;
             self.known.triangles = Some(triangles);
         }
-        #[cfg(not(target_arch = "wasm32"))]
-        if count >= BATCH {
+        if IS_NATIVE && count >= BATCH {
             self.gpu.batches.learn(self.form, &self.params, &history);
         }
         Ok(self.take_over(&history))
@@ -114,27 +119,48 @@ impl WebGpu {
     /// The most iterations with a dispatch for each phase in the next submission. A run gets as many as the last one of
     /// its kind needed, and if it needs more, a second submission. In a browser that would take too long.
     fn longest_batch(&self) -> u32 {
-        #[cfg(not(target_arch = "wasm32"))]
-        if self.params.first == 0 {
-            return self.gpu.batches.first(self.form, self.params.triangles);
+        if IS_NATIVE && self.params.first == 0 {
+            self.gpu.batches.first(self.form, self.params.triangles)
+        } else {
+            BATCH
         }
-        BATCH
+    }
+
+    /// Whether the run will probably end in a submission with this batch, as the last run of its kind did.
+    fn ends_within(&self, batch: u32) -> bool {
+        self.gpu.batches.needed(self.form, self.params.triangles) <= self.params.first + batch
     }
 
     /// Reads a buffer that has one word per half-edge.
-    pub(super) fn read(&mut self, of: fn(&Buffers) -> &Buffer) -> Answer<'_, Words> {
+    pub(super) fn read(
+        &mut self,
+        of: fn(&Buffers) -> &Buffer,
+        reserved: Option<Reserved>,
+    ) -> Answer<'_, Words> {
         Box::pin(async move {
             self.check_allocation().await?;
-            self.gpu.read_array(of(&self.buffers), 3 * self.params.triangles as usize).await
+            let words = 3 * self.params.triangles as usize;
+            self.gpu.read_array(of(&self.buffers), words, reserved).await
         })
     }
 
-    /// The triangles, unless the last submission has read them.
+    /// The triangles, unless the last submission has read them or no edge has flipped. In a browser, a submission without
+    /// flips has read them too.
     pub(super) fn known_triangles(&mut self) -> Answer<'_, Words> {
-        match self.known.triangles.take() {
-            Some(triangles) => Box::pin(std::future::ready(Ok(triangles))),
-            None => self.read(|buffers| &buffers.triangles),
+        if let Some(triangles) = self.known.triangles.take() {
+            return Box::pin(std::future::ready(Ok(triangles)));
         }
+        let reserved = self.reserved.take();
+        if IS_NATIVE && let Some(input) = self.input.clone() {
+            return Box::pin(async move {
+                self.check_allocation().await?;
+                self.gpu.check_loss().await?;
+                let mut result = memory_for(input.triangles().len(), reserved)?;
+                put(&mut result, 0, input.triangles());
+                Ok(result)
+            });
+        }
+        self.read(|buffers| &buffers.triangles, reserved)
     }
 
     /// Counts the edges and the areas, unless that was done.
@@ -143,20 +169,24 @@ impl WebGpu {
         if let Some(counts) = self.known.counts {
             return Ok(counts);
         }
-        self.dispatches += COUNT_DISPATCHES;
-        let counts = counts_of(&self.count_by(&|pass| self.record_counts(pass)).await?);
+        let counting = self.known.counting.take().unwrap_or_else(|| {
+            self.dispatches += COUNT_DISPATCHES;
+            self.begin_counts(&|pass| self.record_counts(pass))
+        });
+        let counts = counts_of(&counting.finished(&self.gpu).await?.words(0)?);
         self.known.counts = Some(counts);
         Ok(counts)
     }
 
-    /// Runs kernels that count, and reads their counts.
-    pub(super) async fn count_by(&self, record: &dyn Fn(&mut wgpu::ComputePass)) -> Result<Vec<u32>, Error> {
+    /// Submits kernels that count.
+    pub(super) fn begin_counts(&self, record: &dyn Fn(&mut wgpu::ComputePass)) -> PendingRead {
         let commands = || {
-            let history = &self.buffers.history;
-            self.gpu.queue.write_buffer(history, 0, bytemuck::cast_slice(&[0u32; ENTRIES]));
-            self.encode(record)
+            self.write_params();
+            let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
+            self.encode_counts(&mut encoder, record);
+            encoder
         };
-        self.gpu.submit_and_read(&commands, &[Source::new(&self.buffers.history, COUNTS)]).await?.words(0)
+        self.gpu.submit_and_map(&commands, &[Source::new(&self.buffers.history, COUNTS)])
     }
 
     /// Writes the state as the first entry of the history, and zeros after it.
@@ -184,6 +214,9 @@ impl WebGpu {
     pub(super) fn take_over(&mut self, history: &[u32]) -> Vec<u32> {
         let entries = history[ENTRIES..].chunks_exact(ENTRY_WORDS).skip(1);
         let ran: Vec<&[u32]> = entries.take_while(|entry| entry[3] == 1).collect();
+        if IS_NATIVE && ran.iter().any(|entry| entry[0] > 0) {
+            self.input = None;
+        }
         if let Some(last) = ran.last() {
             self.state.copy_from_slice(last);
         }
@@ -258,6 +291,16 @@ impl WebGpu {
             self.dispatch(pass, Kernel::Decide, self.params.tail_length);
             dispatch(pass);
         }
+    }
+
+    /// Encodes kernels that count, with zeros before them.
+    pub(super) fn encode_counts(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        record: &dyn Fn(&mut wgpu::ComputePass),
+    ) {
+        encoder.clear_buffer(&self.buffers.history, 0, Some(4 * COUNTS as u64));
+        self.encode_pass(encoder, record);
     }
 
     pub(super) fn record_counts(&self, pass: &mut wgpu::ComputePass) {

@@ -12,6 +12,7 @@ use super::params::{
     DEVICE_WORDS, NEGATIVE, POSITIVE, Params, TopologyOffsets, WINDING_BITS, WINDING_CLOCKWISE,
     WINDING_COUNTER_CLOCKWISE, WINDING_UNKNOWN,
 };
+use super::run::IS_NATIVE;
 use super::shared::Handle;
 use super::steps::Step;
 use crate::Error;
@@ -47,10 +48,9 @@ impl WebGpu {
         let begin = || {
             let mesh = &upload.mesh;
             let (buffers, scratch) = (Buffers::new(&gpu, &upload), Scratch::new(&gpu, mesh));
-            if waits {
-                gpu.finish_copies();
-                start = Instant::now();
-            }
+            // The mesh travels to the device while the host records the work on it.
+            #[cfg(not(target_arch = "wasm32"))]
+            let travelling = gpu.queue.submit([]);
             let params = Params::new(&upload, &TopologyOffsets::new(mesh), gpu.ends_loops_early);
             let bytes = buffers.bytes() + scratch.bytes();
             let mut encoder = gpu.device.create_command_encoder(&Default::default());
@@ -68,10 +68,12 @@ impl WebGpu {
                 bytes,
                 buffers,
                 counters: scratch.counters,
+                input: None,
                 unsettled: None,
                 allocation: None,
                 waits,
                 stays: false,
+                reserved: None,
                 known: Known::default(),
                 state: Entry::default(),
                 dispatches: adjacency::DISPATCHES,
@@ -79,7 +81,11 @@ impl WebGpu {
                 gpu: gpu.clone(),
             };
             result.record_preparation(&mut encoder);
-            gpu.submit(encoder);
+            let commands = encoder.finish();
+            #[cfg(not(target_arch = "wasm32"))]
+            gpu.finish_copies(travelling);
+            start = Instant::now();
+            gpu.submit(commands);
             result
         };
         let (mut result, caught) = watch(&gpu.device, begin);
@@ -140,7 +146,7 @@ impl WebGpu {
     fn prepare(&self) {
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
         self.record_preparation(&mut encoder);
-        self.gpu.submit(encoder);
+        self.gpu.submit(encoder.finish());
     }
 
     /// The entry that the device writes if it needs no help of the host: as if an iteration before the first had flipped
@@ -155,6 +161,7 @@ impl WebGpu {
         self.params.first = 0;
         self.state = self.first_state();
         self.known = Known::default();
+        self.input = IS_NATIVE.then(|| mesh.clone());
         self.unsettled = Some(mesh);
         if self.waits { self.settle().await } else { Ok(()) }
     }
@@ -232,7 +239,7 @@ impl WebGpu {
             gpu.queue.write_buffer(&self.buffers.topology, 4 * before as u64, bytemuck::cast_slice(words));
             let mut encoder = gpu.device.create_command_encoder(&Default::default());
             encoder.copy_buffer_to_buffer(&topology, 0, &self.buffers.topology, 0, 4 * before as u64);
-            gpu.submit(encoder);
+            gpu.submit(encoder.finish());
             self.buffers.bind(gpu, &self.kernels.layout)
         };
         self.bindings = gpu.checked(copy).await?;

@@ -289,7 +289,7 @@ fn an_error_of_a_call_is_reported() {
 #[test]
 fn words_come_back_as_they_were_written() {
     let device = block_on(Device::shared(true, None)).unwrap();
-    for words in [0, 1, PIECE - 1, PIECE, 2 * PIECE + 1, CHUNK, CHUNK + PIECE + 3] {
+    for words in [0, 1, PIECE - 1, PIECE, 2 * PIECE + 1, CHUNK, CHUNK + PIECE + 3, 3 * CHUNK + 5] {
         assert!(come_back(&device, words, 0x9e37_79b9), "{words} words");
     }
 }

@@ -1,7 +1,11 @@
 //! The array that a result is read into.
 
+#[cfg(not(target_arch = "wasm32"))]
+use crate::system::{memory, threads::Threads};
 #[cfg(target_arch = "wasm32")]
 use js_sys::Uint32Array;
+#[cfg(not(target_arch = "wasm32"))]
+use std::thread::{Builder, JoinHandle};
 #[cfg(target_arch = "wasm32")]
 use wasm_bindgen::prelude::*;
 
@@ -21,6 +25,17 @@ pub(super) fn vector(words: Words) -> Vec<u32> {
 #[cfg(target_arch = "wasm32")]
 pub(super) fn vector(words: Words) -> Vec<u32> {
     words.to_vec()
+}
+
+/// Copies words of the program or of the module to `result` from word `first` on.
+#[cfg(not(target_arch = "wasm32"))]
+pub(super) fn put(result: &mut Words, first: usize, words: &[u32]) {
+    Threads::default().put(result, first, words);
+}
+
+#[cfg(target_arch = "wasm32")]
+pub(super) fn put(result: &mut Words, first: usize, words: &[u32]) {
+    result.subarray(first as u32, (first + words.len()) as u32).copy_from(words);
 }
 
 /// Memory for `words` words, if available.
@@ -50,4 +65,42 @@ pub(super) fn reserve(words: usize) -> Option<Words> {
     let reserved: Uint32Array = FallibleArray::new(words as f64).ok()?.unchecked_into();
     (0..words as u32).step_by(PAGE).for_each(|word| reserved.set_index(word, 1));
     Some(reserved)
+}
+
+/// From so many words on, memory is reserved before it is needed: with fewer, the thread costs more than it saves. In
+/// debug builds it is small, so that small meshes test it.
+#[cfg(not(target_arch = "wasm32"))]
+const FEWEST_AHEAD: usize = if cfg!(debug_assertions) { 1000 } else { 1 << 20 };
+
+/// Memory for a result that is read later. The system allocates each page at its first write, which takes longer than a
+/// copy. So the threads write to each page while the GPU works.
+#[cfg(not(target_arch = "wasm32"))]
+pub(super) struct Reserved(Option<JoinHandle<Option<Words>>>);
+
+#[cfg(not(target_arch = "wasm32"))]
+impl Reserved {
+    pub(super) fn begin(words: usize) -> Self {
+        let touch = move || memory::check(4 * words as u64).ok().map(|()| Threads::default().zeros(words));
+        Self(if words < FEWEST_AHEAD { None } else { Builder::new().spawn(touch).ok() })
+    }
+
+    /// The memory, if available.
+    pub(super) fn words(self) -> Option<Words> {
+        self.0?.join().ok()?
+    }
+}
+
+#[cfg(target_arch = "wasm32")]
+pub(super) struct Reserved(Option<Words>);
+
+#[cfg(target_arch = "wasm32")]
+impl Reserved {
+    pub(super) fn begin(words: usize) -> Self {
+        Self(reserve(words))
+    }
+
+    /// The memory, if available.
+    pub(super) fn words(self) -> Option<Words> {
+        self.0
+    }
 }
