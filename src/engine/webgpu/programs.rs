@@ -71,6 +71,7 @@ const Z: Offset = large(5);
 pub(super) const LAST: Offset = large(6);
 
 /// Words of all numbers.
+#[cfg(test)]
 pub(super) const WORDS: u32 = LAST + 74;
 
 /// The terms: two offsets in ten bits each, then whether the product is added, and whether it is subtracted. The ten
