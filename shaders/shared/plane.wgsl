@@ -70,17 +70,9 @@ fn filtered_sign_of(a: Point, b: Point, c: Point) -> i32 {
     return area_sign(u * scale, v * scale);
 }
 
-// The verdict of `filtered_verdict_on`. If that is UNDECIDED, the verdict of 128-bit integers, which decide if all
-// differences are below 2^30. They decide the ties of most lattices.
+// The verdict where `filtered_verdict_on` gives UNDECIDED: 128-bit integers decide if all differences are below 2^30. They
+// decide the ties of most lattices.
 fn close_verdict_on(a: Point, b: Point, c: Point, d: Point, winding: i32) -> u32 {
-    var verdict = filtered_verdict_on(a, b, c, d, winding);
-    if verdict == UNDECIDED {
-        verdict = narrow_verdict_on(a, b, c, d, winding);
-    }
-    return verdict;
-}
-
-fn narrow_verdict_on(a: Point, b: Point, c: Point, d: Point, winding: i32) -> u32 {
     let grid = grid_of(a, b, c, d);
     let p = exact_differences(a, c, grid);
     let q = exact_differences(b, c, grid);

@@ -25,7 +25,7 @@ fn filtered_verdict_on(a: Point, b: Point, c: Point, d: Point, winding: i32) -> 
     return verdict_by(a, b, c, d, false);
 }
 
-// The same by a filter that is slower and decides more.
+// The verdict where that gives UNDECIDED, by a filter that is slower and decides more.
 fn close_verdict_on(a: Point, b: Point, c: Point, d: Point, winding: i32) -> u32 {
     return verdict_by(a, b, c, d, true);
 }

@@ -5,7 +5,7 @@
 #import points
 
 fn exact_verdict_on(a: Point, b: Point, c: Point, d: Point, winding: i32) -> u32 {
-    var verdict = narrow_verdict_on(a, b, c, d, winding);
+    var verdict = close_verdict_on(a, b, c, d, winding);
     if verdict == UNDECIDED {
         verdict = wide_verdict_on(a, b, c, d, winding);
     }

@@ -20,7 +20,7 @@ fn census(
     for (var t = id.x; t < params.triangles; t += groups.x * WORKGROUP_SIZE) {
         let at = params.triangles + t;
         if !is_resumed {
-            let verdicts = verdicts_on(t, true, true);
+            let verdicts = close_verdicts_on(t, true);
             let is_left = any(verdicts == vec3u(UNDECIDED));
             choices[at] = wait_for(t, is_left);
             if !is_left {
@@ -48,7 +48,7 @@ fn count_edges(t: u32, verdicts: vec3u) {
         let h = 3u * t + k;
         let entry = twin_entry(h);
         var verdict = verdict_at(verdicts, k);
-        if counts(h, entry, true) && verdict != DELAUNAY {
+        if entry != NONE && h < unflagged(entry) && verdict != DELAUNAY {
             if (entry & FLAGS) != 0u && verdict < LEFT_AS_INFINITE {
                 verdict = BLOCKED_BY + select(REASON_ANGLE, REASON_LOCKED, (entry & LOCKED) != 0u);
             }

@@ -12,10 +12,13 @@
 #import state
 #import verdicts
 
+// Triangles of a slice: one workgroup decides them. Neighbours in a chunk are often in doubt together, so slices of one
+// chunk go to different workgroups.
+const SLICE: u32 = 8u;
+
 var<workgroup> limit: u32;
-var<workgroup> together: u32;
-// Waiting triangles, in no order.
-var<workgroup> waiting: array<u32, CHUNKS * WORKGROUP_SIZE>;
+// Where doubtful slices begin, in no order.
+var<workgroup> slices: array<u32, DECIDERS>;
 // The half-edges of the edges that are still undecided in as many triangles as there are invocations, in no order.
 var<workgroup> undecided: array<u32, 3u * DECIDERS>;
 // How many entries either list has.
@@ -35,32 +38,19 @@ fn decide_all(
     let work = work_of_task(index);
     if local == 0u {
         limit = select(0u, work.count, has_doubts());
-        // In a list, most chunks may be doubtful, so a workgroup takes one at a time, and all workgroups share them.
-        together = select(CHUNKS, 1u, work.is_listed || decides_few());
     }
     let end = workgroupUniformLoad(&limit);
-    let step = workgroupUniformLoad(&together);
-    for (var first = step * group.x; first * WORKGROUP_SIZE < end; first += step * groups.x) {
-        let bits = doubtful_chunks(first, step);
-        for (var chunk = 0u; chunk < step; chunk++) {
-            if ((bits >> chunk) & 1u) == 1u {
-                collect((first + chunk) * WORKGROUP_SIZE, work);
-            }
+    let stride = SLICE * groups.x * groups.y;
+    for (var first = SLICE * (group.y * groups.x + group.x); first < end; first += stride * DECIDERS) {
+        let slice = first + stride * lane;
+        if slice < end && is_doubtful(slice / WORKGROUP_SIZE) {
+            slices[atomicAdd(&counter, 1u)] = slice;
         }
-        let count = min(counted_entries(), params.most_decided);
+        let count = SLICE * counted_entries();
         for (var i = 0u; i < count; i += DECIDERS) {
-            decide(i + lane, count, params.first + index);
-        }
-        if decides_few() && count > 0u {
-            break;
+            decide(i + lane, count, work, params.first + index);
         }
     }
-}
-
-// Whether a workgroup decides few triangles per dispatch, in several dispatches: for drivers that end loops too early,
-// see rounds.wgsl.
-fn decides_few() -> bool {
-    return params.most_decided != NONE;
 }
 
 // The iteration; without meaning for other tasks.
@@ -78,16 +68,6 @@ fn work_of_task(index: u32) -> Work {
     return work;
 }
 
-// Collects the waiting triangles of a chunk.
-fn collect(first: u32, work: Work) {
-    for (var i = first + lane; i < min(first + WORKGROUP_SIZE, work.count); i += DECIDERS) {
-        let t = active_triangle(work, i);
-        if choices[waiting_index(t)] == DOUBTFUL {
-            waiting[atomicAdd(&counter, 1u)] = t;
-        }
-    }
-}
-
 // The length of a list that all invocations have appended to. The next list is empty.
 fn counted_entries() -> u32 {
     workgroupBarrier();
@@ -97,12 +77,13 @@ fn counted_entries() -> u32 {
     return workgroupUniformLoad(&counted);
 }
 
-// Decides a waiting triangle for each invocation, if there are so many.
-fn decide(i: u32, count: u32, iteration: u32) {
-    var t = NONE;
+// Decides the triangles of as many entries of slices as there are invocations.
+fn decide(i: u32, count: u32, work: Work, iteration: u32) {
+    let at = slices[min(i, count - 1u) / SLICE] + i % SLICE;
+    let t = active_triangle(work, min(at, work.count - 1u));
+    let waits = i < count && at < work.count && choices[waiting_index(t)] == DOUBTFUL;
     var verdicts = vec3u();
-    if i < count {
-        t = waiting[i];
+    if waits {
         verdicts = verdicts_alone(t);
         for (var k = 0u; k < 3u; k++) {
             if verdict_at(verdicts, k) == UNDECIDED {
@@ -120,15 +101,15 @@ fn decide(i: u32, count: u32, iteration: u32) {
         let c = position(vertex(prev(h)));
         let d = position(vertex(prev(g)));
         let verdict = exact_verdict_on(a, b, c, d, winding);
-        if h / 3u == t {
+        if waits && h / 3u == t {
             verdicts = with_verdict(verdicts, h % 3u, verdict);
         }
     }
-    if i < count && step_.task == PREPARE {
+    if waits && step_.task == PREPARE {
         prepare(t, verdicts);
-    } else if i < count && step_.task == CENSUS {
+    } else if waits && step_.task == CENSUS {
         choices[waiting_index(t)] = packed(verdicts);
-    } else if i < count {
+    } else if waits {
         choices[t] = label(t, iteration, verdicts);
     }
 }

@@ -4,9 +4,6 @@
 #import mesh
 #import state
 
-// Chunks that a sweep checks together.
-const CHUNKS: u32 = 8u;
-
 // The task of a step of a submission: an iteration, the iteration in which the tail has paused, the census, or the
 // preparation.
 const ITERATE: u32 = 0u;
@@ -40,9 +37,8 @@ fn has_doubts() -> bool {
     return atomicLoad(&frontier[end_of_doubts()]) == 1u;
 }
 
-// A bit for each of `count` chunks from `first` on. `first` is a multiple of `count`.
-fn doubtful_chunks(first: u32, count: u32) -> u32 {
-    return (atomicLoad(&frontier[doubts() + first / 32u]) >> (first % 32u)) & ((1u << count) - 1u);
+fn is_doubtful(chunk: u32) -> bool {
+    return ((atomicLoad(&frontier[doubts() + chunk / 32u]) >> (chunk % 32u)) & 1u) == 1u;
 }
 
 fn clear_doubts(first: u32, stride: u32) {

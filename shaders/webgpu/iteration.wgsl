@@ -103,7 +103,7 @@ fn tail(@builtin(local_invocation_index) local: u32) {
         if step_.task != RESUME || index > first {
             for (var i = local; i < count; i += TAIL_SIZE) {
                 let t = active_triangle(work, i);
-                let choice = label(t, iteration, verdicts_on(t, false, true));
+                let choice = label(t, iteration, close_verdicts_on(t, false));
                 choices[t] = choice;
                 clear_flip(t);
                 if choice == DOUBTFUL {

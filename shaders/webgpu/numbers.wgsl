@@ -88,9 +88,11 @@ fn run(program: u32) {
 
 // Runs steps that do not need each other's results.
 //
-// Digits are from -8191 to 8191 in input numbers, and from -4125 to 4125 in computed ones: no sum of products overflows,
-// so two rounds of carries suffice. After the first, a column is the rest of a division, from -4096 to 4095, and a carry
-// of at most 2^31 / 8192. After the second, it is such a rest and a carry of at most 29 or -29.
+// Digits are from -8191 to 8191 in input numbers, but 2^15 in the power of cos β, and from -4125 to 4125 in computed
+// ones. No sum of products reaches 2^31 - 4096: the largest has 4 products of 7 digits below 8192 (a test in programs.rs
+// checks all). So two rounds of carries suffice. After the first, a column is a rest from -4096 to 4095 and a carry of
+// magnitude at most 2^31 / 8192 = 2^18, so the next carry has magnitude at most 2^18 / 8192 + 1 = 33, in fact at most
+// 29. After the second, a column is such a rest and that carry.
 fn run_steps(first: u32) {
     let count = programs[first].y >> 22u;
     let width = programs[first].z >> 22u;
@@ -102,11 +104,17 @@ fn run_steps(first: u32) {
     var end = 0u;
     for (var i = 0u; i < 4u && index < count; i++) {
         let sign = i32((step.x >> 20u) & 1u) - i32((step.x >> 21u) & 1u);
-        let x = step.x & 1023u;
-        let y = (step.x >> 10u) & 1023u;
         if sign != 0 {
-            sum += sign * part_of_column(x, y, column);
-            end = max(end, length_at(x) + length_at(y) + 1u);
+            let x = step.x & 1023u;
+            let y = (step.x >> 10u) & 1023u;
+            let of_x = length_at(x);
+            let of_y = length_at(y);
+            end = max(end, of_x + of_y + 1u);
+            // Digit j of one times digit column - j of the other.
+            let last = min(column + 1u, of_x);
+            for (var j = max(column + 1u, of_y) - of_y; j < last; j++) {
+                sum += sign * digits[x + j] * digits[y + column - j];
+            }
         }
         step = step.yzwx;
     }
@@ -118,16 +126,6 @@ fn run_steps(first: u32) {
         put(to, column, digit);
     }
     workgroupBarrier();
-}
-
-// The sum that the product of two numbers adds to a column: digit i of one times digit column - i of the other.
-fn part_of_column(x: u32, y: u32, column: u32) -> i32 {
-    var sum = 0;
-    let end = min(column + 1u, length_at(x));
-    for (var i = max(column + 1u, length_at(y)) - length_at(y); i < end; i++) {
-        sum += digits[x + i] * digits[y + column - i];
-    }
-    return sum;
 }
 
 // A column with the carry from the one below, and without its own. Columns above a product are 0, so that nothing is

@@ -40,7 +40,7 @@ fn verdicts_alone(t: u32) -> vec3u {
         let sign = exact_sign_of(position(vertex(3u * t)), position(vertex(3u * t + 1u)), position(vertex(3u * t + 2u)));
         verdicts.x = u32(1 + sign);
     } else {
-        verdicts = verdicts_on(t, step_.task == CENSUS, true);
+        verdicts = close_verdicts_on(t, step_.task == CENSUS);
     }
     return verdicts;
 }

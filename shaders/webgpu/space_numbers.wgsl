@@ -97,7 +97,7 @@ fn verdicts_alone(t: u32) -> vec3u {
     if step_.task == PREPARE {
         verdicts = filtered_creases(t);
     } else {
-        verdicts = verdicts_on(t, step_.task == CENSUS, true);
+        verdicts = close_verdicts_on(t, step_.task == CENSUS);
     }
     return verdicts;
 }

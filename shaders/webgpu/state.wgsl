@@ -36,8 +36,6 @@ struct Params {
     embedded: u32,
     // What the host knows of the winding of the components: one of the constants below.
     winding: u32,
-    // The most triangles that a workgroup of decide.wgsl decides per dispatch; NONE for no limit.
-    most_decided: u32,
     // The number of the update while the mesh moves, from 1 on; else 0.
     update: u32,
     // The offset in `topology` of the updates in which the triangles last changed; 0 if nobody asks for them.

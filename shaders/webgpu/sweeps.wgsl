@@ -6,12 +6,7 @@
 #import mesh
 #import select
 #import state
-#import three_axes if space
-#import two_axes if plane
 #import verdicts
-
-// Whether Label uses the slower filter at once: it leaves that to Decide.
-const LABELS_CLOSELY: bool = false;
 
 @compute @workgroup_size(WORKGROUP_SIZE)
 fn label_all(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
@@ -20,7 +15,7 @@ fn label_all(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) 
     for (var i = id.x; i < work.count; i += groups.x * WORKGROUP_SIZE) {
         let t = active_triangle(work, i);
         if is_due(work, t, iteration) {
-            let choice = label(t, iteration, verdicts_on(t, false, LABELS_CLOSELY));
+            let choice = label(t, iteration, verdicts_on(t, false));
             choices[t] = choice;
             if has_selection() && flip_of(t).x != NONE {
                 clear_flip(t);

@@ -25,7 +25,7 @@ use std::task::{Context, Poll, Waker};
 use wgpu::BufferUsages;
 
 /// Workgroups that WebGPU allows in one dimension.
-const MOST_WORKGROUPS: u32 = 65_535;
+pub(super) const MOST_WORKGROUPS: u32 = 65_535;
 
 /// The most invocations of the tail. Few lists of a tail are longer.
 const LARGEST_TAIL: u32 = 1024;

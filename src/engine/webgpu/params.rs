@@ -1,9 +1,8 @@
 //! The parameters of the kernels of the phases.
 
-use super::programs;
 use crate::engine::gpu::cosine::Cosine;
 use crate::engine::gpu::upload::Upload;
-use crate::{Dimension, Mesh, NONE};
+use crate::{Dimension, Mesh};
 
 /// The longest list that the tail works on.
 const TAIL_LENGTH: u32 = 2048;
@@ -67,9 +66,10 @@ pub(super) struct Params {
     pub(super) list_below: u32,
     pub(super) embedded: u32,
     pub(super) winding: u32,
-    pub(super) most_decided: u32,
     pub(super) update: u32,
     pub(super) changes: u32,
+    /// The digits begin at a multiple of 16 bytes.
+    pub(super) padding: u32,
     pub(super) cos_digits: [[i32; 8]; 2],
     pub(super) deviation: [u32; 4],
 }
@@ -98,9 +98,9 @@ impl Params {
             list_below: if count <= SMALL_MESH { u32::MAX } else { count as u32 / 256 },
             embedded: topology.embedded,
             winding: WINDING_UNKNOWN,
-            most_decided: if ends_loops_early { programs::few(mesh.dimension()) } else { NONE },
             update: 0,
             changes: 0,
+            padding: 0,
             cos_digits: [cosine.mantissa, cosine.power],
             deviation: upload.deviation,
         }

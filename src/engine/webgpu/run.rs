@@ -5,9 +5,11 @@ use super::adjacency::COUNTERS;
 use super::buffer::Buffer;
 use super::buffers::Buffers;
 use super::copies::{CHUNK, PendingRead, Source, memory_for};
+use super::device::MOST_WORKGROUPS;
 use super::history::{AREAS, BATCH, COUNTS, ENTRIES, ENTRY_WORDS, HISTORY_WORDS, SHORT_TAIL, TAIL};
-use super::kernels::{Kernel, WORKGROUP_SIZE};
+use super::kernels::Kernel;
 use super::known::Known;
+use super::programs::SLICE;
 use super::steps::Step;
 use super::words::{Reserved, Words, put};
 use crate::Error;
@@ -16,9 +18,12 @@ use crate::mesh::areas::Areas;
 
 /// Dispatches of the tail: it may pause once for exact arithmetic.
 const TAIL_DISPATCHES: u32 = 3;
-/// The most workgroups of exact arithmetic: a large GPU runs so many at the same time.
-const MOST_DECIDING: u32 = 512;
 pub(super) const IS_NATIVE: bool = cfg!(not(target_arch = "wasm32"));
+/// The most workgroups of exact arithmetic: enough for a large GPU. On drivers that end loops too early, each workgroup
+/// decides one slice.
+const MOST_DECIDING: u32 = 1024;
+/// So many keep the indices in `decide.wgsl` below 2^32, and suffice for 16 million triangles.
+const MOST_SLICES: u32 = 1 << 21;
 /// Dispatches of the counts.
 const COUNT_DISPATCHES: u64 = 4;
 
@@ -253,20 +258,13 @@ impl WebGpu {
 
     /// Dispatches a kernel for `triangles` triangles.
     pub(super) fn dispatch(&self, pass: &mut wgpu::ComputePass, kernel: Kernel, triangles: u32) {
-        let groups = self.gpu.workgroups(triangles);
         pass.set_pipeline(&self.kernels.pipelines[kernel as usize]);
         if kernel != Kernel::Decide {
-            return pass.dispatch_workgroups(groups, 1, 1);
+            return pass.dispatch_workgroups(self.gpu.workgroups(triangles), 1, 1);
         }
-        // On drivers that end loops too early, a workgroup decides few triangles per dispatch.
-        let all = if self.gpu.ends_loops_early {
-            groups.div_ceil(MOST_DECIDING) * WORKGROUP_SIZE.div_ceil(self.params.most_decided)
-        } else {
-            1
-        };
-        for _ in 0..all {
-            pass.dispatch_workgroups(groups.min(MOST_DECIDING), 1, 1);
-        }
+        let most = if self.gpu.ends_loops_early { MOST_SLICES } else { MOST_DECIDING };
+        let groups = triangles.div_ceil(SLICE).clamp(1, most);
+        pass.dispatch_workgroups(groups.min(MOST_WORKGROUPS), groups.div_ceil(MOST_WORKGROUPS), 1);
     }
 
     pub(super) fn record_iterations(

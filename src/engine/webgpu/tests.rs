@@ -124,6 +124,7 @@ fn constants_of_exact_arithmetic_agree() {
     let sizes = [
         ("DIGIT_BITS", DIGIT_BITS),
         ("DECIDERS", programs::DECIDERS),
+        ("SLICE", programs::SLICE),
         ("GIVEN_WORDS", programs::GIVEN),
         ("WORDS", programs::WORDS),
         ("TABLE", programs::table().len() as u32),
@@ -174,7 +175,6 @@ fn params_have_one_layout() {
         list_below,
         embedded,
         winding,
-        most_decided,
         update,
         changes,
         cos_digits,
