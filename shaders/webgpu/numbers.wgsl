@@ -14,7 +14,7 @@ const DECIDERS: u32 = 128u;
 
 // The first step of each program, the end of the last one, then the steps: up to four products of two numbers each. See
 // programs.rs for the bits.
-const TABLE: u32 = 56u;
+const TABLE: u32 = 58u;
 @group(0) @binding(9) var<uniform> programs: array<vec4u, TABLE>;
 
 // Words of all numbers, and of an input number: none has fewer.

@@ -9,8 +9,10 @@
 
 const IN_CIRCLE: u32 = 0u;
 
-// The offset of the result of this program.
+// Offsets of the results of this program: the value of the in-circle test, and the areas of both new triangles.
 const VALUE: u32 = 272u;
+const FIRST: u32 = 308u;
+const SECOND: u32 = 344u;
 
 // The verdict on any edge. All invocations of a workgroup call it for the same one.
 fn exact_verdict_on(a: Point, b: Point, c: Point, d: Point, winding: i32) -> u32 {
@@ -18,7 +20,7 @@ fn exact_verdict_on(a: Point, b: Point, c: Point, d: Point, winding: i32) -> u32
     run(IN_CIRCLE);
     var verdict = DELAUNAY;
     if winding * sign_at(VALUE) < 0 {
-        let least = min(winding * exact_sign_of(a, d, c), winding * exact_sign_of(b, c, d));
+        let least = min(winding * sign_at(FIRST), winding * sign_at(SECOND));
         verdict = select(LABELLED, BLOCKED_BY + REASON_FOLD, least <= 0);
     }
     return verdict;

@@ -15,7 +15,7 @@ fn label_all(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) 
     for (var i = id.x; i < work.count; i += groups.x * WORKGROUP_SIZE) {
         let t = active_triangle(work, i);
         if is_due(work, t, iteration) {
-            let choice = label(t, iteration, verdicts_on(t, false));
+            let choice = label(t, iteration, verdicts_on(t));
             choices[t] = choice;
             if has_selection() && flip_of(t).x != NONE {
                 clear_flip(t);

@@ -130,10 +130,11 @@ const ANGLE: &[Group] = &[
 /// The programs, in the order of their numbers in the shaders. Dot products of normals use the Binet–Cauchy identity
 /// (u × v)·(x × y) = (u·x)(v·y) - (u·y)(v·x).
 const PROGRAMS: [&[Group]; 9] = [
-    // The in-circle test in the plane: cross(λ)·dot(γ) + dot(λ)·cross(γ), with the angles λ at c and γ at d.
+    // The in-circle test in the plane: cross(λ)·dot(γ) + dot(λ)·cross(γ), with the angles λ at c and γ at d; and the areas
+    // of the new triangles.
     &[
         &[cross(CROSS1, P, Q), flat_dot(DOT1, P, Q), cross(CROSS2, S, R), flat_dot(DOT2, S, R)],
-        &[step(N, &[plus(CROSS1, DOT2), plus(DOT1, CROSS2)])],
+        &[step(N, &[plus(CROSS1, DOT2), plus(DOT1, CROSS2)]), cross(M, R, P), cross(COSINE, Q, S)],
     ],
     // In space: the squares of the old normals n = p × q and m = s × r, and of (r·s) and (p·q).
     &[

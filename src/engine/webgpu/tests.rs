@@ -132,7 +132,9 @@ fn constants_of_exact_arithmetic_agree() {
     for (name, value) in offsets.into_iter().chain(sizes) {
         assert_eq!(space[name], u64::from(value), "{name}");
     }
-    assert_eq!(plane["VALUE"], u64::from(programs::N));
+    for (name, offset) in [("VALUE", programs::N), ("FIRST", programs::M), ("SECOND", programs::COSINE)] {
+        assert_eq!(plane[name], u64::from(offset), "{name}");
+    }
 }
 
 #[test]
