@@ -7,6 +7,7 @@ use crate::engine::{Census, EdgeCounts};
 use crate::mesh::arrangement::Arrangement;
 use crate::mesh::embedded::Embedded;
 use crate::mesh::half_edge::{self, CREASE, FLAGS, LOCKED, prev, unflagged};
+use crate::mesh::recent::Joined;
 use crate::mesh::star::Fans;
 use crate::mesh::winding::{Outline, Winding};
 use crate::phases::{
@@ -14,7 +15,7 @@ use crate::phases::{
     keep_non_delaunay, key, makes_duplicate, move_anchors, verdict, verdict_of_shape, yields,
 };
 use crate::system::threads::{Threads, Word, shared};
-use crate::{Adjacency, Dimension, Mesh, NONE};
+use crate::{Dimension, Mesh, NONE};
 use std::hint::black_box;
 use std::ops::Range;
 use std::sync::Arc;
@@ -127,10 +128,7 @@ impl Cpu {
     }
 
     fn prepared(arrangement: Arrangement, mesh: Arc<Mesh>, thresholds: Thresholds, threads: Threads) -> Self {
-        let adjacency = Adjacency::of_triangles(mesh.vertex_count(), mesh.triangles(), &threads);
-        let mut outline = None;
-        let (winding, embedded) =
-            Embedded::with_winding(&mesh, &adjacency.twins, None, &mut outline, &threads);
+        let Joined { adjacency, winding, embedded, outline } = Joined::new(&mesh, &threads);
         let counts = EdgeCounts::from(&adjacency);
         let triangles = threads.copied(mesh.triangles());
         let fans = embedded.fans(&mesh, &adjacency.twins, &threads);
