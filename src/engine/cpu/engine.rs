@@ -284,10 +284,11 @@ impl Cpu {
         let mut parts = std::mem::take(&mut self.parts);
         let Self { threads, selected, arrangement, iteration, .. } = &*self;
         let key = |h: u32| key(arrangement.name(h), *iteration);
+        let is_alone = threads.is_one();
         threads.each(&mut parts, |part| {
             for &[h, twin] in &part.candidates {
                 if twin & DUPLICATE == 0 {
-                    selected.bid([h, unflagged(twin)], key(h));
+                    selected.bid([h, unflagged(twin)], key(h), is_alone);
                 }
             }
         });
