@@ -192,6 +192,19 @@ impl Session {
         Ok(Outcome { triangles, ..outcome })
     }
 
+    /// As [`Session::outcome`], at the end of a session. The CPU engine need not copy its triangles then.
+    async fn into_outcome(mut self) -> Result<Outcome, Error> {
+        let counts = self.engine.edge_counts();
+        if self.engine.backend() != EngineKind::Cpu || counts.non_manifold + counts.inconsistent > 0 {
+            return self.outcome().await;
+        }
+        let outcome = self.summary(Instant::now(), &|| Cow::default()).await?;
+        let start = Instant::now();
+        let triangles = self.ask(|engine| engine.take_triangles()).await?;
+        let timings = Timings { total: outcome.timings.total + ms_since(start), ..outcome.timings };
+        Ok(Outcome { triangles, timings, ..outcome })
+    }
+
     /// As [`Session::outcome`], with the triangles in a JavaScript array. If they stay on the device, the array is
     /// empty. They are read back even so if edges are frozen, because those are counted here.
     #[cfg(all(target_arch = "wasm32", feature = "js"))]
@@ -444,6 +457,6 @@ pub fn make_delaunay(
     pollster::block_on(async {
         let mut session = Session::new(mesh, options.clone()).await?;
         session.run(watch).await?;
-        session.outcome().await
+        session.into_outcome().await
     })
 }

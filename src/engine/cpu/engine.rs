@@ -19,7 +19,6 @@ use crate::{Dimension, Mesh, NONE};
 use std::hint::black_box;
 use std::ops::Range;
 use std::sync::Arc;
-use std::sync::atomic::AtomicU32;
 
 /// Edges that one pass tests.
 const EDGES: usize = 256;
@@ -83,7 +82,7 @@ pub(crate) struct Cpu {
     selected: Selected,
     /// For each vertex whose star is not known to be embedded: one plus the index of the last iteration that added or
     /// removed an edge at this vertex. `label` makes it when it tests all edges.
-    changed: Vec<AtomicU32>,
+    changed: Vec<u32>,
     pub(super) iteration: u32,
     /// What the updates have made of the mesh.
     pub(super) moving: Motion,
@@ -177,7 +176,7 @@ impl Cpu {
         } else {
             self.blocked.clear();
             self.selected = Selected::new(self.twins.len() / 3, &self.threads);
-            self.changed = self.threads.collect(self.mesh.vertex_count(), |_| AtomicU32::default());
+            self.changed = self.threads.zeros(self.mesh.vertex_count());
             parts = self.threads.map(self.twins.len() / 3, |piece| self.test_all(piece));
         }
         self.is_known = true;
@@ -276,7 +275,7 @@ impl Cpu {
 
     /// Whether the last iteration added or removed an edge at `v`. Tracked only for stars not known to be embedded.
     fn has_changed(&self, v: u32) -> bool {
-        self.iteration > 0 && self.changed[v as usize].get() == self.iteration
+        self.iteration > 0 && self.changed[v as usize] == self.iteration
     }
 
     /// Select: an edge flips if it has the smallest key in both its triangles and does not yield.
@@ -349,7 +348,7 @@ impl Cpu {
         for part in &*parts {
             move_anchors(fans, triangles, selected, &part.flipped);
         }
-        let (triangles, twins) = (shared(triangles), shared(twins));
+        let (triangles, twins, changed) = (shared(triangles), shared(twins), shared(changed));
         threads.each(parts, |Part { flipped, around, .. }| {
             around.clear();
             around.reserve_exact(flipped.len());

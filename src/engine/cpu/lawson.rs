@@ -84,6 +84,15 @@ impl Engine for Lawson {
         Engine::triangles(&mut self.cpu)
     }
 
+    fn take_triangles(&mut self) -> Answer<'_, Vec<u32>> {
+        self.cpu.take_triangles()
+    }
+
+    #[cfg(all(target_arch = "wasm32", feature = "js"))]
+    fn triangles_array(&mut self) -> Answer<'_, js_sys::Uint32Array> {
+        self.cpu.triangles_array()
+    }
+
     fn twins(&mut self) -> Answer<'_, Vec<u32>> {
         Engine::twins(&mut self.cpu)
     }
