@@ -92,7 +92,9 @@ impl Arrangement {
     /// The half-edges of an edge, first the one with the lower name.
     #[inline(always)]
     pub(crate) fn ordered(&self, [h, g]: [u32; 2]) -> [u32; 2] {
-        if self.name(h) < self.name(g) { [h, g] } else { [g, h] }
+        // A branch would be unpredictable.
+        let is_first = self.name(h) < self.name(g);
+        [if is_first { h } else { g }, if is_first { g } else { h }]
     }
 
     /// The half-edges with these names.
