@@ -8,7 +8,8 @@
 //! most one half-edge from this vertex to another one, and at most one back. Only edges between two vertices without
 //! embedded stars are counted, half-edge by half-edge.
 
-use super::adjacency::{Adjacency, EdgeKind, edge_kind};
+use super::adjacency::{Adjacency, edge_kind, twin_of};
+use super::buckets::visit_edges;
 use super::embedded::Embedded;
 use super::half_edge::next;
 use super::winding::{Outline, Winding};
@@ -55,12 +56,12 @@ impl Joined {
     fn of_recent(mesh: &Mesh, slots: usize, most: usize) -> Option<Self> {
         let triangles = mesh.triangles();
         let mut twins = vec![0; triangles.len()];
-        let mut rest = pair_recent(triangles, slots, most, &mut twins)?;
-        pair_rest(triangles, &mut rest, &mut twins);
+        let rest = pair_recent(triangles, slots, most, &mut twins)?;
+        pair_rest(triangles, &rest, &mut twins);
         let threads = Threads::one();
         let joined = Self::of(mesh, Adjacency { twins, ..Adjacency::default() }, &threads);
         let embedded = |h: u32| joined.embedded.at(triangles[h as usize]);
-        let mut unproven = unproven(triangles, &joined.embedded, most)?;
+        let unproven = unproven(triangles, &joined.embedded, most)?;
         let single = |h: &&u32| joined.adjacency.twins[**h as usize] == NONE;
         let boundary = rest.iter().filter(single).filter(|&&h| embedded(h) || embedded(next(h))).count();
         let half_edges = triangles.len() - unproven.len();
@@ -69,7 +70,7 @@ impl Joined {
             boundary: boundary as u32,
             ..joined.adjacency
         };
-        if adjacency.count_again(triangles, &mut unproven) {
+        if adjacency.count_again(triangles, &unproven) {
             return Some(Self::of(mesh, adjacency, &threads));
         }
         Some(Self { adjacency, ..joined })
@@ -79,23 +80,15 @@ impl Joined {
 impl Adjacency {
     /// Counts the edges of these half-edges, which are all half-edges of their edges, and corrects their twins. Returns
     /// whether a twin was wrong.
-    fn count_again(&mut self, triangles: &[u32], half_edges: &mut [u32]) -> bool {
+    fn count_again(&mut self, triangles: &[u32], half_edges: &[u32]) -> bool {
         let mut was_wrong = false;
-        for edge in by_edge(triangles, half_edges) {
-            self.edges += 1;
-            let kind = edge_kind(edge, triangles);
-            match kind {
-                EdgeKind::Interior => {}
-                EdgeKind::Boundary => self.boundary += 1,
-                EdgeKind::NonManifold => self.non_manifold += 1,
-                EdgeKind::Inconsistent => self.inconsistent += 1,
-            }
+        by_edge(triangles, half_edges, &mut |edge| {
+            let kind = self.count(edge, triangles);
             for &h in edge {
-                let other = edge[0] ^ edge[edge.len() - 1] ^ h;
-                let twin = if kind == EdgeKind::Interior { other } else { NONE };
+                let twin = twin_of(h, edge, kind);
                 was_wrong |= std::mem::replace(&mut self.twins[h as usize], twin) != twin;
             }
-        }
+        });
         was_wrong
     }
 }
@@ -157,23 +150,27 @@ fn slot(from: u32, to: u32) -> usize {
 }
 
 /// Pairs the two half-edges of each edge that has two of opposite directions among these.
-fn pair_rest(triangles: &[u32], half_edges: &mut [u32], twins: &mut [u32]) {
-    for edge in by_edge(triangles, half_edges) {
-        if edge_kind(edge, triangles) == EdgeKind::Interior {
-            let [h, g] = [edge[0], edge[1]];
-            (twins[h as usize], twins[g as usize]) = (g, h);
+fn pair_rest(triangles: &[u32], half_edges: &[u32], twins: &mut [u32]) {
+    by_edge(triangles, half_edges, &mut |edge| {
+        let kind = edge_kind(edge, triangles);
+        for &h in edge {
+            twins[h as usize] = twin_of(h, edge, kind);
         }
-    }
+    });
 }
 
-/// Sorts half-edges by their edges, and the half-edges of an edge in ascending order.
-fn by_edge<'a>(triangles: &[u32], half_edges: &'a mut [u32]) -> impl Iterator<Item = &'a [u32]> {
-    let ends = |h: u32| {
-        let [from, to] = [h, next(h)].map(|x| triangles[x as usize]);
-        [from.min(to), from.max(to)]
-    };
-    half_edges.sort_unstable_by_key(|&h| (ends(h), h));
-    half_edges.chunk_by(move |&h, &g| ends(h) == ends(g))
+/// Calls `visit` for each edge with those of these half-edges that belong to it.
+fn by_edge(triangles: &[u32], half_edges: &[u32], visit: &mut dyn FnMut(&[u32])) {
+    let ends = |h: u32| [h, next(h)].map(|x| triangles[x as usize]);
+    let low = |&h: &u32| (ends(h)[0].min(ends(h)[1]), h);
+    let mut by_low: Vec<_> = half_edges.iter().map(low).collect();
+    by_low.sort_unstable();
+    let (mut bucket, mut edge) = (Vec::new(), Vec::new());
+    for entries in by_low.chunk_by(|x, y| x.0 == y.0) {
+        bucket.clear();
+        bucket.extend(entries.iter().map(|&(_, h)| (ends(h)[0].max(ends(h)[1]), h)));
+        visit_edges(&mut bucket, &mut edge, &mut *visit);
+    }
 }
 
 /// The half-edges between two vertices neither of which has an embedded star; `None` if they are more than `most`.
