@@ -117,6 +117,7 @@ pub(crate) trait Engine {
     fn triangles(&mut self) -> Answer<'_, Vec<u32>>;
 
     /// The present triangles of an engine that is not used any more.
+    #[cfg(not(target_arch = "wasm32"))]
     fn take_triangles(&mut self) -> Answer<'_, Vec<u32>> {
         self.triangles()
     }

@@ -8,7 +8,7 @@
 //! most one half-edge from this vertex to another one, and at most one back. Only edges between two vertices without
 //! embedded stars are counted, half-edge by half-edge.
 
-use super::adjacency::{Adjacency, edge_kind, twin_of};
+use super::adjacency::{Adjacency, twin_of};
 use super::buckets::visit_edges;
 use super::embedded::Embedded;
 use super::half_edge::next;
@@ -55,22 +55,23 @@ impl Joined {
     /// half-edges have to be sorted at once.
     fn of_recent(mesh: &Mesh, slots: usize, most: usize) -> Option<Self> {
         let triangles = mesh.triangles();
-        let mut twins = vec![0; triangles.len()];
-        let rest = pair_recent(triangles, slots, most, &mut twins)?;
-        pair_rest(triangles, &rest, &mut twins);
+        let mut adjacency = Adjacency { twins: vec![0; triangles.len()], ..Adjacency::default() };
+        let rest = pair_recent(triangles, slots, most, &mut adjacency.twins)?;
+        adjacency.match_again(triangles, &rest);
         let threads = Threads::one();
-        let joined = Self::of(mesh, Adjacency { twins, ..Adjacency::default() }, &threads);
+        let joined = Self::of(mesh, adjacency, &threads);
         let embedded = |h: u32| joined.embedded.at(triangles[h as usize]);
         let unproven = unproven(triangles, &joined.embedded, most)?;
         let single = |h: &&u32| joined.adjacency.twins[**h as usize] == NONE;
         let boundary = rest.iter().filter(single).filter(|&&h| embedded(h) || embedded(next(h))).count();
         let half_edges = triangles.len() - unproven.len();
         let mut adjacency = Adjacency {
+            twins: joined.adjacency.twins,
             edges: ((half_edges + boundary) / 2) as u32,
             boundary: boundary as u32,
-            ..joined.adjacency
+            ..Adjacency::default()
         };
-        if adjacency.count_again(triangles, &unproven) {
+        if adjacency.match_again(triangles, &unproven) {
             return Some(Self::of(mesh, adjacency, &threads));
         }
         Some(Self { adjacency, ..joined })
@@ -78,18 +79,18 @@ impl Joined {
 }
 
 impl Adjacency {
-    /// Counts the edges of these half-edges, which are all half-edges of their edges, and corrects their twins. Returns
-    /// whether a twin was wrong.
-    fn count_again(&mut self, triangles: &[u32], half_edges: &[u32]) -> bool {
-        let mut was_wrong = false;
+    /// Counts the edges of these half-edges, as if their edges had no others, and writes their twins. Returns whether a
+    /// twin has changed.
+    fn match_again(&mut self, triangles: &[u32], half_edges: &[u32]) -> bool {
+        let mut has_changed = false;
         by_edge(triangles, half_edges, &mut |edge| {
             let kind = self.count(edge, triangles);
             for &h in edge {
                 let twin = twin_of(h, edge, kind);
-                was_wrong |= std::mem::replace(&mut self.twins[h as usize], twin) != twin;
+                has_changed |= std::mem::replace(&mut self.twins[h as usize], twin) != twin;
             }
         });
-        was_wrong
+        has_changed
     }
 }
 
@@ -147,16 +148,6 @@ fn slot(from: u32, to: u32) -> usize {
     let place = from.wrapping_sub(to).wrapping_mul(0x9e37_79b1);
     // For a half-edge to the higher end, the distance has the other sign.
     (if from > to { to.wrapping_add(place) } else { from.wrapping_sub(place) }) as usize
-}
-
-/// Pairs the two half-edges of each edge that has two of opposite directions among these.
-fn pair_rest(triangles: &[u32], half_edges: &[u32], twins: &mut [u32]) {
-    by_edge(triangles, half_edges, &mut |edge| {
-        let kind = edge_kind(edge, triangles);
-        for &h in edge {
-            twins[h as usize] = twin_of(h, edge, kind);
-        }
-    });
 }
 
 /// Calls `visit` for each edge with those of these half-edges that belong to it.

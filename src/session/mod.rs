@@ -9,6 +9,8 @@ mod fallback;
 pub(crate) mod locks;
 mod memory_bounds;
 mod moving;
+#[cfg(not(target_arch = "wasm32"))]
+pub(crate) mod one_call;
 #[cfg_attr(not(feature = "gpu"), path = "no_gpu.rs")]
 mod open_gpu;
 pub(crate) mod options;
@@ -190,19 +192,6 @@ impl Session {
         let triangles = self.triangles().await?;
         let outcome = self.summary(start, &|| Cow::Borrowed(&triangles)).await?;
         Ok(Outcome { triangles, ..outcome })
-    }
-
-    /// As [`Session::outcome`], at the end of a session. The CPU engine need not copy its triangles then.
-    async fn into_outcome(mut self) -> Result<Outcome, Error> {
-        let counts = self.engine.edge_counts();
-        if self.engine.backend() != EngineKind::Cpu || counts.non_manifold + counts.inconsistent > 0 {
-            return self.outcome().await;
-        }
-        let outcome = self.summary(Instant::now(), &|| Cow::default()).await?;
-        let start = Instant::now();
-        let triangles = self.ask(|engine| engine.take_triangles()).await?;
-        let timings = Timings { total: outcome.timings.total + ms_since(start), ..outcome.timings };
-        Ok(Outcome { triangles, timings, ..outcome })
     }
 
     /// As [`Session::outcome`], with the triangles in a JavaScript array. If they stay on the device, the array is
@@ -442,21 +431,4 @@ impl Session {
 
 fn ms_since(start: Instant) -> f64 {
     start.elapsed().as_secs_f64() * 1e3
-}
-
-/// Makes `mesh` Delaunay by flipping edges. [`Session::new`] describes `mesh`, and [`Session::run`] describes `watch`.
-///
-/// # Errors
-/// Those of [`Session::new`] and [`Session::run`].
-#[cfg(not(target_arch = "wasm32"))]
-pub fn make_delaunay(
-    mesh: impl Into<Arc<Mesh>>,
-    options: &Options,
-    watch: impl FnMut(u32, u64) -> ControlFlow<()>,
-) -> Result<Outcome, Error> {
-    pollster::block_on(async {
-        let mut session = Session::new(mesh, options.clone()).await?;
-        session.run(watch).await?;
-        session.into_outcome().await
-    })
 }

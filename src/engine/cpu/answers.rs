@@ -35,6 +35,7 @@ impl Engine for Cpu {
         Box::pin(std::future::ready(Ok(triangles)))
     }
 
+    #[cfg(not(target_arch = "wasm32"))]
     fn take_triangles(&mut self) -> Answer<'_, Vec<u32>> {
         if !self.arrangement.is_empty() {
             return Engine::triangles(self);
