@@ -92,9 +92,7 @@ impl Arrangement {
     /// The half-edges of an edge, first the one with the lower name.
     #[inline(always)]
     pub(crate) fn ordered(&self, [h, g]: [u32; 2]) -> [u32; 2] {
-        // A branch would be unpredictable.
-        let is_first = self.name(h) < self.name(g);
-        [if is_first { h } else { g }, if is_first { g } else { h }]
+        if self.name(h) < self.name(g) { [h, g] } else { [g, h] }
     }
 
     /// The half-edges with these names.

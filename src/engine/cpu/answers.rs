@@ -43,16 +43,6 @@ impl Engine for Cpu {
         Box::pin(std::future::ready(Ok(std::mem::take(&mut self.triangles))))
     }
 
-    #[cfg(all(target_arch = "wasm32", feature = "js"))]
-    fn triangles_array(&mut self) -> Answer<'_, js_sys::Uint32Array> {
-        let triangles = if self.arrangement.is_empty() {
-            self.triangles.as_slice().into()
-        } else {
-            self.arrangement.named_triangles(&self.triangles, &self.threads).as_slice().into()
-        };
-        Box::pin(std::future::ready(Ok(triangles)))
-    }
-
     fn twins(&mut self) -> Answer<'_, Vec<u32>> {
         Box::pin(std::future::ready(Ok(self.arrangement.named_twins(&self.twins, &self.threads))))
     }

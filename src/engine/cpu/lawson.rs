@@ -89,11 +89,6 @@ impl Engine for Lawson {
         self.cpu.take_triangles()
     }
 
-    #[cfg(all(target_arch = "wasm32", feature = "js"))]
-    fn triangles_array(&mut self) -> Answer<'_, js_sys::Uint32Array> {
-        self.cpu.triangles_array()
-    }
-
     fn twins(&mut self) -> Answer<'_, Vec<u32>> {
         Engine::twins(&mut self.cpu)
     }
