@@ -52,10 +52,12 @@ pub use prepare::wedges::Wedges;
 pub use prepare::weld::{Welded, welded};
 pub use session::Session;
 pub use session::edge_states::EdgeState;
+#[cfg(not(target_arch = "wasm32"))]
+pub use session::one_call::make_delaunay;
 pub use session::options::{Backend, MOST_THREADS, Options, Order};
 pub use session::outcome::{Counters, Iteration, Outcome, Status, Timings};
 #[cfg(not(target_arch = "wasm32"))]
-pub use session::{EarlyGpu, close_gpu, make_delaunay};
+pub use session::{EarlyGpu, close_gpu};
 #[cfg(all(target_arch = "wasm32", feature = "js-session"))]
 pub use wasm::session as js;
 /// The version of wgpu that [`GpuDevice`] and [`GpuBuffers`] are of.

@@ -116,7 +116,13 @@ pub(crate) trait Engine {
     /// The present triangles.
     fn triangles(&mut self) -> Answer<'_, Vec<u32>>;
 
-    /// The same in a JavaScript array.
+    /// The present triangles of an engine that is not used any more.
+    #[cfg(not(target_arch = "wasm32"))]
+    fn take_triangles(&mut self) -> Answer<'_, Vec<u32>> {
+        self.triangles()
+    }
+
+    /// The present triangles in a JavaScript array.
     #[cfg(all(target_arch = "wasm32", feature = "js"))]
     fn triangles_array(&mut self) -> Answer<'_, js_sys::Uint32Array> {
         self::array(self.triangles())

@@ -45,6 +45,11 @@ pub(crate) fn edge_kind(half_edges: &[u32], triangles: &[u32]) -> EdgeKind {
     }
 }
 
+/// The twin of a half-edge of an edge of this kind.
+pub(super) fn twin_of(h: u32, edge: &[u32], kind: EdgeKind) -> u32 {
+    if kind == EdgeKind::Interior { edge[0] ^ edge[edge.len() - 1] ^ h } else { NONE }
+}
+
 impl Adjacency {
     /// Matches the half-edges of a mesh.
     pub fn new(mesh: &Mesh) -> Self {
@@ -93,21 +98,25 @@ impl Adjacency {
                 }
             }
             visit_edges(&mut bucket, &mut scratch, |edge| {
-                self.edges += 1;
-                let kind = edge_kind(edge, triangles);
-                match kind {
-                    EdgeKind::Interior => {}
-                    EdgeKind::Boundary => self.boundary += 1,
-                    EdgeKind::NonManifold => self.non_manifold += 1,
-                    EdgeKind::Inconsistent => self.inconsistent += 1,
-                }
+                let kind = self.count(edge, triangles);
                 for &h in edge {
-                    let other = edge[0] ^ edge[edge.len() - 1] ^ h;
-                    let twin = if kind == EdgeKind::Interior { other } else { NONE };
-                    twins[h as usize].set(twin);
+                    twins[h as usize].set(twin_of(h, edge, kind));
                 }
             });
         }
+    }
+
+    /// Counts an edge, from all its half-edges. Returns its kind.
+    pub(super) fn count(&mut self, half_edges: &[u32], triangles: &[u32]) -> EdgeKind {
+        self.edges += 1;
+        let kind = edge_kind(half_edges, triangles);
+        match kind {
+            EdgeKind::Interior => {}
+            EdgeKind::Boundary => self.boundary += 1,
+            EdgeKind::NonManifold => self.non_manifold += 1,
+            EdgeKind::Inconsistent => self.inconsistent += 1,
+        }
+        kind
     }
 }
 

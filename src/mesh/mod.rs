@@ -11,6 +11,7 @@ pub(crate) mod extremes;
 pub(crate) mod half_edge;
 pub(crate) mod named_edges;
 pub(crate) mod positions;
+pub(crate) mod recent;
 pub(crate) mod star;
 pub(crate) mod winding;
 

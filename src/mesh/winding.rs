@@ -11,6 +11,8 @@ use std::cmp::Ordering;
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Winding {
     pub(crate) clockwise: Vec<u32>,
+    /// Whether all bits are known to be 1.
+    is_all_clockwise: bool,
     /// Whether every triangle is known to have the strict sign of its component: positive, or negative where the bit is
     /// 1.
     pub(crate) is_strict: bool,
@@ -41,7 +43,11 @@ impl Signs {
         let [negative, zero, positive] = [1, 2, 4].map(|bit| self.bits & bit != 0);
         // If all triangles are flat, no edge flips, whatever the winding.
         let words = if negative { triangles.div_ceil(32) } else { 0 };
-        (!(negative & positive)).then(|| Winding { clockwise: vec![u32::MAX; words], is_strict: !zero })
+        (!(negative & positive)).then(|| Winding {
+            clockwise: vec![u32::MAX; words],
+            is_all_clockwise: negative,
+            is_strict: !zero,
+        })
     }
 }
 
@@ -100,7 +106,7 @@ impl Outline {
         for (t, &component) in self.component.iter().enumerate() {
             clockwise[t / 32] |= u32::from(negative[component as usize]) << (t % 32);
         }
-        Winding { clockwise, is_strict: false }
+        Winding { clockwise, is_all_clockwise: false, is_strict: false }
     }
 }
 
@@ -127,6 +133,9 @@ impl Winding {
     pub(crate) fn bits(&self, triangles: [u32; 4]) -> u32 {
         if self.clockwise.is_empty() {
             return 0;
+        }
+        if self.is_all_clockwise {
+            return 0xf;
         }
         (0..).zip(triangles).fold(0, |bits, (lane, t)| bits | u32::from(self.is_clockwise(t)) << lane)
     }

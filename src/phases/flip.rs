@@ -26,13 +26,16 @@ impl Selected {
     }
 
     /// Lets an edge bid for its two triangles, which must have no selected edge. The smallest key wins, whatever the
-    /// order of bids. No two edges have the same key.
+    /// order of bids. No two edges have the same key. `is_alone`: whether no other thread bids.
     #[inline(always)]
-    pub(crate) fn bid(&self, edge: [u32; 2], key: u32) {
+    pub(crate) fn bid(&self, edge: [u32; 2], key: u32, is_alone: bool) {
         for x in edge {
             let word = self.word(x);
-            // A bid that loses costs only this load.
-            if key < word.get() {
+            if is_alone {
+                // A branch would be unpredictable.
+                word.set(key.min(word.get()));
+            } else if key < word.get() {
+                // A bid that loses costs only this load.
                 word.fetch_min(key, Relaxed);
             }
         }

@@ -62,13 +62,28 @@ pub(crate) fn in_circle_filter(quads: &[[&[f32; 2]; 4]; 4]) -> [u32; 2] {
 }
 
 /// The x coordinates of four points, and the y coordinates.
-#[cfg(not(target_feature = "simd128"))]
+#[cfg(not(any(target_feature = "simd128", target_arch = "x86_64")))]
 #[inline(always)]
 fn by_coordinate(points: [&[f32; 2]; 4]) -> [Vec4; 2] {
     array::from_fn(|i| Vec4::from_array(array::from_fn(|lane| points[lane][i])))
 }
 
 /// The same, with one load per point.
+#[cfg(target_arch = "x86_64")]
+#[expect(unsafe_code, reason = "for safe code, the compiler emits a load and an insertion per coordinate")]
+#[inline(always)]
+fn by_coordinate(points: [&[f32; 2]; 4]) -> [Vec4; 2] {
+    use std::arch::x86_64::{_mm_castsi128_ps, _mm_set_epi64x, _mm_shuffle_ps};
+    let bits = |p: &[f32; 2]| -> i64 { zerocopy::transmute!(*p) };
+    // SAFETY: every x86-64 has SSE2.
+    unsafe {
+        let two = |p, q| _mm_castsi128_ps(_mm_set_epi64x(bits(q), bits(p)));
+        let (first, second) = (two(points[0], points[1]), two(points[2], points[3]));
+        [_mm_shuffle_ps::<0x88>(first, second).into(), _mm_shuffle_ps::<0xdd>(first, second).into()]
+    }
+}
+
+/// The same.
 #[cfg(target_feature = "simd128")]
 #[expect(unsafe_code, reason = "for safe code, the compiler emits a load and an insertion per coordinate")]
 #[inline(always)]

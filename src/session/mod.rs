@@ -9,6 +9,8 @@ mod fallback;
 pub(crate) mod locks;
 mod memory_bounds;
 mod moving;
+#[cfg(not(target_arch = "wasm32"))]
+pub(crate) mod one_call;
 #[cfg_attr(not(feature = "gpu"), path = "no_gpu.rs")]
 mod open_gpu;
 pub(crate) mod options;
@@ -425,21 +427,4 @@ impl Session {
 
 fn ms_since(start: Instant) -> f64 {
     start.elapsed().as_secs_f64() * 1e3
-}
-
-/// Makes `mesh` Delaunay by flipping edges. [`Session::new`] describes `mesh`, and [`Session::run`] describes `watch`.
-///
-/// # Errors
-/// Those of [`Session::new`] and [`Session::run`].
-#[cfg(not(target_arch = "wasm32"))]
-pub fn make_delaunay(
-    mesh: impl Into<Arc<Mesh>>,
-    options: &Options,
-    watch: impl FnMut(u32, u64) -> ControlFlow<()>,
-) -> Result<Outcome, Error> {
-    pollster::block_on(async {
-        let mut session = Session::new(mesh, options.clone()).await?;
-        session.run(watch).await?;
-        session.outcome().await
-    })
 }

@@ -35,6 +35,14 @@ impl Engine for Cpu {
         Box::pin(std::future::ready(Ok(triangles)))
     }
 
+    #[cfg(not(target_arch = "wasm32"))]
+    fn take_triangles(&mut self) -> Answer<'_, Vec<u32>> {
+        if !self.arrangement.is_empty() {
+            return Engine::triangles(self);
+        }
+        Box::pin(std::future::ready(Ok(std::mem::take(&mut self.triangles))))
+    }
+
     fn twins(&mut self) -> Answer<'_, Vec<u32>> {
         Box::pin(std::future::ready(Ok(self.arrangement.named_twins(&self.twins, &self.threads))))
     }

@@ -7,6 +7,7 @@ use crate::engine::{Census, EdgeCounts};
 use crate::mesh::arrangement::Arrangement;
 use crate::mesh::embedded::Embedded;
 use crate::mesh::half_edge::{self, CREASE, FLAGS, LOCKED, prev, unflagged};
+use crate::mesh::recent::Joined;
 use crate::mesh::star::Fans;
 use crate::mesh::winding::{Outline, Winding};
 use crate::phases::{
@@ -14,11 +15,10 @@ use crate::phases::{
     keep_non_delaunay, key, makes_duplicate, move_anchors, verdict, verdict_of_shape, yields,
 };
 use crate::system::threads::{Threads, Word, shared};
-use crate::{Adjacency, Dimension, Mesh, NONE};
+use crate::{Dimension, Mesh, NONE};
 use std::hint::black_box;
 use std::ops::Range;
 use std::sync::Arc;
-use std::sync::atomic::AtomicU32;
 
 /// Edges that one pass tests.
 const EDGES: usize = 256;
@@ -82,7 +82,7 @@ pub(crate) struct Cpu {
     selected: Selected,
     /// For each vertex whose star is not known to be embedded: one plus the index of the last iteration that added or
     /// removed an edge at this vertex. `label` makes it when it tests all edges.
-    changed: Vec<AtomicU32>,
+    changed: Vec<u32>,
     pub(super) iteration: u32,
     /// What the updates have made of the mesh.
     pub(super) moving: Motion,
@@ -127,10 +127,7 @@ impl Cpu {
     }
 
     fn prepared(arrangement: Arrangement, mesh: Arc<Mesh>, thresholds: Thresholds, threads: Threads) -> Self {
-        let adjacency = Adjacency::of_triangles(mesh.vertex_count(), mesh.triangles(), &threads);
-        let mut outline = None;
-        let (winding, embedded) =
-            Embedded::with_winding(&mesh, &adjacency.twins, None, &mut outline, &threads);
+        let Joined { adjacency, winding, embedded, outline } = Joined::new(&mesh, &threads);
         let counts = EdgeCounts::from(&adjacency);
         let triangles = threads.copied(mesh.triangles());
         let fans = embedded.fans(&mesh, &adjacency.twins, &threads);
@@ -179,7 +176,7 @@ impl Cpu {
         } else {
             self.blocked.clear();
             self.selected = Selected::new(self.twins.len() / 3, &self.threads);
-            self.changed = self.threads.collect(self.mesh.vertex_count(), |_| AtomicU32::default());
+            self.changed = self.threads.zeros(self.mesh.vertex_count());
             parts = self.threads.map(self.twins.len() / 3, |piece| self.test_all(piece));
         }
         self.is_known = true;
@@ -278,7 +275,7 @@ impl Cpu {
 
     /// Whether the last iteration added or removed an edge at `v`. Tracked only for stars not known to be embedded.
     fn has_changed(&self, v: u32) -> bool {
-        self.iteration > 0 && self.changed[v as usize].get() == self.iteration
+        self.iteration > 0 && self.changed[v as usize] == self.iteration
     }
 
     /// Select: an edge flips if it has the smallest key in both its triangles and does not yield.
@@ -286,10 +283,11 @@ impl Cpu {
         let mut parts = std::mem::take(&mut self.parts);
         let Self { threads, selected, arrangement, iteration, .. } = &*self;
         let key = |h: u32| key(arrangement.name(h), *iteration);
+        let is_alone = threads.is_one();
         threads.each(&mut parts, |part| {
             for &[h, twin] in &part.candidates {
                 if twin & DUPLICATE == 0 {
-                    selected.bid([h, unflagged(twin)], key(h));
+                    selected.bid([h, unflagged(twin)], key(h), is_alone);
                 }
             }
         });
@@ -350,7 +348,7 @@ impl Cpu {
         for part in &*parts {
             move_anchors(fans, triangles, selected, &part.flipped);
         }
-        let (triangles, twins) = (shared(triangles), shared(twins));
+        let (triangles, twins, changed) = (shared(triangles), shared(twins), shared(changed));
         threads.each(parts, |Part { flipped, around, .. }| {
             around.clear();
             around.reserve_exact(flipped.len());

@@ -84,6 +84,11 @@ impl Engine for Lawson {
         Engine::triangles(&mut self.cpu)
     }
 
+    #[cfg(not(target_arch = "wasm32"))]
+    fn take_triangles(&mut self) -> Answer<'_, Vec<u32>> {
+        self.cpu.take_triangles()
+    }
+
     fn twins(&mut self) -> Answer<'_, Vec<u32>> {
         Engine::twins(&mut self.cpu)
     }
