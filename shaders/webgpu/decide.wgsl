@@ -99,7 +99,8 @@ fn decide(i: u32, count: u32, work: Work, iteration: u32) {
         let a = position(vertex(h));
         let b = position(vertex(next(h)));
         let c = position(vertex(prev(h)));
-        let d = position(vertex(prev(g)));
+        // In the preparation, this edge may have no twin.
+        let d = position(vertex(select(prev(g), h, g == NONE)));
         let verdict = exact_verdict_on(a, b, c, d, winding);
         if waits && h / 3u == t {
             verdicts = with_verdict(verdicts, h % 3u, verdict);

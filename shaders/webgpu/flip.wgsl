@@ -12,31 +12,24 @@ fn flip_edge(h: u32, g: u32, outer_h: vec2u, outer_g: vec2u) {
     let gp = prev(g);
     let c = triangles[hp];
     let d = triangles[gp];
-    let slots = vec4u(slot(outer_g.x), slot(outer_h.y), slot(outer_h.x), slot(outer_g.y));
-    let are_still = vec4<bool>(is_still(outer_g.x), is_still(outer_h.y), is_still(outer_h.x), is_still(outer_g.y));
+    let flips = array(flip_at(outer_g.x), flip_at(outer_h.y), flip_at(outer_h.x), flip_at(outer_g.y));
     triangles[hn] = d;
     triangles[gn] = c;
     set_twin_entry(hn, gn);
     set_twin_entry(gn, hn);
-    set_twin_entry(h, slots.x);
-    set_twin_entry(hp, slots.y);
-    set_twin_entry(g, slots.z);
-    set_twin_entry(gp, slots.w);
-    turn_to(outer_g.x, h, are_still.x);
-    turn_to(outer_h.y, hp, are_still.y);
-    turn_to(outer_h.x, g, are_still.z);
-    turn_to(outer_g.y, gp, are_still.w);
+    set_twin_entry(h, slot_after(outer_g.x, flips[0]));
+    set_twin_entry(hp, slot_after(outer_h.y, flips[1]));
+    set_twin_entry(g, slot_after(outer_h.x, flips[2]));
+    set_twin_entry(gp, slot_after(outer_g.y, flips[3]));
+    turn_to(outer_g.x, h, flips[0]);
+    turn_to(outer_h.y, hp, flips[1]);
+    turn_to(outer_h.x, g, flips[2]);
+    turn_to(outer_g.y, gp, flips[3]);
 }
 
-// Whether an entry has a half-edge whose triangle does not flip.
-fn is_still(entry: u32) -> bool {
-    let x = unflagged(entry);
-    return x != NONE && flip_of(x / 3u).x == NONE;
-}
-
-// Writes the new twin of the half-edge on the other side.
-fn turn_to(outer: u32, inner: u32, is_still: bool) {
-    if is_still {
+// Writes the new twin of the half-edge on the other side, unless its triangle flips.
+fn turn_to(outer: u32, inner: u32, flip: vec2u) {
+    if outer != NONE && flip.x == NONE {
         set_twin_entry(unflagged(outer), inner | (outer & FLAGS));
     }
 }

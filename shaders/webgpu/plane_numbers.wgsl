@@ -3,7 +3,6 @@
 #import mesh
 #import numbers
 #import points
-#import products
 #import state
 #import verdicts
 
@@ -14,34 +13,29 @@ const VALUE: u32 = 272u;
 const FIRST: u32 = 308u;
 const SECOND: u32 = 344u;
 
-// The verdict on any edge. All invocations of a workgroup call it for the same one.
+// The verdict on any edge. In the preparation, 1 plus the sign of the triangle a, b, c. All invocations of a workgroup call
+// it for the same edge.
 fn exact_verdict_on(a: Point, b: Point, c: Point, d: Point, winding: i32) -> u32 {
-    put_given(digit_of_differences(a, b, c, d));
+    var far = d;
+    if step_.task == PREPARE {
+        far = b;
+    }
+    put_given(digit_of_differences(a, b, c, far));
     run(IN_CIRCLE);
-    var verdict = DELAUNAY;
-    if winding * sign_at(VALUE) < 0 {
-        let least = min(winding * sign_at(FIRST), winding * sign_at(SECOND));
-        verdict = select(LABELLED, BLOCKED_BY + REASON_FOLD, least <= 0);
+    let first = sign_at(FIRST);
+    var verdict = u32(1 + first);
+    if step_.task != PREPARE {
+        let is_fold = min(winding * first, winding * sign_at(SECOND)) <= 0;
+        verdict = select(DELAUNAY, select(LABELLED, BLOCKED_BY + REASON_FOLD, is_fold), winding * sign_at(VALUE) < 0);
     }
     return verdict;
 }
 
-// The sign of the area of a triangle.
-fn exact_sign_of(a: Point, b: Point, c: Point) -> i32 {
-    let grid = grid_of(a, b, c, c);
-    let u = exact_differences(b, a, grid);
-    let v = exact_differences(c, a, grid);
-    return sign_of_difference(u[0], v[1], u[1], v[0]);
-}
-
-// The verdict on each edge, UNDECIDED if the invocations have to decide it together. In the preparation, 1 plus the sign
-// of the triangle.
+// The verdict on each edge, UNDECIDED if the invocations have to decide it together; in the preparation, UNDECIDED for the
+// sign of the triangle.
 fn verdicts_alone(t: u32) -> vec3u {
-    var verdicts = vec3u();
-    if step_.task == PREPARE {
-        let sign = exact_sign_of(position(vertex(3u * t)), position(vertex(3u * t + 1u)), position(vertex(3u * t + 2u)));
-        verdicts.x = u32(1 + sign);
-    } else {
+    var verdicts = vec3u(UNDECIDED, 0u, 0u);
+    if step_.task != PREPARE {
         verdicts = close_verdicts_on(t, step_.task == CENSUS);
     }
     return verdicts;
