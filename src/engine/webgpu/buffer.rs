@@ -1,9 +1,6 @@
 //! Buffers on a device, and staging buffers that are kept for the next copies.
 
-#[cfg(not(target_arch = "wasm32"))]
-use super::pool::Pool;
-#[cfg(not(target_arch = "wasm32"))]
-use std::sync::Arc;
+use super::pool::Shared;
 use std::sync::Mutex;
 
 /// The most bytes of staging buffers that are kept.
@@ -14,33 +11,26 @@ const MOST_KEPT: u64 = 1 << 27;
 pub(super) struct Buffer {
     raw: wgpu::Buffer,
     /// Where it is kept.
-    #[cfg(not(target_arch = "wasm32"))]
-    pool: Mutex<Option<Arc<Pool>>>,
+    pool: Mutex<Option<Shared>>,
 }
 
 impl Buffer {
     /// A buffer that is destroyed on drop.
     pub(super) fn new(raw: wgpu::Buffer) -> Self {
-        Self {
-            raw,
-            #[cfg(not(target_arch = "wasm32"))]
-            pool: Mutex::default(),
-        }
+        Self { raw, pool: Mutex::default() }
     }
 
     /// Keeps it on drop.
-    #[cfg(not(target_arch = "wasm32"))]
-    pub(super) fn pooled(raw: wgpu::Buffer, pool: Arc<Pool>) -> Self {
+    pub(super) fn pooled(raw: wgpu::Buffer, pool: Shared) -> Self {
         Self { raw, pool: Mutex::new(Some(pool)) }
     }
 
-    #[cfg(not(target_arch = "wasm32"))]
-    fn take_pool(&self) -> Option<Arc<Pool>> {
+    fn take_pool(&self) -> Option<Shared> {
         self.pool.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).take()
     }
 
     /// The buffer, for code that may use it at any time: it is not kept on drop.
-    #[cfg(not(target_arch = "wasm32"))]
+    #[cfg(any(not(target_arch = "wasm32"), feature = "js"))]
     pub(super) fn given(&self) -> wgpu::Buffer {
         self.take_pool();
         self.raw.clone()
@@ -56,7 +46,6 @@ impl std::ops::Deref for Buffer {
 
 impl Drop for Buffer {
     fn drop(&mut self) {
-        #[cfg(not(target_arch = "wasm32"))]
         if let Some(pool) = self.take_pool() {
             return pool.put(self.raw.clone());
         }

@@ -10,8 +10,7 @@ use super::history::Batches;
 use super::kernels::{Kernels, Plan, WORKGROUP_SIZE};
 #[cfg(not(target_arch = "wasm32"))]
 use super::own_device;
-#[cfg(not(target_arch = "wasm32"))]
-use super::pool::Pool;
+use super::pool;
 use super::programs;
 use crate::Error;
 use crate::engine::gpu::self_test::Tested;
@@ -58,8 +57,7 @@ pub(crate) struct Device {
     /// Staging buffers for the next reads.
     pub(super) kept_for_reads: Kept,
     /// The buffers of sessions that have ended.
-    #[cfg(not(target_arch = "wasm32"))]
-    pool: Arc<Pool>,
+    pool: pool::Shared,
     /// Staging buffers for the next writes, mapped.
     #[cfg(target_arch = "wasm32")]
     pub(super) kept_for_writes: Rc<Kept>,
@@ -279,8 +277,7 @@ impl Device {
             adjacency,
             phases: Mutex::new(phases),
             kept_for_reads: Kept::default(),
-            #[cfg(not(target_arch = "wasm32"))]
-            pool: Arc::default(),
+            pool: pool::Shared::default(),
             #[cfg(target_arch = "wasm32")]
             kept_for_writes: Rc::default(),
             #[cfg(test)]
@@ -373,7 +370,6 @@ impl Device {
     pub(super) fn judge_allocation(&self, fault: Option<Fault>) -> Result<(), Error> {
         match fault {
             Some(Fault::OutOfMemory) => {
-                #[cfg(not(target_arch = "wasm32"))]
                 self.pool.close();
                 refuse(format!("{} has no memory left for the mesh", self.adapter))
             }
@@ -391,14 +387,9 @@ impl Device {
     /// binding cannot be.
     pub(super) fn buffer(&self, label: &str, words: usize, usage: BufferUsages) -> Buffer {
         let descriptor = descriptor(label, words, usage);
-        #[cfg(not(target_arch = "wasm32"))]
-        {
-            let kept = self.pool.take(descriptor.size, descriptor.usage);
-            let raw = kept.unwrap_or_else(|| self.device.create_buffer(&descriptor));
-            Buffer::pooled(raw, self.pool.clone())
-        }
-        #[cfg(target_arch = "wasm32")]
-        Buffer::new(self.device.create_buffer(&descriptor))
+        let kept = self.pool.take(descriptor.size, descriptor.usage);
+        let raw = kept.unwrap_or_else(|| self.device.create_buffer(&descriptor));
+        Buffer::pooled(raw, self.pool.clone())
     }
 
     /// Binds buffers in the order of the layout. A size binds only so many bytes; `None` binds the whole buffer.

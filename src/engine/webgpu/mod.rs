@@ -33,7 +33,6 @@ mod moving;
 #[cfg(not(target_arch = "wasm32"))]
 mod own_device;
 mod params;
-#[cfg(not(target_arch = "wasm32"))]
 mod pool;
 mod probe;
 mod programs;
@@ -223,13 +222,14 @@ impl Engine for WebGpu {
 
     #[cfg(all(target_arch = "wasm32", feature = "js"))]
     fn shared_objects(&self) -> Option<SharedObjects> {
+        let object = |buffer: &Buffer| Some(buffer.given().as_webgpu()?.into());
         Some(SharedObjects {
             device: self.gpu.device.as_webgpu()?.into(),
-            positions: self.buffers.floats.as_ref().unwrap_or(&self.buffers.positions).as_webgpu()?.into(),
-            triangles: self.buffers.triangles.as_webgpu()?.into(),
+            positions: object(self.buffers.floats.as_ref().unwrap_or(&self.buffers.positions))?,
+            triangles: object(&self.buffers.triangles)?,
             changes: self
                 .changes_offset()
-                .and_then(|offset| Some((self.buffers.topology.as_webgpu()?.into(), offset as u32))),
+                .and_then(|offset| Some((object(&self.buffers.topology)?, offset as u32))),
         })
     }
 }
