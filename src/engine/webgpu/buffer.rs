@@ -62,6 +62,12 @@ impl Kept {
         f(&mut self.0.lock().unwrap_or_else(|poisoned| poisoned.into_inner()))
     }
 
+    /// How many are kept.
+    #[cfg(target_arch = "wasm32")]
+    pub(super) fn count(&self) -> usize {
+        self.with(|kept| kept.len())
+    }
+
     /// Takes the smallest buffer of at least `bytes` bytes. If there is none, drops one: it is too small.
     pub(super) fn take(&self, bytes: u64) -> Option<Buffer> {
         self.with(|kept| {

@@ -2,6 +2,7 @@
 
 use super::buffer::Buffer;
 use super::device::Device;
+use super::faults::{Caught, watch};
 use super::history::HISTORY_WORDS;
 use super::params::{DEVICE_WORDS, Params, TopologyOffsets};
 use super::steps::Step;
@@ -30,7 +31,7 @@ pub(super) struct Buffers {
 }
 
 impl Buffers {
-    /// Makes the buffers, and writes the mesh and the steps.
+    /// Makes the buffers, and writes the steps.
     pub(super) fn new(gpu: &Device, upload: &Upload) -> Self {
         let mesh = &upload.mesh;
         let count = mesh.triangle_count();
@@ -55,7 +56,6 @@ impl Buffers {
         };
         gpu.write(&buffers.steps, &step_words);
         gpu.write(&buffers.uniform, &[0; DEVICE_WORDS]);
-        buffers.write(gpu, upload, mesh.triangles());
         buffers
     }
 
@@ -84,9 +84,21 @@ impl Buffers {
         all.into_iter().chain(floats).map(|buffer| buffer.size()).sum()
     }
 
-    /// Writes the positions and the triangles. An empty slice leaves the triangles as they are.
-    pub(super) fn write(&self, gpu: &Device, upload: &Upload, triangles: &[u32]) {
-        gpu.write_all(&[(&self.triangles, triangles), (&self.positions, upload.words())]);
+    /// Writes the mesh. Returns the faults.
+    pub(super) async fn upload(&self, gpu: &Device, upload: &Upload) -> Vec<Caught> {
+        let (triangles, positions) = (upload.mesh.triangles(), upload.words());
+        let mut faults = gpu.upload(&[(&self.triangles, triangles), (&self.positions, positions)]).await;
+        faults.push(watch(&gpu.device, || self.write_floats(gpu, upload)).1);
+        faults
+    }
+
+    /// Writes other positions.
+    pub(super) fn write_positions(&self, gpu: &Device, upload: &Upload) {
+        gpu.write(&self.positions, upload.words());
+        self.write_floats(gpu, upload);
+    }
+
+    fn write_floats(&self, gpu: &Device, upload: &Upload) {
         if let Some(floats) = &self.floats {
             gpu.write(floats, bytemuck::cast_slice(&upload.mesh.positions().to_f32()));
         }

@@ -15,11 +15,12 @@ use std::sync::atomic::Ordering::Relaxed;
 use wgpu::BufferUsages;
 
 /// The most words of one copy to the device, or from it. Longer arrays go in several copies through the same staging
-/// memory, which is far faster than new memory.
-pub(super) const CHUNK: usize = 1 << 22;
+/// memory, which is far faster than new memory. In a browser each copy goes through two processes, and the second begins
+/// when the first has finished: shorter copies overlap more.
+pub(super) const CHUNK: usize = if cfg!(target_arch = "wasm32") { 1 << 20 } else { 1 << 22 };
 
-/// Copies that the device makes while the host takes one. A browser needs several: each goes through two processes.
-const AHEAD: usize = if cfg!(target_arch = "wasm32") { 3 } else { 1 };
+/// Copies that the device makes while the host takes one.
+const AHEAD: usize = if cfg!(target_arch = "wasm32") { 4 } else { 1 };
 
 /// Words that one thread copies without a break.
 #[cfg(not(target_arch = "wasm32"))]
@@ -264,6 +265,13 @@ impl Device {
     #[cfg(not(target_arch = "wasm32"))]
     pub(super) fn write_all(&self, writes: &[(&Buffer, &[u32])]) {
         writes.iter().for_each(|(buffer, words)| self.write_at(buffer, 0, words));
+    }
+
+    /// The same for the arrays of a new mesh. Returns the faults.
+    #[cfg(not(target_arch = "wasm32"))]
+    pub(super) async fn upload(&self, writes: &[(&Buffer, &[u32])]) -> Vec<Caught> {
+        let ((), caught) = watch(&self.device, || self.write_all(writes));
+        vec![caught]
     }
 
     /// Writes words to `buffer` from word `first` on, before the next submission.

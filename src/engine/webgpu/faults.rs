@@ -37,6 +37,18 @@ pub(super) fn refuse<T>(message: String) -> Result<T, Error> {
 /// A future for the most telling fault that the error scopes of some calls caught.
 pub(super) type Caught = Pin<Box<dyn Future<Output = Option<Fault>>>>;
 
+/// The first fault of several groups of calls.
+pub(super) fn first(groups: Vec<Caught>) -> Caught {
+    Box::pin(async {
+        for caught in groups {
+            if let Some(fault) = caught.await {
+                return Some(fault);
+            }
+        }
+        None
+    })
+}
+
 /// Makes calls to the device within error scopes.
 #[cfg(not(target_arch = "wasm32"))]
 pub(super) fn watch<T>(device: &wgpu::Device, calls: impl FnOnce() -> T) -> (T, Caught) {

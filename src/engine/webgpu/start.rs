@@ -3,7 +3,7 @@
 use super::WebGpu;
 use super::adjacency::{self, COUNTERS, Found, Scratch};
 use super::buffers::Buffers;
-use super::faults::{refuse, watch};
+use super::faults::{first, refuse, watch};
 use super::history::{ENTRIES, Entry, FLIPPED, SEVERAL_FANS};
 use super::kernels::Kernel;
 use super::known::Known;
@@ -43,14 +43,16 @@ impl WebGpu {
     pub(in crate::engine) async fn begun(gpu: Handle, upload: Upload, waits: bool) -> Result<Self, Error> {
         refuse_large_mesh(&gpu, &upload)?;
         let kernels = gpu.phases(upload.form()).await?;
-        let mut start = Instant::now();
+        let create = || (Buffers::new(&gpu, &upload), Scratch::new(&gpu, &upload.mesh));
+        let ((buffers, scratch), created) = watch(&gpu.device, create);
+        let mut faults = vec![created];
+        faults.extend(buffers.upload(&gpu, &upload).await);
+        if waits {
+            gpu.finish_copies();
+        }
+        let start = Instant::now();
         let begin = || {
             let mesh = &upload.mesh;
-            let (buffers, scratch) = (Buffers::new(&gpu, &upload), Scratch::new(&gpu, mesh));
-            if waits {
-                gpu.finish_copies();
-                start = Instant::now();
-            }
             let params = Params::new(&upload, &TopologyOffsets::new(mesh), gpu.ends_loops_early);
             let bytes = buffers.bytes() + scratch.bytes();
             let mut encoder = gpu.device.create_command_encoder(&Default::default());
@@ -83,7 +85,8 @@ impl WebGpu {
             result
         };
         let (mut result, caught) = watch(&gpu.device, begin);
-        result.allocation = Some(caught);
+        faults.push(caught);
+        result.allocation = Some(first(faults));
         if waits {
             result.check_allocation().await?;
         }
@@ -254,7 +257,7 @@ impl WebGpu {
             self.params.deviation = upload.deviation;
             (self.params.winding, self.params.update) = (WINDING_UNKNOWN, 0);
             let calls = || {
-                self.buffers.write(&self.gpu, &upload, &[]);
+                self.buffers.write_positions(&self.gpu, &upload);
                 self.prepare();
             };
             self.gpu.checked(calls).await?;
