@@ -33,7 +33,7 @@ use crate::{
 };
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 pub(crate) use choice::why_cpu;
-use choice::{Choice, cpu_after, engine_for};
+use choice::{Choice, cpu_after, first_engine};
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 pub(crate) use cost::Job;
 #[cfg(not(target_arch = "wasm32"))]
@@ -76,7 +76,7 @@ impl Session {
         options.check()?;
         let (start, mut mesh) = (Instant::now(), mesh.into());
         let constraints = locks::bring_in(&mut mesh, &mut options)?;
-        let Choice { engine, fallback, may_change } = engine_for(&mesh, &options).await?;
+        let Choice { engine, fallback, may_change } = first_engine(&mesh, &mut options).await?;
         let set_up = ms_since(start);
         let adjacency = engine.adjacency_ms().unwrap_or(set_up);
         Ok(Self {

@@ -102,6 +102,9 @@ pub(crate) struct WebGpu {
     waits: bool,
     /// Whether the triangles stay on the device until somebody asks for them.
     stays: bool,
+    /// Memory that another thread makes for the triangles.
+    #[cfg(all(target_arch = "wasm32", feature = "js"))]
+    spare: Option<js_sys::Object>,
     /// Results that the host has read in advance.
     known: Known,
     state: Entry,
@@ -140,6 +143,11 @@ impl Engine for WebGpu {
     #[cfg(all(target_arch = "wasm32", feature = "js"))]
     fn set_stays(&mut self, stays: bool) {
         self.stays = stays;
+    }
+
+    #[cfg(all(target_arch = "wasm32", feature = "js"))]
+    fn set_spare(&mut self, spare: Option<js_sys::Object>) {
+        self.spare = spare;
     }
 
     #[cfg(all(target_arch = "wasm32", feature = "js"))]

@@ -10,7 +10,7 @@ use super::kernels::{Kernel, WORKGROUP_SIZE};
 use super::known::Known;
 use super::programs::{DECIDERS, LANE_COUNT};
 use super::steps::Step;
-use super::words::{Words, reserve};
+use super::words::{Reserved, Words, reserve};
 use crate::Error;
 use crate::engine::{Answer, Census};
 use crate::mesh::areas::Areas;
@@ -85,7 +85,7 @@ impl WebGpu {
         let pending = gpu.submit_and_map(&record, &sources);
         let rest = if has_triangles { first..triangles } else { 0..0 };
         let rest = gpu.begin_read(&self.buffers.triangles, rest);
-        let reserved = if has_triangles { reserve(triangles) } else { None };
+        let reserved = has_triangles.then(|| self.reserve(triangles));
         self.check_allocation().await?;
         let read = pending.finished().await?;
         let history = read.words(0)?;
@@ -98,6 +98,10 @@ impl WebGpu {
         if !self.waits {
             self.known.counts = Some(counts_of(&history));
         }
+        let reserved = match reserved {
+            Some(reserved) => reserved.words(triangles).await,
+            None => None,
+        };
         if let Some(mut triangles) = reserved {
             read.fill(2, &mut triangles, 0)?;
             rest.fill(&mut triangles, first).await?;
@@ -108,6 +112,15 @@ impl WebGpu {
             self.gpu.batches.learn(self.form, &self.params, &history);
         }
         Ok(self.take_over(&history))
+    }
+
+    /// Memory for the triangles. Another thread may have begun to make it.
+    fn reserve(&mut self, words: usize) -> Reserved {
+        #[cfg(all(target_arch = "wasm32", feature = "js"))]
+        if let Some(spare) = self.spare.take() {
+            return Reserved::Promised(spare);
+        }
+        Reserved::Here(reserve(words))
     }
 
     /// The most iterations with a dispatch for each phase in the next submission. A run gets as many as the last one of

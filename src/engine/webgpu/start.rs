@@ -74,6 +74,8 @@ impl WebGpu {
                 allocation: None,
                 waits,
                 stays: false,
+                #[cfg(all(target_arch = "wasm32", feature = "js"))]
+                spare: None,
                 known: Known::default(),
                 state: Entry::default(),
                 dispatches: adjacency::DISPATCHES,

@@ -51,3 +51,27 @@ pub(super) fn reserve(words: usize) -> Option<Words> {
     (0..words as u32).step_by(PAGE).for_each(|word| reserved.set_index(word, 1));
     Some(reserved)
 }
+
+/// Memory for a result, now or later.
+pub(super) enum Reserved {
+    Here(Option<Words>),
+    /// A promise of a `Uint32Array`, or of nothing.
+    #[cfg(all(target_arch = "wasm32", feature = "js"))]
+    Promised(js_sys::Object),
+}
+
+impl Reserved {
+    /// Memory for `_words` words, if available.
+    pub(super) async fn words(self, _words: usize) -> Option<Words> {
+        match self {
+            Self::Here(reserved) => reserved,
+            #[cfg(all(target_arch = "wasm32", feature = "js"))]
+            Self::Promised(promise) => {
+                let promise: js_sys::Promise = promise.unchecked_into();
+                let made = wasm_bindgen_futures::JsFuture::from(promise).await.ok();
+                let made = made.and_then(|made| made.dyn_into::<Words>().ok());
+                made.filter(|made| made.length() as usize == _words).or_else(|| reserve(_words))
+            }
+        }
+    }
+}
