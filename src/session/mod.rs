@@ -16,8 +16,6 @@ pub(crate) mod outcome;
 #[cfg(test)]
 mod tests;
 
-#[cfg(all(target_arch = "wasm32", feature = "js"))]
-use crate::engine::SharedObjects;
 use crate::engine::{Answer, Engine};
 use crate::mesh::areas::Areas;
 use crate::mesh::embedded::Embedded;
@@ -31,19 +29,17 @@ use crate::{
     Backend, Dimension, EdgeState, Edges, EngineKind, Error, Iteration, LeftOut, Mesh, Options, Order,
     Outcome, Positions, Reason, Status, Timings,
 };
-#[cfg(all(target_arch = "wasm32", feature = "js"))]
-pub(crate) use choice::why_cpu;
 use choice::{Choice, cpu_after, first_engine};
-#[cfg(all(target_arch = "wasm32", feature = "js"))]
-pub(crate) use cost::Job;
 #[cfg(not(target_arch = "wasm32"))]
 pub use early::{EarlyGpu, close_gpu};
-#[cfg(all(target_arch = "wasm32", feature = "js"))]
-use js_sys::Uint32Array;
 use std::borrow::Cow;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use web_time::Instant;
+#[cfg(all(target_arch = "wasm32", feature = "js"))]
+use {crate::engine::SharedObjects, js_sys::Uint32Array};
+#[cfg(all(target_arch = "wasm32", feature = "js"))]
+pub(crate) use {choice::why_cpu, cost::Job, open_gpu::send};
 
 /// A mesh on an engine, step by step.
 pub struct Session {

@@ -104,7 +104,7 @@ async function pieces(specs) {
 
 test('arrays of several pieces come back as they were sent', async () => {
   const { page } = await enginePage();
-  // 26 MB of triangles; a piece has 16 MB.
+  // 26 MB of triangles; a piece has 4 MB.
   const specs = full ? ['random 1050', 'random 1040', 'random 1060'] : ['random 1050'];
   assert.deepEqual(await page.evaluate(pieces, specs), []);
 });

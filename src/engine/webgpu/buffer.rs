@@ -1,7 +1,11 @@
 //! Buffers on a device, and staging buffers that are kept for the next copies.
 
 use super::pool::Shared;
+#[cfg(target_arch = "wasm32")]
+use futures_channel::oneshot;
 use std::sync::Mutex;
+#[cfg(target_arch = "wasm32")]
+use std::{cell::RefCell, collections::VecDeque};
 
 /// The most bytes of staging buffers that are kept.
 const MOST_KEPT: u64 = 1 << 27;
@@ -53,6 +57,17 @@ impl Drop for Buffer {
     }
 }
 
+/// A buffer, and how many words of it are written.
+pub(super) type Begun = (Buffer, usize);
+
+/// Arrays that are on their way to the device before the other buffers of their mesh are made.
+#[derive(Default)]
+pub(super) struct Sent {
+    pub(super) triangles: Option<Begun>,
+    /// Only of 32-bit floats.
+    pub(super) positions: Option<Begun>,
+}
+
 /// Staging buffers for the next copies. While all are in use, a further copy makes its own buffer.
 #[derive(Default)]
 pub(super) struct Kept(Mutex<Vec<Buffer>>);
@@ -87,5 +102,37 @@ impl Kept {
                 kept.push(buffer);
             }
         });
+    }
+}
+
+/// Staging buffers for writes that the device still copies from, or that are being mapped for the first time.
+#[cfg(target_arch = "wasm32")]
+#[derive(Default)]
+pub(super) struct Busy(RefCell<VecDeque<oneshot::Receiver<()>>>);
+
+#[cfg(target_arch = "wasm32")]
+impl Busy {
+    /// How many are busy, as far as known.
+    pub(super) fn count(&self) -> usize {
+        self.0.borrow().len()
+    }
+
+    /// The receiver hears when a buffer is kept for writes again, or that it never will.
+    pub(super) fn add(&self, receiver: oneshot::Receiver<()>) {
+        let mut all = self.0.borrow_mut();
+        all.retain_mut(|receiver| matches!(receiver.try_recv(), Ok(None)));
+        all.push_back(receiver);
+    }
+
+    /// Waits for the buffer that has been busy longest. Returns whether there was any.
+    pub(super) async fn wait(&self) -> bool {
+        let first = self.0.borrow_mut().pop_front();
+        match first {
+            Some(receiver) => {
+                let _ = receiver.await;
+                true
+            }
+            None => false,
+        }
     }
 }

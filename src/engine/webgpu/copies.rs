@@ -267,11 +267,11 @@ impl Device {
         writes.iter().for_each(|(buffer, words)| self.write_at(buffer, 0, words));
     }
 
-    /// The same for the arrays of a new mesh. Returns the faults.
+    /// Writes the arrays of a new mesh to buffers, each from a word on. Returns the faults.
     #[cfg(not(target_arch = "wasm32"))]
-    pub(super) async fn upload(&self, writes: &[(&Buffer, &[u32])]) -> Vec<Caught> {
-        let ((), caught) = watch(&self.device, || self.write_all(writes));
-        vec![caught]
+    pub(super) async fn upload(&self, writes: &[(&Buffer, usize, &[u32])]) -> Vec<Caught> {
+        let write = || writes.iter().for_each(|(buffer, first, words)| self.write_at(buffer, *first, words));
+        vec![watch(&self.device, write).1]
     }
 
     /// Writes words to `buffer` from word `first` on, before the next submission.

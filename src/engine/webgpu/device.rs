@@ -2,6 +2,10 @@
 
 #[cfg(target_arch = "wasm32")]
 use super::browser;
+#[cfg(target_arch = "wasm32")]
+use super::buffer::Busy;
+#[cfg(all(target_arch = "wasm32", feature = "js"))]
+use super::buffer::Sent;
 use super::buffer::{Buffer, Kept};
 use super::compile;
 use super::faults::{Caught, Fault, refuse, unavailable, watch};
@@ -15,6 +19,8 @@ use super::programs;
 use crate::Error;
 use crate::engine::gpu::self_test::Tested;
 use crate::engine::gpu::upload::Form;
+#[cfg(all(target_arch = "wasm32", feature = "js"))]
+use std::cell::RefCell;
 #[cfg(target_arch = "wasm32")]
 use std::rc::Rc;
 #[cfg(test)]
@@ -61,6 +67,10 @@ pub(crate) struct Device {
     /// Staging buffers for the next writes, mapped.
     #[cfg(target_arch = "wasm32")]
     pub(super) kept_for_writes: Rc<Kept>,
+    #[cfg(target_arch = "wasm32")]
+    pub(super) busy_for_writes: Busy,
+    #[cfg(all(target_arch = "wasm32", feature = "js"))]
+    pub(super) sent: RefCell<(Sent, Vec<Caught>)>,
     #[cfg(test)]
     pub(super) asked: Asked,
 }
@@ -84,10 +94,15 @@ fn report(failure: &Failure, message: String) {
     failure.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).get_or_insert(message);
 }
 
+/// The size of a buffer of so many words.
+pub(super) fn bytes_for(words: usize) -> u64 {
+    4 * words.max(4) as u64
+}
+
 fn descriptor(label: &str, words: usize, usage: BufferUsages) -> wgpu::BufferDescriptor<'_> {
     wgpu::BufferDescriptor {
         label: Some(label),
-        size: 4 * words.max(4) as u64,
+        size: bytes_for(words),
         usage: usage | BufferUsages::COPY_DST | BufferUsages::COPY_SRC,
         mapped_at_creation: false,
     }
@@ -280,6 +295,10 @@ impl Device {
             pool: pool::Shared::default(),
             #[cfg(target_arch = "wasm32")]
             kept_for_writes: Rc::default(),
+            #[cfg(target_arch = "wasm32")]
+            busy_for_writes: Busy::default(),
+            #[cfg(all(target_arch = "wasm32", feature = "js"))]
+            sent: RefCell::default(),
             #[cfg(test)]
             asked: Asked::default(),
         };

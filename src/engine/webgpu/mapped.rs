@@ -4,11 +4,10 @@ use super::buffer::Buffer;
 use super::copies::{CHUNK, ReadBack};
 use super::device::Device;
 use super::faults::{Caught, watch};
-use super::words::{Words, vector};
+use super::words::{self, vector};
 use crate::Error;
 use futures_channel::oneshot;
 use js_sys::Uint32Array;
-use std::collections::VecDeque;
 use std::ops::Range;
 use wgpu::BufferUsages;
 
@@ -28,9 +27,13 @@ fn mapped(buffer: &wgpu::Buffer, bytes: &Range<u64>) -> Option<Uint32Array> {
     Some(Uint32Array::new(&memory))
 }
 
+fn bytes_of(words: usize) -> u64 {
+    4 * words as u64
+}
+
 impl ReadBack<'_> {
     /// Copies the words of a source behind the first `taken` words, which `result` has.
-    pub(super) fn fill(&self, source: usize, result: &mut Words, taken: usize) -> Result<(), Error> {
+    pub(super) fn fill(&self, source: usize, result: &mut words::Words, taken: usize) -> Result<(), Error> {
         result.set(&self.view(source)?.into(), taken as u32);
         Ok(())
     }
@@ -47,127 +50,156 @@ impl ReadBack<'_> {
     }
 }
 
-/// Words for a buffer, from byte `offset` on.
-struct Piece<'a> {
-    buffer: &'a Buffer,
-    offset: u64,
-    words: &'a [u32],
+/// Words in the memory of the module, or in an array of the page.
+pub(super) enum Words<'a> {
+    Module(&'a [u32]),
+    #[cfg(feature = "js")]
+    Page(&'a Uint32Array),
 }
 
-/// Pieces that go through one staging buffer, and their bytes.
-type Group<'a> = (Vec<Piece<'a>>, u64);
+impl Words<'_> {
+    fn len(&self) -> usize {
+        match self {
+            Self::Module(words) => words.len(),
+            #[cfg(feature = "js")]
+            Self::Page(words) => words.length() as usize,
+        }
+    }
 
-/// Writes to the starts of buffers, in groups.
-fn groups<'a>(writes: &[(&'a Buffer, &'a [u32])]) -> Vec<Group<'a>> {
+    /// Copies a range of the words to a view of the same length.
+    fn copy(&self, range: &Range<usize>, view: &Uint32Array) {
+        match self {
+            Self::Module(words) => view.copy_from(&words[range.clone()]),
+            #[cfg(feature = "js")]
+            Self::Page(words) => view.set(&words.subarray(range.start as u32, range.end as u32), 0),
+        }
+    }
+}
+
+/// Words for a buffer, from a word of it on.
+pub(super) type Write<'a> = (&'a Buffer, usize, Words<'a>);
+
+/// A range of the words of a write.
+pub(super) type Piece<'a> = (&'a Write<'a>, Range<usize>);
+
+/// Pieces that go through one staging buffer, and their bytes.
+pub(super) type Group<'a> = (Vec<Piece<'a>>, u64);
+
+pub(super) fn groups<'a>(writes: &'a [Write<'a>]) -> Vec<Group<'a>> {
     let mut groups: Vec<Group<'a>> = Vec::new();
-    for &(buffer, words) in writes {
-        for (i, words) in words.chunks(CHUNK).enumerate() {
-            let (offset, size) = (4 * (i * CHUNK) as u64, size_of_val(words) as u64);
-            let piece = Piece { buffer, offset, words };
+    for write in writes {
+        let length = write.2.len();
+        for start in (0..length).step_by(CHUNK) {
+            let range = start..length.min(start + CHUNK);
+            let size = 4 * range.len() as u64;
             match groups.last_mut().filter(|(_, bytes)| bytes + size <= 4 * CHUNK as u64) {
                 Some((pieces, bytes)) => {
-                    pieces.push(piece);
+                    pieces.push((write, range));
                     *bytes += size;
                 }
-                None => groups.push((vec![piece], size)),
+                None => groups.push((vec![(write, range)], size)),
             }
         }
     }
     groups
 }
 
-/// Tells whether a staging buffer is mapped.
-type Ready = oneshot::Receiver<bool>;
-
 impl Device {
     /// Writes words to the starts of buffers, before the next submission. Does not wait: what the mapped staging buffers
     /// cannot take goes through `writeBuffer`.
     pub(super) fn write_all(&self, writes: &[(&Buffer, &[u32])]) {
-        for group in groups(writes) {
-            if self.stage(&group).is_none() {
+        let writes: Vec<_> =
+            writes.iter().map(|(buffer, words)| (*buffer, 0, Words::Module(words))).collect();
+        for group in groups(&writes) {
+            if !self.stage(&group) {
                 self.write_slowly(&group);
                 if group.1 >= FEWEST_STAGED {
-                    drop(self.new_staging(group.1));
+                    self.add_staging(group.1);
                 }
             }
         }
     }
 
-    /// The same for the arrays of a new mesh. Returns the faults. Waits for staging buffers, at most [`MOST_STAGED`]:
-    /// new memory takes far longer than the copy.
-    pub(super) async fn upload(&self, writes: &[(&Buffer, &[u32])]) -> Vec<Caught> {
-        let groups = groups(writes);
+    /// Writes the arrays of a new mesh to buffers, each from a word on. Returns the faults. Waits for staging buffers, at
+    /// most [`MOST_STAGED`]: new memory takes far longer than the copy.
+    pub(super) async fn upload(&self, writes: &[(&Buffer, usize, &[u32])]) -> Vec<Caught> {
+        let writes: Vec<_> =
+            writes.iter().map(|&(buffer, first, words)| (buffer, first, Words::Module(words))).collect();
+        let groups = groups(&writes);
         let largest = groups.iter().map(|group| group.1).max().unwrap_or_default();
-        let mut busy = VecDeque::new();
         if largest >= FEWEST_STAGED {
-            let wanted = groups.len().min(MOST_STAGED);
-            busy.extend((self.kept_for_writes.count()..wanted).map(|_| self.new_staging(largest)));
+            let present = self.kept_for_writes.count() + self.busy_for_writes.count();
+            (present..groups.len().min(MOST_STAGED)).for_each(|_| self.add_staging(largest));
         }
         let mut faults = Vec::new();
         for group in groups {
             loop {
-                let (staged, caught) = watch(&self.device, || self.stage(&group));
+                let (is_staged, caught) = watch(&self.device, || self.stage(&group));
                 faults.push(caught);
-                if let Some(ready) = staged {
-                    busy.push_back(ready);
+                if is_staged {
                     break;
                 }
-                // A buffer that is not mapped in the end is not waited for again.
-                let Some(ready) = busy.pop_front().filter(|_| group.1 >= FEWEST_STAGED) else {
+                if group.1 < FEWEST_STAGED || !self.busy_for_writes.wait().await {
                     faults.push(watch(&self.device, || self.write_slowly(&group)).1);
                     break;
-                };
-                let _ = ready.await;
+                }
             }
         }
         faults
     }
 
-    /// Writes a group through a kept staging buffer, if one is mapped. Tells when the buffer is mapped again.
-    fn stage(&self, (pieces, bytes): &Group<'_>) -> Option<Ready> {
-        if *bytes < FEWEST_STAGED {
-            return None;
-        }
-        let staging = self.kept_for_writes.take(*bytes)?;
-        let view = mapped(&staging, &(0..*bytes))?;
+    /// Writes a group through a kept staging buffer, if one is mapped. Returns whether one was.
+    pub(super) fn stage(&self, (pieces, bytes): &Group<'_>) -> bool {
+        let kept = if *bytes >= FEWEST_STAGED { self.kept_for_writes.take(*bytes) } else { None };
+        let mapped = kept.and_then(|kept| mapped(&kept, &(0..*bytes)).map(|view| (kept, view)));
+        let Some((staging, view)) = mapped else { return false };
         let mut encoder = self.device.create_command_encoder(&Default::default());
-        let mut first = 0;
-        for Piece { buffer, offset, words } in pieces {
-            let end = first + words.len() as u32;
-            view.subarray(first, end).copy_from(words);
-            let (from, size) = (4 * u64::from(first), size_of_val(*words) as u64);
-            encoder.copy_buffer_to_buffer(&staging, from, buffer, *offset, size);
-            first = end;
+        let mut from = 0;
+        for ((buffer, first, words), range) in pieces {
+            let to = from + range.len() as u32;
+            words.copy(range, &view.subarray(from, to));
+            let [source, place, size] = [from as usize, first + range.start, range.len()].map(bytes_of);
+            encoder.copy_buffer_to_buffer(&staging, source, buffer, place, size);
+            from = to;
         }
         staging.unmap();
         self.submit(encoder);
-        Some(self.make_ready(staging))
+        self.make_ready(staging);
+        true
     }
 
     /// Writes a group through memory of the browser, which is new each time.
     fn write_slowly(&self, (pieces, _): &Group<'_>) {
-        for Piece { buffer, offset, words } in pieces {
-            self.queue.write_buffer(buffer, *offset, bytemuck::cast_slice(words));
+        for ((buffer, first, words), range) in pieces {
+            match words {
+                Words::Module(words) => {
+                    let words = bytemuck::cast_slice(&words[range.clone()]);
+                    self.queue.write_buffer(buffer, bytes_of(first + range.start), words);
+                }
+                // Arrays of the page are only staged.
+                #[cfg(feature = "js")]
+                Words::Page(_) => {}
+            }
         }
     }
 
-    /// A new staging buffer for later writes. A failed allocation is ignored: the mesh does not need this buffer.
-    fn new_staging(&self, bytes: u64) -> Ready {
+    /// Makes a staging buffer for later writes. A failed allocation is ignored: the mesh does not need this buffer.
+    fn add_staging(&self, bytes: u64) {
         let new = || self.make_ready(self.staging(bytes, BufferUsages::MAP_WRITE | BufferUsages::COPY_SRC));
-        watch(&self.device, new).0
+        drop(watch(&self.device, new));
     }
 
     /// Maps a staging buffer, and keeps it for later writes once the device has finished its copies.
-    fn make_ready(&self, staging: Buffer) -> Ready {
+    fn make_ready(&self, staging: Buffer) {
         let (buffer, kept) = ((*staging).clone(), self.kept_for_writes.clone());
-        let (sender, ready) = oneshot::channel();
+        let (sender, receiver) = oneshot::channel();
+        self.busy_for_writes.add(receiver);
         buffer.map_async(wgpu::MapMode::Write, .., move |result| {
             if result.is_ok() {
                 kept.put(staging);
             }
-            // Few callers wait for it.
-            let _ = sender.send(result.is_ok());
+            // Few wait for it.
+            let _ = sender.send(());
         });
-        ready
     }
 }

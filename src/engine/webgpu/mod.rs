@@ -37,6 +37,8 @@ mod pool;
 mod probe;
 mod programs;
 mod run;
+#[cfg(all(target_arch = "wasm32", feature = "js"))]
+mod sent;
 mod shared;
 mod sources;
 mod staging;

@@ -2,6 +2,8 @@
 
 use super::WebGpu;
 use super::adjacency::{self, COUNTERS, Found, Scratch};
+#[cfg(not(all(target_arch = "wasm32", feature = "js")))]
+use super::buffer::Sent;
 use super::buffers::Buffers;
 use super::faults::{first, refuse, watch};
 use super::history::{ENTRIES, Entry, FLIPPED, SEVERAL_FANS};
@@ -43,10 +45,14 @@ impl WebGpu {
     pub(in crate::engine) async fn begun(gpu: Handle, upload: Upload, waits: bool) -> Result<Self, Error> {
         refuse_large_mesh(&gpu, &upload)?;
         let kernels = gpu.phases(upload.form()).await?;
-        let create = || (Buffers::new(&gpu, &upload), Scratch::new(&gpu, &upload.mesh));
-        let ((buffers, scratch), created) = watch(&gpu.device, create);
-        let mut faults = vec![created];
-        faults.extend(buffers.upload(&gpu, &upload).await);
+        #[cfg(all(target_arch = "wasm32", feature = "js"))]
+        let (sent, mut faults) = gpu.take_sent();
+        #[cfg(not(all(target_arch = "wasm32", feature = "js")))]
+        let (sent, mut faults) = (Sent::default(), Vec::new());
+        let create = || (Buffers::new(&gpu, &upload, sent), Scratch::new(&gpu, &upload.mesh));
+        let (((buffers, written), scratch), created) = watch(&gpu.device, create);
+        faults.push(created);
+        faults.extend(buffers.upload(&gpu, &upload, written).await);
         if waits {
             gpu.finish_copies();
         }
