@@ -195,6 +195,10 @@ pub(crate) trait Engine {
     #[cfg(all(target_arch = "wasm32", feature = "js"))]
     fn set_stays(&mut self, _stays: bool) {}
 
+    /// A promise of a JavaScript array for the triangles, or of nothing.
+    #[cfg(all(target_arch = "wasm32", feature = "js"))]
+    fn set_spare(&mut self, _spare: Option<js_sys::Object>) {}
+
     /// The buffers that a program can draw from, if the engine runs on WebGPU.
     #[cfg(all(not(target_arch = "wasm32"), feature = "gpu"))]
     fn gpu_buffers(&self) -> Option<GpuBuffers> {

@@ -3,7 +3,7 @@
 import { messageOf } from './given.js';
 import { isLoaded, loadCore, moduleOfThreads } from './load.js';
 import { copied, type IndexedMesh } from './mesh.js';
-import type { Settings } from './settings.js';
+import type { GpuSettings, Settings } from './settings.js';
 import { type ModuleSession, threadCount, ThreadsSession, threadsOf, whyOneThread } from './threads.js';
 import { Session, whyCpu } from './wasm/edgeflip.js';
 
@@ -49,13 +49,23 @@ type Arrays = [IndexedMesh['positions'], Uint32Array, IndexedMesh['dimension']];
  * Opens a session in the module of the engines. With `leavesCpu`, the settings are those of a mesh for which `'auto'`
  * takes a GPU. If there is none, the exception has the mesh for another module, which has the CPU engine on threads.
  */
-async function openAlone(
-  mesh: IndexedMesh,
-  settings: Settings & { leavesCpu?: boolean },
-  settles = false,
-): Promise<ModuleSession> {
-  const { positions, indices, dimension } = isLoaded() ? mesh : await whileLoading(mesh);
-  return Session.create(positions, indices, dimension, settings, settles);
+async function openAlone(mesh: IndexedMesh, settings: GpuSettings, settles = false): Promise<ModuleSession> {
+  const given = isLoaded() ? mesh : await whileLoading(mesh);
+  const { positions, indices, dimension } = given;
+  const spare = !settles && indices.length >= FEWEST_SPARE ? spareFor(given, settings) : undefined;
+  return Session.create(positions, indices, dimension, { ...settings, spare } as GpuSettings, settles);
+}
+
+/** The fewest indices of a mesh for whose result a worker makes the memory. */
+const FEWEST_SPARE = 2 ** 19;
+
+let spares: typeof import('./spare.js') | undefined;
+
+function spareFor(mesh: IndexedMesh, settings: GpuSettings): GpuSettings['spare'] {
+  if (spares) return spares.spareFor(mesh, settings, whyCpu);
+  // The first call only starts the worker.
+  import('./spare.js').then((module) => (spares = module).spareFor(mesh, settings, whyCpu)).catch(() => undefined);
+  return undefined;
 }
 
 /** A copy of the mesh, once the module is loaded: the caller's arrays must not be read after a wait. */

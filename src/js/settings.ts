@@ -26,6 +26,9 @@ export type Settings = { [Name in keyof Omit<Options, 'weld'>]?: Read<NonNullabl
   weld?: Attributes;
 };
 
+/** The settings for the module of the engines, and memory for the triangles of the result. */
+export type GpuSettings = Settings & { leavesCpu?: boolean; spare?: Promise<Uint32Array | undefined> | undefined };
+
 /** The type of an option after reading: a list becomes a Uint32Array. */
 type Read<T> = [T] extends [IndexArray] ? Uint32Array : T;
 

@@ -2,6 +2,7 @@
 
 import type { IndexedMesh } from './mesh.js';
 import { answerCalls } from './remote.js';
+import { reserve } from './reserve.js';
 import type { Settings } from './settings.js';
 import { Indices, initSync, Session, startThreads, work } from './wasm/edgeflip_threads.js';
 
@@ -34,6 +35,7 @@ const sessions = new Map<number, Session>();
 const lent = new Map<number, Indices>();
 
 const calls = {
+  reserve,
   /** Makes this worker the first of `count` threads, and returns the memory that all share. */
   start(module: WebAssembly.Module, count: number): WebAssembly.Memory {
     initSync({ module });

@@ -4,6 +4,7 @@ import { buffersOf } from './buffers.js';
 import { fromModule } from './error.js';
 import type { IndexedMesh } from './mesh.js';
 import { node, Remote, type Script, startThread, type Thread } from './remote.js';
+import { reserve } from './reserve.js';
 import { FEWEST_EACH, FEWEST_TRIANGLES, MOST_THREADS, type Settings } from './settings.js';
 import type { Calls, Question } from './thread.js';
 import type { Session } from './wasm/edgeflip.js';
@@ -34,7 +35,8 @@ function coreCount(): number {
   );
 }
 
-const script: Script = {
+/** The script of a thread. */
+export const script: Script = {
   worker: () => new Worker(new URL('./thread.js', import.meta.url), { type: 'module' }),
   url: () => new URL('./thread.js', import.meta.url),
 };
@@ -89,23 +91,6 @@ class Pool {
     this.#onEnd();
     for (const thread of this.#others.splice(0)) thread.end();
     this.#first.end(fromModule(new Error(`a thread has crashed: ${message}`)));
-  }
-}
-
-/** Words of a page of memory. If the system has larger pages, `reserve` writes each more than once. */
-const WORDS_OF_PAGE = 1024;
-
-/**
- * Memory for the indices of a result, or `undefined` if there is not enough. The system provides each page at its first
- * write, which takes longer than the later copy. This writes every page now, while the workers are busy.
- */
-function reserve(indices: number): Uint32Array | undefined {
-  try {
-    const words = new Uint32Array(indices);
-    for (let i = 0; i < indices; i += WORDS_OF_PAGE) words[i] = 1;
-    return words;
-  } catch {
-    return undefined;
   }
 }
 

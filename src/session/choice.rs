@@ -82,6 +82,23 @@ pub(super) fn engine_for<'a>(mesh: &'a Arc<Mesh>, options: &'a Options) -> Answe
     })
 }
 
+/// The engine that a session begins with. Takes the memory for its result from the options, so that no session holds it
+/// for longer than the engine needs it.
+///
+/// # Errors
+/// Those of [`engine_for`].
+pub(super) async fn first_engine(mesh: &Arc<Mesh>, options: &mut Options) -> Result<Choice, Error> {
+    #[cfg(all(target_arch = "wasm32", feature = "js"))]
+    {
+        let spare = options.spare.take();
+        let mut choice = engine_for(mesh, options).await?;
+        choice.engine.set_spare(spare);
+        Ok(choice)
+    }
+    #[cfg(not(all(target_arch = "wasm32", feature = "js")))]
+    engine_for(mesh, options).await
+}
+
 /// The GPU, or the CPU where the GPU does not take the mesh. With `leaves_cpu`, [`Error::Device`] with the reason.
 async fn auto(mesh: &Arc<Mesh>, options: &Options) -> Result<Choice, Error> {
     match open(Backend::Gpu, mesh, options).await {

@@ -18,8 +18,6 @@ pub(crate) mod outcome;
 #[cfg(test)]
 mod tests;
 
-#[cfg(all(target_arch = "wasm32", feature = "js"))]
-use crate::engine::SharedObjects;
 use crate::engine::{Answer, Engine};
 use crate::mesh::areas::Areas;
 use crate::mesh::embedded::Embedded;
@@ -33,19 +31,17 @@ use crate::{
     Backend, Dimension, EdgeState, Edges, EngineKind, Error, Iteration, LeftOut, Mesh, Options, Order,
     Outcome, Positions, Reason, Status, Timings,
 };
-#[cfg(all(target_arch = "wasm32", feature = "js"))]
-pub(crate) use choice::why_cpu;
-use choice::{Choice, cpu_after, engine_for};
-#[cfg(all(target_arch = "wasm32", feature = "js"))]
-pub(crate) use cost::Job;
+use choice::{Choice, cpu_after, first_engine};
 #[cfg(not(target_arch = "wasm32"))]
 pub use early::{EarlyGpu, close_gpu};
-#[cfg(all(target_arch = "wasm32", feature = "js"))]
-use js_sys::Uint32Array;
 use std::borrow::Cow;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use web_time::Instant;
+#[cfg(all(target_arch = "wasm32", feature = "js"))]
+use {crate::engine::SharedObjects, js_sys::Uint32Array};
+#[cfg(all(target_arch = "wasm32", feature = "js"))]
+pub(crate) use {choice::why_cpu, cost::Job, open_gpu::send};
 
 /// A mesh on an engine, step by step.
 pub struct Session {
@@ -78,7 +74,7 @@ impl Session {
         options.check()?;
         let (start, mut mesh) = (Instant::now(), mesh.into());
         let constraints = locks::bring_in(&mut mesh, &mut options)?;
-        let Choice { engine, fallback, may_change } = engine_for(&mesh, &options).await?;
+        let Choice { engine, fallback, may_change } = first_engine(&mesh, &mut options).await?;
         let set_up = ms_since(start);
         let adjacency = engine.adjacency_ms().unwrap_or(set_up);
         Ok(Self {

@@ -6,7 +6,13 @@ use crate::phases::Thresholds;
 use crate::{Backend, Dimension, EngineKind, Error, Mesh, Options};
 use std::sync::Arc;
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
-use {crate::system::in_turn::in_turn, js_sys::Promise, std::cell::RefCell};
+use {
+    crate::Order,
+    crate::system::{in_turn::in_turn, threads::Threads},
+    js_sys::{Float32Array, Promise, Uint32Array},
+    std::cell::RefCell,
+    wasm_bindgen::{JsCast, JsValue},
+};
 
 /// The form of a mesh: the set of shaders that it needs. At upload, a mesh of 32-bit floats that span too many bits
 /// gets the fixed-point form instead.
@@ -19,6 +25,39 @@ pub(super) fn is_ready(job: Job, is_double: bool, options: &Options) -> bool {
     let form = form_of(job.dimension, is_double, options);
     let takes_software = options.backend == Backend::Gpu;
     Device::known(options.given_device()).is_some_and(|device| device.is_ready(form, takes_software))
+}
+
+/// Sends the arrays of a mesh to the GPU, if its session begins there at once. They are not checked yet. Returns the
+/// device; whoever makes the session drops what the session has not taken.
+#[cfg(all(target_arch = "wasm32", feature = "js"))]
+pub(crate) fn send(
+    dimension: Dimension,
+    indices: &Uint32Array,
+    positions: &JsValue,
+    options: &Options,
+) -> Option<DeviceHandle> {
+    let floats = positions.dyn_ref::<Float32Array>();
+    let form = form_of(dimension, floats.is_none(), options);
+    let takes_software = options.backend == Backend::Gpu;
+    let ready = |device: &DeviceHandle| device.is_ready(form, takes_software);
+    let device = Device::known(options.given_device()).filter(ready)?;
+    let triangles = indices.length() as usize / 3;
+    let threads = Threads::count_for(options.threads, triangles);
+    let is_for_gpu = match (options.order, options.backend) {
+        (Order::Reproducible, Backend::Auto) => {
+            options.leaves_cpu || Job { triangles, dimension, threads }.is_for_gpu()
+        }
+        (Order::Reproducible, Backend::Gpu) => true,
+        _ => false,
+    };
+    if !is_for_gpu {
+        return None;
+    }
+    let words = |floats: &Float32Array| {
+        Uint32Array::new_with_byte_offset_and_length(&floats.buffer(), floats.byte_offset(), floats.length())
+    };
+    device.send(indices, floats.map(words).as_ref());
+    Some(device)
 }
 
 /// Why a job that suits a GPU does not wait until one is ready. A browser prepares the GPU meanwhile.

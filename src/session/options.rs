@@ -84,6 +84,9 @@ pub struct Options {
     /// the CPU engine, on threads.
     #[cfg(all(target_arch = "wasm32", feature = "js"))]
     pub leaves_cpu: bool,
+    /// A promise of a Uint32Array for the triangles of the result, or of nothing.
+    #[cfg(all(target_arch = "wasm32", feature = "js"))]
+    pub spare: Option<js_sys::Object>,
     /// The object of JavaScript that these options were read from, without its lists. Other modules read it again.
     #[cfg(all(target_arch = "wasm32", feature = "js-session"))]
     pub given: js_sys::Object,
@@ -171,6 +174,8 @@ impl Default for Options {
             device: None,
             #[cfg(all(target_arch = "wasm32", feature = "js"))]
             leaves_cpu: false,
+            #[cfg(all(target_arch = "wasm32", feature = "js"))]
+            spare: None,
             #[cfg(all(target_arch = "wasm32", feature = "js-session"))]
             given: js_sys::Object::new(),
         }

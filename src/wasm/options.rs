@@ -37,6 +37,10 @@ pub(crate) fn read(given: &JsOptions) -> Result<Options, Error> {
         if list.is_undefined() { Vec::new() } else { list.unchecked_into::<Uint32Array>().to_vec() }
     };
     let ends = list("lockedEdges");
+    #[cfg(feature = "js")]
+    let spare = kept.get("spare");
+    #[cfg(feature = "js")]
+    kept.delete("spare");
     let (locked_edges, []) = ends.as_chunks() else {
         return Err(Error::RaggedArray { array: "lockedEdges", length: ends.len(), stride: 2 });
     };
@@ -44,6 +48,8 @@ pub(crate) fn read(given: &JsOptions) -> Result<Options, Error> {
         locked_edges: locked_edges.to_vec(),
         locked_triangles: list("lockedTriangles"),
         groups: list("groups"),
+        #[cfg(feature = "js")]
+        spare: Some(spare).filter(JsValue::is_truthy).map(JsCast::unchecked_into),
         ..without_lists(&kept)?
     })
 }

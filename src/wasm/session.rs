@@ -11,10 +11,10 @@ use crate::system::threads::Threads;
 #[cfg(all(feature = "js-threads", not(feature = "js")))]
 use crate::wasm::threads::Indices;
 pub use crate::wasm::values::JsPositions;
-#[cfg(feature = "js")]
-use crate::wasm::values::left_to_cpu;
 use crate::wasm::values::{coded, mesh_of, object, reasons_object, thrown};
-use crate::{Error, Session};
+#[cfg(feature = "js")]
+use crate::wasm::values::{dimension_of, left_to_cpu};
+use crate::{Error, Mesh, Options, Session};
 use js_sys::{Array, Promise, Uint8Array, Uint32Array};
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -67,6 +67,27 @@ impl JsSession {
         Ok(answer)
     }
 
+    fn begin(mesh: Mesh, chosen: Options, settles: bool) -> Promise {
+        let mesh = Arc::new(mesh);
+        #[cfg(feature = "js")]
+        let leaves_cpu = chosen.leaves_cpu;
+        promise(async move {
+            let opened = async {
+                let mut session = Session::new(mesh.clone(), chosen).await?;
+                if settles {
+                    session.settle().await?;
+                }
+                Ok(session)
+            };
+            match opened.await {
+                Ok(session) => Ok(Self(Rc::new(RefCell::new(Some(session)))).into()),
+                #[cfg(feature = "js")]
+                Err(Error::Device { message }) if leaves_cpu => Err(left_to_cpu(&message, &mesh)),
+                Err(error) => Err(thrown(error)),
+            }
+        })
+    }
+
     pub(super) fn get<T: Default>(&self, value: impl FnOnce(&Session) -> T) -> T {
         self.0.borrow().as_ref().map(value).unwrap_or_default()
     }
@@ -88,29 +109,21 @@ impl JsSession {
         options: JsOptions,
         settles: bool,
     ) -> Result<Promise, JsValue> {
+        let chosen = options::read(&options);
+        #[cfg(feature = "js")]
+        let sent = chosen
+            .as_ref()
+            .ok()
+            .and_then(|options| crate::session::send(dimension_of(dimension), indices, &positions, options));
         let open = || {
             let mesh = mesh_of(positions, indices, dimension, &Threads::default())?;
-            Ok((mesh, options::read(&options)?))
+            Ok((mesh, chosen?))
         };
-        let (mesh, chosen) = open().map_err(thrown)?;
-        let mesh = Arc::new(mesh);
+        let begun = open().map_err(thrown).map(|(mesh, chosen)| Self::begin(mesh, chosen, settles));
+        // What the session has not taken.
         #[cfg(feature = "js")]
-        let leaves_cpu = chosen.leaves_cpu;
-        Ok(promise(async move {
-            let opened = async {
-                let mut session = Session::new(mesh.clone(), chosen).await?;
-                if settles {
-                    session.settle().await?;
-                }
-                Ok(session)
-            };
-            match opened.await {
-                Ok(session) => Ok(Self(Rc::new(RefCell::new(Some(session)))).into()),
-                #[cfg(feature = "js")]
-                Err(Error::Device { message }) if leaves_cpu => Err(left_to_cpu(&message, &mesh)),
-                Err(error) => Err(thrown(error)),
-            }
-        }))
+        sent.iter().for_each(|device| device.forget_sent());
+        begun
     }
 
     /// As [`Session::step`].

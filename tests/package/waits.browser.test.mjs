@@ -86,6 +86,88 @@ test('a run waits once, and copies through buffers that are reused', async () =>
   for (const run of [2, 4, 5]) assert.deepEqual(told[run], { waits: 1, kept: 1, submissions: 3 }, `run ${run}`);
 });
 
+/** Runs in the page: the labels of the buffers that sessions make and destroy. */
+async function kept() {
+  const { FlipSession } = await import('/dist/index.js');
+  const { generate } = await import('/dist/files.js');
+  const mesh = await generate('random 31');
+  const [{ createBuffer }, { destroy }] = [GPUDevice.prototype, GPUBuffer.prototype];
+  let [made, destroyed] = [[], []];
+  GPUDevice.prototype.createBuffer = function (descriptor) {
+    made.push(descriptor.label);
+    return createBuffer.call(this, descriptor);
+  };
+  GPUBuffer.prototype.destroy = function () {
+    destroyed.push(this.label);
+    destroy.call(this);
+  };
+  const told = {};
+  const session = async (name, isShared) => {
+    [made, destroyed] = [[], []];
+    const session = await FlipSession.create(mesh, { backend: 'webgpu' });
+    if (isShared) await session.gpu();
+    await session.run();
+    session.free();
+    await new Promise((resolve) => setTimeout(resolve, 100));
+    const ofMesh = (label) => ['positions', 'triangles', 'twins'].includes(label);
+    told[name] = { made: made.filter(ofMesh).sort(), destroyed: destroyed.filter(ofMesh).sort() };
+  };
+  // Opens the device, and makes the buffers.
+  await session('first');
+  delete told.first;
+  await session('second');
+  await session('shared', true);
+  await session('last');
+  [made, destroyed] = [[], []];
+  await new Promise((resolve) => setTimeout(resolve, 3000));
+  told.later = ['positions', 'triangles', 'twins'].filter((label) => destroyed.includes(label));
+  Object.assign(GPUDevice.prototype, { createBuffer });
+  Object.assign(GPUBuffer.prototype, { destroy });
+  return told;
+}
+
+test('a session leaves its buffers to the next one for a while, except those that the page has', async () => {
+  // On another page, sessions that are not freed may still be there.
+  const { page } = await openPage(await startChromium(), `${await serve(repository)}tests/engines.html`);
+  assert.deepEqual(await page.evaluate(kept), {
+    second: { made: [], destroyed: [] },
+    shared: { made: [], destroyed: ['positions', 'triangles'] },
+    last: { made: ['positions', 'triangles'], destroyed: [] },
+    later: ['positions', 'triangles', 'twins'],
+  });
+});
+
+/** Runs in the page: a mesh whose result is large. Returns the calls of workers, and whether the results are right. */
+async function large() {
+  const { makeDelaunay } = await import('/dist/index.js');
+  const { generate } = await import('/dist/files.js');
+  const mesh = await generate('regular 300');
+  const right = (await makeDelaunay(mesh, { backend: 'cpu', threads: 1 })).indices;
+  const { postMessage } = Worker.prototype;
+  const told = [];
+  Worker.prototype.postMessage = function (call, transfer) {
+    told.push([call.method, ...call.args]);
+    postMessage.call(this, call, transfer);
+  };
+  for (let run = 0; run < 2; run++) {
+    const { indices } = await makeDelaunay(mesh, { backend: 'webgpu' });
+    if (indices.length !== right.length || indices.some((vertex, i) => vertex !== right[i])) told.push(`wrong ${run}`);
+  }
+  Object.assign(Worker.prototype, { postMessage });
+  return { told, indices: mesh.indices.length };
+}
+
+if (full) {
+  test('a worker makes the memory for large results', async () => {
+    const { page } = await enginePage();
+    const { told, indices } = await page.evaluate(large);
+    assert.deepEqual(told, [
+      ['reserve', 1],
+      ['reserve', indices],
+    ]);
+  });
+}
+
 /** Runs in the page: sends arrays that go in several pieces, and reads them back. Collects wrong results. */
 async function pieces(specs) {
   const { FlipSession } = await import('/dist/index.js');
@@ -104,7 +186,7 @@ async function pieces(specs) {
 
 test('arrays of several pieces come back as they were sent', async () => {
   const { page } = await enginePage();
-  // 26 MB of triangles; a piece has 16 MB.
+  // 26 MB of triangles; a piece has 4 MB.
   const specs = full ? ['random 1050', 'random 1040', 'random 1060'] : ['random 1050'];
   assert.deepEqual(await page.evaluate(pieces, specs), []);
 });

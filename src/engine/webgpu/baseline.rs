@@ -59,7 +59,7 @@ impl WebGpu {
                 }
                 self.dispatch(pass, Kernel::Flip, triangles);
             };
-            gpu.write_at(&self.buffers.choices, triangles as usize, &selection);
+            gpu.write_all(&[(&self.buffers.choices, triangles as usize, &selection)]);
             let history = self.read_history(&flip).await?;
             self.dispatches += 4;
             flips.extend(self.take_over(&history));

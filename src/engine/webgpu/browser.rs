@@ -30,6 +30,10 @@ extern "C" {
     #[wasm_bindgen(method, getter, js_name = isFallbackAdapter)]
     pub(super) fn is_fallback_adapter(this: &GpuAdapterInfo) -> Option<bool>;
 
+    /// Calls a function after some milliseconds.
+    #[wasm_bindgen(js_name = setTimeout)]
+    pub(super) fn set_timeout(callback: &JsValue, ms: i32);
+
     /// GPUError and GPUDeviceLostInfo.
     pub(super) type HasMessage;
     #[wasm_bindgen(method, getter)]

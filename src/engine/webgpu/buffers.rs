@@ -1,7 +1,8 @@
 //! The buffers of a mesh. Their sizes are known from the start; only the topology may grow later.
 
-use super::buffer::Buffer;
-use super::device::Device;
+use super::buffer::{Begun, Buffer, Sent};
+use super::device::{Device, bytes_for};
+use super::faults::{Caught, watch};
 use super::history::HISTORY_WORDS;
 use super::params::{DEVICE_WORDS, Params, TopologyOffsets};
 use super::steps::Step;
@@ -30,19 +31,35 @@ pub(super) struct Buffers {
 }
 
 impl Buffers {
-    /// Makes the buffers, and writes the mesh and the steps.
-    pub(super) fn new(gpu: &Device, upload: &Upload) -> Self {
+    /// The buffer of the triangles. A page may draw from it and from the positions without a copy.
+    pub(super) fn triangles(gpu: &Device, words: usize) -> Buffer {
+        gpu.buffer("triangles", words, BufferUsages::STORAGE | BufferUsages::INDEX)
+    }
+
+    pub(super) fn positions(gpu: &Device, words: usize) -> Buffer {
+        gpu.buffer("positions", words, BufferUsages::STORAGE | BufferUsages::VERTEX)
+    }
+
+    /// Makes the buffers except those that were sent, and writes the steps. Returns how many words of the triangles and of
+    /// the positions are written.
+    pub(super) fn new(gpu: &Device, upload: &Upload, sent: Sent) -> (Self, [usize; 2]) {
         let mesh = &upload.mesh;
         let count = mesh.triangle_count();
+        // The words of fixed-point numbers are not those of the page.
+        let positions = sent.positions.filter(|_| !upload.form().is_fixed);
+        let fitting =
+            |sent: Option<Begun>, words| sent.filter(|(buffer, _)| buffer.size() == bytes_for(words));
+        let (triangles, positions) =
+            (fitting(sent.triangles, 3 * count), fitting(positions, upload.words().len()));
+        let written = [&triangles, &positions].map(|sent| sent.as_ref().map_or(0, |sent| sent.1));
         let storage = |label, words| gpu.buffer(label, words, BufferUsages::STORAGE);
         let drawn = |label, words, usage| gpu.buffer(label, words, BufferUsages::STORAGE | usage);
         let step_words = Step::words();
         let buffers = Self {
             uniform: gpu.buffer("params", size_of::<Params>() / 4, BufferUsages::UNIFORM),
             steps: gpu.buffer("steps", step_words.len(), BufferUsages::UNIFORM),
-            // A page may draw from these two buffers without a copy.
-            positions: drawn("positions", upload.words().len(), BufferUsages::VERTEX),
-            triangles: drawn("triangles", 3 * count, BufferUsages::INDEX),
+            positions: positions.map_or_else(|| Self::positions(gpu, upload.words().len()), |sent| sent.0),
+            triangles: triangles.map_or_else(|| Self::triangles(gpu, 3 * count), |sent| sent.0),
             twins: storage("twins", 3 * count),
             choices: storage("choices", 2 * count),
             frontier: storage("frontier", frontier_words(count)),
@@ -55,8 +72,7 @@ impl Buffers {
         };
         gpu.write(&buffers.steps, &step_words);
         gpu.write(&buffers.uniform, &[0; DEVICE_WORDS]);
-        buffers.write(gpu, upload, mesh.triangles());
-        buffers
+        (buffers, written)
     }
 
     /// Records the zeros that the work begins with.
@@ -84,9 +100,25 @@ impl Buffers {
         all.into_iter().chain(floats).map(|buffer| buffer.size()).sum()
     }
 
-    /// Writes the positions and the triangles. An empty slice leaves the triangles as they are.
-    pub(super) fn write(&self, gpu: &Device, upload: &Upload, triangles: &[u32]) {
-        gpu.write_all(&[(&self.triangles, triangles), (&self.positions, upload.words())]);
+    /// Writes the mesh, behind the words of the triangles and of the positions that are written. Returns the faults.
+    pub(super) async fn upload(&self, gpu: &Device, upload: &Upload, written: [usize; 2]) -> Vec<Caught> {
+        let [triangles, positions] = written;
+        let writes = [
+            (&self.triangles, triangles, &upload.mesh.triangles()[triangles..]),
+            (&self.positions, positions, &upload.words()[positions..]),
+        ];
+        let mut faults = gpu.upload(&writes).await;
+        faults.push(watch(&gpu.device, || self.write_floats(gpu, upload)).1);
+        faults
+    }
+
+    /// Writes other positions.
+    pub(super) fn write_positions(&self, gpu: &Device, upload: &Upload) {
+        gpu.write(&self.positions, upload.words());
+        self.write_floats(gpu, upload);
+    }
+
+    fn write_floats(&self, gpu: &Device, upload: &Upload) {
         if let Some(floats) = &self.floats {
             gpu.write(floats, bytemuck::cast_slice(&upload.mesh.positions().to_f32()));
         }

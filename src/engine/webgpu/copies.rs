@@ -19,15 +19,16 @@ use std::time::{Duration, Instant};
 use wgpu::BufferUsages;
 
 /// The most words of one copy to the device, or from it. Longer arrays go in several copies through the same staging
-/// memory, which is far faster than new memory.
-pub(super) const CHUNK: usize = 1 << 22;
+/// memory, which is far faster than new memory. In a browser each copy goes through two processes, and the second begins
+/// when the first has finished: shorter copies overlap more.
+pub(super) const CHUNK: usize = if cfg!(target_arch = "wasm32") { 1 << 20 } else { 1 << 22 };
 
 /// Natively, the fewest words that begin to travel to the device before the host copies the next.
 #[cfg(not(target_arch = "wasm32"))]
 const FEWEST_SUBMITTED: usize = 1 << 18;
 
-/// Copies that the device makes while the host takes one. A browser needs several: each goes through two processes.
-const AHEAD: usize = if cfg!(target_arch = "wasm32") { 3 } else { 2 };
+/// Copies that the device makes while the host takes one.
+const AHEAD: usize = if cfg!(target_arch = "wasm32") { 4 } else { 2 };
 
 /// How long the host polls the device before it sleeps. Many submissions end sooner than a thread wakes up.
 #[cfg(not(target_arch = "wasm32"))]
@@ -36,6 +37,9 @@ const AWAKE: Duration = Duration::from_micros(300);
 /// Words that one thread copies without a break.
 #[cfg(not(target_arch = "wasm32"))]
 pub(super) const PIECE: usize = 1 << 16;
+
+/// Words for a buffer, from a word of it on.
+pub(super) type Write<'a> = (&'a Buffer, usize, &'a [u32]);
 
 /// What to read: `words` words of `buffer`, from word `first` on.
 pub(super) struct Source<'a> {
@@ -164,9 +168,12 @@ impl LongRead<'_> {
 ///
 /// # Errors
 /// [`Error::OutOfMemory`].
-pub(super) fn memory_for(words: usize, reserved: Option<Reserved>) -> Result<Words, Error> {
-    let memory = reserved.and_then(Reserved::words).or_else(|| reserve(words));
-    memory.ok_or(Error::OutOfMemory { bytes: 4 * words as u64, limit: None })
+pub(super) async fn memory_for(words: usize, reserved: Option<Reserved>) -> Result<Words, Error> {
+    let memory = match reserved {
+        Some(reserved) => reserved.await,
+        None => None,
+    };
+    memory.or_else(|| reserve(words)).ok_or(Error::OutOfMemory { bytes: 4 * words as u64, limit: None })
 }
 
 impl Device {
@@ -191,7 +198,7 @@ impl Device {
     ) -> Answer<'_, Words> {
         let read = self.begin_read(buffer, 0..words);
         Box::pin(async move {
-            let mut result = memory_for(words, reserved)?;
+            let mut result = memory_for(words, reserved).await?;
             read.fill(&mut result, 0).await.map(|()| result)
         })
     }
@@ -345,41 +352,29 @@ impl Device {
 
     /// Writes words to the start of `buffer`, before the next submission.
     pub(super) fn write(&self, buffer: &Buffer, words: &[u32]) {
-        self.write_all(&[(buffer, words)]);
+        self.write_all(&[(buffer, 0, words)]);
     }
 
-    /// Writes words to the starts of buffers, before the next submission.
+    /// Writes the arrays of a new mesh. Returns the faults.
     #[cfg(not(target_arch = "wasm32"))]
-    pub(super) fn write_all(&self, writes: &[(&Buffer, &[u32])]) {
+    pub(super) async fn upload(&self, writes: &[Write<'_>]) -> Vec<Caught> {
+        vec![watch(&self.device, || self.write_all(writes)).1]
+    }
+
+    /// Writes words before the next submission, in chunks. While the last chunk travels to the device, the host copies
+    /// the next one to other staging memory.
+    #[cfg(not(target_arch = "wasm32"))]
+    pub(super) fn write_all(&self, writes: &[Write<'_>]) {
         let mut travelling = None;
-        for (buffer, words) in writes {
-            self.write_behind(&mut travelling, buffer, 0, words);
-        }
-    }
-
-    /// Writes words to `buffer` from word `first` on, before the next submission.
-    #[cfg(all(not(target_arch = "wasm32"), feature = "baseline"))]
-    pub(super) fn write_at(&self, buffer: &Buffer, first: usize, words: &[u32]) {
-        self.write_behind(&mut None, buffer, first, words);
-    }
-
-    /// Writes words in chunks. While the last chunk is `travelling` to the device, the host copies the next one to other
-    /// staging memory.
-    #[cfg(not(target_arch = "wasm32"))]
-    fn write_behind(
-        &self,
-        travelling: &mut Option<wgpu::SubmissionIndex>,
-        buffer: &Buffer,
-        first: usize,
-        words: &[u32],
-    ) {
-        for (i, chunk) in words.chunks(CHUNK).enumerate() {
-            self.stage(buffer, 4 * (first + i * CHUNK) as u64, chunk);
-            if chunk.len() >= FEWEST_SUBMITTED
-                && let Some(before) = travelling.replace(self.queue.submit([]))
-            {
-                // The next call that can return an error reports a failure.
-                let _ = self.finish(before);
+        for (buffer, first, words) in writes {
+            for (i, chunk) in words.chunks(CHUNK).enumerate() {
+                self.stage(buffer, 4 * (first + i * CHUNK) as u64, chunk);
+                if chunk.len() >= FEWEST_SUBMITTED
+                    && let Some(before) = travelling.replace(self.queue.submit([]))
+                {
+                    // The next call that can return an error reports a failure.
+                    let _ = self.finish(before);
+                }
             }
         }
     }

@@ -2,6 +2,10 @@
 
 #[cfg(target_arch = "wasm32")]
 use super::browser;
+#[cfg(target_arch = "wasm32")]
+use super::buffer::Busy;
+#[cfg(all(target_arch = "wasm32", feature = "js"))]
+use super::buffer::Sent;
 use super::buffer::{Buffer, Kept};
 use super::compile;
 use super::faults::{Caught, Fault, refuse, unavailable, watch};
@@ -9,12 +13,13 @@ use super::history::Batches;
 use super::kernels::{Kernels, Plan, WORKGROUP_SIZE};
 #[cfg(not(target_arch = "wasm32"))]
 use super::own_device;
-#[cfg(not(target_arch = "wasm32"))]
-use super::pool::Pool;
+use super::pool;
 use super::programs;
 use crate::Error;
 use crate::engine::gpu::self_test::Tested;
 use crate::engine::gpu::upload::Form;
+#[cfg(all(target_arch = "wasm32", feature = "js"))]
+use std::cell::RefCell;
 #[cfg(target_arch = "wasm32")]
 use std::rc::Rc;
 #[cfg(test)]
@@ -56,11 +61,14 @@ pub(crate) struct Device {
     /// Staging buffers for the next reads.
     pub(super) kept_for_reads: Kept,
     /// The buffers of sessions that have ended.
-    #[cfg(not(target_arch = "wasm32"))]
-    pool: Arc<Pool>,
+    pool: pool::Shared,
     /// Staging buffers for the next writes, mapped.
     #[cfg(target_arch = "wasm32")]
     pub(super) kept_for_writes: Rc<Kept>,
+    #[cfg(target_arch = "wasm32")]
+    pub(super) busy_for_writes: Busy,
+    #[cfg(all(target_arch = "wasm32", feature = "js"))]
+    pub(super) sent: RefCell<(Sent, Vec<Caught>)>,
     #[cfg(test)]
     pub(super) asked: Asked,
 }
@@ -84,10 +92,15 @@ fn report(failure: &Failure, message: String) {
     failure.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).get_or_insert(message);
 }
 
+/// The size of a buffer of so many words.
+pub(super) fn bytes_for(words: usize) -> u64 {
+    4 * words.max(4) as u64
+}
+
 fn descriptor(label: &str, words: usize, usage: BufferUsages) -> wgpu::BufferDescriptor<'_> {
     wgpu::BufferDescriptor {
         label: Some(label),
-        size: 4 * words.max(4) as u64,
+        size: bytes_for(words),
         usage: usage | BufferUsages::COPY_DST | BufferUsages::COPY_SRC,
         mapped_at_creation: false,
     }
@@ -277,10 +290,13 @@ impl Device {
             adjacency,
             phases: Mutex::new(phases),
             kept_for_reads: Kept::default(),
-            #[cfg(not(target_arch = "wasm32"))]
-            pool: Arc::default(),
+            pool: pool::Shared::default(),
             #[cfg(target_arch = "wasm32")]
             kept_for_writes: Rc::default(),
+            #[cfg(target_arch = "wasm32")]
+            busy_for_writes: Busy::default(),
+            #[cfg(all(target_arch = "wasm32", feature = "js"))]
+            sent: RefCell::default(),
             #[cfg(test)]
             asked: Asked::default(),
         };
@@ -371,7 +387,6 @@ impl Device {
     pub(super) fn judge_allocation(&self, fault: Option<Fault>) -> Result<(), Error> {
         match fault {
             Some(Fault::OutOfMemory) => {
-                #[cfg(not(target_arch = "wasm32"))]
                 self.pool.close();
                 refuse(format!("{} has no memory left for the mesh", self.adapter))
             }
@@ -389,14 +404,9 @@ impl Device {
     /// binding cannot be.
     pub(super) fn buffer(&self, label: &str, words: usize, usage: BufferUsages) -> Buffer {
         let descriptor = descriptor(label, words, usage);
-        #[cfg(not(target_arch = "wasm32"))]
-        {
-            let kept = self.pool.take(descriptor.size, descriptor.usage);
-            let raw = kept.unwrap_or_else(|| self.device.create_buffer(&descriptor));
-            Buffer::pooled(raw, self.pool.clone())
-        }
-        #[cfg(target_arch = "wasm32")]
-        Buffer::new(self.device.create_buffer(&descriptor))
+        let kept = self.pool.take(descriptor.size, descriptor.usage);
+        let raw = kept.unwrap_or_else(|| self.device.create_buffer(&descriptor));
+        Buffer::pooled(raw, self.pool.clone())
     }
 
     /// Binds buffers in the order of the layout. A size binds only so many bytes; `None` binds the whole buffer.

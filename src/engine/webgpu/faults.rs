@@ -60,18 +60,20 @@ pub(super) fn watch<T>(device: &wgpu::Device, calls: impl FnOnce() -> T) -> (T, 
 pub(super) fn watch<T>(device: &wgpu::Device, calls: impl FnOnce() -> T) -> (T, Caught) {
     let Some(device) = GpuDevice::of(device) else { return (calls(), Box::pin(std::future::ready(None))) };
     device.push_error_scopes();
-    let result = calls();
-    let scopes = device.pop_error_scopes();
-    (result, Box::pin(caught(scopes)))
+    (calls(), caught(&device))
 }
 
 #[cfg(target_arch = "wasm32")]
-async fn caught([memory, internal, validation]: [wasm_bindgen_futures::JsFuture; 3]) -> Option<Fault> {
+#[inline(never)]
+fn caught(device: &GpuDevice) -> Caught {
     use wasm_bindgen::{JsCast, JsValue};
+    let [memory, internal, validation] = device.pop_error_scopes();
     // A lost device may reject these promises. The loss callback reports the loss.
     let error_of = |error: Result<JsValue, JsValue>| error.ok().filter(JsValue::is_object);
-    match (error_of(memory.await), error_of(internal.await).or(error_of(validation.await))) {
-        (Some(_), _) => Some(Fault::OutOfMemory),
-        (None, other) => other.map(|error| Fault::Other(error.unchecked_into::<HasMessage>().message())),
-    }
+    Box::pin(async move {
+        match (error_of(memory.await), error_of(internal.await).or(error_of(validation.await))) {
+            (Some(_), _) => Some(Fault::OutOfMemory),
+            (None, other) => other.map(|error| Fault::Other(error.unchecked_into::<HasMessage>().message())),
+        }
+    })
 }

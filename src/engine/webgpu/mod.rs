@@ -34,11 +34,12 @@ mod moving;
 #[cfg(not(target_arch = "wasm32"))]
 mod own_device;
 mod params;
-#[cfg(not(target_arch = "wasm32"))]
 mod pool;
 mod probe;
 mod programs;
 mod run;
+#[cfg(all(target_arch = "wasm32", feature = "js"))]
+mod sent;
 mod shared;
 mod sources;
 mod staging;
@@ -102,13 +103,13 @@ pub(crate) struct WebGpu {
     input: Option<Arc<Mesh>>,
     /// The mesh, until the host has read the counters.
     unsettled: Option<Arc<Mesh>>,
-    /// The faults of allocating the buffers, until the host has checked them.
-    allocation: Option<Caught>,
+    /// The faults of allocating and writing the buffers, until the host has checked them.
+    faults: Vec<Caught>,
     /// Whether the host reads the counters before the first iteration. If not, it reads results in advance.
     waits: bool,
     /// Whether the triangles stay on the device until somebody asks for them.
     stays: bool,
-    /// Memory for the triangles, if a run has begun that will be asked for them.
+    /// Memory for the triangles, if a run has begun that will be asked for them, or if another thread makes it.
     reserved: Option<Reserved>,
     /// Results that the host has read in advance.
     known: Known,
@@ -148,6 +149,12 @@ impl Engine for WebGpu {
     #[cfg(all(target_arch = "wasm32", feature = "js"))]
     fn set_stays(&mut self, stays: bool) {
         self.stays = stays;
+    }
+
+    #[cfg(all(target_arch = "wasm32", feature = "js"))]
+    fn set_spare(&mut self, spare: Option<js_sys::Object>) {
+        let words = 3 * self.params.triangles as usize;
+        self.reserved = spare.map(|promise| words::promised(promise, words));
     }
 
     #[cfg(all(target_arch = "wasm32", feature = "js"))]
@@ -230,13 +237,14 @@ impl Engine for WebGpu {
 
     #[cfg(all(target_arch = "wasm32", feature = "js"))]
     fn shared_objects(&self) -> Option<SharedObjects> {
+        let object = |buffer: &Buffer| Some(buffer.given().as_webgpu()?.into());
         Some(SharedObjects {
             device: self.gpu.device.as_webgpu()?.into(),
-            positions: self.buffers.floats.as_ref().unwrap_or(&self.buffers.positions).as_webgpu()?.into(),
-            triangles: self.buffers.triangles.as_webgpu()?.into(),
+            positions: object(self.buffers.floats.as_ref().unwrap_or(&self.buffers.positions))?,
+            triangles: object(&self.buffers.triangles)?,
             changes: self
                 .changes_offset()
-                .and_then(|offset| Some((self.buffers.topology.as_webgpu()?.into(), offset as u32))),
+                .and_then(|offset| Some((object(&self.buffers.topology)?, offset as u32))),
         })
     }
 }

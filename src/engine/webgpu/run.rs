@@ -11,7 +11,7 @@ use super::kernels::Kernel;
 use super::known::Known;
 use super::programs::SLICE;
 use super::steps::Step;
-use super::words::{Reserved, Words, put};
+use super::words::{Reserved, Words, put, reserve_ahead};
 use crate::Error;
 use crate::engine::{Answer, Census};
 use crate::mesh::areas::Areas;
@@ -95,7 +95,7 @@ impl WebGpu {
         let rest = if has_triangles { first..triangles } else { 0..0 };
         let rest = gpu.begin_read(&self.buffers.triangles, rest);
         if is_run {
-            self.reserved.get_or_insert_with(|| Reserved::begin(triangles));
+            self.reserved.get_or_insert_with(|| reserve_ahead(triangles));
         }
         self.check_allocation().await?;
         let read = pending.finished(&gpu).await?;
@@ -110,7 +110,7 @@ impl WebGpu {
         if !self.waits {
             self.known.counts = Some(counts_of(&history));
         }
-        if has_triangles && let Ok(mut triangles) = memory_for(triangles, self.reserved.take()) {
+        if has_triangles && let Ok(mut triangles) = memory_for(triangles, self.reserved.take()).await {
             read.fill(2, &mut triangles, 0)?;
             rest.fill(&mut triangles, first).await?;
             self.known.triangles = Some(triangles);
@@ -160,7 +160,7 @@ impl WebGpu {
             return Box::pin(async move {
                 self.check_allocation().await?;
                 self.gpu.check_loss().await?;
-                let mut result = memory_for(input.triangles().len(), reserved)?;
+                let mut result = memory_for(input.triangles().len(), reserved).await?;
                 put(&mut result, 0, input.triangles());
                 Ok(result)
             });

@@ -2,6 +2,8 @@
 
 use super::WebGpu;
 use super::adjacency::{self, COUNTERS, Found, Scratch};
+#[cfg(not(all(target_arch = "wasm32", feature = "js")))]
+use super::buffer::Sent;
 use super::buffers::Buffers;
 use super::faults::{refuse, watch};
 use super::history::{ALL, ENTRIES, Entry, FLIPPED, SEVERAL_FANS};
@@ -44,10 +46,17 @@ impl WebGpu {
     pub(in crate::engine) async fn begun(gpu: Handle, upload: Upload, waits: bool) -> Result<Self, Error> {
         refuse_large_mesh(&gpu, &upload)?;
         let kernels = gpu.phases(upload.form()).await?;
+        #[cfg(all(target_arch = "wasm32", feature = "js"))]
+        let (sent, mut faults) = gpu.take_sent();
+        #[cfg(not(all(target_arch = "wasm32", feature = "js")))]
+        let (sent, mut faults) = (Sent::default(), Vec::new());
+        let create = || (Buffers::new(&gpu, &upload, sent), Scratch::new(&gpu, &upload.mesh));
+        let (((buffers, written), scratch), created) = watch(&gpu.device, create);
+        faults.push(created);
+        faults.extend(buffers.upload(&gpu, &upload, written).await);
         let mut start = Instant::now();
         let begin = || {
             let mesh = &upload.mesh;
-            let (buffers, scratch) = (Buffers::new(&gpu, &upload), Scratch::new(&gpu, mesh));
             // The mesh travels to the device while the host records the work on it.
             #[cfg(not(target_arch = "wasm32"))]
             let travelling = gpu.queue.submit([]);
@@ -70,7 +79,7 @@ impl WebGpu {
                 counters: scratch.counters,
                 input: None,
                 unsettled: None,
-                allocation: None,
+                faults,
                 waits,
                 stays: false,
                 reserved: None,
@@ -89,7 +98,7 @@ impl WebGpu {
             result
         };
         let (mut result, caught) = watch(&gpu.device, begin);
-        result.allocation = Some(caught);
+        result.faults.push(caught);
         if waits {
             result.check_allocation().await?;
         }
@@ -105,10 +114,10 @@ impl WebGpu {
     /// # Errors
     /// Those of [`Device::allocated`](super::Device::allocated).
     pub(super) async fn check_allocation(&mut self) -> Result<(), Error> {
-        match self.allocation.take() {
-            Some(caught) => self.gpu.judge_allocation(caught.await),
-            None => Ok(()),
+        for caught in std::mem::take(&mut self.faults) {
+            self.gpu.judge_allocation(caught.await)?;
         }
+        Ok(())
     }
 
     /// Records the kernels that depend on the positions: in 2D the turns of the stars and the signs of the triangles,
@@ -261,7 +270,7 @@ impl WebGpu {
             self.params.deviation = upload.deviation;
             (self.params.winding, self.params.update) = (WINDING_UNKNOWN, 0);
             let calls = || {
-                self.buffers.write(&self.gpu, &upload, &[]);
+                self.buffers.write_positions(&self.gpu, &upload);
                 self.prepare();
             };
             self.gpu.checked(calls).await?;

@@ -4,8 +4,9 @@
 use crate::system::{memory, threads::Threads};
 #[cfg(target_arch = "wasm32")]
 use js_sys::Uint32Array;
+use std::pin::Pin;
 #[cfg(not(target_arch = "wasm32"))]
-use std::thread::{Builder, JoinHandle};
+use std::thread::Builder;
 #[cfg(target_arch = "wasm32")]
 use wasm_bindgen::prelude::*;
 
@@ -67,40 +68,34 @@ pub(super) fn reserve(words: usize) -> Option<Words> {
     Some(reserved)
 }
 
+/// Memory for a result that is read later, if available.
+pub(super) type Reserved = Pin<Box<dyn Future<Output = Option<Words>>>>;
+
 /// From so many words on, memory is reserved before it is needed: with fewer, the thread costs more than it saves. In
 /// debug builds it is small, so that small meshes test it.
 #[cfg(not(target_arch = "wasm32"))]
 const FEWEST_AHEAD: usize = if cfg!(debug_assertions) { 1000 } else { 1 << 20 };
 
-/// Memory for a result that is read later. The system allocates each page at its first write, which takes longer than a
-/// copy. So the threads write to each page while the GPU works.
+/// Begins to reserve memory. The system allocates each page at its first write, which takes longer than a copy. So the
+/// threads write to each page while the GPU works.
 #[cfg(not(target_arch = "wasm32"))]
-pub(super) struct Reserved(Option<JoinHandle<Option<Words>>>);
-
-#[cfg(not(target_arch = "wasm32"))]
-impl Reserved {
-    pub(super) fn begin(words: usize) -> Self {
-        let touch = move || memory::check(4 * words as u64).ok().map(|()| Threads::default().zeros(words));
-        Self(if words < FEWEST_AHEAD { None } else { Builder::new().spawn(touch).ok() })
-    }
-
-    /// The memory, if available.
-    pub(super) fn words(self) -> Option<Words> {
-        self.0?.join().ok()?
-    }
+pub(super) fn reserve_ahead(words: usize) -> Reserved {
+    let touch = move || memory::check(4 * words as u64).ok().map(|()| Threads::default().zeros(words));
+    let thread = if words < FEWEST_AHEAD { None } else { Builder::new().spawn(touch).ok() };
+    Box::pin(async { thread?.join().ok()? })
 }
 
 #[cfg(target_arch = "wasm32")]
-pub(super) struct Reserved(Option<Words>);
+pub(super) fn reserve_ahead(words: usize) -> Reserved {
+    Box::pin(std::future::ready(reserve(words)))
+}
 
-#[cfg(target_arch = "wasm32")]
-impl Reserved {
-    pub(super) fn begin(words: usize) -> Self {
-        Self(reserve(words))
-    }
-
-    /// The memory, if available.
-    pub(super) fn words(self) -> Option<Words> {
-        self.0
-    }
+/// The memory that another thread makes: a promise of a `Uint32Array`, or of nothing.
+#[cfg(all(target_arch = "wasm32", feature = "js"))]
+pub(super) fn promised(promise: js_sys::Object, words: usize) -> Reserved {
+    let promise: js_sys::Promise = promise.unchecked_into();
+    Box::pin(async move {
+        let made = wasm_bindgen_futures::JsFuture::from(promise).await.ok()?.dyn_into::<Words>().ok();
+        made.filter(|made| made.length() as usize == words)
+    })
 }

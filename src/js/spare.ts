@@ -1,0 +1,53 @@
+/**
+ * Memory for results that a GPU writes, from a worker. The system provides new memory page by page, at the first write
+ * to each. For a large result that takes longer than the GPU needs, so a worker does it meanwhile. The worker starts with
+ * the first large mesh. Until it has answered, and wherever it cannot be started, the page makes the memory itself.
+ */
+
+import { EdgeflipError } from './error.js';
+import type { IndexedMesh } from './mesh.js';
+import { Remote } from './remote.js';
+import type { GpuSettings } from './settings.js';
+import type { Calls } from './thread.js';
+import { script } from './threads.js';
+import type { whyCpu } from './wasm/edgeflip.js';
+
+let worker: Remote<Calls> | undefined;
+let isReady = false;
+
+function start(): void {
+  const started: Remote<Calls> = new Remote<Calls>(script, (message = 'it could not be loaded') => {
+    isReady = false;
+    started.end(new EdgeflipError('load-failed', `the worker has ended: ${message}`));
+  });
+  worker = started;
+  started.call('reserve', [1]).then(
+    () => (isReady = true),
+    () => undefined,
+  );
+}
+
+/**
+ * Memory for the result of a mesh that goes to a GPU; the promise may have none. `undefined` for other meshes, and if no
+ * worker can make it, or not yet.
+ *
+ * @param why - Says why `'auto'` takes the CPU.
+ */
+export function spareFor(
+  { positions, indices, dimension }: IndexedMesh,
+  settings: GpuSettings,
+  why: typeof whyCpu,
+): Promise<Uint32Array | undefined> | undefined {
+  const { backend = 'auto', order, leavesCpu, device } = settings;
+  // On a device of the page, triangles mostly stay.
+  if (device || order === 'any' || (backend !== 'auto' && backend !== 'webgpu')) return undefined;
+  const isSure = leavesCpu || backend === 'webgpu';
+  const isDouble = positions instanceof Float64Array;
+  if (!isSure && why(indices.length / 3, dimension, isDouble, 1, settings) !== undefined) return undefined;
+  try {
+    if (!worker) start();
+    return isReady ? worker!.call('reserve', [indices.length]).catch(() => undefined) : undefined;
+  } catch {
+    return undefined;
+  }
+}
