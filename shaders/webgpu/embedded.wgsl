@@ -20,7 +20,8 @@ const FIRST: u32 = 2u;
 const LAST: u32 = 3u;
 const VERTEX_WORDS: u32 = 4u;
 
-// With many unreferenced vertices, there may be more vertices than memory before the bits of the chunks.
+// There may be more vertices than memory before the bits of the chunks: with many unreferenced ones, or in a mesh that is
+// mostly boundary. Then Select runs.
 fn counted_vertices() -> u32 {
     return min(params.vertices, doubts() / VERTEX_WORDS);
 }

@@ -228,6 +228,21 @@ fn open_fans_are_embedded_if_they_go_less_than_round() {
     assert!(has_selection(two_fans(triangles)));
 }
 
+/// A thread of the pool that waits for a GPU does no other work of the pool.
+#[cfg(feature = "threads")]
+#[test]
+fn all_threads_of_the_pool_wait_for_the_gpu_at_once() {
+    use rayon::iter::{IntoParallelIterator, ParallelIterator};
+    let mesh = Arc::new(families::by_name("random 30").unwrap());
+    let run = |_| {
+        let (_, mut gpu) = engines(&mesh, any_deviation(10.0));
+        block_on(gpu.iterate(u32::MAX)).unwrap();
+        block_on(gpu.triangles()).unwrap()
+    };
+    let results: Vec<_> = (0..4 * rayon::current_num_threads()).into_par_iter().map(run).collect();
+    assert!(results.iter().all(|result| *result == results[0]));
+}
+
 #[test]
 fn an_empty_mesh_is_done() {
     let mesh = Arc::new(Mesh::new(crate::Dimension::Two, Vec::<f32>::new(), Vec::new()).unwrap());

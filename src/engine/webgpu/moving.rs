@@ -35,7 +35,8 @@ impl WebGpu {
         if self.unsettled.is_some() {
             return refuse("an update begins only after the start of the session has ended".to_owned());
         }
-        (self.known, self.input) = (super::Known::default(), None);
+        // Who draws from the device does not read the triangles: no memory waits for them.
+        (self.known, self.input, self.reserved) = (super::Known::default(), None, None);
         if self.params.update == 0 {
             self.params.first = 0;
         }

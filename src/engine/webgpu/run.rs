@@ -149,8 +149,8 @@ impl WebGpu {
         })
     }
 
-    /// The triangles, unless the last submission has read them or no edge has flipped. In a browser, a submission without
-    /// flips has read them too.
+    /// The triangles, read from the device unless the last submission has read them. Natively, those of the input if no
+    /// edge has flipped.
     pub(super) fn known_triangles(&mut self) -> Answer<'_, Words> {
         if let Some(triangles) = self.known.triangles.take() {
             return Box::pin(std::future::ready(Ok(triangles)));

@@ -12,6 +12,7 @@ impl Device {
     /// Sends as much of the arrays as the mapped staging buffers take: vertex indices, and the words of 32-bit positions.
     /// The session that begins in the same turn of the event loop takes them.
     pub(crate) fn send(&self, indices: &Uint32Array, positions: Option<&Uint32Array>) {
+        self.forget_sent();
         let most = self.largest_binding() / 4;
         let mut arrays = [Some(indices), positions].into_iter().flatten();
         if self.kept_for_writes.count() == 0 || arrays.any(|words| u64::from(words.length()) > most) {

@@ -4,9 +4,13 @@
 use crate::system::{memory, threads::Threads};
 #[cfg(target_arch = "wasm32")]
 use js_sys::Uint32Array;
+#[cfg(not(target_arch = "wasm32"))]
+use std::hint::black_box;
+#[cfg(not(target_arch = "wasm32"))]
+use std::num::NonZero;
 use std::pin::Pin;
 #[cfg(not(target_arch = "wasm32"))]
-use std::thread::Builder;
+use std::thread::{Builder, available_parallelism};
 #[cfg(target_arch = "wasm32")]
 use wasm_bindgen::prelude::*;
 
@@ -56,7 +60,6 @@ extern "C" {
 }
 
 /// Words of a memory page. Pages may be larger.
-#[cfg(target_arch = "wasm32")]
 const PAGE: usize = 1024;
 
 /// Memory for `words` words, if available. The system allocates each page at its first write, which takes longer than a
@@ -76,13 +79,28 @@ pub(super) type Reserved = Pin<Box<dyn Future<Output = Option<Words>>>>;
 #[cfg(not(target_arch = "wasm32"))]
 const FEWEST_AHEAD: usize = if cfg!(debug_assertions) { 1000 } else { 1 << 20 };
 
-/// Begins to reserve memory. The system allocates each page at its first write, which takes longer than a copy. So the
-/// threads write to each page while the GPU works.
+/// Begins to reserve memory. The system allocates each page at its first write, which takes longer than a copy. So
+/// threads write to each page while the GPU works. They are not those of the pool: all of these may wait for a GPU.
 #[cfg(not(target_arch = "wasm32"))]
 pub(super) fn reserve_ahead(words: usize) -> Reserved {
-    let touch = move || memory::check(4 * words as u64).ok().map(|()| Threads::default().zeros(words));
+    let touch = move || memory::check(4 * words as u64).ok().map(|()| touched(words));
     let thread = if words < FEWEST_AHEAD { None } else { Builder::new().spawn(touch).ok() };
     Box::pin(async { thread?.join().ok()? })
+}
+
+/// Zeros, after a write to each page.
+#[cfg(not(target_arch = "wasm32"))]
+fn touched(words: usize) -> Words {
+    let mut result = vec![0; words];
+    let piece = words.div_ceil(available_parallelism().map_or(1, NonZero::get)).max(PAGE);
+    let touch = |piece: &mut [u32]| piece.iter_mut().step_by(PAGE).for_each(|word| *word = black_box(0));
+    std::thread::scope(|scope| {
+        for piece in result.chunks_mut(piece) {
+            // Without a thread, the pages of the piece wait for the copy.
+            let _ = Builder::new().spawn_scoped(scope, move || touch(piece));
+        }
+    });
+    result
 }
 
 #[cfg(target_arch = "wasm32")]
