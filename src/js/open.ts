@@ -4,6 +4,7 @@ import { messageOf } from './given.js';
 import { isLoaded, loadCore, moduleOfThreads } from './load.js';
 import { copied, type IndexedMesh } from './mesh.js';
 import type { GpuSettings, Settings } from './settings.js';
+import { spareFor } from './spare.js';
 import { type ModuleSession, threadCount, ThreadsSession, threadsOf, whyOneThread } from './threads.js';
 import { Session, whyCpu } from './wasm/edgeflip.js';
 
@@ -58,15 +59,6 @@ async function openAlone(mesh: IndexedMesh, settings: GpuSettings, settles = fal
 
 /** The fewest indices of a mesh for whose result a worker makes the memory. */
 const FEWEST_SPARE = 2 ** 19;
-
-let spares: typeof import('./spare.js') | undefined;
-
-function spareFor(mesh: IndexedMesh, settings: GpuSettings): GpuSettings['spare'] {
-  if (spares) return spares.spareFor(mesh, settings, whyCpu);
-  // The first call only starts the worker.
-  import('./spare.js').then((module) => (spares = module).spareFor(mesh, settings, whyCpu)).catch(() => undefined);
-  return undefined;
-}
 
 /** A copy of the mesh, once the module is loaded: the caller's arrays must not be read after a wait. */
 async function whileLoading(mesh: IndexedMesh): Promise<IndexedMesh> {

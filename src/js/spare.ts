@@ -10,7 +10,7 @@ import { Remote } from './remote.js';
 import type { GpuSettings } from './settings.js';
 import type { Calls } from './thread.js';
 import { script } from './threads.js';
-import type { whyCpu } from './wasm/edgeflip.js';
+import { whyCpu } from './wasm/edgeflip.js';
 
 let worker: Remote<Calls> | undefined;
 let isReady = false;
@@ -30,20 +30,17 @@ function start(): void {
 /**
  * Memory for the result of a mesh that goes to a GPU; the promise may have none. `undefined` for other meshes, and if no
  * worker can make it, or not yet.
- *
- * @param why - Says why `'auto'` takes the CPU.
  */
 export function spareFor(
   { positions, indices, dimension }: IndexedMesh,
   settings: GpuSettings,
-  why: typeof whyCpu,
 ): Promise<Uint32Array | undefined> | undefined {
   const { backend = 'auto', order, leavesCpu, device } = settings;
   // On a device of the page, triangles mostly stay.
   if (device || order === 'any' || (backend !== 'auto' && backend !== 'webgpu')) return undefined;
   const isSure = leavesCpu || backend === 'webgpu';
   const isDouble = positions instanceof Float64Array;
-  if (!isSure && why(indices.length / 3, dimension, isDouble, 1, settings) !== undefined) return undefined;
+  if (!isSure && whyCpu(indices.length / 3, dimension, isDouble, 1, settings) !== undefined) return undefined;
   try {
     if (!worker) start();
     return isReady ? worker!.call('reserve', [indices.length]).catch(() => undefined) : undefined;
