@@ -4,6 +4,9 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { expected, meshFile, sharedPage } from './page.mjs';
 
+/** A mark that only this stop has. */
+const MARKS = { 'Label.': 'candidate', 'Select.': 'choice', 'Flip.': 'fresh', 'Update.': 'link' };
+
 test('a small mesh stops at Label, Select, Flip and Update, with the marks of each', async () => {
   const page = await sharedPage('random 12');
   const { rows } = await expected(await meshFile('random 12', 'twelve.off'));
@@ -11,7 +14,8 @@ test('a small mesh stops at Label, Select, Flip and Update, with the marks of ea
   const stop = async (key, name) => {
     await page.page.keyboard.press(key);
     const { status } = await page.until(name, (seen) => seen.status.startsWith(name));
-    await page.page.waitForFunction(() => new Promise((done) => requestAnimationFrame(() => done(true))));
+    // The marks may come some frames after the status.
+    await page.page.waitForFunction((kind) => document.querySelector(`#thread .phase.${kind}`), MARKS[name]);
     return status;
   };
   const marks = () =>
