@@ -248,8 +248,7 @@ for (const [what, act] of [
       signs: [...window.seen.signs],
     }));
     assert.ok(covered > 3, `${covered} frames`);
-    // Two were seen on two cores with a software GPU; it is not known why.
-    assert.ok(bare <= 2, `${bare} bare frames`);
+    assert.equal(bare, 0);
     assert.match(signs[0] ?? '', /Loading the tool/);
     assert.equal(await first.page.evaluate(() => 'opening' in document.body.dataset), false);
     assert.equal(await first.page.isVisible('#first'), false);
