@@ -11,8 +11,8 @@
 #import verdicts
 
 var<workgroup> flips: atomic<u32>;
-// The work of Flip: how many triangles, the offset of their list or NONE, and how the next
-// iteration finds its own.
+// The work of Flip: how many triangles, the offset of their list or NONE, and how the next iteration
+// finds its own.
 var<workgroup> known: vec3u;
 var<workgroup> tail_first: u32;
 var<workgroup> tail_count: u32;
