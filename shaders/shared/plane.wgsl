@@ -34,7 +34,7 @@ fn rounded_verdict_on(a: Point, b: Point, c: Point, d: Point, winding: i32) -> u
     q *= scale;
     r *= scale;
     s *= scale;
-    let in_circle = winding * in_circle_sign(p, q, r, s);
+    let in_circle = winding * in_circle_sign(angle_of(p, q), angle_of(s, r));
     var verdict = select(select(DELAUNAY, LABELLED, in_circle < 0), UNDECIDED, in_circle == 0);
     if verdict == LABELLED && !is_strict() {
         let area = min(winding * area_sign(r, p), winding * area_sign(q, s));
@@ -43,17 +43,20 @@ fn rounded_verdict_on(a: Point, b: Point, c: Point, d: Point, winding: i32) -> u
     return verdict;
 }
 
+// The cross product of two vectors, the dot product, and the sums of the sizes of the terms of each.
+alias Angle = vec4f;
+
+fn angle_of(u: vec2f, v: vec2f) -> Angle {
+    let cross = vec2f(u.x * v.y, u.y * v.x);
+    let dot = u * v;
+    return Angle(cross.x - cross.y, dot.x + dot.y, abs(cross.x) + abs(cross.y), abs(dot.x) + abs(dot.y));
+}
+
 // The sign of cross(λ)·dot(γ) + dot(λ)·cross(γ), with the angles λ at c and γ at d: -1 if λ + γ > π, for
 // counter-clockwise triangles; 0 if the filter cannot decide.
-fn in_circle_sign(p: vec2f, q: vec2f, r: vec2f, s: vec2f) -> i32 {
-    let cross1 = vec2f(p.x * q.y, p.y * q.x);
-    let dot1 = p * q;
-    let cross2 = vec2f(s.x * r.y, s.y * r.x);
-    let dot2 = s * r;
-    let value = (cross1.x - cross1.y) * (dot2.x + dot2.y) + (dot1.x + dot1.y) * (cross2.x - cross2.y);
-    let magnitude = (abs(cross1.x) + abs(cross1.y)) * (abs(dot2.x) + abs(dot2.y))
-        + (abs(dot1.x) + abs(dot1.y)) * (abs(cross2.x) + abs(cross2.y));
-    return filtered_sign(value, PLANE_BOUND * magnitude + PLANE_FLUSHED);
+fn in_circle_sign(at_c: Angle, at_d: Angle) -> i32 {
+    let value = at_c.x * at_d.y + at_c.y * at_d.x;
+    return filtered_sign(value, PLANE_BOUND * (at_c.z * at_d.w + at_c.w * at_d.z) + PLANE_FLUSHED);
 }
 
 // The sign of u × v, twice the area of a triangle; 0 where the filter cannot decide.

@@ -50,7 +50,7 @@ fn filtered_signs(a: Point, b: Point, c: Point, d: Point, is_precise: bool) -> S
 fn rounded_signs(a: Point, b: Point, c: Point, d: Point, is_precise: bool) -> Signs {
     let quad = quad_of(a, b, c, d);
     let old = old_normals(quad, is_precise);
-    var signs = Signs(angle_sum_sign(quad, old), 1, 1, 1);
+    var signs = Signs(angle_sum_sign(old[0], old[1], sized_dot(quad[0], quad[1]), sized_dot(quad[3], quad[2])), 1, 1, 1);
     if signs.x <= 0 {
         let updated = new_normals(quad, is_precise);
         signs = Signs(signs.x, angle_sign(old), angle_sign(updated), turn_sign(old, updated));
@@ -58,11 +58,16 @@ fn rounded_signs(a: Point, b: Point, c: Point, d: Point, is_precise: bool) -> Si
     return signs;
 }
 
-fn angle_sum_sign(quad: Quad, old: Normals) -> i32 {
-    let n1 = old[0].xyz;
-    let n2 = old[1].xyz;
-    let value = sqrt(dot(n1, n1)) * dot(quad[3], quad[2]) + sqrt(dot(n2, n2)) * dot(quad[0], quad[1]);
-    return sign_of(value, max(old[0].w * (size(quad[3]) * size(quad[2])), old[1].w * (size(quad[0]) * size(quad[1]))));
+// The sign of |n|·(r·s) + |m|·(p·q), for the normals n of (a, b, c) and m of (b, a, d), and for both dot products with the
+// products of the sizes of their vectors.
+fn angle_sum_sign(n: Normal, m: Normal, at_c: vec2f, at_d: vec2f) -> i32 {
+    let value = sqrt(dot(n.xyz, n.xyz)) * at_d.x + sqrt(dot(m.xyz, m.xyz)) * at_c.x;
+    return sign_of(value, max(n.w * at_d.y, m.w * at_c.y));
+}
+
+// The dot product of two vectors, and the product of their sizes.
+fn sized_dot(u: vec3f, v: vec3f) -> vec2f {
+    return vec2f(dot(u, v), size(u) * size(v));
 }
 
 fn turn_sign(old: Normals, updated: Normals) -> i32 {

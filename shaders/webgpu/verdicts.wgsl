@@ -2,12 +2,14 @@
 #import mesh
 #import moving
 #import plane if plane
+#import plane_together if plane
 #import points
 #import space if space
+#import space_together if space
 #import state
 
-// The verdicts by the fast filter; UNDECIDED if it does not decide. Edges that may not flip get DELAUNAY. No test waits for
-// a load of another edge.
+// The verdicts by fast filters; UNDECIDED if none decides. Edges that may not flip get DELAUNAY. First the three edges are
+// tested together, so that no test waits for a load of another edge; then those that are left, one by one.
 fn verdicts_on(t: u32) -> vec3u {
     let winding = select(1, -1, is_clockwise(t));
     let own = vec3u(3u * t, 3u * t + 1u, 3u * t + 2u);
@@ -21,12 +23,31 @@ fn verdicts_on(t: u32) -> vec3u {
     let beyond_ab = position(vertex(prev(others.x)));
     let beyond_bc = position(vertex(prev(others.y)));
     let beyond_ca = position(vertex(prev(others.z)));
-    let verdicts = vec3u(
-        verdict_on(a, b, c, beyond_ab, winding),
-        verdict_on(b, c, a, beyond_bc, winding),
-        verdict_on(c, a, b, beyond_ca, winding),
-    );
-    return select(vec3u(DELAUNAY), verdicts, may_flip);
+    var verdicts = vec3u(UNDECIDED);
+    if !leaves_some() {
+        verdicts = verdicts_together(a, b, c, beyond_ab, beyond_bc, beyond_ca, winding);
+    }
+    verdicts = select(vec3u(DELAUNAY), verdicts, may_flip);
+    var left = dot(vec3u(verdicts == vec3u(UNDECIDED)), vec3u(1u, 2u, 4u));
+    while left != 0u {
+        let k = firstTrailingBit(left);
+        left &= left - 1u;
+        verdicts = with_verdict(verdicts, k, verdict_at_edge(3u * t + k, winding, false));
+    }
+    return verdicts;
+}
+
+// The verdict on the edge of `h`, which has a twin.
+fn verdict_at_edge(h: u32, winding: i32, is_close: bool) -> u32 {
+    let a = position(vertex(h));
+    let b = position(vertex(next(h)));
+    let c = position(vertex(prev(h)));
+    let d = position(vertex(prev(twin(h))));
+    var verdict = verdict_on(a, b, c, d, winding);
+    if is_close && verdict == UNDECIDED {
+        verdict = close_verdict_on(a, b, c, d, winding);
+    }
+    return verdict;
 }
 
 fn verdict_on(a: Point, b: Point, c: Point, d: Point, winding: i32) -> u32 {
@@ -49,14 +70,7 @@ fn close_verdicts_on(t: u32, is_census: bool) -> vec3u {
         let entry = twin_entry(h);
         var verdict = DELAUNAY;
         if select(entry < LOCKED, entry != NONE && h < unflagged(entry), is_census) {
-            let a = position(vertex(h));
-            let b = position(vertex(next(h)));
-            let c = position(vertex(prev(h)));
-            let d = position(vertex(prev(unflagged(entry))));
-            verdict = verdict_on(a, b, c, d, winding);
-            if verdict == UNDECIDED {
-                verdict = close_verdict_on(a, b, c, d, winding);
-            }
+            verdict = verdict_at_edge(h, winding, true);
         }
         verdicts = vec3u(verdicts.yz, verdict);
     }
