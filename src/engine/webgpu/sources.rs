@@ -46,13 +46,17 @@ const READS: [&str; 2] = ["reads", "sweep"];
 const WRITES: [&str; 2] = ["writes", "tail"];
 
 fn phase(file: &str, form: Form, [history, guard]: [&str; 2]) -> String {
+    compose::compose("webgpu", file, &choices(form, history, guard), &text_of)
+}
+
+fn choices<'a>(form: Form, history: &'a str, guard: &'a str) -> [&'a str; 5] {
     let dimension = match form.dimension {
         Dimension::Two => "plane",
         Dimension::Three => "space",
     };
     let coordinates = if form.is_fixed { "fixed" } else { "floats" };
     let deviation = if form.has_deviation { "deviation" } else { "any_deviation" };
-    compose::compose("webgpu", file, &[dimension, coordinates, deviation, history, guard], &text_of)
+    [dimension, coordinates, deviation, history, guard]
 }
 
 fn text_of(path: &str) -> Option<&'static str> {
@@ -114,5 +118,37 @@ mod tests {
         assert_eq!(compose::compose("webgpu", "a", &[], &text_of), "// shared/a.wgsl\n// A.\n#import b\n");
         let text = compose::compose("webgpu", "a", &["d"], &text_of);
         assert_eq!(text, "// shared/a.wgsl\n// A.\n#import b\n#import c if d\n");
+    }
+
+    #[path = "../../../../shaders/shorten.rs"]
+    mod shorten;
+
+    /// What browsers download: the same kernels.
+    #[test]
+    fn shortened_files_have_the_same_kernels() {
+        let mut texts: Vec<String> = FILES.iter().map(|&(_, text)| text.to_owned()).collect();
+        shorten::shorten(&mut texts);
+        let shortened = |path: &str| {
+            FILES.iter().zip(&texts).find(|((name, _), _)| *name == path).map(|(_, text)| text.as_str())
+        };
+        let original = |path: &str| FILES.iter().find(|(name, _)| *name == path).map(|&(_, text)| text);
+        let entries = |file: &str, choices: &[&str], text_of: &dyn Fn(&str) -> Option<&str>| {
+            let source = compose::compose("webgpu", file, choices, &|path| {
+                text_of(path).map(|text| -> &'static str { text.to_owned().leak() })
+            });
+            let module = wgpu::naga::front::wgsl::parse_str(&source)
+                .unwrap_or_else(|error| panic!("{file}: {}", error.emit_to_string(&source)));
+            let overrides = module.overrides.iter().map(|(_, named)| named.name.clone().unwrap());
+            module.entry_points.iter().map(|entry| entry.name.clone()).chain(overrides).collect::<Vec<_>>()
+        };
+        for form in Form::ALL {
+            for (file, [history, guard]) in [("sweeps", READS), ("decide", READS), ("writes", WRITES)] {
+                let choices = choices(form, history, guard);
+                assert_eq!(entries(file, &choices, &shortened), entries(file, &choices, &original), "{file}");
+            }
+        }
+        for file in ["adjacency", "probe"] {
+            assert_eq!(entries(file, &[], &shortened), entries(file, &[], &original), "{file}");
+        }
     }
 }
