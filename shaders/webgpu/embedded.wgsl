@@ -161,23 +161,35 @@ fn add_signs(found: u32, local: u32) {
     }
 }
 
+// The bits of as many vertices as a workgroup has invocations.
+const WORDS: u32 = WORKGROUP_SIZE / 32u;
+var<workgroup> bits: array<atomic<u32>, WORDS>;
+
 // Writes a bit for each vertex, and notes whether some star is not embedded. All signs are known now, so the iterations
 // can begin.
 @compute @workgroup_size(WORKGROUP_SIZE)
-fn mark_embedded(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
-    if id.x == 0u {
+fn mark_embedded(
+    @builtin(workgroup_id) group: vec3u,
+    @builtin(local_invocation_index) local: u32,
+    @builtin(num_workgroups) groups: vec3u,
+) {
+    if group.x == 0u && local == 0u {
         let are_both = (history_word(COUNTED) & (NEGATIVE | POSITIVE)) == (NEGATIVE | POSITIVE);
         begin_history(are_both && params.winding == WINDING_UNKNOWN);
     }
-    for (var word = id.x; word < (params.vertices + 31u) / 32u; word += groups.x * WORKGROUP_SIZE) {
-        var bits = 0u;
-        let end = min(32u * word + 32u, params.vertices);
-        for (var v = 32u * word; v < min(end, counted_vertices()); v++) {
-            bits |= u32(is_star_embedded(v)) << (v % 32u);
+    for (var first = group.x * WORKGROUP_SIZE; first < params.vertices; first += groups.x * WORKGROUP_SIZE) {
+        if first + local < counted_vertices() && is_star_embedded(first + local) {
+            atomicOr(&bits[local / 32u], 1u << (local % 32u));
         }
-        topology[params.embedded + word] = bits;
-        if countOneBits(bits) < end - 32u * word {
-            atomicOr(&history[COUNTED], UNEMBEDDED);
+        workgroupBarrier();
+        let begin = first + 32u * local;
+        if local < WORDS && begin < params.vertices {
+            let word = atomicExchange(&bits[local], 0u);
+            topology[params.embedded + begin / 32u] = word;
+            if countOneBits(word) < min(32u, params.vertices - begin) {
+                atomicOr(&history[COUNTED], UNEMBEDDED);
+            }
         }
+        workgroupBarrier();
     }
 }
