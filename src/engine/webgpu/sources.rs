@@ -2,6 +2,9 @@
 
 #[path = "../../../shaders/compose.rs"]
 mod compose;
+#[cfg(test)]
+#[path = "../../../shaders/shorten.rs"]
+mod shorten;
 
 use crate::Dimension;
 use crate::engine::gpu::upload::Form;
@@ -119,9 +122,6 @@ mod tests {
         let text = compose::compose("webgpu", "a", &["d"], &text_of);
         assert_eq!(text, "// shared/a.wgsl\n// A.\n#import b\n#import c if d\n");
     }
-
-    #[path = "../../../../shaders/shorten.rs"]
-    mod shorten;
 
     /// What browsers download: the same kernels.
     #[test]
