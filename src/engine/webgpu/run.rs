@@ -22,6 +22,8 @@ pub(super) const IS_NATIVE: bool = cfg!(not(target_arch = "wasm32"));
 /// The most workgroups of exact arithmetic: enough for a large GPU. On drivers that end loops too early, each workgroup
 /// decides one slice.
 const MOST_DECIDING: u32 = 1024;
+/// A software GPU takes long to begin a workgroup with barriers.
+const MOST_OF_SOFTWARE: u32 = 16;
 /// So many keep the indices in `decide.wgsl` below 2^32, and suffice for 16 million triangles.
 const MOST_SLICES: u32 = 1 << 21;
 /// Dispatches of the counts.
@@ -262,7 +264,11 @@ impl WebGpu {
         if kernel != Kernel::Decide {
             return pass.dispatch_workgroups(self.gpu.workgroups(triangles), 1, 1);
         }
-        let most = if self.gpu.ends_loops_early { MOST_SLICES } else { MOST_DECIDING };
+        let most = match (self.gpu.ends_loops_early, self.gpu.is_software) {
+            (true, _) => MOST_SLICES,
+            (false, true) => MOST_OF_SOFTWARE,
+            (false, false) => MOST_DECIDING,
+        };
         let groups = triangles.div_ceil(SLICE).clamp(1, most);
         pass.dispatch_workgroups(groups.min(MOST_WORKGROUPS), groups.div_ceil(MOST_WORKGROUPS), 1);
     }
