@@ -23,6 +23,9 @@ pub fn kinds(n: usize) -> Result<Vec<(&'static str, Mesh)>, Error> {
     let mixed = lines(0.0, 60.0)?;
     let mixed = Mesh::new(Dimension::Two, mixed.positions().to_f32(), mixed.triangles().to_vec())?;
     let far_apart = lines(-200.0, 200.0)?;
+    let noise = |x: f64| if random.rand_range(0..2) == 1 { x.next_up() } else { x };
+    let noisy_far_apart: Vec<f64> = far_apart.positions().iter().map(noise).collect();
+    let far_apart = Mesh::new(Dimension::Two, noisy_far_apart, lattice.triangles().to_vec())?;
     let [lattice_in_space, far_in_space, noisy_in_space] = [&lattice, &far, &noisy].map(lifted);
     let turned: Vec<f32> = (0..n * n).flat_map(|v| turned((v % n) as f32, (v / n) as f32)).collect();
     let turned = Mesh::new(Dimension::Two, turned, lattice.triangles().to_vec())?;
@@ -34,7 +37,7 @@ pub fn kinds(n: usize) -> Result<Vec<(&'static str, Mesh)>, Error> {
         ("turned lattice", turned),
         ("lattice with one-ulp noise", noisy),
         ("lattice, lines from 1 to 2^60", mixed),
-        ("lattice, 64-bit lines from 2^-200 to 2^200", far_apart),
+        ("lattice with one-ulp noise, 64-bit lines from 2^-200 to 2^200", far_apart),
         ("uvsphere", families::uvsphere(n, 0.05, 1)?),
         ("lattice of spacing 0.1 in space", lattice_in_space?),
         ("lattice at (100000, 100000, 100000)", far_in_space?),

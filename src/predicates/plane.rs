@@ -159,6 +159,11 @@ pub(crate) fn total_area_sign(count: usize, triangle: &dyn Fn(usize) -> [DVec2; 
 
 #[cold]
 fn in_circle_exact(a: DVec2, b: DVec2, c: DVec2, d: DVec2) -> Ordering {
+    // On each axis, one factor of the dot product is 0: right angles, as all ties of a lattice along the axes have.
+    let is_right = |v: DVec2| (a.cmpeq(v) | b.cmpeq(v)).all();
+    if is_right(c) && is_right(d) {
+        return Ordering::Equal;
+    }
     let [p, q, r, s] = [(a, c), (b, c), (a, d), (b, d)].map(|(u, v)| [(u.x, v.x), (u.y, v.y)]);
     let differences = Differences::new([p[0], p[1], q[0], q[1], r[0], r[1], s[0], s[1]]);
     if differences.bits <= NARROW_BITS {

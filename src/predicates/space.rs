@@ -86,7 +86,19 @@ impl Quad {
         let (dot1, dot2) = (self.p.dot(self.q), self.s.dot(self.r));
         let (n1, n2) = (self.p.cross(self.q), self.s.cross(self.r));
         let value = n1.length() * dot2 + n2.length() * dot1;
-        if value.abs() > self.bound { value < 0.0 } else { exactly!(self, angle_sum).is_lt() }
+        if value.abs() > self.bound {
+            value < 0.0
+        } else {
+            !self.has_right_angles() && exactly!(self, angle_sum).is_lt()
+        }
+    }
+
+    /// Whether, in the dot products at c and d, the product on each axis has a factor 0. Then both angles are right, as
+    /// at all ties of a lattice along the axes.
+    #[cold]
+    fn has_right_angles(&self) -> bool {
+        let [a, b, c, d] = self.points;
+        [c, d].iter().all(|&v| (a.cmpeq(v) | b.cmpeq(v)).all())
     }
 
     /// Whether the angle between the normals is larger than β = acos(`cos`), before or after the flip. A zero normal
