@@ -74,10 +74,10 @@ pub(super) fn reserve(words: usize) -> Option<Words> {
 /// Memory for a result that is read later, if available.
 pub(super) type Reserved = Pin<Box<dyn Future<Output = Option<Words>>>>;
 
-/// From so many words on, memory is reserved before it is needed: with fewer, the thread costs more than it saves. In
+/// From so many words on, memory is reserved before it is needed: with fewer, the threads cost more than they save. In
 /// debug builds it is small, so that small meshes test it.
 #[cfg(not(target_arch = "wasm32"))]
-const FEWEST_AHEAD: usize = if cfg!(debug_assertions) { 1000 } else { 1 << 20 };
+const FEWEST_AHEAD: usize = if cfg!(debug_assertions) { 1000 } else { 1 << 24 };
 
 /// Begins to reserve memory. The system allocates each page at its first write, which takes longer than a copy. So
 /// threads write to each page while the GPU works. They are not those of the pool: all of these may wait for a GPU.
@@ -92,7 +92,7 @@ pub(super) fn reserve_ahead(words: usize) -> Reserved {
 #[cfg(not(target_arch = "wasm32"))]
 fn touched(words: usize) -> Words {
     let mut result = vec![0; words];
-    let piece = words.div_ceil(available_parallelism().map_or(1, NonZero::get)).max(PAGE);
+    let piece = words.div_ceil(available_parallelism().map_or(1, NonZero::get)).max(FEWEST_AHEAD / 16);
     let touch = |piece: &mut [u32]| piece.iter_mut().step_by(PAGE).for_each(|word| *word = black_box(0));
     std::thread::scope(|scope| {
         for piece in result.chunks_mut(piece) {
