@@ -374,9 +374,7 @@ export class EdgeflipPage {
     const show = (opacity) =>
       this.page.evaluate((how) => {
         for (const part of document.querySelectorAll('.top, #watch > :not(#stage), #thread')) part.style.opacity = how;
-        // The inspector of Chromium does not hold a promise that it awaits: it has been collected.
-        window.twoFrames = new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done())));
-        return window.twoFrames;
+        return new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done())));
       }, opacity);
     await show('0');
     const { x, y, width, height } = await (await this.page.$('#view canvas')).boundingBox();
