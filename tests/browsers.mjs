@@ -200,25 +200,35 @@ export async function openPage(browser, address, isKept = false) {
   return { page, problems };
 }
 
-/** Runs in the page: it gets at most 16 frames a second. */
+/**
+ * Runs in the page: it gets at most 16 frames a second. Callbacks run in the order in which they were asked for, as in
+ * any browser: the page relies on it.
+ */
 function fewerFrames() {
-  const { requestAnimationFrame, cancelAnimationFrame } = window;
-  const timers = new Map();
-  let last = 0;
+  const { requestAnimationFrame } = window;
+  /** What the next frame runs. */
+  const asked = new Map();
+  let [last, count, isDue] = [0, 0, false];
+  const draw = (now) => {
+    [last, isDue] = [now, false];
+    // What these ask for belongs to the frame after this one. They may cancel each other.
+    for (const id of [...asked.keys()]) {
+      const callback = asked.get(id);
+      asked.delete(id);
+      try {
+        callback?.(now);
+      } catch (error) {
+        reportError(error);
+      }
+    }
+  };
   window.requestAnimationFrame = (callback) => {
-    const draw = () => {
-      timers.delete(frame);
-      last = performance.now();
-      callback(last);
-    };
-    const frame = requestAnimationFrame((now) => timers.set(frame, setTimeout(draw, last + 60 - now)));
-    return frame;
+    asked.set(++count, callback);
+    if (!isDue) setTimeout(() => requestAnimationFrame(draw), last + 60 - performance.now());
+    isDue = true;
+    return count;
   };
-  window.cancelAnimationFrame = (frame) => {
-    clearTimeout(timers.get(frame));
-    timers.delete(frame);
-    cancelAnimationFrame(frame);
-  };
+  window.cancelAnimationFrame = (id) => void asked.delete(id);
 }
 
 const failure = (request) => request.failure()?.errorText ?? 'no reason given';

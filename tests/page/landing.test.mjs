@@ -25,12 +25,12 @@ async function choose({ page }, section) {
   await page.click(`.top nav a[href="#${section}"]`);
 }
 
-/** Waits until the sections are there that were loaded, and the page has kept its height for a second. */
+/** Waits until the sections are there that were loaded, and the page has kept its height for half a second. */
 async function settle({ page }, section) {
   await page.waitForSelector(`#${section} h2`);
   await page.evaluate(async () => {
     const { documentElement: root } = document;
-    for (let [height, since] = [0, 0]; performance.now() - since < 1000; ) {
+    for (let [height, since] = [0, performance.now()]; performance.now() - since < 500; ) {
       if (root.scrollHeight !== height) [height, since] = [root.scrollHeight, performance.now()];
       await new Promise((done) => setTimeout(done, 50));
     }
