@@ -5,6 +5,7 @@
 import { spawn } from 'node:child_process';
 import { accessSync, constants } from 'node:fs';
 import { delimiter, isAbsolute, join } from 'node:path';
+import { setTimeout as pause } from 'node:timers/promises';
 import { chromium } from 'playwright-core';
 import puppeteer from 'puppeteer-core';
 import { preview } from 'vite';
@@ -229,6 +230,19 @@ function fewerFrames() {
     return count;
   };
   window.cancelAnimationFrame = (id) => void asked.delete(id);
+}
+
+/**
+ * Waits until a page has drawn two frames: the second shows what was changed before the call. It asks again and again:
+ * Chromium 148 may collect the promise of a page that a test awaits (mended in V8 by its commit 5177b10891e6).
+ */
+export async function twoFrames(page) {
+  await page.evaluate(() => {
+    window.hasDrawn = false;
+    requestAnimationFrame(() => requestAnimationFrame(() => (window.hasDrawn = true)));
+  });
+  for (const end = performance.now() + 60_000; !(await page.evaluate(() => window.hasDrawn)); await pause(10))
+    if (performance.now() > end) throw new Error('the page draws no two frames for 60 s');
 }
 
 const failure = (request) => request.failure()?.errorText ?? 'no reason given';

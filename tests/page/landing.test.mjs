@@ -3,9 +3,10 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
+import { setTimeout as pause } from 'node:timers/promises';
 import { fileURLToPath } from 'node:url';
 import site from '../../www/vite.config.js';
-import { openPage, serve, startChromium } from '../browsers.mjs';
+import { openPage, serve, startChromium, twoFrames } from '../browsers.mjs';
 import { EdgeflipPage } from './page.mjs';
 
 /** Opens the page, and loads the tool only if it is asked for. */
@@ -28,13 +29,10 @@ async function choose({ page }, section) {
 /** Waits until the sections are there that were loaded, and the page has kept its height for half a second. */
 async function settle({ page }, section) {
   await page.waitForSelector(`#${section} h2`);
-  await page.evaluate(async () => {
-    const { documentElement: root } = document;
-    for (let [height, since] = [0, performance.now()]; performance.now() - since < 500; ) {
-      if (root.scrollHeight !== height) [height, since] = [root.scrollHeight, performance.now()];
-      await new Promise((done) => setTimeout(done, 50));
-    }
-  });
+  for (let [height, since] = [0, performance.now()]; performance.now() - since < 500; await pause(50)) {
+    const now = await page.evaluate(() => document.documentElement.scrollHeight);
+    if (now !== height) [height, since] = [now, performance.now()];
+  }
 }
 
 /** How far below the top of the view a section begins. */
@@ -75,11 +73,12 @@ test('an address with a section leads to its top, and a visitor who scrolls is l
   await settle(first, 'paper');
   assert.ok(Math.abs(await topOf(first, 'paper')) < 3, `${await topOf(first, 'paper')}`);
   // What comes late above the section moves nothing.
-  const grow = (pixels) =>
-    page.evaluate((height) => {
+  const grow = async (pixels) => {
+    await page.evaluate((height) => {
       document.querySelector('#explain .wrap').style.paddingTop = `${height}px`;
-      return new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done())));
     }, pixels);
+    await twoFrames(page);
+  };
   await grow(700);
   assert.ok(Math.abs(await topOf(first, 'paper')) < 3, `${await topOf(first, 'paper')}`);
   await page.mouse.move(700, 400);

@@ -14,7 +14,7 @@ import { FlipSession } from 'edgeflip';
 import { angles, change, generate, measures, readMesh, writeMesh } from 'edgeflip/files';
 import { SAMPLES } from '../../www/models/samples.js';
 import site from '../../www/vite.config.js';
-import { closeAll, openPage, serve, startChromium, startFirefox } from '../browsers.mjs';
+import { closeAll, openPage, serve, startChromium, startFirefox, twoFrames } from '../browsers.mjs';
 import { Picture } from './picture.mjs';
 
 /** The folder for the meshes of the tests. */
@@ -371,11 +371,11 @@ export class EdgeflipPage {
 
   /** A picture of the middle of the canvas, a share of its width and height, without what lies on it. */
   async picture(share = 0.5) {
-    const show = (opacity) =>
-      this.page.evaluate((how) => {
-        for (const part of document.querySelectorAll('.top, #watch > :not(#stage), #thread')) part.style.opacity = how;
-        return new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done())));
-      }, opacity);
+    const show = async (opacity) => {
+      const others = await this.page.$$('.top, #watch > :not(#stage), #thread');
+      for (const part of others) await part.evaluate(({ style }, how) => (style.opacity = how), opacity);
+      await twoFrames(this.page);
+    };
     await show('0');
     const { x, y, width, height } = await (await this.page.$('#view canvas')).boundingBox();
     const [left, top] = [x + ((1 - share) / 2) * width, y + ((1 - share) / 2) * height].map(Math.round);

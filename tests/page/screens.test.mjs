@@ -3,7 +3,7 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { openPage, startChromium } from '../browsers.mjs';
+import { openPage, startChromium, twoFrames } from '../browsers.mjs';
 import { file, sharedPage } from './page.mjs';
 import { Picture } from './picture.mjs';
 
@@ -16,7 +16,7 @@ const press = async ({ page }, ...keys) => {
 
 async function resize({ page }, width, height) {
   await page.setViewportSize({ width, height });
-  await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+  await twoFrames(page);
 }
 
 /** What is wider than the page, or beside it. */
