@@ -3,7 +3,8 @@
 import { EDGE_STATES, type EdgeState } from 'edgeflip';
 import { LineSegmentsGeometry } from 'three/addons/lines/LineSegmentsGeometry.js';
 import { LineSegments2 } from 'three/addons/lines/webgpu/LineSegments2.js';
-import { Group, Line2NodeMaterial, Triangle, Vector3 } from 'three/webgpu';
+import { Group, Triangle, Vector3, type Line2NodeMaterial } from 'three/webgpu';
+import { lineMaterial, MARKS } from './line-material.ts';
 import type { Palette } from './palette.ts';
 import { LOOKS } from './states.ts';
 
@@ -82,7 +83,7 @@ export class EdgeLines {
     const known = this.#lines.get(name);
     if (known) return known;
     const { dash } = LOOKS[name];
-    const material = new Line2NodeMaterial({ dashed: dash !== undefined, transparent: true });
+    const material = lineMaterial({ dashed: dash !== undefined }, name === 'delaunay' ? MARKS.plain : undefined);
     if (dash) Object.assign(material, { dashSize: dash[0], gapSize: dash[1] });
     const lines = new LineSegments2(new LineSegmentsGeometry(), material) as Lines;
     lines.frustumCulled = false;

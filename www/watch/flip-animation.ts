@@ -2,7 +2,8 @@
 
 import { LineSegmentsGeometry } from 'three/addons/lines/LineSegmentsGeometry.js';
 import { LineSegments2 } from 'three/addons/lines/webgpu/LineSegments2.js';
-import { Line2NodeMaterial, type InterleavedBufferAttribute } from 'three/webgpu';
+import type { InterleavedBufferAttribute, Line2NodeMaterial } from 'three/webgpu';
+import { lineMaterial, MARKS } from './line-material.ts';
 
 /** Milliseconds of the slide. */
 const SLIDE = 260;
@@ -28,10 +29,7 @@ export function flipsBetween(before: Uint32Array, now: Uint32Array): Uint32Array
 export type SlideDirection = 'on' | 'back' | 'not';
 
 export class FlipAnimation {
-  readonly lines = new LineSegments2(
-    new LineSegmentsGeometry(),
-    new Line2NodeMaterial({ linewidth: 2.4, transparent: true }),
-  );
+  readonly lines = new LineSegments2(new LineSegmentsGeometry(), lineMaterial({ linewidth: 2.4 }, MARKS.hot));
   #flips = new Uint32Array();
   #positions = new Float32Array();
   #start = 0;

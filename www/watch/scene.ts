@@ -89,7 +89,7 @@ export class Scene {
     insets: () => Insets,
     drawn: () => void,
   ): Promise<Scene> {
-    const options = { antialias: true, alpha: true };
+    const options = { antialias: true, alpha: true, stencil: true };
     const renderer = new WebGPURenderer({ ...options, ...(device ? { device } : { forceWebGL: true }) });
     renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
     renderer.setClearColor(0, 0);
