@@ -1,5 +1,6 @@
 // Tests the tool on small screens, and what lies on what: nothing is wider than the page, the timeline and Play stay on
 // the screen, a sheet closes the gallery, and Escape closes only what is on top.
+// The picture of the mesh may get another size at any time.
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
@@ -214,6 +215,44 @@ test('details that open below the screen are scrolled into view', async () => {
     return document.querySelector('[data-fact=Vertices]')?.getBoundingClientRect().bottom <= side.bottom;
   });
   await page.page.setViewportSize({ width: 1280, height: 720 });
+  await page.close();
+});
+
+test('lines are drawn without a copy of the picture, also right after the view got another size', async () => {
+  const page = await sharedPage();
+  await page.page.evaluate(() => {
+    const { beginRenderPass, copyTextureToTexture } = GPUCommandEncoder.prototype;
+    window.calls = { passes: 0, copies: 0 };
+    Object.assign(GPUCommandEncoder.prototype, {
+      beginRenderPass(...args) {
+        window.calls.passes++;
+        return beginRenderPass.apply(this, args);
+      },
+      copyTextureToTexture(...args) {
+        window.calls.copies++;
+        return copyTextureToTexture.apply(this, args);
+      },
+    });
+    window.restore = () => Object.assign(GPUCommandEncoder.prototype, { beginRenderPass, copyTextureToTexture });
+  });
+  // Edges that have flipped are drawn too.
+  await press(page, 'ArrowRight');
+  await page.page.evaluate(async () => {
+    const view = document.getElementById('view');
+    for (const height of ['60%', '70%', '60%', '']) {
+      view.style.height = height;
+      // The page draws, and then the view gets its size, in the same frame.
+      await new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));
+    }
+  });
+  await page.rest();
+  const { passes, copies } = await page.page.evaluate(() => {
+    window.restore();
+    return window.calls;
+  });
+  assert.ok(passes >= 4, `${passes} pictures`);
+  assert.equal(copies, 0);
+  // Errors of the GPU would be on the console.
   await page.close();
 });
 
