@@ -18,13 +18,14 @@ export const MARKS = { plain: 1, hot: 2 };
  * cross, only the first is drawn, and so their ends are not darker.
  *
  * The GPU blends the lines. With `transparent`, three would blend them itself, with a copy of the picture: it would copy
- * each picture, and lose the next picture after the canvas was resized, see
+ * each picture, and could lose the one after the canvas was resized, see
  * https://github.com/mrdoob/three.js/issues/34600.
  */
 export function lineMaterial(parameters: Line2NodeMaterialParameters, mark = 0): Line2NodeMaterial {
   return new Line2NodeMaterial({
     ...parameters,
     blending: CustomBlending,
+    // A faint line leaves its own alpha in the picture, as it does with `transparent`.
     blendSrcAlpha: OneFactor,
     blendDstAlpha: ZeroFactor,
     stencilWrite: mark > 0,
