@@ -237,14 +237,11 @@ test('lines are drawn without a copy of the picture, also right after the view g
   });
   // Edges that have flipped are drawn too.
   await press(page, 'ArrowRight');
-  await page.page.evaluate(async () => {
-    const view = document.getElementById('view');
-    for (const height of ['60%', '70%', '60%', '']) {
-      view.style.height = height;
-      // The page draws, and then the view gets its size, in the same frame.
-      await new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));
-    }
-  });
+  for (const height of ['60%', '70%', '60%', '']) {
+    await page.page.evaluate((to) => (document.getElementById('view').style.height = to), height);
+    // The page draws, and then the view gets its size, in the same frame.
+    await twoFrames(page.page);
+  }
   await page.rest();
   const { passes, copies } = await page.page.evaluate(() => {
     window.restore();
