@@ -5,8 +5,8 @@ import {
   Line2NodeMaterial,
   NotEqualStencilFunc,
   OneFactor,
+  OneMinusSrcAlphaFactor,
   ReplaceStencilOp,
-  ZeroFactor,
   type Line2NodeMaterialParameters,
 } from 'three/webgpu';
 
@@ -25,9 +25,8 @@ export function lineMaterial(parameters: Line2NodeMaterialParameters, mark = 0):
   return new Line2NodeMaterial({
     ...parameters,
     blending: CustomBlending,
-    // A faint line leaves its own alpha in the picture, as it does with `transparent`.
     blendSrcAlpha: OneFactor,
-    blendDstAlpha: ZeroFactor,
+    blendDstAlpha: OneMinusSrcAlphaFactor,
     stencilWrite: mark > 0,
     stencilRef: mark,
     stencilFunc: NotEqualStencilFunc,
