@@ -28,6 +28,8 @@ mod prepare;
 pub mod quality;
 mod session;
 mod system;
+#[cfg(not(all(target_arch = "wasm32", feature = "js-session")))]
+mod untangle;
 #[cfg(all(target_arch = "wasm32", feature = "js-values"))]
 pub mod wasm;
 

@@ -52,6 +52,7 @@ impl Signs {
 }
 
 /// The components of a mesh, joined by its twins, and the boundary of each. Flips change neither.
+#[derive(Clone)]
 pub(crate) struct Outline {
     /// The component of each triangle.
     component: Vec<u32>,
@@ -88,6 +89,11 @@ impl Outline {
             ends.push(boundary.len() as u32);
         }
         Self { component, boundary, ends }
+    }
+
+    /// The component of each triangle: its number, counted from 0 in the order of their first triangles.
+    pub(crate) fn components(&self) -> &[u32] {
+        &self.component
     }
 
     /// The winding for these positions. The area of a component is the area that its boundary encloses, because each

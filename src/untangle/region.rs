@@ -1,0 +1,140 @@
+//! What rounds do not lift: a region around a turned triangle grows until its border can be filled with positive
+//! triangles. All vertices inside it leave. At the latest the region is the whole component, whose border any polygon
+//! with holes can fill.
+
+use super::sheet::{Loose, Sheet, Side};
+use crate::NONE;
+use crate::mesh::half_edge::{next, triangle_of};
+
+/// If more than one triangle in so many of a component is turned over, the whole component is filled anew.
+const FEW: usize = 4;
+
+/// The longest border that a region is filled within, unless it is a whole component.
+const LONGEST: usize = 256;
+
+impl Sheet<'_> {
+    /// Fills components with many turned triangles anew. Returns their slots.
+    pub(super) fn fill_anew(&mut self, turned: &[u32]) -> Vec<u32> {
+        let components = self.components();
+        let mut slots = Vec::new();
+        let mut of_component: Vec<u32> = turned.iter().map(|&t| components[t as usize]).collect();
+        of_component.sort_unstable();
+        for turned in of_component.chunk_by(|one, other| one == other) {
+            let is_inside = |t: u32| components[t as usize] == turned[0];
+            let region: Vec<u32> = (0..components.len() as u32).filter(|&t| is_inside(t)).collect();
+            if turned.len() > region.len() / FEW && self.refill(&region, &is_inside, usize::MAX) {
+                slots.extend(region);
+            }
+        }
+        slots
+    }
+
+    /// Fills a region around turned triangle `t`, if any can be filled. `marks` has a word for each triangle, which is
+    /// that of no turned triangle.
+    pub(super) fn grow(&mut self, t: u32, marks: &mut [u32]) {
+        let (mut region, mark) = (vec![t], t);
+        marks[t as usize] = mark;
+        let (mut ring, mut tried) = (0, 0);
+        loop {
+            let end = region.len();
+            for i in ring..end {
+                for h in 3 * region[i]..3 * region[i] + 3 {
+                    let across = self.twin(h);
+                    if across != NONE && marks[triangle_of(across) as usize] != mark {
+                        marks[triangle_of(across) as usize] = mark;
+                        region.push(triangle_of(across));
+                    }
+                }
+            }
+            let is_whole = region.len() == end;
+            // Regions that grow by a quarter between attempts keep the sum of all attempts small.
+            if is_whole || tried + tried / 4 < region.len() {
+                if self.refill(
+                    &region,
+                    &|t| marks[t as usize] == mark,
+                    if is_whole { usize::MAX } else { LONGEST },
+                ) {
+                    return;
+                }
+                tried = region.len();
+            }
+            if is_whole {
+                return;
+            }
+            ring = end;
+        }
+    }
+
+    /// Fills the border of a region, of at most `longest` sides, with positive triangles, and takes the vertices inside it
+    /// out. Returns whether that is possible: else nothing changes.
+    fn refill(&mut self, region: &[u32], is_inside: &dyn Fn(u32) -> bool, longest: usize) -> bool {
+        let rings = self.rings(region, is_inside);
+        let (count, holes) = (rings.iter().map(Vec::len).sum::<usize>(), rings.len());
+        if !(3..=longest).contains(&count) {
+            return false;
+        }
+        let mut border: Vec<_> = rings.iter().flatten().map(|side| side.vertex).collect();
+        border.sort_unstable();
+        let mut inner: Vec<_> = region.iter().flat_map(|&t| self.corners(t)).collect();
+        inner.sort_unstable();
+        inner.dedup();
+        inner.retain(|v| border.binary_search(v).is_err());
+        // By Euler's formula: else the region is no disc with holes.
+        let is_planar = count + 2 * holes + 2 * inner.len() == region.len() + 4;
+        if holes == 0 || !is_planar || inner.iter().any(|&v| self.is_pinned(v)) {
+            return false;
+        }
+        let first = self.cuts.len();
+        let t = region[0];
+        let Some((mut ring, ears)) =
+            self.one_ring(rings, t).and_then(|ring| self.ears(&ring, t).map(|ears| (ring, ears)))
+        else {
+            self.cuts.truncate(first);
+            return false;
+        };
+        for h in region.iter().flat_map(|t| 3 * t..3 * t + 3) {
+            if self.is_locked(h) && is_inside(triangle_of(self.twin(h))) {
+                self.lose(h);
+            }
+        }
+        let mut slots = region.to_vec();
+        slots.sort_unstable();
+        let near = self.fill(&mut ring, &ears, &slots);
+        let free = slots[ears.len()..].chunks_exact(2);
+        self.loose.extend(inner.into_iter().zip(free).map(|(vertex, slots)| Loose {
+            vertex,
+            slots: [slots[0], slots[1]],
+            near,
+        }));
+        true
+    }
+
+    /// The rings of half-edges around a region.
+    fn rings(&self, region: &[u32], is_inside: &dyn Fn(u32) -> bool) -> Vec<Vec<Side>> {
+        let is_border = |h: u32| {
+            let across = self.twin(h);
+            across == NONE || !is_inside(triangle_of(across))
+        };
+        let mut border: Vec<_> =
+            region.iter().flat_map(|&t| 3 * t..3 * t + 3).filter(|&h| is_border(h)).collect();
+        border.sort_unstable();
+        let mut is_visited = vec![false; border.len()];
+        let mut rings = Vec::new();
+        for i in 0..border.len() {
+            let (mut h, mut ring) = (border[i], Vec::new());
+            while let Ok(at) = border.binary_search(&h)
+                && !std::mem::replace(&mut is_visited[at], true)
+            {
+                ring.push(Side { vertex: self.vertex(h), outer: self.twins[h as usize] });
+                h = next(h);
+                while !is_border(h) {
+                    h = next(self.twin(h));
+                }
+            }
+            if !ring.is_empty() {
+                rings.push(ring);
+            }
+        }
+        rings
+    }
+}

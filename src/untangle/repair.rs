@@ -1,0 +1,65 @@
+//! A repair, from the triangles that have turned over to others.
+
+use super::constant::Constant;
+use super::lift::FREE;
+use super::sheet::Sheet;
+use crate::predicates::area_sign;
+use crate::{Mesh, NONE};
+
+/// Other triangles for a mesh.
+#[derive(Debug, PartialEq, Eq)]
+pub(crate) struct Untangled {
+    pub(crate) triangles: Vec<u32>,
+    /// Their twins, with the flags of locked edges.
+    pub(crate) twins: Vec<u32>,
+    /// Locked edges that the mesh does not have any more, because no triangulation with them was found. Sorted.
+    pub(crate) lost: Vec<[u32; 2]>,
+}
+
+/// Whether triangles of a mesh in the plane may have turned over: whether their signs differ, or one is zero.
+pub(crate) fn may_be_tangled(mesh: &Mesh) -> bool {
+    let (triangles, _) = mesh.triangles().as_chunks();
+    let sign = |&corners: &[u32; 3]| {
+        let [a, b, c] = mesh.positions().points2(corners);
+        area_sign(a, b, c)
+    };
+    let mut signs = triangles.iter().map(sign);
+    signs.next().is_some_and(|first| first.is_eq() || signs.any(|sign| sign != first))
+}
+
+/// Makes the triangles of a mesh in the plane positive, those of a component of negative area negative. `twins` are its
+/// twins, with the flags of locked edges; `lost` are locked edges that it lost earlier. `None` if nothing changes.
+///
+/// Where the positions have no triangulation, few triangles stay turned over or flat. A component whose boundary overlaps
+/// itself in such a way that two edges would join the same vertices keeps its triangles.
+pub(crate) fn untangled(
+    mesh: &Mesh,
+    twins: Vec<u32>,
+    constant: &Constant,
+    lost: Vec<[u32; 2]>,
+) -> Option<Untangled> {
+    let winding = constant.outline.winding(mesh);
+    let count = mesh.triangle_count() as u32;
+    let before = twins.clone();
+    let mut sheet = Sheet::new(mesh, constant, &winding, twins, lost);
+    let mut turned: Vec<u32> = (0..count).filter(|&t| !sheet.is_right(t)).collect();
+    if turned.is_empty() && sheet.lost.is_empty() {
+        return None;
+    }
+    let mut claims = vec![FREE; count as usize];
+    let anew = sheet.fill_anew(&turned);
+    sheet.lift(&mut turned, &mut claims);
+    let mut marks = vec![NONE; count as usize];
+    for t in turned {
+        if !sheet.is_right(t) {
+            sheet.grow(t, &mut marks);
+        }
+    }
+    sheet.flip_all(anew.iter().flat_map(|t| 3 * t..3 * t + 3).filter(|&h| sheet.vertex(h) != NONE).collect());
+    sheet.put_back(&mut claims, !anew.is_empty());
+    sheet.undo_doubled(&before);
+    sheet.bring_back();
+    let Sheet { triangles, twins, lost, .. } = sheet;
+    let lost = lost.into_iter().map(|lost| lost.edge).collect();
+    Some(Untangled { triangles, twins, lost })
+}

@@ -1,0 +1,272 @@
+//! A mesh in the plane during a repair: some vertices are out, and their triangles are empty slots.
+
+use super::constant::Constant;
+use crate::mesh::half_edge::{CREASE, FLAGS, LOCKED, next, prev, triangle_of, unflagged};
+use crate::mesh::star::{Fans, Star};
+use crate::mesh::winding::Winding;
+use crate::predicates::{area_sign, in_circle_sign};
+use crate::{Mesh, NONE};
+use std::cmp::Ordering;
+
+/// Flag in the entry of a side: the rest is the index of the entry in [`Sheet::cuts`]. No edge in the plane is a crease.
+pub(super) const CUT: u32 = CREASE;
+
+/// A side of a ring around a hole in the mesh: the vertex that it starts at, and the entry in the twins of the triangle
+/// that will fill the hole there.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Side {
+    pub(super) vertex: u32,
+    pub(super) outer: u32,
+}
+
+/// A vertex that is out. A vertex inside a disc has two triangles of its own: the disc without it has two fewer.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Loose {
+    pub(super) vertex: u32,
+    pub(super) slots: [u32; 2],
+    /// A slot near it.
+    pub(super) near: u32,
+}
+
+/// A locked edge that the mesh does not have at present.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Lost {
+    pub(super) edge: [u32; 2],
+    /// The component that had it; [`NONE`] if that was in an earlier repair.
+    pub(super) component: u32,
+}
+
+pub(super) struct Sheet<'a> {
+    pub(super) mesh: &'a Mesh,
+    constant: &'a Constant,
+    pub(super) winding: &'a Winding,
+    /// An empty slot has the corners [`NONE`], a slot near it, and [`NONE`].
+    pub(super) triangles: Vec<u32>,
+    /// With the flags of locked edges.
+    pub(super) twins: Vec<u32>,
+    pub(super) loose: Vec<Loose>,
+    /// Locked edges that the mesh does not have at present.
+    pub(super) lost: Vec<Lost>,
+    /// For each side of a cut the half-edge of the triangle there, once it is known. Cuts have two sides each.
+    pub(super) cuts: Vec<u32>,
+}
+
+impl<'a> Sheet<'a> {
+    pub(super) fn new(
+        mesh: &'a Mesh,
+        constant: &'a Constant,
+        winding: &'a Winding,
+        twins: Vec<u32>,
+        lost: Vec<[u32; 2]>,
+    ) -> Self {
+        let triangles = mesh.triangles().to_vec();
+        let lost = lost.into_iter().map(|edge| Lost { edge, component: NONE }).collect();
+        Self { mesh, constant, winding, triangles, twins, loose: Vec::new(), lost, cuts: Vec::new() }
+    }
+
+    pub(super) fn is_pinned(&self, v: u32) -> bool {
+        self.constant.is_pinned[v as usize]
+    }
+
+    /// The component of each triangle.
+    pub(super) fn components(&self) -> &'a [u32] {
+        self.constant.outline.components()
+    }
+
+    /// The fans, when no vertex is out.
+    pub(super) fn fans(&self) -> Fans {
+        if !self.constant.has_fans {
+            return Fans::default();
+        }
+        Fans::new(self.mesh.vertex_count(), &self.triangles, &self.twins)
+    }
+
+    /// Notes that the mesh loses a locked edge.
+    pub(super) fn lose(&mut self, h: u32) {
+        let component = self.components()[triangle_of(h) as usize];
+        self.lost.push(Lost { edge: [h, next(h)].map(|x| self.vertex(x)), component });
+    }
+
+    /// Takes the triangles of `before` back in components where two edges join the same vertices. `before` are the twins
+    /// of the mesh.
+    pub(super) fn undo_doubled(&mut self, before: &[u32]) {
+        let (old, components) = (self.mesh.triangles(), self.components());
+        loop {
+            let fans = self.fans();
+            let changed = (0..components.len() as u32).filter(|&t| {
+                let slot = 3 * t as usize..3 * t as usize + 3;
+                self.triangles[slot.clone()] != old[slot]
+            });
+            let is_doubled = |&t: &u32| (3 * t..3 * t + 3).any(|h| self.is_doubled(h, &fans));
+            let mut doubled: Vec<u32> = changed.filter(is_doubled).map(|t| components[t as usize]).collect();
+            if doubled.is_empty() {
+                return;
+            }
+            doubled.sort_unstable();
+            doubled.dedup();
+            let is_undone = |component: u32| doubled.binary_search(&component).is_ok();
+            for t in (0..components.len()).filter(|&t| is_undone(components[t])) {
+                self.triangles[3 * t..3 * t + 3].copy_from_slice(&old[3 * t..3 * t + 3]);
+                self.twins[3 * t..3 * t + 3].copy_from_slice(&before[3 * t..3 * t + 3]);
+            }
+            self.lost.retain(|lost| !is_undone(lost.component));
+        }
+    }
+
+    /// Whether other half-edges than its twin join the vertices of `h`, and not all of them are on the boundary.
+    fn is_doubled(&self, h: u32, fans: &Fans) -> bool {
+        let [u, v] = [h, next(h)].map(|x| self.vertex(x));
+        let ends = |corner| [(corner, next(corner)), (prev(corner), prev(corner))];
+        let star = Star::new(&self.triangles, &self.twins, fans, h).flat_map(ends);
+        let (mut count, mut has_twins) = (0, false);
+        for (x, _) in star.filter(|&(_, far)| self.vertex(far) == v) {
+            count += 1;
+            has_twins |= self.twin(x) != NONE;
+        }
+        u != v && count > 2 && has_twins
+    }
+
+    pub(super) fn vertex(&self, h: u32) -> u32 {
+        self.triangles[h as usize]
+    }
+
+    pub(super) fn corners(&self, t: u32) -> [u32; 3] {
+        [3 * t, 3 * t + 1, 3 * t + 2].map(|h| self.vertex(h))
+    }
+
+    /// The half-edge on the other side, or [`NONE`].
+    pub(super) fn twin(&self, h: u32) -> u32 {
+        unflagged(self.twins[h as usize])
+    }
+
+    pub(super) fn is_locked(&self, h: u32) -> bool {
+        let entry = self.twins[h as usize];
+        entry != NONE && entry & LOCKED != 0
+    }
+
+    /// The sign of a triangle, reversed if the component of triangle `t` is clockwise.
+    pub(super) fn sign(&self, t: u32, corners: [u32; 3]) -> Ordering {
+        let [a, b, c] = self.mesh.positions().points2(corners);
+        self.winding.relative(t, area_sign(a, b, c))
+    }
+
+    /// Whether slot `t` has a positive triangle, or is empty.
+    pub(super) fn is_right(&self, t: u32) -> bool {
+        self.is_empty(t) || self.sign(t, self.corners(t)).is_gt()
+    }
+
+    pub(super) fn is_empty(&self, t: u32) -> bool {
+        self.vertex(3 * t) == NONE
+    }
+
+    /// A slot with a triangle near `slot`. A slot points to one that was not empty when it became so itself.
+    pub(super) fn filled(&self, mut slot: u32) -> u32 {
+        while self.is_empty(slot) {
+            slot = self.vertex(3 * slot + 1);
+        }
+        slot
+    }
+
+    /// Lets two entries meet: each half-edge becomes the twin of the other. A locked edge stays locked.
+    pub(super) fn join(&mut self, one: u32, other: u32) {
+        for (side, inner) in [(one, other), (other, one)] {
+            if side != NONE && side & CUT != 0 {
+                let side = (side ^ CUT) as usize;
+                self.cuts[side] = inner;
+                let across = self.cuts[side ^ 1];
+                if across != NONE {
+                    self.join(inner, across);
+                }
+                return;
+            }
+        }
+        let flags =
+            [one, other].iter().fold(0, |all, &entry| if entry == NONE { all } else { all | entry & FLAGS });
+        for (entry, twin) in [(one, other), (other, one)] {
+            if entry != NONE {
+                let twin = if twin == NONE { NONE } else { twin & !FLAGS | flags };
+                self.twins[(entry & !FLAGS) as usize] = twin;
+            }
+        }
+    }
+
+    /// Fills a ring with triangles, each from a corner k of the ring and its neighbours i and j at that time, as `ears`
+    /// has them. `slots` has at least as many slots; the rest of them become empty. Returns a slot at the ring.
+    pub(super) fn fill(&mut self, ring: &mut [Side], ears: &[[usize; 3]], slots: &[u32]) -> u32 {
+        let mut last = [0, 1];
+        for (&[i, k, j], &slot) in ears.iter().zip(slots) {
+            let h = 3 * slot;
+            for (n, corner) in [i, k, j].into_iter().enumerate() {
+                self.triangles[h as usize + n] = ring[corner].vertex;
+            }
+            self.join(h, ring[i].outer);
+            self.join(h + 1, ring[k].outer);
+            ring[i].outer = h + 2;
+            last = [i, j];
+        }
+        let near = match slots[..ears.len()] {
+            [slot, ..] => slot,
+            [] => triangle_of(unflagged(if ring[0].outer == NONE { ring[1].outer } else { ring[0].outer })),
+        };
+        let [one, other] = last.map(|i| ring[i].outer);
+        self.join(one, other);
+        for &slot in &slots[ears.len()..] {
+            self.clear(slot, near);
+        }
+        near
+    }
+
+    fn clear(&mut self, slot: u32, near: u32) {
+        let h = 3 * slot as usize;
+        self.triangles[h..h + 3].copy_from_slice(&[NONE, near, NONE]);
+        self.twins[h..h + 3].fill(NONE);
+    }
+
+    /// Puts a vertex into triangle `t`, with two slots of its own. The edge from corner i of `t` then belongs to the
+    /// i-th of the three slots, and is its first half-edge.
+    pub(super) fn split(&mut self, t: u32, &Loose { vertex, slots: [s, u], .. }: &Loose) {
+        let (corners, slots) = (self.corners(t), [t, s, u]);
+        let outer = [0, 1, 2].map(|i| self.twins[3 * t as usize + i]);
+        for (i, slot) in slots.into_iter().enumerate() {
+            let h = 3 * slot as usize;
+            self.triangles[h..h + 3].copy_from_slice(&[corners[i], corners[(i + 1) % 3], vertex]);
+        }
+        for (i, slot) in slots.into_iter().enumerate() {
+            self.join(3 * slot, outer[i]);
+            self.join(3 * slot + 1, 3 * slots[(i + 1) % 3] + 2);
+        }
+    }
+
+    /// Flips the edge of `h`, which has two triangles (a, b, c) and (b, a, d); they become (a, d, c) and (b, c, d).
+    pub(super) fn flip(&mut self, h: u32) {
+        let g = self.twin(h);
+        let [hn, gn] = [h, g].map(next);
+        let [c, d] = [prev(h), prev(g)].map(|x| self.vertex(x));
+        let outer = [gn, hn].map(|x| self.twins[x as usize]);
+        self.triangles[hn as usize] = d;
+        self.triangles[gn as usize] = c;
+        self.join(h, outer[0]);
+        self.join(g, outer[1]);
+        self.join(hn, gn);
+    }
+
+    /// Flips edges that are not Delaunay and whose flips make positive triangles, first those of `open`.
+    pub(super) fn flip_all(&mut self, mut open: Vec<u32>) {
+        while let Some(h) = open.pop() {
+            let g = self.twin(h);
+            if g == NONE || self.is_locked(h) {
+                continue;
+            }
+            let [a, b, c, d] =
+                self.mesh.positions().points2([h, g, prev(h), prev(g)].map(|x| self.vertex(x)));
+            let relative = |sign| self.winding.relative(triangle_of(h), sign);
+            if relative(in_circle_sign(a, b, c, d)).is_lt()
+                && relative(area_sign(a, d, c)).is_gt()
+                && relative(area_sign(b, c, d)).is_gt()
+            {
+                self.flip(h);
+                open.extend([h, prev(h), g, prev(g)]);
+            }
+        }
+    }
+}
