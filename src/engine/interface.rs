@@ -132,9 +132,10 @@ pub(crate) trait Engine {
     /// [`LOCKED`](crate::mesh::half_edge::LOCKED).
     fn twins(&mut self) -> Answer<'_, Vec<u32>>;
 
-    /// Replaces the positions. The engine then equals a new one on `mesh` with the same locks; `mesh` has the present
-    /// triangles of the engine. After [`Error::BackendLimit`] the engine is unchanged.
-    fn set_positions(&mut self, mesh: Arc<Mesh>) -> Answer<'_, ()>;
+    /// Replaces the positions. The engine then equals a new one on `mesh` with the same locks. `mesh` has the present
+    /// triangles of the engine, or, with `twins`, others: these are their twins, with the flags of locked edges. Each
+    /// vertex then has as many fans as before. After [`Error::BackendLimit`] the engine is unchanged.
+    fn set_positions(&mut self, mesh: Arc<Mesh>, twins: Option<Vec<u32>>) -> Answer<'_, ()>;
 
     /// Whether the engine has started, so that [`Engine::update`] may follow.
     #[cfg(all(target_arch = "wasm32", feature = "js-session"))]

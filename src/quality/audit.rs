@@ -184,11 +184,11 @@ pub fn audit(input: &Mesh, triangles: &[u32], options: &Options) -> Audit {
 }
 
 /// As [`audit`], for the result of a run on `input`. The outcome names the edges of each constraint, which are checked:
-/// they have to be a path along its line, and none may be missing. Only a constraint that the outcome lists as left out
-/// may be missing.
+/// they have to be a path along its line, and none may be missing. Only a constraint that the outcome lists as left out,
+/// and a locked edge that it lists as lost, may be missing.
 pub fn audit_outcome(input: &Mesh, outcome: &Outcome, options: &Options) -> Audit {
     let left_out = outcome.left_out.iter().map(|left| left.index).collect();
-    let named = Named { edges: &outcome.constraint_edges, left_out };
+    let named = Named { edges: &outcome.constraint_edges, left_out, lost_edges: &outcome.lost_edges };
     audit_named(input, &outcome.triangles, options, Some(named))
 }
 
@@ -229,6 +229,9 @@ pub(crate) fn audit_named(input: &Mesh, triangles: &[u32], options: &Options, na
         }
     }
     let mut locked = locked(&before, options);
+    if let Some(Named { lost_edges, .. }) = named {
+        locked.retain(|&(u, v)| lost_edges.binary_search(&[u, v]).is_err());
+    }
     for &(u, v) in locked.iter().filter(|&&(u, v)| !after.table.contains(u, v)) {
         audit.report(Violation::Locked { u, v });
     }
@@ -248,7 +251,8 @@ impl Session {
         let triangles = self.triangles().await?;
         let (mesh, options) = self.input();
         let left_out = self.left_out().iter().map(|left| left.index).collect();
-        let named = Named { edges: self.constraint_edges(), left_out };
+        // The options have forgotten the locked edges that the mesh has lost.
+        let named = Named { edges: self.constraint_edges(), left_out, lost_edges: &[] };
         Ok(audit_named(mesh, &triangles, options, Some(named)))
     }
 }
@@ -290,7 +294,7 @@ fn add_constraints(
 ) {
     let constraints = options.constraints.iter();
     let mut add = |path: &[[u32; 2]]| locked.extend(path.iter().map(|&[u, v]| (u.min(v), u.max(v))));
-    if let Some(Named { mut edges, left_out }) = named {
+    if let Some(Named { mut edges, left_out, .. }) = named {
         let is_left_out = |i| options.skips_constraints && left_out.binary_search(&i).is_ok();
         for (_, &[u, v]) in constraints.enumerate().filter(|&(i, _)| !is_left_out(i)) {
             let path = take_path(after, &mut edges, [u, v]).unwrap_or_default();

@@ -9,6 +9,8 @@ pub(crate) struct Named<'a> {
     pub edges: &'a [[u32; 2]],
     /// The indices of the constraints that were left out, in ascending order.
     pub left_out: Vec<usize>,
+    /// As [`Outcome::lost_edges`](crate::Outcome::lost_edges).
+    pub lost_edges: &'a [[u32; 2]],
 }
 
 /// Takes the path from `u` to `v` off the start of `edges`: its vertices are on the line between them, each nearer to

@@ -13,6 +13,10 @@ pub(super) const COPY: u64 = 12;
 /// Bytes per triangle to change the positions.
 pub(super) const POSITIONS: u64 = 44;
 
+/// Bytes per triangle of a repair: other triangles and twins, the old twins, claims, and what stays constant.
+#[cfg(not(all(target_arch = "wasm32", feature = "js-session")))]
+pub(super) const UNTANGLE: u64 = 64;
+
 /// The part of [`bytes`] that a run takes after `Session::new`.
 pub(super) fn of_run(mesh: &Mesh, options: &Options) -> u64 {
     bytes(mesh, options) / 5 * 2

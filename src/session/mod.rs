@@ -17,6 +17,8 @@ pub(crate) mod options;
 pub(crate) mod outcome;
 #[cfg(test)]
 mod tests;
+#[cfg_attr(all(target_arch = "wasm32", feature = "js-session"), path = "no_untangle.rs")]
+mod untangle;
 
 use crate::engine::{Answer, Engine};
 use crate::mesh::areas::Areas;
@@ -37,6 +39,7 @@ pub use early::{EarlyGpu, close_gpu};
 use std::borrow::Cow;
 use std::ops::ControlFlow;
 use std::sync::Arc;
+use untangle::Held;
 use web_time::Instant;
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 use {crate::engine::SharedObjects, js_sys::Uint32Array};
@@ -57,6 +60,7 @@ pub struct Session {
     /// Updates since the last other change of the positions.
     updates: u64,
     constraints: BroughtIn,
+    held: Held,
     timings: Timings,
     /// Whether the triangles stay on the device until somebody asks for them.
     #[cfg(all(target_arch = "wasm32", feature = "js"))]
@@ -73,6 +77,7 @@ impl Session {
     pub async fn new(mesh: impl Into<Arc<Mesh>>, mut options: Options) -> Result<Self, Error> {
         options.check()?;
         let (start, mut mesh) = (Instant::now(), mesh.into());
+        let held = untangle::at_start(&mut mesh, &mut options)?;
         let constraints = locks::bring_in(&mut mesh, &mut options)?;
         let Choice { engine, fallback, may_change } = first_engine(&mesh, &mut options).await?;
         let set_up = ms_since(start);
@@ -87,6 +92,7 @@ impl Session {
             has_ended: false,
             updates: 0,
             constraints,
+            held,
             timings: Timings { upload: set_up - adjacency, adjacency, ..Timings::default() },
             #[cfg(all(target_arch = "wasm32", feature = "js"))]
             stays: false,
@@ -155,6 +161,9 @@ impl Session {
     /// equals a new one on these positions and the present triangles, bit for bit: it counts iterations and flips from
     /// 0, flags the creases again, and the audit compares with this state. Adjacency, device and buffers stay. The call
     /// reads the triangles back once.
+    ///
+    /// In the plane, if triangles have turned over, other triangles replace them first, unless
+    /// [`Options::untangle`] is `Some(false)`.
     ///
     /// # Errors
     /// [`Error::PositionCount`], [`Error::NonFinite`], [`Error::OutOfMemory`]; [`Error::BackendLimit`] where the GPU
@@ -238,6 +247,7 @@ impl Session {
             constraint_flips: self.constraints.flips,
             constraint_edges: self.constraint_edges().to_vec(),
             left_out: self.constraints.left_out.clone(),
+            lost_edges: self.held.lost.clone(),
             flips_per_iteration: self.flips_per_iteration.clone(),
             dispatches: self.engine.dispatches(),
             device_bytes: self.engine.device_bytes(),

@@ -7,6 +7,8 @@ use crate::system::threads::Threads;
 use crate::{Backend, Counters, EngineKind, Error, Mesh, Positions, Reason, Timings};
 use std::sync::Arc;
 use web_time::Instant;
+#[cfg(not(all(target_arch = "wasm32", feature = "js-session")))]
+use {crate::Dimension, crate::mesh::areas::Areas, crate::untangle::may_be_tangled};
 
 impl Session {
     /// Takes over vertices that have moved, and flips for up to `iterations` iterations, at most 64. What is left goes
@@ -122,17 +124,33 @@ impl Session {
         self.check_length(&positions)?;
         positions.refuse_non_finite(self.mesh.dimension(), &Threads::one())?;
         let triangles = self.triangles().await?;
-        let mesh = Arc::new(Mesh::new(self.mesh.dimension(), positions, triangles)?);
-        if self.may_change && choice::changes_to_gpu(&mesh, &self.options, (0.0, 0.0)) {
-            let choice = engine_for(&mesh, &self.options).await?;
+        let mut mesh = Arc::new(Mesh::new(self.mesh.dimension(), positions, triangles)?);
+        self.take_moved(&mut mesh).await?;
+        self.mesh = mesh;
+        self.constraints.before = None;
+        self.flips_per_iteration.clear();
+        self.has_ended = false;
+        self.timings = Timings { adjacency: ms_since(start), ..Timings::default() };
+        self.updates = 0;
+        Ok(())
+    }
+
+    /// Gives the engine the positions of a mesh and, if its triangles are not those of the engine, their twins.
+    pub(super) async fn take_positions(
+        &mut self,
+        mesh: &Arc<Mesh>,
+        twins: Option<Vec<u32>>,
+    ) -> Result<(), Error> {
+        if self.may_change && choice::changes_to_gpu(mesh, &self.options, (0.0, 0.0)) {
+            let choice = engine_for(mesh, &self.options).await?;
             self.take(choice);
         } else {
-            match self.engine.set_positions(mesh.clone()).await {
+            match self.engine.set_positions(mesh.clone(), twins).await {
                 Err(error @ (Error::BackendLimit { .. } | Error::Device { .. }))
                     if self.options.backend == Backend::Auto =>
                 {
                     let why = format!("after the vertices moved: {error}");
-                    let choice = cpu_after(why, &mesh, &self.options).await?;
+                    let choice = cpu_after(why, mesh, &self.options).await?;
                     self.take(choice);
                 }
                 answer => answer?,
@@ -141,12 +159,62 @@ impl Session {
                 self.fallback = None;
             }
         }
-        self.mesh = mesh;
-        self.constraints.before = None;
-        self.flips_per_iteration.clear();
-        self.has_ended = false;
-        self.timings = Timings { adjacency: ms_since(start), ..Timings::default() };
-        self.updates = 0;
         Ok(())
+    }
+}
+
+#[cfg(not(all(target_arch = "wasm32", feature = "js-session")))]
+impl Session {
+    /// Gives the engine a mesh whose vertices have moved, with other triangles if it needs them.
+    pub(super) async fn take_moved(&mut self, mesh: &mut Arc<Mesh>) -> Result<(), Error> {
+        // The CPU finds the signs of all triangles anyway.
+        let tells_signs = self.engine.backend() == EngineKind::Cpu;
+        if tells_signs {
+            self.take_positions(mesh, None).await?;
+        }
+        if self.is_tangled(mesh, tells_signs).await? {
+            self.untangle(mesh).await?;
+        } else if !tells_signs {
+            self.take_positions(mesh, None).await?;
+        }
+        Ok(())
+    }
+
+    /// Whether the mesh may need other triangles. `tells_signs`: whether the engine has its positions, and tells the signs
+    /// of its triangles in no time.
+    async fn is_tangled(&mut self, mesh: &Mesh, tells_signs: bool) -> Result<bool, Error> {
+        if mesh.dimension() == Dimension::Three || self.options.untangle == Some(false) {
+            return Ok(false);
+        }
+        if !self.held.lost.is_empty() || !tells_signs {
+            return Ok(!self.held.lost.is_empty() || may_be_tangled(mesh));
+        }
+        Ok(self.ask(|engine| engine.areas()).await? != Areas::default())
+    }
+
+    /// Replaces the triangles that have turned over, and gives the engine the mesh.
+    async fn untangle(&mut self, mesh: &mut Arc<Mesh>) -> Result<(), Error> {
+        self.check_memory(memory_bounds::UNTANGLE)?;
+        let before = (self.held.clone(), self.options.clone(), self.constraints.locks);
+        let present = self.ask(|engine| engine.twins()).await?;
+        let mut twins = None;
+        if let Some(untangled) = self.held.untangled(mesh, present) {
+            *mesh = Arc::new(mesh.flipped(untangled.triangles));
+            twins = Some(untangled.twins);
+            self.held.take_over(untangled.lost, &mut self.options, &mut self.constraints.locks);
+        }
+        let taken = self.take_positions(mesh, twins).await;
+        if taken.is_err() {
+            (self.held, self.options, self.constraints.locks) = before;
+        }
+        taken
+    }
+}
+
+#[cfg(all(target_arch = "wasm32", feature = "js-session"))]
+impl Session {
+    /// Gives the engine a mesh whose vertices have moved.
+    pub(super) async fn take_moved(&mut self, mesh: &mut Arc<Mesh>) -> Result<(), Error> {
+        self.take_positions(mesh, None).await
     }
 }

@@ -63,6 +63,11 @@ pub struct Options {
     /// Whether constraints that cannot be brought in are left out, and listed in
     /// [`Outcome::left_out`](crate::Outcome::left_out). Otherwise they are errors.
     pub skips_constraints: bool,
+    /// In the plane: whether triangles that have turned over, or have no area, become positive again. Flips cannot do
+    /// that: vertices are lifted out, and put back where their points are. The vertices stay, and so does the boundary.
+    /// `None`: after the vertices have moved, in [`Session::set_positions`](crate::Session::set_positions) and the calls
+    /// that act like it. `Some(true)`: also before the first run; an error for a mesh in space. `Some(false)`: never.
+    pub untangle: Option<bool>,
     /// The order of the flips.
     pub order: Order,
     /// Whether a session keeps, for each triangle, the update that changed it last:
@@ -164,6 +169,7 @@ impl Default for Options {
             groups: Vec::new(),
             constraints: Vec::new(),
             skips_constraints: false,
+            untangle: None,
             order: Order::Reproducible,
             track_changes: false,
             threads: None,

@@ -92,6 +92,10 @@ pub struct Outcome {
     pub constraint_edges: Vec<[u32; 2]>,
     /// The constraints that were left out, in ascending order.
     pub left_out: Vec<LeftOut>,
+    /// Locked edges that the mesh does not have any more, because no triangulation with them was found after the
+    /// vertices moved ([`Options::untangle`](crate::Options::untangle)). Each has its smaller vertex first. They come back
+    /// with positions that allow it.
+    pub lost_edges: Vec<[u32; 2]>,
     /// Flips of each iteration; a whole run of Lawson's algorithm counts as one iteration.
     pub flips_per_iteration: Vec<u32>,
     /// Compute dispatches encoded on the GPU.

@@ -51,8 +51,8 @@ impl Engine for Failing {
     fn twins(&mut self) -> Answer<'_, Vec<u32>> {
         self.answer(|cpu| Engine::twins(cpu))
     }
-    fn set_positions(&mut self, mesh: Arc<Mesh>) -> Answer<'_, ()> {
-        self.answer(|cpu| cpu.set_positions(mesh))
+    fn set_positions(&mut self, mesh: Arc<Mesh>, twins: Option<Vec<u32>>) -> Answer<'_, ()> {
+        self.answer(|cpu| cpu.set_positions(mesh, twins))
     }
     fn update(&mut self, positions: Option<Positions>, iterations: u32) -> Result<(), Error> {
         self.cpu.update(positions, iterations)

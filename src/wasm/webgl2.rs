@@ -88,14 +88,19 @@ impl JsWebGl2 {
         }
     }
 
-    /// As `Engine::set_positions`; `indices` are the present triangles. Also rejects if the engine cannot accept the
-    /// positions.
+    /// As `Engine::set_positions`. `indices` are the present triangles, or others with these locked half-edges. Also
+    /// rejects if the engine cannot accept the positions.
     #[wasm_bindgen(js_name = setPositions, unchecked_return_type = "Promise<void>")]
-    pub fn set_positions(&self, positions: JsPositions, indices: Uint32Array) -> Promise {
+    pub fn set_positions(
+        &self,
+        positions: JsPositions,
+        indices: Uint32Array,
+        locked: Option<Uint32Array>,
+    ) -> Promise {
         let dimension = self.dimension;
         let set = async move |engine: &mut WebGl| {
             let mesh = mesh_of(positions, &indices, dimension, &Threads::one())?;
-            engine.set_positions(Arc::new(mesh)).await
+            engine.move_vertices(Arc::new(mesh), locked.map(|locked| locked.to_vec())).await
         };
         self.call(set, |()| JsValue::UNDEFINED)
     }

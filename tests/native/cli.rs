@@ -17,7 +17,7 @@ use std::fs;
 use std::time::Instant;
 
 /// The keys of the object that `--json` prints, in their order.
-const KEYS: [&str; 35] = [
+const KEYS: [&str; 36] = [
     "input",
     "vertices",
     "triangles",
@@ -36,6 +36,7 @@ const KEYS: [&str; 35] = [
     "flips",
     "constraint_flips",
     "left_out",
+    "lost_edges",
     "flips_per_iteration",
     "dispatches",
     "device_bytes",

@@ -155,6 +155,15 @@ pub struct Args {
     #[arg(long, requires = "constraints")]
     pub skip_constraints: bool,
 
+    /// Make triangles that are turned over or flat positive first, in the plane
+    ///
+    /// Flips cannot do that: vertices are lifted out of the triangles, and put back where their points are. No vertex
+    /// moves, and the boundary stays. Locked edges come back; the summary and --json (lost_edges) name those that
+    /// cannot. Other triangles are then at a place of the file than before: what the file says of single triangles does
+    /// not move with them. Where the points have no triangulation, some triangles stay as they are.
+    #[arg(long)]
+    pub untangle: bool,
+
     /// Reverse triangles first, so that neighbours have the same orientation
     ///
     /// In each component that is orientable, the minority is reversed. Without it, edges between triangles of opposite
@@ -203,7 +212,8 @@ pub struct Args {
     /// Keys: input, vertices, triangles, edges, boundary_edges, non_manifold_edges, inconsistent_edges, dimension,
     /// coordinates (32 or 64, the bits of the floats that decide), crossing_polygons (the numbers of faces, see the
     /// notes), backend, adapter, fallback, status (done or stopped), iterations, flips, constraint_flips, left_out (for
-    /// each constraint left out, its index in the list and the reason), flips_per_iteration, dispatches, device_bytes,
+    /// each constraint left out, its index in the list and the reason), lost_edges (the two vertices of each locked edge
+    /// that --untangle could not keep), flips_per_iteration, dispatches, device_bytes,
     /// remaining (by reason), inverted (triangles that are turned over, in the plane: they have not the orientation of
     /// the total area of their component), flat (triangles of no area), min_angle_before_deg, min_angle_after_deg,
     /// before and after (min_angle_deg, mean_min_angle_deg, mean_aspect, flat_triangles, area, volume), turned_triangles
@@ -280,6 +290,7 @@ impl Args {
             max_deviation: self.max_deviation,
             max_iterations: self.max_iterations,
             skips_constraints: self.skip_constraints,
+            untangle: self.untangle.then_some(true),
             threads: self.threads,
             order: match self.order {
                 OrderArg::Reproducible => Order::Reproducible,

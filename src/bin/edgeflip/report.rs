@@ -34,6 +34,7 @@ pub struct Report {
     flips: u64,
     constraint_flips: u64,
     left_out: Vec<LeftOut>,
+    lost_edges: Vec<[u32; 2]>,
     flips_per_iteration: Vec<u32>,
     dispatches: u64,
     device_bytes: u64,
@@ -204,6 +205,7 @@ impl Report {
             flips: outcome.flips,
             constraint_flips: outcome.constraint_flips,
             left_out: outcome.left_out,
+            lost_edges: outcome.lost_edges,
             flips_per_iteration: outcome.flips_per_iteration,
             dispatches: outcome.dispatches,
             device_bytes: outcome.device_bytes,
@@ -329,6 +331,10 @@ impl Report {
         }
         if let Some(LeftOut { reason, .. }) = self.left_out.first() {
             line("left out", format!("constraints: {}; {reason}", HumanCount(self.left_out.len() as u64)));
+        }
+        if let Some([u, v]) = self.lost_edges.first() {
+            let count = HumanCount(self.lost_edges.len() as u64);
+            line("lost", format!("locked edges: {count}; the first is {u}-{v}"));
         }
         let iterations = match self.iterations {
             0 => String::new(),

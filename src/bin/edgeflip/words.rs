@@ -38,10 +38,10 @@ pub fn change(before: f64, after: f64) -> String {
 }
 
 /// What to do about triangles that are turned over, and about flat ones.
-pub const INVERTED: &str = "they overlap their neighbours, and no flip could turn them back: move their vertices back, or \
-                        triangulate the points again";
-pub const FLAT: &str =
-    "their corners are on one line, and no flip removed them: move a corner of each, or leave it out";
+pub const INVERTED: &str = "they overlap their neighbours, and no flip could turn them back: --untangle does, wherever the \
+                        points have a triangulation; else move their vertices back";
+pub const FLAT: &str = "their corners are on one line, and no flip removed them: in the plane try --untangle; else move a \
+                    corner of each, or leave it out";
 
 /// The first edges left for each reason, named by their vertices.
 pub fn first_edges(remaining: &BTreeMap<&str, Vec<[u32; 2]>>) -> String {

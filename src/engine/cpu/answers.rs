@@ -47,13 +47,24 @@ impl Engine for Cpu {
         Box::pin(std::future::ready(Ok(self.arrangement.named_twins(&self.twins, &self.threads))))
     }
 
-    fn set_positions(&mut self, mesh: Arc<Mesh>) -> Answer<'_, ()> {
+    fn set_positions(&mut self, mesh: Arc<Mesh>, twins: Option<Vec<u32>>) -> Answer<'_, ()> {
+        let has_others = twins.is_some();
+        if let Some(twins) = twins {
+            if !self.arrangement.is_empty() {
+                self.begin_again(mesh, half_edge::locked(&twins));
+                return Box::pin(std::future::ready(Ok(())));
+            }
+            (self.triangles, self.twins) = (self.threads.copied(mesh.triangles()), twins);
+        }
         let mesh = self.arrangement.mesh(mesh, &self.triangles, &self.threads);
         let Self { thresholds, winding, embedded, outline, triangles, twins, threads, .. } = self;
         let guess = Some(std::mem::take(winding));
         (*winding, *embedded) = Embedded::with_winding(&mesh, twins, guess, outline, threads);
         if mesh.dimension() == Dimension::Three {
             flag_creases(mesh.positions(), triangles, twins, thresholds.cos, false, threads);
+        }
+        if has_others {
+            self.fans = embedded.fans(&mesh, twins, threads);
         }
         self.settle(Vec::new(), false);
         self.iteration = 0;

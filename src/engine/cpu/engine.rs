@@ -104,9 +104,13 @@ impl Cpu {
         })
     }
 
-    /// Becomes a new engine with the same locks, arranged for `mesh`, which has the present triangles.
-    pub(super) fn begin_again(&mut self, mesh: Arc<Mesh>) {
-        let locked = half_edge::locked(&self.arrangement.named_twins(&self.twins, &self.threads));
+    /// The locked half-edges.
+    pub(super) fn locked(&self) -> Vec<u32> {
+        half_edge::locked(&self.arrangement.named_twins(&self.twins, &self.threads))
+    }
+
+    /// Becomes a new engine, arranged for `mesh`, with these locked half-edges.
+    pub(super) fn begin_again(&mut self, mesh: Arc<Mesh>, locked: Vec<u32>) {
         // Frees the memory that the new engine needs.
         (self.triangles, self.twins, self.blocked) = (Vec::new(), Vec::new(), Vec::new());
         self.arrangement = Arrangement::default();

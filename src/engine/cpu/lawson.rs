@@ -10,6 +10,7 @@ use super::region::{Region, Work};
 use crate::engine::{Answer, Census, EdgeCounts, Engine, Moved};
 use crate::mesh::areas::Areas;
 use crate::mesh::arrangement::Arrangement;
+use crate::mesh::half_edge;
 use crate::{EngineKind, Error, Mesh, Positions};
 use std::sync::Arc;
 
@@ -93,13 +94,14 @@ impl Engine for Lawson {
         Engine::twins(&mut self.cpu)
     }
 
-    fn set_positions(&mut self, mesh: Arc<Mesh>) -> Answer<'_, ()> {
+    fn set_positions(&mut self, mesh: Arc<Mesh>, twins: Option<Vec<u32>>) -> Answer<'_, ()> {
         self.has_ended = false;
         // The order of the flips depends on the arrangement.
         if self.cpu.arrangement.is_empty() && !Arrangement::is_needed(&mesh) {
-            return self.cpu.set_positions(mesh);
+            return self.cpu.set_positions(mesh, twins);
         }
-        self.cpu.begin_again(mesh);
+        let locked = twins.map_or_else(|| self.cpu.locked(), |twins| half_edge::locked(&twins));
+        self.cpu.begin_again(mesh, locked);
         Box::pin(std::future::ready(Ok(())))
     }
 

@@ -89,7 +89,7 @@ proptest! {
         }
         let triangles = both(&mut pair, |cpu| block_on(Engine::triangles(cpu)).unwrap());
         let moved = Arc::new(Mesh::new(mesh.dimension(), shaken(&mesh, &mut random), triangles).unwrap());
-        both(&mut pair, |cpu| block_on(cpu.set_positions(moved.clone())).unwrap());
+        both(&mut pair, |cpu| block_on(cpu.set_positions(moved.clone(), None)).unwrap());
         run(&mut pair);
     }
 }

@@ -159,8 +159,8 @@ fn vertices_move_alike() {
                 let moved = mesh.positions().to_f32().into_iter().enumerate();
                 let moved: Vec<f32> = moved.map(|(i, x)| map(i, x)).collect();
                 let moved = Arc::new(Mesh::new(mesh.dimension(), moved, cpu.triangles.clone()).unwrap());
-                block_on(cpu.set_positions(moved.clone())).unwrap();
-                block_on(gpu.set_positions(moved)).unwrap();
+                block_on(cpu.set_positions(moved.clone(), None)).unwrap();
+                block_on(gpu.set_positions(moved, None)).unwrap();
             }
             iterate(name, u32::MAX, &mut cpu, &mut gpu);
             assert_same_end(name, &mut cpu, &mut gpu);

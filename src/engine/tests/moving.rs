@@ -157,7 +157,7 @@ fn changes_are_those_of_the_triangles() {
         assert!(expected.contains(&true) && expected.contains(&false));
     }
     let again = Mesh::new(Dimension::Two, mesh.positions().clone(), cpu.triangles.clone()).unwrap();
-    block_on(cpu.set_positions(Arc::new(again))).unwrap();
+    block_on(cpu.set_positions(Arc::new(again), None)).unwrap();
     assert!(block_on(cpu.changes()).unwrap().iter().all(|&update| update == 0));
 }
 

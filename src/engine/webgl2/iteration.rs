@@ -236,8 +236,8 @@ impl Engine for WebGl {
         Box::pin(self.read_threes(&self.twins.front))
     }
 
-    fn set_positions(&mut self, mesh: Arc<Mesh>) -> Answer<'_, ()> {
-        Box::pin(self.move_vertices(mesh))
+    fn set_positions(&mut self, mesh: Arc<Mesh>, twins: Option<Vec<u32>>) -> Answer<'_, ()> {
+        Box::pin(self.move_vertices(mesh, twins.map(|twins| half_edge::locked(&twins))))
     }
 
     fn settle(&mut self) -> Answer<'_, ()> {

@@ -3,6 +3,7 @@
 use super::question::Question;
 use crate::engine::{Answer, Census, EdgeCounts, Engine, Moved, positions_of};
 use crate::mesh::areas::Areas;
+use crate::mesh::half_edge;
 use crate::{EngineKind, Error, Mesh, Positions};
 use js_sys::{Object, Promise, Reflect, Uint32Array};
 use std::cell::RefCell;
@@ -30,7 +31,12 @@ extern "C" {
     #[wasm_bindgen(method, catch)]
     fn ask(this: &Remote, question: u32, words: Uint32Array) -> Result<Promise, JsValue>;
     #[wasm_bindgen(method, catch, js_name = setPositions)]
-    fn set_positions(this: &Remote, positions: JsValue, indices: Uint32Array) -> Result<Promise, JsValue>;
+    fn set_positions(
+        this: &Remote,
+        positions: JsValue,
+        indices: Uint32Array,
+        locked: Option<Uint32Array>,
+    ) -> Result<Promise, JsValue>;
     #[wasm_bindgen(method, catch)]
     fn update(this: &Remote, positions: JsValue, iterations: u32) -> Result<(), JsValue>;
     #[wasm_bindgen(method, getter)]
@@ -153,10 +159,11 @@ impl Engine for Proxy {
         self.ask(Question::Twins, &[])
     }
 
-    fn set_positions(&mut self, mesh: Arc<Mesh>) -> Answer<'_, ()> {
+    fn set_positions(&mut self, mesh: Arc<Mesh>, twins: Option<Vec<u32>>) -> Answer<'_, ()> {
         Box::pin(async move {
             let (positions, triangles) = (mesh.positions().to_typed_array(), mesh.triangles().into());
-            answer(self.remote.set_positions(positions, triangles)).await?;
+            let locked = twins.map(|twins| half_edge::locked(&twins).as_slice().into());
+            answer(self.remote.set_positions(positions, triangles, locked)).await?;
             self.is_settled = false;
             Ok(())
         })

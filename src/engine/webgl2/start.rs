@@ -133,12 +133,20 @@ impl WebGl {
         Ok(())
     }
 
-    pub(super) async fn move_vertices(&mut self, mesh: Arc<Mesh>) -> Result<(), Error> {
+    /// `locked`: the locked half-edges, if `mesh` has other triangles than the engine.
+    pub(crate) async fn move_vertices(
+        &mut self,
+        mesh: Arc<Mesh>,
+        locked: Option<Vec<u32>>,
+    ) -> Result<(), Error> {
         let upload = Upload::new(self.backend(), mesh, self.thresholds)?;
         let mut moved = Self::new(self.context.clone(), upload).await?;
-        if self.has_locks {
-            let twins = self.read_threes(&self.twins.front).await?;
-            moved.flag_locked(half_edge::locked(&twins)).await?;
+        let locked = match locked {
+            None if self.has_locks => half_edge::locked(&self.read_threes(&self.twins.front).await?),
+            locked => locked.unwrap_or_default(),
+        };
+        if !locked.is_empty() {
+            moved.flag_locked(locked).await?;
         }
         if self.moving.changes.is_some() {
             moved.begin_changes()?;

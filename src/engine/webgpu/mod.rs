@@ -167,8 +167,8 @@ impl Engine for WebGpu {
         Box::pin(async { twins.await.map(vector) })
     }
 
-    fn set_positions(&mut self, mesh: Arc<Mesh>) -> Answer<'_, ()> {
-        Box::pin(self.move_vertices(mesh))
+    fn set_positions(&mut self, mesh: Arc<Mesh>, twins: Option<Vec<u32>>) -> Answer<'_, ()> {
+        Box::pin(self.move_vertices(mesh, twins))
     }
 
     #[cfg(all(target_arch = "wasm32", feature = "js-session"))]

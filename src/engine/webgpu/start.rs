@@ -264,12 +264,30 @@ impl WebGpu {
         self.gpu.checked(|| self.gpu.write(&self.buffers.twins, &twins)).await
     }
 
-    pub(super) async fn move_vertices(&mut self, mesh: Arc<Mesh>) -> Result<(), Error> {
+    /// With `twins`, the mesh has other triangles than the device: the host has untangled it. The device does not do
+    /// that itself.
+    pub(super) async fn move_vertices(
+        &mut self,
+        mesh: Arc<Mesh>,
+        twins: Option<Vec<u32>>,
+    ) -> Result<(), Error> {
         let upload = Upload::new(self.backend(), mesh, self.thresholds)?;
         if upload.form() == self.form {
+            let fans = match &twins {
+                Some(twins) if self.params.fans_length > 0 => {
+                    Fans::new(upload.mesh.vertex_count(), upload.mesh.triangles(), twins).table
+                }
+                _ => Vec::new(),
+            };
             self.params.deviation = upload.deviation;
             (self.params.winding, self.params.update) = (WINDING_UNKNOWN, 0);
             let calls = || {
+                if let Some(twins) = &twins {
+                    self.gpu.write(&self.buffers.triangles, upload.mesh.triangles());
+                    self.gpu.write(&self.buffers.twins, twins);
+                    let at = 4 * u64::from(self.params.fans);
+                    self.gpu.queue.write_buffer(&self.buffers.topology, at, bytemuck::cast_slice(&fans));
+                }
                 self.buffers.write_positions(&self.gpu, &upload);
                 self.prepare();
             };
@@ -278,7 +296,10 @@ impl WebGpu {
             return self.begin(upload.mesh).await;
         }
         let mut moved = Self::begun(self.gpu.clone(), upload, self.waits).await?;
-        let locked = half_edge::locked(&self.twins().await?);
+        let locked = half_edge::locked(&match twins {
+            Some(twins) => twins,
+            None => self.twins().await?,
+        });
         if !locked.is_empty() {
             moved.flag_locked(locked).await?;
         }

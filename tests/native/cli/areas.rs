@@ -64,3 +64,31 @@ fn a_mesh_with_inverted_triangles_is_not_clean_but_written() {
     let said = text(&ran.stderr);
     assert!(said.contains("\naudit      clean\n") && !said.contains("inverted"), "{said}");
 }
+
+#[test]
+fn a_folded_mesh_is_untangled() {
+    let folder = Folder::new();
+    // The middle vertex is near the right side, but its triangles are those of one near the left side.
+    let folded = "OFF\n6 6 0\n0 0 0\n4 0 0\n4 4 0\n0 4 0\n1 1 0\n3 2 0\n3 0 1 4\n3 1 2 4\n3 2 3 4\n3 3 0 5\n3 0 4 5\n3 4 3 5\n";
+    let (input, output) = (folder.file("in.off", folded), folder.path("out.off"));
+    let found = |more: &[&str]| -> Value {
+        let ran = run(&input, &output, &[&["--json", "--verify"], more].concat());
+        assert_eq!((ran.status.code(), text(&ran.stderr)), (Some(0), ""));
+        serde_json::from_slice(&ran.stdout).unwrap()
+    };
+    assert_eq!(found(&[])["clean"], false);
+    let untangled = found(&["--untangle"]);
+    assert_eq!((&untangled["clean"], &untangled["inverted"]), (&true.into(), &0.into()));
+    assert_eq!((&untangled["lost_edges"], &untangled["remaining"]), (&json!([]), &json!({})));
+    // The locked edge from 0 to 5 goes through 4, once it is there.
+    let through = folder.file("through.off", folded.replace("3 2 0", "3 3 0"));
+    let locks = folder.file("locks.txt", "0 5\n");
+    let ran = run(&through, &output, &["--untangle", "--verify", "--lock-edges", locks.to_str().unwrap()]);
+    let said = text(&ran.stderr);
+    assert_eq!(ran.status.code(), Some(0), "{said}");
+    assert!(said.contains("\nlost       locked edges: 1; the first is 0-5\n"), "{said}");
+    let ran = run(&input, &output, &["--untangle", "--dimension", "3"]);
+    assert_eq!(ran.status.code(), Some(2));
+    let said = text(&ran.stderr);
+    assert!(said.contains("only a mesh of dimension 2 can be untangled"), "{said}");
+}
