@@ -1,4 +1,4 @@
-/** The type of the answer of `verify`. */
+/** The types of the answers of `verify` and `problems`. */
 
 import type { Reason, Reasons, Result } from './types.js';
 
@@ -25,4 +25,23 @@ export interface Audit {
   invertedTriangles: Uint32Array;
   /** The triangles of no area, in ascending order. */
   flatTriangles: Uint32Array;
+}
+
+/**
+ * What keeps positions in the plane from having a triangulation with the boundary of a mesh. Each component counts alone:
+ * components may overlap. If all three are empty, a triangulation exists.
+ */
+export interface Problems {
+  /**
+   * Vertices that are not inside the boundary of their component, in ascending order. If a whole ring of the boundary is
+   * where it cannot be, such as a hole outside, all its vertices.
+   */
+  outside: Uint32Array;
+  /** Pairs of vertices at one point, one pair after the other. */
+  coincident: Uint32Array;
+  /**
+   * Pairs of boundary edges that cross or touch, other than in a common vertex: four vertices for each pair, two for each
+   * edge.
+   */
+  crossing: Uint32Array;
 }

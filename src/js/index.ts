@@ -14,7 +14,7 @@ import { createWatched, runWatched } from './session.js';
 import { watchOf } from './settings.js';
 import type { IndexArray, MakeDelaunayOptions, Mesh, Result } from './types.js';
 
-export type { Audit } from './audit.js';
+export type { Audit, Problems } from './audit.js';
 export { EDGE_STATES, type EdgeState } from './edge-states.js';
 export { EdgeflipError, type ErrorCode } from './error.js';
 export { init } from './load.js';

@@ -2,7 +2,7 @@
 
 /// <reference lib="esnext.disposable" preserve="true" />
 
-import type { Audit } from './audit.js';
+import type { Audit, Problems } from './audit.js';
 import type { EDGE_STATES } from './edge-states.js';
 import { EdgeflipError, fromModule } from './error.js';
 import type { Preparation } from './prepare.js';
@@ -349,6 +349,22 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
       const { audit } = await import('./wasm/edgeflip_audit.js');
       const { indices, lockedEdges } = before ?? { indices: present, lockedEdges: locks };
       return audit(positions, indices, dimension, triangles, lockedEdges, options, before);
+    });
+  }
+
+  /**
+   * What keeps the present positions from having a triangulation: vertices outside the boundary, vertices at one point,
+   * and boundary edges that cross. Exact, and for a mesh in the plane; a surface in space has no problems. As `verify`, it
+   * ends the motion, and is in a module that the first call loads.
+   *
+   * @throws {@link EdgeflipError} `load-failed`; see {@link init}.
+   */
+  problems(): Promise<Problems> {
+    return this.#call(async (session) => {
+      const [positions, indices, dimension] = await session.auditInput();
+      await loadAudit();
+      const { problems } = await import('./wasm/edgeflip_audit.js');
+      return problems(positions, indices, dimension);
     });
   }
 

@@ -16,6 +16,7 @@ export type Question =
   | 'result'
   | 'setPositions'
   | 'step'
+  | 'problems'
   | 'triangles'
   | 'update'
   | 'verify';

@@ -14,7 +14,7 @@
 
 /// <reference lib="esnext.disposable" preserve="true" />
 
-import type { Audit } from './audit.js';
+import type { Audit, Problems } from './audit.js';
 import { buffersOf } from './buffers.js';
 import { EdgeflipError, fromModule } from './error.js';
 import { copyOf, messageOf, read } from './given.js';
@@ -40,7 +40,7 @@ import type {
 import { updateOf, WORKER_UPDATE_OPTIONS, type WorkerUpdateOptions } from './update.js';
 import type { Functions, Question, Watched } from './worker-script.js';
 
-export type { Audit } from './audit.js';
+export type { Audit, Problems } from './audit.js';
 export { EDGE_STATES, type EdgeState } from './edge-states.js';
 export { EdgeflipError, type ErrorCode } from './error.js';
 export type { ModuleSource, Sources } from './module.js';
@@ -305,6 +305,11 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
   /** Checks the triangles against the input, exactly, and lists the edges that are not Delaunay. */
   verify(): Promise<Audit> {
     return this.#ask('verify');
+  }
+
+  /** What keeps the present positions from having a triangulation, for a mesh in the plane. */
+  problems(): Promise<Problems> {
+    return this.#ask('problems');
   }
 
   /** The present engine. */

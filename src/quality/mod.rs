@@ -6,6 +6,7 @@ mod audit_exact;
 mod edges;
 mod measures;
 mod paths;
+mod problems;
 mod surface;
 
 pub use angles::{AngleHistogram, Angles, angles};
@@ -15,4 +16,5 @@ pub use audit::{Audit, MAX_LISTED, Violation, audit, audit_outcome};
 pub use measures::{Measures, distance, measures, moved};
 #[cfg(all(target_arch = "wasm32", feature = "js-audit"))]
 pub(crate) use paths::Named;
+pub use problems::{Problems, problems};
 pub use surface::RemainingEdge;

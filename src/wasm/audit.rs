@@ -2,7 +2,7 @@
 //! `FlipSession.verify` in `src/js/session.ts`.
 
 use crate::Options;
-use crate::quality::{self, Named, audit_named};
+use crate::quality::{self, Named, Problems, audit_named};
 use crate::system::threads::Threads;
 use crate::wasm::options::{JsOptions, without_lists};
 use crate::wasm::values::{JsPositions, mesh_of, object, reasons_object, thrown};
@@ -47,7 +47,7 @@ pub fn audit(
         let left_out: Vec<usize> = before.left_out().to_vec().into_iter().map(|i| i as usize).collect();
         let skips_constraints = !left_out.is_empty();
         let options = Options { constraints: pairs(&before.constraints()), skips_constraints, ..options };
-        let named = Named { edges: &pairs(&before.constraint_edges()), left_out };
+        let named = Named { edges: &pairs(&before.constraint_edges()), left_out, lost_edges: &[] };
         Ok(audit_named(&input, &triangles, &options, Some(named)))
     };
     let audit = check().map_err(thrown)?;
@@ -65,5 +65,21 @@ pub fn audit(
         ("remainingEdges", object(ends)),
         ("invertedTriangles", Uint32Array::from(audit.inverted.as_slice()).into()),
         ("flatTriangles", Uint32Array::from(audit.flat.as_slice()).into()),
+    ]))
+}
+
+/// As [`quality::problems`].
+///
+/// # Errors
+/// Those of [`Mesh::new`](crate::Mesh::new); [`Error::OutOfMemory`](crate::Error::OutOfMemory).
+#[wasm_bindgen(unchecked_return_type = "import('../audit.js').Problems")]
+pub fn problems(positions: JsPositions, indices: &Uint32Array, dimension: u32) -> Result<JsValue, JsValue> {
+    let mesh = mesh_of(positions, indices, dimension, &Threads::one()).map_err(thrown)?;
+    let Problems { outside, coincident, crossing } = quality::problems(&mesh);
+    let array = |words: &[u32]| JsValue::from(Uint32Array::from(words));
+    Ok(object([
+        ("outside", array(&outside)),
+        ("coincident", array(coincident.as_flattened())),
+        ("crossing", array(crossing.as_flattened().as_flattened())),
     ]))
 }

@@ -73,6 +73,30 @@ test('verify lists them, and is not clean with an inverted one', async () => {
   assert.deepEqual([clean, inverted, flat.length], [true, [], 2]);
 });
 
+test('problems says why positions have no triangulation', async () => {
+  const corners = [0, 0, 4, 0, 4, 4, 0, 4];
+  const cases = [
+    [[1, 2], [], [], []],
+    [[-1, 2], [4], [], []],
+    [[4, 4], [4], [2, 4], []],
+    [[1, 3], [], [], []],
+  ];
+  for (const create of [FlipSession.create, worker.FlipSession.create]) {
+    const session = await create(square(2), onCpu);
+    for (const [inside, ...expected] of cases) {
+      await session.setPositions(new Float32Array([...corners, ...inside]));
+      const { outside, coincident, crossing } = await session.problems();
+      assert.deepEqual(
+        [outside, coincident, crossing].map((list) => [...list]),
+        expected,
+      );
+    }
+    await session.setPositions(new Float32Array([0, 0, 4, 4, 4, 0, 0, 4, 1, 2]));
+    assert.deepEqual([...(await session.problems()).crossing], [0, 1, 2, 3]);
+    session.free();
+  }
+});
+
 test('with threads, the counts are the same', async () => {
   const mesh = await generate('random 190');
   const positions = mesh.positions.slice();
