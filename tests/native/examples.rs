@@ -12,6 +12,9 @@ mod moving;
 mod one_call;
 #[path = "../../examples/step_by_step.rs"]
 mod step_by_step;
+#[path = "../../examples/untangle.rs"]
+#[allow(dead_code, reason = "its main prints what its other function returns")]
+mod untangle;
 
 use edgeflip::Error;
 use std::fs;
@@ -27,6 +30,17 @@ fn one_call() -> Result<(), Error> {
 #[test]
 fn step_by_step() -> Result<(), Error> {
     step_by_step::main()
+}
+
+#[test]
+fn untangle() -> Result<(), Error> {
+    let lines = pollster::block_on(untangle::run())?;
+    assert_eq!(lines.len(), 4);
+    assert_eq!(lines[0], "at 3, 2: 0 turned over, 0 flat; outside: [], at one point: []");
+    assert!(lines[1].ends_with("outside: [4], at one point: []") && !lines[1].contains(" 0 turned"));
+    assert!(lines[2].ends_with("outside: [4], at one point: [[2, 4]]") && !lines[2].contains(" 0 flat"));
+    assert_eq!(lines[3], "at 2, 3: 0 turned over, 0 flat; outside: [], at one point: []");
+    Ok(())
 }
 
 #[test]

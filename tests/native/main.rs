@@ -41,5 +41,6 @@ mod parity;
 mod positions;
 mod quads;
 mod threads;
+mod untangle;
 mod wedges;
 mod worst_cases;
