@@ -22,6 +22,8 @@ impl Session {
     ///
     /// [`Session::run`], [`Session::advance`], [`Session::step`], [`Session::outcome`], [`Session::edge_states`] and
     /// [`Session::verify`] end the motion: they act as if [`Session::set_positions`] had been called with the present positions.
+    /// They untangle triangles that have turned over, as [`Options::untangle`](crate::Options::untangle) says; an update only
+    /// flips, on every engine.
     ///
     /// # Errors
     /// [`Error::Option`], [`Error::PositionCount`]; [`Error::BackendLimit`] for 64-bit floats on a GPU;
