@@ -197,7 +197,7 @@ impl Arrangement {
 }
 
 /// For each vertex its place on a Morton curve.
-fn codes(mesh: &Mesh, threads: &Threads) -> Vec<u32> {
+pub(crate) fn codes(mesh: &Mesh, threads: &Threads) -> Vec<u32> {
     let (stride, positions) = (mesh.dimension().stride(), mesh.positions());
     let ends = threads.map(mesh.vertex_count(), |piece| {
         let mut ends = [[f64::INFINITY, f64::NEG_INFINITY]; 3];

@@ -21,7 +21,7 @@ pub(super) const FREE: u64 = u64::MAX;
 
 /// A vertex that may leave.
 struct Candidate {
-    /// First those that remove most turned triangles; then a hash. No two candidates have the same.
+    /// First those that remove most turned triangles; then a hash. No two candidates of a component have the same.
     key: u64,
     star: Star,
 }
@@ -63,10 +63,11 @@ impl Sheet<'_> {
 
     fn candidates(&self, turned: &[u32], round: u32) -> Vec<Candidate> {
         let corners = turned.iter().flat_map(|t| 3 * t..3 * t + 3);
-        let mut corners: Vec<_> = corners.map(|h| (self.vertex(h), h)).collect();
+        let component = |h: u32| self.components()[triangle_of(h) as usize];
+        let mut corners: Vec<_> = corners.map(|h| (self.vertex(h), component(h), h)).collect();
         corners.sort_unstable();
-        corners.dedup_by_key(|&mut (v, _)| v);
-        let candidate = |(v, h)| {
+        corners.dedup_by_key(|&mut (v, component, _)| (v, component));
+        let candidate = |(v, _, h)| {
             let star = self.star(h)?;
             self.triangulation(&self.link(&star)[..star.degree], triangle_of(h))?;
             let gain = star.corners().iter().filter(|&&h| !self.is_right(triangle_of(h))).count();
@@ -78,7 +79,7 @@ impl Sheet<'_> {
     /// The star of the vertex that `corner` starts at; `None` if rounds do not lift it.
     fn star(&self, corner: u32) -> Option<Star> {
         let v = self.vertex(corner);
-        if self.is_pinned(v) {
+        if self.is_pinned(v, triangle_of(corner)) {
             return None;
         }
         let mut star = Star { corners: [NONE; MOST], degree: 0 };

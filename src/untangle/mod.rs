@@ -13,8 +13,9 @@ mod locks;
 mod put_back;
 mod region;
 mod repair;
-mod ring;
 mod sheet;
+mod status;
+mod sweep;
 #[cfg(test)]
 mod tests;
 

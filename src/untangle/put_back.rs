@@ -4,8 +4,10 @@
 use super::lift::{Claims, FREE};
 use super::sheet::{Loose, Sheet};
 use crate::NONE;
+use crate::mesh::arrangement::codes;
 use crate::mesh::half_edge::triangle_of;
 use crate::phases::key;
+use crate::system::threads::Threads;
 use std::cmp::Ordering;
 
 /// The longest walk of a round, in triangles.
@@ -13,6 +15,9 @@ const LONGEST: u32 = 256;
 
 /// The last round in which a vertex may walk on from the round before.
 const LAST: u32 = 64;
+
+/// From so many vertices on, those that begin at one slot walk in the order of a curve.
+const MANY: usize = 1024;
 
 /// How a walk ends.
 enum Walk {
@@ -37,12 +42,21 @@ impl Sheet<'_> {
     /// `flips`: whether edges flip in between, so that many vertices do not make long triangles.
     pub(super) fn put_back(&mut self, claims: &mut Claims, flips: bool) -> usize {
         let mut waiting = std::mem::take(&mut self.loose);
+        if waiting.len() > MANY {
+            let codes = codes(self.mesh, &Threads::one());
+            waiting.sort_unstable_by_key(|loose| (loose.near, codes[loose.vertex as usize], loose.vertex));
+        }
         let mut strays = Vec::new();
         for round in 0.. {
             let mut located: Vec<(Loose, Location)> = Vec::with_capacity(waiting.len());
+            // Where the last walk began and ended: many vertices may begin at one slot, and end one after another.
+            let mut last = [NONE; 2];
             for mut loose in std::mem::take(&mut waiting) {
-                loose.near = self.filled(loose.near);
-                match self.walk(&mut loose, round) {
+                let start = self.filled(loose.near);
+                loose.near = if start == last[0] { last[1] } else { start };
+                let end = self.walk(&mut loose, round);
+                last = [start, loose.near];
+                match end {
                     Walk::At(location) => located.push((loose, location)),
                     Walk::TooLong if round < LAST => waiting.push(loose),
                     _ => strays.push(loose),

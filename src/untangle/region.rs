@@ -7,35 +7,68 @@ use crate::NONE;
 use crate::mesh::half_edge::{next, triangle_of};
 
 /// If more than one triangle in so many of a component is turned over, the whole component is filled anew.
-const FEW: usize = 4;
+const FEW: u32 = 4;
 
 /// The longest border that a region is filled within, unless it is a whole component.
 const LONGEST: usize = 256;
+
+/// The most triangles of a region before it becomes the whole component.
+const LARGEST: usize = 1 << 14;
+
+/// The same in a component whose border cannot be filled: it keeps turned triangles in any case.
+const LARGEST_HOPELESS: usize = 1 << 8;
+
+/// What the search for regions remembers.
+pub(super) struct Search {
+    /// For each triangle, the last turned triangle whose region had it.
+    marks: Vec<u32>,
+    /// The components whose border cannot be filled, sorted.
+    hopeless: Vec<u32>,
+}
+
+impl Search {
+    pub(super) fn new(triangles: usize) -> Self {
+        Self { marks: vec![NONE; triangles], hopeless: Vec::new() }
+    }
+}
 
 impl Sheet<'_> {
     /// Fills components with many turned triangles anew. Returns their slots.
     pub(super) fn fill_anew(&mut self, turned: &[u32]) -> Vec<u32> {
         let components = self.components();
+        let mut counts = vec![[0u32; 2]; components.iter().max().map_or(0, |&last| last as usize + 1)];
+        components.iter().for_each(|&component| counts[component as usize][0] += 1);
+        turned.iter().for_each(|&t| counts[components[t as usize] as usize][1] += 1);
+        let is_bad = |t: &u32| {
+            let [all, turned] = counts[components[*t as usize] as usize];
+            turned > all / FEW
+        };
+        let mut bad: Vec<u32> = (0..components.len() as u32).filter(is_bad).collect();
+        bad.sort_by_key(|&t| components[t as usize]);
         let mut slots = Vec::new();
-        let mut of_component: Vec<u32> = turned.iter().map(|&t| components[t as usize]).collect();
-        of_component.sort_unstable();
-        for turned in of_component.chunk_by(|one, other| one == other) {
-            let is_inside = |t: u32| components[t as usize] == turned[0];
-            let region: Vec<u32> = (0..components.len() as u32).filter(|&t| is_inside(t)).collect();
-            if turned.len() > region.len() / FEW && self.refill(&region, &is_inside, usize::MAX) {
-                slots.extend(region);
+        for region in bad.chunk_by(|&t, &u| components[t as usize] == components[u as usize]) {
+            let is_inside = |t: u32| components[t as usize] == components[region[0] as usize];
+            if self.refill(region, &is_inside, usize::MAX) {
+                slots.extend_from_slice(region);
             }
         }
         slots
     }
 
-    /// Fills a region around turned triangle `t`, if any can be filled. `marks` has a word for each triangle, which is
-    /// that of no turned triangle.
-    pub(super) fn grow(&mut self, t: u32, marks: &mut [u32]) {
+    /// Fills a region around turned triangle `t`, if any can be filled.
+    pub(super) fn grow(&mut self, t: u32, search: &mut Search) {
+        let component = self.components()[t as usize];
+        let (largest, place) = match search.hopeless.binary_search(&component) {
+            // Nothing was found around it before.
+            Ok(_) if search.marks[t as usize] != NONE => return,
+            Ok(_) => (LARGEST_HOPELESS, None),
+            Err(place) => (LARGEST, Some(place)),
+        };
+        let marks = &mut search.marks;
         let (mut region, mark) = (vec![t], t);
         marks[t as usize] = mark;
         let (mut ring, mut tried) = (0, 0);
-        loop {
+        while ring < region.len() && region.len() <= largest {
             let end = region.len();
             for i in ring..end {
                 for h in 3 * region[i]..3 * region[i] + 3 {
@@ -46,22 +79,26 @@ impl Sheet<'_> {
                     }
                 }
             }
-            let is_whole = region.len() == end;
+            ring = end;
             // Regions that grow by a quarter between attempts keep the sum of all attempts small.
-            if is_whole || tried + tried / 4 < region.len() {
-                if self.refill(
-                    &region,
-                    &|t| marks[t as usize] == mark,
-                    if is_whole { usize::MAX } else { LONGEST },
-                ) {
+            if tried + tried / 4 < region.len() {
+                if self.refill(&region, &|t| marks[t as usize] == mark, LONGEST) {
                     return;
                 }
                 tried = region.len();
             }
-            if is_whole {
-                return;
-            }
-            ring = end;
+        }
+        let Some(place) = place else { return };
+        let components = self.components();
+        let is_found = if ring == region.len() {
+            self.refill(&region, &|t| marks[t as usize] == mark, usize::MAX)
+        } else {
+            let is_inside = |t: u32| components[t as usize] == component;
+            let all = (0..components.len() as u32).filter(|&t| is_inside(t) && !self.is_empty(t));
+            self.refill(&all.collect::<Vec<_>>(), &is_inside, usize::MAX)
+        };
+        if !is_found {
+            search.hopeless.insert(place, component);
         }
     }
 
@@ -81,15 +118,13 @@ impl Sheet<'_> {
         inner.retain(|v| border.binary_search(v).is_err());
         // By Euler's formula: else the region is no disc with holes.
         let is_planar = count + 2 * holes + 2 * inner.len() == region.len() + 4;
-        if holes == 0 || !is_planar || inner.iter().any(|&v| self.is_pinned(v)) {
+        if holes == 0 || !is_planar || inner.iter().any(|&v| self.is_pinned(v, region[0])) {
             return false;
         }
-        let first = self.cuts.len();
-        let t = region[0];
-        let Some((mut ring, ears)) =
-            self.one_ring(rings, t).and_then(|ring| self.ears(&ring, t).map(|ears| (ring, ears)))
+        let Some(filling) = self
+            .filling(&rings, region[0])
+            .filter(|filling| filling.triangles.len() + 2 * inner.len() == region.len())
         else {
-            self.cuts.truncate(first);
             return false;
         };
         for h in region.iter().flat_map(|t| 3 * t..3 * t + 3) {
@@ -99,8 +134,8 @@ impl Sheet<'_> {
         }
         let mut slots = region.to_vec();
         slots.sort_unstable();
-        let near = self.fill(&mut ring, &ears, &slots);
-        let free = slots[ears.len()..].chunks_exact(2);
+        let near = self.put_filling(&filling, &slots);
+        let free = slots[filling.triangles.len()..].chunks_exact(2);
         self.loose.extend(inner.into_iter().zip(free).map(|(vertex, slots)| Loose {
             vertex,
             slots: [slots[0], slots[1]],

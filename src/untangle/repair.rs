@@ -2,6 +2,7 @@
 
 use super::constant::Constant;
 use super::lift::FREE;
+use super::region::Search;
 use super::sheet::Sheet;
 use crate::predicates::area_sign;
 use crate::{Mesh, NONE};
@@ -49,10 +50,10 @@ pub(crate) fn untangled(
     let mut claims = vec![FREE; count as usize];
     let anew = sheet.fill_anew(&turned);
     sheet.lift(&mut turned, &mut claims);
-    let mut marks = vec![NONE; count as usize];
+    let mut search = Search::new(count as usize);
     for t in turned {
         if !sheet.is_right(t) {
-            sheet.grow(t, &mut marks);
+            sheet.grow(t, &mut search);
         }
     }
     sheet.flip_all(anew.iter().flat_map(|t| 3 * t..3 * t + 3).filter(|&h| sheet.vertex(h) != NONE).collect());

@@ -64,8 +64,9 @@ impl<'a> Sheet<'a> {
         Self { mesh, constant, winding, triangles, twins, loose: Vec::new(), lost, cuts: Vec::new() }
     }
 
-    pub(super) fn is_pinned(&self, v: u32) -> bool {
-        self.constant.is_pinned[v as usize]
+    /// Whether a vertex of triangle `t` stays in its component.
+    pub(super) fn is_pinned(&self, v: u32, t: u32) -> bool {
+        self.constant.is_pinned(v, self.components()[t as usize])
     }
 
     /// The component of each triangle.
@@ -87,43 +88,65 @@ impl<'a> Sheet<'a> {
         self.lost.push(Lost { edge: [h, next(h)].map(|x| self.vertex(x)), component });
     }
 
-    /// Takes the triangles of `before` back in components where two edges join the same vertices. `before` are the twins
-    /// of the mesh.
+    /// Looks for two edges that join the same vertices. Makes their components Delaunay, which may remove such edges; else
+    /// takes their triangles of `before` back. `before` are the twins of the mesh.
     pub(super) fn undo_doubled(&mut self, before: &[u32]) {
         let (old, components) = (self.mesh.triangles(), self.components());
+        let mut is_flipped: Vec<bool> = Vec::new();
         loop {
             let fans = self.fans();
-            let changed = (0..components.len() as u32).filter(|&t| {
-                let slot = 3 * t as usize..3 * t as usize + 3;
+            let is_changed = |t: &u32| {
+                let slot = 3 * *t as usize..3 * *t as usize + 3;
                 self.triangles[slot.clone()] != old[slot]
-            });
+            };
             let is_doubled = |&t: &u32| (3 * t..3 * t + 3).any(|h| self.is_doubled(h, &fans));
-            let mut doubled: Vec<u32> = changed.filter(is_doubled).map(|t| components[t as usize]).collect();
+            let changed = (0..components.len() as u32).filter(is_changed);
+            let doubled: Vec<u32> = changed.filter(is_doubled).collect();
             if doubled.is_empty() {
                 return;
             }
-            doubled.sort_unstable();
-            doubled.dedup();
-            let is_undone = |component: u32| doubled.binary_search(&component).is_ok();
-            for t in (0..components.len()).filter(|&t| is_undone(components[t])) {
+            let count = components.iter().max().map_or(0, |&last| last as usize + 1);
+            is_flipped.resize(count, false);
+            let (mut flips, mut is_undone) = (false, vec![false; count]);
+            for t in doubled {
+                let component = components[t as usize] as usize;
+                flips |= !is_flipped[component];
+                is_undone[component] = true;
+            }
+            let all = (0..components.len()).filter(|&t| is_undone[components[t] as usize]);
+            if flips {
+                let open = all.flat_map(|t| 3 * t as u32..3 * t as u32 + 3).collect();
+                self.flip_all(open);
+                (0..count).for_each(|component| is_flipped[component] |= is_undone[component]);
+                continue;
+            }
+            for t in all {
                 self.triangles[3 * t..3 * t + 3].copy_from_slice(&old[3 * t..3 * t + 3]);
                 self.twins[3 * t..3 * t + 3].copy_from_slice(&before[3 * t..3 * t + 3]);
             }
-            self.lost.retain(|lost| !is_undone(lost.component));
+            self.lost.retain(|lost| lost.component == NONE || !is_undone[lost.component as usize]);
         }
     }
 
     /// Whether other half-edges than its twin join the vertices of `h`, and not all of them are on the boundary.
     fn is_doubled(&self, h: u32, fans: &Fans) -> bool {
-        let [u, v] = [h, next(h)].map(|x| self.vertex(x));
-        let ends = |corner| [(corner, next(corner)), (prev(corner), prev(corner))];
-        let star = Star::new(&self.triangles, &self.twins, fans, h).flat_map(ends);
-        let (mut count, mut has_twins) = (0, false);
-        for (x, _) in star.filter(|&(_, far)| self.vertex(far) == v) {
-            count += 1;
-            has_twins |= self.twin(x) != NONE;
+        let ends = [h, next(h)].map(|x| self.vertex(x));
+        // The sides that each star has, and those of them with a twin. The shorter star decides: it ends the walk.
+        let mut counts = [[0; 2]; 2];
+        let mut stars = [h, next(h)].map(|corner| Star::new(&self.triangles, &self.twins, fans, corner));
+        while let [Some(one), Some(other)] = stars.each_mut().map(Iterator::next) {
+            for (end, corner) in [one, other].into_iter().enumerate() {
+                for (x, far) in [(corner, next(corner)), (prev(corner), prev(corner))] {
+                    if self.vertex(far) == ends[1 - end] {
+                        counts[end][0] += 1;
+                        counts[end][1] += u32::from(self.twin(x) != NONE);
+                    }
+                }
+            }
         }
-        u != v && count > 2 && has_twins
+        ends[0] != ends[1]
+            && counts.iter().any(|count| count[0] > 2)
+            && counts.iter().any(|count| count[1] > 0)
     }
 
     pub(super) fn vertex(&self, h: u32) -> u32 {
@@ -216,7 +239,7 @@ impl<'a> Sheet<'a> {
         near
     }
 
-    fn clear(&mut self, slot: u32, near: u32) {
+    pub(super) fn clear(&mut self, slot: u32, near: u32) {
         let h = 3 * slot as usize;
         self.triangles[h..h + 3].copy_from_slice(&[NONE, near, NONE]);
         self.twins[h..h + 3].fill(NONE);
