@@ -3,6 +3,7 @@
 mod angles;
 mod audit;
 mod audit_exact;
+mod components;
 mod edges;
 mod measures;
 mod paths;
