@@ -169,12 +169,18 @@ impl Session {
 impl Session {
     /// Gives the engine a mesh whose vertices have moved, with other triangles if it needs them.
     pub(super) async fn take_moved(&mut self, mesh: &mut Arc<Mesh>) -> Result<(), Error> {
-        // The CPU finds the signs of all triangles anyway.
-        let tells_signs = self.engine.backend() == EngineKind::Cpu;
+        let may_untangle = mesh.dimension() == Dimension::Two && self.options.untangle != Some(false);
+        if !may_untangle {
+            return self.take_positions(mesh, None).await;
+        }
+        let enough = self.check_memory(memory_bounds::UNTANGLE);
+        // The CPU finds the signs of all triangles anyway. It has the new positions then, so no error may follow.
+        let tells_signs = self.engine.backend() == EngineKind::Cpu && enough.is_ok();
         if tells_signs {
             self.take_positions(mesh, None).await?;
         }
         if self.is_tangled(mesh, tells_signs).await? {
+            enough?;
             self.untangle(mesh).await?;
         } else if !tells_signs {
             self.take_positions(mesh, None).await?;
@@ -185,9 +191,6 @@ impl Session {
     /// Whether the mesh may need other triangles. `tells_signs`: whether the engine has its positions, and tells the signs
     /// of its triangles in no time.
     async fn is_tangled(&mut self, mesh: &Mesh, tells_signs: bool) -> Result<bool, Error> {
-        if mesh.dimension() == Dimension::Three || self.options.untangle == Some(false) {
-            return Ok(false);
-        }
         if !self.held.lost.is_empty() || !tells_signs {
             return Ok(!self.held.lost.is_empty() || may_be_tangled(mesh));
         }
@@ -196,7 +199,6 @@ impl Session {
 
     /// Replaces the triangles that have turned over, and gives the engine the mesh.
     async fn untangle(&mut self, mesh: &mut Arc<Mesh>) -> Result<(), Error> {
-        self.check_memory(memory_bounds::UNTANGLE)?;
         let before = (self.held.clone(), self.options.clone(), self.constraints.locks);
         let present = self.ask(|engine| engine.twins()).await?;
         let mut twins = None;
