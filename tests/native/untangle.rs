@@ -3,8 +3,10 @@
 //! Exact integers decide. The motions are those of the table in the design of the repair. The full run has all frames, and
 //! 20,000 vertices too.
 
+mod components;
 mod motions;
 mod oracle;
+mod wild;
 
 use edgeflip::{Backend, Dimension, Mesh, Options, Outcome, Session};
 use motions::{Motion, State, delaunay, motions};
@@ -370,4 +372,74 @@ fn a_hole_outside_is_a_problem() {
         assert_eq!(edgeflip::quality::problems(&mesh(9.0)).outside, [4, 5, 6, 7]);
         assert!(!edgeflip::quality::problems(&mesh(4.0)).crossing.is_empty());
     }
+}
+
+/// A vertex that two components have is free in the one that it is inside.
+#[test]
+fn a_vertex_of_two_components_is_lifted() {
+    let at = |x: f64, y: f64| vec![0.0, 0.0, 4.0, 0.0, 4.0, 4.0, 0.0, 4.0, x, y, 3.0, 9.0, 2.0, 9.0];
+    let triangles = vec![0, 1, 4, 1, 2, 7, 2, 3, 7, 3, 4, 7, 3, 0, 4, 1, 7, 4, 4, 5, 6];
+    let at = |x: f64, y: f64| [at(x, y), vec![2.0, 2.0]].concat();
+    let mesh = Mesh::new(Dimension::Two, at(1.0, 2.0), triangles).unwrap();
+    let mut session = block_on(Session::new(mesh, on(Backend::Cpu, 1))).unwrap();
+    for (x, y) in [(3.5, 2.0), (2.0, 0.5), (0.5, 3.5)] {
+        block_on(session.set_positions(at(x, y))).unwrap();
+        let outcome = flipped(&mut session);
+        assert_eq!((outcome.inverted, outcome.flat), (0, 0), "{x}, {y}");
+        assert!(block_on(session.problems()).unwrap().is_empty());
+    }
+}
+
+/// A ring that meets itself in a vertex crosses itself there, but none of its edges cross.
+#[test]
+fn corners_that_overlap_are_a_problem() {
+    // Two triangles with a common vertex, joined by a strip that goes round it.
+    let inner = |y: f64| [[0.0, 0.0], [4.0, -1.0], [4.0, 1.0], [1.0, y], [-1.0, y]];
+    let rest = [[9.0, -1.0], [9.0, 1.0], [9.0, 9.0], [1.0, 6.0], [-1.0, 9.0]];
+    let triangles = vec![0, 1, 2, 1, 5, 2, 5, 6, 2, 2, 6, 8, 6, 7, 8, 8, 7, 9, 3, 8, 9, 3, 9, 4, 0, 3, 4];
+    let mesh = |points: &[[f64; 2]]| Mesh::new(Dimension::Two, points.concat(), triangles.clone()).unwrap();
+    let mut points = [inner(4.0).as_slice(), &rest].concat();
+    assert!(edgeflip::quality::problems(&mesh(&points)).is_empty());
+    // The corner of the upper triangle goes into that of the right one.
+    (points[3], points[4]) = ([2.0, 0.25], [-1.0, 4.0]);
+    let found = edgeflip::quality::problems(&mesh(&points));
+    assert!(
+        found.crossing.contains(&[[0, 1], [0, 3]]) || found.crossing.contains(&[[0, 3], [2, 0]]),
+        "{found:?}"
+    );
+}
+
+/// The border of a region may have far more sides than a star.
+#[test]
+fn a_hub_of_many_triangles_is_lifted() {
+    let count = 20_000u32;
+    let place = |v: u32, by: f64| {
+        let angle = std::f64::consts::TAU * f64::from(v) / f64::from(count);
+        let far = 1.0 + by * (9.0 * angle).sin();
+        [far * (angle + far).cos(), far * (angle + far).sin()]
+    };
+    let at = |hub: f64, by: f64| [vec![hub, 0.0], (0..count).flat_map(|v| place(v, by)).collect()].concat();
+    let triangles = (0..count).flat_map(|v| [0, 1 + v, 1 + (v + 1) % count]).collect();
+    let mesh = Mesh::new(Dimension::Two, at(0.0, 0.0), triangles).unwrap();
+    let mut session = block_on(Session::new(mesh, on(Backend::Cpu, 1))).unwrap();
+    block_on(session.set_positions(at(0.3, 0.4))).unwrap();
+    let outcome = flipped(&mut session);
+    assert_eq!((outcome.inverted, outcome.flat, outcome.remaining.total()), (0, 0, 0));
+}
+
+/// Many sides of a border cross others: neither the repair nor the search takes long.
+#[test]
+fn a_long_border_that_crosses_itself_ends() {
+    let count = 100_000u32;
+    let at = |is_bad: bool| -> Vec<f64> {
+        let low = |i: u32| if is_bad && i % 3 == 1 { 2.0 } else { 0.0 };
+        (0..=count).flat_map(|i| [f64::from(i), low(i), f64::from(i) + 0.5, 1.0]).collect()
+    };
+    let triangles = (0..count).map(|i| 2 * i).flat_map(|i| [i, i + 2, i + 1, i + 1, i + 2, i + 3]).collect();
+    let mesh = Mesh::new(Dimension::Two, at(false), triangles).unwrap();
+    let mut session = block_on(Session::new(mesh, on(Backend::Cpu, 1))).unwrap();
+    block_on(session.set_positions(at(true))).unwrap();
+    assert!(!block_on(session.problems()).unwrap().crossing.is_empty());
+    block_on(session.set_positions(at(false))).unwrap();
+    assert!(flipped(&mut session).inverted == 0 && block_on(session.problems()).unwrap().is_empty());
 }

@@ -6,25 +6,25 @@ use std::collections::{HashMap, HashSet};
 pub(super) type Point = [i64; 2];
 
 /// Twice the area.
-fn area(a: Point, b: Point, c: Point) -> i128 {
+pub(super) fn area(a: Point, b: Point, c: Point) -> i128 {
     let [[px, py], [qx, qy]] = [a, b].map(|p| [i128::from(p[0] - c[0]), i128::from(p[1] - c[1])]);
     px * qy - py * qx
 }
 
 /// Positive if `d` is inside the circle through a, b, c, counter-clockwise.
-fn in_circle(a: Point, b: Point, c: Point, d: Point) -> i128 {
+pub(super) fn in_circle(a: Point, b: Point, c: Point, d: Point) -> i128 {
     let [p, q, r] = [a, b, c].map(|p| [i128::from(p[0] - d[0]), i128::from(p[1] - d[1])]);
     let size = |p: [i128; 2]| p[0] * p[0] + p[1] * p[1];
     let cross = |p: [i128; 2], q: [i128; 2]| p[0] * q[1] - p[1] * q[0];
     size(p) * cross(q, r) + size(q) * cross(r, p) + size(r) * cross(p, q)
 }
 
-fn sides(t: &[u32]) -> [[u32; 2]; 3] {
+pub(super) fn sides(t: &[u32]) -> [[u32; 2]; 3] {
     [[t[0], t[1]], [t[1], t[2]], [t[2], t[0]]]
 }
 
 /// The third corner of the triangle of each half-edge. Panics if two triangles have the same half-edge.
-fn apexes(triangles: &[u32]) -> HashMap<[u32; 2], u32> {
+pub(super) fn apexes(triangles: &[u32]) -> HashMap<[u32; 2], u32> {
     let mut apexes = HashMap::new();
     for t in triangles.chunks(3) {
         for (i, side) in sides(t).into_iter().enumerate() {
