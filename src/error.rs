@@ -133,6 +133,13 @@ pub enum Error {
         /// The message of the driver.
         message: String,
     },
+    /// Another module of the npm package could not be loaded, or failed.
+    #[cfg(all(target_arch = "wasm32", feature = "js-session"))]
+    #[error("another module failed")]
+    Thrown {
+        /// What JavaScript gets.
+        exception: wasm_bindgen::JsValue,
+    },
 }
 
 /// The second half of the message of [`Error::OutOfMemory`].
@@ -174,6 +181,8 @@ impl Error {
             Self::BackendUnavailable { .. } => "backend-unavailable",
             Self::BackendLimit { .. } => "backend-limit",
             Self::Device { .. } => "device-failed",
+            #[cfg(all(target_arch = "wasm32", feature = "js-session"))]
+            Self::Thrown { .. } => "internal",
         }
     }
 }

@@ -11,7 +11,7 @@ const root = fileURLToPath(new URL('..', import.meta.url));
 /** The most bytes after gzip. */
 const BUDGETS = {
   'edgeflip_bg.wasm': 166 * 1024,
-  edgeflip: 22_000,
+  edgeflip: 22 * 1024,
   'edgeflip/inline': 1.4 * 140 * 1024,
   'edgeflip/worker': 2_000,
   'edgeflip/files': 6_000,
@@ -66,9 +66,9 @@ export async function measured() {
   const core = scripts('edgeflip');
   const all = (names) => Buffer.concat([...names].map((name) => text.get(name.split('target/sizes/')[1]).contents));
   return new Map([
-    ...['edgeflip', 'edgeflip_threads', 'edgeflip_webgl2', 'edgeflip_audit', 'edgeflip_files'].map((name) => [
-      `${name}_bg.wasm`,
-      readFileSync(`${root}dist/wasm/${name}_bg.wasm`),
+    ...['', '_threads', '_webgl2', '_untangle', '_audit', '_files'].map((name) => [
+      `edgeflip${name}_bg.wasm`,
+      readFileSync(`${root}dist/wasm/edgeflip${name}_bg.wasm`),
     ]),
     ...Object.keys(entries).map((entry) => {
       const isWhole = ['edgeflip', 'edgeflip/inline'].includes(entry);

@@ -6,6 +6,8 @@ import type { IndexArray, Result } from './types.js';
 /** The longest stride that advice is given about. */
 const MOST_STRIDE = 32;
 
+const LISTED = 'verify lists these triangles.';
+
 /** The fields of a result that advice is based on. */
 type Outcome = Pick<Result, 'edges' | 'boundaryEdges' | 'nonManifoldEdges' | 'inverted' | 'flat'>;
 
@@ -14,6 +16,7 @@ type Outcome = Pick<Result, 'edges' | 'boundaryEdges' | 'nonManifoldEdges' | 'in
  *
  * @param indices - The triangles, with the vertices of the mesh.
  * @param seams - The number of edges that `weld` locked; `undefined` without `weld`.
+ * @param untangles - Whether triangles that had turned over have become positive, where that was possible.
  * @param alone - Why the CPU engine has one thread, if it could use more.
  */
 export function hintOf(
@@ -21,6 +24,7 @@ export function hintOf(
   indices: Uint32Array,
   layout: Layout<IndexArray>,
   seams: number | undefined,
+  untangles: boolean | undefined,
   alone: string | undefined,
 ): string | undefined {
   const hints: string[] = [];
@@ -44,13 +48,15 @@ export function hintOf(
     );
   }
   if (inverted > 0) {
-    hints.push(
-      `Triangles that are turned over: ${inverted}. They overlap their neighbours, and no flip could turn them back. Move their vertices back, or triangulate the points again; verify lists these triangles.`,
-    );
+    const remedy = untangles
+      ? 'no triangulation of these positions was found; problems says why'
+      : 'no flip could turn them back; untangle: true does, where the positions have a triangulation';
+    hints.push(`Triangles that are turned over: ${inverted}. They overlap their neighbours, and ${remedy}. ${LISTED}`);
   }
   if (flat > 0) {
+    const remedy = layout.dimension === 2 && !untangles ? 'Pass untangle: true, move' : 'Move';
     hints.push(
-      `Triangles of no area: ${flat}. Their corners are on one line, and no flip removed them. Move a corner of each, or leave it out; verify lists these triangles.`,
+      `Triangles of no area: ${flat}. Their corners are on one line, and no flip removed them. ${remedy} a corner of each, or leave it out. ${LISTED}`,
     );
   }
   if (alone !== undefined) hints.push(`The CPU engine ran on one thread: ${alone}.`);

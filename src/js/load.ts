@@ -64,6 +64,22 @@ export async function moduleOfThreads(): Promise<WebAssembly.Module> {
   return threadsModule;
 }
 
+let untangleModule: WebAssembly.Module;
+
+const loadUntangle = loader(
+  async ({ module_or_path }) => {
+    untangleModule = await compile(module_or_path);
+  },
+  'edgeflip_untangle_bg.wasm',
+  () => new URL('./wasm/edgeflip_untangle_bg.wasm', import.meta.url),
+);
+
+/** The module of the repair. */
+export async function moduleOfUntangler(): Promise<WebAssembly.Module> {
+  await loadUntangle();
+  return untangleModule;
+}
+
 /** Loads the module that `FlipSession.verify` calls. */
 export const loadAudit = loader(
   async (source) => (await import('./wasm/edgeflip_audit.js')).default(source),
@@ -87,6 +103,7 @@ export const init = initOf('core', {
   core: loadCore,
   webgl2: loadWebGl2,
   threads: loadThreads,
+  untangle: loadUntangle,
   audit: loadAudit,
   files: async (source) => (await import('./load-files.js')).loadFiles(source),
 });

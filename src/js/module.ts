@@ -20,6 +20,8 @@ export interface Sources {
   webgl2?: ModuleSource | undefined;
   /** The CPU engine on several threads: `edgeflip_threads_bg.wasm`. */
   threads?: ModuleSource | undefined;
+  /** The repair of triangles that have turned over, for the option `untangle`: `edgeflip_untangle_bg.wasm`. */
+  untangle?: ModuleSource | undefined;
   /** The audit, for `FlipSession.verify`: `edgeflip_audit_bg.wasm`. */
   audit?: ModuleSource | undefined;
   /** The entry `edgeflip/files`, and the options `weld` and `reorient`: `edgeflip_files_bg.wasm`. */

@@ -1,8 +1,10 @@
-/** Changes a mesh as the options ask before the run, in the module of `edgeflip/files`. */
+/** Changes a mesh as the options ask before the run, in the modules of `edgeflip/files` and of the repair. */
 
 import { type Constrained, constrain, reorient, weld, type Welded } from './files.js';
+import { moduleOfUntangler } from './load.js';
 import type { IndexedMesh } from './mesh.js';
 import type { Settings } from './settings.js';
+import { started } from './untangler.js';
 
 /** What was done before the run. */
 export interface Preparation {
@@ -32,12 +34,14 @@ export interface Prepared extends Preparation {
   settings: Settings;
 }
 
-/** Applies the options `weld`, `reorient` and `constraints`. The result has the other settings. */
+/**
+ * Applies the options `weld`, `reorient`, `untangle` and `constraints`, in this order. The result has the other settings.
+ */
 export async function prepare(
   mesh: IndexedMesh,
   { weld: attributes, reorient: turns, constraints, skipConstraints, ...settings }: Settings,
 ): Promise<Prepared> {
-  const prepared = await joined(mesh, settings, attributes, turns);
+  const prepared = await untangled(mesh, await joined(mesh, settings, attributes, turns));
   if (!constraints) return prepared;
   const { lockedEdges, lockedTriangles, groups, ...others } = prepared.settings;
   const { indices, welded } = prepared;
@@ -78,6 +82,18 @@ async function joined(
     return { indices, turned, welded, settings: { ...settings, ...locks(welded, settings) } };
   }
   return turns ? { ...(await reorient(mesh)), settings } : { indices: mesh.indices, settings };
+}
+
+/** Untangles a mesh in the plane. The modules of the engines refuse a surface in space. */
+async function untangled({ positions, dimension }: IndexedMesh, prepared: Prepared): Promise<Prepared> {
+  const { indices, settings } = prepared;
+  if (!settings.untangle || dimension === 3) return prepared;
+  const { untangleFirst } = await started(await moduleOfUntangler());
+  const begun = untangleFirst(positions, indices, settings);
+  if (!begun) return prepared;
+  const { lockedTriangles, groups, ...others } = settings;
+  const { lockedEdges, lostEdges } = begun;
+  return { ...prepared, indices: begun.indices, settings: { ...others, lockedEdges, lostEdges } };
 }
 
 /** The locks of the options, and the locks that keep the attributes. */

@@ -12,13 +12,15 @@ export interface Context extends Preparation {
   threads?: number | undefined;
   /** Why the CPU engine has one thread, if it could use more. */
   alone?: string | undefined;
+  /** Whether triangles that had turned over have become positive, where that was possible. */
+  untangles?: boolean | undefined;
 }
 
 /** The result of a session: the same object with more fields, because a copy takes longer than a small mesh. */
 export function resultOf<I extends IndexArray>(
   outcome: Awaited<ReturnType<Session['outcome']>>,
   layout: Layout<I>,
-  { threads = 1, alone, turned = 0, welded, constrained }: Context,
+  { threads = 1, alone, untangles, turned = 0, welded, constrained }: Context,
 ): Result<I> {
   const seamEdges = (welded?.lockedEdges.length ?? 0) / 2;
   const isOnCpu = outcome.backend === 'cpu';
@@ -26,7 +28,7 @@ export function resultOf<I extends IndexArray>(
   return Object.assign(outcome, {
     indices: layout.give(indices),
     threads: isOnCpu ? threads : 0,
-    hint: hintOf(outcome, indices, layout, welded && seamEdges, isOnCpu ? alone : undefined),
+    hint: hintOf(outcome, indices, layout, welded && seamEdges, untangles, isOnCpu ? alone : undefined),
     turnedTriangles: turned,
     joinedVertices: welded?.joined ?? 0,
     seamEdges,

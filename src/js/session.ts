@@ -33,6 +33,7 @@ import type {
   SessionBuffers,
   UpdateOptions,
 } from './types.js';
+import { call } from './untangle.js';
 import { type Update, updateOf } from './update.js';
 
 /** Not every browser has `Symbol.dispose` yet. */
@@ -77,9 +78,17 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
   readonly #layout: Layout<I>;
   readonly #alone: string | undefined;
   readonly #prepared: Preparation;
+  /** Whether triangles that have turned over become positive: always, never, or once the vertices have moved. */
+  #untangles: boolean | undefined;
 
-  private constructor({ session, alone }: Opened, layout: Layout<I>, prepared: Preparation = {}) {
+  private constructor(
+    { session, alone }: Opened,
+    layout: Layout<I>,
+    untangles: boolean | undefined,
+    prepared: Preparation = {},
+  ) {
     this.#session = session;
+    this.#untangles = untangles;
     this.#alone = alone;
     this.#layout = layout;
     this.#prepared = prepared;
@@ -121,13 +130,13 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
     const [views, layout] = readMesh(mesh, itselfOf);
     const chosen = settingsOf(options, known);
     try {
-      // Without these options, the module of `edgeflip/files` is not loaded.
-      const isPrepared = chosen.reorient || chosen.weld || chosen.constraints;
-      if (!isPrepared) return new FlipSession(await open(views, chosen, settles), layout);
+      // Without these options, their modules are not loaded.
+      const isPrepared = chosen.reorient || chosen.weld || chosen.constraints || chosen.untangle;
+      if (!isPrepared) return new FlipSession(await open(views, chosen, settles), layout, chosen.untangle);
       const copy = copied(views);
       const { prepare } = await import('./prepare.js');
       const { indices, settings, ...prepared } = await prepare(copy, chosen);
-      return new FlipSession(await open({ ...copy, indices }, settings, settles), layout, prepared);
+      return new FlipSession(await open({ ...copy, indices }, settings, settles), layout, chosen.untangle, prepared);
     } catch (thrown) {
       throw fromModule(thrown);
     }
@@ -188,14 +197,17 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
    * unless `'auto'` changes the engine, or the positions change between 32-bit and 64-bit floats. After an error the
    * session is unchanged. With `'auto'`, the CPU accepts positions that the GPU cannot.
    *
+   * In the plane, triangles that have turned over become positive first, unless the option `untangle` is `false`. The
+   * first mesh that needs it loads a module.
+   *
    * @throws {@link EdgeflipError} `invalid-input`, `too-large`, `ragged-array`, `position-count`, `non-finite`,
-   * `backend-limit`.
+   * `backend-limit`, `load-failed`.
    */
   async setPositions(positions: Mesh['positions']): Promise<void> {
     const moved = floatsOf(positions, this.#layout, copyOf);
     return this.#call(async (session) => {
       await session.setPositions(moved);
-      this.#prepared.before = undefined;
+      this.#moved();
     });
   }
 
@@ -246,8 +258,13 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
     }
   }
 
-  #update(session: ModuleSession, { positions, buffer, iterations }: Update): void | Promise<void> {
+  #moved(): void {
     this.#prepared.before = undefined;
+    this.#untangles ??= true;
+  }
+
+  #update(session: ModuleSession, { positions, buffer, iterations }: Update): void | Promise<void> {
+    this.#moved();
     if (buffer) {
       const { device, positionBuffer } = session;
       if (!device || !positionBuffer) {
@@ -307,7 +324,12 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
 
   #result(stay: boolean): Promise<Result<I>> {
     return this.#call(async (session) => {
-      const context = { ...this.#prepared, alone: this.#alone, threads: session.threads };
+      const context = {
+        ...this.#prepared,
+        alone: this.#alone,
+        threads: session.threads,
+        untangles: this.#untangles,
+      };
       session.stays = stay;
       return resultOf(await session.outcome(), this.#layout, context);
     });
@@ -411,17 +433,17 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
   /** Calls the module after all earlier calls. */
   #call<T>(work: (session: ModuleSession) => Promise<T>): Promise<T> {
     this.#waiting++;
-    const call = this.#last.then(async () => {
+    const answer = this.#last.then(async () => {
       try {
         this.#checkFreed();
-        return await work(this.#session);
+        return await call(this.#session, work);
       } catch (thrown) {
         throw fromModule(thrown);
       } finally {
         this.#waiting--;
       }
     });
-    this.#last = call.catch(() => undefined);
-    return call;
+    this.#last = answer.catch(() => undefined);
+    return answer;
   }
 }

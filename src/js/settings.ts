@@ -24,6 +24,8 @@ import {
 export type Settings = { [Name in keyof Omit<Options, 'weld'>]?: Read<NonNullable<Options[Name]>> } & {
   /** Absent if no vertices are joined. */
   weld?: Attributes;
+  /** The locked edges that the mesh lost when it was untangled before the session. */
+  lostEdges?: Uint32Array;
 };
 
 /** The settings for the module of the engines, and memory for the triangles of the result. */

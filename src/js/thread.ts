@@ -4,7 +4,8 @@ import type { IndexedMesh } from './mesh.js';
 import { answerCalls } from './remote.js';
 import { reserve } from './reserve.js';
 import type { Settings } from './settings.js';
-import { Indices, initSync, Session, startThreads, work } from './wasm/edgeflip_threads.js';
+import { untanglerOf } from './untangler.js';
+import { Indices, initSync, Session, setUntangler, startThreads, work } from './wasm/edgeflip_threads.js';
 
 /** The methods of a session that a message can call. */
 export type Question =
@@ -40,6 +41,10 @@ const calls = {
   start(module: WebAssembly.Module, count: number): WebAssembly.Memory {
     initSync({ module });
     return startThreads(count);
+  },
+  /** Takes the module of the repair. */
+  async takeUntangler(module: WebAssembly.Module): Promise<void> {
+    setUntangler(await untanglerOf(module));
   },
   /** Makes this worker one of the other threads. Never returns. */
   work(module: WebAssembly.Module, memory: WebAssembly.Memory): void {

@@ -15,6 +15,8 @@ export interface ModuleSession extends Omit<Session, typeof Symbol.dispose | 'up
   update(...args: Parameters<Session['update']>): void | Promise<void>;
   /** Whether the session is in a worker, so that it does not block the page. */
   readonly isAway?: boolean;
+  /** Takes the module of the repair, if it is not that of this window or worker. */
+  takeUntangler?(module: WebAssembly.Module): Promise<void>;
   /** The number of its threads, if they are several. */
   readonly threads?: number;
 }
@@ -189,6 +191,7 @@ export class ThreadsSession implements ModuleSession {
   changes = () => this.#ask('changes');
   counters = () => this.#ask('counters');
   update = (...args: Parameters<Session['update']>) => this.#ask('update', ...args);
+  takeUntangler = (module: WebAssembly.Module) => this.#pool.call('takeUntangler', module);
   setPositions = (positions: Float32Array | Float64Array) => this.#ask('setPositions', positions);
 
   async outcome(): ReturnType<Session['outcome']> {

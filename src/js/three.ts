@@ -35,7 +35,9 @@ export type { Renderer } from './renderer.js';
  * Two options have other defaults. `weld` joins vertices at the same position and compares all their attributes, also
  * those of morph targets; `false` joins no vertices. `groups` are the groups of the geometry.
  */
-export interface GeometryOptions extends Omit<MakeDelaunayOptions, 'constraints' | 'skipConstraints'>, ShiftOptions {
+export interface GeometryOptions
+  extends Omit<MakeDelaunayOptions, 'constraints' | 'skipConstraints' | 'untangle'>,
+    ShiftOptions {
   /** Whether to leave the geometry as it is and change a clone of it. Default: `false`. */
   copy?: boolean | undefined;
   /**

@@ -2,6 +2,7 @@
 
 import type { Original } from './original.js';
 
+export type { Edges } from './edges.js';
 export type { Files, Original } from './original.js';
 
 /** A `GPUDevice`, where the types of WebGPU are known. */
@@ -147,6 +148,14 @@ export interface Options {
   /** Leaves out the constraints that cannot be brought in, and lists them as `leftOut`. Default: they are errors. */
   skipConstraints?: boolean | undefined;
   /**
+   * Whether triangles of a mesh in the plane that have turned over, or have no area, become positive again, wherever the
+   * positions have a triangulation. Flips cannot do that: vertices are lifted out and put back. Default: after vertices
+   * have moved, in `setPositions` and the calls that act like it. `true`: also before the first run, and before
+   * `constraints`; an error for a surface in space. `false`: never. Triangles then change places, so data of triangles
+   * does not follow. Loads a module of its own, by default when a mesh needs it.
+   */
+  untangle?: boolean | undefined;
+  /**
    * First reverses the minority of inconsistently oriented triangles in each orientable component. Without it, edges
    * between inconsistently oriented triangles never flip. Loads the module of `edgeflip/files`.
    */
@@ -209,6 +218,7 @@ export const OPTION_KINDS = {
   groups: 'list',
   constraints: 'list',
   skipConstraints: 'flag',
+  untangle: 'flag',
   reorient: 'flag',
   weld: 'attributes',
   order: ['reproducible', 'any'],
@@ -311,7 +321,15 @@ export interface MakeDelaunayOptions extends Options, RunOptions {
 /** The options of {@link makeDelaunaySync}: those that need no GPU, no worker and no other module. */
 export type SyncOptions = Omit<
   Options,
-  'backend' | 'device' | 'threads' | 'trackChanges' | 'weld' | 'reorient' | 'constraints' | 'skipConstraints'
+  | 'backend'
+  | 'device'
+  | 'threads'
+  | 'trackChanges'
+  | 'weld'
+  | 'reorient'
+  | 'constraints'
+  | 'skipConstraints'
+  | 'untangle'
 >;
 
 /**
@@ -407,6 +425,11 @@ export interface Result<I extends IndexArray = Uint32Array> {
   constraintFlips: number;
   /** The constraints that `skipConstraints` left out. */
   leftOut: LeftOut[];
+  /**
+   * Locked edges and edges of constraints that `untangle` could not keep, because they cross others or pass through a
+   * vertex: pairs of vertices, the smaller one first, in ascending order. They come back when the positions allow it.
+   */
+  lostEdges: Uint32Array;
   /** Edges that are still not Delaunay. */
   remaining: Reasons;
   /**
@@ -423,20 +446,4 @@ export interface Result<I extends IndexArray = Uint32Array> {
    * browser is awaited once, after the first iterations; `flip` then includes the copies and the adjacency.
    */
   timings: { upload: number; adjacency: number; flip: number; total: number };
-}
-
-/**
- * All edges, with one entry per edge in each array: the Edges array of Navarro, Hitschfeld-Kahler and Scheihing (2011).
- * `ta` and `tb` are half-edges, that is indices into the triangle indices: `indices[ta]` is `v1`, or a vertex at its
- * place with `weld`. The edge belongs to triangle `floor(ta / 3)`. Edges are in the order of `ta`, the smaller of both.
- */
-export interface Edges {
-  /** First vertex. */
-  v1: Uint32Array;
-  /** Second vertex. */
-  v2: Uint32Array;
-  /** The half-edge in the first triangle, from `v1` to `v2`. */
-  ta: Uint32Array;
-  /** The half-edge in the second triangle, from `v2` to `v1`; 0xffffffff on the boundary and on frozen edges. */
-  tb: Uint32Array;
 }

@@ -131,7 +131,14 @@ export async function init(sources?: Sources): Promise<void> {
   Object.assign(given, Object.fromEntries(sent));
 }
 
-const MODULES = namesOf<Omit<Sources, 'base'>>({ core: true, webgl2: true, threads: true, audit: true, files: true });
+const MODULES = namesOf<Omit<Sources, 'base'>>({
+  core: true,
+  webgl2: true,
+  threads: true,
+  untangle: true,
+  audit: true,
+  files: true,
+});
 
 /** A source that a message can hold. URLs become absolute texts. */
 async function sendable(source: ModuleSource): Promise<ModuleSource> {

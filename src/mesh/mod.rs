@@ -135,6 +135,11 @@ impl Mesh {
         Self { dimension: self.dimension, positions: self.positions.clone(), triangles }
     }
 
+    /// The same without a copy.
+    pub(crate) fn replaced(self, triangles: Vec<u32>) -> Self {
+        Self { triangles, ..self }
+    }
+
     /// The bytes of its arrays.
     pub(crate) fn bytes(&self) -> u64 {
         4 * self.triangles.len() as u64 + self.positions.bytes()

@@ -60,6 +60,8 @@ pub(crate) fn bring_in(mesh: &mut Arc<Mesh>, options: &mut Options) -> Result<Br
     // In the npm package, the module of `edgeflip/files` has brought them in.
     if cfg!(all(target_arch = "wasm32", feature = "js-session")) || options.constraints.is_empty() {
         options.locked_edges = edges(mesh, options)?;
+        // Their edges are locked by name. Later, these lists may name other triangles.
+        (options.locked_triangles, options.groups) = (Vec::new(), Vec::new());
         return Ok(BroughtIn { locks: options.locked_edges.len(), ..BroughtIn::default() });
     }
     memory::check(memory_bounds::bytes(mesh, options))?;

@@ -15,7 +15,6 @@ pub(super) const POSITIONS: u64 = 44;
 
 /// Bytes per triangle of a repair: other triangles and twins, the old twins, claims, what stays constant, and the vertices
 /// that are out.
-#[cfg(not(all(target_arch = "wasm32", feature = "js-session")))]
 pub(super) const UNTANGLE: u64 = 128;
 
 /// The part of [`bytes`] that a run takes after `Session::new`.

@@ -1,5 +1,6 @@
 //! The loop around an engine: it takes options, runs iterations and counts what remains.
 
+mod ask;
 mod choice;
 mod cost;
 #[cfg(not(target_arch = "wasm32"))]
@@ -15,12 +16,14 @@ pub(crate) mod one_call;
 mod open_gpu;
 pub(crate) mod options;
 pub(crate) mod outcome;
+mod repaired;
 #[cfg(test)]
 mod tests;
-#[cfg_attr(all(target_arch = "wasm32", feature = "js-session"), path = "no_untangle.rs")]
-mod untangle;
+pub(crate) mod untangle;
+#[cfg_attr(all(target_arch = "wasm32", feature = "js-session"), path = "untangler_proxy.rs")]
+mod untangler;
 
-use crate::engine::{Answer, Engine};
+use crate::engine::Engine;
 use crate::mesh::areas::Areas;
 use crate::mesh::embedded::Embedded;
 use crate::mesh::star::Fans;
@@ -30,16 +33,22 @@ use crate::session::edge_states::edge_states;
 use crate::session::locks::BroughtIn;
 use crate::system::memory;
 use crate::{
-    Backend, Dimension, EdgeState, Edges, EngineKind, Error, Iteration, LeftOut, Mesh, Options, Order,
-    Outcome, Positions, Reason, Status, Timings,
+    Dimension, EdgeState, Edges, EngineKind, Error, Iteration, LeftOut, Mesh, Options, Order, Outcome,
+    Positions, Reason, Status, Timings,
 };
-use choice::{Choice, cpu_after, first_engine};
+use choice::{Choice, first_engine};
 #[cfg(not(target_arch = "wasm32"))]
 pub use early::{EarlyGpu, close_gpu};
 use std::borrow::Cow;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use untangle::Held;
+#[cfg(all(target_arch = "wasm32", feature = "js-session"))]
+pub use untangler::UntangleModule;
+#[cfg(all(target_arch = "wasm32", feature = "js-untangle"))]
+pub(crate) use untangler::Untangler;
+#[cfg(all(target_arch = "wasm32", feature = "js-session"))]
+pub(crate) use untangler::set_untangler;
 use web_time::Instant;
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 use {crate::engine::SharedObjects, js_sys::Uint32Array};
@@ -110,7 +119,7 @@ impl Session {
             return Ok(None);
         }
         let start = Instant::now();
-        let census = self.ask(|engine| engine.census()).await?;
+        let census = self.census().await?;
         let index = self.flips_per_iteration.len() as u32;
         self.iterate(1).await?;
         let ms = ms_since(start);
@@ -170,7 +179,6 @@ impl Session {
     /// cannot decide the new positions exactly; [`Error::Device`]. After an error the session is unchanged. With `Auto`
     /// the CPU takes over from a GPU that refuses or fails.
     pub async fn set_positions(&mut self, positions: impl Into<Positions>) -> Result<(), Error> {
-        self.check_memory(memory_bounds::POSITIONS)?;
         self.replace_positions(positions.into()).await
     }
 
@@ -179,8 +187,7 @@ impl Session {
     /// # Errors
     /// [`Error::Device`], [`Error::OutOfMemory`].
     pub async fn triangles(&mut self) -> Result<Vec<u32>, Error> {
-        self.check_memory(memory_bounds::COPY)?;
-        self.ask(|engine| engine.triangles()).await
+        self.words(memory_bounds::COPY, |engine| engine.triangles()).await
     }
 
     /// The result so far: reads the triangles back and counts the edges that are not Delaunay.
@@ -224,7 +231,7 @@ impl Session {
         start: Instant,
         triangles: &dyn Fn() -> Cow<'a, [u32]>,
     ) -> Result<Outcome, Error> {
-        let census = self.ask(|engine| engine.census()).await?;
+        let census = self.census().await?;
         let Areas { inverted, flat, .. } = self.ask(|engine| engine.areas()).await?;
         let counts = self.engine.edge_counts();
         let mut remaining = census.blocked;
@@ -267,9 +274,7 @@ impl Session {
     /// # Errors
     /// [`Error::Device`], [`Error::OutOfMemory`].
     pub async fn edges(&mut self) -> Result<Edges, Error> {
-        self.check_memory(memory_bounds::EDGES)?;
-        let triangles = self.triangles().await?;
-        let twins = self.ask(|engine| engine.twins()).await?;
+        let (triangles, twins) = self.joined().await?;
         Ok(Edges::from_twins(&triangles, &twins))
     }
 
@@ -280,9 +285,7 @@ impl Session {
     /// [`Error::Device`], [`Error::OutOfMemory`].
     pub async fn edge_states(&mut self) -> Result<Vec<EdgeState>, Error> {
         self.come_to_rest().await?;
-        self.check_memory(memory_bounds::EDGES)?;
-        let triangles = self.triangles().await?;
-        let twins = self.ask(|engine| engine.twins()).await?;
+        let (triangles, twins) = self.joined().await?;
         let winding = match self.mesh.dimension() {
             Dimension::Two => Outline::new(&triangles, &twins).winding(&self.mesh),
             Dimension::Three => Winding::default(),
@@ -373,38 +376,6 @@ impl Session {
         self.flips_per_iteration.extend(flips);
         self.timings.flip += ms_since(start);
         Ok(())
-    }
-
-    /// Asks the engine. With `Auto`, asks the CPU again if the device fails or refuses the mesh.
-    async fn ask<T>(
-        &mut self,
-        question: impl for<'a> Fn(&'a mut dyn Engine) -> Answer<'a, T>,
-    ) -> Result<T, Error> {
-        loop {
-            match question(self.engine.as_mut()).await {
-                Err(error) if self.options.backend == Backend::Auto => self.recover(error).await?,
-                answer => return answer,
-            }
-        }
-    }
-
-    /// Changes to the CPU after the device failed, or after the engine refused the mesh during the run. The CPU repeats
-    /// the run up to the last complete iteration; all engines give the same triangles. Boxed, so that this code is
-    /// compiled only once.
-    fn recover(&mut self, error: Error) -> Answer<'_, ()> {
-        Box::pin(async move {
-            let why = match error {
-                Error::Device { message } => format!("the device failed during the run: {message}"),
-                Error::BackendLimit { .. } => error.to_string(),
-                error => return Err(error),
-            };
-            let before = self.fallback.as_deref().map_or(String::new(), |before| format!("{before}; "));
-            let choice = cpu_after(before + &why, &self.mesh, &self.options).await?;
-            self.take(choice);
-            // Updates are not repeated.
-            self.updates = 0;
-            self.engine.iterate(self.iterations()).await.map(drop)
-        })
     }
 
     /// Changes to a GPU that has become ready, if the estimate says that the GPU would finish first from here. The GPU

@@ -1,14 +1,16 @@
 //! Updates: meshes that move.
 
 use super::choice::{self, cpu_after, engine_for};
+use super::repaired::Repaired;
 use super::{Session, memory_bounds, ms_since};
 use crate::engine::{Answer, MOST_ITERATIONS};
+use crate::mesh::areas::Areas;
+use crate::mesh::winding::Winding;
 use crate::system::threads::Threads;
-use crate::{Backend, Counters, EngineKind, Error, Mesh, Positions, Reason, Timings};
+use crate::{Backend, Counters, Dimension, EngineKind, Error, Mesh, Positions, Reason, Timings};
+use std::mem;
 use std::sync::Arc;
 use web_time::Instant;
-#[cfg(not(all(target_arch = "wasm32", feature = "js-session")))]
-use {crate::Dimension, crate::mesh::areas::Areas, crate::untangle::may_be_tangled};
 
 impl Session {
     /// Takes over vertices that have moved, and flips for up to `iterations` iterations, at most 64. What is left goes
@@ -97,8 +99,7 @@ impl Session {
     /// # Errors
     /// [`Error::Device`], [`Error::OutOfMemory`].
     pub async fn changes(&mut self) -> Result<Vec<u32>, Error> {
-        self.check_memory(memory_bounds::COPY)?;
-        self.ask(|engine| engine.changes()).await
+        self.words(memory_bounds::COPY, |engine| engine.changes()).await
     }
 
     /// Ends the motion, if there were updates.
@@ -106,7 +107,6 @@ impl Session {
         if self.updates == 0 {
             return Ok(());
         }
-        self.check_memory(memory_bounds::POSITIONS)?;
         let positions = self.ask(|engine| engine.positions()).await?;
         self.replace_positions(positions).await
     }
@@ -123,12 +123,12 @@ impl Session {
 
     async fn replace(&mut self, positions: Positions) -> Result<(), Error> {
         let start = Instant::now();
+        self.check_memory(memory_bounds::POSITIONS)?;
         self.check_length(&positions)?;
         positions.refuse_non_finite(self.mesh.dimension(), &Threads::one())?;
         let triangles = self.triangles().await?;
-        let mut mesh = Arc::new(Mesh::new(self.mesh.dimension(), positions, triangles)?);
-        self.take_moved(&mut mesh).await?;
-        self.mesh = mesh;
+        let mesh = Mesh::new(self.mesh.dimension(), positions, triangles)?;
+        self.mesh = self.take_moved(mesh).await?;
         self.constraints.before = None;
         self.flips_per_iteration.clear();
         self.has_ended = false;
@@ -138,87 +138,94 @@ impl Session {
     }
 
     /// Gives the engine the positions of a mesh and, if its triangles are not those of the engine, their twins.
-    pub(super) async fn take_positions(
-        &mut self,
-        mesh: &Arc<Mesh>,
-        twins: Option<Vec<u32>>,
-    ) -> Result<(), Error> {
+    async fn take_positions(&mut self, mesh: &Arc<Mesh>, twins: Option<Vec<u32>>) -> Result<(), Error> {
         if self.may_change && choice::changes_to_gpu(mesh, &self.options, (0.0, 0.0)) {
             let choice = engine_for(mesh, &self.options).await?;
             self.take(choice);
-        } else {
-            match self.engine.set_positions(mesh.clone(), twins).await {
-                Err(error @ (Error::BackendLimit { .. } | Error::Device { .. }))
-                    if self.options.backend == Backend::Auto =>
-                {
-                    let why = format!("after the vertices moved: {error}");
-                    let choice = cpu_after(why, mesh, &self.options).await?;
-                    self.take(choice);
-                }
-                answer => answer?,
+            return Ok(());
+        }
+        match self.engine.set_positions(mesh.clone(), twins).await {
+            Err(error @ (Error::BackendLimit { .. } | Error::Device { .. }))
+                if self.options.backend == Backend::Auto =>
+            {
+                let why = format!("after the vertices moved: {error}");
+                let choice = cpu_after(why, mesh, &self.options).await?;
+                self.take(choice);
             }
-            if self.engine.backend() == EngineKind::Gpu {
-                self.fallback = None;
-            }
+            answer => answer?,
+        }
+        if self.engine.backend() == EngineKind::Gpu {
+            self.fallback = None;
         }
         Ok(())
     }
 }
 
-#[cfg(not(all(target_arch = "wasm32", feature = "js-session")))]
 impl Session {
     /// Gives the engine a mesh whose vertices have moved, with other triangles if it needs them.
-    pub(super) async fn take_moved(&mut self, mesh: &mut Arc<Mesh>) -> Result<(), Error> {
-        let may_untangle = mesh.dimension() == Dimension::Two && self.options.untangle != Some(false);
-        if !may_untangle {
-            return self.take_positions(mesh, None).await;
+    async fn take_moved(&mut self, mut mesh: Mesh) -> Result<Arc<Mesh>, Error> {
+        let may_change = mesh.dimension() == Dimension::Two && self.options.untangle != Some(false);
+        let bytes = memory_bounds::UNTANGLE;
+        // The CPU finds the signs of all triangles anyway. In the npm package, the module of the repair may be missing: then
+        // the engine must not have changed.
+        #[cfg(not(all(target_arch = "wasm32", feature = "js-session")))]
+        let bytes = if may_change
+            && self.engine.backend() == EngineKind::Cpu
+            && self.held.lost.is_empty()
+            && !self.held.was_tangled
+            && self.check_memory(bytes).is_ok()
+        {
+            let moved = Arc::new(mesh);
+            self.take_positions(&moved, None).await?;
+            if self.ask(|engine| engine.areas()).await? == Areas::default() {
+                return Ok(moved);
+            }
+            mesh = Arc::unwrap_or_clone(moved);
+            0
+        } else {
+            bytes
+        };
+        // After a repair, another one is likely, which finds out by itself.
+        let may_be_tangled =
+            may_change && (!self.held.lost.is_empty() || self.held.was_tangled || may_be_tangled(&mesh));
+        let (mut twins, mut replaced) = (None, None);
+        if may_be_tangled {
+            let present = self.words(bytes, |engine| engine.twins()).await?;
+            if self.held.untangler.is_needed(&mesh, &present, self.held.lost.len())?
+                && let Some(mut repaired) = self.repaired(&mesh, present)?
+            {
+                mesh = mesh.replaced(mem::take(&mut repaired.triangles));
+                twins = Some(mem::take(&mut repaired.twins));
+                self.exchange(&mut repaired);
+                replaced = Some(repaired);
+            }
         }
-        let enough = self.check_memory(memory_bounds::UNTANGLE);
-        // The CPU finds the signs of all triangles anyway. It has the new positions then, so no error may follow.
-        let tells_signs = self.engine.backend() == EngineKind::Cpu && enough.is_ok();
-        if tells_signs {
-            self.take_positions(mesh, None).await?;
+        self.held.was_tangled = replaced.is_some();
+        let mesh = Arc::new(mesh);
+        let taken = self.take_positions(&mesh, twins).await;
+        if let (Err(_), Some(mut replaced)) = (&taken, replaced) {
+            self.exchange(&mut replaced);
         }
-        if self.is_tangled(mesh, tells_signs).await? {
-            enough?;
-            self.untangle(mesh).await?;
-        } else if !tells_signs {
-            self.take_positions(mesh, None).await?;
-        }
-        Ok(())
+        taken.map(|()| mesh)
     }
 
-    /// Whether the mesh may need other triangles. `tells_signs`: whether the engine has its positions, and tells the signs
-    /// of its triangles in no time.
-    async fn is_tangled(&mut self, mesh: &Mesh, tells_signs: bool) -> Result<bool, Error> {
-        if !self.held.lost.is_empty() || !tells_signs {
-            return Ok(!self.held.lost.is_empty() || may_be_tangled(mesh));
-        }
-        Ok(self.ask(|engine| engine.areas()).await? != Areas::default())
+    fn repaired(&mut self, mesh: &Mesh, twins: Vec<u32>) -> Result<Option<Repaired>, Error> {
+        let locked = (self.options.locked_edges.as_slice(), self.constraints.locks);
+        self.held.untangler.repaired(mesh, twins, locked, &self.held.lost)
     }
 
-    /// Replaces the triangles that have turned over, and gives the engine the mesh.
-    async fn untangle(&mut self, mesh: &mut Arc<Mesh>) -> Result<(), Error> {
-        let before = (self.held.clone(), self.options.clone(), self.constraints.locks);
-        let present = self.ask(|engine| engine.twins()).await?;
-        let mut twins = None;
-        if let Some(untangled) = self.held.untangled(mesh, present) {
-            *mesh = Arc::new(mesh.flipped(untangled.triangles));
-            twins = Some(untangled.twins);
-            self.held.take_over(untangled.lost, &mut self.options, &mut self.constraints.locks);
-        }
-        let taken = self.take_positions(mesh, twins).await;
-        if taken.is_err() {
-            (self.held, self.options, self.constraints.locks) = before;
-        }
-        taken
+    /// Takes over the locked edges of a repair, and gives the present ones for them.
+    fn exchange(&mut self, repaired: &mut Repaired) {
+        mem::swap(&mut self.held.lost, &mut repaired.lost);
+        mem::swap(&mut self.options.locked_edges, &mut repaired.locked_edges);
+        mem::swap(&mut self.constraints.locks, &mut repaired.locks);
     }
 }
 
-#[cfg(all(target_arch = "wasm32", feature = "js-session"))]
-impl Session {
-    /// Gives the engine a mesh whose vertices have moved.
-    pub(super) async fn take_moved(&mut self, mesh: &mut Arc<Mesh>) -> Result<(), Error> {
-        self.take_positions(mesh, None).await
-    }
+/// Whether triangles of a mesh in the plane may have turned over: whether their signs differ, or one is zero.
+fn may_be_tangled(mesh: &Mesh) -> bool {
+    let triangles = (mesh.dimension(), mesh.positions(), mesh.triangles());
+    // As if all components were counter-clockwise.
+    let Areas { inverted, flat, .. } = Areas::of(triangles, &Winding::default(), false, &Threads::one());
+    flat > 0 || inverted > 0 && inverted < mesh.triangle_count() as u32
 }

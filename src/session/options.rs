@@ -92,6 +92,10 @@ pub struct Options {
     /// A promise of a Uint32Array for the triangles of the result, or of nothing.
     #[cfg(all(target_arch = "wasm32", feature = "js"))]
     pub spare: Option<js_sys::Object>,
+    /// Locked edges that the mesh lost when it was untangled before the session, each with the smaller vertex first.
+    /// Sorted.
+    #[cfg(all(target_arch = "wasm32", feature = "js-session"))]
+    pub lost_edges: Vec<[u32; 2]>,
     /// The object of JavaScript that these options were read from, without its lists. Other modules read it again.
     #[cfg(all(target_arch = "wasm32", feature = "js-session"))]
     pub given: js_sys::Object,
@@ -182,6 +186,8 @@ impl Default for Options {
             leaves_cpu: false,
             #[cfg(all(target_arch = "wasm32", feature = "js"))]
             spare: None,
+            #[cfg(all(target_arch = "wasm32", feature = "js-session"))]
+            lost_edges: Vec::new(),
             #[cfg(all(target_arch = "wasm32", feature = "js-session"))]
             given: js_sys::Object::new(),
         }

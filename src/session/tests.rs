@@ -3,7 +3,8 @@
 #![allow(clippy::unwrap_used, reason = "what fails here is a failed test")]
 
 use super::*;
-use crate::engine::{Census, Cpu, EdgeCounts, Moved};
+use crate::Backend;
+use crate::engine::{Answer, Census, Cpu, EdgeCounts, Moved};
 use crate::mesh::areas::Areas;
 use crate::mesh::named_edges;
 use crate::system::threads::Threads;

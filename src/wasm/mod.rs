@@ -15,6 +15,8 @@ mod options;
 pub mod session;
 #[cfg(feature = "js-threads")]
 pub mod threads;
+#[cfg(feature = "js-untangle")]
+pub mod untangle;
 mod values;
 #[cfg(feature = "js-webgl2")]
 pub mod webgl2;

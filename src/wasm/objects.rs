@@ -44,6 +44,8 @@ extern "C" {
     fn set_inverted(this: &Fields, value: u32);
     #[wasm_bindgen(method, setter)]
     fn set_flat(this: &Fields, value: u32);
+    #[wasm_bindgen(method, setter, js_name = lostEdges)]
+    fn set_lost_edges(this: &Fields, value: Uint32Array);
     #[wasm_bindgen(method, setter)]
     fn set_timings(this: &Fields, value: Fields);
     #[wasm_bindgen(method, setter)]
@@ -88,6 +90,7 @@ pub(super) fn outcome_object(outcome: Outcome, indices: JsValue) -> JsValue {
     object.set_remaining(reasons_object(&outcome.remaining));
     object.set_inverted(outcome.inverted);
     object.set_flat(outcome.flat);
+    object.set_lost_edges(Uint32Array::from(outcome.lost_edges.as_flattened()));
     object.set_timings(timings);
     object.into()
 }

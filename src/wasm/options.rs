@@ -45,6 +45,7 @@ pub(crate) fn read(given: &JsOptions) -> Result<Options, Error> {
         return Err(Error::RaggedArray { array: "lockedEdges", length: ends.len(), stride: 2 });
     };
     Ok(Options {
+        lost_edges: list("lostEdges").as_chunks().0.to_vec(),
         locked_edges: locked_edges.to_vec(),
         locked_triangles: list("lockedTriangles"),
         groups: list("groups"),
@@ -74,6 +75,7 @@ pub(crate) fn without_lists(given: &JsOptions) -> Result<Options, Error> {
         max_iterations: number("maxIterations").map(|count| count as u32),
         order: if text("order").as_deref() == Some("any") { Order::Any } else { Order::Reproducible },
         track_changes: given.get("trackChanges").is_truthy(),
+        untangle: given.get("untangle").as_bool(),
         threads: number("threads").map(|count| threads(count as usize)).transpose()?,
         #[cfg(feature = "js")]
         device: Some(given.get("device")).filter(JsValue::is_truthy).map(JsCast::unchecked_into::<GpuDevice>),

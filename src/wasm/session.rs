@@ -5,6 +5,8 @@ use super::objects::outcome_object;
 use super::options;
 pub use super::options::JsOptions;
 use crate::engine::Answer;
+use crate::session;
+pub use crate::session::UntangleModule;
 use crate::system::memory;
 use crate::system::promise::promise;
 use crate::system::threads::Threads;
@@ -27,6 +29,12 @@ type Indices = Uint32Array;
 
 /// The error of every call after the one that crashed.
 const ENDED: &str = "the session ended when a call of it crashed or ran out of memory; begin a new one";
+
+/// Sets the module of the repair.
+#[wasm_bindgen(js_name = setUntangler)]
+pub fn set_untangler(module: UntangleModule) {
+    session::set_untangler(module);
+}
 
 /// A mesh on an engine. It takes one call at a time: each must have settled before the next begins. A call holds the
 /// session while it runs, so a call that ends with an exception or a trap never returns it.

@@ -6,7 +6,7 @@ use crate::Reasons;
 use crate::system::memory;
 use crate::system::threads::Threads;
 use crate::{Dimension, Error, Mesh, Positions};
-#[cfg(any(feature = "js-session", feature = "js-audit", feature = "js-files"))]
+#[cfg(any(feature = "js-session", feature = "js-untangle", feature = "js-audit", feature = "js-files"))]
 use js_sys::{Array, Object};
 use js_sys::{Float32Array, Float64Array, Uint32Array};
 use wasm_bindgen::prelude::*;
@@ -60,7 +60,7 @@ pub fn out_of_memory() {
 }
 
 /// A plain object.
-#[cfg(any(feature = "js-session", feature = "js-audit", feature = "js-files"))]
+#[cfg(any(feature = "js-session", feature = "js-untangle", feature = "js-audit", feature = "js-files"))]
 pub(crate) fn object<'a>(fields: impl IntoIterator<Item = (&'a str, JsValue)>) -> JsValue {
     let entries: Array = fields.into_iter().map(|(name, value)| Array::of2(&name.into(), &value)).collect();
     // Fails only for values that are not a list of pairs.
@@ -85,6 +85,8 @@ pub(crate) fn thrown(error: Error) -> JsValue {
         Error::Option { option, message } => {
             coded(code, &format!("option {}: {message}", in_camel_case(option)))
         }
+        #[cfg(feature = "js-session")]
+        Error::Thrown { exception } => exception,
         error => coded(code, &in_words_of_javascript(error).to_string()),
     }
 }

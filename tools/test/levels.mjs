@@ -320,6 +320,7 @@ function fullLevels() {
     ['gpu'],
     ['js-webgl2'],
     ['js-threads', '--threads'],
+    ['js-untangle'],
     ['js-audit'],
     ['js-files'],
     ['gpu,js', '--test', 'wasm', '--test', 'worker'],

@@ -1,0 +1,19 @@
+/** Calls of a session that may need the module of the repair. */
+
+import type { ModuleSession } from './threads.js';
+
+/** What `src/session/untangler_proxy.rs` throws if a call needs the module. */
+const MISSING = 'untangler';
+
+/** Calls a session. If the call lacks the module of the repair, it has changed nothing: then it is called again with it. */
+export async function call<T>(session: ModuleSession, work: (session: ModuleSession) => Promise<T>): Promise<T> {
+  try {
+    return await work(session);
+  } catch (thrown) {
+    // A thread makes an error of it.
+    if (thrown !== MISSING && Object(thrown).message !== MISSING) throw thrown;
+  }
+  const { supply } = await import('./supply.js');
+  await supply(session);
+  return work(session);
+}
