@@ -20,6 +20,7 @@ for (const [file, command] of [
 }
 const { fill, matrix } = await import('./parity/matrix.mjs');
 const { check } = await import('./quads/browsers.mjs');
+const { untangles } = await import('./package/folds.mjs');
 const { holdLocks } = await import('./package/locks.mjs');
 
 // In the short run, a software GPU leaves out what takes it longest, and the table says `full` there.
@@ -77,6 +78,7 @@ describe('engines', { concurrency: true }, () => {
         await t.test(`${engine.title} gives the results of the simulation`, () => fill(page, engine, takes));
         if (engine.backend === 'cpu') continue;
         await t.test(`${engine.title} decides quads as big integers do`, () => check(page, engine, quads));
+        await t.test(`${engine.title} untangles as the CPU does`, () => untangles(page, engine));
         // In Firefox, each wait for the GPU takes 100 ms.
         if (name === 'Firefox') continue;
         await t.test(`${engine.title} holds locks and limits when the vertices move`, () => holdLocks(page, engine));

@@ -32,6 +32,7 @@ mod edge_states;
 mod engines;
 mod examples;
 mod families;
+mod folds;
 mod fuzz_seeds;
 mod lattices;
 mod locks;

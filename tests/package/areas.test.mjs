@@ -29,10 +29,14 @@ test('inverted and flat triangles are counted, with advice', async () => {
   await init();
   for (const [mesh, counts, hint] of [
     [square(2), [0, 0], undefined],
-    [square(-1), [1, 0], /^Triangles that are turned over: 1\. .*Move their vertices back, or triangulate/],
-    [square(0), [0, 1], /^Triangles of no area: 1\. .*Move a corner of each/],
+    [
+      square(-1),
+      [1, 0],
+      /^Triangles that are turned over: 1\. .*untangle: true does, where the positions have a triangulation/,
+    ],
+    [square(0), [0, 1], /^Triangles of no area: 1\. .*Pass untangle: true, move a corner of each/],
     [needle(2), [0, 2], /^Triangles of no area: 2\. /],
-    [needle(3), [0, 2], /^Triangles of no area: 2\. /],
+    [needle(3), [0, 2], /^Triangles of no area: 2\. .*Move a corner of each/],
   ]) {
     const results = [
       await makeDelaunay(mesh, onCpu),

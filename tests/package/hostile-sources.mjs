@@ -11,7 +11,9 @@ import { hostile } from './hostile.mjs';
 
 const { runs, seed, patience } = workerData;
 const inits = [
-  ...['core', 'webgl2', 'threads', 'audit', 'files'].map((name) => (source) => edgeflip.init({ [name]: source })),
+  ...['core', 'webgl2', 'threads', 'untangle', 'audit', 'files'].map(
+    (name) => (source) => edgeflip.init({ [name]: source }),
+  ),
   (source) => files.init({ files: source }),
 ];
 
@@ -31,6 +33,7 @@ const modules = {
   core: 'edgeflip',
   webgl2: 'edgeflip_webgl2',
   threads: 'edgeflip_threads',
+  untangle: 'edgeflip_untangle',
   audit: 'edgeflip_audit',
   files: 'edgeflip_files',
 };

@@ -88,6 +88,20 @@ export const cases = {
       `left out: ${found}`,
     );
   },
+  untangle: async (given) => {
+    // The vertex at (3, 2) is on the other side of the edge from the vertex at (1, 1) to the corner at (0, 0).
+    const folded = {
+      positions: new Float32Array([0, 0, 4, 0, 4, 4, 0, 4, 1, 1, 3, 2]),
+      indices: [0, 1, 4, 1, 2, 4, 2, 3, 4, 3, 0, 5, 0, 4, 5, 4, 3, 5],
+      dimension: 2,
+    };
+    const { inverted } = await given.makeDelaunay(folded, given.base);
+    check(inverted > 0, 'nothing is turned over');
+    const made = await given.makeDelaunay(folded, { ...given.base, untangle: true });
+    check(made.inverted === 0 && made.lostEdges.length === 0, `${made.inverted} triangles are turned over`);
+    await isRefused(given, 'untangle', true);
+    return [...made.indices];
+  },
   reorient: async ({ makeDelaunay, mesh, base }) => {
     const indices = mesh.indices.slice();
     [indices[0], indices[1]] = [indices[1], indices[0]];

@@ -52,6 +52,8 @@ export async function use(mesh: Mesh<Uint32Array>, signal: AbortSignal, device?:
   for await (const { flips, blocked } of session) console.log(flips, blocked.fold, left, status);
   const lockedEdges: readonly number[] = [0, 1];
   console.log((await makeDelaunay(mesh, { lockedEdges })).remaining.locked);
+  const lostEdges: Uint32Array = (await makeDelaunay(mesh, { untangle: true })).lostEdges;
+  console.log(lostEdges.length);
   const gpu = await session.gpu();
   const buffer: GpuBuffer | undefined = gpu?.indices;
   console.log(buffer);
