@@ -29,19 +29,24 @@ export interface Audit {
 
 /**
  * What keeps positions in the plane from having a triangulation with the boundary of a mesh. Each component counts alone:
- * components may overlap. If all three are empty, a triangulation exists.
+ * components may overlap. If all three are empty, each component has a triangulation; if components overlap, two of them
+ * may still need the same edge, which can have only two triangles.
  */
 export interface Problems {
   /**
    * Vertices that are not inside the boundary of their component, in ascending order. If a whole ring of the boundary is
-   * where it cannot be, such as a hole outside, all its vertices.
+   * where it cannot be, such as a hole outside, all its vertices; if the component has a handle, so that no positions have
+   * a triangulation, all of its vertices.
    */
   outside: Uint32Array;
-  /** Pairs of vertices at one point, one pair after the other. */
+  /**
+   * Pairs of vertices at one point, one pair after the other. A vertex is paired with itself if triangles go all round it,
+   * and others of its component touch it there.
+   */
   coincident: Uint32Array;
   /**
-   * Pairs of boundary edges that cross or touch, other than in a common vertex: four vertices for each pair, two for each
-   * edge.
+   * Pairs of boundary edges that cross or touch, other than in a common vertex, or that are edges of two corners at a
+   * common vertex that overlap: four vertices for each pair, two for each edge.
    */
   crossing: Uint32Array;
 }

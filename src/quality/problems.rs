@@ -26,7 +26,8 @@ pub struct Problems {
 }
 
 impl Problems {
-    /// Whether there are none: then a triangulation exists.
+    /// Whether there are none: then each component has a triangulation. If components overlap, two of them may still need
+    /// the same edge, which can have only two triangles.
     pub fn is_empty(&self) -> bool {
         *self == Self::default()
     }
