@@ -33,6 +33,7 @@ const SIZES = [
   ['+ for glTF-Transform', kilobytes('edgeflip/gltf-transform, whole', FILES)],
   ['+ to run in a worker', kilobytes('edgeflip/worker')],
   ['+ CPU on several threads', kilobytes('edgeflip_threads_bg.wasm')],
+  ['+ to untangle points that move', kilobytes('edgeflip_untangle_bg.wasm')],
   ['+ WebGL2', kilobytes('scripts of WebGL2', 'edgeflip_webgl2_bg.wasm')],
   ['+ to read and write files', kilobytes('edgeflip/files', FILES)],
 ] as const;
