@@ -103,12 +103,14 @@ test('the sizes are measured, and the browsers are those of docs/package.md', as
   const files = kilobytes('edgeflip/files', 'edgeflip_files_bg.wasm');
   const three = kilobytes('edgeflip/three, whole', 'edgeflip_files_bg.wasm');
   const gltf = kilobytes('edgeflip/gltf-transform, whole', 'edgeflip_files_bg.wasm');
+  const untangle = kilobytes('edgeflip_untangle_bg.wasm');
   assert.deepEqual(
     rows.filter(([what]) => !/worker|CPU|WebGL2/.test(what)),
     [
       ['edgeflip', `${core} KB`],
       ['+ for three.js', `${three} KB`],
       ['+ for glTF-Transform', `${gltf} KB`],
+      ['+ to untangle points that move', `${untangle} KB`],
       ['+ to read and write files', `${files} KB`],
     ],
   );
@@ -128,6 +130,7 @@ test('the sizes are measured, and the browsers are those of docs/package.md', as
     ['edgeflip/gltf-transform', gltf],
   ])
     assert.ok(table.includes(`\n| \`${entry}\` | ${size} KB`), `${entry}: ${size} KB`);
+  assert.ok(table.includes(`loads ${untangle} KB more`), `the repair: ${untangle} KB`);
   const [first] = await page.locator('.package-below li').allTextContents();
   const oldest = first.replace(/, or newer\.$/, '');
   assert.match(oldest, /^Chrome .*Safari/);
