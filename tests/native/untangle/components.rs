@@ -1,6 +1,6 @@
 //! What is right in each component of a mesh alone, and what keeps it from having a triangulation.
 
-use super::oracle::{Point, apexes, area, blocks, in_circle, sides};
+use super::oracle::{Point, apexes, area, blocks, crossing, in_circle, is_beside, sides};
 use std::collections::{HashMap, HashSet};
 
 /// Triangles that are joined by edges of exactly two triangles of one orientation.
@@ -110,12 +110,6 @@ impl Component {
         let winding = self.winding(points);
         let at = |v: u32| [points[v as usize][0], points[v as usize][1] * winding as i64];
         let turn = |a: u32, b: u32, c: u32| area(at(a), at(b), at(c)).signum();
-        let is_beside = |x: u32, y: u32, z: u32| {
-            (0..2).all(|k| {
-                let [x, y, z] = [x, y, z].map(|v| at(v)[k]);
-                x.min(y) <= z && z <= x.max(y)
-            })
-        };
         let (edges, count) = ((3 * self.triangle_count() + self.boundary.len()) / 2, self.triangle_count());
         let (mut loops, mut outer) = (0, 0);
         let mut left: HashMap<[u32; 2], usize> = HashMap::new();
@@ -143,27 +137,8 @@ impl Component {
         if places.len() < self.vertices.len() {
             return Some("two vertices are at one point");
         }
-        for (i, &[a, b]) in self.boundary.iter().enumerate() {
-            for &[c, d] in &self.boundary[i + 1..] {
-                let common: Vec<u32> = [a, b].into_iter().filter(|v| [c, d].contains(v)).collect();
-                if common.len() == 2 {
-                    return Some("two sides join the same vertices");
-                }
-                if let [o] = common[..] {
-                    let [p, q] = [[a, b], [c, d]].map(|ends| if ends[0] == o { ends[1] } else { ends[0] });
-                    if turn(o, p, q) == 0 && (is_beside(o, p, q) || is_beside(o, q, p)) {
-                        return Some("a side lies on another");
-                    }
-                    continue;
-                }
-                let signs = [turn(a, b, c), turn(a, b, d), turn(c, d, a), turn(c, d, b)];
-                let touches = [(a, b, c), (a, b, d), (c, d, a), (c, d, b)];
-                let touches =
-                    touches.into_iter().zip(signs).any(|((x, y, z), sign)| sign == 0 && is_beside(x, y, z));
-                if touches || signs[0] * signs[1] < 0 && signs[2] * signs[3] < 0 {
-                    return Some("the boundary crosses itself");
-                }
-            }
+        if let Some(how) = crossing(points, &self.boundary) {
+            return Some(how);
         }
         for (i, (v, fan)) in self.fans.iter().enumerate() {
             for (_, other) in self.fans[i + 1..].iter().take_while(|(w, _)| w == v) {
@@ -183,7 +158,7 @@ impl Component {
             let mut rounds = 0;
             for &[a, b] in self.boundary.iter().filter(|side| !side.contains(&v)) {
                 let side = turn(a, b, v);
-                if side == 0 && is_beside(a, b, v) {
+                if side == 0 && is_beside(points, a, b, v) {
                     return None;
                 }
                 let [low, high, y] = [a, b, v].map(|v| at(v)[1]);

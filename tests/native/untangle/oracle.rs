@@ -77,40 +77,57 @@ pub(super) fn fault(
     None
 }
 
+/// Whether z is in the box of x and y.
+pub(super) fn is_beside(points: &[Point], x: u32, y: u32, z: u32) -> bool {
+    (0..2).all(|k| {
+        let [x, y, z] = [x, y, z].map(|v| points[v as usize][k]);
+        x.min(y) <= z && z <= x.max(y)
+    })
+}
+
+/// How two sides meet, other than in one common vertex, if so.
+fn meeting(points: &[Point], [a, b]: [u32; 2], [c, d]: [u32; 2]) -> Option<&'static str> {
+    let turn = |x: u32, y: u32, z: u32| {
+        let [x, y, z] = [x, y, z].map(|v| points[v as usize]);
+        area(x, y, z).signum()
+    };
+    let is_beside = |x: u32, y: u32, z: u32| is_beside(points, x, y, z);
+    let common: Vec<u32> = [a, b].into_iter().filter(|v| [c, d].contains(v)).collect();
+    if common.len() == 2 {
+        return Some("two sides join the same vertices");
+    }
+    if let [o] = common[..] {
+        let [p, q] = [[a, b], [c, d]].map(|ends| if ends[0] == o { ends[1] } else { ends[0] });
+        let is_folded = turn(o, p, q) == 0 && (is_beside(o, p, q) || is_beside(o, q, p));
+        return is_folded.then_some("a side lies on another");
+    }
+    let signs = [turn(a, b, c), turn(a, b, d), turn(c, d, a), turn(c, d, b)];
+    let touches = [(a, b, c), (a, b, d), (c, d, a), (c, d, b)];
+    let touches = touches.into_iter().zip(signs).any(|((x, y, z), sign)| sign == 0 && is_beside(x, y, z));
+    let crosses = signs[0] * signs[1] < 0 && signs[2] * signs[3] < 0;
+    (touches || crosses).then_some("the boundary crosses itself")
+}
+
+/// How sides of a boundary meet, other than in common vertices, if so.
+pub(super) fn crossing(points: &[Point], boundary: &[[u32; 2]]) -> Option<&'static str> {
+    let mut pairs =
+        (1..).zip(boundary).flat_map(|(i, &one)| boundary[i..].iter().map(move |&other| (one, other)));
+    pairs.find_map(|(one, other)| meeting(points, one, other))
+}
+
 /// Why points have no triangulation with this boundary, if so.
 pub(super) fn obstacle(points: &[Point], boundary: &[[u32; 2]], winding: i128) -> Option<&'static str> {
     let at = |v: u32| points[v as usize];
     let turn = |a: u32, b: u32, c: u32| (area(at(a), at(b), at(c)) * winding).signum();
-    let is_beside = |x: u32, y: u32, z: u32| {
-        (0..2).all(|k| {
-            let [x, y, z] = [x, y, z].map(|v| at(v)[k]);
-            x.min(y) <= z && z <= x.max(y)
-        })
-    };
-    for (i, &[a, b]) in boundary.iter().enumerate() {
-        for &[c, d] in &boundary[i + 1..] {
-            if b == c || a == d {
-                let [o, p, q] = if b == c { [b, a, d] } else { [a, b, c] };
-                if turn(o, p, q) == 0 && (is_beside(o, p, q) || is_beside(o, q, p)) {
-                    return Some("a side lies on another");
-                }
-                continue;
-            }
-            let signs = [turn(a, b, c), turn(a, b, d), turn(c, d, a), turn(c, d, b)];
-            let touches = [(a, b, c), (a, b, d), (c, d, a), (c, d, b)];
-            let touches =
-                touches.into_iter().zip(signs).any(|((x, y, z), sign)| sign == 0 && is_beside(x, y, z));
-            if touches || signs[0] * signs[1] < 0 && signs[2] * signs[3] < 0 {
-                return Some("the boundary crosses itself");
-            }
-        }
+    if let Some(how) = crossing(points, boundary) {
+        return Some(how);
     }
     let on_boundary: HashSet<u32> = boundary.iter().flatten().copied().collect();
     for v in (0..points.len() as u32).filter(|v| !on_boundary.contains(v)) {
         let mut rounds = 0;
         for &[a, b] in boundary {
             let side = turn(a, b, v);
-            if side == 0 && is_beside(a, b, v) {
+            if side == 0 && is_beside(points, a, b, v) {
                 return Some("a vertex is on the boundary");
             }
             let [low, high, y] = [a, b, v].map(|v| at(v)[1] * winding as i64);
