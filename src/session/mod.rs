@@ -139,6 +139,7 @@ impl Session {
     /// [`Error::OutOfMemory`]; [`Error::Device`] and [`Error::BackendLimit`], unless the backend is `Auto`: then the
     /// CPU takes over.
     pub async fn run(&mut self, mut watch: impl FnMut(u32, u64) -> ControlFlow<()>) -> Result<(), Error> {
+        self.come_to_rest().await?;
         while self.may_continue() {
             self.advance().await?;
             if watch(self.iterations(), self.flips()).is_break() {

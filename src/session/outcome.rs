@@ -94,7 +94,8 @@ pub struct Outcome {
     pub left_out: Vec<LeftOut>,
     /// Locked edges that the mesh does not have any more, because no triangulation with them was found after the
     /// vertices moved ([`Options::untangle`](crate::Options::untangle)). Each has its smaller vertex first. They come back
-    /// with positions that allow it.
+    /// with positions that allow it. Where triangles stay turned over or flat, flips may have made one again, which is not
+    /// locked then.
     pub lost_edges: Vec<[u32; 2]>,
     /// Flips of each iteration; a whole run of Lawson's algorithm counts as one iteration.
     pub flips_per_iteration: Vec<u32>,

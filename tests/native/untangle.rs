@@ -3,9 +3,12 @@
 //! Exact integers decide. The motions are those of the table in the design of the repair. The full run has all frames, and
 //! 20,000 vertices too.
 
+mod census;
 mod components;
 mod motions;
 mod oracle;
+mod sessions;
+mod setup;
 mod wild;
 
 use edgeflip::{Backend, Dimension, Mesh, Options, Outcome, Session};

@@ -11,6 +11,8 @@ pub(super) struct Component {
     pub(super) vertices: Vec<u32>,
     /// At each vertex, the fans: the first and the last vertex around it; none of a closed fan.
     pub(super) fans: Vec<(u32, Option<[u32; 2]>)>,
+    /// The edges of two triangles (u, v, c) and (v, u, d): u, v, c, d.
+    pub(super) quads: Vec<[u32; 4]>,
 }
 
 /// The components of a mesh, in the order of their first triangles.
@@ -88,18 +90,25 @@ pub(super) fn components(triangles: &[u32]) -> Vec<Component> {
             fans.push((from(corner), (!is_closed).then(|| [from(next(first)), from(prev(last))])));
         }
         fans.sort_unstable();
+        let quad = |&h: &usize| {
+            let g = twins[h].filter(|&g| h < g)?;
+            Some([h, g, prev(h), prev(g)].map(from))
+        };
+        let quads = corners.iter().filter_map(quad).collect();
         Component {
             triangles: of.iter().flat_map(|t| triangles[3 * t..3 * t + 3].to_vec()).collect(),
             boundary,
             vertices,
             fans,
+            quads,
         }
     };
     all.into_iter().map(component).collect()
 }
 
 impl Component {
-    fn winding(&self, points: &[Point]) -> i128 {
+    /// 1, or -1 if the area is negative.
+    pub(super) fn winding(&self, points: &[Point]) -> i128 {
         let at = |v: u32| points[v as usize];
         let sum: i128 = self.triangles.chunks(3).map(|t| area(at(t[0]), at(t[1]), at(t[2]))).sum();
         if sum < 0 { -1 } else { 1 }
@@ -247,7 +256,9 @@ impl Component {
     /// Whether the locked edges of this component meet each other, its boundary or its vertices, or another component has
     /// one of them.
     pub(super) fn is_blocked(&self, points: &[Point], locked: &[[u32; 2]], before: &[Component]) -> bool {
-        let lost = self.lost(locked, before);
+        let mut lost = self.lost(locked, before);
+        let present: HashSet<[u32; 2]> = self.triangles.chunks(3).flat_map(sides).collect();
+        lost.extend(locked.iter().filter(|&&[u, v]| present.contains(&[u, v]) || present.contains(&[v, u])));
         let local: HashMap<u32, u32> = self.vertices.iter().zip(0..).map(|(&v, i)| (v, i)).collect();
         let own: Vec<Point> = self.vertices.iter().map(|&v| points[v as usize]).collect();
         let name =

@@ -14,7 +14,7 @@ use std::ops::ControlFlow;
 const SCALES: [i32; 5] = [-20, 0, -1074, 900, -30];
 
 /// Layers of triangles over each other, and their points.
-fn scene(random: &mut Random) -> (Vec<Point>, Vec<u32>) {
+pub(super) fn scene(random: &mut Random) -> (Vec<Point>, Vec<u32>) {
     let mut below = |count: usize| (random.next() * count as f64) as usize;
     let (mut points, mut triangles): (Vec<Point>, Vec<u32>) = Default::default();
     let size = [4, 12, 100, 1 << 20][below(4)];
@@ -57,7 +57,7 @@ fn scene(random: &mut Random) -> (Vec<Point>, Vec<u32>) {
 }
 
 /// Moves some of the points.
-fn moved(start: &[Point], last: &[Point], triangles: &[u32], random: &mut Random) -> Vec<Point> {
+pub(super) fn moved(start: &[Point], last: &[Point], triangles: &[u32], random: &mut Random) -> Vec<Point> {
     let mut below = |count: usize| (random.next() * count as f64) as i64;
     let (low, high) = start.iter().flatten().fold((i64::MAX, i64::MIN), |(l, h), &x| (l.min(x), h.max(x)));
     let size = (high - low).max(1) as usize;
@@ -87,7 +87,7 @@ fn moved(start: &[Point], last: &[Point], triangles: &[u32], random: &mut Random
     points
 }
 
-fn numbers(points: &[Point], scale: i32, random: &mut Random) -> Vec<f64> {
+pub(super) fn numbers(points: &[Point], scale: i32, random: &mut Random) -> Vec<f64> {
     let scaled = |&x: &i64| {
         let half = 2f64.powi(scale / 2);
         let scaled = x as f64 * half * 2f64.powi(scale - scale / 2);
@@ -154,8 +154,16 @@ fn check(seed: u64) -> (usize, usize) {
     (frames, possible)
 }
 
+/// What no repair and no flip changes: the number of triangles, the boundary, the vertices and their fans.
+pub(super) fn outlines(all: &[Component]) -> Vec<impl Ord + std::fmt::Debug + use<>> {
+    let outline = |c: &Component| (c.triangles.len(), c.boundary.clone(), c.vertices.clone(), c.fans.clone());
+    let mut outlines: Vec<_> = all.iter().map(outline).collect();
+    outlines.sort_unstable();
+    outlines
+}
+
 /// Counts the components that have a triangulation. Panics if one of them has not the right one.
-fn right(
+pub(super) fn right(
     name: &str,
     before: &[Component],
     points: &[Point],
@@ -163,12 +171,6 @@ fn right(
     locked: &[[u32; 2]],
 ) -> usize {
     let after = components(&outcome.triangles);
-    let outlines = |all: &[Component]| {
-        let mut outlines: Vec<_> =
-            all.iter().map(|c| (c.boundary.clone(), c.vertices.clone(), c.fans.clone())).collect();
-        outlines.sort_unstable();
-        outlines
-    };
     assert_eq!(outlines(before), outlines(&after), "{name}");
     let mut possible = 0;
     for component in &after {
@@ -190,7 +192,10 @@ fn right(
         }
         let lost: Vec<_> = component.lost(&outcome.lost_edges, before);
         if !lost.is_empty() && !component.is_blocked(points, locked, before) {
-            panic!("{name}: lost {lost:?}; {points:?} {:?}", component.triangles);
+            panic!(
+                "{name}: lost {lost:?} of {locked:?}; {points:?} {:?}| {:?}",
+                component.triangles, outcome.triangles
+            );
         }
     }
     possible
