@@ -428,6 +428,7 @@ export interface Result<I extends IndexArray = Uint32Array> {
   /**
    * Locked edges and edges of constraints that `untangle` could not keep, because they cross others or pass through a
    * vertex: pairs of vertices, the smaller one first, in ascending order. They come back when the positions allow it.
+   * Where triangles stay turned over or flat, flips may have made one again, which is not locked then.
    */
   lostEdges: Uint32Array;
   /** Edges that are still not Delaunay. */
