@@ -28,6 +28,9 @@ use std::sync::Arc;
 /// `NONE` and `BLOCKED`, are no half-edges.
 pub const MAX_TRIANGLES: usize = ((1 << 30) - 2) / 3;
 
+/// A triangle of a mesh: its slot, that is its index, its corners and their twins.
+pub(crate) type Slot = [u32; 7];
+
 /// A triangle mesh with finite coordinates and indices in range. Everything else may be dirty:
 /// boundary, several components, non-manifold edges, degenerate triangles.
 #[derive(Clone, Debug, PartialEq)]
@@ -92,6 +95,11 @@ impl Mesh {
         Ok(Self { dimension, positions, triangles })
     }
 
+    /// Of numbers that [`Mesh::new`] has checked before.
+    pub(crate) fn of_checked(dimension: Dimension, positions: Positions, triangles: Vec<u32>) -> Self {
+        Self { dimension, positions, triangles }
+    }
+
     /// The same vertices and triangles in another order.
     pub(crate) fn reordered(&self, positions: Positions, triangles: Vec<u32>) -> Self {
         Self { dimension: self.dimension, positions, triangles }
@@ -135,9 +143,14 @@ impl Mesh {
         Self { dimension: self.dimension, positions: self.positions.clone(), triangles }
     }
 
-    /// The same without a copy.
-    pub(crate) fn replaced(self, triangles: Vec<u32>) -> Self {
-        Self { triangles, ..self }
+    /// The same with other triangles in some slots. `twins` are its twins.
+    pub(crate) fn with_slots(mut self, slots: &[Slot], twins: &mut [u32]) -> Self {
+        for &[slot, a, b, c, x, y, z] in slots {
+            let corners = 3 * slot as usize..3 * slot as usize + 3;
+            self.triangles[corners.clone()].copy_from_slice(&[a, b, c]);
+            twins[corners].copy_from_slice(&[x, y, z]);
+        }
+        self
     }
 
     /// The bytes of its arrays.

@@ -109,8 +109,10 @@ impl Outline {
             negative.push(total_area_sign(edges.len(), &triangle).is_lt());
         }
         let mut clockwise = vec![0u32; self.component.len().div_ceil(32)];
-        for (t, &component) in self.component.iter().enumerate() {
-            clockwise[t / 32] |= u32::from(negative[component as usize]) << (t % 32);
+        if negative.contains(&true) {
+            for (t, &component) in self.component.iter().enumerate() {
+                clockwise[t / 32] |= u32::from(negative[component as usize]) << (t % 32);
+            }
         }
         Winding { clockwise, is_all_clockwise: false, is_strict: false }
     }
@@ -119,7 +121,8 @@ impl Outline {
 impl Winding {
     /// Whether both are the same for `triangles` triangles.
     pub(crate) fn equals(&self, other: &Self, triangles: usize) -> bool {
-        (0..triangles as u32).all(|t| self.is_clockwise(t) == other.is_clockwise(t))
+        self.clockwise == other.clockwise
+            || (0..triangles as u32).all(|t| self.is_clockwise(t) == other.is_clockwise(t))
     }
 
     /// The sign of the total area of the component of triangle `t`.

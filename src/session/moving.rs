@@ -125,9 +125,10 @@ impl Session {
         let start = Instant::now();
         self.check_memory(memory_bounds::POSITIONS)?;
         self.check_length(&positions)?;
-        positions.refuse_non_finite(self.mesh.dimension(), &Threads::one())?;
+        let dimension = self.mesh.dimension();
+        positions.refuse_non_finite(dimension, &Threads::one())?;
         let triangles = self.triangles().await?;
-        let mesh = Mesh::new(self.mesh.dimension(), positions, triangles)?;
+        let mesh = Mesh::of_checked(dimension, positions.narrowed(), triangles);
         self.mesh = self.take_moved(mesh).await?;
         self.constraints.before = None;
         self.flips_per_iteration.clear();
@@ -190,12 +191,12 @@ impl Session {
             may_change && (!self.held.lost.is_empty() || self.held.was_tangled || may_be_tangled(&mesh));
         let (mut twins, mut replaced) = (None, None);
         if may_be_tangled {
-            let present = self.words(bytes, |engine| engine.twins()).await?;
+            let mut present = self.words(bytes, |engine| engine.twins()).await?;
             if self.held.untangler.is_needed(&mesh, &present, self.held.lost.len())?
-                && let Some(mut repaired) = self.repaired(&mesh, present)?
+                && let Some(mut repaired) = self.repaired(&mesh, &present)?
             {
-                mesh = mesh.replaced(mem::take(&mut repaired.triangles));
-                twins = Some(mem::take(&mut repaired.twins));
+                mesh = mesh.with_slots(&repaired.slots, &mut present);
+                twins = Some(present);
                 self.exchange(&mut repaired);
                 replaced = Some(repaired);
             }
@@ -209,7 +210,7 @@ impl Session {
         taken.map(|()| mesh)
     }
 
-    fn repaired(&mut self, mesh: &Mesh, twins: Vec<u32>) -> Result<Option<Repaired>, Error> {
+    fn repaired(&mut self, mesh: &Mesh, twins: &[u32]) -> Result<Option<Repaired>, Error> {
         let locked = (self.options.locked_edges.as_slice(), self.constraints.locks);
         self.held.untangler.repaired(mesh, twins, locked, &self.held.lost)
     }

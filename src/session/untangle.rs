@@ -57,10 +57,10 @@ pub(crate) fn begin(mesh: &mut Arc<Mesh>, options: &mut Options) -> Result<Vec<[
     let mut twins = Adjacency::of_triangles(mesh.vertex_count(), mesh.triangles(), &Threads::one()).twins;
     half_edge::lock(&mut twins, &half_edges(mesh, &options.locked_edges)?);
     let constant = Constant::new(mesh, &twins);
-    let Some(Untangled { triangles, lost, .. }) = untangled(mesh, twins, &constant, Vec::new()) else {
+    let Some(Untangled { slots, lost }) = untangled(mesh, &twins, &constant, Vec::new()) else {
         return Ok(Vec::new());
     };
-    *mesh = Arc::new(mesh.flipped(triangles));
+    *mesh = Arc::new(Mesh::clone(mesh).with_slots(&slots, &mut twins));
     // The triangles have moved, so these lists name others now. Their edges are locked by name.
     (options.locked_triangles, options.groups) = (Vec::new(), Vec::new());
     options.locked_edges.retain(|&edge| lost.binary_search(&ordered(edge)).is_err());

@@ -27,14 +27,12 @@ impl Untangler {
     pub(crate) fn repaired(
         &mut self,
         mesh: &Mesh,
-        twins: Vec<u32>,
+        twins: &[u32],
         (locked_edges, locks): (&[[u32; 2]], usize),
         lost: &[[u32; 2]],
     ) -> Result<Option<Repaired>, Error> {
-        let constant = self.constant.get_or_insert_with(|| Constant::new(mesh, &twins));
-        let Some(Untangled { triangles, twins, lost: missing }) =
-            untangled(mesh, twins, constant, lost.to_vec())
-        else {
+        let constant = self.constant.get_or_insert_with(|| Constant::new(mesh, twins));
+        let Some(Untangled { slots, lost: missing }) = untangled(mesh, twins, constant, lost.to_vec()) else {
             return Ok(None);
         };
         let (all, count) = self.all.get_or_insert_with(|| {
@@ -45,6 +43,6 @@ impl Untangler {
         let is_kept = |edge: &&[u32; 2]| missing.binary_search(&ordered(**edge)).is_err();
         let locks = all[..*count].iter().filter(is_kept).count();
         let locked_edges = all.iter().filter(is_kept).copied().collect();
-        Ok(Some(Repaired { triangles, twins, locked_edges, locks, lost: missing }))
+        Ok(Some(Repaired { slots, locked_edges, locks, lost: missing }))
     }
 }

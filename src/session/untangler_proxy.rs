@@ -6,7 +6,7 @@ use super::repaired::Repaired;
 use crate::mesh::areas::Areas;
 use crate::mesh::winding::Outline;
 use crate::system::threads::Threads;
-use crate::{Error, Mesh};
+use crate::{Error, Mesh, Positions};
 use js_sys::Object;
 use std::cell::RefCell;
 use wasm_bindgen::prelude::*;
@@ -20,7 +20,8 @@ extern "C" {
     fn repaired(
         this: &UntangleModule,
         key: &Object,
-        positions: JsValue,
+        singles: &[f32],
+        doubles: &[f64],
         triangles: &[u32],
         twins: &[u32],
         locked_edges: &[u32],
@@ -69,19 +70,23 @@ impl Untangler {
     pub(super) fn repaired(
         &mut self,
         mesh: &Mesh,
-        twins: Vec<u32>,
+        twins: &[u32],
         (locked_edges, locks): (&[[u32; 2]], usize),
         lost: &[[u32; 2]],
     ) -> Result<Option<Repaired>, Error> {
-        let (triangles, positions) = (mesh.triangles(), mesh.positions().to_typed_array());
+        let triangles = mesh.triangles();
+        let (singles, doubles): (&[f32], &[f64]) = match mesh.positions() {
+            Positions::F32(numbers) => (numbers, &[]),
+            Positions::F64(numbers) => (&[], numbers),
+        };
         let (locked_edges, lost) = (locked_edges.as_flattened(), lost.as_flattened());
         let words = MODULE.with_borrow(|module| match module {
             Some(module) => {
-                module.repaired(&self.key, positions, triangles, &twins, locked_edges, locks, lost)
+                module.repaired(&self.key, singles, doubles, triangles, twins, locked_edges, locks, lost)
             }
             None => Ok(Vec::new()),
         });
         let words = words.map_err(|exception| Error::Thrown { exception })?;
-        Ok(Repaired::of_words(words, triangles.len()))
+        Ok(Repaired::of_words(words))
     }
 }

@@ -10,6 +10,8 @@ use crate::{Mesh, NONE};
 #[derive(Clone)]
 pub(crate) struct Constant {
     pub(super) outline: Outline,
+    /// The number of triangles of each component.
+    pub(super) sizes: Vec<u32>,
     /// Whether a vertex stays: it is on the boundary, or has several fans.
     is_pinned: Vec<bool>,
     /// The exceptions, sorted: vertices with several fans, each with a component in which it has only one, which is
@@ -42,7 +44,10 @@ impl Constant {
                 is_pinned[triangles[end as usize] as usize] = true;
             }
         }
-        Self { outline, is_pinned, free, has_fans: !fans.table.is_empty() }
+        let last = outline.components().iter().max();
+        let mut sizes = vec![0; last.map_or(0, |&last| last as usize + 1)];
+        outline.components().iter().for_each(|&component| sizes[component as usize] += 1);
+        Self { outline, sizes, is_pinned, free, has_fans: !fans.table.is_empty() }
     }
 
     /// Whether a vertex stays in a component.

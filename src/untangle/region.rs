@@ -35,14 +35,16 @@ impl Search {
 impl Sheet<'_> {
     /// Fills components with many turned triangles anew. Returns their slots.
     pub(super) fn fill_anew(&mut self, turned: &[u32]) -> Vec<u32> {
-        let components = self.components();
-        let mut counts = vec![[0u32; 2]; components.iter().max().map_or(0, |&last| last as usize + 1)];
-        components.iter().for_each(|&component| counts[component as usize][0] += 1);
-        turned.iter().for_each(|&t| counts[components[t as usize] as usize][1] += 1);
+        let (components, sizes) = (self.components(), self.sizes());
+        let mut counts = vec![0u32; sizes.len()];
+        turned.iter().for_each(|&t| counts[components[t as usize] as usize] += 1);
         let is_bad = |t: &u32| {
-            let [all, turned] = counts[components[*t as usize] as usize];
-            turned > all / FEW
+            let component = components[*t as usize] as usize;
+            counts[component] > sizes[component] / FEW
         };
+        if !turned.iter().any(is_bad) {
+            return Vec::new();
+        }
         let mut bad: Vec<u32> = (0..components.len() as u32).filter(is_bad).collect();
         bad.sort_by_key(|&t| components[t as usize]);
         let mut slots = Vec::new();

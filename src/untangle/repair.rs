@@ -4,15 +4,15 @@ use super::constant::Constant;
 use super::lift::FREE;
 use super::region::Search;
 use super::sheet::Sheet;
+use crate::mesh::Slot;
 use crate::predicates::area_sign;
 use crate::{Mesh, NONE};
 
 /// Other triangles for a mesh.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) struct Untangled {
-    pub(crate) triangles: Vec<u32>,
-    /// Their twins, with the flags of locked edges.
-    pub(crate) twins: Vec<u32>,
+    /// Each slot whose triangle is new or has other neighbours. The twins have the flags of locked edges.
+    pub(crate) slots: Vec<Slot>,
     /// Locked edges that the mesh does not have any more, because no triangulation with them was found. Sorted.
     pub(crate) lost: Vec<[u32; 2]>,
 }
@@ -35,32 +35,44 @@ pub(crate) fn may_be_tangled(mesh: &Mesh) -> bool {
 /// itself in such a way that two edges would join the same vertices keeps its triangles.
 pub(crate) fn untangled(
     mesh: &Mesh,
-    twins: Vec<u32>,
+    twins: &[u32],
     constant: &Constant,
     lost: Vec<[u32; 2]>,
 ) -> Option<Untangled> {
     let winding = constant.outline.winding(mesh);
-    let count = mesh.triangle_count() as u32;
-    let before = twins.clone();
-    let mut sheet = Sheet::new(mesh, constant, &winding, twins, lost);
-    let mut turned: Vec<u32> = (0..count).filter(|&t| !sheet.is_right(t)).collect();
-    if turned.is_empty() && sheet.lost.is_empty() {
+    let (triangles, _) = mesh.triangles().as_chunks();
+    let mut turned = Vec::new();
+    // A filter would be a call for each triangle in the npm package.
+    for (t, &corners) in (0..).zip(triangles) {
+        let [a, b, c] = mesh.positions().points2(corners);
+        if winding.relative(t, area_sign(a, b, c)).is_le() {
+            turned.push(t);
+        }
+    }
+    if turned.is_empty() && lost.is_empty() {
         return None;
     }
-    let mut claims = vec![FREE; count as usize];
+    let mut sheet = Sheet::new(mesh, constant, &winding, twins, lost);
+    let mut claims = vec![FREE; triangles.len()];
     let anew = sheet.fill_anew(&turned);
     sheet.lift(&mut turned, &mut claims);
-    let mut search = Search::new(count as usize);
-    for t in turned {
-        if !sheet.is_right(t) {
-            sheet.grow(t, &mut search);
+    if !turned.is_empty() {
+        let mut search = Search::new(triangles.len());
+        for t in turned {
+            if !sheet.is_right(t) {
+                sheet.grow(t, &mut search);
+            }
         }
     }
     sheet.flip_all(anew.iter().flat_map(|t| 3 * t..3 * t + 3).filter(|&h| sheet.vertex(h) != NONE).collect());
     sheet.put_back(&mut claims, !anew.is_empty());
-    sheet.undo_doubled(&before);
+    sheet.undo_doubled(twins);
     sheet.bring_back();
-    let Sheet { triangles, twins, lost, .. } = sheet;
-    let lost = lost.into_iter().map(|lost| lost.edge).collect();
-    Some(Untangled { triangles, twins, lost })
+    let slot = |&slot: &u32| {
+        let ([a, b, c], first) = (sheet.corners(slot), 3 * slot as usize);
+        [slot, a, b, c, sheet.twins[first], sheet.twins[first + 1], sheet.twins[first + 2]]
+    };
+    let slots = sheet.touched.iter().map(slot).collect();
+    let lost = sheet.lost.into_iter().map(|lost| lost.edge).collect();
+    Some(Untangled { slots, lost })
 }

@@ -7,6 +7,7 @@ use crate::mesh::winding::Winding;
 use crate::predicates::{area_sign, in_circle_sign};
 use crate::{Mesh, NONE};
 use std::cmp::Ordering;
+use std::mem;
 
 /// Flag in the entry of a side: the rest is the index of the entry in [`Sheet::cuts`]. No edge in the plane is a crease.
 pub(super) const CUT: u32 = CREASE;
@@ -47,6 +48,9 @@ pub(super) struct Sheet<'a> {
     pub(super) loose: Vec<Loose>,
     /// Locked edges that the mesh does not have at present.
     pub(super) lost: Vec<Lost>,
+    /// Slots whose corners or twins may have changed, once each.
+    pub(super) touched: Vec<u32>,
+    is_touched: Vec<bool>,
     /// For each side of a cut the half-edge of the triangle there, once it is known. Cuts have two sides each.
     pub(super) cuts: Vec<u32>,
 }
@@ -56,12 +60,14 @@ impl<'a> Sheet<'a> {
         mesh: &'a Mesh,
         constant: &'a Constant,
         winding: &'a Winding,
-        twins: Vec<u32>,
+        twins: &[u32],
         lost: Vec<[u32; 2]>,
     ) -> Self {
-        let triangles = mesh.triangles().to_vec();
+        let (triangles, twins) = (mesh.triangles().to_vec(), twins.to_vec());
+        let is_touched = vec![false; mesh.triangle_count()];
         let lost = lost.into_iter().map(|edge| Lost { edge, component: NONE }).collect();
-        Self { mesh, constant, winding, triangles, twins, loose: Vec::new(), lost, cuts: Vec::new() }
+        let (loose, touched, cuts) = Default::default();
+        Self { mesh, constant, winding, triangles, twins, loose, lost, touched, is_touched, cuts }
     }
 
     /// Whether a vertex of triangle `t` stays in its component.
@@ -72,6 +78,11 @@ impl<'a> Sheet<'a> {
     /// The component of each triangle.
     pub(super) fn components(&self) -> &'a [u32] {
         self.constant.outline.components()
+    }
+
+    /// The number of triangles of each component.
+    pub(super) fn sizes(&self) -> &'a [u32] {
+        &self.constant.sizes
     }
 
     /// The fans, when no vertex is out.
@@ -95,17 +106,14 @@ impl<'a> Sheet<'a> {
         let mut is_flipped: Vec<bool> = Vec::new();
         loop {
             let fans = self.fans();
-            let is_changed = |t: &u32| {
-                let slot = 3 * *t as usize..3 * *t as usize + 3;
-                self.triangles[slot.clone()] != old[slot]
-            };
-            let is_doubled = |&t: &u32| (3 * t..3 * t + 3).any(|h| self.is_doubled(h, &fans));
-            let changed = (0..components.len() as u32).filter(is_changed);
-            let doubled: Vec<u32> = changed.filter(is_doubled).collect();
+            // A new edge is an edge of two touched triangles.
+            let is_doubled =
+                |&t: &u32| (3 * t..3 * t + 3).any(|h| h < self.twin(h) && self.is_doubled(h, &fans));
+            let doubled: Vec<u32> = self.touched.iter().copied().filter(is_doubled).collect();
             if doubled.is_empty() {
                 return;
             }
-            let count = components.iter().max().map_or(0, |&last| last as usize + 1);
+            let count = self.sizes().len();
             is_flipped.resize(count, false);
             let (mut flips, mut is_undone) = (false, vec![false; count]);
             for t in doubled {
@@ -209,6 +217,7 @@ impl<'a> Sheet<'a> {
             if entry != NONE {
                 let twin = if twin == NONE { NONE } else { twin & !FLAGS | flags };
                 self.twins[(entry & !FLAGS) as usize] = twin;
+                self.touch(triangle_of(entry & !FLAGS));
             }
         }
     }
@@ -239,7 +248,14 @@ impl<'a> Sheet<'a> {
         near
     }
 
+    fn touch(&mut self, slot: u32) {
+        if !mem::replace(&mut self.is_touched[slot as usize], true) {
+            self.touched.push(slot);
+        }
+    }
+
     pub(super) fn clear(&mut self, slot: u32, near: u32) {
+        self.touch(slot);
         let h = 3 * slot as usize;
         self.triangles[h..h + 3].copy_from_slice(&[NONE, near, NONE]);
         self.twins[h..h + 3].fill(NONE);

@@ -3,7 +3,6 @@
 //! `untangleFirst`.
 
 use crate::session::{self, Untangler};
-use crate::system::memory;
 use crate::system::threads::Threads;
 use crate::wasm::values::{JsPositions, mesh_of, object, thrown};
 use crate::{Dimension, Error, Mesh, Options};
@@ -38,25 +37,26 @@ impl JsUntangler {
         Self::default()
     }
 
-    /// As [`Untangler::repaired`], with 2 vertices per edge: the words of what comes out.
+    /// As [`Untangler::repaired`], with 2 vertices per edge: the words of what comes out. The mesh has been checked. Its
+    /// positions are `singles` or `doubles`; the others are empty.
     ///
     /// # Errors
-    /// Those of [`Mesh::new`]; [`Error::OutOfMemory`].
+    /// [`Error::OutOfMemory`].
+    #[allow(clippy::too_many_arguments, reason = "JavaScript passes the arrays of another module on")]
     pub fn repaired(
         &mut self,
-        positions: JsPositions,
+        singles: Vec<f32>,
+        doubles: Vec<f64>,
         triangles: Vec<u32>,
-        twins: Vec<u32>,
+        twins: &[u32],
         locked_edges: &[u32],
         locks: usize,
         lost: &[u32],
     ) -> Result<Vec<u32>, JsValue> {
-        let repair = || {
-            memory::check(positions.byte_length() as u64)?;
-            let mesh = Mesh::new(Dimension::Two, positions, triangles)?;
-            self.0.repaired(&mesh, twins, (locked_edges.as_chunks().0, locks), lost.as_chunks().0)
-        };
-        let repaired = repair().map_err(thrown)?;
+        let positions = if doubles.is_empty() { singles.into() } else { doubles.into() };
+        let mesh = Mesh::of_checked(Dimension::Two, positions, triangles);
+        let locked = (locked_edges.as_chunks().0, locks);
+        let repaired = self.0.repaired(&mesh, twins, locked, lost.as_chunks().0).map_err(thrown)?;
         Ok(repaired.map_or(Vec::new(), |repaired| repaired.words()))
     }
 }

@@ -63,7 +63,8 @@ impl Engine for Cpu {
         if mesh.dimension() == Dimension::Three {
             flag_creases(mesh.positions(), triangles, twins, thresholds.cos, false, threads);
         }
-        if has_others {
+        // Each vertex has as many fans as before.
+        if has_others && !self.fans.table.is_empty() {
             self.fans = embedded.fans(&mesh, twins, threads);
         }
         self.settle(Vec::new(), false);
