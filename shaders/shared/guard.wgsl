@@ -14,13 +14,16 @@ fn guarded(verdict: u32, h: u32, g: u32) -> u32 {
     return result;
 }
 
-// Whether an edge joins the vertices at which two half-edges start, or both vertices are the same. The star of either
-// vertex gives the answer. The walk takes ALONE steps around the first vertex, which are mostly enough. Then it
-// alternates between both. Its cost is these steps plus twice the smaller star.
+// Whether an edge joins the vertices at which two half-edges start, or both vertices are the same.
 fn edge_exists(at_c: u32, at_d: u32) -> bool {
+    return are_joined(at_c, at_d, is_embedded(vertex(at_c)) || is_embedded(vertex(at_d)));
+}
+
+// The same, if it is not known that no edge does. The star of either vertex gives the answer. The walk takes ALONE steps around the first vertex, which are mostly enough. Then it
+// alternates between both. Its cost is these steps plus twice the smaller star.
+fn are_joined(at_c: u32, at_d: u32, is_alone: bool) -> bool {
     let c = vertex(at_c);
     let d = vertex(at_d);
-    let is_alone = is_embedded(c) || is_embedded(d);
     var exists = c == d;
     var first = star(at_c);
     var second = star(at_d);

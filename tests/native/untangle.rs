@@ -6,6 +6,7 @@
 mod components;
 mod motions;
 mod oracle;
+mod updates;
 mod wild;
 
 use edgeflip::{Backend, Dimension, Mesh, Options, Outcome, Session};
