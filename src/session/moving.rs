@@ -26,7 +26,8 @@ impl Session {
     /// [`Session::run`], [`Session::advance`], [`Session::step`], [`Session::outcome`], [`Session::edge_states`] and
     /// [`Session::verify`] end the motion: they act as if [`Session::set_positions`] had been called with the present positions.
     /// They untangle what updates have left, as [`Options::untangle`](crate::Options::untangle) says, also at locked edges:
-    /// an update lifts no vertex of such an edge. With [`Options::untangle`](crate::Options::untangle) as `Some(false)` an
+    /// an update lifts no vertex of such an edge. It only flips if more than half of the triangles are turned over, or in a
+    /// mesh of far more vertices than triangles. With [`Options::untangle`](crate::Options::untangle) as `Some(false)` an
     /// update only flips.
     ///
     /// # Errors
@@ -41,12 +42,7 @@ impl Session {
         if let Some(positions) = &positions {
             self.check_length(positions)?;
         }
-        let untangles = self.untangles();
-        self.engine.update(positions, iterations, untangles)?;
-        if untangles {
-            // Triangles may have other slots, so these lists name others now. Their edges are locked by name.
-            (self.options.locked_triangles, self.options.groups) = (Vec::new(), Vec::new());
-        }
+        self.engine.update(positions, iterations, self.untangles())?;
         self.flips_per_iteration.clear();
         self.has_ended = false;
         self.updates = self.updates.saturating_add(1);

@@ -142,7 +142,8 @@ impl Plan {
         Self { bindings: phases_bindings(), sources: vec![sources::writes(form)], entries }
     }
 
-    /// The kernels that untangle in updates: half a round, and all rounds in one workgroup, with so many invocations. `None` for meshes that updates only flip.
+    /// The kernels that untangle in updates: half a round, and all rounds in one workgroup, with so many invocations.
+    /// `None` for meshes that updates only flip.
     #[cfg(not(target_arch = "wasm32"))]
     pub(super) fn untangle(form: Form, size: u32) -> Option<Self> {
         let may_move = form.dimension == Dimension::Two && !form.is_fixed;
