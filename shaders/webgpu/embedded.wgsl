@@ -76,7 +76,7 @@ fn counted(t: u32, sign: i32, points: array<Point, 3>) -> u32 {
     var a = points[0];
     var b = points[1];
     var c = points[2];
-    if !is_positive && params.update > 0u && !is_too_wide(max(span_of(a), max(span_of(b), span_of(c)))) {
+    if !is_positive && params.untangles > 0u && !is_too_wide(max(span_of(a), max(span_of(b), span_of(c)))) {
         let at = turned_list() + atomicAdd(&history[TURNED], 1u);
         if at < 2u * params.triangles {
             choices[at] = 4u * t + 3u;

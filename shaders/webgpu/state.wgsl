@@ -41,6 +41,8 @@ struct Params {
     update: u32,
     // The offset in `topology` of the updates in which the triangles last changed; 0 if nobody asks for them.
     changes: u32,
+    // 1 if the update untangles. In the npm package none does.
+    untangles: u32,
     // |cos β| is exactly mantissa / power: eight digits each, as in numbers.wgsl.
     cos_digits: array<vec4i, 4>,
     // The limit for the deviation: the words of a coordinate, and rounded to f32 for the filter.
@@ -93,7 +95,7 @@ const PAUSED: u32 = 11u;
 const SEVERAL_FANS: u32 = 12u;
 const FLIPPED: u32 = 13u;
 const ENTRIES: u32 = 15u;
-// In the preparation: the signs; the span of all points; in updates, how many triangles the list has of those that are
+// In the preparation: the signs; the span of all points; if it untangles, how many triangles the list has of those that are
 // turned over or flat, and how many vertices are out. The list follows the claims, in the buffer of the choices.
 const HIGHEST: u32 = 1u;
 const DEPTH: u32 = 2u;

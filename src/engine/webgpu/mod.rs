@@ -98,9 +98,9 @@ pub(crate) struct WebGpu {
     topology_words: u32,
     /// The winding, once the host knows it.
     winding: u32,
-    /// How many rounds of the next preparation are dispatches of their own; `None` if it does not untangle.
+    /// How many rounds that untangle are dispatches of their own.
     #[cfg(not(target_arch = "wasm32"))]
-    rounds: Option<u32>,
+    rounds: u32,
     buffers: Buffers,
     /// The counters of the adjacency, then the signs of the triangles.
     counters: Buffer,

@@ -70,7 +70,7 @@ impl WebGpu {
                 topology_words: params.fans,
                 winding: WINDING_UNKNOWN,
                 #[cfg(not(target_arch = "wasm32"))]
-                rounds: None,
+                rounds: super::untangle::rounds(&gpu),
                 kernels,
                 thresholds: upload.thresholds,
                 form: upload.form(),
@@ -286,7 +286,7 @@ impl WebGpu {
                 _ => Vec::new(),
             };
             self.params.deviation = upload.deviation;
-            (self.params.winding, self.params.update) = (WINDING_UNKNOWN, 0);
+            (self.params.winding, self.params.update, self.params.untangles) = (WINDING_UNKNOWN, 0, 0);
             let calls = || {
                 if let Some(twins) = &twins {
                     self.gpu.write(&self.buffers.triangles, upload.mesh.triangles());

@@ -190,6 +190,7 @@ fn params_have_one_layout() {
         winding,
         update,
         changes,
+        untangles,
         cos_digits,
         deviation
     );
