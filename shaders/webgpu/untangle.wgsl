@@ -62,7 +62,7 @@ fn half_round(
     }
     let count = workgroupUniformLoad(&work);
     for (var i = id.x; i < count; i += groups.x * WORKGROUP_SIZE) {
-        let is_busy = do_half(i, CLAIM + step_.index % 2u);
+        do_half(i, CLAIM + step_.index % 2u);
     }
 }
 
@@ -76,16 +76,17 @@ fn untangle(@builtin(local_invocation_index) local: u32) {
         following = select(NONE, step_.index / 2u, turned_triangles() > 0u);
     }
     loop {
-        number = workgroupUniformLoad(&following);
-        if number == NONE {
+        let round = workgroupUniformLoad(&following);
+        if round == NONE {
             break;
         }
+        number = round;
         if local == 0u {
             work = work_of_round();
         }
         let count = workgroupUniformLoad(&work);
         // The last rounds have one number, so nobody may have claimed in an earlier one.
-        for (var half = select(CLAIM, FORGET, number == HOME); half <= ACT; half++) {
+        for (var half = select(CLAIM, FORGET, round == HOME); half <= ACT; half++) {
             for (var i = local; i < count; i += ROUNDS_SIZE) {
                 if do_half(i, half) && half == CLAIM {
                     atomicStore(&busy, 1u);
