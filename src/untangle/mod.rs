@@ -8,6 +8,7 @@
 //! Nothing is added or removed: a vertex that is out keeps two slots for triangles.
 
 mod constant;
+mod divide;
 mod frame;
 mod lift;
 mod locks;

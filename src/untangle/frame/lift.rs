@@ -6,6 +6,7 @@ use super::{Frame, Loose};
 use crate::NONE;
 use crate::mesh::half_edge::{LOCKED, next, prev, triangle_of, unflagged};
 use crate::mesh::star::{Star, any_in_either};
+use crate::untangle::divide::join;
 use std::cmp::Ordering;
 
 /// The most triangles of a star that is lifted.
@@ -15,8 +16,7 @@ pub(super) const MOST: usize = 16;
 pub(super) const BIAS: u32 = 4;
 
 /// A vertex that may be lifted.
-#[derive(Clone, Copy)]
-pub(super) struct Candidate {
+struct Candidate {
     /// The corners around it, from that of its lowest turned triangle on.
     corners: [u32; MOST],
     /// The vertices of its link.
@@ -33,9 +33,9 @@ type Costs = [[u8; MOST]; MOST];
 pub(super) const NEVER: u8 = 15;
 
 impl Frame<'_> {
-    /// The best vertex of a triangle, if it is turned, and its key. Of the turned triangles around a vertex, the lowest
-    /// claims for it.
-    pub(super) fn best(&self, triangle: u32, claims: &Claims) -> Option<(Candidate, u32)> {
+    /// The corner of a triangle, if it is turned, whose vertex is the best to lift, and the key of that. Of the turned
+    /// triangles around a vertex, the lowest claims for it.
+    pub(super) fn best(&self, triangle: u32, claims: &Claims) -> Option<(u32, u32)> {
         if !self.is_turned(triangle) {
             return None;
         }
@@ -49,11 +49,11 @@ impl Frame<'_> {
             if key(0) < least && key(whole(self.costs(&star, false))) < least {
                 let cost = whole(self.plan(&star));
                 if cost < NEVER && key(cost) < least {
-                    (best, least) = (Some(star), key(cost));
+                    (best, least) = (Some(h), key(cost));
                 }
             }
         }
-        best.map(|star| (star, least))
+        best.map(|corner| (corner, least))
     }
 
     /// Takes the vertex out that a corner of a turned triangle claims for, if it has kept its claims.
@@ -62,7 +62,7 @@ impl Frame<'_> {
         let vertex = self.vertex(corner);
         let key = if vertex == NONE { None } else { claims.own(vertex, self.name(vertex)) }?;
         let star = self.candidate(corner)?;
-        if !claims.have(star.ring(), key) {
+        if !claims.have(&star.ring[..star.degree], key) {
             return None;
         }
         let costs = self.plan(&star);
@@ -192,26 +192,15 @@ impl Frame<'_> {
             for (corner, at) in [i, k, j].into_iter().zip(h as usize..) {
                 self.triangles[at] = star.ring[corner];
             }
-            self.join(h + 2, entry);
+            join(self.twins, h + 2, entry);
             for (side, [from, to]) in [(h, [i, k]), (h + 1, [k, j])] {
                 if to == from + 1 {
-                    self.join(side, outer[from]);
+                    join(self.twins, side, outer[from]);
                 } else {
                     open.push(([from, to], side));
                 }
             }
         }
         (near, [slots[0], slots[1]])
-    }
-}
-
-impl Candidate {
-    /// A corner that starts at the vertex.
-    pub(super) fn corner(&self) -> u32 {
-        self.corners[0]
-    }
-
-    pub(super) fn ring(&self) -> &[u32] {
-        &self.ring[..self.degree]
     }
 }

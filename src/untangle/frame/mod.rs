@@ -6,7 +6,6 @@ mod put_back;
 mod rounds;
 
 use crate::mesh::arrangement::Arrangement;
-use crate::mesh::half_edge::{FLAGS, unflagged};
 use crate::mesh::star::Fans;
 use crate::mesh::winding::Winding;
 use crate::predicates::area_sign;
@@ -88,13 +87,5 @@ impl Frame<'_> {
     fn is_turned(&self, t: u32) -> bool {
         self.vertex(3 * t) != NONE
             && matches!(self.sign(t, self.corners(t)), Some(Ordering::Less | Ordering::Equal))
-    }
-
-    /// Lets a half-edge and an entry meet. A locked edge stays locked.
-    fn join(&mut self, h: u32, entry: u32) {
-        self.twins[h as usize] = entry;
-        if entry != NONE {
-            self.twins[unflagged(entry) as usize] = h | entry & FLAGS;
-        }
     }
 }

@@ -6,6 +6,7 @@ use super::{Frame, Loose};
 use crate::NONE;
 use crate::mesh::half_edge::{next, triangle_of, unflagged};
 use crate::phases::key;
+use crate::untangle::divide::divide;
 use std::cmp::Ordering;
 
 /// The longest walk of a round, in triangles.
@@ -53,27 +54,14 @@ impl Frame<'_> {
         NONE
     }
 
-    /// Puts a vertex into the triangle that it claims, if it has kept its claims. Side i of the triangle then belongs to the
-    /// i-th of the three slots. Returns whether it is back.
+    /// Puts a vertex into the triangle that it claims, if it has kept its claims. Returns whether it is back.
     pub(super) fn put(&mut self, loose: &Loose, claims: &Claims, written: &mut Vec<u32>) -> bool {
         let (t, vertex) = (loose.target, loose.vertex);
-        if t == NONE {
-            return false;
-        }
-        let corners = self.corners(t);
-        if !claims.have(&corners, claims.key(self.name(vertex), 0)) {
+        if t == NONE || !claims.have(&self.corners(t), claims.key(self.name(vertex), 0)) {
             return false;
         }
         let slots = [t, loose.slots[0], loose.slots[1]];
-        let outer = [0, 1, 2].map(|i| self.twins[3 * t as usize + i]);
-        for (i, slot) in slots.into_iter().enumerate() {
-            let h = 3 * slot as usize;
-            self.triangles[h..h + 3].copy_from_slice(&[corners[i], corners[(i + 1) % 3], vertex]);
-        }
-        for (i, slot) in slots.into_iter().enumerate() {
-            self.join(3 * slot, outer[i]);
-            self.join(3 * slot + 1, 3 * slots[(i + 1) % 3] + 2);
-        }
+        let corners = divide(self.triangles, self.twins, slots, vertex);
         // The other corners keep their half-edges.
         self.fans.move_anchor(corners[2], 3 * t + 2, 3 * slots[2]);
         written.extend(slots);

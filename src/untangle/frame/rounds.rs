@@ -17,6 +17,8 @@
 
 use super::{Frame, Loose};
 use crate::NONE;
+use crate::mesh::half_edge::next;
+use crate::mesh::star::Star;
 use crate::system::threads::Threads;
 use std::ops::Range;
 
@@ -71,12 +73,12 @@ impl Frame<'_> {
             if best.is_empty() {
                 break;
             }
-            for (star, key) in &best {
-                claims.claim(&[self.vertex(star.corner())], *key);
-                claims.claim(star.ring(), *key);
+            for &(corner, key) in &best {
+                claims.claim([self.vertex(corner)], key);
+                claims.claim(Star::of_fan(self.twins, corner).map(|h| self.vertex(next(h))), key);
             }
-            for (star, _) in best {
-                waiting.extend(self.lift(star.corner(), &claims, &mut written));
+            for (corner, _) in best {
+                waiting.extend(self.lift(corner, &claims, &mut written));
             }
         }
         claims.round = LIFTS;
@@ -107,7 +109,7 @@ impl Frame<'_> {
         }
         for loose in waiting.iter().filter(|loose| loose.target != NONE) {
             let key = claims.key(self.name(loose.vertex), 0);
-            claims.claim(&self.corners(loose.target), key);
+            claims.claim(self.corners(loose.target), key);
         }
         waiting.retain(|loose| !self.put(loose, claims, written));
     }
@@ -138,8 +140,8 @@ impl Claims {
         name.wrapping_mul(0x9e37_79b1) & ((1 << self.bits) - 1)
     }
 
-    pub(super) fn claim(&mut self, vertices: &[u32], key: u32) {
-        for &v in vertices {
+    fn claim(&mut self, vertices: impl IntoIterator<Item = u32>, key: u32) {
+        for v in vertices {
             let word = &mut self.words[v as usize];
             *word = key.min(*word);
         }
