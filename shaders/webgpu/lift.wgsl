@@ -8,6 +8,7 @@
 #import state
 
 const MOST: u32 = 16u;
+const LARGE: u32 = 64u;
 const BIAS: u32 = 4u;
 const NEVER: u32 = 15u;
 
@@ -54,7 +55,7 @@ fn find_costs() -> u32 {
         for (var i = 0u; i + length <= last; i++) {
             let j = i + length;
             var least = select(MOST * NEVER, 0u, length == 1u);
-            if length == last || (length > 1u && !are_joined(next(corners[i]), next(corners[j]), false)) {
+            if length == last || (length > 1u && !are_joined(next(corners[i]), next(corners[j]), LARGE)) {
                 for (var k = i + 1u; k < j; k++) {
                     var sum = cost(i, k) + cost(k, j);
                     if sum < least / MOST {

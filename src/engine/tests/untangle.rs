@@ -180,6 +180,27 @@ fn fans_and_small_meshes_untangle_alike() {
     compare("square", &mesh, &[], &[0, 30], &frames(&mesh, 24, 2.0, 0.0));
 }
 
+/// A chain of vertices between two that have thousands of triangles each: to find out whether an edge joins these takes
+/// long, and a driver that ends loops early must not end this one.
+#[test]
+fn a_chain_between_two_large_stars_untangles_alike() {
+    let count = 19_000;
+    let place = |i: u32| [i as f32, 0.0];
+    let positions = (0..count).flat_map(place).chain([9500.0, 4000.0, 9500.0, -4000.0]).collect::<Vec<_>>();
+    let triangles = (1..count).flat_map(|i| [i - 1, i, count, i, i - 1, count + 1]).collect();
+    let mesh = Mesh::new(Dimension::Two, positions.clone(), triangles).unwrap();
+    let frames: Vec<_> = (0..2)
+        .map(|frame| {
+            let mut moved = positions.clone();
+            for i in 1..count - 1 {
+                moved[2 * i as usize] += 1.5 * random(frame, i);
+            }
+            moved
+        })
+        .collect();
+    compare("chain", &mesh, &[], &[30], &frames);
+}
+
 /// The rounds end also if all vertices go far out to one side, where all of them wait for the same triangles.
 #[test]
 fn vertices_far_outside_come_back() {

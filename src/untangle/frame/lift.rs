@@ -5,12 +5,15 @@ use super::rounds::Claims;
 use super::{Frame, Loose};
 use crate::NONE;
 use crate::mesh::half_edge::{LOCKED, next, prev, triangle_of, unflagged};
-use crate::mesh::star::{Star, any_in_either};
+use crate::mesh::star::Star;
 use crate::untangle::divide::join;
 use std::cmp::Ordering;
 
 /// The most triangles of a star that is lifted.
 pub(super) const MOST: usize = 16;
+
+/// The most triangles of one of two stars that are searched for a common edge.
+pub(super) const LARGE: u32 = 64;
 
 /// What is added to a gain, so that it is rarely negative.
 pub(super) const BIAS: u32 = 4;
@@ -162,14 +165,21 @@ impl Frame<'_> {
         self.sign(triangle_of(star.corners[0]), vertices) == Some(Ordering::Greater)
     }
 
-    /// Whether an edge joins two vertices of a link.
+    /// Whether an edge joins two vertices of a link. The star of either gives the answer. If both are large, it is as if one
+    /// did.
     fn has_edge(&self, star: &Candidate, ends: [usize; 2]) -> bool {
-        let walk = |end: usize| Star::new(self.triangles, self.twins, self.fans, next(star.corners[end]));
-        let to = |end: usize| {
-            let v = star.ring[end];
-            move |corner: u32| self.vertex(next(corner)) == v || self.vertex(prev(corner)) == v
-        };
-        any_in_either((walk(ends[0]), to(ends[1])), (walk(ends[1]), to(ends[0])))
+        let corners = ends.map(|end| next(star.corners[end]));
+        let [u, v] = ends.map(|end| star.ring[end]);
+        let joins =
+            |corner: u32, far: u32| [next(corner), prev(corner)].iter().any(|&h| self.vertex(h) == far);
+        let mut walks = corners.map(|corner| Star::new(self.triangles, self.twins, self.fans, corner));
+        for step in 0..=LARGE {
+            let [Some(at_u), Some(at_v)] = walks.each_mut().map(Iterator::next) else { return false };
+            if step == LARGE || joins(at_u, v) || joins(at_v, u) {
+                break;
+            }
+        }
+        true
     }
 
     /// Fills a link. Turned triangles take the first slots, others the last ones. Returns the slot of a triangle, and the

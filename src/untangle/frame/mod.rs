@@ -14,12 +14,13 @@ use std::cmp::Ordering;
 
 /// Numbers that the shader has, too.
 #[cfg(test)]
-pub(crate) const CONSTANTS: [(&str, u32); 8] = [
+pub(crate) const CONSTANTS: [(&str, u32); 9] = [
     ("LIFTS", rounds::LIFTS),
     ("PUTS", rounds::PUTS),
     ("STRAYS", rounds::STRAYS),
     ("KEY_BITS", rounds::KEY_BITS),
     ("MOST", lift::MOST as u32),
+    ("LARGE", lift::LARGE),
     ("BIAS", lift::BIAS),
     ("NEVER", lift::NEVER as u32),
     ("LONGEST", put_back::LONGEST),
