@@ -9,8 +9,8 @@ const STRAYS: u32 = 4u;
 const HOME: u32 = LIFTS + PUTS + STRAYS;
 const KEY_BITS: u32 = 27u;
 
-// In the buffer of the choices: a claim for each vertex; the list of turned triangles, each 4 times its number, plus the
-// corner whose vertex it claims for, or 3; from the end on, the vertices that are out, by the first of their slots.
+// In the buffer of the choices: a claim for each vertex; the list of turned triangles, each 8 times its number, plus a
+// bit for each of its corners that claims; from the end on, the vertices that are out, by the first of their slots.
 //
 // The corners of an empty slot are NONE. Twins of the first slot of a vertex that is out: a slot near it; the vertex; its
 // second slot. Of the second: a slot near it; the triangle that its walk has come to; the triangle that it claims.

@@ -79,7 +79,7 @@ fn counted(t: u32, sign: i32, points: array<Point, 3>) -> u32 {
     if !is_positive && params.untangles > 0u && !is_too_wide(max(span_of(a), max(span_of(b), span_of(c)))) {
         let at = turned_list() + atomicAdd(&history[TURNED], 1u);
         if at < 2u * params.triangles {
-            choices[at] = 4u * t + 3u;
+            choices[at] = 8u * t;
         }
     }
     for (var h = 3u * t; h < 3u * t + 3u; h++) {

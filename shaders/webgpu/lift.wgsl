@@ -18,9 +18,9 @@ var<private> degree: u32;
 var<private> corners: array<u32, MOST>;
 var<private> turned: u32;
 var<private> ring: array<u32, MOST>;
-// For each side or chord of the link, from its first corner to its last: MOST times how few turned triangles fill the part
-// between them, plus the third corner of its triangle.
-var<private> chords: array<u32, MOST * MOST>;
+// For each side or chord of the link, from its first corner to its last, a byte: MOST times how few turned triangles fill
+// the part between them, plus the third corner of its triangle.
+var<private> chords: array<u32, MOST * MOST / 4u>;
 
 // Reads the star of the vertex that a corner starts at. Returns whether the vertex can be lifted.
 fn read_star(corner: u32) -> bool {
@@ -44,18 +44,22 @@ fn read_star(corner: u32) -> bool {
     return is_whole && degree > 2u;
 }
 
-fn cost(i: u32, j: u32) -> u32 {
-    return chords[MOST * i + j] / MOST;
+fn chord(i: u32, j: u32) -> u32 {
+    return (chords[(MOST * i + j) / 4u] >> (8u * (j % 4u))) & 255u;
 }
 
-// Finds the costs of the chords, and their third corners. Returns the cost of the whole link.
-fn find_costs() -> u32 {
+fn cost(i: u32, j: u32) -> u32 {
+    return chord(i, j) / MOST;
+}
+
+// Finds the costs of the chords, and their third corners. `looks`: whether to look for other edges between their ends.
+fn find_costs(looks: bool) {
     let last = degree - 1u;
     for (var length = 1u; length <= last; length++) {
         for (var i = 0u; i + length <= last; i++) {
             let j = i + length;
             var least = select(MOST * NEVER, 0u, length == 1u);
-            if length == last || (length > 1u && !are_joined(next(corners[i]), next(corners[j]), LARGE)) {
+            if length == last || !looks || !are_joined(next(corners[i]), next(corners[j]), LARGE) {
                 for (var k = i + 1u; k < j; k++) {
                     var sum = cost(i, k) + cost(k, j);
                     if sum < least / MOST {
@@ -65,56 +69,76 @@ fn find_costs() -> u32 {
                     }
                 }
             }
-            chords[MOST * i + j] = least;
+            let at = (MOST * i + j) / 4u;
+            chords[at] = insertBits(chords[at], least, 8u * (j % 4u), 8u);
         }
     }
-    return cost(0u, last);
 }
 
-// Claims, for a turned triangle, the link of the best of its vertices. Or, if it `acts`, takes the vertex out that it has
-// claimed for, if it has kept its claims. Returns whether it claims.
-fn lift(at: u32, acts: bool) -> bool {
+// Finds the costs without chords that would join two vertices a second time. Mostly there are none, so only the chords of
+// the best filling are tested first: without the others, it stays the best. Returns the cost of the whole link.
+fn plan() -> u32 {
+    find_costs(false);
+    var open = array<u32, MOST>();
+    open[0] = degree - 1u;
+    var count = 1u;
+    while count > 0u {
+        count--;
+        let i = open[count] / MOST;
+        let j = open[count] % MOST;
+        let k = chord(i, j) % MOST;
+        if j - i < degree - 1u && are_joined(next(corners[i]), next(corners[j]), LARGE) {
+            find_costs(true);
+            break;
+        }
+        if k > i + 1u {
+            open[count] = MOST * i + k;
+            count++;
+        }
+        if j > k + 1u {
+            open[count] = MOST * k + j;
+            count++;
+        }
+    }
+    return cost(0u, degree - 1u);
+}
+
+// Claims, for a corner of a turned triangle, the link of its vertex, and notes so in the list. Or, if it `acts`, takes the
+// vertex out, if it has kept the claims. Returns whether it does.
+fn lift(item: u32, acts: bool) -> bool {
+    let at = turned_list() + item / 3u;
+    let bit = 1u << (item % 3u);
     let entry = atomicLoad(&claims[at]);
-    let h = entry - entry / 4u;
-    var best = NONE;
-    var k = 3u;
-    if acts && entry % 4u < 3u {
-        k = entry % 4u;
-        best = own_claim(vertex(h));
+    let corner = 3u * (entry / 8u) + item % 3u;
+    let v = vertex(corner);
+    var key = NONE;
+    if acts && (entry & bit) != 0u {
+        key = own_claim(v);
     }
-    // The last one is the best one again.
-    for (var i = select(0u, 3u, acts); i < 3u || (i == 3u && best != NONE); i++) {
-        let corner = h - entry % 4u + select(i, k, i == 3u);
-        let v = vertex(corner);
-        if read_star(corner) {
-            let gain = countOneBits(turned) + BIAS;
-            var is_kept = acts;
-            for (var n = 0u; n < degree && i == 3u; n++) {
-                if acts {
-                    is_kept = is_kept && atomicLoad(&claims[ring[n]]) == best;
-                } else {
-                    atomicMin(&claims[ring[n]], best);
-                }
-            }
-            if select(claim_key(v, gain) < best, is_kept, i == 3u) {
-                let least = find_costs();
-                let mine = claim_key(v, gain - min(gain, least));
-                if i == 3u {
-                    fill(v);
-                } else if least < NEVER && mine < best {
-                    best = mine;
-                    k = i;
-                }
+    var does = (!acts || key != NONE) && read_star(corner);
+    for (var n = 0u; n < degree && acts && does; n++) {
+        does = atomicLoad(&claims[ring[n]]) == key;
+    }
+    if does {
+        let least = plan();
+        let gain = countOneBits(turned) + BIAS;
+        does = least < NEVER;
+        if acts {
+            fill(v);
+        } else if does {
+            key = claim_key(v, gain - min(gain, least));
+            atomicMin(&claims[v], key);
+            for (var n = 0u; n < degree; n++) {
+                atomicMin(&claims[ring[n]], key);
             }
         }
     }
-    if !acts {
-        atomicStore(&claims[at], entry - entry % 4u + k);
-        if k < 3u {
-            atomicMin(&claims[vertex(h - entry % 4u + k)], best);
-        }
+    if !acts && does {
+        atomicOr(&claims[at], bit);
+    } else if !acts {
+        atomicAnd(&claims[at], ~bit);
     }
-    return k < 3u;
+    return does;
 }
 
 fn fill(v: u32) {
@@ -142,7 +166,7 @@ fn fill(v: u32) {
         let side = open[count];
         let i = side.x / MOST;
         let j = side.x % MOST;
-        let k = chords[side.x] % MOST;
+        let k = chord(i, j) % MOST;
         var slot = slots[first];
         if cost(i, j) == cost(i, k) + cost(k, j) {
             end--;

@@ -23,7 +23,7 @@ fn turned_triangles() -> u32 {
 fn do_half(i: u32, half: u32) -> bool {
     var is_busy = false;
     if number < LIFTS {
-        is_busy = lift(turned_list() + i, half == ACT);
+        is_busy = lift(i, half == ACT);
     } else {
         let at = 2u * params.triangles - 1u - i;
         is_busy = atomicLoad(&claims[at]) != NONE;
@@ -37,7 +37,7 @@ fn do_half(i: u32, half: u32) -> bool {
 }
 
 fn work_of_round() -> u32 {
-    var count = turned_triangles();
+    var count = 3u * turned_triangles();
     if number >= LIFTS {
         count = history_word(LOOSE);
     }

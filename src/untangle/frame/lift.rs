@@ -36,27 +36,16 @@ type Costs = [[u8; MOST]; MOST];
 pub(super) const NEVER: u8 = 15;
 
 impl Frame<'_> {
-    /// The corner of a triangle, if it is turned, whose vertex is the best to lift, and the key of that. Of the turned
+    /// The corners of a triangle, if it is turned, whose vertices may be lifted, and the keys of these. Of the turned
     /// triangles around a vertex, the lowest claims for it.
-    pub(super) fn best(&self, triangle: u32, claims: &Claims) -> Option<(u32, u32)> {
-        if !self.is_turned(triangle) {
-            return None;
-        }
-        let (mut best, mut least) = (None, NONE);
-        for h in 3 * triangle..3 * triangle + 3 {
-            let Some(star) = self.candidate(h) else { continue };
-            let name = self.name(self.vertex(h));
-            let key = |cost: u8| claims.key(name, (star.turned + BIAS).saturating_sub(cost.into()));
-            let whole = |costs: Costs| costs[0][star.degree - 1];
-            // Its cost is at least that of `costs` without a look at other edges, and at least 0.
-            if key(0) < least && key(whole(self.costs(&star, false))) < least {
-                let cost = whole(self.plan(&star));
-                if cost < NEVER && key(cost) < least {
-                    (best, least) = (Some(h), key(cost));
-                }
-            }
-        }
-        best.map(|corner| (corner, least))
+    pub(super) fn candidates(&self, triangle: u32, claims: &Claims) -> impl Iterator<Item = (u32, u32)> {
+        let corners = if self.is_turned(triangle) { 3 * triangle..3 * triangle + 3 } else { 0..0 };
+        corners.filter_map(|h| {
+            let star = self.candidate(h)?;
+            let cost = self.plan(&star)[0][star.degree - 1];
+            let gain = (star.turned + BIAS).saturating_sub(cost.into());
+            (cost < NEVER).then(|| (h, claims.key(self.name(self.vertex(h)), gain)))
+        })
     }
 
     /// Takes the vertex out that a corner of a turned triangle claims for, if it has kept its claims.

@@ -67,17 +67,17 @@ impl Frame<'_> {
             claims.round = round;
             let frame = &*self;
             let find = |piece: Range<usize>| {
-                turned[piece].iter().filter_map(|&t| frame.best(t, &claims)).collect::<Vec<_>>()
+                turned[piece].iter().flat_map(|&t| frame.candidates(t, &claims)).collect::<Vec<_>>()
             };
-            let best = threads.map(turned.len(), find).concat();
-            if best.is_empty() {
+            let candidates = threads.map(turned.len(), find).concat();
+            if candidates.is_empty() {
                 break;
             }
-            for &(corner, key) in &best {
+            for &(corner, key) in &candidates {
                 claims.claim([self.vertex(corner)], key);
                 claims.claim(Star::of_fan(self.twins, corner).map(|h| self.vertex(next(h))), key);
             }
-            for (corner, _) in best {
+            for (corner, _) in candidates {
                 waiting.extend(self.lift(corner, &claims, &mut written));
             }
         }
