@@ -14,18 +14,21 @@ use std::{env, error::Error, ops::ControlFlow, sync::Arc, time::Instant};
 
 #[path = "../examples/motion/mod.rs"]
 mod motion;
-use motion::{Moving, Wave};
+use motion::{Motion, Moving};
 
 const ITERATIONS: u32 = 4;
 
-/// Each mesh, and radians of the wave per frame.
-const MOTIONS: [&str; 8] = [
+/// Each mesh, and radians of the wave per frame; or, in percent, the longest steps of a random walk, for the family random
+/// relative to its spacing.
+const MOTIONS: [&str; 10] = [
     "random 71:0.02",
     "random 224:0.02",
     "random 708:0.0002",
     "random 708:0.02",
     "random 708:0.1",
     "random 708:1.0",
+    "random 708:5%",
+    "random 708:20%",
     "random 2237:0.02",
     "uvsphere 700:0.02",
 ];
@@ -40,30 +43,33 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!();
     println!(
         "| mesh | speed | triangles | flips a frame | % of edges | GPU ms a frame, median | mean | wall ms a frame | \
-         left at the end | a whole job from arrays, ms | checked |"
+         left at the end | turned over | a whole job from arrays, ms | checked |"
     );
-    println!("|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---|");
+    println!("|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---|");
     for spec in &specs {
         let (name, speed) = spec.split_once(':').ok_or("write FAMILY:SPEED")?;
         let mesh = Arc::new(families::by_name(name)?);
-        let (number, height) = match mesh.dimension() {
-            Dimension::Two => (30.0, 0.0133),
-            Dimension::Three => (6.0, 0.1),
+        let motion = match (speed.strip_suffix('%'), mesh.dimension()) {
+            (Some(percent), _) => {
+                Motion::Walk { step: 0.01 * percent.parse::<f32>()? / (mesh.vertex_count() as f32).sqrt() }
+            }
+            (None, Dimension::Two) => Motion::Wave { speed: speed.parse()?, number: 30.0, height: 0.0133 },
+            (None, Dimension::Three) => Motion::Wave { speed: speed.parse()?, number: 6.0, height: 0.1 },
         };
-        let wave = Wave { speed: speed.parse()?, number, height };
-        let mut moving = Moving::new(&gpu, &mesh, wave)?;
+        let mut moving = Moving::new(&gpu, &mesh, motion)?;
         let row = if checks { check(&mut moving, &mesh, frames)? } else { measure(&mut moving, frames)? };
         let counters = block_on(moving.session.counters())?;
         let edges = 1.5 * mesh.triangle_count() as f64;
         let flips = counters.flips as f64 / counters.updates as f64;
         println!(
-            "| {name} | {speed} | {} | {flips:.0} | {:.3} | {} | {} | {} | {} | {:.2} | {} |",
+            "| {name} | {speed} | {} | {flips:.0} | {:.3} | {} | {} | {} | {} | {} | {:.2} | {} |",
             mesh.triangle_count(),
             100.0 * flips / edges,
             row.gpu_median,
             row.gpu_mean,
             row.wall,
             counters.remaining.total(),
+            counters.inverted,
             whole_job(&moving, &mesh)?,
             row.checked,
         );

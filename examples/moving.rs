@@ -6,7 +6,7 @@ use pollster::block_on;
 use std::{env, error::Error, sync::Arc, time::Instant};
 
 mod motion;
-use motion::{Moving, Wave};
+use motion::{Motion, Moving};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let number = |index, default: u32| env::args().nth(index).map_or(Ok(default), |word| word.parse());
@@ -18,7 +18,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 pub fn run(side: u32, frames: u32) -> Result<String, Box<dyn Error>> {
     let gpu = motion::open()?;
     let mesh = Arc::new(families::random(side as usize, 2.0, 1)?);
-    let mut moving = Moving::new(&gpu, &mesh, Wave { speed: 0.05, number: 30.0, height: 0.0133 })?;
+    let mut moving = Moving::new(&gpu, &mesh, Motion::Wave { speed: 0.05, number: 30.0, height: 0.0133 })?;
     let start = Instant::now();
     for frame in 0..frames {
         moving.frame(frame, 4, |_| (), |_| ())?;

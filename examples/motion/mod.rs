@@ -26,13 +26,21 @@ pub fn open() -> Result<GpuDevice, Box<dyn Error>> {
 
 /// How the vertices move.
 #[derive(Clone, Copy)]
-pub struct Wave {
-    /// Added to the phase in each frame, in radians.
-    pub speed: f32,
-    /// Waves per unit of length, times 2π.
-    pub number: f32,
-    /// In units of length; in space, relative to the distance from the axis.
-    pub height: f32,
+pub enum Motion {
+    /// Along waves.
+    Wave {
+        /// Added to the phase in each frame, in radians.
+        speed: f32,
+        /// Waves per unit of length, times 2π.
+        number: f32,
+        /// In units of length; in space, relative to the distance from the axis.
+        height: f32,
+    },
+    /// By random steps, inside of a square sheet.
+    Walk {
+        /// The longest step along each axis, in units of length.
+        step: f32,
+    },
 }
 
 /// A mesh that moves.
@@ -41,7 +49,7 @@ pub struct Moving {
     pub session: Session,
     /// Its buffers.
     pub gpu: GpuBuffers,
-    wave: Wave,
+    motion: Motion,
     pipeline: wgpu::ComputePipeline,
     bindings: wgpu::BindGroup,
     uniform: wgpu::Buffer,
@@ -51,7 +59,7 @@ pub struct Moving {
 
 impl Moving {
     /// Makes the mesh Delaunay at rest.
-    pub fn new(device: &GpuDevice, mesh: &Arc<Mesh>, wave: Wave) -> Result<Self, Box<dyn Error>> {
+    pub fn new(device: &GpuDevice, mesh: &Arc<Mesh>, motion: Motion) -> Result<Self, Box<dyn Error>> {
         let options = Options { backend: Backend::Gpu, device: Some(device.clone()), ..Options::default() };
         let session = block_on(async {
             let mut session = Session::new(mesh.clone(), options).await?;
@@ -93,7 +101,7 @@ impl Moving {
             entries: &entries,
         });
         let (vertices, stride) = (mesh.vertex_count() as u32, mesh.dimension().stride() as u32);
-        Ok(Self { session, gpu, wave, pipeline, bindings, uniform, vertices, stride })
+        Ok(Self { session, gpu, motion, pipeline, bindings, uniform, vertices, stride })
     }
 
     /// Submits one frame: the vertices move, and the edges flip. Nothing is read back. `before` and `after` record
@@ -106,9 +114,12 @@ impl Moving {
         after: impl FnOnce(&mut wgpu::CommandEncoder),
     ) -> Result<(), edgeflip::Error> {
         let GpuBuffers { device, queue, .. } = &self.gpu;
-        let Wave { speed, number, height } = self.wave;
-        let time = (speed * frame as f32).to_bits();
-        let words = [time, number.to_bits(), height.to_bits(), self.vertices, self.stride, 0, 0, 0];
+        let [time, number, height, step] = match self.motion {
+            Motion::Wave { speed, number, height } => [speed * frame as f32, number, height, 0.0],
+            Motion::Walk { step } => [0.0, 0.0, 0.0, step],
+        }
+        .map(f32::to_bits);
+        let words = [time, number, height, step, frame, self.vertices, self.stride, 0];
         let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
         queue.write_buffer(&self.uniform, 0, &bytes);
         let mut encoder = device.create_command_encoder(&Default::default());

@@ -24,9 +24,14 @@ const AREA_FLUSHED: f32 = 1.4210855e-14;
 
 // One of the constants above. `leaves`: whether some triangles may have to be left alone.
 fn area_of(t: u32, leaves: bool) -> u32 {
-    let a = position(vertex(3u * t));
-    let b = position(vertex(3u * t + 1u));
-    let c = position(vertex(3u * t + 2u));
+    return area_at(t, vec3u(vertex(3u * t), vertex(3u * t + 1u), vertex(3u * t + 2u)), leaves);
+}
+
+// The same for three vertices, with the winding of triangle `t`.
+fn area_at(t: u32, corners: vec3u, leaves: bool) -> u32 {
+    let a = position(corners.x);
+    let b = position(corners.y);
+    let c = position(corners.z);
     var area = POSITIVE_AREA;
     if leaves && is_too_wide(max(span_of(a), max(span_of(b), span_of(c)))) {
         area = UNDECIDED_AREA;
@@ -66,9 +71,10 @@ fn exact_normal(a: Point, b: Point, c: Point) -> vec3i {
     let grid = grid_of(a, b, c, c);
     let u = exact_differences(b, a, grid);
     let v = exact_differences(c, a, grid);
-    return vec3i(
-        sign_of_difference(u[1], v[2], u[2], v[1]),
-        sign_of_difference(u[2], v[0], u[0], v[2]),
-        sign_of_difference(u[0], v[1], u[1], v[0]),
-    );
+    var signs = vec3i(0, 0, sign_of_difference(u[0], v[1], u[1], v[0]));
+    if DIMENSION == 3u {
+        signs.x = sign_of_difference(u[1], v[2], u[2], v[1]);
+        signs.y = sign_of_difference(u[2], v[0], u[0], v[2]);
+    }
+    return signs;
 }

@@ -14,18 +14,23 @@ fn guarded(verdict: u32, h: u32, g: u32) -> u32 {
     return result;
 }
 
-// Whether an edge joins the vertices at which two half-edges start, or both vertices are the same. The star of either
-// vertex gives the answer. The walk takes ALONE steps around the first vertex, which are mostly enough. Then it
-// alternates between both. Its cost is these steps plus twice the smaller star.
+// Whether an edge joins the vertices at which two half-edges start, or both vertices are the same.
 fn edge_exists(at_c: u32, at_d: u32) -> bool {
+    let is_alone = is_embedded(vertex(at_c)) || is_embedded(vertex(at_d));
+    return are_joined(at_c, at_d, select(NONE, 0u, is_alone));
+}
+
+// The same, if no edge does where `most` is 0. The star of either vertex gives the answer. The walk takes ALONE steps
+// around the first vertex, which are mostly enough. Then it alternates between both. Its cost is these steps plus twice
+// the smaller star. After `most` steps, it is as if an edge did.
+fn are_joined(at_c: u32, at_d: u32, most: u32) -> bool {
     let c = vertex(at_c);
     let d = vertex(at_d);
-    let is_alone = is_embedded(c) || is_embedded(d);
     var exists = c == d;
     var first = star(at_c);
     var second = star(at_d);
     var steps = 0u;
-    while !is_alone && !exists && first.y != NONE && second.y != NONE {
+    while steps < most && !exists && first.y != NONE && second.y != NONE {
         exists = joins(first, d) || (steps >= ALONE && joins(second, c));
         first = advanced(first);
         if steps >= ALONE {
@@ -33,7 +38,7 @@ fn edge_exists(at_c: u32, at_d: u32) -> bool {
         }
         steps++;
     }
-    return exists;
+    return exists || (most > 0u && steps == most && first.y != NONE && second.y != NONE);
 }
 
 // Whether the present triangle of a walk has an edge from its vertex to `far`.

@@ -7,28 +7,8 @@
 #import plane
 #import points
 #import spans
+#import star_counts
 #import state
-
-// What a triangle that is not positive adds to its vertices: more than 1, and no sum overflows.
-const NOT_EMBEDDED: u32 = 2u;
-
-// Words of a vertex in the memory of the lists: its crossings; the boundary half-edges that start at it; and the vertices
-// in the first and in the last direction of its open fan, counter-clockwise, if it has one.
-const CROSSINGS: u32 = 0u;
-const STARTS: u32 = 1u;
-const FIRST: u32 = 2u;
-const LAST: u32 = 3u;
-const VERTEX_WORDS: u32 = 4u;
-
-// There may be more vertices than memory before the bits of the chunks: with many unreferenced ones, or in a mesh that is
-// mostly boundary. Then Select runs.
-fn counted_vertices() -> u32 {
-    return min(params.vertices, doubts() / VERTEX_WORDS);
-}
-
-fn word_of(v: u32, word: u32) -> u32 {
-    return VERTEX_WORDS * v + word;
-}
 
 var<workgroup> signs: atomic<u32>;
 
@@ -55,6 +35,9 @@ fn prepare_all(
         let sign = select(filtered_sign_of(a, b, c), 0, is_left_alone);
         let is_doubtful = sign == 0 && !is_left_alone;
         choices[t] = wait_for(t, is_doubtful);
+        if params.triangles + t < params.vertices {
+            choices[params.triangles + t] = NONE;
+        }
         if !is_doubtful {
             found |= counted(t, sign, array(a, b, c));
         }
@@ -84,7 +67,8 @@ fn count_turns(
     add_signs(found, local);
 }
 
-// Counts what a triangle adds to its vertices. Returns the bit of its sign.
+// Counts what a triangle adds to its vertices, and lists it if an update may have to untangle it. Returns the bit of its
+// sign.
 fn counted(t: u32, sign: i32, points: array<Point, 3>) -> u32 {
     let is_known = params.winding != WINDING_UNKNOWN;
     let winding = select(sign, select(1, -1, is_clockwise(t)), is_known);
@@ -92,6 +76,12 @@ fn counted(t: u32, sign: i32, points: array<Point, 3>) -> u32 {
     var a = points[0];
     var b = points[1];
     var c = points[2];
+    if !is_positive && params.untangles > 0u && !is_too_wide(max(span_of(a), max(span_of(b), span_of(c)))) {
+        let at = turned_list() + atomicAdd(&history[TURNED], 1u);
+        if at < 2u * params.triangles {
+            choices[at] = 8u * t;
+        }
+    }
     for (var h = 3u * t; h < 3u * t + 3u; h++) {
         let first = order(b, a);
         let last = order(c, a);

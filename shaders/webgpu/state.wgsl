@@ -1,6 +1,7 @@
 // The state of a mesh in buffers, as src/engine/webgpu binds it for the phases.
+#import choices if reads
+#import choices if writes
 #import mesh
-#import mutual
 #import three_axes if space
 #import two_axes if plane
 
@@ -40,6 +41,8 @@ struct Params {
     update: u32,
     // The offset in `topology` of the updates in which the triangles last changed; 0 if nobody asks for them.
     changes: u32,
+    // 1 if the update untangles. In the npm package none does.
+    untangles: u32,
     // |cos β| is exactly mantissa / power: eight digits each, as in numbers.wgsl.
     cos_digits: array<vec4i, 4>,
     // The limit for the deviation: the words of a coordinate, and rounded to f32 for the filter.
@@ -74,8 +77,7 @@ struct Step {
 @group(0) @binding(2) var<storage, read> positions: array<u32>;
 @group(0) @binding(3) var<storage, read_write> triangles: array<u32>;
 @group(0) @binding(4) var<storage, read_write> twins: array<u32>;
-// The choice of Label for each triangle, then the choice of Select, see `flip_of`.
-@group(0) @binding(5) var<storage, read_write> choices: array<u32>;
+// Binding 5 is the choices, see choices.wgsl; before them, the claims, see untangle.wgsl.
 // Two lists of triangles that alternate between iterations; for each triangle a stamp, the iteration in which it is
 // due; one more stamp, for neighbours that are NONE; a bit for each chunk of triangles, see `doubt`.
 @group(0) @binding(6) var<storage, read_write> frontier: array<atomic<u32>>;
@@ -93,9 +95,12 @@ const PAUSED: u32 = 11u;
 const SEVERAL_FANS: u32 = 12u;
 const FLIPPED: u32 = 13u;
 const ENTRIES: u32 = 15u;
-// In the preparation: the signs, and the span of all points.
+// In the preparation: the signs; the span of all points; if it untangles, how many triangles the list has of those that are
+// turned over or flat, and how many vertices are out. The list follows the claims, in the buffer of the choices.
 const HIGHEST: u32 = 1u;
 const DEPTH: u32 = 2u;
+const TURNED: u32 = 3u;
+const LOOSE: u32 = 4u;
 const ENTRY_WORDS: u32 = 4u;
 const FLIPS: u32 = 0u;
 // The length of the list of due triangles, if there is one.
@@ -125,33 +130,6 @@ fn set_twin_entry(h: u32, entry: u32) {
 
 fn twin(h: u32) -> u32 {
     return unflagged(twin_entry(h));
-}
-
-fn best(t: u32) -> u32 {
-    return choices[t];
-}
-
-// The two half-edges of the selected edge of triangle `t`, its own one first; NONE if no edge is selected. The choice
-// of Select has the other half-edge, and in the bits of the flags the index of its own half-edge in the triangle,
-// 0 to 2. Without Select, the edge is selected that is the best of both its triangles.
-fn flip_of(t: u32) -> vec2u {
-    var flip = vec2u(NONE);
-    if has_selection() {
-        let entry = choices[params.triangles + t];
-        flip = select(vec2u(3u * t + (entry >> 30u), entry & ~FLAGS), flip, entry == NONE);
-    } else {
-        let h = mutual(t);
-        flip = vec2u(h, select(best(t), NONE, h == NONE));
-    }
-    return flip;
-}
-
-fn set_flip(h: u32, g: u32) {
-    choices[params.triangles + h / 3u] = g | ((h % 3u) << 30u);
-}
-
-fn clear_flip(t: u32) {
-    choices[params.triangles + t] = NONE;
 }
 
 fn stamp_index(t: u32) -> u32 {
@@ -186,6 +164,11 @@ fn has_selection() -> bool {
 fn is_strict() -> bool {
     let signs = params.signs & ~UNEMBEDDED;
     return signs == POSITIVE || (params.winding == WINDING_UNKNOWN && signs == NEGATIVE);
+}
+
+// The offset of the list of turned triangles, after a claim for each vertex: those are NONE where choices were.
+fn turned_list() -> u32 {
+    return max(params.triangles, params.vertices);
 }
 
 fn has_fans() -> bool {

@@ -150,8 +150,10 @@ pub(crate) trait Engine {
 
     /// The vertices have moved, to `positions` or, on a GPU, to those that the caller has written. Tests all edges, and
     /// runs up to `iterations` iterations. A GPU only submits them. The iterations count on from the updates before;
-    /// the winding stays.
-    fn update(&mut self, positions: Option<Positions>, iterations: u32) -> Result<(), Error>;
+    /// the winding stays. `untangles`: whether triangles of a mesh in the plane that have turned over get others first;
+    /// WebGL2 and the modules of the npm package only flip.
+    fn update(&mut self, positions: Option<Positions>, iterations: u32, untangles: bool)
+    -> Result<(), Error>;
 
     /// Counts after all updates so far. Later updates do not change the answer.
     fn moved(&mut self) -> Answer<'static, Moved>;

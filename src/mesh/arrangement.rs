@@ -89,6 +89,13 @@ impl Arrangement {
         3 * self.triangles[t as usize] + (h - 3 * t)
     }
 
+    /// The caller's index of a vertex.
+    #[cfg(not(all(target_arch = "wasm32", feature = "js-session")))]
+    #[inline(always)]
+    pub(crate) fn vertex(&self, v: u32) -> u32 {
+        self.vertices.get(v as usize).copied().unwrap_or(v)
+    }
+
     /// The half-edges of an edge, first the one with the lower name.
     #[inline(always)]
     pub(crate) fn ordered(&self, [h, g]: [u32; 2]) -> [u32; 2] {

@@ -109,6 +109,13 @@ impl Fans {
         (list != NONE).then(|| &self.table[list as usize..])
     }
 
+    /// Whether a vertex has several fans.
+    #[cfg(not(all(target_arch = "wasm32", feature = "js-session")))]
+    #[inline]
+    pub(crate) fn has_several(&self, vertex: u32) -> bool {
+        self.of(vertex).is_some()
+    }
+
     /// As [`move_anchor`].
     pub(crate) fn move_anchor(&mut self, vertex: u32, from: u32, to: u32) {
         move_anchor(shared(&mut self.table), vertex, from, to);

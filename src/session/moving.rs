@@ -13,8 +13,9 @@ use std::sync::Arc;
 use web_time::Instant;
 
 impl Session {
-    /// Takes over vertices that have moved, and flips for up to `iterations` iterations, at most 64. What is left goes
-    /// on in the next update. `positions` are the new positions; with `None` they are those that the caller has written
+    /// Takes over vertices that have moved, untangles triangles of a mesh in the plane that have turned over, as far as a
+    /// fixed number of rounds does, and flips for up to `iterations` iterations, at most 64. What is left goes on in the
+    /// next update. `positions` are the new positions; with `None` they are those that the caller has written
     /// to the buffer on the GPU, or the present ones.
     ///
     /// A GPU only submits the work: commands that the caller submits after this call see its result. The update tests
@@ -24,8 +25,10 @@ impl Session {
     ///
     /// [`Session::run`], [`Session::advance`], [`Session::step`], [`Session::outcome`], [`Session::edge_states`] and
     /// [`Session::verify`] end the motion: they act as if [`Session::set_positions`] had been called with the present positions.
-    /// They untangle triangles that have turned over, as [`Options::untangle`](crate::Options::untangle) says; an update only
-    /// flips, on every engine.
+    /// They untangle what updates have left, as [`Options::untangle`](crate::Options::untangle) says, also at locked edges:
+    /// an update lifts no vertex of such an edge. It only flips if more than half of the triangles are turned over, or in a
+    /// mesh of far more vertices than triangles. With [`Options::untangle`](crate::Options::untangle) as `Some(false)` an
+    /// update only flips.
     ///
     /// # Errors
     /// [`Error::Option`], [`Error::PositionCount`]; [`Error::BackendLimit`] for 64-bit floats on a GPU;
@@ -39,7 +42,7 @@ impl Session {
         if let Some(positions) = &positions {
             self.check_length(positions)?;
         }
-        self.engine.update(positions, iterations)?;
+        self.engine.update(positions, iterations, self.untangles())?;
         self.flips_per_iteration.clear();
         self.has_ended = false;
         self.updates = self.updates.saturating_add(1);
@@ -163,9 +166,19 @@ impl Session {
 }
 
 impl Session {
+    /// Whether an update untangles. In the npm package it only flips.
+    fn untangles(&self) -> bool {
+        cfg!(not(all(target_arch = "wasm32", feature = "js-session"))) && self.may_change(&self.mesh)
+    }
+
+    /// Whether triangles of a mesh that turn over get others.
+    fn may_change(&self, mesh: &Mesh) -> bool {
+        mesh.dimension() == Dimension::Two && self.options.untangle != Some(false)
+    }
+
     /// Gives the engine a mesh whose vertices have moved, with other triangles if it needs them.
     async fn take_moved(&mut self, mut mesh: Mesh) -> Result<Arc<Mesh>, Error> {
-        let may_change = mesh.dimension() == Dimension::Two && self.options.untangle != Some(false);
+        let may_change = self.may_change(&mesh);
         let bytes = memory_bounds::UNTANGLE;
         // The CPU finds the signs of all triangles anyway. In the npm package, the module of the repair may be missing: then
         // the engine must not have changed.

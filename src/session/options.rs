@@ -66,7 +66,8 @@ pub struct Options {
     /// In the plane: whether triangles that have turned over, or have no area, become positive again. Flips cannot do
     /// that: vertices are lifted out, and put back where their points are. The vertices stay, and so does the boundary.
     /// `None`: after the vertices have moved, in [`Session::set_positions`](crate::Session::set_positions) and the calls
-    /// that act like it. `Some(true)`: also before the first run; an error for a mesh in space. `Some(false)`: never.
+    /// that act like it, and in a fixed number of rounds in each [`Session::update`](crate::Session::update).
+    /// `Some(true)`: also before the first run; an error for a mesh in space. `Some(false)`: never.
     pub untangle: Option<bool>,
     /// The order of the flips.
     pub order: Order,

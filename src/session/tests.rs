@@ -55,8 +55,13 @@ impl Engine for Failing {
     fn set_positions(&mut self, mesh: Arc<Mesh>, twins: Option<Vec<u32>>) -> Answer<'_, ()> {
         self.answer(|cpu| cpu.set_positions(mesh, twins))
     }
-    fn update(&mut self, positions: Option<Positions>, iterations: u32) -> Result<(), Error> {
-        self.cpu.update(positions, iterations)
+    fn update(
+        &mut self,
+        positions: Option<Positions>,
+        iterations: u32,
+        untangles: bool,
+    ) -> Result<(), Error> {
+        self.cpu.update(positions, iterations, untangles)
     }
     fn moved(&mut self) -> Answer<'static, Moved> {
         self.cpu.moved()

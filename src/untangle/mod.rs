@@ -8,6 +8,8 @@
 //! Nothing is added or removed: a vertex that is out keeps two slots for triangles.
 
 mod constant;
+mod divide;
+mod frame;
 mod lift;
 mod locks;
 mod put_back;
@@ -20,4 +22,7 @@ mod sweep;
 mod tests;
 
 pub(crate) use constant::Constant;
+#[cfg(test)]
+pub(crate) use frame::CONSTANTS;
+pub(crate) use frame::Frame;
 pub(crate) use repair::{Untangled, may_be_tangled, untangled};

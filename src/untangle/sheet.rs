@@ -1,6 +1,7 @@
 //! A mesh in the plane during a repair: some vertices are out, and their triangles are empty slots.
 
 use super::constant::Constant;
+use super::divide::divide;
 use crate::mesh::half_edge::{CREASE, FLAGS, LOCKED, next, prev, triangle_of, unflagged};
 use crate::mesh::star::{Fans, Star};
 use crate::mesh::winding::Winding;
@@ -261,19 +262,9 @@ impl<'a> Sheet<'a> {
         self.twins[h..h + 3].fill(NONE);
     }
 
-    /// Puts a vertex into triangle `t`, with two slots of its own. The edge from corner i of `t` then belongs to the
-    /// i-th of the three slots, and is its first half-edge.
+    /// Puts a vertex into triangle `t`, with two slots of its own, as [`divide`].
     pub(super) fn split(&mut self, t: u32, &Loose { vertex, slots: [s, u], .. }: &Loose) {
-        let (corners, slots) = (self.corners(t), [t, s, u]);
-        let outer = [0, 1, 2].map(|i| self.twins[3 * t as usize + i]);
-        for (i, slot) in slots.into_iter().enumerate() {
-            let h = 3 * slot as usize;
-            self.triangles[h..h + 3].copy_from_slice(&[corners[i], corners[(i + 1) % 3], vertex]);
-        }
-        for (i, slot) in slots.into_iter().enumerate() {
-            self.join(3 * slot, outer[i]);
-            self.join(3 * slot + 1, 3 * slots[(i + 1) % 3] + 2);
-        }
+        divide(&mut self.triangles, &mut self.twins, [t, s, u], vertex);
     }
 
     /// Flips the edge of `h`, which has two triangles (a, b, c) and (b, a, d); they become (a, d, c) and (b, c, d).

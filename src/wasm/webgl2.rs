@@ -112,7 +112,7 @@ impl JsWebGl2 {
     pub fn update(&self, positions: Option<JsPositions>, iterations: u32) -> Result<(), JsValue> {
         let mut engine = self.engine.borrow_mut();
         let engine = engine.as_mut().ok_or_else(ended)?;
-        engine.update(positions.map(Into::into), iterations).map_err(bare)
+        engine.update(positions.map(Into::into), iterations, false).map_err(bare)
     }
 
     /// As `Engine::batch`.

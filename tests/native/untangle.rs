@@ -9,6 +9,7 @@ mod motions;
 mod oracle;
 mod sessions;
 mod setup;
+mod updates;
 mod wild;
 
 use edgeflip::{Backend, Dimension, Mesh, Options, Outcome, Session};

@@ -75,11 +75,16 @@ impl Engine for Cpu {
         Box::pin(std::future::ready(Ok(())))
     }
 
-    fn update(&mut self, positions: Option<Positions>, iterations: u32) -> Result<(), Error> {
+    fn update(
+        &mut self,
+        positions: Option<Positions>,
+        iterations: u32,
+        untangles: bool,
+    ) -> Result<(), Error> {
         let threads = self.threads.clone();
         let flips = threads.enter(|| {
-            self.move_to(positions);
             self.moving.updates = self.moving.updates.wrapping_add(1).max(1);
+            self.move_to(positions, untangles);
             self.iteration = self.moving.next;
             self.moving.next = self.moving.next.wrapping_add(iterations);
             self.run(iterations)

@@ -106,10 +106,15 @@ impl Engine for Lawson {
     }
 
     /// Flips to the end, because there are no iterations to count; with none, it only takes over the positions.
-    fn update(&mut self, positions: Option<Positions>, iterations: u32) -> Result<(), Error> {
+    fn update(
+        &mut self,
+        positions: Option<Positions>,
+        iterations: u32,
+        untangles: bool,
+    ) -> Result<(), Error> {
         let threads = self.cpu.threads.clone();
         threads.enter(|| {
-            self.cpu.move_to(positions);
+            self.cpu.move_to(positions, untangles);
             self.has_ended = false;
             if iterations > 0 {
                 let flips = self.flip_all();

@@ -6,6 +6,8 @@ use crate::mesh::areas::Areas;
 use crate::mesh::embedded::{Embedded, Shape};
 use crate::mesh::half_edge::unflagged;
 use crate::phases::{Diamond, flag_creases, is_finite};
+#[cfg(not(all(target_arch = "wasm32", feature = "js-session")))]
+use crate::untangle::Frame;
 use crate::{Dimension, NONE, Positions};
 use std::borrow::Cow;
 
@@ -13,32 +15,61 @@ use std::borrow::Cow;
 const FEW: usize = 16;
 
 impl Cpu {
-    /// Takes over new positions: tests the stars and the creases again, and forgets the lists.
-    pub(super) fn move_to(&mut self, positions: Option<Positions>) {
-        let Self { mesh, arrangement, thresholds, winding, embedded, .. } = self;
-        let Self { triangles, twins, threads, moving, .. } = self;
+    /// Takes over new positions: untangles a mesh in the plane if asked to, tests the stars and the creases again, and
+    /// forgets the lists.
+    pub(super) fn move_to(&mut self, positions: Option<Positions>, untangles: bool) {
+        let Self { mesh, arrangement, thresholds, triangles, twins, threads, moving, .. } = self;
         if let Some(positions) = positions {
             moving.positions = Some(arrangement.arranged(Cow::Owned(positions), threads));
         }
         let positions = moving.positions.as_ref().unwrap_or(mesh.positions());
         moving.has_infinite = !positions.are_finite(threads);
         if mesh.dimension() == Dimension::Two {
+            (self.winding.is_strict, self.embedded) = Default::default();
             // If few edges flip, searching their stars for duplicates is faster than finding the embedded stars.
-            if moving.last_flips > triangles.len() / 3 / FEW {
-                let shape = Shape { positions, triangles, twins };
-                let (vertices, may_be_left) = (mesh.vertex_count(), moving.has_infinite);
-                let (signs, found) =
-                    Embedded::of_triangles(shape, vertices, Some(winding), may_be_left, threads);
-                winding.is_strict = signs.not_positive == 0;
-                *embedded = found;
-            } else {
-                winding.is_strict = false;
-                *embedded = Embedded::default();
+            let finds_embedded = moving.last_flips > triangles.len() / 3 / FEW;
+            if finds_embedded {
+                self.find_embedded();
+            }
+            if untangles && !self.winding.is_strict && self.untangle() && finds_embedded {
+                self.find_embedded();
             }
         } else {
             flag_creases(positions, triangles, twins, thresholds.cos, moving.has_infinite, threads);
         }
         self.settle(Vec::new(), false);
+    }
+
+    fn find_embedded(&mut self) {
+        let Self { mesh, winding, embedded, triangles, twins, threads, moving, .. } = self;
+        let positions = moving.positions.as_ref().unwrap_or(mesh.positions());
+        let (shape, vertices) = (Shape { positions, triangles, twins }, mesh.vertex_count());
+        let (signs, found) =
+            Embedded::of_triangles(shape, vertices, Some(winding), moving.has_infinite, threads);
+        winding.is_strict = signs.not_positive == 0;
+        *embedded = found;
+    }
+
+    /// Replaces triangles that have turned over, as far as the rounds of an update do. Returns whether some have changed.
+    #[cfg(not(all(target_arch = "wasm32", feature = "js-session")))]
+    fn untangle(&mut self) -> bool {
+        let Self { mesh, arrangement, winding, fans, triangles, twins, threads, moving, .. } = self;
+        let positions = moving.positions.as_ref().unwrap_or(mesh.positions());
+        let has_infinite = moving.has_infinite;
+        let mut frame = Frame { positions, triangles, twins, fans, winding, arrangement, has_infinite };
+        let written = frame.untangle(mesh.vertex_count(), threads);
+        for &slot in &written {
+            if let Some(changed) = moving.changes.get_mut(slot as usize) {
+                *changed = moving.updates;
+            }
+        }
+        !written.is_empty()
+    }
+
+    /// The modules of the npm package only flip.
+    #[cfg(all(target_arch = "wasm32", feature = "js-session"))]
+    fn untangle(&mut self) -> bool {
+        false
     }
 
     pub(super) fn add_flips(&mut self, flips: usize) {

@@ -81,7 +81,7 @@ proptest! {
         run(&mut pair);
         for _ in 0..2 {
             let moved = shaken(&mesh, &mut random);
-            both(&mut pair, |cpu| cpu.update(Some(moved.clone()), 3).unwrap());
+            both(&mut pair, |cpu| cpu.update(Some(moved.clone()), 3, true).unwrap());
             both(&mut pair, |cpu| block_on(cpu.positions()).unwrap());
             both(&mut pair, |cpu| block_on(cpu.changes()).unwrap());
             both(&mut pair, |cpu| block_on(cpu.moved()).unwrap());

@@ -6,6 +6,7 @@ mod ahead;
 mod areas;
 mod exact;
 mod moving;
+mod untangle;
 
 use super::webgpu::{Device, Kernel, WebGpu};
 use super::{Census, Cpu, EdgeCounts, Engine, Upload};

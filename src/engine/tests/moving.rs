@@ -13,8 +13,8 @@ use std::sync::Arc;
 /// Updates both engines, and compares all that they tell.
 fn update(what: &str, (cpu, gpu): (&mut Cpu, &mut WebGpu), positions: &[f32], iterations: u32) -> Moved {
     let moved = || Some(Positions::F32(positions.to_vec()));
-    cpu.update(moved(), iterations).unwrap();
-    gpu.update(moved(), iterations).unwrap();
+    cpu.update(moved(), iterations, true).unwrap();
+    gpu.update(moved(), iterations, true).unwrap();
     let found = block_on(gpu.moved()).unwrap();
     assert_same(what, &block_on(cpu.changes()).unwrap(), &block_on(gpu.changes()).unwrap());
     assert_same(what, &cpu.triangles, &block_on(Engine::triangles(gpu)).unwrap());
@@ -127,14 +127,14 @@ fn points_that_span_too_many_bits_are_left_alone() {
     let (_, mut gpu) = engines(&mesh, any_deviation(10.0));
     let mut positions = mesh.positions().to_f32();
     positions[80] = 1e-30;
-    gpu.update(Some(positions.clone().into()), 64).unwrap();
+    gpu.update(Some(positions.clone().into()), 64, true).unwrap();
     let moved = block_on(gpu.moved()).unwrap();
     assert!(
         moved.wide > 2 && moved.wide < 40 && moved.infinite == 0 && moved.census.labelled == 0,
         "{moved:?}"
     );
     positions[80] = 1e-3;
-    gpu.update(Some(positions.into()), 64).unwrap();
+    gpu.update(Some(positions.into()), 64, true).unwrap();
     let moved = block_on(gpu.moved()).unwrap();
     assert!(moved.wide == 0 && moved.census.labelled == 0, "{moved:?}");
 }
@@ -148,7 +148,7 @@ fn changes_are_those_of_the_triangles() {
     block_on(cpu.iterate(1)).unwrap();
     for number in 1..5 {
         let before = cpu.triangles.clone();
-        cpu.update(Some(mapped(&mesh, |p| vec![p[0] + number as f32 * p[1], p[1]]).into()), 1).unwrap();
+        cpu.update(Some(mapped(&mesh, |p| vec![p[0] + number as f32 * p[1], p[1]]).into()), 1, true).unwrap();
         let changes = block_on(cpu.changes()).unwrap();
         let has_changed = |t: usize| before[3 * t..3 * t + 3] != cpu.triangles[3 * t..3 * t + 3];
         let expected: Vec<bool> = (0..changes.len()).map(has_changed).collect();
@@ -173,8 +173,8 @@ fn counts_are_of_the_update_before_them() {
     assert_eq!(block_on(cpu.moved()).unwrap(), block_on(gpu.moved()).unwrap());
     assert_eq!(block_on(cpu.iterate(2)).unwrap(), block_on(gpu.iterate(2)).unwrap());
     for iterations in [1, 0, 2, 3, 64] {
-        cpu.update(None, iterations).unwrap();
-        gpu.update(None, iterations).unwrap();
+        cpu.update(None, iterations, true).unwrap();
+        gpu.update(None, iterations, true).unwrap();
         waiting.push((block_on(cpu.moved()).unwrap(), gpu.moved()));
     }
     for (expected, found) in waiting {

@@ -244,7 +244,7 @@ impl Engine for WebGl {
         Box::pin(self.settle_updates())
     }
 
-    fn update(&mut self, positions: Option<Positions>, iterations: u32) -> Result<(), Error> {
+    fn update(&mut self, positions: Option<Positions>, iterations: u32, _: bool) -> Result<(), Error> {
         self.submit_update(positions.as_ref(), iterations)
     }
 

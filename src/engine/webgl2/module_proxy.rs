@@ -181,7 +181,7 @@ impl Engine for Proxy {
         })
     }
 
-    fn update(&mut self, positions: Option<Positions>, iterations: u32) -> Result<(), Error> {
+    fn update(&mut self, positions: Option<Positions>, iterations: u32, _: bool) -> Result<(), Error> {
         let array = positions.as_ref().map_or(JsValue::UNDEFINED, Positions::to_typed_array);
         self.remote.update(array, iterations).map_err(error_of)
     }

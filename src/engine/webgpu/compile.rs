@@ -76,13 +76,25 @@ pub(super) async fn compile_phases(
     plans.push(Plan::phases(form));
     let tail = Plan::tail(form, tail_size);
     #[cfg(not(target_arch = "wasm32"))]
-    plans.push(tail);
+    let untangles = {
+        plans.push(tail);
+        let untangle = Plan::untangle(form, tail_size);
+        let untangles = untangle.is_some();
+        plans.extend(untangle);
+        untangles
+    };
     let mut compiled = compile(&plans, device).await?;
     #[cfg(not(target_arch = "wasm32"))]
-    let tail = compiled.pop();
+    let (untangle, tail) = (if untangles { compiled.pop() } else { None }, compiled.pop());
     let phases = Arc::new(compiled.remove(compiled.len() - 1));
     #[cfg(not(target_arch = "wasm32"))]
-    keep_tail(&phases, tail);
+    {
+        keep_tail(&phases, tail);
+        if let Some(Kernels { pipelines, .. }) = untangle {
+            // Nobody else sets it.
+            let _ = phases.untangle.set(pipelines);
+        }
+    }
     #[cfg(target_arch = "wasm32")]
     {
         let (phases, device) = (phases.clone(), device.clone());

@@ -89,6 +89,9 @@ pub(super) struct Kernels {
     pub(super) pipelines: Vec<wgpu::ComputePipeline>,
     /// Only for the kernels of the phases: the tail, once it is compiled.
     pub(super) tail: OnceLock<wgpu::ComputePipeline>,
+    /// The same of the kernels that untangle, see [`Plan::untangle`].
+    #[cfg(not(target_arch = "wasm32"))]
+    pub(super) untangle: OnceLock<Vec<wgpu::ComputePipeline>>,
     /// The kernel of the baseline, once it is compiled.
     #[cfg(feature = "baseline")]
     pub(super) take_selection: OnceLock<wgpu::ComputePipeline>,
@@ -100,6 +103,8 @@ impl Kernels {
             layout,
             pipelines,
             tail: OnceLock::new(),
+            #[cfg(not(target_arch = "wasm32"))]
+            untangle: OnceLock::new(),
             #[cfg(feature = "baseline")]
             take_selection: OnceLock::new(),
         }
@@ -135,6 +140,18 @@ impl Plan {
     pub(super) fn tail(form: Form, size: u32) -> Self {
         let entries = vec![(0, "tail", Some(("TAIL_SIZE", f64::from(size))))];
         Self { bindings: phases_bindings(), sources: vec![sources::writes(form)], entries }
+    }
+
+    /// The kernels that untangle in updates: half a round, and all rounds in one workgroup, with so many invocations.
+    /// `None` for meshes that updates only flip.
+    #[cfg(not(target_arch = "wasm32"))]
+    pub(super) fn untangle(form: Form, size: u32) -> Option<Self> {
+        let may_move = form.dimension == Dimension::Two && !form.is_fixed;
+        may_move.then(|| Self {
+            bindings: phases_bindings(),
+            sources: vec![sources::untangle(form)],
+            entries: vec![(0, "half_round", None), (0, "untangle", Some(("ROUNDS_SIZE", f64::from(size))))],
+        })
     }
 
     pub(super) fn probe() -> Self {

@@ -47,6 +47,8 @@ mod start;
 mod steps;
 #[cfg(test)]
 mod tests;
+#[cfg(not(target_arch = "wasm32"))]
+mod untangle;
 mod words;
 
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
@@ -96,6 +98,9 @@ pub(crate) struct WebGpu {
     topology_words: u32,
     /// The winding, once the host knows it.
     winding: u32,
+    /// How many rounds that untangle are dispatches of their own.
+    #[cfg(not(target_arch = "wasm32"))]
+    rounds: u32,
     buffers: Buffers,
     /// The counters of the adjacency, then the signs of the triangles.
     counters: Buffer,
@@ -180,8 +185,13 @@ impl Engine for WebGpu {
         Box::pin(Self::settle(self))
     }
 
-    fn update(&mut self, positions: Option<Positions>, iterations: u32) -> Result<(), Error> {
-        self.submit_update(positions, iterations)
+    fn update(
+        &mut self,
+        positions: Option<Positions>,
+        iterations: u32,
+        untangles: bool,
+    ) -> Result<(), Error> {
+        self.submit_update(positions, iterations, untangles)
     }
 
     fn moved(&mut self) -> Answer<'static, Moved> {

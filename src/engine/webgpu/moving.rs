@@ -25,6 +25,7 @@ impl WebGpu {
         &mut self,
         positions: Option<Positions>,
         iterations: u32,
+        untangles: bool,
     ) -> Result<(), Error> {
         self.gpu.check()?;
         let numbers = match (&positions, self.form.is_fixed) {
@@ -43,6 +44,11 @@ impl WebGpu {
         self.params.update = self.params.update.wrapping_add(1).max(1);
         self.params.winding = self.winding;
         self.params.deviation = deviation_words(self.thresholds.deviation.into(), None);
+        self.params.untangles = untangles.into();
+        #[cfg(not(target_arch = "wasm32"))]
+        if untangles {
+            self.dispatches += 2 * u64::from(self.rounds) + 1;
+        }
         let gpu = self.gpu.clone();
         let ((), faults) = watch(&gpu.device, || {
             if let Some(numbers) = numbers {

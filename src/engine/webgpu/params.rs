@@ -68,8 +68,7 @@ pub(super) struct Params {
     pub(super) winding: u32,
     pub(super) update: u32,
     pub(super) changes: u32,
-    /// The digits begin at a multiple of 16 bytes.
-    pub(super) padding: u32,
+    pub(super) untangles: u32,
     pub(super) cos_digits: [[i32; 8]; 2],
     pub(super) deviation: [u32; 4],
 }
@@ -100,7 +99,7 @@ impl Params {
             winding: WINDING_UNKNOWN,
             update: 0,
             changes: 0,
-            padding: 0,
+            untangles: 0,
             cos_digits: [cosine.mantissa, cosine.power],
             deviation: upload.deviation,
         }

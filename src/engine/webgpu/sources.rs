@@ -23,6 +23,12 @@ pub(super) fn writes(form: Form) -> String {
     phase("writes", form, WRITES)
 }
 
+/// The shader that untangles a mesh in the plane.
+#[cfg(not(target_arch = "wasm32"))]
+pub(super) fn untangle(form: Form) -> String {
+    phase("untangle", form, UNTANGLES)
+}
+
 /// The shader that builds the adjacency.
 pub(super) fn adjacency() -> String {
     compose::compose("webgpu", "adjacency", &[], &text_of)
@@ -47,6 +53,8 @@ pub(super) fn baseline(form: Form) -> String {
 
 const READS: [&str; 2] = ["reads", "sweep"];
 const WRITES: [&str; 2] = ["writes", "tail"];
+#[cfg(not(target_arch = "wasm32"))]
+const UNTANGLES: [&str; 2] = ["untangles", "tail"];
 
 fn phase(file: &str, form: Form, [history, guard]: [&str; 2]) -> String {
     compose::compose("webgpu", file, &choices(form, history, guard), &text_of)
@@ -83,7 +91,8 @@ mod tests {
 
     /// The error of a file, composed with its imports; `None` if it compiles for at least one form.
     fn fault(file: &str) -> Option<String> {
-        let kinds = Form::ALL.into_iter().flat_map(|form| [(form, READS), (form, WRITES)]);
+        let kinds =
+            Form::ALL.into_iter().flat_map(|form| [READS, WRITES, UNTANGLES].map(|kind| (form, kind)));
         let mut faults = kinds.map(|(form, kind)| {
             let source = phase(file, form, kind);
             wgpu::naga::front::wgsl::parse_str(&source).err().map(|error| error.emit_to_string(&source))
@@ -139,7 +148,13 @@ mod tests {
             module.entry_points.iter().map(|entry| entry.name.clone()).chain(overrides).collect::<Vec<_>>()
         };
         for form in Form::ALL {
-            for (file, [history, guard]) in [("sweeps", READS), ("decide", READS), ("writes", WRITES)] {
+            for (file, [history, guard]) in
+                [("sweeps", READS), ("decide", READS), ("writes", WRITES), ("untangle", UNTANGLES)]
+                    .into_iter()
+                    .filter(|(file, _)| {
+                        *file != "untangle" || (form.dimension == Dimension::Two && !form.is_fixed)
+                    })
+            {
                 let choices = choices(form, history, guard);
                 assert_eq!(entries(file, &choices, &short), entries(file, &choices, FILES), "{file}");
             }

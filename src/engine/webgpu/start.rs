@@ -69,6 +69,8 @@ impl WebGpu {
                 bindings: buffers.bind(&gpu, &kernels.layout),
                 topology_words: params.fans,
                 winding: WINDING_UNKNOWN,
+                #[cfg(not(target_arch = "wasm32"))]
+                rounds: super::untangle::rounds(&gpu),
                 kernels,
                 thresholds: upload.thresholds,
                 form: upload.form(),
@@ -142,6 +144,10 @@ impl WebGpu {
         let mut pass = encoder.begin_compute_pass(&Default::default());
         self.at_step(&mut pass, Step::Prepare);
         for &kernel in Kernel::preparation(self.form.dimension) {
+            #[cfg(not(target_arch = "wasm32"))]
+            if kernel == Kernel::Mark {
+                self.record_untangling(&mut pass);
+            }
             self.dispatch(&mut pass, kernel, self.params.triangles);
         }
         drop(pass);
@@ -280,7 +286,7 @@ impl WebGpu {
                 _ => Vec::new(),
             };
             self.params.deviation = upload.deviation;
-            (self.params.winding, self.params.update) = (WINDING_UNKNOWN, 0);
+            (self.params.winding, self.params.update, self.params.untangles) = (WINDING_UNKNOWN, 0, 0);
             let calls = || {
                 if let Some(twins) = &twins {
                     self.gpu.write(&self.buffers.triangles, upload.mesh.triangles());

@@ -104,6 +104,17 @@ fn constants_of_the_phases_agree() {
 }
 
 #[test]
+fn constants_of_the_rounds_agree() {
+    let form = Form { dimension: Dimension::Two, is_fixed: false, has_deviation: false };
+    let module = parse(&sources::untangle(form));
+    let shader = constants(&module);
+    for (name, value) in crate::untangle::CONSTANTS {
+        assert_eq!(shader.get(name), Some(&u64::from(value)), "{name}");
+    }
+    assert_eq!(shader.get("HOME"), Some(&u64::from(super::untangle::MOST_ROUNDS)));
+}
+
+#[test]
 fn constants_of_exact_arithmetic_agree() {
     let form = Form { dimension: Dimension::Three, is_fixed: false, has_deviation: true };
     let [_, _, space] = sources::phases(form);
@@ -179,6 +190,7 @@ fn params_have_one_layout() {
         winding,
         update,
         changes,
+        untangles,
         cos_digits,
         deviation
     );
@@ -229,6 +241,7 @@ fn kernels_are_short_one_by_one() {
         ("space", Plan::phases(form(Dimension::Three, false))),
         ("deviation", Plan::phases(form(Dimension::Three, true))),
         ("plane", Plan::tail(form(Dimension::Two, false), WORKGROUP_SIZE)),
+        ("plane", Plan::untangle(form(Dimension::Two, false), WORKGROUP_SIZE).unwrap()),
         ("space", Plan::tail(form(Dimension::Three, false), WORKGROUP_SIZE)),
         ("deviation", Plan::tail(form(Dimension::Three, true), WORKGROUP_SIZE)),
         ("adjacency", Plan::adjacency()),

@@ -3,11 +3,11 @@
 
 use super::components::{Component, components};
 use super::motions::{Random, delaunay};
-use super::oracle::Point;
+use super::oracle::{Point, sides};
 use edgeflip::quality::problems;
-use edgeflip::{Backend, Dimension, Mesh, Options, Order, Outcome, Session};
+use edgeflip::{Backend, Dimension, Mesh, Options, Order, Outcome, Positions, Session};
 use pollster::block_on;
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 use std::ops::ControlFlow;
 
 /// How integers become positions: times a power of two.
@@ -110,12 +110,29 @@ fn check(seed: u64) -> (usize, usize) {
         let part = random.next() * random.next();
         locked_edges.extend(triangles.chunks(3).filter(|_| random.next() < part).map(|t| [t[0], t[1]]));
     }
+    // Borders of groups are locked, too.
+    let groups: Vec<u32> = if random.next() < 0.3 {
+        let part = random.next();
+        (0..triangles.len() / 3).map(|_| u32::from(random.next() < part * part)).collect()
+    } else {
+        Vec::new()
+    };
+    let named = locked_edges.clone();
+    let mut first = HashMap::new();
+    for (side, group) in
+        triangles.chunks(3).zip(&groups).flat_map(|(t, group)| sides(t).map(|side| (side, group)))
+    {
+        let edge = [side[0].min(side[1]), side[0].max(side[1])];
+        if first.entry(edge).or_insert(group) != &group {
+            locked_edges.push(edge);
+        }
+    }
     let mut sessions: Vec<Session> = [Order::Reproducible, Order::Any]
         .into_iter()
         .map(|order| {
             let backend = Backend::Cpu;
-            let locked_edges = locked_edges.clone();
-            let options = Options { backend, order, locked_edges, ..Options::default() };
+            let (locked_edges, groups) = (named.clone(), groups.clone());
+            let options = Options { backend, order, locked_edges, groups, ..Options::default() };
             block_on(Session::new(mesh.clone(), options)).unwrap()
         })
         .collect();
@@ -124,14 +141,29 @@ fn check(seed: u64) -> (usize, usize) {
     for frame in 0..6 {
         last = moved(&start, &last, &triangles, &mut random);
         let positions = numbers(&last, scale, &mut random);
-        let may_update = random.next() < 0.3;
+        // Updates before the frame, to positions that need not be finite.
+        let updates: Vec<(Vec<f64>, u32)> = (0..(random.next() * 4.0) as usize)
+            .map(|_| {
+                let points = moved(&start, &last, &triangles, &mut random);
+                let mut numbers = numbers(&points, scale, &mut random);
+                if random.next() < 0.2 {
+                    let i = (random.next() * numbers.len() as f64) as usize;
+                    numbers[i] = [f64::NAN, f64::INFINITY][i % 2];
+                }
+                (numbers, (random.next() * 6.0) as u32)
+            })
+            .collect();
         for (i, session) in sessions.iter_mut().enumerate() {
             let name = format!("seed {seed}, frame {frame}, session {i}");
-            if may_update {
-                let positions = Mesh::new(Dimension::Two, positions.clone(), triangles.clone()).unwrap();
-                session.update(Some(positions.positions().clone()), 3).unwrap();
-            } else {
+            for (update, (numbers, iterations)) in updates.iter().enumerate() {
+                session.update(Some(Positions::F64(numbers.clone())), *iterations).unwrap();
+                let found = components(&block_on(session.triangles()).unwrap());
+                assert_eq!(outlines(&before), outlines(&found), "{name}, update {update}");
+            }
+            if updates.is_empty() {
                 block_on(session.set_positions(positions.clone())).unwrap();
+            } else {
+                session.update(Some(Positions::F64(positions.clone())), 3).unwrap();
             }
             block_on(session.run(|_, _| ControlFlow::Continue(()))).unwrap();
             let outcome = block_on(session.outcome()).unwrap();
@@ -212,4 +244,44 @@ fn wild_meshes_are_right() {
     }
     println!("{frames} frames, {possible} components with a triangulation");
     assert!(possible > 3 * count as usize);
+}
+
+/// Updates of single precision on both engines: the same bits after each one, and the same surface.
+#[cfg(feature = "gpu")]
+#[test]
+fn engines_agree_in_wild_updates() {
+    for seed in 1..if super::is_full() { 2000 } else { 40 } {
+        let mut random = Random(seed * 2_654_435_761 + 88_172_645_463_325_252);
+        let (start, triangles) = scene(&mut random);
+        let positions = |points: &[Point], random: &mut Random| {
+            numbers(points, 0, random).into_iter().map(|x| x as f32).collect::<Vec<_>>()
+        };
+        let mesh = Mesh::new(Dimension::Two, positions(&start, &mut random), triangles.clone()).unwrap();
+        let part = (random.next() - 0.5).max(0.0);
+        let mut is_locked = |_: &&[u32]| random.next() < part * part;
+        let locked_edges: Vec<_> = triangles.chunks(3).filter(&mut is_locked).map(|t| [t[0], t[1]]).collect();
+        let mut sessions = [Backend::Cpu, Backend::Gpu].map(|backend| {
+            let locked_edges = locked_edges.clone();
+            let options = Options { backend, locked_edges, track_changes: true, ..Options::default() };
+            block_on(Session::new(mesh.clone(), options)).unwrap()
+        });
+        let (before, mut last) = (components(&triangles), start.clone());
+        for frame in 0..8 {
+            last = moved(&start, &last, &triangles, &mut random);
+            let mut numbers = positions(&last, &mut random);
+            if random.next() < 0.2 && !numbers.is_empty() {
+                let i = (random.next() * numbers.len() as f64) as usize;
+                numbers[i] = [f32::NAN, f32::INFINITY][i % 2];
+            }
+            let iterations = [0, 1, 4, 64][(random.next() * 4.0) as usize];
+            let [cpu, gpu] = sessions.each_mut().map(|session| {
+                session.update(Some(Positions::F32(numbers.clone())), iterations).unwrap();
+                let [triangles, changes] = [block_on(session.triangles()), block_on(session.changes())];
+                (triangles.unwrap(), changes.unwrap(), block_on(session.counters()).unwrap())
+            });
+            let name = format!("seed {seed}, frame {frame}");
+            assert!(cpu == gpu, "{name}: {:?} {:?}", cpu.2, gpu.2);
+            assert_eq!(outlines(&before), outlines(&components(&cpu.0)), "{name}");
+        }
+    }
 }

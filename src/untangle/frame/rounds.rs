@@ -1,0 +1,161 @@
+//! The rounds. Their number is fixed, so a GPU needs no answer of the host: what is turned over after the last round, the
+//! next update lifts. Each decision depends on the state before the round only.
+//!
+//! In each round, candidates claim vertices: a word for each vertex keeps the smallest key of those that claim it. A
+//! candidate that has kept all its claims acts. So what two of them change does not overlap:
+//!
+//! - A vertex v that is lifted claims itself and its link. It writes the triangles around it, and the twins on the other
+//!   side of the link. Suppose that w does so, too. A triangle around both would have w in the link of v. And if a side of
+//!   the link of v has a triangle around w on its other side, its ends are in both links.
+//! - A vertex that is put back claims the corners of its triangle. It writes this triangle, two slots of its own, and the
+//!   twins on the other side of the triangle. Triangles without a common corner have no common side.
+//!
+//! Nor do they change what the others read when they act: the triangles around vertices that these have claimed.
+//!
+//! No lift makes an edge between vertices that have one: it looks for it in both stars, and nobody else makes an edge at a
+//! vertex that it has claimed. So two edges never join the same vertices, and the link of a vertex does not meet itself.
+
+use super::{Frame, Loose};
+use crate::NONE;
+use crate::mesh::half_edge::next;
+use crate::mesh::star::Star;
+use crate::system::threads::Threads;
+use std::ops::Range;
+
+/// Rounds that lift.
+pub(super) const LIFTS: u32 = 16;
+
+/// Rounds after them that put vertices back where their points are.
+pub(super) const PUTS: u32 = 10;
+
+/// Rounds after them that put a vertex where its walk has come to, whatever the signs.
+pub(super) const STRAYS: u32 = 4;
+
+/// The last rounds, of any number, put a vertex where it was lifted, whatever the signs. Few wait for the same triangle
+/// there, and in each round one of those that wait is put back.
+const HOME: u32 = LIFTS + PUTS + STRAYS;
+
+/// Bits of a key below those of the round.
+pub(super) const KEY_BITS: u32 = 27;
+
+/// Vertices that are out are divided into so many pieces, of no fewer vertices than the second number.
+const PIECES: usize = 64;
+const FEWEST: usize = 256;
+
+/// The smallest key of those that claim each vertex.
+pub(super) struct Claims {
+    words: Vec<u32>,
+    bits: u32,
+    round: u32,
+}
+
+impl Frame<'_> {
+    /// Lifts vertices of turned triangles, and puts them back. Returns the slots that have changed, some of them several
+    /// times.
+    pub(crate) fn untangle(&mut self, vertices: usize, threads: &Threads) -> Vec<u32> {
+        let (triangles, frame) = (self.triangles.len() / 3, &*self);
+        let find =
+            |piece: Range<usize>| piece.map(|t| t as u32).filter(|&t| frame.is_turned(t)).collect::<Vec<_>>();
+        let turned = threads.map(triangles, find).concat();
+        // A GPU has two words for each triangle: for the claims, for this list, and for the vertices that are out.
+        let needed = vertices.max(triangles) + turned.len() + triangles / 2;
+        if turned.is_empty() || needed > 2 * triangles || vertices > 1 << KEY_BITS {
+            return Vec::new();
+        }
+        let (mut claims, mut waiting, mut written) = (Claims::new(vertices), Vec::new(), Vec::new());
+        for round in 0..LIFTS {
+            claims.round = round;
+            let frame = &*self;
+            let find = |piece: Range<usize>| {
+                turned[piece].iter().flat_map(|&t| frame.candidates(t, &claims)).collect::<Vec<_>>()
+            };
+            let candidates = threads.map(turned.len(), find).concat();
+            if candidates.is_empty() {
+                break;
+            }
+            for &(corner, key) in &candidates {
+                claims.claim([self.vertex(corner)], key);
+                claims.claim(Star::of_fan(self.twins, corner).map(|h| self.vertex(next(h))), key);
+            }
+            for (corner, _) in candidates {
+                waiting.extend(self.lift(corner, &claims, &mut written));
+            }
+        }
+        claims.round = LIFTS;
+        while !waiting.is_empty() {
+            self.put_back(&mut waiting, &mut claims, &mut written, threads);
+            claims.round = HOME.min(claims.round + 1);
+        }
+        written
+    }
+
+    fn put_back(
+        &mut self,
+        waiting: &mut Vec<Loose>,
+        claims: &mut Claims,
+        written: &mut Vec<u32>,
+        threads: &Threads,
+    ) {
+        let (frame, round) = (&*self, claims.round);
+        let size = waiting.len().div_ceil(PIECES).max(FEWEST);
+        threads.each(&mut waiting.chunks_mut(size).collect::<Vec<_>>(), |piece| {
+            piece.iter_mut().for_each(|loose| frame.aim(loose, round));
+        });
+        if round == HOME {
+            // These rounds have one number, so nobody may have claimed in an earlier one.
+            for loose in &*waiting {
+                self.corners(loose.target).iter().for_each(|&v| claims.words[v as usize] = NONE);
+            }
+        }
+        for loose in waiting.iter().filter(|loose| loose.target != NONE) {
+            let key = claims.key(self.name(loose.vertex), 0);
+            claims.claim(self.corners(loose.target), key);
+        }
+        waiting.retain(|loose| !self.put(loose, claims, written));
+    }
+
+    /// Finds the triangle that a vertex claims in a round.
+    fn aim(&self, loose: &mut Loose, round: u32) {
+        let from = if round == HOME { self.twins[3 * loose.slots[0] as usize] } else { loose.at };
+        loose.at = self.filled(from);
+        loose.target = if round < HOME - STRAYS { self.walk(loose, round) } else { loose.at };
+    }
+}
+
+impl Claims {
+    fn new(vertices: usize) -> Self {
+        let bits = vertices.next_power_of_two().trailing_zeros();
+        Self { words: vec![NONE; vertices], bits, round: 0 }
+    }
+
+    /// The key of the vertex with this name, which no other has. First come later rounds, because nobody clears the
+    /// claims of earlier ones; then those with the largest gain; then a hash.
+    pub(super) fn key(&self, name: u32, gain: u32) -> u32 {
+        let most = (1 << (KEY_BITS - self.bits)) - 1;
+        (HOME - self.round) << KEY_BITS | (most - gain.min(most)) << self.bits | self.hash(name)
+    }
+
+    /// A bijection.
+    fn hash(&self, name: u32) -> u32 {
+        name.wrapping_mul(0x9e37_79b1) & ((1 << self.bits) - 1)
+    }
+
+    fn claim(&mut self, vertices: impl IntoIterator<Item = u32>, key: u32) {
+        for v in vertices {
+            let word = &mut self.words[v as usize];
+            *word = key.min(*word);
+        }
+    }
+
+    /// The key of a vertex, if it has kept its claim for itself.
+    pub(super) fn own(&self, v: u32, name: u32) -> Option<u32> {
+        let word = self.words[v as usize];
+        let is_own =
+            word >> KEY_BITS == HOME - self.round && word & ((1 << self.bits) - 1) == self.hash(name);
+        is_own.then_some(word)
+    }
+
+    pub(super) fn have(&self, vertices: &[u32], key: u32) -> bool {
+        vertices.iter().all(|&v| self.words[v as usize] == key)
+    }
+}
