@@ -159,6 +159,8 @@ async function optimize({ name, options }) {
  */
 function cutPanics(file) {
   const panics = /^(core|alloc)\b.*::(panicking::.*|panic_\w+|\w+_fail(ed)?)$/;
+  // Writes the formats of textures, for a message of a panic in wgpu.
+  const formats = /^<wgpu_types\b.*::TextureFormat as core\b.*::Debug>::fmt$/;
   const memory = /^alloc\b.*::(handle_alloc_error|handle_error|capacity_overflow)$/;
   const module = binaryen.readBinary(readFileSync(file));
   const outOfMemory = binaryen.getExportInfo(module.getExport('outOfMemory')).value;
@@ -166,7 +168,7 @@ function cutPanics(file) {
   for (let i = 0; i < module.getNumFunctions(); i++) {
     const found = module.getFunctionByIndex(i);
     const { name } = binaryen.getFunctionInfo(found);
-    if (panics.test(name)) binaryen.Function.setBody(found, module.unreachable());
+    if (panics.test(name) || formats.test(name)) binaryen.Function.setBody(found, module.unreachable());
     const [, hook] = memory.exec(name) ?? [];
     if (!hook) continue;
     hooks.add(hook);

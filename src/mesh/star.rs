@@ -110,7 +110,6 @@ impl Fans {
     }
 
     /// Whether a vertex has several fans.
-    #[cfg(not(all(target_arch = "wasm32", feature = "js-session")))]
     #[inline]
     pub(crate) fn has_several(&self, vertex: u32) -> bool {
         self.of(vertex).is_some()
@@ -198,6 +197,17 @@ impl Iterator for Star<'_> {
             corner
         })
     }
+}
+
+/// Whether an edge joins the vertices at which two corners start, or both vertices are the same.
+pub(crate) fn are_joined(triangles: &[u32], twins: &[u32], fans: &Fans, corners: [u32; 2]) -> bool {
+    let star = |i: usize| Star::new(triangles, twins, fans, corners[i]);
+    let joins_to = |i: usize| {
+        let to = triangles[corners[i] as usize];
+        move |corner| triangles[next(corner) as usize] == to || triangles[prev(corner) as usize] == to
+    };
+    triangles[corners[0] as usize] == triangles[corners[1] as usize]
+        || any_in_either((star(0), joins_to(1)), (star(1), joins_to(0)))
 }
 
 /// Whether a corner of two stars passes the test of its star. Both stars must give the same answer, so the walk ends

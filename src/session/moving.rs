@@ -41,7 +41,7 @@ impl Session {
         if let Some(positions) = &positions {
             self.check_length(positions)?;
         }
-        let untangles = self.untangles();
+        let untangles = self.may_change(&self.mesh);
         self.engine.update(positions, iterations, untangles)?;
         if untangles {
             // Triangles may have other slots, so these lists name others now. Their edges are locked by name.
@@ -169,11 +169,6 @@ impl Session {
 }
 
 impl Session {
-    /// Whether an update untangles. In the npm package it only flips.
-    fn untangles(&self) -> bool {
-        cfg!(not(all(target_arch = "wasm32", feature = "js-session"))) && self.may_change(&self.mesh)
-    }
-
     /// Whether triangles of a mesh that turn over get others.
     fn may_change(&self, mesh: &Mesh) -> bool {
         mesh.dimension() == Dimension::Two && self.options.untangle != Some(false)

@@ -6,7 +6,6 @@ use crate::mesh::areas::Areas;
 use crate::mesh::embedded::{Embedded, Shape};
 use crate::mesh::half_edge::unflagged;
 use crate::phases::{Diamond, flag_creases, is_finite};
-#[cfg(not(all(target_arch = "wasm32", feature = "js-session")))]
 use crate::untangle::Frame;
 use crate::{Dimension, NONE, Positions};
 use std::borrow::Cow;
@@ -51,25 +50,21 @@ impl Cpu {
     }
 
     /// Replaces triangles that have turned over, as far as the rounds of an update do. Returns whether some have changed.
-    #[cfg(not(all(target_arch = "wasm32", feature = "js-session")))]
     fn untangle(&mut self) -> bool {
         let Self { mesh, arrangement, winding, fans, triangles, twins, threads, moving, .. } = self;
         let positions = moving.positions.as_ref().unwrap_or(mesh.positions());
         let has_infinite = moving.has_infinite;
-        let mut frame = Frame { positions, triangles, twins, fans, winding, arrangement, has_infinite };
-        let written = frame.untangle(mesh.vertex_count(), threads);
+        let written = Vec::new();
+        let mut frame =
+            Frame { positions, triangles, twins, fans, winding, arrangement, has_infinite, written };
+        frame.untangle(mesh.vertex_count(), threads);
+        let written = frame.written;
         for &slot in &written {
             if let Some(changed) = moving.changes.get_mut(slot as usize) {
                 *changed = moving.updates;
             }
         }
         !written.is_empty()
-    }
-
-    /// The modules of the npm package only flip.
-    #[cfg(all(target_arch = "wasm32", feature = "js-session"))]
-    fn untangle(&mut self) -> bool {
-        false
     }
 
     pub(super) fn add_flips(&mut self, flips: usize) {

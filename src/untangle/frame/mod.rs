@@ -38,6 +38,8 @@ pub(crate) struct Frame<'a> {
     pub(crate) arrangement: &'a Arrangement,
     /// Whether there may be numbers that are not finite. Their triangles are left alone.
     pub(crate) has_infinite: bool,
+    /// The slots that have changed, some of them several times.
+    pub(crate) written: Vec<u32>,
 }
 
 /// A vertex that is out. A vertex inside a disc has two triangles of its own: the disc without it has two fewer.
@@ -88,6 +90,12 @@ impl Frame<'_> {
     fn is_turned(&self, t: u32) -> bool {
         self.vertex(3 * t) != NONE
             && matches!(self.sign(t, self.corners(t)), Some(Ordering::Less | Ordering::Equal))
+    }
+
+    fn set_triangle(&mut self, slot: u32, corners: [u32; 3]) {
+        let h = 3 * slot as usize;
+        self.triangles[h..h + 3].copy_from_slice(&corners);
+        self.written.push(slot);
     }
 
     /// Lets a half-edge and an entry meet. A locked edge stays locked.

@@ -12,19 +12,18 @@ use std::cmp::Ordering;
 pub(super) const LONGEST: u32 = 64;
 
 impl Frame<'_> {
-    /// Walks towards the point of a vertex. Returns the triangle that has it, or [`NONE`]. The walk leaves each triangle
+    /// Walks towards the point of a vertex. Returns where it comes to, and the triangle that has the point, or [`NONE`]. The walk leaves each triangle
     /// over an edge that has the point on its other side; which one comes first changes with the triangle and the round, so
     /// that no walk goes in a circle for ever. If only the boundary has the point on its other side, the walk goes along
     /// the boundary until it has not.
-    pub(super) fn walk(&self, loose: &mut Loose, round: u32) -> u32 {
+    pub(super) fn walk(&self, vertex: u32, mut t: u32, round: u32) -> (u32, u32) {
         let is_beyond = |h: u32| {
-            let side = [self.vertex(h), self.vertex(next(h)), loose.vertex];
+            let side = [self.vertex(h), self.vertex(next(h)), vertex];
             self.sign(triangle_of(h), side) == Some(Ordering::Less)
         };
         let (mut from, mut border) = (NONE, NONE);
         for step in 0..LONGEST {
             if border == NONE {
-                let t = loose.at;
                 let turn = key(self.triangle_name(t), round + step) % 3;
                 let mut to = NONE;
                 for i in 0..3 {
@@ -35,14 +34,14 @@ impl Frame<'_> {
                     }
                 }
                 if to != NONE {
-                    (from, loose.at) = (to, triangle_of(to));
+                    (from, t) = (to, triangle_of(to));
                 } else if border == NONE {
-                    return t;
+                    return (t, t);
                 }
                 continue;
             }
             // Turns around the end of the side before, up to the next side.
-            loose.at = triangle_of(border);
+            t = triangle_of(border);
             let across = unflagged(self.twins[border as usize]);
             if across != NONE || is_beyond(border) {
                 border = next(if across == NONE { border } else { across });
@@ -50,12 +49,12 @@ impl Frame<'_> {
                 (from, border) = (NONE, NONE);
             }
         }
-        NONE
+        (t, NONE)
     }
 
     /// Puts a vertex into the triangle that it claims, if it has kept its claims. Side i of the triangle then belongs to the
     /// i-th of the three slots. Returns whether it is back.
-    pub(super) fn put(&mut self, loose: &Loose, claims: &Claims, written: &mut Vec<u32>) -> bool {
+    pub(super) fn put(&mut self, loose: &Loose, claims: &Claims) -> bool {
         let (t, vertex) = (loose.target, loose.vertex);
         if t == NONE {
             return false;
@@ -66,17 +65,15 @@ impl Frame<'_> {
         }
         let slots = [t, loose.slots[0], loose.slots[1]];
         let outer = [0, 1, 2].map(|i| self.twins[3 * t as usize + i]);
-        for (i, slot) in slots.into_iter().enumerate() {
-            let h = 3 * slot as usize;
-            self.triangles[h..h + 3].copy_from_slice(&[corners[i], corners[(i + 1) % 3], vertex]);
+        for i in 0..3 {
+            self.set_triangle(slots[i], [corners[i], corners[(i + 1) % 3], vertex]);
         }
-        for (i, slot) in slots.into_iter().enumerate() {
-            self.join(3 * slot, outer[i]);
-            self.join(3 * slot + 1, 3 * slots[(i + 1) % 3] + 2);
+        for i in 0..3 {
+            self.join(3 * slots[i], outer[i]);
+            self.join(3 * slots[i] + 1, 3 * slots[(i + 1) % 3] + 2);
         }
         // The other corners keep their half-edges.
         self.fans.move_anchor(corners[2], 3 * t + 2, 3 * slots[2]);
-        written.extend(slots);
         true
     }
 }
