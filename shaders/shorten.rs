@@ -164,7 +164,9 @@ fn renamed(line: &str, names: &BTreeMap<&str, String>, locals: &BTreeMap<&str, S
 /// Spaces around these separate no words.
 fn without_spaces(line: &str) -> String {
     let mut text = line.to_owned();
-    for mark in ["==", "!=", "+=", "|=", "&&", "||", "->", "{", "}", ",", ";", ":", "=", "+", "*", "/", "%", "&", "|"] {
+    for mark in
+        ["==", "!=", "+=", "|=", "&&", "||", "->", "{", "}", ",", ";", ":", "=", "+", "*", "/", "%", "&", "|"]
+    {
         text = text.replace(&format!(" {mark} "), mark).replace(&format!("{mark} "), mark);
     }
     text.replace(" {", "{")

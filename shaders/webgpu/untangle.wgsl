@@ -76,16 +76,18 @@ fn untangle(@builtin(local_invocation_index) local: u32) {
         following = select(NONE, step_.index / 2u, turned_triangles() > 0u);
     }
     loop {
-        number = workgroupUniformLoad(&following);
-        if number == NONE {
+        // Not from the variable, of which a compiler does not know that all invocations have the same.
+        let round = workgroupUniformLoad(&following);
+        if round == NONE {
             break;
         }
+        number = round;
         if local == 0u {
             work = work_of_round();
         }
         let count = workgroupUniformLoad(&work);
         // The last rounds have one number, so nobody may have claimed in an earlier one.
-        for (var half = select(CLAIM, FORGET, number == HOME); half <= ACT; half++) {
+        for (var half = select(CLAIM, FORGET, round == HOME); half <= ACT; half++) {
             for (var i = local; i < count; i += ROUNDS_SIZE) {
                 if do_half(i, half) && half == CLAIM {
                     atomicStore(&busy, 1u);

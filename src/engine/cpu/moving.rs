@@ -8,6 +8,7 @@ use crate::mesh::half_edge::unflagged;
 use crate::phases::{Diamond, flag_creases, is_finite};
 use crate::untangle::Frame;
 use crate::{Dimension, NONE, Positions};
+use glam::DVec2;
 use std::borrow::Cow;
 
 /// An update that flips less than one edge for so many triangles flips few.
@@ -53,10 +54,9 @@ impl Cpu {
     fn untangle(&mut self) -> bool {
         let Self { mesh, arrangement, winding, fans, triangles, twins, threads, moving, .. } = self;
         let positions = moving.positions.as_ref().unwrap_or(mesh.positions());
-        let has_infinite = moving.has_infinite;
-        let written = Vec::new();
-        let mut frame =
-            Frame { positions, triangles, twins, fans, winding, arrangement, has_infinite, written };
+        let is_left: fn([DVec2; 3]) -> bool = |points| !points.iter().all(|point| point.is_finite());
+        let (is_left, written) = (moving.has_infinite.then_some(is_left), Vec::new());
+        let mut frame = Frame { positions, triangles, twins, fans, winding, arrangement, is_left, written };
         frame.untangle(mesh.vertex_count(), threads);
         let written = frame.written;
         for &slot in &written {

@@ -53,20 +53,24 @@ fn at_once<T: Sync, R: Send>(
 #[cfg(target_arch = "wasm32")]
 pub(super) async fn compile(plans: &[Plan], device: &wgpu::Device) -> Result<Vec<Kernels>, Fault> {
     let _ahead = ahead::compiled(plans, device).await;
-    let kernels = |plan: &Plan| {
-        let modules = plan.sources.iter().map(|source| module(source, device)).collect();
-        let parts = Parts::new(plan, device, modules);
-        let pipelines = plan.entries.iter().map(|entry| parts.pipeline(entry, device)).collect();
-        Kernels::new(parts.layout, pipelines)
-    };
-    let (kernels, caught) = watch(device, || plans.iter().map(kernels).collect());
+    let (kernels, caught) = watch(device, || plans.iter().map(|plan| compile_now(plan, device)).collect());
     no_fault(caught.await).map(|()| kernels)
+}
+
+/// The kernels of a plan, one after another. In a browser the call does not wait for the compiler, but the next
+/// submission does.
+pub(super) fn compile_now(plan: &Plan, device: &wgpu::Device) -> Kernels {
+    let modules = plan.sources.iter().map(|source| module(source, device)).collect();
+    let parts = Parts::new(plan, device, modules);
+    let pipelines = plan.entries.iter().map(|entry| parts.pipeline(entry, device)).collect();
+    Kernels::new(parts.layout, pipelines)
 }
 
 /// The kernels of some plans, and those of the phases for a form.
 ///
-/// In a browser the tail compiles while the first runs go on. Natively it compiles with the other kernels: a process
-/// may end at any time, and drivers do not expect that while they compile.
+/// In a browser the tail compiles while the first runs go on, and the first update compiles the kernels that untangle.
+/// Natively they compile with the other kernels: a process may end at any time, and drivers do not expect that while they
+/// compile.
 pub(super) async fn compile_phases(
     mut plans: Vec<Plan>,
     form: Form,

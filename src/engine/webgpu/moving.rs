@@ -21,7 +21,6 @@ impl WebGpu {
     ///
     /// # Errors
     /// [`Error::BackendLimit`] if the shaders read fixed-point numbers, or for 64-bit floats; [`Error::Device`].
-    #[cfg_attr(target_arch = "wasm32", expect(unused_variables, reason = "the npm package only flips"))]
     pub(super) fn submit_update(
         &mut self,
         positions: Option<Positions>,
@@ -45,11 +44,8 @@ impl WebGpu {
         self.params.update = self.params.update.wrapping_add(1).max(1);
         self.params.winding = self.winding;
         self.params.deviation = deviation_words(self.thresholds.deviation.into(), None);
-        #[cfg(not(target_arch = "wasm32"))]
-        {
-            self.set_untangling(untangles);
-            self.dispatches += self.rounds.map_or(0, |rounds| 2 * u64::from(rounds) + 1);
-        }
+        self.set_untangling(untangles);
+        self.dispatches += self.rounds.map_or(0, |rounds| 2 * u64::from(rounds) + 1);
         let gpu = self.gpu.clone();
         let ((), faults) = watch(&gpu.device, || {
             if let Some(numbers) = numbers {

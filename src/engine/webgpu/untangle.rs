@@ -1,6 +1,8 @@
-//! Records the kernels that untangle a mesh in the plane, in an update. Natively only: the modules of the npm package flip.
+//! Records the kernels that untangle a mesh in the plane, in an update.
 
 use super::WebGpu;
+use super::compile::compile_now;
+use super::kernels::Plan;
 use super::steps::Step;
 
 /// Rounds with dispatches of their own on a device whose loops end early: all but the last ones, whose number is not known.
@@ -29,11 +31,12 @@ impl WebGpu {
 
     /// Untangles before the embedded stars are marked, and after the signs of all triangles are known.
     pub(super) fn record_untangling(&self, pass: &mut wgpu::ComputePass) {
-        let (Some(rounds), Some(kernels)) = (self.rounds, self.kernels.untangle.get()) else { return };
-        if self.params.update == 0 {
-            return;
-        }
-        let [half, all] = &kernels[..] else { return };
+        let Some(rounds) = self.rounds.filter(|_| self.params.update > 0) else { return };
+        let compile = || {
+            let plan = Plan::untangle(self.form, self.gpu.tail_size);
+            plan.map(|plan| compile_now(&plan, &self.gpu.device).pipelines).unwrap_or_default()
+        };
+        let [half, all] = &self.kernels.untangle.get_or_init(compile)[..] else { return };
         let share = if self.gpu.ends_loops_early { SHARE } else { 1 };
         let groups = self.gpu.workgroups(self.params.triangles.div_ceil(share));
         pass.set_pipeline(half);
