@@ -191,7 +191,8 @@ export async function openPage(browser, address, isKept = false) {
   const problems = [];
   page.on('console', (message) => {
     // Chromium tells so of each call that waits for WebGL2, and an update that untangles has to.
-    if (message.text().endsWith('GPU stall due to ReadPixels') || message.text().includes('ReadPixels (this message')) return;
+    if (message.text().endsWith('GPU stall due to ReadPixels') || message.text().includes('ReadPixels (this message'))
+      return;
     if (['error', 'warn', 'warning'].includes(message.type())) problems.push(`${message.type()}: ${message.text()}`);
   });
   page.on('pageerror', (error) => problems.push(`not caught: ${error}`));

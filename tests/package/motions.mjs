@@ -57,7 +57,7 @@ const iterationsOf = (frame) => [3, 0, 64, 1][frame % 4];
  * Runs in a page or in Node: digests of triangles and changes, and the counts, after each update of each motion. The
  * motions run side by side, because in Firefox each wait for the GPU takes 100 ms.
  */
-export async function frames({ entry, options, size, count }) {
+export async function frames({ entry, options, names = MOTIONS, size, count }) {
   const { FlipSession } = await import(entry);
   const { Digest } = await import(new URL('../parity/digest.js', import.meta.url).href);
   const run = async (name) => {
@@ -77,8 +77,8 @@ export async function frames({ entry, options, size, count }) {
     session.free();
     return found;
   };
-  const found = await Promise.all(MOTIONS.map(run));
-  return Object.fromEntries(MOTIONS.map((name, i) => [name, found[i]]));
+  const found = await Promise.all(names.map(run));
+  return Object.fromEntries(names.map((name, i) => [name, found[i]]));
 }
 
 /** What the CPU gives in Node, on one thread. */
@@ -88,19 +88,20 @@ let expected;
 export async function moves(page, { title, backend }, count) {
   const motion = { size: 8, count };
   expected ??= frames({ entry: 'edgeflip', options: { backend: 'cpu', threads: 1 }, ...motion });
-  const found = await page.evaluate(
-    async (motion) => (await import('/tests/package/motions.mjs')).frames(motion),
-    { entry: '/dist/index.js', options: { backend }, ...motion },
-  );
+  const found = await page.evaluate(async (motion) => (await import('/tests/package/motions.mjs')).frames(motion), {
+    entry: '/dist/index.js',
+    options: { backend },
+    ...motion,
+  });
   await same(found, await expected, title);
 }
 
 /** Names the first frame that differs. */
 export async function same(found, expected, title) {
   const { default: assert } = await import('node:assert/strict');
-  for (const name of MOTIONS) {
-    const frame = expected[name].findIndex((what, i) => what !== found[name][i]);
-    assert.equal(found[name][frame], expected[name][frame], `${title}, ${name}, frame ${frame}`);
-    assert.equal(found[name].length, expected[name].length);
+  for (const [name, frames] of Object.entries(expected)) {
+    const frame = frames.findIndex((what, i) => what !== found[name][i]);
+    assert.equal(found[name][frame], frames[frame], `${title}, ${name}, frame ${frame}`);
+    assert.equal(found[name].length, frames.length);
   }
 }

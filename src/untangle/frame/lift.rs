@@ -142,8 +142,8 @@ impl Frame<'_> {
                 let j = i + length;
                 let mut least = NEVER * MOST as u16;
                 if length == last || !looks || !self.has_edge(star, [i, j]) {
-                    for k in i + 1..j {
-                        let mut cost = cost_of(chords[i][k]) + cost_of(chords[k][j]);
+                    for (k, to) in chords.iter().enumerate().take(j).skip(i + 1) {
+                        let mut cost = cost_of(chords[i][k]) + cost_of(to[j]);
                         if cost < cost_of(least) {
                             cost += u16::from(!self.is_right(star, [i, k, j]));
                             least = least.min(cost * MOST as u16 + k as u16);
