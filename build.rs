@@ -8,9 +8,6 @@ use std::{env, fs};
 #[path = "shaders/shorten.rs"]
 mod shorten;
 
-/// The modules of the npm package only flip.
-const NATIVE: [&str; 4] = ["claims.wgsl", "lift.wgsl", "put_back.wgsl", "untangle.wgsl"];
-
 fn main() -> Result<(), Box<dyn Error>> {
     println!("cargo::rerun-if-changed=shaders");
     let is_for_browsers = env::var("CARGO_CFG_TARGET_ARCH")? == "wasm32";
@@ -18,9 +15,6 @@ fn main() -> Result<(), Box<dyn Error>> {
     for folder in ["shared", "webgpu"] {
         for entry in fs::read_dir(Path::new("shaders").join(folder))? {
             let entry = entry?;
-            if is_for_browsers && NATIVE.iter().any(|name| entry.file_name() == *name) {
-                continue;
-            }
             texts.push(fs::read_to_string(entry.path())?);
             names.push(format!("{folder}/{}", entry.file_name().display()));
         }

@@ -28,7 +28,10 @@ mod prepare;
 pub mod quality;
 mod session;
 mod system;
-#[cfg(not(all(target_arch = "wasm32", feature = "js-session")))]
+#[cfg_attr(
+    all(target_arch = "wasm32", feature = "js-session"),
+    expect(dead_code, unused_imports, reason = "the engines call the rounds of an update only")
+)]
 mod untangle;
 #[cfg(all(target_arch = "wasm32", feature = "js-values"))]
 pub mod wasm;

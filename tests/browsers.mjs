@@ -190,6 +190,9 @@ export async function openPage(browser, address, isKept = false) {
   if (!isKept) await page.addInitScript?.(() => delete Navigator.prototype.serviceWorker);
   const problems = [];
   page.on('console', (message) => {
+    // Chromium tells so of each call that waits for WebGL2, and an update that untangles has to.
+    if (message.text().endsWith('GPU stall due to ReadPixels') || message.text().includes('ReadPixels (this message'))
+      return;
     if (['error', 'warn', 'warning'].includes(message.type())) problems.push(`${message.type()}: ${message.text()}`);
   });
   page.on('pageerror', (error) => problems.push(`not caught: ${error}`));

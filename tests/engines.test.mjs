@@ -22,6 +22,7 @@ const { fill, matrix } = await import('./parity/matrix.mjs');
 const { check } = await import('./quads/browsers.mjs');
 const { untangles } = await import('./package/folds.mjs');
 const { holdLocks } = await import('./package/locks.mjs');
+const { moves } = await import('./package/motions.mjs');
 
 // In the short run, a software GPU leaves out what takes it longest, and the table says `full` there.
 const all = () => true;
@@ -76,6 +77,8 @@ describe('engines', { concurrency: true }, () => {
       for (const engine of engines.map((engine) => ({ ...engine, title: `${titles[engine.backend]} ${name}` }))) {
         const takes = engine.backend === 'cpu' ? all : meshes;
         await t.test(`${engine.title} gives the results of the simulation`, () => fill(page, engine, takes));
+        const frames = full ? 2000 : 17;
+        await t.test(`${engine.title} untangles in updates as the CPU in Node does`, () => moves(page, engine, frames));
         if (engine.backend === 'cpu') continue;
         await t.test(`${engine.title} decides quads as big integers do`, () => check(page, engine, quads));
         await t.test(`${engine.title} untangles as the CPU does`, () => untangles(page, engine));

@@ -76,6 +76,7 @@ fn untangle(@builtin(local_invocation_index) local: u32) {
         following = select(NONE, step_.index / 2u, turned_triangles() > 0u);
     }
     loop {
+        // Not from the variable, of which a compiler does not know that all invocations have the same.
         let round = workgroupUniformLoad(&following);
         if round == NONE {
             break;

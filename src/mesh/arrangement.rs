@@ -90,7 +90,6 @@ impl Arrangement {
     }
 
     /// The caller's index of a vertex.
-    #[cfg(not(all(target_arch = "wasm32", feature = "js-session")))]
     #[inline(always)]
     pub(crate) fn vertex(&self, v: u32) -> u32 {
         self.vertices.get(v as usize).copied().unwrap_or(v)

@@ -110,7 +110,6 @@ impl Fans {
     }
 
     /// Whether a vertex has several fans.
-    #[cfg(not(all(target_arch = "wasm32", feature = "js-session")))]
     #[inline]
     pub(crate) fn has_several(&self, vertex: u32) -> bool {
         self.of(vertex).is_some()
@@ -200,12 +199,35 @@ impl Iterator for Star<'_> {
     }
 }
 
+/// Whether an edge joins the vertices at which two corners start, or both vertices are the same. After `most` steps around
+/// each of them it is as if one did.
+pub(crate) fn are_joined(
+    triangles: &[u32],
+    twins: &[u32],
+    fans: &Fans,
+    corners: [u32; 2],
+    most: u32,
+) -> bool {
+    let star = |i: usize| Star::new(triangles, twins, fans, corners[i]);
+    let joins_to = |i: usize| {
+        let to = triangles[corners[i] as usize];
+        move |corner| triangles[next(corner) as usize] == to || triangles[prev(corner) as usize] == to
+    };
+    let mut steps = 0;
+    let second = |corner| {
+        steps += 1;
+        steps > most || joins_to(0)(corner)
+    };
+    triangles[corners[0] as usize] == triangles[corners[1] as usize]
+        || any_in_either((star(0), joins_to(1)), (star(1), second))
+}
+
 /// Whether a corner of two stars passes the test of its star. Both stars must give the same answer, so the walk ends
 /// with the first star that has one. It alternates between the stars: its cost is at most twice that of the smaller
 /// star.
 pub(crate) fn any_in_either(
     mut first: (Star, impl Fn(u32) -> bool),
-    mut second: (Star, impl Fn(u32) -> bool),
+    mut second: (Star, impl FnMut(u32) -> bool),
 ) -> bool {
     loop {
         match first.0.next() {

@@ -2,7 +2,7 @@
 
 use super::state::{BLOCKED, Geometry, Thresholds, Topology, key};
 use crate::mesh::half_edge::{CREASE, FLAGS, LOCKED, next, prev, triangle_of, unflagged};
-use crate::mesh::star::{Star, any_in_either};
+use crate::mesh::star::are_joined;
 use crate::predicates::{Quad, area_sign, in_circle_filter, in_circle_sign};
 use crate::{Dimension, NONE, Positions, Reason};
 use std::array;
@@ -252,9 +252,5 @@ pub(crate) fn makes_duplicate(geometry: &Geometry, mesh: Topology, h: u32) -> bo
     if geometry.embedded.at(c) || geometry.embedded.at(d) {
         return false;
     }
-    let star = |corner| Star::new(mesh.triangles, mesh.twins, mesh.fans, corner);
-    let joins = |corner: u32, to: u32| {
-        mesh.triangles[next(corner) as usize] == to || mesh.triangles[prev(corner) as usize] == to
-    };
-    c == d || any_in_either((star(at_c), |corner| joins(corner, d)), (star(at_d), |corner| joins(corner, c)))
+    are_joined(mesh.triangles, mesh.twins, mesh.fans, [at_c, at_d], u32::MAX)
 }

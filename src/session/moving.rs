@@ -42,7 +42,7 @@ impl Session {
         if let Some(positions) = &positions {
             self.check_length(positions)?;
         }
-        self.engine.update(positions, iterations, self.untangles())?;
+        self.engine.update(positions, iterations, self.may_change(&self.mesh))?;
         self.flips_per_iteration.clear();
         self.has_ended = false;
         self.updates = self.updates.saturating_add(1);
@@ -166,11 +166,6 @@ impl Session {
 }
 
 impl Session {
-    /// Whether an update untangles. In the npm package it only flips.
-    fn untangles(&self) -> bool {
-        cfg!(not(all(target_arch = "wasm32", feature = "js-session"))) && self.may_change(&self.mesh)
-    }
-
     /// Whether triangles of a mesh that turn over get others.
     fn may_change(&self, mesh: &Mesh) -> bool {
         mesh.dimension() == Dimension::Two && self.options.untangle != Some(false)

@@ -109,10 +109,15 @@ impl JsWebGl2 {
     ///
     /// # Errors
     /// Those of `Engine::update`.
-    pub fn update(&self, positions: Option<JsPositions>, iterations: u32) -> Result<(), JsValue> {
+    pub fn update(
+        &self,
+        positions: Option<JsPositions>,
+        iterations: u32,
+        untangles: bool,
+    ) -> Result<(), JsValue> {
         let mut engine = self.engine.borrow_mut();
         let engine = engine.as_mut().ok_or_else(ended)?;
-        engine.update(positions.map(Into::into), iterations, false).map_err(bare)
+        engine.update(positions.map(Into::into), iterations, untangles).map_err(bare)
     }
 
     /// As `Engine::batch`.

@@ -2,7 +2,7 @@
 // of what must come out.
 
 /** Units from a vertex of the sheet at rest to the next. */
-const UNITS = 64;
+export const UNITS = 64;
 
 /**
  * A square of `size` times `size` vertices, each cell with two triangles. Its boundary stays.

@@ -13,6 +13,7 @@ import * as away from 'edgeflip/worker';
 import { BufferAttribute, BufferGeometry } from 'three';
 import { Digest } from '../parity/digest.js';
 import { faultOf, sheet } from './folds.mjs';
+import { frames, MOTIONS, same } from './motions.mjs';
 
 const bytesOf = (name) => readFileSync(new URL(`../../dist/wasm/${name}_bg.wasm`, import.meta.url));
 const onCpu = { backend: 'cpu', threads: 1 };
@@ -66,12 +67,21 @@ test('without the module, a call that needs it fails and changes nothing', async
     await assert.rejects(session.setPositions(far), failure);
     assert.deepEqual(timeless(await session.result()), timeless(await other.result()));
     assert.deepEqual(timeless(await session.run()), timeless(await other.run()));
-    // The same holds at the end of a motion.
-    for (const each of [session, other]) each.update({ positions: far, iterations: 3 });
+    // The same holds at the end of a motion. Updates untangle without the module, but not a vertex outside.
+    const outside = far.slice();
+    outside[2 * (Math.sqrt(far.length / 2) + 1)] = -9;
+    for (const [positions, isLeft] of [
+      [far, false],
+      [outside, true],
+    ]) {
+      for (let i = 0; i < 9; i++) session.update({ positions, iterations: 64 });
+      assert.equal((await session.counters()).inverted > 0, isLeft);
+    }
+    const [triangles, counters] = [await session.triangles(), await session.counters()];
     await assert.rejects(session.run(), failure);
     await assert.rejects(session.verify(), failure);
-    assert.deepEqual(await session.triangles(), await other.triangles());
-    assert.deepEqual(await session.counters(), await other.counters());
+    assert.deepEqual(await session.triangles(), triangles);
+    assert.deepEqual(await session.counters(), counters);
     await assert.rejects(entry.makeDelaunay(square(3, 2), { ...onCpu, untangle: true }), failure);
     // A component of each orientation is no fold.
     const first = square(0.25, 2);
@@ -97,6 +107,7 @@ test('without the module, a call that needs it fails and changes nothing', async
     await lacking.setPositions(over(3.5).positions);
     assert.equal((await lacking.run()).lostEdges.length, 0);
     lacking.free();
+    await session.setPositions(far);
     const { inverted, flat, indices: after } = await session.run();
     assert.deepEqual([inverted, flat], [0, 0]);
     assert.equal(faultOf(far, after), undefined);
@@ -113,12 +124,15 @@ test('whatever way the vertices went, the mesh is Delaunay again', async () => {
     for (const order of ['reproducible', 'any']) {
       const { mesh, jump } = sheet(16);
       const session = await FlipSession.create(mesh, { ...onCpu, order });
+      const other = await FlipSession.create(mesh, { ...onCpu, order, untangle: false });
       let folds = 0;
       const calls = ['run', 'step', 'result', 'verify', 'problems', 'edgeStates'];
       for (const [i, most] of [10, 30, 60, 120, 400, 1000].entries()) {
         let positions = jump(most);
-        session.update({ positions, iterations: 64 });
-        folds += (await session.counters()).inverted;
+        for (const each of [session, other]) each.update({ positions, iterations: 64 });
+        folds += (await other.counters()).inverted;
+        // One update is enough after jumps of up to half the spacing.
+        if (most <= 30) assert.equal(faultOf(positions, await session.triangles()), undefined);
         // Each of these calls ends the motion.
         await session[calls[i]]();
         assert.equal((await session.counters()).inverted, 0, calls[i]);
@@ -134,6 +148,7 @@ test('whatever way the vertices went, the mesh is Delaunay again', async () => {
       }
       assert.ok(folds > 50, `${folds} folds`);
       session.free();
+      other.free();
     }
   }
 });
@@ -182,6 +197,18 @@ test('the triangles are those of the library in Rust, on any number of threads',
   }
   assert.deepEqual(found[1], found[0]);
   assert.equal(found[0].digest, 'ccd193cd60795706');
+});
+
+test('updates give the same triangles on any number of threads', async () => {
+  const motions = { entry: 'edgeflip', names: ['jump', 'stir'], size: 140, count: 2 };
+  const expected = await frames({ ...motions, options: onCpu });
+  await same(await frames({ ...motions, options: { ...onCpu, threads: 2 } }), expected, 'two threads');
+  // In a worker and inline too.
+  const small = { names: MOTIONS, size: 8, count: 40 };
+  const onOne = await frames({ entry: 'edgeflip', ...small, options: onCpu });
+  for (const entry of ['edgeflip/worker', 'edgeflip/inline']) {
+    await same(await frames({ entry, ...small, options: onCpu }), onOne, entry);
+  }
 });
 
 test('the option says when', async () => {

@@ -6,9 +6,9 @@ use crate::mesh::areas::Areas;
 use crate::mesh::embedded::{Embedded, Shape};
 use crate::mesh::half_edge::unflagged;
 use crate::phases::{Diamond, flag_creases, is_finite};
-#[cfg(not(all(target_arch = "wasm32", feature = "js-session")))]
 use crate::untangle::Frame;
 use crate::{Dimension, NONE, Positions};
+use glam::DVec2;
 use std::borrow::Cow;
 
 /// An update that flips less than one edge for so many triangles flips few.
@@ -51,25 +51,20 @@ impl Cpu {
     }
 
     /// Replaces triangles that have turned over, as far as the rounds of an update do. Returns whether some have changed.
-    #[cfg(not(all(target_arch = "wasm32", feature = "js-session")))]
     fn untangle(&mut self) -> bool {
         let Self { mesh, arrangement, winding, fans, triangles, twins, threads, moving, .. } = self;
         let positions = moving.positions.as_ref().unwrap_or(mesh.positions());
-        let has_infinite = moving.has_infinite;
-        let mut frame = Frame { positions, triangles, twins, fans, winding, arrangement, has_infinite };
-        let written = frame.untangle(mesh.vertex_count(), threads);
+        let is_left: fn([DVec2; 3]) -> bool = |points| !points.iter().all(|point| point.is_finite());
+        let (is_left, written) = (moving.has_infinite.then_some(is_left), Vec::new());
+        let mut frame = Frame { positions, triangles, twins, fans, winding, arrangement, is_left, written };
+        frame.untangle(mesh.vertex_count(), threads);
+        let written = frame.written;
         for &slot in &written {
             if let Some(changed) = moving.changes.get_mut(slot as usize) {
                 *changed = moving.updates;
             }
         }
         !written.is_empty()
-    }
-
-    /// The modules of the npm package only flip.
-    #[cfg(all(target_arch = "wasm32", feature = "js-session"))]
-    fn untangle(&mut self) -> bool {
-        false
     }
 
     pub(super) fn add_flips(&mut self, flips: usize) {

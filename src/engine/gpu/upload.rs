@@ -4,6 +4,8 @@ use crate::mesh::extremes::{Extremes, MAGNITUDE};
 use crate::phases::Thresholds;
 use crate::system::threads::Threads;
 use crate::{Dimension, EngineKind, Error, Mesh, Positions};
+#[cfg(all(target_arch = "wasm32", feature = "js-webgl2"))]
+use glam::DVec2;
 use std::sync::Arc;
 
 /// The most bits of a coordinate without its sign, relative to the centre of the bounding box, in units of the grid.
@@ -113,13 +115,19 @@ fn lowest_bit(x: f64) -> i32 {
     if magnitude == 0 { i32::MAX } else { unit + magnitude.trailing_zeros() as i32 }
 }
 
-#[cfg(all(target_arch = "wasm32", feature = "js-webgl2"))]
 /// Whether an update to these positions may have to leave edges alone (`left_alone.wgsl`). `deviation` is the limit, or
 /// infinite.
+#[cfg(all(target_arch = "wasm32", feature = "js-webgl2"))]
 pub(in crate::engine) fn may_leave_edges(positions: &[f32], deviation: f32) -> bool {
     let (lowest, highest) = most_exponents(positions);
     let limit = if deviation.is_finite() { lowest_bit(deviation.into()) } else { i32::MAX };
     !fit((lowest.min(limit), highest))
+}
+
+/// Whether an update leaves a triangle alone, for the same reasons.
+#[cfg(all(target_arch = "wasm32", feature = "js-webgl2"))]
+pub(in crate::engine) fn leaves_triangle(points: [DVec2; 3]) -> bool {
+    !fit(exponents(points.iter().flat_map(|point| point.to_array())))
 }
 
 /// The limit for the deviation in the layout of `state.wgsl`: the words of a coordinate, in units of 2^`grid` or else a

@@ -209,9 +209,7 @@ impl Context {
         count: usize,
     ) -> Result<Answer<'static, Vec<u32>>, Error> {
         let gl = &self.gl;
-        let width = texture.size.0;
-        let rows = (count as u32).div_ceil(width);
-        let columns = width.min(count as u32);
+        let (columns, rows) = texture.part(count);
         let words = 4 * columns * rows;
         let buffer = gl.create_buffer().ok_or_else(|| lost(gl))?;
         gl.bind_framebuffer(Gl::FRAMEBUFFER, Some(&texture.framebuffer));
@@ -246,9 +244,35 @@ impl Context {
         }
         gl.delete_buffer(Some(buffer));
         ended?;
-        match gl.get_error() {
-            Gl::NO_ERROR if !gl.is_context_lost() => Ok(result.to_vec()),
-            Gl::CONTEXT_LOST_WEBGL | Gl::NO_ERROR => Err(lost(gl)),
+        self.checked(&result)
+    }
+
+    /// The same texels, for which the call waits. Those of one word have it first.
+    ///
+    /// # Errors
+    /// [`Error::Device`].
+    pub(super) fn read(&self, texture: &Texture, count: usize) -> Result<Vec<u32>, Error> {
+        let gl = &self.gl;
+        let (columns, rows) = texture.part(count);
+        let result = Uint32Array::new_with_length(4 * columns * rows);
+        gl.bind_framebuffer(Gl::FRAMEBUFFER, Some(&texture.framebuffer));
+        gl.read_pixels_with_opt_array_buffer_view(
+            0,
+            0,
+            columns as i32,
+            rows as i32,
+            Gl::RGBA_INTEGER,
+            Gl::UNSIGNED_INT,
+            Some(&result),
+        )
+        .map_err(|_| lost(gl))?;
+        self.checked(&result)
+    }
+
+    fn checked(&self, read: &Uint32Array) -> Result<Vec<u32>, Error> {
+        match self.gl.get_error() {
+            Gl::NO_ERROR if !self.gl.is_context_lost() => Ok(read.to_vec()),
+            Gl::CONTEXT_LOST_WEBGL | Gl::NO_ERROR => Err(lost(&self.gl)),
             code => Err(Error::Device { message: format!("WebGL2 reports the error {code:#06x}") }),
         }
     }

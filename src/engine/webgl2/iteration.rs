@@ -9,6 +9,7 @@ use crate::engine::gpu::upload::Form;
 use crate::engine::{Answer, Census, EdgeCounts, Engine, Moved, positions_of};
 use crate::mesh::areas::Areas;
 use crate::mesh::half_edge;
+use crate::mesh::winding::Winding;
 use crate::phases::Thresholds;
 use crate::{Dimension, EngineKind, Error, Mesh, NONE, Positions};
 use std::rc::Rc;
@@ -51,8 +52,8 @@ pub(crate) struct WebGl {
     /// census.
     pub(super) history: Texture,
     pub(super) has_locks: bool,
-    /// As [`Winding::is_strict`](crate::mesh::winding::Winding), before the first update.
-    pub(super) is_strict: bool,
+    /// Known to be strict only before the first update.
+    pub(super) winding: Winding,
     pub(super) moving: Moving,
     pub(super) passes: u64,
 }
@@ -244,8 +245,13 @@ impl Engine for WebGl {
         Box::pin(self.settle_updates())
     }
 
-    fn update(&mut self, positions: Option<Positions>, iterations: u32, _: bool) -> Result<(), Error> {
-        self.submit_update(positions.as_ref(), iterations)
+    fn update(
+        &mut self,
+        positions: Option<Positions>,
+        iterations: u32,
+        untangles: bool,
+    ) -> Result<(), Error> {
+        self.submit_update(positions.as_ref(), iterations, untangles)
     }
 
     fn moved(&mut self) -> Answer<'static, Moved> {

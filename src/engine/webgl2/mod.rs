@@ -16,6 +16,8 @@ mod question;
 mod start;
 #[cfg(feature = "js-webgl2")]
 mod texture;
+#[cfg(feature = "js-webgl2")]
+mod untangle;
 
 #[cfg(feature = "js-webgl2")]
 pub(crate) use context::set_shader_loader;

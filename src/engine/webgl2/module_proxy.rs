@@ -38,7 +38,7 @@ extern "C" {
         locked: Option<Uint32Array>,
     ) -> Result<Promise, JsValue>;
     #[wasm_bindgen(method, catch)]
-    fn update(this: &Remote, positions: JsValue, iterations: u32) -> Result<(), JsValue>;
+    fn update(this: &Remote, positions: JsValue, iterations: u32, untangles: bool) -> Result<(), JsValue>;
     #[wasm_bindgen(method, getter)]
     fn batch(this: &Remote) -> u32;
     #[wasm_bindgen(method, getter, js_name = edgeCounts)]
@@ -181,9 +181,14 @@ impl Engine for Proxy {
         })
     }
 
-    fn update(&mut self, positions: Option<Positions>, iterations: u32, _: bool) -> Result<(), Error> {
+    fn update(
+        &mut self,
+        positions: Option<Positions>,
+        iterations: u32,
+        untangles: bool,
+    ) -> Result<(), Error> {
         let array = positions.as_ref().map_or(JsValue::UNDEFINED, Positions::to_typed_array);
-        self.remote.update(array, iterations).map_err(error_of)
+        self.remote.update(array, iterations, untangles).map_err(error_of)
     }
 
     fn moved(&mut self) -> Answer<'static, Moved> {

@@ -1,4 +1,5 @@
-//! Updates: the host writes new positions, and the passes of the iterations follow at once. Nobody waits for them.
+//! Updates: the host writes new positions, untangles, and the passes of the iterations follow at once. Nobody waits for
+//! them.
 
 use super::iteration::{COUNTS, FANS, SELECTIONS, VERDICTS, WebGl, in_fours};
 use super::texture::Pair;
@@ -13,7 +14,7 @@ const TOTALS: u32 = 9;
 const ITERATION: usize = 2;
 const DEVIATION: usize = 24;
 const FIRST: usize = 28;
-const UPDATE: usize = 29;
+pub(super) const UPDATE: usize = 29;
 const LEAVES: usize = 30;
 
 // Columns of the history after a count.
@@ -23,7 +24,7 @@ const AREAS: u32 = 2;
 
 impl WebGl {
     /// The program that finds the triangles whose area is not positive.
-    fn areas_program(&self) -> &'static str {
+    pub(super) fn areas_program(&self) -> &'static str {
         match (self.form.dimension, self.form.is_fixed) {
             (Dimension::Two, false) => "areas2",
             (Dimension::Two, true) => "areas2_fixed",
@@ -37,7 +38,7 @@ impl WebGl {
     /// # Errors
     /// [`Error::BackendUnavailable`], [`Error::Device`].
     pub(crate) async fn count_areas(&mut self) -> Result<Vec<u32>, Error> {
-        if self.is_strict {
+        if self.winding.is_strict {
             return Ok(vec![0; 3]);
         }
         self.context.compile(&[self.areas_program()]).await?;
@@ -81,7 +82,8 @@ impl WebGl {
         Ok(words.chunks_exact(4).take(self.count).map(|texel| texel[0]).collect())
     }
 
-    /// Submits the passes for the present positions, and iterations after them. `positions` replaces them first.
+    /// Submits the passes for the present positions, and iterations after them. `positions` replaces them first. If it
+    /// `untangles` a mesh in the plane, it waits for one number.
     ///
     /// # Errors
     /// [`Error::BackendLimit`] if the programs read fixed-point numbers, or for 64-bit floats; [`Error::Device`].
@@ -89,6 +91,7 @@ impl WebGl {
         &mut self,
         positions: Option<&Positions>,
         iterations: u32,
+        untangles: bool,
     ) -> Result<(), Error> {
         match (positions, self.form.is_fixed) {
             (None, false) => {}
@@ -109,6 +112,9 @@ impl WebGl {
         self.params[UPDATE] = self.params[UPDATE].wrapping_add(1).max(1);
         let deviation = deviation_words(self.thresholds.deviation.into(), None);
         self.params[DEVIATION..DEVIATION + 4].copy_from_slice(&deviation);
+        if untangles && self.form.dimension == Dimension::Two {
+            self.untangle()?;
+        }
         // As after the start, the first iteration tests every triangle.
         self.bests.front.fill(BLOCKED);
         self.selections.fill(NONE);

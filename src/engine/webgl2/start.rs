@@ -11,7 +11,6 @@ use crate::engine::{Answer, EdgeCounts, Engine, MOST_ITERATIONS, self_test};
 use crate::mesh::embedded::Embedded;
 use crate::mesh::half_edge;
 use crate::mesh::star::Fans;
-use crate::mesh::winding::Winding;
 use crate::phases::Thresholds;
 use crate::phases::state::BLOCKED;
 use crate::system::in_turn::in_turn;
@@ -99,26 +98,30 @@ impl WebGl {
             sums,
             history: context.texture((MOST_ITERATIONS.max(BATCH), 1), 4)?,
             has_locks: false,
-            is_strict: winding.is_strict,
+            winding,
             moving: Moving::new(context.pair((1, 1), 4)?),
             passes: 0,
             context,
         };
-        result.write(&upload, &adjacency.twins, &winding, fans)?;
+        result.write(&upload, &adjacency.twins, fans)?;
         result.flag_creases()?;
         Ok(result)
     }
 
-    fn write(&mut self, upload: &Upload, twins: &[u32], winding: &Winding, fans: Fans) -> Result<(), Error> {
+    fn write(&mut self, upload: &Upload, twins: &[u32], fans: Fans) -> Result<(), Error> {
         self.positions.write(in_texels(upload.words(), self.form.dimension))?;
-        let is_clockwise = |t: usize| u32::from(winding.is_clockwise(t as u32));
-        self.triangles.front.write(in_fours(upload.mesh.triangles(), is_clockwise))?;
+        self.write_triangles(upload.mesh.triangles())?;
         self.twins.front.write(in_fours(twins, |_| NONE))?;
         self.fans.front.write(fans.table)?;
         // With these values, the first iteration tests every triangle.
         self.bests.front.fill(BLOCKED);
         self.selections.fill(NONE);
         Ok(())
+    }
+
+    pub(super) fn write_triangles(&self, triangles: &[u32]) -> Result<(), Error> {
+        let is_clockwise = |t: usize| u32::from(self.winding.is_clockwise(t as u32));
+        self.triangles.front.write(in_fours(triangles, is_clockwise))
     }
 
     pub(super) fn flag_creases(&mut self) -> Result<(), Error> {

@@ -49,6 +49,12 @@ impl Texture {
         }
     }
 
+    /// Columns and rows that have at least the first `count` texels.
+    pub(super) fn part(&self, count: usize) -> (u32, u32) {
+        let width = self.size.0;
+        (width.min(count as u32), (count as u32).div_ceil(width))
+    }
+
     /// Fills all texels with one word.
     pub(super) fn fill(&self, word: u32) {
         self.gl.bind_framebuffer(Gl::FRAMEBUFFER, Some(&self.framebuffer));

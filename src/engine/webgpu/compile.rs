@@ -53,14 +53,17 @@ fn at_once<T: Sync, R: Send>(
 #[cfg(target_arch = "wasm32")]
 pub(super) async fn compile(plans: &[Plan], device: &wgpu::Device) -> Result<Vec<Kernels>, Fault> {
     let _ahead = ahead::compiled(plans, device).await;
-    let kernels = |plan: &Plan| {
-        let modules = plan.sources.iter().map(|source| module(source, device)).collect();
-        let parts = Parts::new(plan, device, modules);
-        let pipelines = plan.entries.iter().map(|entry| parts.pipeline(entry, device)).collect();
-        Kernels::new(parts.layout, pipelines)
-    };
-    let (kernels, caught) = watch(device, || plans.iter().map(kernels).collect());
+    let (kernels, caught) = watch(device, || plans.iter().map(|plan| compile_now(plan, device)).collect());
     no_fault(caught.await).map(|()| kernels)
+}
+
+/// The kernels of a plan, one after another. In a browser the call does not wait for the compiler, but the next
+/// submission does. The caller watches for faults.
+pub(super) fn compile_now(plan: &Plan, device: &wgpu::Device) -> Kernels {
+    let modules = plan.sources.iter().map(|source| module(source, device)).collect();
+    let parts = Parts::new(plan, device, modules);
+    let pipelines = plan.entries.iter().map(|entry| parts.pipeline(entry, device)).collect();
+    Kernels::new(parts.layout, pipelines)
 }
 
 /// The kernels of some plans, and those of the phases for a form.
@@ -76,25 +79,13 @@ pub(super) async fn compile_phases(
     plans.push(Plan::phases(form));
     let tail = Plan::tail(form, tail_size);
     #[cfg(not(target_arch = "wasm32"))]
-    let untangles = {
-        plans.push(tail);
-        let untangle = Plan::untangle(form, tail_size);
-        let untangles = untangle.is_some();
-        plans.extend(untangle);
-        untangles
-    };
+    plans.push(tail);
     let mut compiled = compile(&plans, device).await?;
     #[cfg(not(target_arch = "wasm32"))]
-    let (untangle, tail) = (if untangles { compiled.pop() } else { None }, compiled.pop());
+    let tail = compiled.pop();
     let phases = Arc::new(compiled.remove(compiled.len() - 1));
     #[cfg(not(target_arch = "wasm32"))]
-    {
-        keep_tail(&phases, tail);
-        if let Some(Kernels { pipelines, .. }) = untangle {
-            // Nobody else sets it.
-            let _ = phases.untangle.set(pipelines);
-        }
-    }
+    keep_tail(&phases, tail);
     #[cfg(target_arch = "wasm32")]
     {
         let (phases, device) = (phases.clone(), device.clone());

@@ -47,7 +47,7 @@ pub(crate) struct Device {
     /// Enough workgroups to keep the device busy. Every kernel loops over the remaining items.
     most_workgroups: u32,
     /// Invocations of the tail.
-    tail_size: u32,
+    pub(super) tail_size: u32,
     /// See `shaders/shared/rounds.wgsl`.
     pub(super) ends_loops_early: bool,
     pub(crate) tested: Tested,

@@ -89,8 +89,7 @@ pub(super) struct Kernels {
     pub(super) pipelines: Vec<wgpu::ComputePipeline>,
     /// Only for the kernels of the phases: the tail, once it is compiled.
     pub(super) tail: OnceLock<wgpu::ComputePipeline>,
-    /// The same of the kernels that untangle, see [`Plan::untangle`].
-    #[cfg(not(target_arch = "wasm32"))]
+    /// The same: those that untangle, see [`Plan::untangle`], which the first update compiles.
     pub(super) untangle: OnceLock<Vec<wgpu::ComputePipeline>>,
     /// The kernel of the baseline, once it is compiled.
     #[cfg(feature = "baseline")]
@@ -103,7 +102,6 @@ impl Kernels {
             layout,
             pipelines,
             tail: OnceLock::new(),
-            #[cfg(not(target_arch = "wasm32"))]
             untangle: OnceLock::new(),
             #[cfg(feature = "baseline")]
             take_selection: OnceLock::new(),
@@ -142,16 +140,12 @@ impl Plan {
         Self { bindings: phases_bindings(), sources: vec![sources::writes(form)], entries }
     }
 
-    /// The kernels that untangle in updates: half a round, and all rounds in one workgroup, with so many invocations.
-    /// `None` for meshes that updates only flip.
-    #[cfg(not(target_arch = "wasm32"))]
-    pub(super) fn untangle(form: Form, size: u32) -> Option<Self> {
-        let may_move = form.dimension == Dimension::Two && !form.is_fixed;
-        may_move.then(|| Self {
-            bindings: phases_bindings(),
-            sources: vec![sources::untangle(form)],
-            entries: vec![(0, "half_round", None), (0, "untangle", Some(("ROUNDS_SIZE", f64::from(size))))],
-        })
+    /// The kernels that untangle a mesh in the plane in updates: half a round, and all rounds in one workgroup, with so many
+    /// invocations.
+    pub(super) fn untangle(form: Form, size: u32) -> Self {
+        let all = Some(("ROUNDS_SIZE", f64::from(size)));
+        let entries = vec![(0, "half_round", None), (0, "untangle", all)];
+        Self { bindings: phases_bindings(), sources: vec![sources::untangle(form)], entries }
     }
 
     pub(super) fn probe() -> Self {

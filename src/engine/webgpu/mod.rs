@@ -47,7 +47,6 @@ mod start;
 mod steps;
 #[cfg(test)]
 mod tests;
-#[cfg(not(target_arch = "wasm32"))]
 mod untangle;
 mod words;
 
@@ -99,7 +98,6 @@ pub(crate) struct WebGpu {
     /// The winding, once the host knows it.
     winding: u32,
     /// How many rounds that untangle are dispatches of their own.
-    #[cfg(not(target_arch = "wasm32"))]
     rounds: u32,
     buffers: Buffers,
     /// The counters of the adjacency, then the signs of the triangles.

@@ -45,7 +45,6 @@ impl WebGpu {
         self.params.winding = self.winding;
         self.params.deviation = deviation_words(self.thresholds.deviation.into(), None);
         self.params.untangles = untangles.into();
-        #[cfg(not(target_arch = "wasm32"))]
         if untangles {
             self.dispatches += 2 * u64::from(self.rounds) + 1;
         }

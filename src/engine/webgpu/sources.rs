@@ -24,7 +24,6 @@ pub(super) fn writes(form: Form) -> String {
 }
 
 /// The shader that untangles a mesh in the plane.
-#[cfg(not(target_arch = "wasm32"))]
 pub(super) fn untangle(form: Form) -> String {
     phase("untangle", form, UNTANGLES)
 }
@@ -53,7 +52,6 @@ pub(super) fn baseline(form: Form) -> String {
 
 const READS: [&str; 2] = ["reads", "sweep"];
 const WRITES: [&str; 2] = ["writes", "tail"];
-#[cfg(not(target_arch = "wasm32"))]
 const UNTANGLES: [&str; 2] = ["untangles", "tail"];
 
 fn phase(file: &str, form: Form, [history, guard]: [&str; 2]) -> String {

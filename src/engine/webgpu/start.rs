@@ -69,7 +69,6 @@ impl WebGpu {
                 bindings: buffers.bind(&gpu, &kernels.layout),
                 topology_words: params.fans,
                 winding: WINDING_UNKNOWN,
-                #[cfg(not(target_arch = "wasm32"))]
                 rounds: super::untangle::rounds(&gpu),
                 kernels,
                 thresholds: upload.thresholds,
@@ -144,7 +143,6 @@ impl WebGpu {
         let mut pass = encoder.begin_compute_pass(&Default::default());
         self.at_step(&mut pass, Step::Prepare);
         for &kernel in Kernel::preparation(self.form.dimension) {
-            #[cfg(not(target_arch = "wasm32"))]
             if kernel == Kernel::Mark {
                 self.record_untangling(&mut pass);
             }

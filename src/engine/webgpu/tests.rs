@@ -241,7 +241,7 @@ fn kernels_are_short_one_by_one() {
         ("space", Plan::phases(form(Dimension::Three, false))),
         ("deviation", Plan::phases(form(Dimension::Three, true))),
         ("plane", Plan::tail(form(Dimension::Two, false), WORKGROUP_SIZE)),
-        ("plane", Plan::untangle(form(Dimension::Two, false), WORKGROUP_SIZE).unwrap()),
+        ("plane", Plan::untangle(form(Dimension::Two, false), WORKGROUP_SIZE)),
         ("space", Plan::tail(form(Dimension::Three, false), WORKGROUP_SIZE)),
         ("deviation", Plan::tail(form(Dimension::Three, true), WORKGROUP_SIZE)),
         ("adjacency", Plan::adjacency()),

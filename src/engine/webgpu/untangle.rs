@@ -1,7 +1,9 @@
-//! Records the kernels that untangle a mesh in the plane, in an update. Natively only: the modules of the npm package flip.
+//! Records the kernels that untangle a mesh in the plane, in an update.
 
 use super::WebGpu;
+use super::compile::compile_now;
 use super::device::Device;
+use super::kernels::Plan;
 use super::steps::Step;
 
 /// Rounds with dispatches of their own on a device whose loops end early: all but the last ones, whose number is not known.
@@ -9,7 +11,10 @@ use super::steps::Step;
 pub(super) const MOST_ROUNDS: u32 = 30;
 
 /// The same elsewhere. One workgroup does the rest.
-const WIDE_ROUNDS: u32 = 0;
+const WIDE_ROUNDS: u32 = 1;
+
+/// The most workgroups of such a round: enough for a large GPU, and few to begin in vain.
+const MOST_WORKGROUPS: u32 = 128;
 
 /// Triangles for each invocation of half a round on a device whose loops end early. If half of all triangles are turned
 /// over, it has so few of them that its loops have tens of thousands of rounds. Software GPUs begin workgroups slowly.
@@ -29,12 +34,18 @@ impl WebGpu {
 
     /// Untangles before the embedded stars are marked, and after the signs of all triangles are known.
     pub(super) fn record_untangling(&self, pass: &mut wgpu::ComputePass) {
-        let Some([half, all]) = self.kernels.untangle.get().map(|kernels| &kernels[..]) else { return };
         if self.params.untangles == 0 {
             return;
         }
-        let share = if self.gpu.ends_loops_early { SHARE } else { 1 };
-        let groups = self.gpu.workgroups(self.params.triangles.div_ceil(share));
+        let compile =
+            || compile_now(&Plan::untangle(self.form, self.gpu.tail_size), &self.gpu.device).pipelines;
+        let [half, all] = &self.kernels.untangle.get_or_init(compile)[..] else { return };
+        let triangles = self.params.triangles;
+        let groups = if self.gpu.ends_loops_early {
+            self.gpu.workgroups(triangles.div_ceil(SHARE))
+        } else {
+            self.gpu.workgroups(triangles).min(MOST_WORKGROUPS)
+        };
         pass.set_pipeline(half);
         for index in 0..2 * self.rounds {
             self.at_step(pass, Step::Iterate(index));

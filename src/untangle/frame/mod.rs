@@ -10,6 +10,7 @@ use crate::mesh::star::Fans;
 use crate::mesh::winding::Winding;
 use crate::predicates::area_sign;
 use crate::{NONE, Positions};
+use glam::DVec2;
 use std::cmp::Ordering;
 
 /// Numbers that the shader has, too.
@@ -36,8 +37,10 @@ pub(crate) struct Frame<'a> {
     pub(crate) fans: &'a mut Fans,
     pub(crate) winding: &'a Winding,
     pub(crate) arrangement: &'a Arrangement,
-    /// Whether there may be numbers that are not finite. Their triangles are left alone.
-    pub(crate) has_infinite: bool,
+    /// Whether a triangle is left alone. `None`: none is.
+    pub(crate) is_left: Option<fn([DVec2; 3]) -> bool>,
+    /// The slots that have changed, some of them several times.
+    pub(crate) written: Vec<u32>,
 }
 
 /// A vertex that is out. A vertex inside a disc has two triangles of its own: the disc without it has two fewer.
@@ -77,10 +80,10 @@ impl Frame<'_> {
         slot
     }
 
-    /// The sign of a triangle, reversed if the component of triangle `t` is clockwise; `None` if a number is not finite.
+    /// The sign of a triangle, reversed if the component of triangle `t` is clockwise; `None` if it is left alone.
     fn sign(&self, t: u32, corners: [u32; 3]) -> Option<Ordering> {
         let [a, b, c] = self.positions.points2(corners);
-        let is_left = self.has_infinite && ![a, b, c].iter().all(|point| point.is_finite());
+        let is_left = self.is_left.is_some_and(|is_left| is_left([a, b, c]));
         (!is_left).then(|| self.winding.relative(t, area_sign(a, b, c)))
     }
 
@@ -88,5 +91,11 @@ impl Frame<'_> {
     fn is_turned(&self, t: u32) -> bool {
         self.vertex(3 * t) != NONE
             && matches!(self.sign(t, self.corners(t)), Some(Ordering::Less | Ordering::Equal))
+    }
+
+    fn set_triangle(&mut self, slot: u32, corners: [u32; 3]) {
+        let h = 3 * slot as usize;
+        self.triangles[h..h + 3].copy_from_slice(&corners);
+        self.written.push(slot);
     }
 }

@@ -13,19 +13,18 @@ use std::cmp::Ordering;
 pub(super) const LONGEST: u32 = 64;
 
 impl Frame<'_> {
-    /// Walks towards the point of a vertex. Returns the triangle that has it, or [`NONE`]. The walk leaves each triangle
-    /// over an edge that has the point on its other side; which one comes first changes with the triangle and the round, so
-    /// that no walk goes in a circle for ever. If only the boundary has the point on its other side, the walk goes along
-    /// the boundary until it has not.
-    pub(super) fn walk(&self, loose: &mut Loose, round: u32) -> u32 {
+    /// Walks towards the point of a vertex. Returns where it comes to, and the triangle that has the point, or [`NONE`]. The
+    /// walk leaves each triangle over an edge that has the point on its other side; which one comes first changes with the
+    /// triangle and the round, so that no walk goes in a circle for ever. If only the boundary has the point on its other
+    /// side, the walk goes along the boundary until it has not.
+    pub(super) fn walk(&self, vertex: u32, mut t: u32, round: u32) -> (u32, u32) {
         let is_beyond = |h: u32| {
-            let side = [self.vertex(h), self.vertex(next(h)), loose.vertex];
+            let side = [self.vertex(h), self.vertex(next(h)), vertex];
             self.sign(triangle_of(h), side) == Some(Ordering::Less)
         };
         let (mut from, mut border) = (NONE, NONE);
         for step in 0..LONGEST {
             if border == NONE {
-                let t = loose.at;
                 let turn = key(self.triangle_name(t), round + step) % 3;
                 let mut to = NONE;
                 for i in 0..3 {
@@ -36,14 +35,14 @@ impl Frame<'_> {
                     }
                 }
                 if to != NONE {
-                    (from, loose.at) = (to, triangle_of(to));
+                    (from, t) = (to, triangle_of(to));
                 } else if border == NONE {
-                    return t;
+                    return (t, t);
                 }
                 continue;
             }
             // Turns around the end of the side before, up to the next side.
-            loose.at = triangle_of(border);
+            t = triangle_of(border);
             let across = unflagged(self.twins[border as usize]);
             if across != NONE || is_beyond(border) {
                 border = next(if across == NONE { border } else { across });
@@ -51,11 +50,11 @@ impl Frame<'_> {
                 (from, border) = (NONE, NONE);
             }
         }
-        NONE
+        (t, NONE)
     }
 
     /// Puts a vertex into the triangle that it claims, if it has kept its claims. Returns whether it is back.
-    pub(super) fn put(&mut self, loose: &Loose, claims: &Claims, written: &mut Vec<u32>) -> bool {
+    pub(super) fn put(&mut self, loose: &Loose, claims: &Claims) -> bool {
         let (t, vertex) = (loose.target, loose.vertex);
         if t == NONE || !claims.have(&self.corners(t), claims.key(self.name(vertex), 0)) {
             return false;
@@ -64,7 +63,7 @@ impl Frame<'_> {
         let corners = divide(self.triangles, self.twins, slots, vertex);
         // The other corners keep their half-edges.
         self.fans.move_anchor(corners[2], 3 * t + 2, 3 * slots[2]);
-        written.extend(slots);
+        self.written.extend(slots);
         true
     }
 }

@@ -17,9 +17,7 @@
 
 use super::{Frame, Loose};
 use crate::NONE;
-use crate::mesh::half_edge::next;
-use crate::mesh::star::Star;
-use crate::system::threads::Threads;
+use crate::system::threads::{self, Threads};
 use std::ops::Range;
 
 /// Rounds that lift.
@@ -38,8 +36,7 @@ const HOME: u32 = LIFTS + PUTS + STRAYS;
 /// Bits of a key below those of the round.
 pub(super) const KEY_BITS: u32 = 27;
 
-/// Vertices that are out are divided into so many pieces, of no fewer vertices than the second number.
-const PIECES: usize = 64;
+/// The fewest turned triangles, or vertices that are out, of a piece for a thread.
 const FEWEST: usize = 256;
 
 /// The smallest key of those that claim each vertex.
@@ -49,76 +46,99 @@ pub(super) struct Claims {
     round: u32,
 }
 
+/// Two words for each item of a loop that has some.
+type Pairs = Vec<(u32, u32)>;
+
+/// The pairs of all pieces of a loop over `0..len`, in order. Not generic, so that it is compiled once.
+fn gather(
+    threads: &Threads,
+    pieces: Vec<Range<usize>>,
+    work: &(dyn Fn(Range<usize>, &mut Pairs) + Sync),
+) -> Pairs {
+    let of_piece = |piece| {
+        let mut pairs = Vec::new();
+        work(piece, &mut pairs);
+        pairs
+    };
+    threads.map_each(pieces, of_piece).concat()
+}
+
 impl Frame<'_> {
-    /// Lifts vertices of turned triangles, and puts them back. Returns the slots that have changed, some of them several
-    /// times.
-    pub(crate) fn untangle(&mut self, vertices: usize, threads: &Threads) -> Vec<u32> {
+    /// Lifts vertices of turned triangles, and puts them back.
+    pub(crate) fn untangle(&mut self, vertices: usize, threads: &Threads) {
         let (triangles, frame) = (self.triangles.len() / 3, &*self);
-        let find =
-            |piece: Range<usize>| piece.map(|t| t as u32).filter(|&t| frame.is_turned(t)).collect::<Vec<_>>();
-        let turned = threads.map(triangles, find).concat();
+        let turned = gather(threads, threads.pieces(triangles, threads::FEWEST), &|piece, turned| {
+            for t in piece.map(|t| t as u32).filter(|&t| frame.is_turned(t)) {
+                turned.push((t, 0));
+            }
+        });
         // A GPU has two words for each triangle: for the claims, for this list, and for the vertices that are out.
         let needed = vertices.max(triangles) + turned.len() + triangles / 2;
         if turned.is_empty() || needed > 2 * triangles || vertices > 1 << KEY_BITS {
-            return Vec::new();
+            return;
         }
-        let (mut claims, mut waiting, mut written) = (Claims::new(vertices), Vec::new(), Vec::new());
+        let (mut claims, mut waiting) = (Claims::new(vertices), Vec::new());
         for round in 0..LIFTS {
             claims.round = round;
             let frame = &*self;
-            let find = |piece: Range<usize>| {
-                turned[piece].iter().flat_map(|&t| frame.candidates(t, &claims)).collect::<Vec<_>>()
-            };
-            let candidates = threads.map(turned.len(), find).concat();
+            let candidates = gather(threads, threads.pieces(turned.len(), FEWEST), &|piece, found| {
+                for &(t, _) in &turned[piece] {
+                    frame.find_candidates(t, &claims, found);
+                }
+            });
             if candidates.is_empty() {
                 break;
             }
             for &(corner, key) in &candidates {
-                claims.claim([self.vertex(corner)], key);
-                claims.claim(Star::of_fan(self.twins, corner).map(|h| self.vertex(next(h))), key);
+                self.claim_star(corner, key, &mut claims);
             }
             for (corner, _) in candidates {
-                waiting.extend(self.lift(corner, &claims, &mut written));
+                waiting.extend(self.lift(corner, &claims));
             }
         }
         claims.round = LIFTS;
         while !waiting.is_empty() {
-            self.put_back(&mut waiting, &mut claims, &mut written, threads);
+            self.put_back(&mut waiting, &mut claims, threads);
             claims.round = HOME.min(claims.round + 1);
         }
-        written
     }
 
-    fn put_back(
-        &mut self,
-        waiting: &mut Vec<Loose>,
-        claims: &mut Claims,
-        written: &mut Vec<u32>,
-        threads: &Threads,
-    ) {
+    fn put_back(&mut self, waiting: &mut Vec<Loose>, claims: &mut Claims, threads: &Threads) {
         let (frame, round) = (&*self, claims.round);
-        let size = waiting.len().div_ceil(PIECES).max(FEWEST);
-        threads.each(&mut waiting.chunks_mut(size).collect::<Vec<_>>(), |piece| {
-            piece.iter_mut().for_each(|loose| frame.aim(loose, round));
+        let aims = gather(threads, threads.pieces(waiting.len(), FEWEST), &|piece, aims| {
+            for loose in &waiting[piece] {
+                aims.push(frame.aim(loose, round));
+            }
         });
+        // The last rounds have one number, so nobody may have claimed in an earlier one.
         if round == HOME {
-            // These rounds have one number, so nobody may have claimed in an earlier one.
-            for loose in &*waiting {
-                self.corners(loose.target).iter().for_each(|&v| claims.words[v as usize] = NONE);
+            for &(_, target) in &aims {
+                for v in self.corners(target) {
+                    claims.words[v as usize] = NONE;
+                }
             }
         }
-        for loose in waiting.iter().filter(|loose| loose.target != NONE) {
-            let key = claims.key(self.name(loose.vertex), 0);
-            claims.claim(self.corners(loose.target), key);
+        for (loose, &(at, target)) in waiting.iter_mut().zip(&aims) {
+            (loose.at, loose.target) = (at, target);
+            if target != NONE {
+                claims.claim(&self.corners(target), claims.key(self.name(loose.vertex), 0));
+            }
         }
-        waiting.retain(|loose| !self.put(loose, claims, written));
+        let mut i = 0;
+        while i < waiting.len() {
+            if self.put(&waiting[i], claims) {
+                waiting.swap_remove(i);
+            } else {
+                i += 1;
+            }
+        }
     }
 
-    /// Finds the triangle that a vertex claims in a round.
-    fn aim(&self, loose: &mut Loose, round: u32) {
+    /// The triangle to which the walk of a vertex comes in a round, and the one that it claims.
+    fn aim(&self, loose: &Loose, round: u32) -> (u32, u32) {
         let from = if round == HOME { self.twins[3 * loose.slots[0] as usize] } else { loose.at };
-        loose.at = self.filled(from);
-        loose.target = if round < HOME - STRAYS { self.walk(loose, round) } else { loose.at };
+        let at = self.filled(from);
+        if round < HOME - STRAYS { self.walk(loose.vertex, at, round) } else { (at, at) }
     }
 }
 
@@ -140,8 +160,8 @@ impl Claims {
         name.wrapping_mul(0x9e37_79b1) & ((1 << self.bits) - 1)
     }
 
-    fn claim(&mut self, vertices: impl IntoIterator<Item = u32>, key: u32) {
-        for v in vertices {
+    pub(super) fn claim(&mut self, vertices: &[u32], key: u32) {
+        for &v in vertices {
             let word = &mut self.words[v as usize];
             *word = key.min(*word);
         }
