@@ -163,6 +163,11 @@ pub(crate) trait Engine {
     /// if they are not tracked.
     fn changes(&mut self) -> Answer<'_, Vec<u32>>;
 
+    /// Begins to keep the adjacency in buffers for kernels of the caller, on WebGPU.
+    fn give_adjacency(&mut self) -> Answer<'_, ()> {
+        Box::pin(std::future::ready(Ok(())))
+    }
+
     /// The present positions, after updates.
     fn positions(&mut self) -> Answer<'_, Positions>;
 
@@ -224,6 +229,8 @@ pub(crate) struct SharedObjects {
     pub(crate) triangles: wasm_bindgen::JsValue,
     /// GPUBuffer with the changes, and their offset in bytes, if they are tracked.
     pub(crate) changes: Option<(wasm_bindgen::JsValue, u32)>,
+    /// GPUBuffers with the twins and with a half-edge of each vertex, if they are asked for.
+    pub(crate) adjacency: Option<[wasm_bindgen::JsValue; 2]>,
 }
 
 /// What a program needs to write the positions on the GPU, and to draw from the buffers. See
@@ -243,4 +250,14 @@ pub struct GpuBuffers {
     /// the words of [`Session::changes`](crate::Session::changes), one per triangle. Its usage includes `STORAGE` and
     /// `COPY_SRC`. Only read it.
     pub changes: Option<(wgpu::Buffer, u64)>,
+    /// With [`Options::adjacency`](crate::Options::adjacency): u32, one per half-edge. Half-edge `3t + k` goes from corner
+    /// `k` of triangle `t` to the next corner; its twin is the half-edge on the other side, in the opposite direction.
+    /// [`NONE`](crate::NONE) on the boundary, at an edge of three or more triangles, and between triangles of opposite
+    /// orientations. Its usage includes `STORAGE` and `COPY_SRC`. Only read it.
+    pub twins: Option<wgpu::Buffer>,
+    /// The same, one per vertex: a half-edge that starts at the vertex; the smallest without a twin, or else the smallest.
+    /// From there `twins[prev(h)]`, with `prev(h)` the half-edge before `h` in its triangle, goes to the next triangle, and
+    /// reaches all triangles of the vertex before it is the first half-edge again, or `NONE`. A vertex whose triangles are
+    /// several fans has the half-edge of one of them. `NONE` for a vertex without triangles.
+    pub vertex_half_edges: Option<wgpu::Buffer>,
 }

@@ -266,12 +266,12 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
   #update(session: ModuleSession, { positions, buffer, iterations }: Update): void | Promise<void> {
     this.#moved();
     if (buffer) {
-      const { device, positionBuffer } = session;
-      if (!device || !positionBuffer) {
+      const { gpu } = session;
+      if (!gpu) {
         const message = `option buffer: the session is on ${session.backend}, not on a device that has buffers`;
         throw new EdgeflipError('invalid-option', message);
       }
-      gather(device, buffer, positionBuffer, this.#layout);
+      gather(gpu.device, buffer, gpu.positions, this.#layout);
     }
     return session.update(positions, iterations);
   }
@@ -405,15 +405,7 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
    * on; its usage includes STORAGE and COPY_SRC.
    */
   gpu(): Promise<SessionBuffers | undefined> {
-    return this.#call(async ({ device, positionBuffer: positions, indexBuffer: indices, changeBuffer }) => {
-      if (!device || !positions || !indices) return undefined;
-      return {
-        device,
-        positions,
-        indices,
-        ...(changeBuffer && { changes: { buffer: changeBuffer[0], offset: changeBuffer[1] } }),
-      };
-    });
+    return this.#call(async ({ gpu }) => gpu);
   }
 
   /** Frees memory and buffers after the present call. Waiting calls fail with `freed`. */

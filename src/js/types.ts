@@ -180,6 +180,11 @@ export interface Options {
    */
   trackChanges?: boolean | undefined;
   /**
+   * Keeps `twins` and `vertexHalfEdges` of `gpu` of a session, for kernels that walk around vertices: 12 bytes per
+   * triangle and 4 per vertex. Only on WebGPU; the other engines have no buffers. Default: false.
+   */
+  adjacency?: boolean | undefined;
+  /**
    * The largest number of threads of the CPU engine, 1 to 256. Default: one per core. A mesh of fewer than 65,536
    * triangles runs on one thread, a larger one on at most one thread per 4,096 triangles. Several threads need shared
    * memory: Node has it, and so does a cross-origin isolated page. The result is the same for any number.
@@ -223,6 +228,7 @@ export const OPTION_KINDS = {
   weld: 'attributes',
   order: ['reproducible', 'any'],
   trackChanges: 'flag',
+  adjacency: 'flag',
   threads: 'whole',
   device: 'device',
 } as const satisfies { [Name in keyof Options]-?: KindOf<NonNullable<Options[Name]>> };
@@ -278,6 +284,20 @@ export interface SessionBuffers {
   indices: GpuBuffer;
   /** A u32 per triangle from byte `offset` on, a multiple of 256. Absent without the option `trackChanges`. */
   changes?: { buffer: GpuBuffer; offset: number };
+  /**
+   * A u32 per half-edge: the half-edge on the other side of its edge, in the opposite direction. Half-edge 3t + k goes
+   * from corner k of triangle t to the next corner. 0xffffffff on the boundary, at an edge of three or more triangles, and
+   * between triangles of opposite orientations. Absent without the option `adjacency`.
+   */
+  twins?: GpuBuffer;
+  /**
+   * A u32 per vertex: a half-edge that starts at the vertex; the smallest without a twin, or else the smallest. From
+   * there, `twins[prev(h)]`, with `prev(h)` the half-edge before h in its triangle, goes to the next triangle, and reaches
+   * all triangles of the vertex before it is the first half-edge again, or 0xffffffff. A vertex whose triangles are
+   * several fans has the half-edge of one of them. 0xffffffff for a vertex without triangles. Absent without the option
+   * `adjacency`.
+   */
+  vertexHalfEdges?: GpuBuffer;
 }
 
 /** What the updates of a session have done, and what is left. */
@@ -325,6 +345,7 @@ export type SyncOptions = Omit<
   | 'device'
   | 'threads'
   | 'trackChanges'
+  | 'adjacency'
   | 'weld'
   | 'reorient'
   | 'constraints'

@@ -137,6 +137,16 @@ impl Plan {
         Self { bindings: phases_bindings(), sources: vec![sources::writes(form)], entries }
     }
 
+    /// The kernels that write the adjacency for the caller, in the order of their dispatches.
+    pub(super) fn walks() -> Self {
+        let (read, write) = (storage(true), storage(false));
+        Self {
+            bindings: vec![read, read, write, write],
+            sources: vec![sources::walks()],
+            entries: ["find_starts", "name_starts"].map(|name| (0, name, None)).to_vec(),
+        }
+    }
+
     pub(super) fn probe() -> Self {
         Self {
             bindings: vec![storage(false)],

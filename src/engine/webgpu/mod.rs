@@ -47,6 +47,7 @@ mod start;
 mod steps;
 #[cfg(test)]
 mod tests;
+mod walks;
 mod words;
 
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
@@ -81,6 +82,7 @@ use kernels::Plan;
 use known::Known;
 use params::Params;
 use std::sync::Arc;
+use walks::Walks;
 use words::{Reserved, vector};
 
 /// A mesh on the device.
@@ -97,6 +99,8 @@ pub(crate) struct WebGpu {
     /// The winding, once the host knows it.
     winding: u32,
     buffers: Buffers,
+    /// The adjacency for the caller, if it has asked for it.
+    walks: Option<Walks>,
     /// The counters of the adjacency, then the signs of the triangles.
     counters: Buffer,
     /// Natively the mesh, while its triangles are those on the device: no edge has flipped.
@@ -196,6 +200,10 @@ impl Engine for WebGpu {
         Box::pin(self.read_changes())
     }
 
+    fn give_adjacency(&mut self) -> Answer<'_, ()> {
+        Box::pin(self.begin_walks())
+    }
+
     fn positions(&mut self) -> Answer<'_, Positions> {
         Box::pin(self.read_positions())
     }
@@ -232,6 +240,8 @@ impl Engine for WebGpu {
             positions: self.buffers.floats.as_ref().unwrap_or(&self.buffers.positions).given(),
             triangles: self.buffers.triangles.given(),
             changes: self.changes_offset().map(|offset| (self.buffers.topology.given(), offset)),
+            twins: self.walks.as_ref().map(|walks| walks.twins.given()),
+            vertex_half_edges: self.walks.as_ref().map(|walks| walks.starts.given()),
         })
     }
 
@@ -245,6 +255,10 @@ impl Engine for WebGpu {
             changes: self
                 .changes_offset()
                 .and_then(|offset| Some((object(&self.buffers.topology)?, offset as u32))),
+            adjacency: self
+                .walks
+                .as_ref()
+                .and_then(|walks| Some([object(&walks.twins)?, object(&walks.starts)?])),
         })
     }
 }

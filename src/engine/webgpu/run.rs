@@ -63,6 +63,7 @@ impl WebGpu {
         let tail = self.kernels.tail.get();
         self.params.tail_iterations = if tail.is_some() { (count - batch).min(longest) } else { 0 };
         self.dispatches += u64::from(4 * batch + TAIL_DISPATCHES * self.params.tail_iterations.min(1));
+        self.dispatches += self.walk_dispatches();
         // The counts of a run's end follow at once, so that nobody has to wait for them later.
         let ends = !self.waits || (IS_NATIVE && count > 1 && self.ends_within(batch));
         if ends {
@@ -74,6 +75,7 @@ impl WebGpu {
                 self.begin_history();
             }
             let mut encoder = self.encode(&iterate);
+            self.record_walks(&mut encoder);
             if !self.waits {
                 self.encode_counts(&mut encoder, &|pass| self.record_counts(pass));
             }

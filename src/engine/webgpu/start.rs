@@ -76,6 +76,7 @@ impl WebGpu {
                 counts: EdgeCounts::default(),
                 bytes,
                 buffers,
+                walks: None,
                 counters: scratch.counters,
                 input: None,
                 unsettled: None,
@@ -290,9 +291,12 @@ impl WebGpu {
                 }
                 self.buffers.write_positions(&self.gpu, &upload);
                 self.prepare();
+                if twins.is_some() {
+                    self.write_walks();
+                }
             };
             self.gpu.checked(calls).await?;
-            self.dispatches = 0;
+            self.dispatches = twins.map_or(0, |_| self.walk_dispatches());
             return self.begin(upload.mesh).await;
         }
         let mut moved = Self::begun(self.gpu.clone(), upload, self.waits).await?;
@@ -305,6 +309,9 @@ impl WebGpu {
         }
         if self.changes_offset().is_some() {
             moved.begin_changes().await?;
+        }
+        if self.walks.is_some() {
+            moved.begin_walks().await?;
         }
         *self = moved;
         Ok(())
