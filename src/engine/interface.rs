@@ -211,26 +211,12 @@ pub(crate) trait Engine {
         None
     }
 
-    /// The buffers that a page can draw from, if the engine runs on the browser's WebGPU.
+    /// An object with the device and the buffers, as `SessionBuffers` in `src/js/types.ts`, if the engine runs on the
+    /// browser's WebGPU; else undefined.
     #[cfg(all(target_arch = "wasm32", feature = "js"))]
-    fn shared_objects(&self) -> Option<SharedObjects> {
-        None
+    fn shared_objects(&self) -> wasm_bindgen::JsValue {
+        wasm_bindgen::JsValue::UNDEFINED
     }
-}
-
-/// The browser's objects behind an engine.
-#[cfg(all(target_arch = "wasm32", feature = "js"))]
-pub(crate) struct SharedObjects {
-    /// GPUDevice.
-    pub(crate) device: wasm_bindgen::JsValue,
-    /// GPUBuffer: f32, 2 or 3 per vertex; 64-bit floats are rounded to the nearest f32.
-    pub(crate) positions: wasm_bindgen::JsValue,
-    /// GPUBuffer: u32, 3 per triangle.
-    pub(crate) triangles: wasm_bindgen::JsValue,
-    /// GPUBuffer with the changes, and their offset in bytes, if they are tracked.
-    pub(crate) changes: Option<(wasm_bindgen::JsValue, u32)>,
-    /// GPUBuffers with the twins and with a half-edge of each vertex, if they are asked for.
-    pub(crate) adjacency: Option<[wasm_bindgen::JsValue; 2]>,
 }
 
 /// What a program needs to write the positions on the GPU, and to draw from the buffers. See

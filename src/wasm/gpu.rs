@@ -2,7 +2,7 @@
 
 use super::options::{self, JsOptions};
 use super::session::JsSession;
-use super::values::{dimension_of, object, thrown};
+use super::values::{dimension_of, thrown};
 use crate::Session;
 use crate::engine;
 pub use crate::engine::{GpuDevice, WebGl2Module};
@@ -37,14 +37,6 @@ impl JsSession {
     /// The engine's GPUDevice and its buffers, if it runs on one.
     #[wasm_bindgen(getter, unchecked_return_type = "import('../types.js').SessionBuffers | undefined")]
     pub fn gpu(&self) -> JsValue {
-        let Some(objects) = self.get(Session::shared_objects) else { return JsValue::UNDEFINED };
-        let changes = objects
-            .changes
-            .map(|(buffer, offset)| ("changes", object([("buffer", buffer), ("offset", offset.into())])));
-        let adjacency =
-            objects.adjacency.map(|[twins, starts]| [("twins", twins), ("vertexHalfEdges", starts)]);
-        let fields =
-            [("device", objects.device), ("positions", objects.positions), ("indices", objects.triangles)];
-        object(fields.into_iter().chain(changes).chain(adjacency.into_iter().flatten()))
+        self.get(Session::shared_objects)
     }
 }

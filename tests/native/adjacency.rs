@@ -86,8 +86,8 @@ fn check(session: &mut Session, vertices: usize) -> [usize; 2] {
         let of_walk: BTreeSet<u32> = found.iter().copied().collect();
         assert_eq!(of_walk.len(), found.len(), "no triangle twice");
         // The fans are what twins join: a closed one, or one that begins at a border.
-        let is_whole = borders().count() == usize::from(twins[start as usize] == NONE)
-            && found.len() == corners.len();
+        let is_whole =
+            borders().count() == usize::from(twins[start as usize] == NONE) && found.len() == corners.len();
         let all: BTreeSet<u32> = corners.iter().map(|h| h / 3).collect();
         assert_eq!(is_whole, of_walk == all);
         kinds[usize::from(!is_whole)] += 1;

@@ -53,14 +53,16 @@ fn at_once<T: Sync, R: Send>(
 #[cfg(target_arch = "wasm32")]
 pub(super) async fn compile(plans: &[Plan], device: &wgpu::Device) -> Result<Vec<Kernels>, Fault> {
     let _ahead = ahead::compiled(plans, device).await;
-    let kernels = |plan: &Plan| {
-        let modules = plan.sources.iter().map(|source| module(source, device)).collect();
-        let parts = Parts::new(plan, device, modules);
-        let pipelines = plan.entries.iter().map(|entry| parts.pipeline(entry, device)).collect();
-        Kernels::new(parts.layout, pipelines)
-    };
-    let (kernels, caught) = watch(device, || plans.iter().map(kernels).collect());
+    let (kernels, caught) = watch(device, || plans.iter().map(|plan| compile_short(plan, device)).collect());
     no_fault(caught.await).map(|()| kernels)
+}
+
+/// The kernels of a short plan. The device tells a fault later.
+pub(super) fn compile_short(plan: &Plan, device: &wgpu::Device) -> Kernels {
+    let modules = plan.sources.iter().map(|source| module(source, device)).collect();
+    let parts = Parts::new(plan, device, modules);
+    let pipelines = plan.entries.iter().map(|entry| parts.pipeline(entry, device)).collect();
+    Kernels::new(parts.layout, pipelines)
 }
 
 /// The kernels of some plans, and those of the phases for a form.

@@ -149,7 +149,7 @@ fn no_adapter(_: wgpu::RequestAdapterError) -> Error {
     unavailable("no adapter was found".to_owned())
 }
 
-pub(super) fn refused_kernels(fault: Fault) -> Error {
+fn refused_kernels(fault: Fault) -> Error {
     unavailable(format!("it refuses the kernels: {fault}"))
 }
 

@@ -61,8 +61,6 @@ pub(crate) use shared::{GivenDevice, Handle};
 
 #[cfg(not(target_arch = "wasm32"))]
 use super::GpuBuffers;
-#[cfg(all(target_arch = "wasm32", feature = "js"))]
-use super::SharedObjects;
 use super::{Answer, Census, EdgeCounts, Engine, Moved};
 #[cfg(test)]
 use crate::NONE;
@@ -83,6 +81,8 @@ use known::Known;
 use params::Params;
 use std::sync::Arc;
 use walks::Walks;
+#[cfg(all(target_arch = "wasm32", feature = "js"))]
+use wasm_bindgen::JsValue;
 use words::{Reserved, vector};
 
 /// A mesh on the device.
@@ -201,7 +201,8 @@ impl Engine for WebGpu {
     }
 
     fn give_adjacency(&mut self) -> Answer<'_, ()> {
-        Box::pin(self.begin_walks())
+        self.begin_walks();
+        Box::pin(self.check_allocation())
     }
 
     fn positions(&mut self) -> Answer<'_, Positions> {
@@ -246,20 +247,24 @@ impl Engine for WebGpu {
     }
 
     #[cfg(all(target_arch = "wasm32", feature = "js"))]
-    fn shared_objects(&self) -> Option<SharedObjects> {
-        let object = |buffer: &Buffer| Some(buffer.given().as_webgpu()?.into());
-        Some(SharedObjects {
-            device: self.gpu.device.as_webgpu()?.into(),
-            positions: object(self.buffers.floats.as_ref().unwrap_or(&self.buffers.positions))?,
-            triangles: object(&self.buffers.triangles)?,
-            changes: self
-                .changes_offset()
-                .and_then(|offset| Some((object(&self.buffers.topology)?, offset as u32))),
-            adjacency: self
-                .walks
-                .as_ref()
-                .and_then(|walks| Some([object(&walks.twins)?, object(&walks.starts)?])),
-        })
+    fn shared_objects(&self) -> JsValue {
+        let Some(device) = self.gpu.device.as_webgpu() else { return JsValue::UNDEFINED };
+        let object = |buffer: &Buffer| JsValue::from(buffer.given().as_webgpu());
+        let mut fields = vec![
+            ("device", device.into()),
+            ("positions", object(self.buffers.floats.as_ref().unwrap_or(&self.buffers.positions))),
+            ("indices", object(&self.buffers.triangles)),
+        ];
+        if let Some(offset) = self.changes_offset() {
+            let buffer = object(&self.buffers.topology);
+            let changes = [("buffer", buffer), ("offset", (offset as u32).into())];
+            fields.push(("changes", ahead::object(&changes)));
+        }
+        if let Some(walks) = &self.walks {
+            fields.push(("twins", object(&walks.twins)));
+            fields.push(("vertexHalfEdges", object(&walks.starts)));
+        }
+        ahead::object(&fields)
     }
 }
 

@@ -311,7 +311,7 @@ impl WebGpu {
             moved.begin_changes().await?;
         }
         if self.walks.is_some() {
-            moved.begin_walks().await?;
+            moved.begin_walks();
         }
         *self = moved;
         Ok(())

@@ -3,10 +3,10 @@
 use super::WebGpu;
 use super::buffer::Buffer;
 use super::buffers::Buffers;
-use super::compile::compile;
-use super::device::{Device, refused_kernels};
+use super::compile::compile_short;
+use super::device::Device;
+use super::faults::watch;
 use super::kernels::{Kernels, Plan};
-use crate::Error;
 use wgpu::BufferUsages;
 
 /// The buffers, and the kernels that write them.
@@ -22,7 +22,8 @@ pub(super) struct Walks {
 }
 
 impl Walks {
-    fn new(gpu: &Device, kernels: Kernels, of: &Buffers, counts: [u32; 2]) -> Self {
+    fn new(gpu: &Device, of: &Buffers, counts: [u32; 2]) -> Self {
+        let kernels = compile_short(&Plan::walks(), &gpu.device);
         let [twins, starts] = counts.map(|words| gpu.buffer("walks", words as usize, BufferUsages::STORAGE));
         // The kernels find the lengths by those of the bindings.
         let [half_edges, vertices] = counts.map(|words| Some(4 * u64::from(words)));
@@ -45,22 +46,18 @@ impl Walks {
 }
 
 impl WebGpu {
-    /// Writes the adjacency now, and from now on after all that changes the triangles.
-    ///
-    /// # Errors
-    /// [`Error::BackendUnavailable`] if the compiler of the device refuses the kernels; [`Error::BackendLimit`] if there
-    /// is no memory for the buffers; [`Error::Device`].
-    pub(super) async fn begin_walks(&mut self) -> Result<(), Error> {
-        self.check_allocation().await?;
-        let mut compiled = compile(&[Plan::walks()], &self.gpu.device).await.map_err(refused_kernels)?;
-        let counts = [3 * self.params.triangles, self.params.vertices];
-        let make = || Walks::new(&self.gpu, compiled.remove(0), &self.buffers, counts);
-        let walks = self.gpu.allocated(make).await?;
-        self.bytes += walks.twins.size() + walks.starts.size();
-        self.walks = Some(walks);
-        self.gpu.checked(|| self.write_walks()).await?;
+    /// Writes the adjacency now, and from now on after all that changes the triangles. `check_allocation` tells whether
+    /// there is memory for the buffers.
+    pub(super) fn begin_walks(&mut self) {
+        let gpu = self.gpu.clone();
+        let ((), caught) = watch(&gpu.device, || {
+            let walks = Walks::new(&gpu, &self.buffers, [3 * self.params.triangles, self.params.vertices]);
+            self.bytes += walks.twins.size() + walks.starts.size();
+            self.walks = Some(walks);
+            self.write_walks();
+        });
+        self.faults.push(caught);
         self.dispatches += self.walk_dispatches();
-        Ok(())
     }
 
     /// Writes the adjacency of the present triangles, if it is asked for.
