@@ -128,7 +128,7 @@ canvas.onpointermove = ({ clientX, clientY }) => {
 };
 
 function frame(time) {
-  const [across, along] = wanted ?? [2 * Math.sin(0.5 * time), 1 + 2 * Math.sin(0.8 * time)];
+  const [across, along] = wanted ?? [2 * Math.sin(0.5 * time), 0.6 + 1.6 * Math.sin(0.8 * time)];
   device.queue.writeBuffer(wind, 0, new Float32Array([across, along, 0.3 * Math.sin(2.3 * time), 0]));
   const encoder = device.createCommandEncoder();
   const pass = encoder.beginComputePass();
@@ -141,7 +141,7 @@ function frame(time) {
   device.queue.submit([encoder.finish()]);
   session.update({ buffer: before, stride: 8 });
   camera.aspect = canvas.clientWidth / canvas.clientHeight;
-  camera.position.set(1.2, -4.2, -0.6).multiplyScalar(Math.max(1, 0.9 / camera.aspect));
+  camera.position.set(1.2, -4.2, -0.6).multiplyScalar(Math.max(1, 0.8 / camera.aspect));
   camera.lookAt(0, 0, -1);
   camera.updateMatrixWorld();
   camera.updateProjectionMatrix();

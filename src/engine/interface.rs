@@ -163,11 +163,6 @@ pub(crate) trait Engine {
     /// if they are not tracked.
     fn changes(&mut self) -> Answer<'_, Vec<u32>>;
 
-    /// Begins to keep the adjacency in buffers for kernels of the caller, on WebGPU.
-    fn give_adjacency(&mut self) -> Answer<'_, ()> {
-        Box::pin(std::future::ready(Ok(())))
-    }
-
     /// The present positions, after updates.
     fn positions(&mut self) -> Answer<'_, Positions>;
 

@@ -167,9 +167,6 @@ fn open<'a>(backend: Backend, mesh: &'a Arc<Mesh>, options: &'a Options) -> Answ
         if options.track_changes {
             engine.track_changes().await?;
         }
-        if options.adjacency {
-            engine.give_adjacency().await?;
-        }
         Ok(engine)
     })
 }

@@ -100,7 +100,7 @@ pub(crate) struct WebGpu {
     winding: u32,
     buffers: Buffers,
     /// The adjacency for the caller, if it has asked for it.
-    walks: Option<Walks>,
+    walks: Option<Box<Walks>>,
     /// The counters of the adjacency, then the signs of the triangles.
     counters: Buffer,
     /// Natively the mesh, while its triangles are those on the device: no edge has flipped.
@@ -198,11 +198,6 @@ impl Engine for WebGpu {
 
     fn changes(&mut self) -> Answer<'_, Vec<u32>> {
         Box::pin(self.read_changes())
-    }
-
-    fn give_adjacency(&mut self) -> Answer<'_, ()> {
-        self.begin_walks();
-        Box::pin(self.check_allocation())
     }
 
     fn positions(&mut self) -> Answer<'_, Positions> {
