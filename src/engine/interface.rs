@@ -206,7 +206,7 @@ pub(crate) trait Engine {
         None
     }
 
-    /// An object with the device and the buffers, as `SessionBuffers` in `src/js/types.ts`, if the engine runs on the
+    /// An object with the device and the buffers, as `SessionBuffers` in `src/js/session-buffers.ts`, if the engine runs on the
     /// browser's WebGPU; else undefined.
     #[cfg(all(target_arch = "wasm32", feature = "js"))]
     fn shared_objects(&self) -> wasm_bindgen::JsValue {

@@ -13,6 +13,7 @@ import { copyOf, itselfOf } from './given.js';
 import { copied, floatsOf, type Layout, readMesh } from './mesh.js';
 import { open, type Opened } from './open.js';
 import { resultOf } from './result.js';
+import type { SessionBuffers } from './session-buffers.js';
 import { MAKE_OPTIONS, RUN_OPTIONS, settingsOf, type Watch, watchOf } from './settings.js';
 import type { ModuleSession } from './threads.js';
 import { Turns } from './turn.js';
@@ -30,7 +31,6 @@ import type {
   Options,
   Result,
   RunOptions,
-  SessionBuffers,
   UpdateOptions,
 } from './types.js';
 import { call } from './untangle.js';

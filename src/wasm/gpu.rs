@@ -35,7 +35,10 @@ pub fn why_cpu(
 #[wasm_bindgen(js_class = Session)]
 impl JsSession {
     /// The engine's GPUDevice and its buffers, if it runs on one.
-    #[wasm_bindgen(getter, unchecked_return_type = "import('../types.js').SessionBuffers | undefined")]
+    #[wasm_bindgen(
+        getter,
+        unchecked_return_type = "import('../session-buffers.js').SessionBuffers | undefined"
+    )]
     pub fn gpu(&self) -> JsValue {
         self.get(Session::shared_objects)
     }

@@ -181,7 +181,7 @@ fn meshes_of_few_triangles() {
     // A buffer has at least four words: those behind the last half-edge and the last vertex do not count.
     for count in 0..3 {
         let triangles = [0, 1, 2, 1, 3, 2][..3 * count].to_vec();
-        let positions = vec![0.0f32, 0.0, 1.0, 0.0, 0.0, 1.0, 1.0, 1.0];
+        let positions = [0.0f32, 0.0, 1.0, 0.0, 0.0, 1.0, 1.0, 1.0];
         let mesh = Mesh::new(Dimension::Two, positions[..2 * (count + 2)].to_vec(), triangles).unwrap();
         for _ in 0..2 {
             let mut session = session(&mesh, Options::default());

@@ -11,6 +11,7 @@ use super::kernels::Kernel;
 use super::known::Known;
 use super::programs::SLICE;
 use super::steps::Step;
+use super::walks;
 use super::words::{Reserved, Words, put, reserve_ahead};
 use crate::Error;
 use crate::engine::{Answer, Census};
@@ -297,6 +298,19 @@ impl WebGpu {
             self.dispatch(pass, Kernel::Decide, self.params.tail_length);
             dispatch(pass);
         }
+    }
+
+    /// Records the kernels that write the adjacency of the present triangles, if somebody asks for it.
+    pub(super) fn record_walks(&self, encoder: &mut wgpu::CommandEncoder) {
+        if let Some(walks) = &self.walks {
+            let counts = [3 * self.params.triangles, self.params.vertices];
+            walks.record(&self.gpu, counts, encoder);
+        }
+    }
+
+    /// How many dispatches that are.
+    pub(super) fn walk_dispatches(&self) -> u64 {
+        self.walks.as_ref().map_or(0, |_| walks::DISPATCHES)
     }
 
     /// Encodes kernels that count, with zeros before them.

@@ -1,6 +1,5 @@
 //! The adjacency in buffers for kernels of the caller, which walk around vertices.
 
-use super::WebGpu;
 use super::buffer::Buffer;
 use super::buffers::Buffers;
 use super::compile::compile_short;
@@ -9,8 +8,8 @@ use super::kernels::{Kernels, Plan};
 use crate::Mesh;
 use wgpu::BufferUsages;
 
-/// Kernels that [`WebGpu::record_walks`] dispatches.
-const DISPATCHES: u64 = 2;
+/// Kernels that [`Walks::record`] dispatches.
+pub(super) const DISPATCHES: u64 = 2;
 
 /// The buffers, and the kernels that write them.
 pub(super) struct Walks {
@@ -45,25 +44,16 @@ impl Walks {
     pub(super) fn bytes(&self) -> u64 {
         self.twins.size() + self.starts.size()
     }
-}
 
-impl WebGpu {
-    /// Records the kernels that write the adjacency of the present triangles, if somebody asks for it.
-    pub(super) fn record_walks(&self, encoder: &mut wgpu::CommandEncoder) {
-        let Some(walks) = &self.walks else { return };
-        encoder.clear_buffer(&walks.starts, 0, None);
+    /// Records the kernels, behind those that change the triangles.
+    pub(super) fn record(&self, gpu: &Device, counts: [u32; 2], encoder: &mut wgpu::CommandEncoder) {
+        encoder.clear_buffer(&self.starts, 0, None);
         let mut pass = encoder.begin_compute_pass(&Default::default());
-        pass.set_bind_group(0, &walks.bindings, &[]);
-        let counts = [3 * self.params.triangles, self.params.vertices];
-        for (pipeline, count) in walks.pipelines.iter().zip(counts) {
+        pass.set_bind_group(0, &self.bindings, &[]);
+        for (pipeline, count) in self.pipelines.iter().zip(counts) {
             pass.set_pipeline(pipeline);
             // The binding of an empty buffer is not empty.
-            pass.dispatch_workgroups(self.gpu.workgroups(count).min(count), 1, 1);
+            pass.dispatch_workgroups(gpu.workgroups(count).min(count), 1, 1);
         }
-    }
-
-    /// How many dispatches that are.
-    pub(super) fn walk_dispatches(&self) -> u64 {
-        self.walks.as_ref().map_or(0, |_| DISPATCHES)
     }
 }
