@@ -125,6 +125,16 @@ impl Plan {
         }
     }
 
+    /// The kernels that write the adjacency for the caller, in the order of their dispatches.
+    pub(super) fn walks() -> Self {
+        let (read, write) = (storage(true), storage(false));
+        Self {
+            bindings: vec![read, read, write, write],
+            sources: vec![sources::walks()],
+            entries: ["find_starts", "name_starts"].map(|name| (0, name, None)).to_vec(),
+        }
+    }
+
     /// The kernels of the phases, in the order of [`Kernel`].
     pub(super) fn phases(form: Form) -> Self {
         let entries = Kernel::all(form.dimension).iter().map(|kernel| kernel.entry()).collect();
@@ -135,16 +145,6 @@ impl Plan {
     pub(super) fn tail(form: Form, size: u32) -> Self {
         let entries = vec![(0, "tail", Some(("TAIL_SIZE", f64::from(size))))];
         Self { bindings: phases_bindings(), sources: vec![sources::writes(form)], entries }
-    }
-
-    /// The kernels that write the adjacency for the caller, in the order of their dispatches.
-    pub(super) fn walks() -> Self {
-        let (read, write) = (storage(true), storage(false));
-        Self {
-            bindings: vec![read, read, write, write],
-            sources: vec![sources::walks()],
-            entries: ["find_starts", "name_starts"].map(|name| (0, name, None)).to_vec(),
-        }
     }
 
     pub(super) fn probe() -> Self {
