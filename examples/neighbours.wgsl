@@ -29,18 +29,19 @@ fn is_near(way: vec2f) -> bool {
 // Finds the neighbours of a vertex, and points that are a little further away. Returns how many, with the vertex itself;
 // more than MOST if some are lost.
 fn search(centre: u32) -> u32 {
+    let middle = place(centre);
     found[0] = centre;
     var count = 1u;
     for (var i = 0u; i < min(count, MOST); i++) {
         let start = half_edges[found[i]];
         var h = start;
         while h != NONE {
-            count = visited(indices[next(h)], centre, count);
+            count = visited(indices[next(h)], middle, count);
             let last = prev(h);
             h = twins[last];
             if h == NONE {
                 // On the boundary, the star ends with the edge of one triangle.
-                count = visited(indices[last], centre, count);
+                count = visited(indices[last], middle, count);
             }
             if h == start {
                 break;
@@ -50,9 +51,9 @@ fn search(centre: u32) -> u32 {
     return count;
 }
 
-// Keeps a vertex of the search, unless it is kept. Returns the number of points.
-fn visited(v: u32, centre: u32, count: u32) -> u32 {
-    let way = place(v) - place(centre);
+// Keeps a vertex of the search around a point, unless it is kept already. Returns the number of points.
+fn visited(v: u32, middle: vec2f, count: u32) -> u32 {
+    let way = place(v) - middle;
     // Rounding must not part a neighbour from the others.
     if dot(way, way) > 1.01 * RADIUS * RADIUS {
         return count;
