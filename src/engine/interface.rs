@@ -206,8 +206,8 @@ pub(crate) trait Engine {
         None
     }
 
-    /// An object with the device and the buffers, as `SessionBuffers` in `src/js/session-buffers.ts`, if the engine runs on the
-    /// browser's WebGPU; else undefined.
+    /// An object with the device and the buffers, as `SessionBuffers` in `src/js/session-buffers.ts`, if the engine runs
+    /// on the browser's WebGPU; else undefined.
     #[cfg(all(target_arch = "wasm32", feature = "js"))]
     fn shared_objects(&self) -> wasm_bindgen::JsValue {
         wasm_bindgen::JsValue::UNDEFINED
@@ -231,14 +231,14 @@ pub struct GpuBuffers {
     /// the words of [`Session::changes`](crate::Session::changes), one per triangle. Its usage includes `STORAGE` and
     /// `COPY_SRC`. Only read it.
     pub changes: Option<(wgpu::Buffer, u64)>,
-    /// With [`Options::adjacency`](crate::Options::adjacency): u32, one per half-edge. Half-edge `3t + k` goes from corner
-    /// `k` of triangle `t` to the next corner; its twin is the half-edge on the other side, in the opposite direction.
-    /// [`NONE`](crate::NONE) on the boundary, at an edge of three or more triangles, and between triangles of opposite
-    /// orientations. Its usage includes `STORAGE` and `COPY_SRC`. Only read it.
+    /// With [`Options::adjacency`](crate::Options::adjacency): u32, one per half-edge. Half-edge `3t + k` goes from
+    /// corner `k` of triangle `t` to the next corner; its twin is the half-edge on the other side, in the opposite
+    /// direction. [`NONE`](crate::NONE) on the boundary, at an edge of three or more triangles, and between triangles of
+    /// opposite orientations. Its usage includes `STORAGE` and `COPY_SRC`. Only read it.
     pub twins: Option<wgpu::Buffer>,
-    /// The same, one per vertex: a half-edge that starts at the vertex; the smallest without a twin, or else the smallest.
-    /// From there `twins[prev(h)]`, with `prev(h)` the half-edge before `h` in its triangle, goes to the next triangle, and
-    /// reaches all triangles of the vertex before it is the first half-edge again, or `NONE`. A vertex whose triangles are
-    /// several fans has the half-edge of one of them. `NONE` for a vertex without triangles.
+    /// The same, one per vertex: a half-edge that starts at the vertex; the smallest without a twin, or else the
+    /// smallest. From there `twins[prev(h)]`, with `prev(h)` the half-edge before `h` in its triangle, goes to the next
+    /// triangle, and reaches all triangles of the vertex before it is the first half-edge again, or `NONE`. Where the
+    /// triangles of a vertex are several fans, it reaches those of one fan. `NONE` for a vertex without triangles.
     pub vertex_half_edges: Option<wgpu::Buffer>,
 }

@@ -20,8 +20,8 @@ export interface SessionBuffers {
   /**
    * A u32 per vertex: a half-edge that starts at the vertex; the smallest without a twin, or else the smallest. From
    * there, `twins[prev(h)]`, with `prev(h)` the half-edge before h in its triangle, goes to the next triangle, and reaches
-   * all triangles of the vertex before it is the first half-edge again, or 0xffffffff. A vertex whose triangles are
-   * several fans has the half-edge of one of them. 0xffffffff for a vertex without triangles. Absent without the option
+   * all triangles of the vertex before it is the first half-edge again, or 0xffffffff. Where the triangles of a vertex are
+   * several fans, it reaches those of one fan. 0xffffffff for a vertex without triangles. Absent without the option
    * `adjacency`.
    */
   vertexHalfEdges?: GpuBuffer;
