@@ -1,6 +1,7 @@
-// A cloth that hangs in the wind: particles, and a spring along each edge of a mesh. In every frame a compute pass walks
-// around each particle for the forces of its springs, with the buffers that the option `adjacency` gives. Then an update
-// flips edges, so the springs are always between particles that are close. `npm run examples`, then open cloth.html.
+// A cloth that hangs in the wind: particles, and a spring along each edge of a mesh. In every frame a compute pass
+// walks around each particle for the forces of its springs, with the buffers that the option `adjacency` gives. Then an
+// update flips edges, so the springs are always between particles that are close. `npm run examples`, then open
+// cloth.html.
 
 import { FlipSession } from 'edgeflip';
 import { generate } from 'edgeflip/files';

@@ -1,7 +1,7 @@
-// A flock in a box: each bird turns towards the directions of all birds within a radius. A compute pass finds them by walks
-// over the Delaunay triangulation of the birds, with the buffers that the option `adjacency` gives; then an update flips
-// the edges, and the frame is drawn from the same buffers. `npm run examples`, then open flock.html; with `?check`, it
-// compares 5 frames with a search among all birds.
+// A flock in a box: each bird turns towards the directions of all birds within a radius. A compute pass finds them by
+// walks over the Delaunay triangulation of the birds, with the buffers that the option `adjacency` gives; then an
+// update flips the edges, and the frame is drawn from the same buffers. `npm run examples`, then open flock.html; with
+// `?check`, it compares 5 frames with a search among all birds.
 
 import { FlipSession } from 'edgeflip';
 import { generate } from 'edgeflip/files';
@@ -79,8 +79,8 @@ const module = device.createShaderModule({
       return x ^ (x >> 15u);
     }
 
-    // How far a vertex may move. If each vertex moves less than half of the smallest height of its triangles, no triangle
-    // turns over, and no bird leaves the box.
+    // How far a vertex may move. If each vertex moves less than half of the smallest height of its triangles, no
+    // triangle turns over, and no bird leaves the box.
     fn room(v: u32) -> f32 {
       var least = 1.0;
       let start = half_edges[v];

@@ -1,5 +1,5 @@
-//! The neighbours of each point within a radius, found on the GPU by walks over a triangulation that stays Delaunay while a
-//! vortex stirs its points. `cargo run --release --example neighbours [SIDE] [FRAMES]`
+//! The neighbours of each point within a radius, found on the GPU by walks over a triangulation that stays Delaunay
+//! while a vortex stirs its points. `cargo run --release --example neighbours [SIDE] [FRAMES]`
 
 use edgeflip::wgpu::{self, BufferUsages};
 use edgeflip::{Backend, Dimension, GpuBuffers, Mesh, Options, Reason, Session, families};
@@ -48,8 +48,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Stirs `side` times `side` points, and compares the neighbours in the last frame with a search among all points. Returns
-/// a line about them.
+/// Stirs `side` times `side` points, and compares the neighbours in the last frame with a search among all points.
+/// Returns a line about them.
 pub fn run(side: u32, frames: u32) -> Result<String, Box<dyn Error>> {
     let grid = families::grid(side as usize, 1)?;
     let width = 1.0 - 1.0 / side as f32;

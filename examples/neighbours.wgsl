@@ -1,9 +1,10 @@
-// Finds the points within RADIUS of a point by walks over a Delaunay triangulation. The program defines RADIUS; `place`, the
-// point of a vertex; and the buffers `indices`, `twins` and `half_edges` of a session with the option `adjacency`.
+// Finds the points within RADIUS of a point by walks over a Delaunay triangulation. The program defines RADIUS;
+// `place`, the point of a vertex; and the buffers `indices`, `twins` and `half_edges` of a session with the option
+// `adjacency`.
 //
-// Edges inside a disc join all points of the disc, if the triangulation has a convex outline: for two points p and q, take
-// a disc inside it that has both on its circle. If no point is inside that one, pq is an edge, or edges along the circle
-// join p and q. Else there is a point s inside it, and p and s, as well as s and q, have smaller such discs.
+// Edges inside a disc join all points of the disc, if the triangulation has a convex outline: for two points p and q,
+// take a disc inside it that has both on its circle. If no point is inside that one, pq is an edge, or edges along the
+// circle join p and q. Else there is a point s inside it, and p and s, as well as s and q, have smaller such discs.
 
 const NONE = 0xffffffffu;
 // The most points that a search keeps.
@@ -26,8 +27,8 @@ fn is_near(way: vec2f) -> bool {
     return all(abs(whole) <= vec2i(16384)) && dot(whole, whole) <= 268435456;
 }
 
-// Finds the neighbours of a vertex, and points that are a little further away. Returns how many, with the vertex itself;
-// more than MOST if some are lost.
+// Finds the neighbours of a vertex, and points that are a little further away. Returns how many, with the vertex
+// itself; more than MOST if some are lost.
 fn search(centre: u32) -> u32 {
     let middle = place(centre);
     found[0] = centre;

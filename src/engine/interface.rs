@@ -206,8 +206,8 @@ pub(crate) trait Engine {
         None
     }
 
-    /// An object with the device and the buffers, as `SessionBuffers` in `src/js/session-buffers.ts`, if the engine runs
-    /// on the browser's WebGPU; else undefined.
+    /// An object with the device and the buffers, as `SessionBuffers` in `src/js/session-buffers.ts`, if the engine
+    /// runs on the browser's WebGPU; else undefined.
     #[cfg(all(target_arch = "wasm32", feature = "js"))]
     fn shared_objects(&self) -> wasm_bindgen::JsValue {
         wasm_bindgen::JsValue::UNDEFINED
@@ -233,8 +233,8 @@ pub struct GpuBuffers {
     pub changes: Option<(wgpu::Buffer, u64)>,
     /// With [`Options::adjacency`](crate::Options::adjacency): u32, one per half-edge. Half-edge `3t + k` goes from
     /// corner `k` of triangle `t` to the next corner; its twin is the half-edge on the other side, in the opposite
-    /// direction. [`NONE`](crate::NONE) on the boundary, at an edge of three or more triangles, and between triangles of
-    /// opposite orientations. Its usage includes `STORAGE` and `COPY_SRC`. Only read it.
+    /// direction. [`NONE`](crate::NONE) on the boundary, at an edge of three or more triangles, and between triangles
+    /// of opposite orientations. Its usage includes `STORAGE` and `COPY_SRC`. Only read it.
     pub twins: Option<wgpu::Buffer>,
     /// The same, one per vertex: a half-edge that starts at the vertex; the smallest without a twin, or else the
     /// smallest. From there `twins[prev(h)]`, with `prev(h)` the half-edge before `h` in its triangle, goes to the next

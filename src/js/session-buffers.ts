@@ -13,16 +13,16 @@ export interface SessionBuffers {
   changes?: { buffer: GpuBuffer; offset: number };
   /**
    * A u32 per half-edge: the half-edge on the other side of its edge, in the opposite direction. Half-edge 3t + k goes
-   * from corner k of triangle t to the next corner. 0xffffffff on the boundary, at an edge of three or more triangles, and
-   * between triangles of opposite orientations. Absent without the option `adjacency`.
+   * from corner k of triangle t to the next corner. 0xffffffff on the boundary, at an edge of three or more triangles,
+   * and between triangles of opposite orientations. Absent without the option `adjacency`.
    */
   twins?: GpuBuffer;
   /**
    * A u32 per vertex: a half-edge that starts at the vertex; the smallest without a twin, or else the smallest. From
-   * there, `twins[prev(h)]`, with `prev(h)` the half-edge before h in its triangle, goes to the next triangle, and reaches
-   * all triangles of the vertex before it is the first half-edge again, or 0xffffffff. Where the triangles of a vertex are
-   * several fans, it reaches those of one fan. 0xffffffff for a vertex without triangles. Absent without the option
-   * `adjacency`.
+   * there, `twins[prev(h)]`, with `prev(h)` the half-edge before h in its triangle, goes to the next triangle, and
+   * reaches all triangles of the vertex before it is the first half-edge again, or 0xffffffff. Where the triangles of a
+   * vertex are several fans, it reaches those of one fan. 0xffffffff for a vertex without triangles. Absent without the
+   * option `adjacency`.
    */
   vertexHalfEdges?: GpuBuffer;
 }

@@ -402,7 +402,7 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
    * {@link setPositions} says when it keeps them. With `'auto'`, call this again after each call of the session: if the
    * GPU fails or cannot accept new positions, the session continues on the CPU. The device is the `device` of the options, else one that all sessions
    * share. With the option `trackChanges`, `changes` has a u32 per triangle as {@link changes}, from a byte of a buffer
-   * on; with the option `adjacency`, `twins` and `vertexHalfEdges` are there, and right after every call of the session.
+   * on; with the option `adjacency`, `twins` and `vertexHalfEdges` are there, right after every call of the session.
    * The usage of these buffers includes STORAGE and COPY_SRC. Only read them.
    */
   gpu(): Promise<SessionBuffers | undefined> {

@@ -101,7 +101,8 @@ fn session(mesh: &Mesh, options: Options) -> Session {
     block_on(Session::new(mesh, options)).unwrap()
 }
 
-/// Checks a mesh before and after a run, and after each of some updates. Returns the kinds of its vertices, and the flips.
+/// Checks a mesh before and after a run, and after each of some updates. Returns the kinds of its vertices, and the
+/// flips.
 fn moves(mesh: &Mesh, options: Options) -> ([usize; 2], u64) {
     let (vertices, stride) = (mesh.vertex_count(), mesh.dimension().stride());
     let mut session = session(mesh, options);

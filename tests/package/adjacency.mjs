@@ -20,7 +20,7 @@ function twinsOf(indices) {
   return twins;
 }
 
-/** Throws unless both lists are those of the triangles. Returns how many vertices have one fan, and how many several. */
+/** Throws unless both lists are those of the triangles. Returns how many vertices have one fan, how many several. */
 function check(indices, twins, starts) {
   const differs = twinsOf(indices).findIndex((twin, h) => twin !== twins[h]);
   if (differs >= 0) throw new Error(`half-edge ${differs} has the twin ${twins[differs]}`);
@@ -83,7 +83,7 @@ async function meshes(generate) {
   };
 }
 
-/** Moves the meshes, and checks the buffers after each call. Returns the flips, and the kinds of vertices of each mesh. */
+/** Moves the meshes, and checks the buffers after each call. Returns the flips and the kinds of vertices. */
 export async function walks({ FlipSession, generate, frames }) {
   const answer = {};
   for (const [name, mesh] of Object.entries(await meshes(generate))) {
