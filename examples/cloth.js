@@ -142,7 +142,7 @@ function frame(time) {
   device.queue.submit([encoder.finish()]);
   session.update({ buffer: before, stride: 8 });
   camera.aspect = canvas.clientWidth / canvas.clientHeight;
-  camera.position.set(1.2, -4.2, -0.6).multiplyScalar(Math.max(1, 0.8 / camera.aspect));
+  camera.position.set(1.2, -4.2, -0.6).multiplyScalar(Math.max(1, 0.95 / camera.aspect));
   camera.lookAt(0, 0, -1);
   camera.updateMatrixWorld();
   camera.updateProjectionMatrix();
