@@ -52,25 +52,17 @@ const SHADER = `
     return vec4f(mix(corner.color, ink, 0.55 * line), 1);
   }`;
 
-/** Returns a function that draws a frame; it takes a matrix of 16 numbers, column by column. */
-export function drawer(canvas, { device, positions, indices }, dimension, triangles) {
+/**
+ * Returns a function that shows a frame: it calls `record` with a render pass, and with 1 if the page is dark, else 0.
+ * `format` and `state` are what the pipelines need.
+ */
+export function screen(canvas, device) {
   const context = canvas.getContext('webgpu');
   const format = navigator.gpu.getPreferredCanvasFormat();
   context.configure({ device, format });
-  const module = device.createShaderModule({ code: SHADER });
-  const pipeline = device.createRenderPipeline({
-    layout: 'auto',
-    vertex: { module, constants: { DIMENSION: dimension } },
-    fragment: { module, targets: [{ format }] },
-    depthStencil: { format: 'depth24plus', depthCompare: 'less', depthWriteEnabled: true },
-    multisample: { count: 4 },
-  });
-  const view = device.createBuffer({ size: 80, usage: GPUBufferUsage.UNIFORM | GPUBufferUsage.COPY_DST });
-  const entries = [view, positions, indices].map((buffer, binding) => ({ binding, resource: { buffer } }));
-  const bindings = device.createBindGroup({ layout: pipeline.getBindGroupLayout(0), entries });
   const dark = matchMedia('(prefers-color-scheme: dark)');
   let textures = [];
-  return (matrix) => {
+  const show = (record) => {
     const [width, height] = [canvas.clientWidth, canvas.clientHeight].map((n) => Math.max(1, n * devicePixelRatio));
     if (textures[0]?.width !== Math.floor(width) || textures[0].height !== Math.floor(height)) {
       [canvas.width, canvas.height] = [width, height];
@@ -80,7 +72,6 @@ export function drawer(canvas, { device, positions, indices }, dimension, triang
         device.createTexture({ size: [canvas.width, canvas.height], format, usage, sampleCount: 4 }),
       );
     }
-    device.queue.writeBuffer(view, 0, new Float32Array([...matrix, Number(dark.matches), 0, 0, 0]));
     const background = dark.matches ? [0.07, 0.09, 0.11, 1] : [0.97, 0.98, 0.98, 1];
     const encoder = device.createCommandEncoder();
     const pass = encoder.beginRenderPass({
@@ -100,10 +91,32 @@ export function drawer(canvas, { device, positions, indices }, dimension, triang
         depthStoreOp: 'discard',
       },
     });
-    pass.setPipeline(pipeline);
-    pass.setBindGroup(0, bindings);
-    pass.draw(3 * triangles);
+    record(pass, Number(dark.matches));
     pass.end();
     device.queue.submit([encoder.finish()]);
   };
+  const depthStencil = { format: 'depth24plus', depthCompare: 'less-equal', depthWriteEnabled: true };
+  return Object.assign(show, { format, state: { depthStencil, multisample: { count: 4 } } });
+}
+
+/** Returns a function that draws a frame; it takes a matrix of 16 numbers, column by column. */
+export function drawer(canvas, { device, positions, indices }, dimension, triangles) {
+  const show = screen(canvas, device);
+  const module = device.createShaderModule({ code: SHADER });
+  const pipeline = device.createRenderPipeline({
+    layout: 'auto',
+    vertex: { module, constants: { DIMENSION: dimension } },
+    fragment: { module, targets: [{ format: show.format }] },
+    ...show.state,
+  });
+  const view = device.createBuffer({ size: 80, usage: GPUBufferUsage.UNIFORM | GPUBufferUsage.COPY_DST });
+  const entries = [view, positions, indices].map((buffer, binding) => ({ binding, resource: { buffer } }));
+  const bindings = device.createBindGroup({ layout: pipeline.getBindGroupLayout(0), entries });
+  return (matrix) =>
+    show((pass, isDark) => {
+      device.queue.writeBuffer(view, 0, new Float32Array([...matrix, isDark, 0, 0, 0]));
+      pass.setPipeline(pipeline);
+      pass.setBindGroup(0, bindings);
+      pass.draw(3 * triangles);
+    });
 }

@@ -43,28 +43,29 @@ export function mover({ device, positions }, mesh, code) {
   };
 }
 
-/** Calls `frame` with the seconds since the start until the page is closed, and shows the counters once a second. */
-export function play(session, output, frame) {
+/**
+ * Calls `frame` with the seconds since the start until the page is closed, and shows the counters once a second. `more`
+ * may add to their text.
+ */
+export function play(session, output, frame, more = () => '') {
   const start = performance.now();
-  let [frames, last, shown] = [0, start, false];
+  let [frames, last, flipped, isAsked] = [0, start, 0, false];
+  const show = async (count, seconds) => {
+    const counters = await session.counters();
+    const each = Math.round((counters.flips - flipped) / count);
+    flipped = counters.flips;
+    const left = counters.remaining.stopped ?? 0;
+    const added = await more(counters);
+    output.value = `${(count / seconds).toFixed(0)} frames a second, ${each} flips a frame, ${left} edges left${added}`;
+    isAsked = false;
+  };
   const next = (now) => {
     frame((now - start) / 1000);
     frames++;
-    if (now - last > 1000) {
-      const rate = (1000 * frames) / (now - last);
+    if (now - last > 1000 && !isAsked) {
+      isAsked = true;
+      show(frames, (now - last) / 1000).catch((error) => (output.value = error.message));
       [frames, last] = [0, now];
-      if (!shown) {
-        shown = true;
-        void session.counters().then(
-          ({ flips, updates, remaining }) => {
-            shown = false;
-            const left = remaining.stopped ?? 0;
-            const each = Math.round(flips / updates);
-            output.value = `${rate.toFixed(0)} frames a second, ${each} flips a frame, ${left} edges left`;
-          },
-          (error) => (output.value = error.message),
-        );
-      }
     }
     requestAnimationFrame(next);
   };

@@ -208,24 +208,12 @@ pub(crate) trait Engine {
         None
     }
 
-    /// The buffers that a page can draw from, if the engine runs on the browser's WebGPU.
+    /// An object with the device and the buffers, as `SessionBuffers` in `src/js/session-buffers.ts`, if the engine
+    /// runs on the browser's WebGPU; else undefined.
     #[cfg(all(target_arch = "wasm32", feature = "js"))]
-    fn shared_objects(&self) -> Option<SharedObjects> {
-        None
+    fn shared_objects(&self) -> wasm_bindgen::JsValue {
+        wasm_bindgen::JsValue::UNDEFINED
     }
-}
-
-/// The browser's objects behind an engine.
-#[cfg(all(target_arch = "wasm32", feature = "js"))]
-pub(crate) struct SharedObjects {
-    /// GPUDevice.
-    pub(crate) device: wasm_bindgen::JsValue,
-    /// GPUBuffer: f32, 2 or 3 per vertex; 64-bit floats are rounded to the nearest f32.
-    pub(crate) positions: wasm_bindgen::JsValue,
-    /// GPUBuffer: u32, 3 per triangle.
-    pub(crate) triangles: wasm_bindgen::JsValue,
-    /// GPUBuffer with the changes, and their offset in bytes, if they are tracked.
-    pub(crate) changes: Option<(wasm_bindgen::JsValue, u32)>,
 }
 
 /// What a program needs to write the positions on the GPU, and to draw from the buffers. See
@@ -245,4 +233,14 @@ pub struct GpuBuffers {
     /// the words of [`Session::changes`](crate::Session::changes), one per triangle. Its usage includes `STORAGE` and
     /// `COPY_SRC`. Only read it.
     pub changes: Option<(wgpu::Buffer, u64)>,
+    /// With [`Options::adjacency`](crate::Options::adjacency): u32, one per half-edge. Half-edge `3t + k` goes from
+    /// corner `k` of triangle `t` to the next corner; its twin is the half-edge on the other side, in the opposite
+    /// direction. [`NONE`](crate::NONE) on the boundary, at an edge of three or more triangles, and between triangles
+    /// of opposite orientations. Its usage includes `STORAGE` and `COPY_SRC`. Only read it.
+    pub twins: Option<wgpu::Buffer>,
+    /// The same, one per vertex: a half-edge that starts at the vertex; the smallest without a twin, or else the
+    /// smallest. From there `twins[prev(h)]`, with `prev(h)` the half-edge before `h` in its triangle, goes to the next
+    /// triangle, and reaches all triangles of the vertex before it is the first half-edge again, or `NONE`. Where the
+    /// triangles of a vertex are several fans, it reaches those of one fan. `NONE` for a vertex without triangles.
+    pub vertex_half_edges: Option<wgpu::Buffer>,
 }

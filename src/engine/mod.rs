@@ -19,8 +19,6 @@ pub(crate) use cpu::{Cpu, Lawson};
 pub(crate) use gpu::{Form, Upload, self_test};
 #[cfg(all(not(target_arch = "wasm32"), feature = "gpu"))]
 pub use interface::GpuBuffers;
-#[cfg(all(target_arch = "wasm32", feature = "js"))]
-pub(crate) use interface::SharedObjects;
 #[cfg(feature = "gpu")]
 use interface::positions_of;
 pub(crate) use interface::{Answer, Census, EdgeCounts, Engine, MOST_ITERATIONS, Moved};

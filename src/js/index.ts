@@ -20,6 +20,7 @@ export { EdgeflipError, type ErrorCode } from './error.js';
 export { init } from './load.js';
 export type { ModuleSource, Sources } from './module.js';
 export { FlipSession } from './session.js';
+export type { SessionBuffers } from './session-buffers.js';
 export { makeDelaunaySync } from './sync.js';
 export type * from './types.js';
 

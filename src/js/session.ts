@@ -13,6 +13,7 @@ import { copyOf, itselfOf } from './given.js';
 import { copied, floatsOf, type Layout, readMesh } from './mesh.js';
 import { open, type Opened } from './open.js';
 import { resultOf } from './result.js';
+import type { SessionBuffers } from './session-buffers.js';
 import { MAKE_OPTIONS, RUN_OPTIONS, settingsOf, type Watch, watchOf } from './settings.js';
 import type { ModuleSession } from './threads.js';
 import { Turns } from './turn.js';
@@ -30,7 +31,6 @@ import type {
   Options,
   Result,
   RunOptions,
-  SessionBuffers,
   UpdateOptions,
 } from './types.js';
 import { call } from './untangle.js';
@@ -267,12 +267,12 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
   #update(session: ModuleSession, { positions, buffer, iterations }: Update): void | Promise<void> {
     this.#moved();
     if (buffer) {
-      const { device, positionBuffer } = session;
-      if (!device || !positionBuffer) {
+      const { gpu } = session;
+      if (!gpu) {
         const message = `option buffer: the session is on ${session.backend}, not on a device that has buffers`;
         throw new EdgeflipError('invalid-option', message);
       }
-      gather(device, buffer, positionBuffer, this.#layout);
+      gather(gpu.device, buffer, gpu.positions, this.#layout);
     }
     return session.update(positions, iterations);
   }
@@ -403,18 +403,11 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
    * {@link setPositions} says when it keeps them. With `'auto'`, call this again after each call of the session: if the
    * GPU fails or cannot accept new positions, the session continues on the CPU. The device is the `device` of the options, else one that all sessions
    * share. With the option `trackChanges`, `changes` has a u32 per triangle as {@link changes}, from a byte of a buffer
-   * on; its usage includes STORAGE and COPY_SRC.
+   * on; with the option `adjacency`, `twins` and `vertexHalfEdges` are there, right after every call of the session.
+   * The usage of these buffers includes STORAGE and COPY_SRC. Only read them.
    */
   gpu(): Promise<SessionBuffers | undefined> {
-    return this.#call(async ({ device, positionBuffer: positions, indexBuffer: indices, changeBuffer }) => {
-      if (!device || !positions || !indices) return undefined;
-      return {
-        device,
-        positions,
-        indices,
-        ...(changeBuffer && { changes: { buffer: changeBuffer[0], offset: changeBuffer[1] } }),
-      };
-    });
+    return this.#call(async ({ gpu }) => gpu);
   }
 
   /** Frees memory and buffers after the present call. Waiting calls fail with `freed`. */

@@ -131,10 +131,7 @@ export class ThreadsSession implements ModuleSession {
   readonly isAway = true;
   readonly isSettled = true;
   stays = false;
-  readonly device = undefined;
-  readonly positionBuffer = undefined;
-  readonly changeBuffer = undefined;
-  readonly indexBuffer = undefined;
+  readonly gpu = undefined;
   readonly #pool: Pool;
   readonly #memory: WebAssembly.Memory;
   readonly #session: number;

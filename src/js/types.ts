@@ -180,6 +180,11 @@ export interface Options {
    */
   trackChanges?: boolean | undefined;
   /**
+   * Keeps `twins` and `vertexHalfEdges` of `gpu` of a session, for kernels that walk around vertices: 12 bytes per
+   * triangle and 4 per vertex. Only on WebGPU; the other engines have no buffers. Default: false.
+   */
+  adjacency?: boolean | undefined;
+  /**
    * The largest number of threads of the CPU engine, 1 to 256. Default: one per core. A mesh of fewer than 65,536
    * triangles runs on one thread, a larger one on at most one thread per 4,096 triangles. Several threads need shared
    * memory: Node has it, and so does a cross-origin isolated page. The result is the same for any number.
@@ -223,6 +228,7 @@ export const OPTION_KINDS = {
   weld: 'attributes',
   order: ['reproducible', 'any'],
   trackChanges: 'flag',
+  adjacency: 'flag',
   threads: 'whole',
   device: 'device',
 } as const satisfies { [Name in keyof Options]-?: KindOf<NonNullable<Options[Name]>> };
@@ -267,17 +273,6 @@ export interface UpdateOptions {
    * `'any'`, every number but 0 flips to the end.
    */
   iterations?: number | undefined;
-}
-
-/** The device of a session, and its buffers there. */
-export interface SessionBuffers {
-  device: GpuDevice;
-  /** 2 or 3 f32 per vertex. */
-  positions: GpuBuffer;
-  /** 3 u32 per triangle. */
-  indices: GpuBuffer;
-  /** A u32 per triangle from byte `offset` on, a multiple of 256. Absent without the option `trackChanges`. */
-  changes?: { buffer: GpuBuffer; offset: number };
 }
 
 /** What the updates of a session have done, and what is left. */
@@ -325,6 +320,7 @@ export type SyncOptions = Omit<
   | 'device'
   | 'threads'
   | 'trackChanges'
+  | 'adjacency'
   | 'weld'
   | 'reorient'
   | 'constraints'

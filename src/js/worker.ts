@@ -44,6 +44,7 @@ export type { Audit, Problems } from './audit.js';
 export { EDGE_STATES, type EdgeState } from './edge-states.js';
 export { EdgeflipError, type ErrorCode } from './error.js';
 export type { ModuleSource, Sources } from './module.js';
+export type { SessionBuffers } from './session-buffers.js';
 export type * from './types.js';
 
 /** The options of a session in the worker. */

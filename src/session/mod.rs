@@ -51,9 +51,9 @@ pub(crate) use untangler::Untangler;
 pub(crate) use untangler::set_untangler;
 use web_time::Instant;
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
-use {crate::engine::SharedObjects, js_sys::Uint32Array};
-#[cfg(all(target_arch = "wasm32", feature = "js"))]
 pub(crate) use {choice::why_cpu, cost::Job, open_gpu::send};
+#[cfg(all(target_arch = "wasm32", feature = "js"))]
+use {js_sys::Uint32Array, wasm_bindgen::JsValue};
 
 /// A mesh on an engine, step by step.
 pub struct Session {
@@ -345,9 +345,9 @@ impl Session {
         &self.constraints.left_out
     }
 
-    /// The buffers that a page can draw from.
+    /// The device and the buffers that a page can use, or undefined.
     #[cfg(all(target_arch = "wasm32", feature = "js"))]
-    pub(crate) fn shared_objects(&self) -> Option<SharedObjects> {
+    pub(crate) fn shared_objects(&self) -> JsValue {
         self.engine.shared_objects()
     }
 

@@ -91,7 +91,8 @@ pub(super) async fn engine(
     let takes_software = options.backend == Backend::Gpu;
     let form = form_of(mesh.dimension(), mesh.positions().is_double(), options);
     let mut device = tested(options.given_device(), takes_software, form).await?;
-    let upload = Upload::new(EngineKind::Gpu, mesh.clone(), thresholds)?;
+    let mut upload = Upload::new(EngineKind::Gpu, mesh.clone(), thresholds)?;
+    upload.gives_adjacency = options.adjacency;
     if upload.form() != form {
         device = tested(options.given_device(), takes_software, upload.form()).await?;
     }

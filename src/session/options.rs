@@ -74,6 +74,9 @@ pub struct Options {
     /// Whether a session keeps, for each triangle, the update that changed it last:
     /// [`Session::changes`](crate::Session::changes).
     pub track_changes: bool,
+    /// Whether a session on WebGPU keeps the adjacency in buffers, for kernels that walk around vertices: `twins` and
+    /// `vertex_half_edges` of [`GpuBuffers`](crate::GpuBuffers), 12 bytes per triangle and 4 per vertex.
+    pub adjacency: bool,
     /// Threads of the CPU engine, at most [`MOST_THREADS`]; `None`: one per core. The engine starts at most one thread
     /// per 4,096 triangles, and runs meshes of fewer than 65,536 triangles on one thread. The result does not depend on
     /// the number. Lawson's algorithm flips on several threads only if every vertex has one fan. Without the feature
@@ -177,6 +180,7 @@ impl Default for Options {
             untangle: None,
             order: Order::Reproducible,
             track_changes: false,
+            adjacency: false,
             threads: None,
             #[cfg(any(
                 all(target_arch = "wasm32", feature = "js"),

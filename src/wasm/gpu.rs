@@ -4,7 +4,7 @@ use super::options::{self, JsOptions};
 use super::session::JsSession;
 use super::values::{dimension_of, thrown};
 use crate::Session;
-use crate::engine::{self, SharedObjects};
+use crate::engine;
 pub use crate::engine::{GpuDevice, WebGl2Module};
 use crate::session::{self, Job};
 use wasm_bindgen::prelude::*;
@@ -34,38 +34,12 @@ pub fn why_cpu(
 
 #[wasm_bindgen(js_class = Session)]
 impl JsSession {
-    /// The engine's GPUDevice, if it runs on one.
-    #[wasm_bindgen(getter, unchecked_return_type = "import('../types.js').GpuDevice | undefined")]
-    pub fn device(&self) -> JsValue {
-        self.shared_objects().map_or(JsValue::UNDEFINED, |objects| objects.device)
-    }
-
-    /// The GPUBuffer with the positions.
-    #[wasm_bindgen(getter, js_name = positionBuffer, unchecked_return_type = "import('../types.js').GpuBuffer | undefined")]
-    pub fn position_buffer(&self) -> JsValue {
-        self.shared_objects().map_or(JsValue::UNDEFINED, |objects| objects.positions)
-    }
-
-    /// The GPUBuffer with the triangles.
-    #[wasm_bindgen(getter, js_name = indexBuffer, unchecked_return_type = "import('../types.js').GpuBuffer | undefined")]
-    pub fn index_buffer(&self) -> JsValue {
-        self.shared_objects().map_or(JsValue::UNDEFINED, |objects| objects.triangles)
-    }
-}
-
-#[wasm_bindgen(js_class = Session)]
-impl JsSession {
-    /// The GPUBuffer with the changes and their offset in bytes, if they are tracked.
-    #[wasm_bindgen(getter, js_name = changeBuffer, unchecked_return_type = "[import('../types.js').GpuBuffer, number] | undefined")]
-    pub fn change_buffer(&self) -> JsValue {
-        let changes = self.shared_objects().and_then(|objects| objects.changes);
-        changes
-            .map_or(JsValue::UNDEFINED, |(buffer, offset)| js_sys::Array::of2(&buffer, &offset.into()).into())
-    }
-}
-
-impl JsSession {
-    fn shared_objects(&self) -> Option<SharedObjects> {
+    /// The engine's GPUDevice and its buffers, if it runs on one.
+    #[wasm_bindgen(
+        getter,
+        unchecked_return_type = "import('../session-buffers.js').SessionBuffers | undefined"
+    )]
+    pub fn gpu(&self) -> JsValue {
         self.get(Session::shared_objects)
     }
 }

@@ -75,6 +75,7 @@ pub(crate) fn without_lists(given: &JsOptions) -> Result<Options, Error> {
         max_iterations: number("maxIterations").map(|count| count as u32),
         order: if text("order").as_deref() == Some("any") { Order::Any } else { Order::Reproducible },
         track_changes: given.get("trackChanges").is_truthy(),
+        adjacency: given.get("adjacency").is_truthy(),
         untangle: given.get("untangle").as_bool(),
         threads: number("threads").map(|count| threads(count as usize)).transpose()?,
         #[cfg(feature = "js")]

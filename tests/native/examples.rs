@@ -8,6 +8,10 @@ mod file;
 #[path = "../../examples/moving.rs"]
 #[allow(dead_code, reason = "its main reads the arguments of a command")]
 mod moving;
+#[cfg(feature = "gpu")]
+#[path = "../../examples/neighbours.rs"]
+#[allow(dead_code, reason = "its main reads the arguments of a command")]
+mod neighbours;
 #[path = "../../examples/one_call.rs"]
 mod one_call;
 #[path = "../../examples/step_by_step.rs"]
@@ -46,8 +50,18 @@ fn untangle() -> Result<(), Error> {
 #[test]
 #[cfg(feature = "gpu")]
 fn moving() {
-    let line = moving::run(20, 10).unwrap();
+    let line = moving::run(20, 10, 0).unwrap();
     assert!(line.contains("722 triangles") && line.contains(", 0 edges left"), "{line}");
+    let line = moving::run(20, 10, 20).unwrap();
+    assert!(line.ends_with(", 0 triangles turned over") && !line.contains(" 0 flips"), "{line}");
+}
+
+#[test]
+#[cfg(feature = "gpu")]
+fn neighbours() {
+    let line = neighbours::run(30, 40).unwrap();
+    assert!(line.starts_with("900 points, ") && line.contains(", 0 counts wrong; "), "{line}");
+    assert!(line.ends_with(", 0 edges left to flip") && !line.contains(" 0 flips"), "{line}");
 }
 
 #[test]

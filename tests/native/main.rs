@@ -16,6 +16,7 @@ mod runs;
 mod simulation;
 
 // The levels.
+mod adjacency;
 mod areas;
 mod audit;
 mod cli;

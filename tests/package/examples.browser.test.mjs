@@ -71,7 +71,7 @@ test('three.js draws a geometry that became Delaunay', async () => {
  * triangles. Returns the flips so far.
  */
 async function checkedFrame(frame) {
-  const { session, mesh, frame: draw } = globalThis.example;
+  const { session, mesh, frame: draw, iterations } = globalThis.example;
   const FlipSession = session.constructor;
   const options = { backend: 'cpu', maxNormalAngle: mesh.dimension === 3 ? 30 : 10 };
   if (!globalThis.cpu) {
@@ -89,7 +89,7 @@ async function checkedFrame(frame) {
   await staging.mapAsync(GPUMapMode.READ);
   const moved = new Float32Array(staging.getMappedRange().slice(0));
   staging.destroy();
-  cpu.update({ positions: moved });
+  cpu.update({ positions: moved, iterations });
   const [triangles, expected] = [await session.triangles(), await cpu.triangles()];
   if (triangles.some((vertex, i) => vertex !== expected[i])) throw new Error(`frame ${frame}: other triangles`);
   const counted = [counters, await cpu.counters()].map((counters) => JSON.stringify(counters));
@@ -113,6 +113,8 @@ for (const [name, size] of [
   ['sheet', full ? 101 : 51],
   ['waves', full ? 100 : 50],
   ['relax', full ? 101 : 51],
+  ['flock', full ? 101 : 51],
+  ['cloth', full ? 81 : 41],
 ]) {
   test(`${name}: the mesh moves and is checked in every frame`, async () => {
     const { page, problems } = await open(`${name}.html?paused&size=${size}`);
@@ -122,6 +124,27 @@ for (const [name, size] of [
     await page.close();
   });
 }
+
+test('flock: walks find the neighbours that brute force finds, and no bird leaves the box', async () => {
+  const size = full ? 101 : 51;
+  const { page, problems } = await open(`flock.html?paused&size=${size}`);
+  await page.waitForFunction(() => globalThis.example);
+  for (let frame = 0; frame < frames; frame++) {
+    const { sums, counters } = await page.evaluate(async () => {
+      const { check, session } = globalThis.example;
+      return { sums: await check(1), counters: await session.counters() };
+    });
+    const { found, ...faults } = sums;
+    assert.deepEqual(faults, { lost: 0, wrong: 0 });
+    assert.ok(found > 5 * size ** 2, `${found} neighbours`);
+    assert.deepEqual([counters.inverted, counters.remaining.stopped ?? 0], [0, 0]);
+  }
+  assert.match(await page.textContent('#check'), /^[\d,]+ neighbours are those that a search among all birds finds$/);
+  const outside = await page.evaluate(async () => [...(await globalThis.example.session.problems()).outside]);
+  assert.deepEqual(outside, []);
+  assert.deepEqual(problems, []);
+  await page.close();
+});
 
 if (full) {
   test('the sheet moves in Firefox', async () => {

@@ -124,6 +124,8 @@ export const cases = {
     session.free();
     check(changes.includes(0) && changes.includes(1), `trackChanges has no effect: ${changes.slice(0, 9)}`);
   },
+  // Only WebGPU has the buffers: `adjacency.browser.test.mjs` tests them.
+  adjacency: (given) => isRefused(given, 'adjacency', 1),
   order: async ({ makeDelaunay, mesh, base }) => {
     if (base.backend !== 'cpu') return isRefused({ makeDelaunay, mesh, base }, 'order', 'any');
     const { iterations, flips } = await makeDelaunay(mesh, { ...base, order: 'any' });

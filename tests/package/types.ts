@@ -56,7 +56,8 @@ export async function use(mesh: Mesh<Uint32Array>, signal: AbortSignal, device?:
   console.log(lostEdges.length);
   const gpu = await session.gpu();
   const buffer: GpuBuffer | undefined = gpu?.indices;
-  console.log(buffer);
+  const around: GpuBuffer | undefined = gpu?.vertexHalfEdges;
+  console.log(buffer, around);
   const states: EdgeState[] = Array.from(await session.edgeStates(), (number) => EDGE_STATES[number] ?? 'boundary');
   console.log(states);
   const { remainingEdges } = await session.verify();

@@ -59,6 +59,8 @@ pub(crate) struct Upload {
     fixed: Option<Vec<u32>>,
     /// The limit for the deviation, in the layout of `state.wgsl`.
     pub(crate) deviation: [u32; 4],
+    /// Whether the WebGPU engine keeps the adjacency for kernels of the caller.
+    pub(crate) gives_adjacency: bool,
 }
 
 impl Upload {
@@ -77,7 +79,7 @@ impl Upload {
             let ends = if fit(quick) { quick } else { with(exponents(floats.iter().map(|&x| x.into()))) };
             if fit(ends) {
                 let deviation = deviation_words(deviation(ends.1), None);
-                return Ok(Self { mesh, thresholds, fixed: None, deviation });
+                return Ok(Self { mesh, thresholds, fixed: None, deviation, gives_adjacency: false });
             }
         }
         let ends = with(exponents(mesh.positions().iter()));
@@ -86,7 +88,7 @@ impl Upload {
             Error::BackendLimit { backend, message }
         })?;
         let deviation = deviation_words(deviation(ends.1), Some(ends.0));
-        Ok(Self { mesh, thresholds, fixed: Some(fixed), deviation })
+        Ok(Self { mesh, thresholds, fixed: Some(fixed), deviation, gives_adjacency: false })
     }
 
     pub(crate) fn form(&self) -> Form {

@@ -64,7 +64,8 @@ fn layout_entry(ty: BindingType, binding: u32) -> JsValue {
     object(&[("binding", binding.into()), ("visibility", visibility.into()), ("buffer", buffer)])
 }
 
-fn object(fields: &[(&str, JsValue)]) -> JsValue {
+/// A plain object.
+pub(super) fn object(fields: &[(&str, JsValue)]) -> JsValue {
     let object = Object::new();
     for (name, value) in fields {
         // Setting a field of a new object does not fail.

@@ -128,6 +128,16 @@ impl Plan {
         }
     }
 
+    /// The kernels that write the adjacency for the caller, in the order of their dispatches.
+    pub(super) fn walks() -> Self {
+        let (read, write) = (storage(true), storage(false));
+        Self {
+            bindings: vec![read, read, write, write],
+            sources: vec![sources::walks()],
+            entries: ["find_starts", "name_starts"].map(|name| (0, name, None)).to_vec(),
+        }
+    }
+
     /// The kernels of the phases, in the order of [`Kernel`].
     pub(super) fn phases(form: Form) -> Self {
         let entries = Kernel::all(form.dimension).iter().map(|kernel| kernel.entry()).collect();

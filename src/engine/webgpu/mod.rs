@@ -48,6 +48,7 @@ mod steps;
 #[cfg(test)]
 mod tests;
 mod untangle;
+mod walks;
 mod words;
 
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
@@ -61,8 +62,6 @@ pub(crate) use shared::{GivenDevice, Handle};
 
 #[cfg(not(target_arch = "wasm32"))]
 use super::GpuBuffers;
-#[cfg(all(target_arch = "wasm32", feature = "js"))]
-use super::SharedObjects;
 use super::{Answer, Census, EdgeCounts, Engine, Moved};
 #[cfg(test)]
 use crate::NONE;
@@ -82,6 +81,9 @@ use kernels::Plan;
 use known::Known;
 use params::Params;
 use std::sync::Arc;
+use walks::Walks;
+#[cfg(all(target_arch = "wasm32", feature = "js"))]
+use wasm_bindgen::JsValue;
 use words::{Reserved, vector};
 
 /// A mesh on the device.
@@ -100,6 +102,8 @@ pub(crate) struct WebGpu {
     /// How many rounds that untangle are dispatches of their own.
     rounds: u32,
     buffers: Buffers,
+    /// The adjacency for the caller, if it has asked for it.
+    walks: Option<Box<Walks>>,
     /// The counters of the adjacency, then the signs of the triangles.
     counters: Buffer,
     /// Natively the mesh, while its triangles are those on the device: no edge has flipped.
@@ -240,20 +244,30 @@ impl Engine for WebGpu {
             positions: self.buffers.floats.as_ref().unwrap_or(&self.buffers.positions).given(),
             triangles: self.buffers.triangles.given(),
             changes: self.changes_offset().map(|offset| (self.buffers.topology.given(), offset)),
+            twins: self.walks.as_ref().map(|walks| walks.twins.given()),
+            vertex_half_edges: self.walks.as_ref().map(|walks| walks.starts.given()),
         })
     }
 
     #[cfg(all(target_arch = "wasm32", feature = "js"))]
-    fn shared_objects(&self) -> Option<SharedObjects> {
-        let object = |buffer: &Buffer| Some(buffer.given().as_webgpu()?.into());
-        Some(SharedObjects {
-            device: self.gpu.device.as_webgpu()?.into(),
-            positions: object(self.buffers.floats.as_ref().unwrap_or(&self.buffers.positions))?,
-            triangles: object(&self.buffers.triangles)?,
-            changes: self
-                .changes_offset()
-                .and_then(|offset| Some((object(&self.buffers.topology)?, offset as u32))),
-        })
+    fn shared_objects(&self) -> JsValue {
+        let Some(device) = self.gpu.device.as_webgpu() else { return JsValue::UNDEFINED };
+        let object = |buffer: &Buffer| JsValue::from(buffer.given().as_webgpu());
+        let mut fields = vec![
+            ("device", device.into()),
+            ("positions", object(self.buffers.floats.as_ref().unwrap_or(&self.buffers.positions))),
+            ("indices", object(&self.buffers.triangles)),
+        ];
+        if let Some(offset) = self.changes_offset() {
+            let buffer = object(&self.buffers.topology);
+            let changes = [("buffer", buffer), ("offset", (offset as u32).into())];
+            fields.push(("changes", ahead::object(&changes)));
+        }
+        if let Some(walks) = &self.walks {
+            fields.push(("twins", object(&walks.twins)));
+            fields.push(("vertexHalfEdges", object(&walks.starts)));
+        }
+        ahead::object(&fields)
     }
 }
 

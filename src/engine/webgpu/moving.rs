@@ -58,11 +58,13 @@ impl WebGpu {
             self.encode_pass(&mut encoder, &|pass| {
                 self.record_iterations(pass, iterations, None);
             });
+            self.record_walks(&mut encoder);
             gpu.submit(encoder.finish());
         });
         gpu.keep_watch(faults);
         self.params.first = self.params.first.wrapping_add(iterations);
         self.dispatches += (Kernel::preparation(self.form.dimension).len() + 4 * iterations as usize) as u64;
+        self.dispatches += self.walk_dispatches();
         Ok(())
     }
 

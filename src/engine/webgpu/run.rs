@@ -11,6 +11,7 @@ use super::kernels::Kernel;
 use super::known::Known;
 use super::programs::SLICE;
 use super::steps::Step;
+use super::walks;
 use super::words::{Reserved, Words, put, reserve_ahead};
 use crate::Error;
 use crate::engine::{Answer, Census};
@@ -63,6 +64,7 @@ impl WebGpu {
         let tail = self.kernels.tail.get();
         self.params.tail_iterations = if tail.is_some() { (count - batch).min(longest) } else { 0 };
         self.dispatches += u64::from(4 * batch + TAIL_DISPATCHES * self.params.tail_iterations.min(1));
+        self.dispatches += self.walk_dispatches();
         // The counts of a run's end follow at once, so that nobody has to wait for them later.
         let ends = !self.waits || (IS_NATIVE && count > 1 && self.ends_within(batch));
         if ends {
@@ -74,6 +76,7 @@ impl WebGpu {
                 self.begin_history();
             }
             let mut encoder = self.encode(&iterate);
+            self.record_walks(&mut encoder);
             if !self.waits {
                 self.encode_counts(&mut encoder, &|pass| self.record_counts(pass));
             }
@@ -295,6 +298,19 @@ impl WebGpu {
             self.dispatch(pass, Kernel::Decide, self.params.tail_length);
             dispatch(pass);
         }
+    }
+
+    /// Records the kernels that write the adjacency of the present triangles, if somebody asks for it.
+    pub(super) fn record_walks(&self, encoder: &mut wgpu::CommandEncoder) {
+        if let Some(walks) = &self.walks {
+            let counts = [3 * self.params.triangles, self.params.vertices];
+            walks.record(&self.gpu, counts, encoder);
+        }
+    }
+
+    /// How many dispatches that are.
+    pub(super) fn walk_dispatches(&self) -> u64 {
+        self.walks.as_ref().map_or(0, |_| walks::DISPATCHES)
     }
 
     /// Encodes kernels that count, with zeros before them.

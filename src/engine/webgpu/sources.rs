@@ -33,6 +33,11 @@ pub(super) fn adjacency() -> String {
     compose::compose("webgpu", "adjacency", &[], &text_of)
 }
 
+/// The shader that writes the adjacency for the caller.
+pub(super) fn walks() -> String {
+    compose::compose("webgpu", "walks", &[], &text_of)
+}
+
 /// The shader that finds drivers whose loops end too early.
 pub(super) fn probe() -> String {
     compose::compose("webgpu", "probe", &[], &text_of)
@@ -157,7 +162,7 @@ mod tests {
                 assert_eq!(entries(file, &choices, &short), entries(file, &choices, FILES), "{file}");
             }
         }
-        for file in ["adjacency", "probe"] {
+        for file in ["adjacency", "probe", "walks"] {
             assert_eq!(entries(file, &[], &short), entries(file, &[], FILES), "{file}");
         }
     }

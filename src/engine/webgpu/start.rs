@@ -17,6 +17,7 @@ use super::params::{
 use super::run::IS_NATIVE;
 use super::shared::Handle;
 use super::steps::Step;
+use super::walks::Walks;
 use crate::Error;
 use crate::engine::gpu::probe::SHORT_STAR;
 use crate::engine::gpu::upload::Upload;
@@ -50,8 +51,12 @@ impl WebGpu {
         let (sent, mut faults) = gpu.take_sent();
         #[cfg(not(all(target_arch = "wasm32", feature = "js")))]
         let (sent, mut faults) = (Sent::default(), Vec::new());
-        let create = || (Buffers::new(&gpu, &upload, sent), Scratch::new(&gpu, &upload.mesh));
-        let (((buffers, written), scratch), created) = watch(&gpu.device, create);
+        let create = || {
+            let (buffers, written) = Buffers::new(&gpu, &upload, sent);
+            let walks = upload.gives_adjacency.then(|| Walks::new(&gpu, &upload.mesh, &buffers));
+            (buffers, written, walks, Scratch::new(&gpu, &upload.mesh))
+        };
+        let ((buffers, written, walks, scratch), created) = watch(&gpu.device, create);
         faults.push(created);
         faults.extend(buffers.upload(&gpu, &upload, written).await);
         let mut start = Instant::now();
@@ -61,7 +66,7 @@ impl WebGpu {
             #[cfg(not(target_arch = "wasm32"))]
             let travelling = gpu.queue.submit([]);
             let params = Params::new(&upload, &TopologyOffsets::new(mesh), gpu.ends_loops_early);
-            let bytes = buffers.bytes() + scratch.bytes();
+            let bytes = buffers.bytes() + scratch.bytes() + walks.as_ref().map_or(0, |walks| walks.bytes());
             let mut encoder = gpu.device.create_command_encoder(&Default::default());
             buffers.clear(&mut encoder);
             adjacency::record(&gpu, mesh, &buffers, &scratch, &mut encoder);
@@ -77,6 +82,7 @@ impl WebGpu {
                 counts: EdgeCounts::default(),
                 bytes,
                 buffers,
+                walks,
                 counters: scratch.counters,
                 input: None,
                 unsettled: None,
@@ -90,6 +96,7 @@ impl WebGpu {
                 adjacency_ms: 0.0,
                 gpu: gpu.clone(),
             };
+            result.record_walks(&mut encoder);
             result.record_preparation(&mut encoder);
             let commands = encoder.finish();
             #[cfg(not(target_arch = "wasm32"))]
@@ -100,6 +107,7 @@ impl WebGpu {
         };
         let (mut result, caught) = watch(&gpu.device, begin);
         result.faults.push(caught);
+        result.dispatches += result.walk_dispatches();
         if waits {
             result.check_allocation().await?;
         }
@@ -159,6 +167,7 @@ impl WebGpu {
     fn prepare(&self) {
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
         self.record_preparation(&mut encoder);
+        self.record_walks(&mut encoder);
         self.gpu.submit(encoder.finish());
     }
 
@@ -223,7 +232,7 @@ impl WebGpu {
     /// rare: they have components of both windings, or triangles of both signs in one component.
     async fn add_windings(&mut self, mesh: &Mesh, twins: &[u32]) -> Result<(), Error> {
         let clockwise = Outline::new(mesh.triangles(), twins).winding(mesh).clockwise;
-        self.dispatches += Kernel::preparation(self.form.dimension).len() as u64;
+        self.dispatches += Kernel::preparation(self.form.dimension).len() as u64 + self.walk_dispatches();
         (self.winding, self.params.winding) = (WINDING_BITS, WINDING_BITS);
         let calls = || {
             self.gpu.write(&self.buffers.topology, &clockwise);
@@ -275,7 +284,8 @@ impl WebGpu {
         mesh: Arc<Mesh>,
         twins: Option<Vec<u32>>,
     ) -> Result<(), Error> {
-        let upload = Upload::new(self.backend(), mesh, self.thresholds)?;
+        let mut upload = Upload::new(self.backend(), mesh, self.thresholds)?;
+        upload.gives_adjacency = self.walks.is_some();
         if upload.form() == self.form {
             let fans = match &twins {
                 Some(twins) if self.params.fans_length > 0 => {
@@ -296,7 +306,7 @@ impl WebGpu {
                 self.prepare();
             };
             self.gpu.checked(calls).await?;
-            self.dispatches = 0;
+            self.dispatches = self.walk_dispatches();
             return self.begin(upload.mesh).await;
         }
         let mut moved = Self::begun(self.gpu.clone(), upload, self.waits).await?;
