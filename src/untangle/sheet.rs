@@ -264,6 +264,14 @@ impl<'a> Sheet<'a> {
 
     /// Puts a vertex into triangle `t`, with two slots of its own, as [`divide`].
     pub(super) fn split(&mut self, t: u32, &Loose { vertex, slots: [s, u], .. }: &Loose) {
+        for side in 3 * t..3 * t + 3 {
+            if self.twin(side) != NONE {
+                self.touch(triangle_of(self.twin(side)));
+            }
+        }
+        for slot in [t, s, u] {
+            self.touch(slot);
+        }
         divide(&mut self.triangles, &mut self.twins, [t, s, u], vertex);
     }
 
