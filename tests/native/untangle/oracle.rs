@@ -147,19 +147,16 @@ pub(super) fn obstacle(points: &[Point], boundary: &[[u32; 2]], winding: i128) -
 
 /// Whether a locked edge meets another one, the boundary or a vertex. Then not all of them can be edges.
 pub(super) fn blocks(points: &[Point], boundary: &[[u32; 2]], locked: &[[u32; 2]]) -> bool {
-    let at = |v: u32| points[v as usize];
-    let turn = |a: u32, b: u32, c: u32| area(at(a), at(b), at(c)).signum();
+    let turn = |a: u32, b: u32, c: u32| {
+        let [a, b, c] = [a, b, c].map(|v| points[v as usize]);
+        area(a, b, c).signum()
+    };
     let crosses = |[a, b]: [u32; 2], [c, d]: [u32; 2]| {
         turn(a, b, c) * turn(a, b, d) < 0 && turn(c, d, a) * turn(c, d, b) < 0
     };
-    locked.iter().enumerate().any(|(i, &edge)| {
-        let meets_vertex = (0..points.len() as u32).any(|v| {
-            let [p, q, r] = [edge[0], edge[1], v].map(at);
-            !edge.contains(&v)
-                && area(p, q, r) == 0
-                && (p[0] - r[0]).signum() * (q[0] - r[0]).signum() <= 0
-                && (p[1] - r[1]).signum() * (q[1] - r[1]).signum() <= 0
-        });
+    locked.iter().enumerate().any(|(i, &edge @ [a, b])| {
+        let meets_vertex = (0..points.len() as u32)
+            .any(|v| !edge.contains(&v) && turn(a, b, v) == 0 && is_beside(points, a, b, v));
         meets_vertex || locked[i + 1..].iter().chain(boundary).any(|&other| crosses(edge, other))
     })
 }
