@@ -52,7 +52,6 @@ impl Signs {
 }
 
 /// The components of a mesh, joined by its twins, and the boundary of each. Flips change neither.
-#[derive(Clone)]
 pub(crate) struct Outline {
     /// The component of each triangle.
     component: Vec<u32>,

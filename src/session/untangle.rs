@@ -7,10 +7,10 @@ use std::sync::Arc;
 use {
     crate::mesh::adjacency::Adjacency,
     crate::mesh::half_edge,
-    crate::mesh::named_edges::{half_edges, ordered},
+    crate::mesh::named_edges::half_edges,
     crate::session::locks,
     crate::system::threads::Threads,
-    crate::untangle::{Constant, Untangled, may_be_tangled, untangled},
+    crate::untangle::may_be_tangled,
 };
 
 /// What a session needs to repair its mesh.
@@ -56,13 +56,13 @@ pub(crate) fn begin(mesh: &mut Arc<Mesh>, options: &mut Options) -> Result<Vec<[
     options.locked_edges = locks::edges(mesh, options)?;
     let mut twins = Adjacency::of_triangles(mesh.vertex_count(), mesh.triangles(), &Threads::one()).twins;
     half_edge::lock(&mut twins, &half_edges(mesh, &options.locked_edges)?);
-    let constant = Constant::new(mesh, &twins);
-    let Some(Untangled { slots, lost }) = untangled(mesh, &twins, &constant, Vec::new()) else {
+    let locks = (&*options.locked_edges, options.locked_edges.len());
+    let Some(repaired) = Untangler::default().repaired(mesh, &twins, locks, &[])? else {
         return Ok(Vec::new());
     };
-    *mesh = Arc::new(Mesh::clone(mesh).with_slots(&slots, &mut twins));
+    *mesh = Arc::new(Mesh::clone(mesh).with_slots(&repaired.slots, &mut twins));
     // The triangles have moved, so these lists name others now. Their edges are locked by name.
     (options.locked_triangles, options.groups) = (Vec::new(), Vec::new());
-    options.locked_edges.retain(|&edge| lost.binary_search(&ordered(edge)).is_err());
-    Ok(lost)
+    options.locked_edges = repaired.locked_edges;
+    Ok(repaired.lost)
 }

@@ -7,7 +7,6 @@ use crate::system::threads::Threads;
 use crate::{Mesh, NONE};
 
 /// What no move and no repair changes.
-#[derive(Clone)]
 pub(crate) struct Constant {
     pub(super) outline: Outline,
     /// The number of triangles of each component.

@@ -38,9 +38,9 @@ struct Location {
 }
 
 impl Sheet<'_> {
-    /// Puts all vertices back. Returns how many of them had no triangle with their point: then there is no triangulation.
-    /// `flips`: whether edges flip in between, so that many vertices do not make long triangles.
-    pub(super) fn put_back(&mut self, claims: &mut Claims, flips: bool) -> usize {
+    /// Puts all vertices back. Where one has no triangle with its point, there is no triangulation. `flips`: whether edges
+    /// flip in between, so that many vertices do not make long triangles.
+    pub(super) fn put_back(&mut self, claims: &mut Claims, flips: bool) {
         let mut waiting = std::mem::take(&mut self.loose);
         if waiting.len() > MANY {
             let codes = codes(self.mesh, &Threads::one());
@@ -103,7 +103,6 @@ impl Sheet<'_> {
             let near = self.filled(loose.near);
             self.split(near, loose);
         }
-        strays.len()
     }
 
     /// Puts a vertex where it belongs. On an edge, the edge flips, because one of the three triangles has no area. It does
