@@ -5,12 +5,8 @@ use crate::{Dimension, Error, Mesh, Options};
 use std::sync::Arc;
 #[cfg(not(all(target_arch = "wasm32", feature = "js-session")))]
 use {
-    crate::mesh::adjacency::Adjacency,
-    crate::mesh::half_edge,
-    crate::mesh::named_edges::half_edges,
-    crate::session::locks,
-    crate::system::threads::Threads,
-    crate::untangle::may_be_tangled,
+    crate::mesh::adjacency::Adjacency, crate::mesh::half_edge, crate::mesh::named_edges::half_edges,
+    crate::session::locks, crate::system::threads::Threads, crate::untangle::may_be_tangled,
 };
 
 /// What a session needs to repair its mesh.

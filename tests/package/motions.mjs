@@ -1,4 +1,4 @@
-// Six motions of a mesh in the plane, in whole units so that tests/native/folds.rs has the same: two sheets of opposite
+// Six motions of a mesh in the plane, in whole units so that every engine has the same places: two sheets of opposite
 // winding, some of whose edges are locked. Every engine has to give the same triangles after every update.
 
 import { sheet, UNITS } from './folds.mjs';
