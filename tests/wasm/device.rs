@@ -108,6 +108,11 @@ pub fn code_of(error: &JsValue) -> String {
     Reflect::get(error, &"code".into()).unwrap().as_string().unwrap()
 }
 
+/// An object that a session shares, by its name in `SessionBuffers`.
+pub fn shared(session: &JsSession, name: &str) -> JsValue {
+    Reflect::get(&session.gpu(), &name.into()).unwrap()
+}
+
 pub fn class_of(value: &JsValue) -> String {
     Object::from(value.clone()).constructor().name().into()
 }
@@ -143,11 +148,11 @@ async fn a_session_runs_on_the_device_of_the_page() {
     err(&device);
     let session = create(&mesh, "webgpu", &device).await.unwrap();
     assert!(navigator_is_itself());
-    assert_eq!((session.backend().as_str(), session.device()), ("webgpu", device.clone()));
+    assert_eq!((session.backend().as_str(), shared(&session, "device")), ("webgpu", device.clone()));
     while session.step().await.unwrap().is_truthy() {}
     let triangles = expected(&mesh).await;
     assert_eq!(triangles_of(&session).await, triangles);
-    let buffer = session.index_buffer();
+    let buffer = shared(&session, "indices");
     assert_eq!(Uint32Array::from(words(&device, &buffer).await).to_vec(), triangles);
 
     // The vertices move, the buffers stay.
@@ -157,7 +162,7 @@ async fn a_session_runs_on_the_device_of_the_page() {
     session.set_positions(positions_array(&moved)).await.unwrap();
     while session.advance().await.unwrap().is_truthy() {}
     assert_eq!(triangles_of(&session).await, expected(&moved).await);
-    assert_eq!(session.index_buffer(), buffer);
+    assert_eq!(shared(&session, "indices"), buffer);
     let (in_order, alone) = (session.iterations() > 0, stop(&device).await);
     assert!(in_order && alone.is_truthy(), "each error of the page has reached the page, and nothing else");
 
@@ -166,7 +171,7 @@ async fn a_session_runs_on_the_device_of_the_page() {
     drop(session);
     let session = create(&mesh, "webgpu", &device).await.unwrap();
     assert_eq!(shaders(&device), 12);
-    let copy = words(&device, &session.index_buffer()).await;
+    let copy = words(&device, &shared(&session, "indices")).await;
     assert_eq!(Uint32Array::from(copy).to_vec(), mesh.triangles());
 
     // The page does not see errors of our own calls.
