@@ -42,10 +42,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("{frames} frames, {ITERATIONS} iterations each{}", if checks { ", checked" } else { "" });
     println!();
     println!(
-        "| mesh | speed | triangles | flips a frame | % of edges | GPU ms a frame, median | mean | wall ms a frame | \
+        "| mesh | speed | triangles | flips a frame | % of edges | GPU ms a frame, median | with `untangle: false` | mean | wall ms a frame | \
          left at the end | turned over | a whole job from arrays, ms | checked |"
     );
-    println!("|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---|");
+    println!("|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---|");
     for spec in &specs {
         let (name, speed) = spec.split_once(':').ok_or("write FAMILY:SPEED")?;
         let mesh = Arc::new(families::by_name(name)?);
@@ -56,13 +56,18 @@ fn main() -> Result<(), Box<dyn Error>> {
             (None, Dimension::Two) => Motion::Wave { speed: speed.parse()?, number: 30.0, height: 0.0133 },
             (None, Dimension::Three) => Motion::Wave { speed: speed.parse()?, number: 6.0, height: 0.1 },
         };
-        let mut moving = Moving::new(&gpu, &mesh, motion)?;
+        let mut moving = Moving::new(&gpu, &mesh, motion, None)?;
         let row = if checks { check(&mut moving, &mesh, frames)? } else { measure(&mut moving, frames)? };
+        let flips_alone = if checks || mesh.dimension() == Dimension::Three {
+            "–".to_owned()
+        } else {
+            measure(&mut Moving::new(&gpu, &mesh, motion, Some(false))?, frames)?.gpu_median
+        };
         let counters = block_on(moving.session.counters())?;
         let edges = 1.5 * mesh.triangle_count() as f64;
         let flips = counters.flips as f64 / counters.updates as f64;
         println!(
-            "| {name} | {speed} | {} | {flips:.0} | {:.3} | {} | {} | {} | {} | {} | {:.2} | {} |",
+            "| {name} | {speed} | {} | {flips:.0} | {:.3} | {} | {flips_alone} | {} | {} | {} | {} | {:.2} | {} |",
             mesh.triangle_count(),
             100.0 * flips / edges,
             row.gpu_median,

@@ -24,7 +24,7 @@ pub fn run(side: u32, frames: u32, percent: u32) -> Result<String, Box<dyn Error
         0 => Motion::Wave { speed: 0.05, number: 30.0, height: 0.0133 },
         _ => Motion::Walk { step: percent as f32 / (100 * side) as f32 },
     };
-    let mut moving = Moving::new(&gpu, &mesh, motion)?;
+    let mut moving = Moving::new(&gpu, &mesh, motion, None)?;
     let start = Instant::now();
     for frame in 0..frames {
         moving.frame(frame, 4, |_| (), |_| ())?;

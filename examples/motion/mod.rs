@@ -58,9 +58,16 @@ pub struct Moving {
 }
 
 impl Moving {
-    /// Makes the mesh Delaunay at rest.
-    pub fn new(device: &GpuDevice, mesh: &Arc<Mesh>, motion: Motion) -> Result<Self, Box<dyn Error>> {
-        let options = Options { backend: Backend::Gpu, device: Some(device.clone()), ..Options::default() };
+    /// Makes the mesh Delaunay at rest. `untangle` is the option of the session.
+    pub fn new(
+        device: &GpuDevice,
+        mesh: &Arc<Mesh>,
+        motion: Motion,
+        untangle: Option<bool>,
+    ) -> Result<Self, Box<dyn Error>> {
+        let device_of_caller = Some(device.clone());
+        let options =
+            Options { backend: Backend::Gpu, device: device_of_caller, untangle, ..Options::default() };
         let session = block_on(async {
             let mut session = Session::new(mesh.clone(), options).await?;
             session.run(|_, _| std::ops::ControlFlow::Continue(())).await?;

@@ -8,6 +8,7 @@
 #import state
 
 const MOST: u32 = 16u;
+const FIRST_MOST: u32 = 5u;
 const LARGE: u32 = 64u;
 const BIAS: u32 = 4u;
 const NEVER: u32 = 15u;
@@ -21,6 +22,11 @@ var<private> ring: array<u32, MOST>;
 // For each side or chord of the link, from its first corner to its last, a byte: MOST times how few turned triangles fill
 // the part between them, plus the third corner of its triangle.
 var<private> chords: array<u32, MOST * MOST / 4u>;
+
+// The most triangles of a star that is lifted in this round.
+fn most() -> u32 {
+    return min(MOST, FIRST_MOST + number);
+}
 
 // Reads the star of the vertex that a corner starts at. Returns whether the vertex can be lifted.
 fn read_star(corner: u32) -> bool {
@@ -36,7 +42,7 @@ fn read_star(corner: u32) -> bool {
         corners[min(degree, MOST - 1u)] = h;
         ring[min(degree, MOST - 1u)] = u;
         turned |= select(0u, 1u << degree, area < UNDECIDED_AREA);
-        is_whole = degree < MOST && u != v && !has_several_fans(u) && entry < LOCKED && (turned & 1u) == 1u &&
+        is_whole = degree < most() && u != v && !has_several_fans(u) && entry < LOCKED && (turned & 1u) == 1u &&
             area != UNDECIDED_AREA && (area == POSITIVE_AREA || h / 3u >= corner / 3u);
         degree++;
         h = entry;

@@ -98,7 +98,8 @@ fn untangle(@builtin(local_invocation_index) local: u32) {
         }
         if local == 0u {
             let is_busy = atomicExchange(&busy, 0u) == 1u;
-            following = select(select(NONE, LIFTS, number < LIFTS), min(number + 1u, HOME), is_busy);
+            let goes_on = is_busy || (number < LIFTS && most() < MOST);
+            following = select(select(NONE, LIFTS, number < LIFTS), min(number + 1u, HOME), goes_on);
         }
     }
 }

@@ -11,6 +11,7 @@ use crate::engine::Answer;
 #[cfg(not(target_arch = "wasm32"))]
 use crate::system::threads::Threads;
 use futures_channel::oneshot;
+use std::future::ready;
 use std::ops::Range;
 #[cfg(test)]
 use std::sync::atomic::Ordering::Relaxed;
@@ -68,6 +69,23 @@ pub(super) struct PendingRead {
 }
 
 impl PendingRead {
+    /// The faults of the submission, for others to wait for.
+    pub(super) fn take_caught(&mut self) -> Caught {
+        std::mem::replace(&mut self.caught, Box::pin(ready(None)))
+    }
+
+    /// The words of the first source, or none if it has failed; the read itself, if it has not ended.
+    pub(super) fn ended(mut self, gpu: &Device) -> Result<Option<Vec<u32>>, Self> {
+        match self.receiver.try_recv() {
+            Ok(None) => Err(self),
+            Ok(Some(Ok(()))) => {
+                let back = ReadBack { gpu, staging: Some(self.staging), ranges: self.ranges };
+                Ok(back.words(0).ok())
+            }
+            _ => Ok(None),
+        }
+    }
+
     /// Waits for the device.
     ///
     /// # Errors

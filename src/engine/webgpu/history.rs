@@ -12,6 +12,7 @@ pub(super) const TAIL: u32 = 256;
 pub(super) const SHORT_TAIL: u32 = 4;
 
 // The layout of the history in words, as in `state.wgsl`.
+pub(super) const TURNED: usize = 3;
 pub(super) const COUNTS: usize = 11;
 pub(super) const AREAS: usize = 8;
 pub(super) const SEVERAL_FANS: usize = 12;

@@ -81,6 +81,7 @@ use kernels::Plan;
 use known::Known;
 use params::Params;
 use std::sync::Arc;
+use untangle::Turned;
 use walks::Walks;
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 use wasm_bindgen::JsValue;
@@ -99,6 +100,7 @@ pub(crate) struct WebGpu {
     topology_words: u32,
     /// The winding, once the host knows it.
     winding: u32,
+    turned: Turned,
     /// How many rounds that untangle are dispatches of their own.
     rounds: u32,
     buffers: Buffers,

@@ -45,23 +45,19 @@ impl WebGpu {
         self.params.winding = self.winding;
         self.params.deviation = deviation_words(self.thresholds.deviation.into(), None);
         self.params.untangles = untangles.into();
-        if untangles {
-            self.dispatches += 2 * u64::from(self.rounds) + 1;
-        }
-        let gpu = self.gpu.clone();
-        let ((), faults) = watch(&gpu.device, || {
+        let caught = self.submit_frame(&|this| {
             if let Some(numbers) = numbers {
-                gpu.write(&self.buffers.positions, bytemuck::cast_slice(numbers));
+                this.gpu.write(&this.buffers.positions, bytemuck::cast_slice(numbers));
             }
-            let mut encoder = gpu.device.create_command_encoder(&Default::default());
-            self.record_preparation(&mut encoder);
-            self.encode_pass(&mut encoder, &|pass| {
-                self.record_iterations(pass, iterations, None);
+            let mut encoder = this.gpu.device.create_command_encoder(&Default::default());
+            this.record_preparation(&mut encoder);
+            this.encode_pass(&mut encoder, &|pass| {
+                this.record_iterations(pass, iterations, None);
             });
-            self.record_walks(&mut encoder);
-            gpu.submit(encoder.finish());
+            this.record_walks(&mut encoder);
+            encoder
         });
-        gpu.keep_watch(faults);
+        self.gpu.keep_watch(caught);
         self.params.first = self.params.first.wrapping_add(iterations);
         self.dispatches += (Kernel::preparation(self.form.dimension).len() + 4 * iterations as usize) as u64;
         self.dispatches += self.walk_dispatches();

@@ -2,34 +2,101 @@
 
 use super::WebGpu;
 use super::compile::compile_now;
+use super::copies::{PendingRead, Source};
 use super::device::Device;
+use super::faults::{Caught, watch};
+use super::history::TURNED;
 use super::kernels::Plan;
 use super::steps::Step;
 
-/// Rounds with dispatches of their own on a device whose loops end early: all but the last ones, whose number is not known.
-/// It has to be that of `untangle.wgsl`.
-pub(super) const MOST_ROUNDS: u32 = 30;
+/// Rounds with dispatches of their own on a device whose loops end early: all but the last ones, whose number is not
+/// known. It has to be that of `untangle.wgsl`. One workgroup does the others.
+pub(super) const ALL_ROUNDS: u32 = 30;
 
-/// The same elsewhere. One workgroup does the rest.
-const WIDE_ROUNDS: u32 = 1;
+/// The same elsewhere if many triangles were turned over. The rounds after these find little to do.
+const MANY_ROUNDS: u32 = 22;
 
-/// The most workgroups of such a round: enough for a large GPU, and few to begin in vain.
-const MOST_WORKGROUPS: u32 = 128;
+/// The same if few were.
+const FEW_ROUNDS: u32 = 1;
+
+/// So many are many.
+const MANY: u32 = 2048;
+
+/// The fewest workgroups of such a round: enough to keep a large GPU busy, and few to begin in vain.
+const FEW_WORKGROUPS: u32 = 128;
 
 /// Triangles for each invocation of half a round on a device whose loops end early. If half of all triangles are turned
 /// over, it has so few of them that its loops have tens of thousands of rounds. Software GPUs begin workgroups slowly.
 const SHARE: u32 = 32;
 
-/// How many rounds are dispatches of their own.
-pub(super) fn rounds(gpu: &Device) -> u32 {
-    if gpu.ends_loops_early { MOST_ROUNDS } else { WIDE_ROUNDS }
+/// How many triangles one of the last updates has found turned over. The host is told without a wait, and chooses the
+/// dispatches of the rounds by it. Results do not depend on it.
+#[derive(Default)]
+pub(super) struct Turned {
+    count: u32,
+    read: Option<PendingRead>,
+    #[cfg(test)]
+    rounds: Option<u32>,
+}
+
+impl Turned {
+    /// Takes in a read that has ended. Returns whether none is on its way.
+    fn advance(&mut self, gpu: &Device) -> bool {
+        let ended = self.read.take().map(|read| read.ended(gpu));
+        if let Some(Err(read)) = ended {
+            self.read = Some(read);
+        } else if let Some(Ok(Some(words))) = ended {
+            self.count = words[0];
+        }
+        self.read.is_none()
+    }
 }
 
 impl WebGpu {
     /// So many rounds get dispatches of their own.
     #[cfg(test)]
     pub(crate) fn set_wide_rounds(&mut self, rounds: u32) {
-        self.rounds = rounds;
+        self.turned.rounds = Some(rounds);
+    }
+
+    /// Chooses the rounds of an update that have dispatches of their own.
+    fn choose_rounds(&mut self) {
+        self.rounds = match self.turned.count {
+            _ if self.gpu.ends_loops_early => ALL_ROUNDS,
+            ..MANY => FEW_ROUNDS,
+            _ => MANY_ROUNDS,
+        };
+        #[cfg(test)]
+        if let Some(rounds) = self.turned.rounds {
+            self.rounds = rounds;
+        }
+        self.dispatches += 2 * u64::from(self.rounds) + 1;
+    }
+
+    /// Submits the commands of an update. If it untangles, the host asks for the number of turned triangles.
+    pub(super) fn submit_frame(&mut self, record: &dyn Fn(&Self) -> wgpu::CommandEncoder) -> Caught {
+        let gpu = self.gpu.clone();
+        if self.params.untangles > 0 {
+            let asks = !gpu.ends_loops_early && self.turned.advance(&gpu);
+            self.choose_rounds();
+            if asks {
+                let source = Source { buffer: &self.buffers.history, first: TURNED, words: 1 };
+                let mut read = gpu.submit_and_map(&|| record(self), &[source]);
+                let caught = read.take_caught();
+                self.turned.read = Some(read);
+                return caught;
+            }
+        }
+        watch(&gpu.device, || gpu.submit(record(self).finish())).1
+    }
+
+    /// The workgroups of a round.
+    fn workgroups_of(&self, round: u32) -> u32 {
+        if self.gpu.ends_loops_early {
+            return self.gpu.workgroups(self.params.triangles.div_ceil(SHARE));
+        }
+        // Each round leaves about half of the work of the round before.
+        self.gpu.workgroups(3 * (self.turned.count >> round)).max(FEW_WORKGROUPS)
     }
 
     /// Untangles before the embedded stars are marked, and after the signs of all triangles are known.
@@ -40,16 +107,10 @@ impl WebGpu {
         let compile =
             || compile_now(&Plan::untangle(self.form, self.gpu.tail_size), &self.gpu.device).pipelines;
         let [half, all] = &self.kernels.untangle.get_or_init(compile)[..] else { return };
-        let triangles = self.params.triangles;
-        let groups = if self.gpu.ends_loops_early {
-            self.gpu.workgroups(triangles.div_ceil(SHARE))
-        } else {
-            self.gpu.workgroups(triangles).min(MOST_WORKGROUPS)
-        };
         pass.set_pipeline(half);
         for index in 0..2 * self.rounds {
             self.at_step(pass, Step::Iterate(index));
-            pass.dispatch_workgroups(groups, 1, 1);
+            pass.dispatch_workgroups(self.workgroups_of(index / 2), 1, 1);
         }
         self.at_step(pass, Step::Iterate(2 * self.rounds));
         pass.set_pipeline(all);

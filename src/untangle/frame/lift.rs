@@ -12,6 +12,10 @@ use std::cmp::Ordering;
 /// The most triangles of a star that is lifted.
 pub(super) const MOST: usize = 16;
 
+/// The same in the first round. It grows by one from round to round, so that few large stars are left when their turn
+/// comes. They take the most work, and a GPU waits for the slowest.
+pub(super) const FIRST_MOST: u32 = 5;
+
 /// The most steps around two vertices that look for a common edge.
 pub(super) const LARGE: u32 = 64;
 
@@ -39,12 +43,17 @@ type Parts = [[usize; 3]; MOST];
 /// The cost of a chord that would join two vertices a second time.
 pub(super) const NEVER: u16 = 15;
 
+/// The most triangles of a star that is lifted in a round.
+pub(super) fn most(round: u32) -> usize {
+    MOST.min((FIRST_MOST + round) as usize)
+}
+
 impl Frame<'_> {
     /// Finds the corners of a triangle, if it is turned, whose vertices may be lifted, and the keys of these. Of the turned
     /// triangles around a vertex, the lowest claims for it.
     pub(super) fn find_candidates(&self, triangle: u32, claims: &Claims, found: &mut Vec<(u32, u32)>) {
         for h in 3 * triangle..3 * triangle + 3 {
-            let Some(star) = self.candidate(h) else { continue };
+            let Some(star) = self.candidate(h, claims.most()) else { continue };
             let cost = star.cost(&self.plan(&star));
             if cost < NEVER {
                 let gain = star.turned.count_ones() + BIAS;
@@ -70,7 +79,7 @@ impl Frame<'_> {
         // If its triangle has changed by now, this is another vertex, which has not claimed for itself, or none.
         let vertex = self.vertex(corner);
         let key = if vertex == NONE { None } else { claims.own(vertex, self.name(vertex)) }?;
-        let star = self.candidate(corner)?;
+        let star = self.candidate(corner, claims.most())?;
         if !claims.have(&star.ring[..star.degree], key) {
             return None;
         }
@@ -83,10 +92,10 @@ impl Frame<'_> {
         Some(Loose { vertex, slots, at: near, target: NONE })
     }
 
-    /// The star of the vertex that `corner` starts at, if it is whole, not too large and without locked edges, and the
-    /// triangle of `corner` is the lowest turned one. A vertex with several fans stays, and so do its neighbours, so that its
+    /// The star of the vertex that `corner` starts at, if it is whole, of at most `most` triangles and without locked edges,
+    /// and the triangle of `corner` is the lowest turned one. A vertex with several fans stays, and so do its neighbours, so that its
     /// fans keep their anchors.
-    fn candidate(&self, corner: u32) -> Option<Candidate> {
+    fn candidate(&self, corner: u32, most: usize) -> Option<Candidate> {
         let v = self.vertex(corner);
         if v == NONE {
             return None;
@@ -96,7 +105,7 @@ impl Frame<'_> {
         let mut h = corner;
         while h != corner || star.degree == 0 {
             let (t, u) = (triangle_of(h), self.vertex(next(h)));
-            if star.degree == MOST || u == v || self.fans.has_several(v) || self.fans.has_several(u) {
+            if star.degree == most || u == v || self.fans.has_several(v) || self.fans.has_several(u) {
                 return None;
             }
             star.corners[star.degree] = h;

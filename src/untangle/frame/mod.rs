@@ -15,12 +15,13 @@ use std::cmp::Ordering;
 
 /// Numbers that the shader has, too.
 #[cfg(test)]
-pub(crate) const CONSTANTS: [(&str, u32); 9] = [
+pub(crate) const CONSTANTS: [(&str, u32); 10] = [
     ("LIFTS", rounds::LIFTS),
     ("PUTS", rounds::PUTS),
     ("STRAYS", rounds::STRAYS),
     ("KEY_BITS", rounds::KEY_BITS),
     ("MOST", lift::MOST as u32),
+    ("FIRST_MOST", lift::FIRST_MOST),
     ("LARGE", lift::LARGE),
     ("BIAS", lift::BIAS),
     ("NEVER", lift::NEVER as u32),

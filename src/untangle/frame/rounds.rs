@@ -15,7 +15,7 @@
 //! No lift makes an edge between vertices that have one: it looks for it in both stars, and nobody else makes an edge at a
 //! vertex that it has claimed. So two edges never join the same vertices, and the link of a vertex does not meet itself.
 
-use super::{Frame, Loose};
+use super::{Frame, Loose, lift};
 use crate::NONE;
 use crate::system::threads::{self, Threads};
 use std::ops::Range;
@@ -86,7 +86,7 @@ impl Frame<'_> {
                     frame.find_candidates(t, &claims, found);
                 }
             });
-            if candidates.is_empty() {
+            if candidates.is_empty() && lift::most(round) == lift::MOST {
                 break;
             }
             for &(corner, key) in &candidates {
@@ -173,6 +173,11 @@ impl Claims {
         let is_own =
             word >> KEY_BITS == HOME - self.round && word & ((1 << self.bits) - 1) == self.hash(name);
         is_own.then_some(word)
+    }
+
+    /// The most triangles of a star that is lifted in this round.
+    pub(super) fn most(&self) -> usize {
+        lift::most(self.round)
     }
 
     pub(super) fn have(&self, vertices: &[u32], key: u32) -> bool {
