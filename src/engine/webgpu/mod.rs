@@ -47,6 +47,7 @@ mod start;
 mod steps;
 #[cfg(test)]
 mod tests;
+mod turned;
 mod untangle;
 mod walks;
 mod words;
@@ -81,7 +82,7 @@ use kernels::Plan;
 use known::Known;
 use params::Params;
 use std::sync::Arc;
-use untangle::Turned;
+use turned::Turned;
 use walks::Walks;
 #[cfg(all(target_arch = "wasm32", feature = "js"))]
 use wasm_bindgen::JsValue;

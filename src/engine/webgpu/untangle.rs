@@ -2,8 +2,7 @@
 
 use super::WebGpu;
 use super::compile::compile_now;
-use super::copies::{PendingRead, Source};
-use super::device::Device;
+use super::copies::Source;
 use super::faults::{Caught, watch};
 use super::history::TURNED;
 use super::kernels::Plan;
@@ -28,29 +27,6 @@ const FEW_WORKGROUPS: u32 = 128;
 /// Triangles for each invocation of half a round on a device whose loops end early. If half of all triangles are turned
 /// over, it has so few of them that its loops have tens of thousands of rounds. Software GPUs begin workgroups slowly.
 const SHARE: u32 = 32;
-
-/// How many triangles one of the last updates has found turned over. The host is told without a wait, and chooses the
-/// dispatches of the rounds by it. Results do not depend on it.
-#[derive(Default)]
-pub(super) struct Turned {
-    count: u32,
-    read: Option<PendingRead>,
-    #[cfg(test)]
-    rounds: Option<u32>,
-}
-
-impl Turned {
-    /// Takes in a read that has ended. Returns whether none is on its way.
-    fn advance(&mut self, gpu: &Device) -> bool {
-        let ended = self.read.take().map(|read| read.ended(gpu));
-        if let Some(Err(read)) = ended {
-            self.read = Some(read);
-        } else if let Some(Ok(Some(words))) = ended {
-            self.count = words[0];
-        }
-        self.read.is_none()
-    }
-}
 
 impl WebGpu {
     /// So many rounds get dispatches of their own.

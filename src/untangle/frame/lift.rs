@@ -1,20 +1,13 @@
 //! Lift: a vertex of a turned triangle leaves the mesh, and triangles fill its link. They need not be positive: with fewer
 //! vertices, more links are. Those that gain most go first.
 
-use super::rounds::Claims;
+use super::rounds::{Claims, MOST};
 use super::{Frame, Loose};
 use crate::NONE;
 use crate::mesh::half_edge::{LOCKED, next, prev, triangle_of, unflagged};
 use crate::mesh::star::are_joined;
 use crate::untangle::divide::join;
 use std::cmp::Ordering;
-
-/// The most triangles of a star that is lifted.
-pub(super) const MOST: usize = 16;
-
-/// The same in the first round. It grows by one from round to round, so that few large stars are left when their turn
-/// comes. They take the most work, and a GPU waits for the slowest.
-pub(super) const FIRST_MOST: u32 = 5;
 
 /// The most steps around two vertices that look for a common edge.
 pub(super) const LARGE: u32 = 64;
@@ -42,11 +35,6 @@ type Parts = [[usize; 3]; MOST];
 
 /// The cost of a chord that would join two vertices a second time.
 pub(super) const NEVER: u16 = 15;
-
-/// The most triangles of a star that is lifted in a round.
-pub(super) fn most(round: u32) -> usize {
-    MOST.min((FIRST_MOST + round) as usize)
-}
 
 impl Frame<'_> {
     /// Finds the corners of a triangle, if it is turned, whose vertices may be lifted, and the keys of these. Of the turned

@@ -15,13 +15,20 @@
 //! No lift makes an edge between vertices that have one: it looks for it in both stars, and nobody else makes an edge at a
 //! vertex that it has claimed. So two edges never join the same vertices, and the link of a vertex does not meet itself.
 
-use super::{Frame, Loose, lift};
+use super::{Frame, Loose};
 use crate::NONE;
 use crate::system::threads::{self, Threads};
 use std::ops::Range;
 
 /// Rounds that lift.
 pub(super) const LIFTS: u32 = 16;
+
+/// The most triangles of a star that is lifted.
+pub(super) const MOST: usize = 16;
+
+/// The same in the first round. It grows by one from round to round, so that few large stars are left when their turn
+/// comes. They take the most work, and a GPU waits for the slowest.
+pub(super) const FIRST_MOST: u32 = 5;
 
 /// Rounds after them that put vertices back where their points are.
 pub(super) const PUTS: u32 = 10;
@@ -86,7 +93,7 @@ impl Frame<'_> {
                     frame.find_candidates(t, &claims, found);
                 }
             });
-            if candidates.is_empty() && lift::most(round) == lift::MOST {
+            if candidates.is_empty() && claims.most() == MOST {
                 break;
             }
             for &(corner, key) in &candidates {
@@ -177,7 +184,7 @@ impl Claims {
 
     /// The most triangles of a star that is lifted in this round.
     pub(super) fn most(&self) -> usize {
-        lift::most(self.round)
+        MOST.min((FIRST_MOST + self.round) as usize)
     }
 
     pub(super) fn have(&self, vertices: &[u32], key: u32) -> bool {
