@@ -15,14 +15,15 @@ pub(super) const ALL_ROUNDS: u32 = 30;
 /// The same elsewhere if many triangles were turned over. The rounds after these find little to do.
 const MANY_ROUNDS: u32 = 22;
 
-/// The same if few were.
-const FEW_ROUNDS: u32 = 1;
+/// The same if fewer than [`MANY`] were, and if none was: mostly there is nothing to do again.
+const FEW_ROUNDS: u32 = 4;
+const IDLE_ROUNDS: u32 = 1;
 
-/// So many are many.
 const MANY: u32 = 2048;
 
-/// The fewest workgroups of such a round: enough to keep a large GPU busy, and few to begin in vain.
-const FEW_WORKGROUPS: u32 = 128;
+/// The fewest workgroups of such a round, enough to keep a large GPU busy, and those if none was turned over.
+const FEWEST_WORKGROUPS: u32 = 128;
+const IDLE_WORKGROUPS: u32 = 32;
 
 /// Triangles for each invocation of half a round on a device whose loops end early. If half of all triangles are turned
 /// over, it has so few of them that its loops have tens of thousands of rounds. Software GPUs begin workgroups slowly.
@@ -39,7 +40,8 @@ impl WebGpu {
     fn choose_rounds(&mut self) {
         self.rounds = match self.turned.count {
             _ if self.gpu.ends_loops_early => ALL_ROUNDS,
-            ..MANY => FEW_ROUNDS,
+            0 => IDLE_ROUNDS,
+            1..MANY => FEW_ROUNDS,
             _ => MANY_ROUNDS,
         };
         #[cfg(test)]
@@ -71,8 +73,11 @@ impl WebGpu {
         if self.gpu.ends_loops_early {
             return self.gpu.workgroups(self.params.triangles.div_ceil(SHARE));
         }
-        // Each round leaves about half of the work of the round before.
-        self.gpu.workgroups(3 * (self.turned.count >> round)).max(FEW_WORKGROUPS)
+        match self.turned.count {
+            0 => IDLE_WORKGROUPS,
+            // Each round leaves about half of the work of the round before.
+            count => self.gpu.workgroups(3 * (count >> round)).max(FEWEST_WORKGROUPS),
+        }
     }
 
     /// Untangles before the embedded stars are marked, and after the signs of all triangles are known.
