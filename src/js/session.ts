@@ -64,7 +64,8 @@ export let runWatched: <I extends IndexArray>(
  * session.free();
  * ```
  *
- * Calls may overlap: each waits for the earlier ones. During a run, other calls execute between two batches.
+ * Calls may overlap: each waits for the earlier ones. During a run, other calls execute between two batches; if they move
+ * vertices, the run goes on with these.
  */
 export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIterable<Iteration>, Disposable {
   readonly #session: ModuleSession;
