@@ -6,17 +6,21 @@
 //! GPU time is between timestamps before the motion and after the flips, wall time from the first frame to the last.
 
 use benches::arguments::{Arguments, median};
+use benches::warm_up::WarmUp;
 use edgeflip::{
     Backend, Dimension, GpuBuffers, Mesh, Options, Session, families, make_delaunay, quality, wgpu,
 };
 use pollster::block_on;
-use std::{env, error::Error, ops::ControlFlow, sync::Arc, time::Instant};
+use std::{collections::VecDeque, env, error::Error, ops::ControlFlow, sync::Arc, time::Instant};
 
 #[path = "../examples/motion/mod.rs"]
 mod motion;
 use motion::{Motion, Moving};
 
 const ITERATIONS: u32 = 4;
+
+/// The most frames that the host is ahead of the GPU, as in a program that draws them.
+const AHEAD: usize = 3;
 
 /// Each mesh, and radians of the wave per frame; or, in percent, the longest steps of a random walk, for the family random
 /// relative to its spacing.
@@ -38,6 +42,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let frames = u32::try_from(runs)?;
     let checks = env::var_os("EDGEFLIP_CHECK").is_some();
     let gpu = motion::open()?;
+    let mut warm_up = WarmUp::new()?;
     println!("adapter: {}, {} {}", gpu.adapter.name, gpu.adapter.driver, gpu.adapter.driver_info);
     println!("{frames} frames, {ITERATIONS} iterations each{}", if checks { ", checked" } else { "" });
     println!();
@@ -57,11 +62,15 @@ fn main() -> Result<(), Box<dyn Error>> {
             (None, Dimension::Three) => Motion::Wave { speed: speed.parse()?, number: 6.0, height: 0.1 },
         };
         let mut moving = Moving::new(&gpu, &mesh, motion, None)?;
-        let row = if checks { check(&mut moving, &mesh, frames)? } else { measure(&mut moving, frames)? };
+        let row = if checks {
+            check(&mut moving, &mesh, frames)?
+        } else {
+            measure(&mut moving, frames, &mut warm_up)?
+        };
         let flips_alone = if checks || mesh.dimension() == Dimension::Three {
             "–".to_owned()
         } else {
-            measure(&mut Moving::new(&gpu, &mesh, motion, Some(false))?, frames)?.gpu_median
+            measure(&mut Moving::new(&gpu, &mesh, motion, Some(false))?, frames, &mut warm_up)?.gpu_median
         };
         let counters = block_on(moving.session.counters())?;
         let edges = 1.5 * mesh.triangle_count() as f64;
@@ -89,8 +98,10 @@ struct Row {
     checked: String,
 }
 
-fn measure(moving: &mut Moving, frames: u32) -> Result<Row, Box<dyn Error>> {
-    // The clock of the GPU rises, and the mesh is in motion.
+fn measure(moving: &mut Moving, frames: u32, warm_up: &mut WarmUp) -> Result<Row, Box<dyn Error>> {
+    let options = Options { backend: Backend::Gpu, ..Options::default() };
+    warm_up.before(|mesh| make_delaunay(mesh.clone(), &options, |_, _| ControlFlow::Continue(())))?;
+    // The mesh is in motion.
     for frame in 0..60 {
         moving.frame(frame, ITERATIONS, |_| (), |_| ())?;
     }
@@ -102,8 +113,13 @@ fn measure(moving: &mut Moving, frames: u32) -> Result<Row, Box<dyn Error>> {
         let ty = wgpu::QueryType::Timestamp;
         device.create_query_set(&wgpu::QuerySetDescriptor { label: None, ty, count })
     });
+    let mut submitted = VecDeque::new();
     let start = Instant::now();
     for frame in 0..frames {
+        if submitted.len() == AHEAD {
+            let submission_index = submitted.pop_front();
+            device.poll(wgpu::PollType::Wait { submission_index, timeout: None })?;
+        }
         let stamp = |index| {
             let queries = queries.as_ref();
             move |encoder: &mut wgpu::CommandEncoder| {
@@ -113,6 +129,7 @@ fn measure(moving: &mut Moving, frames: u32) -> Result<Row, Box<dyn Error>> {
             }
         };
         moving.frame(60 + frame, ITERATIONS, stamp(2 * frame), stamp(2 * frame + 1))?;
+        submitted.push_back(queue.submit([]));
     }
     moving.wait()?;
     let wall = start.elapsed().as_secs_f64() * 1e3 / f64::from(frames);
