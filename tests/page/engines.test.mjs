@@ -122,7 +122,7 @@ test('the open mesh races: every engine here gives the triangles of the package 
 
 /** The recorded milliseconds of a mesh by engine. */
 function recordOf(mesh) {
-  const text = readFileSync(at('../../benches/results/2026-11-24-h200-auto-6416f23.md'), 'utf8');
+  const text = readFileSync(at('../../benches/results/2026-11-30-h200-auto-bb6ecde.md'), 'utf8');
   const [, table] = text.split(/^## Chromium 148, ready.*$/m);
   const cells = (start) =>
     table
@@ -158,11 +158,11 @@ test('a recorded run is there at once, and this computer’s lanes come over it'
   const source = page.locator('.engines-source');
   assert.match(
     await source.textContent(),
-    /^Grey: an NVIDIA H200 .* Chromium 148, 24 November 2026, medians of 3 runs\./,
+    /^Grey: an NVIDIA H200 .* Chromium 148, 30 November 2026, medians of 5 runs\./,
   );
   assert.match(
     await source.locator('a').getAttribute('href'),
-    /^benches\/results\/2026-11-24-h200-auto-6416f23\.html#chromium-148-ready-/,
+    /^benches\/results\/2026-11-30-h200-auto-bb6ecde\.html#chromium-148-ready-/,
   );
   // The recorded lines are there too.
   assert.equal(await page.locator('.engines-chart .engines-old').count(), 3);

@@ -3,7 +3,7 @@
 import { readFileSync } from 'node:fs';
 import { anchorOf } from '../documents/markdown.js';
 
-const NAME = '2026-11-24-h200-auto-6416f23';
+const NAME = '2026-11-30-h200-auto-bb6ecde';
 
 /** The device, the browser, the date, and the milliseconds of each engine by mesh. Its source is its part of a page. */
 export function recordedRun() {
