@@ -214,9 +214,10 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
 
   /**
    * Takes over vertices that have moved, untangles triangles in the plane that have turned over, unless the option
-   * `untangle` is `false`, and flips for up to `iterations` iterations; what is left goes on in the next update. On WebGPU the call only submits the work and returns: what the page submits after it, such as the drawing of
-   * the frame, sees the result, and nothing travels to the CPU. On the CPU the call does the work. On WebGL2 it waits for
-   * one number if it untangles.
+   * `untangle` is `false`, and flips for up to `iterations` iterations; what is left goes on in the next update. On
+   * WebGPU the call only submits the work and returns: what the page submits after it, such as the drawing of the frame,
+   * sees the result. Nothing travels to the CPU but how many triangles were turned over, for later updates; nobody waits
+   * for it. On the CPU the call does the work. On WebGL2 it waits for one number if it untangles.
    *
    * ```ts
    * const { device, positions, indices } = (await session.gpu())!;
