@@ -102,8 +102,6 @@ pub(crate) struct WebGpu {
     /// The winding, once the host knows it.
     winding: u32,
     turned: Turned,
-    /// How many rounds that untangle are dispatches of their own.
-    rounds: u32,
     buffers: Buffers,
     /// The adjacency for the caller, if it has asked for it.
     walks: Option<Box<Walks>>,

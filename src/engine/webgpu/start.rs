@@ -75,7 +75,6 @@ impl WebGpu {
                 topology_words: params.fans,
                 winding: WINDING_UNKNOWN,
                 turned: super::Turned::default(),
-                rounds: 0,
                 kernels,
                 thresholds: upload.thresholds,
                 form: upload.form(),

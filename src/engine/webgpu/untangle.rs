@@ -36,19 +36,18 @@ impl WebGpu {
         self.turned.rounds = Some(rounds);
     }
 
-    /// Chooses the rounds of an update that have dispatches of their own.
-    fn choose_rounds(&mut self) {
-        self.rounds = match self.turned.count {
+    /// How many rounds of an update are dispatches of their own.
+    fn rounds(&self) -> u32 {
+        #[cfg(test)]
+        if let Some(rounds) = self.turned.rounds {
+            return rounds;
+        }
+        match self.turned.count {
             _ if self.gpu.ends_loops_early => ALL_ROUNDS,
             0 => IDLE_ROUNDS,
             1..MANY => FEW_ROUNDS,
             _ => MANY_ROUNDS,
-        };
-        #[cfg(test)]
-        if let Some(rounds) = self.turned.rounds {
-            self.rounds = rounds;
         }
-        self.dispatches += 2 * u64::from(self.rounds) + 1;
     }
 
     /// Submits the commands of an update. If it untangles, the host asks for the number of turned triangles.
@@ -56,7 +55,7 @@ impl WebGpu {
         let gpu = self.gpu.clone();
         if self.params.untangles > 0 {
             let asks = !gpu.ends_loops_early && self.turned.advance(&gpu);
-            self.choose_rounds();
+            self.dispatches += 2 * u64::from(self.rounds()) + 1;
             if asks {
                 let source = Source { buffer: &self.buffers.history, first: TURNED, words: 1 };
                 let mut read = gpu.submit_and_map(&|| record(self), &[source]);
@@ -89,11 +88,12 @@ impl WebGpu {
             || compile_now(&Plan::untangle(self.form, self.gpu.tail_size), &self.gpu.device).pipelines;
         let [half, all] = &self.kernels.untangle.get_or_init(compile)[..] else { return };
         pass.set_pipeline(half);
-        for index in 0..2 * self.rounds {
+        let rounds = self.rounds();
+        for index in 0..2 * rounds {
             self.at_step(pass, Step::Iterate(index));
             pass.dispatch_workgroups(self.workgroups_of(index / 2), 1, 1);
         }
-        self.at_step(pass, Step::Iterate(2 * self.rounds));
+        self.at_step(pass, Step::Iterate(2 * rounds));
         pass.set_pipeline(all);
         pass.dispatch_workgroups(1, 1, 1);
     }

@@ -81,8 +81,8 @@ impl Frame<'_> {
     }
 
     /// The star of the vertex that `corner` starts at, if it is whole, of at most `most` triangles and without locked edges,
-    /// and the triangle of `corner` is the lowest turned one. A vertex with several fans stays, and so do its neighbours, so that its
-    /// fans keep their anchors.
+    /// and the triangle of `corner` is the lowest turned one. A vertex with several fans stays, and so do its neighbours,
+    /// so that its fans keep their anchors.
     fn candidate(&self, corner: u32, most: usize) -> Option<Candidate> {
         let v = self.vertex(corner);
         if v == NONE {
