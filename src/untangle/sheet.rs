@@ -107,9 +107,10 @@ impl<'a> Sheet<'a> {
         let mut is_flipped: Vec<bool> = Vec::new();
         loop {
             let fans = self.fans();
-            // A new edge is an edge of two touched triangles.
-            let is_doubled =
-                |&t: &u32| (3 * t..3 * t + 3).any(|h| h < self.twin(h) && self.is_doubled(h, &fans));
+            // A new edge is an edge of two touched triangles. Those of the boundary are as before, so their component has
+            // nothing to take back.
+            let is_new = |h: u32| h < self.twin(h) && self.twin(h) != NONE;
+            let is_doubled = |&t: &u32| (3 * t..3 * t + 3).any(|h| is_new(h) && self.is_doubled(h, &fans));
             let doubled: Vec<u32> = self.touched.iter().copied().filter(is_doubled).collect();
             if doubled.is_empty() {
                 return;
