@@ -10,6 +10,7 @@
 # wasm      the wasm32-unknown-unknown target      rustup; on Debian 12 without rustup's server, Debian's compiler
 #           and the source of std
 # packages  the packages of package-lock.json      npm ci
+# bundlers  the packages of tests/bundlers         npm ci
 # peers     the packages of tests/peers            npm ci
 # bindgen   wasm-bindgen, of Cargo.lock's version  cargo install, into target/setup
 # chromium  Chromium and chromedriver              apt on Debian; elsewhere the script says how
@@ -167,9 +168,10 @@ install_packages() { # FOLDER ARGUMENT…
   npm ci --prefix "$folder" --no-audit --no-fund --loglevel=error "$@" ||
     stop "npm ci failed in $folder (see above)." "Run: npm ci --prefix $folder"
 }
-# Beside the build of wasm-bindgen. The install scripts of tests/peers would fetch what is already there.
+# Beside the build of wasm-bindgen. The install scripts of the other folders would fetch what is already there.
 {
   ! is_wanted packages || install_packages .
+  ! is_wanted bundlers || install_packages tests/bundlers --ignore-scripts
   ! is_wanted peers || install_packages tests/peers --ignore-scripts
 } &
 packages=$!

@@ -1,6 +1,6 @@
 // In the full run: the packed package in fresh projects of the bundlers and runtimes of docs/package.md, each with the
 // settings of its line in the tables there and no others; and beside the functions of glTF-Transform. Uses the existing
-// dist/, and the programs that tests/peers installs.
+// dist/, and the programs that tests/peers installs. workers.browser.test.mjs has webpack and Parcel.
 
 import assert from 'node:assert/strict';
 import { spawn } from 'node:child_process';
@@ -11,8 +11,9 @@ import { after, before, test } from 'node:test';
 import { pathToFileURL } from 'node:url';
 import { NodeIO } from '@gltf-transform/core';
 import { ALL_EXTENSIONS } from '@gltf-transform/extensions';
-import { closeAll, ISOLATED, openPage, serve, startChromium } from '../browsers.mjs';
+import { closeAll, ISOLATED, serve, startChromium } from '../browsers.mjs';
 import { faults } from './gltf.mjs';
+import { documented, pageProject, program, textOf, WRITTEN } from './page-project.mjs';
 import { primitivesOf, surfaceOf } from './primitives.mjs';
 import { Projects, repository, run } from './project.mjs';
 import { badEdges, border } from './surfaces.mjs';
@@ -21,50 +22,6 @@ const peers = join(repository, 'tests/peers');
 const require = createRequire(join(peers, 'package.json'));
 // Inside tests/peers, so that a project of Next finds React.
 const projects = new Projects(join(peers, 'projects-'));
-const docs = readFileSync(join(repository, 'docs/package.md'), 'utf8');
-
-/** Fails if no line of a table in docs/package.md starts with this name and has this setting. */
-function documented(name, setting) {
-  const lines = docs.split('\n').filter((line) => line.startsWith(`| ${name} |`));
-  assert.equal(lines.length, 1, name);
-  assert.ok(lines[0].includes(setting), `${name}: ${setting}`);
-}
-
-/** Runs on the CPU with threads, in this thread and from a worker. */
-const program = (entry) => `
-  import { init, makeDelaunay, makeDelaunaySync } from '${entry}';
-  import { generate } from 'edgeflip/files';
-  import * as away from 'edgeflip/worker';
-  const quad = { positions: new Float32Array([-3, 0, 0, -1, 3, 0, 0, 1]), indices: [0, 1, 2, 0, 2, 3], dimension: 2 };
-  export async function flip() {
-    await init();
-    const mesh = await generate('random 190');
-    const [here, there] = [await makeDelaunay(mesh, { threads: 2 }), await away.makeDelaunay(mesh, { threads: 2 })];
-    const texts = [here, there].map(({ flips, threads, hint }) => \`\${flips} flips on \${threads} threads\${hint ?? ''}\`);
-    return [...texts, makeDelaunaySync(quad).indices].join(', ');
-  }
-`;
-const onPage = "import { flip } from './flip.js';\ndocument.body.append(await flip());\n";
-const inConsole = "import { flip } from './flip.js';\nconsole.log(await flip());\n";
-const WRITTEN = '48643 flips on 2 threads, 48643 flips on 2 threads, 3,1,2,0,1,3';
-
-const html = (script) => `<!doctype html>
-<html lang="en">
-<meta charset="utf-8">
-<title>edgeflip</title>
-<link rel="icon" href="data:,">
-<body><script type="module" src="${script}"></script></body>
-</html>
-`;
-
-/** A project whose page writes what \`flip\` returns. */
-function pageProject(name, more = {}, script = './main.js') {
-  const root = projects.project(name, more);
-  writeFileSync(join(root, 'flip.js'), program('edgeflip'));
-  writeFileSync(join(root, 'main.js'), onPage);
-  writeFileSync(join(root, 'index.html'), html(script));
-  return root;
-}
 
 /** Fails if a primitive has another material, a vertex with other attributes, or another border or seam. */
 function sameSurfaces(before, after) {
@@ -92,60 +49,13 @@ after(async () => {
   projects.remove();
 });
 
-/** Opens the page and returns its text. */
-async function textOf(address, selector = 'body') {
-  const { page, problems } = await openPage(chromium, address);
-  const text = (query) => document.querySelector(query)?.textContent.trim();
-  try {
-    await page.waitForFunction(text, selector, { timeout: 60_000 });
-  } catch {
-    // The comparison says more.
-  }
-  assert.deepEqual(problems, []);
-  const found = await page.evaluate(text, selector);
-  await page.close();
-  return found;
-}
-
-test('webpack', async () => {
-  documented('webpack 5', '`experiments: { outputModule: true }`, `output: { module: true }`');
-  const root = pageProject('webpack', {}, './main.mjs');
-  const webpack = require('webpack');
-  const config = {
-    mode: 'production',
-    context: root,
-    entry: './main.js',
-    output: { path: join(root, 'out'), module: true },
-  };
-  const compiler = webpack({ ...config, experiments: { outputModule: true }, performance: false });
-  const stats = await new Promise((resolve, reject) => {
-    compiler.run((error, stats) => (error ? reject(error) : resolve(stats)));
-  });
-  assert.equal(stats.toString({ all: false, errors: true, warnings: true }), '');
-  writeFileSync(join(root, 'out/index.html'), html('./main.mjs'));
-  assert.equal(await textOf(await serve(join(root, 'out'), ISOLATED)), WRITTEN);
-});
-
-test('Parcel', async () => {
-  const setting = '"@parcel/resolver-default": { "packageExports": true }';
-  documented('Parcel 2', setting);
-  const root = pageProject('parcel', JSON.parse(`{ ${setting} }`));
-  const parcel = join(peers, 'node_modules/parcel/lib/bin.js');
-  run(
-    process.execPath,
-    [parcel, 'build', 'index.html', '--dist-dir', 'out', '--no-cache', '--cache-dir', 'cache', '--public-url', './'],
-    root,
-  );
-  assert.equal(await textOf(await serve(join(root, 'out'), ISOLATED)), WRITTEN);
-});
-
 test('Vite 7, built and on the development server', async (t) => {
   documented('Vite 7', "`optimizeDeps: { exclude: ['edgeflip'] }`");
   const { build, createServer } = await import(pathToFileURL(require.resolve('vite-7')));
-  const root = pageProject('vite');
+  const root = pageProject(projects, 'vite');
   const config = { root, configFile: false, logLevel: 'warn', worker: { format: 'es' }, build: { target: 'es2022' } };
   await build(config);
-  assert.equal(await textOf(await serve(join(root, 'dist'), ISOLATED)), WRITTEN);
+  assert.equal(await textOf(chromium, await serve(join(root, 'dist'), ISOLATED)), WRITTEN);
   const server = await createServer({
     ...config,
     optimizeDeps: { exclude: ['edgeflip'] },
@@ -153,7 +63,7 @@ test('Vite 7, built and on the development server', async (t) => {
   });
   t.after(() => server.close());
   await server.listen();
-  assert.equal(await textOf(server.resolvedUrls.local[0]), WRITTEN);
+  assert.equal(await textOf(chromium, server.resolvedUrls.local[0]), WRITTEN);
 });
 
 test('Vite for servers, with the package in the bundle', async () => {
@@ -178,7 +88,7 @@ test('Next, in the browser and in a server component', { timeout: 180_000 }, asy
     'next.config.mjs',
     `export default { ${setting}, async headers() { return [{ source: '/:path*', headers: ${JSON.stringify(headers)} }]; } };`,
   );
-  write('app/flip.js', program('edgeflip'));
+  write('app/flip.js', program);
   write(
     'app/layout.jsx',
     `export const metadata = { title: 'edgeflip', icons: 'data:,' };
@@ -222,14 +132,14 @@ test('Next, in the browser and in a server component', { timeout: 180_000 }, asy
     server.stderr.on('data', read);
     server.on('close', () => reject(new Error(output)));
   });
-  assert.equal(await textOf(address, '#server'), '3,1,2,0,1,3');
-  assert.equal(await textOf(address, '#client'), WRITTEN);
+  assert.equal(await textOf(chromium, address, '#server'), '3,1,2,0,1,3');
+  assert.equal(await textOf(chromium, address, '#client'), WRITTEN);
 });
 
 test('Node, Bun and Deno; CommonJS too', () => {
   const root = projects.project('runtimes');
-  writeFileSync(join(root, 'flip.js'), program('edgeflip'));
-  writeFileSync(join(root, 'main.js'), inConsole);
+  writeFileSync(join(root, 'flip.js'), program);
+  writeFileSync(join(root, 'main.js'), "import { flip } from './flip.js';\nconsole.log(await flip());\n");
   writeFileSync(
     join(root, 'common.cjs'),
     `const { makeDelaunay } = require('edgeflip');

@@ -78,6 +78,7 @@ const builds = [
       'fuzz',
       '!tests/package',
       '!tests/page',
+      '!tests/bundlers',
       '!tests/peers',
     ],
     writes: ['target/test/programs.json'],
@@ -180,6 +181,7 @@ const levels = [
       'fuzz',
       '!tests/package',
       '!tests/page',
+      '!tests/bundlers',
       '!tests/peers',
     ],
     holds: ['target'],
@@ -245,12 +247,12 @@ const levels = [
 levels.push(
   {
     name: 'npm package in browsers',
-    what: 'the parity matrix, quads and locks on each engine in Chromium and Firefox; the packed package in fresh projects: plain pages, Vite, TypeScript',
+    what: 'the parity matrix, quads and locks on each engine in Chromium and Firefox; the packed package in fresh projects: plain pages, Vite, webpack, Parcel, TypeScript',
     checks: [together('tests/engines.test.mjs', ...files('package', inBrowsers))],
     counts: true,
-    tools: ['packages', 'vulkan', 'chromium', 'firefox'],
+    tools: ['packages', 'bundlers', 'vulkan', 'chromium', 'firefox'],
     reads: [
-      ...['tests/package', 'tests/engines.test.mjs', 'tests/parity', 'tests/quads', ...shared],
+      ...['tests/package', 'tests/bundlers', 'tests/engines.test.mjs', 'tests/parity', 'tests/quads', ...shared],
       ...['README.md', 'docs', 'examples', ...scripts],
     ],
     after: ['package', 'parity'],

@@ -9,8 +9,7 @@ import { join, posix } from 'node:path';
 
 const FILE = 'target/test/stamps.json';
 /** Folders that no level reads as a whole: what is installed or built there comes from lock files and other levels. */
-const LEFT_OUT =
-  /^(\.git|target|dist|node_modules|fuzz\/target|tests\/peers\/(node_modules|projects-.*|\.parcel-cache))$/;
+const LEFT_OUT = /^(\.git|target|dist|node_modules|fuzz\/target|tests\/(bundlers|peers)\/(node_modules|projects-.*))$/;
 /** Variables that may change the result of a level. */
 const VARIABLES = /^(EDGEFLIP|RUST|CARGO|VK|MESA|LIBGL|GALLIUM|LP|WGPU|CHROM|FIREFOX|MOZ|NODE|PROPTEST|CI$)/;
 
@@ -97,15 +96,19 @@ function drivers() {
   return [...found, ...stats].join('\n');
 }
 
+/** The packages of a folder: those that are asked for, and those that are installed. */
+const lockOf = (folder) =>
+  ['package-lock.json', 'node_modules/.package-lock.json'].map((file) => outputAt(join(folder, file))).join(' ');
+
 /** What a level can use, and how its version is found. Each is also a part of tools/setup.sh. */
 const tools = {
   rust: () => [said('cargo', '-vV'), said('rustc', '-vV')].join('\n'),
   lints: () => [said('cargo', 'fmt', '--version'), said('cargo', 'clippy', '--version')].join('\n'),
   wasm: () => said('bash', 'tools/wasm-cargo.sh', '--which'),
   bindgen: () => said('target/setup/bin/wasm-bindgen', '--version'),
-  packages: () => `${process.version} ${outputAt('package-lock.json')} ${outputAt('node_modules/.package-lock.json')}`,
-  peers: () =>
-    `${outputAt('tests/peers/package-lock.json')} ${outputAt('tests/peers/node_modules/.package-lock.json')}`,
+  packages: () => `${process.version} ${lockOf('.')}`,
+  bundlers: () => lockOf('tests/bundlers'),
+  peers: () => lockOf('tests/peers'),
   vulkan: drivers,
   chromium: () =>
     [
