@@ -49,7 +49,7 @@ export function hintOf(
   }
   if (inverted > 0) {
     const remedy = untangles
-      ? 'no triangulation of these positions was found; problems says why'
+      ? 'no triangulation of these positions was found: problems says why, or another component has an edge that theirs would need'
       : 'no flip could turn them back; untangle: true does, where the positions have a triangulation';
     hints.push(`Triangles that are turned over: ${inverted}. They overlap their neighbours, and ${remedy}. ${LISTED}`);
   }

@@ -260,7 +260,7 @@ test('positions without a triangulation keep folds, and the advice says so', asy
   await session.setPositions(square(9, 2).positions);
   const { inverted, hint } = await session.run();
   assert.ok(inverted > 0);
-  assert.match(hint, /no triangulation of these positions was found; problems says why/);
+  assert.match(hint, /no triangulation of these positions was found: problems says why/);
   assert.deepEqual([...(await session.problems()).outside], [5]);
   await session.setPositions(square(3, 2).positions);
   assert.equal((await session.run()).inverted, 0);

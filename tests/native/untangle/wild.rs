@@ -246,6 +246,28 @@ fn wild_meshes_are_right() {
     assert!(possible > 3 * count as usize);
 }
 
+/// The component of 0, 4, 9, 1 and 10 would need the edge from 4 to 10, which is on the boundary of another one. So it stays
+/// as it is, and the others are repaired.
+#[test]
+fn a_component_is_repaired_beside_one_that_needs_its_boundary() {
+    let points = [0, 42, 60, 26, 53, 10, 63, 7, 29, 28, 50, 11, 56, 61, 9, 21, 46, 63, 13, 40, 42, 3, 26, 28];
+    let points: &[Point] = points.as_chunks().0;
+    let mut triangles =
+        vec![11, 4, 7, 0, 9, 4, 1, 9, 0, 7, 5, 11, 11, 10, 4, 0, 10, 1, 7, 2, 5, 3, 2, 7, 9, 8, 6];
+    triangles.extend([2, 10, 5, 5, 10, 11, 8, 3, 7, 2, 3, 10]);
+    let before = components(&triangles);
+    let mesh = Mesh::new(Dimension::Two, numbers(points, 0, &mut Random(1)), triangles).unwrap();
+    let options = Options { backend: Backend::Cpu, untangle: Some(true), ..Options::default() };
+    let mut session = block_on(Session::new(mesh, options)).unwrap();
+    block_on(session.run(|_, _| ControlFlow::Continue(()))).unwrap();
+    let outcome = block_on(session.outcome()).unwrap();
+    let parts = components(&outcome.triangles);
+    assert_eq!(outlines(&before), outlines(&parts));
+    let is_wrong = |c: &&Component| c.fault(points, &outcome.triangles, &[]).is_some();
+    let wrong: Vec<_> = parts.iter().filter(is_wrong).map(|c| c.vertices.clone()).collect();
+    assert_eq!((parts.len(), wrong), (3, vec![vec![0, 1, 4, 9, 10]]));
+}
+
 /// Updates of single precision on both engines: the same bits after each one, and the same surface.
 #[cfg(feature = "gpu")]
 #[test]
