@@ -239,9 +239,19 @@ for (const [what, act] of [
   ],
 ]) {
   test(`the first view stays until the mesh is drawn, after ${what}, and a sign says that it is on its way`, async () => {
-    const first = await openFirst(slowTool, neverIdle, watchFrames);
+    // The answers for the tool's code wait until the page says that it is being loaded.
+    let release;
+    const isSeen = new Promise((resolve) => (release = resolve));
+    const holdTool = (page) =>
+      page.route('**/assets/main-*.js', async (route) => {
+        await isSeen;
+        await route.continue();
+      });
+    const first = await openFirst(holdTool, neverIdle, watchFrames);
     await first.page.waitForSelector('#live:not([hidden])');
     await act(first);
+    await first.page.waitForFunction(() => window.seen.signs.size > 0);
+    release();
     const shown = await first.rest();
     const { bare, covered, signs } = await first.page.evaluate(() => ({
       ...window.seen,
