@@ -1,6 +1,7 @@
 //! Sorts points into columns: intervals of x with about as many points as each other, and in each the order by y, then
 //! by x. Nothing here decides by a rounded number: rounding only moves the borders of the columns.
 
+use super::insertion::insertion_sorts;
 use crate::Positions;
 use glam::DVec2;
 use std::cmp::Ordering;
@@ -9,10 +10,7 @@ use std::cmp::Ordering;
 const MOST_BINS: usize = 1 << 16;
 
 /// The width of a column, in distances of neighbouring points if these are spread evenly.
-const WIDTH: f64 = 1.0;
-
-/// How many times its length a column may be shifted while it is sorted by insertion.
-const MOST_SHIFTS: usize = 16;
+const WIDTH: f64 = 3.0;
 
 /// Distinct points, column by column.
 pub(super) struct Columns {
@@ -172,7 +170,7 @@ impl Columns {
 fn columns_of_bins(sizes: &[u32], aspect: f64, points: usize) -> (Vec<u32>, Vec<u32>) {
     let most = points as f64;
     // It is NaN if all points are equal, and NaN becomes 0.
-    let wanted = (((most * aspect.clamp(1.0 / most, most)).sqrt() / WIDTH).min(most) as u32).max(1);
+    let wanted = (((most * aspect.clamp(1.0 / most, most)).sqrt() / width()).min(most) as u32).max(1);
     let per_point = f64::from(wanted) / most;
     let mut starts = vec![0; wanted as usize];
     let mut column_of = Vec::with_capacity(sizes.len());
@@ -222,28 +220,11 @@ impl Scratch {
                 *end += 1;
             }
         }
-        if !insertion_sorts(column) {
+        if !insertion_sorts(column, Record::is_before) {
             column.sort_unstable_by(Record::compare);
         }
     }
 }
-
-/// Sorts by insertion; false if it has given up.
-fn insertion_sorts(column: &mut [Record]) -> bool {
-    let mut shifts_left = MOST_SHIFTS * column.len();
-    for i in 1..column.len() {
-        let record = column[i];
-        let mut at = i;
-        while at > 0 && record.is_before(&column[at - 1]) {
-            column[at] = column[at - 1];
-            at -= 1;
-        }
-        column[at] = record;
-        let shifts = i - at;
-        if shifts > shifts_left {
-            return false;
-        }
-        shifts_left -= shifts;
-    }
-    true
+fn width() -> f64 {
+    std::env::var("WIDTH").ok().and_then(|w| w.parse().ok()).unwrap_or(WIDTH)
 }

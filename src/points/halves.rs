@@ -6,6 +6,7 @@ use super::seam::Hull;
 use super::slots::{Slot, Slots};
 use crate::predicates::area_sign;
 use glam::DVec2;
+use std::array;
 
 /// Slots for so many vertices.
 pub(super) fn slots_of(vertices: usize) -> Vec<Slot> {
@@ -82,12 +83,12 @@ impl<'a> Network<'a> {
     /// A triangle, or two edges in a row.
     fn triangle(&mut self, a: u32) -> Hull {
         let [b, c] = [a + 1, a + 2];
-        let [p, q, r] = [a, b, c].map(|v| self.points[v as usize]);
+        let [p, q, r] = array::from_fn(|i| self.points[a as usize + i]);
         let slot = 2 * a;
         let sign = area_sign(p, q, r);
         if sign.is_eq() {
             let sides = [[a, b], [b, c], [c, b], [b, a]];
-            let ghosts = [0, 1, 2, 3].map(|i| self.slots.put_ghost(slot + i, sides[i as usize]));
+            let ghosts: [u32; 4] = array::from_fn(|i| self.slots.put_ghost(slot + i as u32, sides[i]));
             self.slots.join(ghosts[0], ghosts[3]);
             self.slots.join(ghosts[1], ghosts[2]);
             self.slots.join_ring(&ghosts);
@@ -96,7 +97,7 @@ impl<'a> Network<'a> {
         let (second, third) = if sign.is_gt() { (b, c) } else { (c, b) };
         let inner = self.slots.put(slot, [a, second, third]);
         let sides = [[second, a], [a, third], [third, second]];
-        let ghosts = [0, 1, 2].map(|i| self.slots.put_ghost(slot + 1 + i, sides[i as usize]));
+        let ghosts: [u32; 3] = array::from_fn(|i| self.slots.put_ghost(slot + 1 + i as u32, sides[i]));
         self.slots.join(inner, ghosts[0]);
         self.slots.join(inner + 1, ghosts[2]);
         self.slots.join(inner + 2, ghosts[1]);

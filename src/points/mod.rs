@@ -3,6 +3,7 @@
 
 mod columns;
 mod halves;
+mod insertion;
 mod numbering;
 mod seam;
 mod slots;

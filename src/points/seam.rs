@@ -62,9 +62,9 @@ impl Slots<'_> {
     /// Merges the triangulations of two sets. The second is after the first in some direction. Two slots from `slot` are
     /// free: they become the ghosts below and above the seam.
     pub(super) fn merge(&mut self, points: &[DVec2], [low, high]: [Hull; 2], slot: u32) -> Hull {
-        let ends = [low.first, high.last].map(|h| self.origin(h));
+        let ends = [self.origin(low.first), self.origin(high.last)];
         let [left_ghost, right] = self.tangent(points, low.last, high.first);
-        let [mut left_vertex, mut right_vertex] = [left_ghost, right].map(|h| self.origin(h));
+        let (mut left_vertex, mut right_vertex) = (self.origin(left_ghost), self.origin(right));
         let bottom = self.put_ghost(slot, [right_vertex, left_vertex]);
         let right_ghost = self.twin(right);
         self.join(bottom + 1, self.twin(left_ghost));
@@ -72,7 +72,7 @@ impl Slots<'_> {
         let first = if left_vertex == ends[0] { bottom + 1 } else { low.first };
 
         let at = |vertex: u32| points[vertex as usize];
-        let [left, right] = [left_vertex, right_vertex].map(at);
+        let (left, right) = (at(left_vertex), at(right_vertex));
         let mut front = Front { base: bottom, left, right, left_ghost, right_ghost };
         loop {
             let [mut upper_left, mut upper_right] =
@@ -115,7 +115,7 @@ impl Slots<'_> {
     /// `right` are those of the last vertex of the left hull and of the first vertex of the right hull.
     fn tangent(&self, points: &[DVec2], mut left: u32, mut right: u32) -> [u32; 2] {
         let at = |h: u32| points[self.origin(h) as usize];
-        let [mut p, mut q] = [left, right].map(at);
+        let (mut p, mut q) = (at(left), at(right));
         loop {
             let before = self.back_along_hull(left);
             let lower = at(before);

@@ -225,7 +225,7 @@ impl<const K: usize> Differences<K> {
 
 /// Whether `x - y`, computed in f64, is the exact difference: the roundoff of Knuth's TwoDiff is zero. Sums of f64 do
 /// not underflow. If the difference overflows, the roundoff is NaN, so this returns false.
-fn difference_is_exact(x: f64, y: f64) -> bool {
+pub(super) fn difference_is_exact(x: f64, y: f64) -> bool {
     let difference = x - y;
     let y_virtual = x - difference;
     let x_virtual = difference + y_virtual;

@@ -1,6 +1,6 @@
 //! The plane: orientation and the in-circle test, as the sine of the sum of the opposite angles.
 
-use super::exact::{Bounded, Differences, Ring, Unbounded, decode};
+use super::exact::{Bounded, Differences, Ring, Unbounded, decode, difference_is_exact};
 use glam::{DVec2, Vec4};
 use std::array;
 use std::cmp::Ordering;
@@ -164,6 +164,10 @@ fn in_circle_exact(a: DVec2, b: DVec2, c: DVec2, d: DVec2) -> Ordering {
     if is_right(c) && is_right(d) {
         return Ordering::Equal;
     }
+    if are_short(&[(a, c), (b, c), (a, d), (b, d)], 12) {
+        let (p, q, r, s) = (a - c, b - c, a - d, b - d);
+        return sign(p.perp_dot(q) * s.dot(r) + p.dot(q) * s.perp_dot(r));
+    }
     let [p, q, r, s] = [(a, c), (b, c), (a, d), (b, d)].map(|(u, v)| [(u.x, v.x), (u.y, v.y)]);
     let differences = Differences::new([p[0], p[1], q[0], q[1], r[0], r[1], s[0], s[1]]);
     if differences.bits <= NARROW_BITS {
@@ -176,8 +180,31 @@ fn in_circle_exact(a: DVec2, b: DVec2, c: DVec2, d: DVec2) -> Ordering {
     }
 }
 
+/// Whether f64 computes a polynomial of these differences without rounding, as it does for neighbours in a lattice: they
+/// are exact, and whole multiples, below 2^`bits`, of a power of two. A polynomial of degree 2 needs at most 25 bits, and
+/// one of degree 4 at most 12, so that its value is below 2^53.
+fn are_short(pairs: &[(DVec2, DVec2)], bits: u32) -> bool {
+    let largest = pairs.iter().fold(DVec2::ZERO, |most, &(u, v)| most.max((u - v).abs())).max_element();
+    let power_of_two = f64::from_bits(largest.to_bits() >> 52 << 52);
+    // To add this number rounds a difference to a multiple, because it has the power of two in its last place.
+    let rounder = 1.5 * power_of_two * (1u64 << (53 - bits)) as f64;
+    let is_multiple = |d: f64| (d + rounder) - rounder == d;
+    // Beyond this range, products could underflow or overflow.
+    (1e-60..1e60).contains(&largest)
+        && pairs.iter().all(|&(u, v)| {
+            let d = u - v;
+            is_multiple(d.x)
+                && is_multiple(d.y)
+                && difference_is_exact(u.x, v.x)
+                && difference_is_exact(u.y, v.y)
+        })
+}
+
 #[cold]
 fn area_exact(a: DVec2, b: DVec2, c: DVec2) -> Ordering {
+    if are_short(&[(a, c), (b, c)], 25) {
+        return sign((a - c).perp_dot(b - c));
+    }
     doubled_area_sign([(a.x, c.x), (a.y, c.y), (b.x, c.x), (b.y, c.y)])
 }
 
