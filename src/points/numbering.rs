@@ -9,11 +9,7 @@ use std::array;
 const MOST_GROUPS_LOG2: u32 = 10;
 
 /// A triangle by the caller's indices, from its smallest, and the half-edge that begins there.
-#[derive(Clone, Copy, Default)]
-struct Row {
-    corners: [u32; 3],
-    half_edge: u32,
-}
+type Row = [u32; 4];
 
 /// The triangles of finished slots, and their twins. `indices` has the caller's index of each vertex; all are below
 /// `count`. A triangle begins with its smallest index, and they are sorted by their first index and then by their second.
@@ -27,14 +23,15 @@ pub(super) fn numbered(slots: &[Slot], indices: &[u32], count: usize) -> (Vec<u3
     for &end in &group_ends {
         let places = start as usize..end as usize;
         sort(&rows[places.clone()], &mut group, &mut ends);
-        for ((row, corners), number) in
+        for (([a, b, c, h], corners), number) in
             group.iter().zip(&mut triangles.as_chunks_mut().0[places]).zip(start..)
         {
-            *corners = row.corners;
-            numbers[row.half_edge as usize >> 2] = 4 * number + (row.half_edge & 3);
+            *corners = [*a, *b, *c];
+            numbers[*h as usize >> 2] = 4 * number + (h & 3);
         }
         start = end;
     }
+    drop(rows);
     let mut twins = vec![0; triangles.len()];
     let (all, _) = twins.as_chunks_mut::<3>();
     for (slot, &number) in slots.iter().zip(&numbers) {
@@ -69,14 +66,14 @@ fn grouped(slots: &[Slot], indices: &[u32], count: usize) -> (Vec<Row>, Vec<u32>
     };
     triangles().for_each(|(_, [a, b, c])| ends[(a.min(b).min(c) >> shift) as usize] += 1);
     let sum = starts_of(&mut ends);
-    let mut rows = vec![Row::default(); sum as usize];
+    let mut rows = vec![[0; 4]; sum as usize];
     for (slot, corners) in triangles() {
         let [a, b, c] = corners;
         let smallest = a.min(b).min(c);
         let turn = usize::from(b == smallest) + 2 * usize::from(c == smallest);
         let end = &mut ends[(smallest >> shift) as usize];
         rows[*end as usize] =
-            Row { corners: array::from_fn(|i| corners[AFTER[turn + i]]), half_edge: 4 * slot + turn as u32 };
+            [corners[turn], corners[AFTER[turn + 1]], corners[AFTER[turn + 2]], 4 * slot + turn as u32];
         *end += 1;
     }
     (rows, ends, shift)
@@ -95,18 +92,18 @@ fn starts_of(sizes: &mut [u32]) -> u32 {
 fn sort(rows: &[Row], sorted: &mut Vec<Row>, ends: &mut [u32]) {
     let mask = ends.len() as u32 - 2;
     ends.fill(0);
-    rows.iter().for_each(|row| ends[(row.corners[0] & mask) as usize] += 1);
+    rows.iter().for_each(|row| ends[(row[0] & mask) as usize] += 1);
     starts_of(ends);
     sorted.clear();
-    sorted.resize(rows.len(), Row::default());
+    sorted.resize(rows.len(), [0; 4]);
     for row in rows {
-        let end = &mut ends[(row.corners[0] & mask) as usize];
+        let end = &mut ends[(row[0] & mask) as usize];
         sorted[*end as usize] = *row;
         *end += 1;
     }
-    let is_before = |p: &Row, q: &Row| p.corners[0] == q.corners[0] && p.corners[1] < q.corners[1];
+    let is_before = |p: &Row, q: &Row| p[0] == q[0] && p[1] < q[1];
     if !insertion_sorts(sorted, is_before) {
-        sorted.sort_unstable_by_key(|row| (row.corners[0], row.corners[1]));
+        sorted.sort_unstable();
     }
 }
 

@@ -11,9 +11,9 @@ use crate::{Dimension, Error, Positions};
 /// The most points: with the triangles beyond the hull, V of them have up to 2V - 2 triangles.
 const MAX_POINTS: usize = MAX_TRIANGLES / 2 + 1;
 
-/// What a point takes while it is triangulated: a record to sort it (24 bytes), the point and its index (20), two slots
-/// (64), and in the result two triangles with their twins (48) and their numbering (24).
-const BYTES_PER_POINT: u64 = 180;
+/// The most bytes that a point takes at a time: the point and its index (20), two slots (64) and their numbers (8), two
+/// triangles (24), and these as rows that are sorted (32).
+const BYTES_PER_POINT: u64 = 148;
 
 /// A Delaunay triangulation of points in the plane, from [`triangulate`].
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

@@ -17,6 +17,9 @@ const UNDERFLOW: f64 = f64::MIN_POSITIVE;
 /// vectors is below 2^61, the product of two of these is below 2^122, and a sum of two products is below 2^123.
 pub(super) const NARROW_BITS: u32 = 30;
 
+/// With differences up to this width, degree 2 fits i128: a cross or dot product of two such vectors is below 2^125.
+pub(super) const MIDDLE_BITS: u32 = 62;
+
 /// With differences up to this width, degree 4 fits 20 limbs, 1280 bits: 4·319 + 3 = 1279. Differences of f32 have at
 /// most 278 bits.
 pub(super) const WIDE_BITS: u32 = 319;
@@ -173,6 +176,12 @@ fn in_circle_exact(a: DVec2, b: DVec2, c: DVec2, d: DVec2) -> Ordering {
     if differences.bits <= NARROW_BITS {
         let [cross1, dot1, cross2, dot2] = crosses_and_dots::<i64>(&differences.integers()).map(i128::from);
         (cross1 * dot2 + dot1 * cross2).cmp(&0)
+    } else if differences.bits <= MIDDLE_BITS {
+        let [px, py, qx, qy, rx, ry, sx, sy] = differences.integers::<i64>().map(i128::from);
+        let [cross1, dot1] = [px * qy - py * qx, px * qx + py * qy];
+        let [cross2, dot2] = [sx * ry - sy * rx, sx * rx + sy * ry];
+        // The sum is positive where the first product is greater than the negated second one.
+        product(cross1, dot2).cmp(&product(-dot1, cross2))
     } else if differences.bits <= WIDE_BITS {
         in_circle::<Bounded<20>>(&differences.integers())
     } else {
@@ -189,6 +198,8 @@ fn are_short(pairs: &[(DVec2, DVec2)], bits: u32) -> bool {
     // To add this number rounds a difference to a multiple, because it has the power of two in its last place.
     let rounder = 1.5 * power_of_two * (1u64 << (53 - bits)) as f64;
     let is_multiple = |d: f64| (d + rounder) - rounder == d;
+    #[cfg(test)]
+    super::exact::count(bits);
     // Beyond this range, products could underflow or overflow.
     (1e-60..1e60).contains(&largest)
         && pairs.iter().all(|&(u, v)| {
@@ -210,10 +221,28 @@ fn area_exact(a: DVec2, b: DVec2, c: DVec2) -> Ordering {
 
 fn doubled_area_sign(pairs: [(f64, f64); 4]) -> Ordering {
     let differences = Differences::new(pairs);
-    if differences.bits <= WIDE_BITS {
+    if differences.bits <= MIDDLE_BITS {
+        let [px, py, qx, qy] = differences.integers::<i64>().map(i128::from);
+        (px * qy).cmp(&(py * qx))
+    } else if differences.bits <= WIDE_BITS {
         doubled_area::<Bounded<20>>(&differences.integers()).sign()
     } else {
         doubled_area::<Unbounded>(&differences.integers()).sign()
+    }
+}
+
+/// The product of two numbers, of which neither is `i128::MIN`: its upper half, rounded down, and its lower half.
+fn product(x: i128, y: i128) -> (i128, u128) {
+    let halves = |x: u128| [x >> 64, x & u128::from(u64::MAX)];
+    let ([a, b], [c, d]) = (halves(x.unsigned_abs()), halves(y.unsigned_abs()));
+    let middle = a * d + (b * d >> 64);
+    let (middle, carry) = middle.overflowing_add(b * c);
+    let upper = a * c + (middle >> 64) + (u128::from(carry) << 64);
+    let lower = middle << 64 | (b * d & u128::from(u64::MAX));
+    if (x < 0) == (y < 0) {
+        (upper as i128, lower)
+    } else {
+        ((!upper).wrapping_add(u128::from(lower == 0)) as i128, lower.wrapping_neg())
     }
 }
 

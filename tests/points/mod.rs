@@ -41,9 +41,12 @@ pub const KINDS: [(&str, Kind); 18] = [
     }),
     ("lattice", |n, _| every(n, |i| lattice(i, n).map(|x| x / 1024.0))),
     ("lattice of spacing 0.1", |n, _| every(n, |i| lattice(i, n).map(|x| 0.1 * x))),
-    ("small lattice, repeated", |n, random| {
+    ("turned lattice, repeated", |n, random| {
         let side = (n.isqrt() as u64 / 2).max(2);
-        every(n, |_| [0; 2].map(|_| random.rand_range(0..side) as f64))
+        every(n, |_| {
+            let [x, y] = [0; 2].map(|_| random.rand_range(0..side) as f64);
+            [3.0 * x - y, x + 3.0 * y]
+        })
     }),
     ("hexagons", |n, random| {
         every(n, |i| {

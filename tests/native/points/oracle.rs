@@ -48,9 +48,9 @@ fn after(h: usize) -> usize {
     if h % 3 == 2 { h - 2 } else { h + 1 }
 }
 
-/// The triangulation of points with everything that its documentation promises. Returns the number of ties: edges whose
-/// four points are on one circle.
-pub fn check(positions: &Positions, result: &Triangulation) -> usize {
+/// Checks everything that the documentation of a triangulation promises. Returns for each half-edge whether it is a tie:
+/// whether its four points are on one circle.
+pub fn check(positions: &Positions, result: &Triangulation) -> Vec<bool> {
     let points = integers(positions);
     let at = |v: u32| &points[v as usize];
     let Triangulation { triangles, twins, hull, duplicates } = result;
@@ -70,7 +70,7 @@ pub fn check(positions: &Positions, result: &Triangulation) -> usize {
         if let [a, b, rest @ ..] = line.as_slice() {
             assert!(rest.iter().all(|&c| sign(&area(at(*a), at(*b), at(c))).is_eq()), "there is a triangle");
         }
-        return 0;
+        return Vec::new();
     }
 
     let rows = triangles.as_chunks::<3>().0;
@@ -87,7 +87,7 @@ pub fn check(positions: &Positions, result: &Triangulation) -> usize {
         sum += area;
     }
 
-    let (mut ties, mut next_on_hull) = (0, BTreeMap::new());
+    let (mut tied, mut next_on_hull) = (vec![false; triangles.len()], BTreeMap::new());
     assert_eq!(twins.len(), triangles.len());
     for (h, &g) in twins.iter().enumerate() {
         let [a, b, c] = [h, after(h), after(after(h))].map(|x| triangles[x]);
@@ -101,7 +101,7 @@ pub fn check(positions: &Positions, result: &Triangulation) -> usize {
         match sign(&in_circle(at(a), at(b), at(c), at(d))) {
             Ordering::Less => {}
             Ordering::Equal => {
-                ties += 1;
+                tied[h] = true;
                 let least = [a, b, c, d].into_iter().min_by_key(|&v| at(v));
                 assert!(least == Some(a) || least == Some(b), "{a} {b} does not fan out from the least");
             }
@@ -123,5 +123,5 @@ pub fn check(positions: &Positions, result: &Triangulation) -> usize {
     }
     assert_eq!(sum, outline, "the triangles do not cover the hull once");
     assert_eq!(rows.len(), 2 * distinct.len() - 2 - hull.len());
-    ties / 2
+    tied
 }
