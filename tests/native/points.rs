@@ -2,7 +2,7 @@
 
 mod oracle;
 
-use crate::points_of::{KINDS, Kind, points, shuffled};
+use crate::points_of::{KINDS, Kind, points};
 use edgeflip::{Error, NONE, Positions, Triangulation, triangulate};
 use oorandom::Rand64;
 use oracle::check;
@@ -28,6 +28,15 @@ fn checked(positions: &Positions) -> (Triangulation, Vec<bool>) {
 fn set(kind: Kind, most: f64, seed: u64) -> Vec<[f64; 2]> {
     let n = libm::pow(most, Rand64::new(seed.into()).rand_float());
     points(kind, n as usize, seed)
+}
+
+/// The points in another order.
+fn shuffled(points: &[[f64; 2]], random: &mut Rand64) -> Vec<[f64; 2]> {
+    let mut points = points.to_vec();
+    for i in (1..points.len()).rev() {
+        points.swap(i, random.rand_range(0..i as u64 + 1) as usize);
+    }
+    points
 }
 
 /// The triangles by their coordinates, from the least corner.

@@ -84,15 +84,6 @@ pub fn points(kind: Kind, n: usize, seed: u64) -> Vec<[f64; 2]> {
     kind(n, &mut Rand64::new(seed.into()))
 }
 
-/// The points in another order.
-pub fn shuffled(points: &[[f64; 2]], random: &mut Rand64) -> Vec<[f64; 2]> {
-    let mut points = points.to_vec();
-    for i in (1..points.len()).rev() {
-        points.swap(i, random.rand_range(0..i as u64 + 1) as usize);
-    }
-    points
-}
-
 fn every(n: usize, point: impl FnMut(usize) -> [f64; 2]) -> Vec<[f64; 2]> {
     (0..n).map(point).collect()
 }
