@@ -31,8 +31,9 @@ const SETS: [&str; 14] = [
     "sorted",
 ];
 
-/// For so many points of these kinds, the crate `delaunator` takes from ten seconds to hours.
-const SLOW: [&str; 3] = ["circle", "parabola", "few values of x"];
+/// For so many points of these kinds, the crates take minutes or hours.
+const SLOW_IN_DELAUNATOR: [&str; 3] = ["circle", "parabola", "few values of x"];
+const SLOW_IN_SPADE: [&str; 1] = ["parabola"];
 
 type Work<'a> = Box<dyn Fn() -> Result<(), Box<dyn Error>> + 'a>;
 
@@ -67,9 +68,13 @@ fn main() -> Result<(), Box<dyn Error>> {
             black_box(DelaunayTriangulation::<Point2<f64>>::bulk_load(vertices.clone())?.num_vertices());
             Ok(())
         });
-        let is_slow = SLOW.contains(&name) && count > 100_000;
-        let contenders =
-            [Some(ours(&wide)), Some(ours(&narrow)), Some(delaunator).filter(|_| !is_slow), Some(spade)];
+        let quick = |work, slow: &[&str]| Some(work).filter(|_| count <= 100_000 || !slow.contains(&name));
+        let contenders = [
+            Some(ours(&wide)),
+            Some(ours(&narrow)),
+            quick(delaunator, &SLOW_IN_DELAUNATOR),
+            quick(spade, &SLOW_IN_SPADE),
+        ];
         let mut ms = vec![Vec::new(); contenders.len()];
         for _ in 0..runs {
             for (work, ms) in contenders.iter().zip(&mut ms) {

@@ -50,10 +50,18 @@ impl<'a> Network<'a> {
             }
             _ => {
                 let middle = starts.len() / 2;
-                let sides = [self.of_row(&starts[..=middle]), self.of_row(&starts[middle..])];
-                self.slots.merge(self.points, sides, 2 * starts[middle] - 2)
+                let slot = 2 * starts[middle] - 2;
+                let [mut low, mut high] = self.halves(slot);
+                // Neither touches the other's slots, so that each may have a thread of its own.
+                let sides = [low.of_row(&starts[..=middle]), high.of_row(&starts[middle..])];
+                self.slots.merge(self.points, sides, slot)
             }
         }
+    }
+
+    /// The parts before and after the two slots from `slot`.
+    fn halves(&mut self, slot: u32) -> [Network<'_>; 2] {
+        self.slots.halves(slot).map(|slots| Network { points: self.points, slots })
     }
 
     /// Triangulates two or more vertices of a column. The ends of the hull are the first and the last of them.
@@ -73,8 +81,8 @@ impl<'a> Network<'a> {
     /// An edge: a ghost on each side.
     fn edge(&mut self, a: u32) -> Hull {
         let slots = &mut self.slots;
-        let [right, left] =
-            [(2 * a, [a, a + 1]), (2 * a + 1, [a + 1, a])].map(|(s, side)| slots.put_ghost(s, side));
+        let right = slots.put_ghost(2 * a, [a, a + 1]);
+        let left = slots.put_ghost(2 * a + 1, [a + 1, a]);
         slots.join(right, left);
         slots.join_ring(&[right, left]);
         Hull { first: left + 1, last: right + 1 }

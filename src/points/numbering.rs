@@ -14,30 +14,53 @@ type Row = [u32; 4];
 /// The triangles of finished slots, and their twins. `indices` has the caller's index of each vertex; all are below
 /// `count`. A triangle begins with its smallest index, and they are sorted by their first index and then by their second.
 pub(super) fn numbered(slots: &[Slot], indices: &[u32], count: usize) -> (Vec<u32>, Vec<u32>) {
-    let (rows, group_ends, shift) = grouped(slots, indices, count);
-    let mut triangles = vec![0; 3 * rows.len()];
+    // The triangles are in groups by their first index without its lowest bits.
+    let shift = (usize::BITS - count.leading_zeros()).saturating_sub(MOST_GROUPS_LOG2);
+    let mut group_ends = vec![0; (count >> shift) + 1];
+    let corners = |slot: &Slot| {
+        let [a, b, c, _] = slot.corners;
+        // The symbolic vertex has the largest number.
+        let is_real = a.max(b).max(c) != GHOST;
+        is_real.then(|| [indices[a as usize], indices[b as usize], indices[c as usize]])
+    };
+    for [a, b, c] in slots.iter().filter_map(corners) {
+        group_ends[(a.min(b).min(c) >> shift) as usize] += 1;
+    }
+    let total = starts_of(&mut group_ends) as usize;
+    let [mut triangles, mut twins] = [vec![0; 3 * total], vec![0; 3 * total]];
+    // The twins are not known yet, and the triangles are in their place until they are sorted.
+    let (unsorted, _) = twins.as_chunks_mut::<3>();
+    let mut half_edges = vec![0; total];
+    for (slot, at) in (0..).zip(slots) {
+        if let Some([a, b, c]) = corners(at) {
+            let smallest = a.min(b).min(c);
+            let turn = u32::from(b == smallest) + 2 * u32::from(c == smallest);
+            let end = &mut group_ends[(smallest >> shift) as usize];
+            unsorted[*end as usize] = [[a, b, c], [b, c, a], [c, a, b]][turn as usize];
+            half_edges[*end as usize] = 4 * slot + turn;
+            *end += 1;
+        }
+    }
     // For each slot, 4 times the number of its triangle, and the corner that is now the first.
     let mut numbers = vec![NONE; slots.len()];
     let (mut group, mut ends) = (Vec::new(), vec![0; (1 << shift) + 1]);
     let mut start = 0;
     for &end in &group_ends {
         let places = start as usize..end as usize;
-        sort(&rows[places.clone()], &mut group, &mut ends);
-        for (([a, b, c, h], corners), number) in
-            group.iter().zip(&mut triangles.as_chunks_mut().0[places]).zip(start..)
-        {
-            *corners = [*a, *b, *c];
-            numbers[*h as usize >> 2] = 4 * number + (h & 3);
+        let rows = unsorted[places.clone()].iter().zip(&half_edges[places.clone()]);
+        sort(rows.map(|(&[a, b, c], &h)| [a, b, c, h]), &mut group, &mut ends);
+        let (sorted, _) = triangles.as_chunks_mut::<3>();
+        for ((&[a, b, c, h], corners), number) in group.iter().zip(&mut sorted[places]).zip(start..) {
+            *corners = [a, b, c];
+            numbers[h as usize >> 2] = 4 * number + (h & 3);
         }
         start = end;
     }
-    drop(rows);
-    let mut twins = vec![0; triangles.len()];
     let (all, _) = twins.as_chunks_mut::<3>();
     for (slot, &number) in slots.iter().zip(&numbers) {
         if number != NONE {
             let turn = number as usize & 3;
-            // Not `map`, which is not always inlined; the same below.
+            // Not `map`, which is not always inlined.
             all[number as usize >> 2] = array::from_fn(|corner| {
                 let h = slot.twins[AFTER[turn + corner]];
                 let number = numbers[h as usize >> 2];
@@ -52,33 +75,6 @@ pub(super) fn numbered(slots: &[Slot], indices: &[u32], count: usize) -> (Vec<u3
 /// Corners modulo 3.
 const AFTER: [usize; 7] = [0, 1, 2, 0, 1, 2, 0];
 
-/// The triangles in groups by their first index without its lowest bits: the rows, the end of each group, and how many
-/// bits.
-fn grouped(slots: &[Slot], indices: &[u32], count: usize) -> (Vec<Row>, Vec<u32>, u32) {
-    let shift = (usize::BITS - count.leading_zeros()).saturating_sub(MOST_GROUPS_LOG2);
-    let mut ends = vec![0; (count >> shift) + 1];
-    let triangles = || {
-        (0..).zip(slots).filter_map(|(slot, &Slot { corners: [a, b, c, _], .. })| {
-            // The symbolic vertex has the largest number.
-            let is_real = a.max(b).max(c) != GHOST;
-            is_real.then(|| (slot, [indices[a as usize], indices[b as usize], indices[c as usize]]))
-        })
-    };
-    triangles().for_each(|(_, [a, b, c])| ends[(a.min(b).min(c) >> shift) as usize] += 1);
-    let sum = starts_of(&mut ends);
-    let mut rows = vec![[0; 4]; sum as usize];
-    for (slot, corners) in triangles() {
-        let [a, b, c] = corners;
-        let smallest = a.min(b).min(c);
-        let turn = usize::from(b == smallest) + 2 * usize::from(c == smallest);
-        let end = &mut ends[(smallest >> shift) as usize];
-        rows[*end as usize] =
-            [corners[turn], corners[AFTER[turn + 1]], corners[AFTER[turn + 2]], 4 * slot + turn as u32];
-        *end += 1;
-    }
-    (rows, ends, shift)
-}
-
 /// Turns sizes into starts. Returns the sum.
 fn starts_of(sizes: &mut [u32]) -> u32 {
     let mut sum = 0;
@@ -89,16 +85,16 @@ fn starts_of(sizes: &mut [u32]) -> u32 {
 }
 
 /// Sorts the rows of a group. The lowest bits of their first indices are below the length of `ends`, a power of two and 1.
-fn sort(rows: &[Row], sorted: &mut Vec<Row>, ends: &mut [u32]) {
+fn sort(rows: impl ExactSizeIterator<Item = Row> + Clone, sorted: &mut Vec<Row>, ends: &mut [u32]) {
     let mask = ends.len() as u32 - 2;
     ends.fill(0);
-    rows.iter().for_each(|row| ends[(row[0] & mask) as usize] += 1);
+    rows.clone().for_each(|row| ends[(row[0] & mask) as usize] += 1);
     starts_of(ends);
     sorted.clear();
     sorted.resize(rows.len(), [0; 4]);
     for row in rows {
         let end = &mut ends[(row[0] & mask) as usize];
-        sorted[*end as usize] = *row;
+        sorted[*end as usize] = row;
         *end += 1;
     }
     let is_before = |p: &Row, q: &Row| p[0] == q[0] && p[1] < q[1];

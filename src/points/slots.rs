@@ -28,13 +28,19 @@ pub(super) fn prev(h: u32) -> u32 {
     if h & 3 == 0 { h + 2 } else { h - 1 }
 }
 
-/// A row of slots, of which the first has the number `first`.
+/// Some of the slots, of which the first has the number `first`.
 pub(super) struct Slots<'a> {
     pub(super) slots: &'a mut [Slot],
     pub(super) first: u32,
 }
 
 impl Slots<'_> {
+    /// The slots before and after the two from `slot`.
+    pub(super) fn halves(&mut self, slot: u32) -> [Slots<'_>; 2] {
+        let (low, rest) = self.slots.split_at_mut((slot - self.first) as usize);
+        [Slots { slots: low, first: self.first }, Slots { slots: &mut rest[2..], first: slot + 2 }]
+    }
+
     #[inline(always)]
     fn slot(&self, h: u32) -> &Slot {
         &self.slots[(h >> 2).wrapping_sub(self.first) as usize]

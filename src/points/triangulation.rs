@@ -12,7 +12,7 @@ use crate::{Dimension, Error, Positions};
 const MAX_POINTS: usize = MAX_TRIANGLES / 2 + 1;
 
 /// The most bytes that a point takes at a time: the point and its index (20), two slots (64) and their numbers (8), two
-/// triangles (24), and these as rows that are sorted (32).
+/// triangles with their twins (48), and the half-edges with which these begin (8).
 const BYTES_PER_POINT: u64 = 148;
 
 /// A Delaunay triangulation of points in the plane, from [`triangulate`].

@@ -235,10 +235,11 @@ fn doubled_area_sign(pairs: [(f64, f64); 4]) -> Ordering {
 fn product(x: i128, y: i128) -> (i128, u128) {
     let halves = |x: u128| [x >> 64, x & u128::from(u64::MAX)];
     let ([a, b], [c, d]) = (halves(x.unsigned_abs()), halves(y.unsigned_abs()));
-    let middle = a * d + (b * d >> 64);
+    let lowest = b * d;
+    let middle = a * d + (lowest >> 64);
     let (middle, carry) = middle.overflowing_add(b * c);
     let upper = a * c + (middle >> 64) + (u128::from(carry) << 64);
-    let lower = middle << 64 | (b * d & u128::from(u64::MAX));
+    let lower = (middle << 64) | (lowest & u128::from(u64::MAX));
     if (x < 0) == (y < 0) {
         (upper as i128, lower)
     } else {
