@@ -5,8 +5,10 @@ use super::slots::{GHOST, Slot};
 use crate::NONE;
 use std::array;
 
-/// The most groups of first indices, into which the triangles are sorted before each group is sorted in the cache.
-const MOST_GROUPS_LOG2: u32 = 10;
+/// Triangles are sorted into groups by their first index, up to so many, and then each group is sorted in the cache. A
+/// group has at least so many indices. Both are exponents of 2.
+const MOST_GROUPS: u32 = 10;
+const FEWEST_INDICES: u32 = 10;
 
 /// A triangle by the caller's indices, from its smallest, and the half-edge that begins there.
 type Row = [u32; 4];
@@ -15,7 +17,7 @@ type Row = [u32; 4];
 /// `count`. A triangle begins with its smallest index, and they are sorted by their first index and then by their second.
 pub(super) fn numbered(slots: &[Slot], indices: &[u32], count: usize) -> (Vec<u32>, Vec<u32>) {
     // The triangles are in groups by their first index without its lowest bits.
-    let shift = (usize::BITS - count.leading_zeros()).saturating_sub(MOST_GROUPS_LOG2);
+    let shift = (usize::BITS - count.leading_zeros()).saturating_sub(MOST_GROUPS).max(FEWEST_INDICES);
     let mut group_ends = vec![0; (count >> shift) + 1];
     let corners = |slot: &Slot| {
         let [a, b, c, _] = slot.corners;
