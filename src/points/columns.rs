@@ -14,6 +14,11 @@ const MOST_BINS: usize = 1 << 16;
 /// widths from 2 to 4 take the least time.
 const WIDTH: f64 = 3.0;
 
+/// A column that has more than so many times the mean is divided again, but not more often than the other number says:
+/// each time, the scale of x is up to 2^16 times as fine.
+const MOST_OF_MEAN: usize = 16;
+const MOST_LEVELS: u32 = 4;
+
 /// Distinct points, column by column.
 pub(super) struct Columns {
     pub(super) points: Vec<DVec2>,
@@ -85,37 +90,32 @@ impl Columns {
             starts: vec![0],
             duplicates: Vec::new(),
         };
-        if given.is_empty() {
-            return columns;
-        }
-        // Adding 0 turns -0 into 0.
-        let points = || given.iter().map(|&[x, y]| DVec2::new(x.into(), y.into()) + DVec2::ZERO);
-        let (low, high) =
-            points().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
-        let bins = Bins::new([low.x, high.x], (2 * given.len()).next_power_of_two().clamp(256, MOST_BINS));
-        let mut sizes = vec![0u32; bins.last as usize + 1];
-        points().for_each(|p| sizes[bins.of(p.x)] += 1);
-        let extent = 0.5 * high - 0.5 * low;
-        let (column_of, mut ends) = columns_of_bins(&sizes, extent.x / extent.y, given.len());
-
-        let none = Record { point: DVec2::ZERO, index: 0 };
-        let mut records = vec![none; given.len()];
-        for (index, point) in (0..).zip(points()) {
-            let end = &mut ends[column_of[bins.of(point.x)] as usize];
-            records[*end as usize] = Record { point, index };
-            *end += 1;
-        }
-
-        let mut scratch = Scratch::default();
-        let mut start = 0;
-        for &end in &ends {
-            let column = &mut records[start as usize..end as usize];
-            scratch.sort(column);
-            columns.add(column);
-            start = end;
+        if !given.is_empty() {
+            // Adding 0 turns -0 into 0.
+            let point = |&[x, y]: &[T; 2]| DVec2::new(x.into(), y.into()) + DVec2::ZERO;
+            let records = (0..).zip(given).map(|(index, pair)| Record { point: point(pair), index });
+            columns.add_all(distributed(records, given.len()), MOST_LEVELS, &mut Scratch::default());
         }
         columns.finish();
         columns
+    }
+
+    /// Adds columns that are not sorted yet to the right of the others. Columns that have far too many points, because
+    /// others are far away from them, become columns of their own scale.
+    fn add_all(&mut self, (mut records, ends): (Vec<Record>, Vec<u32>), levels: u32, scratch: &mut Scratch) {
+        let most = MOST_OF_MEAN * records.len().div_ceil(ends.len());
+        let mut start = 0;
+        for end in ends {
+            let column = &mut records[start as usize..end as usize];
+            if column.len() > most && levels > 0 {
+                let parts = distributed(column.iter().copied(), column.len());
+                self.add_all(parts, levels - 1, scratch);
+            } else {
+                scratch.sort(column);
+                self.add(column);
+            }
+            start = end;
+        }
     }
 
     /// Adds a sorted column to the right of the others.
@@ -173,6 +173,25 @@ impl Columns {
             self.indices[to..=at].rotate_right(1);
         }
     }
+}
+
+/// One or more records by columns, which are not sorted, and the end of each column.
+fn distributed(records: impl Iterator<Item = Record> + Clone, count: usize) -> (Vec<Record>, Vec<u32>) {
+    let points = || records.clone().map(|record| record.point);
+    let (low, high) =
+        points().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
+    let bins = Bins::new([low.x, high.x], (2 * count).next_power_of_two().clamp(256, MOST_BINS));
+    let mut sizes = vec![0; bins.last as usize + 1];
+    points().for_each(|p| sizes[bins.of(p.x)] += 1);
+    let extent = 0.5 * high - 0.5 * low;
+    let (column_of, mut ends) = columns_of_bins(&sizes, extent.x / extent.y, count);
+    let mut sorted = vec![Record { point: DVec2::ZERO, index: 0 }; count];
+    for record in records {
+        let end = &mut ends[column_of[bins.of(record.point.x)] as usize];
+        sorted[*end as usize] = record;
+        *end += 1;
+    }
+    (sorted, ends)
 }
 
 /// The column of each bin of the given sizes, and the start of each column. `aspect` is the width of all points divided

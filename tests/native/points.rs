@@ -118,6 +118,16 @@ fn coordinates_of_any_size_are_decided() {
     }
 }
 
+/// Nearly all points are in one of the first columns, and these are in one of the next.
+#[test]
+fn points_far_away_from_the_others_are_decided() {
+    for (_, kind) in KINDS {
+        let mut points = points(kind, 1000, 1);
+        points.extend([[1e9, 0.25], [-1e40, 0.5], [1e40, -1e15], [3e9, 0.5]]);
+        checked(&wide(&points));
+    }
+}
+
 #[test]
 fn a_point_with_many_neighbours_may_have_any_index() {
     let rim = points(KINDS[5].1, 1000, 1);
