@@ -20,6 +20,11 @@ pub(super) const NARROW_BITS: u32 = 30;
 /// With differences up to this width, degree 2 fits i128: a cross or dot product of two such vectors is below 2^125.
 pub(super) const MIDDLE_BITS: u32 = 62;
 
+/// Whether there are tiers for ties of 64-bit floats and of lattices. Points have many ties. In the modules of the npm
+/// package that run and repair meshes, which do without them, they would be 1.2 KB to download.
+const HAS_TIERS_FOR_TIES: bool =
+    cfg!(not(any(feature = "js-session", feature = "js-webgl2", feature = "js-untangle")));
+
 /// With differences up to this width, degree 4 fits 20 limbs, 1280 bits: 4·319 + 3 = 1279. Differences of f32 have at
 /// most 278 bits.
 pub(super) const WIDE_BITS: u32 = 319;
@@ -167,7 +172,7 @@ fn in_circle_exact(a: DVec2, b: DVec2, c: DVec2, d: DVec2) -> Ordering {
     if is_right(c) && is_right(d) {
         return Ordering::Equal;
     }
-    if are_short(&[(a, c), (b, c), (a, d), (b, d)], 12) {
+    if HAS_TIERS_FOR_TIES && are_short(&[(a, c), (b, c), (a, d), (b, d)], 12) {
         let (p, q, r, s) = (a - c, b - c, a - d, b - d);
         return sign(p.perp_dot(q) * s.dot(r) + p.dot(q) * s.perp_dot(r));
     }
@@ -176,7 +181,7 @@ fn in_circle_exact(a: DVec2, b: DVec2, c: DVec2, d: DVec2) -> Ordering {
     if differences.bits <= NARROW_BITS {
         let [cross1, dot1, cross2, dot2] = crosses_and_dots::<i64>(&differences.integers()).map(i128::from);
         (cross1 * dot2 + dot1 * cross2).cmp(&0)
-    } else if differences.bits <= MIDDLE_BITS {
+    } else if HAS_TIERS_FOR_TIES && differences.bits <= MIDDLE_BITS {
         let [px, py, qx, qy, rx, ry, sx, sy] = differences.integers::<i64>().map(i128::from);
         let [cross1, dot1] = [px * qy - py * qx, px * qx + py * qy];
         let [cross2, dot2] = [sx * ry - sy * rx, sx * rx + sy * ry];
@@ -213,7 +218,7 @@ fn are_short(pairs: &[(DVec2, DVec2)], bits: u32) -> bool {
 
 #[cold]
 fn area_exact(a: DVec2, b: DVec2, c: DVec2) -> Ordering {
-    if are_short(&[(a, c), (b, c)], 25) {
+    if HAS_TIERS_FOR_TIES && are_short(&[(a, c), (b, c)], 25) {
         return sign((a - c).perp_dot(b - c));
     }
     doubled_area_sign([(a.x, c.x), (a.y, c.y), (b.x, c.x), (b.y, c.y)])
@@ -221,7 +226,7 @@ fn area_exact(a: DVec2, b: DVec2, c: DVec2) -> Ordering {
 
 fn doubled_area_sign(pairs: [(f64, f64); 4]) -> Ordering {
     let differences = Differences::new(pairs);
-    if differences.bits <= MIDDLE_BITS {
+    if HAS_TIERS_FOR_TIES && differences.bits <= MIDDLE_BITS {
         let [px, py, qx, qy] = differences.integers::<i64>().map(i128::from);
         (px * qy).cmp(&(py * qx))
     } else if differences.bits <= WIDE_BITS {
