@@ -1,5 +1,5 @@
-//! Measures `triangulate` next to the crates `delaunator` and `spade`, from an array of points to the triangles and their
-//! twins, on one thread. `cargo bench -p benches --bench points -- [--runs N] [KIND…]`; `uniform 100000` is a kind with
+//! Measures `triangulate`, on one thread and on one per core, next to the crates `delaunator` and `spade`, which have one
+//! thread: from an array of points to the triangles and their twins. `cargo bench -p benches --bench points -- [--runs N] [KIND…]`; `uniform 100000` is a kind with
 //! another number of points than a million.
 //!
 //! The runs are interleaved; the figures are medians.
@@ -9,10 +9,10 @@ mod points;
 
 use benches::arguments::{Arguments, median};
 use delaunator::Point;
-use edgeflip::{Positions, triangulate};
+use edgeflip::{PointOptions, Positions, triangulate_with};
 use points::KINDS;
 use spade::{DelaunayTriangulation, Point2, Triangulation};
-use std::{error::Error, hint::black_box, time::Instant};
+use std::{error::Error, hint::black_box, num::NonZeroUsize, thread::available_parallelism, time::Instant};
 
 const SETS: [&str; 14] = [
     "uniform",
@@ -39,10 +39,15 @@ type Work<'a> = Box<dyn Fn() -> Result<(), Box<dyn Error>> + 'a>;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let Arguments { runs, specs } = Arguments::read(5, &SETS)?;
-    println!("Milliseconds on one thread, medians of {runs} interleaved runs. The crates get 64-bit floats.");
+    let cores = available_parallelism()?;
+    println!(
+        "Milliseconds, medians of {runs} interleaved runs, on one thread where the column does not say {cores}. The crates get 64-bit floats."
+    );
     println!();
-    println!("| points | : delaunator | : spade | 64-bit floats | 32-bit floats | delaunator | spade |");
-    println!("|---|{}", "---:|".repeat(6));
+    println!(
+        "| points | : delaunator | : spade | {cores} threads : one | 64-bit floats | {cores} threads | 32-bit floats | delaunator | spade |"
+    );
+    println!("|---|{}", "---:|".repeat(8));
     for spec in &specs {
         let (name, count) = match spec.rsplit_once(' ').map(|(name, count)| (name, count.parse())) {
             Some((name, Ok(count))) => (name, count),
@@ -54,9 +59,10 @@ fn main() -> Result<(), Box<dyn Error>> {
         let narrow = Positions::from(wide.to_f32());
         let theirs: Vec<Point> = pairs.iter().map(|&[x, y]| Point { x, y }).collect();
         let vertices: Vec<Point2<f64>> = pairs.iter().map(|&[x, y]| Point2::new(x, y)).collect();
-        let ours = |positions| -> Work {
+        let ours = |positions, threads| -> Work {
+            let options = PointOptions { threads: Some(threads) };
             Box::new(move || {
-                black_box(triangulate(positions)?);
+                black_box(triangulate_with(positions, &options)?);
                 Ok(())
             })
         };
@@ -70,8 +76,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         });
         let quick = |work, slow: &[&str]| Some(work).filter(|_| count <= 100_000 || !slow.contains(&name));
         let contenders = [
-            Some(ours(&wide)),
-            Some(ours(&narrow)),
+            Some(ours(&wide, NonZeroUsize::MIN)),
+            Some(ours(&wide, cores)),
+            Some(ours(&narrow, NonZeroUsize::MIN)),
             quick(delaunator, &SLOW_IN_DELAUNATOR),
             quick(spade, &SLOW_IN_SPADE),
         ];
@@ -85,10 +92,12 @@ fn main() -> Result<(), Box<dyn Error>> {
                 }
             }
         }
-        let [wide, narrow, delaunator, spade] = [0, 1, 2, 3].map(|i| median(std::mem::take(&mut ms[i])));
+        let [wide, fast, narrow, delaunator, spade] =
+            [0, 1, 2, 3, 4].map(|i| median(std::mem::take(&mut ms[i])));
         let cell = |x: f64| if x.is_nan() { "–".to_owned() } else { format!("{x:.2}") };
-        let cells = [wide / delaunator, wide / spade, wide, narrow, delaunator, spade].map(cell);
-        println!("| {count} {name} | {} |", cells.join(" | "));
+        let ratios = [wide / delaunator, wide / spade, fast / wide];
+        let cells = ratios.into_iter().chain([wide, fast, narrow, delaunator, spade]).map(cell);
+        println!("| {count} {name} | {} |", cells.collect::<Vec<_>>().join(" | "));
     }
     Ok(())
 }

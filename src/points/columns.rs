@@ -1,18 +1,13 @@
-//! Sorts points into columns: intervals of x with about as many points as each other, and in each the order by y, then
-//! by x. Nothing here decides by a rounded number: rounding only moves the borders of the columns.
+//! Sorts points into columns, and in each by y, then by x. Nothing here decides by a rounded number.
 
+use super::distribution::{Bins, Record, distributed};
+use super::groups::{groups, split, start};
 use super::insertion::insertion_sorts;
 use crate::Positions;
+use crate::system::threads::Threads;
 use glam::DVec2;
-use std::cmp::Ordering;
+use std::mem::replace;
 use std::ops::Range;
-
-/// The most intervals of x that columns are made of.
-const MOST_BINS: usize = 1 << 16;
-
-/// The width of a column, in distances of neighbouring points if these are spread evenly. Of a million uniform points,
-/// widths from 2 to 4 take the least time.
-const WIDTH: f64 = 3.0;
 
 /// A column that has more than so many times the mean is divided again, but not more often than the other number says:
 /// each time, the scale of x is up to 2^16 times as fine.
@@ -31,94 +26,93 @@ pub(super) struct Columns {
     pub(super) duplicates: Vec<[u32; 2]>,
 }
 
-#[derive(Clone, Copy)]
-struct Record {
-    point: DVec2,
-    index: u32,
-}
-
-impl Record {
-    /// The order in a column. The points are finite, and no coordinate is -0.
-    #[inline(always)]
-    fn is_before(&self, other: &Self) -> bool {
-        let (p, q) = (self.point, other.point);
-        p.y < q.y || (p.y == q.y && (p.x < q.x || (p.x == q.x && self.index < other.index)))
-    }
-
-    fn compare(&self, other: &Self) -> Ordering {
-        let (p, q) = (self.point, other.point);
-        p.y.total_cmp(&q.y).then(p.x.total_cmp(&q.x)).then(self.index.cmp(&other.index))
-    }
-}
-
-/// Equal intervals between two numbers.
-struct Bins {
-    low: f64,
-    scale: f64,
-    last: u32,
-}
-
-impl Bins {
-    /// The halves of the numbers do not overflow.
-    fn new([low, high]: [f64; 2], count: usize) -> Self {
-        let last = count as u32 - 1;
-        let low = 0.5 * low;
-        Self { low, scale: f64::from(last) / (0.5 * high - low), last }
-    }
-
-    /// The interval of a number. A larger number is never in a lower one, whatever is rounded: where the scale is
-    /// infinite, the lowest number is in the first interval and all others are in the last.
-    #[inline(always)]
-    fn of(&self, x: f64) -> usize {
-        (((0.5 * x - self.low) * self.scale) as u32).min(self.last) as usize
-    }
-}
-
 impl Columns {
     /// Sorts points in the plane, whose coordinates are finite.
-    pub(super) fn of(positions: &Positions) -> Self {
+    pub(super) fn of(positions: &Positions, threads: &Threads) -> Self {
         match positions {
-            Positions::F32(numbers) => Self::sorted(numbers.as_chunks().0),
-            Positions::F64(numbers) => Self::sorted(numbers.as_chunks().0),
+            Positions::F32(numbers) => Self::sorted(numbers.as_chunks().0, threads),
+            Positions::F64(numbers) => Self::sorted(numbers.as_chunks().0, threads),
         }
     }
 
-    fn sorted<T: Copy + Into<f64>>(given: &[[T; 2]]) -> Self {
-        let mut columns = Self {
-            points: Vec::with_capacity(given.len()),
-            indices: Vec::with_capacity(given.len()),
-            starts: vec![0],
-            duplicates: Vec::new(),
-        };
+    fn sorted<T: Copy + Into<f64> + Sync>(given: &[[T; 2]], threads: &Threads) -> Self {
+        let mut columns = Self::empty(given.len());
         if !given.is_empty() {
             // Adding 0 turns -0 into 0.
             let point = |&[x, y]: &[T; 2]| DVec2::new(x.into(), y.into()) + DVec2::ZERO;
-            let records = (0..).zip(given).map(|(index, pair)| Record { point: point(pair), index });
-            columns.add_all(distributed(records, given.len()), MOST_LEVELS, &mut Scratch::default());
+            let records = |piece: Range<usize>| {
+                let indices = piece.start as u32..;
+                indices.zip(&given[piece]).map(|(index, pair)| Record { point: point(pair), index })
+            };
+            let (mut records, ends) = distributed(records, given.len(), threads);
+            columns.add_all(&mut records, &ends, MOST_LEVELS, threads);
         }
-        columns.finish();
+        columns.join_single();
+        threads.sort(&mut columns.duplicates);
         columns
     }
 
-    /// Adds columns that are not sorted yet to the right of the others. Columns that have far too many points, because
-    /// others are far away from them, become columns of their own scale.
-    fn add_all(&mut self, (mut records, ends): (Vec<Record>, Vec<u32>), levels: u32, scratch: &mut Scratch) {
+    /// No columns, and memory for so many points.
+    fn empty(count: usize) -> Self {
+        Self {
+            points: Vec::with_capacity(count),
+            indices: Vec::with_capacity(count),
+            starts: vec![0],
+            duplicates: Vec::new(),
+        }
+    }
+
+    /// Adds columns, which are not sorted yet and have these ends, to the right of the others.
+    fn add_all(&mut self, records: &mut [Record], ends: &[u32], levels: u32, threads: &Threads) {
         let most = MOST_OF_MEAN * records.len().div_ceil(ends.len());
+        let groups = groups(ends, threads);
+        if groups.len() == 1 {
+            return self.add_each(records, ends.iter().copied(), most, levels, threads);
+        }
+        let parts = split(records, ends, &groups).into_iter().zip(groups).collect();
+        let parts = threads.map_each(parts, |(records, group)| {
+            let mut part = Self::empty(records.len());
+            let first = start(ends, group.start) as u32;
+            part.add_each(records, ends[group].iter().map(|end| end - first), most, levels, threads);
+            part
+        });
+        for part in parts {
+            let first = self.points.len() as u32;
+            threads.append(&mut self.points, &part.points);
+            threads.append(&mut self.indices, &part.indices);
+            self.starts.extend(part.starts[1..].iter().map(|end| first + end));
+            self.duplicates.extend(part.duplicates);
+        }
+    }
+
+    /// Adds each of the columns. Those that have more points than `most`, because others are far away from them, become
+    /// columns of their own scale.
+    fn add_each(
+        &mut self,
+        records: &mut [Record],
+        ends: impl Iterator<Item = u32>,
+        most: usize,
+        levels: u32,
+        threads: &Threads,
+    ) {
+        let mut scratch = Scratch::default();
         let mut start = 0;
         for end in ends {
-            let column = &mut records[start as usize..end as usize];
+            let column = &mut records[replace(&mut start, end) as usize..end as usize];
             if column.len() > most && levels > 0 {
-                let parts = distributed(column.iter().copied(), column.len());
-                self.add_all(parts, levels - 1, scratch);
+                let records = |piece: Range<usize>| column[piece].iter().copied();
+                let (sorted, ends) = distributed(records, column.len(), threads);
+                column.copy_from_slice(&sorted);
+                drop(sorted);
+                self.add_all(column, &ends, levels - 1, threads);
             } else {
                 scratch.sort(column);
                 self.add(column);
             }
-            start = end;
         }
     }
 
-    /// Adds a sorted column to the right of the others.
+    /// Adds a sorted column.
     fn add(&mut self, column: &[Record]) {
         let start = self.points.len();
         for record in column {
@@ -132,31 +126,32 @@ impl Columns {
                 }
             }
         }
-        let end = self.points.len();
-        let open = self.starts.last().map_or(0, |&open| open as usize);
-        if open < start {
-            // The column before has one point, which joins this one.
-            self.place(open, open..end);
-        }
-        if end > open + 1 {
-            self.starts.push(end as u32);
+        if start < self.points.len() {
+            self.starts.push(self.points.len() as u32);
         }
     }
 
-    /// Ends the last column.
-    fn finish(&mut self) {
-        let end = self.points.len();
-        if let [rest @ .., open] = self.starts.as_slice()
-            && (*open as usize) < end
-        {
-            // One point is left. It joins the column before, if there is one.
-            if let Some(&start) = rest.last() {
-                self.starts.pop();
-                self.place(end - 1, start as usize..end);
+    /// Joins each column of one point to the column after it, and the last one to the column before it.
+    fn join_single(&mut self) {
+        let ends = replace(&mut self.starts, vec![0]);
+        let (mut open, mut start) = (0, 0);
+        for end in ends.into_iter().skip(1).map(|end| end as usize) {
+            if open < start {
+                self.place(open, open..end);
             }
-            self.starts.push(end as u32);
+            if end > open + 1 {
+                self.starts.push(end as u32);
+                open = end;
+            }
+            start = end;
         }
-        self.duplicates.sort_unstable();
+        if open < start {
+            if let [.., before, _] = *self.starts {
+                self.starts.pop();
+                self.place(open, before as usize..start);
+            }
+            self.starts.push(start as u32);
+        }
     }
 
     /// Moves a point to its place in a column whose other points are sorted.
@@ -173,49 +168,6 @@ impl Columns {
             self.indices[to..=at].rotate_right(1);
         }
     }
-}
-
-/// One or more records by columns, which are not sorted, and the end of each column.
-fn distributed(records: impl Iterator<Item = Record> + Clone, count: usize) -> (Vec<Record>, Vec<u32>) {
-    let points = || records.clone().map(|record| record.point);
-    let (low, high) =
-        points().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
-    let bins = Bins::new([low.x, high.x], (2 * count).next_power_of_two().clamp(256, MOST_BINS));
-    let mut sizes = vec![0; bins.last as usize + 1];
-    points().for_each(|p| sizes[bins.of(p.x)] += 1);
-    let extent = 0.5 * high - 0.5 * low;
-    let (column_of, mut ends) = columns_of_bins(&sizes, extent.x / extent.y, count);
-    let mut sorted = vec![Record { point: DVec2::ZERO, index: 0 }; count];
-    for record in records {
-        let end = &mut ends[column_of[bins.of(record.point.x)] as usize];
-        sorted[*end as usize] = record;
-        *end += 1;
-    }
-    (sorted, ends)
-}
-
-/// The column of each bin of the given sizes, and the start of each column. `aspect` is the width of all points divided
-/// by their height; there is at least one point.
-fn columns_of_bins(sizes: &[u32], aspect: f64, points: usize) -> (Vec<u32>, Vec<u32>) {
-    let most = points as f64;
-    // It is NaN if all points are equal, and NaN becomes 0.
-    let wanted = (((most * aspect.clamp(1.0 / most, most)).sqrt() / WIDTH) as u32).max(1);
-    let per_point = f64::from(wanted) / most;
-    let mut starts = vec![0; wanted as usize];
-    let mut column_of = Vec::with_capacity(sizes.len());
-    let (mut before, mut column) = (0, 0);
-    for &size in sizes {
-        // The column of the middle point of the bin.
-        let middle = ((f64::from(before) + 0.5 * f64::from(size)) * per_point) as u32;
-        while column < middle.min(wanted - 1) {
-            column += 1;
-            starts[column as usize] = before;
-        }
-        column_of.push(column);
-        before += size;
-    }
-    starts[column as usize + 1..].fill(before);
-    (column_of, starts)
 }
 
 /// Memory for sorting a column.

@@ -5,24 +5,26 @@
 use super::seam::Hull;
 use super::slots::{Slot, Slots};
 use crate::predicates::area_sign;
+use crate::system::threads::{FEWEST, Threads};
 use glam::DVec2;
 use std::array;
 
 /// Slots for so many vertices.
-pub(super) fn slots_of(vertices: usize) -> Vec<Slot> {
-    vec![Slot::default(); (2 * vertices).saturating_sub(2)]
+pub(super) fn slots_of(vertices: usize, threads: &Threads) -> Vec<Slot> {
+    threads.collect((2 * vertices).saturating_sub(2), |_| Slot::default())
 }
 
 /// The triangulations of a row of vertices.
 pub(super) struct Network<'a> {
     points: &'a [DVec2],
     slots: Slots<'a>,
+    threads: &'a Threads,
 }
 
 impl<'a> Network<'a> {
     /// No triangles yet.
-    pub(super) fn new(points: &'a [DVec2], slots: &'a mut [Slot]) -> Self {
-        Self { points, slots: Slots { slots, first: 0 } }
+    pub(super) fn new(points: &'a [DVec2], slots: &'a mut [Slot], threads: &'a Threads) -> Self {
+        Self { points, slots: Slots { slots, first: 0 }, threads }
     }
 
     /// Triangulates columns, each from one of these starts to the next. Returns the vertices of the hull,
@@ -50,18 +52,30 @@ impl<'a> Network<'a> {
             }
             _ => {
                 let middle = starts.len() / 2;
-                let slot = 2 * starts[middle] - 2;
-                let [mut low, mut high] = self.halves(slot);
-                // Neither touches the other's slots, so that each may have a thread of its own.
-                let sides = [low.of_row(&starts[..=middle]), high.of_row(&starts[middle..])];
-                self.slots.merge(self.points, sides, slot)
+                let [low, high] = [&starts[..=middle], &starts[middle..]];
+                self.merged(starts[middle], |half| half.of_row(low), |half| half.of_row(high))
             }
         }
     }
 
-    /// The parts before and after the two slots from `slot`.
-    fn halves(&mut self, slot: u32) -> [Network<'_>; 2] {
-        self.slots.halves(slot).map(|slots| Network { points: self.points, slots })
+    /// Triangulates the vertices before and from `middle`, and merges the halves. Neither touches the other's slots, so
+    /// that large ones have a thread each.
+    fn merged(
+        &mut self,
+        middle: u32,
+        low: impl FnOnce(&mut Network) -> Hull + Send,
+        high: impl FnOnce(&mut Network) -> Hull + Send,
+    ) -> Hull {
+        let slot = 2 * middle - 2;
+        let is_large = self.slots.slots.len() >= 4 * FEWEST;
+        let halves = self.slots.halves(slot);
+        let [mut first, mut second] = halves.map(|slots| Network { slots, ..*self });
+        let (low, high) = if is_large {
+            self.threads.join(|| low(&mut first), || high(&mut second))
+        } else {
+            (low(&mut first), high(&mut second))
+        };
+        self.slots.merge(self.points, [low, high], slot)
     }
 
     /// Triangulates two or more vertices of a column. The ends of the hull are the first and the last of them.
@@ -71,6 +85,10 @@ impl<'a> Network<'a> {
             3 => self.triangle(start),
             count => {
                 let middle = start + count / 2;
+                if count as usize >= 2 * FEWEST {
+                    let low = |half: &mut Network| half.of_column(start, middle);
+                    return self.merged(middle, low, |half| half.of_column(middle, end));
+                }
                 let low = self.of_column(start, middle);
                 let high = self.of_column(middle, end);
                 self.slots.merge(self.points, [low, high], 2 * middle - 2)

@@ -2,9 +2,12 @@
 //! halving it in y, and the columns are merged by halving their row in x.
 
 mod columns;
+mod distribution;
+mod groups;
 mod halves;
 mod insertion;
 mod numbering;
+pub(crate) mod options;
 mod seam;
 mod slots;
 pub(crate) mod triangulation;

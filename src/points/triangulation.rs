@@ -3,6 +3,7 @@
 use super::columns::Columns;
 use super::halves::{Network, slots_of};
 use super::numbering::{numbered, numbered_hull};
+use super::options::PointOptions;
 use crate::mesh::MAX_TRIANGLES;
 use crate::system::memory;
 use crate::system::threads::Threads;
@@ -11,9 +12,9 @@ use crate::{Dimension, Error, Positions};
 /// The most points: with the triangles beyond the hull, V of them have up to 2V - 2 triangles.
 const MAX_POINTS: usize = MAX_TRIANGLES / 2 + 1;
 
-/// The most bytes that a point takes at a time: the point and its index (20), two slots (64) and their numbers (8), two
-/// triangles with their twins (48), and the half-edges with which these begin (8).
-const BYTES_PER_POINT: u64 = 148;
+/// The most bytes that a point takes at a time: its index (4), two slots (64) and their numbers (8), two triangles with
+/// their twins (48), and the half-edges with which these begin (8).
+const BYTES_PER_POINT: u64 = 132;
 
 /// A Delaunay triangulation of points in the plane, from [`triangulate`].
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -42,7 +43,8 @@ impl Triangulation {
 ///
 /// No point is inside the circumcircle of a triangle. If four points are on one circle, the least of them, by x and then
 /// by y, is joined to the other three: so the points alone determine the triangles, whatever their order. Every decision
-/// is exact, and the time is O(n log n) for any points.
+/// is exact, and the time is O(n log n) for any points. It uses all cores; [`triangulate_with`] takes a number of threads,
+/// which does not change the result.
 ///
 /// The points are sorted into columns, and sets of points are merged as Guibas and Stolfi do ("Primitives for the
 /// manipulation of general subdivisions", 1985), with triangles to a symbolic vertex along the hull as Shewchuk has them
@@ -64,6 +66,16 @@ impl Triangulation {
 /// [`Error::RaggedArray`] for an odd number of coordinates, [`Error::NonFinite`] for the first coordinate that is NaN or
 /// infinite, [`Error::TooLarge`] or [`Error::OutOfMemory`] for too many points. Points without a triangle are no error.
 pub fn triangulate(points: &Positions) -> Result<Triangulation, Error> {
+    triangulate_with(points, &PointOptions::default())
+}
+
+/// As [`triangulate`], with options.
+///
+/// # Errors
+/// Those of [`triangulate`], and [`Error::Option`] for more threads than [`MOST_THREADS`](crate::MOST_THREADS), or if the
+/// threads cannot be started.
+pub fn triangulate_with(points: &Positions, options: &PointOptions) -> Result<Triangulation, Error> {
+    options.check()?;
     let (length, stride) = (points.len(), Dimension::Two.stride());
     if length % stride != 0 {
         return Err(Error::RaggedArray { array: "positions", length, stride });
@@ -72,18 +84,24 @@ pub fn triangulate(points: &Positions) -> Result<Triangulation, Error> {
     if count > MAX_POINTS {
         return Err(Error::TooLarge { what: "vertices", count, limit: MAX_POINTS });
     }
-    points.refuse_non_finite(Dimension::Two, &Threads::one())?;
+    let threads = Threads::new(options.threads, 2 * count)?;
+    points.refuse_non_finite(Dimension::Two, &threads)?;
     memory::check(BYTES_PER_POINT * count as u64)?;
-    let columns = Columns::of(points);
-    let mut slots = slots_of(columns.points.len());
-    let mut vertices = Network::new(&columns.points, &mut slots).of_columns(&columns.starts);
-    let (triangles, twins) = numbered(&slots, &columns.indices, count);
+    Ok(threads.enter(|| triangulated(points, &threads)))
+}
+
+fn triangulated(points: &Positions, threads: &Threads) -> Triangulation {
+    let Columns { points: sorted, indices, starts, duplicates } = Columns::of(points, threads);
+    let mut slots = slots_of(sorted.len(), threads);
+    let mut vertices = Network::new(&sorted, &mut slots, threads).of_columns(&starts);
+    drop(sorted);
+    let (triangles, twins) = numbered(&slots, &indices, points.len() / 2, threads);
     let hull = if triangles.is_empty() {
         // There and back along the line.
-        vertices.truncate(columns.points.len());
-        vertices.into_iter().map(|vertex| columns.indices[vertex as usize]).collect()
+        vertices.truncate(indices.len());
+        vertices.into_iter().map(|vertex| indices[vertex as usize]).collect()
     } else {
-        numbered_hull(vertices, &columns.indices)
+        numbered_hull(vertices, &indices)
     };
-    Ok(Triangulation { triangles, twins, hull, duplicates: columns.duplicates })
+    Triangulation { triangles, twins, hull, duplicates }
 }

@@ -1,6 +1,7 @@
 //! Points are triangulated as an oracle of integers of any size defines it, and as another crate does, up to ties.
 
 mod oracle;
+mod threads;
 
 use crate::points_of::{KINDS, Kind, points};
 use edgeflip::{Error, NONE, Positions, Triangulation, triangulate};
