@@ -1,7 +1,7 @@
 //! The options of a triangulation of points.
 
 use crate::Error;
-use crate::system::threads::at_most;
+use crate::system::threads::checked;
 use std::num::NonZeroUsize;
 
 /// The options of [`triangulate_with`](crate::triangulate_with).
@@ -17,6 +17,6 @@ impl PointOptions {
     /// # Errors
     /// [`Error::Option`].
     pub(super) fn check(&self) -> Result<(), Error> {
-        self.threads.map_or(Ok(()), |count| at_most(count.get()).map(drop))
+        self.threads.map_or(Ok(()), |count| checked(count.get()).map(drop))
     }
 }

@@ -31,7 +31,7 @@ pub const MOST_THREADS: usize = 256;
 ///
 /// # Errors
 /// [`Error::Option`].
-pub(crate) fn at_most(count: usize) -> Result<NonZeroUsize, Error> {
+pub(crate) fn checked(count: usize) -> Result<NonZeroUsize, Error> {
     NonZeroUsize::new(count).filter(|_| count <= MOST_THREADS).ok_or_else(|| {
         let message = format!("{count} is not a number of threads: give 1 to {MOST_THREADS}");
         Error::Option { option: "threads", message }
@@ -382,6 +382,21 @@ mod tests {
                 let (copied, rest) = all[1..].split_at(len);
                 assert!(all[0] == 0 && copied.iter().all(|&item| item == 7));
                 assert!(rest.iter().copied().eq(1 + len..1 + there));
+            }
+        }
+    }
+
+    #[test]
+    fn both_run_and_all_is_sorted() {
+        for count in [1, 2, 3, 8] {
+            let threads = Threads::new(NonZeroUsize::new(count), usize::MAX).unwrap();
+            for len in [0, 1, 7, 8, 1000] {
+                let (mut low, mut high) = (vec![0; len], vec![0; len]);
+                let sides = threads.join(|| low.fill(1), || high.fill(2));
+                assert_eq!((sides, low, high), (((), ()), vec![1; len], vec![2; len]));
+                let mut items = Vec::from_iter((0..len).rev());
+                threads.sort(&mut items);
+                assert!(items.into_iter().eq(0..len));
             }
         }
     }
