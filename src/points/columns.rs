@@ -6,7 +6,7 @@ use super::insertion::insertion_sorts;
 use crate::Positions;
 use crate::system::threads::Threads;
 use glam::DVec2;
-use std::mem::replace;
+use std::mem::{replace, take};
 use std::ops::Range;
 
 /// A column that has more than so many times the mean is divided again, but not more often than the other number says:
@@ -15,6 +15,7 @@ const MOST_OF_MEAN: usize = 16;
 const MOST_LEVELS: u32 = 4;
 
 /// Distinct points, column by column.
+#[derive(Default)]
 pub(super) struct Columns {
     pub(super) points: Vec<DVec2>,
     /// The indices that the caller has given them.
@@ -36,7 +37,8 @@ impl Columns {
     }
 
     fn sorted<T: Copy + Into<f64> + Sync>(given: &[[T; 2]], threads: &Threads) -> Self {
-        let mut columns = Self::empty(given.len());
+        let mut columns = Self::default();
+        columns.reserve(given.len());
         if !given.is_empty() {
             // Adding 0 turns -0 into 0.
             let point = |&[x, y]: &[T; 2]| DVec2::new(x.into(), y.into()) + DVec2::ZERO;
@@ -52,16 +54,6 @@ impl Columns {
         columns
     }
 
-    /// No columns, and memory for so many points.
-    fn empty(count: usize) -> Self {
-        Self {
-            points: Vec::with_capacity(count),
-            indices: Vec::with_capacity(count),
-            starts: vec![0],
-            duplicates: Vec::new(),
-        }
-    }
-
     /// Adds columns, which are not sorted yet and have these ends, to the right of the others.
     fn add_all(&mut self, records: &mut [Record], ends: &[u32], levels: u32, threads: &Threads) {
         let most = MOST_OF_MEAN * records.len().div_ceil(ends.len());
@@ -71,16 +63,17 @@ impl Columns {
         }
         let parts = split(records, ends, &groups).into_iter().zip(groups).collect();
         let parts = threads.map_each(parts, |(records, group)| {
-            let mut part = Self::empty(records.len());
+            let mut part = Self::default();
             let first = start(ends, group.start) as u32;
             part.add_each(records, ends[group].iter().map(|end| end - first), most, levels, threads);
             part
         });
+        self.reserve(parts.iter().map(|part| part.points.len()).sum());
         for part in parts {
             let first = self.points.len() as u32;
             threads.append(&mut self.points, &part.points);
             threads.append(&mut self.indices, &part.indices);
-            self.starts.extend(part.starts[1..].iter().map(|end| first + end));
+            self.starts.extend(part.starts.iter().map(|start| first + start));
             self.duplicates.extend(part.duplicates);
         }
     }
@@ -90,16 +83,18 @@ impl Columns {
     fn add_each(
         &mut self,
         records: &mut [Record],
-        ends: impl Iterator<Item = u32>,
+        ends: impl Iterator<Item = u32> + Clone,
         most: usize,
         levels: u32,
         threads: &Threads,
     ) {
+        let most = if levels > 0 { most } else { usize::MAX };
+        let columns = ends.scan(0, |start, end| Some(replace(start, end) as usize..end as usize));
+        self.reserve(columns.clone().map(|column| column.len()).filter(|&len| len <= most).sum());
         let mut scratch = Scratch::default();
-        let mut start = 0;
-        for end in ends {
-            let column = &mut records[replace(&mut start, end) as usize..end as usize];
-            if column.len() > most && levels > 0 {
+        for column in columns {
+            let column = &mut records[column];
+            if column.len() > most {
                 let records = |piece: Range<usize>| column[piece].iter().copied();
                 let (sorted, ends) = distributed(records, column.len(), threads);
                 column.copy_from_slice(&sorted);
@@ -127,30 +122,39 @@ impl Columns {
             }
         }
         if start < self.points.len() {
-            self.starts.push(self.points.len() as u32);
+            self.starts.push(start as u32);
         }
     }
 
-    /// Joins each column of one point to the column after it, and the last one to the column before it.
+    /// Allocates memory for so many points.
+    fn reserve(&mut self, count: usize) {
+        self.points.reserve(count);
+        self.indices.reserve(count);
+    }
+
+    /// Joins each column of one point to the column after it, and the last one to the column before it. Adds the number
+    /// of points to the starts.
     fn join_single(&mut self) {
-        let ends = replace(&mut self.starts, vec![0]);
-        let (mut open, mut start) = (0, 0);
-        for end in ends.into_iter().skip(1).map(|end| end as usize) {
-            if open < start {
+        let count = self.points.len();
+        let starts = take(&mut self.starts);
+        let ends = starts.iter().skip(1).map(|&end| end as usize).chain([count]);
+        self.starts.push(0);
+        let mut open = 0;
+        for (&start, end) in starts.iter().zip(ends) {
+            if open < start as usize {
                 self.place(open, open..end);
             }
             if end > open + 1 {
                 self.starts.push(end as u32);
                 open = end;
             }
-            start = end;
         }
-        if open < start {
+        if open < count {
             if let [.., before, _] = *self.starts {
                 self.starts.pop();
-                self.place(open, before as usize..start);
+                self.place(open, before as usize..count);
             }
-            self.starts.push(start as u32);
+            self.starts.push(count as u32);
         }
     }
 

@@ -13,8 +13,8 @@ use crate::{Dimension, Error, Positions};
 const MAX_POINTS: usize = MAX_TRIANGLES / 2 + 1;
 
 /// The most bytes that a point takes at a time: its index (4), two slots (64) and their numbers (8), two triangles with
-/// their twins (48), and the half-edges with which these begin (8).
-const BYTES_PER_POINT: u64 = 132;
+/// their twins (48), the half-edges with which these begin (8), and what the loops count (4).
+const BYTES_PER_POINT: u64 = 136;
 
 /// A Delaunay triangulation of points in the plane, from [`triangulate`].
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
