@@ -23,6 +23,7 @@ pub mod families;
 pub mod io;
 mod mesh;
 mod phases;
+mod points;
 mod predicates;
 mod prepare;
 pub mod quality;
@@ -49,6 +50,8 @@ pub use mesh::half_edge::NONE;
 pub use mesh::positions::Positions;
 pub use mesh::{MAX_TRIANGLES, Mesh};
 pub use phases::reason::{Reason, Reasons};
+pub use points::options::PointOptions;
+pub use points::triangulation::{Triangulation, triangulate, triangulate_with};
 pub use predicates::cos_degrees;
 pub use prepare::constraints::{Constrained, LeftOut, constrained};
 pub use prepare::regions::{Regions, regions};
@@ -59,10 +62,11 @@ pub use session::Session;
 pub use session::edge_states::EdgeState;
 #[cfg(not(target_arch = "wasm32"))]
 pub use session::one_call::make_delaunay;
-pub use session::options::{Backend, MOST_THREADS, Options, Order};
+pub use session::options::{Backend, Options, Order};
 pub use session::outcome::{Counters, Iteration, Outcome, Status, Timings};
 #[cfg(not(target_arch = "wasm32"))]
 pub use session::{EarlyGpu, close_gpu};
+pub use system::threads::MOST_THREADS;
 #[cfg(all(target_arch = "wasm32", feature = "js-session"))]
 pub use wasm::session as js;
 /// The version of wgpu that [`GpuDevice`] and [`GpuBuffers`] are of.

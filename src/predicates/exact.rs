@@ -180,6 +180,12 @@ thread_local! {
     pub(super) static COUNT: std::cell::Cell<usize> = const { std::cell::Cell::new(0) };
 }
 
+#[cfg(test)]
+pub(super) fn count(bits: u32) {
+    WIDEST.set(WIDEST.get().max(bits));
+    COUNT.set(COUNT.get() + 1);
+}
+
 /// Differences of numbers, as integers times one power of two. No sign depends on that unit.
 pub(super) struct Differences<const K: usize> {
     /// Mantissas and exponents.
@@ -204,10 +210,7 @@ impl<const K: usize> Differences<K> {
             |&(m, e): &(i64, i32)| if m == 0 { 0 } else { m.unsigned_abs().ilog2() + 1 + (e - unit) as u32 };
         let bits = numbers().map(width).max().unwrap_or(0) + u32::from(!exact);
         #[cfg(test)]
-        {
-            WIDEST.set(WIDEST.get().max(bits));
-            COUNT.set(COUNT.get() + 1);
-        }
+        count(bits);
         Self { minuends, subtrahends, unit, bits }
     }
 
@@ -225,7 +228,7 @@ impl<const K: usize> Differences<K> {
 
 /// Whether `x - y`, computed in f64, is the exact difference: the roundoff of Knuth's TwoDiff is zero. Sums of f64 do
 /// not underflow. If the difference overflows, the roundoff is NaN, so this returns false.
-fn difference_is_exact(x: f64, y: f64) -> bool {
+pub(super) fn difference_is_exact(x: f64, y: f64) -> bool {
     let difference = x - y;
     let y_virtual = x - difference;
     let x_virtual = difference + y_virtual;

@@ -1,6 +1,6 @@
 //! The plane: orientation and the in-circle test, as the sine of the sum of the opposite angles.
 
-use super::exact::{Bounded, Differences, Ring, Unbounded, decode};
+use super::exact::{Bounded, Differences, Ring, Unbounded, decode, difference_is_exact};
 use glam::{DVec2, Vec4};
 use std::array;
 use std::cmp::Ordering;
@@ -16,6 +16,14 @@ const UNDERFLOW: f64 = f64::MIN_POSITIVE;
 /// With differences up to this width, degree 2 fits i64 and degree 4 fits i128: a cross or dot product of two such
 /// vectors is below 2^61, the product of two of these is below 2^122, and a sum of two products is below 2^123.
 pub(super) const NARROW_BITS: u32 = 30;
+
+/// With differences up to this width, degree 2 fits i128: a cross or dot product of two such vectors is below 2^125.
+pub(super) const MIDDLE_BITS: u32 = 62;
+
+/// Whether there are tiers for ties of 64-bit floats and of lattices. Points have many ties. In the modules of the npm
+/// package that run and repair meshes, which do without them, they would be 1.2 KB to download.
+const HAS_TIERS_FOR_TIES: bool =
+    cfg!(not(any(feature = "js-session", feature = "js-webgl2", feature = "js-untangle")));
 
 /// With differences up to this width, degree 4 fits 20 limbs, 1280 bits: 4·319 + 3 = 1279. Differences of f32 have at
 /// most 278 bits.
@@ -164,11 +172,21 @@ fn in_circle_exact(a: DVec2, b: DVec2, c: DVec2, d: DVec2) -> Ordering {
     if is_right(c) && is_right(d) {
         return Ordering::Equal;
     }
+    if HAS_TIERS_FOR_TIES && are_short(&[(a, c), (b, c), (a, d), (b, d)], 12) {
+        let (p, q, r, s) = (a - c, b - c, a - d, b - d);
+        return sign(p.perp_dot(q) * s.dot(r) + p.dot(q) * s.perp_dot(r));
+    }
     let [p, q, r, s] = [(a, c), (b, c), (a, d), (b, d)].map(|(u, v)| [(u.x, v.x), (u.y, v.y)]);
     let differences = Differences::new([p[0], p[1], q[0], q[1], r[0], r[1], s[0], s[1]]);
     if differences.bits <= NARROW_BITS {
         let [cross1, dot1, cross2, dot2] = crosses_and_dots::<i64>(&differences.integers()).map(i128::from);
         (cross1 * dot2 + dot1 * cross2).cmp(&0)
+    } else if HAS_TIERS_FOR_TIES && differences.bits <= MIDDLE_BITS {
+        let [px, py, qx, qy, rx, ry, sx, sy] = differences.integers::<i64>().map(i128::from);
+        let [cross1, dot1] = [px * qy - py * qx, px * qx + py * qy];
+        let [cross2, dot2] = [sx * ry - sy * rx, sx * rx + sy * ry];
+        // The sum is positive where the first product is greater than the negated second one.
+        product(cross1, dot2).cmp(&product(-dot1, cross2))
     } else if differences.bits <= WIDE_BITS {
         in_circle::<Bounded<20>>(&differences.integers())
     } else {
@@ -176,17 +194,61 @@ fn in_circle_exact(a: DVec2, b: DVec2, c: DVec2, d: DVec2) -> Ordering {
     }
 }
 
+/// Whether f64 computes a polynomial of these differences without rounding, as it does for neighbours in a lattice: they
+/// are exact, and whole multiples, below 2^`bits`, of a power of two. A polynomial of degree 2 needs at most 25 bits, and
+/// one of degree 4 at most 12, so that its value is below 2^53.
+fn are_short(pairs: &[(DVec2, DVec2)], bits: u32) -> bool {
+    let largest = pairs.iter().fold(DVec2::ZERO, |most, &(u, v)| most.max((u - v).abs())).max_element();
+    let power_of_two = f64::from_bits(largest.to_bits() >> 52 << 52);
+    // To add this number rounds a difference to a multiple, because it has the power of two in its last place.
+    let rounder = 1.5 * power_of_two * (1u64 << (53 - bits)) as f64;
+    let is_multiple = |d: f64| (d + rounder) - rounder == d;
+    #[cfg(test)]
+    super::exact::count(bits);
+    // Beyond this range, products could underflow or overflow.
+    (1e-60..1e60).contains(&largest)
+        && pairs.iter().all(|&(u, v)| {
+            let d = u - v;
+            is_multiple(d.x)
+                && is_multiple(d.y)
+                && difference_is_exact(u.x, v.x)
+                && difference_is_exact(u.y, v.y)
+        })
+}
+
 #[cold]
 fn area_exact(a: DVec2, b: DVec2, c: DVec2) -> Ordering {
+    if HAS_TIERS_FOR_TIES && are_short(&[(a, c), (b, c)], 25) {
+        return sign((a - c).perp_dot(b - c));
+    }
     doubled_area_sign([(a.x, c.x), (a.y, c.y), (b.x, c.x), (b.y, c.y)])
 }
 
 fn doubled_area_sign(pairs: [(f64, f64); 4]) -> Ordering {
     let differences = Differences::new(pairs);
-    if differences.bits <= WIDE_BITS {
+    if HAS_TIERS_FOR_TIES && differences.bits <= MIDDLE_BITS {
+        let [px, py, qx, qy] = differences.integers::<i64>().map(i128::from);
+        (px * qy).cmp(&(py * qx))
+    } else if differences.bits <= WIDE_BITS {
         doubled_area::<Bounded<20>>(&differences.integers()).sign()
     } else {
         doubled_area::<Unbounded>(&differences.integers()).sign()
+    }
+}
+
+/// The product of two numbers, of which neither is `i128::MIN`: its upper half, rounded down, and its lower half.
+fn product(x: i128, y: i128) -> (i128, u128) {
+    let halves = |x: u128| [x >> 64, x & u128::from(u64::MAX)];
+    let ([a, b], [c, d]) = (halves(x.unsigned_abs()), halves(y.unsigned_abs()));
+    let lowest = b * d;
+    let middle = a * d + (lowest >> 64);
+    let (middle, carry) = middle.overflowing_add(b * c);
+    let upper = a * c + (middle >> 64) + (u128::from(carry) << 64);
+    let lower = (middle << 64) | (lowest & u128::from(u64::MAX));
+    if (x < 0) == (y < 0) {
+        (upper as i128, lower)
+    } else {
+        ((!upper).wrapping_add(u128::from(lower == 0)) as i128, lower.wrapping_neg())
     }
 }
 

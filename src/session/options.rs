@@ -2,6 +2,7 @@
 
 use crate::error::number;
 use crate::phases::Thresholds;
+use crate::system::threads::checked;
 use crate::{Error, cos_degrees};
 use std::num::NonZeroUsize;
 
@@ -29,9 +30,6 @@ pub enum Order {
     /// Lawson's algorithm on the CPU. It is faster, and has no iterations to watch.
     Any,
 }
-
-/// The largest number for [`Options::threads`].
-pub const MOST_THREADS: usize = 256;
 
 /// The options of a run.
 #[derive(Clone, Debug, PartialEq)]
@@ -77,10 +75,10 @@ pub struct Options {
     /// Whether a session on WebGPU keeps the adjacency in buffers, for kernels that walk around vertices: `twins` and
     /// `vertex_half_edges` of [`GpuBuffers`](crate::GpuBuffers), 12 bytes per triangle and 4 per vertex.
     pub adjacency: bool,
-    /// Threads of the CPU engine, at most [`MOST_THREADS`]; `None`: one per core. The engine starts at most one thread
-    /// per 4,096 triangles, and runs meshes of fewer than 65,536 triangles on one thread. The result does not depend on
-    /// the number. Lawson's algorithm flips on several threads only if every vertex has one fan. Without the feature
-    /// `threads` the engine always has one thread. Copies to and from a GPU use one thread per core.
+    /// Threads of the CPU engine, at most [`MOST_THREADS`](crate::MOST_THREADS); `None`: one per core. The engine starts
+    /// at most one thread per 4,096 triangles, and runs meshes of fewer than 65,536 triangles on one thread. The result
+    /// does not depend on the number. Lawson's algorithm flips on several threads only if every vertex has one fan.
+    /// Without the feature `threads` the engine always has one thread. Copies to and from a GPU use one thread per core.
     pub threads: Option<NonZeroUsize>,
     /// The device for the WebGPU engine, instead of a device of its own. The engine never destroys it, changes none of
     /// its settings, and ignores errors of calls that are not its own. If it is a software GPU, `Auto` takes the CPU.
@@ -123,24 +121,13 @@ impl Options {
             let message = "the order `any` has no changes to track".to_owned();
             return Err(Error::Option { option: "track_changes", message });
         }
-        self.threads.map_or(Ok(()), |count| threads(count.get()).map(drop))
+        self.threads.map_or(Ok(()), |count| checked(count.get()).map(drop))
     }
 
     /// How many iterations a run may still do after `done` iterations.
     pub(super) fn iterations_left(&self, done: u32) -> u32 {
         self.max_iterations.map_or(u32::MAX, |most| most.saturating_sub(done))
     }
-}
-
-/// Checks a number of threads: 1 to [`MOST_THREADS`].
-///
-/// # Errors
-/// [`Error::Option`].
-pub(crate) fn threads(count: usize) -> Result<NonZeroUsize, Error> {
-    NonZeroUsize::new(count).filter(|_| count <= MOST_THREADS).ok_or_else(|| {
-        let message = format!("{count} is not a number of threads: give 1 to {MOST_THREADS}");
-        Error::Option { option: "threads", message }
-    })
 }
 
 #[cfg(feature = "gpu")]

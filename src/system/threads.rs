@@ -24,6 +24,20 @@ const FEWEST_TRIANGLES: usize = 16 * FEWEST;
 /// Pieces per thread, so that no thread waits long for another.
 const PIECES: usize = 8;
 
+/// The largest number of threads that a caller may choose.
+pub const MOST_THREADS: usize = 256;
+
+/// Checks a number of threads: 1 to [`MOST_THREADS`].
+///
+/// # Errors
+/// [`Error::Option`].
+pub(crate) fn checked(count: usize) -> Result<NonZeroUsize, Error> {
+    NonZeroUsize::new(count).filter(|_| count <= MOST_THREADS).ok_or_else(|| {
+        let message = format!("{count} is not a number of threads: give 1 to {MOST_THREADS}");
+        Error::Option { option: "threads", message }
+    })
+}
+
 /// A number of threads, by default one per core. Without the feature `threads` it is always one, which the compiler
 /// knows.
 #[derive(Clone, Default)]
@@ -164,6 +178,28 @@ impl Threads {
         work: impl Fn(&mut I) -> T + Sync,
     ) -> Vec<T> {
         self.map_each(items.iter_mut().collect(), work)
+    }
+
+    /// Runs both, on a thread each if there are several.
+    pub(crate) fn join<A: Send, B: Send>(
+        &self,
+        first: impl FnOnce() -> A + Send,
+        second: impl FnOnce() -> B + Send,
+    ) -> (A, B) {
+        #[cfg(feature = "threads")]
+        if self.count() > 1 {
+            return self.install(|| rayon::join(first, second));
+        }
+        (first(), second())
+    }
+
+    /// Sorts items that all differ.
+    pub(crate) fn sort<T: Ord + Send>(&self, items: &mut [T]) {
+        #[cfg(feature = "threads")]
+        if items.len() >= 2 * FEWEST && self.count() > 1 {
+            return self.install(|| items.par_sort_unstable());
+        }
+        items.sort_unstable();
     }
 
     /// The results of `item` for `0..len`, in order. The threads share the first access to the memory.
@@ -346,6 +382,21 @@ mod tests {
                 let (copied, rest) = all[1..].split_at(len);
                 assert!(all[0] == 0 && copied.iter().all(|&item| item == 7));
                 assert!(rest.iter().copied().eq(1 + len..1 + there));
+            }
+        }
+    }
+
+    #[test]
+    fn both_run_and_all_is_sorted() {
+        for count in [1, 2, 3, 8] {
+            let threads = Threads::new(NonZeroUsize::new(count), usize::MAX).unwrap();
+            for len in [0, 1, 7, 8, 1000] {
+                let (mut low, mut high) = (vec![0; len], vec![0; len]);
+                let sides = threads.join(|| low.fill(1), || high.fill(2));
+                assert_eq!((sides, low, high), (((), ()), vec![1; len], vec![2; len]));
+                let mut items = Vec::from_iter((0..len).rev());
+                threads.sort(&mut items);
+                assert!(items.into_iter().eq(0..len));
             }
         }
     }

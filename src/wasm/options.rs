@@ -3,7 +3,7 @@
 
 #[cfg(feature = "js")]
 use crate::engine::GpuDevice;
-use crate::session::options::threads;
+use crate::system::threads::checked;
 use crate::{Backend, Error, Options, Order};
 #[cfg(feature = "js-session")]
 use js_sys::{Object, Uint32Array};
@@ -77,7 +77,7 @@ pub(crate) fn without_lists(given: &JsOptions) -> Result<Options, Error> {
         track_changes: given.get("trackChanges").is_truthy(),
         adjacency: given.get("adjacency").is_truthy(),
         untangle: given.get("untangle").as_bool(),
-        threads: number("threads").map(|count| threads(count as usize)).transpose()?,
+        threads: number("threads").map(|count| checked(count as usize)).transpose()?,
         #[cfg(feature = "js")]
         device: Some(given.get("device")).filter(JsValue::is_truthy).map(JsCast::unchecked_into::<GpuDevice>),
         #[cfg(feature = "js")]

@@ -12,6 +12,8 @@ mod command;
 mod matrix;
 #[path = "../meshes/mod.rs"]
 mod meshes;
+#[path = "../points/mod.rs"]
+mod points_of;
 mod runs;
 mod simulation;
 
@@ -40,6 +42,7 @@ mod locks;
 mod memory;
 mod moving;
 mod parity;
+mod points;
 mod positions;
 mod quads;
 mod threads;

@@ -34,6 +34,7 @@ export function nativeLevels(isFull) {
       env: { EDGEFLIP_PARITY: 'target/parity.json', EDGEFLIP_QUADS: isFull ? '1000000' : '20000' },
       writes: ['target/parity.json', 'target/quads'],
     },
+    points: { reads: ['tests/points'] },
     quads: { checks: [['@native', 'quads::', '--skip', 'batches_for_browsers', '--nocapture', '--test-threads=1']] },
   };
   return [

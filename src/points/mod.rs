@@ -1,0 +1,13 @@
+//! The Delaunay triangulation of points in the plane. The points are sorted into columns; each column is triangulated by
+//! halving it in y, and the columns are merged by halving their row in x.
+
+mod columns;
+mod distribution;
+mod groups;
+mod halves;
+mod insertion;
+mod numbering;
+pub(crate) mod options;
+mod seam;
+mod slots;
+pub(crate) mod triangulation;

@@ -1,0 +1,107 @@
+//! `triangulate`: from points to triangles, twins and the hull.
+
+use super::columns::Columns;
+use super::halves::{Network, slots_of};
+use super::numbering::{numbered, numbered_hull};
+use super::options::PointOptions;
+use crate::mesh::MAX_TRIANGLES;
+use crate::system::memory;
+use crate::system::threads::Threads;
+use crate::{Dimension, Error, Positions};
+
+/// The most points: with the triangles beyond the hull, V of them have up to 2V - 2 triangles.
+const MAX_POINTS: usize = MAX_TRIANGLES / 2 + 1;
+
+/// The most bytes that a point takes at a time: its index (4), two slots (64) and their numbers (8), two triangles with
+/// their twins (48), the half-edges with which these begin (8), and what the loops count (4).
+const BYTES_PER_POINT: u64 = 136;
+
+/// A Delaunay triangulation of points in the plane, from [`triangulate`].
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Triangulation {
+    /// Three indices of points per triangle, counter-clockwise. The first is the smallest, and the triangles are sorted
+    /// by their indices: first by the first, then by the second.
+    pub triangles: Vec<u32>,
+    /// For each half-edge, the half-edge on the other side; [`NONE`](crate::NONE) on the hull.
+    pub twins: Vec<u32>,
+    /// The indices of the points on the hull, counter-clockwise, from the smallest. Points on a side of the hull count as
+    /// points of the hull. If there is no triangle, these are all distinct points, by x and then by y.
+    pub hull: Vec<u32>,
+    /// For each point that equals another with a smaller index: its index, and the smallest of the indices. Only the
+    /// smallest is in triangles. Sorted.
+    pub duplicates: Vec<[u32; 2]>,
+}
+
+impl Triangulation {
+    /// Whether there is no triangle: fewer than three distinct points, or all of them are on one line.
+    pub fn is_flat(&self) -> bool {
+        self.triangles.is_empty()
+    }
+}
+
+/// The Delaunay triangulation of points in the plane: 2 numbers per point.
+///
+/// No point is inside the circumcircle of a triangle. If four points are on one circle, the least of them, by x and then
+/// by y, is joined to the other three: so the points alone determine the triangles, whatever their order. Every decision
+/// is exact, and the time is O(n log n) for any points. It uses all cores; [`triangulate_with`] takes a number of threads,
+/// which does not change the result.
+///
+/// The points are sorted into columns, and sets of points are merged as Guibas and Stolfi do ("Primitives for the
+/// manipulation of general subdivisions", 1985), with triangles to a symbolic vertex along the hull as Shewchuk has them
+/// ("Triangle", 1996).
+///
+/// ```
+/// use edgeflip::{NONE, Positions, triangulate};
+///
+/// let points = Positions::from(vec![0.0, 0.0, 4.0, 0.0, 4.0, 3.0, 0.0, 3.0, 4.0, 0.0]);
+/// let triangulation = triangulate(&points)?;
+/// assert_eq!(triangulation.triangles, [0, 1, 2, 0, 2, 3]);
+/// assert_eq!(triangulation.twins, [NONE, NONE, 3, 2, NONE, NONE]);
+/// assert_eq!(triangulation.hull, [0, 1, 2, 3]);
+/// assert_eq!(triangulation.duplicates, [[4, 1]]);
+/// # Ok::<(), edgeflip::Error>(())
+/// ```
+///
+/// # Errors
+/// [`Error::RaggedArray`] for an odd number of coordinates, [`Error::NonFinite`] for the first coordinate that is NaN or
+/// infinite, [`Error::TooLarge`] or [`Error::OutOfMemory`] for too many points. Points without a triangle are no error.
+pub fn triangulate(points: &Positions) -> Result<Triangulation, Error> {
+    triangulate_with(points, &PointOptions::default())
+}
+
+/// As [`triangulate`], with options.
+///
+/// # Errors
+/// Those of [`triangulate`], and [`Error::Option`] for more threads than [`MOST_THREADS`](crate::MOST_THREADS), or if the
+/// threads cannot be started.
+pub fn triangulate_with(points: &Positions, options: &PointOptions) -> Result<Triangulation, Error> {
+    options.check()?;
+    let (length, stride) = (points.len(), Dimension::Two.stride());
+    if length % stride != 0 {
+        return Err(Error::RaggedArray { array: "positions", length, stride });
+    }
+    let count = length / stride;
+    if count > MAX_POINTS {
+        return Err(Error::TooLarge { what: "vertices", count, limit: MAX_POINTS });
+    }
+    let threads = Threads::new(options.threads, 2 * count)?;
+    points.refuse_non_finite(Dimension::Two, &threads)?;
+    memory::check(BYTES_PER_POINT * count as u64)?;
+    Ok(threads.enter(|| triangulated(points, &threads)))
+}
+
+fn triangulated(points: &Positions, threads: &Threads) -> Triangulation {
+    let Columns { points: sorted, indices, starts, duplicates } = Columns::of(points, threads);
+    let mut slots = slots_of(sorted.len(), threads);
+    let mut vertices = Network::new(&sorted, &mut slots, threads).of_columns(&starts);
+    drop(sorted);
+    let (triangles, twins) = numbered(&slots, &indices, points.len() / 2, threads);
+    let hull = if triangles.is_empty() {
+        // There and back along the line.
+        vertices.truncate(indices.len());
+        vertices.into_iter().map(|vertex| indices[vertex as usize]).collect()
+    } else {
+        numbered_hull(vertices, &indices)
+    };
+    Triangulation { triangles, twins, hull, duplicates }
+}

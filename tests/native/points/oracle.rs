@@ -1,0 +1,127 @@
+//! Checks a triangulation with integers of any size, from the definitions and not from the way it was made.
+
+use edgeflip::{NONE, Positions, Triangulation};
+use num_bigint::BigInt;
+use std::cmp::Ordering;
+use std::collections::{BTreeMap, BTreeSet};
+
+type Point = [BigInt; 2];
+
+/// Mantissa and exponent of a finite number.
+fn decode(x: f64) -> (i64, i32) {
+    let bits = x.to_bits();
+    let exponent = (bits >> 52 & 0x7ff) as i32;
+    let fraction = (bits & ((1 << 52) - 1)) as i64;
+    let magnitude = if exponent == 0 { fraction } else { fraction | 1 << 52 };
+    let zeros = if magnitude == 0 { 0 } else { magnitude.trailing_zeros() };
+    (if x < 0.0 { -1 } else { 1 } * (magnitude >> zeros), exponent.max(1) - 1075 + zeros as i32)
+}
+
+/// The points as integers times one power of two.
+fn integers(positions: &Positions) -> Vec<Point> {
+    let decoded: Vec<(i64, i32)> = positions.iter().map(decode).collect();
+    let unit = decoded.iter().filter(|number| number.0 != 0).map(|number| number.1).min().unwrap_or(0);
+    let integer = |&(m, e): &(i64, i32)| if m == 0 { BigInt::ZERO } else { BigInt::from(m) << (e - unit) };
+    decoded.as_chunks::<2>().0.iter().map(|pair| pair.each_ref().map(integer)).collect()
+}
+
+/// Twice the area of (a, b, c).
+fn area(a: &Point, b: &Point, c: &Point) -> BigInt {
+    (&b[0] - &a[0]) * (&c[1] - &a[1]) - (&b[1] - &a[1]) * (&c[0] - &a[0])
+}
+
+/// Positive if `d` is inside the circle through the counter-clockwise `a`, `b` and `c`: the determinant of Guibas and
+/// Stolfi.
+fn in_circle(a: &Point, b: &Point, c: &Point, d: &Point) -> BigInt {
+    let rows = [a, b, c].map(|p| [&p[0] - &d[0], &p[1] - &d[1]]);
+    let square = |[x, y]: &Point| x * x + y * y;
+    let minor = |[px, py]: &Point, [qx, qy]: &Point| px * qy - py * qx;
+    square(&rows[0]) * minor(&rows[1], &rows[2]) - square(&rows[1]) * minor(&rows[0], &rows[2])
+        + square(&rows[2]) * minor(&rows[0], &rows[1])
+}
+
+fn sign(x: &BigInt) -> Ordering {
+    x.cmp(&BigInt::ZERO)
+}
+
+fn after(h: usize) -> usize {
+    if h % 3 == 2 { h - 2 } else { h + 1 }
+}
+
+/// Checks everything that the documentation of a triangulation promises. Returns for each half-edge whether it is a tie:
+/// whether its four points are on one circle.
+pub fn check(positions: &Positions, result: &Triangulation) -> Vec<bool> {
+    let points = integers(positions);
+    let at = |v: u32| &points[v as usize];
+    let Triangulation { triangles, twins, hull, duplicates } = result;
+
+    let mut first = BTreeMap::new();
+    let expected: Vec<[u32; 2]> = (0..)
+        .zip(&points)
+        .filter_map(|(i, point)| Some([i, *first.entry(point).or_insert(i)]).filter(|[i, used]| i != used))
+        .collect();
+    assert_eq!(*duplicates, expected);
+    let distinct: BTreeSet<u32> = first.values().copied().collect();
+
+    if result.is_flat() {
+        assert!(twins.is_empty());
+        let line: Vec<u32> = first.values().copied().collect();
+        assert_eq!(*hull, line);
+        if let [a, b, rest @ ..] = line.as_slice() {
+            assert!(rest.iter().all(|&c| sign(&area(at(*a), at(*b), at(c))).is_eq()), "there is a triangle");
+        }
+        return Vec::new();
+    }
+
+    let rows = triangles.as_chunks::<3>().0;
+    assert!(
+        rows.iter().all(|[a, b, c]| a < b && a < c),
+        "a triangle begins with another than its smallest index"
+    );
+    assert!(rows.windows(2).all(|pair| pair[0][..2] < pair[1][..2]), "the triangles are not sorted");
+    assert_eq!(triangles.iter().copied().collect::<BTreeSet<u32>>(), distinct);
+    let mut sum = BigInt::ZERO;
+    for &[a, b, c] in rows {
+        let area = area(at(a), at(b), at(c));
+        assert!(sign(&area).is_gt(), "{a} {b} {c} is not positive");
+        sum += area;
+    }
+
+    let (mut tied, mut next_on_hull) = (vec![false; triangles.len()], BTreeMap::new());
+    assert_eq!(twins.len(), triangles.len());
+    for (h, &g) in twins.iter().enumerate() {
+        let [a, b, c] = [h, after(h), after(after(h))].map(|x| triangles[x]);
+        if g == NONE {
+            assert_eq!(next_on_hull.insert(a, b), None, "vertex {a} is on the hull twice");
+            continue;
+        }
+        let g = g as usize;
+        assert_eq!((twins[g], triangles[g], triangles[after(g)]), (h as u32, b, a));
+        let d = triangles[after(after(g))];
+        match sign(&in_circle(at(a), at(b), at(c), at(d))) {
+            Ordering::Less => {}
+            Ordering::Equal => {
+                tied[h] = true;
+                let least = [a, b, c, d].into_iter().min_by_key(|&v| at(v));
+                assert!(least == Some(a) || least == Some(b), "{a} {b} does not fan out from the least");
+            }
+            Ordering::Greater => panic!("{d} is in the circle of {a} {b} {c}"),
+        }
+    }
+
+    assert_eq!(hull.len(), next_on_hull.len());
+    assert_eq!(hull.iter().min(), hull.first());
+    let mut outline = BigInt::ZERO;
+    for (i, &b) in hull.iter().enumerate() {
+        let [a, c] = [hull.len() - 1, 1].map(|step| hull[(i + step) % hull.len()]);
+        assert_eq!(next_on_hull[&b], c);
+        let [p, q, r] = [a, b, c].map(at);
+        let turn = sign(&area(p, q, r));
+        let ahead = (&q[0] - &p[0]) * (&r[0] - &q[0]) + (&q[1] - &p[1]) * (&r[1] - &q[1]);
+        assert!(turn.is_gt() || turn.is_eq() && sign(&ahead).is_gt(), "the hull is not convex at {b}");
+        outline += &q[0] * &r[1] - &q[1] * &r[0];
+    }
+    assert_eq!(sum, outline, "the triangles do not cover the hull once");
+    assert_eq!(rows.len(), 2 * distinct.len() - 2 - hull.len());
+    tied
+}
