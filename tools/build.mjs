@@ -103,7 +103,10 @@ async function compile(module) {
   const inputs = sha256(readFileSync(compiled), ...tools);
   if (existsSync(stamp) && readFileSync(stamp, 'utf8') === inputs) return;
   rmSync(stamp, { force: true });
-  await run(bindgen, '--target', 'web', '--out-dir', glue, '--out-name', name, '--remove-producers-section', compiled);
+  // The scripts always say where the module is. Another path, in the script of a thread, makes webpack's workers hang, and
+  // Parcel's fail.
+  const more = ['--remove-producers-section', '--omit-default-module-path'];
+  await run(bindgen, '--target', 'web', '--out-dir', glue, '--out-name', name, ...more, compiled);
   finishing.push(optimize(module).then(() => writeFileSync(stamp, inputs)));
 }
 
