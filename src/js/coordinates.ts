@@ -36,29 +36,15 @@ export function coordinatesOf(points: unknown, options: unknown, hold: Hold): Fl
   // An array has the length 0 if its buffer has shrunk. This throws for it.
   if (view?.length === 0) read('points', () => Uint8Array.prototype.at.call(points as Uint8Array, 0));
   if (x && y) {
-    const list = view ? hold(view, 'points') : read('points', () => Array.from(listOf(points)));
-    return filled(
-      list.length,
-      (i) => x(list[i], i),
-      (i) => y(list[i], i),
-    );
+    const items = view ? hold(view, 'points') : read('points', () => itemsOf(points));
+    return ofAny(items, x, y);
   }
   return read('points', () => {
-    const list = view ? itselfOf(view, 'points') : listOf(points);
-    if (typeof list[0] !== 'object') return ofNumbers(list, stride, offset, hold);
+    const list = view ? itselfOf(view, 'points') : (points as ArrayLike<unknown>);
+    const length = view ? view.length : lengthOf(points);
+    if (typeof list[0] !== 'object') return ofNumbers(list, length, stride, offset, hold);
     if (stride !== undefined || offset !== undefined) throw notOfNumbers(stride);
-    const advice = '; if the points are not pairs, pass the options x and y';
-    const pair = (i: number): ArrayLike<unknown> => {
-      const point = list[i];
-      if (typeof point === 'object' && point !== null) return point as ArrayLike<unknown>;
-      throw wrong(`point ${i} is ${shown(point)}, not a pair of numbers`);
-    };
-    return filled(
-      list.length,
-      (i) => pair(i)[0],
-      (i) => pair(i)[1],
-      advice,
-    );
+    return ofPairs(list, length);
   });
 }
 
@@ -88,22 +74,28 @@ function notOfNumbers(stride: number | undefined): EdgeflipError {
   return new EdgeflipError('invalid-option', `option ${name}: it is for an array of numbers, not for a list of points`);
 }
 
-/** A list whose length can be trusted. */
-function listOf(given: unknown): ArrayLike<unknown> {
-  if (!Array.isArray(given)) throw wrong(`${shown(given)} is neither a typed array nor a list`);
-  const { length } = given;
+/** The length of a list, which is read only once: it may be another one the next time. */
+function lengthOf(list: unknown): number {
+  if (!Array.isArray(list)) throw wrong(`${shown(list)} is neither a typed array nor a list`);
+  const { length } = list;
   if (length > MOST_NUMBERS) throw wrong(`a list has at most ${MOST_NUMBERS} items; pass a typed array`);
-  return given;
+  return length;
+}
+
+/** A copy of a list. */
+function itemsOf(list: unknown): unknown[] {
+  return Array.from({ length: lengthOf(list) }, (_, i) => (list as ArrayLike<unknown>)[i]);
 }
 
 /** The coordinates in an array of numbers. */
 function ofNumbers(
   list: VertexArray | ArrayLike<unknown>,
+  length: number,
   stride = 2,
   offset = 0,
   hold: Hold,
 ): Float32Array | Float64Array {
-  const left = Math.max(0, list.length - offset);
+  const left = Math.max(0, length - offset);
   if (left % stride === 1) {
     const why = `the last point has 1 of 2 coordinates (stride ${stride}, offset ${offset})`;
     throw new EdgeflipError('ragged-array', `points: ${why}`);
@@ -111,25 +103,47 @@ function ofNumbers(
   const hasNoGaps = stride === 2 && offset === 0;
   const isFloat = list instanceof Float32Array || list instanceof Float64Array;
   if (hasNoGaps && isFloat) return hold(list, 'points');
-  return filled(
-    Math.ceil(left / stride),
-    (i) => list[offset + i * stride],
-    (i) => list[offset + i * stride + 1],
-  );
-}
-
-/** Two numbers for each point, read from these functions. */
-function filled(count: number, x: (i: number) => unknown, y: (i: number) => unknown, advice = ''): Float64Array {
-  const floats = read('points', () => new Float64Array(2 * count));
-  const numberOf = (value: unknown, axis: string, i: number): number => {
-    if (typeof value === 'number') return value;
-    throw wrong(`${axis} of point ${i} is ${shown(value)}, not a number${advice}`);
-  };
-  for (let i = 0; i < count; i++) {
-    floats[2 * i] = numberOf(x(i), 'x', i);
-    floats[2 * i + 1] = numberOf(y(i), 'y', i);
+  const floats = floatsFor(Math.ceil(left / stride));
+  for (let i = 0, at = offset; 2 * i < floats.length; i++, at += stride) {
+    floats[2 * i] = numberOf(list[at], 'x', i);
+    floats[2 * i + 1] = numberOf(list[at + 1], 'y', i);
   }
   return floats;
+}
+
+/** The coordinates of a list of pairs. */
+function ofPairs(list: ArrayLike<unknown>, length: number): Float64Array {
+  const advice = '; if the points are not pairs, pass the options x and y';
+  const floats = floatsFor(length);
+  for (let i = 0; 2 * i < floats.length; i++) {
+    const point = list[i];
+    if (typeof point !== 'object' || point === null) {
+      throw wrong(`point ${i} is ${shown(point)}, not a pair of numbers`);
+    }
+    floats[2 * i] = numberOf((point as ArrayLike<unknown>)[0], 'x', i, advice);
+    floats[2 * i + 1] = numberOf((point as ArrayLike<unknown>)[1], 'y', i, advice);
+  }
+  return floats;
+}
+
+/** The coordinates that accessors read. */
+function ofAny(items: ArrayLike<unknown>, x: Accessors<unknown>['x'], y: Accessors<unknown>['y']): Float64Array {
+  const floats = floatsFor(items.length);
+  for (let i = 0; 2 * i < floats.length; i++) {
+    floats[2 * i] = numberOf(x(items[i], i), 'x', i);
+    floats[2 * i + 1] = numberOf(y(items[i], i), 'y', i);
+  }
+  return floats;
+}
+
+/** Memory for the coordinates of so many points. */
+function floatsFor(count: number): Float64Array {
+  return read('points', () => new Float64Array(2 * count));
+}
+
+function numberOf(value: unknown, axis: 'x' | 'y', i: number, advice = ''): number {
+  if (typeof value === 'number') return value;
+  throw wrong(`${axis} of point ${i} is ${shown(value)}, not a number${advice}`);
 }
 
 function wrong(why: string): EdgeflipError {

@@ -34,6 +34,7 @@ function documented(name, setting) {
 const program = (entry) => `
   import { init, makeDelaunay, makeDelaunaySync } from '${entry}';
   import { generate } from 'edgeflip/files';
+  import { triangulate } from 'edgeflip/points';
   import * as away from 'edgeflip/worker';
   const quad = { positions: new Float32Array([-3, 0, 0, -1, 3, 0, 0, 1]), indices: [0, 1, 2, 0, 2, 3], dimension: 2 };
   export async function flip() {
@@ -41,12 +42,13 @@ const program = (entry) => `
     const mesh = await generate('random 190');
     const [here, there] = [await makeDelaunay(mesh, { threads: 2 }), await away.makeDelaunay(mesh, { threads: 2 })];
     const texts = [here, there].map(({ flips, threads, hint }) => \`\${flips} flips on \${threads} threads\${hint ?? ''}\`);
-    return [...texts, makeDelaunaySync(quad).indices].join(', ');
+    const { triangles } = await triangulate(quad.positions);
+    return [...texts, makeDelaunaySync(quad).indices, triangles].join(', ');
   }
 `;
 const onPage = "import { flip } from './flip.js';\ndocument.body.append(await flip());\n";
 const inConsole = "import { flip } from './flip.js';\nconsole.log(await flip());\n";
-const WRITTEN = '48643 flips on 2 threads, 48643 flips on 2 threads, 3,1,2,0,1,3';
+const WRITTEN = '48643 flips on 2 threads, 48643 flips on 2 threads, 3,1,2,0,1,3, 0,1,3,1,2,3';
 
 const html = (script) => `<!doctype html>
 <html lang="en">
@@ -275,7 +277,7 @@ test('publint and arethetypeswrong find nothing', () => {
     run(process.execPath, [bin('publint/src/cli.js'), 'run', projects.tarball, '--strict'], projects.folder),
     /All good!/,
   );
-  const wasm = ['edgeflip', 'webgl2', 'threads', 'untangle', 'audit', 'files'].map((name) => `${name}.wasm`);
+  const wasm = ['edgeflip', 'webgl2', 'threads', 'untangle', 'audit', 'files', 'points'].map((name) => `${name}.wasm`);
   const types = [bin('@arethetypeswrong/cli/dist/index.js'), projects.tarball, '--exclude-entrypoints', ...wasm];
   assert.match(run(process.execPath, types, projects.folder), /No problems found/);
 });
