@@ -3,9 +3,11 @@
 
 #[cfg(any(feature = "js-session", feature = "js-audit"))]
 use crate::Reasons;
-use crate::{Error, Positions};
 #[cfg(feature = "js-meshes")]
 use crate::{Dimension, Mesh, system::memory, system::threads::Threads};
+use crate::{Error, Positions};
+#[cfg(feature = "js-meshes")]
+use js_sys::Uint32Array;
 #[cfg(any(
     feature = "js-session",
     feature = "js-untangle",
@@ -14,8 +16,6 @@ use crate::{Dimension, Mesh, system::memory, system::threads::Threads};
     feature = "js-points"
 ))]
 use js_sys::{Array, Object};
-#[cfg(feature = "js-meshes")]
-use js_sys::Uint32Array;
 use js_sys::{Float32Array, Float64Array};
 use wasm_bindgen::prelude::*;
 
