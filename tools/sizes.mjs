@@ -17,7 +17,13 @@ const BUDGETS = {
   'edgeflip/files': 6_000,
   'edgeflip/three': 6_000,
   'edgeflip/gltf-transform': 6_000,
+  // Together never more than 60 KB.
+  'edgeflip_points_bg.wasm': 42 * 1024,
+  'edgeflip/points': 6_000,
 };
+
+/** The entry that does not need `edgeflip`: all its scripts count, bundled alone. */
+const ALONE = 'edgeflip/points';
 
 /** What else is measured: scripts that are loaded when a run needs them. */
 const WHOLE = {
@@ -26,20 +32,11 @@ const WHOLE = {
   'scripts of WebGL2': ['dist/wasm/edgeflip_webgl2.js', 'dist/glsl.js'],
 };
 
-/**
- * The bytes of each module, of the scripts of each entry, and of scripts that are loaded later. Those of `edgeflip` count
- * only for it and `edgeflip/inline`.
- */
-export async function measured() {
-  const { exports } = JSON.parse(readFileSync(`${root}package.json`, 'utf8'));
-  const entries = Object.fromEntries(
-    Object.entries(exports).flatMap(([path, { import: given }]) =>
-      given ? [[`edgeflip${path.slice(1)}`, given.default.replace('./', '')]] : [],
-    ),
-  );
+/** Bundles entries: their outputs by name, and what esbuild says about them. */
+async function bundled(entryPoints) {
   const { outputFiles, metafile } = await esbuild.build({
     absWorkingDir: root,
-    entryPoints: Object.values(entries),
+    entryPoints,
     bundle: true,
     splitting: true,
     minify: true,
@@ -48,7 +45,24 @@ export async function measured() {
     metafile: true,
     write: false,
   });
-  const text = new Map(outputFiles.map((file) => [file.path.replaceAll('\\', '/').split('target/sizes/')[1], file]));
+  const nameOf = ({ path }) => path.replaceAll('\\', '/').split('target/sizes/')[1];
+  return { text: new Map(outputFiles.map((file) => [nameOf(file), file])), metafile };
+}
+
+/**
+ * The bytes of each module, of the scripts of each entry, and of scripts that are loaded later. Those of `edgeflip` count
+ * only for it, `edgeflip/inline` and `edgeflip/points`.
+ */
+export async function measured() {
+  const { exports } = JSON.parse(readFileSync(`${root}package.json`, 'utf8'));
+  const entries = Object.fromEntries(
+    Object.entries(exports).flatMap(([path, { import: given }]) =>
+      given ? [[`edgeflip${path.slice(1)}`, given.default.replace('./', '')]] : [],
+    ),
+  );
+  const { [ALONE]: alone, ...others } = entries;
+  const { text, metafile } = await bundled(Object.values(others));
+  const { text: textAlone } = await bundled([alone]);
 
   /** What an entry, or a script that is loaded later, loads at once. */
   function scripts(entry) {
@@ -66,14 +80,15 @@ export async function measured() {
   const core = scripts('edgeflip');
   const all = (names) => Buffer.concat([...names].map((name) => text.get(name.split('target/sizes/')[1]).contents));
   return new Map([
-    ...['', '_threads', '_webgl2', '_untangle', '_audit', '_files'].map((name) => [
+    ...['', '_threads', '_webgl2', '_untangle', '_audit', '_files', '_points'].map((name) => [
       `edgeflip${name}_bg.wasm`,
       readFileSync(`${root}dist/wasm/edgeflip${name}_bg.wasm`),
     ]),
-    ...Object.keys(entries).map((entry) => {
+    ...Object.keys(others).map((entry) => {
       const isWhole = ['edgeflip', 'edgeflip/inline'].includes(entry);
       return [entry, all([...scripts(entry)].filter((name) => isWhole || !core.has(name)))];
     }),
+    [ALONE, Buffer.concat([...textAlone.values()].map(({ contents }) => contents))],
     ...Object.entries(WHOLE).map(([name, parts]) => {
       const found = new Set(parts.flatMap((part) => [...scripts(part)]));
       return [name, all([...found].filter((script) => !core.has(script)))];

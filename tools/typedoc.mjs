@@ -4,7 +4,7 @@
 export const typedocTo = (folder, ...more) => [
   'node_modules/typedoc/bin/typedoc',
   ...['--name', 'edgeflip', '--out', folder, '--tsconfig', 'src/js/tsconfig.json'],
-  ...['index', 'inline', 'worker', 'files', 'three', 'gltf-transform'].flatMap((entry) => [
+  ...['index', 'inline', 'worker', 'files', 'points', 'three', 'gltf-transform'].flatMap((entry) => [
     '--entryPoints',
     `src/js/${entry}.ts`,
   ]),

@@ -11,7 +11,7 @@ import type { IndexArray, VertexArray } from './types.js';
 const MOST_BYTES = 2 ** 31 - 1;
 
 /** The most numbers of an array that is not a typed array. It is read number by number, and its length may be false. */
-const MOST_NUMBERS = 2 ** 24;
+export const MOST_NUMBERS = 2 ** 24;
 
 /**
  * Returns the result of `work`, which reads input.

@@ -28,6 +28,15 @@ export interface Sources {
   files?: ModuleSource | undefined;
 }
 
+/** Where the module of the entry `edgeflip/points` comes from. */
+export interface PointsSources extends Pick<Sources, 'base'> {
+  /** Its only module: `edgeflip_points_bg.wasm`. */
+  points?: ModuleSource | undefined;
+}
+
+/** The sources of all entries. */
+type AllSources = Sources & PointsSources;
+
 /** The function of wasm-bindgen that starts a module. */
 type Start = (options: { module_or_path: ModuleSource }) => Promise<unknown>;
 
@@ -72,10 +81,10 @@ export function loader(
  *
  * @param first - The module that `init` loads if its caller names none.
  */
-export function initOf<Name extends Exclude<keyof Sources, 'base'>>(
+export function initOf<Name extends Exclude<keyof AllSources, 'base'>>(
   first: NoInfer<Name>,
   loads: Record<Name, Load>,
-): (sources?: Pick<Sources, Name | 'base'>) => Promise<void> {
+): (sources?: Pick<AllSources, Name | 'base'>) => Promise<void> {
   const names = Object.keys(loads) as Name[];
   return async (sources) => {
     const named = read('the sources', () => {

@@ -133,8 +133,9 @@ fn places<'a>(
 /// their height; there is at least one point.
 fn columns_of_bins(sizes: &[u32], aspect: f64, points: usize) -> (Vec<u32>, Vec<u32>) {
     let most = points as f64;
-    // It is NaN if all points are equal, and NaN becomes 0.
-    let wanted = ((most * aspect.clamp(1.0 / most, most)).sqrt() / WIDTH) as u32;
+    // It is NaN if all points are equal, and `max` ignores NaN. `clamp` would bring Rust's formatter of floats into the
+    // module of the npm package, for the message of a panic: 8 KB.
+    let wanted = ((most * aspect.max(1.0 / most).min(most)).sqrt() / WIDTH) as u32;
     let wanted = wanted.clamp(1, sizes.len() as u32);
     let per_point = f64::from(wanted) / most;
     let mut ends = vec![0; wanted as usize];

@@ -11,6 +11,8 @@ pub mod gpu;
 mod objects;
 #[cfg(any(feature = "js-session", feature = "js-webgl2", feature = "js-audit"))]
 mod options;
+#[cfg(feature = "js-points")]
+pub mod points;
 #[cfg(feature = "js-session")]
 pub mod session;
 #[cfg(feature = "js-threads")]

@@ -3,12 +3,20 @@
 
 #[cfg(any(feature = "js-session", feature = "js-audit"))]
 use crate::Reasons;
-use crate::system::memory;
-use crate::system::threads::Threads;
-use crate::{Dimension, Error, Mesh, Positions};
-#[cfg(any(feature = "js-session", feature = "js-untangle", feature = "js-audit", feature = "js-files"))]
+#[cfg(feature = "js-meshes")]
+use crate::{Dimension, Mesh, system::memory, system::threads::Threads};
+use crate::{Error, Positions};
+#[cfg(feature = "js-meshes")]
+use js_sys::Uint32Array;
+#[cfg(any(
+    feature = "js-session",
+    feature = "js-untangle",
+    feature = "js-audit",
+    feature = "js-files",
+    feature = "js-points"
+))]
 use js_sys::{Array, Object};
-use js_sys::{Float32Array, Float64Array, Uint32Array};
+use js_sys::{Float32Array, Float64Array};
 use wasm_bindgen::prelude::*;
 
 #[wasm_bindgen]
@@ -34,6 +42,7 @@ impl From<JsPositions> for Positions {
 ///
 /// # Errors
 /// Those of [`Mesh::new`]; [`Error::OutOfMemory`].
+#[cfg(feature = "js-meshes")]
 pub(crate) fn mesh_of(
     positions: JsPositions,
     indices: &Uint32Array,
@@ -60,7 +69,13 @@ pub fn out_of_memory() {
 }
 
 /// A plain object.
-#[cfg(any(feature = "js-session", feature = "js-untangle", feature = "js-audit", feature = "js-files"))]
+#[cfg(any(
+    feature = "js-session",
+    feature = "js-untangle",
+    feature = "js-audit",
+    feature = "js-files",
+    feature = "js-points"
+))]
 pub(crate) fn object<'a>(fields: impl IntoIterator<Item = (&'a str, JsValue)>) -> JsValue {
     let entries: Array = fields.into_iter().map(|(name, value)| Array::of2(&name.into(), &value)).collect();
     // Fails only for values that are not a list of pairs.
@@ -74,6 +89,7 @@ pub(crate) fn reasons_object(reasons: &Reasons) -> JsValue {
 }
 
 /// The dimension of a mesh with 2 or 3 numbers per vertex, as `checkDimension` in `src/js/mesh.ts` has made sure.
+#[cfg(feature = "js-meshes")]
 pub(crate) fn dimension_of(stride: u32) -> Dimension {
     if stride == 2 { Dimension::Two } else { Dimension::Three }
 }

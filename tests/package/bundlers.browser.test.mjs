@@ -75,6 +75,22 @@ for (const [name, bundle] of Object.entries(bundles)) {
   });
 }
 
+test('esbuild puts the module of edgeflip/points into the script, as bytes', async () => {
+  const [source, file] = [join(folder, 'points.js'), join(folder, 'points/all.js')];
+  writeFileSync(
+    source,
+    `import bytes from 'edgeflip/points.wasm';
+    import { init, triangulateSync } from 'edgeflip/points';
+    await init({ points: bytes });
+    export const triangles = triangulateSync([0, 0, 1, 0, 0, 1]).triangles.join();
+    `,
+  );
+  const loader = { '.wasm': 'binary' };
+  await esbuild.build({ entryPoints: [source], outfile: file, bundle: true, format: 'esm', target: 'es2022', loader });
+  const { triangles } = await import(pathToFileURL(file));
+  assert.equal(triangles, '0,1,2');
+});
+
 test('without edgeflip/inline and without the file of the module, the error says what to do', async () => {
   const [source, file] = [join(folder, 'plain.js'), join(folder, 'plain/all.js')];
   writeFileSync(source, readFileSync(program, 'utf8').replace('edgeflip/inline', 'edgeflip'));

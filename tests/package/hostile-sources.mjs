@@ -6,6 +6,7 @@ import { setTimeout as pause } from 'node:timers/promises';
 import { parentPort, workerData } from 'node:worker_threads';
 import * as edgeflip from 'edgeflip';
 import * as files from 'edgeflip/files';
+import * as points from 'edgeflip/points';
 import fc from 'fast-check';
 import { hostile } from './hostile.mjs';
 
@@ -15,6 +16,7 @@ const inits = [
     (name) => (source) => edgeflip.init({ [name]: source }),
   ),
   (source) => files.init({ files: source }),
+  (source) => points.init({ points: source }),
 ];
 
 /** All hostile values except `undefined`, which means the module next to the package. */
@@ -44,6 +46,8 @@ for (const [i, [name, file]] of Object.entries(modules).entries()) {
   bytes.fill(0);
   await loaded;
 }
+await points.init({ points: readFileSync(new URL('../../dist/wasm/edgeflip_points_bg.wasm', import.meta.url)) });
+assert.deepEqual([...points.triangulateSync([0, 0, 1, 0, 0, 1]).triangles], [0, 1, 2]);
 
 // A value that is not an object of sources, or not a folder, is an error of this package. An object without sources is
 // valid.

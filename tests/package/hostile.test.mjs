@@ -7,6 +7,7 @@ import { setTimeout as pause } from 'node:timers/promises';
 import { Worker } from 'node:worker_threads';
 import { EdgeflipError, FlipSession, makeDelaunay } from 'edgeflip';
 import * as files from 'edgeflip/files';
+import * as points from 'edgeflip/points';
 import fc from 'fast-check';
 import { hostile, place, placing, takeAway } from './hostile.mjs';
 
@@ -177,6 +178,24 @@ const fileEntries = [
   },
 ];
 
+const inPlane = () => small.positions.slice();
+const pairs = () => Array.from({ length: 40 }, (_, i) => [i % 7, (i * i) % 11]);
+const accessors = () => ({ x: (_, i) => i % 7, y: (_, i) => (i * i) % 11 });
+const pointEntries = [points.triangulate, points.triangulateSync].flatMap((work) => {
+  const { name } = work;
+  const call = async (...args) => work(...args);
+  return [
+    {
+      name,
+      call,
+      args: () => [inPlane(), { stride: 3, offset: 1 }],
+      paths: [[0], [1], [1, 'stride'], [1, 'offset'], [1, 'x'], [1, 'unknown']],
+    },
+    { name, call, args: () => [pairs()], paths: [[0], [0, 3], [0, 3, 0], [0, 'length']] },
+    { name, call, args: () => [pairs(), accessors()], paths: [[0], [0, 3], [1, 'x'], [1, 'y']] },
+  ];
+});
+
 /** Calls a function, and returns how its promise settled. */
 async function outcomeOf(call, args, isTaken) {
   const asked = (async () => call(...args))();
@@ -205,7 +224,7 @@ function attack(entries, runs) {
     const end = await outcomeOf(call, args, isTaken);
     // Exceptions of callbacks pass through unchanged.
     const isOfCallback =
-      end instanceof Error && places.some(([path]) => ['onProgress', 'onIteration'].includes(path.at(-1)));
+      end instanceof Error && places.some(([path]) => ['onProgress', 'onIteration', 'x', 'y'].includes(path.at(-1)));
     if (end === 'result' || (isOfCallback && !(end instanceof EdgeflipError))) return;
     assert.ok(end instanceof EdgeflipError, `${name}: ${String(end?.stack ?? end)}`);
     assert.notEqual(end.code, 'internal', `${name}: ${end.message}`);
@@ -230,6 +249,14 @@ test('on one thread', async () => {
 test('on two threads', async () => {
   await attack(sessionEntries(large, 2), 0.1 * CASES);
   await isWell(large, 2);
+});
+
+test('points', async () => {
+  await points.init();
+  const expected = points.triangulateSync(inPlane());
+  await attack(pointEntries, 0.1 * CASES);
+  assert.deepEqual(await points.triangulate(inPlane()), expected);
+  assert.deepEqual(uncaught, []);
 });
 
 /** In a worker that has loaded no module: none of the hostile values loads one. */

@@ -22,6 +22,7 @@ export function documented(name, setting) {
 export const program = `
   import * as here from 'edgeflip';
   import { generate } from 'edgeflip/files';
+  import { triangulate } from 'edgeflip/points';
   import * as away from 'edgeflip/worker';
   const quad = { positions: new Float32Array([-3, 0, 0, -1, 3, 0, 0, 1]), indices: [0, 1, 2, 0, 2, 3], dimension: 2 };
   export async function flip() {
@@ -41,12 +42,13 @@ export const program = `
       texts.push(\`\${flips} flips on \${threads} threads\${hint ?? ''}\`);
       texts.push(\`\${moved.flips} when moved, clean: \${clean}, \${tangled.flips} when tangled\`);
     }
-    return [...texts, here.makeDelaunaySync(quad).indices].join(', ');
+    const { triangles } = await triangulate(quad.positions);
+    return [...texts, here.makeDelaunaySync(quad).indices, triangles].join(', ');
   }
 `;
 const written = '48643 flips on 2 threads, 7 when moved, clean: true, 48642 when tangled';
 /** What \`flip\` of the program returns. */
-export const WRITTEN = `${written}, ${written}, 3,1,2,0,1,3`;
+export const WRITTEN = `${written}, ${written}, 3,1,2,0,1,3, 0,1,3,1,2,3`;
 
 /** A page with a script. */
 export const html = (script) => `<!doctype html>

@@ -1,5 +1,5 @@
 // Tests the packed npm package in fresh projects and real browsers. The five lines for a page in docs/package.md run
-// unchanged, and with Vite by the package's name; so do edgeflip/files and the audit. Every page has to write the same
+// unchanged, and with Vite by the package's name; so do edgeflip/files, edgeflip/points and the audit. Every page has to write the same
 // as Node. Packs the existing dist/.
 
 import assert from 'node:assert/strict';
@@ -34,6 +34,14 @@ const withAudit = `
   const session = await FlipSession.create({ positions, indices, dimension: 2 }, { backend: 'auto' });
   const audit = await session.verify();
   document.body.append(\`\${JSON.stringify(audit.remaining)} on \${await session.backend()}: \${audit.clean}\`);
+`;
+const withPoints = `
+  import { makeDelaunay } from './node_modules/edgeflip/dist/index.js';
+  import { triangulate } from './node_modules/edgeflip/dist/points.js';
+  const positions = new Float32Array([-3, 0, 0, -1, 3, 0, 0, 1, 1, 0]);
+  const { triangles, hull } = await triangulate(positions);
+  const result = await makeDelaunay({ positions, indices: triangles, dimension: 2 }, { backend: 'auto' });
+  document.body.append(\`\${result.flips} flips on \${result.backend}: \${triangles}, \${hull}\`);
 `;
 const withThreads = `
   import { makeDelaunay } from './node_modules/edgeflip/dist/index.js';
@@ -71,9 +79,12 @@ const withFakes = `
 const inCommonJs = `
   import edgeflip = require('edgeflip');
   import files = require('edgeflip/files');
+  import points = require('edgeflip/points');
   async function flips(mesh: edgeflip.Mesh, options: edgeflip.Options): Promise<number> {
     const session: edgeflip.FlipSession<edgeflip.IndexArray> = await edgeflip.FlipSession.create(mesh, options);
-    console.log((await files.generate('random 8')).positions.length);
+    const { positions }: files.Mesh32 = await files.generate('random 8');
+    const { triangles }: points.Triangulation = await points.triangulate(positions);
+    console.log(triangles.length);
     return (await session.run()).flips;
   }
   void flips;
@@ -101,6 +112,7 @@ const pages = [
   { name: 'webgl2', lines: on('webgl2', fiveLines), writes: '' },
   { name: 'files', lines: on('cpu', withFiles), writes: '' },
   { name: 'audit', lines: on('cpu', withAudit), writes: '' },
+  { name: 'points', lines: on('cpu', withPoints), writes: '' },
   { name: 'threads', lines: on('cpu', withThreads), writes: '' },
   { name: 'worker', lines: on('cpu', withWorker), writes: '' },
   { name: 'fakes', lines: withFakes, writes: '' },
@@ -205,9 +217,13 @@ test('CommonJS in Node finds the package', () => {
     join(root, 'common.cjs'),
     `const { makeDelaunay } = require('edgeflip');
     const { generate } = require('edgeflip/files');
-    generate('random 8').then(makeDelaunay).then(({ flips }) => console.log(flips));`,
+    const { triangulate } = require('edgeflip/points');
+    generate('random 8').then(async (mesh) => {
+      const [{ flips }, { hull }] = [await makeDelaunay(mesh), await triangulate(mesh.positions)];
+      console.log(flips, hull.length);
+    });`,
   );
-  assert.equal(run(process.execPath, ['common.cjs'], root), '47\n');
+  assert.equal(run(process.execPath, ['common.cjs'], root), '47 28\n');
 });
 
 // The oldest version knows the fewest ways to write a type.
@@ -245,7 +261,7 @@ for (const version of full ? ['5.4', '', '6', '7'] : ['5.4']) {
 }
 
 /** Pages that load every module of the package. */
-const BUNDLED = ['cpu', 'webgl2', 'files', 'audit', 'threads', 'worker'];
+const BUNDLED = ['cpu', 'webgl2', 'files', 'audit', 'points', 'threads', 'worker'];
 
 // More of them at once share the processor cores until a page takes longer than it may.
 describe('in a browser', { concurrency: 2 }, () => {
@@ -261,7 +277,7 @@ describe('in a browser', { concurrency: 2 }, () => {
 
   test('plain pages in Firefox', async () =>
     check(await startFirefox(), await serve(plainPages('plain-firefox'), ISOLATED), true, [
-      ...['index', 'webgpu', 'webgl2', 'threads'],
+      ...['index', 'webgpu', 'webgl2', 'points', 'threads'],
     ]));
 
   test('a Vite project, built, in Chromium', async () => {

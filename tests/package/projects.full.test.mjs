@@ -185,7 +185,7 @@ test('publint and arethetypeswrong find nothing', () => {
     run(process.execPath, [bin('publint/src/cli.js'), 'run', projects.tarball, '--strict'], projects.folder),
     /All good!/,
   );
-  const wasm = ['edgeflip', 'webgl2', 'threads', 'untangle', 'audit', 'files'].map((name) => `${name}.wasm`);
+  const wasm = ['edgeflip', 'webgl2', 'threads', 'untangle', 'audit', 'files', 'points'].map((name) => `${name}.wasm`);
   const types = [bin('@arethetypeswrong/cli/dist/index.js'), projects.tarball, '--exclude-entrypoints', ...wasm];
   assert.match(run(process.execPath, types, projects.folder), /No problems found/);
 });

@@ -29,6 +29,14 @@ import {
   weld,
   writeMesh,
 } from 'edgeflip/files';
+import {
+  init as initPoints,
+  type PointsSources,
+  type Spacing,
+  type Triangulation,
+  triangulate,
+  triangulateSync,
+} from 'edgeflip/points';
 import { FlipSession as AwaySession, makeDelaunay as makeAway, type WorkerOptions } from 'edgeflip/worker';
 
 export async function use(mesh: Mesh<Uint32Array>, signal: AbortSignal, device?: GpuDevice): Promise<Uint32Array> {
@@ -119,6 +127,33 @@ export async function joined(mesh: Mesh<Uint32Array>, original: Original): Promi
   return welded.split(welded.indices);
 }
 
+/** Points in every form. */
+export async function triangulated(places: readonly { lon: number; lat: number }[]): Promise<Uint32Array> {
+  const sources: PointsSources = { base: '/wasm', points: new URL('https://example.org/edgeflip_points.wasm') };
+  await initPoints(sources);
+  const byPlace = { x: (place: { lon: number }) => place.lon, y: (place: { lat: number }) => place.lat };
+  const all: Triangulation[] = [
+    await triangulate(places, { x: ({ lon }) => lon, y: ({ lat }, index) => lat + index }),
+    await triangulate(places, byPlace),
+    triangulateSync(places, byPlace),
+    await triangulate(new Float32Array(6)),
+    triangulateSync(new Int16Array(9), { stride: 3 }),
+    triangulateSync([0, 0, 1, 0, 0, 1], { stride: undefined }),
+    await triangulate([
+      [0, 0],
+      [1, 0],
+    ]),
+    triangulateSync([new Float32Array(2), [1, 0, 7]] as const),
+    triangulateSync(new Uint32Array(3), { x: (id) => 2 * id, y: (id) => id * id }),
+  ];
+  const spacing: Spacing = { stride: 4, offset: 1 };
+  const { triangles, twins, hull, duplicates, hint } = await triangulate(new Float64Array(8), spacing);
+  const why: string | undefined = hint;
+  const { flips } = await makeDelaunay({ positions: new Float64Array(8), indices: triangles, dimension: 2 });
+  console.log(all.length, why, flips, twins.length + hull.length + duplicates.length);
+  return triangles;
+}
+
 export function codeOf(error: unknown): ErrorCode | undefined {
   return error instanceof EdgeflipError ? error.code : undefined;
 }
@@ -141,3 +176,15 @@ void readMesh('OFF', 'a.off');
 void makeDelaunay({ positions: ['0', '0'], indices: new Uint16Array(), dimension: 2 });
 // @ts-expect-error: attributes are typed arrays, whose bits are compared
 void makeDelaunay({ positions: new Float32Array(), indices: new Uint16Array(), dimension: 2 }, { weld: [[0.5, 1]] });
+// @ts-expect-error: points that are not pairs need both functions
+void triangulate([{ lon: 0, lat: 0 }], { x: ({ lon }: { lon: number }) => lon });
+// @ts-expect-error: points that are not pairs need functions
+void triangulate([{ x: 0, y: 0 }]);
+// @ts-expect-error: the functions return numbers
+void triangulateSync([{ lon: '0' }], { x: ({ lon }) => lon, y: () => 0 });
+// @ts-expect-error: a stride is for an array of numbers
+void triangulate([[0, 0]], { stride: 3 });
+// @ts-expect-error: this entry has one module
+void initPoints({ core: 'https://example.org/edgeflip.wasm' });
+// @ts-expect-error: the entry `edgeflip` does not load the module of the points
+void init({ points: 'https://example.org/edgeflip_points.wasm' });

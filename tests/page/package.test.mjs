@@ -103,6 +103,7 @@ test('the sizes are measured, and the browsers are those of docs/package.md', as
   const files = kilobytes('edgeflip/files', 'edgeflip_files_bg.wasm');
   const three = kilobytes('edgeflip/three, whole', 'edgeflip_files_bg.wasm');
   const gltf = kilobytes('edgeflip/gltf-transform, whole', 'edgeflip_files_bg.wasm');
+  const points = kilobytes('edgeflip/points', 'edgeflip_points_bg.wasm');
   const untangle = kilobytes('edgeflip_untangle_bg.wasm');
   assert.deepEqual(
     rows.filter(([what]) => !/worker|CPU|WebGL2/.test(what)),
@@ -126,6 +127,7 @@ test('the sizes are measured, and the browsers are those of docs/package.md', as
     ['edgeflip/inline', sizeOf('edgeflip/inline')],
     ['edgeflip/worker', sizeOf('edgeflip/worker')],
     ['edgeflip/files', files],
+    ['edgeflip/points', points],
     ['edgeflip/three', three],
     ['edgeflip/gltf-transform', gltf],
   ])

@@ -325,6 +325,7 @@ function fullLevels() {
     ['js-untangle'],
     ['js-audit'],
     ['js-files'],
+    ['js-points'],
     ['gpu,js', '--test', 'wasm', '--test', 'worker'],
   ];
   return [

@@ -1,0 +1,104 @@
+// Points to triangles, next to delaunator: `node benches/points.mjs`. On one thread of Node, from the caller's arrays to
+// arrays of the result; prints ratios and milliseconds, medians of runs that alternate. Uses the existing dist/.
+// `node benches/points.mjs 1000 1000000` takes these numbers of points.
+
+import { spawnSync } from 'node:child_process';
+import { performance } from 'node:perf_hooks';
+import { fileURLToPath } from 'node:url';
+import Delaunator from 'delaunator';
+
+const RUNS = 11;
+/** Runs before, which compile the code. */
+const WARM = 3;
+
+let seed = 20261130;
+/** A number from 0 to 1, from a linear congruential generator. */
+function random() {
+  seed = (Math.imul(seed, 1664525) + 1013904223) >>> 0;
+  return seed / 2 ** 32;
+}
+
+/** The sum of some numbers, which is nearly normal. */
+const normal = () => Array.from({ length: 8 }, random).reduce((sum, x) => sum + x - 0.5);
+
+const KINDS = {
+  uniform: () => [random(), random()],
+  clusters: () => {
+    const centre = Math.floor(40 * random());
+    return [(centre * 7) % 11, (centre * 3) % 13].map((x) => x + 0.05 * normal());
+  },
+  lattice: (i, count) => [i % Math.ceil(Math.sqrt(count)), Math.floor(i / Math.ceil(Math.sqrt(count)))],
+};
+
+const pointsOf = (kind, count) => {
+  const points = new Float64Array(2 * count);
+  for (let i = 0; i < count; i++) points.set(KINDS[kind](i, count), 2 * i);
+  return points;
+};
+
+const CONTENDERS = {
+  ours: async () => {
+    const { init, triangulateSync } = await import('edgeflip/points');
+    await init();
+    return triangulateSync;
+  },
+  delaunator: async () => (points) => new Delaunator(points),
+};
+
+const median = (numbers) => numbers.toSorted((a, b) => a - b)[numbers.length >> 1];
+
+/** Times of calls that alternate. A small set is called so often that the clock is fine enough. */
+async function warm(points) {
+  const calls = Math.ceil(100_000 / points.length);
+  const times = { ours: [], delaunator: [] };
+  const work = { ours: await CONTENDERS.ours(), delaunator: await CONTENDERS.delaunator() };
+  for (let run = 0; run < WARM + RUNS; run++) {
+    for (const [name, call] of Object.entries(work)) {
+      const start = performance.now();
+      for (let i = 0; i < calls; i++) call(points);
+      times[name].push((performance.now() - start) / calls);
+    }
+  }
+  return { ours: times.ours.slice(WARM), delaunator: times.delaunator.slice(WARM) };
+}
+
+/** Times of first calls, each in a process of its own, after its scripts are loaded. That of ours loads the module. */
+function first(kind, count) {
+  const times = { ours: [], delaunator: [] };
+  for (let run = 0; run < RUNS; run++) {
+    for (const name of Object.keys(times)) {
+      const file = fileURLToPath(import.meta.url);
+      const { stdout, stderr } = spawnSync(process.execPath, [file, 'first', name, kind, count], { encoding: 'utf8' });
+      if (!(Number(stdout) > 0)) throw new Error(stderr);
+      times[name].push(Number(stdout));
+    }
+  }
+  return times;
+}
+
+const row = ({ ours, delaunator }) => [
+  median(ours.map((time, i) => time / delaunator[i])).toFixed(2),
+  median(ours).toFixed(2),
+  median(delaunator).toFixed(2),
+];
+
+if (process.argv[2] === 'first') {
+  const [name, kind, count] = process.argv.slice(3);
+  const points = pointsOf(kind, Number(count));
+  await import('edgeflip/points');
+  const start = performance.now();
+  (await CONTENDERS[name]())(points);
+  console.log(performance.now() - start);
+} else {
+  const given = process.argv.slice(2).map(Number);
+  console.log(
+    '| points | warm: ours / delaunator | ours, ms | delaunator, ms | first call: ours / delaunator | ms | ms |',
+  );
+  console.log('|---|---:|---:|---:|---:|---:|---:|');
+  for (const count of given.length > 0 ? given : [1000, 10_000, 100_000, 1_000_000]) {
+    for (const kind of Object.keys(KINDS)) {
+      const cells = [...row(await warm(pointsOf(kind, count))), ...row(first(kind, count))];
+      console.log(`| ${count.toLocaleString('en')} ${kind} | ${cells.join(' | ')} |`);
+    }
+  }
+}
