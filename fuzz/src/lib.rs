@@ -24,6 +24,9 @@ pub fn check(target: &str, bytes: &[u8]) {
         "ply" => Format::Ply,
         "stl" => Format::Stl,
         "gltf" => Format::Gltf,
+        "points" => {
+            return [Format::Csv, Format::Xyz].into_iter().for_each(|format| check_points(format, bytes));
+        }
         "edges" => {
             drop(parse_edges(bytes).map_err(one_line));
             return drop(parse_numbers(bytes).map_err(one_line));
@@ -38,6 +41,20 @@ pub fn check(target: &str, bytes: &[u8]) {
                     let loaded = read(format, bytes, dimension, locking).unwrap();
                     assert!(whole_way(&loaded, bytes).is_empty());
                 }
+            }
+            Err(error) => one_line(error),
+        }
+    }
+}
+
+/// Triangulates the points of a file, and writes them as a mesh.
+fn check_points(format: Format, bytes: &[u8]) {
+    for dimension in [None, Some(Dimension::Two), Some(Dimension::Three)] {
+        match read(format, bytes, dimension, Vec::new()) {
+            Ok(mut loaded) => {
+                let (made, plan) = loaded.triangulate().unwrap();
+                assert_eq!(flipped(&plan, &Options::default()), made.triangles);
+                assert!(whole_way(&loaded, bytes).is_empty());
             }
             Err(error) => one_line(error),
         }

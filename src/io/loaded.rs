@@ -7,7 +7,7 @@ use super::gzip;
 use super::obj;
 use super::original::Original;
 use super::write::{collected, write_to};
-use crate::{Dimension, Error, Mesh, Options, Welded, welded};
+use crate::{Dimension, Error, Mesh, Options, Positions, Triangulation, Welded, triangulate, welded};
 use std::borrow::Cow;
 use std::io::{self, Write};
 use std::path::Path;
@@ -51,6 +51,31 @@ impl Loaded {
             Some(document) => document.welded(&self.mesh),
             None => welded(&self.mesh, None),
         }
+    }
+
+    /// Whether the file has vertices and no faces, and is not glTF.
+    pub fn has_points_only(&self) -> bool {
+        self.document.is_none() && self.mesh.triangle_count() == 0 && self.mesh.vertex_count() > 0
+    }
+
+    /// Gives a mesh of points their Delaunay triangulation, by x and y: z is carried along. Returns the triangulation, and
+    /// the mesh in the plane. A file of the same format is then written as one of another format is.
+    ///
+    /// # Errors
+    /// Those of [`triangulate`].
+    pub fn triangulate(&mut self) -> Result<(Triangulation, Mesh), Error> {
+        let positions = self.mesh.positions();
+        let plan: Positions = match (self.mesh.dimension(), positions) {
+            (Dimension::Two, _) => positions.clone(),
+            (Dimension::Three, Positions::F32(numbers)) => without_z(numbers).into(),
+            (Dimension::Three, Positions::F64(numbers)) => without_z(numbers).into(),
+        };
+        let triangulation = triangulate(&plan)?;
+        let triangles = &triangulation.triangles;
+        self.mesh = self.mesh.with_triangles(triangles.clone())?;
+        self.original = None;
+        let plan = Mesh::new(Dimension::Two, plan, triangles.clone())?;
+        Ok((triangulation, plan))
     }
 
     /// What a file of that format loses of [`Loaded::dropped`].
@@ -117,7 +142,7 @@ impl Loaded {
         name: &Path,
         triangles: Vec<u32>,
     ) -> Result<impl FnOnce(&mut dyn Write) -> io::Result<()>, Error> {
-        let format = Format::of(name)?;
+        let format = Format::of_output(name)?;
         let before = self.mesh.triangles();
         if triangles.len() != before.len() {
             return Err(Error::TriangleCount { length: triangles.len(), expected: before.len() });
@@ -146,6 +171,11 @@ impl Loaded {
             })
         })
     }
+}
+
+/// x and y of each of these points.
+fn without_z<T: Copy>(numbers: &[T]) -> Vec<T> {
+    numbers.as_chunks().0.iter().flat_map(|&[x, y, _]| [x, y]).collect()
 }
 
 /// The content of a file to write.

@@ -6,7 +6,7 @@
 //! name of a property for each number, allocates for each face, names no byte, and fills the memory with 2^64 elements
 //! without properties; `serde-ply` names neither line nor byte; `stl_io` takes every file that begins with `solid` for
 //! text, -0 and 0 for different positions, and NaN for a number. The tests compare with `ply-rs-bw` and `stl_io`. The
-//! crate `flate2` handles gzip, and `gltf` the JSON of glTF.
+//! crate `flate2` handles gzip, `gltf` the JSON of glTF, and `csv` the quotes of CSV.
 
 mod attributes;
 mod coordinates;
@@ -28,6 +28,7 @@ mod parse;
 mod parsed;
 mod pieces;
 mod ply;
+mod points;
 mod polygon;
 mod rounded;
 mod stl;

@@ -39,7 +39,7 @@ enum Target {
 impl Output {
     /// The target at `path`. Links are followed, also to a file that does not exist yet. The extension names the
     /// format; `.gz` after it means gzip. If `path` is a device, a FIFO or a name of the standard output, and has no
-    /// known extension, the name `like` decides the format.
+    /// known extension, the name `like` decides the format; if it is one of points, PLY.
     ///
     /// # Errors
     /// [`Error::UnknownFormat`]; [`Error::Io`] for a folder, for a cycle of links, and if the folder of a new file does
@@ -47,23 +47,23 @@ impl Output {
     pub fn of(path: impl AsRef<Path>, like: impl AsRef<Path>) -> Result<Self, Error> {
         let path = path.as_ref();
         let target = Target::of(path);
-        let name = match (Format::of(path), &target) {
+        let name = match (Format::of_output(path), &target) {
             (Ok(_), _) => path,
-            (Err(_), Ok(Target::Stream(_) | Target::Standard)) => like.as_ref(),
+            (Err(_), Ok(Target::Stream(_) | Target::Standard)) => written_as(like.as_ref())?,
             (Err(error), _) => return Err(error),
         };
-        let format = Format::of(name)?;
+        let format = Format::of_output(name)?;
         let target = target.map_err(|source| at(path, source))?;
         Ok(Self { target, path: path.into(), name: name.into(), format })
     }
 
-    /// The standard output. The name `like` decides the format.
+    /// The standard output. The name `like` decides the format; if it is one of points, PLY.
     ///
     /// # Errors
     /// [`Error::UnknownFormat`].
     pub fn standard(like: impl AsRef<Path>) -> Result<Self, Error> {
-        let name = like.as_ref();
-        let format = Format::of(name)?;
+        let name = written_as(like.as_ref())?;
+        let format = Format::of_output(name)?;
         Ok(Self { target: Target::Standard, path: "standard output".into(), name: name.into(), format })
     }
 
@@ -105,6 +105,11 @@ impl Output {
             Err(source) => Err(at(&path, source)),
         }
     }
+}
+
+/// A name with the format of the file at `path`, if such a file can be written. Points become a PLY file.
+fn written_as(path: &Path) -> Result<&Path, Error> {
+    Ok(if Format::of(path)?.has_points_only() { Path::new("points.ply") } else { path })
 }
 
 /// A written file that has not replaced the old one yet. Dropping it removes the file.

@@ -7,7 +7,7 @@ use super::options::{Coordinates, ReadFile, ReadOptions};
 use super::original::Original;
 use super::parsed::{Others, Parsed, Polygons};
 use super::text::Digits;
-use super::{gltf, gzip, obj, off, ply, stl};
+use super::{gltf, gzip, obj, off, ply, points, stl};
 use crate::system::threads::Threads;
 use crate::{Dimension, Error, MAX_TRIANGLES, Mesh, Positions};
 use std::borrow::Cow;
@@ -43,7 +43,7 @@ pub fn parse_with<'a>(
     if bytes.trim_ascii().is_empty() {
         return Err(Error::Parse { place: "line 1".into(), message: "the file is empty".into() });
     }
-    if let Format::Off | Format::Obj = format
+    if let Format::Off | Format::Obj | Format::Csv | Format::Xyz = format
         && let Some(text) = utf8(&bytes)
     {
         bytes = text.into();
@@ -54,6 +54,8 @@ pub fn parse_with<'a>(
         Format::Obj => (obj::parse(&bytes, coordinates)?, true),
         Format::Ply => (ply::parse(&bytes, coordinates)?, ply::is_held(&bytes)),
         Format::Stl => (stl::parse(&bytes, coordinates)?, stl::is_held(&bytes)),
+        Format::Csv => (points::parse_csv(&bytes, coordinates)?, false),
+        Format::Xyz => (points::parse_xyz(&bytes, coordinates)?, false),
         Format::Gltf | Format::Glb => {
             let gltf::Content { parsed, document, notes } =
                 gltf::read(bytes.into_owned(), read, options.max_bytes)?;

@@ -18,6 +18,7 @@ pub fn write_to(format: Format, mesh: &Mesh, out: &mut impl Write) -> io::Result
         Format::Ply => ply::write(mesh, out),
         Format::Stl => stl::write(mesh, out),
         Format::Gltf | Format::Glb => out.write_all(&gltf::new_file(mesh, format == Format::Glb)?),
+        Format::Csv | Format::Xyz => Err(io::Error::other("a file of points has no triangles")),
     }
 }
 
@@ -45,7 +46,7 @@ pub(super) fn mesh_writer(
     name: &Path,
     mesh: &Mesh,
 ) -> Result<impl FnOnce(&mut dyn Write) -> io::Result<()>, Error> {
-    let (format, is_packed) = (Format::of(name)?, gzip::is_named(name));
+    let (format, is_packed) = (Format::of_output(name)?, gzip::is_named(name));
     Ok(move |out: &mut dyn Write| gzip::write(is_packed, out, |mut out| write_to(format, mesh, &mut out)))
 }
 

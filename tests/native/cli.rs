@@ -17,7 +17,7 @@ use std::fs;
 use std::time::Instant;
 
 /// The keys of the object that `--json` prints, in their order.
-const KEYS: [&str; 36] = [
+const KEYS: [&str; 37] = [
     "input",
     "vertices",
     "triangles",
@@ -28,6 +28,7 @@ const KEYS: [&str; 36] = [
     "dimension",
     "coordinates",
     "crossing_polygons",
+    "points",
     "backend",
     "adapter",
     "fallback",

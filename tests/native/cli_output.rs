@@ -168,7 +168,7 @@ fn what_has_no_extension_is_written_as_the_input_is() {
     assert_eq!((text(&ran.stdout), text(&ran.stderr)), (FLIPPED, ""));
     let unknown = folder.file("in.mesh", SQUARE);
     let line = format!(
-        "{}: unknown format; use one of: .off, .obj, .ply, .stl, .gltf, .glb, also gzip'd (.gz)",
+        "{}: unknown format; use one of: .off, .obj, .ply, .stl, .gltf, .glb, .csv, .xyz, also gzip'd (.gz)",
         unknown.display()
     );
     failed(&run(&unknown, Path::new("-"), &[]), 1, &line);

@@ -24,6 +24,7 @@ mod audit;
 mod cli;
 mod cli_input;
 mod cli_output;
+mod cli_points;
 mod cli_quiet;
 mod cli_signals;
 mod constraint_paths;

@@ -15,6 +15,11 @@ Formats, by extension:
          are read as one vertex
   .gltf  glTF 2.0, .glb in one binary file. Each primitive is a part of the mesh, and the borders
          between parts stay. --weld joins the vertices of a primitive that are at the same position
+  .csv   points: columns x and y, or lon and lat, or easting and northing, and z, height or elevation;
+         without names the first two or three columns. Separated by commas, semicolons or tabs
+  .xyz   points: two or three numbers in each line
+A file of points, also an OFF, OBJ or PLY file without faces, gets the Delaunay triangulation of
+its points by x and y; heights are carried along. Such a file is not written: OUT is a mesh.
 Each format may be gzip'd: IN under any name, OUT if .gz follows the extension, as in bunny.ply.gz.
 Vertices keep their number and order. Polygons are cut into triangles.
 
@@ -40,6 +45,7 @@ Examples:
   edgeflip map.off -o map.off --lock-edges rivers.txt
   edgeflip map.ply -o map.ply --constraints borders.txt
   edgeflip part.off -o part.obj --backend cpu --json --quiet | jq .flips
+  edgeflip points.csv -o terrain.ply
   edgeflip scan.ply.gz -o - | ssh host 'cat >scan.ply.gz'";
 
 /// Makes a triangle mesh Delaunay by flipping edges.
@@ -51,7 +57,7 @@ Examples:
 #[command(name = "edgeflip", version, after_long_help = AFTER)]
 #[command(after_help = "--help shows more: formats, exit status, examples.")]
 pub struct Args {
-    /// The mesh to read: .off, .obj, .ply, .stl, .gltf or .glb, also gzip'd
+    /// The mesh or the points to read: .off, .obj, .ply, .stl, .gltf, .glb, .csv or .xyz, also gzip'd
     ///
     /// If it is a FIFO, another process has to open it for writing within 10 s. The same holds for the lists below. A
     /// list may have 1 MiB, and 256 bytes for each triangle.
@@ -63,7 +69,7 @@ pub struct Args {
     ///
     /// The file is replaced in one step after everything has succeeded, so a failure leaves it unchanged. Links are
     /// followed. Owner, group and mode stay, or a note says why not. A device, a FIFO or the standard output is written
-    /// into; without one of these extensions it gets the format of IN, gzip'd if IN is named .gz. Another process has
+    /// into; without one of these extensions it gets the format of IN (PLY if that is CSV or XYZ), gzip'd if IN is named .gz. Another process has
     /// to open a FIFO for reading within 10 s. --json cannot share the standard output.
     #[arg(short, long, value_name = "OUT")]
     pub output: PathBuf,
@@ -211,17 +217,19 @@ pub struct Args {
     ///
     /// Keys: input, vertices, triangles, edges, boundary_edges, non_manifold_edges, inconsistent_edges, dimension,
     /// coordinates (32 or 64, the bits of the floats that decide), crossing_polygons (the numbers of faces, see the
-    /// notes), backend, adapter, fallback, status (done or stopped), iterations, flips, constraint_flips, left_out (for
-    /// each constraint left out, its index in the list and the reason), lost_edges (the two vertices of each locked edge
-    /// that --untangle could not keep), flips_per_iteration, dispatches, device_bytes,
-    /// remaining (by reason), inverted (triangles that are turned over, in the plane: they have not the orientation of
-    /// the total area of their component), flat (triangles of no area), min_angle_before_deg, min_angle_after_deg,
-    /// before and after (min_angle_deg, mean_min_angle_deg, mean_aspect, flat_triangles, area, volume), turned_triangles
-    /// (by --reorient), joined_vertices, seam_edges, moved_triangles, attribute_edges (locked to keep attributes),
-    /// attribute_edges_by_name (how many each attribute locks; several may lock the same edge), ms (wall times in
-    /// milliseconds, see below), and with --verify audit (the violations), clean (no violation, and no inverted
-    /// triangle), remaining_edges (by reason, the two vertices of each edge left, counted from 0), inverted_triangles
-    /// and flat_triangles (counted from 0), and distance (between the surfaces before and after).
+    /// notes), points (null for a mesh: heights, whether they have a third coordinate; hull, the points on it,
+    /// counter-clockwise; duplicates, each point that equals an earlier one, and that one), backend, adapter, fallback,
+    /// status (done or stopped), iterations, flips, constraint_flips, left_out (for each constraint left out, its index
+    /// in the list and the reason), lost_edges (the two vertices of each locked edge that --untangle could not keep),
+    /// flips_per_iteration, dispatches, device_bytes, remaining (by reason), inverted (triangles that are turned over,
+    /// in the plane: they have not the orientation of the total area of their component), flat (triangles of no area),
+    /// min_angle_before_deg, min_angle_after_deg, before and after (min_angle_deg, mean_min_angle_deg, mean_aspect,
+    /// flat_triangles, area, volume), turned_triangles (by --reorient), joined_vertices, seam_edges, moved_triangles,
+    /// attribute_edges (locked to keep attributes), attribute_edges_by_name (how many each attribute locks; several may
+    /// lock the same edge), ms (wall times in milliseconds, see below), and with --verify audit (the violations), clean
+    /// (no violation, and no inverted triangle), remaining_edges (by reason, the two vertices of each edge left,
+    /// counted from 0), inverted_triangles and flat_triangles (counted from 0), and distance (between the surfaces
+    /// before and after).
     ///
     /// The parts of ms add up to its total: start; load (IN is read); prepare (lists are read, vertices joined,
     /// triangles reversed, edges locked); device (the wait for the GPU, which opens while IN is read); upload;

@@ -4,6 +4,7 @@ mod args;
 mod errors;
 mod failure;
 mod memory;
+mod points;
 mod report;
 #[cfg(unix)]
 mod signals;
@@ -19,6 +20,7 @@ use edgeflip::{
 };
 use failure::Failure;
 use indicatif::{ProgressBar, ProgressStyle};
+use points::Points;
 use report::{Changes, Check, Milliseconds, Report};
 use std::io::{IsTerminal, Write};
 use std::mem;
@@ -87,16 +89,21 @@ fn run(args: &Args, mut clock: Clock) -> Result<Done, Failure> {
     ms.load = clock.lap();
     let leaves = loaded.keeps(output.format()) && !output.is_beside(&args.input);
     let left_behind = if leaves { loaded.leave_folder() } else { Vec::new() };
-    let welded = args.weld.then(|| loaded.welded()).transpose().map_err(refused)?;
-    let (alone, welded, turned) = turn(args, &loaded.mesh, welded).map_err(refused)?;
+    let points = loaded.has_points_only().then(|| loaded.triangulate()).transpose().map_err(refused)?;
+    let (points, plan) = points.map(|(made, plan)| (Points::new(made, &loaded), plan)).unzip();
+    let welded = (args.weld && plan.is_none()).then(|| loaded.welded()).transpose().map_err(refused)?;
+    let (alone, welded, turned) =
+        turn(args, plan.as_ref().unwrap_or(&loaded.mesh), welded).map_err(refused)?;
     let joined = welded.as_ref().map(|welded| &welded.mesh);
-    let mesh = alone.as_ref().or(joined).unwrap_or(&loaded.mesh);
+    let mesh = alone.as_ref().or(joined).or(plan.as_ref()).unwrap_or(&loaded.mesh);
     let triangles = mesh.triangle_count();
+    let mut constraints = list(&args.constraints, triangles, io::read_edges)?;
+    points.iter().for_each(|points| points.in_triangles(&mut constraints));
     options = Options {
         locked_edges: list(&args.lock_edges, triangles, io::read_edges)?,
         locked_triangles: list(&args.lock_triangles, triangles, io::read_numbers)?,
         groups: list(&args.groups, triangles, io::read_numbers)?,
-        constraints: list(&args.constraints, triangles, io::read_edges)?,
+        constraints,
         ..options
     };
     if let Some(welded) = &welded {
@@ -141,6 +148,7 @@ fn run(args: &Args, mut clock: Clock) -> Result<Done, Failure> {
     let violation = check.as_ref().and_then(|check| check.violation(&args.input));
     let report = changes.map(|changes| {
         Report::new(args, mesh, outcome, changes, turned, check, ms)
+            .with_points(points)
             .with_joined(welded.as_ref())
             .with_attributes(&loaded, output.format(), attribute_edges)
             .with_left_behind(&left_behind)

@@ -2,6 +2,7 @@
 
 use crate::args::Args;
 use crate::failure::Failure;
+use crate::points::Points;
 use crate::words::{FLAT, INVERTED, change, first, first_edges, kept, reasons, short};
 use edgeflip::io::{AttributeEdges, Format, Loaded};
 use edgeflip::quality::{self, Measures};
@@ -26,6 +27,7 @@ pub struct Report {
     dimension: usize,
     coordinates: u32,
     crossing_polygons: Vec<u32>,
+    points: Option<Points>,
     backend: &'static str,
     adapter: Option<String>,
     fallback: Option<String>,
@@ -194,6 +196,7 @@ impl Report {
             dimension: mesh.dimension().stride(),
             coordinates: if matches!(mesh.positions(), Positions::F64(_)) { 64 } else { 32 },
             crossing_polygons: Vec::new(),
+            points: None,
             backend: outcome.backend.name(),
             adapter: outcome.adapter,
             fallback: outcome.fallback,
@@ -229,6 +232,13 @@ impl Report {
         }
     }
 
+    /// Adds what became of points.
+    pub fn with_points(mut self, points: Option<Points>) -> Self {
+        self.notes.extend(points.as_ref().and_then(Points::note));
+        self.points = points;
+        self
+    }
+
     /// Adds the numbers of joined vertices and of seams.
     pub fn with_joined(mut self, welded: Option<&Welded>) -> Self {
         if let Some(welded) = welded {
@@ -243,7 +253,7 @@ impl Report {
     pub fn with_attributes(mut self, loaded: &Loaded, format: Format, locked: AttributeEdges) -> Self {
         self.attribute_edges = locked.count;
         self.attribute_edges_by_name = locked.by_name;
-        self.notes.clone_from(&loaded.notes);
+        self.notes.extend(loaded.notes.iter().cloned());
         if loaded.polygons > 0 {
             let polygons = HumanCount(loaded.polygons as u64);
             let changed = if loaded.keeps(format) { ", where an edge of theirs flips" } else { "" };
@@ -296,10 +306,14 @@ impl Report {
         };
         let [vertices, triangles] = [self.vertices, self.triangles].map(|n| HumanCount(n as u64));
         let bits = if self.coordinates == 64 { ", 64-bit coordinates" } else { "" };
-        line(
-            "read",
-            format!("{}: {vertices} vertices, {triangles} triangles, {}D{bits}", self.input, self.dimension),
-        );
+        let found = match &self.points {
+            Some(points) => points.found(self.vertices),
+            None => format!("{vertices} vertices, {triangles} triangles, {}D", self.dimension),
+        };
+        line("read", format!("{}: {found}{bits}", self.input));
+        if let Some(points) = &self.points {
+            line("made", points.made());
+        }
         let frozen: Vec<String> =
             [(self.non_manifold_edges, "non-manifold"), (self.inconsistent_edges, "inconsistent")]
                 .into_iter()

@@ -7,6 +7,7 @@ mod original;
 #[cfg(feature = "threads")]
 mod pieces;
 mod ply;
+mod points;
 mod polygon;
 mod stl;
 
@@ -261,10 +262,11 @@ fn formats_by_extension() {
     assert_eq!(Format::of(Path::new("b.x.obj")).unwrap(), Format::Obj);
     assert_eq!(Format::of(Path::new("b.Ply.GZ")).unwrap(), Format::Ply);
     assert_eq!(Format::of(Path::new(".stl.stl")).unwrap(), Format::Stl);
+    assert_eq!(Format::of(Path::new("a.csv")).unwrap(), Format::Csv);
     for name in ["off", "a.gz", ".gz", "a.off.gz.gz", ""] {
         let found = Format::of(Path::new(name));
         let message = format!(
-            "{name}: unknown format; use one of: .off, .obj, .ply, .stl, .gltf, .glb, also gzip'd (.gz)"
+            "{name}: unknown format; use one of: .off, .obj, .ply, .stl, .gltf, .glb, .csv, .xyz, also gzip'd (.gz)"
         );
         assert_eq!(found.unwrap_err().to_string(), message);
     }

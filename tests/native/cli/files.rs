@@ -264,7 +264,7 @@ fn a_file_that_cannot_be_read_or_written() {
 
     let unknown = folder.file("in.mesh", SQUARE);
     let line = format!(
-        "{}: unknown format; use one of: .off, .obj, .ply, .stl, .gltf, .glb, also gzip'd (.gz)",
+        "{}: unknown format; use one of: .off, .obj, .ply, .stl, .gltf, .glb, .csv, .xyz, also gzip'd (.gz)",
         unknown.display()
     );
     failed(&run(&unknown, &folder.path("out.off"), &[]), 1, &line);
