@@ -34,9 +34,6 @@ export interface PointsSources extends Pick<Sources, 'base'> {
   points?: ModuleSource | undefined;
 }
 
-/** The sources of all entries. */
-type AllSources = Sources & PointsSources;
-
 /** The function of wasm-bindgen that starts a module. */
 type Start = (options: { module_or_path: ModuleSource }) => Promise<unknown>;
 
@@ -81,10 +78,10 @@ export function loader(
  *
  * @param first - The module that `init` loads if its caller names none.
  */
-export function initOf<Name extends Exclude<keyof AllSources, 'base'>>(
+export function initOf<Name extends Exclude<keyof Sources | keyof PointsSources, 'base'>>(
   first: NoInfer<Name>,
   loads: Record<Name, Load>,
-): (sources?: Pick<AllSources, Name | 'base'>) => Promise<void> {
+): (sources?: Pick<Sources & PointsSources, Name | 'base'>) => Promise<void> {
   const names = Object.keys(loads) as Name[];
   return async (sources) => {
     const named = read('the sources', () => {
