@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { openPage } from '../browsers.mjs';
+import { openPage, startChromium } from '../browsers.mjs';
 import { repository } from './project.mjs';
 
 const docs = readFileSync(join(repository, 'docs/package.md'), 'utf8');
@@ -69,9 +69,9 @@ export function pageProject(projects, name, more = {}, script = './main.js') {
   return root;
 }
 
-/** Opens the page and returns its text. */
-export async function textOf(browser, address, selector = 'body') {
-  const { page, problems } = await openPage(browser, address);
+/** Opens the page in Chromium and returns its text. */
+export async function textOf(address, selector = 'body') {
+  const { page, problems } = await openPage(await startChromium(), address);
   const text = (query) => document.querySelector(query)?.textContent.trim();
   try {
     await page.waitForFunction(text, selector, { timeout: 60_000 });

@@ -7,11 +7,11 @@ import { spawn } from 'node:child_process';
 import { copyFileSync, mkdirSync, readdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import { join } from 'node:path';
-import { after, before, test } from 'node:test';
+import { after, test } from 'node:test';
 import { pathToFileURL } from 'node:url';
 import { NodeIO } from '@gltf-transform/core';
 import { ALL_EXTENSIONS } from '@gltf-transform/extensions';
-import { closeAll, ISOLATED, serve, startChromium } from '../browsers.mjs';
+import { closeAll, ISOLATED, serve } from '../browsers.mjs';
 import { faults } from './gltf.mjs';
 import { documented, pageProject, program, textOf, WRITTEN } from './page-project.mjs';
 import { primitivesOf, surfaceOf } from './primitives.mjs';
@@ -40,10 +40,6 @@ function sameSurfaces(before, after) {
   });
 }
 
-let chromium;
-before(async () => {
-  chromium = await startChromium();
-});
 after(async () => {
   await closeAll();
   projects.remove();
@@ -55,7 +51,7 @@ test('Vite 7, built and on the development server', async (t) => {
   const root = pageProject(projects, 'vite');
   const config = { root, configFile: false, logLevel: 'warn', worker: { format: 'es' }, build: { target: 'es2022' } };
   await build(config);
-  assert.equal(await textOf(chromium, await serve(join(root, 'dist'), ISOLATED)), WRITTEN);
+  assert.equal(await textOf(await serve(join(root, 'dist'), ISOLATED)), WRITTEN);
   const server = await createServer({
     ...config,
     optimizeDeps: { exclude: ['edgeflip'] },
@@ -63,7 +59,7 @@ test('Vite 7, built and on the development server', async (t) => {
   });
   t.after(() => server.close());
   await server.listen();
-  assert.equal(await textOf(chromium, server.resolvedUrls.local[0]), WRITTEN);
+  assert.equal(await textOf(server.resolvedUrls.local[0]), WRITTEN);
 });
 
 test('Vite for servers, with the package in the bundle', async () => {
@@ -132,8 +128,8 @@ test('Next, in the browser and in a server component', { timeout: 180_000 }, asy
     server.stderr.on('data', read);
     server.on('close', () => reject(new Error(output)));
   });
-  assert.equal(await textOf(chromium, address, '#server'), '3,1,2,0,1,3');
-  assert.equal(await textOf(chromium, address, '#client'), WRITTEN);
+  assert.equal(await textOf(address, '#server'), '3,1,2,0,1,3');
+  assert.equal(await textOf(address, '#client'), WRITTEN);
 });
 
 test('Node, Bun and Deno; CommonJS too', () => {

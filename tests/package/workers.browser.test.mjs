@@ -6,8 +6,8 @@ import assert from 'node:assert/strict';
 import { writeFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import { join } from 'node:path';
-import { after, before, test } from 'node:test';
-import { closeAll, ISOLATED, serve, startChromium } from '../browsers.mjs';
+import { after, test } from 'node:test';
+import { closeAll, ISOLATED, serve } from '../browsers.mjs';
 import { documented, html, pageProject, textOf, WRITTEN } from './page-project.mjs';
 import { Projects, repository, run } from './project.mjs';
 
@@ -15,17 +15,13 @@ const bundlers = join(repository, 'tests/bundlers');
 const require = createRequire(join(bundlers, 'package.json'));
 const projects = new Projects(join(bundlers, 'projects-'));
 
-let chromium;
-before(async () => {
-  chromium = await startChromium();
-});
 after(async () => {
   await closeAll();
   projects.remove();
 });
 
 /** What the page in this folder writes. */
-const writtenIn = async (folder) => textOf(chromium, await serve(folder, ISOLATED));
+const writtenIn = async (folder) => textOf(await serve(folder, ISOLATED));
 
 test('webpack', async () => {
   documented('webpack 5', '`experiments: { outputModule: true }`, `output: { module: true }`');
