@@ -14,7 +14,7 @@
  * | `too-large` | split the mesh, or call `free` on unused sessions: indices have 32 bits, and memory is limited |
  * | `parse` | repair the file at the line, byte or vertex that the message names |
  * | `file-too-large` | pass a larger `maxBytes` if you trust the file |
- * | `unknown-format` | use a file name with one of the extensions in `FORMATS` |
+ * | `unknown-format` | use a file name with one of the extensions in `FORMATS`; to read, also in `POINT_FORMATS` |
  * | `io` | write another format: a coordinate of the vertex that the message names exceeds a 32-bit float |
  * | `invalid-option` | check the option that the message names |
  * | `backend-unavailable` | use `'auto'` or `'cpu'`: this engine is not available here, or it failed its self-test |

@@ -46,6 +46,12 @@ export type { Attributes, Bytes, Files, IndexArray, LeftOut, Mesh, Original, Ver
  */
 export const FORMATS = ['.off', '.obj', '.ply', '.stl', '.gltf', '.glb'] as const;
 
+/**
+ * The extensions of the formats that have points and no triangles. They are only read, also compressed: the mesh has no
+ * triangles, and `triangulate` of `edgeflip/points` takes its positions.
+ */
+export const POINT_FORMATS = ['.csv', '.xyz'] as const;
+
 /** Statistics of the angles of a mesh. A degenerate triangle counts as one with an angle of 0°. */
 export interface Angles {
   /** The smallest angle of the mesh in degrees; 60 without triangles. */

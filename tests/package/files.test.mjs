@@ -14,9 +14,11 @@ import {
   FORMATS,
   generate,
   init,
+  POINT_FORMATS,
   readMesh,
   writeMesh,
 } from 'edgeflip/files';
+import { triangulate } from 'edgeflip/points';
 
 const bytes = (text) => new TextEncoder().encode(text);
 const text = (bytes) => new TextDecoder().decode(bytes);
@@ -311,8 +313,26 @@ test('errors have codes and name the location', async () => {
 
 test('the formats are those that the module knows', async () => {
   await assert.rejects(readMesh(new Uint8Array(), 'a'), (error) =>
-    error.message.endsWith(`use one of: ${FORMATS.join(', ')}, also gzip'd (.gz)`),
+    error.message.endsWith(`use one of: ${[...FORMATS, ...POINT_FORMATS].join(', ')}, also gzip'd (.gz)`),
   );
+});
+
+test('files of points are read, and not written', async () => {
+  for (const format of POINT_FORMATS) {
+    const flat = await readMesh(
+      bytes('0 0\n4,0\n4 3\n'.replaceAll(/[ ,]/g, format === '.csv' ? ',' : ' ')),
+      `a${format}`,
+    );
+    assert.deepEqual([flat.dimension, flat.indices.length, ...flat.positions], [2, 0, 0, 0, 4, 0, 4, 3]);
+    await assert.rejects(
+      writeMesh(flat, `a${format}`),
+      refused('unknown-format', /use one of: .off.* .glb, also gzip/),
+    );
+  }
+  const terrain = await readMesh(bytes('name,height,y,x\na,5,0,0\nb,6,0,4\nc,7,3,4\n'), 'a.csv');
+  assert.deepEqual([terrain.dimension, ...terrain.positions], [3, 0, 0, 5, 4, 0, 6, 4, 3, 7]);
+  const { triangles } = await triangulate(terrain.positions, { stride: terrain.dimension });
+  assert.deepEqual([...triangles], [0, 1, 2]);
 });
 
 test('generated meshes are those of the crate', async () => {
