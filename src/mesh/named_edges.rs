@@ -3,6 +3,16 @@
 use super::half_edge::next;
 use crate::{Error, Mesh};
 
+/// A constraint that was left out.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "cli", derive(serde::Serialize))]
+pub struct LeftOut {
+    /// Its index in the list of constraints.
+    pub index: usize,
+    /// A sentence that says why, with the vertices and what it crosses.
+    pub reason: String,
+}
+
 /// The half-edges of the edges that `pairs` name by their vertices, in ascending order.
 ///
 /// # Errors

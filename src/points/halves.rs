@@ -17,7 +17,7 @@ pub(super) fn slots_of(vertices: usize, threads: &Threads) -> Vec<Slot> {
 /// The triangulations of a row of vertices.
 pub(super) struct Network<'a> {
     points: &'a [DVec2],
-    slots: Slots<'a>,
+    slots: Slots<&'a mut [Slot]>,
     threads: &'a Threads,
 }
 

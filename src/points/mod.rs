@@ -1,7 +1,9 @@
 //! The Delaunay triangulation of points in the plane. The points are sorted into columns; each column is triangulated by
 //! halving it in y, and the columns are merged by halving their row in x.
 
+mod circle;
 mod columns;
+mod constraints;
 mod distribution;
 mod groups;
 mod halves;
@@ -10,4 +12,5 @@ mod numbering;
 pub(crate) mod options;
 mod seam;
 mod slots;
+mod stars;
 pub(crate) mod triangulation;

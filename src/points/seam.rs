@@ -1,10 +1,10 @@
 //! Merges two Delaunay triangulations whose points are apart: from the lower common tangent to the upper one, a seam of
 //! triangles grows between them. On its way it removes the edges that are no longer Delaunay, by flips with ghosts.
 
-use super::slots::{GHOST, Slots, next, prev};
-use crate::predicates::{area_sign, in_circle_sign};
+use super::circle::{is_inside, is_left_turn};
+use super::slots::{GHOST, Slot, Slots, next, prev};
 use glam::DVec2;
-use std::cmp::Ordering;
+use std::ops::DerefMut;
 
 /// A hull, by the half-edges to the symbolic vertex from the first and from the last of its vertices, in the direction
 /// in which the sets of points follow each other.
@@ -12,38 +12,6 @@ use std::cmp::Ordering;
 pub(super) struct Hull {
     pub(super) first: u32,
     pub(super) last: u32,
-}
-
-/// Whether `d` is inside the circle through `a`, `b` and `c`, which are counter-clockwise. Of four points on one circle,
-/// the least is taken as a little lower on the paraboloid than it is, so that it is joined to the other three.
-#[inline(always)]
-fn is_inside([a, b, c, d]: [DVec2; 4]) -> bool {
-    match in_circle_sign(a, b, c, d) {
-        Ordering::Less => true,
-        Ordering::Greater => false,
-        Ordering::Equal => is_inside_by_order([a, b, c, d]),
-    }
-}
-
-/// Decides [`is_inside`] for four points on one circle. The in-circle determinant changes its sign if two points change
-/// their places: so the lowered one takes the place of `d`, and the orientation of the other three decides.
-#[cold]
-fn is_inside_by_order([a, b, c, d]: [DVec2; 4]) -> bool {
-    let is_less = |p: DVec2, q: DVec2| p.x < q.x || (p.x == q.x && p.y < q.y);
-    let mut others = [b, c, d];
-    let mut least = a;
-    for (candidate, rest) in [(b, [c, a, d]), (c, [a, b, d])] {
-        if is_less(candidate, least) {
-            (least, others) = (candidate, rest);
-        }
-    }
-    let [p, q, r] = others;
-    is_less(d, least) || area_sign(p, q, r).is_lt()
-}
-
-#[inline(always)]
-fn is_left_turn(a: DVec2, b: DVec2, c: DVec2) -> bool {
-    area_sign(a, b, c).is_gt()
 }
 
 /// The open end of the seam. All names are as if the sets were side by side and the seam grew upwards.
@@ -58,7 +26,7 @@ struct Front {
     right_ghost: u32,
 }
 
-impl Slots<'_> {
+impl<S: DerefMut<Target = [Slot]>> Slots<S> {
     /// Merges the triangulations of two sets. The second is after the first in some direction. Two slots from `slot` are
     /// free: they become the ghosts below and above the seam.
     pub(super) fn merge(&mut self, points: &[DVec2], [low, high]: [Hull; 2], slot: u32) -> Hull {

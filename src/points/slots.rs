@@ -3,6 +3,8 @@
 //!
 //! Half-edge h belongs to slot h / 4 and goes from its corner h % 4 to the next; h % 4 is never 3.
 
+use std::ops::DerefMut;
+
 /// The symbolic vertex.
 pub(super) const GHOST: u32 = u32::MAX;
 
@@ -10,7 +12,7 @@ pub(super) const GHOST: u32 = u32::MAX;
 #[derive(Clone, Copy, Default)]
 #[repr(align(32))]
 pub(super) struct Slot {
-    /// Vertices, counter-clockwise; the fourth is unused.
+    /// Vertices, counter-clockwise. The fourth number has a bit for each half-edge: whether it is locked.
     pub(super) corners: [u32; 4],
     /// Half-edges; the fourth is unused.
     pub(super) twins: [u32; 4],
@@ -28,15 +30,15 @@ pub(super) fn prev(h: u32) -> u32 {
     if h & 3 == 0 { h + 2 } else { h - 1 }
 }
 
-/// Some of the slots, of which the first has the number `first`.
-pub(super) struct Slots<'a> {
-    pub(super) slots: &'a mut [Slot],
+/// All slots, or some of them, of which the first has the number `first`.
+pub(super) struct Slots<S> {
+    pub(super) slots: S,
     pub(super) first: u32,
 }
 
-impl Slots<'_> {
+impl<S: DerefMut<Target = [Slot]>> Slots<S> {
     /// The slots before and after the two from `slot`.
-    pub(super) fn halves(&mut self, slot: u32) -> [Slots<'_>; 2] {
+    pub(super) fn halves(&mut self, slot: u32) -> [Slots<&mut [Slot]>; 2] {
         let (low, rest) = self.slots.split_at_mut((slot - self.first) as usize);
         [Slots { slots: low, first: self.first }, Slots { slots: &mut rest[2..], first: slot + 2 }]
     }
@@ -73,16 +75,34 @@ impl Slots<'_> {
         self.slot_mut(h).corners[h as usize & 3] = vertex;
     }
 
+    /// Whether the edge must not flip.
+    #[inline(always)]
+    pub(super) fn is_locked(&self, h: u32) -> bool {
+        self.slot(h).corners[3] >> (h & 3) & 1 != 0
+    }
+
+    #[inline(always)]
+    pub(super) fn set_locked(&mut self, h: u32, is_locked: bool) {
+        let bits = &mut self.slot_mut(h).corners[3];
+        *bits = *bits & !(1 << (h & 3)) | u32::from(is_locked) << (h & 3);
+    }
+
+    /// Writes the twin of one half-edge only.
+    #[inline(always)]
+    pub(super) fn set_twin(&mut self, h: u32, g: u32) {
+        self.slot_mut(h).twins[h as usize & 3] = g;
+    }
+
     /// Makes two half-edges twins of each other.
     #[inline(always)]
     pub(super) fn join(&mut self, h: u32, g: u32) {
-        self.slot_mut(h).twins[h as usize & 3] = g;
-        self.slot_mut(g).twins[g as usize & 3] = h;
+        self.set_twin(h, g);
+        self.set_twin(g, h);
     }
 
     /// Writes the corners of a slot. Returns its first half-edge.
     pub(super) fn put(&mut self, slot: u32, [a, b, c]: [u32; 3]) -> u32 {
-        self.slot_mut(4 * slot).corners = [a, b, c, GHOST];
+        self.slot_mut(4 * slot).corners = [a, b, c, 0];
         4 * slot
     }
 

@@ -1,13 +1,16 @@
 //! `triangulate`: from points to triangles, twins and the hull.
 
 use super::columns::Columns;
+use super::constraints::Constraints;
 use super::halves::{Network, slots_of};
 use super::numbering::{numbered, numbered_hull};
 use super::options::PointOptions;
+use super::slots::Slot;
 use crate::mesh::MAX_TRIANGLES;
 use crate::system::memory;
 use crate::system::threads::Threads;
-use crate::{Dimension, Error, Positions};
+use crate::{Dimension, Error, LeftOut, Positions};
+use glam::DVec2;
 
 /// The most points: with the triangles beyond the hull, V of them have up to 2V - 2 triangles.
 const MAX_POINTS: usize = MAX_TRIANGLES / 2 + 1;
@@ -15,6 +18,10 @@ const MAX_POINTS: usize = MAX_TRIANGLES / 2 + 1;
 /// The most bytes that a point takes at a time: its index (4), two slots (64) and their numbers (8), two triangles with
 /// their twins (48), the half-edges with which these begin (8), and what the loops count (4).
 const BYTES_PER_POINT: u64 = 136;
+
+/// The most bytes that a constraint of one edge takes: its ends (8), its edge with its index (24), the same to look for
+/// the edge that another crosses (24), and the edge in the result (8).
+const BYTES_PER_CONSTRAINT: u64 = 64;
 
 /// A Delaunay triangulation of points in the plane, from [`triangulate`].
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -30,6 +37,11 @@ pub struct Triangulation {
     /// For each point that equals another with a smaller index: its index, and the smallest of the indices. Only the
     /// smallest is in triangles. Sorted.
     pub duplicates: Vec<[u32; 2]>,
+    /// The edges of the constraints, in their order and direction: for [`regions`](crate::regions). A constraint through
+    /// points is several edges.
+    pub constraint_edges: Vec<[u32; 2]>,
+    /// The constraints that were left out, in ascending order.
+    pub left_out: Vec<LeftOut>,
 }
 
 impl Triangulation {
@@ -43,8 +55,8 @@ impl Triangulation {
 ///
 /// No point is inside the circumcircle of a triangle. If four points are on one circle, the least of them, by x and then
 /// by y, is joined to the other three: so the points alone determine the triangles, whatever their order. Every decision
-/// is exact, and the time is O(n log n) for any points. It uses all cores; [`triangulate_with`] takes a number of threads,
-/// which does not change the result.
+/// is exact, and the time is O(n log n) for any points. It uses all cores. [`triangulate_with`] takes constraints and a
+/// number of threads, which does not change the result.
 ///
 /// The points are sorted into columns, and sets of points are merged as Guibas and Stolfi do ("Primitives for the
 /// manipulation of general subdivisions", 1985), with triangles to a symbolic vertex along the hull as Shewchuk has them
@@ -72,10 +84,10 @@ pub fn triangulate(points: &Positions) -> Result<Triangulation, Error> {
 /// As [`triangulate`], with options.
 ///
 /// # Errors
-/// Those of [`triangulate`], and [`Error::Option`] for more threads than [`MOST_THREADS`](crate::MOST_THREADS), or if the
+/// Those of [`triangulate`], and [`Error::Option`] for a constraint that joins a point which does not exist or, without
+/// `skips_constraints`, crosses an earlier one; for more threads than [`MOST_THREADS`](crate::MOST_THREADS); and if the
 /// threads cannot be started.
 pub fn triangulate_with(points: &Positions, options: &PointOptions) -> Result<Triangulation, Error> {
-    options.check()?;
     let (length, stride) = (points.len(), Dimension::Two.stride());
     if length % stride != 0 {
         return Err(Error::RaggedArray { array: "positions", length, stride });
@@ -84,16 +96,24 @@ pub fn triangulate_with(points: &Positions, options: &PointOptions) -> Result<Tr
     if count > MAX_POINTS {
         return Err(Error::TooLarge { what: "vertices", count, limit: MAX_POINTS });
     }
+    options.check(count)?;
     let threads = Threads::new(options.threads, 2 * count)?;
     points.refuse_non_finite(Dimension::Two, &threads)?;
-    memory::check(BYTES_PER_POINT * count as u64)?;
-    Ok(threads.enter(|| triangulated(points, &threads)))
+    memory::check(BYTES_PER_POINT * count as u64 + BYTES_PER_CONSTRAINT * options.constraints.len() as u64)?;
+    let triangulation = threads.enter(|| triangulated(points, options, &threads));
+    match triangulation.left_out.first() {
+        Some(LeftOut { reason, .. }) if !options.skips_constraints => {
+            Err(Error::Option { option: "constraints", message: reason.clone() })
+        }
+        _ => Ok(triangulation),
+    }
 }
 
-fn triangulated(points: &Positions, threads: &Threads) -> Triangulation {
+fn triangulated(points: &Positions, options: &PointOptions, threads: &Threads) -> Triangulation {
     let Columns { points: sorted, indices, starts, duplicates } = Columns::of(points, threads);
     let mut slots = slots_of(sorted.len(), threads);
     let mut vertices = Network::new(&sorted, &mut slots, threads).of_columns(&starts);
+    let (constraint_edges, left_out) = brought_in(options, (&sorted, &mut slots), &indices, &duplicates);
     drop(sorted);
     let (triangles, twins) = numbered(&slots, &indices, points.len() / 2, threads);
     let hull = if triangles.is_empty() {
@@ -103,5 +123,29 @@ fn triangulated(points: &Positions, threads: &Threads) -> Triangulation {
     } else {
         numbered_hull(vertices, &indices)
     };
-    Triangulation { triangles, twins, hull, duplicates }
+    Triangulation { triangles, twins, hull, duplicates, constraint_edges, left_out }
+}
+
+/// Brings the constraints in. Returns their edges, and those that were left out.
+fn brought_in(
+    options: &PointOptions,
+    (sorted, slots): (&[DVec2], &mut [Slot]),
+    indices: &[u32],
+    duplicates: &[[u32; 2]],
+) -> (Vec<[u32; 2]>, Vec<LeftOut>) {
+    let PointOptions { constraints, skips_constraints, .. } = options;
+    if constraints.is_empty() {
+        return Default::default();
+    }
+    let mut vertices = vec![0; indices.len() + duplicates.len()];
+    for (vertex, &index) in (0..).zip(indices) {
+        vertices[index as usize] = vertex;
+    }
+    for &[index, first] in duplicates {
+        vertices[index as usize] = vertices[first as usize];
+    }
+    let given: Vec<_> = constraints.iter().map(|ends| ends.map(|index| vertices[index as usize])).collect();
+    let brought = Constraints { given: &given, skips: *skips_constraints }.bring_in(sorted, slots);
+    let edges = brought.edges.iter().map(|(_, ends)| ends.map(|vertex| indices[vertex as usize]));
+    (edges.collect(), brought.left_out(constraints))
 }

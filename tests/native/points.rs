@@ -1,5 +1,6 @@
 //! Points are triangulated as an oracle of integers of any size defines it, and as another crate does, up to ties.
 
+mod constraints;
 mod oracle;
 mod threads;
 

@@ -9,7 +9,7 @@ mod state;
 mod tests;
 mod walk;
 
-use crate::mesh::named_edges::{half_edges, ordered};
+use crate::mesh::named_edges::{LeftOut, half_edges, ordered};
 use crate::system::threads::Threads;
 use crate::{Dimension, Error, Mesh};
 use rounds::{Done, Rounds};
@@ -40,16 +40,6 @@ impl Constrained {
     pub fn constraint_edges(&self) -> &[[u32; 2]] {
         self.locked_edges.get(self.locks..).unwrap_or_default()
     }
-}
-
-/// A constraint that was left out.
-#[derive(Clone, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "cli", derive(serde::Serialize))]
-pub struct LeftOut {
-    /// Its index in the list of constraints.
-    pub index: usize,
-    /// A sentence that says why, with the vertices and what it crosses.
-    pub reason: String,
 }
 
 /// Brings `constraints` in, each an edge between two vertices, with the result of one after another. A vertex on a

@@ -5,7 +5,7 @@ use num_bigint::BigInt;
 use std::cmp::Ordering;
 use std::collections::{BTreeMap, BTreeSet};
 
-type Point = [BigInt; 2];
+pub type Point = [BigInt; 2];
 
 /// Mantissa and exponent of a finite number.
 fn decode(x: f64) -> (i64, i32) {
@@ -18,7 +18,7 @@ fn decode(x: f64) -> (i64, i32) {
 }
 
 /// The points as integers times one power of two.
-fn integers(positions: &Positions) -> Vec<Point> {
+pub fn integers(positions: &Positions) -> Vec<Point> {
     let decoded: Vec<(i64, i32)> = positions.iter().map(decode).collect();
     let unit = decoded.iter().filter(|number| number.0 != 0).map(|number| number.1).min().unwrap_or(0);
     let integer = |&(m, e): &(i64, i32)| if m == 0 { BigInt::ZERO } else { BigInt::from(m) << (e - unit) };
@@ -26,7 +26,7 @@ fn integers(positions: &Positions) -> Vec<Point> {
 }
 
 /// Twice the area of (a, b, c).
-fn area(a: &Point, b: &Point, c: &Point) -> BigInt {
+pub fn area(a: &Point, b: &Point, c: &Point) -> BigInt {
     (&b[0] - &a[0]) * (&c[1] - &a[1]) - (&b[1] - &a[1]) * (&c[0] - &a[0])
 }
 
@@ -48,12 +48,14 @@ fn after(h: usize) -> usize {
     if h % 3 == 2 { h - 2 } else { h + 1 }
 }
 
-/// Checks everything that the documentation of a triangulation promises. Returns for each half-edge whether it is a tie:
-/// whether its four points are on one circle.
+/// Checks everything that the documentation of a triangulation promises, but for which constraints come in. Returns for
+/// each half-edge whether it is a tie: whether its four points are on one circle.
 pub fn check(positions: &Positions, result: &Triangulation) -> Vec<bool> {
     let points = integers(positions);
     let at = |v: u32| &points[v as usize];
-    let Triangulation { triangles, twins, hull, duplicates } = result;
+    let Triangulation { triangles, twins, hull, duplicates, constraint_edges, .. } = result;
+    let ordered = |[a, b]: [u32; 2]| [a.min(b), a.max(b)];
+    let mut constraints: BTreeSet<[u32; 2]> = constraint_edges.iter().copied().map(ordered).collect();
 
     let mut first = BTreeMap::new();
     let expected: Vec<[u32; 2]> = (0..)
@@ -91,6 +93,7 @@ pub fn check(positions: &Positions, result: &Triangulation) -> Vec<bool> {
     assert_eq!(twins.len(), triangles.len());
     for (h, &g) in twins.iter().enumerate() {
         let [a, b, c] = [h, after(h), after(after(h))].map(|x| triangles[x]);
+        let is_free = !constraints.contains(&ordered([a, b]));
         if g == NONE {
             assert_eq!(next_on_hull.insert(a, b), None, "vertex {a} is on the hull twice");
             continue;
@@ -99,6 +102,7 @@ pub fn check(positions: &Positions, result: &Triangulation) -> Vec<bool> {
         assert_eq!((twins[g], triangles[g], triangles[after(g)]), (h as u32, b, a));
         let d = triangles[after(after(g))];
         match sign(&in_circle(at(a), at(b), at(c), at(d))) {
+            _ if !is_free => {}
             Ordering::Less => {}
             Ordering::Equal => {
                 tied[h] = true;
@@ -108,6 +112,11 @@ pub fn check(positions: &Positions, result: &Triangulation) -> Vec<bool> {
             Ordering::Greater => panic!("{d} is in the circle of {a} {b} {c}"),
         }
     }
+
+    for (h, &a) in triangles.iter().enumerate() {
+        constraints.remove(&ordered([a, triangles[after(h)]]));
+    }
+    assert!(constraints.is_empty(), "{constraints:?} are no edges");
 
     assert_eq!(hull.len(), next_on_hull.len());
     assert_eq!(hull.iter().min(), hull.first());

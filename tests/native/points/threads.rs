@@ -6,7 +6,7 @@ use oorandom::Rand64;
 use std::num::NonZeroUsize;
 
 fn on_threads(positions: &Positions, threads: usize) -> Result<Triangulation, Error> {
-    triangulate_with(positions, &PointOptions { threads: NonZeroUsize::new(threads) })
+    triangulate_with(positions, &PointOptions { threads: NonZeroUsize::new(threads), ..Default::default() })
 }
 
 /// The triangulation, which is the same on any number of threads.

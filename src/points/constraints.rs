@@ -1,0 +1,316 @@
+//! Brings constraints in. The triangles that a constraint crosses make way for two polygons, one on each side of it. Each
+//! is triangulated from the constraint's first end to its second, and then flips make all Delaunay but for the
+//! constraints: so the result depends on points and constraints only.
+//!
+//! All vertices of a polygon see the constraint: each crossed edge joins two of them across it. So a scan as Graham's,
+//! which cuts off each convex corner at once, finds the triangles of the polygon in linear time. An edge that has the
+//! polygon on both sides is in its boundary twice, once in each direction.
+
+use super::circle::is_left_turn;
+use super::slots::{Slot, next, prev};
+use super::stars::Stars;
+use crate::NONE;
+use crate::mesh::named_edges::{LeftOut, ordered};
+use crate::predicates::area_sign;
+use glam::DVec2;
+use std::cmp::Ordering;
+use std::ops::Range;
+
+/// Constraints, by the vertices of the slots.
+pub(super) struct Constraints<'a> {
+    pub(super) given: &'a [[u32; 2]],
+    pub(super) skips: bool,
+}
+
+/// A part of a constraint, without a vertex between its ends.
+struct Part {
+    ends: [u32; 2],
+    way: Way,
+}
+
+/// How a part lies in the triangulation.
+enum Way {
+    /// It is the edge of this half-edge.
+    Edge(u32),
+    /// It crosses the triangles of these slots.
+    Across {
+        slots: Vec<u32>,
+        /// The other sides of these triangles: those on the right from its first end to its second, and those on the
+        /// left from its second end to its first.
+        right: Vec<u32>,
+        left: Vec<u32>,
+    },
+}
+
+/// What was brought in: the edges of the constraints with their indices, and the constraints that were left out.
+#[derive(Default)]
+pub(super) struct Brought {
+    pub(super) edges: Vec<(usize, [u32; 2])>,
+    /// The index of each, and the edge that it crosses.
+    left_out: Vec<(usize, [u32; 2])>,
+}
+
+impl Constraints<'_> {
+    /// Brings them in, one after another. Without `skips`, the first that cannot be brought in is the last.
+    pub(super) fn bring_in(&self, points: &[DVec2], slots: &mut [Slot]) -> Brought {
+        let mut stars = Stars::new(points, slots);
+        let mut brought = Brought::default();
+        for (index, &ends) in self.given.iter().enumerate() {
+            match stars.walk(ends) {
+                Ok(parts) => {
+                    brought.edges.extend(parts.iter().map(|part| (index, part.ends)));
+                    let changed = parts.into_iter().flat_map(|part| stars.bring_in(part)).collect();
+                    stars.make_delaunay(changed);
+                }
+                Err(crossed) => {
+                    brought.left_out.push((index, [crossed, next(crossed)].map(|h| stars.slots.origin(h))));
+                    if !self.skips {
+                        break;
+                    }
+                }
+            }
+        }
+        brought
+    }
+}
+
+impl Brought {
+    /// The constraints that were left out, with their reasons. `given` has the constraints by the caller's indices.
+    pub(super) fn left_out(&self, given: &[[u32; 2]]) -> Vec<LeftOut> {
+        let mut origins: Vec<_> = self.edges.iter().map(|&(index, ends)| (ordered(ends), index)).collect();
+        origins.sort_unstable();
+        let reason = |&(index, crossed): &(usize, [u32; 2])| {
+            let first = origins.partition_point(|&(ends, _)| ends < ordered(crossed));
+            let other = origins.get(first).map_or(0, |&(_, index)| index);
+            let [[a, b], [c, d]] = [given[index], given[other]];
+            let reason = format!(
+                "constraint {index} between {a} and {b} crosses constraint {other} between {c} and {d}"
+            );
+            LeftOut { index, reason }
+        };
+        self.left_out.iter().map(reason).collect()
+    }
+}
+
+impl Stars<'_> {
+    /// The parts of a constraint, from its first end to its second. The error is a locked half-edge that it crosses.
+    fn walk(&self, [mut from, mut to]: [u32; 2]) -> Result<Vec<Part>, u32> {
+        let (mut parts, mut last_parts) = (Vec::new(), Vec::new());
+        while from != to {
+            // One of the stars may be large.
+            let [first, second] = [[from, to], [to, from]];
+            let starts = self.star(from).zip(self.star(to));
+            let mut starts = starts.flat_map(|(h, g)| [(first, h), (second, g)]);
+            let found = starts.find_map(|(ends, h)| Some((ends, self.start(ends, h)?)));
+            let Some((ends, start)) = found else { break };
+            let part = match start {
+                Start::Edge(h) => Part { ends: [ends[0], self.slots.origin(next(h))], way: Way::Edge(h) },
+                Start::Triangle(h) => self.across(ends, h)?,
+            };
+            if ends == first {
+                from = part.ends[1];
+                parts.push(part);
+            } else {
+                to = part.ends[1];
+                last_parts.push(part);
+            }
+        }
+        parts.extend(last_parts.into_iter().rev().map(Part::turned));
+        Ok(parts)
+    }
+
+    /// How the constraint begins if it begins with this half-edge, or in its triangle.
+    fn start(&self, [at, to]: [u32; 2], h: u32) -> Option<Start> {
+        let point = |vertex: u32| self.points.get(vertex as usize).copied();
+        let ends = [point(at)?, point(to)?];
+        let x = point(self.slots.origin(next(h)))?;
+        match area_sign(ends[0], ends[1], x) {
+            Ordering::Equal => is_ahead(ends, x).then_some(Start::Edge(h)),
+            Ordering::Less => {
+                let y = point(self.slots.apex(h))?;
+                is_left_turn(ends[0], ends[1], y).then_some(Start::Triangle(h))
+            }
+            Ordering::Greater => None,
+        }
+    }
+
+    /// The part that begins in the triangle of this half-edge.
+    fn across(&self, [at, to]: [u32; 2], start: u32) -> Result<Part, u32> {
+        let ends = [at, to].map(|vertex| self.points[vertex as usize]);
+        let (mut slots, mut right, mut left) = (vec![start >> 2], vec![start], vec![prev(start)]);
+        let mut h = next(start);
+        loop {
+            if self.slots.is_locked(h) {
+                return Err(h);
+            }
+            let g = self.slots.twin(h);
+            let far = self.slots.apex(g);
+            slots.push(g >> 2);
+            let side = area_sign(ends[0], ends[1], self.points[far as usize]);
+            if side.is_le() {
+                right.push(next(g));
+            }
+            if side.is_ge() {
+                left.push(prev(g));
+            }
+            h = match side {
+                Ordering::Greater => next(g),
+                Ordering::Less => prev(g),
+                Ordering::Equal => {
+                    left.reverse();
+                    return Ok(Part { ends: [at, far], way: Way::Across { slots, right, left } });
+                }
+            };
+        }
+    }
+
+    /// Locks the edge of a part. Returns the half-edges of the triangles that are new.
+    fn bring_in(&mut self, Part { ends: [from, to], way }: Part) -> Vec<u32> {
+        let (slots, right, left) = match way {
+            Way::Edge(h) => {
+                self.lock(h);
+                return Vec::new();
+            }
+            Way::Across { slots, right, left } => (slots, right, left),
+        };
+        let sides: Vec<u32> = right.iter().chain(&left).copied().collect();
+        let mut polygons = Polygons::new(self, &sides);
+        let mut free = slots.iter().copied();
+        let h = polygons.fill(self, from, 0..right.len(), &mut free);
+        let g = polygons.fill(self, to, right.len()..sides.len(), &mut free);
+        self.slots.join(h, g);
+        self.lock(h);
+        slots.into_iter().flat_map(|slot| 4 * slot..4 * slot + 3).collect()
+    }
+
+    fn lock(&mut self, h: u32) {
+        self.slots.set_locked(h, true);
+        self.slots.set_locked(self.slots.twin(h), true);
+    }
+}
+
+/// How a constraint begins: with the edge of a half-edge, or in its triangle.
+enum Start {
+    Edge(u32),
+    Triangle(u32),
+}
+
+impl Part {
+    /// The same from its second end to its first.
+    fn turned(self) -> Self {
+        let [from, to] = self.ends;
+        let way = match self.way {
+            Way::Across { slots, right, left } => Way::Across { slots, right: left, left: right },
+            edge @ Way::Edge(_) => edge,
+        };
+        Self { ends: [to, from], way }
+    }
+}
+
+/// Whether a point on the line through two points lies behind the first, as seen from there towards the second.
+fn is_ahead([from, to]: [DVec2; 2], point: DVec2) -> bool {
+    // One coordinate that differs decides.
+    let [from, to, point] = if from.x == to.x { [from.y, to.y, point.y] } else { [from.x, to.x, point.x] };
+    (from < to && from < point) || (from > to && from > point)
+}
+
+/// The sides of the two polygons of a part. They are half-edges of triangles that make way.
+struct Polygons {
+    sides: Vec<Side>,
+}
+
+/// A side of a polygon.
+struct Side {
+    /// The vertex at its end.
+    end: u32,
+    is_locked: bool,
+    beyond: Beyond,
+}
+
+/// What is beyond a side: a half-edge, or another side, until the triangle of one of them is known.
+#[derive(Clone, Copy)]
+enum Beyond {
+    HalfEdge(u32),
+    Side(usize),
+}
+
+/// An edge from a vertex of the scan to the next: a side, or the half-edge beyond it.
+#[derive(Clone, Copy)]
+enum Link {
+    Side(usize),
+    Cut(u32),
+}
+
+impl Polygons {
+    fn new(stars: &mut Stars, half_edges: &[u32]) -> Self {
+        let slots = &mut stars.slots;
+        let side = |&h: &u32| Side {
+            end: slots.origin(next(h)),
+            is_locked: slots.is_locked(h),
+            beyond: Beyond::HalfEdge(slots.twin(h)),
+        };
+        let mut sides: Vec<Side> = half_edges.iter().map(side).collect();
+        // No number of a half-edge is 3 modulo 4: so the twin of a side can be the side's number.
+        for (i, &h) in (0..).zip(half_edges) {
+            slots.set_twin(h, 4 * i + 3);
+        }
+        for side in &mut sides {
+            if let Beyond::HalfEdge(g) = side.beyond {
+                let twin = slots.twin(g);
+                if twin & 3 == 3 {
+                    side.beyond = Beyond::Side(twin as usize >> 2);
+                }
+            }
+        }
+        Self { sides }
+    }
+
+    /// Triangulates the polygon of these sides and one more, which closes it and is the half-edge of the result. `first`
+    /// is its first vertex. Takes slots for the triangles.
+    fn fill(
+        &mut self,
+        stars: &mut Stars,
+        first: u32,
+        sides: Range<usize>,
+        free: &mut impl Iterator<Item = u32>,
+    ) -> u32 {
+        let mut row: Vec<(u32, Link)> = Vec::new();
+        let (mut start, mut closing) = (first, NONE);
+        for i in sides {
+            let mut link = Link::Side(i);
+            let end = self.sides[i].end;
+            while let Some(&(before, before_link)) = row.last() {
+                let corners = [before, start, end];
+                let [p, q, r] = corners.map(|vertex| stars.points[vertex as usize]);
+                if !is_left_turn(p, q, r) {
+                    break;
+                }
+                let Some(slot) = free.next() else { break };
+                let h = stars.put(slot, corners);
+                self.join(stars, before_link, h);
+                self.join(stars, link, next(h));
+                closing = prev(h);
+                link = Link::Cut(closing);
+                row.pop();
+                start = before;
+            }
+            row.push((start, link));
+            start = end;
+        }
+        closing
+    }
+
+    /// Makes an edge of the scan and a half-edge twins of each other.
+    fn join(&mut self, stars: &mut Stars, link: Link, h: u32) {
+        match link {
+            Link::Cut(g) => stars.slots.join(h, g),
+            Link::Side(i) => {
+                stars.slots.set_locked(h, self.sides[i].is_locked);
+                match self.sides[i].beyond {
+                    Beyond::HalfEdge(g) => stars.slots.join(h, g),
+                    Beyond::Side(other) => self.sides[other].beyond = Beyond::HalfEdge(h),
+                }
+            }
+        }
+    }
+}
