@@ -7,7 +7,7 @@
 //! polygon on both sides is in its boundary twice, once in each direction.
 
 use super::circle::is_left_turn;
-use super::slots::{Slot, next, prev};
+use super::slots::{next, prev};
 use super::stars::Stars;
 use crate::NONE;
 use crate::mesh::named_edges::{LeftOut, ordered};
@@ -52,8 +52,7 @@ pub(super) struct Brought {
 
 impl Constraints<'_> {
     /// Brings them in, one after another. Without `skips`, the first that cannot be brought in is the last.
-    pub(super) fn bring_in(&self, points: &[DVec2], slots: &mut [Slot]) -> Brought {
-        let mut stars = Stars::new(points, slots);
+    pub(super) fn bring_in(&self, stars: &mut Stars) -> Brought {
         let mut brought = Brought::default();
         for (index, &ends) in self.given.iter().enumerate() {
             match stars.walk(ends) {
@@ -92,7 +91,7 @@ impl Brought {
     }
 }
 
-impl Stars<'_> {
+impl Stars {
     /// The parts of a constraint, from its first end to its second. The error is a locked half-edge that it crosses.
     fn walk(&self, [mut from, mut to]: [u32; 2]) -> Result<Vec<Part>, u32> {
         let (mut parts, mut last_parts) = (Vec::new(), Vec::new());

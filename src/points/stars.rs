@@ -1,22 +1,25 @@
-//! A triangulation whose edges can flip: its slots, and a half-edge of each vertex.
+//! A triangulation that can change: its slots, and a half-edge of each vertex. Edges flip as Lawson does ("Software for C1
+//! surface interpolation", 1977).
 
-use super::circle::is_inside;
+use super::circle::{is_inside, is_left_turn};
 use super::slots::{GHOST, Slot, Slots, next, prev};
 use crate::NONE;
 use glam::DVec2;
 use std::iter::successors;
 
-pub(super) struct Stars<'a> {
-    pub(super) points: &'a [DVec2],
-    pub(super) slots: Slots<&'a mut [Slot]>,
-    /// A half-edge that begins at each vertex.
-    half_edges: Vec<u32>,
+/// Every vertex of a slot has a star: either there is a triangle, or a ghost on each side of each edge of a line.
+pub(super) struct Stars {
+    pub(super) points: Vec<DVec2>,
+    pub(super) slots: Slots<Vec<Slot>>,
+    /// A half-edge that begins at each vertex; [`NONE`] for one that no slot has.
+    pub(super) half_edges: Vec<u32>,
 }
 
-impl<'a> Stars<'a> {
-    pub(super) fn new(points: &'a [DVec2], slots: &'a mut [Slot]) -> Self {
+impl Stars {
+    /// `points` are those of the vertices of the slots.
+    pub(super) fn new(points: Vec<DVec2>, slots: Vec<Slot>) -> Self {
         let mut half_edges = vec![NONE; points.len()];
-        for (slot, at) in (0..).zip(&*slots) {
+        for (slot, at) in (0..).zip(&slots) {
             for (corner, &vertex) in (0..3).zip(&at.corners) {
                 if let Some(first) = half_edges.get_mut(vertex as usize) {
                     *first = 4 * slot + corner;
@@ -24,6 +27,15 @@ impl<'a> Stars<'a> {
             }
         }
         Self { points, slots: Slots { slots, first: 0 }, half_edges }
+    }
+
+    pub(super) fn points<const N: usize>(&self, vertices: [u32; N]) -> [DVec2; N] {
+        vertices.map(|vertex| self.points[vertex as usize])
+    }
+
+    /// The corners of the triangle of a half-edge, from its beginning.
+    pub(super) fn corners(&self, h: u32) -> [u32; 3] {
+        [h, next(h), prev(h)].map(|h| self.slots.origin(h))
     }
 
     /// The half-edges that begin at a vertex, counter-clockwise.
@@ -36,13 +48,20 @@ impl<'a> Stars<'a> {
     pub(super) fn put(&mut self, slot: u32, corners: [u32; 3]) -> u32 {
         let h = self.slots.put(slot, corners);
         for (h, vertex) in (h..).zip(corners) {
-            self.half_edges[vertex as usize] = h;
+            self.begin(vertex, h);
         }
         h
     }
 
-    /// Flips these edges, and all around them, until all are Delaunay that are not locked, as Lawson does ("Software for
-    /// C1 surface interpolation", 1977).
+    /// Writes where a half-edge begins.
+    pub(super) fn begin(&mut self, vertex: u32, h: u32) {
+        self.slots.set_origin(h, vertex);
+        if let Some(first) = self.half_edges.get_mut(vertex as usize) {
+            *first = h;
+        }
+    }
+
+    /// Flips these edges, and all around them, until all are Delaunay that are not locked.
     pub(super) fn make_delaunay(&mut self, mut edges: Vec<u32>) {
         while let Some(h) = edges.pop() {
             if !self.is_delaunay(h) {
@@ -53,29 +72,35 @@ impl<'a> Stars<'a> {
         }
     }
 
-    /// Whether an edge stays. Edges of the hull and those to the symbolic vertex do.
-    fn is_delaunay(&self, h: u32) -> bool {
+    /// Whether an edge stays. An edge of the hull does. One to the symbolic vertex does where the hull is convex.
+    #[inline(always)]
+    pub(super) fn is_delaunay(&self, h: u32) -> bool {
         let slots = &self.slots;
         if slots.is_locked(h) {
             return true;
         }
         let g = slots.twin(h);
-        let corners = [slots.origin(h), slots.origin(g), slots.apex(h), slots.apex(g)];
-        corners.contains(&GHOST) || !is_inside(corners.map(|vertex| self.points[vertex as usize]))
+        let corners @ [a, b, c, d] = [slots.origin(h), slots.origin(g), slots.apex(h), slots.apex(g)];
+        if a.max(b) == GHOST {
+            // From the vertex before to the vertex after, along the hull.
+            let [before, at, after] = if b == GHOST { [d, a, c] } else { [c, b, d] };
+            let [p, q, r] = self.points([before, at, after]);
+            return !is_left_turn(r, q, p);
+        }
+        c.max(d) == GHOST || !is_inside(self.points(corners))
     }
 
     /// Flips the edge of the half-edges h, from a to b, and g. It then joins their apexes c and d.
-    fn flip(&mut self, h: u32, g: u32) {
+    pub(super) fn flip(&mut self, h: u32, g: u32) {
         let [a, b] = [h, g].map(|h| self.slots.origin(h));
         let [c, d] = [h, g].map(|h| self.slots.apex(h));
         let [[hn, hp], [gn, gp]] = [h, g].map(|h| [next(h), prev(h)]);
         let sides = [hn, hp, gn, gp].map(|side| (self.slots.twin(side), self.slots.is_locked(side)));
         let [bc, ca, ad, db] = sides;
         for (side, vertex, (twin, is_locked)) in [(hn, c, ca), (hp, a, ad), (gn, d, db), (gp, b, bc)] {
-            self.slots.set_origin(side, vertex);
+            self.begin(vertex, side);
             self.slots.join(side, twin);
             self.slots.set_locked(side, is_locked);
-            self.half_edges[vertex as usize] = side;
         }
         self.slots.set_origin(h, d);
         self.slots.set_origin(g, c);

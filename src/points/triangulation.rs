@@ -5,12 +5,11 @@ use super::constraints::Constraints;
 use super::halves::{Network, slots_of};
 use super::numbering::{numbered, numbered_hull};
 use super::options::PointOptions;
-use super::slots::Slot;
+use super::stars::Stars;
 use crate::mesh::MAX_TRIANGLES;
 use crate::system::memory;
 use crate::system::threads::Threads;
 use crate::{Dimension, Error, LeftOut, Positions};
-use glam::DVec2;
 
 /// The most points: with the triangles beyond the hull, V of them have up to 2V - 2 triangles.
 const MAX_POINTS: usize = MAX_TRIANGLES / 2 + 1;
@@ -88,14 +87,7 @@ pub fn triangulate(points: &Positions) -> Result<Triangulation, Error> {
 /// `skips_constraints`, crosses an earlier one; for more threads than [`MOST_THREADS`](crate::MOST_THREADS); and if the
 /// threads cannot be started.
 pub fn triangulate_with(points: &Positions, options: &PointOptions) -> Result<Triangulation, Error> {
-    let (length, stride) = (points.len(), Dimension::Two.stride());
-    if length % stride != 0 {
-        return Err(Error::RaggedArray { array: "positions", length, stride });
-    }
-    let count = length / stride;
-    if count > MAX_POINTS {
-        return Err(Error::TooLarge { what: "vertices", count, limit: MAX_POINTS });
-    }
+    let count = count_of(points)?;
     options.check(count)?;
     let threads = Threads::new(options.threads, 2 * count)?;
     points.refuse_non_finite(Dimension::Two, &threads)?;
@@ -109,12 +101,40 @@ pub fn triangulate_with(points: &Positions, options: &PointOptions) -> Result<Tr
     }
 }
 
-fn triangulated(points: &Positions, options: &PointOptions, threads: &Threads) -> Triangulation {
+/// The number of points.
+///
+/// # Errors
+/// [`Error::RaggedArray`], [`Error::TooLarge`].
+pub(super) fn count_of(points: &Positions) -> Result<usize, Error> {
+    let (length, stride) = (points.len(), Dimension::Two.stride());
+    if length % stride != 0 {
+        return Err(Error::RaggedArray { array: "positions", length, stride });
+    }
+    refuse_many(length / stride)?;
+    Ok(length / stride)
+}
+
+/// # Errors
+/// [`Error::TooLarge`] for more points than 32-bit indices allow.
+pub(super) fn refuse_many(count: usize) -> Result<(), Error> {
+    if count > MAX_POINTS {
+        return Err(Error::TooLarge { what: "vertices", count, limit: MAX_POINTS });
+    }
+    Ok(())
+}
+
+pub(super) fn triangulated(points: &Positions, options: &PointOptions, threads: &Threads) -> Triangulation {
     let Columns { points: sorted, indices, starts, duplicates } = Columns::of(points, threads);
     let mut slots = slots_of(sorted.len(), threads);
     let mut vertices = Network::new(&sorted, &mut slots, threads).of_columns(&starts);
-    let (constraint_edges, left_out) = brought_in(options, (&sorted, &mut slots), &indices, &duplicates);
-    drop(sorted);
+    let (mut constraint_edges, mut left_out) = Default::default();
+    if options.constraints.is_empty() {
+        drop(sorted);
+    } else {
+        let mut stars = Stars::new(sorted, slots);
+        (constraint_edges, left_out) = brought_in(options, &mut stars, &indices, &duplicates);
+        slots = stars.slots.slots;
+    }
     let (triangles, twins) = numbered(&slots, &indices, points.len() / 2, threads);
     let hull = if triangles.is_empty() {
         // There and back along the line.
@@ -129,14 +149,11 @@ fn triangulated(points: &Positions, options: &PointOptions, threads: &Threads) -
 /// Brings the constraints in. Returns their edges, and those that were left out.
 fn brought_in(
     options: &PointOptions,
-    (sorted, slots): (&[DVec2], &mut [Slot]),
+    stars: &mut Stars,
     indices: &[u32],
     duplicates: &[[u32; 2]],
 ) -> (Vec<[u32; 2]>, Vec<LeftOut>) {
     let PointOptions { constraints, skips_constraints, .. } = options;
-    if constraints.is_empty() {
-        return Default::default();
-    }
     let mut vertices = vec![0; indices.len() + duplicates.len()];
     for (vertex, &index) in (0..).zip(indices) {
         vertices[index as usize] = vertex;
@@ -145,7 +162,7 @@ fn brought_in(
         vertices[index as usize] = vertices[first as usize];
     }
     let given: Vec<_> = constraints.iter().map(|ends| ends.map(|index| vertices[index as usize])).collect();
-    let brought = Constraints { given: &given, skips: *skips_constraints }.bring_in(sorted, slots);
+    let brought = Constraints { given: &given, skips: *skips_constraints }.bring_in(stars);
     let edges = brought.edges.iter().map(|(_, ends)| ends.map(|vertex| indices[vertex as usize]));
     (edges.collect(), brought.left_out(constraints))
 }

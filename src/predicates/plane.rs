@@ -131,6 +131,29 @@ pub(crate) fn cross_sign(u: DVec2, v: DVec2, p: DVec2, q: DVec2) -> Ordering {
     doubled_area_sign([(v.x, u.x), (v.y, u.y), (q.x, p.x), (q.y, p.y)])
 }
 
+/// Whether `p` is nearer to a place than `q`, as far away, or farther: an order of the distances.
+pub(crate) fn nearer(place: DVec2, p: DVec2, q: DVec2) -> Ordering {
+    let (u, v) = (p - place, q - place);
+    let (left, right) = (u.dot(u), v.dot(v));
+    let value = left - right;
+    // The bound of `area_sign`: a dot product of two differences is off by as much as its difference of two products.
+    if value.abs() > 8.0 * EPSILON * (left + right) + UNDERFLOW {
+        return sign(value);
+    }
+    let differences = Differences::new([(p.x, place.x), (p.y, place.y), (q.x, place.x), (q.y, place.y)]);
+    if differences.bits <= WIDE_BITS {
+        difference_of_squares::<Bounded<20>>(&differences.integers()).sign()
+    } else {
+        difference_of_squares::<Unbounded>(&differences.integers()).sign()
+    }
+}
+
+/// The polynomial of [`nearer`] over exact differences u, v (x and y of each).
+fn difference_of_squares<R: Ring>([ux, uy, vx, vy]: &[R; 4]) -> R {
+    let square = |x: &R, y: &R| x.mul(x).add(&y.mul(y));
+    square(ux, uy).sub(&square(vx, vy))
+}
+
 /// The sign of the sum of the areas of `count` triangles.
 #[inline(never)] // else `triangle` would be inlined three times
 pub(crate) fn total_area_sign(count: usize, triangle: &dyn Fn(usize) -> [DVec2; 3]) -> Ordering {

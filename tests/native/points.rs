@@ -2,6 +2,7 @@
 
 mod constraints;
 mod oracle;
+mod session;
 mod threads;
 
 use crate::points_of::{KINDS, Kind, points};
