@@ -15,7 +15,7 @@ use glam::DVec2;
 const FEW: usize = 32;
 
 /// If more than one vertex in so many would be lifted, the triangulation is made anew.
-const MANY: usize = 16;
+const MANY: usize = 64;
 
 impl Net {
     /// Whether so many points are few enough to remove and insert them, one after another.

@@ -3,6 +3,7 @@
 use super::changes::Removed;
 use super::columns::Columns;
 use super::halves::{Network, slots_of};
+use super::numbering::numbered;
 use super::slots::{GHOST, next, prev};
 use super::stars::Stars;
 use super::walk::Place;
@@ -65,7 +66,7 @@ impl Net {
         if self.vertices.len() <= index as usize {
             self.vertices.resize(index as usize + 1, NONE);
         }
-        let place = self.stars.place(self.start(near), point);
+        let place = self.stars.place(self.start(near, point), point);
         if let Place::Vertex(vertex) = place {
             let owner = &mut self.indices[vertex as usize];
             self.copies.insert([vertex, index.max(*owner)]);
@@ -138,12 +139,35 @@ impl Net {
         ends.find(|&end| end != GHOST).unwrap_or(vertex)
     }
 
-    /// Where a walk begins: at this vertex, if it is in a triangle, or where the last one ended.
-    fn start(&self, near: Option<u32>) -> u32 {
-        let is_there = |&vertex: &u32| self.stars.half_edges[vertex as usize] != NONE;
-        near.filter(is_there).or(Some(self.last).filter(is_there)).unwrap_or_else(|| {
-            (0..self.indices.len() as u32).find(is_there).unwrap_or_default()
-        })
+    /// Where a walk to a place begins: at this vertex, if it is in a triangle, or where the last one ended. If that is far
+    /// away, some others may be nearer.
+    fn start(&self, near: Option<u32>, place: DVec2) -> u32 {
+        let Stars { points, half_edges, .. } = &self.stars;
+        let is_there = |&vertex: &u32| half_edges[vertex as usize] != NONE;
+        if let Some(near) = near.filter(is_there) {
+            return near;
+        }
+        let count = points.len();
+        let step = if self.is_close(place) { count } else { (count / libm::cbrt(count as f64) as usize).max(1) };
+        let others = (0..count as u32).step_by(step).chain([self.last]).filter(is_there);
+        let distance = |&vertex: &u32| points[vertex as usize].distance_squared(place);
+        let nearest = others.min_by(|p, q| distance(p).total_cmp(&distance(q)));
+        nearest.or_else(|| (0..count as u32).find(is_there)).unwrap_or_default()
+    }
+
+    /// Whether a place is only some edges away from the vertex where the last walk ended.
+    fn is_close(&self, place: DVec2) -> bool {
+        let Some(&h) = self.stars.half_edges.get(self.last as usize).filter(|&&h| h != NONE) else { return false };
+        let end = self.stars.slots.origin(next(h));
+        end != GHOST && {
+            let [p, q] = self.stars.points([self.last, end]);
+            p.distance_squared(place) < 100.0 * p.distance_squared(q)
+        }
+    }
+
+    /// The triangles and their twins by the caller's indices, all of which are below `count`.
+    pub(super) fn numbered(&self, count: usize, threads: &Threads) -> (Vec<u32>, Vec<u32>) {
+        threads.enter(|| numbered(&self.stars.slots.slots, &self.indices, count, threads))
     }
 
     /// The hull from some vertex, counter-clockwise.
@@ -174,7 +198,7 @@ impl Net {
 
     /// The triangle at a place, by the caller's indices from the smallest. Of several, the least.
     pub(super) fn triangle_at(&mut self, place: DVec2) -> Option<[u32; 3]> {
-        let half_edges = match self.stars.place(self.start(None), place) {
+        let half_edges = match self.stars.place(self.start(None, place), place) {
             Place::Vertex(vertex) => self.stars.star(vertex).collect(),
             Place::Edge(h) => vec![h, self.stars.slots.twin(h)],
             Place::Inside(h) => vec![h],
@@ -199,7 +223,7 @@ impl Net {
     /// The point that is nearest to a place; of several, the one with the smallest index. From every other vertex, an edge
     /// of a Delaunay triangulation leads to a nearer one.
     pub(super) fn nearest(&mut self, place: DVec2) -> u32 {
-        let mut at = self.start(None);
+        let mut at = self.start(None, place);
         while let Some(nearer) = self.beside(at, place, |order| order.is_lt()).next() {
             at = nearer;
         }

@@ -2,7 +2,7 @@
 
 use super::columns::Columns;
 use super::net::Net;
-use super::numbering::{numbered, numbered_hull};
+use super::numbering::numbered_hull;
 use super::options::PointOptions;
 use super::triangulation::{Triangulation, count_of, refuse_many, triangulated};
 use crate::predicates::nearer;
@@ -162,20 +162,38 @@ impl PointSession {
     pub fn triangulation(&mut self) -> Triangulation {
         self.find_net();
         let threads = self.pool();
-        let Some(net) = &self.net else {
-            let (points, indices) = self.present();
-            let flat = triangulated(&points, &PointOptions::default(), &threads);
-            let index = |vertex: u32| indices[vertex as usize];
-            return Triangulation {
-                hull: flat.hull.into_iter().map(index).collect(),
-                duplicates: flat.duplicates.into_iter().map(|pair| pair.map(index)).collect(),
-                ..Triangulation::default()
-            };
-        };
-        let slots = &net.stars.slots.slots;
-        let (triangles, twins) = threads.enter(|| numbered(slots, &net.indices, self.len(), &threads));
-        let hull = numbered_hull(net.hull(), &net.indices);
-        Triangulation { triangles, twins, hull, duplicates: net.duplicates(), ..Triangulation::default() }
+        let Some(net) = &self.net else { return self.flat(&threads) };
+        let (triangles, twins) = net.numbered(self.len(), &threads);
+        let (hull, duplicates) = (numbered_hull(net.hull(), &net.indices), net.duplicates());
+        Triangulation { triangles, twins, hull, duplicates, ..Triangulation::default() }
+    }
+
+    /// The present triangles: those of [`Self::triangulation`].
+    pub fn triangles(&mut self) -> Vec<u32> {
+        self.find_net();
+        let threads = self.pool();
+        self.net.as_ref().map_or_else(Vec::new, |net| net.numbered(self.len(), &threads).0)
+    }
+
+    /// The present hull: that of [`Self::triangulation`].
+    pub fn hull(&mut self) -> Vec<u32> {
+        self.find_net();
+        match &self.net {
+            Some(net) => numbered_hull(net.hull(), &net.indices),
+            None => self.flat(&self.pool()).hull,
+        }
+    }
+
+    /// The triangulation of points without a triangle.
+    fn flat(&self, threads: &Threads) -> Triangulation {
+        let (points, indices) = self.present();
+        let Triangulation { hull, duplicates, .. } = triangulated(&points, &PointOptions::default(), threads);
+        let index = |vertex: u32| indices[vertex as usize];
+        Triangulation {
+            hull: hull.into_iter().map(index).collect(),
+            duplicates: duplicates.into_iter().map(|pair| pair.map(index)).collect(),
+            ..Triangulation::default()
+        }
     }
 
     /// The triangle at a place, counter-clockwise from its smallest index. Of several, the first in the order of

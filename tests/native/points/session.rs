@@ -61,6 +61,8 @@ impl Pair {
             ..expected
         };
         assert!(self.session.triangulation() == expected, "{what}");
+        let parts = (self.session.triangles(), self.session.hull());
+        assert!(parts == (expected.triangles, expected.hull), "{what}");
     }
 
     /// Asks for the triangle and the point at a place.
