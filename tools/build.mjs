@@ -36,7 +36,7 @@ const engine = ['-C', 'llvm-args=-inline-threshold=10 -unroll-runtime=0 -unroll-
 // The panic code is removed below, so the modules need no source locations.
 const all = ['-C', 'no-vectorize-loops', '-C', 'no-vectorize-slp', '-Z', 'location-detail=none'];
 // One module for each entry of the package that has its own, and one each for the WebGL2 engine, the threads of the CPU
-// engine, the repair and the audit. wasm-opt takes longest over the files, so they come first.
+// engine and of the points, the repair and the audit. wasm-opt takes longest over the files, so they come first.
 const modules = [
   { name: 'edgeflip_files', features: 'js-files', flags: [] },
   { name: 'edgeflip', features: 'gpu,js', flags: engine },
@@ -45,6 +45,7 @@ const modules = [
   { name: 'edgeflip_untangle', features: 'js-untangle', flags: engine },
   { name: 'edgeflip_audit', features: 'js-audit', flags: [] },
   { name: 'edgeflip_points', features: 'js-points', flags: engine },
+  { name: 'edgeflip_points_threads', features: 'js-points-threads', flags: engine, options: ['--threads'] },
 ];
 // The features that rustc enables for wasm32, and SIMD. All browsers have had them since 2023, and so has every browser
 // with WebGPU.

@@ -1,5 +1,6 @@
 /** Reads the points of the entry `edgeflip/points` into the arrays that its module takes: 2 numbers per point. */
 
+import { MOST_THREADS } from './cores.js';
 import { EdgeflipError } from './error.js';
 import { functionOf, isWhole, itselfOf, MOST_NUMBERS, NUMBERS, read, shown, viewOf } from './given.js';
 import { namesOf, optionsOf } from './names.js';
@@ -22,7 +23,22 @@ export interface Accessors<P> {
   y: (point: P, index: number) => number;
 }
 
+/** On how many threads a call works. */
+export interface Threading {
+  /**
+   * The largest number of threads, 1 to 256. Default: one per core. Fewer than 131,072 points are triangulated on one
+   * thread, more on at most one thread per 8,192 points. Several threads need shared memory: Node has it, and so does a
+   * cross-origin isolated page. The result is the same for any number.
+   */
+  threads?: number | undefined;
+}
+
+/** The options of a call, checked. */
+export type Places = Spacing & Partial<Accessors<unknown>> & Threading;
+
 const OPTIONS = namesOf<Spacing & Accessors<unknown>>({ stride: true, offset: true, x: true, y: true });
+/** The options of a call that can use several threads. */
+export const THREADED = [...OPTIONS, ...namesOf<Threading>({ threads: true })];
 
 /**
  * The coordinates of points. Every conversion is exact. `hold` copies an array of the caller or returns it.
@@ -30,8 +46,11 @@ const OPTIONS = namesOf<Spacing & Accessors<unknown>>({ stride: true, offset: tr
  * @throws {@link EdgeflipError} `invalid-input`, `invalid-option`, `ragged-array`, `too-large`. Exceptions of accessors
  * pass through.
  */
-export function coordinatesOf(points: unknown, options: unknown, hold: Hold): Float32Array | Float64Array {
-  const { x, y, stride, offset } = placesOf(options);
+export function coordinatesOf(
+  points: unknown,
+  { x, y, stride, offset }: Places,
+  hold: Hold,
+): Float32Array | Float64Array {
   const view = viewOf(points, NUMBERS, 'points');
   // An array has the length 0 if its buffer has shrunk. This throws for it.
   if (view?.length === 0) read('points', () => Uint8Array.prototype.at.call(points as Uint8Array, 0));
@@ -48,11 +67,17 @@ export function coordinatesOf(points: unknown, options: unknown, hold: Hold): Fl
   });
 }
 
-/** Checks the options. */
-function placesOf(options: unknown): Spacing & Partial<Accessors<unknown>> {
+/**
+ * Reads and checks the options, once.
+ *
+ * @param known - The names of the options that are allowed.
+ * @throws {@link EdgeflipError} `invalid-input`, `invalid-option`.
+ */
+export function placesOf(options: unknown, known = OPTIONS): Places {
   return read('the options', () => {
-    const given = optionsOf(options, OPTIONS) as Spacing & Partial<Accessors<unknown>>;
+    const given = optionsOf(options, known) as Places;
     const { stride, offset } = given;
+    const threads = threadsOf(given.threads);
     const [x, y] = [functionOf(given.x, 'x'), functionOf(given.y, 'y')];
     if (stride !== undefined && !(isWhole(stride) && stride >= 2)) {
       throw new EdgeflipError('invalid-input', `stride: ${shown(stride)} is not a whole number of at least 2`);
@@ -60,13 +85,19 @@ function placesOf(options: unknown): Spacing & Partial<Accessors<unknown>> {
     if (offset !== undefined && !isWhole(offset)) {
       throw new EdgeflipError('invalid-input', `offset: ${shown(offset)} is not a whole number of 32 bits`);
     }
-    if (!x && !y) return { stride, offset };
+    if (!x && !y) return { stride, offset, threads };
     if (!x || !y) {
       throw new EdgeflipError('invalid-option', `option ${x ? 'y' : 'x'} is missing: x and y go together`);
     }
     if (stride !== undefined || offset !== undefined) throw notOfNumbers(stride);
-    return { x, y };
+    return { x, y, threads };
   });
+}
+
+function threadsOf(given: unknown): number | undefined {
+  if (given === undefined || (isWhole(given) && given >= 1 && given <= MOST_THREADS)) return given;
+  const why = `${shown(given)} is not a number of threads: give 1 to ${MOST_THREADS}`;
+  throw new EdgeflipError('invalid-option', `option threads: ${why}`);
 }
 
 function notOfNumbers(stride: number | undefined): EdgeflipError {

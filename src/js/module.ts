@@ -28,10 +28,12 @@ export interface Sources {
   files?: ModuleSource | undefined;
 }
 
-/** Where the module of the entry `edgeflip/points` comes from. */
+/** Where the modules of the entry `edgeflip/points` come from. */
 export interface PointsSources extends Pick<Sources, 'base'> {
-  /** Its only module: `edgeflip_points_bg.wasm`. */
+  /** For calls on one thread: `edgeflip_points_bg.wasm`. */
   points?: ModuleSource | undefined;
+  /** For calls on several threads: `edgeflip_points_threads_bg.wasm`. */
+  threads?: ModuleSource | undefined;
 }
 
 /** The function of wasm-bindgen that starts a module. */

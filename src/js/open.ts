@@ -1,11 +1,12 @@
 /** Opens a session in the module of its engine. */
 
+import { threadCount, whyOneThread } from './cores.js';
 import { messageOf } from './given.js';
 import { isLoaded, loadCore, moduleOfThreads } from './load.js';
 import { copied, type IndexedMesh } from './mesh.js';
 import type { GpuSettings, Settings } from './settings.js';
 import { spareFor } from './spare.js';
-import { type ModuleSession, threadCount, ThreadsSession, threadsOf, whyOneThread } from './threads.js';
+import { type ModuleSession, ThreadsSession, threadsOf } from './threads.js';
 import { Session, whyCpu } from './wasm/edgeflip.js';
 
 /** A session, and why it has one thread of the CPU if it could use more. */

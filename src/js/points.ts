@@ -10,13 +10,16 @@
  */
 
 import initModule, * as wasm from './wasm/edgeflip_points.js';
-import { type Accessors, coordinatesOf, type Spacing } from './coordinates.js';
+import { type Accessors, coordinatesOf, placesOf, type Spacing, THREADED, type Threading } from './coordinates.js';
+import { threadCount, whyOneThread } from './cores.js';
 import { EdgeflipError, fromModule } from './error.js';
-import { copyOf, itselfOf } from './given.js';
-import { initOf, loader } from './module.js';
+import { copyOf, itselfOf, messageOf } from './given.js';
+import { compile, initOf, loader } from './module.js';
+import type { Triangulator } from './points-threads.js';
+import type { Hold } from './settings.js';
 import type { VertexArray } from './types.js';
 
-export type { Accessors, Spacing } from './coordinates.js';
+export type { Accessors, Spacing, Threading } from './coordinates.js';
 export { EdgeflipError, type ErrorCode } from './error.js';
 export type { ModuleSource, PointsSources } from './module.js';
 export type { VertexArray } from './types.js';
@@ -40,7 +43,12 @@ export interface Triangulation {
    * the other, in ascending order. Only the smallest is in triangles.
    */
   duplicates: Uint32Array;
-  /** Why there is no triangle: a sentence for a developer. `undefined` if there are triangles. */
+  /** The threads that worked. */
+  threads: number;
+  /**
+   * Why there is no triangle, or why many points had only one thread: sentences for a developer. `undefined` if there
+   * are triangles and all is well.
+   */
   hint: string | undefined;
 }
 
@@ -55,15 +63,26 @@ const load = loader(
   () => new URL('./wasm/edgeflip_points_bg.wasm', import.meta.url),
 );
 
+let threadsModule: WebAssembly.Module;
+
+const loadThreads = loader(
+  async ({ module_or_path }) => {
+    threadsModule = await compile(module_or_path);
+  },
+  'edgeflip_points_threads_bg.wasm',
+  () => new URL('./wasm/edgeflip_points_threads_bg.wasm', import.meta.url),
+);
+
 /**
- * Loads the WebAssembly module of this entry. {@link triangulate} loads it by itself; {@link triangulateSync} needs this
- * call before. Pass a source if the module is not in `wasm/` next to this file.
+ * Loads the WebAssembly modules that `sources` names, or that of one thread if it names none. {@link triangulate} loads
+ * what it needs by itself; {@link triangulateSync} needs this call before. Pass a source if a module is not in `wasm/`
+ * next to this file.
  *
- * The module is loaded once; later sources are ignored. After a failure, the next call tries again.
+ * A module is loaded once; later sources are ignored. After a failure, the next call tries again.
  *
  * @throws {@link EdgeflipError} `load-failed`; `invalid-input` and `invalid-option` about `sources`.
  */
-export const init = initOf('points', { points: load });
+export const init = initOf('points', { points: load, threads: loadThreads });
 
 /**
  * The Delaunay triangulation of points in the plane.
@@ -72,20 +91,24 @@ export const init = initOf('points', { points: load });
  * by y, is joined to the other three: so the points alone determine the triangles, whatever their order. Every decision
  * is exact, for 32-bit and 64-bit floats. Points without a triangle are no error: {@link Triangulation.hint} says why.
  *
- * Reads the points before it returns its promise, and never changes them. Once the module is loaded, it triangulates in
- * the call.
+ * Reads the points before it returns its promise, and never changes them. Many points are triangulated in workers, one
+ * per core, where these can share memory; see {@link Threading}. On one thread, and once the module is loaded, it
+ * triangulates in the call.
  *
  * @param points - 2 numbers per point, in any typed array or in an array of numbers. Integers count as these numbers.
  * @throws {@link EdgeflipError} `non-finite` for the first coordinate that is NaN or infinite; `ragged-array`,
  * `invalid-input`, `invalid-option`, `too-large`, `load-failed`.
  */
-export async function triangulate(points: VertexArray | readonly number[], options?: Spacing): Promise<Triangulation>;
+export async function triangulate(
+  points: VertexArray | readonly number[],
+  options?: Spacing & Threading,
+): Promise<Triangulation>;
 /**
  * The same, of a list of points that begin with x and y.
  *
  * @param points - Pairs of numbers, or arrays with more numbers, which do not count.
  */
-export async function triangulate(points: readonly ArrayLike<number>[]): Promise<Triangulation>;
+export async function triangulate(points: readonly ArrayLike<number>[], options?: Threading): Promise<Triangulation>;
 /**
  * The same, of any list, with functions that read the coordinates. Their exceptions pass through.
  *
@@ -93,16 +116,49 @@ export async function triangulate(points: readonly ArrayLike<number>[]): Promise
  */
 export async function triangulate<P>(
   points: readonly P[] | (VertexArray & ArrayLike<P>),
-  options: Accessors<P>,
+  options: Accessors<P> & Threading,
 ): Promise<Triangulation>;
 export async function triangulate(points: unknown, options: unknown = {}): Promise<Triangulation> {
-  const coordinates = coordinatesOf(points, options, isLoaded ? itselfOf : copyOf);
-  if (!isLoaded) await load();
-  return triangulated(coordinates);
+  const places = placesOf(options, THREADED);
+  const isHere = ({ length }: VertexArray) => isLoaded && threadCount(workOf(length), places) === 1;
+  const hold: Hold = (view, what) => (isHere(view) ? itselfOf : copyOf)(view, what);
+  const coordinates = coordinatesOf(points, places, hold);
+  const work = workOf(coordinates.length);
+  const count = threadCount(work, places);
+  return count > 1 ? onThreads(coordinates, count) : onOneThread(coordinates, whyOneThread(work, places));
 }
 
 /**
- * As {@link triangulate}, without a promise. Call {@link init} before.
+ * As how many triangles of a mesh so many coordinates count. The first call starts the workers, which pays from about
+ * 131,072 points on. Each number of threads has workers of its own: a power of two keeps it the same for similar sets.
+ */
+function workOf(coordinates: number): number {
+  return 2 ** Math.floor(Math.log2(coordinates / 4));
+}
+
+/** Transfers the coordinates. If the threads cannot be started, one thread gives the same result. */
+async function onThreads(coordinates: Float32Array | Float64Array, threads: number): Promise<Triangulation> {
+  let triangulator: Triangulator;
+  try {
+    const [{ triangulatorOn }] = await Promise.all([import('./points-threads.js'), loadThreads()]);
+    triangulator = await triangulatorOn(threadsModule, threads);
+  } catch (thrown) {
+    return onOneThread(coordinates, `the workers could not be started (${messageOf(thrown)})`);
+  }
+  return triangulationOf(await triangulator(coordinates), threads);
+}
+
+/** @param alone - Why there are not several threads, if there could be. */
+async function onOneThread(
+  coordinates: Float32Array | Float64Array,
+  alone: string | undefined,
+): Promise<Triangulation> {
+  if (!isLoaded) await load();
+  return triangulated(coordinates, alone);
+}
+
+/**
+ * As {@link triangulate}, without a promise, on the thread of the caller. Call {@link init} before.
  *
  * ```ts
  * await init();
@@ -124,20 +180,28 @@ export function triangulateSync(points: unknown, options: unknown = {}): Triangu
     const why = 'the module of the points is not loaded; call `await init()` before triangulateSync';
     throw new EdgeflipError('load-failed', why);
   }
-  return triangulated(coordinatesOf(points, options, itselfOf));
+  return triangulated(coordinatesOf(points, placesOf(options), itselfOf));
 }
 
-function triangulated(coordinates: Float32Array | Float64Array): Triangulation {
+function triangulated(coordinates: Float32Array | Float64Array, alone?: string): Triangulation {
   try {
-    const { triangles, twins, hull, duplicates } = wasm.triangulate(coordinates);
-    return { triangles, twins, hull, duplicates, hint: triangles.length > 0 ? undefined : hintOf(hull.length) };
+    return triangulationOf(wasm.triangulate(coordinates), 1, alone);
   } catch (thrown) {
     throw fromModule(thrown);
   }
 }
 
-/** Why so many distinct points have no triangle. */
-function hintOf(distinct: number): string {
-  const why = distinct < 3 ? 'There are fewer than three distinct points' : 'All points are on one line';
-  return `${why}, so there is no triangle.`;
+/** The result of a module, and what to say about it. */
+function triangulationOf(
+  { triangles, twins, hull, duplicates }: ReturnType<typeof wasm.triangulate>,
+  threads: number,
+  alone?: string,
+): Triangulation {
+  const hints: string[] = [];
+  if (triangles.length === 0) {
+    const why = hull.length < 3 ? 'There are fewer than three distinct points' : 'All points are on one line';
+    hints.push(`${why}, so there is no triangle.`);
+  }
+  if (alone !== undefined) hints.push(`The points were triangulated on one thread: ${alone}.`);
+  return { triangles, twins, hull, duplicates, threads, hint: hints.length > 0 ? hints.join(' ') : undefined };
 }

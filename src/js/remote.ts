@@ -1,10 +1,11 @@
 /** Calls methods in a worker, and answers such calls there. */
 
 import { buffersOf } from './buffers.js';
+import { node } from './cores.js';
 import { EdgeflipError, type ErrorCode, fromModule } from './error.js';
 
 /** The functions that a worker offers, by name. */
-type Functions = Record<string, (...args: never[]) => unknown>;
+export type Functions = Record<string, (...args: never[]) => unknown>;
 
 /** A message that calls a function. */
 interface Call {
@@ -33,9 +34,6 @@ export interface Thread {
   end(): void;
   wait(isWaiting: boolean): void;
 }
-
-/** The workers of Node. A bundler would replace `process` without `globalThis` by a package. */
-export const node = globalThis.process?.getBuiltinModule?.('node:worker_threads');
 
 /** Starts a worker. `onError` gets no message if the worker could not be loaded. */
 export function startThread(
@@ -73,7 +71,7 @@ export function startThread(
 }
 
 /** How a call sends its arguments, and who gets its events. */
-interface Sending {
+export interface Sending {
   transfer?: ArrayBuffer[];
   onEvent?: (event: never) => void;
 }

@@ -34,15 +34,8 @@ export type GpuSettings = Settings & { leavesCpu?: boolean; spare?: Promise<Uint
 /** The type of an option after reading: a list becomes a Uint32Array. */
 type Read<T> = [T] extends [IndexArray] ? Uint32Array : T;
 
-/**
- * The limits that are checked before a module is loaded: the most iterations of an update, the most threads, and the
- * fewest triangles of a mesh on several threads, and of each thread. A test in `src/system/threads.rs` compares them
- * with the limits of the modules.
- */
+/** The most iterations of an update. A test in `src/system/threads.rs` compares it with the limit of the modules. */
 export const MOST_ITERATIONS = 64;
-export const MOST_THREADS = 256;
-export const FEWEST_TRIANGLES = 65_536;
-export const FEWEST_EACH = 4096;
 
 /** The most attributes of vertices: more than any file has. */
 const MOST_ATTRIBUTES = 1024;

@@ -1,5 +1,6 @@
 /** A thread of the CPU engine: a worker. The first worker holds the sessions and answers calls. */
 
+import { begin } from './begin.js';
 import type { IndexedMesh } from './mesh.js';
 import { answerCalls } from './remote.js';
 import { reserve } from './reserve.js';
@@ -36,23 +37,11 @@ const sessions = new Map<number, Session>();
 const lent = new Map<number, Indices>();
 
 const calls = {
+  ...begin({ initSync, startThreads, work }),
   reserve,
-  /** Makes this worker the first of `count` threads, and returns the memory that all share. */
-  start(module: WebAssembly.Module, count: number): WebAssembly.Memory {
-    initSync({ module });
-    return startThreads(count);
-  },
   /** Takes the module of the repair. */
   async takeUntangler(module: WebAssembly.Module): Promise<void> {
     setUntangler(await untanglerOf(module));
-  },
-  /** Makes this worker one of the other threads. Never returns. */
-  work(module: WebAssembly.Module, memory: WebAssembly.Memory): void {
-    // If another thread grows the memory while this one receives it, V8 may keep the old size here, and a write beyond
-    // it is a trap: seen in Node 20.20.2, 24.21.0 and 25.9.0. To grow by 0 fetches the size.
-    memory.grow(0);
-    initSync({ module, memory });
-    work();
   },
   async open(session: number, { positions, indices, dimension }: IndexedMesh, settings: Settings): Promise<void> {
     sessions.set(session, await Session.create(positions, indices, dimension, settings, false));

@@ -1,11 +1,11 @@
-/** Sessions on the threads of the CPU engine: workers, each with an instance of one module. They share the memory. */
+/** Sessions on the threads of the CPU engine. */
 
 import { buffersOf } from './buffers.js';
-import { fromModule } from './error.js';
 import type { IndexedMesh } from './mesh.js';
-import { node, Remote, type Script, startThread, type Thread } from './remote.js';
+import { type Pool, starter, type Threads } from './pool.js';
+import type { Script } from './remote.js';
 import { reserve } from './reserve.js';
-import { FEWEST_EACH, FEWEST_TRIANGLES, MOST_THREADS, type Settings } from './settings.js';
+import type { Settings } from './settings.js';
 import type { Calls, Question } from './thread.js';
 import type { Session } from './wasm/edgeflip.js';
 
@@ -21,102 +21,14 @@ export interface ModuleSession extends Omit<Session, typeof Symbol.dispose | 'up
   readonly threads?: number;
 }
 
-/** Whether workers can share memory. */
-const isShared = typeof SharedArrayBuffer !== 'undefined' && (globalThis.crossOriginIsolated ?? node !== undefined);
-
-/** The number of threads of the CPU engine. */
-export function threadCount(triangles: number, { threads }: Settings): number {
-  if (!isShared || triangles < FEWEST_TRIANGLES) return 1;
-  return Math.max(1, Math.min(threads ?? coreCount(), MOST_THREADS, Math.floor(triangles / FEWEST_EACH)));
-}
-
-function coreCount(): number {
-  return (
-    globalThis.navigator?.hardwareConcurrency ??
-    (node ? globalThis.process.getBuiltinModule('node:os').availableParallelism() : 1)
-  );
-}
-
 /** The script of a thread. */
 export const script: Script = {
   worker: () => new Worker(new URL('./thread.js', import.meta.url), { type: 'module' }),
   url: () => new URL('./thread.js', import.meta.url),
 };
 
-/** The threads that work together. */
-class Pool {
-  readonly #first: Remote<Calls>;
-  readonly #others: Thread[] = [];
-  readonly #onEnd: () => void;
-  #hasEnded = false;
-
-  private constructor(onEnd: () => void) {
-    this.#onEnd = onEnd;
-    this.#first = new Remote(script, (message) => this.#fail(message ?? 'a worker could not be loaded'));
-  }
-
-  /** The first thread answers calls, the others work with it. */
-  static async start(
-    module: WebAssembly.Module,
-    count: number,
-    onEnd: () => void,
-  ): Promise<[Pool, WebAssembly.Memory]> {
-    const pool = new Pool(onEnd);
-    try {
-      const memory = await pool.call('start', module, count);
-      for (let i = 1; i < count; i++) pool.#add(module, memory);
-      return [pool, memory];
-    } catch (thrown) {
-      pool.#fail(String(thrown));
-      throw thrown;
-    }
-  }
-
-  call<M extends keyof Calls>(method: M, ...args: Parameters<Calls[M]>): Promise<Awaited<ReturnType<Calls[M]>>> {
-    return this.#first.call(method, args, { transfer: method === 'open' ? buffersOf(args) : [] });
-  }
-
-  #add(module: WebAssembly.Module, memory: WebAssembly.Memory): void {
-    const onError = (message?: string) => {
-      // If a worker cannot be loaded, the remaining threads do its work.
-      if (message !== undefined) this.#fail(message);
-    };
-    const thread = startThread(script, () => undefined, onError);
-    this.#others.push(thread);
-    thread.post({ id: -1, method: 'work', args: [module, memory] }, []);
-  }
-
-  /** Ends all threads: after a crash of one, their shared memory may be corrupt. */
-  #fail(message: string): void {
-    if (this.#hasEnded) return;
-    this.#hasEnded = true;
-    this.#onEnd();
-    for (const thread of this.#others.splice(0)) thread.end();
-    this.#first.end(fromModule(new Error(`a thread has crashed: ${message}`)));
-  }
-}
-
-/** Threads and their memory. */
-type Threads = [pool: Pool, memory: WebAssembly.Memory];
-
-/** The running threads, by their number. */
-const started = new Map<number, Promise<Threads>>();
-
-/** Why a mesh runs on one thread, if it could use more. */
-export function whyOneThread(triangles: number, { threads }: Settings): string | undefined {
-  if (isShared || triangles < FEWEST_TRIANGLES || threads === 1) return undefined;
-  return 'workers cannot share memory here; make the page cross-origin isolated, by the headers COOP and COEP';
-}
-
 /** Starts `count` threads, or returns them if they are running. Sessions share them. */
-export function threadsOf(module: WebAssembly.Module, count: number): Promise<Threads> {
-  let threads = started.get(count);
-  if (!threads) {
-    threads = Pool.start(module, count, () => started.delete(count));
-    started.set(count, threads);
-  }
-  return threads;
-}
+export const threadsOf = starter<Calls>(script);
 
 let sessions = 0;
 
@@ -132,7 +44,7 @@ export class ThreadsSession implements ModuleSession {
   readonly isSettled = true;
   stays = false;
   readonly gpu = undefined;
-  readonly #pool: Pool;
+  readonly #pool: Pool<Calls>;
   readonly #memory: WebAssembly.Memory;
   readonly #session: number;
   readonly #fallback: string | undefined;
@@ -141,7 +53,7 @@ export class ThreadsSession implements ModuleSession {
   #spare: Uint32Array | undefined;
 
   private constructor(
-    [pool, memory]: Threads,
+    [pool, memory]: Threads<Calls>,
     readonly threads: number,
     session: number,
     spare: Uint32Array | undefined,
@@ -153,7 +65,7 @@ export class ThreadsSession implements ModuleSession {
     this.#session = session;
     this.#fallback = fallback;
     // After a crash the memory is gone with the threads.
-    this.#free = () => void pool.call('free', session).catch(() => undefined);
+    this.#free = () => void pool.call('free', [session]).catch(() => undefined);
     dropped.register(this, this.#free, this);
   }
 
@@ -164,7 +76,7 @@ export class ThreadsSession implements ModuleSession {
    * @param fallback - Why `'auto'` chose the CPU.
    */
   static async create(
-    threads: Threads,
+    threads: Threads<Calls>,
     count: number,
     { positions, indices, dimension }: IndexedMesh,
     { device, ...settings }: Settings,
@@ -172,7 +84,9 @@ export class ThreadsSession implements ModuleSession {
   ): Promise<ThreadsSession> {
     const [pool] = threads;
     const [session, { length }] = [sessions++, indices];
-    const opened = pool.call('open', session, { positions, indices, dimension }, { ...settings, backend: 'cpu' });
+    const mesh = { positions, indices, dimension };
+    const transfer = buffersOf([mesh, settings]);
+    const opened = pool.call('open', [session, mesh, { ...settings, backend: 'cpu' }], { transfer });
     const spare = reserve(length);
     await opened;
     return new ThreadsSession(threads, count, session, spare, fallback);
@@ -188,7 +102,7 @@ export class ThreadsSession implements ModuleSession {
   changes = () => this.#ask('changes');
   counters = () => this.#ask('counters');
   update = (...args: Parameters<Session['update']>) => this.#ask('update', ...args);
-  takeUntangler = (module: WebAssembly.Module) => this.#pool.call('takeUntangler', module);
+  takeUntangler = (module: WebAssembly.Module) => this.#pool.call('takeUntangler', [module]);
   setPositions = (positions: Float32Array | Float64Array) => this.#ask('setPositions', positions);
 
   async outcome(): ReturnType<Session['outcome']> {
@@ -209,7 +123,7 @@ export class ThreadsSession implements ModuleSession {
       copy.set(new Uint32Array(this.#memory.buffer, address, length));
       return copy;
     } finally {
-      void this.#pool.call('release', this.#session).catch(() => undefined);
+      void this.#pool.call('release', [this.#session]).catch(() => undefined);
     }
   }
 
@@ -217,7 +131,7 @@ export class ThreadsSession implements ModuleSession {
     question: Q,
     ...args: Parameters<Session[Q]>
   ): Promise<Awaited<ReturnType<Session[Q]>>> {
-    const { value, iterations, flips } = await this.#pool.call('ask', this.#session, question, args);
+    const { value, iterations, flips } = await this.#pool.call('ask', [this.#session, question, args]);
     this.iterations = iterations;
     this.flips = flips;
     return value as Awaited<ReturnType<Session[Q]>>;

@@ -360,14 +360,14 @@ mod tests {
     /// JavaScript checks them before it has loaded a module.
     #[test]
     fn limits_are_those_of_the_npm_package() {
-        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/src/js/settings.ts");
-        let text = std::fs::read_to_string(path).unwrap().replace('_', "");
-        for line in [
-            format!("MOSTITERATIONS = {};", crate::engine::MOST_ITERATIONS),
-            format!("MOSTTHREADS = {};", crate::MOST_THREADS),
-            format!("FEWESTTRIANGLES = {};", FEWEST_TRIANGLES / FEWEST * RELEASED),
-            format!("FEWESTEACH = {RELEASED};"),
+        for (file, line) in [
+            ("settings.ts", format!("MOSTITERATIONS = {};", crate::engine::MOST_ITERATIONS)),
+            ("cores.ts", format!("MOSTTHREADS = {};", crate::MOST_THREADS)),
+            ("cores.ts", format!("FEWESTTRIANGLES = {};", FEWEST_TRIANGLES / FEWEST * RELEASED)),
+            ("cores.ts", format!("FEWESTEACH = {RELEASED};")),
         ] {
+            let path = format!("{}/src/js/{file}", env!("CARGO_MANIFEST_DIR"));
+            let text = std::fs::read_to_string(&path).unwrap().replace('_', "");
             assert!(text.contains(&line), "{path} has no {line}");
         }
     }

@@ -15,7 +15,7 @@ mod options;
 pub mod points;
 #[cfg(feature = "js-session")]
 pub mod session;
-#[cfg(feature = "js-threads")]
+#[cfg(any(feature = "js-threads", feature = "js-points-threads"))]
 pub mod threads;
 #[cfg(feature = "js-untangle")]
 pub mod untangle;

@@ -1,5 +1,5 @@
-//! The triangulation of points for the npm package, in a module of its own. Its only caller is `src/js/points.ts`, which
-//! has made sure that the length is even.
+//! The triangulation of points for the npm package, in modules of its own: on one thread, and on several. Their only
+//! callers are `src/js/points.ts` and `src/js/points-thread.ts`; the former has made sure that the length is even.
 
 use crate::system::memory;
 use crate::wasm::values::{JsPositions, coded, object, thrown};
@@ -11,7 +11,7 @@ use wasm_bindgen::prelude::*;
 ///
 /// # Errors
 /// Those of [`triangulate`](crate::triangulate).
-#[wasm_bindgen(unchecked_return_type = "Omit<import('../points.js').Triangulation, 'hint'>")]
+#[wasm_bindgen(unchecked_return_type = "Omit<import('../points.js').Triangulation, 'threads' | 'hint'>")]
 pub fn triangulate(points: JsPositions) -> Result<JsValue, JsValue> {
     let triangulate = || {
         memory::check(points.byte_length() as u64)?;

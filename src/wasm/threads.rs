@@ -1,5 +1,5 @@
-//! The threads of the CPU engine, in a module of their own. Each worker has an instance of it, and the instances share
-//! their memory.
+//! The threads of a module: of the CPU engine, and of the triangulation of points. Each worker has an instance of it, and
+//! the instances share their memory.
 
 use crate::wasm::values::coded;
 use rayon::{ThreadBuilder, ThreadPool, ThreadPoolBuilder};
@@ -38,9 +38,11 @@ pub fn work() {
 }
 
 /// Vertex indices, which the client copies from the shared memory.
+#[cfg(feature = "js-threads")]
 #[wasm_bindgen]
 pub struct Indices(pub(crate) Vec<u32>);
 
+#[cfg(feature = "js-threads")]
 #[wasm_bindgen]
 impl Indices {
     /// The address and the number of the indices.

@@ -16,7 +16,7 @@ const inits = [
     (name) => (source) => edgeflip.init({ [name]: source }),
   ),
   (source) => files.init({ files: source }),
-  (source) => points.init({ points: source }),
+  ...['points', 'threads'].map((name) => (source) => points.init({ [name]: source })),
 ];
 
 /** All hostile values except `undefined`, which means the module next to the package. */
@@ -46,7 +46,9 @@ for (const [i, [name, file]] of Object.entries(modules).entries()) {
   bytes.fill(0);
   await loaded;
 }
-await points.init({ points: readFileSync(new URL('../../dist/wasm/edgeflip_points_bg.wasm', import.meta.url)) });
+for (const [name, file] of Object.entries({ points: 'edgeflip_points', threads: 'edgeflip_points_threads' })) {
+  await points.init({ [name]: readFileSync(new URL(`../../dist/wasm/${file}_bg.wasm`, import.meta.url)) });
+}
 assert.deepEqual([...points.triangulateSync([0, 0, 1, 0, 0, 1]).triangles], [0, 1, 2]);
 
 // A value that is not an object of sources, or not a folder, is an error of this package. An object without sources is

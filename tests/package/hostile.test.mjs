@@ -189,7 +189,7 @@ const pointEntries = [points.triangulate, points.triangulateSync].flatMap((work)
       name,
       call,
       args: () => [inPlane(), { stride: 3, offset: 1 }],
-      paths: [[0], [1], [1, 'stride'], [1, 'offset'], [1, 'x'], [1, 'unknown']],
+      paths: [[0], [1], [1, 'stride'], [1, 'offset'], [1, 'threads'], [1, 'x'], [1, 'unknown']],
     },
     { name, call, args: () => [pairs()], paths: [[0], [0, 3], [0, 3, 0], [0, 'length']] },
     { name, call, args: () => [pairs(), accessors()], paths: [[0], [0, 3], [1, 'x'], [1, 'y']] },

@@ -17,7 +17,7 @@ export function documented(name, setting) {
 
 /**
  * In this thread and from a worker: flips on several threads, the audit, two vertices that change places, and the options
- * that need other modules.
+ * that need other modules. In this thread: points, few and many.
  */
 export const program = `
   import * as here from 'edgeflip';
@@ -43,12 +43,16 @@ export const program = `
       texts.push(\`\${moved.flips} when moved, clean: \${clean}, \${tangled.flips} when tangled\`);
     }
     const { triangles } = await triangulate(quad.positions);
+    let number = 1;
+    const points = Float64Array.from({ length: 2 ** 18 }, () => (number = (number * 48271) % 0x7fffffff));
+    const many = await triangulate(points, { threads: 2 });
+    texts.push(\`\${many.triangles.length / 3} triangles on \${many.threads} threads\${many.hint ?? ''}\`);
     return [...texts, here.makeDelaunaySync(quad).indices, triangles].join(', ');
   }
 `;
 const written = '48643 flips on 2 threads, 7 when moved, clean: true, 48642 when tangled';
 /** What \`flip\` of the program returns. */
-export const WRITTEN = `${written}, ${written}, 3,1,2,0,1,3, 0,1,3,1,2,3`;
+export const WRITTEN = `${written}, ${written}, 262110 triangles on 2 threads, 3,1,2,0,1,3, 0,1,3,1,2,3`;
 
 /** A page with a script. */
 export const html = (script) => `<!doctype html>

@@ -43,6 +43,16 @@ const withPoints = `
   const result = await makeDelaunay({ positions, indices: triangles, dimension: 2 }, { backend: 'auto' });
   document.body.append(\`\${result.flips} flips on \${result.backend}: \${triangles}, \${hull}\`);
 `;
+const withPointsOnThreads = `
+  import { makeDelaunay } from './node_modules/edgeflip/dist/index.js';
+  import { triangulate } from './node_modules/edgeflip/dist/points.js';
+  let number = 1;
+  const positions = Float64Array.from({ length: 2 ** 18 }, () => (number = (number * 48271) % 0x7fffffff));
+  const { triangles, twins, hull } = await triangulate(positions, { threads: 3 });
+  const result = await makeDelaunay({ positions, indices: triangles, dimension: 2 }, { backend: 'auto', threads: 1 });
+  const sum = (words) => words.reduce((sum, word) => (Math.imul(sum, 31) + word) | 0, 0);
+  document.body.append(\`\${result.flips} flips on \${result.backend}: \${sum(triangles)}, \${sum(twins)}, \${hull}\`);
+`;
 const withThreads = `
   import { makeDelaunay } from './node_modules/edgeflip/dist/index.js';
   import { generate } from './node_modules/edgeflip/dist/files.js';
@@ -113,6 +123,7 @@ const pages = [
   { name: 'files', lines: on('cpu', withFiles), writes: '' },
   { name: 'audit', lines: on('cpu', withAudit), writes: '' },
   { name: 'points', lines: on('cpu', withPoints), writes: '' },
+  { name: 'points-threads', lines: on('cpu', withPointsOnThreads), writes: '' },
   { name: 'threads', lines: on('cpu', withThreads), writes: '' },
   { name: 'worker', lines: on('cpu', withWorker), writes: '' },
   { name: 'fakes', lines: withFakes, writes: '' },
@@ -155,7 +166,8 @@ async function check(browser, address, isIsolated, names) {
       await pause(50);
       text = await page.evaluate(() => document.body?.textContent.trim() ?? '');
     }
-    const wanted = { threads: isIsolated ? 3 : 0, worker: 1 }[name] ?? 0;
+    const several = isIsolated ? 3 : 0;
+    const wanted = { threads: several, 'points-threads': several, worker: 1 }[name] ?? 0;
     // When the first worker has finished, the other workers may not have loaded yet.
     for (let i = 0; i < 100 && page.workers().length < wanted; i++) await pause(50);
     const workers = page.workers().length;
@@ -261,7 +273,7 @@ for (const version of full ? ['5.4', '', '6', '7'] : ['5.4']) {
 }
 
 /** Pages that load every module of the package. */
-const BUNDLED = ['cpu', 'webgl2', 'files', 'audit', 'points', 'threads', 'worker'];
+const BUNDLED = ['cpu', 'webgl2', 'files', 'audit', 'points', 'points-threads', 'threads', 'worker'];
 
 // More of them at once share the processor cores until a page takes longer than it may.
 describe('in a browser', { concurrency: 2 }, () => {
@@ -273,11 +285,11 @@ describe('in a browser', { concurrency: 2 }, () => {
   test('plain pages in Chromium', async () => check(chromium, await serve(plainPages('plain'), ISOLATED), true));
 
   test('plain pages that are not isolated, in Chromium', async () =>
-    check(chromium, await serve(plainPages('plain-alone')), false, ['index', 'threads']));
+    check(chromium, await serve(plainPages('plain-alone')), false, ['index', 'points-threads', 'threads']));
 
   test('plain pages in Firefox', async () =>
     check(await startFirefox(), await serve(plainPages('plain-firefox'), ISOLATED), true, [
-      ...['index', 'webgpu', 'webgl2', 'points', 'threads'],
+      ...['index', 'webgpu', 'webgl2', 'points', 'points-threads', 'threads'],
     ]));
 
   test('a Vite project, built, in Chromium', async () => {

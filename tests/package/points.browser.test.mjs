@@ -1,10 +1,10 @@
-// The entry `edgeflip/points` on a page of Chromium and of Firefox, and in a worker there: it loads one module, and the
-// triangles are those in Node. Uses the existing dist/.
+// The entry `edgeflip/points` on a page of Chromium and of Firefox, and in a worker there: it loads one module, or that of
+// the threads for many points, and the triangles are those in Node. Uses the existing dist/.
 
 import assert from 'node:assert/strict';
 import { after, test } from 'node:test';
 import { fileURLToPath } from 'node:url';
-import { closeAll, openPage, serve, startChromium, startFirefox } from '../browsers.mjs';
+import { closeAll, ISOLATED, openPage, serve, startChromium, startFirefox } from '../browsers.mjs';
 import { randomOf } from './points.mjs';
 
 after(closeAll);
@@ -32,38 +32,77 @@ const everything = async (url, sets) => {
   return texts;
 };
 
+/** Runs in the page or in a worker: how many threads triangulated many points, the sums of the result, and the hint. */
+const onThreads = async (url, threads) => {
+  const { triangulate } = await import(url);
+  let number = 1;
+  const points = Float64Array.from({ length: 2 ** 18 }, () => (number = (number * 48271) % 0x7fffffff));
+  const asked = triangulate(points, { threads });
+  points.fill(NaN);
+  const { triangles, twins, hull, duplicates, hint, ...found } = await asked;
+  const sums = [triangles, twins, hull, duplicates].map((words) =>
+    words.reduce((sum, word) => (Math.imul(sum, 31) + word) | 0, words.length),
+  );
+  return { threads: found.threads, sums, hint };
+};
+
+/** Runs a function in the page and in a worker there. */
+const inBoth = async ([work, ...args]) => {
+  const script = `onmessage = async ({ data }) => postMessage(await (${work})(...data))`;
+  const away = new Worker(URL.createObjectURL(new Blob([script])));
+  away.postMessage(args);
+  const found = await Promise.all([
+    new Function(`return ${work}`)()(...args),
+    new Promise((resolve, reject) => {
+      away.onmessage = ({ data }) => resolve(data);
+      away.onerror = ({ message }) => reject(new Error(message));
+    }),
+  ]);
+  away.terminate();
+  const fetched = performance.getEntriesByType('resource').map((entry) => entry.name);
+  return [...found, fetched.filter((url) => url.endsWith('.wasm'))];
+};
+
+const root = fileURLToPath(new URL('../..', import.meta.url));
+const { pathname } = new URL('../../dist/points.js', import.meta.url);
+
 for (const [name, start] of [
   ['Chromium', startChromium],
   ['Firefox', startFirefox],
 ]) {
   test(`points in ${name}`, async () => {
-    const address = await serve(fileURLToPath(new URL('../..', import.meta.url)));
+    const address = await serve(root);
     const { page, problems } = await openPage(await start(), `${address}tests/engines.html`);
-    const found = await page.evaluate(
-      async ([work, url, sets]) => {
-        const script = `onmessage = async () => postMessage(await (${work})('${url}', ${JSON.stringify(sets)}))`;
-        const away = new Worker(URL.createObjectURL(new Blob([script])));
-        away.postMessage('');
-        const [here, there] = await Promise.all([
-          new Function(`return ${work}`)()(url, sets),
-          new Promise((resolve, reject) => {
-            away.onmessage = ({ data }) => resolve(data);
-            away.onerror = ({ message }) => reject(new Error(message));
-          }),
-        ]);
-        away.terminate();
-        const fetched = performance.getEntriesByType('resource').map((entry) => entry.name);
-        return { here, there, modules: fetched.filter((url) => url.endsWith('.wasm')) };
-      },
-      [`${everything}`, `${address}dist/points.js`, sets],
-    );
-    const { pathname } = new URL('../../dist/points.js', import.meta.url);
+    const [here, there, modules] = await page.evaluate(inBoth, [`${everything}`, `${address}dist/points.js`, sets]);
     const expected = await everything(pathname, sets);
     assert.match(expected[3], /so there is no triangle/);
     assert.equal(expected[2].split('\n')[0].split(',').length % 3, 0);
-    assert.deepEqual(found.here, expected);
-    assert.deepEqual(found.there, expected);
-    assert.deepEqual(found.modules, [`${address}dist/wasm/edgeflip_points_bg.wasm`]);
+    assert.deepEqual(here, expected);
+    assert.deepEqual(there, expected);
+    assert.deepEqual(modules, [`${address}dist/wasm/edgeflip_points_bg.wasm`]);
+    assert.deepEqual(problems, []);
+    await page.close();
+  });
+
+  test(`points on several threads in ${name}`, async () => {
+    const [address, alone] = [await serve(root, ISOLATED), await serve(root)];
+    const { page, problems } = await openPage(await start(), `${address}tests/engines.html`);
+    const [here, there, modules] = await page.evaluate(inBoth, [`${onThreads}`, `${address}dist/points.js`, 3]);
+    const expected = await onThreads(pathname, 1);
+    assert.deepEqual(here, { ...expected, threads: 3 });
+    assert.deepEqual(there, here);
+    assert.deepEqual(modules, [`${address}dist/wasm/edgeflip_points_threads_bg.wasm`]);
+    // Without isolation there is one thread, and the hint says so unless one was asked for.
+    await page.goto(`${alone}tests/engines.html`);
+    const why = 'workers cannot share memory here; make the page cross-origin isolated, by the headers COOP and COEP';
+    for (const [threads, hint] of [
+      [3, `The points were triangulated on one thread: ${why}.`],
+      [1, undefined],
+    ]) {
+      const [slow, slower] = await page.evaluate(inBoth, [`${onThreads}`, `${alone}dist/points.js`, threads]);
+      assert.deepEqual(slow, { ...expected, hint });
+      assert.deepEqual(slower, slow);
+    }
     assert.deepEqual(problems, []);
     await page.close();
   });

@@ -33,6 +33,7 @@ import {
   init as initPoints,
   type PointsSources,
   type Spacing,
+  type Threading,
   type Triangulation,
   triangulate,
   triangulateSync,
@@ -129,7 +130,11 @@ export async function joined(mesh: Mesh<Uint32Array>, original: Original): Promi
 
 /** Points in every form. */
 export async function triangulated(places: readonly { lon: number; lat: number }[]): Promise<Uint32Array> {
-  const sources: PointsSources = { base: '/wasm', points: new URL('https://example.org/edgeflip_points.wasm') };
+  const sources: PointsSources = {
+    base: '/wasm',
+    points: new URL('https://example.org/edgeflip_points.wasm'),
+    threads: 'https://example.org/edgeflip_points_threads.wasm',
+  };
   await initPoints(sources);
   const byPlace = { x: (place: { lon: number }) => place.lon, y: (place: { lat: number }) => place.lat };
   const all: Triangulation[] = [
@@ -143,12 +148,18 @@ export async function triangulated(places: readonly { lon: number; lat: number }
       [0, 0],
       [1, 0],
     ]),
+    await triangulate([[0, 0]], { threads: 2 }),
+    await triangulate(places, { ...byPlace, threads: undefined }),
     triangulateSync([new Float32Array(2), [1, 0, 7]] as const),
     triangulateSync(new Uint32Array(3), { x: (id) => 2 * id, y: (id) => id * id }),
   ];
   const spacing: Spacing = { stride: 4, offset: 1 };
-  const { triangles, twins, hull, duplicates, hint } = await triangulate(new Float64Array(8), spacing);
-  const why: string | undefined = hint;
+  const threading: Threading = { threads: 4 };
+  const { triangles, twins, hull, duplicates, threads, hint } = await triangulate(new Float64Array(8), {
+    ...spacing,
+    ...threading,
+  });
+  const why: string | undefined = hint && `${hint} ${threads.toFixed()}`;
   const { flips } = await makeDelaunay({ positions: new Float64Array(8), indices: triangles, dimension: 2 });
   console.log(all.length, why, flips, twins.length + hull.length + duplicates.length);
   return triangles;
@@ -184,7 +195,9 @@ void triangulate([{ x: 0, y: 0 }]);
 void triangulateSync([{ lon: '0' }], { x: ({ lon }) => lon, y: () => 0 });
 // @ts-expect-error: a stride is for an array of numbers
 void triangulate([[0, 0]], { stride: 3 });
-// @ts-expect-error: this entry has one module
+// @ts-expect-error: a call without a promise has one thread
+void triangulateSync([[0, 0]], { threads: 2 });
+// @ts-expect-error: this entry has no module of engines
 void initPoints({ core: 'https://example.org/edgeflip.wasm' });
 // @ts-expect-error: the entry `edgeflip` does not load the module of the points
 void init({ points: 'https://example.org/edgeflip_points.wasm' });
